@@ -1,7 +1,9 @@
 /* Reading and atomic writing of whole files, and folders. */
+#include "base/memory_budget.h"
 #include "base/file.h"
 
 #include "base/below.h"
+#include "base/cancel.h"
 #include "base/temporary.h"
 #include "base/text.h"
 #include <errno.h>
@@ -49,10 +51,16 @@ static status system_error(diagnostic *why, status code, const char *path, const
 static status read_descriptor(int fd, const char *path, size_t limit, size_t expected, char **text, size_t *size,
                               diagnostic *why)
 {
+    enum { AT_ONCE = 1 << 24 }; /* some 10 ms, between two questions whether to stop */
     size_t capacity = expected < limit ? expected + 1 : limit + 1, used = 0;
     char *buffer = malloc(capacity + 1);
     while (buffer) {
-        ssize_t got = read(fd, buffer + used, capacity - used);
+        if (cancel_asked()) {
+            free(buffer);
+            return cancel_check(why);
+        }
+        const size_t left = capacity - used;
+        ssize_t got = read(fd, buffer + used, left < AT_ONCE ? left : AT_ONCE);
         if (got < 0 && errno == EINTR)
             continue;
         if (got < 0) {
@@ -110,7 +118,9 @@ status file_read_below(const char *path, const char *root, size_t limit, char **
         if (limit > SIZE_MAX / 4)
             limit = SIZE_MAX / 4;
         size_t expected = about.st_size > 0 ? (size_t)about.st_size : 4096;
-        code = read_descriptor(fd, path, limit, expected, text, size, why);
+        diagnostic_locate(why, path, 0, 0);
+        code = memory_budget_check(expected < limit ? expected : limit, "use a smaller file", why, "the file");
+        THEN(code, read_descriptor(fd, path, limit, expected, text, size, why));
     }
     close(fd);
     return code;
@@ -247,6 +257,11 @@ static int finish(file_writer *writer)
 
 status file_writer_commit(file_writer *writer, diagnostic *why)
 {
+    const status cancelled = cancel_check(why); /* its writer may have left early */
+    if (cancelled != STATUS_OK) {
+        file_writer_abandon(writer);
+        return cancelled;
+    }
     int error = finish(writer);
     bool failed = error != 0 || ferror(writer->stream) != 0;
     if (failed)

@@ -16,7 +16,8 @@ status file_read(const char *path, size_t limit, char **text, size_t *size, diag
 status file_read_below(const char *path, const char *root, size_t limit, char **text, size_t *size, diagnostic *why);
 
 /* A file being written. Open it, write to stream, then commit or abandon: both free it. path "-" is standard output.
- * Nothing is visible at path before the commit. The commit reports the errors of all writes. */
+ * Nothing is visible at path before the commit. The commit reports the errors of all writes; cancelled
+ * work (base/cancel.h) is abandoned. */
 typedef struct file_writer {
     FILE *stream;
     char *path, *temporary; /* temporary: NULL without a name */

@@ -1,6 +1,7 @@
 /* The thread team: a parallel loop over tasks. */
 #include "base/thread_team.h"
 
+#include "base/cancel.h"
 #include "base/float_environment.h"
 #include "base/os_process.h"
 #include <pthread.h>
@@ -25,6 +26,7 @@ struct thread_team {
     thread_team_task *task;
     void *context;
     size_t count;
+    cancel_token *token; /* of the caller */
     atomic_size_t next;
     member members[]; /* [0] is the caller */
 };
@@ -52,6 +54,7 @@ static void *attend(void *argument)
         if (t->quit)
             break;
         done = t->run;
+        cancel_follow(t->token);
         pthread_mutex_unlock(&t->lock);
         work(t, m->number);
         pthread_mutex_lock(&t->lock);
@@ -108,6 +111,7 @@ void thread_team_run(thread_team *t, thread_team_task *task, void *context, size
     t->task = task;
     t->context = context;
     t->count = count;
+    t->token = cancel_current();
     atomic_store_explicit(&t->next, 0, memory_order_relaxed);
     t->busy = t->size - 1;
     t->run++;

@@ -1,6 +1,6 @@
 /* A thread team for parallel loops of one caller. A team of one starts no thread. If the system provides fewer threads
  * than requested, the team is smaller; results must not depend on its size. thread_team_start creates, thread_team_stop
- * frees; for one caller at a time. */
+ * frees; for one caller at a time. Members work under the cancellation of their caller (base/cancel.h). */
 #pragma once
 
 #include <stddef.h>

@@ -70,6 +70,7 @@ static const command_option options[] = {
     {"start", 0, "S", "time of the first frame, in seconds since the start of the motion (default: 0)",
      OPTION_FILLS(take_seconds, animate_request, times.start_s)},
     OPTION_SET("'toy.stiffness=80'"),
+    OPTION_MEMORY,
     {"rows", 0, "FILE", "append one row per frame to a .csv: times, counts, energies",
      OPTION_FILLS(option_text, animate_request, rows)},
     {"restart", 0, NULL, "remove the existing frames and start again",

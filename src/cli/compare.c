@@ -4,6 +4,7 @@
 #include "report/report.h"
 #include "cli/options.h"
 #include "cli/outputs.h"
+#include "cli/scene_input.h"
 #include "image/compare.h"
 #include <stdio.h>
 
@@ -16,6 +17,7 @@ static const command_option options[] = {
     {"diff", 0, "FILE", "write the FLIP error map in false colour: .png, .jpg or .pfm",
      OPTION_FILLS(option_text, compare_request, map)},
     {"json", 0, NULL, "print one JSON object", OPTION_FILLS(option_flag, compare_request, json)},
+    OPTION_MEMORY,
     {0},
 };
 

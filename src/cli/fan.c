@@ -60,6 +60,7 @@ static const command_option options[] = {
     OPTION_DEPTH,
     OPTION_LAMBDA,
     OPTION_SET("'rod.visible=off'"),
+    OPTION_MEMORY,
     {"tree", 0, NULL, "draw the whole ray tree of each ray, not only its refracted path",
      OPTION_FILLS(option_flag, fan_request, whole_trees)},
     OPTION_OUTPUT("write a drawing (.svg) or one row per ray (.csv)"),

@@ -30,6 +30,7 @@ static const command_option options[] = {
      .lowest = 0, .highest = 65535},
     {"threads", 0, "N", "threads for scenes that do not set render.threads (default: one per processing unit)",
      OPTION_FILLS(option_integer, lab_request, threads), .lowest = 1, .highest = 1024},
+    OPTION_MEMORY,
     {"no-browser", 0, NULL, "do not open the address in a browser", OPTION_FILLS(option_flag, lab_request, no_browser)},
     {0},
 };

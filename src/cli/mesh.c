@@ -1,5 +1,6 @@
 /* `cuvette mesh`: describes a mesh of a file or of a generator, or writes its triangles for other programs. The options
  * of the generators are parameters of a scene's mesh, set through the parameter table. */
+#include "base/cancel.h"
 #include "cli/cli.h"
 #include "report/json.h"
 #include "report/mesh_rows.h"
@@ -65,6 +66,7 @@ static const command_option options[] = {
      .take = take_format},
     {"output", 'o', "FILE", "write to FILE instead of standard output",
      OPTION_FILLS(option_text, mesh_request, output)},
+    OPTION_MEMORY,
     {"json", 0, NULL, "print the description as JSON", OPTION_FILLS(option_flag, mesh_request, json)},
     {0},
 };
@@ -134,7 +136,7 @@ static status write_to(const void *content, FILE *stream, diagnostic *why)
         return json_put(stream, mesh_rows_json(m), why);
     else
         mesh_rows_text(stream, m);
-    return STATUS_OK;
+    return cancel_check(why);
 }
 
 status command_mesh(int argc, char **argv, diagnostic *why)

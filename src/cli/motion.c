@@ -21,6 +21,7 @@ typedef struct motion_request {
 
 static const command_option options[] = {
     OPTION_SET("'toy.dt_s=0.0005'"),
+    OPTION_MEMORY,
     {"json", 0, NULL, "print one JSON object", OPTION_FILLS(option_flag, motion_request, json)},
     OPTION_CSV(motion_request),
     {0},

@@ -28,6 +28,7 @@ static status take_curve(const command_option *o, void *context, const char *val
 
 static const command_option options[] = {
     OPTION_SET("'liquid.ior=1.47'"),
+    OPTION_MEMORY,
     {"json", 0, NULL, "print one JSON object", OPTION_FILLS(option_flag, realism_request, json)},
     OPTION_CSV(realism_request),
     {"curve", 0, "NAME",

@@ -1,4 +1,5 @@
 /* `cuvette render`: renders a scene, writes image, maps and timeline, prints the account. */
+#include "base/cancel.h"
 #include "cli/cli.h"
 #include "report/json.h"
 #include "cli/options.h"
@@ -41,6 +42,7 @@ static const command_option options[] = {
     {"output", 'o', "FILE", "write the image: .png, .jpg or .pfm (linear floats); .html: a page with the rays",
      OPTION_FILLS(option_text, render_request, files.img)},
     OPTION_SET("'render.depth=8' or 'lamp.position.x=2'"),
+    OPTION_MEMORY,
     {"json", 0, NULL, "print one JSON object: hash, times, counts, parameters",
      OPTION_FILLS(option_flag, render_request, json)},
     {"beams", 0, NULL, "draw the scene's beams into the image of -o; the film and its hash stay the same",
@@ -150,7 +152,7 @@ static status draw_beams(const render_request *request, const job_account *f, jo
     return result;
 }
 
-static status write_results(const render_request *request, const job_account *f, job *with, diagnostic *why)
+static status write_files(const render_request *request, const job_account *f, job *with, diagnostic *why)
 {
     const outputs *files = &request->files;
     TRY(outputs_write(files, f->of, f->result, why));
@@ -158,10 +160,28 @@ static status write_results(const render_request *request, const job_account *f,
         TRY(render_page_write(&request->input, f, job_isa(with), files->img, files->bits == 16 ? 16 : 8, why));
     if (request->beams && f->count > 0)
         TRY(draw_beams(request, f, with, why));
-    if (request->json)
-        return json_print(report_create(f, request->repeat > 0), why);
-    print_summary(f, files);
     return STATUS_OK;
+}
+
+/* Ctrl-C does not lose what was rendered, before or while files are written: they are written, or written again, with
+ * less effort, but no page, beams and layers, which take long. STATUS_INTERRUPTED then. */
+static status write_results(const render_request *request, const job_account *f, job *with, diagnostic *why)
+{
+    const status first = write_files(request, f, with, why);
+    status code = first;
+    cancel_token shield;
+    cancel_shield(&shield);
+    if (first == STATUS_INTERRUPTED) {
+        outputs soon = request->files;
+        soon.layers = NULL;
+        code = outputs_write(&soon, f->of, f->result, why);
+    }
+    if (code == STATUS_OK && request->json)
+        code = json_print(report_create(f, request->repeat > 0), why);
+    else if (code == STATUS_OK)
+        print_summary(f, &request->files);
+    cancel_end(&shield);
+    return code == STATUS_OK ? first : code;
 }
 
 static status report_interrupted(const render_request *request, const job_account *f, diagnostic *why)

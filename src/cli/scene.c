@@ -26,7 +26,7 @@ typedef struct scene_request {
     bool begins_empty, only_checks, only_lists, only_links, writes_all;
 } scene_request;
 
-enum { OPTIONS_MOST = 16 };
+enum { OPTIONS_MOST = 20 };
 
 static status take_edit(const command_option *o, void *context, const char *text, diagnostic *why)
 {
@@ -46,6 +46,7 @@ static const command_option plain_options[] = {
      OPTION_FILLS(option_flag, scene_request, only_lists)},
     {"link", 0, NULL, "only print the scene as the fragment of a link, which 'cuvette render' and 'lab' open too",
      OPTION_FILLS(option_flag, scene_request, only_links)},
+    OPTION_MEMORY,
     {"all", 0, NULL, "write every parameter, not only those that differ from the defaults",
      OPTION_FILLS(option_flag, scene_request, writes_all)},
     {"output", 'o', "FILE", "write to FILE, .yaml or .yml; may be the input file (default: standard output)",

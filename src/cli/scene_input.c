@@ -1,6 +1,7 @@
 /* The scene of a command: --set and its short forms, reading, loading, notes. */
 #include "cli/scene_input.h"
 #include "base/grow.h"
+#include "base/memory_budget.h"
 #include "cli/outputs.h"
 #include "cli/terminal.h"
 #include "scene/model/hints.h"
@@ -22,6 +23,16 @@ status option_change(const command_option *o, void *request, const char *value, 
     if (!room_for_one(&input->changes, input->count, sizeof *input->changes))
         return out_of_memory(why);
     input->changes[input->count++] = (scene_change){o->name, o->parameter, value};
+    return STATUS_OK;
+}
+
+status option_memory(const command_option *o, void *request, const char *value, diagnostic *why)
+{
+    uint64_t bytes;
+    (void)o, (void)request;
+    if (!memory_parse(value, &bytes))
+        return options_wrong("--memory-limit", value, why, "give a size such as 500M or 4G", "invalid size");
+    memory_budget_set(bytes);
     return STATUS_OK;
 }
 

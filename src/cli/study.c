@@ -1,4 +1,5 @@
 /* `cuvette study`: runs, lists, merges and summarises studies. */
+#include "base/cancel.h"
 #include "base/os_process.h"
 #include "base/text_writer.h"
 #include "cli/cli.h"
@@ -183,7 +184,10 @@ static status run_part(const study *s, const study_request *request, diagnostic 
         return options_wrong("--process", NULL, why, "see processes in the study file", "%s has %ld processes", s->path,
                              study_processes(s));
     os_die_with_parent(); /* rows survive that, and the next run needs their files */
+    cancel_token shield;
+    cancel_shield(&shield);
     const status result = measure(s, request, &rows, why);
+    cancel_end(&shield);
     if (result == STATUS_INTERRUPTED)
         *why = (diagnostic){.what = ""};
     return result;
@@ -197,7 +201,12 @@ static status run_one(const study *s, const study_request *request, diagnostic *
     status result = request->quiet ? STATUS_OK : print_notes(s, request, why);
     if (result == STATUS_OK && request->dry_run)
         return study_dry_run(s, request, why);
-    THEN(result, measure(s, request, &rows, why));
+    if (result == STATUS_OK) { /* after a stop request too, rows and images of what is complete are written */
+        cancel_token shield;
+        cancel_shield(&shield);
+        result = measure(s, request, &rows, why);
+        cancel_end(&shield);
+    }
     if (result == STATUS_INTERRUPTED)
         return say_interrupted(s, rows, why);
     if (result != STATUS_OK || request->quiet)

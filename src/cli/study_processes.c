@@ -1,4 +1,5 @@
 /* The fresh processes of `cuvette study run`: this program, or another build of it in turn, with --process=K. */
+#include "base/memory_budget.h"
 #include "base/random.h"
 #include "base/spawn.h"
 #include "base/text.h"
@@ -13,7 +14,7 @@
 #include <sys/wait.h>
 #include <unistd.h>
 
-enum { ARGUMENTS_MAX = 16 };
+enum { ARGUMENTS_MAX = 20 };
 
 char *study_against_folder(const study_request *request)
 {
@@ -53,7 +54,7 @@ static status ended(const study *s, const char *program, long process, int code,
 static status run_process(const study *s, const study_request *request, const char *program, const char *results,
                           long process, diagnostic *why)
 {
-    char number[32], processes[32], shard[64], wait[64];
+    char number[32], processes[32], shard[64], wait[64], memory[48];
     const char *arguments[ARGUMENTS_MAX] = {"cuvette",   "study", "run",         "--results", results,
                                             "--process", number,  "--processes", processes};
     size_t count = 9;
@@ -69,6 +70,9 @@ static status run_process(const study *s, const study_request *request, const ch
         arguments[count++] = wait;
     if (request->any_environment)
         arguments[count++] = "--any-environment";
+    snprintf(memory, sizeof memory, "--memory-limit=%llu", (unsigned long long)memory_budget_limit());
+    if (memory_budget_limit() > 0)
+        arguments[count++] = memory;
     if (request->quiet)
         arguments[count++] = "--quiet";
     arguments[count++] = "--";

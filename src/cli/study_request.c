@@ -1,6 +1,7 @@
 /* The command lines of the subcommands of `cuvette study`. */
 #include "cli/study_request.h"
 #include "cli/options.h"
+#include "cli/scene_input.h"
 #include "base/number.h"
 #include "study/study.h"
 #include <stdio.h>
@@ -79,6 +80,7 @@ static const command_option run_options[] = {
     {"dry-run", 'n', NULL, "print what would be measured and kept, and about how long it takes; write nothing",
      OPTION_FILLS(option_flag, study_request, dry_run)},
     {"quiet", 'q', NULL, "print errors only", OPTION_FILLS(option_flag, study_request, quiet)},
+    OPTION_MEMORY,
     {0},
 };
 

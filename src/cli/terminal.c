@@ -1,5 +1,6 @@
 /* Terminal and signals of the program: stop request, checked standard output, colour, progress line. */
 #include "cli/terminal.h"
+#include "base/cancel.h"
 #include "base/number.h"
 #include "base/os_process.h"
 #include "measure/clock.h"
@@ -15,10 +16,12 @@
 #include <unistd.h>
 
 static volatile sig_atomic_t stop_requested;
+static cancel_token token; /* of the main thread's work */
 
 static void request_stop(int signal_number)
 {
     stop_requested = signal_number;
+    cancel_set(&token);
 }
 
 bool terminal_stop_requested(void *unused)
@@ -86,6 +89,7 @@ void terminal_prepare(void)
         sigaction(SIGHUP, &action, NULL);
     os_signals_as_errors();
     atexit(check_stdout_at_exit);
+    cancel_begin(&token);
 }
 
 bool terminal_is_smart(int fd)

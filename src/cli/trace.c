@@ -60,6 +60,7 @@ static const command_option options[] = {
     OPTION_DEPTH,
     OPTION_LAMBDA,
     OPTION_SET("'liquid.ior=1.4'"),
+    OPTION_MEMORY,
     {"text", 0, NULL, "print an indented tree, one line per ray (the default)", .take = take_format},
     {"json", 0, NULL, "print one JSON object", .take = take_format},
     {"svg", 0, NULL, "draw the tree in the plane of incidence and from above", .take = take_format},

@@ -3,6 +3,7 @@
  * it. */
 #include "geometry/mesh_generators_parts.h"
 
+#include "base/cancel.h"
 #include "base/elementary.h"
 
 #include <stdlib.h>
@@ -127,7 +128,7 @@ static void make_rows(lathe *l)
 static void place_rows(const lathe *l, int around, mesh *m)
 {
     const size_t columns = (size_t)around + 1;
-    for (size_t i = 0; i < columns; i++) {
+    for (size_t i = 0; i < columns && !cancel_asked(); i++) {
         const vec3 away = generate_azimuth((int)i, around);
         for (size_t r = 0; r < l->row_count; r++) {
             const row *at = &l->rows[r];
@@ -151,7 +152,7 @@ static size_t join_rows(const lathe *l, int around, mesh_triangle *triangles)
             made += (size_t)around * (size_t)((low->at.radius > 0.0) + (high->at.radius > 0.0));
             continue;
         }
-        for (uint32_t i = 0; i + 1 < columns; i++) {
+        for (uint32_t i = 0; i + 1 < columns && !cancel_asked_at(i); i++) {
             const uint32_t a = (uint32_t)l->low[k] * columns + i, d = (uint32_t)l->high[k] * columns + i;
             if (high->at.radius > 0.0)
                 triangles[made++] = (mesh_triangle){{a, d, d + 1}};

@@ -1,4 +1,5 @@
 /* The random triangle sets of the speed studies. */
+#include "base/cancel.h"
 #include "base/single.h"
 #include "geometry/mesh_generators_parts.h"
 
@@ -53,7 +54,7 @@ static status soup(size_t count, double edge, mesh **out, diagnostic *why)
     mesh *m;
     TRY(mesh_create(3 * count, count, false, false, false, &m, why));
     uint64_t state = 20240101;
-    for (size_t t = 0; t < count; t++) {
+    for (size_t t = 0; t < count && !cancel_asked_at(t); t++) {
         double center[3], corner[3][3];
         for (int axis = 0; axis < 3; axis++)
             center[axis] = 2.0 * draw(&state) - 1.0; /* exact */

@@ -1,6 +1,7 @@
 /* Spheres from the icosahedron. Each of its 20 faces has its own triangular grid of vertices, row i of f + 1 holding i
  * + 1 of them, so that texture coordinates may be discontinuous at an edge; positions on a common edge are
  * bit-identical. */
+#include "base/cancel.h"
 #include "base/single.h"
 #include "geometry/mesh_generators_parts.h"
 
@@ -29,7 +30,7 @@ static status make_grids(size_t f, mesh **out, diagnostic *why)
     status result = mesh_create(20 * per_face, 20 * f * f, true, true, false, out, why);
     mesh_triangle *triangle = result == STATUS_OK ? (*out)->triangles : NULL;
     for (size_t face = 0; triangle && face < 20; face++) {
-        for (size_t i = 0; i < f; i++) {
+        for (size_t i = 0; i < f && !cancel_asked(); i++) {
             for (size_t j = 0; j <= i; j++) {
                 const uint32_t here = (uint32_t)(face * per_face + row_start(i) + j),
                                below = (uint32_t)(face * per_face + row_start(i + 1) + j);
@@ -50,6 +51,8 @@ static void set_attributes(mesh *m, size_t face, size_t per_face)
     const double middle_deg = generate_longitude_deg(sum);
     for (size_t v = face * per_face; v < (face + 1) * per_face; v++) {
         const vec3 p = m->vertices[v];
+        if (cancel_asked_at(v))
+            return;
         double away_deg = p.x == 0.0 && p.z == 0.0
                               ? 0.0
                               : generate_longitude_deg(p) - middle_deg; /* a pole has no longitude of its own */
@@ -69,7 +72,7 @@ static void place_flat(mesh *m, size_t face, size_t f)
 {
     const vec3 a = icosahedron(faces[face][0]), b = icosahedron(faces[face][1]), c = icosahedron(faces[face][2]);
     vec3 *vertex = m->vertices + face * row_start(f + 1);
-    for (size_t i = 0; i <= f; i++) {
+    for (size_t i = 0; i <= f && !cancel_asked(); i++) {
         for (size_t j = 0; j <= i; j++) {
             const vec3 sum = vec3_add(vec3_add(vec3_scale(a, (double)(f - i)), vec3_scale(b, (double)(i - j))),
                                       vec3_scale(c, (double)j));
@@ -87,7 +90,7 @@ static void place_bisected(mesh *m, size_t face, size_t f)
     grid[row_start(f)] = vec3_normalize(icosahedron(faces[face][1]));
     grid[row_start(f) + f] = vec3_normalize(icosahedron(faces[face][2]));
     for (size_t half = f / 2; half > 0; half /= 2) {
-        for (size_t i = 0; i <= f; i += half) {
+        for (size_t i = 0; i <= f && !cancel_asked(); i += half) {
             const size_t up = i % (2 * half) ? half : 0; /* an odd row has its ends above and below, */
             for (size_t j = 0; j <= i; j += half) {
                 const size_t left = j % (2 * half) ? half : 0; /* an odd column to the left and right */

@@ -1,6 +1,8 @@
 /* A height field mesh. */
 #include "geometry/mesh_generators_parts.h"
 
+#include "base/cancel.h"
+
 typedef struct field {
     const double *heights;
     size_t columns, rows;
@@ -18,6 +20,8 @@ static status check(const field *f, diagnostic *why)
         return diagnose(why, STATUS_BAD_INPUT, "use 0 to 1e9", "invalid height field depth %g", f->depth);
     for (size_t k = 0; k < f->columns * f->rows; k++) {
         const double height = f->heights[k];
+        if (cancel_asked_at(k))
+            return cancel_check(why);
         if (!(fabs(height) <= MESH_FAR))
             return diagnose(why, STATUS_BAD_INPUT, "use -1e9 to 1e9",
                             "height %g in column %zu of row %zu is out of range", height, k % f->columns,
@@ -41,7 +45,7 @@ static double slope(const field *f, size_t k, size_t at, size_t count, size_t st
 static void place_top(const field *f, mesh *m, size_t *triangle)
 {
     const double step_x = f->size_x / (double)(f->columns - 1), step_z = f->size_z / (double)(f->rows - 1);
-    for (size_t row = 0, k = 0; row < f->rows; row++) {
+    for (size_t row = 0, k = 0; row < f->rows && !cancel_asked(); row++) {
         for (size_t column = 0; column < f->columns; column++, k++) {
             const double u = (double)column / (double)(f->columns - 1), v = (double)row / (double)(f->rows - 1);
             m->vertices[k] = vec3_make(f->size_x * (u - 0.5), f->heights[k], f->size_z * (v - 0.5));

@@ -1,6 +1,7 @@
 /* A torus mesh. */
 #include "geometry/mesh_generators_parts.h"
 
+#include "base/cancel.h"
 #include "base/elementary.h"
 
 static status check(double major, double minor, int around, int tube, diagnostic *why)
@@ -23,7 +24,7 @@ status generate_torus(double major, double minor, int around, int tube, mesh **o
     if (result != STATUS_OK)
         return result;
     size_t triangle = 0;
-    for (size_t i = 0; i < columns; i++) {
+    for (size_t i = 0; i < columns && !cancel_asked(); i++) {
         const vec3 outward = generate_azimuth((int)i, around);
         for (size_t j = 0; j < rows; j++) {
             double sine, cosine; /* from the innermost circle down, out and up again */

@@ -1,6 +1,8 @@
 /* Building, sharing and updating of hierarchies, for all kinds. */
+#include "base/memory_budget.h"
 #include "geometry/hierarchy_private.h"
 
+#include "base/cancel.h"
 #include "geometry/mesh_share.h"
 #include <stdlib.h>
 #include <time.h>
@@ -22,6 +24,10 @@ static status build_none(hierarchy *h, diagnostic *why)
         for (size_t i = 0; i < count; i++)
             order[i] = (uint32_t)i;
         hierarchy_fill_blocks(h, order, count, 0);
+        if (cancel_asked()) {
+            free(order);
+            return cancel_check(why);
+        }
         h->report.bytes = h->block_count * (h->single ? sizeof(block_single) : sizeof(block_double));
         h->report.leaves = 1;
     }
@@ -44,9 +50,27 @@ static status build(hierarchy *h, int threads, diagnostic *why)
                     (int)h->kind);
 }
 
+/* Bytes of the hierarchy of a mesh and of its builder, by triangle: measured on soups and spheres of 10^6 triangles, and
+ * rounded up. */
+static uint64_t bytes_by_triangle(hierarchy_kind kind, bool single)
+{
+    const uint64_t block = (single ? sizeof(block_single) : sizeof(block_double)) / BLOCK;
+    switch (kind) {
+    case HIERARCHY_NONE: return block + sizeof(uint32_t);
+    case HIERARCHY_SPHERE:
+    case HIERARCHY_OCTANT: return 4 * block + 40;
+    case HIERARCHY_BVH: return 2 * block + 120;
+    case HIERARCHY_EMBREE: return 250;
+    case HIERARCHY_KIND_COUNT: break;
+    }
+    return 0;
+}
+
 status hierarchy_build(const mesh *m, hierarchy_kind kind, int threads, hierarchy **out, diagnostic *why)
 {
     *out = NULL;
+    TRY(memory_budget_check(m->triangle_count * bytes_by_triangle(kind, m->single), "use a smaller mesh", why,
+                            "the hierarchy of %zu triangles", m->triangle_count));
     hierarchy *h = calloc(1, sizeof *h);
     if (!h)
         return diagnose(why, STATUS_FAILURE, "free some memory", "out of memory for a hierarchy");

@@ -1,4 +1,5 @@
 /* The memory of a hierarchy, and its blocks of four triangles, in single or double precision. */
+#include "base/cancel.h"
 #include "base/large_pages.h"
 #include "geometry/hierarchy_private.h"
 
@@ -55,7 +56,7 @@ static void fill_double(const mesh *m, const uint32_t *order, size_t last, block
 size_t hierarchy_fill_blocks(hierarchy *h, const uint32_t *order, size_t count, size_t first)
 {
     size_t blocks = (count + BLOCK - 1) / BLOCK;
-    for (size_t i = 0; i < blocks; i++) {
+    for (size_t i = 0; i < blocks && !cancel_asked_at(i); i++) {
         size_t left = count - i * BLOCK, last = (left < BLOCK ? left : BLOCK) - 1;
         if (h->single)
             fill_single(h->of, order + i * BLOCK, last, (block_single *)h->blocks + first + i);

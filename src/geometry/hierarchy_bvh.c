@@ -1,4 +1,5 @@
 /* The driver of the bvh builder: computes the references, builds the tree and collapses it. */
+#include "base/cancel.h"
 #include "base/large_pages.h"
 #include "geometry/hierarchy_bvh.h"
 
@@ -51,6 +52,8 @@ static void read_piece(void *context, size_t index, int member)
 {
     (void)member;
     const reference_job *r = context;
+    if (cancel_asked())
+        return;
     size_t first = index * PIECE, end = first + PIECE < r->m->triangle_count ? first + PIECE : r->m->triangle_count;
     bvh_range piece = {.box = bvh_box_empty(), .centers = bvh_box_empty(), .first = (uint32_t)first};
     for (size_t i = first; i < end; i++)
@@ -66,6 +69,9 @@ static status read_triangles(const mesh *m, thread_team *t, bvh_ref *refs, bvh_r
     if (!r.pieces)
         return out_of_memory(why);
     thread_team_run(t, read_piece, &r, count);
+    const status code = cancel_check(why); /* pieces may be missing */
+    if (code != STATUS_OK)
+        count = 0;
     *all = (bvh_range){.box = bvh_box_empty(), .centers = bvh_box_empty()};
     for (size_t i = 0; i < count; i++) {
         const bvh_range *piece = &r.pieces[i];
@@ -76,7 +82,7 @@ static status read_triangles(const mesh *m, thread_team *t, bvh_ref *refs, bvh_r
         bvh_box_add(&all->centers, piece->centers.low, piece->centers.high);
     }
     free(r.pieces);
-    return STATUS_OK;
+    return code;
 }
 
 static status build(hierarchy *h, thread_team *t, bvh_ref *refs, diagnostic *why)

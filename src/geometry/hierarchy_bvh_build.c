@@ -1,4 +1,5 @@
 /* The binary tree of the bvh builder: the top is split by all threads together, the subtrees by one thread each. */
+#include "base/cancel.h"
 #include "base/large_pages.h"
 #include "geometry/hierarchy_bvh.h"
 
@@ -50,7 +51,7 @@ static bvh_branch *new_branch(bvh_store **own, const bvh_range *range)
     return b;
 }
 
-/* NULL: out of memory. */
+/* NULL: out of memory, or cancelled. */
 static bvh_branch *build_subtree(bvh_store **own, bvh_ref *refs, const bvh_range *range, int depth)
 {
     bvh_branch *b = new_branch(own, range);
@@ -73,7 +74,8 @@ static void build_task(void *context, size_t index, int member)
 {
     tree_build *g = context;
     task *own = &g->tasks[index];
-    *own->out = build_subtree(&g->tree->stores[member], g->refs, &own->range, own->depth);
+    if (!cancel_asked())
+        *own->out = build_subtree(&g->tree->stores[member], g->refs, &own->range, own->depth);
 }
 
 static bool add_task(tree_build *g, const bvh_range *range, int depth, bvh_branch **out)
@@ -102,6 +104,7 @@ static status build_top(tree_build *g, const bvh_range *range, int depth, bvh_br
     if (!b)
         return out_of_memory(why);
     bvh_range half[2];
+    TRY(cancel_check(why));
     TRY(bvh_split_together(g->t, g->refs, range, depth, half, why));
     for (int i = 0; i < 2; i++)
         TRY(build_top(g, &half[i], depth + 1, &b->half[i], why));
@@ -123,7 +126,7 @@ static status build_all(tree_build *g, const bvh_range *all, diagnostic *why)
     thread_team_run(g->t, build_task, g, g->task_count);
     for (size_t i = 0; i < g->task_count; i++)
         if (!*g->tasks[i].out)
-            return out_of_memory(why);
+            return cancelled_or_out_of_memory(why);
     choose_top(g->tree->root);
     return STATUS_OK;
 }

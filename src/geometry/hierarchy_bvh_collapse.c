@@ -1,4 +1,5 @@
 /* The collapse of the binary tree into nodes of eight children and leaves of blocks, at the least expected cost. */
+#include "base/cancel.h"
 #include "base/grow.h"
 #include "geometry/hierarchy_bvh.h"
 
@@ -140,7 +141,8 @@ static void count_subtree(void *context, size_t index, int member)
 {
     (void)member;
     collapse_job *g = context;
-    count_tree(g->list[index].b, false, false);
+    if (!cancel_asked())
+        count_tree(g->list[index].b, false, false);
 }
 
 static void write_leaf(hierarchy *h, const bvh_branch *b, const bvh_ref *refs, size_t first_block)
@@ -193,6 +195,8 @@ static void write_subtree(void *context, size_t index, int member)
     (void)member;
     collapse_job *g = context;
     const subtree *p = &g->list[index];
+    if (cancel_asked())
+        return;
     write_tree(g, p->b, false, p->node, p->block, NULL);
 }
 
@@ -223,12 +227,14 @@ static status collapse(collapse_job *g, bvh_branch *root, thread_team *t, diagno
     if (!find_small(g, root, true))
         return out_of_memory(why);
     thread_team_run(t, count_subtree, g, g->count);
+    TRY(cancel_check(why)); /* before a count that is missing is used */
     count_tree(root, true, true);
     TRY(make_room(g->h, root->nodes, root->blocks, why));
     g->count = 0;
     if (!write_tree(g, root, true, 0, 0, g))
         return out_of_memory(why);
     thread_team_run(t, write_subtree, g, g->count);
+    TRY(cancel_check(why));
     g->h->report.nodes = root->nodes;
     g->h->report.leaves = root->leaves;
     g->h->report.depth = (int)root->depth;

@@ -1,4 +1,5 @@
 /* One split of a large range by all threads together. */
+#include "base/cancel.h"
 #include "geometry/hierarchy_bvh.h"
 
 #include <stdlib.h>

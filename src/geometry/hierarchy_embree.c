@@ -5,6 +5,7 @@
 
 #ifdef CUVETTE_EMBREE
 
+#include "base/cancel.h"
 #include <dlfcn.h>
 #include <embree3/rtcore.h>
 #include <pthread.h>
@@ -28,6 +29,7 @@
     X(releaseScene, rtcReleaseScene)                                     \
     X(setDeviceMemoryMonitorFunction, rtcSetDeviceMemoryMonitorFunction) \
     X(setNewGeometryBuffer, rtcSetNewGeometryBuffer)                     \
+    X(setSceneProgressMonitorFunction, rtcSetSceneProgressMonitorFunction) \
     X(setSceneFlags, rtcSetSceneFlags)
 
 static struct {
@@ -146,15 +148,15 @@ static bool fill(const mesh *m, RTCGeometry g)
                                                    sizeof m->triangles[0], m->triangle_count);
     if (!v || !corner)
         return false;
-    for (size_t i = 0; i < m->vertex_count; i++) {
+    for (size_t i = 0; i < m->vertex_count && !cancel_asked_at(i); i++) {
         v[3 * i] = (float)m->vertices[i].x;
         v[3 * i + 1] = (float)m->vertices[i].y;
         v[3 * i + 2] = (float)m->vertices[i].z;
     }
-    for (size_t i = 0; i < m->triangle_count; i++)
+    for (size_t i = 0; i < m->triangle_count && !cancel_asked_at(i); i++)
         for (size_t k = 0; k < 3; k++)
             corner[3 * i + k] = m->triangles[i].corner[k];
-    return true;
+    return !cancel_asked();
 }
 
 static bool count_bytes(void *bytes, ssize_t more, bool after)
@@ -162,6 +164,14 @@ static bool count_bytes(void *bytes, ssize_t more, bool after)
     (void)after;
     __atomic_fetch_add((size_t *)bytes, (size_t)more, __ATOMIC_RELAXED);
     return true;
+}
+
+/* On any of Embree's threads. */
+static bool goes_on(void *token, double share)
+{
+    (void)share;
+    cancel_follow(token);
+    return !cancel_asked();
 }
 
 static bool commit(const hierarchy *h, foreign *f)
@@ -177,7 +187,9 @@ static bool commit(const hierarchy *h, foreign *f)
         embree.releaseGeometry(g);
     if (filled) {
         embree.setSceneFlags(f->scene, RTC_SCENE_FLAG_CONTEXT_FILTER_FUNCTION);
+        embree.setSceneProgressMonitorFunction(f->scene, goes_on, cancel_current());
         embree.commitScene(f->scene);
+        embree.setSceneProgressMonitorFunction(f->scene, NULL, NULL);
     }
     return filled && embree.getDeviceError(f->device) == RTC_ERROR_NONE;
 }
@@ -203,6 +215,8 @@ status hierarchy_build_embree(hierarchy *h, int threads, diagnostic *why)
     embree.setDeviceMemoryMonitorFunction(f->device, count_bytes, &bytes);
     bool built = commit(h, f);
     embree.setDeviceMemoryMonitorFunction(f->device, NULL, NULL);
+    if (!built && cancel_asked())
+        return cancel_check(why);
     if (!built)
         return diagnose(why, STATUS_FAILURE, "choose another hierarchy", "Embree cannot build its hierarchy");
     h->report.bytes = sizeof *h + bytes;

@@ -1,4 +1,5 @@
 /* Hierarchies as bytes: the nodes, and the numbers of the triangles in the blocks. */
+#include "base/cancel.h"
 #include "geometry/hierarchy_bvh.h"
 #include "geometry/mesh_pack.h"
 
@@ -182,7 +183,7 @@ static status fill_chunk(hierarchy *h, size_t first, size_t count, chunk *number
     if (beyond)
         return pack_damaged(why, "a triangle of a hierarchy");
     hierarchy_fill_blocks(h, order, BLOCK * count, first);
-    return STATUS_OK;
+    return cancel_check(why);
 }
 
 static status unpack_blocks(hierarchy *h, pack_reader *from, diagnostic *why)

@@ -3,6 +3,7 @@
  * quarter of the shell's radius, which stay with the shell. */
 #include "geometry/hierarchy_private.h"
 
+#include "base/cancel.h"
 #include "base/single.h"
 #include <math.h>
 #include <stdlib.h>
@@ -56,7 +57,7 @@ static double radius_of(const box *b)
 static void shell_of(const spheres_build *b, size_t first, size_t count, sphere_node *s)
 {
     box all = {{INFINITY, INFINITY, INFINITY}, {-INFINITY, -INFINITY, -INFINITY}}, one;
-    for (size_t i = first; i < first + count; i++) {
+    for (size_t i = first; i < first + count && !cancel_asked_at(i); i++) {
         box_of_triangle(b->h->of, b->order[i], &one);
         for (int k = 0; k < 3; k++) {
             all.low[k] = fmin(all.low[k], one.low[k]);
@@ -69,7 +70,7 @@ static void shell_of(const spheres_build *b, size_t first, size_t count, sphere_
         s->center[k] = (float)center[k];
     }
     double most = 0.0;
-    for (size_t i = first; i < first + count; i++) {
+    for (size_t i = first; i < first + count && !cancel_asked_at(i); i++) {
         box_of_triangle(b->h->of, b->order[i], &one);
         double square = 0.0;
         for (int k = 0; k < 3; k++) {
@@ -108,6 +109,8 @@ static void divide(spheres_build *b, size_t first, size_t count, const sphere_no
 /* Builds node number `at` from triangles first .. first + count - 1. */
 static void build_node(spheres_build *b, size_t at, size_t first, size_t count, int level)
 {
+    if (cancel_asked())
+        return;
     sphere_node s = {.first_block = (uint32_t)b->blocks};
     size_t start[OCTANTS + 2], octants = 0;
     shell_of(b, first, count, &s);
@@ -155,11 +158,12 @@ status hierarchy_build_spheres(hierarchy *h, diagnostic *why)
     bool made = b.order && b.moved && b.octant;
     if (made) {
         pass(&b, false);
-        h->spheres = calloc(b.nodes, sizeof *h->spheres);
+        h->spheres = cancel_asked() ? NULL : calloc(b.nodes, sizeof *h->spheres);
         made = h->spheres && hierarchy_make_blocks(h, b.blocks);
     }
     if (made) {
         pass(&b, true);
+        made = !cancel_asked();
         h->node_count = b.nodes;
         h->report.bytes =
             b.nodes * sizeof *h->spheres + b.blocks * (h->single ? sizeof(block_single) : sizeof(block_double));
@@ -171,7 +175,8 @@ status hierarchy_build_spheres(hierarchy *h, diagnostic *why)
     free(b.order);
     free(b.moved);
     free(b.octant);
-    return made ? STATUS_OK
+    return made           ? STATUS_OK
+           : cancel_asked() ? cancel_check(why)
                 : diagnose(why, STATUS_FAILURE, "use a smaller mesh", "out of memory for a hierarchy of %zu triangles",
                            count);
 }

@@ -1,5 +1,6 @@
 /* Creation, ownership, volume and area of triangle meshes. */
 #include "base/large_pages.h"
+#include "base/memory_budget.h"
 #include "geometry/mesh.h"
 #include "geometry/mesh_parts.h"
 #include "geometry/mesh_share.h"
@@ -43,8 +44,20 @@ static struct mesh_share *share_create(void)
     return share;
 }
 
-status mesh_create(size_t vertex_count, size_t triangle_count, bool with_normals, bool with_uvs, bool with_slots,
-                   mesh **out, diagnostic *why)
+/* Its arrays, and the larger of what mesh_weld and mesh_close hold at a time. */
+static uint64_t bytes_of(uint64_t vertices, uint64_t triangles, bool with_normals, bool with_uvs, bool with_slots)
+{
+    uint64_t table = 16;
+    while (table < 2 * vertices)
+        table *= 2;
+    const uint64_t weld = sizeof(uint32_t) * (table + vertices),
+                   close = 2 * sizeof(uint32_t) * vertices + 3 * 2 * sizeof(uint32_t) * triangles;
+    return vertices * (sizeof(vec3) * (with_normals ? 2 : 1) + (with_uvs ? sizeof(mesh_uv) : 0)) +
+           triangles * (sizeof(mesh_triangle) + (with_slots ? 1 : 0)) + (weld > close ? weld : close);
+}
+
+status mesh_check_size(size_t vertex_count, size_t triangle_count, bool with_normals, bool with_uvs, bool with_slots,
+                       diagnostic *why)
 {
     if (triangle_count > MESH_TRIANGLES_MAX)
         return diagnose(why, STATUS_BAD_INPUT, "use at most 268435456 triangles",
@@ -52,6 +65,14 @@ status mesh_create(size_t vertex_count, size_t triangle_count, bool with_normals
     if (vertex_count > MESH_VERTICES_MAX)
         return diagnose(why, STATUS_BAD_INPUT, "use at most 536870912 vertices", "a mesh of %zu vertices is too large",
                         vertex_count);
+    return memory_budget_check(bytes_of(vertex_count, triangle_count, with_normals, with_uvs, with_slots),
+                               "use fewer triangles", why, "a mesh of %zu triangles", triangle_count);
+}
+
+status mesh_create(size_t vertex_count, size_t triangle_count, bool with_normals, bool with_uvs, bool with_slots,
+                   mesh **out, diagnostic *why)
+{
+    TRY(mesh_check_size(vertex_count, triangle_count, with_normals, with_uvs, with_slots, why));
     mesh *m = calloc(1, sizeof *m);
     if (!m)
         return no_room(why);

@@ -53,7 +53,12 @@ typedef struct mesh {
     struct mesh_share *share; /* number of owners, and the hierarchies built for it (geometry/hierarchy.h) */
 } mesh;
 
-/* Creates an unfinished mesh, all zero; with_* select the optional arrays. STATUS_BAD_INPUT beyond the limits,
+/* Whether a mesh of that size is allowed, and has room (base/memory_budget.h), with the work of mesh_finish: before its
+ * vertices are computed. STATUS_BAD_INPUT if not. */
+status mesh_check_size(size_t vertex_count, size_t triangle_count, bool with_normals, bool with_uvs, bool with_slots,
+                       diagnostic *why);
+
+/* Creates an unfinished mesh, all zero; with_* select the optional arrays. STATUS_BAD_INPUT as mesh_check_size,
  * STATUS_FAILURE: out of memory. The caller is its only owner. */
 status mesh_create(size_t vertex_count, size_t triangle_count, bool with_normals, bool with_uvs, bool with_slots,
                    mesh **out, diagnostic *why);

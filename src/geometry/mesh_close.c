@@ -1,6 +1,7 @@
 /* The test whether a mesh is closed. Half-edges (a triangle's, from one corner to the next) are sorted by the lower and
  * the higher of their two positions: first by counting, into a list for each lower position, then within each list,
  * which is short. Linear time in practice. */
+#include "base/cancel.h"
 #include "base/large_pages.h"
 #include "geometry/mesh_parts.h"
 
@@ -53,6 +54,20 @@ static void sort(half_edge *edges, size_t count)
     }
 }
 
+/* Takes the pages of new memory in order, which a cancellation ends: a loop that then writes at random places does not
+ * wait for hundreds of new pages before it asks. False if cancelled. */
+static bool take_pages(void *memory, size_t bytes)
+{
+    enum { PAGE = 4096 };
+    volatile char *first = memory;
+    for (size_t at = 0; at < bytes; at += PAGE) {
+        if (at % LARGE_PAGE == 0 && cancel_asked())
+            return false;
+        first[at] = 0;
+    }
+    return true;
+}
+
 static status edge_lists_make(const mesh *m, edge_lists *lists, diagnostic *why)
 {
     TRY(mesh_weld(m, &lists->same, why));
@@ -61,9 +76,11 @@ static status edge_lists_make(const mesh *m, edge_lists *lists, diagnostic *why)
     half_edge *edges = lists->edges = large_pages(malloc(all), all);
     if (!start || !edges)
         return diagnose(why, STATUS_FAILURE, "use fewer triangles", "out of memory for the edges of a mesh");
+    if (!take_pages(start, (m->vertex_count + 2) * sizeof *start) || !take_pages(edges, all))
+        return cancel_check(why);
     /* two passes over the half-edges: count them two entries ahead, then place each at the end of the list before */
     for (int writing = 0; writing < 2; writing++) {
-        for (size_t t = 0; t < m->triangle_count; t++) {
+        for (size_t t = 0; t < m->triangle_count && !cancel_asked_at(t); t++) {
             const uint32_t *corner = m->triangles[t].corner;
             for (int k = 0; k < 3 && joins(lists->same, corner); k++) {
                 const uint32_t a = lists->same[corner[k]], b = lists->same[corner[k == 2 ? 0 : k + 1]];
@@ -76,10 +93,11 @@ static status edge_lists_make(const mesh *m, edge_lists *lists, diagnostic *why)
         }
         for (size_t v = 2; !writing && v < m->vertex_count + 2; v++)
             start[v] += start[v - 1];
+        TRY(cancel_check(why)); /* before the counts of a part of the edges are used */
     }
-    for (size_t v = 0; v < m->vertex_count; v++)
+    for (size_t v = 0; v < m->vertex_count && !cancel_asked_at(v); v++)
         sort(edges + start[v], start[v + 1] - start[v]);
-    return STATUS_OK;
+    return cancel_check(why);
 }
 
 /* The position where a half-edge begins. */
@@ -102,7 +120,7 @@ static edge_findings find_pairs(const mesh *m, const edge_lists *lists, uint32_t
     const size_t count = lists->start[m->vertex_count];
     const half_edge *edges = lists->edges;
     size_t end = 0, lower = 0;
-    for (size_t i = 0; i < count; i = end) {
+    for (size_t i = 0, edge = 0; i < count && !cancel_asked_at(edge); i = end, edge++) {
         while (lists->start[lower + 1] <= i)
             lower++;
         const size_t list_end = lists->start[lower + 1];
@@ -140,11 +158,12 @@ static status orient(mesh *m, const edge_lists *lists, diagnostic *why)
     mesh_neighbours n = {lists->same, mates, malloc(m->triangle_count * sizeof *n.queue), malloc(m->triangle_count)};
     status result = STATUS_OK;
     if (mates && n.queue && n.turned) {
-        for (size_t h = 0; h < 3 * m->triangle_count; h++)
+        for (size_t h = 0; h < 3 * m->triangle_count && !cancel_asked_at(h); h++)
             mates[h] = UINT32_MAX;
         find_pairs(m, lists, mates);
+        result = cancel_check(why);
         size_t at = 0;
-        if (!mesh_orient(m, &n, &at))
+        if (result == STATUS_OK && !mesh_orient(m, &n, &at))
             name_hole(m, at, 2);
     } else {
         result = diagnose(why, STATUS_FAILURE, "use fewer triangles", "out of memory for the edges of a mesh");
@@ -163,10 +182,11 @@ status mesh_close(mesh *m, diagnostic *why)
     status result = edge_lists_make(m, &lists, why);
     if (result == STATUS_OK) {
         const edge_findings found = find_pairs(m, &lists, NULL);
+        result = cancel_check(why);
         m->closed = found.odd == SIZE_MAX && found.edges > 0;
         if (found.odd != SIZE_MAX)
             name_hole(m, found.odd, found.sharing);
-        else if (found.against)
+        else if (result == STATUS_OK && found.against)
             result = orient(m, &lists, why);
     }
     edge_lists_free(&lists);

@@ -1,4 +1,5 @@
 /* The checks, normals and bounds of a mesh at mesh_finish. */
+#include "base/cancel.h"
 #include "base/single.h"
 #include "geometry/mesh.h"
 #include "geometry/mesh_parts.h"
@@ -12,6 +13,8 @@ static status check_vertices(const mesh *m, diagnostic *why)
 {
     for (size_t v = 0; v < m->vertex_count; v++) {
         const vec3 p = m->vertices[v];
+        if (cancel_asked_at(v))
+            return cancel_check(why);
         if (!within(p, MESH_FAR))
             return diagnose(why, STATUS_BAD_INPUT, "use finite coordinates of at most 1e9",
                             "vertex %zu has the coordinates %g, %g, %g", v, p.x, p.y, p.z);
@@ -30,6 +33,8 @@ status mesh_check(const mesh *m, diagnostic *why)
     if (m->slot_count < 1 || m->slot_count > MESH_SLOTS_MAX)
         return diagnose(why, STATUS_BAD_INPUT, "use 1 to 256", "a mesh cannot have %d material slots", m->slot_count);
     for (size_t t = 0; t < m->triangle_count; t++) {
+        if (cancel_asked_at(t))
+            return cancel_check(why);
         for (int k = 0; k < 3; k++) {
             if (m->triangles[t].corner[k] >= m->vertex_count)
                 return diagnose(why, STATUS_BAD_INPUT, "number vertices from 0",
@@ -73,9 +78,9 @@ static vec3 front_of(const mesh *m, mesh_triangle triangle)
 void mesh_normalize(mesh *m)
 {
     bool missing = false;
-    for (size_t v = 0; v < m->vertex_count; v++)
+    for (size_t v = 0; v < m->vertex_count && !cancel_asked_at(v); v++)
         missing |= !direction_of(m->normals[v], &m->normals[v]);
-    for (size_t t = 0; missing && t < m->triangle_count; t++) {
+    for (size_t t = 0; missing && t < m->triangle_count && !cancel_asked_at(t); t++) {
         for (int k = 0; k < 3; k++) {
             vec3 *normal = &m->normals[m->triangles[t].corner[k]];
             if (largest(*normal) == 0.0)
@@ -91,7 +96,7 @@ void mesh_find_bounds(mesh *m)
 {
     bounds3 b = {{INFINITY, INFINITY, INFINITY}, {-INFINITY, -INFINITY, -INFINITY}};
     bool single = true;
-    for (size_t t = 0; t < m->triangle_count; t++) {
+    for (size_t t = 0; t < m->triangle_count && !cancel_asked_at(t); t++) {
         for (int k = 0; k < 3; k++) {
             const vec3 p = m->vertices[m->triangles[t].corner[k]];
             b.low = vec3_make(fmin(b.low.x, p.x), fmin(b.low.y, p.y), fmin(b.low.z, p.z));
@@ -107,9 +112,11 @@ status mesh_finish(mesh *m, diagnostic *why)
 {
     TRY(mesh_check(m, why));
     mesh_find_bounds(m);
-    status result = mesh_close(m, why);
+    status result = cancel_check(why);
+    THEN(result, mesh_close(m, why));
     if (result == STATUS_OK && m->normals)
         mesh_normalize(m);
+    THEN(result, cancel_check(why));
     m->distinct = false; /* the caller may move vertices */
     return result;
 }

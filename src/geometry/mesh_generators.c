@@ -1,11 +1,13 @@
 /* Functions that the mesh generators share. */
 #include "geometry/mesh_generators_parts.h"
 
+#include "base/cancel.h"
 #include "base/elementary.h"
 
 status generate_finish(mesh *m, bool must_be_closed, mesh **out, diagnostic *why)
 {
-    status result = mesh_finish(m, why);
+    status result = cancel_check(why);
+    THEN(result, mesh_finish(m, why));
     if (result == STATUS_OK && must_be_closed && !m->closed)
         result = diagnose(why, STATUS_BAD_INPUT, "use lengths of similar size, or fewer segments",
                           "the generated mesh has edges too short for its size");

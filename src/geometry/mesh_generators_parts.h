@@ -4,7 +4,7 @@
 #include "geometry/mesh_generators.h"
 
 /* Finishes a generated mesh and returns it; releases it on failure. A mesh that should be closed and is not has
- * features too small for doubles: STATUS_BAD_INPUT. */
+ * features too small for doubles: STATUS_BAD_INPUT. A generator may leave its loops early when it is cancelled. */
 status generate_finish(mesh *m, bool must_be_closed, mesh **out, diagnostic *why);
 
 /* Returns whether it is a length greater than 0 and not above MESH_FAR. */

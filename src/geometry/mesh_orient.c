@@ -1,5 +1,6 @@
 /* Consistent winding of a mesh by flood fill: neighbouring triangles agree if they run along their common edge in
  * opposite directions. */
+#include "base/cancel.h"
 #include "geometry/mesh_parts.h"
 
 enum { UNSEEN = 2 }; /* in mesh_neighbours.turned: not reached yet; otherwise 1 if flipped, else 0 */
@@ -22,7 +23,7 @@ static uint32_t begins(const mesh *m, const mesh_neighbours *n, uint32_t half)
 static size_t flood(const mesh *m, mesh_neighbours *n, size_t first, size_t *at)
 {
     size_t end = first + 1;
-    for (size_t i = first; i < end; i++) {
+    for (size_t i = first; i < end && !cancel_asked_at(i); i++) {
         const uint32_t t = n->queue[i];
         for (uint32_t half = 3 * t; half < 3 * t + 3; half++) {
             const uint32_t mate = n->mates[half], other = mate / 3;
@@ -62,7 +63,7 @@ bool mesh_orient(mesh *m, mesh_neighbours *n, size_t *at)
     for (size_t t = 0; t < m->triangle_count; t++)
         n->turned[t] = n->mates[3 * t] == UINT32_MAX ? 0 : UNSEEN;
     size_t end = 0;
-    for (size_t t = 0; t < m->triangle_count; t++) {
+    for (size_t t = 0; t < m->triangle_count && !cancel_asked_at(t); t++) {
         if (n->turned[t] != UNSEEN)
             continue;
         const size_t first = end;

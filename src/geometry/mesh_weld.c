@@ -1,4 +1,5 @@
 /* The search for vertices at equal positions: a hash table of vertex numbers with open addressing. */
+#include "base/cancel.h"
 #include "base/large_pages.h"
 #include "geometry/mesh_parts.h"
 
@@ -57,9 +58,13 @@ status mesh_weld(const mesh *m, uint32_t **same, diagnostic *why)
         free(found);
         return diagnose(why, STATUS_FAILURE, "use fewer triangles", NO_MEMORY);
     }
-    memset(table, 0xff, size * sizeof *table);
+    for (size_t at = 0; at < size; at++) {
+        if (cancel_asked_at(at))
+            break;
+        table[at] = UINT32_MAX;
+    }
     uint64_t hashes[AHEAD];
-    for (size_t v = 0; v < m->vertex_count + AHEAD; v++) {
+    for (size_t v = 0; v < m->vertex_count + AHEAD && !cancel_asked_at(v); v++) {
         if (v >= AHEAD) {
             const size_t at = v - AHEAD;
             size_t place = hashes[at % AHEAD] & (size - 1);
@@ -76,5 +81,5 @@ status mesh_weld(const mesh *m, uint32_t **same, diagnostic *why)
     }
     free(table);
     *same = found;
-    return STATUS_OK;
+    return cancel_check(why);
 }

@@ -2,6 +2,7 @@
  * (BITMAPV5HEADER), and from the file header's offset rows of blue, green, red, each padded to a multiple of 4 bytes;
  * from the bottom, or from the top if the height is negative. Microsoft, Windows GDI, "Bitmap Storage". Numbers are
  * little-endian. */
+#include "base/cancel.h"
 #include "image/codec.h"
 
 #include <stdint.h>
@@ -100,7 +101,7 @@ status codec_bmp_read(const unsigned char *bytes, size_t size, image **out, diag
         return code;
     }
     const size_t width = (size_t)header.width, height = (size_t)header.height;
-    for (size_t row = 0; row < height; row++) {
+    for (size_t row = 0; row < height && !cancel_asked(); row++) {
         const unsigned char *from = bytes + header.offset + row * header.row_bytes;
         float *pixel = img->pixel + (header.from_top ? row : height - 1 - row) * width * 3;
         for (size_t x = 0; x < width; x++, from += 3, pixel += 3)

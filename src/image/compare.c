@@ -1,4 +1,5 @@
 /* The per-pixel measures of compare.h, and the call of those that use neighbours. */
+#include "base/memory_budget.h"
 #include "image/compare.h"
 
 #include "image/codec.h"
@@ -85,6 +86,9 @@ status image_compare(const image *a, const image *b, image_comparison *out, diag
     TRY(compare_check(a, b, why));
     status code = STATUS_OK;
     size_t count = pixels_of(a);
+    enum { PLANES = 2 + 14 }; /* of this function, and of compare_flip, the larger of the others */
+    TRY(memory_budget_check(count * PLANES * sizeof(double), "compare smaller ones", why,
+                            "a comparison of images of %d x %d pixels", a->width, a->height));
     double *first = malloc(count * sizeof *first), *second = malloc(count * sizeof *second);
     if (!first || !second) {
         code = diagnose(why, STATUS_FAILURE, NULL, "out of memory for the comparison");

@@ -5,6 +5,7 @@
  * separable ones, applied along rows and columns; border pixels are repeated outside. */
 #include "image/compare_parts.h"
 
+#include "base/cancel.h"
 #include "base/elementary.h"
 #include "image/convolve.h"
 #include <math.h>
@@ -111,17 +112,17 @@ static void make_detectors(convolve_taps *smooth, convolve_taps *edge, convolve_
 static void detect(const work_planes *d, const convolve_taps *detector, const convolve_taps *smooth, double *across,
                    double *down, double *strength)
 {
-    for (size_t i = 0; i < d->count; i++)
+    for (size_t i = 0; i < d->count && !cancel_asked_at(i); i++)
         across[i] = down[i] = 0.0;
     convolve_add(d->opponent[0], d->width, d->height, detector, smooth, 1.0, d->scratch, across);
     convolve_add(d->opponent[0], d->width, d->height, smooth, detector, 1.0, d->scratch, down);
-    for (size_t i = 0; i < d->count; i++)
+    for (size_t i = 0; i < d->count && !cancel_asked_at(i); i++)
         strength[i] = sqrt(across[i] * across[i] + down[i] * down[i]);
 }
 
 static void look_at(const work_planes *d, const image *img, const sight *s)
 {
-    for (size_t i = 0; i < d->count; i++) {
+    for (size_t i = 0; i < d->count && !cancel_asked_at(i); i++) {
         double opponent[3];
         flip_opponent(img->pixel + 3 * i, opponent);
         for (int channel = 0; channel < 3; channel++)
@@ -159,8 +160,8 @@ status compare_flip(const image *a, const image *b, double *errors, diagnostic *
     look_at(&d, a, &d.a);
     look_at(&d, b, &d.b);
     double farthest = flip_farthest();
-    for (size_t i = 0; i < d.count; i++)
+    for (size_t i = 0; i < d.count && !cancel_asked_at(i); i++)
         errors[i] = error_at(&d.a, &d.b, i, farthest);
     free(d.memory);
-    return STATUS_OK;
+    return cancel_check(why);
 }

@@ -4,6 +4,7 @@
  * image. Along a side shorter than 11 pixels the window is as long as that side, with a centred Gaussian of sum 1. */
 #include "image/compare_parts.h"
 
+#include "base/cancel.h"
 #include "image/convolve.h"
 #include <stdlib.h>
 
@@ -22,7 +23,7 @@ static void gather(statistics *s, const double *a, const double *b, const convol
     const double *const factors[SUMS][2] = {{a, NULL}, {b, NULL}, {a, a}, {b, b}, {a, b}};
     for (int sum = 0; sum < SUMS; sum++) {
         const double *first = factors[sum][0], *second = factors[sum][1];
-        for (size_t i = 0; i < s->count; i++)
+        for (size_t i = 0; i < s->count && !cancel_asked_at(i); i++)
             s->terms[i] = second ? first[i] * second[i] : first[i];
         convolve_add(s->terms, s->width, s->height, across, down, 1.0, s->scratch, s->sums[sum]);
     }
@@ -53,10 +54,10 @@ status compare_ssim(const double *a, const double *b, int width, int height, dou
     gather(&s, a, b, &across, &down);
     int columns = width - across.count + 1, rows = height - down.count + 1;
     double sum = 0.0;
-    for (int y = 0; y < rows; y++)
+    for (int y = 0; y < rows && !cancel_asked(); y++)
         for (int x = 0; x < columns; x++)
             sum += similarity(&s, (size_t)(y + down.before) * (size_t)width + (size_t)(x + across.before));
     *mean = sum / ((double)rows * columns);
     free(planes);
-    return STATUS_OK;
+    return cancel_check(why);
 }

@@ -1,6 +1,7 @@
 /* Convolution with separable filters. */
 #include "image/convolve.h"
 
+#include "base/cancel.h"
 #include "base/elementary.h"
 #include <stddef.h>
 #include <string.h>
@@ -43,13 +44,13 @@ void convolve_add(const double *plane, int width, int height, const convolve_tap
                   double scale, double *scratch, double *out)
 {
     size_t stride = (size_t)width;
-    memset(scratch, 0, stride * (size_t)height * sizeof *scratch);
-    for (int y = 0; y < height; y++) {
+    for (int y = 0; y < height && !cancel_asked(); y++) {
+        memset(scratch + (size_t)y * stride, 0, stride * sizeof *scratch);
         for (int i = 0; i < across->count; i++)
             add_shifted_row(plane + (size_t)y * stride, width, i - across->before, across->weight[i],
                             scratch + (size_t)y * stride);
     }
-    for (int y = 0; y < height; y++) {
+    for (int y = 0; y < height && !cancel_asked(); y++) {
         for (int i = 0; i < down->count; i++) {
             const double *row = scratch + (size_t)within(y + i - down->before, height) * stride;
             add_shifted_row(row, width, 0, scale * down->weight[i], out + (size_t)y * stride);

@@ -1,6 +1,8 @@
 /* Images: memory, and reading and writing files in the format of each codec. */
+#include "base/memory_budget.h"
 #include "image/image.h"
 
+#include "base/cancel.h"
 #include "base/file.h"
 #include "base/text_writer.h"
 #include "image/codec.h"
@@ -19,6 +21,8 @@ status image_create(int width, int height, image **out, diagnostic *why)
     if (width < 1 || height < 1 || width > IMAGE_SIDE_MAX || height > IMAGE_SIDE_MAX)
         return diagnose(why, STATUS_BAD_INPUT, "use a width and height of 1 to 65536",
                         "an image cannot have %d x %d pixels", width, height);
+    TRY(memory_budget_check((uint64_t)width * (uint64_t)height * 3 * sizeof(float), "use a smaller one", why,
+                            "an image of %d x %d pixels", width, height));
     image *img = malloc(sizeof *img);
     float *pixel = calloc((size_t)width * (size_t)height * 3, sizeof *pixel);
     if (!img || !pixel) {
@@ -104,7 +108,7 @@ image_rows image_rows_of(const image *img)
 static status write_as(const image_rows *rows, image_format format, FILE *stream, int bits, bool fast, diagnostic *why)
 {
     switch (format) {
-    case IMAGE_PNG: return codec_png_write(rows, stream, bits, fast, why);
+    case IMAGE_PNG: return codec_png_write(rows, stream, bits, fast || cancel_hurries(), why);
     case IMAGE_JPEG: return codec_jpeg_write(rows, stream, fast, why);
     case IMAGE_PFM: return codec_pfm_write(rows, stream, why);
     case IMAGE_BMP:

@@ -58,7 +58,8 @@ image_rows image_rows_of(const image *img);
 
 /* PNG with 8 or 16 bits and JPEG (quality 92, 4:4:4) are sRGB-encoded, with a PNG sRGB chunk, correctly rounded, NaN as
  * 0; PFM has linear, little-endian floats. bits applies to PNG only. PNG is compressed with a thread per processing
- * unit, at most 16; the file does not depend on their number. */
+ * unit, at most 16; the file does not depend on their number. After a cancellation (cancel_hurries) it is compressed
+ * less. */
 status image_write(const image *img, const char *path, int bits, diagnostic *why);
 status image_write_rows(const image_rows *rows, const char *path, int bits, diagnostic *why);
 

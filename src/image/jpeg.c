@@ -1,5 +1,6 @@
 /* JPEG through libjpeg-turbo. Everything that must survive a longjmp is in a job, which belongs to a function that does
  * not call setjmp; the function that does has no modified local variables. */
+#include "base/cancel.h"
 #include "image/codec.h"
 
 #include <jpeglib.h>
@@ -13,6 +14,7 @@ enum { QUALITY = 92, QUALITY_FAST = 80, SCANS_MAX = 500 };
 
 typedef struct jpeg_job {
     struct jpeg_error_mgr errors; /* first, so that cinfo->err points to the job */
+    struct jpeg_progress_mgr progress;
     jmp_buf escape;
     char message[JMSG_LENGTH_MAX];
     unsigned char *row;
@@ -45,12 +47,20 @@ static void no_output(j_common_ptr cinfo)
     (void)cinfo;
 }
 
+/* libjpeg works through a whole image inside single calls, and reports after each row of blocks. */
+static void leave_if_cancelled(j_common_ptr cinfo)
+{
+    if (cancel_asked())
+        longjmp(((jpeg_job *)cinfo->err)->escape, 1);
+}
+
 static void prepare(jpeg_job *job)
 {
     jpeg_std_error(&job->errors);
     job->errors.error_exit = on_error;
     job->errors.emit_message = on_message;
     job->errors.output_message = no_output;
+    job->progress.progress_monitor = leave_if_cancelled;
 }
 
 /* ---- writing ---- */
@@ -59,6 +69,7 @@ static void write_rows(jpeg_job *job, struct jpeg_compress_struct *cinfo, const 
                        FILE *stream)
 {
     jpeg_create_compress(cinfo);
+    cinfo->progress = &job->progress;
     jpeg_stdio_dest(cinfo, stream);
     cinfo->image_width = (JDIMENSION)rows->width;
     cinfo->image_height = (JDIMENSION)rows->height;
@@ -106,7 +117,8 @@ status codec_jpeg_write(const image_rows *rows, FILE *stream, bool fast, diagnos
     if (!job.row || !job.rgb)
         diagnose(why, code, NULL, "out of memory");
     else if (!write_guarded(&job, &cinfo, rows, fast, stream))
-        diagnose(why, code, NULL, "cannot write the JPEG file: %s", job.message);
+        code = cancel_asked() ? cancel_check(why)
+                              : diagnose(why, code, NULL, "cannot write the JPEG file: %s", job.message);
     else
         code = STATUS_OK;
     jpeg_destroy_compress(&cinfo);
@@ -122,6 +134,7 @@ static void limit_scans(j_common_ptr cinfo)
 {
     if (((j_decompress_ptr)cinfo)->input_scan_number > SCANS_MAX)
         ERREXIT(cinfo, JERR_BAD_PROGRESSION);
+    leave_if_cancelled(cinfo);
 }
 
 static bool choose_colors(jpeg_job *job, j_decompress_ptr cinfo)
@@ -144,12 +157,11 @@ static bool allocate(jpeg_job *job, long long width, long long height, size_t fi
     return job->code == STATUS_OK;
 }
 
-static bool read_rows(jpeg_job *job, j_decompress_ptr cinfo, struct jpeg_progress_mgr *progress,
-                      const unsigned char *bytes, size_t size)
+static bool read_rows(jpeg_job *job, j_decompress_ptr cinfo, const unsigned char *bytes, size_t size)
 {
     jpeg_create_decompress(cinfo);
-    progress->progress_monitor = limit_scans;
-    cinfo->progress = progress;
+    job->progress.progress_monitor = limit_scans;
+    cinfo->progress = &job->progress;
     jpeg_mem_src(cinfo, bytes, size);
     jpeg_read_header(cinfo, TRUE);
     if (!choose_colors(job, cinfo) || !allocate(job, cinfo->image_width, cinfo->image_height, size))
@@ -160,6 +172,7 @@ static bool read_rows(jpeg_job *job, j_decompress_ptr cinfo, struct jpeg_progres
     while (cinfo->output_scanline < cinfo->output_height) {
         float *pixel = job->img->pixel + cinfo->output_scanline * width * 3;
         JSAMPROW row = job->row;
+        leave_if_cancelled((j_common_ptr)cinfo);
         jpeg_read_scanlines(cinfo, &row, 1);
         for (size_t i = 0; i < width * 3; i++)
             pixel[i] = job->linear[job->row[channels == 3 ? i : i / 3]];
@@ -168,28 +181,29 @@ static bool read_rows(jpeg_job *job, j_decompress_ptr cinfo, struct jpeg_progres
     return true;
 }
 
-static void read_guarded(jpeg_job *job, j_decompress_ptr cinfo, struct jpeg_progress_mgr *progress,
-                         const unsigned char *bytes, size_t size)
+static void read_guarded(jpeg_job *job, j_decompress_ptr cinfo, const unsigned char *bytes, size_t size)
 {
     if (setjmp(job->escape)) {
+        job->code = cancel_check(job->why);
+        if (job->code != STATUS_OK)
+            return;
         bool memory = job->errors.msg_code == JERR_OUT_OF_MEMORY;
         job->code = diagnose(job->why, memory ? STATUS_FAILURE : STATUS_BAD_INPUT, NULL, "%s%s",
                              memory ? "" : "the JPEG file is damaged: ", job->message);
         return;
     }
-    if (read_rows(job, cinfo, progress, bytes, size))
+    if (read_rows(job, cinfo, bytes, size))
         job->code = STATUS_OK;
 }
 
 status codec_jpeg_read(const unsigned char *bytes, size_t size, image **out, diagnostic *why)
 {
     struct jpeg_decompress_struct cinfo = {0};
-    struct jpeg_progress_mgr progress = {0};
     jpeg_job job = {.why = why, .code = STATUS_FAILURE};
     *out = NULL;
     prepare(&job);
     cinfo.err = &job.errors;
-    read_guarded(&job, &cinfo, &progress, bytes, size);
+    read_guarded(&job, &cinfo, bytes, size);
     jpeg_destroy_decompress(&cinfo);
     free(job.row);
     free(job.linear);

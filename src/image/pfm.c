@@ -3,6 +3,7 @@
  * unit and is not applied, as in other readers. */
 #include "image/codec.h"
 
+#include "base/cancel.h"
 #include "base/number.h"
 #include <math.h>
 #include <stdbool.h>
@@ -21,7 +22,7 @@ status codec_pfm_write(const image_rows *rows, FILE *stream, diagnostic *why)
         return out_of_memory(why);
     }
     fprintf(stream, "PF\n%d %d\n-1.0\n", rows->width, rows->height);
-    for (int y = rows->height - 1; y >= 0; y--) {
+    for (int y = rows->height - 1; y >= 0 && !cancel_asked(); y--) {
         rows->read(rows->of, y, pixel);
         for (size_t i = 0; i < count; i++) {
             uint32_t word;
@@ -34,7 +35,7 @@ status codec_pfm_write(const image_rows *rows, FILE *stream, diagnostic *why)
     }
     free(row);
     free(pixel);
-    return STATUS_OK;
+    return cancel_check(why);
 }
 
 typedef struct cursor {
@@ -70,6 +71,7 @@ static float read_float(const unsigned char *b, bool little)
 static status read_pixels(const unsigned char *bytes, int channels, bool little, image *img, diagnostic *why)
 {
     for (int y = img->height - 1; y >= 0; y--) {
+        TRY(cancel_check(why));
         for (int x = 0; x < img->width; x++) {
             float *pixel = img->pixel + ((size_t)y * (size_t)img->width + (size_t)x) * 3;
             for (int channel = 0; channel < 3; channel++) {

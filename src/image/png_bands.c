@@ -1,6 +1,7 @@
 /* Conversion, filtering and compression of the rows of a PNG in bands, by a thread team. */
 #include "image/png_bands.h"
 
+#include "base/cancel.h"
 #include "base/thread_team.h"
 #include "image/png_filter.h"
 #include <stdlib.h>
@@ -190,6 +191,9 @@ static void compress_band(void *context, size_t index, int member)
     const bool is_last = number + 1 == b->band_count;
     const size_t end = is_last ? (size_t)b->rows->height : first + b->band_rows;
     const size_t start = number == 0 ? HEADER_BYTES : 0;
+    to->failed = cancel_asked();
+    if (to->failed)
+        return;
     filter_rows(b, w, first, end);
     memcpy(to->bytes, header, start);
     to->rows_size = (end - first) * (b->row_bytes + 1);

@@ -15,5 +15,6 @@ void png_bands_destroy(png_bands *b); /* NULL is allowed */
 /* Compresses the next bands, and returns how many; 0 after the last one. */
 size_t png_bands_compress(png_bands *b);
 
-/* A part of the zlib stream, one of those that png_bands_compress has just made; false if zlib failed. */
+/* A part of the zlib stream, one of those that png_bands_compress has just made; false if zlib failed, or the work was
+ * cancelled. */
 bool png_bands_get(const png_bands *b, size_t index, const unsigned char **bytes, size_t *size);

@@ -1,5 +1,7 @@
 /* Reading PNG through libpng. Everything that must survive a longjmp is in a job, which belongs to a function that does
  * not call setjmp; the function that does has no modified local variables. */
+#include "base/memory_budget.h"
+#include "base/cancel.h"
 #include "image/codec.h"
 #include "image/png_library.h"
 
@@ -51,6 +53,11 @@ static bool allocate(png_job *job, long long width, long long height, bool inter
         codec_begin(width, height, job->of.size, job->bits == 8 ? 255 : 65535, &job->img, &job->linear, job->why);
     if (job->code != STATUS_OK)
         return false;
+    if (interlaced)
+        job->code = memory_budget_check((uint64_t)height * png_get_rowbytes(job->of.png, job->of.info),
+                                        "save it without interlacing", job->why, "the interlaced image");
+    if (job->code != STATUS_OK)
+        return false;
     /* Zeroed, because an interlaced image is read by combining with the previous contents. */
     job->raw = calloc(interlaced ? (size_t)height : 1, png_get_rowbytes(job->of.png, job->of.info));
     if (!job->raw)
@@ -75,6 +82,10 @@ static bool read_rows(png_job *job)
     for (int pass = 0; pass < passes; pass++) {
         for (int y = 0; y < job->img->height; y++) {
             unsigned char *row = job->raw + (passes > 1 ? (size_t)y * row_bytes : 0);
+            if (cancel_asked()) {
+                job->code = cancel_check(job->why);
+                return false;
+            }
             png_read_row(job->of.png, row, NULL);
             if (pass == passes - 1)
                 store_row(job, row, y, channels);

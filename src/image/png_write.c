@@ -1,6 +1,7 @@
 /* Writing PNG: libpng writes the chunks, png_bands.c compresses the pixels. Everything that must survive a longjmp is
  * in a job, which belongs to a function that does not call setjmp; the function that does has no modified local
  * variables. */
+#include "base/cancel.h"
 #include "image/png_bands.h"
 #include "image/png_library.h"
 
@@ -65,7 +66,8 @@ status codec_png_write(const image_rows *rows, FILE *stream, int bits, bool fast
     if (!job.of.info)
         code = out_of_memory(why);
     else if (!write_guarded(&job, stream))
-        code = diagnose(why, STATUS_FAILURE, NULL, "cannot write the PNG file: %s", job.of.message);
+        code = cancel_asked() ? cancel_check(why)
+                              : diagnose(why, STATUS_FAILURE, NULL, "cannot write the PNG file: %s", job.of.message);
     png_destroy_write_struct(&job.of.png, &job.of.info);
     png_bands_destroy(job.bands);
     return code;

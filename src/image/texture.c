@@ -1,6 +1,8 @@
 /* Textures: creation, reading, ownership, hash. */
+#include "base/memory_budget.h"
 #include "image/texture_parts.h"
 
+#include "base/cancel.h"
 #include "base/hash.h"
 #include "image/codec.h"
 #include <math.h>
@@ -15,6 +17,8 @@ static status check(const image *img, diagnostic *why)
     }
     const size_t width = (size_t)img->width, count = width * (size_t)img->height;
     for (size_t i = 0; i < 3 * count; i++) {
+        if (cancel_asked_at(i))
+            return cancel_check(why);
         if (!isfinite(img->pixel[i]))
             return diagnose(why, STATUS_BAD_INPUT, NULL,
                             "the pixel in column %zu, row %zu from the top is not a finite number", i / 3 % width,
@@ -70,7 +74,7 @@ static void copy_pixels(texture *t, const image *img, int coded_bits)
     if (coded_bits == 8)
         codec_bytes_prepare(&bytes);
     const texture_level *to = &t->level[0];
-    for (int y = 0; y < to->height; y++) {
+    for (int y = 0; y < to->height && !cancel_asked(); y++) {
         const float *from = img->pixel + (size_t)(to->height - 1 - y) * (size_t)to->width * 3;
         texel *row = to->texels + (size_t)y * (size_t)to->width;
         for (int x = 0; x < to->width; x++, from += 3) {
@@ -86,14 +90,21 @@ status texture_create(const image *img, texture_space space, texture_wrap wrap_u
 {
     *out = NULL;
     TRY(check(img, why));
+    const uint64_t texels = (uint64_t)img->width * (uint64_t)img->height;
+    TRY(memory_budget_check((filter == TEXTURE_TRILINEAR ? texels / 3 * 4 : texels) * sizeof(texel), "use a smaller one",
+                            why, "a texture of %d x %d texels", img->width, img->height));
     texture *t = texture_allocate(img->width, img->height, wrap_u, wrap_v, filter);
     if (!t)
         return diagnose(why, STATUS_FAILURE, NULL, "out of memory for a texture of %d x %d texels", img->width,
                         img->height);
     copy_pixels(t, img, space == TEXTURE_LINEAR ? img->coded_bits : 0);
     texture_build_pyramid(t);
-    *out = t;
-    return STATUS_OK;
+    const status code = cancel_check(why);
+    if (code == STATUS_OK)
+        *out = t;
+    else
+        texture_release(t);
+    return code;
 }
 
 status texture_read_below(const char *path, const char *root, texture_space space, texture_wrap wrap_u,

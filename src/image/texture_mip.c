@@ -1,5 +1,6 @@
 /* The mipmap of a texture: each level is the box filter of the one before, with the exact area fractions of texels if a
  * side is odd (Guthe and Heckbert, "Non-power-of-two mipmap creation", NVIDIA TR-01838-001, 2005). */
+#include "base/cancel.h"
 #include "image/texture_parts.h"
 
 /* The texels of a row of `from` that one texel of the next smaller row covers, and their fractions: a texel of the
@@ -39,7 +40,7 @@ void texture_build_pyramid(texture *t)
 {
     for (int level = 1; level < t->levels; level++) {
         const texture_level *from = &t->level[level - 1], *to = &t->level[level];
-        for (int y = 0; y < to->height; y++) {
+        for (int y = 0; y < to->height && !cancel_asked(); y++) {
             cover rows = cover_of(y, from->height, to->height);
             for (int x = 0; x < to->width; x++)
                 to->texels[(size_t)y * (size_t)to->width + (size_t)x] =

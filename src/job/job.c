@@ -1,6 +1,8 @@
 /* Loading and rendering frames under supervision: stop requests, limits, measurements. */
+#include "base/memory_budget.h"
 #include "job/job.h"
 
+#include "base/cancel.h"
 #include "job/shelf.h"
 #include "measure/clock.h"
 #include "scene/model/scene.h"
@@ -86,6 +88,12 @@ bool job_must_stop(const job *j)
     return atomic_load(&j->cancelled) || (j->settings.stop && j->settings.stop(j->settings.context));
 }
 
+/* As the ask of a token. */
+static bool is_stopped(void *of)
+{
+    return job_must_stop(of);
+}
+
 static status interrupted(diagnostic *why)
 {
     return diagnose(why, STATUS_INTERRUPTED, "", "interrupted");
@@ -111,7 +119,12 @@ status job_load(job *j, scene *s, const load_watch *watch, diagnostic *why)
     if (job_must_stop(j))
         return interrupted(why);
     TRY(scene_check(s, why));
-    return j->settings.keeps_meshes ? shelf_load(&j->meshes, s, &watched, why) : scene_load_until(s, &watched, why);
+    cancel_token token = {.ask = is_stopped, .context = j};
+    cancel_begin(&token);
+    const status code =
+        j->settings.keeps_meshes ? shelf_load(&j->meshes, s, &watched, why) : scene_load_until(s, &watched, why);
+    cancel_end(&token);
+    return code;
 }
 
 /* --- frames --- */
@@ -145,6 +158,8 @@ static void pass_on_piece(void *of, const film *img, int x0, int y0, int x1, int
 static status check_quota(const job *j, const scene *s, const render_options *requested, diagnostic *why)
 {
     const uint64_t quota = j->settings.memory_bytes, needed = renderer_result_bytes(s, requested);
+    TRY(memory_budget_check(needed + renderer_tracing_bytes(s), "render a smaller image, with fewer threads or maps", why,
+                            "a frame of %lld x %lld pixels", (long long)s->render.width, (long long)s->render.height));
     if (quota == 0 || needed <= quota)
         return STATUS_OK;
     return diagnose(why, STATUS_BAD_INPUT, "render a smaller image, or request fewer maps",
@@ -326,11 +341,14 @@ status job_repeat(job *j, const scene *s, size_t frames, const render_options *o
     const bool maps = requested->pixel_rays || requested->pixel_time || requested->timeline || requested->layers;
     const bool extra = frames > 1 && maps;
     work w = {.of = j, .requested = requested, .frames = frames + extra};
+    cancel_token token = {.ask = is_stopped, .context = j};
+    cancel_begin(&token);
     status code = job_account_begin(s, j->level, frames, out, why);
     THEN(code, prepare(j, s, requested, why));
     THEN(code, measure_all(&w, s, frames, maps && !extra, out, why));
     if (code == STATUS_OK && extra)
         code = add_maps(&w, s, out, why);
+    cancel_end(&token);
     out->whole = code == STATUS_OK;
     return code;
 }

@@ -1,6 +1,7 @@
 /* Compares small images of the scene at its depth limit and at greater depths, until deeper images stop changing or the
  * ray budget is spent. A thread per processing unit traces stripes of an image; the images, their ray counts and so the
  * notes do not depend on the number of threads. */
+#include "base/cancel.h"
 #include "base/thread_team.h"
 #include "lint/parts.h"
 #include "render/core/tracer.h"
@@ -29,20 +30,19 @@ typedef struct depth_probe {
     double spent;
 } depth_probe;
 
-static const atomic_bool go_on = false;
-
 /* Traces stripes, whichever is next, with one of the tracers. */
 static void trace_stripes(void *context, size_t index, int member)
 {
     depth_probe *p = context;
+    const atomic_bool *stop = cancel_flag();
     const int width = (int)p->made->render.width, height = (int)p->made->render.height;
     atomic_uint_fast64_t begun = 0;
     (void)member;
     for (int i; (i = atomic_fetch_add(&p->next_stripe, 1)) < p->stripes;) {
         const span stripe = {0, i * height / p->stripes, width, (i + 1) * height / p->stripes};
-        tracer_span(p->rays[index], &stripe, &begun, &go_on);
+        tracer_span(p->rays[index], &stripe, &begun, stop);
     }
-    tracer_finish(p->rays[index], &go_on);
+    tracer_finish(p->rays[index], stop);
 }
 
 static size_t pixels_of(const depth_probe *p)
@@ -75,6 +75,7 @@ static status trace_film(depth_probe *p, film *f, diagnostic *why)
             return out_of_memory(why);
     atomic_store(&p->next_stripe, 0);
     thread_team_run(p->team, trace_stripes, p, members);
+    TRY(cancel_check(why));
     for (size_t i = 0; i < pixels; i++)
         p->spent += p->pixel_rays[i];
     return STATUS_OK;

@@ -1,6 +1,7 @@
 /* Pairs of solids, examined along a lattice of lines through the region of both. A finding is confirmed at nearby
  * points before it becomes a note: touching is not overlapping, and the closest point of two curved surfaces is not a
  * gap. */
+#include "base/cancel.h"
 #include "geometry/shapes/shape.h"
 #include "lint/lines.h"
 #include "lint/parts.h"
@@ -121,7 +122,7 @@ static double spans_gap(const pair *p, const line_spans *a, const line_spans *b,
 static bool look_along(const pair *p, int axis)
 {
     const scene_geometry *a = p->room->made->geometry;
-    for (int i = 0; i < p->lattice; i++)
+    for (int i = 0; i < p->lattice && !cancel_asked(); i++)
         for (int j = 0; j < p->lattice; j++) {
             const line l = lattice_line(p, axis, i, j);
             line_spans one, two;
@@ -234,6 +235,8 @@ static void look_at_pair(pair *p)
     } else {
         overlap = p->overlaps && planes_overlap(p);
     }
+    if (cancel_asked())
+        return; /* some lines were not examined */
     if (overlap)
         note_overlap(p);
     else if (gap > 0.0)
@@ -282,7 +285,7 @@ static size_t count_pairs(const lint_room *room, const neighbour *all, int count
 {
     size_t pairs = 0;
     pair p;
-    for (int i = 0; i < count; i++)
+    for (int i = 0; i < count && !cancel_asked(); i++)
         for (int k = i + 1; k < count; k++)
             pairs += prepare_pair(room, &all[i], &all[k], &p);
     return pairs;
@@ -291,7 +294,7 @@ static size_t count_pairs(const lint_room *room, const neighbour *all, int count
 static void look_at_all(const lint_room *room, const neighbour *all, int count, float *gap, double *middle)
 {
     const size_t pairs = count_pairs(room, all, count);
-    for (int i = 0; i < count; i++)
+    for (int i = 0; i < count && !cancel_asked(); i++)
         for (int k = i + 1; k < count; k++) {
             pair p;
             if (!prepare_pair(room, &all[i], &all[k], &p) || (p.overlaps && is_covered(room, &all[i], &all[k])))
@@ -327,5 +330,5 @@ status lint_neighbours(const lint_room *room, diagnostic *why)
     free(all);
     free(gap);
     free(middle);
-    return there ? STATUS_OK : out_of_memory(why);
+    return there ? cancel_check(why) : out_of_memory(why);
 }

@@ -1,4 +1,5 @@
 /* A fan of rays as CSV, one row per ray. */
+#include "base/cancel.h"
 #include "report/fan_writers.h"
 #include "base/csv.h"
 #include "scene/model/open.h"
@@ -25,7 +26,7 @@ status fan_write_csv(const fanned *t, FILE *out, diagnostic *why)
             "ray,%s,interfaces,end,exit_x,exit_y,exit_z,direction_x,direction_y,direction_z,deviation_deg,weight,axis_"
             "at,axis_x,axis_y,axis_z\n",
             t->rule->spreads ? "offset_deg" : "offset");
-    for (int i = 0; i < t->f->count; i++) {
+    for (int i = 0; i < t->f->count && !cancel_asked(); i++) {
         const fan_ray *ray = &t->f->ray[i];
         csv_count(&line, i);
         csv_real(&line, ray->offset);
@@ -39,9 +40,9 @@ status fan_write_csv(const fanned *t, FILE *out, diagnostic *why)
         add_vector(&line, ray->crosses_axis, ray->axis_point);
         csv_end(&line);
     }
-    const bool failed = line.failed;
-    if (!failed)
+    const bool failed = line.failed, cancelled = cancel_asked();
+    if (!failed && !cancelled)
         fwrite(line.text, 1, line.size, out);
     csv_line_free(&line);
-    return failed ? out_of_memory(why) : STATUS_OK;
+    return failed ? out_of_memory(why) : cancelled ? cancel_check(why) : STATUS_OK;
 }

@@ -1,4 +1,5 @@
 /* A fan of rays drawn in its plane: the section of the solids, the ray paths, the caustic and the mean focus. */
+#include "base/cancel.h"
 #include "report/diagram.h"
 #include "report/fan_writers.h"
 #include "report/svg.h"
@@ -106,8 +107,9 @@ static status draw_rays(const diagram *d, const fanned *t, diagnostic *why)
             result = draw_tree(d, t, ray, why);
         for (size_t k = 0; k < ray->count && !t->whole_trees; k++)
             draw_piece(d, t->f, &t->f->node[ray->first + k]);
+        THEN(result, cancel_check(why));
     }
-    for (int i = 0; i < t->f->count; i++) {
+    for (int i = 0; i < t->f->count && result == STATUS_OK; i++) {
         const fan_ray *ray = &t->f->ray[i];
         for (size_t k = 0; k < ray->count; k++) {
             const ray_node *node = &t->f->node[ray->first + k];
@@ -121,12 +123,12 @@ static status draw_rays(const diagram *d, const fanned *t, diagnostic *why)
 /* The crossings of adjacent rays, and lines between crossings of successive pairs: the envelope of the rays. */
 static void draw_caustic(const diagram *d, const fan *f)
 {
-    for (int i = 0; i + 1 < f->crossing_count; i++) {
+    for (int i = 0; i + 1 < f->crossing_count && !cancel_asked(); i++) {
         const fan_crossing *a = &f->crossing[i], *b = &f->crossing[i + 1];
         if (b->ray == a->ray + 1 && diagram_shows(d, a->at) && diagram_shows(d, b->at))
             diagram_ray(d, a->at, b->at, SVG_ORANGE, 0.5, NULL);
     }
-    for (int i = 0; i < f->crossing_count; i++)
+    for (int i = 0; i < f->crossing_count && !cancel_asked(); i++)
         diagram_dot(d, f->crossing[i].at, 1.9, SVG_ORANGE, "none");
     if (f->has_focus)
         diagram_cross(d, f->focus, 5.0, SVG_VERMILLION);
@@ -183,6 +185,7 @@ status fan_write_drawing(const fanned *t, FILE *out, diagnostic *why)
     THEN(result, draw_rays(&d, t, why));
     if (result == STATUS_OK)
         draw_caustic(&d, t->f);
+    THEN(result, cancel_check(why));
     diagram_end(&d);
     draw_key(t, out, DIAGRAM_BEFORE, key);
     diagram_media_key(out, t->p, t->s, DIAGRAM_BEFORE, outer_width, first);

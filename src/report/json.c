@@ -1,4 +1,5 @@
 /* The JSON writer, and the conversion of reals, texts and diagnostics to jansson values. */
+#include "base/cancel.h"
 #include "report/json.h"
 #include "base/number.h"
 #include <math.h>
@@ -131,6 +132,8 @@ static bool write_object(FILE *stream, json_t *object, int indent)
 
 static bool write_value(FILE *stream, const json_t *value, int indent)
 {
+    if (cancel_asked())
+        return false;
     switch (json_typeof(value)) {
     case JSON_OBJECT:
         /* jansson iterates only over non-const objects; the object is not modified */
@@ -150,6 +153,7 @@ status json_write(FILE *stream, const json_t *value, diagnostic *why)
 {
     bool good = value && write_value(stream, value, 0);
     fputc('\n', stream);
+    TRY(cancel_check(why));
     return good ? STATUS_OK : diagnose(why, STATUS_FAILURE, "", "out of memory while writing JSON");
 }
 

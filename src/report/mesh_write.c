@@ -1,4 +1,5 @@
 /* Writers of meshes: Wavefront OBJ, raw floats, binary PLY. */
+#include "base/cancel.h"
 #include "report/mesh_write.h"
 
 #include <string.h>
@@ -12,11 +13,11 @@ const char *mesh_format_name(mesh_format format)
 static void write_obj(const mesh *m, FILE *stream)
 {
     const int digits = m->single ? 9 : 17;
-    for (size_t v = 0; v < m->vertex_count; v++) {
+    for (size_t v = 0; v < m->vertex_count && !cancel_asked(); v++) {
         const vec3 p = m->vertices[v];
         fprintf(stream, "v %.*g %.*g %.*g\n", digits, p.x, digits, p.y, digits, p.z);
     }
-    for (size_t t = 0; t < m->triangle_count; t++) {
+    for (size_t t = 0; t < m->triangle_count && !cancel_asked(); t++) {
         const uint32_t *corner = m->triangles[t].corner;
         fprintf(stream, "f %lu %lu %lu\n", corner[0] + 1ul, corner[1] + 1ul, corner[2] + 1ul);
     }
@@ -48,7 +49,7 @@ static void put_vector(vec3 v, bool single, FILE *stream)
 
 static void write_bin(const mesh *m, FILE *stream)
 {
-    for (size_t t = 0; t < m->triangle_count; t++)
+    for (size_t t = 0; t < m->triangle_count && !cancel_asked(); t++)
         for (int k = 0; k < 3; k++)
             put_vector(m->vertices[m->triangles[t].corner[k]], true, stream);
 }
@@ -64,7 +65,7 @@ static void write_ply(const mesh *m, FILE *stream)
         fprintf(stream, "property %s s\nproperty %s t\n", real, real);
     fprintf(stream, "element face %zu\nproperty list uchar int vertex_indices\n%send_header\n", m->triangle_count,
             m->slots ? "property uchar material_index\n" : "");
-    for (size_t v = 0; v < m->vertex_count; v++) {
+    for (size_t v = 0; v < m->vertex_count && !cancel_asked(); v++) {
         put_vector(m->vertices[v], m->single, stream);
         if (m->normals)
             put_vector(m->normals[v], m->single, stream);
@@ -73,7 +74,7 @@ static void write_ply(const mesh *m, FILE *stream)
             put_real(m->uvs[v].v, m->single, stream);
         }
     }
-    for (size_t t = 0; t < m->triangle_count; t++) {
+    for (size_t t = 0; t < m->triangle_count && !cancel_asked(); t++) {
         putc(3, stream);
         for (int k = 0; k < 3; k++)
             put_bits(m->triangles[t].corner[k], 4, stream);

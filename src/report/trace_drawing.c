@@ -1,4 +1,5 @@
 /* A drawing of a ray tree with two panels: the plane of incidence of the first hit, and the view from above. */
+#include "base/cancel.h"
 #include "report/diagram.h"
 #include "report/svg.h"
 #include "report/trace_writers.h"
@@ -171,7 +172,7 @@ static void draw_tree(const diagram *d, const drawing *a)
     const ray_tree *tree = a->t->tree;
     const ray_kind order[] = {RAY_SHADOW, RAY_REFLECT, RAY_REFRACT, RAY_CAMERA};
     for (int k = 0; k < 4; k++)
-        for (size_t i = 0; i < tree->count; i++)
+        for (size_t i = 0; i < tree->count && !cancel_asked_at(i); i++)
             if (tree->node[i].kind == order[k])
                 draw_node(d, a, &tree->node[i]);
     for (size_t i = 0; i < tree->count; i++) {
@@ -193,6 +194,7 @@ static status draw_view(const drawing *a, FILE *out, const section_plane *plane,
     own.sky_length = 0.13 * hypot(d.plane.u1 - d.plane.u0, d.plane.v1 - d.plane.v0);
     if (result == STATUS_OK)
         draw_tree(&d, &own);
+    THEN(result, cancel_check(why));
     diagram_end(&d);
     return result;
 }

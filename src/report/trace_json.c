@@ -1,4 +1,5 @@
 /* A ray tree as JSON. */
+#include "base/cancel.h"
 #include "report/json.h"
 #include "report/trace_writers.h"
 #include "scene/model/open.h"
@@ -114,7 +115,7 @@ bool trace_write_json_ray(const traced *t, FILE *out, int at)
     else
         fputs("null", out);
     fputs(",\"children\":[", out);
-    for (int i = node->first_child; i != RAY_NONE; i = t->tree->node[i].next) {
+    for (int i = node->first_child; i != RAY_NONE && !cancel_asked(); i = t->tree->node[i].next) {
         good = trace_write_json_ray(t, out, i) && good;
         fputs(t->tree->node[i].next == RAY_NONE ? "" : ",", out);
     }
@@ -144,5 +145,6 @@ status trace_write_json(const traced *t, FILE *out, diagnostic *why)
     write_number(out, "lambda_nm", tree->lambda_nm);
     fprintf(out, ",\"carries\":\"%s\"", scene_has_basic_radiance(scene_settings(t->s)) ? "basic" : "classic");
     fputs("}\n", out);
+    TRY(cancel_check(why));
     return good ? STATUS_OK : diagnose(why, STATUS_FAILURE, "", "out of memory while writing JSON");
 }

@@ -1,4 +1,5 @@
 /* A ray tree as indented text, one line per ray. */
+#include "base/cancel.h"
 #include "report/trace_writers.h"
 #include "base/elementary.h"
 #include "scene/model/open.h"
@@ -64,7 +65,7 @@ static void write_line(const traced *t, FILE *out, const ray_node *node, int ind
 /* The nodes are in depth-first order, so that each node is followed by its children. */
 void trace_write_text_rays(const traced *t, FILE *out)
 {
-    for (size_t i = 0; i < t->tree->count; i++) {
+    for (size_t i = 0; i < t->tree->count && !cancel_asked(); i++) {
         const ray_node *node = &t->tree->node[i];
         write_line(t, out, node, node->kind == RAY_SHADOW ? node->depth + 1 : node->depth);
     }
@@ -72,9 +73,9 @@ void trace_write_text_rays(const traced *t, FILE *out)
 
 status trace_write_text(const traced *t, FILE *out, diagnostic *why)
 {
-    (void)why;
     const ray_tree *tree = t->tree;
     trace_write_text_rays(t, out);
+    TRY(cancel_check(why));
     fprintf(out, "radiance %.9g %.9g %.9g  rays %zu, depth limit %d, %.6g nm\n", tree->radiance[0], tree->radiance[1],
             tree->radiance[2], tree->count, tree->depth_limit, tree->lambda_nm);
     return STATUS_OK;

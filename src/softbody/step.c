@@ -1,4 +1,5 @@
 /* Time integration: forces, substeps, and detection of divergence. */
+#include "base/cancel.h"
 #include "softbody/softbody_private.h"
 
 #include <math.h>
@@ -265,8 +266,10 @@ status softbody_step(softbody *b, diagnostic *why)
 status softbody_advance(softbody *b, double time_s, diagnostic *why)
 {
     const double steps = floor(time_s / b->set.dt_s + 0.5);
-    while ((double)b->steps < steps)
+    while ((double)b->steps < steps) {
+        TRY(cancel_check(why)); /* between steps, so that the body may go on later */
         TRY(softbody_step(b, why));
+    }
     return STATUS_OK;
 }
 

@@ -1,3 +1,4 @@
+#include "base/cancel.h"
 #include "softbody/trials_private.h"
 
 #include <stdio.h>
@@ -86,16 +87,10 @@ static status run_groups(const trials *t, const char *name)
     return STATUS_OK;
 }
 
-status softbody_trials_until(const softbody_settings *s, isa level, bool (*stop)(void *context), void *context,
-                             softbody_trial_report *out, diagnostic *why)
-{
-    const trials t = {s, level, out, why, stop, context};
-    return run_groups(&t, NULL);
-}
-
 status softbody_trials(const softbody_settings *s, isa level, softbody_trial_report *out, diagnostic *why)
 {
-    return softbody_trials_until(s, level, NULL, NULL, out, why);
+    const trials t = {s, level, out, why};
+    return run_groups(&t, NULL);
 }
 
 bool softbody_has_trial(const char *name)
@@ -150,8 +145,7 @@ status trial_run(softbody *b, uint64_t steps, trial_watch *watch, void *context,
     diagnostic bad = {.what = ""};
     *held = steps > 0;
     for (uint64_t i = 0; i < steps; i++) {
-        if (t->stop && t->stop(t->context))
-            return diagnose(t->why, STATUS_INTERRUPTED, "", "the trials were stopped");
+        TRY(cancel_check(t->why));
         const status code = softbody_step(b, &bad);
         if (code == STATUS_BAD_INPUT) {
             *held = false;

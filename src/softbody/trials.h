@@ -39,9 +39,6 @@ typedef struct softbody_trial_report {
 } softbody_trial_report;
 
 status softbody_trials(const softbody_settings *s, isa level, softbody_trial_report *out, diagnostic *why);
-/* The same; stop is called before each step, and ends the trials with STATUS_INTERRUPTED when it returns true. */
-status softbody_trials_until(const softbody_settings *s, isa level, bool (*stop)(void *context), void *context,
-                             softbody_trial_report *out, diagnostic *why);
 
 /* One of them, without running the other groups; STATUS_BAD_INPUT for an unknown name. */
 status softbody_trial_one(const softbody_settings *s, isa level, const char *name, softbody_trial *out,

@@ -11,8 +11,6 @@ typedef struct trials {
     isa level;
     softbody_trial_report *out;
     diagnostic *why;
-    bool (*stop)(void *context); /* NULL: never */
-    void *context;
 } trials;
 
 typedef enum trial_name {
@@ -55,7 +53,7 @@ double trial_omega(const softbody_settings *s);
 uint64_t trial_steps(const softbody_settings *s, double time_s);
 
 /* Takes steps and calls watch, if not NULL, after each, until it returns false. *held: no step diverged, and there was
- * one. STATUS_INTERRUPTED after a stop request. */
+ * one. STATUS_INTERRUPTED when cancelled. */
 typedef bool trial_watch(const softbody *b, void *context);
 status trial_run(softbody *b, uint64_t steps, trial_watch *watch, void *context, bool *held, const trials *t);
 

@@ -6,11 +6,22 @@
 
 enum { FIELDS = 15, LINE = 64, LANES = LANES_MAX };
 
+/* Not a multiple of 1024 bytes: see ROW. */
+static size_t length_of(int capacity)
+{
+    return ((size_t)capacity + LANES - 1) / LANES * LANES + LANES;
+}
+
+size_t queue_bytes(int capacity)
+{
+    return FIELDS * length_of(capacity) * sizeof(double);
+}
+
 bool queue_create(ray_queue *q, int capacity)
 {
     memset(q, 0, sizeof *q);
-    size_t length = ((size_t)capacity + LANES - 1) / LANES * LANES + LANES; /* not a multiple of 1024 bytes: see ROW */
-    char *memory = aligned_alloc(LINE, FIELDS * length * sizeof(double));
+    const size_t length = length_of(capacity);
+    char *memory = aligned_alloc(LINE, queue_bytes(capacity));
     if (!memory)
         return false;
     double **reals[] = {&q->ox, &q->oy, &q->oz, &q->dx, &q->dy, &q->dz, &q->wr, &q->wg, &q->wb};

@@ -15,6 +15,8 @@ typedef struct ray_queue {
     void *memory;
 } ray_queue;
 
+/* Memory of a queue, bytes. */
+size_t queue_bytes(int capacity);
 bool queue_create(ray_queue *q, int capacity);
 void queue_destroy(ray_queue *q);
 

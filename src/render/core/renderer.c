@@ -1,6 +1,7 @@
 /* The frame loop of the renderer: workers take pieces, their accounts are collected into a result. */
 #include "render/core/renderer.h"
 
+#include "base/cancel.h"
 #include "base/grow.h"
 #include "measure/clock.h"
 #include "render/core/path_counts.h"
@@ -19,6 +20,8 @@ struct renderer {
     worker_pool *threads;
     tracer_pool *tracers;
 };
+
+#define WATCH_S 0.02
 
 typedef struct event_list {
     tile_event *event;
@@ -47,7 +50,7 @@ typedef struct frame {
     void (*step)(void *state); /* the current step of its pre-pass */
     schedule pieces;
     worker_account *accounts;
-    double began_s;
+    double began_s, asked_s; /* asked_s: when progress was called last */
     atomic_bool stop;
 } frame;
 
@@ -216,15 +219,27 @@ static void work(void *context, int worker)
     d->report.wall_s = since(f) - began_s;
 }
 
+/* Called every watch_s: whoever cancels need not wait for the next progress. */
 static void watch(void *context)
 {
     frame *f = context;
+    if (cancel_asked())
+        atomic_store(&f->stop, true);
+    const render_options *o = f->options;
+    if (!o || !o->progress || since(f) - f->asked_s < (o->progress_s > 0 ? o->progress_s : 0.1))
+        return;
+    f->asked_s = since(f);
     uint64_t begun = 0;
     for (int i = 0; i < (int)f->s->render.threads; i++)
         begun += atomic_load_explicit(&f->accounts[i].pixels, memory_order_relaxed);
     double share = (double)begun / ((double)f->s->render.width * (double)f->s->render.height);
-    if (!f->options->progress(f->options->context, share))
+    if (!o->progress(o->context, share))
         atomic_store(&f->stop, true);
+}
+
+static double watch_s(const render_options *o)
+{
+    return o && o->progress && o->progress_s > 0 && o->progress_s < WATCH_S ? o->progress_s : WATCH_S;
 }
 
 static int compare_events(const void *a, const void *b)
@@ -320,6 +335,11 @@ uint64_t renderer_result_bytes(const scene *s, const render_options *options)
                (3 * sizeof(int64_t) * shares + (shares > 1 ? 3 * sizeof(double) : 0));
     return pixels *
            (named + 3 * sizeof(int64_t) * shares + (shares > 1 ? 3 * sizeof(double) : 0) + maps * sizeof(double));
+}
+
+uint64_t renderer_tracing_bytes(const scene *s)
+{
+    return (uint64_t)scene_threads(&s->render) * tracer_bytes((int)s->render.depth);
 }
 
 static film_space space_of(const scene *s)
@@ -448,8 +468,7 @@ static status run_frame(renderer *r, const scene *s, const render_options *optio
         const double cpu_s = clock_process_cpu_s();
         f->began_s = clock_wall_s();
         code = run_steps(f, count, why);
-        THEN(code, worker_pool_run(r->threads, count, s->render.pool, work, options && options->progress ? watch : NULL,
-                                   options && options->progress_s > 0 ? options->progress_s : 0.1, f, why));
+        THEN(code, worker_pool_run(r->threads, count, s->render.pool, work, watch, watch_s(options), f, why));
         result->wall_s = clock_wall_s() - f->began_s;
         result->cpu_s = clock_process_cpu_s() - cpu_s;
         if (code == STATUS_OK) {

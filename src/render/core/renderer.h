@@ -131,6 +131,9 @@ status renderer_film(const scene *s, film **img, double **variance, diagnostic *
 /* Memory of the film and the maps of such a frame, bytes. */
 uint64_t renderer_result_bytes(const scene *s, const render_options *options);
 
+/* Memory of the rays that wait, for all threads, bytes. */
+uint64_t renderer_tracing_bytes(const scene *s);
+
 /* Starts the threads that s requires in advance (render.pool on), so that the first frame's time does not include
  * it. */
 status renderer_prepare(renderer *r, const scene *s, diagnostic *why);

@@ -46,6 +46,13 @@ void tracer_destroy(tracer *t)
 }
 
 /* A queue must hold less than one waiting batch plus two children for every ray of a batch. */
+enum { WAITING = 3 * BATCH + LANES_MAX };
+
+uint64_t tracer_bytes(int depth)
+{
+    return sizeof(tracer) + (uint64_t)(depth + 1) * queue_bytes(WAITING);
+}
+
 static bool make_queues(tracer *t, int depths)
 {
     if (depths <= t->queues.made)
@@ -55,7 +62,7 @@ static bool make_queues(tracer *t, int depths)
         return false;
     t->queues.waiting = grown;
     for (; t->queues.made < depths; t->queues.made++)
-        if (!queue_create(&grown[t->queues.made], 3 * BATCH + LANES_MAX))
+        if (!queue_create(&grown[t->queues.made], WAITING))
             return false;
     return true;
 }

@@ -23,6 +23,8 @@ typedef struct tracer_target {
     layer_set *layers;
 } tracer_target;
 
+/* Memory of a tracer at that depth, bytes. */
+uint64_t tracer_bytes(int depth);
 tracer *tracer_create(isa level);
 void tracer_destroy(tracer *t);
 

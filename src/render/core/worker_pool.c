@@ -167,7 +167,7 @@ static void wait_until_done(worker_pool *p, void (*watch)(void *), double every_
         until.tv_nsec %= 1000000000;
         if (sem_timedwait(&p->done, &until) == 0)
             return;
-        if (errno == ETIMEDOUT)
+        if (errno == ETIMEDOUT || errno == EINTR) /* a signal may be the reason to stop */
             watch(p->context);
     }
 }

@@ -1,4 +1,5 @@
 /* Following the rays of a fan; crossings by plane geometry, the focus by least squares. */
+#include "base/memory_budget.h"
 #include "render/inspect/fan.h"
 
 #include "base/elementary.h"
@@ -33,7 +34,10 @@ static void start_of(const fan *f, const fan_rule *rule, int i, fan_ray *ray, ve
 
 static status append_nodes(fan *f, const ray_tree *path, fan_ray *ray, diagnostic *why)
 {
-    if (!GROW(f->node, f->node_capacity, f->node_count + path->count))
+    const size_t wanted = f->node_count + path->count;
+    if (wanted > f->node_capacity)
+        TRY(memory_budget_check(2 * wanted * sizeof *f->node, "give fewer rays", why, "the fan"));
+    if (!GROW(f->node, f->node_capacity, wanted))
         return diagnose(why, STATUS_FAILURE, "give fewer rays", "out of memory");
     memcpy(f->node + f->node_count, path->node, path->count * sizeof *path->node);
     ray->first = f->node_count;

@@ -91,7 +91,7 @@ void probe_destroy(probe *p);
 void probe_one_wavelength(probe *p);
 
 /* The tree of a pixel; with several samples per pixel it has as many roots, linked by next. STATUS_BAD_INPUT outside
- * the image, and for a tree of more than PROBE_NODES_MAX rays. */
+ * the image, and for a tree of more than PROBE_NODES_MAX rays. Every ray of a tree asks base/cancel.h. */
 enum { PROBE_NODES_MAX = 2000000 };
 status probe_pixel(probe *p, int x, int y, ray_tree *tree, diagnostic *why);
 

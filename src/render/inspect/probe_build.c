@@ -1,5 +1,7 @@
 /* Building a ray tree: each ray is traced alone, and the tracer's hits, gathered group, branches and queues are read
  * back. */
+#include "base/memory_budget.h"
+#include "base/cancel.h"
 #include "base/grow.h"
 #include "render/inspect/probe_private.h"
 
@@ -78,9 +80,12 @@ static void run_one(probe *p, int depth, double brought[3])
 static status add_node(probe *p, ray_tree *tree, const ray_record *r, ray_kind kind, int parent, size_t *at,
                        diagnostic *why)
 {
+    TRY(cancel_check(why));
     if (tree->count >= PROBE_NODES_MAX)
         return diagnose(why, STATUS_BAD_INPUT, "lower render.depth, or set render.min_weight",
                         "the tree has more than %d rays", (int)PROBE_NODES_MAX);
+    if (tree->count == tree->capacity)
+        TRY(memory_budget_check(2 * tree->count * sizeof *tree->node, "lower render.depth", why, "the tree of rays"));
     if (!GROW(tree->node, tree->capacity, tree->count + 1))
         return diagnose(why, STATUS_FAILURE, "lower render.depth", "out of memory");
     *at = tree->count++;

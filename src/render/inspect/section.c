@@ -1,4 +1,5 @@
 /* The grid of a section: sampling of media and crossings on grid edges. */
+#include "base/cancel.h"
 #include "base/grow.h"
 #include "render/inspect/section_private.h"
 
@@ -81,12 +82,12 @@ static bool prepare(cutter *c, int cells)
 
 static void sample(cutter *c)
 {
-    for (int j = 0; j < c->nv; j++)
+    for (int j = 0; j < c->nv && !cancel_asked(); j++)
         for (int i = 0; i < c->nu; i++) {
             const bool beyond = i == 0 || j == 0 || i == c->nu - 1 || j == c->nv - 1;
             c->label[j * c->nu + i] = beyond ? SECTION_EDGE : medium_at(c, grid_point(c, i, j));
         }
-    for (int j = 0; j < c->nv; j++)
+    for (int j = 0; j < c->nv && !cancel_asked(); j++)
         for (int i = 0; i < c->nu; i++) {
             if (i + 1 < c->nu)
                 cross(c, edge_across(c, i, j), i, j, i + 1, j);
@@ -106,13 +107,15 @@ status section_cut(const probe *p, const section_plane *plane, int cells, sectio
     c.failed = !prepare(&c, cells);
     if (!c.failed)
         sample(&c);
+    c.failed = c.failed || cancel_asked();
     for (int j = 0; j + 1 < c.nv && !c.failed; j++)
         for (int i = 0; i + 1 < c.nu && !c.failed; i++)
             section_march(&c, i, j);
+    c.failed = c.failed || cancel_asked();
     section_chain_all(&c);
     free(c.label);
     free(c.crossing);
     free(c.at);
     free(c.pieces);
-    return c.failed ? out_of_memory(why) : STATUS_OK;
+    return c.failed ? cancelled_or_out_of_memory(why) : STATUS_OK;
 }

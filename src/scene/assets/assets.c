@@ -1,4 +1,5 @@
 /* Loads the files of a scene: meshes, textures and the background image. */
+#include "base/cancel.h"
 #include "base/file.h"
 #include "geometry/shapes/shape.h"
 #include "scene/assets/assets.h"
@@ -77,6 +78,7 @@ char *scene_file_path(const scene *s, const char *path)
 status sky_check(const image *sky, const char *path, diagnostic *bad)
 {
     for (int y = 0; y < sky->height; y++) {
+        TRY(cancel_check(bad));
         for (int x = 0; x < sky->width; x++) {
             const float *pixel = &sky->pixel[((size_t)y * (size_t)sky->width + (size_t)x) * 3];
             for (int channel = 0; channel < 3; channel++) {
@@ -162,10 +164,9 @@ void scene_borrow_meshes(scene *s, const scene *from)
     }
 }
 
+/* From its file. */
 static status load_mesh(const scene *s, mesh_entry *m, diagnostic *why)
 {
-    if (m->source != MESH_FILE)
-        return mesh_make(m, why);
     char *path = scene_file_path(s, m->path);
     if (!path)
         return out_of_memory(why);
@@ -175,10 +176,11 @@ static status load_mesh(const scene *s, mesh_entry *m, diagnostic *why)
     return code == STATUS_OK ? code : asset_error(s, m->name, m->path_line, m->path_column, &bad, code, why);
 }
 
-/* After m was loaded: whether all meshes together exceed the limit. */
-static status check_triangles(const scene *s, mesh_entry *m, diagnostic *why)
+/* Whether all meshes together exceed the limit: before m is generated, with the triangles that it will have, or after
+ * it was loaded. */
+static status check_triangles(const scene *s, mesh_entry *m, size_t further, diagnostic *why)
 {
-    size_t all = 0;
+    size_t all = further;
     for (size_t i = 0; i < s->mesh_count; i++)
         all += s->meshes[i].data ? s->meshes[i].data->triangle_count : 0;
     if (!s->limits.triangles || all <= s->limits.triangles)
@@ -189,6 +191,12 @@ static status check_triangles(const scene *s, mesh_entry *m, diagnostic *why)
                  "the meshes have %zu triangles together, more than the limit of %zu", all, s->limits.triangles);
     mesh_entry_unload(m);
     return asset_error(s, m->name, m->path_line, m->path_column, &bad, code, why);
+}
+
+static status generate_mesh(const scene *s, mesh_entry *m, diagnostic *why)
+{
+    TRY(check_triangles(s, m, mesh_make_triangles(m), why));
+    return mesh_make(m, why);
 }
 
 /* Background image and textures. */
@@ -229,9 +237,11 @@ static status load_meshes(scene *s, const load_watch *watch, diagnostic *why)
         shared.own = work_of(m);
         if (!m->data && m->source == MESH_SLIME)
             code = slime_make(s, m, watch ? &(load_watch){go_on_all, &shared} : NULL, why);
-        else if (!m->data)
+        else if (!m->data && m->source == MESH_FILE)
             code = load_mesh(s, m, why);
-        THEN(code, check_triangles(s, m, why));
+        else if (!m->data)
+            code = generate_mesh(s, m, why);
+        THEN(code, check_triangles(s, m, 0, why));
         shared.before += shared.own;
     }
     return code;
@@ -255,7 +265,7 @@ status scene_load_files(scene *s, diagnostic *why)
         mesh_entry *m = &s->meshes[i];
         if (m->source == MESH_FILE && !m->data) {
             code = load_mesh(s, m, why);
-            THEN(code, check_triangles(s, m, why));
+            THEN(code, check_triangles(s, m, 0, why));
         } else if (m->source == MESH_SLIME) {
             hand_script *script;
             code = slime_read_script(s, m, &script, why);

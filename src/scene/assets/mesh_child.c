@@ -1,3 +1,4 @@
+#include "base/cancel.h"
 #include "scene/assets/mesh_child.h"
 
 #include "base/text.h"
@@ -45,12 +46,13 @@ static void hear(mesh_child *child)
     child->said_length += kept;
 }
 
-/* poll until the deadline; 0, with late set, after it. */
+/* poll until the deadline, for at most 50 ms at a time; 0, with late or cancelled set, after it. */
 static int wait_until_late(mesh_child *child, struct pollfd *files, nfds_t count)
 {
     const double left_s = child->deadline_s - mesh_child_now_s();
     child->late = left_s <= 0;
-    return child->late ? 0 : poll(files, count, left_s < 1000 ? (int)(left_s * 1000) + 1 : 1000000);
+    child->cancelled = cancel_asked();
+    return child->late || child->cancelled ? 0 : poll(files, count, left_s < 0.05 ? (int)(left_s * 1000) + 1 : 50);
 }
 
 static bool is_passing(int error)
@@ -65,7 +67,7 @@ static bool wait_for_bytes(mesh_child *child)
         struct pollfd both[] = {{.fd = child->out, .events = POLLIN},
                                 {.fd = child->err, .events = POLLIN}}; /* -1 is ignored */
         const int ready = wait_until_late(child, both, 2);
-        if (child->late || (ready < 0 && !is_passing(errno)))
+        if (child->late || child->cancelled || (ready < 0 && !is_passing(errno)))
             return false;
         if (ready > 0 && both[1].revents)
             hear(child);
@@ -112,7 +114,7 @@ status mesh_child_end(void *context, diagnostic *why)
 /* The exit status as from waitpid; -1 if it is not available (the parent process ignores SIGCHLD). */
 static int reap(mesh_child *child, bool still_wanted)
 {
-    while (still_wanted && child->err >= 0 && !child->late) { /* remaining messages; the end of the stream also closes
+    while (still_wanted && child->err >= 0 && !child->late && !child->cancelled) { /* remaining messages; the end of the stream also closes
                                                                  this pipe */
         struct pollfd one = {.fd = child->err, .events = POLLIN};
         const int ready = wait_until_late(child, &one, 1);
@@ -172,6 +174,8 @@ status mesh_child_close(mesh_child *child, const char *path, const mesh_limits *
     /* A stream that was complete but refused: no further data is expected. */
     int state = reap(child, code == STATUS_OK || child->out < 0);
     diagnostic_locate(why, path, 0, 0);
+    if (child->cancelled)
+        return diagnose(why, STATUS_INTERRUPTED, NULL, "reading the file was interrupted");
     if (child->late)
         return diagnose(why, STATUS_BAD_INPUT, "use a mesh of less detail, if the file is complete",
                         "reading the file took longer than the limit of %g s", limits->wall_s);

@@ -13,7 +13,8 @@ typedef struct mesh_child {
     double deadline_s; /* on the monotonic clock */
     char said[2048];   /* the beginning of its standard error */
     size_t said_length;
-    bool late; /* killed after the deadline */
+    bool late;      /* killed after the deadline */
+    bool cancelled; /* killed because the work was (base/cancel.h) */
 } mesh_child;
 
 /* The path of cuvette-import, the first that exists: $CUVETTE_IMPORT (only this one if it is set); the folder of the

@@ -1,5 +1,6 @@
 #include "scene/assets/mesh_make.h"
 
+#include "base/cancel.h"
 #include "base/random.h"
 #include "geometry/mesh_generators.h"
 #include "scene/model/face_materials.h"
@@ -31,7 +32,7 @@ static status make_terrain(const mesh_entry *m, mesh **out, diagnostic *why)
     double *heights = malloc((size_t)columns * (size_t)rows * sizeof *heights);
     if (!heights)
         return out_of_memory(why);
-    for (int row = 0; row < rows; row++) {
+    for (int row = 0; row < rows && !cancel_asked(); row++) {
         for (int column = 0; column < columns; column++) {
             double sum = 0.0, weight = 0.5, fine = CELLS;
             for (uint32_t k = 0; k < OCTAVES; k++, weight *= 0.5, fine *= 2.0)
@@ -39,7 +40,8 @@ static status make_terrain(const mesh_entry *m, mesh **out, diagnostic *why)
             heights[(size_t)row * (size_t)columns + (size_t)column] = m->size.y * sum;
         }
     }
-    const status code = generate_height_field(heights, columns, rows, m->size.x, m->size.z, m->depth, out, why);
+    status code = cancel_check(why);
+    THEN(code, generate_height_field(heights, columns, rows, m->size.x, m->size.z, m->depth, out, why));
     free(heights);
     return code;
 }
@@ -71,9 +73,43 @@ static status make(const mesh_entry *m, mesh **out, diagnostic *why)
     return diagnose(why, STATUS_BAD_INPUT, "set its triangles, or another source", "%.80s has no triangles", m->name);
 }
 
+/* As the generators count; 0 for those that are small anyway. A solid terrain has a few more. */
+static void size_of(const mesh_entry *m, size_t *vertices, size_t *triangles)
+{
+    const size_t count = (size_t)m->count, around = (size_t)m->around, tube = (size_t)m->tube;
+    size_t f = 0; /* triangles along an edge of the icosahedron */
+    *vertices = *triangles = 0;
+    switch ((mesh_maker)m->source) {
+    case MESH_SPARSE:
+    case MESH_DENSE: *vertices = 3 * count, *triangles = count; return;
+    case MESH_SPHERE: f = (size_t)floor(sqrt((double)count / 20.0) + 0.5); break;
+    case MESH_ICOSPHERE: f = (size_t)1 << m->level; break;
+    case MESH_TORUS:
+    case MESH_TERRAIN: *vertices = (around + 1) * (tube + 1), *triangles = 2 * around * tube; return;
+    case MESH_LATHE: /* small */
+    case MESH_BOX:
+    case MESH_FILE:
+    case MESH_SLIME:
+    case MESH_ARRAYS: return;
+    }
+    *vertices = 10 * (f + 1) * (f + 2);
+    *triangles = 20 * f * f;
+}
+
+size_t mesh_make_triangles(const mesh_entry *m)
+{
+    size_t vertices, triangles;
+    size_of(m, &vertices, &triangles);
+    return triangles;
+}
+
 status mesh_make(mesh_entry *m, diagnostic *why)
 {
     mesh *made = NULL;
+    size_t vertices, triangles;
+    size_of(m, &vertices, &triangles);
+    const bool smooth = m->source != MESH_SPARSE && m->source != MESH_DENSE;
+    TRY(mesh_check_size(vertices, triangles, smooth, smooth, false, why));
     const status code = make(m, &made, why);
     m->data = made;
     return code;

@@ -1,3 +1,4 @@
+#include "base/cancel.h"
 #include "scene/assets/mesh_stream.h"
 
 #include "import/mesh_wire.h"
@@ -88,6 +89,8 @@ static status read_arrays(const mesh_source *source, mesh *m, diagnostic *why)
         if (arrays[i].size)
             TRY(source->read(source->context, arrays[i].bytes, arrays[i].size, why));
     for (size_t i = 0; m->uvs && i < m->vertex_count; i++) {
+        if (cancel_asked_at(i))
+            return cancel_check(why);
         if (!isfinite(m->uvs[i].u) || !isfinite(m->uvs[i].v))
             return diagnose(why, STATUS_BAD_INPUT, "use finite texture coordinates",
                             "a texture coordinate of vertex %zu is not a number", i);

@@ -1,6 +1,7 @@
 /* API: the motion of the scene's slimes compared with closed forms, as `cuvette motion` prints it. */
 #include "web/api/api.h"
 
+#include "base/cancel.h"
 #include "measure/clock.h"
 #include "report/motion_rows.h"
 #include "scene/model/scene.h"
@@ -39,7 +40,10 @@ static status measure(call *c, motion_question *q, const scene *s, json_t *slime
             continue;
         const softbody_settings settings = slime_settings(m);
         softbody_trial_report report;
-        code = softbody_trials_until(&settings, c->l->settings.level, must_stop, q, &report, &c->why);
+        cancel_token stop = {.ask = must_stop, .context = q};
+        cancel_begin(&stop);
+        code = softbody_trials(&settings, c->l->settings.level, &report, &c->why);
+        cancel_end(&stop);
         if (code == STATUS_OK && json_array_append_new(slimes, motion_slime_json(m, &report)) != 0)
             code = out_of_memory(&c->why);
     }

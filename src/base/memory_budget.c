@@ -1,0 +1,211 @@
+#include "base/memory_budget.h"
+
+#include "base/number.h"
+#include <stdarg.h>
+#include <stdatomic.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+#include <strings.h>
+#include <sys/resource.h>
+#include <unistd.h>
+
+static _Atomic uint64_t limit;
+
+void memory_budget_set(uint64_t bytes)
+{
+    atomic_store(&limit, bytes);
+}
+
+uint64_t memory_budget_limit(void)
+{
+    return atomic_load(&limit);
+}
+
+/* --- what is free --- */
+
+/* The number after `name` at the beginning of a line of a file; without a name, the file's first number. False if there
+ * is none ("max"). */
+static bool read_number(const char *root, const char *path, const char *name, uint64_t *value)
+{
+    char place[1024], line[512];
+    snprintf(place, sizeof place, "%.200s%.800s", root, path);
+    FILE *file = fopen(place, "re");
+    bool found = false;
+    while (file && !found && fgets(line, sizeof line, file)) {
+        unsigned long long number;
+        const size_t length = strlen(name);
+        found = strncmp(line, name, length) == 0 && sscanf(line + length, "%llu", &number) == 1;
+        if (found)
+            *value = number;
+    }
+    if (file)
+        fclose(file);
+    return found;
+}
+
+static uint64_t least(uint64_t a, uint64_t b)
+{
+    return a < b ? a : b;
+}
+
+/* The names of the files of one group: cgroup 2 (Documentation/admin-guide/cgroup-v2.rst), and 1 (cgroup-v1). */
+static const struct group_files {
+    const char *below, *limit, *used, *dropped; /* dropped: in memory.stat, what can be dropped */
+} version[2] = {{"/sys/fs/cgroup", "memory.max", "memory.current", "inactive_file "},
+                {"/sys/fs/cgroup/memory", "memory.limit_in_bytes", "memory.usage_in_bytes", "total_inactive_file "}};
+
+static uint64_t free_in_group(const char *root, const struct group_files *files, const char *group)
+{
+    char path[700];
+    uint64_t most, used, dropped = 0;
+    snprintf(path, sizeof path, "%s%s/%s", files->below, group, files->limit);
+    if (!read_number(root, path, "", &most))
+        return UINT64_MAX;
+    snprintf(path, sizeof path, "%s%s/%s", files->below, group, files->used);
+    if (!read_number(root, path, "", &used))
+        return most;
+    snprintf(path, sizeof path, "%s%s/memory.stat", files->below, group);
+    read_number(root, path, files->dropped, &dropped);
+    used -= least(used, dropped);
+    return most - least(most, used);
+}
+
+/* The least of a group and those around it; group is cut at its slashes. */
+static uint64_t free_in_groups(const char *root, const struct group_files *files, char *group)
+{
+    uint64_t left = UINT64_MAX;
+    for (;;) {
+        left = least(left, free_in_group(root, files, group));
+        char *slash = strrchr(group, '/');
+        if (!slash)
+            return left;
+        *slash = 0;
+    }
+}
+
+/* Lines of /proc/self/cgroup: "0::/path" of version 2, "5:memory:/path" of version 1. */
+static uint64_t free_by_groups(const char *root)
+{
+    char place[256], line[600];
+    uint64_t left = UINT64_MAX;
+    snprintf(place, sizeof place, "%.200s/proc/self/cgroup", root);
+    FILE *file = fopen(place, "re");
+    while (file && fgets(line, sizeof line, file)) {
+        char *controllers = strchr(line, ':'), *group = controllers ? strchr(controllers + 1, ':') : NULL;
+        if (!group)
+            continue;
+        *group++ = 0;
+        group[strcspn(group, "\n")] = 0;
+        if (controllers[1] == 0)
+            left = least(left, free_in_groups(root, &version[0], group));
+        else if (strstr(controllers, "memory"))
+            left = least(left, free_in_groups(root, &version[1], group));
+    }
+    if (file)
+        fclose(file);
+    return left;
+}
+
+uint64_t memory_budget_free(const char *root, uint64_t address_space)
+{
+    uint64_t available_kib;
+    uint64_t left = least(address_space, free_by_groups(root));
+    if (read_number(root, "/proc/meminfo", "MemAvailable:", &available_kib))
+        left = least(left, available_kib * 1024);
+    return left;
+}
+
+/* Pages of the process, in bytes: all (0), or those in memory (1). */
+static uint64_t own_bytes(int which)
+{
+    unsigned long long pages[2] = {0, 0};
+    FILE *file = fopen("/proc/self/statm", "re");
+    if (file && fscanf(file, "%llu %llu", &pages[0], &pages[1]) != 2)
+        pages[0] = pages[1] = 0;
+    if (file)
+        fclose(file);
+    return (uint64_t)pages[which] * (uint64_t)sysconf(_SC_PAGESIZE);
+}
+
+static uint64_t address_space_left(void)
+{
+    struct rlimit space;
+    if (getrlimit(RLIMIT_AS, &space) != 0 || space.rlim_cur == RLIM_INFINITY)
+        return UINT64_MAX;
+    const uint64_t most = (uint64_t)space.rlim_cur;
+    return most - least(most, own_bytes(0));
+}
+
+uint64_t memory_budget_left(bool *chosen)
+{
+    const uint64_t given = atomic_load(&limit);
+    *chosen = given > 0;
+    if (given > 0)
+        return given - least(given, own_bytes(1));
+    const uint64_t left = memory_budget_free("", address_space_left());
+    return left == UINT64_MAX ? left : left / 4 * 3;
+}
+
+status memory_budget_check(uint64_t bytes, const char *remedy, diagnostic *why, const char *what, ...)
+{
+    enum { SMALL = 16 << 20 };
+    bool chosen;
+    if (bytes < SMALL && atomic_load(&limit) == 0)
+        return STATUS_OK;
+    const uint64_t left = memory_budget_left(&chosen);
+    if (bytes <= left)
+        return STATUS_OK;
+    char name[256], needed[MEMORY_TEXT_MAX], room[MEMORY_TEXT_MAX], advice[256];
+    va_list list;
+    va_start(list, what);
+    vsnprintf(name, sizeof name, what, list);
+    va_end(list);
+    memory_text(bytes, needed);
+    memory_text(left, room);
+    snprintf(advice, sizeof advice, "%s, or %s", remedy, chosen ? "raise --memory-limit" : "give a --memory-limit");
+    return diagnose(why, STATUS_BAD_INPUT, advice, "%s needs about %s of memory, more than the %s that %s", name, needed,
+                    room, chosen ? "--memory-limit leaves" : "are three quarters of what is free");
+}
+
+/* --- sizes as text --- */
+
+static const char letters[] = "KMGT";
+
+char *memory_text(uint64_t bytes, char text[MEMORY_TEXT_MAX])
+{
+    double size = (double)bytes;
+    int unit = -1;
+    while (size >= 1000.0 && unit < 3) { /* three digits at most: 1000 KiB are 0.977 MiB */
+        size /= 1024.0;
+        unit++;
+    }
+    if (unit < 0)
+        snprintf(text, MEMORY_TEXT_MAX, "%.0f bytes", size);
+    else
+        snprintf(text, MEMORY_TEXT_MAX, "%.3g %ciB", size, letters[unit]);
+    return text;
+}
+
+bool memory_parse(const char *text, uint64_t *bytes)
+{
+    char digits[NUMBER_TEXT_MAX];
+    double number, unit = 1.0;
+    const size_t length = strspn(text, "0123456789.");
+    const char *rest = text + length;
+    if (length == 0 || length >= sizeof digits)
+        return false;
+    memcpy(digits, text, length);
+    digits[length] = 0;
+    if (*rest) {
+        const char *letter = strchr(letters, *rest >= 'a' ? *rest - 32 : *rest);
+        if (!letter || !(rest[1] == 0 || strcasecmp(rest + 1, "b") == 0 || strcasecmp(rest + 1, "ib") == 0))
+            return false;
+        for (int i = 0; i <= letter - letters; i++)
+            unit *= 1024.0;
+    }
+    if (!number_parse_real(digits, &number) || !(number * unit >= 1.0 && number * unit < 0x1p63))
+        return false;
+    *bytes = (uint64_t)(number * unit);
+    return true;
+}
