@@ -2,6 +2,7 @@
 #include "base/file.h"
 
 #include "base/below.h"
+#include "base/system_error.h"
 #include "base/text.h"
 #include <errno.h>
 #include <fcntl.h>
@@ -19,26 +20,6 @@ static status no_room(diagnostic *why, const char *path)
     return out_of_memory(why);
 }
 
-/* Fills *why with a system error about path. The reason is a text of its own, because strerror is not thread-safe and
- * depends on the locale. */
-static status system_error(diagnostic *why, status code, const char *path, const char *doing, int error)
-{
-    const char *reason = strerrordesc_np(error), *remedy = NULL;
-    if (error == ENOMEM)
-        return no_room(why, path);
-    switch (error) {
-    case ENOSPC:
-    case EDQUOT: remedy = "free some space or choose another disk"; break;
-    case EFBIG: remedy = "raise the limit on file size"; break;
-    case EACCES:
-    case EPERM:
-    case EROFS: remedy = "change the permissions or choose another folder"; break;
-    case ENOENT: remedy = "check the path"; break;
-    default: break;
-    }
-    return diagnose_at(why, path, code, remedy, "%s: %s", doing, reason ? reason : "unknown error");
-}
-
 /* Reads to the end of the file regardless of the size from fstat: files of /proc report 0. */
 static status read_descriptor(int fd, const char *path, size_t limit, size_t expected, char **text, size_t *size,
                               diagnostic *why)
@@ -50,7 +31,7 @@ static status read_descriptor(int fd, const char *path, size_t limit, size_t exp
         if (got < 0 && errno == EINTR)
             continue;
         if (got < 0) {
-            status code = system_error(why, STATUS_FAILURE, path, "cannot read", errno);
+            status code = system_error(why, STATUS_FAILURE, path, "cannot read", errno, NULL);
             free(buffer);
             return code;
         }
@@ -89,14 +70,12 @@ status file_read_below(const char *path, const char *root, size_t limit, char **
     int fd = below_open(path, root);
     if (fd < 0 && errno == EXDEV)
         return diagnose_at(why, path, STATUS_BAD_INPUT, BELOW_REMEDY, BELOW_WHAT);
-    if (fd < 0) {
-        bool ours = errno == EMFILE || errno == ENFILE || errno == ENOMEM || errno == EIO;
-        return system_error(why, ours ? STATUS_FAILURE : STATUS_BAD_INPUT, path, "cannot open", errno);
-    }
+    if (fd < 0)
+        return system_error(why, STATUS_BAD_INPUT, path, "cannot open", errno, NULL);
     struct stat about;
     status code;
     if (fstat(fd, &about) != 0) {
-        code = system_error(why, STATUS_FAILURE, path, "cannot read", errno);
+        code = system_error(why, STATUS_FAILURE, path, "cannot read", errno, NULL);
     } else if (!S_ISREG(about.st_mode)) {
         code = diagnose_at(why, path, STATUS_BAD_INPUT, "name a file", "%s",
                            S_ISDIR(about.st_mode) ? "is a folder" : "is not a regular file");
@@ -219,7 +198,7 @@ status file_writer_open(file_writer *writer, const char *path, diagnostic *why)
             unlink(writer->temporary);
     }
     release(writer);
-    return system_error(why, STATUS_FAILURE, path, "cannot write", error);
+    return system_error(why, STATUS_FAILURE, path, "cannot write", error, NULL);
 }
 
 void file_flush_folder(const char *path)
@@ -254,7 +233,7 @@ status file_writer_commit(file_writer *writer, diagnostic *why)
         if (writer->temporary)
             unlink(writer->temporary);
         if (error)
-            code = system_error(why, STATUS_FAILURE, writer->path, "cannot write", error);
+            code = system_error(why, STATUS_FAILURE, writer->path, "cannot write", error, NULL);
         else
             code = diagnose_at(why, writer->path, STATUS_FAILURE, "check the free space on the disk",
                                "cannot write: a write failed");
@@ -317,5 +296,5 @@ status file_make_directory(const char *path, diagnostic *why)
     if (!error)
         error = make_one_directory(part);
     free(part);
-    return error ? system_error(why, STATUS_FAILURE, path, "cannot make the folder", error) : STATUS_OK;
+    return error ? system_error(why, STATUS_FAILURE, path, "cannot make the folder", error, NULL) : STATUS_OK;
 }

@@ -2,6 +2,9 @@
  * not call setjmp; the function that does has no modified local variables. */
 #include "image/codec.h"
 
+#include "base/system_error.h"
+
+#include <errno.h>
 #include <jpeglib.h>
 #include <jerror.h>
 #include <setjmp.h>
@@ -43,6 +46,11 @@ static void on_message(j_common_ptr cinfo, int level)
 static void no_output(j_common_ptr cinfo)
 {
     (void)cinfo;
+}
+
+static bool no_memory(const jpeg_job *job)
+{
+    return job->errors.msg_code == JERR_OUT_OF_MEMORY;
 }
 
 static void prepare(jpeg_job *job)
@@ -104,11 +112,13 @@ status codec_jpeg_write(const image_rows *rows, FILE *stream, bool fast, diagnos
     job.row = malloc((size_t)rows->width * 3);
     job.rgb = malloc((size_t)rows->width * 3 * sizeof *job.rgb);
     if (!job.row || !job.rgb)
-        diagnose(why, code, NULL, "out of memory");
-    else if (!write_guarded(&job, &cinfo, rows, fast, stream))
-        diagnose(why, code, NULL, "cannot write the JPEG file: %s", job.message);
-    else
+        out_of_memory(why);
+    else if (write_guarded(&job, &cinfo, rows, fast, stream))
         code = STATUS_OK;
+    else if (no_memory(&job))
+        out_of_memory(why);
+    else
+        system_error(why, code, NULL, "cannot write the JPEG file", errno, "write a PNG instead");
     jpeg_destroy_compress(&cinfo);
     free(job.row);
     free(job.rgb);
@@ -172,9 +182,10 @@ static void read_guarded(jpeg_job *job, j_decompress_ptr cinfo, struct jpeg_prog
                          const unsigned char *bytes, size_t size)
 {
     if (setjmp(job->escape)) {
-        bool memory = job->errors.msg_code == JERR_OUT_OF_MEMORY;
-        job->code = diagnose(job->why, memory ? STATUS_FAILURE : STATUS_BAD_INPUT, NULL, "%s%s",
-                             memory ? "" : "the JPEG file is damaged: ", job->message);
+        job->code = no_memory(job)
+                        ? out_of_memory(job->why)
+                        : diagnose(job->why, STATUS_BAD_INPUT, "copy the file again, or save it again as JPEG",
+                                   "the JPEG file is damaged: %s", job->message);
         return;
     }
     if (read_rows(job, cinfo, progress, bytes, size))

@@ -113,7 +113,7 @@ status report_page_write(const report_page_content *page, FILE *out, diagnostic 
 {
     shared_texts texts;
     char *text = NULL, *code = NULL;
-    shared_texts_make(page->s, &texts);
+    TRY(shared_texts_make(page->s, &texts, why));
     status result =
         texts.scene ? shared_scene_code(texts.scene, &code, why) : scene_write_text(page->s, NULL, false, &text, why);
     if (result == STATUS_OK) {

@@ -2,6 +2,7 @@
  * when the grid has changed, the files are renamed. Files of cells that the study no longer has are named by identity,
  * and get a number again when the cell returns. */
 #include "study/keep.h"
+#include "base/system_error.h"
 #include "base/file.h"
 #include "base/text.h"
 #include "study/identity.h"
@@ -101,8 +102,7 @@ static status rename_in(const char *images, const char *name, char *other, diagn
     char *from = text_format("%s/%s", images, name), *to = other ? text_format("%s/%s", images, other) : NULL;
     status code = from && to ? STATUS_OK : out_of_memory(why);
     if (code == STATUS_OK && rename(from, to) != 0)
-        code = diagnose_at(why, from, STATUS_FAILURE, "make the folder writable", "renaming to %s failed: %s", other,
-                           strerror(errno));
+        code = system_error(why, STATUS_FAILURE, from, "renaming failed", errno, "make the folder writable");
     free(other);
     free(from);
     free(to);

@@ -1,9 +1,11 @@
 #include "study/table.h"
 #include "base/file.h"
+#include "base/system_error.h"
 #include "base/text.h"
 #include "study/csv_layout.h"
 #include <errno.h>
 #include <fcntl.h>
+#include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 #include <sys/file.h>
@@ -19,11 +21,15 @@ struct table {
 
 static status failed(const char *path, const char *doing, int error, diagnostic *why)
 {
-    diagnostic_locate(why, path, 0, 0);
-    const char *remedy = error == ENOSPC || error == EDQUOT || error == EFBIG
-                             ? "free disk space and run the command again to resume"
-                             : "make the folder writable and run the command again to resume";
-    return diagnose(why, STATUS_FAILURE, remedy, "%s failed: %s", doing, strerror(error));
+    char what[96];
+    snprintf(what, sizeof what, "%s failed", doing);
+    const status code = system_error(why, STATUS_FAILURE, path, what, error, "make the folder writable");
+    if (why) {
+        const size_t length = strlen(why->remedy);
+        snprintf(why->remedy + length, sizeof why->remedy - length, "%s",
+                 " and run the command again to resume" + (length ? 0 : strlen(" and ")));
+    }
+    return code;
 }
 
 /* Appends all bytes and flushes; on failure the file is truncated to its old size and errno is set. */

@@ -14,6 +14,7 @@ typedef struct mesh_child {
     char said[2048];   /* the beginning of its standard error */
     size_t said_length;
     bool late; /* killed after the deadline */
+    int error; /* errno of a failed read of its output */
 } mesh_child;
 
 /* The path of cuvette-import, the first that exists: $CUVETTE_IMPORT (only this one if it is set); the folder of the

@@ -217,7 +217,7 @@ status http_publish(http_server *s, const char *event, const json_t *value, diag
                         "\"%s\" is not a valid event name", event);
     payload *p = payload_of(event, value);
     if (!p)
-        return diagnose(why, STATUS_FAILURE, "", "out of memory for the event %s", event);
+        return diagnose(why, STATUS_FAILURE, MEMORY_REMEDY, "out of memory for the event %s", event);
     pthread_mutex_lock(&s->event_lock);
     for (int i = 0; i < s->settings.event_clients; i++)
         if (s->event_client[i]) {
