@@ -52,16 +52,18 @@ static status print_all(const char *folder, const listed_kind *kind, struct dire
         const char *ending = strrchr(entries[i]->d_name, '.');
         if (entries[i]->d_name[0] == '.' || !ending || strcmp(ending, kind->ending) != 0)
             continue;
-        if (result != STATUS_OK)
-            terminal_error(why);
         char *path = text_format("%s/%s", folder, entries[i]->d_name);
         diagnostic error = {.line = 0};
         const status listed = path ? kind->print(path, &error) : out_of_memory(&error);
         free(path);
-        if (listed != STATUS_OK) {
-            result = listed;
-            *why = error;
-        }
+        if (listed == STATUS_OK)
+            continue;
+        if (result != STATUS_OK)
+            terminal_error(why);
+        result = listed;
+        *why = error;
+        if (listed == STATUS_FAILURE) /* of the machine, not of this file */
+            break;
     }
     return result;
 }

@@ -2,6 +2,7 @@
 #include "study/runs.h"
 #include "base/file.h"
 #include "base/hash.h"
+#include "base/system_error.h"
 #include "base/text.h"
 #include "scene/model/open.h"
 #include "study/manifest.h"
@@ -95,6 +96,9 @@ status runs_read(const char *folder, const char *root, run_list **out, diagnosti
 {
     struct dirent **names = NULL;
     const int found = scandir(folder, &names, is_list_name, alphasort); /* runs.json is the first */
+    *out = NULL;
+    if (found < 0 && errno != ENOENT)
+        return system_error(why, STATUS_FAILURE, folder, "cannot be read", errno, "make the folder readable");
     run_list *all = calloc(1, sizeof *all);
     if (all)
         all->files = calloc(found > 0 ? (size_t)found : 1, sizeof(json_t *));

@@ -1,3 +1,4 @@
+#include "base/system_error.h"
 #include "base/json_build.h"
 #include "study/upgrade.h"
 #include "base/file.h"
@@ -12,6 +13,7 @@
 #include "study/rows.h"
 #include <dirent.h>
 #include <inttypes.h>
+#include <errno.h>
 #include <stdlib.h>
 #include <string.h>
 #include <unistd.h>
@@ -211,6 +213,8 @@ static status copy_folder(const upgrade *u, const char *name, diagnostic *why)
     struct dirent **entries = NULL;
     const int count = from ? scandir(from, &entries, NULL, alphasort) : -1;
     status code = from && to ? STATUS_OK : out_of_memory(why);
+    if (code == STATUS_OK && count < 0 && errno != ENOENT)
+        code = system_error(why, STATUS_FAILURE, from, "cannot be read", errno, "make the folder readable");
     if (code == STATUS_OK && count > 0)
         code = file_make_directory(to, why);
     for (int i = 0; i < count; i++) {

@@ -42,7 +42,8 @@ void mask_numbers(char *text)
             *to++ = *c++;
             continue;
         }
-        while (isdigit((unsigned char)*c) || *c == '.' || (*c == 'e' && (c[1] == '-' || c[1] == '+')) || (*c == '-' && c[-1] == 'e'))
+        while (isdigit((unsigned char)*c) || *c == '.' || (*c == 'e' && (c[1] == '-' || c[1] == '+')) ||
+               (*c == '-' && c[-1] == 'e'))
             c++;
         *to++ = '#';
     }

@@ -7,7 +7,7 @@
 #include <stdint.h>
 
 typedef struct entry {
-    char *name; /* relative to the folder */
+    char *name;            /* relative to the folder */
     uint64_t hash, masked; /* of the content, and of the content without its numbers */
     long size, lines;
 } entry;

@@ -27,14 +27,14 @@ typedef struct fault_page {
     long at;       /* this call fails, counted from 1; 0: none */
     uint64_t hash; /* or the first from this call stack; 0: none */
     /* by the library */
-    _Atomic int owner;        /* the process; 0: not started yet */
-    _Atomic long seen;        /* calls of the class */
-    _Atomic int fired;        /* calls that failed */
-    _Atomic long live;        /* allocated blocks */
-    long live_at_end;         /* the same when the process ended by exit */
-    int descriptors_at_end;   /* open descriptors then */
-    int ended;                /* 1: by exit */
-    int frame_count;          /* of the call that failed */
+    _Atomic int owner;           /* the process; 0: not started yet */
+    _Atomic long seen;           /* calls of the class */
+    _Atomic int fired;           /* calls that failed */
+    _Atomic long live;           /* allocated blocks */
+    long live_at_end;            /* the same when the process ended by exit */
+    int descriptors_at_end;      /* open descriptors then */
+    int ended;                   /* 1: by exit */
+    int frame_count;             /* of the call that failed */
     uint64_t frames[FRAMES_MAX]; /* addresses relative to their module */
     char modules[FRAMES_MAX][MODULE_MAX];
     uint64_t fired_hash;

@@ -61,7 +61,8 @@ static _Unwind_Reason_Code add_frame(struct _Unwind_Context *context, void *to)
         s->hash = (s->hash ^ offset) * UINT64_C(0x9e3779b97f4a7c15);
         s->hash ^= s->hash >> 29;
     }
-    return ++s->depth < FRAMES_MAX && (s->keeps || !page->depth || s->depth < page->depth) ? _URC_NO_REASON : _URC_END_OF_STACK;
+    return ++s->depth < FRAMES_MAX && (s->keeps || !page->depth || s->depth < page->depth) ? _URC_NO_REASON
+                                                                                           : _URC_END_OF_STACK;
 }
 
 /* Of the caller's caller. */
@@ -148,6 +149,7 @@ void *aligned_alloc(size_t alignment, size_t size)
     return fails(FAULT_MEMORY) ? none() : counted(__libc_memalign(alignment, size));
 }
 
+void *memalign(size_t, size_t);
 void *memalign(size_t alignment, size_t size)
 {
     return fails(FAULT_MEMORY) ? none() : counted(__libc_memalign(alignment, size));

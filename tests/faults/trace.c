@@ -13,6 +13,7 @@
 #include <string.h>
 #include <sys/prctl.h>
 #include <sys/ptrace.h>
+#include <sys/stat.h>
 #include <sys/syscall.h>
 #include <sys/user.h>
 #include <sys/wait.h>
@@ -92,6 +93,14 @@ static call_group group_of(long number)
     return CALL_GROUPS;
 }
 
+static bool is_file(pid_t thread, int fd)
+{
+    char path[64];
+    struct stat about;
+    snprintf(path, sizeof path, "/proc/%d/fd/%d", (int)thread, fd);
+    return stat(path, &about) == 0 && S_ISREG(about.st_mode);
+}
+
 /* Half of the bytes, at least one. */
 static void shorten(struct user_regs_struct *now)
 {
@@ -117,6 +126,7 @@ static void at_call(pid_t thread, const fault *f, outcome *o, pid_t *program)
     if (o->counted != f->at && !(f->stays && o->fired))
         return;
     o->fired = true;
+    o->must_report |= group == CALL_SYNC && is_file(thread, (int)now.rdi);
     if (f->error == FAULT_SHORT) {
         shorten(&now);
     } else {
