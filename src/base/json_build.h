@@ -7,18 +7,30 @@
 #include <stdbool.h>
 #include <stdlib.h>
 
-/* json_loadb, which reports most failures of memory as wrong syntax. A text is parsed again if it seems wrong, and
- * *no_memory is set if there is still no room for it. */
+/* json_loadb, which does not bear a lack of memory (json_memory.h): sets *no_memory if there is no room for the value. */
 static inline json_t *json_parse(const char *text, size_t size, size_t flags, json_error_t *error, bool *no_memory)
 {
-    json_t *value = json_loadb(text, size, flags, error);
-    *no_memory = false;
-    if (value || (value = json_loadb(text, size, flags, error)))
-        return value;
     void *room = malloc(8 * size + 4096);
-    *no_memory = !room || json_error_code(error) == json_error_out_of_memory;
+    *no_memory = !room;
     free(room);
-    return NULL;
+    json_t *value = room ? json_loadb(text, size, flags, error) : NULL;
+    *no_memory |= room && !value && json_error_code(error) == json_error_out_of_memory;
+    return value;
+}
+
+/* json_dumps into memory that the caller releases with free, whichever functions jansson allocates with; NULL when out of
+ * memory. */
+static inline char *json_text(const json_t *value, size_t flags)
+{
+    const size_t size = json_dumpb(value, NULL, 0, flags);
+    char *text = size ? malloc(size + 1) : NULL;
+    if (text && json_dumpb(value, text, size, flags) != size) {
+        free(text);
+        return NULL;
+    }
+    if (text)
+        text[size] = '\0';
+    return text;
 }
 
 /* Both take the reference of item; NULL: it could not be made. */

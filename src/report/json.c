@@ -43,7 +43,7 @@ static bool write_value(FILE *stream, const json_t *value, int indent);
 static bool write_text(FILE *stream, const char *text)
 {
     json_t *value = json_string(text);
-    char *quoted = value ? json_dumps(value, JSON_ENCODE_ANY) : NULL;
+    char *quoted = value ? json_text(value, JSON_ENCODE_ANY) : NULL;
     json_decref(value);
     if (quoted)
         fputs(quoted, stream);

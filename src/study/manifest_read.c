@@ -46,7 +46,7 @@ status facts_read(const char *path, const char *root, json_t **out, diagnostic *
 status facts_write(const json_t *facts, size_t flags, const char *path, diagnostic *why)
 {
     /* jansson writes reals independently of the locale. */
-    char *text = json_dumps(facts, JSON_INDENT(2) | flags), *line = text ? text_format("%s\n", text) : NULL;
+    char *text = json_text(facts, JSON_INDENT(2) | flags), *line = text ? text_format("%s\n", text) : NULL;
     const status code = line ? file_write(path, line, why) : out_of_memory(why);
     free(line);
     free(text);

@@ -43,7 +43,7 @@ void mask_numbers(char *text)
             continue;
         }
         while (isdigit((unsigned char)*c) || *c == '.' || (*c == 'e' && (c[1] == '-' || c[1] == '+')) ||
-               (*c == '-' && c[-1] == 'e'))
+               ((*c == '-' || *c == '+') && c[-1] == 'e'))
             c++;
         *to++ = '#';
     }

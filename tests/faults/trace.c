@@ -108,6 +108,23 @@ static void shorten(struct user_regs_struct *now)
         now->rdx /= 2;
 }
 
+/* The thread whose call returns the error although it is made, and how often it has stopped since. */
+static pid_t fails_at_end;
+static int stops;
+
+/* The second stop is at the call's end. */
+static void at_end(pid_t thread, int error)
+{
+    struct user_regs_struct now;
+    if (thread != fails_at_end || ++stops < 2)
+        return;
+    if (ptrace(PTRACE_GETREGS, thread, NULL, &now) == 0) {
+        now.rax = (unsigned long long)-(long)error;
+        ptrace(PTRACE_SETREGS, thread, NULL, &now);
+    }
+    fails_at_end = 0;
+}
+
 /* The stop of a thread before one of the calls. program: the process whose calls are counted; 0 until it begins. */
 static void at_call(pid_t thread, const fault *f, outcome *o, pid_t *program)
 {
@@ -127,6 +144,10 @@ static void at_call(pid_t thread, const fault *f, outcome *o, pid_t *program)
         return;
     o->fired = true;
     o->must_report |= group == CALL_SYNC && is_file(thread, (int)now.rdi);
+    if (group == CALL_CLOSE) {
+        fails_at_end = thread; /* the kernel's close releases the descriptor even if it reports an error */
+        return;
+    }
     if (f->error == FAULT_SHORT) {
         shorten(&now);
     } else {
@@ -152,6 +173,8 @@ int trace_until_end(pid_t child, const fault *f, outcome *o)
     int state = 0;
     pid_t program = 0;
     known_count = 0;
+    fails_at_end = 0;
+    stops = 0;
     while (waitpid(child, &state, __WALL) < 0)
         ;
     process_of(child);
@@ -171,8 +194,10 @@ int trace_until_end(pid_t child, const fault *f, outcome *o)
         const int event = state >> 16, number = WSTOPSIG(state);
         if (event == PTRACE_EVENT_SECCOMP)
             at_call(thread, f, o, &program);
+        if (!event && number == SIGTRAP)
+            at_end(thread, f->error);
         const bool quiet = event || number == SIGTRAP || (number == SIGSTOP && is_first_stop(thread));
-        ptrace(PTRACE_CONT, thread, NULL, quiet ? 0L : (long)number);
+        ptrace(thread == fails_at_end ? PTRACE_SYSCALL : PTRACE_CONT, thread, NULL, quiet ? 0L : (long)number);
     }
 }
 
