@@ -221,6 +221,22 @@ $(build)/tests/fuzz_%: tests/fuzz_%.c $(build)/libcuvette.a $(build)/flags
 	@mkdir -p $(@D)
 	$(quiet)$(CC) $(all_cflags) $(pkg_cflags) -Itests -fsanitize=fuzzer -MMD -MP -o $@ $< $(build)/libcuvette.a $(LDFLAGS) $(all_libs)
 
+# Fault injection (tests/faults): a library to preload, the driver, and what it starts besides cuvette.
+fault_tools := $(addprefix $(build)/faults/,preload.so faults engine_user lab_client)
+fault_driver := $(addprefix tests/faults/,faults.c judge.c folder.c run.c trace.c)
+fault_headers := $(wildcard tests/faults/*.h)
+fault_flags = $(filter-out -fsanitize% -fno-sanitize% --coverage -fprofile%,$(all_cflags)) -Itests/faults
+$(build)/faults/preload.so: tests/faults/preload.c
+$(build)/faults/preload.so: private fault_link = -shared -fno-builtin -fvisibility=default
+$(build)/faults/faults: $(fault_driver)
+$(build)/faults/lab_client: tests/faults/lab_client.c
+$(build)/faults/engine_user: tests/faults/engine_user.c $(build)/libcuvette.a
+$(build)/faults/engine_user: private fault_link = $(build)/libcuvette.a $(LDFLAGS) $(all_libs)
+$(fault_tools): $(fault_headers) $(build)/flags
+	$(call say,$(CC) $@)
+	@mkdir -p $(@D)
+	$(quiet)$(CC) $(fault_flags) -Werror -o $@ $(filter tests/%.c,$^) $(fault_link)
+
 $(benches) $(build)/tests/recheck: $(build)/tests/%: tests/%.c $(build)/libcuvette.a $(build)/flags
 	$(call say,$(CC) $<)
 	@mkdir -p $(@D)
@@ -332,7 +348,8 @@ test_scenes := $(if $(LAWS_SCENES),$(LAWS_SCENES),$(if $(RUNNER)$(filter coverag
 
 .PHONY: test
 # Programs that test scripts run.
-tested = $(build)/cuvette $(build)/$(soname) $(build)/engine/libcuvette.a $(build)/tests/bench_mesh $(build)/tests/recheck peers $(power_tools)
+tested = $(build)/cuvette $(build)/$(soname) $(build)/engine/libcuvette.a $(build)/tests/bench_mesh $(build)/tests/recheck peers $(power_tools) \
+  $(if $(filter release,$(config)),$(fault_tools))
 test: $(selected) $(build)/cuvette-import $(if $(only),,$(tested)) ## build and run every test; only=NAME for tests/test_NAME.c alone
 	@LAWS_SCENES='$(test_scenes)' CC='$(CC)' BUILD='$(build)' CONFIG='$(config)' CUVETTE='$(abspath $(build)/cuvette)' CUVETTE_IMPORT='$(abspath $(build)/cuvette-import)' $(kernel_environment) \
 	  tests/run $(selected) $(selected_scripts)
@@ -421,6 +438,15 @@ laws: $(build)/tests/test_laws ## test the laws on a million random scenes
 	  LAWS_SCENES=10000 xargs -P "$$(nproc)" -I SEED tests/faults/run_seed.sh $(build)/tests/test_laws SEED
 law-faults: ## insert known faults into the sources, one at a time: the laws must detect each
 	@tests/faults/laws.sh
+
+# Memory and system calls that fail, in every command, the library and the laboratory: all sites, or those of only=NAME of
+# tests/faults/commands.txt; kinds=memory,write-enospc. `make test` tries a part of them.
+.PHONY: faults fault-checks
+faults: $(build)/cuvette $(build)/cuvette-import $(fault_tools) ## fail every allocation and system call of every command once (an hour); only=NAME for one
+	@BUILD='$(build)' CUVETTE='$(abspath $(build)/cuvette)' FAULTS_EVERY=1 FAULTS_DEPTH=0 FAULTS_ONLY='$(only)' FAULTS_KINDS='$(kinds)' \
+	  bash tests/faults.sh
+fault-checks: $(fault_tools) ## remove checks from the sources, one at a time: the faults must detect each
+	@BUILD='$(abspath $(build))' tests/faults/checks.sh
 
 # Lines of src that the tests run; made by gcc. The counts of an earlier run are dropped. The report is written after tests
 # that fail, too.
@@ -587,7 +613,7 @@ test-deb: ## install the packages of make deb in a fresh Debian 12, use and remo
 
 # For clangd and other tools that parse C: all C files, with the flags of this configuration.
 .PHONY: compiled compile_commands.json
-by_scripts := tests/fail_allocation.c tests/json_get.c $(wildcard tests/power/*.c) $(wildcard experiments/engine/*.c)
+by_scripts := tests/json_get.c $(wildcard experiments/engine/*.c tests/faults/*.c tests/power/*.c)
 compiled: all peers $(mpi_objects) $(test_programs) $(benches) $(build)/tests/recheck $(fuzzers) $(by_scripts:%.c=$(build)/by-scripts/%.o)
 $(build)/by-scripts/%.o: %.c $(build)/flags
 	$(call say,$(CC) $<)

@@ -294,7 +294,7 @@ static void text_is_formatted(void **state)
     free(text);
 }
 
-/* tests/memory.sh tests out of memory. */
+/* tests/faults.sh tests out of memory. */
 static void a_text_writer_returns_the_whole_text(void **state)
 {
     (void)state;

@@ -47,7 +47,7 @@ static void png_of(const scene *s, unsigned char **bytes, size_t *size)
     image *img = NULL;
     shared_texts texts;
     assert_int_equal(image_create(5, 4, &img, NULL), STATUS_OK);
-    shared_texts_make(s, &texts);
+    assert_int_equal(shared_texts_make(s, &texts, NULL), STATUS_OK);
     image_rows rows = image_rows_of(img);
     rows.texts = texts.item;
     rows.text_count = texts.count;
@@ -111,7 +111,7 @@ static void refused(const char *assignment, const char *expected)
     assert_null(text);
     assert_non_null(strstr(why.what, expected));
     shared_texts texts;
-    shared_texts_make(s, &texts);
+    assert_int_equal(shared_texts_make(s, &texts, NULL), STATUS_OK);
     assert_int_equal(texts.count, 1); /* the program alone */
     scene_destroy(s);
 }

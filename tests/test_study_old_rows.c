@@ -528,7 +528,7 @@ static void make_old(const fixture *f, const study *s)
     drop_identities(f, workers_name, definition);
     drop_identities(f, compare_name, reference_definition(s, definition));
     uint64_t files = HASH_START;
-    grid_hash_files(&files, s->base);
+    assert_int_equal(grid_hash_files(&files, s->base, NULL), STATUS_OK);
     char path[400];
     fixture_path(f, manifest_name, path);
     json_t *manifest =

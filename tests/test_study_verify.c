@@ -246,7 +246,7 @@ static run_environment read_system(const fixture *f, isa level)
     char root[400];
     run_environment e;
     fixture_path(f, "root", root);
-    environment_read(root, level, &e);
+    assert_int_equal(environment_read(root, level, &e, NULL), STATUS_OK);
     return e;
 }
 

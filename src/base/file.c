@@ -4,6 +4,7 @@
 
 #include "base/below.h"
 #include "base/cancel.h"
+#include "base/system_error.h"
 #include "base/temporary.h"
 #include "base/text.h"
 #include <errno.h>
@@ -20,31 +21,6 @@ static status no_room(diagnostic *why, const char *path)
 {
     diagnostic_locate(why, path, 0, 0);
     return out_of_memory(why);
-}
-
-const char *file_remedy(int error)
-{
-    switch (error) {
-    case ENOSPC:
-    case EDQUOT: return "free some space or choose another disk";
-    case EFBIG: return "raise the limit on file size";
-    case EIO: return "check the disk or choose another";
-    case EACCES:
-    case EPERM:
-    case EROFS: return "change the permissions or choose another folder";
-    case ENOENT: return "check the path";
-    default: return NULL;
-    }
-}
-
-/* Fills *why with a system error about path. The reason is a text of its own, because strerror is not thread-safe and
- * depends on the locale. */
-static status system_error(diagnostic *why, status code, const char *path, const char *doing, int error)
-{
-    const char *reason = strerrordesc_np(error);
-    if (error == ENOMEM)
-        return no_room(why, path);
-    return diagnose_at(why, path, code, file_remedy(error), "%s: %s", doing, reason ? reason : "unknown error");
 }
 
 /* Reads to the end of the file regardless of the size from fstat: files of /proc report 0. */
@@ -64,7 +40,7 @@ static status read_descriptor(int fd, const char *path, size_t limit, size_t exp
         if (got < 0 && errno == EINTR)
             continue;
         if (got < 0) {
-            status code = system_error(why, STATUS_FAILURE, path, "cannot read", errno);
+            status code = system_error(why, STATUS_FAILURE, path, "cannot read", errno, NULL);
             free(buffer);
             return code;
         }
@@ -103,14 +79,12 @@ status file_read_below(const char *path, const char *root, size_t limit, char **
     int fd = below_open(path, root);
     if (fd < 0 && errno == EXDEV)
         return diagnose_at(why, path, STATUS_BAD_INPUT, BELOW_REMEDY, BELOW_WHAT);
-    if (fd < 0) {
-        bool ours = errno == EMFILE || errno == ENFILE || errno == ENOMEM || errno == EIO;
-        return system_error(why, ours ? STATUS_FAILURE : STATUS_BAD_INPUT, path, "cannot open", errno);
-    }
+    if (fd < 0)
+        return system_error(why, STATUS_BAD_INPUT, path, "cannot open", errno, NULL);
     struct stat about;
     status code;
     if (fstat(fd, &about) != 0) {
-        code = system_error(why, STATUS_FAILURE, path, "cannot read", errno);
+        code = system_error(why, STATUS_FAILURE, path, "cannot read", errno, NULL);
     } else if (!S_ISREG(about.st_mode)) {
         code = diagnose_at(why, path, STATUS_BAD_INPUT, "name a file", "%s",
                            S_ISDIR(about.st_mode) ? "is a folder" : "is not a regular file");
@@ -221,7 +195,7 @@ status file_writer_open(file_writer *writer, const char *path, diagnostic *why)
         remove_temporary(writer);
     }
     release(writer);
-    return system_error(why, STATUS_FAILURE, path, "cannot write", error);
+    return system_error(why, STATUS_FAILURE, path, "cannot write", error, NULL);
 }
 
 void file_flush_folder(const char *path)
@@ -272,7 +246,7 @@ status file_writer_commit(file_writer *writer, diagnostic *why)
     }
     status code = STATUS_OK;
     if (failed && error)
-        code = system_error(why, STATUS_FAILURE, writer->path, "cannot write", error);
+        code = system_error(why, STATUS_FAILURE, writer->path, "cannot write", error, NULL);
     else if (failed)
         code = diagnose_at(why, writer->path, STATUS_FAILURE, "check the free space on the disk",
                            "cannot write: a write failed");
@@ -342,5 +316,5 @@ status file_make_directory(const char *path, diagnostic *why)
     if (!error)
         error = make_one_directory(part, true);
     free(part);
-    return error ? system_error(why, STATUS_FAILURE, path, "cannot make the folder", error) : STATUS_OK;
+    return error ? system_error(why, STATUS_FAILURE, path, "cannot make the folder", error, NULL) : STATUS_OK;
 }

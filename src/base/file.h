@@ -7,9 +7,6 @@
 #include <stdbool.h>
 #include <stdio.h>
 
-/* What to do about a system error (errno) in reading or writing a file; NULL if there is no useful advice. */
-const char *file_remedy(int error);
-
 /* Reads a regular file of at most limit bytes; *text is its bytes and a final 0, which *size does not count. */
 status file_read(const char *path, size_t limit, char **text, size_t *size, diagnostic *why);
 /* The same for a file below root (base/below.h); STATUS_BAD_INPUT for a file outside. */

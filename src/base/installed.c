@@ -5,6 +5,7 @@
 #include "base/os_process.h"
 #include "base/text.h"
 #include <dlfcn.h>
+#include <errno.h>
 #include <stdbool.h>
 #include <stdio.h>
 #include <stdlib.h>
@@ -18,11 +19,14 @@ static char *find_near(const char *file, const char *const *places, size_t count
     const char *slash = strrchr(file, '/');
     for (size_t i = 0; slash && i < count; i++) {
         char *path = text_format("%.*s%s/%s", (int)(slash - file), file, places[i], name);
+        if (!path)
+            errno = ENOMEM;
         char *real = path ? realpath(path, NULL) : NULL;
-        free(path);
-        if (real)
+        free(path); /* keeps errno */
+        if (real || errno == ENOMEM)
             return real;
     }
+    errno = ENOENT;
     return NULL;
 }
 
@@ -30,8 +34,9 @@ char *installed_find(const char *const *places, size_t count, const char *name)
 {
     char program[PATH_MAX];
     Dl_info library;
+    errno = ENOENT;
     char *found = os_program_path(program) ? find_near(program, places, count, name) : NULL;
-    if (found || !dladdr(&here, &library) || !library.dli_fname)
+    if (found || errno == ENOMEM || !dladdr(&here, &library) || !library.dli_fname)
         return found;
     char *file = realpath(library.dli_fname, NULL);
     found = file ? find_near(file, places, count, name) : NULL;

@@ -20,11 +20,8 @@ bool os_program_path(char path[PATH_MAX])
 int os_usable_units(void)
 {
     enum { UNITS_MAX = 16384 };
-    cpu_set_t *set = CPU_ALLOC(UNITS_MAX);
-    const size_t size = CPU_ALLOC_SIZE(UNITS_MAX);
-    const int count = set && sched_getaffinity(0, size, set) == 0 ? CPU_COUNT_S(size, set) : 0;
-    CPU_FREE(set);
-    return count;
+    cpu_set_t set[UNITS_MAX / CPU_SETSIZE];
+    return sched_getaffinity(0, sizeof set, set) == 0 ? CPU_COUNT_S(sizeof set, set) : 0;
 }
 
 void os_signals_as_errors(void)

@@ -66,7 +66,7 @@ status diagnose(diagnostic *why, status code, const char *remedy, const char *wh
 
 status out_of_memory(diagnostic *why)
 {
-    return diagnose(why, STATUS_FAILURE, "", "out of memory");
+    return diagnose(why, STATUS_FAILURE, MEMORY_REMEDY, "out of memory");
 }
 
 void diagnostic_locate(diagnostic *why, const char *file, long line, long column)

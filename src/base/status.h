@@ -40,8 +40,9 @@ status diagnose(diagnostic *why, status code, const char *remedy, const char *wh
 /* For steps with clean-up: makes the call if all succeeded so far, and stores its status. */
 #define THEN(code, call) ((void)((code) == STATUS_OK ? ((code) = (call)) : STATUS_OK))
 
-/* STATUS_FAILURE with the common text for out of memory. */
+/* STATUS_FAILURE with the common text for out of memory; and the remedy, for those that say for what. */
 status out_of_memory(diagnostic *why);
+#define MEMORY_REMEDY "close other programs, or use a smaller scene or image"
 
 /* Sets the position of the error. file may be NULL; line and column from 1, 0 for none. */
 void diagnostic_locate(diagnostic *why, const char *file, long line, long column);

@@ -66,7 +66,7 @@ status animate_define(const animate_request *request, const scene *s, animate_de
         return out_of_memory(why);
     hash_parameters(&out->hash, out->parameters);
     hash_solids(&out->hash, s);
-    grid_hash_files(&out->hash, s);
+    TRY(grid_hash_files(&out->hash, s, why));
     out->hash = hash_finish(out->hash);
     return STATUS_OK;
 }

@@ -1,5 +1,6 @@
 /* Checks of the folder of an animation: its own frames, frames of other animations, and files that the scene reads. */
 #include "cli/animate.h"
+#include "base/system_error.h"
 #include "base/file.h"
 #include "base/text.h"
 #include "cli/outputs.h"
@@ -29,8 +30,7 @@ static status open_folder(const animate_names *names, DIR **out, diagnostic *why
     *out = opendir(names->folder);
     if (*out || errno == ENOENT)
         return STATUS_OK;
-    return diagnose_at(why, names->folder, STATUS_FAILURE, "make the folder readable", "cannot be listed: %s",
-                       strerrordesc_np(errno));
+    return system_error(why, STATUS_FAILURE, names->folder, "cannot be listed", errno, "make the folder readable");
 }
 
 static bool is_folder(DIR *in, const char *name)
@@ -111,7 +111,7 @@ status animate_folder_clear(const animate_names *names, diagnostic *why)
         char what[96];
         const int error = errno;
         snprintf(what, sizeof what, "cannot be removed: %s", strerrordesc_np(error));
-        refuse(names, entry->d_name, file_remedy(error), what, why);
+        refuse(names, entry->d_name, system_remedy(error), what, why);
         result = STATUS_FAILURE;
     }
     if (folder) {

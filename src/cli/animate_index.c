@@ -1,6 +1,7 @@
 /* The progress index of an animation: PATTERN.json next to its frames. */
 #include "cli/animate.h"
 #include "base/file.h"
+#include "base/json_build.h"
 #include "cli/outputs.h"
 #include "base/text.h"
 #include "report/json.h"
@@ -77,9 +78,14 @@ static json_t *load(const char *path, status *result, diagnostic *why)
 {
     char *text = NULL;
     size_t size;
+    json_error_t error;
+    bool no_memory = false;
     *result = file_read(path, INDEX_BYTES_MAX, &text, &size, why);
-    json_t *progress_index = *result == STATUS_OK ? json_loadb(text, size, JSON_REJECT_DUPLICATES, NULL) : NULL;
+    json_t *progress_index =
+        *result == STATUS_OK ? json_parse(text, size, JSON_REJECT_DUPLICATES, &error, &no_memory) : NULL;
     free(text);
+    if (no_memory)
+        *result = out_of_memory(why);
     return progress_index;
 }
 

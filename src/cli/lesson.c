@@ -1,5 +1,6 @@
 /* `cuvette lesson`: lists the lessons of the laboratory's gallery, checks them without a browser, and prints one with
  * its measured curve. */
+#include "base/json_build.h"
 #include "cli/cli.h"
 #include "cli/options.h"
 #include "cli/scene_input.h"
@@ -76,7 +77,7 @@ static status print_lesson(const lesson *l, isa level, diagnostic *why)
     status code = r ? lesson_measure(l, l->start, level, r, why) : out_of_memory(why);
     json_t *all = code == STATUS_OK ? lesson_json(l) : NULL;
     if (all)
-        json_object_set_new(all, "result", lesson_result_json(l, r));
+        json_add_as(&all, "result", lesson_result_json(l, r));
     free(r);
     return code == STATUS_OK ? json_print(all, why) : code;
 }

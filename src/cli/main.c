@@ -1,4 +1,5 @@
 /* The entry point of `cuvette`: the table of commands, --version, and the exit code. */
+#include "base/json_memory.h"
 #include "base/float_environment.h"
 #include "base/os_process.h"
 #include "base/build_id.h"
@@ -100,6 +101,7 @@ int main(int argc, char **argv)
     if (!spawn_follow_parent())
         return STATUS_FAILURE;
     float_environment_set(); /* the start-up code of a library may have changed it */
+    json_memory_reserve();
     terminal_prepare();
     argp_err_exit_status = STATUS_BAD_INPUT;
     argp_program_version_hook = print_version;

@@ -179,7 +179,9 @@ static status apply_named(scene *s, const scene_edit *edit, const char *text, di
 {
     const char *equals = strchr(text, '=');
     char *name = equals ? strndup(text, (size_t)(equals - text)) : NULL;
-    const status result = name ? edit->apply(s, edit, name, equals + 1, why) : malformed(edit, text, why);
+    const status result = name     ? edit->apply(s, edit, name, equals + 1, why)
+                          : equals ? out_of_memory(why)
+                                   : malformed(edit, text, why);
     free(name);
     return result;
 }

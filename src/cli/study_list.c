@@ -1,6 +1,7 @@
 /* `cuvette study list`: the studies of a folder and the scenes below it. */
 #include "cli/study_commands.h"
 
+#include "base/system_error.h"
 #include "base/installed.h"
 #include "base/text.h"
 #include "cli/cli.h"
@@ -55,12 +56,14 @@ static status print_all(const char *folder, const listed_kind *kind, struct dire
         diagnostic error = {.line = 0};
         const status listed = path ? kind->print(path, &error) : out_of_memory(&error);
         free(path);
-        if (listed != STATUS_OK) {
-            if (result != STATUS_OK)
-                terminal_error(why);
-            result = listed;
-            *why = error;
-        }
+        if (listed == STATUS_OK)
+            continue;
+        if (result != STATUS_OK)
+            terminal_error(why);
+        result = listed;
+        *why = error;
+        if (listed == STATUS_FAILURE) /* of the machine, not of this file */
+            break;
     }
     return result;
 }
@@ -70,8 +73,8 @@ static status list_folder(const char *folder, const listed_kind *kind, diagnosti
     struct dirent **entries = NULL;
     const int count = scandir(folder, &entries, NULL, by_name);
     if (count < 0)
-        return options_wrong(folder, NULL, why, "give a folder with *.study files", "cannot list the folder: %s",
-                             strerrordesc_np(errno));
+        return system_error(why, STATUS_BAD_INPUT, folder, "cannot list the folder", errno,
+                            "give a folder with *.study files");
     const status result = print_all(folder, kind, entries, count, why);
     for (int i = 0; i < count; i++)
         free(entries[i]);

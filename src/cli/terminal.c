@@ -3,6 +3,8 @@
 #include "base/cancel.h"
 #include "base/number.h"
 #include "base/os_process.h"
+#include "base/system_error.h"
+#include "cli/standard_output.h"
 #include "measure/clock.h"
 #include <errno.h>
 #include <fcntl.h>
@@ -57,12 +59,13 @@ status terminal_flush(diagnostic *why)
     errno = 0;
     if (fflush(stdout) == 0 && !failed_before)
         return STATUS_OK;
-    int error = errno ? errno : EIO;
+    const int first = standard_output_error();
+    int error = first ? first : errno ? errno : ENOMEM; /* without a write that failed, printf had no memory */
     __fpurge(stdout);
     clearerr(stdout); /* report the error once */
     if (error == EPIPE || reader_left())
         return STATUS_FAILURE;
-    return diagnose(why, STATUS_FAILURE, "", "cannot write to standard output: %s", strerror(error));
+    return system_error(why, STATUS_FAILURE, NULL, "cannot write to standard output", error, "write to a file with -o");
 }
 
 /* For exits through exit(), such as argp's --help. */
@@ -80,6 +83,7 @@ static void check_stdout_at_exit(void)
 void terminal_prepare(void)
 {
     hold_standard_descriptors();
+    standard_output_prepare();
     struct sigaction action = {.sa_handler = request_stop, .sa_flags = (int)SA_RESETHAND};
     sigemptyset(&action.sa_mask);
     sigaction(SIGINT, &action, NULL);

@@ -115,6 +115,6 @@ status canvas_hand_out(canvas *c, diagnostic *why)
     for (size_t i = 0; i < count; i++)
         canvas_hand_piece(c, &pieces[i]);
     free(pieces);
-    return out_of_memory ? diagnose(why, STATUS_FAILURE, "", "out of memory for the list of finished pieces")
+    return out_of_memory ? diagnose(why, STATUS_FAILURE, MEMORY_REMEDY, "out of memory for the list of finished pieces")
                          : STATUS_OK;
 }

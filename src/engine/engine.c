@@ -173,7 +173,7 @@ static status render_frame(stage *now, const scene *s, cuvette_frame *frame, dia
     else if (img && !r->piece)
         canvas_fill(&now->buffers, img, 0, 0, img->width, img->height, 1);
     if (code == STATUS_OK && now->noted != STATUS_OK)
-        code = diagnose(why, now->noted, "", "out of memory for the list of finished pieces");
+        code = diagnose(why, now->noted, MEMORY_REMEDY, "out of memory for the list of finished pieces");
     if (code == STATUS_OK)
         report_share(now, 1.0);
     return code;

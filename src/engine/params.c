@@ -203,5 +203,5 @@ cuvette_status cuvette_scene_each_parameter(const cuvette_scene *s,
     const status code = scene_each_param(s->model, visit_one, &v);
     if (code == STATUS_OK || code == STATUS_INTERRUPTED)
         return CUVETTE_OK;
-    return engine_report(diagnose(&inner, code, "", "out of memory"), &inner, why);
+    return engine_report(diagnose(&inner, code, MEMORY_REMEDY, "out of memory"), &inner, why);
 }

@@ -91,7 +91,7 @@ status image_compare(const image *a, const image *b, image_comparison *out, diag
                             "a comparison of images of %d x %d pixels", a->width, a->height));
     double *first = malloc(count * sizeof *first), *second = malloc(count * sizeof *second);
     if (!first || !second) {
-        code = diagnose(why, STATUS_FAILURE, NULL, "out of memory for the comparison");
+        code = diagnose(why, STATUS_FAILURE, MEMORY_REMEDY, "out of memory for the comparison");
     } else {
         *out = (image_comparison){0};
         compare_pixels(a, b, first, second, out);

@@ -36,7 +36,7 @@ static status lay_out_planes(work_planes *d, const image *img, diagnostic *why)
     d->count = (size_t)d->width * (size_t)d->height;
     d->memory = calloc(d->count, PLANES * sizeof *d->memory);
     if (!d->memory)
-        return diagnose(why, STATUS_FAILURE, NULL, "out of memory for the FLIP error");
+        return diagnose(why, STATUS_FAILURE, MEMORY_REMEDY, "out of memory for the FLIP error");
     double *next = d->memory;
     for (int i = 0; i < SEEN; i++, next += 2 * d->count) {
         d->a.plane[i] = next;

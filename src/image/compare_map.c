@@ -22,7 +22,7 @@ status image_compare_map(const image *a, const image *b, image **map, diagnostic
     size_t count = (size_t)a->width * (size_t)a->height;
     double *errors = malloc(count * sizeof *errors);
     status code = errors ? image_create(a->width, a->height, &img, why)
-                         : diagnose(why, STATUS_FAILURE, NULL, "out of memory for the map of errors");
+                         : diagnose(why, STATUS_FAILURE, MEMORY_REMEDY, "out of memory for the map of errors");
     THEN(code, compare_flip(a, b, errors, why));
     for (size_t i = 0; code == STATUS_OK && i < count; i++)
         magma(errors[i], img->pixel + 3 * i);

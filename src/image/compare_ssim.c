@@ -44,7 +44,7 @@ status compare_ssim(const double *a, const double *b, int width, int height, dou
     statistics s = {.width = width, .height = height, .count = (size_t)width * (size_t)height};
     double *planes = calloc(s.count, (SUMS + 2) * sizeof *planes);
     if (!planes)
-        return diagnose(why, STATUS_FAILURE, NULL, "out of memory for the structural similarity");
+        return diagnose(why, STATUS_FAILURE, MEMORY_REMEDY, "out of memory for the structural similarity");
     for (int sum = 0; sum < SUMS; sum++)
         s.sums[sum] = planes + (size_t)sum * s.count;
     s.terms = planes + SUMS * s.count;

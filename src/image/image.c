@@ -28,7 +28,8 @@ status image_create(int width, int height, image **out, diagnostic *why)
     if (!img || !pixel) {
         free(img);
         free(pixel);
-        return diagnose(why, STATUS_FAILURE, NULL, "out of memory for an image of %d x %d pixels", width, height);
+        return diagnose(why, STATUS_FAILURE, MEMORY_REMEDY, "out of memory for an image of %d x %d pixels", width,
+                        height);
     }
     *img = (image){.width = width, .height = height, .pixel = pixel, .owners = 1};
     *out = img;

@@ -3,6 +3,9 @@
 #include "base/cancel.h"
 #include "image/codec.h"
 
+#include "base/system_error.h"
+
+#include <errno.h>
 #include <jpeglib.h>
 #include <jerror.h>
 #include <setjmp.h>
@@ -52,6 +55,11 @@ static void leave_if_cancelled(j_common_ptr cinfo)
 {
     if (cancel_asked())
         longjmp(((jpeg_job *)cinfo->err)->escape, 1);
+}
+
+static bool no_memory(const jpeg_job *job)
+{
+    return job->errors.msg_code == JERR_OUT_OF_MEMORY;
 }
 
 static void prepare(jpeg_job *job)
@@ -115,12 +123,15 @@ status codec_jpeg_write(const image_rows *rows, FILE *stream, bool fast, diagnos
     job.row = malloc((size_t)rows->width * 3);
     job.rgb = malloc((size_t)rows->width * 3 * sizeof *job.rgb);
     if (!job.row || !job.rgb)
-        diagnose(why, code, NULL, "out of memory");
-    else if (!write_guarded(&job, &cinfo, rows, fast, stream))
-        code = cancel_asked() ? cancel_check(why)
-                              : diagnose(why, code, NULL, "cannot write the JPEG file: %s", job.message);
-    else
+        out_of_memory(why);
+    else if (write_guarded(&job, &cinfo, rows, fast, stream))
         code = STATUS_OK;
+    else if (cancel_asked())
+        code = cancel_check(why);
+    else if (no_memory(&job))
+        out_of_memory(why);
+    else
+        system_error(why, code, NULL, "cannot write the JPEG file", errno, "write a PNG instead");
     jpeg_destroy_compress(&cinfo);
     free(job.row);
     free(job.rgb);
@@ -187,9 +198,10 @@ static void read_guarded(jpeg_job *job, j_decompress_ptr cinfo, const unsigned c
         job->code = cancel_check(job->why);
         if (job->code != STATUS_OK)
             return;
-        bool memory = job->errors.msg_code == JERR_OUT_OF_MEMORY;
-        job->code = diagnose(job->why, memory ? STATUS_FAILURE : STATUS_BAD_INPUT, NULL, "%s%s",
-                             memory ? "" : "the JPEG file is damaged: ", job->message);
+        job->code = no_memory(job)
+                        ? out_of_memory(job->why)
+                        : diagnose(job->why, STATUS_BAD_INPUT, "copy the file again, or save it again as JPEG",
+                                   "the JPEG file is damaged: %s", job->message);
         return;
     }
     if (read_rows(job, cinfo, bytes, size))

@@ -2,12 +2,17 @@
 #include "image/png_library.h"
 #include "image/image.h"
 
+#include "base/system_error.h"
+
+#include <errno.h>
 #include <stdio.h>
+#include <stdlib.h>
 #include <string.h>
 
 void png_library_error(png_structp png, png_const_charp message)
 {
     png_library *of = png_get_error_ptr(png);
+    of->error = errno;
     snprintf(of->message, sizeof of->message, "%s", message);
     png_longjmp(png, 1);
 }
@@ -16,6 +21,50 @@ void png_library_warning(png_structp png, png_const_charp message)
 {
     (void)png;
     (void)message;
+}
+
+static png_voidp take_memory(png_structp png, png_alloc_size_t size)
+{
+    png_library *of = png_get_mem_ptr(png);
+    void *memory = malloc(size);
+    of->no_memory |= !memory;
+    return memory;
+}
+
+static void give_memory(png_structp png, png_voidp memory)
+{
+    (void)png;
+    free(memory);
+}
+
+bool png_library_read(png_library *of)
+{
+    of->png = png_create_read_struct_2(PNG_LIBPNG_VER_STRING, of, png_library_error, png_library_warning, of,
+                                       take_memory, give_memory);
+    of->info = of->png ? png_create_info_struct(of->png) : NULL;
+    return of->info;
+}
+
+bool png_library_write(png_library *of)
+{
+    of->png = png_create_write_struct_2(PNG_LIBPNG_VER_STRING, of, png_library_error, png_library_warning, of,
+                                        take_memory, give_memory);
+    of->info = of->png ? png_create_info_struct(of->png) : NULL;
+    return of->info;
+}
+
+status png_library_unwritten(const png_library *of, diagnostic *why)
+{
+    return of->no_memory ? out_of_memory(why)
+                         : system_error(why, STATUS_FAILURE, NULL, "cannot write the PNG file", of->error,
+                                        "write a PFM file instead");
+}
+
+status png_library_failed(const png_library *of, diagnostic *why)
+{
+    return of->no_memory ? out_of_memory(why)
+                         : diagnose(why, STATUS_BAD_INPUT, "copy the file again, or save it again as PNG",
+                                    "the PNG file is damaged: %s", of->message);
 }
 
 static void take_bytes(png_structp png, png_bytep to, size_t count)

@@ -2,7 +2,10 @@
  * the bytes come from memory. A job starts with a png_library, which is the pointer that libpng hands back. */
 #pragma once
 
+#include "base/status.h"
+
 #include <png.h>
+#include <stdbool.h>
 
 typedef struct png_library {
     png_structp png;
@@ -10,7 +13,16 @@ typedef struct png_library {
     char message[256];          /* of libpng's error */
     const unsigned char *bytes; /* of a file that is read */
     size_t size, used;
+    int error;      /* errno when libpng ended */
+    bool no_memory; /* an allocation of libpng or zlib failed, which is reported like damage */
 } png_library;
+
+/* Creates png and info of a job for reading, or for writing; false: out of memory. */
+bool png_library_read(png_library *of);
+bool png_library_write(png_library *of);
+/* The status of a read, and of a write, that ended with an error of libpng. */
+status png_library_failed(const png_library *of, diagnostic *why);
+status png_library_unwritten(const png_library *of, diagnostic *why);
 
 void png_library_error(png_structp png, png_const_charp message) __attribute__((noreturn));
 void png_library_warning(png_structp png, png_const_charp message);

@@ -98,7 +98,7 @@ static bool read_rows(png_job *job)
 static void read_guarded(png_job *job)
 {
     if (setjmp(png_jmpbuf(job->of.png))) {
-        job->code = diagnose(job->why, STATUS_BAD_INPUT, NULL, "the PNG file is damaged: %s", job->of.message);
+        job->code = png_library_failed(&job->of, job->why);
         return;
     }
     if (read_rows(job))
@@ -109,9 +109,7 @@ status codec_png_read(const unsigned char *bytes, size_t size, image **out, int 
 {
     png_job job = {.of = {.bytes = bytes, .size = size}, .why = why, .code = STATUS_FAILURE};
     *out = NULL;
-    job.of.png = png_create_read_struct(PNG_LIBPNG_VER_STRING, &job, png_library_error, png_library_warning);
-    job.of.info = job.of.png ? png_create_info_struct(job.of.png) : NULL;
-    if (!job.of.info)
+    if (!png_library_read(&job.of))
         out_of_memory(why);
     else
         read_guarded(&job);

@@ -30,12 +30,10 @@ status image_png_text(const void *bytes, size_t size, const char *keyword, size_
     png_library job = {.bytes = bytes, .size = size};
     status code = STATUS_OK;
     *text = NULL;
-    job.png = png_create_read_struct(PNG_LIBPNG_VER_STRING, &job, png_library_error, png_library_warning);
-    job.info = job.png ? png_create_info_struct(job.png) : NULL;
-    if (!job.info) {
+    if (!png_library_read(&job)) {
         code = out_of_memory(why);
     } else if (!read_guarded(&job, limit)) {
-        code = diagnose(why, STATUS_BAD_INPUT, NULL, "the PNG file is damaged: %s", job.message);
+        code = png_library_failed(&job, why);
     } else {
         const char *found = find(&job, keyword, limit);
         if (found && !(*text = strdup(found)))

@@ -61,13 +61,10 @@ status codec_png_write(const image_rows *rows, FILE *stream, int bits, bool fast
     status code = png_bands_create(rows, bits, fast, &job.bands, why);
     if (code != STATUS_OK)
         return code;
-    job.of.png = png_create_write_struct(PNG_LIBPNG_VER_STRING, &job, png_library_error, png_library_warning);
-    job.of.info = job.of.png ? png_create_info_struct(job.of.png) : NULL;
-    if (!job.of.info)
+    if (!png_library_write(&job.of))
         code = out_of_memory(why);
     else if (!write_guarded(&job, stream))
-        code = cancel_asked() ? cancel_check(why)
-                              : diagnose(why, STATUS_FAILURE, NULL, "cannot write the PNG file: %s", job.of.message);
+        code = cancel_asked() ? cancel_check(why) : png_library_unwritten(&job.of, why);
     png_destroy_write_struct(&job.of.png, &job.of.info);
     png_bands_destroy(job.bands);
     return code;

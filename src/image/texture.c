@@ -95,7 +95,7 @@ status texture_create(const image *img, texture_space space, texture_wrap wrap_u
                             why, "a texture of %d x %d texels", img->width, img->height));
     texture *t = texture_allocate(img->width, img->height, wrap_u, wrap_v, filter);
     if (!t)
-        return diagnose(why, STATUS_FAILURE, NULL, "out of memory for a texture of %d x %d texels", img->width,
+        return diagnose(why, STATUS_FAILURE, MEMORY_REMEDY, "out of memory for a texture of %d x %d texels", img->width,
                         img->height);
     copy_pixels(t, img, space == TEXTURE_LINEAR ? img->coded_bits : 0);
     texture_build_pyramid(t);

@@ -97,7 +97,7 @@ status y4m_frame(FILE *stream, const image *img, diagnostic *why)
     planes p = {.wide = wide, .high = high, .chroma_wide = (wide + 1) / 2, .chroma_high = (high + 1) / 2};
     p.rgb = malloc(3 * wide * high + plane_bytes(&p));
     if (!p.rgb)
-        return diagnose(why, STATUS_FAILURE, NULL, "out of memory for a frame of %d x %d pixels", img->width,
+        return diagnose(why, STATUS_FAILURE, MEMORY_REMEDY, "out of memory for a frame of %d x %d pixels", img->width,
                         img->height);
     p.y = p.rgb + 3 * wide * high;
     p.cb = p.y + wide * high;

@@ -1,6 +1,7 @@
 /* Where lessons are. */
 #include "lesson/lesson.h"
 
+#include "base/system_error.h"
 #include "base/grow.h"
 #include "base/installed.h"
 #include "base/text.h"
@@ -30,7 +31,7 @@ status lesson_list_find(const char *folder, lesson_list *out, diagnostic *why)
     *out = (lesson_list){.path = NULL};
     DIR *d = opendir(folder);
     if (!d)
-        return diagnose_at(why, folder, STATUS_BAD_INPUT, "give a folder with lessons", "%s", strerror(errno));
+        return system_error(why, STATUS_BAD_INPUT, folder, "cannot be listed", errno, "give a folder with lessons");
     status code = STATUS_OK;
     for (const struct dirent *e; code == STATUS_OK && (e = readdir(d));) {
         if (!is_lesson(e->d_name))

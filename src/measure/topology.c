@@ -1,126 +1,112 @@
-/* Placement of threads on processing units through hwloc. */
+/* Counts of a topology and placement of threads on its processing units. */
 #include "measure/topology.h"
 
-#include "base/grow.h"
 #include "measure/topology_private.h"
 
 #include <errno.h>
-#include <limits.h>
 #include <sched.h>
 #include <stdbool.h>
 #include <stdlib.h>
 #include <string.h>
+#include <unistd.h>
+
+/* ---- the tree ---- */
+
+static int count_kind(const topology *machine, char kind)
+{
+    int count = 0;
+    for (int i = 0; i < machine->count; i++)
+        count += machine->nodes[i].kind == kind;
+    return count;
+}
+
+enum { ANY_ROUND = -1 };
+
+static bool is_unit(const topology_node *node, int round)
+{
+    return node->kind == 'u' && (round == ANY_ROUND || node->round == round);
+}
+
+/* The units of a round below a node. */
+static int weight(const topology *machine, int node, int round)
+{
+    int units = 0;
+    for (int i = node; i < machine->nodes[node].end; i++)
+        units += is_unit(&machine->nodes[i], round);
+    return units;
+}
+
+/* The OS index of the n-th unit of a round below a node; -1: none. */
+static int unit_below(const topology *machine, int node, int round, int n)
+{
+    for (int i = node; i < machine->nodes[node].end; i++)
+        if (is_unit(&machine->nodes[i], round) && n-- == 0)
+            return machine->nodes[i].unit;
+    return -1;
+}
+
+/* Drops the units that are not in the set, and nodes without units. False, without a change, if none remains. */
+static bool keep_units(topology *machine, const cpu_set_t *set, size_t size)
+{
+    int kept = 0, units = 0;
+    for (int i = 0; i < machine->count; i++)
+        units += machine->nodes[i].kind == 'u' && CPU_ISSET_S((size_t)machine->nodes[i].unit, size, set);
+    if (units == 0)
+        return false;
+    for (int i = 0; i < machine->count; i++) {
+        bool wanted = false;
+        for (int j = i; j < machine->nodes[i].end && !wanted; j++)
+            wanted = machine->nodes[j].kind == 'u' && CPU_ISSET_S((size_t)machine->nodes[j].unit, size, set);
+        if (wanted)
+            machine->nodes[kept++] = machine->nodes[i];
+    }
+    machine->count = kept;
+    topology_complete(machine);
+    return true;
+}
+
+/* ---- creation ---- */
+
+enum { UNITS_MAX = 1 << 16 };
 
 static status no_room(diagnostic *why)
 {
-    return diagnose(why, STATUS_FAILURE, "", "out of memory for the topology of the machine");
+    return diagnose(why, STATUS_FAILURE, "close other programs", "out of memory for the topology of the machine");
 }
 
-static int units_of(hwloc_topology_t tree)
+/* hwloc failed: each unit that this process may use is taken for a core, and all for one package. */
+static status assume(topology *machine, diagnostic *why)
 {
-    return hwloc_get_nbobjs_by_type(tree, HWLOC_OBJ_PU);
+    const size_t size = CPU_ALLOC_SIZE(UNITS_MAX);
+    cpu_set_t *own = CPU_ALLOC(UNITS_MAX);
+    const bool known = own && sched_getaffinity(0, size, own) == 0;
+    bool good = topology_add(machine, 0, 'p', -1);
+    for (int i = 0; good && i < UNITS_MAX; i++)
+        if (known ? CPU_ISSET_S((size_t)i, size, own) : i == 0)
+            good = topology_add(machine, 1, 'c', -1) && topology_add(machine, 2, 'u', i);
+    CPU_FREE(own);
+    const long installed = sysconf(_SC_NPROCESSORS_CONF);
+    machine->installed = installed > 0 && installed < UNITS_MAX ? (int)installed : 1;
+    machine->assumed = true;
+    topology_complete(machine);
+    return good ? STATUS_OK : no_room(why);
 }
 
-/* Cores, or units if the machine does not report cores. */
-static hwloc_obj_type_t core_type(hwloc_topology_t tree)
+static status fill(topology *machine, const char *synthetic, diagnostic *why)
 {
-    return hwloc_get_nbobjs_by_type(tree, HWLOC_OBJ_CORE) > 0 ? HWLOC_OBJ_CORE : HWLOC_OBJ_PU;
-}
-
-/* Sets `set` to the r-th unit (from 0) of every core that has more than r units; to the empty set if no core has. */
-static void units_of_round(hwloc_topology_t tree, int r, hwloc_bitmap_t set)
-{
-    hwloc_obj_type_t type = core_type(tree);
-    hwloc_bitmap_zero(set);
-    for (int i = 0; i < hwloc_get_nbobjs_by_type(tree, type); i++) {
-        hwloc_obj_t core = hwloc_get_obj_by_type(tree, type, (unsigned)i);
-        hwloc_obj_t pu = hwloc_get_obj_inside_cpuset_by_type(tree, core->cpuset, HWLOC_OBJ_PU, (unsigned)r);
-        if (pu)
-            hwloc_bitmap_set(set, pu->os_index);
+    status code;
+    char *text = topology_ask(synthetic, &code);
+    if (text) {
+        code = topology_read(machine, text, why);
+        free(text);
+        return code;
     }
-}
-
-static int restrict_tree(hwloc_topology_t tree, hwloc_const_bitmap_t set)
-{
-    if (hwloc_topology_restrict(tree, set, 0) != 0)
-        return -1;
-    return hwloc_topology_refresh(tree); /* so that several threads may read the tree */
-}
-
-static void drop_rounds(topology *machine)
-{
-    for (int r = 0; r < machine->rounds; r++)
-        hwloc_topology_destroy(machine->round[r]);
-    free(machine->round);
-    machine->round = NULL;
-    machine->rounds = 0;
-}
-
-static bool add_round(topology *machine, hwloc_const_bitmap_t set)
-{
-    if (!room_for_one(&machine->round, (size_t)machine->rounds, sizeof *machine->round) ||
-        hwloc_topology_dup(&machine->round[machine->rounds], machine->tree) != 0)
-        return false;
-    return restrict_tree(machine->round[machine->rounds++], set) == 0;
-}
-
-static bool make_rounds(topology *machine)
-{
-    drop_rounds(machine);
-    hwloc_bitmap_t set = hwloc_bitmap_alloc();
-    bool good = set != NULL;
-    while (good) {
-        units_of_round(machine->tree, machine->rounds, set);
-        if (hwloc_bitmap_iszero(set))
-            break;
-        good = add_round(machine, set);
-    }
-    hwloc_bitmap_free(set);
-    return good;
-}
-
-/* Removes private data: the tree's XML goes into published manifests, which describe the hardware but must not identify
- * its owner. */
-static void forget_owner(hwloc_topology_t tree)
-{
-    static const char *const private_infos[] = {"HostName", "Serial", "UUID", "AssetTag"};
-    hwloc_obj_t root = hwloc_get_root_obj(tree);
-    for (unsigned i = 0; i < root->infos_count; i++)
-        for (size_t p = 0; p < sizeof private_infos / sizeof private_infos[0]; p++)
-            if (strstr(root->infos[i].name, private_infos[p]))
-                root->infos[i].value[0] = '\0';
-}
-
-/* synthetic: NULL for this machine. */
-static status load(topology *machine, const char *synthetic, diagnostic *why)
-{
-    if (hwloc_topology_init(&machine->tree) != 0) {
-        machine->tree = NULL;
-        return no_room(why);
-    }
-    if (synthetic && hwloc_topology_set_synthetic(machine->tree, synthetic) != 0)
-        return diagnose(why, STATUS_BAD_INPUT, "use hwloc's synthetic format, such as \"pack:2 core:4 pu:2\"",
-                        "'%s' is not a description of a machine", synthetic);
-    if (hwloc_topology_load(machine->tree) != 0)
-        return diagnose(why, STATUS_FAILURE, "", "hwloc cannot read the topology of the machine");
-    machine->installed = hwloc_bitmap_weight(hwloc_topology_get_complete_cpuset(machine->tree));
-    forget_owner(machine->tree);
-    return STATUS_OK;
-}
-
-/* If the system does not report the process's binding, all units of the tree are used. */
-static status respect_binding(topology *machine, diagnostic *why)
-{
-    hwloc_bitmap_t own = hwloc_bitmap_alloc();
-    if (!own)
-        return no_room(why);
-    status result = STATUS_OK;
-    if (hwloc_get_cpubind(machine->tree, own, HWLOC_CPUBIND_PROCESS) == 0 &&
-        hwloc_bitmap_intersects(own, hwloc_topology_get_topology_cpuset(machine->tree)) &&
-        restrict_tree(machine->tree, own) != 0)
-        result = diagnose(why, STATUS_FAILURE, "", "hwloc cannot restrict the topology to the process's own units");
-    hwloc_bitmap_free(own);
-    return result;
+    if (!synthetic)
+        return assume(machine, why);
+    return code == STATUS_BAD_INPUT
+               ? diagnose(why, code, "use hwloc's synthetic format, such as \"pack:2 core:4 pu:2\"",
+                          "'%s' is not a description of a machine", synthetic)
+               : no_room(why);
 }
 
 static status create(const char *synthetic, topology **out, diagnostic *why)
@@ -129,17 +115,13 @@ static status create(const char *synthetic, topology **out, diagnostic *why)
     topology *machine = calloc(1, sizeof *machine);
     if (!machine)
         return no_room(why);
-    status result = load(machine, synthetic, why);
-    if (result == STATUS_OK && !synthetic)
-        result = respect_binding(machine, why);
-    if (result == STATUS_OK && !make_rounds(machine))
-        result = no_room(why);
-    if (result != STATUS_OK) {
+    machine->described = synthetic != NULL;
+    const status code = fill(machine, synthetic, why);
+    if (code == STATUS_OK)
+        *out = machine;
+    else
         topology_destroy(machine);
-        return result;
-    }
-    *out = machine;
-    return STATUS_OK;
+    return code;
 }
 
 status topology_create(topology **out, diagnostic *why)
@@ -152,109 +134,149 @@ status topology_from_synthetic(const char *description, topology **out, diagnost
     return create(description, out, why);
 }
 
-status topology_restrict(topology *machine, const char *units, diagnostic *why)
-{
-    hwloc_bitmap_t set = hwloc_bitmap_alloc();
-    if (!set)
-        return no_room(why);
-    status result = STATUS_OK;
-    if (hwloc_bitmap_list_sscanf(set, units) != 0 ||
-        !hwloc_bitmap_intersects(set, hwloc_topology_get_topology_cpuset(machine->tree)))
-        result = diagnose(why, STATUS_BAD_INPUT, "give a list such as 0-3,8",
-                          "'%s' contains no processing unit of this machine", units);
-    else if (restrict_tree(machine->tree, set) != 0 || !make_rounds(machine))
-        result = no_room(why);
-    hwloc_bitmap_free(set);
-    return result;
-}
-
 void topology_destroy(topology *machine)
 {
     if (!machine)
         return;
-    drop_rounds(machine);
-    if (machine->tree)
-        hwloc_topology_destroy(machine->tree);
+    free(machine->nodes);
+    free(machine->xml);
     free(machine);
 }
 
-int topology_pu_count(const topology *machine)
+/* Reads a list such as "0-3,8" into the set; false if it is none. */
+static bool read_units(const char *list, cpu_set_t *set, size_t size)
 {
-    return units_of(machine->tree);
+    do {
+        char *end;
+        const long first = strtol(list, &end, 10);
+        long last = first;
+        if (end == list || first < 0)
+            return false;
+        if (*end == '-') {
+            list = end + 1;
+            last = strtol(list, &end, 10);
+            if (end == list)
+                return false;
+        }
+        for (long i = first; i <= last && i < UNITS_MAX; i++)
+            CPU_SET_S((size_t)i, size, set);
+        list = *end == ',' ? end + 1 : end;
+    } while (*list >= '0' && *list <= '9');
+    return *list == '\0';
 }
 
+status topology_restrict(topology *machine, const char *units, diagnostic *why)
+{
+    const size_t size = CPU_ALLOC_SIZE(UNITS_MAX);
+    cpu_set_t *set = CPU_ALLOC(UNITS_MAX);
+    if (!set)
+        return no_room(why);
+    CPU_ZERO_S(size, set);
+    const bool good = read_units(units, set, size) && keep_units(machine, set, size);
+    CPU_FREE(set);
+    return good ? STATUS_OK
+                : diagnose(why, STATUS_BAD_INPUT, "give a list such as 0-3,8",
+                           "'%s' contains no processing unit of this machine", units);
+}
+
+/* ---- counts ---- */
+
+int topology_pu_count(const topology *machine)
+{
+    return count_kind(machine, 'u');
+}
+
+/* Cores, or units if the machine does not report cores. */
 int topology_core_count(const topology *machine)
 {
-    return hwloc_get_nbobjs_by_type(machine->tree, core_type(machine->tree));
+    const int cores = count_kind(machine, 'c');
+    return cores > 0 ? cores : topology_pu_count(machine);
 }
 
 int topology_package_count(const topology *machine)
 {
-    int count = hwloc_get_nbobjs_by_type(machine->tree, HWLOC_OBJ_PACKAGE);
-    return count > 0 ? count : 1;
+    const int packages = count_kind(machine, 'p');
+    return packages > 0 ? packages : 1;
 }
 
-static int unit_index(hwloc_topology_t tree, hwloc_const_bitmap_t within, int n)
-{
-    hwloc_obj_t pu = hwloc_get_obj_inside_cpuset_by_type(tree, within, HWLOC_OBJ_PU, (unsigned)n);
-    return pu ? (int)pu->os_index : -1;
-}
+/* ---- placement ---- */
 
-/* The unit of one worker among count <= units, distributed by hwloc_distrib over the whole tree. */
-static int distribute(hwloc_topology_t tree, int worker, int count)
+/* The unit of one worker among count <= units of the round, as hwloc_distrib of hwloc 2.9 divides them: each subtree gets
+ * workers in proportion to its units, rounded up as long as they last. */
+static int distribute(const topology *machine, int round, int worker, int count)
 {
-    hwloc_obj_t root = hwloc_get_root_obj(tree);
-    hwloc_cpuset_t *part = calloc((size_t)count, sizeof *part);
-    if (!part)
-        return unit_index(tree, root->cpuset, worker);
-    int unit = -1;
-    if (hwloc_distrib(tree, &root, 1, part, (unsigned)count, INT_MAX, 0) == 0) {
-        unit = unit_index(tree, part[worker], 0);
-        for (int i = 0; i < count; i++)
-            hwloc_bitmap_free(part[i]);
+    int node = 0;
+    while (count > 1 && machine->nodes[node].end > node + 1) {
+        const int total = weight(machine, node, round), end = machine->nodes[node].end;
+        int before = 0, chosen = -1, chunk = 0;
+        for (int child = node + 1; child < end && chosen < 0; child = machine->nodes[child].end) {
+            const int own = weight(machine, child, round);
+            chunk = ((before + own) * count + total - 1) / total - (before * count + total - 1) / total;
+            before += own;
+            if (worker < chunk)
+                chosen = child;
+            else
+                worker -= chunk;
+        }
+        if (chosen < 0)
+            break;
+        node = chosen;
+        count = chunk;
     }
-    free(part);
-    return unit;
+    return unit_below(machine, node, round, count > 1 ? worker : 0);
 }
 
 int topology_place(const topology *machine, pin_policy policy, int worker, int count)
 {
-    int units = units_of(machine->tree);
+    const int units = topology_pu_count(machine);
     if (policy == PIN_NONE || worker < 0)
         return -1;
     if (count > units)
         count = units;
     worker %= units;
     if (policy == PIN_COMPACT)
-        return unit_index(machine->tree, hwloc_topology_get_topology_cpuset(machine->tree), worker);
+        return unit_below(machine, 0, ANY_ROUND, worker);
 
-    /* hwloc_distrib weights subtrees by their number of units, so it may fill a package with two units per core before
-     * it has used every core of a package with one unit per core. Therefore distribute over one unit per core first,
-     * then over the second units. */
-    for (int r = 0; r < machine->rounds; r++) {
-        int room = units_of(machine->round[r]);
+    /* Weights are numbers of units, so that a package with two units per core could be filled before every core of a
+     * package with one unit per core is used. Therefore one unit of each core first, then the second units. */
+    for (int r = 0, room; (room = weight(machine, 0, r)) > 0; r++) {
         if (worker < room)
-            return distribute(machine->round[r], worker, count < room ? (count > worker ? count : worker + 1) : room);
+            return distribute(machine, r, worker, count < room ? (count > worker ? count : worker + 1) : room);
         worker -= room;
         count -= room;
     }
     return -1;
 }
 
+/* ---- binding ---- */
+
+/* Adds the unit, or all with unit -1, if this process may use it. */
+static bool add_units(const topology *machine, int unit, cpu_set_t *set, size_t size)
+{
+    bool found = false;
+    for (int i = 0; i < machine->count; i++) {
+        const topology_node *n = &machine->nodes[i];
+        if (n->kind != 'u' || (unit >= 0 && n->unit != unit) || n->unit < 0 || n->unit >= UNITS_MAX)
+            continue;
+        CPU_SET_S((size_t)n->unit, size, set);
+        found = true;
+    }
+    return found;
+}
+
 status topology_bind_thread(const topology *machine, int pu, diagnostic *why)
 {
-    hwloc_const_bitmap_t own = hwloc_topology_get_topology_cpuset(machine->tree);
-    if (pu >= 0 && !hwloc_bitmap_isset(own, (unsigned)pu))
-        return diagnose(why, STATUS_BAD_INPUT, "`cuvette machine` lists the available units",
-                        "this process may not use processing unit %d", pu);
-    hwloc_bitmap_t set = hwloc_bitmap_dup(own);
+    const size_t size = CPU_ALLOC_SIZE(UNITS_MAX);
+    cpu_set_t *set = CPU_ALLOC(UNITS_MAX);
     if (!set)
         return no_room(why);
-    if (pu >= 0)
-        hwloc_bitmap_only(set, (unsigned)pu);
-    int failed = hwloc_set_cpubind(machine->tree, set, HWLOC_CPUBIND_THREAD);
-    int reason = errno;
-    hwloc_bitmap_free(set);
+    CPU_ZERO_S(size, set);
+    const bool found = add_units(machine, pu, set, size);
+    const int failed = found && !machine->described ? sched_setaffinity(0, size, set) : 0, reason = errno;
+    CPU_FREE(set);
+    if (!found)
+        return diagnose(why, STATUS_BAD_INPUT, "`cuvette machine` lists the available units",
+                        "this process may not use processing unit %d", pu);
     if (failed) {
         char text[128];
         return diagnose(why, STATUS_FAILURE, "render with render.pin none",

@@ -1,6 +1,7 @@
-/* The topology of the machine: its processors and the placement of threads on them, through hwloc. The creator owns a
- * topology; several threads may read it. The process's own CPU binding (taskset, cgroup) at the time of creation is
- * respected: only those units are used. */
+/* The topology of the machine: its processors and the placement of threads on them. hwloc finds it, in a child process
+ * (fork), so that its failures are not ours: if it fails, each processing unit is taken for a core, and the summary says
+ * so. The creator owns a topology; several threads may read it. The process's own CPU binding (taskset, cgroup) at the
+ * time of creation is respected: only those units are used. */
 #pragma once
 
 #include "base/status.h"
@@ -36,7 +37,8 @@ status topology_bind_thread(const topology *machine, int pu, diagnostic *why);
 /* The OS index of the current unit of the calling thread; -1 if unknown. */
 int topology_current_pu(void);
 
-/* A one-line summary ("1 package, 2 cores, 2 threads, L2 1024 KiB ..."), and the whole tree as hwloc XML (without host
- * name and serial numbers). The caller frees the text; NULL on failure. */
+/* A one-line summary ("1 package, 2 cores, 2 threads, L2 1024 KiB ..."), and the whole tree as hwloc XML as
+ * it was created (without host name and serial numbers; "" if hwloc failed). The caller frees the text; NULL on
+ * failure. */
 char *topology_summary(const topology *machine);
 char *topology_xml(const topology *machine);

@@ -1,14 +1,48 @@
-/* The content of a topology. Private to src/measure. */
+/* The content of a topology. Private to src/measure. hwloc itself runs in a child process, which sends this content as
+ * text (topology_discover.c): out of memory, hwloc 2.9 ends the program at some of its allocations. */
 #pragma once
 
 #include "measure/topology.h"
 
-#include <hwloc.h>
+#include <stdbool.h>
+#include <stdint.h>
+#include <stdio.h>
+
+/* An object of the tree. The nodes of a tree are in preorder, the machine first. */
+typedef struct topology_node {
+    int depth; /* 0: the machine */
+    char kind; /* 'u' processing unit, 'c' core, 'p' package, 'o' any other */
+    int unit;  /* of a processing unit: its OS index; otherwise -1 */
+    int round; /* of a processing unit: its number within its core, from 0 */
+    int end;   /* the index behind its subtree */
+} topology_node;
+
+enum { TOPOLOGY_CACHES = 3 };
 
 struct topology {
-    hwloc_topology_t tree; /* restricted to the units that this process may use */
-    int installed;         /* units of the whole machine, usable or not */
-    int rounds;            /* largest number of units of a core */
-    /* round[r]: the tree restricted to the r-th unit of every core that has more than r units */
-    hwloc_topology_t *round;
+    topology_node *nodes; /* with at least one processing unit each; only units that this process may use */
+    int count;
+    int installed;                  /* units of the whole machine, usable or not */
+    bool described;                 /* by a text: threads cannot be bound */
+    bool assumed;                   /* hwloc failed: every unit is taken for a core */
+    int64_t cache[TOPOLOGY_CACHES]; /* bytes of the first L1d, L2 and L3; 0: unknown */
+    int64_t memory;                 /* bytes; 0: unknown */
+    char model[128];                /* of the processor; "": unknown */
+    char *xml;                      /* of hwloc; NULL if assumed */
 };
+
+/* hwloc's description of this machine, or of a synthetic one, restricted to the units that this process may use, as
+ * text. Returns the exit status of the child process: 0, or STATUS_BAD_INPUT for a synthetic description that is none;
+ * writes a part of the text in case of a failure. Calls no function of hwloc's outside the child. */
+int topology_discover(const char *synthetic, FILE *out);
+
+/* The output of topology_discover in a child process; NULL, with a status, if that failed. The caller frees the text. */
+char *topology_ask(const char *synthetic, status *code);
+
+/* Fills an empty topology from such a text. STATUS_BAD_INPUT: it is truncated or damaged. */
+status topology_read(topology *machine, char *text, diagnostic *why);
+
+/* Appends a node. */
+bool topology_add(topology *machine, int depth, char kind, int unit);
+/* Computes end and round of every node after the last topology_add. */
+void topology_complete(topology *machine);

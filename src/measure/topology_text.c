@@ -36,24 +36,17 @@ static void append_size(line *to, const char *name, uint64_t bytes)
     append(to, part);
 }
 
-/* The first cache of each level; on a machine with different kinds of cores, that of the first core. */
-static void append_caches(line *to, hwloc_topology_t tree)
+static void append_caches(line *to, const topology *machine)
 {
-    static const struct {
-        hwloc_obj_type_t type;
-        const char *name;
-    } levels[] = {{HWLOC_OBJ_L1CACHE, "L1d"}, {HWLOC_OBJ_L2CACHE, "L2"}, {HWLOC_OBJ_L3CACHE, "L3"}};
-    for (size_t i = 0; i < sizeof levels / sizeof levels[0]; i++) {
-        hwloc_obj_t cache = hwloc_get_obj_by_type(tree, levels[i].type, 0);
-        if (cache && cache->attr->cache.size > 0)
-            append_size(to, levels[i].name, cache->attr->cache.size);
-    }
+    static const char *const names[TOPOLOGY_CACHES] = {"L1d", "L2", "L3"};
+    for (int i = 0; i < TOPOLOGY_CACHES; i++)
+        if (machine->cache[i] > 0)
+            append_size(to, names[i], (uint64_t)machine->cache[i]);
 }
 
 char *topology_summary(const topology *machine)
 {
     line summary = {.used = 0};
-    hwloc_obj_t root = hwloc_get_root_obj(machine->tree);
     int units = topology_pu_count(machine);
     append_count(&summary, topology_package_count(machine), "package");
     append_count(&summary, topology_core_count(machine), "core");
@@ -63,25 +56,19 @@ char *topology_summary(const topology *machine)
         snprintf(part, sizeof part, " (of the machine's %d)", machine->installed);
         append(&summary, part);
     }
-    append_caches(&summary, machine->tree);
-    if (root->total_memory > 0)
-        append_size(&summary, "memory", root->total_memory);
-    hwloc_obj_t package = hwloc_get_obj_by_type(machine->tree, HWLOC_OBJ_PACKAGE, 0);
-    const char *model = package ? hwloc_obj_get_info_by_name(package, "CPUModel") : NULL;
-    if (model && *model) {
+    append_caches(&summary, machine);
+    if (machine->memory > 0)
+        append_size(&summary, "memory", (uint64_t)machine->memory);
+    if (machine->model[0]) {
         append(&summary, ", ");
-        append(&summary, model);
+        append(&summary, machine->model);
     }
+    if (machine->assumed)
+        append(&summary, ", cores and packages assumed (hwloc failed)");
     return strdup(summary.text);
 }
 
 char *topology_xml(const topology *machine)
 {
-    char *buffer = NULL;
-    int length = 0;
-    if (hwloc_topology_export_xmlbuffer(machine->tree, &buffer, &length, 0) != 0)
-        return NULL;
-    char *copy = strdup(buffer);
-    hwloc_free_xmlbuffer(machine->tree, buffer);
-    return copy;
+    return strdup(machine->xml ? machine->xml : "");
 }

@@ -1,5 +1,6 @@
 /* The entry point of `cuvette-mpi`: commands of `cuvette` on the ranks of an MPI job. Rank 0 reads the command line and
  * writes the files; the other ranks follow it. */
+#include "base/json_memory.h"
 #include "base/build_id.h"
 #include "base/float_environment.h"
 #include "cli/cli.h"
@@ -99,6 +100,7 @@ int main(int argc, char **argv)
 {
     int rank = 0, ranks = 1;
     diagnostic why = {0};
+    json_memory_reserve();
     terminal_prepare();
     argp_err_exit_status = STATUS_BAD_INPUT;
     status code = begin(&argc, &argv, &rank, &ranks, &why);

@@ -1,5 +1,6 @@
 /* The JSON writer, and the conversion of reals, texts and diagnostics to jansson values. */
 #include "base/cancel.h"
+#include "base/json_build.h"
 #include "report/json.h"
 #include "base/number.h"
 #include <math.h>
@@ -43,7 +44,7 @@ static bool write_value(FILE *stream, const json_t *value, int indent);
 static bool write_text(FILE *stream, const char *text)
 {
     json_t *value = json_string(text);
-    char *quoted = value ? json_dumps(value, JSON_ENCODE_ANY) : NULL;
+    char *quoted = value ? json_text(value, JSON_ENCODE_ANY) : NULL;
     json_decref(value);
     if (quoted)
         fputs(quoted, stream);
@@ -55,11 +56,11 @@ json_t *json_of_diagnostic(const diagnostic *why)
 {
     json_t *object = json_pack("{s:o, s:o}", "error", json_of_text(why->what), "remedy", json_of_text(why->remedy));
     if (object && why->file[0])
-        json_object_set_new(object, "file", json_of_text(why->file));
+        json_add_as(&object, "file", json_of_text(why->file));
     if (object && why->line > 0)
-        json_object_set_new(object, "line", json_integer(why->line));
+        json_add_as(&object, "line", json_integer(why->line));
     if (object && why->column > 0)
-        json_object_set_new(object, "column", json_integer(why->column));
+        json_add_as(&object, "column", json_integer(why->column));
     return object;
 }
 
@@ -154,7 +155,7 @@ status json_write(FILE *stream, const json_t *value, diagnostic *why)
     bool good = value && write_value(stream, value, 0);
     fputc('\n', stream);
     TRY(cancel_check(why));
-    return good ? STATUS_OK : diagnose(why, STATUS_FAILURE, "", "out of memory while writing JSON");
+    return good ? STATUS_OK : diagnose(why, STATUS_FAILURE, MEMORY_REMEDY, "out of memory while writing JSON");
 }
 
 status json_put(FILE *stream, json_t *value, diagnostic *why)

@@ -1,4 +1,5 @@
 /* Writes the columns of lessons. */
+#include "base/json_build.h"
 #include "report/lesson_rows.h"
 
 #include "report/json.h"
@@ -8,7 +9,7 @@ static json_t *texts(char *const *text, int count)
 {
     json_t *list = json_array();
     for (int i = 0; i < count; i++)
-        json_array_append_new(list, json_of_text(text[i]));
+        json_add(&list, json_of_text(text[i]));
     return list;
 }
 
@@ -19,10 +20,10 @@ static json_t *controls(const lesson *l)
         const lesson_control *c = &l->control[i];
         json_t *one = json_pack("{s:o,s:o}", "parameter", json_of_text(c->parameter), "label", json_of_text(c->label));
         if (c->choice_count)
-            json_object_set_new(one, "choices", texts(c->choices, c->choice_count));
+            json_add_as(&one, "choices", texts(c->choices, c->choice_count));
         else
             json_object_update_new(one, json_pack("{s:f,s:f}", "from", c->from, "to", c->to));
-        json_array_append_new(list, one);
+        json_add(&list, one);
     }
     return list;
 }
@@ -33,7 +34,7 @@ static json_t *prediction(const lesson *l)
                       ? json_pack("{s:o,s:o,s:o}", "ask", json_of_text(l->ask), "choices",
                                   texts(l->choices, l->choice_count), "right", json_of_text(l->choices[l->right]))
                       : json_pack("{s:o,s:f}", "ask", json_of_text(l->ask), "within", l->answer_within);
-    json_object_set_new(one, "axis", l->predicts ? json_stringn(&l->predicts, 1) : json_null());
+    json_add_as(&one, "axis", l->predicts ? json_stringn(&l->predicts, 1) : json_null());
     return one;
 }
 
@@ -56,7 +57,7 @@ static json_t *measure(const lesson *l)
                         "unit", json_of_text(l->unit), "tolerance", json_of_real(l->tolerance), "metric",
                         l->metric ? json_of_text(l->metric) : json_null(), "timed", (int)lesson_is_timed(l));
     if (one && !l->metric)
-        json_object_set_new(one, "at", json_of_real(l->at));
+        json_add_as(&one, "at", json_of_real(l->at));
     free(x);
     free(y);
     return one;
@@ -71,7 +72,7 @@ static json_t *commands(const lesson *l)
             continue;
         char *text = lesson_command(l, kinds[i]);
         if (text)
-            json_array_append_new(list, json_of_text(text));
+            json_add(&list, json_of_text(text));
         free(text);
     }
     return list;
@@ -91,8 +92,7 @@ json_t *lesson_result_json(const lesson *l, const lesson_result *r)
     json_t *points = json_array();
     for (int i = 0; i < r->points.count; i++) {
         const realism_point *p = &r->points.at[i];
-        json_array_append_new(
-            points, json_pack("[o,o,o]", json_of_real(p->x), json_of_real(p->measured), json_of_real(p->theory)));
+        json_add(&points, json_pack("[o,o,o]", json_of_real(p->x), json_of_real(p->measured), json_of_real(p->theory)));
     }
     return json_pack("{s:o,s:o,s:o,s:b,s:o,s:o,s:o}", "points", points, "error", json_of_real(r->error), "tolerance",
                      json_of_real(l->tolerance), "passes", (int)r->passes, "measured", json_of_real(r->measured),

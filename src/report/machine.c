@@ -1,4 +1,5 @@
 /* Measures this machine's clocks and disturbances, and reports them as JSON. */
+#include "base/json_build.h"
 #include "report/machine.h"
 #include "report/json.h"
 #include "measure/usage.h"
@@ -8,7 +9,7 @@
 
 static void add_disturbance(void *context, const char *text)
 {
-    json_array_append_new(context, json_of_text(text));
+    json_add(context, json_of_text(text));
 }
 
 static bool counts_cycles(void)
@@ -33,10 +34,8 @@ status machine_measure(machine_account *a, diagnostic *why)
     a->has_hardware_counters = counts_cycles();
     uname(&a->kernel);
     a->disturbances = json_array();
-    if (!a->disturbances)
-        return out_of_memory(why);
-    usage_disturbances(LOAD_SAMPLE_S, add_disturbance, a->disturbances);
-    return STATUS_OK;
+    usage_disturbances(LOAD_SAMPLE_S, add_disturbance, &a->disturbances);
+    return a->disturbances ? STATUS_OK : out_of_memory(why);
 }
 
 static json_t *clock_json(clock_quality clock)

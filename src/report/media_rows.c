@@ -1,4 +1,5 @@
 /* The media catalogue as a table, one medium in detail, or JSON. */
+#include "base/json_build.h"
 #include "report/media_rows.h"
 #include "report/json.h"
 #include "report/wrap.h"
@@ -183,7 +184,7 @@ static json_t *extrapolated_json(const medium *m)
     json_t *list = json_array();
     for (int i = 0; list && i < LINES_ALL; i++)
         if (!dispersion_covers(&m->law, lines[i].lambda_nm, lines[i].lambda_nm))
-            json_array_append_new(list, json_string(lines[i].name));
+            json_add(&list, json_string(lines[i].name));
     return list;
 }
 
@@ -191,7 +192,7 @@ static json_t *coefficients_json(const medium *m)
 {
     json_t *list = json_array();
     for (int i = 0; list && i < m->law.count; i++)
-        json_array_append_new(list, json_of_real(m->law.coefficient[i]));
+        json_add(&list, json_of_real(m->law.coefficient[i]));
     return list;
 }
 

@@ -68,7 +68,7 @@ static void write_account(const report_page_content *page, const page_rays *rays
     fputs(" Angles are from the normal; R and T are for unpolarised light.</p>\n", out);
 }
 
-static void write_source(const report_page_content *page, const char *text, bool whole, FILE *out)
+static status write_source(const report_page_content *page, const char *text, bool whole, FILE *out, diagnostic *why)
 {
     fputs("<h2>Command</h2>\n<pre tabindex=\"0\" id=\"command\">", out);
     svg_escape(out, page->command);
@@ -80,12 +80,15 @@ static void write_source(const report_page_content *page, const char *text, bool
     for (const char *line = text; *line;) { /* svg_escape would replace the ends of lines */
         const char *end = strchrnul(line, '\n');
         char *copy = strndup(line, (size_t)(end - line));
-        svg_escape(out, copy ? copy : "");
+        if (!copy)
+            return out_of_memory(why);
+        svg_escape(out, copy);
         free(copy);
         fputc('\n', out);
         line = *end ? end + 1 : end;
     }
     fputs("</pre>\n</main>\n</body>\n</html>\n", out);
+    return STATUS_OK;
 }
 
 static status write_body(const report_page_content *page, const shared_texts *texts, const char *text, FILE *out,
@@ -103,7 +106,7 @@ static status write_body(const report_page_content *page, const shared_texts *te
         fputs("</div>\n", out);
         write_account(page, &rays, out);
         page_rays_write_table(&rays, out);
-        write_source(page, text, texts->scene, out);
+        code = write_source(page, text, texts->scene, out, why);
     }
     page_rays_release(&rays);
     return code;
@@ -113,7 +116,7 @@ status report_page_write(const report_page_content *page, FILE *out, diagnostic 
 {
     shared_texts texts;
     char *text = NULL, *code = NULL;
-    shared_texts_make(page->s, &texts);
+    TRY(shared_texts_make(page->s, &texts, why));
     status result =
         texts.scene ? shared_scene_code(texts.scene, &code, why) : scene_write_text(page->s, NULL, false, &text, why);
     if (result == STATUS_OK) {

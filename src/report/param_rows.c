@@ -1,4 +1,5 @@
 /* The parameter table as text, as JSON, and as roff for the manual page. */
+#include "base/json_build.h"
 #include "geometry/solid.h"
 #include "report/param_rows.h"
 #include "geometry/shapes/shape.h"
@@ -92,7 +93,7 @@ static json_t *choices(const param *row)
 {
     json_t *list = json_array();
     for (size_t i = 0; list && row->choices && row->choices[i]; i++)
-        json_array_append_new(list, json_string(row->choices[i]));
+        json_add(&list, json_string(row->choices[i]));
     return list;
 }
 
@@ -102,7 +103,7 @@ static json_t *shapes(const param *row)
     const shape_rule *rule;
     for (int i = 0; list && (rule = shape_of_kind((shape_kind)i)); i++)
         if (!row->by_shape || shape_has(rule, row->name))
-            json_array_append_new(list, json_string(rule->word));
+            json_add(&list, json_string(rule->word));
     return list;
 }
 

@@ -1,4 +1,5 @@
 /* The JSON account of a render, of its parameters and of an image comparison. */
+#include "base/json_build.h"
 #include "report/report.h"
 #include "report/json.h"
 #include "report/param_rows.h"
@@ -10,18 +11,21 @@
 #include <stdlib.h>
 #include <string.h>
 
-/* Parses "0,2.75,-6", with or without brackets, into a list of numbers. */
-static json_t *list_of_numbers(const char *text)
+/* Parses "0,2.75,-6", with or without brackets, into a list of numbers; false if the text is something else. *out: NULL
+ * when out of memory. */
+static bool list_of_numbers(const char *text, json_t **out)
 {
-    json_t *list = json_array();
+    bool good = true;
     char *copy = strdup(text), *rest = NULL;
-    int bad = !list || !copy;
+    *out = copy ? json_array() : NULL;
     for (char *word = copy ? strtok_r(copy, "[], ", &rest) : NULL; word; word = strtok_r(NULL, "[], ", &rest)) {
-        double number;
-        bad |= !number_parse_real(word, &number) || json_array_append_new(list, json_of_real(number));
+        double number = 0;
+        good &= number_parse_real(word, &number);
+        json_add(out, json_of_real(number));
     }
     free(copy);
-    return json_whole(list, !bad);
+    *out = json_whole(*out, good);
+    return good;
 }
 
 json_t *report_value(const param *row, const char *text)
@@ -40,8 +44,8 @@ json_t *report_value(const param *row, const char *text)
     case PARAM_VECTOR:
     case PARAM_COLOR:
     case PARAM_LIST: {
-        json_t *list = list_of_numbers(text);
-        if (list)
+        json_t *list;
+        if (list_of_numbers(text, &list))
             return list;
         break;
     }
@@ -88,7 +92,7 @@ static json_t *list_of_reals(const double *values, size_t count)
 {
     json_t *list = json_array();
     for (size_t i = 0; list && i < count; i++)
-        json_array_append_new(list, json_of_real(values[i]));
+        json_add(&list, json_of_real(values[i]));
     return list;
 }
 
@@ -96,7 +100,7 @@ static json_t *by_depth(const quantity_value *v)
 {
     json_t *list = json_array();
     for (size_t i = 0; list && i < v->size; i++)
-        json_array_append_new(list, json_integer((json_int_t)v->list[i]));
+        json_add(&list, json_integer((json_int_t)v->list[i]));
     return list;
 }
 
@@ -104,7 +108,7 @@ static json_t *by_solid(const scene *s, const quantity_value *v)
 {
     json_t *object = json_object();
     for (size_t i = 0; object && i < v->size; i++)
-        json_object_set_new(object, s->solids[i].name, json_integer((json_int_t)v->list[i]));
+        json_add_as(&object, s->solids[i].name, json_integer((json_int_t)v->list[i]));
     return object;
 }
 
@@ -179,10 +183,9 @@ static json_t *ranks(const render_result *r)
     json_t *list = json_array();
     for (int i = 0; list && i < r->rank_count; i++) {
         const rank_account *k = &r->ranks[i];
-        json_array_append_new(list,
-                              json_pack("{s:o, s:o, s:I, s:I, s:I}", "wall_s", json_of_real(k->wall_s), "cpu_s",
-                                        json_of_real(k->cpu_s), "peak_rss_bytes", (json_int_t)k->peak_rss_bytes,
-                                        "tiles_sent", (json_int_t)k->pieces, "bytes_sent", (json_int_t)k->piece_bytes));
+        json_add(&list, json_pack("{s:o, s:o, s:I, s:I, s:I}", "wall_s", json_of_real(k->wall_s), "cpu_s",
+                                  json_of_real(k->cpu_s), "peak_rss_bytes", (json_int_t)k->peak_rss_bytes, "tiles_sent",
+                                  (json_int_t)k->pieces, "bytes_sent", (json_int_t)k->piece_bytes));
     }
     return list;
 }

@@ -146,5 +146,5 @@ status trace_write_json(const traced *t, FILE *out, diagnostic *why)
     fprintf(out, ",\"carries\":\"%s\"", scene_has_basic_radiance(scene_settings(t->s)) ? "basic" : "classic");
     fputs("}\n", out);
     TRY(cancel_check(why));
-    return good ? STATUS_OK : diagnose(why, STATUS_FAILURE, "", "out of memory while writing JSON");
+    return good ? STATUS_OK : diagnose(why, STATUS_FAILURE, MEMORY_REMEDY, "out of memory while writing JSON");
 }

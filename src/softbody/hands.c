@@ -82,7 +82,7 @@ status softbody_follow(softbody *b, const hand_script *script, diagnostic *why)
     b->script = script;
     b->plays = script ? calloc(script->track_count + 1, sizeof *b->plays) : NULL;
     if (script && !b->plays)
-        return diagnose(why, STATUS_FAILURE, "", "out of memory for a script");
+        return diagnose(why, STATUS_FAILURE, MEMORY_REMEDY, "out of memory for a script");
     for (size_t i = 0; b->plays && i < script->track_count; i++)
         b->plays[i].hand = HAND_NONE;
     return STATUS_OK;
@@ -104,7 +104,7 @@ static status take_hold(softbody *b, const hand_track *track, const hand_key *ke
     }
     play->hand = softbody_grab(b, where, key->reach);
     if (play->hand == HAND_NO_MEMORY)
-        return diagnose(why, STATUS_FAILURE, "", "out of memory for a hand");
+        return diagnose(why, STATUS_FAILURE, MEMORY_REMEDY, "out of memory for a hand");
     if (play->hand == HAND_NONE) {
         diagnostic_locate(why, b->script->path, key->line, key->column);
         return diagnose(why, STATUS_BAD_INPUT, "release the other hands first, or reduce their reach",

@@ -57,8 +57,8 @@ static status recorded_study(const study *now, const char *text, const char *sce
 static bool files_are_the_same(accepted *a, const manifest_study *recorded)
 {
     uint64_t now = HASH_START;
-    grid_hash_files(&now, a->s->base);
-    if (now == HASH_START || (recorded->has_files && recorded->files == now))
+    const bool known = grid_hash_files(&now, a->s->base, NULL) == STATUS_OK;
+    if (known && (now == HASH_START || (recorded->has_files && recorded->files == now)))
         return true;
     snprintf(a->why_not, sizeof a->why_not, "%s",
              recorded->has_files
@@ -72,8 +72,8 @@ static void look_into_texts(accepted *a, const manifest_study *m)
 {
     diagnostic why = {.what = ""};
     uint64_t files = HASH_START;
-    grid_hash_files(&files, a->s->base);
-    status code = recorded_study(a->s, m->text, m->scene_text, &a->recorded, &why);
+    status code = grid_hash_files(&files, a->s->base, &why);
+    THEN(code, recorded_study(a->s, m->text, m->scene_text, &a->recorded, &why));
     THEN(code, identities_with_files(a->recorded, files, &a->recorded_identity, &why));
     a->recorded_definition = m->definition;
     if (code == STATUS_OK)

@@ -1,3 +1,4 @@
+#include "base/json_build.h"
 #include "study/contrast_json.h"
 #include "study/grid.h"
 #include <math.h>
@@ -13,7 +14,7 @@ static json_t *half_json(const contrast_half *h, bool of_cell)
     json_t *json = json_pack("{s:I, s:I, s:o}", "n", (json_int_t)h->count, "processes", (json_int_t)h->processes,
                              "median", real_or_null(h->median));
     if (of_cell)
-        json_object_set_new(json, "cell", json_integer((json_int_t)h->cell));
+        json_add_as(&json, "cell", json_integer((json_int_t)h->cell));
     return json;
 }
 
@@ -35,10 +36,12 @@ static json_t *cell_json(const study *s, const contrast_line *l)
     for (size_t axis = 0; axis < s->axis_count; axis++) {
         const study_point *point = &s->axes[axis].points[study_cell_point(s, l->a.cell, axis)];
         for (size_t i = 0; i < point->count; i++)
-            json_object_set_new(json, point->paths[i], json_string(point->values[i]));
+            json_add_as(&json, point->paths[i], json_string(point->values[i]));
     }
-    json_object_update_new(json, line_json(l, true));
-    return json;
+    if (json_object_update_new(json, line_json(l, true)) == 0)
+        return json;
+    json_decref(json);
+    return NULL;
 }
 
 json_t *contrast_json(const study *s, const contrast *c, size_t most)
@@ -46,9 +49,9 @@ json_t *contrast_json(const study *s, const contrast *c, size_t most)
     json_t *paths = json_array(), *cells = json_array();
     const char *path;
     for (size_t i = 0; (path = study_grid_path(s, i)); i++)
-        json_array_append_new(paths, json_string(path));
+        json_add(&paths, json_string(path));
     for (size_t i = 0; i < c->count && i < most; i++)
-        json_array_append_new(cells, cell_json(s, &c->lines[i]));
+        json_add(&cells, cell_json(s, &c->lines[i]));
     return json_pack("{s:o, s:I, s:[s, s], s:o, s:o}", "columns", paths, "count", (json_int_t)c->count, "environments",
                      c->environment[0], c->environment[1], "cells", cells, "all", line_json(&c->all, false));
 }

@@ -125,7 +125,8 @@ bool definition_v1(const study *s, uint64_t *hash)
         hash_integer(&state.hash, number);
         hash_integer(&state.hash, s->base->solids[i].material_index);
     }
-    grid_hash_files(&state.hash, s->base);
+    if (grid_hash_files(&state.hash, s->base, NULL) != STATUS_OK)
+        return false;
     for (size_t axis = 0; axis < s->axis_count; axis++)
         hash_axis(&state.hash, &s->axes[axis]);
     *hash = hash_finish(state.hash);

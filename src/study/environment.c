@@ -2,6 +2,8 @@
 #include "base/build_id.h"
 #include "base/hash.h"
 #include "base/os_process.h"
+#include "base/system_error.h"
+#include <errno.h>
 #include <inttypes.h>
 #include <stdint.h>
 #include <stdio.h>
@@ -12,14 +14,29 @@ const char *const environment_names[ENVIRONMENT_FACTS] = {"machine",  "cpu_model
                                                           "governor", "limits",    "isa",       "build"};
 enum { MACHINE, CPU_MODEL, MICROCODE, SMT, GOVERNOR, LIMITS, ISA, BUILD };
 
+/* Files of the system below a root. */
+typedef struct source {
+    const char *root;
+    int error; /* errno of the first file that exists and cannot be read now */
+} source;
+
+static void note_error(source *from, int error)
+{
+    const bool absent = error == ENOENT || error == ENOTDIR || error == EACCES || error == EPERM || error == ENODEV ||
+                        error == EINVAL || error == EOPNOTSUPP || error == ENXIO;
+    from->error = from->error || absent ? from->error : error;
+}
+
 /* The rest of the first line that starts with prefix, without blanks and colon; false and "unknown" if there is none.
  */
-static bool read_line(const char *root, const char *name, const char *prefix, char *text, size_t size)
+static bool read_line(source *from, const char *name, const char *prefix, char *text, size_t size)
 {
     char path[512], line[1024];
     bool found = false;
-    snprintf(path, sizeof path, "%s%s", root, name);
+    snprintf(path, sizeof path, "%s%s", from->root, name);
     FILE *file = fopen(path, "re");
+    if (!file)
+        note_error(from, errno);
     while (file && !found && fgets(line, sizeof line, file)) {
         if (strncmp(line, prefix, strlen(prefix)) != 0)
             continue;
@@ -30,6 +47,8 @@ static bool read_line(const char *root, const char *name, const char *prefix, ch
         if (found)
             snprintf(text, size, "%.*s", (int)size - 1, value);
     }
+    if (file && ferror(file))
+        note_error(from, errno);
     if (file)
         fclose(file);
     if (!found)
@@ -43,12 +62,12 @@ static uint64_t hash_text(uint64_t hash, const char *text)
 }
 
 /* The id itself must not be published: machine-id(5) recommends a keyed hash. */
-void environment_read_machine(const char *root, char *text, size_t size)
+static void read_machine(source *from, char *text, size_t size)
 {
     char id[ENVIRONMENT_FACT_MAX];
     const char *own = getenv("CUVETTE_MACHINE");
-    const bool known = read_line(root, "/etc/machine-id", "", id, sizeof id) ||
-                       read_line(root, "/proc/sys/kernel/random/boot_id", "", id, sizeof id);
+    const bool known = read_line(from, "/etc/machine-id", "", id, sizeof id) ||
+                       read_line(from, "/proc/sys/kernel/random/boot_id", "", id, sizeof id);
     const bool named = own && own[0];
     if (!known && !named) {
         snprintf(text, size, "unknown");
@@ -56,6 +75,13 @@ void environment_read_machine(const char *root, char *text, size_t size)
     }
     uint64_t hash = hash_text(hash_text(HASH_START, "cuvette machine"), known ? id : "");
     snprintf(text, size, "%016" PRIx64, hash_finish(named ? hash_text(hash, own) : hash));
+}
+
+int environment_read_machine(const char *root, char *text, size_t size)
+{
+    source from = {.root = root};
+    read_machine(&from, text, size);
+    return from.error;
 }
 
 void environment_of_node_type(const char *type, char *text, size_t size)
@@ -71,20 +97,20 @@ const char *environment_node_type(void)
 }
 
 /* The path of the process' control group (version 2), "" if there is none: cgroups(7). */
-static void read_group(const char *root, char *text, size_t size)
+static void read_group(source *from, char *text, size_t size)
 {
-    if (!read_line(root, "/proc/self/cgroup", "0::", text, size) || strcmp(text, "/") == 0)
+    if (!read_line(from, "/proc/self/cgroup", "0::", text, size) || strcmp(text, "/") == 0)
         text[0] = 0;
 }
 
 /* A limit of the group or of one above it; the innermost that is set. */
-static void read_limit(const char *root, const char *group, const char *name, char *text, size_t size)
+static void read_limit(source *from, const char *group, const char *name, char *text, size_t size)
 {
     char path[400], folder[ENVIRONMENT_FACT_MAX];
     snprintf(folder, sizeof folder, "%s", group);
     for (;;) {
         snprintf(path, sizeof path, "/sys/fs/cgroup%s/%s", folder, name);
-        if (read_line(root, path, "", text, size) && strncmp(text, "max", 3) != 0)
+        if (read_line(from, path, "", text, size) && strncmp(text, "max", 3) != 0)
             return;
         char *slash = strrchr(folder, '/');
         if (!slash)
@@ -94,12 +120,12 @@ static void read_limit(const char *root, const char *group, const char *name, ch
     snprintf(text, size, "max");
 }
 
-static void read_limits(const char *root, char *text, size_t size)
+static void read_limits(source *from, char *text, size_t size)
 {
     char group[ENVIRONMENT_FACT_MAX], cpu[32], memory[32];
-    read_group(root, group, sizeof group);
-    read_limit(root, group, "cpu.max", cpu, sizeof cpu);
-    read_limit(root, group, "memory.max", memory, sizeof memory);
+    read_group(from, group, sizeof group);
+    read_limit(from, group, "cpu.max", cpu, sizeof cpu);
+    read_limit(from, group, "memory.max", memory, sizeof memory);
     snprintf(text, size, "cpu %s, memory %s, units %d", cpu, memory, os_usable_units());
 }
 
@@ -111,23 +137,27 @@ void environment_close(run_environment *e)
     snprintf(e->key, sizeof e->key, "%08" PRIx32, (uint32_t)(hash_finish(hash) >> 32));
 }
 
-void environment_read(const char *root, isa level, run_environment *out)
+status environment_read(const char *root, isa level, run_environment *out, diagnostic *why)
 {
+    source here = {.root = root}, *from = &here;
     *out = (run_environment){.key = ""};
     if (environment_node_type())
         environment_of_node_type(environment_node_type(), out->fact[MACHINE], ENVIRONMENT_FACT_MAX);
     else
-        environment_read_machine(root, out->fact[MACHINE], ENVIRONMENT_FACT_MAX);
-    if (!read_line(root, "/proc/cpuinfo", "model name", out->fact[CPU_MODEL], ENVIRONMENT_FACT_MAX)) /* ARM has none */
-        read_line(root, "/proc/device-tree/model", "", out->fact[CPU_MODEL], ENVIRONMENT_FACT_MAX);
-    read_line(root, "/proc/cpuinfo", "microcode", out->fact[MICROCODE], ENVIRONMENT_FACT_MAX);
-    read_line(root, "/sys/devices/system/cpu/smt/active", "", out->fact[SMT], ENVIRONMENT_FACT_MAX);
-    read_line(root, "/sys/devices/system/cpu/cpu0/cpufreq/scaling_governor", "", out->fact[GOVERNOR],
+        read_machine(from, out->fact[MACHINE], ENVIRONMENT_FACT_MAX);
+    if (!read_line(from, "/proc/cpuinfo", "model name", out->fact[CPU_MODEL], ENVIRONMENT_FACT_MAX)) /* ARM has none */
+        read_line(from, "/proc/device-tree/model", "", out->fact[CPU_MODEL], ENVIRONMENT_FACT_MAX);
+    read_line(from, "/proc/cpuinfo", "microcode", out->fact[MICROCODE], ENVIRONMENT_FACT_MAX);
+    read_line(from, "/sys/devices/system/cpu/smt/active", "", out->fact[SMT], ENVIRONMENT_FACT_MAX);
+    read_line(from, "/sys/devices/system/cpu/cpu0/cpufreq/scaling_governor", "", out->fact[GOVERNOR],
               ENVIRONMENT_FACT_MAX);
-    read_limits(root, out->fact[LIMITS], ENVIRONMENT_FACT_MAX);
+    read_limits(from, out->fact[LIMITS], ENVIRONMENT_FACT_MAX);
     snprintf(out->fact[ISA], ENVIRONMENT_FACT_MAX, "%s", isa_name(level));
     snprintf(out->fact[BUILD], ENVIRONMENT_FACT_MAX, "%s", build_id());
     environment_close(out);
+    return here.error ? system_error(why, STATUS_FAILURE, NULL, "the environment of the run cannot be read", here.error,
+                                     "run the command again")
+                      : STATUS_OK;
 }
 
 bool environment_difference(const run_environment *here, const run_environment *there, char *text, size_t size)

@@ -5,6 +5,7 @@
 #pragma once
 
 #include "base/isa.h"
+#include "base/status.h"
 #include <stdbool.h>
 #include <stddef.h>
 
@@ -20,10 +21,13 @@ extern const char *const environment_names[ENVIRONMENT_FACTS];
 
 /* Reads the files of the system below root, "" for this machine. CUVETTE_MACHINE, if set, is part of the machine's
  * identity: it distinguishes machines that were cloned with one id. CUVETTE_NODE_TYPE, if set, takes the place of the
- * machine: nodes of a cluster that are declared alike. The other facts still tell unlike ones apart. */
-void environment_read(const char *root, isa level, run_environment *out);
-/* The fact machine of this machine itself, and of all nodes of a type; the type that is set, or NULL. */
-void environment_read_machine(const char *root, char *text, size_t size);
+ * machine: nodes of a cluster that are declared alike. The other facts still tell unlike ones apart. A fact that the
+ * system does not report is "unknown"; STATUS_FAILURE if one cannot be read now (memory, open files, the disk): its row
+ * would belong to an environment that does not exist. */
+status environment_read(const char *root, isa level, run_environment *out, diagnostic *why);
+/* The fact machine of this machine itself, and of all nodes of a type; the type that is set, or NULL. Returns 0, or the
+ * errno of a file that cannot be read now. */
+int environment_read_machine(const char *root, char *text, size_t size);
 void environment_of_node_type(const char *type, char *text, size_t size);
 const char *environment_node_type(void);
 /* Computes the key from the facts. */

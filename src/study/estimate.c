@@ -251,7 +251,7 @@ static status open(trials *t, const study_options *options, diagnostic *why)
     for (size_t i = 0; i < total; i++)
         t->tried_s[i] = NAN;
     TRY(job_create(&settings, &r->with, why));
-    environment_read("", job_isa(r->with), &r->here);
+    TRY(environment_read("", job_isa(r->with), &r->here, why));
     if (options->environment)
         snprintf(r->here.key, sizeof r->here.key, "%s", options->environment);
     return STATUS_OK;

@@ -180,8 +180,7 @@ status grid_hash_scene(uint64_t *hash, const scene *of, bool without_performance
     const int64_t word = (int64_t)meaning_hash(&said);
     meaning_free(&said);
     *hash = hash_words(*hash, &word, 1);
-    grid_hash_files(hash, of);
-    return code;
+    return code == STATUS_OK ? grid_hash_files(hash, of, NULL) : code;
 }
 
 void grid_hash_point(uint64_t *hash, const study_point *point)
@@ -201,7 +200,7 @@ status grid_definition(const study *s, uint64_t *hash, diagnostic *why)
     const int64_t word = (int64_t)meaning_hash(&said);
     meaning_free(&said);
     *hash = hash_words(HASH_START, &word, 1);
-    grid_hash_files(hash, s->base);
+    THEN(code, grid_hash_files(hash, s->base, why));
     *hash = hash_finish(*hash);
     return code;
 }

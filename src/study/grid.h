@@ -28,8 +28,8 @@ status grid_definition(const study *s, uint64_t *hash, diagnostic *why);
 void grid_hash_text(uint64_t *hash, const char *text);
 status grid_hash_scene(uint64_t *hash, const scene *of, bool without_performance);
 /* The contents of files: background image, textures, meshes and the materials in mesh files. A scene without files does
- * not change the hash. */
-void grid_hash_files(uint64_t *hash, const scene *of);
+ * not change the hash. STATUS_FAILURE if the machine failed: the hash is then that of other files. */
+status grid_hash_files(uint64_t *hash, const scene *of, diagnostic *why);
 void grid_hash_point(uint64_t *hash, const study_point *point);
 
 /* The paths of the grid, by index; NULL after the last. */

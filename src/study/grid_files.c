@@ -48,19 +48,23 @@ static void hash_mesh(uint64_t *hash, const mesh *m)
 }
 
 /* The text of a slime's script. An unreadable script is skipped: loading it reports the error. */
-static void hash_script(uint64_t *hash, const scene *of, const mesh_entry *m)
+static status hash_script(uint64_t *hash, const scene *of, const mesh_entry *m, diagnostic *why)
 {
     enum { SCRIPT_BYTES_MAX = 1 << 20 };
     char *path = scene_file_path(of, m->script_path), *text = NULL;
     size_t size = 0;
-    if (path && file_read_below(path, of->limits.root, SCRIPT_BYTES_MAX, &text, &size, NULL) == STATUS_OK)
+    const status code =
+        path ? file_read_below(path, of->limits.root, SCRIPT_BYTES_MAX, &text, &size, why) : out_of_memory(why);
+    if (code == STATUS_OK)
         hash_array(hash, text, size, 1);
     free(text);
     free(path);
+    return code == STATUS_BAD_INPUT ? STATUS_OK : code;
 }
 
-void grid_hash_files(uint64_t *hash, const scene *of)
+status grid_hash_files(uint64_t *hash, const scene *of, diagnostic *why)
 {
+    status code = STATUS_OK;
     const image *sky = of->background.img;
     if (sky)
         hash_array(hash, sky->pixel, (size_t)sky->width * (size_t)sky->height * 3, sizeof *sky->pixel);
@@ -71,8 +75,9 @@ void grid_hash_files(uint64_t *hash, const scene *of)
         if (m->source == MESH_FILE && m->data)
             hash_mesh(hash, m->data);
         if (m->source == MESH_SLIME && m->script_path[0])
-            hash_script(hash, of, m);
+            THEN(code, hash_script(hash, of, m, why));
         for (int slot = 0; slot < face_materials_count(m->shading_materials); slot++)
             hash_visit(hash, face_materials_at(m->shading_materials, slot));
     }
+    return code;
 }

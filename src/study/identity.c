@@ -38,7 +38,7 @@ static status find_one(void *context, const study *s, size_t cell, scene *settin
     if (all->loads) {
         scene_load_files(setting, NULL); /* a file that cannot be read has no contents; measuring reports it */
         files = HASH_START;
-        grid_hash_files(&files, setting);
+        TRY(grid_hash_files(&files, setting, why));
     }
     const status code = meaning_of_scene(&said, setting, false);
     const int64_t words[] = {(int64_t)meaning_hash(&said), (int64_t)files};
@@ -102,7 +102,7 @@ status identities_find(const study *s, uint64_t **out, diagnostic *why)
 {
     search all = {.loads = files_vary(s), .files = HASH_START};
     if (!all.loads)
-        grid_hash_files(&all.files, s->base);
+        TRY(grid_hash_files(&all.files, s->base, why));
     return find_all(s, &all, out, why);
 }
 

@@ -56,8 +56,10 @@ size_t keep_missing_count(const study *s, const char *folder, size_t cell)
 {
     size_t missing = 0;
     for (size_t what = 0; what < KEPT_COUNT; what++) {
-        char *path = wanted(s, what) ? kept_path(folder, cell, what) : NULL;
-        missing += path && access(path, F_OK) != 0 ? 1 : 0;
+        if (!wanted(s, what))
+            continue;
+        char *path = kept_path(folder, cell, what);
+        missing += !path || access(path, F_OK) != 0; /* out of memory, it is made again, which changes nothing */
         free(path);
     }
     return missing;

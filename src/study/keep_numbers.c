@@ -2,6 +2,7 @@
  * when the grid has changed, the files are renamed. Files of cells that the study no longer has are named by identity,
  * and get a number again when the cell returns. */
 #include "study/keep.h"
+#include "base/system_error.h"
 #include "base/file.h"
 #include "base/text.h"
 #include "study/identity.h"
@@ -105,8 +106,7 @@ static status rename_in(const char *images, const char *name, char *other, diagn
     char *from = text_format("%s/%s", images, name), *to = other ? text_format("%s/%s", images, other) : NULL;
     status code = from && to ? STATUS_OK : out_of_memory(why);
     if (code == STATUS_OK && rename(from, to) != 0)
-        code = diagnose_at(why, from, STATUS_FAILURE, file_remedy(errno), "renaming to %s failed: %s", other,
-                           strerrordesc_np(errno));
+        code = system_error(why, STATUS_FAILURE, from, "renaming failed", errno, NULL);
     free(other);
     free(from);
     free(to);
@@ -141,6 +141,8 @@ static status each_name(const study *s, const char *images, const numbering *old
     struct dirent **names = NULL;
     const int count = scandir(images, &names, NULL, alphasort);
     status code = STATUS_OK;
+    if (count < 0 && errno != ENOENT)
+        return system_error(why, STATUS_FAILURE, images, "cannot be read", errno, "make the folder readable");
     for (int i = 0; i < count; i++) {
         if (code == STATUS_OK)
             code =

@@ -1,5 +1,6 @@
 /* JSON values next to rows, and the recorded meaning of old rows. */
 #include "base/file.h"
+#include "base/json_build.h"
 #include "base/text.h"
 #include "study/manifest.h"
 #include <inttypes.h>
@@ -32,15 +33,20 @@ status facts_read(const char *path, const char *root, json_t **out, diagnostic *
     size_t size;
     *out = NULL;
     TRY(file_read_below(path, root, FACTS_BYTES_MAX, &text, &size, why));
-    *out = json_loadb(text, size, 0, NULL);
+    json_error_t error;
+    bool no_memory;
+    *out = json_parse(text, size, 0, &error, &no_memory);
     free(text);
-    return STATUS_OK;
+    if (!no_memory)
+        return STATUS_OK;
+    diagnostic_locate(why, path, 0, 0);
+    return out_of_memory(why);
 }
 
 status facts_write(const json_t *facts, size_t flags, const char *path, diagnostic *why)
 {
     /* jansson writes reals independently of the locale. */
-    char *text = json_dumps(facts, JSON_INDENT(2) | flags), *line = text ? text_format("%s\n", text) : NULL;
+    char *text = json_text(facts, JSON_INDENT(2) | flags), *line = text ? text_format("%s\n", text) : NULL;
     const status code = line ? file_write(path, line, why) : out_of_memory(why);
     free(line);
     free(text);

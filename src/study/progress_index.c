@@ -197,7 +197,7 @@ status study_status(const study *s, const char *results, study_progress *out, di
     run_environment here;
     isa level;
     TRY(isa_choose(&level, why));
-    environment_read("", level, &here);
+    TRY(environment_read("", level, &here, why));
     TRY(progress_index_read(s, results, &(progress_index_filter){.environment = here.key}, &l, why));
     *out = (study_progress){.cells = l->cell_count,
                             .rows = l->rows - l->elsewhere,

@@ -1,4 +1,5 @@
 #include "study/row_files.h"
+#include "base/system_error.h"
 #include "base/file.h"
 #include "base/grow.h"
 #include "base/text.h"
@@ -74,8 +75,7 @@ static status list_shards(const char *folder, row_kind kind, shard_name **list, 
     *count = 0;
     *list = NULL;
     if (found < 0 && errno != ENOENT)
-        return diagnose_at(why, folder, STATUS_FAILURE, "make the folder readable", "cannot be read: %s",
-                           strerror(errno));
+        return system_error(why, STATUS_FAILURE, folder, "cannot be read", errno, "make the folder readable");
     *list = calloc(found > 0 ? (size_t)found : 1, sizeof **list);
     for (int i = 0; i < found; i++) {
         *count += *list && parse_shard(entries[i]->d_name, kind, &(*list)[*count]);

@@ -201,7 +201,7 @@ status study_run(const study *s, const study_options *options, size_t *ran, diag
                                           &r.with, why)
                              : out_of_memory(why);
     if (code == STATUS_OK) {
-        environment_read("", job_isa(r.with), &r.here);
+        code = environment_read("", job_isa(r.with), &r.here, why);
         r.build = progress_index_build();
     }
     THEN(code, run_read_rows(&r, why));

@@ -1,3 +1,4 @@
+#include "base/json_build.h"
 #include "study/run_facts.h"
 #include "base/build_id.h"
 #include "base/file.h"
@@ -96,7 +97,7 @@ json_t *run_study_facts(const study *s)
 
 static void add_disturbance(void *list, const char *text)
 {
-    json_array_append_new(list, borrowed(text));
+    json_add(list, borrowed(text));
 }
 
 /* Time that the hypervisor gave to others since boot, as a share of all time; null if unknown: proc(5), /proc/stat. */
@@ -133,7 +134,7 @@ static json_t *environment_facts(const run_environment *e)
 {
     json_t *facts = json_pack("{s:s}", "key", e->key);
     for (int i = 0; i < ENVIRONMENT_FACTS; i++)
-        json_object_set_new(facts, environment_names[i], borrowed(e->fact[i]));
+        json_add_as(&facts, environment_names[i], borrowed(e->fact[i]));
     return facts;
 }
 
@@ -155,7 +156,7 @@ json_t *run_facts(const study *s, const topology *machine, const run_environment
     char *commit = folder ? provenance_git_commit(dirname(folder), &dirty) : NULL;
     free(folder);
     json_t *disturbances = json_array();
-    usage_disturbances(load_sample_s, add_disturbance, disturbances);
+    usage_disturbances(load_sample_s, add_disturbance, &disturbances);
     json_t *is_dirty = commit ? json_boolean(dirty) : json_null();
     json_t *run =
         json_pack("{s:s, s:o, s:o, s:o, s:n, s:i, s:i, s:o, s:o, s:o, s:o}", "id", id, "environment",
@@ -169,8 +170,10 @@ json_t *run_facts(const study *s, const topology *machine, const run_environment
         "binding", taken(provenance_binding()), "libraries", libraries(), "disturbances", disturbances);
     json_t *texts = json_pack("{s:o, s:o, s:o, s:o}", "study_commit", taken(commit), "study_dirty", is_dirty,
                               "study_text", borrowed(s->text), "scene_text", borrowed(s->scene_text));
-    json_object_update(run, program);
-    json_object_update(run, texts);
+    if (json_object_update(run, program) != 0 || json_object_update(run, texts) != 0) {
+        json_decref(run);
+        run = NULL;
+    }
     json_decref(program);
     json_decref(texts);
     return run;

@@ -1,6 +1,8 @@
+#include "base/json_build.h"
 #include "study/runs.h"
 #include "base/file.h"
 #include "base/hash.h"
+#include "base/system_error.h"
 #include "base/text.h"
 #include "scene/model/open.h"
 #include "study/manifest.h"
@@ -94,6 +96,9 @@ status runs_read(const char *folder, const char *root, run_list **out, diagnosti
 {
     struct dirent **names = NULL;
     const int found = scandir(folder, &names, is_list_name, alphasort); /* runs.json is the first */
+    *out = NULL;
+    if (found < 0 && errno != ENOENT)
+        return system_error(why, STATUS_FAILURE, folder, "cannot be read", errno, "make the folder readable");
     run_list *all = calloc(1, sizeof *all);
     if (all)
         all->files = calloc(found > 0 ? (size_t)found : 1, sizeof(json_t *));
@@ -223,11 +228,11 @@ static status end_run(json_t *list, void *context, diagnostic *why)
             continue;
         json_t *rows = json_object();
         for (size_t k = 0; k < e->count; k++)
-            json_object_set_new(
-                rows, e->seals[k].table,
-                json_pack("{s:I, s:s}", "count", (json_int_t)e->seals[k].rows, "check", e->seals[k].check));
-        json_object_set_new(run, "ended_utc", run_time());
-        return json_object_set_new(run, "rows", rows) == 0 ? STATUS_OK : out_of_memory(why);
+            json_add_as(&rows, e->seals[k].table,
+                        json_pack("{s:I, s:s}", "count", (json_int_t)e->seals[k].rows, "check", e->seals[k].check));
+        return json_object_set_new(run, "ended_utc", run_time()) == 0 && json_object_set_new(run, "rows", rows) == 0
+                   ? STATUS_OK
+                   : out_of_memory(why);
     }
     return STATUS_OK;
 }
@@ -261,7 +266,7 @@ status runs_merge(const char *folder, const char *root, diagnostic *why)
     if (all->count > 0) {
         json_t *fresh = json_copy(all->files[0]);
         if (fresh)
-            json_object_set_new(fresh, "runs", json_array());
+            json_add_as(&fresh, "runs", json_array());
         code = fresh ? change(folder, root, list_path(folder, 0, 1), fresh, add_missing, all, why) : out_of_memory(why);
         json_decref(fresh);
     }

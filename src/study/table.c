@@ -1,6 +1,7 @@
 #include "study/table.h"
 #include "base/csv.h"
 #include "base/file.h"
+#include "base/system_error.h"
 #include "base/text.h"
 #include "study/csv_layout.h"
 #include <errno.h>
@@ -21,10 +22,15 @@ struct table {
 
 static status failed(const char *path, const char *doing, int error, diagnostic *why)
 {
-    const char *first = file_remedy(error);
-    char remedy[160];
-    snprintf(remedy, sizeof remedy, "%s%srun the command again to resume", first ? first : "", first ? ", then " : "");
-    return diagnose_at(why, path, STATUS_FAILURE, remedy, "%s failed: %s", doing, strerrordesc_np(error));
+    char what[96];
+    snprintf(what, sizeof what, "%s failed", doing);
+    const status code = system_error(why, STATUS_FAILURE, path, what, error, NULL);
+    if (why) {
+        const size_t length = strlen(why->remedy);
+        snprintf(why->remedy + length, sizeof why->remedy - length, "%srun the command again to resume",
+                 length ? ", then " : "");
+    }
+    return code;
 }
 
 /* Appends all bytes and flushes; on failure the file is truncated to its old size and errno is set. */

@@ -1,3 +1,5 @@
+#include "base/system_error.h"
+#include "base/json_build.h"
 #include "study/upgrade.h"
 #include "base/file.h"
 #include "base/hash.h"
@@ -11,6 +13,7 @@
 #include "study/rows.h"
 #include <dirent.h>
 #include <inttypes.h>
+#include <errno.h>
 #include <stdlib.h>
 #include <string.h>
 #include <unistd.h>
@@ -155,11 +158,10 @@ static json_t *run_json(const old_run *run, const run_environment *e, const json
 {
     json_t *environment = json_pack("{s:s}", "key", e->key), *rows = json_object();
     for (int i = 0; i < ENVIRONMENT_FACTS; i++)
-        json_object_set_new(environment, environment_names[i], json_string(e->fact[i]));
+        json_add_as(&environment, environment_names[i], json_string(e->fact[i]));
     for (size_t i = 0; i < run->seal_count; i++)
-        json_object_set_new(
-            rows, run->seal[i].table,
-            json_pack("{s:I, s:s}", "count", (json_int_t)run->seal[i].rows, "check", run->seal[i].check));
+        json_add_as(&rows, run->seal[i].table,
+                    json_pack("{s:I, s:s}", "count", (json_int_t)run->seal[i].rows, "check", run->seal[i].check));
     return json_pack("{s:s, s:o, s:O?, s:o}", "id", run->id, "environment", environment, "recorded",
                      json_object_get(manifest, "runs"), "rows", rows);
 }
@@ -173,7 +175,7 @@ static status write_runs(const upgrade *u, const row_files *files, diagnostic *w
         code = facts_read(old, scene_root(u->s->base), &manifest, why);
     for (size_t i = 0; code == STATUS_OK && i < u->count; i++) {
         const run_environment e = facts_of(files, u->runs[i].of->key);
-        json_array_append_new(entries, run_json(&u->runs[i], &e, manifest));
+        json_add(&entries, run_json(&u->runs[i], &e, manifest));
     }
     if (code == STATUS_OK)
         facts = json_pack("{s:i, s:o, s:O?, s:O}", "schema", 2, "study", run_study_facts(u->s), "machine",
@@ -211,6 +213,8 @@ static status copy_folder(const upgrade *u, const char *name, diagnostic *why)
     struct dirent **entries = NULL;
     const int count = from ? scandir(from, &entries, NULL, alphasort) : -1;
     status code = from && to ? STATUS_OK : out_of_memory(why);
+    if (code == STATUS_OK && count < 0 && errno != ENOENT)
+        code = system_error(why, STATUS_FAILURE, from, "cannot be read", errno, "make the folder readable");
     if (code == STATUS_OK && count > 0)
         code = file_make_directory(to, why);
     for (int i = 0; i < count; i++) {

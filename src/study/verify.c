@@ -68,7 +68,10 @@ void study_environment_difference(const study *s, const char *results, char *tex
     text[0] = 0;
     if (isa_choose(&level, NULL) != STATUS_OK || row_files_read(s, results, ROWS, &files, NULL) != STATUS_OK)
         return;
-    environment_read("", level, &here);
+    if (environment_read("", level, &here, NULL) != STATUS_OK) {
+        row_files_destroy(files);
+        return;
+    }
     for (size_t i = files->row_count; i > 0 && !text[0]; i--)
         if (files->rows[i - 1].run >= 0)
             environment_difference(&here, &files->runs->entry[files->rows[i - 1].run].here, text, size);

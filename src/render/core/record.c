@@ -19,7 +19,7 @@ static status write_with_scene(image_rows rows, const scene *of, const char *pat
 {
     shared_texts texts = {.count = 0};
     if (of && image_format_of(path) == IMAGE_PNG)
-        shared_texts_make(of, &texts);
+        TRY(shared_texts_make(of, &texts, why));
     rows.texts = texts.item;
     rows.text_count = texts.count;
     const status code = image_write_rows(&rows, path, bits, why);

@@ -1,6 +1,7 @@
 #include "base/cancel.h"
 #include "scene/assets/mesh_child.h"
 
+#include "base/system_error.h"
 #include "base/text.h"
 #include <errno.h>
 #include <poll.h>
@@ -84,8 +85,10 @@ static size_t take(mesh_child *child, void *bytes, size_t size)
         ssize_t got = read(child->out, bytes, size);
         if (got > 0)
             return (size_t)got;
-        if (got == 0 || errno != EINTR)
-            hang_up(&child->out);
+        if (got < 0 && errno == EINTR)
+            continue;
+        child->error = got < 0 ? errno : 0;
+        hang_up(&child->out);
     }
     return 0;
 }
@@ -94,6 +97,9 @@ status mesh_child_read(void *context, void *bytes, size_t size, diagnostic *why)
 {
     for (size_t done = 0; done < size;) {
         size_t got = take(context, (char *)bytes + done, size - done);
+        const int error = ((const mesh_child *)context)->error;
+        if (got == 0 && error)
+            return system_error(why, STATUS_FAILURE, NULL, "cannot read the importer's answer", error, "try again");
         if (got == 0)
             return diagnose(why, STATUS_BAD_INPUT, NULL, "the importer's answer is truncated");
         done += got;

@@ -15,6 +15,7 @@ typedef struct mesh_child {
     size_t said_length;
     bool late;      /* killed after the deadline */
     bool cancelled; /* killed because the work was (base/cancel.h) */
+    int error;      /* errno of a failed read of its output */
 } mesh_child;
 
 /* The path of cuvette-import, the first that exists: $CUVETTE_IMPORT (only this one if it is set); the folder of the

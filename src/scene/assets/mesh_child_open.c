@@ -1,5 +1,6 @@
 #include "scene/assets/mesh_child.h"
 #include "base/spawn.h"
+#include "base/system_error.h"
 
 #include "base/text.h"
 #include <errno.h>
@@ -10,12 +11,6 @@
 #include <string.h>
 #include <sys/pidfd.h>
 #include <unistd.h>
-
-static status machine_error(diagnostic *why, const char *doing, int error)
-{
-    const char *reason = strerrordesc_np(error);
-    return diagnose(why, STATUS_FAILURE, NULL, "%s: %s", doing, reason ? reason : "unknown error");
-}
 
 /* Both ends above the standard descriptors, some of which the caller may have closed. */
 static int open_pipe(int ends[2])
@@ -89,8 +84,7 @@ status mesh_child_open(mesh_child *child, const char *path, const mesh_limits *l
                            "install cuvette with its importer, or set CUVETTE_IMPORT to its path",
                            "cannot start the mesh importer: %s", reason ? reason : "unknown error");
     } else if (error) {
-        diagnostic_locate(why, program, 0, 0);
-        code = machine_error(why, "cannot start the mesh importer", error);
+        code = system_error(why, STATUS_FAILURE, program, "cannot start the mesh importer", error, "try again");
     }
     free(program);
     free(name);

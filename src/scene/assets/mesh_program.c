@@ -2,6 +2,7 @@
 #include "scene/assets/mesh_child.h"
 
 #include "base/installed.h"
+#include <errno.h>
 #include <stdlib.h>
 #include <string.h>
 
@@ -18,5 +19,5 @@ char *mesh_child_program(void)
     if (asked && *asked)
         return strdup(asked);
     char *path = installed_find(places, sizeof places / sizeof *places, PROGRAM);
-    return path ? path : strdup(CUVETTE_LIBEXEC "/" PROGRAM);
+    return path || errno == ENOMEM ? path : strdup(CUVETTE_LIBEXEC "/" PROGRAM);
 }

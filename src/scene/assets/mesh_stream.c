@@ -46,7 +46,7 @@ static status damaged(diagnostic *why, const char *what)
 
 static status no_room(diagnostic *why)
 {
-    return diagnose(why, STATUS_FAILURE, NULL, "out of memory for the mesh");
+    return diagnose(why, STATUS_FAILURE, MEMORY_REMEDY, "out of memory for the mesh");
 }
 
 static status read_header(const mesh_source *source, const mesh_limits *limits, mesh_wire_header *header,

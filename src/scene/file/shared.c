@@ -80,7 +80,7 @@ status shared_scene_text(const scene *s, char **text, diagnostic *why)
     *text = NULL;
     TRY(shared_scene_check(s, why));
     scene *bare = scene_clone(s);
-    status code = bare ? scene_each_param(s, forget_machine, bare) : out_of_memory(why);
+    status code = bare && scene_each_param(s, forget_machine, bare) == STATUS_OK ? STATUS_OK : out_of_memory(why);
     THEN(code, scene_write_text(bare, NULL, false, text, why));
     scene_destroy(bare);
     if (code == STATUS_OK && strlen(*text) > SHARED_TEXT_MAX) {
@@ -103,9 +103,11 @@ status shared_scene_code(const char *text, char **code, diagnostic *why)
     return *code ? STATUS_OK : out_of_memory(why);
 }
 
-void shared_texts_make(const scene *s, shared_texts *texts)
+status shared_texts_make(const scene *s, shared_texts *texts, diagnostic *why)
 {
     *texts = (shared_texts){.item = {{"Software", "Cuvette " CUVETTE_VERSION}}, .count = 1};
-    if (shared_scene_text(s, &texts->scene, NULL) == STATUS_OK)
+    const status code = shared_scene_text(s, &texts->scene, why);
+    if (code == STATUS_OK)
         texts->item[texts->count++] = (image_text){SHARED_KEYWORD, texts->scene};
+    return code == STATUS_BAD_INPUT ? STATUS_OK : code;
 }

@@ -23,13 +23,13 @@ status shared_scene_code(const char *text, char **code, diagnostic *why);
 #define SHARED_KEYWORD "Cuvette scene" /* of the PNG text */
 
 /* The texts of a PNG image of the scene: the program's version, and the scene unless it cannot be shared. Free
- * scene. */
+ * scene. STATUS_FAILURE: out of memory. */
 typedef struct shared_texts {
     image_text item[2];
     int count;
     char *scene;
 } shared_texts;
-void shared_texts_make(const scene *s, shared_texts *texts);
+status shared_texts_make(const scene *s, shared_texts *texts, diagnostic *why);
 
 /* A shared page holds the code between these. */
 #define SHARED_PAGE_BEGIN "<script type=\"text/plain\" id=\"cuvette-scene\">"

@@ -1,4 +1,5 @@
 /* API: the state, the scene, its parameters and undo. See web/README.md. */
+#include "base/json_build.h"
 #include "web/api/api.h"
 #include "web/api/scene_since.h"
 #include "base/number.h"
@@ -85,7 +86,7 @@ static void note_inert(set_request *x, const scene *s)
         if (!inert_ask(s, path, NULL, &answer) || strcmp(answer.rule, "time-0") == 0)
             continue;
         x->notes = x->notes ? x->notes : json_array();
-        json_array_append_new(x->notes, api_note(answer.note.place, answer.note.text, answer.note.remedy));
+        json_add(&x->notes, api_note(answer.note.place, answer.note.text, answer.note.remedy));
     }
 }
 

@@ -1,5 +1,6 @@
 /* API: objects: add, remove, move, turn, scale, rename, change material (/api/objects). new_objects.c sets the
  * properties of new objects. */
+#include "base/json_build.h"
 #include "web/api/api.h"
 #include "base/text.h"
 #include "report/json.h"
@@ -206,7 +207,7 @@ status api_contents(call *c)
     const status code = s && names ? contents_find(s, name, &inside, &c->why) : out_of_memory(&c->why);
     c->refused = 404;
     for (size_t i = 0; i < inside.count; i++)
-        json_array_append_new(names, json_of_text(inside.name[i]));
+        json_add(&names, json_of_text(inside.name[i]));
     if (code == STATUS_OK && contents_ball(s, name, &centre, &radius))
         ball = json_pack("{s:[f,f,f], s:f}", "centre", centre.x, centre.y, centre.z, "radius", radius);
     contents_clear(&inside);

@@ -37,7 +37,7 @@ typedef struct encoding {
 static status encode_with_scene(const shared_image *p, int bits, unsigned char **bytes, size_t *size, diagnostic *why)
 {
     shared_texts texts;
-    shared_texts_make(p->of, &texts);
+    TRY(shared_texts_make(p->of, &texts, why));
     image_rows rows = image_rows_of(p->linear);
     rows.texts = texts.item;
     rows.text_count = texts.count;

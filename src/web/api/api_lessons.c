@@ -1,5 +1,6 @@
 /* API: the lessons of the gallery, those of the folder and those that belong to the program, and thumbnails. Lessons of
  * the program are read from its own folder, which is outside the chosen one; requests name lessons, never paths. */
+#include "base/json_build.h"
 #include "web/api/api.h"
 
 #include "base/text.h"
@@ -78,8 +79,8 @@ static void list_one(lesson_visit *v, lesson *l, const char *path, bool own, con
     json_t *one = l ? lesson_json(l)
                     : json_pack("{s:o,s:o}", "file", json_of_text(strrchr(path, '/') ? strrchr(path, '/') + 1 : path),
                                 "error", json_of_diagnostic(error));
-    json_object_set_new(one, "own", json_boolean(own));
-    json_array_append_new(v->list, one);
+    json_add_as(&one, "own", json_boolean(own));
+    json_add(&v->list, one);
 }
 
 static void find_one(lesson_visit *v, lesson *l, const char *path, bool own, const diagnostic *error)

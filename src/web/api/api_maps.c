@@ -1,4 +1,5 @@
 /* API: maps of the rays and the time of each pixel of the final image, with the numbers of their scales. */
+#include "base/json_build.h"
 #include "web/api/api.h"
 
 #include "image/heatmap.h"
@@ -50,7 +51,7 @@ static json_t *colors_json(void)
         char text[8];
         heatmap_color(i / (COLORS - 1.0), rgb);
         snprintf(text, sizeof text, "#%02x%02x%02x", rgb[0], rgb[1], rgb[2]);
-        json_array_append_new(list, json_string(text));
+        json_add(&list, json_string(text));
     }
     return list;
 }
@@ -70,7 +71,7 @@ status api_maps(call *c)
                              set.picture_height, "left", set.left, "wall_s", json_of_real(set.wall_s), "threads",
                              set.threads, "colors", colors_json());
     for (int i = 0; json && i < PIXEL_MAPS; i++)
-        json_object_set_new(json, names[i], map_json(&set.map[i], units[i]));
+        json_add_as(&json, names[i], map_json(&set.map[i], units[i]));
     return api_reply_json(c, json);
 }
 

@@ -1,4 +1,5 @@
 /* API: the scene's optics compared with closed forms, and their curves, as `cuvette realism` writes them. */
+#include "base/json_build.h"
 #include "web/api/api.h"
 
 #include "base/text_writer.h"
@@ -23,8 +24,8 @@ static json_t *curves_of(const scene *s)
     for (int i = 0; i < REALISM_CURVE_COUNT; i++) {
         const realism_curve which = (realism_curve)i;
         if (realism_check_curve(s, which, NULL) == STATUS_OK)
-            json_array_append_new(list, json_pack("{s:s, s:s, s:s}", "name", realism_curve_name(which), "x",
-                                                  realism_curve_x(which), "y", realism_curve_y(which)));
+            json_add(&list, json_pack("{s:s, s:s, s:s}", "name", realism_curve_name(which), "x", realism_curve_x(which),
+                                      "y", realism_curve_y(which)));
     }
     return list;
 }
@@ -39,7 +40,7 @@ static status measure(realism_question *q, const scene *s, FILE *csv, diagnostic
     }
     json_t *json = realism_json(&report, q->scene_name);
     if (json)
-        json_object_set_new(json, "curves", curves_of(s));
+        json_add_as(&json, "curves", curves_of(s));
     return api_reply_json(q->c, json);
 }
 

@@ -1,4 +1,5 @@
 /* API: studies and their results: the section "Studies" of web/README.md. */
+#include "base/json_build.h"
 #include "base/number.h"
 #include "base/text.h"
 #include "report/json.h"
@@ -24,7 +25,7 @@ static void add_progress(const lab *l, const study *s, json_t *json)
                                            "marked", (json_int_t)progress.rows_marked, "disturbed",
                                            (json_int_t)progress.rows_disturbed));
     if (code != STATUS_OK)
-        json_object_set_new(json, "error", json_of_diagnostic(&why));
+        json_add_as(&json, "error", json_of_diagnostic(&why));
 }
 
 /* One study of the list; a study that cannot be read (s NULL) has its error. */
@@ -35,7 +36,7 @@ static json_t *study_json(const lab *l, const char *name, const char *file, cons
     if (json && s && study_json_about(s, json))
         add_progress(l, s, json);
     if (json && !s)
-        json_object_set_new(json, "error", json_of_diagnostic(why));
+        json_add_as(&json, "error", json_of_diagnostic(why));
     return json;
 }
 
@@ -119,7 +120,7 @@ status api_study(call *c)
     if (file && (code == STATUS_OK || code == STATUS_BAD_INPUT)) {
         json_t *json = study_json(l, http_path_value(c->request, "name"), file, s, &c->why), *summary = NULL;
         if (s && study_json_summary(s, l->settings.results, &summary, &c->why) != STATUS_OK)
-            json_object_set_new(json, "error", json_of_diagnostic(&c->why));
+            json_add_as(&json, "error", json_of_diagnostic(&c->why));
         json_object_update_new(json, json_pack("{s:b, s:o, s:o, s:o, s:o}", "lacks_files", s && lacks_files(l, s),
                                                "summary", summary ? summary : json_null(), "runs",
                                                s ? study_runs(l, s->name) : json_array(), "figures",

@@ -1,5 +1,6 @@
 /* API: the ray tree of a pixel as JSON, text or drawing, as `cuvette trace` writes it; and the linter's notes on the
  * scene. */
+#include "base/json_build.h"
 #include "web/api/api.h"
 
 #include "base/number.h"
@@ -95,13 +96,17 @@ status api_trace_drawing(call *c)
 
 static void take_note(void *list, const scene_note *note)
 {
-    json_array_append_new(list, api_note(note->place, note->text, note->remedy));
+    json_add(list, api_note(note->place, note->text, note->remedy));
 }
 
 static status collect_notes(void *context, scene *s, diagnostic *why)
 {
     call *c = context;
-    return lint_scene(s, c->l->settings.level, &(note_taker){take_note, json_object_get(c->json, "notes")}, why);
+    json_t *list = json_array();
+    status code = lint_scene(s, c->l->settings.level, &(note_taker){take_note, &list}, why);
+    if (json_object_set_new(c->json, "notes", list) != 0 && code == STATUS_OK)
+        code = out_of_memory(why);
+    return code;
 }
 
 status api_notes(call *c)

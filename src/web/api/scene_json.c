@@ -1,4 +1,5 @@
 /* The JSON of GET /api/scene: objects, outlines of solids, shapes, and rows of parameters. */
+#include "base/json_build.h"
 #include "web/api/api.h"
 #include "geometry/shapes/shape.h"
 #include "report/json.h"
@@ -52,8 +53,10 @@ static json_t *outline_json(const solid_shape *shape)
     for (int i = 0; i < count; i++) {
         const shape_ring *r = &rings[i];
         if (i == 0 || r->part != rings[i - 1].part)
-            json_array_append_new(parts, part = json_array());
-        json_array_append_new(part, json_pack("[f,f,f,i,f]", r->y, r->x, r->z, r->corners, r->from_deg));
+            part = json_array();
+        json_add(&part, json_pack("[f,f,f,i,f]", r->y, r->x, r->z, r->corners, r->from_deg));
+        if (i + 1 == count || rings[i + 1].part != r->part)
+            json_add(&parts, part);
     }
     return parts;
 }
@@ -64,7 +67,7 @@ static json_t *outlines_json(const scene *s)
     json_t *all = json_object();
     for (size_t i = 0; i < s->solid_count; i++)
         if (s->solids[i].visible && shape_of(&s->solids[i].shape)->rings)
-            json_object_set_new(all, s->solids[i].name, outline_json(&s->solids[i].shape));
+            json_add_as(&all, s->solids[i].name, outline_json(&s->solids[i].shape));
     return all;
 }
 
@@ -74,8 +77,8 @@ static json_t *shapes_json(void)
     json_t *list = json_array();
     const shape_rule *rule;
     for (int k = 0; (rule = shape_of_kind((shape_kind)k)); k++)
-        json_array_append_new(list, json_pack("{s:s,s:s,s:b}", "shape", rule->word, "meaning", rule->meaning,
-                                              "unbounded", (int)rule->unbounded));
+        json_add(&list, json_pack("{s:s,s:s,s:b}", "shape", rule->word, "meaning", rule->meaning, "unbounded",
+                                  (int)rule->unbounded));
     return list;
 }
 
@@ -85,7 +88,8 @@ static json_t *values_by_path(const json_t *rows)
     json_t *values = json_object();
     for (size_t i = 0; values && i < json_array_size(rows); i++) {
         const json_t *row = json_array_get(rows, i);
-        json_object_set(values, json_string_value(json_object_get(row, "path")), json_object_get(row, "value"));
+        json_add_as(&values, json_string_value(json_object_get(row, "path")),
+                    json_incref(json_object_get(row, "value")));
     }
     return values;
 }

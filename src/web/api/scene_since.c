@@ -1,5 +1,6 @@
 /* GET /api/scene?since=GENERATION: the latest scenes that were sent are remembered as JSON, and a page that has one of
  * them gets only what differs. */
+#include "base/json_build.h"
 #include "web/api/scene_since.h"
 #include "report/json.h"
 
@@ -104,7 +105,7 @@ char *sent_scenes_reply(sent_scenes *s, json_t *scene, long long since)
         known |= s->scene[i] && generation_of(s->scene[i]) == generation_of(scene);
     }
     json_t *reply = before ? scene_delta(before, scene) : json_incref(scene);
-    char *text = reply ? json_dumps(reply, JSON_COMPACT) : NULL;
+    char *text = reply ? json_text(reply, JSON_COMPACT) : NULL;
     json_decref(reply);
     if (!known && json_array_size(json_object_get(scene, "params")) <= PARAMS_MAX) {
         json_decref(s->scene[s->next]);

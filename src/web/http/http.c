@@ -102,7 +102,7 @@ status http_start(const http_settings *settings, http_server **out, diagnostic *
     *out = NULL;
     http_server *s = calloc(1, sizeof *s);
     if (!s)
-        return diagnose(why, STATUS_FAILURE, "", "out of memory for the server");
+        return diagnose(why, STATUS_FAILURE, MEMORY_REMEDY, "out of memory for the server");
     s->settings = *settings;
     pthread_mutex_init(&s->bucket_lock, NULL);
     pthread_mutex_init(&s->watch_lock, NULL);

@@ -1,6 +1,7 @@
 /* Streams of server-sent events (HTML Standard, 9.2). Each stream has a short queue of payloads that are shared by
  * all streams; its connection's thread sleeps until an event arrives, the client leaves, or a keep-alive comment is
  * due. */
+#include "base/json_build.h"
 #include "web/http/http_private.h"
 
 #include <errno.h>
@@ -173,7 +174,7 @@ static bool is_event_name(const char *name)
 /* "event: NAME", "data: VALUE", an empty line; compact JSON has no line breaks. */
 static payload *payload_of(const char *name, const json_t *value)
 {
-    char *json = json_dumps(value, JSON_COMPACT | JSON_ENCODE_ANY);
+    char *json = json_text(value, JSON_COMPACT | JSON_ENCODE_ANY);
     if (!json)
         return NULL;
     static const char event[] = "event: ", data[] = "\ndata: ", end[] = "\n\n";
@@ -217,7 +218,7 @@ status http_publish(http_server *s, const char *event, const json_t *value, diag
                         "\"%s\" is not a valid event name", event);
     payload *p = payload_of(event, value);
     if (!p)
-        return diagnose(why, STATUS_FAILURE, "", "out of memory for the event %s", event);
+        return diagnose(why, STATUS_FAILURE, MEMORY_REMEDY, "out of memory for the event %s", event);
     pthread_mutex_lock(&s->event_lock);
     for (int i = 0; i < s->settings.event_clients; i++)
         if (s->event_client[i]) {

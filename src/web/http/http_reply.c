@@ -1,4 +1,5 @@
 /* Replies of the HTTP server. */
+#include "base/json_build.h"
 #include "web/http/http_private.h"
 #include "report/json.h"
 
@@ -80,7 +81,7 @@ void http_reply_file(http_reply *r, int code, const char *type, int file, size_t
 
 void http_reply_json(http_reply *r, int code, json_t *value)
 {
-    char *text = value ? json_dumps(value, JSON_COMPACT | JSON_ENCODE_ANY) : NULL;
+    char *text = value ? json_text(value, JSON_COMPACT | JSON_ENCODE_ANY) : NULL;
     json_decref(value);
     http_reply_bytes(r, code, "application/json", text, text ? strlen(text) : 0);
 }

@@ -35,7 +35,8 @@ status http_watch_start(http_server *s, diagnostic *why)
 {
     s->slots = calloc((size_t)s->settings.connections, sizeof *s->slots);
     if (!s->slots)
-        return diagnose(why, STATUS_FAILURE, "", "out of memory for %d connections", s->settings.connections);
+        return diagnose(why, STATUS_FAILURE, MEMORY_REMEDY, "out of memory for %d connections",
+                        s->settings.connections);
     for (int i = 0; i < s->settings.connections; i++)
         s->slots[i].socket = -1;
     s->watching = pthread_create(&s->watch, NULL, watch, s) == 0;

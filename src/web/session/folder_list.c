@@ -1,6 +1,7 @@
 /* Lists the files of the folder that the laboratory can open: classified by extension; scenes and hand scripts, both
  * YAML, by their keys. Breadth-first, so that a large deep folder cannot hide the files above it when a limit is
  * reached. */
+#include "base/json_build.h"
 #include "web/session/folder.h"
 #include "base/grow.h"
 #include "base/text.h"
@@ -169,13 +170,13 @@ static void visit_folder(listing *l, const char *name)
 static json_t *listing_json(const listing *l)
 {
     json_t *all = json_object();
-    json_object_set_new(all, "folder", json_string_nocheck(folder_title(l->of)));
+    json_add_as(&all, "folder", json_string_nocheck(folder_title(l->of)));
     for (int use = 0; use < USE_COUNT; use++) {
         json_t *list = json_array();
         sort(&l->found[use]);
         for (size_t i = 0; i < l->found[use].count; i++)
             json_array_append_new(list, json_string(l->found[use].name[i]));
-        json_object_set_new(all, use_names[use], list);
+        json_add_as(&all, use_names[use], list);
     }
     return all;
 }

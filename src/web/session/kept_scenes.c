@@ -1,4 +1,5 @@
 /* The files of unsaved scenes: names, locks, first lines. */
+#include "base/json_build.h"
 #include "web/session/kept_scenes.h"
 #include "base/file.h"
 #include "base/text.h"
@@ -230,7 +231,7 @@ status kept_scene_write(const char *folder, kept_scene *own, json_t *about, cons
                         KEPT_SCENE_BYTES_MAX / 2);
     TRY(make_folder(folder, why));
     kept_scene fresh = {.path = NULL};
-    char *line = set_time(about) ? json_dumps(about, JSON_COMPACT | JSON_ENSURE_ASCII) : NULL;
+    char *line = set_time(about) ? json_text(about, JSON_COMPACT | JSON_ENSURE_ASCII) : NULL;
     const bool named = own->path || choose_name(folder, &fresh);
     int fd = -1;
     status code =

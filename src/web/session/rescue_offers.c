@@ -1,4 +1,5 @@
 /* The scenes that are offered: opening and discarding them. */
+#include "base/json_build.h"
 #include "web/session/rescue_private.h"
 #include "report/json.h"
 
@@ -125,7 +126,7 @@ bool rescue_json(rescue *r, json_t *state)
     json_t *offers = json_array();
     pthread_mutex_lock(&r->lock);
     for (size_t i = 0; i < r->offer_count; i++)
-        json_array_append_new(offers, offer_json(&r->offers[i]));
+        json_add(&offers, offer_json(&r->offers[i]));
     json_t *trouble = r->failed ? json_of_diagnostic(&r->trouble) : json_null();
     pthread_mutex_unlock(&r->lock);
     return json_object_set_new(state, "rescued", offers) == 0 && json_object_set_new(state, "unkept", trouble) == 0;

@@ -1,4 +1,5 @@
 /* The scene document: versions, undo and redo stacks, and sharing of loaded data. */
+#include "base/json_build.h"
 #include "web/session/scene_document_private.h"
 #include "scene/model/params.h"
 #include "report/json.h"
@@ -368,7 +369,7 @@ bool scene_document_json(scene_document *d, json_t *state)
         json_pack("{s:I, s:o, s:o, s:b, s:o, s:o}", "generation", (json_int_t)d->generation, "file",
                   d->now.file ? json_of_text(d->now.file) : json_null(), "title", json_of_text(d->now.s->title),
                   "saved", d->now.number == d->saved_number, "undo", top_json(&d->undo), "redo", top_json(&d->redo));
-    json_object_set_new(json, "view", scene_document_view_json(d));
+    json_add_as(&json, "view", scene_document_view_json(d));
     pthread_mutex_unlock(&d->lock);
     return json_object_update_new(state, json) == 0;
 }

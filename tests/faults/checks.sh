@@ -1,0 +1,44 @@
+#!/bin/bash
+# tests/faults/checks.sh [N...]: removes each check of checks.tsv (or those of the numbers given) from a copy of the
+# sources, builds it, and expects that the injected faults find it. A missing check that they do not find is reported,
+# and the status is 1. BUILD is the folder with the tools of make faults.
+set -euo pipefail
+root=$(cd "$(dirname "$0")/../.." && pwd)
+work=$(mktemp -d "${TMPDIR:-/tmp}/cuvette-checks.XXXXXX")
+trap 'rm -rf "$work"' EXIT
+cp -r "$root/Makefile" "$root/src" "$root/tests" "$root/.ci" "$root/plots" "$work"
+mkdir -p "$work/experiments"
+cp -r "$root"/experiments/{scenes,hands,cluster} "$work/experiments"
+tools=(build/faults/preload.so build/faults/faults build/faults/engine_user build/faults/lab_client)
+build() {
+    CCACHE_NOHASHDIR=1 make -s -j2 -C "$work" warnings= build/cuvette build/cuvette-import "${tools[@]}" >"$work/log" 2>&1 || {
+        cat "$work/log" >&2
+        exit 2
+    }
+}
+missed=0 number=0
+build
+while IFS=$'\t' read -r file old new command kind; do
+    [[ $file == \#* ]] && continue
+    number=$((number + 1))
+    [[ $# -eq 0 || " $* " == *" $number "* ]] || continue
+    text=$(<"$root/$file")
+    [[ $text == *"$old"* ]] || {
+        echo "checks.sh: check $number: $file has no '$old' any more" >&2
+        exit 2
+    }
+    printf '%s\n' "${text/"$old"/"$new"}" >"$work/$file"
+    build
+    CUVETTE=$work/build/cuvette BUILD=$work/build FAULTS_EVERY=1 FAULTS_DEPTH=0 FAULTS_ONLY=$command FAULTS_KINDS=$kind \
+        FAULTS_SHOWN=1 bash "$work/tests/faults.sh" >"$work/out" 2>&1 && status=0 || status=$?
+    found=$(sed -n 's/^# \(crash\|silent\|message\|leftover\|leak\), call/\1 of call/p' "$work/out" | head -1 | cut -c 1-150)
+    if ((status == 1)) && [[ $found ]]; then
+        echo "ok $number - $file without '$old': $found"
+    else
+        echo "not ok $number - $file without '$old': not found"
+        tail -3 "$work/out" | sed 's/^/# /'
+        missed=1
+    fi
+    cp "$root/$file" "$work/$file"
+done <"$root/tests/faults/checks.tsv"
+exit $missed

@@ -1,0 +1,175 @@
+/* A client that starts `cuvette lab`, makes requests, and ends it by SIGINT. It prints the replies, numbers apart, so
+ * that the oracle compares them; on standard error the error of a reply with 500, or of the server itself, if it ends.
+ * A request that failed is made again: the laboratory must have survived. CUVETTE names the program. */
+#include <arpa/inet.h>
+#include <ctype.h>
+#include <errno.h>
+#include <signal.h>
+#include <stdbool.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+#include <sys/socket.h>
+#include <sys/wait.h>
+#include <unistd.h>
+
+enum { REPLY_MAX = 1 << 21 };
+
+static pid_t server;
+static int port;
+static char token[64];
+static char reply[REPLY_MAX];
+static bool any_failed;
+
+static int start(void)
+{
+    int out[2];
+    char here[512], state[600], line[256] = "";
+    if (pipe(out) != 0 || !getcwd(here, sizeof here))
+        return 3;
+    snprintf(state, sizeof state, "%s/../state", here);
+    setenv("XDG_STATE_HOME", state, 1);
+    server = fork();
+    if (server == 0) {
+        dup2(out[1], 1);
+        close(out[0]);
+        close(out[1]);
+        execl(getenv("CUVETTE"), "cuvette", "lab", "--no-browser", "--threads", "1", "rod.yaml", (char *)NULL);
+        _exit(126);
+    }
+    close(out[1]);
+    FILE *said = fdopen(out[0], "r");
+    char *first = said ? fgets(line, sizeof line, said) : NULL;
+    return first && sscanf(line, "http://127.0.0.1:%d/?token=%63[0-9a-f]", &port, token) == 2 ? 0 : 1;
+}
+
+/* The status of the reply, whose body is then in reply; 0: the connection ended without one. */
+static int ask(const char *method, const char *path, const char *body)
+{
+    char head[1024];
+    const int fd = socket(AF_INET, SOCK_STREAM, 0);
+    struct sockaddr_in to = {
+        .sin_family = AF_INET, .sin_port = htons((unsigned short)port), .sin_addr.s_addr = htonl(INADDR_LOOPBACK)};
+    size_t used = 0;
+    int status = 0;
+    const int length = snprintf(head, sizeof head,
+                                "%s %s HTTP/1.1\r\nHost: 127.0.0.1:%d\r\nAuthorization: Bearer %s\r\n"
+                                "Content-Type: application/json\r\nContent-Length: %zu\r\nConnection: close\r\n\r\n%s",
+                                method, path, port, token, strlen(body), body);
+    if (connect(fd, (struct sockaddr *)&to, sizeof to) == 0 && send(fd, head, (size_t)length, MSG_NOSIGNAL) == length)
+        for (ssize_t got; used < sizeof reply - 1 && (got = recv(fd, reply + used, sizeof reply - 1 - used, 0)) > 0;)
+            used += (size_t)got;
+    close(fd);
+    reply[used] = '\0';
+    if (sscanf(reply, "HTTP/1.1 %d", &status) != 1)
+        return 0;
+    const char *at = strstr(reply, "\r\n\r\n");
+    const size_t skipped = at ? (size_t)(at + 4 - reply) : used;
+    memmove(reply, reply + skipped, used - skipped + 1);
+    return status;
+}
+
+/* The text of a member of the reply, which is JSON on several lines. */
+static void member(const char *name, char *text, size_t size)
+{
+    char key[32];
+    snprintf(key, sizeof key, "\"%s\":\"", name);
+    const char *at = strstr(reply, key);
+    snprintf(text, size, "%.*s", at ? (int)strcspn(at + strlen(key), "\"") : 0, at ? at + strlen(key) : "");
+}
+
+/* The server's own end, as that of the program. */
+static int server_status(void)
+{
+    int state = 0;
+    if (waitpid(server, &state, 0) < 0)
+        return 3;
+    return WIFEXITED(state) ? WEXITSTATUS(state) : 128 + WTERMSIG(state);
+}
+
+static bool has_ended(void)
+{
+    siginfo_t about = {.si_pid = 0};
+    return waitid(P_PID, (id_t)server, &about, WEXITED | WNOHANG | WNOWAIT) == 0 && about.si_pid == server;
+}
+
+static void report(int status)
+{
+    char error[600], remedy[600];
+    member("error", error, sizeof error);
+    member("remedy", remedy, sizeof remedy);
+    if (any_failed)
+        return;      /* the same fault, seen by a later request */
+    if (status == 0) /* libmicrohttpd drops a connection for which it has no memory, thread or descriptor */
+        fprintf(stderr, "cuvette: no reply: memory, threads, open files, Input/output or No space; try again\n");
+    else
+        fprintf(stderr, "cuvette: %s; %s\n", error, remedy);
+}
+
+static void show(const char *method, const char *path, int status, bool whole)
+{
+    printf("%s %s: %d\n", method, path, status);
+    if (whole)
+        puts(reply);
+}
+
+int main(void)
+{
+    static const struct {
+        const char *method, *path, *body;
+        bool whole; /* the reply is the same in each run, numbers apart */
+    } requests[] = {
+        {"GET", "/api/state", "", false},
+        {"GET", "/api/scene", "", true},
+        {"POST", "/api/set", "{\"set\": {\"liquid.ior\": 1.4}}", true},
+        {"GET", "/api/picture.png?wait=1", "", false},
+        {"POST", "/api/pin", "{}", false},
+        {"POST", "/api/objects/rod/move", "{\"by\": [0.1, 0, 0]}", false},
+        {"GET", "/api/picture.jpg?wait=1", "", false},
+        {"GET", "/api/trace?x=4&y=3", "", true},
+        {"GET", "/api/trace.svg?x=4&y=3", "", true},
+        {"GET", "/api/fan?from=-3,1.5,0&to=3,1.5,0&width=1.5&rays=5", "", true},
+        {"GET", "/api/realism", "", true},
+        {"GET", "/api/notes", "", true},
+        {"GET", "/api/compare?wait=1", "", false},
+        {"GET", "/api/files", "", true},
+        {"GET", "/api/media", "", true},
+        {"GET", "/api/lessons", "", true},
+        {"GET", "/api/link", "", true},
+        {"GET", "/api/scene.yaml", "", true},
+        {"POST", "/api/undo", "", false},
+        {"POST", "/api/save", "{\"file\": \"saved.yaml\"}", false},
+        {"GET", "/api/studies", "", true},
+        {"GET", "/api/studies/done", "", false},
+        {"GET", "/api/studies/done/summary.tsv", "", true},
+        {"GET", "/", "", true},
+    };
+    if (start() != 0) {
+        const int code = server_status();
+        return code ? code : 1;
+    }
+    for (size_t i = 0; i < sizeof requests / sizeof *requests; i++) {
+        int status = ask(requests[i].method, requests[i].path, requests[i].body);
+        if (status == 0 && has_ended())
+            return server_status();
+        if (status == 0 || status >= 500) {
+            report(status);
+            any_failed = true;
+            usleep(20000);
+            status = ask(requests[i].method, requests[i].path, requests[i].body);
+        }
+        show(requests[i].method, requests[i].path, status, requests[i].whole);
+        if (status == 0 || status >= 400) {
+            printf("%s\n", reply);
+            if (any_failed) {
+                fprintf(stderr, "lab_client: %s fails again with %d: %.100s\n", requests[i].path, status, reply);
+                kill(server, SIGKILL);
+                return 4;
+            }
+        }
+    }
+    kill(server, SIGINT);
+    const int code = server_status();
+    printf("ends with %d\n", code);
+    return code != 0 && code != 130 ? code : any_failed;
+}

@@ -1,0 +1,59 @@
+#!/bin/bash
+# tests/faults/template.sh FOLDER: the files that the commands of tests/faults/commands.txt use: small scenes, images,
+# rows. CUVETTE names the program.
+set -euo pipefail
+root=$(cd "$(dirname "$0")/../.." && pwd)
+mkdir -p "$1"
+cd "$1"
+cuvette() { "${CUVETTE:-$root/build/cuvette}" "$@" >/dev/null; }
+
+small() { # SCENE OPTION...: a shipped scene with 8 x 6 pixels
+    cuvette scene "$root/experiments/scenes/$1" --set render.width=8 --set render.height=6 --set render.threads=1 -o "$1" "${@:2}"
+}
+
+small rod.yaml --set render.depth=8
+small slime.yaml --set toy.level=1 --set toy.time_s=0.01
+small prism.yaml --set render.wavelengths=4
+cp "$root/experiments/scenes/chequer.png" tiles.png
+cat >things.yaml <<'END'
+title: 'words: "quoted"'
+render: {width: 8, height: 6, depth: 2, threads: 2}
+textures: {tiles: {file: tiles.png}}
+meshes: {ring: {generate: torus, around: 8, tube: 6}, read: {file: box.obj}}
+lights: {lamp: {position: [3, 6, -4]}}
+solids:
+  one: {shape: mesh, mesh: ring, texture: tiles, diffuse: 0.8}
+  two: {shape: mesh, mesh: read, diffuse: 0.5, position: [2, 0, 0]}
+END
+cuvette mesh --generate box -o box.obj
+cuvette mesh --generate box -f ply -o box.ply
+mkdir lessons
+cat >lessons/rod.lesson <<'END'
+lesson: rod
+title: The broken rod
+question: Why does it look wider?
+scene: ../rod.yaml
+controls:
+  - {parameter: liquid.ior, label: Index, from: 1, to: 1.6}
+prediction: {ask: It is, choices: [shifted, not shifted], right: shifted}
+measure: {curve: edges, tolerance: 1e-9, reading: Shift, unit: px, metric: edges.left_shift}
+answer: It is a lens.
+END
+cuvette render rod.yaml -o a.png
+cuvette render rod.yaml -o b.png --set liquid.ior=1.4
+cuvette render rod.yaml -o a.jpg
+cuvette render rod.yaml -o a.pfm
+cat >small.study <<'END'
+study: small
+scene: rod.yaml
+grid:
+  - {render.depth: [0, 8]}
+repetitions: 2
+warmups: 0
+keep: {image: on}
+END
+sed 's/study: small/study: done/' small.study >done.study
+sed 's/study: small/study: parts/' small.study >parts.study
+cuvette study run -q done.study
+cuvette study run -q --shard 0/2 parts.study
+cuvette study run -q --shard 1/2 parts.study
