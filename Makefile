@@ -92,7 +92,7 @@ program := $(wildcard src/cli/*.c)
 mpi := $(filter src/mpi/%,$(sources))
 web := $(filter src/web/%,$(sources))
 page := $(sort $(wildcard $(addprefix src/web/page/*.,html css js svg)))
-importer := $(wildcard src/import/*.c) $(addprefix src/base/,status.c number.c below.c float_environment.c grow.c large_pages.c os_process.c)
+importer := $(wildcard src/import/*.c) $(addprefix src/base/,status.c number.c below.c float_environment.c grow.c large_pages.c os_confine_calls.c os_confine_files.c os_process.c)
 kernel_objects := $(foreach i,$(isas),$(kernels:src/%.c=$(build)/obj/%.$(i).o))
 library_objects := $(library:src/%.c=$(build)/obj/%.o) $(kernel_objects)
 program_objects := $(program:src/%.c=$(build)/obj/%.o)
@@ -103,7 +103,7 @@ tests := $(wildcard tests/test_*.c)
 test_programs := $(tests:tests/%.c=$(build)/tests/%)
 web_tests := $(filter $(addprefix $(build)/tests/test_,http% lab% quantities),$(test_programs))
 benches := $(patsubst tests/%.c,$(build)/tests/%,$(wildcard tests/bench_*.c))
-fuzzers := $(patsubst tests/%.c,$(build)/tests/%,$(wildcard tests/fuzz_*.c))
+fuzzers := $(patsubst tests/fuzz/%.c,$(build)/tests/fuzz_%,$(wildcard tests/fuzz/*.c))
 
 .PHONY: all
 all: $(build)/cuvette $(build)/cuvette-import $(build)/$(soname) ## build build/cuvette and the library (the default)
@@ -216,10 +216,26 @@ $(build)/tests/test_handout $(build)/tests/test_tracing: private test_web = $(bu
 $(web_tests): $(build)/libweb.a
 $(web_tests): private test_web = $(build)/libweb.a
 
-$(build)/tests/fuzz_%: tests/fuzz_%.c $(build)/libcuvette.a $(build)/flags
+# Readers in programs, for fuzzers; their parsing of a command line does not run the command (tests/fuzz/arguments.c).
+fuzzed_objects := $(filter-out %/cli/main.o,$(program_objects)) $(patsubst src/%.c,$(build)/obj/%.o,$(filter-out %/main.c,$(wildcard src/import/*.c)))
+fuzzed_libs = $(build)/libfuzzed.a $(build)/libweb.a $(build)/libcuvette.a $(LDFLAGS) $(all_libs) $(import_libs) -lcmocka
+parse_only := -Wl,--wrap=command_form_read
+$(build)/libfuzzed.a: $(fuzzed_objects)
+	@rm -f $@
+	$(quiet)ar rcs $@ $^
+$(build)/tests/fuzz_%: tests/fuzz/%.c $(build)/libfuzzed.a $(build)/libweb.a $(build)/libcuvette.a $(build)/flags
 	$(call say,$(CC) $<)
 	@mkdir -p $(@D)
-	$(quiet)$(CC) $(all_cflags) $(pkg_cflags) -Itests -fsanitize=fuzzer -MMD -MP -o $@ $< $(build)/libcuvette.a $(LDFLAGS) $(all_libs)
+	$(quiet)$(CC) $(all_cflags) $(pkg_cflags) -Itests -fsanitize=fuzzer -MMD -MP -o $@ $< $(own_libs) $(fuzzed_libs)
+$(build)/tests/fuzz_arguments: private own_libs = $(parse_only)
+# The same without libFuzzer, all in one program.
+replayed := $(patsubst tests/fuzz/%.c,$(build)/tests/replay/%.o,$(wildcard tests/fuzz/*.c))
+$(build)/tests/replay/%.o: tests/fuzz/%.c $(build)/flags
+	$(call say,$(CC) $<)
+	@mkdir -p $(@D)
+	$(quiet)$(CC) $(all_cflags) -Werror $(pkg_cflags) -Itests -DFUZZ_REPLAY -DLLVMFuzzerTestOneInput=fuzz_$* -MMD -MP -c -o $@ $<
+$(build)/tests/test_fuzz_corpus: $(replayed) $(build)/libfuzzed.a $(build)/libweb.a
+$(build)/tests/test_fuzz_corpus: private test_web = $(replayed) $(parse_only) $(fuzzed_libs)
 
 # Fault injection (tests/faults): a library to preload, the driver, and what it starts besides cuvette.
 fault_tools := $(addprefix $(build)/faults/,preload.so faults engine_user lab_client)
@@ -298,7 +314,7 @@ $(build)/peers/embree: experiments/peers/embree.c $(build)/libcuvette.a $(build)
 	$(quiet)$(CC) $(all_cflags) -march=native -MMD -MP -o $@ $< $(build)/libcuvette.a $(LDFLAGS) $(embree_libs) $(all_libs)
 
 -include $(build)/peers/embree.d
--include $(library_objects:.o=.d) $(program_objects:.o=.d) $(web_objects:.o=.d) $(mpi_objects:.o=.d) $(importer_objects:.o=.d) $(test_programs:=.d) $(fuzzers:=.d) $(benches:=.d) $(build)/tests/power/reader.d
+-include $(library_objects:.o=.d) $(program_objects:.o=.d) $(web_objects:.o=.d) $(mpi_objects:.o=.d) $(importer_objects:.o=.d) $(test_programs:=.d) $(fuzzers:=.d) $(replayed:.o=.d) $(fuzzed_objects:.o=.d) $(benches:=.d) $(build)/tests/power/reader.d
 
 .PHONY: setup
 setup: ## install the required packages (Debian 12); does nothing if they are installed
@@ -448,7 +464,7 @@ faults: $(build)/cuvette $(build)/cuvette-import $(fault_tools) ## fail every al
 fault-checks: $(fault_tools) ## remove checks from the sources, one at a time: the faults must detect each
 	@BUILD='$(abspath $(build))' tests/faults/checks.sh
 
-# Lines of src that the tests run; made by gcc. The counts of an earlier run are dropped. The report is written after tests
+# Lines of src that the tests run, among them the fuzzers' inputs (test_fuzz_corpus); made by gcc. The counts of an earlier run are dropped. The report is written after tests
 # that fail, too.
 GCOV ?= $(subst gcc,gcov,$(lastword $(CC)))
 .PHONY: coverage run_coverage
@@ -460,7 +476,9 @@ run_coverage:
 	@mkdir -p $(build)/report && find $(build) -name '*.gcda' -delete
 	@code=0; $(MAKE) --no-print-directory build=$(build) test || code=$$?; \
 	  gcovr --gcov-executable '$(GCOV)' --root . --filter src/ --exclude-throw-branches --html-details $(build)/report/index.html \
-	    --print-summary $(build) && echo 'report: $(build)/report/index.html' && exit $$code
+	    --txt $(build)/report/missed.txt --print-summary $(build) && \
+	  echo 'report: $(build)/report/index.html; the lines that neither tests nor the inputs of fuzzers reach: $(build)/report/missed.txt' && \
+	  exit $$code
 
 # Small errors in the sources, one at a time, that a test must detect; everything that checks, within an hour.
 .PHONY: mutants check-all
@@ -469,17 +487,17 @@ mutants: $(build)/cuvette ## insert 600 small errors into physics and statistics
 check-all: $(build)/cuvette ## run every kind of check, long ones in rotation, within an hour: build/check/page.md
 	@BUILD='$(build)' CC='$(CC)' tests/check/all.sh
 
-.PHONY: fuzz run_fuzzers
-fuzz: ## feed the readers with libFuzzer (clang), FUZZ_SECONDS=60 each
+# The fuzzers that have waited longest: FUZZ_TOTAL seconds in all, FUZZ_SECONDS each; only=NAME for tests/fuzz/NAME.c alone.
+.PHONY: fuzz fuzz-merge run_fuzzers merge_corpus
+selected_fuzzers = $(if $(only),$(only:%=$(build)/tests/fuzz_%),$(fuzzers))
+fuzz: ## feed the readers with libFuzzer (clang), FUZZ_SECONDS=60 each; FUZZ_TOTAL=600: only that long, whose turn it is
 	@$(MAKE) config=fuzz CC=clang build=$(build)/fuzz run_fuzzers
-run_fuzzers: $(fuzzers)
-	@set -o pipefail; for fuzzer in $(fuzzers); do \
-	    name=$$(basename $$fuzzer); mkdir -p $(build)/corpus/$$name; \
-	    echo "$$name, $(FUZZ_SECONDS) s"; \
-	    $$fuzzer -max_total_time=$(FUZZ_SECONDS) -timeout=10 -rss_limit_mb=2048 -max_len=65536 -print_final_stats=1 \
-	      -artifact_prefix=$(build)/corpus/ -verbosity=0 $(build)/corpus/$$name $(wildcard experiments tests/bad*/) 2>&1 | \
-	      sed '/Recommended dictionary/,/End of recommended/d' || exit 1; \
-	done
+run_fuzzers: $(selected_fuzzers)
+	@FUZZ_SECONDS='$(FUZZ_SECONDS)' FUZZ_TOTAL='$(FUZZ_TOTAL)' tests/fuzz/run.sh $(build) $(only)
+fuzz-merge: ## renew tests/fuzz/corpus from what the fuzzers kept; only=NAME
+	@$(MAKE) config=fuzz CC=clang build=$(build)/fuzz merge_corpus
+merge_corpus: $(selected_fuzzers)
+	@tests/fuzz/run.sh --merge $(build) $(only)
 
 # --- studies, figures, paper ---
 

@@ -102,6 +102,7 @@ CUVETTE_ISA=mmx render "unknown instruction set" "CUVETTE_ISA"
 CUVETTE_ISA=mmx refused "unknown instruction set, machine" "CUVETTE_ISA" machine
 printf '%s\n' 'study: isa' "scene: $scene" 'grid: [{render.depth: [0]}]' 'repetitions: 1' >isa.study
 CUVETTE_ISA=mmx refused "unknown instruction set, study" "CUVETTE_ISA" study run isa.study --results isa-results
+refused "mesh of two files" "unexpected argument 'b.obj'; see 'cuvette mesh --help'" mesh a.obj b.obj
 refused "machine with an argument" "unexpected argument 'now'" machine now
 refused "media of an unknown name" "did you mean 'pmma'" media pmna
 refused "media of two names" "unexpected argument 'air'" media water air

@@ -50,6 +50,7 @@ static inline void room_start(lab_room *room, const char *file, lab_settings set
     settings.level = isa_best();
     settings.threads = 2;
     settings.requests_per_s = 1e9;
+    settings.confine = true;
     diagnostic why = {.line = 0};
     char text[DIAGNOSTIC_TEXT_MAX];
     if (lab_start(&settings, &room->lab, &why) != STATUS_OK)

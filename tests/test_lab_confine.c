@@ -8,11 +8,13 @@
 #include <cmocka.h>
 
 #include "base/below.h"
+#include "base/os_confine.h"
 #include "image/image.h"
 #include "lab_fixture.h"
 #include "study/study.h"
 #include "web/lab_private.h"
 #include "scene/model/scene.h"
+#include <sys/wait.h>
 
 /* The laboratory's folder is above/lab. Except for links and scenes, every file exists in both. */
 typedef struct room {
@@ -103,6 +105,15 @@ static void put_files(const room *r)
     put_images(r);
 }
 
+static bool kernel_confines(void)
+{
+    int state = 1;
+    const pid_t child = fork();
+    if (child == 0)
+        _exit(!os_confine_files(NULL, 0));
+    return waitpid(child, &state, 0) == child && state == 0;
+}
+
 static int enter(void **state)
 {
     room *r = calloc(1, sizeof *r);
@@ -112,8 +123,12 @@ static int enter(void **state)
     assert_int_equal(mkdir(r->inside, 0700), 0);
     put_files(r);
     snprintf(r->lab.results, sizeof r->lab.results, "%s/results", r->inside);
-    const lab_settings settings = {
-        .folder = r->inside, .results = r->lab.results, .level = isa_best(), .threads = 2, .requests_per_s = 1e9};
+    const lab_settings settings = {.folder = r->inside,
+                                   .results = r->lab.results,
+                                   .level = isa_best(),
+                                   .threads = 2,
+                                   .requests_per_s = 1e9,
+                                   .confine = true};
     diagnostic why = {.what = ""};
     if (lab_start(&settings, &r->lab.lab, &why) != STATUS_OK)
         fail_msg("%s", why.what);
@@ -284,6 +299,30 @@ static void added_models_are_confined_to_the_folder(void **state)
     put(r, "lab/m.obj", "mtllib a.mtl\n" TRIANGLE);
     room_post(&r->lab, "/api/objects", "{\"kind\": \"model\", \"file\": \"m.obj\"}");
     is_loaded(r, "a model that is added");
+}
+
+/* The kernel refuses what the laboratory's own checks would let pass: another importer, which stands outside. */
+static void programs_outside_the_folder_are_not_started(void **state)
+{
+    const room *r = *state;
+    if (!kernel_confines() || !getenv("CUVETTE_IMPORT"))
+        skip();
+    char *importer = text_format("%s/importer", r->above), *before = strdup(getenv("CUVETTE_IMPORT"));
+    char *copying = text_format("cp '%s' '%s'", before, importer);
+    assert_int_equal(system(copying), 0);
+    setenv("CUVETTE_IMPORT", importer, 1);
+    put(r, "lab/program.obj", TRIANGLE);
+    put(r, "lab/again.obj", TRIANGLE);
+    open_scene(r, BODY("program.obj"));
+    char *message = trouble(r);
+    setenv("CUVETTE_IMPORT", before, 1);
+    assert_non_null(strstr(message, "Permission denied"));
+    open_scene(r, BODY("again.obj"));
+    is_loaded(r, "with the importer of the start");
+    free(message);
+    free(copying);
+    free(before);
+    free(importer);
 }
 
 /* --- files replaced after the check --- */
@@ -501,6 +540,7 @@ int main(void)
         cmocka_unit_test_setup_teardown(images_of_materials_outside_the_folder_are_refused, enter, leave),
         cmocka_unit_test_setup_teardown(buffers_and_images_of_gltf_outside_the_folder_are_refused, enter, leave),
         cmocka_unit_test_setup_teardown(added_models_are_confined_to_the_folder, enter, leave),
+        cmocka_unit_test_setup_teardown(programs_outside_the_folder_are_not_started, enter, leave),
         cmocka_unit_test_setup_teardown(files_replaced_by_links_after_the_check_are_refused, enter, leave),
         cmocka_unit_test_setup_teardown(new_scenes_are_confined_to_the_folder, enter, leave),
         cmocka_unit_test_setup_teardown(scenes_and_studies_replaced_by_links_are_refused, enter, leave),

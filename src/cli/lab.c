@@ -103,6 +103,7 @@ static status run_lab(const lab_request *request, const char *folder, const char
                              .results = results,
                              .rescue = rescue,
                              .port = (int)request->port,
+                             .confine = true,
                              .threads = (int)request->threads};
     status code = rescue ? scene_input_isa(&settings.level, why) : out_of_memory(why);
     if (code == STATUS_OK && settings.threads == 0 && (code = topology_create(&machine, why)) == STATUS_OK)

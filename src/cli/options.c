@@ -146,10 +146,11 @@ static error_t take_word(form_reading *reading, const char *word, struct argp_st
     const command_form *form = reading->form;
     if (form->take_argument)
         return form->take_argument(reading->request, word), 0;
-    if (reading->arguments == form->argument_limit && !form->excess)
-        return ARGP_ERR_UNKNOWN;
     if (reading->arguments == form->argument_limit) {
-        options_wrong(NULL, NULL, reading->why, form->excess_remedy, form->excess, word);
+        char remedy[192];
+        snprintf(remedy, sizeof remedy, "see '%s --help'", reading->program);
+        options_wrong(NULL, NULL, reading->why, form->excess ? form->excess_remedy : remedy,
+                      form->excess ? form->excess : "unexpected argument '%.128s'", word);
         options_locate(reading->why, reading->program);
         return EINVAL;
     }

@@ -39,7 +39,7 @@ typedef struct command_form {
     const command_option *options; /* ended by an entry without a name; NULL for none */
     const char *synopsis, *about;
     size_t arguments_at, argument_limit; /* offset of the array in the request, and its length */
-    const char *excess, *excess_remedy;  /* error for a surplus argument, with one %s; NULL: argp's own error */
+    const char *excess, *excess_remedy;  /* error for a surplus argument, with one %s; NULL: a general one */
     void (*take_argument)(void *request, const char *argument); /* takes each argument, without a limit; or NULL */
     bool ends_at_argument;                                      /* parsing stops after the first argument */
 } command_form;

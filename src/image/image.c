@@ -2,6 +2,7 @@
 #include "base/memory_budget.h"
 #include "image/image.h"
 
+#include "base/apart.h"
 #include "base/cancel.h"
 #include "base/file.h"
 #include "base/text_writer.h"
@@ -199,15 +200,32 @@ status image_read(const char *path, image **out, int *file_bits, diagnostic *why
     return image_read_below(path, NULL, out, file_bits, why);
 }
 
+typedef struct decoding {
+    const char *bytes;
+    size_t size;
+    image **out;
+    int bits;
+    diagnostic *why;
+    status code;
+} decoding;
+
+static void decode_apart(void *of)
+{
+    decoding *d = of;
+    d->code = decode((const unsigned char *)d->bytes, d->size, d->out, &d->bits, d->why);
+}
+
 status image_read_below(const char *path, const char *root, image **out, int *file_bits, diagnostic *why)
 {
     char *bytes;
     size_t size;
-    int bits = 0;
     *out = NULL;
     TRY(file_read_below(path, root, FILE_BYTES_MAX, &bytes, &size, why));
-    status code = decode((const unsigned char *)bytes, size, out, &bits, why);
+    decoding d = {.bytes = bytes, .size = size, .out = out, .why = why};
+    apart_run(decode_apart, &d);
     free(bytes);
+    const status code = d.code;
+    const int bits = d.bits;
     if (code != STATUS_OK) {
         diagnostic_locate(why, path, 0, 0);
         return code;

@@ -1,5 +1,6 @@
 /* Reading a text of a PNG file through libpng. What must survive a longjmp is in the png_library, which belongs to a
  * function that does not call setjmp. */
+#include "base/apart.h"
 #include "image/codec.h"
 #include "image/png_library.h"
 
@@ -25,7 +26,7 @@ static char *find(const png_library *job, const char *keyword, size_t limit)
     return NULL;
 }
 
-status image_png_text(const void *bytes, size_t size, const char *keyword, size_t limit, char **text, diagnostic *why)
+static status read_text(const void *bytes, size_t size, const char *keyword, size_t limit, char **text, diagnostic *why)
 {
     png_library job = {.bytes = bytes, .size = size};
     status code = STATUS_OK;
@@ -41,4 +42,27 @@ status image_png_text(const void *bytes, size_t size, const char *keyword, size_
     }
     png_destroy_read_struct(&job.png, &job.info, NULL);
     return code;
+}
+
+typedef struct wanted {
+    const void *bytes;
+    size_t size;
+    const char *keyword;
+    size_t limit;
+    char **text;
+    diagnostic *why;
+    status code;
+} wanted;
+
+static void read_apart(void *of)
+{
+    wanted *w = of;
+    w->code = read_text(w->bytes, w->size, w->keyword, w->limit, w->text, w->why);
+}
+
+status image_png_text(const void *bytes, size_t size, const char *keyword, size_t limit, char **text, diagnostic *why)
+{
+    wanted w = {bytes, size, keyword, limit, text, why, STATUS_OK};
+    apart_run(read_apart, &w);
+    return w.code;
 }

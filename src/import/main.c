@@ -4,6 +4,7 @@
 
 #include "base/float_environment.h"
 #include "base/number.h"
+#include "base/os_confine.h"
 #include "base/os_process.h"
 #include "import/obj.h"
 #include <argp.h>
@@ -84,9 +85,13 @@ static void limit(__rlimit_resource_t what, rlim_t value)
     }
 }
 
-/* After this the process cannot create or change a file, dump its memory, open many files, or outlive its parent. */
+/* After this the process cannot create or change a file, open one outside the root, start a program, reach a network,
+ * dump its memory, open many files, or outlive its parent. The kernel may lack what os_confine.h needs; the limits then
+ * remain. */
 static void limit_all(const request *req)
 {
+    const confine_place readable = {req->root[0] ? req->root : "/", CONFINE_READ};
+
     os_die_with_parent();
     prctl(PR_SET_DUMPABLE, 0);
     limit(RLIMIT_CORE, 0);
@@ -94,6 +99,8 @@ static void limit_all(const request *req)
     limit(RLIMIT_NOFILE, 16);
     limit(RLIMIT_CPU, (rlim_t)req->seconds);
     limit(RLIMIT_AS, (rlim_t)req->memory_mib << 20);
+    os_confine_files(&readable, 1);
+    os_confine_calls(CONFINE_READING);
 }
 
 static status convert(const request *req, diagnostic *why)

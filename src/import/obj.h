@@ -29,6 +29,7 @@ typedef struct obj_run {
 typedef struct obj_part {
     const char *begin, *end;
     bool plain; /* false: something in it is left to assimp, or it is out of memory */
+    bool early; /* a face with texture coordinates comes before the part's first vt */
     float (*places)[3], (*uvs)[2], (*normals)[3];
     obj_corner (*triangles)[3];
     obj_corner highest; /* the highest indices */

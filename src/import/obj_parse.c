@@ -84,6 +84,7 @@ static bool add_face(obj_part *o, const char **at)
     }
     o->runs[o->run_count - 1].count++;
     const obj_corner *corner = o->triangles[o->triangle_count++];
+    o->early = o->early || (corner->uv > 0 && o->uv_count == 0);
     for (int k = 0; k < 3; k++)
         o->highest = (obj_corner){larger(o->highest.place, corner[k].place), larger(o->highest.uv, corner[k].uv),
                                   larger(o->highest.normal, corner[k].normal)};

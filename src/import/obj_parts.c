@@ -72,8 +72,11 @@ static bool parse_all(obj_file *f)
     for (int i = 1; i < started; i++)
         pthread_join(threads[i], NULL);
     bool plain = true;
+    size_t uvs = 0;
     for (int i = 0; i < f->part_count; i++) {
-        plain &= f->parts[i].plain;
+        /* assimp takes the texture coordinates of a face for normals as long as there are only normals. */
+        plain &= f->parts[i].plain && !(f->parts[i].early && uvs == 0);
+        uvs += f->parts[i].uv_count;
         f->triangle_count += f->parts[i].triangle_count;
     }
     return plain && f->triangle_count > 0;

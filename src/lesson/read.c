@@ -194,11 +194,12 @@ static status read_settings(const reader *r, const node *root)
             return node_error(r->file, map->items[i], r->why, "write a number, a word or a list",
                               "this is not a value");
         const status code = try_value(r, l->start, map->items[i], map->keys[i]->text, value);
-        l->setting[l->setting_count] = text_format("%s=%s", map->keys[i]->text, value);
+        char *setting = code == STATUS_OK ? text_format("%s=%s", map->keys[i]->text, value) : NULL;
         free(value);
         TRY(code);
-        if (!l->setting[l->setting_count++])
+        if (!setting)
             return out_of_memory(r->why);
+        l->setting[l->setting_count++] = setting;
     }
     return STATUS_OK;
 }

@@ -177,14 +177,9 @@ static status serve(lab *l, diagnostic *why)
     return code;
 }
 
-status lab_start(const lab_settings *settings, lab **out, diagnostic *why)
+static status start(lab *l, diagnostic *why)
 {
-    *out = NULL;
-    lab *l = calloc(1, sizeof *l);
-    if (!l)
-        return out_of_memory(why);
-    *l = (lab){
-        .settings = *settings, .state_lock = PTHREAD_MUTEX_INITIALIZER, .publish_lock = PTHREAD_MUTEX_INITIALIZER};
+    const lab_settings *settings = &l->settings;
     const render_worker_listener listener = {on_image, on_state_changed, l};
     status code = folder_open(settings->folder, &l->files, why);
     THEN(code, check_results(l, why));
@@ -199,6 +194,43 @@ status lab_start(const lab_settings *settings, lab **out, diagnostic *why)
     THEN(code, videos_create(l, &l->videos, why));
     THEN(code, rescue_create(l, &l->rescue, why));
     THEN(code, serve(l, why));
+    return code;
+}
+
+typedef struct starting {
+    lab *l;
+    diagnostic *why;
+    status code;
+} starting;
+
+static void *start_confined(void *of)
+{
+    starting *s = of;
+    lab_confine(s->l);
+    s->code = start(s->l, s->why);
+    return NULL;
+}
+
+/* Threads pass on what they gave up: a thread of its own confines all those of the laboratory, and not the caller's. */
+static status start_in_thread(lab *l, diagnostic *why)
+{
+    starting s = {l, why, STATUS_OK};
+    pthread_t thread;
+    if (pthread_create(&thread, NULL, start_confined, &s) != 0)
+        return diagnose(why, STATUS_FAILURE, "end other programs", "no thread can be started");
+    pthread_join(thread, NULL);
+    return s.code;
+}
+
+status lab_start(const lab_settings *settings, lab **out, diagnostic *why)
+{
+    *out = NULL;
+    lab *l = calloc(1, sizeof *l);
+    if (!l)
+        return out_of_memory(why);
+    *l = (lab){
+        .settings = *settings, .state_lock = PTHREAD_MUTEX_INITIALIZER, .publish_lock = PTHREAD_MUTEX_INITIALIZER};
+    const status code = settings->confine ? start_in_thread(l, why) : start(l, why);
     if (code == STATUS_OK)
         *out = l;
     else
@@ -237,6 +269,7 @@ void lab_stop(lab *l)
     render_worker_destroy(l->render_worker);
     scene_document_destroy(l->scene_document);
     folder_close(l->files);
+    lab_remove_temporary(l);
     pthread_mutex_destroy(&l->publish_lock);
     pthread_mutex_destroy(&l->state_lock);
     free(l->bound);

@@ -15,14 +15,18 @@ typedef struct lab_settings {
     /* Scene file to open, relative to the working directory and below folder; NULL: a room with a floor, a light and a
      * camera. */
     const char *scene;
-    /* Folder that keeps the unsaved scene while it is unsaved (web/session/rescue.h), created when it is needed; "":
-     * there is no such folder, which pages report; NULL: nothing is kept or offered. */
+    /* Folder that keeps the unsaved scene while it is unsaved (web/session/rescue.h), created when it is needed (with
+     * confine at the start, and removed at the stop if it is empty); "": there is no such folder, which pages report;
+     * NULL: nothing is kept or offered. */
     const char *rescue;
     const char *results; /* folder for the rows of studies: folder itself or below it; it need not exist */
     int port;            /* 0: any free port */
     isa level;
     int threads;           /* default of render.threads for opened scenes; 0: keep the scene's value */
     double requests_per_s; /* 0: the default of web/http/http.h */
+    /* The laboratory's threads, and programs that they start, give up all other access to files: in addition to its own
+     * checks, and where the kernel has Landlock. The caller's threads keep theirs. */
+    bool confine;
 } lab_settings;
 
 status lab_start(const lab_settings *settings, lab **out, diagnostic *why);

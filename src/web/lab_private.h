@@ -10,6 +10,7 @@
 #include "web/live/render_worker.h"
 #include <pthread.h>
 #include <stdatomic.h>
+#include <stdio.h>
 
 typedef struct reference_image reference_image; /* web/session/reference_image.h */
 typedef struct studies studies;                 /* web/session/studies.h */
@@ -36,9 +37,19 @@ struct lab {
      * locks. */
     pthread_mutex_t state_lock;
     pthread_mutex_t publish_lock;
-    bool open; /* events may be published */
-    bool left; /* the unsaved scene stays on disk at the stop */
+    char *temporary; /* the laboratory's own folder for temporary files; NULL: the system's */
+    bool open;       /* events may be published */
+    bool left;       /* the unsaved scene stays on disk at the stop */
 };
+
+/* Gives up, for the calling thread and all that it starts, the access to files that the laboratory does not need
+ * (base/os_confine.h), and makes its folder for temporary files. Where that is not possible, nothing changes. */
+void lab_confine(lab *l);
+/* Removes that folder, and an empty one for unsaved scenes. */
+void lab_remove_temporary(lab *l);
+/* The folder for temporary files, and a file in it without a name; NULL with errno. */
+const char *lab_temporary_folder(const lab *l);
+FILE *lab_temporary_file(const lab *l);
 
 /* Sends an event to all pages; takes the reference to value. Thread-safe. */
 void lab_publish(lab *l, const char *event, json_t *value);

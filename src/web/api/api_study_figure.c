@@ -63,10 +63,9 @@ static void remove_files(const char *room, const char *base)
     rmdir(room);
 }
 
-static status make_folder(char **room, diagnostic *why)
+static status make_folder(const lab *l, char **room, diagnostic *why)
 {
-    const char *place = getenv("TMPDIR");
-    *room = text_format("%s/cuvette-figure-XXXXXX", place && place[0] ? place : "/tmp");
+    *room = text_format("%s/cuvette-figure-XXXXXX", lab_temporary_folder(l));
     if (!*room)
         return out_of_memory(why);
     if (mkdtemp(*room))
@@ -83,7 +82,7 @@ static status make_figure(call *c, const study *s, const plot_request *request, 
                           size_t *size)
 {
     char *room = NULL;
-    TRY(make_folder(&room, &c->why));
+    TRY(make_folder(c->l, &room, &c->why));
     char *base = text_format("%s/%s", room, s->name), *file = text_format("%s/%s.%s", room, s->name, format);
     status code = base && file ? STATUS_OK : out_of_memory(&c->why);
     THEN(code, study_plot_write(s, request, base, &c->why));

@@ -171,7 +171,7 @@ status kept_scene_read(const kept_scene *k, char **text, size_t *size, diagnosti
 /* --- writing --- */
 
 /* Nobody else may put files into the folder: they would be offered. */
-static status make_folder(const char *folder, diagnostic *why)
+status kept_scenes_folder(const char *folder, diagnostic *why)
 {
     struct stat about;
     char *above = strdup(folder), *slash = above ? strrchr(above, '/') : NULL;
@@ -229,7 +229,7 @@ status kept_scene_write(const char *folder, kept_scene *own, json_t *about, cons
         return diagnose(why, STATUS_BAD_INPUT, "save it",
                         "the scene's text is longer than the %d bytes of a scene that is kept",
                         KEPT_SCENE_BYTES_MAX / 2);
-    TRY(make_folder(folder, why));
+    TRY(kept_scenes_folder(folder, why));
     kept_scene fresh = {.path = NULL};
     char *line = set_time(about) ? json_text(about, JSON_COMPACT | JSON_ENSURE_ASCII) : NULL;
     const bool named = own->path || choose_name(folder, &fresh);

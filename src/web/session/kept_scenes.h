@@ -23,6 +23,8 @@ typedef struct kept_scene {
  * Files that cannot be read or locked are left alone. Returns their number. */
 size_t kept_scenes_claim(const char *folder, kept_scene list[KEPT_SCENES_MAX]);
 
+/* Makes the folder, for its owner alone. */
+status kept_scenes_folder(const char *folder, diagnostic *why);
 /* Writes a scene to a file of its own, or replaces that of *own; creates the folder. about: title, folder and file, to
  * which the time is added. *own is unchanged after an error. */
 status kept_scene_write(const char *folder, kept_scene *own, json_t *about, const char *text, diagnostic *why);

@@ -244,7 +244,7 @@ static void *run(void *context)
     videos *v = context;
     diagnostic why = {.what = ""};
     float_environment_set();
-    FILE *file = tmpfile();
+    FILE *file = lab_temporary_file(v->l);
     status code = file ? semaphore_acquire(v->l->heavy, &why)
                        : diagnose(&why, STATUS_FAILURE, "free space in the folder for temporary files",
                                   "cannot write the video: %s", strerror(errno));

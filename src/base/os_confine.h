@@ -1,0 +1,29 @@
+/* Rights that a thread gives up for good, so that a fault in a reader of other people's files reaches little: Landlock
+ * for files and outgoing TCP connections (Linux 5.13), seccomp for system calls. They hold for the calling thread, and
+ * for the threads and processes that it starts later; other threads of the process keep theirs. Where the kernel or a
+ * container refuses, the functions return false and nothing has changed: the caller goes on without. Both also rule out
+ * new privileges by set-user-ID programs (no_new_privs). CUVETTE_SANDBOX=off in the environment, valgrind, and for
+ * system calls a build with sanitizers, which need more, switch them off. */
+#pragma once
+
+#include <stdbool.h>
+#include <stddef.h>
+
+typedef enum confine_right { CONFINE_READ = 1, CONFINE_RUN = 2, CONFINE_WRITE = 4 } confine_right;
+
+/* A file, or a folder with all below it. RUN includes READ; WRITE includes READ, creating, renaming and removing. */
+typedef struct confine_place {
+    const char *path;
+    unsigned rights;
+} confine_place;
+
+/* From now on only these places; those that do not exist are skipped. Files that are open stay open. */
+bool os_confine_files(const confine_place *places, size_t count);
+
+/* CONFINE_COMPUTING: memory, locks, clocks and the end of the thread; no files, no descriptors. CONFINE_READING: also
+ * opening files for reading, reading and writing what is open, and more threads. Everything else fails with EPERM. */
+typedef enum confine_calls { CONFINE_COMPUTING, CONFINE_READING } confine_calls;
+bool os_confine_calls(confine_calls what);
+
+/* Whether it was switched off from outside. */
+bool os_confine_is_off(void);

@@ -1,0 +1,137 @@
+/* The places that the laboratory's threads and their programs may reach: the chosen folder and that of unsaved scenes,
+ * for reading and writing; the program's own files, the system's, and those of the folders in PATH, for reading and
+ * running. Files of other projects and of the user's home are none of them. */
+#include "base/installed.h"
+#include "base/os_confine.h"
+#include "base/os_process.h"
+#include "base/text.h"
+#include "web/lab_private.h"
+#include "web/session/kept_scenes.h"
+
+#include <fcntl.h>
+#include <stdlib.h>
+#include <string.h>
+#include <unistd.h>
+
+enum { PLACES_MAX = 128 };
+
+typedef struct place_list {
+    confine_place at[PLACES_MAX];
+    char *owned[PLACES_MAX];
+    size_t count;
+} place_list;
+
+/* Takes the path; NULL is ignored. */
+static void add(place_list *all, char *path, unsigned rights)
+{
+    if (!path || !path[0] || all->count == PLACES_MAX) {
+        free(path);
+        return;
+    }
+    all->owned[all->count] = path;
+    all->at[all->count++] = (confine_place){path, rights};
+}
+
+static void add_text(place_list *all, const char *path, unsigned rights)
+{
+    add(all, path ? strdup(path) : NULL, rights);
+}
+
+/* The folders of a list such as PATH. A relative one is left out: it depends on the working folder. */
+static void add_list(place_list *all, const char *list)
+{
+    for (const char *at = list; at && *at;) {
+        const size_t length = strcspn(at, ":");
+        if (at[0] == '/' && length > 1)
+            add(all, text_format("%.*s", (int)length, at), CONFINE_RUN);
+        at += length + (at[length] == ':');
+    }
+}
+
+/* Loaders, libraries, fonts and gnuplot; what src/measure reads; the null device. */
+static void add_system(place_list *all)
+{
+    static const char *const folders[] = {"/usr", "/lib", "/lib64", "/bin", "/sbin", "/opt", "/nix", "/gnu"};
+    for (size_t i = 0; i < sizeof folders / sizeof *folders; i++)
+        add_text(all, folders[i], CONFINE_RUN);
+    add_list(all, getenv("PATH"));
+    add_list(all, getenv("LD_LIBRARY_PATH"));
+    add_text(all, "/etc", CONFINE_READ);
+    add_text(all, "/proc", CONFINE_READ);
+    add_text(all, "/sys", CONFINE_READ);
+    add_text(all, "/dev/urandom", CONFINE_READ);
+    add_text(all, "/dev/null", CONFINE_WRITE);
+}
+
+/* The program and the importer, which a study and a mesh file start, and what is installed with them. */
+static void add_program(place_list *all)
+{
+    static const char *const here[] = {"", "/../libexec/cuvette"};
+    char program[PATH_MAX];
+    if (os_program_path(program))
+        add_text(all, program, CONFINE_RUN);
+    for (size_t i = 0; i < sizeof here / sizeof *here; i++)
+        add(all, installed_find(&here[i], 1, "cuvette-import"), CONFINE_RUN);
+    add_text(all, getenv("CUVETTE_IMPORT"), CONFINE_RUN);
+    add(all, installed_folder("experiments"), CONFINE_READ);
+}
+
+static const char *temporary_place(void)
+{
+    const char *place = getenv("TMPDIR");
+    return place && place[0] ? place : "/tmp";
+}
+
+static void add_temporary(lab *l, place_list *all)
+{
+    l->temporary = text_format("%s/cuvette-lab-XXXXXX", temporary_place());
+    if (l->temporary && !mkdtemp(l->temporary)) {
+        free(l->temporary);
+        l->temporary = NULL;
+    }
+    add_text(all, l->temporary, CONFINE_WRITE);
+}
+
+void lab_confine(lab *l)
+{
+    const lab_settings *settings = &l->settings;
+    place_list all = {.count = 0};
+    if (os_confine_is_off())
+        return;
+    add_system(&all);
+    add_program(&all);
+    add_temporary(l, &all);
+    add_text(&all, settings->folder, CONFINE_WRITE);
+    if (settings->rescue && settings->rescue[0] && kept_scenes_folder(settings->rescue, NULL) == STATUS_OK)
+        add_text(&all, settings->rescue, CONFINE_WRITE);
+    os_confine_files(all.at, all.count);
+    for (size_t i = 0; i < all.count; i++)
+        free(all.owned[i]);
+}
+
+void lab_remove_temporary(lab *l)
+{
+    if (l->settings.confine && l->settings.rescue && l->settings.rescue[0])
+        rmdir(l->settings.rescue);
+    if (l->temporary)
+        rmdir(l->temporary);
+    free(l->temporary);
+}
+
+const char *lab_temporary_folder(const lab *l)
+{
+    return l->temporary ? l->temporary : temporary_place();
+}
+
+FILE *lab_temporary_file(const lab *l)
+{
+    char *path = text_format("%s/cuvette-XXXXXX", lab_temporary_folder(l));
+    const int fd = path ? mkostemp(path, O_CLOEXEC) : -1;
+    FILE *file = fd >= 0 ? fdopen(fd, "w+") : NULL;
+    if (fd >= 0)
+        unlink(path);
+    if (fd >= 0 && !file)
+        close(fd);
+    free(path);
+    return file;
+}

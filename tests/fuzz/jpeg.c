@@ -1,0 +1,13 @@
+/* The fuzzer of the JPEG reader. */
+#include "image_fuzz.h"
+
+int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size)
+{
+    if (size < 3 || memcmp(data, "\xff\xd8\xff", 3) != 0)
+        return 0; /* image_read does not call it */
+    image *img = NULL;
+    diagnostic why = {.what = ""};
+    const status code = codec_jpeg_read(data, size, &img, &why);
+    check_image(code, img, true, &why);
+    return 0;
+}
