@@ -13,6 +13,7 @@
 #include "base/number.h"
 #include "base/status.h"
 #include "base/temporary.h"
+#include "base/system_error.h"
 #include "base/text.h"
 #include "base/text_writer.h"
 #include <dirent.h>
@@ -702,9 +703,9 @@ static void an_unfinished_file_has_no_name(void **state)
 static void the_remedy_fits_the_error(void **state)
 {
     (void)state;
-    assert_non_null(strstr(file_remedy(EACCES), "permissions"));
-    assert_non_null(strstr(file_remedy(EIO), "check the disk"));
-    assert_null(file_remedy(EINVAL));
+    assert_non_null(strstr(system_remedy(EACCES), "permissions"));
+    assert_non_null(strstr(system_remedy(EIO), "check the disk"));
+    assert_null(system_remedy(EINVAL));
 }
 
 static void unwritable_paths_are_refused(void **state)
