@@ -419,7 +419,12 @@ run_coverage:
 	  gcovr --gcov-executable '$(GCOV)' --root . --filter src/ --exclude-throw-branches --html-details $(build)/report/index.html \
 	    --print-summary $(build) && echo 'report: $(build)/report/index.html' && exit $$code
 
-.PHONY: fuzz run_fuzzers
+.PHONY: fuzz interrupts run_fuzzers
+MOMENTS ?= 1000
+interrupts: $(build)/cuvette $(build)/cuvette-import ## Ctrl-C at MOMENTS=1000 random moments of all commands: what is left, and after how long
+	@rm -f $(build)/interrupts.txt; CUVETTE='$(abspath $(build)/cuvette)' CUVETTE_IMPORT='$(abspath $(build)/cuvette-import)' CC='$(CC)' \
+	  LATENCY='$(abspath $(build)/interrupts.txt)' MOMENTS=$$((($(MOMENTS) + 31) / 32)) bash tests/interrupt.sh all
+
 fuzz: ## feed the readers with libFuzzer (clang), FUZZ_SECONDS=60 each
 	@$(MAKE) config=fuzz CC=clang build=$(build)/fuzz run_fuzzers
 run_fuzzers: $(fuzzers)

@@ -3,7 +3,7 @@
 # leaves no temporary file, no part of a file, and keeps what the manual promises. tests/interrupt.sh [WORKLOAD... | all]:
 # some of them by default. MOMENTS is the number for each (1), SIGNALS the signals in turn ("INT TERM"), SEED that of the moments.
 # LATENCY=FILE appends a line for each moment: workload, signal, seconds into the command, milliseconds until its end,
-# milliseconds of its CPU time meanwhile, exit code; `make interrupts` makes a table of them. No time is asserted. Needs
+# milliseconds of its CPU time meanwhile, exit code; a table of them is printed at the end. No time is asserted. Needs
 # the compiler (CC) for tests/interrupt/moment.c.
 set -uo pipefail
 
@@ -143,7 +143,7 @@ interrupt() { # WORKLOAD SIGNAL
     rm -rf $files $kept results frame-*.png
     after=$(awk -v r=$RANDOM -v most="$longest" 'BEGIN {printf "%.3f", 0.03 + most * r / 32768}')
     read -r ms cpu code rest < <(./moment "$(kill -l "$2")" "$after" "$program" "${line[@]}" 2>err)
-    [[ $ms == - ]] && return # it had ended: a fast machine
+    [[ $ms == - ]] && return                                                                    # it had ended: a fast machine
     [[ $code == -* && ! -s err ]] && awk -v ran="$rest" 'BEGIN {exit !(ran + 0 < 1)}' && return # main had not begun
     [[ -z ${LATENCY:-} ]] || echo "$1 $2 $after $ms $cpu $code" >>"$LATENCY"
     wrongs "$code" "$ms" | sed "s/^/$2 at $after s: /"
@@ -157,9 +157,20 @@ elif [[ $1 == all ]]; then
 fi
 for workload; do
     seed=$RANDOM # a subshell would begin with one of its own
-    bad=$(RANDOM=$seed; for ((i = 0; i < moments; i++)); do
-        interrupt "$workload" "${signals[i % ${#signals[@]}]}"
-    done)
+    bad=$(
+        RANDOM=$seed
+        for ((i = 0; i < moments; i++)); do
+            interrupt "$workload" "${signals[i % ${#signals[@]}]}"
+        done
+    )
     empty "$workload: $moments moments" "$bad"
 done
+if [[ -s ${LATENCY:-} ]]; then
+    echo "# workload        moments   median ms    worst ms   worst CPU ms"
+    sort -k1,1 -k4,4n "$LATENCY" | awk '
+        function put() {if (n) printf "# %-14s %8d %11.1f %11.1f %14.1f\n", name, n, ms[int((n + 1) / 2)], ms[n], cpu}
+        $1 != name {put(); name = $1; n = 0; cpu = 0}
+        {ms[++n] = $4; if ($5 > cpu) cpu = $5; all++}
+        END {put(); print "# " all " moments"}'
+fi
 conclude
