@@ -1,5 +1,5 @@
-/* Tests of base/cancel.h: the rules of tokens; and every long kind of work, cancelled at one question after another, ends
- * with STATUS_INTERRUPTED and nothing, or is complete: never with a part of its result. */
+/* Tests of base/cancel.h: the rules of tokens; and every long kind of work, cancelled at one question after another,
+ * ends with STATUS_INTERRUPTED and nothing, or is complete: never with a part of its result. */
 #include <setjmp.h>
 #include <stdarg.h>
 #include <stddef.h>

@@ -200,9 +200,8 @@ static void follow(const arguments *with, const frame_costs *frame)
     struct {
         rank_report rank;
         worker_report worker;
-    } report = {.rank = {.head.frame = 1,
-                         .account = {.wall_s = MPI_Wtime() - begun_s, .cpu_s = own.busy_s},
-                         .workers = 1}};
+    } report = {
+        .rank = {.head.frame = 1, .account = {.wall_s = MPI_Wtime() - begun_s, .cpu_s = own.busy_s}, .workers = 1}};
     MPI_Send(&report, sizeof report, MPI_BYTE, 0, TAG_REPORT, MPI_COMM_WORLD);
 }
 
