@@ -487,6 +487,12 @@ mutants: $(build)/cuvette ## insert 600 small errors into physics and statistics
 check-all: $(build)/cuvette ## run every kind of check, long ones in rotation, within an hour: build/check/page.md
 	@BUILD='$(build)' CC='$(CC)' tests/check/all.sh
 
+.PHONY: interrupts
+MOMENTS ?= 1000
+interrupts: $(build)/cuvette $(build)/cuvette-import ## Ctrl-C at MOMENTS=1000 random moments of all commands: what is left, and after how long
+	@rm -f $(build)/interrupts.txt; CUVETTE='$(abspath $(build)/cuvette)' CUVETTE_IMPORT='$(abspath $(build)/cuvette-import)' CC='$(CC)' \
+	  LATENCY='$(abspath $(build)/interrupts.txt)' MOMENTS=$$((($(MOMENTS) + 31) / 32)) bash tests/interrupt.sh all
+
 # The fuzzers that have waited longest: FUZZ_TOTAL seconds in all, FUZZ_SECONDS each; only=NAME for tests/fuzz/NAME.c alone.
 .PHONY: fuzz fuzz-merge run_fuzzers merge_corpus
 selected_fuzzers = $(if $(only),$(only:%=$(build)/tests/fuzz_%),$(fuzzers))

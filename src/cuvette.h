@@ -117,8 +117,8 @@ CUVETTE_API cuvette_status cuvette_scene_write_text(const cuvette_scene *scene, 
                                                     cuvette_diagnostic *why);
 
 /* Reads the files that the scene names, and simulates its slimes until their time_s, which otherwise its first render,
- * query or measurement does. progress, which may be NULL, gets the share of the simulation about ten times a second and
- * returns false to stop: CUVETTE_CANCELLED. */
+ * query or measurement does. progress, which may be NULL, is called about ten times a second, with the share of the
+ * simulation, and returns false to stop, also while files are read and meshes generated: CUVETTE_CANCELLED. */
 CUVETTE_API cuvette_status cuvette_scene_load(const cuvette_scene *scene, bool (*progress)(void *context, double share),
                                               void *context, cuvette_diagnostic *why);
 
@@ -284,7 +284,8 @@ CUVETTE_API cuvette_status cuvette_engine_create(const char *instructions, cuvet
 /* Must not be called during a render. */
 CUVETTE_API void cuvette_engine_destroy(cuvette_engine *engine);
 
-/* Stops the current render within about a tenth of a second; has no effect when there is none. May be called from any
+/* Stops the current render within about a tenth of a second, also while it loads the scene and builds hierarchies; has
+ * no effect when there is none. May be called from any
  * thread and from a signal handler. */
 CUVETTE_API void cuvette_engine_cancel(cuvette_engine *engine);
 

@@ -1,7 +1,7 @@
 #!/bin/bash
 # Requests that need more memory than allowed: refused with exit code 2, one line with the estimate and the remedy, no
-# file, and less than 20 MB beyond what the program needs for nothing. tests/budget.sh [PROGRAM]; needs the compiler (CC)
-# for tests/interrupt/moment.c, which measures the peak.
+# file, and less than 20 MB beyond what the program needs for nothing. tests/budget.sh [PROGRAM]; needs the compiler
+# (CC) for tests/interrupt/moment.c, which measures the peak.
 set -uo pipefail
 
 root=$(cd "$(dirname "${BASH_SOURCE[0]}")/.." && pwd)
@@ -42,7 +42,8 @@ refused() { # WHAT PATTERN ARGUMENT...
     ((kib - none <= worst || allowed > 20480)) || worst=$((kib - none))
     empty "refused: $what" "$wrong"
 }
-needs='needs about [0-9.]+ [KMGT]iB of memory, more than the [0-9.]+ ([KMGT]iB|bytes) that --memory-limit leaves; .*--memory-limit$'
+needs='needs about [0-9.]+ [KMGT]iB of memory, more than the [0-9.]+ ([KMGT]iB|bytes) '
+needs+='that --memory-limit leaves; .*--memory-limit$'
 scenes=$root/experiments/scenes
 
 refused "a terrain of 16384 x 16384 cells" 'a mesh of 536870912 triangles is too large' \

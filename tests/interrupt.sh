@@ -1,10 +1,11 @@
 #!/bin/bash
 # Ctrl-C at random moments of commands that take seconds: the command ends with exit code 130 and one line that says so,
-# leaves no temporary file, no part of a file, and keeps what the manual promises. tests/interrupt.sh [WORKLOAD... | all]:
-# some of them by default. MOMENTS is the number for each (1), SIGNALS the signals in turn ("INT TERM"), SEED that of the moments.
-# LATENCY=FILE appends a line for each moment: workload, signal, seconds into the command, milliseconds until its end,
-# milliseconds of its CPU time meanwhile, exit code; `make interrupts` makes a table of them. No time is asserted. Needs
-# the compiler (CC) for tests/interrupt/moment.c.
+# leaves no temporary file, no part of a file, and keeps what the manual promises.
+#
+# tests/interrupt.sh [WORKLOAD... | all]: some of them by default. MOMENTS is the number for each (1), SIGNALS the
+# signals in turn ("INT TERM"), SEED that of the moments. LATENCY=FILE appends a line for each moment: workload, signal,
+# seconds into the command, milliseconds until its end, milliseconds of its CPU time meanwhile, exit code; a table of
+# them is printed at the end. No time is asserted. Needs the compiler (CC) for tests/interrupt/moment.c.
 set -uo pipefail
 
 root=$(cd "$(dirname "${BASH_SOURCE[0]}")/.." && pwd)
@@ -40,10 +41,13 @@ lights: {lamp: {position: [0, 4, -4]}}
 solids: {body: {shape: mesh, mesh: soup}}
 END
 }
-fan=(fan "$scenes/rod.yaml" --from=-3,1.5,0 --to=3,1.5,0 --width 1.6)
+fan=(fan "$scenes/rod.yaml" "--from=-3,1.5,0" "--to=3,1.5,0" --width 1.6)
 w_fan() { line=("${fan[@]}" --rays 100000 --depth 12 -o fan.csv) files=fan.csv longest=2; }
 w_fan_tree() { line=("${fan[@]}" --rays 100000 --tree --depth 8 -o fan.svg) files=fan.svg longest=3; }
-w_trace() { line=(trace "$scenes/rod.yaml" --pixel 400,300 --depth 28 --json -o tree.json) files=tree.json longest=2; }
+w_trace() {
+    line=(trace "$scenes/rod.yaml" --pixel "400,300" --depth 28 --json -o tree.json)
+    files=tree.json longest=2
+}
 w_motion() { line=(motion "$scenes/slime.yaml" --set toy.level=5) longest=2; }
 w_lesson() { line=(lesson check) longest=1; }
 w_check() { line=(scene soup-bvh.yaml --check) longest=2 && soup sparse 3000000 bvh; }
@@ -84,8 +88,8 @@ w_render() {
     kept=r.png longest=3
 }
 w_paths() {
-    line=(render "$scenes/rod.yaml" -o r.png --set render.integrator=path --set render.samples=256 --set render.depth=16)
-    kept=r.png longest=3
+    line=(render "$scenes/rod.yaml" -o r.png --set render.integrator=path --set render.samples=256)
+    line+=(--set render.depth=16) kept=r.png longest=3
 }
 w_repeat() { line=(render "$scenes/rod.yaml" --json --repeat 1000) longest=3; }
 w_encode() {
@@ -103,7 +107,8 @@ w_layers() {
 w_animate() { line=(animate "$scenes/slime.yaml" -o frame-%03d.png --duration 3) longest=3; }
 w_study() {
     line=(study run long.study -o results) kept=results/long/rows.csv longest=3
-    printf 'study: long\nscene: %s\ngrid: [{render.depth: [1, 2, 3]}]\nrepetitions: 500\n' "$scenes/rod.yaml" >long.study
+    printf 'study: long\nscene: %s\ngrid: [{render.depth: [1, 2, 3]}]\nrepetitions: 500\n' "$scenes/rod.yaml" \
+        >long.study
 }
 w_processes() {
     line=(study run processes.study -o results) kept=results/processes/rows.csv longest=3
@@ -112,7 +117,7 @@ w_processes() {
 }
 w_study_motion() {
     line=(study run motion.study -o results) longest=4
-    printf 'study: motion\nscene: %s\nset: {toy.level: 5, toy.time_s: 0, render.width: 40, render.height: 30}\ngrid: %s\n%s' \
+    printf 'study: motion\nscene: %s\nset: {toy.level: 5, render.width: 40, render.height: 30}\ngrid: %s\n%s' \
         "$scenes/slime.yaml" '[{render.depth: [1, 2]}]' 'keep: {motion: on}' >motion.study
 }
 
@@ -141,10 +146,12 @@ interrupt() { # WORKLOAD SIGNAL
     "w_$1"
     # shellcheck disable=SC2086 # several names
     rm -rf $files $kept results frame-*.png
-    after=$(awk -v r=$RANDOM -v most="$longest" 'BEGIN {printf "%.3f", 0.03 + most * r / 32768}')
+    after=$(awk -v r="$RANDOM" -v most="$longest" 'BEGIN {printf "%.3f", 0.03 + most * r / 32768}')
     read -r ms cpu code rest < <(./moment "$(kill -l "$2")" "$after" "$program" "${line[@]}" 2>err)
-    [[ $ms == - ]] && return # it had ended: a fast machine
-    [[ $code == -* && ! -s err ]] && awk -v ran="$rest" 'BEGIN {exit !(ran + 0 < 1)}' && return # main had not begun
+    [[ $ms != - ]] || return # it had ended: a fast machine
+    if [[ $code == -* && ! -s err ]] && awk -v ran="$rest" 'BEGIN {exit !(ran + 0 < 1)}'; then
+        return # main had not begun
+    fi
     [[ -z ${LATENCY:-} ]] || echo "$1 $2 $after $ms $cpu $code" >>"$LATENCY"
     wrongs "$code" "$ms" | sed "s/^/$2 at $after s: /"
 }
@@ -157,9 +164,20 @@ elif [[ $1 == all ]]; then
 fi
 for workload; do
     seed=$RANDOM # a subshell would begin with one of its own
-    bad=$(RANDOM=$seed; for ((i = 0; i < moments; i++)); do
-        interrupt "$workload" "${signals[i % ${#signals[@]}]}"
-    done)
+    bad=$(
+        RANDOM=$seed
+        for ((i = 0; i < moments; i++)); do
+            interrupt "$workload" "${signals[i % ${#signals[@]}]}"
+        done
+    )
     empty "$workload: $moments moments" "$bad"
 done
+if [[ -s ${LATENCY:-} ]]; then
+    echo "# workload        moments   median ms    worst ms   worst CPU ms"
+    sort -k1,1 -k4,4n "$LATENCY" | awk '
+        function put() {if (n) printf "# %-14s %8d %11.1f %11.1f %14.1f\n", name, n, ms[int((n + 1) / 2)], ms[n], cpu}
+        $1 != name {put(); name = $1; n = 0; cpu = 0}
+        {ms[++n] = $4; if ($5 > cpu) cpu = $5; all++}
+        END {put(); print "# " all " moments"}'
+fi
 conclude

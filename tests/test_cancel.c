@@ -1,5 +1,5 @@
-/* Tests of base/cancel.h: the rules of tokens; and every long kind of work, cancelled at one question after another, ends
- * with STATUS_INTERRUPTED and nothing, or is complete: never with a part of its result. */
+/* Tests of base/cancel.h: the rules of tokens; and every long kind of work, cancelled at one question after another,
+ * ends with STATUS_INTERRUPTED and nothing, or is complete: never with a part of its result. */
 #include <setjmp.h>
 #include <stdarg.h>
 #include <stddef.h>
@@ -10,7 +10,7 @@
 #include "base/file.h"
 #include "base/hash.h"
 #include "base/thread_team.h"
-#include "geometry/hierarchy.h"
+#include "geometry/hierarchy_private.h"
 #include "geometry/mesh_generators.h"
 #include "image/compare.h"
 #include "image/texture.h"
@@ -152,8 +152,8 @@ static void sweep(const char *name, work *act, const void *how)
         if (code == STATUS_OK && found == right)
             continue; /* the last question came after the result */
         if (code != STATUS_INTERRUPTED)
-            fail_msg("%s, cancelled at question %ld: status %d, result %llx instead of %llx", name, questions, (int)code,
-                     (unsigned long long)found, (unsigned long long)right);
+            fail_msg("%s, cancelled at question %ld: status %d, result %llx instead of %llx", name, questions,
+                     (int)code, (unsigned long long)found, (unsigned long long)right);
         stopped++;
     }
     if (stopped == 0)
@@ -213,7 +213,12 @@ static status build(const void *how, uint64_t *result)
     TRY(hierarchy_build(b->m, b->kind, b->threads, &h, NULL));
     const hierarchy_report r = hierarchy_describe(h);
     const int64_t counts[] = {(int64_t)r.nodes, (int64_t)r.leaves, r.depth};
-    *result = hash_words(HASH_START, counts, 3);
+    const size_t block = h->single ? sizeof(block_single) : sizeof(block_double);
+    *result = hash_bytes(hash_words(HASH_START, counts, 3), h->blocks, h->block_count * block);
+    if (h->nodes)
+        *result = hash_bytes(*result, h->nodes, h->node_count * sizeof *h->nodes);
+    if (h->spheres)
+        *result = hash_bytes(*result, h->spheres, h->node_count * sizeof *h->spheres);
     hierarchy_destroy(h);
     return STATUS_OK;
 }

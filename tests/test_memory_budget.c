@@ -111,8 +111,9 @@ static void sizes_are_read_and_written(void **state)
     static const struct {
         const char *text;
         uint64_t bytes;
-    } good[] = {{"1", 1},           {"500M", 500 * MIB},     {"500m", 500 * MIB},       {"4G", 4096 * MIB},
-                {"1.5GiB", 1536 * MIB}, {"2kb", 2048}, {"1T", (uint64_t)1 << 40}};
+    } good[] = {
+        {"1", 1},      {"500M", 500 * MIB},      {"500m", 500 * MIB}, {"4G", 4096 * MIB}, {"1.5GiB", 1536 * MIB},
+        {"2kb", 2048}, {"1T", (uint64_t)1 << 40}};
     static const char *const bad[] = {"", "M", "0", "-1", "1x", "1MM", "1 M", "1e9", "inf", "9999999T", "1..5"};
     char text[MEMORY_TEXT_MAX];
     for (size_t i = 0; i < sizeof good / sizeof *good; i++) {

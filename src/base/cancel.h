@@ -4,8 +4,9 @@
  * passes its caller's token on to its members; other threads begin without one.
  *
  * Once asked for, cancellation stays asked for until the token ends: a function without a status may return early with
- * an incomplete result if its caller then asks before using it. Ownership: a token is its owner's, usually on the stack,
- * and must outlive the work; begin and end are paired on one thread, and nest: work below two tokens ends with either. */
+ * an incomplete result if its caller then asks before using it. Ownership: a token is its owner's, usually on the
+ * stack, and must outlive the work; begin and end are paired on one thread, and nest: work below two tokens ends with
+ * either. */
 #pragma once
 
 #include "base/status.h"

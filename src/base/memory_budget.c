@@ -164,8 +164,8 @@ status memory_budget_check(uint64_t bytes, const char *remedy, diagnostic *why, 
     memory_text(bytes, needed);
     memory_text(left, room);
     snprintf(advice, sizeof advice, "%s, or %s", remedy, chosen ? "raise --memory-limit" : "give a --memory-limit");
-    return diagnose(why, STATUS_BAD_INPUT, advice, "%s needs about %s of memory, more than the %s that %s", name, needed,
-                    room, chosen ? "--memory-limit leaves" : "are three quarters of what is free");
+    return diagnose(why, STATUS_BAD_INPUT, advice, "%s needs about %s of memory, more than the %s that %s", name,
+                    needed, room, chosen ? "--memory-limit leaves" : "are three quarters of what is free");
 }
 
 /* --- sizes as text --- */

@@ -167,7 +167,8 @@ static status write_files(const render_request *request, const job_account *f, j
  * less effort, but no page, beams and layers, which take long. STATUS_INTERRUPTED then. */
 static status write_results(const render_request *request, const job_account *f, job *with, diagnostic *why)
 {
-    const status first = write_files(request, f, with, why);
+    status first = cancel_check(why);
+    THEN(first, write_files(request, f, with, why));
     status code = first;
     cancel_token shield;
     cancel_shield(&shield);

@@ -42,8 +42,8 @@ typedef struct scene_input {
             .take = option_change, .parameter = "render.lambda_nm"                                            \
     }
 /* The size that the process may use, for all commands that load or render; it belongs to no request. */
-#define OPTION_MEMORY                                                                                         \
-    {                                                                                                         \
+#define OPTION_MEMORY                                                                                              \
+    {                                                                                                              \
         "memory-limit", 0, "SIZE", "refuse what would need more memory, such as 500M or 4G", .take = option_memory \
     }
 status option_memory(const command_option *o, void *request, const char *value, diagnostic *why);

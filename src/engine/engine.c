@@ -1,4 +1,5 @@
 /* Engines, and the rendering of a request: checks, a preview, the film, the caller's buffers and callbacks. */
+#include "base/cancel.h"
 #include "engine/canvas.h"
 #include "engine/engine_private.h"
 
@@ -85,7 +86,7 @@ static bool watch(void *context, double share)
     return report_share(now, now->is_preview ? 0.0 : share);
 }
 
-/* Slimes are simulated before the first ray. */
+/* All is loaded, and slimes are simulated, before the first ray. */
 static bool watch_loading(void *context, double share)
 {
     static const double ask_every_s = 0.1;
@@ -95,6 +96,12 @@ static bool watch_loading(void *context, double share)
         return !job_must_stop(now->engine->workers);
     now->load_asked_s = clock_wall_s();
     return report_share(now, 0.0);
+}
+
+/* As the ask of a token, for all that is loaded and built. */
+static bool host_stops(void *context)
+{
+    return !watch_loading(context, 0.0);
 }
 
 static void take_piece(void *context, const film *img, int x0, int y0, int x1, int y1)
@@ -213,14 +220,19 @@ static status render_held(cuvette_engine *engine, cuvette_scene *s, const cuvett
     stage now = {.engine = engine, .request = &request, .host = host};
     status code = engine_check(s, why);
     THEN(code, read_request(given, s->model, &request, why));
-    THEN(code, engine_load(s, &(load_watch){watch_loading, &now}, why));
-    THEN(code, keep_scene(s, frame, why));
-    THEN(code, canvas_open(&request, host, &now.buffers, why));
     if (code != STATUS_OK)
         return code;
-    frame->solid_count = s->model->solid_count;
-    code = render(&now, s->model, frame, why);
-    canvas_close(&now.buffers);
+    cancel_token token = {.ask = host_stops, .context = &now};
+    cancel_begin(&token);
+    code = engine_load(s, &(load_watch){watch_loading, &now}, why);
+    THEN(code, keep_scene(s, frame, why));
+    THEN(code, canvas_open(&request, host, &now.buffers, why));
+    if (code == STATUS_OK) {
+        frame->solid_count = s->model->solid_count;
+        code = render(&now, s->model, frame, why);
+        canvas_close(&now.buffers);
+    }
+    cancel_end(&token);
     return code;
 }
 

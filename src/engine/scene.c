@@ -1,4 +1,5 @@
 /* Scene handles: creating, reading, cloning, checking, writing. */
+#include "base/cancel.h"
 #include "engine/engine_private.h"
 
 #include "measure/clock.h"
@@ -181,6 +182,12 @@ bool engine_goes_on(void *context, double share)
     return goes_on;
 }
 
+/* As the ask of a token. */
+static bool host_stops(void *context)
+{
+    return !engine_goes_on(context, 0.0);
+}
+
 cuvette_status cuvette_scene_load(const cuvette_scene *s, bool (*progress)(void *context, double share), void *context,
                                   cuvette_diagnostic *why)
 {
@@ -189,7 +196,10 @@ cuvette_status cuvette_scene_load(const cuvette_scene *s, bool (*progress)(void 
     host_progress asked = {.ask = progress, .context = context, .host = &host};
     ENGINE_TRY(engine_begin_render(held, why)); /* the callback must not change the scene */
     status code = engine_check(held, &inner);
+    cancel_token token = {.ask = host_stops, .context = &asked};
+    cancel_begin(&token);
     THEN(code, engine_load(held, &(load_watch){engine_goes_on, &asked}, &inner));
+    cancel_end(&token);
     engine_end_render(held);
     return engine_report(code, &inner, why);
 }

@@ -106,7 +106,7 @@ static status make_sphere(size_t f, void (*place)(mesh *m, size_t face, size_t f
 {
     mesh *m;
     TRY(make_grids(f, &m, why));
-    for (size_t face = 0; face < 20; face++) {
+    for (size_t face = 0; face < 20 && !cancel_asked(); face++) {
         place(m, face, f);
         set_attributes(m, face, row_start(f + 1));
     }

@@ -27,6 +27,8 @@ status generate_torus(double major, double minor, int around, int tube, mesh **o
     for (size_t i = 0; i < columns && !cancel_asked(); i++) {
         const vec3 outward = generate_azimuth((int)i, around);
         for (size_t j = 0; j < rows; j++) {
+            if (j % 64 == 0 && cancel_asked()) /* the first columns take all pages of the mesh */
+                break;
             double sine, cosine; /* from the innermost circle down, out and up again */
             elementary_sincos_deg(360.0 * (double)(j % (size_t)tube) / tube, &sine, &cosine);
             const vec3 normal = vec3_make(-cosine * outward.x, -sine, -cosine * outward.z);

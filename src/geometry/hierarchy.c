@@ -50,8 +50,8 @@ static status build(hierarchy *h, int threads, diagnostic *why)
                     (int)h->kind);
 }
 
-/* Bytes of the hierarchy of a mesh and of its builder, by triangle: measured on soups and spheres of 10^6 triangles, and
- * rounded up. */
+/* Bytes of the hierarchy of a mesh and of its builder, by triangle: measured on soups of 10^6 triangles, and rounded
+ * up. */
 static uint64_t bytes_by_triangle(hierarchy_kind kind, bool single)
 {
     const uint64_t block = (single ? sizeof(block_single) : sizeof(block_double)) / BLOCK;

@@ -14,21 +14,21 @@
 
 /* Embree's functions, loaded when the first of its hierarchies is built: with the libraries that it needs in turn they
  * cost 5 ms at the start of a process. */
-#define EACH_FUNCTION(X)                                                 \
-    X(attachGeometry, rtcAttachGeometry)                                 \
-    X(commitGeometry, rtcCommitGeometry)                                 \
-    X(commitScene, rtcCommitScene)                                       \
-    X(getDeviceError, rtcGetDeviceError)                                 \
-    X(intersect1, rtcIntersect1)                                         \
-    X(newDevice, rtcNewDevice)                                           \
-    X(newGeometry, rtcNewGeometry)                                       \
-    X(newScene, rtcNewScene)                                             \
-    X(occluded1, rtcOccluded1)                                           \
-    X(releaseDevice, rtcReleaseDevice)                                   \
-    X(releaseGeometry, rtcReleaseGeometry)                               \
-    X(releaseScene, rtcReleaseScene)                                     \
-    X(setDeviceMemoryMonitorFunction, rtcSetDeviceMemoryMonitorFunction) \
-    X(setNewGeometryBuffer, rtcSetNewGeometryBuffer)                     \
+#define EACH_FUNCTION(X)                                                   \
+    X(attachGeometry, rtcAttachGeometry)                                   \
+    X(commitGeometry, rtcCommitGeometry)                                   \
+    X(commitScene, rtcCommitScene)                                         \
+    X(getDeviceError, rtcGetDeviceError)                                   \
+    X(intersect1, rtcIntersect1)                                           \
+    X(newDevice, rtcNewDevice)                                             \
+    X(newGeometry, rtcNewGeometry)                                         \
+    X(newScene, rtcNewScene)                                               \
+    X(occluded1, rtcOccluded1)                                             \
+    X(releaseDevice, rtcReleaseDevice)                                     \
+    X(releaseGeometry, rtcReleaseGeometry)                                 \
+    X(releaseScene, rtcReleaseScene)                                       \
+    X(setDeviceMemoryMonitorFunction, rtcSetDeviceMemoryMonitorFunction)   \
+    X(setNewGeometryBuffer, rtcSetNewGeometryBuffer)                       \
     X(setSceneProgressMonitorFunction, rtcSetSceneProgressMonitorFunction) \
     X(setSceneFlags, rtcSetSceneFlags)
 

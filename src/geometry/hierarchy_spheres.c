@@ -175,8 +175,8 @@ status hierarchy_build_spheres(hierarchy *h, diagnostic *why)
     free(b.order);
     free(b.moved);
     free(b.octant);
-    return made           ? STATUS_OK
+    return made             ? STATUS_OK
            : cancel_asked() ? cancel_check(why)
-                : diagnose(why, STATUS_FAILURE, "use a smaller mesh", "out of memory for a hierarchy of %zu triangles",
-                           count);
+                            : diagnose(why, STATUS_FAILURE, "use a smaller mesh",
+                                       "out of memory for a hierarchy of %zu triangles", count);
 }

@@ -1,6 +1,7 @@
 /* The FLIP error as a false-colour image. */
 #include "image/compare.h"
 
+#include "base/cancel.h"
 #include "image/color_map.h"
 #include "image/compare_parts.h"
 #include <stdlib.h>
@@ -24,8 +25,9 @@ status image_compare_map(const image *a, const image *b, image **map, diagnostic
     status code = errors ? image_create(a->width, a->height, &img, why)
                          : diagnose(why, STATUS_FAILURE, MEMORY_REMEDY, "out of memory for the map of errors");
     THEN(code, compare_flip(a, b, errors, why));
-    for (size_t i = 0; code == STATUS_OK && i < count; i++)
+    for (size_t i = 0; code == STATUS_OK && i < count && !cancel_asked(); i++)
         magma(errors[i], img->pixel + 3 * i);
+    THEN(code, cancel_check(why));
     free(errors);
     if (code != STATUS_OK) {
         image_destroy(img);

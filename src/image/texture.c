@@ -91,8 +91,8 @@ status texture_create(const image *img, texture_space space, texture_wrap wrap_u
     *out = NULL;
     TRY(check(img, why));
     const uint64_t texels = (uint64_t)img->width * (uint64_t)img->height;
-    TRY(memory_budget_check((filter == TEXTURE_TRILINEAR ? texels / 3 * 4 : texels) * sizeof(texel), "use a smaller one",
-                            why, "a texture of %d x %d texels", img->width, img->height));
+    TRY(memory_budget_check((filter == TEXTURE_TRILINEAR ? texels / 3 * 4 : texels) * sizeof(texel),
+                            "use a smaller one", why, "a texture of %d x %d texels", img->width, img->height));
     texture *t = texture_allocate(img->width, img->height, wrap_u, wrap_v, filter);
     if (!t)
         return diagnose(why, STATUS_FAILURE, MEMORY_REMEDY, "out of memory for a texture of %d x %d texels", img->width,

@@ -158,8 +158,9 @@ static void pass_on_piece(void *of, const film *img, int x0, int y0, int x1, int
 static status check_quota(const job *j, const scene *s, const render_options *requested, diagnostic *why)
 {
     const uint64_t quota = j->settings.memory_bytes, needed = renderer_result_bytes(s, requested);
-    TRY(memory_budget_check(needed + renderer_tracing_bytes(s), "render a smaller image, with fewer threads or maps", why,
-                            "a frame of %lld x %lld pixels", (long long)s->render.width, (long long)s->render.height));
+    TRY(memory_budget_check(needed + renderer_tracing_bytes(s), "render a smaller image, with fewer threads or maps",
+                            why, "a frame of %lld x %lld pixels", (long long)s->render.width,
+                            (long long)s->render.height));
     if (quota == 0 || needed <= quota)
         return STATUS_OK;
     return diagnose(why, STATUS_BAD_INPUT, "render a smaller image, or request fewer maps",

@@ -37,7 +37,7 @@ static diagram_box box_of(const fanned *t, const section_plane *plane)
     diagram_box box = DIAGRAM_BOX_EMPTY;
     diagram_include(&box, plane, t->rule->from);
     diagram_include(&box, plane, t->rule->to);
-    for (int i = 0; i < f->count; i++) {
+    for (int i = 0; i < f->count && !cancel_asked(); i++) {
         const ray_node *node = &f->node[f->ray[i].first];
         diagram_include(&box, plane, node->origin);
         for (size_t k = 1; k < f->ray[i].count; k++)

@@ -83,6 +83,7 @@ int main(int argc, char **argv)
     if (early || !number)
         printf("- - %d %.3f %ld\n", code, ended_s - began_s, used.ru_maxrss);
     else
-        printf("%.1f %.1f %d %.3f %ld\n", (ended_s - sent_s) * 1e3, used_s * 1e3, code, ended_s - began_s, used.ru_maxrss);
+        printf("%.1f %.1f %d %.3f %ld\n", (ended_s - sent_s) * 1e3, used_s * 1e3, code, ended_s - began_s,
+               used.ru_maxrss);
     return 0;
 }

@@ -1,6 +1,7 @@
 /* Writers of a frame's files: images, maps, named layers, the timeline. */
 #include "render/core/record.h"
 
+#include "base/cancel.h"
 #include "base/file.h"
 #include "base/number.h"
 #include "image/heatmap.h"
@@ -41,7 +42,7 @@ status record_drawing(const image *img, const scene *of, const char *path, int b
 static status image_of_values(const double *values, const film *f, image **out, diagnostic *why)
 {
     status code = image_create(f->width, f->height, out, why);
-    for (size_t i = 0; code == STATUS_OK && i < (size_t)f->width * (size_t)f->height; i++)
+    for (size_t i = 0; code == STATUS_OK && i < (size_t)f->width * (size_t)f->height && !cancel_asked_at(i); i++)
         for (size_t channel = 0; channel < 3; channel++)
             (*out)->pixel[i * 3 + channel] = (float)values[i];
     return code;
@@ -91,7 +92,7 @@ static status record_layer(const float *values, int channels, const film *f, con
 {
     image *img = NULL;
     status code = image_create(f->width, f->height, &img, why);
-    for (size_t i = 0; code == STATUS_OK && i < 3 * (size_t)f->width * (size_t)f->height; i++)
+    for (size_t i = 0; code == STATUS_OK && i < 3 * (size_t)f->width * (size_t)f->height && !cancel_asked_at(i); i++)
         img->pixel[i] = values[channels == 3 ? i : i / 3];
     THEN(code, image_write(img, path, 8, why));
     image_destroy(img);

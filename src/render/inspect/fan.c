@@ -2,6 +2,7 @@
 #include "base/memory_budget.h"
 #include "render/inspect/fan.h"
 
+#include "base/cancel.h"
 #include "base/elementary.h"
 #include "base/grow.h"
 #include "render/inspect/ray_axes.h"
@@ -103,7 +104,7 @@ static bool cross(const fan *f, const fan_ray *a, const fan_ray *b, vec3 *at)
 
 static void find_crossings(fan *f)
 {
-    for (int i = 0; i + 1 < f->count; i++) {
+    for (int i = 0; i + 1 < f->count && !cancel_asked(); i++) {
         vec3 at;
         if (same_direction(f, &f->ray[i], &f->ray[i + 1]) && f->ray[i].count > 1 &&
             cross(f, &f->ray[i], &f->ray[i + 1], &at))
@@ -122,7 +123,7 @@ static void find_focus(fan *f)
 {
     vec3 row[3] = {{0, 0, 0}, {0, 0, 0}, {0, 0, 0}}, right = {0, 0, 0}, base = {0, 0, 0};
     int count = 0;
-    for (int i = 0; i < f->count; i++) {
+    for (int i = 0; i < f->count && !cancel_asked(); i++) {
         if (!is_bent(&f->ray[i]))
             continue;
         if (count++ == 0)
@@ -201,5 +202,5 @@ status fan_follow(probe *p, const fan_rule *rule, fan *out, diagnostic *why)
     TRY(follow_all(p, rule, out, why));
     find_crossings(out);
     find_focus(out);
-    return STATUS_OK;
+    return cancel_check(why);
 }

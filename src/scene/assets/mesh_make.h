@@ -4,7 +4,8 @@
 
 #include "scene/model/mesh_entry.h"
 
-/* The triangles of a generator's mesh before it is made; 0 for other sources, and for box and lathe, which are small. */
+/* The triangles of a generator's mesh before it is made; 0 for other sources, and for box and lathe, which are
+ * small. */
 size_t mesh_make_triangles(const mesh_entry *m);
 
 /* For an entry without data whose source is a generator. */
