@@ -54,6 +54,12 @@ part clang in_rotation clang 300 'make -s clang'
 part sanitize in_rotation sanitize 480 'make -s sanitize'
 part threads in_rotation threads 300 'make -s tsan' "${threaded[@]}"
 part valgrind in_rotation valgrind 240 'make -s valgrind'
+mapfile -t commands < <(awk '/^[a-z]/ { print $1 }' tests/faults/commands.txt)
+part faults in_rotation faults 240 'make -s faults' "${commands[@]}"
+part power-cuts env POWER_STATES=$((20000 * scale)) POWER_RESUMED=5 make -s power-cuts
+part interrupts make -s interrupts MOMENTS=$((200 * scale))
+part fuzz make -s fuzz FUZZ_TOTAL=$((240 * scale)) FUZZ_SECONDS=30
+part mutants env MUTANT_SECONDS=$((300 * scale)) tests/mutants/mutants.sh
 write_page
 cat "$check/page.md"
 exit $failed
