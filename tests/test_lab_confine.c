@@ -325,6 +325,30 @@ static void programs_outside_the_folder_are_not_started(void **state)
     free(importer);
 }
 
+static void temporary_folders_of_killed_laboratories_are_removed(void **state)
+{
+    (void)state;
+    if (!kernel_confines())
+        skip();
+    const char *place = getenv("TMPDIR");
+    char *left = text_format("%s/cuvette-tmp-left", place ? place : "/tmp"), *file = text_format("%s/a.svg", left);
+    assert_true(mkdir(left, 0700) == 0 && symlink("/etc/passwd", file) == 0);
+    lab_room first;
+    room_open(&first, NULL);
+    assert_int_equal(access(left, F_OK), -1);
+    assert_int_equal(access("/etc/passwd", F_OK), 0);
+    char *own = strdup(lab_temporary_folder(first.lab));
+    lab_room other;
+    room_open(&other, NULL);
+    assert_int_equal(access(own, F_OK), 0); /* in use */
+    room_close(&other);
+    room_close(&first);
+    assert_int_equal(access(own, F_OK), -1);
+    free(own);
+    free(file);
+    free(left);
+}
+
 /* --- files replaced after the check --- */
 
 /* The model's own file is checked before it is passed to assimp. */
@@ -541,6 +565,7 @@ int main(void)
         cmocka_unit_test_setup_teardown(buffers_and_images_of_gltf_outside_the_folder_are_refused, enter, leave),
         cmocka_unit_test_setup_teardown(added_models_are_confined_to_the_folder, enter, leave),
         cmocka_unit_test_setup_teardown(programs_outside_the_folder_are_not_started, enter, leave),
+        cmocka_unit_test(temporary_folders_of_killed_laboratories_are_removed),
         cmocka_unit_test_setup_teardown(files_replaced_by_links_after_the_check_are_refused, enter, leave),
         cmocka_unit_test_setup_teardown(new_scenes_are_confined_to_the_folder, enter, leave),
         cmocka_unit_test_setup_teardown(scenes_and_studies_replaced_by_links_are_refused, enter, leave),

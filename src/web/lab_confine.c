@@ -8,9 +8,12 @@
 #include "web/lab_private.h"
 #include "web/session/kept_scenes.h"
 
+#include <dirent.h>
 #include <fcntl.h>
+#include <ftw.h>
 #include <stdlib.h>
 #include <string.h>
+#include <sys/file.h>
 #include <unistd.h>
 
 enum { PLACES_MAX = 128 };
@@ -82,10 +85,56 @@ static const char *temporary_place(void)
     return place && place[0] ? place : "/tmp";
 }
 
+#define TEMPORARY "cuvette-tmp-"
+
+/* The open folder, locked; -1: it is in use, or is none. The lock ends with the process, however that ends. */
+static int hold(const char *path)
+{
+    const int fd = open(path, O_RDONLY | O_DIRECTORY | O_NOFOLLOW | O_CLOEXEC);
+    if (fd >= 0 && flock(fd, LOCK_EX | LOCK_NB) == 0)
+        return fd;
+    if (fd >= 0)
+        close(fd);
+    return -1;
+}
+
+static int remove_one(const char *path, const struct stat *what, int kind, struct FTW *place)
+{
+    (void)what, (void)kind, (void)place;
+    return remove(path);
+}
+
+static void remove_all(const char *path)
+{
+    enum { OPEN_MAX_FILES = 8 };
+    nftw(path, remove_one, OPEN_MAX_FILES, FTW_DEPTH | FTW_PHYS);
+}
+
+/* Removes the folders of laboratories that were killed. */
+static void remove_abandoned(const char *place)
+{
+    DIR *entries = opendir(place);
+    for (const struct dirent *e; entries && (e = readdir(entries));) {
+        if (strncmp(e->d_name, TEMPORARY, strlen(TEMPORARY)) != 0)
+            continue;
+        char *path = text_format("%s/%s", place, e->d_name);
+        const int fd = path ? hold(path) : -1;
+        if (fd >= 0) {
+            remove_all(path);
+            close(fd);
+        }
+        free(path);
+    }
+    if (entries)
+        closedir(entries);
+}
+
 static void add_temporary(lab *l, place_list *all)
 {
-    l->temporary = text_format("%s/cuvette-lab-XXXXXX", temporary_place());
-    if (l->temporary && !mkdtemp(l->temporary)) {
+    remove_abandoned(temporary_place());
+    l->temporary = text_format("%s/" TEMPORARY "XXXXXX", temporary_place());
+    l->temporary_lock = l->temporary && mkdtemp(l->temporary) ? hold(l->temporary) : -1;
+    if (l->temporary_lock < 0) {
         free(l->temporary);
         l->temporary = NULL;
     }
@@ -113,8 +162,10 @@ void lab_remove_temporary(lab *l)
 {
     if (l->settings.confine && l->settings.rescue && l->settings.rescue[0])
         rmdir(l->settings.rescue);
-    if (l->temporary)
-        rmdir(l->temporary);
+    if (!l->temporary)
+        return;
+    remove_all(l->temporary);
+    close(l->temporary_lock);
     free(l->temporary);
 }
 

@@ -37,9 +37,10 @@ struct lab {
      * locks. */
     pthread_mutex_t state_lock;
     pthread_mutex_t publish_lock;
-    char *temporary; /* the laboratory's own folder for temporary files; NULL: the system's */
-    bool open;       /* events may be published */
-    bool left;       /* the unsaved scene stays on disk at the stop */
+    char *temporary;    /* the laboratory's own folder for temporary files; NULL: the system's */
+    int temporary_lock; /* its descriptor: a folder that nobody has locked is removed by the next laboratory */
+    bool open;          /* events may be published */
+    bool left;          /* the unsaved scene stays on disk at the stop */
 };
 
 /* Gives up, for the calling thread and all that it starts, the access to files that the laboratory does not need
