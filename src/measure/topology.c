@@ -95,12 +95,15 @@ static status assume(topology *machine, diagnostic *why)
 static status fill(topology *machine, const char *synthetic, diagnostic *why)
 {
     status code;
-    char *text = topology_ask(synthetic, &code);
+    bool no_memory;
+    char *text = topology_ask(synthetic, &code, &no_memory);
     if (text) {
         code = topology_read(machine, text, why);
         free(text);
         return code;
     }
+    if (no_memory)
+        return no_room(why);
     if (!synthetic)
         return assume(machine, why);
     return code == STATUS_BAD_INPUT

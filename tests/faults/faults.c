@@ -1,8 +1,8 @@
 /* Fault injection: runs each command of a table again and again, one fault a run, and judges how it ends (judge.h).
- *   faults [--every N] [--depth N] [--only NAMES] [--kinds NAMES] [--stays] [--shown N] --library FILE --work FOLDER --template FOLDER TABLE WORD=PATH...
+ *   faults [--every N] [--depth N] [--only NAMES] [--kinds NAMES] [--at N] [--stays] [--shown N] --library FILE --work FOLDER --template FOLDER TABLE WORD=PATH...
  * A line of the table: NAME, traits ("-", "resumes", "forked"), the command's words, separated by tabs and blanks; the
  * first word is one of the WORDs. --every N: only each N-th site. --depth N: call stacks are the same if N frames are.
- * --stays: what fails fails from then on. --shown N: of each kind of error. Prints the Test Anything Protocol, a case for each
+ * --stays: what fails fails from then on. --shown N: of each kind of error. --at N: only the Nth call, as an error names it. Prints the Test Anything Protocol, a case for each
  * command and kind of fault, and a table of verdicts as comments "## ". */
 #include "judge.h"
 #include "trace.h"
@@ -43,7 +43,7 @@ static const kind kinds[] = {
 enum { KINDS = sizeof kinds / sizeof kinds[0], WORDS_MAX = 48, KNOWN_MAX = 1 << 16 };
 
 static struct {
-    long every, shown;
+    long every, shown, at;
     int depth;
     const char *only, *kinds, *library, *work, *template, *table;
     bool stays;
@@ -55,6 +55,8 @@ static int cases, failures;
 typedef struct tally {
     long sites, tried, missed, of[VERDICTS];
 } tally;
+
+static const char *program_path(const char *word);
 
 /* ---- where a call came from ---- */
 
@@ -79,7 +81,9 @@ static void show_stack(const run *r, const trail *t)
     int used = 0, named = 0;
     const char *program = NULL;
     for (int i = 0; i < t->count && named < 8; i++) {
-        const char *path = *t->modules[i] ? t->modules[i] : r->words[0];
+        const char *path = *t->modules[i]                      ? t->modules[i]
+                           : strcmp(r->target, "cuvette") == 0 ? program_path("cuvette")
+                                                               : r->words[0];
         if (strstr(path, "/lib") && !program)
             printf("#     %s+0x%lx\n", strrchr(path, '/') + 1, (unsigned long)t->frames[i]);
         if (strstr(path, "/lib") || (program && strcmp(path, program) != 0))
@@ -153,7 +157,11 @@ static void try_stacks(const reference *ref, const run *r, const kind *k, fault_
     t->sites = count;
     f.records = false;
     f.stays = options.stays;
-    for (long i = options.every > 1 ? count % options.every : 0; i < count; i += options.every) {
+    if (options.at) {
+        f.at = options.at;
+        try(ref, r, &f, resumes, t);
+    }
+    for (long i = options.at ? count : options.every > 1 ? count % options.every : 0; i < count; i += options.every) {
         f.at = sites[i].at;
         f.hash = 0;
         const long missed = t->missed;
@@ -176,6 +184,11 @@ static void try_calls(const reference *ref, const run *r, const kind *k, bool re
     folder_copy(options.template, r->folder);
     t->sites = counted.counted;
     f.stays = options.stays;
+    if (options.at) {
+        f.at = options.at;
+        try(ref, r, &f, resumes, t);
+        return;
+    }
     for (f.at = 1 + (options.every > 1 ? t->sites % options.every : 0); f.at <= t->sites; f.at += options.every)
         try(ref, r, &f, resumes, t);
 }
@@ -288,6 +301,8 @@ int main(int argc, char **argv)
         const char *value = argv[++i];
         if (strcmp(name, "every") == 0)
             options.every = atol(value);
+        else if (strcmp(name, "at") == 0)
+            options.at = atol(value);
         else if (strcmp(name, "shown") == 0)
             options.shown = atol(value);
         else if (strcmp(name, "depth") == 0)
