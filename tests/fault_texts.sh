@@ -1,6 +1,6 @@
 #!/bin/bash
-# Checks that the text of every fault in tests/faults/laws.tsv and checks.tsv still occurs in its file: `make law-faults`
-# and `make fault-checks`, which take an hour, stop at the first one that does not.
+# Checks that the text of every fault in tests/faults/laws.tsv and checks.tsv still occurs in its file: `make
+# law-faults` and `make fault-checks`, which take long, stop at the first one that does not.
 set -uo pipefail
 cd "$(dirname "$0")/.."
 count=0 failed=0

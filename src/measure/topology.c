@@ -204,8 +204,8 @@ int topology_package_count(const topology *machine)
 
 /* ---- placement ---- */
 
-/* The unit of one worker among count <= units of the round, as hwloc_distrib of hwloc 2.9 divides them: each subtree gets
- * workers in proportion to its units, rounded up as long as they last. */
+/* The unit of one worker among count <= units of the round, as hwloc_distrib of hwloc 2.9 divides them: each subtree
+ * gets workers in proportion to its units, rounded up as long as they last. */
 static int distribute(const topology *machine, int round, int worker, int count)
 {
     int node = 0;

@@ -146,7 +146,7 @@ static char *read_all(int fd, bool *no_memory)
     return NULL;
 }
 
-/* The exit status; 0 if the caller's own handler has already taken it, as the text tells whether it is complete. */
+/* The exit status; 0 if the caller's own handler has already taken it: the text shows whether it is complete. */
 static int reap(pid_t child)
 {
     int state;

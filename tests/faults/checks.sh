@@ -36,9 +36,9 @@ while IFS=$'\t' read -r file old new command kind; do
         FAULTS_SHOWN=1 bash "$work/tests/faults.sh" >"$work/out" 2>&1 && status=0 || status=$?
     found=$(sed -n 's/^# \(crash\|silent\|message\|leftover\|leak\), call/\1 of call/p' "$work/out" | head -1 | cut -c 1-150)
     if ((status == 1)) && [[ $found ]]; then
-        echo "ok $number - $file without '$old': $found"
+        echo "ok $number - $file without '${old//$'\n'/ }': $found"
     else
-        echo "not ok $number - $file without '$old': not found"
+        echo "not ok $number - $file without '${old//$'\n'/ }': not found"
         tail -3 "$work/out" | sed 's/^/# /'
         missed=1
     fi
