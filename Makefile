@@ -461,7 +461,7 @@ law-faults: ## insert known faults into the sources, one at a time: the laws mus
 faults: $(build)/cuvette $(build)/cuvette-import $(fault_tools) ## fail every allocation and system call of every command once (an hour); only=NAME for one
 	@BUILD='$(build)' CUVETTE='$(abspath $(build)/cuvette)' FAULTS_EVERY=1 FAULTS_DEPTH=0 FAULTS_ONLY='$(only)' FAULTS_KINDS='$(kinds)' \
 	  bash tests/faults.sh
-fault-checks: $(fault_tools) ## remove checks from the sources, one at a time: the faults must detect each
+fault-checks: $(build)/cuvette $(build)/cuvette-import $(fault_tools) ## remove checks from the sources, one at a time: the faults must detect each
 	@BUILD='$(abspath $(build))' tests/faults/checks.sh
 
 # Lines of src that the tests run, among them the fuzzers' inputs (test_fuzz_corpus); made by gcc. The counts of an earlier run are dropped. The report is written after tests

@@ -26,6 +26,8 @@ trap 'rm -rf "$work"' EXIT
 bash tests/faults/template.sh "$work/template" || exit 1
 
 # The commands are divided among the processors.
+some=memory,thread,open-emfile,read-eio,write-enospc,fsync-eio,rename-eio
+[[ ${FAULTS_EVERY:-24} == 1 ]] || FAULTS_KINDS=${FAULTS_KINDS:-$some}
 jobs=${FAULTS_JOBS:-$(nproc)}
 grep -v '^#' tests/faults/commands.txt | awk -v jobs="$jobs" -v only="${FAULTS_ONLY// /,}" -v folder="$work" '
     only == "" || index("," only ",", "," $1 ",") { print >(folder "/table." n++ % jobs) }'
@@ -33,7 +35,7 @@ started=()
 for table in "$work"/table.*; do
     own=$work/work.${table##*.}
     mkdir "$own"
-    "$build/faults/faults" --every "${FAULTS_EVERY:-16}" --depth "${FAULTS_DEPTH:-5}" \
+    "$build/faults/faults" --every "${FAULTS_EVERY:-24}" --depth "${FAULTS_DEPTH:-5}" \
         ${FAULTS_KINDS:+--kinds "${FAULTS_KINDS// /,}"} --shown "${FAULTS_SHOWN:-5}" --library "$build/faults/preload.so" \
         --work "$own" --template "$work/template" "$table" "cuvette=$CUVETTE" "engine=$build/faults/engine_user" \
         "lab=$build/faults/lab_client" >"$own.out" 2>&1 &
@@ -48,7 +50,8 @@ awk -F '\t' '
     { sites += $3; tried += $4; missed += $5; unharmed += $6; reported += $7; crash += $8; silent += $9; message += $10
       leftover += $11; leak += $12 }
     END {
-        printf "# %d sites, %d failed once, %d not reached; %d reported, %d unharmed; ", sites, tried, missed, reported, unharmed
+        printf "# %d sites, %d failed once, %d not reached; ", sites, tried, missed
+        printf "%d reported, %d unharmed; ", reported, unharmed
         printf "crashes %d, silent %d, messages %d, leftovers %d, leaks %d\n", crash, silent, message, leftover, leak
     }' "$work/table"
 exit "$failed"

@@ -1,16 +1,17 @@
-/* Building lists and objects of jansson without a check at each step: when memory is out, the list or object is released
- * and becomes NULL, and stays so; the caller checks once, at the end. (A list that only lacks an item would be written
- * as if it were whole.) */
+/* Building lists and objects of jansson without a check at each step: when memory is out, the list or object is
+ * released and becomes NULL, and stays so; the caller checks once, at the end. (A list that only lacks an item would
+ * be written as if it were whole.) */
 #pragma once
 
 #include <jansson.h>
 #include <stdbool.h>
 #include <stdlib.h>
 
-/* json_loadb, which does not bear a lack of memory (json_memory.h): sets *no_memory if there is no room for the value. */
+/* json_loadb, which does not bear a lack of memory (json_memory.h): sets *no_memory if there is no room for the
+ * value. */
 static inline json_t *json_parse(const char *text, size_t size, size_t flags, json_error_t *error, bool *no_memory)
 {
-    void *room = malloc(8 * size + 4096);
+    void *volatile room = malloc(8 * size + 4096); /* volatile: the compiler may assume that it succeeds */
     *no_memory = !room;
     free(room);
     json_t *value = room ? json_loadb(text, size, flags, error) : NULL;
@@ -18,12 +19,12 @@ static inline json_t *json_parse(const char *text, size_t size, size_t flags, js
     return value;
 }
 
-/* json_dumps into memory that the caller releases with free, whichever functions jansson allocates with; NULL when out of
- * memory. */
+/* json_dumps into memory that the caller releases with free, whichever functions jansson allocates with; NULL when
+ * out of memory. */
 static inline char *json_text(const json_t *value, size_t flags)
 {
     const size_t size = json_dumpb(value, NULL, 0, flags);
-    char *text = size ? malloc(size + 1) : NULL;
+    char *text = size ? (char *)malloc(size + 1) : NULL;
     if (text && json_dumpb(value, text, size, flags) != size) {
         free(text);
         return NULL;

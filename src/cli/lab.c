@@ -5,9 +5,11 @@
 #include "cli/scene_input.h"
 #include "cli/terminal.h"
 #include "base/installed.h"
+#include "base/system_error.h"
 #include "base/text.h"
 #include "measure/topology.h"
 #include "web/lab.h"
+#include <errno.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
@@ -134,7 +136,7 @@ status command_lab(int argc, char **argv, diagnostic *why)
     status code = command_form_read(&form, argc, argv, &request, why);
     char *chosen = NULL, *results = NULL;
     if (code == STATUS_OK && !request.folder && !(chosen = choose_folder(&request)))
-        code = diagnose(why, STATUS_FAILURE, "", "cannot find the working folder");
+        code = system_error(why, STATUS_FAILURE, NULL, "cannot find the working folder", errno, "give --folder");
     const char *folder = request.folder ? request.folder : chosen;
     if (code == STATUS_OK && !request.results) {
         results = strcmp(folder, ".") == 0 ? strdup("results") : text_format("%s/results", folder);

@@ -95,12 +95,15 @@ static status assume(topology *machine, diagnostic *why)
 static status fill(topology *machine, const char *synthetic, diagnostic *why)
 {
     status code;
-    char *text = topology_ask(synthetic, &code);
+    bool no_memory;
+    char *text = topology_ask(synthetic, &code, &no_memory);
     if (text) {
         code = topology_read(machine, text, why);
         free(text);
         return code;
     }
+    if (no_memory)
+        return no_room(why);
     if (!synthetic)
         return assume(machine, why);
     return code == STATUS_BAD_INPUT
@@ -201,8 +204,8 @@ int topology_package_count(const topology *machine)
 
 /* ---- placement ---- */
 
-/* The unit of one worker among count <= units of the round, as hwloc_distrib of hwloc 2.9 divides them: each subtree gets
- * workers in proportion to its units, rounded up as long as they last. */
+/* The unit of one worker among count <= units of the round, as hwloc_distrib of hwloc 2.9 divides them: each subtree
+ * gets workers in proportion to its units, rounded up as long as they last. */
 static int distribute(const topology *machine, int round, int worker, int count)
 {
     int node = 0;

@@ -118,7 +118,7 @@ static void answer(const char *synthetic, int pipe_end)
 /* ---- the parent ---- */
 
 /* NULL: out of memory, or the pipe failed. */
-static char *read_all(int fd)
+static char *read_all(int fd, bool *no_memory)
 {
     size_t room = 4096, used = 0;
     char *text = malloc(room);
@@ -141,11 +141,12 @@ static char *read_all(int fd)
             break;
         text = larger;
     }
+    *no_memory = !text || used + 1 >= room;
     free(text);
     return NULL;
 }
 
-/* The exit status; 0 if the caller's own handler has already taken it, as the text tells whether it is complete. */
+/* The exit status; 0 if the caller's own handler has already taken it: the text shows whether it is complete. */
 static int reap(pid_t child)
 {
     int state;
@@ -155,9 +156,10 @@ static int reap(pid_t child)
     return WIFEXITED(state) ? WEXITSTATUS(state) : STATUS_FAILURE;
 }
 
-char *topology_ask(const char *synthetic, status *code)
+char *topology_ask(const char *synthetic, status *code, bool *no_memory)
 {
     int ends[2];
+    *no_memory = false;
     *code = STATUS_FAILURE;
     if (pipe2(ends, O_CLOEXEC) != 0)
         return NULL;
@@ -165,7 +167,7 @@ char *topology_ask(const char *synthetic, status *code)
     if (child == 0)
         answer(synthetic, ends[1]);
     close(ends[1]);
-    char *text = child > 0 ? read_all(ends[0]) : NULL;
+    char *text = child > 0 ? read_all(ends[0], no_memory) : NULL;
     close(ends[0]);
     const int left = child > 0 ? reap(child) : STATUS_FAILURE;
     if (text && left == STATUS_OK) {

@@ -36,8 +36,9 @@ struct topology {
  * writes a part of the text in case of a failure. Calls no function of hwloc's outside the child. */
 int topology_discover(const char *synthetic, FILE *out);
 
-/* The output of topology_discover in a child process; NULL, with a status, if that failed. The caller frees the text. */
-char *topology_ask(const char *synthetic, status *code);
+/* The output of topology_discover in a child process; NULL, with a status, if that failed. *no_memory: it failed
+ * here, not there. The caller frees the text. */
+char *topology_ask(const char *synthetic, status *code, bool *no_memory);
 
 /* Fills an empty topology from such a text. STATUS_BAD_INPUT: it is truncated or damaged. */
 status topology_read(topology *machine, char *text, diagnostic *why);

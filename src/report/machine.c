@@ -48,7 +48,7 @@ json_t *machine_json(const machine_account *a)
     char *summary = topology_summary(a->machine);
     json_t *o = json_object();
     int bad = json_object_set_new(o, "schema", json_integer(1));
-    bad |= json_object_set_new(o, "machine", summary ? json_of_text(summary) : json_null());
+    bad |= json_object_set_new(o, "machine", summary ? json_of_text(summary) : NULL);
     bad |= json_object_set_new(o, "units", json_integer(topology_pu_count(a->machine)));
     bad |= json_object_set_new(o, "cores", json_integer(topology_core_count(a->machine)));
     bad |= json_object_set_new(o, "packages", json_integer(topology_package_count(a->machine)));

@@ -42,6 +42,12 @@ static json_t *taken(char *text)
     return value ? value : json_null();
 }
 
+/* The same for a text that is never unknown: NULL when out of memory. */
+static json_t *certain(char *text)
+{
+    return text ? taken(text) : NULL;
+}
+
 static json_t *borrowed(const char *text)
 {
     json_t *value = text ? json_string(text) : NULL;
@@ -82,9 +88,9 @@ json_t *run_machine_facts(const topology *machine)
     char *xml = topology_xml(machine);
     provenance_anonymize(xml);
     return json_pack("{s:o, s:o, s:i, s:i, s:i, s:o, s:o}", "cpu_model", taken(provenance_cpu_model()), "topology",
-                     taken(topology_summary(machine)), "packages", topology_package_count(machine), "cores",
+                     certain(topology_summary(machine)), "packages", topology_package_count(machine), "cores",
                      topology_core_count(machine), "processing_units", topology_pu_count(machine), "clocks", clocks(),
-                     "hwloc_xml", taken(xml));
+                     "hwloc_xml", certain(xml));
 }
 
 json_t *run_study_facts(const study *s)
@@ -162,7 +168,7 @@ json_t *run_facts(const study *s, const topology *machine, const run_environment
         json_pack("{s:s, s:o, s:o, s:o, s:n, s:i, s:i, s:o, s:o, s:o, s:o}", "id", id, "environment",
                   environment_facts(here), "node", node(), "started_utc", run_time(), "ended_utc", "shard", (int)shard,
                   "shards", (int)(shards > 1 ? shards : 1), "processor", processor_facts(), "topology",
-                  taken(topology_summary(machine)), "load", load_average(), "steal_share", steal_share());
+                  certain(topology_summary(machine)), "load", load_average(), "steal_share", steal_share());
     json_t *program = json_pack(
         "{s:s, s:o, s:s, s:s, s:s#, s:o, s:o, s:o, s:o}", "version", CUVETTE_VERSION, "build_commit",
         borrowed(build_commit()), "compiler", COMPILER, "flags", CUVETTE_COMPILER_FLAGS, "config",

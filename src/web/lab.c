@@ -16,6 +16,7 @@
 #include "scene/model/scene.h"
 
 #include <stdlib.h>
+#include <errno.h>
 #include <string.h>
 #include <strings.h>
 
@@ -102,7 +103,10 @@ static status first_scene(const lab *l, scene **out, char **file, diagnostic *wh
     *file = NULL;
     if (!l->settings.scene)
         return new_scene(out, why);
+    errno = 0;
     *file = folder_name(l->files, l->settings.scene);
+    if (!*file && errno == ENOMEM)
+        return out_of_memory(why);
     if (!*file)
         return diagnose_at(why, l->settings.scene, STATUS_BAD_INPUT,
                            "choose a scene below the folder, or another folder",
@@ -136,8 +140,11 @@ static bool is_inside(const folder *files, const char *path)
 
 static status check_results(const lab *l, diagnostic *why)
 {
+    errno = 0;
     if (is_inside(l->files, l->settings.results))
         return STATUS_OK;
+    if (errno == ENOMEM)
+        return out_of_memory(why);
     return diagnose_at(why, l->settings.results, STATUS_BAD_INPUT,
                        "set --results to a folder inside the laboratory's folder",
                        "is not in the folder of the laboratory");

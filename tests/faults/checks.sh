@@ -6,12 +6,14 @@ set -euo pipefail
 root=$(cd "$(dirname "$0")/../.." && pwd)
 work=$(mktemp -d "${TMPDIR:-/tmp}/cuvette-checks.XXXXXX")
 trap 'rm -rf "$work"' EXIT
-cp -r "$root/Makefile" "$root/src" "$root/tests" "$root/.ci" "$root/plots" "$work"
-mkdir -p "$work/experiments"
+cp -a "$root/Makefile" "$root/src" "$root/tests" "$root/.ci" "$root/plots" "$work"
+mkdir -p "$work/experiments" "$work/build"
 cp -r "$root"/experiments/{scenes,hands,cluster} "$work/experiments"
+# What is built already, with its times, so that only what changes is built again.
+cp -a "$BUILD"/{flags,obj,plain,web,faults,lib*.a,cuvette,cuvette-import} "$work/build"
 tools=(build/faults/preload.so build/faults/faults build/faults/engine_user build/faults/lab_client)
 build() {
-    CCACHE_NOHASHDIR=1 make -s -j2 -C "$work" warnings= build/cuvette build/cuvette-import "${tools[@]}" >"$work/log" 2>&1 || {
+    CCACHE_NOHASHDIR=1 make -s -j2 -C "$work" build/cuvette build/cuvette-import "${tools[@]}" >"$work/log" 2>&1 || {
         cat "$work/log" >&2
         exit 2
     }
@@ -22,6 +24,7 @@ while IFS=$'\t' read -r file old new command kind; do
     [[ $file == \#* ]] && continue
     number=$((number + 1))
     [[ $# -eq 0 || " $* " == *" $number "* ]] || continue
+    old=${old//'\n'/$'\n'} new=${new//'\n'/$'\n'}
     text=$(<"$root/$file")
     [[ $text == *"$old"* ]] || {
         echo "checks.sh: check $number: $file has no '$old' any more" >&2
@@ -33,12 +36,12 @@ while IFS=$'\t' read -r file old new command kind; do
         FAULTS_SHOWN=1 bash "$work/tests/faults.sh" >"$work/out" 2>&1 && status=0 || status=$?
     found=$(sed -n 's/^# \(crash\|silent\|message\|leftover\|leak\), call/\1 of call/p' "$work/out" | head -1 | cut -c 1-150)
     if ((status == 1)) && [[ $found ]]; then
-        echo "ok $number - $file without '$old': $found"
+        echo "ok $number - $file without '${old//$'\n'/ }': $found"
     else
-        echo "not ok $number - $file without '$old': not found"
+        echo "not ok $number - $file without '${old//$'\n'/ }': not found"
         tail -3 "$work/out" | sed 's/^/# /'
         missed=1
     fi
-    cp "$root/$file" "$work/$file"
+    cp "$root/$file" "$work/$file" # newer than its object
 done <"$root/tests/faults/checks.tsv"
 exit $missed

@@ -1,9 +1,10 @@
 /* Fault injection: runs each command of a table again and again, one fault a run, and judges how it ends (judge.h).
- *   faults [--every N] [--depth N] [--only NAMES] [--kinds NAMES] [--stays] [--shown N] --library FILE --work FOLDER --template FOLDER TABLE WORD=PATH...
- * A line of the table: NAME, traits ("-", "resumes", "forked"), the command's words, separated by tabs and blanks; the
- * first word is one of the WORDs. --every N: only each N-th site. --depth N: call stacks are the same if N frames are.
- * --stays: what fails fails from then on. --shown N: of each kind of error. Prints the Test Anything Protocol, a case for each
- * command and kind of fault, and a table of verdicts as comments "## ". */
+ *   faults [OPTION...] --library FILE --work FOLDER --template FOLDER TABLE WORD=PATH...
+ * A line of the table: NAME, traits ("-", "resumes", "forked", "slow": fewer sites with --every), the command's words;
+ * the first of them is one of the WORDs. Options: --every N, only each N-th site; --depth N, call stacks are the same if
+ * N frames are; --only NAMES and --kinds NAMES, separated by commas; --at N, only the Nth call, as an error names it;
+ * --stays, what fails fails from then on; --shown N, of each kind of error. Prints the Test Anything Protocol, a case
+ * for each command and kind of fault, and a table of verdicts as comments "##". */
 #include "judge.h"
 #include "trace.h"
 
@@ -43,18 +44,20 @@ static const kind kinds[] = {
 enum { KINDS = sizeof kinds / sizeof kinds[0], WORDS_MAX = 48, KNOWN_MAX = 1 << 16 };
 
 static struct {
-    long every, shown;
+    long stride, every, shown, at; /* every: stride, or more for slow commands */
     int depth;
     const char *only, *kinds, *library, *work, *template, *table;
     bool stays;
     char **programs; /* WORD=PATH */
-} options = {.every = 1, .shown = 5};
+} options = {.stride = 1, .shown = 5};
 
 static int cases, failures;
 
 typedef struct tally {
     long sites, tried, missed, of[VERDICTS];
 } tally;
+
+static const char *program_path(const char *word);
 
 /* ---- where a call came from ---- */
 
@@ -79,7 +82,9 @@ static void show_stack(const run *r, const trail *t)
     int used = 0, named = 0;
     const char *program = NULL;
     for (int i = 0; i < t->count && named < 8; i++) {
-        const char *path = *t->modules[i] ? t->modules[i] : r->words[0];
+        const char *path = *t->modules[i]                      ? t->modules[i]
+                           : strcmp(r->target, "cuvette") == 0 ? program_path("cuvette")
+                                                               : r->words[0];
         if (strstr(path, "/lib") && !program)
             printf("#     %s+0x%lx\n", strrchr(path, '/') + 1, (unsigned long)t->frames[i]);
         if (strstr(path, "/lib") || (program && strcmp(path, program) != 0))
@@ -153,7 +158,11 @@ static void try_stacks(const reference *ref, const run *r, const kind *k, fault_
     t->sites = count;
     f.records = false;
     f.stays = options.stays;
-    for (long i = options.every > 1 ? count % options.every : 0; i < count; i += options.every) {
+    if (options.at) {
+        f.at = options.at;
+        try(ref, r, &f, resumes, t);
+    }
+    for (long i = options.at ? count : options.every > 1 ? count % options.every : 0; i < count; i += options.every) {
         f.at = sites[i].at;
         f.hash = 0;
         const long missed = t->missed;
@@ -169,23 +178,27 @@ static void try_stacks(const reference *ref, const run *r, const kind *k, fault_
     free(sites);
 }
 
-static void try_calls(const reference *ref, const run *r, const kind *k, bool resumes, tally *t)
+/* counted: the calls of each group in a run without a fault. */
+static void try_calls(const reference *ref, const run *r, const kind *k, const outcome *counted, bool resumes, tally *t)
 {
     fault f = {.class = FAULT_CALL, .group = k->group, .error = k->error};
-    const outcome counted = run_with(r, &f);
-    folder_copy(options.template, r->folder);
-    t->sites = counted.counted;
+    t->sites = counted->by_group[k->group];
     f.stays = options.stays;
+    if (options.at) {
+        f.at = options.at;
+        try(ref, r, &f, resumes, t);
+        return;
+    }
     for (f.at = 1 + (options.every > 1 ? t->sites % options.every : 0); f.at <= t->sites; f.at += options.every)
         try(ref, r, &f, resumes, t);
 }
 
 static void try_kind(const char *name, const reference *ref, const run *r, const kind *k, fault_place place,
-                     bool resumes)
+                     const outcome *counted, bool resumes)
 {
     tally t = {.sites = 0};
     if (k->class == FAULT_CALL)
-        try_calls(ref, r, k, resumes, &t);
+        try_calls(ref, r, k, counted, resumes, &t);
     else
         try_stacks(ref, r, k, place, resumes, &t);
     long bad = t.tried - t.of[UNHARMED] - t.of[REPORTED];
@@ -250,10 +263,16 @@ static void try_command(const char *name, const char *traits, char **words)
         return;
     }
     folder_copy(options.template, folder);
+    outcome counted = {.code = 0};
+    if (trace_available() && !forked) {
+        counted = run_with(&r, &(fault){.class = FAULT_CALL, .group = CALL_GROUPS});
+        folder_copy(options.template, folder);
+    }
+    options.every = options.stride * (options.stride > 1 && has_word(traits, "slow") ? 4 : 1);
     for (int k = 0; k < KINDS; k++)
         if ((!options.kinds || has_word(options.kinds, kinds[k].name)) &&
             (kinds[k].class != FAULT_CALL || (trace_available() && !forked)))
-            try_kind(name, &ref, &r, &kinds[k], forked ? FAULT_IN_FORKED : FAULT_IN_PROGRAM, resumes);
+            try_kind(name, &ref, &r, &kinds[k], forked ? FAULT_IN_FORKED : FAULT_IN_PROGRAM, &counted, resumes);
     reference_free(&ref);
 }
 
@@ -287,7 +306,9 @@ int main(int argc, char **argv)
         }
         const char *value = argv[++i];
         if (strcmp(name, "every") == 0)
-            options.every = atol(value);
+            options.stride = atol(value);
+        else if (strcmp(name, "at") == 0)
+            options.at = atol(value);
         else if (strcmp(name, "shown") == 0)
             options.shown = atol(value);
         else if (strcmp(name, "depth") == 0)
@@ -305,7 +326,7 @@ int main(int argc, char **argv)
         else
             errx(3, "unknown option --%s", name);
     }
-    if (i >= argc || !options.library || !options.work || !options.template || options.every < 1)
+    if (i >= argc || !options.library || !options.work || !options.template || options.stride < 1)
         errx(3, "faults: see the head of faults.c");
     options.table = argv[i];
     options.programs = argv + i + 1;

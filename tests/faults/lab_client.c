@@ -159,13 +159,12 @@ int main(void)
             status = ask(requests[i].method, requests[i].path, requests[i].body);
         }
         show(requests[i].method, requests[i].path, status, requests[i].whole);
-        if (status == 0 || status >= 400) {
+        if (status >= 400 && status < 500)
             printf("%s\n", reply);
-            if (any_failed) {
-                fprintf(stderr, "lab_client: %s fails again with %d: %.100s\n", requests[i].path, status, reply);
-                kill(server, SIGKILL);
-                return 4;
-            }
+        if (status == 0 || status >= 500) {
+            fprintf(stderr, "lab_client: %s fails again with %d: %.100s\n", requests[i].path, status, reply);
+            kill(server, SIGKILL);
+            return 4;
         }
     }
     kill(server, SIGINT);

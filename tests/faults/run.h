@@ -42,7 +42,8 @@ typedef struct run {
 typedef struct outcome {
     int code; /* exit status; 128 + number of the signal that ended it */
     bool timed_out;
-    long counted; /* calls of the group, FAULT_CALL; otherwise see the page */
+    long counted;               /* calls of the group, FAULT_CALL; otherwise see the page */
+    long by_group[CALL_GROUPS]; /* of every group, FAULT_CALL */
     bool fired;
     bool must_report; /* fsync of a file failed: the user must learn of it */
 } outcome;

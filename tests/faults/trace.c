@@ -137,7 +137,10 @@ static void at_call(pid_t thread, const fault *f, outcome *o, pid_t *program)
             *program = process_of(thread);
         return;
     }
-    if (group != f->group || !*program || process_of(thread) != *program)
+    if (!*program || process_of(thread) != *program)
+        return;
+    o->by_group[group]++;
+    if (group != f->group)
         return;
     o->counted++;
     if (o->counted != f->at && !(f->stays && o->fired))

@@ -89,7 +89,8 @@ static status listen_and_serve(http_server *s, diagnostic *why)
             MHD_OPTION_URI_LOG_CALLBACK, http_on_target, s, MHD_OPTION_NOTIFY_COMPLETED, http_on_end, s,
             MHD_OPTION_NOTIFY_CONNECTION, http_watch_notify, s, MHD_OPTION_END);
         if (!s->daemon)
-            code = diagnose(why, STATUS_FAILURE, "", "cannot start the server's threads");
+            code = diagnose(why, STATUS_FAILURE, "close other programs, or raise the limits (ulimit -u, ulimit -n)",
+                            "cannot start the server's threads, for lack of memory, threads or open files");
     } else {
         close(fd);
     }

@@ -153,7 +153,8 @@ static bool prepare_locks(render_worker *p)
 
 static void release(render_worker *p)
 {
-    live_detach(p->live_slime);
+    if (p->live_slime) /* it may be the one that could not be made */
+        live_detach(p->live_slime);
     live_destroy(p->live_slime);
     scene_destroy(p->snapshot);
     shared_image_release(p->newest);

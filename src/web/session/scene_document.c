@@ -77,7 +77,10 @@ status scene_document_create(scene *first, const char *file, const folder *files
     THEN(code, scene_document_limit(first, files, why));
     scene_document *d = code == STATUS_OK ? calloc(1, sizeof *d) : NULL;
     origin *from = d ? origin_create(first, 1) : NULL;
-    if (!from) {
+    char *name = copy_or_null(file);
+    if (!from || (file && !name)) {
+        origin_release(from);
+        free(name);
         free(d);
         scene_destroy(first);
         return code == STATUS_OK ? out_of_memory(why) : code;
@@ -89,7 +92,7 @@ status scene_document_create(scene *first, const char *file, const folder *files
                           .generation = 1,
                           .numbers = 1,
                           .saved_number = file ? 1 : 0};
-    d->now = (version){.s = first, .file = copy_or_null(file), .number = 1, .from = from, .kept = first->camera};
+    d->now = (version){.s = first, .file = name, .number = 1, .from = from, .kept = first->camera};
     *out = d;
     return STATUS_OK;
 }
