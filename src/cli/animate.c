@@ -95,6 +95,7 @@ static status make(const animate_request *request, const animate_names *names, j
     THEN(result, animate_define(request, s, &d, why));
     if (result == STATUS_OK && names)
         result = animate_index_check(names, &d, frame_times_count(&request->times), request->restart, why);
+    THEN(result, animate_check_room(request, names, s, why));
     THEN(result, animate_film(request, names, &d, with, s, motion, &account, why));
     if (result == STATUS_OK && request->json)
         result = print_account(request, s, &d, job_isa(with), &account, why);

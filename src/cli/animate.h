@@ -78,6 +78,9 @@ status animate_folder_clear(const animate_names *names, diagnostic *why);
 /* STATUS_BAD_INPUT where a file that the scene reads has the name of a frame or of the index. */
 status animate_names_check(const animate_names *names, const scene *s, diagnostic *why);
 
+/* STATUS_FAILURE where the missing frames cannot fit on the file system; a note where they may not. */
+status animate_check_room(const animate_request *request, const animate_names *names, const scene *s, diagnostic *why);
+
 /* The CSV table of an animation: one row per rendered frame, appended and flushed once the image is written.
  * results/README.md documents the columns. A file holds the rows of one animation. animate_rows_open allocates,
  * animate_rows_close frees. */

@@ -10,6 +10,7 @@
 #include "cli/study_request.h"
 #include "cli/terminal.h"
 #include "measure/usage.h"
+#include "study/estimate.h"
 #include "study/excluded.h"
 #include "study/spread.h"
 #include "study/study.h"
@@ -141,6 +142,18 @@ static void print_news(void *context, const char *text)
     terminal_note(text);
 }
 
+/* Before the first of several processes; each checks its own again. */
+static status check_room(const study *s, const study_request *request, const study_options *options, diagnostic *why)
+{
+    study_options all = *options;
+    study_estimate e;
+    if (all.shards > 1)
+        return STATUS_OK;
+    all.shards = 1;
+    TRY(study_estimate_parts(s, &all, false, &e, why));
+    return study_check_room(s, request, &e, why);
+}
+
 /* Measures what is missing, in fresh processes for a study that has some, or with --against. *rows: the new ones. */
 static status measure(const study *s, const study_request *request, size_t *rows, diagnostic *why)
 {
@@ -158,6 +171,7 @@ static status measure(const study *s, const study_request *request, size_t *rows
     if (request->process || (s->processes == 1 && !request->against))
         return study_run(s, &options, rows, why);
     size_t before = 0, after = 0, further = 0;
+    TRY(check_room(s, request, &options, why));
     TRY(count_rows(s, request, &before, why));
     status result = study_run_processes(s, request, why);
     const status counted = count_rows(s, request, &after, result == STATUS_OK ? why : NULL);

@@ -3,6 +3,7 @@
 #pragma once
 
 #include "cli/study_request.h"
+#include "study/estimate.h"
 #include "study/study.h"
 
 /* `study new`: writes a study file. */
@@ -22,6 +23,9 @@ status study_compare(int argc, char **argv, diagnostic *why);
  * the folder of study_against_folder (allocated): two builds that alternate can be compared. */
 status study_run_processes(const study *s, const study_request *request, diagnostic *why);
 char *study_against_folder(const study_request *request);
+
+/* STATUS_FAILURE where what the run writes cannot fit; a note where it may not. */
+status study_check_room(const study *s, const study_request *request, const study_estimate *e, diagnostic *why);
 
 /* `study run --dry-run`: prints what a run would measure and keep, and about how long it would take. */
 status study_dry_run(const study *s, const study_request *request, diagnostic *why);

@@ -1,7 +1,22 @@
 /* `cuvette study run --dry-run`. */
 #include "cli/study_commands.h"
+#include "base/text.h"
 #include "cli/terminal.h"
 #include "study/estimate.h"
+#include <stdlib.h>
+
+status study_check_room(const study *s, const study_request *request, const study_estimate *e, diagnostic *why)
+{
+    char note[DISK_ROOM_TEXT_MAX];
+    char *folder = text_format("%s/%s", request->results, s->name);
+    if (!folder)
+        return out_of_memory(why);
+    const status result = disk_room_check(&e->needed, e->free_bytes, folder, "the run", note, why);
+    free(folder);
+    if (note[0])
+        terminal_note(note);
+    return result;
+}
 
 status study_dry_run(const study *s, const study_request *request, diagnostic *why)
 {
@@ -16,5 +31,6 @@ status study_dry_run(const study *s, const study_request *request, diagnostic *w
     if (request->quiet)
         return STATUS_OK;
     study_estimate_write(stdout, s, request->results, &e);
-    return terminal_flush(why);
+    TRY(terminal_flush(why));
+    return study_check_room(s, request, &e, why);
 }

@@ -4,6 +4,7 @@
 #include "study/keep.h"
 #include "study/order.h"
 #include "study/row_files.h"
+#include "study/run_room.h"
 #include "study/run_state.h"
 #include <math.h>
 #include <stdlib.h>
@@ -227,11 +228,12 @@ static status survey(trials *t, diagnostic *why)
     return STATUS_OK;
 }
 
-static void sum_up(const trials *t, study_estimate *out)
+static status sum_up(const trials *t, study_estimate *out, diagnostic *why)
 {
-    *out = (study_estimate){.cut = t->cut};
+    *out = (study_estimate){.cut = t->cut, .free_bytes = disk_room_free(t->r->folder)};
     count(t, out);
     add_times(t, out);
+    return run_room(t->r, &out->needed, why);
 }
 
 static status open(trials *t, const study_options *options, diagnostic *why)
@@ -272,8 +274,7 @@ status study_estimate_run(const study *s, const study_options *options, study_es
     *out = (study_estimate){.least_s = 0};
     status code = open(&t, options, why);
     THEN(code, survey(&t, why));
-    if (code == STATUS_OK)
-        sum_up(&t, out);
+    THEN(code, sum_up(&t, out, why));
     release(&t);
     return code;
 }
@@ -296,8 +297,7 @@ status study_estimate_parts(const study *s, const study_options *options, bool t
             code = run_read_rows(&r, why);
         r.cell_count = 0;
         run_choose_cells(&r);
-        if (code == STATUS_OK)
-            sum_up(&t, &parts[of.shard]);
+        THEN(code, sum_up(&t, &parts[of.shard], why));
     }
     release(&t);
     return code;

@@ -3,6 +3,7 @@
  * take at most a few seconds for the whole study. Ownership: values; everything else is borrowed. */
 #pragma once
 
+#include "base/disk_room.h"
 #include "study/study.h"
 
 typedef struct study_estimate {
@@ -15,6 +16,8 @@ typedef struct study_estimate {
      * because there was no time to try them all; 0, 0, 0 if nothing is missing. */
     size_t from_rows, from_trials, from_others;
     bool cut;               /* a trial took too long: the cells without one are probably slower than the others */
+    disk_room needed;       /* what will be written, without files that exist */
+    double free_bytes;      /* on the file system of the results; NaN: unknown */
     double least_s, most_s; /* time of loading and of all frames without those of references; NaN: unknown */
 } study_estimate;
 

@@ -73,6 +73,17 @@ static void write_files(FILE *out, const study *s, const char *results, const st
         fprintf(out, "%s: %zu cells to compare with their reference\n", s->name, e->comparisons);
 }
 
+static void write_room(FILE *out, const study *s, const char *results, const study_estimate *e)
+{
+    char needed[80], left[32];
+    disk_room_text(&e->needed, needed, sizeof needed);
+    disk_room_bytes_text(e->free_bytes, left, sizeof left);
+    fprintf(out, "%s: %s to write", s->name, needed);
+    if (!isnan(e->free_bytes))
+        fprintf(out, ", %s free in %s", left, results);
+    fputc('\n', out);
+}
+
 void study_estimate_write(FILE *out, const study *s, const char *results, const study_estimate *e)
 {
     if (!e->cells_lacking && !e->cells_to_keep) {
@@ -82,4 +93,5 @@ void study_estimate_write(FILE *out, const study *s, const char *results, const 
     write_rows(out, s, e);
     write_time(out, s, e);
     write_files(out, s, results, e);
+    write_room(out, s, results, e);
 }

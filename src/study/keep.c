@@ -1,10 +1,13 @@
 #include "study/keep.h"
 #include "base/file.h"
 #include "base/text.h"
+#include "image/image_room.h"
 #include "render/core/record.h"
 #include "study/cell_table.h"
 #include "study/grid.h"
+#include "scene/model/scene.h"
 #include <fcntl.h>
+#include <math.h>
 #include <stddef.h>
 #include <stdlib.h>
 #include <string.h>
@@ -68,6 +71,27 @@ size_t keep_missing_count(const study *s, const char *folder, size_t cell)
 bool keep_missing(const study *s, const char *folder, size_t cell)
 {
     return keep_missing_count(s, folder, cell) > 0;
+}
+
+void keep_room(const study *s, const char *folder, size_t cell, const scene *setting, disk_room *to)
+{
+    enum { TABLE_MOST = 100000, EVENT_MOST = 160, KEY_SIDE = 240 };
+    const double tile = setting->render.tile > 0 ? (double)setting->render.tile : 1;
+    const double width = (double)setting->render.width, height = (double)setting->render.height;
+    for (size_t what = 0; what < KEPT_COUNT; what++) {
+        char *path = wanted(s, what) ? kept_path(folder, cell, what) : NULL;
+        if (path && access(path, F_OK) != 0) {
+            const image_format format = image_format_of(path);
+            const bool is_map = format == IMAGE_PNG && files[what].wish != offsetof(study, keep_image);
+            if (format != IMAGE_UNKNOWN) /* a map has a key, and is as wide as the key at least */
+                image_room(format, is_map ? fmax(width, KEY_SIDE) : width, is_map ? height + KEY_SIDE : height, 1, to);
+            else if (files[what].wish == offsetof(study, keep_timeline)) /* tiles are halved where there are few */
+                disk_room_add(to, 1, 0, TABLE_MOST + EVENT_MOST * 4 * ceil(width / tile) * ceil(height / tile));
+            else
+                disk_room_add(to, 1, 0, TABLE_MOST);
+        }
+        free(path);
+    }
 }
 
 const char *keep_ending(const study *s, size_t i)

@@ -3,6 +3,7 @@
  * not disturb measurements; the film must equal that of the rows. Files are written atomically. */
 #pragma once
 
+#include "base/disk_room.h"
 #include "job/account.h"
 #include "study/study.h"
 
@@ -10,6 +11,8 @@
 bool keep_missing(const study *s, const char *folder, size_t cell);
 /* The number of such files. */
 size_t keep_missing_count(const study *s, const char *folder, size_t cell);
+/* Adds what these files may take; setting: the scene of the cell. */
+void keep_room(const study *s, const char *folder, size_t cell, const scene *setting, disk_room *to);
 /* The ending of the study's kept file i, counted from 0: ".png" of images/0003.png; NULL after the last. */
 const char *keep_ending(const study *s, size_t i);
 

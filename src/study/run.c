@@ -7,6 +7,7 @@
 #include "study/row_files.h"
 #include "study/rows.h"
 #include "study/run_noise.h"
+#include "study/run_room.h"
 #include "study/run_state.h"
 #include <stdlib.h>
 #include <string.h>
@@ -212,7 +213,8 @@ status study_run(const study *s, const study_options *options, size_t *ran, diag
         run_choose_cells(&r);
         bool idle = options->process ? !lacks_rounds(&r) : run_complete(&r);
         if (!idle) {
-            code = run_prepare(&r, why);
+            code = run_check_room(&r, why);
+            THEN(code, run_prepare(&r, why));
             THEN(code, run_rounds(&r, why));
             if (!options->process)
                 THEN(code, run_keep_all(&r, why));

@@ -10,7 +10,7 @@ import itertools
 import os
 
 SECTOR = 512
-SUBSETS = 7  # up to so many changes, every subset is tried
+SUBSETS = 7  # every subset is tried of this many changes
 
 
 class Node:
