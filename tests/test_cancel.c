@@ -46,7 +46,7 @@ static void tokens_nest_and_shields_hide_them(void **state)
     outside = true;
     assert_true(cancel_asked());
     outside = false;
-    assert_true(cancel_asked()); /* it stays asked for */
+    assert_true(cancel_asked()); /* it stays so */
     cancel_shield(&shield);
     assert_false(cancel_asked());
     assert_true(cancel_hurries());

@@ -9,6 +9,7 @@
 #include <cmocka.h>
 
 #include "cuvette.h"
+#include "base/memory_budget.h"
 #include "job/job.h"
 #include "render_fixture.h"
 #include <sys/resource.h>
@@ -199,6 +200,10 @@ static int ask_for_too_many(void)
     s->render.threads = 1024;
     if (setrlimit(RLIMIT_AS, &room) != 0)
         return 1;
+    if (job_render(j, s, NULL, &made, &why) != STATUS_BAD_INPUT || !strstr(why.what, "memory"))
+        return 4;
+    job_account_release(&made);
+    memory_budget_set((uint64_t)1 << 40); /* as a user who knows better: then the system refuses */
     if (job_render(j, s, NULL, &made, &why) != STATUS_FAILURE || made.result || !strstr(why.what, "thread"))
         return 2;
     job_account_release(&made);

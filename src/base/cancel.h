@@ -3,7 +3,7 @@
  * cancel_asked, stops, and returns STATUS_INTERRUPTED. So no function below needs a parameter for it. A thread team
  * passes its caller's token on to its members; other threads begin without one.
  *
- * Once asked for, cancellation stays asked for until the token ends: a function without a status may return early with
+ * Once requested, cancellation stays so until the token ends: a function without a status may return early with
  * an incomplete result if its caller then asks before using it. Ownership: a token is its owner's, usually on the
  * stack, and must outlive the work; begin and end are paired on one thread, and nest: work below two tokens ends with
  * either. */
@@ -32,7 +32,7 @@ void cancel_end(cancel_token *t);
 /* From any thread, and from signal handlers. */
 void cancel_set(cancel_token *t);
 
-/* Begins a token that no one asks for: for writing partial results after a cancellation. */
+/* Begins a token that no one sets: for writing partial results after a cancellation. */
 void cancel_shield(cancel_token *t);
 
 /* Whether the work of this thread should end. About 2 ns without a token, 5 with one. */

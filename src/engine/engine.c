@@ -217,7 +217,7 @@ static status render_held(cuvette_engine *engine, cuvette_scene *s, const cuvett
                           float_environment *host, cuvette_frame *frame, diagnostic *why)
 {
     cuvette_request request;
-    stage now = {.engine = engine, .request = &request, .host = host};
+    stage now = {.engine = engine, .request = &request, .host = host, .load_asked_s = clock_wall_s()};
     status code = engine_check(s, why);
     THEN(code, read_request(given, s->model, &request, why));
     if (code != STATUS_OK)
