@@ -2,6 +2,7 @@
 #include "base/disk_room.h"
 
 #include "base/file.h"
+#include "base/system_error.h"
 #include <errno.h>
 #include <math.h>
 #include <stdio.h>
@@ -73,7 +74,7 @@ status disk_room_check(const disk_room *needed, double free_bytes, const char *p
     disk_room_bytes_text(needed->most_bytes, most, sizeof most);
     disk_room_bytes_text(free_bytes, left, sizeof left);
     if (needed->least_bytes > free_bytes)
-        return diagnose_at(why, place, STATUS_FAILURE, file_remedy(ENOSPC),
+        return diagnose_at(why, place, STATUS_FAILURE, system_remedy(ENOSPC),
                            "%s writes at least %s, but only %s are free there", what, least, left);
     snprintf(note, DISK_ROOM_TEXT_MAX, "%.48s: %s may write up to %s, and only %s are free there", place, what, most,
              left);
