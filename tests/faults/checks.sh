@@ -10,10 +10,9 @@ cp -a "$root/Makefile" "$root/src" "$root/tests" "$root/.ci" "$root/plots" "$wor
 mkdir -p "$work/experiments" "$work/build"
 cp -r "$root"/experiments/{scenes,hands,cluster} "$work/experiments"
 # What is built already, with its times, so that only what changes is built again.
-cp -a "$BUILD"/{flags,obj,plain,web,faults,lib*.a,cuvette,cuvette-import} "$work/build"
-tools=(build/faults/preload.so build/faults/faults build/faults/engine_user build/faults/lab_client)
+cp -a "$BUILD"/{flags,obj,plain,web,lib*.a,cuvette,cuvette-import} "$work/build"
 build() {
-    CCACHE_NOHASHDIR=1 make -s -j2 -C "$work" build/cuvette build/cuvette-import "${tools[@]}" >"$work/log" 2>&1 || {
+    CCACHE_NOHASHDIR=1 make -s -j2 -C "$work" build/cuvette build/cuvette-import >"$work/log" 2>&1 || {
         cat "$work/log" >&2
         exit 2
     }
@@ -32,7 +31,7 @@ while IFS=$'\t' read -r file old new command kind; do
     }
     printf '%s\n' "${text/"$old"/"$new"}" >"$work/$file"
     build
-    CUVETTE=$work/build/cuvette BUILD=$work/build FAULTS_EVERY=1 FAULTS_DEPTH=0 FAULTS_ONLY=$command FAULTS_KINDS=$kind \
+    CUVETTE=$work/build/cuvette FAULTS_EVERY=1 FAULTS_DEPTH=0 FAULTS_ONLY=$command FAULTS_KINDS=$kind \
         FAULTS_SHOWN=1 bash "$work/tests/faults.sh" >"$work/out" 2>&1 && status=0 || status=$?
     found=$(sed -n 's/^# \(crash\|silent\|message\|leftover\|leak\), call/\1 of call/p' "$work/out" | head -1 | cut -c 1-150)
     if ((status == 1)) && [[ $found ]]; then
