@@ -1,8 +1,8 @@
 #!/bin/bash
 # Fault injection: makes allocations, threads and system calls fail in each command of tests/faults/commands.txt, one a
 # run, and judges how the command ends (tests/faults/judge.h). One line for each command and kind of fault ("ok ...",
-# "not ok ..."). A part of the sites, unless FAULTS_EVERY=1: every FAULTS_EVERYth, and call stacks count as the same when
-# their FAULTS_DEPTH innermost frames are (0: all frames). FAULTS_ONLY, FAULTS_KINDS: names, separated by commas.
+# "not ok ..."). A part of the sites, unless FAULTS_EVERY=1: every FAULTS_EVERYth, and call stacks count as the same
+# when their FAULTS_DEPTH innermost frames are (0: all frames). FAULTS_ONLY, FAULTS_KINDS: names, separated by commas.
 # FAULTS_TABLE: a file for the table of verdicts.
 set -uo pipefail
 root=$(cd "$(dirname "${BASH_SOURCE[0]}")/.." && pwd)
@@ -36,7 +36,8 @@ for table in "$work"/table.*; do
     own=$work/work.${table##*.}
     mkdir "$own"
     "$build/faults/faults" --every "${FAULTS_EVERY:-24}" --depth "${FAULTS_DEPTH:-5}" \
-        ${FAULTS_KINDS:+--kinds "${FAULTS_KINDS// /,}"} --shown "${FAULTS_SHOWN:-5}" --library "$build/faults/preload.so" \
+        ${FAULTS_KINDS:+--kinds "${FAULTS_KINDS// /,}"} --shown "${FAULTS_SHOWN:-5}" \
+        --library "$build/faults/preload.so" \
         --work "$own" --template "$work/template" "$table" "cuvette=$CUVETTE" "engine=$build/faults/engine_user" \
         "lab=$build/faults/lab_client" >"$own.out" 2>&1 &
     started+=($!)

@@ -30,7 +30,7 @@ says() { # WHAT FILE REGEX
     grep -qE "$3" "$2"
     verdict $? "$1" "$(cat "$2")"
 }
-with() { # BYTES ARGUMENT...: with so many bytes left
+with() { # BYTES ARGUMENT...: with that number of bytes left
     FREE_BYTES=$1 LD_PRELOAD=$work/free.so "$program" "${@:2}" >out 2>err
 }
 
@@ -46,11 +46,13 @@ keep: {pfm: on}
 END
 with 150000 study run keep.study --results res
 is "a study that cannot fit is refused" "$? $(ls)" "1 $(printf 'err\nfree.so\nkeep.study\nout')"
-says "the refusal has both numbers and a remedy" err '^cuvette: res/keep: the run writes at least 19[0-9] kB, but only 150 kB are free there; free some space'
+says "the refusal has both numbers and a remedy" err \
+    '^cuvette: res/keep: the run writes at least 19[0-9] kB, but only 150 kB are free there; free some space'
 is "it is one line" "$(grep -vc 'note:' err)" 1
 with 150000 study run --dry-run keep.study --results res
 is "a dry run is refused likewise" "$? $(grep -c 'at least 19. kB, but only 150 kB' err)" "1 1"
-says "and prints what would be written" out '^keep: 19[0-9] to [0-9]+ kB to write, 150 kB free in res$|^keep: 19[0-9] kB to [0-9]+ kB to write, 150 kB free in res$'
+says "and prints what would be written" out \
+    '^keep: 19[0-9]( kB)? to [0-9]+ kB to write, 150 kB free in res$'
 with 250000 study run keep.study --results res
 is "a study that may not fit runs" $? 0
 says "with a note" err '^cuvette: note: res/keep: the run may write up to [0-9]+ kB, and only 250 kB are free there$'

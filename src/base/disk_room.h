@@ -12,7 +12,8 @@ typedef struct disk_room {
 /* Adds count files of these sizes, each in whole blocks. */
 void disk_room_add(disk_room *to, double count, double least_bytes, double most_bytes);
 
-/* Free bytes for this user on the file system of path, which need not exist yet; NaN if unknown. Quotas are not seen. */
+/* Free bytes for this user on the file system of path, which need not exist yet; NaN if unknown. Quotas are not
+ * seen. */
 double disk_room_free(const char *path);
 
 enum { DISK_ROOM_TEXT_MAX = 160 };

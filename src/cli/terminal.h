@@ -6,9 +6,9 @@
 #include <stdbool.h>
 
 /* The place of all signals. Opens closed descriptors among 0 to 2, turns SIGPIPE and SIGXFSZ into errors of the write,
- * SIGINT, SIGTERM and SIGHUP (unless ignored, by nohup) into a stop request, which also cancels the work of the calling
- * thread (base/cancel.h; a second signal kills), and makes exit() check that standard output was written. Must be called
- * first. */
+ * SIGINT, SIGTERM and SIGHUP (unless ignored, by nohup) into a stop request, which also cancels the work of the
+ * calling thread (base/cancel.h; a second signal kills), and makes exit() check that standard output was written. Must
+ * be called first. */
 void terminal_prepare(void);
 
 /* Returns whether SIGINT, SIGTERM or SIGHUP has arrived. unused: lets the function serve as a callback. */

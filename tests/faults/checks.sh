@@ -33,7 +33,8 @@ while IFS=$'\t' read -r file old new command kind; do
     build
     CUVETTE=$work/build/cuvette FAULTS_EVERY=1 FAULTS_DEPTH=0 FAULTS_ONLY=$command FAULTS_KINDS=$kind \
         FAULTS_SHOWN=1 bash "$work/tests/faults.sh" >"$work/out" 2>&1 && status=0 || status=$?
-    found=$(sed -n 's/^# \(crash\|silent\|message\|leftover\|leak\), call/\1 of call/p' "$work/out" | head -1 | cut -c 1-150)
+    found=$(sed -n 's/^# \(crash\|silent\|message\|leftover\|leak\), call/\1 of call/p' "$work/out" |
+        head -1 | cut -c 1-150)
     if ((status == 1)) && [[ $found ]]; then
         echo "ok $number - $file without '${old//$'\n'/ }': $found"
     else

@@ -8,7 +8,8 @@ cd "$1"
 cuvette() { "${CUVETTE:-$root/build/cuvette}" "$@" >/dev/null; }
 
 small() { # SCENE OPTION...: a shipped scene with 8 x 6 pixels
-    cuvette scene "$root/experiments/scenes/$1" --set render.width=8 --set render.height=6 --set render.threads=1 -o "$1" "${@:2}"
+    cuvette scene "$root/experiments/scenes/$1" --set render.width=8 --set render.height=6 --set render.threads=1 \
+        -o "$1" "${@:2}"
 }
 
 small rod.yaml --set render.depth=8

@@ -9,7 +9,8 @@ set -uo pipefail
 asan=${ASAN_OPTIONS:-allocator_may_return_null=1}
 
 # assimp is not instrumented: it leaks, and what it crashes on is kept, but no failure of ours.
-declare -A options=([import]='-fork=1 -ignore_crashes=1 -ignore_ooms=1 -ignore_timeouts=1' [http]='-timeout=60' [films]='-max_len=52')
+declare -A options=([import]='-fork=1 -ignore_crashes=1 -ignore_ooms=1 -ignore_timeouts=1' [http]='-timeout=60'
+    [films]='-max_len=52')
 # The longest inputs of the committed corpus.
 declare -A longest=([films]=52 [package]=64 [rows]=6000 [lesson]=4096)
 
@@ -47,7 +48,8 @@ run() {
     # The importer leaves its memory to the end of its process.
     case $name in obj | import | http) export ASAN_OPTIONS=$asan:detect_leaks=0 ;; *) export ASAN_OPTIONS=$asan ;; esac
     echo "$name, $2 s"
-    "$build/tests/fuzz_$name" -max_total_time="$2" -timeout=25 -rss_limit_mb=2560 -max_len=65536 -print_final_stats=1 \
+    "$build/tests/fuzz_$name" -max_total_time="$2" -timeout=25 -rss_limit_mb=2560 \
+        -max_len=65536 -print_final_stats=1 \
         -artifact_prefix="$build/corpus/$name-" -verbosity=0 "${extra[@]}" "$build/corpus/$name" "${inputs[@]}" 2>&1 |
         sed '/Recommended dictionary/,/End of recommended/d'
 }
@@ -59,7 +61,8 @@ renew() {
     mapfile -t inputs < <(folders "$name")
     rm -rf "$new"
     mkdir -p "$new" "$build/corpus/$name"
-    ASAN_OPTIONS=$asan:detect_leaks=0 "$build/tests/fuzz_$name" -merge=1 -use_counters=0 -timeout=25 -rss_limit_mb=2560 -max_len="${longest[$name]:-2048}" \
+    ASAN_OPTIONS=$asan:detect_leaks=0 "$build/tests/fuzz_$name" -merge=1 -use_counters=0 -timeout=25 -rss_limit_mb=2560 \
+        -max_len="${longest[$name]:-2048}" \
         "$new" "$build/corpus/$name" "${inputs[@]}" >"$build/corpus/$name.merge" 2>&1 || {
         tail -20 "$build/corpus/$name.merge"
         return 1
@@ -68,7 +71,8 @@ renew() {
     find "tests/fuzz/corpus/$name" -type f ! -name 'found-*' -delete
     # Longer files than that are cut by the merge, but copied whole.
     find "$new" -type f -size "-$((${longest[$name]:-2048} + 1))c" -exec cp -t "tests/fuzz/corpus/$name" {} +
-    echo "$name: $(find "tests/fuzz/corpus/$name" -type f | wc -l) inputs, $(du -bs "tests/fuzz/corpus/$name" | cut -f 1) bytes"
+    echo "$name: $(find "tests/fuzz/corpus/$name" -type f | wc -l) inputs," \
+        "$(du -bs "tests/fuzz/corpus/$name" | cut -f 1) bytes"
 }
 
 if [[ $merge ]]; then
