@@ -61,8 +61,8 @@ renew() {
     mapfile -t inputs < <(folders "$name")
     rm -rf "$new"
     mkdir -p "$new" "$build/corpus/$name"
-    ASAN_OPTIONS=$asan:detect_leaks=0 "$build/tests/fuzz_$name" -merge=1 -use_counters=0 -timeout=25 -rss_limit_mb=2560 \
-        -max_len="${longest[$name]:-2048}" \
+    ASAN_OPTIONS=$asan:detect_leaks=0 "$build/tests/fuzz_$name" -merge=1 -use_counters=0 -timeout=25 \
+        -rss_limit_mb=2560 -max_len="${longest[$name]:-2048}" \
         "$new" "$build/corpus/$name" "${inputs[@]}" >"$build/corpus/$name.merge" 2>&1 || {
         tail -20 "$build/corpus/$name.merge"
         return 1
