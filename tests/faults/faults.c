@@ -3,8 +3,8 @@
  * A line of the table: NAME, traits ("-", "resumes", "forked", "slow": fewer sites with --every), the command's words;
  * the first of them is one of the WORDs. Options: --every N, only each N-th site; --depth N, call stacks are the same
  * if N frames are; --only NAMES and --kinds NAMES, separated by commas; --at N, only the Nth call, as an error names
- * it; --stays, what fails fails from then on; --shown N, of each kind of error. Prints the Test Anything Protocol, a case
- * for each command and kind of fault, and a table of verdicts as comments "##". */
+ * it; --stays, what fails fails from then on; --shown N, of each kind of error. Prints the Test Anything Protocol, a
+ * case for each command and kind of fault, and a table of verdicts as comments "##". */
 #include "judge.h"
 #include "trace.h"
 
