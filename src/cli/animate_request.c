@@ -113,10 +113,8 @@ static status find_script(animate_request *request, diagnostic *why)
         return STATUS_OK;
     struct stat about;
     if (stat(request->script, &about) == 0 && !S_ISREG(about.st_mode))
-        if (errno == ENOMEM)
-            return out_of_memory(why);
-    return options_wrong("--script", request->script, why, "give a regular file, since a script is read more than once",
-                         "not a regular file");
+        return options_wrong("--script", request->script, why,
+                             "give a regular file, since a script is read more than once", "not a regular file");
     request->script_path = realpath(request->script, NULL);
     if (request->script_path)
         return STATUS_OK;

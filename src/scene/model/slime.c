@@ -100,6 +100,12 @@ double slime_work(const mesh_entry *m)
     return steps_to(m, m->time_s) * (10.0 * pow(4.0, (double)m->level) + 2.0);
 }
 
+static status interrupted(const slime *x, const scene *s, const mesh_entry *m, double time_s, diagnostic *bad)
+{
+    return diagnose_at(bad, scene_path(s), STATUS_INTERRUPTED, "", "interrupted at %.6g s of %.6g s of simulated time",
+                       x->steps * m->slime.dt_s, time_s);
+}
+
 /* One step per call, so that a request to stop is honoured quickly, however short the steps are. */
 static status advance_watched(slime *x, const scene *s, const mesh_entry *m, double time_s, const load_watch *watch,
                               diagnostic *bad)
@@ -107,15 +113,18 @@ static status advance_watched(slime *x, const scene *s, const mesh_entry *m, dou
     const double ask_s = 0.01, first = x->steps, last = steps_to(m, time_s);
     double asked_s = clock_wall_s();
     for (; x->steps < last; x->steps += 1.0) {
-        TRY(softbody_advance(x->body, (x->steps + 1.0) * m->slime.dt_s, bad));
+        const status code = softbody_advance(x->body, (x->steps + 1.0) * m->slime.dt_s, bad);
+        if (code == STATUS_INTERRUPTED)
+            return interrupted(x, s, m, time_s, bad);
+        if (code != STATUS_OK)
+            return code;
         const double now_s = clock_wall_s();
         if (now_s - asked_s < ask_s)
             continue;
         asked_s = now_s;
         if (!watch->go_on(watch->context, (x->steps + 1.0 - first) / (last - first))) {
             x->steps += 1.0;
-            return diagnose_at(bad, scene_path(s), STATUS_INTERRUPTED, "",
-                               "interrupted at %.6g s of %.6g s of simulated time", x->steps * m->slime.dt_s, time_s);
+            return interrupted(x, s, m, time_s, bad);
         }
     }
     return STATUS_OK;
