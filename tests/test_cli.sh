@@ -693,6 +693,9 @@ fi
 sed -e 's/repetitions: 2/repetitions: 4/' -e '$a keep: {image: on}' studies/tiny.study >studies/more.study
 run study run -n studies/more.study --results res
 sed -Ei 's/(about|less than) [0-9.]+ s/about T s/' out
+check "study run --dry-run prints what it writes and what is free" matches "$(grep 'free' out)" \
+    '^tiny: [0-9.]+( [kMG]?B)?( to [0-9.]+ [kMG]?B)? to write, [0-9.]+ [kMGT]?B free in res$'
+sed -i '/ to write, /d' out
 check "study run --dry-run uses existing rows and lists files" is "$(<out)" "$(lines \
     "tiny: 3 of 3 cells lack rows: 6 rows and 3 warm-ups to measure" \
     "tiny: about T s, from the rows of 3 cells" \

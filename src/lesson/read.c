@@ -169,7 +169,8 @@ static status read_scene(const reader *r, const node *root)
         return out_of_memory(r->why);
     diagnostic refused = {.what = ""};
     const status code = scene_read_below(l->scene_path, r->root, &l->start, &refused);
-    if (code == STATUS_OK || refused.line > 0) { /* an error inside the scene is located there */
+    /* an error inside the scene is located there, and the machine's is not this file's */
+    if (code == STATUS_OK || code == STATUS_FAILURE || refused.line > 0) {
         if (code != STATUS_OK && r->why)
             *r->why = refused;
         return code;

@@ -202,7 +202,7 @@ static void try_kind(const char *name, const reference *ref, const run *r, const
     else
         try_stacks(ref, r, k, place, resumes, &t);
     long bad = t.tried - t.of[UNHARMED] - t.of[REPORTED];
-    if (k->class == FAULT_MEMORY && atomic_load(&run_page->seen) == 0) { /* otherwise all checks would pass trivially */
+    if (k->class == FAULT_MEMORY && t.sites == 0) { /* otherwise all checks would pass trivially */
         printf("# no allocation was counted\n");
         bad = 1;
     }

@@ -19,6 +19,7 @@ typedef struct lesson_visit {
     call *c;
     json_t *list;
     const char *name; /* to find */
+    status code;      /* of the machine: memory, disk; its reason is the call's */
     lesson *found;
 } lesson_visit;
 
@@ -26,8 +27,14 @@ static void visit_file(lesson_visit *v, const char *path, const char *root, bool
 {
     lesson *l = NULL;
     diagnostic why = {.what = ""};
-    if (!v->found && lesson_read_below(path, root, &l, &why) != STATUS_FAILURE)
+    if (v->found || v->code != STATUS_OK)
+        return;
+    if (lesson_read_below(path, root, &l, &why) == STATUS_FAILURE) {
+        v->code = STATUS_FAILURE;
+        v->c->why = why;
+    } else {
         v->act(v, l, path, own, &why);
+    }
     if (l != v->found)
         lesson_destroy(l);
 }
@@ -50,13 +57,13 @@ static status visit_lessons(lesson_visit *v)
     lesson_list list = {.path = NULL};
     if (root && strrchr(root, '/'))
         *strrchr(root, '/') = 0;
-    const status code = root ? lesson_list_find(own, &list, &v->c->why) : STATUS_OK;
+    status code = root ? lesson_list_find(own, &list, &v->c->why) : STATUS_OK;
     for (size_t k = 0; k < list.count; k++)
         visit_file(v, list.path[k], root, false);
     lesson_list_release(&list);
     free(own);
     free(root);
-    return code;
+    return code == STATUS_OK ? v->code : code;
 }
 
 static bool is_listed(const json_t *list, const char *name)

@@ -137,7 +137,7 @@ void http_reply_release(http_reply *r)
 enum MHD_Result http_reply_send(http_reply *r)
 {
     if (!r->response)
-        http_reply_error(r, 500, "the handler set no reply", "");
+        http_reply_error(r, 500, "no memory for the reply", "try again later");
     if (!r->response)
         return MHD_NO;
     bool complete = true;
