@@ -7,8 +7,8 @@
 #include <stdbool.h>
 #include <stdlib.h>
 
-/* json_loadb, which does not bear a lack of memory (json_memory.h): it may lose an item, so that the text is read
- * twice. Sets *no_memory if there is no room for the value. */
+/* json_loadb, which does not bear a lack of memory (json_memory.h): it may lose an item, or blame the text, which is
+ * therefore read twice. Sets *no_memory if there is no room for the value. */
 static inline json_t *json_parse(const char *text, size_t size, size_t flags, json_error_t *error, bool *no_memory)
 {
     void *volatile room = malloc(8 * size + 4096); /* volatile: the compiler may assume that it succeeds */
@@ -17,8 +17,8 @@ static inline json_t *json_parse(const char *text, size_t size, size_t flags, js
     json_t *value = room ? json_loadb(text, size, flags, error) : NULL;
     *no_memory |= room && !value && json_error_code(error) == json_error_out_of_memory;
     json_error_t ignored;
-    json_t *again = value ? json_loadb(text, size, flags, &ignored) : NULL;
-    if (value && !json_equal(value, again)) {
+    json_t *again = room ? json_loadb(text, size, flags, &ignored) : NULL;
+    if (value ? !json_equal(value, again) : again != NULL) {
         *no_memory = true;
         json_decref(value);
         value = NULL;
