@@ -10,10 +10,6 @@ trap 'rm -rf "$work"' EXIT
 
 # shellcheck source=tests/shell/verdict.sh
 source tests/shell/verdict.sh
-equal() { # WHAT GOT WANTED
-    [[ $2 == "$3" ]]
-    verdict $? "$1" "got $2, not $3"
-}
 has_ratio() { # TEXT NAME: the ratio, its rounds and its range
     grep -qE "^$2.* [0-9]+\.[0-9]{3}   \(1 rounds, [0-9.]+ to [0-9.]+\)" <<<"$1"
     verdict $? "a ratio: $2" "$1"

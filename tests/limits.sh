@@ -23,10 +23,6 @@ warmups: 0
 keep: {image: on}
 END
 left() { find . -name '.cuvette-*' | head -3; } # files that an interrupted writer has left
-is() {                                          # WHAT GOT WANTED
-    [[ $2 == "$3" ]]
-    verdict $? "$1" "got: $2"
-}
 # Runs the program with a limit of file size, in KiB; no signal is ignored.
 limited() { # KIB ARGUMENT...
     (
@@ -38,14 +34,14 @@ limited() { # KIB ARGUMENT...
 # --- a limit of file size, which is a signal (SIGXFSZ) unless the program ignores it
 limit_check() { # WHAT KIB ARGUMENT...
     limited "${@:2}"
-    is "file size, $1: exit 1" $? 1
-    is "file size, $1: one line on it, with the remedy" \
+    equal "file size, $1: exit 1" $? 1
+    equal "file size, $1: one line on it, with the remedy" \
         "$(grep -c 'File too large.*limit on file size' err) $(grep -vc 'note:' err)" "1 1"
-    is "file size, $1: nothing unfinished is left" "$(left)" ""
+    equal "file size, $1: nothing unfinished is left" "$(left)" ""
 }
 limit_check "render" 4 render "$scene" -o big.png --set render.width=300 --set render.height=200
 limit_check "render to PFM" 4 render "$scene" -o big.pfm --set render.width=300 --set render.height=200
-is "file size: no part of an image" "$(ls ./*.p?? 2>/dev/null)" ""
+equal "file size: no part of an image" "$(ls ./*.p?? 2>/dev/null)" ""
 limit_check "scene" 1 scene "$root/experiments/scenes/shapes.yaml" -o big.yaml
 limit_check "trace" 1 trace "$scene" --pixel 400,300 --depth 6 -o big.json
 limit_check "animate to a stream" 4 animate "$root/experiments/scenes/slime.yaml" -o big.y4m --duration 0.1 --fps 20 \
@@ -60,7 +56,7 @@ rows=$(wc -l <res/tiny/rows.csv)
 ((rows > 1 && rows < 81))
 verdict $? "file size, study: the limit was met by its rows" "$rows lines"
 "$program" study run --quiet many.study --results res
-is "file size, study: it goes on without the limit" "$? $(wc -l <res/tiny/rows.csv)" "0 81"
+equal "file size, study: it goes on without the limit" "$? $(wc -l <res/tiny/rows.csv)" "0 81"
 
 # --- a small stack
 case ${CONFIG:-release} in
@@ -71,12 +67,18 @@ release | debug)
             exec "$program" render "$root/experiments/scenes/vessel-mesh.yaml" -o stack-$kib.pfm \
                 --set render.width=40 --set render.height=30
         ) >out 2>err
-        is "a stack of $kib kB" $? 0
+        equal "a stack of $kib kB" $? 0
     done
     "$program" render "$root/experiments/scenes/vessel-mesh.yaml" -o stack.pfm \
         --set render.width=40 --set render.height=30 >out 2>err
     cmp stack.pfm stack-64.pfm && cmp stack.pfm stack-32.pfm
     verdict $? "the image does not depend on the limit of the stack"
+    (
+        ulimit -s 64
+        exec timeout -s INT 1 "$program" fan "$scene" --from=-3,1.5,0 --to=3,1.5,0 --width 1.9 --rays 100000 \
+            --tree -o fan.csv --set render.depth=12
+    ) >out 2>err
+    equal "Ctrl-C with a small stack: interrupted, and no table" "$(grep -c interrupted err) $(ls fan.csv 2>/dev/null)" "1 "
     ;;
 *) skip "an instrumented program needs a large stack" ;;
 esac
@@ -95,12 +97,12 @@ start_long() { # PREFIX...: in the background, until two rows are there
 start_long env
 kill -HUP "$job"
 wait "$job"
-is "SIGHUP ends a study with 130" $? 130
-is "SIGHUP: one line on it" "$(grep -c 'interrupted' err) $(wc -l <err)" "1 1"
+equal "SIGHUP ends a study with 130" $? 130
+equal "SIGHUP: one line on it" "$(grep -c 'interrupted' err) $(wc -l <err)" "1 1"
 awk -F, 'NR == 1 {n = NF} NF != n {bad = 1} END {exit bad || NR < 3}' long/long/rows.csv
 verdict $? "SIGHUP: its rows are kept, and complete"
 "$program" study verify long.study --results long >out 2>err
-is "SIGHUP: the run is sealed" "$? $(<err)" "0 "
+equal "SIGHUP: the run is sealed" "$? $(<err)" "0 "
 start_long nohup
 kill -HUP "$job"
 sleep 0.3
@@ -108,12 +110,12 @@ kill -0 "$job" 2>/dev/null
 verdict $? "nohup: SIGHUP does not end a study"
 kill -TERM "$job"
 wait "$job"
-is "nohup: SIGTERM ends it with 130" $? 130
+equal "nohup: SIGTERM ends it with 130" $? 130
 
 # --- killed while it writes a file
 mkdir stream
 for _ in 1 2 3; do
-    "$program" animate "$root/experiments/scenes/slime.yaml" -o stream/film.y4m --duration 2 --fps 50 \
+    "$program" animate "$root/experiments/scenes/slime.yaml" -o stream/film.y4m --duration 200 --fps 50 \
         --set render.width=64 --set render.height=48 --set toy.level=1 >out 2>err &
     job=$!
     sleep 0.3
@@ -122,7 +124,7 @@ for _ in 1 2 3; do
 done
 "$program" render "$scene" -o stream/next.png --set render.width=40 --set render.height=30 >out 2>err
 "$program" render "$scene" -o stream/next.png --set render.width=40 --set render.height=30 >out 2>err
-is "a killed writer leaves nothing that stays" "$(ls -A stream)" next.png
+equal "a killed writer leaves nothing that stays" "$(ls -A stream)" next.png
 
 # --- a list with a file that cannot be read
 mkdir studies
@@ -130,9 +132,9 @@ cp tiny.study studies/b.study
 cp tiny.study studies/c.study
 echo 'study: [' >studies/a.study
 "$program" study list studies >out 2>err
-is "study list: one broken file is one error" "$? $(wc -l <err) $(wc -l <out)" "2 1 2"
+equal "study list: one broken file is one error" "$? $(wc -l <err) $(wc -l <out)" "2 1 2"
 echo 'study: [' >studies/d.study
 "$program" study list studies >out 2>err
-is "study list: two broken files are two errors" "$? $(sort -u err | wc -l) $(wc -l <err)" "2 2 2"
+equal "study list: two broken files are two errors" "$? $(sort -u err | wc -l) $(wc -l <err)" "2 2 2"
 
 conclude

@@ -22,10 +22,6 @@ release | debug) ;;
 esac
 "${CC:-gcc}" -std=c17 -D_GNU_SOURCE -shared -fPIC -O1 -o free.so "$root/tests/free_space.c" || exit 77
 
-is() { # WHAT GOT WANTED
-    [[ $2 == "$3" ]]
-    verdict $? "$1" "got: $2"
-}
 says() { # WHAT FILE REGEX
     grep -qE "$3" "$2"
     verdict $? "$1" "$(cat "$2")"
@@ -45,49 +41,49 @@ warmups: 0
 keep: {pfm: on}
 END
 with 150000 study run keep.study --results res
-is "a study that cannot fit is refused" "$? $(ls)" "1 $(printf 'err\nfree.so\nkeep.study\nout')"
+equal "a study that cannot fit is refused" "$? $(ls)" "1 $(printf 'err\nfree.so\nkeep.study\nout')"
 says "the refusal has both numbers and a remedy" err \
     '^cuvette: res/keep: the run writes at least 19[0-9] kB, but only 150 kB are free there; free some space'
-is "it is one line" "$(grep -vc 'note:' err)" 1
+equal "it is one line" "$(grep -vc 'note:' err)" 1
 with 150000 study run --dry-run keep.study --results res
-is "a dry run is refused likewise" "$? $(grep -c 'at least 19. kB, but only 150 kB' err)" "1 1"
+equal "a dry run is refused likewise" "$? $(grep -c 'at least 19. kB, but only 150 kB' err)" "1 1"
 says "and prints what would be written" out \
     '^keep: 19[0-9]( kB)? to [0-9]+ kB to write, 150 kB free in res$'
 with 250000 study run keep.study --results res
-is "a study that may not fit runs" $? 0
+equal "a study that may not fit runs" $? 0
 says "with a note" err '^cuvette: note: res/keep: the run may write up to [0-9]+ kB, and only 250 kB are free there$'
 "$program" study run --dry-run keep.study --results res >out 2>err
-is "a complete study has nothing to write" "$? $(<out)" "0 keep: complete, nothing to do"
+equal "a complete study has nothing to write" "$? $(<out)" "0 keep: complete, nothing to do"
 with 10 study run keep.study --results res
-is "and needs no room" $? 0
+equal "and needs no room" $? 0
 written=$(du -sb res/keep | cut -f 1)
 ((written >= 190000))
 verdict $? "the study has written what the refusal said" "$written"
 sed 's/^study: .*/study: parts/; $aprocesses: 2' keep.study >parts.study
 with 150000 study run parts.study --results res
-is "a study in several processes is refused once" "$? $(grep -c 'at least' err)" "1 1"
+equal "a study in several processes is refused once" "$? $(grep -c 'at least' err)" "1 1"
 
 animate() { # BYTES ARGUMENT...
     with "$1" animate "$root/experiments/scenes/slime.yaml" --duration 0.2 --fps 20 --set render.width=64 \
         --set render.height=48 --set toy.level=1 "${@:2}"
 }
 animate 100000 -o f%d.pfm
-is "an animation that cannot fit is refused" "$? $(ls f* | tr '\n' ' ')" "1 free.so "
+equal "an animation that cannot fit is refused" "$? $(ls f* | tr '\n' ' ')" "1 free.so "
 says "with both numbers" err 'the animation writes at least 147 kB, but only 100 kB are free there'
 animate 18000 -o film.y4m
-is "a stream that cannot fit is refused" "$? $(ls film.y4m 2>/dev/null)" "1 "
+equal "a stream that cannot fit is refused" "$? $(ls film.y4m 2>/dev/null)" "1 "
 animate 1000000 -o f%d.pfm
-is "one that fits is rendered" "$? $(grep -c ' free ' err) $(ls f?.pfm | wc -l)" "0 0 4"
+equal "one that fits is rendered" "$? $(grep -c ' free ' err) $(ls f?.pfm | wc -l)" "0 0 4"
 animate 40 -o f%d.pfm
-is "one that exists needs no room" $? 0
+equal "one that exists needs no room" $? 0
 animate 40 -o /dev/null --json
 animate 10 -o - </dev/null
-is "standard output needs no room" $? 0
+equal "standard output needs no room" $? 0
 
 if mkdir small && mount -t tmpfs -o size=160k none small 2>/dev/null; then
     mounted=yes
     "$program" study run keep.study --results small/res >out 2>err
-    is "a full file system: refused before it begins" "$? $(ls small)" "1 "
+    equal "a full file system: refused before it begins" "$? $(ls small)" "1 "
 else
     skip "no file system can be mounted"
 fi

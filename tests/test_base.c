@@ -432,6 +432,7 @@ static void written_files_read_back(void **state)
     check_content(path, "");
     put(path, "exactly16 bytes!");
     assert_int_equal(file_read(path, 16, &text, &size, &why), STATUS_OK);
+    assert_int_equal(why.file[0], 0); /* a later error is not this file's */
     assert_int_equal(size, 16);
     free(text);
     assert_int_equal(file_read(path, 15, &text, &size, &why), STATUS_BAD_INPUT);

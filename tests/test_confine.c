@@ -7,6 +7,8 @@
 #include <cmocka.h>
 
 #include "base/apart.h"
+#include "base/cancel.h"
+#include "base/memory_budget.h"
 #include "base/os_confine.h"
 #include "base/text.h"
 #include "image/image.h"
@@ -26,6 +28,7 @@
 #include <sys/stat.h>
 #include <sys/syscall.h>
 #include <sys/wait.h>
+#include <time.h>
 
 /* --- a child that answers with a status --- */
 
@@ -182,6 +185,53 @@ static void a_call_apart_reaches_nothing_and_its_caller_everything(void **state)
     assert_true(own.reads && own.writes && own.connects);
 }
 
+typedef struct question {
+    int asks;         /* of the caller's token, so far */
+    bool was_stopped; /* the work saw it */
+} question;
+
+/* True at the third time. */
+static bool ask(void *of)
+{
+    question *q = of;
+    return ++q->asks > 2;
+}
+
+static void work_until_cancelled(void *of)
+{
+    enum { LONGEST_MS = 5000 };
+    question *q = of;
+    for (int ms = 0; ms < LONGEST_MS && !q->was_stopped; ms++) {
+        q->was_stopped = cancel_asked();
+        nanosleep(&(struct timespec){.tv_nsec = 1000000}, NULL);
+    }
+}
+
+static void a_call_apart_is_cancelled_with_its_caller(void **state)
+{
+    (void)state;
+    question q = {0};
+    cancel_token token = {.ask = ask, .context = &q};
+    cancel_begin(&token);
+    apart_run(work_until_cancelled, &q);
+    cancel_end(&token);
+    assert_true(q.was_stopped);
+}
+
+static void refuse(void *of)
+{
+    *(status *)of = memory_budget_check((uint64_t)1 << 62, "use a smaller one", NULL, "it");
+}
+
+/* The files that say what is free are out of its reach. */
+static void a_call_apart_has_the_budget_of_its_caller(void **state)
+{
+    (void)state;
+    status code = STATUS_OK;
+    apart_run(refuse, &code);
+    assert_int_equal(code, STATUS_BAD_INPUT);
+}
+
 /* --- where it is not possible --- */
 
 /* A kernel or container without both: all their calls fail. */
@@ -331,6 +381,8 @@ int main(void)
         cmocka_unit_test(only_the_given_places_are_reached),
         cmocka_unit_test(only_reading_calls_are_left),
         cmocka_unit_test(a_call_apart_reaches_nothing_and_its_caller_everything),
+        cmocka_unit_test(a_call_apart_is_cancelled_with_its_caller),
+        cmocka_unit_test(a_call_apart_has_the_budget_of_its_caller),
         cmocka_unit_test(all_is_read_where_nothing_can_be_confined),
         cmocka_unit_test(the_importer_is_confined),
     };

@@ -1,30 +1,52 @@
 /* A confined thread for one call. */
 #include "base/apart.h"
 
+#include "base/cancel.h"
+#include "base/memory_budget.h"
 #include "base/os_confine.h"
+#include <errno.h>
 #include <pthread.h>
 #include <signal.h>
 #include <stddef.h>
+#include <time.h>
 
 enum { STACK_BYTES = 1 << 20 };
 
 typedef struct call {
     void (*work)(void *context);
     void *context;
+    cancel_token *token; /* of the caller */
+    memory_room room;
 } call;
 
 static void *run_confined(void *of)
 {
     const call *c = of;
+    cancel_follow(c->token);
+    memory_budget_assume(c->room);
     if (!os_confine_calls(CONFINE_COMPUTING))
         os_confine_files(NULL, 0);
     c->work(c->context);
     return NULL;
 }
 
+/* Asks the caller's token meanwhile: the thread itself only sees that it was set. */
+static void wait_for(pthread_t thread)
+{
+    enum { ASK_NS = 10000000 };
+    struct timespec until;
+    do {
+        cancel_asked();
+        clock_gettime(CLOCK_REALTIME, &until);
+        until.tv_nsec += ASK_NS;
+        if (until.tv_nsec >= 1000000000)
+            until.tv_nsec -= 1000000000, until.tv_sec++;
+    } while (pthread_timedjoin_np(thread, NULL, &until) == ETIMEDOUT);
+}
+
 void apart_run(void (*work)(void *context), void *context)
 {
-    call c = {work, context};
+    call c = {work, context, cancel_current(), memory_budget_look()};
     pthread_t thread;
     pthread_attr_t attributes;
     sigset_t all, before;
@@ -40,5 +62,5 @@ void apart_run(void (*work)(void *context), void *context)
     if (error)
         work(context);
     else
-        pthread_join(thread, NULL);
+        wait_for(thread);
 }

@@ -1,3 +1,4 @@
+/* The stack of tokens of each thread. */
 #include "base/cancel.h"
 
 static _Thread_local cancel_token *current;

@@ -22,7 +22,7 @@ enum { DISK_ROOM_TEXT_MAX = 160 };
 status disk_room_check(const disk_room *needed, double free_bytes, const char *place, const char *what,
                        char note[DISK_ROOM_TEXT_MAX], diagnostic *why);
 
-/* "at least 1.2 GB", "1.2 to 3.4 GB": for a plan. */
+/* "1.2 GB to 3.4 GB": for a plan. */
 void disk_room_text(const disk_room *needed, char *text, size_t size);
 /* "1.2 GB", with powers of 1000. */
 void disk_room_bytes_text(double bytes, char *text, size_t size);

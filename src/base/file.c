@@ -1,9 +1,9 @@
 /* Reading and atomic writing of whole files, and folders. */
-#include "base/memory_budget.h"
 #include "base/file.h"
 
 #include "base/below.h"
 #include "base/cancel.h"
+#include "base/memory_budget.h"
 #include "base/system_error.h"
 #include "base/temporary.h"
 #include "base/text.h"
@@ -92,8 +92,9 @@ status file_read_below(const char *path, const char *root, size_t limit, char **
         if (limit > SIZE_MAX / 4)
             limit = SIZE_MAX / 4;
         size_t expected = about.st_size > 0 ? (size_t)about.st_size : 4096;
-        diagnostic_locate(why, path, 0, 0);
         code = memory_budget_check(expected < limit ? expected : limit, "use a smaller file", why, "the file");
+        if (code != STATUS_OK)
+            diagnostic_locate(why, path, 0, 0);
         THEN(code, read_descriptor(fd, path, limit, expected, text, size, why));
     }
     close(fd);

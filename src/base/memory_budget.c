@@ -1,3 +1,4 @@
+/* What is free: proc(5), cgroups(7), getrlimit(2); and sizes as text. */
 #include "base/memory_budget.h"
 
 #include "base/number.h"
@@ -11,6 +12,7 @@
 #include <unistd.h>
 
 static _Atomic uint64_t limit;
+static _Thread_local memory_room assumed;
 
 void memory_budget_set(uint64_t bytes)
 {
@@ -137,8 +139,24 @@ static uint64_t address_space_left(void)
     return most - least(most, own_bytes(0));
 }
 
+memory_room memory_budget_look(void)
+{
+    memory_room room = {.known = true};
+    room.left = memory_budget_left(&room.chosen);
+    return room;
+}
+
+void memory_budget_assume(memory_room room)
+{
+    assumed = room;
+}
+
 uint64_t memory_budget_left(bool *chosen)
 {
+    if (assumed.known) {
+        *chosen = assumed.chosen;
+        return assumed.left;
+    }
     const uint64_t given = atomic_load(&limit);
     *chosen = given > 0;
     if (given > 0)

@@ -19,6 +19,15 @@ uint64_t memory_budget_limit(void);
 /* Bytes that it may still take. *chosen: by memory_budget_set. About 0.1 ms. */
 uint64_t memory_budget_left(bool *chosen);
 
+/* Looks the answer up now, for a thread that will not be able to: memory_budget_left of the thread that then calls
+ * memory_budget_assume returns it. */
+typedef struct memory_room {
+    uint64_t left;
+    bool chosen, known;
+} memory_room;
+memory_room memory_budget_look(void);
+void memory_budget_assume(memory_room room);
+
 /* What is free by the files of /proc and /sys below root ("" for the real ones), and by address_space, the bytes left
  * of it; UINT64_MAX where nothing limits. */
 uint64_t memory_budget_free(const char *root, uint64_t address_space);

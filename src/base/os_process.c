@@ -1,6 +1,7 @@
 /* What a process knows of itself and of its parent: proc(5), sched_setaffinity(2), prctl(2). */
 #include "base/os_process.h"
 
+#include "base/cancel.h"
 #include <pthread.h>
 #include <sched.h>
 #include <signal.h>
@@ -34,11 +35,13 @@ typedef struct large_call {
     int (*task)(void *context);
     void *context;
     int result;
+    cancel_token *token; /* of the caller */
 } large_call;
 
 static void *call(void *of)
 {
     large_call *c = of;
+    cancel_follow(c->token);
     c->result = c->task(c->context);
     return NULL;
 }
@@ -47,7 +50,7 @@ static void *call(void *of)
 int os_call_with_stack(int (*task)(void *context), void *context)
 {
     enum { ENOUGH_BYTES = 1 << 20, STACK_BYTES = 8 << 20 };
-    large_call c = {task, context, 1};
+    large_call c = {task, context, 1, cancel_current()};
     struct rlimit limit;
     pthread_attr_t attributes;
     pthread_t thread;

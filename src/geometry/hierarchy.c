@@ -1,8 +1,8 @@
 /* Building, sharing and updating of hierarchies, for all kinds. */
-#include "base/memory_budget.h"
 #include "geometry/hierarchy_private.h"
 
 #include "base/cancel.h"
+#include "base/memory_budget.h"
 #include "geometry/mesh_share.h"
 #include <stdlib.h>
 #include <time.h>
@@ -50,8 +50,8 @@ static status build(hierarchy *h, int threads, diagnostic *why)
                     (int)h->kind);
 }
 
-/* Bytes of the hierarchy of a mesh and of its builder, by triangle: measured on soups of 10^6 triangles, and rounded
- * up. */
+/* Bytes of the hierarchy of a mesh and of its builder, by triangle: an estimate from the sizes of blocks, nodes and
+ * references. */
 static uint64_t bytes_by_triangle(hierarchy_kind kind, bool single)
 {
     const uint64_t block = (single ? sizeof(block_single) : sizeof(block_double)) / BLOCK;

@@ -1,6 +1,6 @@
 /* The per-pixel measures of compare.h, and the call of those that use neighbours. */
-#include "base/memory_budget.h"
 #include "image/compare.h"
+#include "base/memory_budget.h"
 
 #include "image/codec.h"
 #include "image/compare_parts.h"

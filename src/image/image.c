@@ -1,10 +1,10 @@
 /* Images: memory, and reading and writing files in the format of each codec. */
-#include "base/memory_budget.h"
 #include "image/image.h"
 
 #include "base/apart.h"
 #include "base/cancel.h"
 #include "base/file.h"
+#include "base/memory_budget.h"
 #include "base/text_writer.h"
 #include "image/codec.h"
 #include <stdbool.h>

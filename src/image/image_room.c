@@ -1,3 +1,4 @@
+/* Bounds of compression. */
 #include "image/image_room.h"
 
 /* Deflate shrinks to 1/1032 at most (zlib, algorithm.txt); JPEG to 6 bits for 64 pixels. */

@@ -1,9 +1,9 @@
 /* Textures: creation, reading, ownership, hash. */
-#include "base/memory_budget.h"
 #include "image/texture_parts.h"
 
 #include "base/cancel.h"
 #include "base/hash.h"
+#include "base/memory_budget.h"
 #include "image/codec.h"
 #include <math.h>
 #include <stdbool.h>

@@ -1,8 +1,8 @@
 /* Loading and rendering frames under supervision: stop requests, limits, measurements. */
-#include "base/memory_budget.h"
 #include "job/job.h"
 
 #include "base/cancel.h"
+#include "base/memory_budget.h"
 #include "job/shelf.h"
 #include "measure/clock.h"
 #include "scene/model/scene.h"

@@ -1,3 +1,4 @@
+/* Estimates by numbers of rows, columns, files and pixels. */
 #include "study/run_room.h"
 #include "base/thread_team.h"
 #include "scene/model/scene.h"

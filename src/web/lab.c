@@ -15,8 +15,8 @@
 #include "web/session/videos.h"
 #include "scene/model/scene.h"
 
-#include <stdlib.h>
 #include <errno.h>
+#include <stdlib.h>
 #include <string.h>
 #include <strings.h>
 
@@ -224,7 +224,8 @@ static status start_in_thread(lab *l, diagnostic *why)
     starting s = {l, why, STATUS_OK};
     pthread_t thread;
     if (pthread_create(&thread, NULL, start_confined, &s) != 0)
-        return diagnose(why, STATUS_FAILURE, "end other programs", "no thread can be started");
+        return diagnose(why, STATUS_FAILURE, "close other programs, or raise the limit on processes (ulimit -u)",
+                        "cannot start the laboratory's threads");
     pthread_join(thread, NULL);
     return s.code;
 }

@@ -184,10 +184,17 @@ static bool good_message(const reference *ref, const fault *f, const char *err, 
     return !wrong;
 }
 
-/* Whether the output itself has the error: a list with an entry that could not be made, or assumed processors. */
+/* Whether the output itself has the error: a list with an entry that could not be made, or assumed processors. The
+ * cause must be in the value of "error", not anywhere. */
 static bool output_reports(const fault *f, const char *out)
 {
-    return strstr(out, "hwloc failed") || (strstr(out, "\"error\"") && names_cause(f, out));
+    for (const char *at = out; (at = strstr(at, "\"error\":")); at++) {
+        char value[WHY_MAX / 2];
+        snprintf(value, sizeof value, "%.*s", 120, at);
+        if (f->class == FAULT_MEMORY ? strstr(value, "out of memory") != NULL : names_cause(f, value))
+            return true;
+    }
+    return strstr(out, "hwloc failed");
 }
 
 /* ---- the verdict ---- */

@@ -96,13 +96,16 @@ def distinct(contents, key):
     return list(seen.values())
 
 
+def after(content, changes):
+    for change in changes:
+        content = apply(content, change)
+    return content
+
+
 def file_states(durable, pending):
     def all_states():
         for chosen in subsets(pending):
-            content = durable
-            for change in chosen:
-                content = apply(content, change)
-            yield content
+            yield after(durable, chosen)
         content = durable
         for change in pending:
             yield from parts(content, change)
@@ -114,10 +117,7 @@ def file_states(durable, pending):
 def folder_states(durable, pending):
     def all_states():
         for chosen in subsets(pending):
-            entries = durable
-            for change in chosen:
-                entries = apply(entries, change)
-            yield entries
+            yield after(durable, chosen)
 
     return distinct(all_states(), lambda entries: frozenset((name, id(node)) for name, node in entries.items()))
 

@@ -13,6 +13,10 @@ verdict() { # STATUS WHAT [WHY]
         [[ -z ${3:-} ]] || head -20 <<<"$3" | sed 's/^/# /'
     fi
 }
+equal() { # WHAT GOT WANTED
+    [[ $2 == "$3" ]]
+    verdict $? "$1" "got $2, not $3"
+}
 empty() { # WHAT TEXT: passes when the text, the list of errors, is empty
     [[ -z $2 ]]
     verdict $? "$1" "$2"

@@ -1,10 +1,10 @@
 /* Following the rays of a fan; crossings by plane geometry, the focus by least squares. */
-#include "base/memory_budget.h"
 #include "render/inspect/fan.h"
 
 #include "base/cancel.h"
 #include "base/elementary.h"
 #include "base/grow.h"
+#include "base/memory_budget.h"
 #include "render/inspect/ray_axes.h"
 #include <stdlib.h>
 #include <string.h>

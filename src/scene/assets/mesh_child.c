@@ -120,9 +120,8 @@ status mesh_child_end(void *context, diagnostic *why)
 /* The exit status as from waitpid; -1 if it is not available (the parent process ignores SIGCHLD). */
 static int reap(mesh_child *child, bool still_wanted)
 {
-    while (still_wanted && child->err >= 0 && !child->late &&
-           !child->cancelled) { /* remaining messages; the end of the stream also closes
-                                                                 this pipe */
+    /* remaining messages; the end of the stream also closes this pipe */
+    while (still_wanted && child->err >= 0 && !child->late && !child->cancelled) {
         struct pollfd one = {.fd = child->err, .events = POLLIN};
         const int ready = wait_until_late(child, &one, 1);
         if (ready > 0)

@@ -13,19 +13,19 @@
 
 /* --- the list --- */
 
-static void add_progress(const lab *l, const study *s, json_t *json)
+static void add_progress(const lab *l, const study *s, json_t **json)
 {
     const char *results = l->settings.results;
     study_progress progress = {0};
     diagnostic why = {.what = ""};
     status code = study_check_results(l, results, s->name, &why);
     THEN(code, study_status(s, results, &progress, &why));
-    json_object_update_new(json, json_pack("{s:I, s:I, s:I, s:I, s:I}", "cells_done", (json_int_t)progress.cells_done,
-                                           "rows", (json_int_t)progress.rows, "warmups", (json_int_t)progress.warmups,
-                                           "marked", (json_int_t)progress.rows_marked, "disturbed",
-                                           (json_int_t)progress.rows_disturbed));
+    json_object_update_new(*json, json_pack("{s:I, s:I, s:I, s:I, s:I}", "cells_done", (json_int_t)progress.cells_done,
+                                            "rows", (json_int_t)progress.rows, "warmups", (json_int_t)progress.warmups,
+                                            "marked", (json_int_t)progress.rows_marked, "disturbed",
+                                            (json_int_t)progress.rows_disturbed));
     if (code != STATUS_OK)
-        json_add_as(&json, "error", json_of_diagnostic(&why));
+        json_add_as(json, "error", json_of_diagnostic(&why));
 }
 
 /* One study of the list; a study that cannot be read (s NULL) has its error. */
@@ -34,7 +34,7 @@ static json_t *study_json(const lab *l, const char *name, const char *file, cons
     json_t *json = json_pack("{s:o, s:o, s:b}", "name", json_of_text(name), "file", json_of_text(file), "running",
                              studies_runs(l->studies, name));
     if (json && s && study_json_about(s, json))
-        add_progress(l, s, json);
+        add_progress(l, s, &json);
     if (json && !s)
         json_add_as(&json, "error", json_of_diagnostic(why));
     return json;

@@ -61,6 +61,12 @@ static status make_token(http_server *s, diagnostic *why)
     return STATUS_OK;
 }
 
+status http_no_threads(diagnostic *why)
+{
+    return diagnose(why, STATUS_FAILURE, "close other programs, or raise the limits (ulimit -u, ulimit -n)",
+                    "cannot start the server's threads, for lack of memory, threads or open files");
+}
+
 static status listen_and_serve(http_server *s, diagnostic *why)
 {
     int fd;
@@ -89,8 +95,7 @@ static status listen_and_serve(http_server *s, diagnostic *why)
             MHD_OPTION_URI_LOG_CALLBACK, http_on_target, s, MHD_OPTION_NOTIFY_COMPLETED, http_on_end, s,
             MHD_OPTION_NOTIFY_CONNECTION, http_watch_notify, s, MHD_OPTION_END);
         if (!s->daemon)
-            code = diagnose(why, STATUS_FAILURE, "close other programs, or raise the limits (ulimit -u, ulimit -n)",
-                            "cannot start the server's threads, for lack of memory, threads or open files");
+            code = http_no_threads(why);
     } else {
         close(fd);
     }

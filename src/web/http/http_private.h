@@ -96,6 +96,8 @@ void *http_gzip(const http_reply *r, const char *type, const void *bytes, size_t
 
 /* --- http_watch.c: closes connections that exceed timeout_s --- */
 status http_watch_start(http_server *s, diagnostic *why);
+/* The server's threads cannot be started. */
+status http_no_threads(diagnostic *why);
 void http_watch_stop(http_server *s);
 void http_watch_notify(void *server, struct MHD_Connection *c, void **place, enum MHD_ConnectionNotificationCode what);
 /* The connection belongs to somebody with the token: strangers do not displace it. */

@@ -137,7 +137,8 @@ void http_reply_release(http_reply *r)
 enum MHD_Result http_reply_send(http_reply *r)
 {
     if (!r->response)
-        http_reply_error(r, 500, "no memory for the reply", "try again later");
+        http_reply_error(r, 500, r->code ? "no memory for the reply" : "the handler set no reply",
+                         r->code ? "try again later" : "report this as a bug, with the request");
     if (!r->response)
         return MHD_NO;
     bool complete = true;

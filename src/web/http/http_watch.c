@@ -40,10 +40,7 @@ status http_watch_start(http_server *s, diagnostic *why)
     for (int i = 0; i < s->settings.connections; i++)
         s->slots[i].socket = -1;
     s->watching = pthread_create(&s->watch, NULL, watch, s) == 0;
-    return s->watching
-               ? STATUS_OK
-               : diagnose(why, STATUS_FAILURE, "close other programs, or raise the limits (ulimit -u, ulimit -n)",
-                          "cannot start the server's threads");
+    return s->watching ? STATUS_OK : http_no_threads(why);
 }
 
 void http_watch_stop(http_server *s)
