@@ -78,7 +78,8 @@ release | debug)
         exec timeout -s INT 1 "$program" fan "$scene" --from=-3,1.5,0 --to=3,1.5,0 --width 1.9 --rays 100000 \
             --tree -o fan.csv --set render.depth=12
     ) >out 2>err
-    equal "Ctrl-C with a small stack: interrupted, and no table" "$(grep -c interrupted err) $(ls fan.csv 2>/dev/null)" "1 "
+    equal "Ctrl-C with a small stack: interrupted, and no table" \
+        "$(grep -c interrupted err) $(ls fan.csv 2>/dev/null)" "1 "
     ;;
 *) skip "an instrumented program needs a large stack" ;;
 esac
