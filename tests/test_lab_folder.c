@@ -290,7 +290,8 @@ static void visible_files_inside_are_listed_by_use(void **state)
     put(r->inside, "bad\xff.png", "");
     put(r->inside, "notes.txt", "");
     link_to(r->inside, "passwd.png", "/etc/passwd");
-    json_t *all = folder_json(r->f);
+    json_t *all = NULL;
+    assert_int_equal(folder_json(r->f, &all, NULL), STATUS_OK);
     assert_string_equal(json_string_value(json_object_get(all, "folder")), "lab");
     assert_true(lists(all, "scenes", "a scene.yaml") && lists(all, "scenes", "sub/Kuh-\xc3\xbc.yml") &&
                 lists(all, "scenes", "broken.yaml"));
@@ -316,7 +317,8 @@ static void the_list_of_files_is_limited(void **state)
         snprintf(name, sizeof name, "aa/%d.png", i);
         put(r->inside, name, "");
     }
-    json_t *all = folder_json(r->f);
+    json_t *all = NULL;
+    assert_int_equal(folder_json(r->f, &all, NULL), STATUS_OK);
     size_t count = 0;
     static const char *const uses[] = {"scenes", "models", "pictures", "scripts", "studies"};
     for (size_t i = 0; i < sizeof uses / sizeof *uses; i++)

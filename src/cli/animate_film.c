@@ -72,7 +72,7 @@ static status advance(animation_job *f, double to_s, bool surfaces, diagnostic *
         progress_start(&f->line, f->label);
     }
     if (result != STATUS_OK)
-        return result == STATUS_INTERRUPTED ? report_interrupted(f, why) : result;
+        return result;
     f->last_motion = scene_motion_last(f->motion);
     animate_account *account = f->account;
     account->steps += f->last_motion.steps;
@@ -111,8 +111,6 @@ static status render_frame(animation_job *f, const char *path, diagnostic *why)
     const render_options options = {.progress = show_progress, .context = f};
     job_account rendered;
     status ended = job_render(f->with, f->s, &options, &rendered, why);
-    if (ended == STATUS_INTERRUPTED)
-        ended = report_interrupted(f, why);
     THEN(ended, write_image(f, path, rendered.result->img, why));
     if (ended == STATUS_OK && f->rows) {
         const animate_row row = {.definition = f->definition,
@@ -138,14 +136,14 @@ static status make_frame(animation_job *f, diagnostic *why)
         return out_of_memory(why);
     const bool exists = is_done(f, path);
     snprintf(f->label, sizeof f->label, "frame %" PRId64 " of %" PRId64, f->frame + 1, f->count);
-    status result = show_progress(f, 0) ? STATUS_OK : report_interrupted(f, why);
+    status result = show_progress(f, 0) ? STATUS_OK : STATUS_INTERRUPTED;
     THEN(result, advance(f, frame_times_at(&f->request->times, f->frame), !exists, why));
     if (result == STATUS_OK && exists)
         f->account->kept++;
     else if (result == STATUS_OK)
         result = render_frame(f, path, why);
     free(path);
-    return result;
+    return result == STATUS_INTERRUPTED ? report_interrupted(f, why) : result; /* in motion, tracing, or encoding */
 }
 
 static status make_frames(animation_job *f, diagnostic *why)

@@ -1,5 +1,6 @@
 /* API: the files of the folder, opening and saving scenes, the media catalogue and the machine. */
 #include "web/api/api.h"
+#include "base/json_build.h"
 #include "scene/model/place/new_scene.h"
 #include "report/json.h"
 #include "report/machine.h"
@@ -27,13 +28,14 @@ static char *prefix_of(const lab *l)
 
 status api_files(call *c)
 {
-    json_t *all = folder_json(c->l->files);
+    json_t *all = NULL;
     char *prefix = prefix_of(c->l);
-    if (all && prefix && json_object_set_new(all, "prefix", json_of_text(prefix)) == 0)
-        api_reply_json(c, json_incref(all));
-    json_decref(all);
+    status code = prefix ? STATUS_OK : out_of_memory(&c->why);
+    THEN(code, folder_json(c->l->files, &all, &c->why));
+    if (code == STATUS_OK)
+        json_add_as(&all, "prefix", json_of_text(prefix));
     free(prefix);
-    return STATUS_OK;
+    return code == STATUS_OK ? api_reply_json(c, all) : code;
 }
 
 status api_media(call *c)

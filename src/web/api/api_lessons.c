@@ -1,8 +1,8 @@
 /* API: the lessons of the gallery, those of the folder and those that belong to the program, and thumbnails. Lessons of
  * the program are read from its own folder, which is outside the chosen one; requests name lessons, never paths. */
-#include "base/json_build.h"
 #include "web/api/api.h"
 
+#include "base/json_build.h"
 #include "base/text.h"
 #include "report/json.h"
 #include "report/lesson_rows.h"
@@ -39,20 +39,34 @@ static void visit_file(lesson_visit *v, const char *path, const char *root, bool
         lesson_destroy(l);
 }
 
-/* Those of the folder first: a teacher's copy replaces the program's lesson of that name. */
-static status visit_lessons(lesson_visit *v)
+/* A file that went away after the list was made is left out. */
+static status visit_folder(lesson_visit *v)
 {
     const folder *files = v->c->l->files;
-    json_t *all = folder_json(files), *name;
+    json_t *all = NULL, *name;
     size_t i;
+    status code = folder_json(files, &all, &v->c->why);
     json_array_foreach(json_object_get(all, "lessons"), i, name)
     {
         char *path = NULL;
-        if (folder_path(files, json_string_value(name), true, &path, NULL) == STATUS_OK)
+        diagnostic why = {.what = ""};
+        const status one = folder_path(files, json_string_value(name), true, &path, &why);
+        if (one == STATUS_OK)
             visit_file(v, path, folder_real(files), true);
+        else if (one == STATUS_FAILURE) {
+            code = one;
+            v->c->why = why;
+        }
         free(path);
     }
     json_decref(all);
+    return code;
+}
+
+/* Those of the folder first: a teacher's copy replaces the program's lesson of that name. */
+static status visit_lessons(lesson_visit *v)
+{
+    TRY(visit_folder(v));
     char *own = lesson_folder(), *root = own ? strdup(own) : NULL;
     lesson_list list = {.path = NULL};
     if (root && strrchr(root, '/'))

@@ -33,7 +33,7 @@ status folder_path_from(const folder *f, const char *name, const char *file, cha
  * that do not exist, the path decides. */
 status folder_check_scene(const folder *f, const scene *s, diagnostic *why);
 
-/* The reply to GET /api/files: three levels of folders, at most FOLDER_FILES_MAX files, no hidden files; NULL when
- * out of memory. */
+/* The reply to GET /api/files: three levels of folders, at most FOLDER_FILES_MAX files, no hidden files. The caller
+ * releases *out; STATUS_FAILURE when out of memory, since a list that lacks a file is not given. */
 enum { FOLDER_FILES_MAX = 2000 };
-json_t *folder_json(const folder *f);
+status folder_json(const folder *f, json_t **out, diagnostic *why);

@@ -1,9 +1,9 @@
 /* Lists the files of the folder that the laboratory can open: classified by extension; scenes and hand scripts, both
  * YAML, by their keys. Breadth-first, so that a large deep folder cannot hide the files above it when a limit is
  * reached. */
-#include "base/json_build.h"
 #include "web/session/folder.h"
 #include "base/grow.h"
+#include "base/json_build.h"
 #include "base/text.h"
 #include "scene/file/document.h"
 
@@ -81,12 +81,14 @@ static file_use use_by_ending(const char *name)
 
 /* Classifies a YAML file by its keys; a file that cannot be parsed is listed as a scene, so that opening it shows
  * the error. */
-static file_use use_by_keys(const folder *f, const char *path)
+static file_use use_by_keys(listing *l, const char *path)
 {
     static const char *const of_scenes[] = {"solids",     "camera", "lights",    "render",
                                             "background", "meshes", "materials", "textures"};
     document *file;
-    if (document_read_below(path, folder_real(f), &file, NULL) != STATUS_OK)
+    const status code = document_read_below(path, folder_real(l->of), &file, NULL);
+    l->out_of_memory |= code == STATUS_FAILURE;
+    if (code != STATUS_OK)
         return USE_SCENE;
     const node *root = document_root(file);
     file_use use = USE_COUNT;
@@ -98,19 +100,28 @@ static file_use use_by_keys(const folder *f, const char *path)
     return use;
 }
 
-/* Takes ownership of the name. A link counts if it leads to a file inside the folder. */
-static void classify_file(listing *l, char *name)
+/* USE_COUNT: a file that is not listed. A link counts if it leads to a file inside the folder. */
+static file_use use_of(listing *l, const char *name)
 {
     file_use use = use_by_ending(name);
     char *path = NULL;
     struct stat about;
-    if (use == USE_COUNT || folder_path(l->of, name, true, &path, NULL) != STATUS_OK) {
-        free(name);
-        return;
-    }
+    if (use == USE_COUNT)
+        return use;
+    const status code = folder_path(l->of, name, true, &path, NULL);
+    l->out_of_memory |= code == STATUS_FAILURE;
+    if (code != STATUS_OK)
+        return USE_COUNT;
     if (use == USE_SCENE)
-        use = stat(path, &about) == 0 && about.st_size <= DOCUMENT_MAX ? use_by_keys(l->of, path) : USE_COUNT;
+        use = stat(path, &about) == 0 && about.st_size <= DOCUMENT_MAX ? use_by_keys(l, path) : USE_COUNT;
     free(path);
+    return use;
+}
+
+/* Takes ownership of the name. */
+static void classify_file(listing *l, char *name)
+{
+    const file_use use = use_of(l, name);
     if (use == USE_COUNT) {
         free(name);
         return;
@@ -119,9 +130,12 @@ static void classify_file(listing *l, char *name)
     add_name(l, &l->found[use], name);
 }
 
-static bool is_text(const char *name)
+/* Whether the name is UTF-8; only such names have a place in JSON. */
+static bool is_text(listing *l, const char *name)
 {
-    json_t *text = json_string(name); /* NULL where it is not UTF-8 */
+    json_t *any = json_string_nocheck(name), *text = json_string(name);
+    l->out_of_memory |= !any;
+    json_decref(any);
     json_decref(text);
     return text != NULL;
 }
@@ -155,7 +169,7 @@ static void visit_folder(listing *l, const char *name)
     free(path);
     names found = {.name = NULL};
     for (const struct dirent *e; d && !l->out_of_memory && l->entries < ENTRIES_MAX && (e = readdir(d)); l->entries++)
-        if (e->d_name[0] != '.' && is_text(e->d_name))
+        if (e->d_name[0] != '.' && is_text(l, e->d_name))
             add_name(l, &found, join_path(name, e->d_name));
     if (d)
         closedir(d);
@@ -175,13 +189,13 @@ static json_t *listing_json(const listing *l)
         json_t *list = json_array();
         sort(&l->found[use]);
         for (size_t i = 0; i < l->found[use].count; i++)
-            json_array_append_new(list, json_string(l->found[use].name[i]));
+            json_add(&list, json_string(l->found[use].name[i]));
         json_add_as(&all, use_names[use], list);
     }
     return all;
 }
 
-json_t *folder_json(const folder *f)
+status folder_json(const folder *f, json_t **out, diagnostic *why)
 {
     listing l = {.of = f};
     visit_folder(&l, "");
@@ -192,9 +206,9 @@ json_t *folder_json(const folder *f)
             visit_folder(&l, level.name[i]);
         names_clear(&level);
     }
-    json_t *all = l.out_of_memory ? NULL : listing_json(&l);
+    *out = l.out_of_memory ? NULL : listing_json(&l);
     names_clear(&l.next);
     for (int use = 0; use < USE_COUNT; use++)
         names_clear(&l.found[use]);
-    return all;
+    return *out ? STATUS_OK : out_of_memory(why);
 }

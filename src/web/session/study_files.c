@@ -33,8 +33,8 @@ static char *name_of(const lab *l, const char *file)
 status study_each(const lab *l, bool (*visit)(void *context, const char *name, const char *file), void *context,
                   diagnostic *why)
 {
-    json_t *json = folder_json(l->files);
-    status code = json ? STATUS_OK : out_of_memory(why);
+    json_t *json = NULL;
+    status code = folder_json(l->files, &json, why);
     const json_t *files = json_object_get(json, "studies");
     bool go_on = true;
     for (size_t i = 0; go_on && code == STATUS_OK && i < json_array_size(files); i++) {
