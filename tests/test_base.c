@@ -689,6 +689,31 @@ static void the_file_of_a_killed_writer_is_removed_by_the_next(void **state)
     free(a);
 }
 
+static void a_file_for_another_program_has_a_name_and_ends_with_its_writer(void **state)
+{
+    (void)state;
+    char *path = in_folder("figure.png"), *left = NULL, *other = NULL, *again = NULL;
+    const int first = temporary_open_named(path, ".png", &left);
+    const int second = temporary_open_named(path, ".png", &other);
+    assert_true(first >= 0 && second >= 0);
+    assert_string_equal(left + strlen(left) - 9, ".part.png");
+    assert_string_not_equal(left, other);
+    assert_int_equal(entries_in(folder), 2);
+    close(first); /* killed */
+    const int third = temporary_open_named(path, ".png", &again);
+    assert_string_equal(again, left);
+    assert_int_equal(access(other, F_OK), 0); /* its writer lives */
+    assert_int_equal(temporary_move(third, &again, path), 0);
+    assert_int_equal(temporary_move(second, &other, path), 0);
+    assert_int_equal(entries_in(folder), 1);
+    close(third);
+    close(second);
+    free(left);
+    free(other);
+    free(again);
+    free(path);
+}
+
 static void an_unfinished_file_has_no_name(void **state)
 {
     (void)state;
@@ -881,6 +906,7 @@ int main(void)
         file_test(a_full_disk_keeps_the_old_file),
         file_test(an_early_write_error_is_reported_at_the_commit),
         file_test(the_file_of_a_killed_writer_is_removed_by_the_next),
+        file_test(a_file_for_another_program_has_a_name_and_ends_with_its_writer),
         file_test(an_unfinished_file_has_no_name),
         cmocka_unit_test(the_remedy_fits_the_error),
         file_test(unwritable_paths_are_refused),

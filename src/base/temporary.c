@@ -17,12 +17,12 @@
 enum { NAMES_MAX = 10000 };
 
 /* Short, because the name of the target may be as long as the file system allows. */
-static char *name_at(const char *path, unsigned n)
+static char *name_at(const char *path, const char *ending, unsigned n)
 {
     char host[256] = "", name[64];
     gethostname(host, sizeof host - 1);
     const uint64_t hash = hash_finish(hash_bytes(HASH_START, host, strlen(host)));
-    snprintf(name, sizeof name, ".cuvette-%08x-%u.part", (unsigned)(hash >> 32), n);
+    snprintf(name, sizeof name, ".cuvette-%08x-%u.part%.16s", (unsigned)(hash >> 32), n, ending);
     char *whole = file_beside(path, name);
     if (!whole)
         errno = ENOMEM;
@@ -48,11 +48,11 @@ static bool remove_left(const char *name)
 }
 
 /* Removes what killed writers have left under the names after n. */
-static void remove_all_left(const char *path, unsigned n)
+static void remove_all_left(const char *path, const char *ending, unsigned n)
 {
     struct stat about;
     char *name;
-    for (bool there = true; there && n < NAMES_MAX && (name = name_at(path, n)); n++) {
+    for (bool there = true; there && n < NAMES_MAX && (name = name_at(path, ending, n)); n++) {
         there = lstat(name, &about) == 0;
         if (there)
             remove_left(name);
@@ -84,10 +84,10 @@ static int give_name(int fd, const char *name)
 }
 
 /* The first free name: for a new file (fd < 0), or for the open one. Returns the descriptor. */
-static int take_name(const char *path, int fd, char **name)
+static int take_name(const char *path, const char *ending, int fd, char **name)
 {
     for (unsigned n = 0; n < NAMES_MAX; n++) {
-        *name = name_at(path, n);
+        *name = name_at(path, ending, n);
         if (!*name)
             return -1;
         int taken;
@@ -97,7 +97,7 @@ static int take_name(const char *path, int fd, char **name)
             exists = taken < 0 && errno == EEXIST;
         } while (exists && remove_left(*name));
         if (taken >= 0)
-            remove_all_left(path, n + 1);
+            remove_all_left(path, ending, n + 1);
         if (!exists)
             return taken;
         free(*name);
@@ -122,14 +122,19 @@ int temporary_open(const char *path, char **name)
 {
     *name = NULL;
     const int fd = open_unnamed(path);
-    return fd >= 0 ? fd : take_name(path, -1, name);
+    return fd >= 0 ? fd : take_name(path, "", -1, name);
+}
+
+int temporary_open_named(const char *path, const char *ending, char **name)
+{
+    return take_name(path, ending, -1, name);
 }
 
 int temporary_move(int fd, char **name, const char *path)
 {
     if (!*name && give_name(fd, path) == 0)
         return 0;
-    if (!*name && (errno != EEXIST || take_name(path, fd, name) < 0))
+    if (!*name && (errno != EEXIST || take_name(path, "", fd, name) < 0))
         return -1;
     return rename(*name, path);
 }

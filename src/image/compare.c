@@ -1,5 +1,6 @@
 /* The per-pixel measures of compare.h, and the call of those that use neighbours. */
 #include "image/compare.h"
+#include "base/cancel.h"
 #include "base/memory_budget.h"
 
 #include "image/codec.h"
@@ -48,7 +49,7 @@ static void compare_pixels(const image *a, const image *b, double *luma_a, doubl
     double sum = 0.0;
     codec_bytes table;
     codec_bytes_prepare(&table);
-    for (size_t i = 0; i < count; i++) {
+    for (size_t i = 0; i < count && !cancel_asked_at(i); i++) {
         double encoded_a[3], encoded_b[3];
         bool differs = false;
         for (size_t channel = 0; channel < 3; channel++) {
@@ -95,7 +96,8 @@ status image_compare(const image *a, const image *b, image_comparison *out, diag
     } else {
         *out = (image_comparison){0};
         compare_pixels(a, b, first, second, out);
-        code = compare_ssim(first, second, a->width, a->height, &out->ssim, why);
+        code = cancel_check(why);
+        THEN(code, compare_ssim(first, second, a->width, a->height, &out->ssim, why));
     }
     THEN(code, compare_flip(a, b, first, why));
     if (code == STATUS_OK)

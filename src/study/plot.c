@@ -2,9 +2,11 @@
 #include "study/plot.h"
 #include "base/child.h"
 #include "base/file.h"
+#include "base/system_error.h"
+#include "base/temporary.h"
 #include "base/text.h"
 #include "study/plot_parts.h"
-#include <fcntl.h>
+#include <errno.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
@@ -44,7 +46,7 @@ typedef struct drawing {
 
 enum { NOT_FOUND = 127 /* of env(1) */ };
 
-/* format='png'; output='/path/.figure.drawing-12' */
+/* format='png'; output='/path/.cuvette-0123abcd-0.part' */
 static char *settings_of(const char *scratch, const char *format)
 {
     char *text = NULL;
@@ -93,33 +95,43 @@ static status run_gnuplot(const drawing *d, diagnostic *why)
 }
 
 /* Complete or absent, after a power cut too. */
-static bool move_figure(const char *made, const char *target)
+static status move_figure(int fd, char **made, const char *target, diagnostic *why)
 {
-    const int fd = open(made, O_RDONLY | O_CLOEXEC);
-    const bool flushed = fd >= 0 && fsync(fd) == 0;
+    if (fsync(fd) != 0 || temporary_move(fd, made, target) != 0)
+        return system_error(why, STATUS_FAILURE, target, "cannot be written", errno, "");
+    file_flush_folder(target);
+    return STATUS_OK;
+}
+
+/* gnuplot writes a temporary file, which has a name: base/temporary.h. */
+static status draw_figure(drawing *d, const char *target, diagnostic *why)
+{
+    char *made = NULL, *ending = text_format(".%s", d->format);
+    const int fd = ending ? temporary_open_named(target, ending, &made) : -1;
+    status code = fd >= 0 ? STATUS_OK : ending ? system_error(why, STATUS_FAILURE, target, "cannot be written", errno, "")
+                                               : out_of_memory(why);
+    char *scratch = made ? strndup(made, strlen(made) - strlen(ending)) : NULL;
+    if (code == STATUS_OK && !scratch)
+        code = out_of_memory(why);
+    d->scratch = scratch;
+    THEN(code, run_gnuplot(d, why));
+    THEN(code, move_figure(fd, &made, target, why));
+    if (code != STATUS_OK && made)
+        unlink(made);
     if (fd >= 0)
         close(fd);
-    if (!flushed || rename(made, target) != 0)
-        return false;
-    file_flush_folder(target);
-    return true;
+    free(scratch);
+    free(ending);
+    free(made);
+    return code;
 }
 
 status study_plot_draw(const char *base, const char *format, double limit_s, const atomic_bool *stop, diagnostic *why)
 {
-    const char *name = file_name_of(base);
-    char *scratch = text_format("%.*s.%s.drawing-%d", (int)(name - base), base, name, (int)getpid());
-    char *made = text_format("%s.%s", scratch ? scratch : "", format), *target = text_format("%s.%s", base, format);
-    char *script = text_format("%s.gp", base);
-    status code = scratch && made && target && script ? STATUS_OK : out_of_memory(why);
-    THEN(code, run_gnuplot(&(drawing){script, scratch, format, limit_s, stop}, why));
-    if (code == STATUS_OK && !move_figure(made, target))
-        code = diagnose_at(why, target, STATUS_FAILURE, "", "the figure cannot be written");
-    if (code != STATUS_OK && made)
-        unlink(made);
+    char *target = text_format("%s.%s", base, format), *script = text_format("%s.gp", base);
+    drawing d = {.script = script, .format = format, .limit_s = limit_s, .stop = stop};
+    const status code = target && script ? draw_figure(&d, target, why) : out_of_memory(why);
     free(script);
     free(target);
-    free(made);
-    free(scratch);
     return code;
 }
