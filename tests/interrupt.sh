@@ -48,12 +48,14 @@ w_trace() {
     line=(trace "$scenes/rod.yaml" --pixel "400,300" --depth 28 --json -o tree.json)
     files=tree.json longest=2
 }
-w_motion() { line=(motion "$scenes/slime.yaml" --set toy.level=5) longest=2; }
+w_motion() { line=(motion "$scenes/slime.yaml" --set toy.level=5 --set toy.dt_s=1e-4) longest=2; }
 w_lesson() { line=(lesson check) longest=1; }
 w_check() { line=(scene soup-bvh.yaml --check) longest=2 && soup sparse 3000000 bvh; }
 w_octant() { line=(render soup-octant.yaml -o s.png) files=s.png longest=2 && soup sparse 2000000 octant; }
 w_embree() { line=(render soup-embree.yaml -o s.png) files=s.png longest=2 && soup dense 3000000 embree; }
-w_slime() { line=(render "$scenes/slime.yaml" -o s.png --set toy.level=6 --set toy.time_s=3) files=s.png longest=2; }
+w_slime() {
+    line=(render "$scenes/slime.yaml" -o s.png --set toy.level=6 --set toy.dt_s=2e-5 --set toy.time_s=3) files=s.png longest=2
+}
 w_terrain() { line=(mesh --generate terrain --around 4000 --tube 3000) longest=5; }
 w_sphere() { line=(mesh --generate sphere --count 9000000) longest=4; }
 w_icosphere() { line=(mesh --generate icosphere --level 9) longest=1; }
@@ -75,7 +77,7 @@ w_texture() {
     printf 'textures: {t: {file: big.png}}\nsolids: {s: {shape: sphere, radius: 1, texture: t}}\n' >texture.yaml
 }
 w_sky() {
-    line=(render sky.yaml -o t.png --set render.integrator=path) files=t.png longest=0.5
+    line=(render sky.yaml -o t.png --set render.integrator=path) kept=t.png longest=0.5
     picture big.png 6000 4000
     printf 'background: {kind: picture, picture: big.png}\nsolids: {s: {shape: sphere, radius: 1}}\n' >sky.yaml
 }
@@ -88,7 +90,7 @@ w_render() {
     kept=r.png longest=3
 }
 w_paths() {
-    line=(render "$scenes/rod.yaml" -o r.png --set render.integrator=path --set render.samples=256)
+    line=(render "$scenes/rod.yaml" -o r.png --set render.integrator=path --set render.samples=64 --set render.width=800 --set render.height=600)
     line+=(--set render.depth=16) kept=r.png longest=3
 }
 w_repeat() { line=(render "$scenes/rod.yaml" --json --repeat 1000) longest=3; }
@@ -106,18 +108,18 @@ w_layers() {
 }
 w_animate() { line=(animate "$scenes/slime.yaml" -o frame-%03d.png --duration 3) longest=3; }
 w_study() {
-    line=(study run long.study -o results) kept=results/long/rows.csv longest=3
+    line=(study run long.study -r results) kept=results/long/rows.csv longest=3
     printf 'study: long\nscene: %s\ngrid: [{render.depth: [1, 2, 3]}]\nrepetitions: 500\n' "$scenes/rod.yaml" \
         >long.study
 }
 w_processes() {
-    line=(study run processes.study -o results) kept=results/processes/rows.csv longest=3
+    line=(study run processes.study -r results) kept=results/processes/rows.csv longest=3
     printf 'study: processes\nscene: %s\ngrid: [{render.depth: [1, 2, 3]}]\nrepetitions: 500\nprocesses: 5\n' \
         "$scenes/rod.yaml" >processes.study
 }
 w_study_motion() {
-    line=(study run motion.study -o results) longest=4
-    printf 'study: motion\nscene: %s\nset: {toy.level: 5, render.width: 40, render.height: 30}\ngrid: %s\n%s' \
+    line=(study run motion.study -r results) longest=4
+    printf 'study: motion\nscene: %s\nset: {toy.level: 5, toy.dt_s: 1e-4, render.width: 40, render.height: 30}\ngrid: %s\n%s' \
         "$scenes/slime.yaml" '[{render.depth: [1, 2]}]' 'keep: {motion: on}' >motion.study
 }
 
@@ -135,20 +137,25 @@ wrongs() {
             printf 'background: {kind: picture, picture: %s}\n' "$name" >decoded.yaml
             "$program" scene decoded.yaml --check >made 2>&1 || echo "$name is damaged: $(head -1 made)"
         elif [[ -e $name && $name == *rows.csv ]]; then
-            "$program" study verify "${line[2]}" -o results >made 2>&1 || echo "rows are damaged: $(head -1 made)"
+            "$program" study verify "${line[2]}" -r results >made 2>&1 || echo "rows are damaged: $(head -1 made)"
         fi
     done
 }
 
-# One moment: prints what is wrong.
+# One moment: prints what is wrong. ran: seconds of a run that ended before its signal.
 interrupt() { # WORKLOAD SIGNAL
     local files='' kept='' longest=1 line=() after ms cpu code rest
     "w_$1"
     # shellcheck disable=SC2086 # several names
     rm -rf $files $kept results frame-*.png
-    after=$(awk -v r="$RANDOM" -v most="$longest" 'BEGIN {printf "%.3f", 0.03 + most * r / 32768}')
+    after=$(awk -v r="$RANDOM" -v most="$longest" -v ran="${ran:-}" \
+        'BEGIN {if (ran != "" && ran < most) most = ran; printf "%.3f", 0.03 + most * r / 32768}')
     read -r ms cpu code rest < <(./moment "$(kill -l "$2")" "$after" "$program" "${line[@]}" 2>err)
-    [[ $ms != - ]] || return # it had ended: a fast machine
+    if [[ $ms == - || ($code == 0 && ${ms%.*} -lt 100) ]]; then # it had ended, or was about to: a fast machine
+        ((code == 0)) || echo "without a signal: exit $code: $(tail -1 err | head -c 200)"
+        ran=$(awk -v ran="$rest" 'BEGIN {print ran + 0}')
+        return
+    fi
     if [[ $code == -* && ! -s err ]] && awk -v ran="$rest" 'BEGIN {exit !(ran + 0 < 1)}'; then
         return # main had not begun
     fi
@@ -165,7 +172,7 @@ fi
 for workload; do
     seed=$RANDOM # a subshell would begin with one of its own
     bad=$(
-        RANDOM=$seed
+        RANDOM=$seed ran=
         for ((i = 0; i < moments; i++)); do
             interrupt "$workload" "${signals[i % ${#signals[@]}]}"
         done
