@@ -107,6 +107,8 @@ class Places:
             return
         all_text = self.text(path)
         between = all_text[left.extent.end.offset:right.extent.start.offset].decode()
+        if between.strip() == "-" and right.type.get_canonical().kind == ci.TypeKind.POINTER:
+            return  # pointers have no sum
         for changed in CHANGES.get(between.strip(), ()):
             if between.strip() in "*/" and node.type.get_canonical().kind not in (ci.TypeKind.DOUBLE, ci.TypeKind.FLOAT):
                 continue
