@@ -464,21 +464,28 @@ faults: $(build)/cuvette $(build)/cuvette-import $(fault_tools) ## fail every al
 fault-checks: $(build)/cuvette $(build)/cuvette-import $(fault_tools) ## remove checks from the sources, one at a time: the faults must detect each
 	@BUILD='$(abspath $(build))' tests/faults/checks.sh
 
-# Lines of src that the tests run, among them the fuzzers' inputs (test_fuzz_corpus); made by gcc. The counts of an earlier run are dropped. The report is written after tests
-# that fail, too.
+# Lines of src that the tests run, among them the fuzzers' inputs (test_fuzz_corpus); made by gcc. coverage drops the counts
+# of earlier runs, coverage-add keeps them. The report is written after tests that fail, too.
 GCOV ?= $(subst gcc,gcov,$(lastword $(CC)))
-.PHONY: coverage run_coverage
+measure_coverage = $(if $(clang),$(error coverage: only gcc is supported; leave CC=$(CC) out))$(MAKE) --no-print-directory STRICT=1 \
+  config=coverage build=$(build)/coverage TEST_LIMIT_S=3600
+.PHONY: coverage coverage-add coverage-report run_coverage report_coverage
 coverage: ## report which lines of src the tests run, in build/coverage/report; only=NAME as for test (needs gcovr)
-	@$(if $(clang),echo 'coverage: only gcc is supported; leave CC=$(CC) out' >&2; exit 1)
 	@command -v gcovr >/dev/null || { echo 'coverage: gcovr is not installed; install it with: apt-get install gcovr' >&2; exit 1; }
-	@$(MAKE) STRICT=1 config=coverage build=$(build)/coverage TEST_LIMIT_S=3600 run_coverage
+	@$(measure_coverage) run_coverage
+coverage-add: ## run tests for coverage-report; only=NAME
+	@$(measure_coverage) test
+coverage-report: ## report which lines of src all tests since the last `make coverage` have run
+	@$(measure_coverage) report_coverage
 run_coverage:
-	@mkdir -p $(build)/report && find $(build) -name '*.gcda' -delete
+	@mkdir -p $(build) && find $(build) -name '*.gcda' -delete
 	@code=0; $(MAKE) --no-print-directory build=$(build) test || code=$$?; \
-	  gcovr --gcov-executable '$(GCOV)' --root . --filter src/ --exclude-throw-branches --html-details $(build)/report/index.html \
-	    --txt $(build)/report/missed.txt --print-summary $(build) && \
-	  echo 'report: $(build)/report/index.html; the lines that neither tests nor the inputs of fuzzers reach: $(build)/report/missed.txt' && \
-	  exit $$code
+	  $(MAKE) --no-print-directory build=$(build) report_coverage && exit $$code
+report_coverage:
+	@mkdir -p $(build)/report
+	@gcovr --gcov-executable '$(GCOV)' --root . --filter src/ --exclude-throw-branches --html-details $(build)/report/index.html \
+	  --txt $(build)/report/missed.txt --print-summary $(build)
+	@echo 'report: $(build)/report/index.html; the lines that neither tests nor the inputs of fuzzers reach: $(build)/report/missed.txt'
 
 # Small errors in the sources, one at a time, that a test must detect; everything that checks, within an hour.
 .PHONY: mutants check-all

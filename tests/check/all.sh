@@ -50,16 +50,23 @@ chosen=("$@")
 threaded=(tracer_pool worker_pool renderer render path_determinism determinism lab_render_worker lab_live lab_semaphore
     lab_rescue lab_load http study_run engine piece_source tracing)
 part tests make STRICT=1 test
-part clang in_rotation clang 300 'make -s clang'
-part sanitize in_rotation sanitize 480 'make -s sanitize'
-part threads in_rotation threads 300 'make -s tsan' "${threaded[@]}"
-part valgrind in_rotation valgrind 240 'make -s valgrind'
+part clang in_rotation clang 150 'make -s clang'
+part sanitize in_rotation sanitize 240 'make -s sanitize'
+part threads in_rotation threads 150 'make -s tsan' "${threaded[@]}"
+part valgrind in_rotation valgrind 150 'make -s valgrind'
 mapfile -t commands < <(awk '/^[a-z]/ { print $1 }' tests/faults/commands.txt)
-part faults in_rotation faults 240 'make -s faults' "${commands[@]}"
-part power-cuts env POWER_STATES=$((20000 * scale)) POWER_RESUMED=5 make -s power-cuts
-part interrupts make -s interrupts MOMENTS=$((200 * scale))
-part fuzz make -s fuzz FUZZ_TOTAL=$((240 * scale)) FUZZ_SECONDS=30
-part mutants env MUTANT_SECONDS=$((300 * scale)) tests/mutants/mutants.sh
+part faults in_rotation faults 150 'make -s faults' "${commands[@]}"
+part power-cuts env POWER_STATES=$((6000 * scale)) POWER_RESUMED=5 make -s power-cuts
+part interrupts make -s interrupts MOMENTS=$((96 * scale))
+part fuzz make -s fuzz FUZZ_TOTAL=$((150 * scale)) FUZZ_SECONDS=30
+measure_coverage() { # the last lines: lines, branches
+    in_rotation coverage 150 'make -s coverage-add'
+    local code=$?
+    make -s coverage-report | awk '/^lines|^branches/ { printf "%s  ", $0 } END { print "" }'
+    return $code
+}
+part coverage measure_coverage
+part mutants env MUTANT_SECONDS=$((200 * scale)) tests/mutants/mutants.sh
 write_page
 cat "$check/page.md"
 exit $failed
