@@ -45,7 +45,7 @@ fan=(fan "$scenes/rod.yaml" "--from=-3,1.5,0" "--to=3,1.5,0" --width 1.6)
 w_fan() { line=("${fan[@]}" --rays 100000 --depth 12 -o fan.csv) files=fan.csv longest=2; }
 w_fan_tree() { line=("${fan[@]}" --rays 100000 --tree --depth 8 -o fan.svg) files=fan.svg longest=3; }
 w_trace() {
-    line=(trace "$scenes/rod.yaml" --pixel "400,300" --depth 28 --json -o tree.json)
+    line=(trace "$scenes/rod.yaml" --pixel "400,300" --depth 24 --json -o tree.json)
     files=tree.json longest=2
 }
 w_motion() { line=(motion "$scenes/slime.yaml" --set toy.level=5 --set toy.dt_s=1e-4) longest=2; }
