@@ -54,7 +54,8 @@ w_check() { line=(scene soup-bvh.yaml --check) longest=2 && soup sparse 3000000 
 w_octant() { line=(render soup-octant.yaml -o s.png) files=s.png longest=2 && soup sparse 2000000 octant; }
 w_embree() { line=(render soup-embree.yaml -o s.png) files=s.png longest=2 && soup dense 3000000 embree; }
 w_slime() {
-    line=(render "$scenes/slime.yaml" -o s.png --set toy.level=6 --set toy.dt_s=2e-5 --set toy.time_s=3) files=s.png longest=2
+    line=(render "$scenes/slime.yaml" -o s.png --set toy.level=6 --set toy.dt_s=2e-5 --set toy.time_s=3)
+    files=s.png longest=2
 }
 w_terrain() { line=(mesh --generate terrain --around 4000 --tube 3000) longest=5; }
 w_sphere() { line=(mesh --generate sphere --count 9000000) longest=4; }
@@ -90,7 +91,8 @@ w_render() {
     kept=r.png longest=3
 }
 w_paths() {
-    line=(render "$scenes/rod.yaml" -o r.png --set render.integrator=path --set render.samples=64 --set render.width=800 --set render.height=600)
+    line=(render "$scenes/rod.yaml" -o r.png --set render.integrator=path --set render.samples=64)
+    line+=(--set render.width=800 --set render.height=600)
     line+=(--set render.depth=16) kept=r.png longest=3
 }
 w_repeat() { line=(render "$scenes/rod.yaml" --json --repeat 1000) longest=3; }
@@ -119,8 +121,8 @@ w_processes() {
 }
 w_study_motion() {
     line=(study run motion.study -r results) longest=4
-    printf 'study: motion\nscene: %s\nset: {toy.level: 5, toy.dt_s: 1e-4, render.width: 40, render.height: 30}\ngrid: %s\n%s' \
-        "$scenes/slime.yaml" '[{render.depth: [1, 2]}]' 'keep: {motion: on}' >motion.study
+    printf 'study: motion\nscene: %s\nset: {%s, render.width: 40, render.height: 30}\ngrid: %s\n%s' \
+        "$scenes/slime.yaml" 'toy.level: 5, toy.dt_s: 1e-4' '[{render.depth: [1, 2]}]' 'keep: {motion: on}' >motion.study
 }
 
 # What is wrong with the state that a command left: exit code $1, its latency $2.

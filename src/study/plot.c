@@ -107,11 +107,12 @@ static status move_figure(int fd, char **made, const char *target, diagnostic *w
 static status draw_figure(drawing *d, const char *target, diagnostic *why)
 {
     char *made = NULL, *ending = text_format(".%s", d->format);
-    const int fd = ending ? temporary_open_named(target, ending, &made) : -1;
-    status code = fd >= 0 ? STATUS_OK : ending ? system_error(why, STATUS_FAILURE, target, "cannot be written", errno, "")
-                                               : out_of_memory(why);
+    const int fd = ending ? temporary_open_named(target, ending, &made) : -1, reason = errno;
     char *scratch = made ? strndup(made, strlen(made) - strlen(ending)) : NULL;
-    if (code == STATUS_OK && !scratch)
+    status code = STATUS_OK;
+    if (ending && fd < 0)
+        code = system_error(why, STATUS_FAILURE, target, "cannot be written", reason, "");
+    else if (!scratch)
         code = out_of_memory(why);
     d->scratch = scratch;
     THEN(code, run_gnuplot(d, why));

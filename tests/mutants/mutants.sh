@@ -12,7 +12,8 @@ work=${BUILD:-build}/mutants tree=${BUILD:-build}/mutants/tree python=/usr/bin/p
     exit 1
 }
 mkdir -p "$work"
-sources=$(find src tests/*.[ch] tests/mutants/instrument.py Makefile -type f -print0 | sort -z | xargs -0 sha256sum | sha256sum)
+sources=$(find src tests/*.[ch] tests/mutants/instrument.py Makefile -type f -print0 | sort -z |
+    xargs -0 sha256sum | sha256sum)
 wanted="$sources ${MUTANTS:-600} ${SEED:-1}"
 if [[ "$(cat "$work/made" 2>/dev/null)" != "$wanted" ]]; then
     rm -rf "$tree" "$work/made"
