@@ -122,7 +122,8 @@ w_processes() {
 w_study_motion() {
     line=(study run motion.study -r results) longest=4
     printf 'study: motion\nscene: %s\nset: {%s, render.width: 40, render.height: 30}\ngrid: %s\n%s' \
-        "$scenes/slime.yaml" 'toy.level: 5, toy.dt_s: 1e-4' '[{render.depth: [1, 2]}]' 'keep: {motion: on}' >motion.study
+        "$scenes/slime.yaml" 'toy.level: 5, toy.dt_s: 1e-4' \
+        '[{render.depth: [1, 2]}]' 'keep: {motion: on}' >motion.study
 }
 
 # What is wrong with the state that a command left: exit code $1, its latency $2.
