@@ -18,7 +18,10 @@
  * success (on failure handles are set to NULL). `why`, which may be NULL, then describes the problem and its remedy. A
  * NULL where a handle, a name or a result is required is CUVETTE_BAD_INPUT like any wrong value. The library never
  * prints, never exits, raises no signal, and reads only CUVETTE_ISA (cuvette_engine_create), CUVETTE_IMPORT (the
- * program that reads mesh files), CUVETTE_MACHINE and CUVETTE_NODE_TYPE (cuvette-results(5)) from the environment.
+ * program that reads mesh files), CUVETTE_MACHINE and CUVETTE_NODE_TYPE (cuvette-results(5)) from the environment. One
+ * library that it uses does not keep to this: jansson, which the functions of studies parse lists of runs with, ends
+ * the process if memory runs out just then. A host that must survive that gives jansson functions with a reserve
+ * (json_set_alloc_funcs), as the program cuvette does.
  *
  * Threads. There is no global state: different threads may use different handles at the same time. Any number of
  * functions that take a scene as const may run on it at the same time, including renders by several engines, but not

@@ -3,6 +3,7 @@
  * be written as if it were whole.) */
 #pragma once
 
+#include <errno.h>
 #include <jansson.h>
 #include <stdbool.h>
 #include <stdlib.h>
@@ -40,6 +41,14 @@ static inline char *json_text(const json_t *value, size_t flags)
     if (text)
         text[size] = '\0';
     return text;
+}
+
+/* The text as a value: null for NULL and for what is not UTF-8, which JSON cannot hold; NULL when out of memory. */
+static inline json_t *json_text_or_null(const char *text)
+{
+    errno = 0; /* json_string does not say which it was */
+    json_t *value = text ? json_string(text) : NULL;
+    return value ? value : errno == ENOMEM ? NULL : json_null();
 }
 
 /* Both take the reference of item; NULL: it could not be made. */

@@ -82,11 +82,11 @@ static bool run_git(const char *folder, const char *const *arguments, char *text
         return false;
     posix_spawn_file_actions_t actions;
     posix_spawn_file_actions_init(&actions);
-    posix_spawn_file_actions_addopen(&actions, 0, "/dev/null", O_RDONLY, 0);
-    posix_spawn_file_actions_adddup2(&actions, pipes[1], 1);
-    posix_spawn_file_actions_addopen(&actions, 2, "/dev/null", O_WRONLY, 0);
+    int failed = posix_spawn_file_actions_addopen(&actions, 0, "/dev/null", O_RDONLY, 0);
+    failed = failed ? failed : posix_spawn_file_actions_adddup2(&actions, pipes[1], 1);
+    failed = failed ? failed : posix_spawn_file_actions_addopen(&actions, 2, "/dev/null", O_WRONLY, 0);
     pid_t child;
-    int failed = posix_spawnp(&child, "git", &actions, NULL, (char *const *)(void *)argv, environ);
+    failed = failed ? failed : posix_spawnp(&child, "git", &actions, NULL, (char *const *)(void *)argv, environ);
     posix_spawn_file_actions_destroy(&actions);
     close(pipes[1]);
     size_t used = 0;

@@ -37,21 +37,15 @@ static const double load_sample_s = 0.2;
 /* Takes ownership of text; null if it is NULL or not UTF-8. */
 static json_t *taken(char *text)
 {
-    json_t *value = text ? json_string(text) : NULL;
+    json_t *value = json_text_or_null(text);
     free(text);
-    return value ? value : json_null();
+    return value;
 }
 
 /* The same for a text that is never unknown: NULL when out of memory. */
 static json_t *certain(char *text)
 {
     return text ? taken(text) : NULL;
-}
-
-static json_t *borrowed(const char *text)
-{
-    json_t *value = text ? json_string(text) : NULL;
-    return value ? value : json_null();
 }
 
 /* --- parts --- */
@@ -95,15 +89,15 @@ json_t *run_machine_facts(const topology *machine)
 
 json_t *run_study_facts(const study *s)
 {
-    return json_pack("{s:s, s:o, s:I, s:o, s:o, s:o, s:o}", "name", s->name, "title", borrowed(s->title), "cells",
-                     (json_int_t)study_cell_count(s), "file", borrowed(file_name_of(s->path)), "text",
-                     borrowed(s->text), "scene_file", borrowed(file_name_of(s->scene_path)), "scene_text",
-                     borrowed(s->scene_text));
+    return json_pack("{s:s, s:o, s:I, s:o, s:o, s:o, s:o}", "name", s->name, "title", json_text_or_null(s->title), "cells",
+                     (json_int_t)study_cell_count(s), "file", json_text_or_null(file_name_of(s->path)), "text",
+                     json_text_or_null(s->text), "scene_file", json_text_or_null(file_name_of(s->scene_path)), "scene_text",
+                     json_text_or_null(s->scene_text));
 }
 
 static void add_disturbance(void *list, const char *text)
 {
-    json_add(list, borrowed(text));
+    json_add(list, json_text_or_null(text));
 }
 
 /* Time that the hypervisor gave to others since boot, as a share of all time; null if unknown: proc(5), /proc/stat. */
@@ -140,7 +134,7 @@ static json_t *environment_facts(const run_environment *e)
 {
     json_t *facts = json_pack("{s:s}", "key", e->key);
     for (int i = 0; i < ENVIRONMENT_FACTS; i++)
-        json_add_as(&facts, environment_names[i], borrowed(e->fact[i]));
+        json_add_as(&facts, environment_names[i], json_text_or_null(e->fact[i]));
     return facts;
 }
 
@@ -151,7 +145,7 @@ static json_t *node(void)
     if (!environment_node_type())
         return json_null();
     environment_read_machine("", machine, sizeof machine);
-    return borrowed(machine);
+    return json_text_or_null(machine);
 }
 
 json_t *run_facts(const study *s, const topology *machine, const run_environment *here, const char *id, long shard,
@@ -171,11 +165,11 @@ json_t *run_facts(const study *s, const topology *machine, const run_environment
                   certain(topology_summary(machine)), "load", load_average(), "steal_share", steal_share());
     json_t *program = json_pack(
         "{s:s, s:o, s:s, s:s, s:s#, s:o, s:o, s:o, s:o}", "version", CUVETTE_VERSION, "build_commit",
-        borrowed(build_commit()), "compiler", COMPILER, "flags", CUVETTE_COMPILER_FLAGS, "config",
+        json_text_or_null(build_commit()), "compiler", COMPILER, "flags", CUVETTE_COMPILER_FLAGS, "config",
         CUVETTE_COMPILER_FLAGS, (int)strcspn(CUVETTE_COMPILER_FLAGS, ":"), "kernel", taken(provenance_kernel()),
         "binding", taken(provenance_binding()), "libraries", libraries(), "disturbances", disturbances);
     json_t *texts = json_pack("{s:o, s:o, s:o, s:o}", "study_commit", taken(commit), "study_dirty", is_dirty,
-                              "study_text", borrowed(s->text), "scene_text", borrowed(s->scene_text));
+                              "study_text", json_text_or_null(s->text), "scene_text", json_text_or_null(s->scene_text));
     if (json_object_update(run, program) != 0 || json_object_update(run, texts) != 0) {
         json_decref(run);
         run = NULL;

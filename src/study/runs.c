@@ -230,7 +230,7 @@ static status end_run(json_t *list, void *context, diagnostic *why)
         for (size_t k = 0; k < e->count; k++)
             json_add_as(&rows, e->seals[k].table,
                         json_pack("{s:I, s:s}", "count", (json_int_t)e->seals[k].rows, "check", e->seals[k].check));
-        return json_object_set_new(run, "ended_utc", run_time()) == 0 && json_object_set_new(run, "rows", rows) == 0
+        return json_object_set_new(run, "rows", rows) == 0 && json_object_set_new(run, "ended_utc", run_time()) == 0
                    ? STATUS_OK
                    : out_of_memory(why);
     }

@@ -1,6 +1,7 @@
 /* A program that uses the library (cuvette.h): each argument is a part of the interface. It prints what it computes,
  * so that the oracle compares it, and what a call that fails says, as the program `cuvette` does. The library must
  * leave no memory and no descriptor behind, whatever failed. */
+#include "base/json_memory.h"
 #include "cuvette.h"
 
 #include <stdio.h>
@@ -166,12 +167,17 @@ int main(int argc, char **argv)
         cuvette_status (*use)(void);
     } parts[] = {{"scene", use_scene},   {"frame", use_frame},   {"query", use_query},
                  {"motion", use_motion}, {"images", use_images}, {"study", use_study}};
+    json_memory_reserve(); /* as cuvette.h advises */
     static char output[1 << 16]; /* printf is not what is tested */
     setvbuf(stdout, output, _IOFBF, sizeof output);
     for (size_t i = 0; argc == 2 && i < sizeof parts / sizeof *parts; i++) {
         if (strcmp(argv[1], parts[i].name) != 0)
             continue;
-        const cuvette_status code = parts[i].use();
+        cuvette_status code = parts[i].use();
+        if (code == CUVETTE_OK && fflush(stdout) != 0) {
+            fprintf(stderr, "cuvette: standard output: a write failed; give it room\n");
+            return CUVETTE_FAILURE;
+        }
         char text[CUVETTE_DIAGNOSTIC_TEXT_MAX];
         if (code != CUVETTE_OK)
             fprintf(stderr, "cuvette: %s\n", cuvette_diagnostic_text(&why, text, sizeof text));

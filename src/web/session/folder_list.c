@@ -133,11 +133,11 @@ static void classify_file(listing *l, char *name)
 /* Whether the name is UTF-8; only such names have a place in JSON. */
 static bool is_text(listing *l, const char *name)
 {
-    json_t *any = json_string_nocheck(name), *text = json_string(name);
-    l->out_of_memory |= !any;
-    json_decref(any);
+    json_t *text = json_text_or_null(name);
+    const bool is_text = json_is_string(text);
+    l->out_of_memory |= !text;
     json_decref(text);
-    return text != NULL;
+    return is_text;
 }
 
 /* Joins a folder's name, "" for the chosen folder, and a name in it. */
