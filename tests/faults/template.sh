@@ -7,15 +7,17 @@ mkdir -p "$1"
 cd "$1"
 cuvette() { "${CUVETTE:-$root/build/cuvette}" "$@" >/dev/null; }
 
-small() { # SCENE OPTION...: a shipped scene with 8 x 6 pixels
-    cuvette scene "$root/experiments/scenes/$1" --set render.width=8 --set render.height=6 --set render.threads=1 \
-        -o "$1" "${@:2}"
+cp "$root/experiments/scenes/chequer.png" tiles.png
+cp "$root/experiments/hands/tug.yaml" tug.yaml
+small() { # SCENE OPTION...: a shipped scene with 8 x 6 pixels; its files are in this folder
+    sed 's,file: chequer.png,file: tiles.png,; s,script: .*/,script: ,' "$root/experiments/scenes/$1" >whole.yaml
+    cuvette scene whole.yaml --set render.width=8 --set render.height=6 --set render.threads=1 -o "$1" "${@:2}"
+    rm whole.yaml
 }
 
 small rod.yaml --set render.depth=8
 small slime.yaml --set toy.level=1 --set toy.time_s=0.01
 small prism.yaml --set render.wavelengths=4
-cp "$root/experiments/scenes/chequer.png" tiles.png
 cat >things.yaml <<'END'
 title: 'words: "quoted"'
 render: {width: 8, height: 6, depth: 2, threads: 2}

@@ -37,15 +37,28 @@ typedef struct listing {
     const folder *of;
     names found[USE_COUNT], next; /* next: folders of the next level */
     size_t files, entries;
-    bool out_of_memory;
+    status code; /* not STATUS_OK: a name was lost, *why says the reason */
+    diagnostic *why;
 } listing;
+
+static void fail(listing *l, const diagnostic *reason)
+{
+    l->code = STATUS_FAILURE;
+    if (l->why)
+        *l->why = *reason;
+}
+
+static void fail_for_memory(listing *l)
+{
+    l->code = out_of_memory(l->why);
+}
 
 /* Takes ownership of the name. */
 static void add_name(listing *l, names *list, char *name)
 {
     if (!name || !GROW(list->name, list->room, list->count + 1)) {
         free(name);
-        l->out_of_memory = true;
+        fail_for_memory(l);
         return;
     }
     list->name[list->count++] = name;
@@ -86,8 +99,10 @@ static file_use use_by_keys(listing *l, const char *path)
     static const char *const of_scenes[] = {"solids",     "camera", "lights",    "render",
                                             "background", "meshes", "materials", "textures"};
     document *file;
-    const status code = document_read_below(path, folder_real(l->of), &file, NULL);
-    l->out_of_memory |= code == STATUS_FAILURE;
+    diagnostic why = {.what = ""};
+    const status code = document_read_below(path, folder_real(l->of), &file, &why);
+    if (code == STATUS_FAILURE && strcmp(why.remedy, MEMORY_REMEDY) == 0)
+        fail(l, &why);
     if (code != STATUS_OK)
         return USE_SCENE;
     const node *root = document_root(file);
@@ -108,8 +123,10 @@ static file_use use_of(listing *l, const char *name)
     struct stat about;
     if (use == USE_COUNT)
         return use;
-    const status code = folder_path(l->of, name, true, &path, NULL);
-    l->out_of_memory |= code == STATUS_FAILURE;
+    diagnostic why = {.what = ""};
+    const status code = folder_path(l->of, name, true, &path, &why);
+    if (code == STATUS_FAILURE)
+        fail(l, &why);
     if (code != STATUS_OK)
         return USE_COUNT;
     if (use == USE_SCENE)
@@ -135,7 +152,8 @@ static bool is_text(listing *l, const char *name)
 {
     json_t *text = json_text_or_null(name);
     const bool is_text = json_is_string(text);
-    l->out_of_memory |= !text;
+    if (!text)
+        fail_for_memory(l);
     json_decref(text);
     return is_text;
 }
@@ -152,7 +170,8 @@ static void visit_entry(listing *l, char *name)
     struct stat about;
     char *path = join_path(folder_root(l->of), name);
     const bool is_folder = path && lstat(path, &about) == 0 && S_ISDIR(about.st_mode);
-    l->out_of_memory |= !path;
+    if (!path)
+        fail_for_memory(l);
     free(path);
     if (is_folder)
         add_name(l, &l->next, name);
@@ -165,10 +184,11 @@ static void visit_folder(listing *l, const char *name)
 {
     char *path = join_path(folder_root(l->of), name);
     DIR *d = path ? opendir(path) : NULL;
-    l->out_of_memory |= !path;
+    if (!path)
+        fail_for_memory(l);
     free(path);
     names found = {.name = NULL};
-    for (const struct dirent *e; d && !l->out_of_memory && l->entries < ENTRIES_MAX && (e = readdir(d)); l->entries++)
+    for (const struct dirent *e; d && l->code == STATUS_OK && l->entries < ENTRIES_MAX && (e = readdir(d)); l->entries++)
         if (e->d_name[0] != '.' && is_text(l, e->d_name))
             add_name(l, &found, join_path(name, e->d_name));
     if (d)
@@ -197,7 +217,7 @@ static json_t *listing_json(const listing *l)
 
 status folder_json(const folder *f, json_t **out, diagnostic *why)
 {
-    listing l = {.of = f};
+    listing l = {.of = f, .why = why};
     visit_folder(&l, "");
     for (int depth = 1; depth <= DEPTH_MAX; depth++) {
         names level = l.next;
@@ -206,9 +226,9 @@ status folder_json(const folder *f, json_t **out, diagnostic *why)
             visit_folder(&l, level.name[i]);
         names_clear(&level);
     }
-    *out = l.out_of_memory ? NULL : listing_json(&l);
+    *out = l.code == STATUS_OK ? listing_json(&l) : NULL;
     names_clear(&l.next);
     for (int use = 0; use < USE_COUNT; use++)
         names_clear(&l.found[use]);
-    return *out ? STATUS_OK : out_of_memory(why);
+    return *out || l.code != STATUS_OK ? l.code : out_of_memory(why);
 }
