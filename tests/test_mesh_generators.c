@@ -267,6 +267,8 @@ static void a_lathed_ring_is_a_torus(void **state)
     assert_sound(b, 0);
     assert_near(mesh_volume(a), 6.0 * sin(pi / 6.0) * (4.0 - 1.0), 1e-13);
     assert_near(mesh_volume(b), mesh_volume(a), 1e-13);
+    for (size_t v = 0; v < b->vertex_count; v++) /* smooth at each right angle, also where the profile closes */
+        assert_near(fabs(b->normals[v].y), sqrt(0.5), 1e-15);
     mesh_release(a);
     mesh_release(b);
 }

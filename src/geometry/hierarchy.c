@@ -129,7 +129,6 @@ static status follow_by_build(hierarchy **stored, int threads, hierarchy_moves *
     const hierarchy_kind kind = (*stored)->kind;
     const double begun = now_s();
     hierarchy_destroy(*stored); /* before the build, so that only one hierarchy is in memory at a time */
-    *stored = NULL;
     const status s = hierarchy_build(m, kind, threads, stored, why);
     moves->rebuilt += s == STATUS_OK;
     moves->build_s += now_s() - begun;
