@@ -1,10 +1,11 @@
 """Run the mutants of a built copy (instrument.py): run.py TREE EQUIVALENT SECONDS.
 
-First every test program of less than a minute runs once without a mutant, which says how long it takes and which mutants it reaches. Then
-each mutant runs in the tests that reach it, quickest first, until one fails: it is killed. A test that takes six times
-as long as before has failed too. TREE/results.tsv has a row for each mutant: number, killed or survived or unreached,
-the test that killed it. Rows that it has are kept, so that the same command goes on where it stopped, after SECONDS at
-the latest. EQUIVALENT lists mutants that change nothing that can be seen: file, text, changed text, why."""
+First every test program of less than a minute runs once without a mutant, which says how long it takes and which
+mutants it reaches. Then each mutant runs in the tests that reach it, quickest first, until one fails: it is killed. A
+test that takes six times as long as before has failed too. After QUICK_S of tests a mutant waits until all others had
+their turn: most survivors would run for minutes. TREE/results.tsv has rows of number, killed or waiting or survived or
+unreached, and the test that killed it; the last row of a number counts. Rows that it has are kept, so that the same
+command goes on where it stopped, after SECONDS at the latest. EQUIVALENT lists mutants that change nothing that can be seen: file, text, changed text, why."""
 
 import concurrent.futures
 import glob
@@ -15,6 +16,7 @@ import sys
 import time
 
 LONGEST_S = 60  # longer tests are left out
+QUICK_S = 30
 EXCLUDED = ("test_lab", "test_http", "test_bad_meshes", "test_study_estimate")  # need a server or quiet processors
 
 
@@ -72,17 +74,40 @@ def measure():
     return sorted((float(seconds), test, set(map(int, filter(None, reached.split(","))))) for test, seconds, reached in rows)
 
 
-def judge(number, tests, end):
-    reached = False
+def judge(number, tests, end, quick):
+    """The row of a mutant after the tests of its first QUICK_S, or after the others; None: no time is left."""
+    reached, before_s, more = False, 0.0, False
     for seconds, test, reaches in tests:
         if number not in reaches:
             continue
         reached = True
+        is_quick = before_s < QUICK_S
+        before_s += seconds
+        more |= not is_quick
+        if is_quick != quick:
+            continue
         if time.monotonic() > end:
             return None
         if not passes(test, 6 * seconds + 10, MUTANT=str(number))[0]:
             return f"{number}\tkilled\t{test}\n"
-    return f"{number}\t{'survived' if reached else 'unreached'}\t\n"
+    verdict = "unreached" if not reached else "waiting" if quick and more else "survived"
+    return f"{number}\t{verdict}\t\n"
+
+
+def results():
+    """The last row of each mutant: number, verdict, test."""
+    if not os.path.exists("results.tsv"):
+        return []
+    with open("results.tsv") as file:
+        return list({line.split("\t")[0]: line.rstrip("\n").split("\t") for line in file}.values())
+
+
+def judge_all(numbers, tests, end, quick):
+    with open("results.tsv", "a") as file, concurrent.futures.ThreadPoolExecutor(os.cpu_count()) as pool:
+        for row in pool.map(lambda number: judge(number, tests, end, quick), numbers):
+            if row:
+                file.write(row)
+                file.flush()
 
 
 def main():
@@ -91,26 +116,18 @@ def main():
     os.chdir(sys.argv[1])
     end = time.monotonic() + float(sys.argv[3])
     tests = measure()
-    done = set()
-    if os.path.exists("results.tsv"):
-        with open("results.tsv") as file:
-            done = {int(line.split("\t")[0]) for line in file}
+    done = {int(row[0]) for row in results()}
     with open("mutants.tsv") as file:
-        left = [number for number in (int(line.split("\t")[0]) for line in file) if number not in done]
-    with open("results.tsv", "a") as file, concurrent.futures.ThreadPoolExecutor(os.cpu_count()) as pool:
-        for row in pool.map(lambda number: judge(number, tests, end), left):
-            if row:
-                file.write(row)
-                file.flush()
+        judge_all([n for n in (int(line.split("\t")[0]) for line in file) if n not in done], tests, end, True)
+    judge_all([int(row[0]) for row in results() if row[1] == "waiting"], tests, end, False)
     return report(equivalent)
 
 
 def report(equivalent):
     with open("mutants.tsv") as file:
         mutants = {line.split("\t")[0]: line.rstrip("\n").split("\t") for line in file}
-    with open("results.tsv") as file:
-        rows = [line.rstrip("\n").split("\t") for line in file]
-    counts = dict.fromkeys(("killed", "equivalent", "survived", "unreached"), 0)
+    rows = results()
+    counts = dict.fromkeys(("killed", "equivalent", "survived", "unreached", "waiting"), 0)
     for number, verdict, _ in rows:
         _, path, line, kind, old, new = mutants[number]
         if verdict != "killed" and (path, old, new) in equivalent:
@@ -120,7 +137,7 @@ def report(equivalent):
             print(f"{verdict} {number}: {path}:{line}: {kind}: {old}  ->  {new or '(left out)'}")
     print(f"{len(mutants)} mutants: " + ", ".join(f"{n} {verdict}" for verdict, n in counts.items()) +
           f", {len(mutants) - len(rows)} not run yet")
-    return counts["survived"] + counts["unreached"] > 0
+    return counts["survived"] + counts["unreached"] > 0  # those that wait may yet be killed
 
 
 sys.exit(main())
