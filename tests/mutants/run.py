@@ -5,7 +5,8 @@ mutants it reaches. Then each mutant runs in the tests that reach it, quickest f
 test that takes six times as long as before has failed too. After QUICK_S of tests a mutant waits until all others had
 their turn: most survivors would run for minutes. TREE/results.tsv has rows of number, killed or waiting or survived or
 unreached, and the test that killed it; the last row of a number counts. Rows that it has are kept, so that the same
-command goes on where it stopped, after SECONDS at the latest. EQUIVALENT lists mutants that change nothing that can be seen: file, text, changed text, why."""
+command goes on where it stopped, after SECONDS at the latest. EQUIVALENT lists mutants that change nothing that can be
+seen: file, text, changed text, why."""
 
 import concurrent.futures
 import glob
@@ -63,15 +64,16 @@ def measure():
             if os.path.exists("reached.txt"):
                 with open("reached.txt") as file:
                     reached = {line.strip() for line in file}
-            print(f"{test}: {seconds:.1f} s, reaches {len(reached)}{'' if passed else ', left out: it fails without a mutant, or takes too long'}",
-                  flush=True)
+            left_out = "" if passed else ", left out: it fails without a mutant, or takes too long"
+            print(f"{test}: {seconds:.1f} s, reaches {len(reached)}{left_out}", flush=True)
             if passed:
                 rows.append(f"{test}\t{seconds:.3f}\t{','.join(sorted(reached, key=int))}\n")
         with open("reached.tsv", "w") as file:
             file.writelines(rows)
     with open("reached.tsv") as file:
         rows = [line.rstrip("\n").split("\t") for line in file]
-    return sorted((float(seconds), test, set(map(int, filter(None, reached.split(","))))) for test, seconds, reached in rows)
+    return sorted((float(seconds), test, set(map(int, filter(None, reached.split(",")))))
+                  for test, seconds, reached in rows)
 
 
 def judge(number, tests, end, quick):
