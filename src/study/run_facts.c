@@ -89,10 +89,10 @@ json_t *run_machine_facts(const topology *machine)
 
 json_t *run_study_facts(const study *s)
 {
-    return json_pack("{s:s, s:o, s:I, s:o, s:o, s:o, s:o}", "name", s->name, "title", json_text_or_null(s->title), "cells",
-                     (json_int_t)study_cell_count(s), "file", json_text_or_null(file_name_of(s->path)), "text",
-                     json_text_or_null(s->text), "scene_file", json_text_or_null(file_name_of(s->scene_path)), "scene_text",
-                     json_text_or_null(s->scene_text));
+    return json_pack("{s:s, s:o, s:I, s:o, s:o, s:o, s:o}", "name", s->name, "title", json_text_or_null(s->title),
+                     "cells", (json_int_t)study_cell_count(s), "file", json_text_or_null(file_name_of(s->path)), "text",
+                     json_text_or_null(s->text), "scene_file", json_text_or_null(file_name_of(s->scene_path)),
+                     "scene_text", json_text_or_null(s->scene_text));
 }
 
 static void add_disturbance(void *list, const char *text)

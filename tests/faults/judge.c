@@ -100,7 +100,8 @@ static void mask_facts(char *text)
     char *to = text;
     for (const char *c = text; *c;) {
         const size_t word = strcspn(c, "\t\n, \""), hex = strspn(c, "0123456789abcdef#");
-        const bool is_masked = word && ((hex == word && memchr(c, '#', word)) || (word == 2 && memcmp(c, "NA", 2) == 0));
+        const bool is_masked =
+            word && ((hex == word && memchr(c, '#', word)) || (word == 2 && memcmp(c, "NA", 2) == 0));
         if (is_masked)
             *to++ = '#';
         else

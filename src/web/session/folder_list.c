@@ -188,7 +188,8 @@ static void visit_folder(listing *l, const char *name)
         fail_for_memory(l);
     free(path);
     names found = {.name = NULL};
-    for (const struct dirent *e; d && l->code == STATUS_OK && l->entries < ENTRIES_MAX && (e = readdir(d)); l->entries++)
+    for (const struct dirent *e; d && l->code == STATUS_OK && l->entries < ENTRIES_MAX && (e = readdir(d));
+         l->entries++)
         if (e->d_name[0] != '.' && is_text(l, e->d_name))
             add_name(l, &found, join_path(name, e->d_name));
     if (d)
