@@ -167,7 +167,7 @@ int main(int argc, char **argv)
         cuvette_status (*use)(void);
     } parts[] = {{"scene", use_scene},   {"frame", use_frame},   {"query", use_query},
                  {"motion", use_motion}, {"images", use_images}, {"study", use_study}};
-    json_memory_reserve(); /* as cuvette.h advises */
+    json_memory_reserve();       /* as cuvette.h advises */
     static char output[1 << 16]; /* printf is not what is tested */
     setvbuf(stdout, output, _IOFBF, sizeof output);
     for (size_t i = 0; argc == 2 && i < sizeof parts / sizeof *parts; i++) {
