@@ -213,8 +213,8 @@ typedef struct starting {
 static void *start_confined(void *of)
 {
     starting *s = of;
-    lab_confine(s->l);
-    s->code = start(s->l, s->why);
+    s->code = lab_confine(s->l, s->why);
+    THEN(s->code, start(s->l, s->why));
     return NULL;
 }
 

@@ -9,6 +9,7 @@
 #include "web/session/kept_scenes.h"
 
 #include <dirent.h>
+#include <errno.h>
 #include <fcntl.h>
 #include <ftw.h>
 #include <stdlib.h>
@@ -22,11 +23,13 @@ typedef struct place_list {
     confine_place at[PLACES_MAX];
     char *owned[PLACES_MAX];
     size_t count;
+    bool out_of_memory; /* a place is missing */
 } place_list;
 
-/* Takes the path; NULL is ignored. */
+/* Takes the path; NULL: out of memory. */
 static void add(place_list *all, char *path, unsigned rights)
 {
+    all->out_of_memory |= !path;
     if (!path || !path[0] || all->count == PLACES_MAX) {
         free(path);
         return;
@@ -37,7 +40,15 @@ static void add(place_list *all, char *path, unsigned rights)
 
 static void add_text(place_list *all, const char *path, unsigned rights)
 {
-    add(all, path ? strdup(path) : NULL, rights);
+    if (path)
+        add(all, strdup(path), rights);
+}
+
+/* What base/installed.h has found: NULL and ENOENT if it is not there. */
+static void add_found(place_list *all, char *path, unsigned rights)
+{
+    if (path || errno == ENOMEM)
+        add(all, path, rights);
 }
 
 /* The folders of a list such as PATH. A relative one is left out: it depends on the working folder. */
@@ -74,9 +85,9 @@ static void add_program(place_list *all)
     if (os_program_path(program))
         add_text(all, program, CONFINE_RUN);
     for (size_t i = 0; i < sizeof here / sizeof *here; i++)
-        add(all, installed_find(&here[i], 1, "cuvette-import"), CONFINE_RUN);
+        add_found(all, installed_find(&here[i], 1, "cuvette-import"), CONFINE_RUN);
     add_text(all, getenv("CUVETTE_IMPORT"), CONFINE_RUN);
-    add(all, installed_folder("experiments"), CONFINE_READ);
+    add_found(all, installed_folder("experiments"), CONFINE_READ);
 }
 
 static const char *temporary_place(void)
@@ -133,6 +144,7 @@ static void add_temporary(lab *l, place_list *all)
 {
     remove_abandoned(temporary_place());
     l->temporary = text_format("%s/" TEMPORARY "XXXXXX", temporary_place());
+    all->out_of_memory |= !l->temporary;
     l->temporary_lock = l->temporary && mkdtemp(l->temporary) ? hold(l->temporary) : -1;
     if (l->temporary_lock < 0) {
         free(l->temporary);
@@ -141,21 +153,23 @@ static void add_temporary(lab *l, place_list *all)
     add_text(all, l->temporary, CONFINE_WRITE);
 }
 
-void lab_confine(lab *l)
+status lab_confine(lab *l, diagnostic *why)
 {
     const lab_settings *settings = &l->settings;
     place_list all = {.count = 0};
     if (os_confine_is_off())
-        return;
+        return STATUS_OK;
     add_system(&all);
     add_program(&all);
     add_temporary(l, &all);
     add_text(&all, settings->folder, CONFINE_WRITE);
     if (settings->rescue && settings->rescue[0] && kept_scenes_folder(settings->rescue, NULL) == STATUS_OK)
         add_text(&all, settings->rescue, CONFINE_WRITE);
-    os_confine_files(all.at, all.count);
+    if (!all.out_of_memory)
+        os_confine_files(all.at, all.count);
     for (size_t i = 0; i < all.count; i++)
         free(all.owned[i]);
+    return all.out_of_memory ? out_of_memory(why) : STATUS_OK;
 }
 
 void lab_remove_temporary(lab *l)

@@ -44,8 +44,9 @@ struct lab {
 };
 
 /* Gives up, for the calling thread and all that it starts, the access to files that the laboratory does not need
- * (base/os_confine.h), and makes its folder for temporary files. Where that is not possible, nothing changes. */
-void lab_confine(lab *l);
+ * (base/os_confine.h), and makes its folder for temporary files. Where that is not possible, nothing changes.
+ * STATUS_FAILURE when out of memory. */
+status lab_confine(lab *l, diagnostic *why);
 /* Removes that folder, and an empty one for unsaved scenes. */
 void lab_remove_temporary(lab *l);
 /* The folder for temporary files, and a file in it without a name; NULL with errno. */

@@ -10,6 +10,7 @@
 #include <string.h>
 #include <sys/random.h>
 #include <sys/socket.h>
+#include <sys/stat.h>
 #include <unistd.h>
 
 /* A socket of our own: libmicrohttpd may share its port with another program (SO_REUSEPORT). */
@@ -67,13 +68,23 @@ status http_no_threads(diagnostic *why)
                     "cannot start the server's threads, for lack of memory, threads or open files");
 }
 
+/* Closes the socket of a server that did not start, unless libmicrohttpd has: it does, but not where the first
+ * allocation fails. */
+static void close_unserved(int fd, const struct stat *listening)
+{
+    struct stat now;
+    if (fstat(fd, &now) == 0 && now.st_dev == listening->st_dev && now.st_ino == listening->st_ino)
+        close(fd);
+}
+
 static status listen_and_serve(http_server *s, diagnostic *why)
 {
     int fd;
+    struct stat listening;
     TRY(listen_at(s->settings.port, s->settings.connections, &fd, why));
     struct sockaddr_in address = {0};
     socklen_t size = sizeof address;
-    if (getsockname(fd, (struct sockaddr *)&address, &size) != 0) {
+    if (fstat(fd, &listening) != 0 || getsockname(fd, (struct sockaddr *)&address, &size) != 0) {
         close(fd);
         return diagnose(why, STATUS_FAILURE, "", "cannot get the port of the socket: %s", strerror(errno));
     }
@@ -96,9 +107,9 @@ static status listen_and_serve(http_server *s, diagnostic *why)
             MHD_OPTION_NOTIFY_CONNECTION, http_watch_notify, s, MHD_OPTION_END);
         if (!s->daemon)
             code = http_no_threads(why);
-    } else {
-        close(fd);
     }
+    if (code != STATUS_OK)
+        close_unserved(fd, &listening);
     pthread_sigmask(SIG_SETMASK, &before, NULL);
     return code;
 }

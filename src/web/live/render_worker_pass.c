@@ -47,12 +47,12 @@ static scene pass_scene(const render_worker *p, int pass, const adaptive_resolut
     return view;
 }
 
-static bool describe(render_worker *p, const job_account *account, int pass, bool moving, shared_image *out)
+static status describe(render_worker *p, const job_account *account, int pass, bool moving, shared_image *out,
+                       diagnostic *why)
 {
     const film *shown = account->result->img;
     image *linear = NULL;
-    if (film_image(shown, &linear, NULL) != STATUS_OK)
-        return false;
+    TRY(film_image(shown, &linear, why));
     const bool final = !moving && pass == p->plan.count - 1;
     *out = (shared_image){.generation = p->snapshot_generation,
                           .pass = pass + 1,
@@ -67,9 +67,9 @@ static bool describe(render_worker *p, const job_account *account, int pass, boo
                           .linear = linear,
                           .of = final ? scene_clone(p->snapshot) : NULL};
     if (out->numbers && (out->of || !final))
-        return true;
+        return STATUS_OK;
     shared_image_drop(out);
-    return false;
+    return out_of_memory(why);
 }
 
 /* Smoothed, so that the images of a drag keep their size. */
@@ -93,13 +93,11 @@ void render_worker_render_pass(render_worker *p)
     diagnostic why = {.line = 0};
     job_account account;
     shared_image shown;
-    bool good = false;
     p->started_s = clock_wall_s();
     pthread_rwlock_rdlock(&p->snapshot_lock);
-    const status code = job_render(p->renderer, &view, &options, &account, &why);
+    status code = job_render(p->renderer, &view, &options, &account, &why);
     const render_result *result = account.result;
-    if (code == STATUS_OK)
-        good = describe(p, &account, pass, moving, &shown);
+    THEN(code, describe(p, &account, pass, moving, &shown, &why));
     pthread_rwlock_unlock(&p->snapshot_lock);
     if (code == STATUS_OK) {
         if (tempo)
@@ -116,6 +114,6 @@ void render_worker_render_pass(render_worker *p)
     job_account_release(&account);
     if (code != STATUS_INTERRUPTED)
         render_worker_set_error(p, code, &why);
-    if (good)
+    if (code == STATUS_OK)
         publish(p, &shown);
 }

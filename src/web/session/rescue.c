@@ -131,7 +131,10 @@ status rescue_create(lab *l, rescue **out, diagnostic *why)
     if (r->folder[0])
         rescue_find_offers(r);
     r->started = pthread_create(&r->thread, NULL, run, r) == 0;
-    return r->started ? STATUS_OK : diagnose(why, STATUS_FAILURE, "", "a thread cannot be started");
+    return r->started
+               ? STATUS_OK
+               : diagnose(why, STATUS_FAILURE, "close other programs, or raise the limit on processes (ulimit -u)",
+                          "a thread cannot be started");
 }
 
 void rescue_destroy(rescue *r, bool leave)
