@@ -7,6 +7,7 @@
 #include <stdio.h>
 #include <cmocka.h>
 
+#include "geometry/primitives/primitive.h"
 #include "random_stream.h"
 #include "ray_fixture.h"
 #include "solid_reference.h"
@@ -432,6 +433,56 @@ static void the_volume_of_an_elliptic_cup_equals_its_closed_form(void **state)
     }
 }
 
+static bool in_chords(const interval *chords, int count, double t)
+{
+    bool inside = false;
+    for (int i = 0; i < count; i++)
+        inside |= chords[i].in < t && t < chords[i].out;
+    return inside;
+}
+
+/* Just inside and just outside of both ends, where the line does not graze the surface. */
+static void check_ends(const primitive *p, vec3 from, vec3 d, interval chord)
+{
+    const double hair = 1e-6, ends[] = {chord.in, chord.out};
+    if (chord.out - chord.in < 0.01)
+        return;
+    for (int i = 0; i < 2; i++) {
+        const double inwards = i == 0 ? hair : -hair;
+        if (isinf(ends[i]))
+            continue;
+        assert_true(primitive_contains(p, vec3_add(from, vec3_scale(d, ends[i] + inwards))));
+        assert_false(primitive_contains(p, vec3_add(from, vec3_scale(d, ends[i] - inwards))));
+    }
+}
+
+static void check_chords(const solid_shape *s, const scene_geometry *a, uint64_t *seed)
+{
+    const vec3 from = random_point(seed, 4.0), d = vec3_normalize(vec3_sub(place_on(s, seed), from));
+    for (int k = 0; k < a->primitive_count; k++) {
+        interval chords[CHORDS_MAX];
+        const primitive *p = &a->primitives[k];
+        const int count = primitive_chords(p, from, d, chords);
+        for (int n = 0; n < 8; n++) {
+            const double t = random_real(seed, -3.0, 9.0);
+            double nearest = HUGE_VAL;
+            for (int i = 0; i < count; i++)
+                nearest = fmin(nearest, fmin(fabs(t - chords[i].in), fabs(t - chords[i].out)));
+            if (nearest > 1e-9)
+                assert_int_equal(in_chords(chords, count, t), primitive_contains(p, vec3_add(from, vec3_scale(d, t))));
+        }
+        for (int i = 0; i < count; i++)
+            check_ends(p, from, d, chords[i]);
+    }
+}
+
+/* By the definition of each primitive. */
+static void chords_are_where_a_line_is_inside(void **state)
+{
+    (void)state;
+    for_all_shapes(check_chords, 400);
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
@@ -441,6 +492,7 @@ int main(void)
         cmocka_unit_test(axis_aligned_rays_agree_with_quadruple_precision),
         cmocka_unit_test(grazing_rays_agree_with_quadruple_precision),
         cmocka_unit_test(the_volume_of_an_elliptic_cup_equals_its_closed_form),
+        cmocka_unit_test(chords_are_where_a_line_is_inside),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }
