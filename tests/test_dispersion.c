@@ -75,6 +75,22 @@ static void laws_agree_with_their_formulas(void **state)
     }
 }
 
+/* A law's array is longer than its count. */
+static void what_follows_the_coefficients_is_not_read(void **state)
+{
+    (void)state;
+    const dispersion table = {DISPERSION_TABLE, 6, {300.0, 1.52, 500.0, 1.51, 900.0, 1.5}, 0, 0};
+    for (size_t k = 0; k <= COUNT(laws); k++) {
+        const dispersion *law = k < COUNT(laws) ? &laws[k] : &table;
+        dispersion followed = *law;
+        for (int i = law->count; i < DISPERSION_TERMS_MAX; i++)
+            followed.coefficient[i] = i % 2 ? 0.3 : 1e6;
+        assert_int_equal(dispersion_check(&followed, NULL), STATUS_OK);
+        for (double lambda_nm = 380.0; lambda_nm <= 1000.0; lambda_nm += 10.0)
+            assert_true(dispersion_index(&followed, lambda_nm) == dispersion_index(law, lambda_nm));
+    }
+}
+
 /* Values computed by hand, at 500 nm or 1 um; each would differ under another law's formula. */
 static void laws_equal_values_computed_by_hand(void **state)
 {
@@ -234,6 +250,7 @@ int main(void)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(laws_agree_with_their_formulas),
+        cmocka_unit_test(what_follows_the_coefficients_is_not_read),
         cmocka_unit_test(laws_equal_values_computed_by_hand),
         cmocka_unit_test(tables_are_linear_between_their_points),
         cmocka_unit_test(the_abbe_number_of_a_cauchy_law_has_its_closed_form),

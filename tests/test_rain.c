@@ -116,6 +116,47 @@ static void the_poles_are_those_of_lens_and_mirror(void **state)
     assert_near(p[DROP_BINS - 3] / ahead, 1.0, 5e-3); /* the outside's reflectance falls steeply at grazing incidence */
 }
 
+/* The share of a disc between two parallel lines: the integral of its chord, 2 sqrt(r^2 - x^2), over pi r^2. */
+static double disc_between(double x0, double x1, double r)
+{
+    const double a = fmax(-r, fmin(x0, r)), b = fmax(-r, fmin(x1, r));
+    const double upto_a = a * sqrt(r * r - a * a) + r * r * asin(a / r);
+    const double upto_b = b * sqrt(r * r - b * b) + r * r * asin(b / r);
+    return (upto_b - upto_a) / (acos(-1.0) * r * r);
+}
+
+static void a_disc_spreads_evenly_to_both_sides(void **state)
+{
+    (void)state;
+    static drop_angles a;
+    const double radii[] = {0.05, SUN_RADIUS_DEG, 1.0, 4.9};
+    for (size_t i = 0; i < sizeof radii / sizeof *radii; i++) {
+        drop_angles_make(radii[i], &a);
+        for (int k = -a.disc_bins; k <= a.disc_bins; k++) {
+            const double share = a.disc[k + a.disc_bins];
+            assert_true(fabs(share - a.disc[a.disc_bins - k]) < 1e-14);
+            const double exact = disc_between((k - 0.5) * DROP_BIN_DEG, (k + 0.5) * DROP_BIN_DEG, radii[i]);
+            assert_true(fabs(share - exact) < 0.02 / (2 * a.disc_bins + 1));
+        }
+    }
+}
+
+/* The bins near both poles take what is spread beyond them. */
+static void a_disc_moves_light_and_loses_none(void **state)
+{
+    (void)state;
+    static drop_angles wide;
+    double of_point = 0.0, of_disc = 0.0;
+    drop_angles_make(4.9, &wide);
+    drop_scattering(&sharp, 1.333, p);
+    for (int b = 0; b < DROP_BINS; b++)
+        of_point += p[b];
+    drop_scattering(&wide, 1.333, p);
+    for (int b = 0; b < DROP_BINS; b++)
+        of_disc += p[b];
+    assert_near(of_disc / of_point, 1.0, 1e-13);
+}
+
 static double sum_of(const drop_angles *a)
 {
     double sum = 0.0;
@@ -284,6 +325,8 @@ int main(void)
         cmocka_unit_test(red_is_outside_the_primary_and_inside_the_secondary),
         cmocka_unit_test(the_dark_band_shows_the_outside_of_the_drops),
         cmocka_unit_test(the_poles_are_those_of_lens_and_mirror),
+        cmocka_unit_test(a_disc_spreads_evenly_to_both_sides),
+        cmocka_unit_test(a_disc_moves_light_and_loses_none),
         cmocka_unit_test(no_light_is_lost_but_that_of_later_orders),
         cmocka_unit_test(a_pixel_is_the_sky_and_strength_times_p),
         cmocka_unit_test(both_films_agree_in_the_bow),

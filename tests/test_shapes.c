@@ -88,6 +88,26 @@ static void every_parameter_has_a_row(void **state)
     }
 }
 
+/* "About a cube": a cone is narrower at its top, a ring flat. */
+static void fitted(const shape_rule *rule, const placed_shape *placed)
+{
+    for (double size = 0.01; size < 200.0; size *= 7.0) {
+        solid_shape shape = placed->shape;
+        shape.m = 1.0;
+        rule->fit(&shape, size);
+        const bounds3 b = rule->extent(&shape).box;
+        const double wide = fmax(b.high.x - b.low.x, fmax(b.high.y - b.low.y, b.high.z - b.low.z));
+        assert_true(wide > 0.9 * size && wide < 1.1 * size);
+        assert_int_equal(solid_shape_check(&shape, NULL), STATUS_OK);
+    }
+}
+
+static void shapes_fit_the_size_that_is_asked_for(void **state)
+{
+    (void)state;
+    each_bounded(fitted);
+}
+
 static void sizes(const shape_rule *rule, const placed_shape *placed)
 {
     const solid_shape *shape = &placed->shape;
@@ -265,6 +285,7 @@ int main(void)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(every_parameter_has_a_row),
+        cmocka_unit_test(shapes_fit_the_size_that_is_asked_for),
         cmocka_unit_test(contained_points_are_within_the_bounds),
         cmocka_unit_test(primitives_contain_the_points_of_the_solid),
         cmocka_unit_test(a_covered_point_is_contained),
