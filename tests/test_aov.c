@@ -11,6 +11,7 @@
 #include <cmocka.h>
 
 #include "image/image.h"
+#include "render/core/layers.h"
 #include "render/core/record.h"
 #include "render_fixture.h"
 
@@ -240,10 +241,18 @@ static void layers_exist_only_on_request(void **state)
     scene_destroy(s);
 }
 
+/* Three colours or coordinates in each of three layers, one number in the others, as floats. */
+static void the_memory_of_a_pixel_is_that_of_its_layers(void **state)
+{
+    (void)state;
+    assert_int_equal(layers_bytes(), (3 * 3 + 3) * sizeof(float));
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(layers_match_closed_forms),
+        cmocka_unit_test(the_memory_of_a_pixel_is_that_of_its_layers),
         cmocka_unit_test(misses_are_zero),
         cmocka_unit_test(the_view_of_normals_is_encoded_as_a_normal_map),
         cmocka_unit_test(layers_are_bit_identical_for_any_threads_and_instruction_set),

@@ -84,7 +84,11 @@ static void mirrors_reflect_and_glass_transmits_emission(void **state)
     expect_color(s, 1.5, 1.5, 1.5, 1e-10);
     set_all(s, "render.integrator=whitted ground.reflectivity=0 ground.transparency=1 ground.ior=1.5 wall.priority=1");
     expect_color(s, 3.0, 3.0, 3.0, 1e-12); /* the wall continues below the water line */
-    set(s, "ground.emission=0.5");         /* a clear surface emits as well */
+    set(s, "ground.ior=1e6"); /* a transparent solid with such an index is a mirror, and emits in its colour too */
+    set_all(s, "ground.emission=0.5 ground.color=1,0.5,0.25");
+    expect_color(s, 3.5, 3.25, 3.125, 1e-12);
+    set_all(s, "ground.ior=1.5 ground.emission=0 ground.color=1,1,1");
+    set(s, "ground.emission=0.5"); /* a clear surface emits as well */
     expect_color(s, 3.5, 3.5, 3.5, 1e-12);
     set(s, "wall.visible=off");
     expect_color(s, 0.5, 0.5, 0.5, 1e-12);

@@ -9,6 +9,7 @@
 
 #include "render/core/path_counts.h"
 #include "render/core/path_sampling.h"
+#include "render/core/record.h"
 #include "render_fixture.h"
 #include "scene/model/scene.h"
 #include <stdlib.h>
@@ -47,6 +48,31 @@ static void the_noise_is_what_was_requested(void **state)
         }
         scene_destroy(s);
     }
+}
+
+/* The pilot's rays are among the frame's and its workers'; the error of a pixel is the root of the mean variance of its
+ * channels. */
+static void the_account_includes_the_pilot(void **state)
+{
+    (void)state;
+    scene *s = scene_from(uneven);
+    set_all(s, "render.error=0.004 render.threads=3 render.tile=4");
+    render_result *r = render(s);
+    uint64_t cameras = 0, shadow = 0, tiles = 0;
+    for (int i = 0; i < r->worker_count; i++)
+        cameras += r->workers[i].camera, shadow += r->workers[i].shadow, tiles += (uint64_t)r->workers[i].tiles;
+    assert_int_equal(cameras, r->counters.camera);
+    assert_int_equal(shadow, r->counters.shadow);
+    assert_int_equal(tiles, 2 * (24 / 4) * (18 / 4 + 1));
+    const size_t pixels = 24 * 18;
+    double values[24 * 18];
+    record_noise_values(r, values);
+    for (size_t i = 0; i < pixels; i++) {
+        const double *v = &r->variance[3 * i];
+        assert_true(fabs(values[i] * values[i] * 3.0 - (v[0] + v[1] + v[2])) <= 1e-15);
+    }
+    render_result_destroy(r);
+    scene_destroy(s);
 }
 
 /* Rare bright paths: a floor under a small bright emitter that paths find by chance. A pixel that stopped when its own
@@ -177,6 +203,7 @@ int main(void)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(the_noise_is_what_was_requested),
+        cmocka_unit_test(the_account_includes_the_pilot),
         cmocka_unit_test(the_mean_is_unbiased),
         cmocka_unit_test(films_are_the_same_for_threads_and_instruction_sets),
         cmocka_unit_test(counts_are_within_their_limits),
