@@ -7,6 +7,7 @@
 #include <stdlib.h>
 #include <cmocka.h>
 
+#include "render/inspect/beam_drawing.h"
 #include "render/inspect/beam_screen.h"
 #include "render/inspect/fan.h"
 #include "render_fixture.h"
@@ -296,6 +297,113 @@ static void a_screen_in_a_medium_receives_what_is_not_absorbed(void **state)
     scene_destroy(s);
 }
 
+/* Rows count downwards; a wavelength has its own colour. */
+static void a_screen_shows_where_and_in_which_colour(void **state)
+{
+    (void)state;
+    scene *s = with_beam("position: [-3, 0.6, 0.3], direction: [1, 0, 0], power: 2, lambda_nm: 532, rays: 1", "");
+    beam_screen screen = {.normal = {2, 0, 0}, .width = 2, .height = 2, .columns = 4, .rows = 4};
+    diagnostic why = {.line = 0};
+    worked(beam_screen_expose(s, isa_best(), &screen, &why), &why);
+    double green[3];
+    beam_wavelength_color(532.0, green);
+    assert_true(green[1] == 1.0 && green[0] < 0.5);
+    const int column = screen.e_u.z > 0.0 ? 2 : 1; /* 0.3 beside the centre; 0.6 above it: the top row */
+    for (int bin = 0; bin < 16; bin++) {
+        const double power = bin == column ? 2.0 : 0.0;
+        assert_true(screen.bin[bin] == power);
+        for (int k = 0; k < 3; k++)
+            assert_true(screen.color[3 * bin + k] == power * green[k]);
+    }
+    beam_screen_release(&screen);
+    screen.width = 1e6;
+    worked(beam_screen_expose(s, isa_best(), &screen, &why), &why);
+    beam_screen_release(&screen);
+    screen.width = nextafter(1e6, 2e6);
+    assert_int_equal(beam_screen_expose(s, isa_best(), &screen, &why), STATUS_BAD_INPUT);
+    beam_screen_release(&screen);
+    scene_destroy(s);
+}
+
+/* --- the drawing --- */
+
+static void expect_pixel(const image *img, int x, int y, double share)
+{
+    static const double color[] = {1.0, 0.5, 0.25};
+    for (int k = 0; k < 3; k++)
+        assert_true(fabs(img->pixel[3 * (y * img->width + x) + k] - (share * color[k] + (1.0 - share) * 0.2)) < 1e-6);
+}
+
+static image *drawn(const scene *s, int width, int height, float distance)
+{
+    image *img = NULL;
+    diagnostic why = {.line = 0};
+    float *distances = calloc((size_t)(width * height), sizeof *distances);
+    assert_non_null(distances);
+    for (int i = 0; i < width * height; i++)
+        distances[i] = distance;
+    worked(image_create(width, height, &img, &why), &why);
+    for (int i = 0; i < 3 * width * height; i++)
+        img->pixel[i] = 0.2F;
+    worked(beams_draw(s, isa_best(), distances, img, &why), &why);
+    free(distances);
+    return img;
+}
+
+/* A level beam, 5 in front of a camera with a field of 90 degrees and 0.5 above its axis, is at 0.9 of half the height
+ * from the top: row 28.8 of 64, from column 32 (1 - 1 / 5) = 25.6 on. Lines are 1.2 px wide, with an edge of 1 px. */
+static void a_drawn_beam_is_at_its_pixels(void **state)
+{
+    (void)state;
+    scene *s = with_beam("position: [-1, 0.5, 0], direction: [1, 0, 0], color: [1, 0.5, 0.25], rays: 1", "");
+    set_all(s, "camera.position=0,0,-5 camera.target=0,0,0 camera.fov_deg=90 render.width=64 render.height=64");
+    image *img = drawn(s, 64, 64, 0.0F);
+    for (int x = 28; x < 64; x++) {
+        expect_pixel(img, x, 27, 0.0); /* 1.3 px away */
+        expect_pixel(img, x, 28, 0.8); /* 0.3 px away: 0.6 + 0.5 - 0.3 */
+        expect_pixel(img, x, 29, 0.4);
+        expect_pixel(img, x, 30, 0.0);
+    }
+    for (int x = 0; x < 24; x++)
+        expect_pixel(img, x, 28, 0.0);
+    image_destroy(img);
+    scene *walled = with_beam("position: [-1, 0.5, 0], direction: [1, 0, 0], color: [1, 0.5, 0.25], rays: 1",
+                              "wall: {shape: box, size: [1, 4, 4], position: [1.5, 0, 0]}");
+    set_all(walled, "camera.position=0,0,-5 camera.target=0,0,0 camera.fov_deg=90");
+    img = drawn(walled, 64, 64, 0.0F); /* until x = 1, column 38.4 */
+    expect_pixel(img, 36, 28, 0.8);
+    expect_pixel(img, 40, 28, 0.0);
+    image_destroy(img);
+    scene_destroy(walled);
+    img = drawn(s, 64, 64, 4.0F); /* a surface in front of it */
+    expect_pixel(img, 40, 28, 0.15 * 0.8);
+    image_destroy(img);
+    img = drawn(s, 64, 64, 6.0F);
+    expect_pixel(img, 40, 28, 0.8);
+    image_destroy(img);
+    set_all(s, "render.width=8 render.height=1600"); /* lines grow with the image: 2 px to either side */
+    img = drawn(s, 8, 1600, 0.0F);
+    expect_pixel(img, 6, 720, 1.0); /* 1600 * 0.9 / 2 = 720 */
+    expect_pixel(img, 6, 721, 1.0);
+    expect_pixel(img, 6, 722, 0.0);
+    image_destroy(img);
+    scene_destroy(s);
+}
+
+/* What hides beams: the opaque solids of the scene, whose distances the layers of the integrator aov have. */
+static void only_opaque_solids_hide_beams(void **state)
+{
+    (void)state;
+    scene *s = with_beam("rays: 1", "ground: {shape: plane}, glass: {shape: sphere, transparency: 1, ior: 1.5}");
+    scene *hiding = NULL;
+    diagnostic why = {.line = 0};
+    worked(beams_hiding_scene(s, &hiding, &why), &why);
+    assert_true(hiding->solids[0].visible && !hiding->solids[1].visible);
+    assert_true(s->solids[1].visible);
+    scene_destroy(hiding);
+    scene_destroy(s);
+}
+
 static status count_ray(void *context, const beam_ray *ray, const ray_tree *tree, const probe *p, diagnostic *why)
 {
     (void)ray, (void)tree, (void)p, (void)why;
@@ -374,6 +482,9 @@ int main(void)
         cmocka_unit_test(white_light_has_several_wavelengths_and_the_same_power),
         cmocka_unit_test(a_screen_bins_the_power_of_a_bundle),
         cmocka_unit_test(a_screen_in_a_medium_receives_what_is_not_absorbed),
+        cmocka_unit_test(a_screen_shows_where_and_in_which_colour),
+        cmocka_unit_test(a_drawn_beam_is_at_its_pixels),
+        cmocka_unit_test(only_opaque_solids_hide_beams),
         cmocka_unit_test(the_work_of_all_beams_is_limited),
         cmocka_unit_test(the_normal_of_a_pencil_is_ignored),
         cmocka_unit_test(beams_go_with_the_whole_scene),

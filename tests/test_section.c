@@ -112,6 +112,31 @@ static void a_spheres_section_is_a_circle(void **state)
     scene_destroy(s);
 }
 
+/* Water, a post in it, and the air: three media meet in two points of a section. */
+static void media_meet_in_a_junction(void **state)
+{
+    (void)state;
+    scene *s = scene_from("solids:\n"
+                          "  water: {shape: plane, position: [0, 0.0741, 0], transparency: 1, ior: 1.33}\n"
+                          "  post: {shape: box, size: [0.4, 1.1, 0.6], position: [0.3137, 0.1, 0], priority: 1}\n");
+    probe *p = probe_of(s);
+    for (int cells = 40; cells < 100; cells += 17) {
+        section out = cut(p, &upright, cells);
+        for (int side = -1; side <= 1; side += 2) {
+            double nearest = HUGE_VAL;
+            for (size_t i = 0; i < out.line_count; i++)
+                for (size_t k = 0; k < out.line[i].count; k += out.line[i].count - 1) {
+                    const section_point at = out.point[out.line[i].first + k];
+                    nearest = fmin(nearest, hypot(at.u - (0.3137 + 0.2 * side), at.v - 0.0741));
+                }
+            assert_true(nearest < 4.0 / cells / 4096.0); /* 2^-12 of a cell */
+        }
+        section_release(&out);
+    }
+    probe_destroy(p);
+    scene_destroy(s);
+}
+
 /* Corners are exact, whatever the grid and the box's rotation. */
 static void the_section_of_a_box_has_exact_corners(void **state)
 {
@@ -245,6 +270,7 @@ int main(void)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(a_spheres_section_is_a_circle),
+        cmocka_unit_test(media_meet_in_a_junction),
         cmocka_unit_test(the_section_of_a_box_has_exact_corners),
         cmocka_unit_test(the_section_of_a_mesh_box_equals_that_of_a_box),
         cmocka_unit_test(a_vessels_section_shows_wall_and_floor),
