@@ -197,7 +197,7 @@ static void invalid_laws_are_refused_with_a_reason(void **state)
         {{DISPERSION_TABLE, 6, {400.0, 1.5, 600.0, 1.5, 500.0, 1.5}, 0, 0}, "500 nm after 600 nm", "ascending"},
         {{DISPERSION_TABLE, 2, {0.0, 1.5}, 0, 0}, "0 nm after 0 nm", "above 0"},
         {{DISPERSION_TABLE, 6, {100.0, 0.05, 400.0, 1.5, 500.0, 1.5}, 0, 0}, "the index 0.05", "pairs"},
-        {{DISPERSION_TABLE, 4, {400.0, 1.5, 500.0, 100.1}, 0, 0}, "the index 100.1", "pairs"},
+        {{DISPERSION_TABLE, 4, {400.0, 1.5, 500.0, 100.1}, 0, 0}, "a table of indices has the index 100.1", "pairs"},
         /* samples at whole nanometres miss these */
         {{DISPERSION_SELLMEIER, 2, {1e-9, 0.30030400}, 0, 0}, "a resonance at 548 nm", "um^2"},
         {{DISPERSION_SELLMEIER_LENGTHS, 2, {1e-9, 0.5505}, 0, 0}, "a resonance at 550.5 nm", "um"},
