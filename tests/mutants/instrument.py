@@ -3,7 +3,7 @@
 All are compiled into one program, which runs the one whose number is in the environment variable MUTANT, so that the
 copy is built once. Of all places of src/optics, src/geometry, src/render and src/study that can be changed, COUNT are
 drawn, half of them as many from each folder; no two of them overlap. TREE/mutants.tsv lists them: number, file, line,
-kind, text, changed text. A place is a comparison, a sum, a product, a logical operator, a negation, a number with a
+kind, text, changed text, the whole line. A place is a comparison, a sum, a product, a logical operator, a negation, a number with a
 point, or a statement that can be left out."""
 
 import bisect
@@ -196,7 +196,8 @@ def rewrite(places, chosen):
             pieces += [text[at:start].decode(), new]
             at = end
             line = text[:start].count(b"\n") + 1
-            shown = [re.sub(r"\s+", " ", t) for t in (old, changed)]
+            whole_line = text.split(b"\n")[line - 1].decode().strip()
+            shown = [re.sub(r"\s+", " ", t) for t in (old, changed, whole_line)]
             rows.append([number, path, line, places.found[(path, start, end, changed)], *shown])
         pieces.append(text[at:].decode())
         whole = "".join(pieces)

@@ -6,7 +6,7 @@ test that takes six times as long as before has failed too. After QUICK_S of tes
 their turn: most survivors would run for minutes. TREE/results.tsv has rows of number, killed or waiting or survived or
 unreached, and the test that killed it; the last row of a number counts. Rows that it has are kept, so that the same
 command goes on where it stopped, after SECONDS at the latest. EQUIVALENT lists mutants that change nothing that can be
-seen: file, text, changed text, why."""
+seen: file, the whole line, text, changed text, why."""
 
 import concurrent.futures
 import glob
@@ -114,7 +114,7 @@ def judge_all(numbers, tests, end, quick):
 
 def main():
     with open(sys.argv[2]) as file:
-        equivalent = {tuple(line.split("\t")[:3]) for line in file}
+        equivalent = {tuple(line.split("\t")[:4]) for line in file}
     os.chdir(sys.argv[1])
     end = time.monotonic() + float(sys.argv[3])
     tests = measure()
@@ -131,8 +131,8 @@ def report(equivalent):
     rows = results()
     counts = dict.fromkeys(("killed", "equivalent", "survived", "unreached", "waiting"), 0)
     for number, verdict, _ in rows:
-        _, path, line, kind, old, new = mutants[number]
-        if verdict != "killed" and (path, old, new) in equivalent:
+        _, path, line, kind, old, new, whole_line = mutants[number]
+        if verdict != "killed" and (path, whole_line, old, new) in equivalent:
             verdict = "equivalent"
         counts[verdict] += 1
         if verdict in ("survived", "unreached"):
