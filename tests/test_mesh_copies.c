@@ -8,8 +8,11 @@
 #include <cmocka.h>
 
 #include "base/counters.h"
+#include "geometry/mesh_generators.h"
+#include "geometry/shapes/shape.h"
 #include "measure/clock.h"
 #include "mesh_stage.h"
+#include "random_stream.h"
 #include "scene/model/scene.h"
 
 #define FRAME                                                                          \
@@ -43,6 +46,42 @@ static void copies_equal_separate_solids(void **state)
         add(&b, "  r%d: {%s, position: [%g, %g, %g]}\n", k, keys, -1.5 + 1.5 * (k % 3), 1.0 * (k / 3 % 2),
             -1.0 + 2.0 * (k / 6));
     assert_true(hash_of(a.at, "", isa_best()) == hash_of(b.at, "", isa_best()));
+}
+
+/* Of all vertices of all copies: the bounding box, and the farthest in any direction, which is that of a copy at a corner
+ * of the grid. */
+static void the_extent_of_copies_is_that_of_their_vertices(void **state)
+{
+    (void)state;
+    static const vec3 grids[][2] = {
+        {{3, 2, 4}, {2, -1.5, 0.7}}, {{1, 3, 1}, {9, 0.25, 9}}, {{5, 1, 2}, {-1, 7, -3}}, {{1, 1, 1}, {4, 4, 4}}};
+    uint64_t seed = 3;
+    mesh *m = NULL;
+    assert_int_equal(generate_icosphere(1, &m, NULL), STATUS_OK);
+    for (size_t g = 0; g < sizeof grids / sizeof *grids; g++) {
+        const vec3 n = grids[g][0], step = grids[g][1], scale = {0.5, 1.5, 0.8};
+        const solid_shape s = {.kind = SHAPE_MESH, .mesh = m, .scale = scale, .copies = n, .spacing = step};
+        const shape_rule *rule = shape_of(&s);
+        const bounds3 b = rule->extent(&s).box;
+        vec3 low = {HUGE_VAL, HUGE_VAL, HUGE_VAL}, high = {-HUGE_VAL, -HUGE_VAL, -HUGE_VAL}, d[16];
+        double most[16];
+        for (int i = 0; i < 16; i++)
+            d[i] = random_direction(&seed), most[i] = -HUGE_VAL;
+        for (int copy = 0; copy < (int)(n.x * n.y * n.z); copy++)
+            for (size_t v = 0; v < m->vertex_count; v++) {
+                const int x = copy % (int)n.x, y = copy / (int)n.x % (int)n.y, z = copy / (int)(n.x * n.y);
+                const vec3 p = {m->vertices[v].x * scale.x + x * step.x, m->vertices[v].y * scale.y + y * step.y,
+                                m->vertices[v].z * scale.z + z * step.z};
+                low = vec3_make(fmin(low.x, p.x), fmin(low.y, p.y), fmin(low.z, p.z));
+                high = vec3_make(fmax(high.x, p.x), fmax(high.y, p.y), fmax(high.z, p.z));
+                for (int i = 0; i < 16; i++)
+                    most[i] = fmax(most[i], vec3_dot(d[i], p));
+            }
+        assert_true(vec3_length(vec3_sub(b.low, low)) < 1e-14 && vec3_length(vec3_sub(b.high, high)) < 1e-14);
+        for (int i = 0; i < 16; i++)
+            assert_true(fabs(rule->farthest(&s, d[i]) - most[i]) < 1e-14);
+    }
+    mesh_release(m);
 }
 
 /* Copies that touch form one block, bit-identical to a single one. */
@@ -197,6 +236,7 @@ int main(void)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(copies_equal_separate_solids),
+        cmocka_unit_test(the_extent_of_copies_is_that_of_their_vertices),
         cmocka_unit_test(touching_copies_equal_one_block),
         cmocka_unit_test(placed_copies_equal_transformed_vertices),
         cmocka_unit_test(a_hundred_thousand_copies_load_fast_in_little_memory),
