@@ -95,6 +95,43 @@ static void values_of_ranges_are_evenly_spaced(void **state)
     study_destroy(s);
 }
 
+/* STATUS_OK for a study with that name, a range of that many steps, and as many axes. */
+static status read_sized(const fixture *f, int name_length, int steps, int axes)
+{
+    static const char *const paths[] = {"ball.ior",        "ball.radius",     "ball.position.x", "ball.position.y",
+                                        "ball.position.z", "lamp.position.x", "lamp.position.y", "lamp.position.z",
+                                        "camera.yaw_deg",  "camera.fov_deg",  "camera.roll_deg", "render.depth",
+                                        "render.width",    "render.height",   "render.tile",     "render.seed",
+                                        "lamp.intensity"};
+    char text[4096] = "study: ";
+    int length = 7;
+    for (int i = 0; i < name_length; i++)
+        text[length++] = 'a';
+    length += snprintf(text + length, 256, "\nscene: scene.yaml\ngrid:\n  - {%s: {from: 1, to: 2, steps: %d}}\n",
+                       paths[0], steps);
+    for (int i = 1; i < axes; i++)
+        length += snprintf(text + length, 256, "  - {%s: [1]}\n", paths[i]);
+    fixture_write(f, "sized.study", text);
+    char path[400];
+    fixture_path(f, "sized.study", path);
+    study *s = NULL;
+    const status code = study_read(path, &s, NULL);
+    study_destroy(s);
+    return code;
+}
+
+static void the_largest_studies_are_read_and_larger_ones_refused(void **state)
+{
+    const fixture *f = *state;
+    assert_int_equal(read_sized(f, 64, 4096, 16), STATUS_OK);
+    assert_int_equal(read_sized(f, 65, 4096, 16), STATUS_BAD_INPUT);
+    assert_int_equal(read_sized(f, 64, 4097, 16), STATUS_BAD_INPUT);
+    assert_int_equal(read_sized(f, 64, 4096, 17), STATUS_BAD_INPUT);
+    assert_int_equal(read_sized(f, 1, 2, 1), STATUS_OK);
+    assert_int_equal(read_sized(f, 0, 2, 1), STATUS_BAD_INPUT);
+    assert_int_equal(read_sized(f, 1, 1, 1), STATUS_BAD_INPUT);
+}
+
 static uint64_t hash_of(const fixture *f, const char *text)
 {
     study *s = fixture_study(f, text);
@@ -336,6 +373,8 @@ int main(void)
         cmocka_unit_test_setup_teardown(the_guard_is_called_before_any_file_is_read, fixture_setup, fixture_teardown),
         cmocka_unit_test_setup_teardown(omitted_study_keys_have_their_defaults, fixture_setup, fixture_teardown),
         cmocka_unit_test_setup_teardown(values_of_ranges_are_evenly_spaced, fixture_setup, fixture_teardown),
+        cmocka_unit_test_setup_teardown(the_largest_studies_are_read_and_larger_ones_refused, fixture_setup,
+                                        fixture_teardown),
         cmocka_unit_test_setup_teardown(equivalent_studies_have_the_same_definition, fixture_setup, fixture_teardown),
         cmocka_unit_test_setup_teardown(contents_of_files_are_part_of_a_definition, fixture_setup, fixture_teardown),
         cmocka_unit_test_setup_teardown(paths_of_scenes_are_relative_to_the_study, fixture_setup, fixture_teardown),
