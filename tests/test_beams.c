@@ -308,7 +308,7 @@ static void a_screen_shows_where_and_in_which_colour(void **state)
     double green[3];
     beam_wavelength_color(532.0, green);
     assert_true(green[1] == 1.0 && green[0] < 0.5);
-    const int column = screen.e_u.z > 0.0 ? 2 : 1; /* 0.3 beside the centre; 0.6 above it: the top row */
+    const int column = screen.e_u.z > 0.0 ? 2 : 1; /* 0.3 to the side of the centre, 0.6 above it: the top row */
     for (int bin = 0; bin < 16; bin++) {
         const double power = bin == column ? 2.0 : 0.0;
         assert_true(screen.bin[bin] == power);

@@ -48,8 +48,8 @@ static void copies_equal_separate_solids(void **state)
     assert_true(hash_of(a.at, "", isa_best()) == hash_of(b.at, "", isa_best()));
 }
 
-/* Of all vertices of all copies: the bounding box, and the farthest in any direction, which is that of a copy at a corner
- * of the grid. */
+/* Of all vertices of all copies: the bounding box, and the farthest in any direction, which is that of a copy at a
+ * corner of the grid. */
 static void the_extent_of_copies_is_that_of_their_vertices(void **state)
 {
     (void)state;

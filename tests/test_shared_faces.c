@@ -67,14 +67,14 @@ static void meshes_are_compared_by_their_triangles(void **state)
     mesh *m = NULL;
     assert_int_equal(generate_box((vec3){1, 1, 1}, &m, NULL), STATUS_OK);
     solid_shape of_mesh = {.kind = SHAPE_MESH, .mesh = m, .scale = {1, 1, 1}, .copies = {1, 1, 1}};
-    const solid_shape above = box_at(0.3, 1, 0.2), beside = box_at(0.3, 0.7, 0.2);
+    const solid_shape above = box_at(0.3, 1, 0.2), lower = box_at(0.3, 0.7, 0.2);
     assert_true(share(of_mesh, above));
-    assert_false(share(of_mesh, beside));
+    assert_false(share(of_mesh, lower));
     of_mesh.scale.y = 1.4; /* then its top is at the other's bottom */
     assert_false(share(of_mesh, above));
     of_mesh.position.y = 0.5;
-    assert_true(share(of_mesh, beside)); /* 0.5 + 0.7 = 0.7 + 0.5 */
-    of_mesh.copies.z = 2.0;              /* several copies, and a mesh that is not loaded: unknown */
+    assert_true(share(of_mesh, lower)); /* 0.5 + 0.7 = 0.7 + 0.5 */
+    of_mesh.copies.z = 2.0;             /* several copies, and a mesh that is not loaded: unknown */
     assert_true(share(of_mesh, box_at(9, 9, 9)));
     of_mesh.copies.z = 1.0;
     assert_false(share(of_mesh, box_at(9, 9, 9)));
