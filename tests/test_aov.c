@@ -170,6 +170,63 @@ static void the_view_of_normals_is_encoded_as_a_normal_map(void **state)
     scene_destroy(s);
 }
 
+/* A coordinate x is shown as 1/2 + x / 2 (L + |x|), with one length L for the frame, so that none is cut off. */
+static void the_view_of_positions_shows_signs_and_never_clips(void **state)
+{
+    (void)state;
+    scene *s = scene_from(room);
+    set(s, "render.layer=position");
+    render_result *r = layers_at(s, isa_best());
+    double least = HUGE_VAL, most = 0.0;
+    for (int y = 0; y < HEIGHT; y++)
+        for (int x = 0; x < WIDTH; x++) {
+            const vec3 p = value(r, LAYER_POSITION, x, y);
+            const double of[3] = {p.x, p.y, p.z};
+            for (int c = 0; c < 3 && value(r, LAYER_SOLID, x, y).x > 0.0; c++) {
+                const double offset = srgb_encode(film_value(r->img, x, y, c)) - 0.5;
+                if (fabs(of[c]) < 0.1)
+                    continue;
+                assert_true(offset * of[c] > 0.0);
+                const double length = fabs(of[c]) * (0.5 / fabs(offset) - 1.0);
+                least = fmin(least, length), most = fmax(most, length);
+            }
+        }
+    assert_true(least > 0.0 && most < least * (1.0 + 1e-3));
+    render_result_destroy(r);
+    scene_destroy(s);
+}
+
+/* Solids with numbers close to each other have colours that a person tells apart. */
+static void the_view_of_solids_has_distinct_colours(void **state)
+{
+    (void)state;
+    enum { SOLIDS = 12 };
+    char text[4096];
+    int length = snprintf(text, sizeof text, "%s", HEAD);
+    for (int i = 0; i < SOLIDS; i++)
+        length += snprintf(text + length, 128, "  s%d: {shape: sphere, radius: 0.25, position: [%g, %g, 3]}\n", i,
+                           -1.2 + 0.8 * (i % 4), 0.5 + 0.8 * (i / 4));
+    scene *s = scene_from(text);
+    set_all(s, "render.layer=solid camera.pitch_deg=-30");
+    render_result *r = layers_at(s, isa_best());
+    double color[SOLIDS][3];
+    int seen = 0;
+    for (int y = 0; y < HEIGHT; y++)
+        for (int x = 0; x < WIDTH; x++) {
+            const int number = (int)value(r, LAYER_SOLID, x, y).x;
+            for (int c = 0; c < 3 && number > 0; c++)
+                color[number - 1][c] = srgb_encode(film_value(r->img, x, y, c));
+            seen |= number > 0 ? 1 << (number - 1) : 0;
+        }
+    assert_int_equal(seen, (1 << SOLIDS) - 1);
+    for (int i = 0; i < SOLIDS; i++)
+        for (int k = 0; k < i; k++)
+            assert_true(fmax(fabs(color[i][0] - color[k][0]),
+                             fmax(fabs(color[i][1] - color[k][1]), fabs(color[i][2] - color[k][2]))) > 0.1);
+    render_result_destroy(r);
+    scene_destroy(s);
+}
+
 static void same(const render_result *a, const render_result *b)
 {
     assert_true(film_hash(a->img) == film_hash(b->img));
@@ -255,6 +312,8 @@ int main(void)
         cmocka_unit_test(the_memory_of_a_pixel_is_that_of_its_layers),
         cmocka_unit_test(misses_are_zero),
         cmocka_unit_test(the_view_of_normals_is_encoded_as_a_normal_map),
+        cmocka_unit_test(the_view_of_positions_shows_signs_and_never_clips),
+        cmocka_unit_test(the_view_of_solids_has_distinct_colours),
         cmocka_unit_test(layers_are_bit_identical_for_any_threads_and_instruction_set),
         cmocka_unit_test(written_layers_read_back),
         cmocka_unit_test(layers_exist_only_on_request),

@@ -290,6 +290,28 @@ static void the_mean_is_that_of_all_directions(void **state)
     }
 }
 
+/* Drops of water in air: the primary bow is where the index of water relative to air puts it. One relative to vacuum
+ * moves it by a bin. */
+static void the_bow_is_that_of_water_in_air(void **state)
+{
+    (void)state;
+    const background sky = {.kind = BACKGROUND_RAIN, .rain = 1.0, .sun_elevation_deg = 90.0};
+    rain *r = rain_create(&sky, true);
+    assert_non_null(r);
+    drop_scattering(&sunny, index_of_water(550.0), p);
+    int best = 0, found = 0;
+    double most = 0.0;
+    for (int b = (int)(38.0 / DROP_BIN_DEG); b < (int)(46.0 / DROP_BIN_DEG); b++) {
+        const double angle = (b + 0.5) * DROP_BIN_DEG * DEGREE,
+                     share = rain_share(r, 550.0, vec3_make(sin(angle), -cos(angle), 0.0));
+        best = p[b] > p[best] || best == 0 ? b : best;
+        found = share > most ? b : found;
+        most = fmax(most, share);
+    }
+    assert_int_equal(best, found);
+    rain_destroy(r);
+}
+
 static void all_threads_and_instruction_sets_give_the_same_film(void **state)
 {
     (void)state;
@@ -332,6 +354,7 @@ int main(void)
         cmocka_unit_test(both_films_agree_in_the_bow),
         cmocka_unit_test(the_sun_moves_the_bow),
         cmocka_unit_test(the_mean_is_that_of_all_directions),
+        cmocka_unit_test(the_bow_is_that_of_water_in_air),
         cmocka_unit_test(all_threads_and_instruction_sets_give_the_same_film),
     };
     return cmocka_run_group_tests(tests, make_angles, NULL);
