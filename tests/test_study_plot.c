@@ -1,5 +1,6 @@
 /* Tests of the figure of a study: kind, lines and panels, linked parameters, environments, scales, captions, data. The
  * summary is made by hand where a test needs certain numbers, and by a run for the whole path. */
+#include "base/file.h"
 #include "study_fixture.h"
 #include "study/plot_parts.h"
 
@@ -386,6 +387,77 @@ static void published_numbers_have_the_unit_of_the_axis(void **state)
     study_destroy(s);
 }
 
+/* --- the scripts --- */
+
+/* The file is that of tests/golden/figures; CUVETTE_RENEW=1 writes that anew. */
+static void compare_golden(const fixture *f, const char *ending, const char *name)
+{
+    char file[64], path[128];
+    snprintf(file, sizeof file, "fig.%s", ending);
+    snprintf(path, sizeof path, "tests/golden/figures/%s.%s", name, ending);
+    char *made = fixture_text(f, file), *wanted = NULL;
+    size_t size;
+    if (getenv("CUVETTE_RENEW")) {
+        FILE *out = fopen(path, "w");
+        assert_non_null(out);
+        fputs(made, out);
+        fclose(out);
+    }
+    assert_int_equal(file_read(path, 1 << 20, &wanted, &size, NULL), STATUS_OK);
+    if (strcmp(made, wanted) != 0)
+        fail_msg("%s differs from the script that was made: look at the new figure, then CUVETTE_RENEW=1", path);
+    free(wanted);
+    free(made);
+}
+
+/* Every kind of figure, as drawn and looked at. */
+static void scripts_are_those_of_figures_that_were_looked_at(void **state)
+{
+    const fixture *f = *state;
+    char published[400];
+    fixture_path(f, "published.csv", published);
+    fixture_write(f, "published.csv", "depth,cpu_s,source\n0,0.13,a book\n1,0.17,a book\n2,0.2,a paper\n");
+    const char *const thread_lines[] = {"render.depth=0", "render.depth=2"};
+    const struct {
+        const char *name, *grid;
+        plot_request request;
+        size_t environments;
+    } figures[] = {
+        {"lines", "[{render.depth: [0, 1, 2, 4, 8]}]", plain, 0},
+        {"lines-environments",
+         "[{render.depth: [0, 1, 2]}, {render.threads: [1, 2, 4, 8, 16, 32]}]",
+         {.results = "unused", .x = "render.threads", .by = "render.depth"},
+         2},
+        {"lines-published", "[{render.depth: [0, 1, 2]}]", {.results = "unused", .published = published}, 0},
+        {"lines-rays", "[{render.depth: [0, 1, 2]}]", {.results = "unused", .x = "rays_total", .log = PLOT_LOG_XY}, 0},
+        {"lines-decades", "[{render.threads: [1, 4, 16, 64]}]", {.results = "unused", .log = PLOT_LOG_XY}, 0},
+        {"heat-log",
+         "[{ball.ior: [1.0, 1.33, 1.5]}, {render.depth: [0, 2, 4]}]",
+         {.results = "unused", .log = PLOT_LOG_Y, .y = "rays_total"},
+         0},
+        {"heat", "[{ball.ior: [1.0, 1.33, 1.5, 2.4]}, {render.depth: [0, 2, 4]}]", plain, 0},
+        {"heat-panels",
+         "[{ball.ior: [1.0, 1.33, 1.5]}, {render.depth: [0, 2, 4]}, {render.integrator: [whitted, raycast]}]", plain,
+         0},
+        {"dots", "[{render.integrator: [whitted, raycast, zbuffer, path]}]", plain, 0},
+        {"panels", "[{render.depth: [0, 1, 2]}, {render.schedule: [rows, dynamic]}, {render.accel: [none, bvh]}]",
+         plain, 0},
+        {"where",
+         "[{render.depth: [0, 1, 2]}, {render.threads: [1, 2, 4]}, {render.tile: [8, 16, 32]}]",
+         {.results = "unused", .where = thread_lines, .where_count = 1, .y = "rays_total"},
+         0},
+    };
+    for (size_t i = 0; i < sizeof figures / sizeof *figures; i++) {
+        study *s = study_of(f, figures[i].grid);
+        plot_plan p = full_plan(s, &figures[i].request, figures[i].environments);
+        draw(f, &p);
+        compare_golden(f, "gp", figures[i].name);
+        compare_golden(f, "tsv", figures[i].name);
+        plot_plan_free(&p);
+        study_destroy(s);
+    }
+}
+
 /* --- the whole path --- */
 
 static void a_script_quotes_what_it_shows(void **state)
@@ -432,6 +504,7 @@ int main(void)
 {
     const struct CMUnitTest tests[] = {
         CASE(the_grid_gives_the_kind),
+        CASE(scripts_are_those_of_figures_that_were_looked_at),
         CASE(parameters_set_together_count_once),
         CASE(the_user_chooses),
         CASE(wrong_choices_have_remedies),

@@ -152,13 +152,55 @@ static void put_xtics(FILE *out, const plot_plan *p, bool labels)
     }
 }
 
+/* The values of a scale that are 1, 2 or 5 times a power of ten; returns their number, at most 12. */
+static int round_values(const plot_quantity *q, double values[12])
+{
+    static const double parts[] = {1, 2, 5};
+    int count = 0;
+    for (double k = floor(log10(q->from)); count < 12 && pow(10, k) <= q->to; k++)
+        for (int i = 0; i < 3 && count < 12; i++)
+            if (parts[i] * pow(10, k) >= q->from && parts[i] * pow(10, k) <= q->to)
+                values[count++] = parts[i] * pow(10, k);
+    return count;
+}
+
+/* About five even steps of a round size. */
+static int even_values(const plot_quantity *q, double values[12])
+{
+    const double raw = (q->to - q->from) / 5, power = pow(10, floor(log10(raw))), share = raw / power;
+    const double step = power * (share < 1.5 ? 1 : share < 3.5 ? 2 : share < 7.5 ? 5 : 10);
+    int count = 0;
+    for (double k = ceil(q->from / step); count < 12 && k * step <= q->to; k++)
+        values[count++] = k * step;
+    return count;
+}
+
+/* On a logarithmic scale gnuplot labels powers of ten only, of which two decades may show one, or none. */
+static void put_log_tics(FILE *out, const char *axis, const plot_quantity *q)
+{
+    double values[12];
+    if (!q->log || q->to / q->from >= 100)
+        return;
+    int count = round_values(q, values);
+    if (count < 3)
+        count = even_values(q, values);
+    fprintf(out, "set %stics (", axis);
+    for (int i = 0; i < count; i++)
+        fprintf(out, "%s%.9g", i ? ", " : "", values[i]);
+    fputs(")\n", out);
+}
+
 static void put_axes(FILE *out, const plot_plan *p)
 {
     fprintf(out, "set xrange [%.9g:%.9g]\n%s", p->x.from, p->x.to, p->x.log ? "set logscale x\n" : "");
+    if (p->x.value >= 0)
+        put_log_tics(out, "x", &p->x);
     if (p->kind == PLOT_HEAT)
         fprintf(out, "set yrange [-0.5:%zu.5]\n", p->up->count - 1);
     else
         fprintf(out, "set yrange [%.9g:%.9g]\n%s", p->y.from, p->y.to, p->y.log ? "set logscale y\n" : "");
+    if (p->kind != PLOT_HEAT)
+        put_log_tics(out, "y", &p->y);
 }
 
 /* The color bar next to the first panel, at least 110 pixels long. */
@@ -171,6 +213,7 @@ static void put_color_bar(FILE *out, const plot_plan *p)
     const plot_panel *panel = &p->panels[first];
     fprintf(out, "eval \"set palette defined \".viridis\nset cbrange [%.9g:%.9g]\n%s", p->y.from, p->y.to,
             p->y.log ? "set logscale cb\n" : "");
+    put_log_tics(out, "cb", &p->y);
     put_setting(out, "cblabel", with_unit(&p->y, label), " offset 2.2,0");
     fprintf(out, "set colorbox user origin %.6f,%.6f size %.6f,%.6f\nunset key\nunset grid\n", p->key_left,
             fmin(panel->bottom, panel->top - 110.0 / p->height), 14.0 / p->width,
