@@ -464,24 +464,24 @@ faults: $(build)/cuvette $(build)/cuvette-import $(fault_tools) ## fail every al
 fault-checks: $(build)/cuvette $(build)/cuvette-import $(fault_tools) ## remove checks from the sources, one at a time: the faults must detect each
 	@BUILD='$(abspath $(build))' tests/faults/checks.sh
 
-# Lines of src that the tests run, among them the fuzzers' inputs (test_fuzz_corpus); made by gcc. coverage drops the counts
-# of earlier runs, coverage-add keeps them. The report is written after tests that fail, too.
+# Lines of src that the tests run, among them the fuzzers' inputs (test_fuzz_corpus); made by gcc. coverage drops the
+# counts of earlier runs, coverage-add keeps them. The report is written after tests that fail, too.
 GCOV ?= $(subst gcc,gcov,$(lastword $(CC)))
-measure_coverage = $(if $(clang),$(error coverage: only gcc is supported; leave CC=$(CC) out))$(MAKE) --no-print-directory STRICT=1 \
+of_coverage = $(if $(clang),$(error coverage: only gcc is supported; leave CC=$(CC) out))--no-print-directory STRICT=1 \
   config=coverage build=$(build)/coverage TEST_LIMIT_S=3600
 .PHONY: coverage coverage-add coverage-report run_coverage report_coverage
 coverage: ## report which lines of src the tests run, in build/coverage/report; only=NAME as for test (needs gcovr)
-	@command -v gcovr >/dev/null || { echo 'coverage: gcovr is not installed; install it with: apt-get install gcovr' >&2; exit 1; }
-	@$(measure_coverage) run_coverage
+	@$(MAKE) $(of_coverage) run_coverage
 coverage-add: ## run tests for coverage-report; only=NAME
-	@$(measure_coverage) test
-coverage-report: ## report which lines of src all tests since the last `make coverage` have run
-	@$(measure_coverage) report_coverage
+	@$(MAKE) $(of_coverage) test
+coverage-report: ## report which lines of src all tests have run since the last `make coverage`, or since the file changed
+	@$(MAKE) $(of_coverage) report_coverage
 run_coverage:
 	@mkdir -p $(build) && find $(build) -name '*.gcda' -delete
 	@code=0; $(MAKE) --no-print-directory build=$(build) test || code=$$?; \
 	  $(MAKE) --no-print-directory build=$(build) report_coverage && exit $$code
 report_coverage:
+	@command -v gcovr >/dev/null || { echo 'coverage: gcovr is not installed; install it with: apt-get install gcovr' >&2; exit 1; }
 	@mkdir -p $(build)/report
 	@gcovr --gcov-executable '$(GCOV)' --root . --filter src/ --exclude-throw-branches --html-details $(build)/report/index.html \
 	  --txt $(build)/report/missed.txt --print-summary $(build)

@@ -145,7 +145,13 @@ wrongs() {
     done
 }
 
-# One moment: prints what is wrong. ran: seconds of a run that ended before its signal.
+# Is that about as long as the command takes without a signal? Then a signal near its end changed nothing.
+is_whole() { # SECONDS
+    [[ $whole ]] || read -r _ _ _ whole _ < <(./moment 0 0 "$program" "${line[@]}" 2>whole.err)
+    awk -v ran="$1" -v whole="$whole" 'BEGIN {exit !(ran > 0.8 * whole)}'
+}
+
+# One moment: prints what is wrong. ran: seconds of a run that ended before its signal; whole: of one without.
 interrupt() { # WORKLOAD SIGNAL
     local files='' kept='' longest=1 line=() after ms cpu code rest
     "w_$1"
@@ -154,9 +160,9 @@ interrupt() { # WORKLOAD SIGNAL
     after=$(awk -v r="$RANDOM" -v most="$longest" -v ran="${ran:-}" \
         'BEGIN {if (ran != "" && ran < most) most = ran; printf "%.3f", 0.03 + most * r / 32768}')
     read -r ms cpu code rest < <(./moment "$(kill -l "$2")" "$after" "$program" "${line[@]}" 2>err)
-    if [[ $ms == - || ($code == 0 && ${ms%.*} -lt 100) ]]; then # it had ended, or was about to: a fast machine
+    if [[ $ms == - ]] || { ((code == 0)) && is_whole "${rest%% *}"; }; then # it had ended, or was about to
         ((code == 0)) || echo "without a signal: exit $code: $(tail -1 err | head -c 200)"
-        ran=$(awk -v ran="$rest" 'BEGIN {print ran + 0}')
+        ran=${rest%% *}
         return
     fi
     if [[ $code == -* && ! -s err ]] && awk -v ran="$rest" 'BEGIN {exit !(ran + 0 < 1)}'; then
@@ -175,7 +181,7 @@ fi
 for workload; do
     seed=$RANDOM # a subshell would begin with one of its own
     bad=$(
-        RANDOM=$seed ran=
+        RANDOM=$seed ran='' whole=''
         for ((i = 0; i < moments; i++)); do
             interrupt "$workload" "${signals[i % ${#signals[@]}]}"
         done

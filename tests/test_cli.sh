@@ -783,7 +783,7 @@ for signal in INT TERM; do
         check "SIG$signal ends ${words##*/} with 130" is $? 130
         check "SIG$signal: ${words##*/} leaves a complete image or none" \
             eval '[[ ! -e part.png ]] || "$program" compare part.png part.png'
-        check "SIG$signal: no other file is left of ${words##*/}" is "$(find . -name '.cuvette-*.part')" ""
+        check "SIG$signal: no other file is left of ${words##*/}" is "$(find . -name '.cuvette-*.part*')" ""
     done
 done
 sed -e 's/^study: .*/study: long/' -e 's/render.width: 40, render.height: 30/render.width: 1000, render.height: 750/' \

@@ -142,7 +142,7 @@ static void contradictory_rows_are_errors(void **state)
     study *s = fixture_study(f, study_text);
     run_shard(f, s, 0, 1);
     char *rows = fixture_text(f, "results/test/rows.csv");
-    char *digit = rows + strlen(rows) - 2; /* the last of the check: another place in its run */
+    char *digit = rows + strlen(rows) - 2; /* the last digit of the row's check */
     *digit = *digit == '0' ? '1' : '0';
     fixture_write(f, "results/test/rows.shard-0-of-2.csv", rows);
     free(rows);

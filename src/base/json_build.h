@@ -46,9 +46,14 @@ static inline char *json_text(const json_t *value, size_t flags)
 /* The text as a value: null for NULL and for what is not UTF-8, which JSON cannot hold; NULL when out of memory. */
 static inline json_t *json_text_or_null(const char *text)
 {
-    errno = 0; /* json_string does not say which it was */
+    errno = 0; /* json_string does not say which it was, and a host's functions that allocate may not set errno */
     json_t *value = text ? json_string(text) : NULL;
-    return value ? value : errno == ENOMEM ? NULL : json_null();
+    if (value || !text)
+        return text ? value : json_null();
+    const bool no_memory = errno == ENOMEM;
+    json_t *any = no_memory ? NULL : json_string_nocheck(text);
+    json_decref(any);
+    return any ? json_null() : NULL;
 }
 
 /* Both take the reference of item; NULL: it could not be made. */

@@ -10,6 +10,7 @@
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
+#include <sys/stat.h>
 #include <unistd.h>
 
 status plot_figure_write(plot_plan *p, const char *base, diagnostic *why)
@@ -97,8 +98,11 @@ static status run_gnuplot(const drawing *d, diagnostic *why)
 /* Complete or absent, after a power cut too. */
 static status move_figure(int fd, char **made, const char *target, diagnostic *why)
 {
+    struct stat about;
+    if (fstat(fd, &about) == 0 && about.st_size == 0)
+        return diagnose_at(why, target, STATUS_FAILURE, "", "gnuplot has drawn nothing");
     if (fsync(fd) != 0 || temporary_move(fd, made, target) != 0)
-        return system_error(why, STATUS_FAILURE, target, "cannot be written", errno, "");
+        return system_error(why, STATUS_FAILURE, target, "cannot write", errno, "");
     file_flush_folder(target);
     return STATUS_OK;
 }
@@ -111,13 +115,13 @@ static status draw_figure(drawing *d, const char *target, diagnostic *why)
     char *scratch = made ? strndup(made, strlen(made) - strlen(ending)) : NULL;
     status code = STATUS_OK;
     if (ending && fd < 0)
-        code = system_error(why, STATUS_FAILURE, target, "cannot be written", reason, "");
+        code = system_error(why, STATUS_FAILURE, target, "cannot write", reason, "");
     else if (!scratch)
         code = out_of_memory(why);
     d->scratch = scratch;
     THEN(code, run_gnuplot(d, why));
     THEN(code, move_figure(fd, &made, target, why));
-    if (code != STATUS_OK && made)
+    if (code != STATUS_OK && fd >= 0)
         unlink(made);
     if (fd >= 0)
         close(fd);

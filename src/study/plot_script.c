@@ -195,12 +195,12 @@ static void put_axes(FILE *out, const plot_plan *p)
     fprintf(out, "set xrange [%.9g:%.9g]\n%s", p->x.from, p->x.to, p->x.log ? "set logscale x\n" : "");
     if (p->x.value >= 0)
         put_log_tics(out, "x", &p->x);
-    if (p->kind == PLOT_HEAT)
+    if (p->kind == PLOT_HEAT) {
         fprintf(out, "set yrange [-0.5:%zu.5]\n", p->up->count - 1);
-    else
-        fprintf(out, "set yrange [%.9g:%.9g]\n%s", p->y.from, p->y.to, p->y.log ? "set logscale y\n" : "");
-    if (p->kind != PLOT_HEAT)
-        put_log_tics(out, "y", &p->y);
+        return;
+    }
+    fprintf(out, "set yrange [%.9g:%.9g]\n%s", p->y.from, p->y.to, p->y.log ? "set logscale y\n" : "");
+    put_log_tics(out, "y", &p->y);
 }
 
 /* The color bar next to the first panel, at least 110 pixels long. */

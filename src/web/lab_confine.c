@@ -163,8 +163,10 @@ status lab_confine(lab *l, diagnostic *why)
     add_program(&all);
     add_temporary(l, &all);
     add_text(&all, settings->folder, CONFINE_WRITE);
-    if (settings->rescue && settings->rescue[0] && kept_scenes_folder(settings->rescue, NULL) == STATUS_OK)
+    diagnostic reason = {.what = ""};
+    if (settings->rescue && settings->rescue[0] && kept_scenes_folder(settings->rescue, &reason) == STATUS_OK)
         add_text(&all, settings->rescue, CONFINE_WRITE);
+    all.out_of_memory |= strcmp(reason.remedy, MEMORY_REMEDY) == 0;
     if (!all.out_of_memory)
         os_confine_files(all.at, all.count);
     for (size_t i = 0; i < all.count; i++)

@@ -94,14 +94,14 @@ static void mask_nulls(char *text)
     }
 }
 
-/* The same in rows, NA; and hexadecimal hashes of what varies, such as the environment's. */
+/* The same in rows, NA; and hexadecimal hashes of what varies, such as the environment's, whose digits are masked. */
 static void mask_facts(char *text)
 {
     char *to = text;
     for (const char *c = text; *c;) {
         const size_t word = strcspn(c, "\t\n, \""), hex = strspn(c, "0123456789abcdef#");
-        const bool is_masked =
-            word && ((hex == word && memchr(c, '#', word)) || (word == 2 && memcmp(c, "NA", 2) == 0));
+        const bool is_hash = word >= 5 && hex == word && memchr(c, '#', word);
+        const bool is_masked = is_hash || (word == 2 && memcmp(c, "NA", 2) == 0);
         if (is_masked)
             *to++ = '#';
         else

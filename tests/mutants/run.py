@@ -1,12 +1,12 @@
 """Run the mutants of a built copy (instrument.py): run.py TREE EQUIVALENT SECONDS.
 
 First every test program of less than three minutes runs once without a mutant, which says how long it takes and which
-mutants it reaches. Then each mutant runs in the tests that reach it, quickest first, until one fails: it is killed. A
-test that takes six times as long as before has failed too. After QUICK_S of tests a mutant waits until all others had
-their turn: most survivors would run for minutes. TREE/results.tsv has rows of number, killed or waiting or survived or
-unreached, and the test that killed it; the last row of a number counts. Rows that it has are kept, so that the same
-command goes on where it stopped, after SECONDS at the latest. EQUIVALENT lists mutants that change nothing that can be
-seen: file, the whole line, text, changed text, why."""
+mutants it reaches (TREE/reached.tsv). Then each mutant runs in the tests that reach it, quickest first, until one
+fails: it is killed. A test that takes six times as long as before has failed too. After QUICK_S of tests a mutant waits
+until all others had their turn: most survivors would run for minutes. TREE/results.tsv has rows of number, killed or
+waiting or survived or unreached, and the test that killed it or that it passed last; the last row of a number counts.
+Rows that the files have are kept, so that the same command goes on where it stopped: after SECONDS. EQUIVALENT lists
+mutants that change nothing that can be seen: file, the whole line, text, changed text, why."""
 
 import concurrent.futures
 import glob
@@ -14,11 +14,13 @@ import os
 import resource
 import subprocess
 import sys
+import threading
 import time
 
 LONGEST_S = 180  # longer tests are left out
 QUICK_S = 30
 EXCLUDED = ("test_lab", "test_http", "test_bad_meshes", "test_study_estimate")  # need a server or quiet processors
+writing = threading.Lock()
 
 
 def environment(**more):
@@ -32,84 +34,89 @@ def limits():
     resource.setrlimit(resource.RLIMIT_CORE, (0, 0))
 
 
-def passes(test, limit_s, **more):
+def passes(test, limit_s, end, **more):
+    """Whether the test passes within the limit, and the seconds; None: the end of all came first."""
     begun = time.monotonic()
+    if begun > end:
+        return None, 0.0
     process = subprocess.Popen([f"build/tests/{test}"], stdin=subprocess.DEVNULL, stdout=subprocess.DEVNULL,
                                stderr=subprocess.DEVNULL, env=environment(**more), preexec_fn=limits,
                                start_new_session=True)
     try:
-        code = process.wait(limit_s)
+        passed = process.wait(min(limit_s, end - begun)) == 0
     except subprocess.TimeoutExpired:
-        code = 1
+        passed = None if end - begun < limit_s else False
     try:
         os.killpg(process.pid, 9)
     except ProcessLookupError:
         pass
     process.wait()
-    return code == 0, time.monotonic() - begun
+    return passed, time.monotonic() - begun
 
 
-def measure():
-    """Rows of test, seconds, reached mutants; kept in reached.tsv."""
-    if not os.path.exists("reached.tsv"):
-        rows = []
-        for path in sorted(glob.glob("build/tests/test_*")):
-            test = os.path.basename(path)
-            if "." in test or test.startswith(EXCLUDED):
-                continue
-            if os.path.exists("reached.txt"):
-                os.unlink("reached.txt")
-            passed, seconds = passes(test, LONGEST_S, MUTANT_REACHED=os.path.abspath("reached.txt"))
-            reached = set()
-            if os.path.exists("reached.txt"):
-                with open("reached.txt") as file:
-                    reached = {line.strip() for line in file}
-            left_out = "" if passed else ", left out: it fails without a mutant, or takes too long"
-            print(f"{test}: {seconds:.1f} s, reaches {len(reached)}{left_out}", flush=True)
-            if passed:
-                rows.append(f"{test}\t{seconds:.3f}\t{','.join(sorted(reached, key=int))}\n")
-        with open("reached.tsv", "w") as file:
-            file.writelines(rows)
-    with open("reached.tsv") as file:
-        rows = [line.rstrip("\n").split("\t") for line in file]
-    return sorted((float(seconds), test, set(map(int, filter(None, reached.split(",")))))
-                  for test, seconds, reached in rows)
+def append(path, *fields):
+    with writing, open(path, "a") as file:
+        file.write("\t".join(map(str, fields)) + "\n")
 
 
-def judge(number, tests, end, quick):
-    """The row of a mutant after the tests of its first QUICK_S, or after the others; None: no time is left."""
-    reached, before_s, more = False, 0.0, False
-    for seconds, test, reaches in tests:
-        if number not in reaches:
+def rows_of(path):
+    """The last row of each first field."""
+    if not os.path.exists(path):
+        return {}
+    with open(path) as file:
+        return {line.split("\t")[0]: line.rstrip("\n").split("\t") for line in file}
+
+
+def measure(end):
+    """Adds rows of test, seconds ("-": left out), reached mutants; returns whether all tests have one."""
+    known = rows_of("reached.tsv")
+    for path in sorted(glob.glob("build/tests/test_*")):
+        test = os.path.basename(path)
+        if "." in test or test.startswith(EXCLUDED) or test in known:
             continue
-        reached = True
-        is_quick = before_s < QUICK_S
-        before_s += seconds
-        more |= not is_quick
+        if os.path.exists("reached.txt"):
+            os.unlink("reached.txt")
+        passed, seconds = passes(test, LONGEST_S, end, MUTANT_REACHED=os.path.abspath("reached.txt"))
+        if passed is None:
+            return False
+        reached = []
+        if os.path.exists("reached.txt"):
+            with open("reached.txt") as file:
+                reached = sorted({int(line) for line in file})
+        left_out = "" if passed else ", left out: it fails without a mutant, or takes too long"
+        print(f"{test}: {seconds:.1f} s, reaches {len(reached)}{left_out}", flush=True)
+        append("reached.tsv", test, f"{seconds:.3f}" if passed else "-", ",".join(map(str, reached)))
+    return True
+
+
+def tests_by_time():
+    return sorted((float(seconds), test, set(map(int, filter(None, reached.split(",")))))
+                  for test, seconds, reached in rows_of("reached.tsv").values() if seconds != "-")
+
+
+def judge(number, tests, end, quick, passed_last=""):
+    """Adds rows of a mutant: after the tests of its first QUICK_S, or after the others, from the one after passed_last
+    on."""
+    own, before_s = [], 0.0
+    for seconds, test, reaches in tests:
+        if number in reaches:
+            own.append((seconds, test, before_s < QUICK_S))
+            before_s += seconds
+    names = [test for _, test, _ in own]
+    done = names.index(passed_last) + 1 if passed_last in names else 0
+    for seconds, test, is_quick in own[done:]:
         if is_quick != quick:
             continue
-        if time.monotonic() > end:
-            return None
-        if not passes(test, 6 * seconds + 10, MUTANT=str(number))[0]:
-            return f"{number}\tkilled\t{test}\n"
-    verdict = "unreached" if not reached else "waiting" if quick and more else "survived"
-    return f"{number}\t{verdict}\t\n"
-
-
-def results():
-    """The last row of each mutant: number, verdict, test."""
-    if not os.path.exists("results.tsv"):
-        return []
-    with open("results.tsv") as file:
-        return list({line.split("\t")[0]: line.rstrip("\n").split("\t") for line in file}.values())
-
-
-def judge_all(numbers, tests, end, quick):
-    with open("results.tsv", "a") as file, concurrent.futures.ThreadPoolExecutor(os.cpu_count()) as pool:
-        for row in pool.map(lambda number: judge(number, tests, end, quick), numbers):
-            if row:
-                file.write(row)
-                file.flush()
+        passed, _ = passes(test, 6 * seconds + 10, end, MUTANT=str(number))
+        if passed is None:
+            return
+        if not passed:
+            append("results.tsv", number, "killed", test)
+            return
+        if not quick:
+            append("results.tsv", number, "waiting", test)
+    more = any(not is_quick for _, _, is_quick in own)
+    append("results.tsv", number, "unreached" if not own else "waiting" if quick and more else "survived", "")
 
 
 def main():
@@ -117,18 +124,18 @@ def main():
         equivalent = {tuple(line.split("\t")[:4]) for line in file}
     os.chdir(sys.argv[1])
     end = time.monotonic() + float(sys.argv[3])
-    tests = measure()
-    done = {int(row[0]) for row in results()}
-    with open("mutants.tsv") as file:
-        judge_all([n for n in (int(line.split("\t")[0]) for line in file) if n not in done], tests, end, True)
-    judge_all([int(row[0]) for row in results() if row[1] == "waiting"], tests, end, False)
+    if measure(end):
+        tests, done = tests_by_time(), rows_of("results.tsv")
+        with concurrent.futures.ThreadPoolExecutor(os.cpu_count()) as pool:
+            left = [int(number) for number in rows_of("mutants.tsv") if number not in done]
+            list(pool.map(lambda number: judge(number, tests, end, True), left))
+            waiting = [row for row in rows_of("results.tsv").values() if row[1] == "waiting"]
+            list(pool.map(lambda row: judge(int(row[0]), tests, end, False, row[2]), waiting))
     return report(equivalent)
 
 
 def report(equivalent):
-    with open("mutants.tsv") as file:
-        mutants = {line.split("\t")[0]: line.rstrip("\n").split("\t") for line in file}
-    rows = results()
+    mutants, rows = rows_of("mutants.tsv"), rows_of("results.tsv").values()
     counts = dict.fromkeys(("killed", "equivalent", "survived", "unreached", "waiting"), 0)
     for number, verdict, _ in rows:
         _, path, line, kind, old, new, whole_line = mutants[number]

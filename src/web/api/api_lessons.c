@@ -48,6 +48,8 @@ static status visit_folder(lesson_visit *v)
     status code = folder_json(files, &all, &v->c->why);
     json_array_foreach(json_object_get(all, "lessons"), i, name)
     {
+        if (code != STATUS_OK || v->code != STATUS_OK || v->found)
+            break;
         char *path = NULL;
         diagnostic why = {.what = ""};
         const status one = folder_path(files, json_string_value(name), true, &path, &why);
@@ -123,7 +125,11 @@ status api_lessons(call *c)
 static status take_lesson(call *c, lesson **out)
 {
     lesson_visit v = {.act = find_one, .c = c, .name = http_path_value(c->request, "name")};
-    TRY(visit_lessons(&v));
+    const status code = visit_lessons(&v);
+    if (code != STATUS_OK) {
+        lesson_destroy(v.found);
+        return code;
+    }
     *out = v.found;
     return v.found ? STATUS_OK : api_refuse(c, 404, "there is no lesson of that name", "GET /api/lessons lists them");
 }

@@ -8,7 +8,7 @@
 /* How often a render checks for an interruption; the target time of a live frame, for about 20 frames a second. */
 static const double poll_s = 0.002, live_frame_s = 0.045;
 
-static void publish(render_worker *p, shared_image *shown)
+static bool publish(render_worker *p, shared_image *shown)
 {
     pthread_mutex_lock(&p->lock);
     shown->serial = ++p->serial;
@@ -16,7 +16,7 @@ static void publish(render_worker *p, shared_image *shown)
     const shared_image *published = shared_image_create(shown);
     if (!published) {
         shared_image_drop(shown);
-        return;
+        return false;
     }
     shared_image_retain(published); /* for the listener */
     pthread_mutex_lock(&p->lock);
@@ -27,6 +27,7 @@ static void publish(render_worker *p, shared_image *shown)
     shared_image_release(before);
     p->listener.published(p->listener.context, published);
     shared_image_release(published);
+    return true;
 }
 
 static bool is_raster(render_worker *p, bool moving)
@@ -114,6 +115,8 @@ void render_worker_render_pass(render_worker *p)
     job_account_release(&account);
     if (code != STATUS_INTERRUPTED)
         render_worker_set_error(p, code, &why);
-    if (code == STATUS_OK)
-        publish(p, &shown);
+    if (code == STATUS_OK && !publish(p, &shown)) {
+        p->pass = p->plan.count;
+        render_worker_set_error(p, out_of_memory(&why), &why);
+    }
 }

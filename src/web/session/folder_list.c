@@ -4,10 +4,12 @@
 #include "web/session/folder.h"
 #include "base/grow.h"
 #include "base/json_build.h"
+#include "base/system_error.h"
 #include "base/text.h"
 #include "scene/file/document.h"
 
 #include <dirent.h>
+#include <errno.h>
 #include <stdlib.h>
 #include <string.h>
 #include <strings.h>
@@ -51,6 +53,12 @@ static void fail(listing *l, const diagnostic *reason)
 static void fail_for_memory(listing *l)
 {
     l->code = out_of_memory(l->why);
+}
+
+/* Does the machine lack memory or open files? An error of the file itself is shown when it is opened. */
+static bool is_lack(const diagnostic *why)
+{
+    return strcmp(why->remedy, MEMORY_REMEDY) == 0 || strcmp(why->remedy, system_remedy(EMFILE)) == 0;
 }
 
 /* Takes ownership of the name. */
@@ -101,7 +109,7 @@ static file_use use_by_keys(listing *l, const char *path)
     document *file;
     diagnostic why = {.what = ""};
     const status code = document_read_below(path, folder_real(l->of), &file, &why);
-    if (code == STATUS_FAILURE && strcmp(why.remedy, MEMORY_REMEDY) == 0)
+    if (code == STATUS_FAILURE && is_lack(&why))
         fail(l, &why);
     if (code != STATUS_OK)
         return USE_SCENE;
@@ -151,11 +159,11 @@ static void classify_file(listing *l, char *name)
 static bool is_text(listing *l, const char *name)
 {
     json_t *text = json_text_or_null(name);
-    const bool is_text = json_is_string(text);
+    const bool valid = json_is_string(text);
     if (!text)
         fail_for_memory(l);
     json_decref(text);
-    return is_text;
+    return valid;
 }
 
 /* Joins a folder's name, "" for the chosen folder, and a name in it. */
@@ -184,8 +192,12 @@ static void visit_folder(listing *l, const char *name)
 {
     char *path = join_path(folder_root(l->of), name);
     DIR *d = path ? opendir(path) : NULL;
+    diagnostic why = {.what = ""};
     if (!path)
         fail_for_memory(l);
+    else if (!d && system_error(&why, STATUS_BAD_INPUT, path, "cannot be listed", errno, "") == STATUS_FAILURE &&
+             is_lack(&why))
+        fail(l, &why);
     free(path);
     names found = {.name = NULL};
     for (const struct dirent *e; d && l->code == STATUS_OK && l->entries < ENTRIES_MAX && (e = readdir(d));
