@@ -104,6 +104,11 @@ awk -F, 'NR == 1 {n = NF} NF != n {bad = 1} END {exit bad || NR < 3}' long/long/
 verdict $? "SIGHUP: its rows are kept, and complete"
 "$program" study verify long.study --results long >out 2>err
 equal "SIGHUP: the run is sealed" "$? $(<err)" "0 "
+start_long env # timeout(1) sends its signal twice: to the process, and to its group
+kill -TERM "$job"
+kill -TERM "$job" 2>/dev/null
+wait "$job"
+equal "a signal that comes twice is one: 130, and one line" "$? $(grep -c 'interrupted' err)" "130 1"
 start_long nohup
 kill -HUP "$job"
 sleep 0.3

@@ -10,6 +10,7 @@
 #include <fcntl.h>
 #include <poll.h>
 #include <signal.h>
+#include <stdatomic.h>
 #include <stdio.h>
 #include <stdio_ext.h>
 #include <stdlib.h>
@@ -17,13 +18,23 @@
 #include <sys/ioctl.h>
 #include <unistd.h>
 
-static volatile sig_atomic_t stop_requested;
+static atomic_int stop_requested; /* the signal */
+static _Atomic int64_t stop_ns;
 static cancel_token token; /* of the main thread's work */
 
+/* A second signal kills, but not one within a fifth of a second, in which no person decides that the first was not
+ * enough: timeout(1) sends its signal to the process and to its group, and mpirun does likewise. */
 static void request_stop(int signal_number)
 {
-    stop_requested = signal_number;
-    cancel_set(&token);
+    const int64_t patience_ns = 200000000, now_ns = clock_wall_ns();
+    if (atomic_load(&stop_requested) == 0) {
+        atomic_store(&stop_ns, now_ns);
+        atomic_store(&stop_requested, signal_number);
+        cancel_set(&token);
+    } else if (now_ns - atomic_load(&stop_ns) > patience_ns) {
+        signal(signal_number, SIG_DFL);
+        raise(signal_number);
+    }
 }
 
 bool terminal_stop_requested(void *unused)
@@ -84,7 +95,7 @@ void terminal_prepare(void)
 {
     hold_standard_descriptors();
     standard_output_prepare();
-    struct sigaction action = {.sa_handler = request_stop, .sa_flags = (int)SA_RESETHAND};
+    struct sigaction action = {.sa_handler = request_stop};
     sigemptyset(&action.sa_mask);
     sigaction(SIGINT, &action, NULL);
     sigaction(SIGTERM, &action, NULL);

@@ -7,8 +7,8 @@
 
 /* The place of all signals. Opens closed descriptors among 0 to 2, turns SIGPIPE and SIGXFSZ into errors of the write,
  * SIGINT, SIGTERM and SIGHUP (unless ignored, by nohup) into a stop request, which also cancels the work of the
- * calling thread (base/cancel.h; a second signal kills), and makes exit() check that standard output was written. Must
- * be called first. */
+ * calling thread (base/cancel.h; a second signal, at least a fifth of a second later, kills), and makes exit() check
+ * that standard output was written. Must be called first. */
 void terminal_prepare(void);
 
 /* Returns whether SIGINT, SIGTERM or SIGHUP has arrived. unused: lets the function serve as a callback. */
