@@ -54,7 +54,10 @@ export const cases = {
     const fetched = await record(screen);
     const before = (await lab.get('/api/state')).generation;
     await slider.focus();
-    for (let i = 0; i < 200; i++) await screen.page.keyboard.press(i % 40 < 20 ? 'ArrowRight' : 'ArrowLeft');
+    // 200 changes, and more where the images come slower than the keys.
+    const seen = () => screen.page.evaluate(() => window.drawn.filter((frame) => frame.during).length);
+    for (let i = 0; i < 200 || (i < 4000 && (i % 20 > 0 || (await seen()) < 5)); i++)
+      await screen.page.keyboard.press(i % 40 < 20 ? 'ArrowRight' : 'ArrowLeft');
     await screen.page.keyboard.press('ArrowRight');
     await screen.settled(before + 1);
     const drawn = await screen.page.evaluate(() => window.drawn);
@@ -114,7 +117,10 @@ export const cases = {
       tabs.push(page);
     }
     const follows = async (page, generation) =>
-      page.waitForFunction((g) => window.lab?.picture?.final && window.lab.picture.generation >= g, generation);
+      page.waitForFunction((g) => window.lab?.picture?.final && window.lab.picture.generation >= g, generation, {
+        polling: 100, // a tab in the background may draw no frames
+        timeout: 90000,
+      });
     const { generation } = await lab.post('/api/set', { set: { 'liquid.ior': 1.4 } });
     for (const page of tabs) await follows(page, generation);
     // The tab with the stream is closed: another takes over.

@@ -72,7 +72,7 @@ export class Lab {
   }
 
   /** Starts the program; at a free port or, after stop(), at the same port as before. */
-  async serve(scene, more = []) {
+  async serve(scene, more = [], env = {}) {
     const port = this.port ? ['--port', String(this.port)] : [];
     this.child = spawn(
       this.program,
@@ -80,7 +80,7 @@ export class Lab {
       {
         cwd: this.folder,
         stdio: ['ignore', 'pipe', 'pipe'],
-        env: { ...process.env, XDG_STATE_HOME: this.state },
+        env: { ...process.env, XDG_STATE_HOME: this.state, ...env },
       },
     );
     const [address, number, token] = await firstMatch(this.child, /http:\/\/127\.0\.0\.1:(\d+)\/\?token=([0-9a-f]+)/);

@@ -99,7 +99,11 @@ export const cases = {
 
   'a folder that cannot be written is reported once': async (t) => {
     const lab = await t.lab('scenes/rod.yaml');
+    await lab.stop();
+    rmSync(lab.state, { recursive: true, force: true });
     writeFileSync(lab.state, 'a file instead of a folder');
+    // In its sandbox the laboratory could not write into a folder that is made later.
+    await lab.serve('scenes/rod.yaml', [], { CUVETTE_SANDBOX: 'off' });
     const screen = await t.open(lab);
     t.equal(await bar(screen).isVisible(), false, 'a report before anything is unsaved');
     await screen.setNumber('liquid.ior', 1.6);
