@@ -118,6 +118,26 @@ mkdir bin
 PATH=$work/bin "$program" study plot --results res own.study >out 2>err
 check "without gnuplot, the package is named" grep -q 'gnuplot-nox' err
 
+# --- a gnuplot that draws nothing, and one that is killed with the program
+mkdir idle slow idle-figures slow-figures
+printf '#!/bin/sh\nexit 0\n' >idle/gnuplot
+printf '#!/bin/sh\nexec sleep 30\n' >slow/gnuplot
+chmod +x idle/gnuplot slow/gnuplot
+PATH=$work/idle:$PATH "$program" study plot --results res own.study -o idle-figures/fig.png >out 2>err
+code=$?
+check "a gnuplot that draws nothing is a failure" eval '((code == 1)) && grep -q "gnuplot drew nothing" err'
+check "and leaves no figure" test -z "$(find idle-figures -name '*.png')"
+PATH=$work/slow:$PATH "$program" study plot --results res own.study -o slow-figures/fig.png >out 2>err &
+for _ in {1..100}; do
+    [[ -z $(find slow-figures -name '.cuvette-*.part.png') ]] || break
+    sleep 0.05
+done
+kill -KILL $!
+wait $! 2>/dev/null
+check "a killed drawing leaves a temporary file" test -n "$(find slow-figures -name '.cuvette-*.part.png')"
+run own.study -o slow-figures/fig.png
+check "which the next drawing removes" eval 'clean && [[ -z $(find slow-figures -name ".cuvette-*") ]]'
+
 # --- the committed rows
 drawn=0
 for file in "$root"/experiments/*.study; do

@@ -100,7 +100,7 @@ static status move_figure(int fd, char **made, const char *target, diagnostic *w
 {
     struct stat about;
     if (fstat(fd, &about) == 0 && about.st_size == 0)
-        return diagnose_at(why, target, STATUS_FAILURE, "", "gnuplot has drawn nothing");
+        return diagnose_at(why, target, STATUS_FAILURE, "check that the gnuplot in PATH works", "gnuplot drew nothing");
     if (fsync(fd) != 0 || temporary_move(fd, made, target) != 0)
         return system_error(why, STATUS_FAILURE, target, "cannot write", errno, "");
     file_flush_folder(target);

@@ -152,25 +152,27 @@ static void put_xtics(FILE *out, const plot_plan *p, bool labels)
     }
 }
 
-/* The values of a scale that are 1, 2 or 5 times a power of ten; returns their number, at most 12. */
-static int round_values(const plot_quantity *q, double values[12])
+enum { LOG_TICS_MAX = 12 };
+
+/* The values of a scale that are 1, 2 or 5 times a power of ten; returns their number. */
+static int round_values(const plot_quantity *q, double values[LOG_TICS_MAX])
 {
     static const double parts[] = {1, 2, 5};
     int count = 0;
-    for (double k = floor(log10(q->from)); count < 12 && pow(10, k) <= q->to; k++)
-        for (int i = 0; i < 3 && count < 12; i++)
+    for (double k = floor(log10(q->from)); count < LOG_TICS_MAX && pow(10, k) <= q->to; k++)
+        for (int i = 0; i < 3 && count < LOG_TICS_MAX; i++)
             if (parts[i] * pow(10, k) >= q->from && parts[i] * pow(10, k) <= q->to)
                 values[count++] = parts[i] * pow(10, k);
     return count;
 }
 
 /* About five even steps of a round size. */
-static int even_values(const plot_quantity *q, double values[12])
+static int even_values(const plot_quantity *q, double values[LOG_TICS_MAX])
 {
     const double raw = (q->to - q->from) / 5, power = pow(10, floor(log10(raw))), share = raw / power;
     const double step = power * (share < 1.5 ? 1 : share < 3.5 ? 2 : share < 7.5 ? 5 : 10);
     int count = 0;
-    for (double k = ceil(q->from / step); count < 12 && k * step <= q->to; k++)
+    for (double k = ceil(q->from / step); count < LOG_TICS_MAX && k * step <= q->to; k++)
         values[count++] = k * step;
     return count;
 }
@@ -178,7 +180,7 @@ static int even_values(const plot_quantity *q, double values[12])
 /* On a logarithmic scale gnuplot labels powers of ten only, of which two decades may show one, or none. */
 static void put_log_tics(FILE *out, const char *axis, const plot_quantity *q)
 {
-    double values[12];
+    double values[LOG_TICS_MAX];
     if (!q->log || q->to / q->from >= 100)
         return;
     int count = round_values(q, values);
