@@ -383,6 +383,7 @@ typedef struct cuvette_counters {
     double cut_depth_throughput[3];            /* the sum of their weights, linear RGB */
     double cut_weight_throughput[3];
     uint64_t by_depth[65]; /* camera (0), reflected and refracted rays by recursion depth */
+    uint64_t photon;       /* rays of photons (render.caustics) */
 } cuvette_counters;
 
 /* Counts of one solid; only the first 64 solids of a scene are counted. */

@@ -232,6 +232,7 @@ static const char *const modes[] = {
     "render.spectrum=spectral render.wavelengths=4",
     "render.polarisation=on",
     "render.radiance=basic",
+    "render.caustics=photons render.photons=2000",
 };
 
 static bool open_with(const char *name, const char *assignments, acts *out, diagnostic *why);
@@ -260,6 +261,11 @@ typedef struct condition {
 } condition;
 static const condition conditions[] = {
     {"rod", "lamp.intensity=0", "render.shadows", "no-lamp", true},
+    {"rod", "lamp.intensity=0", "render.caustics", "no-lamp", true},
+    {"rod", "render.caustics=photons lamp.intensity=0", "render.photons", "no-lamp", true},
+    {"rod", "render.shadows=off", "render.caustics", "no-shadows-caustics", true},
+    {"rod", "render.caustics=photons render.shadows=off", "render.photons", "no-shadows-caustics", true},
+    {"rod", "render.caustics=photons", "render.radiance", "caustics-radiance", true},
     {"rod", "lamp.intensity=0", "lamp.position", "dark-lamp", true},
     {"rod", "lamp.intensity=0", "rod.diffuse", "no-lamp", true},
     {"rod", "lamp.intensity=0", "rod.specular", "no-lamp", true},

@@ -106,7 +106,10 @@ static void ineffective_parameters_give_a_hint(void **state)
     expect_hints(
         "render: {integrator: path}\nlights: {lamp: {}}\nsolids: {ball: {shape: sphere, transparency: 1, ior: 1.5}}",
         "lamp.radius: lamp is a point light, which random paths cannot hit through transparent "
-        "solids: no caustics; set its radius and its reach\n");
+        "solids: no caustics; set render.caustics=photons, or its radius and its reach\n");
+    expect_hints("render: {integrator: path, caustics: photons}\nlights: {lamp: {}}\nsolids: {ball: {shape: sphere, "
+                 "transparency: 1, ior: 1.5}}",
+                 "");
     expect_hints("render: {integrator: path}\nlights: {lamp: {}}\nsolids: {ball: {shape: sphere, diffuse: 1}}", "");
 }
 

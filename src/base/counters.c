@@ -14,5 +14,5 @@ void ray_counters_add(ray_counters *into, const ray_counters *from)
 
 uint64_t ray_counters_total(const ray_counters *counters)
 {
-    return counters->camera + counters->reflect + counters->refract + counters->shadow;
+    return counters->camera + counters->reflect + counters->refract + counters->shadow + counters->photon;
 }

@@ -22,6 +22,7 @@ enum {
 
 typedef struct ray_counters {
     uint64_t camera, reflect, refract, shadow; /* rays traced, by kind */
+    uint64_t photon;                           /* rays of photons */
     uint64_t by_depth[COUNTERS_DEPTH_MAX + 1]; /* camera, reflected and refracted rays by depth */
     uint64_t total_internal;                   /* total internal reflections */
     uint64_t cut_depth, cut_weight;            /* rays not traced: beyond the last depth; under min_weight */
@@ -45,5 +46,5 @@ static inline int64_t counters_cut_units(double throughput)
 /* Adds from to *into, field by field. */
 void ray_counters_add(ray_counters *into, const ray_counters *from);
 
-/* camera + reflect + refract + shadow. */
+/* camera + reflect + refract + shadow + photon. */
 uint64_t ray_counters_total(const ray_counters *counters);

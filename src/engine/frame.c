@@ -89,6 +89,7 @@ cuvette_status cuvette_frame_counters(const cuvette_frame *frame, cuvette_counte
                                .reflect = c->reflect,
                                .refract = c->refract,
                                .shadow = c->shadow,
+                               .photon = c->photon,
                                .total_internal = c->total_internal,
                                .cut_depth = c->cut_depth,
                                .cut_weight = c->cut_weight};

@@ -101,7 +101,9 @@ static size_t solids_of(const job_account *a)
  Q(rays_reflect, "rays", COUNT, SAME, ROW, "rays.reflect", NULL, "reflected rays traced", c->reflect) \
  Q(rays_refract, "rays", COUNT, SAME, ROW, "rays.refract", NULL, "refracted rays traced", c->refract) \
  Q(rays_shadow, "rays", COUNT, SAME, ROW, "rays.shadow", NULL, "shadow rays traced", c->shadow) \
- Q(rays_total, "rays", COUNT, SAME, ROW, "rays.total", "rays", "sum of the four kinds", ray_counters_total(c)) \
+ Q(rays_photon, "rays", COUNT, SAME, ROW, "rays.photon", NULL, \
+   "rays of photons, traced from the lamps for caustics", c->photon) \
+ Q(rays_total, "rays", COUNT, SAME, ROW, "rays.total", "rays", "sum of the five kinds", ray_counters_total(c)) \
  Q(rays_by_depth, "rays", DEPTHS, SAME, ROW, "rays_by_depth", NULL, \
    "camera, reflected and refracted rays at depth 0;1;2;...", c->by_depth) \
  Q(total_internal, "", COUNT, SAME, ROW, "total_internal", NULL, "total internal reflections", c->total_internal) \

@@ -27,10 +27,11 @@ class Counts:
     cut_depth_throughput: Tuple[float, float, float]  #: sum of their weights, linear RGB
     cut_weight_throughput: Tuple[float, float, float]
     by_depth: Tuple[int, ...]  #: camera, reflected and refracted rays by recursion depth, up to the last one
+    photon: int  #: rays of photons (render.caustics)
 
     @property
     def total(self) -> int:
-        return self.camera + self.reflect + self.refract + self.shadow
+        return self.camera + self.reflect + self.refract + self.shadow + self.photon
 
 
 @dataclass(frozen=True)
@@ -118,7 +119,13 @@ class Image:
             depths.pop()
         plain = {name: getattr(c, name) for name in list(Counts.__dataclass_fields__)[:7]}
         lost = [(one[0], one[1], one[2]) for one in (c.cut_depth_throughput, c.cut_weight_throughput)]
-        return Counts(**plain, cut_depth_throughput=lost[0], cut_weight_throughput=lost[1], by_depth=tuple(depths))
+        return Counts(
+            **plain,
+            cut_depth_throughput=lost[0],
+            cut_weight_throughput=lost[1],
+            by_depth=tuple(depths),
+            photon=c.photon,
+        )
 
     def solid_counts(self, solid: Union[int, str]) -> SolidCounts:
         """Counts of a solid, by its name or its index in the scene; only the first 64 are counted."""

@@ -251,7 +251,9 @@ status plan_build(const scene *s, plan **out, diagnostic *why)
         p->sky_mean = p->rain && !p->spectral ? vec3_add(sky_mean(p->sky), rain_color_mean(p->rain)) : sky_mean(p->sky);
     p->lights = s->lights;
     p->light_count = (int)s->light_count;
-    p->solid_shadows = s->render.shadows == SHADOWS_OPAQUE;
+    if (scene_has_caustics(&s->render))
+        p->render.shadows = SHADOWS_OPAQUE; /* the photons bring the rest */
+    p->solid_shadows = p->render.shadows == SHADOWS_OPAQUE;
     for (size_t i = 0; i < s->light_count && integrator_traits_of(&s->render)->by_chance; i++)
         p->solid_shadows |= s->lights[i].radius > 0.0;
     *out = p;

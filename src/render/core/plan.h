@@ -49,7 +49,8 @@ typedef struct plan {
     path_sampling draws; /* of random paths */
     /* every solid blocks light: either render settings require it, or random paths find the transmitted light */
     bool solid_shadows;
-    const background *sky; /* the scene's, or flat_sky */
+    const struct photon_map *photons; /* borrowed: light that arrives through clear solids and mirrors; NULL: none */
+    const background *sky;            /* the scene's, or flat_sky */
     background flat_sky;
     struct rain *rain; /* what rain adds to the sky, or NULL */
     vec3 sky_mean;     /* over all directions; computed if render.beyond is mean */

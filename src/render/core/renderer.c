@@ -4,6 +4,7 @@
 #include "base/cancel.h"
 #include "base/grow.h"
 #include "measure/clock.h"
+#include "render/caustics/caustics.h"
 #include "render/core/path_counts.h"
 #include "render/core/plan.h"
 #include "render/core/worker_pool.h"
@@ -48,6 +49,8 @@ typedef struct frame {
     int shares;                /* of the film */
     void *state;               /* the integrator's state for the frame */
     void (*step)(void *state); /* the current step of its pre-pass */
+    caustics *photons;         /* or NULL */
+    const caustics_step *photon_step;
     schedule pieces;
     worker_account *accounts;
     double began_s, asked_s; /* asked_s: when progress was called last */
@@ -339,7 +342,7 @@ uint64_t renderer_result_bytes(const scene *s, const render_options *options)
 
 uint64_t renderer_tracing_bytes(const scene *s)
 {
-    return (uint64_t)scene_threads(&s->render) * tracer_bytes((int)s->render.depth);
+    return (uint64_t)scene_threads(&s->render) * tracer_bytes((int)s->render.depth) + caustics_bytes(&s->render);
 }
 
 static film_space space_of(const scene *s)
@@ -429,6 +432,28 @@ static void run_step(void *context, int worker)
     f->step(f->state);
 }
 
+static void run_photon_step(void *context, int worker)
+{
+    const frame *f = context;
+    f->photon_step->together(f->photons, worker);
+}
+
+static status trace_photons(frame *f, int count, plan *p, isa level, render_result *result, diagnostic *why)
+{
+    if (!scene_has_caustics(&p->render))
+        return STATUS_OK;
+    TRY(caustics_create(p, level, count, &f->stop, &f->photons, why));
+    for (int k = 0; k < CAUSTICS_STEPS && f->photons; k++) {
+        f->photon_step = &caustics_steps[k];
+        TRY(worker_pool_run(f->owner->threads, count, f->s->render.pool, run_photon_step, watch, watch_s(f->options), f,
+                            why));
+        TRY(caustics_steps[k].alone(f->photons, why));
+    }
+    if (f->photons)
+        caustics_count(f->photons, &result->counters);
+    return STATUS_OK;
+}
+
 /* Runs the integrator's steps that precede all pieces of the image. */
 static status run_steps(frame *f, int count, diagnostic *why)
 {
@@ -442,19 +467,20 @@ static status run_steps(frame *f, int count, diagnostic *why)
     return code;
 }
 
-static status run_frame(renderer *r, const scene *s, const render_options *options, const plan *p, void *state,
+static status run_frame(renderer *r, const scene *s, const render_options *options, plan *p, void *state,
                         render_result *result, diagnostic *why)
 {
     const int count = (int)s->render.threads;
     frame *f = aligned_alloc(64, (sizeof *f + 63) / 64 * 64);
     worker_account *accounts = make_accounts(count);
-    const tracer_target target = {p, result->img, result->pixel_rays, result->pixel_ns, state, result->layers};
+    if (f)
+        memset(f, 0, sizeof *f);
+    const tracer_target target = {p, result->img, result->pixel_rays, result->pixel_ns, state, result->layers, NULL};
     bool has_memory = f && accounts && tracer_pool_begin(r->tracers, count, &target);
     status code = has_memory ? renderer_prepare(r, s, why) : out_of_memory(why);
     if (options && options->source)
         THEN(code, make_piece_films(s, options->source->side, accounts, why));
     if (code == STATUS_OK) {
-        memset(f, 0, sizeof *f);
         f->owner = r;
         f->s = s;
         f->options = options;
@@ -467,7 +493,8 @@ static status run_frame(renderer *r, const scene *s, const render_options *optio
         schedule_start(&f->pieces, &s->render);
         const double cpu_s = clock_process_cpu_s();
         f->began_s = clock_wall_s();
-        code = run_steps(f, count, why);
+        code = trace_photons(f, count, p, tracer_pool_level(r->tracers), result, why);
+        THEN(code, run_steps(f, count, why));
         THEN(code, worker_pool_run(r->threads, count, s->render.pool, work, watch, watch_s(options), f, why));
         result->wall_s = clock_wall_s() - f->began_s;
         result->cpu_s = clock_process_cpu_s() - cpu_s;
@@ -479,6 +506,8 @@ static status run_frame(renderer *r, const scene *s, const render_options *optio
         }
     }
     destroy_accounts(accounts, count);
+    if (f)
+        caustics_destroy(f->photons);
     free(f);
     return code;
 }

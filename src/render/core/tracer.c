@@ -76,7 +76,7 @@ static void drop_all(tracer *t)
 
 static bool take_integrator(tracer *t)
 {
-    const integrator *rule = integrator_for(&t->target.frame_plan->render);
+    const integrator *rule = t->target.rule ? t->target.rule : integrator_for(&t->target.frame_plan->render);
     if (rule != t->rule)
         forget_integrator(t);
     t->rule = rule;
@@ -250,6 +250,12 @@ static bool run_full(tracer *t)
 static bool stopped(const atomic_bool *stop)
 {
     return atomic_load_explicit(stop, memory_order_relaxed);
+}
+
+void tracer_run_full(tracer *t, const atomic_bool *stop)
+{
+    while (!stopped(stop) && run_full(t))
+        ;
 }
 
 /* The number of rays made at once: those of as many whole pixels as fit into a batch, or a full batch if a pixel has

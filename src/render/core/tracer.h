@@ -14,13 +14,14 @@
 typedef struct tracer tracer;
 
 /* The outputs of a frame. pixel_rays and pixel_ns may be NULL; state is the integrator's state for the frame; layers
- * receives named layers, NULL if they are not requested. */
+ * receives named layers, NULL if they are not requested; rule: NULL for the integrator of the plan's settings. */
 typedef struct tracer_target {
     const plan *frame_plan;
     film *img;
     double *pixel_rays, *pixel_ns;
     void *state;
     layer_set *layers;
+    const struct integrator *rule;
 } tracer_target;
 
 /* Memory of a tracer at that depth, bytes. */
@@ -37,6 +38,9 @@ void tracer_expose_to(tracer *t, film *img);
 /* Enqueues the camera rays of a piece of the image and traces until every queue holds less than a batch. Adds the
  * pixels of each row to *begun when they are enqueued. */
 void tracer_span(tracer *t, const span *piece, atomic_uint_fast64_t *begun, const atomic_bool *stop);
+
+/* Traces until every queue holds less than a batch, unless *stop is set. */
+void tracer_run_full(tracer *t, const atomic_bool *stop);
 
 /* Traces the remaining rays, or discards them when *stop is set. All queues are empty afterwards. */
 void tracer_finish(tracer *t, const atomic_bool *stop);

@@ -36,6 +36,11 @@ void tracer_pool_destroy(tracer_pool *set)
     free(set);
 }
 
+isa tracer_pool_level(const tracer_pool *set)
+{
+    return set->level;
+}
+
 static bool reserve(tracer ***list, int count)
 {
     tracer **grown = realloc(*list, (size_t)count * sizeof(tracer *));

@@ -11,6 +11,8 @@ typedef struct tracer_pool tracer_pool;
 tracer_pool *tracer_pool_create(isa level);
 void tracer_pool_destroy(tracer_pool *set);
 
+isa tracer_pool_level(const tracer_pool *set);
+
 /* Begins a frame with `workers` workers, none of which holds a tracer. False when out of memory. */
 bool tracer_pool_begin(tracer_pool *set, int workers, const tracer_target *target);
 

@@ -215,8 +215,11 @@ static void go_on(tracer *t, int k, int depth, const continuation *c)
     q->dx[at] = c->direction.x, q->dy[at] = c->direction.y, q->dz[at] = c->direction.z;
     q->wr[at] = g->wr[k] * c->share.x, q->wg[at] = g->wg[k] * c->share.y, q->wb[at] = g->wb[k] * c->share.z;
     q->start[at] = g->points.face[k], q->inside[at] = c->inside;
+    /* with photons, only unbroken chains of specular surfaces from the camera: the others' light is theirs */
+    const bool meets_lights =
+        c->specular_bounce && (!t->target.frame_plan->photons || (g->sample_key[k] & SAMPLE_KEY_SPECULAR_BOUNCE));
     q->sample_key[at] =
-        (g->sample_key[k] & ~SAMPLE_KEY_SPECULAR_BOUNCE) | (c->specular_bounce ? SAMPLE_KEY_SPECULAR_BOUNCE : 0);
+        (g->sample_key[k] & ~SAMPLE_KEY_SPECULAR_BOUNCE) | (meets_lights ? SAMPLE_KEY_SPECULAR_BOUNCE : 0);
     COUNT(c->refracted ? t->account.counters.refract++ : t->account.counters.reflect++);
 }
 

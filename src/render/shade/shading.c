@@ -2,6 +2,7 @@
  * the film. */
 #include "render/shade/shading.h"
 
+#include "render/caustics/photon_map.h"
 #include "render/shade/sky.h"
 #include <string.h>
 
@@ -185,6 +186,21 @@ static void expose_own_light(tracer *t, const material *m, bool ambient)
         expose(t, g->sample_key[i], g->wr[i] * a.x * g->cr[i], g->wg[i] * a.y * g->cg[i], g->wb[i] * a.z * g->cb[i]);
 }
 
+/* Adds the photons' light, which matte surfaces reflect. */
+static void caustic_light(tracer *t, const material *m)
+{
+    const group *g = &t->surface.gathered;
+    const plan *p = t->target.frame_plan;
+    for (int i = 0; i < g->count; i++) {
+        const int wavelength = p->spectral ? (int)sample_key_wavelength(g->sample_key[i]) : -1;
+        const vec3 e = photon_map_irradiance(p->photons, vec3_make(g->points.px[i], g->points.py[i], g->points.pz[i]),
+                                             vec3_make(g->points.nx[i], g->points.ny[i], g->points.nz[i]), wavelength);
+        if (e.x > 0.0 || e.y > 0.0 || e.z > 0.0)
+            expose(t, g->sample_key[i], g->wr[i] * m->diffuse * g->cr[i] * e.x, g->wg[i] * m->diffuse * g->cg[i] * e.y,
+                   g->wb[i] * m->diffuse * g->cb[i] * e.z);
+    }
+}
+
 /* Enqueues shadow rays to lights that can change the film. */
 static void enqueue_shadow_rays(tracer *t)
 {
@@ -236,6 +252,8 @@ static void send_out(tracer *t, int priority_index, light_terms terms)
         m = &dull;
     }
     expose_own_light(t, m, terms.ambient);
+    if (p->photons && m->diffuse > 0.0 && surface_is_opaque(t, priority_index))
+        caustic_light(t, m);
     if (terms.emission_only || (m->diffuse == 0.0 && m->specular == 0.0))
         return;
     for (int k = 0; k < p->light_count; k++) {

@@ -157,8 +157,8 @@ static void hint_at_lights(const scene *s, const note_taker *taker)
         if (lamp->radius > 0.0 && !path)
             note_give(taker, lamp->name, "radius", "set render.integrator=path, which samples its radius",
                       "%s acts as a point light", lamp->name);
-        else if (lamp->radius == 0.0 && path && clear && lamp->intensity > 0.0)
-            note_give(taker, lamp->name, "radius", "set its radius and its reach",
+        else if (lamp->radius == 0.0 && path && clear && lamp->intensity > 0.0 && !scene_has_caustics(&s->render))
+            note_give(taker, lamp->name, "radius", "set render.caustics=photons, or its radius and its reach",
                       "%s is a point light, which random paths cannot hit through transparent solids: no caustics",
                       lamp->name);
     }

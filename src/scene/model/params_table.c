@@ -17,6 +17,7 @@ static const char *const transmission_words[] = {"refract", "simple", NULL};
 static const char *const depth_limit_words[] = {"sky", "black", "mean", NULL};
 static const char *const radiance_words[] = {"classic", "basic", NULL};
 static const char *const shadows_words[] = {"off", "opaque", "attenuated", NULL};
+static const char *const caustics_words[] = {"off", "photons", NULL};
 static const char *const schedule_words[] = {"columns", "rows", "tiles", "dynamic", NULL};
 static const char *const pin_words[] = {"none", "compact", "scatter", NULL};
 static const char *const lighting_words[] = {"lambert", "phong", "whitted", NULL};
@@ -136,6 +137,11 @@ static const param table[] = {
     CHOICE(PARAM_RENDER, render_settings, shadows, shadows_words, "attenuated",
            "shadow rays: none, blocked by every solid, or attenuated by transparent solids without refraction "
            "(no caustics)"),
+    CHOICE(PARAM_RENDER, render_settings, caustics, caustics_words, "off",
+           "light that mirrors and transparent solids throw on matte surfaces: none, or by photons traced from the "
+           "lamps; then shadows are opaque and radiance is basic"),
+    INTEGER(PARAM_RENDER, render_settings, photons, "", 1, 67108864, "300000",
+            "photons that the lamps send towards mirrors and transparent solids, for caustics"),
     REAL(PARAM_RENDER, render_settings, min_weight, "", 0, 1, "0",
          "rays with a throughput below this are not traced; 0: trace the whole tree"),
     INTEGER(PARAM_RENDER, render_settings, paths, "", 1, 1048576, "16", "paths per pixel of integrator path"),

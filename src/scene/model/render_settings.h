@@ -12,6 +12,7 @@ typedef enum transmission_rule { TRANSMISSION_REFRACT, TRANSMISSION_SIMPLE } tra
 typedef enum depth_limit_rule { DEPTH_LIMIT_SKY, DEPTH_LIMIT_BLACK, DEPTH_LIMIT_MEAN } depth_limit_rule;
 typedef enum radiance_rule { RADIANCE_CLASSIC, RADIANCE_BASIC } radiance_rule;
 typedef enum shadow_rule { SHADOWS_OFF, SHADOWS_OPAQUE, SHADOWS_ATTENUATED } shadow_rule;
+typedef enum caustics_rule { CAUSTICS_OFF, CAUSTICS_PHOTONS } caustics_rule;
 typedef enum schedule_rule { SCHEDULE_COLUMNS, SCHEDULE_ROWS, SCHEDULE_TILES, SCHEDULE_DYNAMIC } schedule_rule;
 typedef enum pin_rule { PIN_RULE_NONE, PIN_RULE_COMPACT, PIN_RULE_SCATTER } pin_rule;
 typedef enum lighting_rule { LIGHTING_LAMBERT, LIGHTING_PHONG, LIGHTING_WHITTED } lighting_rule;
@@ -36,6 +37,8 @@ typedef struct render_settings {
     int64_t beyond;         /* depth_limit_rule */
     int64_t radiance;       /* radiance_rule */
     int64_t shadows;        /* shadow_rule */
+    int64_t caustics;       /* caustics_rule */
+    int64_t photons;        /* from the lamps, for caustics */
     double min_weight;      /* rays with a lower throughput in every channel are not traced; 0: all are */
     int64_t paths;          /* per pixel, for the path integrator */
     double error;           /* standard error of a pixel that the path integrator aims at; 0: render.paths everywhere */
@@ -98,9 +101,17 @@ static inline bool scene_has_constant_shares(const render_settings *r)
     return r->weights == WEIGHTS_CONSTANT || r->transmission == TRANSMISSION_SIMPLE;
 }
 
+/* Whether photons bring the light that mirrors and clear solids deflect; then radiance is basic, and shadows opaque. */
+static inline bool scene_has_caustics(const render_settings *r)
+{
+    return r->caustics == CAUSTICS_PHOTONS && r->shadows != SHADOWS_OFF && !integrator_traits_of(r)->drawn &&
+           !integrator_traits_of(r)->layers;
+}
+
 /* Whether rays carry basic radiance, L / n^2. Only refraction changes solid angles: there is none under simple
  * transmission or with a depth buffer. */
 static inline bool scene_has_basic_radiance(const render_settings *r)
 {
-    return r->radiance == RADIANCE_BASIC && r->transmission == TRANSMISSION_REFRACT && !integrator_traits_of(r)->drawn;
+    return (r->radiance == RADIANCE_BASIC || scene_has_caustics(r)) && r->transmission == TRANSMISSION_REFRACT &&
+           !integrator_traits_of(r)->drawn;
 }

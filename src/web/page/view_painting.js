@@ -85,8 +85,8 @@ export function createPainting(canvas, view, place, lab) {
   }
 
   function facts() {
-    const about = passes.get(shown.serial) || {};
-    const final = shown.final && shown.exact;
+    const about = passes.get(shown.serial); /* an image may come before the event that describes it */
+    const final = Boolean(about) && shown.final && shown.exact;
     return { ...about, ...shown, final, film_hash: final ? about.film_hash : null };
   }
 

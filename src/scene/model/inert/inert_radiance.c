@@ -47,6 +47,8 @@ bool inert_radiance(const inert_case *c)
     if (integrator_traits_of(&s->render)->drawn)
         return inert_say(c, "zbuffer-radiance", "set render.integrator=whitted",
                          "the depth buffer does not trace light through surfaces");
+    if (scene_has_caustics(&s->render))
+        return inert_say(c, "caustics-radiance", "set render.caustics=off", "with photons, rays carry basic radiance");
     if (goes_straight(c))
         return true;
     if (!is_bare(&s->background))

@@ -12,12 +12,6 @@ static bool path_only(const inert_case *c)
            inert_say(c, "path-only", "set render.integrator=path", "only the path integrator uses random numbers");
 }
 
-/* Wavelengths of the spectral film are also random: render/shade/spectra.c. */
-static bool seed(const inert_case *c)
-{
-    return c->s->render.spectrum != SPECTRUM_SPECTRAL && path_only(c);
-}
-
 static bool samples(const inert_case *c)
 {
     return is_path(c->s) && c->s->render.filter == PIXEL_FILTER_BOX &&
@@ -150,6 +144,46 @@ static bool nothing_lit(const inert_case *c)
                                     "no visible surface is lit by lights"));
 }
 
+static bool deflects_light(const scene *s, const solid *one)
+{
+    return one->surface.transparency > 0.0 || one->surface.reflectivity > 0.0 || may_have_face_materials(s, one);
+}
+
+static bool no_photons(const inert_case *c)
+{
+    const scene *s = c->s;
+    if (integrator_traits_of(&s->render)->drawn)
+        return inert_say(c, "zbuffer-caustics", WHITTED, "the depth buffer traces no light");
+    if (s->render.shadows == SHADOWS_OFF)
+        return inert_say(c, "no-shadows-caustics", "set render.shadows=opaque",
+                         "without shadows light passes every solid undeflected");
+    return nothing_lit(c) ||
+           (!first_visible(s, deflects_light) &&
+            inert_say(c, "nothing-deflects", mirror_remedy(s).text, "no visible surface reflects or transmits light"));
+}
+
+/* Photons also make radiance basic and shadows opaque, which may act where they do not. */
+static bool caustics(const inert_case *c)
+{
+    return no_photons(c) &&
+           inert_same(c, "render.caustics=%s", c->s->render.caustics == CAUSTICS_OFF ? "photons" : "off");
+}
+
+static bool photons(const inert_case *c)
+{
+    const bool off = c->s->render.caustics == CAUSTICS_OFF && !integrator_traits_of(&c->s->render)->drawn;
+    return (off && inert_say(c, "no-photons", "set render.caustics=photons", "render.caustics is off")) ||
+           no_photons(c);
+}
+
+/* Wavelengths of the spectral film are also random: render/shade/spectra.c. */
+static bool seed(const inert_case *c)
+{
+    if (scene_has_caustics(&c->s->render))
+        return false;
+    return c->s->render.spectrum != SPECTRUM_SPECTRAL && path_only(c);
+}
+
 /* A pilot has 16 paths: render/core/path_counts.h. */
 static bool error(const inert_case *c)
 {
@@ -259,6 +293,8 @@ bool inert_render(const inert_case *c)
         {"weights", weights},
         {"transmission", transmission},
         {"shadows", shadows},
+        {"caustics", caustics},
+        {"photons", photons},
         {"min_weight", min_weight},
         {"paths", path_only},
         {"samples", samples},

@@ -1,0 +1,294 @@
+/* Emission of photons: cones around what deflects light, the lamps' shares of the photons, and their rays. */
+#include "render/caustics/emission.h"
+
+#include "base/elementary.h"
+#include "geometry/shapes/shape.h"
+#include "render/core/draw.h"
+
+#include <stdlib.h>
+
+enum { CONES_MAX = 64 }; /* of a scene with more solids that deflect light, one ball holds them all */
+
+typedef struct ball {
+    vec3 centre;
+    double radius; /* infinite: no bounds */
+} ball;
+
+typedef struct cone {
+    vec3 axis;
+    double cap;   /* 1 - the cosine of its half angle; 2: all directions */
+    double share; /* of the lamp's photons */
+} cone;
+
+typedef struct lamp_emission {
+    int64_t first, count; /* its photons */
+    cone *cones;
+    uint64_t inside;
+} lamp_emission;
+
+struct emission {
+    const plan *p;
+    bool spheres;
+    int ball_count;
+    ball balls[CONES_MAX];
+    double extent;
+    lamp_emission *lamps;
+    int64_t count;
+};
+
+#define PI 3.14159265358979323846
+
+/* --- what deflects light --- */
+
+static bool deflects(const plan *p, int priority_index)
+{
+    const region_materials *m = &p->shading_materials[priority_index];
+    bool any = !p->geometry->regions[priority_index].opaque;
+    for (int k = 0; k < m->count; k++)
+        any |= m->mat[k].surface.reflectivity > 0.0 || m->mat[k].surface.transparency > 0.0;
+    return any;
+}
+
+static ball ball_of(const solid_shape *shape)
+{
+    const bounds3 box = shape_world_box(shape);
+    const vec3 half = vec3_scale(vec3_sub(box.high, box.low), 0.5);
+    const bool bounded = vec3_is_finite(half);
+    return (ball){bounded ? vec3_add(box.low, half) : vec3_make(0.0, 0.0, 0.0),
+                  bounded ? vec3_length(half) : (double)INFINITY};
+}
+
+/* A ball that holds two. */
+static ball joined(ball a, ball b)
+{
+    const vec3 off = vec3_sub(b.centre, a.centre);
+    const double d = vec3_length(off);
+    if (d + b.radius <= a.radius || isinf(a.radius))
+        return a;
+    if (d + a.radius <= b.radius || isinf(b.radius))
+        return b;
+    const double radius = 0.5 * (d + a.radius + b.radius);
+    return (ball){vec3_add(a.centre, vec3_scale(off, (radius - a.radius) / d)), radius};
+}
+
+static void find_balls(emission *e)
+{
+    const plan *p = e->p;
+    bool many = false;
+    for (int r = 1; r <= p->geometry->region_count; r++) {
+        if (!deflects(p, r))
+            continue;
+        const ball one = ball_of(&p->geometry->shapes[r]);
+        many |= e->ball_count == CONES_MAX;
+        if (many) /* from now on all are in the first */
+            for (; e->ball_count > 1; e->ball_count--)
+                e->balls[0] = joined(e->balls[0], e->balls[e->ball_count - 1]);
+        if (many)
+            e->balls[0] = joined(e->balls[0], one);
+        else
+            e->balls[e->ball_count++] = one;
+    }
+    for (int k = 0; k < e->ball_count; k++)
+        e->extent = fmax(e->extent, isinf(e->balls[k].radius) ? p->geometry->extent : e->balls[k].radius);
+}
+
+/* --- lamps --- */
+
+static double sphere_radius(const emission *e, int lamp)
+{
+    return e->spheres ? e->p->lights[lamp].radius : 0.0;
+}
+
+/* Around all directions from the lamp's points to the ball's. */
+static cone cone_to(vec3 from, double lamp_radius, ball b)
+{
+    const vec3 to = vec3_sub(b.centre, from);
+    const double d = vec3_length(to), sine = (b.radius + lamp_radius) / d;
+    if (!(sine < 1.0))
+        return (cone){vec3_make(0.0, 1.0, 0.0), 2.0, 0.0};
+    /* 1 - cos = sin^2 / (1 + cos), without cancellation; widened beyond its rounding */
+    return (cone){vec3_scale(to, 1.0 / d), (1.0 + 1e-9) * sine * sine / (1.0 + sqrt(1.0 - sine * sine)), 0.0};
+}
+
+/* The lamp's brightness times the solid angle of its cones: its photons are in proportion. */
+static double aim(emission *e, int lamp)
+{
+    const light *l = &e->p->lights[lamp];
+    lamp_emission *out = &e->lamps[lamp];
+    double sum = 0.0;
+    for (int k = 0; k < e->ball_count; k++)
+        sum += (out->cones[k] = cone_to(l->position, sphere_radius(e, lamp), e->balls[k])).cap;
+    for (int k = 0; k < e->ball_count; k++)
+        out->cones[k].share = out->cones[k].cap / sum;
+    out->inside = scene_geometry_inside(e->p->geometry, l->position);
+    const double distance2 =
+                     vec3_dot(vec3_sub(l->position, e->balls[0].centre), vec3_sub(l->position, e->balls[0].centre)),
+                 falloff = l->reach > 0.0              ? l->reach * l->reach
+                           : isinf(e->balls[0].radius) ? 1.0
+                                                       : distance2;
+    return l->intensity * fmax(l->color.x, fmax(l->color.y, l->color.z)) * falloff * sum;
+}
+
+static void divide(emission *e, const double *power, int64_t photons)
+{
+    double all = 0.0, so_far = 0.0;
+    for (int k = 0; k < e->p->light_count; k++)
+        all += power[k];
+    for (int k = 0; k < e->p->light_count && all > 0.0; k++) {
+        so_far += power[k];
+        e->lamps[k].first = e->count;
+        e->count = (int64_t)(so_far / all * (double)photons + 0.5);
+        e->lamps[k].count = e->count - e->lamps[k].first;
+    }
+}
+
+status emission_create(const plan *p, int64_t photons, bool spheres, emission **out, diagnostic *why)
+{
+    emission *e = calloc(1, sizeof *e);
+    double *power = calloc((size_t)p->light_count + 1, sizeof *power);
+    *out = e;
+    if (e)
+        e->lamps = calloc((size_t)p->light_count + 1, sizeof *e->lamps);
+    if (!e || !power || !e->lamps)
+        goto failed;
+    e->p = p;
+    e->spheres = spheres;
+    find_balls(e);
+    for (int k = 0; k < p->light_count && e->ball_count > 0; k++) {
+        if (!(e->lamps[k].cones = calloc((size_t)e->ball_count, sizeof(cone))))
+            goto failed;
+        power[k] = aim(e, k);
+    }
+    divide(e, power, photons);
+    free(power);
+    return STATUS_OK;
+failed:
+    free(power);
+    emission_destroy(e);
+    *out = NULL;
+    return out_of_memory(why);
+}
+
+void emission_destroy(emission *e)
+{
+    if (!e)
+        return;
+    for (int k = 0; e->lamps && k < e->p->light_count; k++)
+        free(e->lamps[k].cones);
+    free(e->lamps);
+    free(e);
+}
+
+int64_t emission_count(const emission *e)
+{
+    return e->count;
+}
+
+double emission_extent(const emission *e)
+{
+    return e->extent;
+}
+
+/* --- rays --- */
+
+static int lamp_of(const emission *e, int64_t i)
+{
+    int low = 0, high = e->p->light_count - 1;
+    while (low < high) {
+        const int middle = (low + high + 1) / 2;
+        if (e->lamps[middle].first <= i)
+            low = middle;
+        else
+            high = middle - 1;
+    }
+    while (e->lamps[low].count == 0) /* lamps without photons begin where the next one does */
+        low--;
+    return low;
+}
+
+static unit_pair pair(const emission *e, int64_t i, uint64_t purpose)
+{
+    const sobol_point s = sobol_at((uint32_t)i, (purpose << 32 | DRAW_PHOTON) ^ e->p->draws.seed_hash);
+    return (unit_pair){random_unit(s.x), random_unit(s.y)};
+}
+
+/* Two unit vectors across a third (Duff et al., "Building an Orthonormal Basis, Revisited", JCGT 6(1), 2017). */
+static void across(vec3 n, vec3 *u, vec3 *v)
+{
+    const double sign = copysign(1.0, n.z), a = -1.0 / (sign + n.z), b = n.x * n.y * a;
+    *u = vec3_make(1.0 + sign * n.x * n.x * a, sign * b, -sign * n.x);
+    *v = vec3_make(b, sign + n.y * n.y * a, -n.y);
+}
+
+static vec3 along(vec3 axis, double cosine, double sine, double turn)
+{
+    vec3 u, v;
+    double s, c;
+    across(axis, &u, &v);
+    elementary_sincos_deg(360.0 * turn, &s, &c);
+    return vec3_add(vec3_scale(axis, cosine), vec3_add(vec3_scale(u, sine * c), vec3_scale(v, sine * s)));
+}
+
+static double off_axis(vec3 direction, vec3 axis)
+{
+    const vec3 off = vec3_sub(direction, axis);
+    return 0.5 * vec3_dot(off, off);
+}
+
+/* A direction and the inverse of its density. The first number chooses the cone too. */
+static double direct(const emission *e, const lamp_emission *l, unit_pair s, vec3 *direction)
+{
+    int k = 0;
+    while (k + 1 < e->ball_count && s.u >= l->cones[k].share)
+        s.u -= l->cones[k++].share;
+    const cone *c = &l->cones[k];
+    const double off = c->cap * fmin(s.u / c->share, 1.0);
+    *direction = along(c->axis, 1.0 - off, sqrt(off * (2.0 - off)), s.v);
+    double density = 0.0;
+    for (int j = 0; j < e->ball_count; j++)
+        if (j == k || off_axis(*direction, l->cones[j].axis) <= l->cones[j].cap)
+            density += l->cones[j].share / (2.0 * PI * l->cones[j].cap);
+    return 1.0 / density;
+}
+
+/* A point of the lamp's surface from which light leaves in that direction: uniform over its disc. */
+static vec3 leaves_from(const emission *e, int lamp, unit_pair s, vec3 direction)
+{
+    const vec3 centre = e->p->lights[lamp].position;
+    const double radius = sphere_radius(e, lamp);
+    if (radius == 0.0)
+        return centre;
+    return vec3_add(centre, vec3_scale(along(direction, sqrt(1.0 - s.u), sqrt(s.u), s.v), radius));
+}
+
+bool emission_ray(const emission *e, int64_t i, emitted_ray *out)
+{
+    const plan *p = e->p;
+    const int lamp = lamp_of(e, i);
+    const light *l = &p->lights[lamp];
+    const lamp_emission *from = &e->lamps[lamp];
+    const int64_t number = i - from->first;
+    const double angle = direct(e, from, pair(e, number, (uint64_t)lamp << 8), &out->direction);
+    const double share = light_share(l, &p->cones[lamp], out->direction);
+    if (share == 0.0)
+        return false;
+    out->origin = leaves_from(e, lamp, pair(e, number, (uint64_t)lamp << 8 | 1), out->direction);
+    out->inside = from->inside;
+    out->falls = l->reach > 0.0;
+    out->wavelength = -1;
+    vec3 color = vec3_scale(l->color, l->intensity);
+    if (p->spectral) {
+        out->wavelength = (int)(pair(e, number, (uint64_t)lamp << 8 | 2).u * SPECTRA_COUNT);
+        const double radiance = spectra_light(p->spectral, sample_key_with_wavelength(0, out->wavelength), lamp);
+        color = vec3_make(radiance, radiance, radiance);
+    }
+    out->power = vec3_scale(color, share * (out->falls ? l->reach * l->reach : 1.0) * angle / (double)from->count);
+    return true;
+}
+
+double emission_chance(const emission *e, int64_t i, int depth, int which)
+{
+    const random_words w = random_at((uint64_t)e->p->render.seed, (uint32_t)i, (uint32_t)(i >> 32), (uint32_t)depth,
+                                     (uint32_t)(DRAW_PHOTON + which));
+    return random_unit(w.word[0]);
+}

@@ -1,0 +1,38 @@
+/* Emission of photons: which ray from a lamp each photon begins with, and which power it carries. Photons start only
+ * towards what can deflect them, mirrors and clear solids: their directions are uniform over the cones, seen from the
+ * lamp, around the bounding balls of these solids, with a density that is the sum over the cones. Where one has no
+ * bounds, the cone is the whole sphere of directions. A lamp's flux into a small solid angle dw is pi I reach^2 dw, for
+ * a point as for a sphere, whose every direction leaves from a disc across it; I is its intensity (path.c).
+ *
+ * Photons are points of a scrambled Sobol sequence for each lamp, a function of the seed and the photon's number.
+ * Ownership: emission_create allocates, emission_destroy releases; the plan is borrowed. */
+#pragma once
+
+#include "base/status.h"
+#include "render/core/plan.h"
+
+typedef struct emission emission;
+
+/* Of `photons` photons in all, of which each lamp gets a number in proportion to its power. spheres: light spheres
+ * are spheres, otherwise points. */
+status emission_create(const plan *p, int64_t photons, bool spheres, emission **out, diagnostic *why);
+void emission_destroy(emission *e);
+
+/* The number of photons that are really emitted: 0 if no lamp shines or nothing can deflect them. */
+int64_t emission_count(const emission *e);
+/* The radius of the largest bounding ball; of scenes without bounds, that of the scene. */
+double emission_extent(const emission *e);
+
+typedef struct emitted_ray {
+    vec3 origin, direction;
+    vec3 power; /* over pi, by channel; in a spectral film that at the photon's wavelength, in each channel */
+    uint64_t inside;
+    int wavelength; /* its number, or -1 */
+    bool falls;     /* false: its light does not fall off with distance, and its power applies at distance 1 */
+} emitted_ray;
+
+/* The ray of photon i; false if it has none (outside a spotlight's cone). */
+bool emission_ray(const emission *e, int64_t i, emitted_ray *out);
+
+/* A random number in (0, 1) for a decision of photon i at a depth. */
+double emission_chance(const emission *e, int64_t i, int depth, int which);

@@ -1,0 +1,57 @@
+/* A photon map: where light from the lamps arrived on matte surfaces after mirrors and clear solids (Jensen, "Global
+ * Illumination using Photon Maps", Eurographics Workshop on Rendering 1996). Each photon spreads its power over a disc
+ * in its surface's plane, whose radius is the distance to its PHOTON_NEIGHBOURS-th neighbour: narrow where light is
+ * dense, so that sharp caustics stay sharp (the sample-point estimator of Silverman, Density Estimation, 1986, 5.3).
+ * The discs overlap; irradiance at a point is the sum over the discs around it.
+ *
+ * The map is a function of the set of photons: they are sorted, so that sums have one order whichever worker added them
+ * when. Ownership: photon_map_create allocates, photon_map_destroy releases; once built, any number of threads may
+ * read. */
+#pragma once
+
+#include "base/status.h"
+#include "base/vec3.h"
+#include <stdbool.h>
+#include <stddef.h>
+#include <stdint.h>
+
+/* Without padding: records are compared byte by byte. */
+typedef struct photon {
+    vec3 position;
+    float normal[3]; /* of the surface, on the side where it arrived */
+    float flux[3];   /* its power over pi, by channel: a matte surface's radiance is its albedo times irradiance / pi */
+    float radius;    /* of its disc; photon_map_spread computes it */
+    int32_t wavelength; /* its number in a spectral film, else 0 */
+} photon;
+
+/* Photons of one worker, in any order. Zeros at first; the owner frees list. */
+typedef struct photon_list {
+    photon *list;
+    size_t count, room;
+} photon_list;
+
+/* False when out of memory, with the list unchanged. */
+bool photon_list_add(photon_list *l, const photon *one);
+
+typedef struct photon_map photon_map;
+
+/* A map of the photons of all lists. STATUS_FAILURE when out of memory. */
+status photon_map_create(const photon_list *lists, size_t count, photon_map **out, diagnostic *why);
+void photon_map_destroy(photon_map *m);
+
+/* Computes the radii, at most `widest`, of photons first .. first + PHOTON_BLOCK - 1; threads share the blocks. */
+enum { PHOTON_BLOCK = 512, PHOTON_NEIGHBOURS = 48 };
+void photon_map_spread(photon_map *m, size_t first, double widest);
+/* Call after the last photon_map_spread: the map is then complete. */
+void photon_map_finish(photon_map *m);
+
+size_t photon_map_count(const photon_map *m);
+/* Photon i in the map's order. */
+const photon *photon_map_at(const photon_map *m, size_t i);
+
+/* Irradiance over pi at a point of a surface with that normal, by channel. In a spectral map, per wavelength number
+ * (a photon counts for wavelengths near its own): wavelength is the ray's, or -1 in an rgb map. */
+vec3 photon_map_irradiance(const photon_map *m, vec3 point, vec3 normal, int wavelength);
+
+/* Memory for each photon, bytes. */
+size_t photon_map_bytes(void);

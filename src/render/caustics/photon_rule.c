@@ -1,0 +1,154 @@
+/* Tracing of photons. A ray's sample key is the photon's number, with its wavelength; its throughput is its share of
+ * the power with which the photon began. */
+#include "render/caustics/photon_rule.h"
+
+#include "render/shade/shading.h"
+
+#include <stdlib.h>
+
+/* Branches with less of the photon's power are followed at random. */
+#define LEAST_PHOTON 0.02
+
+typedef struct photon_work {
+    photon_list *found;
+    double passed[ROW]; /* the length of the path, by ray of the batch */
+    const int *list;    /* the gathered rays in the batch */
+} photon_work;
+
+static photon_work *work_of(tracer *t)
+{
+    return t->own;
+}
+
+static bool begin(tracer *t)
+{
+    if (!t->own)
+        t->own = calloc(1, sizeof(photon_work));
+    return t->own != NULL;
+}
+
+static void end(void *own)
+{
+    free(own);
+}
+
+static camera_sampling sampling(const render_settings *r)
+{
+    (void)r;
+    return (camera_sampling){.rays = 1, .points = 1, .together = 1};
+}
+
+static int64_t number_of(int64_t sample_key)
+{
+    return sample_key & (((int64_t)1 << 50) - 1);
+}
+
+void photon_rule_emit(tracer *t, int64_t first, int64_t end, photon_list *found)
+{
+    const photon_frame *f = t->target.state;
+    ray_queue *q = &t->queues.waiting[0];
+    work_of(t)->found = found;
+    for (int64_t i = first; i < end; i++) {
+        emitted_ray r;
+        if (!emission_ray(f->from, i, &r))
+            continue;
+        const int at = q->count++;
+        q->ox[at] = r.origin.x, q->oy[at] = r.origin.y, q->oz[at] = r.origin.z;
+        q->dx[at] = r.direction.x, q->dy[at] = r.direction.y, q->dz[at] = r.direction.z;
+        q->wr[at] = q->wg[at] = q->wb[at] = 1.0;
+        q->start[at] = FACE_NONE, q->inside[at] = r.inside;
+        q->sample_key[at] = r.wavelength < 0 ? i : sample_key_with_wavelength(i, r.wavelength);
+        q->sq[at] = 0.0; /* the length of its path so far */
+    }
+}
+
+static void intersect(tracer *t, ray_queue *q, int first, int depth, const ray_batch *rays)
+{
+    intersect_nearest(t, q, first, depth, rays);
+    for (int i = 0; i < rays->count; i++)
+        work_of(t)->passed[i] = q->sq[first + i] + t->batch.hits.t[i];
+}
+
+static void leave(tracer *t, const ray_queue *q, int first, const int *list, int count)
+{
+    (void)t, (void)q, (void)first, (void)list, (void)count;
+}
+
+static void place(tracer *t, const int *list)
+{
+    work_of(t)->list = list;
+}
+
+/* The photons of the gathered group arrive. */
+static void arrive(tracer *t)
+{
+    photon_frame *f = t->target.state;
+    photon_work *w = work_of(t);
+    const group *g = &t->surface.gathered;
+    for (int k = 0; k < g->count; k++) {
+        emitted_ray r;
+        if (!emission_ray(f->from, number_of(g->sample_key[k]), &r))
+            continue;
+        const double passed = w->passed[w->list[k]], falls = r.falls ? 1.0 : passed * passed;
+        const photon one = {.position = {g->points.px[k], g->points.py[k], g->points.pz[k]},
+                            .normal = {(float)g->points.nx[k], (float)g->points.ny[k], (float)g->points.nz[k]},
+                            .flux = {(float)(g->wr[k] * r.power.x * falls), (float)(g->wg[k] * r.power.y * falls),
+                                     (float)(g->wb[k] * r.power.z * falls)},
+                            .wavelength = r.wavelength};
+        if (!photon_list_add(w->found, &one))
+            atomic_store(&f->out_of_memory, true);
+    }
+}
+
+/* The branch of record k: enqueued with its share of the power, or ended. */
+static void follow(tracer *t, int k, int depth, bool refracted)
+{
+    const photon_frame *f = t->target.state;
+    const photon_work *w = work_of(t);
+    const group *g = &t->surface.gathered;
+    const branch_group *b = &t->surface.branches;
+    double share = refracted ? b->refract[k] : b->reflect[k];
+    if (!(share > 0.0))
+        return;
+    const double power = share * fmax(g->wr[k], fmax(g->wg[k], g->wb[k]));
+    if (power < LEAST_PHOTON) {
+        if (emission_chance(f->from, number_of(g->sample_key[k]), depth, refracted) * LEAST_PHOTON >= power)
+            return;
+        share *= LEAST_PHOTON / power;
+    }
+    ray_queue *q = &t->queues.waiting[depth + 1];
+    const int at = q->count++;
+    q->ox[at] = g->points.px[k], q->oy[at] = g->points.py[k], q->oz[at] = g->points.pz[k];
+    q->dx[at] = refracted ? b->tx[k] : b->rx[k], q->dy[at] = refracted ? b->ty[k] : b->ry[k];
+    q->dz[at] = refracted ? b->tz[k] : b->rz[k];
+    q->wr[at] = g->wr[k] * share, q->wg[at] = g->wg[k] * share, q->wb[at] = g->wb[k] * share;
+    q->start[at] = g->points.face[k], q->sample_key[at] = g->sample_key[k];
+    q->inside[at] = refracted ? g->inside_after[k] : g->inside_before[k];
+    q->sq[at] = w->passed[w->list[k]];
+    COUNT(refracted ? t->account.counters.refract++ : t->account.counters.reflect++);
+}
+
+static void shade(tracer *t, int depth, int priority_index)
+{
+    const material *m = &t->surface.mat->surface;
+    const bool opaque = surface_is_opaque(t, priority_index);
+    if (opaque && m->diffuse > 0.0 && depth > 0)
+        arrive(t);
+    if (depth == t->queues.depth_limit || (opaque && m->reflectivity == 0.0))
+        return;
+    shading_branches(t, opaque);
+    for (int k = 0; k < t->surface.gathered.count; k++) {
+        follow(t, k, depth, false);
+        follow(t, k, depth, true);
+    }
+}
+
+const integrator integrator_of_photons = {.traced = true,
+                                          .by_sample = true,
+                                          .sampling = sampling,
+                                          .begin = begin,
+                                          .end = end,
+                                          .intersect = intersect,
+                                          .background = leave,
+                                          .place = place,
+                                          .shade = shade};

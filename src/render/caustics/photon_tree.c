@@ -1,0 +1,175 @@
+/* The tree of a photon map: boxes, and searches in it. */
+#include "render/caustics/photon_tree.h"
+
+#include <stdlib.h>
+
+void photon_box_add(photon_box *b, vec3 at, double radius)
+{
+    const double p[3] = {at.x, at.y, at.z};
+    for (int a = 0; a < 3; a++) {
+        b->low[a] = p[a] - radius < b->low[a] ? p[a] - radius : b->low[a];
+        b->high[a] = p[a] + radius > b->high[a] ? p[a] + radius : b->high[a];
+    }
+}
+
+static void add_box(photon_box *b, const photon_box *other)
+{
+    for (int a = 0; a < 3; a++) {
+        b->low[a] = other->low[a] < b->low[a] ? other->low[a] : b->low[a];
+        b->high[a] = other->high[a] > b->high[a] ? other->high[a] : b->high[a];
+    }
+}
+
+bool photon_tree_make(photon_map *m)
+{
+    for (size_t below = m->count; below > 0;) {
+        const size_t boxes = (below + PHOTON_WIDE - 1) / PHOTON_WIDE;
+        if (!(m->level[m->levels] = malloc(boxes * sizeof(photon_box))))
+            return false;
+        m->boxes[m->levels++] = boxes;
+        below = boxes > 1 ? boxes : 0;
+    }
+    return true;
+}
+
+/* The numbers of a box's children one level below: first .. end - 1. */
+static size_t end_of(size_t first, size_t below)
+{
+    return first + PHOTON_WIDE < below ? first + PHOTON_WIDE : below;
+}
+
+void photon_tree_fit(photon_map *m)
+{
+    for (int k = 0; k < m->levels; k++) {
+        const size_t below = k == 0 ? m->count : m->boxes[k - 1];
+        for (size_t b = 0; b < m->boxes[k]; b++) {
+            photon_box box = PHOTON_BOX_EMPTY;
+            for (size_t i = b * PHOTON_WIDE; i < end_of(b * PHOTON_WIDE, below); i++)
+                if (k == 0)
+                    photon_box_add(&box, m->photons[i].position, (double)m->photons[i].radius);
+                else
+                    add_box(&box, &m->level[k - 1][i]);
+            m->level[k][b] = box;
+        }
+    }
+}
+
+/* The square of the distance from a point to a box. */
+static double distance2(const photon_box *b, vec3 at)
+{
+    const double p[3] = {at.x, at.y, at.z};
+    double sum = 0.0;
+    for (int a = 0; a < 3; a++) {
+        const double under = b->low[a] - p[a], over = p[a] - b->high[a];
+        const double off = under > over ? under : over;
+        sum += off > 0.0 ? off * off : 0.0;
+    }
+    return sum;
+}
+
+/* --- the nearest neighbours --- */
+
+enum { NEIGHBOURS_MAX = 128 };
+/* Of the widest disc: many photons may meet in one point. */
+#define LEAST_DISC 1e-4
+
+/* The k least squared distances so far, as a heap with the largest first. */
+typedef struct nearest {
+    const photon_map *map;
+    const photon *from;
+    int k, count;
+    double limit2, heap[NEIGHBOURS_MAX];
+} nearest;
+
+static void sift_down(nearest *s)
+{
+    int at = 0;
+    const double value = s->heap[0];
+    for (int child = 1; child < s->count; child = 2 * at + 1) {
+        if (child + 1 < s->count && s->heap[child + 1] > s->heap[child])
+            child++;
+        if (s->heap[child] <= value)
+            break;
+        s->heap[at] = s->heap[child], at = child;
+    }
+    s->heap[at] = value;
+}
+
+static void sift_up(nearest *s, double value)
+{
+    int at = s->count++;
+    for (; at > 0 && s->heap[(at - 1) / 2] < value; at = (at - 1) / 2)
+        s->heap[at] = s->heap[(at - 1) / 2];
+    s->heap[at] = value;
+}
+
+static void consider(nearest *s, const photon *other)
+{
+    const vec3 off = vec3_sub(other->position, s->from->position);
+    const double d2 = vec3_dot(off, off);
+    if (!(d2 < s->limit2))
+        return;
+    if (photon_cosine(s->from, other) < PHOTON_FACING)
+        return;
+    if (s->count < s->k)
+        sift_up(s, d2);
+    else
+        s->heap[0] = d2, sift_down(s);
+    if (s->count == s->k)
+        s->limit2 = s->heap[0];
+}
+
+static void search(nearest *s, int level, size_t box)
+{
+    const photon_map *m = s->map;
+    const size_t first = box * PHOTON_WIDE, end = end_of(first, level == 0 ? m->count : m->boxes[level - 1]);
+    for (size_t i = first; i < end; i++)
+        if (level == 0)
+            consider(s, &m->photons[i]);
+        else if (distance2(&m->level[level - 1][i], s->from->position) < s->limit2)
+            search(s, level - 1, i);
+}
+
+/* The search starts with the smallest box, and in each larger one looks at those not yet searched. */
+double photon_tree_reach(const photon_map *m, size_t i, int k, double widest)
+{
+    nearest s = {m, &m->photons[i], k + 1, 0, widest * widest, {0.0}}; /* the photon itself is the first */
+    size_t box = i / PHOTON_WIDE;
+    search(&s, 0, box);
+    for (int level = 1; level < m->levels; level++) {
+        const size_t done = box;
+        box /= PHOTON_WIDE;
+        for (size_t b = box * PHOTON_WIDE; b < end_of(box * PHOTON_WIDE, m->boxes[level - 1]); b++)
+            if (b != done && distance2(&m->level[level - 1][b], s.from->position) < s.limit2)
+                search(&s, level - 1, b);
+    }
+    const double reach = sqrt(s.limit2);
+    return reach > LEAST_DISC * widest ? reach : LEAST_DISC * widest;
+}
+
+/* --- the discs around a point --- */
+
+static bool contains(const photon_box *b, vec3 p)
+{
+    return (int)(p.x >= b->low[0]) & (int)(p.x <= b->high[0]) & (int)(p.y >= b->low[1]) & (int)(p.y <= b->high[1]) &
+           (int)(p.z >= b->low[2]) & (int)(p.z <= b->high[2]);
+}
+
+static void visit_box(const photon_map *m, int level, size_t box, vec3 point,
+                      void (*visit)(const photon *one, void *context), void *context)
+{
+    if (!contains(&m->level[level][box], point))
+        return;
+    const size_t first = box * PHOTON_WIDE, end = end_of(first, level == 0 ? m->count : m->boxes[level - 1]);
+    for (size_t i = first; i < end; i++)
+        if (level == 0)
+            visit(&m->photons[i], context);
+        else
+            visit_box(m, level - 1, i, point, visit, context);
+}
+
+void photon_tree_around(const photon_map *m, vec3 point, void (*visit)(const photon *one, void *context), void *context)
+{
+    if (m->levels > 0)
+        visit_box(m, m->levels - 1, 0, point, visit, context);
+}

@@ -1,0 +1,52 @@
+/* The tree of a photon map, for photon_map.c alone: boxes around every eight photons in order, around every eight of
+ * these boxes, and so on; a box is found by its number, without pointers. */
+#pragma once
+
+#include "render/caustics/photon_map.h"
+
+#include <math.h>
+
+#define PHOTON_PI 3.14159265358979323846
+/* The least cosine between the normals of neighbours, about 37 degrees: round surfaces are one, edges part two. */
+#define PHOTON_FACING 0.8
+
+enum { PHOTON_WIDE = 8, PHOTON_LEVELS_MAX = 22 };
+
+typedef struct photon_box {
+    double low[3], high[3];
+} photon_box;
+#define PHOTON_BOX_EMPTY                                            \
+    {                                                               \
+        {(double)INFINITY, (double)INFINITY, (double)INFINITY},     \
+        {                                                           \
+            -(double)INFINITY, -(double)INFINITY, -(double)INFINITY \
+        }                                                           \
+    }
+
+struct photon_map {
+    photon *photons;
+    size_t count;
+    photon_box *level[PHOTON_LEVELS_MAX]; /* level 0: boxes of PHOTON_WIDE photons; the last one has one box */
+    size_t boxes[PHOTON_LEVELS_MAX];
+    int levels; /* 0 without photons */
+};
+
+/* The cosine between two photons' normals. */
+static inline double photon_cosine(const photon *a, const photon *b)
+{
+    const float *n = a->normal, *o = b->normal;
+    return (double)(n[0] * o[0] + n[1] * o[1] + n[2] * o[2]);
+}
+
+void photon_box_add(photon_box *b, vec3 at, double radius);
+
+/* Allocates the boxes; false when out of memory. */
+bool photon_tree_make(photon_map *m);
+/* Fits the boxes to the photons' discs: before they have radii, to their positions. */
+void photon_tree_fit(photon_map *m);
+/* The distance from photon i to its k-th nearest neighbour on the same surface, at most `widest`. Boxes must be those
+ * of the positions, or larger. */
+double photon_tree_reach(const photon_map *m, size_t i, int k, double widest);
+/* Calls visit for the photons near the point, at least those whose disc may contain it, in order. */
+void photon_tree_around(const photon_map *m, vec3 point, void (*visit)(const photon *one, void *context),
+                        void *context);

@@ -1,0 +1,302 @@
+/* Tests of caustics by photons, against closed forms: an image source behind a mirror, a slab, and a glass ball whose
+ * light a meridional ray tracer of this file follows. */
+#include <math.h>
+#include <setjmp.h>
+#include <stdarg.h>
+#include <stddef.h>
+#include <stdint.h>
+#include <cmocka.h>
+
+#include "render/caustics/caustics.h"
+#include "render/caustics/photon_map.h"
+#include "render_fixture.h"
+#include "scene/model/scene.h"
+#include <stdlib.h>
+
+#define PI 3.14159265358979323846
+#define COUNT(a) (sizeof(a) / sizeof((a)[0]))
+#define assert_near(a, b, tolerance)                                    \
+    do {                                                                \
+        if (!(fabs((a) - (b)) <= (tolerance)))                          \
+            fail_msg("%.9g instead of %.9g", (double)(a), (double)(b)); \
+    } while (0)
+
+/* The mean over the image, first channel. */
+static double mean_of(const scene *s)
+{
+    render_result *r = render(s);
+    double sum = 0.0;
+    const int pixels = r->img->width * r->img->height;
+    for (int i = 0; i < pixels; i++)
+        sum += (double)r->img->sum[3 * i] / FILM_ONE;
+    render_result_destroy(r);
+    return sum / pixels;
+}
+
+/* A camera close above the ground at x = 1 sees about 0.2 scene units of it. */
+#define PATCH                                                                         \
+    "render: {width: 12, height: 12, depth: 8, caustics: photons, photons: 200000}\n" \
+    "camera: {position: [1, 0.5, 0], target: [1, 0, 0.0001], fov_deg: 20}\n"          \
+    "background: {color: [0, 0, 0], ambient: [0, 0, 0]}\n"
+#define PATCH_SIDE (2.0 * 0.5 * 0.17632698070846498) /* 2 h tan(10 deg) */
+
+/* Phong's I = k_d C I_L (N.L) reach^2 / d^2 of a source at (x, y, 0), averaged over the patch. */
+static double lit_by(double x, double y, double reach)
+{
+    double sum = 0.0;
+    int count = 0;
+    for (double u = -0.45; u < 0.5; u += 0.1)
+        for (double v = -0.45; v < 0.5; v += 0.1, count++) {
+            const double dx = 1.0 + u * PATCH_SIDE - x, dz = v * PATCH_SIDE, d2 = dx * dx + y * y + dz * dz;
+            sum += y / sqrt(d2) * (reach > 0.0 ? reach * reach / d2 : 1.0);
+        }
+    return sum / count;
+}
+
+/* A mirror at x = 3 shows the lamp at x = 6. Also of a lamp whose light does not fall off, and through a path. */
+static void a_mirror_is_an_image_source(void **state)
+{
+    (void)state;
+    static const char scene_text[] = PATCH "lights: {lamp: {position: [0, 2, 0], intensity: 1.5}}\n"
+                                           "solids:\n"
+                                           "  ground: {shape: plane, diffuse: 0.5}\n"
+                                           "  mirror: {shape: box, position: [3.5, 1, 0], size: [1, 3, 3],\n"
+                                           "    reflectivity: 0.8}\n";
+    scene *s = scene_from(scene_text);
+    for (int falls = 0; falls < 2; falls++) {
+        const double reach = falls ? 2.5 : 0.0;
+        set(s, falls ? "lamp.reach=2.5" : "lamp.reach=0");
+        const double expected = 0.5 * 1.5 * (lit_by(0.0, 2.0, reach) + 0.8 * lit_by(6.0, 2.0, reach));
+        set(s, "render.integrator=whitted");
+        assert_near(mean_of(s), expected, 0.004 * expected);
+        set(s, "render.integrator=raycast");
+        assert_near(mean_of(s), expected, 0.004 * expected);
+    }
+    scene_destroy(s);
+}
+
+/* At normal incidence a lossless slab of index n and thickness t moves the lamp closer by t (1 - 1 / n), and passes
+ * (1 - R) / (1 + R) with all reflections within it, R = ((n - 1) / (n + 1))^2 (Born and Wolf, 1.5.2). */
+static void a_slab_moves_the_lamp_closer(void **state)
+{
+    (void)state;
+    static const char scene_text[] =
+        "render: {width: 8, height: 8, depth: 8, caustics: photons, photons: 400000, integrator: raycast}\n"
+        "camera: {position: [0, 0.5, 0], target: [0, 0, 0.0001], fov_deg: 10}\n"
+        "background: {color: [0, 0, 0], ambient: [0, 0, 0]}\n"
+        "lights: {lamp: {position: [0, 8, 0], intensity: 1, reach: 8}}\n"
+        "solids:\n"
+        "  ground: {shape: plane, diffuse: 1}\n"
+        "  slab: {shape: box, position: [0, 2, 0], size: [1.5, 1, 1.5], transparency: 1, ior: 1.6}\n";
+    scene *s = scene_from(scene_text);
+    const double apparent = 8.0 - 1.0 + 1.0 / 1.6, r = 0.6 * 0.6 / (2.6 * 2.6),
+                 expected = 64.0 / (apparent * apparent) * (1.0 - r) / (1.0 + r);
+    assert_near(mean_of(s), expected, 0.005 * expected);
+    set(s, "render.spectrum=spectral");
+    set(s, "render.photons=1000000");
+    set(s, "render.width=24");
+    set(s, "render.height=24");
+    /* daylight's white in XYZ: its X is 0.9505 */
+    assert_near(mean_of(s), 0.9505 * expected, 0.01 * expected);
+    scene_destroy(s);
+}
+
+/* --- a ball --- */
+
+/* A lamp at height LAMP above the centre of a ball of radius 1, the ground at depth GROUND below it. */
+#define LAMP 6.0
+#define GROUND 1.5
+#define INDEX 1.5
+enum { RINGS = 12, ORDERS = 12, STEPS = 400000 };
+
+static double reflectance(double cos_i, double n)
+{
+    const double cos_t = sqrt(1.0 - (1.0 - cos_i * cos_i) / (n * n)), s = (cos_i - n * cos_t) / (cos_i + n * cos_t),
+                 p = (n * cos_i - cos_t) / (n * cos_i + cos_t);
+    return 0.5 * (s * s + p * p);
+}
+
+/* Adds the flux of a ray in the meridional plane, from (x, y) along the angle `way` from straight down. */
+static void land(double x, double y, double way, double flux, double *rings, double *all)
+{
+    if (!(cos(way) > 0.0) || y < -GROUND)
+        return;
+    const double at = fabs(x + (y + GROUND) * tan(way));
+    *all += flux;
+    if (at < 2.0)
+        rings[(int)(at / 2.0 * RINGS)] += flux;
+}
+
+/* Light that leaves the lamp at angle a meets the ball at incidence i, is reflected or refracted to r, and with each
+ * reflection within the ball turns by pi - 2 r. */
+static void follow(double a, double flux, double *rings, double *all)
+{
+    const double b = LAMP * sin(a); /* the distance of the ray from the centre */
+    const double i = asin(b), r = asin(b / INDEX), share = reflectance(cos(i), INDEX);
+    double place = i - a; /* the angle of the point, from straight up towards the ray's side */
+    double power = (1.0 - share) * (1.0 - share);
+    /* outside: the normal is at `place`, and the ray turns by pi - 2 i */
+    land(sin(place), cos(place), PI - place - i, share * flux, rings, all);
+    for (int k = 0; k < ORDERS; k++, power *= share) {
+        place += PI - 2.0 * r; /* the chord to the next point */
+        /* the ray leaves at angle i from the normal, on the far side */
+        land(sin(place), cos(place), PI - (place + i), power * flux, rings, all);
+    }
+}
+
+static double expected_flux(double *rings)
+{
+    double all = 0.0;
+    const double widest = asin(1.0 / LAMP);
+    for (int k = 0; k < RINGS; k++)
+        rings[k] = 0.0;
+    for (int k = 0; k < STEPS; k++) {
+        const double a = (k + 0.5) / STEPS * widest;
+        follow(a, 2.0 * PI * sin(a) * widest / STEPS, rings, &all);
+    }
+    return all;
+}
+
+static caustics *photons_of(plan *p, const atomic_bool *stop)
+{
+    caustics *c = NULL;
+    assert_int_equal(caustics_create(p, isa_best(), 1, stop, &c, NULL), STATUS_OK);
+    assert_non_null(c);
+    for (int k = 0; k < CAUSTICS_STEPS; k++) {
+        caustics_steps[k].together(c, 0);
+        assert_int_equal(caustics_steps[k].alone(c, NULL), STATUS_OK);
+    }
+    return c;
+}
+
+static void a_ball_focuses_as_a_forward_tracer_says(void **state)
+{
+    (void)state;
+    scene *s = scene_from("render: {caustics: photons, photons: 400000}\n"
+                          "lights: {lamp: {position: [0, 7.5, 0], intensity: 1, reach: 1}}\n"
+                          "solids:\n"
+                          "  ground: {shape: plane, diffuse: 1}\n"
+                          "  ball: {shape: sphere, position: [0, 1.5, 0], radius: 1, transparency: 1, ior: 1.5}\n");
+    plan *p = NULL;
+    const atomic_bool stop = false;
+    double rings[RINGS], found[RINGS] = {0.0}, seen = 0.0;
+    const double all = expected_flux(rings);
+    assert_int_equal(plan_build(s, &p, NULL), STATUS_OK);
+    caustics *c = photons_of(p, &stop);
+    for (size_t i = 0; i < photon_map_count(p->photons); i++) {
+        const photon *one = photon_map_at(p->photons, i);
+        const double at = hypot(one->position.x, one->position.z);
+        seen += (double)one->flux[0];
+        if (at < 2.0)
+            found[(int)(at / 2.0 * RINGS)] += (double)one->flux[0];
+    }
+    assert_near(seen, all, 1e-3 * all);
+    for (int k = 0; k < RINGS; k++)
+        assert_near(found[k], rings[k], 0.005 * rings[k] + 2e-4 * all);
+    /* and by discs: flux within rings where light is even */
+    for (int k = 3; k < RINGS; k++) {
+        double sum = 0.0;
+        const double step = 2.0 / RINGS / 40.0;
+        for (int j = 0; j < 40; j++) {
+            const double at = 2.0 * k / RINGS + (j + 0.5) * step;
+            for (int turn = 0; turn < 60; turn++)
+                sum += photon_map_irradiance(p->photons,
+                                             vec3_make(at * cos(turn * PI / 30.0), 0.0, at * sin(turn * PI / 30.0)),
+                                             vec3_make(0.0, 1.0, 0.0), -1)
+                           .x *
+                       2.0 * PI * at * step / 60.0;
+        }
+        assert_near(sum, rings[k], 0.05 * rings[k] + 5e-4 * all);
+    }
+    caustics_destroy(c);
+    plan_destroy(p);
+    scene_destroy(s);
+}
+
+/* Of light that no solid absorbs, all arrives: a closed matte room around a glass ball and a mirror receives what the
+ * lamp sends to them. */
+static void no_light_is_lost(void **state)
+{
+    (void)state;
+    scene *s = scene_from("render: {caustics: photons, photons: 100000}\n"
+                          "lights: {lamp: {position: [0, 3, 0], intensity: 1, reach: 1}}\n"
+                          "solids:\n"
+                          "  floor: {shape: plane, diffuse: 1, position: [0, -5, 0]}\n"
+                          "  roof: {shape: plane, diffuse: 1, position: [0, 9, 0], rotation: [180, 0, 0]}\n"
+                          "  left: {shape: box, diffuse: 1, position: [-10, 0, 0], size: [2, 60, 60]}\n"
+                          "  right: {shape: box, diffuse: 1, position: [10, 0, 0], size: [2, 60, 60]}\n"
+                          "  front: {shape: box, diffuse: 1, position: [0, 0, -10], size: [60, 60, 2]}\n"
+                          "  back: {shape: box, diffuse: 1, position: [0, 0, 10], size: [60, 60, 2]}\n"
+                          "  ball: {shape: sphere, position: [0.5, 0, 0], radius: 1, transparency: 1, ior: 1.5}\n");
+    plan *p = NULL;
+    const atomic_bool stop = false;
+    assert_int_equal(plan_build(s, &p, NULL), STATUS_OK);
+    caustics *c = photons_of(p, &stop);
+    double seen = 0.0;
+    for (size_t i = 0; i < photon_map_count(p->photons); i++)
+        seen += (double)photon_map_at(p->photons, i)->flux[0];
+    const double d2 = 0.5 * 0.5 + 3.0 * 3.0, angle = 2.0 * PI * (1.0 - sqrt(1.0 - 1.0 / d2));
+    assert_near(seen, angle, 1e-3 * angle);
+    caustics_destroy(c);
+    plan_destroy(p);
+    scene_destroy(s);
+}
+
+/* --- determinism --- */
+
+static const char *const variants[] = {
+    "render.photons=3000 lamp.reach=9",
+    "render.photons=3000 vessel.absorb_per_m=1,2,3 render.polarisation=on",
+    "render.photons=3000 render.integrator=path render.paths=4 lamp.radius=0.4 lamp.reach=9",
+    "render.photons=3000 render.spectrum=spectral render.wavelengths=5 liquid.medium=water",
+};
+
+static void films_are_bit_identical(void **state)
+{
+    (void)state;
+    static const int threads[] = {1, 2, 5};
+    for (size_t v = 0; v < COUNT(variants); v++) {
+        scene *s = rod_scene("render.width=40 render.height=30 render.depth=5 render.caustics=photons");
+        set_all(s, variants[v]);
+        uint64_t hash = 0, rays = 0;
+        for (int level = ISA_BASE; level <= (int)isa_best(); level++)
+            for (size_t t = 0; t < COUNT(threads); t++) {
+                s->render.threads = threads[t];
+                render_result *r = render_at(s, (isa)level, NULL);
+                if (!hash)
+                    hash = film_hash(r->img), rays = r->counters.photon;
+                assert_true(film_hash(r->img) == hash);
+                assert_true(r->counters.photon == rays && (rays > 0 || !CUVETTE_COUNTERS));
+                render_result_destroy(r);
+            }
+        scene_destroy(s);
+    }
+}
+
+/* Without anything that deflects light, the film is that of opaque shadows. */
+static void photons_change_nothing_without_mirrors_and_clear_solids(void **state)
+{
+    (void)state;
+    scene *s = rod_scene("render.width=40 render.height=30 vessel.visible=off liquid.visible=off");
+    render_result *without = render(s);
+    set(s, "render.caustics=photons");
+    render_result *with = render(s);
+    assert_true(film_hash(with->img) == film_hash(without->img));
+    assert_true(with->counters.photon == 0);
+    render_result_destroy(without);
+    render_result_destroy(with);
+    scene_destroy(s);
+}
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(a_mirror_is_an_image_source),
+        cmocka_unit_test(a_slab_moves_the_lamp_closer),
+        cmocka_unit_test(a_ball_focuses_as_a_forward_tracer_says),
+        cmocka_unit_test(no_light_is_lost),
+        cmocka_unit_test(films_are_bit_identical),
+        cmocka_unit_test(photons_change_nothing_without_mirrors_and_clear_solids),
+    };
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}

@@ -1,0 +1,202 @@
+/* Tests of photon maps: irradiance of known distributions, its integral, and independence of the order of photons. */
+#include <math.h>
+#include <setjmp.h>
+#include <stdarg.h>
+#include <stddef.h>
+#include <stdint.h>
+#include <cmocka.h>
+
+#include "base/sobol.h"
+#include "base/random.h"
+#include "render/caustics/photon_map.h"
+#include <stdlib.h>
+#include <string.h>
+
+#define assert_near(a, b, tolerance)                                    \
+    do {                                                                \
+        if (!(fabs((a) - (b)) <= (tolerance)))                          \
+            fail_msg("%.9g instead of %.9g", (double)(a), (double)(b)); \
+    } while (0)
+
+static photon photon_at(double x, double y, double z, float flux)
+{
+    return (photon){.position = {x, y, z}, .normal = {0.0F, 1.0F, 0.0F}, .flux = {flux, 2.0F * flux, 0.0F}};
+}
+
+/* Photon i of `count` on the unit square at y = 0, with a total flux of 1. */
+static photon spread_evenly(uint32_t i, int count)
+{
+    const sobol_point s = sobol_at(i, 7);
+    return photon_at(random_unit(s.x), 0.0, random_unit(s.y), 1.0F / (float)count);
+}
+
+static photon_map *map_of(photon_list *lists, size_t count, double widest)
+{
+    photon_map *m = NULL;
+    assert_int_equal(photon_map_create(lists, count, &m, NULL), STATUS_OK);
+    for (size_t first = 0; first < photon_map_count(m); first += PHOTON_BLOCK)
+        photon_map_spread(m, first, widest);
+    photon_map_finish(m);
+    for (size_t i = 0; i < count; i++)
+        free(lists[i].list);
+    return m;
+}
+
+static photon_map *even_map(int count)
+{
+    photon_list all = {0};
+    for (int i = 0; i < count; i++) {
+        const photon one = spread_evenly((uint32_t)i, count);
+        assert_true(photon_list_add(&all, &one));
+    }
+    return map_of(&all, 1, 0.2);
+}
+
+static const vec3 up = {0.0, 1.0, 0.0};
+
+static void an_even_density_gives_its_irradiance(void **state)
+{
+    (void)state;
+    photon_map *m = even_map(20000);
+    double sum = 0.0;
+    int points = 0;
+    for (double x = 0.2; x < 0.81; x += 0.05)
+        for (double z = 0.2; z < 0.81; z += 0.05, points++) {
+            const vec3 e = photon_map_irradiance(m, vec3_make(x, 0.0, z), up, -1);
+            assert_near(e.x, 1.0, 0.1);
+            assert_near(e.y, 2.0 * e.x, 1e-6);
+            assert_near(e.z, 0.0, 0.0);
+            sum += e.x;
+        }
+    assert_near(sum / points, 1.0, 0.005);
+    photon_map_destroy(m);
+}
+
+/* Discs spread light, but none is lost: the integral over the plane, also beyond the square's edge, is the flux. */
+static void the_integral_of_irradiance_is_the_flux(void **state)
+{
+    (void)state;
+    photon_map *m = even_map(3000);
+    double sum = 0.0;
+    const double step = 0.004;
+    for (double x = -0.3; x < 1.3; x += step)
+        for (double z = -0.3; z < 1.3; z += step)
+            sum += photon_map_irradiance(m, vec3_make(x, 0.0, z), up, -1).x * step * step;
+    assert_near(sum, 1.0, 1e-3);
+    photon_map_destroy(m);
+}
+
+/* A disc reaches to the PHOTON_NEIGHBOURS-th neighbour, found by looking at all photons. */
+static void discs_reach_the_nearest_neighbours(void **state)
+{
+    (void)state;
+    enum { COUNT = 1500 };
+    photon_map *m = even_map(COUNT);
+    double d[COUNT];
+    for (size_t i = 0; i < COUNT; i += 97) {
+        const photon *one = photon_map_at(m, i);
+        int nearer = 0, nearer_by_half = 0;
+        for (size_t k = 0; k < COUNT; k++) {
+            d[k] = vec3_length(vec3_sub(photon_map_at(m, k)->position, one->position));
+            nearer += d[k] < (double)one->radius;
+            nearer_by_half += d[k] < 0.5 * (double)one->radius;
+        }
+        /* some have the radius of a close neighbour */
+        assert_true(nearer > PHOTON_NEIGHBOURS / 2 && nearer < 2 * PHOTON_NEIGHBOURS);
+        assert_true(nearer_by_half < nearer / 2);
+    }
+    photon_map_destroy(m);
+}
+
+static void other_surfaces_receive_nothing(void **state)
+{
+    (void)state;
+    photon_map *m = even_map(20000);
+    const vec3 at = {0.5, 0.0, 0.5};
+    assert_true(photon_map_irradiance(m, at, up, -1).x > 0.5);
+    assert_near(photon_map_irradiance(m, at, vec3_make(0.0, -1.0, 0.0), -1).x, 0.0, 0.0);
+    assert_near(photon_map_irradiance(m, at, vec3_make(1.0, 0.0, 0.0), -1).x, 0.0, 0.0);
+    assert_near(photon_map_irradiance(m, vec3_make(0.5, 0.1, 0.5), up, -1).x, 0.0, 0.0);
+    assert_near(photon_map_irradiance(m, vec3_make(3.0, 0.0, 0.5), up, -1).x, 0.0, 0.0);
+    photon_map_destroy(m);
+}
+
+/* Divided among three lists, in another order. */
+static void the_map_does_not_depend_on_the_order_of_photons(void **state)
+{
+    (void)state;
+    enum { COUNT = 4000 };
+    photon_map *m = even_map(COUNT);
+    photon_list three[3] = {{0}};
+    for (int i = COUNT - 1; i >= 0; i--) {
+        const photon one = spread_evenly((uint32_t)i, COUNT);
+        assert_true(photon_list_add(&three[i * 7 % 3], &one));
+    }
+    photon_map *other = map_of(three, 3, 0.2);
+    assert_int_equal(photon_map_count(other), COUNT);
+    for (size_t i = 0; i < COUNT; i++)
+        assert_memory_equal(photon_map_at(m, i), photon_map_at(other, i), sizeof(photon));
+    for (double x = 0.0; x < 1.0; x += 0.03) {
+        const vec3 a = photon_map_irradiance(m, vec3_make(x, 0.0, 0.4), up, -1),
+                   b = photon_map_irradiance(other, vec3_make(x, 0.0, 0.4), up, -1);
+        assert_memory_equal(&a, &b, sizeof a);
+    }
+    photon_map_destroy(m);
+    photon_map_destroy(other);
+}
+
+/* Photons at all wavelengths alike: irradiance per wavelength number times 4000 is the same at each. */
+static void a_spectral_map_counts_photons_of_near_wavelengths(void **state)
+{
+    (void)state;
+    enum { COUNT = 20000 };
+    photon_list all = {0};
+    for (int i = 0; i < COUNT; i++) {
+        photon one = spread_evenly((uint32_t)i, COUNT);
+        const sobol_point s = sobol_at((uint32_t)i, 8);
+        one.wavelength = (int32_t)(random_unit(s.x) * 4000.0);
+        one.flux[0] = one.wavelength < 2000 ? 1.0F / COUNT : 0.0F;
+        assert_true(photon_list_add(&all, &one));
+    }
+    photon_map *m = map_of(&all, 1, 0.2);
+    double low = 0.0, high = 0.0;
+    int points = 0;
+    for (double x = 0.2; x < 0.81; x += 0.01)
+        for (double z = 0.2; z < 0.81; z += 0.01, points++) {
+            low += photon_map_irradiance(m, vec3_make(x, 0.0, z), up, 1200).x;
+            high += photon_map_irradiance(m, vec3_make(x, 0.0, z), up, 2800).x;
+        }
+    assert_near(low / points, 1.0, 0.02);
+    assert_near(high, 0.0, 0.0);
+    photon_map_destroy(m);
+}
+
+static void maps_without_photons_or_with_coincident_ones(void **state)
+{
+    (void)state;
+    photon_map *m = map_of(NULL, 0, 1.0);
+    assert_near(photon_map_irradiance(m, vec3_make(0.0, 0.0, 0.0), up, -1).x, 0.0, 0.0);
+    photon_map_destroy(m);
+    photon_list same = {0};
+    const photon one = photon_at(1.0, 0.0, 1.0, 1e-6F);
+    for (int i = 0; i < 1000; i++)
+        assert_true(photon_list_add(&same, &one));
+    m = map_of(&same, 1, 1.0);
+    const double e = photon_map_irradiance(m, vec3_make(1.0, 0.0, 1.0), up, -1).x;
+    assert_true(isfinite(e) && e > 0.0);
+    photon_map_destroy(m);
+}
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(an_even_density_gives_its_irradiance),
+        cmocka_unit_test(the_integral_of_irradiance_is_the_flux),
+        cmocka_unit_test(discs_reach_the_nearest_neighbours),
+        cmocka_unit_test(other_surfaces_receive_nothing),
+        cmocka_unit_test(the_map_does_not_depend_on_the_order_of_photons),
+        cmocka_unit_test(a_spectral_map_counts_photons_of_near_wavelengths),
+        cmocka_unit_test(maps_without_photons_or_with_coincident_ones),
+    };
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}
