@@ -101,6 +101,31 @@ static void a_slab_moves_the_lamp_closer(void **state)
     scene_destroy(s);
 }
 
+/* The sun, half a degree wide, over the slab: an even light, of which (1 - R) / (1 + R) passes. A lamp that is larger
+ * than what it shines on; also of two slabs, the upper of which the lower one's cone overlaps. */
+static void the_sun_passes_a_slab(void **state)
+{
+    (void)state;
+    static const char scene_text[] =
+        "render: {width: 16, height: 16, depth: 4, caustics: photons, photons: 300000, integrator: path, paths: 16}\n"
+        "camera: {position: [0, 0.5, 0], target: [0, 0, 0.0001], fov_deg: 60}\n"
+        "background: {color: [0, 0, 0], ambient: [0, 0, 0]}\n"
+        "lights: {sun: {position: [0, 10000, 0], intensity: 0.7, reach: 10000, radius: 46.5}}\n"
+        "solids:\n"
+        "  ground: {shape: plane, diffuse: 0.02}\n"
+        "  slab: {shape: box, position: [0, 2, 0], size: [1.5, 1, 1.5], transparency: 1, ior: 1.6}\n"
+        "  upper: {shape: box, position: [0, 5, 0], size: [1, 0.2, 1], transparency: 1, ior: 1.5, visible: off}\n";
+    scene *s = scene_from(scene_text);
+    const double r = 0.6 * 0.6 / (2.6 * 2.6), q = 0.5 * 0.5 / (2.5 * 2.5), passes = (1.0 - r) / (1.0 + r),
+                 too = (1.0 - q) / (1.0 + q);
+    assert_near(mean_of(s), 0.014 * passes, 0.0002 * passes);
+    set(s, "upper.visible=on");
+    /* parallel plates: 1 / T = 1 / T_1 + 1 / T_2 - 1 */
+    const double both = 1.0 / (1.0 / passes + 1.0 / too - 1.0);
+    assert_near(mean_of(s), 0.014 * both, 0.0003 * both); /* half a percent of noise */
+    scene_destroy(s);
+}
+
 /* --- a ball --- */
 
 /* A lamp at height LAMP above the centre of a ball of radius 1, the ground at depth GROUND below it. */
@@ -293,6 +318,7 @@ int main(void)
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(a_mirror_is_an_image_source),
         cmocka_unit_test(a_slab_moves_the_lamp_closer),
+        cmocka_unit_test(the_sun_passes_a_slab),
         cmocka_unit_test(a_ball_focuses_as_a_forward_tracer_says),
         cmocka_unit_test(no_light_is_lost),
         cmocka_unit_test(films_are_bit_identical),

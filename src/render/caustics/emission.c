@@ -235,30 +235,82 @@ static double off_axis(vec3 direction, vec3 axis)
     return 0.5 * vec3_dot(off, off);
 }
 
-/* A direction and the inverse of its density. The first number chooses the cone too. */
-static double direct(const emission *e, const lamp_emission *l, unit_pair s, vec3 *direction)
+static vec3 lamp_at(const emission *e, int lamp)
 {
+    return e->p->lights[lamp].position;
+}
+
+/* Do the rays of a lamp's cone pass the ball's disc, not the lamp's? */
+static bool by_ball(const emission *e, int lamp, int k)
+{
+    return e->balls[k].radius < sphere_radius(e, lamp);
+}
+
+/* A point of a disc of that radius across a direction. */
+static vec3 on_disc(vec3 centre, double radius, vec3 direction, unit_pair s)
+{
+    return vec3_add(centre, along(direction, 0.0, radius * sqrt(s.u), s.v));
+}
+
+/* The squared distance of a point from the line. */
+static double off_line(vec3 point, vec3 direction, vec3 from)
+{
+    const vec3 off = vec3_cross(vec3_sub(from, point), direction);
+    return vec3_dot(off, off);
+}
+
+/* The density of rays along a direction through a point, which cone `drawn` gave, per solid angle and area across; per
+ * solid angle for a point lamp. */
+static double density_of(const emission *e, int lamp, int drawn, vec3 direction, vec3 point)
+{
+    const lamp_emission *l = &e->lamps[lamp];
+    const double radius = sphere_radius(e, lamp), area = radius > 0.0 ? PI * radius * radius : 1.0;
+    double density = 0.0;
+    for (int k = 0; k < e->ball_count; k++) {
+        const ball *b = &e->balls[k];
+        const bool from_ball = by_ball(e, lamp, k);
+        const bool meets =
+            k == drawn || (off_axis(direction, l->cones[k].axis) <= l->cones[k].cap &&
+                           (!from_ball || off_line(point, direction, b->centre) <= b->radius * b->radius));
+        if (meets)
+            density +=
+                l->cones[k].share / (2.0 * PI * l->cones[k].cap) / (from_ball ? PI * b->radius * b->radius : area);
+    }
+    return density;
+}
+
+/* Moves the point back along its ray to the lamp's sphere; false if the ray does not leave it. */
+static bool to_lamp(const emission *e, int lamp, vec3 direction, vec3 *point)
+{
+    const double radius = sphere_radius(e, lamp),
+                 half = radius * radius - off_line(*point, direction, lamp_at(e, lamp));
+    if (!(half > 0.0))
+        return false;
+    const double back = vec3_dot(vec3_sub(lamp_at(e, lamp), *point), direction) + sqrt(half);
+    *point = vec3_add(*point, vec3_scale(direction, back));
+    return true;
+}
+
+/* A ray, and the inverse of its density times the lamp's disc: 0 if it does not leave the lamp. The first number chooses
+ * the cone too. */
+static double draw_ray(const emission *e, int lamp, unit_pair s, unit_pair place, emitted_ray *out)
+{
+    const lamp_emission *l = &e->lamps[lamp];
+    const double radius = sphere_radius(e, lamp);
     int k = 0;
     while (k + 1 < e->ball_count && s.u >= l->cones[k].share)
         s.u -= l->cones[k++].share;
     const cone *c = &l->cones[k];
     const double off = c->cap * fmin(s.u / c->share, 1.0);
-    *direction = along(c->axis, 1.0 - off, sqrt(off * (2.0 - off)), s.v);
-    double density = 0.0;
-    for (int j = 0; j < e->ball_count; j++)
-        if (j == k || off_axis(*direction, l->cones[j].axis) <= l->cones[j].cap)
-            density += l->cones[j].share / (2.0 * PI * l->cones[j].cap);
-    return 1.0 / density;
-}
-
-/* A point of the lamp's surface from which light leaves in that direction: uniform over its disc. */
-static vec3 leaves_from(const emission *e, int lamp, unit_pair s, vec3 direction)
-{
-    const vec3 centre = e->p->lights[lamp].position;
-    const double radius = sphere_radius(e, lamp);
+    out->direction = along(c->axis, 1.0 - off, sqrt(off * (2.0 - off)), s.v);
+    out->origin = lamp_at(e, lamp);
     if (radius == 0.0)
-        return centre;
-    return vec3_add(centre, vec3_scale(along(direction, sqrt(1.0 - s.u), sqrt(s.u), s.v), radius));
+        return 1.0 / density_of(e, lamp, k, out->direction, out->origin);
+    const bool from_ball = by_ball(e, lamp, k);
+    out->origin = on_disc(from_ball ? e->balls[k].centre : lamp_at(e, lamp), from_ball ? e->balls[k].radius : radius,
+                          out->direction, place);
+    const double density = density_of(e, lamp, k, out->direction, out->origin);
+    return to_lamp(e, lamp, out->direction, &out->origin) ? 1.0 / (density * PI * radius * radius) : 0.0;
 }
 
 bool emission_ray(const emission *e, int64_t i, emitted_ray *out)
@@ -268,11 +320,11 @@ bool emission_ray(const emission *e, int64_t i, emitted_ray *out)
     const light *l = &p->lights[lamp];
     const lamp_emission *from = &e->lamps[lamp];
     const int64_t number = i - from->first;
-    const double angle = direct(e, from, pair(e, number, (uint64_t)lamp << 8), &out->direction);
+    const double angle =
+        draw_ray(e, lamp, pair(e, number, (uint64_t)lamp << 8), pair(e, number, (uint64_t)lamp << 8 | 1), out);
     const double share = light_share(l, &p->cones[lamp], out->direction);
-    if (share == 0.0)
+    if (share == 0.0 || angle == 0.0)
         return false;
-    out->origin = leaves_from(e, lamp, pair(e, number, (uint64_t)lamp << 8 | 1), out->direction);
     out->inside = from->inside;
     out->falls = l->reach > 0.0;
     out->wavelength = -1;

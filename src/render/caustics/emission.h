@@ -2,7 +2,9 @@
  * towards what can deflect them, mirrors and clear solids: their directions are uniform over the cones, seen from the
  * lamp, around the bounding balls of these solids, with a density that is the sum over the cones. Where one has no
  * bounds, the cone is the whole sphere of directions. A lamp's flux into a small solid angle dw is pi I reach^2 dw, for
- * a point as for a sphere, whose every direction leaves from a disc across it; I is its intensity (path.c).
+ * a point as for a sphere, whose every direction leaves from a disc across it; I is its intensity (path.c). A ray of a
+ * direction passes a random point of the lamp's disc, or, of a lamp that is larger than the ball, as the sun is, of the
+ * ball's disc.
  *
  * Photons are points of a scrambled Sobol sequence for each lamp, a function of the seed and the photon's number.
  * Ownership: emission_create allocates, emission_destroy releases; the plan is borrowed. */

@@ -10,11 +10,23 @@ static const double rate_unknown = 1e6;
 
 enum { STEP = 4 }; /* from one pass to the next */
 
+/* Photons of a pass: a share like that of its pixels, a quarter of all in one of single samples. A photon costs about
+ * ten camera rays. */
+enum { PHOTONS_MIN = 2000, SINGLE_SHARE = 4 };
+#define PHOTON_COST 10.0
+
+static int64_t photons_of(int64_t all, int shrink, bool single)
+{
+    const int64_t share = (int64_t)shrink * shrink * (single ? SINGLE_SHARE : 1), part = all / share;
+    return part > PHOTONS_MIN ? part : all < PHOTONS_MIN ? all : PHOTONS_MIN;
+}
+
 render_settings passes_settings(const render_settings *r, int shrink, bool single)
 {
     render_settings pass = *r;
     pass.width = (r->width + shrink - 1) / shrink;
     pass.height = (r->height + shrink - 1) / shrink;
+    pass.photons = photons_of(r->photons, shrink, single);
     if (single)
         pass.samples = pass.paths = 1;
     return pass;
@@ -23,7 +35,7 @@ render_settings passes_settings(const render_settings *r, int shrink, bool singl
 double passes_work(const render_settings *r, int shrink, bool single)
 {
     const render_settings pass = passes_settings(r, shrink, single);
-    return scene_camera_rays(&pass);
+    return scene_camera_rays(&pass) + (scene_has_caustics(r) ? PHOTON_COST * (double)pass.photons : 0.0);
 }
 
 static void put(pass_plan *plan, int shrink, bool single)

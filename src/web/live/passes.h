@@ -12,7 +12,7 @@ typedef struct pass_plan {
     bool single[PASSES_MAX]; /* one sample (path) per pixel; false for the last */
 } pass_plan;
 
-/* Camera rays of a pass, times wavelengths. */
+/* Camera rays of a pass, times wavelengths, and its photons as many of them as they cost. */
 double passes_work(const render_settings *r, int shrink, bool single);
 
 /* rate: the latest work per second; 0 for unknown. first_s: the time limit of the first pass. */
