@@ -101,6 +101,33 @@ static void a_slab_moves_the_lamp_closer(void **state)
     scene_destroy(s);
 }
 
+/* Through a slab at 70 degrees: the mean of both polarisations, each (1 - R) / (1 + R), with polarisation; without, the
+ * same of their mean reflectance (Born and Wolf, 1.5.2). */
+static void photons_are_polarised(void **state)
+{
+    (void)state;
+    static const char scene_text[] =
+        "render: {width: 16, height: 16, depth: 8, caustics: photons, photons: 400000, integrator: raycast}\n"
+        "camera: {position: [0, 0.3, 0], target: [0, 0, 0.0001], fov_deg: 60}\n"
+        "background: {color: [0, 0, 0], ambient: [0, 0, 0]}\n"
+        "lights: {lamp: {position: [939.6926207859084, 342.02014332566876, 0], intensity: 1, reach: 1000}}\n"
+        "solids:\n"
+        "  ground: {shape: plane, diffuse: 1}\n"
+        "  slab: {shape: box, position: [1, 0.45, 0], size: [6, 0.2, 1], transparency: 1, ior: 1.5}\n";
+    scene *s = scene_from(scene_text);
+    const double cos_i = 0.3420201433256687, cos_t = sqrt(1.0 - (1.0 - cos_i * cos_i) / 2.25),
+                 r_s = (cos_i - 1.5 * cos_t) / (cos_i + 1.5 * cos_t),
+                 r_p = (1.5 * cos_i - cos_t) / (1.5 * cos_i + cos_t), a = r_s * r_s, b = r_p * r_p,
+                 mean = 0.5 * (a + b);
+    const double without = cos_i * (1.0 - mean) / (1.0 + mean),
+                 with = cos_i * 0.5 * ((1.0 - a) / (1.0 + a) + (1.0 - b) / (1.0 + b));
+    assert_true(with > 1.02 * without);
+    assert_near(mean_of(s), without, 0.006 * without);
+    set(s, "render.polarisation=on");
+    assert_near(mean_of(s), with, 0.006 * with);
+    scene_destroy(s);
+}
+
 /* The sun, half a degree wide, over the slab: an even light, of which (1 - R) / (1 + R) passes. A lamp that is larger
  * than what it shines on; also of two slabs, the upper of which the lower one's cone overlaps. */
 static void the_sun_passes_a_slab(void **state)
@@ -318,6 +345,7 @@ int main(void)
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(a_mirror_is_an_image_source),
         cmocka_unit_test(a_slab_moves_the_lamp_closer),
+        cmocka_unit_test(photons_are_polarised),
         cmocka_unit_test(the_sun_passes_a_slab),
         cmocka_unit_test(a_ball_focuses_as_a_forward_tracer_says),
         cmocka_unit_test(no_light_is_lost),

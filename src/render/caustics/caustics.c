@@ -40,8 +40,7 @@ status caustics_create(plan *p, isa level, int workers, const atomic_bool *stop,
     c->settings = *p;
     c->settings.render.depth = PHOTON_DEPTH;
     c->settings.render.min_weight = 0.0;
-    c->settings.render.polarisation = 0; /* photons average both polarisations */
-    c->settings.light_count = 0;         /* no shadow rays */
+    c->settings.light_count = 0; /* no shadow rays */
     c->workers = workers;
     c->stop = stop;
     c->found = calloc((size_t)workers, sizeof *c->found);

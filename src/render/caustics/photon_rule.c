@@ -1,5 +1,7 @@
 /* Tracing of photons. A ray's sample key is the photon's number, with its wavelength; its throughput is its share of
- * the power with which the photon began. */
+ * the power with which the photon began. With polarisation its Stokes vector is that of an analyser that went the same
+ * way backwards: what unpolarised light keeps between two ends does not depend on the direction (Stokes and Helmholtz
+ * reversion; Chandrasekhar, Radiative Transfer, 1950, section 13). */
 #include "render/caustics/photon_rule.h"
 
 #include "render/shade/shading.h"
@@ -58,7 +60,8 @@ void photon_rule_emit(tracer *t, int64_t first, int64_t end, photon_list *found)
         q->wr[at] = q->wg[at] = q->wb[at] = 1.0;
         q->start[at] = FACE_NONE, q->inside[at] = r.inside;
         q->sample_key[at] = r.wavelength < 0 ? i : sample_key_with_wavelength(i, r.wavelength);
-        q->sq[at] = 0.0; /* the length of its path so far */
+        q->sq[at] = q->su[at] = q->sv[at] = 0.0; /* unpolarised */
+        q->passed[at] = 0.0;
     }
 }
 
@@ -66,7 +69,7 @@ static void intersect(tracer *t, ray_queue *q, int first, int depth, const ray_b
 {
     intersect_nearest(t, q, first, depth, rays);
     for (int i = 0; i < rays->count; i++)
-        work_of(t)->passed[i] = q->sq[first + i] + t->batch.hits.t[i];
+        work_of(t)->passed[i] = q->passed[first + i] + t->batch.hits.t[i];
 }
 
 static void leave(tracer *t, const ray_queue *q, int first, const int *list, int count)
@@ -124,7 +127,12 @@ static void follow(tracer *t, int k, int depth, bool refracted)
     q->wr[at] = g->wr[k] * share, q->wg[at] = g->wg[k] * share, q->wb[at] = g->wb[k] * share;
     q->start[at] = g->points.face[k], q->sample_key[at] = g->sample_key[k];
     q->inside[at] = refracted ? g->inside_after[k] : g->inside_before[k];
-    q->sq[at] = w->passed[w->list[k]];
+    q->passed[at] = w->passed[w->list[k]];
+    if (t->target.frame_plan->render.polarisation) {
+        const polar_group *p = &t->surface.polar;
+        q->sq[at] = refracted ? p->tq[k] : p->rq[k], q->su[at] = refracted ? p->tu[k] : p->ru[k];
+        q->sv[at] = refracted ? p->tv[k] : p->rv[k];
+    }
     COUNT(refracted ? t->account.counters.refract++ : t->account.counters.reflect++);
 }
 

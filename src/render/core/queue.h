@@ -12,6 +12,7 @@ typedef struct ray_queue {
     int64_t *start, *sample_key; /* face it starts on; see render/core/sample_key.h */
     uint64_t *inside;
     double *sq, *su, *sv; /* with polarisation: the analyser's Stokes vector relative to its first element */
+    double *passed;       /* of photons: the length of the path so far */
     void *memory;
 } ray_queue;
 
