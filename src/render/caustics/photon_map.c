@@ -5,11 +5,8 @@
 #include "base/large_pages.h"
 #include "base/status.h"
 #include "render/caustics/photon_tree.h"
-#include <assert.h>
 #include <stdlib.h>
 #include <string.h>
-
-static_assert(sizeof(photon) == sizeof(vec3) + 8 * 4, "no padding: records are compared byte by byte");
 
 bool photon_list_add(photon_list *l, const photon *one)
 {
@@ -19,92 +16,16 @@ bool photon_list_add(photon_list *l, const photon *one)
     return true;
 }
 
-/* --- order --- */
-
-typedef struct photon_key {
-    uint64_t code;
-    const photon *of;
-} photon_key;
-
-/* The 21 bits of x at every third place (Morton, "A computer oriented geodetic data base", IBM, 1966). */
-static uint64_t apart(uint64_t x)
-{
-    x = (x | x << 32) & 0x1f00000000ffff;
-    x = (x | x << 16) & 0x1f0000ff0000ff;
-    x = (x | x << 8) & 0x100f00f00f00f00f;
-    x = (x | x << 4) & 0x10c30c30c30c30c3;
-    return (x | x << 2) & 0x1249249249249249;
-}
-
-static uint64_t cell(double x, double low, double step)
-{
-    const double c = (x - low) * step;
-    return c < 0.0 ? 0 : c > 2097151.0 ? 2097151 : (uint64_t)c;
-}
-
-static uint64_t code_of(vec3 at, const photon_box *all)
-{
-    const double edge = fmax(all->high[0] - all->low[0], fmax(all->high[1] - all->low[1], all->high[2] - all->low[2])),
-                 step = edge > 0.0 ? 2097151.0 / edge : 0.0;
-    return apart(cell(at.x, all->low[0], step)) | apart(cell(at.y, all->low[1], step)) << 1 |
-           apart(cell(at.z, all->low[2], step)) << 2;
-}
-
-/* A total order: photons that compare equal are the same. */
-static int compare(const void *a, const void *b)
-{
-    const photon_key *x = a, *y = b;
-    if (x->code != y->code)
-        return x->code < y->code ? -1 : 1;
-    return memcmp(x->of, y->of, sizeof(photon));
-}
-
-static size_t total(const photon_list *lists, size_t count)
-{
-    size_t sum = 0;
-    for (size_t i = 0; i < count; i++)
-        sum += lists[i].count;
-    return sum;
-}
-
-static photon_box box_of_lists(const photon_list *lists, size_t count)
-{
-    photon_box all = PHOTON_BOX_EMPTY;
-    for (size_t i = 0; i < count; i++)
-        for (size_t k = 0; k < lists[i].count; k++)
-            photon_box_add(&all, lists[i].list[k].position, 0.0);
-    return all;
-}
-
-/* Writes the photons in order. */
-static bool sort(const photon_list *lists, size_t count, photon *out)
-{
-    const size_t n = total(lists, count);
-    photon_key *keys = malloc((n + 1) * sizeof *keys);
-    if (!keys)
-        return false;
-    const photon_box all = box_of_lists(lists, count);
-    size_t at = 0;
-    for (size_t i = 0; i < count; i++)
-        for (size_t k = 0; k < lists[i].count; k++)
-            keys[at++] = (photon_key){code_of(lists[i].list[k].position, &all), &lists[i].list[k]};
-    qsort(keys, n, sizeof *keys, compare);
-    for (size_t i = 0; i < n; i++)
-        out[i] = *keys[i].of;
-    free(keys);
-    return true;
-}
-
 status photon_map_create(const photon_list *lists, size_t count, photon_map **out, diagnostic *why)
 {
-    const size_t n = total(lists, count);
+    const size_t n = photon_lists_total(lists, count);
     photon_map *m = calloc(1, sizeof *m);
     *out = NULL;
     if (m) {
         m->count = n;
         m->photons = large_calloc(n + 1, sizeof *m->photons);
     }
-    if (!m || !m->photons || !sort(lists, count, m->photons) || !photon_tree_make(m)) {
+    if (!m || !m->photons || !photon_order(lists, count, m->photons) || !photon_tree_make(m)) {
         photon_map_destroy(m);
         return out_of_memory(why);
     }
@@ -136,7 +57,7 @@ const photon *photon_map_at(const photon_map *m, size_t i)
 /* A photon in a list, then in the map, with its key and its part of the tree. */
 size_t photon_map_bytes(void)
 {
-    return 3 * sizeof(photon) + sizeof(photon_key) + sizeof(photon_box) / 7;
+    return 3 * sizeof(photon) + 2 * sizeof(void *) + sizeof(photon_box) / 7;
 }
 
 /* --- radii --- */
@@ -144,9 +65,9 @@ size_t photon_map_bytes(void)
 /* Photons of a leaf that are close to its middle one have the radius of that one. */
 static void spread_leaf(photon_map *m, size_t first, size_t end, double widest)
 {
-    const size_t middle = (first + end) / 2;
-    const photon *leader = &m->photons[middle];
-    const double r = photon_tree_reach(m, middle, PHOTON_NEIGHBOURS, widest);
+    const size_t half = (first + end) / 2;
+    const photon *leader = &m->photons[half];
+    const double r = photon_tree_reach(m, half, PHOTON_NEIGHBOURS, widest);
     for (size_t i = first; i < end; i++) {
         photon *one = &m->photons[i];
         const vec3 off = vec3_sub(one->position, leader->position);

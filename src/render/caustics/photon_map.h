@@ -15,7 +15,6 @@
 #include <stddef.h>
 #include <stdint.h>
 
-/* Without padding: records are compared byte by byte. */
 typedef struct photon {
     vec3 position;
     float normal[3]; /* of the surface, on the side where it arrived */

@@ -40,6 +40,11 @@ static inline double photon_cosine(const photon *a, const photon *b)
 
 void photon_box_add(photon_box *b, vec3 at, double radius);
 
+/* photon_order.c: the number of photons in the lists; these photons in the map's order, to as many places; false when
+ * out of memory. */
+size_t photon_lists_total(const photon_list *lists, size_t count);
+bool photon_order(const photon_list *lists, size_t count, photon *out);
+
 /* Allocates the boxes; false when out of memory. */
 bool photon_tree_make(photon_map *m);
 /* Fits the boxes to the photons' discs: before they have radii, to their positions. */
