@@ -261,7 +261,7 @@ typedef struct condition {
 } condition;
 static const condition conditions[] = {
     {"rod", "lamp.intensity=0", "render.shadows", "no-lamp", true},
-    {"rod", "lamp.intensity=0", "render.caustics", "no-lamp", true},
+    {"rod", "lamp.intensity=0 background.ambient=0,0,0", "render.caustics", "no-lamp", true},
     {"rod", "render.caustics=photons lamp.intensity=0", "render.photons", "no-lamp", true},
     {"rod", "render.shadows=off", "render.caustics", "no-shadows-caustics", true},
     {"rod", "render.caustics=photons render.shadows=off", "render.photons", "no-shadows-caustics", true},

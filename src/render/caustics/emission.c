@@ -291,8 +291,8 @@ static bool to_lamp(const emission *e, int lamp, vec3 direction, vec3 *point)
     return true;
 }
 
-/* A ray, and the inverse of its density times the lamp's disc: 0 if it does not leave the lamp. The first number chooses
- * the cone too. */
+/* A ray, and the inverse of its density times the lamp's disc: 0 if it does not leave the lamp. The first number
+ * chooses the cone too. */
 static double draw_ray(const emission *e, int lamp, unit_pair s, unit_pair place, emitted_ray *out)
 {
     const lamp_emission *l = &e->lamps[lamp];
@@ -326,6 +326,7 @@ bool emission_ray(const emission *e, int64_t i, emitted_ray *out)
     if (share == 0.0 || angle == 0.0)
         return false;
     out->inside = from->inside;
+    out->lamp_radius = sphere_radius(e, lamp);
     out->falls = l->reach > 0.0;
     out->wavelength = -1;
     vec3 color = vec3_scale(l->color, l->intensity);

@@ -28,6 +28,7 @@ double emission_extent(const emission *e);
 typedef struct emitted_ray {
     vec3 origin, direction;
     vec3 power; /* over pi, by channel; in a spectral film that at the photon's wavelength, in each channel */
+    double lamp_radius;
     uint64_t inside;
     int wavelength; /* its number, or -1 */
     bool falls;     /* false: its light does not fall off with distance, and its power applies at distance 1 */

@@ -29,7 +29,7 @@ status photon_map_create(const photon_list *lists, size_t count, photon_map **ou
         photon_map_destroy(m);
         return out_of_memory(why);
     }
-    photon_tree_fit(m);
+    photon_tree_fit(m, false);
     *out = m;
     return STATUS_OK;
 }
@@ -72,7 +72,8 @@ static void spread_leaf(photon_map *m, size_t first, size_t end, double widest)
         photon *one = &m->photons[i];
         const vec3 off = vec3_sub(one->position, leader->position);
         const bool close = vec3_dot(off, off) < 0.5 * r * r && photon_cosine(one, leader) >= PHOTON_FACING;
-        one->radius = (float)(close ? r : photon_tree_reach(m, i, PHOTON_NEIGHBOURS, widest));
+        const double own = close ? r : photon_tree_reach(m, i, PHOTON_NEIGHBOURS, widest);
+        one->radius = (float)fmin(fmax(own, (double)one->radius), PHOTON_WIDER * own);
     }
 }
 
@@ -85,7 +86,7 @@ void photon_map_spread(photon_map *m, size_t first, double widest)
 
 void photon_map_finish(photon_map *m)
 {
-    photon_tree_fit(m);
+    photon_tree_fit(m, true);
 }
 
 /* --- irradiance --- */

@@ -2,6 +2,7 @@
  * Illumination using Photon Maps", Eurographics Workshop on Rendering 1996). Each photon spreads its power over a disc
  * in its surface's plane, whose radius is the distance to its PHOTON_NEIGHBOURS-th neighbour: narrow where light is
  * dense, so that sharp caustics stay sharp (the sample-point estimator of Silverman, Density Estimation, 1986, 5.3).
+ * Where the lamp's width blurs the caustic more than that, the disc has up to PHOTON_WIDER times this radius.
  * The discs overlap; irradiance at a point is the sum over the discs around it.
  *
  * The map is a function of the set of photons: they are sorted, so that sums have one order whichever worker added them
@@ -19,7 +20,7 @@ typedef struct photon {
     vec3 position;
     float normal[3]; /* of the surface, on the side where it arrived */
     float flux[3];   /* its power over pi, by channel: a matte surface's radiance is its albedo times irradiance / pi */
-    float radius;    /* of its disc; photon_map_spread computes it */
+    float radius;    /* of its disc: at first, that of the blur by the lamp's width; photon_map_spread computes it */
     int32_t wavelength; /* its number in a spectral film, else 0 */
 } photon;
 
@@ -39,7 +40,7 @@ status photon_map_create(const photon_list *lists, size_t count, photon_map **ou
 void photon_map_destroy(photon_map *m);
 
 /* Computes the radii, at most `widest`, of photons first .. first + PHOTON_BLOCK - 1; threads share the blocks. */
-enum { PHOTON_BLOCK = 512, PHOTON_NEIGHBOURS = 48 };
+enum { PHOTON_BLOCK = 512, PHOTON_NEIGHBOURS = 48, PHOTON_WIDER = 2 };
 void photon_map_spread(photon_map *m, size_t first, double widest);
 /* Call after the last photon_map_spread: the map is then complete. */
 void photon_map_finish(photon_map *m);

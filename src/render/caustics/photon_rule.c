@@ -10,11 +10,14 @@
 
 /* Branches with less of the photon's power are followed at random. */
 #define LEAST_PHOTON 0.02
+/* The radius of a disc as a share of that of the lamp's blur, as if light went on straight; a lens may make the image of
+ * the lamp smaller. */
+#define BLUR_SHARE 0.1
 
 typedef struct photon_work {
     photon_list *found;
-    double passed[ROW]; /* the length of the path, by ray of the batch */
-    const int *list;    /* the gathered rays in the batch */
+    double passed[ROW], bent[ROW]; /* as in the queue, up to the hits, by ray of the batch */
+    const int *list;               /* the gathered rays in the batch */
 } photon_work;
 
 static photon_work *work_of(tracer *t)
@@ -61,15 +64,18 @@ void photon_rule_emit(tracer *t, int64_t first, int64_t end, photon_list *found)
         q->start[at] = FACE_NONE, q->inside[at] = r.inside;
         q->sample_key[at] = r.wavelength < 0 ? i : sample_key_with_wavelength(i, r.wavelength);
         q->sq[at] = q->su[at] = q->sv[at] = 0.0; /* unpolarised */
-        q->passed[at] = 0.0;
+        q->passed[at] = q->bent[at] = 0.0;
     }
 }
 
 static void intersect(tracer *t, ray_queue *q, int first, int depth, const ray_batch *rays)
 {
     intersect_nearest(t, q, first, depth, rays);
-    for (int i = 0; i < rays->count; i++)
-        work_of(t)->passed[i] = q->passed[first + i] + t->batch.hits.t[i];
+    photon_work *w = work_of(t);
+    for (int i = 0; i < rays->count; i++) {
+        w->passed[i] = q->passed[first + i] + t->batch.hits.t[i];
+        w->bent[i] = depth > 0 ? q->bent[first + i] + t->batch.hits.t[i] : 0.0;
+    }
 }
 
 static void leave(tracer *t, const ray_queue *q, int first, const int *list, int count)
@@ -92,11 +98,13 @@ static void arrive(tracer *t)
         emitted_ray r;
         if (!emission_ray(f->from, number_of(g->sample_key[k]), &r))
             continue;
-        const double passed = w->passed[w->list[k]], falls = r.falls ? 1.0 : passed * passed;
+        const double passed = w->passed[w->list[k]], bent = w->bent[w->list[k]],
+                     falls = r.falls ? 1.0 : passed * passed;
         const photon one = {.position = {g->points.px[k], g->points.py[k], g->points.pz[k]},
                             .normal = {(float)g->points.nx[k], (float)g->points.ny[k], (float)g->points.nz[k]},
                             .flux = {(float)(g->wr[k] * r.power.x * falls), (float)(g->wg[k] * r.power.y * falls),
                                      (float)(g->wb[k] * r.power.z * falls)},
+                            .radius = (float)(BLUR_SHARE * r.lamp_radius * bent / (passed - bent)),
                             .wavelength = r.wavelength};
         if (!photon_list_add(w->found, &one))
             atomic_store(&f->out_of_memory, true);
@@ -127,7 +135,7 @@ static void follow(tracer *t, int k, int depth, bool refracted)
     q->wr[at] = g->wr[k] * share, q->wg[at] = g->wg[k] * share, q->wb[at] = g->wb[k] * share;
     q->start[at] = g->points.face[k], q->sample_key[at] = g->sample_key[k];
     q->inside[at] = refracted ? g->inside_after[k] : g->inside_before[k];
-    q->passed[at] = w->passed[w->list[k]];
+    q->passed[at] = w->passed[w->list[k]], q->bent[at] = w->bent[w->list[k]];
     if (t->target.frame_plan->render.polarisation) {
         const polar_group *p = &t->surface.polar;
         q->sq[at] = refracted ? p->tq[k] : p->rq[k], q->su[at] = refracted ? p->tu[k] : p->ru[k];

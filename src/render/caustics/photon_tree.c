@@ -38,7 +38,7 @@ static size_t end_of(size_t first, size_t below)
     return first + PHOTON_WIDE < below ? first + PHOTON_WIDE : below;
 }
 
-void photon_tree_fit(photon_map *m)
+void photon_tree_fit(photon_map *m, bool discs)
 {
     for (int k = 0; k < m->levels; k++) {
         const size_t below = k == 0 ? m->count : m->boxes[k - 1];
@@ -46,7 +46,7 @@ void photon_tree_fit(photon_map *m)
             photon_box box = PHOTON_BOX_EMPTY;
             for (size_t i = b * PHOTON_WIDE; i < end_of(b * PHOTON_WIDE, below); i++)
                 if (k == 0)
-                    photon_box_add(&box, m->photons[i].position, (double)m->photons[i].radius);
+                    photon_box_add(&box, m->photons[i].position, discs ? (double)m->photons[i].radius : 0.0);
                 else
                     add_box(&box, &m->level[k - 1][i]);
             m->level[k][b] = box;

@@ -4,7 +4,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-enum { FIELDS = 16, LINE = 64, LANES = LANES_MAX };
+enum { FIELDS = 17, LINE = 64, LANES = LANES_MAX };
 
 /* Not a multiple of 1024 bytes: see ROW. */
 static size_t length_of(int capacity)
@@ -32,7 +32,7 @@ bool queue_create(ray_queue *q, int capacity)
     q->sample_key = (int64_t *)(void *)(at + length);
     q->inside = (uint64_t *)(void *)(at + 2 * length);
     q->sq = at + 3 * length, q->su = at + 4 * length, q->sv = at + 5 * length;
-    q->passed = at + 6 * length;
+    q->passed = at + 6 * length, q->bent = at + 7 * length;
     q->memory = memory;
     q->capacity = capacity;
     return true;
