@@ -81,8 +81,9 @@ static void metals_at_all_angles(void **state)
         }
 }
 
-/* The least R_p is at the pseudo-Brewster angle: u = sin^2 solves 2 (Re e + |e|^2) u^3 + (|e|^4 - 3 |e|^2) u^2 - 2 |e|^4
- * u + |e|^4 = 0. Humphreys-Owen, Proc. Phys. Soc. 77, 949 (1961); Azzam, J. Opt. Soc. Am. 73, 1211 (1983). */
+/* The least R_p is at the pseudo-Brewster angle: u = sin^2 solves
+ *   2 (Re e + |e|^2) u^3 + (|e|^4 - 3 |e|^2) u^2 - 2 |e|^4 u + |e|^4 = 0.
+ * Humphreys-Owen, Proc. Phys. Soc. 77, 949 (1961); Azzam, J. Opt. Soc. Am. 73, 1211 (1983). */
 static void pseudo_brewster_angle(void **state)
 {
     (void)state;
@@ -228,17 +229,21 @@ static void frustrated_total_reflection(void **state)
         }
 }
 
-/* The same at the critical angle, where the wave number in the gap is 0: sinh y over its square root tends to k d. */
+/* The same at the critical angle and next to it, where the wave number in the gap is almost 0: sinh y over its square
+ * root tends to k d. */
 static void a_gap_at_the_critical_angle(void **state)
 {
     (void)state;
-    const double N = 1.5, lambda_nm = 600.0, sine = 1.0 / N, cosine = sqrt(1.0 - sine * sine);
-    for (double gap_nm = 1.0; gap_nm < 3000.0; gap_nm *= 2.0) {
-        const double y = 2.0 * pi() * gap_nm / lambda_nm, of_s = squared((N * N - 1.0) * y / (2.0 * N * cosine));
-        const thin_film gap = film_of(1.0, 0.0, gap_nm);
-        const powers seen = powers_of(cosine, N, &gap, 1, complex_of(N, 0.0), lambda_nm);
-        assert_near(seen.T_s * (1.0 + of_s), 1.0, 1e-11);
-    }
+    static const double offset[] = {0.0, 1e-14, -1e-14, 1e-12, -1e-12};
+    const double N = 1.5, lambda_nm = 600.0;
+    for (size_t i = 0; i < COUNT(offset); i++)
+        for (double gap_nm = 1.0; gap_nm < 3000.0; gap_nm *= 2.0) {
+            const double sine = (1.0 + offset[i]) / N, cosine = sqrt(1.0 - sine * sine),
+                         y = 2.0 * pi() * gap_nm / lambda_nm, of_s = squared((N * N - 1.0) * y / (2.0 * N * cosine));
+            const thin_film gap = film_of(1.0, 0.0, gap_nm);
+            const powers seen = powers_of(cosine, N, &gap, 1, complex_of(N, 0.0), lambda_nm);
+            assert_near(seen.T_s * (1.0 + of_s), 1.0, 1e-12 + y * y * fabs(offset[i]));
+        }
 }
 
 /* A thick film of metal hides what is behind it and fades as exp(-4 pi k d / lambda); nothing overflows. */

@@ -1,5 +1,5 @@
-/* Complex numbers as pairs of doubles, for kernels: branch-free, only + - * / and sqrt, so that every compiler gives the
- * same bits (C's own complex product calls a function for infinities). Pure; cannot fail. */
+/* Complex numbers as pairs of doubles, for kernels: branch-free, only + - * / and sqrt, so that every compiler gives
+ * the same bits (C's own complex product calls a function for infinities). Pure; cannot fail. */
 #pragma once
 
 #include "base/lanes.h"
