@@ -80,11 +80,11 @@ static inline film_phase film_phase_of(complex_pair beta2, double thickness_nm, 
 
 /* Multiplies the matrices of s and p by those of one film; Born and Wolf, 1.6.2 (39) with n cos theta = beta, for p
  * with cos theta / n = beta / n^2. */
-static inline void multilayer_add(thin_film film, double sine2, double lambda_nm, characteristic *s, characteristic *p,
+static inline void multilayer_add(thin_film one, double sine2, double lambda_nm, characteristic *s, characteristic *p,
                                   double *fade)
 {
-    const complex_pair n2 = complex_multiply(film.index, film.index), beta2 = complex_sub(n2, complex_of(sine2, 0.0));
-    const film_phase f = film_phase_of(beta2, film.thickness_nm, lambda_nm);
+    const complex_pair n2 = complex_multiply(one.index, one.index), beta2 = complex_sub(n2, complex_of(sine2, 0.0));
+    const film_phase f = film_phase_of(beta2, one.thickness_nm, lambda_nm);
     const complex_pair across = complex_minus_i(f.sine_over_beta), back = complex_multiply(across, beta2);
     const characteristic of_s = {f.cosine, across, back, f.cosine};
     const characteristic of_p = {f.cosine, complex_multiply(across, n2), complex_divide(back, n2), f.cosine};
@@ -103,9 +103,9 @@ static inline void multilayer_ends(characteristic m, double q_from, complex_pair
     *t = complex_divide(complex_of(2.0 * sqrt(q_from * q_to.re) * left, 0.0), sum);
 }
 
-/* From a medium of index n_from at an angle of incidence with cosine cos_i, through films film[0 .. count - 1] in the
+/* From a medium of index n_from at an angle of incidence with cosine cos_i, through films[0 .. count - 1] in the
  * order of the ray, into a medium of index `to`. */
-static inline sp_amplitudes multilayer_amplitudes(double cos_i, double n_from, const thin_film *film, int count,
+static inline sp_amplitudes multilayer_amplitudes(double cos_i, double n_from, const thin_film *films, int count,
                                                   complex_pair to, double lambda_nm)
 {
     const double log2_e = 1.4426950408889634074;
@@ -115,7 +115,7 @@ static inline sp_amplitudes multilayer_amplitudes(double cos_i, double n_from, c
     characteristic s = none, p = none;
     double fade = 0.0;
     for (int i = 0; i < count; i++)
-        multilayer_add(film[i], sine2, lambda_nm, &s, &p, &fade);
+        multilayer_add(films[i], sine2, lambda_nm, &s, &p, &fade);
     const complex_pair n2 = complex_multiply(to, to),
                        beta = complex_sqrt_upper(complex_sub(n2, complex_of(sine2, 0.0)));
     const double left = elementary_exp2_inline(-log2_e * fade);
