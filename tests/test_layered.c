@@ -449,6 +449,7 @@ static void what_is_not_traced_is_refused(void **state)
     refuse(text, "a.film_thickness_nm=100 render.polarisation=on", "depends on the wavelength");
     refuse(text, "b.medium=gold render.polarisation=on", "depends on the wavelength");
     refuse(text, "a.film_thickness_nm=100 render.radiance=basic", "basic radiance");
+    refuse(text, "a.film_thickness_nm=100 render.integrator=zbuffer", "depth buffer");
 }
 
 static uint64_t hash_of(const scene *s, isa level_of)

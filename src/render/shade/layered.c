@@ -21,7 +21,7 @@ void layered_end(tracer *t)
 void layered_gather(tracer *t, const int *list, int priority_index)
 {
     const plan *p = t->target.frame_plan;
-    const layered_plan *of = p->layered;
+    layered_plan *of = p->layered;
     layered_work *w = t->layered;
     w->surface = of ? of->surface[priority_index] : NULL;
     if (!w->surface)
@@ -30,7 +30,7 @@ void layered_gather(tracer *t, const int *list, int priority_index)
     const int own = of->medium[priority_index];
     for (int k = 0; w->colored && k < t->surface.gathered.count; k++) {
         const int before = of->medium[t->batch.hits.before[list[k]]], after = of->medium[t->batch.hits.after[list[k]]];
-        w->curve[k] = &of->curves[priority_index][w->surface->opaque || before != own ? before : after];
+        w->curve[k] = layered_curve_of(of, priority_index, w->surface->opaque || before != own ? before : after);
     }
 }
 

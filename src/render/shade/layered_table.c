@@ -8,12 +8,12 @@
  * resolved by its steps of 1.7 nm. */
 enum { STEP_NM = 5, INTERVALS = (OBSERVER_HIGH_NM - OBSERVER_LOW_NM) / STEP_NM, SAMPLES = 3 * INTERVALS };
 
-typedef struct daylight {
+typedef struct daylight_spectrum {
     double lambda_nm[SAMPLES];
     vec3 weight[SAMPLES]; /* their sum is 1 in each channel */
-} daylight;
+} daylight_spectrum;
 
-static void daylight_make(daylight *d)
+static void daylight_spectrum_make(daylight_spectrum *d)
 {
     const double offset[3] = {-sqrt(0.6), 0.0, sqrt(0.6)}, share[3] = {5.0, 8.0, 5.0};
     vec3 sum = vec3_make(0.0, 0.0, 0.0);
@@ -29,12 +29,22 @@ static void daylight_make(daylight *d)
         d->weight[k] = vec3_make(d->weight[k].x / sum.x, d->weight[k].y / sum.y, d->weight[k].z / sum.z);
 }
 
+/* The complex index behind the surface. */
+static complex_pair index_behind(const layered_surface *s, double n_to, double lambda_nm)
+{
+    return s->opaque ? complex_of(index_law_at(&s->law, lambda_nm), material_extinction_index(s->m, lambda_nm))
+                     : complex_of(n_to, 0.0);
+}
+
+static sp_amplitudes amplitudes(const layered_surface *s, double cos_i, double n_from, complex_pair to,
+                                double lambda_nm)
+{
+    return multilayer_amplitudes(cos_i, n_from, &s->film, s->film.thickness_nm > 0.0, to, lambda_nm);
+}
+
 sp_amplitudes layered_amplitudes(const layered_surface *s, double cos_i, double n_from, double n_to, double lambda_nm)
 {
-    const complex_pair behind =
-        s->opaque ? complex_of(index_law_at(&s->law, lambda_nm), material_extinction_index(s->m, lambda_nm))
-                  : complex_of(n_to, 0.0);
-    return multilayer_amplitudes(cos_i, n_from, &s->film, s->film.thickness_nm > 0.0, behind, lambda_nm);
+    return amplitudes(s, cos_i, n_from, index_behind(s, n_to, lambda_nm), lambda_nm);
 }
 
 static double within_unit(double x)
@@ -42,37 +52,63 @@ static double within_unit(double x)
     return lesser(greater(x, 0.0), 1.0);
 }
 
-static vec3 color_by(const daylight *d, const layered_surface *s, double cosine, double n_low, double n_high)
-{
-    vec3 sum = vec3_make(0.0, 0.0, 0.0);
-    if (cosine <= 0.0) /* grazing light is reflected */
-        return vec3_make(1.0, 1.0, 1.0);
-    for (int k = 0; k < SAMPLES; k++) {
-        const sp_amplitudes a = layered_amplitudes(s, cosine, n_low, n_high, d->lambda_nm[k]);
-        sum = vec3_add(sum, vec3_scale(d->weight[k], 0.5 * (complex_norm2(a.r_s) + complex_norm2(a.r_p))));
-    }
-    return sum;
-}
-
 static vec3 clamped(vec3 rgb)
 {
     return vec3_make(within_unit(rgb.x), within_unit(rgb.y), within_unit(rgb.z));
 }
 
+/* The surface's colours at the cosines of a list, not clamped. */
+static void colors_at(const layered_surface *s, double n_low, double n_high, int count, const double *cosine, vec3 *out)
+{
+    daylight_spectrum d;
+    complex_pair to[SAMPLES];
+    daylight_spectrum_make(&d);
+    for (int k = 0; k < SAMPLES; k++)
+        to[k] = index_behind(s, n_high, d.lambda_nm[k]);
+    for (int i = 0; i < count; i++) {
+        out[i] = vec3_make(1.0, 1.0, 1.0); /* grazing light is reflected */
+        if (!(cosine[i] > 0.0))
+            continue;
+        vec3 sum = vec3_make(0.0, 0.0, 0.0);
+        for (int k = 0; k < SAMPLES; k++) {
+            const sp_amplitudes a = amplitudes(s, cosine[i], n_low, to[k], d.lambda_nm[k]);
+            sum = vec3_add(sum, vec3_scale(d.weight[k], 0.5 * (complex_norm2(a.r_s) + complex_norm2(a.r_p))));
+        }
+        out[i] = sum;
+    }
+}
+
 vec3 layered_color(const layered_surface *s, double cosine, double n_low, double n_high)
 {
-    daylight d;
-    daylight_make(&d);
-    return clamped(color_by(&d, s, cosine, n_low, n_high));
+    vec3 rgb;
+    colors_at(s, n_low, n_high, 1, &cosine, &rgb);
+    return clamped(rgb);
 }
 
 void layered_curve_make(const layered_surface *s, double n_low, double n_high, layered_curve *out)
 {
-    daylight d;
+    double cosine[LAYERED_STEPS + 1];
+    for (int i = 0; i <= LAYERED_STEPS; i++)
+        cosine[i] = (double)i / LAYERED_STEPS;
     out->by_ray = s->film.thickness_nm > 0.0 && s->film.index.re < n_low;
-    daylight_make(&d);
-    for (int i = 0; i <= LAYERED_STEPS && !out->by_ray; i++)
-        out->color[i] = color_by(&d, s, (double)i / LAYERED_STEPS, n_low, n_high);
+    if (!out->by_ray)
+        colors_at(s, n_low, n_high, LAYERED_STEPS + 1, cosine, out->color);
+}
+
+const layered_curve *layered_curve_of(layered_plan *p, int priority_index, int medium_number)
+{
+    layered_curve *c = &p->curves[priority_index][medium_number];
+    if (atomic_load_explicit(&c->ready, memory_order_acquire))
+        return c;
+    pthread_mutex_lock(&p->filling);
+    if (!atomic_load_explicit(&c->ready, memory_order_relaxed)) {
+        const layered_surface *s = p->surface[priority_index];
+        const double other = p->index[medium_number], own = s->opaque ? other : p->index[p->medium[priority_index]];
+        layered_curve_make(s, lesser(own, other), greater(own, other), c);
+        atomic_store_explicit(&c->ready, true, memory_order_release);
+    }
+    pthread_mutex_unlock(&p->filling);
+    return c;
 }
 
 /* Cubic through the four nearest entries (Lagrange). */
@@ -102,6 +138,7 @@ static void number_media(layered_plan *p, const double *ior)
     }
 }
 
+/* Room for the tables; equal surfaces share theirs. */
 static bool make_curves(layered_plan *p, const int *alike)
 {
     p->curves = calloc(p->priority_indices, sizeof *p->curves);
@@ -109,20 +146,13 @@ static bool make_curves(layered_plan *p, const int *alike)
     if (!p->curves || !p->owns_curves)
         return false;
     for (size_t r = 1; r < p->priority_indices; r++) {
-        const layered_surface *s = p->surface[r];
-        if (!s)
+        if (!p->surface[r])
             continue;
-        if ((size_t)alike[r] < r && p->curves[alike[r]]) {
-            p->curves[r] = p->curves[alike[r]];
-            continue;
-        }
-        if (!(p->curves[r] = calloc((size_t)p->medium_count, sizeof **p->curves)))
+        const size_t first = (size_t)alike[r];
+        p->owns_curves[r] = !(first < r && p->curves[first]);
+        p->curves[r] = p->owns_curves[r] ? calloc((size_t)p->medium_count, sizeof **p->curves) : p->curves[first];
+        if (!p->curves[r])
             return false;
-        p->owns_curves[r] = true;
-        for (int k = 0; k < p->medium_count; k++) {
-            const double own = s->opaque ? p->index[k] : p->index[p->medium[r]], other = p->index[k];
-            layered_curve_make(s, lesser(own, other), greater(own, other), &p->curves[r][k]);
-        }
     }
     return true;
 }
@@ -160,6 +190,10 @@ bool layered_plan_create(const render_settings *r, const material *const *materi
     if (!any)
         return true;
     layered_plan *p = calloc(1, sizeof *p);
+    if (p && pthread_mutex_init(&p->filling, NULL) != 0) {
+        free(p);
+        return false;
+    }
     if (p)
         p->priority_indices = priority_indices;
     *out = p;
@@ -179,5 +213,6 @@ void layered_plan_destroy(layered_plan *p)
     free(p->surfaces);
     free(p->index);
     free(p->medium);
+    pthread_mutex_destroy(&p->filling);
     free(p);
 }

@@ -10,12 +10,15 @@
  * reflected. Between entries it is cubic: error below 1e-6 for films up to 2 um thick, 1e-4 up to 10 um, 2e-3 up to 20
  * um; 5e-3 within a degree of grazing, where fringes are narrower than the steps of the integral. A film of lower index
  * than both sides (a gap of air between glass and water) totally reflects abruptly: there each ray is integrated.
- * Ownership: layered_plan_create allocates, layered_plan_destroy releases. Lookups are pure. */
+ * A table is filled when a ray first needs it, by the worker that traces it; its values depend on the scene alone.
+ * Ownership: layered_plan_create allocates, layered_plan_destroy releases. */
 #pragma once
 
 #include "optics/multilayer.h"
 #include "scene/model/medium.h"
 #include "scene/model/material.h"
+#include <pthread.h>
+#include <stdatomic.h>
 
 enum { LAYERED_STEPS = 256 };
 
@@ -29,7 +32,8 @@ typedef struct layered_surface {
 
 /* Reflected colour by cosine, k / LAYERED_STEPS; not clamped, so that the entries have no kinks. */
 typedef struct layered_curve {
-    bool by_ray; /* there are no entries */
+    atomic_bool ready; /* the entries are filled */
+    bool by_ray;       /* there are no entries */
     vec3 color[LAYERED_STEPS + 1];
 } layered_curve;
 
@@ -42,6 +46,7 @@ typedef struct layered_plan {
     int medium_count;
     layered_curve **curves; /* by priority index: one for each medium that meets its surface; NULL in a spectral film */
     bool *owns_curves;
+    pthread_mutex_t filling;
     bool one_wavelength; /* set by the probe: every surface is evaluated at render.lambda_nm, for all channels */
 } layered_plan;
 
@@ -58,6 +63,8 @@ sp_amplitudes layered_amplitudes(const layered_surface *s, double cos_i, double 
 /* The colour that a surface reflects between two media; cosine: on the side of the lower index, or before an opaque
  * surface. */
 vec3 layered_color(const layered_surface *s, double cosine, double n_low, double n_high);
+/* The table of the surface of a priority index and the medium of that number. */
+const layered_curve *layered_curve_of(layered_plan *p, int priority_index, int medium_number);
 /* The same from a table. */
 void layered_curve_make(const layered_surface *s, double n_low, double n_high, layered_curve *out);
 vec3 layered_curve_at(const layered_curve *c, double cosine);

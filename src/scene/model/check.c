@@ -260,6 +260,9 @@ static status check_layers(const scene *s, const solid *owner, diagnostic *why)
     if (r->polarisation && r->spectrum != SPECTRUM_SPECTRAL)
         return diagnose(why, STATUS_BAD_INPUT, "set render.spectrum to spectral, or render.polarisation to off",
                         "%.80s: polarisation by %s depends on the wavelength", owner->name, what);
+    if (integrator_traits_of(r)->drawn && !material_is_opaque(m))
+        return diagnose(why, STATUS_BAD_INPUT, "set render.integrator to whitted, or its film_thickness_nm to 0",
+                        "%.80s: the depth buffer does not support a film on a transparent solid", owner->name);
     if (scene_has_basic_radiance(r) && !material_is_opaque(m))
         return diagnose(why, STATUS_BAD_INPUT, "set render.radiance to classic, or its film_thickness_nm to 0",
                         "%.80s: basic radiance does not support a film on a transparent solid", owner->name);

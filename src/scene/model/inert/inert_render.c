@@ -137,9 +137,14 @@ static bool weights(const inert_case *c)
                       "simple transmission uses the materials' constants"));
 }
 
+static bool is_layered(const scene *s, const solid *one)
+{
+    return material_is_layered(&one->surface, &s->render);
+}
+
 static bool polarisation(const inert_case *c)
 {
-    return no_tree(c) || no_clear(c);
+    return no_tree(c) || (!first_visible(c->s, is_layered) && no_clear(c));
 }
 
 static bool nothing_lit(const inert_case *c)
