@@ -265,6 +265,26 @@ static void a_gap_of_air_in_glass(void **state)
     }
 }
 
+/* The interpolated normals of a coarse mesh send some refracted rays back: all of their colours are then reflected. */
+static void a_smooth_mesh_with_a_film_conserves_energy(void **state)
+{
+    (void)state;
+    stage g = {.setting =
+                   scene_from("background: {color: [1, 1, 1]}\nrender: {depth: 9, width: 1, height: 1, beyond: black}\n"
+                              "meshes: {ball: {generate: icosphere, level: 1}}\n"
+                              "solids: {a: {shape: mesh, mesh: ball, shading: smooth, transparency: 1, ior: 1.5, "
+                              "film_thickness_nm: 400}}\n")};
+    diagnostic why = {0};
+    worked(scene_load(g.setting, &why), &why);
+    stage_look(&g);
+    for (double h = -0.97; h < 1.0; h += 0.0213) {
+        const ray_tree *tree = stage_ray(&g, vec3_make(h, 0.2, -4.0), vec3_make(0.0, 0.0, 1.0));
+        for (int c = 0; c < 3; c++)
+            assert_near(tree->radiance[c] + tree_cut(tree, c), 1.0, 1e-9);
+    }
+    stage_close(&g);
+}
+
 /* --- by wavelength --- */
 
 static void at_a_wavelength_reflectances_are_exact(void **state)
@@ -530,6 +550,7 @@ int main(void)
         cmocka_unit_test(a_coated_lens_from_both_sides),
         cmocka_unit_test(tables_are_as_exact_as_stated),
         cmocka_unit_test(a_gap_of_air_in_glass),
+        cmocka_unit_test(a_smooth_mesh_with_a_film_conserves_energy),
         cmocka_unit_test(at_a_wavelength_reflectances_are_exact),
         cmocka_unit_test(both_kinds_of_film_agree),
         cmocka_unit_test(two_metal_mirrors_polarise),

@@ -52,10 +52,9 @@ static bool not_bent(const inert_case *c)
 
 static bool index_rule(const inert_case *c)
 {
-    if (c->m->transparency == 0.0 && material_is_layered(c->m, &c->s->render))
-        return (material_metal(c->m) &&
-                inert_say(c, "by-medium", set_on(c, "medium=ior").text, "its medium is a metal")) ||
-               nothing_reflected(c);
+    if (c->m->transparency == 0.0 &&
+        material_is_layered(c->m, &c->s->render)) /* of what is behind a film, or a metal */
+        return nothing_reflected(c);
     return opaque_rule(c) || not_bent(c);
 }
 
