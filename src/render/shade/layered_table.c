@@ -88,11 +88,12 @@ vec3 layered_color(const layered_surface *s, double cosine, double n_low, double
 void layered_curve_make(const layered_surface *s, double n_low, double n_high, layered_curve *out)
 {
     double cosine[LAYERED_STEPS + 1];
-    for (int i = 0; i <= LAYERED_STEPS; i++)
-        cosine[i] = (double)i / LAYERED_STEPS;
+    out->steps = s->film.thickness_nm > LAYERED_THIN_NM ? LAYERED_STEPS : LAYERED_STEPS_THIN;
+    for (int i = 0; i <= out->steps; i++)
+        cosine[i] = (double)i / out->steps;
     out->by_ray = s->film.thickness_nm > 0.0 && s->film.index.re < n_low;
     if (!out->by_ray)
-        colors_at(s, n_low, n_high, LAYERED_STEPS + 1, cosine, out->color);
+        colors_at(s, n_low, n_high, out->steps + 1, cosine, out->color);
 }
 
 const layered_curve *layered_curve_of(layered_plan *p, int priority_index, int medium_number)
@@ -114,9 +115,9 @@ const layered_curve *layered_curve_of(layered_plan *p, int priority_index, int m
 /* Cubic through the four nearest entries (Lagrange). */
 vec3 layered_curve_at(const layered_curve *c, double cosine)
 {
-    const double at = within_unit(cosine) * LAYERED_STEPS;
+    const double at = within_unit(cosine) * c->steps;
     int first = (int)at - 1;
-    first = first < 0 ? 0 : first > LAYERED_STEPS - 3 ? LAYERED_STEPS - 3 : first;
+    first = first < 0 ? 0 : first > c->steps - 3 ? c->steps - 3 : first;
     const double x = at - first, y = x - 1.0, z = x - 2.0, w = x - 3.0;
     const double weight[4] = {y * z * w / -6.0, x * z * w / 2.0, x * y * w / -2.0, x * y * z / 6.0};
     vec3 sum = vec3_scale(c->color[first], weight[0]);

@@ -7,8 +7,8 @@
  *
  * The table is uniform in the cosine on the side of the lower index, in which the reflectance has no singularity: from
  * the other side the cosine of refraction leads to the same entry, by reversal, and under total reflection all is
- * reflected. Between entries it is cubic: error below 1e-6 for films up to 2 um thick, 1e-4 up to 10 um, 2e-3 up to 20
- * um; 5e-3 within a degree of grazing, where fringes are narrower than the steps of the integral. A film of lower index
+ * reflected. Between entries it is cubic: error below 2e-5 for films up to 2 um thick, 1e-4 up to 10 um, 2e-3 up to 20
+ * um; 1e-2 within a degree of grazing, where fringes are narrower than the steps of the integral. A film of lower index
  * than both sides (a gap of air between glass and water) totally reflects abruptly: there each ray is integrated.
  * A table is filled when a ray first needs it, by the worker that traces it; its values depend on the scene alone.
  * Ownership: layered_plan_create allocates, layered_plan_destroy releases. */
@@ -20,7 +20,8 @@
 #include <pthread.h>
 #include <stdatomic.h>
 
-enum { LAYERED_STEPS = 256 };
+/* Steps of a table; those of a film up to that thickness, and of a metal, are fewer. */
+enum { LAYERED_STEPS = 256, LAYERED_STEPS_THIN = 128, LAYERED_THIN_NM = 1000 };
 
 /* A surface: a film (of thickness 0: none) on matter that is opaque or transparent. */
 typedef struct layered_surface {
@@ -30,10 +31,11 @@ typedef struct layered_surface {
     const material *m; /* the source of its k */
 } layered_surface;
 
-/* Reflected colour by cosine, k / LAYERED_STEPS; not clamped, so that the entries have no kinks. */
+/* Reflected colour by cosine, k / steps; not clamped, so that the entries have no kinks. */
 typedef struct layered_curve {
     atomic_bool ready; /* the entries are filled */
     bool by_ray;       /* there are no entries */
+    int steps;
     vec3 color[LAYERED_STEPS + 1];
 } layered_curve;
 
