@@ -343,6 +343,14 @@ static const condition conditions[] = {
     {"slime", "toy.script= toy.ground=off", "toy.friction", "no-floor", true},
     {"slime", "floor.texture=", "tiles.filter", "unused-texture", true},
     {"models", "ring.visible=off", "torus.around", "unused-mesh", true},
+    {"rod", "", "liquid.extinction", "clear", true},
+    {"rod", "rod.medium=bk7", "rod.extinction", "by-medium", true},
+    {"rod", "", "liquid.film_ior", "no-film", true},
+    {"rod", "liquid.film_thickness_nm=300 render.weights=constant", "liquid.film_thickness_nm", "constant-film", true},
+    {"rod", "liquid.ior=1e5 liquid.film_thickness_nm=300", "liquid.film_thickness_nm", "mirror", true},
+    {"rod", "rod.medium=gold", "rod.reflectivity", "layered", true},
+    {"rod", "rod.film_thickness_nm=300", "rod.reflectivity", "layered", true},
+    {"rod", "rod.medium=gold render.lighting=phong", "rod.medium", "no-tree", true},
     {"models", "lamp.intensity=0 bowl.ambient=0 china.reflectivity=0", "bowl.shading", "unshaded", true},
 };
 

@@ -87,6 +87,39 @@ static void polarised_light_conserves_energy(void **state)
         check_image("render.polarisation=on", depth);
 }
 
+/* Films that do not absorb, on glass, water, a bubble of air and a block whose film has its own index: by channel. */
+#define FILMS                                                                                                 \
+    "vessel.film_thickness_nm=100 vessel.film_ior=1.38 liquid.film_thickness_nm=700 liquid.film_ior=1.47 "    \
+    "bubble.film_thickness_nm=420 block.film_thickness_nm=5000 block.film_ior=1.7 core.film_thickness_nm=60 " \
+    "core.film_ior=2.4"
+
+static void thin_films_conserve_energy(void **state)
+{
+    (void)state;
+    for (int depth = 0; depth <= DEEPEST; depth += depth < 4 ? 1 : 3)
+        check_image(FILMS, depth);
+}
+
+/* By wavelength, also of polarised light: at every depth the whole film is white. */
+static void thin_films_conserve_energy_at_every_wavelength(void **state)
+{
+    (void)state;
+    static const char *const kinds[] = {"render.polarisation=off", "render.polarisation=on"};
+    for (size_t k = 0; k < COUNT(kinds); k++) {
+        scene *s = scene_from(furnace);
+        set_all(s, FILMS);
+        set_all(s, "render.beyond=sky render.depth=7 render.spectrum=spectral render.wavelengths=8");
+        set(s, kinds[k]);
+        render_result *r = render(s);
+        double worst = 0.0;
+        for (int i = 0; i < 3 * r->img->width * r->img->height; i++)
+            worst = fmax(worst, fabs(film_value(r->img, i / 3 % r->img->width, i / 3 / r->img->width, i % 3) - 1.0));
+        assert_true(worst <= 1e-9);
+        render_result_destroy(r);
+        scene_destroy(s);
+    }
+}
+
 /* Weights of 0.1 and 0.9 add up to 1 as well; under total reflection the transmitted share is reflected. */
 static void constant_weights_conserve_energy(void **state)
 {
@@ -134,6 +167,8 @@ int main(void)
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(fresnel_weights_conserve_energy),
         cmocka_unit_test(polarised_light_conserves_energy),
+        cmocka_unit_test(thin_films_conserve_energy),
+        cmocka_unit_test(thin_films_conserve_energy_at_every_wavelength),
         cmocka_unit_test(constant_weights_conserve_energy),
         cmocka_unit_test(a_camera_in_any_medium_has_radiance_1_in_the_furnace),
         cmocka_unit_test(radiance_plus_cut_faint_branches_is_1),

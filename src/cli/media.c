@@ -2,6 +2,7 @@
 #include "cli/cli.h"
 #include "report/json.h"
 #include "report/media_rows.h"
+#include "report/metal_rows.h"
 #include "cli/options.h"
 #include "cli/terminal.h"
 #include "base/number.h"
@@ -39,7 +40,8 @@ static const command_form form = {
     .excess_remedy = "give one medium, or none for all",
     .excess = "unexpected argument '%.128s'",
     .about = "Print the media catalogue: refractive index at the d, F and C lines, Abbe number, wavelength range and "
-             "temperature of the measurement, reference medium (air or vacuum) and source. With a name, print all data "
+             "temperature of the measurement, reference medium (air or vacuum) and source; then the metals with n and "
+             "k of their complex index, and their reflectance R_d in vacuum. With a name, print all data "
              "for that medium: the dispersion formula with its coefficients, and caveats.\vIndices are as published, "
              "relative to air or to vacuum; with a name the index relative to vacuum is printed as well. An "
              "asterisk marks an index outside the measured range. --at never extrapolates. On a terminal the lines are "
@@ -47,16 +49,26 @@ static const command_form form = {
              "its width; output to a pipe or file is not wrapped.",
 };
 
-static status find(const media_request *request, const medium **out, diagnostic *why)
+/* One of both catalogues; the other is NULL. */
+typedef struct media_choice {
+    const medium *clear;
+    const metal *opaque;
+} media_choice;
+
+static status find(const media_request *request, media_choice *out, diagnostic *why)
 {
-    const char **names = calloc(media_count(), sizeof *names);
+    const size_t media = media_count(), count = media + metals_count();
+    const char **names = calloc(count, sizeof *names);
     if (!names)
         return out_of_memory(why);
-    for (size_t i = 0; i < media_count(); i++)
-        names[i] = media_at(i)->name;
+    for (size_t i = 0; i < count; i++)
+        names[i] = i < media ? media_at(i)->name : metals_at(i - media)->name;
     int which = 0;
-    const status result = options_choice("media", "medium", request->name, names, media_count(), &which, why);
-    *out = media_at((size_t)which);
+    const status result = options_choice("media", "medium", request->name, names, count, &which, why);
+    if ((size_t)which < media)
+        out->clear = media_at((size_t)which);
+    else
+        out->opaque = metals_at((size_t)which - media);
     free(names);
     return result;
 }
@@ -74,26 +86,46 @@ static status check_range(const medium *m, double at_nm, diagnostic *why)
     return options_wrong("media", NULL, why, remedy, "%s was not measured at %s nm", m->name, number_format(at_nm, at));
 }
 
-static status print(const media_request *request, const medium *only, diagnostic *why)
+static status check_metal_range(const metal *m, double at_nm, diagnostic *why)
+{
+    if (at_nm == 0.0 || metal_covers(m, at_nm))
+        return STATUS_OK;
+    char at[NUMBER_TEXT_MAX], range[METAL_RANGE_MAX], remedy[METAL_RANGE_MAX + 64];
+    snprintf(remedy, sizeof remedy, "give a wavelength from its range, %s nm", metal_range_text(m, range));
+    return options_wrong("media", NULL, why, remedy, "%s was not measured at %s nm", m->name, number_format(at_nm, at));
+}
+
+static void print_all(double at_nm, int columns)
+{
+    media_rows_table(stdout, at_nm, columns);
+    fputc('\n', stdout);
+    metal_rows_table(stdout, at_nm, columns);
+}
+
+static status print(const media_request *request, media_choice only, diagnostic *why)
 {
     if (request->json)
-        return json_print(media_rows_json(only, request->at_nm), why);
+        return json_print(media_rows_json(only.clear, only.opaque, request->at_nm), why);
     const int columns = terminal_columns(STDOUT_FILENO);
-    if (only)
-        media_rows_details(stdout, only, request->at_nm, columns);
+    if (only.clear)
+        media_rows_details(stdout, only.clear, request->at_nm, columns);
+    else if (only.opaque)
+        metal_rows_details(stdout, only.opaque, request->at_nm, columns);
     else
-        media_rows_table(stdout, request->at_nm, columns);
+        print_all(request->at_nm, columns);
     return STATUS_OK;
 }
 
 status command_media(int argc, char **argv, diagnostic *why)
 {
     media_request request = {0};
-    const medium *only = NULL;
+    media_choice only = {NULL, NULL};
     TRY(command_form_read(&form, argc, argv, &request, why));
     if (request.name)
         TRY(find(&request, &only, why));
-    if (only)
-        TRY(check_range(only, request.at_nm, why));
+    if (only.clear)
+        TRY(check_range(only.clear, request.at_nm, why));
+    if (only.opaque)
+        TRY(check_metal_range(only.opaque, request.at_nm, why));
     return print(&request, only, why);
 }

@@ -167,10 +167,7 @@ static const medium catalogue[] = {
      .note = AIR_ASSUMED},
 };
 
-#define ONE(name) +1
-static_assert(sizeof catalogue / sizeof catalogue[0] == 0 MEDIA_NAMES(ONE),
-              "MEDIA_NAMES is the catalogue's first column");
-#undef ONE
+static_assert(sizeof catalogue / sizeof catalogue[0] == MEDIA_COUNT, "MEDIA_NAMES is the catalogue's first column");
 
 size_t media_count(void)
 {

@@ -25,6 +25,9 @@
     X("sapphire")      \
     X("diamond")
 
+#define MEDIA_ONE(name) +1
+enum { MEDIA_COUNT = 0 MEDIA_NAMES(MEDIA_ONE) };
+
 typedef struct medium {
     const char *name;     /* "fused-silica" */
     const char *title;    /* "fused silica" */

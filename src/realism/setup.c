@@ -118,6 +118,7 @@ void arrange_bare(scene *s)
             continue;
         m->color = vec3_make(1.0, 1.0, 1.0);
         m->reflectivity -= material_coating(m, &s->render);
+        m->film_thickness_nm = 0.0;
     }
 }
 

@@ -1,6 +1,7 @@
 /* The media catalogue as a table, one medium in detail, or JSON. */
 #include "base/json_build.h"
 #include "report/media_rows.h"
+#include "report/metal_rows.h"
 #include "report/json.h"
 #include "report/wrap.h"
 #include "base/number.h"
@@ -226,12 +227,19 @@ static json_t *medium_json(const medium *m, double at_nm)
     return json_whole(o, bad == 0);
 }
 
-json_t *media_rows_json(const medium *only, double at_nm)
+json_t *media_rows_json(const medium *only, const metal *only_metal, double at_nm)
 {
-    json_t *list = json_array();
-    int bad = !list;
-    for (size_t i = 0; i < media_count() && !bad; i++)
-        if (!only || only == media_at(i))
-            bad |= json_array_append_new(list, medium_json(media_at(i), at_nm));
-    return bad ? json_whole(list, false) : json_pack("{s:i,s:o}", "schema", 1, "media", list);
+    const bool all = !only && !only_metal;
+    json_t *list = json_array(), *metals = json_array();
+    for (size_t i = 0; i < media_count() && list; i++)
+        if (all || only == media_at(i))
+            json_add(&list, medium_json(media_at(i), at_nm));
+    for (size_t i = 0; i < metals_count() && metals; i++)
+        if (all || only_metal == metals_at(i))
+            json_add(&metals, metal_json(metals_at(i), at_nm));
+    if (list && metals)
+        return json_pack("{s:i,s:o,s:o}", "schema", 1, "media", list, "metals", metals);
+    json_decref(list);
+    json_decref(metals);
+    return NULL;
 }

@@ -3,6 +3,7 @@
 #pragma once
 
 #include "optics/media.h"
+#include "optics/metals.h"
 #include <jansson.h>
 #include <stdio.h>
 
@@ -15,5 +16,5 @@ char *media_range_text(const medium *m, char text[MEDIA_RANGE_MAX]);
 void media_rows_table(FILE *stream, double at_nm, int columns);
 void media_rows_details(FILE *stream, const medium *m, double at_nm, int columns);
 
-/* All media, or one medium unless only is NULL; NULL when memory is out. */
-json_t *media_rows_json(const medium *only, double at_nm);
+/* All media and metals; or one of them, unless both are NULL. NULL when memory is out. */
+json_t *media_rows_json(const medium *only, const metal *only_metal, double at_nm);

@@ -10,8 +10,8 @@
 
 /* Branches with less of the photon's power are followed at random. */
 #define LEAST_PHOTON 0.02
-/* The radius of a disc as a share of that of the lamp's blur, as if light went on straight; a lens may make the image of
- * the lamp smaller. */
+/* The radius of a disc as a share of that of the lamp's blur, as if light went on straight: a lens may make the
+ * lamp's image smaller. */
 #define BLUR_SHARE 0.1
 
 typedef struct photon_work {
@@ -118,21 +118,23 @@ static void follow(tracer *t, int k, int depth, bool refracted)
     const photon_work *w = work_of(t);
     const group *g = &t->surface.gathered;
     const branch_group *b = &t->surface.branches;
-    double share = refracted ? b->refract[k] : b->reflect[k];
-    if (!(share > 0.0))
+    const double mean = refracted ? b->refract[k] : b->reflect[k];
+    if (!(mean > 0.0))
         return;
-    const double power = share * fmax(g->wr[k], fmax(g->wg[k], g->wb[k]));
+    const vec3 share = surface_is_layered(t) ? layered_weight(t, k, !refracted) : vec3_make(mean, mean, mean);
+    vec3 left = vec3_make(g->wr[k] * share.x, g->wg[k] * share.y, g->wb[k] * share.z);
+    const double power = fmax(left.x, fmax(left.y, left.z));
     if (power < LEAST_PHOTON) {
         if (emission_chance(f->from, number_of(g->sample_key[k]), depth, refracted) * LEAST_PHOTON >= power)
             return;
-        share *= LEAST_PHOTON / power;
+        left = vec3_scale(left, LEAST_PHOTON / power);
     }
     ray_queue *q = &t->queues.waiting[depth + 1];
     const int at = q->count++;
     q->ox[at] = g->points.px[k], q->oy[at] = g->points.py[k], q->oz[at] = g->points.pz[k];
     q->dx[at] = refracted ? b->tx[k] : b->rx[k], q->dy[at] = refracted ? b->ty[k] : b->ry[k];
     q->dz[at] = refracted ? b->tz[k] : b->rz[k];
-    q->wr[at] = g->wr[k] * share, q->wg[at] = g->wg[k] * share, q->wb[at] = g->wb[k] * share;
+    q->wr[at] = left.x, q->wg[at] = left.y, q->wb[at] = left.z;
     q->start[at] = g->points.face[k], q->sample_key[at] = g->sample_key[k];
     q->inside[at] = refracted ? g->inside_after[k] : g->inside_before[k];
     q->passed[at] = w->passed[w->list[k]], q->bent[at] = w->bent[w->list[k]];
@@ -150,7 +152,7 @@ static void shade(tracer *t, int depth, int priority_index)
     const bool opaque = surface_is_opaque(t, priority_index);
     if (opaque && m->diffuse > 0.0 && depth > 0)
         arrive(t);
-    if (depth == t->queues.depth_limit || (opaque && m->reflectivity == 0.0))
+    if (depth == t->queues.depth_limit || (opaque && !surface_reflects(t)))
         return;
     shading_branches(t, opaque);
     for (int k = 0; k < t->surface.gathered.count; k++) {

@@ -8,11 +8,11 @@
 #include <stdlib.h>
 
 /* Under Fresnel weights equal refractive indices are one medium, and a boundary between them is no interface unless it
- * is coated or emits light; with constant weights, as in the report, every surface reflects whatever its index. laws:
+ * is coated, has a film, or emits light; with constant weights, as in the report, every surface reflects whatever its index. laws:
  * dispersion laws by solid; [solid_count] is that of the surrounding medium. */
 static bool shows_itself(const scene *s, const material *m)
 {
-    return m->emission > 0.0 || material_coating(m, &s->render) > 0.0;
+    return m->emission > 0.0 || material_coating(m, &s->render) > 0.0 || material_is_layered(m, &s->render);
 }
 
 static int64_t medium_of(const scene *s, const index_law *laws, int solid_index)
@@ -186,7 +186,7 @@ static const material *material_of(const scene *s, plan *p, int solid_index)
     *mirror = *m;
     const double both = m->reflectivity + m->transparency;
     mirror->reflectivity = scene_has_constant_shares(&s->render) && both < 1.0 ? both : 1.0;
-    mirror->transparency = 0.0;
+    mirror->transparency = mirror->extinction = mirror->film_thickness_nm = 0.0;
     return mirror;
 }
 
@@ -219,7 +219,9 @@ static status fill_priority_indices(const scene *s, const index_law *laws, plan 
     if (s->render.spectrum == SPECTRUM_SPECTRAL &&
         !(p->spectral = spectra_create(s, p->materials, p->laws, priority_indices)))
         return out_of_memory(why);
-    return STATUS_OK;
+    return layered_plan_create(&s->render, p->materials, p->laws, p->ior, p->alike, priority_indices, &p->layered)
+               ? STATUS_OK
+               : out_of_memory(why);
 }
 
 status plan_build(const scene *s, plan **out, diagnostic *why)
@@ -282,6 +284,7 @@ void plan_destroy(plan *p)
     free(p->absorption);
     free(p->cones);
     spectra_destroy(p->spectral);
+    layered_plan_destroy(p->layered);
     rain_destroy(p->rain);
     free(p);
 }

@@ -7,6 +7,7 @@
 #include "geometry/hierarchy.h"
 #include "render/core/mesh_report.h"
 #include "render/core/path_sampling.h"
+#include "render/shade/layered_table.h"
 #include "render/shade/light_cone.h"
 #include "render/shade/rain.h"
 #include "render/shade/spectra.h"
@@ -41,6 +42,7 @@ typedef struct plan {
     index_law *laws;   /* by priority index: the source of ior */
     vec3 *absorption;  /* by priority index: Beer-Lambert coefficients and tints, by channel, in 1 / scene unit */
     spectra *spectral; /* for a spectral film, else NULL */
+    layered_plan *layered; /* metals and films; NULL if there are none */
     camera_frame view;
     uint64_t eye_inside;       /* the set of primitives that contain the camera */
     int camera_priority_index; /* and of the medium there */

@@ -40,6 +40,7 @@ void tracer_destroy(tracer *t)
     absorption_end(t);
     mesh_end(t);
     radiance_end(t);
+    layered_end(t);
     forget_integrator(t);
     queue_destroy(&t->queues.shadows);
     free(t);
@@ -111,7 +112,8 @@ bool tracer_begin(tracer *t, const tracer_target *target)
             return false;
     }
     if (!make_queues(t, t->queues.depth_limit + 1) || !make_marks(t, p->geometry) || !mesh_begin(t) ||
-        !radiance_begin(t) || !take_integrator(t) || !absorption_begin(t, p->geometry->attenuates && t->rule->traced))
+        !radiance_begin(t) || !layered_begin(t) || !take_integrator(t) ||
+        !absorption_begin(t, p->geometry->attenuates && t->rule->traced))
         return false;
     t->by_sample_key = t->rule->by_sample || r->spectrum == SPECTRUM_SPECTRAL || p->basic;
     drop_all(t);

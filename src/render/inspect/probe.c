@@ -19,10 +19,10 @@ status probe_create(const scene *s, isa level, probe **out, diagnostic *why)
     if (code == STATUS_OK) {
         render_settings *r = &p->setting->render;
         p->spectral = r->spectrum == SPECTRUM_SPECTRAL;
-        r->spectrum = SPECTRUM_RGB; /* a tree has one wavelength: render.lambda_nm */
         if (integrator_traits_of(r)->by_chance || integrator_traits_of(r)->drawn || integrator_traits_of(r)->layers)
             trace_trees(r); /* trace all branches, not a random one or none */
         code = scene_check(p->setting, why);
+        r->spectrum = SPECTRUM_RGB; /* a tree has one wavelength: render.lambda_nm */
     }
     THEN(code, plan_build(p->setting, &p->frame_plan, why));
     THEN(code, film_create(1, 1, 1, FILM_RGB, &p->img, why));
@@ -52,6 +52,8 @@ static vec3 tint_of(const probe *p, const material *m)
 void probe_one_wavelength(probe *p)
 {
     const render_settings *r = &p->frame_plan->render;
+    if (p->frame_plan->layered)
+        p->frame_plan->layered->one_wavelength = true;
     if (p->spectral) {
         const double a = surrounding_absorption_at(&p->setting->background, r->lambda_nm) * r->unit_m;
         p->frame_plan->absorption[0] = vec3_make(a, a, a);

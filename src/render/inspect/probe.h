@@ -41,7 +41,7 @@ typedef struct ray_hit {
     double n_from, n_to;
     double cos_i, cos_t; /* cos_t is 0 under total internal reflection */
     /* power reflectances of the interface with its coating; for an opaque surface or simple transmission, its
-     * reflectivity */
+     * reflectivity; of a metal or a film at the tree's wavelength */
     double R_s, R_p, R;
     bool tir;
     double T; /* power transmittance of the surface, with coating and transparency; 0 for an opaque one */

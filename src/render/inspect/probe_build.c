@@ -129,6 +129,17 @@ static void read_gain(const probe *p, ray_hit *h)
     h->gain_basic = ratio * ratio * h->T;
 }
 
+/* The reflectances of a metal or a film, at render.lambda_nm. */
+static void read_layers(const probe *p, ray_hit *h)
+{
+    const sp_amplitudes a =
+        layered_amplitudes(p->rays->layered->surface, h->cos_i, h->n_from, h->n_to, p->frame_plan->render.lambda_nm);
+    if (h->tir && !h->opaque)
+        return;
+    h->R_s = complex_norm2(a.r_s), h->R_p = complex_norm2(a.r_p);
+    h->R = 0.5 * (h->R_s + h->R_p);
+}
+
 /* Reads the ray's hit; false for the background. */
 static bool read_hit(const probe *p, ray_node *node)
 {
@@ -164,10 +175,13 @@ static bool read_hit(const probe *p, ray_node *node)
     h->face = is_mesh_face(s->face[0])
                   ? (int)mesh_face_triangle(s->face[0])
                   : (int)(s->face[0] % FACES_MAX) + (hit_primitive == bounded->hollow ? HOLLOW_FACES : 0);
+    if (surface_is_layered(t))
+        read_layers(p, h);
     const double coating = opaque ? 0.0 : material_coating(&t->surface.mat->surface, &p->frame_plan->render);
     h->R_s += (1.0 - h->R_s) * coating, h->R_p += (1.0 - h->R_p) * coating, h->R += (1.0 - h->R) * coating;
     if (opaque) {
-        h->R_s = h->R_p = h->R = t->surface.mat->surface.reflectivity;
+        if (!surface_is_layered(t))
+            h->R_s = h->R_p = h->R = t->surface.mat->surface.reflectivity;
         h->cos_t = 0.0;
         h->tir = false;
     }
@@ -203,6 +217,7 @@ static void add_branch(const probe *p, int depth, bool reflected, int *queued, b
     const branch_group *b = &t->surface.branches;
     const group *g = &t->surface.gathered;
     const double share = reflected ? b->reflect[0] : b->refract[0];
+    const vec3 weight = layered_weight(t, 0, reflected);
     if (!(share > 0.0))
         return;
     const int i = out->count++;
@@ -210,7 +225,7 @@ static void add_branch(const probe *p, int depth, bool reflected, int *queued, b
     *r = (ray_record){.origin = vec3_make(g->points.px[0], g->points.py[0], g->points.pz[0]),
                       .direction =
                           reflected ? vec3_make(b->rx[0], b->ry[0], b->rz[0]) : vec3_make(b->tx[0], b->ty[0], b->tz[0]),
-                      .weight = {g->wr[0] * share, g->wg[0] * share, g->wb[0] * share},
+                      .weight = {g->wr[0] * weight.x, g->wg[0] * weight.y, g->wb[0] * weight.z},
                       .start = g->points.face[0],
                       .inside = reflected ? g->inside_before[0] : g->inside_after[0],
                       .depth = depth + 1,
@@ -240,7 +255,7 @@ static void read_branches(const probe *p, int depth, branches *out)
     const bool opaque = surface_is_opaque(t, priority_index);
     int queued = 0;
     out->count = 0;
-    if (!follows_trees(&p->frame_plan->render) || (opaque && t->surface.mat->surface.reflectivity == 0.0))
+    if (!follows_trees(&p->frame_plan->render) || (opaque && !surface_reflects(t)))
         return;
     add_branch(p, depth, true, &queued, out);
     add_branch(p, depth, false, &queued, out);

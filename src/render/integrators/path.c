@@ -132,6 +132,9 @@ static bool draw_clear(const tracer *t, int k, double chance, continuation *c)
     c->direction = c->refracted ? vec3_make(b->tx[k], b->ty[k], b->tz[k]) : vec3_make(b->rx[k], b->ry[k], b->rz[k]);
     c->inside = c->refracted ? t->surface.gathered.inside_after[k] : t->surface.gathered.inside_before[k];
     c->share = vec3_make(both, both, both);
+    if (surface_is_layered(t)) /* of its mean over the channels the branch was chosen by */
+        c->share =
+            vec3_scale(layered_weight(t, k, !c->refracted), both / (c->refracted ? b->refract[k] : b->reflect[k]));
     c->specular_bounce = true;
     return true;
 }
@@ -147,7 +150,7 @@ static void choose(tracer *t, const material *m, bool opaque, int depth, path_ch
     const path_sampling *draws = &t->target.frame_plan->draws;
     const group *g = &t->surface.gathered;
     double u[ROW], v[ROW];
-    if (!opaque || m->reflectivity > 0.0)
+    if (!opaque || surface_reflects(t))
         t->path->draw(draws, g->count, g->sample_key, depth, DRAW_BRANCH, c->branch, v);
     if (!opaque || !(m->diffuse > 0.0))
         return;
@@ -159,7 +162,7 @@ static bool draw_matte(const tracer *t, const material *m, int k, const path_cho
 {
     const group *g = &t->surface.gathered;
     const double brightest = fmax(g->cr[k], fmax(g->cg[k], g->cb[k])), matte = m->diffuse * brightest,
-                 mirror = m->reflectivity;
+                 mirror = surface_is_layered(t) ? t->surface.branches.reflect[k] : m->reflectivity;
     if (!(matte + mirror > 0.0))
         return false;
     /* of a subnormal share the product is rounded to the share itself */
@@ -170,7 +173,8 @@ static bool draw_matte(const tracer *t, const material *m, int k, const path_cho
     c->specular_bounce = mirrored;
     if (mirrored) {
         c->direction = vec3_make(t->surface.branches.rx[k], t->surface.branches.ry[k], t->surface.branches.rz[k]);
-        c->share = vec3_make(mirror / odds, mirror / odds, mirror / odds);
+        c->share = surface_is_layered(t) ? vec3_scale(layered_weight(t, k, true), 1.0 / odds)
+                                         : vec3_make(mirror / odds, mirror / odds, mirror / odds);
         return true;
     }
     c->direction = vec3_make(chosen->x[k], chosen->y[k], chosen->z[k]);

@@ -6,7 +6,7 @@ static void branch(tracer *t, int depth, bool opaque)
 {
     const group *g = &t->surface.gathered;
     const branch_group *b = &t->surface.branches;
-    if (opaque && t->surface.mat->surface.reflectivity == 0.0)
+    if (opaque && !surface_reflects(t))
         return;
     shading_branches(t, opaque);
     if (depth == t->queues.depth_limit) {

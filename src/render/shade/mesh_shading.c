@@ -73,6 +73,7 @@ void mesh_bound_branches(tracer *t)
         if (b->refract[k] > 0.0 && !(vec3_dot(n, vec3_make(b->tx[k], b->ty[k], b->tz[k])) < 0.0)) {
             b->reflect[k] += b->refract[k];
             b->refract[k] = 0.0;
+            layered_turn_back(t, k);
         }
         if (!(vec3_dot(n, vec3_make(b->rx[k], b->ry[k], b->rz[k])) > 0.0)) {
             const vec3 d = vec3_make(g->dx[k], g->dy[k], g->dz[k]),

@@ -28,6 +28,26 @@ static double split_stokes(stokes s, double *q, double *u, double *v)
     return share;
 }
 
+void polarised_layered(tracer *t, int k, sp_response reflected, sp_response transmitted, double coating,
+                       double transparency)
+{
+    const group *g = &t->surface.gathered;
+    branch_group *b = &t->surface.branches;
+    polar_group *p = &t->surface.polar;
+    const stokes row = {1.0, p->q[k], p->u[k], p->v[k]}, intensity = {1.0, 0.0, 0.0, 0.0};
+    const vec3 d = vec3_make(g->dx[k], g->dy[k], g->dz[k]);
+    const vec3 n = vec3_make(g->points.nx[k], g->points.ny[k], g->points.nz[k]);
+    const vec3 back = vec3_make(b->rx[k], b->ry[k], b->rz[k]), ahead = vec3_make(b->tx[k], b->ty[k], b->tz[k]);
+    stokes r = analyser_across(row, d, n, back, reflected);
+    if (coating > 0.0) /* as analyser_coating */
+        r = stokes_add(r, analyser_across(intensity, d, n, back, transmitted), coating);
+    b->reflect[k] = split_stokes(r, &p->rq[k], &p->ru[k], &p->rv[k]);
+    if (b->refract[k] == 0.0)
+        return;
+    const stokes s = analyser_across(row, d, n, ahead, transmitted);
+    b->refract[k] = transparency * (1.0 - coating) * split_stokes(s, &p->tq[k], &p->tu[k], &p->tv[k]);
+}
+
 /* Called after the branches' directions and unpolarised weights are computed. */
 void polarised_branches(tracer *t, const material *m, bool opaque)
 {

@@ -278,11 +278,35 @@ void local_light(tracer *t, int priority_index, light_terms terms)
     radiance_weigh_back(t);
 }
 
+/* A branch whose weight differs by channel. */
+static void cut_colored(tracer *t, int k, bool reflected)
+{
+    const group *g = &t->surface.gathered;
+    const branch_group *b = &t->surface.branches;
+    const vec3 weight = layered_weight(t, k, reflected), direction = reflected
+                                                                         ? vec3_make(b->rx[k], b->ry[k], b->rz[k])
+                                                                         : vec3_make(b->tx[k], b->ty[k], b->tz[k]);
+    const double wr = g->wr[k] * weight.x, wg = g->wg[k] * weight.y, wb = g->wb[k] * weight.z;
+    if (!((reflected ? b->reflect[k] : b->refract[k]) > 0.0))
+        return;
+    COUNT(t->account.counters.cut_depth++);
+    COUNT(t->account.counters.cut_depth_throughput[0] += counters_cut_units(wr));
+    COUNT(t->account.counters.cut_depth_throughput[1] += counters_cut_units(wg));
+    COUNT(t->account.counters.cut_depth_throughput[2] += counters_cut_units(wb));
+    if (t->target.frame_plan->render.beyond != DEPTH_LIMIT_BLACK)
+        expose_at_depth_limit(t, g->sample_key[k], direction, wr, wg, wb);
+}
+
 void cut_branches(tracer *t)
 {
     const group *g = &t->surface.gathered;
     const branch_group *b = &t->surface.branches;
     const plan *p = t->target.frame_plan;
+    if (surface_is_layered(t) && t->layered->colored) {
+        for (int k = 0; k < g->count; k++)
+            cut_colored(t, k, true), cut_colored(t, k, false);
+        return;
+    }
     if (CUVETTE_COUNTERS) {
         cut_sum sum;
         t->shade->cut(g, b, &sum);
@@ -346,6 +370,8 @@ int enqueue_children(tracer *t, int depth, const double *dx, const double *dy, c
     const double least = t->least_weight;
     const int first = q->count;
     t->shade->append(&t->surface.gathered, dx, dy, dz, weight, inside, q);
+    if (surface_is_layered(t) && t->layered->colored)
+        layered_color_children(t, q, first, weight == t->surface.branches.reflect);
     if (t->target.frame_plan->render.polarisation)
         return keep_polarised(t, q, first, dx == t->surface.branches.rx, weight, least);
     for (int i = t->surface.gathered.count - 1; i >= 0; i--)
@@ -364,7 +390,9 @@ void shading_branches(tracer *t, bool opaque)
         t->shade->constant_branches(m, opaque, &t->surface.gathered, &t->surface.branches);
     else
         t->shade->fresnel_branches(m, &t->surface.gathered, &t->surface.branches);
-    if (p->render.polarisation)
+    if (surface_is_layered(t))
+        layered_branches(t, m);
+    else if (p->render.polarisation)
         polarised_branches(t, m, opaque);
     if (t->surface.on_mesh)
         mesh_bound_branches(t);
@@ -459,6 +487,8 @@ static void shade_one_material(tracer *t, int depth, int first, const hit_group 
     group_gather(&t->queues.waiting[depth], first, &t->batch.hits, p->ior, list, count, group_count == 1, g);
     if (p->spectral)
         spectral_indices(t, list);
+    if (t->layered)
+        layered_gather(t, list, priority_index);
     if (p->render.polarisation)
         polarised_gather(t, &t->queues.waiting[depth], first, list);
     t->surface.on_mesh = !surface->rule;

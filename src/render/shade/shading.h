@@ -2,6 +2,7 @@
  * film. */
 #pragma once
 
+#include "optics/mueller.h"
 #include "render/core/tracer_private.h"
 
 /* Adds radiance to a sample key's pixel. In a spectral film the three channels are equal: radiance at the sample key's
@@ -45,6 +46,17 @@ static inline light_terms light_terms_of(const render_settings *r)
 /* Computes directions and weights of the gathered group's branches at a surface, and counts total reflections. */
 void shading_branches(tracer *t, bool opaque);
 
+/* Whether the gathered group's surface is a metal's or has a film (layered.h). */
+static inline bool surface_is_layered(const tracer *t)
+{
+    return t->layered && t->layered->surface;
+}
+/* Whether an opaque surface reflects rays. */
+static inline bool surface_reflects(const tracer *t)
+{
+    return t->surface.mat->surface.reflectivity > 0.0 || surface_is_layered(t);
+}
+
 /* Counts the branches that the depth limit cuts off, and adds their fallback radiance (render.beyond). */
 void cut_branches(tracer *t);
 
@@ -67,3 +79,6 @@ void spectral_light(tracer *t, int lamp);
 /* polarised.c: gathers the group's Stokes vectors, and applies an interface to weights and vectors. */
 void polarised_gather(tracer *t, const ray_queue *q, int first, const int *list);
 void polarised_branches(tracer *t, const material *m, bool opaque);
+/* The same for ray k at a layered surface, by what it reflects and transmits. */
+void polarised_layered(tracer *t, int k, sp_response reflected, sp_response transmitted, double coating,
+                       double transparency);

@@ -243,6 +243,46 @@ static status check_faces(const scene *s, const solid *owner, diagnostic *why)
     return STATUS_OK;
 }
 
+/* Metals and films: what is not traced is refused. */
+static status check_layers(const scene *s, const solid *owner, diagnostic *why)
+{
+    const material *m = &owner->surface;
+    const render_settings *r = &s->render;
+    if (material_metal(m) && m->transparency > 0.0)
+        return diagnose(why, STATUS_BAD_INPUT, "set its transparency to 0, or choose another medium",
+                        "%.80s: %s is a metal, and not transparent", owner->name, material_medium_name(m));
+    if (!owner->visible || !material_is_layered(m, r))
+        return STATUS_OK;
+    const char *what = material_has_film(m) ? "a film" : "a metal";
+    if (has_face_materials(s, owner))
+        return diagnose(why, STATUS_BAD_INPUT, "give the solid a material of its own",
+                        "%.80s: a solid with materials by face cannot have %s", owner->name, what);
+    if (r->polarisation && r->spectrum != SPECTRUM_SPECTRAL)
+        return diagnose(why, STATUS_BAD_INPUT, "set render.spectrum to spectral, or render.polarisation to off",
+                        "%.80s: polarisation by %s depends on the wavelength", owner->name, what);
+    if (integrator_traits_of(r)->drawn && !material_is_opaque(m))
+        return diagnose(why, STATUS_BAD_INPUT, "set render.integrator to whitted, or its film_thickness_nm to 0",
+                        "%.80s: the depth buffer does not support a film on a transparent solid", owner->name);
+    if (scene_has_basic_radiance(r) && !material_is_opaque(m))
+        return diagnose(why, STATUS_BAD_INPUT, "set render.radiance to classic, or its film_thickness_nm to 0",
+                        "%.80s: basic radiance does not support a film on a transparent solid", owner->name);
+    return STATUS_OK;
+}
+
+/* Materials of the scene that a mesh file assigns to faces by their name. */
+static status check_face_layers(const scene *s, const solid *owner, diagnostic *why)
+{
+    for (int slot = 0; slot < face_material_slots(s, owner); slot++) {
+        const material *named;
+        const face_material *given;
+        face_material_source(s, owner, slot, &named, &given);
+        if (named && (material_metal(named) || named->extinction > 0.0 || named->film_thickness_nm > 0.0))
+            return diagnose(why, STATUS_BAD_INPUT, "give the solid a material of its own",
+                            "%.80s: a metal or a film cannot cover only some faces of a mesh", owner->name);
+    }
+    return STATUS_OK;
+}
+
 static status check_solid(const scene *s, const solid *owner, diagnostic *why)
 {
     diagnostic shape = {.what = ""};
@@ -253,6 +293,8 @@ static status check_solid(const scene *s, const solid *owner, diagnostic *why)
     index_law unused;
     TRY(material_index_law(&owner->surface, owner->name, &unused, why));
     TRY(material_absorption_check(&owner->surface, owner->name, why));
+    TRY(check_layers(s, owner, why));
+    TRY(check_face_layers(s, owner, why));
     /* A surface must not return more light than it receives; the tolerance is for sums such as 0.7 + 0.2 + 0.1. Under
      * Fresnel weights R + T = 1 always holds, and reflectivity applies only to opaque surfaces. */
     double sum = owner->surface.reflectivity + owner->surface.transparency;

@@ -48,7 +48,8 @@ static void hint_at_clear(const scene *s, const solid *owner, const note_taker *
                       "highlights",
                       owner->name);
     } else if (!scene_has_constant_shares(&s->render) && material_matches_surroundings(s, m) && !material_tints(m) &&
-               m->reflectivity == 0.0 && m->emission == 0.0 && !is_inside_medium(s, owner) && !cuts_another(s, owner)) {
+               m->reflectivity == 0.0 && m->emission == 0.0 && !material_is_layered(m, &s->render) &&
+               !is_inside_medium(s, owner) && !cuts_another(s, owner)) {
         note_give(taker, owner->name, "ior", "set its ior",
                   "%s is transparent with the refractive index of the surrounding medium: it %s", owner->name,
                   material_absorbs(m) ? "refracts no light" : "is invisible");
@@ -64,7 +65,8 @@ static bool hint_at_index(const scene *s, const solid *owner, const note_taker *
 {
     const material *m = &owner->surface;
     index_law law;
-    if (m->reflectivity > 0.0 || material_is_mirror(m) || material_index_law(m, "", &law, NULL) != STATUS_OK)
+    if (m->reflectivity > 0.0 || material_is_mirror(m) || material_is_layered(m, &s->render) ||
+        material_index_law(m, "", &law, NULL) != STATUS_OK)
         return false;
     const double index = index_law_at(&law, s->render.lambda_nm);
     if (!(index > INDEX_MOST))
@@ -87,6 +89,8 @@ static void hint_at_solid(const scene *s, const solid *owner, const note_taker *
         return;
     if (m->transparency > 0.0) {
         hint_at_clear(s, owner, taker);
+    } else if (material_is_layered(m, &s->render)) {
+        return; /* it shows reflections */
     } else if ((m->medium != MEDIUM_IOR || m->ior != 1.0) && !has_face_materials(s, owner)) {
         note_give(taker, owner->name, m->medium == MEDIUM_IOR ? "ior" : "medium", "set its transparency",
                   "%s has a refractive index but is opaque", owner->name);

@@ -1,17 +1,25 @@
 #include "scene/model/medium.h"
 
 #include "base/elementary_inline.h"
+#include "optics/metals.h"
 #include <float.h>
 #include <string.h>
 
 #define NAME(name) name,
-const char *const medium_words[] = {"ior", "sellmeier", "cauchy", "table", MEDIA_NAMES(NAME) NULL};
+const char *const medium_words[] = {"ior", "sellmeier", "cauchy", "table", MEDIA_NAMES(NAME) METAL_NAMES(NAME) NULL};
 const char *const surrounding_words[] = {"ior", MEDIA_NAMES(NAME) NULL};
 
 static index_law law_of_catalogue(int64_t at)
 {
     const medium *m = media_at((size_t)at);
     return (index_law){m->law, m->relative_to_air};
+}
+
+/* A medium of the catalogue, or a metal. */
+static index_law law_of_medium(int64_t word)
+{
+    return word < MEDIUM_METAL ? law_of_catalogue(word - MEDIUM_CATALOGUE)
+                                 : (index_law){metals_at((size_t)(word - MEDIUM_METAL))->n, false};
 }
 
 static index_law law_of_ior(double ior)
@@ -26,7 +34,7 @@ status material_index_law(const material *m, const char *label, index_law *out, 
                                             [MEDIUM_CAUCHY] = DISPERSION_CAUCHY,
                                             [MEDIUM_TABLE] = DISPERSION_TABLE};
     if (m->medium == MEDIUM_IOR || m->medium >= MEDIUM_CATALOGUE) {
-        *out = m->medium == MEDIUM_IOR ? law_of_ior(m->ior) : law_of_catalogue(m->medium - MEDIUM_CATALOGUE);
+        *out = m->medium == MEDIUM_IOR ? law_of_ior(m->ior) : law_of_medium(m->medium);
         return STATUS_OK;
     }
     *out = (index_law){{.kind = kinds[m->medium], .count = (int)m->coefficients.count}, false};
@@ -88,6 +96,33 @@ bool material_is_mirror(const material *m)
 bool material_is_opaque(const material *m)
 {
     return m->transparency == 0.0 || material_is_mirror(m);
+}
+
+const metal *material_metal(const material *m)
+{
+    return m->medium >= MEDIUM_METAL ? metals_at((size_t)(m->medium - MEDIUM_METAL)) : NULL;
+}
+
+bool material_is_conductor(const material *m)
+{
+    return m->transparency == 0.0 && (material_metal(m) || material_extinction_index(m, VISIBLE_LOW_NM) > 0.0);
+}
+
+bool material_has_film(const material *m)
+{
+    return m->film_thickness_nm > 0.0 && !material_is_mirror(m);
+}
+
+bool material_is_layered(const material *m, const render_settings *r)
+{
+    const bool film = material_has_film(m) && (material_is_opaque(m) || !scene_has_constant_shares(r));
+    return film || material_is_conductor(m);
+}
+
+double material_extinction_index(const material *m, double lambda_nm)
+{
+    const metal *of = material_metal(m);
+    return of ? metal_index(of, lambda_nm).im : m->medium == MEDIUM_IOR ? m->extinction : 0.0;
 }
 
 const char *material_medium_name(const material *m)

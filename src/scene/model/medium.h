@@ -1,6 +1,6 @@
 /* The medium of a material or of the surroundings: the law of its refractive index, and its absorption. The choice is
  * an index into medium_words: `ior` for a constant index, then the laws for which a scene gives coefficients, then the
- * names of the catalogue (optics/media.h). Pure; indices are relative to vacuum, wavelengths are in vacuum. */
+ * names of the catalogue (optics/media.h), then those of the metals (optics/metals.h). Pure; indices are relative to vacuum, wavelengths are in vacuum. */
 #pragma once
 
 #include "optics/dispersion.h"
@@ -11,6 +11,7 @@
 #include "scene/model/view_settings.h"
 
 enum { MEDIUM_IOR, MEDIUM_SELLMEIER, MEDIUM_CAUCHY, MEDIUM_TABLE, MEDIUM_CATALOGUE };
+enum { MEDIUM_METAL = MEDIUM_CATALOGUE + MEDIA_COUNT };
 extern const char *const medium_words[];
 /* For the surroundings: `ior`, then the catalogue. */
 enum { SURROUNDING_CATALOGUE = 1 };
@@ -24,7 +25,8 @@ typedef struct index_law {
     bool relative_to_air;
 } index_law;
 
-/* STATUS_BAD_INPUT if the coefficients are invalid; label is the name of the material in the message. */
+/* STATUS_BAD_INPUT if the coefficients are invalid; label is the name of the material in the message. The law of a metal
+ * is that of its n. */
 status material_index_law(const material *m, const char *label, index_law *out, diagnostic *why);
 index_law surrounding_index_law(const background *b);
 
@@ -40,6 +42,17 @@ bool material_matches_surroundings(const scene *s, const material *m);
 bool material_is_mirror(const material *m);
 /* Whether neither light nor a ray passes its surface. */
 bool material_is_opaque(const material *m);
+
+/* The metal that is its medium, or NULL. */
+const struct metal *material_metal(const material *m);
+/* An opaque material whose surface is a metal's: by its medium, or by its extinction. */
+bool material_is_conductor(const material *m);
+bool material_has_film(const material *m);
+/* Whether its surface reflects, and transmits, by optics/multilayer.h: a metal's, or one with a film. A film on a
+ * transparent surface needs Fresnel weights. */
+bool material_is_layered(const material *m, const render_settings *r);
+/* k of an opaque material's complex index. */
+double material_extinction_index(const material *m, double lambda_nm);
 
 /* "water", or NULL if the medium is not in the catalogue. */
 const char *material_medium_name(const material *m);

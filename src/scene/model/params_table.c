@@ -363,12 +363,18 @@ static const param table[] = {
          "transmission: of the incident light); 0: opaque"),
     REAL(PARAM_MATERIAL, material, ior, "", 0.1, 1e9, "1",
          "refractive index, relative to vacuum; above 10000 a transparent surface is treated as a perfect mirror"),
+    REAL(PARAM_MATERIAL, material, extinction, "", 0, 100, "0",
+         "k of the complex refractive index ior - i k; above 0, an opaque surface reflects as this metal, and its "
+         "reflectivity is not used"),
     CHOICE(PARAM_MATERIAL, material, medium, medium_words, "ior",
            "source of the index: ior, a dispersion law with coefficients, or a medium of the "
-           "catalogue (cuvette media)"),
+           "catalogue (cuvette media); metals are opaque and reflect by their complex index"),
     LIST(PARAM_MATERIAL, material, coefficients, "", 1e6, "[]",
          "coefficients of the dispersion law at L in um; cauchy: A,B,C,... in n = A + B/L^2 + C/L^4 + ...; "
          "sellmeier: B1,C1,B2,C2,... (C in um^2); table: L,n,L,n,... in nm"),
+    REAL(PARAM_MATERIAL, material, film_thickness_nm, "nm", 0, 20000, "0",
+         "thickness of a transparent film on the surface (soap, oil, a coating), whose two faces interfere; 0: none"),
+    REAL(PARAM_MATERIAL, material, film_ior, "", 1, 5, "1.33", "refractive index of the film, relative to vacuum"),
     COLOR(PARAM_MATERIAL, material, absorb_per_m, 1e9, "0,0,0", "Beer-Lambert absorption coefficient by channel, 1/m"),
     LIST(PARAM_MATERIAL, material, absorb_spectrum, "nm, 1/m", 1e9, "[]",
          "Beer-Lambert absorption coefficient by wavelength, as nm,1/m,nm,1/m,...; replaces absorb_per_m"),

@@ -40,7 +40,7 @@ status api_files(call *c)
 
 status api_media(call *c)
 {
-    return api_reply_json(c, media_rows_json(NULL, 0.0));
+    return api_reply_json(c, media_rows_json(NULL, NULL, 0.0));
 }
 
 status api_machine(call *c)

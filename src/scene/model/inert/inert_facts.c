@@ -159,7 +159,8 @@ bool sends_rays_on(const scene *s, const solid *owner)
 {
     const material *m = &owner->surface;
     const bool matte = is_path(s) && m->diffuse > 0.0 && has_color(m);
-    return m->transparency > 0.0 || m->reflectivity > 0.0 || matte || may_have_face_materials(s, owner);
+    return m->transparency > 0.0 || m->reflectivity > 0.0 || material_is_layered(m, &s->render) || matte ||
+           may_have_face_materials(s, owner);
 }
 
 inert_remedy lamp_remedy(const scene *s)

@@ -17,8 +17,9 @@ static bool is_of_light(const inert_case *c)
     static const char *const of_sky[] = {
         "kind",    "color",        "horizon", "picture", "rain", "drops", "sun_elevation_deg", "sun_azimuth_deg",
         "ambient", "absorb_per_m", NULL};
-    static const char *const of_surface[] = {"ambient",      "diffuse",         "specular",      "shininess",
-                                             "absorb_per_m", "absorb_spectrum", "tint_distance", NULL};
+    static const char *const of_surface[] = {
+        "ambient",         "diffuse",       "specular",   "shininess", "absorb_per_m",
+        "absorb_spectrum", "tint_distance", "extinction", "film_ior",  NULL};
     switch (c->at.object_group) {
     case PARAM_LIGHT: return true;
     case PARAM_RENDER: return is_among(c, of_render);
@@ -67,6 +68,7 @@ bool inert_unmet(const inert_case *c, const char *path)
         {"emission", {"0", "1", NULL}},
         {"transparency", {"0", "0.5", "1"}},
         {"ior", {"1.1", "1.9", NULL}},
+        {"film_thickness_nm", {"0", "300", NULL}},
         {"medium", {"water", "diamond", "bk7"}},
         {"priority", {"-1000", "0", "1000"}},
         {"visible", {"on", "off", NULL}},

@@ -52,7 +52,16 @@ static bool not_bent(const inert_case *c)
 
 static bool index_rule(const inert_case *c)
 {
+    if (c->m->transparency == 0.0 &&
+        material_is_layered(c->m, &c->s->render)) /* of what is behind a film, or a metal */
+        return nothing_reflected(c);
     return opaque_rule(c) || not_bent(c);
+}
+
+/* An opaque solid may become a metal. */
+static bool medium_rule(const inert_case *c)
+{
+    return c->m->transparency == 0.0 ? nothing_reflected(c) : index_rule(c);
 }
 
 /* Light inside the solid is seen only by a camera inside it. */
@@ -158,6 +167,8 @@ static bool say_unseen(const inert_case *c)
 static bool reflectivity_rule(const inert_case *c)
 {
     const scene *s = c->s;
+    if (layered_reflectivity(c))
+        return true;
     /* The coating of a transparent surface also attenuates shadow rays. */
     const bool coats = !material_is_opaque(c->m) && !scene_has_constant_shares(&s->render);
     if (coats)
@@ -247,8 +258,10 @@ static const char *const of_surface[] = {"ambient",      "diffuse", "specular", 
  * */
 static bool unseen(const inert_case *c)
 {
-    static const char *const of_opaque[] = {"color", "emission", "reflectivity", NULL};
-    const bool sent_back = is_among(c, of_surface) || (c->m->transparency == 0.0 && is_among(c, of_opaque));
+    static const char *const of_opaque[] = {"color", "emission", "reflectivity", "extinction", "medium", NULL};
+    static const char *const of_film[] = {"film_thickness_nm", "film_ior", NULL};
+    const bool sent_back =
+        is_among(c, of_surface) || (c->m->transparency == 0.0 && (is_among(c, of_opaque) || is_among(c, of_film)));
     return sent_back && c->frame && c->frame->hits[c->owner - c->s->solids] == 0 && say_unseen(c);
 }
 
@@ -261,7 +274,8 @@ static bool no_interface(const inert_case *c)
     for (size_t i = 0; i < s->solid_count; i++) {
         const solid *one = &s->solids[i];
         const material *m = &one->surface;
-        const bool plain = m->reflectivity == 0.0 && m->emission == 0.0 && material_matches_surroundings(s, m);
+        const bool plain = m->reflectivity == 0.0 && m->emission == 0.0 && !material_has_film(m) &&
+                           material_matches_surroundings(s, m);
         if (one->visible && ((!material_is_opaque(m) && !plain) || may_have_face_materials(s, one)))
             return false;
     }
@@ -290,7 +304,10 @@ bool inert_appearance(const inert_case *c)
         {"shininess", shininess_rule},
         {"reflectivity", reflectivity_rule},
         {"ior", index_rule},
-        {"medium", index_rule},
+        {"medium", medium_rule},
+        {"extinction", extinction_rule},
+        {"film_thickness_nm", film_rule},
+        {"film_ior", film_index_rule},
         {"coefficients", coefficients_rule},
         {"absorb_per_m", absorb_per_m_rule},
         {"absorb_spectrum", absorption_rule},

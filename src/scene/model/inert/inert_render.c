@@ -131,9 +131,14 @@ static bool weights(const inert_case *c)
                       "simple transmission uses the materials' constants"));
 }
 
+static bool is_layered(const scene *s, const solid *one)
+{
+    return material_is_layered(&one->surface, &s->render);
+}
+
 static bool polarisation(const inert_case *c)
 {
-    return no_tree(c) || no_clear(c);
+    return no_tree(c) || (!first_visible(c->s, is_layered) && no_clear(c));
 }
 
 static bool nothing_lit(const inert_case *c)
@@ -146,7 +151,8 @@ static bool nothing_lit(const inert_case *c)
 
 static bool deflects_light(const scene *s, const solid *one)
 {
-    return one->surface.transparency > 0.0 || one->surface.reflectivity > 0.0 || may_have_face_materials(s, one);
+    return one->surface.transparency > 0.0 || one->surface.reflectivity > 0.0 ||
+           material_is_layered(&one->surface, &s->render) || may_have_face_materials(s, one);
 }
 
 static bool no_photons(const inert_case *c)

@@ -1,0 +1,120 @@
+/* Metals and films in the tracer: exact at each ray's wavelength, or by the colours of a table in an rgb film. */
+#include "render/shade/layered.h"
+
+#include "render/shade/shading.h"
+#include <stdlib.h>
+
+bool layered_begin(tracer *t)
+{
+    if (t->target.frame_plan->layered && !t->layered && !(t->layered = malloc(sizeof *t->layered)))
+        return false;
+    if (t->layered)
+        t->layered->surface = NULL;
+    return true;
+}
+
+void layered_end(tracer *t)
+{
+    free(t->layered);
+}
+
+void layered_gather(tracer *t, const int *list, int priority_index)
+{
+    const plan *p = t->target.frame_plan;
+    layered_plan *of = p->layered;
+    layered_work *w = t->layered;
+    w->surface = of ? of->surface[priority_index] : NULL;
+    if (!w->surface)
+        return;
+    w->colored = of->curves && !of->one_wavelength;
+    const int own = of->medium[priority_index];
+    for (int k = 0; w->colored && k < t->surface.gathered.count; k++) {
+        const int before = of->medium[t->batch.hits.before[list[k]]], after = of->medium[t->batch.hits.after[list[k]]];
+        w->curve[k] = layered_curve_of(of, priority_index, w->surface->opaque || before != own ? before : after);
+    }
+}
+
+static double wavelength_of(const tracer *t, int k)
+{
+    const plan *p = t->target.frame_plan;
+    return p->spectral ? spectra_lambda(sample_key_wavelength(t->surface.gathered.sample_key[k])) : p->render.lambda_nm;
+}
+
+/* The film's colour, or all of the light under total reflection. */
+static void branch_by_color(tracer *t, const material *m, double coating, int k)
+{
+    const group *g = &t->surface.gathered;
+    layered_work *w = t->layered;
+    branch_group *b = &t->surface.branches;
+    const double cos_i = g->points.cos_i[k];
+    const fresnel f = fresnel_dielectric(cos_i, g->n_from[k], g->n_to[k]);
+    const bool opaque = w->surface->opaque, from_dense = !opaque && g->n_from[k] > g->n_to[k];
+    const double low = from_dense ? g->n_to[k] : g->n_from[k], high = from_dense ? g->n_from[k] : g->n_to[k],
+                 cosine = from_dense ? f.cos_t : cos_i;
+    vec3 R = vec3_make(1.0, 1.0, 1.0);
+    if (opaque || !f.total)
+        R = w->curve[k]->by_ray ? layered_color(w->surface, cosine, low, high) : layered_curve_at(w->curve[k], cosine);
+    const vec3 T = opaque ? vec3_make(0.0, 0.0, 0.0)
+                          : vec3_scale(vec3_sub(vec3_make(1.0, 1.0, 1.0), R), m->transparency * (1.0 - coating));
+    const double back = opaque ? 0.0 : coating;
+    w->rr[k] = R.x + (1.0 - R.x) * back, w->rg[k] = R.y + (1.0 - R.y) * back, w->rb[k] = R.z + (1.0 - R.z) * back;
+    w->tr[k] = T.x, w->tg[k] = T.y, w->tb[k] = T.z;
+    b->reflect[k] = (w->rr[k] + w->rg[k] + w->rb[k]) / 3.0;
+    b->refract[k] = (T.x + T.y + T.z) / 3.0;
+}
+
+static void branch_at_wavelength(tracer *t, const material *m, double coating, int k)
+{
+    const group *g = &t->surface.gathered;
+    const layered_surface *s = t->layered->surface;
+    branch_group *b = &t->surface.branches;
+    const double cos_i = g->points.cos_i[k];
+    const sp_amplitudes a = layered_amplitudes(s, cos_i, g->n_from[k], g->n_to[k], wavelength_of(t, k));
+    const bool total = !s->opaque && fresnel_dielectric(cos_i, g->n_from[k], g->n_to[k]).total;
+    const sp_response r = sp_response_of(a.r_s, a.r_p);
+    const double R = total ? 1.0 : lesser(r.mean, 1.0);
+    b->reflect[k] = s->opaque ? R : R + (1.0 - R) * coating;
+    b->refract[k] = s->opaque ? 0.0 : m->transparency * (1.0 - R) * (1.0 - coating);
+    if (t->target.frame_plan->render.polarisation)
+        polarised_layered(t, k, r, sp_response_of(a.t_s, a.t_p), coating, m->transparency);
+}
+
+void layered_branches(tracer *t, const material *m)
+{
+    const double coating = material_coating(m, &t->target.frame_plan->render);
+    for (int k = 0; k < t->surface.gathered.count; k++)
+        if (t->layered->colored)
+            branch_by_color(t, m, coating, k);
+        else
+            branch_at_wavelength(t, m, coating, k);
+}
+
+void layered_turn_back(tracer *t, int k)
+{
+    layered_work *w = t->layered;
+    if (!w || !w->surface || !w->colored)
+        return;
+    w->rr[k] += w->tr[k], w->rg[k] += w->tg[k], w->rb[k] += w->tb[k];
+    w->tr[k] = w->tg[k] = w->tb[k] = 0.0;
+}
+
+vec3 layered_weight(const tracer *t, int k, bool reflected)
+{
+    const layered_work *w = t->layered;
+    const branch_group *b = &t->surface.branches;
+    const double weight = reflected ? b->reflect[k] : b->refract[k];
+    if (!w || !w->surface || !w->colored)
+        return vec3_make(weight, weight, weight);
+    return reflected ? vec3_make(w->rr[k], w->rg[k], w->rb[k]) : vec3_make(w->tr[k], w->tg[k], w->tb[k]);
+}
+
+void layered_color_children(tracer *t, ray_queue *q, int first, bool reflected)
+{
+    const group *g = &t->surface.gathered;
+    for (int k = 0; k < g->count; k++) {
+        const vec3 weight = layered_weight(t, k, reflected);
+        q->wr[first + k] = g->wr[k] * weight.x;
+        q->wg[first + k] = g->wg[k] * weight.y;
+        q->wb[first + k] = g->wb[k] * weight.z;
+    }
+}

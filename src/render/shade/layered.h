@@ -1,0 +1,33 @@
+/* Shading of layered surfaces (layered_table.h): the branches' weights, by channel in an rgb film. Ownership:
+ * layered_begin allocates the tracer's memory, layered_end frees it. */
+#pragma once
+
+#include "render/core/tracer.h"
+#include "render/shade/shade.h"
+
+/* Of the gathered group. */
+typedef struct layered_work {
+    const layered_surface *surface; /* NULL: an ordinary surface */
+    bool colored;                   /* the branches have a weight for each channel; otherwise only the group's */
+    const layered_curve *curve[ROW];
+    /* By channel; their means are the weights of branch_group. */
+    double rr[ROW], rg[ROW], rb[ROW], tr[ROW], tg[ROW], tb[ROW];
+} layered_work;
+
+bool layered_begin(tracer *t); /* begins a frame; false when out of memory */
+void layered_end(tracer *t);
+
+/* Notes the surface of the gathered group, whose rays are list[0 ..] of the batch. */
+void layered_gather(tracer *t, const int *list, int priority_index);
+
+/* Replaces the weights of the branches, whose directions are computed, and with polarisation their Stokes vectors. */
+void layered_branches(tracer *t, const material *m);
+
+/* Sends the refracted light of ray k back, as in total reflection. */
+void layered_turn_back(tracer *t, int k);
+
+/* The weight of a branch of ray k by channel. */
+vec3 layered_weight(const tracer *t, int k, bool reflected);
+
+/* Gives children first .. of the queue, which were appended with the mean weights, the colours of theirs. */
+void layered_color_children(tracer *t, ray_queue *q, int first, bool reflected);

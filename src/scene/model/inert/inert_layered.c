@@ -1,0 +1,65 @@
+/* Parameters of metals and films that have no effect. */
+#include "scene/model/inert/inert_private.h"
+#include "scene/model/medium.h"
+#include "scene/model/scene.h"
+
+/* No ray brings what the surface reflects. */
+bool nothing_reflected(const inert_case *c)
+{
+    const scene *s = c->s;
+    if (!follows_rays(s))
+        return say_no_tree(c);
+    return s->render.depth == 0 && is_dark_at_depth_limit(s) &&
+           inert_say(c, "depth-0", "set render.depth=4",
+                     "render.depth is 0, and the radiance beyond the depth limit is black");
+}
+
+bool extinction_rule(const inert_case *c)
+{
+    const material *m = c->m;
+    if (m->transparency > 0.0)
+        return inert_say(c, "clear", inert_set("%s.transparency=0", c->name).text,
+                         "the solid is transparent: what it absorbs is set by absorb_per_m");
+    if (m->medium != MEDIUM_IOR)
+        return inert_say(c, "by-medium", inert_set("%s.medium=ior", c->name).text,
+                         "the extinction of medium %s is not set here", medium_words[m->medium]);
+    return nothing_reflected(c);
+}
+
+static bool mirror_has_no_film(const inert_case *c)
+{
+    return material_is_mirror(c->m) && inert_say(c, "mirror", inert_set("%s.ior=1.5", c->name).text,
+                                                 "its refractive index makes it a perfect mirror");
+}
+
+bool film_rule(const inert_case *c)
+{
+    const scene *s = c->s;
+    const bool clear = !material_is_opaque(c->m);
+    if (mirror_has_no_film(c))
+        return true;
+    if (clear && scene_has_constant_shares(&s->render))
+        return inert_say(c, "constant-film", "set render.weights=fresnel and render.transmission=refract",
+                         "a film needs the Fresnel equations, and this scene has constant weights");
+    /* A film on what has the index of the surroundings makes a surface of it. */
+    return !(clear && material_matches_surroundings(s, c->m)) && nothing_reflected(c);
+}
+
+bool film_index_rule(const inert_case *c)
+{
+    return (c->m->film_thickness_nm == 0.0 &&
+            inert_say(c, "no-film", inert_set("%s.film_thickness_nm=300", c->name).text,
+                      "film_thickness_nm is 0: there is no film")) ||
+           mirror_has_no_film(c) || (film_rule(c)) || nothing_reflected(c);
+}
+
+bool layered_reflectivity(const inert_case *c)
+{
+    const inert_remedy remedy = material_has_film(c->m)
+                                    ? inert_set("%s.film_thickness_nm=0 and %s.extinction=0", c->name, c->name)
+                                : material_metal(c->m) ? inert_set("%s.medium=ior", c->name)
+                                                       : inert_set("%s.extinction=0", c->name);
+    return c->m->transparency == 0.0 && material_is_layered(c->m, &c->s->render) &&
+           inert_say(c, "layered", remedy.text, "its %s determines what it reflects",
+                     material_has_film(c->m) ? "film" : "complex index");
+}
