@@ -263,7 +263,7 @@ static status check_layers(const scene *s, const solid *owner, diagnostic *why)
     if (integrator_traits_of(r)->drawn && !material_is_opaque(m))
         return diagnose(why, STATUS_BAD_INPUT, "set render.integrator to whitted, or its film_thickness_nm to 0",
                         "%.80s: the depth buffer does not support a film on a transparent solid", owner->name);
-    if (scene_has_basic_radiance(r) && !material_is_opaque(m))
+    if (scene_has_basic_radiance(r) && !scene_has_caustics(r) && !material_is_opaque(m)) /* shadow rays have no film */
         return diagnose(why, STATUS_BAD_INPUT, "set render.radiance to classic, or its film_thickness_nm to 0",
                         "%.80s: basic radiance does not support a film on a transparent solid", owner->name);
     return STATUS_OK;
