@@ -42,6 +42,20 @@ prediction: {ask: It is, choices: [shifted, not shifted], right: shifted}
 measure: {curve: edges, tolerance: 1e-9, reading: Shift, unit: px, metric: edges.left_shift}
 answer: It is a lens.
 END
+cat >lessons/critical.lesson <<'END'
+lesson: critical
+title: The critical angle
+language: en
+question: When does it turn to a mirror?
+scene: ../rod.yaml
+set: {liquid.ior: 1.4, liquid.color: [0.9, 0.95, 1]}
+controls:
+  - {parameter: liquid.ior, label: Index, choices: [1.2, 1.3, 1.4, 1.5]}
+  - {parameter: rod.size.x, label: Colour, from: 0.1, to: 0.3}
+prediction: {ask: How many degrees?, within: 3}
+measure: {over: liquid.ior, tolerance: 1e-9, reading: Angle, unit: deg, metric: critical.liquid}
+answer: It is the critical angle.
+END
 cuvette render rod.yaml -o a.png
 cuvette render rod.yaml -o b.png --set liquid.ior=1.4
 cuvette render rod.yaml -o a.jpg
