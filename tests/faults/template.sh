@@ -9,6 +9,7 @@ cuvette() { "${CUVETTE:-$root/build/cuvette}" "$@" >/dev/null; }
 
 cp "$root/experiments/scenes/chequer.png" tiles.png
 cp "$root/experiments/hands/tug.yaml" tug.yaml
+cp "$root/experiments/cluster/study.slurm" study.slurm
 small() { # SCENE OPTION...: a shipped scene with 8 x 6 pixels; its files are in this folder
     sed 's,file: chequer.png,file: tiles.png,; s,script: .*/,script: ,' "$root/experiments/scenes/$1" >whole.yaml
     cuvette scene whole.yaml --set render.width=8 --set render.height=6 --set render.threads=1 -o "$1" "${@:2}"
@@ -71,6 +72,8 @@ keep: {image: on}
 END
 sed 's/study: small/study: done/' small.study >done.study
 sed 's/study: small/study: parts/' small.study >parts.study
+cp "$root"/tests/old-rows/{old-rows.study,{scene,hand}.yaml,corner.obj,{spots,sky}.pfm} .
+cp -r "$root/tests/old-rows/results" old
 cuvette study run -q done.study
 cuvette study run -q --shard 0/2 parts.study
 cuvette study run -q --shard 1/2 parts.study

@@ -228,10 +228,8 @@ static status set_values(const edit *e, scene *s, diagnostic *why)
     status code = STATUS_OK;
     json_object_foreach((json_t *)(uintptr_t)e->values, row, value)
     {
-        char *text = api_value_text(value), *path = text_format("%s.%s", e->new_name, row);
-        if (code == STATUS_OK && !text)
-            code = diagnose(why, STATUS_BAD_INPUT, "give a number, a string or a list of numbers",
-                            "%.200s: not a valid value", row);
+        char *text = NULL, *path = text_format("%s.%s", e->new_name, row);
+        THEN(code, api_value_text(value, row, &text, why));
         THEN(code, path ? scene_put(s, path, text, why) : out_of_memory(why));
         free(text);
         free(path);
