@@ -408,6 +408,7 @@ static void disturbances_of_the_machine_are_reported(void **state)
     make_root(root, sizeof root);
     put(root, "/sys/devices/system/cpu/cpufreq/policy0/scaling_governor", "performance\n");
     put(root, "/sys/devices/system/cpu/cpufreq/policy4/scaling_governor", "powersave\n");
+    put(root, "/sys/devices/system/cpu/possible", "0-1,4\n");
     put(root, "/sys/devices/system/cpu/intel_pstate/no_turbo", "0\n");
     put(root, "/sys/devices/system/cpu/smt/active", "1\n");
     put(root, "/sys/fs/cgroup/cpu.max", "150000 100000\n");
@@ -459,8 +460,7 @@ static void files_that_cannot_be_read_are_reported_once(void **state)
     assert_int_equal(setrlimit(RLIMIT_NOFILE, &none), 0);
     disturbances_of_machine(root, collect, message);
     assert_int_equal(setrlimit(RLIMIT_NOFILE, &all), 0);
-    assert_string_equal(message, "unknown: /sys/devices/system/cpu/cpufreq/policy0/scaling_governor cannot be read: "
-                                 "Too many open files\n");
+    assert_string_equal(message, "unknown: /sys/devices/system/cpu/possible cannot be read: Too many open files\n");
     assert_string_not_equal(usage_advice(message), "");
     assert_int_equal(nftw(root, remove_entry, 8, FTW_DEPTH | FTW_PHYS), 0);
 }

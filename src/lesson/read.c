@@ -27,6 +27,7 @@
 #include "lesson/lesson.h"
 #include "scene/file/document.h"
 #include "scene/model/params.h"
+#include <limits.h>
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
@@ -163,13 +164,12 @@ static status read_controls(const reader *r, const node *root)
 /* Without links and "..", and relative to the working folder if it is below; unchanged for a missing file. */
 static char *short_path(const char *path)
 {
-    char *real = realpath(path, NULL), *here = realpath(".", NULL);
-    const size_t length = here ? strlen(here) : 0;
-    const bool below = real && length > 1 && strncmp(real, here, length) == 0 && real[length] == '/';
-    char *text = strdup(below ? real + length + 1 : real ? real : path);
-    free(real);
-    free(here);
-    return text;
+    char real[PATH_MAX], here[PATH_MAX];
+    if (!realpath(path, real))
+        return strdup(path);
+    const size_t length = realpath(".", here) ? strlen(here) : 0;
+    const bool below = length > 1 && strncmp(real, here, length) == 0 && real[length] == '/';
+    return strdup(below ? real + length + 1 : real);
 }
 
 static status read_scene(const reader *r, const node *root)

@@ -11,7 +11,6 @@
 #include <stdlib.h>
 #include <string.h>
 #include <time.h>
-#include <unistd.h>
 
 typedef struct report {
     const char *root;
@@ -59,16 +58,26 @@ static bool reads_as(const report *from, const char *path, const char *expected)
     return read_word(from, path, word, sizeof word) && strcmp(word, expected) == 0;
 }
 
-/* Each policy directory is a group of units that share a frequency; only the first governor other than "performance" is
- * reported. */
+/* One more than the highest number of a unit, as in "0-3,8"; more than any has if that is not known. */
+static int possible_units(const report *to)
+{
+    enum { UNITS_MAX = 1024 };
+    char text[128];
+    if (!read_word(to, "/sys/devices/system/cpu/possible", text, sizeof text))
+        return UNITS_MAX;
+    const char *last = text + strlen(text);
+    while (last > text && last[-1] >= '0' && last[-1] <= '9')
+        last--;
+    const long highest = strtol(last, NULL, 10);
+    return highest < UNITS_MAX ? (int)highest + 1 : UNITS_MAX;
+}
+
+/* Each policy directory is a group of units that share a frequency, with the number of one of them; only the first
+ * governor other than "performance" is reported. */
 static void check_governor(const report *to)
 {
-    enum { POLICY_MAX = 1024 }; /* of policy0, policy1, ..., which are not contiguous */
-    char folder[512];
-    if (snprintf(folder, sizeof folder, "%s/sys/devices/system/cpu/cpufreq", to->root) < 0 ||
-        (access(folder, F_OK) != 0 && errno == ENOENT)) /* as in most virtual machines */
-        return;
-    for (int i = 0; i < POLICY_MAX; i++) {
+    const int units = possible_units(to);
+    for (int i = 0; i < units; i++) {
         char path[96], governor[64];
         snprintf(path, sizeof path, "/sys/devices/system/cpu/cpufreq/policy%d/scaling_governor", i);
         if (read_word(to, path, governor, sizeof governor) && strcmp(governor, "performance") != 0) {
