@@ -159,6 +159,7 @@ static const request usual[] = {
 
 /* Objects, files, drawings, tables, lessons: `lab_client edits`. */
 static const request edits[] = {
+    {"GET", "/api/scene", "", true},
     {"POST", "/api/objects", "{\"kind\": \"solid\", \"shape\": \"sphere\", \"set\": {\"radius\": 0.2}}", false},
     {"POST", "/api/objects", "{\"kind\": \"light\", \"name\": \"lamp2\", \"set\": {\"color\": [1, 0.9, 0.8]}}", false},
     {"POST", "/api/objects", "{\"kind\": \"texture\", \"file\": \"tiles.png\", \"name\": \"new\"}", false},
