@@ -161,8 +161,9 @@ status api_reset(call *c)
     const size_t count = json_array_size(paths);
     const char **text = calloc(count + 1, sizeof *text);
     uint64_t generation = 0;
-    bool good =
-        text && json_is_object(c->body) && (!paths || (json_is_array(paths) && count > 0 && count <= PATHS_MAX));
+    if (!text)
+        return out_of_memory(&c->why);
+    bool good = json_is_object(c->body) && (!paths || (json_is_array(paths) && count > 0 && count <= PATHS_MAX));
     for (size_t i = 0; i < count && good; i++)
         good = (text[i] = json_string_value(json_array_get(paths, i))) != NULL;
     const status code =
