@@ -89,7 +89,7 @@ typedef struct set_request {
 } set_request;
 
 /* A live slime ignores time_s, so no note is made for it. */
-static void note_inert(set_request *x, const scene *s)
+static status note_inert(set_request *x, const scene *s, diagnostic *why)
 {
     const char *path;
     json_t *value;
@@ -100,7 +100,10 @@ static void note_inert(set_request *x, const scene *s)
             continue;
         x->notes = x->notes ? x->notes : json_array();
         json_add(&x->notes, api_note(answer.note.place, answer.note.text, answer.note.remedy));
+        if (!x->notes)
+            return out_of_memory(why);
     }
+    return STATUS_OK;
 }
 
 static status set_all(void *of, scene *s, diagnostic *why)
@@ -119,9 +122,7 @@ static status set_all(void *of, scene *s, diagnostic *why)
     }
     json_decref(x->notes);
     x->notes = NULL;
-    if (code == STATUS_OK)
-        note_inert(x, s);
-    return code;
+    return code == STATUS_OK ? note_inert(x, s, why) : code;
 }
 
 static bool sets_camera(json_t *values)
