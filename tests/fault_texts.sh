@@ -15,5 +15,9 @@ while IFS=$'\t' read -r file old new _; do
         echo "not ok $count - $file does not contain '$old', which the fault replaces by '$new'"
     fi
 done < <(cat tests/faults/laws.tsv tests/faults/checks.tsv)
+if grep -q $'\t\t' tests/faults/laws.tsv tests/faults/checks.tsv; then # read takes two tabs for one
+    failed=1
+    echo "not ok $((count + 1)) - a field is empty"
+fi
 ((count > 0)) || failed=1
 exit $failed

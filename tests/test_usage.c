@@ -20,6 +20,7 @@
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
+#include <sys/resource.h>
 #include <sys/stat.h>
 #include <time.h>
 #include <unistd.h>
@@ -407,6 +408,7 @@ static void disturbances_of_the_machine_are_reported(void **state)
     make_root(root, sizeof root);
     put(root, "/sys/devices/system/cpu/cpufreq/policy0/scaling_governor", "performance\n");
     put(root, "/sys/devices/system/cpu/cpufreq/policy4/scaling_governor", "powersave\n");
+    put(root, "/sys/devices/system/cpu/possible", "0-1,4\n");
     put(root, "/sys/devices/system/cpu/intel_pstate/no_turbo", "0\n");
     put(root, "/sys/devices/system/cpu/smt/active", "1\n");
     put(root, "/sys/fs/cgroup/cpu.max", "150000 100000\n");
@@ -444,6 +446,25 @@ static void no_disturbances_are_reported_for_a_quiet_machine(void **state)
     assert_string_equal(message, "");
 }
 
+/* Files that no process can open for want of descriptors are not taken for ones that show nothing. */
+static void files_that_cannot_be_read_are_reported_once(void **state)
+{
+    (void)state;
+    char root[256], message[2048] = "";
+    struct rlimit all, none;
+    make_root(root, sizeof root);
+    put(root, "/sys/devices/system/cpu/cpufreq/policy0/scaling_governor", "performance\n");
+    assert_int_equal(getrlimit(RLIMIT_NOFILE, &all), 0);
+    none = all;
+    none.rlim_cur = 0;
+    assert_int_equal(setrlimit(RLIMIT_NOFILE, &none), 0);
+    disturbances_of_machine(root, collect, message);
+    assert_int_equal(setrlimit(RLIMIT_NOFILE, &all), 0);
+    assert_string_equal(message, "unknown: /sys/devices/system/cpu/possible cannot be read: Too many open files\n");
+    assert_string_not_equal(usage_advice(message), "");
+    assert_int_equal(nftw(root, remove_entry, 8, FTW_DEPTH | FTW_PHYS), 0);
+}
+
 static void disturbances_of_this_machine_are_reported_as_lines(void **state)
 {
     (void)state;
@@ -474,6 +495,7 @@ int main(void)
         cmocka_unit_test(hardware_counters_increase_or_are_unavailable),
         cmocka_unit_test(disturbances_of_the_machine_are_reported),
         cmocka_unit_test(no_disturbances_are_reported_for_a_quiet_machine),
+        cmocka_unit_test(files_that_cannot_be_read_are_reported_once),
         cmocka_unit_test(disturbances_of_this_machine_are_reported_as_lines),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);

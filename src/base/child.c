@@ -1,6 +1,7 @@
 /* Running another program: collects its output and kills its process group. */
 #include "base/child.h"
 #include "base/spawn.h"
+#include "base/system_error.h"
 #include <errno.h>
 #include <fcntl.h>
 #include <poll.h>
@@ -104,11 +105,8 @@ status child_run(char *const *arguments, double limit_s, const atomic_bool *stop
     if (!c.output)
         return out_of_memory(why);
     const int error = begin(&c, arguments);
-    if (error) {
-        const char *reason = strerrordesc_np(error);
-        return diagnose_at(why, arguments[0], STATUS_FAILURE, "", "the program cannot be started: %s",
-                           reason ? reason : "unknown error");
-    }
+    if (error)
+        return system_error(why, STATUS_FAILURE, arguments[0], "the program cannot be started", error, "try again");
     const bool in_time = wait_child(&c, limit_s, stop);
     *exit_code = end(&c);
     return in_time ? STATUS_OK

@@ -4,9 +4,9 @@
 #include "base/file.h"
 #include "base/system_error.h"
 #include <errno.h>
+#include <limits.h>
 #include <math.h>
 #include <stdio.h>
-#include <stdlib.h>
 #include <string.h>
 #include <sys/statvfs.h>
 
@@ -36,13 +36,14 @@ static bool shorten(char *path)
 double disk_room_free(const char *path)
 {
     struct statvfs about;
-    char *folder = path[0] ? strdup(path) : NULL;
+    char folder[PATH_MAX]; /* the kernel knows no longer path */
     int code = -1;
-    if (folder)
+    if (path[0] && strlen(path) < sizeof folder) {
+        strcpy(folder, path);
         do
             code = statvfs(folder, &about);
         while (code != 0 && (errno == ENOENT || errno == ENOTDIR) && shorten(folder));
-    free(folder);
+    }
     return code == 0 ? (double)about.f_bavail * (double)about.f_frsize : (double)NAN;
 }
 

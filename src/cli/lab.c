@@ -10,6 +10,7 @@
 #include "measure/topology.h"
 #include "web/lab.h"
 #include <errno.h>
+#include <limits.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
@@ -57,17 +58,15 @@ static const command_form form = {
  * folder. Allocated. */
 static char *choose_folder(const lab_request *request)
 {
-    char *here = realpath(".", NULL), *there = request->scene ? realpath(request->scene, NULL) : NULL;
-    const size_t length = here ? strlen(here) : 0;
-    const bool below = !there || (here && strncmp(there, here, length) == 0 && (there[length] == '/' || length == 1));
-    char *slash = there ? strrchr(there, '/') : NULL;
-    if (slash)
-        slash[slash == there] = 0;
-    free(here);
-    if (!below)
-        return there;
-    free(there);
-    return strdup(".");
+    char here[PATH_MAX], there[PATH_MAX];
+    if (!request->scene || !realpath(request->scene, there))
+        return strdup(".");
+    const size_t length = realpath(".", here) ? strlen(here) : 0;
+    if (length && strncmp(there, here, length) == 0 && (there[length] == '/' || length == 1))
+        return strdup(".");
+    char *slash = strrchr(there, '/');
+    slash[slash == there] = 0;
+    return strdup(there);
 }
 
 /* The XDG Base Directory Specification: state that should survive; a relative path is ignored. Allocated; "" if no

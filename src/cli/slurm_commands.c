@@ -152,13 +152,15 @@ static void print_line(const command_line *c, FILE *out)
     fputc('\n', out);
 }
 
-void slurm_print_commands(const slurm_submission *s, FILE *out)
+status slurm_print_commands(const slurm_submission *s, FILE *out, diagnostic *why)
 {
-    command_line c;
-    if (parts_line(&c, s))
-        print_line(&c, out);
-    close_line(&c);
-    if (merge_line(&c, s, "JOB"))
-        print_line(&c, out);
-    close_line(&c);
+    command_line parts, merge = {.arguments = NULL};
+    const bool good = parts_line(&parts, s) && merge_line(&merge, s, "JOB");
+    if (good) {
+        print_line(&parts, out);
+        print_line(&merge, out);
+    }
+    close_line(&parts);
+    close_line(&merge);
+    return good ? STATUS_OK : out_of_memory(why);
 }

@@ -25,4 +25,4 @@ status slurm_submit_parts(const slurm_submission *s, slurm_job *out, diagnostic 
 status slurm_submit_merge(const slurm_submission *s, const slurm_job *parts, slurm_job *out, diagnostic *why);
 
 /* Prints the commands of both. */
-void slurm_print_commands(const slurm_submission *s, FILE *out);
+status slurm_print_commands(const slurm_submission *s, FILE *out, diagnostic *why);

@@ -314,7 +314,7 @@ static status show(const submission *job, diagnostic *why)
 {
     const slurm_submission to_send = sent(job);
     say_parts(job);
-    slurm_print_commands(&to_send, stdout);
+    TRY(slurm_print_commands(&to_send, stdout, why));
     printf("\n%s", job->script);
     return terminal_flush(why);
 }

@@ -27,6 +27,7 @@
 #include "lesson/lesson.h"
 #include "scene/file/document.h"
 #include "scene/model/params.h"
+#include <limits.h>
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
@@ -74,26 +75,42 @@ static status expect_map(const reader *r, const node *parent, const char *key, c
                       n ? "'%s' has no keys" : "'%s' is missing", key);
 }
 
+/* What a part of the lesson, a value or its scene, says: if it is wrong, the error is located in the lesson; if the
+ * machine failed, the lesson is not to blame. */
+static status relay(const reader *r, const node *at, status code, const char *remedy, const diagnostic *refused)
+{
+    if (code == STATUS_BAD_INPUT)
+        return node_error(r->file, at, r->why, remedy, "%s", refused->what);
+    if (code != STATUS_OK && r->why)
+        *r->why = *refused;
+    return code;
+}
+
+/* A value as text; expected and wrong: the remedy and the error if it is none. */
+static status read_value(const reader *r, const node *n, const char *expected, const char *wrong, char **out)
+{
+    if (!node_is_value(n))
+        return node_error(r->file, n, r->why, expected, "%s", wrong);
+    return (*out = node_value_text(n)) ? STATUS_OK : out_of_memory(r->why);
+}
+
 /* A list of texts, at most LESSON_CHOICES_MAX. */
 static status read_choices(const reader *r, const node *n, char **out, int *count)
 {
     if (n->kind != NODE_LIST || n->count < 2 || n->count > LESSON_CHOICES_MAX)
         return node_error(r->file, n, r->why, "write a list such as [water, ethanol]", "choices are not 2 to 6 texts");
     for (size_t i = 0; i < n->count; i++) {
-        char *text = node_value_text(n->items[i]);
-        if (!text)
-            return node_error(r->file, n->items[i], r->why, "write a word or a number", "this is not a choice");
-        out[(*count)++] = text;
+        TRY(read_value(r, n->items[i], "write a word or a number", "this is not a choice", &out[*count]));
+        ++*count;
     }
     return STATUS_OK;
 }
 
-/* Sets it in the scene; the error is located in the lesson. */
 static status try_value(const reader *r, scene *s, const node *at, const char *path, const char *value)
 {
     diagnostic refused = {.what = ""};
     const status code = scene_set(s, path, value, &refused);
-    return code == STATUS_OK ? code : node_error(r->file, at, r->why, refused.remedy, "%s", refused.what);
+    return relay(r, at, code, refused.remedy, &refused);
 }
 
 static status try_range(const reader *r, scene *s, const node *n, const lesson_control *c)
@@ -147,13 +164,12 @@ static status read_controls(const reader *r, const node *root)
 /* Without links and "..", and relative to the working folder if it is below; unchanged for a missing file. */
 static char *short_path(const char *path)
 {
-    char *real = realpath(path, NULL), *here = realpath(".", NULL);
-    const size_t length = here ? strlen(here) : 0;
-    const bool below = real && length > 1 && strncmp(real, here, length) == 0 && real[length] == '/';
-    char *text = strdup(below ? real + length + 1 : real ? real : path);
-    free(real);
-    free(here);
-    return text;
+    char real[PATH_MAX], here[PATH_MAX];
+    if (!realpath(path, real))
+        return strdup(path);
+    const size_t length = realpath(".", here) ? strlen(here) : 0;
+    const bool below = length > 1 && strncmp(real, here, length) == 0 && real[length] == '/';
+    return strdup(below ? real + length + 1 : real);
 }
 
 static status read_scene(const reader *r, const node *root)
@@ -190,10 +206,8 @@ static status read_settings(const reader *r, const node *root)
     if (!(l->setting = calloc(map->count + 1, sizeof *l->setting)))
         return out_of_memory(r->why);
     for (size_t i = 0; i < map->count; i++) {
-        char *value = node_value_text(map->items[i]);
-        if (!value)
-            return node_error(r->file, map->items[i], r->why, "write a number, a word or a list",
-                              "this is not a value");
+        char *value = NULL;
+        TRY(read_value(r, map->items[i], "write a number, a word or a list", "this is not a value", &value));
         const status code = try_value(r, l->start, map->items[i], map->keys[i]->text, value);
         char *setting = code == STATUS_OK ? text_format("%s=%s", map->keys[i]->text, value) : NULL;
         free(value);
@@ -268,12 +282,10 @@ static status try_over(const reader *r, const node *at, const lesson_control *c)
         return STATUS_OK;
     scene *tried = scene_clone(r->l->start);
     diagnostic refused = {.what = ""};
-    status code = tried ? STATUS_OK : out_of_memory(r->why);
+    status code = tried ? STATUS_OK : out_of_memory(&refused);
     THEN(code, scene_set(tried, c->parameter, number_format(c->from + (c->to - c->from) / M_PI, text), &refused));
     scene_destroy(tried);
-    return code == STATUS_BAD_INPUT
-               ? node_error(r->file, at, r->why, "give the control's values as choices", "%s", refused.what)
-               : code;
+    return relay(r, at, code, "give the control's values as choices", &refused);
 }
 
 static status read_over(const reader *r, const node *measure, const node *over)
@@ -356,7 +368,7 @@ static status read_root(const reader *r)
     TRY(read_measure(r, root));
     diagnostic refused = {.what = ""};
     const status code = scene_check(l->start, &refused);
-    return code == STATUS_OK ? code : node_error(r->file, root, r->why, refused.remedy, "%s", refused.what);
+    return relay(r, root, code, refused.remedy, &refused);
 }
 
 status lesson_read_below(const char *path, const char *root, lesson **out, diagnostic *why)

@@ -4,6 +4,7 @@
 #include "measure/small_file.h"
 #include "measure/usage.h"
 
+#include <errno.h>
 #include <math.h>
 #include <stdarg.h>
 #include <stdio.h>
@@ -15,6 +16,7 @@ typedef struct report {
     const char *root;
     disturbance_line line;
     void *context;
+    bool *incomplete; /* a file that could not be read was reported: once is enough */
 } report;
 
 __attribute__((format(printf, 2, 3))) static void say(const report *to, const char *format, ...)
@@ -27,10 +29,24 @@ __attribute__((format(printf, 2, 3))) static void say(const report *to, const ch
     to->line(to->context, text);
 }
 
+/* What is in a file that cannot be read, for lack of open files or for a broken disk, may disturb: that is said. False
+ * without its text. */
+static bool read_file(const report *to, const char *path, char *text, size_t size)
+{
+    if (small_file_read(to->root, path, text, size))
+        return true;
+    const int reason = errno;
+    if (*to->incomplete || (reason != EMFILE && reason != ENFILE && reason != ENOMEM && reason != EIO))
+        return false;
+    say(to, "unknown: %.96s cannot be read: %s", path, strerrordesc_np(reason));
+    *to->incomplete = true;
+    return false;
+}
+
 /* Reads the first word of a file; false if there is none. */
 static bool read_word(const report *from, const char *path, char *word, size_t size)
 {
-    if (!small_file_read(from->root, path, word, size))
+    if (!read_file(from, path, word, size))
         return false;
     word[strcspn(word, " \t\n")] = '\0';
     return word[0] != '\0';
@@ -42,12 +58,26 @@ static bool reads_as(const report *from, const char *path, const char *expected)
     return read_word(from, path, word, sizeof word) && strcmp(word, expected) == 0;
 }
 
-/* Each policy directory is a group of units that share a frequency; only the first governor other than "performance" is
- * reported. */
+/* One more than the highest number of a unit, as in "0-3,8"; more than any has if that is not known. */
+static int possible_units(const report *to)
+{
+    enum { UNITS_MAX = 1024 };
+    char text[128];
+    if (!read_word(to, "/sys/devices/system/cpu/possible", text, sizeof text))
+        return UNITS_MAX;
+    const char *last = text + strlen(text);
+    while (last > text && last[-1] >= '0' && last[-1] <= '9')
+        last--;
+    const long highest = strtol(last, NULL, 10);
+    return highest < UNITS_MAX ? (int)highest + 1 : UNITS_MAX;
+}
+
+/* Each policy directory is a group of units that share a frequency, with the number of one of them; only the first
+ * governor other than "performance" is reported. */
 static void check_governor(const report *to)
 {
-    enum { POLICY_MAX = 1024 }; /* of policy0, policy1, ..., which are not contiguous */
-    for (int i = 0; i < POLICY_MAX; i++) {
+    const int units = possible_units(to);
+    for (int i = 0; i < units; i++) {
         char path[96], governor[64];
         snprintf(path, sizeof path, "/sys/devices/system/cpu/cpufreq/policy%d/scaling_governor", i);
         if (read_word(to, path, governor, sizeof governor) && strcmp(governor, "performance") != 0) {
@@ -70,7 +100,7 @@ static void check_settings(const report *to)
 static void check_hypervisor(const report *to)
 {
     char text[8192]; /* longer than the entry of the first processor */
-    small_file_read(to->root, "/proc/cpuinfo", text, sizeof text);
+    read_file(to, "/proc/cpuinfo", text, sizeof text);
     const char *flags = strstr(text, "\nflags");
     const char *word = flags ? strstr(flags, " hypervisor") : NULL;
     const char *end = flags ? strchr(flags + 1, '\n') : NULL;
@@ -83,13 +113,13 @@ static void check_quota(const report *to)
 {
     char text[64];
     long long quota = -1, period = -1;
-    if (small_file_read(to->root, "/sys/fs/cgroup/cpu.max", text, sizeof text)) {
+    if (read_file(to, "/sys/fs/cgroup/cpu.max", text, sizeof text)) {
         char *end;
         quota = strtoll(text, &end, 10); /* "max 100000" reads as 0 */
         period = strtoll(end, NULL, 10);
-    } else if (small_file_read(to->root, "/sys/fs/cgroup/cpu/cpu.cfs_quota_us", text, sizeof text)) {
+    } else if (read_file(to, "/sys/fs/cgroup/cpu/cpu.cfs_quota_us", text, sizeof text)) {
         quota = strtoll(text, NULL, 10);
-        small_file_read(to->root, "/sys/fs/cgroup/cpu/cpu.cfs_period_us", text, sizeof text);
+        read_file(to, "/sys/fs/cgroup/cpu/cpu.cfs_period_us", text, sizeof text);
         period = strtoll(text, NULL, 10);
     }
     if (quota <= 0 || period <= 0)
@@ -113,7 +143,7 @@ static void check_load(const report *to)
 static void check_swap(const report *to)
 {
     char text[8192];
-    small_file_read(to->root, "/proc/meminfo", text, sizeof text);
+    read_file(to, "/proc/meminfo", text, sizeof text);
     int64_t total_kib = small_file_field(text, "SwapTotal"), free_kib = small_file_field(text, "SwapFree");
     if (free_kib >= 0 && total_kib - free_kib >= 1024)
         say(to, "swap in use, %lld MiB", (long long)(total_kib - free_kib) / 1024);
@@ -132,7 +162,8 @@ static void check_build(const report *to)
 
 void disturbances_of_machine(const char *root, disturbance_line line, void *context)
 {
-    const report to = {root, line, context};
+    bool incomplete = false;
+    const report to = {root, line, context, &incomplete};
     check_settings(&to);
     check_hypervisor(&to);
     check_quota(&to);
@@ -142,7 +173,8 @@ void disturbances_of_machine(const char *root, disturbance_line line, void *cont
 
 void usage_disturbances(double sample_s, void (*line)(void *context, const char *text), void *context)
 {
-    const report to = {"", line, context};
+    bool incomplete = false;
+    const report to = {"", line, context, &incomplete};
     disturbances_of_machine("", line, context);
     check_build(&to);
     if (!(sample_s > 0.0))
@@ -171,6 +203,7 @@ const char *usage_advice(const char *disturbance)
         {"built without", "measure with make (config=release)"},
         {"built with a sanitizer", "measure with make (config=release)"},
         {"others use", "stop other programs, or measure with --wait-quiet"},
+        {"unknown: ", "raise the limit on open files (ulimit -n), or check the machine (dmesg)"},
     };
     for (size_t i = 0; i < sizeof advice / sizeof *advice; i++)
         if (strncmp(disturbance, advice[i][0], strlen(advice[i][0])) == 0)

@@ -269,14 +269,10 @@ static bool add_units(const topology *machine, int unit, cpu_set_t *set, size_t 
 
 status topology_bind_thread(const topology *machine, int pu, diagnostic *why)
 {
-    const size_t size = CPU_ALLOC_SIZE(UNITS_MAX);
-    cpu_set_t *set = CPU_ALLOC(UNITS_MAX);
-    if (!set)
-        return no_room(why);
-    CPU_ZERO_S(size, set);
-    const bool found = add_units(machine, pu, set, size);
-    const int failed = found && !machine->described ? sched_setaffinity(0, size, set) : 0, reason = errno;
-    CPU_FREE(set);
+    cpu_set_t set[UNITS_MAX / CPU_SETSIZE]; /* 8 KiB: a worker, which has no way to say so, must not lack memory */
+    memset(set, 0, sizeof set);
+    const bool found = add_units(machine, pu, set, sizeof set);
+    const int failed = found && !machine->described ? sched_setaffinity(0, sizeof set, set) : 0, reason = errno;
     if (!found)
         return diagnose(why, STATUS_BAD_INPUT, "`cuvette machine` lists the available units",
                         "this process may not use processing unit %d", pu);

@@ -54,61 +54,74 @@ static status recorded_study(const study *now, const char *text, const char *sce
 }
 
 /* Whether the contents of the scene's files are unchanged. Their names alone do not show that. */
-static bool files_are_the_same(accepted *a, const manifest_study *recorded)
+static status compare_files(accepted *a, const manifest_study *recorded, bool *same, diagnostic *why)
 {
     uint64_t now = HASH_START;
-    const bool known = grid_hash_files(&now, a->s->base, NULL) == STATUS_OK;
-    if (known && (now == HASH_START || (recorded->has_files && recorded->files == now)))
-        return true;
+    TRY(grid_hash_files(&now, a->s->base, why));
+    *same = now == HASH_START || (recorded->has_files && recorded->files == now);
+    if (*same)
+        return STATUS_OK;
     snprintf(a->why_not, sizeof a->why_not, "%s",
              recorded->has_files
                  ? "the contents of a mesh, texture, sky or script of the scene have changed"
                  : "the manifest does not record the contents of the scene's meshes, textures, sky and scripts");
-    return false;
+    return STATUS_OK;
+}
+
+/* A manifest that cannot be used is a reason why the rows are not known; a machine that cannot read it is not. */
+static status refuse(accepted *a, status code, const char *reason, const diagnostic *refused, diagnostic *why)
+{
+    if (code == STATUS_BAD_INPUT) {
+        snprintf(a->why_not, sizeof a->why_not, "%s%.300s", reason, refused->what);
+        return STATUS_OK;
+    }
+    if (why)
+        *why = *refused;
+    return code;
 }
 
 /* Reads the recorded study and the identities of its cells. */
-static void look_into_texts(accepted *a, const manifest_study *m)
+static status look_into_texts(accepted *a, const manifest_study *m, diagnostic *why)
 {
-    diagnostic why = {.what = ""};
+    diagnostic refused = {.what = ""};
     uint64_t files = HASH_START;
-    status code = grid_hash_files(&files, a->s->base, &why);
-    THEN(code, recorded_study(a->s, m->text, m->scene_text, &a->recorded, &why));
-    THEN(code, identities_with_files(a->recorded, files, &a->recorded_identity, &why));
+    status code = grid_hash_files(&files, a->s->base, &refused);
+    THEN(code, recorded_study(a->s, m->text, m->scene_text, &a->recorded, &refused));
+    THEN(code, identities_with_files(a->recorded, files, &a->recorded_identity, &refused));
     a->recorded_definition = m->definition;
-    if (code == STATUS_OK)
-        snprintf(a->why_not, sizeof a->why_not,
-                 "their fingerprint differs from that in the manifest.json next to them");
-    else
-        snprintf(a->why_not, sizeof a->why_not, "the manifest's study cannot be read by this program: %.200s",
-                 why.what);
+    if (code != STATUS_OK)
+        return refuse(a, code, "the manifest's study cannot be read by this program: ", &refused, why);
+    snprintf(a->why_not, sizeof a->why_not, "their fingerprint differs from that in the manifest.json next to them");
+    return STATUS_OK;
 }
 
-static void look_into_manifest(accepted *a, const char *path)
+static status look_into_manifest(accepted *a, const char *path, diagnostic *why)
 {
     manifest_study recorded;
-    diagnostic why = {.what = ""};
+    diagnostic refused = {.what = ""};
+    bool same = false;
     if (access(path, F_OK) != 0) {
         snprintf(a->why_not, sizeof a->why_not, "there is no manifest.json next to them that defines them");
-        return;
+        return STATUS_OK;
     }
-    if (manifest_read(path, scene_root(a->s->base), &recorded, &why) != STATUS_OK) {
-        snprintf(a->why_not, sizeof a->why_not, "%.300s", why.what);
-        return;
-    }
-    if (files_are_the_same(a, &recorded))
-        look_into_texts(a, &recorded);
+    status code = manifest_read(path, scene_root(a->s->base), &recorded, &refused);
+    if (code != STATUS_OK)
+        return refuse(a, code, "", &refused, why);
+    code = compare_files(a, &recorded, &same, why);
+    if (same)
+        code = look_into_texts(a, &recorded, why);
     manifest_study_free(&recorded);
+    return code;
 }
 
-static void look(accepted *a)
+static status look(accepted *a, diagnostic *why)
 {
     a->looked = true;
-    a->has_v1 = definition_v1(a->s, &a->v1);
+    TRY(definition_v1(a->s, &a->has_v1, &a->v1, why));
     char *path = text_format("%s/manifest.json", a->folder);
-    if (path)
-        look_into_manifest(a, path);
+    const status code = path ? look_into_manifest(a, path, why) : out_of_memory(why);
     free(path);
+    return code;
 }
 
 static bool is(const study *s, const char *text, uint64_t definition, bool of_comparison)
@@ -126,16 +139,19 @@ static bool take(const study *s, const uint64_t *identity, size_t cell, bool of_
     return true;
 }
 
-bool accepted_identity(accepted *a, const char *definition, size_t cell, bool of_comparison, uint64_t *identity)
+status accepted_identity(accepted *a, const char *definition, size_t cell, bool of_comparison, uint64_t *identity,
+                         bool *known, diagnostic *why)
 {
-    if (is(a->s, definition, a->s->definition_hash, of_comparison))
-        return take(a->s, a->s->identity, cell, of_comparison, identity);
-    if (!a->looked)
-        look(a);
-    if (a->has_v1 && is(a->s, definition, a->v1, of_comparison))
-        return take(a->s, a->s->identity, cell, of_comparison, identity);
-    return a->recorded_identity && is(a->recorded, definition, a->recorded_definition, of_comparison) &&
-           take(a->recorded, a->recorded_identity, cell, of_comparison, identity);
+    bool is_own = is(a->s, definition, a->s->definition_hash, of_comparison);
+    if (!is_own && !a->looked)
+        TRY(look(a, why));
+    is_own |= a->has_v1 && is(a->s, definition, a->v1, of_comparison);
+    if (is_own)
+        *known = take(a->s, a->s->identity, cell, of_comparison, identity);
+    else
+        *known = a->recorded_identity && is(a->recorded, definition, a->recorded_definition, of_comparison) &&
+                 take(a->recorded, a->recorded_identity, cell, of_comparison, identity);
+    return STATUS_OK;
 }
 
 const char *accepted_why_not(const accepted *a)

@@ -39,7 +39,7 @@ static const struct {
 typedef struct visit_state {
     const scene *of;
     uint64_t hash;
-    bool later;
+    bool later; /* a newer parameter is not at its default */
 } visit_state;
 
 static bool is_word_of(const char *word, const char *words)
@@ -77,14 +77,16 @@ static bool was_there(const scene *of, const char *path, const param *row)
 }
 
 /* What a parameter that version 1 did not have must be for the same frames. Its tiles had the size render.tile. */
-static bool is_default(const param *row, const char *value)
+static status check_default(const param *row, const char *value, bool *other)
 {
     if (row->group == PARAM_RENDER && strcmp(row->name, "pieces") == 0 && strcmp(value, "0") == 0)
-        return true;
+        return STATUS_OK;
     char *usual = param_default_text(row);
-    const bool same = usual && strcmp(usual, value) == 0;
+    if (!usual)
+        return STATUS_FAILURE;
+    *other |= strcmp(usual, value) != 0;
     free(usual);
-    return same;
+    return STATUS_OK;
 }
 
 static void hash_integer(uint64_t *hash, int64_t value)
@@ -95,12 +97,10 @@ static void hash_integer(uint64_t *hash, int64_t value)
 static status hash_param(void *context, const char *path, const param *row, const char *value)
 {
     visit_state *state = context;
-    if (was_there(state->of, path, row)) {
-        grid_hash_text(&state->hash, path);
-        grid_hash_text(&state->hash, value);
-    } else {
-        state->later |= !is_default(row, value);
-    }
+    if (!was_there(state->of, path, row))
+        return check_default(row, value, &state->later);
+    grid_hash_text(&state->hash, path);
+    grid_hash_text(&state->hash, value);
     return STATUS_OK;
 }
 
@@ -111,24 +111,27 @@ static void hash_axis(uint64_t *hash, const study_axis *axis)
         grid_hash_point(hash, &axis->points[i]);
 }
 
-bool definition_v1(const study *s, uint64_t *hash)
+status definition_v1(const study *s, bool *is, uint64_t *hash, diagnostic *why)
 {
     visit_state state = {.of = s->base, .hash = HASH_START};
+    *is = false;
     grid_hash_text(&state.hash, s->name);
-    if (scene_each_param(s->base, hash_param, &state) != STATUS_OK || state.later)
-        return false;
+    if (scene_each_param(s->base, hash_param, &state) != STATUS_OK)
+        return out_of_memory(why);
+    if (state.later)
+        return STATUS_OK;
     hash_integer(&state.hash, s->base->camera.aimed);
     for (size_t i = 0; i < s->base->solid_count; i++) {
         const int number = shape_number(&s->base->solids[i]);
         if (number < 0)
-            return false;
+            return STATUS_OK;
         hash_integer(&state.hash, number);
         hash_integer(&state.hash, s->base->solids[i].material_index);
     }
-    if (grid_hash_files(&state.hash, s->base, NULL) != STATUS_OK)
-        return false;
+    TRY(grid_hash_files(&state.hash, s->base, why));
     for (size_t axis = 0; axis < s->axis_count; axis++)
         hash_axis(&state.hash, &s->axes[axis]);
     *hash = hash_finish(state.hash);
-    return true;
+    *is = true;
+    return STATUS_OK;
 }

@@ -4,6 +4,7 @@
 
 #include "study/study.h"
 
-/* The hash that the old program would have computed; false if it could not have read the study: a newer parameter is
- * not at its default, or a solid has a newer shape. Files must be loaded. */
-bool definition_v1(const study *s, uint64_t *hash);
+/* The hash that the old program would have computed. *is: whether it could have read the study; not if a newer
+ * parameter is not at its default, or a solid has a newer shape. Files must be loaded. STATUS_FAILURE if the machine
+ * lacks memory or cannot read a script. */
+status definition_v1(const study *s, bool *is, uint64_t *hash, diagnostic *why);

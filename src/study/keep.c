@@ -73,14 +73,18 @@ bool keep_missing(const study *s, const char *folder, size_t cell)
     return keep_missing_count(s, folder, cell) > 0;
 }
 
-void keep_room(const study *s, const char *folder, size_t cell, const scene *setting, disk_room *to)
+status keep_room(const study *s, const char *folder, size_t cell, const scene *setting, disk_room *to, diagnostic *why)
 {
     enum { TABLE_MOST = 100000, EVENT_MOST = 160, KEY_SIDE = 240 };
     const double tile = setting->render.tile > 0 ? (double)setting->render.tile : 1;
     const double width = (double)setting->render.width, height = (double)setting->render.height;
     for (size_t what = 0; what < KEPT_COUNT; what++) {
-        char *path = wanted(s, what) ? kept_path(folder, cell, what) : NULL;
-        if (path && access(path, F_OK) != 0) {
+        if (!wanted(s, what))
+            continue;
+        char *path = kept_path(folder, cell, what);
+        if (!path)
+            return out_of_memory(why);
+        if (access(path, F_OK) != 0) {
             const image_format format = image_format_of(path);
             const bool is_map = format == IMAGE_PNG && files[what].wish != offsetof(study, keep_image);
             if (format != IMAGE_UNKNOWN) /* a map has a key, and is as wide as the key at least */
@@ -92,6 +96,7 @@ void keep_room(const study *s, const char *folder, size_t cell, const scene *set
         }
         free(path);
     }
+    return STATUS_OK;
 }
 
 const char *keep_ending(const study *s, size_t i)

@@ -12,7 +12,7 @@ bool keep_missing(const study *s, const char *folder, size_t cell);
 /* The number of such files. */
 size_t keep_missing_count(const study *s, const char *folder, size_t cell);
 /* Adds what these files may take; setting: the scene of the cell. */
-void keep_room(const study *s, const char *folder, size_t cell, const scene *setting, disk_room *to);
+status keep_room(const study *s, const char *folder, size_t cell, const scene *setting, disk_room *to, diagnostic *why);
 /* The ending of the study's kept file i, counted from 0: ".png" of images/0003.png; NULL after the last. */
 const char *keep_ending(const study *s, size_t i);
 

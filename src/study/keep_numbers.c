@@ -75,18 +75,28 @@ static status write_numbering(const study *s, const char *images, diagnostic *wh
 }
 
 /* Files of a version without numberings: those of the study itself if its definition is the recorded one. */
-static void assume_numbering(const study *s, const char *folder, numbering *out)
+static status assume_numbering(const study *s, const char *folder, numbering *out, diagnostic *why)
 {
     manifest_study recorded = {0};
+    diagnostic refused = {.what = ""};
     char *path = text_format("%s/manifest.json", folder);
-    if (path && access(path, F_OK) == 0 && manifest_read(path, scene_root(s->base), &recorded, NULL) == STATUS_OK &&
-        recorded.definition == s->definition_hash &&
-        (out->identity = malloc((study_cell_count(s) + 1) * sizeof *out->identity))) {
-        out->count = study_cell_count(s);
-        memcpy(out->identity, s->identity, out->count * sizeof *out->identity);
-    }
-    manifest_study_free(&recorded);
+    if (!path)
+        return out_of_memory(why);
+    const status code =
+        access(path, F_OK) == 0 ? manifest_read(path, scene_root(s->base), &recorded, &refused) : STATUS_BAD_INPUT;
     free(path);
+    const bool is_own = code == STATUS_OK && recorded.definition == s->definition_hash;
+    manifest_study_free(&recorded);
+    if (code == STATUS_FAILURE && why)
+        *why = refused;
+    if (!is_own)
+        return code == STATUS_FAILURE ? code : STATUS_OK;
+    out->identity = malloc((study_cell_count(s) + 1) * sizeof *out->identity);
+    if (!out->identity)
+        return out_of_memory(why);
+    out->count = study_cell_count(s);
+    memcpy(out->identity, s->identity, out->count * sizeof *out->identity);
+    return STATUS_OK;
 }
 
 static bool is_current(const study *s, const numbering *n)
@@ -158,7 +168,7 @@ static status renumber(const study *s, const char *folder, const char *images, b
     numbering old;
     TRY(read_numbering(images, scene_root(s->base), &old, why));
     if (!old.identity)
-        assume_numbering(s, folder, &old);
+        TRY(assume_numbering(s, folder, &old, why));
     status code = STATUS_OK;
     *changed = !old.identity || !is_current(s, &old);
     if (*changed)

@@ -7,10 +7,12 @@
 #include <stdlib.h>
 #include <string.h>
 
-static char *copy_text(const json_t *object, const char *key)
+/* NULL if there is no such text. False: out of memory. */
+static bool copy_text(const json_t *object, const char *key, char **out)
 {
     const char *text = json_string_value(json_object_get(object, key));
-    return text ? strdup(text) : NULL;
+    *out = text ? strdup(text) : NULL;
+    return !text || *out;
 }
 
 json_t *facts_hash(uint64_t value)
@@ -59,14 +61,15 @@ status manifest_read(const char *path, const char *root, manifest_study *out, di
     *out = (manifest_study){0};
     TRY(facts_read(path, root, &whole, why));
     const json_t *about = json_object_get(whole, "study");
-    out->text = copy_text(about, "text");
-    out->scene_text = copy_text(about, "scene_text");
+    const bool copied = copy_text(about, "text", &out->text) && copy_text(about, "scene_text", &out->scene_text);
     out->has_files = facts_get_hash(about, "files", &out->files);
     const bool has_definition = facts_get_hash(about, "definition", &out->definition);
     json_decref(whole);
     if (out->text && out->scene_text && has_definition)
         return STATUS_OK;
     manifest_study_free(out);
+    if (!copied)
+        return out_of_memory(why);
     return diagnose(why, STATUS_BAD_INPUT, "", "the manifest.json next to them does not define them");
 }
 

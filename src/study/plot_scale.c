@@ -1,7 +1,7 @@
 /* Quantities of a figure: their columns, units and scales. */
 #include "study/plot_parts.h"
 #include "base/text.h"
-#include "scene/model/params.h"
+#include "scene/model/params_path.h"
 #include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
@@ -11,27 +11,11 @@ enum { QUANTITIES_MAX = 256 /* among which the nearest name is looked for */ };
 
 /* --- units --- */
 
-typedef struct unit_search {
-    const char *path;
-    char *unit;
-} unit_search;
-
-/* The parameter itself, or the vector of which path is an element. */
-static status match_unit(void *context, const char *path, const param *row, const char *value)
-{
-    const unit_search *search = context;
-    const size_t length = strlen(path);
-    (void)value;
-    if (strncmp(search->path, path, length) == 0 && (search->path[length] == '\0' || search->path[length] == '.'))
-        snprintf(search->unit, 32, "%s", row->unit);
-    return STATUS_OK;
-}
-
 void plot_unit_of(const study *s, const char *path, char unit[32])
 {
-    unit_search search = {path, unit};
-    unit[0] = '\0';
-    scene_each_param(s->base, match_unit, &search);
+    param_place at;
+    const bool is_one = param_place_find(s->base, path, &at, NULL) == STATUS_OK;
+    snprintf(unit, 32, "%s", is_one ? at.row->unit : "");
     const size_t length = strlen(path), end = strlen(unit);
     if (length > end && path[length - end - 1] == '_' && strcmp(path + length - end, unit) == 0)
         unit[0] = '\0'; /* the name has it, as lambda_nm */

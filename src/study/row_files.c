@@ -114,12 +114,11 @@ status row_files_list(const char *folder, row_kind kind, char ***paths, size_t *
 
 static status open_files(row_files *files, const study *s, const char *folder, row_kind kind, diagnostic *why)
 {
-    size_t count;
-    TRY(row_files_list(folder, kind, &files->paths, &count, why));
-    files->count = count;
-    files->tables = calloc(count + 1, sizeof(csv *));
-    status code = files->tables ? STATUS_OK : out_of_memory(why);
-    for (size_t i = 0; code == STATUS_OK && i < count; i++)
+    status code = row_files_list(folder, kind, &files->paths, &files->count, why);
+    files->tables = calloc(files->count + 1, sizeof(csv *));
+    if (code == STATUS_OK && !files->tables)
+        code = out_of_memory(why);
+    for (size_t i = 0; code == STATUS_OK && i < files->count; i++)
         code = csv_read_rows(files->paths[i], scene_root(s->base), &files->tables[i], why);
     return code;
 }

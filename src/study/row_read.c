@@ -65,6 +65,7 @@ typedef struct table_state {
     row_types types;
     long last_run; /* of the previous row with a run */
     bool gap;      /* the previous row is broken: its place in the chain is unknown */
+    diagnostic *why;
 } table_state;
 
 static columns find_columns(const csv *t)
@@ -103,9 +104,14 @@ static bool parse_hash(const char *text, uint64_t *out)
     return is_one;
 }
 
+static status noted(const table_state *st, status code)
+{
+    return code == STATUS_OK ? code : out_of_memory(st->why);
+}
+
 static status issue(table_state *st, row_fault fault, size_t row, const char *text)
 {
-    return row_files_add_issue(st->r->into, fault, st->path, (long)row + 2, "%s", text);
+    return noted(st, row_files_add_issue(st->r->into, fault, st->path, (long)row + 2, "%s", text));
 }
 
 /* The place of a row with a check in the chain of its run. */
@@ -147,16 +153,16 @@ static status read_new(table_state *st, size_t row, row_ref *ref, uint64_t *iden
         return issue(st, ROW_DAMAGED, row, "the row is damaged");
     *good = true;
     if (ref->run < 0)
-        return row_files_add_issue(st->r->into, ROW_UNKNOWN, st->path, (long)row + 2, "run %.16s is not in runs.json",
-                                   csv_field(st->table, row, st->at.run));
+        return noted(st, row_files_add_issue(st->r->into, ROW_UNKNOWN, st->path, (long)row + 2,
+                                             "run %.16s is not in runs.json", csv_field(st->table, row, st->at.run)));
     memcpy(ref->environment, st->r->into->runs->entry[ref->run].here.key, ENVIRONMENT_KEY);
     return follow_chain(st, row, ref, content, chain);
 }
 
-static status another_definition(const table_state *st, size_t row, const char *reason, diagnostic *why)
+static status another_definition(const table_state *st, size_t row, const char *reason)
 {
-    diagnostic_locate(why, st->path, (long)row + 2, 1);
-    return diagnose(why, STATUS_BAD_INPUT,
+    diagnostic_locate(st->why, st->path, (long)row + 2, 1);
+    return diagnose(st->why, STATUS_BAD_INPUT,
                     st->r->kind == COMPARE_ROWS
                         ? "move this file away: the images will be compared again; nothing is measured again"
                         : "move this folder away, choose another with --results, or give the study another name",
@@ -164,23 +170,25 @@ static status another_definition(const table_state *st, size_t row, const char *
 }
 
 /* A row of a version without identities and runs. Its environment is what is known of it. */
-static status read_old(table_state *st, size_t row, row_ref *ref, uint64_t *identity, bool *good, diagnostic *why)
+static status read_old(table_state *st, size_t row, row_ref *ref, uint64_t *identity, bool *good)
 {
     int64_t cell;
+    bool known;
     char *const *fields = st->table->fields + row * st->table->column_count;
     size_t column;
     *good = false;
     if (!read_numbers(st, row, ref, &cell))
         return issue(st, ROW_DAMAGED, row, "the row is damaged");
     if (!row_types_fit(&st->types, fields, &column))
-        return row_files_add_issue(st->r->into, ROW_DAMAGED, st->path, (long)row + 2, "%s is '%.60s'",
-                                   st->table->header[column], fields[column]);
+        return noted(st, row_files_add_issue(st->r->into, ROW_DAMAGED, st->path, (long)row + 2, "%s is '%.60s'",
+                                             st->table->header[column], fields[column]));
     if (st->r->cells.any)
-        return diagnose_at(why, st->path, STATUS_BAD_INPUT, "write them in the present form: cuvette study upgrade",
+        return diagnose_at(st->why, st->path, STATUS_BAD_INPUT, "write them in the present form: cuvette study upgrade",
                            "the rows are of an early version");
-    if (!accepted_identity(st->r->known, csv_field(st->table, row, st->at.definition), (size_t)cell,
-                           st->r->kind == COMPARE_ROWS, identity))
-        return another_definition(st, row, accepted_why_not(st->r->known), why);
+    TRY(accepted_identity(st->r->known, csv_field(st->table, row, st->at.definition), (size_t)cell,
+                          st->r->kind == COMPARE_ROWS, identity, &known, st->why));
+    if (!known)
+        return another_definition(st, row, accepted_why_not(st->r->known));
     const char *isa_used = csv_field(st->table, row, st->at.isa), *config = csv_field(st->table, row, st->at.config);
     uint64_t hash = hash_bytes(HASH_START, isa_used, strlen(isa_used) + 1);
     hash = hash_finish(hash_bytes(hash, config, strlen(config) + 1));
@@ -189,7 +197,7 @@ static status read_old(table_state *st, size_t row, row_ref *ref, uint64_t *iden
     return STATUS_OK;
 }
 
-static status read_row(table_state *st, size_t row, diagnostic *why)
+static status read_row(table_state *st, size_t row)
 {
     row_reader *r = st->r;
     row_ref ref = {.table = st->table, .row = row, .run = -1, .environment = "unknown"};
@@ -202,12 +210,10 @@ static status read_row(table_state *st, size_t row, diagnostic *why)
     const bool is_new = strcmp(csv_field(st->table, row, st->at.identity), "NA") != 0;
     const bool of_another = strcmp(csv_field(st->table, row, st->at.study), r->s->name) != 0;
     if (of_another && !is_new)
-        return another_definition(st, row, "they belong to another study", why);
-    status code = is_new ? read_new(st, row, &ref, &identity, &good) : read_old(st, row, &ref, &identity, &good, why);
-    if (code != STATUS_OK)
-        return code == STATUS_BAD_INPUT ? code : out_of_memory(why);
+        return another_definition(st, row, "they belong to another study");
+    TRY((is_new ? read_new : read_old)(st, row, &ref, &identity, &good));
     if (good && of_another)
-        return another_definition(st, row, "they belong to another study", why);
+        return another_definition(st, row, "they belong to another study");
     if (good && !find_cell(&r->cells, identity, &ref.cell))
         r->into->other_cells++;
     else if (good)
@@ -230,11 +236,11 @@ static void finish_table(row_reader *r)
 
 status row_read_table(row_reader *r, const csv *table, const char *path, diagnostic *why)
 {
-    table_state st = {.r = r, .table = table, .path = path, .at = find_columns(table)};
+    table_state st = {.r = r, .table = table, .path = path, .at = find_columns(table), .why = why};
     status code = check_columns_create(table->header, table->column_count, &st.hashes, why);
     THEN(code, row_types_create(table->header, table->column_count, r->kind, &st.types, why));
     for (size_t row = 0; code == STATUS_OK && row < table->row_count; row++)
-        code = read_row(&st, row, why);
+        code = read_row(&st, row);
     if (code == STATUS_OK && table->size > table->whole &&
         row_files_add_issue(r->into, ROW_TORN, path, (long)table->row_count + 2,
                             "an incomplete line: the process was killed; the next run moves it away") != STATUS_OK)

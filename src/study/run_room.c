@@ -53,10 +53,9 @@ static status add_cell(const run *r, size_t cell, const widths *columns, disk_ro
         add_rows(out, columns->compares, 1, 1);
         disk_room_add(out, 1, 0, 16 * pixels + 20000); /* a reference, unless cells share it */
     }
-    if (keeps)
-        keep_room(r->s, r->folder, cell, setting, out);
+    const status code = keeps ? keep_room(r->s, r->folder, cell, setting, out, why) : STATUS_OK;
     scene_destroy(setting);
-    return STATUS_OK;
+    return code;
 }
 
 status run_room(const run *r, disk_room *out, diagnostic *why)

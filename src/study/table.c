@@ -57,6 +57,21 @@ static int append_all(int fd, const char *bytes, size_t size)
     return -1;
 }
 
+/* Reads size bytes, which pread may give in parts; on failure, or if the file is shorter, errno is set. */
+static int read_all(int fd, char *bytes, size_t size, size_t offset)
+{
+    for (size_t done = 0; done < size;) {
+        const ssize_t got = pread(fd, bytes + done, size - done, (off_t)(offset + done));
+        if (got > 0)
+            done += (size_t)got;
+        else if (got == 0)
+            errno = EIO;
+        if (got == 0 || (got < 0 && errno != EINTR))
+            return -1;
+    }
+    return 0;
+}
+
 /* rows.csv -> rows.torn.csv */
 static char *torn_path(const char *path)
 {
@@ -94,7 +109,7 @@ status table_set_aside(table *t, size_t offset, diagnostic *why)
     if (!bytes)
         return failed(t->path, "moving an incomplete row away", ENOMEM, why);
     status code = STATUS_OK;
-    if (pread(t->fd, bytes, size, (off_t)offset) != (ssize_t)size)
+    if (read_all(t->fd, bytes, size, offset) != 0)
         code = failed(t->path, "reading an incomplete row", errno, why);
     THEN(code, keep_torn(t->path, bytes, size, why));
     if (code == STATUS_OK && (ftruncate(t->fd, (off_t)offset) != 0 || fsync(t->fd) != 0))
@@ -119,7 +134,7 @@ static status whole_lines(table *t, size_t *end, diagnostic *why)
         char *text = malloc(part + 1);
         if (!text)
             code = failed(t->path, "reading", ENOMEM, why);
-        else if (pread(t->fd, text, part, (off_t)from) != (ssize_t)part)
+        else if (read_all(t->fd, text, part, from) != 0)
             code = failed(t->path, "reading", errno, why);
         const char *last = code == STATUS_OK ? memrchr(text, '\n', part) : NULL;
         enough = part == size || (last && memrchr(text, '\n', (size_t)(last - text)));

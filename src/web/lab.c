@@ -103,10 +103,7 @@ static status first_scene(const lab *l, scene **out, char **file, diagnostic *wh
     *file = NULL;
     if (!l->settings.scene)
         return new_scene(out, why);
-    errno = 0;
-    *file = folder_name(l->files, l->settings.scene);
-    if (!*file && errno == ENOMEM)
-        return out_of_memory(why);
+    TRY(folder_find(l->files, l->settings.scene, file, why));
     if (!*file)
         return diagnose_at(why, l->settings.scene, STATUS_BAD_INPUT,
                            "choose a scene below the folder, or another folder",

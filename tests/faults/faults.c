@@ -3,8 +3,9 @@
  * A line of the table: NAME, traits ("-", "resumes", "forked", "slow": fewer sites with --every), the command's words;
  * the first of them is one of the WORDs. Options: --every N, only each N-th site; --depth N, call stacks are the same
  * if N frames are; --only NAMES and --kinds NAMES, separated by commas; --at N, only the Nth call, as an error names
- * it; --stays, what fails fails from then on; --shown N, of each kind of error. Prints the Test Anything Protocol, a
- * case for each command and kind of fault, and a table of verdicts as comments "##". */
+ * it; --from N, only calls from the Nth on, to go on where a run was stopped; --stays, what fails fails from then on;
+ * --shown N, of each kind of error. Prints the Test Anything Protocol, a case for each command and kind of fault, and a
+ * table of verdicts as comments "##". */
 #include "judge.h"
 #include "trace.h"
 
@@ -44,7 +45,7 @@ static const kind kinds[] = {
 enum { KINDS = sizeof kinds / sizeof kinds[0], WORDS_MAX = 48, KNOWN_MAX = 1 << 16 };
 
 static struct {
-    long stride, every, shown, at; /* every: stride, or more for slow commands */
+    long stride, every, shown, at, from; /* every: stride, or more for slow commands */
     int depth;
     const char *only, *kinds, *library, *work, *template, *table;
     bool stays;
@@ -164,6 +165,8 @@ static void try_stacks(const reference *ref, const run *r, const kind *k, fault_
     }
     for (long i = options.at ? count : options.every > 1 ? count % options.every : 0; i < count; i += options.every) {
         f.at = sites[i].at;
+        if (f.at < options.from)
+            continue;
         f.hash = 0;
         const long missed = t->missed;
         try(ref, r, &f, resumes, t);
@@ -190,7 +193,8 @@ static void try_calls(const reference *ref, const run *r, const kind *k, const o
         return;
     }
     for (f.at = 1 + (options.every > 1 ? t->sites % options.every : 0); f.at <= t->sites; f.at += options.every)
-        try(ref, r, &f, resumes, t);
+        if (f.at >= options.from)
+            try(ref, r, &f, resumes, t);
 }
 
 static void try_kind(const char *name, const reference *ref, const run *r, const kind *k, fault_place place,
@@ -309,6 +313,8 @@ int main(int argc, char **argv)
             options.stride = atol(value);
         else if (strcmp(name, "at") == 0)
             options.at = atol(value);
+        else if (strcmp(name, "from") == 0)
+            options.from = atol(value);
         else if (strcmp(name, "shown") == 0)
             options.shown = atol(value);
         else if (strcmp(name, "depth") == 0)

@@ -106,6 +106,17 @@ static void report(int status)
         fprintf(stderr, "cuvette: %s; %s\n", error, remedy);
 }
 
+/* The number of the scene's changes, which each reply to one has. */
+static long generation;
+
+static void note_generation(void)
+{
+    const char *at = strstr(reply, "\"generation\":");
+    long now = 0;
+    if (at && sscanf(at, "\"generation\":%ld", &now) == 1 && now > generation)
+        generation = now;
+}
+
 static void show(const char *method, const char *path, int status, bool whole)
 {
     printf("%s %s: %d\n", method, path, status);
@@ -113,52 +124,110 @@ static void show(const char *method, const char *path, int status, bool whole)
         puts(reply);
 }
 
-int main(void)
+/* whole: the reply is the same in each run, numbers apart. */
+typedef struct request {
+    const char *method, *path, *body;
+    bool whole;
+} request;
+
+static const request usual[] = {
+    {"GET", "/api/state", "", false},
+    {"GET", "/api/scene", "", true},
+    {"POST", "/api/set", "{\"set\": {\"liquid.ior\": 1.4}}", true},
+    {"GET", "/api/picture.png?wait=1", "", false},
+    {"POST", "/api/pin", "{}", false},
+    {"POST", "/api/objects/rod/move", "{\"by\": [0.1, 0, 0]}", false},
+    {"GET", "/api/picture.jpg?wait=1", "", false},
+    {"GET", "/api/trace?x=4&y=3", "", true},
+    {"GET", "/api/trace.svg?x=4&y=3", "", true},
+    {"GET", "/api/fan?from=-3,1.5,0&to=3,1.5,0&width=1.5&rays=5", "", true},
+    {"GET", "/api/realism", "", true},
+    {"GET", "/api/notes", "", true},
+    {"GET", "/api/compare?wait=1", "", false},
+    {"GET", "/api/files", "", true},
+    {"GET", "/api/media", "", true},
+    {"GET", "/api/lessons", "", true},
+    {"GET", "/api/link", "", true},
+    {"GET", "/api/scene.yaml", "", true},
+    {"POST", "/api/undo", "", false},
+    {"POST", "/api/save", "{\"file\": \"saved.yaml\"}", false},
+    {"GET", "/api/studies", "", true},
+    {"GET", "/api/studies/done", "", false},
+    {"GET", "/api/studies/done/summary.tsv", "", true},
+    {"GET", "/", "", true},
+};
+
+/* Objects, files, drawings, tables, lessons: `lab_client edits`. */
+static const request edits[] = {
+    {"GET", "/api/scene", "", true},
+    {"POST", "/api/objects", "{\"kind\": \"solid\", \"shape\": \"sphere\", \"set\": {\"radius\": 0.2}}", false},
+    {"POST", "/api/objects", "{\"kind\": \"light\", \"name\": \"lamp2\", \"set\": {\"color\": [1, 0.9, 0.8]}}", false},
+    {"POST", "/api/objects", "{\"kind\": \"texture\", \"file\": \"tiles.png\", \"name\": \"new\"}", false},
+    {"POST", "/api/objects", "{\"kind\": \"model\", \"file\": \"box.obj\", \"name\": \"chest\"}", false},
+    {"POST", "/api/objects/vessel/turn", "{\"by\": [0, 10, 0], \"with\": [\"liquid\"]}", false},
+    {"POST", "/api/objects/rod/scale", "{\"factor\": 1.1}", false},
+    {"POST", "/api/objects/rod/rename", "{\"to\": \"stick\"}", false},
+    {"POST", "/api/objects/stick/material", "{\"material\": \"clear\"}", false},
+    {"POST", "/api/objects/stick/copy", "{}", false},
+    {"GET", "/api/objects/vessel/contents", "", true},
+    {"POST", "/api/reset", "{\"paths\": [\"liquid.ior\", \"render.depth\"]}", false},
+    {"POST", "/api/undo", "", false},
+    {"POST", "/api/redo", "", false},
+    {"GET", "/api/scene", "", true},
+    {"GET", "/api/command", "", true},
+    {"GET", "/api/picture.png?wait=1&scene=1", "", false},
+    {"GET", "/api/page.html", "", false},
+    {"GET", "/api/beams", "", true},
+    {"GET", "/api/trace.txt?x=4&y=3", "", true},
+    {"GET", "/api/fan.csv?from=-3,1.5,0&to=3,1.5,0&width=1.5&rays=5", "", true},
+    {"GET", "/api/fan.svg?from=-3,1.5,0&to=3,1.5,0&width=1.5&rays=5", "", true},
+    {"POST", "/api/save", "{\"file\": \"edited.yaml\"}", false},
+    {"POST", "/api/open", "{\"file\": \"rod.yaml\"}", false},
+    {"GET", "/api/realism/fresnel-s", "", true},
+    {"GET", "/api/realism.csv", "", true},
+    {"GET", "/api/maps", "", false},
+    {"POST", "/api/studies", "{\"file\": \"new.study\", \"axes\": [\"liquid.ior=1.2,1.4\"], \"save\": true}", false},
+    {"GET", "/api/studies/done/rows?from=1", "", true},
+    {"GET", "/api/studies/done/rows.csv", "", true},
+    {"GET", "/api/studies/done/compare?a=render.depth%3D0&b=render.depth%3D8", "", false},
+    {"POST", "/api/lessons/critical/open", "{}", false},
+    {"GET", "/api/lessons/critical/measure", "", true},
+    {"GET", "/api/thumbnail.jpg?file=rod.yaml", "", false},
+};
+
+/* A change without a reply may have been made: then it is not made twice. */
+static int ask_again(const request *r, int status)
 {
-    static const struct {
-        const char *method, *path, *body;
-        bool whole; /* the reply is the same in each run, numbers apart */
-    } requests[] = {
-        {"GET", "/api/state", "", false},
-        {"GET", "/api/scene", "", true},
-        {"POST", "/api/set", "{\"set\": {\"liquid.ior\": 1.4}}", true},
-        {"GET", "/api/picture.png?wait=1", "", false},
-        {"POST", "/api/pin", "{}", false},
-        {"POST", "/api/objects/rod/move", "{\"by\": [0.1, 0, 0]}", false},
-        {"GET", "/api/picture.jpg?wait=1", "", false},
-        {"GET", "/api/trace?x=4&y=3", "", true},
-        {"GET", "/api/trace.svg?x=4&y=3", "", true},
-        {"GET", "/api/fan?from=-3,1.5,0&to=3,1.5,0&width=1.5&rays=5", "", true},
-        {"GET", "/api/realism", "", true},
-        {"GET", "/api/notes", "", true},
-        {"GET", "/api/compare?wait=1", "", false},
-        {"GET", "/api/files", "", true},
-        {"GET", "/api/media", "", true},
-        {"GET", "/api/lessons", "", true},
-        {"GET", "/api/link", "", true},
-        {"GET", "/api/scene.yaml", "", true},
-        {"POST", "/api/undo", "", false},
-        {"POST", "/api/save", "{\"file\": \"saved.yaml\"}", false},
-        {"GET", "/api/studies", "", true},
-        {"GET", "/api/studies/done", "", false},
-        {"GET", "/api/studies/done/summary.tsv", "", true},
-        {"GET", "/", "", true},
-    };
+    const long before = generation;
+    report(status);
+    any_failed = true;
+    usleep(20000);
+    if (strcmp(r->method, "POST") == 0 && !r->whole) {
+        ask("GET", "/api/scene", "");
+        note_generation();
+        if (generation > before)
+            return 200;
+    }
+    return ask(r->method, r->path, r->body);
+}
+
+int main(int argc, char **argv)
+{
+    const bool is_usual = argc < 2 || strcmp(argv[1], "edits") != 0;
+    const request *requests = is_usual ? usual : edits;
+    const size_t count = is_usual ? sizeof usual / sizeof *usual : sizeof edits / sizeof *edits;
     if (start() != 0) {
         const int code = server_status();
         return code ? code : 1;
     }
-    for (size_t i = 0; i < sizeof requests / sizeof *requests; i++) {
+    for (size_t i = 0; i < count; i++) {
         int status = ask(requests[i].method, requests[i].path, requests[i].body);
         if (status == 0 && has_ended())
             return server_status();
-        if (status == 0 || status >= 500) {
-            report(status);
-            any_failed = true;
-            usleep(20000);
-            status = ask(requests[i].method, requests[i].path, requests[i].body);
-        }
+        if (status == 0 || status >= 500)
+            status = ask_again(&requests[i], status);
         show(requests[i].method, requests[i].path, status, requests[i].whole);
+        note_generation();
         if (status >= 400 && status < 500)
             printf("%s\n", reply);
         if (status == 0 || status >= 500) {

@@ -9,6 +9,7 @@ cuvette() { "${CUVETTE:-$root/build/cuvette}" "$@" >/dev/null; }
 
 cp "$root/experiments/scenes/chequer.png" tiles.png
 cp "$root/experiments/hands/tug.yaml" tug.yaml
+cp "$root/experiments/cluster/study.slurm" study.slurm
 small() { # SCENE OPTION...: a shipped scene with 8 x 6 pixels; its files are in this folder
     sed 's,file: chequer.png,file: tiles.png,; s,script: .*/,script: ,' "$root/experiments/scenes/$1" >whole.yaml
     cuvette scene whole.yaml --set render.width=8 --set render.height=6 --set render.threads=1 -o "$1" "${@:2}"
@@ -42,6 +43,20 @@ prediction: {ask: It is, choices: [shifted, not shifted], right: shifted}
 measure: {curve: edges, tolerance: 1e-9, reading: Shift, unit: px, metric: edges.left_shift}
 answer: It is a lens.
 END
+cat >lessons/critical.lesson <<'END'
+lesson: critical
+title: The critical angle
+language: en
+question: When does it turn to a mirror?
+scene: ../rod.yaml
+set: {liquid.ior: 1.4, liquid.color: [0.9, 0.95, 1]}
+controls:
+  - {parameter: liquid.ior, label: Index, choices: [1.2, 1.3, 1.4, 1.5]}
+  - {parameter: rod.size.x, label: Colour, from: 0.1, to: 0.3}
+prediction: {ask: How many degrees?, within: 3}
+measure: {over: liquid.ior, tolerance: 1e-9, reading: Angle, unit: deg, metric: critical.liquid}
+answer: It is the critical angle.
+END
 cuvette render rod.yaml -o a.png
 cuvette render rod.yaml -o b.png --set liquid.ior=1.4
 cuvette render rod.yaml -o a.jpg
@@ -57,6 +72,8 @@ keep: {image: on}
 END
 sed 's/study: small/study: done/' small.study >done.study
 sed 's/study: small/study: parts/' small.study >parts.study
+cp "$root"/tests/old-rows/{old-rows.study,{scene,hand}.yaml,corner.obj,{spots,sky}.pfm} .
+cp -r "$root/tests/old-rows/results" old
 cuvette study run -q done.study
 cuvette study run -q --shard 0/2 parts.study
 cuvette study run -q --shard 1/2 parts.study

@@ -74,8 +74,9 @@ bool api_take_number(call *c, const char *key, bool needed, double *value);
 bool api_take_vector(call *c, const char *key, bool needed, double value[3]);
 bool api_take_text(call *c, const char *key, bool needed, const char **value);
 bool api_take_flag(call *c, const char *key, bool *value);
-/* A parameter's value in the syntax of scene_set, in allocated memory; NULL for unsupported JSON (or out of memory). */
-char *api_value_text(const json_t *value);
+/* A parameter's value in the syntax of scene_set, in allocated memory; place: what a message calls it. STATUS_BAD_INPUT
+ * for unsupported JSON. */
+status api_value_text(const json_t *value, const char *place, char **text, diagnostic *why);
 /* Reads the gesture; NULL for none. */
 bool api_take_gesture(call *c, const char **gesture);
 

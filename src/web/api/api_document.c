@@ -45,28 +45,41 @@ status api_scene(call *c)
 
 /* --- set and reset --- */
 
-/* Writes one number or word; false for other JSON values. */
-static bool write_item(FILE *out, const json_t *value)
+/* Whether it is one number or word. */
+static bool is_item(const json_t *value)
 {
-    char text[NUMBER_TEXT_MAX];
-    const char *word = json_is_boolean(value) ? (json_is_true(value) ? "on" : "off") : json_string_value(value);
-    if (json_is_number(value) && isfinite(json_number_value(value)))
-        word = number_format(json_number_value(value), text);
-    const bool good = word && (!json_is_string(value) || strlen(word) == json_string_length(value));
-    return good && fputs(word, out) >= 0;
+    const char *word = json_string_value(value);
+    return json_is_boolean(value) || (json_is_number(value) && isfinite(json_number_value(value))) ||
+           (word && strlen(word) == json_string_length(value));
 }
 
-char *api_value_text(const json_t *value)
+static void write_item(FILE *out, const json_t *value)
 {
-    char *joined = NULL;
+    char text[NUMBER_TEXT_MAX];
+    fputs(json_is_number(value)    ? number_format(json_number_value(value), text)
+          : json_is_boolean(value) ? (json_is_true(value) ? "on" : "off")
+                                   : json_string_value(value),
+          out);
+}
+
+status api_value_text(const json_t *value, const char *place, char **text, diagnostic *why)
+{
     text_writer writer;
-    if (text_writer_open(&writer, NULL) != STATUS_OK)
-        return NULL;
-    bool good = json_is_array(value) || write_item(writer.stream, value);
+    bool good = json_is_array(value) || is_item(value);
+    *text = NULL;
     for (size_t i = 0; i < json_array_size(value) && good; i++)
-        good = (i == 0 || fputc(',', writer.stream) >= 0) && write_item(writer.stream, json_array_get(value, i));
-    text_writer_end(&writer, good ? STATUS_OK : STATUS_BAD_INPUT, &joined, NULL, NULL);
-    return joined;
+        good = is_item(json_array_get(value, i));
+    if (!good)
+        return diagnose(why, STATUS_BAD_INPUT, "give a number, a string or a list of numbers",
+                        "%.200s: not a valid value", place);
+    TRY(text_writer_open(&writer, why));
+    if (!json_is_array(value))
+        write_item(writer.stream, value);
+    for (size_t i = 0; i < json_array_size(value); i++) {
+        fputs(i > 0 ? "," : "", writer.stream);
+        write_item(writer.stream, json_array_get(value, i));
+    }
+    return text_writer_close(&writer, text, NULL, why);
 }
 
 /* The parameters to set, and notes on those without effect (scene/model/inert/inert.h); NULL while there are none. */
@@ -76,7 +89,7 @@ typedef struct set_request {
 } set_request;
 
 /* A live slime ignores time_s, so no note is made for it. */
-static void note_inert(set_request *x, const scene *s)
+static status note_inert(set_request *x, const scene *s, diagnostic *why)
 {
     const char *path;
     json_t *value;
@@ -87,7 +100,10 @@ static void note_inert(set_request *x, const scene *s)
             continue;
         x->notes = x->notes ? x->notes : json_array();
         json_add(&x->notes, api_note(answer.note.place, answer.note.text, answer.note.remedy));
+        if (!x->notes)
+            return out_of_memory(why);
     }
+    return STATUS_OK;
 }
 
 static status set_all(void *of, scene *s, diagnostic *why)
@@ -99,19 +115,14 @@ static status set_all(void *of, scene *s, diagnostic *why)
     status code = STATUS_OK;
     json_object_foreach((json_t *)(uintptr_t)values, path, value)
     {
-        char *text = code == STATUS_OK ? api_value_text(value) : NULL;
-        if (code == STATUS_OK && !text)
-            code = diagnose(why, STATUS_BAD_INPUT, "give a number, a string or a list of numbers",
-                            "%.200s: not a valid value", path);
-        else if (code == STATUS_OK)
-            code = scene_set(s, path, text, why);
+        char *text = NULL;
+        THEN(code, api_value_text(value, path, &text, why));
+        THEN(code, scene_set(s, path, text, why));
         free(text);
     }
     json_decref(x->notes);
     x->notes = NULL;
-    if (code == STATUS_OK)
-        note_inert(x, s);
-    return code;
+    return code == STATUS_OK ? note_inert(x, s, why) : code;
 }
 
 static bool sets_camera(json_t *values)
@@ -151,8 +162,9 @@ status api_reset(call *c)
     const size_t count = json_array_size(paths);
     const char **text = calloc(count + 1, sizeof *text);
     uint64_t generation = 0;
-    bool good =
-        text && json_is_object(c->body) && (!paths || (json_is_array(paths) && count > 0 && count <= PATHS_MAX));
+    if (!text)
+        return out_of_memory(&c->why);
+    bool good = json_is_object(c->body) && (!paths || (json_is_array(paths) && count > 0 && count <= PATHS_MAX));
     for (size_t i = 0; i < count && good; i++)
         good = (text[i] = json_string_value(json_array_get(paths, i))) != NULL;
     const status code =

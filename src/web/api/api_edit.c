@@ -91,21 +91,34 @@ static status displace_it(edit *e, scene *s, diagnostic *why)
 }
 
 /* Reads `with`; the caller frees together->others. */
-static bool take_together(call *c, object_list *together)
+static status take_together(call *c, object_list *together)
 {
     enum { NAMES_MAX = 1000 };
     const json_t *list = json_object_get(c->body, "with");
     const size_t count = json_array_size(list);
     bool good = !list || (json_is_array(list) && count <= NAMES_MAX);
-    if (good && count > 0 && (together->others = calloc(count, sizeof *together->others))) {
+    if (good && count > 0) {
+        if (!(together->others = calloc(count, sizeof *together->others)))
+            return out_of_memory(&c->why);
         together->first = http_path_value(c->request, "name");
         for (together->count = 0; together->count < count && good; together->count++)
             good =
                 (together->others[together->count] = json_string_value(json_array_get(list, together->count))) != NULL;
     }
-    if (!good)
-        api_refuse(c, 400, "'with' is not a list of names", "give at most 1000 names of solids and lights");
-    return good;
+    return good ? STATUS_OK
+                : api_refuse(c, 400, "'with' is not a list of names", "give at most 1000 names of solids and lights");
+}
+
+/* Reads `with` and the gesture, and makes the edit. */
+static status apply_together(call *c, edit *e, const char *verb)
+{
+    const char *gesture = NULL;
+    status code = take_together(c, &e->together);
+    if (code == STATUS_OK && !api_take_gesture(c, &gesture))
+        code = STATUS_BAD_INPUT;
+    THEN(code, apply_to(c, *e, verb, gesture));
+    free(e->together.others);
+    return code;
 }
 
 static status displace(call *c, edit e, const char *verb)
@@ -113,15 +126,10 @@ static status displace(call *c, edit e, const char *verb)
     e.or_camera = true;
     e.act = displace_it;
     double by[3];
-    const char *gesture;
-    if (!api_take_vector(c, "by", true, by) || !take_together(c, &e.together) || !api_take_gesture(c, &gesture)) {
-        free(e.together.others);
+    if (!api_take_vector(c, "by", true, by))
         return STATUS_BAD_INPUT;
-    }
     e.by = vec3_make(by[0], by[1], by[2]);
-    const status code = apply_to(c, e, verb, gesture);
-    free(e.together.others);
-    return code;
+    return apply_together(c, &e, verb);
 }
 
 status api_move(call *c)
@@ -143,14 +151,10 @@ static status scale_it(edit *e, scene *s, diagnostic *why)
 status api_scale(call *c)
 {
     const json_t *factor = json_object_get(c->body, "factor");
-    const char *gesture;
     edit e = {.or_camera = true, .factor = json_number_value(factor), .act = scale_it};
     if (!json_is_number(factor))
         return api_refuse(c, 400, "'factor' is not a number", "give a factor above 0");
-    const bool good = take_together(c, &e.together) && api_take_gesture(c, &gesture);
-    const status code = good ? apply_to(c, e, "scale", gesture) : STATUS_BAD_INPUT;
-    free(e.together.others);
-    return code;
+    return apply_together(c, &e, "scale");
 }
 
 static status rename_it(edit *e, scene *s, diagnostic *why)
@@ -228,10 +232,8 @@ static status set_values(const edit *e, scene *s, diagnostic *why)
     status code = STATUS_OK;
     json_object_foreach((json_t *)(uintptr_t)e->values, row, value)
     {
-        char *text = api_value_text(value), *path = text_format("%s.%s", e->new_name, row);
-        if (code == STATUS_OK && !text)
-            code = diagnose(why, STATUS_BAD_INPUT, "give a number, a string or a list of numbers",
-                            "%.200s: not a valid value", row);
+        char *text = NULL, *path = text_format("%s.%s", e->new_name, row);
+        THEN(code, api_value_text(value, row, &text, why));
         THEN(code, path ? scene_put(s, path, text, why) : out_of_memory(why));
         free(text);
         free(path);

@@ -143,12 +143,17 @@ status api_lesson_open(call *c)
     TRY(take_lesson(c, &l));
     scene *s = l->start;
     l->start = NULL;
-    char *inside = folder_name(c->l->files, l->scene_path), *path = inside ? NULL : strdup("");
-    if (path) {
+    char *inside, *path = strdup("");
+    status code = folder_find(c->l->files, l->scene_path, &inside, &c->why);
+    if (code == STATUS_OK && !path)
+        code = out_of_memory(&c->why);
+    if (inside) {
+        free(path);
+    } else {
         free(s->path);
         s->path = path;
     }
-    status code = scene_limit(s, folder_real(c->l->files), 0, &c->why);
+    THEN(code, scene_limit(s, folder_real(c->l->files), 0, &c->why));
     THEN(code, scene_set_title(s, l->title, &c->why));
     free(inside);
     lesson_destroy(l);

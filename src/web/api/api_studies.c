@@ -50,17 +50,16 @@ static bool list_one(void *context, const char *name, const char *file)
     listing *list = context;
     study *s = NULL;
     diagnostic why = {.what = ""};
-    study_open(list->l, file, &s, &why);
+    if (study_open(list->l, file, &s, &why) == STATUS_OK)
+        name = s->name;
     const char *earlier = json_string_value(json_object_get(list->names, name));
     if (earlier) {
         diagnose(&why, STATUS_BAD_INPUT, "rename one of them", "the name is already used by %s", earlier);
         diagnostic_locate(&why, file, 0, 0);
-        study_destroy(s);
-        s = NULL;
     } else {
         json_object_set_new(list->names, name, json_string(file)); /* skip names that are not UTF-8 */
     }
-    json_array_append_new(list->studies, study_json(list->l, name, file, s, &why));
+    json_add(&list->studies, study_json(list->l, name, file, earlier ? NULL : s, &why));
     study_destroy(s);
     return true;
 }
@@ -69,8 +68,9 @@ status api_studies(call *c)
 {
     const lab *l = c->l;
     listing list = {.l = l, .studies = json_array(), .names = json_object()};
-    const status code = study_each(l, list_one, &list, &c->why);
-    char *results = folder_name(l->files, l->settings.results);
+    char *results = NULL;
+    status code = study_each(l, list_one, &list, &c->why);
+    THEN(code, folder_find(l->files, l->settings.results, &results, &c->why));
     api_reply_json(
         c, json_pack("{s:o, s:o}", "results", results ? json_of_text(results) : json_null(), "studies", list.studies));
     free(results);

@@ -34,7 +34,8 @@ static status take_sweep(call *c, const char *path, video_plan *plan)
         return STATUS_BAD_INPUT;
     if (!(frames >= 2 && frames <= VIDEO_FRAMES_MAX && frames == floor(frames)))
         return api_refuse(c, 400, "the number of frames is out of range", "give 2 to 1000 frames");
-    TRY(scene_each_param(plan->s, match, &q));
+    if (scene_each_param(plan->s, match, &q) != STATUS_OK)
+        return out_of_memory(&c->why);
     if (!q.found)
         return api_refuse(c, 400, "the scene has no such parameter", "GET /api/scene lists its parameters");
     if (q.found->type != PARAM_REAL && q.found->type != PARAM_INT)

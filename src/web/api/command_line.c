@@ -46,6 +46,8 @@ static status add_option(void *of, const char *path, const param *row, const cha
     writing *w = of;
     char *current = NULL;
     status code = scene_get(w->so_far, path, &current, NULL);
+    if (code == STATUS_FAILURE)
+        return code;
     if (code != STATUS_OK || strcmp(current, value) != 0 || (w->camera && row->group == PARAM_CAMERA)) {
         code = scene_set(w->so_far, path, value, NULL);
         char *both = text_format("%s=%s", path, value);
@@ -57,59 +59,65 @@ static status add_option(void *of, const char *path, const param *row, const cha
     return code;
 }
 
-static status read_again(const folder *files, const char *file, int threads, scene **out, char **path)
+static status read_again(const folder *files, const char *file, int threads, scene **out, char **path, diagnostic *why)
 {
-    diagnostic unread;
-    status code = folder_path(files, file, true, path, &unread);
-    THEN(code, scene_read_below(*path, folder_real(files), out, &unread));
-    if (code == STATUS_OK && threads > 0 && (*out)->render.threads == 1)
+    TRY(folder_path(files, file, true, path, why));
+    TRY(scene_read_below(*path, folder_real(files), out, why));
+    if (threads > 0 && (*out)->render.threads == 1)
         (*out)->render.threads = threads;
+    return STATUS_OK;
+}
+
+/* The scene as read from that file, whose folder may differ from the base of the scene's own paths. */
+static status rebase_paths(const scene *s, const char *path, scene **out, diagnostic *why)
+{
+    if (strcmp(s->path, path) == 0)
+        return (*out = scene_clone(s)) ? STATUS_OK : out_of_memory(why);
+    char *text = NULL;
+    status code = scene_write_text(s, path, false, &text, why);
+    THEN(code, scene_read_text(path, text, strlen(text), out, why));
+    free(text);
     return code;
 }
 
-/* The scene as read from that file, whose folder may differ from the base of the scene's own paths; NULL on error. */
-static scene *rebase_paths(const scene *s, const char *path)
+/* The settings that turn `from` into s. STATUS_BAD_INPUT where settings do not suffice. */
+static status collect(json_t *settings, scene *from, const char *path, const scene *s, diagnostic *why)
 {
-    if (strcmp(s->path, path) == 0)
-        return scene_clone(s);
     scene *rebased = NULL;
-    char *text = NULL;
-    diagnostic ignored;
-    if (scene_write_text(s, path, false, &text, &ignored) == STATUS_OK &&
-        scene_read_text(path, text, strlen(text), &rebased, &ignored) != STATUS_OK)
-        rebased = NULL;
-    free(text);
-    return rebased;
-}
-
-/* The settings that turn `from` into s; false where settings do not suffice. */
-static bool collect(json_t *settings, scene *from, const char *path, const scene *s)
-{
-    scene *rebased = rebase_paths(s, path);
-    writing w = {.settings = settings, .so_far = from};
-    if (rebased)
-        w.camera = from->camera.aimed != rebased->camera.aimed;
-    const bool complete =
-        rebased && same_objects(from, rebased) && scene_each_param(rebased, add_option, &w) == STATUS_OK;
+    status code = rebase_paths(s, path, &rebased, why);
+    if (code == STATUS_OK && !same_objects(from, rebased))
+        code = STATUS_BAD_INPUT;
+    if (code == STATUS_OK) {
+        writing w = {settings, from, from->camera.aimed != rebased->camera.aimed};
+        code = scene_each_param(rebased, add_option, &w);
+        if (code == STATUS_FAILURE)
+            out_of_memory(why);
+    }
     scene_destroy(rebased);
-    return complete;
+    return code;
 }
 
 status command_settings(const folder *files, const char *file, const scene *s, int threads, char **path,
                         json_t **settings, bool *complete, diagnostic *why)
 {
     scene *from = NULL;
+    diagnostic refused = {.what = ""};
     *complete = false;
     *path = NULL;
     *settings = json_array();
     if (!*settings)
         return out_of_memory(why);
-    if (file && read_again(files, file, threads, &from, path) == STATUS_OK)
-        *complete = collect(*settings, from, *path, s);
-    else if (*path)
-        free(*path), *path = NULL;
+    status code = file ? read_again(files, file, threads, &from, path, &refused) : STATUS_BAD_INPUT;
+    if (code != STATUS_OK) {
+        free(*path);
+        *path = NULL;
+    }
+    THEN(code, collect(*settings, from, *path, s, &refused));
     scene_destroy(from);
-    return STATUS_OK;
+    *complete = code == STATUS_OK;
+    if (code == STATUS_FAILURE && why)
+        *why = refused;
+    return code == STATUS_FAILURE ? code : STATUS_OK;
 }
 
 status command_line(const folder *files, const char *file, const scene *s, int threads, char **text, bool *complete,

@@ -2,7 +2,7 @@
 #include "web/api/study_json.h"
 #include "base/text_writer.h"
 #include "report/json.h"
-#include "scene/model/params.h"
+#include "scene/model/params_path.h"
 #include "study/row_files.h"
 #include "study/summary.h"
 #include <stdlib.h>
@@ -10,27 +10,10 @@
 
 /* --- the definition --- */
 
-typedef struct unit_search {
-    const char *path, *unit;
-} unit_search;
-
-static status find_unit(void *context, const char *path, const param *row, const char *value)
-{
-    (void)value;
-    unit_search *search = context;
-    const size_t length = strlen(path);
-    /* path is search->path or one element of that vector, path.x */
-    if (strncmp(path, search->path, length) != 0 || (search->path[length] && search->path[length] != '.'))
-        return STATUS_OK;
-    search->unit = row->unit;
-    return STATUS_INTERRUPTED;
-}
-
 static const char *unit_of(const study *s, const char *path)
 {
-    unit_search search = {path, ""};
-    scene_each_param(s->base, find_unit, &search);
-    return search.unit;
+    param_place at;
+    return param_place_find(s->base, path, &at, NULL) == STATUS_OK ? at.row->unit : "";
 }
 
 static json_t *axis_json(const study *s, const study_axis *axis)

@@ -102,6 +102,7 @@ static status listen_and_serve(http_server *s, diagnostic *why)
             MHD_USE_INTERNAL_POLLING_THREAD | MHD_USE_THREAD_PER_CONNECTION | MHD_USE_POLL, 0, NULL, NULL,
             http_on_request, s, MHD_OPTION_LISTEN_SOCKET, fd, MHD_OPTION_CONNECTION_LIMIT,
             (unsigned)s->settings.connections, MHD_OPTION_CONNECTION_TIMEOUT, (unsigned)s->settings.timeout_s,
+            MHD_OPTION_NONCE_NC_SIZE, 0u, /* of digests, which are not used */
             MHD_OPTION_CONNECTION_MEMORY_LIMIT, (size_t)32768, MHD_OPTION_STRICT_FOR_CLIENT, 1,
             MHD_OPTION_URI_LOG_CALLBACK, http_on_target, s, MHD_OPTION_NOTIFY_COMPLETED, http_on_end, s,
             MHD_OPTION_NOTIFY_CONNECTION, http_watch_notify, s, MHD_OPTION_END);

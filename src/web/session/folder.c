@@ -111,6 +111,13 @@ char *folder_name(const folder *f, const char *path)
     return copy;
 }
 
+status folder_find(const folder *f, const char *path, char **name, diagnostic *why)
+{
+    errno = 0;
+    *name = folder_name(f, path);
+    return !*name && errno == ENOMEM ? out_of_memory(why) : STATUS_OK;
+}
+
 /* Whether each part between slashes is a valid name. */
 static bool is_name(const char *name)
 {
@@ -205,11 +212,10 @@ static status check_named(const folder *f, const scene *s, const char *what, con
     char *full_path = scene_file_path(s, path);
     if (!full_path)
         return out_of_memory(why);
-    errno = 0;
-    char *name = folder_name(f, full_path);
+    char *name;
+    const status code = folder_find(f, full_path, &name, why);
     free(full_path);
-    if (!name && errno == ENOMEM)
-        return out_of_memory(why);
+    TRY(code);
     const bool is_in = name != NULL;
     free(name);
     return is_in ? STATUS_OK

@@ -22,8 +22,10 @@ const char *folder_real(const folder *f);
  * to the working directory of the program. */
 status folder_path(const folder *f, const char *name, bool must_exist, char **path, diagnostic *why);
 /* The name in the folder of a path relative to the working directory; NULL where the path is outside. The file need
- * not exist. */
+ * not exist. NULL with ENOMEM in errno: out of memory. */
 char *folder_name(const folder *f, const char *path);
+/* The same: *name is NULL where the path is outside. Fails only if memory runs out. */
+status folder_find(const folder *f, const char *path, char **name, diagnostic *why);
 
 /* A name as the scene in `file` refers to it: relative to the file's folder, absolute where they have no common
  * folder. file: "" is a scene in the working directory. */

@@ -10,28 +10,33 @@
 
 /* --- files --- */
 
-/* The name in the file, found without parsing the rest; otherwise the file's own name. */
-static char *name_of(const lab *l, const char *file)
+/* The name in the file, found without parsing the rest; otherwise the file's own name. unread: the reason if the
+ * machine could not read the file. NULL: out of memory. */
+static char *name_of(const lab *l, const char *file, diagnostic *unread)
 {
-    char *path = NULL, *name = NULL;
+    char *path = NULL, *name;
     document *d = NULL;
-    if (folder_path(l->files, file, true, &path, NULL) == STATUS_OK &&
-        document_read_below(path, folder_real(l->files), &d, NULL) == STATUS_OK) {
-        const node *root = document_root(d),
-                   *name_node = root && root->kind == NODE_MAP ? node_get(root, "study") : NULL;
-        if (name_node && name_node->kind == NODE_SCALAR && name_node->text[0])
-            name = strdup(name_node->text);
+    diagnostic refused = {.what = ""};
+    status code = folder_path(l->files, file, true, &path, &refused);
+    THEN(code, document_read_below(path, folder_real(l->files), &d, &refused));
+    if (code == STATUS_FAILURE)
+        *unread = refused;
+    const node *root = d ? document_root(d) : NULL,
+               *said = root && root->kind == NODE_MAP ? node_get(root, "study") : NULL;
+    if (said && said->kind == NODE_SCALAR && said->text[0]) {
+        name = strdup(said->text);
+    } else {
+        const char *last = strrchr(file, '/'), *stem = last ? last + 1 : file, *dot = strrchr(stem, '.');
+        name = strndup(stem, dot ? (size_t)(dot - stem) : strlen(stem));
     }
     document_destroy(d);
     free(path);
-    if (name)
-        return name;
-    const char *last = strrchr(file, '/'), *stem = last ? last + 1 : file, *dot = strrchr(stem, '.');
-    return strndup(stem, dot ? (size_t)(dot - stem) : strlen(stem));
+    return name;
 }
 
-status study_each(const lab *l, bool (*visit)(void *context, const char *name, const char *file), void *context,
-                  diagnostic *why)
+typedef bool study_visit(void *context, const char *name, const char *file);
+
+static status each(const lab *l, study_visit *visit, void *context, diagnostic *unread, diagnostic *why)
 {
     json_t *json = NULL;
     status code = folder_json(l->files, &json, why);
@@ -39,7 +44,7 @@ status study_each(const lab *l, bool (*visit)(void *context, const char *name, c
     bool go_on = true;
     for (size_t i = 0; go_on && code == STATUS_OK && i < json_array_size(files); i++) {
         const char *file = json_string_value(json_array_get(files, i));
-        char *name = file ? name_of(l, file) : NULL;
+        char *name = file ? name_of(l, file, unread) : NULL;
         if (name)
             go_on = visit(context, name, file);
         else
@@ -50,9 +55,16 @@ status study_each(const lab *l, bool (*visit)(void *context, const char *name, c
     return code;
 }
 
+status study_each(const lab *l, study_visit *visit, void *context, diagnostic *why)
+{
+    diagnostic unread; /* opening the study says so */
+    return each(l, visit, context, &unread, why);
+}
+
 typedef struct name_search {
     const char *name;
     char *file;
+    bool found;
 } name_search;
 
 static bool match_name(void *context, const char *name, const char *file)
@@ -60,6 +72,7 @@ static bool match_name(void *context, const char *name, const char *file)
     name_search *w = context;
     if (strcmp(name, w->name) != 0)
         return true;
+    w->found = true;
     w->file = strdup(file);
     return false;
 }
@@ -67,9 +80,17 @@ static bool match_name(void *context, const char *name, const char *file)
 status study_find(const lab *l, const char *name, char **file, diagnostic *why)
 {
     name_search w = {.name = name};
-    const status code = study_each(l, match_name, &w, why);
+    diagnostic unread = {.what = ""};
+    *file = NULL;
+    TRY(each(l, match_name, &w, &unread, why));
+    if (w.found && !w.file)
+        return out_of_memory(why);
+    if (!w.found && unread.what[0]) {
+        *why = unread; /* it may be the one */
+        return STATUS_FAILURE;
+    }
     *file = w.file;
-    return code;
+    return STATUS_OK;
 }
 
 /* --- files that a study may read --- */
@@ -77,7 +98,8 @@ status study_find(const lab *l, const char *name, char **file, diagnostic *why)
 static status may_open(void *context, const char *path, diagnostic *why)
 {
     const lab *l = context;
-    char *name = folder_name(l->files, path);
+    char *name;
+    TRY(folder_find(l->files, path, &name, why));
     const bool inside = name != NULL;
     free(name);
     return inside ? STATUS_OK
@@ -111,7 +133,8 @@ status study_open(const lab *l, const char *file, study **out, diagnostic *why)
 
 static status check_inside(const lab *l, const char *path, diagnostic *why)
 {
-    char *name = folder_name(l->files, path);
+    char *name;
+    TRY(folder_find(l->files, path, &name, why));
     if (name) {
         free(name);
         return STATUS_OK;

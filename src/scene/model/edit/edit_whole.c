@@ -248,6 +248,8 @@ static status keep_metres(whole_edit *e)
 static status scale_parts(whole_edit *e)
 {
     const status code = scene_each_param(e->before, scale_row, e);
+    if (code == STATUS_FAILURE)
+        return out_of_memory(e->why); /* there is no other failure */
     if (code == STATUS_OK)
         scale_unbounded(e);
     return code == STATUS_OK && e->parts.solids ? keep_metres(e) : code;
