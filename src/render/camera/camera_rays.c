@@ -1,4 +1,5 @@
-/* Camera rays: their number per pixel, sample positions and directions. */
+/* Camera rays: their number per pixel, sample positions, origins and directions. */
+#include "render/camera/camera_kernels.h"
 #include "render/shade/path_kernels.h"
 #include "render/shade/shading.h"
 
@@ -20,6 +21,7 @@ static int64_t cells_across(int64_t points)
 /* Pixels and sample keys of consecutive rays of a row, and the points within the pixels where these are a grid. */
 typedef struct camera_places {
     double x[ROW], sx[ROW], sy[ROW];
+    int64_t key[ROW]; /* of pixel and sample, whether the film uses the sample or not */
 } camera_places;
 
 static void place(const tracer *t, camera_sampling need, int64_t each, int y, int x0, int64_t first, int count,
@@ -29,7 +31,8 @@ static void place(const tracer *t, camera_sampling need, int64_t each, int y, in
     int64_t x = x0 + first / each, ray = first % each;
     for (int k = 0; k < count; k++) {
         at->x[k] = (double)x, at->sx[k] = 0.5, at->sy[k] = 0.5;
-        sample_key[k] = sample_key_make(row + x, t->by_sample_key ? ray : 0);
+        at->key[k] = sample_key_make(row + x, ray);
+        sample_key[k] = t->by_sample_key ? at->key[k] : sample_key_make(row + x, 0);
         if (each > 1 && !need.jittered) {                            /* avoids divisions with one ray per pixel */
             const int64_t s = ray / need.together % (cells * cells); /* row by row */
             at->sx[k] = ((double)(s % cells) + 0.5) / (double)cells;
@@ -38,6 +41,37 @@ static void place(const tracer *t, camera_sampling need, int64_t each, int y, in
         if (++ray == each)
             ray = 0, x++;
     }
+}
+
+void camera_chief_rays(const tracer *t, int count, const double *u, const double *v, camera_rays_out out)
+{
+    camera_frame view = t->target.frame_plan->view;
+    double centre[ROW];
+    view.lens_radius = 0.0;
+    for (int k = 0; k < count; k++)
+        centre[k] = 0.0;
+    t->camera->rays(&view, count, u, v, (lens_points){centre, centre}, out);
+}
+
+/* Rays of a camera that is no pinhole in perspective. One ray per pixel, and those of a depth buffer or of layers, pass
+ * through the centre of the lens. */
+static void leave_lens(const tracer *t, int64_t each, int count, const camera_places *places, const double *u,
+                       const double *v, ray_queue *q, int at)
+{
+    const plan *p = t->target.frame_plan;
+    const render_settings *r = &p->render;
+    const path_sampling grid = path_sampling_of_grid(r, each);
+    const camera_rays_out out = {q->ox + at, q->oy + at, q->oz + at, q->dx + at, q->dy + at, q->dz + at};
+    double area[ROW], turn[ROW];
+    if (p->view.lens_radius > 0.0 && each > 1 && t->rule->traced) {
+        t->path->draw(integrator_traits_of(r)->by_chance ? &p->draws : &grid, count, places->key, 0, DRAW_LENS, area,
+                      turn);
+        t->camera->rays(&p->view, count, u, v, (lens_points){area, turn}, out);
+    } else {
+        camera_chief_rays(t, count, u, v, out);
+    }
+    for (int i = at; i < at + count && p->starts_vary; i++)
+        q->inside[i] = scene_geometry_inside(p->geometry, vec3_make(q->ox[i], q->oy[i], q->oz[i]));
 }
 
 void camera_rays_enqueue(tracer *t, int y, int x0, int64_t first, int count)
@@ -71,6 +105,9 @@ void camera_rays_enqueue(tracer *t, int y, int x0, int64_t first, int count)
         q->inside[i] = p->eye_inside;
         q->sq[i] = q->su[i] = q->sv[i] = 0.0;
     }
-    t->shade->camera(&p->view, count, u, v, q->dx + at, q->dy + at, q->dz + at);
+    if (p->view.parallel || p->view.lens_radius > 0.0)
+        leave_lens(t, each, count, &places, u, v, q, at);
+    else
+        t->camera->directions(&p->view, count, u, v, q->dx + at, q->dy + at, q->dz + at);
     q->count += count;
 }

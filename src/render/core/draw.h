@@ -16,7 +16,8 @@ enum {
     DRAW_ROULETTE = 3,
     DRAW_LIGHT = 4,
     DRAW_PIXEL = 0x1000,
-    DRAW_NEXT = 0x1001
+    DRAW_LENS = 0x1001,
+    DRAW_NEXT = 0x1002
 };
 static_assert(DRAW_LIGHT + SCENE_LIGHTS_MAX <= DRAW_PIXEL,
               "the lights' numbers must not overlap those of the next purpose");

@@ -1,6 +1,7 @@
 /* Renderer settings without effect. */
 #include "scene/model/inert/inert_private.h"
 #include "geometry/shapes/shape.h"
+#include "scene/model/camera.h"
 #include "scene/model/medium.h"
 #include "scene/model/scene.h"
 
@@ -12,10 +13,10 @@ static bool path_only(const inert_case *c)
            inert_say(c, "path-only", "set render.integrator=path", "only the path integrator uses random numbers");
 }
 
-/* Wavelengths of the spectral film are also random: render/shade/spectra.c. */
+/* Wavelengths of the spectral film are also random, render/shade/spectra.c, and so are points of a lens. */
 static bool seed(const inert_case *c)
 {
-    return c->s->render.spectrum != SPECTRUM_SPECTRAL && path_only(c);
+    return c->s->render.spectrum != SPECTRUM_SPECTRAL && !camera_lens_is_sampled(c->s) && path_only(c);
 }
 
 static bool samples(const inert_case *c)
