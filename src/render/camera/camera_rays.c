@@ -1,5 +1,6 @@
 /* Camera rays: their number per pixel, sample positions, origins and directions. */
 #include "render/camera/camera_kernels.h"
+#include "optics/mueller.h"
 #include "render/shade/path_kernels.h"
 #include "render/shade/shading.h"
 
@@ -74,6 +75,31 @@ static void leave_lens(const tracer *t, int64_t each, int count, const camera_pl
         q->inside[i] = scene_geometry_inside(p->geometry, vec3_make(q->ox[i], q->oy[i], q->oz[i]));
 }
 
+/* The direction across a ray d that a direction across the camera's axis f becomes under the shortest rotation from f to
+ * d (Rodrigues' formula): directions at right angles stay so, and crossed filters are crossed in the whole image. */
+static vec3 across_ray(vec3 axis, vec3 f, vec3 d)
+{
+    return vec3_sub(axis, vec3_scale(vec3_add(f, d), vec3_dot(axis, d) / (1.0 + vec3_dot(f, d))));
+}
+
+/* The row of an ideal analyser: it transmits half of unpolarised light. A right-handed one's v is positive
+ * (optics/mueller.h). */
+static stokes analyser_row(const plan *p, vec3 d)
+{
+    if (p->analyser == ANALYSER_LINEAR)
+        return stokes_linear(d, across_ray(p->analyser_axis, p->view.forward, d));
+    return (stokes){1.0, 0.0, 0.0, p->analyser == ANALYSER_CIRCULAR_LEFT ? -1.0 : 1.0};
+}
+
+static void put_analyser(const plan *p, int count, ray_queue *q, int at)
+{
+    for (int i = at; i < at + count; i++) {
+        const stokes row = analyser_row(p, vec3_make(q->dx[i], q->dy[i], q->dz[i]));
+        q->wr[i] *= 0.5, q->wg[i] *= 0.5, q->wb[i] *= 0.5;
+        q->sq[i] = row.q, q->su[i] = row.u, q->sv[i] = row.v;
+    }
+}
+
 void camera_rays_enqueue(tracer *t, int y, int x0, int64_t first, int count)
 {
     const plan *p = t->target.frame_plan;
@@ -109,5 +135,7 @@ void camera_rays_enqueue(tracer *t, int y, int x0, int64_t first, int count)
         leave_lens(t, each, count, &places, u, v, q, at);
     else
         t->camera->directions(&p->view, count, u, v, q->dx + at, q->dy + at, q->dz + at);
+    if (p->analyser != ANALYSER_NONE)
+        put_analyser(p, count, q, at);
     q->count += count;
 }

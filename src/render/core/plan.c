@@ -1,5 +1,6 @@
 /* Building a render plan: media, hierarchies, materials and light cones from the scene. */
 #include "render/core/plan.h"
+#include "base/elementary.h"
 #include "base/large_pages.h"
 #include "geometry/shapes/shape.h"
 
@@ -235,10 +236,21 @@ static status needs_one_medium(const scene *s, const plan *p, const solid *cut, 
                     p->view.parallel ? "image" : "lens");
 }
 
+static void add_analyser(const scene *s, plan *p)
+{
+    double sine, cosine;
+    if (!s->render.polarisation)
+        return;
+    elementary_sincos_deg(s->camera.analyser_angle_deg, &sine, &cosine);
+    p->analyser = (analyser_kind)s->camera.analyser;
+    p->analyser_axis = vec3_add(vec3_scale(p->view.right, cosine), vec3_scale(p->view.up, sine));
+}
+
 /* The camera's view, and the solids that its rays start in. */
 static status place_camera(const scene *s, plan *p, diagnostic *why)
 {
     const bool spread = (p->view = camera_frame_of(s)).parallel || p->view.lens_radius > 0.0;
+    add_analyser(s, p);
     for (size_t i = 0; spread && i < s->solid_count; i++) {
         const solid *one = &s->solids[i];
         if (!one->visible || scene_apart_from_eye(s, one))

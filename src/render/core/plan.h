@@ -43,6 +43,8 @@ typedef struct plan {
     spectra *spectral; /* for a spectral film, else NULL */
     camera_frame view;
     uint64_t eye_inside;       /* the set of primitives that contain the camera */
+    analyser_kind analyser;    /* of camera rays; ANALYSER_NONE without polarisation */
+    vec3 analyser_axis;        /* a linear one's */
     bool starts_vary;          /* other primitives may contain other origins of camera rays: they fill an area */
     int camera_priority_index; /* and of the medium there */
     bool basic;                /* rays carry basic radiance (L / n^2): see radiance.c */

@@ -177,6 +177,13 @@ static void hint_at_lens(const scene *s, const note_taker *taker)
               "nothing is blurred: each pixel has only rays through the centre of the lens");
 }
 
+static void hint_at_analyser(const scene *s, const note_taker *taker)
+{
+    if (s->camera.analyser != ANALYSER_NONE && !s->render.polarisation)
+        note_give(taker, "camera", "analyser", "set render.polarisation to on",
+                  "light is traced without its polarisation: the analyser has no effect");
+}
+
 /* The film does not depend on them, so that scene/model/inert has no rules for them. */
 static void hint_at_tone(const scene *s, const note_taker *taker)
 {
@@ -216,6 +223,7 @@ void scene_hints(const scene *s, const note_taker *taker)
                   "add lights:", "no lights: opaque surfaces show only ambient and emitted light");
     hint_at_lights(s, taker);
     hint_at_lens(s, taker);
+    hint_at_analyser(s, taker);
     hint_at_tone(s, taker);
     for (size_t i = 0; i < s->solid_count; i++) {
         if (s->solids[i].visible) {

@@ -35,6 +35,7 @@ static const char *const filter_words[] = {"nearest", "bilinear", "trilinear", N
 static const char *const wrap_words[] = {"repeat", "mirror", "clamp", NULL};
 static const char *const space_words[] = {"srgb", "linear", NULL};
 static const char *const projection_words[] = {"perspective", "orthographic", NULL};
+static const char *const analyser_words[] = {"none", "linear", "circular_left", "circular_right", NULL};
 static const char *const tone_words[] = {"none", "reinhard", "aces", NULL};
 static const char *const light_words[] = {"point", "cone", "soft_cone", NULL};
 static const char *const beam_words[] = {"pencil", "fan", "sheet", "bundle", NULL};
@@ -216,6 +217,12 @@ static const param table[] = {
          "diameter of a thin lens, which blurs what is out of focus and needs several rays per pixel; 0: a pinhole"),
     POSITIVE(PARAM_CAMERA, camera, focus, "scene units", FAR, "6",
              "distance of the plane in focus from the camera, along the viewing direction"),
+    CHOICE(
+        PARAM_CAMERA, camera, analyser, analyser_words, "none",
+        "ideal polarising filter before the eye, with render.polarisation: none, linear, or for left- or right-handed "
+        "circular light"),
+    REAL(PARAM_CAMERA, camera, analyser_angle_deg, "deg", -360, 360, "0",
+         "axis of a linear analyser: 0 transmits a field along the image's width, 90 along its height"),
     ROW(PARAM_CAMERA, "exposure", PARAM_REAL, "stops", -64, 64, false, "0",
         "images with 8 bits show the radiance times 2^exposure; films, PFM and 16-bit images stay as they are", NULL,
         SHOWN(exposure)),

@@ -12,6 +12,12 @@ typedef enum background_kind {
     BACKGROUND_RAIN
 } background_kind;
 typedef enum projection_rule { PROJECTION_PERSPECTIVE, PROJECTION_ORTHOGRAPHIC } projection_rule;
+typedef enum analyser_kind {
+    ANALYSER_NONE,
+    ANALYSER_LINEAR,
+    ANALYSER_CIRCULAR_LEFT,
+    ANALYSER_CIRCULAR_RIGHT
+} analyser_kind;
 /* Maximum value of a background image: below the film's limit, and the range of half floats. */
 #define SCENE_SKY_MAX 65536.0F
 
@@ -27,6 +33,8 @@ typedef struct camera {
     double view_height;        /* of the image, scene units; orthographic */
     double aperture;           /* diameter of a thin lens, scene units; 0: a pinhole */
     double focus;              /* distance of the plane in focus along the viewing direction, scene units */
+    int64_t analyser;          /* analyser_kind: an ideal filter before the eye, with render.polarisation */
+    double analyser_angle_deg; /* of a linear one's axis: from the image's right, towards up */
     double exposure;           /* stops, of images with 8 bits */
     int64_t tone;              /* tone_curve, likewise */
     double white;              /* see image_tone */

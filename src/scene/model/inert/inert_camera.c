@@ -40,9 +40,32 @@ static bool focus(const inert_case *c)
            inert_say(c, "pinhole", "set camera.aperture=0.2", "a pinhole shows everything in focus");
 }
 
+static bool unpolarised(const inert_case *c)
+{
+    const render_settings *r = &c->s->render;
+    const integrator_traits *traits = integrator_traits_of(r);
+    const char *first = traits->by_chance || traits->drawn || traits->layers ? "render.integrator=whitted and "
+                        : r->weights == WEIGHTS_CONSTANT                     ? "render.weights=fresnel and "
+                        : r->transmission == TRANSMISSION_SIMPLE             ? "render.transmission=refract and "
+                                                                             : "";
+    return !r->polarisation && inert_say(c, "unpolarised", inert_set("%srender.polarisation=on", first).text,
+                                         "light is traced without its polarisation");
+}
+
+static bool analyser_angle(const inert_case *c)
+{
+    if (unpolarised(c))
+        return true;
+    if (c->s->camera.analyser != ANALYSER_LINEAR)
+        return inert_say(c, "not-linear", "set camera.analyser=linear", "only a linear analyser has an axis");
+    return inert_polarisation(c);
+}
+
 bool inert_camera(const inert_case *c)
 {
     static const inert_row rows[] = {
-        {"fov_deg", fov}, {"view_height", view_height}, {"aperture", aperture}, {"focus", focus}, {NULL, NULL}};
+        {"fov_deg", fov}, {"view_height", view_height}, {"aperture", aperture},
+        {"focus", focus}, {"analyser", unpolarised},    {"analyser_angle_deg", analyser_angle},
+        {NULL, NULL}};
     return inert_by_name(rows, c);
 }

@@ -138,9 +138,15 @@ static bool weights(const inert_case *c)
                       "simple transmission uses the materials' constants"));
 }
 
-static bool polarisation(const inert_case *c)
+bool inert_polarisation(const inert_case *c)
 {
     return no_tree(c) || no_clear(c);
+}
+
+/* An analyser halves unpolarised light, but only where polarisation is traced. */
+static bool polarisation(const inert_case *c)
+{
+    return c->s->camera.analyser == ANALYSER_NONE && inert_polarisation(c);
 }
 
 static bool nothing_lit(const inert_case *c)
