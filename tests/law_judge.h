@@ -58,6 +58,7 @@ static inline void scale_lengths(scene *s, double f)
     s->render.unit_m /= f;
     scale_vector(&s->camera.position, f);
     scale_vector(&s->camera.target, f);
+    s->camera.view_height *= f, s->camera.aperture *= f, s->camera.focus *= f;
     for (size_t i = 0; i < s->light_count; i++) {
         scale_vector(&s->lights[i].position, f);
         s->lights[i].reach *= f;

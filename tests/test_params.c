@@ -129,7 +129,7 @@ static void an_empty_scene_has_the_defaults(void **state)
     assert_non_null(s);
     size_t count = 0;
     assert_int_equal(scene_each_param(s, same_as_fallback, &count), STATUS_OK);
-    assert_int_equal(count, 38 + 4 + 12);
+    assert_int_equal(count, 38 + 13 + 12);
     assert_int_equal(s->render.width, 800);
     assert_int_equal(s->render.shadows, SHADOWS_ATTENUATED);
     assert_int_equal(s->render.schedule, SCHEDULE_DYNAMIC);
@@ -340,7 +340,8 @@ static void errors_of_paths_and_values_name_the_valid_ones(void **state)
         {"lens.ior=1,5", "lens.ior: '1,5' is not a finite number; a decimal comma? write 1.5"},
         {"camera.fov=45", "camera has no parameter 'fov'; did you mean 'camera.fov_deg'?"},
         {"camera.5=1",
-         "camera has no parameter '5'; camera has position, target, yaw_deg, pitch_deg, roll_deg, fov_deg"},
+         "camera has no parameter '5'; camera has position, target, yaw_deg, pitch_deg, roll_deg, "
+         "projection, fov_deg, view_height, aperture, focus, analyser, analyser_angle_deg, exposure, tone, white"},
         {"fov=45", "the scene has no object 'fov'; did you mean 'camera.fov_deg'?"},
         {"lens.visible=of", "lens.visible: 'of' is not one of the choices; give one of: off, on"},
         {"lens.visible=noo", "lens.visible: 'noo' is not one of the choices; give one of: off, on"},

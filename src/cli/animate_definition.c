@@ -16,10 +16,11 @@ static bool is_time_of_slime(const param *row)
     return row->group == PARAM_MESH && strcmp(row->name, "time_s") == 0;
 }
 
-/* Skips time_s of slimes, which the frame sets, and file names: only contents count, so that a folder may be moved. */
+/* Skips what affects only performance, but not how the film is shown; time_s of slimes, which the frame sets; and file
+ * names: only contents count, so that a folder may be moved. */
 static status add_param(void *context, const char *path, const param *row, const char *value)
 {
-    if (row->performance_only || row->type == PARAM_PATH || is_time_of_slime(row))
+    if ((row->performance_only && row->group != PARAM_CAMERA) || row->type == PARAM_PATH || is_time_of_slime(row))
         return STATUS_OK;
     json_object_del(context, path); /* so that the last assignment is the last entry */
     return json_object_set_new(context, path, json_of_text(value)) == 0 ? STATUS_OK : STATUS_FAILURE;

@@ -6,6 +6,7 @@
 #include "render/core/record.h"
 #include "scene/model/open.h"
 #include "scene/model/render_settings.h"
+#include "scene/model/camera.h"
 #include <errno.h>
 #include <inttypes.h>
 #include <stdlib.h>
@@ -100,6 +101,8 @@ static status write_image(animation_job *f, const char *path, const film *img, d
         return record_image(img, f->s, path, 8, why);
     image *frame = NULL;
     status result = film_image(img, &frame, why);
+    if (result == STATUS_OK)
+        frame->tone = camera_tone(f->s);
     errno = 0;
     THEN(result, video_frame(&f->video, frame, why));
     image_destroy(frame);

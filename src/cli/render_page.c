@@ -6,6 +6,7 @@
 #include "base/text_writer.h"
 #include "cli/outputs.h"
 #include "report/page.h"
+#include "scene/model/camera.h"
 #include <stdlib.h>
 
 static status command_of(const scene_input *input, const char *path, char **text, diagnostic *why)
@@ -37,6 +38,8 @@ status render_page_write(const scene_input *input, const job_account *f, isa lev
     image *img = NULL;
     char *command = NULL;
     status code = film_image(f->result->img, &img, why);
+    if (code == STATUS_OK)
+        img->tone = camera_tone(f->of);
     THEN(code, command_of(input, path, &command, why));
     if (code == STATUS_OK) {
         const report_page_content page = {.s = f->of,

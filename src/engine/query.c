@@ -159,7 +159,8 @@ cuvette_status cuvette_query_camera_ray(const cuvette_query *query, double x, do
     if (!isfinite(x) || !isfinite(y))
         return engine_report(diagnose(&inner, STATUS_BAD_INPUT, "give finite numbers", "the image point is not finite"),
                              &inner, why);
-    const vec3 eye = query->ready->view.eye, d = camera_direction(&query->ready->view, &query->ready->render, x, y);
+    const camera_ray chief = camera_chief_ray(&query->ready->view, &query->ready->render, x, y);
+    const vec3 eye = chief.origin, d = chief.direction;
     memset(out, 0, sizeof *out);
     out->origin[0] = eye.x, out->origin[1] = eye.y, out->origin[2] = eye.z;
     out->direction[0] = d.x, out->direction[1] = d.y, out->direction[2] = d.z;

@@ -104,14 +104,24 @@ static void copy_row(const void *of, int y, float *rgb)
 
 image_rows image_rows_of(const image *img)
 {
-    return (image_rows){.width = img->width, .height = img->height, .read = copy_row, .of = img};
+    return (image_rows){.width = img->width, .height = img->height, .read = copy_row, .of = img, .tone = img->tone};
+}
+
+static void read_toned(const void *of, int y, float *rgb)
+{
+    const image_rows *rows = of;
+    rows->read(rows->of, y, rgb);
+    image_tone_apply(&rows->tone, rgb, (size_t)rows->width);
 }
 
 static status write_as(const image_rows *rows, image_format format, FILE *stream, int bits, bool fast, diagnostic *why)
 {
+    image_rows shown = *rows;
+    if (!image_tone_is_plain(&rows->tone) && (bits == 8 || format == IMAGE_JPEG))
+        shown.read = read_toned, shown.of = rows;
     switch (format) {
-    case IMAGE_PNG: return codec_png_write(rows, stream, bits, fast || cancel_hurries(), why);
-    case IMAGE_JPEG: return codec_jpeg_write(rows, stream, fast, why);
+    case IMAGE_PNG: return codec_png_write(&shown, stream, bits, fast || cancel_hurries(), why);
+    case IMAGE_JPEG: return codec_jpeg_write(&shown, stream, fast, why);
     case IMAGE_PFM: return codec_pfm_write(rows, stream, why);
     case IMAGE_BMP:
     case IMAGE_UNKNOWN: break;

@@ -4,14 +4,16 @@
 #pragma once
 
 #include "base/status.h"
+#include "image/tone.h"
 #include <stdbool.h>
 
 /* RGB, linear, rows from the top, pixel[(y * width + x) * 3 + channel]; 1.0 is white. coded_bits is 8 or 16 if
- * image_read decoded the pixels from sRGB values with that many bits, otherwise 0. */
+ * image_read decoded the pixels from sRGB values with that many bits, otherwise 0. tone: how it is shown with 8 bits. */
 typedef struct image {
     int width, height;
     float *pixel;
     int coded_bits, owners;
+    image_tone tone;
 } image;
 
 enum { IMAGE_SIDE_MAX = 65536 };
@@ -53,10 +55,11 @@ typedef struct image_rows {
     const void *of;
     const image_text *texts;
     int text_count; /* at most IMAGE_TEXTS_MAX */
+    image_tone tone;
 } image_rows;
 image_rows image_rows_of(const image *img);
 
-/* PNG with 8 or 16 bits and JPEG (quality 92, 4:4:4) are sRGB-encoded, with a PNG sRGB chunk, correctly rounded, NaN as
+/* PNG with 8 bits and JPEG are shown with the image's tone; the others hold its values. PNG with 8 or 16 bits and JPEG (quality 92, 4:4:4) are sRGB-encoded, with a PNG sRGB chunk, correctly rounded, NaN as
  * 0; PFM has linear, little-endian floats. bits applies to PNG only. PNG is compressed with a thread per processing
  * unit, at most 16; the file does not depend on their number. After a cancellation (cancel_hurries) it is compressed
  * less. */

@@ -5,6 +5,7 @@
 #include "image/codec.h"
 #include <inttypes.h>
 #include <stdlib.h>
+#include <string.h>
 
 enum { HIGH_DEFINITION_LINES = 720, TEN_THOUSAND = 10000 };
 
@@ -30,6 +31,7 @@ static int64_t nearest(int64_t a, int64_t b)
 typedef struct planes {
     unsigned char *rgb; /* three bytes per pixel */
     unsigned char *y, *cb, *cr;
+    float *row; /* of the image, with its tone */
     size_t wide, high, chroma_wide, chroma_high;
 } planes;
 
@@ -70,7 +72,12 @@ static void convert(const planes *p, const image *img)
 {
     codec_bytes bytes;
     codec_bytes_prepare(&bytes);
-    codec_bytes_encode(&bytes, img->pixel, 3 * p->wide * p->high, p->rgb);
+    for (size_t y = 0; y < p->high; y++) {
+        memcpy(p->row, img->pixel + 3 * p->wide * y, 3 * p->wide * sizeof *p->row);
+        if (!image_tone_is_plain(&img->tone))
+            image_tone_apply(&img->tone, p->row, p->wide);
+        codec_bytes_encode(&bytes, p->row, 3 * p->wide, p->rgb + 3 * p->wide * y);
+    }
     const luma_shares k = shares_for(img->height);
     put_luma(p, &k);
     for (size_t y = 0; y < p->chroma_high; y++)
@@ -96,9 +103,13 @@ status y4m_frame(FILE *stream, const image *img, diagnostic *why)
     const size_t wide = (size_t)img->width, high = (size_t)img->height;
     planes p = {.wide = wide, .high = high, .chroma_wide = (wide + 1) / 2, .chroma_high = (high + 1) / 2};
     p.rgb = malloc(3 * wide * high + plane_bytes(&p));
-    if (!p.rgb)
+    p.row = malloc(3 * wide * sizeof *p.row);
+    if (!p.rgb || !p.row) {
+        free(p.rgb);
+        free(p.row);
         return diagnose(why, STATUS_FAILURE, MEMORY_REMEDY, "out of memory for a frame of %d x %d pixels", img->width,
                         img->height);
+    }
     p.y = p.rgb + 3 * wide * high;
     p.cb = p.y + wide * high;
     p.cr = p.cb + p.chroma_wide * p.chroma_high;
@@ -106,5 +117,6 @@ status y4m_frame(FILE *stream, const image *img, diagnostic *why)
     fputs("FRAME\n", stream);
     fwrite(p.y, 1, plane_bytes(&p), stream);
     free(p.rgb);
+    free(p.row);
     return STATUS_OK;
 }

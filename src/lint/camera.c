@@ -22,8 +22,33 @@ static int medium_about(const plan *made)
     return priority_index;
 }
 
+/* An orthographic camera whose image cuts an opaque solid, on a lattice of its rays: often the ground, for a wide image
+ * that is seen from little above. */
+static void lint_parallel(const lint_room *room)
+{
+    enum { ACROSS = 16 };
+    const plan *made = room->made;
+    int inside = 0, found = 0;
+    for (int i = 0; i < ACROSS * ACROSS; i++) {
+        const double u = (2.0 * (i % ACROSS) + 1.0) / ACROSS - 1.0, v = (2.0 * (i / ACROSS) + 1.0) / ACROSS - 1.0;
+        const camera_ray r =
+            camera_ray_through(&made->view, u * made->view.half_width, v * made->view.half_height, 0.0, 0.0);
+        const int at = scene_geometry_priority_index(made->geometry, scene_geometry_inside(made->geometry, r.origin));
+        if (made->geometry->regions[at].opaque)
+            inside++, found = at;
+    }
+    if (inside > 0)
+        note_give(room->taker, "camera", "position", "move the camera away from it, or lower camera.view_height",
+                  "%d%% of the orthographic camera's rays start inside %s, which is opaque",
+                  (100 * inside + ACROSS * ACROSS - 1) / (ACROSS * ACROSS), lint_solid(room, found)->name);
+}
+
 void lint_camera(const lint_room *room)
 {
+    if (room->made->view.parallel) {
+        lint_parallel(room);
+        return;
+    }
     const int priority_index = medium_about(room->made);
     if (priority_index <= 0)
         return;

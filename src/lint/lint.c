@@ -49,6 +49,7 @@ static scene *small_copy(const scene *s)
     r->samples = 1;
     r->spectrum = SPECTRUM_RGB;
     r->polarisation = 0;
+    r->radiance = integrator_traits_of(r)->drawn ? RADIANCE_CLASSIC : r->radiance;
     trace_trees(r);
     if (r->accel != HIERARCHY_BVH) {
         r->accel = HIERARCHY_BVH;

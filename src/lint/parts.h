@@ -15,7 +15,8 @@ typedef struct lint_room {
 /* Overlapping solids of equal priority, and narrow gaps. */
 status lint_neighbours(const lint_room *room, diagnostic *why);
 
-/* A camera that sees nothing: in an opaque solid, under the ground, in the wall of a cup. */
+/* A camera that sees nothing: in an opaque solid, under the ground, in the wall of a cup; a part of an orthographic one
+ * likewise. */
 void lint_camera(const lint_room *room);
 
 /* A depth limit with a visible effect. */

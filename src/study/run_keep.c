@@ -5,6 +5,7 @@
 #include "study/row_files.h"
 #include "study/run_state.h"
 #include "scene/model/open.h"
+#include "scene/model/camera.h"
 #include <stdlib.h>
 
 status run_find_compared(run *r, diagnostic *why)
@@ -58,6 +59,8 @@ static status render_reference(run *r, const scene *setting, reference *out, dia
     job_account frame;
     status code = run_render(r, setting, NULL, &frame, why);
     THEN(code, film_image(frame.result->img, &out->img, why));
+    if (code == STATUS_OK)
+        out->img->tone = camera_tone(setting);
     if (code == STATUS_OK) {
         out->film_hash = frame.film_hash;
         out->noise_rms = render_noise_rms(frame.result);

@@ -300,6 +300,7 @@ const http_server *lab_server(const lab *l)
 void lab_camera_ray(const scene *s, double x, double y, vec3 *origin, vec3 *direction)
 {
     const camera_frame f = camera_frame_of(s);
-    *origin = f.eye;
-    *direction = camera_direction(&f, scene_settings(s), x, y);
+    const camera_ray chief = camera_chief_ray(&f, scene_settings(s), x, y);
+    *origin = chief.origin;
+    *direction = chief.direction;
 }

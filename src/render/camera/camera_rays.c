@@ -1,4 +1,6 @@
-/* Camera rays: their number per pixel, sample positions and directions. */
+/* Camera rays: their number per pixel, sample positions, origins and directions. */
+#include "render/camera/camera_kernels.h"
+#include "optics/mueller.h"
 #include "render/shade/path_kernels.h"
 #include "render/shade/shading.h"
 
@@ -20,6 +22,7 @@ static int64_t cells_across(int64_t points)
 /* Pixels and sample keys of consecutive rays of a row, and the points within the pixels where these are a grid. */
 typedef struct camera_places {
     double x[ROW], sx[ROW], sy[ROW];
+    int64_t key[ROW]; /* of pixel and sample, whether the film uses the sample or not */
 } camera_places;
 
 static void place(const tracer *t, camera_sampling need, int64_t each, int y, int x0, int64_t first, int count,
@@ -29,7 +32,8 @@ static void place(const tracer *t, camera_sampling need, int64_t each, int y, in
     int64_t x = x0 + first / each, ray = first % each;
     for (int k = 0; k < count; k++) {
         at->x[k] = (double)x, at->sx[k] = 0.5, at->sy[k] = 0.5;
-        sample_key[k] = sample_key_make(row + x, t->by_sample_key ? ray : 0);
+        at->key[k] = sample_key_make(row + x, ray);
+        sample_key[k] = t->by_sample_key ? at->key[k] : sample_key_make(row + x, 0);
         if (each > 1 && !need.jittered) {                            /* avoids divisions with one ray per pixel */
             const int64_t s = ray / need.together % (cells * cells); /* row by row */
             at->sx[k] = ((double)(s % cells) + 0.5) / (double)cells;
@@ -37,6 +41,62 @@ static void place(const tracer *t, camera_sampling need, int64_t each, int y, in
         }
         if (++ray == each)
             ray = 0, x++;
+    }
+}
+
+void camera_chief_rays(const tracer *t, int count, const double *u, const double *v, camera_rays_out out)
+{
+    camera_frame view = t->target.frame_plan->view;
+    double centre[ROW];
+    view.lens_radius = 0.0;
+    for (int k = 0; k < count; k++)
+        centre[k] = 0.0;
+    t->camera->rays(&view, count, u, v, (lens_points){centre, centre}, out);
+}
+
+/* Rays of a camera that is no pinhole in perspective. One ray per pixel, and those of a depth buffer or of layers, pass
+ * through the centre of the lens. */
+static void leave_lens(const tracer *t, int64_t each, int count, const camera_places *places, const double *u,
+                       const double *v, ray_queue *q, int at)
+{
+    const plan *p = t->target.frame_plan;
+    const render_settings *r = &p->render;
+    const path_sampling grid = path_sampling_of_grid(r, each);
+    const camera_rays_out out = {q->ox + at, q->oy + at, q->oz + at, q->dx + at, q->dy + at, q->dz + at};
+    double area[ROW], turn[ROW];
+    if (p->view.lens_radius > 0.0 && each > 1 && t->rule->traced) {
+        t->path->draw(integrator_traits_of(r)->by_chance ? &p->draws : &grid, count, places->key, 0, DRAW_LENS, area,
+                      turn);
+        t->camera->rays(&p->view, count, u, v, (lens_points){area, turn}, out);
+    } else {
+        camera_chief_rays(t, count, u, v, out);
+    }
+    for (int i = at; i < at + count && p->starts_vary; i++)
+        q->inside[i] = scene_geometry_inside(p->geometry, vec3_make(q->ox[i], q->oy[i], q->oz[i]));
+}
+
+/* The direction across a ray d that a direction across the camera's axis f becomes under the shortest rotation from f to
+ * d (Rodrigues' formula): directions at right angles stay so, and crossed filters are crossed in the whole image. */
+static vec3 across_ray(vec3 axis, vec3 f, vec3 d)
+{
+    return vec3_sub(axis, vec3_scale(vec3_add(f, d), vec3_dot(axis, d) / (1.0 + vec3_dot(f, d))));
+}
+
+/* The row of an ideal analyser: it transmits half of unpolarised light. A right-handed one's v is positive
+ * (optics/mueller.h). */
+static stokes analyser_row(const plan *p, vec3 d)
+{
+    if (p->analyser == ANALYSER_LINEAR)
+        return stokes_linear(d, across_ray(p->analyser_axis, p->view.forward, d));
+    return (stokes){1.0, 0.0, 0.0, p->analyser == ANALYSER_CIRCULAR_LEFT ? -1.0 : 1.0};
+}
+
+static void put_analyser(const plan *p, int count, ray_queue *q, int at)
+{
+    for (int i = at; i < at + count; i++) {
+        const stokes row = analyser_row(p, vec3_make(q->dx[i], q->dy[i], q->dz[i]));
+        q->wr[i] *= 0.5, q->wg[i] *= 0.5, q->wb[i] *= 0.5;
+        q->sq[i] = row.q, q->su[i] = row.u, q->sv[i] = row.v;
     }
 }
 
@@ -71,6 +131,11 @@ void camera_rays_enqueue(tracer *t, int y, int x0, int64_t first, int count)
         q->inside[i] = p->eye_inside;
         q->sq[i] = q->su[i] = q->sv[i] = 0.0;
     }
-    t->shade->camera(&p->view, count, u, v, q->dx + at, q->dy + at, q->dz + at);
+    if (p->view.parallel || p->view.lens_radius > 0.0)
+        leave_lens(t, each, count, &places, u, v, q, at);
+    else
+        t->camera->directions(&p->view, count, u, v, q->dx + at, q->dy + at, q->dz + at);
+    if (p->analyser != ANALYSER_NONE)
+        put_analyser(p, count, q, at);
     q->count += count;
 }

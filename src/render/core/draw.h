@@ -17,7 +17,8 @@ enum {
     DRAW_LIGHT = 4,
     DRAW_PIXEL = 0x1000,
     DRAW_PHOTON = 0x1001, /* and the next one */
-    DRAW_NEXT = 0x1003
+    DRAW_LENS = 0x1003,
+    DRAW_NEXT = 0x1004
 };
 static_assert(DRAW_LIGHT + SCENE_LIGHTS_MAX <= DRAW_PIXEL,
               "the lights' numbers must not overlap those of the next purpose");

@@ -44,3 +44,14 @@ path_sampling path_sampling_of(const render_settings *r)
                            .paths = r->paths,
                            .turns = turns};
 }
+
+path_sampling path_sampling_of_grid(const render_settings *r, int64_t rays)
+{
+    return (path_sampling){.seed = r->seed,
+                           .sampler = SAMPLER_SOBOL,
+                           .seed_hash = sobol_mix((uint64_t)r->seed + 1),
+                           .replicates = 1,
+                           .each = rays,
+                           .paths = rays,
+                           .turns = 1};
+}

@@ -21,6 +21,10 @@ typedef struct path_sampling {
 
 path_sampling path_sampling_of(const render_settings *r);
 
+/* For the points on the lens of a film with that many camera rays per pixel in a regular grid, as of Whitted's
+ * integrator: one scrambled Sobol set. */
+path_sampling path_sampling_of_grid(const render_settings *r, int64_t rays);
+
 /* The pixel's number of paths. */
 static inline int64_t path_count(const path_sampling *p, int64_t pixel)
 {

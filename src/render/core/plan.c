@@ -1,9 +1,11 @@
 /* Building a render plan: media, hierarchies, materials and light cones from the scene. */
 #include "render/core/plan.h"
+#include "base/elementary.h"
 #include "base/large_pages.h"
 #include "geometry/shapes/shape.h"
 
 #include "render/shade/sky.h"
+#include "scene/model/cover.h"
 #include "scene/model/scene.h"
 #include <stdlib.h>
 
@@ -224,6 +226,46 @@ static status fill_priority_indices(const scene *s, const index_law *laws, plan 
                : out_of_memory(why);
 }
 
+/* Basic radiance has one index at the camera, and the depth buffer one list of media. */
+static status needs_one_medium(const scene *s, const plan *p, const solid *cut, diagnostic *why)
+{
+    if (solid_is_opaque(s, cut) || !(p->basic || integrator_traits_of(&s->render)->drawn))
+        return STATUS_OK;
+    return diagnose(why, STATUS_BAD_INPUT,
+                    p->basic ? "move camera.position away from it, or set render.radiance to classic"
+                             : "move camera.position away from it, or set render.integrator to whitted",
+                    "%.80s reaches into the camera's %s, so that rays start in several media", cut->name,
+                    p->view.parallel ? "image" : "lens");
+}
+
+static void add_analyser(const scene *s, plan *p)
+{
+    double sine, cosine;
+    if (!s->render.polarisation)
+        return;
+    elementary_sincos_deg(s->camera.analyser_angle_deg, &sine, &cosine);
+    p->analyser = (analyser_kind)s->camera.analyser;
+    p->analyser_axis = vec3_add(vec3_scale(p->view.right, cosine), vec3_scale(p->view.up, sine));
+}
+
+/* The camera's view, and the solids that its rays start in. */
+static status place_camera(const scene *s, plan *p, diagnostic *why)
+{
+    const bool spread = (p->view = camera_frame_of(s)).parallel || p->view.lens_radius > 0.0;
+    add_analyser(s, p);
+    for (size_t i = 0; spread && i < s->solid_count; i++) {
+        const solid *one = &s->solids[i];
+        if (!one->visible || scene_apart_from_eye(s, one))
+            continue;
+        p->starts_vary = true;
+        TRY(needs_one_medium(s, p, one, why));
+    }
+    if (!integrator_traits_of(&s->render)->drawn)
+        p->eye_inside = scene_geometry_inside(p->geometry, p->view.eye);
+    p->camera_priority_index = scene_geometry_priority_index(p->geometry, p->eye_inside);
+    return STATUS_OK;
+}
+
 status plan_build(const scene *s, plan **out, diagnostic *why)
 {
     plan *p = calloc(1, sizeof *p);
@@ -235,19 +277,16 @@ status plan_build(const scene *s, plan **out, diagnostic *why)
     THEN(code, fill_priority_indices(s, laws, p, why));
     THEN(code, aim_cones(s, p, why));
     THEN(code, add_rain(s, p, why));
+    THEN(code, place_camera(s, p, why));
     free(laws);
     if (code != STATUS_OK) {
         plan_destroy(p);
         return code;
     }
-    p->view = camera_frame_of(s);
     p->render = s->render;
     p->draws = path_sampling_of(&s->render);
     if (integrator_traits_of(&s->render)->drawn)
         p->render.shadows = SHADOWS_OFF;
-    else
-        p->eye_inside = scene_geometry_inside(p->geometry, p->view.eye);
-    p->camera_priority_index = scene_geometry_priority_index(p->geometry, p->eye_inside);
     p->sky = sky_of(s, p);
     if (s->render.beyond == DEPTH_LIMIT_MEAN)
         p->sky_mean = p->rain && !p->spectral ? vec3_add(sky_mean(p->sky), rain_color_mean(p->rain)) : sky_mean(p->sky);

@@ -45,6 +45,9 @@ typedef struct plan {
     layered_plan *layered; /* metals and films; NULL if there are none */
     camera_frame view;
     uint64_t eye_inside;       /* the set of primitives that contain the camera */
+    analyser_kind analyser;    /* of camera rays; ANALYSER_NONE without polarisation */
+    vec3 analyser_axis;        /* a linear one's */
+    bool starts_vary;          /* other primitives may contain other origins of camera rays: they fill an area */
     int camera_priority_index; /* and of the medium there */
     bool basic;                /* rays carry basic radiance (L / n^2): see radiance.c */
     render_settings render;

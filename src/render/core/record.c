@@ -6,6 +6,7 @@
 #include "base/number.h"
 #include "image/heatmap.h"
 #include "scene/file/shared.h"
+#include "scene/model/camera.h"
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
@@ -21,6 +22,8 @@ static status write_with_scene(image_rows rows, const scene *of, const char *pat
     shared_texts texts = {.count = 0};
     if (of && image_format_of(path) == IMAGE_PNG)
         TRY(shared_texts_make(of, &texts, why));
+    if (of)
+        rows.tone = camera_tone(of);
     rows.texts = texts.item;
     rows.text_count = texts.count;
     const status code = image_write_rows(&rows, path, bits, why);

@@ -4,8 +4,8 @@
 
 #include "render/core/renderer.h"
 
-/* Writes the film as an image in the format of the path's ending; bits as image_write takes them. of: the
- * scene, which a PNG file carries in its metadata (scene/file/shared.h); NULL: no metadata. */
+/* Writes the film as an image in the format of the path's ending; bits as image_write takes them. of: the scene, whose
+ * tone images with 8 bits show, and which a PNG file carries in its metadata (scene/file/shared.h); NULL: neither. */
 status record_image(const film *f, const scene *of, const char *path, int bits, diagnostic *why);
 /* The same for an image of the film with something drawn over it. */
 status record_drawing(const image *img, const scene *of, const char *path, int bits, diagnostic *why);

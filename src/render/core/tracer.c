@@ -2,6 +2,7 @@
 #include "render/core/tracer.h"
 
 #include "measure/clock.h"
+#include "render/camera/camera_kernels.h"
 #include "render/shade/path_kernels.h"
 #include "render/shade/shading.h"
 #include <stdlib.h>
@@ -12,6 +13,7 @@ tracer *tracer_create(isa level)
     static const geometry_kernels *const geometry[ISA_COUNT] = ISA_ARRAY(geometry_kernels);
     static const shade_kernels *const shade[ISA_COUNT] = ISA_ARRAY(shade_kernels);
     static const path_kernels *const path[ISA_COUNT] = ISA_ARRAY(path_kernels);
+    static const camera_kernels *const eyes[ISA_COUNT] = ISA_ARRAY(camera_kernels);
     tracer *t = aligned_alloc(64, (sizeof(tracer) + 63) / 64 * 64);
     if (!t)
         return NULL;
@@ -19,6 +21,7 @@ tracer *tracer_create(isa level)
     t->geometry = geometry[level];
     t->shade = shade[level];
     t->path = path[level];
+    t->camera = eyes[level];
     return t;
 }
 

@@ -55,6 +55,7 @@ struct tracer {
     const geometry_kernels *geometry;
     const shade_kernels *shade;
     const struct path_kernels *path;
+    const struct camera_kernels *camera;
     tracer_target target;
     const integrator *rule; /* of the frame; NULL before the first one */
     void *own;              /* the integrator's data of this worker */

@@ -46,7 +46,13 @@ static void blend(beam_canvas *c, int x, int y, double distance, double cover, c
         at[k] = (float)(at[k] * (1.0 - share) + rgb[k] * share);
 }
 
-/* The pixels near a line a .. b, whose z are distances from the eye; 1 / z is linear in the image. */
+/* The distance at a share of the line a .. b in the image: 1 / z is linear there, and z under parallel rays. */
+static double distance_along(const beam_canvas *c, vec3 a, vec3 b, double t)
+{
+    return c->view.parallel ? (1.0 - t) * a.z + t * b.z : 1.0 / ((1.0 - t) / a.z + t / b.z);
+}
+
+/* The pixels near a line a .. b, whose z are distances from the eye. */
 static void draw_line(beam_canvas *c, vec3 a, vec3 b, double strength, const double rgb[3])
 {
     const double dx = b.x - a.x, dy = b.y - a.y, size = dx * dx + dy * dy, reach = c->half_width + 1.0;
@@ -59,7 +65,7 @@ static void draw_line(beam_canvas *c, vec3 a, vec3 b, double strength, const dou
             const double t = size > 0.0 ? fmin(1.0, fmax(0.0, (px * dx + py * dy) / size)) : 0.0;
             const double away = hypot(px - t * dx, py - t * dy), cover = fmin(1.0, c->half_width + 0.5 - away);
             if (cover > 0.0)
-                blend(c, x, y, 1.0 / ((1.0 - t) / a.z + t / b.z), cover * strength, rgb);
+                blend(c, x, y, distance_along(c, a, b, t), cover * strength, rgb);
         }
 }
 

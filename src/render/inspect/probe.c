@@ -19,6 +19,7 @@ status probe_create(const scene *s, isa level, probe **out, diagnostic *why)
     if (code == STATUS_OK) {
         render_settings *r = &p->setting->render;
         p->spectral = r->spectrum == SPECTRUM_SPECTRAL;
+        p->setting->camera.aperture = 0.0;
         if (integrator_traits_of(r)->by_chance || integrator_traits_of(r)->drawn || integrator_traits_of(r)->layers)
             trace_trees(r); /* trace all branches, not a random one or none */
         code = scene_check(p->setting, why);
@@ -187,7 +188,7 @@ int probe_medium_at(const probe *p, vec3 point)
 
 vec3 probe_camera_direction(const probe *p, double x, double y)
 {
-    return camera_direction(&p->frame_plan->view, &p->frame_plan->render, x, y);
+    return camera_chief_ray(&p->frame_plan->view, &p->frame_plan->render, x, y).direction;
 }
 
 const char *probe_face_name(const probe *p, const ray_hit *hit)

@@ -1,4 +1,4 @@
-/* Perspective projection of segments. */
+/* Projection of segments into the image. */
 #include "render/inspect/segment_place.h"
 
 #include <math.h>
@@ -6,17 +6,18 @@
 static vec3 seen(const camera_frame *view, int width, int height, vec3 at)
 {
     const vec3 d = vec3_sub(at, view->eye);
-    const double depth = vec3_dot(d, view->forward);
-    return vec3_make((vec3_dot(d, view->right) / (depth * view->half_width) + 1.0) * 0.5 * width,
-                     (1.0 - vec3_dot(d, view->up) / (depth * view->half_height)) * 0.5 * height, vec3_length(d));
+    const double depth = vec3_dot(d, view->forward), spread = camera_spread(view, depth);
+    return vec3_make((vec3_dot(d, view->right) / (spread * view->half_width) + 1.0) * 0.5 * width,
+                     (1.0 - vec3_dot(d, view->up) / (spread * view->half_height)) * 0.5 * height,
+                     view->parallel ? depth : vec3_length(d));
 }
 
 bool segment_place(const camera_frame *view, int width, int height, vec3 from, vec3 to, vec3 ends[2])
 {
     const double depth_from = vec3_dot(vec3_sub(from, view->eye), view->forward);
     const double depth_to = vec3_dot(vec3_sub(to, view->eye), view->forward);
-    const double near = 1e-4 * fmax(depth_from, depth_to);
-    if (!(near > 0.0))
+    const double farther = fmax(depth_from, depth_to), near = view->parallel ? 0.0 : 1e-4 * farther;
+    if (!(farther > 0.0))
         return false;
     const vec3 cut = vec3_add(from, vec3_scale(vec3_sub(to, from), (near - depth_from) / (depth_to - depth_from)));
     ends[0] = seen(view, width, height, depth_from < near ? cut : from);

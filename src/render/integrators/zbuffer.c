@@ -1,6 +1,7 @@
 /* The z-buffer preview: the surfaces that the depth buffer (render/zbuffer) shows at the tracer's camera rays are
  * shaded as if they had been traced. Its pre-pass projects the triangles into the image; each piece is rasterised
  * before its rays start. */
+#include "render/camera/camera_kernels.h"
 #include "render/shade/shading.h"
 #include "render/zbuffer/zbuffer_private.h"
 
@@ -16,6 +17,7 @@ typedef struct raster_work {
     uint32_t number[ROW];
     bool straight[ROW];               /* it hits a curved surface along the undeflected view */
     double vx[ROW], vy[ROW], vz[ROW]; /* direction of the undeflected view, in a frame with layers */
+    double ex[ROW], ey[ROW], ez[ROW]; /* and its origin, with parallel rays */
     vec3 at[ROW];                     /* of the gathered group: points of affine texture lookup */
 } raster_work;
 
@@ -56,21 +58,21 @@ typedef struct raster_hit {
     bool leaving;
 } raster_hit;
 
-static raster_hit hit_plane(const primitive *p, const camera_frame *view, vec3 d)
+static raster_hit hit_plane(const primitive *p, vec3 eye, vec3 d)
 {
     const vec3 n = vec3_make(p->rotation.row[0].y, p->rotation.row[1].y, p->rotation.row[2].y);
     const double along = vec3_dot(n, d);
-    return (raster_hit){.t = vec3_dot(n, vec3_sub(p->origin, view->eye)) / along, .leaving = along > 0.0};
+    return (raster_hit){.t = vec3_dot(n, vec3_sub(p->origin, eye)) / along, .leaving = along > 0.0};
 }
 
 /* Barycentric weights of the ray's hit: equal to interpolating u / w, v / w and 1 / w over the image (Heckbert and
  * Moreton, "Interpolation for polygon texture mapping and shading", 1991), but computed from the ray because corners
  * may be behind the camera (Moller and Trumbore, JGT 2(1), 1997). A ray that misses because corners were rounded takes
  * the nearest edge. */
-static raster_hit hit_triangle(const rasterised_part *p, const screen_triangle *s, const camera_frame *view, vec3 d)
+static raster_hit hit_triangle(const rasterised_part *p, const screen_triangle *s, vec3 eye, vec3 d)
 {
     const mesh_triangle tri = p->at.triangles->triangles[s->triangle];
-    const vec3 o = vec3_sub(instance_set_origin(&p->at, s->copy), view->eye);
+    const vec3 o = vec3_sub(instance_set_origin(&p->at, s->copy), eye);
     const vec3 a = zbuffer_vertex(&p->at, o, tri.corner[0]);
     const vec3 ab = vec3_sub(zbuffer_vertex(&p->at, o, tri.corner[1]), a),
                ac = vec3_sub(zbuffer_vertex(&p->at, o, tri.corner[2]), a);
@@ -89,11 +91,20 @@ static raster_hit hit_triangle(const rasterised_part *p, const screen_triangle *
     return (raster_hit){vec3_dot(at, d), u, v, size < 0.0};
 }
 
-/* The distance from the plane of inverse depths, if neither weights nor sides are needed. */
+/* The origin of a ray's undeflected view. */
+static vec3 eye_of(const tracer *t, int i)
+{
+    const zbuffer *z = t->target.state;
+    const raster_work *w = t->own;
+    return z->frame_plan->view.parallel ? vec3_make(w->ex[i], w->ey[i], w->ez[i]) : z->frame_plan->view.eye;
+}
+
+/* The distance from the plane of nearness, if neither weights nor sides are needed. */
 static raster_hit hit_depth(const zbuffer *z, const screen_triangle *s, int x, int y, vec3 d)
 {
     const double near = lesser(greater(s->a * (x + 0.5) + (s->b * (y + 0.5) + s->c), s->least), s->most);
-    return (raster_hit){.t = 1.0 / (near * vec3_dot(z->frame_plan->view.forward, d))};
+    const camera_frame *view = &z->frame_plan->view;
+    return (raster_hit){.t = view->parallel ? -near : 1.0 / (near * vec3_dot(view->forward, d))};
 }
 
 static void record_miss(tracer *t, int i)
@@ -103,11 +114,11 @@ static void record_miss(tracer *t, int i)
     t->batch.hits.surface[i] = 0;
 }
 
-static raster_hit hit_part(const zbuffer *z, const screen_triangle *s, vec3 d)
+static raster_hit hit_part(const zbuffer *z, const screen_triangle *s, vec3 eye, vec3 d)
 {
     const rasterised_part *p = &z->parts[s->part];
-    return p->plane ? hit_plane(&z->frame_plan->geometry->primitives[p->primitive], &z->frame_plan->view, d)
-                    : hit_triangle(p, s, &z->frame_plan->view, d);
+    return p->plane ? hit_plane(&z->frame_plan->geometry->primitives[p->primitive], eye, d)
+                    : hit_triangle(p, s, eye, d);
 }
 
 static void record_hit(tracer *t, int i, const screen_triangle *s, raster_hit m)
@@ -138,15 +149,19 @@ static void undeflected_views(tracer *t, int count)
         u[i] = (w->x[i] + 0.5) * across - view->half_width;
         v[i] = view->half_height - (w->y[i] + 0.5) * down;
     }
-    t->shade->camera(view, count, u, v, w->vx, w->vy, w->vz);
+    if (view->parallel)
+        camera_chief_rays(t, count, u, v, (camera_rays_out){w->ex, w->ey, w->ez, w->vx, w->vy, w->vz});
+    else
+        t->camera->directions(view, count, u, v, w->vx, w->vy, w->vz);
 }
 
-/* The view directions of camera rays are their own. */
+/* The views of camera rays are their own. */
 static void first_views(tracer *t, const ray_batch *rays)
 {
     const size_t bytes = (size_t)rays->count * sizeof(double);
     raster_work *w = t->own;
     memcpy(w->vx, rays->dx, bytes), memcpy(w->vy, rays->dy, bytes), memcpy(w->vz, rays->dz, bytes);
+    memcpy(w->ex, rays->ox, bytes), memcpy(w->ey, rays->oy, bytes), memcpy(w->ez, rays->oz, bytes);
 }
 
 /* Attenuates a ray by the one medium on the straight segment to a layer. */
@@ -170,7 +185,8 @@ static inline raster_hit hit_layer(const tracer *t, int i, const rasterised_laye
     const raster_work *w = t->own;
     const screen_triangle *s = &z->triangles[l->number - 1];
     const vec3 view = vec3_make(w->vx[i], w->vy[i], w->vz[i]);
-    raster_hit m = l->ends || !z->parts[s->part].own ? hit_part(z, s, view) : hit_depth(z, s, w->x[i], w->y[i], view);
+    raster_hit m = l->ends || !z->parts[s->part].own ? hit_part(z, s, eye_of(t, i), view)
+                                                     : hit_depth(z, s, w->x[i], w->y[i], view);
     m.leaving = l->ends ? m.leaving : l->leaving;
     return m;
 }
@@ -184,8 +200,8 @@ static void record_layer(tracer *t, ray_queue *q, int at, int i, uint32_t place)
     const plan *p = z->frame_plan;
     const rasterised_layer *l = layer_at(z, place);
     raster_work *w = t->own;
-    const vec3 view = vec3_make(w->vx[i], w->vy[i], w->vz[i]);
-    double passed = vec3_dot(vec3_sub(vec3_make(q->ox[at], q->oy[at], q->oz[at]), p->view.eye), view);
+    const vec3 view = vec3_make(w->vx[i], w->vy[i], w->vz[i]), eye = eye_of(t, i);
+    double passed = vec3_dot(vec3_sub(vec3_make(q->ox[at], q->oy[at], q->oz[at]), eye), view);
     w->straight[i] = false;
     for (; l->passed; l = layer_at(z, ++place)) {
         const double end = greater(hit_layer(t, i, l).t, passed);
@@ -200,7 +216,7 @@ static void record_layer(tracer *t, ray_queue *q, int at, int i, uint32_t place)
         return;
     }
     raster_hit m = hit_layer(t, i, l);
-    const vec3 point = vec3_add(p->view.eye, vec3_scale(view, m.t));
+    const vec3 point = vec3_add(eye, vec3_scale(view, m.t));
     const double length = greater(m.t - passed, 0.0);
     const screen_triangle *s = &z->triangles[l->number - 1];
     w->straight[i] = s->curved;
@@ -241,7 +257,7 @@ static void find_hits(tracer *t, ray_queue *q, int first, int depth, const ray_b
         w->straight[i] = false;
         if (seen[i]) {
             const screen_triangle *s = &z->triangles[seen[i] - 1];
-            record_hit(t, i, s, hit_part(z, s, vec3_make(w->vx[i], w->vy[i], w->vz[i])));
+            record_hit(t, i, s, hit_part(z, s, eye_of(t, i), vec3_make(w->vx[i], w->vy[i], w->vz[i])));
         } else {
             record_miss(t, i);
         }

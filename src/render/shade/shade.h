@@ -79,9 +79,6 @@ typedef struct shade_kernels {
      * weight 0. */
     void (*append)(const group *g, const double *dx, const double *dy, const double *dz, const double *weight,
                    const uint64_t *inside, ray_queue *q);
-    /* Directions of camera rays through the image points (u, v), in units of the half height. */
-    void (*camera)(const camera_frame *view, int count, const double *u, const double *v, double *dx, double *dy,
-                   double *dz);
     /* Transmittances of optical depths, in place: 1 for 0. */
     void (*absorb)(double *depth, int count);
     texture_tinter *tint; /* a texture's colours */

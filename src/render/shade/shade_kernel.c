@@ -343,19 +343,6 @@ static void append(const group *g, const double *dx, const double *dy, const dou
     q->count += g->count;
 }
 
-static void camera_directions(const camera_frame *view, int count, const double *u, const double *v,
-                              double *restrict dx, double *restrict dy, double *restrict dz)
-{
-    const camera_frame f = *view;
-    /* VECTORISE */
-    for (int i = 0; i < count; i++) {
-        const vec3 d = camera_toward(&f, u[i], v[i]);
-        dx[i] = d.x;
-        dy[i] = d.y;
-        dz[i] = d.z;
-    }
-}
-
 static void absorb(double *restrict depth, int count)
 {
     /* VECTORISE */
@@ -363,17 +350,6 @@ static void absorb(double *restrict depth, int count)
         depth[i] = blend(mask_less(0.0, depth[i]), absorption_left(depth[i]), 1.0);
 }
 
-const shade_kernels KERNEL(shade_kernels) = {color,
-                                             direct,
-                                             spot,
-                                             fresnel_branches,
-                                             constant_branches,
-                                             straight_branches,
-                                             cut,
-                                             own_light,
-                                             cut_light,
-                                             arrived,
-                                             append,
-                                             camera_directions,
-                                             absorb,
-                                             KERNEL(texture_tint)};
+const shade_kernels KERNEL(shade_kernels) = {
+    color,     direct,  spot,   fresnel_branches, constant_branches,   straight_branches, cut, own_light,
+    cut_light, arrived, append, absorb,           KERNEL(texture_tint)};

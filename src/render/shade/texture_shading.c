@@ -3,11 +3,12 @@
 
 #include "geometry/primitives/primitive.h"
 
-/* Width of a pixel at the point, across the ray: camera rays spread by the pixel's angle. For deeper rays the path from
- * the camera is treated as straight, which ignores magnification by mirrors and lenses. */
+/* Width of a pixel at the point, across the ray: camera rays spread by the pixel's angle, unless they are parallel. For
+ * deeper rays the path from the camera is treated as straight, which ignores magnification by mirrors and lenses. */
 static double pixel_width(const plan *p, vec3 point)
 {
-    return 2.0 * p->view.half_height / (double)p->render.height * vec3_length(vec3_sub(point, p->view.eye));
+    return 2.0 * p->view.half_height / (double)p->render.height *
+           camera_spread(&p->view, vec3_length(vec3_sub(point, p->view.eye)));
 }
 
 void texture_colors(tracer *t, const primitive *surface)

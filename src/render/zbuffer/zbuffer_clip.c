@@ -42,12 +42,13 @@ void zbuffer_corners(const zbuffer *z, const rasterised_part *p, uint32_t copy, 
 /* Signed distance of a corner from a clip plane, positive inside: the near plane, and the four sides. */
 static double side_of(const zbuffer *z, double nearest, const clip_corner *c, int plane)
 {
+    const double w = zbuffer_divisor(z, c);
     switch (plane) {
     case 0: return c->z - nearest * c->h;
-    case 1: return z->reach_x * c->z + c->x;
-    case 2: return z->reach_x * c->z - c->x;
-    case 3: return z->reach_y * c->z + c->y;
-    default: return z->reach_y * c->z - c->y;
+    case 1: return z->reach_x * w + c->x;
+    case 2: return z->reach_x * w - c->x;
+    case 3: return z->reach_y * w + c->y;
+    default: return z->reach_y * w - c->y;
     }
 }
 
@@ -98,7 +99,8 @@ int zbuffer_clip(const zbuffer *z, const rasterised_part *p, clip_corner polygon
         count = clip_at(z, p->nearest, plane, polygon, count);
     for (int k = 0; k < count; k++) { /* rejects directions across the view, a camera on a corner, and NaN */
         const clip_corner *c = &polygon[k];
-        if (!(c->z > 0.0 && fabs(c->x) <= 1.001 * z->reach_x * c->z && fabs(c->y) <= 1.001 * z->reach_y * c->z))
+        const double w = zbuffer_divisor(z, c);
+        if (!(c->z > 0.0 && w > 0.0 && fabs(c->x) <= 1.001 * z->reach_x * w && fabs(c->y) <= 1.001 * z->reach_y * w))
             return 0;
     }
     return count >= 3 ? count : 0;
@@ -106,7 +108,7 @@ int zbuffer_clip(const zbuffer *z, const rasterised_part *p, clip_corner polygon
 
 void zbuffer_place(const zbuffer *z, const clip_corner *c, double *x, double *y)
 {
-    const double inverse = 1.0 / c->z;
+    const double inverse = 1.0 / zbuffer_divisor(z, c);
     *x = 0.5 * z->width + c->x * inverse * z->units_x;
     *y = 0.5 * z->height - c->y * inverse * z->units_y;
 }

@@ -2,6 +2,7 @@
 #include "render/zbuffer/zbuffer_private.h"
 
 #include "base/lanes.h"
+#include <math.h>
 
 typedef struct window {
     int x0, y0, x1, y1;
@@ -95,7 +96,7 @@ static void draw_square(zbuffer *z, int x, int y, const window *w, zbuffer_squar
     const size_t at = (size_t)y * (size_t)z->across + (size_t)x;
     const int points = (w->x1 - w->x0) * (w->y1 - w->y0);
     for (int k = 0; k < points; k++)
-        square->nearness[k] = -1.0; /* points at infinity (nearness 0) still count as visible */
+        square->nearness[k] = -HUGE_VAL; /* points at infinity still count as visible */
     for (int k = 0; k < points && z->layered; k++)
         square->newest[k] = -1;
     square->count = 0;

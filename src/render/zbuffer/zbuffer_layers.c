@@ -4,6 +4,7 @@
 #include "base/grow.h"
 #include "render/zbuffer/zbuffer_private.h"
 
+#include <math.h>
 #include <stdlib.h>
 #include <string.h>
 
@@ -65,7 +66,7 @@ static bool is_opaque(const zbuffer *z, const rasterised_fragment *f)
 static bool is_in_front(const zbuffer *z, const rasterised_fragment *f, double nearness, uint32_t seen)
 {
     if (!is_opaque(z, f))
-        return f->nearness - nearness > TOGETHER * f->nearness;
+        return f->nearness - nearness > TOGETHER * fabs(f->nearness);
     if (f->nearness != nearness)
         return f->nearness > nearness;
     return z->parts[f->part].at.priority_index > z->parts[z->triangles[seen - 1].part].at.priority_index;
@@ -120,7 +121,7 @@ static int cross(const zbuffer *z, const rasterised_fragment *f, int count, uint
         const uint64_t bit = bit_of(z, &f[n]);
         *inside = z->open_surfaces & bit ? *inside | bit : *inside ^ bit;
         n++;
-    } while (n < count && f[0].nearness - f[n].nearness <= TOGETHER * f[0].nearness);
+    } while (n < count && f[0].nearness - f[n].nearness <= TOGETHER * fabs(f[0].nearness));
     return n;
 }
 

@@ -52,7 +52,7 @@ typedef struct rasterised_part {
 
 typedef struct screen_triangle {
     int32_t x[3], y[3]; /* in steps, ordered so that the area is positive (clockwise on the image) */
-    double a, b, c;     /* 1 / depth at (x, y) of the grid is a x + b y + c, ... */
+    double a, b, c;     /* the nearness at (x, y) of the grid is a x + b y + c, ... */
     double least, most; /* ... clamped to the range of its corners */
     uint32_t triangle, copy;
     uint16_t part;
@@ -73,8 +73,8 @@ struct zbuffer {
     int points;              /* along a pixel's edge: 1 to 8 */
     int side;                /* of a square, in pixels */
     int width, height;       /* of the grid */
-    double units_x, units_y; /* grid units per unit of x / z and y / z */
-    double reach_x, reach_y; /* largest |x| / z and |y| / z */
+    double units_x, units_y; /* grid units per unit of x / z and y / z; of x and y with an orthographic camera */
+    double reach_x, reach_y; /* largest |x| / z and |y| / z, or |x| and |y| */
     int part_count;
     /* highest priority index first, so that of equally near triangles the one with the lower number is drawn; layers
      * last */
@@ -100,6 +100,19 @@ struct zbuffer {
     uint32_t *listed;
     uint32_t *seen; /* by grid point: number of its triangle, plus 1; 0 for none */
 };
+
+/* What a corner's x and y are divided by to get its place in the image: the depth, times h, or h alone. */
+static inline double zbuffer_divisor(const zbuffer *z, const clip_corner *c)
+{
+    return z->frame_plan->view.parallel ? c->h : c->z;
+}
+
+/* The nearness of a point, which is linear in the image over a plane and greater for what is nearer: 1 / depth; with an
+ * orthographic camera -depth. */
+static inline double zbuffer_nearness(const zbuffer *z, const clip_corner *c)
+{
+    return z->frame_plan->view.parallel ? -c->z / c->h : c->h / c->z;
+}
 
 /* zbuffer_cover.c: computes layered and eye_inside. */
 void zbuffer_find_layers(zbuffer *z);

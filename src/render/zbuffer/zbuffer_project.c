@@ -1,4 +1,4 @@
-/* Projection of triangles into the image: corners on the grid, and the plane of inverse depths. */
+/* Projection of triangles into the image: corners on the grid, and the plane of nearness. */
 #include "render/zbuffer/zbuffer_private.h"
 
 #include "base/grow.h"
@@ -6,21 +6,22 @@
 #include <math.h>
 #include <stdlib.h>
 
-/* The plane of inverse depths: 1 / depth of a triangle's plane is linear in the image (Blinn, "Hyperbolic
- * interpolation", 1992): N.r / N.P along the ray r = (x/z, y/z, 1). False if the plane is seen edge-on. corners: the
- * triangle's own. */
+/* The plane of nearness: 1 / depth of a triangle's plane is linear in the image (Blinn, "Hyperbolic interpolation",
+ * 1992): N.r / N.P along the ray r = (x/z, y/z, 1); with parallel rays so is the depth, (N.P - N.(x, y, 0)) / N.z.
+ * False if the plane is seen edge-on. corners: the triangle's own. */
 static bool depth_plane(const zbuffer *z, const rasterised_part *p, const clip_corner *corners, screen_triangle *t)
 {
     const vec3 a = vec3_make(corners[0].x, corners[0].y, corners[0].z),
                b = vec3_make(corners[1].x, corners[1].y, corners[1].z);
     const vec3 c = vec3_make(corners[2].x, corners[2].y, corners[2].z);
     const vec3 n = p->plane ? vec3_cross(b, c) : vec3_cross(vec3_sub(b, a), vec3_sub(c, a));
-    const double k = vec3_dot(n, a);
+    const bool parallel = z->frame_plan->view.parallel;
+    const double distance = vec3_dot(n, a), k = parallel ? n.z : distance, middle = parallel ? -distance : n.z;
     if (k == 0.0)
         return false;
     t->a = n.x / z->units_x / k;
     t->b = -n.y / z->units_y / k;
-    t->c = (n.z - 0.5 * z->width * n.x / z->units_x + 0.5 * z->height * n.y / z->units_y) / k;
+    t->c = (middle - 0.5 * z->width * n.x / z->units_x + 0.5 * z->height * n.y / z->units_y) / k;
     return isfinite(t->a) && isfinite(t->b) && isfinite(t->c);
 }
 
@@ -68,8 +69,9 @@ static bool is_off_screen(const zbuffer *z, const clip_corner *c)
     const double wide = 0.5 * z->width / z->units_x, high = 0.5 * z->height / z->units_y;
     bool left = true, right = true, below = true, above = true, behind = true;
     for (int k = 0; k < 3; k++) {
-        left &= c[k].x<-wide * c[k].z, right &= c[k].x> wide * c[k].z;
-        below &= c[k].y<-high * c[k].z, above &= c[k].y> high * c[k].z;
+        const double w = zbuffer_divisor(z, &c[k]);
+        left &= c[k].x<-wide * w, right &= c[k].x> wide * w;
+        below &= c[k].y<-high * w, above &= c[k].y> high * w;
         behind &= c[k].z < 0.0;
     }
     return left || right || below || above || behind;
@@ -98,12 +100,13 @@ static void project_triangle(const zbuffer *z, chunk *c, const rasterised_part *
         return;
     t.curved = z->layered && is_curved(z, p, triangle);
     const int count = zbuffer_clip(z, p, polygon);
-    t.least = HUGE_VAL, t.most = 0.0;
+    t.least = HUGE_VAL, t.most = -HUGE_VAL;
     for (int k = 0; k < count; k++) {
         double across, down;
         zbuffer_place(z, &polygon[k], &across, &down);
         x[k] = (int32_t)floor(across * SUBPIXEL + 0.5), y[k] = (int32_t)floor(down * SUBPIXEL + 0.5);
-        t.least = lesser(t.least, polygon[k].h / polygon[k].z), t.most = greater(t.most, polygon[k].h / polygon[k].z);
+        const double near = zbuffer_nearness(z, &polygon[k]);
+        t.least = lesser(t.least, near), t.most = greater(t.most, near);
     }
     for (int k = 1; k + 1 < count && c->made_count != SIZE_MAX; k++) {
         screen_triangle piece = t;

@@ -42,9 +42,30 @@ camera_frame camera_frame_level(const scene *s)
     f.up = vec3_cross(f.forward, f.right);
     double sine, cosine;
     elementary_sincos_deg(0.5 * c->fov_deg, &sine, &cosine);
-    f.half_height = sine / cosine;
+    f.parallel = c->projection == PROJECTION_ORTHOGRAPHIC;
+    f.half_height = f.parallel ? 0.5 * c->view_height : sine / cosine;
+    f.lens_radius = 0.5 * c->aperture;
+    f.focus = c->focus > 0.0 ? c->focus : 1.0; /* of a camera that was never in a table: any, for a pinhole */
     f.half_width = f.half_height * ((double)scene_settings(s)->width / (double)scene_settings(s)->height);
     return f;
+}
+
+image_tone camera_tone(const scene *s)
+{
+    const struct camera *c = scene_camera(s);
+    if (integrator_traits_of(scene_settings(s))->layers)
+        return (image_tone){.curve = TONE_NONE};
+    return (image_tone){.exposure = c->exposure, .curve = c->tone, .white = c->white};
+}
+
+bool camera_lens_is_sampled(const scene *s)
+{
+    const render_settings *r = scene_settings(s);
+    const integrator_traits *traits = integrator_traits_of(r);
+    const int64_t rays = traits->by_chance                  ? r->paths
+                         : r->spectrum == SPECTRUM_SPECTRAL ? r->samples * r->wavelengths
+                                                            : r->samples;
+    return scene_camera(s)->aperture > 0.0 && rays > 1 && !traits->drawn && !traits->layers;
 }
 
 camera_frame camera_frame_of(const scene *s)

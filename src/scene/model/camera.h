@@ -1,20 +1,41 @@
-/* The camera as vectors: its position, directions and field of view. Pure. */
+/* The camera as vectors: its position, directions, field of view and lens; and its rays. Pure.
+ *
+ * A perspective camera's rays pass through one point, the eye; an orthographic one's are parallel and start in the
+ * plane through the eye across the viewing direction: what is behind that plane is not seen. With a thin lens in that
+ * plane (Hecht, Optics, 5.2; Potmesil and Chakravarty, "A lens and aperture camera model for synthetic image
+ * generation", SIGGRAPH 1981) the rays of one image point start all over the lens and meet again in the plane in focus,
+ * where the chief ray, through the lens's centre, meets it. The lens of an orthographic camera is telecentric: each
+ * image point has its own centre. A point at depth z is blurred to a disc whose diameter, measured in the plane in focus
+ * at depth f, is A |z - f| / z in perspective, and A |z - f| / f with parallel chief rays, for an aperture A. */
 #pragma once
 
 #include "base/vec3.h"
+#include "image/tone.h"
 #include "scene/model/open.h"
 #include "scene/model/render_settings.h"
+#include <stdbool.h>
 
-/* Image plane coordinates, see camera_toward: u is in (-half_width, half_width), v likewise. */
+/* Image plane coordinates: u is in (-half_width, half_width), v likewise. In perspective they are slopes, lengths at
+ * depth 1; of an orthographic camera they are lengths at any depth. */
 typedef struct camera_frame {
     vec3 eye, forward, right, up;
     double half_width, half_height;
+    int64_t parallel;   /* 1: orthographic */
+    double lens_radius; /* scene units; 0: a pinhole */
+    double focus;       /* depth of the plane in focus */
 } camera_frame;
 
 camera_frame camera_frame_of(const scene *s);
 
 /* The same without the camera's roll: right is horizontal. */
 camera_frame camera_frame_level(const scene *s);
+
+/* How images of the scene are shown; the layers of integrator aov are no light, and are shown as they are. */
+image_tone camera_tone(const scene *s);
+
+/* Whether rays pass through all of the lens: it has a size, and a pixel several rays. The depth buffer, layers of first
+ * hits and single rays have chief rays only. */
+bool camera_lens_is_sampled(const scene *s);
 
 /* Conversion of pixels from the image's upper left corner to u and v: the size of one pixel. */
 typedef struct camera_pixel {
@@ -36,15 +57,36 @@ static inline double camera_v(const camera_frame *f, camera_pixel p, double y)
     return f->half_height - y * p.down;
 }
 
-/* The unit direction of a camera ray; the only place where it is computed. */
+/* The unit direction of a camera ray with the slopes u and v; the only place where it is computed. */
 static inline vec3 camera_toward(const camera_frame *f, double u, double v)
 {
     return vec3_normalize(vec3_add(f->forward, vec3_add(vec3_scale(f->right, u), vec3_scale(f->up, v))));
 }
 
-/* The same through a point of the image, in pixels from its upper left corner; only width and height of r are used. */
-static inline vec3 camera_direction(const camera_frame *f, const render_settings *r, double x, double y)
+typedef struct camera_ray {
+    vec3 origin, direction; /* a unit vector */
+} camera_ray;
+
+/* The ray of the image point (u, v) through the point (x, y) of the lens, scene units from its centre. The chief ray
+ * meets the plane in focus at (focus u, focus v), or with parallel chief rays at (u, v); so does this one. */
+static inline camera_ray camera_ray_through(const camera_frame *f, double u, double v, double x, double y)
+{
+    const double slope = f->parallel ? 0.0 : 1.0, shift = 1.0 - slope;
+    const vec3 across = vec3_scale(f->right, shift * u + x), upward = vec3_scale(f->up, shift * v + y);
+    return (camera_ray){vec3_add(f->eye, vec3_add(across, upward)),
+                        camera_toward(f, slope * u - x / f->focus, slope * v - y / f->focus)};
+}
+
+/* The chief ray through a point of the image, in pixels from its upper left corner; only width and height of r are
+ * used. */
+static inline camera_ray camera_chief_ray(const camera_frame *f, const render_settings *r, double x, double y)
 {
     const camera_pixel p = camera_pixel_of(f, r);
-    return camera_toward(f, camera_u(f, p, x), camera_v(f, p, y));
+    return camera_ray_through(f, camera_u(f, p, x), camera_v(f, p, y), 0.0, 0.0);
+}
+
+/* The length in the scene of one unit of u and v at a depth in front of the camera. */
+static inline double camera_spread(const camera_frame *f, double depth)
+{
+    return f->parallel ? 1.0 : depth;
 }

@@ -104,6 +104,13 @@ static void turn(camera_move *m, scene *s)
     aim(s, direction, m->pivot.at);
 }
 
+/* The size of an orthographic camera's image does not depend on its distance: its height changes instead. */
+static void zoom_parallel(const camera_move *m, scene *s)
+{
+    const double height = s->camera.view_height;
+    s->camera.view_height = camera_distance_within(s, m->pivot.at, height, m->zoom * height);
+}
+
 /* Moves along the line to the pivot, whose height above a ground is linear in the distance. */
 static void zoom(const camera_move *m, scene *s)
 {
@@ -182,7 +189,8 @@ static status ball_of(const scene *s, const char *name, double distance, vec3 *c
                : diagnose(why, STATUS_BAD_INPUT, "add a solid with an end", "the scene has nothing to be framed");
 }
 
-/* A ball fits into the narrower half angle a at the distance radius / sin a; tan a is half an image's edge. */
+/* A ball fits into the narrower half angle a at the distance radius / sin a; tan a is half an image's edge. Of an
+ * orthographic camera half the narrower edge is to be the ball's radius. */
 static status frame(camera_move *m, scene *s, diagnostic *why)
 {
     const camera_frame f = camera_frame_of(s);
@@ -191,7 +199,12 @@ static status frame(camera_move *m, scene *s, diagnostic *why)
     double radius;
     TRY(ball_of(s, m->frame, vec3_length(vec3_sub(m->pivot.at, f.eye)), &centre, &radius, why));
     m->pivot.at = centre;
-    look_at_pivot(m, s, f.forward, margin * radius * sqrt(1.0 + tangent * tangent) / tangent);
+    if (f.parallel) { /* from where it was, unless that is too near */
+        s->camera.view_height = 2.0 * margin * radius * f.half_height / tangent;
+        look_at_pivot(m, s, f.forward, fmax(vec3_length(vec3_sub(centre, f.eye)), 2.0 * margin * radius));
+    } else {
+        look_at_pivot(m, s, f.forward, margin * radius * sqrt(1.0 + tangent * tangent) / tangent);
+    }
     return STATUS_OK;
 }
 
@@ -215,6 +228,6 @@ status camera_move_apply(camera_move *m, scene *s, diagnostic *why)
     if (is_any(m->turn_deg, 2))
         turn(m, s);
     if (m->zoom > 0.0)
-        zoom(m, s);
+        (s->camera.projection == PROJECTION_ORTHOGRAPHIC ? zoom_parallel : zoom)(m, s);
     return is_any(m->step, 3) ? step(m, s, why) : STATUS_OK;
 }

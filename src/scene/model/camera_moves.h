@@ -18,7 +18,7 @@ typedef struct camera_move {
     double orbit_deg[2]; /* the camera moves to the image's left and turns to the right; and up. Without roll: yaw and
                             pitch */
     double turn_deg[2];  /* to the image's right and up */
-    double zoom;         /* factor of the distance from the pivot; 0: none */
+    double zoom;         /* factor of the distance from the pivot, or of camera.view_height; 0: none */
     double step[3];      /* right, up, forward, scene units; the pivot moves as well */
     camera_pivot pivot;  /* of the last move; renewed */
 } camera_move;

@@ -3,6 +3,8 @@
 #include "scene/model/camera.h"
 #include "scene/model/scene.h"
 
+#include <math.h>
+
 bool scene_wins(const solid *winner, const solid *loser)
 {
     return winner != loser && winner->visible &&
@@ -55,10 +57,40 @@ bool scene_apart(const scene *s, const solid *a, const solid *b)
     return are_apart(&one, &two);
 }
 
+/* The maximum of direction . p over a rectangle about the origins of camera rays. */
+static double starts_limit(const camera_frame *view, vec3 direction)
+{
+    const double across = (view->parallel ? view->half_width : 0.0) + view->lens_radius,
+                 upward = (view->parallel ? view->half_height : 0.0) + view->lens_radius;
+    return vec3_dot(direction, view->eye) + across * fabs(vec3_dot(direction, view->right)) +
+           upward * fabs(vec3_dot(direction, view->up));
+}
+
+static bool starts_apart_along(const placed_shape *a, const camera_frame *view, vec3 d)
+{
+    const vec3 back = vec3_scale(d, -1.0);
+    return placed_limit(a, d) <= -starts_limit(view, back) || starts_limit(view, d) <= -placed_limit(a, back);
+}
+
+static bool starts_are_apart(const placed_shape *a, const camera_frame *view)
+{
+    const vec3 between = vec3_sub(view->eye, a->shape.position);
+    bool apart = starts_apart_along(a, view, view->forward) || starts_apart_along(a, view, view->right) ||
+                 starts_apart_along(a, view, view->up);
+    for (int k = 0; k < 3 && !apart; k++)
+        apart = starts_apart_along(a, view, vec3_make(k == 0, k == 1, k == 2)) ||
+                starts_apart_along(a, view, placed_axis(&a->turn, k));
+    return apart || (vec3_length(between) > 0.0 && starts_apart_along(a, view, vec3_normalize(between)));
+}
+
 bool scene_apart_from_eye(const scene *s, const solid *owner)
 {
-    const solid_shape point = shape_point(s->camera.position);
-    const placed_shape one = placed(s, owner), eye = shape_placed(&point);
+    const camera_frame view = camera_frame_of(s);
+    const placed_shape one = placed(s, owner);
+    if (view.parallel || view.lens_radius > 0.0)
+        return starts_are_apart(&one, &view);
+    const solid_shape point = shape_point(view.eye);
+    const placed_shape eye = shape_placed(&point);
     return are_apart(&one, &eye);
 }
 

@@ -20,7 +20,8 @@ bool scene_wins(const solid *winner, const solid *loser);
  * between them; disjoint solids at an angle may go undetected. */
 bool scene_apart(const scene *s, const solid *a, const solid *b);
 
-/* Whether the camera is known to be outside the solid, by the same extents. */
+/* Whether all origins of camera rays are known to be outside the solid, by the same extents: they fill an orthographic
+ * camera's image, or a lens. */
 bool scene_apart_from_eye(const scene *s, const solid *owner);
 
 /* Whether the solid is entirely behind the camera, so that at most its reflection is visible. */

@@ -1,4 +1,5 @@
 #include "scene/model/hints.h"
+#include "scene/model/camera.h"
 #include "scene/model/cover.h"
 #include "scene/model/face_materials.h"
 #include "scene/model/medium.h"
@@ -168,6 +169,36 @@ static void hint_at_lights(const scene *s, const note_taker *taker)
     }
 }
 
+static void hint_at_lens(const scene *s, const note_taker *taker)
+{
+    const integrator_traits *traits = integrator_traits_of(&s->render);
+    if (s->camera.aperture == 0.0 || camera_lens_is_sampled(s))
+        return;
+    note_give(taker, "camera", "aperture",
+              traits->by_chance                 ? "set render.paths to 64"
+              : traits->drawn || traits->layers ? "set render.integrator to whitted and render.samples to 16"
+                                                : "set render.samples to 16",
+              "nothing is blurred: each pixel has only rays through the centre of the lens");
+}
+
+static void hint_at_analyser(const scene *s, const note_taker *taker)
+{
+    if (s->camera.analyser != ANALYSER_NONE && !s->render.polarisation)
+        note_give(taker, "camera", "analyser", "set render.polarisation to on",
+                  "light is traced without its polarisation: the analyser has no effect");
+}
+
+/* The film does not depend on them, so that scene/model/inert has no rules for them. */
+static void hint_at_tone(const scene *s, const note_taker *taker)
+{
+    const camera *c = &s->camera;
+    if (integrator_traits_of(&s->render)->layers && (c->exposure != 0.0 || c->tone != TONE_NONE))
+        note_give(taker, "camera", c->exposure != 0.0 ? "exposure" : "tone", "set render.integrator to whitted",
+                  "layers are no light: their images are shown as they are");
+    else if (c->white != 4.0 && c->tone != TONE_REINHARD)
+        note_give(taker, "camera", "white", "set camera.tone to reinhard", "this tone curve has no white point");
+}
+
 void scene_range_hints(const scene *s, const note_taker *taker)
 {
     index_law law = surrounding_index_law(&s->background);
@@ -195,6 +226,9 @@ void scene_hints(const scene *s, const note_taker *taker)
         note_give(taker, "lights", NULL,
                   "add lights:", "no lights: opaque surfaces show only ambient and emitted light");
     hint_at_lights(s, taker);
+    hint_at_lens(s, taker);
+    hint_at_analyser(s, taker);
+    hint_at_tone(s, taker);
     for (size_t i = 0; i < s->solid_count; i++) {
         if (s->solids[i].visible) {
             hint_at_solid(s, &s->solids[i], taker);

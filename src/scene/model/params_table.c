@@ -35,6 +35,9 @@ static const char *const motion_words[] = {"euler", "verlet", "implicit", NULL};
 static const char *const filter_words[] = {"nearest", "bilinear", "trilinear", NULL};
 static const char *const wrap_words[] = {"repeat", "mirror", "clamp", NULL};
 static const char *const space_words[] = {"srgb", "linear", NULL};
+static const char *const projection_words[] = {"perspective", "orthographic", NULL};
+static const char *const analyser_words[] = {"none", "linear", "circular_left", "circular_right", NULL};
+static const char *const tone_words[] = {"none", "reinhard", "aces", NULL};
 static const char *const light_words[] = {"point", "cone", "soft_cone", NULL};
 static const char *const beam_words[] = {"pencil", "fan", "sheet", "bundle", NULL};
 static const char *const background_words[] = {"uniform", "gradient", "picture", "rain", NULL};
@@ -54,6 +57,8 @@ enum { ON_SLIME = 1 << MESH_SLIME, ON_ALL = 0 };
 #define OF(type, field) ON_ALL, .offset = offsetof(type, field)
 /* Performance only: see param.performance_only. */
 #define PERFORMANCE(field) OF(render_settings, field), .performance_only = true
+/* The film does not depend on how it is shown. */
+#define SHOWN(field) OF(camera, field), .performance_only = true
 /* For random paths only: see param.by_chance. */
 #define PATHS(field) OF(render_settings, field), .by_chance = true
 /* For slimes only. */
@@ -208,7 +213,30 @@ static const param table[] = {
     REAL(PARAM_CAMERA, camera, roll_deg, "deg", -360, 360, "0",
          "rotation about the viewing direction: positive tilts the camera to its right and turns the image "
          "counter-clockwise"),
-    POSITIVE(PARAM_CAMERA, camera, fov_deg, "deg", 179, "45", "vertical field of view"),
+    CHOICE(
+        PARAM_CAMERA, camera, projection, projection_words, "perspective",
+        "perspective: rays from one point; orthographic: parallel rays, so that sizes do not depend on the distance"),
+    POSITIVE(PARAM_CAMERA, camera, fov_deg, "deg", 179, "45", "vertical field of view of a perspective camera"),
+    POSITIVE(PARAM_CAMERA, camera, view_height, "scene units", FAR, "5",
+             "height of an orthographic camera's image in the scene"),
+    REAL(PARAM_CAMERA, camera, aperture, "scene units", 0, FAR, "0",
+         "diameter of a thin lens, which blurs what is out of focus and needs several rays per pixel; 0: a pinhole"),
+    POSITIVE(PARAM_CAMERA, camera, focus, "scene units", FAR, "6",
+             "distance of the plane in focus from the camera, along the viewing direction"),
+    CHOICE(
+        PARAM_CAMERA, camera, analyser, analyser_words, "none",
+        "ideal polarising filter before the eye, with render.polarisation: none, linear, or for left- or right-handed "
+        "circular light"),
+    REAL(PARAM_CAMERA, camera, analyser_angle_deg, "deg", -360, 360, "0",
+         "axis of a linear analyser: 0 transmits a field along the image's width, 90 along its height"),
+    ROW(PARAM_CAMERA, "exposure", PARAM_REAL, "stops", -64, 64, false, "0",
+        "images with 8 bits show the radiance times 2^exposure; films, PFM and 16-bit images stay as they are", NULL,
+        SHOWN(exposure)),
+    ROW(PARAM_CAMERA, "tone", PARAM_CHOICE, "", 0, 0, false, "none",
+        "tone curve of images with 8 bits: none, Reinhard et al. 2002 (equation 4), or Narkowicz's fit of ACES",
+        tone_words, SHOWN(tone)),
+    ROW(PARAM_CAMERA, "white", PARAM_REAL, "", 0, 1e6, true, "4",
+        "tone curve reinhard: the least luminance, after the exposure, that is white", NULL, SHOWN(white)),
 
     CHOICE(PARAM_BACKGROUND, background, kind, background_words, "uniform",
            "one colour, a vertical gradient, an equirectangular image, or a gradient with sunlit rain in front of it: "

@@ -11,6 +11,13 @@ typedef enum background_kind {
     BACKGROUND_IMAGE,
     BACKGROUND_RAIN
 } background_kind;
+typedef enum projection_rule { PROJECTION_PERSPECTIVE, PROJECTION_ORTHOGRAPHIC } projection_rule;
+typedef enum analyser_kind {
+    ANALYSER_NONE,
+    ANALYSER_LINEAR,
+    ANALYSER_CIRCULAR_LEFT,
+    ANALYSER_CIRCULAR_RIGHT
+} analyser_kind;
 /* Maximum value of a background image: below the film's limit, and the range of half floats. */
 #define SCENE_SKY_MAX 65536.0F
 
@@ -21,7 +28,16 @@ typedef struct camera {
     double yaw_deg, pitch_deg; /* used if not aimed */
     int64_t aimed;             /* 1: aimed at target; 0: along yaw and pitch. Set by whichever was written last */
     double roll_deg;           /* about the viewing direction, right side down: the image turns counter-clockwise */
-    double fov_deg;            /* vertical */
+    int64_t projection;        /* projection_rule */
+    double fov_deg;            /* vertical; perspective */
+    double view_height;        /* of the image, scene units; orthographic */
+    double aperture;           /* diameter of a thin lens, scene units; 0: a pinhole */
+    double focus;              /* distance of the plane in focus along the viewing direction, scene units */
+    int64_t analyser;          /* analyser_kind: an ideal filter before the eye, with render.polarisation */
+    double analyser_angle_deg; /* of a linear one's axis: from the image's right, towards up */
+    double exposure;           /* stops, of images with 8 bits */
+    int64_t tone;              /* tone_curve, likewise */
+    double white;              /* see image_tone */
 } camera;
 
 typedef struct background {

@@ -219,9 +219,10 @@ static json_t *camera_json(const scene *s)
     const camera_frame f = camera_frame_of(s);
     const bool aimed = scene_camera(s)->aimed;
     return json_pack(
-        "{s:o, s:o, s:o, s:o, s:o, s:o, s:o, s:o}", "eye", vector_json(f.eye), "forward", vector_json(f.forward),
+        "{s:o, s:o, s:o, s:o, s:o, s:o, s:b, s:o, s:o}", "eye", vector_json(f.eye), "forward", vector_json(f.forward),
         "right", vector_json(f.right), "up", vector_json(f.up), "half_width", json_of_real(f.half_width), "half_height",
-        json_of_real(f.half_height), "target", aimed ? vector_json(scene_camera(s)->target) : json_null(), "distance",
+        json_of_real(f.half_height), "parallel", (int)f.parallel, "target",
+        aimed ? vector_json(scene_camera(s)->target) : json_null(), "distance",
         json_of_real(aimed ? vec3_length(vec3_sub(scene_camera(s)->target, scene_camera(s)->position)) : NAN));
 }
 

@@ -4,6 +4,7 @@
 #include "measure/clock.h"
 #include "report/report.h"
 #include "scene/model/scene.h"
+#include "scene/model/camera.h"
 
 /* How often a render checks for an interruption; the target time of a live frame, for about 20 frames a second. */
 static const double poll_s = 0.002, live_frame_s = 0.045;
@@ -54,6 +55,7 @@ static status describe(render_worker *p, const job_account *account, int pass, b
     const film *shown = account->result->img;
     image *linear = NULL;
     TRY(film_image(shown, &linear, why));
+    linear->tone = camera_tone(p->snapshot);
     const bool final = !moving && pass == p->plan.count - 1;
     *out = (shared_image){.generation = p->snapshot_generation,
                           .pass = pass + 1,

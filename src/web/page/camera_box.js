@@ -158,8 +158,8 @@ function createFields(root, lab) {
     'camera.yaw_deg',
     'camera.pitch_deg',
     'camera.roll_deg',
-    'camera.fov_deg',
   ];
+  const sizeOf = () => (lab.state?.camera?.parallel ? 'camera.view_height' : 'camera.fov_deg');
 
   const send = (path, value) =>
     lab.set({ [path]: value }, gesture('camera')).catch((error) => {
@@ -196,14 +196,17 @@ function createFields(root, lab) {
 
   function plainField(row) {
     const label =
-      { yaw_deg: 'Yaw', pitch_deg: 'Pitch', roll_deg: 'Roll', fov_deg: 'Field of view' }[row.name] || row.name;
-    const part = number({ label, value: row.value, unit: '°', onchange: (x) => send(row.path, x) });
+      { yaw_deg: 'Yaw', pitch_deg: 'Pitch', roll_deg: 'Roll', fov_deg: 'Field of view', view_height: 'View height' }[
+        row.name
+      ] || row.name;
+    const unit = row.unit === 'deg' ? '°' : '';
+    const part = number({ label, value: row.value, unit, onchange: (x) => send(row.path, x) });
     part.node.classList.add('camera-field');
     return { node: part.node, set: (value) => part.set(short(value)) };
   }
 
   function update() {
-    const rows = paths.map((path) => lab.param(path)).filter(Boolean);
+    const rows = [...paths, sizeOf()].map((path) => lab.param(path)).filter(Boolean);
     const now = rows.map((row) => row.path).join();
     if (now !== kinds) {
       kinds = now;

@@ -7,6 +7,7 @@
  *   createWheelZoom(lab)                a tool's function wheel(point, event, pixels): scales the distance
  *   goView(lab, what)                   'back', 'forward', 'home' or 'keep' */
 
+import { spreadAt } from './ray_vectors.js';
 import { gestures } from './ui.js';
 
 const WHEEL = 0.0012; /* logarithm of the distance per CSS pixel of the wheel: 12 % per notch */
@@ -29,7 +30,8 @@ export const moveCamera = (lab, body, name) =>
 
 export function unitsPerPixel(lab, depth) {
   const { view } = lab;
-  return (2 * lab.state.camera.half_width * depth) / (view.width * view.scale);
+  const { camera } = lab.state;
+  return (2 * camera.half_width * spreadAt(camera, depth)) / (view.width * view.scale);
 }
 
 export function panCamera(lab, dx, dy, name) {

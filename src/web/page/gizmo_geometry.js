@@ -26,13 +26,16 @@ function armAt(lab, place) {
   return unitsPerPixel(lab, Math.max(1e-9, dot(minus(place, camera.eye), camera.forward))) * armPixels(lab);
 }
 
-/* The ray of the camera through an image point. */
+/* The ray of the camera through an image point: its origin and direction. */
 function rayThrough(lab, { x, y }) {
   const { camera } = lab.state;
   const { width, height } = lab.view;
   const across = times(camera.right, ((2 * x) / width - 1) * camera.half_width);
   const upward = times(camera.up, (1 - (2 * y) / height) * camera.half_height);
-  return unit(add(camera.forward, add(across, upward)));
+  const aside = add(across, upward);
+  return camera.parallel
+    ? { eye: add(camera.eye, aside), ray: camera.forward }
+    : { eye: camera.eye, ray: unit(add(camera.forward, aside)) };
 }
 
 /* In the middle of the quarter of the ring that is nearest to the eye. */
@@ -73,17 +76,17 @@ export function handlesOf(lab, place, mode) {
 
 /* The point of the axis that is nearest to the ray of the pointer: the closest points of two lines. */
 export function travelAlong(lab, place, axis, point) {
-  const ray = rayThrough(lab, point);
+  const { eye, ray } = rayThrough(lab, point);
   const along = directions[axis];
-  const from = minus(place, lab.state.camera.eye);
+  const from = minus(place, eye);
   const cosine = dot(ray, along);
   return (cosine * dot(ray, from) - dot(along, from)) / (1 - cosine * cosine);
 }
 
 /* Where the ray meets the ring's plane; from its edge, the way across the screen is the way around. */
 export function angleAbout(lab, place, axis, point) {
-  const { eye, right, up } = lab.state.camera;
-  const ray = rayThrough(lab, point);
+  const { right, up } = lab.state.camera;
+  const { eye, ray } = rayThrough(lab, point);
   const normal = directions[axis];
   const [a, b] = [1, 2].map((next) => directions[(axis + next) % 3]);
   const tilt = dot(ray, normal);

@@ -4,7 +4,7 @@
 
 import { svg } from './ui.js';
 import { hull, solidPoints } from './ray_solids.js';
-import { add } from './ray_vectors.js';
+import { add, spreadAt } from './ray_vectors.js';
 
 const CROSS_PX = 9;
 
@@ -54,7 +54,8 @@ export function createMark(lab, choice) {
     const { centre, radius } = choice.group;
     const seen = centre && view.project(add(place, centre));
     if (!seen || seen.depth <= radius) return [];
-    const r = (radius / seen.depth / (2 * lab.state.camera.half_width)) * view.width;
+    const { camera } = lab.state;
+    const r = (radius / spreadAt(camera, seen.depth) / (2 * camera.half_width)) * view.width;
     return stroked('circle', ' ball', { cx: seen.x, cy: seen.y, r });
   }
 

@@ -6,7 +6,7 @@
 import { createWheelZoom } from './camera_moves.js';
 import { createGizmo } from './object_gizmo.js';
 import { gesture, gestures } from './ui.js';
-import { add, dot, minus, times } from './ray_vectors.js';
+import { add, dot, minus, spreadAt, times } from './ray_vectors.js';
 
 const STILL_PX = 3; /* a shorter drag is a click */
 const KEY_PX = 8; /* CSS pixels per key press */
@@ -47,8 +47,10 @@ export function objectTool(lab, choice, mark) {
 
   /* The world-space offset for dx, dy image pixels at that depth. */
   function offset(dx, dy, depth) {
-    const { right, up: upward, half_width: w, half_height: h } = lab.state.camera;
-    return add(times(right, dx * ((2 * w) / view.width) * depth), times(upward, -dy * ((2 * h) / view.height) * depth));
+    const { camera } = lab.state;
+    const { right, up: upward, half_width: w, half_height: h } = camera;
+    const spread = spreadAt(camera, depth);
+    return add(times(right, dx * ((2 * w) / view.width) * spread), times(upward, -dy * ((2 * h) / view.height) * spread));
   }
 
   async function hitAt(point) {

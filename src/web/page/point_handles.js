@@ -4,6 +4,7 @@
  *   list() -> [{path, name}]: the parameters to move and their names; symbol: an icon; what: a word for screen
  *   readers */
 
+import { spreadAt } from './ray_vectors.js';
 import { digits, element, gesture, gestures, icon } from './ui.js';
 
 const EDGE = 30;
@@ -111,8 +112,9 @@ export function createPointHandles(lab, { list, symbol, what }) {
   function along(point, dx, dy, { deep, seen }) {
     const camera = lab.state.camera;
     const depth = Math.max(dot(minus(point, camera.eye), camera.forward), seen ? 0 : camera.distance || 1);
-    const x = (((dx / view.scale) * camera.half_width * 2) / view.width) * depth;
-    const y = (((-dy / view.scale) * camera.half_height * 2) / view.height) * depth;
+    const spread = spreadAt(camera, depth);
+    const x = (((dx / view.scale) * camera.half_width * 2) / view.width) * spread;
+    const y = (((-dy / view.scale) * camera.half_height * 2) / view.height) * spread;
     return point.map(
       (value, axis) => value + (deep ? y * camera.forward[axis] : x * camera.right[axis] + y * camera.up[axis]),
     );

@@ -1,4 +1,4 @@
-/* Vectors of three numbers. exports: add, minus, times, dot, length, unit, mean */
+/* Vectors of three numbers. exports: add, minus, times, dot, length, unit, mean, spreadAt */
 
 export const add = (a, b) => [a[0] + b[0], a[1] + b[1], a[2] + b[2]];
 export const minus = (a, b) => [a[0] - b[0], a[1] - b[1], a[2] - b[2]];
@@ -12,3 +12,6 @@ export function unit(a) {
   const size = length(a);
   return size > 0 ? times(a, 1 / size) : null;
 }
+
+/* The length in the scene of one unit of the image plane at a depth: of state.camera's half_width, for example. */
+export const spreadAt = (camera, depth) => (camera.parallel ? 1 : depth);

@@ -38,6 +38,7 @@
  *                                            button that removes it
  * lab.on('view', f) reports a change of scale, position or size: elements in overlay must be placed again. */
 
+import { spreadAt } from './ray_vectors.js';
 import { element, svg, write } from './ui.js';
 import { createPlace } from './view_place.js';
 import { createPainting } from './view_painting.js';
@@ -126,9 +127,10 @@ export function createView(root, lab) {
     const along = (axis) => d[0] * axis[0] + d[1] * axis[1] + d[2] * axis[2];
     const depth = along(camera.forward);
     if (!(depth > 1e-9)) return null;
+    const spread = spreadAt(camera, depth);
     return {
-      x: ((along(camera.right) / (depth * camera.half_width) + 1) * view.width) / 2,
-      y: ((1 - along(camera.up) / (depth * camera.half_height)) * view.height) / 2,
+      x: ((along(camera.right) / (spread * camera.half_width) + 1) * view.width) / 2,
+      y: ((1 - along(camera.up) / (spread * camera.half_height)) * view.height) / 2,
       depth,
     };
   }

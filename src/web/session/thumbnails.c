@@ -7,6 +7,7 @@
 #include "measure/clock.h"
 #include "render/core/film.h"
 #include "scene/model/scene.h"
+#include "scene/model/camera.h"
 #include <math.h>
 #include <pthread.h>
 #include <stdatomic.h>
@@ -123,6 +124,8 @@ static status render_image(job *j, scene *s, image **img, diagnostic *why)
     job_account account = {.result = NULL};
     status code = job_render(j, s, NULL, &account, why);
     THEN(code, film_image(account.result->img, img, why));
+    if (code == STATUS_OK)
+        (*img)->tone = camera_tone(s);
     job_account_release(&account);
     return code;
 }

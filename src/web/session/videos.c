@@ -11,6 +11,7 @@
 #include "scene/motion/motion.h"
 #include "web/session/studies.h"
 #include "web/session/task_thread.h"
+#include "scene/model/camera.h"
 #include <errno.h>
 #include <math.h>
 #include <stdlib.h>
@@ -161,6 +162,8 @@ static status render_frame(videos *v, job *j, const scene *s, video *out, diagno
     image *img = NULL;
     status code = job_render(j, s, &options, &account, why);
     THEN(code, film_image(account.result->img, &img, why));
+    if (code == STATUS_OK)
+        img->tone = camera_tone(s);
     THEN(code, video_frame(out, img, why));
     image_destroy(img);
     job_account_release(&account);

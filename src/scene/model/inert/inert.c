@@ -58,13 +58,13 @@ static bool ask_group(const inert_case *c)
 {
     switch (c->at.object_group) {
     case PARAM_RENDER: return inert_render(c);
+    case PARAM_CAMERA: return inert_camera(c);
     case PARAM_BACKGROUND: return inert_background(c);
     case PARAM_MESH: return inert_mesh(c);
     case PARAM_TEXTURE: return inert_texture(c);
     case PARAM_LIGHT: return inert_light(c);
     case PARAM_MATERIAL: return inert_material(c);
     case PARAM_SOLID: return inert_solid(c);
-    case PARAM_CAMERA:
     case PARAM_BEAM:
     case PARAM_GROUP_COUNT: break;
     }

@@ -45,6 +45,9 @@ inert_remedy inert_set_on(const solid *one, const char *assignment);
 inert_remedy inert_set_clear(const solid *one);
 
 bool inert_render(const inert_case *c);
+bool inert_camera(const inert_case *c);
+/* Light is nowhere polarised. */
+bool inert_polarisation(const inert_case *c);
 bool inert_background(const inert_case *c);
 /* For render.radiance. */
 bool inert_radiance(const inert_case *c);

@@ -1,6 +1,7 @@
 /* Renderer settings without effect. */
 #include "scene/model/inert/inert_private.h"
 #include "geometry/shapes/shape.h"
+#include "scene/model/camera.h"
 #include "scene/model/medium.h"
 #include "scene/model/scene.h"
 
@@ -136,9 +137,15 @@ static bool is_layered(const scene *s, const solid *one)
     return material_is_layered(&one->surface, &s->render);
 }
 
-static bool polarisation(const inert_case *c)
+bool inert_polarisation(const inert_case *c)
 {
     return no_tree(c) || (!first_visible(c->s, is_layered) && no_clear(c));
+}
+
+/* An analyser halves unpolarised light, but only where polarisation is traced. */
+static bool polarisation(const inert_case *c)
+{
+    return c->s->camera.analyser == ANALYSER_NONE && inert_polarisation(c);
 }
 
 static bool nothing_lit(const inert_case *c)
@@ -182,10 +189,10 @@ static bool photons(const inert_case *c)
            no_photons(c);
 }
 
-/* Wavelengths of the spectral film are also random: render/shade/spectra.c. */
+/* Wavelengths of the spectral film are also random, render/shade/spectra.c, and so are points of a lens. */
 static bool seed(const inert_case *c)
 {
-    if (scene_has_caustics(&c->s->render))
+    if (scene_has_caustics(&c->s->render) || camera_lens_is_sampled(c->s))
         return false;
     return c->s->render.spectrum != SPECTRUM_SPECTRAL && path_only(c);
 }

@@ -102,7 +102,8 @@ placement placement_of(const scene *s)
     if (!s->camera.aimed)
         where.looked_at = vec3_add(view.eye, vec3_scale(view.forward, distance_ahead(s, view.eye, view.forward)));
     where.distance = vec3_length(vec3_sub(where.looked_at, view.eye));
-    where.size = placement_round(where.distance / 6.0, where.distance / 6.0);
+    const double size = view.parallel ? 2.0 * view.half_height / 5.0 : where.distance / 6.0;
+    where.size = placement_round(size, size);
     const vec3 flat = vec3_make(view.right.x, 0, view.right.z);
     if (vec3_length(flat) > 1e-9) {
         where.right = vec3_normalize(flat);
@@ -127,9 +128,9 @@ static double overlap(const scene *s, vec3 centre, double radius)
 static bool is_in_view(const camera_frame *view, vec3 point)
 {
     const vec3 offset = vec3_sub(point, view->eye);
-    const double depth = vec3_dot(offset, view->forward);
-    return depth > 0.0 && fabs(vec3_dot(offset, view->right)) < view->half_width * depth &&
-           fabs(vec3_dot(offset, view->up)) < view->half_height * depth;
+    const double depth = vec3_dot(offset, view->forward), spread = camera_spread(view, depth);
+    return depth > 0.0 && fabs(vec3_dot(offset, view->right)) < view->half_width * spread &&
+           fabs(vec3_dot(offset, view->up)) < view->half_height * spread;
 }
 
 bool placement_in_view(const scene *s, vec3 point)
