@@ -215,6 +215,38 @@ static void bounds_are_tight(void **state)
     }
 }
 
+/* A cemented doublet: two lenses with one common side, up to rounding. Its crossings with a ray are one, without a
+ * film of the surrounding medium. */
+static void cemented_lenses_have_no_film_between_them(void **state)
+{
+    (void)state;
+    uint64_t seed = 5;
+    for (int trial = 0; trial < 4000; trial++) {
+        solid_shape pair[2] = {lens_of(1.2, -0.9, 0.4, 1.0),
+                               lens_of(-0.9, random_below(&seed, 2) ? 3.0 : -3.0, 0.2, 1.0)};
+        const vec3 rotation = random_below(&seed, 4) ? random_point(&seed, 180.0) : vec3_make(0.0, 0.0, 0.0);
+        const mat3 turn = rotation_from_deg(rotation);
+        pair[0].rotation_deg = pair[1].rotation_deg = rotation;
+        pair[0].position = random_point(&seed, 2.0);
+        pair[1].position = vec3_add(pair[0].position, mat3_apply(turn, vec3_make(0.0, pair[0].thickness, 0.0)));
+        scene_geometry *a = scene_geometry_of(pair, 2); /* priority indices 2 and 1 */
+        const vec3 from = vec3_make(random_real(&seed, -0.3, 0.3), -2.0, random_real(&seed, -0.3, 0.3)),
+                   to = vec3_make(random_real(&seed, -0.3, 0.3), 0.4, random_real(&seed, -0.3, 0.3));
+        const vec3 d = mat3_apply(turn, vec3_normalize(vec3_sub(to, from)));
+        one_hit hits[8];
+        const bool back = random_below(&seed, 2);
+        const vec3 o = vec3_add(pair[0].position, mat3_apply(turn, from)),
+                   start = back ? vec3_add(o, vec3_scale(d, 6.0)) : o;
+        assert_int_equal(walk(a, (one_ray){start, back ? vec3_scale(d, -1.0) : d, FACE_NONE, 0}, hits, 8), 3);
+        static const int media[4] = {0, 2, 1, 0};
+        for (int k = 0; k < 3; k++) {
+            assert_int_equal(hits[k].before, media[back ? 3 - k : k]);
+            assert_int_equal(hits[k].after, media[back ? 2 - k : k + 1]);
+        }
+        scene_geometry_destroy(a);
+    }
+}
+
 static void expect_refused(solid_shape s, const char *what, const char *remedy)
 {
     diagnostic why = {.what = ""};
@@ -264,6 +296,7 @@ int main(void)
         cmocka_unit_test(reflected_rays_stay_within_a_lens),
         cmocka_unit_test(volumes_equal_those_of_spherical_caps),
         cmocka_unit_test(bounds_are_tight),
+        cmocka_unit_test(cemented_lenses_have_no_film_between_them),
         cmocka_unit_test(impossible_lenses_are_refused),
         cmocka_unit_test(sides_that_cross_between_axis_and_rim_are_refused),
     };
