@@ -223,26 +223,34 @@ static void concave_rows(const primitive *__restrict p, int bit, const ray_batch
 
 /* --- points, for both --- */
 
-/* The distance of t from a part's root in the ray's direction through it: where the ray enters the lens, it enters the
- * sets of the rim and of convex sides, and leaves those of concave ones. */
-ALWAYS_INLINE double root_apart(interval part, int64_t leaving, double t)
-{
-    return magnitude(blend(leaving, part.out, part.in) - t);
-}
+/* A point projected onto a side's conic; the normal is out of the convex set. */
+typedef struct side_point {
+    vec3 point, normal;
+    double
+        apart; /* distance of the given point; infinite past an ellipsoid's centre and on a hyperboloid's other sheet */
+} side_point;
 
-/* q on a side's conic: one Newton step along the gradient, whose error is of second order in q's distance. normal: out
- * of the convex set. */
-ALWAYS_INLINE local_point point_on_side(const lens_side *e, vec3 q)
+/* One Newton step along the gradient, whose error is of second order in q's distance. */
+ALWAYS_INLINE side_point point_on_side(const lens_side *e, vec3 q)
 {
     double u = e->up * (q.y - e->vertex), c = e->curvature;
     double level = c * (q.x * q.x + q.z * q.z + e->stretch * (u * u)) - 2.0 * u;
     double gx = c * q.x, gz = c * q.z, gu = c * e->stretch * u - 1.0, g2 = gx * gx + gz * gz + gu * gu;
     double step = -0.5 * level / g2, inverse = 1.0 / sqrt(g2);
-    local_point l;
-    l.point = vec3_make(q.x + step * gx, e->vertex + e->up * (u + step * gu), q.z + step * gz);
-    l.normal = vec3_make(gx * inverse, e->up * gu * inverse, gz * inverse);
-    l.face = 0;
-    return l;
+    side_point s;
+    s.point = vec3_make(q.x + step * gx, e->vertex + e->up * (u + step * gu), q.z + step * gz);
+    s.normal = vec3_make(gx * inverse, e->up * gu * inverse, gz * inverse);
+    s.apart = blend(mask_less(gu, 0.0), magnitude(0.5 * level * inverse), HUGE_VAL);
+    return s;
+}
+
+/* The distance of t from a part's root in the ray's direction through it: where the ray enters the lens, it enters the
+ * sets of the rim and of convex sides, and leaves those of concave ones. Without such a root, by rounding, that of the
+ * point from the surface. */
+ALWAYS_INLINE double root_apart(interval part, int64_t leaving, double t, double surface)
+{
+    double root = blend(leaving, part.out, part.in);
+    return blend(mask_less(magnitude(root), HUGE_VAL), magnitude(root - t), surface);
 }
 
 ALWAYS_INLINE vec3 blend_vec3(int64_t mask, vec3 a, vec3 b)
@@ -256,19 +264,20 @@ ALWAYS_INLINE local_point point(const primitive *p, bool general, local_ray r, v
     (void)general;
     const lens_side side[2] = {lens_side_of(p, 0), lens_side_of(p, 1)};
     lens_parts parts = lens_cross(p, side, r, at);
+    side_point one = point_on_side(&side[0], q), two = point_on_side(&side[1], q);
     vec3 d = vec3_make(r.dx, r.dy, r.dz);
     double t = vec3_dot(vec3_sub(q, vec3_make(r.x, r.y, r.z)), d) / vec3_dot(d, d);
-    double to_rim = root_apart(parts.rim, leaving, t), to_1 = root_apart(parts.side[0], leaving ^ side[0].concave, t),
-           to_2 = root_apart(parts.side[1], leaving ^ side[1].concave, t);
+    double from_axis = sqrt(q.x * q.x + q.z * q.z), inverse = p->radius / from_axis, to_unit = 1.0 / p->radius;
+    double x = q.x * inverse, z = q.z * inverse;
+    double to_rim = root_apart(parts.rim, leaving, t, magnitude(from_axis - p->radius)),
+           to_1 = root_apart(parts.side[0], leaving ^ side[0].concave, t, one.apart),
+           to_2 = root_apart(parts.side[1], leaving ^ side[1].concave, t, two.apart);
     int64_t is_2 = mask_less(to_2, to_1), is_side = mask_less(lesser(to_1, to_2), to_rim);
-    local_point one = point_on_side(&side[0], q), two = point_on_side(&side[1], q);
-    double inverse = p->radius / sqrt(q.x * q.x + q.z * q.z), x = q.x * inverse, z = q.z * inverse;
-    double turn_1 = blend(side[0].concave, -1.0, 1.0), turn_2 = blend(side[1].concave, -1.0, 1.0),
-           to_unit = 1.0 / p->radius;
+    double turn_1 = blend(side[0].concave, -1.0, 1.0), turn_2 = blend(side[1].concave, -1.0, 1.0);
+    vec3 normal = blend_vec3(is_2, vec3_scale(two.normal, turn_2), vec3_scale(one.normal, turn_1));
     local_point l;
     l.point = blend_vec3(is_side, blend_vec3(is_2, two.point, one.point), vec3_make(x, q.y, z));
-    l.normal = blend_vec3(is_side, blend_vec3(is_2, vec3_scale(two.normal, turn_2), vec3_scale(one.normal, turn_1)),
-                          vec3_make(x * to_unit, 0.0, z * to_unit));
+    l.normal = blend_vec3(is_side, normal, vec3_make(x * to_unit, 0.0, z * to_unit));
     l.face = p->first_face + (is_side & blend_int(is_2, 2, 1));
     return l;
 }
