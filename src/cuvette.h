@@ -455,7 +455,7 @@ typedef struct cuvette_hit {
     int32_t before;   /* the medium on the ray's side ... */
     int32_t after;    /* ... and the one behind the surface */
     /* part of the solid's surface: cylinder 0 side, 1 bottom, 2 top; cup the same, then 8 inner side, 9 floor; box 0
-     * -x, 1 +x, 2 -y, 3 +y, 4 -z, 5 +z; else 0 */
+     * -x, 1 +x, 2 -y, 3 +y, 4 -z, 5 +z; lens 0 rim, 1 and 2 its sides; else 0 */
     int32_t face;
     int64_t triangle;                     /* of a mesh, else -1 */
     int32_t copy, slot;                   /* of a mesh: its instance, and the triangle's material slot; else 0 */

@@ -72,6 +72,7 @@ static inline void scale_lengths(scene *s, double f)
         scale_vector(&shape->spacing, f);
         shape->radius *= f, shape->inner_radius *= f, shape->height *= f, shape->floor *= f;
         shape->tube_radius *= f, shape->top_radius *= f;
+        shape->radius_1 *= f, shape->radius_2 *= f, shape->thickness *= f, shape->diameter *= f;
         s->solids[i].surface.checker *= f;
         s->solids[i].surface.tint_distance *= f;
     }

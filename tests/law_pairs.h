@@ -71,6 +71,7 @@ static inline void add_unmet(law_scene *w, uint64_t *seed)
     s.shape.position = far ? vec3_scale(random_direction(seed), distance) : random_point(seed, 1.5);
     s.shape.radius *= size, s.shape.inner_radius *= size, s.shape.height *= size, s.shape.floor *= size;
     s.shape.tube_radius *= size, s.shape.top_radius *= size;
+    s.shape.radius_1 *= size, s.shape.radius_2 *= size, s.shape.thickness *= size, s.shape.diameter *= size;
     s.shape.size = vec3_scale(s.shape.size, size);
     s.shape.scale = vec3_scale(s.shape.scale, size);
     s.shape.spacing = vec3_scale(s.shape.spacing, size);

@@ -363,6 +363,8 @@ static inline ball ball_around(const law_solid *s)
         return (ball){in_frame_of(shape, 0.0, 0.5 * shape->height, 0.0),
                       hypot(0.5 * shape->height, fmax(shape->radius, shape->top_radius))};
     case SHAPE_TORUS: return (ball){shape->position, shape->radius + shape->tube_radius};
+    case SHAPE_LENS: /* no sag exceeds a quarter of the diameter */
+        return (ball){in_frame_of(shape, 0.0, 0.5 * shape->thickness, 0.0), shape->diameter + shape->thickness};
     case SHAPE_CYLINDER:
     case SHAPE_CUP: return (ball){in_frame_of(shape, 0.0, 0.5 * shape->height, 0.0), hypot(0.5 * shape->height, wide)};
     case SHAPE_MESH: {

@@ -239,6 +239,7 @@ static inline double oracle_thickness(const solid *x)
     case SHAPE_CONE: return fmin(s->height, s->radius + s->top_radius);
     case SHAPE_PRISM: return fmin(s->height, 2.0 * s->radius);
     case SHAPE_TORUS: return 2.0 * s->tube_radius;
+    case SHAPE_LENS: return s->thickness;
     case SHAPE_MESH: return 2.0 * ball_of(x).radius;
     case SHAPE_PLANE:
     case SHAPE_COUNT: break;

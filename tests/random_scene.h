@@ -27,6 +27,12 @@ static inline void add_shape(scene_text *t, const solid_shape *s)
         add(t, "shape: prism, radius: %.17g, sides: %d, height: %.17g", s->radius, (int)s->sides, s->height);
         break;
     case SHAPE_TORUS: add(t, "shape: torus, radius: %.17g, tube_radius: %.17g", s->radius, s->tube_radius); break;
+    case SHAPE_LENS:
+        add(t,
+            "shape: lens, radius_1: %.17g, radius_2: %.17g, thickness: %.17g, diameter: %.17g, conic_1: %.17g, "
+            "conic_2: %.17g",
+            s->radius_1, s->radius_2, s->thickness, s->diameter, s->conic_1, s->conic_2);
+        break;
     case SHAPE_PLANE:
     case SHAPE_MESH:
     case SHAPE_COUNT: add(t, "shape: plane"); break;

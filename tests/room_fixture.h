@@ -119,6 +119,23 @@ static inline int changes_of(const room *m, const reference_line *line, change *
     return count;
 }
 
+/* Any pair of sides within their conics' widths, and a thickness with which they do not cross within the rim. */
+static inline void random_lens(solid_shape *s, uint64_t *seed)
+{
+    double *const radius[2] = {&s->radius_1, &s->radius_2}, *const conic[2] = {&s->conic_1, &s->conic_2};
+    double sag[2];
+    s->diameter = random_real(seed, 0.4, 2.0);
+    for (int k = 0; k < 2; k++) {
+        const double r = s->diameter * random_real(seed, 0.53, 2.0);
+        *radius[k] = random_below(seed, 5) ? (random_below(seed, 2) ? r : -r) : 0.0;
+        *conic[k] = random_below(seed, 3) ? 0.0 : random_real(seed, -3.0, 0.0);
+        const double c = *radius[k] == 0.0 ? 0.0 : 1.0 / *radius[k], rho2 = s->diameter * s->diameter / 4.0;
+        sag[k] = c * rho2 / (1.0 + sqrt(1.0 - (1.0 + *conic[k]) * c * c * rho2));
+    }
+    const double least = fmax(0.0, sag[0]) + fmax(0.0, -sag[1]);
+    s->thickness = least + s->diameter * random_real(seed, 0.02, 0.6);
+}
+
 /* For the analytic solids. */
 static inline shape_kind random_kind(uint64_t *seed)
 {
@@ -140,6 +157,7 @@ static inline solid_shape random_shape(uint64_t *seed)
     s.top_radius = random_below(seed, 3) ? s.radius * random_real(seed, 0.1, 1.5) : 0.0;
     s.tube_radius = s.radius * random_real(seed, 0.1, 0.9);
     s.size = vec3_make(random_real(seed, 0.2, 2.0), random_real(seed, 0.2, 2.0), random_real(seed, 0.2, 2.0));
+    random_lens(&s, seed);
     return s;
 }
 
@@ -176,6 +194,11 @@ static inline void room_fill_on_a_grid(room *m, uint64_t *seed)
         s->tube_radius = 0.25;
         s->sides = 4;
         s->top_radius = 0.25 * random_below(seed, 4);
+        s->diameter = 0.5 * (1 + random_below(seed, 3));
+        s->radius_1 = s->diameter * (random_below(seed, 3) - 1);
+        s->radius_2 = s->diameter * (random_below(seed, 3) - 1);
+        s->thickness = 0.25 * (1 + random_below(seed, 4)) + 0.25 * s->diameter;
+        s->conic_1 = s->conic_2 = 0.0;
         s->size = vec3_make(0.5 * (1 + random_below(seed, 3)), 0.5 * (1 + random_below(seed, 3)),
                             0.5 * (1 + random_below(seed, 3)));
     }

@@ -119,6 +119,74 @@ static inline int reference_torus(const reference_line *l, quad R, quad r, quad 
     return n;
 }
 
+/* A side of a lens: c (x^2 + z^2 + (1 + k) u^2) = 2 u, with u from its vertex towards its centre of curvature and c >
+ * 0; a flat side has c = 0 and u into the lens. */
+typedef struct reference_lens_side {
+    quad c, stretch, vertex, up;
+    int concave;
+} reference_lens_side;
+
+static inline reference_lens_side reference_lens_side_of(const solid_shape *s, int k)
+{
+    const quad radius = k == 0 ? s->radius_1 : s->radius_2, inwards = k == 0 ? 1 : -1;
+    const int concave = radius * inwards < 0;
+    return (reference_lens_side){.c = radius == 0 ? 0 : 1 / quad_abs(radius),
+                                 .stretch = 1 + (quad)(k == 0 ? s->conic_1 : s->conic_2),
+                                 .vertex = k == 0 ? 0 : s->thickness,
+                                 .up = concave ? -inwards : inwards,
+                                 .concave = concave};
+}
+
+static inline int reference_lens_side_crossings(const reference_line *l, const reference_lens_side *e, quad *t)
+{
+    const quad u = e->up * (l->o.y - e->vertex), du = e->up * l->d.y;
+    const quad a = e->c * (l->d.x * l->d.x + l->d.z * l->d.z + e->stretch * du * du),
+               b = e->c * (l->o.x * l->d.x + l->o.z * l->d.z + e->stretch * u * du) - du,
+               c = e->c * (l->o.x * l->o.x + l->o.z * l->o.z + e->stretch * u * u) - 2 * u;
+    const quad discriminant = b * b - a * c;
+    if (discriminant < 0)
+        return 0;
+    const quad q = -(b + (b < 0 ? -1 : 1) * quad_sqrt(discriminant)); /* no cancellation where a is small */
+    int n = 0;
+    if (a != 0)
+        t[n++] = q / a;
+    if (q != 0)
+        t[n++] = c / q;
+    return n;
+}
+
+/* Signed distance from a side's conic, extended, to first order. */
+static inline quad reference_from_conic(const reference_lens_side *e, quad3 p)
+{
+    const quad u = e->up * (p.y - e->vertex), rho2 = p.x * p.x + p.z * p.z, along = e->c * e->stretch * u - 1;
+    return (e->c * (rho2 + e->stretch * u * u) - 2 * u) / (2 * quad_sqrt(e->c * e->c * rho2 + along * along));
+}
+
+/* Signed distance from a side, negative within the convex set that it bounds. */
+static inline quad reference_from_lens_side(const reference_lens_side *e, quad3 p)
+{
+    const quad u = e->up * (p.y - e->vertex), beyond = e->c * e->stretch * u;
+    if (e->stretch > 0 && beyond >= 1) { /* past an ellipsoid's centre: from its widest circle */
+        const quad across = 1 / (e->c * quad_sqrt(e->stretch)) - quad_sqrt(p.x * p.x + p.z * p.z),
+                   along = u - 1 / (e->c * e->stretch);
+        return -quad_sqrt(across * across + along * along);
+    }
+    if (e->stretch < 0 && beyond >= 1) /* a hyperboloid's other sheet */
+        return -u;
+    return reference_from_conic(e, p);
+}
+
+static inline quad reference_from_lens(const solid_shape *s, quad3 p)
+{
+    quad most = quad_sqrt(p.x * p.x + p.z * p.z) - (quad)s->diameter / 2;
+    for (int k = 0; k < 2; k++) {
+        const reference_lens_side e = reference_lens_side_of(s, k);
+        const quad from = reference_from_lens_side(&e, p);
+        most = quad_max(most, e.concave ? -from : from);
+    }
+    return most;
+}
+
 /* Every t, positive or negative, where the line crosses one of the shape's surfaces or their extensions; unordered. */
 static inline int reference_crossings(const solid_shape *s, const reference_line *line, quad *t)
 {
@@ -164,6 +232,12 @@ static inline int reference_crossings(const solid_shape *s, const reference_line
         n += reference_level(l.o.y, l.d.y, 0, t + n);
         return n + reference_level(l.o.y, l.d.y, s->height, t + n);
     case SHAPE_TORUS: return reference_torus(&l, s->radius, s->tube_radius, t);
+    case SHAPE_LENS:
+        for (int k = 0; k < 2; k++) {
+            const reference_lens_side e = reference_lens_side_of(s, k);
+            n += reference_lens_side_crossings(&l, &e, t + n);
+        }
+        return n + reference_side(&l, 1, (quad)s->diameter / 2, t + n);
     case SHAPE_MESH:
     case SHAPE_COUNT: break;
     }
@@ -224,6 +298,7 @@ static inline quad reference_distance(const solid_shape *s, quad3 point)
         const quad apart = quad_sqrt(p.x * p.x + p.z * p.z) - s->radius;
         return quad_sqrt(apart * apart + p.y * p.y) - s->tube_radius;
     }
+    case SHAPE_LENS: return reference_from_lens(s, p);
     case SHAPE_MESH:
     case SHAPE_COUNT: break;
     }

@@ -334,8 +334,9 @@ static void path_parameters_are_confined_to_the_folder(void **state)
 static void each_added_solid_is_visible(void **state)
 {
     const room *r = *state;
-    static const char *const shapes[] = {"torus", "cone", "prism", "plane", "cylinder", "cup", "box", "sphere", "mesh"};
-    enum { ALONE = 3 }; /* that many are removed again: nine at one point would hide each other */
+    static const char *const shapes[] = {"torus",    "cone", "prism", "lens",   "plane",
+                                         "cylinder", "cup",  "box",   "sphere", "mesh"};
+    enum { ALONE = 4 }; /* that many are removed again: ten at one point would hide each other */
     char before[64], after[64], word[64];
     film(r, before);
     for (size_t i = 0; i < sizeof shapes / sizeof *shapes; i++) {

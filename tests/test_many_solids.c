@@ -35,6 +35,7 @@ static void write_solid(crowd *c, uint64_t *seed, int i, double size, vec3 posit
     s.position = position;
     s.radius *= size, s.height *= size, s.inner_radius *= size, s.floor *= size, s.top_radius *= size;
     s.tube_radius *= size, s.size = vec3_scale(s.size, size);
+    s.radius_1 *= size, s.radius_2 *= size, s.thickness *= size, s.diameter *= size;
     add(&t, "  s%d: {priority: %d, ", i, random_below(seed, 5));
     if (look == 0)
         add(&t, "diffuse: 0.7, reflectivity: 0.2, color: [0.9, 0.5, 0.2], ");

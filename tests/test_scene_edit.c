@@ -39,7 +39,8 @@ static void assert_vector(vec3 v, double x, double y, double z)
 static void added_objects_have_the_defaults_of_a_file(void **state)
 {
     (void)state;
-    static const char *const shapes[] = {"plane", "cylinder", "cup", "box", "sphere", "mesh", "torus", "cone", "prism"};
+    static const char *const shapes[] = {"plane", "cylinder", "cup",  "box",   "sphere",
+                                         "mesh",  "torus",    "cone", "prism", "lens"};
     assert_int_equal(sizeof shapes / sizeof *shapes, SHAPE_COUNT);
     for (int k = 0; k < SHAPE_COUNT; k++) {
         char file[300];

@@ -130,7 +130,7 @@ static const char one_of_each[] =
     "beams: {ray: {}}\n"
     "solids: {plane1: {shape: plane}, cylinder1: {shape: cylinder}, cup1: {shape: cup}, box1: {shape: box},\n"
     "  sphere1: {shape: sphere}, mesh1: {shape: mesh, mesh: model}, painted: {shape: box, material: paint},\n"
-    "  cone1: {shape: cone}, torus1: {shape: torus}, prism1: {shape: prism}}\n";
+    "  cone1: {shape: cone}, torus1: {shape: torus}, prism1: {shape: prism}, lens1: {shape: lens}}\n";
 
 /* Values to try, some of which are valid for a row; NULL at the end. */
 static size_t candidates(const param *row, char text[][100], size_t room)
@@ -205,9 +205,9 @@ static size_t carry_row(const scene *s, const char *owner, const param *row)
 static void every_parameter_round_trips_with_other_values(void **state)
 {
     (void)state;
-    static const char *const owners[] = {"render",  "camera", "background", "body",   "model",     "toy",   "wood",
-                                         "ray",     "lamp",   "paint",      "plane1", "cylinder1", "cup1",  "box1",
-                                         "sphere1", "mesh1",  "painted",    "cone1",  "torus1",    "prism1"};
+    static const char *const owners[] = {"render",  "camera", "background", "body",   "model",     "toy",    "wood",
+                                         "ray",     "lamp",   "paint",      "plane1", "cylinder1", "cup1",   "box1",
+                                         "sphere1", "mesh1",  "painted",    "cone1",  "torus1",    "prism1", "lens1"};
     scene *s = scene_from(one_of_each);
     bool seen[512] = {false};
     for (size_t o = 0; o < sizeof owners / sizeof *owners; o++) {

@@ -14,6 +14,12 @@
 
 #define COUNT(a) (sizeof(a) / sizeof((a)[0]))
 
+#define LENS(r1, r2, t, d, k1, k2)                                                                        \
+    {                                                                                                     \
+        .kind = SHAPE_LENS, .position = {0.1, -0.2, 0.2}, .radius_1 = r1, .radius_2 = r2, .thickness = t, \
+        .diameter = d, .conic_1 = k1, .conic_2 = k2                                                       \
+    }
+
 static const solid_shape shapes[] = {
     {.kind = SHAPE_PLANE, .position = {0.3, -0.2, 0.1}},
     {.kind = SHAPE_CYLINDER, .position = {0.1, -0.7, 0.2}, .radius = 0.95, .height = 1.95, .m = 1.0},
@@ -55,6 +61,24 @@ static const solid_shape shapes[] = {
     {.kind = SHAPE_TORUS, .position = {0.1, 0.2, 0.3}, .radius = 0.7, .tube_radius = 0.25},
     {.kind = SHAPE_TORUS, .position = {-0.1, 0.2, 0.0}, .radius = 0.6, .tube_radius = 0.599},
     {.kind = SHAPE_TORUS, .position = {0.1, -0.2, 0.3}, .radius = 0.9, .tube_radius = 0.002},
+    LENS(1.5, -1.2, 0.6, 1.6, 0.0, 0.0), /* biconvex */
+    LENS(1.5, 0.0, 0.4, 1.6, 0.0, 0.0),  /* convex and flat */
+    LENS(0.0, 0.0, 0.4, 1.6, 0.0, 0.0),  /* a flat window */
+    LENS(0.0, 1.5, 0.1, 1.6, 0.0, 0.0),  /* flat and concave */
+    LENS(-1.5, 1.2, 0.1, 1.6, 0.0, 0.0), /* biconcave */
+    LENS(1.0, 1.5, 0.3, 1.6, 0.0, 0.0),  /* menisci */
+    LENS(1.2, 0.9, 0.1, 1.4, 0.0, 0.0),
+    LENS(-0.9, -0.85, 0.1, 1.6, 0.0, 0.0),
+    LENS(1.0, -1.0, 0.4, 1.2, 0.0, 0.0), /* sharp: thickness 2 (R - sqrt(R^2 - h^2)) */
+    LENS(0.6, 0.0, 0.9, 1.2, 0.0, 0.0),  /* hemispheres */
+    LENS(-0.6, 0.6, 0.2, 1.2, 0.0, 0.0),
+    LENS(0.5, -0.5, 2.1, 0.9, 0.0, 0.0), /* longer than its spheres */
+    LENS(1e4, -1e5, 0.2, 1.6, 0.0, 0.0), /* nearly flat */
+    LENS(-1e4, 1e5, 0.2, 1.6, 0.0, 0.0),
+    LENS(0.8, -0.9, 0.9, 1.6, -1.0, -2.3), /* paraboloid and hyperboloid */
+    LENS(-0.8, 0.9, 0.1, 1.6, -1.0, -2.3),
+    LENS(1.2, 1.1, 0.3, 1.6, 0.7, -0.5),      /* oblate and prolate ellipsoids */
+    LENS(0.02, -0.02, 0.021, 0.02, 0.0, 0.0), /* tiny */
 };
 static const vec3 turns[] = {
     {0.0, 0.0, 0.0}, {17.0, -33.0, 71.0}, {0.0, 0.0, 30.0}, {90.0, 0.0, 0.0}, {0.1, 180.0, -0.3}};
@@ -71,10 +95,10 @@ static void report_failure(int good, const char *what, const solid_shape *s, con
     if (good)
         return;
     print_error("shape %d turned (%g %g %g): from (%.17g %.17g %.17g) along (%.17g %.17g %.17g): "
-                "t %.17g face %d cos_i %g error %g\n",
+                "t %.17g face %d cos_i %g error %g normal (%.17g %.17g %.17g)\n",
                 s->kind, s->rotation_deg.x, s->rotation_deg.y, s->rotation_deg.z, (double)line->o.x, (double)line->o.y,
                 (double)line->o.z, (double)line->d.x, (double)line->d.y, (double)line->d.z, h->t, (int)h->face,
-                h->cos_i, h->error);
+                h->cos_i, h->error, h->normal.x, h->normal.y, h->normal.z);
     fail_msg("%s", what);
 }
 #define expect(condition, s, line, h) report_failure(condition, #condition, s, line, h)
@@ -116,6 +140,12 @@ static quad3 normal_of(const solid_shape *s, int64_t face, quad3 p)
         n = quad3_make(p.x * share, p.y, p.z * share);
     } else if (s->kind == SHAPE_BOX)
         *(own < 2 ? &n.x : own < 4 ? &n.y : &n.z) = own % 2 ? 1 : -1;
+    else if (s->kind == SHAPE_LENS && own > 0) {
+        const reference_lens_side e = reference_lens_side_of(s, own - 1);
+        const quad along = e.up * e.c * e.stretch * e.up * (p.y - e.vertex) - e.up;
+        n = quad3_scale(quad3_make(e.c * p.x, along, e.c * p.z), e.concave ? -1 : 1);
+    } else if (s->kind == SHAPE_LENS)
+        n = quad3_make(p.x, 0, p.z);
     else if (s->kind == SHAPE_PRISM && own < 2)
         n.y = own == 1 ? 1 : -1;
     else if (s->kind == SHAPE_PRISM)
@@ -163,10 +193,22 @@ static quad distance_to_face(const solid_shape *s, int64_t face, quad3 p)
         return quad_abs(p.y - (own == 1 ? 0.0 : s->height));
     case SHAPE_TORUS:
         return quad_abs(reference_distance(s, quad3_add(quad3_turn(p, s->rotation_deg, 0), quad3_from(s->position))));
+    case SHAPE_LENS: {
+        const reference_lens_side e = reference_lens_side_of(s, own == 2);
+        return quad_abs(own == 0 ? reference_from_side(p, 1, (quad)s->diameter / 2) : reference_from_conic(&e, p));
+    }
     case SHAPE_MESH:
     case SHAPE_COUNT: break;
     }
     return 1;
+}
+
+/* The smaller radius of curvature of a lens's side at its vertex or at its rim, where it is (R^2 - k rho^2)^(3/2) / R^2
+ * along the meridian. */
+static double least_side_radius(const solid_shape *s, int k)
+{
+    const double r = fabs(k == 0 ? s->radius_1 : s->radius_2), conic = k == 0 ? s->conic_1 : s->conic_2;
+    return r == 0.0 ? HUGE_VAL : fmin(r, pow(r * r - conic * s->diameter * s->diameter / 4, 1.5) / (r * r));
 }
 
 /* The smallest radius of curvature; for a cone, that of its circle at the point. */
@@ -174,6 +216,8 @@ static double least_radius(const solid_shape *s, quad3 p)
 {
     if (s->kind == SHAPE_CONE)
         return (double)quad_sqrt(p.x * p.x + p.z * p.z);
+    if (s->kind == SHAPE_LENS)
+        return fmin(0.5 * s->diameter, fmin(least_side_radius(s, 0), least_side_radius(s, 1)));
     if (s->kind == SHAPE_TORUS)
         return fmin(s->tube_radius, s->radius - s->tube_radius);
     const double m = s->kind == SHAPE_CYLINDER || s->kind == SHAPE_CUP ? s->m : 1.0;
@@ -284,6 +328,13 @@ static vec3 place_on(const solid_shape *s, uint64_t *seed)
         const double across = eighths[random_below(seed, 4)], up = eighths[random_below(seed, 4)],
                      from_axis = s->radius + across * s->tube_radius;
         p = vec3_make(from_axis * cos(turn), up * s->tube_radius, from_axis * sin(turn));
+    } else if (s->kind == SHAPE_LENS && random_below(seed, 5)) {
+        const double rim = 0.5 * s->diameter, rho = random_below(seed, 2) ? rim : rim * random_real(seed, 0.0, 1.0);
+        const int k = random_below(seed, 2);
+        const double r = k == 0 ? s->radius_1 : s->radius_2, c = r == 0.0 ? 0.0 : 1.0 / r,
+                     stretch = 1.0 + (k == 0 ? s->conic_1 : s->conic_2),
+                     sag = c * rho * rho / (1.0 + sqrt(fmax(0.0, 1.0 - stretch * c * c * rho * rho)));
+        p = vec3_make(rho * cos(turn), k * s->thickness + sag, rho * sin(turn));
     } else if (s->kind == SHAPE_CONE && random_below(seed, 3)) {
         const double up = random_below(seed, 2) ? level : random_real(seed, 0.0, s->height);
         const double w = s->radius + (s->top_radius - s->radius) * (up / s->height);

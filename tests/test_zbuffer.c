@@ -36,19 +36,23 @@ static const char flat_scene[] = HEAD
     "  leaves: {shape: mesh, mesh: soup, material: tiles, position: [0, 1, 0], scale: [1.5, 0.8, 1]}\n"
     "  crate: {shape: box, material: tiles, size: [0.8, 1.2, 0.6], position: [2, 0.7, 1.5], rotation: [10, 40, 5]}\n";
 
-static const char round_scene[] =
-    HEAD "meshes: {donut: {generate: torus, major: 0.6, minor: 0.25}}\n"
-         "solids:\n"
-         "  ground: {shape: plane, material: tiles, checker: 1}\n"
-         "  ring: {shape: mesh, mesh: donut, material: dull, shading: smooth, position: [-2.5, 0.5, 0], rotation: [40, "
-         "20, 0]}\n"
-         "  cup: {shape: cup, material: tiles, radius: 0.7, inner_radius: 0.6, height: 1, floor: 0.1, position: [-0.9, "
-         "0.1, -1], rotation: [-20, 0, 10]}\n"
-         "  can: {shape: cylinder, material: dull, radius: 0.5, height: 1.2, m: 2, position: [0.6, 0.1, 0.5], "
-         "rotation: [0, 30, 0]}\n"
-         "  ball: {shape: sphere, material: dull, radius: 0.7, position: [2, 0.7, -0.5]}\n"
-         "  marble: {shape: sphere, transparency: 1, ior: 1.5, specular: 0.9, shininess: 10, diffuse: 0.2, radius: "
-         "0.4, position: [0.8, 0.5, -2]}\n";
+static const char round_scene[] = HEAD
+    "meshes: {donut: {generate: torus, major: 0.6, minor: 0.25}}\n"
+    "solids:\n"
+    "  ground: {shape: plane, material: tiles, checker: 1}\n"
+    "  ring: {shape: mesh, mesh: donut, material: dull, shading: smooth, position: [-2.5, 0.5, 0], rotation: [40, "
+    "20, 0]}\n"
+    "  cup: {shape: cup, material: tiles, radius: 0.7, inner_radius: 0.6, height: 1, floor: 0.1, position: [-0.9, "
+    "0.1, -1], rotation: [-20, 0, 10]}\n"
+    "  can: {shape: cylinder, material: dull, radius: 0.5, height: 1.2, m: 2, position: [0.6, 0.1, 0.5], "
+    "rotation: [0, 30, 0]}\n"
+    "  ball: {shape: sphere, material: dull, radius: 0.7, position: [2, 0.7, -0.5]}\n"
+    "  dish: {shape: lens, material: tiles, radius_1: -0.7, radius_2: 0.8, thickness: 0.1, diameter: 1.1, position: "
+    "[-0.1, 1.5, 0.8], rotation: [70, 20, 0]}\n"
+    "  pebble: {shape: lens, material: dull, radius_1: 1, radius_2: -0.8, thickness: 0.5, diameter: 1, position: "
+    "[1.2, 1.5, 1], rotation: [-40, 0, 20]}\n"
+    "  marble: {shape: sphere, transparency: 1, ior: 1.5, specular: 0.9, shininess: 10, diffuse: 0.2, radius: "
+    "0.4, position: [0.8, 0.5, -2]}\n";
 
 static double difference_at(const film *a, const film *b, int x, int y)
 {

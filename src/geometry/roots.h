@@ -73,3 +73,12 @@ ALWAYS_INLINE double cylinder_axial(double dx, double dz, double m2)
 {
     return dx * dx + m2 * dz * dz;
 }
+
+/* The infinite cylinder x^2 + m2 z^2 = radius^2; dx as returned by cylinder_dx, inverse_a = 1/a. The discriminant is a
+ * r^2 - m2 (x dz - z dx)^2 (Lagrange's identity), which does not cancel as b^2 - a c does far from the cylinder. */
+ALWAYS_INLINE quadric_roots cylinder_side(const primitive *p, double x, double z, double dx, double dz, double a,
+                                          double inverse_a, int64_t own)
+{
+    double r2 = p->radius * p->radius, cross = x * dz - z * dx;
+    return quadric_cross(x * dx + p->m2 * z * dz, inverse_a, a * r2 - p->m2 * (cross * cross), own);
+}

@@ -32,6 +32,12 @@ enum {
     FACE_NONE = -1
 };
 
+/* The two sides of a lens (primitives/lens_kernel.c). */
+typedef struct lens_sides {
+    double curvature[2]; /* 1 / radius, signed; 0: flat */
+    double conic[2];     /* conic constants; 0: spherical */
+} lens_sides;
+
 /* The files in primitives/ define each kind and the numbers of its faces. The faces of meshes are numbered differently:
  * see instance_set.h. */
 typedef struct primitive {
@@ -41,10 +47,13 @@ typedef struct primitive {
     vec3 origin;                       /* of the local frame, in the world */
     double radius, m2;                 /* cylinder x^2 + m2 z^2 <= radius^2; others (m2 = 1) */
     double bottom, top;                /* local y; a cylinder's top may be infinite */
-    vec3 half;                         /* box */
-    double second_radius;              /* a second radius, for kinds that have one */
-    int sides;                         /* number of equal sides around the axis; 0 for none */
-    const vec3 *normals;               /* of the sides; owned by the scene geometry */
+    union {
+        vec3 half; /* box */
+        lens_sides lens;
+    };
+    double second_radius; /* a second radius, for kinds that have one */
+    int sides;            /* number of equal sides around the axis; 0 for none */
+    const vec3 *normals;  /* of the sides; owned by the scene geometry */
     int64_t first_face;
     int rows;           /* number of scratch rows from its own on: the most intervals that a ray can have in it */
     int priority_index; /* of its region */

@@ -23,7 +23,8 @@
     X(MESH, mesh)         \
     X(TORUS, torus)       \
     X(CONE, cone)         \
-    X(PRISM, prism)
+    X(PRISM, prism)       \
+    X(LENS, lens)
 
 #define SHAPE_KIND(KIND, file) SHAPE_##KIND,
 typedef enum shape_kind { SHAPES(SHAPE_KIND) SHAPE_COUNT } shape_kind;
@@ -36,6 +37,7 @@ typedef struct solid_shape {
     double radius, height, m, inner_radius, floor; /* only those that the kind uses */
     double tube_radius, top_radius;
     int64_t sides;
+    double radius_1, radius_2, conic_1, conic_2, thickness, diameter; /* lens */
     vec3 size;
     const struct mesh *mesh; /* NULL until loaded */
     vec3 scale;              /* above 0 */

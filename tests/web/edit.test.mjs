@@ -138,7 +138,8 @@ export const cases = {
     const screen = await t.open(lab);
     await screen.showPanel('Objects');
     const first = await names(lab);
-    const added = ['Box', 'Sphere', 'Cylinder', 'Cup', 'Plane', 'Torus', 'Cone', 'Prism', 'Mesh', 'Light', 'Material'];
+    const added = ['Box', 'Sphere', 'Cylinder', 'Cup', 'Plane', 'Torus', 'Cone', 'Prism', 'Lens', 'Mesh', 'Light'];
+    added.push('Material');
     for (const shape of added) {
       const known = await names(lab);
       const { trouble } = await change(screen, () =>

@@ -8,15 +8,6 @@ static bool is_general(const primitive *p)
     return p->turned || p->m2 != 1.0;
 }
 
-/* The infinite cylinder x^2 + m2 z^2 = radius^2; dx as returned by cylinder_dx, inverse_a = 1/a. The discriminant is a
- * r^2 - m2 (x dz - z dx)^2 (Lagrange's identity), which does not cancel as b^2 - a c does far from the cylinder. */
-ALWAYS_INLINE quadric_roots cylinder_side(const primitive *p, double x, double z, double dx, double dz, double a,
-                                          double inverse_a, int64_t own)
-{
-    double r2 = p->radius * p->radius, cross = x * dz - z * dx;
-    return quadric_cross(x * dx + p->m2 * z * dz, inverse_a, a * r2 - p->m2 * (cross * cross), own);
-}
-
 ALWAYS_INLINE ray_span span(const primitive *p, bool general, local_ray r, int64_t at, const ray_scratch *s, int i)
 {
     int64_t on_side = mask_same(at, 0), on_bottom = mask_same(at, 1), on_top = mask_same(at, 2);

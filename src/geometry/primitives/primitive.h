@@ -15,7 +15,7 @@ typedef struct interval {
     double in, out;
 } interval;
 
-enum { CHORDS_MAX = 2 }; /* intervals of a line inside a primitive: a line crosses a torus up to four times */
+enum { CHORDS_MAX = 3 }; /* intervals of a line inside a primitive: a line crosses a biconcave lens up to six times */
 
 /* A face with a constant local coordinate: axis 0 x, 1 y, 2 z. `outwards` is the direction away from the primitive: +1
  * or -1; 0 for a surface whose textures are looked up on the surface itself and not just inside it. */

@@ -12,6 +12,8 @@
  * without a division by t, and the root of the ray's own face is gone. */
 #include "geometry/primitives/kind.h"
 
+enum { TORUS_CHORDS = 2 };
+
 /* A line, with t measured from its base: its point nearest to the torus's centre, or, if it starts on the surface, its
  * start. */
 typedef struct torus_line {
@@ -178,7 +180,7 @@ static void rows(const primitive *p, int bit, const ray_batch *rays, ray_scratch
     for (int i = 0; i < rays->count; i++) {
         interval found[CHORDS_MAX];
         one(p, rays, i, rays->inside[i] >> bit & 1, s, found);
-        for (int k = 0; k < CHORDS_MAX; k++)
+        for (int k = 0; k < TORUS_CHORDS; k++)
             s->in[bit + k][i] = found[k].in, s->out[bit + k][i] = found[k].out;
     }
 }
@@ -223,4 +225,4 @@ static surface_mapping mapping(const primitive *p, int64_t face, vec3 q, double 
     return mapping_around(q.x, q.z, p->radius, turn * arc, arc, size);
 }
 
-const primitive_functions KERNEL(torus_functions) = {2, rows, one, points, contains, chords, NULL, mapping};
+const primitive_functions KERNEL(torus_functions) = {TORUS_CHORDS, rows, one, points, contains, chords, NULL, mapping};

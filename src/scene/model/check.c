@@ -319,7 +319,8 @@ status check_limits(const scene *s, diagnostic *why)
         unbounded += rule->unbounded || rule->triangles;
     }
     if (primitives > SCENE_PRIMITIVES_MAX)
-        return diagnose(why, STATUS_BAD_INPUT, "a scene can have 2097151; a cup and a torus count as two",
+        return diagnose(why, STATUS_BAD_INPUT,
+                        "a scene can have 2097151; a cup and a torus count as two, a lens as three",
                         "more than 2097151 solids");
     if (unbounded > SCENE_UNBOUNDED_MAX)
         return diagnose(why, STATUS_BAD_INPUT, "a scene can have 64 of them together, and any number of other solids",

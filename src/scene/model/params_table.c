@@ -418,8 +418,9 @@ static const param table[] = {
     COLOR(PARAM_MATERIAL, material, checker_color, 1, "0,0,0", "linear colour of alternate checker cells"),
 
     {PARAM_SOLID, "position", PARAM_VECTOR, "scene units", -FAR, FAR, false, "0,0,0",
-     "centre of a box, sphere or torus; centre of the base of a cylinder, cup, cone or prism; a point on "
-     "a plane; origin of a mesh",
+     "centre of a box, sphere or torus; centre of the base of a cylinder, cup, cone or prism; vertex of side 1 of a "
+     "lens; "
+     "a point on a plane; origin of a mesh",
      NULL, OF(solid, shape.position)},
     {PARAM_SOLID, "rotation", PARAM_VECTOR, "deg", -360, 360, false, "0,0,0",
      "rotation about the fixed axes x, then y, then z", NULL, OF(solid, shape.rotation_deg)},
@@ -436,6 +437,21 @@ static const param table[] = {
     {PARAM_SOLID, "top_radius", PARAM_REAL, "scene units", 0, FAR, false, "0",
      "cone: radius at the top; 0: a point, otherwise a frustum", NULL, SHAPE(shape.top_radius)},
     LENGTH(tube_radius, "0.25", "torus: radius of the tube; less than radius"),
+    {PARAM_SOLID, "radius_1", PARAM_REAL, "scene units", -FAR, FAR, false, "1",
+     "lens: radius of curvature of side 1, at the position; above 0 if its centre is above it, towards side 2 "
+     "(convex); "
+     "0: flat",
+     NULL, SHAPE(shape.radius_1)},
+    {PARAM_SOLID, "radius_2", PARAM_REAL, "scene units", -FAR, FAR, false, "-1",
+     "lens: radius of curvature of side 2; below 0 if its centre is below it, towards side 1 (convex); 0: flat", NULL,
+     SHAPE(shape.radius_2)},
+    LENGTH(thickness, "0.3", "lens: distance between its sides on the axis"),
+    LENGTH(diameter, "1", "lens: diameter of its rim, a cylinder"),
+    {PARAM_SOLID, "conic_1", PARAM_REAL, "", -1000, 1000, false, "0",
+     "lens: conic constant of side 1; 0: sphere, -1: paraboloid, below: hyperboloid, others: ellipsoid", NULL,
+     SHAPE(shape.conic_1)},
+    {PARAM_SOLID, "conic_2", PARAM_REAL, "", -1000, 1000, false, "0", "lens: conic constant of side 2, as conic_1",
+     NULL, SHAPE(shape.conic_2)},
     {PARAM_SOLID, "size", PARAM_VECTOR, "scene units", 0, FAR, true, "1,1,1", "edge lengths along x, y and z", NULL,
      SHAPE(shape.size)},
     {PARAM_SOLID, "mesh", PARAM_WORD, "", 0, 0, false, "", "name of a mesh", NULL, SHAPE(mesh)},

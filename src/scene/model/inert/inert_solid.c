@@ -80,6 +80,15 @@ static bool mesh_shading(const inert_case *c)
     return inert_say(c, "unshaded", remedy.text, "it is not lit by lights and has no secondary rays");
 }
 
+static bool conic_rule(const inert_case *c)
+{
+    const solid_shape *shape = &c->owner->shape;
+    const bool first = strcmp(c->at.row->name, "conic_1") == 0;
+    return (first ? shape->radius_1 : shape->radius_2) == 0.0 &&
+           inert_say(c, "flat-side", inert_set("%s.radius_%d=%s", c->name, first ? 1 : 2, first ? "2" : "-2").text,
+                     "side %d of the lens is flat", first ? 1 : 2);
+}
+
 static bool mesh_name(const inert_case *c)
 {
     return c->s->mesh_count == 1 && inert_say(c, "one-mesh", "add another under meshes:", "the scene has one mesh");
@@ -88,8 +97,8 @@ static bool mesh_name(const inert_case *c)
 bool inert_solid(const inert_case *c)
 {
     static const inert_row rows[] = {
-        {"priority", priority_rule}, {"rotation", rotation_rule}, {"spacing", spacing_rule},
-        {"shading", mesh_shading},   {"mesh", mesh_name},         {NULL, NULL},
+        {"priority", priority_rule}, {"rotation", rotation_rule}, {"spacing", spacing_rule}, {"shading", mesh_shading},
+        {"mesh", mesh_name},         {"conic_1", conic_rule},     {"conic_2", conic_rule},   {NULL, NULL},
     };
     inert_case own = *c;
     own.owner = &c->s->solids[c->at.index], own.m = &own.owner->surface;

@@ -115,7 +115,7 @@ static void put_sizes(scene *s, status *code, diagnostic *why, const char *name,
         const param *row = param_find(PARAM_SOLID, *parameter);
         void *field = (char *)&fitted + row->offset;
         if (row->type == PARAM_REAL)
-            *(double *)field = placement_round(*(double *)field, 0.1 * *(double *)field);
+            *(double *)field = placement_round(*(double *)field, 0.1 * fabs(*(double *)field));
         char *text = param_value_text(row, -1, field);
         if (!text && *code == STATUS_OK)
             *code = out_of_memory(why);
