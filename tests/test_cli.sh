@@ -281,7 +281,10 @@ check "media has n_d, n_F, n_C, Abbe's number, range, temperature, reference and
     grep -qE '^bk7 +1\.51680 +1\.52238 +1\.51432 +64\.17 +300\.\.2500 +20 +air +Schott' out
 check "media marks extrapolated indices" grep -qE '^glycerol +1\.47227\* +1\.47683\* +1\.46991 +68\.30\* ' out
 check "media has no Abbe's number without dispersion" grep -qE '^olive-oil .* - +589\.3 ' out
-check "media: one line each" is "$(wc -l <out) $(cut -d' ' -f1 out | sort -u | wc -l)" "16 16"
+check "media: one line each, a blank one before the metals" is \
+    "$(wc -l <out) $(cut -d' ' -f1 out | sort -u | wc -l)" "22 22"
+check "media has n, k and reflectance of metals, range and source" \
+    grep -qE '^gold +0\.2774 +2\.9274 +1\.1476 +1\.8394 .* 0\.891 +367\.9\.\.821\.1 +Johnson' out
 run media --at 500
 check "media --at has one more column" is "$(awk 'NR == 1 || $1 == "bk7" {print $6}' out)" "$(lines n_at 1.52141)"
 check "media --at leaves out media that were not measured there" grep -qE '^glycerol .* - +589' out
@@ -293,13 +296,19 @@ check "media of a name with --at prints the index relative to vacuum as well" \
     grep -qE '^n_at +1\.4570[0-9]* at 632\.8 nm, relative to vacuum 1\.4574' out
 run media glycerol
 check "media of a name prints its caveats" grep -qE '^note .*extrapolated' out
+run media gold --at 548.6
+check "media of a metal prints its index and its table" is \
+    "$(grep -cE '^n_at +0\.4300 \+ i 2\.4550|^ +548\.6 +0\.43 ' out)" 2
+run media gold --json
+check "media --json of a metal has that metal only" is \
+    "$(json media@length metals@length 'metals[0].name' 'metals[0].points@length')" "$(lines 0 1 gold 16)"
 run media water --json
 check "media --json of a name has that medium only" is "$(json schema media@length 'media[0].name' 'media[0].law')" \
     "$(lines 1 1 water sellmeier)"
 check "media --json: absolute is n_d of a law relative to vacuum" is "$(json 'media[0].n_d')" \
     "$(json 'media[0].absolute.n_d')"
 run media --json --at 500
-check "media --json has all media" is "$(json media@length)" 15
+check "media --json has all media" is "$(json media@length metals@length)" "$(lines 15 4)"
 check "media --json: relative to air and absolute" holds \
     "($(json 'media[name=bk7].absolute.n_d') / $(json 'media[name=bk7].n_d') - 1.00027717) ^ 2 < 1e-16"
 check "media --json --at" holds "($(json 'media[name=bk7].at.n') - 1.52141) ^ 2 < 1e-10"

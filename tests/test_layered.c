@@ -153,7 +153,7 @@ static void metals_have_the_colours_of_their_indices(void **state)
     }
 }
 
-/* A metal by its numbers is grey; its reflectivity is not used, and a metal named in a catalogue needs no extinction. */
+/* A metal by its numbers is grey; its reflectivity is not used. */
 static void a_metal_by_its_numbers(void **state)
 {
     (void)state;

@@ -1,16 +1,17 @@
-/* Surfaces that reflect by wave optics: metals, and films on any surface (optics/multilayer.h). A spectral film evaluates
- * them exactly, ray by ray. For an rgb film each surface has a table by angle of the colour that it reflects of
- * daylight: its spectrum under D65, seen by the standard observer (optics/observer.h), in linear sRGB, where white is 1
- * at every angle; the media on both sides have their indices at render.lambda_nm. Colours outside the gamut are clamped
- * to 0 .. 1, so that no light is created; a film that does not absorb transmits the rest, channel by channel. This is
- * exact for one reflection of daylight; of several the product of colours is not the colour of the product.
+/* Surfaces that reflect by wave optics: metals, and films on any surface (optics/multilayer.h). A spectral film
+ * evaluates them exactly, ray by ray. For an rgb film each surface has a table by angle of the colour that it reflects
+ * of daylight: its spectrum under D65, seen by the standard observer (optics/observer.h), in linear sRGB, where white
+ * is 1 at every angle; the media on both sides have their indices at render.lambda_nm. Colours outside the gamut are
+ * clamped to 0 .. 1, so that no light is created; a film that does not absorb transmits the rest, channel by channel.
+ * This is exact for one reflection of daylight; of several the product of colours is not the colour of the product.
  *
  * The table is uniform in the cosine on the side of the lower index, in which the reflectance has no singularity: from
  * the other side the cosine of refraction leads to the same entry, by reversal, and under total reflection all is
  * reflected. Between entries it is cubic: error below 2e-5 for films up to 2 um thick, 1e-4 up to 10 um, 2e-3 up to 20
- * um; 1e-2 within a degree of grazing, where fringes are narrower than the steps of the integral. A film of lower index
- * than both sides (a gap of air between glass and water) totally reflects abruptly: there each ray is integrated.
- * A table is filled when a ray first needs it, by the worker that traces it; its values depend on the scene alone.
+ * um; 1e-2 within a degree of grazing, where fringes are narrower than the steps of the integral. A film of lower
+ * index than both sides (a gap of air between glass and water) totally reflects abruptly: there each ray is
+ * integrated. A table is filled when a ray first needs it, by the worker that traces it; its values depend on the
+ * scene alone.
  * Ownership: layered_plan_create allocates, layered_plan_destroy releases. */
 #pragma once
 

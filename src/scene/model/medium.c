@@ -19,7 +19,7 @@ static index_law law_of_catalogue(int64_t at)
 static index_law law_of_medium(int64_t word)
 {
     return word < MEDIUM_METAL ? law_of_catalogue(word - MEDIUM_CATALOGUE)
-                                 : (index_law){metals_at((size_t)(word - MEDIUM_METAL))->n, false};
+                               : (index_law){metals_at((size_t)(word - MEDIUM_METAL))->n, false};
 }
 
 static index_law law_of_ior(double ior)

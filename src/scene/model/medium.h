@@ -1,6 +1,7 @@
 /* The medium of a material or of the surroundings: the law of its refractive index, and its absorption. The choice is
  * an index into medium_words: `ior` for a constant index, then the laws for which a scene gives coefficients, then the
- * names of the catalogue (optics/media.h), then those of the metals (optics/metals.h). Pure; indices are relative to vacuum, wavelengths are in vacuum. */
+ * names of the catalogue (optics/media.h), then those of the metals (optics/metals.h). Pure; indices are relative to
+ * vacuum, wavelengths are in vacuum. */
 #pragma once
 
 #include "optics/dispersion.h"
@@ -25,8 +26,8 @@ typedef struct index_law {
     bool relative_to_air;
 } index_law;
 
-/* STATUS_BAD_INPUT if the coefficients are invalid; label is the name of the material in the message. The law of a metal
- * is that of its n. */
+/* STATUS_BAD_INPUT if the coefficients are invalid; label is the name of the material in the message. The law of a
+ * metal is that of its n. */
 status material_index_law(const material *m, const char *label, index_law *out, diagnostic *why);
 index_law surrounding_index_law(const background *b);
 
