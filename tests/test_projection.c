@@ -250,19 +250,19 @@ static void an_edge_out_of_focus_fades_as_a_disc_does(void **state)
     static const struct {
         const char *how;
         double tolerance; /* a Sobol set of n points has an error near n^-0.75 on discs */
-    } ways[] = {{"render.integrator=path render.paths=4096", 3e-3},
-                {"render.integrator=path render.paths=4096 render.sampler=philox", 0.03},
-                {"render.integrator=whitted render.samples=64", 0.05},
-                {"render.integrator=raycast render.samples=64 " PARALLEL, 0.05},
-                {"render.integrator=path render.paths=4096 render.sampler=sobol", 3e-3}};
+    } modes[] = {{"render.integrator=path render.paths=4096", 3e-3},
+                 {"render.integrator=path render.paths=4096 render.sampler=philox", 0.03},
+                 {"render.integrator=whitted render.samples=64", 0.05},
+                 {"render.integrator=raycast render.samples=64 " PARALLEL, 0.05},
+                 {"render.integrator=path render.paths=4096 render.sampler=sobol", 3e-3}};
     scene *s = scene_from(half);
     set_all(s, "camera.aperture=0.4 camera.focus=2");
-    for (size_t w = 0; w < COUNT(ways); w++) {
-        set_all(s, ways[w].how);
+    for (size_t w = 0; w < COUNT(modes); w++) {
+        set_all(s, modes[w].how);
         for (size_t d = 0; d < COUNT(depths); d++)
             for (size_t k = 0; k < COUNT(edges); k++) {
                 const double radius = 0.2 * fabs(1.0 - depths[d] / 2.0),
-                             tolerance = fabs(edges[k]) > 1.0 ? 1e-9 : ways[w].tolerance;
+                             tolerance = fabs(edges[k]) > 1.0 ? 1e-9 : modes[w].tolerance;
                 s->solids[0].shape.position = vec3_make(edges[k] * radius - 500.0, 0.0, depths[d]);
                 assert_true(fabs(look(s).x - disc_below(edges[k])) < tolerance);
             }
