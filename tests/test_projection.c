@@ -10,6 +10,7 @@
 #include <stdlib.h>
 #include <cmocka.h>
 
+#include "lint/lint.h"
 #include "random_stream.h"
 #include "render/inspect/probe.h"
 #include "render/inspect/segment_place.h"
@@ -250,19 +251,19 @@ static void an_edge_out_of_focus_fades_as_a_disc_does(void **state)
     static const struct {
         const char *how;
         double tolerance; /* a Sobol set of n points has an error near n^-0.75 on discs */
-    } ways[] = {{"render.integrator=path render.paths=4096", 3e-3},
-                {"render.integrator=path render.paths=4096 render.sampler=philox", 0.03},
-                {"render.integrator=whitted render.samples=64", 0.05},
-                {"render.integrator=raycast render.samples=64 " PARALLEL, 0.05},
-                {"render.integrator=path render.paths=4096 render.sampler=sobol", 3e-3}};
+    } modes[] = {{"render.integrator=path render.paths=4096", 3e-3},
+                 {"render.integrator=path render.paths=4096 render.sampler=philox", 0.03},
+                 {"render.integrator=whitted render.samples=64", 0.05},
+                 {"render.integrator=raycast render.samples=64 " PARALLEL, 0.05},
+                 {"render.integrator=path render.paths=4096 render.sampler=sobol", 3e-3}};
     scene *s = scene_from(half);
     set_all(s, "camera.aperture=0.4 camera.focus=2");
-    for (size_t w = 0; w < COUNT(ways); w++) {
-        set_all(s, ways[w].how);
+    for (size_t w = 0; w < COUNT(modes); w++) {
+        set_all(s, modes[w].how);
         for (size_t d = 0; d < COUNT(depths); d++)
             for (size_t k = 0; k < COUNT(edges); k++) {
                 const double radius = 0.2 * fabs(1.0 - depths[d] / 2.0),
-                             tolerance = fabs(edges[k]) > 1.0 ? 1e-9 : ways[w].tolerance;
+                             tolerance = fabs(edges[k]) > 1.0 ? 1e-9 : modes[w].tolerance;
                 s->solids[0].shape.position = vec3_make(edges[k] * radius - 500.0, 0.0, depths[d]);
                 assert_true(fabs(look(s).x - disc_below(edges[k])) < tolerance);
             }
@@ -370,7 +371,30 @@ static void the_seed_chooses_the_points_of_the_lens(void **state)
     scene_destroy(s);
 }
 
-/* --- moves --- */
+/* --- notes and moves --- */
+
+static void find(void *context, const scene_note *note)
+{
+    if (strcmp(note->place, "camera.position") == 0)
+        snprintf(context, NOTE_TEXT_MAX, "%s", note->text);
+}
+
+/* An image 4 units high about a level camera 1 unit above the ground: a quarter of its rays start below. */
+static void rays_that_start_in_the_ground_are_noted(void **state)
+{
+    (void)state;
+    diagnostic why = {0};
+    char found[NOTE_TEXT_MAX] = "";
+    scene *s = scene_from("camera: {position: [0, 1, -6], yaw_deg: 0, projection: orthographic, view_height: 4}\n"
+                          "solids: {ground: {shape: plane, diffuse: 0.7}}\n");
+    worked(lint_scene(s, isa_best(), &(note_taker){find, found}, &why), &why);
+    assert_non_null(strstr(found, "25% of the orthographic camera's rays start inside ground"));
+    found[0] = 0;
+    set(s, "camera.view_height=1.9");
+    worked(lint_scene(s, isa_best(), &(note_taker){find, found}, &why), &why);
+    assert_string_equal(found, "");
+    scene_destroy(s);
+}
 
 static void moves_of_an_orthographic_camera_change_its_height(void **state)
 {
@@ -409,6 +433,7 @@ int main(void)
         cmocka_unit_test(what_is_in_focus_is_sharp),
         cmocka_unit_test(one_film_for_threads_and_instruction_sets),
         cmocka_unit_test(the_seed_chooses_the_points_of_the_lens),
+        cmocka_unit_test(rays_that_start_in_the_ground_are_noted),
         cmocka_unit_test(moves_of_an_orthographic_camera_change_its_height),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);

@@ -8,7 +8,7 @@
 #include <stdbool.h>
 
 /* RGB, linear, rows from the top, pixel[(y * width + x) * 3 + channel]; 1.0 is white. coded_bits is 8 or 16 if
- * image_read decoded the pixels from sRGB values with that many bits, otherwise 0. tone: how it is shown with 8 bits. */
+ * image_read decoded the pixels from sRGB values with that many bits, otherwise 0. tone: how 8 bits show it. */
 typedef struct image {
     int width, height;
     float *pixel;
@@ -59,10 +59,10 @@ typedef struct image_rows {
 } image_rows;
 image_rows image_rows_of(const image *img);
 
-/* PNG with 8 bits and JPEG are shown with the image's tone; the others hold its values. PNG with 8 or 16 bits and JPEG (quality 92, 4:4:4) are sRGB-encoded, with a PNG sRGB chunk, correctly rounded, NaN as
- * 0; PFM has linear, little-endian floats. bits applies to PNG only. PNG is compressed with a thread per processing
- * unit, at most 16; the file does not depend on their number. After a cancellation (cancel_hurries) it is compressed
- * less. */
+/* PNG with 8 bits and JPEG are shown with the image's tone; the others hold its values. PNG with 8 or 16 bits and JPEG
+ * (quality 92, 4:4:4) are sRGB-encoded, with a PNG sRGB chunk, correctly rounded, NaN as 0; PFM has linear,
+ * little-endian floats. bits applies to PNG only. PNG is compressed with a thread per processing unit, at most 16; the
+ * file does not depend on their number. After a cancellation (cancel_hurries) it is compressed less. */
 status image_write(const image *img, const char *path, int bits, diagnostic *why);
 status image_write_rows(const image_rows *rows, const char *path, int bits, diagnostic *why);
 

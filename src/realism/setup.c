@@ -139,7 +139,7 @@ scene *arrange_empty(const scene *s)
     r->samples = 1;
     r->min_weight = 0.0;
     r->depth = 16;
-    copy->camera.roll_deg = 0.0; /* vertical edges are searched along the lines of the image */
+    copy->camera.roll_deg = 0.0;                      /* vertical edges are searched along the lines of the image */
     copy->camera.projection = PROJECTION_PERSPECTIVE; /* realism/view.h is a pinhole's */
     copy->camera.aperture = 0.0;
     copy->background.absorb_per_m = vec3_make(0.0, 0.0, 0.0); /* the closed forms do not cover the path to the vessel */

@@ -75,8 +75,8 @@ static void leave_lens(const tracer *t, int64_t each, int count, const camera_pl
         q->inside[i] = scene_geometry_inside(p->geometry, vec3_make(q->ox[i], q->oy[i], q->oz[i]));
 }
 
-/* The direction across a ray d that a direction across the camera's axis f becomes under the shortest rotation from f to
- * d (Rodrigues' formula): directions at right angles stay so, and crossed filters are crossed in the whole image. */
+/* The direction across a ray d that a direction across the camera's axis f becomes under the shortest rotation from f
+ * to d (Rodrigues' formula): directions at right angles stay so, and crossed filters are crossed in the whole image. */
 static vec3 across_ray(vec3 axis, vec3 f, vec3 d)
 {
     return vec3_sub(axis, vec3_scale(vec3_add(f, d), vec3_dot(axis, d) / (1.0 + vec3_dot(f, d))));

@@ -5,8 +5,8 @@
  * plane (Hecht, Optics, 5.2; Potmesil and Chakravarty, "A lens and aperture camera model for synthetic image
  * generation", SIGGRAPH 1981) the rays of one image point start all over the lens and meet again in the plane in focus,
  * where the chief ray, through the lens's centre, meets it. The lens of an orthographic camera is telecentric: each
- * image point has its own centre. A point at depth z is blurred to a disc whose diameter, measured in the plane in focus
- * at depth f, is A |z - f| / z in perspective, and A |z - f| / f with parallel chief rays, for an aperture A. */
+ * image point has its own centre. A point at depth z is blurred to a disc whose diameter, measured in the plane in
+ * focus at depth f, is A |z - f| / z in perspective, and A |z - f| / f with parallel chief rays, for an aperture A. */
 #pragma once
 
 #include "base/vec3.h"

@@ -152,13 +152,7 @@ function historyButtons(lab) {
 function createFields(root, lab) {
   let kinds = '';
   let shown = [];
-  const paths = [
-    'camera.position',
-    'camera.target',
-    'camera.yaw_deg',
-    'camera.pitch_deg',
-    'camera.roll_deg',
-  ];
+  const paths = ['camera.position', 'camera.target', 'camera.yaw_deg', 'camera.pitch_deg', 'camera.roll_deg'];
   const sizeOf = () => (lab.state?.camera?.parallel ? 'camera.view_height' : 'camera.fov_deg');
 
   const send = (path, value) =>

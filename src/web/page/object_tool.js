@@ -50,7 +50,8 @@ export function objectTool(lab, choice, mark) {
     const { camera } = lab.state;
     const { right, up: upward, half_width: w, half_height: h } = camera;
     const spread = spreadAt(camera, depth);
-    return add(times(right, dx * ((2 * w) / view.width) * spread), times(upward, -dy * ((2 * h) / view.height) * spread));
+    const [across, down] = [((2 * w) / view.width) * spread, ((2 * h) / view.height) * spread];
+    return add(times(right, dx * across), times(upward, -dy * down));
   }
 
   async function hitAt(point) {
