@@ -26,10 +26,12 @@ trap 'rm -rf "$work"' EXIT
 bash tests/faults/template.sh "$work/template" || exit 1
 
 # The commands are divided among the processors.
+without='^#'
+command -v gnuplot >/dev/null || without="$without| gnuplot "
 some=memory,thread,open-emfile,read-eio,write-enospc,fsync-eio,rename-eio
 [[ ${FAULTS_EVERY:-24} == 1 ]] || FAULTS_KINDS=${FAULTS_KINDS:-$some}
 jobs=${FAULTS_JOBS:-$(nproc)} only=${FAULTS_ONLY:-}
-grep -v '^#' tests/faults/commands.txt | awk -v jobs="$jobs" -v only="${only// /,}" -v folder="$work" '
+grep -Ev "$without" tests/faults/commands.txt | awk -v jobs="$jobs" -v only="${only// /,}" -v folder="$work" '
     only == "" || index("," only ",", "," $1 ",") { print >(folder "/table." n++ % jobs) }'
 started=()
 for table in "$work"/table.*; do

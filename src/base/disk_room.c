@@ -36,7 +36,7 @@ static bool shorten(char *path)
 double disk_room_free(const char *path)
 {
     struct statvfs about;
-    char folder[PATH_MAX]; /* the kernel knows no longer path */
+    char folder[PATH_MAX]; /* the longest that the kernel takes */
     int code = -1;
     if (path[0] && strlen(path) < sizeof folder) {
         strcpy(folder, path);
