@@ -9,9 +9,11 @@ bool nothing_reflected(const inert_case *c)
     const scene *s = c->s;
     if (!follows_rays(s))
         return say_no_tree(c);
-    return s->render.depth == 0 && is_dark_at_depth_limit(s) &&
-           inert_say(c, "depth-0", "set render.depth=4",
-                     "render.depth is 0, and the radiance beyond the depth limit is black");
+    if (s->render.depth == 0 && is_dark_at_depth_limit(s))
+        return inert_say(c, "depth-0", "set render.depth=4",
+                         "render.depth is 0, and the radiance beyond the depth limit is black");
+    /* A layered opaque surface does not use the reflectivity with which that is found out. */
+    return !(c->m->transparency == 0.0 && material_is_layered(c->m, &s->render)) && mirrors_black(c);
 }
 
 bool extinction_rule(const inert_case *c)

@@ -2,6 +2,7 @@
 #include "scene/model/inert/inert_private.h"
 #include "geometry/shapes/shape.h"
 #include "scene/model/cover.h"
+#include "scene/model/face_materials.h"
 #include "scene/model/medium.h"
 #include "scene/model/scene.h"
 
@@ -61,7 +62,8 @@ static bool index_rule(const inert_case *c)
 /* An opaque solid may become a metal. */
 static bool medium_rule(const inert_case *c)
 {
-    return c->m->transparency == 0.0 ? nothing_reflected(c) : index_rule(c);
+    const bool by_face = has_face_materials(c->s, c->owner); /* which cannot be metals */
+    return c->m->transparency == 0.0 && !by_face ? nothing_reflected(c) : index_rule(c);
 }
 
 /* Light inside the solid is seen only by a camera inside it. */
@@ -138,7 +140,7 @@ static bool shininess_rule(const inert_case *c)
 
 /* Weights are not negative: if the film is unchanged with full reflection, it is unchanged with less. A coating reduces
  * transmission by what it adds to reflection; if neither 1/2 nor 1 changes the film, both paths are black. */
-static bool mirrors_black(const inert_case *c)
+bool mirrors_black(const inert_case *c)
 {
     const background *sky = &c->s->background;
     const bool dark = sky->kind == BACKGROUND_UNIFORM && is_black(sky->color), clear = !material_is_opaque(c->m);
