@@ -62,8 +62,9 @@ static bool index_rule(const inert_case *c)
 /* An opaque solid may become a metal. */
 static bool medium_rule(const inert_case *c)
 {
-    const bool by_face = has_face_materials(c->s, c->owner); /* which cannot be metals */
-    return c->m->transparency == 0.0 && !by_face ? nothing_reflected(c) : index_rule(c);
+    const render_settings *r = &c->s->render; /* where metals are refused, see check.c */
+    const bool no_metal = has_face_materials(c->s, c->owner) || (r->polarisation && r->spectrum != SPECTRUM_SPECTRAL);
+    return c->m->transparency == 0.0 && !no_metal ? nothing_reflected(c) : index_rule(c);
 }
 
 /* Light inside the solid is seen only by a camera inside it. */
