@@ -24,7 +24,7 @@ static const acts_small acts_smaller[] = {
     {"plates", "render.width=120 render.height=90"},
     {"solids", "render.samples=1"},
     {"caustic", "render.samples=1 render.photons=2000"},
-    {"films", "render.samples=1 render.depth=3 left.visible=off copper_ball.visible=off"},
+    {"films", "render.samples=1 render.depth=3"},
 };
 
 /* Heights of the films, tried in this order until a value has an effect: a slit may lie between the rays of a small
