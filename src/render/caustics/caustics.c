@@ -108,7 +108,8 @@ static status sort_alone(caustics *c, diagnostic *why)
         return diagnose(why, STATUS_FAILURE, "use fewer photons (render.photons)", "out of memory for photons");
     if (stopped(c))
         return STATUS_OK;
-    const status code = photon_map_create(c->found, (size_t)c->workers, &c->map, why);
+    status code = photon_map_create(c->found, (size_t)c->workers, &c->map, why);
+    code = code == STATUS_INTERRUPTED ? STATUS_OK : code; /* without a map; the frame stops */
     for (int i = 0; i < c->workers; i++) {
         free(c->found[i].list);
         memset(&c->found[i], 0, sizeof c->found[i]);

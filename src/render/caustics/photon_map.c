@@ -1,6 +1,7 @@
 /* The photon map: a tree over photons in Morton order, eight to a leaf and eight children to a node. */
 #include "render/caustics/photon_map.h"
 
+#include "base/cancel.h"
 #include "base/grow.h"
 #include "base/large_pages.h"
 #include "base/status.h"
@@ -27,7 +28,7 @@ status photon_map_create(const photon_list *lists, size_t count, photon_map **ou
     }
     if (!m || !m->photons || !photon_order(lists, count, m->photons) || !photon_tree_make(m)) {
         photon_map_destroy(m);
-        return out_of_memory(why);
+        return cancelled_or_out_of_memory(why);
     }
     photon_tree_fit(m, false);
     *out = m;

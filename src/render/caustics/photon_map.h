@@ -35,7 +35,7 @@ bool photon_list_add(photon_list *l, const photon *one);
 
 typedef struct photon_map photon_map;
 
-/* A map of the photons of all lists. STATUS_FAILURE when out of memory. */
+/* A map of the photons of all lists. STATUS_FAILURE when out of memory, STATUS_INTERRUPTED when cancelled. */
 status photon_map_create(const photon_list *lists, size_t count, photon_map **out, diagnostic *why);
 void photon_map_destroy(photon_map *m);
 

@@ -1,8 +1,10 @@
 /* The order of a photon map: along Morton's curve, finest where most photons are. */
+#include "base/cancel.h"
 #include "render/caustics/photon_tree.h"
 
 #include <math.h>
 #include <stdlib.h>
+#include <string.h>
 
 typedef struct photon_key {
     uint64_t code;
@@ -120,22 +122,48 @@ size_t photon_lists_total(const photon_list *lists, size_t count)
     return sum;
 }
 
+/* --- sorting, by parts between which it can be cancelled --- */
+
+enum { PARTS = 1 << 12, PART_SHIFT = 63 - 12 };
+
+/* Keys in the order of their first 12 bits; end[i]: where part i ends. */
+static void divide(const photon_list *lists, size_t count, const middle *m, photon_key *keys, size_t *end)
+{
+    memset(end, 0, PARTS * sizeof *end);
+    for (size_t i = 0; i < count; i++)
+        for (size_t k = 0; k < lists[i].count; k++)
+            end[code_of(lists[i].list[k].position, m) >> PART_SHIFT]++;
+    for (size_t i = 0, sum = 0; i < PARTS; i++) { /* first where each begins */
+        const size_t begin = sum;
+        sum += end[i];
+        end[i] = begin;
+    }
+    for (size_t i = 0; i < count; i++)
+        for (size_t k = 0; k < lists[i].count; k++) {
+            const uint64_t code = code_of(lists[i].list[k].position, m);
+            keys[end[code >> PART_SHIFT]++] = (photon_key){code, &lists[i].list[k]};
+        }
+}
+
 bool photon_order(const photon_list *lists, size_t count, photon *out)
 {
     const size_t n = photon_lists_total(lists, count);
     if (n == 0)
         return true;
     photon_key *keys = malloc(n * sizeof *keys);
-    if (!keys)
-        return false;
-    const middle m = middle_of(lists, count, (double *)(void *)keys, n);
-    size_t at = 0;
-    for (size_t i = 0; i < count; i++)
-        for (size_t k = 0; k < lists[i].count; k++)
-            keys[at++] = (photon_key){code_of(lists[i].list[k].position, &m), &lists[i].list[k]};
-    qsort(keys, n, sizeof *keys, compare);
-    for (size_t i = 0; i < n; i++)
+    size_t *end = malloc(PARTS * sizeof *end);
+    bool done = keys && end;
+    if (done) {
+        const middle m = middle_of(lists, count, (double *)(void *)keys, n);
+        divide(lists, count, &m, keys, end);
+    }
+    for (size_t i = 0, begin = 0; done && i < PARTS; begin = end[i++]) {
+        qsort(keys + begin, end[i] - begin, sizeof *keys, compare);
+        done = !cancel_asked();
+    }
+    for (size_t i = 0; done && i < n; i++)
         out[i] = *keys[i].of;
+    free(end);
     free(keys);
-    return true;
+    return done;
 }

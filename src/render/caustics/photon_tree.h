@@ -41,7 +41,7 @@ static inline double photon_cosine(const photon *a, const photon *b)
 void photon_box_add(photon_box *b, vec3 at, double radius);
 
 /* photon_order.c: the number of photons in the lists; these photons in the map's order, to as many places; false when
- * out of memory. */
+ * out of memory or cancelled. */
 size_t photon_lists_total(const photon_list *lists, size_t count);
 bool photon_order(const photon_list *lists, size_t count, photon *out);
 

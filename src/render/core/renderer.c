@@ -448,6 +448,8 @@ static status trace_photons(frame *f, int count, plan *p, isa level, render_resu
         TRY(worker_pool_run(f->owner->threads, count, f->s->render.pool, run_photon_step, watch, watch_s(f->options), f,
                             why));
         TRY(caustics_steps[k].alone(f->photons, why));
+        if (cancel_asked())
+            atomic_store(&f->stop, true);
     }
     if (f->photons)
         caustics_count(f->photons, &result->counters);
