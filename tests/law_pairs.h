@@ -269,8 +269,9 @@ static inline double room_around(const law_scene *w, vec3 at)
     for (int i = 0; i < w->solid_count; i++) {
         const law_solid *s = &w->solid[i];
         const ball around = ball_around(s);
-        const bool exact =
-            !s->mesh && !((s->shape.kind == SHAPE_CYLINDER || s->shape.kind == SHAPE_CUP) && s->shape.m != 1.0);
+        /* a lens's reference is no distance: it has only the sign of one */
+        const bool exact = !s->mesh && s->shape.kind != SHAPE_LENS &&
+                           !((s->shape.kind == SHAPE_CYLINDER || s->shape.kind == SHAPE_CUP) && s->shape.m != 1.0);
         const double distance = exact ? (double)reference_distance(&s->shape, quad3_from(at))
                                       : vec3_length(vec3_sub(at, around.middle)) - around.radius;
         least = fmin(least, distance);

@@ -5,6 +5,7 @@
 #include "report/json.h"
 #include "report/wrap.h"
 #include <math.h>
+#include <string.h>
 
 typedef struct metal_line {
     const char *name; /* of the line */
@@ -31,6 +32,19 @@ char *metal_range_text(const metal *m, char text[METAL_RANGE_MAX])
     return text;
 }
 
+/* The range and source of a row: aligned, or on a narrow terminal in words. */
+static void finish_row(FILE *stream, int columns, char cells[CELLS_MAX], const char *range, const char *source)
+{
+    enum { RANGE_WIDTH = 16, SOURCE_LEAST = 24 };
+    const size_t used = strlen(cells);
+    if (columns > 0 && (size_t)columns < used + RANGE_WIDTH + SOURCE_LEAST) {
+        wrap_row(stream, columns, cells, "%s; %s", range, source);
+        return;
+    }
+    snprintf(cells + used, CELLS_MAX - used, "%-*s", RANGE_WIDTH, range);
+    wrap_row(stream, columns, cells, "%s", source);
+}
+
 void metal_rows_table(FILE *stream, double at_nm, int columns)
 {
     char cells[CELLS_MAX], range[METAL_RANGE_MAX];
@@ -39,7 +53,7 @@ void metal_rows_table(FILE *stream, double at_nm, int columns)
         used += snprintf(cells + used, sizeof cells - (size_t)used, "  %-6s  %-6s", lines[i].n, lines[i].k);
     snprintf(cells + used, sizeof cells - (size_t)used, "  %-5s  %s", lines[0].R,
              at_nm > 0.0 ? "n_at    k_at    " : "");
-    wrap_row(stream, columns, cells, "%-14s  source", "range_nm");
+    finish_row(stream, columns, cells, "range_nm", "source");
     for (size_t k = 0; k < metals_count(); k++) {
         const metal *m = metals_at(k);
         used = snprintf(cells, sizeof cells, "%-12s", m->name);
@@ -54,7 +68,7 @@ void metal_rows_table(FILE *stream, double at_nm, int columns)
             snprintf(cells + used, sizeof cells - (size_t)used, "%.4f  %.4f  ", at.re, at.im);
         else if (at_nm > 0.0)
             snprintf(cells + used, sizeof cells - (size_t)used, "%-6s  %-6s  ", "-", "-");
-        wrap_row(stream, columns, cells, "%-14s  %s", metal_range_text(m, range), m->source);
+        finish_row(stream, columns, cells, metal_range_text(m, range), m->source);
     }
 }
 

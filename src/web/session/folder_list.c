@@ -38,6 +38,7 @@ typedef struct names {
 typedef struct listing {
     const folder *of;
     names found[USE_COUNT], next; /* next: folders of the next level */
+    json_t *unread;               /* errors of files whose kind is therefore a guess; NULL: none */
     size_t files, entries;
     status code; /* not STATUS_OK: a name was lost, *why says the reason */
     diagnostic *why;
@@ -100,9 +101,21 @@ static file_use use_by_ending(const char *name)
     return USE_COUNT;
 }
 
+static void note_unread(listing *l, const char *name, const diagnostic *why)
+{
+    json_t *one = json_object();
+    json_add_as(&one, "file", json_string_nocheck(name));
+    json_add_as(&one, "error", json_string_nocheck(why->what));
+    if (!l->unread)
+        l->unread = json_array();
+    json_add(&l->unread, one);
+    if (!l->unread)
+        fail_for_memory(l);
+}
+
 /* Classifies a YAML file by its keys; a file that cannot be parsed is listed as a scene, so that opening it shows
  * the error. */
-static file_use use_by_keys(listing *l, const char *path)
+static file_use use_by_keys(listing *l, const char *name, const char *path)
 {
     static const char *const of_scenes[] = {"solids",     "camera", "lights",    "render",
                                             "background", "meshes", "materials", "textures"};
@@ -111,6 +124,8 @@ static file_use use_by_keys(listing *l, const char *path)
     const status code = document_read_below(path, folder_real(l->of), &file, &why);
     if (code == STATUS_FAILURE && is_lack(&why))
         fail(l, &why);
+    else if (code == STATUS_FAILURE)
+        note_unread(l, name, &why);
     if (code != STATUS_OK)
         return USE_SCENE;
     const node *root = document_root(file);
@@ -138,7 +153,7 @@ static file_use use_of(listing *l, const char *name)
     if (code != STATUS_OK)
         return USE_COUNT;
     if (use == USE_SCENE)
-        use = stat(path, &about) == 0 && about.st_size <= DOCUMENT_MAX ? use_by_keys(l, path) : USE_COUNT;
+        use = stat(path, &about) == 0 && about.st_size <= DOCUMENT_MAX ? use_by_keys(l, name, path) : USE_COUNT;
     free(path);
     return use;
 }
@@ -225,6 +240,8 @@ static json_t *listing_json(const listing *l)
             json_add(&list, json_string(l->found[use].name[i]));
         json_add_as(&all, use_names[use], list);
     }
+    if (l->unread)
+        json_add_as(&all, "unread", json_incref(l->unread));
     return all;
 }
 
@@ -240,6 +257,7 @@ status folder_json(const folder *f, json_t **out, diagnostic *why)
         names_clear(&level);
     }
     *out = l.code == STATUS_OK ? listing_json(&l) : NULL;
+    json_decref(l.unread);
     names_clear(&l.next);
     for (int use = 0; use < USE_COUNT; use++)
         names_clear(&l.found[use]);
