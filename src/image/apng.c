@@ -37,8 +37,10 @@ static void write_chunk(FILE *stream, const char type[TYPE_SIZE + 1], const unsi
     put_32(word, (uint32_t)(head_size + size));
     fwrite(word, 1, sizeof word, stream);
     fwrite(type, 1, TYPE_SIZE, stream);
-    fwrite(head, 1, head_size, stream);
-    fwrite(data, 1, size, stream);
+    if (head_size)
+        fwrite(head, 1, head_size, stream);
+    if (size)
+        fwrite(data, 1, size, stream);
     put_32(word, (uint32_t)crc);
     fwrite(word, 1, sizeof word, stream);
 }
