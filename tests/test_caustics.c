@@ -153,6 +153,25 @@ static void the_sun_passes_a_slab(void **state)
     scene_destroy(s);
 }
 
+/* A lamp so large that random paths find it through the slab: with photons they leave its light to these, and the mean
+ * is the same. */
+static void paths_leave_the_light_to_the_photons(void **state)
+{
+    (void)state;
+    scene *s = scene_from("render: {width: 12, height: 12, depth: 8, integrator: path, paths: 1024, photons: 400000}\n"
+                          "camera: {position: [0, 0.5, 0], target: [0, 0, 0.0001], fov_deg: 60}\n"
+                          "background: {color: [0, 0, 0], ambient: [0, 0, 0]}\n"
+                          "lights: {lamp: {position: [0, 7, 0], intensity: 1, reach: 7, radius: 2}}\n"
+                          "solids:\n"
+                          "  ground: {shape: plane, diffuse: 0.8}\n"
+                          "  slab: {shape: box, position: [0, 2, 0], size: [3, 1, 3], transparency: 1, ior: 1.6}\n");
+    const double without = mean_of(s);
+    assert_true(without > 0.3);
+    set_all(s, "render.caustics=photons render.paths=64");
+    assert_near(mean_of(s), without, 0.06 * without); /* the noise of the 1200 photons that arrive: 3 % */
+    scene_destroy(s);
+}
+
 /* --- a ball --- */
 
 /* A lamp at height LAMP above the centre of a ball of radius 1, the ground at depth GROUND below it. */
@@ -347,6 +366,7 @@ int main(void)
         cmocka_unit_test(a_slab_moves_the_lamp_closer),
         cmocka_unit_test(photons_are_polarised),
         cmocka_unit_test(the_sun_passes_a_slab),
+        cmocka_unit_test(paths_leave_the_light_to_the_photons),
         cmocka_unit_test(a_ball_focuses_as_a_forward_tracer_says),
         cmocka_unit_test(no_light_is_lost),
         cmocka_unit_test(films_are_bit_identical),
