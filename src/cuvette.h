@@ -390,7 +390,7 @@ typedef struct cuvette_counters {
 typedef struct cuvette_solid_counters {
     size_t size;         /* sizeof(cuvette_solid_counters) */
     uint64_t tests;      /* rays tested against it; 0 for a solid that a hierarchy finds */
-    uint64_t hits;       /* hits on its interfaces, without shadow rays */
+    uint64_t hits;       /* hits on its interfaces, without shadow rays and photons */
     uint64_t first_hits; /* camera rays whose first interface is on it */
 } cuvette_solid_counters;
 

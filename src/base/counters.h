@@ -32,7 +32,7 @@ typedef struct ray_counters {
      * for solids that can reduce light by themselves, and only once, without the second test of the few undecided
      * ones */
     uint64_t tests[COUNTERS_SOLID_MAX];
-    uint64_t hits[COUNTERS_SOLID_MAX];       /* hits on the solid's interfaces, without shadow rays */
+    uint64_t hits[COUNTERS_SOLID_MAX];       /* hits on the solid's interfaces, without shadow rays and photons */
     uint64_t first_hits[COUNTERS_SOLID_MAX]; /* camera rays whose first interface is on the solid */
 } ray_counters;
 

@@ -127,7 +127,7 @@ static size_t solids_of(const job_account *a)
  Q(first_hits, "rays", SOLIDS, SAME, ROW, "first_hits", NULL, \
    "camera rays whose first interface is on the solid", c->first_hits) \
  Q(hits, "rays", SOLIDS, SAME, ROW, "hits", NULL, \
-   "hits on interfaces of the solid by rays of all kinds except shadow rays", c->hits) \
+   "hits on interfaces of the solid by camera, reflected and refracted rays", c->hits) \
  Q(tests, "rays", SOLIDS, SAME, OUT, "tests", NULL, "rays tested against the solid", c->tests) \
  Q(noise_rms, "radiance", REAL, SAME, ROW, "noise.rms", "noise", \
    "standard error of the film's values, root mean square, 1 is white; NA without random paths", \

@@ -30,7 +30,8 @@ typedef struct stokes {
 
 /* --- frames --- */
 
-/* The canonical frame of direction d, a function of d alone, so that no ray stores its frame: Duff and others, Building
+/* The canonical frame of direction d, a function of d alone, so that no ray stores its frame; also two unit vectors
+ * across any unit vector: Duff and others, Building
  * an Orthonormal Basis, Revisited, JCGT 6(1), 2017. It is discontinuous where d.z changes sign. */
 static inline void polarisation_frame(vec3 d, vec3 *x, vec3 *y)
 {

@@ -39,7 +39,7 @@ class SolidCounts:
     """Counts of one solid."""
 
     tests: int  #: rays tested against it; 0 for a solid that a hierarchy finds
-    hits: int  #: hits on its interfaces, without shadow rays
+    hits: int  #: hits on its interfaces, without shadow rays and photons
     first_hits: int  #: camera rays whose first interface is on it
 
 

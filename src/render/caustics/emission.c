@@ -3,6 +3,7 @@
 
 #include "base/elementary.h"
 #include "geometry/shapes/shape.h"
+#include "optics/mueller.h"
 #include "render/core/draw.h"
 
 #include <stdlib.h>
@@ -213,19 +214,11 @@ static unit_pair pair(const emission *e, int64_t i, uint64_t purpose)
     return (unit_pair){random_unit(s.x), random_unit(s.y)};
 }
 
-/* Two unit vectors across a third (Duff et al., "Building an Orthonormal Basis, Revisited", JCGT 6(1), 2017). */
-static void across(vec3 n, vec3 *u, vec3 *v)
-{
-    const double sign = copysign(1.0, n.z), a = -1.0 / (sign + n.z), b = n.x * n.y * a;
-    *u = vec3_make(1.0 + sign * n.x * n.x * a, sign * b, -sign * n.x);
-    *v = vec3_make(b, sign + n.y * n.y * a, -n.y);
-}
-
 static vec3 along(vec3 axis, double cosine, double sine, double turn)
 {
     vec3 u, v;
     double s, c;
-    across(axis, &u, &v);
+    polarisation_frame(axis, &u, &v);
     elementary_sincos_deg(360.0 * turn, &s, &c);
     return vec3_add(vec3_scale(axis, cosine), vec3_add(vec3_scale(u, sine * c), vec3_scale(v, sine * s)));
 }

@@ -6,9 +6,10 @@
  *                    Calculations", TOG 15(1), 1996), and continues the path by the cosine law, or like a mirror
  *                    with its reflectivity.
  * Only rays from the camera and from specular surfaces hit light spheres: matte surfaces have sampled them directly.
- * This is how light through a vessel makes caustics. In a scene with light spheres, clear solids block point lights
- * too. A light's radiance is intensity (reach / radius)^2, so that a matte surface at its reach is as bright as in
- * Phong's model. There is no ambient term: light from the sky and from other surfaces replaces it. */
+ * This is how light through a vessel makes caustics; with render.caustics photons bring that light instead, and rays
+ * hit lights only along specular surfaces from the camera on. In a scene with light spheres, clear solids block point
+ * lights too. A light's radiance is intensity (reach / radius)^2, so that a matte surface at its reach is as bright as
+ * in Phong's model. There is no ambient term: light from the sky and from other surfaces replaces it. */
 #include "render/integrators/path_lights.h"
 #include "render/shade/path_kernels.h"
 
