@@ -307,6 +307,27 @@ static double draw_ray(const emission *e, int lamp, unit_pair s, unit_pair place
     return to_lamp(e, lamp, out->direction, &out->origin) ? 1.0 / (density * PI * radius * radius) : 0.0;
 }
 
+/* The radiance at a random wavelength of the lamp, over the density of the choice over that of an even one. Lines are
+ * chosen by their brightness. */
+static double draw_wavelength(const emission *e, int lamp, double u, emitted_ray *out)
+{
+    lamp_line lines[LAMP_LINES_MAX];
+    const int count = spectral_lines_of(&e->p->lights[lamp], lines);
+    double all = 0.0;
+    out->of_line = count > 0;
+    if (count == 0) {
+        out->wavelength = (int)(u * SPECTRA_COUNT);
+        return spectra_light(e->p->spectral, sample_key_with_wavelength(0, out->wavelength), lamp);
+    }
+    for (int k = 0; k < count; k++)
+        all += lines[k].bright;
+    int k = 0;
+    for (double left = u * all; k + 1 < count && left >= lines[k].bright; k++)
+        left -= lines[k].bright;
+    out->wavelength = lines[k].wavelength;
+    return all > 0.0 ? lines[k].radiance / SPECTRA_COUNT * (all / lines[k].bright) : 0.0;
+}
+
 bool emission_ray(const emission *e, int64_t i, emitted_ray *out)
 {
     const plan *p = e->p;
@@ -324,9 +345,9 @@ bool emission_ray(const emission *e, int64_t i, emitted_ray *out)
     out->falls = l->reach > 0.0;
     out->wavelength = -1;
     vec3 color = vec3_scale(l->color, l->intensity);
+    out->of_line = false;
     if (p->spectral) {
-        out->wavelength = (int)(pair(e, number, (uint64_t)lamp << 8 | 2).u * SPECTRA_COUNT);
-        const double radiance = spectra_light(p->spectral, sample_key_with_wavelength(0, out->wavelength), lamp);
+        const double radiance = draw_wavelength(e, lamp, pair(e, number, (uint64_t)lamp << 8 | 2).u, out);
         color = vec3_make(radiance, radiance, radiance);
     }
     out->power = vec3_scale(color, share * (out->falls ? l->reach * l->reach : 1.0) * angle / (double)from->count);

@@ -31,6 +31,7 @@ typedef struct emitted_ray {
     double lamp_radius;
     uint64_t inside;
     int wavelength; /* its number, or -1 */
+    bool of_line;   /* one of a spectral line, of which all photons count for that wavelength alone */
     bool falls;     /* false: its light does not fall off with distance, and its power applies at distance 1 */
 } emitted_ray;
 

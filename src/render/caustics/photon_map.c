@@ -114,7 +114,11 @@ static void add(const photon *one, void *context)
         return;
     double share = 1.0 - d2 / r2;
     share = share * share * (3.0 / (PHOTON_PI * r2));
-    if (s->wavelength >= 0) {
+    if (s->wavelength >= 0 && one->wavelength < 0) {
+        if (one->wavelength != photon_of_line(s->wavelength))
+            return;
+        share *= RANGE;
+    } else if (s->wavelength >= 0) {
         const double away = fabs((double)(s->wavelength - one->wavelength)) / BAND;
         if (!(away < 1.0))
             return;

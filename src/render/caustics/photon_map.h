@@ -21,8 +21,13 @@ typedef struct photon {
     float normal[3]; /* of the surface, on the side where it arrived */
     float flux[3];   /* its power over pi, by channel: a matte surface's radiance is its albedo times irradiance / pi */
     float radius;    /* of its disc: at first, that of the blur by the lamp's width; photon_map_spread computes it */
-    int32_t wavelength; /* its number in a spectral film, else 0 */
+    int32_t wavelength; /* its number in a spectral film, else 0; of a spectral line, photon_of_line of it */
 } photon;
+
+static inline int32_t photon_of_line(int32_t wavelength)
+{
+    return ~wavelength;
+}
 
 /* Photons of one worker, in any order. Zeros at first; the owner frees list. */
 typedef struct photon_list {
@@ -50,7 +55,8 @@ size_t photon_map_count(const photon_map *m);
 const photon *photon_map_at(const photon_map *m, size_t i);
 
 /* Irradiance over pi at a point of a surface with that normal, by channel. In a spectral map, per wavelength number
- * (a photon counts for wavelengths near its own): wavelength is the ray's, or -1 in an rgb map. */
+ * (a photon counts for wavelengths near its own; that of a line for its own alone): wavelength is the ray's, or -1 in
+ * an rgb map. */
 vec3 photon_map_irradiance(const photon_map *m, vec3 point, vec3 normal, int wavelength);
 
 /* Memory for each photon, bytes. */

@@ -105,7 +105,7 @@ static void arrive(tracer *t)
                             .flux = {(float)(g->wr[k] * r.power.x * falls), (float)(g->wg[k] * r.power.y * falls),
                                      (float)(g->wb[k] * r.power.z * falls)},
                             .radius = (float)(BLUR_SHARE * r.lamp_radius * bent / (passed - bent)),
-                            .wavelength = r.wavelength};
+                            .wavelength = r.of_line ? photon_of_line(r.wavelength) : r.wavelength};
         if (!photon_list_add(w->found, &one))
             atomic_store(&f->out_of_memory, true);
     }

@@ -136,14 +136,29 @@ static status arrange(const scene *s, const index_law *laws, plan *p, diagnostic
     return code;
 }
 
-static status aim_cones(const scene *s, plan *p, diagnostic *why)
+/* What a lamp's spectrum looks like. */
+static vec3 seen_color(const light *l)
 {
+    double rgb[3];
+    if (l->spectrum == LAMP_OF_COLOR)
+        return l->color;
+    lamp_rgb((lamp_spectrum)l->spectrum, l->temperature_k, l->line_nm, rgb);
+    return vec3_make(rgb[0], rgb[1], rgb[2]);
+}
+
+static status prepare_lights(const scene *s, plan *p, diagnostic *why)
+{
+    p->lights = calloc(s->light_count + 1, sizeof *p->lights);
     p->cones = calloc(s->light_count + 1, sizeof *p->cones);
-    if (!p->cones)
+    if (!p->lights || !p->cones)
         return out_of_memory(why);
-    for (size_t i = 0; i < s->light_count; i++)
+    p->light_count = (int)s->light_count;
+    for (size_t i = 0; i < s->light_count; i++) {
+        p->lights[i] = s->lights[i];
+        p->lights[i].color = seen_color(&s->lights[i]);
         if (s->lights[i].kind != LIGHT_POINT)
             p->cones[i] = light_cone_of(&s->lights[i]);
+    }
     return STATUS_OK;
 }
 
@@ -275,7 +290,7 @@ status plan_build(const scene *s, plan **out, diagnostic *why)
         p->basic = scene_has_basic_radiance(&s->render);
     THEN(code, arrange(s, laws, p, why));
     THEN(code, fill_priority_indices(s, laws, p, why));
-    THEN(code, aim_cones(s, p, why));
+    THEN(code, prepare_lights(s, p, why));
     THEN(code, add_rain(s, p, why));
     THEN(code, place_camera(s, p, why));
     free(laws);
@@ -290,8 +305,6 @@ status plan_build(const scene *s, plan **out, diagnostic *why)
     p->sky = sky_of(s, p);
     if (s->render.beyond == DEPTH_LIMIT_MEAN)
         p->sky_mean = p->rain && !p->spectral ? vec3_add(sky_mean(p->sky), rain_color_mean(p->rain)) : sky_mean(p->sky);
-    p->lights = s->lights;
-    p->light_count = (int)s->light_count;
     if (scene_has_caustics(&s->render))
         p->render.shadows = SHADOWS_OPAQUE; /* the photons bring the rest */
     p->solid_shadows = p->render.shadows == SHADOWS_OPAQUE;
@@ -321,6 +334,7 @@ void plan_destroy(plan *p)
     free(p->ior);
     free(p->laws);
     free(p->absorption);
+    free(p->lights);
     free(p->cones);
     spectra_destroy(p->spectral);
     layered_plan_destroy(p->layered);

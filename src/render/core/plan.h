@@ -1,6 +1,6 @@
 /* The render plan: a scene prepared for tracing, with solids in order of priority, materials and refractive indices by
  * priority index, and the camera frame. It is built once per frame and then read by all workers. Ownership: plan_build
- * allocates, plan_destroy releases; it borrows the scene's lights and sky. */
+ * allocates, plan_destroy releases; it borrows the scene's sky. */
 #pragma once
 
 #include "geometry/scene_geometry.h"
@@ -59,7 +59,7 @@ typedef struct plan {
     background flat_sky;
     struct rain *rain; /* what rain adds to the sky, or NULL */
     vec3 sky_mean;     /* over all directions; computed if render.beyond is mean */
-    const light *lights;
+    light *lights;     /* the scene's; their colour is what their spectrum looks like; names are borrowed */
     light_cone *cones; /* by light; undefined for a point light */
     int light_count;
 } plan;

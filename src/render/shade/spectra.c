@@ -50,10 +50,12 @@ static bool upsample_scene(upsampled_scene *l, size_t priority_indices)
     return true;
 }
 
-static spectral_row row_at(const upsampled_scene *l, double lambda_nm)
+static spectral_row row_at(const upsampled_scene *l, double lambda_nm, double density)
 {
     spectral_row row;
     observer_weights(lambda_nm, row.eye);
+    for (int c = 0; c < 3; c++)
+        row.eye[c] /= density;
     row.sky = upsampled_emission(&l->sky, lambda_nm);
     row.horizon = upsampled_emission(&l->horizon, lambda_nm);
     row.ambient = upsampled_emission(&l->ambient, lambda_nm);
@@ -87,23 +89,49 @@ static int64_t wavelengths_together(const render_settings *render)
 }
 
 /* Number `i` of `count` wavelengths. */
-static int64_t wavelength_of(int64_t i, int64_t count, int offset)
+static int64_t wavelength_of(const spectra *p, int64_t i, int64_t count, int offset, bool *of_line)
 {
-    return (int64_t)(((double)i + (offset + 0.5) / SPECTRA_OFFSETS) / (double)count * SPECTRA_COUNT);
+    *of_line = false;
+    if (p->lines.count == 0)
+        return (int64_t)(((double)i + (offset + 0.5) / SPECTRA_OFFSETS) / (double)count * SPECTRA_COUNT);
+    return line_table_choose(&p->lines, ((double)i + (offset + 0.5) / SPECTRA_OFFSETS) / (double)count, of_line);
 }
 
 static void whiten(spectra *p, int offset)
 {
     const int64_t count = p->together;
     double white[3], sum[3] = {0.0, 0.0, 0.0};
+    int64_t even = 0; /* wavelengths that are not drawn from lines, whose share of white is subtracted */
     linear_srgb_to_xyz((const double[3]){1.0, 1.0, 1.0}, white);
     for (int64_t i = 0; i < count; i++) {
-        const spectral_row *row = &p->rows[wavelength_of(i, count, offset)];
+        bool of_line;
+        const spectral_row *row = &p->rows[wavelength_of(p, i, count, offset, &of_line)];
+        double *to = of_line ? white : sum;
         for (int c = 0; c < 3; c++)
-            sum[c] += row->eye[c] * row->basis[0] / (double)count;
+            to[c] += (of_line ? -1.0 : 1.0) * row->eye[c] * row->basis[0] / (double)count;
+        even += !of_line;
     }
     for (int c = 0; c < 3; c++)
-        p->white[offset][c] = count < SPECTRA_WHITE_FROM ? 1.0 : white[c] / sum[c];
+        p->white[offset][c] = even < SPECTRA_WHITE_FROM ? 1.0 : white[c] / sum[c];
+}
+
+/* Adds a lamp's light, by wavelength number. */
+static void fill_light(const upsampled_scene *l, spectra *p, size_t lamp)
+{
+    const light *one = &l->s->lights[lamp];
+    lamp_line lines[LAMP_LINES_MAX];
+    const int count = spectral_lines_of(one, lines);
+    const double of_body =
+        one->spectrum == LAMP_BLACK_BODY ? one->intensity * black_body_scale(one->temperature_k) : 0.0;
+    for (size_t i = 0; i < SPECTRA_COUNT; i++) {
+        const double lambda_nm = spectra_lambda((int64_t)i);
+        p->lights[i * p->light_count + lamp] =
+            one->spectrum == LAMP_OF_COLOR     ? upsampled_emission(&l->light[lamp], lambda_nm)
+            : one->spectrum == LAMP_BLACK_BODY ? of_body * planck_relative(lambda_nm, one->temperature_k)
+                                               : 0.0;
+    }
+    for (int k = 0; k < count; k++)
+        p->lights[(size_t)lines[k].wavelength * p->light_count + lamp] += lines[k].radiance;
 }
 
 static bool fill_tables(const upsampled_scene *l, spectra *p)
@@ -116,12 +144,12 @@ static bool fill_tables(const upsampled_scene *l, spectra *p)
         return false;
     for (size_t i = 0; i < SPECTRA_COUNT; i++) {
         const double lambda_nm = spectra_lambda((int64_t)i);
-        p->rows[i] = row_at(l, lambda_nm);
+        p->rows[i] = row_at(l, lambda_nm, line_table_density(&p->lines, (int64_t)i));
         for (size_t r = 0; r < p->priority_indices; r++)
             p->regions[i * p->priority_indices + r] = region_at(l, r, lambda_nm);
-        for (size_t k = 0; k < p->light_count; k++)
-            p->lights[i * p->light_count + k] = upsampled_emission(&l->light[k], lambda_nm);
     }
+    for (size_t k = 0; k < p->light_count; k++)
+        fill_light(l, p, k);
     p->together = wavelengths_together(&l->s->render);
     for (int i = 0; i < SPECTRA_OFFSETS; i++)
         whiten(p, i);
@@ -134,7 +162,7 @@ spectra *spectra_create(const scene *s, const material *const *materials, const 
     upsampled_scene l = {.s = s, .materials = materials, .laws = laws};
     spectra *p = calloc(1, sizeof *p);
     if (p)
-        p->priority_indices = priority_indices, p->light_count = s->light_count;
+        p->priority_indices = priority_indices, p->light_count = s->light_count, p->lines = line_table_of(s);
     const bool done = p && upsample_scene(&l, priority_indices) && fill_tables(&l, p);
     free(l.color);
     free(l.checker_color);
@@ -161,14 +189,24 @@ double spectra_lambda(int64_t number)
     return OBSERVER_LOW_NM + ((double)number + 0.5) * ((double)(OBSERVER_HIGH_NM - OBSERVER_LOW_NM) / SPECTRA_COUNT);
 }
 
+int spectra_number(double lambda_nm)
+{
+    const int number =
+        (int)((lambda_nm - OBSERVER_LOW_NM) * ((double)SPECTRA_COUNT / (OBSERVER_HIGH_NM - OBSERVER_LOW_NM)));
+    return number < SPECTRA_COUNT ? number : SPECTRA_COUNT - 1;
+}
+
 int64_t spectra_choose(const spectra *p, const render_settings *render, int64_t sample_key, const double **white)
 {
     const int64_t count = p->together;
     const int64_t sample = sample_key_sample(sample_key),
                   all_of = sample_key_make(sample_key_pixel(sample_key), sample / count);
     const int offset = (int)(draw(render->seed, all_of, 0, DRAW_WAVELENGTH).word[0] % SPECTRA_OFFSETS);
-    *white = p->white[offset];
-    return sample_key_with_wavelength(sample_key, wavelength_of(sample % count, count, offset));
+    static const double unchanged[3] = {1.0, 1.0, 1.0};
+    bool of_line;
+    const int64_t wavelength = wavelength_of(p, sample % count, count, offset, &of_line);
+    *white = of_line ? unchanged : p->white[offset];
+    return sample_key_with_wavelength(sample_key, wavelength);
 }
 
 /* A texel as a sum of white, a secondary and a primary colour: Smits, "An RGB to Spectrum Conversion for Reflectances",

@@ -6,6 +6,7 @@
 
 #include "optics/upsample.h"
 #include "render/core/sample_key.h"
+#include "render/shade/spectral_lines.h"
 #include "scene/model/medium.h"
 #include "scene/model/material.h"
 #include "scene/model/open.h"
@@ -21,7 +22,7 @@ enum { SPECTRA_OFFSETS = 256, SPECTRA_WHITE_FROM = 8 };
 
 /* Values at one wavelength that do not depend on a region. */
 typedef struct spectral_row {
-    double eye[3]; /* observer_weights */
+    double eye[3]; /* observer_weights over the density of the choice (line_table_density) */
     double sky, horizon, ambient;
     double basis[SKY_BASIS_COUNT]; /* white, cyan, magenta, yellow, red, green, blue: of a sky image's texels */
 } spectral_row;
@@ -37,6 +38,7 @@ typedef struct spectra {
     double *lights;           /* by wavelength, then light: radiance of its colour times its intensity */
     double (*white)[3];       /* by offset: weights that make a pixel's wavelengths white under D65 */
     int64_t together;         /* number of wavelengths that share one offset */
+    line_table lines;
     size_t priority_indices, light_count;
 } spectra;
 
@@ -46,15 +48,17 @@ spectra *spectra_create(const scene *s, const material *const *materials, const 
                         size_t priority_indices);
 void spectra_destroy(spectra *p);
 
-/* The wavelength of that number, at the middle of its 0.1 nm. */
+/* The wavelength of that number, at the middle of its 0.1 nm, and the number of a wavelength from OBSERVER_LOW_NM to
+ * OBSERVER_HIGH_NM. */
 double spectra_lambda(int64_t number);
+int spectra_number(double lambda_nm);
 
 /* Returns the sample key with its wavelength. The wavelengths of one sample point of a pixel are evenly spaced over
  * 380..780 nm, from an offset that is hashed from seed, pixel and point (Cranley and Patterson, "Randomization of
  * Number Theoretic Methods for Multiple Integration", SIAM J. Numer. Anal. 13(6), 1976): the observer's curves are
  * smooth and end at 0, where such sums have the smallest error. The remaining error for white is removed by weights for
  * X, Y and Z (*white), so that a white furnace is white whatever the offset; below SPECTRA_WHITE_FROM wavelengths,
- * where that would be a large correction, they are 1. */
+ * where that would be a large correction, and for spectral lines (spectral_lines.h) they are 1. */
 int64_t spectra_choose(const spectra *p, const render_settings *render, int64_t sample_key, const double **white);
 
 static inline const spectral_row *spectra_row(const spectra *p, int64_t sample_key)

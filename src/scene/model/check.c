@@ -124,6 +124,20 @@ static status check_light(const scene *s, const light *lamp, diagnostic *why)
     return STATUS_OK;
 }
 
+/* As many as render/shade/spectral_lines.h distinguishes, with those of all other lamps. */
+enum { LINE_LAMPS_MAX = 100 };
+
+static status check_lines(const scene *s, diagnostic *why)
+{
+    int count = 0;
+    for (size_t i = 0; i < s->light_count; i++)
+        count += s->lights[i].spectrum == LAMP_LINE;
+    return count <= LINE_LAMPS_MAX
+               ? STATUS_OK
+               : diagnose(why, STATUS_BAD_INPUT, "give some of them another spectrum",
+                          "%d lights have the spectrum line; a scene can have %d", count, LINE_LAMPS_MAX);
+}
+
 static status check_beam(const beam *b, diagnostic *why)
 {
     const vec3 axis = beam_axis(b);
@@ -327,6 +341,7 @@ status check_limits(const scene *s, diagnostic *why)
                         "more than 64 planes and solids of meshes");
     if (s->light_count > SCENE_LIGHTS_MAX)
         return diagnose(why, STATUS_BAD_INPUT, "a scene can have 1024", "more than 1024 lights");
+    TRY(check_lines(s, why));
     if (s->beam_count > SCENE_BEAMS_MAX)
         return diagnose(why, STATUS_BAD_INPUT, "a scene can have 64", "more than 64 beams");
     if (s->mesh_count > SCENE_MESHES_MAX || s->texture_count > SCENE_TEXTURES_MAX)

@@ -159,6 +159,9 @@ static void hint_at_lights(const scene *s, const note_taker *taker)
         clear |= s->solids[i].visible && s->solids[i].surface.transparency > 0.0;
     for (size_t i = 0; i < s->light_count; i++) {
         const light *lamp = &s->lights[i];
+        if (lamp->spectrum >= LAMP_SODIUM && lamp->intensity > 0.0 && s->render.spectrum != SPECTRUM_SPECTRAL)
+            note_give(taker, lamp->name, "spectrum", "set render.spectrum=spectral, which traces each line",
+                      "%s emits spectral lines, and an rgb image shows only their colour", lamp->name);
         if (lamp->radius > 0.0 && !path)
             note_give(taker, lamp->name, "radius", "set render.integrator=path, which samples its radius",
                       "%s acts as a point light", lamp->name);

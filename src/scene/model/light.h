@@ -2,6 +2,7 @@
 #pragma once
 
 #include "base/vec3.h"
+#include "optics/lamp_spectrum.h"
 #include <stdint.h>
 
 enum { SCENE_LIGHTS_MAX = 1024 };
@@ -15,6 +16,9 @@ typedef struct light {
     double half_angle_deg; /* of a spotlight, from its axis */
     vec3 color;
     double intensity;
-    double radius; /* of the emitting sphere, for the path integrator; 0 = a point light */
-    double reach;  /* the distance at which the intensity applies, with inverse square falloff; 0 = no falloff */
+    int64_t spectrum;     /* lamp_spectrum */
+    double temperature_k; /* of a black body */
+    double line_nm;       /* of a lamp of one line */
+    double radius;        /* of the emitting sphere, for the path integrator; 0 = a point light */
+    double reach;         /* the distance at which the intensity applies, with inverse square falloff; 0 = no falloff */
 } light;

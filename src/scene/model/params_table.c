@@ -39,6 +39,8 @@ static const char *const projection_words[] = {"perspective", "orthographic", NU
 static const char *const analyser_words[] = {"none", "linear", "circular_left", "circular_right", NULL};
 static const char *const tone_words[] = {"none", "reinhard", "aces", NULL};
 static const char *const light_words[] = {"point", "cone", "soft_cone", NULL};
+/* as enum lamp_spectrum */
+static const char *const lamp_words[] = {"color", "black_body", "sodium", "mercury", "hydrogen", "line", NULL};
 static const char *const beam_words[] = {"pencil", "fan", "sheet", "bundle", NULL};
 static const char *const background_words[] = {"uniform", "gradient", "picture", "rain", NULL};
 
@@ -342,6 +344,13 @@ static const param table[] = {
     COLOR(PARAM_LIGHT, light, color, BRIGHT, "1,1,1", "linear colour, multiplied by intensity"),
     REAL(PARAM_LIGHT, light, intensity, "", 0, BRIGHT, "1",
          "multiplies the light's colour: at all distances, or, if reach is set, at that distance"),
+    CHOICE(PARAM_LIGHT, light, spectrum, lamp_words, "color",
+           "spectrum of the light: a smooth one of its colour (white: D65), that of a black body, the lines of sodium, "
+           "mercury or hydrogen, or one line; all but the first have the brightness of white and replace the colour"),
+    REAL(PARAM_LIGHT, light, temperature_k, "K", LAMP_COLDEST_K, LAMP_HOTTEST_K, "2856",
+         "temperature of a black body; 2856: CIE illuminant A, an incandescent lamp"),
+    REAL(PARAM_LIGHT, light, line_nm, "nm", OBSERVER_LOW_NM, OBSERVER_HIGH_NM, "632.8",
+         "wavelength of a light of one line; 632.8: a helium-neon laser"),
     REAL(PARAM_LIGHT, light, radius, "scene units", 0, FAR, "0",
          "radius of the emitting sphere, sampled by integrator path; 0: a point"),
     REAL(PARAM_LIGHT, light, reach, "scene units", 0, FAR, "0",

@@ -74,7 +74,7 @@ bool is_dark_at_depth_limit(const scene *s)
 
 static bool shines(const light *l)
 {
-    return l->intensity > 0.0 && !is_black(l->color);
+    return l->intensity > 0.0 && (l->spectrum != LAMP_OF_COLOR || !is_black(l->color));
 }
 
 size_t shining_lights(const scene *s)

@@ -13,21 +13,40 @@ static bool lights_nothing(const inert_case *c, const light *l)
         return false;
     scene lit = *s; /* borrows from s; a single light with an intensity */
     light white = *l;
-    white.color = vec3_make(1.0, 1.0, 1.0), white.intensity = 1.0;
+    white.color = vec3_make(1.0, 1.0, 1.0), white.intensity = 1.0, white.spectrum = LAMP_OF_COLOR;
     lit.lights = &white, lit.light_count = 1;
     const inert_remedy remedy = inert_set_on(first_visible(s, NULL), "diffuse=0.7");
     return !first_visible(&lit, shows_lamps) &&
            inert_say(c, "lights-nothing", remedy.text, "no visible surface is lit by lights");
 }
 
+/* Parameters of other spectra than the light's. */
+static bool other_spectrum(const inert_case *c, const light *l)
+{
+    const char *name = c->at.row->name;
+    if (strcmp(name, "color") == 0)
+        return l->spectrum != LAMP_OF_COLOR &&
+               inert_say(c, "colored-by-lamp", inert_set("%s.spectrum=color", c->name).text,
+                         "the light's spectrum gives it its colour");
+    if (strcmp(name, "temperature_k") == 0)
+        return l->spectrum != LAMP_BLACK_BODY &&
+               inert_say(c, "no-black-body", inert_set("%s.spectrum=black_body", c->name).text,
+                         "the light is not a black body");
+    return strcmp(name, "line_nm") == 0 && l->spectrum != LAMP_LINE &&
+           inert_say(c, "no-line", inert_set("%s.spectrum=line", c->name).text, "the light's spectrum is not one line");
+}
+
 bool inert_light(const inert_case *c)
 {
     const light *l = &c->s->lights[c->at.index];
     const char *name = c->at.row->name;
-    const bool of_color = strcmp(name, "color") == 0, of_intensity = strcmp(name, "intensity") == 0;
+    const bool of_color = strcmp(name, "color") == 0 || strcmp(name, "spectrum") == 0,
+               of_intensity = strcmp(name, "intensity") == 0;
+    if (other_spectrum(c, l))
+        return true;
     if (!of_intensity && l->intensity == 0.0)
         return inert_say(c, "dark-lamp", inert_set("%s.intensity=1", c->name).text, "the light's intensity is 0");
-    if (!of_color && is_black(l->color))
+    if (!of_color && l->spectrum == LAMP_OF_COLOR && is_black(l->color))
         return inert_say(c, "dark-lamp", inert_set("%s.color=1,1,1", c->name).text, "the light's color is black");
     if ((strcmp(name, "target") == 0 || strcmp(name, "half_angle_deg") == 0) && l->kind == LIGHT_POINT)
         return inert_say(c, "point-lamp", inert_set("%s.kind=cone", c->name).text,

@@ -122,14 +122,25 @@ static bool diffuse_rule(const inert_case *c)
     return is_black_surface(c) || (!scatters && no_lamp(c));
 }
 
+/* Weights are not negative: a full highlight that changes nothing is nowhere in the image. */
+static bool no_highlight(const inert_case *c)
+{
+    return strcmp(c->at.row->name, "specular") == 0 && c->m->specular < 1.0 &&
+           inert_same(c, "%s.specular=1", c->name) &&
+           inert_say(c, "no-highlight", "move it, the light or the camera",
+                     "no lit part of it in this image reflects a light towards the camera");
+}
+
 static bool specular_rule(const inert_case *c)
 {
     const scene *s = c->s;
     if (!is_path(s) && s->render.lighting == LIGHTING_LAMBERT)
         return inert_say(c, "lambert", "set render.lighting=phong", "Lambert shading has no highlights");
-    return no_lamp(c) || (only_spheres_shine(s) && !material_is_opaque(c->m) &&
-                          inert_say(c, "sphere-highlight", "set render.integrator=whitted",
-                                    "a transparent surface reflects the lights directly and has no Phong highlight"));
+    return no_lamp(c) ||
+           (only_spheres_shine(s) && !material_is_opaque(c->m) &&
+            inert_say(c, "sphere-highlight", "set render.integrator=whitted",
+                      "a transparent surface reflects the lights directly and has no Phong highlight")) ||
+           no_highlight(c);
 }
 
 static bool shininess_rule(const inert_case *c)
@@ -261,11 +272,16 @@ static const char *const of_surface[] = {"ambient",      "diffuse", "specular", 
  * */
 static bool unseen(const inert_case *c)
 {
-    static const char *const of_opaque[] = {"color", "emission", "reflectivity", "extinction", "medium", NULL};
-    static const char *const of_film[] = {"film_thickness_nm", "film_ior", NULL};
-    const bool sent_back =
-        is_among(c, of_surface) || (c->m->transparency == 0.0 && (is_among(c, of_opaque) || is_among(c, of_film)));
-    return sent_back && c->frame && c->frame->hits[c->owner - c->s->solids] == 0 && say_unseen(c);
+    static const char *const of_opaque[] = {"color", "emission", NULL};
+    static const char *const of_mirror[] = {"reflectivity",      "extinction", "medium",
+                                            "film_thickness_nm", "film_ior",   NULL};
+    const bool mirrors = is_among(c, of_mirror),
+               sent_back =
+                   is_among(c, of_surface) || (c->m->transparency == 0.0 && (is_among(c, of_opaque) || mirrors));
+    /* photons may reach it, and what it reflects may reach what is seen: not if a full mirror changes nothing */
+    const bool lights = mirrors && scene_has_caustics(&c->s->render);
+    return sent_back && !(lights && !inert_same(c, "%s.reflectivity=1", c->name)) && c->frame &&
+           c->frame->hits[c->owner - c->s->solids] == 0 && say_unseen(c);
 }
 
 /* A transparent solid with the index of the surroundings has no surface, unless it touches another transparent one. */
