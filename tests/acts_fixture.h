@@ -25,6 +25,7 @@ static const acts_small acts_smaller[] = {
     {"solids", "render.samples=1"},
     {"caustic", "render.samples=1 render.photons=2000"},
     {"films", "render.samples=1 render.depth=3"},
+    {"window", "render.samples=4 render.photons=2000"},
     {"spectroscope", "render.wavelengths=4 render.samples=1 render.photons=20000"},
 };
 

@@ -259,6 +259,7 @@ typedef struct condition {
     const char *scene, *assignments, *path, *rule;
     bool works;
 } condition;
+#define SIZED "render.integrator=path render.paths=4 lamp.reach=8 lamp.radius=0.3"
 static const condition conditions[] = {
     {"rod", "lamp.intensity=0", "render.shadows", "no-lamp", true},
     {"rod", "lamp.intensity=0 background.ambient=0,0,0", "render.caustics", "no-lamp", true},
@@ -282,6 +283,23 @@ static const condition conditions[] = {
     {"rod", "lamp.spectrum=sodium", "lamp.color", "colored-by-lamp", true},
     {"rod", "", "lamp.temperature_k", "no-black-body", true},
     {"rod", "lamp.spectrum=sodium", "lamp.line_nm", "no-line", true},
+    {"rod", SIZED " lamp.kind=rectangle", "lamp.radius", "no-sphere", true},
+    {"rod", SIZED, "lamp.width", "no-rectangle", true},
+    {"rod", SIZED, "lamp.height", "no-rectangle", true},
+    {"rod", SIZED, "lamp.roll_deg", "no-rectangle", true},
+    {"rod", "lamp.kind=rectangle", "lamp.width", "sphere-lamp", true},
+    {"rod", "lamp.kind=rectangle", "lamp.height", "sphere-lamp", true},
+    {"rod", "lamp.kind=rectangle lamp.width=3", "lamp.roll_deg", "sphere-lamp", true},
+    {"rod", SIZED " lamp.kind=rectangle lamp.height=0", "lamp.width", "thin-rectangle", true},
+    {"rod", SIZED " lamp.kind=rectangle lamp.width=0", "lamp.height", "thin-rectangle", true},
+    {"rod", SIZED " lamp.kind=rectangle lamp.width=0 lamp.height=3", "lamp.roll_deg", "thin-rectangle", true},
+    {"rod", SIZED, "render.soft_shadows", "always-soft", true},
+    {"rod", "lamp.reach=8 lamp.radius=0.3 render.integrator=zbuffer", "render.soft_shadows", "no-shadows", true},
+    {"rod", "lamp.reach=8 lamp.radius=0.3 render.shadows=off", "render.soft_shadows", "no-soft-shadows", true},
+    {"rod", "lamp.reach=8 lamp.radius=0.3 lamp.intensity=0", "render.soft_shadows", "no-lamp", true},
+    {"rod", "lamp.reach=8 lamp.radius=0.3 tiles.diffuse=0 plastic.diffuse=0 plastic.specular=0 clear.specular=0",
+     "render.soft_shadows", "nothing-lit", true},
+    {"rod", "", "render.soft_shadows", "no-size", true},
     {"rod", "tiles.diffuse=0 plastic.diffuse=0 plastic.specular=0 clear.specular=0", "lamp.position", "lights-nothing",
      true},
     {"rod", "tiles.diffuse=0 plastic.diffuse=0 plastic.specular=0 clear.specular=0", "render.shadows", "nothing-lit",
@@ -383,7 +401,7 @@ static const counterpart counterparts[] = {
     {"apart", "rod", "liquid.priority", ""},
     {"one-light", "shapes", "render.light_sampling", "render.integrator=path render.paths=4"},
     {"unseen", "rod", "rod.color", ""},
-    {"no-highlight", "rod", "rod.specular", ""},
+    {"unseen-highlight", "rod", "rod.specular", ""},
     {"by-face", "rod", "rod.color", ""},
     {"by-face", "rod", "rod.diffuse", ""},
     {"by-face", "rod", "rod.specular", ""},

@@ -98,8 +98,8 @@ static void ineffective_parameters_give_a_hint(void **state)
     expect_hints(LIT "solids: {ball: {shape: sphere, diffuse: 1, absorb_per_m: [1, 0, 0]}}",
                  "ball.absorb_per_m: ball absorbs but is opaque; set its transparency\n");
     static const char lit[] = "lights: {lamp: {radius: 1, reach: 5}}\nsolids: {ball: {shape: sphere, diffuse: 1}}";
-    expect_hints(lit, "lamp.radius: lamp acts as a point light; set render.integrator=path, which samples its "
-                      "radius\n");
+    expect_hints(lit, "lamp.radius: lamp acts as a point light; set render.soft_shadows=on, or "
+                      "render.integrator=path\n");
     expect_hints("render: {integrator: path}\nlights: {lamp: {radius: 1, reach: 5}}\nsolids: {ball: {shape: sphere, "
                  "diffuse: 1}}",
                  "");

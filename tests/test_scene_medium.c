@@ -130,7 +130,7 @@ static void invalid_media_are_refused_with_a_location(void **state)
     expect_error("solids:\n  a: {shape: sphere, coefficients: [1, x]}\n",
                  "test.yaml:2:36: a.coefficients: 'x' is not a finite number; give a number -1000000..1000000");
     expect_error("render: {integrator: path}\nlights:\n  l: {radius: 1}\n",
-                 "test.yaml:3:3: l: a spherical light falls off with distance, and its reach is 0; set "
+                 "test.yaml:3:3: l: a light with a size falls off with distance, and its reach is 0; set "
                  "'reach', the distance at which the intensity applies, or set radius to 0");
     expect_error("render: {integrator: path, polarisation: on}\n",
                  "test.yaml:1:9: the path integrator does not support polarisation; set render.polarisation "

@@ -60,13 +60,10 @@ static void leave_lens(const tracer *t, int64_t each, int count, const camera_pl
                        const double *v, ray_queue *q, int at)
 {
     const plan *p = t->target.frame_plan;
-    const render_settings *r = &p->render;
-    const path_sampling grid = path_sampling_of_grid(r, each);
     const camera_rays_out out = {q->ox + at, q->oy + at, q->oz + at, q->dx + at, q->dy + at, q->dz + at};
     double area[ROW], turn[ROW];
     if (p->view.lens_radius > 0.0 && each > 1 && t->rule->traced) {
-        t->path->draw(integrator_traits_of(r)->by_chance ? &p->draws : &grid, count, places->key, 0, DRAW_LENS, area,
-                      turn);
+        t->path->draw(&p->draws, count, places->key, 0, DRAW_LENS, area, turn);
         t->camera->rays(&p->view, count, u, v, (lens_points){area, turn}, out);
     } else {
         camera_chief_rays(t, count, u, v, out);

@@ -98,7 +98,12 @@ static void find_balls(emission *e)
 
 static double sphere_radius(const emission *e, int lamp)
 {
-    return e->spheres ? e->p->lights[lamp].radius : 0.0;
+    return e->spheres && !light_is_flat(&e->p->lights[lamp]) ? e->p->lights[lamp].radius : 0.0;
+}
+
+static bool is_flat(const emission *e, int lamp)
+{
+    return e->spheres && light_is_flat(&e->p->lights[lamp]);
 }
 
 /* Around all directions from the lamp's points to the ball's. */
@@ -119,7 +124,7 @@ static double aim(emission *e, int lamp)
     lamp_emission *out = &e->lamps[lamp];
     double sum = 0.0;
     for (int k = 0; k < e->ball_count; k++)
-        sum += (out->cones[k] = cone_to(l->position, sphere_radius(e, lamp), e->balls[k])).cap;
+        sum += (out->cones[k] = cone_to(l->position, e->spheres ? light_extent(l) : 0.0, e->balls[k])).cap;
     for (int k = 0; k < e->ball_count; k++)
         out->cones[k].share = out->cones[k].cap / sum;
     out->inside = scene_geometry_inside(e->p->geometry, l->position);
@@ -298,6 +303,8 @@ static double draw_ray(const emission *e, int lamp, unit_pair s, unit_pair place
     const double off = c->cap * fmin(s.u / c->share, 1.0);
     out->direction = along(c->axis, 1.0 - off, sqrt(off * (2.0 - off)), s.v);
     out->origin = lamp_at(e, lamp);
+    if (is_flat(e, lamp)) /* by Lambert's law, which is the lamp's share of the direction */
+        out->origin = lamp_shape_point(&e->p->shapes[lamp], out->origin, place.u, place.v);
     if (radius == 0.0)
         return 1.0 / density_of(e, lamp, k, out->direction, out->origin);
     const bool from_ball = by_ball(e, lamp, k);
@@ -341,7 +348,7 @@ bool emission_ray(const emission *e, int64_t i, emitted_ray *out)
     if (share == 0.0 || angle == 0.0)
         return false;
     out->inside = from->inside;
-    out->lamp_radius = sphere_radius(e, lamp);
+    out->lamp_radius = is_flat(e, lamp) ? sqrt(p->shapes[lamp].area / PI) : sphere_radius(e, lamp);
     out->falls = l->reach > 0.0;
     out->wavelength = -1;
     vec3 color = vec3_scale(l->color, l->intensity);

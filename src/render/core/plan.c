@@ -150,7 +150,8 @@ static status prepare_lights(const scene *s, plan *p, diagnostic *why)
 {
     p->lights = calloc(s->light_count + 1, sizeof *p->lights);
     p->cones = calloc(s->light_count + 1, sizeof *p->cones);
-    if (!p->lights || !p->cones)
+    p->shapes = calloc(s->light_count + 1, sizeof *p->shapes);
+    if (!p->lights || !p->cones || !p->shapes)
         return out_of_memory(why);
     p->light_count = (int)s->light_count;
     for (size_t i = 0; i < s->light_count; i++) {
@@ -158,6 +159,8 @@ static status prepare_lights(const scene *s, plan *p, diagnostic *why)
         p->lights[i].color = seen_color(&s->lights[i]);
         if (s->lights[i].kind != LIGHT_POINT)
             p->cones[i] = light_cone_of(&s->lights[i]);
+        if (light_is_flat(&s->lights[i]))
+            p->shapes[i] = lamp_shape_of(&s->lights[i]);
     }
     return STATUS_OK;
 }
@@ -299,7 +302,11 @@ status plan_build(const scene *s, plan **out, diagnostic *why)
         return code;
     }
     p->render = s->render;
-    p->draws = path_sampling_of(&s->render);
+    p->draws = integrator_traits_of(&s->render)->by_chance
+                   ? path_sampling_of(&s->render)
+                   : path_sampling_of_grid(&s->render,
+                                           s->render.samples *
+                                               (s->render.spectrum == SPECTRUM_SPECTRAL ? s->render.wavelengths : 1));
     if (integrator_traits_of(&s->render)->drawn)
         p->render.shadows = SHADOWS_OFF;
     p->sky = sky_of(s, p);
@@ -309,7 +316,7 @@ status plan_build(const scene *s, plan **out, diagnostic *why)
         p->render.shadows = SHADOWS_OPAQUE; /* the photons bring the rest */
     p->solid_shadows = p->render.shadows == SHADOWS_OPAQUE;
     for (size_t i = 0; i < s->light_count && integrator_traits_of(&s->render)->by_chance; i++)
-        p->solid_shadows |= s->lights[i].radius > 0.0;
+        p->solid_shadows |= light_extent(&s->lights[i]) > 0.0;
     *out = p;
     return STATUS_OK;
 }
@@ -336,6 +343,7 @@ void plan_destroy(plan *p)
     free(p->absorption);
     free(p->lights);
     free(p->cones);
+    free(p->shapes);
     spectra_destroy(p->spectral);
     layered_plan_destroy(p->layered);
     rain_destroy(p->rain);

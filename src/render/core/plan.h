@@ -8,6 +8,7 @@
 #include "render/core/mesh_report.h"
 #include "render/core/path_sampling.h"
 #include "render/shade/layered_table.h"
+#include "render/shade/lamp_shape.h"
 #include "render/shade/light_cone.h"
 #include "render/shade/rain.h"
 #include "render/shade/spectra.h"
@@ -57,10 +58,11 @@ typedef struct plan {
     const struct photon_map *photons; /* borrowed: light that arrives through clear solids and mirrors; NULL: none */
     const background *sky;            /* the scene's, or flat_sky */
     background flat_sky;
-    struct rain *rain; /* what rain adds to the sky, or NULL */
-    vec3 sky_mean;     /* over all directions; computed if render.beyond is mean */
-    light *lights;     /* the scene's; their colour is what their spectrum looks like; names are borrowed */
-    light_cone *cones; /* by light; undefined for a point light */
+    struct rain *rain;  /* what rain adds to the sky, or NULL */
+    vec3 sky_mean;      /* over all directions; computed if render.beyond is mean */
+    light *lights;      /* the scene's; their colour is what their spectrum looks like; names are borrowed */
+    light_cone *cones;  /* by light; undefined for a point light */
+    lamp_shape *shapes; /* by light; defined for discs and rectangles */
     int light_count;
 } plan;
 

@@ -118,7 +118,7 @@ bool tracer_begin(tracer *t, const tracer_target *target)
         !radiance_begin(t) || !layered_begin(t) || !take_integrator(t) ||
         !absorption_begin(t, p->geometry->attenuates && t->rule->traced))
         return false;
-    t->by_sample_key = t->rule->by_sample || r->spectrum == SPECTRUM_SPECTRAL || p->basic;
+    t->by_sample_key = t->rule->by_sample || r->spectrum == SPECTRUM_SPECTRAL || p->basic || scene_has_soft_shadows(r);
     drop_all(t);
     memset(&t->account.counters, 0, sizeof t->account.counters);
     t->account.visibility_ns = 0;

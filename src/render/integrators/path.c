@@ -18,9 +18,12 @@
 /* Below this depth every path continues; from it on faint paths end by Russian roulette. */
 enum { ROULETTE_DEPTH = 3 };
 
-/* Distance at which a ray near the sphere hits it from outside, or HUGE_VAL. */
-static double distance_to_light(const light *l, vec3 origin, vec3 direction)
+/* Distance at which a ray near the light hits it, a sphere from outside, or HUGE_VAL. */
+static double distance_to_light(const plan *p, int lamp, vec3 origin, vec3 direction)
 {
+    const light *l = &p->lights[lamp];
+    if (light_is_flat(l))
+        return lamp_shape_hit(&p->shapes[lamp], l->position, origin, direction);
     const vec3 to_light = vec3_sub(l->position, origin);
     const double along = vec3_dot(to_light, direction), distance2 = vec3_dot(to_light, to_light);
     const vec3 across = vec3_sub(to_light, vec3_scale(direction, along));
@@ -70,12 +73,13 @@ static void intersect_lights(tracer *t, const ray_queue *q, int first, const ray
     }
     for (int k = 0; seen && k < p->light_count; k++) {
         const light *l = &p->lights[k];
-        if (l->radius == 0.0 || !t->path->near_sphere(rays, l->position, l->radius, near))
+        const double extent = light_extent(l);
+        if (extent == 0.0 || !t->path->near_sphere(rays, l->position, extent, near))
             continue;
         for (int i = 0; i < rays->count; i++) {
             if (!near[i] || !(q->sample_key[first + i] & SAMPLE_KEY_SPECULAR_BOUNCE))
                 continue;
-            const double distance = distance_to_light(l, vec3_make(rays->ox[i], rays->oy[i], rays->oz[i]),
+            const double distance = distance_to_light(p, k, vec3_make(rays->ox[i], rays->oy[i], rays->oz[i]),
                                                       vec3_make(rays->dx[i], rays->dy[i], rays->dz[i]));
             if (distance < nearest[i])
                 nearest[i] = distance, lamp[i] = k;
@@ -98,9 +102,9 @@ static void expose_light(tracer *t, const ray_queue *q, int at, int lamp, int pr
 {
     const plan *p = t->target.frame_plan;
     const int64_t sample_key = q->sample_key[at];
-    const double radiance = path_light_radiance(p, lamp, vec3_make(q->dx[at], q->dy[at], q->dz[at])) *
+    const double radiance = area_light_radiance(p, lamp, vec3_make(q->dx[at], q->dy[at], q->dz[at])) *
                             (p->basic ? radiance_share(p, sample_key, priority_index) : 1.0);
-    const vec3 l = vec3_scale(path_light_color(t, lamp, sample_key), radiance);
+    const vec3 l = vec3_scale(light_color_of(t, lamp, sample_key), radiance);
     shading_expose(t, sample_key, q->wr[at] * l.x, q->wg[at] * l.y, q->wb[at] * l.z);
 }
 

@@ -1,6 +1,6 @@
 /* Whitted's recursion ("An improved illumination model for shaded display", CACM 23(6), 1980): Phong's local light,
  * and, if render.lighting enables them, both branches of each ray, reflected and refracted, with their weights. */
-#include "render/shade/shading.h"
+#include "render/shade/area_lights.h"
 
 static void branch(tracer *t, int depth, bool opaque)
 {
@@ -23,6 +23,8 @@ static void shade(tracer *t, int depth, int priority_index)
 {
     const render_settings *r = &t->target.frame_plan->render;
     local_light(t, priority_index, light_terms_of(r));
+    if (scene_has_soft_shadows(r))
+        area_lights_soften(t, depth);
     if (r->lighting == LIGHTING_WHITTED)
         branch(t, depth, surface_is_opaque(t, priority_index));
 }

@@ -1,5 +1,6 @@
 /* The cone of a spotlight: a `cone` emits all its light within the half-angle a from the axis, a `soft_cone` a share
- * that falls from 1 on the axis to 0 at the half-angle, linear in the cosine: (cos t - cos a) / (1 - cos a). Pure. */
+ * that falls from 1 on the axis to 0 at the half-angle, linear in the cosine: (cos t - cos a) / (1 - cos a). A flat
+ * lamp as a point is a soft cone of 90 degrees: Lambert's law. Pure. */
 #pragma once
 
 #include "base/elementary.h"
@@ -17,7 +18,7 @@ typedef struct light_cone {
 static inline light_cone light_cone_of(const light *l)
 {
     double sine, cosine;
-    elementary_sincos_deg(0.5 * l->half_angle_deg, &sine, &cosine);
+    elementary_sincos_deg(0.5 * (light_is_flat(l) ? 90.0 : l->half_angle_deg), &sine, &cosine);
     const bool all_around = l->kind == LIGHT_CONE && l->half_angle_deg == 180.0; /* whatever the rounding */
     return (light_cone){vec3_normalize(vec3_sub(l->target, l->position)), all_around ? 3.0 : 2.0 * sine * sine};
 }
@@ -41,5 +42,5 @@ static inline double light_cone_share(const light_cone *c, bool soft, vec3 direc
 /* The same for any light. */
 static inline double light_share(const light *l, const light_cone *c, vec3 direction)
 {
-    return l->kind == LIGHT_POINT ? 1.0 : light_cone_share(c, l->kind == LIGHT_SOFT_CONE, direction);
+    return l->kind == LIGHT_POINT ? 1.0 : light_cone_share(c, l->kind != LIGHT_CONE, direction);
 }

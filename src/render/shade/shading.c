@@ -233,7 +233,7 @@ static void direct_light(tracer *t, const material *m, int lamp, int priority_in
     else
         t->shade->direct(m, &l, &t->surface.gathered, &t->surface.lit);
     if (l.kind != LIGHT_POINT)
-        t->shade->spot(&p->cones[lamp], l.kind == LIGHT_SOFT_CONE, &t->surface.gathered, &t->surface.lit);
+        t->shade->spot(&p->cones[lamp], l.kind != LIGHT_CONE, &t->surface.gathered, &t->surface.lit);
     if (t->surface.on_mesh)
         mesh_bound_light(t);
     if (p->spectral)
@@ -257,7 +257,7 @@ static void send_out(tracer *t, int priority_index, light_terms terms)
     if (terms.emission_only || (m->diffuse == 0.0 && m->specular == 0.0))
         return;
     for (int k = 0; k < p->light_count; k++) {
-        if (!terms.spheres && p->lights[k].radius > 0.0)
+        if (!terms.spheres && light_extent(&p->lights[k]) > 0.0)
             continue;
         direct_light(t, m, k, priority_index);
         if (p->render.shadows != SHADOWS_OFF) {

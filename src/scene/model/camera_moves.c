@@ -179,7 +179,7 @@ static status ball_of(const scene *s, const char *name, double distance, vec3 *c
     for (size_t i = 0; i < s->light_count; i++)
         if (strcmp(s->lights[i].name, name) == 0) {
             *centre = s->lights[i].position;
-            *radius = fmax(s->lights[i].radius, 0.1 * distance);
+            *radius = fmax(light_extent(&s->lights[i]), 0.1 * distance);
             return STATUS_OK;
         }
     if (strcmp(name, "all") != 0)

@@ -113,10 +113,13 @@ static status check_render(const scene *s, diagnostic *why)
 
 static status check_light(const scene *s, const light *lamp, diagnostic *why)
 {
-    if (integrator_traits_of(&s->render)->by_chance && lamp->radius > 0.0 && lamp->reach == 0.0)
+    if ((integrator_traits_of(&s->render)->by_chance || scene_has_soft_shadows(&s->render)) &&
+        light_extent(lamp) > 0.0 && lamp->reach == 0.0)
         return diagnose(why, STATUS_BAD_INPUT,
-                        "set 'reach', the distance at which the intensity applies, or set radius to 0",
-                        "%.80s: a spherical light falls off with distance, and its reach is 0", lamp->name);
+                        lamp->kind == LIGHT_RECTANGLE
+                            ? "set 'reach', the distance at which the intensity applies, or set width to 0"
+                            : "set 'reach', the distance at which the intensity applies, or set radius to 0",
+                        "%.80s: a light with a size falls off with distance, and its reach is 0", lamp->name);
     const vec3 axis = vec3_sub(lamp->target, lamp->position);
     if (lamp->kind != LIGHT_POINT && !(vec3_dot(axis, axis) > 0.0))
         return diagnose(why, STATUS_BAD_INPUT, "move its position or its target",

@@ -151,6 +151,9 @@ static void hint_at_idle(const scene *s, const solid *owner, const note_taker *t
                   owner->name);
 }
 
+/* Below it, noise in soft shadows is plain. */
+enum { SOFT_SAMPLES = 9 };
+
 static void hint_at_lights(const scene *s, const note_taker *taker)
 {
     const bool path = integrator_traits_of(&s->render)->by_chance;
@@ -162,10 +165,16 @@ static void hint_at_lights(const scene *s, const note_taker *taker)
         if (lamp->spectrum >= LAMP_SODIUM && lamp->intensity > 0.0 && s->render.spectrum != SPECTRUM_SPECTRAL)
             note_give(taker, lamp->name, "spectrum", "set render.spectrum=spectral, which traces each line",
                       "%s emits spectral lines, and an rgb image shows only their colour", lamp->name);
-        if (lamp->radius > 0.0 && !path)
-            note_give(taker, lamp->name, "radius", "set render.integrator=path, which samples its radius",
+        const bool soft = scene_has_soft_shadows(&s->render);
+        const char *size = lamp->kind == LIGHT_RECTANGLE ? "width" : "radius";
+        if (soft && light_extent(lamp) > 0.0 && s->render.samples < SOFT_SAMPLES)
+            note_give(taker, lamp->name, size, "set render.samples=16",
+                      "each pixel takes the light of %lld points of %s: its shadows are grainy",
+                      (long long)s->render.samples, lamp->name);
+        else if (light_extent(lamp) > 0.0 && !path && !soft)
+            note_give(taker, lamp->name, size, "set render.soft_shadows=on, or render.integrator=path",
                       "%s acts as a point light", lamp->name);
-        else if (lamp->radius == 0.0 && path && clear && lamp->intensity > 0.0 && !scene_has_caustics(&s->render))
+        else if (light_extent(lamp) == 0.0 && path && clear && lamp->intensity > 0.0 && !scene_has_caustics(&s->render))
             note_give(taker, lamp->name, "radius", "set render.caustics=photons, or its radius and its reach",
                       "%s is a point light, which random paths cannot hit through transparent solids: no caustics",
                       lamp->name);

@@ -38,7 +38,7 @@ static const char *const space_words[] = {"srgb", "linear", NULL};
 static const char *const projection_words[] = {"perspective", "orthographic", NULL};
 static const char *const analyser_words[] = {"none", "linear", "circular_left", "circular_right", NULL};
 static const char *const tone_words[] = {"none", "reinhard", "aces", NULL};
-static const char *const light_words[] = {"point", "cone", "soft_cone", NULL};
+static const char *const light_words[] = {"point", "cone", "soft_cone", "disc", "rectangle", NULL};
 /* as enum lamp_spectrum */
 static const char *const lamp_words[] = {"color", "black_body", "sodium", "mercury", "hydrogen", "line", NULL};
 static const char *const beam_words[] = {"pencil", "fan", "sheet", "bundle", NULL};
@@ -144,6 +144,10 @@ static const param table[] = {
     CHOICE(PARAM_RENDER, render_settings, shadows, shadows_words, "attenuated",
            "shadow rays: none, blocked by every solid, or attenuated by transparent solids without refraction "
            "(no caustics)"),
+    CHOICE(
+        PARAM_RENDER, render_settings, soft_shadows, off_on, "off",
+        "on: for lights with a size each ray of whitted and raycast takes the light of one random point, so that with "
+        "many samples shadows have soft edges; off: from their centre"),
     CHOICE(PARAM_RENDER, render_settings, caustics, caustics_words, "off",
            "light that mirrors and transparent solids throw on matte surfaces: none, or by photons traced from the "
            "lamps; then shadows are opaque and radiance is basic"),
@@ -335,9 +339,9 @@ static const param table[] = {
 
     CHOICE(PARAM_LIGHT, light, kind, light_words, "point",
            "point light, spotlight with a hard edge, or spotlight whose intensity falls to zero at the edge, "
-           "linear in the cosine of the angle"),
-    VECTOR(PARAM_LIGHT, light, position, "0,10,0", "position of the light"),
-    VECTOR(PARAM_LIGHT, light, target, "0,0,0", "point at which a spotlight is aimed"),
+           "linear in the cosine of the angle; or a disc or a rectangle that emits by Lambert's law on one side"),
+    VECTOR(PARAM_LIGHT, light, position, "0,10,0", "position of the light, or of its centre"),
+    VECTOR(PARAM_LIGHT, light, target, "0,0,0", "point at which a spotlight, a disc or a rectangle is aimed"),
     REAL(PARAM_LIGHT, light, half_angle_deg, "deg", 0.001, 180, "30",
          "half-angle a of a spotlight's cone; a soft cone has the falloff (cos t - cos a) / (1 - cos a) at "
          "angle t"),
@@ -352,7 +356,11 @@ static const param table[] = {
     REAL(PARAM_LIGHT, light, line_nm, "nm", OBSERVER_LOW_NM, OBSERVER_HIGH_NM, "632.8",
          "wavelength of a light of one line; 632.8: a helium-neon laser"),
     REAL(PARAM_LIGHT, light, radius, "scene units", 0, FAR, "0",
-         "radius of the emitting sphere, sampled by integrator path; 0: a point"),
+         "radius of the emitting sphere or disc, sampled by integrator path and with render.soft_shadows; 0: a point"),
+    REAL(PARAM_LIGHT, light, width, "scene units", 0, FAR, "1",
+         "width of a rectangle, horizontal unless it is aimed straight up or down: then along x; 0: a point"),
+    REAL(PARAM_LIGHT, light, height, "scene units", 0, FAR, "1", "height of a rectangle; 0: a point"),
+    REAL(PARAM_LIGHT, light, roll_deg, "deg", -360, 360, "0", "rotation of a rectangle about its axis"),
     REAL(PARAM_LIGHT, light, reach, "scene units", 0, FAR, "0",
          "distance at which the intensity applies, with inverse-square falloff; 0: no falloff"),
 

@@ -37,6 +37,7 @@ typedef struct render_settings {
     int64_t beyond;         /* depth_limit_rule */
     int64_t radiance;       /* radiance_rule */
     int64_t shadows;        /* shadow_rule */
+    int64_t soft_shadows;   /* bool: rays of trees sample the lights that have a size */
     int64_t caustics;       /* caustics_rule */
     int64_t photons;        /* from the lamps, for caustics */
     double min_weight;      /* rays with a lower throughput in every channel are not traced; 0: all are */
@@ -99,6 +100,13 @@ int scene_build_threads(const render_settings *r);
 static inline bool scene_has_constant_shares(const render_settings *r)
 {
     return r->weights == WEIGHTS_CONSTANT || r->transmission == TRANSMISSION_SIMPLE;
+}
+
+/* Whether integrators that do not work by chance sample the lights that have a size. */
+static inline bool scene_has_soft_shadows(const render_settings *r)
+{
+    const integrator_traits *traits = integrator_traits_of(r);
+    return r->soft_shadows && r->shadows != SHADOWS_OFF && !traits->by_chance && !traits->drawn && !traits->layers;
 }
 
 /* Whether photons bring the light that mirrors and clear solids deflect; then radiance is basic, and shadows opaque. */

@@ -54,7 +54,7 @@ status contents_find(const scene *s, const char *container, contents *out, diagn
             out->name[out->count++] = s->solids[i].name;
     }
     for (size_t i = 0; i < s->light_count; i++)
-        if (s->lights[i].radius < box.radius && is_inside(&box, s->lights[i].position))
+        if (light_extent(&s->lights[i]) < box.radius && is_inside(&box, s->lights[i].position))
             out->name[out->count++] = s->lights[i].name;
     return STATUS_OK;
 }

@@ -9,7 +9,7 @@
 static bool lights_nothing(const inert_case *c, const light *l)
 {
     const scene *s = c->s;
-    if (is_path(s) && l->radius > 0.0)
+    if (is_path(s) && light_extent(l) > 0.0)
         return false;
     scene lit = *s; /* borrows from s; a single light with an intensity */
     light white = *l;
@@ -36,6 +36,37 @@ static bool other_spectrum(const inert_case *c, const light *l)
            inert_say(c, "no-line", inert_set("%s.spectrum=line", c->name).text, "the light's spectrum is not one line");
 }
 
+/* Parameters of other kinds of lights, and of a size that nothing samples. */
+static bool other_shape(const inert_case *c, const light *l)
+{
+    const char *name = c->at.row->name;
+    const bool of_rectangle =
+                   strcmp(name, "width") == 0 || strcmp(name, "height") == 0 || strcmp(name, "roll_deg") == 0,
+               of_radius = strcmp(name, "radius") == 0;
+    if (strcmp(name, "target") == 0 && l->kind == LIGHT_POINT)
+        return inert_say(c, "point-lamp", inert_set("%s.kind=cone", c->name).text,
+                         "a point light emits in all directions");
+    if (strcmp(name, "half_angle_deg") == 0 && l->kind != LIGHT_CONE && l->kind != LIGHT_SOFT_CONE)
+        return inert_say(c, "point-lamp", inert_set("%s.kind=cone", c->name).text,
+                         l->kind == LIGHT_POINT ? "a point light emits in all directions"
+                                                : "a flat light emits by Lambert's law");
+    if (of_rectangle && l->kind != LIGHT_RECTANGLE)
+        return inert_say(c, "no-rectangle", inert_set("%s.kind=rectangle", c->name).text,
+                         "the light is not a rectangle");
+    if (of_radius && l->kind == LIGHT_RECTANGLE)
+        return inert_say(c, "no-sphere", inert_set("%s.kind=disc", c->name).text, "a rectangle has width and height");
+    if ((of_rectangle || of_radius) && !is_path(c->s) && !scene_has_soft_shadows(&c->s->render)) {
+        const inert_remedy far = inert_set("render.integrator=path and %s.reach=8", c->name);
+        return inert_say(c, "sphere-lamp", l->reach > 0.0 ? "set render.integrator=path" : far.text,
+                         "only the path integrator and render.soft_shadows use the size of a light");
+    }
+    const bool needs_width = l->width == 0.0 && strcmp(name, "width") != 0,
+               needs_height = l->height == 0.0 && strcmp(name, "height") != 0;
+    return of_rectangle && (needs_width || needs_height) &&
+           inert_say(c, "thin-rectangle", inert_set("%s.%s=1", c->name, needs_width ? "width" : "height").text,
+                     "a rectangle without %s is a point", needs_width ? "width" : "height");
+}
+
 bool inert_light(const inert_case *c)
 {
     const light *l = &c->s->lights[c->at.index];
@@ -48,14 +79,8 @@ bool inert_light(const inert_case *c)
         return inert_say(c, "dark-lamp", inert_set("%s.intensity=1", c->name).text, "the light's intensity is 0");
     if (!of_color && l->spectrum == LAMP_OF_COLOR && is_black(l->color))
         return inert_say(c, "dark-lamp", inert_set("%s.color=1,1,1", c->name).text, "the light's color is black");
-    if ((strcmp(name, "target") == 0 || strcmp(name, "half_angle_deg") == 0) && l->kind == LIGHT_POINT)
-        return inert_say(c, "point-lamp", inert_set("%s.kind=cone", c->name).text,
-                         "a point light emits in all directions");
-    if (strcmp(name, "radius") == 0 && !is_path(c->s)) {
-        const inert_remedy far = inert_set("render.integrator=path and %s.reach=8", c->name);
-        return inert_say(c, "sphere-lamp", l->reach > 0.0 ? "set render.integrator=path" : far.text,
-                         "only the path integrator uses the size of a light");
-    }
+    if (other_shape(c, l))
+        return true;
     return lights_nothing(c, l);
 }
 

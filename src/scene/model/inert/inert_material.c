@@ -127,7 +127,7 @@ static bool no_highlight(const inert_case *c)
 {
     return strcmp(c->at.row->name, "specular") == 0 && c->m->specular < 1.0 &&
            inert_same(c, "%s.specular=1", c->name) &&
-           inert_say(c, "no-highlight", "move it, the light or the camera",
+           inert_say(c, "unseen-highlight", "move it, the light or the camera",
                      "no lit part of it in this image reflects a light towards the camera");
 }
 

@@ -175,6 +175,31 @@ static bool no_photons(const inert_case *c)
             inert_say(c, "nothing-deflects", mirror_remedy(s).text, "no visible surface reflects or transmits light"));
 }
 
+static bool soft_shadows(const inert_case *c)
+{
+    const scene *s = c->s;
+    if (is_path(s))
+        return inert_say(c, "always-soft", WHITTED, "random paths always sample the size of lights");
+    if (integrator_traits_of(&s->render)->drawn)
+        return inert_say(c, "no-shadows", WHITTED, "the depth-buffer integrator renders no shadows");
+    if (s->render.shadows == SHADOWS_OFF)
+        return inert_say(c, "no-soft-shadows", "set render.shadows=opaque", "render.shadows is off");
+    if (nothing_lit(c))
+        return true;
+    const light *first = NULL;
+    for (size_t i = 0; i < s->light_count; i++) {
+        const light *l = &s->lights[i];
+        if (l->intensity > 0.0 && light_extent(l) > 0.0)
+            return false;
+        first = !first && l->intensity > 0.0 ? l : first;
+    }
+    const inert_remedy sized =
+        first->kind == LIGHT_RECTANGLE
+            ? inert_set("%s.reach=8, %s.width=1 and %s.height=1", first->name, first->name, first->name)
+            : inert_set("%s.reach=8 and %s.radius=1", first->name, first->name);
+    return inert_say(c, "no-size", sized.text, "no light has a size");
+}
+
 /* Photons also make radiance basic and shadows opaque, which may act where they do not. */
 static bool caustics(const inert_case *c)
 {
@@ -192,7 +217,7 @@ static bool photons(const inert_case *c)
 /* Wavelengths of the spectral film are also random, render/shade/spectra.c, and so are points of a lens. */
 static bool seed(const inert_case *c)
 {
-    if (scene_has_caustics(&c->s->render) || camera_lens_is_sampled(c->s))
+    if (scene_has_caustics(&c->s->render) || camera_lens_is_sampled(c->s) || scene_has_soft_shadows(&c->s->render))
         return false;
     return c->s->render.spectrum != SPECTRUM_SPECTRAL && path_only(c);
 }
@@ -306,6 +331,7 @@ bool inert_render(const inert_case *c)
         {"weights", weights},
         {"transmission", transmission},
         {"shadows", shadows},
+        {"soft_shadows", soft_shadows},
         {"caustics", caustics},
         {"photons", photons},
         {"min_weight", min_weight},

@@ -1,0 +1,140 @@
+/* Random points of lights with a size. */
+#include "render/shade/area_lights.h"
+
+#include "base/elementary.h"
+
+double area_light_radiance(const plan *p, int lamp, vec3 direction)
+{
+    const light *l = &p->lights[lamp];
+    if (light_is_flat(l))
+        return vec3_dot(direction, p->shapes[lamp].axis) < 0.0 ? lamp_shape_radiance(&p->shapes[lamp], l->reach) : 0.0;
+    return l->reach * l->reach / (l->radius * l->radius) * light_share(l, &p->cones[lamp], vec3_scale(direction, -1.0));
+}
+
+vec3 light_color_of(const tracer *t, int lamp, int64_t sample_key)
+{
+    const plan *p = t->target.frame_plan;
+    const light *l = &p->lights[lamp];
+    if (!p->spectral)
+        return vec3_scale(l->color, l->intensity);
+    const double radiance = spectra_light(p->spectral, sample_key, lamp);
+    return vec3_make(radiance, radiance, radiance);
+}
+
+/* Phong's highlight k_s (R.V)^n of the light along the unit vector `to`, whose cosine is n_l. */
+double highlight_of(const group *g, int k, const material *m, vec3 to, double n_l)
+{
+    const vec3 d = vec3_make(g->dx[k], g->dy[k], g->dz[k]);
+    const double r_v = 2.0 * n_l * g->points.cos_i[k] + vec3_dot(d, to);
+    return m->specular > 0.0 && r_v > 0.0 ? m->specular * elementary_pow(r_v < 1.0 ? r_v : 1.0, m->shininess) : 0.0;
+}
+
+/* Enqueues a shadow ray from record k that brings light of that colour, as Phong's model reflects it. */
+void shadow_ray_enqueue(tracer *t, int k, vec3 to_light, vec3 color, double diffuse, double shine)
+{
+    const group *g = &t->surface.gathered;
+    ray_queue *q = &t->queues.shadows;
+    const int at = q->count++;
+    q->ox[at] = g->points.px[k], q->oy[at] = g->points.py[k], q->oz[at] = g->points.pz[k];
+    q->dx[at] = to_light.x, q->dy[at] = to_light.y, q->dz[at] = to_light.z;
+    q->wr[at] = g->wr[k] * color.x * (diffuse * g->cr[k] + shine);
+    q->wg[at] = g->wg[k] * color.y * (diffuse * g->cg[k] + shine);
+    q->wb[at] = g->wb[k] * color.z * (diffuse * g->cb[k] + shine);
+    q->start[at] = g->points.face[k], q->sample_key[at] = g->sample_key[k], q->inside[at] = g->inside_before[k];
+}
+
+/* Enqueues a shadow ray from record k to its point of a light's sphere. */
+static void enqueue_sphere(tracer *t, int k, const material *m, bool opaque, const lamp_samples *l)
+{
+    const sphere_samples *s = &l->spheres;
+    const group *g = &t->surface.gathered;
+    const int lamp = l->lamp[k];
+    const vec3 to = vec3_make(s->dx[k], s->dy[k], s->dz[k]);
+    const double n_l = s->n_l[k];
+    if (!(n_l > 0.0))
+        return;
+    const double radiance = area_light_radiance(t->target.frame_plan, lamp, to);
+    if (radiance == 0.0 || !mesh_lets_out(t, k, to))
+        return;
+    /* (k_d C / pi) L (N.L) over the density 1 / (2 pi (1 - least_cos)), plus Phong's highlight from the same light. */
+    const double shine = opaque ? highlight_of(g, k, m, to, n_l) : 0.0;
+    const double seen = 2.0 * s->cap[k] * radiance * l->weight[k], diffuse = m->diffuse * n_l;
+    const vec3 color = vec3_scale(light_color_of(t, lamp, g->sample_key[k]), seen);
+    shadow_ray_enqueue(t, k, vec3_scale(to, s->reach[k]), color, diffuse, shine);
+}
+
+static bool is_sphere(const plan *p, int lamp)
+{
+    return lamp >= 0 && !light_is_flat(&p->lights[lamp]) && p->lights[lamp].radius > 0.0;
+}
+
+bool light_has_area(const plan *p, int lamp)
+{
+    return lamp >= 0 && light_extent(&p->lights[lamp]) > 0.0;
+}
+
+/* Enqueues a shadow ray from record k to its point of a flat lamp: (k_d C / pi) L (N.L) cos_l A / d^2 for points that
+ * are uniform over the area A, plus Phong's highlight. */
+static void enqueue_flat(tracer *t, int k, const material *m, bool opaque, const lamp_samples *l)
+{
+    const plan *p = t->target.frame_plan;
+    const group *g = &t->surface.gathered;
+    const int lamp = l->lamp[k];
+    const lamp_shape *s = &p->shapes[lamp];
+    const vec3 at = vec3_make(g->points.px[k], g->points.py[k], g->points.pz[k]),
+               n = vec3_make(g->points.nx[k], g->points.ny[k], g->points.nz[k]),
+               to_light = vec3_sub(lamp_shape_point(s, p->lights[lamp].position, l->spheres.u[k], l->spheres.v[k]), at);
+    const double distance2 = vec3_dot(to_light, to_light);
+    const vec3 to = vec3_scale(to_light, 1.0 / sqrt(distance2));
+    const double n_l = vec3_dot(n, to), cos_l = -vec3_dot(to, s->axis);
+    if (!(n_l > 0.0 && cos_l > 0.0) || !mesh_lets_out(t, k, to))
+        return;
+    const double seen =
+        lamp_shape_radiance(s, p->lights[lamp].reach) * cos_l * s->area / (LAMP_PI * distance2) * l->weight[k];
+    const vec3 color = vec3_scale(light_color_of(t, lamp, g->sample_key[k]), seen);
+    shadow_ray_enqueue(t, k, to_light, color, m->diffuse * n_l, opaque ? highlight_of(g, k, m, to, n_l) : 0.0);
+}
+
+/* From every record whose light has an area; u and v of the samples are set. */
+void area_lights_sample(tracer *t, const material *m, bool opaque, lamp_samples *l)
+{
+    const plan *p = t->target.frame_plan;
+    const int count = t->surface.gathered.count;
+    for (int k = 0; k < count; k++) {
+        const light *one = &p->lights[l->lamp[k] < 0 ? 0 : l->lamp[k]];
+        l->spheres.x[k] = one->position.x, l->spheres.y[k] = one->position.y, l->spheres.z[k] = one->position.z;
+        l->spheres.radius[k] = one->radius;
+    }
+    t->path->spheres(&t->surface.gathered, &l->spheres);
+    for (int k = 0; k < count; k++)
+        if (is_sphere(p, l->lamp[k]))
+            enqueue_sphere(t, k, m, opaque, l);
+        else if (light_has_area(p, l->lamp[k]))
+            enqueue_flat(t, k, m, opaque, l);
+}
+
+void area_lights_sample_all(tracer *t, const material *m, bool shines, int depth)
+{
+    const plan *p = t->target.frame_plan;
+    const group *g = &t->surface.gathered;
+    lamp_samples all;
+    for (int lamp = 0; lamp < p->light_count; lamp++) {
+        if (!light_has_area(p, lamp))
+            continue;
+        for (int k = 0; k < g->count; k++)
+            all.lamp[k] = lamp, all.weight[k] = 1.0;
+        t->path->draw(&p->draws, g->count, g->sample_key, depth, DRAW_LIGHT + lamp, all.spheres.u, all.spheres.v);
+        area_lights_sample(t, m, shines, &all);
+    }
+}
+
+void area_lights_soften(tracer *t, int depth)
+{
+    const material *m = &t->surface.mat->surface;
+    const bool shines = t->target.frame_plan->render.lighting != LIGHTING_LAMBERT && m->specular > 0.0;
+    if (!(m->diffuse > 0.0) && !shines)
+        return;
+    radiance_weigh(t);
+    area_lights_sample_all(t, m, shines, depth);
+    radiance_weigh_back(t);
+}

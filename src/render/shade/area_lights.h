@@ -1,0 +1,40 @@
+/* Direct light of lights with a size, spheres, discs and rectangles: a shadow ray from each ray of the gathered group
+ * to a random point. A sphere is sampled uniformly over the cone of directions to it, a flat lamp over its area
+ * (Shirley, Wang and Zimmerman, "Monte Carlo Techniques for Direct Lighting Calculations", TOG 15(1), 1996). Nothing
+ * fails. */
+#pragma once
+
+#include "render/shade/path_kernels.h"
+#include "render/shade/shading.h"
+
+bool light_has_area(const plan *p, int lamp);
+
+/* Radiance of a light with a size towards a ray along a unit vector, for a colour of 1. For a cone light each point of
+ * the sphere emits only into the cone, so that from far away it is the cone of a point. */
+double area_light_radiance(const plan *p, int lamp, vec3 direction);
+
+/* The light's colour times its intensity; in a spectral film at the sample key's wavelength. */
+vec3 light_color_of(const tracer *t, int lamp, int64_t sample_key);
+
+/* Phong's highlight k_s (R.V)^n of the light along the unit vector `to`, whose cosine is n_l. */
+double highlight_of(const group *g, int k, const material *m, vec3 to, double n_l);
+
+/* Enqueues a shadow ray from record k that brings light of that colour, as Phong's model reflects it: diffuse times the
+ * surface's colour, and shine. */
+void shadow_ray_enqueue(tracer *t, int k, vec3 to_light, vec3 color, double diffuse, double shine);
+
+/* Lights of the group's records, and points of those with a size. */
+typedef struct lamp_samples {
+    int lamp[ROW];          /* -1: none */
+    double weight[ROW];     /* of its light */
+    sphere_samples spheres; /* u and v are set by the caller; the rest is filled for spheres */
+} lamp_samples;
+
+/* From every record whose light has a size. shines: with highlights. */
+void area_lights_sample(tracer *t, const material *m, bool shines, lamp_samples *l);
+
+/* From every record to each light with a size. */
+void area_lights_sample_all(tracer *t, const material *m, bool shines, int depth);
+
+/* The same for ray trees and ray casting with soft shadows, whose local light leaves these lights out. */
+void area_lights_soften(tracer *t, int depth);

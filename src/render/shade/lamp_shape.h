@@ -1,0 +1,72 @@
+/* Flat lamps: discs and rectangles that emit by Lambert's law on the side of their target, nothing on the other, and
+ * block no light. Their radiance is such that a surface at the light's reach, on the axis and facing the lamp from
+ * afar, is as bright as in Phong's model with a light of that intensity: with a sphere's radiance I (reach / r)^2,
+ * pi r^2 of it is pi I reach^2, which over the area is the radiance of any flat lamp. Pure; plain values. */
+#pragma once
+
+#include "base/elementary.h"
+#include "base/vec3.h"
+#include "scene/model/light.h"
+#include <math.h>
+#include <stdbool.h>
+
+#define LAMP_PI 3.14159265358979323846
+
+typedef struct lamp_shape {
+    bool round;
+    vec3 axis, right, up;           /* unit vectors; axis: the side that emits */
+    double half_width, half_height; /* a disc's radius, both */
+    double area;
+} lamp_shape;
+
+/* Of a light of kind disc or rectangle, which must not be at its own target. Its width is horizontal, unless it emits
+ * straight up or down: then along x; roll_deg turns it about the axis, from right to up. */
+static inline lamp_shape lamp_shape_of(const light *l)
+{
+    const vec3 axis = vec3_normalize(vec3_sub(l->target, l->position));
+    const bool vertical = axis.x * axis.x + axis.z * axis.z < 1e-12;
+    const vec3 right = vertical ? vec3_make(1.0, 0.0, 0.0) : vec3_normalize(vec3_make(axis.z, 0.0, -axis.x)),
+               up = vec3_cross(axis, right);
+    double sine, cosine;
+    elementary_sincos_deg(l->kind == LIGHT_DISC ? 0.0 : l->roll_deg, &sine, &cosine);
+    const bool round = l->kind == LIGHT_DISC;
+    const double half_width = round ? l->radius : 0.5 * l->width, half_height = round ? l->radius : 0.5 * l->height;
+    return (lamp_shape){.round = round,
+                        .axis = axis,
+                        .right = vec3_add(vec3_scale(right, cosine), vec3_scale(up, sine)),
+                        .up = vec3_sub(vec3_scale(up, cosine), vec3_scale(right, sine)),
+                        .half_width = half_width,
+                        .half_height = half_height,
+                        .area = (round ? LAMP_PI : 4.0) * half_width * half_height};
+}
+
+/* A uniform point for random numbers u and v in (0, 1). */
+static inline vec3 lamp_shape_point(const lamp_shape *s, vec3 centre, double u, double v)
+{
+    double x = 2.0 * u - 1.0, y = 2.0 * v - 1.0;
+    if (s->round) {
+        double sine, cosine;
+        elementary_sincos_deg(360.0 * v, &sine, &cosine);
+        x = sqrt(u) * cosine, y = sqrt(u) * sine;
+    }
+    return vec3_add(centre, vec3_add(vec3_scale(s->right, x * s->half_width), vec3_scale(s->up, y * s->half_height)));
+}
+
+/* The distance at which a ray along a unit vector hits the side that emits, or HUGE_VAL. */
+static inline double lamp_shape_hit(const lamp_shape *s, vec3 centre, vec3 origin, vec3 direction)
+{
+    const double towards = -vec3_dot(direction, s->axis), above = vec3_dot(vec3_sub(origin, centre), s->axis);
+    if (!(towards > 0.0 && above > 0.0))
+        return (double)HUGE_VAL;
+    const double t = above / towards;
+    const vec3 at = vec3_sub(vec3_add(origin, vec3_scale(direction, t)), centre);
+    const double x = vec3_dot(at, s->right) / s->half_width, y = vec3_dot(at, s->up) / s->half_height;
+    const bool inside = s->round ? x * x + y * y <= 1.0 : fabs(x) <= 1.0 && fabs(y) <= 1.0;
+    return inside ? t : (double)HUGE_VAL;
+}
+
+/* Its radiance for a colour of 1. */
+static inline double lamp_shape_radiance(const lamp_shape *s, double reach)
+{
+    return LAMP_PI * reach * reach / s->area;
+}
