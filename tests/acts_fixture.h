@@ -25,6 +25,7 @@ static const acts_small acts_smaller[] = {
     {"solids", "render.samples=1"},
     {"caustic", "render.samples=1 render.photons=2000"},
     {"films", "render.samples=1 render.depth=3"},
+    {"polarisers", "render.samples=1 render.wavelengths=2"},
 };
 
 /* Heights of the films, tried in this order until a value has an effect: a slit may lie between the rays of a small

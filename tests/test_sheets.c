@@ -1,5 +1,5 @@
 /* Polarisers and wave plates in the scene against closed forms of the textbooks (Hecht, Optics, 8.2 and 8.7; Goldstein,
- * Polarized Light, 5 and 6): as images of one white sky behind sheets, along z. What the eye sees of a field is
+ * Polarized Light, the chapter on Mueller matrices): as images of one white sky behind sheets, along z. What the eye sees of a field is
  * computed from the oscillation itself, without Stokes parameters. */
 #include <math.h>
 #include <setjmp.h>
@@ -30,7 +30,7 @@ static void malus(void **state)
         }
 }
 
-/* Two alike that are not ideal: parallel (k1^2 + k2^2) / 2, crossed k1 k2. Goldstein, 5.3. */
+/* Two alike that are not ideal: parallel (k1^2 + k2^2) / 2, crossed k1 k2. Goldstein. */
 static void partial_polarisers(void **state)
 {
     (void)state;
@@ -191,7 +191,7 @@ static void oblique_passages(void **state)
 }
 
 /* The rows against whole matrices in the direction of the light, with the elements' matrices as the textbooks print
- * them: Goldstein, equations 5-31, 5-43 (with -delta: there the fast axis is x) and Collett's rotation. */
+ * them, rotated by a: Goldstein, Polarized Light (a retarder with -delta, where the fast axis is x). */
 static void rows_are_those_of_the_textbooks_matrices(void **state)
 {
     (void)state;

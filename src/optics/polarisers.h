@@ -5,7 +5,7 @@
 #include "optics/mueller.h"
 
 /* A linear polariser in the frame of its axis, with the transmittances of light whose field is along and across it.
- * Goldstein, Polarized Light, 3rd ed., 5.3, with p_x^2 and p_y^2 as these. */
+ * Goldstein, Polarized Light, Mueller matrix of a linear diattenuator, with p_x^2 and p_y^2 as these. */
 static inline sp_response sp_polariser(double along, double across)
 {
     sp_response r = {0.5 * (along + across), 0.5 * (along - across), sqrt(along * across), 0.0};
@@ -13,7 +13,7 @@ static inline sp_response sp_polariser(double along, double across)
 }
 
 /* A wave plate in the frame of its slow axis: the field along it lags behind the field across it by delta. In
- * exp(-i omega t) a lag is a factor exp(i delta), so that conj(E_x) E_y turns by -delta. Goldstein, 5.4. */
+ * exp(-i omega t) a lag is a factor exp(i delta), so that conj(E_x) E_y turns by -delta. Goldstein, Mueller matrix of a linear retarder. */
 static inline sp_response sp_retarder(double sin_delta, double cos_delta)
 {
     sp_response r = {1.0, 0.0, cos_delta, -sin_delta};
@@ -33,7 +33,7 @@ static inline stokes analyser_through(stokes row, vec3 d, vec3 axis, sp_response
 
 /* A circular polariser with the transmittances of left- and right-handed light, which stay circular: the homogeneous
  * diattenuator along v. Lu and Chipman, Interpretation of Mueller matrices based on polar decomposition, J. Opt. Soc.
- * Am. A 13, 1106 (1996), equations 16 to 18. */
+ * Am. A 13, 1106 (1996). */
 static inline stokes analyser_through_circular(stokes row, double left, double right)
 {
     const double mean = 0.5 * (left + right), half = 0.5 * (left - right), between = sqrt(left * right);

@@ -32,7 +32,7 @@ bool sheet_list_create(const scene *s, const scene_geometry *geometry, region_sh
 }
 
 /* The retardance along a path. A weakly birefringent crystal has for a direction at an angle a to its axis the
- * difference of indices (n_e - n_o) sin^2 a: Born and Wolf, Principles of Optics, 7th ed., 15.4.2, equation 25. */
+ * difference of indices (n_e - n_o) sin^2 a: Born and Wolf, Principles of Optics, 7th ed., 15.4.2. */
 static double retardance_deg(const region_sheet *sheet, vec3 d, double length_m, double lambda_nm)
 {
     const vec3 across = vec3_sub(sheet->axis, vec3_scale(d, vec3_dot(sheet->axis, d)));
