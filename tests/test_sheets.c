@@ -1,6 +1,6 @@
 /* Polarisers and wave plates in the scene against closed forms of the textbooks (Hecht, Optics, 8.2 and 8.7; Goldstein,
- * Polarized Light, the chapter on Mueller matrices): as images of one white sky behind sheets, along z. What the eye sees of a field is
- * computed from the oscillation itself, without Stokes parameters. */
+ * Polarized Light, the chapter on Mueller matrices): as images of one white sky behind sheets, along z. What the eye
+ * sees of a field is computed from the oscillation itself, without Stokes parameters. */
 #include <math.h>
 #include <setjmp.h>
 #include <stdarg.h>

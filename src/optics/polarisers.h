@@ -13,7 +13,8 @@ static inline sp_response sp_polariser(double along, double across)
 }
 
 /* A wave plate in the frame of its slow axis: the field along it lags behind the field across it by delta. In
- * exp(-i omega t) a lag is a factor exp(i delta), so that conj(E_x) E_y turns by -delta. Goldstein, Mueller matrix of a linear retarder. */
+ * exp(-i omega t) a lag is a factor exp(i delta), so that conj(E_x) E_y turns by -delta. Goldstein, Mueller matrix of a
+ * linear retarder. */
 static inline sp_response sp_retarder(double sin_delta, double cos_delta)
 {
     sp_response r = {1.0, 0.0, cos_delta, -sin_delta};
