@@ -27,6 +27,7 @@ static const acts_small acts_smaller[] = {
     {"films", "render.samples=1 render.depth=3"},
     {"window", "render.samples=4 render.photons=2000"},
     {"spectroscope", "render.wavelengths=4 render.samples=1 render.photons=20000"},
+    {"polarisers", "render.samples=1 render.wavelengths=2"},
 };
 
 /* Heights of the films, tried in this order until a value has an effect: a slit may lie between the rays of a small

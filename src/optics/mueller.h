@@ -7,8 +7,9 @@
  *   i      is the intensity (radiance),
  *   q > 0: the field is along x, q < 0: along y,
  *   u > 0: the field is at +45 degrees, from x towards y,
- *   v > 0: the field rotates from x towards y: clockwise for the eye that the light reaches, which is right-handed
- *          light in Hecht's and Born and Wolf's sense. (For light that travels along +d the same v is left-handed.)
+ *   v > 0: the field rotates from x towards y. A camera shows x to the right, y up and z away from it, a left-handed
+ *          frame, in which this is anticlockwise for the eye that the light reaches: left-handed light in Hecht's and
+ *          Born and Wolf's sense. (For light that travels along +d the same v is right-handed.)
  * In complex amplitudes with exp(-i omega t), as in Born and Wolf: u + i v = 2 conj(E_x) E_y. In an s/p frame x = s = d
  * x n / |d x n| and y = p = d x s, with a separate p for each ray: at normal incidence the reflected p is reversed, r_p
  * = -r_s, and nothing jumps. The normal n faces the ray: cos_i = -d.n >= 0; n_from is the index on the side of the ray
@@ -134,6 +135,14 @@ static inline double analyser_sees(stokes row, stokes s)
     return row.i * s.i + row.q * s.q + row.u * s.u + row.v * s.v;
 }
 
+/* The row times the matrix of r, both in its s/p frame. */
+static inline stokes analyser_times(stokes w, sp_response r)
+{
+    stokes s = {w.i * r.mean + w.q * r.half, w.i * r.half + w.q * r.mean, w.u * r.real + w.v * r.imag,
+                w.v * r.real - w.u * r.imag};
+    return s;
+}
+
 /* The analyser row multiplied by the Mueller matrix of an interface with normal n that a ray of direction d meets; in
  * the frame of `child`, the reflected or refracted direction. */
 static inline stokes analyser_across(stokes row, vec3 d, vec3 n, vec3 child, sp_response r)
@@ -147,8 +156,7 @@ static inline stokes analyser_across(stokes row, vec3 d, vec3 n, vec3 child, sp_
     s = vec3_make(blend(any, x.x, s.x), blend(any, x.y, s.y), blend(any, x.z, s.z));
     frame_turn to_sp = frame_turn_to(x, y, s), from_sp = frame_turn_to(child_x, child_y, s);
     stokes w = stokes_rotate(row, to_sp.cos_2a, to_sp.sin_2a);
-    stokes beyond = {w.i * r.mean + w.q * r.half, w.i * r.half + w.q * r.mean, w.u * r.real + w.v * r.imag,
-                     w.v * r.real - w.u * r.imag};
+    stokes beyond = analyser_times(w, r);
     return stokes_rotate(beyond, from_sp.cos_2a, -from_sp.sin_2a);
 }
 

@@ -2,6 +2,7 @@
 
 #include "scene/model/medium.h"
 #include "scene/model/scene.h"
+#include "scene/model/sheet.h"
 #include <math.h>
 
 static status wrong(const scene *s, diagnostic *why, const char *remedy, const char *what)
@@ -119,6 +120,7 @@ void arrange_bare(scene *s)
         m->color = vec3_make(1.0, 1.0, 1.0);
         m->reflectivity -= material_coating(m, &s->render);
         m->film_thickness_nm = 0.0;
+        m->sheet = SHEET_NONE;
     }
 }
 

@@ -79,13 +79,13 @@ static vec3 across_ray(vec3 axis, vec3 f, vec3 d)
     return vec3_sub(axis, vec3_scale(vec3_add(f, d), vec3_dot(axis, d) / (1.0 + vec3_dot(f, d))));
 }
 
-/* The row of an ideal analyser: it transmits half of unpolarised light. A right-handed one's v is positive
+/* The row of an ideal analyser: it transmits half of unpolarised light. A left-handed one's v is positive
  * (optics/mueller.h). */
 static stokes analyser_row(const plan *p, vec3 d)
 {
     if (p->analyser == ANALYSER_LINEAR)
         return stokes_linear(d, across_ray(p->analyser_axis, p->view.forward, d));
-    return (stokes){1.0, 0.0, 0.0, p->analyser == ANALYSER_CIRCULAR_LEFT ? -1.0 : 1.0};
+    return (stokes){1.0, 0.0, 0.0, p->analyser == ANALYSER_CIRCULAR_LEFT ? 1.0 : -1.0};
 }
 
 static void put_analyser(const plan *p, int count, ray_queue *q, int at)

@@ -11,6 +11,7 @@
 #include "render/shade/lamp_shape.h"
 #include "render/shade/light_cone.h"
 #include "render/shade/rain.h"
+#include "render/shade/sheets.h"
 #include "render/shade/spectra.h"
 #include "scene/model/camera.h"
 #include "scene/model/face_materials.h"
@@ -44,6 +45,7 @@ typedef struct plan {
     vec3 *absorption;  /* by priority index: Beer-Lambert coefficients and tints, by channel, in 1 / scene unit */
     spectra *spectral; /* for a spectral film, else NULL */
     layered_plan *layered; /* metals and films; NULL if there are none */
+    region_sheet *sheets;  /* by priority index: polarisers and wave plates; NULL if there are none */
     camera_frame view;
     uint64_t eye_inside;       /* the set of primitives that contain the camera */
     analyser_kind analyser;    /* of camera rays; ANALYSER_NONE without polarisation */

@@ -174,7 +174,7 @@ static void trace_batch(tracer *t, int depth)
     if (depth == 0)
         COUNT(t->account.counters.camera += (uint64_t)rays.count);
     if (t->batch.scratch.segments)
-        absorption_announce(t, q->sample_key + first, rays.count);
+        absorption_announce(t, q, first, rays.count);
     const int64_t began_ns = visibility_begins(t);
     t->rule->intersect(t, q, first, depth, &rays);
     visibility_ends(t, began_ns);
@@ -203,7 +203,7 @@ static void trace_shadows(tracer *t)
     const ray_batch rays = queue_take(q, &first);
     COUNT(t->account.counters.shadow += (uint64_t)rays.count);
     if (p->geometry->attenuates)
-        absorption_announce(t, q->sample_key + first, rays.count);
+        absorption_announce(t, q, first, rays.count);
     radiance_begin_shadows(t, &rays, q->sample_key + first);
     const int64_t began_ns = visibility_begins(t);
     t->geometry->shadow(p->geometry, &rays, p->solid_shadows, &t->batch.scratch, t->batch.transmitted);

@@ -17,6 +17,8 @@ static void add_depths(tracer *t)
 {
     const plan *p = t->target.frame_plan;
     const int64_t *sample_keys = t->media->sample_keys;
+    for (int k = 0; p->sheets && k < t->batch.scratch.segments->count; k++)
+        sheets_segment(t, &t->batch.scratch.segments->segment[k]);
     for (int k = 0; k < t->batch.scratch.segments->count; k++) {
         const medium_segment *s = &t->batch.scratch.segments->segment[k];
         if (!p->geometry->regions[s->priority_index].attenuates)
@@ -54,14 +56,15 @@ void absorption_end(tracer *t)
     free(t->media);
 }
 
-void absorption_announce(tracer *t, const int64_t *sample_keys, int count)
+void absorption_announce(tracer *t, const ray_queue *q, int first, int count)
 {
-    t->media->sample_keys = sample_keys;
+    t->media->sample_keys = q->sample_key + first;
     t->batch.scratch.segments->full = make_room;
     t->batch.scratch.segments->context = t;
     /* optical depths at first */
     for (int i = 0; i < count; i++)
         t->media->transmittance[0][i] = t->media->transmittance[1][i] = t->media->transmittance[2][i] = 0.0;
+    sheets_announce(t, q, first, count);
 }
 
 static void absorption_shares(tracer *t, int count)
@@ -69,6 +72,8 @@ static void absorption_shares(tracer *t, int count)
     add_depths(t);
     for (int c = 0; c < 3; c++)
         t->shade->absorb(t->media->transmittance[c], count);
+    if (t->target.frame_plan->sheets)
+        sheets_leave(t, count, t->media->transmittance);
 }
 
 /* A path to the sky has no finite length: its light is taken to arrive unattenuated at the surface where the path
@@ -91,4 +96,6 @@ void absorption_dim(tracer *t, ray_queue *q, int first, int count)
         q->wg[first + i] *= t->media->transmittance[1][i];
         q->wb[first + i] *= t->media->transmittance[2][i];
     }
+    if (t->target.frame_plan->sheets)
+        sheets_store(t, q, first, count);
 }

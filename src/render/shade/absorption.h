@@ -1,25 +1,27 @@
-/* Absorption by the media that rays pass through. Ownership: absorption_begin allocates the tracer's memory,
- * absorption_end frees it. */
+/* Absorption by the media that rays pass through, and what their sheets do (sheets.h). Ownership: absorption_begin
+ * allocates the tracer's memory, absorption_end frees it. */
 #pragma once
 
 #include "base/elementary_inline.h"
 #include "render/core/queue.h"
 #include "render/core/tracer.h"
+#include "render/shade/sheets.h"
 
 typedef struct media_work {
     medium_segments segments;
     const int64_t *sample_keys;   /* of the batch whose medium segments are recorded */
     double transmittance[3][ROW]; /* transmittance of the path to the hit, by channel */
+    sheet_work sheets;
 } media_work;
 
 /* Begins a frame; absorbs: some of its media absorb. False when out of memory. */
 bool absorption_begin(tracer *t, bool absorbs);
 void absorption_end(tracer *t);
 
-/* absorption_announce: called before a batch is traced, turns on the recording of its medium segments.
+/* absorption_announce: called before a batch of a queue is traced, turns on the recording of its medium segments.
  * absorption_exempt_sky: after a search for nearest interfaces, removes absorption by the surrounding medium from paths
  * to the sky. absorption_dim: multiplies the batch's throughput by the transmittance. */
-void absorption_announce(tracer *t, const int64_t *sample_keys, int count);
+void absorption_announce(tracer *t, const ray_queue *q, int first, int count);
 void absorption_exempt_sky(tracer *t);
 void absorption_dim(tracer *t, ray_queue *q, int first, int count);
 

@@ -9,6 +9,7 @@
 #include "scene/model/params_path.h"
 #include "scene/model/slime.h"
 #include "scene/model/scene.h"
+#include "scene/model/sheet.h"
 
 #include <string.h>
 
@@ -310,6 +311,7 @@ static status check_solid(const scene *s, const solid *owner, diagnostic *why)
     index_law unused;
     TRY(material_index_law(&owner->surface, owner->name, &unused, why));
     TRY(material_absorption_check(&owner->surface, owner->name, why));
+    TRY(sheet_check(&owner->surface, owner->name, why));
     TRY(check_layers(s, owner, why));
     TRY(check_face_layers(s, owner, why));
     /* A surface must not return more light than it receives; the tolerance is for sums such as 0.7 + 0.2 + 0.1. Under

@@ -4,6 +4,7 @@
 #include "scene/model/face_materials.h"
 #include "scene/model/medium.h"
 #include "scene/model/scene.h"
+#include "scene/model/sheet.h"
 
 #include <stdio.h>
 
@@ -50,7 +51,7 @@ static void hint_at_clear(const scene *s, const solid *owner, const note_taker *
                       owner->name);
     } else if (!scene_has_constant_shares(&s->render) && material_matches_surroundings(s, m) && !material_tints(m) &&
                m->reflectivity == 0.0 && m->emission == 0.0 && !material_is_layered(m, &s->render) &&
-               !is_inside_medium(s, owner) && !cuts_another(s, owner)) {
+               m->sheet == SHEET_NONE && !is_inside_medium(s, owner) && !cuts_another(s, owner)) {
         note_give(taker, owner->name, "ior", "set its ior",
                   "%s is transparent with the refractive index of the surrounding medium: it %s", owner->name,
                   material_absorbs(m) ? "refracts no light" : "is invisible");
@@ -200,6 +201,34 @@ static void hint_at_analyser(const scene *s, const note_taker *taker)
                   "light is traced without its polarisation: the analyser has no effect");
 }
 
+/* A polariser or a wave plate that does less than its name says. */
+static void hint_at_sheet(const scene *s, const solid *owner, const note_taker *taker)
+{
+    const material *m = &owner->surface;
+    const render_settings *r = &s->render;
+    if (m->sheet == SHEET_NONE)
+        return;
+    if (m->transparency == 0.0)
+        note_give(taker, owner->name, "sheet", "set its transparency", "%s is opaque: no light passes its sheet",
+                  owner->name);
+    else if (integrator_traits_of(r)->drawn)
+        note_give(taker, owner->name, "sheet", "set render.integrator to whitted and render.polarisation to on",
+                  "the depth buffer does not show what the sheet of %s does", owner->name);
+    else if (!r->polarisation)
+        note_give(taker, owner->name, "sheet", "set render.polarisation to on",
+                  m->sheet == SHEET_RETARDER ? "light is traced without its polarisation: the retarder %s has no effect"
+                                             : "light is traced without its polarisation: %s is a grey filter",
+                  owner->name);
+    else if (m->sheet == SHEET_RETARDER && !sheet_retards(m))
+        note_give(taker, owner->name, "retardance_deg", "set its retardance_deg, or its birefringence",
+                  "the retarder %s has a retardance of 0: it has no effect", owner->name);
+    else if (sheet_disperses(m, r) && r->spectrum != SPECTRUM_SPECTRAL)
+        note_give(
+            taker, owner->name, "birefringence", "set render.spectrum to spectral",
+            "the retardance of %s is that of render.lambda_nm in every channel: there are no interference colours",
+            owner->name);
+}
+
 /* The film does not depend on them, so that scene/model/inert has no rules for them. */
 static void hint_at_tone(const scene *s, const note_taker *taker)
 {
@@ -245,6 +274,7 @@ void scene_hints(const scene *s, const note_taker *taker)
         if (s->solids[i].visible) {
             hint_at_solid(s, &s->solids[i], taker);
             hint_at_idle(s, &s->solids[i], taker);
+            hint_at_sheet(s, &s->solids[i], taker);
             hint_at_cover(s, &s->solids[i], taker);
         }
     }

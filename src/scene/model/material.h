@@ -27,10 +27,14 @@ typedef struct material {
     double transparency; /* 0 = opaque; otherwise the fraction of the refracted light that passes an interface */
     double ior;          /* relative to vacuum, if medium is MEDIUM_IOR */
     double extinction;   /* of an opaque material with medium MEDIUM_IOR: k of its complex index ior - i k */
-    double film_thickness_nm, film_ior; /* of a film on the surface; thickness 0: none */
-    int64_t medium;                     /* see scene/model/medium.h */
-    number_list coefficients;           /* coefficients of the medium's dispersion law */
-    vec3 absorb_per_m;                  /* absorption coefficient of the Beer-Lambert law, by channel */
+    double film_thickness_nm, film_ior;   /* of a film on the surface; thickness 0: none */
+    int64_t sheet;                        /* see scene/model/sheet.h; of a transparent solid */
+    vec3 sheet_axis;                      /* in the solid's own frame, of any length */
+    double sheet_pass, sheet_block;       /* a polariser's transmittances */
+    double retardance_deg, birefringence; /* of a retarder: fixed, and along the path */
+    int64_t medium;                       /* see scene/model/medium.h */
+    number_list coefficients;             /* coefficients of the medium's dispersion law */
+    vec3 absorb_per_m;                    /* absorption coefficient of the Beer-Lambert law, by channel */
     number_list absorb_spectrum; /* the same by wavelength: nm, 1/m, nm, 1/m ...; replaces absorb_per_m unless empty */
     double tint_distance;        /* scene units; tint and absorption are added */
     char texture[SCENE_NAME_MAX + 1]; /* its values are multiplied by color; "" for none */

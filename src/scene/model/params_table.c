@@ -37,6 +37,7 @@ static const char *const wrap_words[] = {"repeat", "mirror", "clamp", NULL};
 static const char *const space_words[] = {"srgb", "linear", NULL};
 static const char *const projection_words[] = {"perspective", "orthographic", NULL};
 static const char *const analyser_words[] = {"none", "linear", "circular_left", "circular_right", NULL};
+static const char *const sheet_words[] = {"none", "polariser", "circular_left", "circular_right", "retarder", NULL};
 static const char *const tone_words[] = {"none", "reinhard", "aces", NULL};
 static const char *const light_words[] = {"point", "cone", "soft_cone", "disc", "rectangle", NULL};
 /* as enum lamp_spectrum */
@@ -184,7 +185,8 @@ static const param table[] = {
             "wavelengths per camera ray of the spectral film, from 380 to 780 nm"),
     REAL(PARAM_RENDER, render_settings, lambda_nm, "nm", 200, 2000, "587.5618",
          "wavelength of the refractive indices of the rgb film; the default is the d line"),
-    POSITIVE(PARAM_RENDER, render_settings, unit_m, "m", 1e6, "1", "length of one scene unit, for absorption"),
+    POSITIVE(PARAM_RENDER, render_settings, unit_m, "m", 1e6, "1",
+             "length of one scene unit, for absorption and birefringence"),
     ROW(PARAM_RENDER, "threads", PARAM_INT, "", 1, 1024, false, "1",
         "worker threads; auto: one per processing unit that the process may use", NULL, PERFORMANCE(threads),
         .automatic = "auto"),
@@ -420,6 +422,23 @@ static const param table[] = {
     REAL(PARAM_MATERIAL, material, film_thickness_nm, "nm", 0, 20000, "0",
          "thickness of a transparent film on the surface (soap, oil, a coating), whose two faces interfere; 0: none"),
     REAL(PARAM_MATERIAL, material, film_ior, "", 1, 5, "1.4", "refractive index of the film, relative to vacuum"),
+    CHOICE(
+        PARAM_MATERIAL, material, sheet, sheet_words, "none",
+        "what each passage through the transparent solid does to the light's polarisation, with render.polarisation: "
+        "a linear polariser, one for left- or right-handed light, or a retarder (wave plate)"),
+    {PARAM_MATERIAL, "sheet_axis", PARAM_VECTOR, "", -1000, 1000, false, "1,0,0",
+     "axis of a polariser (of the field that it passes) or a retarder (the slow one), in the solid's frame; across a "
+     "ray its projection counts",
+     NULL, OF(material, sheet_axis)},
+    REAL(PARAM_MATERIAL, material, sheet_pass, "", 0, 1, "1",
+         "transmittance of a polariser for light that it passes: along its axis, or of its hand"),
+    REAL(PARAM_MATERIAL, material, sheet_block, "", 0, 1, "0",
+         "transmittance of a polariser for light that it blocks: across its axis, or of the other hand"),
+    REAL(PARAM_MATERIAL, material, retardance_deg, "deg", -36000, 36000, "0",
+         "retardance of a retarder at each passage, at every wavelength; 90: a quarter-wave plate"),
+    REAL(PARAM_MATERIAL, material, birefringence, "", -1, 1, "0",
+         "difference of a retarder's indices along and across its axis: retards by 360 degrees times this and the "
+         "path in it over the wavelength, in addition to retardance_deg"),
     COLOR(PARAM_MATERIAL, material, absorb_per_m, 1e9, "0,0,0", "Beer-Lambert absorption coefficient by channel, 1/m"),
     LIST(PARAM_MATERIAL, material, absorb_spectrum, "nm, 1/m", 1e9, "[]",
          "Beer-Lambert absorption coefficient by wavelength, as nm,1/m,nm,1/m,...; replaces absorb_per_m"),

@@ -57,11 +57,19 @@ const char *suggest_word(const char *wrong, const char *const *words, size_t cou
     return meant ? meant : text_nearest(wrong, words, count);
 }
 
+/* A list that does not fit ends after a whole word, with dots. */
 void suggest_list(const char *prefix, const char *const *words, size_t count, char *text, size_t size)
 {
+    static const char more[] = ", ...";
     int used = snprintf(text, size, "%s", prefix);
-    for (size_t i = 0; i < count && used >= 0 && (size_t)used < size; i++)
+    size_t whole = 0; /* the length after the last word behind which the dots would fit */
+    for (size_t i = 0; i < count && used >= 0 && (size_t)used < size; i++) {
+        if ((size_t)used + sizeof more <= size)
+            whole = (size_t)used;
         used += snprintf(text + used, size - (size_t)used, "%s%s", i ? ", " : "", words[i]);
+    }
+    if (used >= 0 && (size_t)used >= size && whole > 0)
+        snprintf(text + whole, size - whole, "%s", more);
 }
 
 char *suggest_key(const char *wrong, const char *const *words, size_t count, char *text, size_t size)

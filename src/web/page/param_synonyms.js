@@ -32,6 +32,9 @@ const SYNONYMS = {
   oil: ['medium', 'ior', 'transparency', 'absorb', 'film_thickness'],
   opacity: ['transparency'],
   place: ['position'],
+  plate: ['sheet', 'retardance', 'birefringence'],
+  polarizer: ['sheet', 'render.polarisation', 'camera.analyser'],
+  polaroid: ['sheet', 'render.polarisation', 'camera.analyser'],
   prism: ['medium', 'coefficients', 'render.spectrum', 'sides'],
   quality: ['render.samples', 'render.depth', 'render.paths', 'render.width', 'render.height'],
   rainbow: ['background.kind', 'background.rain', 'background.drops', 'render.spectrum', 'medium'],
@@ -45,6 +48,7 @@ const SYNONYMS = {
   speed: ['render.threads', 'render.accel', 'render.samples', 'render.depth'],
   sun: ['background.sun', 'light.position'],
   transparent: ['transparency'],
+  waveplate: ['sheet', 'retardance', 'birefringence'],
   water: ['medium', 'ior', 'transparency', 'absorb'],
   zoom: ['fov', 'camera.position', 'scale'],
 };

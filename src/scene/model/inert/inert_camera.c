@@ -40,16 +40,21 @@ static bool focus(const inert_case *c)
            inert_say(c, "pinhole", "set camera.aperture=0.2", "a pinhole shows everything in focus");
 }
 
-static bool unpolarised(const inert_case *c)
+inert_remedy polarised_remedy(const scene *s)
 {
-    const render_settings *r = &c->s->render;
+    const render_settings *r = &s->render;
     const integrator_traits *traits = integrator_traits_of(r);
     const char *first = traits->by_chance || traits->drawn || traits->layers ? "render.integrator=whitted and "
                         : r->weights == WEIGHTS_CONSTANT                     ? "render.weights=fresnel and "
                         : r->transmission == TRANSMISSION_SIMPLE             ? "render.transmission=refract and "
                                                                              : "";
-    return !r->polarisation && inert_say(c, "unpolarised", inert_set("%srender.polarisation=on", first).text,
-                                         "light is traced without its polarisation");
+    return inert_set("%srender.polarisation=on", first);
+}
+
+bool unpolarised(const inert_case *c)
+{
+    return !c->s->render.polarisation &&
+           inert_say(c, "unpolarised", polarised_remedy(c->s).text, "light is traced without its polarisation");
 }
 
 static bool analyser_angle(const inert_case *c)

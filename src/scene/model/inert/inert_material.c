@@ -19,7 +19,7 @@ static bool is_open(const inert_case *c)
     return m && m->data && !m->data->closed;
 }
 
-static bool opaque_rule(const inert_case *c)
+bool opaque_rule(const inert_case *c)
 {
     if (c->m->transparency > 0.0)
         return false;
@@ -68,7 +68,7 @@ static bool medium_rule(const inert_case *c)
 }
 
 /* Light inside the solid is seen only by a camera inside it. */
-static bool unpassed(const inert_case *c)
+bool unpassed(const inert_case *c)
 {
     return nothing_passes(c->s) && scene_apart_from_eye(c->s, c->owner) && say_no_tree(c);
 }
@@ -327,6 +327,12 @@ bool inert_appearance(const inert_case *c)
         {"extinction", extinction_rule},
         {"film_thickness_nm", film_rule},
         {"film_ior", film_index_rule},
+        {"sheet", sheet_rule},
+        {"sheet_axis", sheet_axis_rule},
+        {"sheet_pass", sheet_share_rule},
+        {"sheet_block", sheet_share_rule},
+        {"retardance_deg", retardance_rule},
+        {"birefringence", retardance_rule},
         {"coefficients", coefficients_rule},
         {"absorb_per_m", absorb_per_m_rule},
         {"absorb_spectrum", absorption_rule},

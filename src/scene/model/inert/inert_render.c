@@ -4,6 +4,7 @@
 #include "scene/model/camera.h"
 #include "scene/model/medium.h"
 #include "scene/model/scene.h"
+#include "scene/model/sheet.h"
 
 static const char *const WHITTED = "set render.integrator=whitted";
 
@@ -137,8 +138,16 @@ static bool is_layered(const scene *s, const solid *one)
     return material_is_layered(&one->surface, &s->render);
 }
 
+static bool has_sheet(const scene *s, const solid *one)
+{
+    return sheet_acts(&one->surface, &s->render) ||
+           (!material_is_opaque(&one->surface) && sheet_retards(&one->surface));
+}
+
 bool inert_polarisation(const inert_case *c)
 {
+    if (!integrator_traits_of(&c->s->render)->drawn && first_visible(c->s, has_sheet))
+        return false;
     return no_tree(c) || (!first_visible(c->s, is_layered) && no_clear(c));
 }
 
@@ -276,6 +285,11 @@ static bool has_dispersion(const scene *s, const solid *one)
            is_dispersive(&law);
 }
 
+static bool retards_by_path(const scene *s, const solid *one)
+{
+    return sheet_disperses(&one->surface, &s->render);
+}
+
 static bool lambda(const inert_case *c)
 {
     const scene *s = c->s;
@@ -283,9 +297,10 @@ static bool lambda(const inert_case *c)
         return inert_say(c, "rgb-only", "set render.spectrum=rgb",
                          "the spectral film uses the index of each wavelength");
     const index_law around = surrounding_index_law(&s->background);
-    return no_clear(c) || (!is_dispersive(&around) && !first_visible(s, has_dispersion) &&
-                           inert_say(c, "no-dispersion", inert_set_on(first_visible(s, is_clear), "medium=bk7").text,
-                                     "the index of every transparent medium is constant"));
+    return no_clear(c) ||
+           (!is_dispersive(&around) && !first_visible(s, has_dispersion) && !first_visible(s, retards_by_path) &&
+            inert_say(c, "no-dispersion", inert_set_on(first_visible(s, is_clear), "medium=bk7").text,
+                      "the index of every transparent medium is constant"));
 }
 
 static bool absorbs(const scene *s, const solid *one)
@@ -300,7 +315,7 @@ static bool unit(const inert_case *c)
     const solid *clear = first_visible(s, is_clear);
     const inert_remedy remedy = clear ? inert_set("%s.absorb_per_m=0.2,0.4,0.8", clear->name)
                                       : inert_set("background.absorb_per_m=0.01,0.02,0.04");
-    return !surroundings_absorb(&s->background) && !first_visible(s, absorbs) &&
+    return !surroundings_absorb(&s->background) && !first_visible(s, absorbs) && !first_visible(s, retards_by_path) &&
            inert_say(c, "no-absorption", remedy.text, "no medium that light passes absorbs");
 }
 
