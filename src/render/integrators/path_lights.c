@@ -11,6 +11,17 @@ double path_light_radiance(const plan *p, int lamp, vec3 direction)
     return l->reach * l->reach / (l->radius * l->radius) * light_share(l, &p->cones[lamp], vec3_scale(direction, -1.0));
 }
 
+double path_light_distance(const light *l, vec3 origin, vec3 direction)
+{
+    const vec3 to_light = vec3_sub(l->position, origin);
+    const double along = vec3_dot(to_light, direction), distance2 = vec3_dot(to_light, to_light);
+    const vec3 across = vec3_sub(to_light, vec3_scale(direction, along));
+    const double discriminant = l->radius * l->radius - vec3_dot(across, across);
+    if (!(discriminant > 0.0) || distance2 <= l->radius * l->radius)
+        return (double)HUGE_VAL;
+    return along - sqrt(discriminant);
+}
+
 vec3 path_light_color(const tracer *t, int lamp, int64_t sample_key)
 {
     const plan *p = t->target.frame_plan;
@@ -43,13 +54,6 @@ static void enqueue_light(tracer *t, int k, vec3 to_light, vec3 color, double di
     q->start[at] = g->points.face[k], q->sample_key[at] = g->sample_key[k], q->inside[at] = g->inside_before[k];
 }
 
-/* Lights of the group's records, and points of those that are spheres. */
-typedef struct lamp_samples {
-    int lamp[ROW];      /* -1: none */
-    double weight[ROW]; /* of its light */
-    sphere_samples spheres;
-} lamp_samples;
-
 /* Enqueues a shadow ray from record k to its point of a light's sphere. */
 static void enqueue_sphere(tracer *t, int k, const material *m, bool opaque, const lamp_samples *l)
 {
@@ -75,19 +79,23 @@ static bool is_sphere(const plan *p, int lamp)
     return lamp >= 0 && p->lights[lamp].radius > 0.0;
 }
 
-/* From every record whose light is a sphere; u and v of the samples are set. */
-static void sample_spheres(tracer *t, const material *m, bool opaque, lamp_samples *l)
+void path_aim_at_spheres(const tracer *t, lamp_samples *l)
 {
     const plan *p = t->target.frame_plan;
-    const int count = t->surface.gathered.count;
-    for (int k = 0; k < count; k++) {
+    for (int k = 0; k < t->surface.gathered.count; k++) {
         const light *one = &p->lights[l->lamp[k] < 0 ? 0 : l->lamp[k]];
         l->spheres.x[k] = one->position.x, l->spheres.y[k] = one->position.y, l->spheres.z[k] = one->position.z;
         l->spheres.radius[k] = one->radius;
     }
     t->path->spheres(&t->surface.gathered, &l->spheres);
-    for (int k = 0; k < count; k++)
-        if (is_sphere(p, l->lamp[k]))
+}
+
+/* From every record whose light is a sphere; u and v of the samples are set. */
+static void sample_spheres(tracer *t, const material *m, bool opaque, lamp_samples *l)
+{
+    path_aim_at_spheres(t, l);
+    for (int k = 0; k < t->surface.gathered.count; k++)
+        if (is_sphere(t->target.frame_plan, l->lamp[k]))
             enqueue_sphere(t, k, m, opaque, l);
 }
 
@@ -142,7 +150,8 @@ static void sample_one(tracer *t, const material *m, bool opaque, int priority_i
     local_light(t, priority_index, (light_terms){.emission_only = true});
     if (m->diffuse == 0.0 && m->specular == 0.0)
         return;
-    light_choice_make(t, m, depth, one.lamp, one.weight, one.spheres.u, one.spheres.v);
+    const light_estimate by = light_estimate_of(m);
+    light_choice_make(t, &by, depth, one.lamp, one.weight, one.spheres.u, one.spheres.v);
     radiance_weigh(t);
     for (int k = 0; k < t->surface.gathered.count; k++)
         if (one.lamp[k] >= 0 && !is_sphere(p, one.lamp[k]))

@@ -403,6 +403,9 @@ static const param table[] = {
     REAL(PARAM_MATERIAL, material, film_thickness_nm, "nm", 0, 20000, "0",
          "thickness of a transparent film on the surface (soap, oil, a coating), whose two faces interfere; 0: none"),
     REAL(PARAM_MATERIAL, material, film_ior, "", 1, 5, "1.4", "refractive index of the film, relative to vacuum"),
+    REAL(PARAM_MATERIAL, material, roughness, "", 0, 1, "0",
+         "alpha of the GGX microfacets of a surface that reflects or refracts rays (ground glass, brushed metal), for "
+         "integrator path; 0: smooth"),
     COLOR(PARAM_MATERIAL, material, absorb_per_m, 1e9, "0,0,0", "Beer-Lambert absorption coefficient by channel, 1/m"),
     LIST(PARAM_MATERIAL, material, absorb_spectrum, "nm, 1/m", 1e9, "[]",
          "Beer-Lambert absorption coefficient by wavelength, as nm,1/m,nm,1/m,...; replaces absorb_per_m"),
