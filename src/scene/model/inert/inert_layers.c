@@ -18,8 +18,8 @@ static bool is_of_light(const inert_case *c)
         "kind",    "color",        "horizon", "picture", "rain", "drops", "sun_elevation_deg", "sun_azimuth_deg",
         "ambient", "absorb_per_m", NULL};
     static const char *const of_surface[] = {
-        "ambient",         "diffuse",       "specular",   "shininess", "absorb_per_m",
-        "absorb_spectrum", "tint_distance", "extinction", "film_ior",  NULL};
+        "ambient",    "diffuse",  "specular",  "shininess", "absorb_per_m", "absorb_spectrum", "tint_distance",
+        "extinction", "film_ior", "roughness", NULL};
     switch (c->at.object_group) {
     case PARAM_LIGHT: return true;
     case PARAM_RENDER: return is_among(c, of_render);

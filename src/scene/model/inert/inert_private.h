@@ -70,6 +70,8 @@ bool inert_named_faces(const inert_case *c);
 /* Rules of metals and films (inert_layered.c): no ray brings what the surface reflects; of their parameters; and of the
  * reflectivity that they replace. */
 inert_rule mirrors_black, nothing_reflected, extinction_rule, film_rule, film_index_rule, layered_reflectivity;
+/* Of rough surfaces, and of what reflects nothing because rays end there. */
+inert_rule roughness_rule, nothing_at_depth_0;
 /* Whether the row's name is in a list that ends with NULL. */
 bool is_among(const inert_case *c, const char *const *names);
 
