@@ -59,9 +59,16 @@ const char *suggest_word(const char *wrong, const char *const *words, size_t cou
 
 void suggest_list(const char *prefix, const char *const *words, size_t count, char *text, size_t size)
 {
-    int used = snprintf(text, size, "%s", prefix);
-    for (size_t i = 0; i < count && used >= 0 && (size_t)used < size; i++)
-        used += snprintf(text + used, size - (size_t)used, "%s%s", i ? ", " : "", words[i]);
+    static const char more[] = ", ...";
+    size_t used = (size_t)snprintf(text, size, "%s", prefix);
+    for (size_t i = 0; i < count && used < size; i++) {
+        const size_t left = size - used, need = strlen(words[i]) + 2;
+        if (need + (i + 1 < count ? sizeof more : 1) > left) {
+            snprintf(text + used, left, "%s", more);
+            return;
+        }
+        used += (size_t)snprintf(text + used, left, "%s%s", i ? ", " : "", words[i]);
+    }
 }
 
 char *suggest_key(const char *wrong, const char *const *words, size_t count, char *text, size_t size)
