@@ -1,4 +1,4 @@
-/* Tests of the facets of rough surfaces against the formulas of Walter et al. (walter.h) and of Heitz, by quadrature. */
+/* Tests of the facets of rough surfaces against the formulas of Walter et al. (walter.h) and Heitz, by quadrature. */
 #include <math.h>
 #include <setjmp.h>
 #include <stdarg.h>

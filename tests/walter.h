@@ -1,6 +1,6 @@
-/* Walter, Marschner, Li and Torrance, "Microfacet models for refraction through rough surfaces" (EGSR 2007), as printed,
- * with angles and libm: what src/optics/microfacet.h is compared with. Vectors are unit vectors, z is the surface's
- * normal; i and o lead away from the surface. */
+/* Walter, Marschner, Li and Torrance, "Microfacet models for refraction through rough surfaces" (EGSR 2007), as
+ * printed, with angles and libm: what src/optics/microfacet.h is compared with. Vectors are unit vectors, z is the
+ * surface's normal; i and o lead away from the surface. */
 #pragma once
 
 #include "base/vec3.h"
@@ -64,8 +64,8 @@ static inline double walter_refraction(double alpha, two_media n, vec3 i, vec3 o
            walter_G1(alpha, o, h) * walter_D(alpha, h) / (sum * sum);
 }
 
-/* The integral of f over the normals of a hemisphere: trapezoids in log tan(theta / 2) of the hemisphere's middle, where
- * GGX has its scale, and in phi. */
+/* The integral of f over the normals of a hemisphere: trapezoids in log tan theta, in which GGX of any alpha has the
+ * same width, and in phi. */
 typedef double of_direction(vec3 m, const void *context);
 static inline double over_normals(of_direction *f, const void *context, int rings, int sectors)
 {

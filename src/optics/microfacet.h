@@ -3,9 +3,10 @@
  * that meets a second facet is lost.
  *   [W] Walter, Marschner, Li and Torrance, "Microfacet models for refraction through rough surfaces", EGSR 2007.
  *   [H] Heitz, "Sampling the GGX distribution of visible normals", JCGT 7(4), 2018.
- * Vectors are unit vectors in a frame whose z is n; i points back along the ray, i.z > 0, and o along the scattered ray.
- * alpha, in (0, 1], is the roughness: the slope at which the density of the facets' slopes is a quarter of its peak. Inline; only + - * / sqrt and
- * base/elementary_inline.h, so that every platform gives the same bits. Pure; cannot fail. */
+ * Vectors are unit vectors in a frame whose z is n; i points back along the ray, i.z > 0, and o along the scattered
+ * ray. alpha, in (0, 1], is the roughness: the slope at which the density of the facets' slopes is a quarter of its
+ * peak. Inline; only + - * / sqrt and base/elementary_inline.h, so that every platform gives the same bits. Pure;
+ * cannot fail. */
 #pragma once
 
 #include "base/elementary_inline.h"

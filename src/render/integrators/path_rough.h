@@ -1,8 +1,8 @@
 /* Rough surfaces on random paths: which facet a path meets, and the lamps' direct light. Each lamp is sampled twice: a
  * point of its sphere, and the path's own direction, where that meets the sphere; the two are weighted by the balance
  * heuristic, so that lamps of any size have little noise on surfaces of any roughness (Veach and Guibas, "Optimally
- * Combining Sampling Techniques for Monte Carlo Rendering", SIGGRAPH 1995, (15)). Both send shadow rays; the path itself
- * then does not hit a lamp. Functions of the tracer's gathered group; nothing fails. */
+ * Combining Sampling Techniques for Monte Carlo Rendering", SIGGRAPH 1995, (15)). Both send shadow rays; the path
+ * itself then does not hit a lamp. Functions of the tracer's gathered group; nothing fails. */
 #pragma once
 
 #include "render/shade/rough.h"
