@@ -18,6 +18,10 @@ static const char *const variants[] = {
     SMALL "render.integrator=path render.paths=16 render.samples=4 render.filter=centre render.roulette=on",
     SMALL "render.integrator=path render.spectrum=spectral render.paths=8 liquid.medium=water vessel.medium=sf11",
     SMALL "render.integrator=path render.spectrum=spectral render.paths=8 render.sampler=philox",
+    SMALL
+    "render.integrator=path render.paths=16 vessel.roughness=0.2 rod.medium=gold rod.roughness=0.3 lamp.radius=0.2",
+    SMALL "render.integrator=path render.spectrum=spectral render.paths=8 vessel.medium=sf11 vessel.roughness=0.1 "
+          "rod.reflectivity=0.5 rod.roughness=0.5 render.caustics=photons render.photons=3000",
     SMALL "render.spectrum=spectral render.wavelengths=9 liquid.medium=water vessel.medium=sf11",
     SMALL "render.spectrum=spectral render.wavelengths=5 render.polarisation=on render.samples=4 vessel.medium=sf11",
     SMALL "render.polarisation=on render.min_weight=0.01",

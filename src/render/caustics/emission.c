@@ -361,9 +361,18 @@ bool emission_ray(const emission *e, int64_t i, emitted_ray *out)
     return true;
 }
 
+static random_words words(const emission *e, int64_t i, int depth, int purpose)
+{
+    return random_at((uint64_t)e->p->render.seed, (uint32_t)i, (uint32_t)(i >> 32), (uint32_t)depth, (uint32_t)purpose);
+}
+
 double emission_chance(const emission *e, int64_t i, int depth, int which)
 {
-    const random_words w = random_at((uint64_t)e->p->render.seed, (uint32_t)i, (uint32_t)(i >> 32), (uint32_t)depth,
-                                     (uint32_t)(DRAW_PHOTON + which));
-    return random_unit(w.word[0]);
+    return random_unit(words(e, i, depth, DRAW_PHOTON + which).word[0]);
+}
+
+unit_pair emission_facet(const emission *e, int64_t i, int depth)
+{
+    const random_words w = words(e, i, depth, DRAW_FACET);
+    return (unit_pair){random_unit(w.word[0]), random_unit(w.word[1])};
 }

@@ -40,3 +40,5 @@ bool emission_ray(const emission *e, int64_t i, emitted_ray *out);
 
 /* A random number in (0, 1) for a decision of photon i at a depth. */
 double emission_chance(const emission *e, int64_t i, int depth, int which);
+/* Two, for the facet of a rough surface. */
+unit_pair emission_facet(const emission *e, int64_t i, int depth);

@@ -4,7 +4,7 @@
  * reversion; Chandrasekhar, Radiative Transfer, 1950, section 13). */
 #include "render/caustics/photon_rule.h"
 
-#include "render/shade/shading.h"
+#include "render/shade/rough.h"
 
 #include <stdlib.h>
 
@@ -111,8 +111,8 @@ static void arrive(tracer *t)
     }
 }
 
-/* The branch of record k: enqueued with its share of the power, or ended. */
-static void follow(tracer *t, int k, int depth, bool refracted)
+/* The branch of record k: enqueued with its share of the power, or ended. rough: NULL for a smooth surface. */
+static void follow(tracer *t, int k, int depth, bool refracted, const rough_surface *rough)
 {
     const photon_frame *f = t->target.state;
     const photon_work *w = work_of(t);
@@ -121,9 +121,14 @@ static void follow(tracer *t, int k, int depth, bool refracted)
     const double mean = refracted ? b->refract[k] : b->reflect[k];
     if (!(mean > 0.0))
         return;
-    const vec3 share = surface_is_layered(t) ? layered_weight(t, k, !refracted) : vec3_make(mean, mean, mean);
+    const vec3 direction =
+        refracted ? vec3_make(b->tx[k], b->ty[k], b->tz[k]) : vec3_make(b->rx[k], b->ry[k], b->rz[k]);
+    const double passing = rough ? rough_share(t, rough, k, rough_in_frame(rough, k, direction), refracted) : 1.0;
+    const vec3 share = vec3_scale(layered_weight(t, k, !refracted), passing);
     vec3 left = vec3_make(g->wr[k] * share.x, g->wg[k] * share.y, g->wb[k] * share.z);
     const double power = fmax(left.x, fmax(left.y, left.z));
+    if (!(power > 0.0))
+        return;
     if (power < LEAST_PHOTON) {
         if (emission_chance(f->from, number_of(g->sample_key[k]), depth, refracted) * LEAST_PHOTON >= power)
             return;
@@ -132,8 +137,7 @@ static void follow(tracer *t, int k, int depth, bool refracted)
     ray_queue *q = &t->queues.waiting[depth + 1];
     const int at = q->count++;
     q->ox[at] = g->points.px[k], q->oy[at] = g->points.py[k], q->oz[at] = g->points.pz[k];
-    q->dx[at] = refracted ? b->tx[k] : b->rx[k], q->dy[at] = refracted ? b->ty[k] : b->ry[k];
-    q->dz[at] = refracted ? b->tz[k] : b->rz[k];
+    q->dx[at] = direction.x, q->dy[at] = direction.y, q->dz[at] = direction.z;
     q->wr[at] = left.x, q->wg[at] = left.y, q->wb[at] = left.z;
     q->start[at] = g->points.face[k], q->sample_key[at] = g->sample_key[k];
     q->inside[at] = refracted ? g->inside_after[k] : g->inside_before[k];
@@ -146,6 +150,21 @@ static void follow(tracer *t, int k, int depth, bool refracted)
     COUNT(refracted ? t->account.counters.refract++ : t->account.counters.reflect++);
 }
 
+/* The branches of photons at facets of a rough surface, one for each photon. */
+static void meet_facets(tracer *t, double alpha, bool opaque, int depth, rough_surface *r)
+{
+    const photon_frame *f = t->target.state;
+    const group *g = &t->surface.gathered;
+    rough_begin(t, alpha, opaque, r);
+    for (int k = 0; k < g->count; k++) {
+        const unit_pair s = emission_facet(f->from, number_of(g->sample_key[k]), depth);
+        r->m[k] = ggx_draw_normal(alpha, r->i[k], s.u, s.v);
+    }
+    rough_branches(t, r);
+    if (!opaque)
+        COUNT(t->account.counters.total_internal += (uint64_t)t->surface.branches.total);
+}
+
 static void shade(tracer *t, int depth, int priority_index)
 {
     const material *m = &t->surface.mat->surface;
@@ -154,10 +173,15 @@ static void shade(tracer *t, int depth, int priority_index)
         arrive(t);
     if (depth == t->queues.depth_limit || (opaque && !surface_reflects(t)))
         return;
-    shading_branches(t, opaque);
+    const double alpha = rough_alpha(t);
+    rough_surface rough;
+    if (alpha > 0.0)
+        meet_facets(t, alpha, opaque, depth, &rough);
+    else
+        shading_branches(t, opaque);
     for (int k = 0; k < t->surface.gathered.count; k++) {
-        follow(t, k, depth, false);
-        follow(t, k, depth, true);
+        follow(t, k, depth, false, alpha > 0.0 ? &rough : NULL);
+        follow(t, k, depth, true, alpha > 0.0 ? &rough : NULL);
     }
 }
 

@@ -18,7 +18,9 @@ enum {
     DRAW_PIXEL = 0x1000,
     DRAW_PHOTON = 0x1001, /* and the next one */
     DRAW_LENS = 0x1003,
-    DRAW_NEXT = 0x1004
+    DRAW_FACET = 0x1004,       /* of a rough surface */
+    DRAW_FACET_LIGHT = 0x1005, /* on its side; the next one: on the other */
+    DRAW_NEXT = 0x1007
 };
 static_assert(DRAW_LIGHT + SCENE_LIGHTS_MAX <= DRAW_PIXEL,
               "the lights' numbers must not overlap those of the next purpose");

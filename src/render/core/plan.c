@@ -110,6 +110,8 @@ static status arrange(const scene *s, const index_law *laws, plan *p, diagnostic
         double shadow_transmittance;
         if (!region_shadow_transmittance(s, one, &shadow_transmittance, &p->shadow_transmittance[i]))
             code = out_of_memory(why);
+        if (material_roughness(&one->surface, &s->render) > 0.0) /* random paths find what it transmits */
+            shadow_transmittance = 0.0;
         sources[count] =
             (region_source){.shape = &one->shape,
                             .priority = one->priority,
@@ -232,6 +234,8 @@ static status fill_priority_indices(const scene *s, const index_law *laws, plan 
         p->materials[r] = material_of(s, p, solid_index);
         if (!region_materials_make(s, &s->solids[solid_index], p->materials[r], &p->shading_materials[r]))
             return out_of_memory(why);
+        for (int k = 0; k < p->shading_materials[r].count; k++)
+            p->rough |= material_roughness(&p->shading_materials[r].mat[k].surface, &s->render) > 0.0;
         p->absorption[r] = material_extinction(p->materials[r], s->render.unit_m);
     }
     if (!plan_find_alike(p))

@@ -46,6 +46,7 @@ typedef struct plan {
     spectra *spectral; /* for a spectral film, else NULL */
     layered_plan *layered; /* metals and films; NULL if there are none */
     region_sheet *sheets;  /* by priority index: polarisers and wave plates; NULL if there are none */
+    bool rough;            /* some surfaces are rough: see render/shade/rough.h */
     camera_frame view;
     uint64_t eye_inside;       /* the set of primitives that contain the camera */
     analyser_kind analyser;    /* of camera rays; ANALYSER_NONE without polarisation */

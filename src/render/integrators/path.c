@@ -4,34 +4,21 @@
  *   a matte surface  is lit by every light, at a point of the light's sphere sampled uniformly over the cone of
  *                    directions to it (Shirley, Wang and Zimmerman, "Monte Carlo Techniques for Direct Lighting
  *                    Calculations", TOG 15(1), 1996), and continues the path by the cosine law, or like a mirror
- *                    with its reflectivity.
+ *                    with its reflectivity;
+ *   a rough one      does as a smooth one of the normal of one of its facets, and samples the lamps (path_rough.h).
  * Only rays from the camera and from specular surfaces hit light spheres: matte surfaces have sampled them directly.
  * This is how light through a vessel makes caustics; with render.caustics photons bring that light instead, and rays
  * hit lights only along specular surfaces from the camera on. In a scene with light spheres, clear solids block point
  * lights too. A light's radiance is intensity (reach / radius)^2, so that a matte surface at its reach is as bright as
  * in Phong's model. There is no ambient term: light from the sky and from other surfaces replaces it. */
 #include "render/integrators/path_lights.h"
+#include "render/integrators/path_rough.h"
 #include "render/shade/path_kernels.h"
 
 #include <string.h>
 
 /* Below this depth every path continues; from it on faint paths end by Russian roulette. */
 enum { ROULETTE_DEPTH = 3 };
-
-/* Distance at which a ray near the light hits it, a sphere from outside, or HUGE_VAL. */
-static double distance_to_light(const plan *p, int lamp, vec3 origin, vec3 direction)
-{
-    const light *l = &p->lights[lamp];
-    if (light_is_flat(l))
-        return lamp_shape_hit(&p->shapes[lamp], l->position, origin, direction);
-    const vec3 to_light = vec3_sub(l->position, origin);
-    const double along = vec3_dot(to_light, direction), distance2 = vec3_dot(to_light, to_light);
-    const vec3 across = vec3_sub(to_light, vec3_scale(direction, along));
-    const double discriminant = l->radius * l->radius - vec3_dot(across, across);
-    if (!(discriminant > 0.0) || distance2 <= l->radius * l->radius)
-        return (double)HUGE_VAL;
-    return along - sqrt(discriminant);
-}
 
 /* Clips the medium segments of a ray at the light. */
 static void clip_segments(medium_segments *w, int ray, double end)
@@ -79,8 +66,8 @@ static void intersect_lights(tracer *t, const ray_queue *q, int first, const ray
         for (int i = 0; i < rays->count; i++) {
             if (!near[i] || !(q->sample_key[first + i] & SAMPLE_KEY_SPECULAR_BOUNCE))
                 continue;
-            const double distance = distance_to_light(p, k, vec3_make(rays->ox[i], rays->oy[i], rays->oz[i]),
-                                                      vec3_make(rays->dx[i], rays->dy[i], rays->dz[i]));
+            const double distance = area_light_distance(p, k, vec3_make(rays->ox[i], rays->oy[i], rays->oz[i]),
+                                                        vec3_make(rays->dx[i], rays->dy[i], rays->dz[i]));
             if (distance < nearest[i])
                 nearest[i] = distance, lamp[i] = k;
         }
@@ -119,13 +106,6 @@ static void expose_background(tracer *t, const ray_queue *q, int first, const in
             expose_light(t, q, first + i, lamp_of(hit), (int)t->batch.hits.before[i]);
     }
 }
-
-/* The continuation of a path: direction, throughput factor by channel, and media. */
-typedef struct continuation {
-    vec3 direction, share;
-    uint64_t inside;
-    bool refracted, specular_bounce;
-} continuation;
 
 static bool draw_clear(const tracer *t, int k, double chance, continuation *c)
 {
@@ -166,7 +146,7 @@ static void choose(tracer *t, const material *m, bool opaque, int depth, path_ch
 static bool draw_matte(const tracer *t, const material *m, int k, const path_choices *chosen, continuation *c)
 {
     const group *g = &t->surface.gathered;
-    const double brightest = fmax(g->cr[k], fmax(g->cg[k], g->cb[k])), matte = m->diffuse * brightest,
+    const double matte = path_matte_weight(g, m, k),
                  mirror = surface_is_layered(t) ? t->surface.branches.reflect[k] : m->reflectivity;
     if (!(matte + mirror > 0.0))
         return false;
@@ -176,6 +156,7 @@ static bool draw_matte(const tracer *t, const material *m, int k, const path_cho
     c->inside = g->inside_before[k];
     c->refracted = false;
     c->specular_bounce = mirrored;
+    c->matte = !mirrored;
     if (mirrored) {
         c->direction = vec3_make(t->surface.branches.rx[k], t->surface.branches.ry[k], t->surface.branches.rz[k]);
         c->share = surface_is_layered(t) ? vec3_scale(layered_weight(t, k, true), 1.0 / odds)
@@ -224,18 +205,21 @@ static void go_on(tracer *t, int k, int depth, const continuation *c)
     q->dx[at] = c->direction.x, q->dy[at] = c->direction.y, q->dz[at] = c->direction.z;
     q->wr[at] = g->wr[k] * c->share.x, q->wg[at] = g->wg[k] * c->share.y, q->wb[at] = g->wb[k] * c->share.z;
     q->start[at] = g->points.face[k], q->inside[at] = c->inside;
-    /* with photons, only unbroken chains of specular surfaces from the camera: the others' light is theirs */
-    const bool meets_lights =
-        c->specular_bounce && (!t->target.frame_plan->photons || (g->sample_key[k] & SAMPLE_KEY_SPECULAR_BOUNCE));
-    q->sample_key[at] =
-        (g->sample_key[k] & ~SAMPLE_KEY_SPECULAR_BOUNCE) | (meets_lights ? SAMPLE_KEY_SPECULAR_BOUNCE : 0);
+    const bool photons = t->target.frame_plan->photons != NULL;
+    const int64_t left_matte = g->sample_key[k] | (c->matte && photons ? SAMPLE_KEY_PHOTONS : 0);
+    const bool meets_lights = c->specular_bounce && !(left_matte & SAMPLE_KEY_PHOTONS);
+    q->sample_key[at] = (left_matte & ~SAMPLE_KEY_SPECULAR_BOUNCE) | (meets_lights ? SAMPLE_KEY_SPECULAR_BOUNCE : 0);
     COUNT(c->refracted ? t->account.counters.refract++ : t->account.counters.reflect++);
 }
 
-static void continue_one(tracer *t, const material *m, bool opaque, int k, int depth, const path_choices *chosen)
+/* rough: NULL for a smooth surface. */
+static void continue_one(tracer *t, const material *m, bool opaque, int k, int depth, const path_choices *chosen,
+                         const rough_surface *rough)
 {
     continuation c = {.refracted = false};
     if (!(opaque ? draw_matte(t, m, k, chosen, &c) : draw_clear(t, k, chosen->branch[k], &c)))
+        return;
+    if (rough && !c.matte && !path_rough_scatter(t, rough, k, &c))
         return;
     if (depth == t->queues.depth_limit)
         cut(t, k, &c);
@@ -247,12 +231,17 @@ static void shade(tracer *t, int depth, int priority_index)
 {
     const material *m = &t->surface.mat->surface;
     const bool opaque = surface_is_opaque(t, priority_index);
+    const double alpha = rough_alpha(t);
+    rough_surface rough;
     path_choices chosen;
     path_sample_lights(t, priority_index, depth);
-    shading_branches(t, opaque);
+    if (alpha > 0.0)
+        path_rough_begin(t, alpha, opaque, depth, &rough);
+    else
+        shading_branches(t, opaque);
     choose(t, m, opaque, depth, &chosen);
     for (int k = 0; k < t->surface.gathered.count; k++)
-        continue_one(t, m, opaque, k, depth, &chosen);
+        continue_one(t, m, opaque, k, depth, &chosen, alpha > 0.0 ? &rough : NULL);
 }
 
 /* Through the centres of cells: with fewer paths than samples there are fewer cells, because with only the first rows

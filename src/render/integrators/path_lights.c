@@ -45,7 +45,8 @@ static void sample_one(tracer *t, const material *m, bool opaque, int priority_i
     local_light(t, priority_index, (light_terms){.emission_only = true});
     if (m->diffuse == 0.0 && m->specular == 0.0)
         return;
-    light_choice_make(t, m, depth, one.lamp, one.weight, one.spheres.u, one.spheres.v);
+    const light_estimate by = light_estimate_of(m);
+    light_choice_make(t, &by, depth, one.lamp, one.weight, one.spheres.u, one.spheres.v);
     radiance_weigh(t);
     for (int k = 0; k < t->surface.gathered.count; k++)
         if (one.lamp[k] >= 0 && !light_has_area(p, one.lamp[k]))

@@ -11,6 +11,30 @@ double area_light_radiance(const plan *p, int lamp, vec3 direction)
     return l->reach * l->reach / (l->radius * l->radius) * light_share(l, &p->cones[lamp], vec3_scale(direction, -1.0));
 }
 
+double area_light_distance(const plan *p, int lamp, vec3 origin, vec3 direction)
+{
+    const light *l = &p->lights[lamp];
+    if (light_is_flat(l))
+        return lamp_shape_hit(&p->shapes[lamp], l->position, origin, direction);
+    const vec3 to_light = vec3_sub(l->position, origin);
+    const double along = vec3_dot(to_light, direction), distance2 = vec3_dot(to_light, to_light);
+    const vec3 across = vec3_sub(to_light, vec3_scale(direction, along));
+    const double discriminant = l->radius * l->radius - vec3_dot(across, across);
+    if (!(discriminant > 0.0) || distance2 <= l->radius * l->radius)
+        return (double)HUGE_VAL;
+    return along - sqrt(discriminant);
+}
+
+double area_light_density(const plan *p, int lamp, vec3 origin, vec3 direction, double distance)
+{
+    const light *l = &p->lights[lamp];
+    if (light_is_flat(l))
+        return distance * distance / (p->shapes[lamp].area * fabs(vec3_dot(direction, p->shapes[lamp].axis)));
+    const vec3 to = vec3_sub(l->position, origin);
+    const double share2 = l->radius * l->radius / vec3_dot(to, to), cap = share2 / (1.0 + sqrt(1.0 - share2));
+    return 1.0 / (2.0 * LAMP_PI * cap);
+}
+
 vec3 light_color_of(const tracer *t, int lamp, int64_t sample_key)
 {
     const plan *p = t->target.frame_plan;
@@ -95,18 +119,22 @@ static void enqueue_flat(tracer *t, int k, const material *m, bool opaque, const
     shadow_ray_enqueue(t, k, to_light, color, m->diffuse * n_l, opaque ? highlight_of(g, k, m, to, n_l) : 0.0);
 }
 
-/* From every record whose light has an area; u and v of the samples are set. */
-void area_lights_sample(tracer *t, const material *m, bool opaque, lamp_samples *l)
+void area_lights_aim_at_spheres(const tracer *t, lamp_samples *l)
 {
     const plan *p = t->target.frame_plan;
-    const int count = t->surface.gathered.count;
-    for (int k = 0; k < count; k++) {
+    for (int k = 0; k < t->surface.gathered.count; k++) {
         const light *one = &p->lights[l->lamp[k] < 0 ? 0 : l->lamp[k]];
         l->spheres.x[k] = one->position.x, l->spheres.y[k] = one->position.y, l->spheres.z[k] = one->position.z;
         l->spheres.radius[k] = one->radius;
     }
     t->path->spheres(&t->surface.gathered, &l->spheres);
-    for (int k = 0; k < count; k++)
+}
+
+void area_lights_sample(tracer *t, const material *m, bool opaque, lamp_samples *l)
+{
+    const plan *p = t->target.frame_plan;
+    area_lights_aim_at_spheres(t, l);
+    for (int k = 0; k < t->surface.gathered.count; k++)
         if (is_sphere(p, l->lamp[k]))
             enqueue_sphere(t, k, m, opaque, l);
         else if (light_has_area(p, l->lamp[k]))

@@ -13,6 +13,13 @@ bool light_has_area(const plan *p, int lamp);
  * the sphere emits only into the cone, so that from far away it is the cone of a point. */
 double area_light_radiance(const plan *p, int lamp, vec3 direction);
 
+/* Distance at which a ray along a unit vector that passes near a light with a size hits it, a sphere from outside, a
+ * flat lamp on the side that emits; or HUGE_VAL. */
+double area_light_distance(const plan *p, int lamp, vec3 origin, vec3 direction);
+
+/* The density, per solid angle, with which area_lights_sample would choose the direction to that point of the light. */
+double area_light_density(const plan *p, int lamp, vec3 origin, vec3 direction, double distance);
+
 /* The light's colour times its intensity; in a spectral film at the sample key's wavelength. */
 vec3 light_color_of(const tracer *t, int lamp, int64_t sample_key);
 
@@ -29,6 +36,9 @@ typedef struct lamp_samples {
     double weight[ROW];     /* of its light */
     sphere_samples spheres; /* u and v are set by the caller; the rest is filled for spheres */
 } lamp_samples;
+
+/* Points of spheres by the random numbers of l->spheres; undefined for a record whose light is none or no sphere. */
+void area_lights_aim_at_spheres(const tracer *t, lamp_samples *l);
 
 /* From every record whose light has a size. shines: with highlights. */
 void area_lights_sample(tracer *t, const material *m, bool shines, lamp_samples *l);

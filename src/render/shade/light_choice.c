@@ -78,28 +78,54 @@ static int pick(const float *weight, const float *sum, int blocks, float total, 
     return last;
 }
 
-void light_choice_make(const tracer *t, const material *m, int depth, int *lamp, double *weight, double *u, double *v)
+/* A highlight can be bright where the diffuse share is faint, so that it has a part that does not depend on the
+ * angle. */
+light_estimate light_estimate_of(const material *m)
+{
+    return (light_estimate){(float)m->diffuse, 0.25f * (float)m->specular, 1.0, DRAW_LIGHT};
+}
+
+/* The lights' weights for ray i of the group, and their sums. */
+static float weigh(const tracer *t, const light_estimate *by, const lamp_table *lamps, int i, float *each, float *sum)
+{
+    const surface_batch *at = &t->surface.gathered.points;
+    const vec3 point = vec3_make(at->px[i], at->py[i], at->pz[i]);
+    const vec3 n = vec3_scale(vec3_make(at->nx[i], at->ny[i], at->nz[i]), by->side);
+    t->path->light_weights(lamps, point, n, by->k_d, by->k_s, each);
+    if (lamps->cones)
+        apply_cones(t->target.frame_plan, point, each);
+    return add_up(each, lamps->blocks, sum);
+}
+
+static bool is_usable(float total)
+{
+    return total > 0.0f && total < HUGE_VALF;
+}
+
+void light_choice_make(const tracer *t, const light_estimate *by, int depth, int *lamp, double *weight, double *u,
+                       double *v)
 {
     const plan *p = t->target.frame_plan;
     const group *g = &t->surface.gathered;
-    /* A highlight can be bright where the diffuse share is faint, so that it has a part that does not depend on the
-     * angle. */
-    const float k_d = (float)m->diffuse, k_s = 0.25f * (float)m->specular;
     lamp_table lamps;
     fill_table(p, &lamps);
-    t->path->draw(&p->draws, g->count, g->sample_key, depth, DRAW_LIGHT, u, v);
+    t->path->draw(&p->draws, g->count, g->sample_key, depth, by->purpose, u, v);
     for (int i = 0; i < g->count; i++) {
         float each[LAMPS_MAX], sum[BLOCKS_MAX];
-        const vec3 point = vec3_make(g->points.px[i], g->points.py[i], g->points.pz[i]);
-        t->path->light_weights(&lamps, point, vec3_make(g->points.nx[i], g->points.ny[i], g->points.nz[i]), k_d, k_s,
-                               each);
-        if (lamps.cones)
-            apply_cones(p, point, each);
-        const float total = add_up(each, lamps.blocks, sum);
+        const float total = weigh(t, by, &lamps, i, each, sum);
         lamp[i] = -1;
-        if (!(total > 0.0f && total < HUGE_VALF))
+        if (!is_usable(total))
             continue;
         lamp[i] = pick(each, sum, lamps.blocks, total, u[i], &u[i]);
         weight[i] = (double)total / (double)each[lamp[i]];
     }
+}
+
+double light_choice_chance(const tracer *t, const light_estimate *by, int i, int lamp)
+{
+    lamp_table lamps;
+    float each[LAMPS_MAX], sum[BLOCKS_MAX];
+    fill_table(t->target.frame_plan, &lamps);
+    const float total = weigh(t, by, &lamps, i, each, sum);
+    return is_usable(total) ? (double)each[lamp] / (double)total : 0.0;
 }

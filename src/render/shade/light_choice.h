@@ -13,6 +13,19 @@ static inline bool light_choice_applies(const plan *p)
     return p->render.light_sampling == LIGHT_SAMPLING_ONE && p->light_count > 1;
 }
 
-/* For the gathered group, whose surface has material m: the light of each ray, -1 if none reaches the point; the weight
- * 1 / p_k; and what the choice left of the random numbers u and v: uniform, for a point of the light. */
-void light_choice_make(const tracer *t, const material *m, int depth, int *lamp, double *weight, double *u, double *v);
+/* What the estimate assumes of a surface. */
+typedef struct light_estimate {
+    float k_d, k_s; /* shares of the light with and without Lambert's cosine */
+    double side;    /* 1: light of the ray's side; -1: of the other side */
+    int purpose;    /* of the random numbers, draw.h */
+} light_estimate;
+
+/* Of a matte surface with Phong's highlight. */
+light_estimate light_estimate_of(const material *m);
+
+/* For the gathered group: the light of each ray, -1 if none reaches the point; the weight 1 / p_k; and what the choice
+ * left of the random numbers u and v: uniform, for a point of the light. */
+void light_choice_make(const tracer *t, const light_estimate *by, int depth, int *lamp, double *weight, double *u,
+                       double *v);
+/* p_k of a light for ray i of the group. */
+double light_choice_chance(const tracer *t, const light_estimate *by, int i, int lamp);

@@ -52,6 +52,12 @@ double radiance_share(const plan *p, int64_t sample_key, int priority_index)
     return ratio * ratio;
 }
 
+double radiance_share_at_index(const plan *p, int64_t sample_key, double index)
+{
+    const double ratio = p->basic ? index_of(p, sample_key, p->camera_priority_index) / index : 1.0;
+    return ratio * ratio;
+}
+
 void radiance_weigh(tracer *t)
 {
     const plan *p = t->target.frame_plan;
@@ -62,8 +68,7 @@ void radiance_weigh(tracer *t)
     const size_t bytes = (size_t)g->padded * sizeof(double);
     memcpy(w->wr, g->wr, bytes), memcpy(w->wg, g->wg, bytes), memcpy(w->wb, g->wb, bytes);
     for (int k = 0; k < g->padded; k++) {
-        const double ratio = index_of(p, g->sample_key[k], p->camera_priority_index) / g->n_from[k],
-                     share = ratio * ratio;
+        const double share = radiance_share_at_index(p, g->sample_key[k], g->n_from[k]);
         g->wr[k] *= share, g->wg[k] *= share, g->wb[k] *= share;
     }
 }

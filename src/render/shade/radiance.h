@@ -12,6 +12,8 @@ void radiance_end(tracer *t);
 
 /* The share of radiance emitted in the medium of a priority index that arrives at the camera, (n_eye / n)^2. */
 double radiance_share(const plan *p, int64_t sample_key, int priority_index);
+/* The same for a medium of that index; 1 with classic radiance. */
+double radiance_share_at_index(const plan *p, int64_t sample_key, double index);
 
 /* Multiplies the gathered group's throughput by that share, and divides it again; no effect with classic radiance. */
 void radiance_weigh(tracer *t);

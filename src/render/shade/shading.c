@@ -380,7 +380,7 @@ int enqueue_children(tracer *t, int depth, const double *dx, const double *dy, c
     return q->count - first;
 }
 
-void shading_branches(tracer *t, bool opaque)
+void shading_branches_at_facets(tracer *t, bool opaque)
 {
     const plan *p = t->target.frame_plan;
     const material *m = &t->surface.mat->surface;
@@ -394,6 +394,11 @@ void shading_branches(tracer *t, bool opaque)
         layered_branches(t, m);
     else if (p->render.polarisation)
         polarised_branches(t, m, opaque);
+}
+
+void shading_branches(tracer *t, bool opaque)
+{
+    shading_branches_at_facets(t, opaque);
     if (t->surface.on_mesh)
         mesh_bound_branches(t);
     if (!opaque)

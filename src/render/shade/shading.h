@@ -46,6 +46,8 @@ static inline light_terms light_terms_of(const render_settings *r)
 
 /* Computes directions and weights of the gathered group's branches at a surface, and counts total reflections. */
 void shading_branches(tracer *t, bool opaque);
+/* The same by the points' normals alone, which may be those of facets (rough.h), and without counting. */
+void shading_branches_at_facets(tracer *t, bool opaque);
 
 /* Whether the gathered group's surface is a metal's or has a film (layered.h). */
 static inline bool surface_is_layered(const tracer *t)

@@ -119,6 +119,14 @@ bool material_is_layered(const material *m, const render_settings *r)
     return film || material_is_conductor(m);
 }
 
+double material_roughness(const material *m, const render_settings *r)
+{
+    const bool clear = !material_is_opaque(m),
+               sends = clear ? !scene_has_constant_shares(r)
+                             : m->reflectivity > 0.0 || material_is_mirror(m) || material_is_layered(m, r);
+    return integrator_traits_of(r)->by_chance && sends ? m->roughness : 0.0;
+}
+
 double material_extinction_index(const material *m, double lambda_nm)
 {
     const metal *of = material_metal(m);

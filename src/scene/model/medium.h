@@ -52,6 +52,9 @@ bool material_has_film(const material *m);
 /* Whether its surface reflects, and transmits, by optics/multilayer.h: a metal's, or one with a film. A film on a
  * transparent surface needs Fresnel weights. */
 bool material_is_layered(const material *m, const render_settings *r);
+/* alpha of a surface whose facets reflect or refract random paths (optics/microfacet.h); 0: a smooth one. A transparent
+ * surface needs Fresnel weights. */
+double material_roughness(const material *m, const render_settings *r);
 /* k of an opaque material's complex index. */
 double material_extinction_index(const material *m, double lambda_nm);
 

@@ -439,6 +439,9 @@ static const param table[] = {
     REAL(PARAM_MATERIAL, material, birefringence, "", -1, 1, "0",
          "difference of a retarder's indices along and across its axis: retards by 360 degrees times this and the "
          "path in it over the wavelength, in addition to retardance_deg"),
+    REAL(PARAM_MATERIAL, material, roughness, "", 0, 1, "0",
+         "alpha of the GGX microfacets of a surface that reflects or refracts rays (ground glass, brushed metal), for "
+         "integrator path; 0: smooth"),
     COLOR(PARAM_MATERIAL, material, absorb_per_m, 1e9, "0,0,0", "Beer-Lambert absorption coefficient by channel, 1/m"),
     LIST(PARAM_MATERIAL, material, absorb_spectrum, "nm, 1/m", 1e9, "[]",
          "Beer-Lambert absorption coefficient by wavelength, as nm,1/m,nm,1/m,...; replaces absorb_per_m"),

@@ -61,8 +61,10 @@ shading_material shading_material_of_face(const scene *s, const solid *owner, co
         return l;
     }
     l.surface.transparency = own->transparency;
-    if (!material_is_opaque(own)) /* both are the solid's own, so that their sum is at most 1 */
+    if (!material_is_opaque(own)) { /* both shares are the solid's own, so that their sum is at most 1 */
         l.surface.reflectivity = own->reflectivity;
+        l.surface.roughness = own->roughness;
+    }
     return l;
 }
 

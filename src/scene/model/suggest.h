@@ -12,5 +12,5 @@ const char *suggest_word(const char *wrong, const char *const *words, size_t cou
 /* The remedy for a wrong key if words[] are the valid ones; returns text. */
 char *suggest_key(const char *wrong, const char *const *words, size_t count, char *text, size_t size);
 
-/* "prefix" and "a, b, c", truncated at the end of the buffer. */
+/* "prefix" and "a, b, c"; what has no room in the buffer is left out: "a, b, ...". */
 void suggest_list(const char *prefix, const char *const *words, size_t count, char *text, size_t size);

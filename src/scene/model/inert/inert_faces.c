@@ -11,6 +11,12 @@ static bool is_row(const inert_case *c, const char *name)
     return strcmp(c->at.row->name, name) == 0;
 }
 
+/* Of the surface of a transparent solid, and of each face of an opaque one. */
+static bool is_of_mirror(const inert_case *c)
+{
+    return is_row(c, "reflectivity") || is_row(c, "roughness");
+}
+
 /* Parameters of the interior. */
 static bool is_of_region(const inert_case *c)
 {
@@ -42,14 +48,14 @@ static bool is_straight(const inert_case *c)
  * the file. */
 static bool is_own(const inert_case *c, const material *named, const face_material *given)
 {
-    static const char *const never_given[] = {"ambient", "reflectivity", "checker", "checker_color", NULL};
+    static const char *const never_given[] = {"ambient", "reflectivity", "roughness", "checker", "checker_color", NULL};
     const bool clear = !material_is_opaque(&c->owner->surface);
     if (!named && !given)
         return true;
     if (is_row(c, "transparency"))
         return !is_straight(c) || (!named && given->opacity == 1.0);
     if (named)
-        return is_row(c, "reflectivity") && !is_straight(c) && clear;
+        return is_of_mirror(c) && !is_straight(c) && clear;
     return is_among(c, never_given) || (is_row(c, "emission") && given->emission == 0.0) ||
            (is_row(c, "color") && clear);
 }
@@ -104,7 +110,7 @@ static bool is_named_ones(const inert_case *c)
         return false;
     if (is_row(c, "transparency"))
         return is_straight(c);
-    return !is_row(c, "reflectivity") || is_straight(c) || material_is_opaque(&c->owner->surface);
+    return !is_of_mirror(c) || is_straight(c) || material_is_opaque(&c->owner->surface);
 }
 
 static bool say_of_solid(const inert_case *c)

@@ -143,7 +143,8 @@ bool shows_specular(const scene *s, const material *m)
 bool is_lit_by_lamps(const scene *s, const material *m)
 {
     return !integrator_traits_of(&s->render)->layers &&
-           (shows_specular(s, m) || (shining_lights(s) > 0 && m->diffuse > 0.0 && has_color(m)));
+           (shows_specular(s, m) ||
+            (shining_lights(s) > 0 && ((m->diffuse > 0.0 && has_color(m)) || material_roughness(m, &s->render) > 0.0)));
 }
 
 bool shows_color(const scene *s, const material *m)

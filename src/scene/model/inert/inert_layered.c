@@ -1,7 +1,16 @@
-/* Parameters of metals and films that have no effect. */
+/* Parameters of metals, films and rough surfaces that have no effect. */
 #include "scene/model/inert/inert_private.h"
 #include "scene/model/medium.h"
 #include "scene/model/scene.h"
+
+bool nothing_at_depth_0(const inert_case *c)
+{
+    const scene *s = c->s;
+    const bool lit = material_roughness(c->m, &s->render) > 0.0 && shining_lights(s) > 0; /* lamps reach facets */
+    return s->render.depth == 0 && is_dark_at_depth_limit(s) && !lit &&
+           inert_say(c, "depth-0", "set render.depth=4",
+                     "render.depth is 0, and the radiance beyond the depth limit is black");
+}
 
 /* No ray brings what the surface reflects. */
 bool nothing_reflected(const inert_case *c)
@@ -9,9 +18,8 @@ bool nothing_reflected(const inert_case *c)
     const scene *s = c->s;
     if (!follows_rays(s))
         return say_no_tree(c);
-    if (s->render.depth == 0 && is_dark_at_depth_limit(s))
-        return inert_say(c, "depth-0", "set render.depth=4",
-                         "render.depth is 0, and the radiance beyond the depth limit is black");
+    if (nothing_at_depth_0(c))
+        return true;
     /* A layered opaque surface does not use the reflectivity with which that is found out. */
     return !(c->m->transparency == 0.0 && material_is_layered(c->m, &s->render)) && mirrors_black(c);
 }
@@ -64,4 +72,24 @@ bool layered_reflectivity(const inert_case *c)
     return c->m->transparency == 0.0 && material_is_layered(c->m, &c->s->render) &&
            inert_say(c, "layered", remedy.text, "its %s determines what it reflects",
                      material_has_film(c->m) ? "film" : "complex index");
+}
+
+/* Lamps that a smooth surface does not show, such as points, may appear on a rough one. */
+bool roughness_rule(const inert_case *c)
+{
+    const scene *s = c->s;
+    const material *m = c->m;
+    material rough = *m;
+    rough.roughness = 1.0;
+    if (!is_path(s))
+        return inert_say(c, "smooth-rays", "set render.integrator=path",
+                         "only the path integrator shows roughness: the surface is treated as smooth");
+    if (!material_is_opaque(m) && scene_has_constant_shares(&s->render))
+        return inert_say(c, "constant-rough", "set render.weights=fresnel and render.transmission=refract",
+                         "facets need the Fresnel equations, and this scene has constant weights");
+    if (!(material_roughness(&rough, &s->render) > 0.0))
+        return inert_say(c, "matte", inert_set("%s.reflectivity=0.3", c->name).text,
+                         "the surface reflects no rays that roughness could scatter");
+    return shining_lights(s) == 0 && !(!material_is_opaque(m) && material_matches_surroundings(s, m)) &&
+           nothing_reflected(c);
 }

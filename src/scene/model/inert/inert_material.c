@@ -191,9 +191,8 @@ static bool reflectivity_rule(const inert_case *c)
         return false;
     if (!follows_rays(s))
         return say_no_tree(c);
-    if (s->render.depth == 0 && is_dark_at_depth_limit(s))
-        return inert_say(c, "depth-0", "set render.depth=4",
-                         "render.depth is 0, and the radiance beyond the depth limit is black");
+    if (nothing_at_depth_0(c))
+        return true;
     if (material_is_mirror(c->m) && !scene_has_constant_shares(&s->render))
         return inert_say(c, "mirror", set_on(c, "transparency=0").text,
                          "its refractive index already makes it a mirror");
@@ -273,8 +272,8 @@ static const char *const of_surface[] = {"ambient",      "diffuse", "specular", 
 static bool unseen(const inert_case *c)
 {
     static const char *const of_opaque[] = {"color", "emission", NULL};
-    static const char *const of_mirror[] = {"reflectivity",      "extinction", "medium",
-                                            "film_thickness_nm", "film_ior",   NULL};
+    static const char *const of_mirror[] = {"reflectivity", "extinction", "medium", "film_thickness_nm",
+                                            "film_ior",     "roughness",  NULL};
     const bool mirrors = is_among(c, of_mirror),
                sent_back =
                    is_among(c, of_surface) || (c->m->transparency == 0.0 && (is_among(c, of_opaque) || mirrors));
@@ -288,7 +287,8 @@ static bool unseen(const inert_case *c)
 static bool no_interface(const inert_case *c)
 {
     const scene *s = c->s;
-    if (scene_has_constant_shares(&s->render) || !is_among(c, of_surface))
+    if (scene_has_constant_shares(&s->render) ||
+        !(is_among(c, of_surface) || strcmp(c->at.row->name, "roughness") == 0))
         return false;
     for (size_t i = 0; i < s->solid_count; i++) {
         const solid *one = &s->solids[i];
@@ -333,6 +333,7 @@ bool inert_appearance(const inert_case *c)
         {"sheet_block", sheet_share_rule},
         {"retardance_deg", retardance_rule},
         {"birefringence", retardance_rule},
+        {"roughness", roughness_rule},
         {"coefficients", coefficients_rule},
         {"absorb_per_m", absorb_per_m_rule},
         {"absorb_spectrum", absorption_rule},

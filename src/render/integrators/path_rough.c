@@ -1,0 +1,230 @@
+/* Rough surfaces on random paths. */
+#include "render/integrators/path_rough.h"
+
+#include "render/integrators/path_lights.h"
+#include "render/shade/light_choice.h"
+
+#define PI 3.14159265358979323846
+
+double path_matte_weight(const group *g, const material *m, int k)
+{
+    return m->diffuse * fmax(g->cr[k], fmax(g->cg[k], g->cb[k]));
+}
+
+/* The random choice of a lamp on one side: facets turn towards any lamp there. */
+static light_estimate estimate_on(double side)
+{
+    return (light_estimate){0.0f, 1.0f, side, side > 0.0 ? DRAW_FACET_LIGHT : DRAW_FACET_LIGHT + 1};
+}
+
+/* The photons bring the lamps' light that has been on a matte surface. */
+static bool takes_lamps(const tracer *t, int k)
+{
+    return !t->target.frame_plan->photons || !(t->surface.gathered.sample_key[k] & SAMPLE_KEY_PHOTONS);
+}
+
+/* Enqueues a shadow ray from record k to a lamp, which brings that light of colour 1, or adds it at once. */
+static void enqueue(tracer *t, int k, int lamp, vec3 to_lamp, bool refracted, vec3 share)
+{
+    const plan *p = t->target.frame_plan;
+    const group *g = &t->surface.gathered;
+    const int64_t sample_key = g->sample_key[k];
+    const vec3 color = vec3_scale(light_color_of(t, lamp, sample_key),
+                                  radiance_share_at_index(p, sample_key, refracted ? g->n_to[k] : g->n_from[k]));
+    const double r = g->wr[k] * share.x * color.x, gr = g->wg[k] * share.y * color.y, b = g->wb[k] * share.z * color.z;
+    if (p->render.shadows == SHADOWS_OFF && !light_has_area(p, lamp)) {
+        shading_expose(t, sample_key, r, gr, b);
+        return;
+    }
+    ray_queue *q = &t->queues.shadows;
+    const int at = q->count++;
+    q->ox[at] = g->points.px[k], q->oy[at] = g->points.py[k], q->oz[at] = g->points.pz[k];
+    q->dx[at] = to_lamp.x, q->dy[at] = to_lamp.y, q->dz[at] = to_lamp.z;
+    q->wr[at] = r, q->wg[at] = gr, q->wb[at] = b;
+    q->start[at] = g->points.face[k], q->sample_key[at] = sample_key;
+    q->inside[at] = refracted ? g->inside_after[k] : g->inside_before[k];
+}
+
+/* --- points of lamps --- */
+
+/* Of the group's records: the direction to the lamp in the frame, of z = 0 if there is none, and its light. */
+typedef struct lamp_aims {
+    vec3 to[ROW], o[ROW];
+    double distance[ROW], light[ROW], density[ROW]; /* a sphere's radiance and density; a point's irradiance, and 0 */
+} lamp_aims;
+
+static void aim_at_flat(const plan *p, const lamp_samples *s, int lamp, int k, vec3 from, lamp_aims *a)
+{
+    const vec3 to =
+        vec3_sub(lamp_shape_point(&p->shapes[lamp], p->lights[lamp].position, s->spheres.u[k], s->spheres.v[k]), from);
+    a->distance[k] = vec3_length(to);
+    a->to[k] = vec3_scale(to, 1.0 / a->distance[k]);
+    a->light[k] = area_light_radiance(p, lamp, a->to[k]);
+    a->density[k] = area_light_density(p, lamp, from, a->to[k], a->distance[k]) / s->weight[k];
+}
+
+static void aim_at_point(const plan *p, const lamp_samples *s, int lamp, int k, vec3 from, lamp_aims *a)
+{
+    const light *l = &p->lights[lamp];
+    const vec3 to = vec3_sub(l->position, from);
+    a->distance[k] = vec3_length(to);
+    a->to[k] = vec3_scale(to, 1.0 / a->distance[k]);
+    const double falls = l->reach / a->distance[k];
+    a->light[k] = PI * s->weight[k] * (l->reach > 0.0 ? falls * falls : 1.0) *
+                  light_share(l, &p->cones[lamp], vec3_scale(a->to[k], -1.0));
+    a->density[k] = 0.0;
+}
+
+static void aim(const tracer *t, const rough_surface *r, const lamp_samples *s, int k, lamp_aims *a)
+{
+    const plan *p = t->target.frame_plan;
+    const surface_batch *at = &t->surface.gathered.points;
+    const vec3 from = vec3_make(at->px[k], at->py[k], at->pz[k]);
+    const int lamp = s->lamp[k];
+    if (!light_has_area(p, lamp)) {
+        aim_at_point(p, s, lamp, k, from, a);
+    } else if (light_is_flat(&p->lights[lamp])) {
+        aim_at_flat(p, s, lamp, k, from, a);
+    } else {
+        a->to[k] = vec3_make(s->spheres.dx[k], s->spheres.dy[k], s->spheres.dz[k]);
+        a->distance[k] = s->spheres.reach[k];
+        a->light[k] = area_light_radiance(p, lamp, a->to[k]);
+        a->density[k] = 1.0 / (2.0 * PI * s->spheres.cap[k] * s->weight[k]);
+    }
+    a->o[k] = rough_in_frame(r, k, a->to[k]);
+}
+
+/* The directions of records whose lamp is on that side (0: either). */
+static void aim_all(const tracer *t, const rough_surface *r, const lamp_samples *s, double side, lamp_aims *a)
+{
+    const plan *p = t->target.frame_plan;
+    for (int k = 0; k < t->surface.gathered.count; k++) {
+        const bool any = s->lamp[k] >= 0 && takes_lamps(t, k) &&
+                         (!light_has_area(p, s->lamp[k]) || light_is_flat(&p->lights[s->lamp[k]]) ||
+                          s->spheres.cap[k] > 0.0); /* not within its sphere */
+        if (any)
+            aim(t, r, s, k, a);
+        if (!any || side * a->o[k].z < 0.0 || (r->opaque && a->o[k].z < 0.0) || a->light[k] == 0.0 ||
+            !rough_lets_out(t, r, k, a->o[k], a->o[k].z < 0.0))
+            a->o[k].z = 0.0;
+    }
+}
+
+/* The chance of a branch at r->m, as path.c draws it. */
+static double chance_of(const tracer *t, const rough_surface *r, int k, bool reflected)
+{
+    const branch_group *b = &t->surface.branches;
+    const double other =
+        r->opaque ? path_matte_weight(&t->surface.gathered, &t->surface.mat->surface, k) : b->refract[k];
+    const double both = b->reflect[k] + other;
+    return both > 0.0 ? (reflected ? b->reflect[k] : other) / both : 0.0;
+}
+
+/* A point of each record's lamp, weighted against the path's own direction. */
+static void light_by_lamps(tracer *t, rough_surface *r, const lamp_samples *s, double side)
+{
+    lamp_aims a;
+    facet f[ROW];
+    const int count = t->surface.gathered.count;
+    aim_all(t, r, s, side, &a);
+    for (int k = 0; k < count; k++) {
+        f[k] = a.o[k].z != 0.0 ? rough_facet(t, r, k, a.o[k]) : (facet){vec3_make(0.0, 0.0, 1.0), 0.0};
+        r->m[k] = f[k].m;
+    }
+    rough_branches(t, r);
+    for (int k = 0; k < count; k++) {
+        if (!(f[k].density > 0.0))
+            continue;
+        const bool reflected = a.o[k].z > 0.0;
+        const double own = chance_of(t, r, k, reflected) * f[k].density,
+                     weight = a.density[k] > 0.0 ? 1.0 / (a.density[k] + own) : 1.0;
+        const vec3 share = vec3_scale(layered_weight(t, k, reflected),
+                                      ggx_visible_share(r->alpha, a.o[k]) * f[k].density * a.light[k] * weight);
+        if (share.x > 0.0 || share.y > 0.0 || share.z > 0.0)
+            enqueue(t, k, s->lamp[k], vec3_scale(a.to[k], a.distance[k]), !reflected, share);
+    }
+}
+
+static void light_by_one_lamp(tracer *t, rough_surface *r, int depth, double side)
+{
+    const light_estimate by = estimate_on(side);
+    lamp_samples s;
+    light_choice_make(t, &by, depth, s.lamp, s.weight, s.spheres.u, s.spheres.v);
+    area_lights_aim_at_spheres(t, &s);
+    light_by_lamps(t, r, &s, side);
+}
+
+static void light_by_all_lamps(tracer *t, rough_surface *r, int depth)
+{
+    const plan *p = t->target.frame_plan;
+    const group *g = &t->surface.gathered;
+    lamp_samples s;
+    for (int lamp = 0; lamp < p->light_count; lamp++) {
+        for (int k = 0; k < g->count; k++)
+            s.lamp[k] = lamp, s.weight[k] = 1.0;
+        if (light_has_area(p, lamp)) {
+            t->path->draw(&p->draws, g->count, g->sample_key, depth, DRAW_LIGHT + lamp, s.spheres.u, s.spheres.v);
+            area_lights_aim_at_spheres(t, &s);
+        }
+        light_by_lamps(t, r, &s, 0.0);
+    }
+}
+
+/* --- the path's facets --- */
+
+void path_rough_begin(tracer *t, double alpha, bool opaque, int depth, rough_surface *r)
+{
+    const plan *p = t->target.frame_plan;
+    const group *g = &t->surface.gathered;
+    double u[ROW], v[ROW];
+    rough_begin(t, alpha, opaque, r);
+    if (!light_choice_applies(p))
+        light_by_all_lamps(t, r, depth);
+    else
+        for (double side = 1.0; side >= (opaque ? 1.0 : -1.0); side -= 2.0)
+            light_by_one_lamp(t, r, depth, side);
+    t->path->draw(&p->draws, g->count, g->sample_key, depth, DRAW_FACET, u, v);
+    for (int k = 0; k < g->count; k++)
+        r->m[k] = ggx_draw_normal(alpha, r->i[k], u[k], v[k]);
+    rough_branches(t, r);
+    if (!opaque)
+        COUNT(t->account.counters.total_internal += (uint64_t)t->surface.branches.total);
+}
+
+/* The light of lamps that the path's own direction meets, weighted against points of these lamps. */
+static void light_by_direction(tracer *t, const rough_surface *r, int k, vec3 o, const continuation *c)
+{
+    const plan *p = t->target.frame_plan;
+    const surface_batch *at = &t->surface.gathered.points;
+    const vec3 origin = vec3_make(at->px[k], at->py[k], at->pz[k]);
+    for (int lamp = 0; lamp < p->light_count; lamp++) {
+        const double distance = light_has_area(p, lamp) ? area_light_distance(p, lamp, origin, c->direction)
+                                                        : (double)HUGE_VAL,
+                     radiance = distance > 0.0 && distance < (double)HUGE_VAL
+                                    ? area_light_radiance(p, lamp, c->direction)
+                                    : 0.0;
+        if (!(radiance > 0.0))
+            continue;
+        const light_estimate by = estimate_on(o.z);
+        const double chance = light_choice_applies(p) ? light_choice_chance(t, &by, k, lamp) : 1.0;
+        const double density = chance * area_light_density(p, lamp, origin, c->direction, distance),
+                     own = chance_of(t, r, k, !c->refracted) * rough_facet(t, r, k, o).density;
+        if (own > 0.0)
+            enqueue(t, k, lamp, vec3_scale(c->direction, distance), c->refracted,
+                    vec3_scale(c->share, radiance * own / (density + own)));
+    }
+}
+
+bool path_rough_scatter(tracer *t, const rough_surface *r, int k, continuation *c)
+{
+    const group *g = &t->surface.gathered;
+    const vec3 o = rough_in_frame(r, k, c->direction);
+    const double share = rough_share(t, r, k, o, c->refracted);
+    if (!(share > 0.0))
+        return false;
+    c->share = vec3_scale(c->share, share);
+    c->specular_bounce = c->refracted && g->n_from[k] == g->n_to[k]; /* straight on: no other direction has density */
+    if (!c->specular_bounce && takes_lamps(t, k))
+        light_by_direction(t, r, k, o, c);
+    return true;
+}

@@ -1,0 +1,43 @@
+/* Rough surfaces (optics/microfacet.h) in the tracer: each ray of the gathered group meets one facet, at which it
+ * reflects or refracts as at a smooth surface of that normal, metals and films included. A branch keeps the share of
+ * light that other facets let pass; what they stop is lost. Plain values; nothing fails. */
+#pragma once
+
+#include "optics/microfacet.h"
+#include "render/shade/shading.h"
+
+/* The gathered group's surface, with the points' normals n as z of a frame for each ray. */
+typedef struct rough_surface {
+    double alpha;
+    bool opaque;
+    vec3 x[ROW], y[ROW], n[ROW], i[ROW]; /* i: towards the ray's origin, in its frame */
+    double cos_i[ROW];
+    vec3 m[ROW]; /* the facets' normals, in the rays' frames; for rough_branches */
+} rough_surface;
+
+/* Alpha of the gathered group's surface; 0: it is smooth. */
+static inline double rough_alpha(const tracer *t)
+{
+    const material *m = &t->surface.mat->surface;
+    return m->roughness > 0.0 ? material_roughness(m, &t->target.frame_plan->render) : 0.0;
+}
+
+void rough_begin(const tracer *t, double alpha, bool opaque, rough_surface *r);
+
+/* A direction in the frame of ray k. */
+static inline vec3 rough_in_frame(const rough_surface *r, int k, vec3 v)
+{
+    return vec3_make(vec3_dot(v, r->x[k]), vec3_dot(v, r->y[k]), vec3_dot(v, r->n[k]));
+}
+
+/* The branches of the group at the facets r->m. */
+void rough_branches(tracer *t, const rough_surface *r);
+
+/* Does a direction in the frame of ray k lead away from the surface on the side of that branch? */
+bool rough_lets_out(const tracer *t, const rough_surface *r, int k, vec3 o, bool refracted);
+
+/* The share that a branch of ray k, whose direction is o in its frame, keeps; 0 if it leads back to the surface. */
+double rough_share(const tracer *t, const rough_surface *r, int k, vec3 o, bool refracted);
+
+/* The facet of ray k that sends light from o in its frame, and the density of such directions. */
+facet rough_facet(const tracer *t, const rough_surface *r, int k, vec3 o);
