@@ -144,7 +144,7 @@ static void a_passage_counts_once(void **state)
     s->solids[at].shape.radius = 0x1p-9;
     s->solids[at].shape.position = vec3_make(0.0, 0x1p-9, 2.0);
     s->solids[at].surface.transparency = 1.0;
-    add_sheet(s, 2.001, "color=1,1,1", 0.0, 0.0); /* thinner than what is told apart */
+    add_sheet(s, 2.001, "color=1,1,1", 0.0, 0.0); /* thinner than the search distinguishes */
     set_all(s, "touched.priority=1 sheet_5.priority=1 sheet_5.size=0.1,0.1,1e-14");
     assert_near(look(s).x, once, 1e-12);
     scene_destroy(s);
