@@ -136,6 +136,18 @@ static void a_passage_counts_once(void **state)
     set(s, "sheet_4.priority=1"); /* in two: two passages */
     assert_near(look(s).x, twice, 1e-12);
     scene_destroy(s);
+    s = crossed_with(half, 45.0); /* what the ray only touches divides the search */
+    diagnostic why = {0};
+    size_t at;
+    set_all(s, "render.width=1 render.height=1");
+    worked(scene_add_solid(s, "touched", SHAPE_SPHERE, &at, &why), &why);
+    s->solids[at].shape.radius = 0x1p-9;
+    s->solids[at].shape.position = vec3_make(0.0, 0x1p-9, 2.0);
+    s->solids[at].surface.transparency = 1.0;
+    add_sheet(s, 2.001, "color=1,1,1", 0.0, 0.0); /* thinner than the search distinguishes */
+    set_all(s, "touched.priority=1 sheet_5.priority=1 sheet_5.size=0.1,0.1,1e-14");
+    assert_near(look(s).x, once, 1e-12);
+    scene_destroy(s);
     s = behind_air("camera.position=0,0,2"); /* in the sheet */
     add_sheet(s, 2.0, "sheet=polariser sheet_pass=0.8", 0.0, 0.0);
     assert_all(s, 0.4, 1e-12);

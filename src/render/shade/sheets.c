@@ -15,7 +15,7 @@ bool sheet_list_create(const scene *s, const scene_geometry *geometry, region_sh
     for (int r = 1; r <= geometry->region_count; r++) {
         const solid *one = &s->solids[geometry->regions[r].solid];
         const material *m = &one->surface;
-        if (!sheet_acts(m, &s->render))
+        if (geometry->regions[r].opaque || !sheet_acts(m, &s->render))
             continue;
         if (!list && !(list = calloc((size_t)geometry->region_count + 1, sizeof *list)))
             return false;

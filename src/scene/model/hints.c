@@ -208,7 +208,7 @@ static void hint_at_sheet(const scene *s, const solid *owner, const note_taker *
     const render_settings *r = &s->render;
     if (m->sheet == SHEET_NONE)
         return;
-    if (m->transparency == 0.0)
+    if (solid_is_opaque(s, owner))
         note_give(taker, owner->name, "sheet", "set its transparency", "%s is opaque: no light passes its sheet",
                   owner->name);
     else if (integrator_traits_of(r)->drawn)

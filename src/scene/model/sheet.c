@@ -1,7 +1,6 @@
 #include "scene/model/sheet.h"
 
 #include "scene/model/integrators.h"
-#include "scene/model/medium.h"
 
 bool sheet_is_polariser(const material *m)
 {
@@ -21,7 +20,7 @@ bool sheet_retards(const material *m)
 bool sheet_acts(const material *m, const render_settings *r)
 {
     const bool light = !integrator_traits_of(r)->drawn && !integrator_traits_of(r)->layers;
-    return light && !material_is_opaque(m) && (sheet_is_polariser(m) || (r->polarisation && sheet_retards(m)));
+    return light && (sheet_is_polariser(m) || (r->polarisation && sheet_retards(m)));
 }
 
 bool sheet_disperses(const material *m, const render_settings *r)

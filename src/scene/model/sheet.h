@@ -20,8 +20,8 @@ bool sheet_is_polariser(const material *m);
 bool sheet_has_axis(const material *m);
 bool sheet_retards(const material *m);
 
-/* Whether light that passes the solid changes: a polariser's without polarisation too, where it is a grey filter. Not
- * in the depth buffer. */
+/* Whether light that passes the solid, if any does, changes: a polariser's without polarisation too, where it is a grey
+ * filter. Not in the depth buffer. */
 bool sheet_acts(const material *m, const render_settings *r);
 /* Whether it acts differently by wavelength. */
 bool sheet_disperses(const material *m, const render_settings *r);

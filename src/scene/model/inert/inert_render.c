@@ -2,6 +2,7 @@
 #include "scene/model/inert/inert_private.h"
 #include "geometry/shapes/shape.h"
 #include "scene/model/camera.h"
+#include "scene/model/face_materials.h"
 #include "scene/model/medium.h"
 #include "scene/model/scene.h"
 #include "scene/model/sheet.h"
@@ -140,8 +141,7 @@ static bool is_layered(const scene *s, const solid *one)
 
 static bool has_sheet(const scene *s, const solid *one)
 {
-    return sheet_acts(&one->surface, &s->render) ||
-           (!material_is_opaque(&one->surface) && sheet_retards(&one->surface));
+    return !solid_is_opaque(s, one) && (sheet_is_polariser(&one->surface) || sheet_retards(&one->surface));
 }
 
 bool inert_polarisation(const inert_case *c)
@@ -287,7 +287,7 @@ static bool has_dispersion(const scene *s, const solid *one)
 
 static bool retards_by_path(const scene *s, const solid *one)
 {
-    return sheet_disperses(&one->surface, &s->render);
+    return !solid_is_opaque(s, one) && sheet_disperses(&one->surface, &s->render);
 }
 
 static bool lambda(const inert_case *c)
