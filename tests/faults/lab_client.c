@@ -139,9 +139,7 @@ static const request usual[] = {
     {"POST", "/api/objects/rod/move", "{\"by\": [0.1, 0, 0]}", false},
     {"GET", "/api/picture.jpg?wait=1", "", false},
     {"GET", "/api/trace?x=4&y=3", "", true},
-    {"GET", "/api/trace.svg?x=4&y=3", "", true},
     {"GET", "/api/fan?from=-3,1.5,0&to=3,1.5,0&width=1.5&rays=5", "", true},
-    {"GET", "/api/realism", "", true},
     {"GET", "/api/notes", "", true},
     {"GET", "/api/compare?wait=1", "", false},
     {"GET", "/api/files", "", true},
@@ -157,7 +155,7 @@ static const request usual[] = {
     {"GET", "/", "", true},
 };
 
-/* Objects, files, drawings, tables, lessons: `lab_client edits`. */
+/* Objects, files, tables: `lab_client edits`. */
 static const request edits[] = {
     {"GET", "/api/scene", "", true},
     {"POST", "/api/objects", "{\"kind\": \"solid\", \"shape\": \"sphere\", \"set\": {\"radius\": 0.2}}", false},
@@ -180,16 +178,22 @@ static const request edits[] = {
     {"GET", "/api/beams", "", true},
     {"GET", "/api/trace.txt?x=4&y=3", "", true},
     {"GET", "/api/fan.csv?from=-3,1.5,0&to=3,1.5,0&width=1.5&rays=5", "", true},
-    {"GET", "/api/fan.svg?from=-3,1.5,0&to=3,1.5,0&width=1.5&rays=5", "", true},
     {"POST", "/api/save", "{\"file\": \"edited.yaml\"}", false},
     {"POST", "/api/open", "{\"file\": \"rod.yaml\"}", false},
-    {"GET", "/api/realism/fresnel-s", "", true},
-    {"GET", "/api/realism.csv", "", true},
     {"GET", "/api/maps", "", false},
     {"POST", "/api/studies", "{\"file\": \"new.study\", \"axes\": [\"liquid.ior=1.2,1.4\"], \"save\": true}", false},
     {"GET", "/api/studies/done/rows?from=1", "", true},
     {"GET", "/api/studies/done/rows.csv", "", true},
     {"GET", "/api/studies/done/compare?a=render.depth%3D0&b=render.depth%3D8", "", false},
+};
+
+/* What takes most time: drawings, curves, a lesson: `lab_client views`. */
+static const request views[] = {
+    {"GET", "/api/trace.svg?x=4&y=3", "", true},
+    {"GET", "/api/realism", "", true},
+    {"GET", "/api/fan.svg?from=-3,1.5,0&to=3,1.5,0&width=1.5&rays=5", "", true},
+    {"GET", "/api/realism/fresnel-s", "", true},
+    {"GET", "/api/realism.csv", "", true},
     {"POST", "/api/lessons/critical/open", "{}", false},
     {"GET", "/api/lessons/critical/measure", "", true},
     {"GET", "/api/thumbnail.jpg?file=rod.yaml", "", false},
@@ -213,9 +217,13 @@ static int ask_again(const request *r, int status)
 
 int main(int argc, char **argv)
 {
-    const bool is_usual = argc < 2 || strcmp(argv[1], "edits") != 0;
-    const request *requests = is_usual ? usual : edits;
-    const size_t count = is_usual ? sizeof usual / sizeof *usual : sizeof edits / sizeof *edits;
+    const char *name = argc > 1 ? argv[1] : "usual";
+    const request *requests = usual;
+    size_t count = sizeof usual / sizeof *usual;
+    if (strcmp(name, "edits") == 0)
+        requests = edits, count = sizeof edits / sizeof *edits;
+    if (strcmp(name, "views") == 0)
+        requests = views, count = sizeof views / sizeof *views;
     if (start() != 0) {
         const int code = server_status();
         return code ? code : 1;
