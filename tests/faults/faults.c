@@ -3,9 +3,10 @@
  * A line of the table: NAME, traits ("-", "resumes", "forked", "slow": fewer sites with --every), the command's words;
  * the first of them is one of the WORDs. Options: --every N, only each N-th site; --depth N, call stacks are the same
  * if N frames are; --only NAMES and --kinds NAMES, separated by commas; --at N, only the Nth call, as an error names
- * it; --from N, only calls from the Nth on, to go on where a run was stopped; --stays, what fails fails from then on;
- * --shown N, of each kind of error. Prints the Test Anything Protocol, a case for each command and kind of fault, and a
- * table of verdicts as comments "##". */
+ * it; --from N, only calls from the Nth on, to go on where a run was stopped; --known NAMES, commands that an earlier
+ * run tried, whose call stacks are not tried again; --stays, what fails fails from then on; --shown N, of each kind of
+ * error. Prints the Test Anything Protocol, a case for each command and kind of fault, and a table of verdicts as
+ * comments "##". */
 #include "judge.h"
 #include "trace.h"
 
@@ -47,7 +48,7 @@ enum { KINDS = sizeof kinds / sizeof kinds[0], WORDS_MAX = 48, KNOWN_MAX = 1 << 
 static struct {
     long stride, every, shown, at, from; /* every: stride, or more for slow commands */
     int depth;
-    const char *only, *kinds, *library, *work, *template, *table;
+    const char *only, *kinds, *known, *library, *work, *template, *table;
     bool stays;
     char **programs; /* WORD=PATH */
 } options = {.stride = 1, .shown = 5};
@@ -59,6 +60,7 @@ typedef struct tally {
 } tally;
 
 static const char *program_path(const char *word);
+static bool has_word(const char *list, const char *word);
 
 /* ---- where a call came from ---- */
 
@@ -145,7 +147,8 @@ static bool is_known(uint64_t hash)
 
 /* Each distinct call stack once. A thread may come earlier or later than in the run that noted them: such a site is
  * tried again by its hash, which is slower. */
-static void try_stacks(const reference *ref, const run *r, const kind *k, fault_place place, bool resumes, tally *t)
+static void try_stacks(const reference *ref, const run *r, const kind *k, fault_place place, bool resumes,
+                       bool was_tried, tally *t)
 {
     fault f = {.class = k->class, .place = place, .records = true, .error = k->error, .depth = options.depth};
     const outcome recorded = run_with(r, &f);
@@ -158,6 +161,10 @@ static void try_stacks(const reference *ref, const run *r, const kind *k, fault_
             sites[count++] = run_page->sites[i];
     t->sites = count;
     f.records = false;
+    if (was_tried) {
+        free(sites);
+        return;
+    }
     f.stays = options.stays;
     if (options.at) {
         f.at = options.at;
@@ -201,10 +208,13 @@ static void try_kind(const char *name, const reference *ref, const run *r, const
                      const outcome *counted, bool resumes)
 {
     tally t = {.sites = 0};
-    if (k->class == FAULT_CALL)
+    const bool was_tried = options.known && has_word(options.known, name);
+    if (k->class != FAULT_CALL)
+        try_stacks(ref, r, k, place, resumes, was_tried, &t);
+    else if (!was_tried)
         try_calls(ref, r, k, counted, resumes, &t);
-    else
-        try_stacks(ref, r, k, place, resumes, &t);
+    if (was_tried)
+        return;
     long bad = t.tried - t.of[UNHARMED] - t.of[REPORTED];
     if (k->class == FAULT_MEMORY && t.sites == 0) { /* otherwise all checks would pass trivially */
         printf("# no allocation was counted\n");
@@ -292,7 +302,9 @@ static void try_table(void)
         for (char *rest = line, *word; (word = strsep(&rest, " \t\n")) && count < WORDS_MAX - 1;)
             if (*word)
                 words[count++] = word;
-        if (count < 3 || *words[0] == '#' || (options.only && !has_word(options.only, words[0])))
+        if (count < 3 || *words[0] == '#' ||
+            (options.only && !has_word(options.only, words[0]) &&
+             !(options.known && has_word(options.known, words[0]))))
             continue;
         try_command(words[0], words[1], words + 2);
     }
@@ -323,6 +335,8 @@ int main(int argc, char **argv)
             options.only = value;
         else if (strcmp(name, "kinds") == 0)
             options.kinds = value;
+        else if (strcmp(name, "known") == 0)
+            options.known = value;
         else if (strcmp(name, "library") == 0)
             options.library = value;
         else if (strcmp(name, "work") == 0)

@@ -38,7 +38,8 @@ solids:
   ground: {shape: plane, diffuse: 0.8}
   ball: {shape: sphere, medium: gold, radius: 0.5, position: [-1.2, 0.6, 0]}
   bubble: {shape: sphere, transparency: 1, film_thickness_nm: 400, film_ior: 1.33, radius: 0.4, position: [0, 0.5, -1]}
-  glass: {shape: lens, medium: bk7, transparency: 1, diameter: 1, position: [1.2, 0.8, 0], radius_1: 1.5, radius_2: -1.5}
+  glass:
+    {shape: lens, medium: bk7, transparency: 1, diameter: 1, position: [1.2, 0.8, 0], radius_1: 1.5, radius_2: -1.5}
 END
 cuvette mesh --generate box -o box.obj
 cuvette mesh --generate box -f ply -o box.ply

@@ -27,6 +27,8 @@ struct render_worker {
     status trouble_code;          /* of the snapshot's generation */
     uint64_t snapshot_generation; /* 0: none yet */
     bool snapshot_ready;          /* loaded */
+    bool again;                   /* load and render it once more, after a failure of the machine */
+    double again_from_s;          /* not before */
 
     pthread_rwlock_t snapshot_lock; /* read-locked to read or render the snapshot, write-locked to replace or move it */
     scene *snapshot;
