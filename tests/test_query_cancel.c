@@ -83,7 +83,7 @@ static cuvette_ray *some_rays(void)
     return rays;
 }
 
-/* Again and again, since one call of so many rays takes only a tenth of a second. */
+/* Again and again, since one call takes only a tenth of a second. */
 static void *trace_rays(void *context)
 {
     work *w = context;

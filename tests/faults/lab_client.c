@@ -150,7 +150,7 @@ static const request usual[] = {
     {"POST", "/api/undo", "", false},
     {"POST", "/api/save", "{\"file\": \"saved.yaml\"}", false},
     {"GET", "/api/studies", "", true},
-    {"GET", "/api/studies/done", "", false},
+    {"GET", "/api/studies/done", "", true},
     {"GET", "/api/studies/done/summary.tsv", "", true},
     {"GET", "/", "", true},
 };
