@@ -27,8 +27,8 @@
  * functions that take a scene as const may run on it at the same time, including renders by several engines, but not
  * while another function changes it; a change during a render is refused with CUVETTE_BUSY. A motion counts as its
  * scene here. An engine runs one render at a time (else CUVETTE_BUSY). A frame and a query are immutable: any number of
- * threads may use them. Any thread may call cuvette_engine_cancel and cuvette_query_cancel. Callbacks run on the calling
- * thread, never two at once.
+ * threads may use them. Any thread may call cuvette_engine_cancel and cuvette_query_cancel. Callbacks run on the
+ * calling thread, never two at once.
  *
  * Geometry. Lengths are in scene units (render.unit_m is the length of one in metres), y is up, angles are in degrees.
  * Pixels are counted from 0, with 0 at the top left; pixel x, y covers the square from x, y to x + 1, y + 1.

@@ -3,10 +3,10 @@
  * A line of the table: NAME, traits ("-", "resumes", "forked", "slow": fewer sites with --every), the command's words;
  * the first of them is one of the WORDs. Options: --every N, only each N-th site; --depth N, call stacks are the same
  * if N frames are; --only NAMES and --kinds NAMES, separated by commas; --at N, only the Nth call, as an error names
- * it; --from N, only calls from the Nth on, to go on where a run was stopped; --known NAMES, commands that an earlier
- * run tried, whose call stacks are not tried again; --stays, what fails fails from then on; --shown N, of each kind of
- * error. Prints the Test Anything Protocol, a case for each command and kind of fault, and a table of verdicts as
- * comments "##". */
+ * it; --from N and --to N, only calls from the Nth on, up to it: parts of a long run; --known NAMES, commands that an
+ * earlier run tried, whose call stacks are not tried again; --stays, what fails fails from then on; --shown N, of each
+ * kind of error. Prints the Test Anything Protocol, a case for each command and kind of fault, and a table of verdicts
+ * as comments "##". */
 #include "judge.h"
 #include "trace.h"
 
@@ -46,7 +46,7 @@ static const kind kinds[] = {
 enum { KINDS = sizeof kinds / sizeof kinds[0], WORDS_MAX = 48, KNOWN_MAX = 1 << 16 };
 
 static struct {
-    long stride, every, shown, at, from; /* every: stride, or more for slow commands */
+    long stride, every, shown, at, from, to; /* every: stride, or more for slow commands */
     int depth;
     const char *only, *kinds, *known, *library, *work, *template, *table;
     bool stays;
@@ -145,6 +145,11 @@ static bool is_known(uint64_t hash)
     return before;
 }
 
+static bool in_part(long at)
+{
+    return at >= options.from && (options.to == 0 || at <= options.to);
+}
+
 /* Each distinct call stack once. A thread may come earlier or later than in the run that noted them: such a site is
  * tried again by its hash, which is slower. */
 static void try_stacks(const reference *ref, const run *r, const kind *k, fault_place place, bool resumes,
@@ -172,7 +177,7 @@ static void try_stacks(const reference *ref, const run *r, const kind *k, fault_
     }
     for (long i = options.at ? count : options.every > 1 ? count % options.every : 0; i < count; i += options.every) {
         f.at = sites[i].at;
-        if (f.at < options.from)
+        if (!in_part(f.at))
             continue;
         f.hash = 0;
         const long missed = t->missed;
@@ -200,7 +205,7 @@ static void try_calls(const reference *ref, const run *r, const kind *k, const o
         return;
     }
     for (f.at = 1 + (options.every > 1 ? t->sites % options.every : 0); f.at <= t->sites; f.at += options.every)
-        if (f.at >= options.from)
+        if (in_part(f.at))
             try(ref, r, &f, resumes, t);
 }
 
@@ -327,6 +332,8 @@ int main(int argc, char **argv)
             options.at = atol(value);
         else if (strcmp(name, "from") == 0)
             options.from = atol(value);
+        else if (strcmp(name, "to") == 0)
+            options.to = atol(value);
         else if (strcmp(name, "shown") == 0)
             options.shown = atol(value);
         else if (strcmp(name, "depth") == 0)
