@@ -102,26 +102,30 @@ status api_take_study(call *c, study **s)
     return code;
 }
 
-/* Whether a run would make files: true also if they cannot be read, since a run tells why. */
-static bool lacks_files(const lab *l, const study *s)
+/* Whether a run would make files: true also if those that are there are damaged, since a run tells why. */
+static status lacks_files(const lab *l, const study *s, bool *lacks, diagnostic *why)
 {
-    bool lacks = true;
-    return study_lacks_files(s, l->settings.results, &lacks, NULL) != STATUS_OK || lacks;
+    const status code = study_lacks_files(s, l->settings.results, lacks, why);
+    *lacks |= code != STATUS_OK;
+    return code == STATUS_BAD_INPUT ? STATUS_OK : code;
 }
 
-/* Its other runs and its figures; none of a study that cannot be read. */
+/* What it lacks, its other runs and its figures; none of a study that cannot be read. */
 static status files_of(const lab *l, const study *s, json_t **out, diagnostic *why)
 {
     json_t *runs = NULL, *figures = NULL, *drawable = NULL;
-    status code = s ? study_runs(l, s->name, &runs, why) : STATUS_OK;
+    bool lacks = false;
+    status code = s ? lacks_files(l, s, &lacks, why) : STATUS_OK;
     if (s) {
+        THEN(code, study_runs(l, s->name, &runs, why));
         THEN(code, figures_of(l, s->name, &figures, why));
         THEN(code, figures_drawable(l, s->name, &drawable, why));
     }
-    *out = code != STATUS_OK ? NULL
-                             : json_pack("{s:o, s:o, s:o}", "runs", s ? json_incref(runs) : json_array(), "figures",
-                                         s ? json_incref(figures) : json_array(), "drawable",
-                                         s ? json_incref(drawable) : json_array());
+    *out = code != STATUS_OK
+               ? NULL
+               : json_pack("{s:b, s:o, s:o, s:o}", "lacks_files", lacks, "runs", s ? json_incref(runs) : json_array(),
+                           "figures", s ? json_incref(figures) : json_array(), "drawable",
+                           s ? json_incref(drawable) : json_array());
     json_decref(runs);
     json_decref(figures);
     json_decref(drawable);
@@ -140,8 +144,7 @@ status api_study(call *c)
                *lists = NULL;
         if (s && study_json_summary(s, l->settings.results, &summary, &c->why) != STATUS_OK)
             json_add_as(&json, "error", json_of_diagnostic(&c->why));
-        json_add_all(&json, json_pack("{s:b, s:o}", "lacks_files", s && lacks_files(l, s), "summary",
-                                      summary ? summary : json_null()));
+        json_add_as(&json, "summary", summary ? summary : json_null());
         if ((code = files_of(l, s, &lists, &c->why)) == STATUS_OK) {
             json_add_all(&json, lists);
             api_reply_json(c, json);
