@@ -238,6 +238,19 @@ static int ask_again(const request *r, int status)
     return ask(r->method, r->path, r->body);
 }
 
+/* Changes that could not be kept until they are saved: the page shows why. */
+static void look_for_unkept(void)
+{
+    const int status = ask("GET", "/api/state", "");
+    const char *at = strstr(reply, "\"unkept\":{");
+    if (at)
+        memmove(reply, at, strlen(at) + 1);
+    if (at || status == 0 || status >= 500) {
+        report(status);
+        any_failed = true;
+    }
+}
+
 int main(int argc, char **argv)
 {
     const struct scenario *chosen = find_scenario(argc > 1 ? argv[1] : "usual");
@@ -264,6 +277,7 @@ int main(int argc, char **argv)
             return 4;
         }
     }
+    look_for_unkept();
     kill(server, SIGINT);
     const int code = server_status();
     printf("ends with %d\n", code);
