@@ -38,7 +38,7 @@ struct render_worker {
     int pass; /* the next pass */
     double rate;
     int interrupted;  /* interrupted first passes in a row, including the loads before them */
-    double started_s; /* start time of the current load or pass */
+    double started_s; /* start time of the current copy, load, move or pass */
     uint64_t
         taken_generation;     /* generation of the document that the snapshot copies, loaded or not; 0: copy it again */
     uint64_t seen_generation; /* the newest that was ever taken */
