@@ -26,9 +26,9 @@
  * Threads. There is no global state: different threads may use different handles at the same time. Any number of
  * functions that take a scene as const may run on it at the same time, including renders by several engines, but not
  * while another function changes it; a change during a render is refused with CUVETTE_BUSY. A motion counts as its
- * scene here. An engine runs one render at a time (else CUVETTE_BUSY); cuvette_engine_cancel may be called from any
- * thread. A frame and a query are immutable: any number of threads may use them. Callbacks run on the calling thread,
- * never two at once.
+ * scene here. An engine runs one render at a time (else CUVETTE_BUSY). A frame and a query are immutable: any number of
+ * threads may use them. Any thread may call cuvette_engine_cancel and cuvette_query_cancel. Callbacks run on the
+ * calling thread, never two at once.
  *
  * Geometry. Lengths are in scene units (render.unit_m is the length of one in metres), y is up, angles are in degrees.
  * Pixels are counted from 0, with 0 at the top left; pixel x, y covers the square from x, y to x + 1, y + 1.
@@ -426,6 +426,12 @@ CUVETTE_API cuvette_status cuvette_query_wavelength_create(const cuvette_scene *
                                                            const char *instructions, cuvette_query **out,
                                                            cuvette_diagnostic *why);
 CUVETTE_API void cuvette_query_destroy(cuvette_query *query);
+
+/* Stops every call of the query that is in progress, in all threads, within about a tenth of a second: rays, trees,
+ * fans, beams, and the writing of trees and fans, whose files then do not appear. Each returns CUVETTE_CANCELLED and no
+ * result; the arrays of hits and of blocked rays are undefined then. Later calls run as usual; it has no effect when
+ * there is none in progress. May be called from any thread and from a signal handler, before cuvette_query_destroy. */
+CUVETTE_API void cuvette_query_cancel(cuvette_query *query);
 
 enum { CUVETTE_OUTSIDE = -1 }; /* in place of a solid's index: no solid */
 

@@ -24,6 +24,7 @@
 #include <signal.h>
 #include <sys/mman.h>
 #include <sys/prctl.h>
+#include <sys/resource.h>
 #include <sys/socket.h>
 #include <sys/stat.h>
 #include <sys/syscall.h>
@@ -98,12 +99,32 @@ static int no_program(void)
     return errno == EACCES ? GOOD : BAD;
 }
 
+/* Without open files for the places they would be left out, as if they were not there. */
+static int no_files_for_the_places(void)
+{
+    char *inside = in_folder("inside");
+    const confine_place places[] = {{inside, CONFINE_READ}};
+    const int first = open("/dev/null", O_RDONLY | O_CLOEXEC), second = open("/dev/null", O_RDONLY | O_CLOEXEC);
+    const struct rlimit few = {(rlim_t)second, (rlim_t)second}; /* one for the rules, none for the place */
+    close(first);
+    close(second);
+    if (first < 0 || second != first + 1 || setrlimit(RLIMIT_NOFILE, &few) != 0)
+        return BAD;
+    errno = 0;
+    if (os_confine_files(places, 1))
+        return BAD;
+    if (errno == 0)
+        return MISSING;
+    return errno == EMFILE && opens("outside", O_RDONLY) ? GOOD : BAD;
+}
+
 static void only_the_given_places_are_reached(void **state)
 {
     (void)state;
     expect_good(only_one_folder);
     expect_good(a_folder_to_write);
     expect_good(no_program);
+    expect_good(no_files_for_the_places);
 }
 
 /* --- system calls --- */

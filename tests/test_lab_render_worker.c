@@ -14,6 +14,7 @@
 #include "scene/model/scene.h"
 #include <pthread.h>
 #include <stdatomic.h>
+#include <sys/resource.h>
 #include <time.h>
 
 typedef struct studio {
@@ -189,6 +190,30 @@ static void errors_are_reported_and_cleared(void **state)
     apply(&s, "lamp.intensity=10000"); /* brighter than a film can store: detected while rendering */
     apply(&s, "ball.transparency=0");
     assert_int_equal(render_worker_take_final(s.p, 60.0, &shown, &why), STATUS_BAD_INPUT);
+    close_studio(&s);
+}
+
+/* A lack of open files ends, but the scene does not change: whoever asks later has it loaded again. */
+static void a_lack_of_the_machine_is_forgotten(void **state)
+{
+    (void)state;
+    studio s;
+    struct rlimit usual;
+    assert_int_equal(getrlimit(RLIMIT_NOFILE, &usual), 0);
+    open_studio(&s, scene_from(BALL_SCENE));
+    final_film(&s);
+    const struct rlimit few = {3, usual.rlim_max};
+    assert_int_equal(setrlimit(RLIMIT_NOFILE, &few), 0);
+    apply(&s, "background.picture=experiments/scenes/chequer.png");
+    const shared_image *shown;
+    diagnostic why = {0}, later = {0};
+    const status refused = render_worker_take_final(s.p, 60.0, &shown, &why),
+                 again = render_worker_take_final(s.p, 60.0, &shown, &later);
+    assert_int_equal(setrlimit(RLIMIT_NOFILE, &usual), 0);
+    assert_int_equal(refused, STATUS_FAILURE);
+    assert_int_equal(again, STATUS_FAILURE);
+    assert_non_null(strstr(why.remedy, "open files"));
+    final_film(&s);
     close_studio(&s);
 }
 
@@ -444,6 +469,7 @@ int main(void)
         cmocka_unit_test(the_last_of_many_changes_wins),
         cmocka_unit_test(finer_passes_wait_until_a_drag_rests),
         cmocka_unit_test(errors_are_reported_and_cleared),
+        cmocka_unit_test(a_lack_of_the_machine_is_forgotten),
         cmocka_unit_test(nothing_is_rendered_while_suspended),
         cmocka_unit_test(ending_the_worker_ends_all_waits),
         cmocka_unit_test(a_slowly_loading_scene_is_rendered),

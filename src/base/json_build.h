@@ -65,6 +65,15 @@ static inline void json_add(json_t **list, json_t *item)
     }
 }
 
+/* The members of another object, which is released. */
+static inline void json_add_all(json_t **object, json_t *others)
+{
+    if (json_object_update_new(*object, others) != 0) {
+        json_decref(*object);
+        *object = NULL;
+    }
+}
+
 static inline void json_add_as(json_t **object, const char *key, json_t *item)
 {
     if (json_object_set_new(*object, key, item) != 0) {

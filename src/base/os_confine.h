@@ -17,7 +17,8 @@ typedef struct confine_place {
     unsigned rights;
 } confine_place;
 
-/* From now on only these places; those that do not exist are skipped. Files that are open stay open. */
+/* From now on only these places; those that do not exist are skipped. Files that are open stay open. If it returns
+ * false, errno is 0, or says what there was too little of: memory, open files. */
 bool os_confine_files(const confine_place *places, size_t count);
 
 /* CONFINE_COMPUTING: memory, locks, clocks and the end of the thread; no files, no descriptors. CONFINE_READING: also

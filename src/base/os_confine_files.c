@@ -1,6 +1,7 @@
 /* Landlock: landlock(7), Documentation/userspace-api/landlock.rst of Linux. */
 #include "base/os_confine.h"
 
+#include <errno.h>
 #include <fcntl.h>
 #include <linux/landlock.h>
 #include <stdint.h>
@@ -50,35 +51,53 @@ static ruleset known_rights(long version)
     return all;
 }
 
-static void allow(int rules, const confine_place *place, uint64_t known)
+/* Against a place that is not there, or that nobody may enter. */
+static bool is_shortage(int error)
+{
+    return error == EMFILE || error == ENFILE || error == ENOMEM || error == EIO;
+}
+
+/* False, and errno, if the place is there but cannot be named now. */
+static bool allow(int rules, const confine_place *place, uint64_t known)
 {
     struct stat about;
     const int fd = open(place->path, O_PATH | O_CLOEXEC);
     if (fd < 0)
-        return;
+        return !is_shortage(errno);
     uint64_t rights = (place->rights & CONFINE_READ ? ACCESS_READ : 0) |
                       (place->rights & CONFINE_RUN ? ACCESS_RUN : 0) |
                       (place->rights & CONFINE_WRITE ? ACCESS_WRITE : 0);
     if (fstat(fd, &about) == 0 && !S_ISDIR(about.st_mode))
         rights &= ACCESS_OF_FILE;
     const struct landlock_path_beneath_attr rule = {.allowed_access = rights & known, .parent_fd = fd};
-    syscall(SYS_landlock_add_rule, rules, LANDLOCK_RULE_PATH_BENEATH, &rule, 0);
+    const bool done = syscall(SYS_landlock_add_rule, rules, LANDLOCK_RULE_PATH_BENEATH, &rule, 0) == 0;
+    const int error = errno;
     close(fd);
+    errno = error;
+    return done || !is_shortage(error);
+}
+
+static bool fail(int error)
+{
+    errno = is_shortage(error) ? error : 0;
+    return false;
 }
 
 bool os_confine_files(const confine_place *places, size_t count)
 {
     const long version = syscall(SYS_landlock_create_ruleset, NULL, 0, LANDLOCK_CREATE_RULESET_VERSION);
     if (version < 1 || os_confine_is_off())
-        return false;
+        return fail(0);
     const ruleset known = known_rights(version);
     const size_t size = known.network ? sizeof known : sizeof known.files;
     const int rules = (int)syscall(SYS_landlock_create_ruleset, &known, size, 0);
     if (rules < 0)
-        return false;
-    for (size_t i = 0; i < count; i++)
-        allow(rules, &places[i], known.files);
-    const bool done = prctl(PR_SET_NO_NEW_PRIVS, 1, 0, 0, 0) == 0 && syscall(SYS_landlock_restrict_self, rules, 0) == 0;
+        return fail(errno);
+    bool done = true;
+    for (size_t i = 0; i < count && done; i++)
+        done = allow(rules, &places[i], known.files);
+    done = done && prctl(PR_SET_NO_NEW_PRIVS, 1, 0, 0, 0) == 0 && syscall(SYS_landlock_restrict_self, rules, 0) == 0;
+    const int error = errno;
     close(rules);
-    return done;
+    return done || fail(error);
 }

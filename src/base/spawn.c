@@ -8,6 +8,7 @@
 #include <spawn.h>
 #include <stdio.h>
 #include <stdlib.h>
+#include <string.h>
 #include <unistd.h>
 
 extern char **environ;
@@ -24,7 +25,8 @@ static int set_attributes(posix_spawnattr_t *attributes, bool own_group)
         attributes, (short)(POSIX_SPAWN_SETSIGMASK | POSIX_SPAWN_SETSIGDEF | (own_group ? POSIX_SPAWN_SETPGROUP : 0)));
 }
 
-int spawn_program(pid_t *pid, const char *program, char *const *arguments, int out, int err, bool own_group)
+static int spawn(pid_t *pid, const char *program, char *const *arguments, char *const *environment, int out, int err,
+                 bool own_group)
 {
     posix_spawn_file_actions_t actions;
     posix_spawnattr_t attributes;
@@ -38,11 +40,16 @@ int spawn_program(pid_t *pid, const char *program, char *const *arguments, int o
         error = error ? error : posix_spawn_file_actions_adddup2(&actions, out, 1);
         error = error ? error : posix_spawn_file_actions_adddup2(&actions, err, 2);
         error = error ? error : posix_spawn_file_actions_addclosefrom_np(&actions, 3);
-        error = error ? error : posix_spawn(pid, program, &actions, &attributes, arguments, environ);
+        error = error ? error : posix_spawn(pid, program, &actions, &attributes, arguments, environment);
         posix_spawnattr_destroy(&attributes);
     }
     posix_spawn_file_actions_destroy(&actions);
     return error;
+}
+
+int spawn_program(pid_t *pid, const char *program, char *const *arguments, int out, int err, bool own_group)
+{
+    return spawn(pid, program, arguments, environ, out, err, own_group);
 }
 
 /* The process that started this one, if it is to end with it. */
@@ -50,12 +57,18 @@ int spawn_program(pid_t *pid, const char *program, char *const *arguments, int o
 
 int spawn_bound(pid_t *pid, const char *program, char *const *arguments, int out, int err)
 {
-    char own[32];
-    snprintf(own, sizeof own, "%ld", (long)getpid());
-    if (setenv(PARENT, own, 1) != 0)
+    char own[64];
+    size_t count = 0;
+    snprintf(own, sizeof own, PARENT "=%ld", (long)getpid());
+    while (environ && environ[count])
+        count++;
+    char **with_own = calloc(count + 2, sizeof *with_own); /* not setenv, which other threads could meet */
+    if (!with_own)
         return ENOMEM;
-    const int error = spawn_program(pid, program, arguments, out, err, false);
-    unsetenv(PARENT);
+    memcpy(with_own, environ, count * sizeof *with_own);
+    with_own[count] = own;
+    const int error = spawn(pid, program, arguments, with_own, out, err, false);
+    free(with_own);
     return error;
 }
 

@@ -2,6 +2,7 @@
 #include "base/memory_budget.h"
 #include "base/random.h"
 #include "base/spawn.h"
+#include "base/system_error.h"
 #include "base/text.h"
 #include "cli/options.h"
 #include "cli/study_commands.h"
@@ -81,6 +82,8 @@ static status run_process(const study *s, const study_request *request, const ch
     char *copies[ARGUMENTS_MAX] = {NULL};
     memcpy(copies, arguments, sizeof copies);
     const int error = spawn_bound(&pid, program, copies, STDOUT_FILENO, STDERR_FILENO);
+    if (error && system_error(why, STATUS_BAD_INPUT, NULL, "cannot start a process", error, "") == STATUS_FAILURE)
+        return STATUS_FAILURE;
     if (error)
         return options_wrong("--against", program, why, "give the path of a cuvette program", "cannot start it: %s",
                              strerrordesc_np(error));

@@ -39,6 +39,9 @@ cuvette_status cuvette_query_each_beam_ray(const cuvette_query *query,
     ENGINE_NEED_NAMED(visit, "visit");
     cuvette_query *q = (cuvette_query *)(uintptr_t)query; /* handles are never const objects */
     beam_call call = {q, visit, context, &host, false};
+    query_call cancellable;
+    query_call_begin(&cancellable, query);
     const status code = beams_each_ray(q->model, q->level, 0, pass_ray, &call, &inner);
+    query_call_end(&cancellable);
     return engine_report(call.stopped ? STATUS_OK : code, &inner, why);
 }

@@ -72,22 +72,58 @@ cuvette_query *query_share(cuvette_query *query)
     return query;
 }
 
+void cuvette_query_cancel(cuvette_query *query)
+{
+    if (query)
+        atomic_fetch_add_explicit(&query->cancels, 1, memory_order_relaxed);
+}
+
+status query_cancelled(diagnostic *why)
+{
+    return diagnose(why, STATUS_INTERRUPTED, "", "cancelled");
+}
+
+static bool is_cancelled(void *context)
+{
+    const query_call *call = context;
+    return query_cancels(call->of) != call->cancels;
+}
+
+static void begin_since(query_call *call, const cuvette_query *query, unsigned cancels)
+{
+    *call = (query_call){.of = query, .cancels = cancels, .token = {.ask = is_cancelled, .context = call}};
+    cancel_begin(&call->token);
+}
+
+void query_call_begin(query_call *call, const cuvette_query *query)
+{
+    begin_since(call, query, query_cancels(query));
+}
+
+void query_call_end(query_call *call)
+{
+    cancel_end(&call->token);
+}
+
 status query_begin_trace(const cuvette_query *query, cuvette_query **out, diagnostic *why)
 {
     cuvette_query *q = (cuvette_query *)(uintptr_t)query; /* handles are never const objects */
+    const unsigned cancels = query_cancels(q); /* whoever waits for another thread's trace is cancelled too */
     pthread_mutex_lock(&q->tracing);
+    begin_since(&q->traced, q, cancels);
     const bool is_new = !q->inspector;
     const status code = is_new ? probe_create(q->model, q->level, &q->inspector, why) : STATUS_OK;
     if (code == STATUS_OK && is_new && q->one_wavelength)
         probe_one_wavelength(q->inspector);
     if (code != STATUS_OK)
-        pthread_mutex_unlock(&q->tracing);
+        query_end_trace(q);
     *out = q;
     return code;
 }
 
 void query_end_trace(cuvette_query *query)
 {
+    query_call_end(&query->traced);
     pthread_mutex_unlock(&query->tracing);
 }
 

@@ -2,6 +2,7 @@
  * trees): the query, the scratch memory of a call, and the nodes of a tree. */
 #pragma once
 
+#include "base/cancel.h"
 #include "engine/engine_private.h"
 #include "geometry/instance_set.h"
 #include "geometry/rays.h"
@@ -29,6 +30,13 @@ typedef struct bench {
     struct bench *next;
 } bench;
 
+/* A call of the query that another thread can cancel, from query_call_begin to query_call_end on one thread. */
+typedef struct query_call {
+    const cuvette_query *of;
+    unsigned cancels; /* of the query when the call began */
+    cancel_token token;
+} query_call;
+
 struct cuvette_query {
     scene *model; /* its own copy, from which the plan borrows */
     plan *ready;
@@ -37,10 +45,21 @@ struct cuvette_query {
     bench *free_benches;
     isa level;
     pthread_mutex_t tracing; /* held while the probe traces */
+    query_call traced;       /* of who holds it */
     probe *inspector;        /* made by the first tree */
+    atomic_uint cancels;     /* calls of cuvette_query_cancel: work that began before one of them ends */
     bool one_wavelength;     /* absorption too is that at render.lambda_nm */
     atomic_int owners;       /* the handle, and the trees and fans, whose names are the scene's */
 };
+
+void query_call_begin(query_call *call, const cuvette_query *query);
+void query_call_end(query_call *call);
+/* Without a token, for the loops over many rays. */
+static inline unsigned query_cancels(const cuvette_query *query)
+{
+    return atomic_load_explicit(&query->cancels, memory_order_relaxed);
+}
+status query_cancelled(diagnostic *why);
 
 /* A query, and the right to use its probe until query_end_trace. */
 status query_begin_trace(const cuvette_query *query, cuvette_query **out, diagnostic *why);

@@ -176,10 +176,15 @@ static void nearest_batch(const cuvette_query *q, bench *b, const cuvette_ray *r
     }
 }
 
-static status begin(const cuvette_query *q, const cuvette_ray *rays, size_t count, bench **out, diagnostic *why)
+/* cancels: of the query when the call began. */
+static status begin(const cuvette_query *q, unsigned cancels, const cuvette_ray *rays, size_t count, bench **out,
+                    diagnostic *why)
 {
-    for (size_t i = 0; i < count; i++)
+    for (size_t i = 0; i < count; i++) {
+        if (i % 4096 == 0 && query_cancels(q) != cancels)
+            return query_cancelled(why);
         TRY(engine_check_ray(q->ready, &rays[i], i, why));
+    }
     *out = query_take_bench(q);
     return *out ? STATUS_OK : out_of_memory(why);
 }
@@ -192,13 +197,16 @@ cuvette_status cuvette_query_nearest(const cuvette_query *query, const cuvette_r
         return CUVETTE_OK;
     ENGINE_NEED(rays, hits);
     bench *b = NULL;
-    const status code = begin(query, rays, count, &b, &inner);
+    const unsigned cancels = query_cancels(query);
+    status code = begin(query, cancels, rays, count, &b, &inner);
     if (code != STATUS_OK)
         return engine_report(code, &inner, why);
-    for (size_t i = 0; i < count; i += BATCH)
+    size_t i = 0;
+    for (; i < count && query_cancels(query) == cancels; i += BATCH)
         nearest_batch(query, b, rays + i, count - i < BATCH ? (int)(count - i) : BATCH, hits + i);
     query_give_bench(query, b);
-    return CUVETTE_OK;
+    code = i < count ? query_cancelled(&inner) : STATUS_OK;
+    return engine_report(code, &inner, why);
 }
 
 /* A batch of rays of one kind: those with a reach end there, as shadow rays end at their light. */
@@ -213,8 +221,9 @@ static void occluded_batch(const cuvette_query *q, bench *b, int count, bool end
         blocked[b->caller_index[i]] = ends ? b->transmitted[i] == 0.0 : b->hits.hit_primitive[i] >= 0;
 }
 
-static void occluded(const cuvette_query *q, bench *b, const cuvette_ray *rays, size_t count, bool ends,
-                     unsigned char *blocked)
+/* False if the query was cancelled meanwhile. */
+static bool occluded(const cuvette_query *q, bench *b, unsigned cancels, const cuvette_ray *rays, size_t count,
+                     bool ends, unsigned char *blocked)
 {
     int waiting = 0;
     for (size_t i = 0; i < count; i++) {
@@ -223,12 +232,15 @@ static void occluded(const cuvette_query *q, bench *b, const cuvette_ray *rays, 
         put_ray(q, b, waiting, &rays[i], ends ? rays[i].reach : 1.0);
         b->caller_index[waiting++] = i;
         if (waiting == BATCH) {
+            if (query_cancels(q) != cancels)
+                return false;
             occluded_batch(q, b, waiting, ends, blocked);
             waiting = 0;
         }
     }
     if (waiting > 0)
         occluded_batch(q, b, waiting, ends, blocked);
+    return true;
 }
 
 cuvette_status cuvette_query_occluded(const cuvette_query *query, const cuvette_ray *rays, size_t count,
@@ -239,11 +251,13 @@ cuvette_status cuvette_query_occluded(const cuvette_query *query, const cuvette_
         return CUVETTE_OK;
     ENGINE_NEED(rays, blocked);
     bench *b = NULL;
-    const status code = begin(query, rays, count, &b, &inner);
+    const unsigned cancels = query_cancels(query);
+    status code = begin(query, cancels, rays, count, &b, &inner);
     if (code != STATUS_OK)
         return engine_report(code, &inner, why);
-    occluded(query, b, rays, count, true, blocked);
-    occluded(query, b, rays, count, false, blocked);
+    const bool whole = occluded(query, b, cancels, rays, count, true, blocked) &&
+                       occluded(query, b, cancels, rays, count, false, blocked);
     query_give_bench(query, b);
-    return CUVETTE_OK;
+    code = whole ? STATUS_OK : query_cancelled(&inner);
+    return engine_report(code, &inner, why);
 }

@@ -22,7 +22,7 @@ static json_t *controls(const lesson *l)
         if (c->choice_count)
             json_add_as(&one, "choices", texts(c->choices, c->choice_count));
         else
-            json_object_update_new(one, json_pack("{s:f,s:f}", "from", c->from, "to", c->to));
+            json_add_all(&one, json_pack("{s:f,s:f}", "from", c->from, "to", c->to));
         json_add(&list, one);
     }
     return list;
@@ -71,8 +71,7 @@ static json_t *commands(const lesson *l)
         if (kinds[i] ? l->over >= 0 : !l->metric)
             continue;
         char *text = lesson_command(l, kinds[i]);
-        if (text)
-            json_add(&list, json_of_text(text));
+        json_add(&list, text ? json_of_text(text) : NULL);
         free(text);
     }
     return list;

@@ -7,8 +7,10 @@
 #include "study/grid.h"
 #include "scene/model/scene.h"
 #include <fcntl.h>
+#include <limits.h>
 #include <math.h>
 #include <stddef.h>
+#include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 #include <sys/file.h>
@@ -45,9 +47,11 @@ bool study_keeps_files(const study *s)
     return false;
 }
 
+#define KEPT_PATH "%s/images/%04zu%s"
+
 static char *kept_path(const char *folder, size_t cell, size_t what)
 {
-    return text_format("%s/images/%04zu%s", folder, cell, files[what].ending);
+    return text_format(KEPT_PATH, folder, cell, files[what].ending);
 }
 
 char *keep_image_path(const char *folder, size_t cell)
@@ -61,9 +65,9 @@ size_t keep_missing_count(const study *s, const char *folder, size_t cell)
     for (size_t what = 0; what < KEPT_COUNT; what++) {
         if (!wanted(s, what))
             continue;
-        char *path = kept_path(folder, cell, what);
-        missing += !path || access(path, F_OK) != 0; /* out of memory, it is made again, which changes nothing */
-        free(path);
+        char path[PATH_MAX]; /* a longer one cannot exist */
+        const int length = snprintf(path, sizeof path, KEPT_PATH, folder, cell, files[what].ending);
+        missing += length < 0 || length >= PATH_MAX || access(path, F_OK) != 0;
     }
     return missing;
 }

@@ -4,6 +4,7 @@
 #include "base/installed.h"
 #include "base/os_confine.h"
 #include "base/os_process.h"
+#include "base/system_error.h"
 #include "base/text.h"
 #include "web/lab_private.h"
 #include "web/session/kept_scenes.h"
@@ -140,17 +141,26 @@ static void remove_abandoned(const char *place)
         closedir(entries);
 }
 
-static void add_temporary(lab *l, place_list *all)
+/* Without one where none can be made or locked: drawings then say so. */
+static status add_temporary(lab *l, place_list *all, diagnostic *why)
 {
     remove_abandoned(temporary_place());
-    l->temporary = text_format("%s/" TEMPORARY "XXXXXX", temporary_place());
-    all->out_of_memory |= !l->temporary;
-    l->temporary_lock = l->temporary && mkdtemp(l->temporary) ? hold(l->temporary) : -1;
-    if (l->temporary_lock < 0) {
-        free(l->temporary);
-        l->temporary = NULL;
+    char *path = text_format("%s/" TEMPORARY "XXXXXX", temporary_place());
+    if (!path)
+        return out_of_memory(why);
+    l->temporary_lock = mkdtemp(path) ? hold(path) : -1;
+    if (l->temporary_lock >= 0) {
+        l->temporary = path;
+        add_text(all, path, CONFINE_WRITE);
+        return STATUS_OK;
     }
-    add_text(all, l->temporary, CONFINE_WRITE);
+    diagnostic lost = {.line = 0};
+    const status code = system_error(&lost, STATUS_OK, path, "cannot make a temporary folder", errno, NULL);
+    rmdir(path);
+    free(path);
+    if (code != STATUS_OK)
+        *why = lost;
+    return code;
 }
 
 status lab_confine(lab *l, diagnostic *why)
@@ -161,17 +171,20 @@ status lab_confine(lab *l, diagnostic *why)
         return STATUS_OK;
     add_system(&all);
     add_program(&all);
-    add_temporary(l, &all);
+    status code = add_temporary(l, &all, why);
     add_text(&all, settings->folder, CONFINE_WRITE);
     diagnostic reason = {.what = ""};
     if (settings->rescue && settings->rescue[0] && kept_scenes_folder(settings->rescue, &reason) == STATUS_OK)
         add_text(&all, settings->rescue, CONFINE_WRITE);
     all.out_of_memory |= strcmp(reason.remedy, MEMORY_REMEDY) == 0;
-    if (!all.out_of_memory)
-        os_confine_files(all.at, all.count);
+    if (code == STATUS_OK && all.out_of_memory)
+        code = out_of_memory(why);
+    if (code == STATUS_OK && !os_confine_files(all.at, all.count) && errno)
+        code = system_error(why, STATUS_FAILURE, settings->folder, "cannot confine the laboratory to its folder", errno,
+                            NULL);
     for (size_t i = 0; i < all.count; i++)
         free(all.owned[i]);
-    return all.out_of_memory ? out_of_memory(why) : STATUS_OK;
+    return code;
 }
 
 void lab_remove_temporary(lab *l)

@@ -3,9 +3,10 @@
  * A line of the table: NAME, traits ("-", "resumes", "forked", "slow": fewer sites with --every), the command's words;
  * the first of them is one of the WORDs. Options: --every N, only each N-th site; --depth N, call stacks are the same
  * if N frames are; --only NAMES and --kinds NAMES, separated by commas; --at N, only the Nth call, as an error names
- * it; --from N, only calls from the Nth on, to go on where a run was stopped; --stays, what fails fails from then on;
- * --shown N, of each kind of error. Prints the Test Anything Protocol, a case for each command and kind of fault, and a
- * table of verdicts as comments "##". */
+ * it; --from N and --to N, only calls from the Nth on, up to it: parts of a long run; --known NAMES, commands that an
+ * earlier run tried, whose call stacks are not tried again; --stays, what fails fails from then on; --shown N, of each
+ * kind of error. Prints the Test Anything Protocol, a case for each command and kind of fault, and a table of verdicts
+ * as comments "##". */
 #include "judge.h"
 #include "trace.h"
 
@@ -45,9 +46,9 @@ static const kind kinds[] = {
 enum { KINDS = sizeof kinds / sizeof kinds[0], WORDS_MAX = 48, KNOWN_MAX = 1 << 16 };
 
 static struct {
-    long stride, every, shown, at, from; /* every: stride, or more for slow commands */
+    long stride, every, shown, at, from, to; /* every: stride, or more for slow commands */
     int depth;
-    const char *only, *kinds, *library, *work, *template, *table;
+    const char *only, *kinds, *known, *library, *work, *template, *table;
     bool stays;
     char **programs; /* WORD=PATH */
 } options = {.stride = 1, .shown = 5};
@@ -55,10 +56,11 @@ static struct {
 static int cases, failures;
 
 typedef struct tally {
-    long sites, tried, missed, of[VERDICTS];
+    long stacks, sites, tried, missed, of[VERDICTS]; /* stacks: with those that an earlier command had too */
 } tally;
 
 static const char *program_path(const char *word);
+static bool has_word(const char *list, const char *word);
 
 /* ---- where a call came from ---- */
 
@@ -143,9 +145,15 @@ static bool is_known(uint64_t hash)
     return before;
 }
 
+static bool in_part(long at)
+{
+    return at >= options.from && (options.to == 0 || at <= options.to);
+}
+
 /* Each distinct call stack once. A thread may come earlier or later than in the run that noted them: such a site is
  * tried again by its hash, which is slower. */
-static void try_stacks(const reference *ref, const run *r, const kind *k, fault_place place, bool resumes, tally *t)
+static void try_stacks(const reference *ref, const run *r, const kind *k, fault_place place, bool resumes,
+                       bool was_tried, tally *t)
 {
     fault f = {.class = k->class, .place = place, .records = true, .error = k->error, .depth = options.depth};
     const outcome recorded = run_with(r, &f);
@@ -157,7 +165,12 @@ static void try_stacks(const reference *ref, const run *r, const kind *k, fault_
         if (!is_known(run_page->sites[i].hash))
             sites[count++] = run_page->sites[i];
     t->sites = count;
+    t->stacks = run_page->site_count;
     f.records = false;
+    if (was_tried) {
+        free(sites);
+        return;
+    }
     f.stays = options.stays;
     if (options.at) {
         f.at = options.at;
@@ -165,7 +178,7 @@ static void try_stacks(const reference *ref, const run *r, const kind *k, fault_
     }
     for (long i = options.at ? count : options.every > 1 ? count % options.every : 0; i < count; i += options.every) {
         f.at = sites[i].at;
-        if (f.at < options.from)
+        if (!in_part(f.at))
             continue;
         f.hash = 0;
         const long missed = t->missed;
@@ -193,7 +206,7 @@ static void try_calls(const reference *ref, const run *r, const kind *k, const o
         return;
     }
     for (f.at = 1 + (options.every > 1 ? t->sites % options.every : 0); f.at <= t->sites; f.at += options.every)
-        if (f.at >= options.from)
+        if (in_part(f.at))
             try(ref, r, &f, resumes, t);
 }
 
@@ -201,12 +214,15 @@ static void try_kind(const char *name, const reference *ref, const run *r, const
                      const outcome *counted, bool resumes)
 {
     tally t = {.sites = 0};
-    if (k->class == FAULT_CALL)
+    const bool was_tried = options.known && has_word(options.known, name);
+    if (k->class != FAULT_CALL)
+        try_stacks(ref, r, k, place, resumes, was_tried, &t);
+    else if (!was_tried)
         try_calls(ref, r, k, counted, resumes, &t);
-    else
-        try_stacks(ref, r, k, place, resumes, &t);
+    if (was_tried)
+        return;
     long bad = t.tried - t.of[UNHARMED] - t.of[REPORTED];
-    if (k->class == FAULT_MEMORY && t.sites == 0) { /* otherwise all checks would pass trivially */
+    if (k->class == FAULT_MEMORY && t.stacks == 0) { /* otherwise all checks would pass trivially */
         printf("# no allocation was counted\n");
         bad = 1;
     }
@@ -292,7 +308,9 @@ static void try_table(void)
         for (char *rest = line, *word; (word = strsep(&rest, " \t\n")) && count < WORDS_MAX - 1;)
             if (*word)
                 words[count++] = word;
-        if (count < 3 || *words[0] == '#' || (options.only && !has_word(options.only, words[0])))
+        if (count < 3 || *words[0] == '#' ||
+            (options.only && !has_word(options.only, words[0]) &&
+             !(options.known && has_word(options.known, words[0]))))
             continue;
         try_command(words[0], words[1], words + 2);
     }
@@ -315,6 +333,8 @@ int main(int argc, char **argv)
             options.at = atol(value);
         else if (strcmp(name, "from") == 0)
             options.from = atol(value);
+        else if (strcmp(name, "to") == 0)
+            options.to = atol(value);
         else if (strcmp(name, "shown") == 0)
             options.shown = atol(value);
         else if (strcmp(name, "depth") == 0)
@@ -323,6 +343,8 @@ int main(int argc, char **argv)
             options.only = value;
         else if (strcmp(name, "kinds") == 0)
             options.kinds = value;
+        else if (strcmp(name, "known") == 0)
+            options.known = value;
         else if (strcmp(name, "library") == 0)
             options.library = value;
         else if (strcmp(name, "work") == 0)

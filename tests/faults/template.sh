@@ -29,6 +29,18 @@ solids:
   one: {shape: mesh, mesh: ring, texture: tiles, diffuse: 0.8}
   two: {shape: mesh, mesh: read, diffuse: 0.5, position: [2, 0, 0]}
 END
+cat >optics.yaml <<'END'
+title: Photons, metal, film, lens
+render: {width: 8, height: 6, depth: 4, threads: 2, samples: 4, caustics: photons, photons: 400, wavelengths: 4}
+camera: {position: [0, 3, -6], target: [0, 0.5, 0], aperture: 0.2, focus: 6}
+lights: {lamp: {position: [3, 6, -4]}}
+solids:
+  ground: {shape: plane, diffuse: 0.8}
+  ball: {shape: sphere, medium: gold, radius: 0.5, position: [-1.2, 0.6, 0]}
+  bubble: {shape: sphere, transparency: 1, film_thickness_nm: 400, film_ior: 1.33, radius: 0.4, position: [0, 0.5, -1]}
+  glass:
+    {shape: lens, medium: bk7, transparency: 1, diameter: 1, position: [1.2, 0.8, 0], radius_1: 1.5, radius_2: -1.5}
+END
 cuvette mesh --generate box -o box.obj
 cuvette mesh --generate box -f ply -o box.ply
 mkdir lessons

@@ -207,3 +207,21 @@ def test_trees_of_one_query_in_several_threads(rod):
     for one in threads:
         one.join()
     assert found == [expected] * 80
+
+
+def test_another_thread_cancels_a_fan(rod):
+    query, raised = rod.query(), []
+
+    def follow():
+        try:
+            query.fan((-3, 1.5, 0), (3, 1.5, 0), rays=100000, width=1.5)
+        except cuvette.Cancelled as error:
+            raised.append(error)
+
+    thread = threading.Thread(target=follow)
+    thread.start()
+    while thread.is_alive():
+        query.cancel()  # without effect before the fan has begun
+        thread.join(0.01)
+    assert len(raised) == 1
+    assert len(query.fan((-3, 1.5, 0), (3, 1.5, 0), rays=5, width=1.5)) == 5

@@ -420,6 +420,11 @@ class Query(Tracer):
             raise InputError("a query cannot be changed", "give the settings to scene.query")
         return self
 
+    @described("cuvette_query_cancel")
+    def cancel(self) -> None:
+        """Ends the query's calls in other threads: each raises Cancelled."""
+        lib.cuvette_query_cancel(self._query)
+
     def camera_ray(self, x: float, y: float) -> Tuple[NDArray[Any], NDArray[Any]]:
         """Origin and direction of the camera ray through a point of the image; 0.5, 0.5 is the first pixel's centre."""
         ray = ffi.new("cuvette_ray *")

@@ -154,11 +154,12 @@ status emission_create(const plan *p, int64_t photons, bool spheres, emission **
     emission *e = calloc(1, sizeof *e);
     double *power = calloc((size_t)p->light_count + 1, sizeof *power);
     *out = e;
-    if (e)
+    if (e) {
+        e->p = p; /* which emission_destroy needs */
         e->lamps = calloc((size_t)p->light_count + 1, sizeof *e->lamps);
+    }
     if (!e || !power || !e->lamps)
         goto failed;
-    e->p = p;
     e->spheres = spheres;
     find_balls(e);
     for (int k = 0; k < p->light_count && e->ball_count > 0; k++) {

@@ -20,10 +20,9 @@ static void add_progress(const lab *l, const study *s, json_t **json)
     diagnostic why = {.what = ""};
     status code = study_check_results(l, results, s->name, &why);
     THEN(code, study_status(s, results, &progress, &why));
-    json_object_update_new(*json, json_pack("{s:I, s:I, s:I, s:I, s:I}", "cells_done", (json_int_t)progress.cells_done,
-                                            "rows", (json_int_t)progress.rows, "warmups", (json_int_t)progress.warmups,
-                                            "marked", (json_int_t)progress.rows_marked, "disturbed",
-                                            (json_int_t)progress.rows_disturbed));
+    json_add_all(json, json_pack("{s:I, s:I, s:I, s:I, s:I}", "cells_done", (json_int_t)progress.cells_done, "rows",
+                                 (json_int_t)progress.rows, "warmups", (json_int_t)progress.warmups, "marked",
+                                 (json_int_t)progress.rows_marked, "disturbed", (json_int_t)progress.rows_disturbed));
     if (code != STATUS_OK)
         json_add_as(json, "error", json_of_diagnostic(&why));
 }
@@ -103,11 +102,34 @@ status api_take_study(call *c, study **s)
     return code;
 }
 
-/* Whether a run would make files: true also if they cannot be read, since a run tells why. */
-static bool lacks_files(const lab *l, const study *s)
+/* Whether a run would make files: true also if those that are there are damaged, since a run tells why. */
+static status lacks_files(const lab *l, const study *s, bool *lacks, diagnostic *why)
 {
-    bool lacks = true;
-    return study_lacks_files(s, l->settings.results, &lacks, NULL) != STATUS_OK || lacks;
+    const status code = study_lacks_files(s, l->settings.results, lacks, why);
+    *lacks |= code != STATUS_OK;
+    return code == STATUS_BAD_INPUT ? STATUS_OK : code;
+}
+
+/* What it lacks, its other runs and its figures; none of a study that cannot be read. */
+static status files_of(const lab *l, const study *s, json_t **out, diagnostic *why)
+{
+    json_t *runs = NULL, *figures = NULL, *drawable = NULL;
+    bool lacks = false;
+    status code = s ? lacks_files(l, s, &lacks, why) : STATUS_OK;
+    if (s) {
+        THEN(code, study_runs(l, s->name, &runs, why));
+        THEN(code, figures_of(l, s->name, &figures, why));
+        THEN(code, figures_drawable(l, s->name, &drawable, why));
+    }
+    *out = code != STATUS_OK
+               ? NULL
+               : json_pack("{s:b, s:o, s:o, s:o}", "lacks_files", lacks, "runs", s ? json_incref(runs) : json_array(),
+                           "figures", s ? json_incref(figures) : json_array(), "drawable",
+                           s ? json_incref(drawable) : json_array());
+    json_decref(runs);
+    json_decref(figures);
+    json_decref(drawable);
+    return *out || code != STATUS_OK ? code : out_of_memory(why);
 }
 
 /* A study that cannot be read is returned with its error. */
@@ -116,17 +138,19 @@ status api_study(call *c)
     const lab *l = c->l;
     study *s;
     char *file;
-    const status code = find_study(c, &s, &file);
+    status code = find_study(c, &s, &file);
     if (file && (code == STATUS_OK || code == STATUS_BAD_INPUT)) {
-        json_t *json = study_json(l, http_path_value(c->request, "name"), file, s, &c->why), *summary = NULL;
+        json_t *json = study_json(l, http_path_value(c->request, "name"), file, s, &c->why), *summary = NULL,
+               *lists = NULL;
         if (s && study_json_summary(s, l->settings.results, &summary, &c->why) != STATUS_OK)
             json_add_as(&json, "error", json_of_diagnostic(&c->why));
-        json_object_update_new(json, json_pack("{s:b, s:o, s:o, s:o, s:o}", "lacks_files", s && lacks_files(l, s),
-                                               "summary", summary ? summary : json_null(), "runs",
-                                               s ? study_runs(l, s->name) : json_array(), "figures",
-                                               s ? figures_of(l, s->name) : json_array(), "drawable",
-                                               s ? figures_drawable(l, s->name) : json_array()));
-        api_reply_json(c, json);
+        json_add_as(&json, "summary", summary ? summary : json_null());
+        if ((code = files_of(l, s, &lists, &c->why)) == STATUS_OK) {
+            json_add_all(&json, lists);
+            api_reply_json(c, json);
+        } else {
+            json_decref(json);
+        }
     }
     study_destroy(s);
     free(file);
@@ -189,11 +213,13 @@ static status draw(call *c, const study *s)
                           "draw after it has ended, or stop it");
     if (!studies_begin_drawing(l->studies))
         return api_refuse(c, 409, "figures are already being drawn", "wait until they are finished");
-    const status code = figures_draw(l, s, &output, &complete, &c->why);
+    json_t *figures = NULL;
+    status code = figures_draw(l, s, &output, &complete, &c->why);
     studies_end_drawing(l->studies);
+    THEN(code, figures_of(l, s->name, &figures, &c->why));
     if (code == STATUS_OK)
-        api_reply_json(c, json_pack("{s:o, s:o, s:b}", "figures", figures_of(l, s->name), "said", json_of_text(output),
-                                    "complete", complete));
+        api_reply_json(
+            c, json_pack("{s:o, s:o, s:b}", "figures", figures, "said", json_of_text(output), "complete", complete));
     free(output);
     return code;
 }

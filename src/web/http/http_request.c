@@ -104,6 +104,12 @@ static enum MHD_Result read_body(http_request *q, const char *bytes, size_t size
     return MHD_YES;
 }
 
+/* False: a refusal for which there was no memory either. */
+static bool can_answer(const http_request *q)
+{
+    return q->reply.response || q->file || q->route;
+}
+
 static void answer(http_request *q)
 {
     if (q->file)
@@ -127,13 +133,15 @@ enum MHD_Result http_on_request(void *server, struct MHD_Connection *c, const ch
         *upload_size = 0;
         return read_body(q, upload, size);
     }
+    if (!can_answer(q))
+        return MHD_NO;
     if (!q->reply.response) {
         http_watch_deadline(q->server, c, 0);
         answer(q);
         http_watch_deadline(q->server, c, s->settings.timeout_s);
         /* libmicrohttpd counts the handler's time as idle time of the client; setting the timeout restarts it. */
         mhd.set_connection_option(c, MHD_CONNECTION_OPTION_TIMEOUT, 0u);
-        if (q->route == NULL || q->route->handle != http_events)
+        if (!q->route || q->route->handle != http_events)
             mhd.set_connection_option(c, MHD_CONNECTION_OPTION_TIMEOUT, (unsigned)s->settings.timeout_s);
     }
     return http_reply_send(&q->reply);

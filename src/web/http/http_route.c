@@ -5,34 +5,42 @@
 #include <stdlib.h>
 #include <string.h>
 
-static void forget_values(http_request *q)
-{
-    for (int i = 0; i < HTTP_VALUES_MAX; i++) {
-        free(q->value[i]);
-        q->value[i] = NULL;
-    }
-}
+/* The parts of a path that match {name}, in order. */
+typedef struct path_values {
+    const char *at[HTTP_VALUES_MAX];
+    size_t length[HTTP_VALUES_MAX];
+    int count;
+} path_values;
 
-/* Compares part by part; the parts that match {name} are stored in q->value. */
-static bool matches(http_request *q, const char *pattern)
+/* Compares part by part. */
+static bool matches(const char *path, const char *pattern, path_values *found)
 {
-    const char *path = q->path;
-    int values = 0;
+    found->count = 0;
     while (*pattern == '/' && *path == '/') {
         const size_t pattern_length = strcspn(++pattern, "/"), path_length = strcspn(++path, "/");
         if (pattern_length > 2 && pattern[0] == '{' && pattern[pattern_length - 1] == '}') {
-            if (path_length == 0 || values == HTTP_VALUES_MAX || !(q->value[values++] = strndup(path, path_length)))
-                break;
+            if (path_length == 0 || found->count == HTTP_VALUES_MAX)
+                return false;
+            found->at[found->count] = path;
+            found->length[found->count++] = path_length;
         } else if (pattern_length != path_length || memcmp(pattern, path, pattern_length) != 0) {
-            break;
+            return false;
         }
         pattern += pattern_length;
         path += path_length;
     }
-    if (!*pattern && !*path)
-        return true;
-    forget_values(q);
-    return false;
+    return !*pattern && !*path;
+}
+
+/* 0, or 500 with the reply set: a path whose parts find no memory is not an unknown one. */
+static int keep_values(http_request *q, const path_values *found)
+{
+    for (int i = 0; i < found->count; i++)
+        if (!(q->value[i] = strndup(found->at[i], found->length[i]))) {
+            http_reply_error(&q->reply, 500, "out of memory for the request", "try again later");
+            return 500;
+        }
+    return 0;
 }
 
 static bool is_method(const http_request *q, const char *method)
@@ -51,13 +59,14 @@ int http_find_route(http_request *q)
 {
     const http_settings *s = &q->server->settings;
     char allow[128] = "";
+    path_values found;
     for (size_t i = 0; i < s->route_count; i++)
-        if (matches(q, s->routes[i].pattern)) {
+        if (matches(q->path, s->routes[i].pattern, &found)) {
             if (is_method(q, s->routes[i].method)) {
-                q->route = &s->routes[i];
-                return 0;
+                const int code = keep_values(q, &found);
+                q->route = code == 0 ? &s->routes[i] : NULL;
+                return code;
             }
-            forget_values(q);
             add_method(allow, sizeof allow, s->routes[i].method);
         }
     const char *name = q->path[1] ? q->path + 1 : "index.html";

@@ -53,6 +53,18 @@ const shared_image *render_worker_take(render_worker *p)
     return newest;
 }
 
+/* What the machine had too little of (memory, open files) may be there by now: whoever asks later has the scene loaded
+ * and rendered once more. The caller holds the lock. */
+static void try_again(render_worker *p)
+{
+    if (p->trouble_code != STATUS_FAILURE || clock_wall_s() < p->again_from_s)
+        return;
+    p->again = true;
+    p->snapshot_generation = 0; /* not settled */
+    p->wake_requested = true;
+    pthread_cond_signal(&p->wake);
+}
+
 /* Waits for the next change; an error where none can come. The caller holds the lock. */
 static status wait_for_change(render_worker *p, const struct timespec *until, const char *reason,
                               const char *timeout_text, diagnostic *why)
@@ -71,6 +83,8 @@ status render_worker_take_final(render_worker *p, double limit_s, const shared_i
     status code = STATUS_OK;
     *out = NULL;
     pthread_mutex_lock(&p->lock);
+    if (!p->newest || !p->newest->final || p->newest->generation < min_generation)
+        try_again(p);
     while (!*out && code == STATUS_OK) {
         if (p->newest && p->newest->final && p->newest->generation >= min_generation) {
             shared_image_retain(*out = p->newest);
@@ -102,6 +116,8 @@ static status wait_for_scene(render_worker *p, diagnostic *why)
     const struct timespec until = clock_after(scene_wait_s);
     status code = STATUS_OK;
     pthread_mutex_lock(&p->lock);
+    if (!p->snapshot_ready)
+        try_again(p);
     while (!is_settled(p, min_generation) && code == STATUS_OK)
         code = wait_for_change(p, &until, "tracing is suspended", "the scene is still being loaded", why);
     if (code == STATUS_OK && !p->snapshot_ready) {

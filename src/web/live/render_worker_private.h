@@ -27,6 +27,8 @@ struct render_worker {
     status trouble_code;          /* of the snapshot's generation */
     uint64_t snapshot_generation; /* 0: none yet */
     bool snapshot_ready;          /* loaded */
+    bool again;                   /* load and render it once more, after a failure of the machine */
+    double again_from_s;          /* not before */
 
     pthread_rwlock_t snapshot_lock; /* read-locked to read or render the snapshot, write-locked to replace or move it */
     scene *snapshot;
@@ -36,7 +38,7 @@ struct render_worker {
     int pass; /* the next pass */
     double rate;
     int interrupted;  /* interrupted first passes in a row, including the loads before them */
-    double started_s; /* start time of the current load or pass */
+    double started_s; /* start time of the current copy, load, move or pass */
     uint64_t
         taken_generation;     /* generation of the document that the snapshot copies, loaded or not; 0: copy it again */
     uint64_t seen_generation; /* the newest that was ever taken */

@@ -79,6 +79,7 @@ void render_worker_renew_snapshot(render_worker *p)
 {
     diagnostic why = {.line = 0};
     uint64_t generation;
+    p->started_s = clock_wall_s();
     scene *next = scene_document_take(p->scene_document, &generation);
     p->taken_generation = generation; /* set before loading, which a newer generation interrupts */
     note_change(p, generation);
@@ -129,6 +130,7 @@ void render_worker_move_snapshot(render_worker *p)
 {
     diagnostic why = {.line = 0};
     bool state_changed = false;
+    p->started_s = clock_wall_s();
     pthread_rwlock_wrlock(&p->snapshot_lock);
     status code = live_advance(p->live_slime, move_s, &state_changed, &why);
     const bool moved = live_take_moved(p->live_slime), interrupted = (p->was_on && !live_is_on(p->live_slime)) ||

@@ -12,12 +12,17 @@ void render_worker_notify(render_worker *p)
     p->listener.state_changed(p->listener.context);
 }
 
+/* A failed attempt that took longer is not repeated before the same time has passed. */
+static const double soon_s = 0.25;
+
 /* The caller holds the lock; true if the listener must be called. */
 bool render_worker_take_error(render_worker *p, status code, const diagnostic *why)
 {
     const bool differs = code != p->trouble_code || (code != STATUS_OK && strcmp(why->what, p->trouble.what) != 0);
     p->trouble_code = code;
     p->trouble = *why;
+    const double now_s = clock_wall_s(); /* a scene that never fits must not keep the machine busy */
+    p->again_from_s = now_s + fmax(0.0, now_s - p->started_s - soon_s);
     pthread_cond_broadcast(&p->changed);
     return differs;
 }
@@ -58,6 +63,9 @@ static bool wait_for_work(render_worker *p)
 {
     pthread_mutex_lock(&p->lock);
     for (;;) {
+        if (p->again)
+            p->taken_generation = 0;
+        p->again = false;
         pthread_mutex_unlock(&p->lock);
         const double due_s = work_due_s(p);
         pthread_mutex_lock(&p->lock);

@@ -1,8 +1,11 @@
 /* Figures of a study: their names, scripts and SVG files. */
 #include "web/session/figures.h"
 #include "base/file.h"
+#include "base/json_build.h"
+#include "base/system_error.h"
 #include "base/text.h"
 #include <dirent.h>
+#include <errno.h>
 #include <stdlib.h>
 #include <string.h>
 
@@ -15,30 +18,34 @@ static bool name_is_fit(const char *name)
 }
 
 /* results/figures relative to the chosen folder; NULL where it is outside. */
-static char *figures_folder(const lab *l)
+static status figures_folder(const lab *l, char **name, diagnostic *why)
 {
-    char *path = text_format("%s/figures", l->settings.results), *name = path ? folder_name(l->files, path) : NULL;
+    *name = NULL;
+    char *path = text_format("%s/figures", l->settings.results);
+    const status code = path ? folder_find(l->files, path, name, why) : out_of_memory(why);
     free(path);
-    return name;
+    return code;
 }
 
 /* The path of a file in a subfolder of the chosen folder. */
 static status inner_path(const lab *l, const char *in, const char *name, const char *ending, char **path,
                          diagnostic *why)
 {
-    char *inner = in ? text_format("%s/%s%s", in, name, ending) : NULL;
-    const status code = inner ? folder_path(l->files, inner, true, path, why)
-                              : diagnose(why, STATUS_BAD_INPUT, "", "no figure has that name");
+    if (!in)
+        return diagnose(why, STATUS_BAD_INPUT, "", "no figure has that name");
+    char *inner = text_format("%s/%s%s", in, name, ending);
+    const status code = inner ? folder_path(l->files, inner, true, path, why) : out_of_memory(why);
     free(inner);
     return code;
 }
 
 status figure_read(const lab *l, const char *name, char **svg, size_t *size, diagnostic *why)
 {
-    char *in = figures_folder(l), *path = NULL;
-    status code = name_is_fit(name) ? inner_path(l, in, name, ".svg", &path, why)
+    char *in = NULL, *path = NULL;
+    status code = name_is_fit(name) ? figures_folder(l, &in, why)
                                     : diagnose(why, STATUS_BAD_INPUT, "use lower-case letters, digits and '-'",
                                                "invalid name of a figure");
+    THEN(code, inner_path(l, in, name, ".svg", &path, why));
     THEN(code, file_read_below(path, folder_real(l->files), SVG_MAX, svg, size, why));
     free(path);
     free(in);
@@ -65,84 +72,125 @@ static bool names_study_table(const char *need, size_t length, const char *of)
     return false;
 }
 
-/* Whether the `# needs:` lines in the script's head name the study's rows or tables. *has_needs: there are such
- * lines. */
-static bool script_needs_study(const lab *l, const char *figure, const char *of, bool *has_needs)
+/* Whether the `# needs:` lines of a script's head name the study's rows or tables. *has_needs: there are such lines. */
+static bool needs_in(const char *text, const char *of, bool *has_needs)
 {
-    char *path = NULL, *text = NULL;
-    size_t size;
+    static const char key[] = "# needs:";
     bool needs = false;
-    *has_needs = false;
-    if (inner_path(l, "plots", figure, ".gp", &path, NULL) == STATUS_OK &&
-        file_read_below(path, folder_real(l->files), SCRIPT_MAX, &text, &size, NULL) == STATUS_OK) {
-        static const char key[] = "# needs:";
-        for (const char *line = text; line && *line == '#' && !needs; line = strchr(line, '\n'), line += line != NULL) {
-            if (strncmp(line, key, sizeof key - 1) != 0)
-                continue;
-            *has_needs = true;
-            for (const char *word = line + sizeof key - 1; *word == ' ' && !needs; word += strcspn(word, " \n")) {
-                word += strspn(word, " ");
-                needs = names_study_table(word, strcspn(word, " \n"), of);
-            }
+    for (const char *line = text; line && *line == '#' && !needs; line = strchr(line, '\n'), line += line != NULL) {
+        if (strncmp(line, key, sizeof key - 1) != 0)
+            continue;
+        *has_needs = true;
+        for (const char *word = line + sizeof key - 1; *word == ' ' && !needs; word += strcspn(word, " \n")) {
+            word += strspn(word, " ");
+            needs = names_study_table(word, strcspn(word, " \n"), of);
         }
     }
-    free(text);
-    free(path);
     return needs;
 }
 
-static bool belongs_to_study(const lab *l, const char *figure, const char *of)
+/* STATUS_OK, and the error of a machine that cannot read what is there now: something may then be missing. */
+static status unless_machines(status code, const diagnostic *reason, diagnostic *why)
+{
+    if (code == STATUS_FAILURE)
+        *why = *reason;
+    return code == STATUS_FAILURE ? code : STATUS_OK;
+}
+
+/* A figure without a script, or with one that cannot be read, needs nothing. */
+static status script_needs_study(const lab *l, const char *figure, const char *of, bool *needs, bool *has_needs,
+                                 diagnostic *why)
+{
+    char *path = NULL, *text = NULL;
+    size_t size;
+    diagnostic reason = {.what = ""};
+    *needs = *has_needs = false;
+    status code = inner_path(l, "plots", figure, ".gp", &path, &reason);
+    THEN(code, file_read_below(path, folder_real(l->files), SCRIPT_MAX, &text, &size, &reason));
+    if (code == STATUS_OK)
+        *needs = needs_in(text, of, has_needs);
+    free(text);
+    free(path);
+    return unless_machines(code, &reason, why);
+}
+
+typedef status accepted(const lab *l, const char *figure, const char *of, bool *yes, diagnostic *why);
+
+static status belongs_to_study(const lab *l, const char *figure, const char *of, bool *yes, diagnostic *why)
 {
     bool has_needs;
     const size_t length = strlen(of);
-    if (script_needs_study(l, figure, of, &has_needs))
-        return true;
-    return !has_needs && strncmp(figure, of, length) == 0 && (!figure[length] || figure[length] == '-');
+    TRY(script_needs_study(l, figure, of, yes, &has_needs, why));
+    *yes |= !has_needs && strncmp(figure, of, length) == 0 && (!figure[length] || figure[length] == '-');
+    return STATUS_OK;
 }
 
-/* The names of the files in a folder that have that ending, are valid figure names and pass accept. */
-static json_t *list_figures(const char *path, const char *ending,
-                            bool (*accept)(const lab *, const char *, const char *), const lab *l, const char *of)
+static status needs_study(const lab *l, const char *figure, const char *of, bool *yes, diagnostic *why)
+{
+    bool has_needs;
+    return script_needs_study(l, figure, of, yes, &has_needs, why);
+}
+
+/* The names of the files in a folder that have that ending, are valid figure names and are accepted; none without the
+ * folder. */
+static status list_figures(const char *path, const char *ending, accepted *accept, const lab *l, const char *of,
+                           json_t **out, diagnostic *why)
 {
     struct dirent **entries = NULL;
-    json_t *names = json_array();
-    const int count = path ? scandir(path, &entries, NULL, alphasort) : 0;
+    diagnostic reason = {.what = ""};
+    const int count = scandir(path, &entries, NULL, alphasort);
+    status code = STATUS_OK;
+    if (count < 0)
+        code =
+            unless_machines(system_error(&reason, STATUS_BAD_INPUT, path, "cannot be listed", errno, ""), &reason, why);
+    *out = json_array();
     for (int i = 0; i < count; i++) {
         char *dot = strrchr(entries[i]->d_name, '.');
-        const bool ends = dot && strcmp(dot, ending) == 0;
-        if (ends)
+        bool yes = code == STATUS_OK && dot && strcmp(dot, ending) == 0 && json_array_size(*out) < FIGURES_MAX;
+        if (yes)
             *dot = 0;
-        if (ends && names && json_array_size(names) < FIGURES_MAX && name_is_fit(entries[i]->d_name) &&
-            accept(l, entries[i]->d_name, of))
-            json_array_append_new(names, json_string(entries[i]->d_name));
+        if (yes && (yes = name_is_fit(entries[i]->d_name)))
+            code = accept(l, entries[i]->d_name, of, &yes, why);
+        if (yes && code == STATUS_OK && *out)
+            json_add(out, json_string(entries[i]->d_name));
         free(entries[i]);
     }
     free(entries);
-    return names;
+    if (code == STATUS_OK && *out)
+        return STATUS_OK;
+    json_decref(*out);
+    *out = NULL;
+    return code == STATUS_OK ? out_of_memory(why) : code;
 }
 
-json_t *figures_of(const lab *l, const char *of)
+status figures_of(const lab *l, const char *of, json_t **out, diagnostic *why)
 {
-    char *in = figures_folder(l), *path = in ? text_format("%s/figures", l->settings.results) : NULL;
-    json_t *names = list_figures(path, ".svg", belongs_to_study, l, of);
+    char *in, *path = NULL;
+    *out = NULL;
+    status code = figures_folder(l, &in, why);
+    if (code == STATUS_OK && in && !(path = text_format("%s/figures", l->settings.results)))
+        code = out_of_memory(why);
+    if (code == STATUS_OK)
+        code = in                      ? list_figures(path, ".svg", belongs_to_study, l, of, out, why)
+               : (*out = json_array()) ? STATUS_OK
+                                       : out_of_memory(why);
     free(path);
     free(in);
-    return names;
+    return code;
 }
 
-static bool needs_study(const lab *l, const char *figure, const char *of)
-{
-    bool has_needs;
-    return script_needs_study(l, figure, of, &has_needs);
-}
-
-json_t *figures_drawable(const lab *l, const char *of)
+status figures_drawable(const lab *l, const char *of, json_t **out, diagnostic *why)
 {
     char *script = NULL;
-    if (inner_path(l, "plots", "draw", ".sh", &script, NULL) != STATUS_OK)
-        return json_array();
+    diagnostic reason = {.what = ""};
+    *out = NULL;
+    const status found = inner_path(l, "plots", "draw", ".sh", &script, &reason);
+    if (found != STATUS_OK) {
+        TRY(unless_machines(found, &reason, why));
+        return (*out = json_array()) ? STATUS_OK : out_of_memory(why);
+    }
     *strrchr(script, '/') = 0;
-    json_t *names = list_figures(script, ".gp", needs_study, l, of);
+    const status code = list_figures(script, ".gp", needs_study, l, of, out, why);
     free(script);
-    return names;
+    return code;
 }

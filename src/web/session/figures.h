@@ -10,10 +10,10 @@
 /* Reads the figure as last drawn; STATUS_BAD_INPUT if it does not exist. */
 status figure_read(const lab *l, const char *name, char **svg, size_t *size, diagnostic *why);
 
-/* Names of the existing figures of a study; NULL when out of memory. */
-json_t *figures_of(const lab *l, const char *name);
+/* Names of the existing figures of a study. STATUS_FAILURE: a folder or script that is there cannot be read now. */
+status figures_of(const lab *l, const char *name, json_t **out, diagnostic *why);
 /* Names of the figures that can be drawn of it; empty without plots/draw.sh. */
-json_t *figures_drawable(const lab *l, const char *name);
+status figures_drawable(const lab *l, const char *name, json_t **out, diagnostic *why);
 
 /* Writes the tables of the study (results/tables/) and draws its figures; limited to less than a minute, the time
  * that a page waits for a reply. *output: the script's output, one line per figure, or NULL. *complete: no figure

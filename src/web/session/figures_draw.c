@@ -106,8 +106,8 @@ status figures_draw(const lab *l, const study *s, char **output, bool *complete,
     char *script = NULL;
     *output = NULL;
     *complete = false;
-    json_t *figures = figures_drawable(l, s->name);
-    status code = figures ? STATUS_OK : out_of_memory(why);
+    json_t *figures;
+    status code = figures_drawable(l, s->name, &figures, why);
     if (code == STATUS_OK && json_array_size(figures) == 0)
         code = diagnose(why, STATUS_BAD_INPUT, "write a script in plots/ with the line `# needs: tables/NAME.tsv`",
                         "no script draws a figure of this study");

@@ -210,9 +210,8 @@ static void visit_folder(listing *l, const char *name)
     diagnostic why = {.what = ""};
     if (!path)
         fail_for_memory(l);
-    else if (!d && system_error(&why, STATUS_BAD_INPUT, path, "cannot be listed", errno, "") == STATUS_FAILURE &&
-             is_lack(&why))
-        fail(l, &why);
+    else if (!d && system_error(&why, STATUS_BAD_INPUT, path, "cannot be listed", errno, "") == STATUS_FAILURE)
+        fail(l, &why); /* not an empty folder */
     free(path);
     names found = {.name = NULL};
     for (const struct dirent *e; d && l->code == STATUS_OK && l->entries < ENTRIES_MAX && (e = readdir(d));

@@ -1,5 +1,7 @@
 /* Search for study files and for the folders of their rows. */
 #include "web/session/study_files.h"
+#include "base/json_build.h"
+#include "base/system_error.h"
 #include "base/text.h"
 #include "scene/file/document.h"
 #include <dirent.h>
@@ -177,8 +179,10 @@ enum { RUNS_DEEP = 3, RUNS_MAX = 200, RUNS_LOOKED_MAX = 20000 };
 
 typedef struct run_search {
     const char *name;
-    json_t *found;
+    json_t *found; /* NULL: out of memory */
     int looked;
+    status code; /* a folder that cannot be listed now */
+    diagnostic *why;
 } run_search;
 
 static int is_shown_folder(const struct dirent *entry)
@@ -186,33 +190,60 @@ static int is_shown_folder(const struct dirent *entry)
     return entry->d_type == DT_DIR && entry->d_name[0] != '.';
 }
 
+/* The study's rows in a folder, whose path and name relative to the chosen folder these are. */
+static void look_into(run_search *search, const char *path, const char *name)
+{
+    char *rows = text_format("%s/%s/rows.csv", path, search->name);
+    json_t *text = json_text_or_null(name);
+    if (!rows || !text) {
+        json_decref(search->found);
+        search->found = NULL;
+    } else if (access(rows, R_OK) == 0 && json_is_string(text) && json_array_size(search->found) < RUNS_MAX) {
+        json_add(&search->found, json_incref(text)); /* names that are not UTF-8 are skipped */
+    }
+    json_decref(text);
+    free(rows);
+}
+
 /* below: the folder's name relative to the chosen folder, "" for the chosen folder. */
 static void search_runs(run_search *search, const char *path, const char *below, int depth)
 {
     struct dirent **entries = NULL;
+    diagnostic reason = {.what = ""};
     const int count = scandir(path, &entries, is_shown_folder, alphasort);
+    if (count < 0 && system_error(&reason, STATUS_OK, path, "cannot be listed", errno, "") != STATUS_OK) {
+        search->code = STATUS_FAILURE;
+        *search->why = reason;
+    }
     for (int i = 0; i < count; i++) {
-        char *inner = text_format("%s/%s", path, entries[i]->d_name),
-             *name = text_format("%s%s%s", below, below[0] ? "/" : "", entries[i]->d_name);
-        char *rows = inner ? text_format("%s/%s/rows.csv", inner, search->name) : NULL;
-        if (rows && name && search->looked++ < RUNS_LOOKED_MAX) {
-            if (access(rows, R_OK) == 0 && json_array_size(search->found) < RUNS_MAX)
-                json_array_append_new(search->found, json_string(name)); /* skips names that are not UTF-8 */
-            if (depth < RUNS_DEEP)
-                search_runs(search, inner, name, depth + 1);
+        if (search->found && search->code == STATUS_OK && search->looked++ < RUNS_LOOKED_MAX) {
+            char *inner = text_format("%s/%s", path, entries[i]->d_name),
+                 *name = text_format("%s%s%s", below, below[0] ? "/" : "", entries[i]->d_name);
+            if (inner && name) {
+                look_into(search, inner, name);
+                if (depth < RUNS_DEEP)
+                    search_runs(search, inner, name, depth + 1);
+            } else {
+                json_decref(search->found);
+                search->found = NULL;
+            }
+            free(name);
+            free(inner);
         }
-        free(rows);
-        free(name);
-        free(inner);
         free(entries[i]);
     }
     free(entries);
 }
 
-json_t *study_runs(const lab *l, const char *name)
+status study_runs(const lab *l, const char *name, json_t **out, diagnostic *why)
 {
-    run_search search = {.name = name, .found = json_array()};
+    run_search search = {.name = name, .found = json_array(), .why = why};
     if (search.found)
         search_runs(&search, folder_root(l->files), "", 1);
-    return search.found;
+    if (search.code != STATUS_OK) {
+        json_decref(search.found);
+        search.found = NULL;
+    }
+    *out = search.found;
+    return *out || search.code != STATUS_OK ? search.code : out_of_memory(why);
 }

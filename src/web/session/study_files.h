@@ -20,5 +20,5 @@ status study_find(const lab *l, const char *name, char **file, diagnostic *why);
 /* Checks that the rows in that results folder (relative to the working directory) and the files written next to them
  * are in the chosen folder. */
 status study_check_results(const lab *l, const char *results, const char *name, diagnostic *why);
-/* The names of the folders that contain rows of it, three levels deep; NULL when out of memory. */
-json_t *study_runs(const lab *l, const char *name);
+/* The names of the folders that contain rows of it, three levels deep. STATUS_FAILURE: one cannot be listed now. */
+status study_runs(const lab *l, const char *name, json_t **out, diagnostic *why);
