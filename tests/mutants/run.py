@@ -1,14 +1,15 @@
 """Run the mutants of a built copy (instrument.py): run.py TREE EQUIVALENT SECONDS.
 
 First every test program of less than three minutes runs once without a mutant, which says how much processor time it
-takes and which mutants it reaches (TREE/reached.tsv). Then each mutant runs in the tests that reach it, quickest first,
-until one fails: it is killed. A test that takes six times as much processor time as before has failed too: a loaded
-machine does not change that. A limit to the time by the clock, far longer, is for tests that wait for ever. After
-QUICK_S of tests a mutant waits until all others had their turn: most survivors would run for minutes. TREE/results.tsv
-has rows of number, killed or waiting or survived or unreached, the test that killed it or that it passed last, and how
-it was killed: failed, processor time or clock; the last row of a number counts.
-Rows that the files have are kept, so that the same command goes on where it stopped: after SECONDS. EQUIVALENT lists
-mutants that change nothing that can be seen: file, the whole line, text, changed text, why."""
+takes and which mutants it reaches (TREE/reached.tsv). Then each mutant runs in the tests that reach it until one
+fails: it is killed. Quick tests come first, and of these the ones that reach few mutants, have killed many or are
+named like the file. A test that takes six times as much processor time as before has failed too: a loaded machine
+does not change that. A limit to the time by the clock, far longer, is for tests that wait for ever. After QUICK_S of
+tests a mutant waits until all others had their turn: most survivors would run for minutes. TREE/results.tsv has rows
+of number, killed or waiting or survived or unreached, the test that killed it, and how: failed, processor time or
+clock; the last row of a number counts. TREE/passed.tsv has rows of number and a test that it passed. Rows that the
+files have are kept, so that the same command goes on where it stopped: after SECONDS. EQUIVALENT lists mutants that
+change nothing that can be seen: file, the whole line, text, changed text, why."""
 
 import concurrent.futures
 import glob
@@ -107,34 +108,53 @@ def measure_one(test, end):
     return True
 
 
-def tests_by_time():
-    return sorted((float(cpu_s), float(clock_s), test, set(map(int, filter(None, reached.split(",")))))
-                  for test, cpu_s, clock_s, reached in rows_of("reached.tsv").values() if cpu_s != "-")
+class Test:
+    def __init__(self, name, cpu_s, clock_s, reached):
+        self.name, self.cpu_s, self.clock_s = name, float(cpu_s), float(clock_s)
+        self.reaches = set(map(int, filter(None, reached.split(","))))
+        self.runs = self.kills = 0
+
+    def cost(self, words):
+        """The processor time that a kill is likely to take, of a mutant in a file of these words."""
+        likely = 1.0 / math.sqrt(len(self.reaches)) + (1.0 if words & set(self.name.split("_")) else 0.0)
+        return (self.cpu_s + 0.02) * (self.runs + 2.0) / (self.kills + likely)
 
 
-def judge(number, tests, end, quick, passed_last=""):
-    """Adds rows of a mutant: after the tests of its first QUICK_S, or after the others, from the one after passed_last
-    on."""
-    own, before_s = [], 0.0
-    for cpu_s, clock_s, test, reaches in tests:
-        if number in reaches:
-            own.append((cpu_s, clock_s, test, before_s < QUICK_S))
-            before_s += cpu_s
-    names = [test for _, _, test, _ in own]
-    done = names.index(passed_last) + 1 if passed_last in names else 0
-    for cpu_s, clock_s, test, is_quick in own[done:]:
-        if is_quick != quick:
-            continue
-        how, _, _ = run(test, 6 * cpu_s + 10, 20 * clock_s + 60, end, MUTANT=str(number))
+def tests_measured():
+    return [Test(*row) for row in rows_of("reached.tsv").values() if row[1] != "-" and row[3]]
+
+
+def passed_before():
+    passed = {}
+    if os.path.exists("passed.tsv"):
+        with open("passed.tsv") as file:
+            for number, test in (line.split() for line in file):
+                passed.setdefault(number, set()).add(test)
+    return passed
+
+
+def judge(mutant, tests, passed, end, limit_s):
+    """Adds a row of a mutant after at most limit_s of tests that it has not passed before."""
+    number, path = mutant[:2]
+    words = set(os.path.splitext(os.path.basename(path))[0].split("_"))
+    own = [test for test in tests if int(number) in test.reaches]
+    left = sorted((t for t in own if t.name not in passed.get(number, ())), key=lambda t: t.cost(words))
+    used_s = 0.0
+    for at, test in enumerate(left):
+        if used_s >= limit_s:
+            append("results.tsv", number, "waiting", "", "")
+            return
+        most_s = 6 * test.cpu_s + 10
+        how, cpu_s, _ = run(test.name, most_s, 20 * test.clock_s + 10 * most_s, end, MUTANT=number)
         if how is None:
             return
+        used_s += cpu_s
+        test.runs, test.kills = test.runs + 1, test.kills + (how != "passed")
         if how != "passed":
-            append("results.tsv", number, "killed", test, how)
+            append("results.tsv", number, "killed", test.name, how)
             return
-        if not quick:
-            append("results.tsv", number, "waiting", test, "")
-    more = any(not is_quick for _, _, _, is_quick in own)
-    append("results.tsv", number, "unreached" if not own else "waiting" if quick and more else "survived", "", "")
+        append("passed.tsv", number, test.name)
+    append("results.tsv", number, "survived" if own else "unreached", "", "")
 
 
 def main():
@@ -144,18 +164,19 @@ def main():
     end = time.monotonic() + float(sys.argv[3])
     with concurrent.futures.ThreadPoolExecutor(os.cpu_count()) as pool:
         if measure(end, pool):
-            tests, done = tests_by_time(), rows_of("results.tsv")
-            left = [int(number) for number in rows_of("mutants.tsv") if number not in done]
-            list(pool.map(lambda number: judge(number, tests, end, True), left))
-            waiting = [row for row in rows_of("results.tsv").values() if row[1] == "waiting"]
-            list(pool.map(lambda row: judge(int(row[0]), tests, end, False, row[2]), waiting))
+            tests, passed, mutants = tests_measured(), passed_before(), rows_of("mutants.tsv")
+            for verdict, limit_s in (None, QUICK_S), ("waiting", math.inf):
+                done = rows_of("results.tsv")
+                left = [mutant for number, mutant in mutants.items() if done.get(number, [None, None])[1] == verdict]
+                list(pool.map(lambda mutant: judge(mutant, tests, passed, end, limit_s), left))
+                passed = passed_before()
     return report(equivalent)
 
 
 def report(equivalent):
     mutants, rows = rows_of("mutants.tsv"), rows_of("results.tsv").values()
     counts = dict.fromkeys(("killed", "equivalent", "survived", "unreached", "waiting"), 0)
-    for number, verdict, _, _ in rows:
+    for number, verdict, *_ in rows:
         _, path, line, kind, old, new, whole_line = mutants[number]
         if verdict != "killed" and (path, whole_line, old, new) in equivalent:
             verdict = "equivalent"
