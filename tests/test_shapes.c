@@ -6,6 +6,7 @@
 #include <stdint.h>
 #include <cmocka.h>
 
+#include "geometry/mesh_generators.h"
 #include "geometry/scene_geometry.h"
 #include "geometry/primitives/primitive.h"
 #include "geometry/shapes/placed.h"
@@ -343,6 +344,21 @@ static void an_image_covers_an_end_exactly(void **state)
     }
 }
 
+/* The farthest point of a mesh's box along any direction, also across its axes. */
+static void a_mesh_reaches_as_far_as_its_box(void **state)
+{
+    (void)state;
+    mesh *m = NULL;
+    assert_int_equal(generate_box(vec3_make(2, 4, 6), &m, NULL), STATUS_OK);
+    const solid_shape shape = {.kind = SHAPE_MESH, .mesh = m, .scale = {1, 1, 1}, .copies = {1, 1, 1}};
+    static const double directions[][4] = {{1, 0, 0, 1}, {0, -1, 0, 2}, {0, 0, 1, 3}, {0.6, 0, 0.8, 3}, {-0.6, 0.8, 0, 2.2}};
+    for (size_t i = 0; i < sizeof directions / sizeof *directions; i++) {
+        const double *d = directions[i];
+        assert_true(fabs(shape_reach(&shape, vec3_make(d[0], d[1], d[2])) - d[3]) < SLACK);
+    }
+    mesh_release(m);
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
@@ -356,6 +372,7 @@ int main(void)
         cmocka_unit_test(flat_faces_bound_the_solid),
         cmocka_unit_test(points_of_the_surface_belong_to_a_solid),
         cmocka_unit_test(an_image_covers_an_end_exactly),
+        cmocka_unit_test(a_mesh_reaches_as_far_as_its_box),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }
