@@ -290,8 +290,12 @@ static void rays_that_miss_a_screen_are_in_no_bin(void **state)
     scene *s = with_beam("kind: bundle, width: 2, power: 5, position: [-3, 0, 0], target: [0, 0, 0]", "");
     const double h = 0.25, share = 2.0 * (h * sqrt(1.0 - h * h) + asin(h)) / 3.14159265358979323846;
     for (int low = 0; low < 2; low++) {
-        beam_screen screen = {.normal = {1, 0, 0}, .width = low ? 4 : 0.5, .height = low ? 0.5 : 4, .columns = 8,
-                              .rows = 8, .rays_of_beam = 20000};
+        beam_screen screen = {.normal = {1, 0, 0},
+                              .width = low ? 4 : 0.5,
+                              .height = low ? 0.5 : 4,
+                              .columns = 8,
+                              .rows = 8,
+                              .rays_of_beam = 20000};
         diagnostic why = {.line = 0};
         worked(beam_screen_expose(s, isa_best(), &screen, &why), &why);
         double sum = 0.0;

@@ -73,8 +73,8 @@ static void tiny_triangles_far_from_the_origin_are_hit(void **state)
             const hierarchy_kernels *kernel = kernels[i / 8];
             const double side = i % 2 ? 1.0 : -1.0;
             const vec3 to = at[i / 2 % 4];
-            const mesh_ray ray = {{to.x, to.y, far - 2.0 * side}, {0.0, 0.0, side}, 0.0,
-                                  (double)INFINITY, TRIANGLE_NONE, FACING_ANY};
+            const mesh_ray ray = {
+                {to.x, to.y, far - 2.0 * side}, {0.0, 0.0, side}, 0.0, (double)INFINITY, TRIANGLE_NONE, FACING_ANY};
             mesh_hit hit;
             kernel->nearest(h, &ray, &hit);
             assert_true(hit.triangle == 0 && hit.t == 2.0);

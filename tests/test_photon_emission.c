@@ -39,8 +39,9 @@ static void every_ball_gets_its_solid_angle(void **state)
         vec3 at[BALLS_MAX];
         double radius[BALLS_MAX], power[BALLS_MAX] = {0.0};
         static char text[16384];
-        int used = snprintf(text, sizeof text, "render: {caustics: photons}\nlights: {lamp: {position: [0, 0, 0], "
-                                               "intensity: 2, reach: 3}}\nsolids:\n");
+        int used = snprintf(text, sizeof text,
+                            "render: {caustics: photons}\nlights: {lamp: {position: [0, 0, 0], "
+                            "intensity: 2, reach: 3}}\nsolids:\n");
         for (int k = 0; k < count; k++) { /* in a slab ahead of the lamp, the first one behind them */
             at[k] = k == 0    ? vec3_make(0.0, 0.0, 12.0)
                     : k == 79 ? vec3_make(0.1, 0.0, 12.0) /* within the first one */

@@ -351,7 +351,8 @@ static void a_mesh_reaches_as_far_as_its_box(void **state)
     mesh *m = NULL;
     assert_int_equal(generate_box(vec3_make(2, 4, 6), &m, NULL), STATUS_OK);
     const solid_shape shape = {.kind = SHAPE_MESH, .mesh = m, .scale = {1, 1, 1}, .copies = {1, 1, 1}};
-    static const double directions[][4] = {{1, 0, 0, 1}, {0, -1, 0, 2}, {0, 0, 1, 3}, {0.6, 0, 0.8, 3}, {-0.6, 0.8, 0, 2.2}};
+    static const double directions[][4] = {
+        {1, 0, 0, 1}, {0, -1, 0, 2}, {0, 0, 1, 3}, {0.6, 0, 0.8, 3}, {-0.6, 0.8, 0, 2.2}};
     for (size_t i = 0; i < sizeof directions / sizeof *directions; i++) {
         const double *d = directions[i];
         assert_true(fabs(shape_reach(&shape, vec3_make(d[0], d[1], d[2])) - d[3]) < SLACK);
