@@ -4,12 +4,12 @@ First every test program of less than three minutes runs once without a mutant, 
 takes and which mutants it reaches (TREE/reached.tsv). Then each mutant runs in the tests that reach it until one
 fails: it is killed. Quick tests come first, and of these the ones that reach few mutants, have killed many or are
 named like the file. A test that takes six times as much processor time as before has failed too: a loaded machine
-does not change that. A limit to the time by the clock, far longer, is for tests that wait for ever. After QUICK_S of
-tests a mutant waits until all others had their turn: most survivors would run for minutes. TREE/results.tsv has rows
-of number, killed or waiting or survived or unreached, the test that killed it, and how: failed, processor time or
-clock; the last row of a number counts. TREE/passed.tsv has rows of number and a test that it passed. Rows that the
-files have are kept, so that the same command goes on where it stopped: after SECONDS. EQUIVALENT lists mutants that
-change nothing that can be seen: file, the whole line, text, changed text, why."""
+does not change that. A limit to the time by the clock, far longer, is for tests that wait indefinitely. After
+QUICK_S of tests a mutant waits until all others had their turn: most survivors would run for minutes.
+TREE/results.tsv has rows of number, killed or waiting or survived or unreached, the test that killed it, and how:
+failed, processor time or clock; the last row of a number counts. TREE/passed.tsv has rows of number and a test that
+it passed. Rows that the files have are kept, so that the same command goes on where it stopped: after SECONDS.
+EQUIVALENT lists mutants that change nothing that can be seen: file, the whole line, text, changed text, why."""
 
 import concurrent.futures
 import glob
