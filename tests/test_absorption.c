@@ -155,6 +155,28 @@ static void an_absorbing_infinite_medium_is_black(void **state)
     stage_close(&g);
 }
 
+/* Light from the sky is not absorbed by the surroundings, whose length has no end: also where the list of a batch's
+ * paths fills up, as by rays through 150 slabs without interfaces in the other half of the image. */
+static void the_sky_is_seen_past_any_number_of_media(void **state)
+{
+    (void)state;
+    static scene_text text;
+    text.length = 0;
+    add(&text, "background: {color: [0.25, 0.5, 0.75], absorb_per_m: [3, 3, 3]}\n"
+               "camera: {position: [0, 0, 0], target: [0, 0, 1], fov_deg: 60}\n"
+               "render: {depth: 1, width: 16, height: 16, samples: 1}\nsolids:\n");
+    for (int k = 0; k < 150; k++)
+        add(&text, "  s%d: {shape: box, transparency: 1, ior: 1, size: [40, 80, 0.01], position: [20.5, 0, %g]}\n", k,
+            5.0 + 0.05 * k);
+    scene *s = scene_from(text.at);
+    render_result *r = render(s);
+    const double expected[3] = {0.25, 0.5, 0.75};
+    for (int i = 0; i < 3 * 16 * 16; i++)
+        assert_true(i % 48 >= 24 || fabs((double)r->img->sum[i] / FILM_ONE - expected[i % 3]) < 1e-6);
+    render_result_destroy(r);
+    scene_destroy(s);
+}
+
 /* A white ground under a lamp with a coloured pane between them: shadow rays are straight, so that the ground has k_d
  * (N.L) exp(-a d / cos) times 0.9, the transmittance of each of the pane's two faces. Phong, CACM 18(6), 1975, for
  * N.L. */
@@ -245,6 +267,7 @@ int main(void)
         cmocka_unit_test(a_solid_without_refraction_still_absorbs),
         cmocka_unit_test(a_cloud_attenuates_the_sky_behind_it),
         cmocka_unit_test(an_absorbing_infinite_medium_is_black),
+        cmocka_unit_test(the_sky_is_seen_past_any_number_of_media),
         cmocka_unit_test(light_is_attenuated_along_its_straight_path),
         cmocka_unit_test(other_shadow_modes_have_no_absorption),
         cmocka_unit_test(an_absorption_spectrum_is_sampled_at_the_channels_wavelengths),

@@ -282,6 +282,32 @@ static void a_screen_bins_the_power_of_a_bundle(void **state)
     scene_destroy(s);
 }
 
+/* A screen narrower than the bundle receives the strip of its disc in front of it, and one lower than it the strip
+ * across: 2 (h sqrt(1 - h^2) + asin h) / pi of the power within |u| < h of a disc of radius 1. */
+static void rays_that_miss_a_screen_are_in_no_bin(void **state)
+{
+    (void)state;
+    scene *s = with_beam("kind: bundle, width: 2, power: 5, position: [-3, 0, 0], target: [0, 0, 0]", "");
+    const double h = 0.25, share = 2.0 * (h * sqrt(1.0 - h * h) + asin(h)) / 3.14159265358979323846;
+    for (int low = 0; low < 2; low++) {
+        beam_screen screen = {.normal = {1, 0, 0},
+                              .width = low ? 4 : 0.5,
+                              .height = low ? 0.5 : 4,
+                              .columns = 8,
+                              .rows = 8,
+                              .rays_of_beam = 20000};
+        diagnostic why = {.line = 0};
+        worked(beam_screen_expose(s, isa_best(), &screen, &why), &why);
+        double sum = 0.0;
+        for (int bin = 0; bin < 64; bin++)
+            sum += screen.bin[bin];
+        assert_true(fabs(screen.received - 5.0 * share) < 0.01 && fabs(sum - screen.received) < 1e-9);
+        assert_true(fabs((double)screen.hit_count - 20000 * share) < 40);
+        beam_screen_release(&screen);
+    }
+    scene_destroy(s);
+}
+
 /* Within an absorbing slab, Beer and Lambert: the power at depth d is (1 - R) e^(-a d). */
 static void a_screen_in_a_medium_receives_what_is_not_absorbed(void **state)
 {
@@ -421,6 +447,13 @@ static void the_work_of_all_beams_is_limited(void **state)
     assert_int_equal(rays, 0);
     assert_string_equal(why.what, "the beams have 6400000 rays, more than 1000000");
     scene_destroy(s);
+    /* the beams' own numbers count too */
+    s = scene_from("beams: {one: {kind: sheet, rays: 10000, white: on, wavelengths: 64}, "
+                   "two: {kind: sheet, rays: 10000, white: on, wavelengths: 64}}\nsolids: {" BALL "}\n");
+    assert_int_equal(beams_each_ray(s, isa_best(), 0, count_ray, &rays, &why), STATUS_BAD_INPUT);
+    assert_int_equal(rays, 0);
+    assert_string_equal(why.what, "the beams have 1280000 rays, more than 1000000");
+    scene_destroy(s);
 }
 
 /* Its normal is a parameter of a fan and a sheet alone. */
@@ -481,6 +514,7 @@ int main(void)
         cmocka_unit_test(a_beam_obeys_snell_and_fresnel),
         cmocka_unit_test(white_light_has_several_wavelengths_and_the_same_power),
         cmocka_unit_test(a_screen_bins_the_power_of_a_bundle),
+        cmocka_unit_test(rays_that_miss_a_screen_are_in_no_bin),
         cmocka_unit_test(a_screen_in_a_medium_receives_what_is_not_absorbed),
         cmocka_unit_test(a_screen_shows_where_and_in_which_colour),
         cmocka_unit_test(a_drawn_beam_is_at_its_pixels),

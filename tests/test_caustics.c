@@ -71,6 +71,9 @@ static void a_mirror_is_an_image_source(void **state)
         assert_near(mean_of(s), expected, 0.004 * expected);
         set(s, "render.integrator=raycast");
         assert_near(mean_of(s), expected, 0.004 * expected);
+        set(s, "lamp.color=1,0,0"); /* a channel does not depend on the others */
+        assert_near(mean_of(s), expected, 0.004 * expected);
+        set(s, "lamp.color=1,1,1");
     }
     scene_destroy(s);
 }

@@ -120,6 +120,28 @@ static void a_polarised_view_of_a_coating_deviates_by_its_polarisation(void **st
     }
 }
 
+/* A coating on a thin film takes its share of what the film transmits, with and without polarisation: at perpendicular
+ * incidence, where both polarisations are alike, T' / T = 1 - c and R' = R + c T. */
+static void a_coating_takes_its_share_of_what_a_film_transmits(void **state)
+{
+    (void)state;
+    static const char *const views[] = {"render.spectrum=spectral render.polarisation=off",
+                                        "render.spectrum=spectral render.polarisation=on"};
+    for (int k = 0; k < 2; k++) {
+        double R = 0.0, T = 0.0;
+        for (double c = 0.0; c < 1.0; c += 0.4) {
+            stage g = coated("shape: plane, film_thickness_nm: 110, film_ior: 1.9", 1.5, c, 1, views[k]);
+            const ray_tree *tree = stage_ray(&g, vec3_make(0.0, 1.0, 0.0), vec3_make(0.0, -1.0, 0.0));
+            const double reflected = share_of(tree, RAY_REFLECT), transmitted = share_of(tree, RAY_REFRACT);
+            assert_true(fabs(reflected + transmitted - 1.0) <= 1e-12 && transmitted > 0.1);
+            if (c == 0.0)
+                R = reflected, T = transmitted;
+            assert_true(fabs(transmitted - (1.0 - c) * T) <= 1e-12 && fabs(reflected - (R + c * T)) <= 1e-12);
+            stage_close(&g);
+        }
+    }
+}
+
 /* Where two solids are in contact, the surface is that of the higher priority, and so is its coating. */
 static void a_coating_belongs_to_the_surface_owner(void **state)
 {
@@ -225,6 +247,7 @@ int main(void)
         cmocka_unit_test(a_sheet_of_air_with_coated_faces_is_a_half_mirror),
         cmocka_unit_test(coated_media_conserve_energy),
         cmocka_unit_test(a_polarised_view_of_a_coating_deviates_by_its_polarisation),
+        cmocka_unit_test(a_coating_takes_its_share_of_what_a_film_transmits),
         cmocka_unit_test(a_coating_belongs_to_the_surface_owner),
         cmocka_unit_test(constant_weights_have_no_coating),
         cmocka_unit_test(a_coated_pane_attenuates_shadow_rays),

@@ -203,6 +203,10 @@ static void invalid_laws_are_refused_with_a_reason(void **state)
         {{DISPERSION_SELLMEIER_LENGTHS, 2, {1e-9, 0.5505}, 0, 0}, "a resonance at 550.5 nm", "um"},
         {{DISPERSION_SELLMEIER_LENGTHS, 2, {1e-9, -0.5505}, 0, 0}, "a resonance at 550.5 nm", "um"},
         {{DISPERSION_GAS, 2, {1e-9, 3.2998}, 0, 0}, "a resonance at 550.", "um^-2"},
+        /* both ends of the visible belong to it; the last one's index falls below 0.1 at 780 nm alone */
+        {{DISPERSION_SELLMEIER_LENGTHS, 2, {1e-9, 0.38}, 0, 0}, "a resonance at 380 nm", "um"},
+        {{DISPERSION_SELLMEIER_LENGTHS, 2, {1e-9, 0.78}, 0, 0}, "a resonance at 780 nm", "um"},
+        {{DISPERSION_CAUCHY_POWERS, 3, {1.0, -0.905 / 0.0187708, 16.0}, 0, 0}, "at 780 nm", "its power"},
         {{DISPERSION_SELLMEIER, 2, {-3.0, 0.01}, 0, 0}, "no real index at 380 nm", "um^2"},
         {{DISPERSION_POLYNOMIAL, 3, {-2.0, 4.0, 2.0}, 0, 0}, "no real index at 380 nm", "power"},
         {{DISPERSION_CONSTANT, 1, {0.09}, 0, 0}, "the index 0.09 at 380 nm", "one number"},
@@ -229,6 +233,7 @@ static void laws_at_the_limits_are_accepted(void **state)
         {DISPERSION_CONSTANT, 1, {0.1}, 0, 0},
         {DISPERSION_CONSTANT, 1, {100.0}, 589.3, 589.3},
         {DISPERSION_CAUCHY_POWERS, 5, {1.5, 0.0, 16.0, 0.0, -16.0}, 0, 0},
+        {DISPERSION_CAUCHY, DISPERSION_TERMS_MAX, {1.5}, 0, 0},
     };
     for (size_t k = 0; k < COUNT(good); k++)
         assert_int_equal(dispersion_check(&good[k], NULL), STATUS_OK);

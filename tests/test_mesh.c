@@ -204,6 +204,16 @@ static void inconsistently_oriented_parts_are_oriented_outwards(void **state)
     assert_true(m->closed);
     assert_near(mesh_volume(m), 24.0, 1e-13);
     mesh_release(m);
+    /* one cube alone, so that turning the whole mesh would not help: its first half, then its second */
+    for (size_t from = 0; from <= 6; from += 6) {
+        m = cubes(3);
+        for (size_t t = from; t < from + 6; t++)
+            turn_triangle(m, t);
+        assert_int_equal(mesh_finish(m, NULL), STATUS_OK);
+        assert_true(m->closed);
+        assert_near(mesh_volume(m), 24.0, 1e-13);
+        mesh_release(m);
+    }
 }
 
 /* The projective plane with six vertices: each edge joins two triangles, but there is no inside. */

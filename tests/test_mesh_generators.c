@@ -9,6 +9,7 @@
 #include <string.h>
 #include <cmocka.h>
 
+#include "base/memory_budget.h"
 #include "geometry/mesh_generators.h"
 
 #define COUNT(a) (sizeof(a) / sizeof((a)[0]))
@@ -371,6 +372,22 @@ static void a_plane_height_field_has_its_exact_volume(void **state)
     mesh_release(m);
 }
 
+/* Two by two heights are one square, and the deepest icosphere is refused only where its memory is. */
+static void the_least_field_and_the_deepest_icosphere_are_in_range(void **state)
+{
+    (void)state;
+    const double heights[4] = {0.5, 0.5, 0.5, 0.5};
+    mesh *m = NULL;
+    assert_int_equal(generate_height_field(heights, 2, 2, 3.0, 2.0, 1.0, &m, NULL), STATUS_OK);
+    assert_near(mesh_volume(m), 3.0 * 2.0 * 1.5, 1e-14);
+    mesh_release(m);
+    diagnostic why = {.line = 0};
+    memory_budget_set(1 << 20);
+    assert_int_equal(generate_icosphere(ICOSPHERE_LEVEL_MAX, &m, &why), STATUS_BAD_INPUT);
+    memory_budget_set(0);
+    assert_non_null(strstr(why.what, "of memory"));
+}
+
 static void invalid_arguments_are_refused_with_a_remedy(void **state)
 {
     (void)state;
@@ -421,6 +438,7 @@ int main(void)
         cmocka_unit_test(seams_coincide_and_texture_coordinates_are_continuous),
         cmocka_unit_test(a_box_has_its_volume_and_a_whole_texture_on_each_side),
         cmocka_unit_test(a_plane_height_field_has_its_exact_volume),
+        cmocka_unit_test(the_least_field_and_the_deepest_icosphere_are_in_range),
         cmocka_unit_test(invalid_arguments_are_refused_with_a_remedy),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);

@@ -295,6 +295,21 @@ static void textures_have_the_expected_texels(void **state)
     }
 }
 
+/* A pixel that is smaller than a texel shows the texel alone where it is seen from straight ahead; the filter is wider
+ * only where a surface is seen at a slant. */
+static void a_texture_seen_from_ahead_is_sharp(void **state)
+{
+    (void)state;
+    stage g = stage_with_meshes(DARK "textures: {map: {file: none.png, filter: trilinear}}\nsolids: {it: {ambient: 1, "
+                                     "diffuse: 0, texture: map, shape: box, size: [2, 2, 2]}}\n",
+                                "camera.position=0,0,-5 camera.fov_deg=40 render.width=64 render.height=64");
+    for (int i = 0; i < 8; i++) { /* at the texels' centres */
+        const double u = (i % 4 + 0.5) / 4.0, v = (i / 4 + 0.5) / 2.0;
+        expect_texel(stage_ray(&g, vec3_make(2.0 * u - 1.0, 2.0 * v - 1.0, -5.0), vec3_make(0, 0, 1)), u, v);
+    }
+    stage_close(&g);
+}
+
 static const char *refusal_of(const char *text, const char *assignments, char *room)
 {
     scene *s = scene_with_meshes(text, assignments);
@@ -422,6 +437,7 @@ int main(void)
         cmocka_unit_test(meshes_in_a_furnace_conserve_energy),
         cmocka_unit_test(absorption_in_meshes_has_its_closed_form),
         cmocka_unit_test(textures_have_the_expected_texels),
+        cmocka_unit_test(a_texture_seen_from_ahead_is_sharp),
         cmocka_unit_test(an_open_dielectric_is_refused_with_its_open_edge),
         cmocka_unit_test(spectral_films_refuse_textures),
         cmocka_unit_test(faces_are_shaded_by_their_materials),

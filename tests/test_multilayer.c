@@ -41,6 +41,28 @@ static powers powers_of(double cos_i, double n_from, const thin_film *film, int 
 /* n and k of silver, gold, copper and aluminium in green light, of a dull metal, and of a weak absorber. */
 static const double metals[][2] = {{0.06, 3.586}, {0.43, 2.455}, {1.02, 2.577}, {0.96, 6.69}, {3.2, 3.3}, {1.5, 0.01}};
 
+/* --- phases --- */
+
+/* cos(delta) and sin(delta) / beta around the delta of 1/4 below which series replace them, of a real beta and, with
+ * hyperbolic functions, of an imaginary one: to the last digits. */
+static void small_phases_have_the_functions_of_large_ones(void **state)
+{
+    (void)state;
+    const double lambda_nm = 500.0, thickness_nm = 100.0;
+    const long double k = 2.0L * acosl(-1.0L) * thickness_nm / lambda_nm;
+    for (int i = 1; i <= 400; i++) {
+        const double beta = i / 400.0 * 0.4;
+        const long double delta = k * beta, fade = expl(-delta);
+        const film_phase real = film_phase_of(complex_of(beta * beta, 0.0), thickness_nm, lambda_nm);
+        assert_near(real.cosine.re, (double)cosl(delta), 1e-15);
+        assert_near(real.sine_over_beta.re, (double)(sinl(delta) / beta), 2e-15);
+        const film_phase faded = film_phase_of(complex_of(-beta * beta, 0.0), thickness_nm, lambda_nm);
+        assert_near(faded.cosine.re, (double)(coshl(delta) * fade), 1e-15);
+        assert_near(faded.sine_over_beta.re, (double)(sinhl(delta) / beta * fade), 2e-15);
+        assert_true(real.cosine.im == 0.0 && real.sine_over_beta.im == 0.0);
+    }
+}
+
 /* --- metals --- */
 
 /* Hecht, Optics, 5th ed., 4.8 (4.83); in a medium of index n_from by the relative index. */
@@ -394,6 +416,7 @@ static void a_film_is_the_sum_of_its_parts(void **state)
 int main(void)
 {
     const struct CMUnitTest tests[] = {
+        cmocka_unit_test(small_phases_have_the_functions_of_large_ones),
         cmocka_unit_test(metals_at_normal_incidence),
         cmocka_unit_test(metals_at_all_angles),
         cmocka_unit_test(pseudo_brewster_angle),

@@ -182,6 +182,10 @@ static void the_primaries_have_srgbs_chromaticities(void **state)
 static void the_two_matrices_are_inverse(void **state)
 {
     (void)state;
+    double last[4] = {0.1, 0.2, 0.3, -7.0}; /* in place, and of three numbers only */
+    xyz_to_linear_srgb(last, last);
+    linear_srgb_to_xyz(last, last);
+    assert_true(fabs(last[0] - 0.1) < 1e-15 && fabs(last[2] - 0.3) < 1e-15 && last[3] == -7.0);
     const double rgb[3] = {0.2, -0.7, 3.0};
     double xyz[3], back[3], in_place[3] = {0.2, -0.7, 3.0};
     linear_srgb_to_xyz(rgb, xyz);

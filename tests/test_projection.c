@@ -94,6 +94,7 @@ static void segments_are_placed_without_regard_to_depth(void **state)
     assert_true(segment_place(&f, 40, 30, vec3_make(1.0, 0.0, -1.0), vec3_make(1.0, 1.0, 1.0), ends));
     assert_at(ends[0], vec3_make(25.0, 12.5, 0.0), 1e-12); /* cut at the camera's plane */
     assert_false(segment_place(&f, 40, 30, vec3_make(1.0, 0.0, -1.0), vec3_make(1.0, 1.0, -2.0), ends));
+    assert_false(segment_place(&f, 40, 30, vec3_make(1.0, 0.0, -1.0), vec3_make(1.0, 1.0, 0.0), ends)); /* ends there */
     scene_destroy(s);
 }
 

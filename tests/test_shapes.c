@@ -6,6 +6,7 @@
 #include <stdint.h>
 #include <cmocka.h>
 
+#include "geometry/mesh_generators.h"
 #include "geometry/scene_geometry.h"
 #include "geometry/primitives/primitive.h"
 #include "geometry/shapes/placed.h"
@@ -193,14 +194,21 @@ static void drawings(const shape_rule *rule, const placed_shape *placed)
     const bounds3 box = rule->extent(shape).box;
     shape_ring rings[RINGS_MAX];
     const int count = rule->rings ? rule->rings(shape, rings) : 0;
+    vec3 most = {0.0, 0.0, 0.0};
     assert_true(count <= RINGS_MAX);
     for (int i = 0; i < count; i++) {
         const int corners = rings[i].corners ? rings[i].corners : 48;
         for (int k = 0; k < corners; k++) {
             const double angle = (rings[i].from_deg + 360.0 * k / corners) * (M_PI / 180.0);
-            assert_true(is_in(box, vec3_make(rings[i].x * cos(angle), rings[i].y, rings[i].z * sin(angle))));
+            const vec3 at = vec3_make(rings[i].x * cos(angle), rings[i].y, rings[i].z * sin(angle));
+            assert_true(is_in(box, at));
+            most = vec3_make(fmax(most.x, at.x), 0.0, fmax(most.z, at.z));
         }
     }
+    /* round the axis they reach the sides of the box; both of a cylinder do */
+    assert_true(count == 0 || (most.x > box.high.x - SLACK && most.z > box.high.z - SLACK));
+    for (int i = 0; i < count && shape->kind == SHAPE_CYLINDER; i++)
+        assert_true(fabs(rings[i].x - box.high.x) < SLACK && fabs(rings[i].z - box.high.z) < SLACK);
     const vec3 scale = rule->tessellation_scale ? rule->tessellation_scale(shape) : vec3_make(1, 1, 1);
     for (int part = 0; part < rule->primitive_count; part++) {
         mesh *m = NULL;
@@ -283,6 +291,75 @@ static void flat_faces_bound_the_solid(void **state)
     }
 }
 
+/* By the definition of a primitive's contains, surfaces are part of it: here of sizes without rounding. */
+static void points_of_the_surface_belong_to_a_solid(void **state)
+{
+    (void)state;
+    static const struct {
+        solid_shape shape;
+        vec3 on[4];
+    } cases[] = {
+        {{.kind = SHAPE_BOX, .size = {2, 4, 6}}, {{1, 0, 0}, {0, -2, 0}, {0, 0, 3}, {-1, 2, -3}}},
+        {{.kind = SHAPE_CYLINDER, .m = 1, .radius = 2, .height = 3}, {{2, 1, 0}, {0, 0, -2}, {0, 3, 1}, {0, 3, 2}}},
+        {{.kind = SHAPE_LENS, .radius_1 = 8, .radius_2 = 0, .thickness = 2, .diameter = 4},
+         {{0, 0, 0}, {0, 2, 0}, {2, 1, 0}, {0, 2, -2}}},
+    };
+    for (size_t i = 0; i < sizeof cases / sizeof *cases; i++) {
+        const region_source source = {.shape = &cases[i].shape, .medium = 1, .shadow_transmittance = 1.0};
+        scene_geometry *a = NULL;
+        assert_int_equal(scene_geometry_build(&source, 1, 0, TREE_IF_MANY, &a, NULL), STATUS_OK);
+        for (int k = 0; k < 4; k++) {
+            const vec3 p = cases[i].on[k], out = vec3_scale(p, 1.0 + 1e-9);
+            assert_true(shape_of(&cases[i].shape)->contains(&cases[i].shape, p));
+            assert_true(primitive_contains(&a->primitives[0], p));
+            assert_true(vec3_length(p) == 0.0 || !primitive_contains(&a->primitives[0], out));
+        }
+        scene_geometry_destroy(a);
+    }
+}
+
+/* An image that is fitted to an end, seen from outside: its corners are those of the square around the end, its upper
+ * edge at -z on top and at +z below, as a leaf turns. */
+static void an_image_covers_an_end_exactly(void **state)
+{
+    (void)state;
+    static const solid_shape shapes[] = {
+        {.kind = SHAPE_CYLINDER, .m = 1, .radius = 2, .height = 3},
+        {.kind = SHAPE_CONE, .radius = 2, .top_radius = 2, .height = 3},
+        {.kind = SHAPE_LENS, .radius_1 = 8, .radius_2 = 0, .thickness = 2, .diameter = 4},
+    };
+    for (size_t i = 0; i < sizeof shapes / sizeof *shapes; i++) {
+        const region_source source = {.shape = &shapes[i], .medium = 1, .shadow_transmittance = 1.0};
+        scene_geometry *a = NULL;
+        assert_int_equal(scene_geometry_build(&source, 1, 0, TREE_IF_MANY, &a, NULL), STATUS_OK);
+        const primitive *p = &a->primitives[0];
+        for (int face = 1; face <= 2; face++)
+            for (int corner = 0; corner < 4; corner++) {
+                const double x = corner & 1 ? 2 : -2, z = corner & 2 ? 2 : -2;
+                const surface_mapping m = primitive_mapping(p, p->first_face + face, vec3_make(x, 0.0, z), 0.0);
+                assert_true(fabs(m.u - (x + 2) / 4) < SLACK && fabs(m.v - (face == 1 ? 2 - z : z + 2) / 4) < SLACK);
+                assert_true(fabs(m.per_length - 0.25) < SLACK);
+            }
+        scene_geometry_destroy(a);
+    }
+}
+
+/* The farthest point of a mesh's box along any direction, also across its axes. */
+static void a_mesh_reaches_as_far_as_its_box(void **state)
+{
+    (void)state;
+    mesh *m = NULL;
+    assert_int_equal(generate_box(vec3_make(2, 4, 6), &m, NULL), STATUS_OK);
+    const solid_shape shape = {.kind = SHAPE_MESH, .mesh = m, .scale = {1, 1, 1}, .copies = {1, 1, 1}};
+    static const double directions[][4] = {
+        {1, 0, 0, 1}, {0, -1, 0, 2}, {0, 0, 1, 3}, {0.6, 0, 0.8, 3}, {-0.6, 0.8, 0, 2.2}};
+    for (size_t i = 0; i < sizeof directions / sizeof *directions; i++) {
+        const double *d = directions[i];
+        assert_true(fabs(shape_reach(&shape, vec3_make(d[0], d[1], d[2])) - d[3]) < SLACK);
+    }
+    mesh_release(m);
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
@@ -294,6 +371,9 @@ int main(void)
         cmocka_unit_test(drawings_are_within_the_bounding_box),
         cmocka_unit_test(triangles_are_on_the_surface),
         cmocka_unit_test(flat_faces_bound_the_solid),
+        cmocka_unit_test(points_of_the_surface_belong_to_a_solid),
+        cmocka_unit_test(an_image_covers_an_end_exactly),
+        cmocka_unit_test(a_mesh_reaches_as_far_as_its_box),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -1,6 +1,7 @@
 /* Tests of the figure of a study: kind, lines and panels, linked parameters, environments, scales, captions, data. The
  * summary is made by hand where a test needs certain numbers, and by a run for the whole path. */
 #include "base/file.h"
+#include "scene/model/scene.h"
 #include "study_fixture.h"
 #include "study/plot_parts.h"
 
@@ -108,6 +109,21 @@ static study *study_of(const fixture *f, const char *grid)
 
 /* --- kinds --- */
 
+/* Panels are within the page and do not overlap. */
+static void check_panels(const plot_plan *p)
+{
+    for (size_t i = 0; i < p->panel_count; i++) {
+        const plot_panel *one = &p->panels[i];
+        assert_true(!one->used || (0 <= one->left && one->left < one->right && one->right <= 1 && 0 <= one->bottom &&
+                                   one->bottom < one->top && one->top <= 1));
+        for (size_t k = 0; k < i && one->used; k++) {
+            const plot_panel *other = &p->panels[k];
+            assert_true(!other->used || one->right <= other->left || other->right <= one->left ||
+                        one->top <= other->bottom || other->top <= one->bottom);
+        }
+    }
+}
+
 static void check_kind(const fixture *f, const char *grid, plot_kind kind, const char *along, const char *by,
                        size_t panels)
 {
@@ -118,6 +134,7 @@ static void check_kind(const fixture *f, const char *grid, plot_kind kind, const
     assert_string_equal(p.along ? p.along->name : "", along);
     assert_string_equal(p.by ? p.by->name : "", by);
     assert_int_equal(p.panel_count, panels);
+    check_panels(&p);
     plot_plan_free(&p);
     study_destroy(s);
 }
@@ -137,6 +154,20 @@ static void the_grid_gives_the_kind(void **state)
     check_kind(
         f, "[{render.depth: [0, 1, 2]}, {render.schedule: [rows, tiles, dynamic]}, {render.shadows: [off, opaque]}]",
         PLOT_LINES, "render.depth", "render.schedule", 2);
+}
+
+static void many_panels_are_within_the_page(void **state)
+{
+    const fixture *f = *state;
+    study *s =
+        study_of(f, "[{render.depth: [0, 1, 2, 3]}, {render.samples: [1, 4, 9, 16]}, {render.seed: [1, 2, 3, 4]}, "
+                    "{render.tile: [8, 16, 32, 64]}]");
+    plot_plan p = full_plan(s, &plain, 0);
+    draw(f, &p);
+    assert_true(p.panel_count >= 6);
+    check_panels(&p);
+    plot_plan_free(&p);
+    study_destroy(s);
 }
 
 static void parameters_set_together_count_once(void **state)
@@ -359,6 +390,14 @@ static void scales_follow_the_values(void **state)
     assert_false(p.x.log);
     plot_plan_free(&p);
     study_destroy(s);
+    s = study_of(f, "[{render.depth: [30, 31, 32, 33, 34]}]"); /* whole numbers near each other have a tic each */
+    p = full_plan(s, &plain, 0);
+    draw(f, &p);
+    char *script = fixture_text(f, "fig.gp");
+    assert_non_null(strstr(script, "set xtics 1\n"));
+    free(script);
+    plot_plan_free(&p);
+    study_destroy(s);
 }
 
 static void published_numbers_have_the_unit_of_the_axis(void **state)
@@ -378,6 +417,23 @@ static void published_numbers_have_the_unit_of_the_axis(void **state)
     assert_true(p.x.to > 9);
     assert_true(has_caption(&p, "Published: cpu_s by depth, machine: old."));
     plot_plan_free(&p);
+    study_destroy(s);
+    /* The published blocks of the data follow the measured ones, here of one value and of two. */
+    s = study_of(f, "[{render.depth: [0, 1]}, {render.threads: [1, 2]}]");
+    static const hand lines[] = {
+        {0, 10, 0, "", "0.1", "0.1", "0.1"}, {1, 10, 0, "", "0.1", "0.1", "0.1"}, {3, 10, 0, "", "0.1", "0.1", "0.1"}};
+    const plot_request by = {.published = path, .x = "render.depth"};
+    p = plan_of(s, &by, lines, 3, false);
+    draw(f, &p);
+    char *script = fixture_text(f, "fig.gp"), *data = fixture_text(f, "fig.tsv");
+    assert_non_null(strstr(script, "rows index 2 using 2:3 with linespoints lt 7 pt 6 notitle"));
+    assert_non_null(strstr(script, "rows index 3 using 2:3 with linespoints lt 7 pt 8 notitle"));
+    assert_int_equal(fixture_count(data, "\n\n\n"), 3);
+    free(script);
+    free(data);
+    plot_plan_free(&p);
+    study_destroy(s);
+    s = study_of(f, "[{render.depth: [0, 1, 2]}]");
     fixture_write(f, "published.csv", "threads,cpu_s\n0,0.1\n");
     p = full_plan(s, &r, 0);
     refuse(f, &p, "no column for 'render.depth'", "threads, cpu_s");
@@ -494,6 +550,10 @@ static void a_sheet_needs_images(void **state)
     char *script = fixture_text(f, "fig.gp");
     assert_non_null(strstr(script, "here.'results/test/images/0001.png'"));
     assert_non_null(strstr(script, "'render.depth = 1'"));
+    char caption[80];
+    snprintf(caption, sizeof caption, "2 images of %d x %d pixels.", (int)s->base->render.width,
+             (int)s->base->render.height);
+    assert_non_null(strstr(script, caption));
     free(script);
     study_destroy(s);
 }
@@ -504,6 +564,7 @@ int main(void)
 {
     const struct CMUnitTest tests[] = {
         CASE(the_grid_gives_the_kind),
+        CASE(many_panels_are_within_the_page),
         CASE(scripts_are_those_of_figures_that_were_looked_at),
         CASE(parameters_set_together_count_once),
         CASE(the_user_chooses),

@@ -5,6 +5,7 @@
 #include "image/image.h"
 #include "rows_fixture.h"
 #include <inttypes.h>
+#include <jansson.h>
 #include "image/image.h"
 #include "base/csv.h"
 #include <pthread.h>
@@ -522,6 +523,10 @@ static void images_and_maps_are_kept(void **state)
     csv_destroy(table);
     char *timeline = fixture_text(f, "results/test/images/0000-timeline.json");
     assert_true(fixture_count(timeline, "\"ph\"") >= 3 * 3);
+    assert_true(fixture_count(timeline, "\"thread_name\"") >= 1);
+    json_t *whole = json_loads(timeline, 0, NULL);
+    assert_true(json_array_size(json_object_get(whole, "traceEvents")) == fixture_count(timeline, "\"ph\""));
+    json_decref(whole);
     free(timeline);
     /* A missing file is made again, without a row. */
     fixture_path(f, "results/test/images/0001.png", path);

@@ -3,8 +3,8 @@
 All are compiled into one program, which runs the one whose number is in the environment variable MUTANT, so that the
 copy is built once. Of all places of src/optics, src/geometry, src/render and src/study that can be changed, COUNT are
 drawn, half of them as many from each folder; no two of them overlap. TREE/mutants.tsv lists them: number, file, line,
-kind, text, changed text, the whole line. A place is a comparison, a sum, a product, a logical operator, a negation, a number with a
-point, or a statement that can be left out."""
+kind, text, changed text, the whole line. A place is a comparison, a sum, a product, a logical operator, a negation, a
+number with a point, or a statement that can be left out."""
 
 import bisect
 import os
@@ -20,6 +20,7 @@ CHANGES = {  # operators of C and what a slip of the pen makes of them
     "<": ("<=", ">="), "<=": ("<", ">"), ">": (">=", "<="), ">=": (">", "<"), "==": ("!=",), "!=": ("==",),
     "+": ("-",), "-": ("+",), "*": ("/",), "/": ("*",), "&&": ("||",), "||": ("&&",),
 }
+REALS = (ci.TypeKind.DOUBLE, ci.TypeKind.FLOAT)
 KEEPS = re.compile(r"\b(free|assert|\w*_destroy|\w*_release|memset|munmap|close|fclose|abandon\w*|set_large_pages)\b")
 HEADER = """/* Which mutant runs; see tests/mutants/instrument.py. */
 #pragma once
@@ -110,7 +111,7 @@ class Places:
         if between.strip() == "-" and right.type.get_canonical().kind == ci.TypeKind.POINTER:
             return  # pointers have no sum
         for changed in CHANGES.get(between.strip(), ()):
-            if between.strip() in "*/" and node.type.get_canonical().kind not in (ci.TypeKind.DOUBLE, ci.TypeKind.FLOAT):
+            if between.strip() in "*/" and node.type.get_canonical().kind not in REALS:
                 continue
             self.add(path, node.extent.start.offset, node.extent.end.offset, "operator",
                      all_text[node.extent.start.offset:left.extent.end.offset].decode() + " " + changed + " " +
@@ -202,7 +203,8 @@ def rewrite(places, chosen):
         pieces.append(text[at:].decode())
         whole = "".join(pieces)
         include = '#include "base/mutant.h"\n'
-        whole = whole.replace("#pragma once\n", "#pragma once\n" + include, 1) if path.endswith(".h") else include + whole
+        once = "#pragma once\n"
+        whole = whole.replace(once, once + include, 1) if path.endswith(".h") else include + whole
         with open(path, "w") as file:
             file.write(whole)
     with open("mutants.tsv", "w") as file:

@@ -23,7 +23,8 @@ if [[ "$(cat "$work/made" 2>/dev/null)" != "$wanted" ]]; then
     echo "$wanted" >"$work/made"
 fi
 # shellcheck disable=SC2046 # names of programs
-nice make -s -C "$tree" warnings=-w all $(cd "$tree" && printf 'build/%s ' tests/test_*.c | sed 's/\.c / /g') \
+nice make -j"$(nproc)" -s -C "$tree" warnings=-w all \
+    $(cd "$tree" && printf 'build/%s ' tests/test_*.c | sed 's/\.c / /g') \
     >"$work/build.log" 2>&1 || {
     grep -m 5 'error' "$work/build.log" >&2
     exit 1

@@ -1,15 +1,19 @@
 """Run the mutants of a built copy (instrument.py): run.py TREE EQUIVALENT SECONDS.
 
-First every test program of less than three minutes runs once without a mutant, which says how long it takes and which
-mutants it reaches (TREE/reached.tsv). Then each mutant runs in the tests that reach it, quickest first, until one
-fails: it is killed. A test that takes six times as long as before has failed too. After QUICK_S of tests a mutant waits
-until all others had their turn: most survivors would run for minutes. TREE/results.tsv has rows of number, killed or
-waiting or survived or unreached, and the test that killed it or that it passed last; the last row of a number counts.
-Rows that the files have are kept, so that the same command goes on where it stopped: after SECONDS. EQUIVALENT lists
-mutants that change nothing that can be seen: file, the whole line, text, changed text, why."""
+First every test program of less than three minutes runs once without a mutant, which says how much processor time it
+takes and which mutants it reaches (TREE/reached.tsv). Then each mutant runs in the tests that reach it until one
+fails: it is killed. Quick tests come first, and of these the ones that reach few mutants, have killed many or are
+named like the file. A test that takes six times as much processor time as before has failed too: a loaded machine
+does not change that. A limit to the time by the clock, far longer, is for tests that wait indefinitely. After
+QUICK_S of tests a mutant waits until all others had their turn: most survivors would run for minutes.
+TREE/results.tsv has rows of number, killed or waiting or survived or unreached, the test that killed it, and how:
+failed, processor time or clock; the last row of a number counts. TREE/passed.tsv has rows of number and a test that
+it passed. Rows that the files have are kept, so that the same command goes on where it stopped: after SECONDS.
+EQUIVALENT lists mutants that change nothing that can be seen: file, the whole line, text, changed text, why."""
 
 import concurrent.futures
 import glob
+import math
 import os
 import resource
 import subprocess
@@ -17,7 +21,7 @@ import sys
 import threading
 import time
 
-LONGEST_S = 180  # longer tests are left out
+LONGEST_S = 180  # longer tests are left out; seconds of processor time, like QUICK_S
 QUICK_S = 30
 EXCLUDED = ("test_lab", "test_http", "test_bad_meshes", "test_study_estimate")  # need a server or quiet processors
 writing = threading.Lock()
@@ -29,29 +33,39 @@ def environment(**more):
             "CUVETTE_IMPORT": f"{here}/build/cuvette-import", **more}
 
 
-def limits():
+def limits(cpu_s):
     resource.setrlimit(resource.RLIMIT_AS, (8 << 30, 8 << 30))
     resource.setrlimit(resource.RLIMIT_CORE, (0, 0))
+    resource.setrlimit(resource.RLIMIT_CPU, (math.ceil(cpu_s), math.ceil(cpu_s)))
 
 
-def passes(test, limit_s, end, **more):
-    """Whether the test passes within the limit, and the seconds; None: the end of all came first."""
+def run(test, cpu_s, clock_s, end, **more):
+    """How the test ends within its limits (passed, failed, processor time, clock; None: the end of all came first), the
+    seconds of processor time and those of the clock."""
     begun = time.monotonic()
     if begun > end:
-        return None, 0.0
+        return None, 0.0, 0.0
     process = subprocess.Popen([f"build/tests/{test}"], stdin=subprocess.DEVNULL, stdout=subprocess.DEVNULL,
-                               stderr=subprocess.DEVNULL, env=environment(**more), preexec_fn=limits,
-                               start_new_session=True)
-    try:
-        passed = process.wait(min(limit_s, end - begun)) == 0
-    except subprocess.TimeoutExpired:
-        passed = None if end - begun < limit_s else False
+                               stderr=subprocess.DEVNULL, env=environment(**more),
+                               preexec_fn=lambda: limits(cpu_s), start_new_session=True)
+    pid, pause_s, how = 0, 0.001, ""
+    while not how:
+        time.sleep(pause_s)
+        pause_s = min(0.05, 1.2 * pause_s)
+        pid, status, usage = os.wait4(process.pid, os.WNOHANG)
+        now = time.monotonic()
+        how = "ended" if pid else "clock" if now - begun > clock_s else "stopped" if now > end else ""
     try:
         os.killpg(process.pid, 9)
     except ProcessLookupError:
         pass
-    process.wait()
-    return passed, time.monotonic() - begun
+    if not pid:
+        _, status, usage = os.wait4(process.pid, 0)
+    process.returncode = os.waitstatus_to_exitcode(status)
+    used_s = usage.ru_utime + usage.ru_stime
+    if how == "ended":
+        how = "passed" if process.returncode == 0 else "processor time" if used_s > cpu_s - 1 else "failed"
+    return None if how == "stopped" else how, used_s, now - begun
 
 
 def append(path, *fields):
@@ -67,56 +81,80 @@ def rows_of(path):
         return {line.split("\t")[0]: line.rstrip("\n").split("\t") for line in file}
 
 
-def measure(end):
-    """Adds rows of test, seconds ("-": left out), reached mutants; returns whether all tests have one."""
+def measure(end, pool):
+    """Adds rows of test, seconds of processor time ("-": left out), of the clock, reached mutants; returns whether all
+    tests have one."""
     known = rows_of("reached.tsv")
-    for path in sorted(glob.glob("build/tests/test_*")):
-        test = os.path.basename(path)
-        if "." in test or test.startswith(EXCLUDED) or test in known:
-            continue
-        if os.path.exists("reached.txt"):
-            os.unlink("reached.txt")
-        passed, seconds = passes(test, LONGEST_S, end, MUTANT_REACHED=os.path.abspath("reached.txt"))
-        if passed is None:
-            return False
-        reached = []
-        if os.path.exists("reached.txt"):
-            with open("reached.txt") as file:
-                reached = sorted({int(line) for line in file})
-        left_out = "" if passed else ", left out: it fails without a mutant, or takes too long"
-        print(f"{test}: {seconds:.1f} s, reaches {len(reached)}{left_out}", flush=True)
-        append("reached.tsv", test, f"{seconds:.3f}" if passed else "-", ",".join(map(str, reached)))
+    names = [os.path.basename(path) for path in sorted(glob.glob("build/tests/test_*"))]
+    left = [test for test in names if "." not in test and not test.startswith(EXCLUDED) and test not in known]
+    return all(pool.map(lambda test: measure_one(test, end), left))
+
+
+def measure_one(test, end):
+    path = os.path.abspath(f"reached.{test}")
+    if os.path.exists(path):
+        os.unlink(path)
+    how, cpu_s, clock_s = run(test, LONGEST_S, 10 * LONGEST_S, end, MUTANT_REACHED=path)
+    reached = []
+    if os.path.exists(path):
+        with open(path) as file:
+            reached = sorted({int(line) for line in file})
+        os.unlink(path)
+    if how is None:
+        return False
+    left_out = "" if how == "passed" else f", left out: {how} without a mutant"
+    print(f"{test}: {cpu_s:.1f} s of processor time, reaches {len(reached)}{left_out}", flush=True)
+    append("reached.tsv", test, "-" if left_out else f"{cpu_s:.3f}", f"{clock_s:.3f}", ",".join(map(str, reached)))
     return True
 
 
-def tests_by_time():
-    return sorted((float(seconds), test, set(map(int, filter(None, reached.split(",")))))
-                  for test, seconds, reached in rows_of("reached.tsv").values() if seconds != "-")
+class Test:
+    def __init__(self, name, cpu_s, clock_s, reached):
+        self.name, self.cpu_s, self.clock_s = name, float(cpu_s), float(clock_s)
+        self.reaches = set(map(int, filter(None, reached.split(","))))
+        self.runs = self.kills = 0
+
+    def cost(self, words):
+        """The processor time that a kill is likely to take, of a mutant in a file of these words."""
+        likely = 1.0 / math.sqrt(len(self.reaches)) + (1.0 if words & set(self.name.split("_")) else 0.0)
+        return (self.cpu_s + 0.02) * (self.runs + 2.0) / (self.kills + likely)
 
 
-def judge(number, tests, end, quick, passed_last=""):
-    """Adds rows of a mutant: after the tests of its first QUICK_S, or after the others, from the one after passed_last
-    on."""
-    own, before_s = [], 0.0
-    for seconds, test, reaches in tests:
-        if number in reaches:
-            own.append((seconds, test, before_s < QUICK_S))
-            before_s += seconds
-    names = [test for _, test, _ in own]
-    done = names.index(passed_last) + 1 if passed_last in names else 0
-    for seconds, test, is_quick in own[done:]:
-        if is_quick != quick:
-            continue
-        passed, _ = passes(test, 6 * seconds + 10, end, MUTANT=str(number))
-        if passed is None:
+def tests_measured():
+    return [Test(*row) for row in rows_of("reached.tsv").values() if row[1] != "-" and row[3]]
+
+
+def passed_before():
+    passed = {}
+    if os.path.exists("passed.tsv"):
+        with open("passed.tsv") as file:
+            for number, test in (line.split() for line in file):
+                passed.setdefault(number, set()).add(test)
+    return passed
+
+
+def judge(mutant, tests, passed, end, limit_s):
+    """Adds a row of a mutant after at most limit_s of tests that it has not passed before."""
+    number, path = mutant[:2]
+    words = set(os.path.splitext(os.path.basename(path))[0].split("_"))
+    own = [test for test in tests if int(number) in test.reaches]
+    left = sorted((t for t in own if t.name not in passed.get(number, ())), key=lambda t: t.cost(words))
+    used_s = 0.0
+    for at, test in enumerate(left):
+        if used_s >= limit_s:
+            append("results.tsv", number, "waiting", "", "")
             return
-        if not passed:
-            append("results.tsv", number, "killed", test)
+        most_s = 6 * test.cpu_s + 10
+        how, cpu_s, _ = run(test.name, most_s, 20 * test.clock_s + 10 * most_s, end, MUTANT=number)
+        if how is None:
             return
-        if not quick:
-            append("results.tsv", number, "waiting", test)
-    more = any(not is_quick for _, _, is_quick in own)
-    append("results.tsv", number, "unreached" if not own else "waiting" if quick and more else "survived", "")
+        used_s += cpu_s
+        test.runs, test.kills = test.runs + 1, test.kills + (how != "passed")
+        if how != "passed":
+            append("results.tsv", number, "killed", test.name, how)
+            return
+        append("passed.tsv", number, test.name)
+    append("results.tsv", number, "survived" if own else "unreached", "", "")
 
 
 def main():
@@ -124,20 +162,21 @@ def main():
         equivalent = {tuple(line.split("\t")[:4]) for line in file}
     os.chdir(sys.argv[1])
     end = time.monotonic() + float(sys.argv[3])
-    if measure(end):
-        tests, done = tests_by_time(), rows_of("results.tsv")
-        with concurrent.futures.ThreadPoolExecutor(os.cpu_count()) as pool:
-            left = [int(number) for number in rows_of("mutants.tsv") if number not in done]
-            list(pool.map(lambda number: judge(number, tests, end, True), left))
-            waiting = [row for row in rows_of("results.tsv").values() if row[1] == "waiting"]
-            list(pool.map(lambda row: judge(int(row[0]), tests, end, False, row[2]), waiting))
+    with concurrent.futures.ThreadPoolExecutor(os.cpu_count()) as pool:
+        if measure(end, pool):
+            tests, passed, mutants = tests_measured(), passed_before(), rows_of("mutants.tsv")
+            for verdict, limit_s in (None, QUICK_S), ("waiting", math.inf):
+                done = rows_of("results.tsv")
+                left = [mutant for number, mutant in mutants.items() if done.get(number, [None, None])[1] == verdict]
+                list(pool.map(lambda mutant: judge(mutant, tests, passed, end, limit_s), left))
+                passed = passed_before()
     return report(equivalent)
 
 
 def report(equivalent):
     mutants, rows = rows_of("mutants.tsv"), rows_of("results.tsv").values()
     counts = dict.fromkeys(("killed", "equivalent", "survived", "unreached", "waiting"), 0)
-    for number, verdict, _ in rows:
+    for number, verdict, *_ in rows:
         _, path, line, kind, old, new, whole_line = mutants[number]
         if verdict != "killed" and (path, whole_line, old, new) in equivalent:
             verdict = "equivalent"
