@@ -22,6 +22,7 @@ static const acts_small acts_smaller[] = {
     {"rainbow-landscape", "render.samples=1 ridge.around=30 downs.around=30 fir.around=6"},
     {"prism", "render.wavelengths=4 render.width=300 render.height=150"},
     {"plates", "render.width=120 render.height=90"},
+    {"frosted", "render.paths=4"},
     {"solids", "render.samples=1"},
     {"caustic", "render.samples=1 render.photons=2000"},
     {"films", "render.samples=1 render.depth=3"},
