@@ -62,7 +62,8 @@ static inline void scale_lengths(scene *s, double f)
     for (size_t i = 0; i < s->light_count; i++) {
         scale_vector(&s->lights[i].position, f);
         s->lights[i].reach *= f;
-        s->lights[i].radius *= f;
+        s->lights[i].radius *= f, s->lights[i].width *= f, s->lights[i].height *= f;
+        scale_vector(&s->lights[i].target, f);
     }
     for (size_t i = 0; i < s->solid_count; i++) {
         solid_shape *shape = &s->solids[i].shape;

@@ -21,11 +21,16 @@ typedef struct law_solid {
     double ior, transparency, reflectivity, specular, checker;
     vec3 absorb_per_m, tint; /* for a transparent solid, light's color after tint_distance inside */
     double tint_distance;
+    bool gold;                 /* an opaque solid is a metal */
+    double film_nm, roughness; /* 0: none */
 } law_solid;
 
 typedef struct law_light {
     vec3 position;
     double reach;
+    const char *kind; /* NULL: a point */
+    vec3 target;      /* of a disc or a rectangle */
+    double size;      /* radius, width and height */
 } law_light;
 
 typedef struct law_scene {
@@ -218,6 +223,28 @@ static inline void random_surface(law_solid *s, const law_scene *w, uint64_t *se
         random_coat(s, w, seed);
 }
 
+static inline bool law_settings_have(const law_scene *w, const char *word)
+{
+    return strstr(w->settings, word) != NULL;
+}
+
+/* Metals, films and rough surfaces, where the settings allow them. A separate stream of numbers, so that scenes stay as
+ * they are otherwise. */
+static inline void random_layers(law_solid *s, const law_scene *w, uint64_t seed)
+{
+    uint64_t own = seed ^ 0x676f6c64u; /* "gold" */
+    if (law_settings_have(w, "constant") || law_settings_have(w, "polarisation"))
+        return;
+    s->gold = s->opaque && random_below(&own, 3) == 0;
+    const bool coated = random_below(&own, 3) == 0, without = law_settings_have(w, "basic") ||
+                                                              law_settings_have(w, "zbuffer") ||
+                                                              law_settings_have(w, "caustics");
+    if (coated &&
+        (s->opaque || !without)) /* basic radiance and the depth buffer do not support films on clear solids */
+        s->film_nm = random_real(&own, 50.0, 900.0);
+    s->roughness = random_below(&own, 3) == 0 && law_settings_have(w, "path") ? random_real(&own, 0.02, 0.8) : 0.0;
+}
+
 static inline law_solid random_solid(const law_scene *w, int number, uint64_t *seed)
 {
     law_solid s = {.number = number, .shape = random_shape(seed)};
@@ -232,7 +259,23 @@ static inline law_solid random_solid(const law_scene *w, int number, uint64_t *s
     else if (random_below(seed, 8) == 0)
         place_mesh(&s, seed);
     random_surface(&s, w, seed);
+    random_layers(&s, w, *seed);
     return s;
+}
+
+/* Lights with a size, which need a reach. */
+static inline void random_lights(law_scene *w, uint64_t seed)
+{
+    static const char *const kinds[] = {NULL, "point", "disc", "rectangle"};
+    uint64_t own = seed ^ 0x6c616d70u; /* "lamp" */
+    for (int i = 0; i < w->light_count; i++) {
+        law_light *l = &w->light[i];
+        if (l->reach == 0.0)
+            continue;
+        l->kind = kinds[random_below(&own, 4)];
+        l->size = random_real(&own, 0.1, 0.8);
+        l->target = vec3_add(l->position, random_direction(&own));
+    }
 }
 
 static inline void add_solid(law_scene *w, law_solid s)
@@ -250,7 +293,8 @@ static inline law_scene random_law_scene(uint64_t *seed, const char *settings)
         w.outside_absorb_per_m = vec3_make(0.1, 0.02, 0.0);
     w.light_count = random_below(seed, LAW_LIGHTS_MAX + 1);
     for (int i = 0; i < w.light_count; i++)
-        w.light[i] = (law_light){random_point(seed, 5.0), 2.0 * i};
+        w.light[i] = (law_light){.position = random_point(seed, 5.0), .reach = 2.0 * i};
+    random_lights(&w, *seed);
     uint64_t own = *seed ^ 0x726f6c6cu; /* "roll": a separate stream, so that it changes nothing else in the scene */
     w.roll_deg = random_below(&own, 3) == 0 ? random_real(&own, -180.0, 180.0) : 0.0;
     const int count = 1 + random_below(seed, 9);
@@ -272,7 +316,7 @@ static inline void write_material(scene_text *t, const law_solid *s)
 {
     add(t, "  m%d: {", s->number);
     if (s->opaque)
-        add(t, "ambient: 0.2, diffuse: 0.5, color: [0.9, 0.5, 0.2], ");
+        add(t, "%sambient: 0.2, diffuse: 0.5, color: [0.9, 0.5, 0.2], ", s->gold ? "medium: gold, " : "");
     else
         add(t, "ior: %.17g, transparency: %.17g, ", s->ior, s->transparency);
     if (s->tint.x < 1.0 && !s->opaque)
@@ -282,6 +326,10 @@ static inline void write_material(scene_text *t, const law_solid *s)
         add(t, "checker: %.17g, checker_color: [0.1, 0.3, 0.9], ", s->checker);
     if (vec3_dot(s->absorb_per_m, s->absorb_per_m) > 0.0 && !s->opaque)
         add_vector(t, "absorb_per_m", s->absorb_per_m);
+    if (s->film_nm > 0.0)
+        add(t, "film_thickness_nm: %.17g, ", s->film_nm);
+    if (s->roughness > 0.0)
+        add(t, "roughness: %.17g, ", s->roughness);
     add(t, "reflectivity: %.17g, specular: %.17g, shininess: 20}\n", s->reflectivity, s->specular);
 }
 
@@ -333,6 +381,11 @@ static inline scene_text law_text(const law_scene *w)
     for (int i = 0; i < w->light_count; i++) {
         add(&t, "%s  lamp%d: {", i ? "" : "lights:\n", i);
         add_vector(&t, "position", w->light[i].position);
+        if (w->light[i].kind) {
+            add(&t, "kind: %s, radius: %.17g, width: %.17g, height: %.17g, ", w->light[i].kind, w->light[i].size,
+                w->light[i].size, 0.7 * w->light[i].size);
+            add_vector(&t, "target", w->light[i].target);
+        }
         add(&t, "reach: %.17g}\n", w->light[i].reach);
     }
     write_meshes(&t, w);
