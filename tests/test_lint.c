@@ -450,6 +450,10 @@ static bool is_true(oracle *o, judge *j, scene *s, const scene_note *n, tallies 
         return oracle_bends_nothing(o, named(s, a));
     }
     t->others++;
+    if (sscanf(n->text, "%63s acts as a point", a) == 1)
+        for (size_t i = 0; i < s->light_count; i++)
+            if (strcmp(s->lights[i].name, a) == 0)
+                return light_extent(&s->lights[i]) > 0.0 && s->render.integrator != INTEGRATOR_PATH;
     return strcmp(n->place, "lights") == 0 && s->light_count == 0;
 }
 
@@ -497,6 +501,8 @@ static void try_scene(judge *j, long number, long seed, tallies *t)
     uint64_t stream = (uint64_t)seed * 0x9e3779b97f4a7c15u + (uint64_t)number;
     random_bits(&stream);
     law_scene w = random_law_scene(&stream, "depth: 4, threads: 1");
+    for (int i = 0; i < w.solid_count; i++) /* the oracle knows solids and plain media */
+        w.solid[i].gold = false, w.solid[i].film_nm = 0.0;
     for (int i = 0; i < w.solid_count; i++) /* solving a quartic in quadruple precision takes long */
         if (w.solid[i].shape.kind == SHAPE_TORUS && random_below(&stream, 16))
             w.solid[i].shape.kind = SHAPE_SPHERE;

@@ -119,7 +119,8 @@ static void change_one(scene *s, const uint8_t *bytes)
     value_of(c.row, (unsigned)bytes[2] << 8 | bytes[3], value, sizeof value);
     scene *copy = scene_clone(s);
     must(copy);
-    if (scene_set(copy, c.path, value, NULL) == STATUS_OK && scene_check(copy, NULL) == STATUS_OK)
+    if (strcmp(value, "embree") != 0 && scene_set(copy, c.path, value, NULL) == STATUS_OK &&
+        scene_check(copy, NULL) == STATUS_OK)
         scene_set(s, c.path, value, NULL);
     scene_destroy(copy);
 }

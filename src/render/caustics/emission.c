@@ -130,8 +130,9 @@ static double aim(emission *e, int lamp)
     out->inside = scene_geometry_inside(e->p->geometry, l->position);
     const double distance2 =
                      vec3_dot(vec3_sub(l->position, e->balls[0].centre), vec3_sub(l->position, e->balls[0].centre)),
+                 extent = e->p->geometry->extent,
                  falloff = l->reach > 0.0              ? l->reach * l->reach
-                           : isinf(e->balls[0].radius) ? 1.0
+                           : isinf(e->balls[0].radius) ? extent * extent
                                                        : distance2;
     return l->intensity * fmax(l->color.x, fmax(l->color.y, l->color.z)) * falloff * sum;
 }
