@@ -9,6 +9,7 @@
 #include <cmocka.h>
 
 #include "optics/lamp_spectrum.h"
+#include "random_scene.h"
 #include "render_fixture.h"
 #include "scene/model/scene.h"
 
@@ -135,7 +136,7 @@ static void an_rgb_film_has_the_lamps_color(void **state)
 static void photons_carry_lines(void **state)
 {
     (void)state;
-    static const char scene_text[] =
+    static const char slab_scene[] =
         "render: {width: 24, height: 24, depth: 8, caustics: photons, photons: 1000000, integrator: raycast,\n"
         "  spectrum: spectral, wavelengths: 32}\n"
         "camera: {position: [0, 0.5, 0], target: [0, 0, 0.0001], fov_deg: 10}\n"
@@ -144,7 +145,7 @@ static void photons_carry_lines(void **state)
         "solids:\n"
         "  ground: {shape: plane, diffuse: 1}\n"
         "  slab: {shape: box, position: [0, 2, 0], size: [1.5, 1, 1.5], transparency: 1, ior: 1.6}\n";
-    scene *s = scene_from(scene_text);
+    scene *s = scene_from(slab_scene);
     double seen[3], line[3], white[3];
     const double apparent = 8.0 - 1.0 + 1.0 / 1.6, r = 0.6 * 0.6 / (2.6 * 2.6),
                  expected = 64.0 / (apparent * apparent) * (1.0 - r) / (1.0 + r);
@@ -160,12 +161,27 @@ static void photons_carry_lines(void **state)
     scene_destroy(s);
 }
 
+/* As many lasers as spectral_lines.h distinguishes, whatever their lines; other lamps have few lines. */
+static void too_many_lasers_are_refused(void **state)
+{
+    (void)state;
+    scene_text text = {.length = 0};
+    add(&text, "solids: {ground: {shape: plane, diffuse: 1}}\nlights:\n");
+    for (int i = 0; i < 101; i++)
+        add(&text, "  l%d: {spectrum: line, line_nm: %d}\n", i, 400 + 3 * i);
+    scene *s = NULL;
+    diagnostic why = {0};
+    assert_int_equal(scene_read_text("test.yaml", text.at, text.length, &s, &why), STATUS_BAD_INPUT);
+    assert_non_null(strstr(why.what, "101 lights have the spectrum line; a scene can have 100"));
+    assert_null(s);
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(a_white_floor_shows_the_lamp), cmocka_unit_test(lines_and_daylight_add_up),
         cmocka_unit_test(paths_see_the_same_lines),     cmocka_unit_test(an_rgb_film_has_the_lamps_color),
-        cmocka_unit_test(photons_carry_lines),
+        cmocka_unit_test(photons_carry_lines),          cmocka_unit_test(too_many_lasers_are_refused),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

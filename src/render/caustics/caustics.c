@@ -45,9 +45,9 @@ status caustics_create(plan *p, isa level, int workers, const atomic_bool *stop,
     c->stop = stop;
     c->found = calloc((size_t)workers, sizeof *c->found);
     c->tracers = tracer_pool_create(level);
-    const bool spheres = integrator_traits_of(&p->render)->by_chance || scene_has_soft_shadows(&p->render);
+    const bool sizes = integrator_traits_of(&p->render)->by_chance || scene_has_soft_shadows(&p->render);
     status code =
-        c->found && c->tracers ? emission_create(p, p->render.photons, spheres, &c->from, why) : out_of_memory(why);
+        c->found && c->tracers ? emission_create(p, p->render.photons, sizes, &c->from, why) : out_of_memory(why);
     if (code == STATUS_OK && emission_count(c->from) > 0) {
         c->frame.from = c->from;
         const tracer_target target = {.frame_plan = &c->settings, .state = &c->frame, .rule = &integrator_of_photons};

@@ -29,7 +29,7 @@ typedef struct lamp_emission {
 
 struct emission {
     const plan *p;
-    bool spheres;
+    bool sizes;
     int ball_count;
     ball balls[CONES_MAX];
     double extent;
@@ -98,12 +98,12 @@ static void find_balls(emission *e)
 
 static double sphere_radius(const emission *e, int lamp)
 {
-    return e->spheres && !light_is_flat(&e->p->lights[lamp]) ? e->p->lights[lamp].radius : 0.0;
+    return e->sizes && !light_is_flat(&e->p->lights[lamp]) ? e->p->lights[lamp].radius : 0.0;
 }
 
 static bool is_flat(const emission *e, int lamp)
 {
-    return e->spheres && light_is_flat(&e->p->lights[lamp]);
+    return e->sizes && light_is_flat(&e->p->lights[lamp]);
 }
 
 /* Around all directions from the lamp's points to the ball's. */
@@ -124,7 +124,7 @@ static double aim(emission *e, int lamp)
     lamp_emission *out = &e->lamps[lamp];
     double sum = 0.0;
     for (int k = 0; k < e->ball_count; k++)
-        sum += (out->cones[k] = cone_to(l->position, e->spheres ? light_extent(l) : 0.0, e->balls[k])).cap;
+        sum += (out->cones[k] = cone_to(l->position, e->sizes ? light_extent(l) : 0.0, e->balls[k])).cap;
     for (int k = 0; k < e->ball_count; k++)
         out->cones[k].share = out->cones[k].cap / sum;
     out->inside = scene_geometry_inside(e->p->geometry, l->position);
@@ -150,7 +150,7 @@ static void divide(emission *e, const double *power, int64_t photons)
     }
 }
 
-status emission_create(const plan *p, int64_t photons, bool spheres, emission **out, diagnostic *why)
+status emission_create(const plan *p, int64_t photons, bool sizes, emission **out, diagnostic *why)
 {
     emission *e = calloc(1, sizeof *e);
     double *power = calloc((size_t)p->light_count + 1, sizeof *power);
@@ -161,7 +161,7 @@ status emission_create(const plan *p, int64_t photons, bool spheres, emission **
     }
     if (!e || !power || !e->lamps)
         goto failed;
-    e->spheres = spheres;
+    e->sizes = sizes;
     find_balls(e);
     for (int k = 0; k < p->light_count && e->ball_count > 0; k++) {
         if (!(e->lamps[k].cones = calloc((size_t)e->ball_count, sizeof(cone))))

@@ -15,9 +15,9 @@
 
 typedef struct emission emission;
 
-/* Of `photons` photons in all, of which each lamp gets a number in proportion to its power. spheres: light spheres
- * are spheres, otherwise points. */
-status emission_create(const plan *p, int64_t photons, bool spheres, emission **out, diagnostic *why);
+/* Of `photons` photons in all, of which each lamp gets a number in proportion to its power. sizes: lights
+ * with a size have it, otherwise they are points. */
+status emission_create(const plan *p, int64_t photons, bool sizes, emission **out, diagnostic *why);
 void emission_destroy(emission *e);
 
 /* The number of photons that are really emitted: 0 if no lamp shines or nothing can deflect them. */

@@ -1,16 +1,14 @@
 /* Path tracing (Kajiya, "The Rendering Equation", SIGGRAPH 1986): at each surface one continuation is sampled at
  * random, weighted so that the mean over all paths is that of the whole tree. Sampling by surface:
  *   a clear surface  reflects or refracts with Fresnel's weights as probabilities, so the throughput stays the same;
- *   a matte surface  is lit by every light, at a point of the light's sphere sampled uniformly over the cone of
- *                    directions to it (Shirley, Wang and Zimmerman, "Monte Carlo Techniques for Direct Lighting
- *                    Calculations", TOG 15(1), 1996), and continues the path by the cosine law, or like a mirror
- *                    with its reflectivity;
+ *   a matte surface  is lit by every light, at a random point of those with a size (render/shade/area_lights.h), and
+ *                    continues the path by the cosine law, or like a mirror with its reflectivity;
  *   a rough one      does as a smooth one of the normal of one of its facets, and samples the lamps (path_rough.h).
- * Only rays from the camera and from specular surfaces hit light spheres: matte surfaces have sampled them directly.
+ * Only rays from the camera and from specular surfaces hit lights: matte surfaces have sampled them directly.
  * This is how light through a vessel makes caustics; with render.caustics photons bring that light instead, and rays
- * hit lights only along specular surfaces from the camera on. In a scene with light spheres, clear solids block point
- * lights too. A light's radiance is intensity (reach / radius)^2, so that a matte surface at its reach is as bright as
- * in Phong's model. There is no ambient term: light from the sky and from other surfaces replaces it. */
+ * hit lights only along specular surfaces from the camera on. In a scene with lights of a size, clear solids block
+ * point lights too. A light's radiance is such that a matte surface at its reach is as bright as in Phong's model.
+ * There is no ambient term: light from the sky and from other surfaces replaces it. */
 #include "render/integrators/path_lights.h"
 #include "render/integrators/path_rough.h"
 #include "render/shade/path_kernels.h"

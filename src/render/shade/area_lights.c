@@ -130,15 +130,15 @@ void area_lights_aim_at_spheres(const tracer *t, lamp_samples *l)
     t->path->spheres(&t->surface.gathered, &l->spheres);
 }
 
-void area_lights_sample(tracer *t, const material *m, bool opaque, lamp_samples *l)
+void area_lights_sample(tracer *t, const material *m, bool shines, lamp_samples *l)
 {
     const plan *p = t->target.frame_plan;
     area_lights_aim_at_spheres(t, l);
     for (int k = 0; k < t->surface.gathered.count; k++)
         if (is_sphere(p, l->lamp[k]))
-            enqueue_sphere(t, k, m, opaque, l);
+            enqueue_sphere(t, k, m, shines, l);
         else if (light_has_area(p, l->lamp[k]))
-            enqueue_flat(t, k, m, opaque, l);
+            enqueue_flat(t, k, m, shines, l);
 }
 
 void area_lights_sample_all(tracer *t, const material *m, bool shines, int depth)

@@ -257,7 +257,7 @@ static void send_out(tracer *t, int priority_index, light_terms terms)
     if (terms.emission_only || (m->diffuse == 0.0 && m->specular == 0.0))
         return;
     for (int k = 0; k < p->light_count; k++) {
-        if (!terms.spheres && light_extent(&p->lights[k]) > 0.0)
+        if (!terms.as_points && light_extent(&p->lights[k]) > 0.0)
             continue;
         direct_light(t, m, k, priority_index);
         if (p->render.shadows != SHADOWS_OFF) {

@@ -33,7 +33,7 @@ static inline bool surface_is_opaque(const tracer *t, int priority_index)
 /* The terms of a surface's emission and direct light. */
 typedef struct light_terms {
     bool ambient, highlights;
-    bool spheres;       /* lights with a size are treated as points at their centres */
+    bool as_points;     /* lights with a size are treated as points at their centres */
     bool emission_only; /* no light of the scene's lights */
 } light_terms;
 void local_light(tracer *t, int priority_index, light_terms terms);
@@ -41,7 +41,7 @@ void local_light(tracer *t, int priority_index, light_terms terms);
 static inline light_terms light_terms_of(const render_settings *r)
 {
     return (light_terms){
-        .ambient = true, .highlights = r->lighting != LIGHTING_LAMBERT, .spheres = !scene_has_soft_shadows(r)};
+        .ambient = true, .highlights = r->lighting != LIGHTING_LAMBERT, .as_points = !scene_has_soft_shadows(r)};
 }
 
 /* Computes directions and weights of the gathered group's branches at a surface, and counts total reflections. */
