@@ -24,6 +24,8 @@ static const acts_small acts_smaller[] = {
     {"plates", "render.width=120 render.height=90"},
     {"frosted", "render.paths=4"},
     {"solids", "render.samples=1"},
+    {"focus", "render.samples=4"},
+    {"malus", "render.depth=4"},
     {"caustic", "render.samples=1 render.photons=2000"},
     {"films", "render.samples=1 render.depth=3"},
     {"window", "render.samples=4 render.photons=2000"},
