@@ -1,6 +1,6 @@
 /* The test whether light is even in a disc. Where n photons are spread evenly over a disc of radius R, their mean
- * offset from its centre has a standard deviation of R / (2 sqrt n) in each direction, and the squared distance over R^2
- * has the mean 1/2, with a standard deviation of 1 / sqrt(12 n). Edges, lines and peaks of light differ by more. */
+ * offset from its centre has a standard deviation of R / (2 sqrt n) in each direction, and the squared distance over
+ * R^2 has the mean 1/2, with a standard deviation of 1 / sqrt(12 n). Edges, lines and peaks of light differ by more. */
 #include "render/caustics/photon_even.h"
 
 #include "render/caustics/photon_tree.h"
