@@ -223,7 +223,7 @@ static void weights_follow_the_law_of_distance(void **state)
     }
     for (int level = ISA_BASE; level <= (int)isa_best(); level++) {
         float weight[LAMPS_MAX];
-        kernels[level]->light_weights(&lamps, point, n, 0.7f, 0.1f, weight);
+        kernels[level]->light_weights(&lamps, point, n, 0.7f, 0.1f, 0.0f, weight);
         for (int k = 0; k < lamps.blocks * LAMP_BLOCK; k++) {
             const vec3 to = vec3_sub(vec3_make(lamps.x[k], lamps.y[k], lamps.z[k]), point);
             const double distance2 = vec3_dot(to, to), cosine = vec3_dot(n, to) / sqrt(distance2);

@@ -119,7 +119,9 @@ static status arrange(const scene *s, const index_law *laws, plan *p, diagnostic
                             .opaque = solid_is_opaque(s, one),
                             .shadow_transmittance = shadow_transmittance,
                             .face_shadow_transmittance = p->shadow_transmittance[i],
-                            .attenuates = material_attenuates(&one->surface) || sheet_acts(&one->surface, &s->render),
+                            .attenuates = material_attenuates(&one->surface) ||
+                                          material_scattering(&one->surface, &s->render) > 0.0 ||
+                                          sheet_acts(&one->surface, &s->render),
                             .reflects = p->basic && !scene_has_constant_shares(&s->render),
                             .solid = i};
         if (code == STATUS_OK && shape_of(&one->shape)->triangles)
@@ -246,6 +248,8 @@ static status fill_priority_indices(const scene *s, const index_law *laws, plan 
         return out_of_memory(why);
     if (!sheet_list_create(s, p->geometry, &p->sheets))
         return out_of_memory(why);
+    if (!scatter_plan_create(s, p->geometry, &p->scatter))
+        return out_of_memory(why);
     return layered_plan_create(&s->render, p->materials, p->laws, p->ior, p->alike, priority_indices, &p->layered)
                ? STATUS_OK
                : out_of_memory(why);
@@ -354,6 +358,7 @@ void plan_destroy(plan *p)
     spectra_destroy(p->spectral);
     layered_plan_destroy(p->layered);
     free(p->sheets);
+    free(p->scatter);
     rain_destroy(p->rain);
     free(p);
 }
