@@ -138,8 +138,8 @@ static double by_point(const lit_point *p)
     const vec3 to = vec3_sub(l->position, p->at), axis = vec3_normalize(vec3_sub(l->target, l->position));
     const double distance = vec3_length(to), cosine = -vec3_dot(axis, to) / distance,
                  edge = cos(l->half_angle_deg * PI / 180.0);
-    const double share = l->kind == LIGHT_POINT ? 1.0
-                         : cosine < edge        ? 0.0
+    const double share = l->kind == LIGHT_POINT  ? 1.0
+                         : cosine < edge         ? 0.0
                          : l->kind == LIGHT_CONE ? 1.0
                                                  : (cosine - edge) / (1.0 - edge);
     const double falls = l->reach > 0.0 ? l->reach * l->reach / (distance * distance) : 1.0;
@@ -161,8 +161,8 @@ static double by_sphere(const lit_point *p)
         for (int k = 0; k < STEPS; k++) {
             const double cosine = 1.0 - cap * (i + 0.5) / STEPS, sine = sqrt(1.0 - cosine * cosine),
                          turn = 2.0 * PI * (k + 0.5) / STEPS;
-            const vec3 d = vec3_add(vec3_scale(z, cosine), vec3_add(vec3_scale(x, sine * cos(turn)),
-                                                                    vec3_scale(y, sine * sin(turn))));
+            const vec3 d = vec3_add(vec3_scale(z, cosine),
+                                    vec3_add(vec3_scale(x, sine * cos(turn)), vec3_scale(y, sine * sin(turn))));
             const double off = distance * sine, meets = distance * cosine - sqrt(l->radius * l->radius - off * off);
             sum += scattered(p, d, meets, radiance * 2.0 * PI * cap / (STEPS * STEPS));
         }
@@ -231,9 +231,11 @@ static void beams_have_the_airlight_integral(void **state)
     expect_airlight("lamp.kind=soft_cone lamp.half_angle_deg=70 lamp.target=0,0,0", by_point);
     expect_airlight("lamp.kind=cone lamp.half_angle_deg=10 lamp.position=0.05,0,-1 lamp.target=0,0,5", by_point);
     expect_airlight("lamp.kind=cone lamp.half_angle_deg=10 lamp.position=0.05,0,8 lamp.target=0,0,-5", by_point);
-    expect_airlight("lamp.kind=cone lamp.half_angle_deg=5e-3 lamp.position=2000,0,3 lamp.target=0,0,3 lamp.intensity=1e4 "
-                    "lamp.reach=0 "
-                    "cloud.size.x=5000 cloud.scatter_per_m=1e-3 cloud.absorb_per_m=0,0.001,0.002", by_point);
+    expect_airlight(
+        "lamp.kind=cone lamp.half_angle_deg=5e-3 lamp.position=2000,0,3 lamp.target=0,0,3 lamp.intensity=1e4 "
+        "lamp.reach=0 "
+        "cloud.size.x=5000 cloud.scatter_per_m=1e-3 cloud.absorb_per_m=0,0.001,0.002",
+        by_point);
     expect_airlight("lamp.kind=point lamp.radius=0.3", by_sphere);
     expect_airlight("lamp.kind=point lamp.radius=0.65 cloud.asymmetry=0.95", by_sphere);
     expect_airlight("lamp.kind=disc lamp.radius=0.5", by_disc);

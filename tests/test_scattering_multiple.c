@@ -196,10 +196,8 @@ static void a_slab_passes_and_returns_its_shares(void **state)
 int main(void)
 {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(a_ball_in_a_furnace_is_invisible),
-        cmocka_unit_test(the_h_function_is_that_of_the_table),
-        cmocka_unit_test(a_half_space_has_its_plane_albedo),
-        cmocka_unit_test(a_half_space_reflects_a_lamp),
+        cmocka_unit_test(a_ball_in_a_furnace_is_invisible),     cmocka_unit_test(the_h_function_is_that_of_the_table),
+        cmocka_unit_test(a_half_space_has_its_plane_albedo),    cmocka_unit_test(a_half_space_reflects_a_lamp),
         cmocka_unit_test(a_slab_passes_and_returns_its_shares),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);

@@ -5,8 +5,8 @@
 
 bool path_lamp_is_outside(const plan *p, const lamp_samples *s, int k)
 {
-    return s->lamp[k] >= 0 && (!light_has_area(p, s->lamp[k]) || light_is_flat(&p->lights[s->lamp[k]]) ||
-                               s->spheres.cap[k] > 0.0);
+    return s->lamp[k] >= 0 &&
+           (!light_has_area(p, s->lamp[k]) || light_is_flat(&p->lights[s->lamp[k]]) || s->spheres.cap[k] > 0.0);
 }
 
 static lamp_aim at_flat(const plan *p, const lamp_samples *s, int lamp, int k, vec3 from)

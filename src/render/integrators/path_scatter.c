@@ -176,8 +176,8 @@ static vec3 turned(vec3 axis, double cosine, double turn)
     const double sine = sqrt((1.0 - cosine) * (1.0 + cosine));
     polarisation_frame(axis, &x, &y);
     elementary_sincos_deg(360.0 * turn, &s, &c);
-    return vec3_normalize(vec3_add(vec3_scale(axis, cosine),
-                                   vec3_add(vec3_scale(x, sine * c), vec3_scale(y, sine * s))));
+    return vec3_normalize(
+        vec3_add(vec3_scale(axis, cosine), vec3_add(vec3_scale(x, sine * c), vec3_scale(y, sine * s))));
 }
 
 void path_scatter(tracer *t, const ray_queue *q, int first, const int *list, int count)

@@ -21,6 +21,22 @@ static void clip_axis(double o, double d, double low, double high, stretch *s)
     }
 }
 
+/* From the first to the last point in one of the boxes around media that scatter. */
+static stretch within_boxes(const scatter_plan *of, vec3 o, vec3 d)
+{
+    stretch all = {(double)INFINITY, 0.0};
+    for (int k = 0; k < of->box_count; k++) {
+        const scatter_box *b = &of->boxes[k];
+        stretch s = {0.0, (double)INFINITY};
+        clip_axis(o.x, d.x, b->low.x, b->high.x, &s);
+        clip_axis(o.y, d.y, b->low.y, b->high.y, &s);
+        clip_axis(o.z, d.z, b->low.z, b->high.z, &s);
+        if (s.high > s.low)
+            all = (stretch){fmin(all.low, s.low), fmax(all.high, s.high)};
+    }
+    return all;
+}
+
 /* The part in a cone of a half angle below 90 degrees: where (x.a)^2 >= cos^2 |x|^2 and x.a > 0 of the vector x from the
  * lamp to the point, a quadratic in the distance. */
 static void clip_cone(const light_cone *c, vec3 from, vec3 d, stretch *s)
@@ -49,9 +65,9 @@ static void clip_cone(const light_cone *c, vec3 from, vec3 d, stretch *s)
 /* The part of a ray that is sampled for a lamp, and how. */
 typedef struct line_sampling {
     stretch part;
-    double nearest, across;   /* where the ray is nearest to the lamp, and its distance there */
-    double from_deg, by_deg;  /* angles, seen from the lamp, from its nearest point */
-    bool even;                /* by length, of a part that is seen under a tiny angle */
+    double nearest, across;  /* where the ray is nearest to the lamp, and its distance there */
+    double from_deg, by_deg; /* angles, seen from the lamp, from its nearest point */
+    bool even;               /* by length, of a part that is seen under a tiny angle */
 } line_sampling;
 
 static bool sampling_of(const plan *p, int lamp, vec3 origin, vec3 d, line_sampling *out)
@@ -59,10 +75,7 @@ static bool sampling_of(const plan *p, int lamp, vec3 origin, vec3 d, line_sampl
     const double tiny_deg = 1e-6;
     const light *l = &p->lights[lamp];
     const vec3 from = vec3_sub(origin, l->position);
-    stretch s = {0.0, (double)INFINITY};
-    clip_axis(origin.x, d.x, p->scatter->low.x, p->scatter->high.x, &s);
-    clip_axis(origin.y, d.y, p->scatter->low.y, p->scatter->high.y, &s);
-    clip_axis(origin.z, d.z, p->scatter->low.z, p->scatter->high.z, &s);
+    stretch s = within_boxes(p->scatter, origin, d);
     if (l->kind != LIGHT_POINT && s.high > s.low)
         clip_cone(&p->cones[lamp], from, d, &s);
     if (!(s.high > s.low))

@@ -1,6 +1,6 @@
 /* Light that a medium scatters out of a lamp's beam towards a ray. A free flight rarely ends within a narrow beam. So
  * for lamps that are points each ray has a further point, which is chosen by the lamp: in the part of the ray that is
- * in the lamp's cone and in the box around the media that scatter, with equal angles seen from the lamp (Kulla and
+ * in the lamp's cone and in the boxes around the media that scatter, with equal angles seen from the lamp (Kulla and
  * Fajardo, "Importance Sampling Techniques for Path Tracing in Participating Media", Computer Graphics Forum 31, 2012,
  * 4.1). The points and the ends of flights are weighted by the balance heuristic, so that the mean stays the same,
  * whatever the part covers. Functions of the tracer's flights; nothing fails. */

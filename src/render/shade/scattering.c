@@ -18,28 +18,48 @@ static void find_lamps(const scene *s, scatter_plan *of)
             of->lamps[of->lamp_count++] = (int)i;
 }
 
+static void join(scatter_box *a, scatter_box b)
+{
+    a->low = vec3_make(fmin(a->low.x, b.low.x), fmin(a->low.y, b.low.y), fmin(a->low.z, b.low.z));
+    a->high = vec3_make(fmax(a->high.x, b.high.x), fmax(a->high.y, b.high.y), fmax(a->high.z, b.high.z));
+}
+
+static void add_box(scatter_plan *of, bounds3 around, bool many)
+{
+    const scatter_box one = {around.low, around.high};
+    if (of->box_count == 0 || !many)
+        of->boxes[of->box_count++] = one;
+    else
+        join(&of->boxes[0], one);
+}
+
+static int media_that_scatter(const scene *s, const scene_geometry *geometry)
+{
+    int count = 0;
+    for (int r = 1; r <= geometry->region_count; r++)
+        count += !geometry->regions[r].opaque &&
+                 material_scattering(&s->solids[geometry->regions[r].solid].surface, &s->render) > 0.0;
+    return count;
+}
+
 bool scatter_plan_create(const scene *s, const scene_geometry *geometry, scatter_plan **out)
 {
-    const double far = (double)INFINITY;
-    scatter_plan *of = NULL;
+    const int count = media_that_scatter(s, geometry);
     *out = NULL;
+    if (count == 0)
+        return true;
+    scatter_plan *of = calloc(1, sizeof *of + ((size_t)geometry->region_count + 1) * sizeof of->region[0]);
+    if (!of)
+        return false;
     for (int r = 1; r <= geometry->region_count; r++) {
         const material *m = &s->solids[geometry->regions[r].solid].surface;
-        const double per_m = material_scattering(m, &s->render);
-        if (geometry->regions[r].opaque || per_m == 0.0)
+        const double per_m = geometry->regions[r].opaque ? 0.0 : material_scattering(m, &s->render);
+        if (per_m == 0.0)
             continue;
-        if (!of) {
-            of = calloc(1, sizeof *of + ((size_t)geometry->region_count + 1) * sizeof of->region[0]);
-            if (!of)
-                return false;
-            of->low = vec3_make(far, far, far), of->high = vec3_make(-far, -far, -far);
-            find_lamps(s, of);
-        }
-        const bounds3 box = shape_world_box(&geometry->shapes[r]);
-        of->low = vec3_make(fmin(of->low.x, box.low.x), fmin(of->low.y, box.low.y), fmin(of->low.z, box.low.z));
-        of->high = vec3_make(fmax(of->high.x, box.high.x), fmax(of->high.y, box.high.y), fmax(of->high.z, box.high.z));
         of->region[r] = (region_scatter){.per_unit = per_m * s->render.unit_m, .asymmetry = m->asymmetry};
+        add_box(of, shape_world_box(&geometry->shapes[r]), count > SCATTER_BOXES_MAX);
     }
+    find_lamps(s, of);
     *out = of;
     return true;
 }

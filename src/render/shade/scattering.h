@@ -20,9 +20,15 @@ typedef struct region_scatter {
 /* The most lamps whose beams are sampled along each ray (airlight.h). */
 enum { AIRLIGHTS_MAX = 8 };
 
+/* A box around a solid whose medium scatters; of more solids than that, one box holds all. */
+enum { SCATTER_BOXES_MAX = 8 };
+typedef struct scatter_box {
+    vec3 low, high;
+} scatter_box;
+
 typedef struct scatter_plan {
-    vec3 low, high; /* a box around all solids whose medium scatters */
-    int lamp_count, lamps[AIRLIGHTS_MAX];
+    int box_count, lamp_count, lamps[AIRLIGHTS_MAX];
+    scatter_box boxes[SCATTER_BOXES_MAX];
     region_scatter region[]; /* by priority index */
 } scatter_plan;
 
