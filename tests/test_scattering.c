@@ -279,6 +279,19 @@ static void a_spectral_film_scatters_alike(void **state)
     scene_destroy(s);
 }
 
+/* Seen from outside the medium, with the radiance L / n^2 that is conserved at its face: the same paths, over n^2. */
+static void basic_radiance_falls_at_the_face(void **state)
+{
+    (void)state;
+    scene *s = scene_from(cloud_scene);
+    set_all(s, "lamp.kind=point lamp.intensity=1000 cloud.ior=1.33 camera.position=0,0,-30 render.depth=1 "
+               "render.paths=1024 render.radiance=classic");
+    const double classic = look_by_chance(s, 2).value;
+    set(s, "render.radiance=basic");
+    assert_true(classic > 0.1 && fabs(look_by_chance(s, 2).value * 1.33 * 1.33 - classic) < 1e-4 * classic);
+    scene_destroy(s);
+}
+
 static void photons_do_not_scatter(void **state)
 {
     (void)state;
@@ -302,6 +315,7 @@ int main(void)
         cmocka_unit_test(beams_have_the_airlight_integral),
         cmocka_unit_test(lamps_are_chosen_from_all_around),
         cmocka_unit_test(a_spectral_film_scatters_alike),
+        cmocka_unit_test(basic_radiance_falls_at_the_face),
         cmocka_unit_test(photons_do_not_scatter),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
