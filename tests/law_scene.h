@@ -229,8 +229,8 @@ static inline bool law_settings_have(const law_scene *w, const char *word)
     return strstr(w->settings, word) != NULL;
 }
 
-/* Metals, films, rough surfaces and media that scatter, where the settings allow them. A separate stream of numbers, so that scenes stay as
- * they are otherwise. */
+/* Metals, films, rough surfaces and media that scatter, where the settings allow them. A separate stream of numbers, so
+ * that scenes stay as they are otherwise. */
 static inline void random_layers(law_solid *s, const law_scene *w, uint64_t seed)
 {
     uint64_t own = seed ^ 0x676f6c64u; /* "gold" */

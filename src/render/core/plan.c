@@ -112,18 +112,17 @@ static status arrange(const scene *s, const index_law *laws, plan *p, diagnostic
             code = out_of_memory(why);
         if (material_roughness(&one->surface, &s->render) > 0.0) /* random paths find what it transmits */
             shadow_transmittance = 0.0;
-        sources[count] =
-            (region_source){.shape = &one->shape,
-                            .priority = one->priority,
-                            .medium = medium_of(s, laws, i),
-                            .opaque = solid_is_opaque(s, one),
-                            .shadow_transmittance = shadow_transmittance,
-                            .face_shadow_transmittance = p->shadow_transmittance[i],
-                            .attenuates = material_attenuates(&one->surface) ||
-                                          material_scattering(&one->surface, &s->render) > 0.0 ||
-                                          sheet_acts(&one->surface, &s->render),
-                            .reflects = p->basic && !scene_has_constant_shares(&s->render),
-                            .solid = i};
+        sources[count] = (region_source){.shape = &one->shape,
+                                         .priority = one->priority,
+                                         .medium = medium_of(s, laws, i),
+                                         .opaque = solid_is_opaque(s, one),
+                                         .shadow_transmittance = shadow_transmittance,
+                                         .face_shadow_transmittance = p->shadow_transmittance[i],
+                                         .attenuates = material_attenuates(&one->surface) ||
+                                                       material_scattering(&one->surface, &s->render) > 0.0 ||
+                                                       sheet_acts(&one->surface, &s->render),
+                                         .reflects = p->basic && !scene_has_constant_shares(&s->render),
+                                         .solid = i};
         if (code == STATUS_OK && shape_of(&one->shape)->triangles)
             code = fetch_mesh(s, (size_t)i, p, &shapes[i], &sources[count], why);
         count++;

@@ -1,5 +1,5 @@
-/* Absorption by the media that rays pass through, what they scatter (scattering.h), and what their sheets do (sheets.h). Ownership: absorption_begin
- * allocates the tracer's memory, absorption_end frees it. */
+/* Absorption by the media that rays pass through, what they scatter (scattering.h), and what their sheets do
+ * (sheets.h). Ownership: absorption_begin allocates the tracer's memory, absorption_end frees it. */
 #pragma once
 
 #include "base/elementary_inline.h"

@@ -37,8 +37,8 @@ static stretch within_boxes(const scatter_plan *of, vec3 o, vec3 d)
     return all;
 }
 
-/* The part in a cone of a half angle below 90 degrees: where (x.a)^2 >= cos^2 |x|^2 and x.a > 0 of the vector x from the
- * lamp to the point, a quadratic in the distance. */
+/* The part in a cone of a half angle below 90 degrees: where (x.a)^2 >= cos^2 |x|^2 and x.a > 0 of the vector x from
+ * the lamp to the point, a quadratic in the distance. */
 static void clip_cone(const light_cone *c, vec3 from, vec3 d, stretch *s)
 {
     const double cosine = 1.0 - c->opening, cos2 = cosine * cosine, along = vec3_dot(d, c->axis),
@@ -47,7 +47,7 @@ static void clip_cone(const light_cone *c, vec3 from, vec3 d, stretch *s)
                  e = start * start - cos2 * vec3_dot(from, from), discriminant = b * b - a * e;
     if (!(cosine > 0.0) || a == 0.0)
         return;
-    if (!(discriminant > 0.0)) { /* beside the cone, or through its tip */
+    if (!(discriminant > 0.0)) { /* outside the cone, or through its tip */
         s->high = a < 0.0 ? 0.0 : s->high;
         return;
     }
