@@ -149,7 +149,7 @@ static double by_point(const lit_point *p)
 /* Over the cone of directions to the sphere, whose radiance is I reach^2 / radius^2. */
 static double by_sphere(const lit_point *p)
 {
-    enum { STEPS = 24 };
+    enum { STEPS = 48 };
     const light *l = &p->s->lights[0];
     const vec3 to = vec3_sub(l->position, p->at);
     const double distance = vec3_length(to), cap = 1.0 - sqrt(1.0 - pow(l->radius / distance, 2)),
@@ -172,7 +172,7 @@ static double by_sphere(const lit_point *p)
 /* Over the points of a disc of radiance pi I reach^2 / area. */
 static double by_disc(const lit_point *p)
 {
-    enum { STEPS = 24 };
+    enum { STEPS = 48 };
     const light *l = &p->s->lights[0];
     const vec3 axis = vec3_normalize(vec3_sub(l->target, l->position)),
                x = vec3_normalize(vec3_cross(axis, vec3_make(0.0, 1.0, 0.0))), y = vec3_cross(axis, x);
@@ -239,6 +239,10 @@ static void beams_have_the_airlight_integral(void **state)
     expect_airlight("lamp.kind=point lamp.radius=0.3", by_sphere);
     expect_airlight("lamp.kind=point lamp.radius=0.65 cloud.asymmetry=0.95", by_sphere);
     expect_airlight("lamp.kind=disc lamp.radius=0.5", by_disc);
+    /* ahead, where the path's own direction often meets them */
+    expect_airlight("lamp.kind=point lamp.radius=0.9 lamp.position=0.95,0,7 cloud.asymmetry=0.8", by_sphere);
+    expect_airlight("lamp.kind=disc lamp.radius=0.9 lamp.position=0.95,0,7 lamp.target=0.5,0,0 cloud.asymmetry=0.8",
+                    by_disc);
 }
 
 /* Two lamps of which each point takes one at random. */
