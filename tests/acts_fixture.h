@@ -23,6 +23,7 @@ static const acts_small acts_smaller[] = {
     {"prism", "render.wavelengths=4 render.width=300 render.height=150"},
     {"plates", "render.width=120 render.height=90"},
     {"frosted", "render.paths=4"},
+    {"milky", "render.width=160 render.height=120 render.paths=2 render.depth=5"},
     {"solids", "render.samples=1"},
     {"shapes", "render.samples=1 render.depth=6"},
     {"focus", "render.samples=4"},
