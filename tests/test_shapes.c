@@ -361,6 +361,24 @@ static void a_mesh_reaches_as_far_as_its_box(void **state)
     mesh_release(m);
 }
 
+/* The ends of a prism are covered as the squares around their corners. */
+static void an_image_covers_the_ends_of_a_prism(void **state)
+{
+    (void)state;
+    const solid_shape shape = {.kind = SHAPE_PRISM, .sides = 6, .radius = 2, .height = 3};
+    const region_source source = {.shape = &shape, .medium = 1, .shadow_transmittance = 1.0};
+    scene_geometry *a = NULL;
+    assert_int_equal(scene_geometry_build(&source, 1, 0, TREE_IF_MANY, &a, NULL), STATUS_OK);
+    const primitive *p = &a->primitives[0];
+    for (int face = 0; face < 2; face++)
+        for (int corner = 0; corner < 4; corner++) {
+            const double x = corner & 1 ? 2 : -2, z = corner & 2 ? 2 : -2;
+            const surface_mapping m = primitive_mapping(p, p->first_face + face, vec3_make(x, 0.0, z), 0.0);
+            assert_true(fabs(m.u - (x + 2) / 4) < SLACK && fabs(m.v - (face == 0 ? 2 - z : z + 2) / 4) < SLACK);
+        }
+    scene_geometry_destroy(a);
+}
+
 /* Each face of a box has the whole image: its corners are corners of the image. */
 static void an_image_covers_each_face_of_a_box(void **state)
 {
@@ -432,6 +450,7 @@ int main(void)
         cmocka_unit_test(flat_faces_bound_the_solid),
         cmocka_unit_test(points_of_the_surface_belong_to_a_solid),
         cmocka_unit_test(an_image_covers_an_end_exactly),
+        cmocka_unit_test(an_image_covers_the_ends_of_a_prism),
         cmocka_unit_test(an_image_covers_each_face_of_a_box),
         cmocka_unit_test(an_image_has_the_lengths_of_a_cones_side),
         cmocka_unit_test(rings_and_thickness_of_cups_and_tori),
