@@ -2,8 +2,8 @@
 # tests/mutants/mutants.sh, run by `make mutants`: small errors in src/optics, src/geometry, src/render and src/study,
 # one at a time, that a unit test must detect. MUTANTS (600) are drawn by SEED (1) and compiled into one copy of the
 # sources, build/mutants/tree (instrument.py); run.py runs the tests. The same command goes on where it stopped, after
-# MUTANT_SECONDS at most, as long as the sources are the same. equivalent.tsv lists survivors that change nothing, and
-# why. The status is 1 if others survive.
+# MUTANT_SECONDS at most, as long as the sources are the same; tests that changed or are new run with those that
+# survived. equivalent.tsv lists survivors that change nothing, and why. The status is 1 if others survive.
 set -euo pipefail
 cd "$(dirname "$0")/../.."
 work=${BUILD:-build}/mutants tree=${BUILD:-build}/mutants/tree python=/usr/bin/python3
@@ -12,7 +12,7 @@ work=${BUILD:-build}/mutants tree=${BUILD:-build}/mutants/tree python=/usr/bin/p
     exit 1
 }
 mkdir -p "$work"
-sources=$(find src tests/*.[ch] tests/mutants/instrument.py Makefile -type f -print0 | sort -z |
+sources=$(find src tests/mutants/instrument.py Makefile -type f -print0 | sort -z |
     xargs -0 sha256sum | sha256sum)
 wanted="$sources ${MUTANTS:-600} ${SEED:-1}"
 if [[ "$(cat "$work/made" 2>/dev/null)" != "$wanted" ]]; then
@@ -22,6 +22,7 @@ if [[ "$(cat "$work/made" 2>/dev/null)" != "$wanted" ]]; then
     "$python" tests/mutants/instrument.py "$tree" "${MUTANTS:-600}" "${SEED:-1}"
     echo "$wanted" >"$work/made"
 fi
+cp -ru tests "$tree"
 begun=$SECONDS limit=${MUTANT_SECONDS:-1000000} code=0
 # shellcheck disable=SC2046 # names of programs
 nice timeout --foreground "$limit" make -j"$(nproc)" -s -C "$tree" warnings=-w all \

@@ -9,11 +9,13 @@ the first of TURNS_S of tests a mutant waits until all others had their turn, th
 would run for minutes, and most of the others are killed within a second.
 TREE/results.tsv has rows of number, killed or waiting or survived or unreached, the test that killed it, and how:
 failed, processor time or clock; the last row of a number counts. TREE/passed.tsv has rows of number and a test that
-it passed. Rows that the files have are kept, so that the same command goes on where it stopped: after SECONDS.
+it passed. Rows that the files have are kept, so that the same command goes on where it stopped: after SECONDS. A test
+whose program changed since is as new, and mutants that survived wait for it; one that was killed stays so.
 EQUIVALENT lists mutants that change nothing that can be seen: file, the whole line, text, changed text, why."""
 
 import concurrent.futures
 import glob
+import hashlib
 import math
 import os
 import resource
@@ -87,12 +89,32 @@ def rows_of(path):
         return {line.split("\t")[0]: line.rstrip("\n").split("\t") for line in file}
 
 
+def digest(test):
+    with open(f"build/tests/{test}", "rb") as file:
+        return hashlib.sha256(file.read()).hexdigest()
+
+
+def forget(tests):
+    """Mutants have not passed these tests, and those that survived wait for them."""
+    if os.path.exists("passed.tsv"):
+        with open("passed.tsv") as file:
+            kept = [line for line in file if line.split()[1] not in tests]
+        with open("passed.tsv.new", "w") as file:
+            file.writelines(kept)
+        os.rename("passed.tsv.new", "passed.tsv")
+    for number, verdict, *_ in rows_of("results.tsv").values():
+        if tests and verdict in ("survived", "unreached"):
+            append("results.tsv", number, "waiting", "", "")
+
+
 def measure(end, pool):
-    """Adds rows of test, seconds of processor time ("-": left out), of the clock, reached mutants; returns whether all
-    tests have one."""
+    """Adds rows of test, seconds of processor time ("-": left out), of the clock, reached mutants, digest of the
+    program; returns whether all tests have one."""
     known = rows_of("reached.tsv")
     names = [os.path.basename(path) for path in sorted(glob.glob("build/tests/test_*"))]
-    left = [test for test in names if "." not in test and not test.startswith(EXCLUDED) and test not in known]
+    names = [test for test in names if "." not in test and not test.startswith(EXCLUDED)]
+    left = [test for test in names if test not in known or known[test][4] != digest(test)]
+    forget(left)
     return all(pool.map(lambda test: measure_one(test, end), left))
 
 
@@ -110,7 +132,8 @@ def measure_one(test, end):
         return False
     left_out = "" if how == "passed" else f", left out: {how} without a mutant"
     print(f"{test}: {cpu_s:.1f} s of processor time, reaches {len(reached)}{left_out}", flush=True)
-    append("reached.tsv", test, "-" if left_out else f"{cpu_s:.3f}", f"{clock_s:.3f}", ",".join(map(str, reached)))
+    append("reached.tsv", test, "-" if left_out else f"{cpu_s:.3f}", f"{clock_s:.3f}", ",".join(map(str, reached)),
+           digest(test))
     return True
 
 
@@ -127,7 +150,7 @@ class Test:
 
 
 def tests_measured():
-    return [Test(*row) for row in rows_of("reached.tsv").values() if row[1] != "-" and row[3]]
+    return [Test(*row[:4]) for row in rows_of("reached.tsv").values() if row[1] != "-" and row[3]]
 
 
 def passed_before():
