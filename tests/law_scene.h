@@ -23,6 +23,7 @@ typedef struct law_solid {
     double tint_distance;
     bool gold;                 /* an opaque solid is a metal */
     double film_nm, roughness; /* 0: none */
+    double scatter_per_m, asymmetry;
 } law_solid;
 
 typedef struct law_light {
@@ -228,8 +229,8 @@ static inline bool law_settings_have(const law_scene *w, const char *word)
     return strstr(w->settings, word) != NULL;
 }
 
-/* Metals, films and rough surfaces, where the settings allow them. A separate stream of numbers, so that scenes stay as
- * they are otherwise. */
+/* Metals, films, rough surfaces and media that scatter, where the settings allow them. A separate stream of numbers, so
+ * that scenes stay as they are otherwise. */
 static inline void random_layers(law_solid *s, const law_scene *w, uint64_t seed)
 {
     uint64_t own = seed ^ 0x676f6c64u; /* "gold" */
@@ -243,6 +244,8 @@ static inline void random_layers(law_solid *s, const law_scene *w, uint64_t seed
         (s->opaque || !without)) /* basic radiance and the depth buffer do not support films on clear solids */
         s->film_nm = random_real(&own, 50.0, 900.0);
     s->roughness = random_below(&own, 3) == 0 && law_settings_have(w, "path") ? random_real(&own, 0.02, 0.8) : 0.0;
+    if (!s->opaque && law_settings_have(w, "path") && random_below(&own, 3) == 0)
+        s->scatter_per_m = random_real(&own, 0.1, 3.0), s->asymmetry = random_real(&own, -0.9, 0.9);
 }
 
 static inline law_solid random_solid(const law_scene *w, int number, uint64_t *seed)
@@ -330,6 +333,8 @@ static inline void write_material(scene_text *t, const law_solid *s)
         add(t, "film_thickness_nm: %.17g, ", s->film_nm);
     if (s->roughness > 0.0)
         add(t, "roughness: %.17g, ", s->roughness);
+    if (s->scatter_per_m > 0.0)
+        add(t, "scatter_per_m: %.17g, asymmetry: %.17g, ", s->scatter_per_m, s->asymmetry);
     add(t, "reflectivity: %.17g, specular: %.17g, shininess: 20}\n", s->reflectivity, s->specular);
 }
 

@@ -386,6 +386,8 @@ static const condition conditions[] = {
     {"rod", "render.integrator=path render.paths=4", "rod.roughness", "matte", true},
     {"rod", "render.integrator=path render.paths=4 render.weights=constant vessel.transparency=0.9", "vessel.roughness",
      "constant-rough", true},
+    {"rod", "", "liquid.scatter_per_m", "unscattered", true},
+    {"rod", "render.integrator=path render.paths=4", "liquid.asymmetry", "no-scattering", true},
     {"rod", "rod.medium=gold", "rod.reflectivity", "layered", true},
     {"rod", "rod.film_thickness_nm=300", "rod.reflectivity", "layered", true},
     {"rod", "rod.medium=gold render.lighting=phong", "rod.medium", "no-tree", true},
@@ -450,6 +452,8 @@ static const counterpart counterparts[] = {
     {"of-solid", "rod", "vessel.birefringence", "render.polarisation=on vessel.sheet=retarder"},
     {"of-solid", "rod", "vessel.absorb_per_m", ""},
     {"of-solid", "rod", "vessel.absorb_spectrum", ""},
+    {"of-solid", "rod", "vessel.scatter_per_m", "render.integrator=path render.paths=4"},
+    {"of-solid", "rod", "vessel.asymmetry", "render.integrator=path render.paths=4 vessel.scatter_per_m=2"},
     {"of-solid", "rod", "liquid.tint_distance", "liquid.color=0.9,0.7,0.5"},
     {"of-solid", "rod", "vessel.transparency", ""},
 };

@@ -170,6 +170,28 @@ static void the_view_of_normals_is_encoded_as_a_normal_map(void **state)
     scene_destroy(s);
 }
 
+/* A distance t is shown as L / (L + t), with one length L for the frame. */
+static void the_view_of_distances_is_bright_near_by(void **state)
+{
+    (void)state;
+    scene *s = scene_from(room);
+    set(s, "render.layer=depth");
+    render_result *r = layers_at(s, isa_best());
+    double least = HUGE_VAL, most = 0.0;
+    for (int y = 0; y < HEIGHT; y++)
+        for (int x = 0; x < WIDTH; x++) {
+            const double t = value(r, LAYER_DEPTH, x, y).x, shown = srgb_encode(film_value(r->img, x, y, 0));
+            if (!(value(r, LAYER_SOLID, x, y).x > 0.0))
+                continue;
+            assert_true(t > 0.0 && shown > 0.0 && shown < 1.0);
+            const double length = t * shown / (1.0 - shown);
+            least = fmin(least, length), most = fmax(most, length);
+        }
+    assert_true(least > 0.0 && most < least * (1.0 + 1e-3));
+    render_result_destroy(r);
+    scene_destroy(s);
+}
+
 /* A coordinate x is shown as 1/2 + x / 2 (L + |x|), with one length L for the frame, so that none is cut off. */
 static void the_view_of_positions_shows_signs_and_never_clips(void **state)
 {
@@ -312,6 +334,7 @@ int main(void)
         cmocka_unit_test(the_memory_of_a_pixel_is_that_of_its_layers),
         cmocka_unit_test(misses_are_zero),
         cmocka_unit_test(the_view_of_normals_is_encoded_as_a_normal_map),
+        cmocka_unit_test(the_view_of_distances_is_bright_near_by),
         cmocka_unit_test(the_view_of_positions_shows_signs_and_never_clips),
         cmocka_unit_test(the_view_of_solids_has_distinct_colours),
         cmocka_unit_test(layers_are_bit_identical_for_any_threads_and_instruction_set),

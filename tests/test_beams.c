@@ -342,6 +342,10 @@ static void a_screen_shows_where_and_in_which_colour(void **state)
             assert_true(screen.color[3 * bin + k] == power * green[k]);
     }
     beam_screen_release(&screen);
+    screen.columns = screen.rows = 512; /* the most */
+    worked(beam_screen_expose(s, isa_best(), &screen, &why), &why);
+    beam_screen_release(&screen);
+    screen.columns = screen.rows = 4;
     screen.width = 1e6;
     worked(beam_screen_expose(s, isa_best(), &screen, &why), &why);
     beam_screen_release(&screen);

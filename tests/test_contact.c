@@ -126,6 +126,36 @@ static void a_film_in_contact_is_entered(void **state)
     }
 }
 
+/* A ring that begins again where a box ends: the ray leaves the box, which hides the ring's near side, into the ring's
+ * far side. */
+static void the_far_side_of_a_ring_in_contact_is_entered(void **state)
+{
+    (void)state;
+    const solid_shape shapes[2] = {
+        {.kind = SHAPE_BOX, .position = {-8.5, 0.0, 0.0}, .size = {23.0, 4.0, 4.0}},
+        {.kind = SHAPE_TORUS, .radius = 4.0, .tube_radius = 1.0},
+    };
+    for (int first = 0; first < 2; first++) {
+        region_source sources[2];
+        sources[first] = (region_source){
+            .shape = &shapes[0], .priority = 2, .medium = 1, .shadow_transmittance = 1.0, .solid = first};
+        sources[1 - first] = (region_source){
+            .shape = &shapes[1], .priority = 1, .medium = 2, .shadow_transmittance = 1.0, .solid = 1 - first};
+        scene_geometry *a = NULL;
+        assert_int_equal(scene_geometry_build(sources, 2, 0, TREE_IF_MANY, &a, NULL), STATUS_OK);
+        one_ray r = {{-10.0, 0.0, 0.0}, {1.0, 0.0, 0.0}, FACE_NONE, 0};
+        r.inside = scene_geometry_inside(a, r.o);
+        one_hit h = nearest_interface(a, r);
+        assert_true(fabs(h.t - 13.0) < 1e-12);
+        assert_int_equal(a->regions[h.before].medium, 1);
+        assert_int_equal(a->regions[h.after].medium, 2);
+        h = nearest_interface(a, (one_ray){h.point, r.d, h.face, h.inside_after});
+        assert_true(fabs(h.t - 2.0) < 1e-12);
+        assert_int_equal(h.after, 0);
+        scene_geometry_destroy(a);
+    }
+}
+
 /* Two rotated discs of clear glass, one above the other: the light of a shadow ray that crosses 2 or 4 interfaces. */
 static double light_through_discs(double gap, const vec3 *turn_deg)
 {
@@ -170,6 +200,7 @@ int main(void)
         cmocka_unit_test(the_limit_is_independent_of_the_priorities),
         cmocka_unit_test(a_distant_solid_does_not_change_the_limit),
         cmocka_unit_test(a_film_in_contact_is_entered),
+        cmocka_unit_test(the_far_side_of_a_ring_in_contact_is_entered),
         cmocka_unit_test(shadow_rays_resolve_the_same_gaps),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);

@@ -3,10 +3,14 @@
 #include <stdarg.h>
 #include <stddef.h>
 #include <stdint.h>
+#include <pthread.h>
+#include <stdatomic.h>
 #include <stdlib.h>
 #include <string.h>
+#include <time.h>
 #include <cmocka.h>
 
+#include "geometry/mesh_share.h"
 #include "refit_fixture.h"
 
 /* Four triangles that span the unit cube at x. */
@@ -168,6 +172,31 @@ static void hierarchies_that_cannot_be_refitted_are_rebuilt(void **state)
     mesh_release(m);
 }
 
+static atomic_bool followed;
+
+static void *follow_aside(void *m)
+{
+    assert_int_equal(hierarchy_follow(m, 1.0, 1, NULL, NULL), STATUS_OK);
+    atomic_store(&followed, true);
+    return NULL;
+}
+
+/* A thread that builds a hierarchy of the mesh holds the lock. */
+static void hierarchies_follow_only_while_no_other_thread_builds_them(void **state)
+{
+    (void)state;
+    mesh *m = icosphere(1);
+    pthread_t other;
+    assert_int_equal(pthread_mutex_lock(&m->share->mutex), 0);
+    assert_int_equal(pthread_create(&other, NULL, follow_aside, m), 0);
+    nanosleep(&(struct timespec){.tv_nsec = 50000000}, NULL);
+    assert_false(atomic_load(&followed));
+    assert_int_equal(pthread_mutex_unlock(&m->share->mutex), 0);
+    assert_int_equal(pthread_join(other, NULL), 0);
+    assert_true(atomic_load(&followed));
+    mesh_release(m);
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
@@ -175,6 +204,7 @@ int main(void)
         cmocka_unit_test(cost_grows_when_the_vertices_are_shuffled),
         cmocka_unit_test(moved_meshes_refit_or_rebuild_their_hierarchies_by_cost),
         cmocka_unit_test(hierarchies_that_cannot_be_refitted_are_rebuilt),
+        cmocka_unit_test(hierarchies_follow_only_while_no_other_thread_builds_them),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

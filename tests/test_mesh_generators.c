@@ -363,6 +363,17 @@ static void a_plane_height_field_has_its_exact_volume(void **state)
         assert_near(vec3_length(vec3_sub(m->normals[v], vec3_make(-0.5 / slope, 1.0 / slope, 0.0))), 0.0, 1e-15);
     assert_true(m->vertices[0].x == -2.0 && m->vertices[0].z == -3.0 && m->vertices[11].x == 2.0 &&
                 m->vertices[11].z == 3.0);
+    int on_walls = 0;
+    for (size_t v = 12; v < m->vertex_count; v++) { /* a texture covers each wall, from one edge to the other */
+        const vec3 p = m->vertices[v], n = m->normals[v];
+        const double along = fabs(n.x) > 0.5 ? p.z / 6.0 + 0.5 : p.x / 4.0 + 0.5, u = m->uvs[v].u;
+        if (fabs(n.y) > 0.5)
+            continue;
+        assert_true(fabs(u - along) < 1e-15 || fabs(1.0 - u - along) < 1e-15);
+        assert_true(m->uvs[v].v == (p.y == -1.5 ? 0.0 : 1.0));
+        on_walls++;
+    }
+    assert_int_equal(on_walls, 2 * 2 * (3 + 4));
     mesh_release(m);
     assert_int_equal(generate_height_field(heights, 3, 4, 4.0, 6.0, 0.0, &m, NULL), STATUS_OK);
     assert_false(m->closed);
@@ -392,10 +403,10 @@ static void invalid_arguments_are_refused_with_a_remedy(void **state)
 {
     (void)state;
     mesh *m = NULL;
-    const double heights[4] = {0.0, 0.0, -2.0, 0.0};
+    const double heights[4] = {0.0, 0.0, -2.0, 0.0}, high[4] = {1.0, 1.0, 1.0, 1.0};
     const profile_point fine[] = {{0, 0}, {1, 0}, {0, 1}}, twice[] = {{1, 0}, {1, 0}, {0, 1}},
                         axis[] = {{0, 0}, {0, 1}}, minus[] = {{0, 0}, {-1, 0}};
-    diagnostic why[18] = {{.remedy = ""}};
+    diagnostic why[20] = {{.remedy = ""}};
     const status got[] = {generate_sparse_soup(0, &m, &why[0]),
                           generate_dense_soup((size_t)MESH_TRIANGLES_MAX + 1, &m, &why[1]),
                           generate_sphere(0, &m, &why[2]),
@@ -413,7 +424,9 @@ static void invalid_arguments_are_refused_with_a_remedy(void **state)
                           generate_height_field(heights, 1, 4, 1, 1, 1, &m, &why[14]),
                           generate_height_field(heights, 2, 2, 1, 1, 2.0, &m, &why[15]),
                           generate_box(vec3_make(1, 0, 1), &m, &why[16]),
-                          generate_box(vec3_make(1, (double)INFINITY, 1), &m, &why[17])};
+                          generate_box(vec3_make(1, (double)INFINITY, 1), &m, &why[17]),
+                          generate_height_field(high, 2, 2, 1, 1, -0.5, &m, &why[18]),
+                          generate_height_field(high, 2, 2, 1, 1, 1.001e9, &m, &why[19])};
     for (size_t k = 0; k < COUNT(got); k++) {
         assert_int_equal(got[k], STATUS_BAD_INPUT);
         assert_true(why[k].what[0] && why[k].remedy[0]);

@@ -97,9 +97,9 @@ static void tables_are_linear_between_entries_and_zero_outside(void **state)
 static void daylight_has_its_published_values(void **state)
 {
     (void)state;
-    static const double known[][2] = {{380, 49.9755}, {400, 82.7549}, {450, 117.008}, {460, 117.812},
-                                      {500, 109.354}, {560, 100.0},   {600, 90.0062}, {650, 80.0268},
-                                      {700, 71.6091}, {780, 63.3828}, {830, 60.3125}};
+    static const double known[][2] = {{360, 46.6383}, {380, 49.9755}, {400, 82.7549}, {450, 117.008},
+                                      {460, 117.812}, {500, 109.354}, {560, 100.0},   {600, 90.0062},
+                                      {650, 80.0268}, {700, 71.6091}, {780, 63.3828}, {830, 60.3125}};
     for (size_t k = 0; k < COUNT(known); k++)
         assert_near(100.0 * observer_d65(known[k][0]) / observer_d65(560.0), known[k][1], 1e-9);
 }

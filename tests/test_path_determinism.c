@@ -22,6 +22,10 @@ static const char *const variants[] = {
     "render.integrator=path render.paths=16 vessel.roughness=0.2 rod.medium=gold rod.roughness=0.3 lamp.radius=0.2",
     SMALL "render.integrator=path render.spectrum=spectral render.paths=8 vessel.medium=sf11 vessel.roughness=0.1 "
           "rod.reflectivity=0.5 rod.roughness=0.5 render.caustics=photons render.photons=3000",
+    SMALL "render.integrator=path render.paths=16 liquid.scatter_per_m=2 liquid.asymmetry=0.7 vessel.scatter_per_m=1 "
+          "lamp.kind=cone lamp.half_angle_deg=3 lamp.target=0,1,0 lamp.radius=0",
+    SMALL "render.integrator=path render.spectrum=spectral render.paths=8 liquid.scatter_per_m=3 liquid.medium=water "
+          "liquid.asymmetry=-0.4",
     SMALL "render.spectrum=spectral render.wavelengths=9 liquid.medium=water vessel.medium=sf11",
     SMALL "render.spectrum=spectral render.wavelengths=5 render.polarisation=on render.samples=4 vessel.medium=sf11",
     SMALL "render.polarisation=on render.min_weight=0.01",

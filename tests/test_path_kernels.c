@@ -223,13 +223,17 @@ static void weights_follow_the_law_of_distance(void **state)
     }
     for (int level = ISA_BASE; level <= (int)isa_best(); level++) {
         float weight[LAMPS_MAX];
-        kernels[level]->light_weights(&lamps, point, n, 0.7f, 0.1f, weight);
+        float around[LAMPS_MAX];
+        kernels[level]->light_weights(&lamps, point, vec3_make(0.0, 0.0, 0.0), 0.0f, 0.1f, -1.0f, around);
+        kernels[level]->light_weights(&lamps, point, n, 0.7f, 0.1f, 0.0f, weight);
         for (int k = 0; k < lamps.blocks * LAMP_BLOCK; k++) {
             const vec3 to = vec3_sub(vec3_make(lamps.x[k], lamps.y[k], lamps.z[k]), point);
             const double distance2 = vec3_dot(to, to), cosine = vec3_dot(n, to) / sqrt(distance2);
             const double radiance = (double)lamps.strength[k] / (k % 2 ? 1.0 : distance2) * (0.7 * cosine + 0.1);
             const double expected = cosine > 0.0 ? radiance : 0.0;
             assert_true(fabs((double)weight[k] - expected) <= 1e-5 * (1.0 + expected));
+            const double even = (double)lamps.strength[k] / (k % 2 ? 1.0 : distance2) * 0.1;
+            assert_true(fabs((double)around[k] - even) <= 1e-5 * (1.0 + even));
         }
     }
 }

@@ -1,4 +1,5 @@
-/* Tests of photon maps: irradiance of known distributions, its integral, and independence of the order of photons. */
+/* Tests of photon maps: irradiance of known distributions, its integral, its noise and its
+ * edges, and independence of the order of photons. */
 #include <math.h>
 #include <setjmp.h>
 #include <stdarg.h>
@@ -35,7 +36,7 @@ static photon_map *map_of(photon_list *lists, size_t count, double widest)
     photon_map *m = NULL;
     assert_int_equal(photon_map_create(lists, count, &m, NULL), STATUS_OK);
     for (size_t first = 0; first < photon_map_count(m); first += PHOTON_BLOCK)
-        photon_map_spread(m, first, widest);
+        photon_map_spread(m, first, &(photon_limits){.widest = widest});
     photon_map_finish(m);
     for (size_t i = 0; i < count; i++)
         free(lists[i].list);
@@ -86,25 +87,117 @@ static void the_integral_of_irradiance_is_the_flux(void **state)
     photon_map_destroy(m);
 }
 
-/* A disc reaches to the PHOTON_NEIGHBOURS-th neighbour, found by looking at all photons. */
+/* Where light is not even, as along a line, a disc reaches to the PHOTON_NEIGHBOURS-th neighbour: here half as many
+ * spacings, on either side. */
 static void discs_reach_the_nearest_neighbours(void **state)
 {
     (void)state;
     enum { COUNT = 1500 };
-    photon_map *m = even_map(COUNT);
-    double d[COUNT];
-    for (size_t i = 0; i < COUNT; i += 97) {
-        const photon *one = photon_map_at(m, i);
-        int nearer = 0, nearer_by_half = 0;
-        for (size_t k = 0; k < COUNT; k++) {
-            d[k] = vec3_length(vec3_sub(photon_map_at(m, k)->position, one->position));
-            nearer += d[k] < (double)one->radius;
-            nearer_by_half += d[k] < 0.5 * (double)one->radius;
-        }
-        /* some have the radius of a close neighbour */
-        assert_true(nearer > PHOTON_NEIGHBOURS / 2 && nearer < 2 * PHOTON_NEIGHBOURS);
-        assert_true(nearer_by_half < nearer / 2);
+    photon_list all = {0};
+    for (int i = 0; i < COUNT; i++) {
+        const photon one = photon_at((i + 0.5) / COUNT, 0.0, 0.5, 1.0F);
+        assert_true(photon_list_add(&all, &one));
     }
+    photon_map *m = map_of(&all, 1, 0.2);
+    const double r = 0.5 * PHOTON_NEIGHBOURS / COUNT;
+    int inner = 0;
+    for (size_t i = 0; i < photon_map_count(m); i++) {
+        const photon *one = photon_map_at(m, i);
+        if (one->position.x > 0.1 && one->position.x < 0.9) {
+            assert_near((double)one->radius, r, 1e-5);
+            inner++;
+        }
+    }
+    assert_true(inner > 100);
+    photon_map_destroy(m);
+}
+
+/* Mean and standard deviation of irradiance at points of a patch. */
+static double irradiance_noise(const photon_map *m, double *mean)
+{
+    double sum = 0.0, sum2 = 0.0;
+    int points = 0;
+    for (double x = 0.25; x < 0.75; x += 0.02)
+        for (double z = 0.25; z < 0.75; z += 0.02, points++) {
+            const double e = photon_map_irradiance(m, vec3_make(x, 0.0, z), up, -1).x;
+            sum += e, sum2 += e * e;
+        }
+    *mean = sum / points;
+    return sqrt(sum2 / points - *mean * *mean);
+}
+
+/* Photons at independent random points: the sum of biweights over n photons in a disc has the relative variance
+ * (9 / 5) / n, as the kernel's squared integral is 9 / (5 pi r^2); n is 48 in the narrowest discs, and 16 times as
+ * much in the widest. */
+static void discs_are_wide_where_light_is_even(void **state)
+{
+    (void)state;
+    enum { COUNT = 100000 };
+    photon_list all = {0};
+    for (uint32_t i = 0; i < COUNT; i++) {
+        const random_words w = random_at(5, i, 0, 0, 0);
+        const photon one = photon_at(random_unit(w.word[0]), 0.0, random_unit(w.word[1]), 1.0F / COUNT);
+        assert_true(photon_list_add(&all, &one));
+    }
+    photon_map *m = map_of(&all, 1, 0.3);
+    double mean;
+    const double noise = irradiance_noise(m, &mean), widest = sqrt(1.8 / (16.0 * PHOTON_NEIGHBOURS));
+    assert_near(mean, 1.0, 0.005);
+    if (!(noise > 0.7 * widest && noise < 2.0 * widest)) /* that of the narrowest would be 4 times as much */
+        fail_msg("noise %g instead of about %g", noise, widest);
+    assert_true(photon_map_count(m) < COUNT / 4); /* many became one */
+    photon_map_destroy(m);
+}
+
+/* Half of the square is lit. What wider discs lose or gain near its edge is below the noise of the narrow ones, which
+ * is 19 % (discs_are_wide_where_light_is_even). */
+static void edges_stay_sharp(void **state)
+{
+    (void)state;
+    enum { COUNT = 40000 };
+    photon_list all = {0};
+    for (uint32_t i = 0; i < COUNT; i++) {
+        photon one = spread_evenly(i, COUNT);
+        one.position.x *= 0.5;
+        assert_true(photon_list_add(&all, &one));
+    }
+    photon_map *m = map_of(&all, 1, 0.3);
+    const double narrow = sqrt(PHOTON_NEIGHBOURS / (2.0 * COUNT * 3.141592653589793)); /* of a disc within */
+    double in = 0.0, out = 0.0, far_out = 0.0;
+    int points = 0;
+    for (double z = 0.2; z < 0.8; z += 0.005, points++) {
+        in += photon_map_irradiance(m, vec3_make(0.5 - 2.0 * narrow, 0.0, z), up, -1).x;
+        out += photon_map_irradiance(m, vec3_make(0.5 + 2.0 * narrow, 0.0, z), up, -1).x;
+        far_out += photon_map_irradiance(m, vec3_make(0.5 + 4.0 * narrow, 0.0, z), up, -1).x;
+    }
+    assert_near(in / points, 2.0, 0.2);
+    assert_near(out / points, 0.0, 0.1);
+    assert_near(far_out, 0.0, 0.0);
+    photon_map_destroy(m);
+}
+
+static void discs_are_no_narrower_than_the_least(void **state)
+{
+    (void)state;
+    photon_list all = {0};
+    for (int i = 0; i < 20000; i++) {
+        const photon one = spread_evenly((uint32_t)i, 20000);
+        assert_true(photon_list_add(&all, &one));
+    }
+    photon_map *m = NULL;
+    assert_int_equal(photon_map_create(&all, 1, &m, NULL), STATUS_OK);
+    free(all.list);
+    const photon_limits limits = {.widest = 0.001, .least = 0.1, .least_at_1 = 0.01, .eye = vec3_make(0.5, 100.0, 0.5)};
+    for (size_t first = 0; first < photon_map_count(m); first += PHOTON_BLOCK)
+        photon_map_spread(m, first, &limits);
+    photon_map_finish(m);
+    assert_true(photon_map_count(m) < 2000);
+    double sum = 0.0;
+    for (size_t i = 0; i < photon_map_count(m); i++) {
+        assert_near((double)photon_map_at(m, i)->radius, 1.1, 1e-4); /* 100 above the plane */
+        sum += (double)photon_map_at(m, i)->flux[0];
+    }
+    assert_near(sum, 1.0, 1e-4);
     photon_map_destroy(m);
 }
 
@@ -133,8 +226,8 @@ static void the_map_does_not_depend_on_the_order_of_photons(void **state)
         assert_true(photon_list_add(&three[i * 7 % 3], &one));
     }
     photon_map *other = map_of(three, 3, 0.2);
-    assert_int_equal(photon_map_count(other), COUNT);
-    for (size_t i = 0; i < COUNT; i++)
+    assert_int_equal(photon_map_count(other), photon_map_count(m));
+    for (size_t i = 0; i < photon_map_count(m); i++)
         assert_memory_equal(photon_map_at(m, i), photon_map_at(other, i), sizeof(photon));
     for (double x = 0.0; x < 1.0; x += 0.03) {
         const vec3 a = photon_map_irradiance(m, vec3_make(x, 0.0, 0.4), up, -1),
@@ -193,6 +286,9 @@ int main(void)
         cmocka_unit_test(an_even_density_gives_its_irradiance),
         cmocka_unit_test(the_integral_of_irradiance_is_the_flux),
         cmocka_unit_test(discs_reach_the_nearest_neighbours),
+        cmocka_unit_test(discs_are_wide_where_light_is_even),
+        cmocka_unit_test(edges_stay_sharp),
+        cmocka_unit_test(discs_are_no_narrower_than_the_least),
         cmocka_unit_test(other_surfaces_receive_nothing),
         cmocka_unit_test(the_map_does_not_depend_on_the_order_of_photons),
         cmocka_unit_test(a_spectral_map_counts_photons_of_near_wavelengths),

@@ -86,6 +86,7 @@ static void rays_fill_the_width_and_the_disc(void **state)
         ray_axes_round(&a, true, 120.0, i, RAYS, &origin, &direction);
         cosine += direction.z / RAYS;
         assert_true(direction.z >= 0.5 - 1e-12);
+        assert_true(fabs(vec3_dot(direction, direction) - 1.0) < 1e-12);
     }
     assert_true(fabs(square - 0.5) < 1e-9 && fabs(cosine - 0.75) < 1e-9); /* a cone of 60 degrees: (1 + cos) / 2 */
 }

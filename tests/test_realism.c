@@ -328,6 +328,7 @@ static void curves_of_other_scenes_equal_theory(void **state)
         {"experiments/scenes/prism.yaml", REALISM_CURVE_PRISM, 100, 60.0, 90.0},
         {"experiments/scenes/rainbow.yaml", REALISM_CURVE_RAINBOW, 100, 0.0, 42.6},
         {"experiments/scenes/plates.yaml", REALISM_CURVE_PLATES, 86, 0.0, 0.86},
+        {"experiments/scenes/malus.yaml", REALISM_CURVE_MALUS, 91, 0.0, 0.5},
     };
     for (size_t k = 0; k < sizeof cases / sizeof *cases; k++) {
         scene *s = NULL;

@@ -210,6 +210,9 @@ static void a_window_without_extent_is_refused(void **state)
     section_plane plane = upright;
     plane.u1 = plane.u0;
     assert_int_equal(section_cut(p, &plane, 50, &out, NULL), STATUS_BAD_INPUT);
+    plane = upright;
+    plane.v1 = plane.v0;
+    assert_int_equal(section_cut(p, &plane, 50, &out, NULL), STATUS_BAD_INPUT);
     assert_int_equal(section_cut(p, &upright, 1, &out, NULL), STATUS_BAD_INPUT);
     section_release(&out);
     probe_destroy(p);

@@ -303,6 +303,7 @@ static void points_of_the_surface_belong_to_a_solid(void **state)
         {{.kind = SHAPE_CYLINDER, .m = 1, .radius = 2, .height = 3}, {{2, 1, 0}, {0, 0, -2}, {0, 3, 1}, {0, 3, 2}}},
         {{.kind = SHAPE_LENS, .radius_1 = 8, .radius_2 = 0, .thickness = 2, .diameter = 4},
          {{0, 0, 0}, {0, 2, 0}, {2, 1, 0}, {0, 2, -2}}},
+        {{.kind = SHAPE_TORUS, .radius = 4, .tube_radius = 1}, {{5, 0, 0}, {4, 1, 0}, {0, -1, -4}, {0, 0, -5}}},
     };
     for (size_t i = 0; i < sizeof cases / sizeof *cases; i++) {
         const region_source source = {.shape = &cases[i].shape, .medium = 1, .shadow_transmittance = 1.0};
@@ -360,6 +361,82 @@ static void a_mesh_reaches_as_far_as_its_box(void **state)
     mesh_release(m);
 }
 
+/* The ends of a prism are covered as the squares around their corners. */
+static void an_image_covers_the_ends_of_a_prism(void **state)
+{
+    (void)state;
+    const solid_shape shape = {.kind = SHAPE_PRISM, .sides = 6, .radius = 2, .height = 3};
+    const region_source source = {.shape = &shape, .medium = 1, .shadow_transmittance = 1.0};
+    scene_geometry *a = NULL;
+    assert_int_equal(scene_geometry_build(&source, 1, 0, TREE_IF_MANY, &a, NULL), STATUS_OK);
+    const primitive *p = &a->primitives[0];
+    for (int face = 0; face < 2; face++)
+        for (int corner = 0; corner < 4; corner++) {
+            const double x = corner & 1 ? 2 : -2, z = corner & 2 ? 2 : -2;
+            const surface_mapping m = primitive_mapping(p, p->first_face + face, vec3_make(x, 0.0, z), 0.0);
+            assert_true(fabs(m.u - (x + 2) / 4) < SLACK && fabs(m.v - (face == 0 ? 2 - z : z + 2) / 4) < SLACK);
+        }
+    scene_geometry_destroy(a);
+}
+
+/* Each face of a box has the whole image: its corners are corners of the image. */
+static void an_image_covers_each_face_of_a_box(void **state)
+{
+    (void)state;
+    const solid_shape shape = {.kind = SHAPE_BOX, .size = {2, 4, 6}};
+    const region_source source = {.shape = &shape, .medium = 1, .shadow_transmittance = 1.0};
+    scene_geometry *a = NULL;
+    assert_int_equal(scene_geometry_build(&source, 1, 0, TREE_IF_MANY, &a, NULL), STATUS_OK);
+    const primitive *p = &a->primitives[0];
+    for (int face = 0; face < 6; face++)
+        for (int corner = 0; corner < 8; corner++) {
+            const vec3 q = {corner & 1 ? 1 : -1, corner & 2 ? 2 : -2, corner & 4 ? 3 : -3};
+            const surface_mapping m = primitive_mapping(p, p->first_face + face, q, 0.0);
+            if ((corner >> (face / 2) & 1) != (face & 1)) /* not of this face */
+                continue;
+            assert_true(fmin(fabs(m.u), fabs(m.u - 1.0)) < SLACK && fmin(fabs(m.v), fabs(m.v - 1.0)) < SLACK);
+        }
+    scene_geometry_destroy(a);
+}
+
+/* Around a truncated cone in lengths of its wider end, along it in lengths of its slant. */
+static void an_image_has_the_lengths_of_a_cones_side(void **state)
+{
+    (void)state;
+    const solid_shape shape = {.kind = SHAPE_CONE, .radius = 2, .top_radius = 1, .height = 3};
+    const region_source source = {.shape = &shape, .medium = 1, .shadow_transmittance = 1.0};
+    scene_geometry *a = NULL;
+    assert_int_equal(scene_geometry_build(&source, 1, 0, TREE_IF_MANY, &a, NULL), STATUS_OK);
+    const primitive *p = &a->primitives[0];
+    const double size = 5.0;
+    const surface_mapping low = primitive_mapping(p, p->first_face, vec3_make(2, 0, 0), size),
+                          high = primitive_mapping(p, p->first_face, vec3_make(1, 3, 0), size),
+                          left = primitive_mapping(p, p->first_face, vec3_make(0, 0, -2), size),
+                          right = primitive_mapping(p, p->first_face, vec3_make(0, 0, 2), size);
+    assert_true(fabs(fabs(high.v - low.v) * size - sqrt(10.0)) < SLACK);
+    assert_true(fabs(fmin(fabs(left.u - low.u), fabs(right.u - low.u)) * size - M_PI) < 1e-9); /* not over the seam */
+    for (int corner = 0; corner < 4; corner++) {
+        const vec3 q = {corner & 1 ? 1 : -1, 3, corner & 2 ? 1 : -1};
+        const surface_mapping m = primitive_mapping(p, p->first_face + 2, q, 0.0);
+        assert_true(fmin(fabs(m.u), fabs(m.u - 1.0)) < SLACK && fmin(fabs(m.v), fabs(m.v - 1.0)) < SLACK);
+    }
+    scene_geometry_destroy(a);
+}
+
+/* All rings of an elliptic cup are as elliptic, and a ring is as thick as its tube. */
+static void rings_and_thickness_of_cups_and_tori(void **state)
+{
+    (void)state;
+    const solid_shape cup = {.kind = SHAPE_CUP, .m = 2, .radius = 2, .inner_radius = 1.5, .height = 3, .floor = 0.2};
+    const solid_shape torus = {.kind = SHAPE_TORUS, .radius = 4, .tube_radius = 1};
+    shape_ring rings[RINGS_MAX];
+    const int count = shape_of(&cup)->rings(&cup, rings);
+    assert_true(count > 2);
+    for (int i = 0; i < count; i++)
+        assert_true(fabs(rings[i].z - rings[i].x / 2.0) < SLACK);
+    assert_true(fabs(shape_of(&torus)->thickness(&torus) - 2.0) < SLACK);
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
@@ -373,6 +450,10 @@ int main(void)
         cmocka_unit_test(flat_faces_bound_the_solid),
         cmocka_unit_test(points_of_the_surface_belong_to_a_solid),
         cmocka_unit_test(an_image_covers_an_end_exactly),
+        cmocka_unit_test(an_image_covers_the_ends_of_a_prism),
+        cmocka_unit_test(an_image_covers_each_face_of_a_box),
+        cmocka_unit_test(an_image_has_the_lengths_of_a_cones_side),
+        cmocka_unit_test(rings_and_thickness_of_cups_and_tori),
         cmocka_unit_test(a_mesh_reaches_as_far_as_its_box),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);

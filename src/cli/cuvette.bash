@@ -66,7 +66,10 @@ _cuvette_value() # OPTION: completes its value; false for a flag
     --tasks | --node-type | --memory | --factor | --sbatch) COMPREPLY=() ;;
     --template) _cuvette_files 'slurm|sh' ;;
     --published) _cuvette_files 'csv' ;;
-    --curve) _cuvette_words fresnel-s fresnel-p fresnel deviation depth absorption edges ;;
+    --curve)
+        _cuvette_words fresnel-s fresnel-p fresnel deviation depth absorption edges mirror apparent-depth prism \
+            rainbow plates malus
+        ;;
     -o | --output | --diff)
         case ${COMP_WORDS[1]-} in
         trace) _cuvette_files 'txt|json|svg' ;;

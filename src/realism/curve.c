@@ -23,6 +23,7 @@ static const curve_words words[REALISM_CURVE_COUNT] = {
     [REALISM_CURVE_PRISM] = {"prism", "angle of incidence, deg", "deviation, deg"},
     [REALISM_CURVE_RAINBOW] = {"rainbow", "offset over the drop's radius", "angle from the antisolar point, deg"},
     [REALISM_CURVE_PLATES] = {"plates", "angle of incidence, deg", "transmittance of two plates"},
+    [REALISM_CURVE_MALUS] = {"malus", "angle of the analyser, deg", "transmittance of the polarisers"},
 };
 
 const char *realism_curve_name(realism_curve which)
@@ -178,6 +179,8 @@ static const struct other_curve {
      "set background.kind=rain, or use the names and shapes of experiments/scenes/rainbow.yaml"},
     {REALISM_CURVE_PLATES, stack_is_there, stack_curve, "no solids 'plate1' and 'plate2'",
      "use the names and shapes of experiments/scenes/plates.yaml"},
+    {REALISM_CURVE_MALUS, filters_are_there, filters_curve, "no solids 'polariser' and 'analyser'",
+     "use the names and shapes of experiments/scenes/malus.yaml"},
 };
 
 /* NULL for the curves of the vessel. */
@@ -235,6 +238,7 @@ status realism_trace_curve(const scene *s, isa level, realism_curve which, reali
     case REALISM_CURVE_PRISM:
     case REALISM_CURVE_RAINBOW:
     case REALISM_CURVE_PLATES:
+    case REALISM_CURVE_MALUS:
     case REALISM_CURVE_COUNT: break;
     }
     return STATUS_OK;

@@ -56,6 +56,8 @@ void curve_add(realism_points *out, double x, double measured, double theory);
 status prism_curve(const metrics *m, realism_points *out, diagnostic *why);
 status drop_curve(const metrics *m, realism_points *out, diagnostic *why);
 status stack_curve(const metrics *m, realism_points *out, diagnostic *why);
+bool filters_are_there(const scene *s);
+status filters_curve(const metrics *m, realism_points *out, diagnostic *why);
 scene *attenuation_scene(const scene *s, const setup *at);
 status edges_displacement(const metrics *m, double measured[2], double theory[2], diagnostic *why);
 

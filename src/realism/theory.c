@@ -113,3 +113,9 @@ double theory_drop_angle(double offset, double n)
 {
     return 4.0 * asin(offset / n) - 2.0 * asin(offset);
 }
+
+double theory_crossed(double between, double plate, double retardance)
+{
+    const double half = sin(0.5 * retardance), straight = cos(between);
+    return 0.5 * (straight * straight - sin(2.0 * plate) * sin(2.0 * (plate - between)) * half * half);
+}

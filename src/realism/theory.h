@@ -52,3 +52,8 @@ double theory_prism_deviation(double incidence, double apex, double n);
 /* Angle from the antisolar point of a ray with one internal reflection in a sphere, for its offset over the radius:
  * Descartes, Les Meteores, 1637; Born and Wolf, Principles of Optics, 7th ed., 4.7 exercises. */
 double theory_drop_angle(double offset, double n);
+
+/* Transmittance for unpolarised light of two ideal linear polarisers at an angle between their axes, with a plate of
+ * that retardance between them, whose axis is at an angle `plate` from the first polariser's: Malus's law without a
+ * plate; Born and Wolf, Principles of Optics, 7th ed., 15.4.2. Radians. */
+double theory_crossed(double between, double plate, double retardance);

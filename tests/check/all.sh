@@ -51,18 +51,18 @@ chosen=("$@")
 threaded=(tracer_pool worker_pool renderer render path_determinism determinism lab_render_worker lab_live lab_semaphore
     lab_rescue lab_load http study_run engine piece_source tracing)
 part tests make STRICT=1 test
-part clang in_rotation clang 150 'make -s clang LAWS_SCENES=200'
-part sanitize in_rotation sanitize 240 'make -s sanitize LAWS_SCENES=200'
-part threads in_rotation threads 150 'make -s tsan LAWS_SCENES=200' "${threaded[@]}"
-part valgrind in_rotation valgrind 150 'make -s valgrind'
+part clang in_rotation clang 100 'make -s clang LAWS_SCENES=200'
+part sanitize in_rotation sanitize 150 'make -s sanitize LAWS_SCENES=200'
+part threads in_rotation threads 100 'make -s tsan LAWS_SCENES=200' "${threaded[@]}"
+part valgrind in_rotation valgrind 100 'make -s valgrind'
 mapfile -t commands < <(awk '/^[a-z]/ { print $1 }' tests/faults/commands.txt)
-part faults in_rotation faults 150 'make -s faults' "${commands[@]}"
+part faults in_rotation faults 120 'make -s faults' "${commands[@]}"
 part power-cuts env POWER_STATES=$((6000 * scale)) POWER_RESUMED=5 make -s power-cuts
 part interrupts make -s interrupts MOMENTS=$((96 * scale))
-part fuzz make -s fuzz FUZZ_TOTAL=$((150 * scale)) FUZZ_SECONDS=30
+part fuzz make -s fuzz FUZZ_TOTAL=$((120 * scale)) FUZZ_SECONDS=30
 measure_coverage() { # the last line: how many of all ran, and what all that ran before reach
     local code=0 line
-    in_rotation coverage 150 'make -s coverage-add' >"$check/coverage.out" 2>&1 || code=$?
+    in_rotation coverage 100 'make -s coverage-add' >"$check/coverage.out" 2>&1 || code=$?
     make -s coverage-report >"$check/coverage.report" || code=$?
     line=$(tail -n 1 "$check/coverage.out")
     cat "$check/coverage.out" "$check/coverage.report"

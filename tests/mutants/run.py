@@ -2,10 +2,11 @@
 
 First every test program of less than three minutes runs once without a mutant, which says how much processor time it
 takes and which mutants it reaches (TREE/reached.tsv). Then each mutant runs in the tests that reach it until one
-fails: it is killed. Quick tests come first, and of these the ones that reach few mutants, have killed many or are
+case fails: it is killed. Quick tests come first, and of these the ones that reach few mutants, have killed many or are
 named like the file. A test that takes six times as much processor time as before has failed too: a loaded machine
-does not change that. A limit to the time by the clock, far longer, is for tests that wait indefinitely. After
-QUICK_S of tests a mutant waits until all others had their turn: most survivors would run for minutes.
+does not change that. test_laws and test_acts try fewer scenes than in `make test`. A limit to the time by the clock, far longer, is for tests that wait indefinitely. After
+the first of TURNS_S of tests a mutant waits until all others had their turn, then for the next of them: most survivors
+would run for minutes, and most of the others are killed within a second.
 TREE/results.tsv has rows of number, killed or waiting or survived or unreached, the test that killed it, and how:
 failed, processor time or clock; the last row of a number counts. TREE/passed.tsv has rows of number and a test that
 it passed. Rows that the files have are kept, so that the same command goes on where it stopped: after SECONDS.
@@ -21,15 +22,16 @@ import sys
 import threading
 import time
 
-LONGEST_S = 180  # longer tests are left out; seconds of processor time, like QUICK_S
-QUICK_S = 30
+LONGEST_S = 180  # longer tests are left out; seconds of processor time, like TURNS_S
+TURNS_S = (2, 8, 30, math.inf)
+FAILED = b"[  FAILED  ]"  # cmocka says so of each case; those that follow are not waited for
 EXCLUDED = ("test_lab", "test_http", "test_bad_meshes", "test_study_estimate")  # need a server or quiet processors
 writing = threading.Lock()
 
 
 def environment(**more):
     here = os.getcwd()
-    return {**os.environ, "LAWS_SCENES": "500", "CUVETTE": f"{here}/build/cuvette",
+    return {**os.environ, "LAWS_SCENES": "500", "ACTS_SCENE": "rod.yaml", "CUVETTE": f"{here}/build/cuvette",
             "CUVETTE_IMPORT": f"{here}/build/cuvette-import", **more}
 
 
@@ -46,15 +48,19 @@ def run(test, cpu_s, clock_s, end, **more):
     if begun > end:
         return None, 0.0, 0.0
     process = subprocess.Popen([f"build/tests/{test}"], stdin=subprocess.DEVNULL, stdout=subprocess.DEVNULL,
-                               stderr=subprocess.DEVNULL, env=environment(**more),
+                               stderr=subprocess.PIPE, env=environment(**more),
                                preexec_fn=lambda: limits(cpu_s), start_new_session=True)
-    pid, pause_s, how = 0, 0.001, ""
+    os.set_blocking(process.stderr.fileno(), False)
+    pid, pause_s, how, said = 0, 0.001, "", b""
     while not how:
         time.sleep(pause_s)
         pause_s = min(0.05, 1.2 * pause_s)
         pid, status, usage = os.wait4(process.pid, os.WNOHANG)
         now = time.monotonic()
-        how = "ended" if pid else "clock" if now - begun > clock_s else "stopped" if now > end else ""
+        said = said[1 - len(FAILED):] + (process.stderr.read() or b"")
+        how = ("ended" if pid else "failed" if FAILED in said else "clock" if now - begun > clock_s
+               else "stopped" if now > end else "")
+    process.stderr.close()
     try:
         os.killpg(process.pid, 9)
     except ProcessLookupError:
@@ -140,10 +146,11 @@ def judge(mutant, tests, passed, end, limit_s):
     own = [test for test in tests if int(number) in test.reaches]
     left = sorted((t for t in own if t.name not in passed.get(number, ())), key=lambda t: t.cost(words))
     used_s = 0.0
-    for at, test in enumerate(left):
+    for test in left:
         if used_s >= limit_s:
-            append("results.tsv", number, "waiting", "", "")
-            return
+            break
+        if test.cpu_s > limit_s:
+            continue
         most_s = 6 * test.cpu_s + 10
         how, cpu_s, _ = run(test.name, most_s, 20 * test.clock_s + 10 * most_s, end, MUTANT=number)
         if how is None:
@@ -154,7 +161,9 @@ def judge(mutant, tests, passed, end, limit_s):
             append("results.tsv", number, "killed", test.name, how)
             return
         append("passed.tsv", number, test.name)
-    append("results.tsv", number, "survived" if own else "unreached", "", "")
+        passed.setdefault(number, set()).add(test.name)
+    lacking = any(test.name not in passed.get(number, ()) for test in own)
+    append("results.tsv", number, "waiting" if lacking else "survived" if own else "unreached", "", "")
 
 
 def main():
@@ -164,12 +173,12 @@ def main():
     end = time.monotonic() + float(sys.argv[3])
     with concurrent.futures.ThreadPoolExecutor(os.cpu_count()) as pool:
         if measure(end, pool):
-            tests, passed, mutants = tests_measured(), passed_before(), rows_of("mutants.tsv")
-            for verdict, limit_s in (None, QUICK_S), ("waiting", math.inf):
-                done = rows_of("results.tsv")
-                left = [mutant for number, mutant in mutants.items() if done.get(number, [None, None])[1] == verdict]
+            tests, mutants = tests_measured(), rows_of("mutants.tsv")
+            for limit_s in TURNS_S:
+                done, passed = rows_of("results.tsv"), passed_before()
+                left = [mutant for number, mutant in mutants.items()
+                        if done.get(number, [None, "waiting"])[1] == "waiting"]
                 list(pool.map(lambda mutant: judge(mutant, tests, passed, end, limit_s), left))
-                passed = passed_before()
     return report(equivalent)
 
 

@@ -11,6 +11,8 @@
 /* Photons that a worker traces at once, and the widest disc as a share of what makes the caustic. */
 enum { CHUNK = 4096 };
 #define WIDEST 0.1
+/* The narrowest disc's radius in pixels, as the camera sees it without deflection. */
+#define LEAST_PIXELS 0.5
 
 struct caustics {
     plan *of;      /* refers to the map */
@@ -118,12 +120,22 @@ static status sort_alone(caustics *c, diagnostic *why)
     return code;
 }
 
+static photon_limits limits_of(const caustics *c)
+{
+    const camera_frame *view = &c->settings.view;
+    const camera_pixel pixel = camera_pixel_of(view, &c->settings.render);
+    const double least = LEAST_PIXELS * fmin(pixel.across, pixel.down);
+    return (photon_limits){WIDEST * emission_extent(c->from), view->parallel ? least : 0.0,
+                           view->parallel ? 0.0 : least, view->eye};
+}
+
 static void spread_together(caustics *c, int worker)
 {
     (void)worker;
     const int64_t count = c->map ? (int64_t)photon_map_count(c->map) : 0;
+    const photon_limits limits = limits_of(c);
     for (int64_t first; !stopped(c) && (first = atomic_fetch_add(&c->next, PHOTON_BLOCK)) < count;)
-        photon_map_spread(c->map, (size_t)first, WIDEST * emission_extent(c->from));
+        photon_map_spread(c->map, (size_t)first, &limits);
 }
 
 static status finish_alone(caustics *c, diagnostic *why)

@@ -5,6 +5,7 @@
 #include "base/grow.h"
 #include "base/large_pages.h"
 #include "base/status.h"
+#include "render/caustics/photon_even.h"
 #include "render/caustics/photon_tree.h"
 #include <stdlib.h>
 #include <string.h>
@@ -17,6 +18,14 @@ bool photon_list_add(photon_list *l, const photon *one)
     return true;
 }
 
+static bool of_one_wavelength(const photon_map *m)
+{
+    for (size_t i = 1; i < m->count; i++)
+        if (m->photons[i].wavelength != m->photons->wavelength)
+            return false;
+    return true;
+}
+
 status photon_map_create(const photon_list *lists, size_t count, photon_map **out, diagnostic *why)
 {
     const size_t n = photon_lists_total(lists, count);
@@ -26,21 +35,25 @@ status photon_map_create(const photon_list *lists, size_t count, photon_map **ou
         m->count = n;
         m->photons = large_calloc(n + 1, sizeof *m->photons);
     }
-    if (!m || !m->photons || !photon_order(lists, count, m->photons) || !photon_tree_make(m)) {
-        photon_map_destroy(m);
-        return cancelled_or_out_of_memory(why);
-    }
+    if (!m || !m->photons || !photon_order(lists, count, m->photons) || !photon_tree_make(m))
+        goto failed;
     photon_tree_fit(m, false);
+    if (of_one_wavelength(m) && !(m->sums = photon_sums_make(m)))
+        goto failed;
     *out = m;
     return STATUS_OK;
+failed:
+    photon_map_destroy(m);
+    return cancelled_or_out_of_memory(why);
 }
 
 void photon_map_destroy(photon_map *m)
 {
     if (!m)
         return;
-    for (int k = 0; k < m->levels; k++)
+    for (int k = 0; k < PHOTON_LEVELS_MAX; k++)
         free(m->level[k]);
+    photon_sums_free(m->sums);
     free(m->photons);
     free(m);
 }
@@ -58,36 +71,7 @@ const photon *photon_map_at(const photon_map *m, size_t i)
 /* A photon in a list, then in the map, with its key and its part of the tree. */
 size_t photon_map_bytes(void)
 {
-    return 3 * sizeof(photon) + 2 * sizeof(void *) + sizeof(photon_box) / 7;
-}
-
-/* --- radii --- */
-
-/* Photons of a leaf that are close to its middle one have the radius of that one. */
-static void spread_leaf(photon_map *m, size_t first, size_t end, double widest)
-{
-    const size_t half = (first + end) / 2;
-    const photon *leader = &m->photons[half];
-    const double r = photon_tree_reach(m, half, PHOTON_NEIGHBOURS, widest);
-    for (size_t i = first; i < end; i++) {
-        photon *one = &m->photons[i];
-        const vec3 off = vec3_sub(one->position, leader->position);
-        const bool close = vec3_dot(off, off) < 0.5 * r * r && photon_cosine(one, leader) >= PHOTON_FACING;
-        const double own = close ? r : photon_tree_reach(m, i, PHOTON_NEIGHBOURS, widest);
-        one->radius = (float)fmin(fmax(own, (double)one->radius), PHOTON_WIDER * own);
-    }
-}
-
-void photon_map_spread(photon_map *m, size_t first, double widest)
-{
-    const size_t end = first + PHOTON_BLOCK < m->count ? first + PHOTON_BLOCK : m->count;
-    for (size_t i = first; i < end; i += PHOTON_WIDE)
-        spread_leaf(m, i, i + PHOTON_WIDE < end ? i + PHOTON_WIDE : end, widest);
-}
-
-void photon_map_finish(photon_map *m)
-{
-    photon_tree_fit(m, true);
+    return 3 * sizeof(photon) + 2 * sizeof(void *) + (sizeof(photon_box) + photon_sums_bytes()) / 7;
 }
 
 /* --- irradiance --- */

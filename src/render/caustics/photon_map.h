@@ -2,8 +2,9 @@
  * Illumination using Photon Maps", Eurographics Workshop on Rendering 1996). Each photon spreads its power over a disc
  * in its surface's plane, whose radius is the distance to its PHOTON_NEIGHBOURS-th neighbour: narrow where light is
  * dense, so that sharp caustics stay sharp (the sample-point estimator of Silverman, Density Estimation, 1986, 5.3).
- * Where the lamp's width blurs the caustic more than that, the disc has up to PHOTON_WIDER times this radius.
- * The discs overlap; irradiance at a point is the sum over the discs around it.
+ * Where light is even all around, and where the lamp's width blurs the caustic anyway, the disc is wider, and nowhere
+ * much narrower than a pixel (photon_radius.c). The discs overlap; irradiance at a point is the sum over the discs
+ * around it.
  *
  * The map is a function of the set of photons: they are sorted, so that sums have one order whichever worker added them
  * when. Ownership: photon_map_create allocates, photon_map_destroy releases; once built, any number of threads may
@@ -21,7 +22,8 @@ typedef struct photon {
     float normal[3]; /* of the surface, on the side where it arrived */
     float flux[3];   /* its power over pi, by channel: a matte surface's radiance is its albedo times irradiance / pi */
     float radius;    /* of its disc: at first, that of the blur by the lamp's width; photon_map_spread computes it */
-    int32_t wavelength; /* its number in a spectral film, else 0; of a spectral line, photon_of_line of it */
+    int32_t
+        wavelength; /* its number in a spectral film, else the same for all; of a spectral line, photon_of_line of it */
 } photon;
 
 static inline int32_t photon_of_line(int32_t wavelength)
@@ -44,12 +46,21 @@ typedef struct photon_map photon_map;
 status photon_map_create(const photon_list *lists, size_t count, photon_map **out, diagnostic *why);
 void photon_map_destroy(photon_map *m);
 
-/* Computes the radii, at most `widest`, of photons first .. first + PHOTON_BLOCK - 1; threads share the blocks. */
+/* Limits to the radii of discs, scene units: at most `widest`, at least least + least_at_1 times the distance from the
+ * eye. */
+typedef struct photon_limits {
+    double widest, least, least_at_1;
+    vec3 eye;
+} photon_limits;
+
+/* Computes the radii of photons first .. first + PHOTON_BLOCK - 1; threads share the blocks. */
 enum { PHOTON_BLOCK = 512, PHOTON_NEIGHBOURS = 48, PHOTON_WIDER = 2 };
-void photon_map_spread(photon_map *m, size_t first, double widest);
-/* Call after the last photon_map_spread: the map is then complete. */
+void photon_map_spread(photon_map *m, size_t first, const photon_limits *limits);
+/* Call after the last photon_map_spread: the map is then complete. Photons much closer together than their discs are
+ * wide become one. */
 void photon_map_finish(photon_map *m);
 
+/* How many there are, after photon_map_finish perhaps fewer. */
 size_t photon_map_count(const photon_map *m);
 /* Photon i in the map's order. */
 const photon *photon_map_at(const photon_map *m, size_t i);

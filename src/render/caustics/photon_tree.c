@@ -20,31 +20,31 @@ static void add_box(photon_box *b, const photon_box *other)
     }
 }
 
-bool photon_tree_make(photon_map *m)
+void photon_tree_count(photon_map *m)
 {
+    m->levels = 0;
     for (size_t below = m->count; below > 0;) {
         const size_t boxes = (below + PHOTON_WIDE - 1) / PHOTON_WIDE;
-        if (!(m->level[m->levels] = malloc(boxes * sizeof(photon_box))))
-            return false;
         m->boxes[m->levels++] = boxes;
         below = boxes > 1 ? boxes : 0;
     }
-    return true;
 }
 
-/* The numbers of a box's children one level below: first .. end - 1. */
-static size_t end_of(size_t first, size_t below)
+bool photon_tree_make(photon_map *m)
 {
-    return first + PHOTON_WIDE < below ? first + PHOTON_WIDE : below;
+    photon_tree_count(m);
+    for (int k = 0; k < m->levels; k++)
+        if (!(m->level[k] = malloc(m->boxes[k] * sizeof(photon_box))))
+            return false;
+    return true;
 }
 
 void photon_tree_fit(photon_map *m, bool discs)
 {
     for (int k = 0; k < m->levels; k++) {
-        const size_t below = k == 0 ? m->count : m->boxes[k - 1];
         for (size_t b = 0; b < m->boxes[k]; b++) {
             photon_box box = PHOTON_BOX_EMPTY;
-            for (size_t i = b * PHOTON_WIDE; i < end_of(b * PHOTON_WIDE, below); i++)
+            for (size_t i = photon_box_first(b); i < photon_box_end(m, k, b); i++)
                 if (k == 0)
                     photon_box_add(&box, m->photons[i].position, discs ? (double)m->photons[i].radius : 0.0);
                 else
@@ -54,8 +54,7 @@ void photon_tree_fit(photon_map *m, bool discs)
     }
 }
 
-/* The square of the distance from a point to a box. */
-static double distance2(const photon_box *b, vec3 at)
+double photon_box_distance2(const photon_box *b, vec3 at)
 {
     const double p[3] = {at.x, at.y, at.z};
     double sum = 0.0;
@@ -122,11 +121,11 @@ static void consider(nearest *s, const photon *other)
 static void search(nearest *s, int level, size_t box)
 {
     const photon_map *m = s->map;
-    const size_t first = box * PHOTON_WIDE, end = end_of(first, level == 0 ? m->count : m->boxes[level - 1]);
-    for (size_t i = first; i < end; i++)
+    const size_t end = photon_box_end(m, level, box);
+    for (size_t i = photon_box_first(box); i < end; i++)
         if (level == 0)
             consider(s, &m->photons[i]);
-        else if (distance2(&m->level[level - 1][i], s->from->position) < s->limit2)
+        else if (photon_box_distance2(&m->level[level - 1][i], s->from->position) < s->limit2)
             search(s, level - 1, i);
 }
 
@@ -139,8 +138,8 @@ double photon_tree_reach(const photon_map *m, size_t i, int k, double widest)
     for (int level = 1; level < m->levels; level++) {
         const size_t done = box;
         box /= PHOTON_WIDE;
-        for (size_t b = box * PHOTON_WIDE; b < end_of(box * PHOTON_WIDE, m->boxes[level - 1]); b++)
-            if (b != done && distance2(&m->level[level - 1][b], s.from->position) < s.limit2)
+        for (size_t b = photon_box_first(box); b < photon_box_end(m, level, box); b++)
+            if (b != done && photon_box_distance2(&m->level[level - 1][b], s.from->position) < s.limit2)
                 search(&s, level - 1, b);
     }
     const double reach = sqrt(s.limit2);
@@ -160,8 +159,8 @@ static void visit_box(const photon_map *m, int level, size_t box, vec3 point,
 {
     if (!contains(&m->level[level][box], point))
         return;
-    const size_t first = box * PHOTON_WIDE, end = end_of(first, level == 0 ? m->count : m->boxes[level - 1]);
-    for (size_t i = first; i < end; i++)
+    const size_t end = photon_box_end(m, level, box);
+    for (size_t i = photon_box_first(box); i < end; i++)
         if (level == 0)
             visit(&m->photons[i], context);
         else

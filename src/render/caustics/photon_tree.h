@@ -26,6 +26,7 @@ typedef struct photon_box {
 struct photon_map {
     photon *photons;
     size_t count;
+    struct photon_sums *sums;             /* until the radii are known; NULL for photons of several wavelengths */
     photon_box *level[PHOTON_LEVELS_MAX]; /* level 0: boxes of PHOTON_WIDE photons; the last one has one box */
     size_t boxes[PHOTON_LEVELS_MAX];
     int levels; /* 0 without photons */
@@ -39,12 +40,26 @@ static inline double photon_cosine(const photon *a, const photon *b)
 }
 
 void photon_box_add(photon_box *b, vec3 at, double radius);
+/* The square of the distance from a point to a box. */
+double photon_box_distance2(const photon_box *b, vec3 at);
+/* The numbers of a box's children, photons or boxes one level below: first .. end - 1. */
+static inline size_t photon_box_first(size_t box)
+{
+    return box * PHOTON_WIDE;
+}
+static inline size_t photon_box_end(const photon_map *m, int level, size_t box)
+{
+    const size_t below = level == 0 ? m->count : m->boxes[level - 1], end = (box + 1) * PHOTON_WIDE;
+    return end < below ? end : below;
+}
 
 /* photon_order.c: the number of photons in the lists; these photons in the map's order, to as many places; false when
  * out of memory or cancelled. */
 size_t photon_lists_total(const photon_list *lists, size_t count);
 bool photon_order(const photon_list *lists, size_t count, photon *out);
 
+/* The numbers of boxes for the map's count of photons. */
+void photon_tree_count(photon_map *m);
 /* Allocates the boxes; false when out of memory. */
 bool photon_tree_make(photon_map *m);
 /* Fits the boxes to the photons' discs, or to their positions. */

@@ -112,16 +112,17 @@ static status arrange(const scene *s, const index_law *laws, plan *p, diagnostic
             code = out_of_memory(why);
         if (material_roughness(&one->surface, &s->render) > 0.0) /* random paths find what it transmits */
             shadow_transmittance = 0.0;
-        sources[count] =
-            (region_source){.shape = &one->shape,
-                            .priority = one->priority,
-                            .medium = medium_of(s, laws, i),
-                            .opaque = solid_is_opaque(s, one),
-                            .shadow_transmittance = shadow_transmittance,
-                            .face_shadow_transmittance = p->shadow_transmittance[i],
-                            .attenuates = material_attenuates(&one->surface) || sheet_acts(&one->surface, &s->render),
-                            .reflects = p->basic && !scene_has_constant_shares(&s->render),
-                            .solid = i};
+        sources[count] = (region_source){.shape = &one->shape,
+                                         .priority = one->priority,
+                                         .medium = medium_of(s, laws, i),
+                                         .opaque = solid_is_opaque(s, one),
+                                         .shadow_transmittance = shadow_transmittance,
+                                         .face_shadow_transmittance = p->shadow_transmittance[i],
+                                         .attenuates = material_attenuates(&one->surface) ||
+                                                       material_scattering(&one->surface, &s->render) > 0.0 ||
+                                                       sheet_acts(&one->surface, &s->render),
+                                         .reflects = p->basic && !scene_has_constant_shares(&s->render),
+                                         .solid = i};
         if (code == STATUS_OK && shape_of(&one->shape)->triangles)
             code = fetch_mesh(s, (size_t)i, p, &shapes[i], &sources[count], why);
         count++;
@@ -246,6 +247,8 @@ static status fill_priority_indices(const scene *s, const index_law *laws, plan 
         return out_of_memory(why);
     if (!sheet_list_create(s, p->geometry, &p->sheets))
         return out_of_memory(why);
+    if (!scatter_plan_create(s, p->geometry, &p->scatter))
+        return out_of_memory(why);
     return layered_plan_create(&s->render, p->materials, p->laws, p->ior, p->alike, priority_indices, &p->layered)
                ? STATUS_OK
                : out_of_memory(why);
@@ -354,6 +357,7 @@ void plan_destroy(plan *p)
     spectra_destroy(p->spectral);
     layered_plan_destroy(p->layered);
     free(p->sheets);
+    free(p->scatter);
     rain_destroy(p->rain);
     free(p);
 }

@@ -11,6 +11,7 @@
 #include "render/shade/lamp_shape.h"
 #include "render/shade/light_cone.h"
 #include "render/shade/rain.h"
+#include "render/shade/scattering.h"
 #include "render/shade/sheets.h"
 #include "render/shade/spectra.h"
 #include "scene/model/camera.h"
@@ -46,6 +47,7 @@ typedef struct plan {
     spectra *spectral; /* for a spectral film, else NULL */
     layered_plan *layered; /* metals and films; NULL if there are none */
     region_sheet *sheets;  /* by priority index: polarisers and wave plates; NULL if there are none */
+    scatter_plan *scatter; /* media that scatter; NULL if there are none */
     bool rough;            /* some surfaces are rough: see render/shade/rough.h */
     camera_frame view;
     uint64_t eye_inside;       /* the set of primitives that contain the camera */

@@ -3,20 +3,21 @@
  *   a clear surface  reflects or refracts with Fresnel's weights as probabilities, so the throughput stays the same;
  *   a matte surface  is lit by every light, at a random point of those with a size (render/shade/area_lights.h), and
  *                    continues the path by the cosine law, or like a mirror with its reflectivity;
- *   a rough one      does as a smooth one of the normal of one of its facets, and samples the lamps (path_rough.h).
+ *   a rough one      does as a smooth one of the normal of one of its facets, and samples the lamps (path_rough.h);
+ *   a medium that scatters ends a ray's flight, lights the point by every lamp, and continues the path by its phase
+ *                    function (path_scatter.h).
  * Only rays from the camera and from specular surfaces hit lights: matte surfaces have sampled them directly.
  * This is how light through a vessel makes caustics; with render.caustics photons bring that light instead, and rays
  * hit lights only along specular surfaces from the camera on. In a scene with lights of a size, clear solids block
  * point lights too. A light's radiance is such that a matte surface at its reach is as bright as in Phong's model.
  * There is no ambient term: light from the sky and from other surfaces replaces it. */
+#include "render/integrators/path_continue.h"
 #include "render/integrators/path_lights.h"
 #include "render/integrators/path_rough.h"
+#include "render/integrators/path_scatter.h"
 #include "render/shade/path_kernels.h"
 
 #include <string.h>
-
-/* Below this depth every path continues; from it on faint paths end by Russian roulette. */
-enum { ROULETTE_DEPTH = 3 };
 
 /* Clips the medium segments of a ray at the light. */
 static void clip_segments(medium_segments *w, int ray, double end)
@@ -79,8 +80,15 @@ static void intersect_lights(tracer *t, const ray_queue *q, int first, const ray
 
 static void intersect(tracer *t, ray_queue *q, int first, int depth, const ray_batch *rays)
 {
+    const bool scatters = t->target.frame_plan->scatter != NULL;
+    if (scatters)
+        scattering_begin(t, q, first, depth, rays->count);
     intersect_nearest(t, q, first, depth, rays);
     intersect_lights(t, q, first, rays);
+    if (scatters) {
+        scattering_end(t);
+        path_scatter_mark(t, q, first, rays->count);
+    }
 }
 
 static void expose_light(tracer *t, const ray_queue *q, int at, int lamp, int priority_index)
@@ -95,14 +103,19 @@ static void expose_light(tracer *t, const ray_queue *q, int at, int lamp, int pr
 
 static void expose_background(tracer *t, const ray_queue *q, int first, const int *list, int count)
 {
+    int scattered[ROW], some = 0;
     for (int k = 0; k < count; k++) {
         const int i = list[k];
         const int64_t hit = t->batch.hits.hit_primitive[i];
         if (hit == -1)
             background_sky(t, q, first, &i, 1);
+        else if (hit == PATH_SCATTERED)
+            scattered[some++] = i;
         else
             expose_light(t, q, first + i, lamp_of(hit), (int)t->batch.hits.before[i]);
     }
+    if (some > 0)
+        path_scatter(t, q, first, scattered, some);
 }
 
 static bool draw_clear(const tracer *t, int k, double chance, continuation *c)
@@ -166,50 +179,6 @@ static bool draw_matte(const tracer *t, const material *m, int k, const path_cho
     return mesh_lets_out(t, k, c->direction);
 }
 
-/* Russian roulette: ends a faint path at random; the survivors take over its weight. */
-static bool survives(const tracer *t, int k, int depth, vec3 *share)
-{
-    const render_settings *r = &t->target.frame_plan->render;
-    const group *g = &t->surface.gathered;
-    if (!r->roulette || depth < ROULETTE_DEPTH)
-        return true;
-    const int64_t paths = path_count(&t->target.frame_plan->draws, sample_key_pixel(g->sample_key[k]));
-    const double weight = fmax(g->wr[k] * share->x, fmax(g->wg[k] * share->y, g->wb[k] * share->z)) * (double)paths;
-    if (weight >= 1.0)
-        return true;
-    if (path_draw(&t->target.frame_plan->draws, g->sample_key[k], depth, DRAW_ROULETTE).u >= weight)
-        return false;
-    *share = vec3_scale(*share, 1.0 / weight);
-    return true;
-}
-
-static void cut(tracer *t, int k, const continuation *c)
-{
-    const group *g = &t->surface.gathered;
-    const double r = g->wr[k] * c->share.x, gr = g->wg[k] * c->share.y, b = g->wb[k] * c->share.z;
-    COUNT(t->account.counters.cut_depth++);
-    COUNT(t->account.counters.cut_depth_throughput[0] += counters_cut_units(r));
-    COUNT(t->account.counters.cut_depth_throughput[1] += counters_cut_units(gr));
-    COUNT(t->account.counters.cut_depth_throughput[2] += counters_cut_units(b));
-    shading_expose_at_depth_limit(t, g->sample_key[k], c->direction, r, gr, b);
-}
-
-static void go_on(tracer *t, int k, int depth, const continuation *c)
-{
-    const group *g = &t->surface.gathered;
-    ray_queue *q = &t->queues.waiting[depth + 1];
-    const int at = q->count++;
-    q->ox[at] = g->points.px[k], q->oy[at] = g->points.py[k], q->oz[at] = g->points.pz[k];
-    q->dx[at] = c->direction.x, q->dy[at] = c->direction.y, q->dz[at] = c->direction.z;
-    q->wr[at] = g->wr[k] * c->share.x, q->wg[at] = g->wg[k] * c->share.y, q->wb[at] = g->wb[k] * c->share.z;
-    q->start[at] = g->points.face[k], q->inside[at] = c->inside;
-    const bool photons = t->target.frame_plan->photons != NULL;
-    const int64_t left_matte = g->sample_key[k] | (c->matte && photons ? SAMPLE_KEY_PHOTONS : 0);
-    const bool meets_lights = c->specular_bounce && !(left_matte & SAMPLE_KEY_PHOTONS);
-    q->sample_key[at] = (left_matte & ~SAMPLE_KEY_SPECULAR_BOUNCE) | (meets_lights ? SAMPLE_KEY_SPECULAR_BOUNCE : 0);
-    COUNT(c->refracted ? t->account.counters.refract++ : t->account.counters.reflect++);
-}
-
 /* rough: NULL for a smooth surface. */
 static void continue_one(tracer *t, const material *m, bool opaque, int k, int depth, const path_choices *chosen,
                          const rough_surface *rough)
@@ -219,10 +188,7 @@ static void continue_one(tracer *t, const material *m, bool opaque, int k, int d
         return;
     if (rough && !c.matte && !path_rough_scatter(t, rough, k, &c))
         return;
-    if (depth == t->queues.depth_limit)
-        cut(t, k, &c);
-    else if (survives(t, k, depth, &c.share))
-        go_on(t, k, depth, &c);
+    path_continue(t, k, depth, &c);
 }
 
 static void shade(tracer *t, int depth, int priority_index)

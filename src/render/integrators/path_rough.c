@@ -26,23 +26,9 @@ static bool takes_lamps(const tracer *t, int k)
 /* Enqueues a shadow ray from record k to a lamp, which brings that light of colour 1, or adds it at once. */
 static void enqueue(tracer *t, int k, int lamp, vec3 to_lamp, bool refracted, vec3 share)
 {
-    const plan *p = t->target.frame_plan;
     const group *g = &t->surface.gathered;
-    const int64_t sample_key = g->sample_key[k];
-    const vec3 color = vec3_scale(light_color_of(t, lamp, sample_key),
-                                  radiance_share_at_index(p, sample_key, refracted ? g->n_to[k] : g->n_from[k]));
-    const double r = g->wr[k] * share.x * color.x, gr = g->wg[k] * share.y * color.y, b = g->wb[k] * share.z * color.z;
-    if (p->render.shadows == SHADOWS_OFF && !light_has_area(p, lamp)) {
-        shading_expose(t, sample_key, r, gr, b);
-        return;
-    }
-    ray_queue *q = &t->queues.shadows;
-    const int at = q->count++;
-    q->ox[at] = g->points.px[k], q->oy[at] = g->points.py[k], q->oz[at] = g->points.pz[k];
-    q->dx[at] = to_lamp.x, q->dy[at] = to_lamp.y, q->dz[at] = to_lamp.z;
-    q->wr[at] = r, q->wg[at] = gr, q->wb[at] = b;
-    q->start[at] = g->points.face[k], q->sample_key[at] = sample_key;
-    q->inside[at] = refracted ? g->inside_after[k] : g->inside_before[k];
+    path_enqueue_lamp(t, k, lamp, to_lamp, refracted ? g->n_to[k] : g->n_from[k],
+                      refracted ? g->inside_after[k] : g->inside_before[k], share);
 }
 
 /* --- points of lamps --- */
@@ -53,44 +39,10 @@ typedef struct lamp_aims {
     double distance[ROW], light[ROW], density[ROW]; /* a sphere's radiance and density; a point's irradiance, and 0 */
 } lamp_aims;
 
-static void aim_at_flat(const plan *p, const lamp_samples *s, int lamp, int k, vec3 from, lamp_aims *a)
-{
-    const vec3 to =
-        vec3_sub(lamp_shape_point(&p->shapes[lamp], p->lights[lamp].position, s->spheres.u[k], s->spheres.v[k]), from);
-    a->distance[k] = vec3_length(to);
-    a->to[k] = vec3_scale(to, 1.0 / a->distance[k]);
-    a->light[k] = area_light_radiance(p, lamp, a->to[k]);
-    a->density[k] = area_light_density(p, lamp, from, a->to[k], a->distance[k]) / s->weight[k];
-}
-
-static void aim_at_point(const plan *p, const lamp_samples *s, int lamp, int k, vec3 from, lamp_aims *a)
-{
-    const light *l = &p->lights[lamp];
-    const vec3 to = vec3_sub(l->position, from);
-    a->distance[k] = vec3_length(to);
-    a->to[k] = vec3_scale(to, 1.0 / a->distance[k]);
-    const double falls = l->reach / a->distance[k];
-    a->light[k] = PI * s->weight[k] * (l->reach > 0.0 ? falls * falls : 1.0) *
-                  light_share(l, &p->cones[lamp], vec3_scale(a->to[k], -1.0));
-    a->density[k] = 0.0;
-}
-
 static void aim(const tracer *t, const rough_surface *r, const lamp_samples *s, int k, lamp_aims *a)
 {
-    const plan *p = t->target.frame_plan;
-    const surface_batch *at = &t->surface.gathered.points;
-    const vec3 from = vec3_make(at->px[k], at->py[k], at->pz[k]);
-    const int lamp = s->lamp[k];
-    if (!light_has_area(p, lamp)) {
-        aim_at_point(p, s, lamp, k, from, a);
-    } else if (light_is_flat(&p->lights[lamp])) {
-        aim_at_flat(p, s, lamp, k, from, a);
-    } else {
-        a->to[k] = vec3_make(s->spheres.dx[k], s->spheres.dy[k], s->spheres.dz[k]);
-        a->distance[k] = s->spheres.reach[k];
-        a->light[k] = area_light_radiance(p, lamp, a->to[k]);
-        a->density[k] = 1.0 / (2.0 * PI * s->spheres.cap[k] * s->weight[k]);
-    }
+    const lamp_aim one = path_lamp_aim(t, s, k);
+    a->to[k] = one.to, a->distance[k] = one.distance, a->light[k] = one.light, a->density[k] = one.density;
     a->o[k] = rough_in_frame(r, k, a->to[k]);
 }
 
@@ -99,9 +51,7 @@ static void aim_all(const tracer *t, const rough_surface *r, const lamp_samples 
 {
     const plan *p = t->target.frame_plan;
     for (int k = 0; k < t->surface.gathered.count; k++) {
-        const bool any = s->lamp[k] >= 0 && takes_lamps(t, k) &&
-                         (!light_has_area(p, s->lamp[k]) || light_is_flat(&p->lights[s->lamp[k]]) ||
-                          s->spheres.cap[k] > 0.0); /* not within its sphere */
+        const bool any = takes_lamps(t, k) && path_lamp_is_outside(p, s, k);
         if (any)
             aim(t, r, s, k, a);
         if (!any || side * a->o[k].z < 0.0 || (r->opaque && a->o[k].z < 0.0) || a->light[k] == 0.0 ||
@@ -198,11 +148,8 @@ static void light_by_direction(tracer *t, const rough_surface *r, int k, vec3 o,
     const surface_batch *at = &t->surface.gathered.points;
     const vec3 origin = vec3_make(at->px[k], at->py[k], at->pz[k]);
     for (int lamp = 0; lamp < p->light_count; lamp++) {
-        const double distance = light_has_area(p, lamp) ? area_light_distance(p, lamp, origin, c->direction)
-                                                        : (double)HUGE_VAL,
-                     radiance = distance > 0.0 && distance < (double)HUGE_VAL
-                                    ? area_light_radiance(p, lamp, c->direction)
-                                    : 0.0;
+        double distance;
+        const double radiance = path_lamp_ahead(p, lamp, origin, c->direction, &distance);
         if (!(radiance > 0.0))
             continue;
         const light_estimate by = estimate_on(o.z);

@@ -5,15 +5,8 @@
  * itself then does not hit a lamp. Functions of the tracer's gathered group; nothing fails. */
 #pragma once
 
+#include "render/integrators/path_continue.h"
 #include "render/shade/rough.h"
-
-/* The continuation of a path: direction, throughput factor by channel, and media. */
-typedef struct continuation {
-    vec3 direction, share;
-    uint64_t inside;
-    bool refracted, matte;
-    bool specular_bounce; /* the path may hit lamps */
-} continuation;
 
 /* Weight of the matte branch at an opaque surface, next to that of its mirror. */
 double path_matte_weight(const group *g, const material *m, int k);

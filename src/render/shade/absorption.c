@@ -3,8 +3,7 @@
 
 #include <stdlib.h>
 
-/* Coefficients of a priority index, by channel; in a spectral film at the ray's wavelength. */
-static vec3 coefficients(const plan *p, int priority_index, int64_t sample_key)
+vec3 absorption_coefficients(const plan *p, int priority_index, int64_t sample_key)
 {
     if (!p->spectral)
         return p->absorption[priority_index];
@@ -12,18 +11,31 @@ static vec3 coefficients(const plan *p, int priority_index, int64_t sample_key)
     return vec3_make(a, a, a);
 }
 
+/* Extinction by scattering, of rays that do not scatter themselves. */
+static void add_scattering(tracer *t)
+{
+    const region_scatter *of = t->target.frame_plan->scatter->region;
+    for (int k = 0; k < t->batch.scratch.segments->count; k++) {
+        const medium_segment *s = &t->batch.scratch.segments->segment[k];
+        for (int c = 0; c < 3; c++)
+            t->media->transmittance[c][s->ray] += of[s->priority_index].per_unit * s->length;
+    }
+}
+
 /* Adds the optical depths of the segments to transmittance. */
 static void add_depths(tracer *t)
 {
     const plan *p = t->target.frame_plan;
     const int64_t *sample_keys = t->media->sample_keys;
+    if (p->scatter && !t->media->flights.flies)
+        add_scattering(t);
     for (int k = 0; p->sheets && k < t->batch.scratch.segments->count; k++)
         sheets_segment(t, &t->batch.scratch.segments->segment[k]);
     for (int k = 0; k < t->batch.scratch.segments->count; k++) {
         const medium_segment *s = &t->batch.scratch.segments->segment[k];
         if (!p->geometry->regions[s->priority_index].attenuates)
             continue;
-        const vec3 a = coefficients(p, s->priority_index, sample_keys[s->ray]);
+        const vec3 a = absorption_coefficients(p, s->priority_index, sample_keys[s->ray]);
         t->media->transmittance[0][s->ray] += a.x * s->length;
         t->media->transmittance[1][s->ray] += a.y * s->length;
         t->media->transmittance[2][s->ray] += a.z * s->length;
@@ -40,6 +52,8 @@ static void make_room(void *context)
         if (t->batch.scratch.segments->segment[k].priority_index == 0 &&
             t->batch.scratch.segments->segment[k].length > infinite_length)
             t->batch.scratch.segments->segment[k].length = 0.0;
+    if (t->media->flights.flying)
+        scattering_take(t);
     add_depths(t);
 }
 
@@ -59,6 +73,7 @@ void absorption_end(tracer *t)
 void absorption_announce(tracer *t, const ray_queue *q, int first, int count)
 {
     t->media->sample_keys = q->sample_key + first;
+    t->media->flights.flies = t->media->flights.flying = false;
     t->batch.scratch.segments->full = make_room;
     t->batch.scratch.segments->context = t;
     /* optical depths at first */

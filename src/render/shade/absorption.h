@@ -1,10 +1,11 @@
-/* Absorption by the media that rays pass through, and what their sheets do (sheets.h). Ownership: absorption_begin
- * allocates the tracer's memory, absorption_end frees it. */
+/* Absorption by the media that rays pass through, what they scatter (scattering.h), and what their sheets do
+ * (sheets.h). Ownership: absorption_begin allocates the tracer's memory, absorption_end frees it. */
 #pragma once
 
 #include "base/elementary_inline.h"
 #include "render/core/queue.h"
 #include "render/core/tracer.h"
+#include "render/shade/scattering.h"
 #include "render/shade/sheets.h"
 
 typedef struct media_work {
@@ -12,6 +13,7 @@ typedef struct media_work {
     const int64_t *sample_keys;   /* of the batch whose medium segments are recorded */
     double transmittance[3][ROW]; /* transmittance of the path to the hit, by channel */
     sheet_work sheets;
+    flight_work flights;
 } media_work;
 
 /* Begins a frame; absorbs: some of its media absorb. False when out of memory. */
@@ -24,6 +26,9 @@ void absorption_end(tracer *t);
 void absorption_announce(tracer *t, const ray_queue *q, int first, int count);
 void absorption_exempt_sky(tracer *t);
 void absorption_dim(tracer *t, ray_queue *q, int first, int count);
+
+/* Coefficients of a priority index in 1 / scene unit, by channel; in a spectral film at the ray's wavelength. */
+vec3 absorption_coefficients(const plan *p, int priority_index, int64_t sample_key);
 
 /* exp(-d), Beer and Lambert's law. */
 static inline double absorption_left(double optical_depth)

@@ -91,7 +91,7 @@ static float weigh(const tracer *t, const light_estimate *by, const lamp_table *
     const surface_batch *at = &t->surface.gathered.points;
     const vec3 point = vec3_make(at->px[i], at->py[i], at->pz[i]);
     const vec3 n = vec3_scale(vec3_make(at->nx[i], at->ny[i], at->nz[i]), by->side);
-    t->path->light_weights(lamps, point, n, by->k_d, by->k_s, each);
+    t->path->light_weights(lamps, point, n, by->k_d, by->k_s, by->side == 0.0 ? -1.0f : 0.0f, each);
     if (lamps->cones)
         apply_cones(t->target.frame_plan, point, each);
     return add_up(each, lamps->blocks, sum);

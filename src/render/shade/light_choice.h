@@ -16,7 +16,7 @@ static inline bool light_choice_applies(const plan *p)
 /* What the estimate assumes of a surface. */
 typedef struct light_estimate {
     float k_d, k_s; /* shares of the light with and without Lambert's cosine */
-    double side;    /* 1: light of the ray's side; -1: of the other side */
+    double side;    /* 1: light of the ray's side; -1: of the other side; 0: from everywhere, without k_d */
     int purpose;    /* of the random numbers, draw.h */
 } light_estimate;
 

@@ -139,7 +139,7 @@ static bool near_sphere(const ray_batch *rays, vec3 centre, double radius, int64
 /* For each light k_d cos + k_s over the squared distance. Of a sphere that the horizon cuts, with n.v between -r and r
  * for the vector v to its centre, (n.v + r) / 2 takes the place of n.v, which continues it at r and ends at 0. Single
  * precision: weights need not be exact. */
-static void light_weights(const lamp_table *restrict lamps, vec3 point, vec3 n, float k_d, float k_s,
+static void light_weights(const lamp_table *restrict lamps, vec3 point, vec3 n, float k_d, float k_s, float least,
                           float *restrict weight)
 {
     const float nx = (float)n.x, ny = (float)n.y, nz = (float)n.z;
@@ -152,7 +152,7 @@ static void light_weights(const lamp_table *restrict lamps, vec3 point, vec3 n, 
                     distance2 = x * x + y * y + z * z, inverse = 1.0f / sqrtf(distance2);
         const float falloff = lamps->falling[k] * inverse * inverse + lamps->even[k];
         const float seen = lamps->strength[k] * falloff * (k_d * (height * inverse) + k_s);
-        weight[k] = height > 0.0f ? seen : 0.0f;
+        weight[k] = height > least ? seen : 0.0f;
     }
 }
 

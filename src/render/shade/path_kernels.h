@@ -36,8 +36,9 @@ typedef struct path_kernels {
      * there are any. */
     bool (*near_sphere)(const ray_batch *rays, vec3 centre, double radius, int64_t *near);
     /* An estimate of each light's radiance at a point with normal n, for the choice of one:
-     * weight[blocks * LAMP_BLOCK]. */
-    void (*light_weights)(const lamp_table *lamps, vec3 point, vec3 n, float k_d, float k_s, float *weight);
+     * weight[blocks * LAMP_BLOCK]. Lights below the horizon have none, unless n is 0 and `least` below 0. */
+    void (*light_weights)(const lamp_table *lamps, vec3 point, vec3 n, float k_d, float k_s, float least,
+                          float *weight);
 } path_kernels;
 
 ISA_DECLARE(const path_kernels, path_kernels)

@@ -301,6 +301,15 @@ static status check_face_layers(const scene *s, const solid *owner, diagnostic *
     return STATUS_OK;
 }
 
+/* Lamps' light that a clear surface refracts into a medium that scatters would be missing from the photons. */
+static status check_scattering(const scene *s, const solid *owner, diagnostic *why)
+{
+    if (!owner->visible || !scene_has_caustics(&s->render) || material_scattering(&owner->surface, &s->render) == 0.0)
+        return STATUS_OK;
+    return diagnose(why, STATUS_BAD_INPUT, "set render.caustics to off, or its scatter_per_m to 0",
+                    "%.80s: photons do not scatter in its medium", owner->name);
+}
+
 static status check_solid(const scene *s, const solid *owner, diagnostic *why)
 {
     diagnostic shape = {.what = ""};
@@ -314,6 +323,7 @@ static status check_solid(const scene *s, const solid *owner, diagnostic *why)
     TRY(sheet_check(&owner->surface, owner->name, why));
     TRY(check_layers(s, owner, why));
     TRY(check_face_layers(s, owner, why));
+    TRY(check_scattering(s, owner, why));
     /* A surface must not return more light than it receives; the tolerance is for sums such as 0.7 + 0.2 + 0.1. Under
      * Fresnel weights R + T = 1 always holds, and reflectivity applies only to opaque surfaces. */
     double sum = owner->surface.reflectivity + owner->surface.transparency;

@@ -51,7 +51,8 @@ static void hint_at_clear(const scene *s, const solid *owner, const note_taker *
                       owner->name);
     } else if (!scene_has_constant_shares(&s->render) && material_matches_surroundings(s, m) && !material_tints(m) &&
                m->reflectivity == 0.0 && m->emission == 0.0 && !material_is_layered(m, &s->render) &&
-               m->sheet == SHEET_NONE && !is_inside_medium(s, owner) && !cuts_another(s, owner)) {
+               m->sheet == SHEET_NONE && material_scattering(m, &s->render) == 0.0 && !is_inside_medium(s, owner) &&
+               !cuts_another(s, owner)) {
         note_give(taker, owner->name, "ior", "set its ior",
                   "%s is transparent with the refractive index of the surrounding medium: it %s", owner->name,
                   material_absorbs(m) ? "refracts no light" : "is invisible");
@@ -141,6 +142,12 @@ static void hint_at_idle(const scene *s, const solid *owner, const note_taker *t
     if (m->transparency == 0.0 && material_absorbs(m) && solid_is_opaque(s, owner))
         note_give(taker, owner->name, m->absorb_spectrum.count > 0 ? "absorb_spectrum" : "absorb_per_m",
                   "set its transparency", "%s absorbs but is opaque", owner->name);
+    if (m->scatter_per_m > 0.0 && solid_is_opaque(s, owner))
+        note_give(taker, owner->name, "scatter_per_m", "set its transparency", "%s scatters light but is opaque",
+                  owner->name);
+    else if (m->scatter_per_m > 0.0 && !integrator_traits_of(&s->render)->by_chance)
+        note_give(taker, owner->name, "scatter_per_m", "set render.integrator to path",
+                  "%s is treated as clear: only the path integrator shows scattering", owner->name);
     if (m->coefficients.count > 0 && (m->medium == MEDIUM_IOR || m->medium >= MEDIUM_CATALOGUE))
         note_give(taker, owner->name, "coefficients", "set its medium to cauchy, sellmeier or table",
                   "%s has coefficients but no dispersion law", owner->name);
@@ -158,9 +165,12 @@ enum { SOFT_SAMPLES = 9 };
 static void hint_at_lights(const scene *s, const note_taker *taker)
 {
     const bool path = integrator_traits_of(&s->render)->by_chance;
-    bool clear = false;
-    for (size_t i = 0; i < s->solid_count; i++)
-        clear |= s->solids[i].visible && s->solids[i].surface.transparency > 0.0;
+    bool clear = false, scatters = false;
+    for (size_t i = 0; i < s->solid_count; i++) {
+        const solid *one = &s->solids[i];
+        clear |= one->visible && one->surface.transparency > 0.0;
+        scatters |= one->visible && material_scattering(&one->surface, &s->render) > 0.0;
+    }
     for (size_t i = 0; i < s->light_count; i++) {
         const light *lamp = &s->lights[i];
         if (lamp->spectrum >= LAMP_SODIUM && lamp->intensity > 0.0 && s->render.spectrum != SPECTRUM_SPECTRAL)
@@ -176,7 +186,9 @@ static void hint_at_lights(const scene *s, const note_taker *taker)
             note_give(taker, lamp->name, size, "set render.soft_shadows=on, or render.integrator=path",
                       "%s acts as a point light", lamp->name);
         else if (light_extent(lamp) == 0.0 && path && clear && lamp->intensity > 0.0 && !scene_has_caustics(&s->render))
-            note_give(taker, lamp->name, "radius", "set render.caustics=photons, or its radius and its reach",
+            note_give(taker, lamp->name, "radius",
+                      scatters ? "set its radius and its reach"
+                               : "set render.caustics=photons, or its radius and its reach",
                       "%s is a point light, which random paths cannot hit through transparent solids: no caustics",
                       lamp->name);
     }

@@ -221,6 +221,11 @@ bool material_attenuates(const material *m)
     return material_absorbs(m) || material_tints(m);
 }
 
+double material_scattering(const material *m, const render_settings *r)
+{
+    return integrator_traits_of(r)->by_chance && !material_is_opaque(m) ? m->scatter_per_m : 0.0;
+}
+
 vec3 material_extinction(const material *m, double unit_m)
 {
     const vec3 absorbed = vec3_scale(material_absorption(m), unit_m);

@@ -81,6 +81,8 @@ bool material_tints(const material *m);
 double material_tint(const material *m, double share);
 /* Whether light is attenuated inside a transparent solid with this material. */
 bool material_attenuates(const material *m);
+/* Scattering coefficient in 1/m of a transparent solid's medium, for random paths; 0 for other integrators. */
+double material_scattering(const material *m, const render_settings *r);
 /* By channel in 1 / scene unit, absorption plus tint; not defined for opaque materials. */
 vec3 material_extinction(const material *m, double unit_m);
 /* The share of the transmitted light that the coating of a transparent surface reflects; 0 with constant weights, which

@@ -445,6 +445,12 @@ static const param table[] = {
     COLOR(PARAM_MATERIAL, material, absorb_per_m, 1e9, "0,0,0", "Beer-Lambert absorption coefficient by channel, 1/m"),
     LIST(PARAM_MATERIAL, material, absorb_spectrum, "nm, 1/m", 1e9, "[]",
          "Beer-Lambert absorption coefficient by wavelength, as nm,1/m,nm,1/m,...; replaces absorb_per_m"),
+    REAL(PARAM_MATERIAL, material, scatter_per_m, "1/m", 0, 1e9, "0",
+         "scattering coefficient of a transparent solid's medium (milk, fog), for integrator path: over a length d, "
+         "exp(-scatter_per_m d) of the light is not scattered; 0: clear"),
+    REAL(PARAM_MATERIAL, material, asymmetry, "", -0.999, 0.999, "0",
+         "mean cosine g of the scattering angle, by the phase function of Henyey and Greenstein; 0: evenly in all "
+         "directions, near 1: almost straight on (milk: 0.9)"),
     POSITIVE(PARAM_MATERIAL, material, tint_distance, "scene units", FAR, "1",
              "distance in a transparent solid over which white light is filtered to 'color'; absorption by "
              "absorb_per_m is added"),

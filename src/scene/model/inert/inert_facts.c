@@ -144,7 +144,8 @@ bool is_lit_by_lamps(const scene *s, const material *m)
 {
     return !integrator_traits_of(&s->render)->layers &&
            (shows_specular(s, m) ||
-            (shining_lights(s) > 0 && ((m->diffuse > 0.0 && has_color(m)) || material_roughness(m, &s->render) > 0.0)));
+            (shining_lights(s) > 0 && ((m->diffuse > 0.0 && has_color(m)) || material_roughness(m, &s->render) > 0.0 ||
+                                       material_scattering(m, &s->render) > 0.0)));
 }
 
 bool shows_color(const scene *s, const material *m)

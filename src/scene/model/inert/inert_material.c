@@ -216,6 +216,18 @@ static bool absorb_per_m_rule(const inert_case *c)
             inert_say(c, "by-spectrum", set_on(c, "absorb_spectrum=[]").text, "absorb_spectrum replaces it"));
 }
 
+static bool scattering_rule(const inert_case *c)
+{
+    if (absorption_rule(c))
+        return true;
+    if (!is_path(c->s))
+        return inert_say(c, "unscattered", "set render.integrator=path",
+                         "only the path integrator shows scattering: the medium is treated as clear");
+    return strcmp(c->at.row->name, "asymmetry") == 0 && c->m->scatter_per_m == 0.0 &&
+           inert_say(c, "no-scattering", set_on(c, "scatter_per_m=2").text,
+                     "scatter_per_m is 0: its medium does not scatter");
+}
+
 static bool texture_rule(const inert_case *c)
 {
     return (c->s->texture_count == 0 &&
@@ -337,6 +349,8 @@ bool inert_appearance(const inert_case *c)
         {"coefficients", coefficients_rule},
         {"absorb_per_m", absorb_per_m_rule},
         {"absorb_spectrum", absorption_rule},
+        {"scatter_per_m", scattering_rule},
+        {"asymmetry", scattering_rule},
         {"tint_distance", tint_distance_rule},
         {"texture", texture_rule},
         {"texture_size", texture_size_rule},

@@ -305,8 +305,8 @@ static bool lambda(const inert_case *c)
 
 static bool absorbs(const scene *s, const solid *one)
 {
-    (void)s;
-    return !material_is_opaque(&one->surface) && material_absorbs(&one->surface);
+    return !material_is_opaque(&one->surface) &&
+           (material_absorbs(&one->surface) || material_scattering(&one->surface, &s->render) > 0.0);
 }
 
 static bool unit(const inert_case *c)
@@ -316,7 +316,7 @@ static bool unit(const inert_case *c)
     const inert_remedy remedy = clear ? inert_set("%s.absorb_per_m=0.2,0.4,0.8", clear->name)
                                       : inert_set("background.absorb_per_m=0.01,0.02,0.04");
     return !surroundings_absorb(&s->background) && !first_visible(s, absorbs) && !first_visible(s, retards_by_path) &&
-           inert_say(c, "no-absorption", remedy.text, "no medium that light passes absorbs");
+           inert_say(c, "no-absorption", remedy.text, "no medium that light passes absorbs or scatters");
 }
 
 static bool shows_texture(const scene *s, const solid *one)

@@ -1,0 +1,57 @@
+/* Russian roulette, the depth limit, and the queue of the next depth. */
+#include "render/integrators/path_continue.h"
+
+/* Below this depth every path continues; from it on faint paths end by Russian roulette. */
+enum { ROULETTE_DEPTH = 3 };
+
+/* Russian roulette: ends a faint path at random; the survivors take over its weight. */
+static bool survives(const tracer *t, int k, int depth, vec3 *share)
+{
+    const render_settings *r = &t->target.frame_plan->render;
+    const group *g = &t->surface.gathered;
+    if (!r->roulette || depth < ROULETTE_DEPTH)
+        return true;
+    const int64_t paths = path_count(&t->target.frame_plan->draws, sample_key_pixel(g->sample_key[k]));
+    const double weight = fmax(g->wr[k] * share->x, fmax(g->wg[k] * share->y, g->wb[k] * share->z)) * (double)paths;
+    if (weight >= 1.0)
+        return true;
+    if (path_draw(&t->target.frame_plan->draws, g->sample_key[k], depth, DRAW_ROULETTE).u >= weight)
+        return false;
+    *share = vec3_scale(*share, 1.0 / weight);
+    return true;
+}
+
+static void cut(tracer *t, int k, const continuation *c)
+{
+    const group *g = &t->surface.gathered;
+    const double r = g->wr[k] * c->share.x, gr = g->wg[k] * c->share.y, b = g->wb[k] * c->share.z;
+    COUNT(t->account.counters.cut_depth++);
+    COUNT(t->account.counters.cut_depth_throughput[0] += counters_cut_units(r));
+    COUNT(t->account.counters.cut_depth_throughput[1] += counters_cut_units(gr));
+    COUNT(t->account.counters.cut_depth_throughput[2] += counters_cut_units(b));
+    shading_expose_at_depth_limit(t, g->sample_key[k], c->direction, r, gr, b);
+}
+
+static void go_on(tracer *t, int k, int depth, const continuation *c)
+{
+    const group *g = &t->surface.gathered;
+    ray_queue *q = &t->queues.waiting[depth + 1];
+    const int at = q->count++;
+    q->ox[at] = g->points.px[k], q->oy[at] = g->points.py[k], q->oz[at] = g->points.pz[k];
+    q->dx[at] = c->direction.x, q->dy[at] = c->direction.y, q->dz[at] = c->direction.z;
+    q->wr[at] = g->wr[k] * c->share.x, q->wg[at] = g->wg[k] * c->share.y, q->wb[at] = g->wb[k] * c->share.z;
+    q->start[at] = g->points.face[k], q->inside[at] = c->inside;
+    const bool photons = t->target.frame_plan->photons != NULL;
+    const int64_t left_matte = g->sample_key[k] | (c->matte && photons ? SAMPLE_KEY_PHOTONS : 0);
+    const bool meets_lights = c->specular_bounce && !(left_matte & SAMPLE_KEY_PHOTONS);
+    q->sample_key[at] = (left_matte & ~SAMPLE_KEY_SPECULAR_BOUNCE) | (meets_lights ? SAMPLE_KEY_SPECULAR_BOUNCE : 0);
+    COUNT(c->refracted ? t->account.counters.refract++ : t->account.counters.reflect++);
+}
+
+void path_continue(tracer *t, int k, int depth, continuation *c)
+{
+    if (depth == t->queues.depth_limit)
+        cut(t, k, c);
+    else if (survives(t, k, depth, &c->share))
+        go_on(t, k, depth, c);
+}

@@ -1,0 +1,116 @@
+/* Tests of a new study's text: it reads as what was given, each parameter has its meaning, and an error is located at
+ * the option that causes it. */
+#include "study_fixture.h"
+#include "scene/model/open.h"
+#include "scene/model/scene.h"
+#include "study/new_study.h"
+
+static const char *const sets[] = {"render.samples=1"};
+
+static new_study_order order_of(const char *const *axes, size_t count)
+{
+    return (new_study_order){.scene = "experiments/scenes/rod.yaml",
+                             .axes = axes,
+                             .sets = sets,
+                             .axis_count = count,
+                             .set_count = 1,
+                             .repetitions = 6,
+                             .warmups = 1};
+}
+
+static scene *rod(void)
+{
+    scene *s = NULL;
+    assert_int_equal(scene_read("experiments/scenes/rod.yaml", &s, NULL), STATUS_OK);
+    return s;
+}
+
+static const char *line_of(const char *text, const char *line)
+{
+    const char *at = strstr(text, line);
+    if (!at || (at > text && at[-1] != '\n'))
+        fail_msg("no line '%s' in:\n%s", line, text);
+    return at + strlen(line);
+}
+
+static void the_text_reads_as_what_was_given(void **state)
+{
+    (void)state;
+    static const char *const axes[] = {"render.depth=0,1,2", "liquid.ior=1..1.5:3"};
+    const new_study_order order = order_of(axes, 2);
+    scene *s = rod();
+    char *text = NULL;
+    study *read = NULL;
+    assert_int_equal(new_study_compose(&order, s, &text, &read, NULL), STATUS_OK);
+    assert_string_equal(read->name, "rod-depth");
+    assert_int_equal(study_cell_count(read), 9);
+    assert_int_equal(read->base->render.samples, 1);
+    const char *at = line_of(text, "set: # in all cells\n  render.samples: 1\n\n");
+    at = line_of(at, "grid: # 9 cells; the last axis runs fastest\n");
+    /* the meaning, the range and the unit of each parameter precede it */
+    at = line_of(at, "  # recursion depth; 0: camera rays only (integer 0..64)\n  - {render.depth: [0, 1, 2]}\n");
+    assert_non_null(strstr(at, "(number 0.1..1000000000)\n  - {liquid.ior: {from: 1, to: 1.5, steps: 3}}\n"));
+    for (const char *line = text; *line; line += strcspn(line, "\n") + 1) { /* comments end between words */
+        const size_t length = strcspn(line, "\n");
+        assert_true(strncmp(line, "  # ", 4) != 0 || (length <= 100 && line[length - 1] != ' '));
+    }
+    assert_null(strstr(text, "treated as a perfec\n"));
+    free(text);
+    study_destroy(read);
+    scene_destroy(s);
+}
+
+/* YAML's own characters in values are quoted. */
+static void values_may_have_any_character(void **state)
+{
+    (void)state;
+    char *path = "cell \"a\", \\b: 1", *written = NULL;
+    char *values[] = {path, "plain"};
+    const new_axis axis = {.path = "background.picture", .values = values, .count = 2};
+    scene *s = rod();
+    const new_study made = {.name = "t", .scene_path = "t.yaml", .of = s, .axes = &axis, .axis_count = 1};
+    size_t size = 0;
+    FILE *out = open_memstream(&written, &size);
+    new_study_write(&made, out);
+    assert_int_equal(fclose(out), 0);
+    assert_non_null(strstr(written, "  - {background.picture: [\"cell \\\"a\\\", \\\\b: 1\", plain]}\n"));
+    free(written);
+    scene_destroy(s);
+}
+
+static void errors_are_located_at_their_option(void **state)
+{
+    (void)state;
+    static const struct {
+        const char *axes[2], *name, *where;
+    } cases[] = {
+        {{"render.depth=0,1", "render.depth=2,3"}, NULL, "--axis render.depth=2,3"},
+        {{"render.depth=0,1", "liquid.ior=1,x"}, NULL, "--axis liquid.ior=1,x"},
+        {{"render.depth=0,0", "liquid.ior=1,2"}, NULL, "--axis render.depth=0,0"},
+        {{"render.depth=0,1", "liquid.ior=1,2"}, "a b", "--name a b"},
+        {{"render.depth=0,1", "liquid.ior"}, NULL, "--axis liquid.ior"},
+    };
+    for (size_t i = 0; i < sizeof cases / sizeof *cases; i++) {
+        new_study_order order = order_of(cases[i].axes, 2);
+        order.name = cases[i].name;
+        scene *s = rod();
+        char *text = NULL;
+        study *read = NULL;
+        diagnostic why = {.line = 0};
+        assert_int_equal(new_study_compose(&order, s, &text, &read, &why), STATUS_BAD_INPUT);
+        assert_string_equal(why.file, cases[i].where);
+        assert_int_equal(why.line, 0);
+        assert_true(!text && !read);
+        scene_destroy(s);
+    }
+}
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(the_text_reads_as_what_was_given),
+        cmocka_unit_test(values_may_have_any_character),
+        cmocka_unit_test(errors_are_located_at_their_option),
+    };
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}
