@@ -16,7 +16,7 @@ enum { CAPILLARY_DEGREE = 18, CAPILLARY_PIECES = 256 };
 
 /* The most capillary lengths in a tube's radius; the bound on the height's error, in capillary lengths. */
 #define CAPILLARY_WIDEST 500.0
-#define CAPILLARY_ERROR 1e-12
+#define CAPILLARY_ERROR 1e-10
 
 typedef struct capillary_piece {
     double from, width; /* in q */
