@@ -113,7 +113,7 @@ static void small_slopes_are_a_bessel_function(void **state)
 }
 
 /* A wide tube: the height at a flat wall, a sqrt(2 (1 - sin(contact angle))) (Landau and Lifshitz, Fluid Mechanics,
- * 61), and the next term: u du = sin(psi) dpsi + sin(psi) du / R along the surface near the wall, with u = 2 sin(psi / 2)
+ * 61), and the next term: along the surface near the wall u du = sin(psi) dpsi + sin(psi) du / R, with u = 2 sin(psi/2)
  * in the last term, gives 2 (1 - cos(psi / 2)^3) / (3 R sin(psi / 2)). A narrow one: Jurin's height 2 a^2 cos / R and a
  * spherical cap. */
 static void wide_and_narrow_tubes_have_their_limits(void **state)
