@@ -360,7 +360,7 @@ selected_scripts := $(if $(only),,$(scripts))
 kernel_environment = KERNEL_FLAGS='$(code_flags)' $(foreach i,$(isas),KERNEL_FLAGS_$(i)='$(isa_flags_$(i))')
 
 # Number of random scenes of tests/test_laws.c; fewer with instrumentation.
-test_scenes := $(if $(LAWS_SCENES),$(LAWS_SCENES),$(if $(RUNNER)$(filter coverage,$(config)),20,$(if $(filter release,$(config)),10000,500)))
+test_scenes := $(if $(LAWS_SCENES),$(LAWS_SCENES),$(if $(RUNNER)$(filter coverage,$(config)),20,$(if $(filter release,$(config)),3000,500)))
 
 .PHONY: test
 # Programs that test scripts run.

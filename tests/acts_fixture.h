@@ -27,7 +27,6 @@ static const acts_small acts_smaller[] = {
     {"solids", "render.samples=1"},
     {"shapes", "render.samples=1 render.depth=6"},
     {"focus", "render.samples=4"},
-    {"malus", "render.depth=4"},
     {"caustic", "render.samples=1 render.photons=2000"},
     {"films", "render.samples=1 render.depth=3"},
     {"window", "render.samples=4 render.photons=1000 render.width=360 render.height=120"},

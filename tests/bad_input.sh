@@ -52,6 +52,8 @@ refused "a scene without a command" "cuvette render rod.yaml -o image.png" rod.y
 refused "misspelt option" "did you mean '--output'" render "$scene" --outptu x.png
 refused "unknown short option" "unknown option '-z'" render "$scene" -z
 refused "ambiguous option" "'--ti' is ambiguous" render "$scene" --ti x.png
+refused "option that only argp knows" "unknown option '--program-name'" render "$scene" --program-name x.png
+refused "abbreviation of such an option" "unknown option '--progr'" render "$scene" --progr x.png
 refused "option without its value" "requires a value" render "$scene" -o
 refused "value for an option that takes none" "takes no value" render "$scene" --json=yes
 refused "missing scene" "nowhere.yaml: cannot open: [^;]*; check the path$" render nowhere.yaml --json

@@ -345,6 +345,24 @@ static void curves_of_other_scenes_equal_theory(void **state)
     }
 }
 
+/* The filters stand before a white sky, whatever else the scene has; and cos^2 / 2 without a plate (Hecht, 8.2.1). */
+static void malus_depends_on_the_filters_alone(void **state)
+{
+    (void)state;
+    scene *s = NULL;
+    realism_points p;
+    diagnostic why = {0};
+    worked(scene_read("experiments/scenes/malus.yaml", &s, &why), &why);
+    worked(scene_set_assignment(s, "plate.visible=off", &why), &why);
+    worked(scene_set_assignment(s, "board.color=0.2,0.1,0", &why), &why);
+    worked(realism_trace_curve(s, isa_best(), REALISM_CURVE_MALUS, &p, &why), &why);
+    for (int i = 0; i < p.count; i++) {
+        const double c = cos(p.at[i].x * 3.14159265358979323846 / 180.0);
+        assert_near(p.at[i].measured, 0.5 * c * c, 1e-9);
+    }
+    scene_destroy(s);
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
@@ -357,6 +375,7 @@ int main(void)
         cmocka_unit_test(the_view_equals_the_cameras),
         cmocka_unit_test(one_metric_equals_that_of_the_report),
         cmocka_unit_test(all_metrics_pass_for_various_indices),
+        cmocka_unit_test(malus_depends_on_the_filters_alone),
         cmocka_unit_test(undefined_metrics_are_reported_as_undefined),
         cmocka_unit_test(a_relative_error_of_the_index_of_1e_6_fails),
         cmocka_unit_test(wrong_transmittance_and_absorption_fail),

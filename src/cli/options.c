@@ -10,13 +10,13 @@
 #include <stdlib.h>
 #include <string.h>
 
-enum { OPTIONS_MAX = 32, KEY_USAGE = 0x10000, KEY_HELP };
+enum { OPTIONS_MAX = 32, KEY_USAGE = 0x10000, KEY_HELP, KEY_OF_ARGP };
 
 /* The options in the form of getopt_long. */
 typedef struct getopt_table {
-    struct option options[OPTIONS_MAX + 4];
-    const char *names[OPTIONS_MAX + 4];
-    size_t count;
+    struct option options[OPTIONS_MAX + 6];
+    const char *names[OPTIONS_MAX + 6];
+    size_t count, documented; /* those first */
     char short_options[2 * OPTIONS_MAX + 8];
 } getopt_table;
 
@@ -44,6 +44,9 @@ static void make_table(const struct argp *argp, unsigned flags, getopt_table *ta
     add(table, "help", KEY_HELP, no_argument);
     add(table, "usage", KEY_USAGE, no_argument);
     add(table, "version", 'V', no_argument);
+    table->documented = table->count;
+    add(table, "program-name", KEY_OF_ARGP, optional_argument); /* which argp adds for its tests */
+    add(table, "HANG", KEY_OF_ARGP, optional_argument);
 }
 
 static const char *name_of_key(const getopt_table *table, int key)
@@ -71,7 +74,7 @@ static status unknown_long_option(const getopt_table *table, const char *program
         snprintf(remedy, sizeof remedy, "write the full name; '%s --help' lists the options", program);
         return diagnose(why, STATUS_BAD_INPUT, remedy, "option '--%s' is ambiguous", word);
     }
-    const char *nearest = text_nearest(word, table->names, table->count);
+    const char *nearest = text_nearest(word, table->names, table->documented);
     if (nearest)
         snprintf(remedy, sizeof remedy, "did you mean '--%s'?", nearest);
     else
@@ -112,6 +115,8 @@ static status check(const struct argp *argp, unsigned flags, int argc, char **ar
         bool leaves = key == -1 || key == KEY_HELP || key == KEY_USAGE || key == 'V' || (key == '?' && optopt == '?');
         if (leaves) /* argp prints the help and exits */
             break;
+        if (key == KEY_OF_ARGP)
+            optopt = 0, key = '?'; /* unknown to our users */
         if (key == '?' || key == ':') {
             result = explain(&table, key, argv[0], copy[optind - 1], why);
             options_locate(why, argv[0]);

@@ -7,6 +7,7 @@
 #include "scene/model/scene.h"
 #include "scene/model/sheet.h"
 #include <math.h>
+#include <string.h>
 
 #define DEGREE (M_PI / 180.0)
 
@@ -77,6 +78,12 @@ static double theory_of(const filters *f)
                         : 0.25;
 }
 
+static bool is_filter(const solid *one)
+{
+    return strcmp(one->name, "polariser") == 0 || strcmp(one->name, "analyser") == 0 || strcmp(one->name, "plate") == 0;
+}
+
+/* The radiance of a white sky behind the filters; all else is hidden. */
 static status look_through(const metrics *m, const scene *turned, double *radiance, diagnostic *why)
 {
     trial t;
@@ -84,6 +91,8 @@ static status look_through(const metrics *m, const scene *turned, double *radian
     if (s) {
         s->background.kind = BACKGROUND_UNIFORM;
         s->background.color = vec3_make(1.0, 1.0, 1.0);
+        for (size_t i = 0; i < s->solid_count; i++)
+            s->solids[i].visible &= is_filter(&s->solids[i]);
     }
     status code = trial_start(&t, s, m->level, why);
     if (code == STATUS_OK)

@@ -3,6 +3,18 @@
 
 #define PI 3.14159265358979323846
 
+void path_lamp_samples(tracer *t, int lamp, int depth, lamp_samples *s)
+{
+    const plan *p = t->target.frame_plan;
+    const group *g = &t->surface.gathered;
+    for (int k = 0; k < g->count; k++)
+        s->lamp[k] = lamp, s->weight[k] = 1.0;
+    if (light_has_area(p, lamp)) {
+        t->path->draw(&p->draws, g->count, g->sample_key, depth, DRAW_LIGHT + lamp, s->spheres.u, s->spheres.v);
+        area_lights_aim_at_spheres(t, s);
+    }
+}
+
 bool path_lamp_is_outside(const plan *p, const lamp_samples *s, int k)
 {
     return s->lamp[k] >= 0 &&

@@ -16,6 +16,8 @@ typedef struct lamp_aim {
     double light, density; /* radiance, and density per solid angle; of a point its irradiance, and 0 */
 } lamp_aim;
 
+/* That lamp for all records, at random points of it if it has a size. */
+void path_lamp_samples(tracer *t, int lamp, int depth, lamp_samples *s);
 /* Whether record k has a lamp, and is not within its sphere; its spheres must be aimed at. */
 bool path_lamp_is_outside(const plan *p, const lamp_samples *s, int k);
 lamp_aim path_lamp_aim(const tracer *t, const lamp_samples *s, int k);

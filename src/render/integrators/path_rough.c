@@ -107,15 +107,9 @@ static void light_by_one_lamp(tracer *t, rough_surface *r, int depth, double sid
 static void light_by_all_lamps(tracer *t, rough_surface *r, int depth)
 {
     const plan *p = t->target.frame_plan;
-    const group *g = &t->surface.gathered;
     lamp_samples s;
     for (int lamp = 0; lamp < p->light_count; lamp++) {
-        for (int k = 0; k < g->count; k++)
-            s.lamp[k] = lamp, s.weight[k] = 1.0;
-        if (light_has_area(p, lamp)) {
-            t->path->draw(&p->draws, g->count, g->sample_key, depth, DRAW_LIGHT + lamp, s.spheres.u, s.spheres.v);
-            area_lights_aim_at_spheres(t, &s);
-        }
+        path_lamp_samples(t, lamp, depth, &s);
         light_by_lamps(t, r, &s, 0.0);
     }
 }

@@ -131,7 +131,6 @@ static void light_by_lamps(tracer *t, const lamp_samples *s, const scattering *o
 static void sample_lamps(tracer *t, int depth, const scattering *of)
 {
     const plan *p = t->target.frame_plan;
-    const group *g = &t->surface.gathered;
     const light_estimate by = estimate();
     lamp_samples s;
     if (light_choice_applies(p)) {
@@ -141,12 +140,7 @@ static void sample_lamps(tracer *t, int depth, const scattering *of)
         return;
     }
     for (int lamp = 0; lamp < p->light_count; lamp++) {
-        for (int k = 0; k < g->count; k++)
-            s.lamp[k] = lamp, s.weight[k] = 1.0;
-        if (light_has_area(p, lamp)) {
-            t->path->draw(&p->draws, g->count, g->sample_key, depth, DRAW_LIGHT + lamp, s.spheres.u, s.spheres.v);
-            area_lights_aim_at_spheres(t, &s);
-        }
+        path_lamp_samples(t, lamp, depth, &s);
         light_by_lamps(t, &s, of);
     }
 }

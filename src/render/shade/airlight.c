@@ -26,7 +26,7 @@ static stretch within_boxes(const scatter_plan *of, vec3 o, vec3 d)
 {
     stretch all = {(double)INFINITY, 0.0};
     for (int k = 0; k < of->box_count; k++) {
-        const scatter_box *b = &of->boxes[k];
+        const bounds3 *b = &of->boxes[k];
         stretch s = {0.0, (double)INFINITY};
         clip_axis(o.x, d.x, b->low.x, b->high.x, &s);
         clip_axis(o.y, d.y, b->low.y, b->high.y, &s);

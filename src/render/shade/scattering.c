@@ -18,7 +18,7 @@ static void find_lamps(const scene *s, scatter_plan *of)
             of->lamps[of->lamp_count++] = (int)i;
 }
 
-static void join(scatter_box *a, scatter_box b)
+static void join(bounds3 *a, bounds3 b)
 {
     a->low = vec3_make(fmin(a->low.x, b.low.x), fmin(a->low.y, b.low.y), fmin(a->low.z, b.low.z));
     a->high = vec3_make(fmax(a->high.x, b.high.x), fmax(a->high.y, b.high.y), fmax(a->high.z, b.high.z));
@@ -26,11 +26,10 @@ static void join(scatter_box *a, scatter_box b)
 
 static void add_box(scatter_plan *of, bounds3 around, bool many)
 {
-    const scatter_box one = {around.low, around.high};
     if (of->box_count == 0 || !many)
-        of->boxes[of->box_count++] = one;
+        of->boxes[of->box_count++] = around;
     else
-        join(&of->boxes[0], one);
+        join(&of->boxes[0], around);
 }
 
 static int media_that_scatter(const scene *s, const scene_geometry *geometry)

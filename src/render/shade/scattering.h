@@ -6,6 +6,7 @@
  * Ownership: scatter_plan_create allocates, free releases; flights belong to the tracer's media_work. */
 #pragma once
 
+#include "geometry/mesh.h"
 #include "render/core/queue.h"
 #include "scene/model/open.h"
 
@@ -22,13 +23,10 @@ enum { AIRLIGHTS_MAX = 8 };
 
 /* A box around a solid whose medium scatters; of more solids than that, one box holds all. */
 enum { SCATTER_BOXES_MAX = 8 };
-typedef struct scatter_box {
-    vec3 low, high;
-} scatter_box;
 
 typedef struct scatter_plan {
     int box_count, lamp_count, lamps[AIRLIGHTS_MAX];
-    scatter_box boxes[SCATTER_BOXES_MAX];
+    bounds3 boxes[SCATTER_BOXES_MAX];
     region_scatter region[]; /* by priority index */
 } scatter_plan;
 
