@@ -10,7 +10,7 @@ static double tube_radius(const solid_shape *shape)
     return shape->contact_radius > 0.0 ? shape->contact_radius : shape->radius;
 }
 
-/* Solving takes about a millisecond, and the same shape is asked for many times: so each thread keeps its last one. */
+/* Solving takes about a millisecond, and the same shape is needed many times: so each thread keeps its last one. */
 const capillary_profile *meniscus_of(const solid_shape *shape)
 {
     static _Thread_local capillary_profile kept;
