@@ -475,8 +475,8 @@ static const param table[] = {
      "ellipticity: the cross-section is x^2 + m^2 z^2 = radius^2 (inner_radius for a cup's hollow); 1: circular", NULL,
      SHAPE(shape.m)},
     {PARAM_SOLID, "capillary_length", PARAM_REAL, "scene units", 0, FAR, false, "0",
-     "cylinder: sqrt(surface tension / (density g)) of a liquid, 2.7 mm for water: its top is then the surface of Young "
-     "and Laplace in a tube, with the same volume; 0: a level top",
+     "cylinder: sqrt(surface tension / (density g)) of a liquid, 2.7 mm for water: its top is then the surface of "
+     "Young and Laplace in a tube, with the same volume; 0: a level top",
      NULL, SHAPE(shape.capillary_length)},
     {PARAM_SOLID, "contact_angle_deg", PARAM_REAL, "deg", 1, 179, false, "20",
      "cylinder with a capillary_length: angle within the liquid at which its top meets the wall; 90: level", NULL,
