@@ -72,6 +72,7 @@ static inline void add_unmet(law_scene *w, uint64_t *seed)
     s.shape.radius *= size, s.shape.inner_radius *= size, s.shape.height *= size, s.shape.floor *= size;
     s.shape.tube_radius *= size, s.shape.top_radius *= size;
     s.shape.radius_1 *= size, s.shape.radius_2 *= size, s.shape.thickness *= size, s.shape.diameter *= size;
+    s.shape.capillary_length *= size, s.shape.contact_radius *= size;
     s.shape.size = vec3_scale(s.shape.size, size);
     s.shape.scale = vec3_scale(s.shape.scale, size);
     s.shape.spacing = vec3_scale(s.shape.spacing, size);
@@ -243,6 +244,7 @@ static inline void cut(law_pair *p, uint64_t *seed)
     s->number = LAW_ADDED + 1; /* so that shrinking keeps it */
     s->reflectivity = 0.0;     /* where coated parts touch, their coating is visible, and so are films */
     s->film_nm = 0.0;
+    s->shape.capillary_length = 0.0; /* the top of a part would curve too */
     w->solid[at] = *s;
     insert_solid(w, at + 1, *s);
     law_solid *first = &w->solid[at], *second = &w->solid[at + 1];

@@ -248,6 +248,24 @@ static inline void random_layers(law_solid *s, const law_scene *w, uint64_t seed
         s->scatter_per_m = random_real(&own, 0.1, 3.0), s->asymmetry = random_real(&own, -0.9, 0.9);
 }
 
+/* A meniscus on some round cylinders, by a separate stream too. A solid around another one has none: the walls between
+ * two menisci are not uniform. */
+static inline void random_meniscus(law_solid *s, uint64_t seed)
+{
+    uint64_t own = seed ^ 0x636170u; /* "cap" */
+    solid_shape *shape = &s->shape;
+    shape->capillary_length = 0.0;
+    if (s->mesh || shape->kind != SHAPE_CYLINDER || random_below(&own, 3) != 0)
+        return;
+    solid_shape liquid = *shape;
+    liquid.m = 1.0;
+    liquid.capillary_length = shape->radius * exp(random_real(&own, -4.0, -0.5));
+    liquid.contact_angle_deg = random_below(&own, 3) ? random_real(&own, 3.0, 88.0) : random_real(&own, 92.0, 177.0);
+    liquid.contact_radius = random_below(&own, 2) ? 0.0 : shape->radius * random_real(&own, 0.7, 1.0);
+    if (solid_shape_check(&liquid, NULL) == STATUS_OK) /* its surface is above the bottom */
+        *shape = liquid;
+}
+
 static inline law_solid random_solid(const law_scene *w, int number, uint64_t *seed)
 {
     law_solid s = {.number = number, .shape = random_shape(seed)};
@@ -263,6 +281,7 @@ static inline law_solid random_solid(const law_scene *w, int number, uint64_t *s
         place_mesh(&s, seed);
     random_surface(&s, w, seed);
     random_layers(&s, w, *seed);
+    random_meniscus(&s, *seed);
     return s;
 }
 
@@ -423,7 +442,9 @@ static inline ball ball_around(const law_solid *s)
     case SHAPE_TORUS: return (ball){shape->position, shape->radius + shape->tube_radius};
     case SHAPE_LENS: /* no sag exceeds a quarter of the diameter */
         return (ball){in_frame_of(shape, 0.0, 0.5 * shape->thickness, 0.0), shape->diameter + shape->thickness};
-    case SHAPE_CYLINDER:
+    case SHAPE_CYLINDER: /* no meniscus rises by more than 1.5 capillary lengths */
+        return (ball){in_frame_of(shape, 0.0, 0.5 * shape->height, 0.0),
+                      hypot(0.5 * shape->height + 1.5 * shape->capillary_length, wide)};
     case SHAPE_CUP: return (ball){in_frame_of(shape, 0.0, 0.5 * shape->height, 0.0), hypot(0.5 * shape->height, wide)};
     case SHAPE_MESH: {
         const vec3 n = shape->copies, step = shape->spacing;

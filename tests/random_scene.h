@@ -13,6 +13,9 @@ static inline void add_shape(scene_text *t, const solid_shape *s)
     switch (s->kind) {
     case SHAPE_CYLINDER:
         add(t, "shape: cylinder, radius: %.17g, height: %.17g, m: %.17g", s->radius, s->height, s->m);
+        if (s->capillary_length > 0.0)
+            add(t, ", capillary_length: %.17g, contact_angle_deg: %.17g, contact_radius: %.17g", s->capillary_length,
+                s->contact_angle_deg, s->contact_radius);
         break;
     case SHAPE_CUP:
         add(t, "shape: cup, radius: %.17g, height: %.17g, inner_radius: %.17g, floor: %.17g, m: %.17g", s->radius,

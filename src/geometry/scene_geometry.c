@@ -2,8 +2,10 @@
 #include "geometry/scene_geometry.h"
 #include "base/elementary.h"
 #include "base/large_pages.h"
+#include "geometry/capillary.h"
 #include "geometry/instance_set.h"
 #include "geometry/primitives/primitive.h"
+#include "geometry/shapes/meniscus.h"
 #include "geometry/shapes/shape.h"
 #include "geometry/solid_tree.h"
 
@@ -64,6 +66,11 @@ static void add_region(scene_geometry *a, int priority_index, const region_sourc
     const shape_rule *shape = shape_of(source->shape);
     const int n = shape->primitive_count;
     shape->primitives(source->shape, parts);
+    if (has_meniscus(source->shape)) {
+        capillary_profile *surface = &a->surfaces[a->surface_count++];
+        *surface = *meniscus_of(source->shape);
+        parts[0].surface = surface;
+    }
     if (!source->opaque && priority_index > a->highest_clear)
         a->highest_clear = priority_index;
     region *b = &a->regions[priority_index];
@@ -121,16 +128,18 @@ enum { MANY = 24 };
 typedef struct primitive_counts {
     int all, findable; /* findable: those that a tree can find */
     int normals;       /* of all their sides */
+    int surfaces;      /* of liquids with a meniscus */
 } primitive_counts;
 
 static primitive_counts count_primitives(const region_source *sources, int count)
 {
-    primitive_counts n = {0, 0, 0};
+    primitive_counts n = {0, 0, 0, 0};
     for (int i = 0; i < count; i++) {
         const int places = shape_places(sources[i].shape);
         n.all += places;
         n.findable += can_be_in_tree(&sources[i]) ? places : 0;
         n.normals += (int)sources[i].shape->sides;
+        n.surfaces += has_meniscus(sources[i].shape);
     }
     return n;
 }
@@ -186,9 +195,11 @@ status scene_geometry_build(const region_source *sources, int count, int64_t out
         a->regions = large_calloc((size_t)count + 1, sizeof *a->regions);
         a->shapes = calloc((size_t)count + 1, sizeof *a->shapes);
         a->normals = large_calloc((size_t)n.normals + 1, sizeof *a->normals);
+        a->surfaces = calloc((size_t)n.surfaces + !n.surfaces, sizeof *a->surfaces);
         a->direct_regions = calloc((size_t)count + 1, sizeof *a->direct_regions);
     }
-    if (!a || !order || !a->primitives || !a->regions || !a->shapes || !a->normals || !a->direct_regions) {
+    if (!a || !order || !a->primitives || !a->regions || !a->shapes || !a->normals || !a->surfaces ||
+        !a->direct_regions) {
         free(order);
         scene_geometry_destroy(a);
         return out_of_memory(why);
@@ -221,6 +232,7 @@ void scene_geometry_destroy(scene_geometry *a)
     free(a->primitives);
     free(a->regions);
     free(a->normals);
+    free(a->surfaces);
     free(a->shapes);
     free(a);
 }

@@ -51,9 +51,10 @@ typedef struct primitive {
         vec3 half; /* box */
         lens_sides lens;
     };
-    double second_radius; /* a second radius, for kinds that have one */
-    int sides;            /* number of equal sides around the axis; 0 for none */
-    const vec3 *normals;  /* of the sides; owned by the scene geometry */
+    double second_radius;                    /* a second radius, for kinds that have one */
+    int sides;                               /* number of equal sides around the axis; 0 for none */
+    const vec3 *normals;                     /* of the sides; owned by the scene geometry */
+    const struct capillary_profile *surface; /* of a liquid with a meniscus; owned by the scene geometry */
     int64_t first_face;
     int rows;           /* number of scratch rows from its own on: the most intervals that a ray can have in it */
     int priority_index; /* of its region */
@@ -93,6 +94,8 @@ typedef struct scene_geometry {
     struct instance_set *meshes;    /* all meshes; NULL without meshes */
     vec3 *normals;                  /* of all primitives with sides */
     int normal_count;
+    struct capillary_profile *surfaces; /* of all liquids with a meniscus */
+    int surface_count;
 } scene_geometry;
 
 /* Can a region by itself reduce the light along a shadow ray? With solid_shadows every region does. */

@@ -70,6 +70,9 @@ static status read_liquid(const scene *s, setup *out, diagnostic *why)
     if (shape->kind != SHAPE_CYLINDER || shape->m != 1.0 || is_turned(liquid) || liquid->surface.transparency == 0.0)
         return wrong(s, why, "make it an upright round cylinder with a transparency above 0",
                      "the liquid is not a transparent round cylinder");
+    if (shape->capillary_length > 0.0)
+        return wrong(s, why, "set its capillary_length to 0",
+                     "the liquid has a meniscus, and the checks need a level one");
     if (shape->position.x != out->x || shape->position.z != out->z || shape->radius < out->inner ||
         shape->radius >= out->outer)
         return wrong(s, why, "give both one axis, and the liquid a radius between the vessel's inner_radius and radius",

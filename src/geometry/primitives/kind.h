@@ -93,6 +93,27 @@ ALWAYS_INLINE void span_of_one(const primitive *p, span_function *span, bool gen
     store_interval(m.near, m.far, m.hit, m.own, mask_of(inside), &found->in, &found->out);
 }
 
+/* Removes the hole from the intervals, which are in order; returns their new number. */
+static inline int intervals_without(interval *list, int count, interval hole)
+{
+    int kept = 0;
+    interval rest[CHORDS_MAX + 1];
+    for (int k = 0; k < count; k++) {
+        const interval before = {list[k].in, fmin(list[k].out, hole.in)},
+                       after = {fmax(list[k].in, hole.out), list[k].out};
+        const bool is_hit = hole.in < hole.out && hole.in < list[k].out && list[k].in < hole.out;
+        if (!is_hit)
+            rest[kept++] = list[k];
+        if (is_hit && before.in < before.out)
+            rest[kept++] = before;
+        if (is_hit && after.in < after.out)
+            rest[kept++] = after;
+    }
+    for (int k = 0; k < kept; k++)
+        list[k] = rest[k];
+    return kept;
+}
+
 /* The crossings of a line with a primitive that is not convex: an even number, in order. */
 enum { CROSSINGS_OF_ONE_MAX = 2 * CHORDS_MAX };
 typedef struct crossings_of_one {
@@ -124,6 +145,22 @@ static inline crossings_of_one crossings_ahead(const crossings_of_one *line, boo
     for (int k = first; k < line->count; k++)
         ahead.t[ahead.count++] = line->t[k];
     return ahead;
+}
+
+/* The same from the chords of the line, one of which may end at the ray's start if that is on the surface. */
+static inline crossings_of_one crossings_of_chords(const interval *chords, int count, bool own, bool inside,
+                                                   double grazing)
+{
+    crossings_of_one line = {0, {0.0}};
+    bool is_start = own; /* the crossing at the ray's start is left out */
+    for (int k = 0; k < 2 * count; k++) {
+        const double t = k % 2 ? chords[k / 2].out : chords[k / 2].in;
+        if (is_start && t == 0.0)
+            is_start = false;
+        else
+            line.t[line.count++] = t;
+    }
+    return crossings_ahead(&line, own, inside, grazing);
 }
 
 /* The intervals ahead. */

@@ -129,27 +129,6 @@ DEFINE_SPANS(p->turned, span)
 
 /* --- with concave sides --- */
 
-/* Removes the hole from the intervals, which are in order; returns their new number. */
-static int intervals_without(interval *list, int count, interval hole)
-{
-    int kept = 0;
-    interval rest[CHORDS_MAX + 1];
-    for (int k = 0; k < count; k++) {
-        const interval before = {list[k].in, fmin(list[k].out, hole.in)},
-                       after = {fmax(list[k].in, hole.out), list[k].out};
-        const bool is_hit = hole.in < hole.out && hole.in < list[k].out && list[k].in < hole.out;
-        if (!is_hit)
-            rest[kept++] = list[k];
-        if (is_hit && before.in < before.out)
-            rest[kept++] = before;
-        if (is_hit && after.in < after.out)
-            rest[kept++] = after;
-    }
-    for (int k = 0; k < kept; k++)
-        list[k] = rest[k];
-    return kept;
-}
-
 /* The chords of a line; returns their number. */
 static int lens_chords(const lens_side side[2], const lens_parts *l, interval chords[CHORDS_MAX])
 {
@@ -173,17 +152,8 @@ static void lens_ahead(const primitive *p, const lens_side side[2], const lens_p
     const bool own = is_own(rays->start[i] - p->first_face);
     interval chords[CHORDS_MAX];
     const int count = lens_chords(side, l, chords);
-    crossings_of_one line = {0};
-    bool is_start = own; /* the crossing at the ray's start is left out */
-    for (int k = 0; k < 2 * count; k++) {
-        const double t = k % 2 ? chords[k / 2].out : chords[k / 2].in;
-        if (is_start && t == 0.0)
-            is_start = false;
-        else
-            line.t[line.count++] = t;
-    }
     const double length2 = rays->dx[i] * rays->dx[i] + rays->dy[i] * rays->dy[i] + rays->dz[i] * rays->dz[i];
-    const crossings_of_one ahead = crossings_ahead(&line, own, inside, 0x1p-20 * p->radius / sqrt(length2));
+    const crossings_of_one ahead = crossings_of_chords(chords, count, own, inside, 0x1p-20 * p->radius / sqrt(length2));
     intervals_of_crossings(&ahead, inside, found);
 }
 

@@ -1,19 +1,24 @@
-/* The shape cylinder: x^2 + m^2 z^2 <= radius^2, 0 <= y <= height. Its position is the centre of its base. Also the
- * functions that a cup's outside shares with it. */
+/* The shape cylinder: x^2 + m^2 z^2 <= radius^2, 0 <= y <= height, or below a meniscus (meniscus.h). Its position is
+ * the centre of its base. Also the functions that a cup's outside shares with it. */
+#include "geometry/shapes/meniscus.h"
 #include "geometry/shapes/parts.h"
 
 PRIMITIVE_RULE(cylinder);
+PRIMITIVE_RULE(capillary);
 
 status cylinder_check(const solid_shape *shape, diagnostic *why)
 {
     TRY(check_length(shape->radius, "radius", why));
     TRY(check_length(shape->height, "height", why));
-    return check_length(shape->m, "m", why);
+    TRY(check_length(shape->m, "m", why));
+    return meniscus_check(shape, why);
 }
 
 bool cylinder_contains(const solid_shape *shape, vec3 p)
 {
     const double m = shape->m, r = shape->radius;
+    if (has_meniscus(shape))
+        return capillary_contains(meniscus_of(shape), r, p.x * p.x + p.z * p.z, p.y);
     return p.x * p.x + m * m * p.z * p.z <= r * r && p.y >= 0.0 && p.y <= shape->height;
 }
 
@@ -32,23 +37,34 @@ primitive cylinder_placed(const solid_shape *shape, double radius, double bottom
 static void primitives(const solid_shape *shape, primitive *out)
 {
     out[0] = cylinder_placed(shape, shape->radius, 0.0, shape->height);
+    if (!has_meniscus(shape))
+        return;
+    out[0].rule = &capillary_rule;
+    out[0].extent += fmax(0.0, meniscus_high(shape) - shape->height);
+}
+
+static int more_rows(const solid_shape *shape)
+{
+    return has_meniscus(shape) ? 1 : 0;
 }
 
 static bool flat(const solid_shape *shape, size_t i, vec3 *normal, vec3 *point)
 {
-    return level_faces((const double[]){0.0, shape->height}, 2, i, normal, point);
+    const bool is_level = !has_meniscus(shape) || meniscus_of(shape)->radius < shape->radius;
+    return level_faces((const double[]){0.0, meniscus_wall(shape)}, is_level ? 2 : 1, i, normal, point);
 }
 
 shape_extent cylinder_extent(const solid_shape *shape)
 {
-    const double r = shape->radius, deep = r / shape->m;
-    return (shape_extent){{vec3_make(-r, 0.0, -deep), vec3_make(r, shape->height, deep)},
-                          hypot(r / fmin(shape->m, 1.0), 0.5 * shape->height)};
+    const double r = shape->radius, deep = r / shape->m, high = meniscus_high(shape);
+    return (shape_extent){{vec3_make(-r, 0.0, -deep), vec3_make(r, high, deep)},
+                          hypot(r / fmin(shape->m, 1.0), 0.5 * high)};
 }
 
 double cylinder_farthest(const solid_shape *shape, vec3 d)
 {
-    return fmax(0.0, shape->height * d.y) + shape->radius * hypot(d.x, d.z / shape->m);
+    const double whole = fmax(0.0, meniscus_wall(shape) * d.y) + shape->radius * hypot(d.x, d.z / shape->m);
+    return has_meniscus(shape) ? fmax(whole, meniscus_farthest(shape, d)) : whole;
 }
 
 /* Exact around a point if the cylinder is round, and about an axis if it is round and upright along the axis; otherwise
@@ -56,12 +72,12 @@ double cylinder_farthest(const solid_shape *shape, vec3 d)
 double cylinder_farthest_from(const placed_shape *placed, const round_frame *f)
 {
     const solid_shape *s = &placed->shape;
-    const double wide = s->radius * fmax(1.0, 1.0 / s->m);
+    const double wide = s->radius * fmax(1.0, 1.0 / s->m), high = meniscus_high(s);
     if (f->from_point) {
         const vec3 p = mat3_apply_transposed(placed->turn, vec3_sub(f->origin, s->position));
-        return hypot(hypot(p.x, p.z) + wide, fmax(fabs(p.y), fabs(p.y - s->height)));
+        return hypot(hypot(p.x, p.z) + wide, fmax(fabs(p.y), fabs(p.y - high)));
     }
-    const vec3 top = vec3_add(s->position, vec3_scale(placed_axis(&placed->turn, 1), s->height));
+    const vec3 top = vec3_add(s->position, vec3_scale(placed_axis(&placed->turn, 1), high));
     return fmax(round_distance(f, s->position), round_distance(f, top)) + wide * fmax(1.0, f->m);
 }
 
@@ -69,34 +85,56 @@ bool cylinder_covers(const placed_shape *cover, const placed_shape *hidden)
 {
     const solid_shape *c = &cover->shape;
     const round_frame frame = {c->position, cover->turn, c->m, false};
-    return placed_is_between(cover, hidden, 1, 0.0, c->height) &&
+    return placed_is_between(cover, hidden, 1, 0.0, meniscus_low(c)) &&
            is_within(placed_farthest_from(hidden, &frame), c->radius, c->radius);
 }
 
 static double thickness(const solid_shape *shape)
 {
-    return fmin(shape->height, 2.0 * fmin(shape->radius, shape->radius / shape->m));
+    return fmin(meniscus_low(shape), 2.0 * fmin(shape->radius, shape->radius / shape->m));
 }
 
 void cylinder_fit(solid_shape *shape, double size)
 {
     shape->radius = 0.5 * size;
     shape->height = size;
+    shape->capillary_length = shape->contact_radius = 0.0;
 }
 
 int cylinder_rings(const solid_shape *shape, shape_ring *out)
 {
     const double r = shape->radius;
     out[0] = (shape_ring){.x = r, .z = r / shape->m};
-    out[1] = (shape_ring){.y = shape->height, .x = r, .z = r / shape->m};
+    out[1] = (shape_ring){.y = meniscus_wall(shape), .x = r, .z = r / shape->m};
     return 2;
+}
+
+/* A meniscus is a piece of its own. */
+static int rings(const solid_shape *shape, shape_ring *out)
+{
+    enum { CIRCLES = 9 };
+    const int whole = cylinder_rings(shape, out);
+    if (!has_meniscus(shape))
+        return whole;
+    profile_point surface[CIRCLES];
+    meniscus_points(shape, CIRCLES, surface);
+    for (int i = 0; i < CIRCLES; i++) {
+        const double r = surface[i].radius;
+        out[whole + i] = (shape_ring){.part = 1, .y = surface[i].height, .x = r, .z = r};
+    }
+    return whole + CIRCLES;
 }
 
 static status tessellation(const solid_shape *shape, int part, mesh **out, diagnostic *why)
 {
     (void)part;
     const double r = shape->radius, h = shape->height;
-    return tessellate_lathe((const profile_point[]){{0.0, 0.0}, {r, 0.0}, {r, h}, {0.0, h}}, 4, out, why);
+    if (!has_meniscus(shape))
+        return tessellate_lathe((const profile_point[]){{0.0, 0.0}, {r, 0.0}, {r, h}, {0.0, h}}, 4, out, why);
+    profile_point profile[3 + MENISCUS_POINTS] = {{0.0, 0.0}, {r, 0.0}, {r, meniscus_wall(shape)}};
+    const bool ring = meniscus_of(shape)->radius < r;
+    meniscus_points(shape, MENISCUS_POINTS, profile + 2 + ring);
+    return tessellate_lathe(profile, (size_t)(2 + ring + MENISCUS_POINTS), out, why);
 }
 
 vec3 cylinder_tessellation_scale(const solid_shape *shape)
@@ -106,14 +144,16 @@ vec3 cylinder_tessellation_scale(const solid_shape *shape)
 
 const shape_rule shape_cylinder = {
     .word = "cylinder",
-    .meaning = "x^2 + m^2 z^2 <= radius^2, 0 <= y <= height; its position is the centre of its base",
-    .parameters = WORDS("radius", "height", "m"),
+    .meaning = "x^2 + m^2 z^2 <= radius^2, 0 <= y <= height; its position is the centre of its base; with a "
+               "capillary_length, a liquid whose top is a meniscus and whose volume is the same",
+    .parameters = WORDS("radius", "height", "m", "capillary_length", "contact_angle_deg", "contact_radius"),
     .curved = true,
     .check = cylinder_check,
     .contains = cylinder_contains,
     .primitive_count = 1,
+    .more_rows = more_rows,
     .primitives = primitives,
-    .faces = {WORDS("side", "bottom", "top")},
+    .faces = {WORDS("side", "bottom", "top", "ring")},
     .flat = flat,
     .extent = cylinder_extent,
     .farthest = cylinder_farthest,
@@ -121,7 +161,7 @@ const shape_rule shape_cylinder = {
     .covers = cylinder_covers,
     .thickness = thickness,
     .fit = cylinder_fit,
-    .rings = cylinder_rings,
+    .rings = rings,
     .tessellation = tessellation,
     .tessellation_scale = cylinder_tessellation_scale,
 };

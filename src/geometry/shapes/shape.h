@@ -64,6 +64,7 @@ typedef struct shape_rule {
     /* Writes the primitives for the kernels, primitive_count of them; the second one is subtracted from the first. */
     int primitive_count;
     int further_rows; /* scratch rows that each uses beyond its own: see geometry/scene_geometry.h */
+    int (*more_rows)(const solid_shape *shape); /* and beyond these for this shape; NULL: none */
     void (*primitives)(const solid_shape *shape, struct primitive *out);
     /* By primitive, the names of its faces by number; the last name also applies to all higher numbers. */
     const char *const *faces[SHAPE_PRIMITIVES];
@@ -113,7 +114,8 @@ bounds3 shape_world_box(const solid_shape *shape);
 /* The number of PRIMITIVES_MAX entries of a scene geometry that the shape uses. */
 static inline int shape_places(const solid_shape *shape)
 {
-    return shape_of(shape)->primitive_count + shape_of(shape)->further_rows;
+    const shape_rule *rule = shape_of(shape);
+    return rule->primitive_count + rule->further_rows + (rule->more_rows ? rule->more_rows(shape) : 0);
 }
 
 #define SHAPE_DECLARED(KIND, file) extern const shape_rule shape_##file;

@@ -474,6 +474,17 @@ static const param table[] = {
     {PARAM_SOLID, "m", PARAM_REAL, "", 0.001, 1000, false, "1",
      "ellipticity: the cross-section is x^2 + m^2 z^2 = radius^2 (inner_radius for a cup's hollow); 1: circular", NULL,
      SHAPE(shape.m)},
+    {PARAM_SOLID, "capillary_length", PARAM_REAL, "scene units", 0, FAR, false, "0",
+     "cylinder: sqrt(surface tension / (density g)) of a liquid, 2.7 mm for water: its top is then the surface of "
+     "Young and Laplace in a tube, with the same volume; 0: a level top",
+     NULL, SHAPE(shape.capillary_length)},
+    {PARAM_SOLID, "contact_angle_deg", PARAM_REAL, "deg", 1, 179, false, "20",
+     "cylinder with a capillary_length: angle within the liquid at which its top meets the wall; 90: level", NULL,
+     SHAPE(shape.contact_angle_deg)},
+    {PARAM_SOLID, "contact_radius", PARAM_REAL, "scene units", 0, FAR, false, "0",
+     "cylinder with a capillary_length: radius at which its top meets the wall, for a cylinder that extends into the "
+     "wall; 0: its radius",
+     NULL, SHAPE(shape.contact_radius)},
     LENGTH(inner_radius, "0.9",
            "cup: radius of the hollow; the wall has thickness radius - inner_radius along x, 1/m of that along z"),
     LENGTH(floor, "0.1", "cup: thickness of the bottom"),

@@ -89,6 +89,27 @@ static bool conic_rule(const inert_case *c)
                      "side %d of the lens is flat", first ? 1 : 2);
 }
 
+/* Of the contact angle and radius of a cylinder. */
+static bool meniscus_rule(const inert_case *c)
+{
+    return c->owner->shape.capillary_length == 0.0 &&
+           inert_say(c, "no-meniscus", inert_set("%s.capillary_length=0.1", c->name).text,
+                     "the cylinder has no meniscus");
+}
+
+/* Of the capillary length and the contact radius. */
+static bool level_rule(const inert_case *c)
+{
+    return c->owner->shape.contact_angle_deg == 90.0 &&
+           inert_say(c, "level", inert_set("%s.contact_angle_deg=20", c->name).text,
+                     "a liquid with a contact angle of 90 degrees is level");
+}
+
+static bool contact_radius_rule(const inert_case *c)
+{
+    return meniscus_rule(c) || level_rule(c);
+}
+
 static bool mesh_name(const inert_case *c)
 {
     return c->s->mesh_count == 1 && inert_say(c, "one-mesh", "add another under meshes:", "the scene has one mesh");
@@ -97,8 +118,17 @@ static bool mesh_name(const inert_case *c)
 bool inert_solid(const inert_case *c)
 {
     static const inert_row rows[] = {
-        {"priority", priority_rule}, {"rotation", rotation_rule}, {"spacing", spacing_rule}, {"shading", mesh_shading},
-        {"mesh", mesh_name},         {"conic_1", conic_rule},     {"conic_2", conic_rule},   {NULL, NULL},
+        {"priority", priority_rule},
+        {"rotation", rotation_rule},
+        {"spacing", spacing_rule},
+        {"shading", mesh_shading},
+        {"mesh", mesh_name},
+        {"conic_1", conic_rule},
+        {"conic_2", conic_rule},
+        {"contact_angle_deg", meniscus_rule},
+        {"capillary_length", level_rule},
+        {"contact_radius", contact_radius_rule},
+        {NULL, NULL},
     };
     inert_case own = *c;
     own.owner = &c->s->solids[c->at.index], own.m = &own.owner->surface;

@@ -1,0 +1,32 @@
+/* The meniscus of a cylinder of liquid: where it is on, the shape's top is the capillary surface that
+ * geometry/capillary.h solves for. Pure; cannot fail. */
+#pragma once
+
+#include "geometry/capillary.h"
+#include "geometry/mesh_generators.h"
+#include "geometry/shapes/shape.h"
+
+static inline bool has_meniscus(const solid_shape *shape)
+{
+    return shape->kind == SHAPE_CYLINDER && shape->capillary_length > 0.0 && shape->contact_angle_deg != 90.0;
+}
+
+/* The surface of a shape that has one; valid until the thread's next call for another shape. */
+const capillary_profile *meniscus_of(const solid_shape *shape);
+
+/* The lengths of the meniscus alone: STATUS_BAD_INPUT unless it is within its cylinder. */
+status meniscus_check(const solid_shape *shape, diagnostic *why);
+
+/* The height of the cylinder that contains the shape outside the tube: up to the contact with the wall, or up to
+ * `height` without a meniscus. */
+double meniscus_wall(const solid_shape *shape);
+/* The least and the largest height of the top. */
+double meniscus_low(const solid_shape *shape);
+double meniscus_high(const solid_shape *shape);
+
+/* The largest direction . p over the surface. */
+double meniscus_farthest(const solid_shape *shape, vec3 direction);
+
+/* Points of the surface from the wall to the axis, denser towards the wall. */
+enum { MENISCUS_POINTS = 49 };
+void meniscus_points(const solid_shape *shape, int count, profile_point *out);
