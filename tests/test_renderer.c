@@ -147,9 +147,9 @@ static void an_interrupted_frame_ends_and_does_not_affect_the_next(void **state)
 static void stopped_workers_do_not_affect_the_next_frame(void **state)
 {
     (void)state;
-    stop_some_frames(rod_scene("render.width=1024 render.height=1024 render.depth=30 render.threads=512 "
+    stop_some_frames(rod_scene("render.width=1024 render.height=1024 render.depth=30 render.threads=64 "
                                "render.schedule=rows camera.fov_deg=25"),
-                     rod_scene("render.width=64 render.height=48 render.threads=512 render.tile=4"), 4);
+                     rod_scene("render.width=64 render.height=48 render.threads=64 render.tile=4"), 4);
 }
 
 static void progress_callbacks_do_not_change_the_film(void **state)
