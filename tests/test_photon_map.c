@@ -37,7 +37,7 @@ static photon_map *map_of(photon_list *lists, size_t count, double widest)
     assert_int_equal(photon_map_create(lists, count, &m, NULL), STATUS_OK);
     for (size_t first = 0; first < photon_map_count(m); first += PHOTON_BLOCK)
         photon_map_spread(m, first, &(photon_limits){.widest = widest});
-    photon_map_finish(m);
+    assert_true(photon_map_finish(m));
     for (size_t i = 0; i < count; i++)
         free(lists[i].list);
     return m;
@@ -190,7 +190,7 @@ static void discs_are_no_narrower_than_the_least(void **state)
     const photon_limits limits = {.widest = 0.001, .least = 0.1, .least_at_1 = 0.01, .eye = vec3_make(0.5, 100.0, 0.5)};
     for (size_t first = 0; first < photon_map_count(m); first += PHOTON_BLOCK)
         photon_map_spread(m, first, &limits);
-    photon_map_finish(m);
+    assert_true(photon_map_finish(m));
     assert_true(photon_map_count(m) < 2000);
     double sum = 0.0;
     for (size_t i = 0; i < photon_map_count(m); i++) {

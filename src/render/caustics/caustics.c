@@ -141,10 +141,8 @@ static void spread_together(caustics *c, int worker)
 static status finish_alone(caustics *c, diagnostic *why)
 {
     (void)why;
-    if (c->map && !stopped(c)) {
-        photon_map_finish(c->map);
+    if (c->map && !stopped(c) && photon_map_finish(c->map))
         c->of->photons = c->map;
-    }
     return STATUS_OK;
 }
 

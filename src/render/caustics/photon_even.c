@@ -3,6 +3,7 @@
  * R^2 has the mean 1/2, with a standard deviation of 1 / sqrt(12 n). Edges, lines and peaks of light differ by more. */
 #include "render/caustics/photon_even.h"
 
+#include "base/cancel.h"
 #include "render/caustics/photon_tree.h"
 #include <stdlib.h>
 
@@ -85,12 +86,15 @@ photon_sums *photon_sums_make(const photon_map *m)
 {
     photon_sums *s = calloc(1, sizeof *s);
     for (int k = 0; s && k < m->levels; k++) {
-        if (!(s->level[k] = malloc(m->boxes[k] * sizeof(moments)))) {
+        bool done = (s->level[k] = malloc(m->boxes[k] * sizeof(moments))) != NULL;
+        for (size_t b = 0; done && b < m->boxes[k]; b++) {
+            s->level[k][b] = moments_of(s, m, k, b);
+            done = !cancel_asked_at(b);
+        }
+        if (!done) {
             photon_sums_free(s);
             return NULL;
         }
-        for (size_t b = 0; b < m->boxes[k]; b++)
-            s->level[k][b] = moments_of(s, m, k, b);
     }
     return s;
 }

@@ -3,7 +3,7 @@
 
 #include "render/caustics/photon_map.h"
 
-/* Sums over the photons of each box of the tree. photon_sums_make: NULL when out of memory; photon_sums_free
+/* Sums over the photons of each box of the tree. photon_sums_make: NULL when out of memory or cancelled; photon_sums_free
  * releases. */
 typedef struct photon_sums photon_sums;
 photon_sums *photon_sums_make(const photon_map *m);

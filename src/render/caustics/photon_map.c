@@ -35,9 +35,9 @@ status photon_map_create(const photon_list *lists, size_t count, photon_map **ou
         m->count = n;
         m->photons = large_calloc(n + 1, sizeof *m->photons);
     }
-    if (!m || !m->photons || !photon_order(lists, count, m->photons) || !photon_tree_make(m))
+    if (!m || !m->photons || !photon_order(lists, count, m->photons) || !photon_tree_make(m) ||
+        !photon_tree_fit(m, false))
         goto failed;
-    photon_tree_fit(m, false);
     if (of_one_wavelength(m) && !(m->sums = photon_sums_make(m)))
         goto failed;
     *out = m;

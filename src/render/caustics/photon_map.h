@@ -56,9 +56,9 @@ typedef struct photon_limits {
 /* Computes the radii of photons first .. first + PHOTON_BLOCK - 1; threads share the blocks. */
 enum { PHOTON_BLOCK = 512, PHOTON_NEIGHBOURS = 48, PHOTON_WIDER = 2 };
 void photon_map_spread(photon_map *m, size_t first, const photon_limits *limits);
-/* Call after the last photon_map_spread: the map is then complete. Photons much closer together than their discs are
- * wide become one. */
-void photon_map_finish(photon_map *m);
+/* Call after the last photon_map_spread: the map is then complete, unless it is cancelled: then false. Photons much
+ * closer together than their discs are wide become one. */
+bool photon_map_finish(photon_map *m);
 
 /* How many there are, after photon_map_finish perhaps fewer. */
 size_t photon_map_count(const photon_map *m);

@@ -126,13 +126,16 @@ size_t photon_lists_total(const photon_list *lists, size_t count)
 
 enum { PARTS = 1 << 12, PART_SHIFT = 63 - 12 };
 
-/* Keys in the order of their first 12 bits; end[i]: where part i ends. */
-static void divide(const photon_list *lists, size_t count, const middle *m, photon_key *keys, size_t *end)
+/* Keys in the order of their first 12 bits; end[i]: where part i ends. False when cancelled. */
+static bool divide(const photon_list *lists, size_t count, const middle *m, photon_key *keys, size_t *end)
 {
     memset(end, 0, PARTS * sizeof *end);
     for (size_t i = 0; i < count; i++)
-        for (size_t k = 0; k < lists[i].count; k++)
+        for (size_t k = 0; k < lists[i].count; k++) {
+            if (cancel_asked_at(k))
+                return false;
             end[code_of(lists[i].list[k].position, m) >> PART_SHIFT]++;
+        }
     for (size_t i = 0, sum = 0; i < PARTS; i++) { /* first where each begins */
         const size_t begin = sum;
         sum += end[i];
@@ -140,9 +143,12 @@ static void divide(const photon_list *lists, size_t count, const middle *m, phot
     }
     for (size_t i = 0; i < count; i++)
         for (size_t k = 0; k < lists[i].count; k++) {
+            if (cancel_asked_at(k))
+                return false;
             const uint64_t code = code_of(lists[i].list[k].position, m);
             keys[end[code >> PART_SHIFT]++] = (photon_key){code, &lists[i].list[k]};
         }
+    return true;
 }
 
 bool photon_order(const photon_list *lists, size_t count, photon *out)
@@ -155,14 +161,16 @@ bool photon_order(const photon_list *lists, size_t count, photon *out)
     bool done = keys && end;
     if (done) {
         const middle m = middle_of(lists, count, (double *)(void *)keys, n);
-        divide(lists, count, &m, keys, end);
+        done = divide(lists, count, &m, keys, end);
     }
     for (size_t i = 0, begin = 0; done && i < PARTS; begin = end[i++]) {
         qsort(keys + begin, end[i] - begin, sizeof *keys, compare);
         done = !cancel_asked();
     }
-    for (size_t i = 0; done && i < n; i++)
+    for (size_t i = 0; done && i < n; i++) {
         out[i] = *keys[i].of;
+        done = !cancel_asked_at(i);
+    }
     free(end);
     free(keys);
     return done;

@@ -6,6 +6,8 @@
 #include "render/caustics/photon_even.h"
 #include "render/caustics/photon_tree.h"
 
+#include "base/cancel.h"
+
 enum { DOUBLINGS = 2 };
 
 /* Photons of one wavelength are few among many, and their light may be uneven where the sum is even. */
@@ -88,11 +90,13 @@ static photon merged(const photon *list, int count)
     return sum;
 }
 
-/* Groups of eight, four or two neighbours in the map's order. */
-static void merge(photon_map *m)
+/* Groups of eight, four or two neighbours in the map's order. False when cancelled. */
+static bool merge(photon_map *m)
 {
     size_t kept = 0;
     for (size_t i = 0, next; i < m->count; i = next) {
+        if (cancel_asked_at(i))
+            return false;
         int size = PHOTON_WIDE;
         while (size > 1 && (i % (size_t)size != 0 || i + (size_t)size > m->count || !can_merge(&m->photons[i], size)))
             size /= 2;
@@ -100,17 +104,19 @@ static void merge(photon_map *m)
         m->photons[kept++] = size > 1 ? merged(&m->photons[i], size) : m->photons[i];
     }
     m->count = kept;
+    return true;
 }
 
-void photon_map_finish(photon_map *m)
+bool photon_map_finish(photon_map *m)
 {
     size_t before;
     do {
         before = m->count;
-        merge(m);
+        if (!merge(m))
+            return false;
     } while (m->count < before - before / 8);
     photon_sums_free(m->sums);
     m->sums = NULL;
     photon_tree_count(m);
-    photon_tree_fit(m, true);
+    return photon_tree_fit(m, true);
 }

@@ -1,6 +1,8 @@
 /* The tree of a photon map: boxes, and searches in it. */
 #include "render/caustics/photon_tree.h"
 
+#include "base/cancel.h"
+
 #include <stdlib.h>
 
 void photon_box_add(photon_box *b, vec3 at, double radius)
@@ -39,10 +41,12 @@ bool photon_tree_make(photon_map *m)
     return true;
 }
 
-void photon_tree_fit(photon_map *m, bool discs)
+bool photon_tree_fit(photon_map *m, bool discs)
 {
     for (int k = 0; k < m->levels; k++) {
         for (size_t b = 0; b < m->boxes[k]; b++) {
+            if (cancel_asked_at(b))
+                return false;
             photon_box box = PHOTON_BOX_EMPTY;
             for (size_t i = photon_box_first(b); i < photon_box_end(m, k, b); i++)
                 if (k == 0)
@@ -52,6 +56,7 @@ void photon_tree_fit(photon_map *m, bool discs)
             m->level[k][b] = box;
         }
     }
+    return true;
 }
 
 double photon_box_distance2(const photon_box *b, vec3 at)

@@ -62,8 +62,8 @@ bool photon_order(const photon_list *lists, size_t count, photon *out);
 void photon_tree_count(photon_map *m);
 /* Allocates the boxes; false when out of memory. */
 bool photon_tree_make(photon_map *m);
-/* Fits the boxes to the photons' discs, or to their positions. */
-void photon_tree_fit(photon_map *m, bool discs);
+/* Fits the boxes to the photons' discs, or to their positions; false when cancelled. */
+bool photon_tree_fit(photon_map *m, bool discs);
 /* The distance from photon i to its k-th nearest neighbour on the same surface, at most `widest`. Boxes must be those
  * of the positions, or larger. */
 double photon_tree_reach(const photon_map *m, size_t i, int k, double widest);
