@@ -3,8 +3,8 @@
 
 #include "render/caustics/photon_map.h"
 
-/* Sums over the photons of each box of the tree. photon_sums_make: NULL when out of memory or cancelled; photon_sums_free
- * releases. */
+/* Sums over the photons of each box of the tree. photon_sums_make: NULL when out of memory or cancelled;
+ * photon_sums_free releases. */
 typedef struct photon_sums photon_sums;
 photon_sums *photon_sums_make(const photon_map *m);
 void photon_sums_free(photon_sums *s);
