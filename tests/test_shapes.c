@@ -361,8 +361,8 @@ static void a_mesh_reaches_as_far_as_its_box(void **state)
     mesh_release(m);
 }
 
-/* The ends of a prism are covered as the squares around their corners. */
-static void an_image_covers_the_ends_of_a_prism(void **state)
+/* The ends of a prism are covered as the squares around their corners, each side as a whole. */
+static void an_image_covers_the_faces_of_a_prism(void **state)
 {
     (void)state;
     const solid_shape shape = {.kind = SHAPE_PRISM, .sides = 6, .radius = 2, .height = 3};
@@ -376,7 +376,60 @@ static void an_image_covers_the_ends_of_a_prism(void **state)
             const surface_mapping m = primitive_mapping(p, p->first_face + face, vec3_make(x, 0.0, z), 0.0);
             assert_true(fabs(m.u - (x + 2) / 4) < SLACK && fabs(m.v - (face == 0 ? 2 - z : z + 2) / 4) < SLACK);
         }
+    for (int side = 2; side < 8; side++) /* from its bottom to its top */
+        for (int k = 0; k < 3; k++)
+            assert_true(fabs(primitive_mapping(p, p->first_face + side, vec3_make(0, k * 1.5, 0), 0.0).v - 0.5 * k) <
+                        SLACK);
     scene_geometry_destroy(a);
+}
+
+/* The image on the inner side of a cup begins at the floor, is as high as the hollow is wide, and runs around as on the
+ * outer side of a cylinder, mirrored. */
+static void an_image_lines_the_hollow_of_a_cup(void **state)
+{
+    (void)state;
+    const solid_shape shape = {.kind = SHAPE_CUP, .m = 1, .radius = 2, .inner_radius = 1.5, .height = 6, .floor = 0.5};
+    const region_source source = {.shape = &shape, .medium = 1, .shadow_transmittance = 1.0};
+    scene_geometry *a = NULL;
+    assert_int_equal(scene_geometry_build(&source, 1, 0, TREE_IF_MANY, &a, NULL), STATUS_OK);
+    const primitive *hollow = &a->primitives[1];
+    for (int k = 0; k < 4; k++) {
+        const vec3 q = vec3_make(0.9, 0.5 + k, 1.2), opposite = vec3_make(-0.9, 0.5 + k, 1.2);
+        const surface_mapping m = primitive_mapping(hollow, hollow->first_face, q, 0.0);
+        assert_true(fabs(m.v - k / 3.0) < SLACK);
+        const surface_mapping outer = primitive_mapping(&a->primitives[0], a->primitives[0].first_face, opposite, 0.0);
+        assert_true(fabs(m.u - outer.u) < SLACK);
+    }
+    scene_geometry_destroy(a);
+}
+
+/* The planes of a prism's faces: ends, then sides, whose normals are level and which are all equally far away. */
+static void a_prism_has_the_planes_of_its_faces(void **state)
+{
+    (void)state;
+    const solid_shape shape = {.kind = SHAPE_PRISM, .sides = 5, .radius = 2, .height = 3};
+    vec3 normal, point, sum = {0, 0, 0};
+    for (size_t i = 0; i < 7; i++) {
+        assert_true(shape_of(&shape)->flat(&shape, i, &normal, &point));
+        const double at = vec3_dot(normal, point), expected = i == 0 ? 0.0 : i == 1 ? 3.0 : 2.0 * cos(M_PI / 5.0);
+        assert_true(fabs(at - expected) < SLACK && fabs(fabs(normal.y) - (i < 2 ? 1.0 : 0.0)) < SLACK);
+        sum = vec3_add(sum, normal);
+    }
+    assert_true(fabs(sum.x) < SLACK && fabs(sum.z) < SLACK); /* the sides are around it evenly */
+    assert_false(shape_of(&shape)->flat(&shape, 7, &normal, &point));
+}
+
+static void faces_have_their_names(void **state)
+{
+    (void)state;
+    const solid_shape cup = {.kind = SHAPE_CUP}, prism = {.kind = SHAPE_PRISM}, model = {.kind = SHAPE_MESH};
+    assert_string_equal(shape_face_name(shape_of(&cup), 0), "outer side");
+    assert_string_equal(shape_face_name(shape_of(&cup), 2), "rim");
+    assert_string_equal(shape_face_name(shape_of(&cup), HOLLOW_FACES), "inner side");
+    assert_string_equal(shape_face_name(shape_of(&cup), HOLLOW_FACES + 1), "floor");
+    assert_string_equal(shape_face_name(shape_of(&prism), 1), "top");
+    assert_string_equal(shape_face_name(shape_of(&prism), 2), shape_face_name(shape_of(&prism), HOLLOW_FACES + 3));
+    assert_string_equal(shape_face_name(shape_of(&model), 5), "surface");
 }
 
 /* Each face of a box has the whole image: its corners are corners of the image. */
@@ -450,7 +503,10 @@ int main(void)
         cmocka_unit_test(flat_faces_bound_the_solid),
         cmocka_unit_test(points_of_the_surface_belong_to_a_solid),
         cmocka_unit_test(an_image_covers_an_end_exactly),
-        cmocka_unit_test(an_image_covers_the_ends_of_a_prism),
+        cmocka_unit_test(an_image_covers_the_faces_of_a_prism),
+        cmocka_unit_test(an_image_lines_the_hollow_of_a_cup),
+        cmocka_unit_test(a_prism_has_the_planes_of_its_faces),
+        cmocka_unit_test(faces_have_their_names),
         cmocka_unit_test(an_image_covers_each_face_of_a_box),
         cmocka_unit_test(an_image_has_the_lengths_of_a_cones_side),
         cmocka_unit_test(rings_and_thickness_of_cups_and_tori),
