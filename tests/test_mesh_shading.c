@@ -11,6 +11,8 @@
 
 #include "mesh_stage.h"
 #include "random_stream.h"
+#include "render/core/layers.h"
+#include "render_fixture.h"
 #include "scene/model/scene.h"
 
 #define DARK \
@@ -344,6 +346,18 @@ static void spectral_films_refuse_textures(void **state)
     assert_string_equal(refusal_of(text, "", why), "");
 }
 
+/* Which numbers of materials the layer of a small image has, as bits. */
+static int material_numbers(scene *s)
+{
+    int seen = 0;
+    set_all(s, "camera.position=0,0,-3 camera.target=0,0,0 camera.fov_deg=40 render.width=8 render.height=8");
+    render_result *r = render_at(s, isa_best(), &(render_options){.layers = true});
+    for (int i = 0; i < 64; i++)
+        seen |= 1 << (int)r->layers->values[LAYER_MATERIAL][i];
+    render_result_destroy(r);
+    return seen;
+}
+
 /* Two triangles, two materials: the file's materials, and the scene's own material if it has the slot's name. */
 static void faces_are_shaded_by_their_materials(void **state)
 {
@@ -379,6 +393,8 @@ static void faces_are_shaded_by_their_materials(void **state)
         else
             assert_true(l[0] < l[1] && l[1] < l[2] &&
                         (k == 1 ? right[1] == 0.5 && right[0] == 0.0 : right[0] > right[1] && right[1] > right[2]));
+        /* the scene's material is number 1, the solid's own, with the file's values, follows it */
+        assert_int_equal(material_numbers(g.setting), k == 1 ? 1 << 1 | 1 << 2 : 1 << 1);
         stage_close(&g);
     }
     snprintf(text, sizeof text, DARK "meshes: {two: {file: %s}}\nsolids: {sheet: {shape: mesh, mesh: two}}\n", path);
