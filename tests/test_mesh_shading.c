@@ -350,7 +350,8 @@ static void spectral_films_refuse_textures(void **state)
 static int material_numbers(scene *s)
 {
     int seen = 0;
-    set_all(s, "camera.position=0,0,-3 camera.target=0,0,0 camera.fov_deg=40 render.width=8 render.height=8");
+    set_all(s, "camera.position=0,0,-3 camera.target=0,0,0 camera.fov_deg=40 render.width=8 render.height=8 "
+               "render.integrator=aov");
     render_result *r = render_at(s, isa_best(), &(render_options){.layers = true});
     for (int i = 0; i < 64; i++)
         seen |= 1 << (int)r->layers->values[LAYER_MATERIAL][i];
