@@ -370,9 +370,18 @@ static void a_screen_shows_where_and_in_which_colour(void **state)
     screen.width = 1e6;
     worked(beam_screen_expose(s, isa_best(), &screen, &why), &why);
     beam_screen_release(&screen);
-    screen.width = nextafter(1e6, 2e6);
-    assert_int_equal(beam_screen_expose(s, isa_best(), &screen, &why), STATUS_BAD_INPUT);
-    beam_screen_release(&screen);
+    static const beam_screen wrong[] = {
+        {.width = 1e6 + 1e-9, .height = 2, .columns = 4, .rows = 4}, {.width = 2, .height = 0, .columns = 4, .rows = 4},
+        {.width = 0, .height = 2, .columns = 4, .rows = 4},          {.width = 2, .height = 2, .columns = 0, .rows = 4},
+        {.width = 2, .height = 2, .columns = 513, .rows = 4},        {.width = 2, .height = 2, .columns = 4, .rows = 0},
+        {.width = 2, .height = 2, .columns = 4, .rows = 513},
+    };
+    for (size_t i = 0; i < sizeof wrong / sizeof *wrong; i++) {
+        screen = wrong[i];
+        screen.normal = vec3_make(1, 0, 0);
+        assert_int_equal(beam_screen_expose(s, isa_best(), &screen, &why), STATUS_BAD_INPUT);
+        beam_screen_release(&screen);
+    }
     scene_destroy(s);
 }
 
@@ -437,6 +446,23 @@ static void a_drawn_beam_is_at_its_pixels(void **state)
     expect_pixel(img, 6, 720, 1.0); /* 1600 * 0.9 / 2 = 720 */
     expect_pixel(img, 6, 721, 1.0);
     expect_pixel(img, 6, 722, 0.0);
+    image_destroy(img);
+    scene_destroy(s);
+}
+
+/* Under parallel rays, 16 px to a scene unit, a beam whose distance from the eye is 5 + x passes through a surface at a
+ * distance of 5 in column 32. */
+static void a_drawn_beam_passes_through_a_surface(void **state)
+{
+    (void)state;
+    scene *s = with_beam("position: [-1, 0.5, -1], direction: [1, 0, 1], color: [1, 0.5, 0.25], rays: 1", "");
+    set_all(s, "camera.projection=orthographic camera.view_height=4 camera.position=0,0,-5 camera.target=0,0,0 "
+               "render.width=64 render.height=64");
+    image *img = drawn(s, 64, 64, 5.0F);
+    const double visible = img->pixel[3 * (24 * 64 + 20)] - 0.2;
+    assert_true(visible > 0.1);
+    for (int x = 20; x < 44; x++)
+        assert_true(fabs(img->pixel[3 * (24 * 64 + x)] - 0.2 - (x < 32 ? 1.0 : 0.15) * visible) < 1e-6);
     image_destroy(img);
     scene_destroy(s);
 }
@@ -543,6 +569,7 @@ int main(void)
         cmocka_unit_test(a_screen_in_a_medium_receives_what_is_not_absorbed),
         cmocka_unit_test(a_screen_shows_where_and_in_which_colour),
         cmocka_unit_test(a_drawn_beam_is_at_its_pixels),
+        cmocka_unit_test(a_drawn_beam_passes_through_a_surface),
         cmocka_unit_test(only_opaque_solids_hide_beams),
         cmocka_unit_test(the_work_of_all_beams_is_limited),
         cmocka_unit_test(the_normal_of_a_pencil_is_ignored),

@@ -120,7 +120,7 @@ static void media_meet_in_a_junction(void **state)
                           "  water: {shape: plane, position: [0, 0.0741, 0], transparency: 1, ior: 1.33}\n"
                           "  post: {shape: box, size: [0.4, 1.1, 0.6], position: [0.3137, 0.1, 0], priority: 1}\n");
     probe *p = probe_of(s);
-    for (int cells = 40; cells < 100; cells += 17) {
+    for (int cells = 40; cells < 100; cells += 3) {
         section out = cut(p, &upright, cells);
         for (int side = -1; side <= 1; side += 2) {
             double nearest = HUGE_VAL;
