@@ -91,30 +91,55 @@ static void one_light_has_the_mean_of_all(void **state)
         }
 }
 
-/* White lamps above a convex matte floor: each is chosen in proportion to its light, so that every path brings the sum,
- * k_d C / pi times the irradiance, here k_d I (N.L) reach^2 / d^2 by lamp. */
-static void lamps_without_shadows_make_no_noise(void **state)
+enum { LAMPS = 64 };
+
+/* Lamps above a convex matte floor, the first half in one colour; returns the light of either half that its point below
+ * the camera's axis reflects: k_d C / pi times the irradiance, here k_d I (N.L) reach^2 / d^2 by lamp. */
+static scene *many_lamps(const char *first, const char *second, int paths, double expected[2])
 {
-    (void)state;
-    enum { LAMPS = 64 };
     char text[8000];
     int at = snprintf(text, sizeof text,
-                      "render: {width: 1, height: 1, depth: 0, integrator: path, paths: 16, beyond: black}\n"
+                      "render: {width: 1, height: 1, depth: 0, integrator: path, paths: %d, beyond: black}\n"
                       "camera: {position: [0, 60, -80], target: [0, 0, 0], fov_deg: 0.00001}\n"
-                      "background: {color: [0, 0, 0]}\nsolids: {floor: {shape: plane, diffuse: 0.7}}\nlights:\n");
-    double expected = 0.0;
+                      "background: {color: [0, 0, 0]}\nsolids: {floor: {shape: plane, diffuse: 0.7}}\nlights:\n",
+                      paths);
+    expected[0] = expected[1] = 0.0;
     for (int k = 0; k < LAMPS; k++) {
         const double x = k % 8 - 3.2, y = 1.0 + 0.1 * k, z = k / 8.0 - 2.0, strength = 0.01 + 0.001 * k;
         at += snprintf(text + at, sizeof text - (size_t)at,
-                       "  l%d: {position: [%.17g, %.17g, %.17g], intensity: %.17g, reach: 3}\n", k, x, y, z, strength);
-        expected += 0.7 * strength * 9.0 * y / pow(x * x + y * y + z * z, 1.5);
+                       "  l%d: {position: [%.17g, %.17g, %.17g], intensity: %.17g, reach: 3, color: %s}\n", k, x, y, z,
+                       strength, k < LAMPS / 2 ? first : second);
+        expected[k >= LAMPS / 2] += 0.7 * strength * 9.0 * y / pow(x * x + y * y + z * z, 1.5);
     }
-    scene *s = scene_from(text);
+    return scene_from(text);
+}
+
+/* Each of white lamps is chosen in proportion to its light, so that every path brings the sum. */
+static void lamps_without_shadows_make_no_noise(void **state)
+{
+    (void)state;
+    double expected[2];
+    scene *s = many_lamps("[1, 1, 1]", "[1, 1, 1]", 16, expected);
     render_result *r = render(s);
-    const double seen = (double)r->img->sum[0] / FILM_ONE;
-    if (!(fabs(seen / expected - 1.0) < 1e-6 && render_noise_rms(r) < 1e-6))
-        fail_msg("%.9g +- %.2g instead of %.9g", seen, render_noise_rms(r), expected);
+    const double seen = (double)r->img->sum[0] / FILM_ONE / (expected[0] + expected[1]);
+    if (!(fabs(seen - 1.0) < 1e-6 && render_noise_rms(r) < 1e-6))
+        fail_msg("%.9g +- %.2g of what is expected", seen, render_noise_rms(r));
     assert_true(!CUVETTE_COUNTERS || r->counters.shadow == 16);
+    render_result_destroy(r);
+    scene_destroy(s);
+}
+
+/* Red and green lamps: the share of paths that choose a red one is its share of the light. The standard error of 4096
+ * independent choices is 0.008 at most. */
+static void each_lamp_is_chosen_in_proportion_to_its_light(void **state)
+{
+    (void)state;
+    double expected[2];
+    scene *s = many_lamps("[1, 0, 0]", "[0, 1, 0]", 4096, expected);
+    render_result *r = render(s);
+    for (int half = 0; half < 2; half++)
+        assert_true(fabs((double)r->img->sum[half] / FILM_ONE - expected[half]) < 0.03 * (expected[0] + expected[1]));
+    assert_true(expected[0] > 0.2 * expected[1] && expected[1] > 0.2 * expected[0]);
     render_result_destroy(r);
     scene_destroy(s);
 }
@@ -160,6 +185,7 @@ int main(void)
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(one_light_has_the_mean_of_all),
         cmocka_unit_test(lamps_without_shadows_make_no_noise),
+        cmocka_unit_test(each_lamp_is_chosen_in_proportion_to_its_light),
         cmocka_unit_test(the_film_of_one_light_is_the_same),
         cmocka_unit_test(films_are_bit_identical_on_all_instruction_sets),
     };
