@@ -137,6 +137,9 @@ status material_crystal_check(const material *m, const char *label, diagnostic *
 {
     if (m->extraordinary_ior == 0.0 || material_is_opaque(m))
         return STATUS_OK;
+    if (m->extraordinary_ior < 0.1)
+        return diagnose(why, STATUS_BAD_INPUT, "set it to 0.1 or more, or to 0 for a medium with one index",
+                        "%.80s: extraordinary_ior %g is too small", label, m->extraordinary_ior);
     if (!(vec3_dot(m->optic_axis, m->optic_axis) > 0.0))
         return diagnose(why, STATUS_BAD_INPUT, "set it to a vector in the solid's frame, such as 0,1,0",
                         "%.80s: the optic_axis has no direction", label);
