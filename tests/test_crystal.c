@@ -94,7 +94,8 @@ static void an_axis_along_or_across_the_normal_splits_no_directions(void **state
     }
 }
 
-/* With the axis across the plane of incidence both rays obey Snell and Fresnel, the extraordinary one for s with n_e. */
+/* With the axis across the plane of incidence both rays obey Snell and Fresnel, the extraordinary one for s with
+ * n_e. */
 static void an_axis_across_the_plane_of_incidence_gives_snell(void **state)
 {
     (void)state;

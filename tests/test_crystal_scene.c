@@ -1,5 +1,5 @@
-/* Crystals in scenes against closed forms: the two images of a plate (Hecht, Optics, 8.4.2; Born and Wolf, Principles of
- * Optics, 7th ed., 15.3), their polarisation, and that no light is lost. */
+/* Crystals in scenes against closed forms: the two images of a plate (Hecht, Optics, 8.4.2; Born and Wolf, Principles
+ * of Optics, 7th ed., 15.3), their polarisation, and that no light is lost. */
 #include <math.h>
 #include <setjmp.h>
 #include <stdarg.h>
@@ -100,8 +100,8 @@ static void a_white_furnace_stays_white(void **state)
     }
 }
 
-/* A thick plate between crossed polarisers, its axis at 45 degrees: of the light that it transmits, 2 n / (n^2 + 1) with
- * all reflections, each mode has a half of a half, and the second polariser passes a half of that. */
+/* A thick plate between crossed polarisers, its axis at 45 degrees: of the light that it transmits, 2 n / (n^2 + 1)
+ * with all reflections, each mode has a half of a half, and the second polariser passes a half of that. */
 static void thick_plates_between_crossed_polarisers(void **state)
 {
     (void)state;

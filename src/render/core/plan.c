@@ -10,8 +10,8 @@
 #include <stdlib.h>
 
 /* Under Fresnel weights equal refractive indices are one medium, and a boundary between them is no interface unless it
- * is coated, has a film, emits light, or bounds a crystal; with constant weights, as in the report, every surface reflects whatever its
- * index. laws: dispersion laws by solid; [solid_count] is that of the surrounding medium. */
+ * is coated, has a film, emits light, or bounds a crystal; with constant weights, as in the report, every surface
+ * reflects whatever its index. laws: dispersion laws by solid; [solid_count] is that of the surrounding medium. */
 static bool shows_itself(const scene *s, const material *m)
 {
     return m->emission > 0.0 || material_coating(m, &s->render) > 0.0 || material_is_layered(m, &s->render) ||

@@ -19,8 +19,8 @@ void mesh_end(tracer *t);
 
 /* mesh_surface: hit points of the gathered group on a mesh. mesh_bound_light, mesh_bound_branches: remove light and
  * branches that are behind the geometric triangle. mesh_face_normal: the normal of the triangle of record k, which
- * faces the ray. mesh_lets_out: true if a direction leads out of that triangle. mesh_corner_light: Gouraud's light. mesh_next_material: splits the group's list into faces of equal
- * material. */
+ * faces the ray. mesh_lets_out: true if a direction leads out of that triangle. mesh_corner_light: Gouraud's light.
+ * mesh_next_material: splits the group's list into faces of equal material. */
 void mesh_surface(tracer *t, int priority_index, const int *list);
 void mesh_bound_light(tracer *t);
 void mesh_bound_branches(tracer *t);
