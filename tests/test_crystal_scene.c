@@ -61,6 +61,25 @@ static void a_plate_shows_two_images(void **state)
     }
 }
 
+/* Two pieces of one crystal are one crystal; with other axes there is a surface between them. */
+static void pieces_of_a_crystal_have_no_surface_between_them(void **state)
+{
+    (void)state;
+    scene *s = behind_air("");
+    vec3 whole[2], pieces[2];
+    add_plate(s, CALCITE "optic_axis=1,0,1", 0.3, 0.0);
+    assert_int_equal(exits(s, vec3_make(0, 0, 1), whole), 2);
+    add_plate(s, CALCITE "optic_axis=1,0,1", 0.2, 0.0);
+    s->solids[1].shape.position.z = 2.1;
+    assert_int_equal(exits(s, vec3_make(0, 0, 1), pieces), 2);
+    assert_near(pieces[0].z, 2.2, 1e-14);
+    assert_near(pieces[1].x, whole[1].x * 0.35 / 0.3, 1e-13);
+    set(s, "sheet_2.optic_axis=1,0,0");
+    assert_int_equal(exits(s, vec3_make(0, 0, 1), pieces), 2);
+    assert_near(pieces[0].z, 2.15, 1e-14); /* at the first one's end, where the second begins */
+    scene_destroy(s);
+}
+
 /* The ordinary ray by Snell; the extraordinary one in a plate cut across its axis, tan = n_o sin i / (n_e sqrt(n_e^2 -
  * sin^2 i)). */
 static void oblique_rays_cross_a_plate(void **state)
@@ -151,6 +170,7 @@ int main(void)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(a_plate_shows_two_images),
+        cmocka_unit_test(pieces_of_a_crystal_have_no_surface_between_them),
         cmocka_unit_test(oblique_rays_cross_a_plate),
         cmocka_unit_test(a_white_furnace_stays_white),
         cmocka_unit_test(thick_plates_between_crossed_polarisers),

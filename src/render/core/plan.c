@@ -10,12 +10,24 @@
 #include <stdlib.h>
 
 /* Under Fresnel weights equal refractive indices are one medium, and a boundary between them is no interface unless it
- * is coated, has a film, emits light, or bounds a crystal; with constant weights, as in the report, every surface
- * reflects whatever its index. laws: dispersion laws by solid; [solid_count] is that of the surrounding medium. */
+ * is coated, has a film, or emits light; a crystal is one medium only with one of equal indices and axis. With constant
+ * weights, as in the report, every surface reflects whatever its index. laws: dispersion laws by solid; [solid_count] is that of the surrounding medium. */
 static bool shows_itself(const scene *s, const material *m)
 {
-    return m->emission > 0.0 || material_coating(m, &s->render) > 0.0 || material_is_layered(m, &s->render) ||
-           material_is_crystal(m, &s->render);
+    return m->emission > 0.0 || material_coating(m, &s->render) > 0.0 || material_is_layered(m, &s->render);
+}
+
+/* Both crystals with one extraordinary index and one axis in the world, or neither a crystal. */
+static bool are_alike_crystals(const scene *s, const solid *a, const solid *b)
+{
+    const bool first = material_is_crystal(&a->surface, &s->render),
+               second = material_is_crystal(&b->surface, &s->render);
+    if (!first || !second)
+        return first == second;
+    const vec3 one = mat3_apply(rotation_from_deg(a->shape.rotation_deg), a->surface.optic_axis),
+               other = mat3_apply(rotation_from_deg(b->shape.rotation_deg), b->surface.optic_axis);
+    return a->surface.extraordinary_ior == b->surface.extraordinary_ior && one.x == other.x && one.y == other.y &&
+           one.z == other.z;
 }
 
 static int64_t medium_of(const scene *s, const index_law *laws, int solid_index)
@@ -23,12 +35,13 @@ static int64_t medium_of(const scene *s, const index_law *laws, int solid_index)
     const material *m = &s->solids[solid_index].surface;
     if (material_is_opaque(m) || scene_has_constant_shares(&s->render) || shows_itself(s, m))
         return solid_index + 1;
-    if (index_laws_match(&s->render, &laws[solid_index], &laws[s->solid_count]))
+    if (!material_is_crystal(m, &s->render) && index_laws_match(&s->render, &laws[solid_index], &laws[s->solid_count]))
         return 0;
     for (int i = 0; i < solid_index; i++) {
         const solid *other = &s->solids[i];
         if (other->visible && !material_is_opaque(&other->surface) && !shows_itself(s, &other->surface) &&
-            index_laws_match(&s->render, &laws[i], &laws[solid_index]))
+            index_laws_match(&s->render, &laws[i], &laws[solid_index]) &&
+            are_alike_crystals(s, other, &s->solids[solid_index]))
             return i + 1;
     }
     return solid_index + 1;
