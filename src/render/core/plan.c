@@ -11,7 +11,8 @@
 
 /* Under Fresnel weights equal refractive indices are one medium, and a boundary between them is no interface unless it
  * is coated, has a film, or emits light; a crystal is one medium only with one of equal indices and axis. With constant
- * weights, as in the report, every surface reflects whatever its index. laws: dispersion laws by solid; [solid_count] is that of the surrounding medium. */
+ * weights, as in the report, every surface reflects whatever its index. laws: dispersion laws by solid; [solid_count]
+ * is that of the surrounding medium. */
 static bool shows_itself(const scene *s, const material *m)
 {
     return m->emission > 0.0 || material_coating(m, &s->render) > 0.0 || material_is_layered(m, &s->render);
