@@ -192,9 +192,27 @@ static void the_shipped_scenes_give_no_hint(void **state)
     }
 }
 
+static void crystals_that_split_no_light_give_a_hint(void **state)
+{
+    (void)state;
+#define STONE "stone: {shape: sphere, transparency: 1, ior: 1.6, extraordinary_ior: 1.5}"
+    expect_hints(LIT "solids: {" STONE "}", "");
+    expect_hints(LIT "render: {weights: constant}\nsolids: {" STONE "}",
+                 "stone.extraordinary_ior: the crystal stone has one image: light takes its ordinary index alone; set "
+                 "render.lighting to whitted, render.weights to fresnel, and render.transmission to refract\n");
+    expect_hints(LIT "render: {integrator: raycast}\nsolids: {" STONE "}",
+                 "stone.extraordinary_ior: the crystal stone has one image: light takes its ordinary index alone; set "
+                 "render.integrator to whitted\n");
+    expect_hints(LIT "render: {caustics: photons}\nsolids: {" STONE "}",
+                 "stone.extraordinary_ior: photons take the ordinary index of the crystal stone alone; set "
+                 "render.caustics to off\n");
+#undef STONE
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
+        cmocka_unit_test(crystals_that_split_no_light_give_a_hint),
         cmocka_unit_test(missing_objects_and_lights_give_a_hint),
         cmocka_unit_test(extrapolated_dispersion_laws_give_a_hint),
         cmocka_unit_test(ineffective_parameters_give_a_hint),

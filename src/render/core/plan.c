@@ -10,11 +10,25 @@
 #include <stdlib.h>
 
 /* Under Fresnel weights equal refractive indices are one medium, and a boundary between them is no interface unless it
- * is coated, has a film, or emits light; with constant weights, as in the report, every surface reflects whatever its
- * index. laws: dispersion laws by solid; [solid_count] is that of the surrounding medium. */
+ * is coated, has a film, or emits light; a crystal is one medium only with one of equal indices and axis. With constant
+ * weights, as in the report, every surface reflects whatever its index. laws: dispersion laws by solid; [solid_count]
+ * is that of the surrounding medium. */
 static bool shows_itself(const scene *s, const material *m)
 {
     return m->emission > 0.0 || material_coating(m, &s->render) > 0.0 || material_is_layered(m, &s->render);
+}
+
+/* Both crystals with one extraordinary index and one axis in the world, or neither a crystal. */
+static bool are_alike_crystals(const scene *s, const solid *a, const solid *b)
+{
+    const bool first = material_is_crystal(&a->surface, &s->render),
+               second = material_is_crystal(&b->surface, &s->render);
+    if (!first || !second)
+        return first == second;
+    const vec3 one = mat3_apply(rotation_from_deg(a->shape.rotation_deg), a->surface.optic_axis),
+               other = mat3_apply(rotation_from_deg(b->shape.rotation_deg), b->surface.optic_axis);
+    return a->surface.extraordinary_ior == b->surface.extraordinary_ior && one.x == other.x && one.y == other.y &&
+           one.z == other.z;
 }
 
 static int64_t medium_of(const scene *s, const index_law *laws, int solid_index)
@@ -22,12 +36,13 @@ static int64_t medium_of(const scene *s, const index_law *laws, int solid_index)
     const material *m = &s->solids[solid_index].surface;
     if (material_is_opaque(m) || scene_has_constant_shares(&s->render) || shows_itself(s, m))
         return solid_index + 1;
-    if (index_laws_match(&s->render, &laws[solid_index], &laws[s->solid_count]))
+    if (!material_is_crystal(m, &s->render) && index_laws_match(&s->render, &laws[solid_index], &laws[s->solid_count]))
         return 0;
     for (int i = 0; i < solid_index; i++) {
         const solid *other = &s->solids[i];
         if (other->visible && !material_is_opaque(&other->surface) && !shows_itself(s, &other->surface) &&
-            index_laws_match(&s->render, &laws[i], &laws[solid_index]))
+            index_laws_match(&s->render, &laws[i], &laws[solid_index]) &&
+            are_alike_crystals(s, other, &s->solids[solid_index]))
             return i + 1;
     }
     return solid_index + 1;
@@ -247,6 +262,8 @@ static status fill_priority_indices(const scene *s, const index_law *laws, plan 
         return out_of_memory(why);
     if (!sheet_list_create(s, p->geometry, &p->sheets))
         return out_of_memory(why);
+    if (!crystal_list_create(s, p->geometry, &p->crystals))
+        return out_of_memory(why);
     if (!scatter_plan_create(s, p->geometry, &p->scatter))
         return out_of_memory(why);
     return layered_plan_create(&s->render, p->materials, p->laws, p->ior, p->alike, priority_indices, &p->layered)
@@ -276,6 +293,13 @@ static void add_analyser(const scene *s, plan *p)
     p->analyser_axis = vec3_add(vec3_scale(p->view.right, cosine), vec3_scale(p->view.up, sine));
 }
 
+/* Light in a crystal is of one of two modes, which no camera ray has. */
+static status refuse_crystal(const solid *crystal, diagnostic *why)
+{
+    return diagnose(why, STATUS_BAD_INPUT, "move camera.position out of it, or set its extraordinary_ior to 0",
+                    "the camera is in the crystal %.80s", crystal->name);
+}
+
 /* The camera's view, and the solids that its rays start in. */
 static status place_camera(const scene *s, plan *p, diagnostic *why)
 {
@@ -286,11 +310,15 @@ static status place_camera(const scene *s, plan *p, diagnostic *why)
         if (!one->visible || scene_apart_from_eye(s, one))
             continue;
         p->starts_vary = true;
+        if (!solid_is_opaque(s, one) && material_is_crystal(&one->surface, &s->render))
+            return refuse_crystal(one, why);
         TRY(needs_one_medium(s, p, one, why));
     }
     if (!integrator_traits_of(&s->render)->drawn)
         p->eye_inside = scene_geometry_inside(p->geometry, p->view.eye);
     p->camera_priority_index = scene_geometry_priority_index(p->geometry, p->eye_inside);
+    if (p->crystals && p->crystals[p->camera_priority_index].uniaxial)
+        return refuse_crystal(&s->solids[p->geometry->regions[p->camera_priority_index].solid], why);
     return STATUS_OK;
 }
 
@@ -357,6 +385,7 @@ void plan_destroy(plan *p)
     spectra_destroy(p->spectral);
     layered_plan_destroy(p->layered);
     free(p->sheets);
+    free(p->crystals);
     free(p->scatter);
     rain_destroy(p->rain);
     free(p);

@@ -7,6 +7,7 @@
 #include "geometry/hierarchy.h"
 #include "render/core/mesh_report.h"
 #include "render/core/path_sampling.h"
+#include "render/shade/crystals.h"
 #include "render/shade/layered_table.h"
 #include "render/shade/lamp_shape.h"
 #include "render/shade/light_cone.h"
@@ -45,10 +46,11 @@ typedef struct plan {
     index_law *laws;   /* by priority index: the source of ior */
     vec3 *absorption;  /* by priority index: Beer-Lambert coefficients and tints, by channel, in 1 / scene unit */
     spectra *spectral; /* for a spectral film, else NULL */
-    layered_plan *layered; /* metals and films; NULL if there are none */
-    region_sheet *sheets;  /* by priority index: polarisers and wave plates; NULL if there are none */
-    scatter_plan *scatter; /* media that scatter; NULL if there are none */
-    bool rough;            /* some surfaces are rough: see render/shade/rough.h */
+    layered_plan *layered;    /* metals and films; NULL if there are none */
+    region_sheet *sheets;     /* by priority index: polarisers and wave plates; NULL if there are none */
+    optical_medium *crystals; /* by priority index; NULL if there are none */
+    scatter_plan *scatter;    /* media that scatter; NULL if there are none */
+    bool rough;               /* some surfaces are rough: see render/shade/rough.h */
     camera_frame view;
     uint64_t eye_inside;       /* the set of primitives that contain the camera */
     analyser_kind analyser;    /* of camera rays; ANALYSER_NONE without polarisation */

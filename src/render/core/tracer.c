@@ -44,21 +44,24 @@ void tracer_destroy(tracer *t)
     mesh_end(t);
     radiance_end(t);
     layered_end(t);
+    crystals_end(t);
     forget_integrator(t);
     queue_destroy(&t->queues.shadows);
     free(t);
 }
 
-/* A queue must hold less than one waiting batch plus two children for every ray of a batch. */
-enum { WAITING = 3 * BATCH + LANES_MAX };
+/* A queue must hold less than one waiting batch plus two children for every ray of a batch; four where crystals are. */
+enum { WAITING = 3 * BATCH + LANES_MAX, WAITING_CRYSTALS = (CRYSTAL_RAYS_MAX + 1) * BATCH + LANES_MAX };
 
 uint64_t tracer_bytes(int depth)
 {
     return sizeof(tracer) + (uint64_t)(depth + 1) * queue_bytes(WAITING);
 }
 
-static bool make_queues(tracer *t, int depths)
+static bool make_queues(tracer *t, int depths, int waiting)
 {
+    while (t->queues.made > 0 && t->queues.waiting[0].capacity < waiting)
+        queue_destroy(&t->queues.waiting[--t->queues.made]);
     if (depths <= t->queues.made)
         return true;
     ray_queue *grown = realloc(t->queues.waiting, (size_t)depths * sizeof *grown);
@@ -66,7 +69,7 @@ static bool make_queues(tracer *t, int depths)
         return false;
     t->queues.waiting = grown;
     for (; t->queues.made < depths; t->queues.made++)
-        if (!queue_create(&grown[t->queues.made], WAITING))
+        if (!queue_create(&grown[t->queues.made], waiting))
             return false;
     return true;
 }
@@ -115,9 +118,9 @@ bool tracer_begin(tracer *t, const tracer_target *target)
         if (!queue_create(&t->queues.shadows, shadows_at_once))
             return false;
     }
-    if (!make_queues(t, t->queues.depth_limit + 1) || !make_marks(t, p->geometry) || !mesh_begin(t) ||
-        !radiance_begin(t) || !layered_begin(t) || !take_integrator(t) ||
-        !absorption_begin(t, p->geometry->attenuates && t->rule->traced))
+    if (!make_queues(t, t->queues.depth_limit + 1, p->crystals ? WAITING_CRYSTALS : WAITING) ||
+        !make_marks(t, p->geometry) || !mesh_begin(t) || !radiance_begin(t) || !layered_begin(t) ||
+        !crystals_begin(t) || !take_integrator(t) || !absorption_begin(t, p->geometry->attenuates && t->rule->traced))
         return false;
     t->by_sample_key = t->rule->by_sample || r->spectrum == SPECTRUM_SPECTRAL || p->basic || scene_has_soft_shadows(r);
     drop_all(t);

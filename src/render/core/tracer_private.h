@@ -5,6 +5,7 @@
 #include "render/core/sample_key.h"
 #include "render/integrators/integrator.h"
 #include "render/shade/absorption.h"
+#include "render/shade/crystals.h"
 #include "render/shade/layered.h"
 #include "render/shade/mesh_shading.h"
 #include "render/shade/radiance.h"
@@ -70,6 +71,7 @@ struct tracer {
     media_work *media;               /* for a scene with absorption */
     radiance_work *basic;            /* for a scene with basic radiance */
     layered_work *layered;           /* for a scene with metals or films */
+    crystal_work *crystals;          /* for a scene with crystals */
     _Alignas(64) tracer_batch batch; /* aligned to cache lines, here and above */
     _Alignas(64) tracer_surface surface;
 };

@@ -61,7 +61,8 @@ typedef struct ray_node {
      * contributes if unblocked */
     double throughput[3];
     double stokes[4]; /* with render.polarisation: the analyser's Stokes vector relative to its first element, in the
-                       * ray's canonical frame (optics/mueller.h); else 1 0 0 0 */
+                       * ray's canonical frame (optics/mueller.h); else 1 0 0 0; in a crystal 1 1 0 0 for an ordinary
+                       * and 1 -1 0 0 for an extraordinary ray, always */
     int medium;       /* in which it starts */
     double n;
     int light;             /* for a shadow ray: index in scene.lights, else RAY_NONE */

@@ -51,10 +51,11 @@ static void take(const ray_queue *q, int i, ray_record *out)
 void probe_take(const probe *p, int depth, int i, ray_record *out)
 {
     take(&p->rays->queues.waiting[depth], i, out);
-    if (!p->frame_plan->render.polarisation)
-        memset(out->stokes, 0, sizeof out->stokes);
     out->depth = depth;
     out->medium_priority_index = scene_geometry_priority_index(p->frame_plan->geometry, out->inside);
+    const bool in_crystal = p->frame_plan->crystals && p->frame_plan->crystals[out->medium_priority_index].uniaxial;
+    if (!p->frame_plan->render.polarisation && !in_crystal)
+        memset(out->stokes, 0, sizeof out->stokes);
 }
 
 static void put(ray_queue *q, const ray_record *r)
@@ -140,6 +141,19 @@ static void read_layers(const probe *p, ray_hit *h)
     h->R = 0.5 * (h->R_s + h->R_p);
 }
 
+/* What a crystal's surface reflects of this ray's light. cos_t stays that of the ordinary ray. */
+static void read_crystal(const tracer *t, ray_hit *h)
+{
+    const crystal_children *c = &t->crystals->children[0];
+    double reflected = 0.0;
+    h->tir = true;
+    for (int i = 0; i < c->count; i++) {
+        reflected += c->ray[i].reflected ? c->ray[i].row.i : 0.0;
+        h->tir = h->tir && c->ray[i].reflected;
+    }
+    h->R_s = h->R_p = h->R = reflected;
+}
+
 /* Reads the ray's hit; false for the background. */
 static bool read_hit(const probe *p, ray_node *node)
 {
@@ -190,6 +204,8 @@ static bool read_hit(const probe *p, ray_node *node)
         h->cos_t = h->cos_i;
         h->tir = false;
     }
+    if (crystals_meet(t, 0) && !opaque)
+        read_crystal(t, h);
     read_gain(p, h);
     h->path_length_m = h->t * p->frame_plan->render.unit_m;
     for (int c = 0; c < 3; c++)
@@ -201,9 +217,9 @@ static bool read_hit(const probe *p, ray_node *node)
 /* The branches of the ray just traced: their records, kinds, and for those that were not enqueued how they ended. */
 typedef struct branches {
     int count;
-    ray_record record[2];
-    ray_kind kind[2];
-    ray_end end[2];
+    ray_record record[CRYSTAL_RAYS_MAX];
+    ray_kind kind[CRYSTAL_RAYS_MAX];
+    ray_end end[CRYSTAL_RAYS_MAX];
 } branches;
 
 static bool is_below_least_weight(const double weight[3], double least)
@@ -211,31 +227,22 @@ static bool is_below_least_weight(const double weight[3], double least)
     return least > 0.0 && weight[0] < least && weight[1] < least && weight[2] < least;
 }
 
-static void add_branch(const probe *p, int depth, bool reflected, int *queued, branches *out)
+/* A branch of the hit along a direction, with its weight by channel; the next in the queue unless it was cut. */
+static void add_branch(const probe *p, int depth, bool reflected, vec3 direction, vec3 weight, const double polar[3],
+                       int *queued, branches *out)
 {
     const tracer *t = p->rays;
-    const branch_group *b = &t->surface.branches;
     const group *g = &t->surface.gathered;
-    const double share = reflected ? b->reflect[0] : b->refract[0];
-    const vec3 weight = layered_weight(t, 0, reflected);
-    if (!(share > 0.0))
-        return;
     const int i = out->count++;
     ray_record *r = &out->record[i];
     *r = (ray_record){.origin = vec3_make(g->points.px[0], g->points.py[0], g->points.pz[0]),
-                      .direction =
-                          reflected ? vec3_make(b->rx[0], b->ry[0], b->rz[0]) : vec3_make(b->tx[0], b->ty[0], b->tz[0]),
+                      .direction = direction,
                       .weight = {g->wr[0] * weight.x, g->wg[0] * weight.y, g->wb[0] * weight.z},
+                      .stokes = {polar[0], polar[1], polar[2]},
                       .start = g->points.face[0],
                       .inside = reflected ? g->inside_before[0] : g->inside_after[0],
                       .depth = depth + 1,
                       .medium_priority_index = (int)(reflected ? t->batch.hits.before[0] : t->batch.hits.after[0])};
-    if (p->frame_plan->render.polarisation) {
-        const polar_group *v = &t->surface.polar;
-        r->stokes[0] = reflected ? v->rq[0] : v->tq[0];
-        r->stokes[1] = reflected ? v->ru[0] : v->tu[0];
-        r->stokes[2] = reflected ? v->rv[0] : v->tv[0];
-    }
     out->kind[i] = reflected ? RAY_REFLECT : RAY_REFRACT;
     out->end[i] = RAY_END_CUT_DEPTH;
     if (depth == t->queues.depth_limit)
@@ -248,6 +255,32 @@ static void add_branch(const probe *p, int depth, bool reflected, int *queued, b
     probe_take(p, depth + 1, (*queued)++, r);
 }
 
+/* A reflected or a refracted branch, if there is one. */
+static void add_ordinary(const probe *p, int depth, bool reflected, int *queued, branches *out)
+{
+    const branch_group *b = &p->rays->surface.branches;
+    const polar_group *v = &p->rays->surface.polar;
+    const bool polarised = p->frame_plan->render.polarisation;
+    const double polar[3] = {polarised ? (reflected ? v->rq : v->tq)[0] : 0.0,
+                             polarised ? (reflected ? v->ru : v->tu)[0] : 0.0,
+                             polarised ? (reflected ? v->rv : v->tv)[0] : 0.0};
+    const vec3 direction =
+        reflected ? vec3_make(b->rx[0], b->ry[0], b->rz[0]) : vec3_make(b->tx[0], b->ty[0], b->tz[0]);
+    if ((reflected ? b->reflect[0] : b->refract[0]) > 0.0)
+        add_branch(p, depth, reflected, direction, layered_weight(p->rays, 0, reflected), polar, queued, out);
+}
+
+/* The rays at a crystal's surface. */
+static void add_crystal_rays(const probe *p, int depth, int *queued, branches *out)
+{
+    const crystal_children *c = &p->rays->crystals->children[0];
+    for (int i = 0; i < c->count; i++) {
+        const crystal_ray *ray = &c->ray[i];
+        const double none[3] = {0.0, 0.0, 0.0}, share = ray->row.i;
+        add_branch(p, depth, ray->reflected, ray->d, vec3_make(share, share, share), none, queued, out);
+    }
+}
+
 static void read_branches(const probe *p, int depth, branches *out)
 {
     const tracer *t = p->rays;
@@ -257,8 +290,10 @@ static void read_branches(const probe *p, int depth, branches *out)
     out->count = 0;
     if (!follows_trees(&p->frame_plan->render) || (opaque && !surface_reflects(t)))
         return;
-    add_branch(p, depth, true, &queued, out);
-    add_branch(p, depth, false, &queued, out);
+    add_ordinary(p, depth, true, &queued, out);
+    add_ordinary(p, depth, false, &queued, out);
+    if (crystals_meet(t, 0))
+        add_crystal_rays(p, depth, &queued, out);
 }
 
 /* The light of a shadow ray: the first light from index `from` that is exactly at its end and emits in its

@@ -9,6 +9,10 @@ static void branch(tracer *t, int depth, bool opaque)
     if (opaque && !surface_reflects(t))
         return;
     shading_branches(t, opaque);
+    if (t->crystals && t->crystals->any) {
+        crystals_branches(t, opaque);
+        crystals_follow(t, depth);
+    }
     if (depth == t->queues.depth_limit) {
         cut_branches(t);
         return;

@@ -45,6 +45,11 @@ static vec3 geometric(const mesh_work *w, int k)
     return vec3_make(w->points.gx[k], w->points.gy[k], w->points.gz[k]);
 }
 
+vec3 mesh_face_normal(const tracer *t, int k)
+{
+    return geometric(t->meshes, k);
+}
+
 bool mesh_lets_out(const tracer *t, int k, vec3 direction)
 {
     return !t->surface.on_mesh || vec3_dot(geometric(t->meshes, k), direction) > 0.0;

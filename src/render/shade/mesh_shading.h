@@ -18,12 +18,13 @@ bool mesh_begin(tracer *t); /* begins a frame; false when out of memory */
 void mesh_end(tracer *t);
 
 /* mesh_surface: hit points of the gathered group on a mesh. mesh_bound_light, mesh_bound_branches: remove light and
- * branches that are behind the geometric triangle. mesh_lets_out: true if a direction leads out of the triangle of
- * record k. mesh_corner_light: Gouraud's light. mesh_next_material: splits the group's list into faces of equal
- * material. */
+ * branches that are behind the geometric triangle. mesh_face_normal: the normal of the triangle of record k, which
+ * faces the ray. mesh_lets_out: true if a direction leads out of that triangle. mesh_corner_light: Gouraud's light.
+ * mesh_next_material: splits the group's list into faces of equal material. */
 void mesh_surface(tracer *t, int priority_index, const int *list);
 void mesh_bound_light(tracer *t);
 void mesh_bound_branches(tracer *t);
+vec3 mesh_face_normal(const tracer *t, int k);
 bool mesh_lets_out(const tracer *t, int k, vec3 direction);
 bool mesh_has_corner_light(const tracer *t, int priority_index);
 void mesh_corner_light(tracer *t, const material *m, const light *lamp, int priority_index);

@@ -494,6 +494,8 @@ static void shade_one_material(tracer *t, int depth, int first, const hit_group 
         spectral_indices(t, list);
     if (t->layered)
         layered_gather(t, list, priority_index);
+    if (t->crystals)
+        crystals_gather(t, &t->queues.waiting[depth], first, list);
     if (p->render.polarisation)
         polarised_gather(t, &t->queues.waiting[depth], first, list);
     t->surface.on_mesh = !surface->rule;

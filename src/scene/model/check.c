@@ -321,6 +321,7 @@ static status check_solid(const scene *s, const solid *owner, diagnostic *why)
     TRY(material_index_law(&owner->surface, owner->name, &unused, why));
     TRY(material_absorption_check(&owner->surface, owner->name, why));
     TRY(sheet_check(&owner->surface, owner->name, why));
+    TRY(material_crystal_check(&owner->surface, owner->name, why));
     TRY(check_layers(s, owner, why));
     TRY(check_face_layers(s, owner, why));
     TRY(check_scattering(s, owner, why));

@@ -51,8 +51,8 @@ static void hint_at_clear(const scene *s, const solid *owner, const note_taker *
                       owner->name);
     } else if (!scene_has_constant_shares(&s->render) && material_matches_surroundings(s, m) && !material_tints(m) &&
                m->reflectivity == 0.0 && m->emission == 0.0 && !material_is_layered(m, &s->render) &&
-               m->sheet == SHEET_NONE && material_scattering(m, &s->render) == 0.0 && !is_inside_medium(s, owner) &&
-               !cuts_another(s, owner)) {
+               m->sheet == SHEET_NONE && m->extraordinary_ior == 0.0 && material_scattering(m, &s->render) == 0.0 &&
+               !is_inside_medium(s, owner) && !cuts_another(s, owner)) {
         note_give(taker, owner->name, "ior", "set its ior",
                   "%s is transparent with the refractive index of the surrounding medium: it %s", owner->name,
                   material_absorbs(m) ? "refracts no light" : "is invisible");
@@ -241,6 +241,29 @@ static void hint_at_sheet(const scene *s, const solid *owner, const note_taker *
             owner->name);
 }
 
+/* Double refraction that is not traced, or not all of it. */
+static void hint_at_crystal(const scene *s, const solid *owner, const note_taker *taker)
+{
+    const material *m = &owner->surface;
+    size_t crystals = 0;
+    if (m->extraordinary_ior == 0.0 || solid_is_opaque(s, owner))
+        return;
+    for (size_t i = 0; i < s->solid_count; i++)
+        crystals += s->solids[i].visible && material_is_crystal(&s->solids[i].surface, &s->render);
+    if (!material_is_crystal(m, &s->render))
+        note_give(taker, owner->name, "extraordinary_ior",
+                  integrator_traits_of(&s->render)->tree ? "set render.lighting to whitted, render.weights to fresnel, "
+                                                           "and render.transmission to refract"
+                                                         : "set render.integrator to whitted",
+                  "the crystal %s has one image: light takes its ordinary index alone", owner->name);
+    else if (scene_has_caustics(&s->render))
+        note_give(taker, owner->name, "extraordinary_ior", "set render.caustics to off",
+                  "photons take the ordinary index of the crystal %s alone", owner->name);
+    else if (crystals > 1 && !s->render.polarisation)
+        note_give(taker, owner->name, "extraordinary_ior", "set render.polarisation to on",
+                  "light is traced without its polarisation: each crystal divides the light of another one in halves");
+}
+
 /* The film does not depend on them, so that scene/model/inert has no rules for them. */
 static void hint_at_tone(const scene *s, const note_taker *taker)
 {
@@ -287,6 +310,7 @@ void scene_hints(const scene *s, const note_taker *taker)
             hint_at_solid(s, &s->solids[i], taker);
             hint_at_idle(s, &s->solids[i], taker);
             hint_at_sheet(s, &s->solids[i], taker);
+            hint_at_crystal(s, &s->solids[i], taker);
             hint_at_cover(s, &s->solids[i], taker);
         }
     }

@@ -26,7 +26,9 @@ typedef struct material {
                             coating of a transparent material */
     double transparency; /* 0 = opaque; otherwise the fraction of the refracted light that passes an interface */
     double ior;          /* relative to vacuum, if medium is MEDIUM_IOR */
-    double extinction;   /* of an opaque material with medium MEDIUM_IOR: k of its complex index ior - i k */
+    double extraordinary_ior; /* of a uniaxial crystal, for the field along its optic axis; 0: isotropic */
+    vec3 optic_axis;          /* in the solid's own frame, of any length */
+    double extinction;        /* of an opaque material with medium MEDIUM_IOR: k of its complex index ior - i k */
     double film_thickness_nm, film_ior;   /* of a film on the surface; thickness 0: none */
     double roughness;                     /* alpha of optics/microfacet.h, for random paths; 0: smooth */
     int64_t sheet;                        /* see scene/model/sheet.h; of a transparent solid */

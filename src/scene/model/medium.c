@@ -127,6 +127,34 @@ double material_roughness(const material *m, const render_settings *r)
     return integrator_traits_of(r)->by_chance && sends ? m->roughness : 0.0;
 }
 
+bool material_is_crystal(const material *m, const render_settings *r)
+{
+    return m->extraordinary_ior > 0.0 && !material_is_opaque(m) && integrator_traits_of(r)->tree &&
+           r->lighting == LIGHTING_WHITTED && !scene_has_constant_shares(r);
+}
+
+status material_crystal_check(const material *m, const char *label, diagnostic *why)
+{
+    if (m->extraordinary_ior == 0.0 || material_is_opaque(m))
+        return STATUS_OK;
+    if (m->extraordinary_ior < 0.1)
+        return diagnose(why, STATUS_BAD_INPUT, "set it to 0.1 or more, or to 0 for a medium with one index",
+                        "%.80s: extraordinary_ior %g is too small", label, m->extraordinary_ior);
+    if (!(vec3_dot(m->optic_axis, m->optic_axis) > 0.0))
+        return diagnose(why, STATUS_BAD_INPUT, "set it to a vector in the solid's frame, such as 0,1,0",
+                        "%.80s: the optic_axis has no direction", label);
+    const char *extra = m->reflectivity > 0.0        ? "reflectivity"
+                        : m->film_thickness_nm > 0.0 ? "film_thickness_nm"
+                        : m->sheet != 0              ? "sheet"
+                                                     : NULL;
+    if (!extra)
+        return STATUS_OK;
+    return diagnose(why, STATUS_BAD_INPUT,
+                    m->sheet != 0 ? "set its sheet to none, or its extraordinary_ior to 0"
+                                  : "set it to 0, or its extraordinary_ior to 0",
+                    "%.80s: a crystal has no %s", label, extra);
+}
+
 double material_extinction_index(const material *m, double lambda_nm)
 {
     const metal *of = material_metal(m);

@@ -55,6 +55,10 @@ bool material_is_layered(const material *m, const render_settings *r);
 /* alpha of a surface whose facets reflect or refract random paths (optics/microfacet.h); 0: a smooth one. A transparent
  * surface needs Fresnel weights. */
 double material_roughness(const material *m, const render_settings *r);
+/* Whether light is doubly refracted in it: in the trees of rays of whitted, with Fresnel weights. */
+bool material_is_crystal(const material *m, const render_settings *r);
+/* STATUS_BAD_INPUT if a crystal has no axis, or a coating, a film or a sheet. */
+status material_crystal_check(const material *m, const char *label, diagnostic *why);
 /* k of an opaque material's complex index. */
 double material_extinction_index(const material *m, double lambda_nm);
 

@@ -419,6 +419,11 @@ static const param table[] = {
     LIST(PARAM_MATERIAL, material, coefficients, "", 1e6, "[]",
          "coefficients of the dispersion law at L in um; cauchy: A,B,C,... in n = A + B/L^2 + C/L^4 + ...; "
          "sellmeier: B1,C1,B2,C2,... (C in um^2); table: L,n,L,n,... in nm"),
+    REAL(PARAM_MATERIAL, material, extraordinary_ior, "", 0, 5, "0",
+         "extraordinary index of a uniaxial crystal, relative to vacuum, at every wavelength, for integrator whitted; "
+         "the other one is its index as above; 0: not a crystal"),
+    {PARAM_MATERIAL, "optic_axis", PARAM_VECTOR, "", -1000, 1000, false, "0,1,0",
+     "optic axis of a crystal, in the solid's frame, of any length", NULL, OF(material, optic_axis)},
     REAL(PARAM_MATERIAL, material, film_thickness_nm, "nm", 0, 20000, "0",
          "thickness of a transparent film on the surface (soap, oil, a coating), whose two faces interfere; 0: none"),
     REAL(PARAM_MATERIAL, material, film_ior, "", 1, 5, "1.4", "refractive index of the film, relative to vacuum"),

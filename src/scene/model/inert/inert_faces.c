@@ -20,10 +20,26 @@ static bool is_of_mirror(const inert_case *c)
 /* Parameters of the interior. */
 static bool is_of_region(const inert_case *c)
 {
-    static const char *const of_body[] = {
-        "ior",        "medium",        "coefficients", "absorb_per_m",      "absorb_spectrum", "scatter_per_m",
-        "asymmetry",  "tint_distance", "extinction",   "film_thickness_nm", "film_ior",        "sheet",
-        "sheet_axis", "sheet_pass",    "sheet_block",  "retardance_deg",    "birefringence",   NULL};
+    static const char *const of_body[] = {"extraordinary_ior",
+                                          "optic_axis",
+                                          "ior",
+                                          "medium",
+                                          "coefficients",
+                                          "absorb_per_m",
+                                          "absorb_spectrum",
+                                          "scatter_per_m",
+                                          "asymmetry",
+                                          "tint_distance",
+                                          "extinction",
+                                          "film_thickness_nm",
+                                          "film_ior",
+                                          "sheet",
+                                          "sheet_axis",
+                                          "sheet_pass",
+                                          "sheet_block",
+                                          "retardance_deg",
+                                          "birefringence",
+                                          NULL};
     return is_among(c, of_body);
 }
 

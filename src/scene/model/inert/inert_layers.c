@@ -17,25 +17,13 @@ static bool is_of_light(const inert_case *c)
     static const char *const of_sky[] = {
         "kind",    "color",        "horizon", "picture", "rain", "drops", "sun_elevation_deg", "sun_azimuth_deg",
         "ambient", "absorb_per_m", NULL};
-    static const char *const of_surface[] = {"ambient",
-                                             "diffuse",
-                                             "specular",
-                                             "shininess",
-                                             "absorb_per_m",
-                                             "absorb_spectrum",
-                                             "tint_distance",
-                                             "extinction",
-                                             "film_ior",
-                                             "sheet",
-                                             "sheet_axis",
-                                             "sheet_pass",
-                                             "sheet_block",
-                                             "retardance_deg",
-                                             "birefringence",
-                                             "roughness",
-                                             "scatter_per_m",
-                                             "asymmetry",
-                                             NULL};
+    static const char *const of_surface[] = {"ambient",        "diffuse",       "specular",
+                                             "shininess",      "absorb_per_m",  "absorb_spectrum",
+                                             "tint_distance",  "extinction",    "extraordinary_ior",
+                                             "optic_axis",     "film_ior",      "sheet",
+                                             "sheet_axis",     "sheet_pass",    "sheet_block",
+                                             "retardance_deg", "birefringence", "roughness",
+                                             "scatter_per_m",  "asymmetry",     NULL};
     switch (c->at.object_group) {
     case PARAM_LIGHT: return true;
     case PARAM_RENDER: return is_among(c, of_render);

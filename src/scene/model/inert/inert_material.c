@@ -306,7 +306,7 @@ static bool no_interface(const inert_case *c)
         const solid *one = &s->solids[i];
         const material *m = &one->surface;
         const bool plain = m->reflectivity == 0.0 && m->emission == 0.0 && !material_has_film(m) &&
-                           material_matches_surroundings(s, m);
+                           !material_is_crystal(m, &s->render) && material_matches_surroundings(s, m);
         if (one->visible && ((!material_is_opaque(m) && !plain) || may_have_face_materials(s, one)))
             return false;
     }
@@ -337,6 +337,8 @@ bool inert_appearance(const inert_case *c)
         {"ior", index_rule},
         {"medium", medium_rule},
         {"extinction", extinction_rule},
+        {"extraordinary_ior", crystal_rule},
+        {"optic_axis", optic_axis_rule},
         {"film_thickness_nm", film_rule},
         {"film_ior", film_index_rule},
         {"sheet", sheet_rule},

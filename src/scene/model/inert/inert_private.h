@@ -76,6 +76,8 @@ inert_rule unpolarised;
 inert_remedy polarised_remedy(const scene *s);
 /* Rules of polarisers and wave plates (inert_sheet.c). */
 inert_rule sheet_rule, sheet_axis_rule, sheet_share_rule, retardance_rule;
+/* Of crystals (inert_crystal.c). */
+inert_rule crystal_rule, optic_axis_rule;
 /* Of rough surfaces, and of what reflects nothing because rays end there. */
 inert_rule roughness_rule, nothing_at_depth_0;
 /* Whether the row's name is in a list that ends with NULL. */

@@ -151,10 +151,25 @@ bool inert_polarisation(const inert_case *c)
     return no_tree(c) || (!first_visible(c->s, is_layered) && no_clear(c));
 }
 
+/* The rays of a crystal are polarised with either setting; the settings differ for what they meet outside. */
+static bool one_crystal(const inert_case *c)
+{
+    int clear = 0, crystals = 0;
+    for (size_t i = 0; i < c->s->solid_count; i++) {
+        const solid *one = &c->s->solids[i];
+        clear += one->visible && !solid_is_opaque(c->s, one);
+        crystals += one->visible && !solid_is_opaque(c->s, one) && material_is_crystal(&one->surface, &c->s->render);
+    }
+    return clear == 1 && crystals == 1 &&
+           inert_same(c, "render.polarisation=%s", c->s->render.polarisation ? "off" : "on") &&
+           inert_say(c, "one-crystal", "set camera.analyser=linear",
+                     "the rays that leave the only transparent solid, a crystal, meet no other one");
+}
+
 /* An analyser halves unpolarised light, but only where polarisation is traced. */
 static bool polarisation(const inert_case *c)
 {
-    return c->s->camera.analyser == ANALYSER_NONE && inert_polarisation(c);
+    return c->s->camera.analyser == ANALYSER_NONE && (inert_polarisation(c) || one_crystal(c));
 }
 
 static bool nothing_lit(const inert_case *c)
