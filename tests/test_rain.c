@@ -290,6 +290,24 @@ static void the_mean_is_that_of_all_directions(void **state)
     }
 }
 
+/* Beyond the depth limit a mirror reflects the mean: the sky's colour and nearly all the light of the drops. */
+static void a_mirror_shows_the_mean_beyond_the_depth_limit(void **state)
+{
+    (void)state;
+    static const char *const films[] = {"render.depth=0", "render.spectrum=spectral render.wavelengths=400"};
+    scene *s = scene_from(RAIN "solids: {mirror: {shape: box, size: [90, 90, 1], position: [0, 0, 4], reflectivity: 1, "
+                               "ambient: 0, diffuse: 0, specular: 0}}\n");
+    set_all(s, "render.depth=0 render.beyond=mean camera.target=0,0,4");
+    for (int k = 0; k < 2; k++) {
+        set_all(s, films[k]);
+        const vec3 seen = look(s);
+        assert_near(seen.x, 0.2 + 0.8, 0.02);
+        assert_near(seen.y, 0.1 + 0.8, 0.02);
+        assert_near(seen.z, 0.4 + 0.8, 0.02);
+    }
+    scene_destroy(s);
+}
+
 /* Drops of water in air: the primary bow is where the index of water relative to air puts it. One relative to vacuum
  * moves it by a bin. */
 static void the_bow_is_that_of_water_in_air(void **state)
@@ -354,6 +372,7 @@ int main(void)
         cmocka_unit_test(both_films_agree_in_the_bow),
         cmocka_unit_test(the_sun_moves_the_bow),
         cmocka_unit_test(the_mean_is_that_of_all_directions),
+        cmocka_unit_test(a_mirror_shows_the_mean_beyond_the_depth_limit),
         cmocka_unit_test(the_bow_is_that_of_water_in_air),
         cmocka_unit_test(all_threads_and_instruction_sets_give_the_same_film),
     };
