@@ -329,6 +329,7 @@ static void curves_of_other_scenes_equal_theory(void **state)
         {"experiments/scenes/rainbow.yaml", REALISM_CURVE_RAINBOW, 100, 0.0, 42.6},
         {"experiments/scenes/plates.yaml", REALISM_CURVE_PLATES, 86, 0.0, 0.86},
         {"experiments/scenes/malus.yaml", REALISM_CURVE_MALUS, 91, 0.0, 0.5},
+        {"experiments/scenes/coin.yaml", REALISM_CURVE_COIN, 60, 0.28, 1.2},
     };
     for (size_t k = 0; k < sizeof cases / sizeof *cases; k++) {
         scene *s = NULL;
@@ -363,6 +364,44 @@ static void malus_depends_on_the_filters_alone(void **state)
     scene_destroy(s);
 }
 
+/* An eye that looks down at 45 degrees over the rim of a cup, n = 4/3: sin t = 0.5303. By hand, in the plane of sight:
+ * the line of sight meets the far edge of the coin, 1.5 from the rim and 1.16 below it, if
+ * (1.16 - w) tan 45 + w tan t = 1.5, whose w is negative: the empty cup shows the coin already. At 1.9 below it does so
+ * with w = 0.4 / (1 - tan t). */
+static void a_coin_appears_where_snells_law_puts_it(void **state)
+{
+    (void)state;
+    const double tan_t = 0.75 * sqrt(0.5) / sqrt(1.0 - 0.5625 * 0.5);
+    assert_near(theory_least_depth(1.9, 1.5, 1.0, 4.0 / 3.0), 0.4 / (1.0 - tan_t), 1e-14);
+    assert_true(theory_least_depth(1.16, 1.5, 1.0, 4.0 / 3.0) < 0.0);
+    /* The traced cup: eye 5 before the rim's inner edge and 3.33 above it; the coin's upper face is 1.16 below it. */
+    scene *s = NULL;
+    realism_points p;
+    diagnostic why = {0};
+    worked(scene_read("experiments/scenes/coin.yaml", &s, &why), &why);
+    worked(realism_trace_curve(s, isa_best(), REALISM_CURVE_COIN, &p, &why), &why);
+    for (int i = 0; i < p.count; i++) {
+        const double tan_i = 5.0 / 3.33, sine = tan_i / sqrt(1.0 + tan_i * tan_i) / p.at[i].x,
+                     below = sine / sqrt(1.0 - sine * sine);
+        assert_near(p.at[i].measured, (1.16 * tan_i - 1.5) / (tan_i - below) + 0.04, 1e-9);
+        assert_true(i == 0 || p.at[i].measured < p.at[i - 1].measured);
+    }
+    static const struct {
+        const char *change, *what;
+    } wrong[] = {{"camera.position.y=1", "over the rim"}, {"camera.position=0.1,9,0.1", "over the rim"},
+                 {"coin.rotation.x=5", "upright"},        {"liquid.m=1.1", "upright"},
+                 {"cup.transparency=1", "opaque"},        {"coin.position.x=0.5", "in the plane"}};
+    for (size_t i = 0; i < COUNT(wrong); i++) {
+        scene *other = scene_clone(s);
+        set(other, wrong[i].change);
+        assert_int_equal(realism_trace_curve(other, isa_best(), REALISM_CURVE_COIN, &p, &why), STATUS_BAD_INPUT);
+        if (!strstr(why.what, wrong[i].what) || !why.remedy[0])
+            fail_msg("%s: %s", wrong[i].change, why.what);
+        scene_destroy(other);
+    }
+    scene_destroy(s);
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
@@ -376,6 +415,7 @@ int main(void)
         cmocka_unit_test(one_metric_equals_that_of_the_report),
         cmocka_unit_test(all_metrics_pass_for_various_indices),
         cmocka_unit_test(malus_depends_on_the_filters_alone),
+        cmocka_unit_test(a_coin_appears_where_snells_law_puts_it),
         cmocka_unit_test(undefined_metrics_are_reported_as_undefined),
         cmocka_unit_test(a_relative_error_of_the_index_of_1e_6_fails),
         cmocka_unit_test(wrong_transmittance_and_absorption_fail),

@@ -119,3 +119,9 @@ double theory_crossed(double between, double plate, double retardance)
     const double half = sin(0.5 * retardance), straight = cos(between);
     return 0.5 * (straight * straight - sin(2.0 * plate) * sin(2.0 * (plate - between)) * half * half);
 }
+
+double theory_least_depth(double drop, double across, double tangent, double n)
+{
+    const double below = tan(theory_snell(atan(tangent), 1.0, n));
+    return (drop * tangent - across) / (tangent - below);
+}

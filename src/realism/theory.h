@@ -57,3 +57,9 @@ double theory_drop_angle(double offset, double n);
  * that retardance between them, whose axis is at an angle `plate` from the first polariser's: Malus's law without a
  * plate; Born and Wolf, Principles of Optics, 7th ed., 15.4.2. Radians. */
 double theory_crossed(double between, double plate, double retardance);
+
+/* A point at a depth `drop` below an edge and at a horizontal distance `across` from it, seen over the edge by a line of
+ * sight of that tangent from the vertical: the depth of a liquid over the point, of index n relative to the
+ * surroundings, with which the refracted line meets the point. From Snell's law and the right triangles above and below
+ * the surface; Hecht, eq. 4.4. */
+double theory_least_depth(double drop, double across, double tangent, double n);
