@@ -330,6 +330,7 @@ static void curves_of_other_scenes_equal_theory(void **state)
         {"experiments/scenes/plates.yaml", REALISM_CURVE_PLATES, 86, 0.0, 0.86},
         {"experiments/scenes/malus.yaml", REALISM_CURVE_MALUS, 91, 0.0, 0.5},
         {"experiments/scenes/coin.yaml", REALISM_CURVE_COIN, 60, 0.28, 1.2},
+        {"experiments/scenes/arrow.yaml", REALISM_CURVE_ARROW, 90, -3.0, 1.0},
     };
     for (size_t k = 0; k < sizeof cases / sizeof *cases; k++) {
         scene *s = NULL;
@@ -402,6 +403,39 @@ static void a_coin_appears_where_snells_law_puts_it(void **state)
     scene_destroy(s);
 }
 
+/* One medium, no wall: the place is 1 + s / L - s / f of the offset, with f = n R / (2 (n - 1)) (Hecht, table 6.1), so
+ * the arrow turns around at s = L f / (L - f): behind the focal line, and just there for an eye far away. */
+static void an_arrow_turns_around_behind_the_focal_line(void **state)
+{
+    (void)state;
+    static const struct {
+        double n, eye;
+    } cases[] = {{1.333, 8.0}, {1.333, 400.0}, {1.5, 6.0}};
+    scene *s = NULL;
+    realism_points p;
+    diagnostic why = {0};
+    worked(scene_read("experiments/scenes/arrow.yaml", &s, &why), &why);
+    for (size_t k = 0; k < COUNT(cases); k++) {
+        const double n = cases[k].n, L = cases[k].eye, f = n / (2.0 * (n - 1.0));
+        char text[120];
+        snprintf(text, sizeof text, "vessel.ior=%g liquid.ior=%g camera.position.z=%g", n, n, -L);
+        set_all(s, text);
+        worked(realism_trace_curve(s, isa_best(), REALISM_CURVE_ARROW, &p, &why), &why);
+        for (int i = 0; i < p.count; i++) {
+            const double behind = p.at[i].x;
+            assert_near(p.at[i].measured, (1.0 + behind / L - behind / f) / (1.0 + behind / L), 1e-6);
+            if (fabs(behind - L * f / (L - f)) > 1e-3)
+                assert_true((p.at[i].measured < 0.0) == (behind > L * f / (L - f)));
+        }
+    }
+    set(s, "camera.position.z=-0.5");
+    assert_int_equal(realism_trace_curve(s, isa_best(), REALISM_CURVE_ARROW, &p, &why), STATUS_BAD_INPUT);
+    set(s, "liquid.visible=off");
+    assert_int_equal(realism_trace_curve(s, isa_best(), REALISM_CURVE_ARROW, &p, &why), STATUS_BAD_INPUT);
+    assert_non_null(strstr(why.what, "'liquid'"));
+    scene_destroy(s);
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
@@ -416,6 +450,7 @@ int main(void)
         cmocka_unit_test(all_metrics_pass_for_various_indices),
         cmocka_unit_test(malus_depends_on_the_filters_alone),
         cmocka_unit_test(a_coin_appears_where_snells_law_puts_it),
+        cmocka_unit_test(an_arrow_turns_around_behind_the_focal_line),
         cmocka_unit_test(undefined_metrics_are_reported_as_undefined),
         cmocka_unit_test(a_relative_error_of_the_index_of_1e_6_fails),
         cmocka_unit_test(wrong_transmittance_and_absorption_fail),

@@ -25,6 +25,8 @@ static const curve_words words[REALISM_CURVE_COUNT] = {
     [REALISM_CURVE_PLATES] = {"plates", "angle of incidence, deg", "transmittance of two plates"},
     [REALISM_CURVE_MALUS] = {"malus", "angle of the analyser, deg", "transmittance of the polarisers"},
     [REALISM_CURVE_COIN] = {"coin", "index of the liquid", "least depth of the liquid, scene units"},
+    [REALISM_CURVE_ARROW] = {"arrow", "distance of the arrow from the axis, scene units",
+                             "place met through the glass, over that without it"},
 };
 
 const char *realism_curve_name(realism_curve which)
@@ -186,6 +188,8 @@ static const struct other_curve {
      "use the names and shapes of experiments/scenes/malus.yaml"},
     {REALISM_CURVE_COIN, coin_is_there, coin_curve, "no cup 'cup', cylinder 'coin' and 'liquid'",
      "use the names and shapes of experiments/scenes/coin.yaml"},
+    {REALISM_CURVE_ARROW, arrow_is_there, arrow_curve, "no solids 'vessel', 'liquid' and 'arrow'",
+     "use the names and shapes of experiments/scenes/arrow.yaml"},
 };
 
 /* NULL for the curves of the vessel. */
@@ -245,6 +249,7 @@ status realism_trace_curve(const scene *s, isa level, realism_curve which, reali
     case REALISM_CURVE_PLATES:
     case REALISM_CURVE_MALUS:
     case REALISM_CURVE_COIN:
+    case REALISM_CURVE_ARROW:
     case REALISM_CURVE_COUNT: break;
     }
     return STATUS_OK;

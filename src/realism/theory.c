@@ -73,6 +73,13 @@ double theory_shells_power(const theory_shells *c)
                   (c->n_around / c->n_wall - c->n_around / c->n_core) / c->inner);
 }
 
+double theory_shells_place(const theory_shells *c, double eye, double behind, double offset)
+{
+    /* Turned by the deviation, the ray leaves at the offset at which it came. */
+    const double out = asin(offset / eye) - theory_shells_deviation(c, offset);
+    return (offset + behind * sin(out)) / cos(out);
+}
+
 /* Horizontal distance covered by the ray with n sin(angle) = p. */
 static double reach(double p, double height, double depth, double n_above, double n_below)
 {
