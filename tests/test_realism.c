@@ -331,6 +331,7 @@ static void curves_of_other_scenes_equal_theory(void **state)
         {"experiments/scenes/malus.yaml", REALISM_CURVE_MALUS, 91, 0.0, 0.5},
         {"experiments/scenes/coin.yaml", REALISM_CURVE_COIN, 60, 0.28, 1.2},
         {"experiments/scenes/arrow.yaml", REALISM_CURVE_ARROW, 90, -3.0, 1.0},
+        {"experiments/scenes/soap.yaml", REALISM_CURVE_SOAP, 200, 0.0, 0.081},
     };
     for (size_t k = 0; k < sizeof cases / sizeof *cases; k++) {
         scene *s = NULL;
@@ -436,6 +437,41 @@ static void an_arrow_turns_around_behind_the_focal_line(void **state)
     scene_destroy(s);
 }
 
+/* Straight on, the film of index n in air reflects nothing at multiples of lambda / (2 n), and 4 times an interface's
+ * amplitude squared, ((n^2 - 1) / (n^2 + 1))^2, a quarter of lambda / n further (Hecht, 9.4.1 and 9.7). A quarter
+ * wave of index sqrt(n) on a medium of index n reflects nothing. */
+static void a_soap_film_is_dark_where_its_faces_cancel(void **state)
+{
+    (void)state;
+    const double n = 1.33, bright = pow((n * n - 1.0) / (n * n + 1.0), 2);
+    for (int order = 0; order < 4; order++) {
+        assert_near(theory_film(0.0, 1.0, n, 1.0, order / (2.0 * n)), 0.0, 1e-15);
+        assert_near(theory_film(0.0, 1.0, n, 1.0, (order + 0.5) / (2.0 * n)), bright, 1e-15);
+    }
+    assert_near(theory_film(0.0, 1.0, sqrt(1.5), 1.5, 0.25 / sqrt(1.5)), 0.0, 1e-15);
+    assert_near(theory_film(50.0 * DEGREE, 1.0, 1.4, 1.6, 0.0), theory_fresnel(50.0 * DEGREE, 1.0, 1.6), 1e-15);
+    scene *s = NULL;
+    realism_points p;
+    diagnostic why = {0};
+    worked(scene_read("experiments/scenes/soap.yaml", &s, &why), &why);
+    set_all(s, "soap.film_ior=1.25 render.lambda_nm=500 camera.position.x=0 camera.position.y=0");
+    worked(realism_trace_curve(s, isa_best(), REALISM_CURVE_SOAP, &p, &why), &why);
+    for (int i = 0; i < p.count; i++) {
+        if (fmod(p.at[i].x, 200.0) == 0.0)
+            assert_near(p.at[i].measured, 0.0, 1e-12);
+        if (fmod(p.at[i].x, 200.0) == 100.0)
+            assert_near(p.at[i].measured, pow(0.5625 / 2.5625, 2), 1e-12);
+    }
+    /* Askew, and on glass. */
+    set_all(s, "soap.ior=1.5 camera.position.x=6");
+    worked(realism_trace_curve(s, isa_best(), REALISM_CURVE_SOAP, &p, &why), &why);
+    for (int i = 0; i < p.count; i++)
+        assert_near(p.at[i].measured, p.at[i].theory, 1e-12);
+    set(s, "film1.film_thickness_nm=0");
+    assert_int_equal(realism_trace_curve(s, isa_best(), REALISM_CURVE_SOAP, &p, &why), STATUS_BAD_INPUT);
+    scene_destroy(s);
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
@@ -451,6 +487,7 @@ int main(void)
         cmocka_unit_test(malus_depends_on_the_filters_alone),
         cmocka_unit_test(a_coin_appears_where_snells_law_puts_it),
         cmocka_unit_test(an_arrow_turns_around_behind_the_focal_line),
+        cmocka_unit_test(a_soap_film_is_dark_where_its_faces_cancel),
         cmocka_unit_test(undefined_metrics_are_reported_as_undefined),
         cmocka_unit_test(a_relative_error_of_the_index_of_1e_6_fails),
         cmocka_unit_test(wrong_transmittance_and_absorption_fail),

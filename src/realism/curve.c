@@ -27,6 +27,7 @@ static const curve_words words[REALISM_CURVE_COUNT] = {
     [REALISM_CURVE_COIN] = {"coin", "index of the liquid", "least depth of the liquid, scene units"},
     [REALISM_CURVE_ARROW] = {"arrow", "distance of the arrow from the axis, scene units",
                              "place met through the glass, over that without it"},
+    [REALISM_CURVE_SOAP] = {"soap", "thickness of the film, nm", "reflectance"},
 };
 
 const char *realism_curve_name(realism_curve which)
@@ -190,6 +191,8 @@ static const struct other_curve {
      "use the names and shapes of experiments/scenes/coin.yaml"},
     {REALISM_CURVE_ARROW, arrow_is_there, arrow_curve, "no solids 'vessel', 'liquid' and 'arrow'",
      "use the names and shapes of experiments/scenes/arrow.yaml"},
+    {REALISM_CURVE_SOAP, soap_is_there, soap_curve, "no box 'film1' with a film",
+     "use the names and shapes of experiments/scenes/soap.yaml"},
 };
 
 /* NULL for the curves of the vessel. */
@@ -250,6 +253,7 @@ status realism_trace_curve(const scene *s, isa level, realism_curve which, reali
     case REALISM_CURVE_MALUS:
     case REALISM_CURVE_COIN:
     case REALISM_CURVE_ARROW:
+    case REALISM_CURVE_SOAP:
     case REALISM_CURVE_COUNT: break;
     }
     return STATUS_OK;

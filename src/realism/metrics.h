@@ -62,6 +62,8 @@ bool coin_is_there(const scene *s);
 status coin_curve(const metrics *m, realism_points *out, diagnostic *why);
 bool arrow_is_there(const scene *s);
 status arrow_curve(const metrics *m, realism_points *out, diagnostic *why);
+bool soap_is_there(const scene *s);
+status soap_curve(const metrics *m, realism_points *out, diagnostic *why);
 scene *attenuation_scene(const scene *s, const setup *at);
 status edges_displacement(const metrics *m, double measured[2], double theory[2], diagnostic *why);
 

@@ -68,3 +68,8 @@ double theory_crossed(double between, double plate, double retardance);
  * surroundings, with which the refracted line meets the point. From Snell's law and the right triangles above and below
  * the surface; Hecht, eq. 4.4. */
 double theory_least_depth(double drop, double across, double tangent, double n);
+
+/* Reflectance for unpolarised light of a film between two media, for its thickness in wavelengths (of vacuum):
+ * (r1^2 + r2^2 + 2 r1 r2 cos d) / (1 + r1^2 r2^2 + 2 r1 r2 cos d), r1 and r2 the amplitudes at its faces, d = 4 pi n
+ * thickness cos t: Airy; Born and Wolf, 7th ed., 1.6.4. */
+double theory_film(double angle, double n_from, double n_film, double n_behind, double thickness);
