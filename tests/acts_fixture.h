@@ -32,6 +32,9 @@ static const acts_small acts_smaller[] = {
     {"window", "render.samples=4 render.photons=1000 render.width=360 render.height=120"},
     {"spectroscope", "render.wavelengths=4 render.samples=1 render.photons=4000"},
     {"calcite", "render.samples=1"},
+    {"coin", "render.samples=1"},
+    {"soap", "render.samples=1 render.spectrum=spectral render.wavelengths=4 render.width=36 render.height=48"},
+    {"arrow", "render.samples=1 render.depth=6"},
     {"polarisers", "render.samples=1 render.wavelengths=2"},
 };
 

@@ -139,6 +139,32 @@ static void a_soap_film_has_the_colours_of_airys_formula(void **state)
     }
 }
 
+/* Each strip of experiments/scenes/soap.yaml, straight on from the camera, reflects a white sky. */
+static void the_strips_of_a_soap_film_have_newtons_colours(void **state)
+{
+    (void)state;
+    scene *s = NULL;
+    diagnostic why = {0};
+    worked(scene_read("experiments/scenes/soap.yaml", &s, &why), &why);
+    probe *p = NULL;
+    ray_tree tree = {0};
+    worked(probe_create(s, isa_best(), &p, &why), &why);
+    int strips = 0;
+    for (size_t i = 0; i < s->solid_count; i++) {
+        const solid *one = &s->solids[i];
+        if (strncmp(one->name, "film", 4) != 0)
+            continue;
+        const double soapy[2] = {1.33, 10.0 + 50.0 * strips++};
+        const vec3 from = vec3_add(one->shape.position, vec3_make(0.0, 0.0, -3.0));
+        worked(probe_ray(p, from, vec3_make(0.0, 0.0, 1.0), &tree, &why), &why);
+        assert_near(color_apart(tree.radiance, color_of(film_spectrum, 0.0, soapy)), 0.0, 2e-5);
+    }
+    assert_int_equal(strips, 16);
+    ray_tree_release(&tree);
+    probe_destroy(p);
+    scene_destroy(s);
+}
+
 static void metals_have_the_colours_of_their_indices(void **state)
 {
     (void)state;
@@ -546,6 +572,7 @@ int main(void)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(a_soap_film_has_the_colours_of_airys_formula),
+        cmocka_unit_test(the_strips_of_a_soap_film_have_newtons_colours),
         cmocka_unit_test(metals_have_the_colours_of_their_indices),
         cmocka_unit_test(a_metal_by_its_numbers),
         cmocka_unit_test(a_coated_lens_from_both_sides),

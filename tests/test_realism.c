@@ -329,6 +329,9 @@ static void curves_of_other_scenes_equal_theory(void **state)
         {"experiments/scenes/rainbow.yaml", REALISM_CURVE_RAINBOW, 100, 0.0, 42.6},
         {"experiments/scenes/plates.yaml", REALISM_CURVE_PLATES, 86, 0.0, 0.86},
         {"experiments/scenes/malus.yaml", REALISM_CURVE_MALUS, 91, 0.0, 0.5},
+        {"experiments/scenes/coin.yaml", REALISM_CURVE_COIN, 60, 0.28, 1.2},
+        {"experiments/scenes/arrow.yaml", REALISM_CURVE_ARROW, 90, -3.0, 1.0},
+        {"experiments/scenes/soap.yaml", REALISM_CURVE_SOAP, 200, 0.0, 0.081},
     };
     for (size_t k = 0; k < sizeof cases / sizeof *cases; k++) {
         scene *s = NULL;
@@ -363,6 +366,112 @@ static void malus_depends_on_the_filters_alone(void **state)
     scene_destroy(s);
 }
 
+/* An eye that looks down at 45 degrees over the rim of a cup, n = 4/3: sin t = 0.5303. By hand, in the plane of sight:
+ * the line of sight meets the far edge of the coin, 1.5 from the rim and 1.16 below it, if
+ * (1.16 - w) tan 45 + w tan t = 1.5, whose w is negative: the empty cup shows the coin already. At 1.9 below it does so
+ * with w = 0.4 / (1 - tan t). */
+static void a_coin_appears_where_snells_law_puts_it(void **state)
+{
+    (void)state;
+    const double tan_t = 0.75 * sqrt(0.5) / sqrt(1.0 - 0.5625 * 0.5);
+    assert_near(theory_least_depth(1.9, 1.5, 1.0, 4.0 / 3.0), 0.4 / (1.0 - tan_t), 1e-14);
+    assert_true(theory_least_depth(1.16, 1.5, 1.0, 4.0 / 3.0) < 0.0);
+    /* The traced cup: eye 5 before the rim's inner edge and 3.33 above it; the coin's upper face is 1.16 below it. */
+    scene *s = NULL;
+    realism_points p;
+    diagnostic why = {0};
+    worked(scene_read("experiments/scenes/coin.yaml", &s, &why), &why);
+    worked(realism_trace_curve(s, isa_best(), REALISM_CURVE_COIN, &p, &why), &why);
+    for (int i = 0; i < p.count; i++) {
+        const double tan_i = 5.0 / 3.33, sine = tan_i / sqrt(1.0 + tan_i * tan_i) / p.at[i].x,
+                     below = sine / sqrt(1.0 - sine * sine);
+        assert_near(p.at[i].measured, (1.16 * tan_i - 1.5) / (tan_i - below) + 0.04, 1e-9);
+        assert_true(i == 0 || p.at[i].measured < p.at[i - 1].measured);
+    }
+    static const struct {
+        const char *change, *what;
+    } wrong[] = {{"camera.position.y=1", "over the rim"}, {"camera.position=0.1,9,0.1", "over the rim"},
+                 {"coin.rotation.x=5", "upright"},        {"liquid.m=1.1", "upright"},
+                 {"cup.transparency=1", "opaque"},        {"coin.position.x=0.5", "in the plane"}};
+    for (size_t i = 0; i < COUNT(wrong); i++) {
+        scene *other = scene_clone(s);
+        set(other, wrong[i].change);
+        assert_int_equal(realism_trace_curve(other, isa_best(), REALISM_CURVE_COIN, &p, &why), STATUS_BAD_INPUT);
+        if (!strstr(why.what, wrong[i].what) || !why.remedy[0])
+            fail_msg("%s: %s", wrong[i].change, why.what);
+        scene_destroy(other);
+    }
+    scene_destroy(s);
+}
+
+/* One medium, no wall: the place is 1 + s / L - s / f of the offset, with f = n R / (2 (n - 1)) (Hecht, table 6.1), so
+ * the arrow turns around at s = L f / (L - f): behind the focal line, and just there for an eye far away. */
+static void an_arrow_turns_around_behind_the_focal_line(void **state)
+{
+    (void)state;
+    static const struct {
+        double n, eye;
+    } cases[] = {{1.333, 8.0}, {1.333, 400.0}, {1.5, 6.0}};
+    scene *s = NULL;
+    realism_points p;
+    diagnostic why = {0};
+    worked(scene_read("experiments/scenes/arrow.yaml", &s, &why), &why);
+    for (size_t k = 0; k < COUNT(cases); k++) {
+        const double n = cases[k].n, L = cases[k].eye, f = n / (2.0 * (n - 1.0));
+        char text[120];
+        snprintf(text, sizeof text, "vessel.ior=%g liquid.ior=%g camera.position.z=%g", n, n, -L);
+        set_all(s, text);
+        worked(realism_trace_curve(s, isa_best(), REALISM_CURVE_ARROW, &p, &why), &why);
+        for (int i = 0; i < p.count; i++) {
+            const double behind = p.at[i].x;
+            assert_near(p.at[i].measured, (1.0 + behind / L - behind / f) / (1.0 + behind / L), 1e-6);
+            if (fabs(behind - L * f / (L - f)) > 1e-3)
+                assert_true((p.at[i].measured < 0.0) == (behind > L * f / (L - f)));
+        }
+    }
+    set(s, "camera.position.z=-0.5");
+    assert_int_equal(realism_trace_curve(s, isa_best(), REALISM_CURVE_ARROW, &p, &why), STATUS_BAD_INPUT);
+    set(s, "liquid.visible=off");
+    assert_int_equal(realism_trace_curve(s, isa_best(), REALISM_CURVE_ARROW, &p, &why), STATUS_BAD_INPUT);
+    assert_non_null(strstr(why.what, "'liquid'"));
+    scene_destroy(s);
+}
+
+/* Straight on, the film of index n in air reflects nothing at multiples of lambda / (2 n), and 4 times an interface's
+ * amplitude squared, ((n^2 - 1) / (n^2 + 1))^2, a quarter of lambda / n further (Hecht, 9.4.1 and 9.7). A quarter
+ * wave of index sqrt(n) on a medium of index n reflects nothing. */
+static void a_soap_film_is_dark_where_its_faces_cancel(void **state)
+{
+    (void)state;
+    const double n = 1.33, bright = pow((n * n - 1.0) / (n * n + 1.0), 2);
+    for (int order = 0; order < 4; order++) {
+        assert_near(theory_film(0.0, 1.0, n, 1.0, order / (2.0 * n)), 0.0, 1e-15);
+        assert_near(theory_film(0.0, 1.0, n, 1.0, (order + 0.5) / (2.0 * n)), bright, 1e-15);
+    }
+    assert_near(theory_film(0.0, 1.0, sqrt(1.5), 1.5, 0.25 / sqrt(1.5)), 0.0, 1e-15);
+    assert_near(theory_film(50.0 * DEGREE, 1.0, 1.4, 1.6, 0.0), theory_fresnel(50.0 * DEGREE, 1.0, 1.6), 1e-15);
+    scene *s = NULL;
+    realism_points p;
+    diagnostic why = {0};
+    worked(scene_read("experiments/scenes/soap.yaml", &s, &why), &why);
+    set_all(s, "soap.film_ior=1.25 render.lambda_nm=500 camera.position.x=0 camera.position.y=0");
+    worked(realism_trace_curve(s, isa_best(), REALISM_CURVE_SOAP, &p, &why), &why);
+    for (int i = 0; i < p.count; i++) {
+        if (fmod(p.at[i].x, 200.0) == 0.0)
+            assert_near(p.at[i].measured, 0.0, 1e-12);
+        if (fmod(p.at[i].x, 200.0) == 100.0)
+            assert_near(p.at[i].measured, pow(0.5625 / 2.5625, 2), 1e-12);
+    }
+    /* Askew, and on glass. */
+    set_all(s, "soap.ior=1.5 camera.position.x=6");
+    worked(realism_trace_curve(s, isa_best(), REALISM_CURVE_SOAP, &p, &why), &why);
+    for (int i = 0; i < p.count; i++)
+        assert_near(p.at[i].measured, p.at[i].theory, 1e-12);
+    set(s, "film1.film_thickness_nm=0");
+    assert_int_equal(realism_trace_curve(s, isa_best(), REALISM_CURVE_SOAP, &p, &why), STATUS_BAD_INPUT);
+    scene_destroy(s);
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
@@ -376,6 +485,9 @@ int main(void)
         cmocka_unit_test(one_metric_equals_that_of_the_report),
         cmocka_unit_test(all_metrics_pass_for_various_indices),
         cmocka_unit_test(malus_depends_on_the_filters_alone),
+        cmocka_unit_test(a_coin_appears_where_snells_law_puts_it),
+        cmocka_unit_test(an_arrow_turns_around_behind_the_focal_line),
+        cmocka_unit_test(a_soap_film_is_dark_where_its_faces_cancel),
         cmocka_unit_test(undefined_metrics_are_reported_as_undefined),
         cmocka_unit_test(a_relative_error_of_the_index_of_1e_6_fails),
         cmocka_unit_test(wrong_transmittance_and_absorption_fail),

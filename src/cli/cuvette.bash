@@ -68,7 +68,7 @@ _cuvette_value() # OPTION: completes its value; false for a flag
     --published) _cuvette_files 'csv' ;;
     --curve)
         _cuvette_words fresnel-s fresnel-p fresnel deviation depth absorption edges mirror apparent-depth prism \
-            rainbow plates malus
+            rainbow plates malus coin arrow soap
         ;;
     -o | --output | --diff)
         case ${COMP_WORDS[1]-} in

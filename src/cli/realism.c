@@ -33,7 +33,7 @@ static const command_option options[] = {
     OPTION_CSV(realism_request),
     {"curve", 0, "NAME",
      "print one curve (x, measured, theory) as CSV: fresnel-s, fresnel-p, fresnel, deviation, depth, absorption, "
-     "edges, mirror, apparent-depth, prism, rainbow, plates or malus",
+     "edges, mirror, apparent-depth, prism, rainbow, plates, malus, coin, arrow or soap",
      .take = take_curve},
     {0},
 };

@@ -24,6 +24,10 @@ static const curve_words words[REALISM_CURVE_COUNT] = {
     [REALISM_CURVE_RAINBOW] = {"rainbow", "offset over the drop's radius", "angle from the antisolar point, deg"},
     [REALISM_CURVE_PLATES] = {"plates", "angle of incidence, deg", "transmittance of two plates"},
     [REALISM_CURVE_MALUS] = {"malus", "angle of the analyser, deg", "transmittance of the polarisers"},
+    [REALISM_CURVE_COIN] = {"coin", "index of the liquid", "least depth of the liquid, scene units"},
+    [REALISM_CURVE_ARROW] = {"arrow", "distance of the arrow from the axis, scene units",
+                             "place met through the glass, over that without it"},
+    [REALISM_CURVE_SOAP] = {"soap", "thickness of the film, nm", "reflectance"},
 };
 
 const char *realism_curve_name(realism_curve which)
@@ -43,7 +47,9 @@ const char *realism_curve_y(realism_curve which)
 
 const char *realism_curve_parameter(realism_curve which)
 {
-    return which == REALISM_CURVE_EDGES ? "liquid.ior" : which == REALISM_CURVE_DEPTH ? "render.depth" : NULL;
+    if (which == REALISM_CURVE_EDGES || which == REALISM_CURVE_COIN)
+        return "liquid.ior";
+    return which == REALISM_CURVE_DEPTH ? "render.depth" : NULL;
 }
 
 void curve_add(realism_points *out, double x, double measured, double theory)
@@ -181,6 +187,12 @@ static const struct other_curve {
      "use the names and shapes of experiments/scenes/plates.yaml"},
     {REALISM_CURVE_MALUS, filters_are_there, filters_curve, "no solids 'polariser' and 'analyser'",
      "use the names and shapes of experiments/scenes/malus.yaml"},
+    {REALISM_CURVE_COIN, coin_is_there, coin_curve, "no cup 'cup', cylinder 'coin' and 'liquid'",
+     "use the names and shapes of experiments/scenes/coin.yaml"},
+    {REALISM_CURVE_ARROW, arrow_is_there, arrow_curve, "no solids 'vessel', 'liquid' and 'arrow'",
+     "use the names and shapes of experiments/scenes/arrow.yaml"},
+    {REALISM_CURVE_SOAP, soap_is_there, soap_curve, "no box 'film1' with a film",
+     "use the names and shapes of experiments/scenes/soap.yaml"},
 };
 
 /* NULL for the curves of the vessel. */
@@ -239,6 +251,9 @@ status realism_trace_curve(const scene *s, isa level, realism_curve which, reali
     case REALISM_CURVE_RAINBOW:
     case REALISM_CURVE_PLATES:
     case REALISM_CURVE_MALUS:
+    case REALISM_CURVE_COIN:
+    case REALISM_CURVE_ARROW:
+    case REALISM_CURVE_SOAP:
     case REALISM_CURVE_COUNT: break;
     }
     return STATUS_OK;

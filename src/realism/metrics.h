@@ -58,6 +58,12 @@ status drop_curve(const metrics *m, realism_points *out, diagnostic *why);
 status stack_curve(const metrics *m, realism_points *out, diagnostic *why);
 bool filters_are_there(const scene *s);
 status filters_curve(const metrics *m, realism_points *out, diagnostic *why);
+bool coin_is_there(const scene *s);
+status coin_curve(const metrics *m, realism_points *out, diagnostic *why);
+bool arrow_is_there(const scene *s);
+status arrow_curve(const metrics *m, realism_points *out, diagnostic *why);
+bool soap_is_there(const scene *s);
+status soap_curve(const metrics *m, realism_points *out, diagnostic *why);
 scene *attenuation_scene(const scene *s, const setup *at);
 status edges_displacement(const metrics *m, double measured[2], double theory[2], diagnostic *why);
 
@@ -82,10 +88,15 @@ double relative_index(const scene *s, int at, double lambda_nm);
  * to rounding. */
 double least_value(double (*f)(void *context, double x), void *context, double low, double high);
 
-/* First and last position between `from` and `to` where something is visible, each to 1e-12; changes are searched in
- * `steps` steps. */
+/* bisect: the position, to 1e-12, between `from`, where the answer is `before`, and `to`, where it is not. find_edges:
+ * first and last position between `from` and `to` where something is visible; changes are searched in `steps` steps. */
 typedef bool seen_at(void *context, double x);
+double bisect(seen_at *seen, void *context, double from, double to, bool before);
 bool find_edges(seen_at *seen, void *context, double from, double to, int steps, double edge[2]);
+
+/* Whether the path from there, refracted where possible, ends on that solid without a reflection, optionally only
+ * through vertical surfaces. A failure of the tracer is stored in *code. */
+bool trial_meets(trial *t, vec3 origin, vec3 direction, int which, bool upright, status *code, diagnostic *why);
 
 /* The same for a solid in a line of the traced image: where the camera path, refracted where possible, ends on it
  * without a reflection, optionally only through vertical surfaces. NaN if it has no edges. */

@@ -9,7 +9,8 @@
  *
  * Three other kinds of scenes are identified by the names of their solids, and have metrics of their own: a prism
  * (prism, cut by the half-spaces left and right), a drop (a sphere whose name begins with drop), and two parallel
- * plates (plate1, plate2). Two polarisers (polariser, analyser) have a curve.
+ * plates (plate1, plate2). Two polarisers (polariser, analyser), a coin in a cup (cup, coin, liquid), an arrow
+ * behind a glass (vessel, liquid, arrow) and a thin film (film1) have a curve each.
  *
  * Tolerances are derived from arithmetic: a unit in the last place of a double is 2.2e-16 of the value, a unit of the
  * film 5.7e-14; the longest paths have about ten interfaces, each of which may multiply such an error by a small
@@ -73,6 +74,10 @@ typedef enum realism_curve {
     REALISM_CURVE_RAINBOW, /* angle from the antisolar point, deg, by the ray's offset over the drop's radius */
     REALISM_CURVE_PLATES,  /* transmittance of two plates without reflections by the angle of incidence, deg */
     REALISM_CURVE_MALUS,   /* transmittance of two polarisers, and a plate between them, by the analyser's angle, deg */
+    REALISM_CURVE_COIN,    /* depth of liquid at which a coin appears over a cup's rim by the liquid's index */
+    REALISM_CURVE_ARROW,   /* where a line of sight through a glass meets a plane behind it, over the place without the
+                            * glass, by the plane's distance from the axis, scene units */
+    REALISM_CURVE_SOAP,    /* reflectance of a thin film by its thickness, nm */
     REALISM_CURVE_COUNT
 } realism_curve;
 

@@ -30,29 +30,37 @@ static status index_of(const scene *s, int which, double *n, diagnostic *why)
     return STATUS_OK;
 }
 
+static const char example[] = "use the names and shapes of experiments/scenes/rod.yaml, prism.yaml, rainbow.yaml or "
+                              "plates.yaml";
+
 static status read_vessel(const scene *s, setup *out, diagnostic *why)
 {
-    const char *const example = "use the names and shapes of experiments/scenes/rod.yaml, prism.yaml, rainbow.yaml or "
-                                "plates.yaml";
     out->vessel = find_visible(s, "vessel");
-    out->rod = find_visible(s, "rod");
+    out->rod = -1;
     if (out->vessel < 0 || s->solids[out->vessel].shape.kind != SHAPE_CUP)
         return wrong(s, why, example, "there is no visible cup named 'vessel'");
-    if (out->rod < 0 || s->solids[out->rod].shape.kind != SHAPE_BOX)
-        return wrong(s, why, example, "there is no visible box named 'rod'");
-    const solid *vessel = &s->solids[out->vessel], *rod = &s->solids[out->rod];
+    const solid *vessel = &s->solids[out->vessel];
     if (vessel->shape.m != 1.0)
         return wrong(s, why, "set vessel.m to 1: the closed forms are those of a round vessel",
                      "the vessel is elliptic");
     if (is_turned(vessel) || vessel->surface.transparency == 0.0)
         return wrong(s, why, "set its rotation to 0, and its transparency above 0", "the vessel is rotated or opaque");
-    if (rod->surface.transparency != 0.0 || rod->priority <= vessel->priority)
-        return wrong(s, why, "set its transparency to 0 and its priority above the vessel's",
-                     "the rod is not opaque, or is displaced");
     out->x = vessel->shape.position.x, out->z = vessel->shape.position.z;
     out->outer = vessel->shape.radius, out->inner = vessel->shape.inner_radius;
     out->low = vessel->shape.position.y + vessel->shape.floor;
     out->high = vessel->shape.position.y + vessel->shape.height;
+    return STATUS_OK;
+}
+
+static status read_rod(const scene *s, setup *out, diagnostic *why)
+{
+    out->rod = find_visible(s, "rod");
+    if (out->rod < 0 || s->solids[out->rod].shape.kind != SHAPE_BOX)
+        return wrong(s, why, example, "there is no visible box named 'rod'");
+    const solid *vessel = &s->solids[out->vessel], *rod = &s->solids[out->rod];
+    if (rod->surface.transparency != 0.0 || rod->priority <= vessel->priority)
+        return wrong(s, why, "set its transparency to 0 and its priority above the vessel's",
+                     "the rod is not opaque, or is displaced");
     return STATUS_OK;
 }
 
@@ -77,7 +85,7 @@ static status read_liquid(const scene *s, setup *out, diagnostic *why)
         shape->radius >= out->outer)
         return wrong(s, why, "give both one axis, and the liquid a radius between the vessel's inner_radius and radius",
                      "the liquid does not reach into the vessel's wall all around");
-    if (s->solids[out->rod].priority <= liquid->priority)
+    if (out->rod >= 0 && s->solids[out->rod].priority <= liquid->priority)
         return wrong(s, why, "set the rod's priority above the liquid's", "the liquid displaces the rod");
     if (!glass_wins(s, out)) {
         out->inner = shape->radius;
@@ -90,9 +98,10 @@ static status read_liquid(const scene *s, setup *out, diagnostic *why)
     return STATUS_OK;
 }
 
-status setup_read(const scene *s, setup *out, diagnostic *why)
+/* The vessel is read. */
+static status read_media(const scene *s, setup *out, diagnostic *why)
 {
-    status code = read_vessel(s, out, why);
+    status code = STATUS_OK;
     const index_law around = surrounding_index_law(&s->background);
     out->n[SETUP_OUTSIDE] = out->n[SETUP_LIQUID] = index_law_at(&around, s->render.lambda_nm);
     out->liquid = find_visible(s, "liquid");
@@ -102,6 +111,20 @@ status setup_read(const scene *s, setup *out, diagnostic *why)
         THEN(code, index_of(s, out->liquid, &out->n[SETUP_LIQUID], why));
     }
     return code;
+}
+
+status setup_read(const scene *s, setup *out, diagnostic *why)
+{
+    TRY(read_vessel(s, out, why));
+    TRY(read_rod(s, out, why));
+    return read_media(s, out, why);
+}
+
+status setup_read_glass(const scene *s, setup *out, diagnostic *why)
+{
+    TRY(read_vessel(s, out, why));
+    TRY(read_media(s, out, why));
+    return out->liquid >= 0 ? STATUS_OK : wrong(s, why, example, "there is no visible cylinder named 'liquid'");
 }
 
 theory_shells setup_shells(const setup *at)

@@ -17,8 +17,10 @@ typedef struct setup {
                          rim */
 } setup;
 
-/* STATUS_BAD_INPUT if a solid is missing or not as theory requires. */
+/* STATUS_BAD_INPUT if a solid is missing or not as theory requires. setup_read_glass: without the rod (-1), but with a
+ * liquid. */
 status setup_read(const scene *s, setup *out, diagnostic *why);
+status setup_read_glass(const scene *s, setup *out, diagnostic *why);
 
 theory_shells setup_shells(const setup *at);
 

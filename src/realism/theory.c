@@ -73,6 +73,13 @@ double theory_shells_power(const theory_shells *c)
                   (c->n_around / c->n_wall - c->n_around / c->n_core) / c->inner);
 }
 
+double theory_shells_place(const theory_shells *c, double eye, double behind, double offset)
+{
+    /* Turned by the deviation, the ray leaves at the offset at which it came. */
+    const double out = asin(offset / eye) - theory_shells_deviation(c, offset);
+    return (offset + behind * sin(out)) / cos(out);
+}
+
 /* Horizontal distance covered by the ray with n sin(angle) = p. */
 static double reach(double p, double height, double depth, double n_above, double n_below)
 {
@@ -118,4 +125,28 @@ double theory_crossed(double between, double plate, double retardance)
 {
     const double half = sin(0.5 * retardance), straight = cos(between);
     return 0.5 * (straight * straight - sin(2.0 * plate) * sin(2.0 * (plate - between)) * half * half);
+}
+
+double theory_least_depth(double drop, double across, double tangent, double n)
+{
+    const double below = tan(theory_snell(atan(tangent), 1.0, n));
+    return (drop * tangent - across) / (tangent - below);
+}
+
+/* Of the amplitudes of both faces and the phase between them. */
+static double airy(double r1, double r2, double phase)
+{
+    const double both = 2.0 * r1 * r2 * cos(phase);
+    return (r1 * r1 + r2 * r2 + both) / (1.0 + r1 * r1 * r2 * r2 + both);
+}
+
+double theory_film(double angle, double n_from, double n_film, double n_behind, double thickness)
+{
+    const double in = theory_snell(angle, n_from, n_film), out = theory_snell(angle, n_from, n_behind);
+    const double s[] = {n_from * cos(angle), n_film * cos(in), n_behind * cos(out)},
+                 p[] = {cos(angle) / n_from, cos(in) / n_film, cos(out) / n_behind},
+                 phase = 4.0 * M_PI * n_film * thickness * cos(in);
+    const double R_s = airy((s[0] - s[1]) / (s[0] + s[1]), (s[1] - s[2]) / (s[1] + s[2]), phase),
+                 R_p = airy((p[0] - p[1]) / (p[0] + p[1]), (p[1] - p[2]) / (p[1] + p[2]), phase);
+    return (R_s + R_p) / 2.0;
 }

@@ -37,6 +37,11 @@ double theory_shells_deviation(const theory_shells *c, double offset);
  * R), the ball lens: Hecht, table 6.1. */
 double theory_shells_power(const theory_shells *c);
 
+/* An eye at the distance `eye` from the axis looks past it at an offset: the distance from the axis at which the line
+ * of sight meets a plane at the distance `behind` on the other side; negative where it has crossed the axis. Near the
+ * axis the ray-transfer matrices give it as offset (1 + behind / eye - behind / f): Hecht, 6.2.1. */
+double theory_shells_place(const theory_shells *c, double eye, double behind, double offset);
+
 /* A flat surface: the eye is `height` above it in n_above, the point `depth` below it in n_below, at horizontal
  * distance `distance`. Tangent of the angle from the vertical at which the eye sees the point; NaN if there is no such
  * ray. */
@@ -57,3 +62,14 @@ double theory_drop_angle(double offset, double n);
  * that retardance between them, whose axis is at an angle `plate` from the first polariser's: Malus's law without a
  * plate; Born and Wolf, Principles of Optics, 7th ed., 15.4.2. Radians. */
 double theory_crossed(double between, double plate, double retardance);
+
+/* A point at a depth `drop` below an edge and at a horizontal distance `across` from it, seen over the edge by a line
+ * of sight of that tangent from the vertical: the depth of a liquid over the point, of index n relative to the
+ * surroundings, with which the refracted line meets the point. From Snell's law and the right triangles above and below
+ * the surface; Hecht, eq. 4.4. */
+double theory_least_depth(double drop, double across, double tangent, double n);
+
+/* Reflectance for unpolarised light of a film between two media, for its thickness in wavelengths (of vacuum):
+ * (r1^2 + r2^2 + 2 r1 r2 cos d) / (1 + r1^2 r2^2 + 2 r1 r2 cos d), r1 and r2 the amplitudes at its faces, d = 4 pi n
+ * thickness cos t: Airy; Born and Wolf, 7th ed., 1.6.4. */
+double theory_film(double angle, double n_from, double n_film, double n_behind, double thickness);

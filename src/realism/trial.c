@@ -20,9 +20,7 @@ void trial_end(trial *t)
     *t = (trial){0};
 }
 
-/* Whether the path from there, refracted where possible, ends on that solid without a reflection, optionally only
- * through vertical surfaces. A failure of the tracer is stored in *code. */
-static bool meets(trial *t, vec3 origin, vec3 direction, int which, bool upright, status *code, diagnostic *why)
+bool trial_meets(trial *t, vec3 origin, vec3 direction, int which, bool upright, status *code, diagnostic *why)
 {
     if (*code == STATUS_OK)
         *code = probe_path(t->p, origin, direction, -1, &t->tree, why);
@@ -38,8 +36,7 @@ static bool meets(trial *t, vec3 origin, vec3 direction, int which, bool upright
     return false;
 }
 
-/* Bisects between a position where the answer is `before` and one where it is not. */
-static double bisect(seen_at *seen, void *context, double from, double to, bool before)
+double bisect(seen_at *seen, void *context, double from, double to, bool before)
 {
     while (to - from > 1e-12) {
         const double middle = from + (to - from) / 2.0;
@@ -108,8 +105,8 @@ typedef struct image_line {
 static bool traced_sees(void *context, double x)
 {
     image_line *l = context;
-    return meets(l->t, l->t->s->camera.position, probe_camera_direction(l->t->p, x, l->py), l->which, l->upright,
-                 &l->code, l->why);
+    return trial_meets(l->t, l->t->s->camera.position, probe_camera_direction(l->t->p, x, l->py), l->which, l->upright,
+                       &l->code, l->why);
 }
 
 status trial_edges(trial *t, int which, bool upright, double py, const double range[2], int steps, double edge[2],
