@@ -150,6 +150,23 @@ static vec3 seen_color(const light *l)
     return vec3_make(rgb[0], rgb[1], rgb[2]);
 }
 
+/* Shadow rays end at a sun's place, and what is beyond does not block them: half-spaces that a ray meets at an angle
+ * below 2^-16. A power of two, so that directions are scaled exactly, and a solid far away changes nothing. */
+static void place_suns(plan *p)
+{
+    double extent = p->geometry->extent;
+    for (int i = 0; i < p->light_count; i++)
+        if (p->lights[i].kind != LIGHT_SUN)
+            extent = fmax(extent, vec3_length(p->lights[i].position));
+    for (p->sun_distance = 0x1p16; p->sun_distance < 0x1p16 * extent;)
+        p->sun_distance *= 2.0;
+    for (int i = 0; i < p->light_count; i++) {
+        light *l = &p->lights[i];
+        if (l->kind == LIGHT_SUN)
+            l->position = vec3_scale(p->cones[i].axis, -p->sun_distance), l->radius = l->reach = 0.0;
+    }
+}
+
 static status prepare_lights(const scene *s, plan *p, diagnostic *why)
 {
     p->lights = calloc(s->light_count + 1, sizeof *p->lights);
@@ -163,9 +180,11 @@ static status prepare_lights(const scene *s, plan *p, diagnostic *why)
         p->lights[i].color = seen_color(&s->lights[i]);
         if (s->lights[i].kind != LIGHT_POINT)
             p->cones[i] = light_cone_of(&s->lights[i]);
+        p->has_sun |= s->lights[i].kind == LIGHT_SUN;
         if (light_is_flat(&s->lights[i]))
             p->shapes[i] = lamp_shape_of(&s->lights[i]);
     }
+    place_suns(p);
     return STATUS_OK;
 }
 
@@ -326,7 +345,7 @@ status plan_build(const scene *s, plan **out, diagnostic *why)
         p->render.shadows = SHADOWS_OPAQUE; /* the photons bring the rest */
     p->solid_shadows = p->render.shadows == SHADOWS_OPAQUE;
     for (size_t i = 0; i < s->light_count && integrator_traits_of(&s->render)->by_chance; i++)
-        p->solid_shadows |= light_extent(&s->lights[i]) > 0.0;
+        p->solid_shadows |= light_has_size(&s->lights[i]);
     *out = p;
     return STATUS_OK;
 }

@@ -69,6 +69,8 @@ typedef struct plan {
     light_cone *cones;  /* by light; undefined for a point light */
     lamp_shape *shapes; /* by light; defined for discs and rectangles */
     int light_count;
+    bool has_sun; /* some light is a sun; suns are at sun_distance from the origin, and without radius and reach */
+    double sun_distance; /* far beyond all solids and other lights */
 } plan;
 
 /* Call scene_load first. */

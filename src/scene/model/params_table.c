@@ -39,7 +39,7 @@ static const char *const projection_words[] = {"perspective", "orthographic", NU
 static const char *const analyser_words[] = {"none", "linear", "circular_left", "circular_right", NULL};
 static const char *const sheet_words[] = {"none", "polariser", "circular_left", "circular_right", "retarder", NULL};
 static const char *const tone_words[] = {"none", "reinhard", "aces", NULL};
-static const char *const light_words[] = {"point", "cone", "soft_cone", "disc", "rectangle", NULL};
+static const char *const light_words[] = {"point", "cone", "soft_cone", "disc", "rectangle", "sun", NULL};
 /* as enum lamp_spectrum */
 static const char *const lamp_words[] = {"color", "black_body", "sodium", "mercury", "hydrogen", "line", NULL};
 static const char *const beam_words[] = {"pencil", "fan", "sheet", "bundle", NULL};
@@ -341,9 +341,10 @@ static const param table[] = {
 
     CHOICE(PARAM_LIGHT, light, kind, light_words, "point",
            "point light, spotlight with a hard edge, or spotlight whose intensity falls to zero at the edge, "
-           "linear in the cosine of the angle; or a disc or a rectangle that emits by Lambert's law on one side"),
+           "linear in the cosine of the angle; a disc or a rectangle that emits by Lambert's law on one side; or a "
+           "sun, infinitely far away in the direction from target to position"),
     VECTOR(PARAM_LIGHT, light, position, "0,10,0", "position of the light, or of its centre"),
-    VECTOR(PARAM_LIGHT, light, target, "0,0,0", "point at which a spotlight, a disc or a rectangle is aimed"),
+    VECTOR(PARAM_LIGHT, light, target, "0,0,0", "point at which a spotlight, a disc, a rectangle or a sun is aimed"),
     REAL(PARAM_LIGHT, light, half_angle_deg, "deg", 0.001, 180, "30",
          "half-angle a of a spotlight's cone; a soft cone has the falloff (cos t - cos a) / (1 - cos a) at "
          "angle t"),
@@ -363,6 +364,9 @@ static const param table[] = {
          "width of a rectangle, horizontal unless it is aimed straight up or down: then along x; 0: a point"),
     REAL(PARAM_LIGHT, light, height, "scene units", 0, FAR, "1", "height of a rectangle; 0: a point"),
     REAL(PARAM_LIGHT, light, roll_deg, "deg", -360, 360, "0", "rotation of a rectangle about its axis"),
+    REAL(PARAM_LIGHT, light, angular_diameter_deg, "deg", 0, 90, "0.53",
+         "angle under which a sun is seen, sampled by integrator path and with render.soft_shadows; 0.53: that of "
+         "the sun; 0: parallel light"),
     REAL(PARAM_LIGHT, light, reach, "scene units", 0, FAR, "0",
          "distance at which the intensity applies, with inverse-square falloff; 0: no falloff"),
 

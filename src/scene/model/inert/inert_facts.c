@@ -88,7 +88,7 @@ size_t shining_lights(const scene *s)
 bool only_spheres_shine(const scene *s)
 {
     for (size_t i = 0; i < s->light_count; i++)
-        if (shines(&s->lights[i]) && light_extent(&s->lights[i]) == 0.0)
+        if (shines(&s->lights[i]) && !light_has_size(&s->lights[i]))
             return false;
     return is_path(s);
 }

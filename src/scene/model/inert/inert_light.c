@@ -9,7 +9,7 @@
 static bool lights_nothing(const inert_case *c, const light *l)
 {
     const scene *s = c->s;
-    if (is_path(s) && light_extent(l) > 0.0)
+    if (is_path(s) && light_has_size(l))
         return false;
     scene lit = *s; /* borrows from s; a single light with an intensity */
     light white = *l;
@@ -34,6 +34,30 @@ static bool other_spectrum(const inert_case *c, const light *l)
                          "the light is not a black body");
     return strcmp(name, "line_nm") == 0 && l->spectrum != LAMP_LINE &&
            inert_say(c, "no-line", inert_set("%s.spectrum=line", c->name).text, "the light's spectrum is not one line");
+}
+
+/* A sun's own size, and what a sun does not have. */
+static bool sun_or_not(const inert_case *c, const light *l)
+{
+    static const struct {
+        const char *name, *remedy;
+    } not_of_sun[] = {{"half_angle_deg", "%s.kind=cone"},
+                      {"radius", "render.integrator=path, %s.kind=point and %s.reach=8"},
+                      {"width", "render.integrator=path, %s.kind=rectangle and %s.reach=8"},
+                      {"height", "render.integrator=path, %s.kind=rectangle and %s.reach=8"},
+                      {"roll_deg", "render.integrator=path, %s.kind=rectangle and %s.reach=8"},
+                      {"reach", "%s.kind=point"}};
+    const char *name = c->at.row->name;
+    const bool of_sun = strcmp(name, "angular_diameter_deg") == 0;
+    for (size_t i = 0; l->kind == LIGHT_SUN && i < sizeof not_of_sun / sizeof *not_of_sun; i++)
+        if (strcmp(name, not_of_sun[i].name) == 0)
+            return inert_say(c, "sun-lamp", inert_set(not_of_sun[i].remedy, c->name, c->name).text,
+                             "a sun is infinitely far away");
+    if (of_sun && l->kind != LIGHT_SUN)
+        return inert_say(c, "no-sun", inert_set("%s.kind=sun", c->name).text, "the light is not a sun");
+    return of_sun && !is_path(c->s) && !scene_has_soft_shadows(&c->s->render) &&
+           inert_say(c, "sphere-lamp", "set render.integrator=path",
+                     "only the path integrator and render.soft_shadows use the size of a light");
 }
 
 /* Parameters of other kinds of lights, and of a size that nothing samples. */
@@ -79,7 +103,7 @@ bool inert_light(const inert_case *c)
         return inert_say(c, "dark-lamp", inert_set("%s.intensity=1", c->name).text, "the light's intensity is 0");
     if (!of_color && l->spectrum == LAMP_OF_COLOR && is_black(l->color))
         return inert_say(c, "dark-lamp", inert_set("%s.color=1,1,1", c->name).text, "the light's color is black");
-    if (other_shape(c, l))
+    if (sun_or_not(c, l) || other_shape(c, l))
         return true;
     return lights_nothing(c, l);
 }
