@@ -7,6 +7,7 @@
 #include "render/shade/sky.h"
 #include "scene/model/cover.h"
 #include "scene/model/scene.h"
+#include "scene/model/sun.h"
 #include <stdlib.h>
 
 /* Under Fresnel weights equal refractive indices are one medium, and a boundary between them is no interface unless it
@@ -193,20 +194,27 @@ static status add_rain(const scene *s, plan *p, diagnostic *why)
     const bool traced = !integrator_traits_of(&s->render)->layers;
     if (s->background.kind != BACKGROUND_RAIN || s->background.rain == 0.0 || !traced)
         return STATUS_OK;
-    p->rain = rain_create(&s->background, s->render.spectrum == SPECTRUM_SPECTRAL);
+    p->rain = rain_create(&s->background, scene_to_sun(s), s->render.spectrum == SPECTRUM_SPECTRAL);
     return p->rain ? STATUS_OK : out_of_memory(why);
 }
 
-/* A gradient between equal colours is uniform to the last bit. */
+/* A gradient between equal colours is uniform to the last bit, and so is a uniform CIE sky over ground of its colour. */
 static const background *sky_of(const scene *s, plan *p)
 {
     const background *b = &s->background;
+    const bool level = b->color.x == b->horizon.x && b->color.y == b->horizon.y && b->color.z == b->horizon.z;
+    if (b->kind == BACKGROUND_CIE && !(level && b->sky_type == CIE_SKY_UNIFORM)) {
+        p->own_sky = *b;
+        p->own_sky.cie = cie_sky_make((int)b->sky_type, scene_to_sun(s));
+        p->own_sky.cie.mean = s->render.beyond == DEPTH_LIMIT_MEAN ? cie_sky_mean(&p->own_sky.cie) : 0.0;
+        return &p->own_sky;
+    }
     const bool gradient = b->kind == BACKGROUND_GRADIENT || (b->kind == BACKGROUND_RAIN && !p->rain);
-    if (!gradient || b->color.x != b->horizon.x || b->color.y != b->horizon.y || b->color.z != b->horizon.z)
+    if (!level || !(gradient || b->kind == BACKGROUND_CIE))
         return b;
-    p->flat_sky = *b;
-    p->flat_sky.kind = BACKGROUND_UNIFORM;
-    return &p->flat_sky;
+    p->own_sky = *b;
+    p->own_sky.kind = BACKGROUND_UNIFORM;
+    return &p->own_sky;
 }
 
 /* By solid; the last one is that of the surrounding medium. */

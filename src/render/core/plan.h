@@ -61,8 +61,8 @@ typedef struct plan {
     /* every solid blocks light: either render settings require it, or random paths find the transmitted light */
     bool solid_shadows;
     const struct photon_map *photons; /* borrowed: light that arrives through clear solids and mirrors; NULL: none */
-    const background *sky;            /* the scene's, or flat_sky */
-    background flat_sky;
+    const background *sky;            /* the scene's, or own_sky */
+    background own_sky;
     struct rain *rain;  /* what rain adds to the sky, or NULL */
     vec3 sky_mean;      /* over all directions; computed if render.beyond is mean */
     light *lights;      /* the scene's; their colour is what their spectrum looks like; names are borrowed */

@@ -43,7 +43,7 @@ static const char *const light_words[] = {"point", "cone", "soft_cone", "disc", 
 /* as enum lamp_spectrum */
 static const char *const lamp_words[] = {"color", "black_body", "sodium", "mercury", "hydrogen", "line", NULL};
 static const char *const beam_words[] = {"pencil", "fan", "sheet", "bundle", NULL};
-static const char *const background_words[] = {"uniform", "gradient", "picture", "rain", NULL};
+static const char *const background_words[] = {"uniform", "gradient", "picture", "rain", "cie", NULL};
 
 enum { ON_SLIME = 1 << MESH_SLIME, ON_ALL = 0 };
 
@@ -247,11 +247,12 @@ static const param table[] = {
         "tone curve reinhard: the least luminance, after the exposure, that is white", NULL, SHOWN(white)),
 
     CHOICE(PARAM_BACKGROUND, background, kind, background_words, "uniform",
-           "one colour, a vertical gradient, an equirectangular image, or a gradient with sunlit rain in front of it: "
-           "rainbows"),
-    COLOR(PARAM_BACKGROUND, background, color, BRIGHT, "0.53,0.75,0.92", "linear colour; of a gradient: at the zenith"),
+           "one colour, a vertical gradient, an equirectangular image, a gradient with sunlit rain in front of it: "
+           "rainbows; or a CIE standard general sky, whose luminance depends on the sun"),
+    COLOR(PARAM_BACKGROUND, background, color, BRIGHT, "0.53,0.75,0.92",
+          "linear colour; of a gradient or a CIE sky: at the zenith"),
     COLOR(PARAM_BACKGROUND, background, horizon, BRIGHT, "1,1,1",
-          "linear colour of a gradient at the horizon and below"),
+          "linear colour of a gradient at the horizon and below, and of a CIE sky below the horizon"),
     {PARAM_BACKGROUND, "picture", PARAM_PATH, "", 0, 0, false, "",
      "PNG, JPEG, PFM or 24-bit BMP file, relative to the scene file; sets kind to picture", NULL,
      OF(background, image_path)},
@@ -260,9 +261,12 @@ static const param table[] = {
     ROW(PARAM_BACKGROUND, "drops", PARAM_CHOICE, "", 0, 0, false, "water", "liquid of the rain's drops, in air",
         surrounding_words + SURROUNDING_CATALOGUE + DROPS_FIRST, OF(background, drops)),
     REAL(PARAM_BACKGROUND, background, sun_elevation_deg, "deg", -90, 90, "20",
-         "elevation of the sun that shines on the rain; the sun itself is not drawn"),
+         "elevation of the sun that shines on the rain or stands in a CIE sky, unless a light is a sun; it is not "
+         "drawn"),
     REAL(PARAM_BACKGROUND, background, sun_azimuth_deg, "deg", -360, 360, "180",
-         "azimuth of the sun that shines on the rain: 0 along +z, 90 along +x; 180 is behind a camera along +z"),
+         "azimuth of that sun: 0 along +z, 90 along +x; 180 is behind a camera along +z"),
+    INTEGER(PARAM_BACKGROUND, background, sky_type, "", 1, CIE_SKY_TYPES, "12",
+            "type of a CIE standard general sky (ISO 15469), from 1, overcast, to 15; 12: the standard clear sky"),
     COLOR(PARAM_BACKGROUND, background, ambient, BRIGHT, "1,1,1", "ambient light, I_a of the Phong model"),
 
     REAL(PARAM_BACKGROUND, background, ior, "", 0.1, 100, "1",

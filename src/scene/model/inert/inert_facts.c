@@ -68,7 +68,8 @@ bool is_dark_at_depth_limit(const scene *s)
 {
     const background *b = &s->background;
     const bool gradient = b->kind == BACKGROUND_GRADIENT || (b->kind == BACKGROUND_RAIN && b->rain == 0.0);
-    const bool dark_sky = is_black(b->color) && (b->kind == BACKGROUND_UNIFORM || (gradient && is_black(b->horizon)));
+    const bool dark_sky = is_black(b->color) && (b->kind == BACKGROUND_UNIFORM ||
+                                                 ((gradient || b->kind == BACKGROUND_CIE) && is_black(b->horizon)));
     return s->render.beyond == DEPTH_LIMIT_BLACK || dark_sky;
 }
 

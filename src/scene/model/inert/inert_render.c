@@ -254,8 +254,8 @@ static bool shadows(const inert_case *c)
     const scene *s = c->s;
     if (integrator_traits_of(&s->render)->drawn)
         return inert_say(c, "no-shadows", WHITTED, "the depth-buffer integrator renders no shadows");
-    return nothing_lit(c) ||
-           (only_spheres_shine(s) && inert_say(c, "spheres", WHITTED, "lights with a size are hit by random paths"));
+    return nothing_lit(c) || (only_spheres_shine(s) && s->render.caustics == CAUSTICS_OFF &&
+                              inert_say(c, "spheres", WHITTED, "lights with a size are hit by random paths"));
 }
 
 static bool min_weight(const inert_case *c)
