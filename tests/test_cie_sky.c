@@ -81,7 +81,8 @@ static void type_12_is_kittlers_clear_sky(void **state)
         }
 }
 
-/* Moon and Spencer's overcast sky, (1 + 2 sin h) / 3, a third of the zenith's luminance at the horizon; type 5 is even. */
+/* Moon and Spencer's overcast sky, (1 + 2 sin h) / 3, a third of the zenith's luminance at the horizon; type 5 is
+ * even. */
 static void type_1_is_nearly_moon_and_spencers_overcast_sky(void **state)
 {
     (void)state;

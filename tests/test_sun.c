@@ -244,8 +244,8 @@ static void photons_reach_a_ceiling_from_a_mirror(void **state)
     scene_destroy(s);
 }
 
-/* What a sphere of the same angular radius, very far away, lights: rough surfaces, media that scatter, the choice of one
- * light of several, a glass ball's caustic. Lights of that kind have their own tests. */
+/* What a sphere of the same angular radius, very far away, lights: rough surfaces, media that scatter, the choice of
+ * one light of several, a glass ball's caustic. Lights of that kind have their own tests. */
 static void it_is_a_sphere_at_infinity(void **state)
 {
     (void)state;

@@ -198,7 +198,8 @@ static status add_rain(const scene *s, plan *p, diagnostic *why)
     return p->rain ? STATUS_OK : out_of_memory(why);
 }
 
-/* A gradient between equal colours is uniform to the last bit, and so is a uniform CIE sky over ground of its colour. */
+/* A gradient between equal colours is uniform to the last bit, and so is a uniform CIE sky over ground of its
+ * colour. */
 static const background *sky_of(const scene *s, plan *p)
 {
     const background *b = &s->background;

@@ -23,7 +23,8 @@ void absorption_end(tracer *t);
 
 /* absorption_announce: called before a batch of a queue is traced, turns on the recording of its medium segments.
  * absorption_exempt_sky: after a search for nearest interfaces, removes absorption by the surrounding medium from paths
- * to the sky; absorption_exempt_suns: likewise, from shadow rays to suns. absorption_dim: multiplies the batch's throughput by the transmittance. */
+ * to the sky; absorption_exempt_suns: likewise, from shadow rays to suns. absorption_dim: multiplies the batch's
+ * throughput by the transmittance. */
 void absorption_announce(tracer *t, const ray_queue *q, int first, int count);
 void absorption_exempt_sky(tracer *t);
 void absorption_exempt_suns(tracer *t);

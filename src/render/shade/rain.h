@@ -9,7 +9,8 @@
 
 typedef struct rain rain;
 
-/* to_sun: unit vector. spectral: for a film that is traced by wavelength; else for three channels. NULL when out of memory. */
+/* to_sun: unit vector. spectral: for a film that is traced by wavelength; else for three channels. NULL when out of
+ * memory. */
 rain *rain_create(const background *sky, vec3 to_sun, bool spectral);
 void rain_destroy(rain *r);
 
