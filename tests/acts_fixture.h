@@ -24,6 +24,7 @@ static const acts_small acts_smaller[] = {
     {"plates", "render.width=120 render.height=90"},
     {"frosted", "render.paths=4"},
     {"milky", "render.width=160 render.height=120 render.paths=2 render.depth=5"},
+    {"sunlit-glass", "render.width=144 render.height=96 render.paths=2 render.photons=2000 render.depth=6"},
     {"solids", "render.samples=1"},
     {"shapes", "render.samples=1 render.depth=6"},
     {"focus", "render.samples=4"},

@@ -111,6 +111,16 @@ static void ineffective_parameters_give_a_hint(void **state)
                  "transparency: 1, ior: 1.5}}",
                  "");
     expect_hints("render: {integrator: path}\nlights: {lamp: {}}\nsolids: {ball: {shape: sphere, diffuse: 1}}", "");
+    expect_hints("lights: {noon: {kind: sun}}\nsolids: {ball: {shape: sphere, diffuse: 1}}",
+                 "noon.angular_diameter_deg: all light of noon is parallel; set render.soft_shadows=on, or "
+                 "render.integrator=path\n");
+    expect_hints("lights: {noon: {kind: sun, angular_diameter_deg: 0, radius: 1}}\n"
+                 "solids: {ball: {shape: sphere, diffuse: 1}}",
+                 "");
+    expect_hints("render: {integrator: path}\nlights: {noon: {kind: sun}}\n"
+                 "solids: {ball: {shape: sphere, transparency: 1, ior: 1.5}}",
+                 "noon.angular_diameter_deg: random paths through transparent solids rarely hit noon, which is small: "
+                 "caustics are noise; set render.caustics=photons\n");
 }
 
 static void features_that_the_z_buffer_does_not_render_give_a_hint(void **state)

@@ -275,7 +275,7 @@ static void the_mean_is_that_of_all_directions(void **state)
     enum { PARTS = 36000 };
     const background sky = {.kind = BACKGROUND_RAIN, .rain = 0.8, .sun_elevation_deg = 90.0};
     for (int spectral = 0; spectral < 2; spectral++) {
-        rain *r = rain_create(&sky, spectral);
+        rain *r = rain_create(&sky, vec3_make(0.0, 1.0, 0.0), spectral);
         assert_non_null(r);
         double sum = 0.0;
         for (int k = 0; k < PARTS; k++) {
@@ -314,7 +314,7 @@ static void the_bow_is_that_of_water_in_air(void **state)
 {
     (void)state;
     const background sky = {.kind = BACKGROUND_RAIN, .rain = 1.0, .sun_elevation_deg = 90.0};
-    rain *r = rain_create(&sky, true);
+    rain *r = rain_create(&sky, vec3_make(0.0, 1.0, 0.0), true);
     assert_non_null(r);
     drop_scattering(&sunny, index_of_water(550.0), p);
     int best = 0, found = 0;

@@ -17,7 +17,7 @@ typedef struct ball {
 
 typedef struct cone {
     vec3 axis;
-    double cap;   /* 1 - the cosine of its half angle; 2: all directions */
+    double cap;   /* 1 - the cosine of its half angle; 2: all directions; of a sun, 0: one direction */
     double share; /* of the lamp's photons */
 } cone;
 
@@ -58,6 +58,12 @@ static ball ball_of(const solid_shape *shape)
     const bool bounded = vec3_is_finite(half);
     return (ball){bounded ? vec3_add(box.low, half) : vec3_make(0.0, 0.0, 0.0),
                   bounded ? vec3_length(half) : (double)INFINITY};
+}
+
+/* From where a sun's rays begin to the middle of the scene. */
+static double sun_path(const emission *e)
+{
+    return 0x1p10 * fmax(e->p->geometry->extent, vec3_length(e->p->view.eye));
 }
 
 /* A ball that holds two. */
@@ -117,12 +123,46 @@ static cone cone_to(vec3 from, double lamp_radius, ball b)
     return (cone){vec3_scale(to, 1.0 / d), (1.0 + 1e-9) * sine * sine / (1.0 + sqrt(1.0 - sine * sine)), 0.0};
 }
 
+static bool is_sun(const emission *e, int lamp)
+{
+    return e->p->lights[lamp].kind == LIGHT_SUN;
+}
+
+/* The ball whose disc, across them, a sun's rays pass. */
+static ball sunlit_ball(const emission *e, int k)
+{
+    const camera_frame *view = &e->p->view;
+    if (!isinf(e->balls[k].radius))
+        return e->balls[k];
+    return (ball){vec3_make(0.0, 0.0, 0.0), 2.0 * fmax(e->p->geometry->extent, vec3_length(view->eye))};
+}
+
+/* The flux of a sun through these discs, over that of a lamp of intensity 1 and reach 1 into a unit of solid angle: the
+ * discs' area. As aim below. */
+static double aim_sun(emission *e, int lamp)
+{
+    const light *l = &e->p->lights[lamp];
+    const light_cone *c = &e->p->cones[lamp];
+    lamp_emission *out = &e->lamps[lamp];
+    double sum = 0.0;
+    for (int k = 0; k < e->ball_count; k++) {
+        const double radius = sunlit_ball(e, k).radius;
+        sum += radius * radius;
+        out->cones[k] = (cone){c->axis, e->sizes ? c->opening : 0.0, radius * radius};
+    }
+    for (int k = 0; k < e->ball_count; k++)
+        out->cones[k].share /= sum;
+    return l->intensity * fmax(l->color.x, fmax(l->color.y, l->color.z)) * 0.5 * sum; /* over 2 pi, as there */
+}
+
 /* The lamp's brightness times the solid angle of its cones: its photons are in proportion. */
 static double aim(emission *e, int lamp)
 {
     const light *l = &e->p->lights[lamp];
     lamp_emission *out = &e->lamps[lamp];
     double sum = 0.0;
+    if (is_sun(e, lamp))
+        return aim_sun(e, lamp);
     for (int k = 0; k < e->ball_count; k++)
         sum += (out->cones[k] = cone_to(l->position, e->sizes ? light_extent(l) : 0.0, e->balls[k])).cap;
     for (int k = 0; k < e->ball_count; k++)
@@ -292,6 +332,38 @@ static bool to_lamp(const emission *e, int lamp, vec3 direction, vec3 *point)
     return true;
 }
 
+/* The density of a sun's rays along a direction through a point, per area across, which ball `drawn` gave. */
+static double sun_density(const emission *e, int lamp, int drawn, vec3 direction, vec3 point)
+{
+    double density = 0.0;
+    for (int k = 0; k < e->ball_count; k++) {
+        const ball b = sunlit_ball(e, k);
+        if (k == drawn || off_line(point, direction, b.centre) <= b.radius * b.radius)
+            density += e->lamps[lamp].cones[k].share / (PI * b.radius * b.radius);
+    }
+    return density;
+}
+
+/* The start of a ray through the point, far before all bounded solids; false within an opaque one without bounds. */
+static bool before_all(const emission *e, vec3 direction, emitted_ray *out)
+{
+    const scene_geometry *g = e->p->geometry;
+    out->origin = vec3_sub(out->origin, vec3_scale(direction, sun_path(e)));
+    out->inside = scene_geometry_inside(g, out->origin);
+    return !g->regions[scene_geometry_priority_index(g, out->inside)].opaque;
+}
+
+/* A ray of a sun, whose direction is drawn, through the disc of ball k; returns the inverse of its density per area,
+ * times pi L dw over the density of directions and over that of parallel light: 2 (1 - cos a) / sin^2 a = 2 / (1 + cos
+ * a). */
+static double draw_sun_ray(const emission *e, int lamp, int k, unit_pair place, emitted_ray *out)
+{
+    const ball b = sunlit_ball(e, k);
+    out->origin = on_disc(b.centre, b.radius, out->direction, place);
+    const double density = sun_density(e, lamp, k, out->direction, out->origin);
+    return before_all(e, out->direction, out) ? 2.0 / ((2.0 - e->lamps[lamp].cones[k].cap) * density) : 0.0;
+}
+
 /* A ray, and the inverse of its density times the lamp's disc: 0 if it does not leave the lamp. The first number
  * chooses the cone too. */
 static double draw_ray(const emission *e, int lamp, unit_pair s, unit_pair place, emitted_ray *out)
@@ -305,6 +377,9 @@ static double draw_ray(const emission *e, int lamp, unit_pair s, unit_pair place
     const double off = c->cap * fmin(s.u / c->share, 1.0);
     out->direction = along(c->axis, 1.0 - off, sqrt(off * (2.0 - off)), s.v);
     out->origin = lamp_at(e, lamp);
+    out->inside = l->inside;
+    if (is_sun(e, lamp))
+        return draw_sun_ray(e, lamp, k, place, out);
     if (is_flat(e, lamp)) /* by Lambert's law, which is the lamp's share of the direction */
         out->origin = lamp_shape_point(&e->p->shapes[lamp], out->origin, place.u, place.v);
     if (radius == 0.0)
@@ -343,15 +418,17 @@ bool emission_ray(const emission *e, int64_t i, emitted_ray *out)
     const int lamp = lamp_of(e, i);
     const light *l = &p->lights[lamp];
     const lamp_emission *from = &e->lamps[lamp];
+    const bool sun = is_sun(e, lamp); /* with the flux of a beam */
     const int64_t number = i - from->first;
     const double angle =
         draw_ray(e, lamp, pair(e, number, (uint64_t)lamp << 8), pair(e, number, (uint64_t)lamp << 8 | 1), out);
     const double share = light_share(l, &p->cones[lamp], out->direction);
     if (share == 0.0 || angle == 0.0)
         return false;
-    out->inside = from->inside;
-    out->lamp_radius = is_flat(e, lamp) ? sqrt(p->shapes[lamp].area / PI) : sphere_radius(e, lamp);
-    out->falls = l->reach > 0.0;
+    out->lamp_radius = sun                ? sun_path(e) * sqrt(from->cones[0].cap * (2.0 - from->cones[0].cap))
+                       : is_flat(e, lamp) ? sqrt(p->shapes[lamp].area / PI)
+                                          : sphere_radius(e, lamp);
+    out->falls = sun || l->reach > 0.0;
     out->wavelength = -1;
     vec3 color = vec3_scale(l->color, l->intensity);
     out->of_line = false;
@@ -359,7 +436,7 @@ bool emission_ray(const emission *e, int64_t i, emitted_ray *out)
         const double radiance = draw_wavelength(e, lamp, pair(e, number, (uint64_t)lamp << 8 | 2).u, out);
         color = vec3_make(radiance, radiance, radiance);
     }
-    out->power = vec3_scale(color, share * (out->falls ? l->reach * l->reach : 1.0) * angle / (double)from->count);
+    out->power = vec3_scale(color, share * (l->reach > 0.0 ? l->reach * l->reach : 1.0) * angle / (double)from->count);
     return true;
 }
 

@@ -4,7 +4,8 @@
  * bounds, the cone is the whole sphere of directions. A lamp's flux into a small solid angle dw is pi I reach^2 dw, for
  * a point as for a sphere, whose every direction leaves from a disc across it; I is its intensity (path.c). A ray of a
  * direction passes a random point of the lamp's disc, or, of a lamp that is larger than the ball, as the sun is, of the
- * ball's disc.
+ * ball's disc. A sun's directions are uniform over its disc, or one; its rays pass the discs of the balls across them,
+ * and begin far before all solids. Where a ball has no bounds, they are followed within twice the extent of the scene.
  *
  * Photons are points of a scrambled Sobol sequence for each lamp, a function of the seed and the photon's number.
  * Ownership: emission_create allocates, emission_destroy releases; the plan is borrowed. */

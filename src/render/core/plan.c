@@ -7,6 +7,7 @@
 #include "render/shade/sky.h"
 #include "scene/model/cover.h"
 #include "scene/model/scene.h"
+#include "scene/model/sun.h"
 #include <stdlib.h>
 
 /* Under Fresnel weights equal refractive indices are one medium, and a boundary between them is no interface unless it
@@ -165,6 +166,23 @@ static vec3 seen_color(const light *l)
     return vec3_make(rgb[0], rgb[1], rgb[2]);
 }
 
+/* Shadow rays end at a sun's place, and what is beyond does not block them: half-spaces that a ray meets at an angle
+ * below 2^-16. A power of two, so that directions are scaled exactly, and a solid far away changes nothing. */
+static void place_suns(plan *p)
+{
+    double extent = p->geometry->extent;
+    for (int i = 0; i < p->light_count; i++)
+        if (p->lights[i].kind != LIGHT_SUN)
+            extent = fmax(extent, vec3_length(p->lights[i].position));
+    for (p->sun_distance = 0x1p16; p->sun_distance < 0x1p16 * extent;)
+        p->sun_distance *= 2.0;
+    for (int i = 0; i < p->light_count; i++) {
+        light *l = &p->lights[i];
+        if (l->kind == LIGHT_SUN)
+            l->position = vec3_scale(p->cones[i].axis, -p->sun_distance), l->radius = l->reach = 0.0;
+    }
+}
+
 static status prepare_lights(const scene *s, plan *p, diagnostic *why)
 {
     p->lights = calloc(s->light_count + 1, sizeof *p->lights);
@@ -178,9 +196,11 @@ static status prepare_lights(const scene *s, plan *p, diagnostic *why)
         p->lights[i].color = seen_color(&s->lights[i]);
         if (s->lights[i].kind != LIGHT_POINT)
             p->cones[i] = light_cone_of(&s->lights[i]);
+        p->has_sun |= s->lights[i].kind == LIGHT_SUN;
         if (light_is_flat(&s->lights[i]))
             p->shapes[i] = lamp_shape_of(&s->lights[i]);
     }
+    place_suns(p);
     return STATUS_OK;
 }
 
@@ -189,20 +209,28 @@ static status add_rain(const scene *s, plan *p, diagnostic *why)
     const bool traced = !integrator_traits_of(&s->render)->layers;
     if (s->background.kind != BACKGROUND_RAIN || s->background.rain == 0.0 || !traced)
         return STATUS_OK;
-    p->rain = rain_create(&s->background, s->render.spectrum == SPECTRUM_SPECTRAL);
+    p->rain = rain_create(&s->background, scene_to_sun(s), s->render.spectrum == SPECTRUM_SPECTRAL);
     return p->rain ? STATUS_OK : out_of_memory(why);
 }
 
-/* A gradient between equal colours is uniform to the last bit. */
+/* A gradient between equal colours is uniform to the last bit, and so is a uniform CIE sky over ground of its
+ * colour. */
 static const background *sky_of(const scene *s, plan *p)
 {
     const background *b = &s->background;
+    const bool level = b->color.x == b->horizon.x && b->color.y == b->horizon.y && b->color.z == b->horizon.z;
+    if (b->kind == BACKGROUND_CIE && !(level && b->sky_type == CIE_SKY_UNIFORM)) {
+        p->own_sky = *b;
+        p->own_sky.cie = cie_sky_make((int)b->sky_type, scene_to_sun(s));
+        p->own_sky.cie.mean = s->render.beyond == DEPTH_LIMIT_MEAN ? cie_sky_mean(&p->own_sky.cie) : 0.0;
+        return &p->own_sky;
+    }
     const bool gradient = b->kind == BACKGROUND_GRADIENT || (b->kind == BACKGROUND_RAIN && !p->rain);
-    if (!gradient || b->color.x != b->horizon.x || b->color.y != b->horizon.y || b->color.z != b->horizon.z)
+    if (!level || !(gradient || b->kind == BACKGROUND_CIE))
         return b;
-    p->flat_sky = *b;
-    p->flat_sky.kind = BACKGROUND_UNIFORM;
-    return &p->flat_sky;
+    p->own_sky = *b;
+    p->own_sky.kind = BACKGROUND_UNIFORM;
+    return &p->own_sky;
 }
 
 /* By solid; the last one is that of the surrounding medium. */
@@ -354,7 +382,7 @@ status plan_build(const scene *s, plan **out, diagnostic *why)
         p->render.shadows = SHADOWS_OPAQUE; /* the photons bring the rest */
     p->solid_shadows = p->render.shadows == SHADOWS_OPAQUE;
     for (size_t i = 0; i < s->light_count && integrator_traits_of(&s->render)->by_chance; i++)
-        p->solid_shadows |= light_extent(&s->lights[i]) > 0.0;
+        p->solid_shadows |= light_has_size(&s->lights[i]);
     *out = p;
     return STATUS_OK;
 }

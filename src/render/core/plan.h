@@ -63,14 +63,16 @@ typedef struct plan {
     /* every solid blocks light: either render settings require it, or random paths find the transmitted light */
     bool solid_shadows;
     const struct photon_map *photons; /* borrowed: light that arrives through clear solids and mirrors; NULL: none */
-    const background *sky;            /* the scene's, or flat_sky */
-    background flat_sky;
+    const background *sky;            /* the scene's, or own_sky */
+    background own_sky;
     struct rain *rain;  /* what rain adds to the sky, or NULL */
     vec3 sky_mean;      /* over all directions; computed if render.beyond is mean */
     light *lights;      /* the scene's; their colour is what their spectrum looks like; names are borrowed */
     light_cone *cones;  /* by light; undefined for a point light */
     lamp_shape *shapes; /* by light; defined for discs and rectangles */
     int light_count;
+    bool has_sun; /* some light is a sun; suns are at sun_distance from the origin, and without radius and reach */
+    double sun_distance; /* far beyond all solids and other lights */
 } plan;
 
 /* Call scene_load first. */

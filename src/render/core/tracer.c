@@ -212,8 +212,10 @@ static void trace_shadows(tracer *t)
     const int64_t began_ns = visibility_begins(t);
     t->geometry->shadow(p->geometry, &rays, p->solid_shadows, &t->batch.scratch, t->batch.transmitted);
     visibility_ends(t, began_ns);
-    if (p->geometry->attenuates)
+    if (p->geometry->attenuates) {
+        absorption_exempt_suns(t);
         absorption_dim(t, q, first, rays.count);
+    }
     radiance_end_shadows(t);
     shading_expose_shares(t, q, first, rays.count, t->batch.transmitted);
 }

@@ -301,7 +301,7 @@ static void read_branches(const probe *p, int depth, branches *out)
 static int light_of(const plan *of, const ray_record *r, int from)
 {
     for (int k = from; k < of->light_count; k++) {
-        const vec3 to_light = vec3_sub(of->lights[k].position, r->origin);
+        const vec3 to_light = light_towards(&of->lights[k], r->origin);
         if (light_share(&of->lights[k], &of->cones[k], vec3_scale(to_light, -1.0 / vec3_length(to_light))) == 0.0)
             continue;
         if (to_light.x == r->direction.x && to_light.y == r->direction.y && to_light.z == r->direction.z)

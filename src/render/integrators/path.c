@@ -101,6 +101,21 @@ static void expose_light(tracer *t, const ray_queue *q, int at, int lamp, int pr
     shading_expose(t, sample_key, q->wr[at] * l.x, q->wg[at] * l.y, q->wb[at] * l.z);
 }
 
+/* The sky, and the suns in it. */
+static void expose_sky(tracer *t, const ray_queue *q, int first, int i)
+{
+    const plan *p = t->target.frame_plan;
+    const int at = first + i;
+    const vec3 direction = vec3_make(q->dx[at], q->dy[at], q->dz[at]);
+    background_sky(t, q, first, &i, 1);
+    if (!p->has_sun || !(q->sample_key[at] & SAMPLE_KEY_SPECULAR_BOUNCE))
+        return;
+    for (int k = 0; k < p->light_count; k++)
+        if (p->lights[k].kind == LIGHT_SUN && light_has_area(p, k) &&
+            area_light_distance(p, k, vec3_make(q->ox[at], q->oy[at], q->oz[at]), direction) < (double)HUGE_VAL)
+            expose_light(t, q, at, k, 0);
+}
+
 static void expose_background(tracer *t, const ray_queue *q, int first, const int *list, int count)
 {
     int scattered[ROW], some = 0;
@@ -108,7 +123,7 @@ static void expose_background(tracer *t, const ray_queue *q, int first, const in
         const int i = list[k];
         const int64_t hit = t->batch.hits.hit_primitive[i];
         if (hit == -1)
-            background_sky(t, q, first, &i, 1);
+            expose_sky(t, q, first, i);
         else if (hit == PATH_SCATTERED)
             scattered[some++] = i;
         else

@@ -35,7 +35,7 @@ static lamp_aim at_flat(const plan *p, const lamp_samples *s, int lamp, int k, v
 static lamp_aim at_point(const plan *p, const lamp_samples *s, int lamp, int k, vec3 from)
 {
     const light *l = &p->lights[lamp];
-    const vec3 to = vec3_sub(l->position, from);
+    const vec3 to = light_towards(l, from);
     lamp_aim a = {.distance = vec3_length(to)};
     a.to = vec3_scale(to, 1.0 / a.distance);
     const double falls = l->reach / a.distance;

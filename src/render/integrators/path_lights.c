@@ -10,8 +10,7 @@ static void sample_point(tracer *t, int k, const material *m, int lamp, double w
     const group *g = &t->surface.gathered;
     const light *l = &p->lights[lamp];
     const vec3 point = vec3_make(g->points.px[k], g->points.py[k], g->points.pz[k]),
-               n = vec3_make(g->points.nx[k], g->points.ny[k], g->points.nz[k]),
-               to_light = vec3_sub(l->position, point);
+               n = vec3_make(g->points.nx[k], g->points.ny[k], g->points.nz[k]), to_light = light_towards(l, point);
     const double distance2 = vec3_dot(to_light, to_light);
     const vec3 to = vec3_scale(to_light, 1.0 / sqrt(distance2));
     const double n_l = vec3_dot(n, to), share = light_share(l, &p->cones[lamp], vec3_scale(to, -1.0));

@@ -43,15 +43,27 @@ static void add_depths(tracer *t)
     t->batch.scratch.segments->count = 0;
 }
 
+/* Removes absorption by the surrounding medium from segments of more than that length. */
+static void exempt(tracer *t, double length)
+{
+    for (int k = 0; k < t->batch.scratch.segments->count; k++) {
+        medium_segment *s = &t->batch.scratch.segments->segment[k];
+        if (s->priority_index == 0 && s->length > length)
+            s->length = 0.0;
+    }
+}
+
+/* What only the last segment to a sun exceeds. */
+static double sun_leg(const tracer *t)
+{
+    return 0.5 * t->target.frame_plan->sun_distance;
+}
+
 /* Called when the list is full. Paths to the sky are exempt here too; they are recognised by their length. */
 static void make_room(void *context)
 {
     tracer *t = context;
-    const double infinite_length = 1e100; /* paths that leave the scene have 1e120 (medium_segment) */
-    for (int k = 0; k < t->batch.scratch.segments->count; k++)
-        if (t->batch.scratch.segments->segment[k].priority_index == 0 &&
-            t->batch.scratch.segments->segment[k].length > infinite_length)
-            t->batch.scratch.segments->segment[k].length = 0.0;
+    exempt(t, t->media->to_lamps ? sun_leg(t) : 1e100); /* paths that leave the scene have 1e120 (medium_segment) */
     if (t->media->flights.flying)
         scattering_take(t);
     add_depths(t);
@@ -73,6 +85,7 @@ void absorption_end(tracer *t)
 void absorption_announce(tracer *t, const ray_queue *q, int first, int count)
 {
     t->media->sample_keys = q->sample_key + first;
+    t->media->to_lamps = q == &t->queues.shadows;
     t->media->flights.flies = t->media->flights.flying = false;
     t->batch.scratch.segments->full = make_room;
     t->batch.scratch.segments->context = t;
@@ -101,6 +114,12 @@ void absorption_exempt_sky(tracer *t)
         if (s->priority_index == 0 && t->batch.hits.hit_primitive[s->ray] == -1)
             s->length = 0.0;
     }
+}
+
+void absorption_exempt_suns(tracer *t)
+{
+    if (t->target.frame_plan->has_sun && t->target.frame_plan->geometry->regions[0].attenuates)
+        exempt(t, sun_leg(t));
 }
 
 void absorption_dim(tracer *t, ray_queue *q, int first, int count)

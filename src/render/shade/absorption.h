@@ -11,6 +11,7 @@
 typedef struct media_work {
     medium_segments segments;
     const int64_t *sample_keys;   /* of the batch whose medium segments are recorded */
+    bool to_lamps;                /* they are shadow rays */
     double transmittance[3][ROW]; /* transmittance of the path to the hit, by channel */
     sheet_work sheets;
     flight_work flights;
@@ -22,9 +23,11 @@ void absorption_end(tracer *t);
 
 /* absorption_announce: called before a batch of a queue is traced, turns on the recording of its medium segments.
  * absorption_exempt_sky: after a search for nearest interfaces, removes absorption by the surrounding medium from paths
- * to the sky. absorption_dim: multiplies the batch's throughput by the transmittance. */
+ * to the sky; absorption_exempt_suns: likewise, from shadow rays to suns. absorption_dim: multiplies the batch's
+ * throughput by the transmittance. */
 void absorption_announce(tracer *t, const ray_queue *q, int first, int count);
 void absorption_exempt_sky(tracer *t);
+void absorption_exempt_suns(tracer *t);
 void absorption_dim(tracer *t, ray_queue *q, int first, int count);
 
 /* Coefficients of a priority index in 1 / scene unit, by channel; in a spectral film at the ray's wavelength. */

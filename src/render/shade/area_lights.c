@@ -6,6 +6,8 @@
 double area_light_radiance(const plan *p, int lamp, vec3 direction)
 {
     const light *l = &p->lights[lamp];
+    if (l->kind == LIGHT_SUN) /* pi I of irradiance from within the projected solid angle pi sin^2 */
+        return 1.0 / light_sun_sine2(&p->cones[lamp]);
     if (light_is_flat(l))
         return vec3_dot(direction, p->shapes[lamp].axis) < 0.0 ? lamp_shape_radiance(&p->shapes[lamp], l->reach) : 0.0;
     return l->reach * l->reach / (l->radius * l->radius) * light_share(l, &p->cones[lamp], vec3_scale(direction, -1.0));
@@ -14,6 +16,10 @@ double area_light_radiance(const plan *p, int lamp, vec3 direction)
 double area_light_distance(const plan *p, int lamp, vec3 origin, vec3 direction)
 {
     const light *l = &p->lights[lamp];
+    if (l->kind == LIGHT_SUN)
+        return light_cone_off(&p->cones[lamp], vec3_scale(direction, -1.0)) <= p->cones[lamp].opening
+                   ? p->sun_distance
+                   : (double)HUGE_VAL;
     if (light_is_flat(l))
         return lamp_shape_hit(&p->shapes[lamp], l->position, origin, direction);
     const vec3 to_light = vec3_sub(l->position, origin);
@@ -28,6 +34,8 @@ double area_light_distance(const plan *p, int lamp, vec3 origin, vec3 direction)
 double area_light_density(const plan *p, int lamp, vec3 origin, vec3 direction, double distance)
 {
     const light *l = &p->lights[lamp];
+    if (l->kind == LIGHT_SUN)
+        return 1.0 / (2.0 * LAMP_PI * p->cones[lamp].opening);
     if (light_is_flat(l))
         return distance * distance / (p->shapes[lamp].area * fabs(vec3_dot(direction, p->shapes[lamp].axis)));
     const vec3 to = vec3_sub(l->position, origin);
@@ -87,14 +95,15 @@ static void enqueue_sphere(tracer *t, int k, const material *m, bool opaque, con
     shadow_ray_enqueue(t, k, vec3_scale(to, s->reach[k]), color, diffuse, shine);
 }
 
-static bool is_sphere(const plan *p, int lamp)
-{
-    return lamp >= 0 && !light_is_flat(&p->lights[lamp]) && p->lights[lamp].radius > 0.0;
-}
-
 bool light_has_area(const plan *p, int lamp)
 {
-    return lamp >= 0 && light_extent(&p->lights[lamp]) > 0.0;
+    return lamp >= 0 && light_has_size(&p->lights[lamp]);
+}
+
+/* A sun too. */
+static bool is_sphere(const plan *p, int lamp)
+{
+    return light_has_area(p, lamp) && !light_is_flat(&p->lights[lamp]);
 }
 
 /* Enqueues a shadow ray from record k to its point of a flat lamp: (k_d C / pi) L (N.L) cos_l A / d^2 for points that
@@ -122,12 +131,20 @@ static void enqueue_flat(tracer *t, int k, const material *m, bool opaque, const
 void area_lights_aim_at_spheres(const tracer *t, lamp_samples *l)
 {
     const plan *p = t->target.frame_plan;
-    for (int k = 0; k < t->surface.gathered.count; k++) {
-        const light *one = &p->lights[l->lamp[k] < 0 ? 0 : l->lamp[k]];
-        l->spheres.x[k] = one->position.x, l->spheres.y[k] = one->position.y, l->spheres.z[k] = one->position.z;
-        l->spheres.radius[k] = one->radius;
+    const group *g = &t->surface.gathered;
+    for (int k = 0; k < g->count; k++) {
+        const int lamp = l->lamp[k] < 0 ? 0 : l->lamp[k];
+        const light *one = &p->lights[lamp];
+        const bool sun = one->kind == LIGHT_SUN; /* one of radius sin a at distance 1 */
+        const vec3 to = sun ? vec3_scale(p->cones[lamp].axis, -1.0)
+                            : vec3_sub(one->position, vec3_make(g->points.px[k], g->points.py[k], g->points.pz[k]));
+        l->spheres.x[k] = to.x, l->spheres.y[k] = to.y, l->spheres.z[k] = to.z;
+        l->spheres.radius[k] = sun ? sqrt(light_sun_sine2(&p->cones[lamp])) : one->radius;
     }
-    t->path->spheres(&t->surface.gathered, &l->spheres);
+    t->path->spheres(g, &l->spheres);
+    for (int k = 0; p->has_sun && k < g->count; k++)
+        if (l->lamp[k] >= 0 && p->lights[l->lamp[k]].kind == LIGHT_SUN)
+            l->spheres.reach[k] = p->sun_distance;
 }
 
 void area_lights_sample(tracer *t, const material *m, bool shines, lamp_samples *l)

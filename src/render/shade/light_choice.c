@@ -20,10 +20,11 @@ static void fill_table(const plan *p, lamp_table *lamps)
         const bool falls = l->reach > 0.0;
         const double strength = l->intensity * (l->color.x + l->color.y + l->color.z);
         lamps->x[k] = l->position.x, lamps->y[k] = l->position.y, lamps->z[k] = l->position.z;
-        lamps->radius[k] = (float)light_extent(l);
+        lamps->radius[k] =
+            (float)(l->kind == LIGHT_SUN ? p->sun_distance * sqrt(light_sun_sine2(&p->cones[k])) : light_extent(l));
         lamps->strength[k] = (float)(falls ? strength * l->reach * l->reach : strength);
         lamps->even[k] = falls ? 0.0f : 1.0f, lamps->falling[k] = 1.0f - lamps->even[k];
-        lamps->cones |= l->kind != LIGHT_POINT && light_extent(l) == 0.0;
+        lamps->cones |= light_has_cone(l) && light_extent(l) == 0.0;
     }
 }
 
@@ -32,7 +33,7 @@ static void apply_cones(const plan *p, vec3 point, float *weight)
 {
     for (int k = 0; k < p->light_count; k++) {
         const light *l = &p->lights[k];
-        if (l->kind != LIGHT_POINT && light_extent(l) == 0.0 && weight[k] > 0.0f)
+        if (light_has_cone(l) && light_extent(l) == 0.0 && weight[k] > 0.0f)
             weight[k] *= (float)light_share(l, &p->cones[k], vec3_normalize(vec3_sub(point, l->position)));
     }
 }

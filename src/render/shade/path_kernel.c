@@ -99,9 +99,7 @@ static void spheres(const group *g, sphere_samples *restrict s)
     /* VECTORISE */
     INDEPENDENT_LANES
     for (int i = 0; i < count; i++) {
-        const vec3 n = vec3_make(at->nx[i], at->ny[i], at->nz[i]),
-                   to_centre =
-                       vec3_sub(vec3_make(s->x[i], s->y[i], s->z[i]), vec3_make(at->px[i], at->py[i], at->pz[i]));
+        const vec3 n = vec3_make(at->nx[i], at->ny[i], at->nz[i]), to_centre = vec3_make(s->x[i], s->y[i], s->z[i]);
         const double radius2 = s->radius[i] * s->radius[i], distance2 = vec3_dot(to_centre, to_centre),
                      distance = sqrt(distance2), share2 = radius2 / distance2;
         const int64_t outside = mask_less(share2, 1.0);

@@ -8,7 +8,7 @@
 
 /* Points of spheres, as seen from the points of a group. */
 typedef struct sphere_samples {
-    double x[ROW], y[ROW], z[ROW], radius[ROW]; /* the sphere */
+    double x[ROW], y[ROW], z[ROW], radius[ROW]; /* the sphere; its centre from the point */
     double u[ROW], v[ROW];                      /* random numbers */
     /* Results: the unit direction, uniform over the cone that the sphere fills; 1 - the cosine of the cone's half
      * angle; the distance to the sphere; the cosine to the normal, 0 from within the sphere. */

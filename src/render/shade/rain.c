@@ -24,14 +24,6 @@ static double node_lambda(int node)
     return OBSERVER_LOW_NM + STEP_NM * (node + 0.5);
 }
 
-static vec3 from_sun(const background *sky)
-{
-    double up, level, side, ahead;
-    elementary_sincos_deg(sky->sun_elevation_deg, &up, &level);
-    elementary_sincos_deg(sky->sun_azimuth_deg, &side, &ahead);
-    return vec3_make(-level * side, -up, -level * ahead);
-}
-
 /* The observer's share of a wavelength in the colour of white light. */
 static void node_color(int node, double rgb[3])
 {
@@ -76,13 +68,13 @@ static void fill(rain *r, const background *sky, drop_angles *a)
     }
 }
 
-rain *rain_create(const background *sky, bool spectral)
+rain *rain_create(const background *sky, vec3 to_sun, bool spectral)
 {
     rain *r = calloc(1, sizeof *r);
     drop_angles *angles = calloc(1, sizeof *angles);
     if (r && angles && (r->at = calloc(spectral ? NODES : 1, sizeof *r->at))) {
         r->spectral = spectral;
-        r->from_sun = from_sun(sky);
+        r->from_sun = vec3_scale(to_sun, -1.0);
         fill(r, sky, angles);
         free(angles);
         return r;

@@ -9,8 +9,9 @@
 
 typedef struct rain rain;
 
-/* spectral: for a film that is traced by wavelength; else for three channels. NULL when out of memory. */
-rain *rain_create(const background *sky, bool spectral);
+/* to_sun: unit vector. spectral: for a film that is traced by wavelength; else for three channels. NULL when out of
+ * memory. */
+rain *rain_create(const background *sky, vec3 to_sun, bool spectral);
 void rain_destroy(rain *r);
 
 /* Linear sRGB, for a film of three channels: the spectrum as the CIE 1931 observer sees it. A component can be

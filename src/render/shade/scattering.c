@@ -14,7 +14,7 @@ static void find_lamps(const scene *s, scatter_plan *of)
     if (s->render.light_sampling == LIGHT_SAMPLING_ONE && s->light_count > 1)
         return;
     for (size_t i = 0; i < s->light_count && of->lamp_count < AIRLIGHTS_MAX; i++)
-        if (light_extent(&s->lights[i]) == 0.0 && s->lights[i].intensity > 0.0)
+        if (light_extent(&s->lights[i]) == 0.0 && s->lights[i].kind != LIGHT_SUN && s->lights[i].intensity > 0.0)
             of->lamps[of->lamp_count++] = (int)i;
 }
 

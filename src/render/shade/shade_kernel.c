@@ -123,7 +123,7 @@ static void fall_off(double reach, int count, lit_group *restrict lit)
 
 /* Phong, "Illumination for Computer Generated Pictures", CACM 18(6), 1975: k_d I_L C (N.L) + k_s I_L (R.V)^n with R =
  * 2(N.L)N - L; both terms only if the light is on the ray's side (N.L > 0). */
-static void direct(const material *m, const light *lamp, const group *g, lit_group *restrict lit)
+ALWAYS_INLINE void direct_from(const material *m, const light *lamp, bool sun, const group *g, lit_group *restrict lit)
 {
     const double ir = lamp->color.x * lamp->intensity, ig = lamp->color.y * lamp->intensity,
                  ib = lamp->color.z * lamp->intensity;
@@ -135,7 +135,7 @@ static void direct(const material *m, const light *lamp, const group *g, lit_gro
     double n_l[ROW], shine[ROW];
     /* VECTORISE */
     for (int i = 0; i < count; i++) {
-        vec3 l = vec3_make(at.x - p->px[i], at.y - p->py[i], at.z - p->pz[i]);
+        vec3 l = sun ? at : vec3_make(at.x - p->px[i], at.y - p->py[i], at.z - p->pz[i]);
         double inverse = 1.0 / vec3_length(l);
         double l_v = -(g->dx[i] * l.x + g->dy[i] * l.y + g->dz[i] * l.z) * inverse;
         n_l[i] = (p->nx[i] * l.x + p->ny[i] * l.y + p->nz[i] * l.z) * inverse;
@@ -159,6 +159,15 @@ static void direct(const material *m, const light *lamp, const group *g, lit_gro
     }
     if (lamp->reach > 0.0)
         fall_off(lamp->reach, count, lit);
+}
+
+/* Two branch-free loops. */
+static void direct(const material *m, const light *lamp, const group *g, lit_group *restrict lit)
+{
+    if (lamp->kind == LIGHT_SUN)
+        direct_from(m, lamp, true, g, lit);
+    else
+        direct_from(m, lamp, false, g, lit);
 }
 
 ALWAYS_INLINE void within_cone(const light_cone *cone, bool soft, const group *g, lit_group *restrict lit)

@@ -232,7 +232,7 @@ static void direct_light(tracer *t, const material *m, int lamp, int priority_in
         mesh_corner_light(t, m, &l, priority_index);
     else
         t->shade->direct(m, &l, &t->surface.gathered, &t->surface.lit);
-    if (l.kind != LIGHT_POINT)
+    if (light_has_cone(&l))
         t->shade->spot(&p->cones[lamp], l.kind != LIGHT_CONE, &t->surface.gathered, &t->surface.lit);
     if (t->surface.on_mesh)
         mesh_bound_light(t);
@@ -257,7 +257,7 @@ static void send_out(tracer *t, int priority_index, light_terms terms)
     if (terms.emission_only || (m->diffuse == 0.0 && m->specular == 0.0))
         return;
     for (int k = 0; k < p->light_count; k++) {
-        if (!terms.as_points && light_extent(&p->lights[k]) > 0.0)
+        if (!terms.as_points && light_has_size(&p->lights[k]))
             continue;
         direct_light(t, m, k, priority_index);
         if (p->render.shadows != SHADOWS_OFF) {

@@ -1,6 +1,7 @@
 /* The sky: radiance of the background, which is uniform, a vertical gradient, or an equirectangular image whose middle
  * column faces +z, whose right half covers x > 0, and whose top row is straight up. A background of rain is a gradient
- * here; the rain's own light is in render/shade/rain.h. Pure; cannot fail. */
+ * here; the rain's own light is in render/shade/rain.h. A CIE sky must be that of a plan (plan.c).
+ * Pure; cannot fail. */
 #pragma once
 
 #include "scene/model/view_settings.h"

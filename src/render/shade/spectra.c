@@ -232,6 +232,7 @@ double spectra_sky(const spectral_row *row, const background *sky, vec3 directio
     case BACKGROUND_RAIN:
     case BACKGROUND_GRADIENT: return (1.0 - up) * row->horizon + up * row->sky;
     case BACKGROUND_IMAGE: return texel_at(row, sky_radiance(sky, direction));
+    case BACKGROUND_CIE: return up > 0.0 ? row->sky * cie_sky_relative(&sky->cie, direction) : row->horizon;
     }
     return row->sky;
 }
@@ -243,6 +244,7 @@ double spectra_sky_mean(const spectral_row *row, const background *sky, vec3 mea
     case BACKGROUND_RAIN:
     case BACKGROUND_GRADIENT: return 0.75 * row->horizon + 0.25 * row->sky;
     case BACKGROUND_IMAGE: return texel_at(row, mean);
+    case BACKGROUND_CIE: return 0.5 * (row->horizon + row->sky * sky->cie.mean);
     }
     return row->sky;
 }

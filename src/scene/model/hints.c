@@ -177,15 +177,22 @@ static void hint_at_lights(const scene *s, const note_taker *taker)
             note_give(taker, lamp->name, "spectrum", "set render.spectrum=spectral, which traces each line",
                       "%s emits spectral lines, and an rgb image shows only their colour", lamp->name);
         const bool soft = scene_has_soft_shadows(&s->render);
-        const char *size = lamp->kind == LIGHT_RECTANGLE ? "width" : "radius";
-        if (soft && light_extent(lamp) > 0.0 && s->render.samples < SOFT_SAMPLES)
+        const char *size = lamp->kind == LIGHT_RECTANGLE ? "width"
+                           : lamp->kind == LIGHT_SUN     ? "angular_diameter_deg"
+                                                         : "radius";
+        if (lamp->kind == LIGHT_SUN && path && clear && !scatters && lamp->intensity > 0.0 &&
+            !scene_has_caustics(&s->render))
+            note_give(taker, lamp->name, size, "set render.caustics=photons",
+                      "random paths through transparent solids rarely hit %s, which is small: caustics are noise",
+                      lamp->name);
+        else if (soft && light_has_size(lamp) && s->render.samples < SOFT_SAMPLES)
             note_give(taker, lamp->name, size, "set render.samples=16",
                       "each pixel takes the light of %lld points of %s: its shadows are grainy",
                       (long long)s->render.samples, lamp->name);
-        else if (light_extent(lamp) > 0.0 && !path && !soft)
+        else if (light_has_size(lamp) && !path && !soft)
             note_give(taker, lamp->name, size, "set render.soft_shadows=on, or render.integrator=path",
-                      "%s acts as a point light", lamp->name);
-        else if (light_extent(lamp) == 0.0 && path && clear && lamp->intensity > 0.0 && !scene_has_caustics(&s->render))
+                      lamp->kind == LIGHT_SUN ? "all light of %s is parallel" : "%s acts as a point light", lamp->name);
+        else if (!light_has_size(lamp) && path && clear && lamp->intensity > 0.0 && !scene_has_caustics(&s->render))
             note_give(taker, lamp->name, "radius",
                       scatters ? "set its radius and its reach"
                                : "set render.caustics=photons, or its radius and its reach",

@@ -39,11 +39,11 @@ static const char *const projection_words[] = {"perspective", "orthographic", NU
 static const char *const analyser_words[] = {"none", "linear", "circular_left", "circular_right", NULL};
 static const char *const sheet_words[] = {"none", "polariser", "circular_left", "circular_right", "retarder", NULL};
 static const char *const tone_words[] = {"none", "reinhard", "aces", NULL};
-static const char *const light_words[] = {"point", "cone", "soft_cone", "disc", "rectangle", NULL};
+static const char *const light_words[] = {"point", "cone", "soft_cone", "disc", "rectangle", "sun", NULL};
 /* as enum lamp_spectrum */
 static const char *const lamp_words[] = {"color", "black_body", "sodium", "mercury", "hydrogen", "line", NULL};
 static const char *const beam_words[] = {"pencil", "fan", "sheet", "bundle", NULL};
-static const char *const background_words[] = {"uniform", "gradient", "picture", "rain", NULL};
+static const char *const background_words[] = {"uniform", "gradient", "picture", "rain", "cie", NULL};
 
 enum { ON_SLIME = 1 << MESH_SLIME, ON_ALL = 0 };
 
@@ -247,11 +247,12 @@ static const param table[] = {
         "tone curve reinhard: the least luminance, after the exposure, that is white", NULL, SHOWN(white)),
 
     CHOICE(PARAM_BACKGROUND, background, kind, background_words, "uniform",
-           "one colour, a vertical gradient, an equirectangular image, or a gradient with sunlit rain in front of it: "
-           "rainbows"),
-    COLOR(PARAM_BACKGROUND, background, color, BRIGHT, "0.53,0.75,0.92", "linear colour; of a gradient: at the zenith"),
+           "one colour, a vertical gradient, an equirectangular image, a gradient with sunlit rain in front of it: "
+           "rainbows; or a CIE standard general sky, whose luminance depends on the sun"),
+    COLOR(PARAM_BACKGROUND, background, color, BRIGHT, "0.53,0.75,0.92",
+          "linear colour; of a gradient or a CIE sky: at the zenith"),
     COLOR(PARAM_BACKGROUND, background, horizon, BRIGHT, "1,1,1",
-          "linear colour of a gradient at the horizon and below"),
+          "linear colour of a gradient at the horizon and below, and of a CIE sky below the horizon"),
     {PARAM_BACKGROUND, "picture", PARAM_PATH, "", 0, 0, false, "",
      "PNG, JPEG, PFM or 24-bit BMP file, relative to the scene file; sets kind to picture", NULL,
      OF(background, image_path)},
@@ -260,9 +261,12 @@ static const param table[] = {
     ROW(PARAM_BACKGROUND, "drops", PARAM_CHOICE, "", 0, 0, false, "water", "liquid of the rain's drops, in air",
         surrounding_words + SURROUNDING_CATALOGUE + DROPS_FIRST, OF(background, drops)),
     REAL(PARAM_BACKGROUND, background, sun_elevation_deg, "deg", -90, 90, "20",
-         "elevation of the sun that shines on the rain; the sun itself is not drawn"),
+         "elevation of the sun that shines on the rain or stands in a CIE sky, unless a light is a sun; it is not "
+         "drawn"),
     REAL(PARAM_BACKGROUND, background, sun_azimuth_deg, "deg", -360, 360, "180",
-         "azimuth of the sun that shines on the rain: 0 along +z, 90 along +x; 180 is behind a camera along +z"),
+         "azimuth of that sun: 0 along +z, 90 along +x; 180 is behind a camera along +z"),
+    INTEGER(PARAM_BACKGROUND, background, sky_type, "", 1, CIE_SKY_TYPES, "12",
+            "type of a CIE standard general sky (ISO 15469), from 1, overcast, to 15; 12: the standard clear sky"),
     COLOR(PARAM_BACKGROUND, background, ambient, BRIGHT, "1,1,1", "ambient light, I_a of the Phong model"),
 
     REAL(PARAM_BACKGROUND, background, ior, "", 0.1, 100, "1",
@@ -341,9 +345,10 @@ static const param table[] = {
 
     CHOICE(PARAM_LIGHT, light, kind, light_words, "point",
            "point light, spotlight with a hard edge, or spotlight whose intensity falls to zero at the edge, "
-           "linear in the cosine of the angle; or a disc or a rectangle that emits by Lambert's law on one side"),
+           "linear in the cosine of the angle; a disc or a rectangle that emits by Lambert's law on one side; or a "
+           "sun, infinitely far away in the direction from target to position"),
     VECTOR(PARAM_LIGHT, light, position, "0,10,0", "position of the light, or of its centre"),
-    VECTOR(PARAM_LIGHT, light, target, "0,0,0", "point at which a spotlight, a disc or a rectangle is aimed"),
+    VECTOR(PARAM_LIGHT, light, target, "0,0,0", "point at which a spotlight, a disc, a rectangle or a sun is aimed"),
     REAL(PARAM_LIGHT, light, half_angle_deg, "deg", 0.001, 180, "30",
          "half-angle a of a spotlight's cone; a soft cone has the falloff (cos t - cos a) / (1 - cos a) at "
          "angle t"),
@@ -363,6 +368,9 @@ static const param table[] = {
          "width of a rectangle, horizontal unless it is aimed straight up or down: then along x; 0: a point"),
     REAL(PARAM_LIGHT, light, height, "scene units", 0, FAR, "1", "height of a rectangle; 0: a point"),
     REAL(PARAM_LIGHT, light, roll_deg, "deg", -360, 360, "0", "rotation of a rectangle about its axis"),
+    REAL(PARAM_LIGHT, light, angular_diameter_deg, "deg", 0, 90, "0.53",
+         "angle under which a sun is seen, sampled by integrator path and with render.soft_shadows; 0.53: that of "
+         "the sun; 0: parallel light"),
     REAL(PARAM_LIGHT, light, reach, "scene units", 0, FAR, "0",
          "distance at which the intensity applies, with inverse-square falloff; 0: no falloff"),
 

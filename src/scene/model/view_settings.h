@@ -3,13 +3,15 @@
 
 #include "base/vec3.h"
 #include "image/image.h"
+#include "optics/cie_sky.h"
 #include <stdint.h>
 
 typedef enum background_kind {
     BACKGROUND_UNIFORM,
     BACKGROUND_GRADIENT,
     BACKGROUND_IMAGE,
-    BACKGROUND_RAIN
+    BACKGROUND_RAIN,
+    BACKGROUND_CIE
 } background_kind;
 typedef enum projection_rule { PROJECTION_PERSPECTIVE, PROJECTION_ORTHOGRAPHIC } projection_rule;
 typedef enum analyser_kind {
@@ -41,10 +43,10 @@ typedef struct camera {
 } camera;
 
 typedef struct background {
-    int64_t kind;                  /* background_kind */
-    vec3 color;                    /* linear RGB in x, y, z; uniform, or the zenith of a gradient */
-    vec3 horizon;                  /* gradient: colour at and below the horizon; rain adds to a gradient */
-    char *image_path;              /* equirectangular sky; "" for none; relative to the scene file */
+    int64_t kind;     /* background_kind */
+    vec3 color;       /* linear RGB in x, y, z; uniform, or the zenith of a gradient or a CIE sky */
+    vec3 horizon;     /* gradient: colour at and below the horizon; rain adds to a gradient; CIE: below it */
+    char *image_path; /* equirectangular sky; "" for none; relative to the scene file */
     long image_line, image_column; /* its location in the scene file; 0 if it was set otherwise */
     image *img;                    /* owned; NULL until loaded by scene_load */
     vec3 ambient;                  /* I_a of Phong's equation, linear RGB */
@@ -52,6 +54,8 @@ typedef struct background {
     int64_t medium;                /* see scene/model/medium.h */
     double rain;                   /* radiance of the rain if its drops scattered evenly in all directions */
     int64_t drops;                 /* the drops' medium, from DROPS_FIRST in scene/model/medium.h */
-    double sun_elevation_deg, sun_azimuth_deg; /* of the sun that shines on the rain; azimuth as the camera's yaw */
+    double sun_elevation_deg, sun_azimuth_deg; /* without a light of kind sun; azimuth as the camera's yaw */
+    int64_t sky_type;                          /* of a CIE sky: see optics/cie_sky.h */
+    cie_sky cie;                               /* of a plan's background */
     vec3 absorb_per_m; /* of the surroundings of all solids, by channel, along rays that end at a surface or a light */
 } background;

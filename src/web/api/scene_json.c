@@ -7,7 +7,7 @@
 #include "scene/model/params_path.h"
 #include "scene/model/scene.h"
 
-static const char *const light_words[] = {"point", "cone", "soft-cone", "disc", "rectangle"};
+static const char *const light_words[] = {"point", "cone", "soft-cone", "disc", "rectangle", "sun"};
 
 static json_t *object_json(const char *name, const char *kind)
 {

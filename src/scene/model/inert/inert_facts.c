@@ -68,7 +68,8 @@ bool is_dark_at_depth_limit(const scene *s)
 {
     const background *b = &s->background;
     const bool gradient = b->kind == BACKGROUND_GRADIENT || (b->kind == BACKGROUND_RAIN && b->rain == 0.0);
-    const bool dark_sky = is_black(b->color) && (b->kind == BACKGROUND_UNIFORM || (gradient && is_black(b->horizon)));
+    const bool dark_sky = is_black(b->color) && (b->kind == BACKGROUND_UNIFORM ||
+                                                 ((gradient || b->kind == BACKGROUND_CIE) && is_black(b->horizon)));
     return s->render.beyond == DEPTH_LIMIT_BLACK || dark_sky;
 }
 
@@ -88,7 +89,7 @@ size_t shining_lights(const scene *s)
 bool only_spheres_shine(const scene *s)
 {
     for (size_t i = 0; i < s->light_count; i++)
-        if (shines(&s->lights[i]) && light_extent(&s->lights[i]) == 0.0)
+        if (shines(&s->lights[i]) && !light_has_size(&s->lights[i]))
             return false;
     return is_path(s);
 }

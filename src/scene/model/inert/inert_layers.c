@@ -14,9 +14,9 @@ static bool is_of_light(const inert_case *c)
                                             "lighting",  "shadows",     "soft_shadows", "min_weight", "paths",
                                             "roulette",  "seed",        "radiance",     "spectrum",   "polarisation",
                                             "lambda_nm", "wavelengths", "unit_m",       "weights",    NULL};
-    static const char *const of_sky[] = {
-        "kind",    "color",        "horizon", "picture", "rain", "drops", "sun_elevation_deg", "sun_azimuth_deg",
-        "ambient", "absorb_per_m", NULL};
+    static const char *const of_sky[] = {"kind",     "color",   "horizon",           "picture",
+                                         "rain",     "drops",   "sun_elevation_deg", "sun_azimuth_deg",
+                                         "sky_type", "ambient", "absorb_per_m",      NULL};
     static const char *const of_surface[] = {"ambient",        "diffuse",       "specular",
                                              "shininess",      "absorb_per_m",  "absorb_spectrum",
                                              "tint_distance",  "extinction",    "extraordinary_ior",

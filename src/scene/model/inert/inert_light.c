@@ -2,6 +2,7 @@
 #include "scene/model/inert/inert_private.h"
 #include "scene/model/medium.h"
 #include "scene/model/scene.h"
+#include "scene/model/sun.h"
 
 #include <string.h>
 
@@ -9,7 +10,7 @@
 static bool lights_nothing(const inert_case *c, const light *l)
 {
     const scene *s = c->s;
-    if (is_path(s) && light_extent(l) > 0.0)
+    if (is_path(s) && light_has_size(l))
         return false;
     scene lit = *s; /* borrows from s; a single light with an intensity */
     light white = *l;
@@ -34,6 +35,30 @@ static bool other_spectrum(const inert_case *c, const light *l)
                          "the light is not a black body");
     return strcmp(name, "line_nm") == 0 && l->spectrum != LAMP_LINE &&
            inert_say(c, "no-line", inert_set("%s.spectrum=line", c->name).text, "the light's spectrum is not one line");
+}
+
+/* A sun's own size, and what a sun does not have. */
+static bool sun_or_not(const inert_case *c, const light *l)
+{
+    static const struct {
+        const char *name, *remedy;
+    } not_of_sun[] = {{"half_angle_deg", "%s.kind=cone"},
+                      {"radius", "render.integrator=path, %s.kind=point and %s.reach=8"},
+                      {"width", "render.integrator=path, %s.kind=rectangle and %s.reach=8"},
+                      {"height", "render.integrator=path, %s.kind=rectangle and %s.reach=8"},
+                      {"roll_deg", "render.integrator=path, %s.kind=rectangle and %s.reach=8"},
+                      {"reach", "%s.kind=point"}};
+    const char *name = c->at.row->name;
+    const bool of_sun = strcmp(name, "angular_diameter_deg") == 0;
+    for (size_t i = 0; l->kind == LIGHT_SUN && i < sizeof not_of_sun / sizeof *not_of_sun; i++)
+        if (strcmp(name, not_of_sun[i].name) == 0)
+            return inert_say(c, "sun-lamp", inert_set(not_of_sun[i].remedy, c->name, c->name).text,
+                             "a sun is infinitely far away");
+    if (of_sun && l->kind != LIGHT_SUN)
+        return inert_say(c, "no-sun", inert_set("%s.kind=sun", c->name).text, "the light is not a sun");
+    return of_sun && !is_path(c->s) && !scene_has_soft_shadows(&c->s->render) &&
+           inert_say(c, "sphere-lamp", "set render.integrator=path",
+                     "only the path integrator and render.soft_shadows use the size of a light");
 }
 
 /* Parameters of other kinds of lights, and of a size that nothing samples. */
@@ -67,19 +92,33 @@ static bool other_shape(const inert_case *c, const light *l)
                      "a rectangle without %s is a point", needs_width ? "width" : "height");
 }
 
+/* The place, or the kind, of the light that the background's sun is, or would be. */
+static bool moves_sky(const inert_case *c, const light *l)
+{
+    const background *b = &c->s->background;
+    const light *shown = scene_sun(c->s);
+    const cie_sky_type type = cie_sky_type_of((int)b->sky_type);
+    const bool shows = b->kind == BACKGROUND_CIE ? type.c > 0.0 : b->kind == BACKGROUND_RAIN && b->rain > 0.0;
+    const char *name = c->at.row->name;
+    const bool place = strcmp(name, "position") == 0 || strcmp(name, "target") == 0;
+    return shows && ((place && l == shown) || (strcmp(name, "kind") == 0 && (!shown || l == shown)));
+}
+
 bool inert_light(const inert_case *c)
 {
     const light *l = &c->s->lights[c->at.index];
     const char *name = c->at.row->name;
     const bool of_color = strcmp(name, "color") == 0 || strcmp(name, "spectrum") == 0,
                of_intensity = strcmp(name, "intensity") == 0;
+    if (moves_sky(c, l))
+        return false;
     if (other_spectrum(c, l))
         return true;
     if (!of_intensity && l->intensity == 0.0)
         return inert_say(c, "dark-lamp", inert_set("%s.intensity=1", c->name).text, "the light's intensity is 0");
     if (!of_color && l->spectrum == LAMP_OF_COLOR && is_black(l->color))
         return inert_say(c, "dark-lamp", inert_set("%s.color=1,1,1", c->name).text, "the light's color is black");
-    if (other_shape(c, l))
+    if (sun_or_not(c, l) || other_shape(c, l))
         return true;
     return lights_nothing(c, l);
 }
@@ -93,15 +132,18 @@ static bool background_color(const inert_case *c)
 static bool horizon(const inert_case *c)
 {
     return c->s->background.kind != BACKGROUND_GRADIENT && c->s->background.kind != BACKGROUND_RAIN &&
+           c->s->background.kind != BACKGROUND_CIE &&
            inert_say(c, "no-gradient", "set background.kind=gradient", "the background is not a gradient");
 }
 
-/* A gradient between equal colours is uniform; an image background needs a file; rain may be black. */
+/* A gradient between equal colours is uniform, and so is one type of CIE sky; an image background needs a file; rain
+ * may be black. */
 static bool kind(const inert_case *c)
 {
     const background *b = &c->s->background;
     const bool flat = b->color.x == b->horizon.x && b->color.y == b->horizon.y && b->color.z == b->horizon.z;
-    return flat && b->rain == 0.0 && b->kind != BACKGROUND_IMAGE && !b->image_path[0] &&
+    return flat && b->rain == 0.0 && b->sky_type == CIE_SKY_UNIFORM && b->kind != BACKGROUND_IMAGE &&
+           !b->image_path[0] &&
            inert_say(c, "flat-gradient", "set background.horizon=0.5,0.4,0.3",
                      "'horizon' equals 'color', so there is no gradient");
 }
@@ -115,12 +157,33 @@ static bool sunlit_rain(const inert_case *c)
            inert_say(c, "no-rain", "set background.rain=0.3", "background.rain is 0: nothing scatters the sun's light");
 }
 
+static bool sky_type(const inert_case *c)
+{
+    return c->s->background.kind != BACKGROUND_CIE &&
+           inert_say(c, "no-cie-sky", "set background.kind=cie", "the background is not a CIE sky");
+}
+
+/* Of rain or of a CIE sky. */
+static bool sun(const inert_case *c)
+{
+    const background *b = &c->s->background;
+    const light *lamp = scene_sun(c->s);
+    const cie_sky_type type = cie_sky_type_of((int)b->sky_type);
+    if (lamp && (b->kind == BACKGROUND_CIE || b->kind == BACKGROUND_RAIN))
+        return inert_say(c, "sun-is-light", inert_set("%s.kind=point", lamp->name).text,
+                         "the background's sun is where the light of kind sun is");
+    if (b->kind != BACKGROUND_CIE)
+        return sunlit_rain(c);
+    return type.c == 0.0 &&
+           inert_say(c, "even-sky", "set background.sky_type=12", "a CIE sky of this type does not depend on the sun");
+}
+
 static bool azimuth(const inert_case *c)
 {
     const double elevation = c->s->background.sun_elevation_deg;
-    return sunlit_rain(c) || ((elevation == 90.0 || elevation == -90.0) &&
-                              inert_say(c, "sun-overhead", "set background.sun_elevation_deg=20",
-                                        "the sun is vertically above or below, where it has no azimuth"));
+    return sun(c) || ((elevation == 90.0 || elevation == -90.0) &&
+                      inert_say(c, "sun-overhead", "set background.sun_elevation_deg=20",
+                                "the sun is vertically above or below, where it has no azimuth"));
 }
 
 static bool has_ambient(const scene *s, const solid *one)
@@ -170,8 +233,9 @@ bool inert_background(const inert_case *c)
         {"horizon", horizon},
         {"rain", sunlit_rain},
         {"drops", sunlit_rain},
-        {"sun_elevation_deg", sunlit_rain},
+        {"sun_elevation_deg", sun},
         {"sun_azimuth_deg", azimuth},
+        {"sky_type", sky_type},
         {"ambient", ambient},
         {"ior", surrounding_index},
         {"medium", surrounding_index},

@@ -213,12 +213,13 @@ static bool soft_shadows(const inert_case *c)
     const light *first = NULL;
     for (size_t i = 0; i < s->light_count; i++) {
         const light *l = &s->lights[i];
-        if (l->intensity > 0.0 && light_extent(l) > 0.0)
+        if (l->intensity > 0.0 && light_has_size(l))
             return false;
         first = !first && l->intensity > 0.0 ? l : first;
     }
     const inert_remedy sized =
-        first->kind == LIGHT_RECTANGLE
+        first->kind == LIGHT_SUN ? inert_set("%s.angular_diameter_deg=0.53", first->name)
+        : first->kind == LIGHT_RECTANGLE
             ? inert_set("%s.reach=8, %s.width=1 and %s.height=1", first->name, first->name, first->name)
             : inert_set("%s.reach=8 and %s.radius=1", first->name, first->name);
     return inert_say(c, "no-size", sized.text, "no light has a size");
@@ -268,8 +269,8 @@ static bool shadows(const inert_case *c)
     const scene *s = c->s;
     if (integrator_traits_of(&s->render)->drawn)
         return inert_say(c, "no-shadows", WHITTED, "the depth-buffer integrator renders no shadows");
-    return nothing_lit(c) ||
-           (only_spheres_shine(s) && inert_say(c, "spheres", WHITTED, "lights with a size are hit by random paths"));
+    return nothing_lit(c) || (only_spheres_shine(s) && s->render.caustics == CAUSTICS_OFF &&
+                              inert_say(c, "spheres", WHITTED, "lights with a size are hit by random paths"));
 }
 
 static bool min_weight(const inert_case *c)
