@@ -275,7 +275,7 @@ static inline double room_around(const law_scene *w, vec3 at)
         const law_solid *s = &w->solid[i];
         const ball around = ball_around(s);
         /* a lens's reference is no distance: it has only the sign of one */
-        const bool exact = !s->mesh && s->shape.kind != SHAPE_LENS &&
+        const bool exact = !s->mesh && s->shape.kind != SHAPE_LENS && s->shape.capillary_length == 0.0 &&
                            !((s->shape.kind == SHAPE_CYLINDER || s->shape.kind == SHAPE_CUP) && s->shape.m != 1.0);
         const double distance = exact ? (double)reference_distance(&s->shape, quad3_from(at))
                                       : vec3_length(vec3_sub(at, around.middle)) - around.radius;
@@ -290,6 +290,16 @@ static inline double room_around(const law_scene *w, vec3 at)
 static inline double sky_of(const law_scene *w)
 {
     return vec3_dot(w->outside_absorb_per_m, w->outside_absorb_per_m) > 0.0 ? 0.0 : w->sky;
+}
+
+/* Suns and sky, which are beyond what the surroundings absorb, are dark where these absorb: a solid of the same medium
+ * absorbs their light. */
+static inline void leave_what_is_absorbed(law_scene *w)
+{
+    w->sky = sky_of(w);
+    for (int i = 0; i < w->light_count; i++)
+        if (w->sky == 0.0 && is_sun(&w->light[i]))
+            w->light[i].kind = NULL;
 }
 
 static inline law_solid of_the_surroundings(const law_scene *w, uint64_t *seed)
@@ -360,7 +370,7 @@ static inline void fill(law_pair *p, uint64_t *seed)
     filler.specular = lower->specular;
     filler.transparency = lower->opaque ? 1.0 : lower->transparency;
     insert_solid(w, random_below(seed, w->solid_count + 1), upper);
-    w->sky = sky_of(w);
+    leave_what_is_absorbed(w);
     p->b = *w;
     insert_solid(&p->b, p->b.solid_count, filler);
 }
@@ -440,7 +450,10 @@ static inline bool law_pair_make(law which, uint64_t seed, int number, law_pair 
             p->a.solid[i].checker = 0.0;
         return move_scene(&p->b, &seed, &p->moved);
     case LAW_CUT: cut(p, &seed); break;
-    case LAW_SAME: p->b.sky = p->a.sky = sky_of(&p->a); return add_same(&p->b, &seed);
+    case LAW_SAME:
+        leave_what_is_absorbed(&p->a);
+        p->b = p->a;
+        return add_same(&p->b, &seed);
     case LAW_FILL: fill(p, &seed); break;
     case LAW_REVERSAL:
     case LAW_COUNT: break;

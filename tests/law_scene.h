@@ -285,16 +285,22 @@ static inline law_solid random_solid(const law_scene *w, int number, uint64_t *s
     return s;
 }
 
-/* Lights with a size, which need a reach. */
+static inline bool is_sun(const law_light *l)
+{
+    return l->kind && strcmp(l->kind, "sun") == 0;
+}
+
+/* Suns, and lights with a size, which need a reach. */
 static inline void random_lights(law_scene *w, uint64_t seed)
 {
     static const char *const kinds[] = {NULL, "point", "disc", "rectangle"};
     uint64_t own = seed ^ 0x6c616d70u; /* "lamp" */
     for (int i = 0; i < w->light_count; i++) {
         law_light *l = &w->light[i];
-        if (l->reach == 0.0)
-            continue;
-        l->kind = kinds[random_below(&own, 4)];
+        if (l->reach > 0.0)
+            l->kind = kinds[random_below(&own, 4)];
+        else
+            l->kind = random_below(&own, 2) ? "sun" : NULL;
         l->size = random_real(&own, 0.1, 0.8);
         l->target = vec3_add(l->position, random_direction(&own));
     }
@@ -405,7 +411,10 @@ static inline scene_text law_text(const law_scene *w)
     for (int i = 0; i < w->light_count; i++) {
         add(&t, "%s  lamp%d: {", i ? "" : "lights:\n", i);
         add_vector(&t, "position", w->light[i].position);
-        if (w->light[i].kind) {
+        if (is_sun(&w->light[i])) {
+            add(&t, "kind: sun, angular_diameter_deg: %.17g, ", 20.0 * w->light[i].size);
+            add_vector(&t, "target", w->light[i].target);
+        } else if (w->light[i].kind) {
             add(&t, "kind: %s, radius: %.17g, width: %.17g, height: %.17g, ", w->light[i].kind, w->light[i].size,
                 w->light[i].size, 0.7 * w->light[i].size);
             add_vector(&t, "target", w->light[i].target);

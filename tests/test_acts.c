@@ -16,7 +16,7 @@
 #include <pthread.h>
 #include <stdatomic.h>
 
-enum { RULES_MAX = 500, JOBS_MAX = 160, TEXT_MAX = 1 << 14 };
+enum { RULES_MAX = 500, JOBS_MAX = 240, TEXT_MAX = 1 << 14 };
 
 /* How often each condition was reported for a parameter of this name, and how often its remedy proved it. */
 typedef struct rule_count {

@@ -7,10 +7,16 @@
 /* Lights are summed in blocks, whose order does not depend on the width of the processor's vectors. */
 enum { BLOCK = LAMP_BLOCK, BLOCKS_MAX = LAMPS_MAX / BLOCK };
 
+static double strength_of(const light *l)
+{
+    return l->intensity * (l->color.x + l->color.y + l->color.z);
+}
+
 static void fill_table(const plan *p, lamp_table *lamps)
 {
     lamps->blocks = (p->light_count + BLOCK - 1) / BLOCK;
     lamps->cones = false;
+    lamps->suns = p->has_sun;
     for (int k = p->light_count; k < lamps->blocks * BLOCK; k++) {
         lamps->x[k] = lamps->y[k] = lamps->z[k] = 0.0;
         lamps->radius[k] = lamps->strength[k] = lamps->even[k] = lamps->falling[k] = 0.0f;
@@ -18,10 +24,9 @@ static void fill_table(const plan *p, lamp_table *lamps)
     for (int k = 0; k < p->light_count; k++) {
         const light *l = &p->lights[k];
         const bool falls = l->reach > 0.0;
-        const double strength = l->intensity * (l->color.x + l->color.y + l->color.z);
+        const double strength = l->kind == LIGHT_SUN ? 0.0 : strength_of(l);
         lamps->x[k] = l->position.x, lamps->y[k] = l->position.y, lamps->z[k] = l->position.z;
-        lamps->radius[k] =
-            (float)(l->kind == LIGHT_SUN ? p->sun_distance * sqrt(light_sun_sine2(&p->cones[k])) : light_extent(l));
+        lamps->radius[k] = (float)light_extent(l);
         lamps->strength[k] = (float)(falls ? strength * l->reach * l->reach : strength);
         lamps->even[k] = falls ? 0.0f : 1.0f, lamps->falling[k] = 1.0f - lamps->even[k];
         lamps->cones |= light_has_cone(l) && light_extent(l) == 0.0;
@@ -35,6 +40,19 @@ static void apply_cones(const plan *p, vec3 point, float *weight)
         const light *l = &p->lights[k];
         if (light_has_cone(l) && light_extent(l) == 0.0 && weight[k] > 0.0f)
             weight[k] *= (float)light_share(l, &p->cones[k], vec3_normalize(vec3_sub(point, l->position)));
+    }
+}
+
+/* As light_weights of a sphere of radius sin a at distance 1: a sun's weight is the same at all points, however far the
+ * place where its shadow rays end. */
+static void apply_suns(const plan *p, const light_estimate *by, vec3 n, float least, float *weight)
+{
+    for (int k = 0; k < p->light_count; k++) {
+        if (p->lights[k].kind != LIGHT_SUN)
+            continue;
+        const float above = (float)-vec3_dot(n, p->cones[k].axis), r = (float)sqrt(light_sun_sine2(&p->cones[k]));
+        const float height = above < r ? 0.5f * (above + r) : above;
+        weight[k] = height > least ? (float)strength_of(&p->lights[k]) * (by->k_d * height + by->k_s) : 0.0f;
     }
 }
 
@@ -92,7 +110,10 @@ static float weigh(const tracer *t, const light_estimate *by, const lamp_table *
     const surface_batch *at = &t->surface.gathered.points;
     const vec3 point = vec3_make(at->px[i], at->py[i], at->pz[i]);
     const vec3 n = vec3_scale(vec3_make(at->nx[i], at->ny[i], at->nz[i]), by->side);
-    t->path->light_weights(lamps, point, n, by->k_d, by->k_s, by->side == 0.0 ? -1.0f : 0.0f, each);
+    const float least = by->side == 0.0 ? -1.0f : 0.0f;
+    t->path->light_weights(lamps, point, n, by->k_d, by->k_s, least, each);
+    if (lamps->suns)
+        apply_suns(t->target.frame_plan, by, n, least, each);
     if (lamps->cones)
         apply_cones(t->target.frame_plan, point, each);
     return add_up(each, lamps->blocks, sum);
