@@ -1,6 +1,7 @@
 /* Tests of the CSV reader and writer: quoting, incomplete lines and damaged files. */
 #include "study_fixture.h"
 #include "base/csv.h"
+#include "study/csv_layout.h"
 
 static void csv_fields_round_trip(void **state)
 {
@@ -115,6 +116,23 @@ static void a_missing_file_gives_no_table(void **state)
     assert_null(table);
 }
 
+/* Fields move to the columns of their names; a line of another number of fields is refused, and nothing follows. */
+static void rows_move_to_another_header(void **state)
+{
+    (void)state;
+    csv_layout *l = NULL;
+    csv_line out = {0};
+    diagnostic why = {0};
+    assert_int_equal(csv_layout_create("a,b,c\n", "c,d,a\n", &l, &why), STATUS_OK);
+    static const char lines[] = "1,2,3\n4,5,\"x,y\"\n";
+    assert_int_equal(csv_layout_place(l, lines, strlen(lines), &out, &why), STATUS_OK);
+    assert_string_equal(out.text, "3,NA,1\n\"x,y\",NA,4\n");
+    assert_int_not_equal(csv_layout_place(l, "1,2\n", 4, &out, &why), STATUS_OK);
+    assert_int_not_equal(csv_layout_place(l, "1,2,3,4\n", 8, &out, &why), STATUS_OK);
+    csv_line_free(&out);
+    csv_layout_destroy(l);
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
@@ -124,6 +142,7 @@ int main(void)
         cmocka_unit_test_setup_teardown(damaged_rows_are_located, fixture_setup, fixture_teardown),
         cmocka_unit_test_setup_teardown(zero_bytes_are_reported_as_damage, fixture_setup, fixture_teardown),
         cmocka_unit_test(a_missing_file_gives_no_table),
+        cmocka_unit_test(rows_move_to_another_header),
     };
     return cmocka_run_group_tests_name("csv", tests, NULL, NULL);
 }

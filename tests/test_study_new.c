@@ -89,6 +89,7 @@ static void errors_are_located_at_their_option(void **state)
         {{"render.depth=0,0", "liquid.ior=1,2"}, NULL, "--axis render.depth=0,0"},
         {{"render.depth=0,1", "liquid.ior=1,2"}, "a b", "--name a b"},
         {{"render.depth=0,1", "liquid.ior"}, NULL, "--axis liquid.ior"},
+        {{"render.depth=0,1", "liquid.ior=1..2:0"}, NULL, "--axis liquid.ior=1..2:0"},
     };
     for (size_t i = 0; i < sizeof cases / sizeof *cases; i++) {
         new_study_order order = order_of(cases[i].axes, 2);
@@ -105,12 +106,28 @@ static void errors_are_located_at_their_option(void **state)
     }
 }
 
+static void an_error_in_a_setting_is_located_at_its_option(void **state)
+{
+    (void)state;
+    static const char *const axes[] = {"render.depth=0,1"}, *const wrong[] = {"render.samples=1", "render.samples=x"};
+    new_study_order order = order_of(axes, 1);
+    order.sets = wrong, order.set_count = 2;
+    scene *s = rod();
+    char *text = NULL;
+    study *read = NULL;
+    diagnostic why = {.line = 0};
+    assert_int_equal(new_study_compose(&order, s, &text, &read, &why), STATUS_BAD_INPUT);
+    assert_string_equal(why.file, "--set render.samples=x");
+    scene_destroy(s);
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(the_text_reads_as_what_was_given),
         cmocka_unit_test(values_may_have_any_character),
         cmocka_unit_test(errors_are_located_at_their_option),
+        cmocka_unit_test(an_error_in_a_setting_is_located_at_its_option),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -186,6 +186,12 @@ static void parameters_set_together_count_once(void **state)
                "render.depth: 1, render.schedule: tiles}, {render.seed: 5, render.depth: 2, render.schedule: tiles}, "
                "{render.seed: 6, render.depth: 3, render.schedule: tiles}]}]",
                PLOT_LINES, "render.depth", "render.schedule", 1);
+    /* The one of more values determines the other, a number or not */
+    check_kind(
+        f,
+        "[{name: a, points: [{render.depth: 1, render.schedule: rows}, {render.depth: 1, render.schedule: tiles}, "
+        "{render.depth: 2, render.schedule: dynamic}]}]",
+        PLOT_DOTS, "render.schedule", "", 1);
     /* Not determined by each other: both count */
     check_kind(
         f,
@@ -390,6 +396,12 @@ static void scales_follow_the_values(void **state)
     assert_false(p.x.log);
     plot_plan_free(&p);
     study_destroy(s);
+    s = study_of(f, "[{render.lambda_nm: [500, 550, 600]}]"); /* a name with its unit needs no other */
+    p = full_plan(s, &plain, 0);
+    draw(f, &p);
+    assert_string_equal(p.x_label, "render.lambda_nm");
+    plot_plan_free(&p);
+    study_destroy(s);
     s = study_of(f, "[{render.depth: [30, 31, 32, 33, 34]}]"); /* whole numbers near each other have a tic each */
     p = full_plan(s, &plain, 0);
     draw(f, &p);
@@ -437,6 +449,11 @@ static void published_numbers_have_the_unit_of_the_axis(void **state)
     fixture_write(f, "published.csv", "threads,cpu_s\n0,0.1\n");
     p = full_plan(s, &r, 0);
     refuse(f, &p, "no column for 'render.depth'", "threads, cpu_s");
+    fixture_write(f, "published.csv", "cpu_s,depth\n0.3,1\n"); /* in any order of columns */
+    p = full_plan(s, &r, 0);
+    draw(f, &p);
+    assert_true(p.published.count == 1 && fabs(p.published.y[0] - 300) < 1e-9 && p.published.x[0] == 1);
+    plot_plan_free(&p);
     fixture_write(f, "published.csv", "depth,cpu_s\nx,NA\n");
     p = full_plan(s, &r, 0);
     refuse(f, &p, "no row has numbers", "CSV");
@@ -473,6 +490,10 @@ static void scripts_are_those_of_figures_that_were_looked_at(void **state)
     char published[400];
     fixture_path(f, "published.csv", published);
     fixture_write(f, "published.csv", "depth,cpu_s,source\n0,0.13,a book\n1,0.17,a book\n2,0.2,a paper\n");
+    char words[400];
+    fixture_path(f, "words.csv", words);
+    fixture_write(f, "words.csv",
+                  "integrator,cpu_s,source\npath,0.13,a book\nzbuffer,0.1,a book\nwhitted,0.12,a book\n");
     const char *const thread_lines[] = {"render.depth=0", "render.depth=2"};
     const struct {
         const char *name, *grid;
@@ -495,6 +516,18 @@ static void scripts_are_those_of_figures_that_were_looked_at(void **state)
         {"heat-panels",
          "[{ball.ior: [1.0, 1.33, 1.5]}, {render.depth: [0, 2, 4]}, {render.integrator: [whitted, raycast]}]", plain,
          0},
+        {"dots-published",
+         "[{render.integrator: [whitted, raycast, path]}]",
+         {.results = "unused", .published = words},
+         0},
+        {"lines-many",
+         "[{render.depth: [0, 1, 2, 4]}, {render.seed: [1, 2, 3, 4, 5, 6, 7, 8]}]",
+         {.results = "unused", .by = "render.seed"},
+         0},
+        {"heat-narrow",
+         "[{ball.ior: {from: 1, to: 2, steps: 41}}, {render.depth: [0, 2, 4]}, {render.integrator: [whitted, "
+         "raycast]}]",
+         plain, 0},
         {"dots", "[{render.integrator: [whitted, raycast, zbuffer, path]}]", plain, 0},
         {"panels", "[{render.depth: [0, 1, 2]}, {render.schedule: [rows, dynamic]}, {render.accel: [none, bvh]}]",
          plain, 0},
@@ -555,6 +588,7 @@ static void a_sheet_needs_images(void **state)
              (int)s->base->render.height);
     assert_non_null(strstr(script, caption));
     free(script);
+    compare_golden(f, "gp", "sheet");
     study_destroy(s);
 }
 

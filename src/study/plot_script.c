@@ -244,9 +244,15 @@ static const char *drawing(const plot_plan *p)
     return spread ? "2:3:4:5 with yerrorlines" : "2:3 with linespoints";
 }
 
+/* Words have no order that a line could follow. */
+static const char *style_of(const plot_plan *p)
+{
+    return p->kind == PLOT_DOTS ? "points" : "linespoints";
+}
+
 static void put_key(FILE *out, const plot_plan *p)
 {
-    const char *style = p->kind == PLOT_DOTS ? "points" : "linespoints";
+    const char *style = style_of(p);
     for (size_t i = 0; p->by && i < p->by->count; i++) {
         fprintf(out, "    NaN with %s ", style);
         put_type(out, p, i);
@@ -260,7 +266,7 @@ static void put_key(FILE *out, const plot_plan *p)
         const char *own = p->published.names[i];
         char name[60];
         snprintf(name, sizeof name, "published%s%.24s%s", own[0] ? ": " : "", own, strlen(own) > 24 ? "…" : "");
-        fprintf(out, "    NaN with linespoints lt 7 pt %zu title ", 6 + 2 * i);
+        fprintf(out, "    NaN with %s lt 7 pt %zu title ", style, 6 + 2 * i);
         plot_script_text(out, name);
         fputs(", \\\n", out);
     }
@@ -325,8 +331,8 @@ static void put_panel(FILE *out, const plot_plan *p, size_t number, size_t *inde
             put_key(out, p);
         put_blocks(out, p, number, index);
         for (size_t i = 0; i < p->published.series_count; i++)
-            fprintf(out, ", \\\n    rows index %zu using 2:3 with linespoints lt 7 pt %zu notitle", block_count(p) + i,
-                    6 + 2 * i);
+            fprintf(out, ", \\\n    rows index %zu using 2:3 with %s lt 7 pt %zu notitle", block_count(p) + i,
+                    style_of(p), 6 + 2 * i);
         fputc('\n', out);
     }
     if (first)
