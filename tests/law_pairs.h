@@ -204,7 +204,7 @@ static inline bool move_scene(law_scene *w, uint64_t *seed, motion *m)
         law_solid *s = &w->solid[i];
         s->checker = 0.0; /* its cells are not mirrored, and have edges */
         if (m->mirrored)
-            s->shape.spacing.x = -s->shape.spacing.x;
+            s->shape.spacing.x = -s->shape.spacing.x, s->optic_axis.x = -s->optic_axis.x;
         known &=
             move_solid(m, &s->shape) &&
             !(m->mirrored && (is_mesh_named(s, "ring") || is_mesh_named(s, "hills"))); /* quads have one diagonal */
@@ -435,7 +435,8 @@ static inline bool law_pair_make(law which, uint64_t seed, int number, law_pair 
     while (without_blocks && has_block(&p->a));
     for (int i = 0; i < p->a.solid_count && which == LAW_REVERSAL; i++) {
         p->a.solid[i].transparency = 1.0;
-        p->a.solid[i].film_nm = 0.0; /* see test_multilayer: their rounding is larger than this law's bound */
+        p->a.solid[i].extraordinary_ior = 0.0; /* test_crystal reverses one */
+        p->a.solid[i].film_nm = 0.0;           /* see test_multilayer: their rounding is larger than this law's bound */
     }
     p->a.flat =
         which == LAW_REVERSAL; /* interpolated normals do not belong to a surface: such a path cannot be reversed */

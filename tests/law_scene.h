@@ -24,6 +24,8 @@ typedef struct law_solid {
     bool gold;                 /* an opaque solid is a metal */
     double film_nm, roughness; /* 0: none */
     double scatter_per_m, asymmetry;
+    double extraordinary_ior; /* of a crystal, else 0 */
+    vec3 optic_axis;          /* in the solid's frame */
 } law_solid;
 
 typedef struct law_light {
@@ -248,6 +250,16 @@ static inline void random_layers(law_solid *s, const law_scene *w, uint64_t seed
         s->scatter_per_m = random_real(&own, 0.1, 3.0), s->asymmetry = random_real(&own, -0.9, 0.9);
 }
 
+/* Some clear solids are uniaxial crystals, by a separate stream too. */
+static inline void random_crystal(law_solid *s, uint64_t seed)
+{
+    uint64_t own = seed ^ 0x737061u; /* "spa" */
+    if (s->opaque || s->reflectivity > 0.0 || s->film_nm > 0.0 || random_below(&own, 6) != 0)
+        return;
+    s->extraordinary_ior = s->ior * random_real(&own, 0.85, 1.15);
+    s->optic_axis = random_direction(&own);
+}
+
 /* A meniscus on some round cylinders, by a separate stream too. A solid around another one has none: the walls between
  * two menisci are not uniform. */
 static inline void random_meniscus(law_solid *s, uint64_t seed)
@@ -282,6 +294,7 @@ static inline law_solid random_solid(const law_scene *w, int number, uint64_t *s
     random_surface(&s, w, seed);
     random_layers(&s, w, *seed);
     random_meniscus(&s, *seed);
+    random_crystal(&s, *seed);
     return s;
 }
 
@@ -332,6 +345,9 @@ static inline law_scene random_law_scene(uint64_t *seed, const char *settings)
     const vec3 near = random_point(seed, 0.2);
     w.eye = random_below(seed, 4) ? random_point(seed, 3.0) : vec3_add(within->shape.position, near);
     w.target = random_point(seed, 0.5);
+    for (int i = 0; i < count; i++) /* a camera in a crystal is refused */
+        if (w.solid[i].mesh || solid_shape_contains(&w.solid[i].shape, w.eye))
+            w.solid[i].extraordinary_ior = 0.0;
     return w;
 }
 
@@ -360,6 +376,10 @@ static inline void write_material(scene_text *t, const law_solid *s)
         add(t, "roughness: %.17g, ", s->roughness);
     if (s->scatter_per_m > 0.0)
         add(t, "scatter_per_m: %.17g, asymmetry: %.17g, ", s->scatter_per_m, s->asymmetry);
+    if (s->extraordinary_ior > 0.0) {
+        add(t, "extraordinary_ior: %.17g, ", s->extraordinary_ior);
+        add_vector(t, "optic_axis", s->optic_axis);
+    }
     add(t, "reflectivity: %.17g, specular: %.17g, shininess: 20}\n", s->reflectivity, s->specular);
 }
 

@@ -166,6 +166,39 @@ static void images_are_polarised_across_each_other(void **state)
     }
 }
 
+static uint64_t hash_of(renderer *r, scene *s, const char *settings)
+{
+    render_result *result = NULL;
+    diagnostic why = {0};
+    set_all(s, settings);
+    worked(renderer_render(r, s, NULL, &result, &why), &why);
+    const uint64_t hash = film_hash(result->img);
+    render_result_destroy(result);
+    return hash;
+}
+
+/* A ray has up to four children in a crystal, so that the queues of all depths are larger than in other scenes: those
+ * of a renderer that traced a deeper scene without crystals in between as well. */
+static void one_renderer_traces_crystals_after_a_deeper_scene(void **state)
+{
+    (void)state;
+    static const char small[] = "render.width=64 render.height=48 render.samples=1 render.threads=1";
+    scene *s = NULL, *other = rod_scene(small);
+    renderer *kept = NULL, *fresh = NULL;
+    worked(scene_read("experiments/scenes/calcite.yaml", &s, NULL), NULL);
+    set_all(s, small);
+    worked(renderer_create(isa_best(), NULL, &kept, NULL), NULL);
+    worked(renderer_create(isa_best(), NULL, &fresh, NULL), NULL);
+    hash_of(kept, s, "render.depth=2");
+    hash_of(kept, other, "render.depth=9");
+    const uint64_t after = hash_of(kept, s, "render.depth=9");
+    assert_true(after == hash_of(fresh, s, "render.depth=9"));
+    renderer_destroy(kept);
+    renderer_destroy(fresh);
+    scene_destroy(s);
+    scene_destroy(other);
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
@@ -175,6 +208,7 @@ int main(void)
         cmocka_unit_test(a_white_furnace_stays_white),
         cmocka_unit_test(thick_plates_between_crossed_polarisers),
         cmocka_unit_test(images_are_polarised_across_each_other),
+        cmocka_unit_test(one_renderer_traces_crystals_after_a_deeper_scene),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

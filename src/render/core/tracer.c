@@ -58,9 +58,10 @@ uint64_t tracer_bytes(int depth)
     return sizeof(tracer) + (uint64_t)(depth + 1) * queue_bytes(WAITING);
 }
 
+/* Smaller queues, of frames without crystals, follow larger ones. */
 static bool make_queues(tracer *t, int depths, int waiting)
 {
-    while (t->queues.made > 0 && t->queues.waiting[0].capacity < waiting)
+    while (t->queues.made > 0 && t->queues.waiting[t->queues.made - 1].capacity < waiting)
         queue_destroy(&t->queues.waiting[--t->queues.made]);
     if (depths <= t->queues.made)
         return true;
