@@ -30,7 +30,7 @@ static const acts_small acts_smaller[] = {
     {"focus", "render.samples=4"},
     {"caustic", "render.samples=1 render.photons=2000"},
     {"films", "render.samples=1 render.depth=3"},
-    {"window", "render.samples=4 render.photons=1000 render.width=360 render.height=120"},
+    {"window", "render.samples=4 render.photons=300 render.width=360 render.height=120"},
     {"spectroscope", "render.wavelengths=4 render.samples=1 render.photons=4000"},
     {"calcite", "render.samples=1 render.depth=4"},
     {"meniscus", "render.depth=3"},
