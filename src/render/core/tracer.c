@@ -53,9 +53,14 @@ void tracer_destroy(tracer *t)
 /* A queue must hold less than one waiting batch plus two children for every ray of a batch; four where crystals are. */
 enum { WAITING = 3 * BATCH + LANES_MAX, WAITING_CRYSTALS = (CRYSTAL_RAYS_MAX + 1) * BATCH + LANES_MAX };
 
-uint64_t tracer_bytes(int depth)
+static int waiting_of(bool crystals)
 {
-    return sizeof(tracer) + (uint64_t)(depth + 1) * queue_bytes(WAITING);
+    return crystals ? WAITING_CRYSTALS : WAITING;
+}
+
+uint64_t tracer_bytes(int depth, bool crystals)
+{
+    return sizeof(tracer) + (uint64_t)(depth + 1) * queue_bytes(waiting_of(crystals));
 }
 
 /* Smaller queues, of frames without crystals, follow larger ones. */
@@ -119,9 +124,9 @@ bool tracer_begin(tracer *t, const tracer_target *target)
         if (!queue_create(&t->queues.shadows, shadows_at_once))
             return false;
     }
-    if (!make_queues(t, t->queues.depth_limit + 1, p->crystals ? WAITING_CRYSTALS : WAITING) ||
-        !make_marks(t, p->geometry) || !mesh_begin(t) || !radiance_begin(t) || !layered_begin(t) ||
-        !crystals_begin(t) || !take_integrator(t) || !absorption_begin(t, p->geometry->attenuates && t->rule->traced))
+    if (!make_queues(t, t->queues.depth_limit + 1, waiting_of(p->crystals != NULL)) || !make_marks(t, p->geometry) ||
+        !mesh_begin(t) || !radiance_begin(t) || !layered_begin(t) || !crystals_begin(t) || !take_integrator(t) ||
+        !absorption_begin(t, p->geometry->attenuates && t->rule->traced))
         return false;
     t->by_sample_key = t->rule->by_sample || r->spectrum == SPECTRUM_SPECTRAL || p->basic || scene_has_soft_shadows(r);
     drop_all(t);

@@ -24,8 +24,8 @@ typedef struct tracer_target {
     const struct integrator *rule;
 } tracer_target;
 
-/* Memory of a tracer at that depth, bytes. */
-uint64_t tracer_bytes(int depth);
+/* Memory of a tracer at that depth, bytes; larger where crystals are. */
+uint64_t tracer_bytes(int depth, bool crystals);
 tracer *tracer_create(isa level);
 void tracer_destroy(tracer *t);
 
