@@ -50,8 +50,9 @@ void tracer_destroy(tracer *t)
     free(t);
 }
 
-/* A queue must hold less than one waiting batch plus two children for every ray of a batch; four where crystals are. */
-enum { WAITING = 3 * BATCH + LANES_MAX, WAITING_CRYSTALS = (CRYSTAL_RAYS_MAX + 1) * BATCH + LANES_MAX };
+/* A queue must hold less than one waiting batch plus two children for every ray of a batch; where crystals are, four,
+ * and a batch more: the two branches that they replace are appended with weight 0 and removed. */
+enum { WAITING = 3 * BATCH + LANES_MAX, WAITING_CRYSTALS = (CRYSTAL_RAYS_MAX + 2) * BATCH + LANES_MAX };
 
 static int waiting_of(bool crystals)
 {
