@@ -74,6 +74,18 @@ static inline render_result *render(const scene *s)
     return render_at(s, isa_best(), NULL);
 }
 
+/* The mean over the image, first channel. */
+static inline double mean_radiance(const scene *s)
+{
+    render_result *r = render(s);
+    double sum = 0.0;
+    const int pixels = r->img->width * r->img->height;
+    for (int i = 0; i < pixels; i++)
+        sum += film_value(r->img, i % r->img->width, i / r->img->width, 0) / pixels;
+    render_result_destroy(r);
+    return sum;
+}
+
 /* The radiance of an image of one pixel, whose ray is exactly the camera's axis. */
 static inline vec3 look(const scene *s)
 {

@@ -49,14 +49,9 @@ static double mean_of(const char *integrator, const char *lamp, const char *soli
     snprintf(text, sizeof text, PATCH, integrator, lamp, solids);
     scene *s = scene_from(text);
     set_all(s, assignments);
-    render_result *r = render(s);
-    double sum = 0.0;
-    const int pixels = r->img->width * r->img->height;
-    for (int i = 0; i < pixels; i++)
-        sum += film_value(r->img, i % r->img->width, i / r->img->width, 0) / pixels;
-    render_result_destroy(r);
+    const double mean = mean_radiance(s);
     scene_destroy(s);
-    return sum;
+    return mean;
 }
 
 static const char *const integrators[] = {"path", "whitted", "raycast"};

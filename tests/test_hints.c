@@ -207,14 +207,15 @@ static void crystals_that_split_no_light_give_a_hint(void **state)
     (void)state;
 #define STONE "stone: {shape: sphere, transparency: 1, ior: 1.6, extraordinary_ior: 1.5}"
     expect_hints(LIT "solids: {" STONE "}", "");
-    expect_hints(LIT "render: {weights: constant}\nsolids: {" STONE "}",
-                 "stone.extraordinary_ior: the crystal stone has one image: light takes its ordinary index alone; set "
-                 "render.lighting to whitted, render.weights to fresnel, and render.transmission to refract\n");
+    expect_hints(
+        LIT "render: {weights: constant}\nsolids: {" STONE "}",
+        "stone.extraordinary_ior: the crystal stone gives one image: light is refracted by its ordinary index "
+        "alone; set render.lighting to whitted, render.weights to fresnel, and render.transmission to refract\n");
     expect_hints(LIT "render: {integrator: raycast}\nsolids: {" STONE "}",
-                 "stone.extraordinary_ior: the crystal stone has one image: light takes its ordinary index alone; set "
-                 "render.integrator to whitted\n");
+                 "stone.extraordinary_ior: the crystal stone gives one image: light is refracted by its ordinary index "
+                 "alone; set render.integrator to whitted\n");
     expect_hints(LIT "render: {caustics: photons}\nsolids: {" STONE "}",
-                 "stone.extraordinary_ior: photons take the ordinary index of the crystal stone alone; set "
+                 "stone.extraordinary_ior: photons are refracted by the ordinary index of the crystal stone alone; set "
                  "render.caustics to off\n");
 #undef STONE
 }

@@ -390,9 +390,13 @@ static void a_coin_appears_where_snells_law_puts_it(void **state)
     }
     static const struct {
         const char *change, *what;
-    } wrong[] = {{"camera.position.y=1", "over the rim"}, {"camera.position=0.1,9,0.1", "over the rim"},
-                 {"coin.rotation.x=5", "upright"},        {"liquid.m=1.1", "upright"},
-                 {"cup.transparency=1", "opaque"},        {"coin.position.x=0.5", "in the plane"}};
+    } wrong[] = {{"camera.position.y=1", "over the rim"},
+                 {"camera.position=0.1,9,0.1", "over the rim"},
+                 {"coin.rotation.x=5", "upright"},
+                 {"liquid.m=1.1", "upright"},
+                 {"liquid.capillary_length=0.1", "meniscus"},
+                 {"cup.transparency=1", "opaque"},
+                 {"coin.position.x=0.5", "in the plane"}};
     for (size_t i = 0; i < COUNT(wrong); i++) {
         scene *other = scene_clone(s);
         set(other, wrong[i].change);

@@ -52,6 +52,9 @@ static status coin_read(const scene *s, coin_view *out, diagnostic *why)
         liquid->shape.kind != SHAPE_CYLINDER)
         return diagnose(why, STATUS_BAD_INPUT, "set their rotation to 0 and m to 1; the liquid is a cylinder",
                         "'cup', 'coin' and 'liquid' are not upright and round");
+    if (liquid->shape.capillary_length > 0.0)
+        return diagnose(why, STATUS_BAD_INPUT, "set its capillary_length to 0",
+                        "'liquid' has a meniscus, and the curve needs a level one");
     if (cup->surface.transparency != 0.0 || coin->surface.transparency != 0.0)
         return diagnose(why, STATUS_BAD_INPUT, "set the transparency of both to 0", "'cup' or 'coin' is not opaque");
     if (away <= inner || s->camera.position.y <= rim)

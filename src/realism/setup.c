@@ -124,7 +124,9 @@ status setup_read_glass(const scene *s, setup *out, diagnostic *why)
 {
     TRY(read_vessel(s, out, why));
     TRY(read_media(s, out, why));
-    return out->liquid >= 0 ? STATUS_OK : wrong(s, why, example, "there is no visible cylinder named 'liquid'");
+    return out->liquid >= 0 ? STATUS_OK
+                            : wrong(s, why, "use the names and shapes of experiments/scenes/arrow.yaml",
+                                    "there is no visible cylinder named 'liquid'");
 }
 
 theory_shells setup_shells(const setup *at)

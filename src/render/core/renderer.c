@@ -340,17 +340,9 @@ uint64_t renderer_result_bytes(const scene *s, const render_options *options)
            (named + 3 * sizeof(int64_t) * shares + (shares > 1 ? 3 * sizeof(double) : 0) + maps * sizeof(double));
 }
 
-static bool has_crystals(const scene *s)
-{
-    for (size_t i = 0; i < s->solid_count; i++)
-        if (material_is_crystal(&s->solids[i].surface, &s->render))
-            return true;
-    return false;
-}
-
 uint64_t renderer_tracing_bytes(const scene *s)
 {
-    return (uint64_t)scene_threads(&s->render) * tracer_bytes((int)s->render.depth, has_crystals(s)) +
+    return (uint64_t)scene_threads(&s->render) * tracer_bytes((int)s->render.depth, scene_crystals(s) > 0) +
            caustics_bytes(&s->render);
 }
 

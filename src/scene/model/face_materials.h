@@ -54,6 +54,8 @@ shading_material shading_material_of_solid(const scene *s, const material *own);
 
 /* Whether all its faces are opaque. */
 bool solid_is_opaque(const scene *s, const solid *owner);
+/* How many solids that can be seen are clear crystals. */
+int scene_crystals(const scene *s);
 
 /* Whether its faces have a transparency or reflectivity without effect, because the solid refracts. */
 bool ignores_face_transparency(const scene *s, const solid *owner);

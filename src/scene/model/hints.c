@@ -252,23 +252,20 @@ static void hint_at_sheet(const scene *s, const solid *owner, const note_taker *
 static void hint_at_crystal(const scene *s, const solid *owner, const note_taker *taker)
 {
     const material *m = &owner->surface;
-    size_t crystals = 0;
     if (m->extraordinary_ior == 0.0 || solid_is_opaque(s, owner))
         return;
-    for (size_t i = 0; i < s->solid_count; i++)
-        crystals += s->solids[i].visible && material_is_crystal(&s->solids[i].surface, &s->render);
     if (!material_is_crystal(m, &s->render))
         note_give(taker, owner->name, "extraordinary_ior",
                   integrator_traits_of(&s->render)->tree ? "set render.lighting to whitted, render.weights to fresnel, "
                                                            "and render.transmission to refract"
                                                          : "set render.integrator to whitted",
-                  "the crystal %s has one image: light takes its ordinary index alone", owner->name);
+                  "the crystal %s gives one image: light is refracted by its ordinary index alone", owner->name);
     else if (scene_has_caustics(&s->render))
         note_give(taker, owner->name, "extraordinary_ior", "set render.caustics to off",
-                  "photons take the ordinary index of the crystal %s alone", owner->name);
-    else if (crystals > 1 && !s->render.polarisation)
+                  "photons are refracted by the ordinary index of the crystal %s alone", owner->name);
+    else if (scene_crystals(s) > 1 && !s->render.polarisation)
         note_give(taker, owner->name, "extraordinary_ior", "set render.polarisation to on",
-                  "light is traced without its polarisation: each crystal divides the light of another one in halves");
+                  "light is traced without its polarisation: each crystal divides light from another one into halves");
 }
 
 /* The film does not depend on them, so that scene/model/inert has no rules for them. */

@@ -87,6 +87,16 @@ bool solid_is_opaque(const scene *s, const solid *owner)
     return opaque;
 }
 
+int scene_crystals(const scene *s)
+{
+    int count = 0;
+    for (size_t i = 0; i < s->solid_count; i++) {
+        const solid *one = &s->solids[i];
+        count += one->visible && !solid_is_opaque(s, one) && material_is_crystal(&one->surface, &s->render);
+    }
+    return count;
+}
+
 bool ignores_face_transparency(const scene *s, const solid *owner)
 {
     const material *own = &owner->surface;

@@ -6,14 +6,11 @@
 bool crystal_rule(const inert_case *c)
 {
     const scene *s = c->s;
-    if (opaque_rule(c))
+    if (opaque_rule(c) || mirror_rule(c))
         return true;
-    if (material_is_mirror(c->m))
-        return inert_say(c, "mirror", inert_set("%s.ior=1.5", c->name).text,
-                         "its refractive index makes it a perfect mirror");
     if (!integrator_traits_of(&s->render)->tree)
         return inert_say(c, "one-ray", "set render.integrator=whitted",
-                         "only integrator whitted splits rays in crystals: light takes the ordinary index");
+                         "only integrator whitted splits rays in crystals");
     if (!follows_rays(s))
         return say_no_tree(c);
     if (goes_straight(c))

@@ -36,17 +36,11 @@ bool extinction_rule(const inert_case *c)
     return nothing_reflected(c);
 }
 
-static bool mirror_has_no_film(const inert_case *c)
-{
-    return material_is_mirror(c->m) && inert_say(c, "mirror", inert_set("%s.ior=1.5", c->name).text,
-                                                 "its refractive index makes it a perfect mirror");
-}
-
 bool film_rule(const inert_case *c)
 {
     const scene *s = c->s;
     const bool clear = !material_is_opaque(c->m);
-    if (mirror_has_no_film(c))
+    if (mirror_rule(c))
         return true;
     if (clear && scene_has_constant_shares(&s->render))
         return inert_say(c, "constant-film", "set render.weights=fresnel and render.transmission=refract",
@@ -60,7 +54,7 @@ bool film_index_rule(const inert_case *c)
     return (c->m->film_thickness_nm == 0.0 &&
             inert_say(c, "no-film", inert_set("%s.film_thickness_nm=300", c->name).text,
                       "film_thickness_nm is 0: there is no film")) ||
-           mirror_has_no_film(c) || (film_rule(c)) || nothing_reflected(c);
+           mirror_rule(c) || (film_rule(c)) || nothing_reflected(c);
 }
 
 bool layered_reflectivity(const inert_case *c)

@@ -28,6 +28,12 @@ bool opaque_rule(const inert_case *c)
     return inert_say(c, "opaque", remedy.text, "the solid is opaque");
 }
 
+bool mirror_rule(const inert_case *c)
+{
+    return material_is_mirror(c->m) &&
+           inert_say(c, "mirror", set_on(c, "ior=1.5").text, "its refractive index makes it a perfect mirror");
+}
+
 static int clear_users(const inert_case *c)
 {
     int count = 0;
@@ -75,9 +81,7 @@ bool unpassed(const inert_case *c)
 
 static bool absorption_rule(const inert_case *c)
 {
-    return opaque_rule(c) || unpassed(c) ||
-           (material_is_mirror(c->m) &&
-            inert_say(c, "mirror", set_on(c, "ior=1.5").text, "its refractive index makes it a perfect mirror"));
+    return opaque_rule(c) || unpassed(c) || mirror_rule(c);
 }
 
 static bool no_color(const inert_case *c)

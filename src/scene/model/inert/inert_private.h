@@ -67,10 +67,11 @@ bool inert_surface(const inert_case *c);
 bool inert_appearance(const inert_case *c);
 bool inert_faces(const inert_case *c);
 bool inert_named_faces(const inert_case *c);
-/* The solid is opaque; no light passes it. Rules of metals and films (inert_layered.c): no ray brings what the surface
- * reflects; of their parameters; and of the reflectivity that they replace. */
-inert_rule opaque_rule, unpassed, mirrors_black, nothing_reflected, extinction_rule, film_rule, film_index_rule,
-    layered_reflectivity;
+/* The solid is opaque; it is a perfect mirror; no light passes it. */
+inert_rule opaque_rule, mirror_rule, unpassed;
+/* Rules of metals and films (inert_layered.c): no ray brings what the surface reflects; of their parameters; and of the
+ * reflectivity that they replace. */
+inert_rule mirrors_black, nothing_reflected, extinction_rule, film_rule, film_index_rule, layered_reflectivity;
 /* Light is traced without its polarisation, and the assignments that change this. */
 inert_rule unpolarised;
 inert_remedy polarised_remedy(const scene *s);

@@ -154,13 +154,10 @@ bool inert_polarisation(const inert_case *c)
 /* The rays of a crystal are polarised with either setting; the settings differ for what they meet outside. */
 static bool one_crystal(const inert_case *c)
 {
-    int clear = 0, crystals = 0;
-    for (size_t i = 0; i < c->s->solid_count; i++) {
-        const solid *one = &c->s->solids[i];
-        clear += one->visible && !solid_is_opaque(c->s, one);
-        crystals += one->visible && !solid_is_opaque(c->s, one) && material_is_crystal(&one->surface, &c->s->render);
-    }
-    return clear == 1 && crystals == 1 &&
+    int clear = 0;
+    for (size_t i = 0; i < c->s->solid_count; i++)
+        clear += c->s->solids[i].visible && !solid_is_opaque(c->s, &c->s->solids[i]);
+    return clear == 1 && scene_crystals(c->s) == 1 &&
            inert_same(c, "render.polarisation=%s", c->s->render.polarisation ? "off" : "on") &&
            inert_say(c, "one-crystal", "set camera.analyser=linear",
                      "the rays that leave the only transparent solid, a crystal, meet no other one");
@@ -270,7 +267,7 @@ static bool shadows(const inert_case *c)
     if (integrator_traits_of(&s->render)->drawn)
         return inert_say(c, "no-shadows", WHITTED, "the depth-buffer integrator renders no shadows");
     return nothing_lit(c) || (only_spheres_shine(s) && s->render.caustics == CAUSTICS_OFF &&
-                              inert_say(c, "spheres", WHITTED, "lights with a size are hit by random paths"));
+                              inert_say(c, "spheres", WHITTED, "random paths hit lights that have a size"));
 }
 
 static bool min_weight(const inert_case *c)

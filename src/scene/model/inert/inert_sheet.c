@@ -7,11 +7,8 @@
 bool sheet_rule(const inert_case *c)
 {
     const scene *s = c->s;
-    if (opaque_rule(c))
+    if (opaque_rule(c) || mirror_rule(c))
         return true;
-    if (material_is_mirror(c->m))
-        return inert_say(c, "mirror", inert_set("%s.ior=1.5", c->name).text,
-                         "its refractive index makes it a perfect mirror");
     if (integrator_traits_of(&s->render)->drawn)
         return inert_say(c, "zbuffer-sheet", "set render.integrator=whitted",
                          "the depth buffer does not show what sheets do");
