@@ -491,7 +491,7 @@ report_coverage:
 .PHONY: mutants check-all
 mutants: $(build)/cuvette ## insert 600 small errors into physics and statistics: a unit test must detect each (hours; goes on)
 	@BUILD='$(build)' tests/mutants/mutants.sh
-check-all: $(build)/cuvette ## run every kind of check, long ones in rotation, within an hour: build/check/page.md
+check-all: $(build)/cuvette ## run every kind of check, long ones in rotation, about an hour: build/check/page.md
 	@BUILD='$(build)' CC='$(CC)' tests/check/all.sh
 
 .PHONY: interrupts

@@ -1,5 +1,5 @@
 #!/bin/bash
-# tests/check/all.sh, run by `make check-all`: every kind of check, within an hour on two processors, and a page of the
+# tests/check/all.sh, run by `make check-all`: every kind of check, about an hour on two processors, and a page of the
 # results, build/check/page.md. The tests with gcc run whole. What would take hours runs in rotation: each time those
 # that ran longest ago, so that all have run after some times (tests/check/rotate.sh).
 #   all.sh [PART...]      the parts below; all of them without arguments
