@@ -17,11 +17,13 @@
 #include <stdatomic.h>
 
 enum { RULES_MAX = 500, JOBS_MAX = 240, TEXT_MAX = 1 << 14 };
+enum { ATTEMPTS = 2 }; /* of proving a condition in one scene */
 
-/* How often each condition was reported for a parameter of this name, and how often its remedy proved it. */
+/* How often each condition was reported for a parameter of this name, how often its remedy was tried, and how often it
+ * proved it. */
 typedef struct rule_count {
     const char *rule, *name;
-    int reported, proved;
+    int reported, attempts, proved;
     char where[240];
 } rule_count;
 
@@ -54,6 +56,38 @@ static rule_count *count_of(account *out, const char *rule, const char *name)
     assert_true(out->rule_count < RULES_MAX);
     out->rules[out->rule_count] = (rule_count){.rule = rule, .name = name};
     return &out->rules[out->rule_count++];
+}
+
+/* The conditions that some scene has proved: one proof is enough, and it takes longer than all else here. Which scene
+ * proves a condition depends on the order in time, whether one does not. */
+static struct {
+    pthread_mutex_t lock;
+    struct {
+        const char *rule, *name;
+    } all[RULES_MAX];
+    int count;
+} proofs = {.lock = PTHREAD_MUTEX_INITIALIZER};
+
+static bool is_proved(const char *rule, const char *name)
+{
+    bool found = false;
+    pthread_mutex_lock(&proofs.lock);
+    for (int i = 0; i < proofs.count && !found; i++)
+        found = strcmp(proofs.all[i].rule, rule) == 0 && strcmp(proofs.all[i].name, name) == 0;
+    pthread_mutex_unlock(&proofs.lock);
+    return found;
+}
+
+static void prove(rule_count *rule)
+{
+    rule->proved++;
+    if (is_proved(rule->rule, rule->name))
+        return;
+    pthread_mutex_lock(&proofs.lock);
+    const int i = proofs.count++;
+    assert_true(i < RULES_MAX);
+    proofs.all[i].rule = rule->rule, proofs.all[i].name = rule->name;
+    pthread_mutex_unlock(&proofs.lock);
 }
 
 /* Applies the remedy of the note, then that of the next note, until there is none: then the parameter must change the
@@ -116,10 +150,11 @@ static void judge_note(visitor *x, const char *path, const param *row, acts_valu
                  note_line(&answer->note, line, sizeof line));
     if (strcmp(answer->note.place, path) != 0 || !answer->note.text[0] || !answer->note.remedy[0])
         complain(x->out, path, "the note lacks its place, text or remedy", note_line(&answer->note, line, sizeof line));
-    if (rule->proved > 0) /* one proof per scene is enough */
+    if (rule->attempts >= ATTEMPTS || is_proved(answer->rule, row->name))
         return;
+    rule->attempts++;
     if (remedy_works(x->a, path, row, answer)) {
-        rule->proved++;
+        prove(rule);
         const char *slash = strrchr(x->out->path, '/');
         snprintf(rule->where, sizeof rule->where, "%.90s %.120s", slash ? slash + 1 : x->out->path, path);
     } else if (getenv("ACTS_VERBOSE")) {
@@ -227,6 +262,7 @@ static const char *const modes[] = {
     "render.integrator=path render.paths=4",
     "render.integrator=aov",
     "render.integrator=aov render.layer=albedo",
+    "render.integrator=aov liquid.capillary_length=0.1",
     "render.transmission=simple clear.transparency=0.8 clear.reflectivity=0.1",
     "render.weights=constant clear.transparency=0.8 clear.reflectivity=0.1",
     "render.spectrum=spectral render.wavelengths=4",
@@ -409,6 +445,8 @@ static const condition conditions[] = {
     {"rod", "liquid.ior=1e5", "liquid.extraordinary_ior", "mirror", true},
     {"rod", "render.integrator=path render.paths=4", "liquid.extraordinary_ior", "one-ray", true},
     {"rod", "render.weights=constant vessel.transparency=0.9", "liquid.extraordinary_ior", "constant-crystal", true},
+    {"rod", "render.weights=constant vessel.transparency=0.9 liquid.extraordinary_ior=1.6", "liquid.optic_axis",
+     "constant-crystal", true},
     {"rod", "render.transmission=simple vessel.transparency=0.9", "liquid.extraordinary_ior", "straight", true},
     {"rod", "render.lighting=phong", "liquid.extraordinary_ior", "no-tree", true},
     {"rod", "", "liquid.optic_axis", "no-crystal", true},
@@ -526,7 +564,9 @@ static void try_condition(int number, account *out)
     else {
         rule_count *rule = count_of(out, k->rule, row->name);
         const bool helped = k->works && remedy_works(&a, k->path, row, &answer);
-        rule->reported++, rule->proved += helped;
+        rule->reported++;
+        if (helped)
+            prove(rule);
         snprintf(rule->where, sizeof rule->where, "%s %s, %s", k->scene, k->assignments, k->path);
         drop_special_indices(&answer, row, &v);
         if (acts_try(&a, k->path, &v, 0, 1).changed > 0)
@@ -554,7 +594,7 @@ static void try_counterpart(int number, account *out)
         complain(out, k->path, "is to act without a note, where the condition is false", k->rule);
     else {
         rule_count *rule = count_of(out, k->rule, row->name);
-        rule->proved++;
+        prove(rule);
         snprintf(rule->where, sizeof rule->where, "%s %s", k->scene, k->path);
     }
     acts_close(&a);
@@ -629,14 +669,22 @@ static void add_jobs(job *one, int count)
     assert_int_equal(bad, 0);
 }
 
-static void applying_the_remedy_of_each_note_makes_the_parameter_effective(void **state)
+static void remedies_of_rare_notes_make_their_parameters_effective(void **state)
+{
+    (void)state;
+    if (getenv("ACTS_SCENE"))
+        skip();
+    add_jobs(try_condition, sizeof conditions / sizeof *conditions);
+    add_jobs(try_counterpart, sizeof counterparts / sizeof *counterparts);
+}
+
+/* Of the cases before. */
+static void the_remedy_of_each_note_was_seen_to_make_a_parameter_effective(void **state)
 {
     (void)state;
     if (getenv("ACTS_SCENE"))
         skip();
     int unproved = 0;
-    add_jobs(try_condition, sizeof conditions / sizeof *conditions);
-    add_jobs(try_counterpart, sizeof counterparts / sizeof *counterparts);
     for (int i = 0; i < all.rule_count; i++) {
         const rule_count *r = &all.rules[i];
         printf("# %-16s %-16s said %3d, proved in %s\n", r->rule, r->name, r->reported, r->where);
@@ -737,9 +785,10 @@ static void parameters_with_a_note_have_no_effect_under_other_settings(void **st
 int main(void)
 {
     const struct CMUnitTest tests[] = {
+        cmocka_unit_test(remedies_of_rare_notes_make_their_parameters_effective),
         cmocka_unit_test(every_parameter_of_every_shipped_scene_changes_the_film_or_has_a_note),
         cmocka_unit_test(every_parameter_changes_the_film_or_has_a_note_in_every_render_mode),
-        cmocka_unit_test(applying_the_remedy_of_each_note_makes_the_parameter_effective),
+        cmocka_unit_test(the_remedy_of_each_note_was_seen_to_make_a_parameter_effective),
         cmocka_unit_test(parameters_with_a_note_have_no_effect_under_other_settings),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);

@@ -4,6 +4,7 @@
 
 #include "scene/model/params.h"
 #include "scene/model/render_settings.h"
+#include "scene/model/scene.h"
 #include <stdlib.h>
 #include <string.h>
 
@@ -57,9 +58,11 @@ static bool same_times(const inert_case *c, const char *path, double factor)
     char *now = NULL;
     if (scene_get(c->s, path, &now, NULL) != STATUS_OK)
         return false;
-    const double value = strtod(now, NULL) * factor;
+    double value = strtod(now, NULL);
     free(now);
-    return inert_same(c, "%s=%.6g", path, value);
+    if (value == 0.0 && c->at.row->group == PARAM_SOLID) /* of contact_radius: the solid's radius */
+        value = c->s->solids[c->at.index].shape.radius;
+    return inert_same(c, "%s=%.6g", path, value * factor);
 }
 
 /* The background, and surface properties that only decide whether there is a surface, may matter for this image: the
@@ -77,6 +80,9 @@ bool inert_unmet(const inert_case *c, const char *path)
         {"priority", {"-1000", "0", "1000"}},
         {"visible", {"on", "off", NULL}},
         {"color", {"0,0,0", "1,1,1", NULL}},
+        {"capillary_length", {"0", "0.05", "0.2"}},
+        {"contact_angle_deg", {"20", "90", "150"}},
+        {"contact_radius", {"0", NULL}}, /* 0: the largest */
         {"inner_radius", {NULL}},
         {"floor", {NULL}},
     };
@@ -85,7 +91,9 @@ bool inert_unmet(const inert_case *c, const char *path)
     for (size_t i = 0; i < sizeof rows / sizeof *rows; i++) {
         if (strcmp(rows[i].name, c->at.row->name) != 0)
             continue;
-        bool same = rows[i].values[0] || (same_times(c, path, 0.5) && same_times(c, path, 1.05));
+        const bool part = strcmp(rows[i].name, "contact_radius") == 0;
+        bool same =
+            (rows[i].values[0] && !part) || (same_times(c, path, 0.5) && same_times(c, path, part ? 0.9 : 1.05));
         for (size_t k = 0; k < 3 && rows[i].values[k] && same; k++)
             same = inert_same(c, "%s=%s", path, rows[i].values[k]);
         return same &&
