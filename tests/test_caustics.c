@@ -8,6 +8,7 @@
 #include <cmocka.h>
 
 #include "render/caustics/caustics.h"
+#include "render/caustics/emission.h"
 #include "render/caustics/photon_map.h"
 #include "render_fixture.h"
 #include "scene/model/scene.h"
@@ -316,6 +317,119 @@ static void no_light_is_lost(void **state)
     scene_destroy(s);
 }
 
+/* --- the rod in the vessel, in a matte room --- */
+
+#define ROOM_SCENE                                                                                                   \
+    "render: {caustics: photons, photons: 400000}\n"                                                                 \
+    "lights: {lamp: {position: [4, 7, -5], intensity: 1, reach: 1}}\n"                                               \
+    "solids:\n"                                                                                                      \
+    "  ground: {shape: plane, diffuse: 1, priority: 0}\n"                                                            \
+    "  roof: {shape: plane, diffuse: 1, position: [0, 20, 0], rotation: [180, 0, 0]}\n"                              \
+    "  left: {shape: box, diffuse: 1, position: [-20, 0, 0], size: [2, 80, 80]}\n"                                   \
+    "  right: {shape: box, diffuse: 1, position: [20, 0, 0], size: [2, 80, 80]}\n"                                   \
+    "  front: {shape: box, diffuse: 1, position: [0, 0, -20], size: [80, 80, 2]}\n"                                  \
+    "  back: {shape: box, diffuse: 1, position: [0, 0, 20], size: [80, 80, 2]}\n"                                    \
+    "  vessel: {shape: cup, transparency: 1, ior: 1.5, position: [0, 0.001, 0], radius: 1, inner_radius: 0.9,\n"     \
+    "           height: 3, floor: 0.1, priority: 2}\n"                                                               \
+    "  liquid: {shape: cylinder, transparency: 1, ior: 1.33, position: [0, 0.051, 0], radius: 0.95, height: 1.95,\n" \
+    "           priority: 1}\n"                                                                                      \
+    "  rod: {shape: box, diffuse: 1, position: [0.2, 2.101, 0], size: [0.25, 3, 0.25], priority: 3}\n"
+
+/* Where the line o + t d is in an upright cylinder around the y axis: from *in to *out, or false. */
+static bool crosses_cylinder(vec3 o, vec3 d, double radius, double low, double high, double *in, double *out)
+{
+    const double a = d.x * d.x + d.z * d.z, b = o.x * d.x + o.z * d.z, c = o.x * o.x + o.z * o.z - radius * radius;
+    const double root = b * b - a * c, t_low = (low - o.y) / d.y, t_high = (high - o.y) / d.y;
+    if (!(root > 0.0))
+        return false;
+    *in = fmax((-b - sqrt(root)) / a, fmin(t_low, t_high));
+    *out = fmin((-b + sqrt(root)) / a, fmax(t_low, t_high));
+    return *in < *out;
+}
+
+/* Where it enters the rod, or INFINITY. */
+static double meets_rod(vec3 o, vec3 d)
+{
+    const double low[3] = {0.075, 0.601, -0.125}, high[3] = {0.325, 3.601, 0.125};
+    const double from[3] = {o.x, o.y, o.z}, way[3] = {d.x, d.y, d.z};
+    double in = 0.0, out = INFINITY;
+    for (int k = 0; k < 3; k++) {
+        const double a = (low[k] - from[k]) / way[k], b = (high[k] - from[k]) / way[k];
+        in = fmax(in, fmin(a, b)), out = fmin(out, fmax(a, b));
+    }
+    return in < out ? in : INFINITY;
+}
+
+/* Whether light from o along d, downwards, meets glass or liquid before the rod. What enters by the mouth meets the
+ * inner wall or the liquid, whose level is y = 2.001. */
+static bool meets_clear(vec3 o, vec3 d)
+{
+    double in, out, hollow_in, hollow_out;
+    if (!crosses_cylinder(o, d, 1.0, 0.001, 3.001, &in, &out))
+        return false;
+    if (crosses_cylinder(o, d, 0.9, 2.001, 3.001, &hollow_in, &hollow_out) && hollow_in <= in)
+        in = hollow_out;
+    return in < meets_rod(o, d);
+}
+
+/* The solid angle, from the lamp, of directions whose light first meets glass or liquid: midpoints of a fine grid over
+ * a cone around the vessel. */
+static double solid_angle_of_vessel(void)
+{
+    enum { ROWS = 1500 };
+    const vec3 lamp = vec3_make(4.0, 7.0, -5.0), axis = vec3_normalize(vec3_sub(vec3_make(0.0, 1.5, 0.0), lamp));
+    const vec3 x = vec3_normalize(vec3_cross(axis, vec3_make(0.0, 1.0, 0.0))), y = vec3_cross(x, axis);
+    const double widest = 1.0 - cos(0.25); /* 2 / sqrt(71) = 0.237 rad surround it */
+    long met = 0;
+    for (int i = 0; i < ROWS; i++)
+        for (int j = 0; j < ROWS; j++) {
+            const double c = 1.0 - widest * (i + 0.5) / ROWS, s = sqrt(1.0 - c * c), turn = 2.0 * PI * (j + 0.5) / ROWS;
+            met += meets_clear(lamp, vec3_add(vec3_scale(axis, c),
+                                              vec3_add(vec3_scale(x, s * cos(turn)), vec3_scale(y, s * sin(turn)))));
+        }
+    return 2.0 * PI * widest * (double)met / ROWS / ROWS;
+}
+
+static double mean_power(const plan *p)
+{
+    emission *e = NULL;
+    emitted_ray r;
+    double sum = 0.0;
+    assert_int_equal(emission_create(p, p->render.photons, false, &e, NULL), STATUS_OK);
+    const int64_t count = emission_count(e);
+    for (int64_t i = 0; i < count; i++)
+        sum += emission_ray(e, i, &r) ? r.power.x : 0.0;
+    emission_destroy(e);
+    return sum / (double)count;
+}
+
+/* All light that the lamp sends to glass and water arrives somewhere: on the ground in the shadow and around it, on the
+ * rod, on the walls of a room around; except for the light in the wall that the depth limit cuts, which is counted. */
+static void the_vessel_loses_no_light(void **state)
+{
+    (void)state;
+    scene *s = scene_from(ROOM_SCENE);
+    plan *p = NULL;
+    const atomic_bool stop = false;
+    assert_int_equal(plan_build(s, &p, NULL), STATUS_OK);
+    caustics *c = photons_of(p, &stop);
+    double seen = 0.0;
+    for (size_t i = 0; i < photon_map_count(p->photons); i++)
+        seen += (double)photon_map_at(p->photons, i)->flux[0];
+    const double angle = solid_angle_of_vessel();
+    ray_counters counters = {.photon = 0};
+    caustics_count(c, &counters);
+    const double cut = (double)counters.cut_photon / COUNTERS_CUT_ONE * mean_power(p);
+    printf("# %zu photons, %.6f + %.6f of %.6f, ratio - 1 = %.2e\n", photon_map_count(p->photons), seen, cut, angle,
+           (seen + cut) / angle - 1.0);
+    assert_near(seen, angle, 4e-3 * angle);
+    if (CUVETTE_COUNTERS)
+        assert_near(seen + cut, angle, 1e-3 * angle);
+    caustics_destroy(c);
+    plan_destroy(p);
+    scene_destroy(s);
+}
+
 /* --- determinism --- */
 
 static const char *const variants[] = {
@@ -372,6 +486,7 @@ int main(void)
         cmocka_unit_test(paths_leave_the_light_to_the_photons),
         cmocka_unit_test(a_ball_focuses_as_a_forward_tracer_says),
         cmocka_unit_test(no_light_is_lost),
+        cmocka_unit_test(the_vessel_loses_no_light),
         cmocka_unit_test(films_are_bit_identical),
         cmocka_unit_test(photons_change_nothing_without_mirrors_and_clear_solids),
     };

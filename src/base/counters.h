@@ -28,6 +28,7 @@ typedef struct ray_counters {
     uint64_t cut_depth, cut_weight;            /* rays not traced: beyond the last depth; under min_weight */
     int64_t cut_depth_throughput[3];           /* their throughput, RGB, in units of 1/COUNTERS_CUT_ONE */
     int64_t cut_weight_throughput[3];
+    int64_t cut_photon; /* the power of photons' rays beyond their last depth, in photons, in the same units */
     /* rays tested against the solid; 0 for one that a hierarchy finds (geometry/solid_tree.h). Shadow rays count only
      * for solids that can reduce light by themselves, and only once, without the second test of the few undecided
      * ones */

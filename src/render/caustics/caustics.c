@@ -155,6 +155,7 @@ void caustics_count(const caustics *c, ray_counters *counters)
     tracer_pool_collect(c->tracers, &sum);
     for (int d = 0; d <= PHOTON_DEPTH; d++)
         counters->photon += sum.by_depth[d];
+    counters->cut_photon += sum.cut_photon;
 }
 
 uint64_t caustics_bytes(const render_settings *r)

@@ -29,7 +29,7 @@ typedef struct caustics_step {
 enum { CAUSTICS_STEPS = 2 };
 extern const caustics_step caustics_steps[CAUSTICS_STEPS];
 
-/* After the steps: the photons' rays, in counters->photon and by what happened to them. */
+/* After the steps: the photons' rays, in counters->photon, and the light that they lost, in counters->cut_photon. */
 void caustics_count(const caustics *c, ray_counters *counters);
 
 /* Memory for a frame, bytes. */

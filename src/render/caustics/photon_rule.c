@@ -129,6 +129,10 @@ static void follow(tracer *t, int k, int depth, bool refracted, const rough_surf
     const double power = fmax(left.x, fmax(left.y, left.z));
     if (!(power > 0.0))
         return;
+    if (depth == t->queues.depth_limit) {
+        COUNT(t->account.counters.cut_photon += counters_cut_units(power));
+        return;
+    }
     if (power < LEAST_PHOTON) {
         if (emission_chance(f->from, number_of(g->sample_key[k]), depth, refracted) * LEAST_PHOTON >= power)
             return;
@@ -171,7 +175,7 @@ static void shade(tracer *t, int depth, int priority_index)
     const bool opaque = surface_is_opaque(t, priority_index);
     if (opaque && m->diffuse > 0.0 && depth > 0)
         arrive(t);
-    if (depth == t->queues.depth_limit || (opaque && !surface_reflects(t)))
+    if (opaque && !surface_reflects(t))
         return;
     const double alpha = rough_alpha(t);
     rough_surface rough;
