@@ -132,6 +132,42 @@ static void layers_match_closed_forms(void **state)
     scene_destroy(s);
 }
 
+/* Where priority gives the overlap to a solid with the medium of the surroundings, it cuts a piece off: the difference
+ * of two balls is seen with the first one's material and, in the cut, with the other one's shape. */
+static void a_solid_of_the_surroundings_cuts_another(void **state)
+{
+    (void)state;
+    scene *s = scene_from(HEAD "  ball: {shape: sphere, radius: 1, position: [-1, 1, 4], material: red}\n"
+                               "  bite: {shape: sphere, radius: 0.6, position: [-0.7, 1.5, 3.2], priority: 1, "
+                               "transparency: 1, ior: 1}\n");
+    const vec3 eye = {0.0, EYE, 0.0}, ball_center = {-1.0, 1.0, 4.0}, bite_center = {-0.7, 1.5, 3.2};
+    render_result *r = layers_at(s, isa_best());
+    int cut = 0, whole = 0;
+    for (int y = 0; y < HEIGHT; y++)
+        for (int x = 0; x < WIDTH; x++) {
+            const vec3 d = direction(x, y);
+            const double in = distance_to_sphere(d, ball_center, 1.0), bite = distance_to_sphere(d, bite_center, 0.6);
+            const double out = 2.0 * vec3_dot(vec3_sub(ball_center, eye), d) - in,
+                         bite_out = 2.0 * vec3_dot(vec3_sub(bite_center, eye), d) - bite;
+            const bool bitten = !isinf(in) && bite < in && bite_out > in;
+            const double t = bitten ? bite_out : in;
+            if (isinf(in) || (bitten && bite_out >= out)) {
+                near(value(r, LAYER_DEPTH, x, y), vec3_make(0.0, 0.0, 0.0), 0.0);
+                continue;
+            }
+            const vec3 p = vec3_add(eye, vec3_scale(d, t));
+            near(value(r, LAYER_DEPTH, x, y), vec3_make(t, 0.0, 0.0), 2e-6 * t);
+            near(value(r, LAYER_NORMAL, x, y),
+                 bitten ? vec3_scale(vec3_sub(bite_center, p), 1.0 / 0.6) : vec3_sub(p, ball_center), 1e-5);
+            near(value(r, LAYER_SOLID, x, y), vec3_make(1.0, 0.0, 0.0), 0.0);
+            near(value(r, LAYER_ALBEDO, x, y), vec3_make(0.9, 0.1, 0.05), 1e-6);
+            cut += bitten, whole += !bitten;
+        }
+    assert_true(cut > 20 && whole > 20);
+    render_result_destroy(r);
+    scene_destroy(s);
+}
+
 static void misses_are_zero(void **state)
 {
     (void)state;
@@ -332,6 +368,7 @@ int main(void)
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(layers_match_closed_forms),
         cmocka_unit_test(the_memory_of_a_pixel_is_that_of_its_layers),
+        cmocka_unit_test(a_solid_of_the_surroundings_cuts_another),
         cmocka_unit_test(misses_are_zero),
         cmocka_unit_test(the_view_of_normals_is_encoded_as_a_normal_map),
         cmocka_unit_test(the_view_of_distances_is_bright_near_by),

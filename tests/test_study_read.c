@@ -303,7 +303,7 @@ static void every_study_of_the_project_is_read(void **state)
         size_t cells;
     } known[] = {{"depth", 9},    {"threads", 44},   {"ior", 4},       {"ior-grid", 25},    {"profile", 12},
                  {"pool", 10},    {"maps", 1},       {"portrait", 1},  {"convergence", 30}, {"methods", 7},
-                 {"lighting", 3}, {"absorption", 5}, {"absorber", 11}, {"liquids", 5}};
+                 {"lighting", 3}, {"absorption", 5}, {"absorber", 11}, {"liquids", 5},      {"photons", 10}};
     for (size_t i = 0; i < sizeof known / sizeof known[0]; i++) {
         char path[400], message[DIAGNOSTIC_TEXT_MAX];
         diagnostic why = {0};
