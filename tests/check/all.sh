@@ -19,7 +19,7 @@ in_rotation() { # STATE SECONDS COMMAND [NAME...]: the unit tests, or those name
     local state=$1 seconds=$2 command=$3
     shift 3
     (($#)) || set -- "${tests[@]}"
-    ACTS_SCENE=rod.yaml tests/check/rotate.sh "$check/$state.state" $((seconds * scale)) "$command" "$@"
+    ACTS_SCENE=coin.yaml tests/check/rotate.sh "$check/$state.state" $((seconds * scale)) "$command" "$@"
 }
 
 part() { # NAME COMMAND...
