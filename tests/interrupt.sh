@@ -175,6 +175,11 @@ interrupt() { # WORKLOAD SIGNAL
 if (($# == 0)); then # the others take longer, or differ little
     set -- fan trace motion check terrain mesh_obj import texture compare render animate study
 elif [[ $1 == all ]]; then
+    soup sparse 10 embree
+    "$program" render soup-embree.yaml -o s.png >made 2>&1 || {
+        echo "# no moments of embree: $(head -1 made)"
+        unset -f w_embree
+    }
     mapfile -t every < <(declare -F | sed -n 's/^declare -f w_//p')
     set -- "${every[@]}"
 fi
