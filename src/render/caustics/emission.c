@@ -2,8 +2,8 @@
 #include "render/caustics/emission_parts.h"
 
 #include "base/elementary.h"
-#include "optics/mueller.h"
 #include "render/core/draw.h"
+#include "render/shade/lamp_polarisation.h"
 
 #define PI 3.14159265358979323846
 
@@ -195,6 +195,9 @@ bool emission_ray(const emission *e, int64_t i, emitted_ray *out)
     out->lamp_radius = sun                ? sun_path(e) * sqrt(from->cones[0].cap * (2.0 - from->cones[0].cap))
                        : is_flat(e, lamp) ? sqrt(p->shapes[lamp].area / PI)
                                           : sphere_radius(e, lamp);
+    const bool polarised = p->render.polarisation && l->polarised > 0.0;
+    const stokes s = polarised ? lamp_stokes(p, lamp, out->direction, out->direction) : (stokes){1.0, 0.0, 0.0, 0.0};
+    out->q = s.q, out->u = s.u;
     out->falls = sun || l->reach > 0.0;
     out->wavelength = -1;
     vec3 color = vec3_scale(l->color, l->intensity);

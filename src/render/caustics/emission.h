@@ -30,6 +30,7 @@ typedef struct emitted_ray {
     vec3 origin, direction;
     vec3 power; /* over pi, by channel; in a spectral film that at the photon's wavelength, in each channel */
     double lamp_radius;
+    double q, u; /* with polarisation: its Stokes vector relative to its first element, in its canonical frame */
     uint64_t inside;
     int wavelength; /* its number, or -1 */
     bool of_line;   /* one of a spectral line, of which all photons count for that wavelength alone */

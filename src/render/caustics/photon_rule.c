@@ -1,7 +1,8 @@
 /* Tracing of photons. A ray's sample key is the photon's number, with its wavelength; its throughput is its share of
  * the power with which the photon began. With polarisation its Stokes vector is that of an analyser that went the same
- * way backwards: what unpolarised light keeps between two ends does not depend on the direction (Stokes and Helmholtz
- * reversion; Chandrasekhar, Radiative Transfer, 1950, section 13). */
+ * way backwards: what light keeps between two ends does not depend on the direction, and a linearly polarised lamp is
+ * the analyser that passes its field (Stokes and Helmholtz reversion; Chandrasekhar, Radiative Transfer, 1950, section
+ * 13). */
 #include "render/caustics/photon_rule.h"
 
 #include "render/shade/rough.h"
@@ -63,7 +64,7 @@ void photon_rule_emit(tracer *t, int64_t first, int64_t end, photon_list *found)
         q->wr[at] = q->wg[at] = q->wb[at] = 1.0;
         q->start[at] = FACE_NONE, q->inside[at] = r.inside;
         q->sample_key[at] = r.wavelength < 0 ? i : sample_key_with_wavelength(i, r.wavelength);
-        q->sq[at] = q->su[at] = q->sv[at] = 0.0; /* unpolarised */
+        q->sq[at] = r.q, q->su[at] = r.u, q->sv[at] = 0.0;
         q->passed[at] = q->bent[at] = 0.0;
     }
 }

@@ -383,6 +383,8 @@ status plan_build(const scene *s, plan **out, diagnostic *why)
     p->solid_shadows = p->render.shadows == SHADOWS_OPAQUE;
     for (size_t i = 0; i < s->light_count && integrator_traits_of(&s->render)->by_chance; i++)
         p->solid_shadows |= light_has_size(&s->lights[i]);
+    for (int i = 0; i < p->light_count; i++)
+        p->polarised_shadows |= p->sheets && s->render.polarisation && p->lights[i].polarised > 0.0;
     *out = p;
     return STATUS_OK;
 }

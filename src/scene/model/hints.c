@@ -176,6 +176,9 @@ static void hint_at_lights(const scene *s, const note_taker *taker)
         if (lamp->spectrum >= LAMP_SODIUM && lamp->intensity > 0.0 && s->render.spectrum != SPECTRUM_SPECTRAL)
             note_give(taker, lamp->name, "spectrum", "set render.spectrum=spectral, which traces each line",
                       "%s emits spectral lines, and an rgb image shows only their colour", lamp->name);
+        if (lamp->polarised > 0.0 && !s->render.polarisation)
+            note_give(taker, lamp->name, "polarised", "set render.polarisation to on",
+                      "light is traced without its polarisation: that of %s has no effect", lamp->name);
         const bool soft = scene_has_soft_shadows(&s->render);
         const char *size = lamp->kind == LIGHT_RECTANGLE ? "width"
                            : lamp->kind == LIGHT_SUN     ? "angular_diameter_deg"

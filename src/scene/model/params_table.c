@@ -373,6 +373,11 @@ static const param table[] = {
          "the sun; 0: parallel light"),
     REAL(PARAM_LIGHT, light, reach, "scene units", 0, FAR, "0",
          "distance at which the intensity applies, with inverse-square falloff; 0: no falloff"),
+    REAL(PARAM_LIGHT, light, polarised, "", 0, 1, "0",
+         "degree of linear polarisation of the light, with render.polarisation; 0: unpolarised"),
+    REAL(PARAM_LIGHT, light, polarisation_deg, "deg", -360, 360, "0",
+         "direction of a polarised light's field about its axis, of a point light about each ray: 0 is horizontal, 90 "
+         "upright (of an axis straight up or down, 0 is along x)"),
 
     BEAM_CHOICE(
         kind, beam_words, "pencil",
