@@ -89,15 +89,16 @@ static void place(tracer *t, const int *list)
     work_of(t)->list = list;
 }
 
-/* The photons of the gathered group arrive. */
-static void arrive(tracer *t)
+/* The photons of the gathered group arrive: those of lamps only after a mirror or a clear solid, shadow rays bring the
+ * others' light; those of beams at once. */
+static void arrive(tracer *t, int depth)
 {
     photon_frame *f = t->target.state;
     photon_work *w = work_of(t);
     const group *g = &t->surface.gathered;
     for (int k = 0; k < g->count; k++) {
         emitted_ray r;
-        if (!emission_ray(f->from, number_of(g->sample_key[k]), &r))
+        if (!emission_ray(f->from, number_of(g->sample_key[k]), &r) || (depth == 0 && !r.of_beam))
             continue;
         const double passed = w->passed[w->list[k]], bent = w->bent[w->list[k]],
                      falls = r.falls ? 1.0 : passed * passed;
@@ -105,7 +106,7 @@ static void arrive(tracer *t)
                             .normal = {(float)g->points.nx[k], (float)g->points.ny[k], (float)g->points.nz[k]},
                             .flux = {(float)(g->wr[k] * r.power.x * falls), (float)(g->wg[k] * r.power.y * falls),
                                      (float)(g->wb[k] * r.power.z * falls)},
-                            .radius = (float)(BLUR_SHARE * r.lamp_radius * bent / (passed - bent)),
+                            .radius = r.of_beam ? 0.0F : (float)(BLUR_SHARE * r.lamp_radius * bent / (passed - bent)),
                             .wavelength = r.of_line ? photon_of_line(r.wavelength) : r.wavelength};
         if (!photon_list_add(w->found, &one))
             atomic_store(&f->out_of_memory, true);
@@ -170,8 +171,8 @@ static void shade(tracer *t, int depth, int priority_index)
 {
     const material *m = &t->surface.mat->surface;
     const bool opaque = surface_is_opaque(t, priority_index);
-    if (opaque && m->diffuse > 0.0 && depth > 0)
-        arrive(t);
+    if (opaque && m->diffuse > 0.0 && (depth > 0 || t->target.frame_plan->beam_count > 0))
+        arrive(t, depth);
     if (depth == t->queues.depth_limit || (opaque && !surface_reflects(t)))
         return;
     const double alpha = rough_alpha(t);

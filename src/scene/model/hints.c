@@ -204,6 +204,19 @@ static void hint_at_lights(const scene *s, const note_taker *taker)
     }
 }
 
+static void hint_at_beams(const scene *s, const note_taker *taker)
+{
+    for (size_t i = 0; i < s->beam_count; i++) {
+        const beam *b = &s->beams[i];
+        if (b->lights && b->visible && !scene_has_caustics(&s->render))
+            note_give(taker, b->name, "lights", "set render.caustics=photons",
+                      "%s lights nothing: photons alone bring the light of beams", b->name);
+        else if (!b->lights && b->profile != BEAM_UNIFORM)
+            note_give(taker, b->name, "profile", "set its lights to on",
+                      "the rays of %s are shown evenly: its profile is that of its light", b->name);
+    }
+}
+
 static void hint_at_lens(const scene *s, const note_taker *taker)
 {
     const integrator_traits *traits = integrator_traits_of(&s->render);
@@ -304,11 +317,15 @@ void scene_hints(const scene *s, const note_taker *taker)
     }
     if (visible == 0)
         note_give(taker, "solids", NULL, "add solids:", "no visible solids: the image shows only the background");
-    const bool emitters_light = shining > 0 && integrator_traits_of(&s->render)->by_chance;
+    bool beams = false;
+    for (size_t i = 0; i < s->beam_count; i++)
+        beams |= beam_lights_scene(&s->beams[i], &s->render);
+    const bool emitters_light = beams || (shining > 0 && integrator_traits_of(&s->render)->by_chance);
     if (lit > 0 && s->light_count == 0 && !emitters_light)
         note_give(taker, "lights", NULL,
                   "add lights:", "no lights: opaque surfaces show only ambient and emitted light");
     hint_at_lights(s, taker);
+    hint_at_beams(s, taker);
     hint_at_lens(s, taker);
     hint_at_analyser(s, taker);
     hint_at_tone(s, taker);
