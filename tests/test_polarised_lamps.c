@@ -69,6 +69,22 @@ static void a_sheet_dims_a_polarised_lamp_by_malus(void **state)
     }
 }
 
+/* Off its axis a spotlight's field turns by the shortest rotation from the axis to the ray: here of 45 degrees about z,
+ * which leaves the horizontal field, along z, and brings the other, in the plane of both, to x. */
+static void off_the_axis_the_field_turns_with_the_ray(void **state)
+{
+    (void)state;
+    scene *s = floor_under("{kind: cone, half_angle_deg: 80, position: [0, 10, 0], target: [10, 0, 0], polarised: 0.7}",
+                           "position: [0, 3, 0], size: [3, 0.01, 3]");
+    for (int a = -90; a <= 90; a += 18)
+        for (int b = 0; b <= 180; b += 45) {
+            s->lights[0].polarisation_deg = b;
+            s->solids[1].shape.rotation_deg.y = a;
+            assert_near(look(s).x, 0.5 * (1.0 - 0.7 * cos(2.0 * (a + b) * degree)), 1e-9);
+        }
+    scene_destroy(s);
+}
+
 /* A point lamp's field is horizontal at 0 degrees, whichever way its light goes, and at 90 in the vertical plane. From
  * 45 degrees above, the sheet's axes are z and the direction across z and the ray. */
 static void a_point_lamp_counts_from_the_horizontal(void **state)
@@ -187,6 +203,7 @@ int main(void)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(a_sheet_dims_a_polarised_lamp_by_malus),
+        cmocka_unit_test(off_the_axis_the_field_turns_with_the_ray),
         cmocka_unit_test(a_point_lamp_counts_from_the_horizontal),
         cmocka_unit_test(lamps_with_a_size_are_polarised),
         cmocka_unit_test(photons_of_a_polarised_lamp_obey_fresnel),
