@@ -38,6 +38,7 @@ static const acts_small acts_smaller[] = {
     {"soap", "render.samples=1 render.spectrum=spectral render.wavelengths=4 render.width=36 render.height=48"},
     {"arrow", "render.samples=1 render.depth=6"},
     {"polarisers", "render.samples=1 render.wavelengths=2"},
+    {"laser", "render.photons=4000 render.width=80 render.height=60"},
 };
 
 /* Heights of the films, tried in this order until a value has an effect: a slit may lie between the rays of a small

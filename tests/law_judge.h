@@ -65,6 +65,12 @@ static inline void scale_lengths(scene *s, double f)
         s->lights[i].radius *= f, s->lights[i].width *= f, s->lights[i].height *= f;
         scale_vector(&s->lights[i].target, f);
     }
+    for (size_t i = 0; i < s->beam_count; i++) {
+        scale_vector(&s->beams[i].position, f);
+        scale_vector(&s->beams[i].target, f);
+        s->beams[i].width *= f;
+        s->beams[i].power *= f * f; /* the same irradiance */
+    }
     for (size_t i = 0; i < s->solid_count; i++) {
         solid_shape *shape = &s->solids[i].shape;
         scale_vector(&shape->position, f);
@@ -330,8 +336,8 @@ static inline void remove_solid(law_scene *w, int number)
     w->solid_count = remaining;
 }
 
-/* Reduces a fault to as few solids as possible, without removing the law's own, and without lights if they are not
- * needed. */
+/* Reduces a fault to as few solids as possible, without removing the law's own, and without lights and beams if they
+ * are not needed. */
 static inline law_pair law_shrink(judge *j, law_pair p)
 {
     for (bool smaller = true; smaller;) {
@@ -344,6 +350,10 @@ static inline law_pair law_shrink(judge *j, law_pair p)
                 p = q, smaller = true;
         }
         law_pair q = p;
+        q.a.beam.kind = q.b.beam.kind = NULL;
+        if (p.a.beam.kind && law_judge(j, &q) == BROKEN)
+            p = q, smaller = true;
+        q = p;
         q.a.light_count = q.b.light_count = 0;
         if (p.a.light_count > 0 && law_judge(j, &q) == BROKEN)
             p = q, smaller = true;

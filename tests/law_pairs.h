@@ -2,7 +2,7 @@
  * values. */
 #pragma once
 
-#include "law_scene.h"
+#include "law_lamps.h"
 
 typedef enum law {
     LAW_UNMET,    /* 1: a solid that no ray hits */
@@ -394,7 +394,11 @@ static const char *const all_settings[] = {
 
 /* Photons start towards every solid that deflects light, in the order of priorities: one that no camera ray hits takes
  * some of them, and another order draws others. Only the scale leaves each of them as it is. */
-static const char photon_settings[] = "depth: 5, caustics: photons, photons: 500, soft_shadows: on, samples: 4";
+static const char *const photon_settings[] = {
+    "depth: 5, caustics: photons, photons: 500, soft_shadows: on, samples: 4",
+    "depth: 5, caustics: photons, photons: 500, polarisation: on",
+    "depth: 5, caustics: photons, photons: 500, spectrum: spectral, wavelengths: 2",
+};
 
 /* For surfaces that reflect only by Fresnel's equations: a crossing between equal media is no interface then. */
 static const char *const fresnel_settings[] = {
@@ -423,7 +427,7 @@ static inline bool law_pair_make(law which, uint64_t seed, int number, law_pair 
     const char *settings =
         any ? all_settings[number % (int)COUNT(all_settings)] : fresnel_settings[number % (int)COUNT(fresnel_settings)];
     if (which == LAW_SCALE && number % 8 == 0)
-        settings = photon_settings;
+        settings = photon_settings[number / 8 % (int)COUNT(photon_settings)];
     if (which == LAW_MOTION && number % 8 == 0)
         settings = "integrator: raycast";
     if (which == LAW_REVERSAL)
@@ -433,6 +437,8 @@ static inline bool law_pair_make(law which, uint64_t seed, int number, law_pair 
     do
         p->a = random_law_scene(&seed, settings);
     while (without_blocks && has_block(&p->a));
+    if (any)
+        polarise(&p->a, seed), add_beam(&p->a, seed);
     for (int i = 0; i < p->a.solid_count && which == LAW_REVERSAL; i++) {
         p->a.solid[i].transparency = 1.0;
         p->a.solid[i].extraordinary_ior = 0.0; /* test_crystal reverses one */

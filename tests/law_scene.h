@@ -26,6 +26,8 @@ typedef struct law_solid {
     double scatter_per_m, asymmetry;
     double extraordinary_ior; /* of a crystal, else 0 */
     vec3 optic_axis;          /* in the solid's frame */
+    const char *sheet;        /* NULL: none */
+    vec3 sheet_axis;          /* in the solid's frame */
 } law_solid;
 
 typedef struct law_light {
@@ -34,7 +36,14 @@ typedef struct law_light {
     const char *kind; /* NULL: a point */
     vec3 target;      /* of a disc or a rectangle */
     double size;      /* radius, width and height */
+    double polarised, polarisation_deg;
 } law_light;
+
+typedef struct law_beam {
+    const char *kind, *profile; /* kind NULL: there is no beam */
+    vec3 position, target;
+    double angle_deg, width;
+} law_beam;
 
 typedef struct law_scene {
     const char *settings;
@@ -46,6 +55,7 @@ typedef struct law_scene {
     double roll_deg;
     int light_count, solid_count;
     law_light light[LAW_LIGHTS_MAX];
+    law_beam beam; /* a lamp for photons */
     law_solid solid[LAW_SOLIDS_MAX];
     int material_order[LAW_SOLIDS_MAX]; /* the order in which the materials of solid[0], solid[1] .. are declared */
 } law_scene;
@@ -380,6 +390,10 @@ static inline void write_material(scene_text *t, const law_solid *s)
         add(t, "extraordinary_ior: %.17g, ", s->extraordinary_ior);
         add_vector(t, "optic_axis", s->optic_axis);
     }
+    if (s->sheet) {
+        add(t, "sheet: %s, retardance_deg: 77, ", s->sheet);
+        add_vector(t, "sheet_axis", s->sheet_axis);
+    }
     add(t, "reflectivity: %.17g, specular: %.17g, shininess: 20}\n", s->reflectivity, s->specular);
 }
 
@@ -417,6 +431,16 @@ static inline void write_meshes(scene_text *t, const law_scene *w)
     }
 }
 
+static inline void write_beam(scene_text *t, const law_beam *b)
+{
+    if (!b->kind)
+        return;
+    add(t, "beams:\n  beam: {kind: %s, profile: %s, lights: on, ", b->kind, b->profile);
+    add_vector(t, "position", b->position);
+    add_vector(t, "target", b->target);
+    add(t, "angle_deg: %.17g, width: %.17g, power: 3}\n", b->angle_deg, b->width);
+}
+
 static inline scene_text law_text(const law_scene *w)
 {
     scene_text t = {.length = 0};
@@ -439,8 +463,11 @@ static inline scene_text law_text(const law_scene *w)
                 w->light[i].size, 0.7 * w->light[i].size);
             add_vector(&t, "target", w->light[i].target);
         }
+        if (w->light[i].polarised > 0.0)
+            add(&t, "polarised: %.17g, polarisation_deg: %.17g, ", w->light[i].polarised, w->light[i].polarisation_deg);
         add(&t, "reach: %.17g}\n", w->light[i].reach);
     }
+    write_beam(&t, &w->beam);
     write_meshes(&t, w);
     add(&t, "materials:\n");
     for (int i = 0; i < w->solid_count; i++)

@@ -199,7 +199,7 @@ static status try_parameter(void *context, const char *path, const param *row, c
     inert_answer answer;
     acts_values_of(x->a->s, row, value, &v);
     x->out->tried++;
-    if (row->performance_only)
+    if (!scene_film_depends_on(x->a->s, path))
         judge_mark(x, path, &v);
     else if (acts_ask(x->a, path, &answer))
         judge_note(x, path, row, &v, &answer);
@@ -467,6 +467,21 @@ static const condition conditions[] = {
     {"meniscus", "liquid.contact_angle_deg=90", "liquid.capillary_length", "level", true},
     {"meniscus", "liquid.contact_angle_deg=90", "liquid.contact_radius", "level", true},
     {"rod", "liquid.sheet=retarder", "liquid.retardance_deg", "unpolarised", true},
+    {"rod", "", "lamp.polarised", "unpolarised", true},
+    {"magnifier", "", "sun.lights", "no-photons-beam", true},
+    {"magnifier", "render.integrator=zbuffer sun.lights=on", "sun.power", "zbuffer-beam", true},
+    {"magnifier", "render.shadows=off sun.lights=on", "sun.power", "no-shadows-beam", true},
+    {"magnifier", "render.caustics=photons sun.lights=on sun.visible=off", "sun.power", "hidden-beam", true},
+    {"magnifier", "render.caustics=photons sun.lights=on sun.power=0", "sun.lights", "dark-beam", true},
+    {"magnifier", "render.caustics=photons sun.lights=on sun.lambda_nm=1064", "sun.power", "unseen-beam", true},
+    {"magnifier", "render.caustics=photons sun.lights=on", "sun.angle_deg", "parallel-beam", true},
+    {"magnifier", "render.caustics=photons sun.lights=on sun.kind=fan", "sun.width", "beam-from-point", true},
+    {"magnifier", "render.caustics=photons sun.lights=on sun.kind=bundle", "sun.normal", "round-beam", true},
+    {"magnifier", "render.caustics=photons sun.lights=on sun.direction=1,-0.2,0", "sun.target", "beam-direction", true},
+    {"magnifier", "render.caustics=photons sun.lights=on sun.white=on", "sun.lambda_nm", "white-beam", true},
+    {"magnifier", "render.caustics=photons sun.lights=on sun.width=0", "sun.profile", "thin-beam", true},
+    {"rod", "render.polarisation=on", "lamp.polarisation_deg", "unpolarised-lamp", true},
+    {"rod", "render.polarisation=on lamp.polarised=1", "lamp.polarisation_deg", "depolarised", true},
     {"rod", "liquid.sheet=polariser", "liquid.sheet_axis", "unpolarised", true},
     {"rod", "render.polarisation=on liquid.sheet=retarder", "liquid.sheet_axis", "no-retardance", true},
     {"rod", "render.polarisation=on liquid.sheet=polariser liquid.sheet_block=1", "liquid.sheet_axis", "grey", true},
@@ -484,6 +499,9 @@ static const counterpart counterparts[] = {
     {"mesh-texture", "slime", "paving.texture_size", ""},
     {"one-mesh", "models", "ring.mesh", ""},
     {"apart", "rod", "liquid.priority", ""},
+    {"beam-lights-nothing", "magnifier", "sun.power", "render.caustics=photons sun.lights=on sun.target=0,-0.4,1.2"},
+    {"depolarised-here", "rod", "lamp.polarised",
+     "render.polarisation=on render.caustics=photons render.photons=20000"},
     {"one-light", "shapes", "render.light_sampling", "render.integrator=path render.paths=4"},
     {"unseen", "rod", "rod.color", ""},
     {"unseen", "rod", "rod.ambient", ""},

@@ -7,10 +7,8 @@
 #include <stdint.h>
 #include <cmocka.h>
 
-#include "render/caustics/caustics.h"
 #include "render/caustics/emission.h"
-#include "render/caustics/photon_map.h"
-#include "render_fixture.h"
+#include "photon_fixture.h"
 #include "scene/model/scene.h"
 #include <stdlib.h>
 
@@ -230,18 +228,6 @@ static double expected_flux(double *rings)
         follow(a, 2.0 * PI * sin(a) * widest / STEPS, rings, &all);
     }
     return all;
-}
-
-static caustics *photons_of(plan *p, const atomic_bool *stop)
-{
-    caustics *c = NULL;
-    assert_int_equal(caustics_create(p, isa_best(), 1, stop, &c, NULL), STATUS_OK);
-    assert_non_null(c);
-    for (int k = 0; k < CAUSTICS_STEPS; k++) {
-        caustics_steps[k].together(c, 0);
-        assert_int_equal(caustics_steps[k].alone(c, NULL), STATUS_OK);
-    }
-    return c;
 }
 
 static void a_ball_focuses_as_a_forward_tracer_says(void **state)

@@ -111,6 +111,15 @@ static void ineffective_parameters_give_a_hint(void **state)
                  "transparency: 1, ior: 1.5}}",
                  "");
     expect_hints("render: {integrator: path}\nlights: {lamp: {}}\nsolids: {ball: {shape: sphere, diffuse: 1}}", "");
+    expect_hints("lights: {lamp: {polarised: 0.5}}\nsolids: {ball: {shape: sphere, diffuse: 1}}",
+                 "lamp.polarised: light is traced without its polarisation: that of lamp has no effect; set "
+                 "render.polarisation to on\n");
+    expect_hints("beams: {laser: {lights: on}}\nsolids: {ball: {shape: sphere, diffuse: 1}}",
+                 "lights: no lights: opaque surfaces show only ambient and emitted light; add lights:\n"
+                 "laser.lights: laser lights nothing: photons alone bring the light of beams; set "
+                 "render.caustics=photons\n");
+    expect_hints(
+        "render: {caustics: photons}\nbeams: {laser: {lights: on}}\nsolids: {ball: {shape: sphere, diffuse: 1}}", "");
     expect_hints("lights: {noon: {kind: sun}}\nsolids: {ball: {shape: sphere, diffuse: 1}}",
                  "noon.angular_diameter_deg: all light of noon is parallel; set render.soft_shadows=on, or "
                  "render.integrator=path\n");

@@ -225,6 +225,36 @@ static void changed_defaults_of_paths_concern_only_paths(void **state)
                                  "render.light_sampling: all"));
 }
 
+static uint64_t definition_with_beam(const fixture *f, const char *keys, const char *grid)
+{
+    char text[2000];
+    snprintf(text, sizeof text, "%s\nbeams: {laser: {%s}}\n", fixture_scene, keys);
+    fixture_write(f, "beams.yaml", text);
+    snprintf(text, sizeof text, "study: x\nscene: beams.yaml\ngrid: [%s]\n", grid);
+    study *s = fixture_study(f, text);
+    const uint64_t hash = s->definition_hash;
+    study_destroy(s);
+    return hash;
+}
+
+/* A beam that lights nothing changes no film, so that it is not in a study's definition; a lamp is, as is one that the
+ * grid makes a lamp. */
+static void beams_belong_to_a_definition_if_they_are_lamps(void **state)
+{
+    const fixture *f = *state;
+    static const char depth[] = "{render.depth: [0, 2]}", lights[] = "{laser.lights: [off, on]}";
+    const uint64_t dark = definition_with_beam(f, "power: 1", depth);
+    study *without = fixture_study(f, "study: x\nscene: scene.yaml\ngrid: [{render.depth: [0, 2]}]\n");
+    assert_int_equal(without->definition_hash, dark);
+    study_destroy(without);
+    assert_int_equal(definition_with_beam(f, "power: 2, width: 3", depth), dark);
+    const uint64_t lamp = definition_with_beam(f, "power: 2, lights: on", depth);
+    assert_int_not_equal(lamp, dark);
+    assert_int_not_equal(definition_with_beam(f, "power: 3, lights: on", depth), lamp);
+    assert_int_equal(definition_with_beam(f, "power: 2, lights: on, rays: 9, color: [1, 0, 0]", depth), lamp);
+    assert_int_not_equal(definition_with_beam(f, "power: 2", lights), definition_with_beam(f, "power: 3", lights));
+}
+
 /* For a parameter anywhere in the table, with and without an explicit default. */
 static void order_and_explicit_defaults_do_not_change_a_definition(void **state)
 {
@@ -688,6 +718,7 @@ int main(void)
         cmocka_unit_test(default_values_are_not_part_of_a_definition),
         CASE(order_and_explicit_defaults_do_not_change_a_definition),
         CASE(changed_defaults_of_paths_concern_only_paths),
+        CASE(beams_belong_to_a_definition_if_they_are_lamps),
         CASE(objects_are_part_of_a_definition),
         CASE(columns_are_identified_by_name),
         CASE(a_study_resumes_in_a_file_with_other_columns),

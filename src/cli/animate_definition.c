@@ -3,7 +3,7 @@
 #include "base/hash.h"
 #include "base/number.h"
 #include "report/json.h"
-#include "scene/model/params.h"
+#include "scene/model/params_path.h"
 #include "scene/model/slime.h"
 #include "study/grid.h"
 #include "scene/model/scene.h"
@@ -16,14 +16,22 @@ static bool is_time_of_slime(const param *row)
     return row->group == PARAM_MESH && strcmp(row->name, "time_s") == 0;
 }
 
-/* Skips what affects only performance, but not how the film is shown; time_s of slimes, which the frame sets; and file
- * names: only contents count, so that a folder may be moved. */
+typedef struct visit_state {
+    const scene *of;
+    json_t *into;
+} visit_state;
+
+/* Skips what no film depends on, but not how the film is shown; beams that light nothing; time_s of slimes, which the
+ * frame sets; and file names: only contents count, so that a folder may be moved. */
 static status add_param(void *context, const char *path, const param *row, const char *value)
 {
-    if ((row->performance_only && row->group != PARAM_CAMERA) || row->type == PARAM_PATH || is_time_of_slime(row))
+    const visit_state *state = context;
+    const bool dark_beam = row->group == PARAM_BEAM && strcmp(row->name, "lights") == 0 && strcmp(value, "off") == 0;
+    if ((!scene_film_depends_on(state->of, path) && row->group != PARAM_CAMERA) || dark_beam ||
+        row->type == PARAM_PATH || is_time_of_slime(row))
         return STATUS_OK;
-    json_object_del(context, path); /* so that the last assignment is the last entry */
-    return json_object_set_new(context, path, json_of_text(value)) == 0 ? STATUS_OK : STATUS_FAILURE;
+    json_object_del(state->into, path); /* so that the last assignment is the last entry */
+    return json_object_set_new(state->into, path, json_of_text(value)) == 0 ? STATUS_OK : STATUS_FAILURE;
 }
 
 static bool add_request(json_t *parameters, const animate_request *request, const scene *s)
@@ -62,8 +70,9 @@ static void hash_solids(uint64_t *hash, const scene *s)
 status animate_define(const animate_request *request, const scene *s, animate_definition *out, diagnostic *why)
 {
     *out = (animate_definition){.parameters = json_object(), .hash = HASH_START};
+    visit_state state = {s, out->parameters};
     if (!out->parameters || !add_request(out->parameters, request, s) ||
-        scene_each_param(s, add_param, out->parameters) != STATUS_OK)
+        scene_each_param(s, add_param, &state) != STATUS_OK)
         return out_of_memory(why);
     hash_parameters(&out->hash, out->parameters);
     hash_solids(&out->hash, s);

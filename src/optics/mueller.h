@@ -42,6 +42,14 @@ static inline void polarisation_frame(vec3 d, vec3 *x, vec3 *y)
     *y = vec3_make(b, sign + d.y * d.y * a, -d.y);
 }
 
+/* The direction across a ray d that a direction across an axis f, of a camera or a lamp, becomes under the shortest
+ * rotation from f to d, which must not be -f (Rodrigues' formula): directions at right angles stay so, and crossed
+ * filters are crossed in the whole image. */
+static inline vec3 polarisation_across_ray(vec3 across, vec3 f, vec3 d)
+{
+    return vec3_sub(across, vec3_scale(vec3_add(f, d), vec3_dot(across, d) / (1.0 + vec3_dot(f, d))));
+}
+
 /* A rotation of the frame by an angle a, from x towards y, as it acts on Stokes vectors. */
 typedef struct frame_turn {
     double cos_2a, sin_2a;

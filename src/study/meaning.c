@@ -23,13 +23,14 @@ static status add(meaning *m, char *name, char *value)
 
 typedef struct visit_state {
     meaning *into;
+    const scene *of;
     bool without_performance, by_chance;
 } visit_state;
 
 static status add_param(void *context, const char *path, const param *row, const char *value)
 {
     visit_state *state = context;
-    if (row->group == PARAM_BEAM) /* no film depends on it */
+    if (row->group == PARAM_BEAM && !scene_film_depends_on(state->of, path))
         return STATUS_OK;
     if ((state->without_performance && row->performance_only) || (row->by_chance && !state->by_chance))
         return STATUS_OK;
@@ -45,7 +46,9 @@ static status add_param(void *context, const char *path, const param *row, const
 static status add_objects(meaning *m, const scene *of, param_group group)
 {
     for (size_t i = 0; i < param_place_group_size(of, group); i++)
-        TRY(add(m, text_format("%s %zu", param_group_name(group), i), strdup(param_place_group_name(of, group, i))));
+        if (group != PARAM_BEAM || of->beams[i].lights) /* no film depends on the others */
+            TRY(add(m, text_format("%s %zu", param_group_name(group), i),
+                    strdup(param_place_group_name(of, group, i))));
     return STATUS_OK;
 }
 
@@ -59,9 +62,9 @@ static status add_solid(meaning *m, const scene *of, const solid *owner)
 
 status meaning_of_scene(meaning *m, const scene *of, bool without_performance)
 {
-    static const param_group groups[] = {PARAM_MESH, PARAM_TEXTURE, PARAM_LIGHT, PARAM_MATERIAL,
-                                         PARAM_SOLID}; /* no beams */
-    visit_state state = {m, without_performance, integrator_traits_of(&of->render)->by_chance};
+    static const param_group groups[] = {PARAM_MESH, PARAM_TEXTURE,  PARAM_LIGHT,
+                                         PARAM_BEAM, PARAM_MATERIAL, PARAM_SOLID};
+    visit_state state = {m, of, without_performance, integrator_traits_of(&of->render)->by_chance};
     TRY(scene_each_param(of, add_param, &state));
     TRY(add(m, strdup("the camera's direction"), strdup(of->camera.aimed ? "its target" : "its angles")));
     for (size_t i = 0; i < sizeof groups / sizeof *groups; i++)
@@ -80,10 +83,35 @@ static status add_axis(meaning *m, const study_axis *axis, size_t number)
     return STATUS_OK;
 }
 
+/* Beams that a point of the axis makes lamps, or not: then films depend on all their parameters. */
+static void light_beams(scene *base, const study_axis *axis)
+{
+    param_place at;
+    for (size_t i = 0; i < axis->count; i++)
+        for (size_t k = 0; k < axis->points[i].count; k++)
+            if (param_place_find(base, axis->points[i].paths[k], &at, NULL) == STATUS_OK &&
+                at.object_group == PARAM_BEAM && strcmp(at.row->name, "lights") == 0)
+                base->beams[at.index].lights = 1;
+}
+
+static status add_base(meaning *m, const study *s)
+{
+    if (s->base->beam_count == 0)
+        return meaning_of_scene(m, s->base, false);
+    scene *base = scene_clone(s->base);
+    if (!base)
+        return STATUS_FAILURE;
+    for (size_t axis = 0; axis < s->axis_count; axis++)
+        light_beams(base, &s->axes[axis]);
+    const status code = meaning_of_scene(m, base, false);
+    scene_destroy(base);
+    return code;
+}
+
 status meaning_of_study(meaning *m, const study *s)
 {
     TRY(add(m, strdup("the study's name"), strdup(s->name)));
-    TRY(meaning_of_scene(m, s->base, false));
+    TRY(add_base(m, s));
     for (size_t axis = 0; axis < s->axis_count; axis++)
         TRY(add_axis(m, &s->axes[axis], axis));
     return STATUS_OK;

@@ -2,7 +2,7 @@
 #include "base/file.h"
 #include "base/hash.h"
 #include "base/text.h"
-#include "scene/model/params.h"
+#include "scene/model/params_path.h"
 #include "study/grid.h"
 #include "study/manifest.h"
 #include "scene/model/scene.h"
@@ -111,16 +111,25 @@ status reference_load(const char *folder, const char *root, uint64_t scene_hash,
     return code;
 }
 
+typedef struct visit_state {
+    const scene *of;
+    json_t *into;
+} visit_state;
+
 static status add_param(void *context, const char *path, const param *row, const char *value)
 {
-    return row->performance_only || json_object_set_new(context, path, json_string(value)) == 0 ? STATUS_OK
-                                                                                                : STATUS_FAILURE;
+    const visit_state *state = context;
+    (void)row;
+    return !scene_film_depends_on(state->of, path) || json_object_set_new(state->into, path, json_string(value)) == 0
+               ? STATUS_OK
+               : STATUS_FAILURE;
 }
 
 static status save_facts(const reference *of, const scene *setting, const char *path, diagnostic *why)
 {
     json_t *params = json_object();
-    status code = scene_each_param(setting, add_param, params);
+    visit_state state = {setting, params};
+    status code = scene_each_param(setting, add_param, &state);
     json_t *facts = json_pack("{s:o, s:o, s:o, s:o}", "film_hash", facts_hash(of->film_hash), "noise_rms",
                               isnan(of->noise_rms) ? json_null() : json_real(of->noise_rms), "pixel_hash",
                               facts_hash(pixel_hash(of->img)), "parameters", params);

@@ -72,19 +72,12 @@ static void leave_lens(const tracer *t, int64_t each, int count, const camera_pl
         q->inside[i] = scene_geometry_inside(p->geometry, vec3_make(q->ox[i], q->oy[i], q->oz[i]));
 }
 
-/* The direction across a ray d that a direction across the camera's axis f becomes under the shortest rotation from f
- * to d (Rodrigues' formula): directions at right angles stay so, and crossed filters are crossed in the whole image. */
-static vec3 across_ray(vec3 axis, vec3 f, vec3 d)
-{
-    return vec3_sub(axis, vec3_scale(vec3_add(f, d), vec3_dot(axis, d) / (1.0 + vec3_dot(f, d))));
-}
-
 /* The row of an ideal analyser: it transmits half of unpolarised light. A left-handed one's v is positive
  * (optics/mueller.h). */
 static stokes analyser_row(const plan *p, vec3 d)
 {
     if (p->analyser == ANALYSER_LINEAR)
-        return stokes_linear(d, across_ray(p->analyser_axis, p->view.forward, d));
+        return stokes_linear(d, polarisation_across_ray(p->analyser_axis, p->view.forward, d));
     return (stokes){1.0, 0.0, 0.0, p->analyser == ANALYSER_CIRCULAR_LEFT ? 1.0 : -1.0};
 }
 

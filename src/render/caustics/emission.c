@@ -2,8 +2,7 @@
 #include "render/caustics/emission_parts.h"
 
 #include "base/elementary.h"
-#include "optics/mueller.h"
-#include "render/core/draw.h"
+#include "render/shade/lamp_polarisation.h"
 
 #define PI 3.14159265358979323846
 
@@ -20,12 +19,6 @@ static int lamp_of(const emission *e, int64_t i)
     while (e->lamps[low].count == 0) /* lamps without photons begin where the next one does */
         low--;
     return low;
-}
-
-static unit_pair pair(const emission *e, int64_t i, uint64_t purpose)
-{
-    const sobol_point s = sobol_at((uint32_t)i, (purpose << 32 | DRAW_PHOTON) ^ e->p->draws.seed_hash);
-    return (unit_pair){random_unit(s.x), random_unit(s.y)};
 }
 
 static vec3 along(vec3 axis, double cosine, double sine, double turn)
@@ -182,25 +175,31 @@ static double draw_wavelength(const emission *e, int lamp, double u, emitted_ray
 bool emission_ray(const emission *e, int64_t i, emitted_ray *out)
 {
     const plan *p = e->p;
+    if (p->beam_count > 0 && i >= e->beams[0].first)
+        return emission_beam_ray(e, i, out);
     const int lamp = lamp_of(e, i);
     const light *l = &p->lights[lamp];
     const lamp_emission *from = &e->lamps[lamp];
     const bool sun = is_sun(e, lamp); /* with the flux of a beam */
     const int64_t number = i - from->first;
-    const double angle =
-        draw_ray(e, lamp, pair(e, number, (uint64_t)lamp << 8), pair(e, number, (uint64_t)lamp << 8 | 1), out);
+    const double angle = draw_ray(e, lamp, emission_pair(e, number, (uint64_t)lamp << 8),
+                                  emission_pair(e, number, (uint64_t)lamp << 8 | 1), out);
     const double share = light_share(l, &p->cones[lamp], out->direction);
     if (share == 0.0 || angle == 0.0)
         return false;
     out->lamp_radius = sun                ? sun_path(e) * sqrt(from->cones[0].cap * (2.0 - from->cones[0].cap))
                        : is_flat(e, lamp) ? sqrt(p->shapes[lamp].area / PI)
                                           : sphere_radius(e, lamp);
+    const bool polarised = p->render.polarisation && l->polarised > 0.0;
+    const stokes s = polarised ? lamp_stokes(p, lamp, out->direction, out->direction) : (stokes){1.0, 0.0, 0.0, 0.0};
+    out->q = s.q, out->u = s.u;
+    out->of_beam = false;
     out->falls = sun || l->reach > 0.0;
     out->wavelength = -1;
     vec3 color = vec3_scale(l->color, l->intensity);
     out->of_line = false;
     if (p->spectral) {
-        const double radiance = draw_wavelength(e, lamp, pair(e, number, (uint64_t)lamp << 8 | 2).u, out);
+        const double radiance = draw_wavelength(e, lamp, emission_pair(e, number, (uint64_t)lamp << 8 | 2).u, out);
         color = vec3_make(radiance, radiance, radiance);
     }
     out->power = vec3_scale(color, share * (l->reach > 0.0 ? l->reach * l->reach : 1.0) * angle / (double)from->count);

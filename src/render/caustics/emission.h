@@ -7,6 +7,9 @@
  * ball's disc. A sun's directions are uniform over its disc, or one; its rays pass the discs of the balls across them,
  * and begin far before all solids. Where a ball has no bounds, they are followed within twice the extent of the scene.
  *
+ * A beam that lights the scene is one more lamp: its photons start as its rays do, whatever they meet, and bring its
+ * light to the first matte surface too, which no shadow ray does (emission_beam.c).
+ *
  * Photons are points of a scrambled Sobol sequence for each lamp, a function of the seed and the photon's number.
  * Ownership: emission_create allocates, emission_destroy releases; the plan is borrowed. */
 #pragma once
@@ -21,19 +24,21 @@ typedef struct emission emission;
 status emission_create(const plan *p, int64_t photons, bool sizes, emission **out, diagnostic *why);
 void emission_destroy(emission *e);
 
-/* The number of photons that are really emitted: 0 if no lamp shines or nothing can deflect them. */
+/* The number of photons that are really emitted: 0 if no lamp shines or nothing can deflect them, and no beam does. */
 int64_t emission_count(const emission *e);
-/* The radius of the largest bounding ball; of scenes without bounds, that of the scene. */
+/* The radius of the largest bounding ball; of scenes without bounds, that of the scene; at least that of beams. */
 double emission_extent(const emission *e);
 
 typedef struct emitted_ray {
     vec3 origin, direction;
     vec3 power; /* over pi, by channel; in a spectral film that at the photon's wavelength, in each channel */
     double lamp_radius;
+    double q, u; /* with polarisation: its Stokes vector relative to its first element, in its canonical frame */
     uint64_t inside;
     int wavelength; /* its number, or -1 */
     bool of_line;   /* one of a spectral line, of which all photons count for that wavelength alone */
-    bool falls;     /* false: its light does not fall off with distance, and its power applies at distance 1 */
+    bool of_beam;
+    bool falls; /* false: its light does not fall off with distance, and its power applies at distance 1 */
 } emitted_ray;
 
 /* The ray of photon i; false if it has none (outside a spotlight's cone). */

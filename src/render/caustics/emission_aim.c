@@ -114,29 +114,34 @@ static double aim(emission *e, int lamp)
     return l->intensity * fmax(l->color.x, fmax(l->color.y, l->color.z)) * falloff * sum;
 }
 
+/* power: of lamps, then of beams. */
 static void divide(emission *e, const double *power, int64_t photons)
 {
+    const int lamps = e->p->light_count, sources = lamps + e->p->beam_count;
     double all = 0.0, so_far = 0.0;
-    for (int k = 0; k < e->p->light_count; k++)
+    for (int k = 0; k < sources; k++)
         all += power[k];
-    for (int k = 0; k < e->p->light_count && all > 0.0; k++) {
+    for (int k = 0; k < sources && all > 0.0; k++) {
+        int64_t *first = k < lamps ? &e->lamps[k].first : &e->beams[k - lamps].first,
+                *count = k < lamps ? &e->lamps[k].count : &e->beams[k - lamps].count;
         so_far += power[k];
-        e->lamps[k].first = e->count;
+        *first = e->count;
         e->count = (int64_t)(so_far / all * (double)photons + 0.5);
-        e->lamps[k].count = e->count - e->lamps[k].first;
+        *count = e->count - *first;
     }
 }
 
 status emission_create(const plan *p, int64_t photons, bool sizes, emission **out, diagnostic *why)
 {
     emission *e = calloc(1, sizeof *e);
-    double *power = calloc((size_t)p->light_count + 1, sizeof *power);
+    double *power = calloc((size_t)p->light_count + (size_t)p->beam_count + 1, sizeof *power);
     *out = e;
     if (e) {
         e->p = p; /* which emission_destroy needs */
         e->lamps = calloc((size_t)p->light_count + 1, sizeof *e->lamps);
+        e->beams = calloc((size_t)p->beam_count + 1, sizeof *e->beams);
     }
-    if (!e || !power || !e->lamps)
+    if (!e || !power || !e->lamps || !e->beams)
         goto failed;
     e->sizes = sizes;
     find_balls(e);
@@ -145,9 +150,16 @@ status emission_create(const plan *p, int64_t photons, bool sizes, emission **ou
             goto failed;
         power[k] = aim(e, k);
     }
-    divide(e, power, photons);
+    status code = emission_prepare_beams(e, power + p->light_count, why);
+    if (code == STATUS_OK)
+        divide(e, power, photons);
     free(power);
-    return STATUS_OK;
+    if (code != STATUS_OK) {
+        emission_destroy(e);
+        *out = NULL;
+        return code;
+    }
+    return code;
 failed:
     free(power);
     emission_destroy(e);
@@ -162,6 +174,7 @@ void emission_destroy(emission *e)
     for (int k = 0; e->lamps && k < e->p->light_count; k++)
         free(e->lamps[k].cones);
     free(e->lamps);
+    free(e->beams);
     free(e);
 }
 

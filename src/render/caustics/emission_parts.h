@@ -3,6 +3,9 @@
 
 #include "render/caustics/emission.h"
 
+#include "render/core/draw.h"
+#include "render/inspect/ray_axes.h"
+
 #include <math.h>
 
 enum { CONES_MAX = 64 }; /* of a scene with more solids that deflect light, one ball holds them all */
@@ -24,6 +27,12 @@ typedef struct lamp_emission {
     uint64_t inside;
 } lamp_emission;
 
+typedef struct beam_emission {
+    int64_t first, count;
+    ray_axes axes;
+    vec3 color; /* in an rgb film */
+} beam_emission;
+
 struct emission {
     const plan *p;
     bool sizes;
@@ -31,8 +40,20 @@ struct emission {
     ball balls[CONES_MAX];
     double extent;
     lamp_emission *lamps;
+    beam_emission *beams;
     int64_t count;
 };
+
+static inline unit_pair emission_pair(const emission *e, int64_t i, uint64_t purpose)
+{
+    const sobol_point s = sobol_at((uint32_t)i, (purpose << 32 | DRAW_PHOTON) ^ e->p->draws.seed_hash);
+    return (unit_pair){random_unit(s.x), random_unit(s.y)};
+}
+
+/* emission_beam.c: prepares the beams and sets their shares of the photons, as emission_aim.c does of lamps; then the
+ * ray of photon i, which must be a beam's. */
+status emission_prepare_beams(emission *e, double *power, diagnostic *why);
+bool emission_beam_ray(const emission *e, int64_t i, emitted_ray *out);
 
 /* Of a lamp that is a sphere, else 0. */
 static inline double sphere_radius(const emission *e, int lamp)

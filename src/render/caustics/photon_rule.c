@@ -1,7 +1,8 @@
 /* Tracing of photons. A ray's sample key is the photon's number, with its wavelength; its throughput is its share of
  * the power with which the photon began. With polarisation its Stokes vector is that of an analyser that went the same
- * way backwards: what unpolarised light keeps between two ends does not depend on the direction (Stokes and Helmholtz
- * reversion; Chandrasekhar, Radiative Transfer, 1950, section 13). */
+ * way backwards: what light keeps between two ends does not depend on the direction, and a linearly polarised lamp is
+ * the analyser that passes its field (Stokes and Helmholtz reversion; Chandrasekhar, Radiative Transfer, 1950, section
+ * 13). */
 #include "render/caustics/photon_rule.h"
 
 #include "render/shade/rough.h"
@@ -63,7 +64,7 @@ void photon_rule_emit(tracer *t, int64_t first, int64_t end, photon_list *found)
         q->wr[at] = q->wg[at] = q->wb[at] = 1.0;
         q->start[at] = FACE_NONE, q->inside[at] = r.inside;
         q->sample_key[at] = r.wavelength < 0 ? i : sample_key_with_wavelength(i, r.wavelength);
-        q->sq[at] = q->su[at] = q->sv[at] = 0.0; /* unpolarised */
+        q->sq[at] = r.q, q->su[at] = r.u, q->sv[at] = 0.0;
         q->passed[at] = q->bent[at] = 0.0;
     }
 }
@@ -88,15 +89,16 @@ static void place(tracer *t, const int *list)
     work_of(t)->list = list;
 }
 
-/* The photons of the gathered group arrive. */
-static void arrive(tracer *t)
+/* The photons of the gathered group arrive: those of lamps only after a mirror or a clear solid, shadow rays bring the
+ * others' light; those of beams at once. */
+static void arrive(tracer *t, int depth)
 {
     photon_frame *f = t->target.state;
     photon_work *w = work_of(t);
     const group *g = &t->surface.gathered;
     for (int k = 0; k < g->count; k++) {
         emitted_ray r;
-        if (!emission_ray(f->from, number_of(g->sample_key[k]), &r))
+        if (!emission_ray(f->from, number_of(g->sample_key[k]), &r) || (depth == 0 && !r.of_beam))
             continue;
         const double passed = w->passed[w->list[k]], bent = w->bent[w->list[k]],
                      falls = r.falls ? 1.0 : passed * passed;
@@ -104,7 +106,7 @@ static void arrive(tracer *t)
                             .normal = {(float)g->points.nx[k], (float)g->points.ny[k], (float)g->points.nz[k]},
                             .flux = {(float)(g->wr[k] * r.power.x * falls), (float)(g->wg[k] * r.power.y * falls),
                                      (float)(g->wb[k] * r.power.z * falls)},
-                            .radius = (float)(BLUR_SHARE * r.lamp_radius * bent / (passed - bent)),
+                            .radius = r.of_beam ? 0.0F : (float)(BLUR_SHARE * r.lamp_radius * bent / (passed - bent)),
                             .wavelength = r.of_line ? photon_of_line(r.wavelength) : r.wavelength};
         if (!photon_list_add(w->found, &one))
             atomic_store(&f->out_of_memory, true);
@@ -173,8 +175,8 @@ static void shade(tracer *t, int depth, int priority_index)
 {
     const material *m = &t->surface.mat->surface;
     const bool opaque = surface_is_opaque(t, priority_index);
-    if (opaque && m->diffuse > 0.0 && depth > 0)
-        arrive(t);
+    if (opaque && m->diffuse > 0.0 && (depth > 0 || t->target.frame_plan->beam_count > 0))
+        arrive(t, depth);
     if (opaque && !surface_reflects(t))
         return;
     const double alpha = rough_alpha(t);

@@ -204,6 +204,16 @@ static status prepare_lights(const scene *s, plan *p, diagnostic *why)
     return STATUS_OK;
 }
 
+static status prepare_beams(const scene *s, plan *p, diagnostic *why)
+{
+    if (!(p->beams = calloc(s->beam_count + 1, sizeof *p->beams)))
+        return out_of_memory(why);
+    for (size_t i = 0; i < s->beam_count; i++)
+        if (beam_lights_scene(&s->beams[i], &s->render))
+            p->beams[p->beam_count++] = s->beams[i];
+    return STATUS_OK;
+}
+
 static status add_rain(const scene *s, plan *p, diagnostic *why)
 {
     const bool traced = !integrator_traits_of(&s->render)->layers;
@@ -360,6 +370,7 @@ status plan_build(const scene *s, plan **out, diagnostic *why)
     THEN(code, arrange(s, laws, p, why));
     THEN(code, fill_priority_indices(s, laws, p, why));
     THEN(code, prepare_lights(s, p, why));
+    THEN(code, prepare_beams(s, p, why));
     THEN(code, add_rain(s, p, why));
     THEN(code, place_camera(s, p, why));
     free(laws);
@@ -383,6 +394,8 @@ status plan_build(const scene *s, plan **out, diagnostic *why)
     p->solid_shadows = p->render.shadows == SHADOWS_OPAQUE;
     for (size_t i = 0; i < s->light_count && integrator_traits_of(&s->render)->by_chance; i++)
         p->solid_shadows |= light_has_size(&s->lights[i]);
+    for (int i = 0; i < p->light_count; i++)
+        p->polarised_shadows |= p->sheets && s->render.polarisation && p->lights[i].polarised > 0.0;
     *out = p;
     return STATUS_OK;
 }
@@ -408,6 +421,7 @@ void plan_destroy(plan *p)
     free(p->laws);
     free(p->absorption);
     free(p->lights);
+    free(p->beams);
     free(p->cones);
     free(p->shapes);
     spectra_destroy(p->spectral);

@@ -3,23 +3,24 @@
  * allocates, plan_destroy releases; it borrows the scene's sky. */
 #pragma once
 
-#include "geometry/scene_geometry.h"
 #include "geometry/hierarchy.h"
+#include "geometry/scene_geometry.h"
 #include "render/core/mesh_report.h"
 #include "render/core/path_sampling.h"
 #include "render/shade/crystals.h"
-#include "render/shade/layered_table.h"
 #include "render/shade/lamp_shape.h"
+#include "render/shade/layered_table.h"
 #include "render/shade/light_cone.h"
 #include "render/shade/rain.h"
 #include "render/shade/scattering.h"
 #include "render/shade/sheets.h"
 #include "render/shade/spectra.h"
+#include "scene/model/beam.h"
 #include "scene/model/camera.h"
 #include "scene/model/face_materials.h"
-#include "scene/model/medium.h"
 #include "scene/model/light.h"
 #include "scene/model/material.h"
+#include "scene/model/medium.h"
 #include "scene/model/open.h"
 #include "scene/model/render_settings.h"
 #include "scene/model/solids.h"
@@ -47,6 +48,7 @@ typedef struct plan {
     vec3 *absorption;  /* by priority index: Beer-Lambert coefficients and tints, by channel, in 1 / scene unit */
     spectra *spectral; /* for a spectral film, else NULL */
     layered_plan *layered;    /* metals and films; NULL if there are none */
+    bool polarised_shadows;   /* some lamp is polarised, and sheets in shadow rays can tell */
     region_sheet *sheets;     /* by priority index: polarisers and wave plates; NULL if there are none */
     optical_medium *crystals; /* by priority index; NULL if there are none */
     scatter_plan *scatter;    /* media that scatter; NULL if there are none */
@@ -71,6 +73,8 @@ typedef struct plan {
     light_cone *cones;  /* by light; undefined for a point light */
     lamp_shape *shapes; /* by light; defined for discs and rectangles */
     int light_count;
+    beam *beams; /* those that light the scene; names are borrowed */
+    int beam_count;
     bool has_sun; /* some light is a sun; suns are at sun_distance from the origin, and without radius and reach */
     double sun_distance; /* far beyond all solids and other lights */
 } plan;

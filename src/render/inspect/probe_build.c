@@ -325,7 +325,8 @@ static status build_shadows(probe *p, ray_tree *tree, int parent, diagnostic *wh
         ray_record *r = &record[i];
         r->depth = depth;
         r->medium_priority_index = priority_index;
-        memset(r->stokes, 0, sizeof r->stokes);
+        if (!p->frame_plan->polarised_shadows)
+            memset(r->stokes, 0, sizeof r->stokes);
         size_t at = 0;
         code = add_node(p, tree, r, RAY_SHADOW, parent, &at, why);
         if (code != STATUS_OK)

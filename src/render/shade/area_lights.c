@@ -93,6 +93,8 @@ static void enqueue_sphere(tracer *t, int k, const material *m, bool opaque, con
     const double seen = 2.0 * s->cap[k] * radiance * l->weight[k], diffuse = m->diffuse * n_l;
     const vec3 color = vec3_scale(light_color_of(t, lamp, g->sample_key[k]), seen);
     shadow_ray_enqueue(t, k, vec3_scale(to, s->reach[k]), color, diffuse, shine);
+    if (t->target.frame_plan->polarised_shadows)
+        sheets_shadow_ray(t, lamp, t->queues.shadows.count - 1);
 }
 
 bool light_has_area(const plan *p, int lamp)
@@ -126,6 +128,8 @@ static void enqueue_flat(tracer *t, int k, const material *m, bool opaque, const
         lamp_shape_radiance(s, p->lights[lamp].reach) * cos_l * s->area / (LAMP_PI * distance2) * l->weight[k];
     const vec3 color = vec3_scale(light_color_of(t, lamp, g->sample_key[k]), seen);
     shadow_ray_enqueue(t, k, to_light, color, m->diffuse * n_l, opaque ? highlight_of(g, k, m, to, n_l) : 0.0);
+    if (p->polarised_shadows)
+        sheets_shadow_ray(t, lamp, t->queues.shadows.count - 1);
 }
 
 void area_lights_aim_at_spheres(const tracer *t, lamp_samples *l)

@@ -19,14 +19,19 @@ typedef struct lamp_shape {
     double area;
 } lamp_shape;
 
+/* The horizontal unit vector across an axis: x for an axis straight up or down. */
+static inline vec3 lamp_right(vec3 axis)
+{
+    const bool vertical = axis.x * axis.x + axis.z * axis.z < 1e-12;
+    return vertical ? vec3_make(1.0, 0.0, 0.0) : vec3_normalize(vec3_make(axis.z, 0.0, -axis.x));
+}
+
 /* Of a light of kind disc or rectangle, which must not be at its own target. Its width is horizontal, unless it emits
  * straight up or down: then along x; roll_deg turns it about the axis, from right to up. */
 static inline lamp_shape lamp_shape_of(const light *l)
 {
     const vec3 axis = vec3_normalize(vec3_sub(l->target, l->position));
-    const bool vertical = axis.x * axis.x + axis.z * axis.z < 1e-12;
-    const vec3 right = vertical ? vec3_make(1.0, 0.0, 0.0) : vec3_normalize(vec3_make(axis.z, 0.0, -axis.x)),
-               up = vec3_cross(axis, right);
+    const vec3 right = lamp_right(axis), up = vec3_cross(axis, right);
     double sine, cosine;
     elementary_sincos_deg(l->kind == LIGHT_DISC ? 0.0 : l->roll_deg, &sine, &cosine);
     const bool round = l->kind == LIGHT_DISC;

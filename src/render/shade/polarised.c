@@ -1,6 +1,7 @@
 /* Polarised light, traced from the camera: each ray carries the analyser's Stokes vector (optics/mueller.h), whose
- * first element is part of its throughput; the others, relative to the first, are in the queue. Light from the sky,
- * lights and matte surfaces is unpolarised, so that only the first element weights it. */
+ * first element is part of its throughput; the others, relative to the first, are in the queue. Light from the sky and
+ * from matte surfaces is unpolarised, so that only the first element weights it; that of polarised lamps meets the
+ * shadow rays' own vectors (render/shade/sheets.h). */
 #include "render/shade/shading.h"
 
 #include "optics/mueller.h"

@@ -202,7 +202,7 @@ static void caustic_light(tracer *t, const material *m)
 }
 
 /* Enqueues shadow rays to lights that can change the film. */
-static void enqueue_shadow_rays(tracer *t)
+static void enqueue_shadow_rays(tracer *t, int lamp)
 {
     const group *g = &t->surface.gathered;
     const lit_group *l = &t->surface.lit;
@@ -218,6 +218,8 @@ static void enqueue_shadow_rays(tracer *t)
         q->dx[at] = l->lx[i], q->dy[at] = l->ly[i], q->dz[at] = l->lz[i];
         q->wr[at] = l->r[i], q->wg[at] = l->g[i], q->wb[at] = l->b[i];
         q->start[at] = g->points.face[i], q->sample_key[at] = g->sample_key[i], q->inside[at] = g->inside_before[i];
+        if (t->target.frame_plan->polarised_shadows)
+            sheets_shadow_ray(t, lamp, at);
     }
 }
 
@@ -261,7 +263,7 @@ static void send_out(tracer *t, int priority_index, light_terms terms)
             continue;
         direct_light(t, m, k, priority_index);
         if (p->render.shadows != SHADOWS_OFF) {
-            enqueue_shadow_rays(t);
+            enqueue_shadow_rays(t, k);
             continue;
         }
         for (int i = 0; i < t->surface.gathered.count; i++)

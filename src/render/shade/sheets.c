@@ -2,6 +2,7 @@
 
 #include "base/elementary.h"
 #include "geometry/solid.h"
+#include "render/shade/lamp_polarisation.h"
 #include "render/shade/shading.h"
 #include "scene/model/scene.h"
 
@@ -72,8 +73,18 @@ void sheets_announce(tracer *t, const ray_queue *q, int first, int count)
         w->direction[i] = vec3_make(q->dx[at], q->dy[at], q->dz[at]);
         if (w->lights)
             w->direction[i] = vec3_normalize(w->direction[i]);
+        if (w->lights && p->polarised_shadows)
+            w->lamp[i] = (stokes){1.0, q->sq[at], q->su[at], q->sv[at]};
         w->region[i] = -1;
     }
+}
+
+void sheets_shadow_ray(tracer *t, int lamp, int at)
+{
+    ray_queue *q = &t->queues.shadows;
+    const vec3 to_lamp = vec3_normalize(vec3_make(q->dx[at], q->dy[at], q->dz[at]));
+    const stokes s = lamp_stokes(t->target.frame_plan, lamp, vec3_scale(to_lamp, -1.0), to_lamp);
+    q->sq[at] = s.q, q->su[at] = s.u, q->sv[at] = s.v;
 }
 
 static double lambda_of(const tracer *t, int64_t sample_key)
@@ -119,9 +130,11 @@ void sheets_segment(tracer *t, const medium_segment *s)
 void sheets_leave(tracer *t, int count, double share[3][ROW])
 {
     const sheet_work *w = &t->media->sheets;
+    const bool polarised = w->lights && t->target.frame_plan->polarised_shadows;
     for (int i = 0; i < count; i++) {
         leave(t, i);
-        const double left = greater(w->row[i].i, 0.0); /* of two crossed polarisers, up to rounding 0 */
+        const double seen = polarised ? analyser_sees(w->row[i], w->lamp[i]) : w->row[i].i;
+        const double left = greater(seen, 0.0); /* of two crossed polarisers, up to rounding 0 */
         share[0][i] *= left, share[1][i] *= left, share[2][i] *= left;
     }
 }

@@ -3,7 +3,8 @@
  * Between regions of equal index there is no interface: the ray goes straight on, at the same depth.
  *
  * A ray of the tree carries its analyser's row. A shadow ray starts with that of a matte surface, which sees the
- * intensity alone, and ends at a lamp, whose light is unpolarised: two crossed polarisers leave nothing of it. Without
+ * intensity alone, and ends at a lamp, whose Stokes vector waits in its queue (lamp_polarisation.h): two crossed
+ * polarisers leave nothing of unpolarised light, one that is crossed with a polarised lamp is enough. Without
  * polarisation every passage keeps the mean of a polariser's transmittances.
  * Ownership: sheet_list_create allocates, free releases. */
 #pragma once
@@ -32,12 +33,16 @@ stokes sheet_row(const region_sheet *sheet, stokes row, vec3 d, double length_m,
 
 /* The passages of a batch's rays. */
 typedef struct sheet_work {
-    stokes row[ROW]; /* its first element: the share of unpolarised light so far */
+    stokes row[ROW];  /* its first element: the share of unpolarised light so far */
+    stokes lamp[ROW]; /* of shadow rays to polarised lamps: their ends' */
     vec3 direction[ROW];
     int region[ROW];    /* priority index of the region that the ray is in, or -1 */
     double length[ROW]; /* its path there so far */
     bool lights;        /* the rays are shadow rays */
 } sheet_work;
+
+/* Stores the Stokes vector of the lamp at the end of shadow ray `at` in its queue. */
+void sheets_shadow_ray(struct tracer *t, int lamp, int at);
 
 /* sheets_announce: before a batch of a queue is traced. sheets_segment: the next segment of a ray. sheets_leave: ends
  * the passages and multiplies the shares by theirs. sheets_store: the rows into the queue. */

@@ -16,6 +16,13 @@ int spectral_lines_of(const light *l, lamp_line lines[LAMP_LINES_MAX])
     return count;
 }
 
+/* A beam's line, as that of a lamp. */
+static int lines_of_beam(const scene *s, const beam *b, lamp_line lines[LAMP_LINES_MAX])
+{
+    const light lamp = {.spectrum = LAMP_LINE, .line_nm = b->lambda_nm, .intensity = b->power};
+    return beam_lights_scene(b, &s->render) && !b->white ? spectral_lines_of(&lamp, lines) : 0;
+}
+
 /* Does anything emit light of other wavelengths? */
 static bool emits_a_continuum(const scene *s)
 {
@@ -24,6 +31,8 @@ static bool emits_a_continuum(const scene *s)
     bool any = sum.x + sum.y + sum.z > 0.0 || b->kind == BACKGROUND_IMAGE || b->rain > 0.0;
     for (size_t i = 0; i < s->light_count; i++)
         any |= s->lights[i].spectrum < LAMP_SODIUM && s->lights[i].intensity > 0.0;
+    for (size_t i = 0; i < s->beam_count; i++)
+        any |= s->beams[i].white && beam_lights_scene(&s->beams[i], &s->render);
     for (size_t i = 0; i < s->solid_count; i++)
         any |= s->solids[i].surface.emission > 0.0 || s->solids[i].mesh[0];
     return any;
@@ -33,9 +42,10 @@ static bool emits_a_continuum(const scene *s)
 static double add_lines(const scene *s, double *bright)
 {
     double all = 0.0;
-    for (size_t i = 0; i < s->light_count; i++) {
+    for (size_t i = 0; i < s->light_count + s->beam_count; i++) {
         lamp_line lines[LAMP_LINES_MAX];
-        const int count = spectral_lines_of(&s->lights[i], lines);
+        const int count = i < s->light_count ? spectral_lines_of(&s->lights[i], lines)
+                                             : lines_of_beam(s, &s->beams[i - s->light_count], lines);
         for (int k = 0; k < count; k++)
             bright[lines[k].wavelength] += lines[k].bright, all += lines[k].bright;
     }

@@ -1,7 +1,10 @@
-/* Beams of the optical bench: rays that are shown, and do not affect the film. Plain values; a beam owns its name. */
+/* Beams of the optical bench: rays that are shown, and with `lights` a lamp whose light photons bring. Plain values; a
+ * beam owns its name. */
 #pragma once
 
 #include "base/vec3.h"
+#include "optics/observer.h"
+#include "scene/model/render_settings.h"
 #include <stdbool.h>
 #include <stdint.h>
 
@@ -9,6 +12,10 @@ enum { SCENE_BEAMS_MAX = 64, BEAM_RAYS_MAX = 10000 };
 
 /* From one point: within a cone, or in a plane. Parallel: in a plane, or over a disc. */
 typedef enum beam_kind { BEAM_PENCIL, BEAM_FAN, BEAM_SHEET, BEAM_BUNDLE } beam_kind;
+
+/* Of the power of its photons: even within the angle or width; or exp(-2 r^2 / w^2), whose 2 w is the angle or width.
+ */
+typedef enum beam_profile { BEAM_UNIFORM, BEAM_GAUSSIAN } beam_profile;
 
 typedef struct beam {
     char *name;
@@ -27,6 +34,7 @@ typedef struct beam {
     double min_share;
     vec3 color; /* of the drawn lines; black: the colour of the wavelength */
     int64_t visible;
+    int64_t lights, profile; /* 1: it lights the scene, with that beam_profile */
 } beam;
 
 /* White light: evenly spaced, of equal power. */
@@ -50,6 +58,13 @@ static inline double beam_lambda(const beam *b, int number)
 static inline vec3 beam_axis(const beam *b)
 {
     return vec3_dot(b->direction, b->direction) > 0.0 ? b->direction : vec3_sub(b->target, b->position);
+}
+
+/* Whether photons bring its light. That of a wavelength which the eye does not see is none. */
+static inline bool beam_lights_scene(const beam *b, const render_settings *r)
+{
+    const bool seen = b->white || (b->lambda_nm >= OBSERVER_LOW_NM && b->lambda_nm <= OBSERVER_HIGH_NM);
+    return b->lights && b->visible && b->power > 0.0 && seen && scene_has_caustics(r);
 }
 
 static inline bool beam_is_parallel(const beam *b)

@@ -136,10 +136,12 @@ static status check_lines(const scene *s, diagnostic *why)
     int count = 0;
     for (size_t i = 0; i < s->light_count; i++)
         count += s->lights[i].spectrum == LAMP_LINE;
+    for (size_t i = 0; i < s->beam_count; i++)
+        count += !s->beams[i].white && beam_lights_scene(&s->beams[i], &s->render);
     return count <= LINE_LAMPS_MAX
                ? STATUS_OK
                : diagnose(why, STATUS_BAD_INPUT, "give some of them another spectrum",
-                          "%d lights have the spectrum line; a scene can have %d", count, LINE_LAMPS_MAX);
+                          "%d lights and beams have the spectrum line; a scene can have %d", count, LINE_LAMPS_MAX);
 }
 
 static status check_beam(const beam *b, diagnostic *why)

@@ -176,6 +176,9 @@ static void hint_at_lights(const scene *s, const note_taker *taker)
         if (lamp->spectrum >= LAMP_SODIUM && lamp->intensity > 0.0 && s->render.spectrum != SPECTRUM_SPECTRAL)
             note_give(taker, lamp->name, "spectrum", "set render.spectrum=spectral, which traces each line",
                       "%s emits spectral lines, and an rgb image shows only their colour", lamp->name);
+        if (lamp->polarised > 0.0 && !s->render.polarisation)
+            note_give(taker, lamp->name, "polarised", "set render.polarisation to on",
+                      "light is traced without its polarisation: that of %s has no effect", lamp->name);
         const bool soft = scene_has_soft_shadows(&s->render);
         const char *size = lamp->kind == LIGHT_RECTANGLE ? "width"
                            : lamp->kind == LIGHT_SUN     ? "angular_diameter_deg"
@@ -198,6 +201,19 @@ static void hint_at_lights(const scene *s, const note_taker *taker)
                                : "set render.caustics=photons, or its radius and its reach",
                       "%s is a point light, which random paths cannot hit through transparent solids: no caustics",
                       lamp->name);
+    }
+}
+
+static void hint_at_beams(const scene *s, const note_taker *taker)
+{
+    for (size_t i = 0; i < s->beam_count; i++) {
+        const beam *b = &s->beams[i];
+        if (b->lights && b->visible && !scene_has_caustics(&s->render))
+            note_give(taker, b->name, "lights", "set render.caustics=photons",
+                      "%s lights nothing: photons alone bring the light of beams", b->name);
+        else if (!b->lights && b->profile != BEAM_UNIFORM)
+            note_give(taker, b->name, "profile", "set its lights to on",
+                      "the rays of %s are shown evenly: its profile is that of its light", b->name);
     }
 }
 
@@ -301,11 +317,15 @@ void scene_hints(const scene *s, const note_taker *taker)
     }
     if (visible == 0)
         note_give(taker, "solids", NULL, "add solids:", "no visible solids: the image shows only the background");
-    const bool emitters_light = shining > 0 && integrator_traits_of(&s->render)->by_chance;
+    bool beams = false;
+    for (size_t i = 0; i < s->beam_count; i++)
+        beams |= beam_lights_scene(&s->beams[i], &s->render);
+    const bool emitters_light = beams || (shining > 0 && integrator_traits_of(&s->render)->by_chance);
     if (lit > 0 && s->light_count == 0 && !emitters_light)
         note_give(taker, "lights", NULL,
                   "add lights:", "no lights: opaque surfaces show only ambient and emitted light");
     hint_at_lights(s, taker);
+    hint_at_beams(s, taker);
     hint_at_lens(s, taker);
     hint_at_analyser(s, taker);
     hint_at_tone(s, taker);

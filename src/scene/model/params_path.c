@@ -206,3 +206,11 @@ status param_place_find_object(const scene *s, const char *name, param_place *ou
     free(words);
     return diagnose(why, STATUS_BAD_INPUT, remedy, "the scene has no object '%.80s'", name);
 }
+
+bool scene_film_depends_on(const scene *s, const char *path)
+{
+    param_place at;
+    if (param_place_find(s, path, &at, NULL) != STATUS_OK || at.row->performance_only)
+        return false;
+    return at.object_group != PARAM_BEAM || strcmp(at.row->name, "lights") == 0 || s->beams[at.index].lights;
+}

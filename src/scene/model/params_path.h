@@ -20,6 +20,10 @@ status param_place_find(const scene *s, const char *path, param_place *out, diag
  */
 status param_place_find_object(const scene *s, const char *name, param_place *out, diagnostic *why);
 
+/* Whether the film can depend on a parameter: not on those that affect only performance or what is shown with an image,
+ * nor on those of a beam that does not light the scene, except for the one that makes it a lamp. */
+bool scene_film_depends_on(const scene *s, const char *path);
+
 /* Whether the row applies to the solid (its shape has that dimension). */
 bool solid_has(const solid *owner, const param *row);
 

@@ -42,6 +42,7 @@ static const char *const tone_words[] = {"none", "reinhard", "aces", NULL};
 static const char *const light_words[] = {"point", "cone", "soft_cone", "disc", "rectangle", "sun", NULL};
 /* as enum lamp_spectrum */
 static const char *const lamp_words[] = {"color", "black_body", "sodium", "mercury", "hydrogen", "line", NULL};
+static const char *const profile_words[] = {"uniform", "gaussian", NULL};
 static const char *const beam_words[] = {"pencil", "fan", "sheet", "bundle", NULL};
 static const char *const background_words[] = {"uniform", "gradient", "picture", "rain", "cie", NULL};
 
@@ -66,12 +67,14 @@ enum { ON_SLIME = 1 << MESH_SLIME, ON_ALL = 0 };
 #define PATHS(field) OF(render_settings, field), .by_chance = true
 /* For slimes only. */
 #define SLIME(field) ON_SLIME, .offset = offsetof(mesh_entry, slime.field)
-/* The film does not depend on beams. */
-#define BEAM(field) OF(beam, field), .performance_only = true
+/* Of beams. The film depends on them only if they light the scene (scene_film_depends_on), on how they are followed and
+ * drawn never. */
+#define BEAM(field) OF(beam, field)
+#define BEAM_SHOWN(field) OF(beam, field), .performance_only = true
 #define BEAM_REAL(field, unit, low, high, fallback, meaning) \
     ROW(PARAM_BEAM, #field, PARAM_REAL, unit, low, high, false, fallback, meaning, NULL, BEAM(field))
 #define BEAM_INTEGER(field, low, high, fallback, meaning) \
-    ROW(PARAM_BEAM, #field, PARAM_INT, "", low, high, false, fallback, meaning, NULL, BEAM(field))
+    ROW(PARAM_BEAM, #field, PARAM_INT, "", low, high, false, fallback, meaning, NULL, BEAM_SHOWN(field))
 #define BEAM_CHOICE(field, words, fallback, meaning) \
     ROW(PARAM_BEAM, #field, PARAM_CHOICE, "", 0, 0, false, fallback, meaning, words, BEAM(field))
 #define BEAM_VECTOR(field, unit, fallback, meaning) \
@@ -373,11 +376,16 @@ static const param table[] = {
          "the sun; 0: parallel light"),
     REAL(PARAM_LIGHT, light, reach, "scene units", 0, FAR, "0",
          "distance at which the intensity applies, with inverse-square falloff; 0: no falloff"),
+    REAL(PARAM_LIGHT, light, polarised, "", 0, 1, "0",
+         "degree of linear polarisation of the light, with render.polarisation; 0: unpolarised"),
+    REAL(PARAM_LIGHT, light, polarisation_deg, "deg", -360, 360, "0",
+         "direction of a polarised light's field about its axis, of a point light about each ray: 0 is horizontal, 90 "
+         "upright (of an axis straight up or down, 0 is along x)"),
 
     BEAM_CHOICE(
         kind, beam_words, "pencil",
         "rays from one point in a cone (pencil) or in a plane (fan), or parallel rays in a plane (sheet) or over "
-        "a disc (bundle); a beam is shown, and does not light the scene"),
+        "a disc (bundle)"),
     BEAM_VECTOR(position, "scene units", "-3,1,0", "start of the axis"),
     BEAM_VECTOR(target, "scene units", "0,1,0", "point on the axis"),
     BEAM_VECTOR(direction, "", "0,0,0", "direction of the axis, of any length; 0,0,0: towards the target"),
@@ -390,14 +398,22 @@ static const param table[] = {
     BEAM_REAL(lambda_nm, "nm", 200, 2000, "587.5618", "wavelength in vacuum; the default is the d line"),
     BEAM_INTEGER(wavelengths, 1, 64, "7", "wavelengths of white light, evenly from 400 to 700 nm, of equal power"),
     BEAM_REAL(power, "", 0, 1e9, "1", "power of all rays together at their starts, in any unit"),
-    BEAM_CHOICE(branches, off_on, "on",
-                "on: at each surface the reflected and the refracted ray; off: only the refracted one, or the "
-                "reflected one where there is no other"),
+    ROW(PARAM_BEAM, "branches", PARAM_CHOICE, "", 0, 0, false, "on",
+        "on: at each surface the reflected and the refracted ray; off: only the refracted one, or the "
+        "reflected one where there is no other",
+        off_on, BEAM_SHOWN(branches)),
     BEAM_INTEGER(depth, 0, 64, "8", "number of surfaces at which a ray is followed"),
-    BEAM_REAL(min_share, "", 0, 1, "0.01", "rays with a smaller share of the power are not followed"),
+    ROW(PARAM_BEAM, "min_share", PARAM_REAL, "", 0, 1, false, "0.01",
+        "rays with a smaller share of the power are not followed", NULL, BEAM_SHOWN(min_share)),
     ROW(PARAM_BEAM, "color", PARAM_COLOR, "", 0, 1, false, "0,0,0",
-        "linear colour of the drawn lines; black: the colour of the wavelength", NULL, BEAM(color)),
+        "linear colour of the drawn lines; black: the colour of the wavelength", NULL, BEAM_SHOWN(color)),
     BEAM_CHOICE(visible, off_on, "on", "off: the beam is left out"),
+    BEAM_CHOICE(lights, off_on, "off",
+                "on: the beam is a lamp too, whose light render.caustics=photons brings to matte surfaces; its "
+                "irradiance is its power by area, as bright as white, for any number of rays"),
+    BEAM_CHOICE(profile, profile_words, "uniform",
+                "of a beam that lights: even over its angle or width, or gaussian, exp(-2 r^2 / w^2) with 2 w as its "
+                "angle or width"),
 
     /* Solids have these rows as well, by their own names (liquid.ior): see param_find. */
     COLOR(PARAM_MATERIAL, material, color, 1, "1,1,1",

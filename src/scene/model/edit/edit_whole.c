@@ -189,10 +189,18 @@ static bool is_length(const param *row)
     return strcmp(row->unit, "scene units") == 0 && (row->type == PARAM_REAL || row->type == PARAM_VECTOR);
 }
 
+/* A beam that lights the scene keeps its irradiance. */
+static bool is_power(const whole_edit *e, const char *name, const param *row)
+{
+    param_place at;
+    return row->group == PARAM_BEAM && strcmp(row->name, "power") == 0 &&
+           param_place_find_object(e->s, name, &at, NULL) == STATUS_OK && e->s->beams[at.index].lights;
+}
+
 static bool is_scaled(const whole_edit *e, const char *name, const param *row)
 {
     param_place at;
-    if (!is_length(row) || param_place_find_object(e->s, name, &at, NULL) != STATUS_OK)
+    if (!(is_length(row) || is_power(e, name, row)) || param_place_find_object(e->s, name, &at, NULL) != STATUS_OK)
         return false;
     if (e->only) { /* its material is unchanged, and so is its absorption by render.unit_m */
         return strcmp(name, e->only) == 0 && strcmp(row->name, "tint_distance") != 0 &&
@@ -217,7 +225,7 @@ static status scale_row(void *context, const char *path, const param *row, const
     param_value v;
     TRY(param_value_parse(row, -1, path, value, &v, e->why));
     if (row->type == PARAM_REAL)
-        v.real *= e->factor;
+        v.real *= is_length(row) ? e->factor : e->factor * e->factor;
     else
         v.vector = vec3_scale(v.vector, e->factor);
     char *text = param_value_text(row, -1, &v);

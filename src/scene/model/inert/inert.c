@@ -65,7 +65,7 @@ static bool ask_group(const inert_case *c)
     case PARAM_LIGHT: return inert_light(c);
     case PARAM_MATERIAL: return inert_material(c);
     case PARAM_SOLID: return inert_solid(c);
-    case PARAM_BEAM:
+    case PARAM_BEAM: return inert_beam(c);
     case PARAM_GROUP_COUNT: break;
     }
     return false;
@@ -77,7 +77,7 @@ bool inert_ask(const scene *s, const char *path, const inert_witness *witness, i
     inert_case c = {.s = s, .witness = witness ? witness : &nobody, .out = out};
     c.frame = c.witness->frame && c.witness->frame->camera > 0 ? c.witness->frame : NULL;
     *out = (inert_answer){.rule = ""};
-    if (param_place_find(s, path, &c.at, NULL) != STATUS_OK || c.at.row->performance_only)
+    if (param_place_find(s, path, &c.at, NULL) != STATUS_OK || !scene_film_depends_on(s, path))
         return false;
     c.name = param_place_group_name(s, c.at.object_group, c.at.index);
     if (!inert_layers(&c) && !ask_group(&c) && !inert_unmet(&c, path))

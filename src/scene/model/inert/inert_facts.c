@@ -86,6 +86,14 @@ size_t shining_lights(const scene *s)
     return count;
 }
 
+bool beams_light(const scene *s)
+{
+    bool any = false;
+    for (size_t i = 0; i < s->beam_count; i++)
+        any |= beam_lights_scene(&s->beams[i], &s->render);
+    return any;
+}
+
 bool only_spheres_shine(const scene *s)
 {
     for (size_t i = 0; i < s->light_count; i++)
@@ -131,7 +139,8 @@ bool shows_ambient(const scene *s, const material *m)
 
 static bool shows_diffuse(const scene *s, const material *m)
 {
-    return m->diffuse > 0.0 && has_color(m) && (shining_lights(s) > 0 || (is_path(s) && material_is_opaque(m)));
+    return m->diffuse > 0.0 && has_color(m) &&
+           (shining_lights(s) > 0 || beams_light(s) || (is_path(s) && material_is_opaque(m)));
 }
 
 bool shows_specular(const scene *s, const material *m)
@@ -144,7 +153,7 @@ bool shows_specular(const scene *s, const material *m)
 bool is_lit_by_lamps(const scene *s, const material *m)
 {
     return !integrator_traits_of(&s->render)->layers &&
-           (shows_specular(s, m) ||
+           (shows_specular(s, m) || (beams_light(s) && m->diffuse > 0.0 && has_color(m)) ||
             (shining_lights(s) > 0 && ((m->diffuse > 0.0 && has_color(m)) || material_roughness(m, &s->render) > 0.0 ||
                                        material_scattering(m, &s->render) > 0.0)));
 }

@@ -1,7 +1,9 @@
 /* Parameters of lights and of the background without effect. */
 #include "scene/model/inert/inert_private.h"
+#include "scene/model/face_materials.h"
 #include "scene/model/medium.h"
 #include "scene/model/scene.h"
+#include "scene/model/sheet.h"
 #include "scene/model/sun.h"
 
 #include <string.h>
@@ -92,6 +94,43 @@ static bool other_shape(const inert_case *c, const light *l)
                      "a rectangle without %s is a point", needs_width ? "width" : "height");
 }
 
+static bool is_polariser(const scene *s, const solid *one)
+{
+    return !solid_is_opaque(s, one) && sheet_is_polariser(&one->surface);
+}
+
+static bool shows_polarisation(const scene *s, const solid *one)
+{
+    return material_is_layered(&one->surface, &s->render) || is_clear(s, one);
+}
+
+/* Of light that matte surfaces receive through polarisers, or as photons from clear solids, metals or films. */
+static bool polarisation(const inert_case *c, const light *l)
+{
+    const scene *s = c->s;
+    const bool degree = strcmp(c->at.row->name, "polarised") == 0;
+    const bool photons = scene_has_caustics(&s->render) && first_visible(s, shows_polarisation),
+               through = s->render.shadows == SHADOWS_ATTENUATED && first_visible(s, is_polariser);
+    if (!degree && strcmp(c->at.row->name, "polarisation_deg") != 0)
+        return false;
+    if (unpolarised(c))
+        return true;
+    if (!degree && l->polarised == 0.0)
+        return inert_say(c, "unpolarised-lamp", inert_set("%s.polarised=1", c->name).text, "the light is unpolarised");
+    if (!photons && !through) {
+        const inert_remedy clear = inert_set_clear(first_visible(s, NULL));
+        return inert_say(c, "depolarised",
+                         first_visible(s, shows_polarisation) ? "set render.caustics=photons" : clear.text,
+                         "matte surfaces reflect light of every polarisation alike");
+    }
+    const bool same = degree
+                          ? inert_same(c, "%s.polarised=%d", c->name, l->polarised == 0.0)
+                          : inert_same(c, "%s.polarisation_deg=%.17g", c->name, l->polarisation_deg / 2.0 + 45.0) &&
+                                inert_same(c, "%s.polarisation_deg=%.17g", c->name, l->polarisation_deg / 2.0 + 70.0);
+    return same && inert_say(c, "depolarised-here", "move a polariser into the light",
+                             "all that the light passes treats every polarisation alike");
+}
+
 /* The place, or the kind, of the light that the background's sun is, or would be. */
 static bool moves_sky(const inert_case *c, const light *l)
 {
@@ -118,7 +157,7 @@ bool inert_light(const inert_case *c)
         return inert_say(c, "dark-lamp", inert_set("%s.intensity=1", c->name).text, "the light's intensity is 0");
     if (!of_color && l->spectrum == LAMP_OF_COLOR && is_black(l->color))
         return inert_say(c, "dark-lamp", inert_set("%s.color=1,1,1", c->name).text, "the light's color is black");
-    if (sun_or_not(c, l) || other_shape(c, l))
+    if (polarisation(c, l) || sun_or_not(c, l) || other_shape(c, l))
         return true;
     return lights_nothing(c, l);
 }

@@ -58,6 +58,7 @@ bool inert_unmet(const inert_case *c, const char *path);
 bool inert_mesh(const inert_case *c);
 bool inert_texture(const inert_case *c);
 bool inert_light(const inert_case *c);
+bool inert_beam(const inert_case *c);
 bool inert_material(const inert_case *c);
 bool inert_solid(const inert_case *c);
 /* A row of a material on c->owner. */
@@ -105,6 +106,8 @@ bool say_no_tree(const inert_case *c);
 bool is_dark_at_depth_limit(const scene *s);
 /* Whether any light has an intensity; whether all of those are spheres, which only the path integrator supports. */
 size_t shining_lights(const scene *s);
+/* Whether photons bring the light of a beam. */
+bool beams_light(const scene *s);
 bool only_spheres_shine(const scene *s);
 
 /* Faces may have materials from the mesh file instead of the solid's. */

@@ -191,6 +191,8 @@ static bool no_photons(const inert_case *c)
     if (s->render.shadows == SHADOWS_OFF)
         return inert_say(c, "no-shadows-caustics", "set render.shadows=opaque",
                          "without shadows light passes every solid undeflected");
+    if (beams_light(s) || c->s->beam_count > 0) /* the witness knows */
+        return false;
     return nothing_lit(c) ||
            (!first_visible(s, deflects_light) &&
             inert_say(c, "nothing-deflects", mirror_remedy(s).text, "no visible surface reflects or transmits light"));
