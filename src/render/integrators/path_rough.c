@@ -27,8 +27,13 @@ static bool takes_lamps(const tracer *t, int k)
 static void enqueue(tracer *t, int k, int lamp, vec3 to_lamp, bool refracted, vec3 share)
 {
     const group *g = &t->surface.gathered;
+    const plan *p = t->target.frame_plan;
+    const ray_queue *q = &t->queues.shadows;
+    const int before = q->count;
     path_enqueue_lamp(t, k, lamp, to_lamp, refracted ? g->n_to[k] : g->n_from[k],
                       refracted ? g->inside_after[k] : g->inside_before[k], share);
+    if (p->sheets && p->render.polarisation && q->count > before)
+        polarised_shadow(t, k, refracted, before);
 }
 
 /* --- points of lamps --- */

@@ -1,0 +1,262 @@
+/* Tests of polarised light on random paths where surfaces are rough, matte, or the medium scatters: each facet polarises
+ * as Fresnel's equations say, also towards lamps behind sheets; matte surfaces and particles depolarise; sheets act on
+ * what is lit along a ray. Expected values are by quadrature of Walter's f, with fields in space. */
+#include <math.h>
+#include <setjmp.h>
+#include <stdarg.h>
+#include <stddef.h>
+#include <stdint.h>
+#include <stdlib.h>
+#include <cmocka.h>
+
+#include "path_fixture.h"
+#include "polarised_chain.h"
+#include "sheet_fixture.h"
+#include "walter.h"
+
+#define COUNT(a) (sizeof(a) / sizeof((a)[0]))
+
+/* The camera looks at the middle of glass with a black floor in it. */
+static const char glass_scene[] =
+    "render: {width: 1, height: 1, depth: 1, integrator: path, paths: 65536, beyond: black, polarisation: \"on\"}\n"
+    "camera: {position: [0, 80, -60], target: [0, 0, 0], fov_deg: 0.001}\n"
+    "background: {color: [0, 0, 0]}\n"
+    "lights: {lamp: {position: [0.6, 3, 3.5], intensity: 0, reach: 2}}\n"
+    "solids:\n"
+    "  glass: {shape: plane, transparency: 1, ior: 2.4, roughness: 0.3}\n"
+    "  black: {shape: plane, position: [0, -1, 0], diffuse: 0, priority: 1}\n";
+static const double index_of_glass = 2.4;
+
+/* What the camera sees of a facet's reflection. In the world, y is the normal. */
+typedef struct eye {
+    vec3 d, filter; /* the ray; the axis of the analyser, 0: none */
+    double alpha;
+} eye;
+
+static eye eye_of(const scene *s, double alpha)
+{
+    const vec3 d = vec3_normalize(vec3_sub(s->camera.target, s->camera.position)), right = vec3_make(1.0, 0.0, 0.0),
+               up = vec3_make(0.0, -d.z, d.y);
+    const double a = s->camera.analyser_angle_deg * degree;
+    eye e = {d, vec3_add(vec3_scale(right, cos(a)), vec3_scale(vec3_scale(up, up.y < 0.0 ? -1.0 : 1.0), sin(a))),
+             alpha};
+    if (s->camera.analyser == ANALYSER_NONE)
+        e.filter = vec3_make(0.0, 0.0, 0.0);
+    return e;
+}
+
+/* The model's frame, with z along the normal. */
+static vec3 in_model(vec3 world)
+{
+    return vec3_make(-world.z, world.x, world.y);
+}
+
+/* The share of light from the unit vector `to` that the facet between reflects through the eye's analyser: unpolarised,
+ * or polarised along the axis. */
+static double seen_of_facet(const eye *e, vec3 to, const vec3 *axis)
+{
+    const vec3 h = vec3_normalize(vec3_sub(to, e->d)), x = vec3_normalize(vec3_cross(to, vec3_make(0.3, 0.5, 0.2))),
+               y = vec3_cross(to, x);
+    const chain_step step = {CHAIN_REFLECT, e->d, h, to, -vec3_dot(e->d, h), 1.0, index_of_glass};
+    double sum = 0.0;
+    for (int k = 0; k < 2; k++) { /* unpolarised light is half of each of two fields */
+        field in = field_from(k ? y : x, 1.0);
+        if (axis) { /* what the sheet lets pass of it */
+            const vec3 across = vec3_normalize(vec3_sub(*axis, vec3_scale(to, vec3_dot(*axis, to))));
+            in = field_from(across, field_along(in, across));
+        }
+        const field out = chain_field(&step, in);
+        const bool filtered = vec3_dot(e->filter, e->filter) > 0.0;
+        const double complex along = field_along(out, e->filter);
+        sum += 0.5 * (filtered ? creal(along * conj(along)) : field_power(out));
+    }
+    return sum;
+}
+
+/* --- the sky --- */
+
+static double from_sky(vec3 m, const void *context)
+{
+    const eye *e = context;
+    const vec3 i = in_model(vec3_scale(e->d, -1.0));
+    const double i_m = vec3_dot(i, m);
+    const vec3 o = vec3_sub(vec3_scale(m, 2.0 * i_m), i);
+    if (!(i_m > 0.0 && o.z > 0.0))
+        return 0.0;
+    return walter_reflection(e->alpha, perfect_mirror, NULL, i, o) * o.z * 4.0 * i_m *
+           seen_of_facet(e, vec3_make(o.y, o.z, -o.x), NULL);
+}
+
+static void look_from(scene *s, double cosine)
+{
+    s->camera.position = vec3_make(0.0, 100.0 * cosine, -100.0 * sqrt(1.0 - cosine * cosine));
+}
+
+static void rough_glass_polarises_the_sky(void **state)
+{
+    (void)state;
+    static const double cosines[] = {0.9, 0.3846 /* near Brewster's angle */, 0.15}, alphas[] = {0.05, 0.3, 0.8};
+    scene *s = scene_from(glass_scene);
+    set(s, "background.color=1,1,1");
+    for (size_t c = 0; c < COUNT(cosines); c++)
+        for (size_t a = 0; a < COUNT(alphas); a++)
+            for (int angle = -45; angle <= 90; angle += 45) {
+                look_from(s, cosines[c]);
+                s->solids[0].surface.roughness = alphas[a];
+                s->camera.analyser = ANALYSER_LINEAR;
+                s->camera.analyser_angle_deg = angle;
+                const eye e = eye_of(s, alphas[a]);
+                const double expected = over_normals(from_sky, &e, 600, 60);
+                const estimate got = look_by_chance(s, 0);
+                if (!(fabs(got.value - expected) <= got.t_9999 * got.standard_error + 1e-4))
+                    fail_msg("alpha %g, cosine %g, analyser at %d: %.6f +- %.1e instead of %.6f", alphas[a], cosines[c],
+                             angle, got.value, got.standard_error, expected);
+            }
+    scene_destroy(s);
+}
+
+/* --- lamps behind a sheet --- */
+
+/* A polariser between the glass and the lamp; the camera's ray passes at its side. */
+static void put_sheet(scene *s, vec3 axis)
+{
+    add_sheet(s, 0.0, "sheet=polariser", 0.0, 0.0);
+    solid *one = &s->solids[s->solid_count - 1];
+    one->shape.position = vec3_scale(s->lights[0].position, 0.5);
+    one->shape.size = vec3_make(2.0, 0.01, 2.0);
+    one->surface.sheet_axis = axis;
+}
+
+/* A point: nothing is random. */
+static void a_point_behind_a_sheet_is_seen_by_its_field(void **state)
+{
+    (void)state;
+    static const vec3 axes[] = {{1, 0, 0}, {0, 0, 1}, {1, 0.3, -0.7}};
+    scene *s = scene_from(glass_scene);
+    set_all(s, "lamp.intensity=1 render.paths=8 render.filter=centre render.depth=0");
+    const double bare = look(s).x;
+    const eye open = eye_of(s, 0.3);
+    const vec3 to = vec3_normalize(s->lights[0].position);
+    const double clear = seen_of_facet(&open, to, NULL);
+    assert_true(bare > 1e-3);
+    put_sheet(s, axes[0]);
+    for (size_t k = 0; k < COUNT(axes); k++)
+        for (int angle = 0; angle <= 180; angle += 30) {
+            s->solids[2].surface.sheet_axis = axes[k];
+            s->camera.analyser = angle == 180 ? ANALYSER_NONE : ANALYSER_LINEAR;
+            s->camera.analyser_angle_deg = angle;
+            const eye e = eye_of(s, 0.3);
+            assert_near(look(s).x / bare, seen_of_facet(&e, to, &axes[k]) / clear, 1e-6); /* of the film's units */
+        }
+    scene_destroy(s);
+}
+
+/* A sphere is sampled by its points and by the path's own direction. */
+static void a_sphere_behind_a_sheet_is_its_quadrature(void **state)
+{
+    (void)state;
+    enum { RINGS = 200, SECTORS = 200 };
+    const vec3 axis = vec3_make(1.0, 0.0, -0.6);
+    scene *s = scene_from(glass_scene);
+    set_all(s, "lamp.intensity=1 lamp.radius=0.8 camera.analyser=linear camera.analyser_angle_deg=25");
+    put_sheet(s, axis);
+    for (int rough = 1; rough <= 3; rough++) {
+        const double alpha = 0.2 * rough, d2 = vec3_dot(s->lights[0].position, s->lights[0].position),
+                     cap = 1.0 - sqrt(1.0 - 0.64 / d2);
+        s->solids[0].surface.roughness = alpha;
+        const eye e = eye_of(s, alpha);
+        const vec3 to = vec3_normalize(s->lights[0].position),
+                   x = vec3_normalize(vec3_cross(to, vec3_make(1.0, 0.0, 0.0))), y = vec3_cross(to, x);
+        double sum = 0.0;
+        for (int k = 0; k < RINGS * SECTORS; k++) {
+            const double off = cap * (k / SECTORS + 0.5) / RINGS, sine = sqrt(off * (2.0 - off)),
+                         phi = 2.0 * WALTER_PI * (k % SECTORS + 0.5) / SECTORS;
+            const vec3 o = vec3_add(vec3_scale(to, 1.0 - off),
+                                    vec3_add(vec3_scale(x, sine * cos(phi)), vec3_scale(y, sine * sin(phi))));
+            sum += walter_reflection(alpha, perfect_mirror, NULL, in_model(vec3_scale(e.d, -1.0)), in_model(o)) * o.y *
+                   seen_of_facet(&e, o, &axis);
+        }
+        const double expected = 4.0 / 0.64 * sum * 2.0 * WALTER_PI * cap / (RINGS * SECTORS);
+        const estimate got = look_by_chance(s, 0);
+        print_message("alpha %g: %.6f +- %.1e, expected %.6f\n", alpha, got.value, got.standard_error, expected);
+        assert_true(got.standard_error < 0.01 * expected);
+        assert_true(fabs(got.value - expected) <= got.t_9999 * got.standard_error + 2e-4 * expected);
+    }
+    scene_destroy(s);
+}
+
+/* --- what depolarises --- */
+
+/* A matte floor that is lit through a polariser, behind an analyser at any angle. */
+static void a_matte_surface_depolarises(void **state)
+{
+    (void)state;
+    scene *s = scene_from(glass_scene);
+    set_all(s, "lamp.intensity=1 glass.transparency=0 glass.roughness=0 glass.diffuse=1 glass.color=1,1,1 "
+               "render.paths=8 render.filter=centre render.depth=0");
+    const double bare = look(s).x;
+    put_sheet(s, vec3_make(1.0, 0.0, 0.0));
+    assert_near(look(s).x, 0.5 * bare, 1e-9);
+    for (int angle = 0; angle < 180; angle += 30) {
+        s->camera.analyser = ANALYSER_LINEAR;
+        s->camera.analyser_angle_deg = angle;
+        assert_near(look(s).x, 0.25 * bare, 1e-9);
+    }
+    scene_destroy(s);
+}
+
+/* Milky air, of the surroundings' index, in front of the camera, and a lamp in it: sheets divide the light of all its
+ * points, which the lamp samples along each ray, and of those where the ray's flight ends. */
+static void sheets_act_on_what_is_lit_behind_them(void **state)
+{
+    (void)state;
+    scene *s = scene_from("render: {width: 1, height: 1, depth: 0, integrator: path, paths: 4096, beyond: black, "
+                          "polarisation: \"on\"}\n"
+                          "camera: {position: [0, 0, 0], target: [0, 0, 1], fov_deg: 0.001}\n"
+                          "background: {color: [0, 0, 0]}\n"
+                          "lights: {lamp: {position: [0.7, 0, 5], intensity: 2, reach: 1}}\n");
+    add_sheet(s, 12.0, "scatter_per_m=0.2", 0.0, 0.0);
+    s->solids[0].shape.size = vec3_make(40.0, 40.0, 20.0);
+    const double bare = look(s).x;
+    assert_true(bare > 0.01);
+    add_sheet(s, 1.0, "sheet=polariser sheet_pass=0.9 sheet_block=0.2", 0.0, 0.0);
+    assert_near(look(s).x, 0.55 * bare, 1e-9);
+    set(s, "render.polarisation=off");
+    assert_near(look(s).x, 0.55 * bare, 1e-9);
+    set_all(s, "render.polarisation=on sheet_2.sheet_pass=1 sheet_2.sheet_block=0");
+    for (int a = 0; a <= 90; a += 30) {
+        s->camera.analyser = ANALYSER_LINEAR;
+        s->camera.analyser_angle_deg = a;
+        assert_near(look(s).x, 0.5 * squared(cos(a * degree)) * bare, 1e-9);
+    }
+    set(s, "camera.analyser=none");
+    /* two crossed ones within the medium, large and black: what is lit before them alone */
+    for (int k = 0; k < 2; k++) {
+        if (k)
+            add_sheet(s, 4.01, "sheet=polariser", 90.0, 0.0);
+        s->solids[1 + k].shape.position.z = 4.0 + 0.01 * k; /* they touch: no point between them is lit */
+        s->solids[1 + k].shape.size = vec3_make(60.0, 60.0, 0.01);
+        s->solids[1 + k].surface.sheet_pass = 1.0, s->solids[1 + k].surface.sheet_block = 0.0;
+        s->solids[1 + k].priority = 1;
+    }
+    assert_near(look(s).x, 0.0, 1e-9); /* the lamp is behind them, too */
+    set(s, "lamp.position=0.7,0,3");
+    const double before = look(s).x;
+    s->solids[1].surface.sheet = s->solids[2].surface.sheet = 0;
+    s->solids[1].surface.absorb_per_m = vec3_make(1e6, 1e6, 1e6);
+    assert_true(before > 0.01);
+    assert_near(look(s).x, before, 1e-9);
+    scene_destroy(s);
+}
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(rough_glass_polarises_the_sky),
+        cmocka_unit_test(a_point_behind_a_sheet_is_seen_by_its_field),
+        cmocka_unit_test(a_sphere_behind_a_sheet_is_its_quadrature),
+        cmocka_unit_test(a_matte_surface_depolarises),
+        cmocka_unit_test(sheets_act_on_what_is_lit_behind_them),
+    };
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}
