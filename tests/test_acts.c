@@ -225,6 +225,7 @@ static void try_scene(int number, account *out)
 /* Render modes in which light continues from surfaces. */
 static const char *const modes[] = {
     "render.integrator=path render.paths=4",
+    "render.integrator=path render.paths=4 render.polarisation=on",
     "render.integrator=aov",
     "render.integrator=aov render.layer=albedo",
     "render.transmission=simple clear.transparency=0.8 clear.reflectivity=0.1",
@@ -331,6 +332,7 @@ static const condition conditions[] = {
     {"rod", "render.lighting=lambert", "rod.specular", "lambert", true},
     {"rod", "clear.transparency=0", "render.weights", "no-clear", true},
     {"rod", "clear.transparency=0 rod.reflectivity=0.5", "render.polarisation", "no-clear", true},
+    {"rod", "render.integrator=path render.paths=4 clear.transparency=0", "render.polarisation", "no-clear", true},
     {"rod", "clear.transparency=0", "background.ior", "no-clear", true},
     {"rod", "render.transmission=simple clear.transparency=0.9", "render.weights", "simple", true},
     {"rod", "render.transmission=simple clear.transparency=0.9", "background.ior", "straight", true},
@@ -429,6 +431,8 @@ static const condition conditions[] = {
     {"meniscus", "liquid.contact_angle_deg=90", "liquid.capillary_length", "level", true},
     {"meniscus", "liquid.contact_angle_deg=90", "liquid.contact_radius", "level", true},
     {"rod", "liquid.sheet=retarder", "liquid.retardance_deg", "unpolarised", true},
+    {"rod", "render.integrator=path render.paths=4 liquid.sheet=retarder", "liquid.retardance_deg", "unpolarised",
+     true},
     {"rod", "liquid.sheet=polariser", "liquid.sheet_axis", "unpolarised", true},
     {"rod", "render.polarisation=on liquid.sheet=retarder", "liquid.sheet_axis", "no-retardance", true},
     {"rod", "render.polarisation=on liquid.sheet=polariser liquid.sheet_block=1", "liquid.sheet_axis", "grey", true},
@@ -655,6 +659,7 @@ static const struct {
 } settings[] = {
     {"rod", "render.integrator=path render.paths=2"},
     {"rod", "render.integrator=path render.paths=2 lamp.reach=8 lamp.radius=0.3"},
+    {"rod", "render.integrator=path render.paths=2 render.polarisation=on liquid.sheet=retarder"},
     {"rod", "render.integrator=raycast"},
     {"rod", "render.integrator=zbuffer"},
     {"rod", "render.integrator=zbuffer render.lighting=phong"},
