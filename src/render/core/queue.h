@@ -11,8 +11,8 @@ typedef struct ray_queue {
     double *wr, *wg, *wb;        /* throughput; for a shadow ray the radiance that it contributes if unblocked */
     int64_t *start, *sample_key; /* face it starts on; see render/core/sample_key.h */
     uint64_t *inside;
-    double *sq, *su, *sv; /* with polarisation: the analyser's Stokes vector relative to its first element; in a crystal
-                              sq is the mode (render/shade/crystals.h) */
+    double *sq, *su, *sv;  /* with polarisation: the analyser's Stokes vector relative to its first element, of shadow
+                              rays in a scene with sheets; in a crystal sq is the mode (render/shade/crystals.h) */
     double *passed, *bent; /* of photons: the length of the path so far, and of its part after the first surface */
     void *memory;
 } ray_queue;
