@@ -1,5 +1,6 @@
-/* Tests of polarised light at rough surfaces on random paths: each facet polarises as Fresnel's equations say, under
- * the sky, and towards lamps behind sheets. Expected values are by quadrature of Walter's f, with fields in space. */
+/* Tests of polarised light at rough surfaces on random paths: each facet polarises as Fresnel's equations say, what it
+ * reflects and transmits, and towards lamps behind sheets. Expected values are by quadrature of Walter's f, with fields
+ * in space. */
 #include <math.h>
 #include <setjmp.h>
 #include <stdarg.h>
@@ -50,13 +51,17 @@ static vec3 in_model(vec3 world)
     return vec3_make(-world.z, world.x, world.y);
 }
 
-/* The share of light from the unit vector `to` that the facet between reflects through the eye's analyser: unpolarised,
- * or polarised along the axis. */
-static double seen_of_facet(const eye *e, vec3 to, const vec3 *axis)
+static vec3 in_world(vec3 model)
 {
-    const vec3 h = vec3_normalize(vec3_sub(to, e->d)), x = vec3_normalize(vec3_cross(to, vec3_make(0.3, 0.5, 0.2))),
-               y = vec3_cross(to, x);
-    const chain_step step = {CHAIN_REFLECT, e->d, h, to, -vec3_dot(e->d, h), 1.0, index_of_glass};
+    return vec3_make(model.y, model.z, -model.x);
+}
+
+/* The share of light from the unit vector `to` that the facet h sends through the eye's analyser: unpolarised, or
+ * polarised along the axis. */
+static double seen_at(const eye *e, enum chain_kind kind, vec3 h, vec3 to, const vec3 *axis)
+{
+    const vec3 x = vec3_normalize(vec3_cross(to, vec3_make(0.3, 0.5, 0.2))), y = vec3_cross(to, x);
+    const chain_step step = {kind, e->d, h, to, -vec3_dot(e->d, h), 1.0, index_of_glass};
     double sum = 0.0;
     for (int k = 0; k < 2; k++) { /* unpolarised light is half of each of two fields */
         field in = field_from(k ? y : x, 1.0);
@@ -72,7 +77,13 @@ static double seen_of_facet(const eye *e, vec3 to, const vec3 *axis)
     return sum;
 }
 
-/* --- the sky --- */
+/* By reflection. */
+static double seen_of_facet(const eye *e, vec3 to, const vec3 *axis)
+{
+    return seen_at(e, CHAIN_REFLECT, vec3_normalize(vec3_sub(to, e->d)), to, axis);
+}
+
+/* --- light from everywhere above or below --- */
 
 static double from_sky(vec3 m, const void *context)
 {
@@ -83,7 +94,24 @@ static double from_sky(vec3 m, const void *context)
     if (!(i_m > 0.0 && o.z > 0.0))
         return 0.0;
     return walter_reflection(e->alpha, perfect_mirror, NULL, i, o) * o.z * 4.0 * i_m *
-           seen_of_facet(e, vec3_make(o.y, o.z, -o.x), NULL);
+           seen_of_facet(e, in_world(o), NULL);
+}
+
+static double from_floor(vec3 m, const void *context)
+{
+    const eye *e = context;
+    const two_media n = {1.0, index_of_glass};
+    const vec3 i = in_model(vec3_scale(e->d, -1.0));
+    const double i_m = vec3_dot(i, m);
+    if (!(i_m > 0.0))
+        return 0.0;
+    const fresnel f = fresnel_dielectric(i_m, n.n_i, n.n_o);
+    const vec3 o = direction_refract(vec3_scale(i, -1.0), m, i_m, f.eta, f.cos_t);
+    const double o_m = vec3_dot(o, m), sum = n.n_i * i_m + n.n_o * o_m;
+    if (!(o.z < 0.0))
+        return 0.0;
+    return walter_refraction(e->alpha, n, i, o) / (1.0 - f.R) * -o.z * sum * sum / (n.n_o * n.n_o * -o_m) *
+           seen_at(e, CHAIN_REFRACT, in_world(m), in_world(o), NULL);
 }
 
 static void look_from(scene *s, double cosine)
@@ -91,26 +119,28 @@ static void look_from(scene *s, double cosine)
     s->camera.position = vec3_make(0.0, 100.0 * cosine, -100.0 * sqrt(1.0 - cosine * cosine));
 }
 
-static void rough_glass_polarises_the_sky(void **state)
+/* A white sky, and a floor in the glass that emits as much. */
+static void rough_glass_polarises_what_it_reflects_and_transmits(void **state)
 {
     (void)state;
     static const double cosines[] = {0.9, 0.3846 /* near Brewster's angle */, 0.15}, alphas[] = {0.05, 0.3, 0.8};
     scene *s = scene_from(glass_scene);
-    set(s, "background.color=1,1,1");
-    for (size_t c = 0; c < COUNT(cosines); c++)
-        for (size_t a = 0; a < COUNT(alphas); a++)
-            for (int angle = -45; angle <= 90; angle += 45) {
-                look_from(s, cosines[c]);
-                s->solids[0].surface.roughness = alphas[a];
-                s->camera.analyser = ANALYSER_LINEAR;
-                s->camera.analyser_angle_deg = angle;
-                const eye e = eye_of(s, alphas[a]);
-                const double expected = over_normals(from_sky, &e, 600, 60);
-                const estimate got = look_by_chance(s, 0);
-                if (!(fabs(got.value - expected) <= got.t_9999 * got.standard_error + 1e-4))
-                    fail_msg("alpha %g, cosine %g, analyser at %d: %.6f +- %.1e instead of %.6f", alphas[a], cosines[c],
-                             angle, got.value, got.standard_error, expected);
-            }
+    s->camera.analyser = ANALYSER_LINEAR;
+    for (int k = 0; k < (int)(COUNT(cosines) * COUNT(alphas)) * 8; k++) {
+        const double cosine = cosines[k / 8 % 3], alpha = alphas[k / 24];
+        const bool below = k % 2;
+        set_all(s, below ? "background.color=0,0,0 black.emission=1" : "background.color=1,1,1 black.emission=0");
+        look_from(s, cosine);
+        s->solids[0].surface.roughness = alpha;
+        s->camera.analyser_angle_deg = 45.0 * (k / 2 % 4) - 45.0;
+        const eye e = eye_of(s, alpha);
+        const double expected = over_normals(below ? from_floor : from_sky, &e, 600, 60);
+        const estimate got = look_by_chance(s, 0);
+        if (!(fabs(got.value - expected) <= got.t_9999 * got.standard_error + 1e-4))
+            fail_msg("%s, alpha %g, cosine %g, analyser at %g: %.6f +- %.1e instead of %.6f",
+                     below ? "from below" : "the sky", alpha, cosine, s->camera.analyser_angle_deg, got.value,
+                     got.standard_error, expected);
+    }
     scene_destroy(s);
 }
 
@@ -212,7 +242,7 @@ static void a_sphere_behind_a_sheet_is_its_quadrature(void **state)
 int main(void)
 {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(rough_glass_polarises_the_sky),
+        cmocka_unit_test(rough_glass_polarises_what_it_reflects_and_transmits),
         cmocka_unit_test(a_point_behind_a_sheet_is_seen_by_its_field),
         cmocka_unit_test(a_lamp_where_frames_jump_is_seen_by_its_field),
         cmocka_unit_test(a_sphere_behind_a_sheet_is_its_quadrature),

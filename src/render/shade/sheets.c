@@ -100,16 +100,16 @@ static void leave(const tracer *t, vec3 direction, int i, sheet_passage *one)
 }
 
 /* The search of interfaces may divide a passage into several segments. */
-static void pass(const tracer *t, vec3 direction, int i, int region, double length, sheet_passage *one)
+static void pass(const tracer *t, vec3 direction, int i, int priority_index, double length, sheet_passage *one)
 {
-    if (one->region == region) {
+    if (one->region == priority_index) {
         one->length += length;
         return;
     }
     leave(t, direction, i, one);
-    if (t->target.frame_plan->sheets[region].kind == SHEET_NONE)
+    if (t->target.frame_plan->sheets[priority_index].kind == SHEET_NONE)
         return;
-    one->region = region;
+    one->region = priority_index;
     one->length = length;
 }
 
