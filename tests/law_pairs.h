@@ -388,6 +388,7 @@ static const char *const all_settings[] = {
     "depth: 5, radiance: basic",
     "depth: 4, spectrum: spectral, wavelengths: 3, radiance: basic",
     "depth: 6, integrator: path, paths: 3, radiance: basic",
+    "depth: 6, integrator: path, paths: 3, polarisation: on",
     "depth: 4, soft_shadows: on, samples: 4",
     "integrator: raycast, soft_shadows: on, samples: 4, spectrum: spectral, wavelengths: 2",
 };

@@ -246,12 +246,13 @@ static inline bool law_settings_have(const law_scene *w, const char *word)
 static inline void random_layers(law_solid *s, const law_scene *w, uint64_t seed)
 {
     uint64_t own = seed ^ 0x676f6c64u; /* "gold" */
-    if (law_settings_have(w, "constant") || law_settings_have(w, "polarisation"))
+    if (law_settings_have(w, "constant"))
         return;
-    s->gold = s->opaque && random_below(&own, 3) == 0;
-    const bool coated = random_below(&own, 3) == 0, without = law_settings_have(w, "basic") ||
-                                                              law_settings_have(w, "zbuffer") ||
-                                                              law_settings_have(w, "caustics");
+    const bool polarised = law_settings_have(w, "polarisation"); /* in an rgb film: no metals, and no films */
+    s->gold = s->opaque && !polarised && random_below(&own, 3) == 0;
+    const bool coated = !polarised && random_below(&own, 3) == 0, without = law_settings_have(w, "basic") ||
+                                                                            law_settings_have(w, "zbuffer") ||
+                                                                            law_settings_have(w, "caustics");
     if (coated &&
         (s->opaque || !without)) /* basic radiance and the depth buffer do not support films on clear solids */
         s->film_nm = random_real(&own, 50.0, 900.0);

@@ -76,3 +76,22 @@ static inline double agreement_off(const agreement *a)
 {
     return a->off / sqrt(a->variance);
 }
+
+/* The film of random paths against that of whole trees. */
+static inline agreement agree(scene *s, const char *settings, double unseen)
+{
+    set_all(s, settings);
+    set(s, "render.integrator=whitted");
+    render_result *tree = render(s);
+    set(s, "render.integrator=path");
+    render_result *chance = render(s);
+    assert_non_null(chance->variance);
+    agreement a = {0};
+    for (int y = 0; y < tree->img->height; y++)
+        for (int x = 0; x < tree->img->width; x++)
+            for (int c = 0; c < 3; c++)
+                agreement_add(&a, estimate_at(chance, x, y, c), film_value(tree->img, x, y, c), unseen);
+    render_result_destroy(tree);
+    render_result_destroy(chance);
+    return a;
+}

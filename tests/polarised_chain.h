@@ -57,6 +57,19 @@ static inline stokes field_stokes(field e, vec3 x, vec3 y)
     return s;
 }
 
+/* Power reflectances, by Fresnel's sine and tangent laws (Born and Wolf, 1.5.2, (21a)). */
+typedef struct reflectances {
+    double s, p;
+} reflectances;
+
+static inline reflectances reflectances_at(double incidence, double n)
+{
+    const double refraction = asin(sin(incidence) / n);
+    const double s = sin(incidence - refraction) / sin(incidence + refraction),
+                 p = tan(incidence - refraction) / tan(incidence + refraction);
+    return (reflectances){s * s, p * p};
+}
+
 /* Amplitudes by Fresnel's formulas with a complex angle of refraction; with exp(-i omega t) the evanescent wave beyond
  * total reflection decays for a positive imaginary cos_t. Born and Wolf, 7th ed., 1.5.2 and 1.5.4. */
 typedef struct amplitudes {

@@ -260,6 +260,7 @@ static void try_scene(int number, account *out)
 /* Render modes in which light continues from surfaces. */
 static const char *const modes[] = {
     "render.integrator=path render.paths=4",
+    "render.integrator=path render.paths=4 render.polarisation=on",
     "render.integrator=aov",
     "render.integrator=aov render.layer=albedo",
     "render.integrator=aov liquid.capillary_length=0.1",
@@ -367,6 +368,7 @@ static const condition conditions[] = {
     {"rod", "render.lighting=lambert", "rod.specular", "lambert", true},
     {"rod", "clear.transparency=0", "render.weights", "no-clear", true},
     {"rod", "clear.transparency=0 rod.reflectivity=0.5", "render.polarisation", "no-clear", true},
+    {"rod", "render.integrator=path render.paths=4 clear.transparency=0", "render.polarisation", "no-clear", true},
     {"rod", "clear.transparency=0", "background.ior", "no-clear", true},
     {"rod", "render.transmission=simple clear.transparency=0.9", "render.weights", "simple", true},
     {"rod", "render.transmission=simple clear.transparency=0.9", "background.ior", "straight", true},
@@ -482,6 +484,8 @@ static const condition conditions[] = {
     {"magnifier", "render.caustics=photons sun.lights=on sun.width=0", "sun.profile", "thin-beam", true},
     {"rod", "render.polarisation=on", "lamp.polarisation_deg", "unpolarised-lamp", true},
     {"rod", "render.polarisation=on lamp.polarised=1", "lamp.polarisation_deg", "depolarised", true},
+    {"rod", "render.integrator=path render.paths=4 liquid.sheet=retarder", "liquid.retardance_deg", "unpolarised",
+     true},
     {"rod", "liquid.sheet=polariser", "liquid.sheet_axis", "unpolarised", true},
     {"rod", "render.polarisation=on liquid.sheet=retarder", "liquid.sheet_axis", "no-retardance", true},
     {"rod", "render.polarisation=on liquid.sheet=polariser liquid.sheet_block=1", "liquid.sheet_axis", "grey", true},
@@ -721,6 +725,7 @@ static const struct {
 } settings[] = {
     {"rod", "render.integrator=path render.paths=2"},
     {"rod", "render.integrator=path render.paths=2 lamp.reach=8 lamp.radius=0.3"},
+    {"rod", "render.integrator=path render.paths=2 render.polarisation=on liquid.sheet=retarder"},
     {"rod", "render.integrator=raycast"},
     {"rod", "render.integrator=zbuffer"},
     {"rod", "render.integrator=zbuffer render.lighting=phong"},

@@ -41,24 +41,6 @@ static const char clear_scene[] =
     "rotation: [10, 20, 30], priority: 5}\n"
     "  mirror: {shape: sphere, reflectivity: 0.9, position: [1.7, 0.5, -1], radius: 0.4, priority: 6}\n";
 
-static agreement agree(scene *s, const char *settings, double unseen)
-{
-    set_all(s, settings);
-    set(s, "render.integrator=whitted");
-    render_result *tree = render(s);
-    set(s, "render.integrator=path");
-    render_result *chance = render(s);
-    assert_non_null(chance->variance);
-    agreement a = {0};
-    for (int y = 0; y < tree->img->height; y++)
-        for (int x = 0; x < tree->img->width; x++)
-            for (int c = 0; c < 3; c++)
-                agreement_add(&a, estimate_at(chance, x, y, c), film_value(tree->img, x, y, c), unseen);
-    render_result_destroy(tree);
-    render_result_destroy(chance);
-    return a;
-}
-
 /* For rare events the interval covers less often than its nominal probability; hence 90 of 100, not 95. */
 static void paths_through_clear_solids_have_the_mean_of_whitted_ray_tracing(void **state)
 {

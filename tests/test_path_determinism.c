@@ -26,6 +26,13 @@ static const char *const variants[] = {
           "lamp.kind=cone lamp.half_angle_deg=3 lamp.target=0,1,0 lamp.radius=0",
     SMALL "render.integrator=path render.spectrum=spectral render.paths=8 liquid.scatter_per_m=3 liquid.medium=water "
           "liquid.asymmetry=-0.4",
+    SMALL "render.integrator=path render.paths=16 render.polarisation=on vessel.roughness=0.2 rod.reflectivity=0.5 "
+          "liquid.sheet=retarder liquid.retardance_deg=50 vessel.sheet=polariser vessel.sheet_block=0.2 "
+          "lamp.radius=0.2 liquid.scatter_per_m=1 camera.analyser=linear camera.analyser_angle_deg=25",
+    SMALL "render.integrator=path render.spectrum=spectral render.paths=8 render.polarisation=on vessel.medium=sf11 "
+          "rod.medium=gold rod.roughness=0.3 vessel.film_thickness_nm=300 camera.analyser=circular_right",
+    SMALL "render.integrator=path render.paths=16 render.polarisation=on render.caustics=photons render.photons=3000 "
+          "rod.reflectivity=0.5 liquid.sheet=polariser",
     SMALL "render.spectrum=spectral render.wavelengths=9 liquid.medium=water vessel.medium=sf11",
     SMALL "render.spectrum=spectral render.wavelengths=5 render.polarisation=on render.samples=4 vessel.medium=sf11",
     SMALL "render.polarisation=on render.min_weight=0.01",

@@ -26,19 +26,6 @@ static vec3 look_with(scene *s, int64_t polarisation)
     return look(s);
 }
 
-/* Power reflectances, by Fresnel's sine and tangent laws (Born and Wolf, 1.5.2, (21a)). */
-typedef struct reflectances {
-    double s, p;
-} reflectances;
-
-static reflectances reflectances_at(double incidence, double n)
-{
-    const double refraction = asin(sin(incidence) / n);
-    const double s = sin(incidence - refraction) / sin(incidence + refraction),
-                 p = tan(incidence - refraction) / tan(incidence + refraction);
-    return (reflectances){s * s, p * p};
-}
-
 /* --- one interface --- */
 
 static const char surface_scene[] = "render: {width: 1, height: 1, depth: 1, beyond: black}\n"

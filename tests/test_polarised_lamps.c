@@ -52,9 +52,11 @@ static void a_sheet_dims_a_polarised_lamp_by_malus(void **state)
         "{kind: sun, angular_diameter_deg: 0, position: [0, 10, 0], target: [0, 0, 0]}",
         "{position: [0, 10, 0]}",
     };
-    for (size_t k = 0; k < sizeof lamps / sizeof *lamps; k++) {
-        scene *s = floor_under(lamps[k], "position: [0, 3, 0], size: [3, 0.01, 3]");
-
+    /* also by paths, but for the point: straight below it the horizontal turns with each point of a pixel */
+    for (size_t k = 0; k < 2 * (sizeof lamps / sizeof *lamps) - 1; k++) {
+        scene *s = floor_under(lamps[k / 2], "position: [0, 3, 0], size: [3, 0.01, 3]");
+        if (k % 2)
+            set_all(s, "render.integrator=path render.paths=1");
         for (int degree_of = 0; degree_of <= 4; degree_of++)
             for (int a = -90; a <= 90; a += 18)
                 for (int b = 0; b <= 180; b += 60) {
@@ -135,6 +137,55 @@ static void lamps_with_a_size_are_polarised(void **state)
     }
 }
 
+/* Malus, of a lamp that is seen through an analyser. The lamp faces the eye, and its right is the image's left. */
+static void an_analyser_dims_the_lamp_itself(void **state)
+{
+    (void)state;
+    scene *s = scene_from("render: {width: 1, height: 1, depth: 1, polarisation: \"on\", integrator: path, paths: 1}\n"
+                          "camera: {position: [0, 0, 0], target: [0, 0, 10], fov_deg: 0.001, analyser: linear}\n"
+                          "background: {color: [0, 0, 0]}\n"
+                          "lights: {lamp: {kind: disc, radius: 1, reach: 10, intensity: 0.01, position: [0, 0, 10], "
+                          "target: [0, 0, 0], polarised: 0.6}}\n"
+                          "solids: {floor: {shape: plane, position: [0, -3, 0]}}\n");
+    for (int a = 0; a <= 90; a += 15)
+        for (int b = 0; b <= 90; b += 30) {
+            s->camera.analyser_angle_deg = a, s->lights[0].polarisation_deg = b;
+            assert_near(look(s).x, 0.5 * (1.0 + 0.6 * cos(2.0 * (a + b) * degree)), 1e-9);
+        }
+    scene_destroy(s);
+}
+
+/* At Brewster's angle a surface of glass reflects of a field across the plane of incidence ((n^2 - 1) / (n^2 + 1))^2,
+ * and nothing of one within it. So does a dull surface of little roughness, on random paths that find the lamp and on
+ * shadow rays to it. */
+static void surfaces_reflect_a_polarised_lamp_by_fresnel(void **state)
+{
+    (void)state;
+    scene *s =
+        scene_from("render: {width: 1, height: 1, depth: 2, polarisation: \"on\", integrator: path, paths: 65536, "
+                   "beyond: black}\n"
+                   "camera: {position: [-2.4961508830135313, 1.6641005886756874, 0], target: [0, 0, 0], "
+                   "fov_deg: 0.001}\n"
+                   "background: {color: [0, 0, 0]}\n"
+                   "lights: {lamp: {kind: rectangle, width: 12, height: 12, reach: 10, intensity: 0.1, "
+                   "position: [8.320502943378437, 5.547001962252291, 0], target: [0, 0, 0]}}\n"
+                   "solids: {glass: {shape: plane, transparency: 1, ior: 1.5}}\n");
+    const double across = squared(1.25 / 3.25);
+    set(s, "camera.target=8.320502943378437,5.547001962252291,0");
+    set(s, "camera.position=0,0.01,0");
+    const double lamp = look(s).x;
+    assert_true(lamp > 0.1);
+    set(s, "camera.target=0,0,0");
+    set(s, "camera.position=-2.4961508830135313,1.6641005886756874,0");
+    for (int rough = 0; rough < 2; rough++)
+        for (int p = 0; p <= 2; p++) {
+            set(s, rough ? "glass.roughness=0.02" : "glass.roughness=0");
+            s->lights[0].polarised = p > 0 ? 1.0 : 0.0, s->lights[0].polarisation_deg = p == 2 ? 90.0 : 0.0;
+            assert_near(look(s).x / lamp, p == 0 ? 0.5 * across : p == 1 ? across : 0.0, 4e-3);
+        }
+    scene_destroy(s);
+}
+
 /* A spotlight far away on a glass plate at Brewster's angle, tan i = n, and a wall that its reflection reaches: a field
  * in the plane of incidence is not reflected at either face, one across it with R_s, and with all reflections within
  * the plate 2 R_s / (1 + R_s) (Born and Wolf, 1.5.2 and 1.5.3). The floor receives the rest. */
@@ -206,6 +257,8 @@ int main(void)
         cmocka_unit_test(off_the_axis_the_field_turns_with_the_ray),
         cmocka_unit_test(a_point_lamp_counts_from_the_horizontal),
         cmocka_unit_test(lamps_with_a_size_are_polarised),
+        cmocka_unit_test(an_analyser_dims_the_lamp_itself),
+        cmocka_unit_test(surfaces_reflect_a_polarised_lamp_by_fresnel),
         cmocka_unit_test(photons_of_a_polarised_lamp_obey_fresnel),
         cmocka_unit_test(films_are_bit_identical),
     };

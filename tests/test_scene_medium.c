@@ -132,9 +132,6 @@ static void invalid_media_are_refused_with_a_location(void **state)
     expect_error("render: {integrator: path}\nlights:\n  l: {radius: 1}\n",
                  "test.yaml:3:3: l: a light with a size falls off with distance, and its reach is 0; set "
                  "'reach', the distance at which the intensity applies, or set radius to 0");
-    expect_error("render: {integrator: path, polarisation: on}\n",
-                 "test.yaml:1:9: the path integrator does not support polarisation; set render.polarisation "
-                 "to off, or render.integrator to whitted");
     expect_error("render: {weights: constant, polarisation: on}\n",
                  "test.yaml:1:9: constant weights do not support polarisation, which requires the Fresnel "
                  "equations; set render.weights to fresnel");

@@ -33,6 +33,7 @@ bool queue_create(ray_queue *q, int capacity)
     q->inside = (uint64_t *)(void *)(at + 2 * length);
     q->sq = at + 3 * length, q->su = at + 4 * length, q->sv = at + 5 * length;
     q->passed = at + 6 * length, q->bent = at + 7 * length;
+    q->lamp_q = q->passed, q->lamp_u = q->bent;
     q->memory = memory;
     q->capacity = capacity;
     return true;

@@ -11,9 +11,10 @@ typedef struct ray_queue {
     double *wr, *wg, *wb;        /* throughput; for a shadow ray the radiance that it contributes if unblocked */
     int64_t *start, *sample_key; /* face it starts on; see render/core/sample_key.h */
     uint64_t *inside;
-    double *sq, *su, *sv; /* with polarisation: the analyser's Stokes vector relative to its first element; in a crystal
-                              sq is the mode (render/shade/crystals.h) */
-    double *passed, *bent; /* of photons: the length of the path so far, and of its part after the first surface */
+    double *sq, *su, *sv;    /* with polarisation: the analyser's Stokes vector relative to its first element, of shadow
+                              rays in a scene with sheets; in a crystal sq is the mode (render/shade/crystals.h) */
+    double *passed, *bent;   /* of photons: the length of the path so far, and of its part after the first surface */
+    double *lamp_q, *lamp_u; /* of shadow rays to polarised lamps, which are linear: theirs; in the same memory */
     void *memory;
 } ray_queue;
 
@@ -33,6 +34,12 @@ static inline void queue_move(ray_queue *q, int to, int from)
     q->dx[to] = q->dx[from], q->dy[to] = q->dy[from], q->dz[to] = q->dz[from];
     q->wr[to] = q->wr[from], q->wg[to] = q->wg[from], q->wb[to] = q->wb[from];
     q->start[to] = q->start[from], q->sample_key[to] = q->sample_key[from], q->inside[to] = q->inside[from];
+}
+
+/* The Stokes vector of light whose intensity alone counts. */
+static inline void queue_put_unpolarised(ray_queue *q, int at)
+{
+    q->sq[at] = q->su[at] = q->sv[at] = 0.0;
 }
 
 /* Copies a record with its Stokes vector. */

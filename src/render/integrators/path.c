@@ -10,11 +10,19 @@
  * This is how light through a vessel makes caustics; with render.caustics photons bring that light instead, and rays
  * hit lights only along specular surfaces from the camera on. In a scene with lights of a size, clear solids block
  * point lights too. A light's radiance is such that a matte surface at its reach is as bright as in Phong's model.
- * There is no ambient term: light from the sky and from other surfaces replaces it. */
+ * There is no ambient term: light from the sky and from other surfaces replaces it.
+ *
+ * With polarisation a path carries the analyser's row (optics/mueller.h) backwards from the eye, as a ray of a tree
+ * does: the eye sees s_out = M_1 M_2 .. s, of whose product of Mueller matrices the first row is enough, the adjoint of
+ * a Stokes vector (Mojzik and others, "Bi-directional Polarised Light Transport", EGSR 2016; Jarabo and Arellano,
+ * "Bidirectional Rendering of Vector Light Transport", 2018). Its first element is part of the throughput, and the
+ * weights of branches, by which they are chosen, are those of the row. Matte surfaces and media that scatter see the
+ * intensity alone. */
 #include "render/integrators/path_continue.h"
 #include "render/integrators/path_lights.h"
 #include "render/integrators/path_rough.h"
 #include "render/integrators/path_scatter.h"
+#include "render/shade/lamp_polarisation.h"
 #include "render/shade/path_kernels.h"
 
 #include <string.h>
@@ -95,8 +103,13 @@ static void expose_light(tracer *t, const ray_queue *q, int at, int lamp, int pr
 {
     const plan *p = t->target.frame_plan;
     const int64_t sample_key = q->sample_key[at];
-    const double radiance = area_light_radiance(p, lamp, vec3_make(q->dx[at], q->dy[at], q->dz[at])) *
-                            (p->basic ? radiance_share(p, sample_key, priority_index) : 1.0);
+    const vec3 way = vec3_make(q->dx[at], q->dy[at], q->dz[at]);
+    double radiance =
+        area_light_radiance(p, lamp, way) * (p->basic ? radiance_share(p, sample_key, priority_index) : 1.0);
+    if (p->render.polarisation && p->lights[lamp].polarised > 0.0) {
+        const stokes row = {1.0, q->sq[at], q->su[at], q->sv[at]};
+        radiance *= greater(analyser_sees(row, lamp_stokes(p, lamp, vec3_scale(way, -1.0), way)), 0.0);
+    }
     const vec3 l = vec3_scale(light_color_of(t, lamp, sample_key), radiance);
     shading_expose(t, sample_key, q->wr[at] * l.x, q->wg[at] * l.y, q->wb[at] * l.z);
 }
@@ -133,6 +146,17 @@ static void expose_background(tracer *t, const ray_queue *q, int first, const in
         path_scatter(t, q, first, scattered, some);
 }
 
+/* Of a branch the surface keeps or changes the analyser's Stokes vector; a matte surface sees the intensity alone. */
+static void keep_polarisation(const tracer *t, int k, continuation *c)
+{
+    const polar_group *p = &t->surface.polar;
+    if (!t->target.frame_plan->render.polarisation)
+        return;
+    c->q = c->refracted ? p->tq[k] : p->rq[k];
+    c->u = c->refracted ? p->tu[k] : p->ru[k];
+    c->v = c->refracted ? p->tv[k] : p->rv[k];
+}
+
 static bool draw_clear(const tracer *t, int k, double chance, continuation *c)
 {
     const branch_group *b = &t->surface.branches;
@@ -147,6 +171,7 @@ static bool draw_clear(const tracer *t, int k, double chance, continuation *c)
         c->share =
             vec3_scale(layered_weight(t, k, !c->refracted), both / (c->refracted ? b->refract[k] : b->reflect[k]));
     c->specular_bounce = true;
+    keep_polarisation(t, k, c);
     return true;
 }
 
@@ -187,6 +212,7 @@ static bool draw_matte(const tracer *t, const material *m, int k, const path_cho
         c->direction = vec3_make(t->surface.branches.rx[k], t->surface.branches.ry[k], t->surface.branches.rz[k]);
         c->share = surface_is_layered(t) ? vec3_scale(layered_weight(t, k, true), 1.0 / odds)
                                          : vec3_make(mirror / odds, mirror / odds, mirror / odds);
+        keep_polarisation(t, k, c);
         return true;
     }
     c->direction = vec3_make(chosen->x[k], chosen->y[k], chosen->z[k]);

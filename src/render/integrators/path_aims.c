@@ -85,4 +85,8 @@ void path_enqueue_lamp(tracer *t, int k, int lamp, vec3 to_lamp, double index, u
     q->wr[at] = r, q->wg[at] = gr, q->wb[at] = b;
     q->start[at] = g->points.face[k], q->sample_key[at] = sample_key;
     q->inside[at] = inside;
+    if (p->sheets)
+        queue_put_unpolarised(q, at);
+    if (p->polarised_shadows)
+        sheets_shadow_ray(t, lamp, at);
 }

@@ -12,7 +12,10 @@ static bool survives(const tracer *t, int k, int depth, vec3 *share)
     if (!r->roulette || depth < ROULETTE_DEPTH)
         return true;
     const int64_t paths = path_count(&t->target.frame_plan->draws, sample_key_pixel(g->sample_key[k]));
-    const double weight = fmax(g->wr[k] * share->x, fmax(g->wg[k] * share->y, g->wb[k] * share->z)) * (double)paths;
+    /* of the weight with which paths begin, which an analyser halves */
+    const double begins = t->target.frame_plan->analyser == ANALYSER_NONE ? 1.0 : 0.5;
+    const double weight =
+        fmax(g->wr[k] * share->x, fmax(g->wg[k] * share->y, g->wb[k] * share->z)) * ((double)paths / begins);
     if (weight >= 1.0)
         return true;
     if (path_draw(&t->target.frame_plan->draws, g->sample_key[k], depth, DRAW_ROULETTE).u >= weight)
@@ -41,6 +44,8 @@ static void go_on(tracer *t, int k, int depth, const continuation *c)
     q->dx[at] = c->direction.x, q->dy[at] = c->direction.y, q->dz[at] = c->direction.z;
     q->wr[at] = g->wr[k] * c->share.x, q->wg[at] = g->wg[k] * c->share.y, q->wb[at] = g->wb[k] * c->share.z;
     q->start[at] = g->points.face[k], q->inside[at] = c->inside;
+    if (t->target.frame_plan->render.polarisation)
+        q->sq[at] = c->q, q->su[at] = c->u, q->sv[at] = c->v;
     const bool photons = t->target.frame_plan->photons != NULL;
     const int64_t left_matte = g->sample_key[k] | (c->matte && photons ? SAMPLE_KEY_PHOTONS : 0);
     const bool meets_lights = c->specular_bounce && !(left_matte & SAMPLE_KEY_PHOTONS);

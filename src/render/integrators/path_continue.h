@@ -7,6 +7,8 @@
 /* The continuation of a path: direction, throughput factor by channel, and media. */
 typedef struct continuation {
     vec3 direction, share;
+    double q, u, v; /* with polarisation: the analyser's Stokes vector relative to its first element; 0: only the
+                       intensity counts */
     uint64_t inside;
     bool refracted, matte;
     bool specular_bounce; /* the path may hit lamps */

@@ -2,6 +2,7 @@
 #include "render/integrators/path_rough.h"
 
 #include "render/integrators/path_lights.h"
+#include "render/shade/lamp_polarisation.h"
 #include "render/shade/light_choice.h"
 
 #define PI 3.14159265358979323846
@@ -27,8 +28,22 @@ static bool takes_lamps(const tracer *t, int k)
 static void enqueue(tracer *t, int k, int lamp, vec3 to_lamp, bool refracted, vec3 share)
 {
     const group *g = &t->surface.gathered;
+    const plan *p = t->target.frame_plan;
+    ray_queue *q = &t->queues.shadows;
+    const int before = q->count;
     path_enqueue_lamp(t, k, lamp, to_lamp, refracted ? g->n_to[k] : g->n_from[k],
                       refracted ? g->inside_after[k] : g->inside_before[k], share);
+    if (!p->render.polarisation || q->count == before)
+        return;
+    if (p->sheets)
+        polarised_shadow(t, k, refracted, before);
+    else if (p->lights[lamp].polarised > 0.0) { /* nothing between facet and lamp changes the row */
+        polarised_shadow(t, k, refracted, before);
+        const vec3 way = vec3_normalize(to_lamp);
+        const stokes row = {1.0, q->sq[before], q->su[before], q->sv[before]};
+        const double seen = greater(analyser_sees(row, lamp_stokes(p, lamp, vec3_scale(way, -1.0), way)), 0.0);
+        q->wr[before] *= seen, q->wg[before] *= seen, q->wb[before] *= seen;
+    }
 }
 
 /* --- points of lamps --- */

@@ -30,7 +30,7 @@ static void add_depths(tracer *t)
     if (p->scatter && !t->media->flights.flies)
         add_scattering(t);
     for (int k = 0; p->sheets && k < t->batch.scratch.segments->count; k++)
-        sheets_segment(t, &t->batch.scratch.segments->segment[k]);
+        sheets_segment(t, &t->media->sheets, &t->batch.scratch.segments->segment[k]);
     for (int k = 0; k < t->batch.scratch.segments->count; k++) {
         const medium_segment *s = &t->batch.scratch.segments->segment[k];
         if (!p->geometry->regions[s->priority_index].attenuates)

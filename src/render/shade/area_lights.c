@@ -73,6 +73,8 @@ void shadow_ray_enqueue(tracer *t, int k, vec3 to_light, vec3 color, double diff
     q->wg[at] = g->wg[k] * color.y * (diffuse * g->cg[k] + shine);
     q->wb[at] = g->wb[k] * color.z * (diffuse * g->cb[k] + shine);
     q->start[at] = g->points.face[k], q->sample_key[at] = g->sample_key[k], q->inside[at] = g->inside_before[k];
+    if (t->target.frame_plan->sheets)
+        queue_put_unpolarised(q, at);
 }
 
 /* Enqueues a shadow ray from record k to its point of a light's sphere. */

@@ -78,3 +78,20 @@ void polarised_branches(tracer *t, const material *m, bool opaque)
         b->refract[k] = m->transparency * (1.0 - coating) * split_stokes(s, &p->tq[k], &p->tu[k], &p->tv[k]);
     }
 }
+
+/* The directions are the same up to rounding, but the frames may not be: they are discontinuous. */
+void polarised_shadow(tracer *t, int k, bool refracted, int at)
+{
+    const branch_group *b = &t->surface.branches;
+    const polar_group *p = &t->surface.polar;
+    ray_queue *q = &t->queues.shadows;
+    const stokes row =
+        refracted ? (stokes){1.0, p->tq[k], p->tu[k], p->tv[k]} : (stokes){1.0, p->rq[k], p->ru[k], p->rv[k]};
+    const vec3 branch = refracted ? vec3_make(b->tx[k], b->ty[k], b->tz[k]) : vec3_make(b->rx[k], b->ry[k], b->rz[k]);
+    vec3 x, y, branch_x, branch_y;
+    polarisation_frame(branch, &branch_x, &branch_y);
+    polarisation_frame(vec3_normalize(vec3_make(q->dx[at], q->dy[at], q->dz[at])), &x, &y);
+    const frame_turn from = frame_turn_to(x, y, branch_x);
+    const stokes turned = stokes_rotate(row, from.cos_2a, -from.sin_2a);
+    q->sq[at] = turned.q, q->su[at] = turned.u, q->sv[at] = turned.v;
+}

@@ -77,6 +77,8 @@ void scattering_begin(tracer *t, const ray_queue *q, int first, int depth, int c
         for (int c = 0; c < 4; c++)
             w->depth[c][i] = 0.0;
     }
+    if (t->target.frame_plan->sheets)
+        sheets_begin(t, &w->sheets, q, first, count);
     airlight_choose(t, q, first, depth, count);
     w->flies = w->flying = true;
 }

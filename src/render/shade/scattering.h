@@ -8,6 +8,7 @@
 
 #include "geometry/mesh.h"
 #include "render/core/queue.h"
+#include "render/shade/sheets.h"
 #include "scene/model/open.h"
 
 struct tracer;
@@ -38,6 +39,7 @@ typedef struct airlight {
     double at[ROW], density[ROW]; /* distance, infinite if there is none; density per length */
     int region[ROW];              /* priority index of the medium there, once the ray has reached it; 0 before */
     double depth[4][ROW];         /* optical depths up to there: absorption by channel, scattering */
+    double passes[ROW];           /* the share that the sheets on the way leave of its light, which is unpolarised */
 } airlight;
 
 /* The flights of a batch. */
@@ -51,6 +53,7 @@ typedef struct flight_work {
     int region[ROW];      /* ... and the priority index of the medium there */
     double depth[4][ROW]; /* as an airlight's, of the whole path so far */
     airlight lamps[AIRLIGHTS_MAX];
+    sheet_work sheets; /* of the whole path so far */
 } flight_work;
 
 /* Before and after the search for the batch's interfaces. Afterwards the medium segments end where rays scatter, and

@@ -221,6 +221,8 @@ static void enqueue_shadow_rays(tracer *t, int lamp)
         if (t->target.frame_plan->polarised_shadows)
             sheets_shadow_ray(t, lamp, at);
     }
+    for (int k = 1; t->target.frame_plan->sheets && k <= count; k++)
+        queue_put_unpolarised(q, q->count - k);
 }
 
 /* The light of one lamp on the gathered group, with its spectrum in a spectral film. */

@@ -82,6 +82,8 @@ void spectral_light(tracer *t, int lamp);
 /* polarised.c: gathers the group's Stokes vectors, and applies an interface to weights and vectors. */
 void polarised_gather(tracer *t, const ray_queue *q, int first, const int *list);
 void polarised_branches(tracer *t, const material *m, bool opaque);
+/* Gives a shadow ray the Stokes vector of a branch of ray k along the same direction. */
+void polarised_shadow(tracer *t, int k, bool refracted, int at);
 /* The same for ray k at a layered surface, by what it reflects and transmits. */
 void polarised_layered(tracer *t, int k, sp_response reflected, sp_response transmitted, double coating,
                        double transparency);

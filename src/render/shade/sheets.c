@@ -57,25 +57,21 @@ stokes sheet_row(const region_sheet *sheet, stokes row, vec3 d, double length_m,
     return row;
 }
 
-void sheets_announce(tracer *t, const ray_queue *q, int first, int count)
+/* Shadow rays have rows too: of a rough surface it is a facet's. */
+void sheets_begin(const tracer *t, sheet_work *w, const ray_queue *q, int first, int count)
 {
-    const plan *p = t->target.frame_plan;
-    if (!p->sheets)
-        return;
-    sheet_work *w = &t->media->sheets;
-    w->lights = q == &t->queues.shadows;
-    const bool polarised = p->render.polarisation && !w->lights;
+    const bool polarised = t->target.frame_plan->render.polarisation, lights = q == &t->queues.shadows;
+    w->to_lamps = lights && t->target.frame_plan->polarised_shadows;
     for (int i = 0; i < count; i++) {
         const int at = first + i;
-        w->row[i] = (stokes){1.0, 0.0, 0.0, 0.0};
+        w->passage[i] = (sheet_passage){.row = {1.0, 0.0, 0.0, 0.0}, .region = -1};
         if (polarised)
-            w->row[i].q = q->sq[at], w->row[i].u = q->su[at], w->row[i].v = q->sv[at];
+            w->passage[i].row.q = q->sq[at], w->passage[i].row.u = q->su[at], w->passage[i].row.v = q->sv[at];
         w->direction[i] = vec3_make(q->dx[at], q->dy[at], q->dz[at]);
-        if (w->lights)
+        if (lights)
             w->direction[i] = vec3_normalize(w->direction[i]);
-        if (w->lights && p->polarised_shadows)
-            w->lamp[i] = (stokes){1.0, q->sq[at], q->su[at], q->sv[at]};
-        w->region[i] = -1;
+        if (w->to_lamps)
+            w->lamp[i] = (stokes){1.0, q->lamp_q[at], q->lamp_u[at], 0.0};
     }
 }
 
@@ -84,7 +80,13 @@ void sheets_shadow_ray(tracer *t, int lamp, int at)
     ray_queue *q = &t->queues.shadows;
     const vec3 to_lamp = vec3_normalize(vec3_make(q->dx[at], q->dy[at], q->dz[at]));
     const stokes s = lamp_stokes(t->target.frame_plan, lamp, vec3_scale(to_lamp, -1.0), to_lamp);
-    q->sq[at] = s.q, q->su[at] = s.u, q->sv[at] = s.v;
+    q->lamp_q[at] = s.q, q->lamp_u[at] = s.u;
+}
+
+void sheets_announce(tracer *t, const ray_queue *q, int first, int count)
+{
+    if (t->target.frame_plan->sheets)
+        sheets_begin(t, &t->media->sheets, q, first, count);
 }
 
 static double lambda_of(const tracer *t, int64_t sample_key)
@@ -94,46 +96,55 @@ static double lambda_of(const tracer *t, int64_t sample_key)
 }
 
 /* Ends ray i's passage. A path that leaves the scene has no length, as for absorption. */
-static void leave(tracer *t, int i)
+static void leave(const tracer *t, vec3 direction, int i, sheet_passage *one)
 {
     const double infinite_length = 1e100;
     const plan *p = t->target.frame_plan;
-    sheet_work *w = &t->media->sheets;
-    const region_sheet *sheet = w->region[i] >= 0 ? &p->sheets[w->region[i]] : NULL;
-    w->region[i] = -1;
-    if (!sheet || !(w->length[i] > 0.0) || w->length[i] > infinite_length)
+    const region_sheet *sheet = one->region >= 0 ? &p->sheets[one->region] : NULL;
+    one->region = -1;
+    if (!sheet || !(one->length > 0.0) || one->length > infinite_length)
         return;
     if (!p->render.polarisation) /* polarisers alone */
-        w->row[i].i *= 0.5 * (sheet->pass + sheet->block);
+        one->row.i *= 0.5 * (sheet->pass + sheet->block);
     else
-        w->row[i] = sheet_row(sheet, w->row[i], w->direction[i], w->length[i] * p->render.unit_m,
-                              lambda_of(t, t->media->sample_keys[i]));
+        one->row = sheet_row(sheet, one->row, direction, one->length * p->render.unit_m,
+                             lambda_of(t, t->media->sample_keys[i]));
 }
 
 /* The search of interfaces may divide a passage into several segments. */
-void sheets_segment(tracer *t, const medium_segment *s)
+static void pass(const tracer *t, vec3 direction, int i, int priority_index, double length, sheet_passage *one)
 {
-    const region_sheet *sheets = t->target.frame_plan->sheets;
-    sheet_work *w = &t->media->sheets;
-    const int i = s->ray;
-    if (w->region[i] == s->priority_index) {
-        w->length[i] += s->length;
+    if (one->region == priority_index) {
+        one->length += length;
         return;
     }
-    leave(t, i);
-    if (sheets[s->priority_index].kind == SHEET_NONE)
+    leave(t, direction, i, one);
+    if (t->target.frame_plan->sheets[priority_index].kind == SHEET_NONE)
         return;
-    w->region[i] = s->priority_index;
-    w->length[i] = s->length;
+    one->region = priority_index;
+    one->length = length;
+}
+
+void sheets_segment(const tracer *t, sheet_work *w, const medium_segment *s)
+{
+    pass(t, w->direction[s->ray], s->ray, s->priority_index, s->length, &w->passage[s->ray]);
+}
+
+double sheets_share_within(const tracer *t, const sheet_work *w, const medium_segment *s, double length)
+{
+    sheet_passage one = w->passage[s->ray];
+    pass(t, w->direction[s->ray], s->ray, s->priority_index, length, &one);
+    leave(t, w->direction[s->ray], s->ray, &one);
+    return greater(one.row.i, 0.0);
 }
 
 void sheets_leave(tracer *t, int count, double share[3][ROW])
 {
-    const sheet_work *w = &t->media->sheets;
-    const bool polarised = w->lights && t->target.frame_plan->polarised_shadows;
+    sheet_work *w = &t->media->sheets;
     for (int i = 0; i < count; i++) {
-        leave(t, i);
-        const double seen = polarised ? analyser_sees(w->row[i], w->lamp[i]) : w->row[i].i;
+        leave(t, w->direction[i], i, &w->passage[i]);
+        const stokes row = w->passage[i].row;
+        const double seen = w->to_lamps ? analyser_sees(row, w->lamp[i]) : row.i;
         const double left = greater(seen, 0.0); /* of two crossed polarisers, up to rounding 0 */
         share[0][i] *= left, share[1][i] *= left, share[2][i] *= left;
     }
@@ -142,10 +153,10 @@ void sheets_leave(tracer *t, int count, double share[3][ROW])
 void sheets_store(tracer *t, ray_queue *q, int first, int count)
 {
     const sheet_work *w = &t->media->sheets;
-    if (!t->target.frame_plan->render.polarisation || w->lights)
+    if (!t->target.frame_plan->render.polarisation || q == &t->queues.shadows)
         return;
     for (int i = 0; i < count; i++) {
-        const stokes s = w->row[i];
+        const stokes s = w->passage[i].row;
         const double over = s.i > 0.0 ? 1.0 / s.i : 0.0;
         q->sq[first + i] = s.q * over, q->su[first + i] = s.u * over, q->sv[first + i] = s.v * over;
     }

@@ -84,9 +84,6 @@ static status check_render(const scene *s, diagnostic *why)
         return diagnose(why, STATUS_BAD_INPUT, "keep width times height within 268435456",
                         "an image of %lld x %lld pixels is too large", (long long)s->render.width,
                         (long long)s->render.height);
-    if (s->render.polarisation && integrator_traits_of(&s->render)->by_chance)
-        return diagnose(why, STATUS_BAD_INPUT, "set render.polarisation to off, or render.integrator to whitted",
-                        "the path integrator does not support polarisation");
     const bool grid = s->render.filter == PIXEL_FILTER_CENTRE;
     if (integrator_traits_of(&s->render)->by_chance && s->render.error > 0.0 &&
         (s->render.spectrum == SPECTRUM_SPECTRAL || grid))

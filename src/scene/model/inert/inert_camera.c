@@ -44,10 +44,10 @@ inert_remedy polarised_remedy(const scene *s)
 {
     const render_settings *r = &s->render;
     const integrator_traits *traits = integrator_traits_of(r);
-    const char *first = traits->by_chance || traits->drawn || traits->layers ? "render.integrator=whitted and "
-                        : r->weights == WEIGHTS_CONSTANT                     ? "render.weights=fresnel and "
-                        : r->transmission == TRANSMISSION_SIMPLE             ? "render.transmission=refract and "
-                                                                             : "";
+    const char *first = traits->drawn || traits->layers          ? "render.integrator=whitted and "
+                        : r->weights == WEIGHTS_CONSTANT         ? "render.weights=fresnel and "
+                        : r->transmission == TRANSMISSION_SIMPLE ? "render.transmission=refract and "
+                                                                 : "";
     return inert_set("%srender.polarisation=on", first);
 }
 

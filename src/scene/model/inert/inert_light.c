@@ -104,12 +104,13 @@ static bool shows_polarisation(const scene *s, const solid *one)
     return material_is_layered(&one->surface, &s->render) || is_clear(s, one);
 }
 
-/* Of light that matte surfaces receive through polarisers, or as photons from clear solids, metals or films. */
+/* Of light that matte surfaces receive through polarisers, or as photons from clear solids, metals or films, or that
+ * random paths bring from these. */
 static bool polarisation(const inert_case *c, const light *l)
 {
     const scene *s = c->s;
     const bool degree = strcmp(c->at.row->name, "polarised") == 0;
-    const bool photons = scene_has_caustics(&s->render) && first_visible(s, shows_polarisation),
+    const bool photons = (scene_has_caustics(&s->render) || is_path(s)) && first_visible(s, shows_polarisation),
                through = s->render.shadows == SHADOWS_ATTENUATED && first_visible(s, is_polariser);
     if (!degree && strcmp(c->at.row->name, "polarisation_deg") != 0)
         return false;
@@ -117,7 +118,8 @@ static bool polarisation(const inert_case *c, const light *l)
         return true;
     if (!degree && l->polarised == 0.0)
         return inert_say(c, "unpolarised-lamp", inert_set("%s.polarised=1", c->name).text, "the light is unpolarised");
-    if (!photons && !through) {
+    const bool seen = is_path(s) && s->camera.analyser != ANALYSER_NONE && light_has_size(l);
+    if (!photons && !through && !seen) {
         const inert_remedy clear = inert_set_clear(first_visible(s, NULL));
         return inert_say(c, "depolarised",
                          first_visible(s, shows_polarisation) ? "set render.caustics=photons" : clear.text,
