@@ -6,6 +6,14 @@
 #include "quad.h"
 #include "random_stream.h"
 
+static inline bool has_asphere(const solid_shape *s)
+{
+    bool any = false;
+    for (int i = 0; i < 3; i++)
+        any |= s->kind == SHAPE_LENS && (s->even_1[i] != 0.0 || s->even_2[i] != 0.0);
+    return any;
+}
+
 static inline quad asphere_height(const solid_shape *s, int k, quad q)
 {
     const quad radius = k == 0 ? s->radius_1 : s->radius_2, stretch = 1 + (quad)(k == 0 ? s->conic_1 : s->conic_2);
@@ -51,9 +59,7 @@ static inline void make_aspheric(solid_shape *s, uint64_t *seed)
                     even[i] = random_real(seed, -0.35, 0.35) * exp(random_real(seed, -4.0, 0.0)) * size / power;
         }
         s->thickness = plain.thickness + random_real(seed, 0.0, 0.7) * size;
-        const double any = fabs(s->even_1[0]) + fabs(s->even_1[1]) + fabs(s->even_1[2]) + fabs(s->even_2[0]) +
-                           fabs(s->even_2[1]) + fabs(s->even_2[2]);
-        if (any > 0.0 && solid_shape_check(s, NULL) == STATUS_OK)
+        if (has_asphere(s) && solid_shape_check(s, NULL) == STATUS_OK)
             return;
     }
     *s = plain;

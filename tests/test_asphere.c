@@ -439,7 +439,7 @@ static void impossible_aspheres_are_refused(void **state)
     s.thickness = 2.0, s.radius_1 = 1.0;
     assert_int_equal(solid_shape_check(&s, NULL), STATUS_OK);
     s.even_1[0] = 0.01;
-    expect_refused(s, "diameter 2 is larger than side 1, which ends at a diameter of 1.98", "at most 1.98");
+    expect_refused(s, "diameter 2 is larger than side 1, which with coefficients ends at a diameter of 1.98", "at most 1.98");
 }
 
 int main(void)

@@ -32,8 +32,9 @@ static status check_side(const solid_shape *s, int k, diagnostic *why)
     char remedy[160];
     snprintf(remedy, sizeof remedy, "use a diameter of at most %g, or a radius_%d of at least %g in magnitude",
              2.0 * half, k + 1, fabs(radius) * (s->diameter / (2.0 * half)));
-    return diagnose(why, STATUS_BAD_INPUT, remedy, "diameter %g is larger than side %d, which ends at a diameter of %g",
-                    s->diameter, k + 1, 2.0 * half);
+    return diagnose(why, STATUS_BAD_INPUT, remedy,
+                    "diameter %g is larger than side %d, which %sends at a diameter of %g", s->diameter, k + 1,
+                    e.aspheric ? "with coefficients " : "", 2.0 * half);
 }
 
 static status check_form(const solid_shape *s, int k, lens_form *form, diagnostic *why)
