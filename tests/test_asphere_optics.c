@@ -278,6 +278,20 @@ static void a_lens_of_a_catalogue_has_one_focus(void **state)
     assert_true(most - least < 1e-4 && fabs(third) < 1e-4 * fabs(of_sphere));
 }
 
+/* The example of cuvette-optics(7): its coefficients bring the foci of all rays together, which are 0.15 apart without. */
+static void the_manuals_example_has_one_focus(void **state)
+{
+    (void)state;
+    prescription p = {LENS(0.8, 0.0, 0.25, 1.0, .conic_1 = 0.0), 1.5};
+    double f, back;
+    gaussian(&p, &f, &back);
+    const double sphere = back - traced(&p, 0.44).l;
+    assert_true(fabs(sphere - 0.1517) < 1e-4);
+    p.shape.even_1[0] = -0.14, p.shape.even_1[1] = -0.141, p.shape.even_1[2] = -0.3189;
+    for (int k = 1; k <= 22; k++)
+        assert_true(fabs(traced(&p, 0.02 * k).l - back) < 1.1e-4);
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
@@ -287,6 +301,7 @@ int main(void)
         cmocka_unit_test(a_coefficient_cancels_third_order_aberration),
         cmocka_unit_test(each_term_of_the_hyperboloid_removes_an_order),
         cmocka_unit_test(a_lens_of_a_catalogue_has_one_focus),
+        cmocka_unit_test(the_manuals_example_has_one_focus),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }
