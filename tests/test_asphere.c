@@ -232,6 +232,64 @@ static void crossings_are_the_roots_of_a_quartic(void **state)
     assert_true(with[2] > 1000 && with[3] > 100 && with[4] > 20 && close > 100);
 }
 
+/* The largest number of changes of sign of the height's second difference along lines at eight distances from the axis,
+ * outwards from the point nearest to it, and whether it is ever positive or negative. */
+static int turns_along_lines(const solid_shape *s, bool *up, bool *down)
+{
+    enum { STEPS = 200 };
+    const double rim = 0.5 * s->diameter, h = 1e-3 * rim, zero = 1e-6 / rim;
+    int most = 0;
+    *up = *down = false;
+    for (int k = 0; k < 8; k++) {
+        const double b = rim * k / 8, reach = sqrt(rim * rim - b * b) - h;
+        int turns = 0, last = 0;
+        for (int i = 0; i <= STEPS; i++) {
+            const double t = reach * i / STEPS, at = b * b + t * t;
+            const double second =
+                (asphere_height_near(s, 0, at + h * (h + 2.0 * t)) - 2.0 * asphere_height_near(s, 0, at) +
+                 asphere_height_near(s, 0, at + h * (h - 2.0 * t))) /
+                (h * h);
+            const int sign = second > zero ? 1 : second < -zero ? -1 : 0;
+            turns += sign * last < 0;
+            last = sign ? sign : last;
+            *up |= sign > 0, *down |= sign < 0;
+        }
+        most = turns > most ? turns : most;
+    }
+    return most;
+}
+
+/* Along any line, the second derivative keeps its sign on a convex and on a concave side, and changes it at most once
+ * on either side of the axis where a side turns; of those refused for more turns, most have them. */
+static void forms_are_those_of_second_derivatives(void **state)
+{
+    (void)state;
+    uint64_t seed = 10;
+    int count[LENS_STEEP + 1] = {0}, with_turns = 0;
+    for (int i = 0; i < 6000; i++) {
+        solid_shape s = {.kind = SHAPE_LENS, .diameter = 2.0, .thickness = 9.0};
+        s.radius_1 =
+            random_below(&seed, 3) ? random_real(&seed, 1.2, 4.0) * (random_below(&seed, 2) ? 1.0 : -1.0) : 0.0;
+        s.conic_1 = random_real(&seed, -2.0, 0.3);
+        for (int k = 0; k < 3; k++)
+            s.even_1[k] = random_below(&seed, 3) ? random_real(&seed, -0.4, 0.4) : 0.0;
+        double within;
+        const lens_form form = lens_form_of(&s, 0, &within);
+        bool up, down;
+        const int turns = turns_along_lines(&s, &up, &down);
+        count[form]++;
+        assert_true(form != LENS_CONVEX || !down);
+        assert_true(form != LENS_CONCAVE || !up);
+        assert_true(form != LENS_ONE_TURN || turns <= 1);
+        assert_true(form >= LENS_TURNS || within == 1.0);
+        with_turns += form == LENS_TURNS && turns > 1;
+    }
+    print_message("%d convex, %d concave, %d with a turn, %d with more, of which %d have more\n", count[LENS_CONVEX],
+                  count[LENS_CONCAVE], count[LENS_ONE_TURN], count[LENS_TURNS], with_turns);
+    assert_true(count[LENS_CONVEX] > 500 && count[LENS_CONCAVE] > 500 && count[LENS_ONE_TURN] > 500);
+    assert_true(with_turns > count[LENS_TURNS] / 2);
+}
+
 /* The normal is (-x z' / rho, 1, -z z' / rho) up to its length, with z' by central differences of the definition in
  * quadruple precision, and in closed form: for c rho / w and 4 A4 rho^3 + 6 A6 rho^5 + 8 A8 rho^7. */
 static void normals_are_those_of_the_derivative(void **state)
@@ -375,6 +433,34 @@ static void bounds_are_tight(void **state)
     }
 }
 
+/* Corners of the triangles, and circles of the outline, are on the faces. */
+static void drawings_are_on_the_surface(void **state)
+{
+    (void)state;
+    uint64_t seed = 9;
+    for (int trial = 0; trial < 100; trial++) {
+        const solid_shape s = random_asphere(&seed);
+        mesh *triangles = NULL;
+        assert_int_equal(shape_of(&s)->tessellation(&s, 0, &triangles, NULL), STATUS_OK);
+        for (size_t i = 0; i < triangles->vertex_count; i += 97) {
+            const vec3 p = triangles->vertices[i];
+            const double rim = distance_from_face(&s, p, 0), rho = hypot(p.x, p.z);
+            const double one = fabs(p.y - asphere_height_near(&s, 0, rho * rho)),
+                         two = fabs(p.y - asphere_height_near(&s, 1, rho * rho));
+            assert_true(fmin(rim, fmin(one, two)) < 1e-12 * s.diameter);
+        }
+        mesh_release(triangles);
+        shape_ring rings[RINGS_MAX];
+        const int count = shape_of(&s)->rings(&s, rings);
+        assert_true(count >= 14 && count <= RINGS_MAX);
+        for (int i = 0; i < count; i++) {
+            const double q = rings[i].x * rings[i].x, one = fabs(rings[i].y - asphere_height_near(&s, 0, q)),
+                         two = fabs(rings[i].y - asphere_height_near(&s, 1, q));
+            assert_true(fmin(one, two) < 1e-12 * s.diameter && rings[i].x <= 0.5 * s.diameter * (1.0 + 1e-15));
+        }
+    }
+}
+
 /* With coefficients of 0 the lens is the conic one: the same primitive, whose rays have a closed form. */
 static void a_lens_without_coefficients_is_a_conic(void **state)
 {
@@ -439,7 +525,8 @@ static void impossible_aspheres_are_refused(void **state)
     s.thickness = 2.0, s.radius_1 = 1.0;
     assert_int_equal(solid_shape_check(&s, NULL), STATUS_OK);
     s.even_1[0] = 0.01;
-    expect_refused(s, "diameter 2 is larger than side 1, which with coefficients ends at a diameter of 1.98", "at most 1.98");
+    expect_refused(s, "diameter 2 is larger than side 1, which with coefficients ends at a diameter of 1.98",
+                   "at most 1.98");
 }
 
 int main(void)
@@ -447,11 +534,13 @@ int main(void)
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(crossings_of_random_lines_agree_with_a_dense_search),
         cmocka_unit_test(crossings_are_the_roots_of_a_quartic),
+        cmocka_unit_test(forms_are_those_of_second_derivatives),
         cmocka_unit_test(normals_are_those_of_the_derivative),
         cmocka_unit_test(reflected_rays_stay_within_an_asphere),
         cmocka_unit_test(all_instruction_sets_find_the_same_bits),
         cmocka_unit_test(the_volume_is_that_of_the_polynomials),
         cmocka_unit_test(bounds_are_tight),
+        cmocka_unit_test(drawings_are_on_the_surface),
         cmocka_unit_test(a_lens_without_coefficients_is_a_conic),
         cmocka_unit_test(impossible_aspheres_are_refused),
     };

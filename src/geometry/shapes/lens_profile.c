@@ -1,4 +1,4 @@
-/* Profiles of lenses: heights, extremes and forms of their sides. */
+/* Profiles of lenses: heights and extremes of their sides. */
 #include "geometry/shapes/lens_profile.h"
 
 #include "geometry/shapes/parts.h"
@@ -110,78 +110,4 @@ double lens_highest_of(const solid_shape *s, int k)
 {
     const lens_profile e = lens_profile_of(s, k);
     return e.aspheric ? lens_reach_of(s, k, 0.0, 1.0) : fmax(e.vertex, lens_edge(s, k));
-}
-
-/* --- forms --- */
-
-enum { FORM_PIECES = 256 };
-
-/* The steepest slope of a side with coefficients, and its largest curvature in units of 1 / rim. */
-#define SLOPE_MOST 16.0
-#define BEND_MOST 0x1p14
-
-/* h = dz/dq + 2 (q - b^2) d2z/dq2 is half the second derivative of the height along a line at a distance b from the
- * axis. It has at most one zero if its derivative, 3 d2z/dq2 + 2 (q - b^2) d3z/dq3, keeps its sign: that is a mean of
- * its values for b^2 = q and b = 0, 3 d2z/dq2 and d/dq (dz/dq + 2 q d2z/dq2). */
-static asphere_range turn_of(const even_asphere *e, double from, double to)
-{
-    const double a = 1.0 / asphere_root(e, from), b = 1.0 / asphere_root(e, to);
-    const double c = 0.75 * e->stretch * e->curvature * e->curvature * e->curvature;
-    const double across[4] = {6.0 * e->even[0], 18.0 * e->even[1], 36.0 * e->even[2], 0.0},
-                 along[4] = {6.0 * e->even[0], 30.0 * e->even[1], 84.0 * e->even[2], 0.0};
-    const asphere_range m = asphere_range_of(c * (a * a * a), c * (b * b * b), across, from, to),
-                        s = asphere_range_of(c * (a * a * a * a * a), c * (b * b * b * b * b), along, from, to);
-    return (asphere_range){fmin(m.low, s.low), fmax(m.high, s.high)};
-}
-
-/* The range of what has the sign of the second derivatives: where they are 0 on the axis, divided by the power of q
- * with which they rise there. */
-static asphere_range sign_of_bend(const even_asphere *e, double from, double to)
-{
-    if (e->curvature != 0.0)
-        return asphere_bend(e, from, to);
-    const int first = e->even[0] != 0.0 ? 0 : e->even[1] != 0.0 ? 1 : 2;
-    double along[4] = {0.0}, across[4] = {0.0};
-    for (int i = first; i < 3; i++) {
-        const double power = 4.0 + 2.0 * i;
-        along[i - first] = power * (power - 1.0) * e->even[i], across[i - first] = power * e->even[i];
-    }
-    const asphere_range m = asphere_range_of(0.0, 0.0, along, from, to),
-                        s = asphere_range_of(0.0, 0.0, across, from, to);
-    return (asphere_range){fmin(m.low, s.low), fmax(m.high, s.high)};
-}
-
-static asphere_range turned(asphere_range r, double inwards)
-{
-    return inwards > 0.0 ? r : (asphere_range){-r.high, -r.low};
-}
-
-static lens_form form_of_asphere(const solid_shape *s, int k, double *within)
-{
-    const even_asphere e = lens_profile_of(s, k).e;
-    const double inwards = k == 0 ? 1.0 : -1.0, rim = lens_rim(s);
-    bool convex = true, concave = true, rises = true, falls = true;
-    for (int i = 0; i < FORM_PIECES; i++) {
-        const double from = rim * rim * i / FORM_PIECES, to = rim * rim * (i + 1) / FORM_PIECES;
-        const asphere_range bend = asphere_bend(&e, from, to), sign = turned(sign_of_bend(&e, from, to), inwards),
-                            turn = turn_of(&e, from, to);
-        const double steep = 2.0 * sqrt(to) * fabs(asphere_slope(&e, to)),
-                     bends = rim * fmax(fabs(bend.low), fabs(bend.high));
-        convex &= sign.low >= 0.0, concave &= sign.high <= 0.0;
-        rises &= turn.low >= 0.0, falls &= turn.high <= 0.0;
-        *within = sqrt(from);
-        if (!(steep <= SLOPE_MOST && bends <= BEND_MOST))
-            return LENS_STEEP;
-        if (!(convex || concave || rises || falls))
-            return LENS_TURNS;
-    }
-    *within = rim;
-    return convex ? LENS_CONVEX : concave ? LENS_CONCAVE : LENS_ONE_TURN;
-}
-
-lens_form lens_form_of(const solid_shape *s, int k, double *within)
-{
-    const lens_profile e = lens_profile_of(s, k);
-    *within = lens_rim(s);
-    return e.aspheric ? form_of_asphere(s, k, within) : e.concave ? LENS_CONCAVE : LENS_CONVEX;
 }
