@@ -4,7 +4,7 @@
 
 #include "geometry/shapes/shape.h"
 #include "quad.h"
-#include "random_stream.h"
+#include "room_fixture.h"
 
 static inline bool has_asphere(const solid_shape *s)
 {
@@ -64,4 +64,20 @@ static inline void make_aspheric(solid_shape *s, uint64_t *seed)
     }
     *s = plain;
     s->even_1[0] = 1e-3 / (s->diameter * s->diameter * s->diameter);
+}
+
+/* Any size, any sides, half of them thin, in any place and half of them rotated. */
+static inline solid_shape random_asphere(uint64_t *seed)
+{
+    solid_shape s = {.kind = SHAPE_LENS};
+    random_lens(&s, seed);
+    const double size = exp(random_real(seed, -3.0, 3.0)); /* a power of a length in every coefficient */
+    s.radius_1 *= size, s.radius_2 *= size, s.thickness *= size, s.diameter *= size;
+    make_aspheric(&s, seed);
+    if (random_below(seed, 2)) /* thin where its sides are nearest */
+        s.thickness -= 0.98 * shape_of(&s)->thickness(&s);
+    s.position = random_point(seed, random_below(seed, 4) ? 1.0 : 100.0);
+    if (random_below(seed, 2))
+        s.rotation_deg = random_point(seed, 180.0);
+    return s;
 }

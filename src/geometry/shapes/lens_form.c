@@ -5,9 +5,10 @@
  *     h = p + 2 (q - b^2) g,  p = dz/dq, g = dp/dq.
  *
  * Where p and g have one sign, so has h. Elsewhere h = 0 at b^2 = q + p / (2 g), whose derivative is (3 g^2 - p dg/dq) /
- * (2 g^2). So if only one of the cases p > 0 > g and p < 0 < g occurs, in one interval, and 3 g^2 - p dg/dq keeps its
- * sign there, then h has at most one zero on either side of the axis, and by Rolle's theorem the line crosses the side
- * at most four times. */
+ * (2 g^2). So if only one of the cases p > 0 > g and p < 0 < g occurs, and 3 g^2 - p dg/dq keeps its sign there, then h
+ * has at most one zero on either side of the axis, and by Rolle's theorem the line crosses the side at most four times.
+ * The case occurs in one interval: where g = 0, that sign is the direction in which g changes, always the same; and
+ * where p = 0, it changes in the direction of g, and returns only in the other case. */
 #include "geometry/shapes/lens_profile.h"
 
 enum { FORM_PIECES = 256 };
@@ -66,13 +67,11 @@ typedef struct form_so_far {
     bool convex, concave;
     bool falls, rises; /* p > 0 > g, p < 0 < g: may it be? */
     bool up, down;     /* 3 g^2 - p dg/dq >= 0, <= 0 where it may */
-    bool within;       /* such an interval goes on */
-    int intervals;
 } form_so_far;
 
 static bool turns_once(const form_so_far *f)
 {
-    return !(f->falls && f->rises) && (f->up || f->down) && f->intervals <= 1;
+    return !(f->falls && f->rises) && (f->up || f->down);
 }
 
 static void extend(form_so_far *f, const even_asphere *e, double inwards, double from, double to)
@@ -89,9 +88,7 @@ static void extend(form_so_far *f, const even_asphere *e, double inwards, double
     if (falls || rises) {
         const asphere_range turning = turning_of(e, from, to);
         f->up &= turning.low >= 0.0, f->down &= turning.high <= 0.0;
-        f->intervals += !f->within;
     }
-    f->within = falls || rises;
     f->falls |= falls, f->rises |= rises;
 }
 
