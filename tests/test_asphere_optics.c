@@ -278,7 +278,8 @@ static void a_lens_of_a_catalogue_has_one_focus(void **state)
     assert_true(most - least < 1e-4 && fabs(third) < 1e-4 * fabs(of_sphere));
 }
 
-/* The example of cuvette-optics(7): its coefficients bring the foci of all rays together, which are 0.15 apart without. */
+/* The example of cuvette-optics(7): its coefficients bring the foci of all rays together, which are 0.15 apart
+ * without. */
 static void the_manuals_example_has_one_focus(void **state)
 {
     (void)state;

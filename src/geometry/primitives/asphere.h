@@ -42,7 +42,8 @@ static inline double asphere_slope(const even_asphere *e, double q)
            q * (2.0 * e->even[0] + q * (3.0 * e->even[1] + q * (4.0 * e->even[2])));
 }
 
-/* (z(q) - z(p)) / (q - p), without cancellation: of the conic c / (w(p) + w(q)), of q^n the sum of p^i q^(n - 1 - i). */
+/* (z(q) - z(p)) / (q - p), without cancellation: of the conic c / (w(p) + w(q)), of q^n the sum of p^i q^(n - 1 -
+ * i). */
 static inline double asphere_quotient(const even_asphere *e, double p, double q)
 {
     const double sum = p + q;

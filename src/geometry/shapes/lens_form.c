@@ -4,11 +4,11 @@
  *
  *     h = p + 2 (q - b^2) g,  p = dz/dq, g = dp/dq.
  *
- * Where p and g have one sign, so has h. Elsewhere h = 0 at b^2 = q + p / (2 g), whose derivative is (3 g^2 - p dg/dq) /
- * (2 g^2). So if only one of the cases p > 0 > g and p < 0 < g occurs, and 3 g^2 - p dg/dq keeps its sign there, then h
- * has at most one zero on either side of the axis, and by Rolle's theorem the line crosses the side at most four times.
- * The case occurs in one interval: where g = 0, that sign is the direction in which g changes, always the same; and
- * where p = 0, it changes in the direction of g, and returns only in the other case. */
+ * Where p and g have one sign, so has h. Elsewhere h = 0 at b^2 = q + p / (2 g), whose derivative is (3 g^2 - p dg/dq)
+ * / (2 g^2). So if only one of the cases p > 0 > g and p < 0 < g occurs, and 3 g^2 - p dg/dq keeps its sign there, then
+ * h has at most one zero on either side of the axis, and by Rolle's theorem the line crosses the side at most four
+ * times. The case occurs in one interval: where g = 0, that sign is the direction in which g changes, always the same;
+ * and where p = 0, it changes in the direction of g, and returns only in the other case. */
 #include "geometry/shapes/lens_profile.h"
 
 enum { FORM_PIECES = 256 };

@@ -70,7 +70,8 @@ static double least_within(const profile_sum *f, double rim)
     return sum_at(f, at) < least ? at : sampled;
 }
 
-/* Where slopes of conics c rho / sqrt(1 - (1 + k) c^2 rho^2) are equal: rho^2 = (c1^2 - c2^2) / (c1^2 c2^2 (k2 - k1)). */
+/* On the axis, at the rim, or where the slopes of conics c rho / sqrt(1 - (1 + k) c^2 rho^2) are equal: rho^2 = (c1^2 -
+ * c2^2) / (c1^2 c2^2 (k2 - k1)). */
 static double nearest_conics(const solid_shape *s)
 {
     const lens_profile one = lens_profile_of(s, 0), two = lens_profile_of(s, 1);
