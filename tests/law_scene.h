@@ -280,7 +280,7 @@ static inline void random_meniscus(law_solid *s, uint64_t seed)
 }
 
 /* Every other lens has aspheric sides, by a separate stream; its thickness stays. */
-static inline void random_asphere(solid_shape *shape, uint64_t seed)
+static inline void random_sides(solid_shape *shape, uint64_t seed)
 {
     uint64_t own = seed ^ 0x617370u; /* "asp" */
     solid_shape lens = *shape;
@@ -295,7 +295,7 @@ static inline void random_asphere(solid_shape *shape, uint64_t seed)
 static inline law_solid random_solid(const law_scene *w, int number, uint64_t *seed)
 {
     law_solid s = {.number = number, .shape = random_shape(seed)};
-    random_asphere(&s.shape, *seed);
+    random_sides(&s.shape, *seed);
     double middle;
     const law_solid *base = w->solid_count ? &w->solid[random_below(seed, w->solid_count)] : NULL;
     const int relation = random_below(seed, 8);
