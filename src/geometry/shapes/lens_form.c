@@ -4,11 +4,11 @@
  *
  *     h = p + 2 (q - b^2) g,  p = dz/dq, g = dp/dq.
  *
- * Where p and g have one sign, so has h. Elsewhere h = 0 at b^2 = q + p / (2 g), whose derivative is (3 g^2 - p dg/dq)
- * / (2 g^2). So if only one of the cases p > 0 > g and p < 0 < g occurs, and 3 g^2 - p dg/dq keeps its sign there, then
- * h has at most one zero on either side of the axis, and by Rolle's theorem the line crosses the side at most four
- * times. The case occurs in one interval: where g = 0, that sign is the direction in which g changes, always the same;
- * and where p = 0, it changes in the direction of g, and returns only in the other case. */
+ * Where p and g have one sign, so has h. Elsewhere h = 0 at b^2 = B = q + p / (2 g), whose derivative is (3 g^2 - p
+ * dg/dq) / (2 g^2). Only B >= 0 counts, where p + 2 q g, half the second derivative along the meridian, has the sign of
+ * g: so the side has turned there. If that happens in one interval, in only one of the cases p > 0 > g and p < 0 < g,
+ * and B rises in it, then h has at most one zero on either side of the axis, and by Rolle's theorem the line crosses the
+ * side at most four times. */
 #include "geometry/shapes/lens_profile.h"
 
 enum { FORM_PIECES = 256 };
@@ -32,18 +32,8 @@ static asphere_range sign_of(const even_asphere *e, double conic, int power, con
     return asphere_range_of(a, b, shifted, from, to);
 }
 
-static asphere_range sign_of_bend(const even_asphere *e, double from, double to)
-{
-    const double c = e->curvature;
-    const double *a = e->even;
-    const double along[4] = {0.0, 12.0 * a[0], 30.0 * a[1], 56.0 * a[2]},
-                 across[4] = {0.0, 4.0 * a[0], 6.0 * a[1], 8.0 * a[2]};
-    const asphere_range m = sign_of(e, c, 3, along, from, to), s = sign_of(e, c, 1, across, from, to);
-    return (asphere_range){fmin(m.low, s.low), fmax(m.high, s.high)};
-}
-
-/* 3 g^2 - p dg/dq */
-static asphere_range turning_of(const even_asphere *e, double from, double to)
+/* A lower bound of 3 g^2 - p dg/dq. */
+static double least_turning(const even_asphere *e, double from, double to)
 {
     const double a = 1.0 / asphere_root(e, from), b = 1.0 / asphere_root(e, to), c = e->curvature;
     const double *k = e->even;
@@ -53,25 +43,22 @@ static asphere_range turning_of(const even_asphere *e, double from, double to)
     const asphere_range p = asphere_range_of(0.5 * c * a, 0.5 * c * b, first, from, to),
                         g = asphere_range_of(c3 * a * a * a, c3 * b * b * b, second, from, to),
                         d = asphere_range_of(c5 * a * a * a * a * a, c5 * b * b * b * b * b, third, from, to);
-    const double most = fmax(fabs(g.low), fabs(g.high)),
-                 least = g.low > 0.0 || g.high < 0.0 ? fmin(fabs(g.low), fabs(g.high)) : 0.0;
-    const double corners[4] = {p.low * d.low, p.low * d.high, p.high * d.low, p.high * d.high};
-    return (asphere_range){
-        3.0 * least * least - fmax(fmax(corners[0], corners[1]), fmax(corners[2], corners[3])),
-        3.0 * most * most - fmin(fmin(corners[0], corners[1]), fmin(corners[2], corners[3])),
-    };
+    const double least = g.low > 0.0 || g.high < 0.0 ? fmin(fabs(g.low), fabs(g.high)) : 0.0;
+    return 3.0 * least * least - fmax(fmax(p.low * d.low, p.low * d.high), fmax(p.high * d.low, p.high * d.high));
 }
 
 /* What is known from the axis up to a radius. */
 typedef struct form_so_far {
     bool convex, concave;
-    bool falls, rises; /* p > 0 > g, p < 0 < g: may it be? */
-    bool up, down;     /* 3 g^2 - p dg/dq >= 0, <= 0 where it may */
+    bool falls, rises; /* may B >= 0, with p > 0 > g, or p < 0 < g? */
+    bool steady;       /* B rises where it may */
+    bool within;       /* such an interval goes on */
+    int intervals;
 } form_so_far;
 
 static bool turns_once(const form_so_far *f)
 {
-    return !(f->falls && f->rises) && (f->up || f->down);
+    return !(f->falls && f->rises) && f->steady && f->intervals <= 1;
 }
 
 static void extend(form_so_far *f, const even_asphere *e, double inwards, double from, double to)
@@ -79,16 +66,20 @@ static void extend(form_so_far *f, const even_asphere *e, double inwards, double
     const double c = e->curvature;
     const double *k = e->even;
     const double first[4] = {0.0, 2.0 * k[0], 3.0 * k[1], 4.0 * k[2]},
-                 second[4] = {2.0 * k[0], 6.0 * k[1], 12.0 * k[2], 0.0};
-    const asphere_range bend = sign_of_bend(e, from, to), p = sign_of(e, 0.5 * c, 1, first, from, to),
+                 second[4] = {2.0 * k[0], 6.0 * k[1], 12.0 * k[2], 0.0},
+                 bends[4] = {0.0, 6.0 * k[0], 15.0 * k[1], 28.0 * k[2]};
+    const asphere_range p = sign_of(e, 0.5 * c, 1, first, from, to), bend = sign_of(e, 0.5 * c, 3, bends, from, to),
                         g = sign_of(e, 0.25 * e->stretch * c * c * c, 3, second, from, to);
-    f->convex &= inwards > 0.0 ? bend.low >= 0.0 : bend.high <= 0.0;
-    f->concave &= inwards > 0.0 ? bend.high <= 0.0 : bend.low >= 0.0;
-    const bool falls = p.high > 0.0 && g.low < 0.0, rises = p.low < 0.0 && g.high > 0.0;
+    const bool up = p.low >= 0.0 && bend.low >= 0.0, down = p.high <= 0.0 && bend.high <= 0.0;
+    f->convex &= inwards > 0.0 ? up : down;
+    f->concave &= inwards > 0.0 ? down : up;
+    const bool falls = p.high > 0.0 && g.low < 0.0 && bend.low <= 0.0,
+               rises = p.low < 0.0 && g.high > 0.0 && bend.high >= 0.0;
     if (falls || rises) {
-        const asphere_range turning = turning_of(e, from, to);
-        f->up &= turning.low >= 0.0, f->down &= turning.high <= 0.0;
+        f->steady &= least_turning(e, from, to) >= 0.0;
+        f->intervals += !f->within;
     }
+    f->within = falls || rises;
     f->falls |= falls, f->rises |= rises;
 }
 
@@ -104,7 +95,7 @@ static lens_form form_of_asphere(const solid_shape *s, int k, double *within)
 {
     const even_asphere e = lens_profile_of(s, k).e;
     const double inwards = k == 0 ? 1.0 : -1.0, rim = lens_rim(s);
-    form_so_far f = {.convex = true, .concave = true, .up = true, .down = true};
+    form_so_far f = {.convex = true, .concave = true, .steady = true};
     for (int i = 0; i < FORM_PIECES; i++) {
         const double from = rim * rim * i / FORM_PIECES, to = rim * rim * (i + 1) / FORM_PIECES;
         *within = sqrt(from);
