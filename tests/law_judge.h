@@ -80,18 +80,21 @@ static inline void scale_lengths(scene *s, double f)
         shape->radius *= f, shape->inner_radius *= f, shape->height *= f, shape->floor *= f;
         shape->tube_radius *= f, shape->top_radius *= f;
         shape->radius_1 *= f, shape->radius_2 *= f, shape->thickness *= f, shape->diameter *= f;
+        for (int k = 0; k < 3; k++)
+            shape->even_1[k] /= pow(f, 3 + 2 * k), shape->even_2[k] /= pow(f, 3 + 2 * k);
         shape->capillary_length *= f, shape->contact_radius *= f;
         s->solids[i].surface.checker *= f;
         s->solids[i].surface.tint_distance *= f;
     }
 }
 
-/* Does a segment of the line intersect a solid, in quadruple precision? For a mesh or a meniscus, a ball around it. */
+/* Does a segment of the line intersect a solid, in quadruple precision? For a mesh, a meniscus or an asphere, a ball
+ * around it. */
 static inline bool intersects(const law_solid *s, vec3 origin, vec3 direction, double length)
 {
     const reference_line line = {quad3_from(origin), quad3_from(direction)};
     quad t[REFERENCE_CROSSINGS_MAX];
-    if (s->mesh || s->shape.capillary_length > 0.0) {
+    if (s->mesh || s->shape.capillary_length > 0.0 || has_asphere(&s->shape)) {
         const ball around = ball_around(s);
         const vec3 to = vec3_sub(around.middle, origin);
         const double along = fmin(fmax(vec3_dot(to, direction), 0.0), length);

@@ -72,6 +72,8 @@ static inline void add_unmet(law_scene *w, uint64_t *seed)
     s.shape.radius *= size, s.shape.inner_radius *= size, s.shape.height *= size, s.shape.floor *= size;
     s.shape.tube_radius *= size, s.shape.top_radius *= size;
     s.shape.radius_1 *= size, s.shape.radius_2 *= size, s.shape.thickness *= size, s.shape.diameter *= size;
+    for (int k = 0; k < 3; k++)
+        s.shape.even_1[k] /= pow(size, 3 + 2 * k), s.shape.even_2[k] /= pow(size, 3 + 2 * k);
     s.shape.capillary_length *= size, s.shape.contact_radius *= size;
     s.shape.size = vec3_scale(s.shape.size, size);
     s.shape.scale = vec3_scale(s.shape.scale, size);

@@ -2,6 +2,7 @@
  * tiny gaps, as values that can be changed, and as scene files. Ownership: values. */
 #pragma once
 
+#include "asphere_fixture.h"
 #include "random_scene.h"
 
 enum {
@@ -289,9 +290,23 @@ static inline void random_meniscus(law_solid *s, uint64_t seed)
         *shape = liquid;
 }
 
+/* Every other lens has aspheric sides, by a separate stream; its thickness stays. */
+static inline void random_sides(solid_shape *shape, uint64_t seed)
+{
+    uint64_t own = seed ^ 0x617370u; /* "asp" */
+    solid_shape lens = *shape;
+    if (shape->kind != SHAPE_LENS || random_below(&own, 2))
+        return;
+    make_aspheric(&lens, &own);
+    lens.thickness = shape->thickness;
+    if (solid_shape_check(&lens, NULL) == STATUS_OK)
+        *shape = lens;
+}
+
 static inline law_solid random_solid(const law_scene *w, int number, uint64_t *seed)
 {
     law_solid s = {.number = number, .shape = random_shape(seed)};
+    random_sides(&s.shape, *seed);
     double middle;
     const law_solid *base = w->solid_count ? &w->solid[random_below(seed, w->solid_count)] : NULL;
     const int relation = random_below(seed, 8);
@@ -497,7 +512,7 @@ static inline ball ball_around(const law_solid *s)
         return (ball){in_frame_of(shape, 0.0, 0.5 * shape->height, 0.0),
                       hypot(0.5 * shape->height, fmax(shape->radius, shape->top_radius))};
     case SHAPE_TORUS: return (ball){shape->position, shape->radius + shape->tube_radius};
-    case SHAPE_LENS: /* no sag exceeds a quarter of the diameter */
+    case SHAPE_LENS: /* no sag exceeds half the diameter */
         return (ball){in_frame_of(shape, 0.0, 0.5 * shape->thickness, 0.0), shape->diameter + shape->thickness};
     case SHAPE_CYLINDER: /* no meniscus rises by more than 1.5 capillary lengths */
         return (ball){in_frame_of(shape, 0.0, 0.5 * shape->height, 0.0),

@@ -35,6 +35,8 @@ static inline void add_shape(scene_text *t, const solid_shape *s)
             "shape: lens, radius_1: %.17g, radius_2: %.17g, thickness: %.17g, diameter: %.17g, conic_1: %.17g, "
             "conic_2: %.17g",
             s->radius_1, s->radius_2, s->thickness, s->diameter, s->conic_1, s->conic_2);
+        for (int k = 0; k < 3; k++)
+            add(t, ", a%d_1: %.17g, a%d_2: %.17g", 4 + 2 * k, s->even_1[k], 4 + 2 * k, s->even_2[k]);
         break;
     case SHAPE_PLANE:
     case SHAPE_MESH:

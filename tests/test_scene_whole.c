@@ -43,7 +43,10 @@ static const char everything[] =
     "  crates: {shape: mesh, mesh: cube, material: dull, copies: [2, 1, 2], spacing: [0.9, 1, 0.9], scale: [1, 1.5, "
     "1], position: [-2.5, 0.4, 0]}\n"
     "  ring: {shape: mesh, mesh: donut, material: glass, scale: [0.5, 0.5, 0.5], position: [-0.5, 1.8, 0.5], rotation: "
-    "[60, 0, 10]}\n";
+    "[60, 0, 10]}\n"
+    "  asphere: {shape: lens, material: glass, radius_1: 0.8, radius_2: -1, a4_1: -0.3, a8_1: 0.5, a6_2: 0.4, "
+    "thickness: "
+    "0.4, position: [1.2, 1.1, -1.5], rotation: [-60, 0, 20]}\n";
 
 static scene *whole_scene(const char *settings)
 {
@@ -194,6 +197,10 @@ static void one_solid_or_light_is_scaled_about_its_position(void **state)
     assert_int_equal(scene_scale(s, "crates", 2.0, NULL), STATUS_OK);
     assert_vector(s->solids[6].shape.scale, 2, 3, 2);
     assert_vector(s->solids[6].shape.spacing, 1.8, 2, 1.8);
+    assert_int_equal(scene_scale(s, "asphere", 2.0, NULL), STATUS_OK); /* 1 / length^3, ^5 and ^7 */
+    const solid_shape *lens = &s->solids[8].shape;
+    assert_true(lens->radius_1 == 1.6 && lens->even_1[0] == -0.3 / 8.0 && lens->even_1[2] == 0.5 / 128.0 &&
+                lens->even_2[1] == 0.4 / 32.0 && lens->even_2[0] == 0.0);
     scene_destroy(s);
 }
 

@@ -32,10 +32,12 @@ enum {
     FACE_NONE = -1
 };
 
-/* The two sides of a lens (primitives/lens_kernel.c). */
+/* The two sides of a lens (primitives/lens_kernel.c and asphere_kernel.c). */
 typedef struct lens_sides {
-    double curvature[2]; /* 1 / radius, signed; 0: flat */
-    double conic[2];     /* conic constants; 0: spherical */
+    double curvature[2];    /* 1 / radius, signed; 0: flat */
+    double conic[2];        /* conic constants; 0: spherical */
+    double even[2][3];      /* coefficients of the 4th, 6th and 8th power of the radius; 0: a conic */
+    double low[2], high[2]; /* of a side with coefficients: its least and largest height above its vertex */
 } lens_sides;
 
 /* The files in primitives/ define each kind and the numbers of its faces. The faces of meshes are numbered differently:

@@ -39,6 +39,7 @@ typedef struct solid_shape {
     double tube_radius, top_radius;
     int64_t sides;
     double radius_1, radius_2, conic_1, conic_2, thickness, diameter; /* lens */
+    double even_1[3], even_2[3]; /* of its sides' sag: coefficients of the 4th, 6th and 8th power of the radius */
     vec3 size;
     const struct mesh *mesh; /* NULL until loaded */
     vec3 scale;              /* above 0 */

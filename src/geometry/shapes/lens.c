@@ -1,84 +1,74 @@
-/* The shape lens: within the radius diameter / 2 of the axis, between two conics of revolution about it (lens.h): side
- * 1 through the position, its vertex, and side 2 through the vertex `thickness` above. A radius of curvature is
- * positive if its centre lies above the vertex, as for light that travels upwards (Hecht, Optics, 5.2): a biconvex
- * lens has radius_1 > 0 > radius_2. 0 is a flat side. */
+/* The shape lens: within the radius diameter / 2 of the axis, between two conics of revolution about it, or even
+ * aspheres (lens_profile.h): side 1 through the position, its vertex, and side 2 through the vertex `thickness` above.
+ * A radius of curvature is positive if its centre lies above the vertex, as for light that travels upwards (Hecht,
+ * Optics, 5.2): a biconvex lens has radius_1 > 0 > radius_2. 0 is a flat side. Coefficients count upwards for both
+ * sides. */
 #include "geometry/shapes/parts.h"
 
 #include "base/elementary.h"
-#include "geometry/primitives/lens.h"
+#include "geometry/shapes/lens_profile.h"
 #include <stdio.h>
 
+PRIMITIVE_RULE(asphere);
 PRIMITIVE_RULE(lens);
 PRIMITIVE_RULE(meniscus);
 PRIMITIVE_RULE(biconcave);
 
 enum { ARC_STEPS = 48 }; /* of a side's profile in a tessellation */
 
-typedef struct side {
-    double curvature, conic, vertex;
-    bool concave;
-} side;
-
-static side side_of(const solid_shape *s, int k)
-{
-    const double radius = k == 0 ? s->radius_1 : s->radius_2;
-    return (side){.curvature = radius == 0.0 ? 0.0 : 1.0 / radius,
-                  .conic = k == 0 ? s->conic_1 : s->conic_2,
-                  .vertex = k == 0 ? 0.0 : s->thickness,
-                  .concave = k == 0 ? radius < 0.0 : radius > 0.0};
-}
-
-static double height_at(const side *e, double rho)
-{
-    return e->vertex + lens_sag(e->curvature, e->conic, rho * rho);
-}
-
-static double rim(const solid_shape *s)
-{
-    return 0.5 * s->diameter;
-}
-
-/* The heights of the rim's two edges. */
-static double edge(const solid_shape *s, int k)
-{
-    const side e = side_of(s, k);
-    return height_at(&e, rim(s));
-}
-
-static double gap_at(const solid_shape *s, double rho)
-{
-    const side one = side_of(s, 0), two = side_of(s, 1);
-    return height_at(&two, rho) - height_at(&one, rho);
-}
-
-/* The radius at which the sides are nearest to each other: on the axis, at the rim, or where their slopes c rho /
- * sqrt(1 - (1 + k) c^2 rho^2) are equal: rho^2 = (c1^2 - c2^2) / (c1^2 c2^2 (k2 - k1)). */
-static double nearest_sides(const solid_shape *s)
-{
-    const side one = side_of(s, 0), two = side_of(s, 1);
-    const double a = one.curvature * one.curvature, b = two.curvature * two.curvature;
-    const double rho2 = (a - b) / (a * b * (two.conic - one.conic));
-    double nearest = gap_at(s, rim(s)) < s->thickness ? rim(s) : 0.0;
-    if (rho2 > 0.0 && rho2 < rim(s) * rim(s) && gap_at(s, sqrt(rho2)) < gap_at(s, nearest))
-        nearest = sqrt(rho2);
-    return nearest;
-}
-
-/* A conic with 1 + k > 0 is an ellipsoid of half width |radius| / sqrt(1 + k). */
+/* A conic with 1 + k > 0 is an ellipsoid of half width |radius| / sqrt(1 + k); with coefficients, its slope at the rim
+ * is finite. */
 static status check_side(const solid_shape *s, int k, diagnostic *why)
 {
-    const double radius = k == 0 ? s->radius_1 : s->radius_2, conic = k == 0 ? s->conic_1 : s->conic_2;
-    if (!isfinite(radius) || !isfinite(conic))
+    const lens_profile e = lens_profile_of(s, k);
+    const double radius = k == 0 ? s->radius_1 : s->radius_2;
+    if (!isfinite(radius) || !isfinite(e.conic))
         return diagnose(why, STATUS_BAD_INPUT, "use finite numbers; a radius of 0 is a flat side",
                         "radius_%d or conic_%d is not finite", k + 1, k + 1);
-    const double half = conic > -1.0 ? fabs(radius) / sqrt(1.0 + conic) : HUGE_VAL;
+    const double share = e.aspheric ? sqrt(1.0 - ASPHERE_ROOT2_LEAST) : 1.0;
+    const double half = e.conic > -1.0 ? share * fabs(radius) / sqrt(1.0 + e.conic) : HUGE_VAL;
     if (radius == 0.0 || s->diameter <= 2.0 * half)
         return STATUS_OK;
     char remedy[160];
     snprintf(remedy, sizeof remedy, "use a diameter of at most %g, or a radius_%d of at least %g in magnitude",
              2.0 * half, k + 1, fabs(radius) * (s->diameter / (2.0 * half)));
-    return diagnose(why, STATUS_BAD_INPUT, remedy, "diameter %g is larger than side %d, which ends at a diameter of %g",
-                    s->diameter, k + 1, 2.0 * half);
+    return diagnose(why, STATUS_BAD_INPUT, remedy,
+                    "diameter %g is larger than side %d, which %sends at a diameter of %g", s->diameter, k + 1,
+                    e.aspheric ? "with coefficients " : "", 2.0 * half);
+}
+
+static status check_form(const solid_shape *s, int k, lens_form *form, diagnostic *why)
+{
+    const double *even = k == 0 ? s->even_1 : s->even_2;
+    if (!isfinite(even[0]) || !isfinite(even[1]) || !isfinite(even[2]))
+        return diagnose(why, STATUS_BAD_INPUT, "use finite numbers", "a4_%d, a6_%d or a8_%d is not finite", k + 1,
+                        k + 1, k + 1);
+    double within;
+    *form = lens_form_of(s, k, &within);
+    if (*form < LENS_TURNS)
+        return STATUS_OK;
+    char remedy[160];
+    snprintf(remedy, sizeof remedy, "use a diameter of at most %.6g, or smaller a4_%d, a6_%d and a8_%d", 2.0 * within,
+             k + 1, k + 1, k + 1);
+    const char *what = *form == LENS_STEEP ? "is too steep" : "turns more than once between convex and concave";
+    return diagnose(why, STATUS_BAD_INPUT, remedy, "side %d %s, within %.6g from the axis", k + 1, what, lens_rim(s));
+}
+
+static status check_forms(const solid_shape *s, diagnostic *why)
+{
+    lens_form form[2] = {LENS_CONVEX, LENS_CONVEX};
+    TRY(check_form(s, 0, &form[0], why));
+    TRY(check_form(s, 1, &form[1], why));
+    if ((int)form[0] + (int)form[1] - 1 <= CHORDS_MAX)
+        return STATUS_OK;
+    const int turns = form[0] == LENS_ONE_TURN ? 1 : 2;
+    char remedy[160];
+    snprintf(remedy, sizeof remedy, "make side %d flat or convex, or side %d convex or concave up to its rim",
+             3 - turns, turns);
+    return diagnose(why, STATUS_BAD_INPUT, remedy,
+                    "the curvature of side %d turns and side %d is not convex: a line could cross the lens more than "
+                    "six times",
+                    turns, 3 - turns);
 }
 
 static status check(const solid_shape *s, diagnostic *why)
@@ -87,7 +77,8 @@ static status check(const solid_shape *s, diagnostic *why)
     TRY(check_length(s->thickness, "thickness", why));
     TRY(check_side(s, 0, why));
     TRY(check_side(s, 1, why));
-    const double at = nearest_sides(s), gap = gap_at(s, at);
+    TRY(check_forms(s, why));
+    const double at = lens_nearest_sides(s), gap = lens_gap_at(s, at);
     if (gap >= -PLACED_SLACK * (s->thickness + s->diameter)) /* 0: the sides meet in a sharp edge */
         return STATUS_OK;
     char remedy[160];
@@ -98,20 +89,39 @@ static status check(const solid_shape *s, diagnostic *why)
 
 static bool contains(const solid_shape *s, vec3 p)
 {
-    const side one = side_of(s, 0), two = side_of(s, 1);
+    const lens_profile one = lens_profile_of(s, 0), two = lens_profile_of(s, 1);
     const double rho = sqrt(p.x * p.x + p.z * p.z);
-    return rho <= rim(s) && p.y >= height_at(&one, rho) && p.y <= height_at(&two, rho);
+    return rho <= lens_rim(s) && p.y >= lens_height_at(&one, rho) && p.y <= lens_height_at(&two, rho);
+}
+
+static double lowest(const solid_shape *s)
+{
+    return lens_lowest_of(s, 0);
+}
+
+static double highest(const solid_shape *s)
+{
+    return lens_highest_of(s, 1);
 }
 
 static void primitives(const solid_shape *s, primitive *out)
 {
-    const side one = side_of(s, 0), two = side_of(s, 1);
+    const lens_profile one = lens_profile_of(s, 0), two = lens_profile_of(s, 1);
     const primitive_rule *const by_concave_sides[] = {&lens_rule, &meniscus_rule, &biconcave_rule};
-    const double reach = s->thickness + rim(s) + fmax(fabs(edge(s, 0)), fabs(edge(s, 1)));
-    out[0] = primitive_placed(s, by_concave_sides[one.concave + two.concave], reach);
-    out[0].radius = rim(s);
+    const bool aspheric = one.aspheric || two.aspheric;
+    const double reach = aspheric ? lens_rim(s) + fmax(fabs(lowest(s)), fabs(highest(s)))
+                                  : s->thickness + lens_rim(s) + fmax(fabs(lens_edge(s, 0)), fabs(lens_edge(s, 1)));
+    out[0] = primitive_placed(s, aspheric ? &asphere_rule : by_concave_sides[one.concave + two.concave], reach);
+    out[0].radius = lens_rim(s);
     out[0].top = s->thickness;
-    out[0].lens = (lens_sides){{one.curvature, two.curvature}, {one.conic, two.conic}};
+    out[0].lens = (lens_sides){.curvature = {one.e.curvature, two.e.curvature}, .conic = {one.conic, two.conic}};
+    for (int k = 0; k < 2 && aspheric; k++) {
+        const lens_profile *e = k == 0 ? &one : &two;
+        for (int i = 0; i < 3; i++)
+            out[0].lens.even[k][i] = e->e.even[i];
+        out[0].lens.low[k] = lens_lowest_of(s, k) - e->vertex;
+        out[0].lens.high[k] = lens_highest_of(s, k) - e->vertex;
+    }
 }
 
 static bool flat(const solid_shape *s, size_t i, vec3 *normal, vec3 *point)
@@ -119,26 +129,16 @@ static bool flat(const solid_shape *s, size_t i, vec3 *normal, vec3 *point)
     double heights[2];
     size_t count = 0;
     for (int k = 0; k < 2; k++) {
-        const side e = side_of(s, k);
-        if (e.curvature == 0.0)
+        const lens_profile e = lens_profile_of(s, k);
+        if (lens_is_flat(&e))
             heights[count++] = e.vertex;
     }
     return level_faces(heights, count, i, normal, point);
 }
 
-static double lowest(const solid_shape *s)
-{
-    return fmin(0.0, edge(s, 0));
-}
-
-static double highest(const solid_shape *s)
-{
-    return fmax(s->thickness, edge(s, 1));
-}
-
 static shape_extent extent(const solid_shape *s)
 {
-    const double r = rim(s), low = lowest(s), high = highest(s);
+    const double r = lens_rim(s), low = lowest(s), high = highest(s);
     return (shape_extent){{vec3_make(-r, low, -r), vec3_make(r, high, r)}, hypot(r, 0.5 * (high - low))};
 }
 
@@ -146,12 +146,14 @@ static shape_extent extent(const solid_shape *s)
  * is that of d. Otherwise the rim's edge. */
 static double farthest_of_side(const solid_shape *s, int k, vec3 d)
 {
-    const side e = side_of(s, k);
+    const lens_profile e = lens_profile_of(s, k);
     const double out = hypot(d.x, d.z), outwards = k == 0 ? -d.y : d.y, slope = out / outwards;
-    double rho = rim(s);
-    if (!e.concave && e.curvature != 0.0 && outwards > 0.0 && 1.0 + (1.0 + e.conic) * slope * slope > 0.0)
-        rho = fmin(rho, slope / (fabs(e.curvature) * sqrt(1.0 + (1.0 + e.conic) * slope * slope)));
-    return rho * out + height_at(&e, rho) * d.y;
+    double rho = lens_rim(s);
+    if (e.aspheric)
+        return lens_reach_of(s, k, out, d.y);
+    if (!e.concave && e.e.curvature != 0.0 && outwards > 0.0 && 1.0 + (1.0 + e.conic) * slope * slope > 0.0)
+        rho = fmin(rho, slope / (fabs(e.e.curvature) * sqrt(1.0 + (1.0 + e.conic) * slope * slope)));
+    return rho * out + lens_height_at(&e, rho) * d.y;
 }
 
 static double farthest(const solid_shape *s, vec3 d)
@@ -161,7 +163,7 @@ static double farthest(const solid_shape *s, vec3 d)
 
 static double thickness(const solid_shape *s)
 {
-    return fmax(0.0, gap_at(s, nearest_sides(s)));
+    return fmax(0.0, lens_gap_at(s, lens_nearest_sides(s)));
 }
 
 /* A biconvex lens. */
@@ -172,22 +174,26 @@ static void fit(solid_shape *s, double size)
     s->radius_1 = size;
     s->radius_2 = -size;
     s->conic_1 = s->conic_2 = 0.0;
+    for (int i = 0; i < 3; i++)
+        s->even_1[i] = s->even_2[i] = 0.0;
 }
 
-/* The rim, whose outline contains convex sides; a concave side is a piece of its own. */
+/* The rim, whose outline contains convex sides; another side is a piece of its own. */
 static int rings(const solid_shape *s, shape_ring *out)
 {
     enum { CIRCLES = 7 }; /* of a side */
     int count = 0, pieces = 0;
     for (int k = 0; k < 2; k++) {
-        const side e = side_of(s, k);
-        const int piece = e.concave ? ++pieces : 0;
+        const lens_profile e = lens_profile_of(s, k);
+        double within;
+        const bool convex = lens_form_of(s, k, &within) == LENS_CONVEX;
+        const int piece = convex ? 0 : ++pieces;
         for (int i = 0; i < CIRCLES; i++) {
-            const double rho = rim(s) * i / (CIRCLES - 1);
-            out[count++] = (shape_ring){.part = piece, .y = height_at(&e, rho), .x = rho, .z = rho};
+            const double rho = lens_rim(s) * i / (CIRCLES - 1);
+            out[count++] = (shape_ring){.part = piece, .y = lens_height_at(&e, rho), .x = rho, .z = rho};
         }
-        if (e.concave)
-            out[count++] = (shape_ring){.y = edge(s, k), .x = rim(s), .z = rim(s)};
+        if (!convex)
+            out[count++] = (shape_ring){.y = lens_edge(s, k), .x = lens_rim(s), .z = lens_rim(s)};
     }
     return count;
 }
@@ -198,14 +204,14 @@ static status tessellation(const solid_shape *s, int part, mesh **out, diagnosti
     (void)part;
     profile_point profile[2 * ARC_STEPS + 2];
     size_t count = 0;
-    const bool is_sharp = !(edge(s, 1) - edge(s, 0) > PLACED_SLACK * (s->thickness + s->diameter));
+    const bool is_sharp = !(lens_edge(s, 1) - lens_edge(s, 0) > PLACED_SLACK * (s->thickness + s->diameter));
     for (int k = 0; k < 2; k++) {
-        const side e = side_of(s, k);
-        const int steps = e.curvature == 0.0 ? 1 : ARC_STEPS;
+        const lens_profile e = lens_profile_of(s, k);
+        const int steps = lens_is_flat(&e) ? 1 : ARC_STEPS;
         for (int i = k && is_sharp ? 1 : 0; i <= steps; i++) {
             double sine, cosine;
             elementary_sincos_deg(90.0 * (k == 0 ? i : steps - i) / steps, &sine, &cosine);
-            profile[count++] = (profile_point){rim(s) * sine, height_at(&e, rim(s) * sine)};
+            profile[count++] = (profile_point){lens_rim(s) * sine, lens_height_at(&e, lens_rim(s) * sine)};
         }
     }
     return tessellate_lathe(profile, count, out, why);
@@ -216,8 +222,10 @@ const shape_rule shape_lens = {
     .meaning =
         "x^2 + z^2 <= (diameter / 2)^2, between side 1, through its position, and side 2, which crosses the axis "
         "at y = thickness: spheres, or conics, of signed radii of curvature radius_1 and radius_2, positive if "
-        "the centre lies above the side, 0 for a flat one; the sides do not cross within the rim",
-    .parameters = WORDS("radius_1", "radius_2", "thickness", "diameter", "conic_1", "conic_2"),
+        "the centre lies above the side, 0 for a flat one; with a4_1 to a8_2 even aspheres; the sides do not cross "
+        "within the rim",
+    .parameters = WORDS("radius_1", "radius_2", "thickness", "diameter", "conic_1", "conic_2", "a4_1", "a6_1", "a8_1",
+                        "a4_2", "a6_2", "a8_2"),
     .curved = true,
     .check = check,
     .contains = contains,

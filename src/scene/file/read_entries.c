@@ -88,7 +88,7 @@ status read_one_medium(const scene_reader *r, const node *map)
 
 status read_check_keys(const scene_reader *r, param_group group, const node *map)
 {
-    enum { ROOM = 64 };
+    enum { ROOM = 128 };
     const char *words[ROOM];
     size_t count = 0;
     if (group == PARAM_SOLID) {

@@ -8,7 +8,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-enum { WORDS_MAX = 64 };
+enum { WORDS_MAX = 128 };
 
 /* The words of a path; a word that does not fit is invalid anyway. */
 typedef struct path_words {

@@ -108,6 +108,15 @@ enum { ON_SLIME = 1 << MESH_SLIME, ON_ALL = 0 };
     ROW(PARAM_MESH, #field, PARAM_VECTOR, unit, -(high), high, false, fallback, meaning, NULL, SLIME(field))
 #define SLIME_CHOICE(field, words, fallback, meaning) \
     ROW(PARAM_MESH, #field, PARAM_CHOICE, "", 0, 0, false, fallback, meaning, words, SLIME(field))
+/* A coefficient of an even asphere. */
+#define ASPHERIC(side, power, at, unit)                                               \
+    {                                                                                 \
+        PARAM_SOLID, "a" #power "_" #side, PARAM_REAL, unit, -1e30, 1e30, false, "0", \
+            "lens: coefficient of r^" #power " in the height of side " #side          \
+            " at a distance r from the axis, added to its "                           \
+            "sphere or conic (an even asphere)",                                      \
+            NULL, SHAPE(shape.even_##side[at])                                        \
+    }
 #define LENGTH(field, fallback, meaning) \
     ROW(PARAM_SOLID, #field, PARAM_REAL, "scene units", 0, FAR, true, fallback, meaning, NULL, SHAPE(shape.field))
 
@@ -537,6 +546,12 @@ static const param table[] = {
      SHAPE(shape.conic_1)},
     {PARAM_SOLID, "conic_2", PARAM_REAL, "", -1000, 1000, false, "0", "lens: conic constant of side 2, as conic_1",
      NULL, SHAPE(shape.conic_2)},
+    ASPHERIC(1, 4, 0, "1/scene units^3"),
+    ASPHERIC(1, 6, 1, "1/scene units^5"),
+    ASPHERIC(1, 8, 2, "1/scene units^7"),
+    ASPHERIC(2, 4, 0, "1/scene units^3"),
+    ASPHERIC(2, 6, 1, "1/scene units^5"),
+    ASPHERIC(2, 8, 2, "1/scene units^7"),
     {PARAM_SOLID, "size", PARAM_VECTOR, "scene units", 0, FAR, true, "1,1,1", "edge lengths along x, y and z", NULL,
      SHAPE(shape.size)},
     {PARAM_SOLID, "mesh", PARAM_WORD, "", 0, 0, false, "", "name of a mesh", NULL, SHAPE(mesh)},

@@ -181,12 +181,26 @@ static status turn_parts(whole_edit *e)
     return e->parts.camera && code == STATUS_OK ? turn_camera(e) : code;
 }
 
-/* Lengths are the rows of the table with scene units, so that new rows are scaled as well; and a mesh's own scale. */
-static bool is_length(const param *row)
+/* The power of a length that a row is, by its unit, so that new rows are scaled as well; 0: none. A mesh's own scale is
+ * a length. */
+static int length_power(const param *row)
 {
+    static const char inverse[] = "1/scene units^";
     if (row->group == PARAM_SOLID && strcmp(row->name, "scale") == 0)
-        return true;
-    return strcmp(row->unit, "scene units") == 0 && (row->type == PARAM_REAL || row->type == PARAM_VECTOR);
+        return 1;
+    if (row->type != PARAM_REAL && row->type != PARAM_VECTOR)
+        return 0;
+    if (strncmp(row->unit, inverse, sizeof inverse - 1) == 0)
+        return -(row->unit[sizeof inverse - 1] - '0');
+    return strcmp(row->unit, "scene units") == 0;
+}
+
+static double power_of(double factor, int power)
+{
+    double product = 1.0;
+    for (int k = 0; k < (power < 0 ? -power : power); k++)
+        product *= factor;
+    return power < 0 ? 1.0 / product : product;
 }
 
 /* A beam that lights the scene keeps its irradiance. */
@@ -197,10 +211,15 @@ static bool is_power(const whole_edit *e, const char *name, const param *row)
            param_place_find_object(e->s, name, &at, NULL) == STATUS_OK && e->s->beams[at.index].lights;
 }
 
+static int scaling_power(const whole_edit *e, const char *name, const param *row)
+{
+    return is_power(e, name, row) ? 2 : length_power(row);
+}
+
 static bool is_scaled(const whole_edit *e, const char *name, const param *row)
 {
     param_place at;
-    if (!(is_length(row) || is_power(e, name, row)) || param_place_find_object(e->s, name, &at, NULL) != STATUS_OK)
+    if (scaling_power(e, name, row) == 0 || param_place_find_object(e->s, name, &at, NULL) != STATUS_OK)
         return false;
     if (e->only) { /* its material is unchanged, and so is its absorption by render.unit_m */
         return strcmp(name, e->only) == 0 && strcmp(row->name, "tint_distance") != 0 &&
@@ -224,10 +243,11 @@ static status scale_row(void *context, const char *path, const param *row, const
         return STATUS_OK;
     param_value v;
     TRY(param_value_parse(row, -1, path, value, &v, e->why));
+    const double factor = power_of(e->factor, scaling_power(e, name, row));
     if (row->type == PARAM_REAL)
-        v.real *= is_length(row) ? e->factor : e->factor * e->factor;
+        v.real *= factor;
     else
-        v.vector = vec3_scale(v.vector, e->factor);
+        v.vector = vec3_scale(v.vector, factor);
     char *text = param_value_text(row, -1, &v);
     status code = text ? scene_set(e->s, path, text, e->why) : out_of_memory(e->why);
     free(text);

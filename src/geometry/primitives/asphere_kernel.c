@@ -1,0 +1,294 @@
+/* A lens with a side that is an even asphere (asphere.h): x^2 + z^2 <= radius^2 between two sides, each of which is an
+ * asphere or a conic. Faces: 0 rim, 1 the side at 0, 2 the side at top.
+ *
+ * Along a line o + t d, f(t) is the height above side 1, or below side 2: positive within the lens. Its second
+ * derivative is bounded by asphere_bend. So on an interval of half width h about m, |f''| <= K:
+ *
+ *     |f'(m)| >= K h: f is monotonic;  |f(m)| >= |f'(m)| h + K h^2 / 2: f has no zero (Taylor's theorem).
+ *
+ * An interval of which neither is known is halved, until it is narrow enough that f could at most touch 0 by less than
+ * rounding. So the signs at the ends of the intervals tell all crossings (as Moore's interval Newton method isolates
+ * roots: Moore, Kearfott and Cloud, Introduction to Interval Analysis, ch. 8). A line far from tangency needs one
+ * interval. The shape has at most three chords (shapes/lens.c).
+ *
+ * For a ray that starts on the surface, f(0) = 0 is taken as exact: f is t times the difference quotient, whose terms
+ * do not cancel, and its sign next to 0 is that of the derivative. */
+#include "geometry/primitives/lens_side.h"
+
+enum { ASPHERE_CHANGES = 8, ASPHERE_DEPTH = 64, ASPHERE_WORK = 4096, ASPHERE_CHORDS = 3 };
+
+/* A line, with t measured from its base: its point nearest to the side's vertex or, if it starts on the side, its
+ * start. Heights are relative to the vertex. */
+typedef struct asphere_line {
+    even_asphere e;
+    double inwards; /* f = inwards (y - z) */
+    local_ray base;
+    double rho2, across2; /* at the base; dx^2 + dz^2 */
+    bool own;             /* the base is on the side */
+    double from;          /* t of the base */
+    double least, touch;  /* a step, and a height, within rounding */
+} asphere_line;
+
+static double rho2_at(const asphere_line *l, double t)
+{
+    const double x = l->base.x + t * l->base.dx, z = l->base.z + t * l->base.dz;
+    return x * x + z * z;
+}
+
+static double height_inside(const asphere_line *l, double t, double *slope)
+{
+    const local_ray *o = &l->base;
+    const double x = o->x + t * o->dx, z = o->z + t * o->dz, q = x * x + z * z;
+    *slope = l->inwards * (o->dy - asphere_slope(&l->e, q) * (2.0 * (x * o->dx + z * o->dz)));
+    if (!l->own)
+        return l->inwards * ((o->y + t * o->dy) - asphere_sag(&l->e, q));
+    const double turn = (x + o->x) * o->dx + (z + o->z) * o->dz; /* the difference of q, divided by t */
+    return t * (l->inwards * (o->dy - asphere_quotient(&l->e, l->rho2, q) * turn));
+}
+
+static bool is_inside(const asphere_line *l, double t)
+{
+    double slope;
+    return height_inside(l, t, &slope) >= 0.0;
+}
+
+/* Is it known that f changes its sign at most once between a and b, up to rounding? */
+static bool is_simple(const asphere_line *l, double a, double b)
+{
+    const double half = 0.5 * (b - a), middle = 0.5 * (a + b), q_a = rho2_at(l, a), q_b = rho2_at(l, b);
+    const double nearest = -(l->base.x * l->base.dx + l->base.z * l->base.dz) / l->across2; /* to the axis */
+    const double q_low = nearest > a && nearest < b ? rho2_at(l, nearest) : lesser(q_a, q_b);
+    const asphere_range bend = asphere_bend(&l->e, q_low, greater(q_a, q_b));
+    const double most = l->across2 * greater(magnitude(bend.low), magnitude(bend.high)); /* of |f''| */
+    const double curve = 0.5 * most * half * half;
+    if (curve <= l->touch)
+        return true;
+    double slope;
+    const double height = height_inside(l, middle, &slope);
+    return magnitude(slope) >= most * half || magnitude(height) >= magnitude(slope) * half + curve;
+}
+
+/* The zero between a and b, where f changes its sign once: by Newton's steps within the bracket, and bisection. */
+static double change_between(const asphere_line *l, double a, double b, bool inside_at_a)
+{
+    double t = 0.5 * (a + b);
+    for (int step = 1; step < 200; step++) {
+        double slope;
+        const double height = height_inside(l, t, &slope);
+        if (height == 0.0)
+            return t;
+        if ((height >= 0.0) == inside_at_a)
+            a = t;
+        else
+            b = t;
+        const double newton = t - height / slope;
+        const double next = step % 8 && newton > a && newton < b ? newton : 0.5 * (a + b);
+        const double move = magnitude(next - t);
+        t = next;
+        if (move <= l->least + 0x1p-53 * magnitude(t))
+            return t;
+    }
+    return t;
+}
+
+/* The changes of sign between a and b, in order, appended to the list. */
+static int changes_between(const asphere_line *l, double a, double b, bool inside_at_a, bool inside_at_b,
+                           double *changes, int count)
+{
+    double ends[ASPHERE_DEPTH] = {b};
+    int left = 1;
+    bool inside = inside_at_a;
+    for (int work = 0; left > 0; work++) {
+        const double end = ends[left - 1];
+        if (left < ASPHERE_DEPTH && work < ASPHERE_WORK && !is_simple(l, a, end)) {
+            ends[left++] = 0.5 * (a + end);
+            continue;
+        }
+        const bool after = left == 1 ? inside_at_b : is_inside(l, end);
+        if (after != inside && count < ASPHERE_CHANGES)
+            changes[count++] = change_between(l, a, end, inside) + l->from;
+        inside = after;
+        a = end;
+        left--;
+    }
+    return count;
+}
+
+/* The part of a line on the inner side of one side of the lens, as intervals in order. */
+typedef struct asphere_part {
+    int count;
+    interval list[ASPHERE_CHANGES / 2 + 1];
+} asphere_part;
+
+static asphere_part part_of_changes(bool inside, const double *changes, int count)
+{
+    asphere_part part = {0, {{0.0, 0.0}}};
+    double in = -HUGE_VAL;
+    for (int k = 0; k < count; k++, inside = !inside) {
+        if (inside)
+            part.list[part.count++] = (interval){in, changes[k]};
+        in = changes[k];
+    }
+    if (inside)
+        part.list[part.count++] = (interval){in, HUGE_VAL};
+    return part;
+}
+
+/* Within the rim; heights outside those of the side have no crossings. */
+static asphere_part part_of_asphere(const primitive *p, int k, local_ray r, interval rim, bool own)
+{
+    const double vertex = k == 0 ? 0.0 : p->top, y = r.y - vertex;
+    const double length2 = r.dx * r.dx + r.dy * r.dy + r.dz * r.dz, inverse = 1.0 / length2;
+    const double from = own ? 0.0 : -(r.x * r.dx + y * r.dy + r.z * r.dz) * inverse, dx = cylinder_dx(r.dx, r.dz);
+    const asphere_line l = {.e = lens_asphere(p, k),
+                            .inwards = k == 0 ? 1.0 : -1.0,
+                            .base = {r.x + from * r.dx, y + from * r.dy, r.z + from * r.dz, dx, r.dy, r.dz},
+                            .rho2 = r.x * r.x + r.z * r.z,
+                            .across2 = cylinder_axial(dx, r.dz, 1.0),
+                            .own = own,
+                            .from = from,
+                            .least = 0x1p-55 * p->radius * sqrt(inverse),
+                            .touch = 0x1p-54 * p->radius};
+    const double low = p->lens.low[k], high = p->lens.high[k], spare = 0x1p-20 * (high - low) + 0x1p-40 * p->radius;
+    const interval near = interval_of_slab(l.base.y, r.dy, low - spare, high + spare);
+    double a = greater(rim.in - from, near.in), b = lesser(rim.out - from, near.out);
+    if (own)
+        a = lesser(a, 0.0), b = greater(b, 0.0);
+    if (!(a < b)) {
+        const double t = near.in > rim.out - from ? rim.out - from : rim.in - from;
+        return part_of_changes(l.inwards * (l.base.y + t * r.dy - 0.5 * (low + high)) > 0.0, NULL, 0);
+    }
+    double changes[ASPHERE_CHANGES];
+    if (!own) {
+        const bool first = is_inside(&l, a);
+        return part_of_changes(first, changes, changes_between(&l, a, b, first, is_inside(&l, b), changes, 0));
+    }
+    double slope;
+    height_inside(&l, 0.0, &slope);
+    const bool enters = slope > 0.0, first = a < 0.0 ? is_inside(&l, a) : !enters;
+    int count = a < 0.0 ? changes_between(&l, a, 0.0, first, !enters, changes, 0) : 0;
+    if (count < ASPHERE_CHANGES)
+        changes[count++] = 0.0;
+    if (b > 0.0)
+        count = changes_between(&l, 0.0, b, enters, is_inside(&l, b), changes, count);
+    return part_of_changes(first, changes, count);
+}
+
+static asphere_part part_of_conic(const primitive *p, int k, local_ray r, interval rim, int64_t own)
+{
+    const lens_side e = lens_side_of(p, k);
+    const double inverse_length2 = 1.0 / (r.dx * r.dx + r.dy * r.dy + r.dz * r.dz);
+    const interval set = lens_side_cross(&e, r, inverse_length2, rim, own);
+    const double ends[2] = {set.in, set.out};
+    return part_of_changes(e.concave != 0, ends, set.in < set.out ? 2 : 0);
+}
+
+/* The chords of a line; returns their number. at: the face that it starts on. */
+static int cross_lens(const primitive *p, local_ray r, int64_t at, interval chords[CHORDS_MAX])
+{
+    const double dx = cylinder_dx(r.dx, r.dz), a = cylinder_axial(dx, r.dz, 1.0);
+    const interval rim = interval_of_quadric(cylinder_side(p, r.x, r.z, dx, r.dz, a, 1.0 / a, mask_same(at, 0)));
+    if (!(rim.in < rim.out))
+        return 0;
+    asphere_part part[2];
+    for (int k = 0; k < 2; k++) {
+        const even_asphere e = lens_asphere(p, k);
+        part[k] = asphere_has_terms(&e) ? part_of_asphere(p, k, r, rim, at == 1 + k)
+                                        : part_of_conic(p, k, r, rim, mask_same(at, 1 + k));
+    }
+    int count = 0;
+    for (int i = 0; i < part[0].count; i++)
+        for (int k = 0; k < part[1].count; k++) {
+            const interval both = interval_both(rim, interval_both(part[0].list[i], part[1].list[k]));
+            if (both.in < both.out && count < ASPHERE_CHORDS)
+                chords[count++] = both;
+        }
+    return count;
+}
+
+static void one(const primitive *p, const ray_batch *rays, int i, bool inside, const ray_scratch *s, interval *found)
+{
+    (void)s;
+    const int64_t at = rays->start[i] - p->first_face;
+    const local_ray r =
+        ray_to_local(p, p->turned, rays->ox[i], rays->oy[i], rays->oz[i], rays->dx[i], rays->dy[i], rays->dz[i]);
+    interval chords[CHORDS_MAX];
+    const int count = cross_lens(p, r, at, chords);
+    const double length = sqrt(r.dx * r.dx + r.dy * r.dy + r.dz * r.dz);
+    const crossings_of_one ahead =
+        crossings_of_chords(chords, count, at >= 0 && at <= 2, inside, 0x1p-20 * p->radius / length);
+    intervals_of_crossings(&ahead, inside, found);
+}
+
+/* Ray by ray, as few rays hit a lens. */
+static void rows(const primitive *p, int bit, const ray_batch *rays, ray_scratch *s)
+{
+    for (int i = 0; i < rays->count; i++) {
+        interval found[CHORDS_MAX];
+        one(p, rays, i, rays->inside[i] >> bit & 1, s, found);
+        for (int k = 0; k < ASPHERE_CHORDS; k++)
+            s->in[bit + k][i] = found[k].in, s->out[bit + k][i] = found[k].out;
+    }
+}
+
+/* A point projected onto side k by one Newton step along the gradient (-2 x dz/dq, 1, -2 z dz/dq) of y - z, the normal
+ * out of the lens, and the distance. */
+static side_point point_on_asphere(const primitive *p, int k, vec3 q)
+{
+    const even_asphere e = lens_asphere(p, k);
+    const double rho2 = q.x * q.x + q.z * q.z, vertex = k == 0 ? 0.0 : p->top, out = k == 0 ? -1.0 : 1.0;
+    const double level = (q.y - vertex) - asphere_sag(&e, rho2), twice = -2.0 * asphere_slope(&e, rho2);
+    const double gx = twice * q.x, gz = twice * q.z, g2 = 1.0 + gx * gx + gz * gz, inverse = 1.0 / sqrt(g2);
+    const double step = -level / g2;
+    return (side_point){.point = vec3_make(q.x + step * gx, q.y + step, q.z + step * gz),
+                        .normal = vec3_scale(vec3_make(gx, 1.0, gz), out * inverse),
+                        .apart = magnitude(level) * inverse};
+}
+
+static side_point point_on(const primitive *p, int k, vec3 q)
+{
+    const even_asphere e = lens_asphere(p, k);
+    if (asphere_has_terms(&e))
+        return point_on_asphere(p, k, q);
+    const lens_side side = lens_side_of(p, k);
+    side_point s = point_on_side(&side, q);
+    s.normal = vec3_scale(s.normal, side.concave ? -1.0 : 1.0);
+    return s;
+}
+
+/* Projects q onto the nearest face that the ray can cross there in its direction: a ray leaves along the outward
+ * normal, and enters against it. */
+ALWAYS_INLINE local_point point(const primitive *p, bool general, local_ray r, vec3 q, int64_t at, int64_t leaving)
+{
+    (void)general, (void)at;
+    const double from_axis = sqrt(q.x * q.x + q.z * q.z), along = leaving ? 1.0 : -1.0;
+    const double x = q.x / from_axis, z = q.z / from_axis, outside = 0x1p-30 * p->radius;
+    const side_point faces[3] = {{.point = vec3_make(x * p->radius, q.y, z * p->radius),
+                                  .normal = vec3_make(x, 0.0, z),
+                                  .apart = magnitude(from_axis - p->radius)},
+                                 point_on(p, 0, q),
+                                 point_on(p, 1, q)};
+    int best = 0;
+    double least = HUGE_VAL;
+    for (int k = 0; k < 3; k++) {
+        const double turned = vec3_dot(vec3_make(r.dx, r.dy, r.dz), faces[k].normal);
+        const double cost = faces[k].apart + (turned * along > 0.0 ? 0.0 : outside);
+        if (cost < least)
+            best = k, least = cost;
+    }
+    return (local_point){.point = faces[best].point, .normal = faces[best].normal, .face = p->first_face + best};
+}
+
+static void points(const primitive *__restrict p, const ray_batch *rays, const double *t, int bit, surface_batch *out)
+{
+    for (int i = 0; i < rays->count; i++)
+        store_point(p, point, true, rays, t, i, bit, out);
+}
+
+static int chords(const primitive *p, local_ray r, interval found[CHORDS_MAX])
+{
+    return cross_lens(p, r, FACE_NONE, found);
+}
+
+const primitive_functions KERNEL(asphere_functions) = {ASPHERE_CHORDS, rows,   one,        points,
+                                                       lens_contains,  chords, lens_flats, lens_mapping};

@@ -1,0 +1,149 @@
+/* The sides of a lens that is a conic of revolution, and what lenses with and without further coefficients share; for
+ * kernels. Faces: 0 rim, 1 the side at y = 0, 2 the side at y = top. Pure; cannot fail.
+ *
+ * The conic's equation is c (x^2 + z^2 + (1 + k) u^2) - 2 u = 0, with u measured from its vertex towards its centre of
+ * curvature, exact for flat sides too. It holds on both halves of an ellipsoid, and on both sheets of a hyperboloid;
+ * only that at the vertex counts. Beyond an ellipsoid's centre the set continues, so that a lens may be longer than its
+ * spheres; within the rim, that union is convex. */
+#pragma once
+
+#include "geometry/primitives/asphere.h"
+#include "geometry/primitives/kind.h"
+
+typedef struct lens_side {
+    double vertex, up;                 /* u = up (y - vertex) */
+    double curvature, stretch, centre; /* |c|, 1 + k, u of an ellipsoid's centre; infinite without one */
+    int64_t flat, closed, concave;     /* masks; closed: not a hyperboloid */
+} lens_side;
+
+ALWAYS_INLINE lens_side lens_side_of(const primitive *p, int k)
+{
+    const double c = p->lens.curvature[k], stretch = 1.0 + p->lens.conic[k];
+    const double inwards = k == 0 ? 1.0 : -1.0; /* the direction from the vertex into the lens */
+    const int64_t concave = mask_less(c * inwards, 0.0), flat = mask_of(c == 0.0);
+    return (lens_side){.vertex = k == 0 ? 0.0 : p->top,
+                       .up = blend(concave, -inwards, inwards),
+                       .curvature = magnitude(c),
+                       .stretch = stretch,
+                       .centre = blend(mask_less(0.0, stretch) & ~flat, 1.0 / (magnitude(c) * stretch), HUGE_VAL),
+                       .flat = flat,
+                       .closed = ~mask_less(stretch, 0.0),
+                       .concave = concave};
+}
+
+/* The interval of a line in the convex sheet of a conic, c > 0, relative to the point (x, z, u): as for a cone
+ * (cone_kernel.c), with the roots of a t^2 + 2 b t + c = 0 as q / a and c / q. */
+ALWAYS_INLINE quadric_roots conic_cross(const lens_side *e, double x, double z, double u, double dx, double dz,
+                                        double du, int64_t own)
+{
+    double a = e->curvature * (dx * dx + dz * dz + e->stretch * (du * du));
+    double b = e->curvature * (x * dx + z * dz + e->stretch * (u * du)) - du;
+    double c = blend(own, 0.0, e->curvature * (x * x + z * z + e->stretch * (u * u)) - 2.0 * u);
+    double discriminant = blend(own, b * b, b * b - a * c), root = sqrt(greater(discriminant, 0.0));
+    double q = -(b + blend(mask_less(b, 0.0), -root, root)), inverse_a = inverse_of_component(a);
+    double far = q * inverse_a, close = c * inverse_of_component(q);
+    double first = lesser(far, close), second = greater(far, close);
+    /* A line steeper than a hyperboloid's asymptotes is inside one sheet from a root on; a flatter one is inside one
+     * of the sheets between the roots. */
+    int64_t steep = mask_less(a, 0.0), opens = mask_less(0.0, du);
+    int64_t ours = e->closed | mask_less(e->curvature * e->stretch * (u - du * (b * inverse_a)), 1.0);
+    quadric_roots s;
+    s.in = blend(steep, blend(opens, second, -HUGE_VAL), first);
+    s.out = blend(steep, blend(opens, HUGE_VAL, first), second);
+    s.hit = steep | (ours & (own | mask_less(0.0, discriminant)));
+    return s;
+}
+
+/* The half-space u >= 0. */
+ALWAYS_INLINE interval half_space(double u, double inverse_u)
+{
+    double t = -u * inverse_u;
+    int64_t opens = mask_less(0.0, inverse_u);
+    return (interval){blend(opens, t, -HUGE_VAL), blend(opens, HUGE_VAL, t)};
+}
+
+/* The interval of a ray in the convex set of a side, as far as the ray is within the rim. t is measured from the point
+ * nearest to the vertex; for a ray that starts on the side, from its start, where c = 0.
+ *
+ * Where a line within the rim crosses the plane of an ellipsoid's centre, it is inside the ellipsoid. So the plane
+ * decides whether the interval has an end, and is an end itself only by rounding, for a line that touches the ellipsoid
+ * there. */
+ALWAYS_INLINE interval lens_side_cross(const lens_side *e, local_ray r, double inverse_length2, interval rim,
+                                       int64_t own)
+{
+    double u = e->up * (r.y - e->vertex), du = e->up * r.dy, inverse_u = inverse_of_component(du);
+    double from = blend(own, 0.0, -(r.x * r.dx + u * du + r.z * r.dz) * inverse_length2);
+    double x = r.x + from * r.dx, z = r.z + from * r.dz, v = u + from * du;
+    quadric_roots sheet = conic_cross(e, x, z, v, r.dx, r.dz, du, own);
+    double centre = from + (e->centre - v) * inverse_u;
+    int64_t opens = mask_less(0.0, inverse_u);
+    int64_t late = mask_less(centre, rim.in), early = mask_less(rim.out, centre), all = blend_int(opens, late, early);
+    int64_t central = ~(late | early), hit = sheet.hit | central;
+    double first = from + sheet.in, last = from + sheet.out;
+    double in = blend(hit, blend(central, lesser(first, centre), first), HUGE_VAL),
+           out = blend(hit, blend(central, greater(last, centre), last), -HUGE_VAL);
+    interval s = {blend(all | (hit & ~opens & mask_less_equal(in, centre)), -HUGE_VAL, in),
+                  blend(all | (hit & opens & mask_less_equal(centre, out)), HUGE_VAL, out)};
+    interval plane = half_space(blend(own, 0.0, u), inverse_u);
+    return (interval){blend(e->flat, plane.in, s.in), blend(e->flat, plane.out, s.out)};
+}
+
+/* A point projected onto a side's conic; the normal is out of the convex set. */
+typedef struct side_point {
+    vec3 point, normal;
+    double
+        apart; /* distance of the given point; infinite past an ellipsoid's centre and on a hyperboloid's other sheet */
+} side_point;
+
+/* One Newton step along the gradient, whose error is of second order in q's distance. */
+ALWAYS_INLINE side_point point_on_side(const lens_side *e, vec3 q)
+{
+    double u = e->up * (q.y - e->vertex), c = e->curvature;
+    double level = c * (q.x * q.x + q.z * q.z + e->stretch * (u * u)) - 2.0 * u;
+    double gx = c * q.x, gz = c * q.z, gu = c * e->stretch * u - 1.0, g2 = gx * gx + gz * gz + gu * gu;
+    double step = -0.5 * level / g2, inverse = 1.0 / sqrt(g2);
+    side_point s;
+    s.point = vec3_make(q.x + step * gx, e->vertex + e->up * (u + step * gu), q.z + step * gz);
+    s.normal = vec3_make(gx * inverse, e->up * gu * inverse, gz * inverse);
+    s.apart = blend(mask_less(gu, 0.0), magnitude(0.5 * level * inverse), HUGE_VAL);
+    return s;
+}
+
+static inline even_asphere lens_asphere(const primitive *p, int k)
+{
+    const lens_sides *l = &p->lens;
+    return (even_asphere){l->curvature[k], 1.0 + l->conic[k], {l->even[k][0], l->even[k][1], l->even[k][2]}};
+}
+
+static inline double lens_height(const primitive *p, int k, double rho2)
+{
+    const even_asphere e = lens_asphere(p, k);
+    return (k == 0 ? 0.0 : p->top) + asphere_sag(&e, rho2);
+}
+
+static inline bool lens_contains(const primitive *p, vec3 q)
+{
+    const double rho2 = q.x * q.x + q.z * q.z;
+    const even_asphere one = lens_asphere(p, 0), two = lens_asphere(p, 1);
+    return rho2 <= p->radius * p->radius && q.y >= asphere_sag(&one, rho2) && q.y - p->top <= asphere_sag(&two, rho2);
+}
+
+static inline int lens_flats(const primitive *p, flat_face flat[FLATS_MAX])
+{
+    int count = 0;
+    for (int k = 0; k < 2; k++) {
+        const even_asphere e = lens_asphere(p, k);
+        if (e.curvature == 0.0 && !asphere_has_terms(&e))
+            flat[count++] = (flat_face){1 + k, 1, k == 0 ? 0.0 : p->top, k == 0 ? -1.0 : 1.0};
+    }
+    return count;
+}
+
+/* The rim: once around, with the middle of the texture image in front. The sides: seen along the axis. */
+static inline surface_mapping lens_mapping(const primitive *p, int64_t face, vec3 q, double size)
+{
+    const double r = p->radius, bottom = lens_height(p, 0, r * r), top = lens_height(p, 1, r * r);
+    if (face == 0)
+        return mapping_around(q.x, q.z, r, q.y - bottom, top - bottom, size);
+    return mapping_flat(q.x + r, face == 1 ? r - q.z : q.z + r, 2.0 * r, 2.0 * r, size);
+}

@@ -1,0 +1,56 @@
+/* The two sides of the shape lens as profiles: heights over the distance from the axis, and their limits. Pure; cannot
+ * fail. */
+#pragma once
+
+#include "geometry/primitives/asphere.h"
+#include "geometry/shapes/shape.h"
+
+typedef struct lens_profile {
+    even_asphere e;
+    double conic, vertex;
+    bool concave; /* by its radius; a side with coefficients: see lens_form_of */
+    bool aspheric;
+} lens_profile;
+
+/* k: 0 for side 1, 1 for side 2 */
+lens_profile lens_profile_of(const solid_shape *s, int k);
+
+static inline bool lens_is_flat(const lens_profile *e)
+{
+    return e->e.curvature == 0.0 && !e->aspheric;
+}
+
+static inline double lens_height_at(const lens_profile *e, double rho)
+{
+    return e->vertex + asphere_sag(&e->e, rho * rho);
+}
+
+static inline double lens_rim(const solid_shape *s)
+{
+    return 0.5 * s->diameter;
+}
+
+bool lens_has_asphere(const solid_shape *s);
+
+/* The heights of the rim's two edges. */
+double lens_edge(const solid_shape *s, int k);
+/* The distance between the sides at a radius, and the radius where they are nearest to each other. */
+double lens_gap_at(const solid_shape *s, double rho);
+double lens_nearest_sides(const solid_shape *s);
+
+/* The least and the largest height of a side within the rim. */
+double lens_lowest_of(const solid_shape *s, int k);
+double lens_highest_of(const solid_shape *s, int k);
+/* The largest rho out + height up within the rim. */
+double lens_reach_of(const solid_shape *s, int k, double out, double up);
+
+/* How a side bends, seen from outside. The number is that of the intervals in which a line can be on its inner side,
+ * LENS_ONE_TURN: by Rolle's theorem, as the second derivative of the height along any line changes its sign at most
+ * twice. */
+typedef enum lens_form { LENS_CONVEX = 1, LENS_CONCAVE = 2, LENS_ONE_TURN = 3, LENS_TURNS, LENS_STEEP } lens_form;
+
+/* A flat side is convex. within: the radius up to which a side with coefficients is not steep, and turns no more than
+ * the kernels can bound. */
+lens_form lens_form_of(const solid_shape *s, int k, double *within);
+
+status lens_check_sides(const solid_shape *s, diagnostic *why);
