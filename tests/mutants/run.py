@@ -26,7 +26,7 @@ import time
 
 LONGEST_S = 180  # longer tests are left out; seconds of processor time, like TURNS_S
 TURNS_S = (2, 8, 30, math.inf)
-FAILED = b"[  FAILED  ]"  # cmocka says so of each case; those that follow are not waited for
+FAILED = b"[  ERROR   ]"  # cmocka says so at once where a case fails; those that follow are not waited for
 EXCLUDED = ("test_lab", "test_http", "test_bad_meshes", "test_study_estimate")  # need a server or quiet processors
 writing = threading.Lock()
 
