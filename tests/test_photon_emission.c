@@ -114,7 +114,7 @@ static void rays_that_pass_two_balls_are_counted_once(void **state)
 static void photons_of_lines_are_marked(void **state)
 {
     (void)state;
-    static const char *const spectra[] = {"black_body", "mercury"};
+    static const char *const kinds[] = {"black_body", "mercury"};
     for (int lines = 0; lines < 2; lines++) {
         char text[512];
         scene *s;
@@ -122,7 +122,7 @@ static void photons_of_lines_are_marked(void **state)
         snprintf(text, sizeof text,
                  "render: {caustics: photons, spectrum: spectral}\nlights: {lamp: {position: [0, 4, 0], intensity: 1, "
                  "reach: 1, spectrum: %s}}\nsolids: {b: {shape: sphere, transparency: 1, ior: 1.5}}\n",
-                 spectra[lines]);
+                 kinds[lines]);
         emission *e = emission_of(text, false, &s, &p);
         for (int64_t i = 0; i < 100; i++) {
             emitted_ray ray;
