@@ -200,7 +200,7 @@ typedef struct tree_sides {
     const tree_search *w;
     double low, high;
     uint64_t before, after;
-    int near, changed; /* the numbers of primitives with a boundary near the crossing, and of those that change there */
+    int near, changed; /* the numbers of primitives with a boundary near the crossing, and of these that change */
     bool of_hit;       /* the crossing's own primitive changes */
 } tree_sides;
 
