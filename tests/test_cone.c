@@ -87,6 +87,23 @@ static void chords_through_the_middle_have_their_closed_form(void **state)
     scene_geometry_destroy(a);
 }
 
+/* Onto the side of a frustum a million times as wide as high, from a distance of 1. */
+static void a_thin_frustum_is_hit_where_it_is(void **state)
+{
+    (void)state;
+    const double height = 0x1p-20;
+    const solid_shape s = cone_of(1.0, 0.5, height);
+    scene_geometry *a = scene_geometry_of(&s, 1);
+    for (int k = 1; k < 8; k++) {
+        const double y = 0.125 * k * height, x = 1.0 - 0.0625 * k;
+        const one_hit h = nearest_interface(a, (one_ray){{x + 0.6, y + 0.8, 0.0}, {-0.6, -0.8, 0.0}, FACE_NONE, 0});
+        const one_hit g = nearest_interface(a, (one_ray){{0.0, y + 0.8, x - 0.6}, {0.0, -0.8, 0.6}, FACE_NONE, 0});
+        assert_true(h.face == 0 && fabs(h.t - 1.0) < 1e-15);
+        assert_true(g.face == 0 && fabs(g.t - 1.0) < 1e-15);
+    }
+    scene_geometry_destroy(a);
+}
+
 /* Rays at the apex and near it: a hit has a normal and no number is NaN; above the apex there is no hit. */
 static void the_apex_is_hit_and_the_other_nappe_is_not(void **state)
 {
@@ -152,6 +169,7 @@ int main(void)
         cmocka_unit_test(a_cone_with_equal_radii_is_a_cylinder),
         cmocka_unit_test(the_volume_is_that_of_a_frustum),
         cmocka_unit_test(chords_through_the_middle_have_their_closed_form),
+        cmocka_unit_test(a_thin_frustum_is_hit_where_it_is),
         cmocka_unit_test(the_apex_is_hit_and_the_other_nappe_is_not),
         cmocka_unit_test(a_conical_liquid_overlaps_the_wall_only_where_it_is_wide_enough),
     };

@@ -1,5 +1,5 @@
 /* Tests of hierarchies at the ends of their ranges: batches of any length, tiny and distant triangles, the bounds of
- * all boxes, and the form of sphere trees. */
+ * all boxes, the form of sphere trees, and kinds that there are not. */
 #include <setjmp.h>
 #include <stdarg.h>
 #include <math.h>
@@ -117,6 +117,42 @@ static void only_octants_divide_a_sphere(void **state)
     mesh_release(m);
 }
 
+/* Three small triangles at either end of a diagonal: octants part them at once, and the root keeps none. */
+static void leaves_are_the_nodes_with_triangles(void **state)
+{
+    (void)state;
+    vec3 at[18];
+    for (int i = 0; i < 6; i++) {
+        const double x = (i < 3 ? -8.0 : 8.0) + 0.25 * (i % 3), y = i < 3 ? -8.0 : 8.0;
+        at[3 * i] = vec3_make(x, y, y);
+        at[3 * i + 1] = vec3_make(x + 0.125, y, y);
+        at[3 * i + 2] = vec3_make(x, y + 0.125, y);
+    }
+    mesh *m = mesh_of_corners(at, 6);
+    for (int parts = 0; parts < 2; parts++) {
+        hierarchy *h = built(m, parts ? HIERARCHY_OCTANT : HIERARCHY_SPHERE);
+        const hierarchy_report r = hierarchy_describe(h);
+        assert_int_equal(r.nodes, parts ? 3 : 1);
+        assert_int_equal(r.leaves, parts ? 2 : 1);
+        assert_int_equal(r.depth, parts ? 2 : 1);
+        hierarchy_destroy(h);
+    }
+    mesh_release(m);
+}
+
+static void an_unknown_kind_has_no_hierarchy(void **state)
+{
+    (void)state;
+    const vec3 corners[3] = {{0, 0, 0}, {1, 0, 0}, {0, 1, 0}};
+    mesh *m = mesh_of_corners(corners, 1);
+    const hierarchy *h = NULL;
+    assert_int_equal(hierarchy_of_mesh(m, HIERARCHY_BVH, 1, &h, NULL), STATUS_OK);
+    assert_non_null(h);
+    assert_int_equal(hierarchy_of_mesh(m, HIERARCHY_KIND_COUNT, 1, &h, NULL), STATUS_BAD_INPUT);
+    assert_null(h);
+    mesh_release(m);
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
@@ -124,6 +160,8 @@ int main(void)
         cmocka_unit_test(tiny_triangles_far_from_the_origin_are_hit),
         cmocka_unit_test(the_reach_is_that_of_the_farther_side),
         cmocka_unit_test(only_octants_divide_a_sphere),
+        cmocka_unit_test(leaves_are_the_nodes_with_triangles),
+        cmocka_unit_test(an_unknown_kind_has_no_hierarchy),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -1,5 +1,6 @@
-/* Tests of packed hierarchies whose values are not those of a tree that the traversals can walk: each is refused. The
- * hash of a package does not help here, since whoever writes the package makes it. */
+/* Tests of packed hierarchies, and of packed meshes, whose values are not those of a tree that the traversals can walk,
+ * or of a mesh: each is refused. The hash of a package does not help here, since whoever writes the package makes
+ * it. */
 #include <setjmp.h>
 #include <stdarg.h>
 #include <stddef.h>
@@ -41,21 +42,44 @@ static status take(void *context, void *bytes, size_t size, diagnostic *why)
     return STATUS_OK;
 }
 
-/* The status of unpacking what the hierarchy is packed as. */
-static status passed_on(const hierarchy *h)
+/* The status of unpacking what the hierarchy is packed as. The caller destroys *again. */
+static status copied(const hierarchy *h, hierarchy **again)
 {
     buffer b = {.at = NULL};
     pack_writer to = {.write = give, .context = &b, .hash = HASH_START};
     diagnostic why = {.what = ""};
     assert_int_equal(hierarchy_pack(h, &to, &why), STATUS_OK);
     pack_reader from = {.read = take, .context = &b, .left = b.size, .hash = HASH_START};
-    hierarchy *again = NULL;
     hierarchy_kind kind;
-    const status code = hierarchy_unpack(h->of, &from, &again, &kind, &why);
-    if (code == STATUS_OK)
-        hierarchy_destroy(again);
-    else
+    const status code = hierarchy_unpack(h->of, &from, again, &kind, &why);
+    if (code != STATUS_OK)
         assert_non_null(strstr(why.what, "hierarchy"));
+    free(b.at);
+    return code;
+}
+
+static status passed_on(const hierarchy *h)
+{
+    hierarchy *again = NULL;
+    const status code = copied(h, &again);
+    hierarchy_destroy(again);
+    return code;
+}
+
+/* The same of a mesh. */
+static status mesh_passed_on(const mesh *m)
+{
+    buffer b = {.at = NULL};
+    pack_writer to = {.write = give, .context = &b, .hash = HASH_START};
+    diagnostic why = {.what = ""};
+    assert_int_equal(mesh_pack(m, &to, &why), STATUS_OK);
+    pack_reader from = {.read = take, .context = &b, .left = b.size, .hash = HASH_START};
+    const mesh *again = NULL;
+    const status code = mesh_unpack(&from, &again, &why);
+    if (code == STATUS_OK)
+        mesh_release(again);
+    else
+        assert_non_null(strstr(why.what, "mesh"));
     free(b.at);
     return code;
 }
@@ -71,14 +95,15 @@ static hierarchy *tree_of(hierarchy_kind kind, const mesh **m)
     return h;
 }
 
-#define REFUSED(place, value)                             \
-    do {                                                  \
-        const __typeof__(place) kept_ = (place);          \
-        (place) = (value);                                \
-        assert_int_equal(passed_on(h), STATUS_BAD_INPUT); \
-        (place) = kept_;                                  \
-        assert_int_equal(passed_on(h), STATUS_OK);        \
+#define REFUSED_BY(attempt, place, value)            \
+    do {                                             \
+        const __typeof__(place) kept_ = (place);     \
+        (place) = (value);                           \
+        assert_int_equal(attempt, STATUS_BAD_INPUT); \
+        (place) = kept_;                             \
+        assert_int_equal(attempt, STATUS_OK);        \
     } while (0)
+#define REFUSED(place, value) REFUSED_BY(passed_on(h), place, value)
 
 static void boxes_that_are_none_are_refused(void **state)
 {
@@ -148,12 +173,48 @@ static void spheres_that_are_none_are_refused(void **state)
     }
 }
 
+static void heads_of_no_mesh_are_refused(void **state)
+{
+    (void)state;
+    mesh *m = NULL;
+    assert_int_equal(generate_icosphere(1, &m, NULL), STATUS_OK);
+    REFUSED_BY(mesh_passed_on(m), m->slot_count, 0);
+    REFUSED_BY(mesh_passed_on(m), m->hole.from, (uint32_t)m->vertex_count);
+    REFUSED_BY(mesh_passed_on(m), m->hole.to, (uint32_t)m->vertex_count);
+    REFUSED_BY(mesh_passed_on(m), m->hole.triangle, m->triangle_count);
+    mesh_release(m);
+}
+
+static const uint32_t *triangles_of(const hierarchy *h, size_t block)
+{
+    return h->single ? ((const block_single *)h->blocks)[block].triangle
+                     : ((const block_double *)h->blocks)[block].triangle;
+}
+
+/* Of more blocks than travel together each keeps its triangles. */
+static void many_blocks_keep_their_triangles(void **state)
+{
+    (void)state;
+    mesh *m = NULL;
+    hierarchy *h = NULL, *again = NULL;
+    assert_int_equal(generate_icosphere(5, &m, NULL), STATUS_OK);
+    assert_int_equal(hierarchy_build(m, HIERARCHY_SPHERE, 1, &h, NULL), STATUS_OK);
+    assert_true(h->block_count > 4096);
+    assert_int_equal(copied(h, &again), STATUS_OK);
+    assert_int_equal(again->block_count, h->block_count);
+    for (size_t i = 0; i < h->block_count; i++)
+        assert_memory_equal(triangles_of(again, i), triangles_of(h, i), BLOCK * sizeof(uint32_t));
+    hierarchy_destroy(again);
+    hierarchy_destroy(h);
+    mesh_release(m);
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(boxes_that_are_none_are_refused),
-        cmocka_unit_test(nodes_that_are_no_tree_are_refused),
-        cmocka_unit_test(spheres_that_are_none_are_refused),
+        cmocka_unit_test(boxes_that_are_none_are_refused),   cmocka_unit_test(nodes_that_are_no_tree_are_refused),
+        cmocka_unit_test(spheres_that_are_none_are_refused), cmocka_unit_test(heads_of_no_mesh_are_refused),
+        cmocka_unit_test(many_blocks_keep_their_triangles),
     };
     return cmocka_run_group_tests_name("hierarchy_pack", tests, NULL, NULL);
 }

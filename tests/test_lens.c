@@ -7,6 +7,7 @@
 #include <string.h>
 #include <cmocka.h>
 
+#include "geometry/primitives/primitive.h"
 #include "geometry/shapes/shape.h"
 #include "random_stream.h"
 #include "ray_fixture.h"
@@ -284,8 +285,33 @@ static void sides_that_cross_between_axis_and_rim_are_refused(void **state)
                  sag_2 = rim2 / 1.2 / (1.0 + sqrt(1.0 - 1.7 * rim2 / 1.44));
     assert_true(s.thickness + sag_2 - sag_1 > 0.0); /* apart at the rim */
     expect_refused(s, "cross within the rim", "a thickness of at least");
-    s.thickness = 0.2;
+    double most = 0.0; /* of the distance by which the first side is ahead */
+    for (int i = 0; i <= 10000; i++) {
+        const double rho2 = rim2 * i / 10000.0;
+        most = fmax(most, rho2 / (1.0 + sqrt(1.0 - 0.5 * rho2)) - rho2 / 1.2 / (1.0 + sqrt(1.0 - 1.7 * rho2 / 1.44)));
+    }
+    s.thickness = most * (1.0 - 1e-5);
+    assert_int_equal(solid_shape_check(&s, NULL), STATUS_BAD_INPUT);
+    s.thickness = most * (1.0 + 1e-5);
     assert_int_equal(solid_shape_check(&s, NULL), STATUS_OK);
+}
+
+/* The face is that which a ray hits there. */
+static void a_flat_side_is_the_plane_through_its_vertex(void **state)
+{
+    (void)state;
+    for (int k = 0; k < 2; k++) {
+        const solid_shape s = k ? lens_of(2.0, 0.0, 0.5, 1.0) : lens_of(0.0, -2.0, 0.5, 1.0);
+        const double out = k ? 1.0 : -1.0;
+        scene_geometry *a = scene_geometry_of(&s, 1);
+        const one_hit h = nearest_interface(a, (one_ray){{0.1, 3.0 * out, 0.2}, {0.0, -out, 0.0}, FACE_NONE, 0});
+        flat_face flat[FLATS_MAX];
+        assert_int_equal(primitive_flats(&a->primitives[0], flat), 1);
+        assert_int_equal(a->primitives[0].first_face + flat[0].face, h.face);
+        assert_true(flat[0].axis == 1 && flat[0].at == h.point.y && flat[0].outwards == h.normal.y);
+        assert_true(h.point.y == 0.5 * k && h.normal.y == out);
+        scene_geometry_destroy(a);
+    }
 }
 
 int main(void)
@@ -299,6 +325,7 @@ int main(void)
         cmocka_unit_test(cemented_lenses_have_no_film_between_them),
         cmocka_unit_test(impossible_lenses_are_refused),
         cmocka_unit_test(sides_that_cross_between_axis_and_rim_are_refused),
+        cmocka_unit_test(a_flat_side_is_the_plane_through_its_vertex),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

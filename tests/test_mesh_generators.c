@@ -316,6 +316,33 @@ static void an_apex_below_the_crease_angle_is_smooth(void **state)
     }
 }
 
+/* Two cones that touch at their apices: there each is smooth across the axis, and not into the other. */
+static void cones_that_touch_on_the_axis_keep_their_own_normals(void **state)
+{
+    (void)state;
+    int up = 0, down = 0;
+    mesh *m = lathe_of((profile_point[]){{1, -1}, {0, 0}, {1, 1}}, 3, 8, 180.0);
+    for (size_t v = 0; v < m->vertex_count; v++)
+        if (m->vertices[v].y == 0.0) {
+            assert_near(fabs(m->normals[v].y), 1.0, 1e-15);
+            up += m->normals[v].y > 0.0, down += m->normals[v].y < 0.0;
+        }
+    assert_true(up > 0 && down > 0);
+    mesh_release(m);
+}
+
+/* The normals at the two rims of a bowl without thickness are those of its first and its last segment. */
+static void the_ends_of_an_open_profile_have_their_own_normals(void **state)
+{
+    (void)state;
+    mesh *m = lathe_of((profile_point[]){{1, 0}, {1.5, 0.5}, {1.6, 1.5}}, 3, 8, 90.0);
+    for (size_t v = 0; v < m->vertex_count; v++) {
+        const double y = m->vertices[v].y, mean = 0.5 * (atan2(-1.0, 1.0) + atan2(-0.1, 1.0));
+        assert_near(m->normals[v].y, y == 0.0 ? -sqrt(0.5) : y == 1.5 ? -0.1 / sqrt(1.01) : sin(mean), 1e-15);
+    }
+    mesh_release(m);
+}
+
 static void seams_coincide_and_texture_coordinates_are_continuous(void **state)
 {
     (void)state;
@@ -448,6 +475,8 @@ int main(void)
         cmocka_unit_test(a_lathed_ring_is_a_torus),
         cmocka_unit_test(edges_above_the_crease_angle_are_sharp_and_others_are_smooth),
         cmocka_unit_test(an_apex_below_the_crease_angle_is_smooth),
+        cmocka_unit_test(cones_that_touch_on_the_axis_keep_their_own_normals),
+        cmocka_unit_test(the_ends_of_an_open_profile_have_their_own_normals),
         cmocka_unit_test(seams_coincide_and_texture_coordinates_are_continuous),
         cmocka_unit_test(a_box_has_its_volume_and_a_whole_texture_on_each_side),
         cmocka_unit_test(a_plane_height_field_has_its_exact_volume),

@@ -160,7 +160,8 @@ static void coincident_sheets_have_no_self_shadow_and_no_light_leaks(void **stat
 }
 
 /* On a coarse smooth ball, inside and outside, reflected rays stay on their side of the triangle and refracted rays
- * leave it. */
+ * leave it. A mirror with the unit normal of the hit reflects away from the triangle, at least by the angle whose
+ * tangent is 0.01 (mesh_surface_kernel.c). */
 static void interpolated_normals_keep_rays_on_their_side(void **state)
 {
     (void)state;
@@ -171,7 +172,7 @@ static void interpolated_normals_keep_rays_on_their_side(void **state)
     stage g = stage_with_meshes(text, "");
     const mesh *m = g.setting->meshes[0].data;
     uint64_t seed = 8;
-    int reflected = 0, refracted = 0;
+    int reflected = 0, refracted = 0, bent = 0;
     double worst = 0.0;
     for (int i = 0; i < 4000; i++) {
         const vec3 o = vec3_scale(random_direction(&seed), 3.0), to = vec3_scale(random_direction(&seed), 0.97);
@@ -183,11 +184,15 @@ static void interpolated_normals_keep_rays_on_their_side(void **state)
             vec3 side = vec3_cross(vec3_sub(m->vertices[t.corner[1]], a), vec3_sub(m->vertices[t.corner[2]], a));
             side = vec3_dot(side, p->direction) > 0.0 ? vec3_scale(side, -1.0) : side;
             assert_true((vec3_dot(side, n->direction) > 0.0) == (n->kind == RAY_REFLECT));
+            const vec3 normal = p->hit.normal, mirrored = direction_reflect(p->direction, normal, p->hit.cos_i);
+            const double sine = vec3_dot(mirrored, vec3_normalize(side));
+            assert_true(fabs(vec3_length(normal) - 1.0) < 1e-14 && sine > 0.01 / sqrt(1.0001) - 1e-14);
+            bent += sine < 0.011;
             reflected += n->kind == RAY_REFLECT, refracted += n->kind == RAY_REFRACT;
         }
         worst = fmax(worst, fabs(tree->radiance[1] + tree_cut(tree, 1) - 1.0));
     }
-    assert_true(reflected > 4000 && refracted > 4000);
+    assert_true(reflected > 4000 && refracted > 4000 && bent > 100);
     assert_true(worst < 1e-8); /* and no energy is lost */
     stage_close(&g);
 }

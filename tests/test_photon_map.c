@@ -238,6 +238,56 @@ static void the_map_does_not_depend_on_the_order_of_photons(void **state)
     photon_map_destroy(other);
 }
 
+static photon_map *unspread(const photon *photons, int count, int first, int step)
+{
+    photon_list all = {0};
+    photon_map *m = NULL;
+    for (int i = first; i >= 0 && i < count; i += step)
+        assert_true(photon_list_add(&all, &photons[i]));
+    assert_int_equal(photon_map_create(&all, 1, &m, NULL), STATUS_OK);
+    assert_int_equal(photon_map_count(m), count);
+    free(all.list);
+    return m;
+}
+
+/* Photons at one point that differ in one number have an order, whichever came first. */
+static void photons_at_one_point_have_an_order(void **state)
+{
+    (void)state;
+    for (int k = 0; k < 8; k++) {
+        photon pair[2] = {photon_at(1.0, 0.0, 1.0, 1e-6F), photon_at(1.0, 0.0, 1.0, 1e-6F)};
+        if (k < 6)
+            (k < 3 ? pair[1].flux : pair[1].normal)[k % 3] += 0.125F;
+        else
+            pair[1].radius += k == 6 ? 0.125F : 0.0F, pair[1].wavelength += k == 7;
+        photon_map *m = unspread(pair, 2, 0, 1), *other = unspread(pair, 2, 1, -1);
+        for (size_t i = 0; i < 2; i++)
+            assert_memory_equal(photon_map_at(m, i), photon_map_at(other, i), sizeof(photon));
+        photon_map_destroy(m);
+        photon_map_destroy(other);
+    }
+}
+
+/* The order, and so every sum, does not depend on the unit of length. */
+static void the_order_is_the_same_at_any_scale(void **state)
+{
+    (void)state;
+    enum { COUNT = 2000 };
+    photon photons[2][COUNT];
+    for (int i = 0; i < COUNT; i++) {
+        const photon one = photons[0][i] = spread_evenly((uint32_t)i, COUNT);
+        photons[1][i] = one;
+        photons[1][i].position = vec3_scale(one.position, 0x1p10);
+    }
+    photon_map *m = unspread(photons[0], COUNT, 0, 1), *large = unspread(photons[1], COUNT, 0, 1);
+    for (size_t i = 0; i < COUNT; i++) {
+        const vec3 at = photon_map_at(m, i)->position, there = photon_map_at(large, i)->position;
+        assert_true(there.x == 0x1p10 * at.x && there.z == 0x1p10 * at.z);
+    }
+    photon_map_destroy(m);
+    photon_map_destroy(large);
+}
+
 /* Photons at all wavelengths alike: irradiance per wavelength number times 4000 is the same at each. */
 static void a_spectral_map_counts_photons_of_near_wavelengths(void **state)
 {
@@ -291,6 +341,8 @@ int main(void)
         cmocka_unit_test(discs_are_no_narrower_than_the_least),
         cmocka_unit_test(other_surfaces_receive_nothing),
         cmocka_unit_test(the_map_does_not_depend_on_the_order_of_photons),
+        cmocka_unit_test(photons_at_one_point_have_an_order),
+        cmocka_unit_test(the_order_is_the_same_at_any_scale),
         cmocka_unit_test(a_spectral_map_counts_photons_of_near_wavelengths),
         cmocka_unit_test(maps_without_photons_or_with_coincident_ones),
     };

@@ -361,6 +361,25 @@ static void a_mesh_reaches_as_far_as_its_box(void **state)
     mesh_release(m);
 }
 
+static void copies_are_whole_numbers(void **state)
+{
+    (void)state;
+    mesh *m = NULL;
+    assert_int_equal(generate_box(vec3_make(2, 4, 6), &m, NULL), STATUS_OK);
+    solid_shape shape = {.kind = SHAPE_MESH, .mesh = m, .scale = {1, 1, 1}, .copies = {2, 3, 4}};
+    double *const counts[] = {&shape.copies.x, &shape.copies.y, &shape.copies.z};
+    static const double wrong[] = {0.0, -1.0, 1.5, (double)NAN, 4194305.0};
+    assert_int_equal(solid_shape_check(&shape, NULL), STATUS_OK);
+    for (size_t i = 0; i < sizeof wrong / sizeof *wrong; i++)
+        for (int axis = 0; axis < 3; axis++) {
+            const double kept = *counts[axis];
+            *counts[axis] = wrong[i];
+            assert_int_equal(solid_shape_check(&shape, NULL), STATUS_BAD_INPUT);
+            *counts[axis] = kept;
+        }
+    mesh_release(m);
+}
+
 /* The ends of a prism are covered as the squares around their corners, each side as a whole. */
 static void an_image_covers_the_faces_of_a_prism(void **state)
 {
@@ -511,6 +530,7 @@ int main(void)
         cmocka_unit_test(an_image_has_the_lengths_of_a_cones_side),
         cmocka_unit_test(rings_and_thickness_of_cups_and_tori),
         cmocka_unit_test(a_mesh_reaches_as_far_as_its_box),
+        cmocka_unit_test(copies_are_whole_numbers),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -166,6 +166,28 @@ static void hits_among_meshes_are_those_of_direct_primitives(void **state)
     assert_true(interfaces > 4000);
 }
 
+/* Along an axis, faces of meshes and of other solids on a grid are met at exactly one distance: either geometry takes
+ * the same one. */
+static void hits_at_equal_distances_are_those_of_direct_primitives(void **state)
+{
+    (void)state;
+    uint64_t seed = 306;
+    int interfaces = 0;
+    for (int trial = 0; trial < 300; trial++) {
+        mesh_room m;
+        mesh_room_fill(&m, &seed, true);
+        const both_ways b = build_both(&m.r, m.tree);
+        for (int k = 0; k < 12; k++) {
+            const double way = k % 2 ? 1.0 : -1.0;
+            const vec3 d = vec3_make(k % 3 == 0 ? way : 0.0, k % 3 == 1 ? way : 0.0, k % 3 == 2 ? way : 0.0);
+            interfaces += walk_both(&b, vec3_sub(random_point(&seed, 0.9), vec3_scale(d, 4.0)), d, &seed);
+        }
+        destroy_both(&b);
+        mesh_room_empty(&m);
+    }
+    assert_true(interfaces > 4000);
+}
+
 enum { CONE = 96 };
 
 /* A bundle of rays from one point, narrow enough to be traced in a view of the few solids ahead (solid_view.h). */
@@ -318,6 +340,7 @@ int main(void)
         cmocka_unit_test(hits_are_those_of_direct_primitives),
         cmocka_unit_test(hits_at_coincident_faces_are_those_of_direct_primitives),
         cmocka_unit_test(hits_among_meshes_are_those_of_direct_primitives),
+        cmocka_unit_test(hits_at_equal_distances_are_those_of_direct_primitives),
         cmocka_unit_test(shadows_are_those_of_direct_primitives),
         cmocka_unit_test(bundles_meet_what_they_meet_among_direct_primitives),
         cmocka_unit_test(a_ray_through_200_shells_obeys_the_law_of_bouguer),

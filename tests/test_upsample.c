@@ -135,6 +135,25 @@ static void colours_next_to_black_and_white_round_trip(void **state)
     assert_true(worst < 0.01);
 }
 
+/* Dark colours, of which some components of CIELAB are linear in light, (6/29)^3 of white and less, and others cube
+ * roots: the fit crosses the join of both. */
+static void dark_colours_round_trip(void **state)
+{
+    (void)state;
+    static const int steps[] = {5, 9, 14, 20, 28, 40};
+    enum { N = COUNT(steps) };
+    double(*weights)[3] = daylight_weights(), worst = 0.0;
+    for (int k = 0; k < N * N * N; k++) {
+        const double rgb[3] = {decoded(steps[k % N] / 255.0), decoded(steps[k / N % N] / 255.0),
+                               decoded(steps[k / N / N] / 255.0)};
+        upsampled_spectrum l = upsample_reflectance(rgb);
+        worst = fmax(worst, round_trip(weights, &l, rgb));
+    }
+    free(weights);
+    print_message("dark: largest CIEDE2000 %.2g\n", worst);
+    assert_true(worst < 1e-3);
+}
+
 /* Extreme colours: the spectra must be valid, and the colour difference invisible (1 is just visible). */
 static void extreme_colours_give_finite_spectra(void **state)
 {
@@ -254,6 +273,7 @@ int main(void)
         cmocka_unit_test(the_color_checker_round_trips),
         cmocka_unit_test(the_srgb_cube_round_trips),
         cmocka_unit_test(colours_next_to_black_and_white_round_trip),
+        cmocka_unit_test(dark_colours_round_trip),
         cmocka_unit_test(extreme_colours_give_finite_spectra),
         cmocka_unit_test(spectra_of_greys_are_constant),
         cmocka_unit_test(values_out_of_range_are_clamped),

@@ -200,7 +200,7 @@ typedef struct tree_sides {
     const tree_search *w;
     double low, high;
     uint64_t before, after;
-    int near, changed; /* the numbers of primitives with a boundary near the crossing, and of those that change there */
+    int near, changed; /* the numbers of primitives with a boundary near the crossing, and of these that change */
     bool of_hit;       /* the crossing's own primitive changes */
 } tree_sides;
 
@@ -328,8 +328,7 @@ static void search(const scene_geometry *a, const ray_batch *rays, int k, ray_sc
     sides_of(&w, &x);
     s->tree.before[k] = x.before;
     s->tree.after[k] = x.after;
-    s->tree.simple[k] =
-        w.hit_primitive < a->direct_count ? x.near == 0 && x.changed == 0 : x.near == 1 && x.changed == 1 && x.of_hit;
+    s->tree.simple[k] = w.hit_primitive < a->direct_count ? x.near == 0 : x.near == 1 && x.changed == 1 && x.of_hit;
 }
 
 void KERNEL(tree_changes)(const scene_geometry *a, const ray_batch *rays, int n, ray_scratch *s, hit_batch *c,

@@ -1,12 +1,13 @@
 """Run the mutants of a built copy (instrument.py): run.py TREE EQUIVALENT SECONDS.
 
 First every test program of less than three minutes runs once without a mutant, which says how much processor time it
-takes and which mutants it reaches (TREE/reached.tsv). Then each mutant runs in the tests that reach it until one
-case fails: it is killed. Quick tests come first, and of these the ones that reach few mutants, have killed many or are
-named like the file. A test that takes six times as much processor time as before has failed too: a loaded machine
-does not change that. test_laws and test_acts try fewer scenes than in `make test`. A limit to the time by the clock, far longer, is for tests that wait indefinitely. After
-the first of TURNS_S of tests a mutant waits until all others had their turn, then for the next of them: most survivors
-would run for minutes, and most of the others are killed within a second.
+takes and which mutants it reaches (TREE/reached.tsv). Then each mutant runs in the tests that reach it until one case
+fails: it is killed. Quick tests come first, and of these the ones that reach few mutants, have killed many or are
+named like the file. A test that takes six times as much processor time as before has failed too: a loaded machine does
+not change that. test_laws and test_acts try fewer scenes than in `make test`. A limit to the time by the clock, far
+longer, is for tests that wait indefinitely. After the first of TURNS_S of tests a mutant waits until all others had
+their turn, then for the next of them: most survivors would run for minutes, and most of the others are killed within a
+second.
 TREE/results.tsv has rows of number, killed or waiting or survived or unreached, the test that killed it, and how:
 failed, processor time or clock; the last row of a number counts. TREE/passed.tsv has rows of number and a test that
 it passed. Rows that the files have are kept, so that the same command goes on where it stopped: after SECONDS. A test
@@ -26,7 +27,7 @@ import time
 
 LONGEST_S = 180  # longer tests are left out; seconds of processor time, like TURNS_S
 TURNS_S = (2, 8, 30, math.inf)
-FAILED = b"[  FAILED  ]"  # cmocka says so of each case; those that follow are not waited for
+FAILED = b"[  ERROR   ]"  # cmocka says so at once where a case fails; those that follow are not waited for
 EXCLUDED = ("test_lab", "test_http", "test_bad_meshes", "test_study_estimate")  # need a server or quiet processors
 writing = threading.Lock()
 
