@@ -146,6 +146,52 @@ static void a_camera_in_a_clear_solid_has_absorption_and_total_reflection(void *
     assert_near(seen_in(around, "wall.position=0,0,5"), exp(-0.05 * 14.5) * wall, 1e-9);
 }
 
+/* Next to the faces of a cube of glass, away from it, there is only sky; from inside, what the glass leaves of it. */
+static void a_camera_is_in_a_clear_mesh_or_not(void **state)
+{
+    (void)state;
+    static const char cube[] = "render: {width: 1, height: 1, depth: 16, integrator: zbuffer}\n"
+                               "camera: {fov_deg: 1}\nbackground: {color: [0.7, 0.7, 0.7], ambient: [0, 0, 0]}\n"
+                               "meshes: {cube: {generate: box}}\n"
+                               "solids: {block: {shape: mesh, mesh: cube, scale: [2, 2, 2], transparency: 1, ior: 1.5, "
+                               "absorb_per_m: [0.3, 0.3, 0.3]}}\n";
+    scene *s = scene_loaded(cube, "");
+    for (int k = 0; k < 4 * 9; k++) {
+        const double sign = k & 1 ? 1.0 : -1.0, a = 0.3 * (k / 4 % 3 - 1), b = 0.2 * (k / 12 - 1);
+        for (int inside = 0; inside < 2; inside++) {
+            const double near = sign * (inside ? 0.5 : 1.02), far = sign * 5.0;
+            s->camera.position = k & 2 ? vec3_make(near, a, b) : vec3_make(a, b, near);
+            s->camera.target = k & 2 ? vec3_make(far, a, b) : vec3_make(a, b, far);
+            assert_near(look(s).x, inside ? exp(-0.3 * 0.5) * sky : sky, 1e-9);
+        }
+    }
+    scene_destroy(s);
+}
+
+static double seen_through(const char *shape, double x, int turn_deg)
+{
+    char text[2048], assignments[80];
+    snprintf(text, sizeof text,
+             "%s  block: {%s, transparency: 1, ior: 1.5, absorb_per_m: [0.3, 0, 0]}\nmeshes: {cube: {generate: box}}\n",
+             VIEW, shape);
+    snprintf(assignments, sizeof assignments, "block.position=%g,0,0 block.rotation=0,%d,0", x, turn_deg);
+    scene *s = scene_loaded(text, assignments);
+    const double seen = look(s).x;
+    scene_destroy(s);
+    return seen;
+}
+
+/* A box of triangles is the box, also where light leaves by a face at an angle to the one that it entered by. Its
+ * normals are equal at the corners of a face, so that it is not curved. */
+static void a_mesh_with_flat_faces_is_flat(void **state)
+{
+    (void)state;
+    for (int i = -2; i <= 2; i++)
+        for (int turn_deg = 7; turn_deg < 90; turn_deg += 9)
+            assert_near(seen_through("shape: mesh, mesh: cube, scale: [2, 2, 2], shading: smooth", 0.41 * i, turn_deg),
+                        seen_through("shape: box, size: [2, 2, 2]", 0.41 * i, turn_deg), 1e-7);
+}
+
 static void layers_beyond_the_depth_limit_show_the_fallback(void **state)
 {
     (void)state;
@@ -342,6 +388,8 @@ int main(void)
         cmocka_unit_test(the_higher_priority_applies_where_solids_overlap),
         cmocka_unit_test(opaque_solids_among_clear_ones_are_visible_by_priority),
         cmocka_unit_test(a_camera_in_a_clear_solid_has_absorption_and_total_reflection),
+        cmocka_unit_test(a_camera_is_in_a_clear_mesh_or_not),
+        cmocka_unit_test(a_mesh_with_flat_faces_is_flat),
         cmocka_unit_test(layers_beyond_the_depth_limit_show_the_fallback),
         cmocka_unit_test(views_without_refraction_equal_ray_tracing),
         cmocka_unit_test(an_invisible_clear_solid_does_not_change_the_order),
