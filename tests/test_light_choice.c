@@ -94,8 +94,8 @@ static void one_light_has_the_mean_of_all(void **state)
 enum { LAMPS = 64 };
 
 /* Lamps above a convex matte floor, the first half in one colour; returns the light of either half that its point below
- * the camera's axis reflects: k_d C / pi times the irradiance, here k_d I (N.L) reach^2 / d^2 by lamp. cones: every
- * second lamp shines upwards only. */
+ * the camera's axis reflects: k_d C / pi times the irradiance, here k_d I (N.L) reach^2 / d^2 by lamp. cones: the
+ * lamps are spotlights, of which every second one shines upwards. */
 static scene *many_lamps(const char *first, const char *second, int paths, bool cones, double expected[2])
 {
     char text[16000];
@@ -108,10 +108,12 @@ static scene *many_lamps(const char *first, const char *second, int paths, bool 
     for (int k = 0; k < LAMPS; k++) {
         const double x = k % 8 - 3.2, y = 1.0 + 0.1 * k, z = k / 8.0 - 2.0, strength = 0.01 + 0.001 * k;
         const bool upwards = cones && k % 2 == 1;
+        const vec3 target = upwards ? vec3_make(x, 99.0, z) : vec3_make(0.0, 0.0, 0.0);
         at += snprintf(text + at, sizeof text - (size_t)at,
-                       "  l%d: {kind: %s, position: [%.17g, %.17g, %.17g], target: [%.17g, 99, %.17g], half_angle_deg: "
-                       "30, intensity: %.17g, reach: 3, color: %s}\n",
-                       k, upwards ? "cone" : "point", x, y, z, x, z, strength, k < LAMPS / 2 ? first : second);
+                       "  l%d: {kind: %s, position: [%.17g, %.17g, %.17g], target: [%.17g, %.17g, %.17g], "
+                       "half_angle_deg: 30, intensity: %.17g, reach: 3, color: %s}\n",
+                       k, cones ? "cone" : "point", x, y, z, target.x, target.y, target.z, strength,
+                       k < LAMPS / 2 ? first : second);
         expected[k >= LAMPS / 2] += upwards ? 0.0 : 0.7 * strength * 9.0 * y / pow(x * x + y * y + z * z, 1.5);
     }
     return scene_from(text);
