@@ -9,6 +9,7 @@
 #include <cmocka.h>
 
 #include "render_fixture.h"
+#include "render/shade/area_lights.h"
 #include "render/shade/lamp_shape.h"
 #include "scene/model/scene.h"
 
@@ -43,10 +44,10 @@ static double above(double x0, double x1, double z0, double z1, double height)
     "solids: {ground: {shape: plane, diffuse: 1}%s}\n"
 
 /* The mean over the image, first channel. */
-static double mean_of(const char *integrator, const char *lamp, const char *solids, const char *assignments)
+static double mean_of(const char *method, const char *lamp, const char *solids, const char *assignments)
 {
     char text[1000];
-    snprintf(text, sizeof text, PATCH, integrator, lamp, solids);
+    snprintf(text, sizeof text, PATCH, method, lamp, solids);
     scene *s = scene_from(text);
     set_all(s, assignments);
     const double mean = mean_radiance(s);
@@ -55,6 +56,37 @@ static double mean_of(const char *integrator, const char *lamp, const char *soli
 }
 
 static const char *const integrators[] = {"path", "whitted", "raycast"};
+
+/* A rectangle that emits straight down has its width along x, and its axis times that direction, z, is up. A quarter
+ * turn exchanges the two. */
+static void points_of_a_rectangle_are_where_its_edges_are(void **state)
+{
+    (void)state;
+    light l = {
+        .kind = LIGHT_RECTANGLE, .position = {1.0, 5.0, 2.0}, .target = {1.0, 0.0, 2.0}, .width = 3.0, .height = 0.5};
+    lamp_shape s = lamp_shape_of(&l);
+    assert_true(s.area == 1.5);
+    vec3 at = lamp_shape_point(&s, l.position, 0.75, 0.25); /* half way to an edge, either way */
+    assert_true(at.x == 1.75 && at.y == 5.0 && at.z == 1.875);
+    l.roll_deg = 90.0;
+    s = lamp_shape_of(&l);
+    at = lamp_shape_point(&s, l.position, 0.75, 0.25);
+    assert_near(at.x, 1.125, 1e-15);
+    assert_near(at.z, 2.75, 1e-15);
+}
+
+/* A ray meets a sphere from outside; from within and from the sphere itself it meets none. */
+static void a_sphere_is_met_from_outside(void **state)
+{
+    (void)state;
+    light l = {.kind = LIGHT_POINT, .position = {0.0, 0.0, 0.0}, .radius = 2.0};
+    const plan p = {.lights = &l, .light_count = 1};
+    const vec3 towards = {-1.0, 0.0, 0.0};
+    assert_true(area_light_distance(&p, 0, vec3_make(5.0, 0.0, 0.0), towards) == 3.0);
+    assert_true(isinf(area_light_distance(&p, 0, vec3_make(5.0, 2.0, 0.0), towards))); /* a tangent */
+    assert_true(isinf(area_light_distance(&p, 0, vec3_make(2.0, 0.0, 0.0), towards)));
+    assert_true(isinf(area_light_distance(&p, 0, vec3_make(1.0, 0.0, 0.0), towards)));
+}
 
 /* L = pi I reach^2 / A. Off the axis too. */
 static void a_rectangle_lights_by_its_form_factor(void **state)
@@ -202,6 +234,8 @@ static void one_film_on_all_instruction_sets(void **state)
 int main(void)
 {
     const struct CMUnitTest tests[] = {
+        cmocka_unit_test(points_of_a_rectangle_are_where_its_edges_are),
+        cmocka_unit_test(a_sphere_is_met_from_outside),
         cmocka_unit_test(a_rectangle_lights_by_its_form_factor),
         cmocka_unit_test(a_disc_lights_by_its_form_factor),
         cmocka_unit_test(a_sphere_is_soft_too),

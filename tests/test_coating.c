@@ -36,11 +36,15 @@ static void a_coating_reflects_a_share_of_the_transmitted_light(void **state)
     for (size_t k = 0; k < COUNT(coatings); k++) {
         stage g = coated("shape: plane", 1.5, coatings[k], 1, "");
         for (double angle = 0.0; angle < 1.5; angle += 0.1) {
-            const double R = reflectance_of_angles(angle, 1.0, 1.5).mean, expected = R + (1.0 - R) * coatings[k];
+            const reflectance bare = reflectance_of_angles(angle, 1.0, 1.5);
+            const double R = bare.mean, expected = R + (1.0 - R) * coatings[k];
             const ray_tree *tree = stage_ray(&g, vec3_make(0.0, 1.0, 0.0), vec3_make(sin(angle), -cos(angle), 0.0));
             assert_true(fabs(share_of(tree, RAY_REFLECT) - expected) <= 1e-13);
             assert_true(fabs(share_of(tree, RAY_REFRACT) - (1.0 - expected)) <= 1e-13);
-            assert_true(fabs(tree->node[0].hit.R - expected) <= 1e-13);
+            const ray_hit *hit = &tree->node[0].hit;
+            assert_true(fabs(hit->R - expected) <= 1e-13);
+            assert_true(fabs(hit->R_s - (bare.s + (1.0 - bare.s) * coatings[k])) <= 1e-13);
+            assert_true(fabs(hit->R_p - (bare.p + (1.0 - bare.p) * coatings[k])) <= 1e-13);
             tree = stage_ray(&g, vec3_make(0.0, -1.0, 0.0), vec3_make(sin(angle), cos(angle), 0.0)); /* from inside */
             const bool total = 1.5 * sin(angle) >= 1.0;
             const double inner = total ? 1.0 : reflectance_of_angles(angle, 1.5, 1.0).mean;

@@ -10,6 +10,7 @@
 
 #include "optics/lamp_spectrum.h"
 #include "random_scene.h"
+#include "render/shade/spectra.h"
 #include "render_fixture.h"
 #include "scene/model/scene.h"
 
@@ -82,6 +83,43 @@ static void a_white_floor_shows_the_lamp(void **state)
         lamp_xyz((lamp_spectrum)(k + 1), wanted);
         for (int c = 0; c < 3; c++)
             assert_near(seen[c], 2.0 * wanted[c], 4e-3 * (wanted[0] + wanted[1] + wanted[2]));
+        scene_destroy(s);
+    }
+}
+
+/* Of numbers in [0, 1), the share that gives a wavelength is its density over SPECTRA_COUNT. The slots of a line are
+ * its share of the light, but for one that each has and one that is rounded; where the sky shines too, half of all. */
+static void wavelengths_are_drawn_from_lines_by_their_light(void **state)
+{
+    (void)state;
+    enum { NUMBERS = 2 * LINE_SLOTS * SPECTRA_COUNT };
+    static int drawn[2][SPECTRA_COUNT];
+    for (int alone = 0; alone < 2; alone++) {
+        scene *s = scene_from(FLOOR);
+        set_all(s, "lamp.spectrum=mercury background.horizon=0,0,0 background.ambient=0,0,0 background.rain=0");
+        set(s, alone ? "background.color=0,0,0" : "background.color=1,1,1");
+        const line_table t = line_table_of(s);
+        assert_int_equal(t.alone, alone);
+        for (int i = 0; i < NUMBERS; i++) {
+            bool of_line;
+            const double u = (i + 0.5) / NUMBERS;
+            drawn[alone][line_table_choose(&t, u, &of_line)]++;
+            assert_int_equal(of_line, alone || u > 0.5);
+        }
+        for (int w = 0; w < SPECTRA_COUNT; w++)
+            assert_near((double)drawn[alone][w] / NUMBERS, line_table_density(&t, w) / SPECTRA_COUNT, 1e-12);
+        lamp_line lines[LAMP_LINES_MAX];
+        double bright = 0.0, of_lines = 0.0;
+        const int count = spectral_lines_of(&s->lights[0], lines);
+        for (int k = 0; k < count; k++)
+            bright += lines[k].bright;
+        for (int k = 0; k < count; k++) {
+            const double density = line_table_density(&t, lines[k].wavelength) / SPECTRA_COUNT,
+                         share = alone ? density : 2.0 * density - 1.0 / SPECTRA_COUNT;
+            assert_near(share, lines[k].bright / bright, (count + 2.0) / LINE_SLOTS);
+            of_lines += share;
+        }
+        assert_near(of_lines, 1.0, 1e-12);
         scene_destroy(s);
     }
 }
@@ -179,9 +217,13 @@ static void too_many_lasers_are_refused(void **state)
 int main(void)
 {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(a_white_floor_shows_the_lamp), cmocka_unit_test(lines_and_daylight_add_up),
-        cmocka_unit_test(paths_see_the_same_lines),     cmocka_unit_test(an_rgb_film_has_the_lamps_color),
-        cmocka_unit_test(photons_carry_lines),          cmocka_unit_test(too_many_lasers_are_refused),
+        cmocka_unit_test(wavelengths_are_drawn_from_lines_by_their_light),
+        cmocka_unit_test(a_white_floor_shows_the_lamp),
+        cmocka_unit_test(lines_and_daylight_add_up),
+        cmocka_unit_test(paths_see_the_same_lines),
+        cmocka_unit_test(an_rgb_film_has_the_lamps_color),
+        cmocka_unit_test(photons_carry_lines),
+        cmocka_unit_test(too_many_lasers_are_refused),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

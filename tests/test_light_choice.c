@@ -94,10 +94,11 @@ static void one_light_has_the_mean_of_all(void **state)
 enum { LAMPS = 64 };
 
 /* Lamps above a convex matte floor, the first half in one colour; returns the light of either half that its point below
- * the camera's axis reflects: k_d C / pi times the irradiance, here k_d I (N.L) reach^2 / d^2 by lamp. */
-static scene *many_lamps(const char *first, const char *second, int paths, double expected[2])
+ * the camera's axis reflects: k_d C / pi times the irradiance, here k_d I (N.L) reach^2 / d^2 by lamp. cones: the
+ * lamps are spotlights, of which every second one shines upwards. */
+static scene *many_lamps(const char *first, const char *second, int paths, bool cones, double expected[2])
 {
-    char text[8000];
+    char text[16000];
     int at = snprintf(text, sizeof text,
                       "render: {width: 1, height: 1, depth: 0, integrator: path, paths: %d, beyond: black}\n"
                       "camera: {position: [0, 60, -80], target: [0, 0, 0], fov_deg: 0.00001}\n"
@@ -106,27 +107,34 @@ static scene *many_lamps(const char *first, const char *second, int paths, doubl
     expected[0] = expected[1] = 0.0;
     for (int k = 0; k < LAMPS; k++) {
         const double x = k % 8 - 3.2, y = 1.0 + 0.1 * k, z = k / 8.0 - 2.0, strength = 0.01 + 0.001 * k;
+        const bool upwards = cones && k % 2 == 1;
+        const vec3 target = upwards ? vec3_make(x, 99.0, z) : vec3_make(0.0, 0.0, 0.0);
         at += snprintf(text + at, sizeof text - (size_t)at,
-                       "  l%d: {position: [%.17g, %.17g, %.17g], intensity: %.17g, reach: 3, color: %s}\n", k, x, y, z,
-                       strength, k < LAMPS / 2 ? first : second);
-        expected[k >= LAMPS / 2] += 0.7 * strength * 9.0 * y / pow(x * x + y * y + z * z, 1.5);
+                       "  l%d: {kind: %s, position: [%.17g, %.17g, %.17g], target: [%.17g, %.17g, %.17g], "
+                       "half_angle_deg: 30, intensity: %.17g, reach: 3, color: %s}\n",
+                       k, cones ? "cone" : "point", x, y, z, target.x, target.y, target.z, strength,
+                       k < LAMPS / 2 ? first : second);
+        expected[k >= LAMPS / 2] += upwards ? 0.0 : 0.7 * strength * 9.0 * y / pow(x * x + y * y + z * z, 1.5);
     }
     return scene_from(text);
 }
 
-/* Each of white lamps is chosen in proportion to its light, so that every path brings the sum. */
+/* Each of white lamps is chosen in proportion to its light, and none that does not reach the point, so that every path
+ * brings the sum. */
 static void lamps_without_shadows_make_no_noise(void **state)
 {
     (void)state;
-    double expected[2];
-    scene *s = many_lamps("[1, 1, 1]", "[1, 1, 1]", 16, expected);
-    render_result *r = render(s);
-    const double seen = (double)r->img->sum[0] / FILM_ONE / (expected[0] + expected[1]);
-    if (!(fabs(seen - 1.0) < 1e-6 && render_noise_rms(r) < 1e-6))
-        fail_msg("%.9g +- %.2g of what is expected", seen, render_noise_rms(r));
-    assert_true(!CUVETTE_COUNTERS || r->counters.shadow == 16);
-    render_result_destroy(r);
-    scene_destroy(s);
+    for (int cones = 0; cones < 2; cones++) {
+        double expected[2];
+        scene *s = many_lamps("[1, 1, 1]", "[1, 1, 1]", 16, cones, expected);
+        render_result *r = render(s);
+        const double seen = (double)r->img->sum[0] / FILM_ONE / (expected[0] + expected[1]);
+        if (!(fabs(seen - 1.0) < 1e-6 && render_noise_rms(r) < 1e-6))
+            fail_msg("%.9g +- %.2g of what is expected", seen, render_noise_rms(r));
+        assert_true(!CUVETTE_COUNTERS || r->counters.shadow == 16);
+        render_result_destroy(r);
+        scene_destroy(s);
+    }
 }
 
 /* Red and green lamps: the share of paths that choose a red one is its share of the light. The standard error of 4096
@@ -135,7 +143,7 @@ static void each_lamp_is_chosen_in_proportion_to_its_light(void **state)
 {
     (void)state;
     double expected[2];
-    scene *s = many_lamps("[1, 0, 0]", "[0, 1, 0]", 4096, expected);
+    scene *s = many_lamps("[1, 0, 0]", "[0, 1, 0]", 4096, false, expected);
     render_result *r = render(s);
     for (int half = 0; half < 2; half++)
         assert_true(fabs((double)r->img->sum[half] / FILM_ONE - expected[half]) < 0.03 * (expected[0] + expected[1]));

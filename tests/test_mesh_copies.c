@@ -48,6 +48,21 @@ static void copies_equal_separate_solids(void **state)
     assert_true(hash_of(a.at, "", isa_best()) == hash_of(b.at, "", isa_best()));
 }
 
+/* Solids of one mesh share the hierarchy of a frame that keeps none; an invisible one has none to share. */
+static void an_invisible_solid_shares_no_hierarchy(void **state)
+{
+    (void)state;
+    scene_text t = {.length = 0};
+    add(&t,
+        "%smeshes: {ring: {generate: torus, around: 24, tube: 12}}\nsolids:\n  hidden: {shape: mesh, mesh: ring}\n  "
+        "seen: {shape: mesh, mesh: ring, position: [0, 0.5, 0]}\n  also: {shape: mesh, mesh: ring, position: [1, 1, "
+        "1]}\n",
+        FRAME);
+    const uint64_t expected = hash_of(t.at, "hidden.visible=off", isa_best());
+    assert_true(hash_of(t.at, "hidden.visible=off render.keep=off", isa_best()) == expected);
+    assert_true(hash_of(t.at, "hidden.visible=off seen.visible=off", isa_best()) != expected);
+}
+
 /* Of all vertices of all copies: the bounding box, and the farthest in any direction, which is that of a copy at a
  * corner of the grid. */
 static void the_extent_of_copies_is_that_of_their_vertices(void **state)
@@ -236,6 +251,7 @@ int main(void)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(copies_equal_separate_solids),
+        cmocka_unit_test(an_invisible_solid_shares_no_hierarchy),
         cmocka_unit_test(the_extent_of_copies_is_that_of_their_vertices),
         cmocka_unit_test(touching_copies_equal_one_block),
         cmocka_unit_test(placed_copies_equal_transformed_vertices),

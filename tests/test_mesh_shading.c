@@ -57,55 +57,103 @@ static stage square_stage(const char *more, const char *assignments)
     return g;
 }
 
-/* k_a + k_d (N.L) + k_s (R.V)^n, red channel, with a light of 1. */
+/* k_a + k_d (N.L) + k_s (R.V)^n, red channel, with a light of 1 on the eye's side. */
 static double phong(vec3 n, vec3 at, vec3 eye, double k_d, double k_s, double shininess)
 {
-    const vec3 l = vec3_normalize(vec3_sub(vec3_make(1.5, 2, -3), at)), v = vec3_normalize(vec3_sub(eye, at));
+    const vec3 lamp = vec3_make(1.5, 2, eye.z < 0.0 ? -3 : 3);
+    const vec3 l = vec3_normalize(vec3_sub(lamp, at)), v = vec3_normalize(vec3_sub(eye, at));
     const double n_l = vec3_dot(n, l);
     const vec3 r = vec3_sub(vec3_scale(n, 2.0 * n_l), l);
     return n_l > 0.0 ? k_d * n_l + k_s * pow(fmax(vec3_dot(r, v), 0.0), shininess) : 0.0;
 }
 
+/* Seen from behind, normals are turned to the eye. */
+static void check_phong(int rule, bool behind, const vec3 *corner, const vec3 *normal)
+{
+    static const char *const rules[] = {"flat", "smooth", "gouraud"};
+    char more[200];
+    snprintf(more, sizeof more,
+             "color: [1, 1, 1], ambient: 0.125, diffuse: 0.5, specular: 0.25, shininess: 5, shading: %s", rules[rule]);
+    stage g = square_stage(more, behind ? "lamp.position=1.5,2,3" : "");
+    const vec3 eye = vec3_make(0.25, -0.5, behind ? 4.0 : -4.0);
+    for (int k = 0; k < 200; k++) {
+        const double x = -0.95 + 1.9 * (k % 20) / 19.0, y = -0.93 + 1.8 * (k / 20) / 9.0;
+        const vec3 at = vec3_make(x, y, 0.0);
+        const ray_tree *tree = stage_ray(&g, eye, vec3_sub(at, eye));
+        /* for the triangle 0 2 1 (x > y): weights of 0, 2, 1; else of 0, 2, 3 */
+        const double third = fabs(x - y) / 2.0, second = x > y ? (1.0 + y) / 2.0 : (1.0 + x) / 2.0,
+                     first = 1.0 - second - third;
+        const int other = x > y ? 1 : 3;
+        double expected;
+        if (rule == 0)
+            expected = phong(vec3_make(0, 0, behind ? 1 : -1), at, eye, 0.5, 0.25, 5.0);
+        else if (rule == 1)
+            expected = phong(
+                vec3_normalize(vec3_add(vec3_scale(normal[0], first),
+                                        vec3_add(vec3_scale(normal[2], second), vec3_scale(normal[other], third)))),
+                at, eye, 0.5, 0.25, 5.0);
+        else
+            expected = first * phong(normal[0], corner[0], eye, 0.5, 0.25, 5.0) +
+                       second * phong(normal[2], corner[2], eye, 0.5, 0.25, 5.0) +
+                       third * phong(normal[other], corner[other], eye, 0.5, 0.25, 5.0);
+        assert_true(fabs(tree->radiance[0] - (0.125 + expected)) < 1e-8);
+        assert_true(fabs(tree->radiance[2] - (0.125 + 0.25 * expected)) < 1e-8);
+    }
+    stage_close(&g);
+}
+
 static void phongs_sum_has_its_known_values(void **state)
 {
     (void)state;
-    static const char *const rules[] = {"flat", "smooth", "gouraud"};
     vec3 corner[4], normal[4];
     scene *unused = scene_from("meshes: {m: {generate: box}}\n");
     give_square(unused, corner, normal);
     scene_destroy(unused);
-    for (int rule = 0; rule < 3; rule++) {
-        char more[200];
-        snprintf(more, sizeof more,
-                 "color: [1, 1, 1], ambient: 0.125, diffuse: 0.5, specular: 0.25, shininess: 5, shading: %s",
-                 rules[rule]);
-        stage g = square_stage(more, "");
-        const vec3 eye = vec3_make(0.25, -0.5, -4.0);
-        for (int k = 0; k < 200; k++) {
-            const double x = -0.95 + 1.9 * (k % 20) / 19.0, y = -0.93 + 1.8 * (k / 20) / 9.0;
-            const vec3 at = vec3_make(x, y, 0.0);
-            const ray_tree *tree = stage_ray(&g, eye, vec3_sub(at, eye));
-            /* for the triangle 0 2 1 (x > y): weights of 0, 2, 1; else of 0, 2, 3 */
-            const double third = fabs(x - y) / 2.0, second = x > y ? (1.0 + y) / 2.0 : (1.0 + x) / 2.0,
-                         first = 1.0 - second - third;
-            const int other = x > y ? 1 : 3;
-            double expected;
-            if (rule == 0)
-                expected = phong(vec3_make(0, 0, -1), at, eye, 0.5, 0.25, 5.0);
-            else if (rule == 1)
-                expected = phong(
-                    vec3_normalize(vec3_add(vec3_scale(normal[0], first),
-                                            vec3_add(vec3_scale(normal[2], second), vec3_scale(normal[other], third)))),
-                    at, eye, 0.5, 0.25, 5.0);
-            else
-                expected = first * phong(normal[0], corner[0], eye, 0.5, 0.25, 5.0) +
-                           second * phong(normal[2], corner[2], eye, 0.5, 0.25, 5.0) +
-                           third * phong(normal[other], corner[other], eye, 0.5, 0.25, 5.0);
-            assert_true(fabs(tree->radiance[0] - (0.125 + expected)) < 1e-8);
-            assert_true(fabs(tree->radiance[2] - (0.125 + 0.25 * expected)) < 1e-8);
-        }
-        stage_close(&g);
+    for (int behind = 0; behind < 2; behind++) {
+        for (int rule = 0; rule < 3; rule++)
+            check_phong(rule, behind, corner, normal);
+        for (int k = 0; k < 4; k++)
+            normal[k] = vec3_scale(normal[k], -1.0);
     }
+}
+
+/* The light of the corners may be left out only where it rounds to nothing: half a unit of the film is one unit. */
+static void light_of_corners_counts_from_half_a_unit_on(void **state)
+{
+    (void)state;
+    for (int more = 0; more < 2; more++) {
+        char text[600];
+        snprintf(text, sizeof text,
+                 "render: {width: 1, height: 1, depth: 0}\nbackground: {color: [0, 0, 0], ambient: [0, 0, 0]}\n"
+                 "camera: {position: [0, 0, -5], target: [0, 0, 0], fov_deg: 0.001}\n"
+                 "meshes: {cube: {generate: box}}\nlights: {lamp: {position: [0, 0, -1e6], intensity: %.17g}}\n"
+                 "solids: {box: {shape: mesh, mesh: cube, color: [1, 1, 1], diffuse: 1, shading: gouraud}}\n",
+                 (more ? 0.5025 : 0.495) / FILM_ONE);
+        scene *s = scene_with_meshes(text, "");
+        render_result *r = render(s);
+        assert_int_equal(r->img->sum[0], more);
+        render_result_destroy(r);
+        scene_destroy(s);
+    }
+}
+
+/* From within a cube, straight on, no reflection is total, however many rays there are: kernels take whole vectors,
+ * whose lanes behind the last ray repeat it. */
+static void only_rays_are_counted(void **state)
+{
+    (void)state;
+    need_counters();
+    scene *s = scene_with_meshes("render: {height: 1, depth: 1}\ncamera: {target: [0, 0, 1], fov_deg: 1}\n"
+                                 "meshes: {cube: {generate: box}}\nsolids: {box: {shape: mesh, mesh: cube, "
+                                 "scale: [4, 4, 4], transparency: 1, ior: 1.6}}\n",
+                                 "camera.position=0,0,0");
+    for (int width = 1; width <= 17; width++) {
+        s->render.width = width;
+        render_result *r = render(s);
+        assert_int_equal(r->counters.total_internal, 0);
+        render_result_destroy(r);
+    }
+    scene_destroy(s);
 }
 
 static void light_behind_the_plane_adds_nothing_to_the_ambient_term(void **state)
@@ -453,6 +501,8 @@ int main(void)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(phongs_sum_has_its_known_values),
+        cmocka_unit_test(light_of_corners_counts_from_half_a_unit_on),
+        cmocka_unit_test(only_rays_are_counted),
         cmocka_unit_test(light_behind_the_plane_adds_nothing_to_the_ambient_term),
         cmocka_unit_test(coincident_sheets_have_no_self_shadow_and_no_light_leaks),
         cmocka_unit_test(interpolated_normals_keep_rays_on_their_side),

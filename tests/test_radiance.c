@@ -333,6 +333,27 @@ static void meshes_cast_the_same_shadows_as_solids(void **state)
     render_result_destroy(triangles);
 }
 
+/* The normals of a ball's corners are its radii, so that interpolated ones are along the radius at every point of its
+ * triangles: light through its middle meets both surfaces perpendicularly, whatever the triangles' own angles. */
+static void smooth_meshes_shade_by_interpolated_normals(void **state)
+{
+    (void)state;
+    char part[512], text[2048], yaml[4096];
+    for (int degrees = 0; degrees < 90; degrees += 13) {
+        snprintf(part, sizeof part,
+                 "ball: {shape: mesh, mesh: facets, shading: smooth, position: [9, 12, 0], rotation: [%d, 30, 10], "
+                 "transparency: 1, ior: 1.5}",
+                 degrees);
+        snprintf(text, sizeof text, window, part);
+        snprintf(yaml, sizeof yaml, "meshes: {facets: {generate: icosphere, level: 1}}\n%s", text);
+        scene *s = scene_from(yaml);
+        diagnostic why = {0};
+        worked(scene_load(s, &why), &why);
+        assert_true(fabs(see(s) - 0.8 * 0.96 * 0.96) < 1e-9);
+        scene_destroy(s);
+    }
+}
+
 /* --- Whitted's rays compared with random paths */
 
 /* A dark floor 1 under water, a lamp 500 above, which the water does not reflect into the camera. For Whitted's rays
@@ -506,6 +527,7 @@ int main(void)
         cmocka_unit_test(spheres_and_cylinders_shade_by_the_angle_of_the_straight_ray),
         cmocka_unit_test(each_interface_counts_once_with_its_own_indices),
         cmocka_unit_test(meshes_cast_the_same_shadows_as_solids),
+        cmocka_unit_test(smooth_meshes_shade_by_interpolated_normals),
         cmocka_unit_test(whitted_ray_tracing_and_paths_agree_on_a_dark_floor_under_water),
         cmocka_unit_test(the_radiance_of_a_light_sphere_refers_to_its_medium),
         cmocka_unit_test(direct_light_of_a_sphere_is_emitted_into_its_medium),

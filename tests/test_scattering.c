@@ -191,32 +191,38 @@ static double by_disc(const lit_point *p)
     return sum;
 }
 
-/* The airlight integral up to the end of the box, 10 units away, by the midpoint rule. */
-static double airlight_of(const scene *s, int channel, double (*lit)(const lit_point *p), int steps)
+/* The airlight integral through 10 units of the box, which begins at z = from, by the midpoint rule. */
+static double airlight_of(const scene *s, int channel, double (*lit)(const lit_point *p), double from, int steps)
 {
     const material *m = &s->solids[0].surface;
     const double absorbs[] = {m->absorb_per_m.x, m->absorb_per_m.y, m->absorb_per_m.z};
     double sum = 0.0;
     lit_point p = {s, m->scatter_per_m + absorbs[channel], {0.0, 0.0, 0.0}};
     for (int i = 0; i < steps; i++) {
-        p.at.z = 10.0 * (i + 0.5) / steps;
-        sum += exp(-p.extinction * p.at.z) * lit(&p) * 10.0 / steps;
+        const double depth = 10.0 * (i + 0.5) / steps;
+        p.at.z = from + depth;
+        sum += exp(-p.extinction * depth) * lit(&p) * 10.0 / steps;
     }
     return sum;
 }
 
-static void expect_airlight(const char *assignments, double (*lit)(const lit_point *p))
+static void expect_airlight_from(double from, const char *assignments, double (*lit)(const lit_point *p))
 {
     scene *s = scene_from(cloud_scene);
     set_all(s, assignments);
     for (int c = 0; c < 3; c++) {
         const estimate e = look_by_chance(s, c);
-        const double expected = airlight_of(s, c, lit, lit == by_point ? 2000000 : 1000);
+        const double expected = airlight_of(s, c, lit, from, lit == by_point ? 2000000 : 1000);
         if (!(fabs(e.value - expected) <= 2e-3 * expected + e.t_9999 * e.standard_error) ||
             !(e.standard_error < 0.02 * expected))
             fail_msg("%s: %.6f +- %.2g instead of %.6f", assignments, e.value, e.standard_error, expected);
     }
     scene_destroy(s);
+}
+
+static void expect_airlight(const char *assignments, double (*lit)(const lit_point *p))
+{
+    expect_airlight_from(0.0, assignments, lit);
 }
 
 static void beams_have_the_airlight_integral(void **state)
@@ -239,6 +245,9 @@ static void beams_have_the_airlight_integral(void **state)
     expect_airlight("lamp.kind=point lamp.radius=0.3", by_sphere);
     expect_airlight("lamp.kind=point lamp.radius=0.65 cloud.asymmetry=0.95", by_sphere);
     expect_airlight("lamp.kind=disc lamp.radius=0.5", by_disc);
+    /* the camera 2 units before the box */
+    expect_airlight_from(2.0, "lamp.kind=point cloud.size.z=10 cloud.position=0,0,7", by_point);
+    expect_airlight_from(2.0, "lamp.kind=point lamp.radius=0.3 cloud.size.z=10 cloud.position=0,0,7", by_sphere);
     /* ahead, where the path's own direction often meets them */
     expect_airlight("lamp.kind=point lamp.radius=0.9 lamp.position=0.95,0,7 cloud.asymmetry=0.8", by_sphere);
     expect_airlight("lamp.kind=disc lamp.radius=0.9 lamp.position=0.95,0,7 lamp.target=0.5,0,0 cloud.asymmetry=0.8",

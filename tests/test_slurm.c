@@ -7,6 +7,7 @@ static char *array_of(const char *missing)
 {
     study_estimate parts[16] = {{.cells = 1}};
     const size_t count = strlen(missing);
+    parts[count] = (study_estimate){.cells = 1, .cells_lacking = 1}; /* behind the last one */
     for (size_t i = 0; i < count; i++)
         parts[i] = (study_estimate){.cells = 1, .cells_lacking = missing[i] == 'r', .cells_to_keep = missing[i] == 'f'};
     return slurm_array(parts, count);

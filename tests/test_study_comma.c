@@ -29,6 +29,7 @@ static void probable_slips_have_a_note(void **state)
         {"[1, 50, 1.75, 2]", 23, "did you mean 1.50?"}, /* at the beginning */
         {"[2.5, 2,25, 1]", 28, "did you mean 2.25?"},   /* decreasing */
         {"[1.3, 1, 07]", 28, "did you mean 1.07?"},
+        {"[0,1,5,2.5]", 25, "did you mean 1.5?"}, /* from 0 */
     };
     for (size_t i = 0; i < sizeof examples / sizeof *examples; i++) {
         study *s;

@@ -78,6 +78,51 @@ static void values_may_have_any_character(void **state)
     scene_destroy(s);
 }
 
+/* Lines of values are as long as those of comments. */
+static void long_lists_are_wrapped(void **state)
+{
+    (void)state;
+    enum { VALUES = 60 };
+    char texts[VALUES][16], *values[VALUES], *written = NULL;
+    for (size_t i = 0; i < VALUES; i++) {
+        snprintf(texts[i], sizeof texts[i], "1.%0*zu", (int)(3 + i % 7), i);
+        values[i] = texts[i];
+    }
+    const new_axis axis = {.path = "liquid.ior", .values = values, .count = VALUES};
+    scene *s = rod();
+    const new_study made = {.name = "t", .scene_path = "t.yaml", .of = s, .axes = &axis, .axis_count = 1};
+    size_t size = 0, lines = 0;
+    FILE *out = open_memstream(&written, &size);
+    new_study_write(&made, out);
+    assert_int_equal(fclose(out), 0);
+    for (const char *line = strstr(written, "  - {liquid.ior: ["); line && *line && *line != '\n';) {
+        const size_t length = strcspn(line, "\n");
+        assert_true(length <= 101 && (lines == 0 || strncmp(line, "      1.", 8) == 0)); /* 100, and a comma */
+        lines++;
+        line += length + 1;
+        if (strncmp(line, "      ", 6) != 0)
+            break;
+    }
+    assert_in_range(lines, 4, 8);
+    free(written);
+    scene_destroy(s);
+}
+
+/* Whatever the axis held before. */
+static void a_refused_axis_is_empty(void **state)
+{
+    (void)state;
+    new_axis axis;
+    memset(&axis, 0x5a, sizeof axis);
+    assert_int_equal(new_axis_parse("render.depth", &axis, NULL), STATUS_BAD_INPUT);
+    assert_true(!axis.path && !axis.values && axis.count == 0);
+    new_axis_release(&axis);
+    memset(&axis, 0x5a, sizeof axis);
+    assert_int_equal(new_axis_parse("render.depth=1,2", &axis, NULL), STATUS_OK);
+    assert_true(axis.count == 2 && !axis.range);
+    new_axis_release(&axis);
+}
+
 static void errors_are_located_at_their_option(void **state)
 {
     (void)state;
@@ -126,6 +171,8 @@ int main(void)
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(the_text_reads_as_what_was_given),
         cmocka_unit_test(values_may_have_any_character),
+        cmocka_unit_test(long_lists_are_wrapped),
+        cmocka_unit_test(a_refused_axis_is_empty),
         cmocka_unit_test(errors_are_located_at_their_option),
         cmocka_unit_test(an_error_in_a_setting_is_located_at_its_option),
     };

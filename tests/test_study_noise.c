@@ -3,6 +3,7 @@
 #include "study_fixture.h"
 #include "measure/clock.h"
 #include "study/row_files.h"
+#include "study/run_noise.h"
 #include "study/summary.h"
 #include <signal.h>
 #include <sys/wait.h>
@@ -47,6 +48,22 @@ static void end_load(pid_t pid)
 {
     assert_int_equal(kill(pid, SIGKILL), 0);
     waitpid(pid, NULL, 0);
+}
+
+/* Without a rule in the study, 5 % of the machine are news. */
+static void a_twentieth_of_the_machine_is_news(void **state)
+{
+    (void)state;
+    const study s = {.disturbed = {.others_share = NAN, .steal_share = NAN, .frequency_drop = NAN}};
+    for (int more = 0; more < 2; more++) {
+        said heard = {.count = 0};
+        const study_options options = {.news = hear, .context = &heard};
+        run r = {.s = &s, .options = &options};
+        machine_noise noise = noise_unknown();
+        noise.others_share = more ? 0.0502 : 0.0498;
+        (void)run_noise_judge(&r, &noise);
+        assert_int_equal(heard.count, more);
+    }
 }
 
 static char *summary_of(const fixture *f, const study *s)
@@ -220,7 +237,7 @@ int main(void)
     const struct CMUnitTest tests[] = {
         CASE(quiet_rows_suffice),          CASE(disturbed_rows_are_kept_and_repeated_up_to_the_limit),
         CASE(another_rule_keeps_the_rows), CASE(waiting_ends_with_the_time_or_a_stop_request),
-        CASE(invalid_rules_are_refused),
+        CASE(invalid_rules_are_refused),   cmocka_unit_test(a_twentieth_of_the_machine_is_news),
     };
     return cmocka_run_group_tests_name("study_noise", tests, NULL, NULL);
 }

@@ -8,11 +8,13 @@
 #include "base/csv.h"
 #include "study/definition_v1.h"
 #include "study/grid.h"
+#include "study/keep.h"
 #include "study/manifest.h"
 #include "study/reference.h"
 #include "study/meaning.h"
 #include "study/row_files.h"
 #include "study/summary.h"
+#include "study/verify.h"
 #include "scene/model/scene.h"
 #include <dirent.h>
 #include <inttypes.h>
@@ -598,6 +600,13 @@ static void recorded_definitions_give_the_cells(void **state)
     study_destroy(s);
     s = fixture_study(f, longer_text);
     assert_int_equal(fixture_run(f, s), 8);
+    char differs[200]; /* old rows say nothing of their environment */
+    study_environment_difference(s, f->results, differs, sizeof differs);
+    assert_string_equal(differs, "");
+    assert_int_equal(setenv("CUVETTE_MACHINE", "other", 1), 0);
+    study_environment_difference(s, f->results, differs, sizeof differs);
+    unsetenv("CUVETTE_MACHINE");
+    assert_int_equal(strncmp(differs, "machine ", 8), 0);
     csv *rows = table_of(f, rows_name), *compared = table_of(f, compare_name);
     assert_int_equal(rows->row_count, 12);
     assert_int_equal(compared->row_count, 2); /* nothing was compared again */
@@ -706,6 +715,31 @@ static void contents_of_files_are_verified(void **state)
     free(scene_text);
 }
 
+/* Kept files of a version that did not write down which cell has which number: the manifest gives the definition. */
+static void kept_files_without_a_numbering_are_of_the_recorded_definition(void **state)
+{
+    const fixture *f = *state;
+    study *s = fixture_study(f, "study: test\nscene: scene.yaml\ngrid: [{render.depth: [0, 1]}]\nrepetitions: 1\n"
+                                "warmups: 0\nkeep: {image: on}\n");
+    fixture_run(f, s);
+    for (int own = 1; own >= 0; own--) {
+        char folder[400], path[400], manifest[200];
+        bool changed;
+        fixture_path(f, "results/test", folder);
+        fixture_path(f, "results/test/images/cells.tsv", path);
+        assert_int_equal(unlink(path), 0);
+        snprintf(manifest, sizeof manifest,
+                 "{\"study\": {\"text\": \"t\", \"scene_text\": \"t\", \"definition\": \"%016" PRIx64 "\"}}",
+                 s->definition_hash + (own ? 0 : 1));
+        fixture_write(f, manifest_name, manifest);
+        assert_int_equal(keep_renumber(s, folder, false, &changed, NULL), STATUS_OK);
+        assert_int_equal(changed, !own);
+        assert_int_equal(fixture_has(f, "results/test/images/0001.png"), own);
+        assert_int_equal(fixture_has(f, "results/test/images/unknown-0001.png"), !own);
+    }
+    study_destroy(s);
+}
+
 #define CASE(name) cmocka_unit_test_setup_teardown(name, fixture_setup, fixture_teardown)
 
 int main(void)
@@ -730,6 +764,7 @@ int main(void)
         CASE(recorded_cells_of_another_scene_are_not_used),
         CASE(comparisons_with_another_reference_are_not_used),
         CASE(contents_of_files_are_verified),
+        CASE(kept_files_without_a_numbering_are_of_the_recorded_definition),
     };
     return cmocka_run_group_tests_name("study_old_rows", tests, NULL, NULL);
 }

@@ -3,6 +3,8 @@
 #include "base/file.h"
 #include "scene/model/scene.h"
 #include "study_fixture.h"
+#include <dirent.h>
+#include <fcntl.h>
 #include "study/plot_parts.h"
 
 /* --- summaries by hand --- */
@@ -230,6 +232,20 @@ static void the_user_chooses(void **state)
     study_destroy(s);
 }
 
+/* Twelve lines can be distinguished: they need no panels of their own. */
+static void twelve_lines_share_a_panel(void **state)
+{
+    const fixture *f = *state;
+    study *s = study_of(f, "[{render.schedule: [rows, tiles]}, {render.seed: {from: 1, to: 12, steps: 12}}]");
+    const plot_request r = {.x = "render.schedule"};
+    plot_plan p = full_plan(s, &r, 0);
+    draw(f, &p);
+    assert_string_equal(p.by->name, "render.seed");
+    assert_int_equal(p.panel_count, 1);
+    plot_plan_free(&p);
+    study_destroy(s);
+}
+
 static void wrong_choices_have_remedies(void **state)
 {
     const fixture *f = *state;
@@ -370,6 +386,59 @@ static void captions_say_interval_or_range(void **state)
     study_destroy(s);
 }
 
+/* "busy_s_max" is a time, whose unit follows its name. */
+static void times_are_named_without_their_unit(void **state)
+{
+    (void)state;
+    static const char *const names[][2] = {
+        {"busy_s_max", "busy max"}, {"build_s", "build"}, {"wall_s_mean", "wall time, mean"}, {"cpu_s", "CPU time"}};
+    const study none = {.name = (char *)"test"};
+    for (size_t i = 0; i < sizeof names / sizeof *names; i++) {
+        char text[100];
+        plot_plan p = {.s = &none};
+        plot_quantity q;
+        snprintf(text, sizeof text, "cell\t%s\n0\t1.5\n", names[i][0]);
+        char *table = strdup(text);
+        assert_int_equal(plot_table_split(table, &p.table, NULL), STATUS_OK);
+        assert_int_equal(plot_quantity_find(&p, names[i][0], &q, NULL), STATUS_OK);
+        assert_string_equal(q.label, names[i][1]);
+        assert_string_equal(q.unit, "s");
+        plot_table_free(&p.table);
+    }
+}
+
+/* Labels such as 0.0315 have six letters of 7 pixels. */
+static void labels_below_1_have_room(void **state)
+{
+    const fixture *f = *state;
+    study *s = study_of(f, "[{render.depth: [0, 1, 2]}]");
+    const plot_request r = {.y = "others_share"};
+    plot_plan p = full_plan(s, &r, 0);
+    draw(f, &p);
+    assert_true(p.y.from > 0 && p.y.to < 0.05);
+    assert_true(p.panels[0].left * p.width > 46 + 6 * 7 - 0.5);
+    plot_plan_free(&p);
+    study_destroy(s);
+}
+
+/* Cells of a heat map that are 36 pixels wide have room for their numbers. */
+static void cells_of_36_pixels_have_numbers(void **state)
+{
+    const fixture *f = *state;
+    study *s = study_of(f, "[{ball.ior: {from: 1, to: 2, steps: 15}}, {render.depth: [0, 2, 4]}, "
+                           "{render.schedule: [columns, rows, tiles, dynamic]}, {render.shadows: [off, opaque]}]");
+    plot_plan p = full_plan(s, &plain, 0);
+    draw(f, &p);
+    assert_true(p.kind == PLOT_HEAT && p.panel_count == 8);
+    const double width = (p.panels[0].right - p.panels[0].left) * p.width / 15;
+    assert_true(width >= 36 && width < 37);
+    char *script = fixture_text(f, "fig.gp");
+    assert_int_equal(fixture_count(script, " with labels font "), 8);
+    free(script);
+    plot_plan_free(&p);
+    study_destroy(s);
+}
+
 static void scales_follow_the_values(void **state)
 {
     const fixture *f = *state;
@@ -457,6 +526,24 @@ static void published_numbers_have_the_unit_of_the_axis(void **state)
     fixture_write(f, "published.csv", "depth,cpu_s\nx,NA\n");
     p = full_plan(s, &r, 0);
     refuse(f, &p, "no row has numbers", "CSV");
+    study_destroy(s);
+}
+
+static void six_sources_of_published_numbers_are_shown(void **state)
+{
+    const fixture *f = *state;
+    char path[400];
+    study *s = study_of(f, "[{render.depth: [0, 1, 2]}]");
+    fixture_path(f, "published.csv", path);
+    fixture_write(f, "published.csv", "depth,cpu_s,source\n0,1,a\n0,2,b\n0,3,c\n0,4,d\n0,5,e\n0,6,f\n1,6,f\n");
+    const plot_request r = {.published = path};
+    plot_plan p = full_plan(s, &r, 0);
+    draw(f, &p);
+    assert_true(p.published.count == 7 && p.published.series_count == 6);
+    plot_plan_free(&p);
+    fixture_write(f, "published.csv", "depth,cpu_s,source\n0,1,a\n0,2,b\n0,3,c\n0,4,d\n0,5,e\n0,6,f\n0,7,g\n");
+    p = full_plan(s, &r, 0);
+    refuse(f, &p, "more than 6 values", "at most six");
     study_destroy(s);
 }
 
@@ -566,6 +653,46 @@ static void a_script_quotes_what_it_shows(void **state)
     study_destroy(s);
 }
 
+static size_t count_files(const fixture *f)
+{
+    size_t count = 0;
+    DIR *folder = opendir(f->folder);
+    assert_non_null(folder);
+    while (readdir(folder))
+        count++;
+    closedir(folder);
+    return count;
+}
+
+/* A gnuplot that fails leaves no file, also in a process without a standard input, whose number the file then has. */
+static void a_failed_figure_leaves_nothing(void **state)
+{
+    const fixture *f = *state;
+    char bin[400], path[4096];
+    const char *usual = getenv("PATH");
+    fixture_write(f, "gnuplot", "#!/bin/sh\nexit 1\n");
+    fixture_write(f, "fig.gp", "plot x\n");
+    fixture_path(f, "gnuplot", bin);
+    assert_int_equal(chmod(bin, 0755), 0);
+    snprintf(path, sizeof path, "%s:%s", f->folder, usual);
+    char *before = strdup(usual);
+    assert_int_equal(setenv("PATH", path, 1), 0);
+    const size_t files = count_files(f);
+    const int input = fcntl(0, F_DUPFD_CLOEXEC, 3);
+    close(0);
+    diagnostic why = {0};
+    const status code = study_plot_draw(base_in(f), "png", 60, NULL, &why);
+    if (input >= 0) {
+        assert_int_equal(dup2(input, 0), 0);
+        close(input);
+    }
+    setenv("PATH", before, 1);
+    free(before);
+    assert_int_equal(code, STATUS_FAILURE);
+    assert_non_null(strstr(why.what, "gnuplot failed"));
+    assert_int_equal(count_files(f), files);
+}
+
 static void a_sheet_needs_images(void **state)
 {
     const fixture *f = *state;
@@ -608,8 +735,14 @@ int main(void)
         CASE(captions_say_interval_or_range),
         CASE(scales_follow_the_values),
         CASE(published_numbers_have_the_unit_of_the_axis),
+        CASE(six_sources_of_published_numbers_are_shown),
+        CASE(twelve_lines_share_a_panel),
+        cmocka_unit_test(times_are_named_without_their_unit),
+        CASE(labels_below_1_have_room),
+        CASE(cells_of_36_pixels_have_numbers),
         CASE(a_script_quotes_what_it_shows),
         CASE(a_sheet_needs_images),
+        CASE(a_failed_figure_leaves_nothing),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

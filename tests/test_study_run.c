@@ -3,7 +3,9 @@
 #include "base/os_process.h"
 #include "base/hash.h"
 #include "image/image.h"
+#include "measure/clock.h"
 #include "rows_fixture.h"
+#include "study/progress.h"
 #include <inttypes.h>
 #include <jansson.h>
 #include "image/image.h"
@@ -257,6 +259,59 @@ static void the_callback_reports_the_progress_of_the_terminal(void **state)
     study_destroy(s);
 }
 
+static void count_calls(void *context, const study_moment *now)
+{
+    size_t *calls = context;
+    assert_true(now->share >= 0 && now->share <= 1);
+    ++*calls;
+}
+
+/* Updates within a tenth of a second are not shown. */
+static void progress_is_shown_ten_times_a_second(void **state)
+{
+    const fixture *f = *state;
+    study *s = fixture_study(f, study_text);
+    size_t calls = 0;
+    const study_options options = {.results = f->results, .progressed = count_calls, .context = &calls};
+    progress_line *line = progress_begin(s, &options);
+    const double began_s = clock_wall_s();
+    for (int i = 0; i < 10; i++)
+        progress_show(line, 0.1 * i);
+    const bool quick = clock_wall_s() - began_s < 0.1; /* nobody interrupted this process */
+    assert_true(calls >= 1 && (!quick || calls == 1));
+    usleep(110000);
+    const size_t before = calls;
+    progress_show(line, 1);
+    assert_int_equal(calls, before + 1);
+    progress_end(line);
+    study_destroy(s);
+}
+
+/* Waits until the next update is shown. */
+static void note_motion(void *context, const study_moment *now)
+{
+    bool *moved = context;
+    if (now->stage == STUDY_MOVING)
+        *moved = true;
+    else if (!*moved)
+        usleep(110000);
+}
+
+static void moving_slimes_are_reported_as_progress(void **state)
+{
+    const fixture *f = *state;
+    fixture_write(f, "slime.yaml",
+                  "render: {width: 8, height: 6, depth: 0}\n"
+                  "meshes: {toy: {generate: slime, level: 3, time_s: 1.5, ground: off}}\n"
+                  "solids: {body: {shape: mesh, mesh: toy, diffuse: 0.7}}\n");
+    study *s = fixture_study(f, "study: test\nscene: slime.yaml\nrepetitions: 1\nwarmups: 0\n");
+    bool moved = false;
+    const study_options options = {.results = f->results, .progressed = note_motion, .context = &moved};
+    assert_int_equal(study_run(s, &options, NULL, NULL), STATUS_OK);
+    assert_true(moved);
+    study_destroy(s);
+}
+
 /* Only the kept images of a study with complete rows. */
 static void kept_images_are_reported_as_progress(void **state)
 {
@@ -381,6 +436,66 @@ static void kept_files_follow_their_cells(void **state)
         assert_string_not_equal(images[i], images[i - 1]);
     for (size_t i = 0; i < 4; i++)
         free(images[i]);
+}
+
+/* Whitted's rays are not random: without any effect of the values, the cells are distinguished by these themselves. */
+static void cells_without_a_difference_are_distinct(void **state)
+{
+    const fixture *f = *state;
+    study *s = fixture_study(
+        f,
+        "study: test\nscene: scene.yaml\ngrid: [{render.sampler: [philox, sobol]}, {render.filter: [centre, box]}]\n");
+    for (size_t i = 0; i < 4; i++)
+        for (size_t k = 0; k < i; k++)
+            assert_true(s->identity[i] != s->identity[k]);
+    const uint64_t first = s->identity[0], last = s->identity[3];
+    study_destroy(s);
+    s = fixture_study(
+        f,
+        "study: test\nscene: scene.yaml\ngrid: [{render.sampler: [philox, sobol]}, {render.filter: [centre, box]}]\n");
+    assert_true(s->identity[0] == first && s->identity[3] == last);
+    study_destroy(s);
+}
+
+/* Where cells name files, each has the contents of its own. */
+static void cells_are_of_the_contents_of_their_files(void **state)
+{
+    const fixture *f = *state;
+    char text[800];
+    fixture_write(f, "a.pfm", "PF\n1 1\n1.0\n000000000000");
+    fixture_write(f, "b.pfm", "PF\n1 1\n1.0\n000000000000");
+    snprintf(text, sizeof text, "%stextures: {spots: {file: a.pfm}}\n", fixture_scene);
+    fixture_write(f, "spots.yaml", text);
+    snprintf(text, sizeof text, "study: test\nscene: spots.yaml\ngrid: [{spots.file: [%s/a.pfm, %s/b.pfm]}]\n",
+             f->folder, f->folder);
+    study *s = fixture_study(f, text);
+    const uint64_t first = s->identity[0], second = s->identity[1];
+    study_destroy(s);
+    fixture_write(f, "b.pfm", "PF\n1 1\n1.0\n0000AAAA1111");
+    s = fixture_study(f, text);
+    assert_true(s->identity[0] == first && s->identity[1] != second);
+    study_destroy(s);
+}
+
+/* One missing file of any cell is found, also if later cells have theirs. */
+static void missing_files_of_any_cell_are_found(void **state)
+{
+    const fixture *f = *state;
+    study *s = fixture_study(f, "study: test\nscene: scene.yaml\ngrid: [{render.depth: [0, 1]}]\nrepetitions: 1\n"
+                                "warmups: 0\nkeep: {image: on}\n");
+    char path[400];
+    bool lacks;
+    fixture_run(f, s);
+    assert_int_equal(study_lacks_files(s, f->results, &lacks, NULL), STATUS_OK);
+    assert_false(lacks);
+    for (int cell = 1; cell >= 0; cell--) {
+        fixture_path(f, cell ? "results/test/images/0001.png" : "results/test/images/0000.png", path);
+        assert_int_equal(unlink(path), 0);
+        assert_int_equal(study_lacks_files(s, f->results, &lacks, NULL), STATUS_OK);
+        assert_true(lacks);
+        fixture_run(f, s);
+    }
+    study_destroy(s);
 }
 
 /* More repetitions, another order, more kept files: the study resumes. */
@@ -618,7 +733,12 @@ int main(void)
         cmocka_unit_test_setup_teardown(an_interrupted_study_resumes, fixture_setup, fixture_teardown),
         cmocka_unit_test_setup_teardown(the_callback_reports_the_progress_of_the_terminal, fixture_setup,
                                         fixture_teardown),
+        cmocka_unit_test_setup_teardown(progress_is_shown_ten_times_a_second, fixture_setup, fixture_teardown),
+        cmocka_unit_test_setup_teardown(moving_slimes_are_reported_as_progress, fixture_setup, fixture_teardown),
         cmocka_unit_test_setup_teardown(kept_images_are_reported_as_progress, fixture_setup, fixture_teardown),
+        cmocka_unit_test_setup_teardown(cells_without_a_difference_are_distinct, fixture_setup, fixture_teardown),
+        cmocka_unit_test_setup_teardown(cells_are_of_the_contents_of_their_files, fixture_setup, fixture_teardown),
+        cmocka_unit_test_setup_teardown(missing_files_of_any_cell_are_found, fixture_setup, fixture_teardown),
         cmocka_unit_test_setup_teardown(incomplete_rows_are_measured_again, fixture_setup, fixture_teardown),
         cmocka_unit_test_setup_teardown(changed_grids_keep_their_rows, fixture_setup, fixture_teardown),
         cmocka_unit_test_setup_teardown(kept_files_follow_their_cells, fixture_setup, fixture_teardown),

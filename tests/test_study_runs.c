@@ -1,7 +1,15 @@
 /* Tests of a study's list of runs: the provenance and the environments of rows, without names of hosts and paths. */
 #include "study_fixture.h"
 #include "study/provenance.h"
+#include "study/runs.h"
+#include <errno.h>
+#include <fcntl.h>
 #include <jansson.h>
+#include <pthread.h>
+#include <stdatomic.h>
+#include <sys/file.h>
+#include <sys/random.h>
+#include <sys/syscall.h>
 
 static json_t *list_of(const fixture *f)
 {
@@ -209,6 +217,73 @@ static void the_commit_of_a_repository_is_found(void **state)
     assert_true(dirty);
 }
 
+/* --- lists of several processes --- */
+
+typedef struct merging {
+    const fixture *of;
+    atomic_bool done;
+} merging;
+
+static void *merge(void *context)
+{
+    merging *m = context;
+    char folder[400];
+    fixture_path(m->of, "results/test", folder);
+    const status code = runs_merge(folder, NULL, NULL);
+    atomic_store(&m->done, true);
+    return code == STATUS_OK ? m : NULL;
+}
+
+/* Whoever changes a list waits for another who does. */
+static void lists_are_changed_by_one_at_a_time(void **state)
+{
+    const fixture *f = *state;
+    study *s = fixture_study(f, first_text);
+    fixture_run(f, s);
+    char folder[400];
+    fixture_path(f, "results/test", folder);
+    const int other = open(folder, O_RDONLY | O_DIRECTORY | O_CLOEXEC);
+    assert_true(other >= 0 && flock(other, LOCK_EX) == 0);
+    merging m = {.of = f};
+    pthread_t thread;
+    void *result = NULL;
+    assert_int_equal(pthread_create(&thread, NULL, merge, &m), 0);
+    usleep(100000);
+    const bool waited = !atomic_load(&m.done);
+    close(other);
+    assert_int_equal(pthread_join(thread, &result), 0);
+    assert_true(waited && result == &m);
+    study_destroy(s);
+}
+
+/* As of a kernel that has just been started. */
+static bool no_random;
+
+ssize_t getrandom(void *buffer, size_t size, unsigned flags)
+{
+    if (!no_random)
+        return syscall(SYS_getrandom, buffer, size, flags);
+    errno = EAGAIN;
+    return -1;
+}
+
+static void ids_differ_by_their_time_too(void **state)
+{
+    (void)state;
+    enum { IDS = 5 };
+    const run_environment here = {.key = ""};
+    char id[IDS][RUN_ID];
+    no_random = true;
+    for (size_t i = 0; i < IDS; i++) {
+        usleep(1000);
+        runs_make_id(&here, id[i]);
+    }
+    no_random = false;
+    for (size_t i = 0; i < IDS; i++)
+        for (size_t k = 0; k < i; k++)
+            assert_string_not_equal(id[i], id[k]);
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
@@ -218,6 +293,8 @@ int main(void)
         cmocka_unit_test_setup_teardown(each_run_is_added, fixture_setup, fixture_teardown),
         cmocka_unit_test_setup_teardown(runs_contain_no_host_name_or_path, fixture_setup, fixture_teardown),
         cmocka_unit_test_setup_teardown(damaged_lists_are_refused, fixture_setup, fixture_teardown),
+        cmocka_unit_test_setup_teardown(lists_are_changed_by_one_at_a_time, fixture_setup, fixture_teardown),
+        cmocka_unit_test(ids_differ_by_their_time_too),
         cmocka_unit_test(identifying_entries_are_removed_from_the_topology),
         cmocka_unit_test_setup_teardown(the_commit_of_a_repository_is_found, fixture_setup, fixture_teardown),
     };

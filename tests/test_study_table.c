@@ -2,6 +2,7 @@
 #include "study_fixture.h"
 #include "base/os_process.h"
 #include "study/table.h"
+#include <fcntl.h>
 #include <sys/resource.h>
 
 static const char header[] = "a,b\n";
@@ -97,6 +98,21 @@ static void complete_lines_can_be_moved_to_the_torn_file(void **state)
     expect(f, "rows.torn.csv", "3,4\n");
 }
 
+/* In a process without a standard input the file may have its number. */
+static void any_descriptor_is_closed(void **state)
+{
+    const fixture *f = *state;
+    const int input = fcntl(0, F_DUPFD_CLOEXEC, 3);
+    close(0);
+    table_close(open_table(f));
+    const bool closed = fcntl(0, F_GETFD) == -1;
+    if (input >= 0) {
+        assert_int_equal(dup2(input, 0), 0);
+        close(input);
+    }
+    assert_true(closed);
+}
+
 static void one_writer_at_a_time(void **state)
 {
     const fixture *f = *state;
@@ -161,6 +177,7 @@ int main(void)
         cmocka_unit_test_setup_teardown(long_incomplete_ends_are_moved_to_the_torn_file, fixture_setup,
                                         fixture_teardown),
         cmocka_unit_test_setup_teardown(complete_lines_can_be_moved_to_the_torn_file, fixture_setup, fixture_teardown),
+        cmocka_unit_test_setup_teardown(any_descriptor_is_closed, fixture_setup, fixture_teardown),
         cmocka_unit_test_setup_teardown(one_writer_at_a_time, fixture_setup, fixture_teardown),
         cmocka_unit_test_setup_teardown(a_full_disk_leaves_only_complete_lines, fixture_setup, fixture_teardown),
         cmocka_unit_test_setup_teardown(unwritable_paths_are_reported, fixture_setup, fixture_teardown),

@@ -3,12 +3,15 @@
 #include "study_fixture.h"
 #include "base/build_id.h"
 #include "random_stream.h"
+#include "rows_fixture.h"
 #include "study/check.h"
 #include "base/csv.h"
 #include "study/environment.h"
 #include "study/row_environments.h"
+#include "study/row_list.h"
 #include "study/summary.h"
 #include "study/verify.h"
+#include <errno.h>
 
 static const char study_text[] = "study: test\n"
                                  "scene: scene.yaml\n"
@@ -190,6 +193,37 @@ static void edited_rows_are_left_out(void **state)
     study_destroy(s);
 }
 
+static bool change_rays_of_first(void *context, const csv *table, char **fields)
+{
+    static char few[] = "7";
+    size_t *row = context;
+    if ((*row)++ == 0)
+        fields[csv_column(table, "rays_total")] = few;
+    return true;
+}
+
+/* Of three rows the first has other rays: it differs from the majority, not the two from it. */
+static void the_majority_is_right(void **state)
+{
+    const fixture *f = *state;
+    study *s = fixture_study(f, "study: test\nscene: scene.yaml\nrepetitions: 3\nwarmups: 0\n");
+    fixture_run(f, s);
+    char path[400];
+    size_t row = 0;
+    fixture_path(f, names[0], path);
+    rows_edit(path, change_rays_of_first, &row);
+    fixture_path(f, "results/test/runs.json", path);
+    rows_unseal(path);
+    row_files *files;
+    assert_int_equal(row_files_read(s, f->results, ROWS, &files, NULL), STATUS_OK);
+    assert_int_equal(files->fault_count, 1);
+    assert_int_equal(files->issues[0].fault, ROW_DIFFERS);
+    assert_int_equal(files->issues[0].line, 2);
+    assert_int_equal(files->row_count, 2);
+    row_files_destroy(files);
+    study_destroy(s);
+}
+
 /* A kill leaves an incomplete line; that is no fault. */
 static void torn_lines_are_no_fault(void **state)
 {
@@ -231,6 +265,17 @@ static void checks_depend_on_names_and_values_only(void **state)
 }
 
 /* --- environments --- */
+
+/* The error with which a file of the system is refused; 0: it is opened. */
+static int refusal;
+
+FILE *fopen(const char *restrict path, const char *restrict mode)
+{
+    if (!refusal || !strstr(path, "/root/sys/devices/system/cpu/smt/active"))
+        return fopen64(path, mode);
+    errno = refusal;
+    return NULL;
+}
 
 static void write_system(const fixture *f, const char *file, const char *text)
 {
@@ -293,6 +338,28 @@ static void every_fact_is_part_of_the_key(void **state)
     write_system(f, "root/proc/cpuinfo", "processor\t: 0\nCPU part\t: 0xd0b\n"); /* of an ARM board */
     write_system(f, "root/proc/device-tree/model", "Board 5");
     assert_string_equal(read_system(f, ISA_BASE).fact[1], "Board 5");
+}
+
+/* What a system does not have or does not show is unknown; that it cannot be read now is an error. */
+static void absent_facts_are_no_error(void **state)
+{
+    const fixture *f = *state;
+    static const int absent[] = {ENOENT, ENOTDIR, EACCES, EPERM, ENODEV, EINVAL, EOPNOTSUPP, ENXIO};
+    static const int wrong[] = {EIO, EMFILE, ENFILE, ENOMEM};
+    char root[400];
+    run_environment e;
+    write_system(f, "root/sys/devices/system/cpu/smt/active", "1\n");
+    fixture_path(f, "root", root);
+    assert_string_equal(read_system(f, ISA_BASE).fact[3], "1");
+    for (size_t i = 0; i < sizeof absent / sizeof *absent; i++) {
+        refusal = absent[i];
+        assert_string_equal(read_system(f, ISA_BASE).fact[3], "unknown");
+    }
+    for (size_t i = 0; i < sizeof wrong / sizeof *wrong; i++) {
+        refusal = wrong[i];
+        assert_int_equal(environment_read(root, ISA_BASE, &e, NULL), STATUS_FAILURE);
+    }
+    refusal = 0;
 }
 
 /* Nodes that are declared alike count as one machine, unless another fact tells them apart. */
@@ -371,6 +438,37 @@ static void unlike_environments_are_never_pooled(void **state)
     study_destroy(s);
 }
 
+static void without_rows_no_environment_is_the_main_one(void **state)
+{
+    (void)state;
+    const row_files none = {.count = 0};
+    char key[ENVIRONMENT_KEY] = "deadbee";
+    assert_int_equal(row_environments_main(&none, key, NULL), STATUS_OK);
+    assert_string_equal(key, "");
+}
+
+/* An error lists as many environments as 255 characters hold. */
+static void many_environments_are_listed_in_part(void **state)
+{
+    const fixture *f = *state;
+    study *s = fixture_study(f, "study: test\nscene: scene.yaml\nrepetitions: 1\nwarmups: 0\n");
+    for (int i = 0; i < 18; i++) { /* of 18 characters each */
+        char machine[16];
+        snprintf(machine, sizeof machine, "m%d", i);
+        setenv("CUVETTE_MACHINE", machine, 1);
+        assert_int_equal(fixture_run(f, s), 1);
+    }
+    unsetenv("CUVETTE_MACHINE");
+    diagnostic why = {.what = ""}, verdict = {.what = ""};
+    FILE *out = fopen("/dev/null", "w");
+    assert_int_equal(row_list_write(s, f->results, NULL, out, &verdict, &why), STATUS_BAD_INPUT);
+    fclose(out);
+    const char *list = strchr(why.what, '('), *end = strchr(why.what, ')');
+    assert_int_equal(strncmp(why.what, "the rows are of 18 environments (", 33), 0);
+    assert_true(list && end && end - list == 256 && strcmp(end, "), whose times must not be pooled") == 0);
+    study_destroy(s);
+}
+
 /* The facts of a run in runs.json cannot be edited without notice. */
 static void edited_environments_are_noticed(void **state)
 {
@@ -396,6 +494,8 @@ int main(void)
         CASE(torn_lines_are_no_fault),         cmocka_unit_test(checks_depend_on_names_and_values_only),
         CASE(every_fact_is_part_of_the_key),   CASE(unlike_environments_are_never_pooled),
         CASE(nodes_of_a_type_are_one_machine), CASE(edited_environments_are_noticed),
+        CASE(the_majority_is_right),           cmocka_unit_test(without_rows_no_environment_is_the_main_one),
+        CASE(absent_facts_are_no_error),       CASE(many_environments_are_listed_in_part),
     };
     return cmocka_run_group_tests_name("study_verify", tests, NULL, NULL);
 }

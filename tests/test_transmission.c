@@ -122,6 +122,24 @@ static void simple_transmission_has_no_total_reflection(void **state)
     scene_destroy(s);
 }
 
+/* Inside a block, at 45 degrees to four faces, all 31 reflections within the depth limit are total, and take the
+ * transmitted share too. */
+static void constant_shares_reflect_totally(void **state)
+{
+    (void)state;
+    scene *s = scene_from("render: {width: 1, height: 1, depth: 30, weights: constant}\n"
+                          "camera: {position: [0.1, 0.03, 0], target: [1.1, 1.05, 0.3], fov_deg: 0.001}\n"
+                          "background: {color: [1, 1, 1]}\n"
+                          "solids: {block: {shape: box, transparency: 0.75, reflectivity: 0.25, ior: 1.6, "
+                          "size: [2, 2, 1000]}}\n");
+    render_result *r = render(s);
+    assert_near(film_value(r->img, 0, 0, 0), 1.0, 1e-12);
+    assert_int_equal(r->counters.total_internal, CUVETTE_COUNTERS ? 31 : 0);
+    assert_int_equal(r->counters.refract, 0);
+    render_result_destroy(r);
+    scene_destroy(s);
+}
+
 /* Two media of equal index are two surfaces: with k_r = 0.1 and k_t = 0.9 the first of three surfaces reflects 0.1, the
  * next 0.9 0.1 0.9 ... A depth of 2 has the rays of up to two surfaces. */
 static void under_simple_transmission_equal_indices_are_two_surfaces(void **state)
@@ -261,6 +279,7 @@ int main(void)
         cmocka_unit_test(whitteds_model_is_attenuated_along_its_paths),
         cmocka_unit_test(simple_transmission_is_not_refracted),
         cmocka_unit_test(simple_transmission_has_no_total_reflection),
+        cmocka_unit_test(constant_shares_reflect_totally),
         cmocka_unit_test(under_simple_transmission_equal_indices_are_two_surfaces),
         cmocka_unit_test(simple_transmission_conserves_light_with_spectra_and_random_paths),
         cmocka_unit_test(weights_above_one_and_polarisation_are_refused),

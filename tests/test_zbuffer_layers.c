@@ -146,6 +146,60 @@ static void a_camera_in_a_clear_solid_has_absorption_and_total_reflection(void *
     assert_near(seen_in(around, "wall.position=0,0,5"), exp(-0.05 * 14.5) * wall, 1e-9);
 }
 
+/* Next to the faces of a cube of glass, away from it, there is only sky; from inside, what the glass leaves of it. */
+static void a_camera_is_in_a_clear_mesh_or_not(void **state)
+{
+    (void)state;
+    static const char cube[] = "render: {width: 1, height: 1, depth: 16, integrator: zbuffer}\n"
+                               "camera: {fov_deg: 1}\nbackground: {color: [0.7, 0.7, 0.7], ambient: [0, 0, 0]}\n"
+                               "meshes: {cube: {generate: box}}\n"
+                               "solids: {block: {shape: mesh, mesh: cube, scale: [2, 2, 2], transparency: 1, ior: 1.5, "
+                               "absorb_per_m: [0.3, 0.3, 0.3]}}\n";
+    scene *s = scene_loaded(cube, "");
+    for (int k = 0; k < 4 * 9; k++) {
+        const double sign = k & 1 ? 1.0 : -1.0, a = 0.3 * (k / 4 % 3 - 1), b = 0.2 * (k / 12 - 1);
+        for (int inside = 0; inside < 2; inside++) {
+            const double near = sign * (inside ? 0.5 : 1.02), far = sign * 5.0;
+            s->camera.position = k & 2 ? vec3_make(near, a, b) : vec3_make(a, b, near);
+            s->camera.target = k & 2 ? vec3_make(far, a, b) : vec3_make(a, b, far);
+            assert_near(look(s).x, inside ? exp(-0.3 * 0.5) * sky : sky, 1e-9);
+        }
+    }
+    scene_destroy(s);
+}
+
+/* Green light, which glass does not absorb, through a cube whose axis the view misses. */
+static double seen_through(const char *shape, double off_axis, int turn_deg)
+{
+    char text[2048], assignments[80];
+    snprintf(text, sizeof text,
+             "%s  block: {%s, transparency: 1, ior: 1.5, absorb_per_m: [0.3, 0, 0]}\nmeshes: {cube: {generate: box}}\n",
+             VIEW, shape);
+    snprintf(assignments, sizeof assignments, "block.position=%g,0,0 block.rotation=0,%d,0", off_axis, turn_deg);
+    scene *s = scene_loaded(text, assignments);
+    const double seen = look(s).y;
+    scene_destroy(s);
+    return seen;
+}
+
+/* The normals at the corners of a flat face are equal, so that it is not curved, of a mesh too. A view nearer to the
+ * axis than an edge leaves by the opposite face; others leave by a face perpendicular to the one that they entered by,
+ * where the sine of their angle is sqrt(1 - sin^2 / 1.5^2) > 1 / 1.5: all light is reflected. */
+static void flat_faces_refract_by_their_own_angles(void **state)
+{
+    (void)state;
+    static const char *const shapes[] = {"shape: box, size: [2, 2, 2]",
+                                         "shape: mesh, mesh: cube, scale: [2, 2, 2], shading: smooth"};
+    for (int k = 0; k < 2 * 5; k++)
+        for (int turn_deg = 7; turn_deg < 90; turn_deg += 9) {
+            const double off_axis = 0.41 * (k / 2 - 2), turn = turn_deg * 3.141592653589793 / 180.0;
+            const double r = oblique(fmax(cos(turn), sin(turn)), 1.0, 1.5);
+            const bool opposite = fabs(off_axis) < fabs(cos(turn) - sin(turn));
+            assert_near(seen_through(shapes[k % 2], off_axis, turn_deg), opposite ? behind(r, behind(r, wall)) : sky,
+                        1e-9);
+        }
+}
+
 static void layers_beyond_the_depth_limit_show_the_fallback(void **state)
 {
     (void)state;
@@ -342,6 +396,8 @@ int main(void)
         cmocka_unit_test(the_higher_priority_applies_where_solids_overlap),
         cmocka_unit_test(opaque_solids_among_clear_ones_are_visible_by_priority),
         cmocka_unit_test(a_camera_in_a_clear_solid_has_absorption_and_total_reflection),
+        cmocka_unit_test(a_camera_is_in_a_clear_mesh_or_not),
+        cmocka_unit_test(flat_faces_refract_by_their_own_angles),
         cmocka_unit_test(layers_beyond_the_depth_limit_show_the_fallback),
         cmocka_unit_test(views_without_refraction_equal_ray_tracing),
         cmocka_unit_test(an_invisible_clear_solid_does_not_change_the_order),

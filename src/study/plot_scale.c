@@ -62,7 +62,7 @@ static status no_such_column(const plot_plan *p, const char *name, diagnostic *w
 }
 
 /* "wall time" of wall_s, "busy max" of busy_s_max; other names stay as the summary has them. */
-static void name_time(const char *name, char label[96])
+static void name_time(const char name[64], char label[96])
 {
     static const char *const known[][2] = {{"wall_s", "wall time"}, {"cpu_s", "CPU time"}};
     for (size_t i = 0; i < sizeof known / sizeof *known; i++)
@@ -71,7 +71,7 @@ static void name_time(const char *name, char label[96])
             return;
         }
     size_t length = 0;
-    for (const char *c = name; *c && length < 95; c++) {
+    for (const char *c = name; *c; c++) {
         const bool is_unit = c[0] == '_' && c[1] == 's' && (c[2] == '_' || c[2] == '\0');
         c += is_unit ? 1 : 0;
         if (!is_unit)

@@ -46,7 +46,7 @@ static status prepare(const plan *p, void **frame, diagnostic *why)
 
 static double shown(double share)
 {
-    return srgb_decode(share < 0.0 ? 0.0 : share > 1.0 ? 1.0 : share);
+    return srgb_decode(fmin(fmax(share, 0.0), 1.0));
 }
 
 /* Hues that differ by a golden section of the circle: numbers close to each other get distinct colours. */

@@ -78,10 +78,10 @@ static flat_faces flat_faces_of(const primitive *p, double cell)
 
 static void color(const material *m, const primitive *p, group *restrict g)
 {
-    const int count = g->padded;
+    const int lanes = g->padded;
     const vec3 even = m->color, odd = m->checker_color;
     if (m->checker == 0.0) {
-        for (int i = 0; i < count; i++)
+        for (int i = 0; i < lanes; i++)
             g->cr[i] = even.x, g->cg[i] = even.y, g->cb[i] = even.z;
         return;
     }
@@ -89,7 +89,7 @@ static void color(const material *m, const primitive *p, group *restrict g)
     const mat3 rotation = p->rotation; /* the identity if not rotated, which leaves the result bit-identical */
     const double size = m->checker;
     const flat_faces flat = flat_faces_of(p, size);
-    for (int i = 0; i < count; i++) {
+    for (int i = 0; i < lanes; i++) {
         vec3 q = vec3_make(g->points.px[i] - origin.x, g->points.py[i] - origin.y, g->points.pz[i] - origin.z);
         q = mat3_apply_transposed(rotation, q);
         for (int k = 0; k < FLATS_MAX; k++) {
