@@ -1,5 +1,5 @@
-/* Lamps of the random scenes that not every law can change: polarised ones with sheets before them, and beams. Each from
- * a separate stream of numbers, so that scenes stay as they are otherwise. Ownership: values. */
+/* Lamps of the random scenes that not every law can change: polarised ones with sheets before them, and beams. Each
+ * from a separate stream of numbers, so that scenes stay as they are otherwise. Ownership: values. */
 #pragma once
 
 #include "law_scene.h"

@@ -180,7 +180,7 @@ function createBeams(lab) {
             { id: 'bench.beam', open: false },
             made.map((row) => row.node),
           )
-        : empty('The scene has no beams. Add one: it is shown here and saved with the scene. With lights on it is a lamp for photons.'),
+        : empty('The scene has no beams. Add one: it is shown here, saved with the scene, and a lamp if lights is on.'),
     );
   }
 }
