@@ -210,7 +210,7 @@ static void too_many_lasers_are_refused(void **state)
     scene *s = NULL;
     diagnostic why = {0};
     assert_int_equal(scene_read_text("test.yaml", text.at, text.length, &s, &why), STATUS_BAD_INPUT);
-    assert_non_null(strstr(why.what, "101 lights have the spectrum line; a scene can have 100"));
+    assert_non_null(strstr(why.what, "101 lights and beams have the spectrum line; a scene can have 100"));
     assert_null(s);
 }
 
