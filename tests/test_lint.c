@@ -501,10 +501,12 @@ static void try_scene(judge *j, long number, long seed, tallies *t)
     uint64_t stream = (uint64_t)seed * 0x9e3779b97f4a7c15u + (uint64_t)number;
     random_bits(&stream);
     law_scene w = random_law_scene(&stream, "depth: 4, threads: 1");
-    for (int i = 0; i < w.solid_count; i++) { /* the oracle knows level solids, plain media and lamps nearby */
+    for (int i = 0; i < w.solid_count; i++) { /* the oracle knows level solids, conics, plain media and lamps nearby */
         law_solid *one = &w.solid[i];
         one->gold = false;
         one->film_nm = one->extraordinary_ior = one->shape.capillary_length = 0.0;
+        for (int k = 0; k < 3; k++)
+            one->shape.even_1[k] = one->shape.even_2[k] = 0.0;
     }
     for (int i = 0; i < w.light_count; i++)
         if (is_sun(&w.light[i]))

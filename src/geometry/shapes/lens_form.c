@@ -5,10 +5,10 @@
  *     h = p + 2 (q - b^2) g,  p = dz/dq, g = dp/dq.
  *
  * Where p and g have one sign, so has h. Elsewhere h = 0 at b^2 = B = q + p / (2 g), whose derivative is (3 g^2 - p
- * dg/dq) / (2 g^2). Only B >= 0 counts, where p + 2 q g, half the second derivative along the meridian, has the sign
- * of g: so the side has turned there. If that happens in one interval, in only one of the cases p > 0 > g and p < 0 <
- * g, and B rises in it, then h has at most one zero on either side of the axis, and by Rolle's theorem the line
- * crosses the side at most four times. */
+ * dg/dq) / (2 g^2). Only B >= 0 counts, where p + 2 q g, half the second derivative along the meridian, has the sign of
+ * g: so the side has turned there. If that happens in one interval, in only one of the cases p > 0 > g and p < 0 < g,
+ * and B rises in it, then h has at most one zero on either side of the axis, and by Rolle's theorem the line crosses
+ * the side at most four times. */
 #include "geometry/shapes/lens_profile.h"
 
 enum { FORM_PIECES = 256 };
