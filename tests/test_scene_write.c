@@ -108,7 +108,7 @@ static void every_scene_of_the_project_round_trips_with_the_same_film(void **sta
             continue;
         scene *s = committed_scene(entry->d_name);
         assert_survives(s);
-        set_all(s, "render.width=32 render.height=24 render.samples=1 render.wavelengths=4");
+        set_all(s, "render.width=32 render.height=24 render.samples=1 render.wavelengths=4 render.photons=3000");
         const uint64_t hash = hash_of(s);
         for (int all = 0; all < 2; all++) {
             scene *again = there_and_back(s, all);
@@ -149,7 +149,9 @@ static size_t candidates(const param *row, char text[][100], size_t room)
     case PARAM_REAL:
         snprintf(text[0], 100, "%.17g", fallback * 0.7310585786300049 + low / 3);
         snprintf(text[1], 100, "%.17g", low + (high - low) * 0.1234567890123456789);
-        return 2;
+        snprintf(text[2], 100, "%.17g", fallback + 0.007310585786300049); /* for coefficients of lenses */
+        snprintf(text[3], 100, "%.17g", fallback - 0.003678794411714423);
+        return 4;
     case PARAM_VECTOR:
     case PARAM_COLOR:
         snprintf(text[0], 100, "%.17g,%.17g,%.17g", low + (high - low) / 3, low + (high - low) / 7, high);
