@@ -271,7 +271,7 @@ static int refusal;
 
 FILE *fopen(const char *restrict path, const char *restrict mode)
 {
-    if (!refusal || !strstr(path, "/root/sys/devices/system/cpu/smt/active"))
+    if (!refusal || !strstr(path, "/sys/devices/system/cpu/smt/active"))
         return fopen64(path, mode);
     errno = refusal;
     return NULL;
