@@ -183,6 +183,31 @@ static void a_terminated_ray_keeps_its_degree_of_polarisation(void **state)
     }
 }
 
+/* The light that a shadow ray brings from a polarised lamp through a sheet: Malus, (1 + P cos 2 a) / 2. */
+static void a_shadow_ray_from_a_polarised_lamp_obeys_malus(void **state)
+{
+    (void)state;
+    scene *s = scene_from("render: {depth: 2, polarisation: \"on\"}\n"
+                          "background: {color: [0, 0, 0], ambient: [0, 0, 0]}\n"
+                          "lights: {lamp: {kind: cone, position: [0, 10, 0], target: [0, 0, 0], polarised: 0.8}}\n"
+                          "solids:\n"
+                          "  floor: {shape: plane, diffuse: 1}\n"
+                          "  sheet: {shape: box, transparency: 1, ior: 1, sheet: polariser, sheet_axis: [1, 0, 0], "
+                          "position: [0, 3, 0], size: [1, 0.01, 1]}\n");
+    for (int a = 0; a <= 90; a += 15) {
+        s->lights[0].polarisation_deg = a;
+        probe *p = probe_of(s);
+        ray_tree tree = {0};
+        worked(probe_ray(p, vec3_make(0, 1, -1), vec3_make(0, -1, 1), &tree, NULL), NULL);
+        const ray_node *shadow = &tree.node[tree.node[0].first_child];
+        assert_int_equal(shadow->kind, RAY_SHADOW);
+        assert_true(fabs(shadow->brought[0] - 0.5 * (1.0 + 0.8 * cos(2.0 * a * 0.017453292519943295))) < 1e-9);
+        ray_tree_release(&tree);
+        probe_destroy(p);
+    }
+    scene_destroy(s);
+}
+
 static void a_direction_may_have_any_length(void **state)
 {
     (void)state;
@@ -355,6 +380,7 @@ int main(void)
         cmocka_unit_test(children_are_consistent_with_parents_and_the_laws_of_optics),
         cmocka_unit_test(a_slab_at_normal_incidence_has_fresnels_and_beers_shares),
         cmocka_unit_test(a_terminated_ray_keeps_its_degree_of_polarisation),
+        cmocka_unit_test(a_shadow_ray_from_a_polarised_lamp_obeys_malus),
         cmocka_unit_test(a_direction_may_have_any_length),
         cmocka_unit_test(tracing_a_stored_ray_gives_the_same_tree),
         cmocka_unit_test(the_weight_of_a_ray_is_its_largest_channel),

@@ -325,18 +325,19 @@ static status build_shadows(probe *p, ray_tree *tree, int parent, diagnostic *wh
         ray_record *r = &record[i];
         r->depth = depth;
         r->medium_priority_index = priority_index;
-        if (!p->frame_plan->polarised_shadows)
-            memset(r->stokes, 0, sizeof r->stokes);
+        memset(r->stokes, 0, sizeof r->stokes);
         size_t at = 0;
         code = add_node(p, tree, r, RAY_SHADOW, parent, &at, why);
         if (code != STATUS_OK)
             break;
         put(&t->queues.shadows, r);
         ray_node *node = &tree->node[at];
+        node->light = light_of(p->frame_plan, r, lamp);
+        if (p->frame_plan->polarised_shadows && node->light != RAY_NONE)
+            sheets_shadow_ray(t, node->light, 0);
         run_one(p, -1, node->brought);
         node->end = t->batch.transmitted[0] > 0.0 ? RAY_END_LIT : RAY_END_BLOCKED;
         node->let_through = t->batch.transmitted[0];
-        node->light = light_of(p->frame_plan, r, lamp);
         node->light_distance = vec3_length(r->direction);
         node->direction = vec3_scale(r->direction, 1.0 / node->light_distance);
         lamp = node->light + 1;
