@@ -95,3 +95,15 @@ static inline agreement agree(scene *s, const char *settings, double unseen)
     render_result_destroy(chance);
     return a;
 }
+
+/* With 512 paths. For rare events the interval covers less often than its nominal probability; hence 90 of 100, not
+ * 95. */
+static inline void expect_mean_of_trees(scene *s, const char *settings)
+{
+    const agreement a = agree(s, settings, 10.0 / 512.0);
+    print_message("%s: %d values, %.1f%% in their 95%% interval, mean off by %.2f standard errors\n", settings, a.count,
+                  100.0 * agreement_share(&a), agreement_off(&a));
+    assert_true(a.count > 500);
+    assert_true(agreement_share(&a) > 0.90 && agreement_share(&a) < 0.985);
+    assert_true(fabs(agreement_off(&a)) < 4.0);
+}

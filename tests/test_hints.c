@@ -90,8 +90,8 @@ static void ineffective_parameters_give_a_hint(void **state)
     (void)state;
     expect_hints("render: {integrator: path, polarisation: \"on\"}\nsolids: {milk: {shape: sphere, transparency: 1, "
                  "ior: 1.34, scatter_per_m: 2}}",
-                 "milk.scatter_per_m: the light that milk scatters is unpolarised: its phase function has no "
-                 "polarisation\n");
+                 "milk.scatter_per_m: the light that milk scatters is unpolarised: its phase function does not "
+                 "polarise\n");
     expect_hints("render: {lambda_nm: 700}\nsolids: {drop: {shape: sphere, transparency: 1, medium: table, "
                  "coefficients: [450, 1.34, 650, 1.33]}}",
                  "drop.coefficients: its table of indices covers only 450 to 650 nm and is constant "

@@ -41,7 +41,6 @@ static const char clear_scene[] =
     "rotation: [10, 20, 30], priority: 5}\n"
     "  mirror: {shape: sphere, reflectivity: 0.9, position: [1.7, 0.5, -1], radius: 0.4, priority: 6}\n";
 
-/* For rare events the interval covers less often than its nominal probability; hence 90 of 100, not 95. */
 static void paths_through_clear_solids_have_the_mean_of_whitted_ray_tracing(void **state)
 {
     (void)state;
@@ -49,14 +48,8 @@ static void paths_through_clear_solids_have_the_mean_of_whitted_ray_tracing(void
     static const char *const settings[] = {"render.paths=512 render.depth=6", "render.paths=512 render.depth=2",
                                            "render.paths=512 render.depth=12 render.beyond=black render.roulette=on",
                                            "render.paths=512 render.depth=6 render.samples=4 render.beyond=sky"};
-    for (size_t k = 0; k < COUNT(settings); k++) {
-        const agreement a = agree(s, settings[k], 10.0 / 512.0);
-        print_message("%s: %d values, %.1f%% in their 95%% interval, mean off by %.2f standard errors\n", settings[k],
-                      a.count, 100.0 * agreement_share(&a), agreement_off(&a));
-        assert_true(a.count > 500);
-        assert_true(agreement_share(&a) > 0.90 && agreement_share(&a) < 0.985);
-        assert_true(fabs(agreement_off(&a)) < 4.0);
-    }
+    for (size_t k = 0; k < COUNT(settings); k++)
+        expect_mean_of_trees(s, settings[k]);
     scene_destroy(s);
 }
 

@@ -36,7 +36,6 @@ static const char solids_scene[] =
     "size: [0.9, 0.9, 0.1], priority: 7}\n"
     "  mirror: {shape: sphere, reflectivity: 0.9, position: [1.7, 0.5, -1], radius: 0.4, priority: 8}\n";
 
-/* For rare events the interval covers less often than its nominal probability; hence 90 of 100, not 95. */
 static void paths_have_the_mean_of_polarised_trees(void **state)
 {
     (void)state;
@@ -44,14 +43,8 @@ static void paths_have_the_mean_of_polarised_trees(void **state)
     static const char *const settings[] = {"render.depth=6", "camera.analyser=linear camera.analyser_angle_deg=30",
                                            "camera.analyser_angle_deg=120 render.depth=10 render.roulette=on",
                                            "camera.analyser=circular_left render.sampler=philox render.beyond=black"};
-    for (size_t k = 0; k < COUNT(settings); k++) {
-        const agreement a = agree(s, settings[k], 10.0 / 512.0);
-        print_message("%s: %d values, %.1f%% in their 95%% interval, mean off by %.2f standard errors\n", settings[k],
-                      a.count, 100.0 * agreement_share(&a), agreement_off(&a));
-        assert_true(a.count > 500);
-        assert_true(agreement_share(&a) > 0.90 && agreement_share(&a) < 0.985);
-        assert_true(fabs(agreement_off(&a)) < 4.0);
-    }
+    for (size_t k = 0; k < COUNT(settings); k++)
+        expect_mean_of_trees(s, settings[k]);
     scene_destroy(s);
 }
 

@@ -157,7 +157,6 @@ status emission_create(const plan *p, int64_t photons, bool sizes, emission **ou
     if (code != STATUS_OK) {
         emission_destroy(e);
         *out = NULL;
-        return code;
     }
     return code;
 failed:

@@ -36,12 +36,6 @@ static inline void queue_move(ray_queue *q, int to, int from)
     q->start[to] = q->start[from], q->sample_key[to] = q->sample_key[from], q->inside[to] = q->inside[from];
 }
 
-/* The Stokes vector of light whose intensity alone counts. */
-static inline void queue_put_unpolarised(ray_queue *q, int at)
-{
-    q->sq[at] = q->su[at] = q->sv[at] = 0.0;
-}
-
 /* Copies a record with its Stokes vector. */
 static inline void queue_move_polarised(ray_queue *q, int to, int from)
 {

@@ -106,10 +106,8 @@ static void expose_light(tracer *t, const ray_queue *q, int at, int lamp, int pr
     const vec3 way = vec3_make(q->dx[at], q->dy[at], q->dz[at]);
     double radiance =
         area_light_radiance(p, lamp, way) * (p->basic ? radiance_share(p, sample_key, priority_index) : 1.0);
-    if (p->render.polarisation && p->lights[lamp].polarised > 0.0) {
-        const stokes row = {1.0, q->sq[at], q->su[at], q->sv[at]};
-        radiance *= greater(analyser_sees(row, lamp_stokes(p, lamp, vec3_scale(way, -1.0), way)), 0.0);
-    }
+    if (p->render.polarisation && p->lights[lamp].polarised > 0.0)
+        radiance *= lamp_seen(p, lamp, (stokes){1.0, q->sq[at], q->su[at], q->sv[at]}, way);
     const vec3 l = vec3_scale(light_color_of(t, lamp, sample_key), radiance);
     shading_expose(t, sample_key, q->wr[at] * l.x, q->wg[at] * l.y, q->wb[at] * l.z);
 }

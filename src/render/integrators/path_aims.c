@@ -86,7 +86,5 @@ void path_enqueue_lamp(tracer *t, int k, int lamp, vec3 to_lamp, double index, u
     q->start[at] = g->points.face[k], q->sample_key[at] = sample_key;
     q->inside[at] = inside;
     if (p->sheets)
-        queue_put_unpolarised(q, at);
-    if (p->polarised_shadows)
         sheets_shadow_ray(t, lamp, at);
 }

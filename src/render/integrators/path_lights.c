@@ -2,7 +2,6 @@
 #include "render/integrators/path_lights.h"
 
 #include "render/shade/light_choice.h"
-#include "render/shade/sheets.h"
 
 /* The same to a light that is a point; without shadows its light is added at once. */
 static void sample_point(tracer *t, int k, const material *m, int lamp, double weight)
@@ -19,9 +18,7 @@ static void sample_point(tracer *t, int k, const material *m, int lamp, double w
         return;
     const double falloff = l->reach > 0.0 ? l->reach * l->reach / distance2 : 1.0;
     const vec3 color = vec3_scale(light_color_of(t, lamp, g->sample_key[k]), weight * share * falloff);
-    shadow_ray_enqueue(t, k, to_light, color, m->diffuse * n_l, highlight_of(g, k, m, to, n_l));
-    if (p->polarised_shadows)
-        sheets_shadow_ray(t, lamp, t->queues.shadows.count - 1);
+    shadow_ray_enqueue(t, k, lamp, to_light, color, m->diffuse * n_l, highlight_of(g, k, m, to, n_l));
     if (p->render.shadows != SHADOWS_OFF)
         return;
     ray_queue *q = &t->queues.shadows;

@@ -39,9 +39,8 @@ static void enqueue(tracer *t, int k, int lamp, vec3 to_lamp, bool refracted, ve
         polarised_shadow(t, k, refracted, before);
     else if (p->lights[lamp].polarised > 0.0) { /* nothing between facet and lamp changes the row */
         polarised_shadow(t, k, refracted, before);
-        const vec3 way = vec3_normalize(to_lamp);
         const stokes row = {1.0, q->sq[before], q->su[before], q->sv[before]};
-        const double seen = greater(analyser_sees(row, lamp_stokes(p, lamp, vec3_scale(way, -1.0), way)), 0.0);
+        const double seen = lamp_seen(p, lamp, row, vec3_normalize(to_lamp));
         q->wr[before] *= seen, q->wg[before] *= seen, q->wb[before] *= seen;
     }
 }

@@ -62,7 +62,7 @@ double highlight_of(const group *g, int k, const material *m, vec3 to, double n_
 }
 
 /* Enqueues a shadow ray from record k that brings light of that colour, as Phong's model reflects it. */
-void shadow_ray_enqueue(tracer *t, int k, vec3 to_light, vec3 color, double diffuse, double shine)
+void shadow_ray_enqueue(tracer *t, int k, int lamp, vec3 to_light, vec3 color, double diffuse, double shine)
 {
     const group *g = &t->surface.gathered;
     ray_queue *q = &t->queues.shadows;
@@ -74,7 +74,7 @@ void shadow_ray_enqueue(tracer *t, int k, vec3 to_light, vec3 color, double diff
     q->wb[at] = g->wb[k] * color.z * (diffuse * g->cb[k] + shine);
     q->start[at] = g->points.face[k], q->sample_key[at] = g->sample_key[k], q->inside[at] = g->inside_before[k];
     if (t->target.frame_plan->sheets)
-        queue_put_unpolarised(q, at);
+        sheets_shadow_ray(t, lamp, at);
 }
 
 /* Enqueues a shadow ray from record k to its point of a light's sphere. */
@@ -94,9 +94,7 @@ static void enqueue_sphere(tracer *t, int k, const material *m, bool opaque, con
     const double shine = opaque ? highlight_of(g, k, m, to, n_l) : 0.0;
     const double seen = 2.0 * s->cap[k] * radiance * l->weight[k], diffuse = m->diffuse * n_l;
     const vec3 color = vec3_scale(light_color_of(t, lamp, g->sample_key[k]), seen);
-    shadow_ray_enqueue(t, k, vec3_scale(to, s->reach[k]), color, diffuse, shine);
-    if (t->target.frame_plan->polarised_shadows)
-        sheets_shadow_ray(t, lamp, t->queues.shadows.count - 1);
+    shadow_ray_enqueue(t, k, lamp, vec3_scale(to, s->reach[k]), color, diffuse, shine);
 }
 
 bool light_has_area(const plan *p, int lamp)
@@ -129,9 +127,7 @@ static void enqueue_flat(tracer *t, int k, const material *m, bool opaque, const
     const double seen =
         lamp_shape_radiance(s, p->lights[lamp].reach) * cos_l * s->area / (LAMP_PI * distance2) * l->weight[k];
     const vec3 color = vec3_scale(light_color_of(t, lamp, g->sample_key[k]), seen);
-    shadow_ray_enqueue(t, k, to_light, color, m->diffuse * n_l, opaque ? highlight_of(g, k, m, to, n_l) : 0.0);
-    if (p->polarised_shadows)
-        sheets_shadow_ray(t, lamp, t->queues.shadows.count - 1);
+    shadow_ray_enqueue(t, k, lamp, to_light, color, m->diffuse * n_l, opaque ? highlight_of(g, k, m, to, n_l) : 0.0);
 }
 
 void area_lights_aim_at_spheres(const tracer *t, lamp_samples *l)

@@ -218,11 +218,9 @@ static void enqueue_shadow_rays(tracer *t, int lamp)
         q->dx[at] = l->lx[i], q->dy[at] = l->ly[i], q->dz[at] = l->lz[i];
         q->wr[at] = l->r[i], q->wg[at] = l->g[i], q->wb[at] = l->b[i];
         q->start[at] = g->points.face[i], q->sample_key[at] = g->sample_key[i], q->inside[at] = g->inside_before[i];
-        if (t->target.frame_plan->polarised_shadows)
+        if (t->target.frame_plan->sheets)
             sheets_shadow_ray(t, lamp, at);
     }
-    for (int k = 1; t->target.frame_plan->sheets && k <= count; k++)
-        queue_put_unpolarised(q, q->count - k);
 }
 
 /* The light of one lamp on the gathered group, with its spectrum in a spectral film. */

@@ -77,9 +77,13 @@ void sheets_begin(const tracer *t, sheet_work *w, const ray_queue *q, int first,
 
 void sheets_shadow_ray(tracer *t, int lamp, int at)
 {
+    const plan *p = t->target.frame_plan;
     ray_queue *q = &t->queues.shadows;
+    q->sq[at] = q->su[at] = q->sv[at] = 0.0;
+    if (!p->polarised_shadows)
+        return;
     const vec3 to_lamp = vec3_normalize(vec3_make(q->dx[at], q->dy[at], q->dz[at]));
-    const stokes s = lamp_stokes(t->target.frame_plan, lamp, vec3_scale(to_lamp, -1.0), to_lamp);
+    const stokes s = lamp_stokes(p, lamp, vec3_scale(to_lamp, -1.0), to_lamp);
     q->lamp_q[at] = s.q, q->lamp_u[at] = s.u;
 }
 

@@ -46,7 +46,8 @@ typedef struct sheet_work {
     vec3 direction[ROW];
 } sheet_work;
 
-/* Stores the Stokes vector of the lamp at the end of shadow ray `at` in its queue. */
+/* In a scene with sheets: stores the Stokes vectors of both ends of shadow ray `at` in its queue, of a matte surface,
+ * which sees the intensity alone, and of the lamp. */
 void sheets_shadow_ray(struct tracer *t, int lamp, int at);
 
 /* sheets_announce: before a batch of a queue is traced; sheets_begin: with that work. sheets_segment: the next segment

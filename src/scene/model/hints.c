@@ -150,7 +150,7 @@ static void hint_at_idle(const scene *s, const solid *owner, const note_taker *t
                   "%s is treated as clear: only the path integrator shows scattering", owner->name);
     else if (material_scattering(m, &s->render) > 0.0 && s->render.polarisation)
         note_give(taker, owner->name, "scatter_per_m", "",
-                  "the light that %s scatters is unpolarised: its phase function has no polarisation", owner->name);
+                  "the light that %s scatters is unpolarised: its phase function does not polarise", owner->name);
     if (m->coefficients.count > 0 && (m->medium == MEDIUM_IOR || m->medium >= MEDIUM_CATALOGUE))
         note_give(taker, owner->name, "coefficients", "set its medium to cauchy, sellmeier or table",
                   "%s has coefficients but no dispersion law", owner->name);

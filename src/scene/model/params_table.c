@@ -419,7 +419,7 @@ static const param table[] = {
     BEAM_CHOICE(visible, off_on, "on", "off: the beam is left out"),
     BEAM_CHOICE(lights, off_on, "off",
                 "on: the beam is a lamp too, whose light render.caustics=photons brings to matte surfaces; its "
-                "irradiance is its power by area, as bright as white, for any number of rays"),
+                "irradiance is its power per area, whatever its wavelength and its number of rays"),
     BEAM_CHOICE(profile, profile_words, "uniform",
                 "of a beam that lights: even over its angle or width, or gaussian, exp(-2 r^2 / w^2) with 2 w as its "
                 "angle or width"),
