@@ -26,8 +26,8 @@ vec3 light_color_of(const tracer *t, int lamp, int64_t sample_key);
 /* Phong's highlight k_s (R.V)^n of the light along the unit vector `to`, whose cosine is n_l. */
 double highlight_of(const group *g, int k, const material *m, vec3 to, double n_l);
 
-/* Enqueues a shadow ray from record k to a lamp, that brings light of that colour, as Phong's model reflects it: diffuse times the
- * surface's colour, and shine. */
+/* Enqueues a shadow ray from record k to a lamp, which brings light of that colour as Phong's model reflects it:
+ * diffuse times the surface's colour, and shine. */
 void shadow_ray_enqueue(tracer *t, int k, int lamp, vec3 to_light, vec3 color, double diffuse, double shine);
 
 /* Lights of the group's records, and points of those with a size. */
