@@ -197,7 +197,7 @@ static void a_shadow_ray_from_a_polarised_lamp_obeys_malus(void **state)
                           "  sheet: {shape: box, transparency: 1, ior: 1, sheet: polariser, sheet_axis: [1, 0, 0], "
                           "position: [0, 3, 0], size: [1, 0.01, 1]}\n");
     for (int a = 0; a <= 90; a += 15) {
-        s->lights[0].polarisation_deg = a;
+        s->lights[1].polarisation_deg = a;
         probe *p = probe_of(s);
         ray_tree tree = {0};
         worked(probe_ray(p, vec3_make(0, 1, -1), vec3_make(0, -1, 1), &tree, NULL), NULL);
