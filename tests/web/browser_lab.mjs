@@ -1,6 +1,6 @@
 // A laboratory for one test without a server: the page with its engine in the browser, from a server of plain files.
-// Requests go through the engine of the page that was opened last; without one, a page is opened for them, which the test
-// then gets as its screen.
+// Requests go through the engine of the page that was opened last; without one, a page is opened for them, which the
+// test then gets as its screen.
 import { readdir, readFile } from 'node:fs/promises';
 import { join } from 'node:path';
 import { LabFolder } from './lab.mjs';

@@ -1,9 +1,9 @@
-// tests/web/run.mjs --program CUVETTE --modules FOLDER [--screenshots FOLDER] [--engine browser --wasm FOLDER] [NAME...]:
-// runs tests/web/NAME.test.mjs, or all, in Chromium; prints one line per file and per failed check, and ends with "N
-// passed, M failed". A file exports cases: {name: async (t) => ..}; t has the checks of checks.mjs, t.lab(scene),
-// t.open(lab, options) and t.axe(screen, what), and engine, if they are of one only; pages and programs are closed at the end of the case. --engine browser:
-// the page with the laboratory of `make wasm` in the browser instead of the program; the cases of needs_program.mjs are
-// skipped.
+// tests/web/run.mjs --program CUVETTE --modules FOLDER [--screenshots FOLDER] [--engine browser --wasm FOLDER]
+// [NAME...]: runs tests/web/NAME.test.mjs, or all, in Chromium; prints one line per file and per failed check, and ends
+// with "N passed, M failed". A file exports cases: {name: async (t) => ..}, and engine, if they are of one only; t has
+// the checks of checks.mjs, t.lab(scene), t.open(lab, options) and t.axe(screen, what); pages and programs are closed
+// at the end of the case. --engine browser: the page with the laboratory of `make wasm` in the browser instead of the
+// program; the cases of needs_program.mjs are skipped.
 import { execFileSync } from 'node:child_process';
 import { readdirSync } from 'node:fs';
 import { mkdir, readFile } from 'node:fs/promises';
