@@ -1,9 +1,8 @@
-/* Starts the worker of a page without a server. A site may say in globalThis.cuvetteEngine where the parts are; without
- * it they are in the folder engine next to the page:
- *   worker    address or text of its script                                         engine/lab_worker.js
- *   script    {simd128, plain}: addresses or texts of cuvette.js                    engine/simd128/cuvette.js, ..
- *   module    {simd128, plain}: addresses or bytes of cuvette.wasm                  engine/simd128/cuvette.wasm, ..
- *   files     the laboratory's folder: {NAME: text or {base64}}, or its address     engine/files.json
+/* Starts the worker of a page without a server (src/wasm/lab_worker.js). Its parts come from the folder engine next to
+ * the page, or from globalThis.cuvetteEngine, where a site may give some of them, or promises of them:
+ *   worker    {simd128, plain}: text of the script of all workers     engine/simd128/worker.js, ..
+ *   wasm      {simd128, plain}: bytes of the module                   engine/simd128/cuvette.wasm, ..
+ *   files     {NAME: text or {base64}}: the laboratory's folder       engine/files.json
  *   scene     the file that is opened; the page's address may name another (?scene=NAME); null: none
  *   workers   workers that trace tiles; default: one for each processor
  * exports: startWorker() -> promise of the worker, which has got its first message */
@@ -17,13 +16,16 @@ const hasVectors = () => WebAssembly.validate(new Uint8Array([...VECTOR, ...new 
 export async function startWorker() {
   const given = globalThis.cuvetteEngine ?? {};
   const set = hasVectors() ? 'simd128' : 'plain';
-  const worker = new Worker(scriptAddress(given.worker ?? 'engine/lab_worker.js'));
-  const files = await unpack(given.files ?? 'engine/files.json');
+  const [script, wasm, named] = await Promise.all([
+    given.worker?.[set],
+    compiled(given.wasm?.[set] ?? part(`${set}/cuvette.wasm`)),
+    given.files ?? part('files.json').then((reply) => reply.json()),
+  ]);
+  const worker = new Worker(script ? addressOf(script) : new URL(`engine/${set}/worker.js`, document.baseURI));
   worker.postMessage({
     boot: {
-      script: scriptAddress(given.script?.[set] ?? `engine/${set}/cuvette.js`),
-      module: moduleOf(given.module?.[set] ?? `engine/${set}/cuvette.wasm`),
-      files,
+      wasm,
+      files: Object.entries(named).map(([name, content]) => ({ name, bytes: bytesOf(content) })),
       scene: new URLSearchParams(location.search).get('scene') ?? given.scene ?? null,
       workers: given.workers ?? Math.min(WORKERS_MAX, Math.max(1, navigator.hardwareConcurrency || 1)),
     },
@@ -31,23 +33,20 @@ export async function startWorker() {
   return worker;
 }
 
-const absolute = (address) => new URL(address, document.baseURI).href;
-const moduleOf = (module) => (typeof module === 'string' ? absolute(module) : module);
-
-/* A page that is opened as a file may start workers from its own text only. */
-function scriptAddress(script) {
-  if (!script.includes('\n')) return absolute(script);
-  return URL.createObjectURL(new Blob([script], { type: 'text/javascript' }));
+async function part(name) {
+  const reply = await fetch(new URL(`engine/${name}`, document.baseURI));
+  if (!reply.ok) throw new Error(`engine/${name} cannot be loaded: status ${reply.status}`);
+  return reply;
 }
 
-async function unpack(files) {
-  const named = typeof files === 'string' ? await (await fetch(absolute(files))).json() : files;
-  const encoder = new TextEncoder();
-  return Object.entries(named).map(([name, content]) => ({
-    name,
-    bytes:
-      typeof content === 'string'
-        ? encoder.encode(content)
-        : Uint8Array.from(atob(content.base64), (letter) => letter.charCodeAt(0)),
-  }));
+async function compiled(source) {
+  const got = await source;
+  return WebAssembly.compile(got instanceof Response ? await got.arrayBuffer() : got);
+}
+
+const addressOf = (text) => URL.createObjectURL(new Blob([text], { type: 'text/javascript' }));
+
+function bytesOf(content) {
+  if (typeof content === 'string') return new TextEncoder().encode(content);
+  return Uint8Array.from(atob(content.base64), (letter) => letter.charCodeAt(0));
 }
