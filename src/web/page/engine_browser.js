@@ -5,7 +5,7 @@
 import { startWorker } from './engine_boot.js';
 
 const STOPPED = 'the laboratory in this page stopped';
-const REMEDY = 'reload the page; the scene starts again';
+const REMEDY = 'reload the page; it offers unsaved changes again';
 
 export function createBrowserEngine() {
   const requests = new Map(); /* id -> {resolve, reject} */
