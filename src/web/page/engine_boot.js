@@ -5,9 +5,12 @@
  *   files     {NAME: text or {base64}}: the laboratory's folder       engine/files.json
  *   scene     the file that is opened; the page's address may name another (?scene=NAME); null: none
  *   workers   workers that trace tiles; default: one for each processor
- * exports: startWorker() -> promise of the worker, which has got its first message */
+ * exports: startWorker() -> promise of the worker, which has got its first message; an error may have a remedy */
 
 const WORKERS_MAX = 8; /* each has a memory of its own */
+
+const OF_A_FILE =
+  'a page that is opened as a file cannot load others: open the one that holds all, or use a web server';
 
 /* A module with one function that uses a 128-bit vector: (v128.const 0) (drop). */
 const VECTOR = [0, 97, 115, 109, 1, 0, 0, 0, 1, 4, 1, 96, 0, 0, 3, 2, 1, 0, 10, 23, 1, 21, 0, 253, 12];
@@ -34,9 +37,11 @@ export async function startWorker() {
 }
 
 async function part(name) {
-  const reply = await fetch(new URL(`engine/${name}`, document.baseURI));
-  if (!reply.ok) throw new Error(`engine/${name} cannot be loaded: status ${reply.status}`);
-  return reply;
+  const reply = await fetch(new URL(`engine/${name}`, document.baseURI)).catch(() => null);
+  if (reply?.ok) return reply;
+  const why = new Error(`engine/${name} cannot be loaded${reply ? `: status ${reply.status}` : ''}`);
+  why.remedy = location.protocol === 'file:' ? OF_A_FILE : 'check the connection, and reload the page';
+  throw why;
 }
 
 async function compiled(source) {
