@@ -1,6 +1,7 @@
-/* Included before the files of the laboratory in a WebAssembly module, where there is one thread. What is waited for can
- * then only be what render_turns.c does at once: loading the scene, serving a grab. Otherwise the wait ends as after its
- * time, and is noted, so that a request that waited is handled again when something has happened (src/wasm/request.c). */
+/* Included before the files of the laboratory in a WebAssembly module, where there is one thread. What is waited
+ * for can then only be what render_turns.c does at once: loading the scene, serving a grab. Otherwise the wait ends
+ * as after its time, and is noted, so that a request that waited is handled again when something has happened
+ * (src/wasm/request.c). */
 #pragma once
 
 #include <errno.h>

@@ -8,7 +8,8 @@ export NODE_PATH := $(if $(NODE_PATH),$(NODE_PATH):)/usr/share/nodejs:/usr/lib/n
 
 # Two modules of one source: a browser without 128-bit vectors refuses a module that has them.
 wasm_isas := simd128 plain
-wasm_isa_flags_simd128 := -msimd128
+# Browsers with 128-bit vectors have these too: conversions without a test for traps, copies of memory.
+wasm_isa_flags_simd128 := -msimd128 -mnontrapping-fptoint -mbulk-memory -msign-ext
 
 # No studies, which measure a machine, and nothing of the operating system; src/wasm has what replaces them.
 wasm_without := src/study/% src/engine/study% src/base/below.c src/base/child.c src/base/spawn.c src/base/os_confine% \
