@@ -4,6 +4,7 @@
  * (src/wasm/request.c). */
 #pragma once
 
+#ifdef __EMSCRIPTEN__
 #include <errno.h>
 #include <pthread.h>
 #include <stdbool.h>
@@ -29,3 +30,4 @@ static inline int pthread_rwlockattr_setkind_np(pthread_rwlockattr_t *attributes
     (void)attributes, (void)kind;
     return 0;
 }
+#endif

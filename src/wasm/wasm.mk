@@ -31,11 +31,12 @@ setup-wasm: | $(filter setup,$(MAKECMDGOALS)) ## install what make wasm requires
 	@.ci/setup-wasm
 wasm: $(foreach i,$(wasm_isas),$(wasm)/$(i)/worker.js) ## build the laboratory as WebAssembly, for browsers, in build/wasm
 
+wasm_flags_text = $(subst ','\'',$(EMCC) $(wasm_flags) $(wasm_isa_flags_simd128))
 $(wasm)/flags: always | $(filter setup-wasm,$(MAKECMDGOALS))
 	@command -v $(firstword $(EMCC)) >/dev/null || \
 	  { echo 'wasm: emscripten is not installed; run: make setup-wasm' >&2; exit 1; }
 	@mkdir -p $(@D)
-	@echo '$(subst ','\'',$(EMCC) $(wasm_flags))' | cmp -s - $@ || echo '$(subst ','\'',$(EMCC) $(wasm_flags))' >$@
+	@echo '$(wasm_flags_text)' | cmp -s - $@ || echo '$(wasm_flags_text)' >$@
 $(wasm)/libraries/complete: src/wasm/libraries.sh $(wasm)/flags
 	$(call say,emcc $(wasm)/libraries)
 	$(quiet)src/wasm/libraries.sh $(wasm)/sources $(@D) >$(wasm)/libraries.log 2>&1 || \
