@@ -7,6 +7,7 @@ const REASONS = {
   rescue: 'is about files that rescue unsaved scenes',
   server: 'is about the server: its connections, clients, tabs and end',
   slow: 'is about a slow link to the server',
+  thread: 'is about a measurement that is stopped, which one thread cannot',
   studies: 'is about studies, which time the program on the machine',
 };
 
@@ -27,6 +28,9 @@ const TABLE = {
   html_file: REASONS.file,
   lessons: {
     'keys move a control step by step over a slow link; nothing moves it back': REASONS.slow,
+  },
+  motion: {
+    'a measurement is stopped, and a scene without a slime is refused': REASONS.thread,
   },
   panels: {
     'a study, light': REASONS.studies,
