@@ -2,8 +2,8 @@
 // fetched one is drawn, and the last is the final image of the last value, exactly. Tabs share one event stream.
 import { difference } from './screen.mjs';
 
-/** Records every displayed image, once, and the requests for images, which the result returns. The event repeats for an image that is already
- * displayed. */
+/** Records every displayed image, once, and the requests for images, which the result returns. The event repeats for an
+ * image that is already displayed. */
 async function record(screen) {
   await screen.page.evaluate(() => {
     window.drawn = [];

@@ -4,8 +4,8 @@ const SCENE = 'scenes/slime.yaml';
 const lasting = ({ name }) => !/^rate\.(step_s|simulated)/.test(name);
 const stripped = (slimes) => slimes.map((slime) => ({ ...slime, values: slime.values.filter(lasting) }));
 
-/** The last digits of sines differ in a browser, whose module has the C library of emscripten; errors are differences of
- * nearly equal numbers. */
+/** The last digits of sines differ in a browser, whose module has the C library of emscripten; errors are differences
+ * of nearly equal numbers. */
 function near(t, slimes, expected) {
   for (const [i, { values, ...slime }] of slimes.entries()) {
     const { values: others, ...other } = expected[i];

@@ -7,8 +7,8 @@ import { fileURLToPath } from 'node:url';
 const source = join(dirname(fileURLToPath(import.meta.url)), '..', '..', 'src');
 const META = '<meta name="cuvette-engine" content="browser" />';
 
-/** wasm: the folder with simd128/{worker.js,cuvette.wasm} and plain. Returns {folder, lab: the path of the page, files: that
- * of the laboratory's files, lessons: the folder of the program's own, made: other paths}, see browser_lab.mjs. */
+/** wasm: the folder with simd128/{worker.js,cuvette.wasm} and plain. Returns {folder, lab: the path of the page, files:
+ * that of the laboratory's files, lessons: the folder of the program's own, made: other paths}, see browser_lab.mjs. */
 export function siteOf(wasm) {
   const page = join(source, 'web', 'page');
   const made = {

@@ -120,8 +120,8 @@ status command_settings(const folder *files, const char *file, const scene *s, i
     return code == STATUS_FAILURE ? code : STATUS_OK;
 }
 
-/* The scene's name in a command. The folder of a laboratory in a browser is in its memory: where the command is run, the
- * scene has another. */
+/* The scene's name in a command. The folder of a laboratory in a browser is in its memory: where the command is run,
+ * the scene has another. */
 static const char *scene_name(const char *path, const char *file)
 {
 #if defined __EMSCRIPTEN__
