@@ -6,7 +6,7 @@
  *                   an empty room; workers: the number of tile workers
  *                 {id, method, path, body}    body: JSON text or null
  *                 {file: {name, bytes}}       one more file of the folder
- *                 {memory: true}              asks for the size of the module's memory
+ *                 {memory: true}              requests the size of the module's memory
  * worker -> page  {ready: true, isa} or {failed: text}
  *                 {memory: bytes}
  *                 {id, status, headers, bytes}
