@@ -4,6 +4,7 @@ import base64
 import html
 import re
 import shlex
+import subprocess
 import zlib
 from urllib.parse import quote
 
@@ -39,12 +40,13 @@ class Laboratory:
         return self.link(self.code(html.unescape(command)) or f'?scene={quote(name)}', 'Open in the laboratory')
 
     def code(self, command):
-        """The scene of a command with changed parameters, as a link holds it; a scene that reads files is opened as it
-        is."""
+        """The scene of a command with changed parameters, as a link holds it. A scene that reads files can be in no
+        link: it is opened as its file is."""
         _, _, scene, *words = shlex.split(command)
         changes = [word for at, word in enumerate(words) if '--set' in (word, words[at - 1])]
-        text = changes and output_of(self.program, 'scene', scene, *changes, cwd=self.root)
-        if not text or re.search(r'\b(?:file|picture|script): ', text):
+        if not changes:
             return None
-        code = base64.urlsafe_b64encode(zlib.compress(text.encode(), 9)).decode().rstrip('=')
-        return f'#scene={code}'
+        text = output_of(self.program, 'scene', scene, *changes, cwd=self.root)
+        code = '#scene=' + base64.urlsafe_b64encode(zlib.compress(text.encode(), 9)).decode().rstrip('=')
+        can_open = subprocess.run([self.program, 'scene', code], capture_output=True).returncode == 0
+        return code if can_open else None
