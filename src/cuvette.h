@@ -118,8 +118,8 @@ CUVETTE_API cuvette_status cuvette_scene_write(const cuvette_scene *scene, const
  * folder. */
 CUVETTE_API cuvette_status cuvette_scene_write_text(const cuvette_scene *scene, char *text, size_t size, size_t *length,
                                                     cuvette_diagnostic *why);
-/* Writes the scene as the code of a link, #scene=CODE, which the laboratory opens, with the same arguments. The scene may
- * name no files, and hold no arrays. */
+/* Writes the scene as the code of a link, #scene=CODE, which the laboratory opens, with the same arguments. The scene
+ * may name no files, and hold no arrays. */
 CUVETTE_API cuvette_status cuvette_scene_write_link(const cuvette_scene *scene, char *text, size_t size, size_t *length,
                                                     cuvette_diagnostic *why);
 

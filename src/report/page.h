@@ -1,7 +1,7 @@
 /* A self-contained page (HTML): the image, its rays with their numbers, the scene and the command, in one file that
- * opens without a server or network and runs no scripts, but those of the laboratory if it holds that. `cuvette render`
- * and the laboratory open its scene again (scene/file/shared.h), unless the scene reads files. Errors of the stream stay
- * in the stream. Ownership: everything is borrowed. */
+ * opens without a server or network and runs no scripts, but those of the laboratory if it holds that. `cuvette
+ * render` and the laboratory open its scene again (scene/file/shared.h), unless the scene reads files. Errors of the
+ * stream stay in the stream. Ownership: everything is borrowed. */
 #pragma once
 
 #include "base/isa.h"

@@ -1,5 +1,5 @@
-/* The laboratory within a page (report/page.h): live.html, which `make site` makes, compressed (zlib) as base64, and the
- * script that starts it with the page's scene. Ownership: results are the caller's, freed with free. */
+/* The laboratory within a page (report/page.h): live.html, which `make site` makes, compressed (zlib) as base64, and
+ * the script that starts it with the page's scene. Ownership: results are the caller's, freed with free. */
 #pragma once
 
 #include "base/status.h"

@@ -310,8 +310,8 @@ class Scene(Tracer):
 
     @described("cuvette_scene_write_link")
     def live(self, width: int = 960, height: int = 640) -> Live:
-        """The scene with its engine in one HTML document: a notebook shows it as a frame of this size, in which it can be
-        turned and changed, `scene.live().save("turn.html")` writes it for slides. It needs live.html (`make site`)."""
+        """The scene with its engine in one HTML document: a notebook shows it as a frame of this size, in which it can
+        be turned and changed, `scene.live().save("turn.html")` writes it for slides. Needs live.html (`make site`)."""
         return Live(self._scene, width, height)
 
     def __str__(self) -> str:
