@@ -87,7 +87,7 @@ isas_flags = $(foreach i,$(isas),$(isa_flags_$(i)))
 
 sources := $(wildcard src/*.c src/*/*.c src/*/*/*.c src/*/*/*/*.c)
 kernels := $(filter %_kernel.c,$(sources))
-library := $(filter-out src/cli/% src/import/% src/web/% src/mpi/% $(kernels),$(sources))
+library := $(filter-out src/cli/% src/import/% src/web/% src/mpi/% src/wasm/% $(kernels),$(sources))
 program := $(wildcard src/cli/*.c)
 mpi := $(filter src/mpi/%,$(sources))
 web := $(filter src/web/%,$(sources))
@@ -327,6 +327,8 @@ setup-python: | $(filter setup setup-peers,$(MAKECMDGOALS)) ## install what the 
 .PHONY: setup-peers
 setup-peers: | $(filter setup,$(MAKECMDGOALS)) ## install the programs that the benchmarks compare with: POV-Ray, Tachyon, Embree
 	@.ci/setup-peers
+
+include src/wasm/wasm.mk
 
 # --- documentation ---
 

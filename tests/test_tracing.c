@@ -8,6 +8,7 @@
 #include <cmocka.h>
 
 #include "mpi/tracing.h"
+#include "render/core/shared_frame.h"
 #include <string.h>
 
 static team *begin(void)

@@ -13,6 +13,9 @@
 #elif defined __aarch64__
 #define ISA_BASELINE neon
 #define ISA_EACH(X, ...) X(neon, __VA_ARGS__)
+#elif defined __wasm_simd128__
+#define ISA_BASELINE simd128
+#define ISA_EACH(X, ...) X(simd128, __VA_ARGS__)
 #else
 #define ISA_BASELINE plain
 #define ISA_EACH(X, ...) X(plain, __VA_ARGS__)

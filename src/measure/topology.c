@@ -276,11 +276,9 @@ status topology_bind_thread(const topology *machine, int pu, diagnostic *why)
     if (!found)
         return diagnose(why, STATUS_BAD_INPUT, "`cuvette machine` lists the available units",
                         "this process may not use processing unit %d", pu);
-    if (failed) {
-        char text[128];
+    if (failed)
         return diagnose(why, STATUS_FAILURE, "render with render.pin none",
-                        "cannot bind a thread to processing unit %d: %s", pu, strerror_r(reason, text, sizeof text));
-    }
+                        "cannot bind a thread to processing unit %d: %s", pu, strerrordesc_np(reason));
     return STATUS_OK;
 }
 

@@ -5,6 +5,7 @@
 #include "measure/usage.h"
 #include "mpi/scene_wire.h"
 #include "mpi/tracing.h"
+#include "render/core/shared_frame.h"
 #include "scene/model/scene.h"
 #include "scene/package/package.h"
 #include <math.h>
@@ -33,13 +34,11 @@ struct lead {
     /* of the current frame */
     pthread_t thread;
     handout *tiles;
-    schedule places;
+    shared_frame sum;
     team *own;
     frame_sink sink;
     frame_watch watch;
     double begun_s, complete_s, watched_s;
-    film *img;
-    double *variance;
     others rest;
     uint64_t scene_bytes;
     atomic_bool stops; /* a stop request, or an error of this rank */
@@ -47,22 +46,10 @@ struct lead {
 
 /* --- what the messenger brings --- */
 
-static void put_variance(const lead *l, const span *at, const int64_t *values)
-{
-    const size_t length = 3 * (size_t)(at->x1 - at->x0);
-    for (int y = at->y0; y < at->y1; y++, values += length)
-        memcpy(&l->variance[3 * ((size_t)y * (size_t)l->img->width + (size_t)at->x0)], values,
-               length * sizeof *l->variance);
-}
-
 static void put_piece(void *of, piece_message *piece)
 {
     lead *l = of;
-    span at;
-    schedule_tile(&l->places, piece->head.value, &at);
-    film_put_piece(l->img, at.x0, at.y0, at.x1, at.y1, piece->values);
-    if (l->variance)
-        put_variance(l, &at, piece->values + 3 * (at.x1 - at.x0) * (at.y1 - at.y0));
+    shared_frame_put(&l->sum, piece->head.value, piece->values);
     free(piece);
     if (handout_is_complete(l->tiles))
         l->complete_s = clock_wall_s();
@@ -137,14 +124,11 @@ static status refuse(const scene *s, const render_options *o, diagnostic *why)
 
 static void release_frame(lead *l)
 {
-    film_destroy(l->img);
-    free(l->variance);
+    shared_frame_release(&l->sum);
     free(l->rest.workers);
     free(l->rest.ranks);
     handout_destroy(l->tiles);
     team_destroy(l->own);
-    l->img = NULL;
-    l->variance = NULL;
     l->rest = (others){.code = STATUS_OK};
     l->tiles = NULL;
     l->own = NULL;
@@ -170,19 +154,16 @@ static int tile_side(const scene *s, int ranks)
 
 static status prepare(lead *l, const scene *s, diagnostic *why)
 {
-    const render_settings settings = tiles_settings(&s->render, tile_side(s, l->ranks));
-    schedule_start(&l->places, &settings);
-    TRY(handout_create(l->places.tile_count, l->ranks, &l->tiles, why));
-    TRY(team_create(&l->places, scene_threads(&s->render), &l->own, why));
-    if (!(l->rest.ranks = calloc((size_t)l->ranks, sizeof *l->rest.ranks)))
-        return out_of_memory(why);
-    return renderer_film(s, &l->img, &l->variance, why);
+    TRY(shared_frame_begin(s, tile_side(s, l->ranks), &l->sum, why));
+    TRY(handout_create(l->sum.places.tile_count, l->ranks, &l->tiles, why));
+    TRY(team_create(&l->sum.places, scene_threads(&s->render), &l->own, why));
+    return (l->rest.ranks = calloc((size_t)l->ranks, sizeof *l->rest.ranks)) ? STATUS_OK : out_of_memory(why);
 }
 
 /* Sends the scene to the others, which answer when they are ready. */
 static status send_orders(lead *l, const scene *s, bool measured, diagnostic *why)
 {
-    const frame_order order = {.head.frame = ++l->frame, .tile = l->places.tile, .usage = measured};
+    const frame_order order = {.head.frame = ++l->frame, .tile = l->sum.places.tile, .usage = measured};
     for (int rank = 1; rank < l->ranks; rank++)
         MPI_Send(&order, sizeof order, MPI_BYTE, rank, TAG_FRAME, MPI_COMM_WORLD);
     l->scene_bytes = 0;
@@ -229,7 +210,7 @@ static void add_ranks(lead *l, render_result *result)
         result->cpu_s += ranks[rank].cpu_s;
     result->ranks = ranks;
     result->rank_count = l->ranks;
-    result->tile = l->places.tile;
+    result->tile = l->sum.places.tile;
     result->scene_bytes = l->scene_bytes;
     l->rest.ranks = NULL;
 }
@@ -257,10 +238,10 @@ static status add_others(lead *l, render_result *result, diagnostic *why)
     ray_counters_add(&result->counters, &l->rest.counters);
     add_ranks(l, result);
     result->wall_s = wall_s;
-    result->img = l->img;
-    result->variance = l->variance;
-    l->img = NULL;
-    l->variance = NULL;
+    result->img = l->sum.img;
+    result->variance = l->sum.variance;
+    l->sum.img = NULL;
+    l->sum.variance = NULL;
     return add_workers(l, result, wall_s, why);
 }
 

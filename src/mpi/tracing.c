@@ -214,13 +214,3 @@ status team_status(const team *t, status traced, diagnostic *why)
 {
     return atomic_load(&t->failed) ? out_of_memory(why) : traced;
 }
-
-render_settings tiles_settings(const render_settings *r, int side)
-{
-    render_settings settings = *r;
-    settings.schedule = SCHEDULE_DYNAMIC;
-    settings.tile = side;
-    settings.pieces = 0;
-    settings.threads = 1;
-    return settings;
-}

@@ -4,7 +4,7 @@
 #pragma once
 
 #include "mpi/messenger.h"
-#include "scene/model/render_settings.h"
+#include "render/core/schedule.h"
 
 typedef struct team team;
 
@@ -23,6 +23,3 @@ bool team_is_stopped(team *t);
 /* The renderer's status, or that the team ran out of memory for tiles or pieces: the renderer then only sees its
  * end. */
 status team_status(const team *t, status traced, diagnostic *why);
-
-/* The settings with which all ranks have the same tiles: of that side, whatever their threads. */
-render_settings tiles_settings(const render_settings *r, int side);

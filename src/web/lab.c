@@ -34,9 +34,16 @@ void lab_publish(lab *l, const char *event, json_t *value)
     json_decref(value);
 }
 
+/* What serves the page: the program, or a module in the page's own browser (src/wasm). */
+#if defined __EMSCRIPTEN__
+static const char engine[] = "browser";
+#else
+static const char engine[] = "server";
+#endif
+
 json_t *lab_state(lab *l)
 {
-    json_t *state = json_pack("{s:s}", "version", CUVETTE_VERSION);
+    json_t *state = json_pack("{s:s, s:s}", "version", CUVETTE_VERSION, "engine", engine);
     const bool good =
         state && scene_document_json(l->scene_document, state) && render_worker_json(l->render_worker, state) &&
         json_object_update_new(state, json_pack("{s:o, s:o, s:o, s:o, s:{s:i, s:i}}", "slime",

@@ -140,6 +140,7 @@ static bool must_stop(const frame *f)
 static bool next_piece(frame *f, int worker, uint64_t taken, span *out)
 {
     const piece_source *source = f->options ? f->options->source : NULL;
+    worker_pool_pause(f->owner->threads);
     return !must_stop(f) &&
            (source ? source->next(source->context, worker, out) : schedule_next(&f->pieces, worker, taken, out));
 }
@@ -322,7 +323,7 @@ static double *make_map(size_t pixels)
     return map;
 }
 
-static int shares_of(const scene *s)
+int renderer_replicates(const scene *s)
 {
     const integrator *rule = integrator_for(&s->render);
     return rule->shares ? rule->shares(&s->render) : 1;
@@ -330,7 +331,7 @@ static int shares_of(const scene *s)
 
 uint64_t renderer_result_bytes(const scene *s, const render_options *options)
 {
-    const uint64_t shares = (uint64_t)shares_of(s), pixels = (uint64_t)s->render.width * (uint64_t)s->render.height;
+    const uint64_t shares = (uint64_t)renderer_replicates(s), pixels = (uint64_t)s->render.width * (uint64_t)s->render.height;
     const uint64_t maps = options ? (uint64_t)options->pixel_rays + (uint64_t)options->pixel_time : 0;
     const uint64_t named = options && options->layers && integrator_traits_of(&s->render)->layers ? layers_bytes() : 0;
     if (options && options->source)
@@ -355,7 +356,7 @@ status renderer_film(const scene *s, film **img, double **variance, diagnostic *
 {
     *variance = NULL;
     TRY(film_create((int)s->render.width, (int)s->render.height, 1, space_of(s), img, why));
-    if (shares_of(s) == 1 || (*variance = make_map(3 * (size_t)s->render.width * (size_t)s->render.height)))
+    if (renderer_replicates(s) == 1 || (*variance = make_map(3 * (size_t)s->render.width * (size_t)s->render.height)))
         return STATUS_OK;
     film_destroy(*img);
     *img = NULL;
@@ -368,10 +369,10 @@ static status make_result(const scene *s, const render_options *options, render_
     render_result *result = calloc(1, sizeof *result);
     if (!result)
         return out_of_memory(why);
-    result->replicates = shares_of(s);
+    result->replicates = renderer_replicates(s);
     const bool by_source = options && options->source;
     status code = by_source ? STATUS_OK
-                            : film_create((int)s->render.width, (int)s->render.height, shares_of(s), space_of(s),
+                            : film_create((int)s->render.width, (int)s->render.height, renderer_replicates(s), space_of(s),
                                           &result->img, why);
     if (code == STATUS_OK) {
         result->worker_count = (int)s->render.threads;
@@ -383,7 +384,7 @@ static status make_result(const scene *s, const render_options *options, render_
             missing |= !(result->pixel_ns = make_map(pixels));
         if (options && options->layers && integrator_traits_of(&s->render)->layers)
             missing |= !(result->layers = layers_create((int)s->render.width, (int)s->render.height));
-        if (shares_of(s) > 1 && !by_source)
+        if (renderer_replicates(s) > 1 && !by_source)
             missing |= !(result->variance = make_map(3 * pixels));
         if (missing)
             code = diagnose(why, STATUS_FAILURE, "render a smaller image", "out of memory");
@@ -407,7 +408,7 @@ static worker_account *make_accounts(int count)
 /* Films of one piece for each worker of a frame whose pieces come from a source. */
 static status make_piece_films(const scene *s, int side, worker_account *accounts, diagnostic *why)
 {
-    const int shares = shares_of(s);
+    const int shares = renderer_replicates(s);
     for (int i = 0; i < (int)s->render.threads; i++) {
         TRY(film_create(side, side, shares, space_of(s), &accounts[i].piece, why));
         if (shares > 1 && !(accounts[i].variance = make_map(3 * (size_t)side * (size_t)side)))
@@ -489,7 +490,7 @@ static status run_frame(renderer *r, const scene *s, const render_options *optio
         f->options = options;
         f->frame_plan = p;
         f->img = result->img;
-        f->shares = shares_of(s);
+        f->shares = renderer_replicates(s);
         f->rule = integrator_for(&s->render);
         f->state = state;
         f->accounts = accounts;

@@ -127,6 +127,8 @@ void render_result_destroy(render_result *result);
 /* The film, with one share, and the variance (NULL if it is unknown) of a whole frame whose pieces come from sources.
  * The caller owns both. */
 status renderer_film(const scene *s, film **img, double **variance, diagnostic *why);
+/* The replicates of the paths of a pixel, as in a result. */
+int renderer_replicates(const scene *s);
 
 /* Memory of the film and the maps of such a frame, bytes. */
 uint64_t renderer_result_bytes(const scene *s, const render_options *options);

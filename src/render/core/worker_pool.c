@@ -210,3 +210,8 @@ status worker_pool_run(worker_pool *p, int count, bool keep, worker_pool_task *t
     wait_until_done(p, watch, every_s);
     return STATUS_OK;
 }
+
+void worker_pool_pause(worker_pool *p)
+{
+    (void)p; /* the calling thread watches */
+}

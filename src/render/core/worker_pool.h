@@ -21,3 +21,7 @@ status worker_pool_reserve(worker_pool *p, int count, diagnostic *why);
  * ones. */
 status worker_pool_run(worker_pool *p, int count, bool keep, worker_pool_task *task, void (*watch)(void *),
                        double every_s, void *context, diagnostic *why);
+
+/* For tasks, between parts of their work: a pool without threads (src/wasm) runs its workers on the calling thread, one
+ * after another, and calls watch here when it is due. */
+void worker_pool_pause(worker_pool *p);

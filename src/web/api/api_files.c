@@ -1,9 +1,8 @@
-/* API: the files of the folder, opening and saving scenes, the media catalogue and the machine. */
+/* API: the files of the folder, opening and saving scenes, the media catalogue. */
 #include "web/api/api.h"
 #include "base/json_build.h"
 #include "scene/model/place/new_scene.h"
 #include "report/json.h"
-#include "report/machine.h"
 #include "report/media_rows.h"
 #include "scene/file/shared.h"
 #include "scene/file/write.h"
@@ -41,16 +40,6 @@ status api_files(call *c)
 status api_media(call *c)
 {
     return api_reply_json(c, media_rows_json(NULL, NULL, 0.0));
-}
-
-status api_machine(call *c)
-{
-    machine_account account = {0};
-    const status code = machine_measure(&account, &c->why);
-    if (code == STATUS_OK)
-        api_reply_json(c, machine_json(&account));
-    machine_release(&account);
-    return code;
 }
 
 /* --- opening --- */

@@ -1,5 +1,5 @@
 /* Start and stop of the HTTP server. */
-#include "web/http/http_private.h"
+#include "web/http/http_callbacks.h"
 
 #include <arpa/inet.h>
 #include <errno.h>

@@ -1,5 +1,5 @@
 /* The checks of a request: path, host, origin, token and rate. */
-#include "web/http/http_private.h"
+#include "web/http/http_callbacks.h"
 
 #include "measure/clock.h"
 #include <stdio.h>

@@ -1,5 +1,5 @@
 /* Compressed replies (RFC 9110, 8.4.1.3), for pages that reach the laboratory over a slow link, such as ssh. */
-#include "web/http/http_private.h"
+#include "web/http/http_callbacks.h"
 
 #include <stdlib.h>
 #include <string.h>

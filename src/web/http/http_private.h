@@ -1,8 +1,8 @@
-/* Declarations shared by the files of the HTTP server; private to them. See web/http/http.h. */
+/* Declarations shared by the files of the HTTP server; private to them. See web/http/http.h. Those that need
+ * libmicrohttpd's types are in http_callbacks.h: requests in a browser (src/wasm) come without it. */
 #pragma once
 
 #include "web/http/http.h"
-#include "web/http/http_library.h"
 
 #include <pthread.h>
 #include <stdbool.h>
@@ -86,8 +86,6 @@ int http_find_route(http_request *q);
 void http_reply_release(http_reply *r);
 void http_reply_set(http_reply *r, int code, const char *type,
                     struct MHD_Response *response); /* takes it; NULL: out of memory */
-/* Queues the reply with the headers common to all replies. */
-enum MHD_Result http_reply_send(http_reply *r);
 
 /* --- http_gzip.c --- */
 /* The bytes compressed by gzip, in allocated memory; NULL where the client does not accept it, the type is not text, or
@@ -99,7 +97,6 @@ status http_watch_start(http_server *s, diagnostic *why);
 /* The server's threads cannot be started. */
 status http_no_threads(diagnostic *why);
 void http_watch_stop(http_server *s);
-void http_watch_notify(void *server, struct MHD_Connection *c, void **place, enum MHD_ConnectionNotificationCode what);
 /* The connection belongs to somebody with the token: strangers do not displace it. */
 void http_watch_known(http_server *s, struct MHD_Connection *c);
 /* Sets the time limit of the connection's current action; 0: none. */
@@ -107,9 +104,3 @@ void http_watch_deadline(http_server *s, struct MHD_Connection *c, double in_s);
 
 /* --- http_events.c --- */
 void http_events_end(http_server *s);
-
-/* --- http_request.c: libmicrohttpd's callbacks --- */
-void *http_on_target(void *server, const char *target, struct MHD_Connection *c);
-enum MHD_Result http_on_request(void *server, struct MHD_Connection *c, const char *url, const char *method,
-                                const char *version, const char *upload, size_t *upload_size, void **request);
-void http_on_end(void *server, struct MHD_Connection *c, void **request, enum MHD_RequestTerminationCode why);

@@ -1,7 +1,5 @@
 /* libmicrohttpd's callbacks of a request: its target, its headers, its body, its end. */
-#include "web/http/http_private.h"
-
-#include "base/json_build.h"
+#include "web/http/http_callbacks.h"
 
 #include <stdlib.h>
 #include <string.h>
@@ -160,21 +158,4 @@ const char *http_query_value(const http_request *q, const char *name)
 const char *http_header(const http_request *q, const char *name)
 {
     return mhd.lookup_connection_value(q->connection, MHD_HEADER_KIND, name);
-}
-
-json_t *http_body_json(const http_request *q, http_reply *r)
-{
-    json_error_t error;
-    bool no_memory;
-    json_t *value =
-        json_parse(q->body ? q->body : "", q->body_size, JSON_REJECT_DUPLICATES | JSON_DECODE_ANY, &error, &no_memory);
-    if (!value && no_memory) {
-        diagnostic why = {.line = 0};
-        http_reply_diagnostic(r, out_of_memory(&why), &why);
-    } else if (!value) {
-        diagnostic why = {.line = error.line > 0 ? error.line : 1, .column = error.column > 0 ? error.column : 1};
-        diagnose(&why, STATUS_BAD_INPUT, "send one JSON value", "the request's body is not JSON: %s", error.text);
-        http_reply_diagnostic(r, STATUS_BAD_INPUT, &why);
-    }
-    return value;
 }

@@ -2,7 +2,7 @@
  * now and then. So each connection has a slot with the deadline of its request or reply, and a thread checks all
  * slots once a second. Connections without a request with the token have a limit of their own, so that strangers cannot
  * take all: a new one displaces the oldest of them. */
-#include "web/http/http_private.h"
+#include "web/http/http_callbacks.h"
 
 #include "base/float_environment.h"
 #include "measure/clock.h"

@@ -207,6 +207,14 @@ bool live_is_moving(live *l)
     return moving;
 }
 
+bool live_is_asked(live *l)
+{
+    pthread_mutex_lock(&l->lock);
+    const bool asked = l->requested || l->first;
+    pthread_mutex_unlock(&l->lock);
+    return asked;
+}
+
 bool live_is_due(live *l)
 {
     pthread_mutex_lock(&l->lock);

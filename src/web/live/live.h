@@ -55,7 +55,8 @@ json_t *live_json(live *l);
 
 bool live_is_on(live *l);     /* playing or paused */
 bool live_is_moving(live *l); /* playing, and not at rest without hands */
-bool live_is_due(live *l);    /* moving, or a command is pending: live_advance has work */
+bool live_is_asked(live *l);  /* a command or a grab is pending */
+bool live_is_due(live *l);    /* moving, or asked: live_advance has work */
 live_preview live_preview_of(live *l);
 
 /* Takes over the slimes of a new snapshot: from their beginning, or in their live state where the slimes' own

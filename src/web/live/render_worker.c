@@ -14,6 +14,37 @@
 /* How long a caller waits for the current scene to be loaded. */
 static const double scene_wait_s = 60.0;
 
+/* --- what the thread reports --- */
+
+void render_worker_notify(render_worker *p)
+{
+    p->listener.state_changed(p->listener.context);
+}
+
+/* A failed attempt that took longer is not repeated before the same time has passed. */
+static const double soon_s = 0.25;
+
+/* The caller holds the lock; true if the listener must be called. */
+bool render_worker_take_error(render_worker *p, status code, const diagnostic *why)
+{
+    const bool differs = code != p->trouble_code || (code != STATUS_OK && strcmp(why->what, p->trouble.what) != 0);
+    p->trouble_code = code;
+    p->trouble = *why;
+    const double now_s = clock_wall_s(); /* a scene that never fits must not keep the machine busy */
+    p->again_from_s = now_s + fmax(0.0, now_s - p->started_s - soon_s);
+    pthread_cond_broadcast(&p->changed);
+    return differs;
+}
+
+void render_worker_set_error(render_worker *p, status code, const diagnostic *why)
+{
+    pthread_mutex_lock(&p->lock);
+    const bool differs = render_worker_take_error(p, code, why);
+    pthread_mutex_unlock(&p->lock);
+    if (differs)
+        render_worker_notify(p);
+}
+
 /* --- requests of other threads --- */
 
 void render_worker_wake(render_worker *p)
@@ -197,8 +228,7 @@ status render_worker_create(scene_document *d, isa level, const render_worker_li
     p->live_slime = live_create(wake, p);
     const job_settings settings = {.level = &level, .stop = render_worker_must_end, .context = p};
     status code = p->live_slime ? job_create(&settings, &p->renderer, why) : out_of_memory(why);
-    if (code == STATUS_OK && pthread_create(&p->thread, NULL, render_worker_thread, p) != 0)
-        code = diagnose(why, STATUS_FAILURE, "close other programs", "a thread cannot be started");
+    THEN(code, render_worker_start(p, why));
     if (code == STATUS_OK)
         *out = p;
     else
@@ -214,7 +244,7 @@ void render_worker_end(render_worker *p)
     pthread_cond_signal(&p->wake);
     pthread_mutex_unlock(&p->lock);
     live_stop(p->live_slime);
-    pthread_join(p->thread, NULL);
+    render_worker_join(p);
 }
 
 void render_worker_destroy(render_worker *p)

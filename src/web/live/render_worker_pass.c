@@ -85,40 +85,50 @@ static void take_rate(render_worker *p, int pass, const render_result *result)
     p->rate = p->rate > 0.0 ? p->rate + recent * (rate - p->rate) : rate;
 }
 
-void render_worker_render_pass(render_worker *p)
+void render_worker_begin_pass(render_worker *p, started_pass *out)
 {
-    const int pass = p->pass;
-    const bool moving = live_is_moving(p->live_slime);
-    const bool raster = is_raster(p, moving);
+    const bool moving = live_is_moving(p->live_slime), raster = is_raster(p, moving);
     adaptive_resolution *tempo = !moving ? NULL : raster ? &p->raster : &p->traced;
-    const scene view = pass_scene(p, pass, tempo, raster);
-    const render_options options = {.progress_s = poll_s};
-    diagnostic why = {.line = 0};
-    job_account account;
-    shared_image shown;
     p->started_s = clock_wall_s();
     pthread_rwlock_rdlock(&p->snapshot_lock);
-    status code = job_render(p->renderer, &view, &options, &account, &why);
-    const render_result *result = account.result;
-    THEN(code, describe(p, &account, pass, moving, &shown, &why));
+    *out = (started_pass){p->pass, moving, raster, tempo, pass_scene(p, p->pass, tempo, raster)};
+}
+
+void render_worker_end_pass(render_worker *p, const started_pass *of, status code, job_account *account,
+                            diagnostic *why)
+{
+    const render_result *result = account->result;
+    shared_image shown;
+    THEN(code, describe(p, account, of->pass, of->moving, &shown, why));
     pthread_rwlock_unlock(&p->snapshot_lock);
     if (code == STATUS_OK) {
-        if (tempo)
-            adaptive_resolution_update(tempo, result->wall_s, live_frame_s);
+        if (of->tempo)
+            adaptive_resolution_update(of->tempo, result->wall_s, live_frame_s);
         else
-            take_rate(p, pass, result);
-        p->pass = moving ? p->plan.count : pass + 1;
+            take_rate(p, of->pass, result);
+        p->pass = of->moving ? p->plan.count : of->pass + 1;
         p->interrupted = 0;
     } else if (code == STATUS_INTERRUPTED) {
-        p->interrupted += pass == 0 && render_worker_is_stale(p);
+        p->interrupted += of->pass == 0 && render_worker_is_stale(p);
     } else {
         p->pass = p->plan.count;
     }
-    job_account_release(&account);
+    job_account_release(account);
     if (code != STATUS_INTERRUPTED)
-        render_worker_set_error(p, code, &why);
+        render_worker_set_error(p, code, why);
     if (code == STATUS_OK && !publish(p, &shown)) {
         p->pass = p->plan.count;
-        render_worker_set_error(p, out_of_memory(&why), &why);
+        render_worker_set_error(p, out_of_memory(why), why);
     }
+}
+
+void render_worker_render_pass(render_worker *p)
+{
+    const render_options options = {.progress_s = poll_s};
+    diagnostic why = {.line = 0};
+    started_pass of;
+    job_account account;
+    render_worker_begin_pass(p, &of);
+    const status code = job_render(p->renderer, &of.view, &options, &account, &why);
+    render_worker_end_pass(p, &of, code, &account, &why);
 }

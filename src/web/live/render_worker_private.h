@@ -4,6 +4,7 @@
 #pragma once
 
 #include "job/job.h"
+#include "scene/model/scene.h"
 #include "web/live/adaptive_resolution.h"
 #include "web/live/render_worker.h"
 #include "web/live/passes.h"
@@ -53,8 +54,13 @@ struct render_worker {
 
 /* --- for the thread alone --- */
 
-/* The thread's main function, until render_worker_end; of is the render worker. */
-void *render_worker_thread(void *of);
+/* Starts and joins the thread, which runs until render_worker_end; in a browser, where there is none, turns take its
+ * place (src/wasm/render_turns.c). */
+status render_worker_start(render_worker *p, diagnostic *why);
+void render_worker_join(render_worker *p);
+
+/* Seconds until there is work, unless somebody wakes the thread; INFINITY: nothing is left to do. */
+double render_worker_due_s(render_worker *p);
 
 /* Whether the document has a newer generation than the snapshot. */
 bool render_worker_is_stale(render_worker *p);
@@ -66,6 +72,17 @@ void render_worker_renew_snapshot(render_worker *p);
 void render_worker_move_snapshot(render_worker *p);
 /* Renders the next pass and publishes its image. */
 void render_worker_render_pass(render_worker *p);
+/* The same in parts, for a pass that others render. begin fills *out; its view borrows from the snapshot, which is
+ * read-locked until end. end takes the account, and publishes the image after STATUS_OK. */
+typedef struct started_pass {
+    int pass;
+    bool moving, raster;
+    adaptive_resolution *tempo; /* of a moving scene; otherwise NULL */
+    scene view;                 /* the snapshot with the settings of the pass */
+} started_pass;
+void render_worker_begin_pass(render_worker *p, started_pass *out);
+void render_worker_end_pass(render_worker *p, const started_pass *of, status code, job_account *account,
+                            diagnostic *why);
 
 /* Frees the contents of an image that is not shared. */
 void shared_image_drop(const shared_image *p);

@@ -5,6 +5,8 @@
 #include "scene/motion/motion.h"
 #include "scene/model/scene.h"
 
+#include <math.h>
+
 /* The share of a live frame that the motion may take. */
 static const double move_s = 0.02;
 
@@ -13,6 +15,15 @@ static const double move_s = 0.02;
  * being loaded, one that follows INTERRUPTED_MAX interrupted ones goes on for let_through_s. */
 enum { INTERRUPTED_MAX = 3 };
 static const double first_s = 2.0 * RENDER_WORKER_FIRST_S, let_through_s = 0.5;
+
+double render_worker_due_s(render_worker *p)
+{
+    if (render_worker_is_stale(p) || live_is_due(p->live_slime))
+        return 0.0;
+    if (!p->snapshot_ready || p->pass >= p->plan.count)
+        return INFINITY;
+    return p->pass > 0 ? fmax(0.0, p->finer_after_s - clock_wall_s()) : 0.0;
+}
 
 bool render_worker_is_stale(render_worker *p)
 {

@@ -1,0 +1,30 @@
+/* The laboratory of a module: start, turns, and the answers of its tile workers. */
+#include "wasm/exports.h"
+#include "wasm/render_turns.h"
+#include "wasm/trouble.h"
+#include "web/lab.h"
+
+#include <string.h>
+
+int wasm_lab_start(const char *folder, const char *scene, int workers)
+{
+    static char own_folder[256], own_scene[512];
+    lab *own = NULL;
+    diagnostic why = {.line = 0};
+    strncpy(own_folder, folder, sizeof own_folder - 1);
+    strncpy(own_scene, scene, sizeof own_scene - 1);
+    render_turns_set_workers(workers);
+    const lab_settings settings = {
+        .folder = own_folder, .scene = *own_scene ? own_scene : NULL, .results = own_folder, .level = isa_best()};
+    return trouble_note(lab_start(&settings, &own, &why), &why);
+}
+
+double wasm_lab_turn(void)
+{
+    return render_turns_take();
+}
+
+void wasm_lab_traced(int worker, const void *bytes, size_t size)
+{
+    render_turns_traced(worker, bytes, size);
+}

@@ -1,0 +1,30 @@
+/* Included before the files of the laboratory in a WebAssembly module, where there is one thread. What is waited for can
+ * then only be what render_turns.c does at once: loading the scene, serving a grab. Otherwise the wait ends as after its
+ * time, and is noted, so that a request that waited is handled again when something has happened (src/wasm/request.c). */
+#pragma once
+
+#include <errno.h>
+#include <pthread.h>
+#include <stdbool.h>
+#include <time.h>
+
+extern int wasm_waited;
+bool wasm_work_at_once(void);
+
+static inline int pthread_cond_clockwait(pthread_cond_t *condition, pthread_mutex_t *lock, clockid_t clock,
+                                         const struct timespec *until)
+{
+    (void)condition, (void)lock, (void)clock, (void)until;
+    if (wasm_work_at_once())
+        return 0;
+    wasm_waited = 1;
+    return ETIMEDOUT;
+}
+
+/* Musl has one kind of lock. */
+#define PTHREAD_RWLOCK_PREFER_WRITER_NONRECURSIVE_NP 0
+static inline int pthread_rwlockattr_setkind_np(pthread_rwlockattr_t *attributes, int kind)
+{
+    (void)attributes, (void)kind;
+    return 0;
+}

@@ -1,0 +1,317 @@
+/* Turns of the render worker, and passes whose tiles are traced by tile workers. */
+#include "wasm/render_turns.h"
+
+#include "measure/clock.h"
+#include "render/core/shared_frame.h"
+#include "scene/model/integrators.h"
+#include "scene/package/package.h"
+#include "wasm/exports.h"
+#include "wasm/no_threads.h"
+#include "wasm/request.h"
+#include "wasm/tiles.h"
+#include "web/live/render_worker_private.h"
+
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+enum { WORKERS_MAX = 64, SIDE = 32 };
+
+/* An order should take that long: a worker notices only between orders that its pass was given up. Where the frame's
+ * preparation takes longer, such as photons, SETUP_SHARES as long as that. */
+static const double order_s = 0.05, setup_shares = 4.0;
+
+typedef struct remote {
+    bool busy;
+    uint64_t generation;         /* of the scene that it has */
+    double tiles_per_s, setup_s; /* of its last order in this pass; 0: none yet */
+} remote;
+
+static struct turns {
+    render_worker *of;
+    int workers;
+    remote remotes[WORKERS_MAX];
+    bool active;   /* a pass is being traced by the workers */
+    int64_t frame; /* its number */
+    started_pass pass;
+    shared_frame sum;
+    int64_t next, merged; /* tiles */
+    bool has_photons;     /* their counts are in the counters */
+    ray_counters counters;
+    double began_s;
+} now;
+
+void render_turns_set_workers(int workers)
+{
+    now.workers = workers < 0 ? 0 : workers > WORKERS_MAX ? WORKERS_MAX : workers;
+}
+
+status render_worker_start(render_worker *p, diagnostic *why)
+{
+    (void)why;
+    now.of = p;
+    return STATUS_OK;
+}
+
+void render_worker_join(render_worker *p)
+{
+    (void)p;
+    now.of = NULL;
+}
+
+/* --- a pass of the tile workers --- */
+
+static int64_t ceil_div(int64_t a, int64_t b)
+{
+    return (a + b - 1) / b;
+}
+
+/* Photons are traced for every order: each worker gets one. */
+static int64_t order_size(const remote *r)
+{
+    const int64_t all = now.sum.places.tile_count, left = all - now.next;
+    if (scene_has_caustics(&now.pass.view.render))
+        return ceil_div(all, now.workers);
+    const double wanted_s = fmax(order_s, setup_shares * r->setup_s);
+    const int64_t wanted =
+        r->tiles_per_s > 0.0 ? (int64_t)ceil(r->tiles_per_s * wanted_s) : ceil_div(all, 16 * now.workers);
+    const int64_t fair = ceil_div(left, 2 * (int64_t)now.workers); /* so that all end at about the same time */
+    return wanted < fair ? wanted : fair;
+}
+
+static void give(int worker)
+{
+    remote *r = &now.remotes[worker];
+    const int64_t left = now.sum.places.tile_count - now.next;
+    if (r->busy || left <= 0)
+        return;
+    const int64_t size = order_size(r), count = size < left ? size : left;
+    const tile_order order = {.frame = now.frame,
+                              .shrink = now.of->plan.shrink[now.pass.pass],
+                              .single = now.of->plan.single[now.pass.pass],
+                              .side = now.sum.places.tile,
+                              .first = (int32_t)now.next,
+                              .count = (int32_t)count};
+    now.next += count;
+    r->busy = true;
+    host_send(worker, 1, &order, sizeof order);
+}
+
+static void finish(status code, job_account *account, diagnostic *why)
+{
+    shared_frame_release(&now.sum);
+    now.active = false;
+    now.frame++;
+    render_worker_end_pass(now.of, &now.pass, code, account, why);
+}
+
+/* The pass is out of date; the answers to its orders are dropped. */
+static void give_up(void)
+{
+    diagnostic why = {.line = 0};
+    job_account none = {.result = NULL};
+    finish(STATUS_INTERRUPTED, &none, &why);
+}
+
+static void fail(status code, diagnostic *why)
+{
+    job_account none = {.result = NULL};
+    finish(code, &none, why);
+}
+
+static status sum_up(job_account *account, diagnostic *why)
+{
+    TRY(job_account_begin(&now.pass.view, job_isa(now.of->renderer), 1, account, why));
+    render_result *result = calloc(1, sizeof *result);
+    if (!result || !(result->workers = calloc((size_t)now.workers, sizeof *result->workers))) {
+        free(result);
+        return out_of_memory(why);
+    }
+    const double wall_s = clock_wall_s() - now.began_s;
+    account->result = result;
+    result->img = now.sum.img;
+    result->variance = now.sum.variance;
+    now.sum.img = NULL;
+    now.sum.variance = NULL;
+    result->counters = now.counters;
+    result->replicates = renderer_replicates(&now.pass.view);
+    result->worker_count = now.workers;
+    result->wall_s = account->wall_s[0] = wall_s;
+    result->cpu_s = account->cpu_s[0] = NAN;
+    account->count = 1;
+    account->whole = true;
+    return STATUS_OK;
+}
+
+static void complete(void)
+{
+    diagnostic why = {.line = 0};
+    job_account account = {.result = NULL};
+    const status code = sum_up(&account, &why);
+    finish(code, &account, &why);
+}
+
+/* render.error needs the noise of the whole image, which no worker has. */
+static bool can_share(const scene *view)
+{
+    return now.workers > 0 && !(view->render.error > 0.0 && view->render.integrator == INTEGRATOR_PATH);
+}
+
+/* Gives the snapshot to the workers that have an older one. */
+static status send_scene(render_worker *p, diagnostic *why)
+{
+    bool all = true;
+    for (int i = 0; i < now.workers; i++)
+        all &= now.remotes[i].generation == p->snapshot_generation && !p->was_on;
+    if (all)
+        return STATUS_OK;
+    void *bytes = NULL;
+    size_t size = 0;
+    TRY(scene_build_hierarchies(p->snapshot, why));
+    TRY(scene_pack(p->snapshot, &bytes, &size, why));
+    for (int i = 0; i < now.workers; i++) {
+        host_send(i, 0, bytes, size);
+        now.remotes[i].generation = p->snapshot_generation;
+    }
+    free(bytes);
+    return STATUS_OK;
+}
+
+/* Starts the pass with the workers; false if it has to be rendered here. */
+static bool share_pass(render_worker *p)
+{
+    diagnostic why = {.line = 0};
+    if (p->pass == 0 || live_is_moving(p->live_slime))
+        return false;
+    render_worker_begin_pass(p, &now.pass);
+    if (!can_share(&now.pass.view) || send_scene(p, &why) != STATUS_OK) {
+        pthread_rwlock_unlock(&p->snapshot_lock);
+        return false;
+    }
+    now.active = true;
+    now.next = now.merged = 0;
+    now.has_photons = false;
+    now.counters = (ray_counters){.camera = 0};
+    now.began_s = clock_wall_s();
+    const status code = shared_frame_begin(&now.pass.view, SIDE, &now.sum, &why);
+    if (code != STATUS_OK) {
+        fail(code, &why);
+        return true;
+    }
+    for (int i = 0; i < now.workers; i++) {
+        now.remotes[i].tiles_per_s = now.remotes[i].setup_s = 0.0;
+        give(i);
+    }
+    return true;
+}
+
+/* --- answers --- */
+
+/* Adds the tiles; false for an answer that is not whole. */
+static bool merge(const tile_answer *a, const char *at, const char *end)
+{
+    for (int i = 0; i < a->traced; i++) {
+        int64_t tile;
+        if ((size_t)(end - at) < sizeof tile)
+            return false;
+        memcpy(&tile, at, sizeof tile);
+        at += sizeof tile;
+        const size_t bytes = shared_frame_values(&now.sum, tile) * sizeof(int64_t);
+        if (bytes == 0 || (size_t)(end - at) < bytes)
+            return false;
+        shared_frame_put(&now.sum, tile, (const int64_t *)(const void *)at);
+        at += bytes;
+    }
+    now.merged += a->traced;
+    return true;
+}
+
+/* Every order counts the same photons. */
+static void count(const tile_answer *a)
+{
+    ray_counters c = a->counters;
+    if (now.has_photons)
+        c.photon = 0, c.cut_photon = 0;
+    now.has_photons = true;
+    ray_counters_add(&now.counters, &c);
+}
+
+void render_turns_traced(int worker, const void *bytes, size_t size)
+{
+    const tile_answer *a = bytes;
+    remote *r = &now.remotes[worker];
+    r->busy = false;
+    if (!now.active)
+        return;
+    if (size < sizeof *a || a->of.frame != now.frame) {
+        give(worker);
+        return;
+    }
+    diagnostic why = a->why;
+    if (a->code != STATUS_OK) {
+        fail((status)a->code, &why);
+        return;
+    }
+    if (a->traced != a->of.count || !merge(a, (const char *)(a + 1), (const char *)bytes + size)) {
+        fail(diagnose(&why, STATUS_FAILURE, "report this as a bug, with the scene", "tiles are not traced"), &why);
+        return;
+    }
+    count(a);
+    r->setup_s = isnan(a->setup_s) ? 0.0 : a->setup_s;
+    r->tiles_per_s = a->traced / fmax(1e-6, a->wall_s - r->setup_s);
+    if (now.merged == now.sum.places.tile_count)
+        complete();
+    else
+        give(worker);
+}
+
+/* --- turns --- */
+
+/* For a request that waits: what can be done at once (no_threads.h). */
+bool wasm_work_at_once(void)
+{
+    render_worker *p = now.of;
+    if (!p)
+        return false;
+    const bool stale = render_worker_is_stale(p);
+    if (!stale && !(p->snapshot && live_is_asked(p->live_slime)))
+        return false;
+    if (now.active)
+        give_up();
+    if (stale)
+        render_worker_renew_snapshot(p);
+    else
+        render_worker_move_snapshot(p);
+    return true;
+}
+
+/* One round of the loop of render_worker_thread.c. */
+static void work(render_worker *p)
+{
+    if (render_worker_is_stale(p))
+        render_worker_renew_snapshot(p);
+    if (p->snapshot && (live_is_due(p->live_slime) || p->was_on))
+        render_worker_move_snapshot(p);
+    if (p->snapshot_ready && p->pass < p->plan.count && !share_pass(p))
+        render_worker_render_pass(p);
+}
+
+double render_turns_take(void)
+{
+    render_worker *p = now.of;
+    if (!p)
+        return -1.0;
+    if (p->again)
+        p->taken_generation = 0;
+    p->again = false;
+    const bool changed = render_worker_is_stale(p) || live_is_due(p->live_slime);
+    if (now.active && changed)
+        give_up();
+    if (!now.active && render_worker_due_s(p) <= 0.0)
+        work(p);
+    requests_retry();
+    if (now.active && !render_worker_is_stale(p) && !live_is_due(p->live_slime))
+        return -1.0; /* until answers arrive */
+    const double due_s = render_worker_due_s(p);
+    return isinf(due_s) ? -1.0 : 1000.0 * due_s;
+}

@@ -1,0 +1,133 @@
+/* A tile worker: traces the tiles of orders in the scene that it was given last. */
+#include "job/job.h"
+#include "measure/clock.h"
+#include "render/core/shared_frame.h"
+#include "scene/model/scene.h"
+#include "scene/package/package.h"
+#include "wasm/exports.h"
+#include "wasm/tiles.h"
+#include "wasm/trouble.h"
+#include "web/live/passes.h"
+
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+static job *own_job;
+static scene *own_scene;
+
+/* The answer that is being filled. */
+typedef struct answering {
+    schedule tiles;
+    int64_t next, end;
+    double began_s;
+    char *bytes; /* a tile_answer, then its tiles */
+    size_t size, room;
+    bool failed;
+} answering;
+
+static answering now;
+
+static tile_answer *head(void)
+{
+    return (tile_answer *)(void *)now.bytes;
+}
+
+static bool make_room(size_t size)
+{
+    if (now.size + size <= now.room)
+        return true;
+    const size_t room = 2 * now.room > now.size + size ? 2 * now.room : now.size + size;
+    char *grown = realloc(now.bytes, room);
+    if (!grown)
+        return false;
+    now.bytes = grown;
+    now.room = room;
+    return true;
+}
+
+int wasm_tiles_scene(const void *bytes, size_t size)
+{
+    diagnostic why = {.line = 0};
+    scene_destroy(own_scene);
+    own_scene = NULL;
+    status code = own_job ? STATUS_OK : job_create(&(job_settings){.level = NULL}, &own_job, &why);
+    THEN(code, scene_unpack(bytes, size, &own_scene, &why));
+    return trouble_note(code, &why);
+}
+
+static bool next(void *context, int worker, span *out)
+{
+    (void)context, (void)worker;
+    if (isnan(head()->setup_s))
+        head()->setup_s = clock_wall_s() - now.began_s;
+    return now.next < now.end && !now.failed && schedule_tile(&now.tiles, now.next++, out);
+}
+
+static bool done(void *context, const span *piece, const film *traced, const double *variance)
+{
+    (void)context;
+    const int64_t tile = piece->y0 / now.tiles.tile * now.tiles.tiles_across + piece->x0 / now.tiles.tile;
+    const size_t values = 3 * (size_t)(piece->x1 - piece->x0) * (size_t)(piece->y1 - piece->y0) * sizeof(int64_t);
+    if (!make_room(sizeof tile + 2 * values)) {
+        now.failed = true;
+        return false;
+    }
+    memcpy(now.bytes + now.size, &tile, sizeof tile);
+    memcpy(now.bytes + now.size + sizeof tile, traced->sum, values);
+    now.size += sizeof tile + values;
+    if (variance) {
+        memcpy(now.bytes + now.size, variance, values);
+        now.size += values;
+    }
+    head()->traced++;
+    return true;
+}
+
+static status trace(const tile_order *order, diagnostic *why)
+{
+    if (!own_scene)
+        return diagnose(why, STATUS_FAILURE, "load the page again", "a worker has no scene");
+    scene view = *own_scene;
+    view.render = passes_settings(&own_scene->render, order->shrink, order->single);
+    view.render.threads = 1;
+    const render_settings settings = tiles_settings(&view.render, order->side);
+    schedule_start(&now.tiles, &settings);
+    const piece_source source = {.side = order->side, .next = next, .done = done};
+    const render_options options = {.source = &source};
+    job_account account;
+    status code = job_render(own_job, &view, &options, &account, why);
+    if (account.result)
+        head()->counters = account.result->counters;
+    job_account_release(&account);
+    return now.failed ? out_of_memory(why) : code;
+}
+
+const void *wasm_tiles_trace(const void *bytes, size_t size, size_t *answer_size)
+{
+    static tile_answer no_memory = {.code = STATUS_FAILURE};
+    tile_order order;
+    memcpy(&order, bytes, size < sizeof order ? size : sizeof order);
+    now.size = 0;
+    now.failed = false;
+    now.next = order.first;
+    now.end = order.first + order.count;
+    now.began_s = clock_wall_s();
+    if (!make_room(sizeof(tile_answer))) {
+        no_memory.of = order;
+        out_of_memory(&no_memory.why);
+        *answer_size = sizeof no_memory;
+        return &no_memory;
+    }
+    now.size = sizeof(tile_answer);
+    memset(now.bytes, 0, now.size);
+    head()->of = order;
+    head()->setup_s = NAN;
+    diagnostic why = {.line = 0};
+    const status code = trace(&order, &why); /* moves the answer */
+    head()->code = (int32_t)code;
+    head()->why = why;
+    head()->wall_s = clock_wall_s() - now.began_s;
+    *answer_size = now.size;
+    return now.bytes;
+}

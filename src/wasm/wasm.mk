@@ -1,0 +1,71 @@
+# The library and the laboratory as a WebAssembly module, for browsers: build/wasm/simd128 and build/wasm/plain.
+# Included by the Makefile. Debian's emscripten compiles it; its libraries come from Debian's source packages.
+
+wasm := build/wasm
+EMCC ?= emcc
+# Debian's emscripten expects Debian's modules for node, whichever node is installed.
+export NODE_PATH := $(if $(NODE_PATH),$(NODE_PATH):)/usr/share/nodejs:/usr/lib/nodejs
+
+# Two modules of one source: a browser without 128-bit vectors refuses a module that has them.
+wasm_isas := simd128 plain
+wasm_isa_flags_simd128 := -msimd128
+
+# No studies, which measure a machine, and nothing of the operating system; src/wasm has what replaces them.
+wasm_without := src/study/% src/engine/study% src/base/child.c src/base/spawn.c src/base/os_confine% \
+  src/measure/hardware_counter.c src/measure/topology_discover.c src/measure/disturbances.c src/measure/levels.c \
+  src/scene/assets/mesh_child% src/scene/assets/mesh_program.c src/scene/assets/mesh_file.c src/render/core/worker_pool.c
+wasm_web := $(filter-out $(addprefix src/web/http/http_,events.c guard.c gzip.c library.c request.c send.c watch.c) src/web/http/http.c src/web/lab_confine.c $(addprefix src/web/,$(addprefix api/api_,machine.c studies.c study_% \
+  video.c) api/study_json.c $(addprefix session/,figures% rescue% studies.c study_files.c task_thread.c videos.c) \
+  live/render_worker_thread.c),$(web))
+wasm_sources := $(filter-out $(wasm_without),$(library)) $(kernels) $(wasm_web) $(filter src/wasm/%,$(sources))
+
+wasm_flags = -std=gnu17 -D_GNU_SOURCE -O3 $(arithmetic) -Isrc -I$(wasm)/libraries/include -include src/wasm/lacking.h \
+  -DCUVETTE_VERSION='"$(version)"' -DCUVETTE_COMPILER_FLAGS='"wasm: -O3 $(arithmetic)"' \
+  $(filter-out -Wvla,$(warnings)) -Wno-enum-float-conversion -Wno-shorten-64-to-32 -Wno-pass-failed $(errors)
+wasm_libs := $(addprefix $(wasm)/libraries/lib/lib,png.a jpeg.a yaml.a jansson.a z.a)
+
+.PHONY: wasm setup-wasm
+setup-wasm: | $(filter setup,$(MAKECMDGOALS)) ## install what make wasm requires: emscripten, the sources of its libraries
+	@.ci/setup-wasm
+wasm: $(foreach i,$(wasm_isas),$(wasm)/$(i)/cuvette.wasm) ## build the laboratory as WebAssembly, for browsers, in build/wasm
+
+$(wasm)/flags: always | $(filter setup-wasm,$(MAKECMDGOALS))
+	@command -v $(firstword $(EMCC)) >/dev/null || \
+	  { echo 'wasm: emscripten is not installed; run: make setup-wasm' >&2; exit 1; }
+	@mkdir -p $(@D)
+	@echo '$(subst ','\'',$(EMCC) $(wasm_flags))' | cmp -s - $@ || echo '$(subst ','\'',$(EMCC) $(wasm_flags))' >$@
+$(wasm)/libraries/complete: src/wasm/libraries.sh $(wasm)/flags
+	$(call say,emcc $(wasm)/libraries)
+	$(quiet)src/wasm/libraries.sh $(wasm)/sources $(@D) >$(wasm)/libraries.log 2>&1 || \
+	  { tail -n 20 $(wasm)/libraries.log | cut -c 1-300 >&2; exit 1; }
+	@touch $@
+$(wasm_libs): $(wasm)/libraries/complete
+
+define wasm_rules
+wasm_objects_$(1) := $(patsubst src/%.c,$(wasm)/$(1)/obj/%.o,$(wasm_sources))
+$(wasm)/$(1)/obj/%.o: src/%.c $(wasm)/flags $(wasm)/libraries/complete
+	$$(call say,emcc $$< for $(1))
+	@mkdir -p $$(@D)
+	$$(quiet)$(EMCC) $$(wasm_flags) $(wasm_isa_flags_$(1)) -DKERNEL_ISA=$(1) -MMD -MP -c -o $$@ $$<
+$(wasm)/$(1)/obj/web/%.o: private wasm_flags += -include src/wasm/no_threads.h
+$(wasm)/$(1)/obj/base/build_id.o: $(build)/build_id
+$(wasm)/$(1)/obj/base/build_id.o: private wasm_flags += -DCUVETTE_BUILD_ID='"$$(shell sed -n 1p $(build)/build_id)"' \
+  -DCUVETTE_BUILD_COMMIT='"$$(shell sed 1d $(build)/build_id)"'
+$(wasm)/$(1)/cuvette.wasm: $$(wasm_objects_$(1)) $(wasm_libs) $(wasm)/exports
+	$$(call say,link $$@)
+	$$(quiet)$(EMCC) -O3 $(wasm_isa_flags_$(1)) $$(wasm_link) -o $$(@:.wasm=.mjs) $$(filter %.o %.a,$$^)
+-include $$(wasm_objects_$(1):.o=.d)
+endef
+$(foreach i,$(wasm_isas),$(eval $(call wasm_rules,$(i))))
+
+# Everything that cuvette.h declares, but for studies, and what the scripts of src/wasm call.
+$(wasm)/exports: src/cuvette.h src/wasm/exports.h src/wasm/wasm.mk
+	@mkdir -p $(@D)
+	@{ grep -oh '\bcuvette_[a-z0-9_]*(' src/cuvette.h | grep -v '_study_\|each_column\|text_destroy'; \
+	  grep -oh '\bwasm_[a-z0-9_]*(' src/wasm/exports.h; echo 'malloc('; echo 'free('; } | sort -u | sed 's/^/_/; s/($$//' >$@
+
+# Memory grows; a stack as that of a thread. The page compiles the module once for all its workers.
+wasm_link = -sEXPORTED_FUNCTIONS=@$(wasm)/exports -sEXPORTED_RUNTIME_METHODS=FS,UTF8ToString,stringToUTF8,lengthBytesUTF8 \
+  -sMODULARIZE -sEXPORT_ES6 -sEXPORT_NAME=cuvette -sENVIRONMENT=web,worker,node -sALLOW_MEMORY_GROWTH -sMAXIMUM_MEMORY=2GB \
+  -sTOTAL_STACK=1MB -sINITIAL_MEMORY=32MB -sALLOW_TABLE_GROWTH -sFILESYSTEM -sINCOMING_MODULE_JS_API=instantiateWasm,print,printErr,locateFile \
+  -sERROR_ON_UNDEFINED_SYMBOLS=1 --js-library src/wasm/imports.js
