@@ -385,14 +385,15 @@ dictionary: $(build)/tests/test_quantities $(build)/cuvette ## renew the tables 
 	@awk -f src/manual/results.awk results/README.md >$(build)/results.roff
 	@$(call renew,results,src/manual/man5/cuvette-results.5)
 
-# The page in a real browser: only=NAME for tests/web/NAME.test.mjs alone, screenshots=FOLDER for images of every view. Runs after everything
-# that installs or measures.
+# The page in a real browser: only=NAME for tests/web/NAME.test.mjs alone, screenshots=FOLDER for images of every view, ENGINE=browser for the
+# laboratory of `make wasm` in the page instead of the program. Runs after everything that installs or measures.
 .PHONY: test-web setup-web
 setup-web: | $(filter setup setup-peers setup-python setup-mpi,$(MAKECMDGOALS))
 	@.ci/setup-web $(build)/web-tests
-test-web: $(build)/cuvette | setup-web $(filter test test-mpi experiments bench,$(MAKECMDGOALS)) ## test the laboratory's page in Chromium, installed with node if missing; only=NAME for one file
+test-web: $(build)/cuvette $(if $(filter browser,$(ENGINE)),wasm) | setup-web $(filter test test-mpi experiments bench,$(MAKECMDGOALS)) ## test the laboratory's page in Chromium, installed with node if missing; only=NAME for one file, ENGINE=browser without the server
 	@tests/format.sh --check $(build)/web-tests
 	@node tests/web/run.mjs --program '$(abspath $(build)/cuvette)' --modules '$(abspath $(build)/web-tests)' \
+	  $(if $(ENGINE),--engine '$(ENGINE)' --wasm '$(abspath $(wasm))') \
 	  $(if $(screenshots),--screenshots '$(abspath $(screenshots))') $(only)
 
 # Other architectures, with Debian's cross compilers and qemu-user: arch="s390x" for one of .ci/architectures, SIZE=160x120 for larger films.

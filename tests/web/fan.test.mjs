@@ -129,7 +129,7 @@ export const cases = {
     await fan.getByText('From one point').click();
     await fan.getByRole('spinbutton', { name: 'Angle' }).waitFor();
     await screen.quiet();
-    t.match(await fan.locator('img').getAttribute('src'), /spread=20/, 'the drawing is that of the form');
+    t.match(await fan.locator('img').getAttribute('data-path'), /spread=20/, 'the drawing is that of the form');
     await fan.scrollIntoViewIfNeeded();
     await t.axe(screen, 'the fan');
     await t.picture(screen, 'bench-fan');

@@ -1,5 +1,6 @@
 /* The panels as tabs next to the image, and the splitter between them. A panel is created when it is first shown.
- * exports: createPanels(side, splitter, workspace, panels, lab) -> {use(id), chosen()}
+ * exports: createPanels(side, splitter, workspace, panels, lab) -> {use(id), chosen(), reveal()}
+ * reveal(): shows the image if a wide panel covers it
  * panel: {id, title, wide?, css?, start?(lab), create(root, lab), shown?(), hidden?()}; start is called once when
  * the page opens, for tools of the image; a wide panel takes the whole width, without the image; css is the name of
  * its own style sheet (panel_ID.css), which uses the variables of lab.css for all colours and starts each rule with
@@ -37,7 +38,7 @@ export function createPanels(side, splitter, workspace, panels, lab) {
       ? memory.get('panel')
       : (panels.find((panel) => panel.id === FIRST) || panels[0])?.id,
   );
-  return { use, chosen: () => chosen };
+  return { use, chosen: () => chosen, reveal };
 
   function makeEntry(panel) {
     if (panel.css) document.head.append(element('link', { rel: 'stylesheet', href: panel.css }));
@@ -101,6 +102,10 @@ export function createPanels(side, splitter, workspace, panels, lab) {
     entries.get(id).tab.scrollIntoView({ block: 'nearest', inline: 'nearest' });
     memory.set('panel', id);
     lab.emit('panel', id);
+  }
+
+  function reveal() {
+    if (entries.get(chosen)?.panel.wide) use(FIRST);
   }
 
   function key(event) {

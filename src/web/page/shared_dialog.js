@@ -28,7 +28,9 @@ export function share(lab) {
   const link = form(
     'Copy link',
     'copy',
-    'A link with the scene, for a laboratory at the same address on this machine. Others can open the HTML file.',
+    lab.engine.kind === 'server'
+      ? 'A link with the scene, for a laboratory at the same address on this machine. Others can open the HTML file.'
+      : 'A link with the scene, which opens in any browser that can reach this page.',
     act(() => copyLink(lab)),
   );
   const png = form(
