@@ -11,7 +11,7 @@ wasm_isas := simd128 plain
 wasm_isa_flags_simd128 := -msimd128
 
 # No studies, which measure a machine, and nothing of the operating system; src/wasm has what replaces them.
-wasm_without := src/study/% src/engine/study% src/base/child.c src/base/spawn.c src/base/os_confine% \
+wasm_without := src/study/% src/engine/study% src/base/below.c src/base/child.c src/base/spawn.c src/base/os_confine% \
   src/measure/hardware_counter.c src/measure/topology_discover.c src/measure/disturbances.c src/measure/levels.c \
   src/scene/assets/mesh_child% src/scene/assets/mesh_program.c src/scene/assets/mesh_file.c src/render/core/worker_pool.c
 wasm_web := $(filter-out $(addprefix src/web/http/http_,events.c guard.c gzip.c library.c request.c send.c watch.c) src/web/http/http.c src/web/lab_confine.c $(addprefix src/web/,$(addprefix api/api_,machine.c studies.c study_% \
@@ -22,12 +22,13 @@ wasm_sources := $(filter-out $(wasm_without),$(library)) $(kernels) $(wasm_web) 
 wasm_flags = -std=gnu17 -D_GNU_SOURCE -O3 $(arithmetic) -Isrc -I$(wasm)/libraries/include -include src/wasm/lacking.h \
   -DCUVETTE_VERSION='"$(version)"' -DCUVETTE_COMPILER_FLAGS='"wasm: -O3 $(arithmetic)"' \
   $(filter-out -Wvla,$(warnings)) -Wno-enum-float-conversion -Wno-shorten-64-to-32 -Wno-pass-failed $(errors)
+wasm_scripts := $(addprefix src/wasm/,memory.js lab_worker.js tile_worker.js worker.js)
 wasm_libs := $(addprefix $(wasm)/libraries/lib/lib,png.a jpeg.a yaml.a jansson.a z.a)
 
 .PHONY: wasm setup-wasm
 setup-wasm: | $(filter setup,$(MAKECMDGOALS)) ## install what make wasm requires: emscripten, the sources of its libraries
 	@.ci/setup-wasm
-wasm: $(foreach i,$(wasm_isas),$(wasm)/$(i)/cuvette.wasm) ## build the laboratory as WebAssembly, for browsers, in build/wasm
+wasm: $(foreach i,$(wasm_isas),$(wasm)/$(i)/worker.js) ## build the laboratory as WebAssembly, for browsers, in build/wasm
 
 $(wasm)/flags: always | $(filter setup-wasm,$(MAKECMDGOALS))
 	@command -v $(firstword $(EMCC)) >/dev/null || \
@@ -53,7 +54,10 @@ $(wasm)/$(1)/obj/base/build_id.o: private wasm_flags += -DCUVETTE_BUILD_ID='"$$(
   -DCUVETTE_BUILD_COMMIT='"$$(shell sed 1d $(build)/build_id)"'
 $(wasm)/$(1)/cuvette.wasm: $$(wasm_objects_$(1)) $(wasm_libs) $(wasm)/exports
 	$$(call say,link $$@)
-	$$(quiet)$(EMCC) -O3 $(wasm_isa_flags_$(1)) $$(wasm_link) -o $$(@:.wasm=.mjs) $$(filter %.o %.a,$$^)
+	$$(quiet)$(EMCC) -O3 $(wasm_isa_flags_$(1)) $$(wasm_link) -o $$(@:.wasm=.js) $$(filter %.o %.a,$$^)
+# The script of all workers.
+$(wasm)/$(1)/worker.js: $(wasm)/$(1)/cuvette.wasm $(wasm_scripts)
+	$$(quiet)cat $(wasm)/$(1)/cuvette.js $(wasm_scripts) >$$@
 -include $$(wasm_objects_$(1):.o=.d)
 endef
 $(foreach i,$(wasm_isas),$(eval $(call wasm_rules,$(i))))
@@ -66,6 +70,6 @@ $(wasm)/exports: src/cuvette.h src/wasm/exports.h src/wasm/wasm.mk
 
 # Memory grows; a stack as that of a thread. The page compiles the module once for all its workers.
 wasm_link = -sEXPORTED_FUNCTIONS=@$(wasm)/exports -sEXPORTED_RUNTIME_METHODS=FS,UTF8ToString,stringToUTF8,lengthBytesUTF8 \
-  -sMODULARIZE -sEXPORT_ES6 -sEXPORT_NAME=cuvette -sENVIRONMENT=web,worker,node -sALLOW_MEMORY_GROWTH -sMAXIMUM_MEMORY=2GB \
+  -sMODULARIZE -sEXPORT_NAME=cuvette -sWASM_BIGINT -sENVIRONMENT=web,worker,node -sALLOW_MEMORY_GROWTH -sMAXIMUM_MEMORY=2GB \
   -sTOTAL_STACK=1MB -sINITIAL_MEMORY=32MB -sALLOW_TABLE_GROWTH -sFILESYSTEM -sINCOMING_MODULE_JS_API=instantiateWasm,print,printErr,locateFile \
   -sERROR_ON_UNDEFINED_SYMBOLS=1 --js-library src/wasm/imports.js

@@ -1,0 +1,103 @@
+/* The laboratory's worker: it gets its module and its files in the first message, and answers the page's requests
+ * (page/engine_browser.js). Tile workers are its own.
+ *
+ * page -> worker  {boot: {wasm, files, scene, workers}}
+ *                   wasm: a WebAssembly.Module, or the bytes of one; files: [{name, bytes}]; scene: a name, or null for
+ *                   an empty room; workers: the number of tile workers
+ *                 {id, method, path, body}    body: JSON text or null
+ *                 {file: {name, bytes}}       one more file of the folder
+ * worker -> page  {ready: true, isa} or {failed: text}
+ *                 {id, status, headers, bytes}
+ *                 {event, value}              value: JSON text */
+
+const FOLDER = '/laboratory';
+
+let lab = null; /* emscripten's module */
+let scheduled = false;
+let later = 0; /* a timer */
+
+/* --- files --- */
+
+function putFile({ name, bytes }) {
+  const parts = `${FOLDER}/${name}`.split('/');
+  for (let i = 2; i < parts.length; i++) {
+    const folder = parts.slice(0, i).join('/');
+    if (!lab.FS.analyzePath(folder).exists) lab.FS.mkdir(folder);
+  }
+  lab.FS.writeFile(parts.join('/'), bytes);
+}
+
+/* --- turns --- */
+
+/* A message to itself comes after the messages that wait, and without the delay of a timer. */
+const bell = new MessageChannel();
+bell.port1.onmessage = takeTurn;
+
+function schedule() {
+  if (scheduled) return;
+  scheduled = true;
+  bell.port2.postMessage(null);
+}
+
+function takeTurn() {
+  scheduled = false;
+  clearTimeout(later);
+  const wait_ms = lab._wasm_lab_turn();
+  if (wait_ms === 0) schedule();
+  else if (wait_ms > 0) later = setTimeout(takeTurn, wait_ms);
+}
+
+/* --- tile workers --- */
+
+const tileWorkers = [];
+
+function startTileWorker(compiled) {
+  const worker = new Worker(self.location.href);
+  const number = tileWorkers.push(worker) - 1;
+  worker.postMessage({ tiles: compiled });
+  worker.onmessage = ({ data }) => {
+    if (data.failed) postMessage({ failed: data.failed });
+    else withBytes(lab, data.traced, (address, size) => lab._wasm_lab_traced(number, address, size));
+    schedule();
+  };
+  worker.onerror = (event) => postMessage({ failed: event.message || 'a tile worker cannot start' });
+}
+
+/* What the module calls. */
+const host = {
+  reply: (id, status, headers, bytes) =>
+    postMessage({ id, status, headers, bytes: bytes.buffer }, [bytes.buffer]),
+  event: (event, value) => postMessage({ event, value }),
+  send: (worker, kind, bytes) =>
+    tileWorkers[worker].postMessage(kind === 0 ? { scene: bytes } : { order: bytes }, [bytes.buffer]),
+};
+
+/* --- messages of the page --- */
+
+async function startLab({ wasm, files, scene, workers }) {
+  const compiled = wasm instanceof WebAssembly.Module ? wasm : await WebAssembly.compile(wasm);
+  lab = await instantiate(compiled, host);
+  lab.FS.mkdir(FOLDER);
+  lab.FS.chdir(FOLDER);
+  files.forEach(putFile);
+  for (let i = 0; i < workers; i++) startTileWorker(compiled);
+  const code = withText(lab, FOLDER, (folder) =>
+    withText(lab, scene ? `${FOLDER}/${scene}` : '', (name) => lab._wasm_lab_start(folder, name, workers)),
+  );
+  if (code !== 0) throw new Error(lab.UTF8ToString(lab._wasm_why()));
+  postMessage({ ready: true, isa: lab.UTF8ToString(lab._wasm_isa()) });
+  schedule();
+}
+
+function labMessage({ id, method, path, body, file }) {
+  if (file) {
+    putFile(file);
+    return;
+  }
+  withText(lab, method, (how) =>
+    withText(lab, path, (target) =>
+      withText(lab, body ?? '', (text, size) => lab._wasm_lab_request(id, how, target, text, size)),
+    ),
+  );
+  schedule();
+}

@@ -1,0 +1,29 @@
+/* The module of a worker, and bytes in its memory. */
+'use strict';
+
+/* compiled: a WebAssembly.Module; host: what the module calls (imports.js). */
+async function instantiate(compiled, host) {
+  return cuvette({
+    host,
+    instantiateWasm(imports, done) {
+      WebAssembly.instantiate(compiled, imports).then((instance) => done(instance, compiled));
+      return {};
+    },
+  });
+}
+
+/* Calls use(address, size) with a copy of the bytes in the module's memory, followed by a 0. */
+function withBytes(module, bytes, use) {
+  const address = module._malloc(bytes.length + 1);
+  if (!address) throw new Error('out of memory');
+  module.HEAPU8.set(bytes, address);
+  module.HEAPU8[address + bytes.length] = 0;
+  try {
+    return use(address, bytes.length);
+  } finally {
+    module._free(address);
+  }
+}
+
+const encoder = new TextEncoder();
+const withText = (module, text, use) => withBytes(module, encoder.encode(text), use);

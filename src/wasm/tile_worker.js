@@ -1,0 +1,25 @@
+/* A tile worker.
+ *
+ * laboratory -> worker  {tiles: WebAssembly.Module}, first; {scene: bytes}; {order: bytes}
+ * worker -> laboratory  {traced: bytes} for each order, or {failed: text} */
+
+let tracer = null; /* emscripten's module */
+
+async function startTiles(compiled) {
+  tracer = await instantiate(compiled, {});
+}
+
+function traceTiles(order) {
+  const size = tracer._malloc(4);
+  const answer = withBytes(tracer, order, (address, length) => tracer._wasm_tiles_trace(address, length, size));
+  const length = new DataView(tracer.HEAPU8.buffer).getUint32(size, true);
+  const bytes = tracer.HEAPU8.slice(answer, answer + length);
+  tracer._free(size);
+  postMessage({ traced: bytes }, [bytes.buffer]);
+}
+
+function tileMessage({ scene, order }) {
+  if (order) traceTiles(order);
+  else if (withBytes(tracer, scene, (address, size) => tracer._wasm_tiles_scene(address, size)) !== 0)
+    throw new Error(tracer.UTF8ToString(tracer._wasm_why()));
+}
