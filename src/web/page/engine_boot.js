@@ -1,12 +1,13 @@
-/* Starts the worker of a page without a server. A site may say in globalThis.cuvetteEngine where the parts are; without
- * it they are in the folder engine next to the page:
- *   worker    address or text of its script                                         engine/lab_worker.js
- *   script    {simd128, plain}: addresses or texts of cuvette.js                    engine/simd128/cuvette.js, ..
- *   module    {simd128, plain}: addresses or bytes of cuvette.wasm                  engine/simd128/cuvette.wasm, ..
- *   files     the laboratory's folder: {NAME: text or {base64}}, or its address     engine/files.json
+/* Starts the worker of a page without a server (src/wasm/lab_worker.js). Its parts are in the folder engine next to the
+ * page, or a site has some of them in globalThis.cuvetteEngine, as values or promises:
+ *   started   the worker, if the site has started it (src/web/site/boot.js)
+ *   worker    the text of its script                                            engine/simd128/worker.js, or plain
+ *   module    the Response with its module; both have 128-bit vectors           engine/simd128/cuvette.wasm, or plain
+ *   files     the laboratory's folder: {NAME: text or {base64}}                 engine/files.json
  *   scene     the file that is opened; the page's address may name another (?scene=NAME); null: none
  *   workers   workers that trace tiles; default: one for each processor
- * exports: startWorker() -> promise of the worker, which has got its first message */
+ * exports: startWorker() -> promise of the worker, which has got its first message; worker.early: what it has sent before
+ *                           someone listened */
 
 const WORKERS_MAX = 8; /* each has a memory of its own */
 
@@ -14,40 +15,49 @@ const WORKERS_MAX = 8; /* each has a memory of its own */
 const VECTOR = [0, 97, 115, 109, 1, 0, 0, 0, 1, 4, 1, 96, 0, 0, 3, 2, 1, 0, 10, 23, 1, 21, 0, 253, 12];
 const hasVectors = () => WebAssembly.validate(new Uint8Array([...VECTOR, ...new Array(16).fill(0), 26, 11]));
 
+const absolute = (name) => new URL(`engine/${name}`, document.baseURI).href;
+
 export async function startWorker() {
   const given = globalThis.cuvetteEngine ?? {};
   const set = hasVectors() ? 'simd128' : 'plain';
-  const worker = new Worker(scriptAddress(given.worker ?? 'engine/lab_worker.js'));
-  const files = await unpack(given.files ?? 'engine/files.json');
+  if (given.module && set === 'plain') throw new Error('this browser is too old for the laboratory in one file');
+  const compiled = compile(given.module ?? fetch(absolute(`${set}/cuvette.wasm`))); /* while the script is loaded */
+  const script = await given.worker;
+  const worker = new Worker(script ? textAddress(script) : absolute(`${set}/worker.js`));
+  worker.early = [];
+  worker.onmessage = ({ data }) => worker.early.push(data);
+  const [wasm, files] = await Promise.all([compiled, given.files ?? filesOfFolder()]);
   worker.postMessage({
     boot: {
-      script: scriptAddress(given.script?.[set] ?? `engine/${set}/cuvette.js`),
-      module: moduleOf(given.module?.[set] ?? `engine/${set}/cuvette.wasm`),
-      files,
+      wasm,
+      files: Object.entries(files).map(([name, content]) => ({ name, bytes: bytesOf(content) })),
       scene: new URLSearchParams(location.search).get('scene') ?? given.scene ?? null,
       workers: given.workers ?? Math.min(WORKERS_MAX, Math.max(1, navigator.hardwareConcurrency || 1)),
+      script,
     },
   });
   return worker;
 }
 
-const absolute = (address) => new URL(address, document.baseURI).href;
-const moduleOf = (module) => (typeof module === 'string' ? absolute(module) : module);
-
 /* A page that is opened as a file may start workers from its own text only. */
-function scriptAddress(script) {
-  if (!script.includes('\n')) return absolute(script);
-  return URL.createObjectURL(new Blob([script], { type: 'text/javascript' }));
+const textAddress = (text) => URL.createObjectURL(new Blob([text], { type: 'text/javascript' }));
+
+const filesOfFolder = () => fetch(absolute('files.json')).then((reply) => checked(reply).json());
+
+/* Compiled while it is loaded, once for all workers. A server need not know the type of the file. */
+async function compile(promised) {
+  const reply = checked(await promised);
+  return reply.headers.get('Content-Type') === 'application/wasm'
+    ? WebAssembly.compileStreaming(reply)
+    : WebAssembly.compile(await reply.arrayBuffer());
 }
 
-async function unpack(files) {
-  const named = typeof files === 'string' ? await (await fetch(absolute(files))).json() : files;
-  const encoder = new TextEncoder();
-  return Object.entries(named).map(([name, content]) => ({
-    name,
-    bytes:
-      typeof content === 'string'
-        ? encoder.encode(content)
-        : Uint8Array.from(atob(content.base64), (letter) => letter.charCodeAt(0)),
-  }));
+function checked(reply) {
+  if (!reply.ok) throw new Error(`${reply.url} cannot be loaded: status ${reply.status}`);
+  return reply;
+}
+
+function bytesOf(content) {
+  if (typeof content === 'string') return new TextEncoder().encode(content);
+  return Uint8Array.from(atob(content.base64), (letter) => letter.charCodeAt(0));
 }

@@ -13,7 +13,7 @@ export function createBrowserEngine() {
   let last = 0;
   let ready = false;
   let failure = null;
-  const worker = startWorker().then(connect);
+  const worker = (globalThis.cuvetteEngine?.started ?? startWorker()).then(connect);
   worker.catch(fail);
 
   return {
@@ -47,6 +47,7 @@ export function createBrowserEngine() {
       fail(event);
     };
     made.onmessageerror = () => fail(new Error('a message cannot be read'));
+    made.early.forEach(receive);
     return made;
   }
 

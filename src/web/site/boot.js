@@ -18,17 +18,12 @@ async function unpack(name) {
   });
 }
 
-async function partsOfPage() {
-  const text = async (name) => (await unpack(name)).text();
-  const [worker, tiles, script, files] = await Promise.all(['worker', 'tiles', 'script', 'files'].map(text));
-  const module = unpack('module');
-  return { worker, tiles, script: { simd128: script }, module: { simd128: module }, files: JSON.parse(files) };
-}
-
-async function start(oneFile) {
-  Object.assign(globalThis.cuvetteEngine, oneFile && (await partsOfPage()));
-  return startWorker();
-}
+/* Promises: the engine is compiled while the rest is unpacked. */
+const partsOfPage = () => ({
+  worker: unpack('worker').then((reply) => reply.text()),
+  module: unpack('module'),
+  files: unpack('files').then((reply) => reply.json()),
+});
 
 function keepDocument() {
   const kept = document.documentElement.cloneNode(true);
@@ -41,6 +36,6 @@ if (!oneFile && location.protocol === 'file:')
   location.replace(`../laboratory.html${location.search}${location.hash}`); // nothing can be fetched here
 else {
   if (oneFile) keepDocument();
-  globalThis.cuvetteEngine = { scene: opensLink ? null : FIRST_SCENE };
-  globalThis.cuvetteEngine.started = start(oneFile);
+  globalThis.cuvetteEngine = { scene: opensLink ? null : FIRST_SCENE, ...(oneFile && partsOfPage()) };
+  globalThis.cuvetteEngine.started = startWorker();
 }

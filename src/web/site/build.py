@@ -5,16 +5,15 @@ opens from a local folder. WASM is the folder of `make wasm`. Prints what is loa
 that is too much. Addresses are relative."""
 
 import gzip
-import shutil
 import sys
 from pathlib import Path
 
 import bundle
-from bundle import ROOT, Trouble
+from bundle import Trouble
 
 LIMIT = 3_000_000  # bytes, compressed
 SETS = ('simd128', 'plain')
-WORKERS = ('lab_worker.js', 'tile_worker.js')
+ENGINE = ('worker.js', 'cuvette.wasm')
 
 
 def write(path, text):
@@ -28,27 +27,26 @@ def needed(path):
     return path
 
 
+def engine_part(wasm, set_name, name):
+    path = needed(wasm / set_name / name)
+    return bundle.minified(path).encode() if path.suffix == '.js' else path.read_bytes()
+
+
 def write_folder(parts, wasm, folder):
     """laboratory/: each set of instructions of the engine in a folder of its own; a browser loads one."""
     head = bundle.script(parts['boot']) + '<link rel="modulepreload" href="lab.js" />\n'
     write(folder / 'index.html', bundle.document(head, '<script type="module" src="lab.js"></script>\n'))
     write(folder / 'lab.js', parts['lab'])
     write(folder / 'engine/files.json', parts['files'])
-    for name in WORKERS:
-        write(folder / 'engine' / name, parts[name])
     for set_name in SETS:
-        for name in ('cuvette.js', 'cuvette.wasm'):
-            (folder / 'engine' / set_name).mkdir(exist_ok=True)
-            shutil.copyfile(needed(wasm / set_name / name), folder / 'engine' / set_name / name)
+        for name in ENGINE:
+            write(folder / 'engine' / set_name / name, engine_part(wasm, set_name, name))
 
 
 def one_file(parts, wasm):
     """The engine is the one with vectors: every browser that can unpack it has them."""
-    engine = wasm / SETS[0]
-    content = {
-        'worker': parts[WORKERS[0]].encode(), 'tiles': parts[WORKERS[1]].encode(), 'files': parts['files'].encode(),
-        'script': (engine / 'cuvette.js').read_bytes(), 'module': (engine / 'cuvette.wasm').read_bytes(),
-    }
+    content = {'worker': engine_part(wasm, SETS[0], ENGINE[0]), 'module': engine_part(wasm, SETS[0], ENGINE[1]),
+               'files': parts['files'].encode()}
     end = ''.join(bundle.held(name, part) for name, part in content.items())
     end += bundle.script(parts['lab'], ' type="module"') + bundle.script(parts['boot'])
     return bundle.document('', end)
@@ -69,7 +67,6 @@ def report(title, paths, base):
 
 def report_sizes(folder):
     loaded = [folder / 'laboratory' / name for name in ('index.html', 'lab.js', 'engine/files.json')]
-    loaded += [folder / 'laboratory/engine' / name for name in WORKERS]
     sums = [
         report(f'loaded before the first image, {set_name}:',
                loaded + sorted((folder / 'laboratory/engine' / set_name).iterdir()), folder) for set_name in SETS
@@ -82,11 +79,11 @@ def main():
     if len(sys.argv) != 3:
         raise Trouble('usage: build.py WASM FOLDER')
     wasm, folder = Path(sys.argv[1]), Path(sys.argv[2])
-    source = ROOT / 'src/wasm'
-    parts = {name: bundle.classic(needed(source / name)) for name in WORKERS}
-    parts['boot'] = bundle.classic(Path(__file__).parent / 'boot.js')
-    parts['lab'] = bundle.module(bundle.PAGE / 'main.js')
-    parts['files'] = bundle.files()
+    parts = {
+        'boot': bundle.classic(Path(__file__).parent / 'boot.js'),
+        'lab': bundle.module(bundle.PAGE / 'main.js'),
+        'files': bundle.files(),
+    }
     write_folder(parts, wasm, folder / 'laboratory')
     write(folder / 'laboratory.html', one_file(parts, wasm))
     report_sizes(folder)

@@ -34,8 +34,13 @@ def module(path):
 
 
 def classic(path):
-    """The same for a worker, or a script that must run at once."""
+    """The same for a script that must run at once."""
     return esbuild(path, '--bundle', '--format=iife', TARGET)
+
+
+def minified(path):
+    """A classic script as it is, whose names other parts of it may use."""
+    return esbuild(path, TARGET)
 
 
 def style():
