@@ -161,7 +161,11 @@ export const cases = {
   'a laboratory that stops says so': async (t) => {
     const lab = await t.lab('scenes/rod.yaml');
     const screen = await t.open(lab);
-    const [worker] = screen.page.workers().filter((each) => each.url().includes('lab_worker'));
+    const workers = screen.page.workers();
+    const which = await Promise.all(
+      workers.map((each) => each.evaluate(() => typeof startLab === 'function' && lab !== null)),
+    );
+    const worker = workers[which.indexOf(true)];
     screen.expect(/broken on purpose/);
     await worker.evaluate(() => {
       setTimeout(() => {

@@ -7,7 +7,7 @@ import { fileURLToPath } from 'node:url';
 const source = join(dirname(fileURLToPath(import.meta.url)), '..', '..', 'src');
 const META = '<meta name="cuvette-engine" content="browser" />';
 
-/** wasm: the folder with simd128/cuvette.{js,wasm} and plain. Returns {folder, lab: the path of the page, files: that
+/** wasm: the folder with simd128/{worker.js,cuvette.wasm} and plain. Returns {folder, lab: the path of the page, files: that
  * of the laboratory's files, made: other paths}, see browser_lab.mjs. */
 export function siteOf(wasm) {
   const page = join(source, 'web', 'page');
@@ -15,10 +15,8 @@ export function siteOf(wasm) {
     '/index.html': async () =>
       (await readFile(join(page, 'index.html'), 'utf8')).replace('<title>', (title) => `${META}${title}`),
   };
-  for (const name of ['lab_worker.js', 'tile_worker.js'])
-    made[`/engine/${name}`] = () => readFile(join(source, 'wasm', name));
   for (const set of ['simd128', 'plain'])
-    for (const name of ['cuvette.js', 'cuvette.wasm'])
+    for (const name of ['worker.js', 'cuvette.wasm'])
       made[`/engine/${set}/${name}`] = () => readFile(join(wasm, set, name));
   return { folder: page, lab: '/', files: '/engine/files.json', made };
 }
