@@ -19,12 +19,12 @@ source "$root/tests/shell/verdict.sh"
 build() { python3 -B "$root/src/web/site/build.py" "$work/wasm" "$1" 2>&1; }
 
 said=$(build "$work/none")
-grep -q 'cuvette.* does not exist; run: make wasm' <<<"$said"
+grep -q 'worker.js does not exist; run: make wasm' <<<"$said"
 verdict $? 'without the engine it says how to make it' "$said"
 
 for set in simd128 plain; do
     mkdir -p "$work/wasm/$set"
-    echo 'export default () => {};' >"$work/wasm/$set/cuvette.mjs"
+    echo 'onmessage = () => {};' >"$work/wasm/$set/worker.js"
     printf '\0asm\1\0\0\0' >"$work/wasm/$set/cuvette.wasm"
 done
 site=$work/site
