@@ -158,9 +158,12 @@ export const cases = {
     t.equal(await film(one), before, 'the film of the other tab');
   },
 
-  'a laboratory that stops says so': async (t) => {
+  'a laboratory that stops says so, and the unsaved scene is offered again': async (t) => {
     const lab = await t.lab('scenes/rod.yaml');
     const screen = await t.open(lab);
+    await screen.setNumber('liquid.ior', 1.6);
+    const changed = await film(screen);
+    await screen.until(() => sessionStorage.getItem('cuvette.unsaved'));
     const workers = screen.page.workers();
     const which = await Promise.all(
       workers.map((each) => each.evaluate(() => typeof startLab === 'function' && lab !== null)),
@@ -178,7 +181,11 @@ export const cases = {
     t.check(!/server|terminal/.test(await screen.page.locator('body').innerText()), 'words about a server');
     await screen.page.reload();
     await screen.until(() => window.lab?.picture?.final);
-    t.equal(await screen.page.evaluate(() => window.lab.connected), 'open', 'after a reload');
+    t.check((await film(screen)) !== changed, 'the scene of the file after a reload');
+    await t.axe(screen, 'the offer of the unsaved scene');
+    await screen.page.locator('#rescue').getByRole('button', { name: 'Open' }).click();
+    await screen.until((hash) => window.lab.picture.film_hash === hash, changed);
+    t.equal(await screen.page.locator('#rescue').isVisible(), false, 'the offer after it was accepted');
   },
 
   'a lesson on a phone': async (t) => {

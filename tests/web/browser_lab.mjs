@@ -7,21 +7,21 @@ import { LabFolder } from './lab.mjs';
 import { serveSite } from './site_server.mjs';
 
 /** The folder as the page gets it: {NAME: text or {base64}}. */
-async function packed(folder) {
+async function packed(folder, prefix = '') {
   const files = {};
   for (const entry of await readdir(folder, { recursive: true, withFileTypes: true })) {
     if (!entry.isFile()) continue;
     const path = join(entry.path, entry.name);
     const bytes = await readFile(path);
     const text = bytes.toString('utf8');
-    const name = path.slice(folder.length + 1);
+    const name = prefix + path.slice(folder.length + 1);
     files[name] = Buffer.from(text, 'utf8').equals(bytes) ? text : { base64: bytes.toString('base64') };
   }
   return files;
 }
 
 export class BrowserLab extends LabFolder {
-  /** site: {folder, lab: the path of the laboratory's page, files: that of its files}; open(lab): opens a page. */
+  /** site: of site.mjs; open(lab): opens a page. */
   static async start(program, scene, site, open) {
     const lab = new BrowserLab();
     await lab.make(program);
@@ -31,7 +31,7 @@ export class BrowserLab extends LabFolder {
       ...site.made,
       [site.files]: async () =>
         JSON.stringify({
-          ...JSON.parse(await readFile(join(site.folder, site.files), 'utf8').catch(() => '{}')),
+          ...(await packed(site.lessons, 'lessons/')),
           ...(await packed(lab.folder)),
         }),
     });

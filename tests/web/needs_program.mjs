@@ -21,7 +21,6 @@ const TABLE = {
   },
   endurance: REASONS.server,
   frames: {
-    'changes by other clients': REASONS.server,
     'ten tabs share one stream': REASONS.server,
     'the server stops and restarts': REASONS.server,
   },

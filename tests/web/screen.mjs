@@ -56,6 +56,27 @@ export class Screen {
       });
   }
 
+  /** Records the paths that the page asks of its engine from now on: a list that grows. A counted path has been asked
+   * when the test sees what came of it. */
+  async asked() {
+    const list = [];
+    this.recorders ??= this.page
+      .exposeFunction('recordAsked', (path) => this.record(path))
+      .then(() =>
+        this.page.evaluate(() => {
+          const { engine } = window.lab;
+          const { fetch } = engine;
+          engine.fetch = (path, options) => {
+            window.recordAsked(path);
+            return fetch(path, options);
+          };
+        }),
+      );
+    await this.recorders;
+    this.record = (path) => list.push(path);
+    return list;
+  }
+
   /** Permits errors that a case provokes. */
   expect(pattern) {
     this.expected.push(pattern);

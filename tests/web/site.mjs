@@ -8,7 +8,7 @@ const source = join(dirname(fileURLToPath(import.meta.url)), '..', '..', 'src');
 const META = '<meta name="cuvette-engine" content="browser" />';
 
 /** wasm: the folder with simd128/{worker.js,cuvette.wasm} and plain. Returns {folder, lab: the path of the page, files: that
- * of the laboratory's files, made: other paths}, see browser_lab.mjs. */
+ * of the laboratory's files, lessons: the folder of the program's own, made: other paths}, see browser_lab.mjs. */
 export function siteOf(wasm) {
   const page = join(source, 'web', 'page');
   const made = {
@@ -18,5 +18,11 @@ export function siteOf(wasm) {
   for (const set of ['simd128', 'plain'])
     for (const name of ['worker.js', 'cuvette.wasm'])
       made[`/engine/${set}/${name}`] = () => readFile(join(wasm, set, name));
-  return { folder: page, lab: '/', files: '/engine/files.json', made };
+  return {
+    folder: page,
+    lab: '/',
+    files: '/engine/files.json',
+    lessons: join(source, '..', 'experiments', 'lessons'),
+    made,
+  };
 }

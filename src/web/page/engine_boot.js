@@ -6,10 +6,13 @@
  *   files     the laboratory's folder: {NAME: text or {base64}}                 engine/files.json
  *   scene     the file that is opened; the page's address may name another (?scene=NAME); null: none
  *   workers   workers that trace tiles; default: one for each processor
- * exports: startWorker() -> promise of the worker, which has got its first message; worker.early: what it has sent before
- *                           someone listened */
+ * exports: startWorker() -> promise of the worker, which has got its first message; an error may have a remedy;
+ *                           worker.early: what it has sent before someone listened */
 
 const WORKERS_MAX = 8; /* each has a memory of its own */
+
+const OF_A_FILE =
+  'a page that is opened as a file cannot load others: open the one that holds all, or use a web server';
 
 /* A module with one function that uses a 128-bit vector: (v128.const 0) (drop). */
 const VECTOR = [0, 97, 115, 109, 1, 0, 0, 0, 1, 4, 1, 96, 0, 0, 3, 2, 1, 0, 10, 23, 1, 21, 0, 253, 12];
@@ -21,12 +24,13 @@ export async function startWorker() {
   const given = globalThis.cuvetteEngine ?? {};
   const set = hasVectors() ? 'simd128' : 'plain';
   if (given.module && set === 'plain') throw new Error('this browser is too old for the laboratory in one file');
-  const compiled = compile(given.module ?? fetch(absolute(`${set}/cuvette.wasm`))); /* while the script is loaded */
+  const compiled = compile(given.module ?? part(`${set}/cuvette.wasm`)); /* while the script is loaded */
   const script = await given.worker;
   const worker = new Worker(script ? textAddress(script) : absolute(`${set}/worker.js`));
   worker.early = [];
   worker.onmessage = ({ data }) => worker.early.push(data);
-  const [wasm, files] = await Promise.all([compiled, given.files ?? filesOfFolder()]);
+  worker.onerror = ({ message }) => worker.early.push({ failed: message || 'its script cannot be loaded' });
+  const [wasm, files] = await Promise.all([compiled, given.files ?? part('files.json').then((reply) => reply.json())]);
   worker.postMessage({
     boot: {
       wasm,
@@ -42,19 +46,20 @@ export async function startWorker() {
 /* A page that is opened as a file may start workers from its own text only. */
 const textAddress = (text) => URL.createObjectURL(new Blob([text], { type: 'text/javascript' }));
 
-const filesOfFolder = () => fetch(absolute('files.json')).then((reply) => checked(reply).json());
+async function part(name) {
+  const reply = await fetch(absolute(name)).catch(() => null);
+  if (reply?.ok) return reply;
+  const why = new Error(`engine/${name} cannot be loaded${reply ? `: status ${reply.status}` : ''}`);
+  why.remedy = location.protocol === 'file:' ? OF_A_FILE : 'check the connection, and reload the page';
+  throw why;
+}
 
 /* Compiled while it is loaded, once for all workers. A server need not know the type of the file. */
 async function compile(promised) {
-  const reply = checked(await promised);
+  const reply = await promised;
   return reply.headers.get('Content-Type') === 'application/wasm'
     ? WebAssembly.compileStreaming(reply)
     : WebAssembly.compile(await reply.arrayBuffer());
-}
-
-function checked(reply) {
-  if (!reply.ok) throw new Error(`${reply.url} cannot be loaded: status ${reply.status}`);
-  return reply;
 }
 
 function bytesOf(content) {

@@ -5,7 +5,7 @@
 import { startWorker } from './engine_boot.js';
 
 const STOPPED = 'the laboratory in this page stopped';
-const REMEDY = 'reload the page; the scene starts again';
+const RELOAD = 'reload the page; it offers unsaved changes again';
 
 export function createBrowserEngine() {
   const requests = new Map(); /* id -> {resolve, reject} */
@@ -13,6 +13,7 @@ export function createBrowserEngine() {
   let last = 0;
   let ready = false;
   let failure = null;
+  let remedy = RELOAD;
   const worker = (globalThis.cuvetteEngine?.started ?? startWorker()).then(connect);
   worker.catch(fail);
 
@@ -36,7 +37,7 @@ export function createBrowserEngine() {
       return URL.createObjectURL(await response.blob());
     },
     release: (address) => URL.revokeObjectURL(address),
-    lost: () => ({ error: failure ? `${STOPPED}: ${failure}` : STOPPED, remedy: REMEDY }),
+    lost: () => ({ error: failure ? `${STOPPED}: ${failure}` : STOPPED, remedy }),
     idle: () => requests.size === 0,
   };
 
@@ -72,6 +73,7 @@ export function createBrowserEngine() {
   function fail(error) {
     if (failure) return;
     failure = error.message || 'the browser does not say why';
+    remedy = error.remedy || RELOAD;
     worker.then((made) => made.terminate()).catch(() => undefined);
     for (const { reject } of requests.values()) reject(new TypeError(failure));
     requests.clear();

@@ -5,20 +5,19 @@ import { button, element, notice } from './ui.js';
 import { commandRow } from './command_row.js';
 import { saveReply } from './save_file.js';
 
-const REMEDY = 'save the scene, and run these commands of Cuvette on a computer';
-
 export function needsProgram(lab, reason, commands) {
   const file = `${lab.name()}.yaml`;
-  const texts = commands.map((command) => (typeof command === 'function' ? command(file) : command));
+  const ofScene = commands.some((command) => typeof command === 'function');
+  const save = () => saveReply(lab, '/api/scene.yaml', file);
   return element(
     'div',
     { class: 'needs-program' },
-    notice(reason, { remedy: texts.some((text) => text.includes(file)) ? REMEDY : 'run this command of Cuvette' }),
-    element(
-      'div',
-      { class: 'buttons' },
-      button('Save the scene', () => saveReply(lab, '/api/scene.yaml', file), { icon: 'save', small: true }),
-    ),
-    texts.map((text) => commandRow(lab, text)),
+    notice(reason, {
+      remedy: ofScene ? 'save the scene, and run Cuvette on a computer:' : 'run Cuvette on a computer:',
+    }),
+    ofScene
+      ? element('div', { class: 'buttons' }, button('Save the scene', save, { icon: 'save', small: true }))
+      : null,
+    commands.map((command) => commandRow(lab, typeof command === 'function' ? command(file) : command)),
   );
 }

@@ -38,4 +38,5 @@ else {
   if (oneFile) keepDocument();
   globalThis.cuvetteEngine = { scene: opensLink ? null : FIRST_SCENE, ...(oneFile && partsOfPage()) };
   globalThis.cuvetteEngine.started = startWorker();
+  globalThis.cuvetteEngine.started.catch(() => undefined); // the page tells it
 }
