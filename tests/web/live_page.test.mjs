@@ -26,7 +26,26 @@ async function page(folder, program) {
   return file;
 }
 
+/** The laboratory saves such a page too, if the program finds that file; it may read nothing else outside its folder. */
+async function saved(t, folder) {
+  const lab = await t.lab('scenes/rod.yaml');
+  const get = async (query) => new TextDecoder().decode((await lab.ask('GET', `/api/page.html${query}`)).bytes);
+  await lab.stop();
+  await lab.serve('scenes/rod.yaml', [], { CUVETTE_LIVE: join(folder, 'laboratory.html') });
+  return { live: await get(''), plain: await get('?live=0'), empty: await get('?live=empty') };
+}
+
 export const cases = {
+  "pages of the program's laboratory": (t) =>
+    withFolder(async (folder) => {
+      const commands = readFileSync(await page(folder, t.program), 'utf8');
+      const { live, plain, empty } = await saved(t, folder);
+      const codeOf = (text) => text.match(/id="cuvette-live">([^<]*)</)?.[1];
+      t.equal(codeOf(live), codeOf(commands), 'the same laboratory as in a page of the command');
+      t.equal(codeOf(plain), undefined, 'without it on request');
+      t.equal(codeOf(empty), '', 'an empty place on request');
+    }),
+
   'the button starts the laboratory with the scene': (t) =>
     withFolder(async (folder) => {
       const file = await page(folder, t.program);

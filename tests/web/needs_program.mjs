@@ -28,6 +28,7 @@ const TABLE = {
   lessons: {
     'keys move a control step by step over a slow link; nothing moves it back': REASONS.slow,
   },
+  live_page: REASONS.file,
   panels: {
     'a study, light': REASONS.studies,
     'a study, dark': REASONS.studies,
