@@ -7,7 +7,9 @@
  *                   was made from it: a page that was opened as a file has no address that its workers may use
  *                 {id, method, path, body}    body: JSON text or null
  *                 {file: {name, bytes}}       one more file of the folder
+ *                 {memory: true}              asks for the size of the module's memory
  * worker -> page  {ready: true, isa} or {failed: text}
+ *                 {memory: bytes}
  *                 {id, status, headers, bytes}
  *                 {event, value}              value: JSON text */
 
@@ -91,9 +93,13 @@ async function startLab({ wasm, files, scene, workers, script }) {
   schedule();
 }
 
-function labMessage({ id, method, path, body, file }) {
+function labMessage({ id, method, path, body, file, memory }) {
   if (file) {
     putFile(file);
+    return;
+  }
+  if (memory) {
+    postMessage({ memory: lab.HEAPU8.length });
     return;
   }
   withText(lab, method, (how) =>
