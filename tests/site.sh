@@ -48,7 +48,8 @@ for name, content in packed.items():
     text = content.encode() if isinstance(content, str) else base64.b64decode(content["base64"])
     if text != (root / name).read_bytes():
         print(name, "differs")
-wanted = [*root.glob("scenes/*.yaml"), *root.glob("lessons/*.lesson"), *root.glob("hands/*.yaml"), root / "scenes/chequer.png"]
+wanted = [*root.glob("scenes/*.yaml"), *root.glob("lessons/*.lesson"), *root.glob("hands/*.yaml")]
+wanted.append(root / "scenes/chequer.png")
 print(*(path.name for path in wanted if str(path.relative_to(root)) not in packed), sep="\n", end="")
 END
 )"

@@ -26,7 +26,8 @@ async function page(folder, program) {
   return file;
 }
 
-/** The laboratory saves such a page too, if the program finds that file; it may read nothing else outside its folder. */
+/** The laboratory saves such a page too, if the program finds that file, the only one that it reads outside its folder.
+ */
 async function saved(t, folder) {
   const lab = await t.lab('scenes/rod.yaml');
   const get = async (query) => new TextDecoder().decode((await lab.ask('GET', `/api/page.html${query}`)).bytes);
