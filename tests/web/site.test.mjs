@@ -27,11 +27,12 @@ async function drawn(page, undone) {
 const filmOf = (...words) => JSON.parse(execFileSync(program, ['render', ...words, '--json'])).film_hash;
 
 /** A page of the site in a browser of its own. */
-async function withPage(t, address, act) {
+async function withPage(t, address, act, init = () => {}) {
   const server = await serveSite(site);
   const context = await t.browser.newContext({ viewport: { width: 1366, height: 768 }, acceptDownloads: true });
   try {
     const page = await context.newPage();
+    await page.addInitScript(init);
     const errors = [];
     page.on('console', (message) => {
       const icon = message.location().url.endsWith('favicon.ico'); /* of the documentation: it has none */
@@ -81,6 +82,23 @@ const all = {
       t.equal((await drawn(page, true)).film, filmOf(tea.slice(tea.indexOf('#'))), 'tea');
     });
   },
+
+  'a browser without vectors loads the plain module': (t) =>
+    withPage(
+      t,
+      'laboratory/',
+      async (page) => {
+        const loaded = [];
+        page.on('request', (request) => loaded.push(request.url()));
+        await page.reload();
+        t.equal((await drawn(page)).film, filmOf('experiments/scenes/rod.yaml'), 'the film');
+        const modules = loaded.filter((url) => url.endsWith('.wasm')).map((url) => url.split('/').at(-2));
+        t.equal(modules, ['plain'], 'the module');
+      },
+      () => {
+        WebAssembly.validate = () => false;
+      },
+    ),
 
   'a lesson opens': (t) =>
     withPage(t, 'lesson-coin.html', async (page) => {
