@@ -340,11 +340,13 @@ doc: $(build)/cuvette doc-tools ## write the documentation as HTML: build/doc/in
 	@rm -rf $(build)/doc
 	@python3 -B src/manual/site/build.py $(build)/cuvette $(build)/doc
 	@echo 'documentation: $(build)/doc/index.html'
-doc-tools: | $(filter setup-doc,$(MAKECMDGOALS))
+doc-tools: | $(filter setup-doc setup-site,$(MAKECMDGOALS))
 	@for tool in python3 mandoc cmark-gfm; do command -v $$tool >/dev/null || \
 	  { echo "doc: $$tool is not installed; run: make setup-doc" >&2; exit 1; }; done
 test-doc: $(build)/cuvette | doc-tools ## check the documentation: complete, every link resolves; part of make test
 	@CUVETTE='$(abspath $(build)/cuvette)' tests/run tests/doc.sh
+
+include src/web/site/site.mk
 
 # --- tests ---
 
@@ -622,10 +624,11 @@ define files
   for page in $(pages); do echo "644 src/manual/$$page $(share)/man/$$page"; done; \
   echo '644 src/cli/cuvette.bash $(share)/bash-completion/completions/cuvette'; \
   for text in LICENSE README.md CHANGELOG.md src/licences.md; do echo "644 $$text $(share)/doc/cuvette/$${text##*/}"; done; \
+  $(if $(wildcard $(build)/live.html)$(filter site,$(MAKECMDGOALS)),echo '644 $(build)/live.html $(share)/cuvette/live.html';) \
   find experiments plots -type f ! -path '*/__pycache__/*' | while read -r file; do \
     test -x "$$file" && mode=755 || mode=644; echo "$$mode $$file $(share)/cuvette/$$file"; done
 endef
-install: $(build)/cuvette $(build)/cuvette-import $(build)/$(soname) $(build)/engine/libcuvette.a | $(filter mpi,$(MAKECMDGOALS)) ## install under PREFIX (/usr/local), below DESTDIR; with cuvette-mpi where make mpi has built it
+install: $(build)/cuvette $(build)/cuvette-import $(build)/$(soname) $(build)/engine/libcuvette.a | $(filter mpi site,$(MAKECMDGOALS)) ## install under PREFIX (/usr/local), below DESTDIR; with cuvette-mpi where make mpi has built it, and live.html of make site
 	@sed 's|@PREFIX@|$(PREFIX)|; s|@LIBDIR@|$(LIBDIR)|; s|@VERSION@|$(version)|; s|@LIBRARIES@|$(strip $(all_libs))|' src/cuvette.pc.in >$(build)/cuvette.pc
 	@{ $(files); } | DESTDIR='$(DESTDIR)' .ci/install '$(list)'
 	@.ci/install-notes '$(DESTDIR)' '$(PREFIX)' '$(LIBDIR)'
@@ -667,4 +670,4 @@ distclean: clean ## also remove tables and figures; measured rows stay in result
 	rm -rf build $(RESULTS)/tables $(RESULTS)/figures
 	@test ! -f paper/Makefile || $(MAKE) -C paper clean
 help: ## list the targets
-	@sed -n 's/^\([a-z_.-]*\):.*## \(.*\)/  make \1\t\2/p' Makefile | expand -t 30
+	@sed -n 's/^\([a-z_.-]*\):.*## \(.*\)/  make \1\t\2/p' $(filter-out %.d,$(MAKEFILE_LIST)) | expand -t 30

@@ -29,6 +29,7 @@ const TABLE = {
   lessons: {
     'keys move a control step by step over a slow link; nothing moves it back': REASONS.slow,
   },
+  live_page: REASONS.file,
   motion: {
     'a measurement is stopped, and a scene without a slime is refused': REASONS.thread,
   },

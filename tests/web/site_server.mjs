@@ -14,13 +14,15 @@ const TYPES = {
   '.wasm': 'application/wasm',
 };
 
-/** folder: what is served; made: {PATH: async () => text or bytes}, which replace files. */
-export async function serveSite(folder, made = {}) {
+/** folder: what is served; made: {PATH: async () => text or bytes}, which replace files; sent(path): called for each
+ * file. */
+export async function serveSite(folder, made = {}, sent = () => {}) {
   const server = createServer(async (request, reply) => {
     const { pathname } = new URL(request.url, 'http://site');
     const path = decodeURIComponent(pathname.endsWith('/') ? `${pathname}index.html` : pathname);
     try {
       const content = made[path] ? await made[path]() : await readFile(join(folder, normalize(path)));
+      sent(path);
       reply.writeHead(200, { 'Content-Type': TYPES[extname(path)] ?? 'application/octet-stream' });
       reply.end(request.method === 'HEAD' ? undefined : content);
     } catch {

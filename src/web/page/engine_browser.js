@@ -14,7 +14,7 @@ export function createBrowserEngine() {
   let ready = false;
   let failure = null;
   let remedy = RELOAD;
-  const worker = startWorker().then(connect);
+  const worker = (globalThis.cuvetteEngine?.started ?? startWorker()).then(connect);
   worker.catch(fail);
 
   return {
@@ -48,6 +48,7 @@ export function createBrowserEngine() {
       fail(event);
     };
     made.onmessageerror = () => fail(new Error('a message cannot be read'));
+    made.early.forEach(receive);
     return made;
   }
 

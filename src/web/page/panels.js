@@ -4,7 +4,8 @@
  * panel: {id, title, wide?, css?, start?(lab), create(root, lab), shown?(), hidden?()}; start is called once when
  * the page opens, for tools of the image; a wide panel takes the whole width, without the image; css is the name of
  * its own style sheet (panel_ID.css), which uses the variables of lab.css for all colours and starts each rule with
- * .panel-ID. The panel's title is its h2: headings within start at h3. */
+ * .panel-ID; a site has all style sheets in its page, as #styles (src/web/site). The panel's title is its h2: headings
+ * within start at h3. */
 
 import { element, memory, notice, replace } from './ui.js';
 
@@ -41,7 +42,8 @@ export function createPanels(side, splitter, workspace, panels, lab) {
   return { use, chosen: () => chosen, reveal };
 
   function makeEntry(panel) {
-    if (panel.css) document.head.append(element('link', { rel: 'stylesheet', href: panel.css }));
+    if (panel.css && !document.getElementById('styles'))
+      document.head.append(element('link', { rel: 'stylesheet', href: panel.css }));
     const tab = element('button', {
       type: 'button',
       role: 'tab',
