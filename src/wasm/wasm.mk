@@ -73,3 +73,10 @@ wasm_link = -sEXPORTED_FUNCTIONS=@$(wasm)/exports -sEXPORTED_RUNTIME_METHODS=FS,
   -sMODULARIZE -sEXPORT_NAME=cuvette -sWASM_BIGINT -sENVIRONMENT=web,worker,node -sALLOW_MEMORY_GROWTH -sMAXIMUM_MEMORY=2GB \
   -sTOTAL_STACK=1MB -sINITIAL_MEMORY=32MB -sALLOW_TABLE_GROWTH -sFILESYSTEM -sINCOMING_MODULE_JS_API=instantiateWasm,print,printErr,locateFile \
   -sERROR_ON_UNDEFINED_SYMBOLS=1 --js-library src/wasm/imports.js
+
+.PHONY: test-wasm bench-wasm
+wasm_tests = $(sort $(wildcard tests/wasm/*.test.mjs))
+test-wasm: wasm $(build)/cuvette ## test the WebAssembly modules in node: films, ray counts, errors, the JavaScript API
+	@node --test-concurrency=1 --test $(wasm_tests) | node tests/wasm/summary.mjs
+bench-wasm: wasm $(build)/cuvette ## measure the speed of the WebAssembly modules and of the native program
+	@node tests/wasm/bench.mjs

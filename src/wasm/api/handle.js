@@ -19,7 +19,8 @@ export class Handle {
   }
 
   get at() {
-    if (!this.#address) throw badInput(`the ${this.constructor.kind.toLowerCase()} was destroyed`, 'create another one');
+    if (!this.#address)
+      throw badInput(`the ${this.constructor.kind.toLowerCase()} was destroyed`, 'create another one');
     return this.#address;
   }
 

@@ -35,7 +35,8 @@ async function factoryOf(module) {
   }
 }
 
-const pathOf = (address) => (String(address).startsWith('file:') ? decodeURIComponent(new URL(address).pathname) : address);
+const pathOf = (address) =>
+  String(address).startsWith('file:') ? decodeURIComponent(new URL(address).pathname) : address;
 
 async function compile(wasm) {
   if (wasm instanceof WebAssembly.Module) return wasm;

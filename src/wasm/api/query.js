@@ -8,7 +8,8 @@ import { Handle } from './handle.js';
 
 export function rayNumbers(ray) {
   const numbers = [...(ray?.origin ?? []), ...(ray?.direction ?? []), ray?.reach ?? 0];
-  if (numbers.length !== 7) throw badInput('a ray has no origin or no direction', 'give {origin: [x, y, z], direction: [x, y, z]}');
+  if (numbers.length !== 7)
+    throw badInput('a ray has no origin or no direction', 'give {origin: [x, y, z], direction: [x, y, z]}');
   return numbers;
 }
 

@@ -23,7 +23,7 @@ cuvette_status results_report(status code, const diagnostic *why)
 
 char *results_text(json_t *value)
 {
-    char *text = value ? json_text(value, JSON_COMPACT | JSON_REAL_PRECISION(17)) : NULL;
+    char *text = value ? json_text(value, JSON_COMPACT | JSON_ENCODE_ANY | JSON_REAL_PRECISION(17)) : NULL;
     json_decref(value);
     if (!text) {
         diagnostic why = {.line = 0};

@@ -20,17 +20,22 @@ function makeFolder(FS, path) {
 
 /* The files of a scene and its clones, in a folder of their own, which is theirs to release. */
 class Files {
-  constructor(FS, files) {
+  /* name: of the scene file, whose folder paths start in. */
+  constructor(FS, name, files) {
     this.FS = FS;
     this.users = 1;
     this.path = '/';
     this.names = Object.keys(files);
     if (!this.names.length) return;
     this.path = `/scenes/${++folders}`;
+    makeFolder(FS, `${this.path}/${name}`.replace(/\/[^/]*$/, ''));
     for (const name of this.names) {
       const path = `${this.path}/${name}`;
       if (name.split('/').some((part) => !part || part === '.' || part === '..'))
-        throw badInput(`'${name}' is not a name of a file below the scene's folder`, "leave out '..' and '/' at its start");
+        throw badInput(
+          `'${name}' is not a name of a file below the scene's folder`,
+          "leave out '..' and '/' at its start",
+        );
       makeFolder(FS, path.slice(0, path.lastIndexOf('/')));
       FS.writeFile(path, files[name]);
     }
@@ -69,7 +74,7 @@ export class Scene extends Handle {
   /* Reads a scene's text. name: of the file, in errors. files: {name: bytes} of the images and meshes that it names. */
   static read(memory, text, { name = 'scene.yaml', files = {} } = {}) {
     const bytes = typeof text === 'string' ? new TextEncoder().encode(text) : text;
-    const folder = new Files(memory.module.FS, files);
+    const folder = new Files(memory.module.FS, name, files);
     memory.module.FS.chdir(folder.path);
     try {
       return new Scene(memory, memory.handle('cuvette_scene_read_text', name, bytes, bytes.length), folder);
@@ -80,7 +85,7 @@ export class Scene extends Handle {
   }
 
   static create(memory) {
-    return new Scene(memory, memory.handle('cuvette_scene_create'), new Files(memory.module.FS, {}));
+    return new Scene(memory, memory.handle('cuvette_scene_create'), new Files(memory.module.FS, '', {}));
   }
 
   /* The memory, while the scene's files are in the working folder; for the other classes of the API. */
