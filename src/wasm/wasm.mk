@@ -17,7 +17,8 @@ wasm_without := src/study/% src/engine/study% src/base/below.c src/base/child.c 
 wasm_web := $(filter-out $(addprefix src/web/http/http_,events.c guard.c gzip.c library.c request.c send.c watch.c) src/web/http/http.c src/web/lab_confine.c $(addprefix src/web/,$(addprefix api/api_,machine.c studies.c study_% \
   video.c) api/study_json.c $(addprefix session/,figures% rescue% studies.c study_files.c task_thread.c videos.c) \
   live/render_worker_thread.c),$(web))
-wasm_sources := $(filter-out $(wasm_without),$(library)) $(kernels) $(wasm_web) $(filter src/wasm/%,$(sources))
+wasm_sources := $(filter-out $(wasm_without),$(library)) $(kernels) $(wasm_web) $(filter src/wasm/%,$(sources)) \
+  src/import/join.c src/import/obj_number.c
 
 wasm_flags = -std=gnu17 -D_GNU_SOURCE -O3 $(arithmetic) -Isrc -I$(wasm)/libraries/include -include src/wasm/lacking.h \
   -DCUVETTE_VERSION='"$(version)"' -DCUVETTE_COMPILER_FLAGS='"wasm: -O3 $(arithmetic)"' \
