@@ -35,7 +35,12 @@ function prism(n, notch) {
   }
   const all = [...Array(n).keys()];
   lines.push(`f ${all.map((i) => i + 1).join(' ')}`);
-  lines.push(`f ${all.map((i) => n + 1 + i).reverse().join(' ')}`);
+  lines.push(
+    `f ${all
+      .map((i) => n + 1 + i)
+      .reverse()
+      .join(' ')}`,
+  );
   for (const i of all) {
     const j = (i + 1) % n;
     lines.push(`f ${i + 1} ${n + i + 1} ${n + j + 1} ${j + 1}`);
@@ -82,9 +87,26 @@ map_Kd chequer.png
 const IMAGE = readFileSync(`${ROOT}experiments/scenes/chequer.png`);
 
 const VERTICES = [
-  [-1, -1, -1], [1, -1, -1], [1, 1, -1], [-1, 1, -1], [-1, -1, 1], [1, -1, 1], [1, 1.1, 1], [-1, 1, 1], [9, 9, 9],
+  [-1, -1, -1],
+  [1, -1, -1],
+  [1, 1, -1],
+  [-1, 1, -1],
+  [-1, -1, 1],
+  [1, -1, 1],
+  [1, 1.1, 1],
+  [-1, 1, 1],
+  [9, 9, 9],
 ];
-const FACES = [[0, 3, 2, 1], [4, 5, 6, 7], [0, 1, 5, 4], [0, 4, 7], [0, 7, 3], [2, 3, 7, 6], [1, 2, 6, 5], [4, 5]];
+const FACES = [
+  [0, 3, 2, 1],
+  [4, 5, 6, 7],
+  [0, 1, 5, 4],
+  [0, 4, 7],
+  [0, 7, 3],
+  [2, 3, 7, 6],
+  [1, 2, 6, 5],
+  [4, 5],
+];
 
 function plyHeader(format, type = 'float') {
   return `ply
@@ -179,13 +201,19 @@ for (const [what, files] of Object.entries(CASES))
 
 test('other formats, missing files and bad lines are errors with a remedy', async () => {
   const refused = (files, message) => assert.rejects(film(files), message);
-  await refused({ 'thing.stl': 'solid' }, /thing\.stl: a browser reads meshes from \.obj and \.ply files only; convert/);
+  await refused(
+    { 'thing.stl': 'solid' },
+    /thing\.stl: a browser reads meshes from \.obj and \.ply files only; convert/,
+  );
   await refused({ 'thing.obj': 'mtllib none.mtl\nv 0 0 0\n' }, /none\.mtl: .*No such file/);
   await refused({ 'thing.obj': 'v 0 0 0\nf 1 2 3\n' }, /thing\.obj: line 2: the corner '2' of a face is invalid/);
   await refused({ 'thing.obj': 'v 0 0\n' }, /thing\.obj: line 1: a vertex has no three numbers/);
   await refused({ 'thing.obj': 'v 0 0 0\n' }, /thing\.obj: the file has no triangles/);
   await refused({ 'thing.obj': '' }, /thing\.obj: .*empty/);
-  await refused({ 'thing.ply': 'ply\nformat ascii 1.0\nelement vertex 3\n' }, /thing\.ply: line 3: the header has no end/);
+  await refused(
+    { 'thing.ply': 'ply\nformat ascii 1.0\nelement vertex 3\n' },
+    /thing\.ply: line 3: the header has no end/,
+  );
 });
 
 /* Numbers in a fixed order. */
@@ -196,7 +224,22 @@ function randomOf(seed) {
 
 test('damaged files never end the module', async () => {
   const random = randomOf(25);
-  const words = ['-1', '999999999999', 'nan', '1e999', '/', '', '\\', 'list', '4294967295', 'f', 'v', '\0', '-0', '65536'];
+  const words = [
+    '-1',
+    '999999999999',
+    'nan',
+    '1e999',
+    '/',
+    '',
+    '\\',
+    'list',
+    '4294967295',
+    'f',
+    'v',
+    '\0',
+    '-0',
+    '65536',
+  ];
   let refused = 0;
   for (const [file, source] of [
     ['thing.obj', OBJ],
@@ -211,7 +254,11 @@ test('damaged files never end the module', async () => {
       if (i % 3 === 1) for (let k = 0; k < 3; k++) bytes[random(bytes.length)] = random(256);
       if (i % 3 === 2) {
         const at = random(bytes.length);
-        bytes = Buffer.concat([bytes.subarray(0, at), Buffer.from(words[random(words.length)]), bytes.subarray(at + 3)]);
+        bytes = Buffer.concat([
+          bytes.subarray(0, at),
+          Buffer.from(words[random(words.length)]),
+          bytes.subarray(at + 3),
+        ]);
       }
       const files = { 'thing.obj': OBJ, 'thing.mtl': MTL, 'chequer.png': IMAGE, [file]: bytes };
       if (file === 'thing.ply') delete files['thing.obj'];
