@@ -10,16 +10,14 @@
 #include <cmocka.h>
 
 #include "base/random.h"
+#include "render/core/shared_frame.h"
 #include "render_fixture.h"
 
 /* Hands out the tiles of an image in a random order and puts them together. */
 typedef struct hand_out {
     pthread_mutex_t lock;
-    schedule tiles;
+    shared_frame whole;
     int64_t *order, given, taken, limit; /* limit: the number of pieces after which done refuses */
-    int width;
-    film *whole;
-    double *variance;
 } hand_out;
 
 static bool next(void *context, int worker, span *out)
@@ -27,7 +25,7 @@ static bool next(void *context, int worker, span *out)
     hand_out *h = context;
     (void)worker;
     pthread_mutex_lock(&h->lock);
-    const bool more = h->given < h->tiles.tile_count && schedule_tile(&h->tiles, h->order[h->given], out);
+    const bool more = h->given < h->whole.places.tile_count && schedule_tile(&h->whole.places, h->order[h->given], out);
     h->given += more;
     pthread_mutex_unlock(&h->lock);
     return more;
@@ -38,32 +36,34 @@ static bool done(void *context, const span *piece, const film *traced, const dou
     hand_out *h = context;
     pthread_mutex_lock(&h->lock);
     assert_int_equal(traced->shares, 1);
-    film_put_piece(h->whole, piece->x0, piece->y0, piece->x1, piece->y1, traced->sum);
-    const size_t length = 3 * (size_t)(piece->x1 - piece->x0);
-    for (int y = piece->y0; variance && y < piece->y1; y++, variance += length)
-        memcpy(&h->variance[3 * ((size_t)y * (size_t)h->width + (size_t)piece->x0)], variance, length * sizeof(double));
+    const schedule *places = &h->whole.places;
+    const int64_t tile = piece->y0 / places->tile * places->tiles_across + piece->x0 / places->tile;
+    const size_t sums = 3 * (size_t)(piece->x1 - piece->x0) * (size_t)(piece->y1 - piece->y0);
+    assert_int_equal(shared_frame_values(&h->whole, tile), variance ? 2 * sums : sums);
+    int64_t *message = malloc(2 * sums * sizeof *message);
+    assert_non_null(message);
+    memcpy(message, traced->sum, sums * sizeof *message);
+    if (variance)
+        memcpy(message + sums, variance, sums * sizeof *variance);
+    shared_frame_put(&h->whole, tile, message);
+    free(message);
     const bool goes_on = ++h->taken < h->limit;
     pthread_mutex_unlock(&h->lock);
     return goes_on;
 }
 
-static hand_out hand_out_of(const scene *s, film_space space, int tile)
+static hand_out hand_out_of(const scene *s, int tile)
 {
-    hand_out h = {.width = (int)s->render.width, .limit = INT64_MAX};
+    hand_out h = {.limit = INT64_MAX};
     diagnostic why = {0};
-    render_settings settings = s->render;
-    settings.tile = tile;
-    settings.pieces = 0;
-    schedule_start(&h.tiles, &settings);
-    h.order = malloc((size_t)h.tiles.tile_count * sizeof *h.order);
-    h.variance = calloc(3 * (size_t)(s->render.width * s->render.height), sizeof *h.variance);
-    assert_true(h.order && h.variance);
-    for (int64_t i = 0; i < h.tiles.tile_count; i++) { /* Fisher and Yates, inside out */
+    worked(shared_frame_begin(s, tile, &h.whole, &why), &why);
+    h.order = malloc((size_t)h.whole.places.tile_count * sizeof *h.order);
+    assert_non_null(h.order);
+    for (int64_t i = 0; i < h.whole.places.tile_count; i++) { /* Fisher and Yates, inside out */
         const int64_t k = random_at(7, (uint32_t)i, 0, 0, 0).word[0] % (i + 1);
         h.order[i] = h.order[k];
         h.order[k] = i;
     }
-    worked(film_create((int)s->render.width, (int)s->render.height, 1, space, &h.whole, &why), &why);
     pthread_mutex_init(&h.lock, NULL);
     return h;
 }
@@ -71,8 +71,7 @@ static hand_out hand_out_of(const scene *s, film_space space, int tile)
 static void release(hand_out *h)
 {
     pthread_mutex_destroy(&h->lock);
-    film_destroy(h->whole);
-    free(h->variance);
+    shared_frame_release(&h->whole);
     free(h->order);
 }
 
@@ -84,17 +83,17 @@ static void expect_the_whole_frame(const char *path, const char *assignments, in
     set_all(s, assignments);
     worked(scene_load(s, &why), &why);
     render_result *expected = render(s);
-    hand_out h = hand_out_of(s, expected->img->space, tile);
+    hand_out h = hand_out_of(s, tile);
     const piece_source source = {.side = tile, .next = next, .done = done, .context = &h};
     render_result *result = render_at(s, isa_best(), &(render_options){.source = &source});
     assert_null(result->img);
-    assert_int_equal(h.taken, h.tiles.tile_count);
-    if (film_hash(h.whole) != film_hash(expected->img))
+    assert_int_equal(h.taken, h.whole.places.tile_count);
+    if (film_hash(h.whole.img) != film_hash(expected->img))
         fail_msg("%s %s: the film of pieces of %d x %d pixels differs", path, assignments, tile, tile);
     if (memcmp(&result->counters, &expected->counters, sizeof result->counters) != 0)
         fail_msg("%s %s: the counts of pieces of %d x %d pixels differ", path, assignments, tile, tile);
     if (expected->variance)
-        assert_memory_equal(h.variance, expected->variance,
+        assert_memory_equal(h.whole.variance, expected->variance,
                             3 * (size_t)(s->render.width * s->render.height) * sizeof(double));
     release(&h);
     render_result_destroy(result);
@@ -157,7 +156,7 @@ static void a_frame_ends_when_the_source_takes_no_more(void **state)
 {
     (void)state;
     scene *s = rod_scene("render.width=64 render.height=48 render.threads=1");
-    hand_out h = hand_out_of(s, FILM_RGB, 16);
+    hand_out h = hand_out_of(s, 16);
     h.limit = 5;
     const piece_source source = {.side = 16, .next = next, .done = done, .context = &h};
     render_result *result = render_at(s, isa_best(), &(render_options){.source = &source});

@@ -6,7 +6,9 @@
  *                   an empty room; workers: the number of tile workers
  *                 {id, method, path, body}    body: JSON text or null
  *                 {file: {name, bytes}}       one more file of the folder
+ *                 {memory: true}              asks for the size of the module's memory
  * worker -> page  {ready: true, isa} or {failed: text}
+ *                 {memory: bytes}
  *                 {id, status, headers, bytes}
  *                 {event, value}              value: JSON text */
 
@@ -89,9 +91,13 @@ async function startLab({ wasm, files, scene, workers }) {
   schedule();
 }
 
-function labMessage({ id, method, path, body, file }) {
+function labMessage({ id, method, path, body, file, memory }) {
   if (file) {
     putFile(file);
+    return;
+  }
+  if (memory) {
+    postMessage({ memory: lab.HEAPU8.length });
     return;
   }
   withText(lab, method, (how) =>

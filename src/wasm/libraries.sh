@@ -11,20 +11,26 @@ rm -rf "$work" && mkdir "$work"
 
 # unpacked NAME: the folder of its sources.
 unpacked() {
-    local -a found=("$sources/$1"-[0-9]*/)
-    [[ -d ${found[0]} ]] || {
+    local found
+    found=$(compgen -G "$sources/$1-[0-9]*/" | head -n 1)
+    [[ $found ]] || {
         echo "libraries.sh: the sources of $1 are missing; run: make setup-wasm" >&2
         exit 1
     }
-    echo "${found[0]%/}"
+    echo "${found%/}"
 }
 
-# compile LIBRARY FOLDER FILES [OPTION..]: an archive of C files, whose names are in one word.
+# compile LIBRARY FOLDER FILE.. [-- OPTION..]: an archive of C files, named without their ending.
 compile() {
-    local library=$1 folder=$2 files=$3
-    shift 3
-    tr ' ' '\n' <<<"$files" |
-        xargs -P "$(nproc)" -I{} emcc -O3 -c -iquote "$prefix/include" -I"$prefix/include" "$@" -o "$work/$library-{}.o" "$folder/{}.c"
+    local library=$1 folder=$2
+    local -a files=()
+    shift 2
+    while (($#)) && [[ $1 != -- ]]; do
+        files+=("$1")
+        shift
+    done
+    printf '%s\n' "${files[@]}" | xargs -P "$(nproc)" -I FILE emcc -O3 -c -iquote "$prefix/include" \
+        -I"$prefix/include" "${@:2}" -o "$work/$library-FILE.o" "$folder/FILE.c"
     emar rcs "$prefix/lib/lib$library.a" "$work/$library"-*.o
 }
 
@@ -39,18 +45,18 @@ with_cmake() {
 folder=$(unpacked zlib)
 cp "$folder"/{zlib,zconf}.h "$prefix/include"
 sed -i 's/^#ifdef HAVE_UNISTD_H.*/#if 1/' "$prefix/include/zconf.h" # as its configure script does
-compile z "$folder" 'adler32 compress crc32 deflate gzclose gzlib gzread gzwrite infback inffast inflate inftrees trees'\
-' uncompr zutil' -DHAVE_UNISTD_H
+compile z "$folder" adler32 compress crc32 deflate gzclose gzlib gzread gzwrite infback inffast inflate inftrees \
+    trees uncompr zutil -- -DHAVE_UNISTD_H
 
 folder=$(unpacked libpng1.6)
 cp "$folder"/{png,pngconf}.h "$prefix/include"
 cp "$folder/scripts/pnglibconf.h.prebuilt" "$prefix/include/pnglibconf.h"
-compile png "$folder" 'png pngerror pngget pngmem pngpread pngread pngrio pngrtran pngrutil pngset pngtrans pngwio'\
-' pngwrite pngwtran pngwutil'
+compile png "$folder" png pngerror pngget pngmem pngpread pngread pngrio pngrtran pngrutil pngset pngtrans \
+    pngwio pngwrite pngwtran pngwutil
 
 folder=$(unpacked libyaml)
 cp "$folder/include/yaml.h" "$prefix/include"
-compile yaml "$folder/src" 'api dumper emitter loader parser reader scanner writer' -DYAML_VERSION_MAJOR=0 \
+compile yaml "$folder/src" api dumper emitter loader parser reader scanner writer -- -DYAML_VERSION_MAJOR=0 \
     -DYAML_VERSION_MINOR=2 -DYAML_VERSION_PATCH=5 '-DYAML_VERSION_STRING="0.2.5"'
 
 with_cmake jansson jansson -DJANSSON_BUILD_DOCS=OFF -DJANSSON_WITHOUT_TESTS=ON -DJANSSON_EXAMPLES=OFF

@@ -1,8 +1,10 @@
-/* Included before the files of the laboratory in a WebAssembly module, where there is one thread. What is waited for can
- * then only be what render_turns.c does at once: loading the scene, serving a grab. Otherwise the wait ends as after its
- * time, and is noted, so that a request that waited is handled again when something has happened (src/wasm/request.c). */
+/* Included before the files of the laboratory in a WebAssembly module, where there is one thread. What is waited
+ * for can then only be what render_turns.c does at once: loading the scene, serving a grab. Otherwise the wait ends
+ * as after its time, and is noted, so that a request that waited is handled again when something has happened
+ * (src/wasm/request.c). */
 #pragma once
 
+#ifdef __EMSCRIPTEN__
 #include <errno.h>
 #include <pthread.h>
 #include <stdbool.h>
@@ -28,3 +30,4 @@ static inline int pthread_rwlockattr_setkind_np(pthread_rwlockattr_t *attributes
     (void)attributes, (void)kind;
     return 0;
 }
+#endif

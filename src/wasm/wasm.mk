@@ -8,7 +8,8 @@ export NODE_PATH := $(if $(NODE_PATH),$(NODE_PATH):)/usr/share/nodejs:/usr/lib/n
 
 # Two modules of one source: a browser without 128-bit vectors refuses a module that has them.
 wasm_isas := simd128 plain
-wasm_isa_flags_simd128 := -msimd128
+# Browsers with 128-bit vectors have these too: conversions without a test for traps, copies of memory.
+wasm_isa_flags_simd128 := -msimd128 -mnontrapping-fptoint -mbulk-memory -msign-ext
 
 # No studies, which measure a machine, and nothing of the operating system; src/wasm has what replaces them.
 wasm_without := src/study/% src/engine/study% src/base/below.c src/base/child.c src/base/spawn.c src/base/os_confine% \
@@ -31,11 +32,12 @@ setup-wasm: | $(filter setup,$(MAKECMDGOALS)) ## install what make wasm requires
 	@.ci/setup-wasm
 wasm: $(foreach i,$(wasm_isas),$(wasm)/$(i)/worker.js) ## build the laboratory as WebAssembly, for browsers, in build/wasm
 
+wasm_flags_text = $(subst ','\'',$(EMCC) $(wasm_flags) $(wasm_isa_flags_simd128))
 $(wasm)/flags: always | $(filter setup-wasm,$(MAKECMDGOALS))
 	@command -v $(firstword $(EMCC)) >/dev/null || \
 	  { echo 'wasm: emscripten is not installed; run: make setup-wasm' >&2; exit 1; }
 	@mkdir -p $(@D)
-	@echo '$(subst ','\'',$(EMCC) $(wasm_flags))' | cmp -s - $@ || echo '$(subst ','\'',$(EMCC) $(wasm_flags))' >$@
+	@echo '$(wasm_flags_text)' | cmp -s - $@ || echo '$(wasm_flags_text)' >$@
 $(wasm)/libraries/complete: src/wasm/libraries.sh $(wasm)/flags
 	$(call say,emcc $(wasm)/libraries)
 	$(quiet)src/wasm/libraries.sh $(wasm)/sources $(@D) >$(wasm)/libraries.log 2>&1 || \

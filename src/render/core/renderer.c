@@ -331,7 +331,8 @@ int renderer_replicates(const scene *s)
 
 uint64_t renderer_result_bytes(const scene *s, const render_options *options)
 {
-    const uint64_t shares = (uint64_t)renderer_replicates(s), pixels = (uint64_t)s->render.width * (uint64_t)s->render.height;
+    const uint64_t shares = (uint64_t)renderer_replicates(s),
+                   pixels = (uint64_t)s->render.width * (uint64_t)s->render.height;
     const uint64_t maps = options ? (uint64_t)options->pixel_rays + (uint64_t)options->pixel_time : 0;
     const uint64_t named = options && options->layers && integrator_traits_of(&s->render)->layers ? layers_bytes() : 0;
     if (options && options->source)
@@ -372,8 +373,8 @@ static status make_result(const scene *s, const render_options *options, render_
     result->replicates = renderer_replicates(s);
     const bool by_source = options && options->source;
     status code = by_source ? STATUS_OK
-                            : film_create((int)s->render.width, (int)s->render.height, renderer_replicates(s), space_of(s),
-                                          &result->img, why);
+                            : film_create((int)s->render.width, (int)s->render.height, renderer_replicates(s),
+                                          space_of(s), &result->img, why);
     if (code == STATUS_OK) {
         result->worker_count = (int)s->render.threads;
         result->workers = calloc((size_t)result->worker_count, sizeof *result->workers);

@@ -1,7 +1,7 @@
-/* A frame whose tiles are traced in several places, such as the ranks of an MPI job or the workers of a browser, each by
- * a piece_source (render/core/renderer.h): the tiles, and their sum, which is the film of the whole frame bit for bit.
- * Ownership: shared_frame_begin allocates film and variance; shared_frame_release frees them, unless the owner took them
- * and set them to NULL. One thread at a time. */
+/* A frame whose tiles are traced in several places, such as the ranks of an MPI job or the workers of a browser,
+ * each by a piece_source (render/core/renderer.h): the tiles, and their sum, which is the film of the whole frame
+ * bit for bit. Ownership: shared_frame_begin allocates film and variance; shared_frame_release frees them, unless
+ * the owner took them and set them to NULL. One thread at a time. */
 #pragma once
 
 #include "render/core/renderer.h"
