@@ -2,6 +2,7 @@
  * the order, the materials and what the statements on groups mean, assimp reads a text with the same statements and one
  * triangle for each run of faces, whose vertex has the run's number as its x. */
 #include "base/large_pages.h"
+#include "import/import.h"
 #include "import/obj.h"
 
 #include <stdlib.h>

@@ -5,7 +5,7 @@
  * has allocated. */
 #pragma once
 
-#include "import/import.h"
+#include "import/flat_mesh.h"
 
 enum {
     OBJ_LINE_MAX = 1000, /* bytes; longer lines are left to assimp */
@@ -67,6 +67,8 @@ bool obj_index(const char **at, uint32_t *index);
 bool obj_load(const request *req, obj_file *f);
 
 /* ---- obj.c ---- */
+
+struct aiScene;
 
 /* Reads the file into flat, with the assimp scene of its materials. False: it is left to assimp; nothing changes. */
 bool obj_read(const request *req, flat_mesh *flat, const struct aiScene **scene);

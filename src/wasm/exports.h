@@ -8,6 +8,12 @@
 #include <stddef.h>
 #include <stdint.h>
 
+struct cuvette_scene;
+struct cuvette_query;
+struct cuvette_motion;
+struct cuvette_diagnostic;
+struct cuvette_diagnostic;
+
 /* The last error, as "file:line:column: what; remedy". */
 const char *wasm_why(void);
 /* The name of the instruction set: simd128 or plain. */
@@ -37,6 +43,52 @@ int wasm_tiles_scene(const void *bytes, size_t size);
 /* Traces the tiles of an order. Returns the address of the answer, and its size in *size; valid until the next
  * call. */
 const void *wasm_tiles_trace(const void *bytes, size_t size, size_t *answer_size);
+
+/* --- the JavaScript API (api/cuvette.js), next to the functions of cuvette.h ---
+ *
+ * A function that returns a text gives JSON, or a plain text where that is said, which the script frees; NULL after an
+ * error. A ray is 7 numbers: origin, direction, reach. */
+
+struct cuvette_diagnostic *wasm_error(void); /* the place of the last error, for `why` of cuvette.h */
+char *wasm_error_json(void);                 /* {status, text, what, remedy, file, line, column} */
+
+char *wasm_scene_text(const struct cuvette_scene *scene);                    /* the scene file */
+char *wasm_scene_get(const struct cuvette_scene *scene, const char *path);   /* the value */
+char *wasm_scene_parameters(const struct cuvette_scene *scene);              /* [{path, value, unit, ..}] */
+char *wasm_scene_hints(const struct cuvette_scene *scene);                   /* [text] */
+char *wasm_scene_names(const struct cuvette_scene *scene);                   /* {lights: [name], ..} */
+char *wasm_scene_realism(const struct cuvette_scene *scene);                 /* {metrics: [..], curves: [..]} */
+char *wasm_scene_curve(const struct cuvette_scene *scene, const char *name); /* [[x, measured, theory]] */
+
+/* A render in turns. coarse: 1, or the width and height divided by that number. Until its last turn, or its end, the
+ * scene refuses changes. A turn returns a status; it ends after budget_s or somewhat later. */
+typedef struct wasm_render wasm_render;
+wasm_render *wasm_render_create(struct cuvette_scene *scene, int coarse);
+void wasm_render_destroy(wasm_render *r);
+int wasm_render_turn(wasm_render *r, double budget_s);
+double wasm_render_share(const wasm_render *r); /* 1: complete */
+char *wasm_render_pieces(wasm_render *r);       /* [[x0, y0, x1, y1]]: traced since the last call */
+char *wasm_render_result(const wasm_render *r); /* {width, height, hash, counters, wall_s} */
+/* 4 bytes for each pixel of the rectangle, of which the last is 255; 3 floats for each pixel of the image. */
+void wasm_render_srgb(const wasm_render *r, int x0, int y0, int x1, int y1, unsigned char *rgba);
+void wasm_render_rgb(const wasm_render *r, float *rgb);
+
+char *wasm_query_camera_ray(const struct cuvette_query *query, double x, double y); /* {origin, direction} */
+char *wasm_query_nearest(const struct cuvette_query *query, const double *rays, size_t count);
+char *wasm_query_medium(const struct cuvette_query *query, const double *point); /* {solid: a name or null} */
+char *wasm_query_trace(const struct cuvette_query *query, const double *ray);
+char *wasm_query_trace_pixel(const struct cuvette_query *query, int x, int y);
+/* rule: from, to, normal, rays, width, spread_deg as 12 numbers (cuvette_fan_rule). */
+char *wasm_query_fan(const struct cuvette_query *query, const double *rule);
+
+char *wasm_motion_names(const struct cuvette_motion *motion);
+char *wasm_motion_state(const struct cuvette_motion *motion, const char *name);
+/* {distance, where} and {hand, where}, or null for a miss. */
+char *wasm_motion_pick(const struct cuvette_motion *motion, const char *name, const double *ray);
+char *wasm_motion_grab(struct cuvette_motion *motion, const char *name, const double *ray, double reach);
+
+/* The four words of random_at (base/random.h). */
+void wasm_random(uint32_t key_low, uint32_t key_high, uint32_t a, uint32_t b, uint32_t c, uint32_t d, uint32_t *words);
 
 /* --- imports --- */
 

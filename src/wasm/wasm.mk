@@ -18,7 +18,8 @@ wasm_without := src/study/% src/engine/study% src/base/below.c src/base/child.c 
 wasm_web := $(filter-out $(addprefix src/web/http/http_,events.c guard.c gzip.c library.c request.c send.c watch.c) src/web/http/http.c src/web/lab_confine.c $(addprefix src/web/,$(addprefix api/api_,machine.c studies.c study_% \
   video.c) api/study_json.c $(addprefix session/,figures% rescue% studies.c study_files.c task_thread.c videos.c) \
   live/render_worker_thread.c),$(web))
-wasm_sources := $(filter-out $(wasm_without),$(library)) $(kernels) $(wasm_web) $(filter src/wasm/%,$(sources))
+wasm_sources := $(filter-out $(wasm_without),$(library)) $(kernels) $(wasm_web) $(filter src/wasm/%,$(sources)) \
+  src/import/join.c src/import/obj_number.c
 
 wasm_flags = -std=gnu17 -D_GNU_SOURCE -O3 $(arithmetic) -Isrc -I$(wasm)/libraries/include -include src/wasm/lacking.h \
   -DCUVETTE_VERSION='"$(version)"' -DCUVETTE_COMPILER_FLAGS='"wasm: -O3 $(arithmetic)"' \
@@ -75,3 +76,10 @@ wasm_link = -sEXPORTED_FUNCTIONS=@$(wasm)/exports -sEXPORTED_RUNTIME_METHODS=FS,
   -sMODULARIZE -sEXPORT_NAME=cuvette -sWASM_BIGINT -sENVIRONMENT=web,worker,node -sALLOW_MEMORY_GROWTH -sMAXIMUM_MEMORY=2GB \
   -sTOTAL_STACK=1MB -sINITIAL_MEMORY=32MB -sALLOW_TABLE_GROWTH -sFILESYSTEM -sINCOMING_MODULE_JS_API=instantiateWasm,print,printErr,locateFile \
   -sERROR_ON_UNDEFINED_SYMBOLS=1 --js-library src/wasm/imports.js
+
+.PHONY: test-wasm bench-wasm
+wasm_tests = $(sort $(wildcard tests/wasm/*.test.mjs))
+test-wasm: wasm $(build)/cuvette ## test the WebAssembly modules in node: films, ray counts, errors, the JavaScript API
+	@node --test-concurrency=1 --test $(wasm_tests) | node tests/wasm/summary.mjs
+bench-wasm: wasm $(build)/cuvette ## measure the speed of the WebAssembly modules and of the native program
+	@node tests/wasm/bench.mjs

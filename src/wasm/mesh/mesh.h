@@ -1,0 +1,44 @@
+/* Readers of mesh files for browsers, without assimp: plain OBJ with MTL, and PLY. Triangles, vertices, normals and
+ * materials are those of the program's importer, so that films have the same hash. Ownership: mesh_parts_release frees
+ * what a reader made, also after an error. Errors: STATUS_BAD_INPUT with the line in the text, STATUS_FAILURE without memory. */
+#pragma once
+
+#include "base/status.h"
+#include "import/flat_mesh.h"
+#include "import/mesh_wire.h"
+#include "scene/assets/mesh_stream.h"
+
+enum { POLYGON_MAX = 4096 /* corners */ };
+
+typedef struct mesh_material {
+    mesh_wire_material values; /* without the lengths */
+    char *name, *texture;      /* texture may be NULL */
+} mesh_material;
+
+/* materials[0] is that of triangles without one. */
+typedef struct mesh_parts {
+    const mesh_limits *limits;
+    flat_mesh flat; /* slots are indices of materials until mesh_parts_import */
+    joiner join;
+    size_t triangle_room, slot_room;
+    mesh_material *materials;
+    size_t material_count, material_room;
+} mesh_parts;
+
+status mesh_parts_begin(mesh_parts *p, const mesh_limits *limits, diagnostic *why);
+void mesh_parts_release(mesh_parts *p);
+/* A new material with the values of an OBJ file's; *index is its number. */
+status mesh_parts_material(mesh_parts *p, const char *name, size_t length, size_t *index, diagnostic *why);
+/* The vertex with these numbers: position, normal, texture coordinates; 0 for what it lacks. */
+status mesh_parts_vertex(mesh_parts *p, const double numbers[8], uint32_t *index, diagnostic *why);
+status mesh_parts_triangle(mesh_parts *p, const uint32_t corners[3], size_t material, diagnostic *why);
+status mesh_parts_import(mesh_parts *p, mesh_import **out, diagnostic *why);
+
+/* Divides a polygon of count > 3 corners, which may be concave, into count - 2 triangles, or fewer if it is not simple;
+ * returns their number. Their corners are indices of places. */
+size_t polygon_divide(const float (*places)[3], size_t count, uint32_t (*triangles)[3]);
+
+/* text: size bytes and a final 0. path: of the file, next to which others are; it is the diagnostic's file already. */
+status obj_read_text(const char *path, const char *text, size_t size, mesh_parts *p, diagnostic *why);
+status mtl_read(const char *path, const char *root, mesh_parts *p, diagnostic *why);
+status ply_read_text(const char *text, size_t size, mesh_parts *p, diagnostic *why);

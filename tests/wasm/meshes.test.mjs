@@ -1,0 +1,282 @@
+/* Mesh files: films are those of the program, whose importer reads the same files; damaged files give an error, whatever
+ * is wrong with them. */
+
+import assert from 'node:assert/strict';
+import { mkdtempSync, readFileSync, rmSync, writeFileSync } from 'node:fs';
+import { tmpdir } from 'node:os';
+import { join } from 'node:path';
+import { after, before, test } from 'node:test';
+import { CuvetteError } from '../../src/wasm/api/cuvette.js';
+import { ROOT, cuvetteOf, runNative } from './fixture.mjs';
+
+const read = (name) => readFileSync(`${ROOT}tests/data/acts/${name}`);
+
+/* A scene that shows the file, near and from above, with its own materials. */
+const scene = (file, shading = 'smooth') => `
+render: {width: 64, height: 48, depth: 4}
+camera: {position: [3, 2.2, -5], target: [0, 0.3, 0]}
+background: {kind: gradient, color: [0.3, 0.5, 0.8], horizon: [0.9, 0.9, 0.8]}
+meshes: {thing: {file: ${file}}}
+lights: {lamp: {position: [4, 7, -6]}, low: {position: [5, 1, 1]}}
+solids:
+  ground: {shape: plane, position: [0, -1.2, 0], ambient: 0.2, diffuse: 0.7, checker: 0.7}
+  crate: {shape: mesh, mesh: thing, rotation: [0, 20, 0], shading: ${shading}}
+`;
+
+/* A prism on a polygon of n corners, with a notch or without. */
+function prism(n, notch) {
+  const corner = (i) => {
+    const radius = notch && i === 1 ? 0.25 : 1;
+    return [radius * Math.cos((2 * Math.PI * i) / n), radius * Math.sin((2 * Math.PI * i) / n)];
+  };
+  const lines = [];
+  for (const y of [-0.7, 0.9]) {
+    for (let i = 0; i < n; i++) lines.push(`v ${corner(i)[0].toFixed(5)} ${y} ${corner(i)[1].toFixed(5)}`);
+  }
+  const all = [...Array(n).keys()];
+  lines.push(`f ${all.map((i) => i + 1).join(' ')}`);
+  lines.push(
+    `f ${all
+      .map((i) => n + 1 + i)
+      .reverse()
+      .join(' ')}`,
+  );
+  for (const i of all) {
+    const j = (i + 1) % n;
+    lines.push(`f ${i + 1} ${n + i + 1} ${n + j + 1} ${j + 1}`);
+  }
+  return `${lines.join('\n')}\n`;
+}
+
+const OBJ = `# forms
+mtllib thing.mtl
+o first
+v -1 -1 -1 1
+v 1.5 -1 -1
+v 1 1.25e0 -1 0.5 0.5 0.5
+v -1 1 -1
+v 0 0.1 -2
+vt 0 0
+vt 1 0 0
+vt 1 1
+vn 0 0 -1
+vn 0.1 0.2 -1
+usemtl grey
+f 1/1/1 4/2/1 3/3/1 2/1/1
+g group
+s 1
+usemtl none such
+f -5//2 -4//2 \\
+ -1//2
+l 1 2 3
+usemtl grey
+f 2/3 3/2 5/1
+f 3 4 5
+`;
+const MTL = `newmtl unused
+Kd 1 0 0
+newmtl grey
+Kd 0.3 0.4 0.5
+Ka 0.1 0.1 0.1
+Ks 0.4
+Ns 30
+Ni 1.4
+d 0.8
+map_Kd chequer.png
+`;
+const IMAGE = readFileSync(`${ROOT}experiments/scenes/chequer.png`);
+
+const VERTICES = [
+  [-1, -1, -1],
+  [1, -1, -1],
+  [1, 1, -1],
+  [-1, 1, -1],
+  [-1, -1, 1],
+  [1, -1, 1],
+  [1, 1.1, 1],
+  [-1, 1, 1],
+  [9, 9, 9],
+];
+const FACES = [
+  [0, 3, 2, 1],
+  [4, 5, 6, 7],
+  [0, 1, 5, 4],
+  [0, 4, 7],
+  [0, 7, 3],
+  [2, 3, 7, 6],
+  [1, 2, 6, 5],
+  [4, 5],
+];
+
+function plyHeader(format, type = 'float') {
+  return `ply
+format ${format} 1.0
+comment a box
+element vertex ${VERTICES.length}
+property ${type} x
+property ${type} y
+property ${type} z
+property float nx
+property float ny
+property float nz
+property uchar red
+element face ${FACES.length}
+property list uchar int vertex_indices
+end_header
+`;
+}
+const normalOf = (v) => v.map((x) => x / 2);
+
+const plyText = () =>
+  plyHeader('ascii') +
+  VERTICES.map((v) => `${[...v, ...normalOf(v)].join(' ')} 7\n`).join('') +
+  FACES.map((f) => `${f.length} ${f.join(' ')}\n`).join('');
+
+function plyBinary(little, type = 'float') {
+  const size = VERTICES.length * (type === 'double' ? 37 : 25) + FACES.reduce((sum, f) => sum + 1 + 4 * f.length, 0);
+  const view = new DataView(new ArrayBuffer(size));
+  let at = 0;
+  for (const v of VERTICES) {
+    for (const x of v) {
+      if (type === 'double') view.setFloat64(at, x, little);
+      else view.setFloat32(at, x, little);
+      at += type === 'double' ? 8 : 4;
+    }
+    for (const x of normalOf(v)) view.setFloat32((at += 4) - 4, x, little);
+    view.setUint8(at++, 7);
+  }
+  for (const f of FACES) {
+    view.setUint8(at++, f.length);
+    for (const i of f) view.setInt32((at += 4) - 4, i, little);
+  }
+  const header = plyHeader(`binary_${little ? 'little' : 'big'}_endian`, type);
+  return Buffer.concat([Buffer.from(header), Buffer.from(view.buffer)]);
+}
+
+const CASES = {
+  'a box with materials': { 'thing.obj': read('faces.obj'), 'faces.mtl': read('faces.mtl') },
+  'all forms of OBJ': { 'thing.obj': OBJ, 'thing.mtl': MTL, 'chequer.png': IMAGE },
+  'a hexagonal prism': { 'thing.obj': prism(6) },
+  'a prism of 17 corners': { 'thing.obj': prism(17) },
+  'a prism with a notch': { 'thing.obj': prism(7, true) },
+  'concave quadrilaterals': { 'thing.obj': prism(4, true) },
+  'PLY as text': { 'thing.ply': plyText() },
+  'PLY, little endian': { 'thing.ply': plyBinary(true) },
+  'PLY, little endian, doubles': { 'thing.ply': plyBinary(true, 'double') },
+  'PLY, big endian': { 'thing.ply': plyBinary(false) },
+};
+
+let cuvette;
+let folder;
+before(async () => {
+  cuvette = await cuvetteOf('simd128');
+  folder = mkdtempSync(join(tmpdir(), 'cuvette-wasm-'));
+});
+after(() => rmSync(folder, { recursive: true }));
+
+const bytesOf = (text) => (typeof text === 'string' ? new TextEncoder().encode(text) : text);
+
+async function film(files, shading) {
+  const name = Object.keys(files).find((file) => /thing/.test(file));
+  const all = Object.fromEntries(Object.entries(files).map(([file, text]) => [file, bytesOf(text)]));
+  const thing = cuvette.Scene.read(scene(name, shading), { files: all });
+  try {
+    return await cuvette.engine().render(thing);
+  } finally {
+    thing.destroy();
+  }
+}
+
+for (const [what, files] of Object.entries(CASES))
+  for (const shading of ['smooth', 'flat'])
+    test(`${what}, ${shading}`, async () => {
+      const name = Object.keys(files).find((file) => /thing/.test(file));
+      for (const [file, text] of Object.entries(files)) writeFileSync(join(folder, file), text);
+      writeFileSync(join(folder, 'scene.yaml'), scene(name, shading));
+      const { film_hash: hash, rays } = runNative(join(folder, 'scene.yaml'));
+      const own = await film(files, shading);
+      assert.equal(own.hash, hash);
+      assert.equal(own.counters.shadow, rays.shadow);
+    });
+
+test('other formats, missing files and bad lines are errors with a remedy', async () => {
+  const refused = (files, message) => assert.rejects(film(files), message);
+  await refused(
+    { 'thing.stl': 'solid' },
+    /thing\.stl: a browser reads meshes from \.obj and \.ply files only; convert/,
+  );
+  await refused({ 'thing.obj': 'mtllib none.mtl\nv 0 0 0\n' }, /none\.mtl: .*No such file/);
+  await refused({ 'thing.obj': 'v 0 0 0\nf 1 2 3\n' }, /thing\.obj: line 2: the corner '2' of a face is invalid/);
+  await refused({ 'thing.obj': 'v 0 0\n' }, /thing\.obj: line 1: a vertex has no three numbers/);
+  await refused({ 'thing.obj': 'v 0 0 0\n' }, /thing\.obj: the file has no triangles/);
+  await refused({ 'thing.obj': '' }, /thing\.obj: .*empty/);
+  await refused(
+    { 'thing.ply': 'ply\nformat ascii 1.0\nelement vertex 3\n' },
+    /thing\.ply: line 3: the header has no end/,
+  );
+});
+
+/* Numbers in a fixed order. */
+function randomOf(seed) {
+  let counter = 0;
+  return (most) => cuvette.random([seed, 0], [counter++, 0, 0, 0])[0] % most;
+}
+
+test('damaged files never end the module', async () => {
+  const random = randomOf(25);
+  const words = [
+    '-1',
+    '999999999999',
+    'nan',
+    '1e999',
+    '/',
+    '',
+    '\\',
+    'list',
+    '4294967295',
+    'f',
+    'v',
+    '\0',
+    '-0',
+    '65536',
+  ];
+  let refused = 0;
+  for (const [file, source] of [
+    ['thing.obj', OBJ],
+    ['thing.mtl', MTL],
+    ['thing.obj', prism(9, true)],
+    ['thing.ply', plyText()],
+    ['thing.ply', plyBinary(true)],
+  ])
+    for (let i = 0; i < 150; i++) {
+      let bytes = Buffer.from(source);
+      if (i % 3 === 0) bytes = bytes.subarray(0, random(bytes.length));
+      if (i % 3 === 1) for (let k = 0; k < 3; k++) bytes[random(bytes.length)] = random(256);
+      if (i % 3 === 2) {
+        const at = random(bytes.length);
+        bytes = Buffer.concat([
+          bytes.subarray(0, at),
+          Buffer.from(words[random(words.length)]),
+          bytes.subarray(at + 3),
+        ]);
+      }
+      const files = { 'thing.obj': OBJ, 'thing.mtl': MTL, 'chequer.png': IMAGE, [file]: bytes };
+      if (file === 'thing.ply') delete files['thing.obj'];
+      try {
+        const name = file === 'thing.mtl' ? 'thing.obj' : file;
+        const thing = cuvette.Scene.read(scene(name), { files });
+        try {
+          thing.set('render.width', 8);
+          thing.set('render.height', 6);
+          await cuvette.engine().render(thing);
+        } finally {
+          thing.destroy();
+        }
+      } catch (error) {
+        assert.ok(error instanceof CuvetteError, `${file}, case ${i}: ${error}`);
+        assert.equal(error.status, 2, error.message);
+        refused++;
+      }
+    }
+  assert.ok(refused > 200, `${refused} files are refused`);
+});

@@ -1,0 +1,23 @@
+/* Reads the TAP report of node --test, prints what failed or was skipped, and the line "N passed, N failed". */
+
+import { createInterface } from 'node:readline';
+
+let passed = 0;
+let failed = 0;
+let shown = false; /* the lines of a failure */
+for await (const line of createInterface({ input: process.stdin })) {
+  const [, indent, no, name] = line.match(/^( *)(not )?ok \d+ - (.*)$/) ?? [];
+  if (/^ *# Subtest/.test(line)) shown = false;
+  if (indent === undefined) {
+    if (shown && /(error|expected|actual|code):|^ +\S/.test(line)) console.log(line);
+    if (/^ *\.\.\.$/.test(line)) shown = false;
+    if (/^ *type: 'suite'/.test(line)) passed -= 1; /* a suite is none of the tests */
+    continue;
+  }
+  shown = Boolean(no);
+  if (no) failed++;
+  else passed++;
+  if (no || name.includes('# SKIP')) console.log(line.trim());
+}
+console.log(`${passed} passed, ${failed} failed`);
+process.exit(failed || !passed ? 1 : 0);
