@@ -15,9 +15,10 @@ wasm_isa_flags_simd128 := -msimd128 -mnontrapping-fptoint -mbulk-memory -msign-e
 wasm_without := src/study/% src/engine/study% src/base/below.c src/base/child.c src/base/spawn.c src/base/os_confine% \
   src/measure/hardware_counter.c src/measure/topology_discover.c src/measure/disturbances.c src/measure/levels.c \
   src/scene/assets/mesh_child% src/scene/assets/mesh_program.c src/scene/assets/mesh_file.c src/render/core/worker_pool.c
-wasm_web := $(filter-out $(addprefix src/web/http/http_,events.c guard.c gzip.c library.c request.c send.c watch.c) src/web/http/http.c src/web/lab_confine.c $(addprefix src/web/,$(addprefix api/api_,machine.c studies.c study_% \
-  video.c) api/study_json.c $(addprefix session/,figures% rescue% studies.c study_files.c task_thread.c videos.c) \
-  live/render_worker_thread.c),$(web))
+wasm_web := $(filter-out src/web/http/http.c $(addprefix src/web/http/http_,events.c guard.c gzip.c library.c \
+  request.c send.c watch.c) src/web/lab_confine.c $(addprefix src/web/api/,api_machine.c api_studies.c api_study_% \
+  api_video.c study_json.c) $(addprefix src/web/session/,figures% rescue% studies.c study_files.c task_thread.c \
+  videos.c) src/web/live/render_worker_thread.c,$(web))
 wasm_sources := $(filter-out $(wasm_without),$(library)) $(kernels) $(wasm_web) $(filter src/wasm/%,$(sources)) \
   src/import/join.c src/import/obj_number.c
 
@@ -72,10 +73,11 @@ $(wasm)/exports: src/cuvette.h src/wasm/exports.h src/wasm/wasm.mk
 	  grep -oh '\bwasm_[a-z0-9_]*(' src/wasm/exports.h; echo 'malloc('; echo 'free('; } | sort -u | sed 's/^/_/; s/($$//' >$@
 
 # Memory grows; a stack as that of a thread. The page compiles the module once for all its workers.
-wasm_link = -sEXPORTED_FUNCTIONS=@$(wasm)/exports -sEXPORTED_RUNTIME_METHODS=FS,UTF8ToString,stringToUTF8,lengthBytesUTF8 \
-  -sMODULARIZE -sEXPORT_NAME=cuvette -sWASM_BIGINT -sENVIRONMENT=web,worker,node -sALLOW_MEMORY_GROWTH -sMAXIMUM_MEMORY=2GB \
-  -sTOTAL_STACK=1MB -sINITIAL_MEMORY=32MB -sALLOW_TABLE_GROWTH -sFILESYSTEM -sINCOMING_MODULE_JS_API=instantiateWasm,print,printErr,locateFile \
-  -sERROR_ON_UNDEFINED_SYMBOLS=1 --js-library src/wasm/imports.js
+wasm_link = -sEXPORTED_FUNCTIONS=@$(wasm)/exports \
+  -sEXPORTED_RUNTIME_METHODS=FS,UTF8ToString,stringToUTF8,lengthBytesUTF8 -sMODULARIZE -sEXPORT_NAME=cuvette \
+  -sWASM_BIGINT -sENVIRONMENT=web,worker,node -sALLOW_MEMORY_GROWTH -sMAXIMUM_MEMORY=2GB -sTOTAL_STACK=1MB \
+  -sINITIAL_MEMORY=32MB -sALLOW_TABLE_GROWTH -sFILESYSTEM -sERROR_ON_UNDEFINED_SYMBOLS=1 \
+  -sINCOMING_MODULE_JS_API=instantiateWasm,print,printErr,locateFile --js-library src/wasm/imports.js
 
 .PHONY: test-wasm bench-wasm
 wasm_tests = $(sort $(wildcard tests/wasm/*.test.mjs))
