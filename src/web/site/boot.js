@@ -1,11 +1,12 @@
 /* Starts the engine of the site's page before the page's own modules are there; engine_boot.js describes what
  * globalThis.cuvetteEngine tells. The laboratory in one file has the parts in elements of the page, each the base64 of
  * its gzip: a page that is opened as a file can load nothing else.
- * globalThis.cuvetteDocument() is the text of that file as it was loaded, for pages that hold it (live_page.js). */
+ * globalThis.cuvetteDocument() is a promise of the text of that file, for pages that hold it (live_page.js). */
 
 import { startWorker } from '../page/engine_boot.js';
 
 const FIRST_SCENE = 'scenes/rod.yaml';
+const ONE_FILE = '../laboratory.html';
 
 const part = (name) => document.getElementById(`cuvette-${name}`);
 const opensLink = part('scene') || /^#(scene|lesson)=/.test(location.hash);
@@ -25,17 +26,25 @@ const partsOfPage = () => ({
   files: unpack('files').then((reply) => reply.json()),
 });
 
+/* As it was loaded, before the page changes it. */
 function keepDocument() {
   const kept = document.documentElement.cloneNode(true);
   kept.querySelector('#cuvette-scene')?.remove();
-  globalThis.cuvetteDocument = () => `<!doctype html>\n${kept.outerHTML}`;
+  globalThis.cuvetteDocument = async () => `<!doctype html>\n${kept.outerHTML}`;
+}
+
+async function loadDocument() {
+  const reply = await fetch(ONE_FILE);
+  if (!reply.ok) throw new Error(`${ONE_FILE}: status ${reply.status}`);
+  return reply.text();
 }
 
 const oneFile = Boolean(part('module'));
 if (!oneFile && location.protocol === 'file:')
-  location.replace(`../laboratory.html${location.search}${location.hash}`); // nothing can be fetched here
+  location.replace(`${ONE_FILE}${location.search}${location.hash}`); // nothing can be fetched here
 else {
   if (oneFile) keepDocument();
+  else globalThis.cuvetteDocument = loadDocument;
   globalThis.cuvetteEngine = { scene: opensLink ? null : FIRST_SCENE, ...(oneFile && partsOfPage()) };
   globalThis.cuvetteEngine.started = startWorker();
   globalThis.cuvetteEngine.started.catch(() => undefined); // the page tells it
