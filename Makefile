@@ -340,11 +340,13 @@ doc: $(build)/cuvette doc-tools ## write the documentation as HTML: build/doc/in
 	@rm -rf $(build)/doc
 	@python3 -B src/manual/site/build.py $(build)/cuvette $(build)/doc
 	@echo 'documentation: $(build)/doc/index.html'
-doc-tools: | $(filter setup-doc,$(MAKECMDGOALS))
+doc-tools: | $(filter setup-doc setup-site,$(MAKECMDGOALS))
 	@for tool in python3 mandoc cmark-gfm; do command -v $$tool >/dev/null || \
 	  { echo "doc: $$tool is not installed; run: make setup-doc" >&2; exit 1; }; done
 test-doc: $(build)/cuvette | doc-tools ## check the documentation: complete, every link resolves; part of make test
 	@CUVETTE='$(abspath $(build)/cuvette)' tests/run tests/doc.sh
+
+include src/web/site/site.mk
 
 # --- tests ---
 
@@ -383,14 +385,15 @@ dictionary: $(build)/tests/test_quantities $(build)/cuvette ## renew the tables 
 	@awk -f src/manual/results.awk results/README.md >$(build)/results.roff
 	@$(call renew,results,src/manual/man5/cuvette-results.5)
 
-# The page in a real browser: only=NAME for tests/web/NAME.test.mjs alone, screenshots=FOLDER for images of every view. Runs after everything
-# that installs or measures.
+# The page in a real browser: only=NAME for tests/web/NAME.test.mjs alone, screenshots=FOLDER for images of every view, ENGINE=browser for the
+# laboratory of `make wasm` in the page instead of the program. Runs after everything that installs or measures.
 .PHONY: test-web setup-web
 setup-web: | $(filter setup setup-peers setup-python setup-mpi,$(MAKECMDGOALS))
 	@.ci/setup-web $(build)/web-tests
-test-web: $(build)/cuvette | setup-web $(filter test test-mpi experiments bench,$(MAKECMDGOALS)) ## test the laboratory's page in Chromium, installed with node if missing; only=NAME for one file
+test-web: $(build)/cuvette $(if $(filter browser,$(ENGINE)),wasm) | setup-web $(filter test test-mpi experiments bench,$(MAKECMDGOALS)) ## test the laboratory's page in Chromium, installed with node if missing; only=NAME for one file, ENGINE=browser without the server
 	@tests/format.sh --check $(build)/web-tests
 	@node tests/web/run.mjs --program '$(abspath $(build)/cuvette)' --modules '$(abspath $(build)/web-tests)' \
+	  $(if $(ENGINE),--engine '$(ENGINE)' --wasm '$(abspath $(wasm))') \
 	  $(if $(screenshots),--screenshots '$(abspath $(screenshots))') $(only)
 
 # Other architectures, with Debian's cross compilers and qemu-user: arch="s390x" for one of .ci/architectures, SIZE=160x120 for larger films.
@@ -621,10 +624,11 @@ define files
   for page in $(pages); do echo "644 src/manual/$$page $(share)/man/$$page"; done; \
   echo '644 src/cli/cuvette.bash $(share)/bash-completion/completions/cuvette'; \
   for text in LICENSE README.md CHANGELOG.md src/licences.md; do echo "644 $$text $(share)/doc/cuvette/$${text##*/}"; done; \
+  $(if $(wildcard $(build)/live.html)$(filter site,$(MAKECMDGOALS)),echo '644 $(build)/live.html $(share)/cuvette/live.html';) \
   find experiments plots -type f ! -path '*/__pycache__/*' | while read -r file; do \
     test -x "$$file" && mode=755 || mode=644; echo "$$mode $$file $(share)/cuvette/$$file"; done
 endef
-install: $(build)/cuvette $(build)/cuvette-import $(build)/$(soname) $(build)/engine/libcuvette.a | $(filter mpi,$(MAKECMDGOALS)) ## install under PREFIX (/usr/local), below DESTDIR; with cuvette-mpi where make mpi has built it
+install: $(build)/cuvette $(build)/cuvette-import $(build)/$(soname) $(build)/engine/libcuvette.a | $(filter mpi site,$(MAKECMDGOALS)) ## install under PREFIX (/usr/local), below DESTDIR; with cuvette-mpi where make mpi has built it, and live.html of make site
 	@sed 's|@PREFIX@|$(PREFIX)|; s|@LIBDIR@|$(LIBDIR)|; s|@VERSION@|$(version)|; s|@LIBRARIES@|$(strip $(all_libs))|' src/cuvette.pc.in >$(build)/cuvette.pc
 	@{ $(files); } | DESTDIR='$(DESTDIR)' .ci/install '$(list)'
 	@.ci/install-notes '$(DESTDIR)' '$(PREFIX)' '$(LIBDIR)'
@@ -666,4 +670,4 @@ distclean: clean ## also remove tables and figures; measured rows stay in result
 	rm -rf build $(RESULTS)/tables $(RESULTS)/figures
 	@test ! -f paper/Makefile || $(MAKE) -C paper clean
 help: ## list the targets
-	@sed -n 's/^\([a-z_.-]*\):.*## \(.*\)/  make \1\t\2/p' Makefile | expand -t 30
+	@sed -n 's/^\([a-z_.-]*\):.*## \(.*\)/  make \1\t\2/p' $(filter-out %.d,$(MAKEFILE_LIST)) | expand -t 30

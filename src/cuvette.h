@@ -118,6 +118,10 @@ CUVETTE_API cuvette_status cuvette_scene_write(const cuvette_scene *scene, const
  * folder. */
 CUVETTE_API cuvette_status cuvette_scene_write_text(const cuvette_scene *scene, char *text, size_t size, size_t *length,
                                                     cuvette_diagnostic *why);
+/* Writes the scene as the code of a link, #scene=CODE, which the laboratory opens, with the same arguments. The scene
+ * may name no files, and hold no arrays. */
+CUVETTE_API cuvette_status cuvette_scene_write_link(const cuvette_scene *scene, char *text, size_t size, size_t *length,
+                                                    cuvette_diagnostic *why);
 
 /* Reads the files that the scene names, and simulates its slimes until their time_s, which otherwise its first render,
  * query or measurement does. progress, which may be NULL, is called about ten times a second, with the share of the

@@ -55,6 +55,25 @@ empty 'no page names a folder of this machine' "$(grep -rlF -e "$root" -e "$work
 build "$work/again" >/dev/null
 empty 'the same sources give the same bytes' "$(diff -r "$site" "$work/again" 2>&1)"
 
+# --- with a laboratory: lessons and scenes of the gallery open in it
+with=$work/with
+mkdir "$with.laboratory" && touch "$with.laboratory/index.html"
+python3 -B "$root/src/manual/site/build.py" "$program" "$with" laboratory/ >/dev/null
+mv "$with.laboratory" "$with/laboratory"
+empty 'with a laboratory, links and anchors resolve' "$(check "$with")"
+empty 'each lesson opens in the laboratory' "$(for lesson in "${lessons[@]}"; do
+    name=${lesson#lesson-}
+    grep -qF "href=\"laboratory/#lesson=${name%.html}\"" "$with/$lesson" || echo "$lesson"
+done)"
+grep -qF 'href="laboratory/?scene=scenes/rod.yaml"' "$with/gallery.html"
+verdict $? 'a scene of the gallery opens in the laboratory'
+code=$(grep -A3 'rod.yaml -o tea.png' "$with/gallery.html" | grep -o '#scene=[A-Za-z0-9_-]*')
+"$program" scene "$code" 2>/dev/null | grep -q 'ior: 1.47'
+verdict $? 'a scene with changed parameters opens with them' "$code"
+grep -qF 'class="open" href="laboratory/"' "$with/index.html"
+verdict $? 'the first page leads to the laboratory'
+empty 'without a laboratory no page leads to one' "$(grep -l 'href="laboratory/' "$site"/*.html)"
+
 # --- the checks find what they look for
 broken=$work/broken
 cp -rl "$site" "$broken" # sed -i makes files of its own

@@ -1,7 +1,8 @@
 """Checks the documentation site: python3 -B tests/doc_check.py FOLDER. Prints each fault as one line, FILE: FAULT.
 
 Every page is well formed and complete, every link and anchor leads somewhere within the folder, nothing is loaded from
-elsewhere, no page is without a link to it. Only links of the text may lead to https: pages."""
+elsewhere, no page is without a link to it. Only links of the text may lead to https: pages. A folder with an index.html
+of its own, the laboratory, is one target."""
 
 import re
 import sys
@@ -86,11 +87,14 @@ def read(path):
 
 def fault_of(folder, pages, file, tag, name, target):
     path, _, anchor = target.partition('#')
+    path = path.partition('?')[0]
     if re.match(r'https?:', target) and (tag, name) == ('a', 'href'):
         return None
     if re.match(r'[a-z]+:|/', target):
         return f'{target} is not in this folder'
     aim = Path(unquote(path)) if path else file
+    if path.endswith('/') and (folder / aim / 'index.html').is_file():
+        return None
     if '..' in aim.parts or not (folder / aim).is_file():
         return f'the link {target} leads nowhere'
     if anchor and (str(aim) not in pages or unquote(anchor) not in pages[str(aim)].ids):
@@ -109,6 +113,8 @@ def check(folder):
                 yield f'{name}: {fault}'
             used.add(unquote(target.partition('#')[0]))
     for path in sorted(folder.rglob('*')):
+        if (path.parent / 'index.html').exists() and path.parent != folder:
+            continue
         if path.is_file() and str(path.relative_to(folder)) not in used:
             yield f'{path.relative_to(folder)}: no page links to it'
     if re.search(r'url\(|@import', (folder / 'style.css').read_text(encoding='utf-8')):

@@ -13,7 +13,7 @@ case_number=0 failed=0
 mapfile -t c < <(find src tests experiments -name '*.[ch]' | sort)
 mapfile -t shell < <(find .ci src tests plots experiments paper -type f -print0 |
     xargs -0 grep -lE '^#!/bin/(ba)?sh' | sort)
-mapfile -t page < <(find src/web/page tests/web -name '*.js' -o -name '*.mjs' -o -name '*.css' -o -name '*.html' | sort)
+mapfile -t page < <(find src/web tests/web -name '*.js' -o -name '*.mjs' -o -name '*.css' -o -name '*.html' | sort)
 
 mapfile -t python < <(find src/python tests/python experiments -name '*.py' | sort)
 

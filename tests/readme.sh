@@ -54,6 +54,8 @@ cp -r "$root/experiments" "$work/lab/"
 "${CC:-gcc}" -std=gnu17 -o "$work/bin/json_get" "$root/tests/json_get.c" $(pkg-config --cflags --libs jansson)
 verdict $? "tests/json_get.c compiles"
 export PATH=$work/bin:$PATH
+export CUVETTE_LIVE=$work/live.html # the laboratory in one file, which the build need not have
+echo '<!doctype html><html><head></head><body></body></html>' >"$CUVETTE_LIVE"
 cd "$work/lab" || exit 1
 
 try() { # COMMAND LINE: passes when it succeeds; its output is in said

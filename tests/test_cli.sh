@@ -83,6 +83,24 @@ run render a.html -o page.png
 check "a page's scene gives the same film" is "$(grep -o 'film [0-9a-f]\{16\}' out)" "$page_hash"
 run render "$scene" -o a.html --beams
 check "a page needs no --beams" matches "$(<err)" 'a page shows the beams anyway'
+check "a page has no script" is "$(grep -c '<script>' a.html)" 0
+echo '<!doctype html><html><head></head><body></body></html>' >mine.html
+CUVETTE_LIVE=mine.html run render "$scene" -o live.html "${small[@]}" --set 'liquid.ior=1.4' --live
+check "--live puts the laboratory into the page" grep -q 'id="cuvette-live">eN[+/=0-9A-Za-z]*</script>' \
+    live.html
+check "the laboratory may run, but request nothing" grep -q "default-src 'none'.*script-src.*worker-src blob:" live.html
+check "a live page shows its command" grep -qF -- "-o live.html --live</pre>" live.html
+run render live.html -o page.png
+check "a live page's scene gives the same film" is "$(grep -o 'film [0-9a-f]\{16\}' out)" "$page_hash"
+rm live.html
+CUVETTE_LIVE=none.html run render "$scene" -o live.html --live
+check "--live without the laboratory" is "$(<err)" "cuvette: --live: there is no none.html, the laboratory in one \
+file; make it with: make setup-wasm setup-site site; or set CUVETTE_LIVE to it"
+CUVETTE_LIVE=mine.html run render "$scene" -o a.png --live
+check "--live is for pages" matches "$(<err)" 'only a page can hold the laboratory; add -o FILE.html'
+CUVETTE_LIVE=mine.html run render "${scene%/*}/chequer.yaml" -o live.html --live
+check "--live of a scene that reads files" matches "$(<err)" 'may name no files, but tiles reads chequer.png'
+rm mine.html
 check "no other files are left" is "$(find . -type f -printf '%f\n' | LC_ALL=C sort | tr '\n' ' ')" \
     "a.html a.jpg a.pfm a.png b.png c.png check.log err json_get out page.png "
 

@@ -259,6 +259,12 @@ static void a_scene_built_by_calls_equals_its_file(void **state)
     cuvette_scene_destroy(again);
     assert_true(hash_of(engine, clone) == hash);
     cuvette_scene_destroy(clone);
+    char link[8192] = "#scene=";
+    fine(cuvette_scene_write_link(called, link + strlen(link), sizeof link - strlen(link), NULL, &why), &why);
+    cuvette_scene *opened;
+    fine(cuvette_scene_read(link, &opened, &why), &why);
+    assert_true(hash_of(engine, opened) == hash);
+    cuvette_scene_destroy(opened);
     cuvette_scene_destroy(called);
     cuvette_scene_destroy(filed);
     cuvette_engine_destroy(engine);
@@ -329,6 +335,8 @@ static void a_texture_from_memory_is_visible(void **state)
     /* A file cannot contain its pixels. */
     assert_int_equal(cuvette_scene_write_text(s, text, sizeof text, NULL, &why), CUVETTE_BAD_INPUT);
     assert_non_null(strstr(why.what, "paint"));
+    assert_int_equal(cuvette_scene_write_link(s, text, sizeof text, NULL, &why), CUVETTE_BAD_INPUT);
+    assert_non_null(strstr(why.what, "paint reads"));
     fine(cuvette_scene_clone(s, &clone, &why), &why);
     cuvette_scene_destroy(s);
     cuvette_request request = CUVETTE_REQUEST;

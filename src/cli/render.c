@@ -7,12 +7,14 @@
 #include "cli/render_page.h"
 #include "render/core/record.h"
 #include "render/inspect/beam_drawing.h"
+#include "report/page_live.h"
 #include "report/report.h"
 #include "cli/inert_notes.h"
 #include "cli/scene_input.h"
 #include "cli/terminal.h"
 #include "base/number.h"
 #include "measure/statistics.h"
+#include "scene/file/shared.h"
 #include "scene/model/scene.h"
 #include <math.h>
 #include <stdio.h>
@@ -22,8 +24,9 @@
 typedef struct render_request {
     scene_input input;
     outputs files;
-    bool json, beams;
-    int64_t repeat; /* 0: not given */
+    bool json, beams, live;
+    char *laboratory; /* for the page, owned; NULL: none */
+    int64_t repeat;   /* 0: not given */
 } render_request;
 
 static status take_bits(const command_option *o, void *context, const char *value, diagnostic *why)
@@ -47,6 +50,8 @@ static const command_option options[] = {
      OPTION_FILLS(option_flag, render_request, json)},
     {"beams", 0, NULL, "draw the scene's beams into the image of -o; the film and its hash stay the same",
      OPTION_FILLS(option_flag, render_request, beams)},
+    {"live", 0, NULL, "put the laboratory into the page of -o: its scene can be turned and changed there",
+     OPTION_FILLS(option_flag, render_request, live)},
     {"bits", 0, "N", "bits per channel of a PNG: 8 (the default) or 16", .take = take_bits},
     {"rays", 0, "FILE", "write the ray count of each pixel: .png with a colour scale, or .pfm",
      OPTION_FILLS(option_text, render_request, files.rays)},
@@ -63,10 +68,23 @@ static const command_option options[] = {
     {0},
 };
 
+/* Read before anything is rendered, so that a missing file costs no time. */
+static status take_laboratory(render_request *request, diagnostic *why)
+{
+    if (!request->files.img || !outputs_is_page(request->files.img))
+        return options_wrong("--live", NULL, why, "add -o FILE.html", "only a page can hold the laboratory");
+    const status result = page_live_code(&request->laboratory, why);
+    if (result == STATUS_BAD_INPUT && !why->file[0])
+        diagnostic_locate(why, "--live", 0, 0);
+    return result;
+}
+
 static status check_request(void *context, diagnostic *why)
 {
-    const render_request *request = context;
+    render_request *request = context;
     const outputs *files = &request->files;
+    if (request->live)
+        TRY(take_laboratory(request, why));
     if (request->beams && files->img && outputs_is_page(files->img))
         return options_wrong("--beams", NULL, why, "remove it", "a page shows the beams anyway");
     if (request->beams && (!files->img || image_format_of(files->img) == IMAGE_PFM))
@@ -81,6 +99,8 @@ static status check_request(void *context, diagnostic *why)
 static status check_scene(void *context, const scene *s, diagnostic *why)
 {
     const render_request *request = context;
+    if (request->live)
+        TRY(shared_scene_check(s, why));
     return outputs_check(&request->files, s, why);
 }
 
@@ -157,7 +177,8 @@ static status write_files(const render_request *request, const job_account *f, j
     const outputs *files = &request->files;
     TRY(outputs_write(files, f->of, f->result, why));
     if (files->img && outputs_is_page(files->img))
-        TRY(render_page_write(&request->input, f, job_isa(with), files->img, files->bits == 16 ? 16 : 8, why));
+        TRY(render_page_write(&request->input, f, job_isa(with), files->img, files->bits == 16 ? 16 : 8,
+                              request->laboratory, why));
     if (request->beams && f->count > 0)
         TRY(draw_beams(request, f, with, why));
     return STATUS_OK;
@@ -260,5 +281,7 @@ static const scene_command render_command = {
 status command_render(int argc, char **argv, diagnostic *why)
 {
     render_request request = {.repeat = 0};
-    return scene_command_run(&render_command, argc, argv, &request, why);
+    const status result = scene_command_run(&render_command, argc, argv, &request, why);
+    free(request.laboratory);
+    return result;
 }

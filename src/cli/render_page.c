@@ -9,7 +9,7 @@
 #include "scene/model/camera.h"
 #include <stdlib.h>
 
-static status command_of(const scene_input *input, const char *path, char **text, diagnostic *why)
+static status command_of(const scene_input *input, const char *path, bool live, char **text, diagnostic *why)
 {
     text_writer writer;
     TRY(text_writer_open(&writer, why));
@@ -24,6 +24,7 @@ static status command_of(const scene_input *input, const char *path, char **text
     }
     fputs(" -o ", writer.stream);
     shell_word_write(writer.stream, path);
+    fputs(live ? " --live" : "", writer.stream);
     return text_writer_close(&writer, text, NULL, why);
 }
 
@@ -33,21 +34,22 @@ static status write_page(const void *content, FILE *out, diagnostic *why)
 }
 
 status render_page_write(const scene_input *input, const job_account *f, isa level, const char *path, int bits,
-                         diagnostic *why)
+                         const char *live, diagnostic *why)
 {
     image *img = NULL;
     char *command = NULL;
     status code = film_image(f->result->img, &img, why);
     if (code == STATUS_OK)
         img->tone = camera_tone(f->of);
-    THEN(code, command_of(input, path, &command, why));
+    THEN(code, command_of(input, path, live, &command, why));
     if (code == STATUS_OK) {
         const report_page_content page = {.s = f->of,
                                           .level = level,
                                           .rows = image_rows_of(img),
                                           .bits = bits,
                                           .film_hash = job_account_hash(f),
-                                          .command = command};
+                                          .command = command,
+                                          .live = live};
         code = outputs_write_text(path, write_page, &page, why);
     }
     free(command);

@@ -61,6 +61,10 @@ cuvette_status engine_is_advancing(cuvette_diagnostic *why); /* always CUVETTE_B
 /* A handle that owns the model, which is destroyed when out of memory. */
 cuvette_status engine_own_scene(scene *model, cuvette_scene **out, cuvette_diagnostic *why);
 
+/* Locks the scene (its lock `loading`) against loading by another thread: renders of one scene may begin together, and
+ * each checks what is loaded. */
+cuvette_scene *engine_hold(const cuvette_scene *s);
+
 /* Drops one reference; the last one frees the scene. */
 void engine_release_scene(cuvette_scene *s);
 

@@ -1,10 +1,9 @@
-/* Scene handles: creating, reading, cloning, checking, writing. */
+/* Scene handles: creating, reading, cloning, checking. */
 #include "base/cancel.h"
 #include "engine/engine_private.h"
 
 #include "measure/clock.h"
 #include "scene/model/hints.h"
-#include "scene/file/write.h"
 #include <stdlib.h>
 #include <string.h>
 
@@ -63,9 +62,7 @@ cuvette_status cuvette_scene_read_text(const char *name, const char *text, size_
     return code == STATUS_OK ? engine_own_scene(model, out, why) : engine_report(code, &inner, why);
 }
 
-/* Locks the scene against loading by another thread: renders of one scene may begin together, and each checks what is
- * loaded. */
-static cuvette_scene *hold(const cuvette_scene *s)
+cuvette_scene *engine_hold(const cuvette_scene *s)
 {
     cuvette_scene *held = (cuvette_scene *)(uintptr_t)s; /* handles are never const objects */
     pthread_mutex_lock(&held->loading);
@@ -77,7 +74,7 @@ cuvette_status cuvette_scene_clone(const cuvette_scene *s, cuvette_scene **out, 
     ENGINE_CALL(out);
     *out = NULL;
     ENGINE_NEED(s);
-    cuvette_scene *source = hold(s);
+    cuvette_scene *source = engine_hold(s);
     scene *model = scene_clone(source->model);
     const bool grabbed = source->grabbed;
     pthread_mutex_unlock(&source->loading);
@@ -206,7 +203,7 @@ cuvette_status cuvette_scene_load(const cuvette_scene *s, bool (*progress)(void 
 
 status engine_check(const cuvette_scene *s, diagnostic *why)
 {
-    cuvette_scene *held = hold(s);
+    cuvette_scene *held = engine_hold(s);
     const status code = scene_check(held->model, why);
     pthread_mutex_unlock(&held->loading);
     return code;
@@ -239,7 +236,7 @@ cuvette_status cuvette_scene_hints(const cuvette_scene *s, void (*note)(void *co
 {
     ENGINE_CALL(s);
     ENGINE_NEED_NAMED(note, "note");
-    cuvette_scene *held = hold(s);
+    cuvette_scene *held = engine_hold(s);
     scene *copy = scene_clone(held->model); /* the callback may use the scene */
     pthread_mutex_unlock(&held->loading);
     if (!copy)
@@ -247,43 +244,4 @@ cuvette_status cuvette_scene_hints(const cuvette_scene *s, void (*note)(void *co
     scene_hints(copy, &(note_taker){call_host, &(host_call){note, context, &host}});
     scene_destroy(copy);
     return CUVETTE_OK;
-}
-
-cuvette_status engine_copy_text(char *content, char *text, size_t size, size_t *length, cuvette_diagnostic *why)
-{
-    const size_t needed = strlen(content);
-    if (length)
-        *length = needed;
-    const bool fits = needed < size;
-    if (fits)
-        memcpy(text, content, needed + 1);
-    free(content);
-    if (fits)
-        return CUVETTE_OK;
-    diagnostic inner = {.line = 0};
-    return engine_report(diagnose(&inner, STATUS_BAD_INPUT, "make room for the reported length plus 1",
-                                  "the text has %zu characters, but the buffer only %zu bytes", needed, size),
-                         &inner, why);
-}
-
-cuvette_status cuvette_scene_write(const cuvette_scene *s, const char *path, cuvette_diagnostic *why)
-{
-    ENGINE_CALL(s, path);
-    cuvette_scene *held = hold(s);
-    const status code = scene_write(held->model, path, false, &inner);
-    pthread_mutex_unlock(&held->loading);
-    return engine_report(code, &inner, why);
-}
-
-cuvette_status cuvette_scene_write_text(const cuvette_scene *s, char *text, size_t size, size_t *length,
-                                        cuvette_diagnostic *why)
-{
-    ENGINE_CALL(s);
-    if (size > 0)
-        ENGINE_NEED(text);
-    char *content = NULL;
-    cuvette_scene *held = hold(s);
-    const status code = scene_write_text(held->model, NULL, false, &content, &inner);
-    pthread_mutex_unlock(&held->loading);
-    return code == STATUS_OK ? engine_copy_text(content, text, size, length, why) : engine_report(code, &inner, why);
 }

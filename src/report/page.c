@@ -2,6 +2,7 @@
 #include "report/page.h"
 
 #include "base/base64.h"
+#include "report/page_live.h"
 #include "report/page_rays.h"
 #include "report/page_style.h"
 #include "report/svg.h"
@@ -15,6 +16,10 @@
 
 /* Nothing may be requested and nothing runs, whatever a text contained. */
 #define POLICY "default-src 'none'; img-src data:; style-src 'unsafe-inline'; base-uri 'none'; form-action 'none'"
+/* Nothing may be requested; the laboratory of the page runs, from the page alone. */
+#define LIVE_POLICY                                                                         \
+    "default-src 'none'; img-src data: blob:; style-src 'unsafe-inline'; base-uri 'none'; " \
+    "script-src 'unsafe-inline' 'wasm-unsafe-eval' blob:; worker-src blob:; connect-src data: blob:"
 
 static const char *title_of(const scene *s)
 {
@@ -23,10 +28,11 @@ static const char *title_of(const scene *s)
 
 static void write_heading(const report_page_content *page, const char *code, FILE *out)
 {
-    fputs("<!doctype html>\n<html lang=\"en\">\n<head>\n<meta charset=\"utf-8\">\n"
-          "<meta http-equiv=\"Content-Security-Policy\" content=\"" POLICY "\">\n"
-          "<meta name=\"viewport\" content=\"width=device-width, initial-scale=1\">\n<title>",
-          out);
+    fprintf(out,
+            "<!doctype html>\n<html lang=\"en\">\n<head>\n<meta charset=\"utf-8\">\n"
+            "<meta http-equiv=\"Content-Security-Policy\" content=\"%s\">\n"
+            "<meta name=\"viewport\" content=\"width=device-width, initial-scale=1\">\n<title>",
+            page->live && code ? LIVE_POLICY : POLICY);
     svg_escape(out, title_of(page->s));
     fputs("</title>\n<style>\n" PAGE_STYLE "</style>\n", out);
     if (code)
@@ -104,6 +110,8 @@ static status write_body(const report_page_content *page, const shared_texts *te
     if (code == STATUS_OK) {
         page_rays_write_drawing(&rays, page->rows.width, page->rows.height, out);
         fputs("</div>\n", out);
+        if (page->live && texts->scene)
+            page_live_write(page->live, out);
         write_account(page, &rays, out);
         page_rays_write_table(&rays, out);
         code = write_source(page, text, texts->scene, out, why);

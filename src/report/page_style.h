@@ -24,4 +24,8 @@
     "table{border-collapse:collapse;font-size:.85rem;font-variant-numeric:tabular-nums;white-space:nowrap}\n" \
     "th,td{padding:.2rem .5rem;text-align:left;border-bottom:1px solid var(--edge)}\n"                        \
     "thead th{position:sticky;top:0;background:var(--soft)}tr:target{background:var(--mark)}\n"               \
-    "pre{overflow:auto;max-height:26rem;margin:0;padding:.6rem;background:var(--soft);font-size:.85rem}\n"
+    "pre{overflow:auto;max-height:26rem;margin:0;padding:.6rem;background:var(--soft);font-size:.85rem}\n"    \
+    "#turn{font:inherit;padding:.5rem 1rem}#turned{width:100vw;height:100dvh;max-width:none;max-height:none;" \
+    "box-sizing:border-box;margin:0;padding:0;border:0;background:var(--paper)}\n"                            \
+    "#turned[open]{display:flex;flex-direction:column}#turned form{padding:.25rem}\n"                         \
+    "#turned iframe{flex:1;width:100%;border:0}\n"

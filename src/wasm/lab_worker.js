@@ -1,12 +1,13 @@
 /* The laboratory's worker: it gets its module and its files in the first message, and answers the page's requests
  * (page/engine_browser.js). Tile workers are its own.
  *
- * page -> worker  {boot: {wasm, files, scene, workers}}
+ * page -> worker  {boot: {wasm, files, scene, workers, script}}
  *                   wasm: a WebAssembly.Module, or the bytes of one; files: [{name, bytes}]; scene: a name, or null for
- *                   an empty room; workers: the number of tile workers
+ *                   an empty room; workers: the number of tile workers; script: the text of this script, if the worker
+ *                   was made from it: a page that was opened as a file has no address that its workers may use
  *                 {id, method, path, body}    body: JSON text or null
  *                 {file: {name, bytes}}       one more file of the folder
- *                 {memory: true}              asks for the size of the module's memory
+ *                 {memory: true}              requests the size of the module's memory
  * worker -> page  {ready: true, isa} or {failed: text}
  *                 {memory: bytes}
  *                 {id, status, headers, bytes}
@@ -53,8 +54,8 @@ function takeTurn() {
 
 const tileWorkers = [];
 
-function startTileWorker(compiled) {
-  const worker = new Worker(self.location.href);
+function startTileWorker(compiled, address) {
+  const worker = new Worker(address);
   const number = tileWorkers.push(worker) - 1;
   worker.postMessage({ tiles: compiled });
   worker.onmessage = ({ data }) => {
@@ -76,13 +77,14 @@ const host = {
 
 /* --- messages of the page --- */
 
-async function startLab({ wasm, files, scene, workers }) {
+async function startLab({ wasm, files, scene, workers, script }) {
   const compiled = wasm instanceof WebAssembly.Module ? wasm : await WebAssembly.compile(wasm);
   lab = await instantiate(compiled, host);
   lab.FS.mkdir(FOLDER);
   lab.FS.chdir(FOLDER);
   files.forEach(putFile);
-  for (let i = 0; i < workers; i++) startTileWorker(compiled);
+  const address = script ? URL.createObjectURL(new Blob([script], { type: 'text/javascript' })) : self.location.href;
+  for (let i = 0; i < workers; i++) startTileWorker(compiled, address);
   const code = withText(lab, FOLDER, (folder) =>
     withText(lab, scene ? `${FOLDER}/${scene}` : '', (name) => lab._wasm_lab_start(folder, name, workers)),
   );

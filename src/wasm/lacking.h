@@ -10,3 +10,7 @@ static inline const char *strerrordesc_np(int error)
     return strerror(error);
 }
 #endif
+
+/* A module has one thread. With copies of memory as instructions, clang would keep thread-local storage, which the
+ * linker refuses without atomics. */
+#define _Thread_local

@@ -23,7 +23,7 @@ static const double order_s = 0.05, setup_shares = 4.0;
 
 typedef struct remote {
     bool busy;
-    uint64_t generation;         /* of the scene that it has */
+    uint64_t generation;         /* of the scene that it has; UINT64_MAX: with a slime of its moment */
     double tiles_per_s, setup_s; /* of its last order in this pass; 0: none yet */
 } remote;
 
@@ -171,7 +171,7 @@ static status send_scene(render_worker *p, diagnostic *why)
     TRY(scene_pack(p->snapshot, &bytes, &size, why));
     for (int i = 0; i < now.workers; i++) {
         host_send(i, 0, bytes, size);
-        now.remotes[i].generation = p->snapshot_generation;
+        now.remotes[i].generation = p->was_on ? UINT64_MAX : p->snapshot_generation;
     }
     free(bytes);
     return STATUS_OK;

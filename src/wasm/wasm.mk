@@ -38,7 +38,7 @@ $(wasm)/flags: always | $(filter setup-wasm,$(MAKECMDGOALS))
 	  { echo 'wasm: emscripten is not installed; run: make setup-wasm' >&2; exit 1; }
 	@mkdir -p $(@D)
 	@echo '$(wasm_flags_text)' | cmp -s - $@ || echo '$(wasm_flags_text)' >$@
-$(wasm)/libraries/complete: src/wasm/libraries.sh $(wasm)/flags
+$(wasm)/libraries/complete: src/wasm/libraries.sh | $(wasm)/flags
 	$(call say,emcc $(wasm)/libraries)
 	$(quiet)src/wasm/libraries.sh $(wasm)/sources $(@D) >$(wasm)/libraries.log 2>&1 || \
 	  { tail -n 20 $(wasm)/libraries.log | cut -c 1-300 >&2; exit 1; }

@@ -6,6 +6,7 @@
 #include "base/os_process.h"
 #include "base/system_error.h"
 #include "base/text.h"
+#include "report/page_live.h"
 #include "web/lab_private.h"
 #include "web/session/kept_scenes.h"
 
@@ -89,6 +90,7 @@ static void add_program(place_list *all)
         add_found(all, installed_find(&here[i], 1, "cuvette-import"), CONFINE_RUN);
     add_text(all, getenv("CUVETTE_IMPORT"), CONFINE_RUN);
     add_found(all, installed_folder("experiments"), CONFINE_READ);
+    add_found(all, page_live_path(), CONFINE_READ);
 }
 
 static const char *temporary_place(void)

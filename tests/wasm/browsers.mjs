@@ -194,7 +194,7 @@ for (const scene of scenes) {
   const { film_hash: film, rays: { total: rays } } = JSON.parse(execFileSync(given.program, [...words, '--json'], { stdio: ['ignore', 'pipe', 'ignore'] }));
   expected.set(scene, { film, rays });
 }
-const files = filesBelow(SCENES).map((path) => relative('experiments', path));
+const files = [...filesBelow(SCENES), ...filesBelow('experiments/hands')].map((path) => relative('experiments', path));
 const all = { passed: 0, failed: 0 };
 for (const browser of given.browsers) {
   const counts = await run(browser, given, { runs: RUNS, scenes, files, width, height }, expected);

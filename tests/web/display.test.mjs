@@ -143,7 +143,7 @@ export const cases = {
       await screen.chooseTool('Inspect');
       await screen.clickPixel(330, 420);
       await screen.button('Larger drawing').click();
-      const drawing = page.locator('.trace-drawing img');
+      const drawing = page.locator('.trace-drawing img[src]');
       await drawing.evaluate((node) => node.decode());
       const { readPng } = await import('./png.mjs');
       const { data } = readPng(await drawing.screenshot());

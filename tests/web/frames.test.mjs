@@ -2,8 +2,8 @@
 // fetched one is drawn, and the last is the final image of the last value, exactly. Tabs share one event stream.
 import { difference } from './screen.mjs';
 
-/** Records every displayed image, once, and the requests for images. The event repeats for an image that is already
- * displayed. */
+/** Records every displayed image, once, and the requests for images, which the result returns. The event repeats for an
+ * image that is already displayed. */
 async function record(screen) {
   await screen.page.evaluate(() => {
     window.drawn = [];
@@ -14,12 +14,8 @@ async function record(screen) {
       [last, lastExact] = [serial, exact];
     });
   });
-  const fetched = [];
-  screen.page.on('request', (request) => {
-    const { pathname, search } = new URL(request.url());
-    if (pathname.startsWith('/api/picture.')) fetched.push(pathname + search);
-  });
-  return fetched;
+  const asked = await screen.asked();
+  return () => asked.filter((path) => path.startsWith('/api/picture.'));
 }
 
 function checkOrder(t, drawn, what) {
@@ -41,7 +37,7 @@ async function checkLast(t, screen, scene, what) {
   t.equal(
     difference(await screen.pixels(), await screen.served()),
     0,
-    `${what}: share of pixels that differ from the server's image`,
+    `${what}: share of pixels that differ from the laboratory's image`,
   );
 }
 
@@ -51,7 +47,7 @@ export const cases = {
     const screen = await t.open(lab, { width: 1920, height: 1080 });
     await screen.actualSize();
     const slider = await screen.paramSlider('liquid.ior');
-    const fetched = await record(screen);
+    const fetchedNow = await record(screen);
     const before = (await lab.get('/api/state')).generation;
     await slider.focus();
     // 200 changes, and more where the images come slower than the keys.
@@ -61,6 +57,7 @@ export const cases = {
     await screen.page.keyboard.press('ArrowRight');
     await screen.settled(before + 1);
     const drawn = await screen.page.evaluate(() => window.drawn);
+    const fetched = fetchedNow();
     checkOrder(t, drawn, 'keys');
     t.more(drawn.filter((frame) => frame.during).length, 4, 'keys: frames were drawn while the slider moved');
     t.more(drawn.length, 0.9 * fetched.length - 1, 'keys: nearly every fetched image was drawn');
@@ -91,7 +88,7 @@ export const cases = {
   'a dragged camera is seen at every image': async (t) => {
     const lab = await t.lab('scenes/rod.yaml');
     const screen = await t.open(lab, { width: 1366, height: 768 });
-    const fetched = await record(screen);
+    const fetchedNow = await record(screen);
     const { x, y } = await screen.place(400, 300);
     await screen.page.mouse.move(x, y);
     await screen.page.mouse.down();
@@ -100,6 +97,7 @@ export const cases = {
     await screen.page.mouse.up();
     await screen.settled(before + 1);
     const drawn = await screen.page.evaluate(() => window.drawn);
+    const fetched = fetchedNow();
     checkOrder(t, drawn, 'drag');
     const sent = (await lab.get('/api/state')).generation - before;
     t.more(drawn.filter((frame) => frame.during).length, 2, 'drag: frames were drawn while the camera moved');

@@ -1,37 +1,11 @@
 // The self-contained HTML file of `cuvette render -o FILE.html`: opened from the disk without a network it shows the
 // image and the rays with the numbers of `cuvette trace`, requests nothing, and runs no script.
 import { execFileSync } from 'node:child_process';
-import { mkdtempSync, readFileSync, rmSync } from 'node:fs';
-import { tmpdir } from 'node:os';
+import { readFileSync } from 'node:fs';
 import { join } from 'node:path';
-import { pathToFileURL } from 'node:url';
+import { openFile, withFolder } from './file_page.mjs';
 
 const rod = 'experiments/scenes/rod.yaml';
-
-async function openFile(t, file, dark) {
-  const context = await t.browser.newContext({
-    viewport: { width: 1100, height: 800 },
-    colorScheme: dark ? 'dark' : 'light',
-    offline: true,
-  });
-  const page = await context.newPage();
-  const asked = [];
-  const errors = [];
-  page.on('request', (request) => asked.push(request.url()));
-  page.on('console', (message) => errors.push(message.text()));
-  page.on('pageerror', (error) => errors.push(error.message));
-  await page.goto(pathToFileURL(file).href);
-  return { page, asked, errors, close: () => context.close() };
-}
-
-async function withFolder(act) {
-  const folder = mkdtempSync(join(tmpdir(), 'cuvette-html-'));
-  try {
-    await act(folder);
-  } finally {
-    rmSync(folder, { recursive: true });
-  }
-}
 
 async function look(t, shown, name) {
   const { page, asked, errors } = shown;

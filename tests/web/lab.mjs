@@ -1,5 +1,5 @@
 // A laboratory for one test: a temporary folder, `cuvette lab` on it, requests like those of curl, and other commands
-// of the program.
+// of the program. browser_lab.mjs is the same without a server.
 import { spawn, execFile } from 'node:child_process';
 import { rmSync } from 'node:fs';
 import { cp, mkdtemp, mkdir, rm } from 'node:fs/promises';
@@ -50,68 +50,29 @@ for (const [signal, code] of [
 ])
   process.on(signal, () => process.exit(code));
 
-export class Lab {
-  /** scene: a file of the folder, which contains experiments/scenes as scenes, experiments/hands as hands,
-   * tests/web/scenes as tests, and the studies of tests/web/studies. */
-  static async start(program, scene) {
-    const lab = new Lab();
-    lab.program = program;
-    lab.folder = await mkdtemp(join(tmpdir(), 'cuvette-web-'));
-    lab.state = `${lab.folder}-state`; // unsaved scenes, not among those of the user
-    running.add(lab);
+/** The folder of a laboratory with the requests and commands of a test, whatever the engine; a subclass has ask(), the
+ * address of the page and home, the address without a scene. */
+export class LabFolder {
+  /** A folder that contains experiments/scenes as scenes, experiments/hands as hands, tests/web/scenes as tests, and
+   * the studies of tests/web/studies. */
+  async make(program) {
+    this.program = program;
+    this.folder = await mkdtemp(join(tmpdir(), 'cuvette-web-'));
+    this.state = `${this.folder}-state`; // unsaved scenes, not among those of the user
+    running.add(this);
     for (const [from, to] of [
       ['experiments/scenes', 'scenes'],
       ['experiments/hands', 'hands'],
       ['tests/web/scenes', 'tests'],
       ['tests/web/studies', 'studies'],
     ])
-      await cp(join(root, from), join(lab.folder, to), { recursive: true });
-    await mkdir(join(lab.folder, 'results'));
-    await lab.serve(scene);
-    return lab;
-  }
-
-  /** Starts the program; at a free port or, after stop(), at the same port as before. */
-  async serve(scene, more = [], env = {}) {
-    const port = this.port ? ['--port', String(this.port)] : [];
-    this.child = spawn(
-      this.program,
-      ['lab', ...(scene ? [join(this.folder, scene)] : []), '--no-browser', '--folder', this.folder, ...port, ...more],
-      {
-        cwd: this.folder,
-        stdio: ['ignore', 'pipe', 'pipe'],
-        env: { ...process.env, XDG_STATE_HOME: this.state, ...env },
-      },
-    );
-    const [address, number, token] = await firstMatch(this.child, /http:\/\/127\.0\.0\.1:(\d+)\/\?token=([0-9a-f]+)/);
-    Object.assign(this, { address, port: Number(number), token, origin: `http://127.0.0.1:${number}` });
-  }
-
-  /** Ends the program: by Ctrl-C, or as a crash does (SIGKILL). */
-  async stop(signal = 'SIGINT') {
-    const { child } = this;
-    if (child.exitCode !== null || child.signalCode !== null) return;
-    const ended = new Promise((resolve) => child.once('exit', resolve));
-    child.kill(signal);
-    await ended;
+      await cp(join(root, from), join(this.folder, to), { recursive: true });
+    await mkdir(join(this.folder, 'results'));
   }
 
   async end() {
-    await this.stop();
     for (const each of [this.folder, this.state]) await rm(each, { recursive: true, force: true });
     running.delete(this);
-  }
-
-  /** Status, type and bytes of a reply. */
-  async ask(method, path, body) {
-    const headers = { Authorization: `Bearer ${this.token}` };
-    if (method !== 'GET') headers['Content-Type'] = 'application/json';
-    const reply = await fetch(this.origin + path, {
-      method,
-      headers,
-      body: method === 'GET' ? undefined : JSON.stringify(body ?? {}),
-    });
-    return { status: reply.status, headers: reply.headers, bytes: new Uint8Array(await reply.arrayBuffer()) };
   }
 
   async json(method, path, body) {
@@ -139,5 +100,64 @@ export class Lab {
   async run(...words) {
     const { stdout } = await promisify(execFile)(this.program, words, { cwd: this.folder, maxBuffer: 1 << 28 });
     return stdout;
+  }
+}
+
+export class Lab extends LabFolder {
+  /** scene: a file of the folder. */
+  static async start(program, scene) {
+    const lab = new Lab();
+    await lab.make(program);
+    await lab.serve(scene);
+    return lab;
+  }
+
+  /** A page is open: requests of the test do not need it. */
+  opened() {}
+  takeSpare() {
+    return null;
+  }
+
+  /** Starts the program; at a free port or, after stop(), at the same port as before. */
+  async serve(scene, more = [], env = {}) {
+    const port = this.port ? ['--port', String(this.port)] : [];
+    this.child = spawn(
+      this.program,
+      ['lab', ...(scene ? [join(this.folder, scene)] : []), '--no-browser', '--folder', this.folder, ...port, ...more],
+      {
+        cwd: this.folder,
+        stdio: ['ignore', 'pipe', 'pipe'],
+        env: { ...process.env, XDG_STATE_HOME: this.state, ...env },
+      },
+    );
+    const [address, number, token] = await firstMatch(this.child, /http:\/\/127\.0\.0\.1:(\d+)\/\?token=([0-9a-f]+)/);
+    const origin = `http://127.0.0.1:${number}`;
+    Object.assign(this, { address, port: Number(number), token, origin, home: `${origin}/` });
+  }
+
+  /** Ends the program: by Ctrl-C, or as a crash does (SIGKILL). */
+  async stop(signal = 'SIGINT') {
+    const { child } = this;
+    if (child.exitCode !== null || child.signalCode !== null) return;
+    const ended = new Promise((resolve) => child.once('exit', resolve));
+    child.kill(signal);
+    await ended;
+  }
+
+  async end() {
+    await this.stop();
+    await super.end();
+  }
+
+  /** Status, type and bytes of a reply. */
+  async ask(method, path, body) {
+    const headers = { Authorization: `Bearer ${this.token}` };
+    if (method !== 'GET') headers['Content-Type'] = 'application/json';
+    const reply = await fetch(this.origin + path, {
+      method,
+      headers,
+      body: method === 'GET' ? undefined : JSON.stringify(body ?? {}),
+    });
+    return { status: reply.status, headers: reply.headers, bytes: new Uint8Array(await reply.arrayBuffer()) };
   }
 }

@@ -86,7 +86,7 @@ export const cases = {
     await screen.until(() => window.lab.param('liquid.ior').value === 1.5);
     await panel(screen).getByText('41.8103°', { exact: true }).waitFor();
     t.match(
-      await panel(screen).locator('.lesson-command code').last().textContent(),
+      await panel(screen).locator('.command-row code').last().textContent(),
       / --set liquid\.ior=1\.5$/,
       'command',
     );

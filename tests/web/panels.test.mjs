@@ -59,7 +59,7 @@ async function optics(t, dark) {
   await show(t, screen, `difference-${theme}`);
 
   await screen.showPanel('Machine');
-  await page.getByText('Kernel').waitFor();
+  await page.getByText(t.engine === 'server' ? 'Kernel' : 'cuvette machine', { exact: true }).waitFor();
   await show(t, screen, `machine-${theme}`);
 }
 

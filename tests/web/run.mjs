@@ -1,7 +1,9 @@
-// tests/web/run.mjs --program CUVETTE --modules FOLDER [--screenshots FOLDER] [NAME...]: runs tests/web/NAME.test.mjs,
-// or all, in Chromium; prints one line per file and per failed check, and ends with "N passed, M failed". A file
-// exports cases: {name: async (t) => ..}; t has the checks of checks.mjs, t.lab(scene), t.open(lab, options) and
-// t.axe(screen, what); pages and programs are closed at the end of the case.
+// tests/web/run.mjs --program CUVETTE --modules FOLDER [--screenshots FOLDER] [--engine browser --wasm FOLDER]
+// [NAME...]: runs tests/web/NAME.test.mjs, or all, in Chromium; prints one line per file and per failed check, and ends
+// with "N passed, M failed". A file exports cases: {name: async (t) => ..}, and engine, if they are of one only; t has
+// the checks of checks.mjs, t.lab(scene), t.open(lab, options) and t.axe(screen, what); pages and programs are closed
+// at the end of the case. --engine browser: the page with the laboratory of `make wasm` in the browser instead of the
+// program; the cases of needs_program.mjs are skipped.
 import { execFileSync } from 'node:child_process';
 import { readdirSync } from 'node:fs';
 import { mkdir, readFile } from 'node:fs/promises';
@@ -9,16 +11,27 @@ import { createRequire } from 'node:module';
 import { dirname, join } from 'node:path';
 import { fileURLToPath, pathToFileURL } from 'node:url';
 import { parseArgs } from 'node:util';
+import { BrowserLab } from './browser_lab.mjs';
 import { Checks } from './checks.mjs';
 import { Lab } from './lab.mjs';
+import { needsProgram } from './needs_program.mjs';
 import { Screen } from './screen.mjs';
+import { siteOf } from './site.mjs';
 
 const here = dirname(fileURLToPath(import.meta.url));
 const CASE_LIMIT_MS = 180000;
 const { values: options, positionals: names } = parseArgs({
-  options: { program: { type: 'string' }, modules: { type: 'string' }, screenshots: { type: 'string' } },
+  options: {
+    program: { type: 'string' },
+    modules: { type: 'string' },
+    screenshots: { type: 'string' },
+    engine: { type: 'string', default: 'server' },
+    wasm: { type: 'string' },
+  },
   allowPositionals: true,
 });
+
+const inBrowser = options.engine === 'browser';
 
 // The modules are installed in the build folder, where import does not search.
 const installed = createRequire(join(options.modules, 'package.json'));
@@ -30,16 +43,20 @@ class Case extends Checks {
   screens = [];
   program = options.program;
   screenshots = options.screenshots;
+  engine = options.engine;
 
   async lab(scene) {
-    const lab = await Lab.start(options.program, scene);
+    const lab = inBrowser
+      ? await BrowserLab.start(options.program, scene, siteOf(options.wasm), (each) => this.open(each))
+      : await Lab.start(options.program, scene);
     this.labs.push(lab);
     return lab;
   }
 
   async open(lab, how) {
-    const screen = await Screen.open(this.browser, lab, how);
-    this.screens.push(screen);
+    const spare = await lab.takeSpare(how);
+    const screen = spare ?? (await Screen.open(this.browser, lab, how));
+    if (!spare) this.screens.push(screen);
     return screen;
   }
 
@@ -118,15 +135,23 @@ const browser = await chromium.launch({
   args: ['--force-color-profile=srgb', ...(process.getuid() === 0 ? ['--no-sandbox'] : [])],
 });
 let [passed, failed] = [0, 0];
+const skipped = [];
 for (const name of selected) {
-  const { cases } = await import(pathToFileURL(join(here, `${name}.test.mjs`)));
+  const { cases, engine = options.engine } = await import(pathToFileURL(join(here, `${name}.test.mjs`)));
+  if (engine !== options.engine) continue;
   const lines = [];
   let good = 0;
   for (const [what, body] of Object.entries(cases)) {
+    const reason = inBrowser && needsProgram(name, what);
+    if (reason) {
+      skipped.push(`skip  ${name}: ${what}: ${reason}`);
+      continue;
+    }
     const t = await runCase(browser, body);
     good += t.passed;
     lines.push(...t.failures.map((line) => `      ${what}: ${line}`));
   }
+  if (!good && !lines.length) continue;
   console.log(
     lines.length
       ? `FAIL  ${name.padEnd(24)} ${lines.length} of ${good + lines.length}`
@@ -137,5 +162,6 @@ for (const name of selected) {
   failed += lines.length;
 }
 await browser.close();
-console.log(`${passed} passed, ${failed} failed`);
+for (const line of skipped) console.log(line);
+console.log(`${passed} passed, ${failed} failed${skipped.length ? `, ${skipped.length} cases skipped` : ''}`);
 process.exitCode = failed === 0 && passed > 0 ? 0 : 1;

@@ -19,6 +19,7 @@ export class Screen {
     });
     screen.context.setDefaultTimeout(LIMIT_MS);
     screen.page = await screen.context.newPage();
+    lab.opened(screen.page);
     screen.errors = [];
     screen.expected = [];
     screen.pending = new Set();
@@ -26,6 +27,13 @@ export class Screen {
     screen.watch();
     await screen.load();
     return screen;
+  }
+
+  /** Gives an open page another size or theme. */
+  async adapt({ width = 1366, height = 768, dark = false, touch = false } = {}) {
+    if (touch) throw new Error('a page cannot become one of a touch screen: open it before the first request');
+    await this.page.setViewportSize({ width, height });
+    await this.page.emulateMedia({ colorScheme: dark ? 'dark' : 'light', reducedMotion: 'reduce' });
   }
 
   watch() {
@@ -46,6 +54,27 @@ export class Screen {
         this.pending.delete(request);
         if (this.pending.size === 0) for (const wake of this.idle.splice(0)) wake();
       });
+  }
+
+  /** Records the paths that the page asks of its engine from now on: a list that grows. A counted path has been asked
+   * when the test sees what came of it. */
+  async asked() {
+    const list = [];
+    this.recorders ??= this.page
+      .exposeFunction('recordAsked', (path) => this.record(path))
+      .then(() =>
+        this.page.evaluate(() => {
+          const { engine } = window.lab;
+          const { fetch } = engine;
+          engine.fetch = (path, options) => {
+            window.recordAsked(path);
+            return fetch(path, options);
+          };
+        }),
+      );
+    await this.recorders;
+    this.record = (path) => list.push(path);
+    return list;
   }
 
   /** Permits errors that a case provokes. */
@@ -81,7 +110,7 @@ export class Screen {
 
   /** Waits until no request is pending except the event stream, and the latest image is drawn. */
   async quiet() {
-    await this.until(() => window.lab.change.idle()); // changes wait for images
+    await this.until(() => window.lab.change.idle() && window.lab.engine.idle()); // changes wait for images
     do {
       // a reply may trigger requests that waited for it
       if (this.pending.size) await new Promise((resolve) => this.idle.push(resolve));

@@ -20,8 +20,9 @@ export const cases = {
     await screen.settled(generation + 1);
     t.equal(await film(), first, 'the film after undo');
     await screen.page.goto('about:blank'); // from there the address is loaded, not only its fragment changed
-    await screen.page.goto(`${lab.origin}/${fragment}${code}`);
-    await screen.settled(generation + 2);
+    await screen.page.goto(`${lab.home}${fragment}${code}`);
+    await screen.until(() => window.lab?.state?.undo && window.lab.picture);
+    await screen.settled();
     t.equal(await film(), changed, 'the film of the link');
     t.equal(await screen.page.evaluate(() => location.hash), '', 'the address no longer has the scene');
     t.equal((await lab.get('/api/state')).file, null, 'the scene of a link has no file');
@@ -46,7 +47,7 @@ export const cases = {
     await screen.button('Copy link').click();
     await page.waitForFunction(() => document.body.textContent.includes('Link copied'));
     const link = await page.evaluate(() => navigator.clipboard.readText());
-    t.equal(link.startsWith(`${lab.origin}/#scene=`), true, 'the link is of this address');
+    t.equal(link.startsWith(`${lab.home}#scene=`), true, 'the link is of this address');
     const filmOf = (file) => JSON.parse(execFileSync(t.program, ['render', file, '--json'])).film_hash;
     t.equal(filmOf(link), changed, 'the film of the copied link');
 

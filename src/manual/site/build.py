@@ -1,4 +1,6 @@
-"""The documentation as HTML: python3 -B src/manual/site/build.py CUVETTE FOLDER (make doc).
+"""The documentation as HTML: python3 -B src/manual/site/build.py CUVETTE FOLDER [LABORATORY] (make doc, make site).
+
+LABORATORY is the address of a laboratory that runs in the browser, relative to FOLDER: pages link to it.
 
 Every page comes from a source that is also read elsewhere: manual pages, Markdown, the public header, lessons. FOLDER
 must not exist or be empty. The same sources and program give the same bytes."""
@@ -13,6 +15,7 @@ import frame
 import header
 import lessons
 import manual
+from laboratory import Laboratory
 from links import Links
 from page import Group, Page, Trouble, output_of
 
@@ -90,7 +93,8 @@ def collect(program):
     return [page for group in GROUPS for page in group.pages]
 
 
-def build(program, folder):
+def build(program, folder, address):
+    laboratory = Laboratory(ROOT, program, address)
     pages = collect(program)
     links = Links(ROOT, folder, pages)
     readme = next(page for page in pages if page.source == 'README.md')
@@ -100,20 +104,20 @@ def build(program, folder):
     waiting = [first, *pages]
     while waiting:  # a link to a text file of the project makes a page of it
         page = waiting.pop(0)
-        body = links.resolve(page)
+        body = laboratory.add(page, links.resolve(page))
         waiting += links.new_pages()
-        (folder / page.file).write_text(frame.whole(page, body, GROUPS, version), encoding='utf-8')
+        (folder / page.file).write_text(frame.whole(page, body, GROUPS, version, address), encoding='utf-8')
     (folder / 'style.css').write_bytes((Path(__file__).parent / 'style.css').read_bytes())
 
 
 def main():
-    if len(sys.argv) != 3:
-        raise Trouble('usage: build.py CUVETTE FOLDER')
+    if len(sys.argv) not in (3, 4):
+        raise Trouble('usage: build.py CUVETTE FOLDER [LABORATORY]')
     program, folder = Path(sys.argv[1]).resolve(), Path(sys.argv[2]).resolve()
     if folder.exists() and os.listdir(folder):
         raise Trouble(f'{sys.argv[2]} is not empty; give a new folder')
     folder.mkdir(parents=True, exist_ok=True)
-    build(program, folder)
+    build(program, folder, sys.argv[3] if len(sys.argv) == 4 else None)
 
 
 if __name__ == '__main__':

@@ -32,8 +32,9 @@ def current(same):
     return ' aria-current="page"' if same else ''
 
 
-def bar(page, groups):
-    items = ''.join(
+def bar(page, groups, laboratory):
+    items = f'<a href="{escape(laboratory)}">Laboratory</a>\n' if laboratory else ''
+    items += ''.join(
         f'<a href="{group.pages[0].file}"{" class=here" * (group is page.group)}>{escape(group.title)}</a>\n'
         for group in groups if group.pages)
     return f'<nav class="groups" aria-label="Sections">\n{items}</nav>\n'
@@ -49,7 +50,7 @@ def pages(page, groups):
     return f'<nav class="pages" id="pages" aria-label="All pages">\n{"".join(out)}</nav>\n'
 
 
-def whole(page, body, groups, version):
+def whole(page, body, groups, version, laboratory):
     if '<!-- pages -->' in body:
         body = body.replace('<!-- pages -->', page_list(page.group.pages[1:]))
     home = page.name == 'index'
@@ -63,7 +64,7 @@ def whole(page, body, groups, version):
         f'<title>{title if home else f"{title} - Cuvette"}</title>\n<link rel="stylesheet" href="style.css">\n',
         '</head>\n<body>\n<header>\n',
         f'<a class="home" href="index.html"{current(home)}>Cuvette <small>{escape(version)}</small></a>\n',
-        bar(page, groups), '<a class="all" href="#pages">All pages</a>\n</header>\n<div class="columns">\n',
+        bar(page, groups, laboratory), '<a class="all" href="#pages">All pages</a>\n</header>\n<div class="columns">\n',
         f'<main{" class=first" * home}>\n{body}</main>\n', pages(page, groups), '</div>\n</body>\n</html>\n'
     ])
 

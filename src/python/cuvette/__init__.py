@@ -12,6 +12,7 @@ The manual is `man cuvette-python`; parameters are described by help(cuvette.Sce
 from ._library import BusyError, Cancelled, Error, InputError, SystemFailure, version
 from .comparison import Comparison, compare, read_image
 from .image import Counts, Image, SolidCounts
+from .live import Live
 from .motion import Hand, Motion, Slime
 from .optics import Curve, Metric, Metrics
 from .rays import Fan, FanRay, Hit, Node, Query, Tree
@@ -36,6 +37,7 @@ __all__ = [
     "Hit",
     "Image",
     "InputError",
+    "Live",
     "Metric",
     "Metrics",
     "Motion",

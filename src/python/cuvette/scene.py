@@ -34,6 +34,7 @@ from ._library import (
     visited,
 )
 from .image import Image, Path
+from .live import Live
 from .motion import Motion
 from .optics import Curve, Metric, Metrics
 from .rays import Query, Tracer
@@ -306,6 +307,12 @@ class Scene(Tracer):
     @described("cuvette_scene_write")
     def save(self, path: Path) -> None:
         call(lib.cuvette_scene_write, self._scene, encoded(path))
+
+    @described("cuvette_scene_write_link")
+    def live(self, width: int = 960, height: int = 640) -> Live:
+        """The scene with its engine in one HTML document: a notebook shows it as a frame of this size, in which it can
+        be turned and changed, `scene.live().save("turn.html")` writes it for slides. Needs live.html (`make site`)."""
+        return Live(self._scene, width, height)
 
     def __str__(self) -> str:
         """The scene as the text of a scene file."""

@@ -120,6 +120,18 @@ status command_settings(const folder *files, const char *file, const scene *s, i
     return code == STATUS_FAILURE ? code : STATUS_OK;
 }
 
+/* The scene's name in a command. The folder of a laboratory in a browser is in its memory: where the command is run,
+ * the scene has another. */
+static const char *scene_name(const char *path, const char *file)
+{
+#if defined __EMSCRIPTEN__
+    return path ? file : NULL;
+#else
+    (void)file;
+    return path;
+#endif
+}
+
 status command_line(const folder *files, const char *file, const scene *s, int threads, char **text, bool *complete,
                     diagnostic *why)
 {
@@ -130,7 +142,8 @@ status command_line(const folder *files, const char *file, const scene *s, int t
     TRY(text_writer_open(&writer, why));
     status code = command_settings(files, file, s, threads, &path, &settings, complete, why);
     fputs("cuvette render ", writer.stream);
-    shell_word_write(writer.stream, path ? path : "scene.yaml");
+    const char *name = scene_name(path, file);
+    shell_word_write(writer.stream, name ? name : "scene.yaml");
     for (size_t i = 0; i < json_array_size(settings); i++) {
         fputs(" --set ", writer.stream);
         shell_word_write(writer.stream, json_string_value(json_array_get(settings, i)));

@@ -1,20 +1,20 @@
-/* The laboratory's API over fetch.
+/* The laboratory's API, asked of the engine.
  *
- * exports: ApiError, createApi(listeners)
+ * exports: ApiError, createApi(engine, listeners)
  *   api.get(path), api.post(path, body), api.del(path)   JSON in and out; throw ApiError; get also takes a time
  *   limit in ms
  *   api.blob(path)             an image or file: {blob, headers, seconds}, the time from its first byte to its last;
  *                              throws ApiError
- *   listeners: generation(number) for each reply with a generation, reached() for each reply, lost() when the server
- *   does
- *   not answer, refused() for 401
+ *   listeners: generation(number) for each reply with a generation, reached() for each reply, lost() when the engine
+ *   does not answer, refused() for 401
+ *          located(error) -> its message after file, line and column, as the program prints it
  * ApiError: message, remedy, status (0: no answer), and file, line, column if the reply has them. */
 
 const PATIENCE_MS = 60000;
 
 export class ApiError extends Error {
   constructor(status, reply = {}) {
-    super(reply.error || `the server answered ${status}`);
+    super(reply.error || `the laboratory answered ${status}`);
     this.name = 'ApiError';
     this.status = status;
     this.remedy = reply.remedy || '';
@@ -24,11 +24,11 @@ export class ApiError extends Error {
   }
 }
 
-const gone = () =>
-  new ApiError(0, {
-    error: 'the server does not answer',
-    remedy: 'check in its terminal that cuvette lab is still running',
-  });
+export function located({ message, file, line, column }) {
+  const place = line ? [file, line, column].filter(Boolean).join(':') : '';
+  return place ? `${place}: ${message}` : message;
+}
+
 const stranger = () =>
   new ApiError(401, {
     error: "the server does not accept this page's token",
@@ -45,16 +45,19 @@ async function parsed(response) {
   }
 }
 
-export function createApi(listeners) {
+export function createApi(engine, listeners) {
+  const gone = () => new ApiError(0, engine.lost());
+
   async function ask(method, path, body, patience = PATIENCE_MS) {
-    const options = { method, credentials: 'same-origin', cache: 'no-store', signal: AbortSignal.timeout(patience) };
+    const options = { method };
+    if (engine.reconnects) options.signal = AbortSignal.timeout(patience); /* a worker computes until it is done */
     if (method !== 'GET') {
       options.headers = { 'Content-Type': 'application/json' };
       options.body = JSON.stringify(body ?? {});
     }
     let response;
     try {
-      response = await fetch(path, options);
+      response = await engine.fetch(path, options);
     } catch (cause) {
       if (cause.name === 'TimeoutError')
         throw new ApiError(0, { error: 'the server took too long', remedy: 'try again' });

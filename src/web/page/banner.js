@@ -1,11 +1,16 @@
-/* The banner that reports a lost server and disables the controls meanwhile.
- * exports: createBanner(banner, parts, lab); parts become inert while the server is lost */
+/* The banner that reports a lost server, or an engine in the browser that stopped, and disables the controls meanwhile.
+ * exports: createBanner(banner, parts, lab); parts become inert while it is lost */
 
 import { element, icon, replace } from './ui.js';
 
+const sentence = (text) => `${text[0].toUpperCase()}${text.slice(1)}.`;
+
 const words = {
-  lost: ['The server does not answer.', 'Is cuvette lab still running? The page reconnects by itself.'],
-  refused: [
+  lost: ({ kind, lost }) =>
+    kind === 'server'
+      ? ['The server does not answer.', 'Is cuvette lab still running? The page reconnects by itself.']
+      : [lost().error, lost().remedy].map(sentence),
+  refused: () => [
     "The server does not accept this page's token.",
     'The server was probably restarted: open the new address in its terminal.',
   ],
@@ -14,7 +19,7 @@ const words = {
 export function createBanner(banner, parts, lab) {
   let held = null; /* the element that had the focus and gets it back */
   const show = (how) => {
-    const [what, remedy] = words[how] || [];
+    const [what, remedy] = words[how]?.(lab.engine) || [];
     banner.hidden = !what;
     document.body.classList.toggle('lost', Boolean(what));
     if (what && banner.dataset.how !== how)

@@ -3,6 +3,7 @@
  * exports: createBenchFan(lab, bench, changed) -> {node}; sets bench.fan, the reply of /api/fan, while it is shown */
 
 import { button, check, choice, digits, element, empty, facts, notice, number, replace, vector } from './ui.js';
+import { showImage } from './image_address.js';
 import { saveReply } from './save_file.js';
 import { add, times, unit } from './ray_vectors.js';
 
@@ -187,12 +188,13 @@ export function createBenchFan(lab, bench, changed) {
   /* The address changes with the scene, so that the browser asks again. */
   function drawing() {
     const address = `/api/fan.svg?${question(true)}`;
+    const image = element('img', {
+      class: 'bench-drawing',
+      alt: 'The rays in their plane: section of the solids, paths, crossings and mean focus',
+    });
+    showImage(lab, image, `${address}&of=${lab.scene.generation}`);
     return [
-      element('img', {
-        class: 'bench-drawing',
-        src: `${address}&of=${lab.scene.generation}`,
-        alt: 'The rays in their plane: section of the solids, paths, crossings and mean focus',
-      }),
+      image,
       element(
         'div',
         { class: 'buttons' },

@@ -1,7 +1,7 @@
 /* Draws the reference image A and the difference map over the newest image B.
  *
  * exports: createCompareView(lab, onshare(share)) -> {set({a, map, mode, share, strength, pixel}), flip(on)}
- *   a, map      URLs of images of B's size, or null
+ *   a, map      paths of images of B's size, or null
  *   mode        'b': B alone; 'wipe': A to the left of the handle, over the share 0..1 of the width; 'map': the map
  *   with
  *               opacity strength 0..1
@@ -9,6 +9,7 @@
  * The handle is dragged with the pointer or moved with the arrow keys. */
 
 import { element, svg, unique } from './ui.js';
+import { showImage } from './image_address.js';
 
 const EDGE = 0.05; /* a smaller share hides the letter */
 
@@ -73,11 +74,6 @@ export function createCompareView(lab, onshare) {
     },
   };
 
-  function source(image, address) {
-    if (address && image.getAttribute('href') !== address) image.setAttribute('href', address);
-    if (!address) image.removeAttribute('href');
-  }
-
   function draw() {
     const wiping = now.mode === 'wipe' && Boolean(now.a) && !flipped;
     const share = flipped ? 1 : wiping ? now.share : 0;
@@ -87,8 +83,8 @@ export function createCompareView(lab, onshare) {
       /* Smoothed in the same way as B. */
       image.style.imageRendering = view.scale * devicePixelRatio < 2 ? 'auto' : 'pixelated';
     }
-    source(a, now.a);
-    source(map, now.map);
+    showImage(lab, a, now.a);
+    showImage(lab, map, now.map);
     part.setAttribute('width', Math.max(0, share * width));
     part.setAttribute('height', height);
     a.style.display = share > 0 ? '' : 'none';

@@ -2,14 +2,15 @@
  * exports: createCostMaps(lab) -> {node} */
 
 import { button, choice, count, element, digits, facts, group, notice, replace, seconds, svg } from './ui.js';
+import { showImage } from './image_address.js';
 import { saveReply } from './save_file.js';
 
 const TITLES = { rays: 'Rays per pixel', time: 'Time per pixel' };
 
 const ABOUT = {
   rays: () => 'Camera, reflected, refracted and shadow rays of each pixel; the same on every machine.',
-  time: ({ threads, wall_s: wall }) =>
-    `Measured once on this machine, in one frame of ${seconds(wall)} with ${threads} ` +
+  time: ({ threads, wall_s: wall }, place) =>
+    `Measured once ${place}, in one frame of ${seconds(wall)} with ${threads} ` +
     `${threads === 1 ? 'thread' : 'threads'}: another measurement differs. Time is measured for batches of rays, and ` +
     `divided among the rays of each.`,
 };
@@ -19,7 +20,7 @@ const valueOf = {
   time: (value) => `${digits(value)} ns`,
 };
 
-function legend(answer, which) {
+function legend(answer, which, place) {
   const { end, cut, largest, total } = answer[which];
   const { width, height, colors } = answer;
   const ticks = [0, 0.25, 0.5, 0.75, 1].map((share) =>
@@ -39,7 +40,7 @@ function legend(answer, which) {
       ['Largest', valueOf[which](largest)],
       ['Sum', which === 'rays' ? `${count(total)} rays` : `${seconds(total / 1e9)} of all threads`],
     ]),
-    element('p', { class: 'hint', text: ABOUT[which](answer) }),
+    element('p', { class: 'hint', text: ABOUT[which](answer, place) }),
   ];
 }
 
@@ -107,7 +108,8 @@ export function createCostMaps(lab) {
   }
 
   function show() {
-    replace(below, legend(answer, how.value), element('div', { class: 'buttons' }, save(how.value)));
+    const place = lab.engine.kind === 'server' ? 'on this machine' : 'in this browser';
+    replace(below, legend(answer, how.value, place), element('div', { class: 'buttons' }, save(how.value)));
     draw();
   }
 
@@ -128,8 +130,7 @@ export function createCostMaps(lab) {
     });
     if (!on) return;
     const { width, height, picture: whole } = answer;
-    const address = `/api/maps/${how.value}.png?of=${answer.serial}`;
-    if (picture.getAttribute('href') !== address) picture.setAttribute('href', address);
+    showImage(lab, picture, `/api/maps/${how.value}.png?of=${answer.serial}`);
     picture.setAttribute('width', whole.width);
     picture.setAttribute('height', whole.height);
     picture.style.imageRendering = view.scale * devicePixelRatio < 2 ? 'auto' : 'pixelated';

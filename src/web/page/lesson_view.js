@@ -2,7 +2,8 @@
  * exports: createLesson(root, lab, lesson, {back, again}) -> {shown(), end()}
  *   back(), again(): to the gallery, or to the start of the lesson */
 
-import { button, copy, digits, element, number, notice, replace } from './ui.js';
+import { button, digits, element, number, notice, replace } from './ui.js';
+import { commandRow } from './command_row.js';
 import { lessonChart } from './lesson_chart.js';
 import { createControl, presentValue } from './lesson_control.js';
 
@@ -10,7 +11,8 @@ const REST_MS = 200; /* measured when the controls rest */
 
 const TIMES =
   'Times differ from one measurement to the next, and are longer while other programs run. ' +
-  'Each is the median of three frames.';
+  'Each is the median of three frames';
+const PLACES = { server: '.', browser: ', measured in this browser.' };
 
 const unitOf = (lesson) => (lesson.measure.unit === 'deg' ? '°' : lesson.measure.unit ? ` ${lesson.measure.unit}` : '');
 
@@ -134,7 +136,10 @@ export function createLesson(root, lab, lesson, { back, again }) {
       ),
       lessonChart(lesson, measured, { now: presentValue(lab, lesson.measure.x_parameter), predicted }),
       lesson.measure.timed
-        ? [element('p', { class: 'hint', text: TIMES }), button('Measure again', measure, { small: true })]
+        ? [
+            element('p', { class: 'hint', text: `${TIMES}${PLACES[lab.engine.kind]}` }),
+            button('Measure again', measure, { small: true }),
+          ]
         : element('p', {
             class: passes ? 'hint' : 'hint lesson-off',
             text: `Largest difference of ${points.length} points: ${digits(error, 2)} (tolerance ${allowed}).`,
@@ -188,22 +193,7 @@ export function createLesson(root, lab, lesson, { back, again }) {
       .join('');
     replace(
       typed,
-      lesson.commands.map((text) =>
-        element(
-          'div',
-          { class: 'lesson-command' },
-          element('code', { text: `${text}${sets}` }),
-          button(
-            'Copy',
-            () => copy(`${text}${sets}`).then(() => lab.say('The command is on the clipboard.'), lab.fail),
-            {
-              icon: 'copy',
-              bare: true,
-              small: true,
-            },
-          ),
-        ),
-      ),
+      lesson.commands.map((text) => commandRow(lab, `${text}${sets}`)),
     );
   }
 }

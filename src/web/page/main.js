@@ -15,10 +15,20 @@ import { orbitTool } from './tool_orbit.js';
 import { lightTool } from './tool_light.js';
 import { cameraBox } from './camera_box.js';
 import { acceptDrops } from './shared_file.js';
-import { openLink } from './shared_link.js';
+import { namesScene, openLink } from './shared_link.js';
 
-/* A panel that cannot be loaded does not affect the others. */
-const modules = ['lessons', 'params', 'edit', 'pixel', 'bench', 'compare', 'slime', 'studies', 'machine'];
+/* A panel that cannot be loaded does not affect the others. Written out for bundlers. */
+const modules = [
+  () => import('./panel_lessons.js'),
+  () => import('./panel_params.js'),
+  () => import('./panel_edit.js'),
+  () => import('./panel_pixel.js'),
+  () => import('./panel_bench.js'),
+  () => import('./panel_compare.js'),
+  () => import('./panel_slime.js'),
+  () => import('./panel_studies.js'),
+  () => import('./panel_machine.js'),
+];
 
 const at = (id) => document.getElementById(id);
 
@@ -37,10 +47,11 @@ async function start() {
   createDisplay(lab);
   createHead(at('head'), lab);
   createKeys(lab);
-  const loaded = await Promise.allSettled(modules.map((name) => import(`./panel_${name}.js`)));
+  const loaded = await Promise.allSettled(modules.map((load) => load()));
   const panels = loaded.filter((each) => each.status === 'fulfilled').map((each) => each.value.panel);
   lab.panels = createPanels(at('side'), at('splitter'), at('workspace'), panels, lab);
   for (const each of loaded) if (each.status === 'rejected') lab.fail(each.reason);
+  if (namesScene()) lab.panels.reveal();
   lab.start();
   acceptDrops(lab);
   await openLink(lab);

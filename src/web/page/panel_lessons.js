@@ -3,11 +3,13 @@
 
 import { element, empty, notice, replace } from './ui.js';
 import { createLesson } from './lesson_view.js';
+import { namesScene } from './shared_link.js';
 import { thumbnail } from './thumbnail.js';
 
 let place = null;
 let lesson = null; /* the view of the chosen one */
 let loaded = false;
+let wanted = null; /* the lesson of a link: the fragment #lesson=NAME of the page's address */
 
 const cover = (on) => document.getElementById('workspace').classList.toggle('wide', on);
 
@@ -42,8 +44,11 @@ async function gallery(lab) {
             { class: 'lesson-cards' },
             lessons.map((one) => card(lab, one)),
           )
-        : empty('There are no lessons: the program is not installed completely.'),
+        : empty('There are no lessons: the laboratory is not installed completely.'),
     );
+    const asked = lessons.find(({ name }) => name === wanted);
+    wanted = null;
+    if (asked) await choose(lab, asked);
   } catch (error) {
     replace(place, notice(error.message, { kind: 'error', remedy: error.remedy }));
   }
@@ -69,11 +74,15 @@ export const panel = {
   get wide() {
     return !lesson;
   },
-  /* A laboratory without a scene starts with the gallery. */
+  /* A laboratory without a scene, of a file or of a link, starts with the gallery. */
   start(lab) {
+    wanted = /^#lesson=([\w-]+)$/.exec(location.hash)?.[1] ?? null;
+    if (wanted)
+      history.replaceState(null, '', location.pathname + location.search); // as for a scene
+    else if (namesScene()) return;
     const end = lab.on('state', (state) => {
       end();
-      if (!state.file && !state.undo) lab.panels.use('lessons');
+      if (wanted || (!state.file && !state.undo)) lab.panels.use('lessons');
     });
   },
   create(root, lab) {

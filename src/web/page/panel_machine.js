@@ -1,6 +1,7 @@
 /* The panel Machine: processors, clocks, and current disturbances of measurements. exports: panel */
 
 import { button, element, facts, group, notice, replace, seconds } from './ui.js';
+import { needsProgram } from './machine_only.js';
 
 let refresh = null;
 let loaded = false;
@@ -64,7 +65,35 @@ function draw(place, report) {
   );
 }
 
+/* A page sees little of the machine, and a browser may tell it less than there is. */
+function createElsewhere(root, lab) {
+  root.append(
+    element(
+      'div',
+      { class: 'machine' },
+      needsProgram(lab, 'The clocks, counters and disturbances of a machine are seen by the program only.', [
+        'cuvette machine',
+      ]),
+      group(
+        'This browser',
+        { id: 'machine-browser' },
+        facts([
+          ['Processors', navigator.hardwareConcurrency || 'not told'],
+          ['Browser', navigator.userAgent],
+          ['Cuvette', lab.state?.version],
+        ]),
+      ),
+    ),
+  );
+  loaded = true;
+}
+
 function create(root, lab) {
+  if (lab.engine.kind === 'server') createReport(root, lab);
+  else createElsewhere(root, lab);
+}
+
+function createReport(root, lab) {
   const place = element('div', { class: 'machine', 'aria-live': 'polite' });
   const again = button('Refresh', () => refresh(), {
     icon: 'reset',

@@ -8,7 +8,6 @@ import {
   count,
   dialog,
   digits,
-  download,
   element,
   empty,
   facts,
@@ -19,6 +18,8 @@ import {
   svg,
   toByte,
 } from './ui.js';
+import { showImage } from './image_address.js';
+import { saveReply } from './save_file.js';
 import { depthNote } from './note_actions.js';
 import { createQuestion } from './pixel_question.js';
 import { createRayOverlay } from './ray_overlay.js';
@@ -191,14 +192,16 @@ function legend() {
   );
 }
 
-function openDrawing({ x, y }) {
+function openDrawing(lab, { x, y }) {
   const address = `/api/trace.svg?x=${x}&y=${y}`;
   const title = `Pixel ${x}, ${y}: rays in the plane of incidence and from above`;
+  const image = element('img', { alt: title });
+  showImage(lab, image, address);
   const content = element(
     'div',
     { class: isDark() ? 'trace-drawing dark' : 'trace-drawing' },
-    element('img', { src: address, alt: title }),
-    button('Save drawing', () => download(address, `pixel-${x}-${y}.svg`), { icon: 'save', small: true }),
+    image,
+    button('Save drawing', () => saveReply(lab, address, `pixel-${x}-${y}.svg`), { icon: 'save', small: true }),
   );
   dialog({ title, wide: true, content });
 }
@@ -217,7 +220,7 @@ function createAnswer(lab) {
     legend(),
     left,
     element('div', { class: 'ray-figures' }, side.node, top.node),
-    button('Larger drawing', () => openDrawing(question.tree.pixel), { icon: 'chart', small: true }),
+    button('Larger drawing', () => openDrawing(lab, question.tree.pixel), { icon: 'chart', small: true }),
     group(
       'Rays',
       { id: 'pixel-rays' },

@@ -2,6 +2,7 @@
  * few seconds only: requests disturb the measurement. exports: panel */
 
 import { button, element, empty, memory, replace } from './ui.js';
+import { needsProgram } from './machine_only.js';
 import { createStudyList } from './study_list.js';
 import { createDetails } from './study_details.js';
 import { createStudyForm } from './study_form.js';
@@ -10,7 +11,29 @@ const APART_MS = 3000;
 let visible = false;
 let refresh = () => undefined;
 
+/* A browser's clock is too coarse, and its times would not compare with rows of the program. */
+function createElsewhere(root, lab) {
+  const place = element('div', { class: 'study-place study-elsewhere' });
+  root.append(place);
+  refresh = () =>
+    replace(
+      place,
+      element('h2', { text: 'Studies' }),
+      needsProgram(lab, 'Studies measure times with the program on a computer, not in a browser.', [
+        (file) => `cuvette study new ${file} --axis render.depth=1,2,4,8 -o depth.study`,
+        'cuvette study run depth.study',
+        (file) => `cuvette lab ${file}`,
+      ]),
+    );
+  lab.on('state', () => visible && refresh());
+}
+
 function create(root, lab) {
+  if (lab.engine.kind === 'server') createStudies(root, lab);
+  else createElsewhere(root, lab);
+}
+
+function createStudies(root, lab) {
   const list = createStudyList({ onchoose: choose });
   const details = createDetails(lab, { onrun: run, onstop: stop });
   const place = element('div', { class: 'study-place' }, empty('Reading the studies …'));

@@ -1,9 +1,11 @@
 /* The panels as tabs next to the image, and the splitter between them. A panel is created when it is first shown.
- * exports: createPanels(side, splitter, workspace, panels, lab) -> {use(id), chosen()}
+ * exports: createPanels(side, splitter, workspace, panels, lab) -> {use(id), chosen(), reveal()}
+ * reveal(): shows the image if a wide panel covers it
  * panel: {id, title, wide?, css?, start?(lab), create(root, lab), shown?(), hidden?()}; start is called once when
  * the page opens, for tools of the image; a wide panel takes the whole width, without the image; css is the name of
  * its own style sheet (panel_ID.css), which uses the variables of lab.css for all colours and starts each rule with
- * .panel-ID. The panel's title is its h2: headings within start at h3. */
+ * .panel-ID; a site has all style sheets in its page, as #styles (src/web/site). The panel's title is its h2: headings
+ * within start at h3. */
 
 import { element, memory, notice, replace } from './ui.js';
 
@@ -37,10 +39,11 @@ export function createPanels(side, splitter, workspace, panels, lab) {
       ? memory.get('panel')
       : (panels.find((panel) => panel.id === FIRST) || panels[0])?.id,
   );
-  return { use, chosen: () => chosen };
+  return { use, chosen: () => chosen, reveal };
 
   function makeEntry(panel) {
-    if (panel.css) document.head.append(element('link', { rel: 'stylesheet', href: panel.css }));
+    if (panel.css && !document.getElementById('styles'))
+      document.head.append(element('link', { rel: 'stylesheet', href: panel.css }));
     const tab = element('button', {
       type: 'button',
       role: 'tab',
@@ -101,6 +104,10 @@ export function createPanels(side, splitter, workspace, panels, lab) {
     entries.get(id).tab.scrollIntoView({ block: 'nearest', inline: 'nearest' });
     memory.set('panel', id);
     lab.emit('panel', id);
+  }
+
+  function reveal() {
+    if (entries.get(chosen)?.panel.wide) use(FIRST);
   }
 
   function key(event) {

@@ -1,13 +1,15 @@
-/* The bar above the image: offers scenes that a laboratory left unsaved when it died, one at a time, and reports once
+/* The bar above the image: offers scenes that a laboratory left unsaved when it ended, one at a time, and reports once
  * that changes cannot be kept.
  * exports: createRescue(root, lab) */
 
 import { ask, button, element, icon, replace } from './ui.js';
+import { keepUnsaved } from './unsaved_scene.js';
 
 const when = (time) => new Date(time).toLocaleString(undefined, { dateStyle: 'medium', timeStyle: 'short' });
 
 export function createRescue(root, lab) {
   let shown = ''; /* what the bar tells: it is not drawn again at every change */
+  const ours = keepUnsaved(lab);
   let told = false; /* unkept changes are reported once */
 
   function tell(key, ...parts) {
@@ -22,7 +24,10 @@ export function createRescue(root, lab) {
   async function act(action, id) {
     for (const each of root.querySelectorAll('button')) each.disabled = true;
     try {
-      await lab.change('/api/rescue', { action, id });
+      if (id !== ours.offer()?.id) await lab.change('/api/rescue', { action, id });
+      else if (action === 'open') await ours.open();
+      else ours.drop();
+      show(lab.state);
       lab.say(action === 'open' ? 'The rescued scene is shown. Undo restores the scene before.' : 'Discarded.');
     } catch (error) {
       for (const each of root.querySelectorAll('button')) each.disabled = false;
@@ -74,9 +79,12 @@ export function createRescue(root, lab) {
   lab.on('restarted', () => {
     told = false;
   });
-  lab.on('state', ({ rescued = [], unkept }) => {
-    if (rescued.length) offer(rescued[0], rescued.length - 1);
+  lab.on('state', show);
+
+  function show({ rescued = [], unkept }) {
+    const offers = [...rescued, ours.offer()].filter(Boolean);
+    if (offers.length) offer(offers[0], offers.length - 1);
     else if (unkept && !told) report(unkept);
     else if (shown !== 'unkept' || !unkept) tell('');
-  });
+  }
 }

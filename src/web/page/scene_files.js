@@ -3,11 +3,14 @@
  * promise of a name or null, forObject(object) -> node or null} */
 
 import { ask, button, dialog, element, empty, notice, replace, unique } from './ui.js';
+import { saveReply } from './save_file.js';
 import { thumbnail } from './thumbnail.js';
 
 const MANY = 8; /* longer lists get a search field */
 
 export function createFiles(lab, choice) {
+  /* In the browser the folder is in the page's memory: what is saved there is downloaded too. */
+  const inFolder = lab.engine.kind === 'server';
   const ours = new Set(); /* files written by this page since they were opened; overwriting them loses nothing */
 
   return { open, fresh, save, saveAs, pickSky, pick, addFile, forObject };
@@ -35,7 +38,7 @@ export function createFiles(lab, choice) {
     const content = element(
       'div',
       { class: 'file-choice' },
-      element('p', { class: 'hint', text: `Folder ${folder}` }),
+      element('p', { class: 'hint', text: inFolder ? `Folder ${folder}` : 'Files of this page' }),
       names.length > MANY ? element('label', { class: 'visually-hidden', for: search.id, text: 'Find a file' }) : null,
       names.length > MANY ? search : null,
       names.length ? list : empty(nothing),
@@ -91,7 +94,7 @@ export function createFiles(lab, choice) {
       content: element('p', {
         text:
           `${lab.state.file || 'This scene'} has unsaved changes. Undo restores them ` +
-          `only while the laboratory runs.`,
+          `only while ${inFolder ? 'the laboratory runs' : 'this page is open'}.`,
       }),
       actions: [
         ['Cancel', null],
@@ -123,8 +126,9 @@ export function createFiles(lab, choice) {
     if (await mayLeave()) await opened({ new: true });
   }
 
-  /* The server asks before it replaces any other file; a file written by hand may contain more than the scene. */
+  /* The laboratory asks before it replaces any other file; a file written by hand may contain more than the scene. */
   async function overwrite(file, failed) {
+    if (!inFolder) return write(file, true, failed);
     const answer = ours.has(file)
       ? 'replace'
       : await dialog({
@@ -144,7 +148,8 @@ export function createFiles(lab, choice) {
     try {
       await lab.change('/api/save', replaceIt ? { file, replace: true } : { file });
       ours.add(file);
-      lab.say(`${file} saved.`);
+      if (inFolder) lab.say(`${file} saved.`);
+      else await saveReply(lab, '/api/scene.yaml', file.split('/').pop());
       return true;
     } catch (error) {
       if (error.status !== 409) return Boolean(await failed(error));
@@ -156,7 +161,8 @@ export function createFiles(lab, choice) {
   }
 
   function save() {
-    return lab.state?.file ? overwrite(lab.state.file) : saveAs();
+    if (lab.state?.file) return overwrite(lab.state.file);
+    return inFolder ? saveAs() : write(`${lab.name()}.yaml`, true);
   }
 
   /* After an error the dialog keeps the name for correction. */
@@ -173,7 +179,10 @@ export function createFiles(lab, choice) {
     const field = element(
       'div',
       { class: 'field wide' },
-      element('label', { for: input.id, text: "File name, relative to the laboratory's folder" }),
+      element('label', {
+        for: input.id,
+        text: inFolder ? "File name, relative to the laboratory's folder" : 'File name',
+      }),
       element('span', { class: 'field-control' }, input),
     );
     const made = dialog({
@@ -195,7 +204,7 @@ export function createFiles(lab, choice) {
     if (!name) return false;
     const file = `${name.replace(/(\.ya?ml)+$/i, '')}${name.match(/\.ya?ml$/i)?.[0] || '.yaml'}`;
     const mend = (error) => saveAs(file, error);
-    return file === lab.state?.file ? overwrite(file, mend) : write(file, false, mend);
+    return file === lab.state?.file ? overwrite(file, mend) : write(file, !inFolder, mend);
   }
 
   /* The file's path relative to the scene's own folder. */

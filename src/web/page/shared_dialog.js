@@ -2,7 +2,7 @@
  * exports: share(lab) */
 
 import { button, dialog, element, notice, replace } from './ui.js';
-import { saveFile } from './save_file.js';
+import { saveFile, savePage } from './save_file.js';
 import { copyLink } from './shared_link.js';
 import { openFile } from './shared_file.js';
 
@@ -23,25 +23,27 @@ export function share(lab) {
     made.close();
     what(await asked);
   };
-  const save = (address, ending) =>
-    act((refusal) => saveFile(lab, address, ending, refusal ? ` without the scene: ${refusal.message}` : ''));
+  const save = (file) => act((refusal) => file(refusal ? ` without the scene: ${refusal.message}` : ''));
   const link = form(
     'Copy link',
     'copy',
-    'A link with the scene, for a laboratory at the same address on this machine. Others can open the HTML file.',
+    lab.engine.kind === 'server'
+      ? 'A link with the scene, for a laboratory at the same address on this machine. Others can open the HTML file.'
+      : 'A link with the scene, which opens in any browser that can reach this page.',
     act(() => copyLink(lab)),
   );
   const png = form(
     'PNG with the scene',
     'image',
     'The image; Cuvette opens it again as a scene.',
-    save('/api/picture.png?wait=1&scene=1', 'png'),
+    save((more) => saveFile(lab, '/api/picture.png?wait=1&scene=1', 'png', more)),
   );
   const html = form(
     'HTML file',
     'save',
-    'Image, rays with their numbers, scene and command in one file that every browser opens, without Cuvette.',
-    save('/api/page.html', 'html'),
+    'Image, rays with their numbers, scene and command in one file that every browser opens, without Cuvette. ' +
+      'With the engine for browsers, if this laboratory has it, the reader can turn the scene too.',
+    save((more) => savePage(lab, more)),
   );
   const trouble = element('div', { 'aria-live': 'polite' });
   const made = dialog({

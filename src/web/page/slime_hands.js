@@ -1,4 +1,4 @@
-/* Hands that hold the slime, one per pointer or key. Moves are sent to the server one after the other; the newest
+/* Hands that hold the slime, one per pointer or key. Moves are sent one after the other; the newest
  * replaces a waiting one.
  * exports: createHands(lab, changed) -> {all(), take(key, x, y), get(key), drop(key), dropAll()}
  *   take: positions in pixels of the full image; a hand is {x, y, depth, where ([x,y,z] of the grab point, null
@@ -32,12 +32,14 @@ export function createHands(lab, changed) {
     /* A page that is being closed cannot wait for a reply. */
     hand.leave = () => {
       if (hand.number !== null) {
-        fetch('/api/slime/release', {
-          method: 'POST',
-          keepalive: true,
-          headers: { 'Content-Type': 'application/json' },
-          body: JSON.stringify({ hand: hand.number }),
-        }).catch(() => undefined);
+        lab.engine
+          .fetch('/api/slime/release', {
+            method: 'POST',
+            keepalive: true,
+            headers: { 'Content-Type': 'application/json' },
+            body: JSON.stringify({ hand: hand.number }),
+          })
+          .catch(() => undefined);
       }
     };
     hands.set(key, hand);

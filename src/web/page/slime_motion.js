@@ -47,6 +47,7 @@ export function createMotion(lab) {
     result,
   );
   stop.disabled = true;
+  stop.hidden = lab.engine.kind === 'browser'; /* one thread computes, and answers when it is done */
   return { node };
 
   async function act() {

@@ -3,6 +3,7 @@
  * exports: createStatus(root, live, lab); sets lab.say(words, remedy, {label, act} of a button), which returns
  * a function that withdraws the message, and lab.fail */
 
+import { located } from './api.js';
 import { button, copy, count, digits, element, icon, replace, seconds } from './ui.js';
 
 const LINGER_MS = 6000;
@@ -49,7 +50,7 @@ export function createStatus(root, live, lab) {
   lab.fail = (error) => {
     if (error.status === 0 || error.status === 401) return;
     if (!error.status) console.error(error);
-    tell(error.message, 'error', error.remedy);
+    tell(located(error), 'error', error.remedy);
   };
 
   const draw = () => {
@@ -78,7 +79,7 @@ function items(lab) {
   const noted = lab.notes?.count() || 0;
   const { picture, state } = lab;
   if (!picture)
-    return [element('span', { class: 'fact', text: lab.connected === 'open' ? 'No image yet' : 'Connecting …' })];
+    return [element('span', { class: 'fact', text: lab.connected === 'open' ? 'No image yet' : waiting(lab.engine) })];
   const { rays, wall_s: wall } = picture;
   const behind = lab.newestGeneration > picture.generation || !picture.final;
   return [
@@ -96,7 +97,7 @@ function items(lab) {
         ? `${picture.full_width} × ${picture.full_height}`
         : `${picture.width} × ${picture.height} of ${picture.full_width} × ${picture.full_height}`,
     ),
-    fact('time', seconds(wall), 'wall time of the pass'),
+    time(lab.engine, wall),
     fact('rays', count(rays)),
     rays && wall ? fact('rays/s', count(rays / wall)) : null,
     Number.isFinite(picture.noise)
@@ -110,6 +111,14 @@ function items(lab) {
     ),
   ];
 }
+
+const waiting = ({ kind }) => (kind === 'server' ? 'Connecting …' : 'Starting the laboratory …');
+
+/* A browser's clock is coarse, and its code differs from the program's: such times belong to no study. */
+const time = ({ kind }, wall) =>
+  kind === 'server'
+    ? fact('time', seconds(wall), 'wall time of the pass')
+    : fact('time in this browser', seconds(wall), 'wall time of the pass; not comparable with rows of studies');
 
 const notesButton = (noted, lab) =>
   element(

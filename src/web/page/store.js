@@ -1,6 +1,7 @@
-/* The page's copy of the server's state, and the queue of changes: the object lab.
+/* The page's copy of the laboratory's state, and the queue of changes: the object lab.
  *
  * exports: createLab() -> lab
+ *   lab.engine                          see engine.js
  *   lab.get, lab.post, lab.del, lab.blob   see api.js; for requests that do not change the scene or need no order
  *   lab.state, lab.scene, lab.picture, lab.slime, lab.study    the latest values; null before the first
  *   lab.newestGeneration                the newest known generation; older images are shown until one of it exists
@@ -29,7 +30,7 @@
 
 import { createApi } from './api.js';
 import { createQueue } from './change_queue.js';
-import { openEvents } from './event_stream.js';
+import { engine } from './engine.js';
 import { applyScene } from './scene_changes.js';
 
 const RETRY_MS = 1000;
@@ -72,7 +73,7 @@ export function createLab() {
   let changedAt = -Infinity;
   let together = false;
 
-  const api = createApi({
+  const api = createApi(engine, {
     generation: (value) => want(value),
     reached: () => undefined,
     lost: () => lose('lost'),
@@ -88,6 +89,7 @@ export function createLab() {
     study: null,
     newestGeneration: 0,
     connected: 'opening',
+    engine,
     ...api,
     on,
     emit,
@@ -99,7 +101,7 @@ export function createLab() {
     start: connect,
     refresh,
   };
-  setInterval(pulse, PULSE_MS);
+  if (engine.reconnects) setInterval(pulse, PULSE_MS);
   lab.change = createQueue(api.post, imageOf);
   lab.set = (values, gesture) =>
     lab
@@ -137,7 +139,7 @@ export function createLab() {
     stream = null;
     connection(how);
     clearTimeout(retry);
-    retry = setTimeout(connect, how === 'refused' ? STRANGER_RETRY_MS : RETRY_MS);
+    if (engine.reconnects) retry = setTimeout(connect, how === 'refused' ? STRANGER_RETRY_MS : RETRY_MS);
   }
 
   function connect() {
@@ -145,7 +147,7 @@ export function createLab() {
     stream?.close();
     const mine = {};
     stream = mine;
-    mine.close = openEvents(EVENTS, {
+    mine.close = engine.events(EVENTS, {
       open: () => recover(mine),
       error() {
         if (stream !== mine) return;

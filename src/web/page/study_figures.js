@@ -1,6 +1,7 @@
 /* The figures that scripts in plots/ draw of a study. exports: createFigures(lab) -> {node, show(study, details,
  * running), grew()} */
 
+import { showImage } from './image_address.js';
 import { button, check, element, empty, notice, replace } from './ui.js';
 
 export function createFigures(lab) {
@@ -47,18 +48,14 @@ export function createFigures(lab) {
     }
     replace(
       list,
-      figures.map((name) =>
-        element(
-          'figure',
-          {},
-          element('img', {
-            src: `/api/figures/${name}?drawn=${version}`,
-            alt: `Figure ${name}, drawn from the rows by plots/${name}.gp`,
-          }),
-          element('figcaption', { class: 'hint', text: name }),
-        ),
-      ),
+      figures.map((name) => element('figure', {}, figure(name), element('figcaption', { class: 'hint', text: name }))),
     );
+  }
+
+  function figure(name) {
+    const image = element('img', { alt: `Figure ${name}, drawn from the rows by plots/${name}.gp` });
+    showImage(lab, image, `/api/figures/${name}?drawn=${version}`);
+    return image;
   }
 
   /* Called when rows were added; ended: the study has stopped. */

@@ -1,9 +1,11 @@
-/* The dialog Save film: a parameter that changes from frame to frame, or the slime as it moves, rendered by the server
- * into one file. It may be closed meanwhile. The fields keep their values until the page is closed.
+/* The dialog Save film: a parameter that changes from frame to frame, or the slime as it moves, rendered into
+ * one file. It may be closed meanwhile. The fields keep their values until the page is closed.
  * exports: saveVideo(lab) */
 
 import { button, choice, count, dialog, download, element, field, notice, replace, seconds } from './ui.js';
+import { showImage } from './image_address.js';
 import { createParamPicker } from './param_picker.js';
+import { needsProgram } from './machine_only.js';
 import { numberInput, numberOf } from './ui_number_input.js';
 
 const FORMATS = [
@@ -13,7 +15,24 @@ const FORMATS = [
 const ENDINGS = { apng: 'png', y4m: 'y4m' };
 const kept = { what: 'sweep', parameter: '', from: '', to: '', frames: '50', duration: '', fps: '25', format: 'apng' };
 
+/* A film takes minutes, and a browser's memory for all its frames. */
+function saveElsewhere(lab) {
+  const motion = lab.slime ? [(file) => `cuvette animate ${file} -o film.apng`] : [];
+  dialog({
+    title: 'Save film',
+    content: needsProgram(lab, 'Films are rendered by the program on a computer, not in a browser.', [
+      ...motion,
+      (file) => `cuvette lab ${file}`,
+    ]),
+  });
+}
+
 export function saveVideo(lab) {
+  if (lab.engine.kind === 'server') createForm(lab);
+  else saveElsewhere(lab);
+}
+
+function createForm(lab) {
   const picker = createParamPicker(lab, { label: 'Parameter', onchoose: chosen });
   const numbers = {
     from: numberInput({ value: kept.from }),
@@ -180,10 +199,13 @@ export function saveVideo(lab) {
     if (!video) return void replace(result);
     const address = `/api/video/file?of=${video.wall_s}`;
     const name = `${lab.name()}-film.${ENDINGS[video.format]}`;
+    const image = video.format === 'apng' ? element('img', { class: 'video-film', alt: 'The film' }) : null;
+    if (image) showImage(lab, image, address);
+    const save = async () => download(await lab.engine.address(address), name);
     replace(
       result,
-      video.format === 'apng' ? element('img', { class: 'video-film', src: address, alt: 'The film' }) : null,
-      button('Save file', () => download(address, name), { icon: 'save', kind: 'primary' }),
+      image,
+      button('Save file', () => save().catch(fail), { icon: 'save', kind: 'primary' }),
     );
     result.scrollIntoView({ block: 'nearest' });
   }

@@ -1,0 +1,99 @@
+"""The parts of the laboratory for browsers, bundled and minified by esbuild, and the documents that hold them."""
+
+import base64
+import gzip
+import json
+import re
+import subprocess
+from pathlib import Path
+
+ROOT = Path(__file__).resolve().parents[3]
+PAGE = ROOT / 'src/web/page'
+EXPERIMENTS = ROOT / 'experiments'
+FOLDERS = ('scenes', 'hands', 'lessons')
+READ_BY_SCENES = ('.yaml', '.lesson')
+META = '<meta name="cuvette-engine" content="browser" />'
+TARGET = '--target=es2022'
+
+
+class Trouble(Exception):
+    """One line for the user: what is wrong, where, what to do."""
+
+
+def esbuild(*options, text=None):
+    made = subprocess.run(['esbuild', '--minify', '--charset=utf8', '--log-level=error', *map(str, options)],
+                          input=text, capture_output=True, encoding='utf-8')
+    if made.returncode:
+        raise Trouble(f'esbuild: {made.stderr.strip()}')
+    return made.stdout
+
+
+def module(path):
+    """A script and all that it imports."""
+    return esbuild(path, '--bundle', '--format=esm', TARGET)
+
+
+def classic(path):
+    """The same for a script that must run at once."""
+    return esbuild(path, '--bundle', '--format=iife', TARGET)
+
+
+def minified(path):
+    """A classic script as it is, whose names other parts of it may use."""
+    return esbuild(path, TARGET)
+
+
+def style():
+    """All style sheets, in the order in which the page loads them: its own, then those of the panels."""
+    own = re.findall(r'<link rel="stylesheet" href="([^"]+)"', (PAGE / 'index.html').read_text(encoding='utf-8'))
+    panels = sorted(path.name for path in PAGE.glob('panel_*.css'))
+    sheets = '\n'.join((PAGE / name).read_text(encoding='utf-8') for name in own + panels)
+    return esbuild('--loader=css', text=sheets)
+
+
+def files():
+    """The laboratory's folder, as JSON: {NAME: text or {base64}}: scenes, lessons, hands, and what they read."""
+    found = [path for folder in FOLDERS for path in sorted((EXPERIMENTS / folder).iterdir())]
+    text = {path: path.read_text(encoding='utf-8') for path in found if path.suffix in READ_BY_SCENES}
+    named = set(re.findall(r'[\w-]+\.(?:png|jpg|obj|ply|hdr|pfm)', '\n'.join(text.values())))
+    packed = {}
+    for path in found:
+        name = str(path.relative_to(EXPERIMENTS))
+        if path in text:
+            packed[name] = text[path]
+        elif path.name in named:
+            packed[name] = {'base64': base64.b64encode(path.read_bytes()).decode()}
+    return json.dumps(packed, ensure_ascii=False, separators=(',', ':'))
+
+
+def replaced(text, pattern, new):
+    """All matches become one text."""
+    found = list(re.finditer(pattern, text))
+    if not found:
+        raise Trouble(f'src/web/page/index.html: nothing matches {pattern}; correct src/web/site/bundle.py')
+    for match in reversed(found):
+        text = text[:match.start()] + (new if match is found[0] else '') + text[match.end():]
+    return text
+
+
+def document(head, end):
+    """The page with one style sheet and its icon; head and end: what is added to its head and at its end."""
+    text = (PAGE / 'index.html').read_text(encoding='utf-8')
+    icon = base64.b64encode((PAGE / 'icon.svg').read_bytes()).decode()
+    text = replaced(text, r'href="icon\.svg"', f'href="data:image/svg+xml;base64,{icon}"')
+    text = replaced(text, r' *<script type="module" src="main\.js"></script>\n', '')
+    text = replaced(text, r' *<link rel="stylesheet" href="[^"]+" />\n', f'{head}<style id="styles">{style()}</style>\n')
+    text = replaced(text, r'<meta charset="utf-8" />', f'<meta charset="utf-8" />\n{META}')
+    return replaced(text, r' *</body>', f'{end}</body>')
+
+
+def held(name, content):
+    """An element that holds a part, which boot.js unpacks."""
+    packed = base64.b64encode(gzip.compress(content, 9, mtime=0)).decode()
+    return f'<script type="text/plain" id="cuvette-{name}">{packed}</script>\n'
+
+
+def script(text, kind=''):
+    if re.search(r'</script|<!--', text, re.I):
+        raise Trouble('a script of the page contains </script or <!--; write it in two parts')
+    return f'<script{kind}>{text.strip()}</script>\n'
