@@ -1,5 +1,5 @@
-/* A PLY file, while it is read: the header (ply_header.c), the elements (ply_body.c), the triangles (ply_text.c). Ownership:
- * ply_read_text frees the arrays. */
+/* A PLY file, while it is read: the header (ply_header.c), the elements (ply_body.c), the triangles (ply_text.c).
+ * Ownership: ply_read_text frees the arrays. */
 #pragma once
 
 #include "wasm/mesh/lines.h"
