@@ -41,7 +41,7 @@ function nativeIsas() {
   });
 }
 
-const median = (values) => values.toSorted((a, b) => a - b)[Math.floor(values.length / 2)];
+const median = (values) => [...values].sort((a, b) => a - b)[Math.floor(values.length / 2)];
 
 const rows = [];
 for (const isa of nativeIsas()) rows.push({ name: `native, ${isa}`, run: nativeOf(isa), times: [] });

@@ -1,5 +1,5 @@
-/* Mesh files: films are those of the program, whose importer reads the same files; damaged files give an error, whatever
- * is wrong with them. */
+/* Mesh files: films are those of the program, whose importer reads the same files; damaged files give an error,
+ * whatever is wrong with them. */
 
 import assert from 'node:assert/strict';
 import { mkdtempSync, readFileSync, rmSync, writeFileSync } from 'node:fs';

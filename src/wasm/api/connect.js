@@ -108,9 +108,18 @@ const KINDS = Object.fromEntries(
   }),
 );
 
+/* Addresses are the page's, not the worker's; a message cannot hold a URL. */
+function placeFor(options) {
+  const whole = (one) => {
+    if (!(one instanceof URL || typeof one === 'string')) return one;
+    return globalThis.location ? new URL(one, location.href).href : String(one);
+  };
+  return Object.fromEntries(Object.entries(options).map(([key, one]) => [key, whole(one)]));
+}
+
 export async function connect(worker, options) {
   const line = new Line(worker);
-  await line.call(0, 'load', [options]);
+  await line.call(0, 'load', [placeFor(options)]);
   const cuvette = new KINDS.Cuvette(line, 0);
   const facts = await cuvette.facts();
   return Object.assign(cuvette, facts, {

@@ -1,8 +1,8 @@
 /* The errors of the API.
  *
  * exports: CuvetteError, the statuses of cuvette.h, cancelled(signal)
- * CuvetteError: message, "file:line:column: what; remedy" as the program writes it; what, remedy, file ('': none), line,
- * column (0: none), status. A cancelled call throws the reason of its AbortSignal instead. */
+ * CuvetteError: message, "file:line:column: what; remedy" as the program writes it; what, remedy, file ('': none),
+ * line, column (0: none), status. A cancelled call throws the reason of its AbortSignal instead. */
 
 export const OK = 0;
 export const FAILURE = 1;

@@ -1,6 +1,6 @@
-/* What the functions of the JavaScript API (wasm/exports.h) share: the last error, and results as JSON texts, so that no
- * script depends on the layout of a structure. Ownership: a text is the script's, which frees it; NULL after an error,
- * which results_last keeps. */
+/* What the functions of the JavaScript API (wasm/exports.h) share: the last error, and results as JSON texts, so that
+ * no script depends on the layout of a structure. Ownership: a text is the script's, which frees it; NULL after an
+ * error, which results_last keeps. */
 #pragma once
 
 #include "cuvette.h"

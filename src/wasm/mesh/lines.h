@@ -18,6 +18,6 @@ bool lines_word(lines *l, const char **word, size_t *length);
 bool lines_is(const char *word, size_t length, const char *text);
 /* The rest of the line, without blanks at both ends. */
 size_t lines_rest(const lines *l, const char **text);
-/* Reads the line's further words as numbers, at most `most`, rounded as the importer rounds them (import/obj.h); returns
- * how many, -1: a word is none. */
+/* Reads the line's further words as numbers, at most `most`, rounded as the importer rounds them (import/obj.h);
+ * returns how many, -1: a word is none. */
 int lines_numbers(lines *l, int most, float *numbers);

@@ -1,6 +1,7 @@
 /* Readers of mesh files for browsers, without assimp: plain OBJ with MTL, and PLY. Triangles, vertices, normals and
  * materials are those of the program's importer, so that films have the same hash. Ownership: mesh_parts_release frees
- * what a reader made, also after an error. Errors: STATUS_BAD_INPUT with the line in the text, STATUS_FAILURE without memory. */
+ * what a reader made, also after an error. Errors: STATUS_BAD_INPUT with the line in the text, STATUS_FAILURE without
+ * memory. */
 #pragma once
 
 #include "base/status.h"
