@@ -388,7 +388,7 @@ dictionary: $(build)/tests/test_quantities $(build)/cuvette ## renew the tables 
 # The page in a real browser: only=NAME for tests/web/NAME.test.mjs alone, screenshots=FOLDER for images of every view, ENGINE=browser for the
 # laboratory of `make wasm` in the page instead of the program. Runs after everything that installs or measures.
 .PHONY: test-web setup-web
-setup-web: | $(filter setup setup-peers setup-python setup-mpi,$(MAKECMDGOALS))
+setup-web: | $(filter setup setup-peers setup-python setup-mpi setup-wasm,$(MAKECMDGOALS))
 	@.ci/setup-web $(build)/web-tests
 test-web: $(build)/cuvette $(if $(filter browser,$(ENGINE)),wasm) | setup-web $(filter test test-mpi experiments bench,$(MAKECMDGOALS)) ## test the laboratory's page in Chromium, installed with node if missing; only=NAME for one file, ENGINE=browser without the server
 	@tests/format.sh --check $(build)/web-tests
