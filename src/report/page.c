@@ -17,9 +17,10 @@
 /* Nothing may be requested and nothing runs, whatever a text contained. */
 #define POLICY "default-src 'none'; img-src data:; style-src 'unsafe-inline'; base-uri 'none'; form-action 'none'"
 /* Nothing may be requested; the laboratory of the page runs, from the page alone. */
-#define LIVE_POLICY                                                                         \
-    "default-src 'none'; img-src data: blob:; style-src 'unsafe-inline'; base-uri 'none'; " \
-    "script-src 'unsafe-inline' 'wasm-unsafe-eval' blob:; worker-src blob:; connect-src data: blob:"
+#define LIVE_POLICY                                                                                                \
+    "default-src 'none'; img-src data: blob:; style-src 'unsafe-inline'; base-uri 'none'; "                        \
+    "script-src 'unsafe-inline' 'wasm-unsafe-eval' blob:; worker-src blob:; connect-src data: blob:; form-action " \
+    "'none'"
 
 static const char *title_of(const scene *s)
 {

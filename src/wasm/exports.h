@@ -12,7 +12,6 @@ struct cuvette_scene;
 struct cuvette_query;
 struct cuvette_motion;
 struct cuvette_diagnostic;
-struct cuvette_diagnostic;
 
 /* The last error, as "file:line:column: what; remedy". */
 const char *wasm_why(void);
@@ -33,6 +32,8 @@ void wasm_lab_request(int id, const char *method, const char *target, const char
  * the next turn is due: 0 for at once, negative for none until something arrives. */
 double wasm_lab_turn(void);
 
+/* A tile worker cannot start: the laboratory goes on without it. */
+void wasm_lab_lost(int worker);
 /* Takes what a tile worker sent (wasm_tiles_trace). */
 void wasm_lab_traced(int worker, const void *bytes, size_t size);
 

@@ -24,6 +24,11 @@ double wasm_lab_turn(void)
     return render_turns_take();
 }
 
+void wasm_lab_lost(int worker)
+{
+    render_turns_lost(worker);
+}
+
 void wasm_lab_traced(int worker, const void *bytes, size_t size)
 {
     render_turns_traced(worker, bytes, size);

@@ -58,18 +58,25 @@ function startTileWorker(compiled, address) {
   const worker = new Worker(address);
   const number = tileWorkers.push(worker) - 1;
   worker.postMessage({ tiles: compiled });
+  const lose = () => {
+    worker.terminate();
+    lab._wasm_lab_lost(number);
+    schedule();
+  };
   worker.onmessage = ({ data }) => {
-    if (data.failed) postMessage({ failed: data.failed });
+    if (data.failed) lose();
     else withBytes(lab, data.traced, (address, size) => lab._wasm_lab_traced(number, address, size));
     schedule();
   };
-  worker.onerror = (event) => postMessage({ failed: event.message || 'a tile worker cannot start' });
+  worker.onerror = (event) => {
+    event.preventDefault?.();
+    lose();
+  };
 }
 
 /* What the module calls. */
 const host = {
-  reply: (id, status, headers, bytes) =>
-    postMessage({ id, status, headers, bytes: bytes.buffer }, [bytes.buffer]),
+  reply: (id, status, headers, bytes) => postMessage({ id, status, headers, bytes: bytes.buffer }, [bytes.buffer]),
   event: (event, value) => postMessage({ event, value }),
   send: (worker, kind, bytes) =>
     tileWorkers[worker].postMessage(kind === 0 ? { scene: bytes } : { order: bytes }, [bytes.buffer]),

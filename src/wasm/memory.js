@@ -1,16 +1,18 @@
 /* The module of a worker, and bytes in its memory. */
 'use strict';
 
-/* compiled: a WebAssembly.Module; host: what the module calls (imports.js). */
-async function instantiate(compiled, host) {
-  return cuvette({
-    host,
-    instantiateWasm(imports, done) {
-      WebAssembly.instantiate(compiled, imports).then((instance) => done(instance, compiled));
-      return {};
-    },
+/* compiled: a WebAssembly.Module; host: what the module calls (imports.js). Emscripten does not wait for a hook that
+ * fails. */
+const instantiate = (compiled, host) =>
+  new Promise((resolve, reject) => {
+    cuvette({
+      host,
+      instantiateWasm(imports, done) {
+        WebAssembly.instantiate(compiled, imports).then((instance) => done(instance, compiled), reject);
+        return {};
+      },
+    }).then(resolve, reject);
   });
-}
 
 /* Calls use(address, size) with a copy of the bytes in the module's memory, followed by a 0. */
 function withBytes(module, bytes, use) {

@@ -11,6 +11,8 @@
 #include <time.h>
 
 extern int wasm_waited;
+/* A request that waited is handled again: what failed before is not tried once more for it. */
+extern bool wasm_again;
 bool wasm_work_at_once(void);
 
 static inline int pthread_cond_clockwait(pthread_cond_t *condition, pthread_mutex_t *lock, clockid_t clock,

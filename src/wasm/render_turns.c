@@ -18,11 +18,11 @@
 enum { WORKERS_MAX = 64, SIDE = 32 };
 
 /* An order should take that long: a worker notices only between orders that its pass was given up. Where the frame's
- * preparation takes longer, such as photons, SETUP_SHARES as long as that. */
+ * preparation takes longer, such as photons, setup_shares as long as that. */
 static const double order_s = 0.05, setup_shares = 4.0;
 
 typedef struct remote {
-    bool busy;
+    bool busy, lost;             /* lost: it could not start */
     uint64_t generation;         /* of the scene that it has; UINT64_MAX: with a slime of its moment */
     double tiles_per_s, setup_s; /* of its last order in this pass; 0: none yet */
 } remote;
@@ -83,7 +83,7 @@ static void give(int worker)
 {
     remote *r = &now.remotes[worker];
     const int64_t left = now.sum.places.tile_count - now.next;
-    if (r->busy || left <= 0)
+    if (r->busy || r->lost || left <= 0)
         return;
     const int64_t size = order_size(r), count = size < left ? size : left;
     const tile_order order = {.frame = now.frame,
@@ -154,7 +154,10 @@ static void complete(void)
 /* render.error needs the noise of the whole image, which no worker has. */
 static bool can_share(const scene *view)
 {
-    return now.workers > 0 && !(view->render.error > 0.0 && view->render.integrator == INTEGRATOR_PATH);
+    int present = 0;
+    for (int i = 0; i < now.workers; i++)
+        present += !now.remotes[i].lost;
+    return present > 0 && !(view->render.error > 0.0 && view->render.integrator == INTEGRATOR_PATH);
 }
 
 /* Gives the snapshot to the workers that have an older one. */
@@ -265,6 +268,14 @@ void render_turns_traced(int worker, const void *bytes, size_t size)
         give(worker);
 }
 
+/* Its tiles go to the others, or are traced here. */
+void render_turns_lost(int worker)
+{
+    now.remotes[worker].lost = true;
+    if (now.active)
+        give_up();
+}
+
 /* --- turns --- */
 
 /* For a request that waits: what can be done at once (no_threads.h). */
@@ -312,6 +323,8 @@ double render_turns_take(void)
     requests_retry();
     if (now.active && !render_worker_is_stale(p) && !live_is_due(p->live_slime))
         return -1.0; /* until answers arrive */
+    if (p->again)
+        return 0.0;
     const double due_s = render_worker_due_s(p);
     return isinf(due_s) ? -1.0 : 1000.0 * due_s;
 }

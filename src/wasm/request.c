@@ -1,7 +1,6 @@
 /* The functions of web/http/http.h for messages: requests come from the page's script, replies go back to it. */
 #include "wasm/request.h"
 
-#include "measure/clock.h"
 #include "wasm/exports.h"
 #include "web/http/http_private.h"
 #include "web/page.h"
@@ -15,9 +14,6 @@
 const http_file page_files[1] = {{.name = ""}};
 const size_t page_file_count = 0;
 
-/* Less than the time after which the page gives up (page/api.js). */
-static const double patience_s = 55.0;
-
 /* libmicrohttpd's name: the struct of a reply points to it. */
 struct MHD_Response {
     const char *type;
@@ -28,13 +24,14 @@ struct MHD_Response {
 typedef struct waiting_request {
     http_request q;
     int id;
-    double since_s;
+    bool again; /* it has waited */
     struct waiting_request *next;
 } waiting_request;
 
 static http_server own_server;
 static waiting_request *waiting;
 int wasm_waited;
+bool wasm_again;
 
 status http_start(const http_settings *settings, http_server **out, diagnostic *why)
 {
@@ -197,9 +194,11 @@ static bool handle(waiting_request *w)
 {
     http_request *q = &w->q;
     wasm_waited = 0;
+    wasm_again = w->again;
+    w->again = true;
     q->route->handle(q->route->context, q, &q->reply);
-    const bool over = !wasm_waited || (q->reply.response && q->reply.code < 400);
-    if (over || clock_wall_s() - w->since_s > patience_s)
+    wasm_again = false;
+    if (!wasm_waited || (q->reply.response && q->reply.code < 400))
         return true;
     release(q);
     return false;
@@ -231,7 +230,7 @@ void wasm_lab_request(int id, const char *method, const char *target, const char
         host_reply(id, 500, "{}", "", 0);
         return;
     }
-    *w = (waiting_request){.q.server = &own_server, .id = id, .since_s = clock_wall_s()};
+    *w = (waiting_request){.q.server = &own_server, .id = id};
     w->q.reply.server = &own_server;
     w->q.method = strdup(method);
     w->q.body = malloc(size + 1);
@@ -259,11 +258,6 @@ void requests_retry(void)
         handle_or_keep(w);
         w = next;
     }
-}
-
-bool requests_wait(void)
-{
-    return waiting != NULL;
 }
 
 /* --- events --- */

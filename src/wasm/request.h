@@ -3,9 +3,5 @@
  * to wait for an image is kept and handled again later. */
 #pragma once
 
-#include <stdbool.h>
-
 /* Handles the waiting requests again, each at most once. Something that they may wait for has happened. */
 void requests_retry(void);
-/* Whether any waits. */
-bool requests_wait(void);

@@ -15,6 +15,7 @@
 
 static job *own_job;
 static scene *own_scene;
+static diagnostic no_scene; /* why there is none */
 
 /* The answer that is being filled. */
 typedef struct answering {
@@ -48,12 +49,12 @@ static bool make_room(size_t size)
 
 int wasm_tiles_scene(const void *bytes, size_t size)
 {
-    diagnostic why = {.line = 0};
+    no_scene = (diagnostic){.line = 0};
     scene_destroy(own_scene);
     own_scene = NULL;
-    status code = own_job ? STATUS_OK : job_create(&(job_settings){.level = NULL}, &own_job, &why);
-    THEN(code, scene_unpack(bytes, size, &own_scene, &why));
-    return trouble_note(code, &why);
+    status code = own_job ? STATUS_OK : job_create(&(job_settings){.level = NULL}, &own_job, &no_scene);
+    THEN(code, scene_unpack(bytes, size, &own_scene, &no_scene));
+    return trouble_note(code, &no_scene);
 }
 
 static bool next(void *context, int worker, span *out)
@@ -86,8 +87,10 @@ static bool done(void *context, const span *piece, const film *traced, const dou
 
 static status trace(const tile_order *order, diagnostic *why)
 {
-    if (!own_scene)
-        return diagnose(why, STATUS_FAILURE, "load the page again", "a worker has no scene");
+    if (!own_scene) {
+        *why = no_scene;
+        return STATUS_FAILURE;
+    }
     scene view = *own_scene;
     view.render = passes_settings(&own_scene->render, order->shrink, order->single);
     view.render.threads = 1;

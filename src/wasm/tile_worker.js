@@ -1,6 +1,6 @@
 /* A tile worker.
  *
- * laboratory -> worker  {tiles: WebAssembly.Module}, first; {scene: bytes}; {order: bytes}
+ * laboratory -> worker  {tiles: WebAssembly.Module}, first; {scene: bytes}, whose error the next answer has; {order: bytes}
  * worker -> laboratory  {traced: bytes} for each order, or {failed: text} */
 
 let tracer = null; /* emscripten's module */
@@ -20,6 +20,5 @@ function traceTiles(order) {
 
 function tileMessage({ scene, order }) {
   if (order) traceTiles(order);
-  else if (withBytes(tracer, scene, (address, size) => tracer._wasm_tiles_scene(address, size)) !== 0)
-    throw new Error(tracer.UTF8ToString(tracer._wasm_why()));
+  else withBytes(tracer, scene, (address, size) => tracer._wasm_tiles_scene(address, size));
 }

@@ -149,7 +149,9 @@ async function run(browser, given, job, expected) {
     const wanted = expected.get(answer.scene);
     const equal = answer.film === wanted.film && (answer.rays === undefined || answer.rays === wanted.rays);
     counts[equal ? 'passed' : 'failed']++;
-    const what = equal ? answer.film : `${answer.error ?? `${answer.film} ${answer.rays}`}, not ${wanted.film} ${wanted.rays}`;
+    const what = equal
+      ? answer.film
+      : `${answer.error ?? `${answer.film} ${answer.rays}`}, not ${wanted.film} ${wanted.rays}`;
     console.log(
       `${equal ? 'ok' : 'not ok'} - ${browser} ${answer.isa} ${answer.workers}: ${answer.scene} ${what}` +
         ` (${(answer.ms / 1000).toFixed(2)} s)`,
@@ -190,8 +192,18 @@ const scenes = given.scenes.length
       .map((name) => `scenes/${name}`);
 const expected = new Map();
 for (const scene of scenes) {
-  const words = ['render', join('experiments', scene), '--set', `render.width=${width}`, '--set', `render.height=${height}`];
-  const { film_hash: film, rays: { total: rays } } = JSON.parse(execFileSync(given.program, [...words, '--json'], { stdio: ['ignore', 'pipe', 'ignore'] }));
+  const words = [
+    'render',
+    join('experiments', scene),
+    '--set',
+    `render.width=${width}`,
+    '--set',
+    `render.height=${height}`,
+  ];
+  const {
+    film_hash: film,
+    rays: { total: rays },
+  } = JSON.parse(execFileSync(given.program, [...words, '--json'], { stdio: ['ignore', 'pipe', 'ignore'] }));
   expected.set(scene, { film, rays });
 }
 const files = [...filesBelow(SCENES), ...filesBelow('experiments/hands')].map((path) => relative('experiments', path));

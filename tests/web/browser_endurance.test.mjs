@@ -39,10 +39,11 @@ export const cases = {
     const lab = await t.lab('scenes/slime.yaml');
     const screen = await t.open(lab);
     const { full_width: width, full_height: height } = (await lab.get('/api/state')).picture;
-    await lab.post('/api/slime', { do: 'play' });
     const grab = async (count) => {
       for (let i = 0; i < count; i++) {
-        const at = { x: width * 0.5, y: height * (0.5 + 0.02 * (i % 5)) };
+        await lab.post('/api/slime', { do: 'restart' }); /* pulled about, it would leave the image */
+        await screen.page.waitForTimeout(400);
+        const at = { x: width * 0.5, y: height * 0.5 };
         const { hand } = await lab.post('/api/slime/grab', at);
         await lab.post('/api/slime/move', { hand, x: at.x + width * 0.1, y: at.y - height * 0.1 });
         await screen.page.waitForTimeout(100);

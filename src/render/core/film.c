@@ -35,9 +35,9 @@ static bool allocate_sums(film *f, size_t bytes)
 
 status film_create(int width, int height, int shares, film_space space, film **out, diagnostic *why)
 {
-    const size_t bytes = (size_t)width * (size_t)height * 3 * sizeof(int64_t) * (size_t)shares;
+    const uint64_t bytes = (uint64_t)width * (uint64_t)height * 3 * sizeof(int64_t) * (uint64_t)shares;
     film *f = calloc(1, sizeof *f);
-    if (!f || !allocate_sums(f, bytes)) {
+    if (!f || bytes > SIZE_MAX / 2 || !allocate_sums(f, (size_t)bytes)) {
         free(f);
         return diagnose(why, STATUS_FAILURE, "render a smaller image", "out of memory for a film of %d x %d", width,
                         height);

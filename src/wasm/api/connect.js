@@ -24,6 +24,11 @@ class Line {
     else worker.addEventListener('error', fail);
   }
 
+  end() {
+    this.#fail('the worker was ended');
+    this.worker.terminate();
+  }
+
   #fail(what) {
     for (const { reject } of this.#waiting.values())
       reject(new CuvetteError(1, { what, remedy: 'check the address of the worker' }));
@@ -125,6 +130,6 @@ export async function connect(worker, options) {
   return Object.assign(cuvette, facts, {
     Scene: { read: (...values) => cuvette.readScene(...values), create: () => cuvette.createScene() },
     memoryBytes: async () => (await cuvette.facts()).memoryBytes,
-    destroy: () => worker.terminate(),
+    destroy: () => line.end(),
   });
 }

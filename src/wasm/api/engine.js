@@ -1,7 +1,7 @@
 /* Rendering in turns. See "rendering" in cuvette.h.
  *
  * exports: Engine
- *   engine.render(scene, {progress, piece, signal, preview, rgb}) -> Promise of
+ *   engine.render(scene, {progress, piece, signal, preview}) -> Promise of
  *     {width, height, srgb, rgb, hash, counters, wall_s}
  *   progress(share)  0..1
  *   piece({x0, y0, x1, y1, coarse, width, height, srgb})   finished pixels; of a preview (coarse > 1) width x height

@@ -54,10 +54,13 @@ export async function instantiate(options) {
   const { module, wasm } = options.folder === undefined ? options : placesIn(options.folder);
   if (!module || !wasm) throw badInput('the module is not given', 'give folder, or module and wasm');
   const [factory, compiled] = await Promise.all([factoryOf(module), compile(wasm)]);
-  return factory({
-    instantiateWasm(imports, done) {
-      WebAssembly.instantiate(compiled, imports).then((instance) => done(instance, compiled));
-      return {};
-    },
+  /* Emscripten does not wait for a hook that fails. */
+  return new Promise((resolve, reject) => {
+    factory({
+      instantiateWasm(imports, done) {
+        WebAssembly.instantiate(compiled, imports).then((instance) => done(instance, compiled), reject);
+        return {};
+      },
+    }).then(resolve, reject);
   });
 }

@@ -88,6 +88,10 @@ const shared_image *render_worker_take(render_worker *p)
  * and rendered once more. The caller holds the lock. */
 static void try_again(render_worker *p)
 {
+#ifdef __EMSCRIPTEN__
+    if (wasm_again)
+        return;
+#endif
     if (p->trouble_code != STATUS_FAILURE || clock_wall_s() < p->again_from_s)
         return;
     p->again = true;

@@ -2,8 +2,6 @@
  * next page of the tab offers it (rescue.js). A scene that reads files has no such code and is not kept.
  * exports: keepUnsaved(lab) -> {offer() -> null or {id, time, title, file}, open(), drop()} */
 
-import { openText } from './shared_link.js';
-
 const KEY = 'cuvette.unsaved';
 const REST_MS = 1000; /* kept when the scene rests */
 
@@ -29,7 +27,8 @@ export function keepUnsaved(lab) {
   return {
     offer: () => found && { id: KEY, ...found },
     async open() {
-      await openText(lab, `#scene=${found.code}`);
+      await lab.change('/api/open', { link: `#scene=${found.code}` });
+      lab.panels.reveal();
       found = null;
     },
     drop() {
@@ -39,9 +38,9 @@ export function keepUnsaved(lab) {
   };
 
   async function keep() {
-    const { saved, undo, title, file } = lab.state;
+    const { saved, unsaved, undo, title, file } = lab.state;
     if (saved && undo) stored((storage) => storage.removeItem(KEY));
-    if (saved || !undo) return;
+    if (!unsaved) return;
     const { code } = await lab.get('/api/link').catch(() => ({}));
     if (code) stored((storage) => storage.setItem(KEY, JSON.stringify({ code, time: Date.now(), title, file })));
   }

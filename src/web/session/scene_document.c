@@ -347,12 +347,17 @@ void scene_document_saved(scene_document *d, const char *file, uint64_t number)
         d->changed(d->context);
 }
 
-/* A scene that was opened and not changed can be opened again. */
+/* A scene that was opened and not changed can be opened again. The caller holds the lock. */
+static bool is_unsaved(const scene_document *d)
+{
+    const origin *from = d->now.from;
+    return d->now.number != d->saved_number && (from->unfiled || d->now.number != from->number);
+}
+
 bool scene_document_unsaved(scene_document *d, uint64_t *number, char **file)
 {
     pthread_mutex_lock(&d->lock);
-    const origin *from = d->now.from;
-    const bool unsaved = d->now.number != d->saved_number && (from->unfiled || d->now.number != from->number);
+    const bool unsaved = is_unsaved(d);
     *number = d->now.number;
     if (file)
         *file = copy_or_null(d->now.file);
@@ -368,10 +373,10 @@ static json_t *top_json(const version_stack *p)
 bool scene_document_json(scene_document *d, json_t *state)
 {
     pthread_mutex_lock(&d->lock);
-    json_t *json =
-        json_pack("{s:I, s:o, s:o, s:b, s:o, s:o}", "generation", (json_int_t)d->generation, "file",
-                  d->now.file ? json_of_text(d->now.file) : json_null(), "title", json_of_text(d->now.s->title),
-                  "saved", d->now.number == d->saved_number, "undo", top_json(&d->undo), "redo", top_json(&d->redo));
+    json_t *json = json_pack("{s:I, s:o, s:o, s:b, s:b, s:o, s:o}", "generation", (json_int_t)d->generation, "file",
+                             d->now.file ? json_of_text(d->now.file) : json_null(), "title",
+                             json_of_text(d->now.s->title), "saved", d->now.number == d->saved_number, "unsaved",
+                             is_unsaved(d), "undo", top_json(&d->undo), "redo", top_json(&d->redo));
     json_add_as(&json, "view", scene_document_view_json(d));
     pthread_mutex_unlock(&d->lock);
     return json_object_update_new(state, json) == 0;
