@@ -28,7 +28,7 @@ export async function showImage({ engine }, node, path) {
   }
   release(engine, node);
   if (!address) {
-    delete node.dataset.path; /* it may be asked for again */
+    delete node.dataset.path; /* it may be fetched again */
     node.removeAttribute(attribute);
     return;
   }

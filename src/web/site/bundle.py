@@ -12,7 +12,8 @@ PAGE = ROOT / 'src/web/page'
 EXPERIMENTS = ROOT / 'experiments'
 FOLDERS = ('scenes', 'hands', 'lessons')
 READ_BY_SCENES = ('.yaml', '.lesson')
-# A link brings a stranger's scene: nothing but the page and what is next to it may be asked for or run.
+# A link brings a stranger's scene: nothing may be loaded or run but the page
+# and what is next to it.
 POLICY = ("default-src 'none'; img-src 'self' data: blob:; style-src 'self' 'unsafe-inline'; script-src 'self' "
           "'unsafe-inline' 'wasm-unsafe-eval' blob:; worker-src 'self' blob:; connect-src 'self' data: blob:; "
           "base-uri 'none'; form-action 'none'")
