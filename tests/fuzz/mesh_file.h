@@ -3,6 +3,7 @@
 #pragma once
 
 #include "fuzz.h"
+#include "import/import.h"
 #include "import/obj.h"
 #include "scene/assets/mesh_stream.h"
 #include <assimp/cimport.h>
