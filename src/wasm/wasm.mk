@@ -83,7 +83,7 @@ wasm_link = -sEXPORTED_FUNCTIONS=@$(wasm)/exports \
 
 .PHONY: test-wasm bench-wasm
 wasm_tests = $(sort $(wildcard tests/wasm/*.test.mjs))
-test-wasm: wasm $(build)/cuvette ## test the WebAssembly modules in node: films, ray counts, errors, the JavaScript API
+test-wasm: wasm $(build)/cuvette $(build)/cuvette-import ## test the WebAssembly modules in node: films, ray counts, errors, the JavaScript API
 	@node --test --test-reporter=tap $(wasm_tests) | node tests/wasm/summary.mjs
 bench-wasm: wasm $(build)/cuvette ## measure the speed of the WebAssembly modules and of the native program
 	@node tests/wasm/bench.mjs
