@@ -46,27 +46,29 @@ static status make_link(const scene *s, char **code, diagnostic *why)
     return result;
 }
 
+/* Copies what make made of the scene; inner: the diagnostic of the calling function. */
 static cuvette_status copy_made(const cuvette_scene *s, status (*make)(const scene *s, char **text, diagnostic *why),
-                                char *text, size_t size, size_t *length, cuvette_diagnostic *why)
+                                char *text, size_t size, size_t *length, diagnostic *inner, cuvette_diagnostic *why)
 {
-    ENGINE_CALL(s);
     if (size > 0)
         ENGINE_NEED(text);
     char *content = NULL;
     cuvette_scene *held = engine_hold(s);
-    const status code = make(held->model, &content, &inner);
+    const status code = make(held->model, &content, inner);
     pthread_mutex_unlock(&held->loading);
-    return code == STATUS_OK ? engine_copy_text(content, text, size, length, why) : engine_report(code, &inner, why);
+    return code == STATUS_OK ? engine_copy_text(content, text, size, length, why) : engine_report(code, inner, why);
 }
 
 cuvette_status cuvette_scene_write_text(const cuvette_scene *s, char *text, size_t size, size_t *length,
                                         cuvette_diagnostic *why)
 {
-    return copy_made(s, make_text, text, size, length, why);
+    ENGINE_CALL(s);
+    return copy_made(s, make_text, text, size, length, &inner, why);
 }
 
 cuvette_status cuvette_scene_write_link(const cuvette_scene *s, char *text, size_t size, size_t *length,
                                         cuvette_diagnostic *why)
 {
-    return copy_made(s, make_link, text, size, length, why);
+    ENGINE_CALL(s);
+    return copy_made(s, make_link, text, size, length, &inner, why);
 }
