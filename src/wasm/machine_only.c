@@ -16,7 +16,7 @@ static status refuse(call *c, const char *what, const char *remedy)
 
 static status no_study(call *c)
 {
-    return refuse(c, "studies measure a machine: a browser's times are none that compare",
+    return refuse(c, "studies measure times, and those of a browser cannot be compared",
                   "save the scene, and run: cuvette study run FILE.study");
 }
 
@@ -40,12 +40,12 @@ STUDY_ROUTE(api_figure)
 
 status api_machine(call *c)
 {
-    return refuse(c, "a browser does not tell its machine", "run: cuvette machine");
+    return refuse(c, "a browser does not say which machine it runs on", "run: cuvette machine");
 }
 
 static status no_video(call *c)
 {
-    return refuse(c, "a browser writes no video here", "save the scene, and run: cuvette animate FILE.yaml");
+    return refuse(c, "films are not written in a browser", "save the scene, and run: cuvette animate FILE.yaml");
 }
 
 status api_video(call *c)
