@@ -119,6 +119,17 @@ ball() {
         done
 }
 
+# The design of each study that has rows: processes that share its repetitions, and frames before the first row.
+designs() {
+    for file in "$here"/../experiments/*.study; do
+        study=$(basename "$file" .study)
+        [ -r "$out/tables/$study.tsv" ] || continue
+        awk -v study="$study" 'BEGIN { of["processes"] = 1 }
+            /^(processes|warmups): *[0-9]+$/ { sub(/:/, "", $1); of[$1] = $2 }
+            END { for (name in of) printf "\\setval{%s/%s}{%d}\n", study, name, of[name] }' "$file"
+    done
+}
+
 "$here/tables.sh" "$results" "$out"
 {
     echo "% made by paper/numbers.sh; change rows or scripts, not this"
@@ -134,6 +145,7 @@ ball() {
         *) awk -v study="$study" -f "$here/interval.awk" -f "$here/numbers.awk" "$table" ;;
         esac
     done | sort
+    designs
     slab
     ball
     machine

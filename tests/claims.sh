@@ -80,6 +80,22 @@ in_paper() { grep -hv '^%' paper/{paper,supplement}.tex | grep -o '\\claim{[a-z-
 empty "paper and supplement state every claim that rows decide, and no other" \
     "$(diff <(claims | awk -F'\t' '$9 != "-" { print $1 }' | sort) <(in_paper))"
 
+empty "the tables, figures and sections that a claim names exist" "$(comm -23 \
+    <(claims | cut -f 3 | tr ' ' '\n' | grep -v '^-$' | sort -u) \
+    <(grep -oh '\\label{[^}]*}' paper/{paper,supplement}.tex | sed 's/.*{//; s/}//' | sort -u))"
+for text in paper supplement; do
+    empty "every measured number of a sentence of the $text is in a claim" "$(awk -f tests/unclaimed.awk "paper/$text.tex")"
+done
+# The check itself: a number after a claim, within a macro, in a caption, and published.
+cat >"$work/unclaimed.tex" <<'END'
+\newcommand{\row}[2][x]{\val{in/#1}
+  \val{a/macro}}
+\claim{c}{With \val{in/a-claim}.} It takes \val{depth/8/cpu_s_median}\,ms and
+\valor{--}{b/c}.\caption{\val{in/a-caption}}\val{published/depth/4/cpu}
+END
+same "a number outside a claim would be found" "$(awk -f tests/unclaimed.awk "$work/unclaimed.tex" | tr '\n' ' ')" \
+    "3: depth/8/cpu_s_median 4: b/c "
+
 # --- the committed rows
 judge "$reference" "$work/reference"
 same "make claims succeeds on the committed rows" "$code" 0
@@ -129,7 +145,8 @@ copy film profile
 edit "$work/film/profile/rows.csv" 'NR == 9' film_hash '"00000000000000aa"'
 edit "$work/film/profile/rows.csv" 'NR == 9' marked 1
 judge "$work/film" "$work/out"
-same "another film in one row: not reproduced" "$(changed "$work/out")" "film-threads: not reproduced"
+same "another film in one row: not reproduced" "$(changed "$work/out")" \
+    "film-marked: not reproduced, film-threads: not reproduced"
 same "a claim that is not reproduced gives status 1" "$code" 1
 
 copy metrics tables
@@ -165,7 +182,8 @@ verdict $? "the reason says how many are needed" "$(of "$work/out" polarised-cos
 copy loud profile
 edit "$work/loud/profile/rows.csv" 'NR > 1' others_share 0.7
 judge "$work/loud" "$work/out"
-same "disturbed rows: underpowered" "$(changed "$work/out")" "profile-blocks: underpowered"
+same "disturbed rows: underpowered" "$(changed "$work/out")" \
+    "profile-blocks: underpowered, rows-quiet: not reproduced"
 grep -q 'disturbed or marked' <<<"$(of "$work/out" profile-blocks 4)"
 verdict $? "the reason names them" "$(of "$work/out" profile-blocks 4)"
 
@@ -178,7 +196,7 @@ copy none polarised
 rm -r "$work/none/polarised"
 judge "$work/none" "$work/out"
 same "no rows: underpowered" "$(changed "$work/out")" \
-    "polarised-cost: underpowered, polarised-image: underpowered"
+    "film-marked: underpowered, polarised-cost: underpowered, polarised-image: underpowered"
 grep -q '^for the missing rows: cuvette study run experiments/polarised.study$' "$work/said"
 verdict $? "with the command that measures them" "$(tail -n 3 "$work/said")"
 mkdir "$work/empty"
