@@ -33,6 +33,7 @@ for name in absorber slime-light; do
     cp "$from/$name"/images/*.pfm "$to/$name/images/"
 done
 paper/cost.sh "$from/maps/images/0000-rays.pfm" >"$to/tables/maps-cost.tsv"
+experiments/views.sh >"$to/tables/maps-views.tsv"
 # Figures that need images; the others are drawn from the rows. And those of the README.
 for script in plots/*.gp; do
     name=$(basename "$script" .gp)

@@ -1,9 +1,9 @@
-# Predicts speed-ups by share.awk from what pieces of the image cost, and compares them with measured ones, and with laws
-# fitted to half of the counts and tested on the other half.
+# Predicts speed-ups by share.awk from what pieces of the image cost, and compares them with measured ones, and with
+# laws fitted to half of the counts and tested on the other half.
 #   awk -f share.awk -f law.awk -f scaling.awk maps-cost.tsv MACHINES MEASURED
 # MACHINES, tab separated without a header: machine, cores, units, seconds for each thread, rate of a busy unit, and the
-# yield of a core (lowest, assumed, highest). MEASURED: machine, schedule, threads, rows, seconds of the best serial run,
-# speed-up (median, low, high; NA without an interval).
+# yield of a core (lowest, assumed, highest). MEASURED: machine, schedule, threads, rows, seconds of the best serial
+# run, speed-up (median, low, high; NA without an interval).
 # Prints a line for each measured speed-up. ratio: predicted / measured; miss: its distance from 1 as a share, 1 / ratio
 # if that is farther. even: the model with equal blocks. busy: with the measured rate of busy units. amdahl, gunther:
 # laws fitted without this count, gunther_units: on at most as many threads at a time as there are units.
@@ -104,8 +104,8 @@ $1 in cores_of {
 }
 END {
     for (group in tested) fit_halves(group)
-    print "machine", "units", "render.schedule", "render.threads", "n", "speedup_median", "speedup_low", "speedup_high", \
-        "predicted", "least", "largest", "even", "busy", "ratio_median", "ratio_low", "ratio_high", "miss_median", \
+    print "machine", "units", "render.schedule", "render.threads", "n", "speedup_median", "speedup_low", \
+        "speedup_high", "predicted", "least", "largest", "even", "busy", "ratio_median", "ratio_low", "ratio_high", "miss_median", \
         "miss_low", "miss_high", "busy_ratio", "amdahl", "gunther", "gunther_units"
     for (k = 1; k <= lines; k++) {
         m = machine[k]
@@ -117,8 +117,10 @@ END {
         print m, units_of[m], schedule[k], threads[k], rows[k], measured[k], low[k], high[k], p, \
             predict(m, schedule[k], threads[k], serial[k], yield_low[m], 1, 0), \
             predict(m, schedule[k], threads[k], serial[k], yield_high[m], 1, 0), \
-            predict(m, schedule[k], threads[k], serial[k], yield_mid[m], 1, 1), b, quotient(p, measured[k]), down, up, \
+            predict(m, schedule[k], threads[k], serial[k], yield_mid[m], 1, 1), b, \
+            quotient(p, measured[k]), down, up, \
             far(quotient(p, measured[k])), near, larger(far(down), far(up)), quotient(b, measured[k]), \
-            k in amdahl ? amdahl[k] : "NA", k in gunther ? gunther[k] : "NA", k in gunther_units ? gunther_units[k] : "NA"
+            k in amdahl ? amdahl[k] : "NA", k in gunther ? gunther[k] : "NA", \
+            k in gunther_units ? gunther_units[k] : "NA"
     }
 }

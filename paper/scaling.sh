@@ -1,6 +1,6 @@
 #!/bin/sh
-# Predict the speed-up by threads from the cost of pieces of the image, and compare it with the published and the measured
-# one (paper/scaling.awk): writes OUT/tables/scaling.tsv and scaling-errors.tsv, and prints \setval lines.
+# Predict the speed-up by threads from the cost of pieces of the image, and compare it with the published and the
+# measured one (paper/scaling.awk): writes OUT/tables/scaling.tsv and scaling-errors.tsv, and prints \setval lines.
 #   paper/scaling.sh RESULTS OUT COST       after tables.sh; COST: a table of paper/cost.sh
 # Every folder of results/machines with a study threads is another machine; its rows need the program CUVETTE.
 export LC_ALL=C
@@ -15,10 +15,13 @@ work=$out/scaling
 rm -rf "$work"
 mkdir -p "$work"
 
-# The yield of a core with two busy units, in the throughput of one thread alone: lowest, assumed, highest. Never fitted to
-# the published curve. 0 to 35 % is what Intel's first Hyper-Threading gained (Lal Shimpi 2008); 15 % is the mean of three
-# ray tracers on it: 12 % (Shade, distributed ray tracing, 219 and 196 s), 14 % (LightWave 7.5) and 19 % (Shade, 144 and
-# 121 s). The other rates are 1 for the published machine: nothing is known of them.
+# The yield of a core with two busy units, in the throughput of one thread alone: lowest, assumed, highest. Never
+# fitted to the published curve. Intel's first Hyper-Threading gained 0 to 35 % (https://www.anandtech.com/show/2658),
+# and three ray tracers on it 15 % in the mean:
+#   12 %  Shade, 219 and 196 s      http://trueway.blue.coocan.jp/cgi/acc.cgi?page=special
+#   14 %  LightWave 7.5             http://www.tecchannel.de/server/prozessoren/402013
+#   19 %  Shade, 144 and 121 s      http://www.asahi-net.or.jp/~fb3y-nkmr/zakki/z_03_10.htm
+# Its engineers state 25 % (Koufaty and Marr 2003, doi:10.1109/MM.2003.1196115).
 yields='1.00	1.15	1.35'
 
 # The table of a study in a folder, of the environment with most rows.
@@ -36,8 +39,8 @@ fact() { # RESULTS NAME: a number from the list of runs of the study threads
     sed -n "s/^ *\"$2\": *\"\\{0,1\\}\\([0-9]*\\).*/\\1/p" "$1/threads/runs.json" 2>/dev/null | head -n 1
 }
 
-# What starting (pool off) or waking (on) a thread costs, from 64 and 1024 threads of the study pool; these counts are not
-# tested. A negative cost is noise. Prints the median and the ends.
+# What starting (pool off) or waking (on) a thread costs, from 64 and 1024 threads of the study pool; these counts are
+# not tested. A negative cost is noise. Prints the median and the ends.
 each_thread() { # POOL-TABLE on|off
     awk -f "$select" -v where="render.pool=$2" -v columns='render.threads wall_s_median wall_s_low wall_s_high' "$1" |
         awk '{ mid[$1] = $2; low[$1] = $3; high[$1] = $4 }
@@ -45,8 +48,8 @@ each_thread() { # POOL-TABLE on|off
             END { if (64 in mid && 1024 in mid)
                 print least(mid[1024] - mid[64]), least(low[1024] - high[64]), least(high[1024] - low[64]) }'
 }
-# CPU time of a frame alone (the best serial run) by that with 64 threads, both of the study threads, because machines that
-# are shared differ from study to study: the rate of a unit while all are busy.
+# CPU time of a frame alone (the best serial run) by that with 64 threads, both of the study threads, because machines
+# that are shared differ from study to study: the rate of a unit while all are busy.
 busy_rate() { # THREADS-TABLE
     alone=$(awk -f "$select" -v where=render.threads=1 -v columns=cpu_s_median "$1" | sort -g | head -n 1)
     awk -f "$select" -v where='render.schedule=dynamic render.threads=64' -v columns=cpu_s_median "$1" |
@@ -101,9 +104,8 @@ done
 table "$results" pool >"$work/pool"
 start=$(each_thread "$work/pool" off)
 printf 'published\t4\t8\t%s\t1\t%s\n' "${start%% *}" "$yields" >>"$work/machines"
-awk -v OFS='\t' '{ printf "\\setval{scaling/start}{\\ensuremath{%.0f}\\within{%.0f}{%.0f}}\n", 1e6 * $1, 1e6 * $2, 1e6 * $3 }' <<END
-$start
-END
+echo "$start" | awk '{ printf "\\setval{scaling/start}{\\ensuremath{%.0f}", 1e6 * $1
+    printf "\\within{%.0f}{%.0f}}\n", 1e6 * $2, 1e6 * $3 }'
 printf '%s\n' "$yields" | awk '{ printf "\\setval{scaling/yield/least}{%.2f}\n\\setval{scaling/yield}{%.2f}\n", $1, $2
     printf "\\setval{scaling/yield/largest}{%.2f}\n", $3 }'
 awk -f "$here/published.awk" "$here/../experiments/published/threads.csv" |
@@ -114,4 +116,10 @@ awk -f "$here/share.awk" -f "$here/law.awk" -f "$here/scaling.awk" "$3" "$work/m
     >"$out/tables/scaling.tsv"
 awk -f "$here/scaling_errors.awk" "$out/tables/scaling.tsv" >"$out/tables/scaling-errors.tsv"
 awk -f "$here/scaling_tex.awk" "$out/tables/scaling.tsv" "$out/tables/scaling-errors.tsv"
+
+# The picture that was published is not known: the ratio of predicted and published speed-up for other fields of view
+# (experiments/views.sh). nearest: the least error that a view has with 4, 8 and 16 threads, as a factor.
+if [ -r "$results/tables/maps-views.tsv" ]; then
+    awk -f "$here/share.awk" -f "$here/views.awk" -v "rates=$yields" "$work/measured" "$results/tables/maps-views.tsv"
+fi
 rm -r "$work"

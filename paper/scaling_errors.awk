@@ -2,7 +2,8 @@
 # counts, and the worst and the mean factor by which a model is off, less 1; the mean is geometric.
 BEGIN {
     FS = OFS = "\t"
-    models = split("model predicted busy busy even even amdahl amdahl gunther gunther gunther-units gunther_units", name, " ")
+    models = split("model predicted busy busy even even amdahl amdahl gunther gunther gunther-units gunther_units", \
+        name, " ")
     print "machine", "render.schedule", "model", "counts", "worst", "worst_threads", "mean"
 }
 NR == 1 {

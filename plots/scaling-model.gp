@@ -1,5 +1,5 @@
-# Speed-up over the best serial run: the published one, predicted from the cost of columns (paper/share.awk), and below it
-# those of our machines. Bars are 95 % intervals that combine the ends of both times.
+# Speed-up over the best serial run: the published one, predicted from the cost of columns (paper/share.awk), and below
+# it those of our machines. Bars are 95 % intervals that combine the ends of both times.
 # needs: tables/scaling.tsv
 width = 318; height = 420
 load "plots/style.gp"
@@ -7,9 +7,11 @@ file = table("scaling")
 own = system("cut -f 1 '".file."' | sort -u | grep -v -e machine -e published -e '-long$'")
 units_of(m) = first(file, "machine=".m." render.schedule=dynamic", "units")
 name_of(m) = sprintf("%s, %d units", m eq "here" ? "reference machine" : m, units_of(m))
-of(m, schedule, columns) = select(file, "machine=".m." render.schedule=".schedule, "render.threads ".columns)
+of(m, schedule, columns) = \
+    select(file, "machine=".m." render.schedule=".schedule, "render.threads ".columns)
 # A label beside the point of a curve at that number of threads.
-at(m, schedule, column, n) = first(file, sprintf("machine=%s render.schedule=%s render.threads=%d", m, schedule, n), column)
+at(m, schedule, column, n) = \
+    first(file, sprintf("machine=%s render.schedule=%s render.threads=%d", m, schedule, n), column)
 
 unset key
 set logscale x 2
@@ -53,7 +55,9 @@ do for [i=1:words(own)] {
     set ylabel (i == 1 ? "speed-up" : "")
     set label 1 "dynamic" at 60,1.22*at(m, "dynamic", "predicted", 32) center font ",7" textcolor rgb vermillion
     set label 2 "columns" at 11,0.78*at(m, "columns", "speedup_median", 8) left font ",7" textcolor rgb blue
-    if (i == words(own)) { set label 3 "dotted: units slower\nwhen all are busy" at 1300,1.38 right font ",6.5" textcolor rgb grey }
+    if (i == words(own)) {
+        set label 3 "dotted: units slower\nwhen all are busy" at 1300,1.38 right font ",6.5" textcolor rgb grey
+    }
     plot for [k=1:2] of(m, word("columns dynamic", k), "predicted") using 1:2 with lines lt k lw 1.4, \
          for [k=1:2] of(m, word("columns dynamic", k), "busy") using 1:2 with lines lt k lw 1.0 dt (2,2), \
          for [k=1:2] of(m, word("columns dynamic", k), "speedup_median speedup_low speedup_high") \

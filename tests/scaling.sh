@@ -17,7 +17,8 @@ share() { # CORES UNITS YIELD BUSY PROGRAM: what an awk program prints
 }
 # The time in which blocks of the given lengths end.
 ends() { # CORES UNITS YIELD LENGTHS
-    share "$1" "$2" "$3" 1 "n = split(\"$4\", a, \" \"); for (i = 1; i <= n; i++) a[i] += 0; printf \"%.9g\", finish(a, n)"
+    share "$1" "$2" "$3" 1 "n = split(\"$4\", a, \" \"); for (i = 1; i <= n; i++) a[i] += 0
+        printf \"%.9g\", finish(a, n)"
 }
 # The speed-up of N equal blocks.
 gain() { # CORES UNITS YIELD N
@@ -27,7 +28,8 @@ gain() { # CORES UNITS YIELD N
 # --- processor sharing
 for units in 1 2 7 16; do
     for n in 1 2 5 16 64; do
-        equal "$n equal blocks on $units units gain min(n, units)" "$(gain $units $units 1 $n)" $((n < units ? n : units))
+        equal "$n equal blocks on $units units gain min(n, units)" "$(gain $units $units 1 $n)" \
+            $((n < units ? n : units))
     done
 done
 equal "a block with all the work gains nothing" "$(ends 8 8 1 "12 0 0 0 0 0")" 12
@@ -52,7 +54,8 @@ equal "a busy unit's rate counts in full where all units are busy" \
     "$(share 4 4 1 0.5 'printf "%g %g", capacity(1), capacity(4)')" "1 2"
 # --- what threads get
 loads() { # CALL: the loads of pieces that cost 1 to 10
-    share 1 1 1 1 "for (i = 0; i < 10; i++) c[i] = i + 1; n = $1; for (i = 1; i <= n; i++) printf \"%g%s\", a[i], i < n ? \" \" : \"\""
+    share 1 1 1 1 "for (i = 0; i < 10; i++) c[i] = i + 1; n = $1
+        for (i = 1; i <= n; i++) printf \"%g%s\", a[i], i < n ? \" \" : \"\""
 }
 equal "blocks have ceil(10 / 4) pieces" "$(loads 'loads_of_blocks(c, 10, 4, a)')" "6 15 24 10"
 equal "and may leave threads without any" "$(loads 'loads_of_blocks(c, 10, 6, a)')" "3 7 11 15 19"
@@ -95,7 +98,8 @@ equal "squares of 8 by 8, cut off at the edges" "$(of square)" "64 16 10 2 "
 # --- the tables: a machine of two units whose times are those of the model must have no error
 mkdir -p "$work/out/tables" "$work/rows/threads"
 printf '  "cores": 2,\n  "processing_units": 2,\n' >"$work/rows/threads/runs.json"
-printf 'render.pool\trender.threads\twall_s_median\twall_s_low\twall_s_high\tcpu_s_median\n' >"$work/out/tables/pool.tsv"
+printf 'render.pool\trender.threads\twall_s_median\twall_s_low\twall_s_high\tcpu_s_median\n' \
+    >"$work/out/tables/pool.tsv"
 printf '%s\n' 'on 64 0.06 0.06 0.06 0.1' 'on 1024 0.156 0.156 0.156 0.1' 'off 64 0.06 0.05 0.07 0.1' \
     'off 1024 0.54 0.53 0.55 0.1' | tr ' ' '\t' >>"$work/out/tables/pool.tsv"
 # Waking costs 0.1 ms a thread; columns of 11 and 9 * 9 in all 92 rays, so blocks of 47 and 45.
@@ -109,9 +113,11 @@ verdict $? "tables of other rows" "$(<"$work/said")"
 cell() { # TABLE CONDITIONS COLUMNS
     awk -f plots/select.awk -v where="$2" -v columns="$3" "$work/out/tables/$1.tsv" | tr '\t' ' '
 }
-equal "times of the model have the ratio 1" "$(cell scaling machine=here 'render.threads ratio_median miss_low')" "2 1 0"
+equal "times of the model have the ratio 1" \
+    "$(cell scaling machine=here 'render.threads ratio_median miss_low')" "2 1 0"
 equal "the ends of a ratio combine those of both times" \
-    "$(cell scaling machine=here 'ratio_low ratio_high' | awk '{ printf "%.3f %.3f", $1 * 1.1 / 0.9, $2 * 0.9 / 1.1 }')" \
+    "$(cell scaling machine=here 'ratio_low ratio_high' |
+        awk '{ printf "%.3f %.3f", $1 * 1.1 / 0.9, $2 * 0.9 / 1.1 }')" \
     "1.000 1.000"
 grep -qxF '\setval{scaling/here/wake}{100.0}' "$work/numbers"
 verdict $? "the cost of waking a thread is the slope of the pool's times" "$(grep wake "$work/numbers")"
@@ -130,6 +136,14 @@ sed -i 's/^64,1.08422/64,2.16844/' "$work/experiments/published/threads.csv"
 equal "other published times change the measured speed-up" \
     "$(cell scaling 'machine=published render.threads=64' speedup_median | cut -c1-4)" 2.35
 equal "and no prediction" "$(predicted)" "$before"
+reference=results/reference/tables
+view=$(awk -f paper/share.awk -f paper/views.awk -v "rates=1	1.15	1.35" \
+    <(printf 'published\tcolumns\t%s\t10\t1\t1\n' 4 8 16) "$reference/maps-views.tsv" |
+    sed -n 's/.*view\/45\/.*{\(.*\)}$/\1/p' | tr '\n' ' ')
+CUVETTE=/nowhere paper/scaling.sh "$work/rows" "$work/out" "$reference/maps-cost.tsv" >/dev/null 2>&1
+# Without the cost of threads, which is 0.5 ms each of a frame of 5.1 s here.
+equal "the view of the scene itself is the scene" "$(cell scaling machine=published 'render.threads predicted' |
+    awk '$1 <= 16 { printf "%.2f ", 1 / (1 / $2 - 5e-4 * $1 / 5.10565) }')" "$view"
 [[ -n $before ]]
 verdict $? "of which there are some" "$before"
 conclude
