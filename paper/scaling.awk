@@ -105,8 +105,8 @@ $1 in cores_of {
 END {
     for (group in tested) fit_halves(group)
     print "machine", "units", "render.schedule", "render.threads", "n", "speedup_median", "speedup_low", \
-        "speedup_high", "predicted", "least", "largest", "even", "busy", "ratio_median", "ratio_low", "ratio_high", "miss_median", \
-        "miss_low", "miss_high", "busy_ratio", "amdahl", "gunther", "gunther_units"
+        "speedup_high", "predicted", "least", "largest", "even", "busy", "ratio_median", "ratio_low", "ratio_high", \
+        "miss_median", "miss_low", "miss_high", "busy_ratio", "amdahl", "gunther", "gunther_units"
     for (k = 1; k <= lines; k++) {
         m = machine[k]
         p = predict(m, schedule[k], threads[k], serial[k], yield_mid[m], 1, 0)

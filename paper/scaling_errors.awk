@@ -1,9 +1,10 @@
 # Errors of predicted speed-ups for each machine and schedule, and for all schedules of a machine, from scaling.tsv: the
-# counts, and the worst and the mean factor by which a model is off, less 1; the mean is geometric.
+# counts, and the worst and the mean factor by which a model is off, less 1; the mean is geometric. least, largest: the
+# model with the lowest and the highest yield.
 BEGIN {
     FS = OFS = "\t"
-    models = split("model predicted busy busy even even amdahl amdahl gunther gunther gunther-units gunther_units", \
-        name, " ")
+    models = split("model predicted least least largest largest busy busy even even amdahl amdahl gunther gunther " \
+        "gunther-units gunther_units", name, " ")
     print "machine", "render.schedule", "model", "counts", "worst", "worst_threads", "mean"
 }
 NR == 1 {
