@@ -1,7 +1,7 @@
 # The numbers of the model of speed-ups as \setval lines, from scaling.tsv and scaling-errors.tsv.
 #   scaling/MACHINE/SCHEDULE/THREADS/{measured,predicted,ratio,...}    scaling/MACHINE/SCHEDULE/MODEL/{worst,mean,...}
 function value(key, text) { printf "\\setval{scaling/%s}{%s}\n", key, text }
-function percent(v) { return sprintf(v < 0.0995 ? "%.1f" : "%.0f", 100 * v) }
+function percent(v) { return sprintf(v < 0.2 ? "%.1f" : "%.0f", 100 * v) }
 function ends(name) {
     return $at[name "_low"] == "NA" ? "" : sprintf("\\within{%.2f}{%.2f}", $at[name "_low"], $at[name "_high"])
 }

@@ -9,7 +9,7 @@ units_of(m) = first(file, "machine=".m." render.schedule=dynamic", "units")
 name_of(m) = sprintf("%s, %d units", m eq "here" ? "reference machine" : m, units_of(m))
 of(m, schedule, columns) = \
     select(file, "machine=".m." render.schedule=".schedule, "render.threads ".columns)
-# A label beside the point of a curve at that number of threads.
+# The value of a curve at that number of threads.
 at(m, schedule, column, n) = \
     first(file, sprintf("machine=%s render.schedule=%s render.threads=%d", m, schedule, n), column)
 
