@@ -6,7 +6,7 @@ load "plots/style.gp"
 file = table("scaling")
 own = system("cut -f 1 '".file."' | sort -u | grep -v -e machine -e published -e '-long$'")
 units_of(m) = first(file, "machine=".m." render.schedule=dynamic", "units")
-name_of(m) = sprintf("%s, %d units", m eq "here" ? "reference machine" : m, units_of(m))
+name_of(m) = sprintf("%s, %d units", m eq "here" ? "reference" : m, units_of(m))
 of(m, schedule, columns) = \
     select(file, "machine=".m." render.schedule=".schedule, "render.threads ".columns)
 # The value of a curve at that number of threads.
@@ -47,7 +47,7 @@ do for [i=1:words(own)] {
     set lmargin at screen 0.1 + wide*(i - 1)
     set rmargin at screen 0.1 + wide*i - (i < words(own) ? 0.075 : 0)
     set tmargin at screen 0.425; set bmargin at screen 0.115
-    set title name_of(m) font ",7.5" offset 0,-0.7
+    set title name_of(m) font ",7" offset 0,-0.7
     if (units_of(m) < 4) { unset logscale y; set yrange [0:2.6]; set ytics 0.5 }
     else { set logscale y 2; set yrange [0.8:1.6*units_of(m)]; set ytics 2 }
     set xtics 8
