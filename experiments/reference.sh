@@ -27,12 +27,13 @@ done
 for table in "$from"/tables/*-{metrics,curves,motion}.tsv; do
     [[ ! -e $table ]] || cp "$table" "$to/tables/"
 done
-# Small float images that numbers of the paper are read from; of a large one, what the paper says about it.
+# Small float images that numbers of the paper are read from; of a large one, its sums.
 for name in absorber slime-light; do
     mkdir -p "$to/$name/images"
     cp "$from/$name"/images/*.pfm "$to/$name/images/"
 done
-paper/blocks.sh "$from/maps/images/0000-rays.pfm" >"$to/tables/maps-blocks.tex"
+paper/cost.sh "$from/maps/images/0000-rays.pfm" >"$to/tables/maps-cost.tsv"
+experiments/views.sh >"$to/tables/maps-views.tsv"
 # Figures that need images; the others are drawn from the rows. And those of the README.
 for script in plots/*.gp; do
     name=$(basename "$script" .gp)

@@ -151,13 +151,12 @@ designs() {
     machine
     laws
     polygons
-    # Rays by pixel are the same for every schedule.
-    for map in "$results"/maps/images/*-rays.pfm; do
-        if [ -r "$map" ]; then
-            "$here/blocks.sh" "$map"
-        elif [ -r "$results/tables/maps-blocks.tex" ]; then # the committed run has no large images
-            cat "$results/tables/maps-blocks.tex"
-        fi
-        break
-    done
+    # Rays by pixel are the same for every schedule and machine; the committed run has no large images, but their sums.
+    cost=$results/tables/maps-cost.tsv
+    map=$results/maps/images/0000-rays.pfm
+    [ ! -r "$map" ] || { cost=$out/cost && "$here/cost.sh" "$map" >"$cost"; }
+    if [ -r "$cost" ]; then
+        awk -f "$here/share.awk" -f "$here/blocks.awk" "$cost"
+        "$here/scaling.sh" "$results" "$out" "$cost"
+    fi
 } >"$out/numbers.tex"
