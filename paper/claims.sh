@@ -24,7 +24,7 @@ out=$(cd "$2" && pwd)
 awk -v tables="$out/tables" -v numbers="$out/numbers.tex" -f "$here/interval.awk" -f "$here/claims.awk" \
     "$here/claims.tsv" >"$out/claims.tsv" || exit 2
 awk -v environments="$(cut -f 2 "$out/environments" | sort -u | tr '\n' ' ')" -f "$here/claims_tex.awk" \
-    "$out/numbers.tex" "$here/paper.tex" "$out/claims.tsv" >"$out/claims.tex"
+    "$out/numbers.tex" "$out/claims.tsv" "$here/paper.tex" "$here/supplement.tex" >"$out/claims.tex"
 
 echo "claims on the rows of $1"
 cut -f 2 "$out/environments" | sort | uniq -c | while read -r count environment; do

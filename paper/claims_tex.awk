@@ -1,7 +1,7 @@
 # The verdicts (claims.awk) for TeX: \setclaim{id}{sentence} for each claim that is not reproduced, or whose sentence in the
 # paper has a number that the rows do not give, with the sentence that the paper prints instead; the numbers of claims; and
 # \claimtable, the lines of the table of claims.
-#   awk -v environments='HEX ...' -f claims_tex.awk numbers.tex paper.tex VERDICTS.tsv
+#   awk -v environments='HEX ...' -f claims_tex.awk numbers.tex VERDICTS.tsv paper.tex supplement.tex
 function plain(text) {
     gsub(/[\\{}~^]/, " ", text)
     gsub(/[_%$#&]/, "\\\\&", text)
@@ -40,34 +40,35 @@ function measured(   text) {
     if ($4 != "-") text = text (text == "" ? "" : "; ") $4
     return plain(text)
 }
+function judge(line,   id, verdict) {
+    $0 = line
+    id = $1
+    verdict = $2
+    number[verdict]++
+    if (verdict == "reproduced" && (id in lacking))
+        printf "\\setclaim{%s}{\\emph{Reproduced, but without all numbers of this sentence:} %s (%s).}\n", id, plain($5), measured()
+    if (verdict == "not reproduced")
+        printf "\\setclaim{%s}{\\emph{Not reproduced on these rows:} %s (%s).}\n", id, plain($5), measured()
+    if (verdict == "underpowered")
+        printf "\\setclaim{%s}{\\emph{These rows cannot establish whether} %s (%s).}\n", id, plain($5), measured()
+    return sprintf("%s & %s & %s \\\\", plain(capital($5)), verdict, plain($3 == "-" ? "" : $3))
+}
 BEGIN { FS = "\t" }
 FILENAME == ARGV[1] {
     if (match($0, /^\\setval[{][^}]*[}]/)) known[substr($0, 9, RLENGTH - 9)] = 1
     next
 }
-FILENAME == ARGV[2] {
-    if ($0 !~ /^\\newcommand|^%/) paper = paper $0 "\n"
-    next
-}
-FNR == 1 { look_for_numbers() }
-{
-    claims++
-    number[$2]++
-    if ($2 == "reproduced" && ($1 in lacking))
-        printf "\\setclaim{%s}{\\emph{Reproduced, but without all numbers of this sentence:} %s (%s).}\n", $1, plain($5), measured()
-    if ($2 == "not reproduced")
-        printf "\\setclaim{%s}{\\emph{Not reproduced on these rows:} %s (%s).}\n", $1, plain($5), measured()
-    if ($2 == "underpowered")
-        printf "\\setclaim{%s}{\\emph{These rows cannot establish whether} %s (%s).}\n", $1, plain($5), measured()
-    line[claims] = sprintf("%s & %s & %s \\\\", plain(capital($5)), $2, plain($3 == "-" ? "" : $3))
-}
+FILENAME == ARGV[2] { verdict_of[++claims] = $0; next }
+!/^\\newcommand|^%/ { paper = paper $0 "\n" }
 END {
+    look_for_numbers()
+    for (i = 1; i <= claims; i++) line_of[i] = judge(verdict_of[i])
     printf "\\setval{claims/all}{%d}\n\\setval{claims/reproduced}{%d}\n", claims, number["reproduced"]
     printf "\\setval{claims/not-reproduced}{%d}\n\\setval{claims/underpowered}{%d}\n", number["not reproduced"], number["underpowered"]
     sub(/ +$/, "", environments)
     gsub(/ /, ", ", environments)
     printf "\\setval{claims/environments}{%s}\n", environments
     print "\\newcommand{\\claimtable}{%"
-    for (i = 1; i <= claims; i++) print line[i]
+    for (i = 1; i <= claims; i++) print line_of[i]
     print "}"
 }

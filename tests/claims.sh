@@ -76,8 +76,8 @@ needs=$(claims | while IFS=$'\t' read -r id _ _ needs _ _ _ _ predicate; do
     done
 done)
 empty "every claim needs studies or a command that exist" "$needs"
-in_paper() { grep -v '^%' paper/paper.tex | grep -o '\\claim{[a-z-]*}' | sed 's/.*{//; s/}//' | sort -u; }
-empty "the paper states every claim that rows decide, and no other" \
+in_paper() { grep -hv '^%' paper/{paper,supplement}.tex | grep -o '\\claim{[a-z-]*}' | sed 's/.*{//; s/}//' | sort -u; }
+empty "paper and supplement state every claim that rows decide, and no other" \
     "$(diff <(claims | awk -F'\t' '$9 != "-" { print $1 }' | sort) <(in_paper))"
 
 # --- the committed rows
@@ -122,7 +122,7 @@ empty "every \\begin of the paper has its \\end, and braces are balanced" "$(awk
           if (kind > 0) stack[++top] = name
           else if (stack[top--] != name) print FNR ": \\end{" name "}"
       } }
-    END { if (depth) print "braces: " depth; if (top) print "open: " stack[top] }' paper/paper.tex)"
+    END { if (depth) print "braces: " depth; if (top) print "open: " stack[top] }' paper/{paper,supplement}.tex)"
 
 # --- wrong rows: exactly one claim turns
 copy film profile
@@ -189,7 +189,7 @@ verdict $? "with a remedy" "$(<"$work/said")"
 
 # --- the paper: its text with the sentences that it chooses, the numbers filled in
 text() { # OUT
-    awk -f tests/paper_text.awk "$1/numbers.tex" "$1/claims.tex" paper/paper.tex
+    awk -f tests/paper_text.awk "$1/numbers.tex" "$1/claims.tex" paper/paper.tex paper/supplement.tex
 }
 # Numbers that say nothing: costs that are negative, and none at all. Tables may have n/a.
 nonsense() { # OUT

@@ -1,6 +1,6 @@
 # The text of the paper as TeX would read it after \val and \claim: numbers filled in, and for each claim the sentence
 # that its verdict chooses. n/a for a missing number; nothing for a parameter of a macro.
-#   awk -f paper_text.awk numbers.tex claims.tex paper.tex
+#   awk -f paper_text.awk numbers.tex claims.tex paper.tex supplement.tex
 # The text within the braces that start at rest; what follows stays in rest.
 function braces(   depth, i, c) {
     for (i = 1; i <= length(rest); i++) {
@@ -27,9 +27,9 @@ function expand(text,   out, key, keep, inner) {
     }
     return out text
 }
-FILENAME != ARGV[3] && /^\\setval[{]/ { rest = substr($0, 8); key = braces(); value[key] = braces(); next }
-FILENAME != ARGV[3] && /^\\setclaim[{]/ { rest = substr($0, 10); key = braces(); instead[key] = braces(); next }
-FILENAME != ARGV[3] { next }
+FILENAME ~ /(numbers|claims)[.]tex$/ && /^\\setval[{]/ { rest = substr($0, 8); key = braces(); value[key] = braces(); next }
+FILENAME ~ /(numbers|claims)[.]tex$/ && /^\\setclaim[{]/ { rest = substr($0, 10); key = braces(); instead[key] = braces(); next }
+FILENAME ~ /(numbers|claims)[.]tex$/ { next }
 /^\\newcommand|^%/ { next }
 { all = all $0 "\n" }
 END { printf "%s", expand(all) }

@@ -62,7 +62,7 @@ empty "README.md describes every column" \
 # shellcheck disable=SC2016
 keys=$(sed -n 's/^| `\([a-z0-9]*\)` |.*\.txt` |$/\1/p' "$folder/README.md")
 empty "the paper cites every report" "$(for key in ${keys:-none}; do
-    grep -qF "\\bibitem{$key}" "$root/paper/paper.tex" || echo "$key is not in the bibliography"
+    grep -q "^@[a-z]*{$key," "$root/paper/references.bib" || echo "$key is not in the bibliography"
     grep -qE "\\\\cite\{([a-z0-9]*,)*${key}[,}]" "$root/paper/paper.tex" || echo "$key is not cited"
 done)"
 

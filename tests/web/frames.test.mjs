@@ -129,6 +129,34 @@ export const cases = {
     t.check(true, 'nine tabs follow after the first was closed');
   },
 
+  'a state that comes after later events': async (t) => {
+    const lab = await t.lab('scenes/rod.yaml');
+    const screen = await t.open(lab);
+    const page = await screen.context.newPage();
+    let answered, release;
+    const asked = new Promise((resolve) => (answered = resolve));
+    const released = new Promise((resolve) => (release = resolve));
+    await page.route('**/api/state', async (route) => {
+      const response = await route.fetch();
+      answered();
+      await released;
+      await route.fulfill({ response });
+    });
+    await page.goto(lab.address);
+    await asked;
+    const { generation } = await lab.post('/api/set', { set: { 'liquid.ior': 1.45 } });
+    await screen.settled(generation);
+    release();
+    await page.waitForFunction((g) => window.lab.picture?.final && window.lab.picture.generation >= g, generation, {
+      polling: 100,
+    });
+    t.equal(
+      await page.evaluate(() => window.lab.state.generation),
+      generation,
+      'late state: the generation of the page',
+    );
+  },
+
   'the server stops and restarts': async (t) => {
     const lab = await t.lab('scenes/rod.yaml');
     const screen = await t.open(lab);

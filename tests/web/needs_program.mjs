@@ -23,6 +23,7 @@ const TABLE = {
   endurance: REASONS.server,
   frames: {
     'ten tabs share one stream': REASONS.server,
+    'a state that comes after later events': REASONS.server,
     'the server stops and restarts': REASONS.server,
   },
   html_file: REASONS.file,

@@ -142,10 +142,11 @@ export function createLab() {
     if (engine.reconnects) retry = setTimeout(connect, how === 'refused' ? STRANGER_RETRY_MS : RETRY_MS);
   }
 
+  /* Events that come while recover waits for the state are held back: they may be newer than it. */
   function connect() {
     clearTimeout(retry);
     stream?.close();
-    const mine = {};
+    const mine = { held: null };
     stream = mine;
     mine.close = engine.events(EVENTS, {
       open: () => recover(mine),
@@ -155,7 +156,9 @@ export function createLab() {
         else ask();
       },
       event(name, value) {
-        if (stream === mine) receive(name, value);
+        if (stream !== mine) return;
+        if (mine.held) mine.held.push([name, value]);
+        else receive(name, value);
       },
     });
   }
@@ -176,6 +179,8 @@ export function createLab() {
 
   /* A restarted server counts its generations from the beginning. */
   async function recover(mine) {
+    if (stream !== mine) return;
+    mine.held ??= [];
     try {
       const state = await api.get('/api/state');
       if (stream !== mine) return;
@@ -189,6 +194,9 @@ export function createLab() {
     } catch (error) {
       if (stream === mine && error.status !== 401 && error.status !== 0) lab.fail(error);
     }
+    const held = mine.held ?? [];
+    mine.held = null;
+    if (stream === mine) for (const [name, value] of held) receive(name, value);
   }
 
   function receive(name, value) {

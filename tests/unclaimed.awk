@@ -1,0 +1,38 @@
+# The sentences of a paper that have a measured number (\val) outside of every \claim, one line each: number of the line,
+# key.
+#   awk -f tests/unclaimed.awk paper.tex
+# Not measured here, and so allowed: published numbers, which tests/published.sh checks, facts of the machine, and the
+# numbers of claims themselves. Tables, captions and macros are no sentences.
+# Skips a group in braces that starts at position at; returns the position after it.
+function after_group(at,   depth, c) {
+    for (; at <= length(text); at++) {
+        c = substr(text, at, 1)
+        if (c == "\\") { at++; continue }
+        if (c == "\n") line++
+        depth += (c == "{") - (c == "}")
+        if (depth == 0) return at + 1
+    }
+    return at
+}
+function starts(at, what) { return substr(text, at, length(what)) == what }
+function key_at(at,   rest) {
+    rest = substr(text, at, 120)
+    if (!match(rest, /^\\(val|valor|interval)[{][^}]*[}]/)) return ""
+    sub(/^[^{]*[{]/, "", rest)
+    sub(/[}].*/, "", rest)
+    return rest
+}
+{ text = text ($0 ~ /^[ \t]*%|^\\(re)?newcommand/ ? "" : $0) "\n" }
+END {
+    line = 1
+    for (at = 1; at <= length(text); at++) {
+        if (starts(at, "\n")) line++
+        if (starts(at, "\\claim{")) { at = after_group(after_group(at + 6)) - 1; continue }
+        if (starts(at, "\\caption{")) { at = after_group(at + 8) - 1; continue }
+        if (starts(at, "\\begin{tabular}") || starts(at, "\\begin{longtable}")) table = 1
+        if (starts(at, "\\end{tabular}") || starts(at, "\\end{longtable}")) table = 0
+        if (table || substr(text, at, 1) != "\\") continue
+        key = key_at(at)
+        if (key != "" && key !~ /^(published|claims|machine)\//) printf "%d: %s\n", line, key
+    }
+}
