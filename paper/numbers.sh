@@ -127,7 +127,7 @@ ball() {
         [ -r "$table" ] || continue
         study=$(basename "$table" .tsv)
         case $study in
-        published-*) ;;
+        published-* | flips) ;;
         *-metrics) awk -v study="${study%-metrics}" -f "$here/scientific.awk" -f "$here/metrics.awk" "$table" ;;
         *-curves) awk -v study="${study%-curves}" -f "$here/scientific.awk" -f "$here/curves.awk" "$table" ;;
         *-motion) awk -v study="${study%-motion}" -f "$here/scientific.awk" -f "$here/motion.awk" "$table" ;;
@@ -137,6 +137,7 @@ ball() {
     slab
     ball
     machine
+    "$here/flips.sh" "$results" "$out"
     laws
     polygons
     # Rays by pixel are the same for every schedule.
