@@ -138,7 +138,7 @@ designs() {
         [ -r "$table" ] || continue
         study=$(basename "$table" .tsv)
         case $study in
-        published-*) ;;
+        published-* | flips) ;;
         *-metrics) awk -v study="${study%-metrics}" -f "$here/scientific.awk" -f "$here/metrics.awk" "$table" ;;
         *-curves) awk -v study="${study%-curves}" -f "$here/scientific.awk" -f "$here/curves.awk" "$table" ;;
         *-motion) awk -v study="${study%-motion}" -f "$here/scientific.awk" -f "$here/motion.awk" "$table" ;;
@@ -149,6 +149,7 @@ designs() {
     slab
     ball
     machine
+    "$here/flips.sh" "$results" "$out"
     laws
     polygons
     # Rays by pixel are the same for every schedule and machine; the committed run has no large images, but their sums.
