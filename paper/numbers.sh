@@ -130,6 +130,17 @@ designs() {
     done
 }
 
+# What can be seen of an error of an index, and how much of the magnification is the vessel's.
+visible() {
+    [ -r "$out/tables/visible-index-metrics.tsv" ] || return 0
+    for which in liquid vessel; do
+        awk -v which=$which -f "$here/../plots/visible.awk" "$out/tables/visible-index-metrics.tsv" |
+            awk -v which=$which -f "$here/visible.awk"
+    done
+    [ ! -r "$out/tables/visible-grid-metrics.tsv" ] ||
+        awk -v grid=1 -f "$here/visible.awk" "$out/tables/visible-grid-metrics.tsv" | sort
+}
+
 "$here/tables.sh" "$results" "$out"
 {
     echo "% made by paper/numbers.sh; change rows or scripts, not this"
@@ -138,7 +149,7 @@ designs() {
         [ -r "$table" ] || continue
         study=$(basename "$table" .tsv)
         case $study in
-        published-* | flips) ;;
+        published-* | flips | visible-grid*) ;; # the grid is too large for numbers of each cell
         *-metrics) awk -v study="${study%-metrics}" -f "$here/scientific.awk" -f "$here/metrics.awk" "$table" ;;
         *-curves) awk -v study="${study%-curves}" -f "$here/scientific.awk" -f "$here/curves.awk" "$table" ;;
         *-motion) awk -v study="${study%-motion}" -f "$here/scientific.awk" -f "$here/motion.awk" "$table" ;;
@@ -148,6 +159,7 @@ designs() {
     designs
     slab
     ball
+    visible
     machine
     "$here/flips.sh" "$results" "$out"
     laws
