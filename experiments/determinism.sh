@@ -116,7 +116,9 @@ measure)
     for isa in ${ISAS:-sse2 avx2 avx512}; do
         if CUVETTE_ISA=$isa "$folder/fixed-off-${compilers[0]}" machine --json >/dev/null 2>&1; then isas+=("$isa"); fi
     done
-    times "${ROUNDS:-$((${QUICK:-0} ? 6 : 15))}" "${FRAMES:-$((${QUICK:-0} ? 3 : 5))}" "${SIZE:-240x180}" >"$results/rows.csv"
+    rounds=15 frames=5
+    if ((${QUICK:-0})); then rounds=6 frames=3; fi
+    times "${ROUNDS:-$rounds}" "${FRAMES:-$frames}" "${SIZE:-240x180}" >"$results/rows.csv"
     bits 64x48 >"$results/bits.csv"
     images >"$results/images.csv"
     ;;

@@ -1,6 +1,6 @@
 #!/bin/bash
-# films.sh - the film hash and ray counts of every shipped scene, small, on one machine: one row a scene. The rows of all
-# machines must agree (tests/machines.sh).
+# films.sh - the film hash and ray counts of every shipped scene, small, on one machine: one row a scene. The rows of
+# all machines must agree (tests/machines.sh).
 #   experiments/films.sh --cuvette PROGRAM --name NAME --out FILE [--isas "sse2 avx2"] [--compiler NAME]
 #                        [--processor NAME] [--emulated qemu] [--run "qemu-s390x -L SYSTEM"]
 #   experiments/films.sh --wasm MODULES --name NAME --out FILE     the modules of make wasm, in node
@@ -48,14 +48,16 @@ number() { sed -n "s/^ *\"$1\": *\"\\{0,1\\}\\([^\",]*\\)\"\\{0,1\\},\\{0,1\\}\$
 
 # Every scene by one instruction set: the fields of a row after `scene`.
 native() { # ISA FACTS
-    local file scene json sets
+    local file scene json sets kind
     for file in "$here"/scenes/*.yaml; do
         scene=$(basename "$file" .yaml)
         mapfile -t sets < <(shorter "$scene")
         json=$(CUVETTE_ISA=$1 "${run[@]}" "$cuvette" render "$file" --json "${sets[@]/#/--set=}")
-        echo "$scene,$(number film_hash <<<"$json"),$(for kind in camera reflect refract shadow photon total_internal; do
+        printf '%s,%s,' "$scene" "$(number film_hash <<<"$json")"
+        for kind in camera reflect refract shadow photon total_internal; do
             printf '%s,' "$(number "$kind" <<<"$json")"
-        done)80x60,$2"
+        done
+        echo "80x60,$2"
     done
 }
 

@@ -29,11 +29,11 @@ function count(build, scene, key, rays,   off) {
     if (share[key] > widest[build] + 0) widest[build] = share[key]
 }
 END {
-    print "machine", "film", "contract", "scenes", "frames", "n", "films", "most_films", "counts", "max_difference",
-        "differing_share", "ray_difference", "ray_error"
+    print "machine", "film", "contract", "scenes", "frames", "n", "films", "most_films", "counts",
+        "max_difference", "differing_share", "ray_difference", "ray_error"
     for (b = 1; b <= build_count; b++) {
         build = builds[b]
-        print machine, build, scene_count[build], frames[build], frames[build], total[build], most[build], counts[build],
-            largest[build] + 0, widest[build] + 0, ray_difference[build] + 0, ray_error[build] + 0
+        print machine, build, scene_count[build], frames[build], frames[build], total[build], most[build],
+            counts[build], largest[build] + 0, widest[build] + 0, ray_difference[build] + 0, ray_error[build] + 0
     }
 }

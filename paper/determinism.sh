@@ -1,6 +1,6 @@
 #!/bin/sh
-# Write the tables about the same bits everywhere and their price: determinism.tsv and determinism-bits.tsv, from the rows
-# of experiments/determinism.sh of this run ("this") and of other machines; films.tsv, of experiments/films.sh; and
+# Write the tables about the same bits everywhere and their price: determinism.tsv and determinism-bits.tsv, from the
+# rows of experiments/determinism.sh of this run ("this") and of other machines; films.tsv, of experiments/films.sh; and
 # machines.tsv, of the studies of other machines. A table without rows is not written.
 #   paper/determinism.sh RESULTS TABLES
 export LC_ALL=C

@@ -38,7 +38,8 @@ FNR == 1 { n = fields_of($0, head); for (i = 1; i <= n; i++) at[head[i]] = i; ne
     note("names", scene, f[at["name"]])
 }
 END {
-    print "scene", "n", "emulated", "names", "processors", "architectures", "compilers", "isas", "films", "values", "different"
+    print "scene", "n", "emulated", "names", "processors", "architectures", "compilers", "isas", "films", "values",
+        "different"
     for (s = 1; s <= scene_count; s++) {
         scene = scenes[s]
         print scene, rows[scene], emulated[scene] + 0, number["names", scene], number["processors", scene] + 0,

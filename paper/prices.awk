@@ -1,8 +1,9 @@
-# Prices of determinism: the ratio of the CPU time of the program as it is to that of a build without a part of what makes
-# the same bits everywhere, in the same round of experiments/determinism.sh. Reads its rows.csv, writes a table.
+# Prices of determinism: the ratio of the CPU time of the program as it is to that of a build without a part of what
+# makes the same bits everywhere, in the same round of experiments/determinism.sh. Reads its rows.csv, writes a table.
 #   awk -v machine=NAME -f experiments/order.awk -f paper/prices.awk rows.csv
-# The interval of a median of n ratios is that of its order statistics: from the k-th to the (n+1-k)-th, with the largest k
-# for which a binomial (n, 1/2) is below k with a probability of at most 0.025 (Hahn and Meeker, Statistical Intervals).
+# The interval of a median of n ratios is that of its order statistics: from the k-th to the (n+1-k)-th, with the
+# largest k for which a binomial (n, 1/2) is below k with a probability of at most 0.025 (Hahn and Meeker, Statistical
+# Intervals).
 # scene "all": in each round the geometric mean over the scenes.
 BEGIN {
     FS = ","; OFS = "\t"
@@ -30,8 +31,8 @@ function line(part, group, scene, list, ours, theirs,   n, v, k) {
     n = sorted(list, v)
     if (!n) return
     k = rank_of(n)
-    print machine, part, group, scene, n, median(list), k ? v[k] : "NA", k ? v[n + 1 - k] : "NA", v[1], v[n], ours == "NA" ? ours : median(ours),
-        theirs == "NA" ? theirs : median(theirs)
+    print machine, part, group, scene, n, median(list), k ? v[k] : "NA", k ? v[n + 1 - k] : "NA", v[1], v[n],
+        ours == "NA" ? ours : median(ours), theirs == "NA" ? theirs : median(theirs)
 }
 END {
     print "machine", "part", "compiler", "isa", "scene", "n", "price_median", "price_low", "price_high", "price_min",
