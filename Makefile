@@ -300,7 +300,7 @@ test-simgrid: simulated | $(filter test experiments bench,$(MAKECMDGOALS)) ## te
 
 # What the same bits everywhere cost (experiments/determinism.sh): the program without parts of that, FILM-CONTRACT-COMPILER. Sums of
 # the film fixed or float (render/core/film.h); products and sums of the kernels contracted (fast) to FMA, which SSE2 does not have,
-# or not (off). gcc or clang compiles the tracer; all else, and with the same compiler what does not change, is that of $(build).
+# or not (off). gcc or clang compiles the kernels and what writes the film; all else is that of $(build).
 .PHONY: variants
 VARIANTS ?= $(foreach compiler,gcc clang,$(addsuffix -$(compiler),fixed-off fixed-fast float-off float-fast))
 in_tracer := src/optics/% src/geometry/% src/render/%
@@ -308,18 +308,18 @@ tracer := $(filter $(in_tracer),$(library))
 tracer_kernels := $(filter $(in_tracer),$(kernels))
 film_users = $(eval film_users := $$(shell grep -lE 'film_(sum|units|add|radiance)' $$(tracer) $$(tracer_kernels)))$(film_users)
 variants: $(VARIANTS:%=$(build)/variants/%/cuvette) $(build)/cuvette-import ## build the program without what makes the same bits everywhere: build/variants
-variant_cflags = $(patsubst -ffp-contract=%,-ffp-contract=$(1),$(code_flags)) -w -MMD -MP
-variant_is_ours = $(filter $(1),$(notdir $(CC)))
-# $(1): its name; $(2): compiler; $(3): contract; $(4): flags of the film. Objects replace those of libraries after them.
+variant_cflags = $(patsubst -ffp-contract=%,-ffp-contract=$(1),$(code_flags)) -g0 -w -MMD -MP
+# $(1): its name; $(2): compiler; $(3): contract; $(4): flags of the film. Objects replace those of the library after them.
 define variant_rules
-variant_sources_$(1) := src/base/build_id.c $$(film_users) $(if $(filter off-$(notdir $(CC)),$(3)-$(2)),,$$(tracer_kernels))
-variant_objects_$(1) := $$(patsubst src/%.c,$$(build)/variants/$(1)/%.o,$$(filter-out %_kernel.c,$$(variant_sources_$(1)))) \
-  $$(foreach i,$$(isas),$$(patsubst src/%.c,$$(build)/variants/$(1)/%.$$(i).o,$$(sort $$(filter %_kernel.c,$$(variant_sources_$(1))))))
+variant_objects_$(1) := $$(patsubst src/%.c,$$(build)/variants/$(1)/%.o,src/base/build_id.c $$(filter-out %_kernel.c,$$(film_users))) \
+  $$(foreach i,$$(isas),$$(patsubst src/%.c,$$(build)/variants/$(1)/%.$$(i).o,$$(filter %_kernel.c,$$(film_users)))) \
+  $(if $(filter off-$(notdir $(CC)),$(3)-$(2)),,$$(foreach i,$$(isas),$$(patsubst \
+  src/%.c,$$(build)/variants/fixed-$(3)-$(2)/%.$$(i).o,$$(filter-out $$(film_users),$$(tracer_kernels)))))
 $$(build)/variants/$(1)/%.o: src/%.c $$(build)/flags
 	$$(call say,$(2) $$< for $(1))
 	@mkdir -p $$(@D)
 	$$(quiet)$(2) $$(call variant_cflags,off) $(4) -DCUVETTE_BUILD_ID='"$(1)"' -c -o $$@ $$<
-$$(build)/variants/$(1)/cuvette: $$(program_objects) $$(build)/libweb.a $$(variant_objects_$(1)) $(if $(call variant_is_ours,$(2)),,$$(build)/variants/$(2)/tracer.a) $$(build)/libcuvette.a
+$$(build)/variants/$(1)/cuvette: $$(program_objects) $$(build)/libweb.a $$(variant_objects_$(1)) $$(build)/libcuvette.a
 	$$(call say,link $$@)
 	$$(quiet)$$(CC) $$(all_cflags) -o $$@ $$^ $$(LDFLAGS) $$(all_libs)
 -include $$(variant_objects_$(1):.o=.d)
@@ -331,23 +331,14 @@ $$(build)/variants/$(1)/%_kernel.$(3).o: src/%_kernel.c $$(build)/flags
 	@mkdir -p $$(@D)
 	$$(quiet)$(2) $$(call variant_cflags,$(4)) $$(isa_flags_$(3)) $$(if $$(filter fast-avx2,$(4)-$(3)),-mfma) $(5) -DKERNEL_ISA=$(3) -c -o $$@ $$<
 endef
-define variant_tracer
-$$(build)/variants/$(1)/%.o: src/%.c $$(build)/flags
-	$$(call say,$(1) $$<)
-	@mkdir -p $$(@D)
-	$$(quiet)$(1) $$(call variant_cflags,off) -c -o $$@ $$<
-$$(build)/variants/$(1)/tracer.a: $(tracer:src/%.c=$$(build)/variants/$(1)/%.o)
-	@rm -f $$@
-	$$(quiet)ar rcs $$@ $$^
--include $(tracer:src/%.c=$$(build)/variants/$(1)/%.d)
-endef
 variant_part = $(word $(2),$(subst -, ,$(1)))
 variant_film = $(if $(filter float-%,$(1)),-DCUVETTE_FILM_FLOAT=1)
 ifneq ($(filter variants,$(MAKECMDGOALS)),)
-$(foreach v,$(VARIANTS),$(eval $(call variant_rules,$(v),$(call variant_part,$(v),3),$(call variant_part,$(v),2),$(call variant_film,$(v)))))
-$(foreach v,$(VARIANTS),$(foreach i,$(isas),$(eval $(call \
+variant_names := $(sort $(VARIANTS) $(VARIANTS:float-%=fixed-%))
+$(foreach v,$(variant_names),$(eval $(call \
+  variant_rules,$(v),$(call variant_part,$(v),3),$(call variant_part,$(v),2),$(call variant_film,$(v)))))
+$(foreach v,$(variant_names),$(foreach i,$(isas),$(eval $(call \
   variant_kernel_rule,$(v),$(call variant_part,$(v),3),$(i),$(if $(filter sse2,$(i)),off,$(call variant_part,$(v),2)),$(call variant_film,$(v))))))
-$(foreach c,$(sort $(foreach v,$(VARIANTS),$(call variant_part,$(v),3))),$(eval $(call variant_tracer,$(c))))
 endif
 
 # The programs that the benchmarks compare with: the report's algorithm, which needs only a compiler, and Embree if installed.

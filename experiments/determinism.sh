@@ -2,7 +2,7 @@
 # determinism.sh - what the same bits everywhere cost, and what they buy: the program as it is, beside builds whose film
 # sums doubles (float), whose compiler contracts products and sums to FMA (fast), or both: make variants.
 #   experiments/determinism.sh build FOLDER            the programs FOLDER/FILM-CONTRACT-COMPILER, by gcc and clang
-#   experiments/determinism.sh measure FOLDER RESULTS  writes RESULTS/{rows,bits,images}.csv; needs only these programs
+#   experiments/determinism.sh measure FOLDER RESULTS  adds to RESULTS/{rows,bits,images}.csv; needs only these programs
 # rows.csv: CPU time of one thread. In a round every program renders each scene with each instruction set once, one
 # program after another; the first in a round is another each time. bits.csv: the film and the number of rays of small
 # images for numbers of threads and schedules. images.csv: each distinct film of bits.csv against the film of the
@@ -34,7 +34,10 @@ build() {
     strip -o "$folder/cuvette-import" "$built/cuvette-import"
 }
 
-field() { sed -n "s/^ *\"$1\": *\"\\{0,1\\}\\([^\",]*\\)\"\\{0,1\\},\\{0,1\\}\$/\\1/p" | head -n 1; }
+# of NAME: the first value of that name in $json, in $value. Without a process, whose start takes longer than a film.
+of() {
+    [[ $json =~ \"$1\":\ \"?([^\",$'\n']*) ]] && value=${BASH_REMATCH[1]}
+}
 
 # render PROGRAM ISA SCENE SIZE ARGUMENT...: one JSON object
 render() {
@@ -47,8 +50,7 @@ render() {
 }
 
 times() { # ROUNDS FRAMES SIZE
-    local round scene isa compiler i variant json
-    echo 'film,contract,compiler,isa,scene,repetition,place,cpu_s,film_hash,rays_total,others_share'
+    local round scene isa compiler i variant json row name value
     for ((round = 0; round < $1; round++)); do
         for scene in "${scenes[@]}"; do
             for isa in "${isas[@]}"; do
@@ -56,9 +58,9 @@ times() { # ROUNDS FRAMES SIZE
                     for ((i = 0; i < ${#variants[@]}; i++)); do
                         variant=${variants[(round + i) % ${#variants[@]}]}
                         json=$(render "$variant-$compiler" "$isa" "$scene" "$3" --repeat "$2" --set render.threads=1)
-                        echo "${variant%-*},${variant#*-},$compiler,$isa,$scene,$round,$i,$(field cpu_s <<<"$json"),$(
-                            field film_hash <<<"$json"
-                        ),$(field total <<<"$json"),$(field others_share <<<"$json")"
+                        row=${variant/-/,},$compiler,$isa,$scene,$round,$i
+                        for name in cpu_s film_hash total others_share; do of "$name" && row+=,$value; done
+                        echo "$row"
                     done
                 done
             done
@@ -68,8 +70,7 @@ times() { # ROUNDS FRAMES SIZE
 
 # Keeps the image of each distinct film in $work as SCENE-HASH.pfm.
 bits() { # SIZE
-    local scene isa compiler variant threads schedule json hash
-    echo 'film,contract,compiler,isa,scene,threads,schedule,film_hash,rays_total'
+    local scene isa compiler variant threads schedule json hash value
     for scene in "${scenes[@]}"; do
         for compiler in "${compilers[@]}"; do
             for variant in "${variants[@]}"; do
@@ -78,11 +79,9 @@ bits() { # SIZE
                         for schedule in columns rows tiles dynamic; do
                             json=$(render "$variant-$compiler" "$isa" "$scene" "$1" -o "$work/image.pfm" \
                                 --set "render.threads=$threads" --set "render.schedule=$schedule")
-                            hash=$(field film_hash <<<"$json")
+                            of film_hash && hash=$value && of total
                             [[ -e $work/$scene-$hash.pfm ]] || mv "$work/image.pfm" "$work/$scene-$hash.pfm"
-                            echo "${variant%-*},${variant#*-},$compiler,$isa,$scene,$threads,$schedule,$hash,$(
-                                field total <<<"$json"
-                            )"
+                            echo "${variant/-/,},$compiler,$isa,$scene,$threads,$schedule,$hash,$value"
                         done
                     done
                 done
@@ -94,13 +93,18 @@ bits() { # SIZE
 # The image of each distinct film beside that of the first row of the program as it is, as floats.
 images() {
     local scene hash expected=
-    echo 'scene,film_hash,max_difference,differing_share'
-    tail -n +2 "$results/bits.csv" | cut -d , -f 5,8 | awk '!seen[$0]++' | while IFS=, read -r scene hash; do
+    cut -d , -f 5,8 "$work/bits" | awk '!seen[$0]++' | while IFS=, read -r scene hash; do
         [[ $expected == "$work/$scene-"* ]] || expected=$work/$scene-$hash.pfm
         "$here/../plots/difference.sh" "$work/$scene-$hash.pfm" "$expected" | awk -v name="$scene,$hash" '
             { for (c = 4; c <= 6; c++) { d = $c < 0 ? -$c : $c; differing += d > 0; if (d > most) most = d } }
             END { printf "%s,%.9g,%.6f\n", name, most, differing / (3 * NR) }'
     done
+}
+
+# Rows of several calls, such as one for each compiler, stand in one file.
+add() { # FILE HEADER
+    [[ -s $results/$1.csv ]] || echo "$2" >"$results/$1.csv"
+    cat >>"$results/$1.csv"
 }
 
 case $1 in
@@ -118,9 +122,11 @@ measure)
     done
     rounds=15 frames=5
     if ((${QUICK:-0})); then rounds=6 frames=3; fi
-    times "${ROUNDS:-$rounds}" "${FRAMES:-$frames}" "${SIZE:-240x180}" >"$results/rows.csv"
-    bits 64x48 >"$results/bits.csv"
-    images >"$results/images.csv"
+    times "${ROUNDS:-$rounds}" "${FRAMES:-$frames}" "${SIZE:-240x180}" |
+        add rows 'film,contract,compiler,isa,scene,repetition,place,cpu_s,film_hash,rays_total,others_share'
+    bits 64x48 >"$work/bits"
+    add bits 'film,contract,compiler,isa,scene,threads,schedule,film_hash,rays_total' <"$work/bits"
+    images | add images 'scene,film_hash,max_difference,differing_share'
     ;;
 *) usage ;;
 esac
