@@ -298,6 +298,49 @@ simulate-mpi: simulated ## simulate cuvette-mpi on clusters of 1 to 4096 ranks (
 test-simgrid: simulated | $(filter test experiments bench,$(MAKECMDGOALS)) ## test the simulation of a cluster, with 4 and 64 ranks
 	@SIMULATED='$(abspath $(build)/cluster/simulated)' tests/run tests/simgrid.sh
 
+# What the same bits everywhere cost (experiments/determinism.sh): the program without parts of that, FILM-CONTRACT-COMPILER. Sums of
+# the film fixed or float (render/core/film.h); products and sums of the kernels contracted (fast) to FMA, which SSE2 does not have,
+# or not (off). gcc or clang compiles the kernels and what writes the film; all else is that of $(build).
+.PHONY: variants
+VARIANTS ?= $(foreach compiler,gcc clang,$(addsuffix -$(compiler),fixed-off fixed-fast float-off float-fast))
+in_tracer := src/optics/% src/geometry/% src/render/%
+tracer := $(filter $(in_tracer),$(library))
+tracer_kernels := $(filter $(in_tracer),$(kernels))
+film_users = $(eval film_users := $$(shell grep -lE 'film_(sum|units|add|radiance)' $$(tracer) $$(tracer_kernels)))$(film_users)
+variants: $(VARIANTS:%=$(build)/variants/%/cuvette) $(build)/cuvette-import ## build the program without what makes the same bits everywhere: build/variants
+variant_cflags = $(patsubst -ffp-contract=%,-ffp-contract=$(1),$(code_flags)) -g0 -w -MMD -MP
+# $(1): its name; $(2): compiler; $(3): contract; $(4): flags of the film. Objects replace those of the library after them.
+define variant_rules
+variant_objects_$(1) := $$(patsubst src/%.c,$$(build)/variants/$(1)/%.o,src/base/build_id.c $$(filter-out %_kernel.c,$$(film_users))) \
+  $$(foreach i,$$(isas),$$(patsubst src/%.c,$$(build)/variants/$(1)/%.$$(i).o,$$(filter %_kernel.c,$$(film_users)))) \
+  $(if $(filter off-$(notdir $(CC)),$(3)-$(2)),,$$(foreach i,$$(isas),$$(patsubst \
+  src/%.c,$$(build)/variants/fixed-$(3)-$(2)/%.$$(i).o,$$(filter-out $$(film_users),$$(tracer_kernels)))))
+$$(build)/variants/$(1)/%.o: src/%.c $$(build)/flags
+	$$(call say,$(2) $$< for $(1))
+	@mkdir -p $$(@D)
+	$$(quiet)$(2) $$(call variant_cflags,off) $(4) -DCUVETTE_BUILD_ID='"$(1)"' -c -o $$@ $$<
+$$(build)/variants/$(1)/cuvette: $$(program_objects) $$(build)/libweb.a $$(variant_objects_$(1)) $$(build)/libcuvette.a
+	$$(call say,link $$@)
+	$$(quiet)$$(CC) $$(all_cflags) -o $$@ $$^ $$(LDFLAGS) $$(all_libs)
+-include $$(variant_objects_$(1):.o=.d)
+endef
+# $(1): its name; $(2): compiler; $(3): instruction set; $(4): contract; $(5): flags of the film
+define variant_kernel_rule
+$$(build)/variants/$(1)/%_kernel.$(3).o: src/%_kernel.c $$(build)/flags
+	$$(call say,$(2) $$< for $(1) $(3))
+	@mkdir -p $$(@D)
+	$$(quiet)$(2) $$(call variant_cflags,$(4)) $$(isa_flags_$(3)) $$(if $$(filter fast-avx2,$(4)-$(3)),-mfma) $(5) -DKERNEL_ISA=$(3) -c -o $$@ $$<
+endef
+variant_part = $(word $(2),$(subst -, ,$(1)))
+variant_film = $(if $(filter float-%,$(1)),-DCUVETTE_FILM_FLOAT=1)
+ifneq ($(filter variants,$(MAKECMDGOALS)),)
+variant_names := $(sort $(VARIANTS) $(VARIANTS:float-%=fixed-%))
+$(foreach v,$(variant_names),$(eval $(call \
+  variant_rules,$(v),$(call variant_part,$(v),3),$(call variant_part,$(v),2),$(call variant_film,$(v)))))
+$(foreach v,$(variant_names),$(foreach i,$(isas),$(eval $(call \
+  variant_kernel_rule,$(v),$(call variant_part,$(v),3),$(i),$(if $(filter sse2,$(i)),off,$(call variant_part,$(v),2)),$(call variant_film,$(v))))))
+endif
+
 # The programs that the benchmarks compare with: the report's algorithm, which needs only a compiler, and Embree if installed.
 # The program that calls Embree is compiled for the machine that it runs on.
 report_sources := $(wildcard experiments/peers/report/*.[ch])

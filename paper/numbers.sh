@@ -153,6 +153,9 @@ visible() {
         *-metrics) awk -v study="${study%-metrics}" -f "$here/scientific.awk" -f "$here/metrics.awk" "$table" ;;
         *-curves) awk -v study="${study%-curves}" -f "$here/scientific.awk" -f "$here/curves.awk" "$table" ;;
         *-motion) awk -v study="${study%-motion}" -f "$here/scientific.awk" -f "$here/motion.awk" "$table" ;;
+        determinism* | films | machines)
+            awk -v table="$study" -f "$here/interval.awk" -f "$here/scientific.awk" -f "$here/determinism.awk" "$table"
+            ;;
         *) awk -v study="$study" -f "$here/interval.awk" -f "$here/numbers.awk" "$table" ;;
         esac
     done | sort

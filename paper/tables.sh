@@ -72,6 +72,7 @@ done
 for file in "$here"/../experiments/published/*.csv; do
     tr -d '\r' <"$file" | awk -f "$here/published.awk" >"$out/tables.new/published-$(basename "$file" .csv).tsv"
 done
+"$here/determinism.sh" "$results" "$out/tables.new"
 # Tables that did not change stay as they are: figures are drawn again only if their tables are newer.
 for file in "$out"/tables/*.tsv; do
     [ -r "$out/tables.new/$(basename "$file")" ] || rm -f "$file"

@@ -3,7 +3,8 @@
 # which .ci/setup-arch prepares, and runs it with qemu-user. Every scene of experiments/scenes must have the film hash
 # of the native build $CUVETTE; unit tests must pass; each must read what the other writes (rows, images, scenes, shared
 # scenes, meshes) as if it were its own. SIZE=80x60: pixels of the films; qemu is 50 to 100 times slower than a
-# processor. UNIT="NAME NAME": the unit tests. Prints a table, and a line for each difference.
+# processor. UNIT="NAME NAME": the unit tests. ROWS=results/films: also the rows of each architecture, by
+# experiments/films.sh. Prints a table, and a line for each difference.
 set -uo pipefail
 cd "$(dirname "$0")/.." || exit 1
 folder=${1:?tests/arch.sh: give a folder}
@@ -163,6 +164,9 @@ for name in "${names[@]}"; do
     printf '#!/bin/sh\nexec %s %s "$@"\n' "$(emulator "$name")" "$folder/$name/cuvette-import" >"$work/import-$name"
     chmod +x "$work/import-$name"
     films "$name"
+    [[ ! ${ROWS:-} ]] || CUVETTE_IMPORT=$work/import-$name experiments/films.sh --cuvette "$folder/$name/cuvette" \
+        --run "$(emulator "$name")" --emulated qemu --processor qemu --name "qemu-$name" --out "$ROWS/qemu-$name.csv" ||
+        differ "$name: rows of its films"
     lap "$name-films.s"
     exchange "$name"
     lap "$name-exchange.s"

@@ -1,27 +1,27 @@
 #!/bin/bash
 # One film everywhere: the rows of other machines (results/machines) have the film hashes and ray counts of the
-# reference run, cell for cell.
+# reference run, cell for cell; and each shipped scene has one film and one set of ray counts in the rows of all
+# machines, architectures, instruction sets and compilers (results/films).
 set -uo pipefail
 cd "$(dirname "$0")/.." || exit 1
 # shellcheck source=tests/shell/verdict.sh
 source tests/shell/verdict.sh
 
-# Identity of each cell with the hashes and counts of its rows, which must be one.
-cells() {
-    awk -F, '
-        /^#/ { next }
-        !column["identity"] { for (i = 1; i <= NF; i++) column[$i] = i; next }
-        { print $column["identity"], $column["cell"], $column["film_hash"], $column["rays_total"] }' "$1" | sort -u
-}
-for rows in results/machines/*/*/rows.csv; do
-    study=$(basename "$(dirname "$rows")") machine=$(basename "$(dirname "$(dirname "$rows")")")
-    reference=results/reference/$study/rows.csv
-    [[ -f $reference ]] || continue
-    common=$(join <(cells "$rows") <(cells "$reference"))
-    different=$(awk '$2 == $5 && ($3 != $6 || $4 != $7)' <<<"$common")
-    same=$(awk '$2 == $5' <<<"$common" | wc -l)
-    [[ -z $different && $same -gt 0 ]]
-    verdict $? "$machine, $study: films and counts of $same cells" "$different"
-done
+while IFS=$'\t' read -r machine study _ _ cells same different; do
+    [[ $different == none && $cells -gt 0 && $same == "$cells" ]]
+    verdict $? "$machine, $study: films and counts of $cells cells" "cells that differ: $different"
+done < <(paper/machines.sh results/reference | tail -n +2)
 ((cases > 0)) || skip 'there are no rows of other machines'
+
+while IFS=$'\t' read -r scene rows _ names _ _ _ isas _ _ different; do
+    [[ $different == 0 && $rows -gt 1 ]]
+    verdict $? "$scene: one film and one set of counts in $rows rows of $names builds, $isas instruction sets" \
+        "$(grep -h "^$scene," results/films/*.csv)"
+done < <(awk -f paper/films.awk results/films/*.csv 2>/dev/null | tail -n +2)
+shipped=$(cd experiments/scenes && printf '%s\n' *.yaml | sed 's/.yaml$//' | sort)
+for rows in results/films/*.csv; do
+    [[ -r $rows ]] || continue
+    empty "$rows has a row of every shipped scene" \
+        "$(comm -3 <(tail -n +2 "$rows" | cut -d , -f 1 | sort -u) <(echo "$shipped"))"
+done
 conclude

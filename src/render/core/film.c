@@ -26,10 +26,10 @@ static bool allocate_sums(film *f, size_t bytes)
     f->memory = calloc(1, whole + alignment); /* aligned_alloc would leave gaps that are too small for the next film */
     if (!f->memory)
         return false;
-    f->sum = (int64_t *)(((uintptr_t)f->memory + alignment - 1) / alignment * alignment);
+    f->sum = (film_sum *)(((uintptr_t)f->memory + alignment - 1) / alignment * alignment);
     large_pages(f->sum, whole);
     for (size_t i = 0; i < bytes; i += PAGE)
-        ((volatile int64_t *)f->sum)[i / sizeof *f->sum] = 0;
+        ((volatile film_sum *)f->sum)[i / sizeof *f->sum] = 0;
     return true;
 }
 
@@ -69,8 +69,9 @@ void film_begin_piece(film *f, int image_width, int x0, int y0, int x1, int y1, 
     memset(f->sum, 0, values_of(f) * (size_t)shares * sizeof *f->sum);
 }
 
-void film_put_piece(film *f, int x0, int y0, int x1, int y1, const int64_t *sum)
+void film_put_piece(film *f, int x0, int y0, int x1, int y1, const void *sums)
 {
+    const film_sum *sum = sums;
     const size_t length = 3 * (size_t)(x1 - x0);
     for (int y = y0; y < y1; y++, sum += length)
         memcpy(&f->sum[3 * ((size_t)y * (size_t)f->width + (size_t)x0)], sum, length * sizeof *sum);
@@ -79,19 +80,19 @@ void film_put_piece(film *f, int x0, int y0, int x1, int y1, const int64_t *sum)
 bool film_merge_shares(film *f, double *variance)
 {
     const size_t count = values_of(f), shares = (size_t)f->shares;
-    int64_t signs = 0;
+    int64_t overflow = 0;
     if (shares == 1)
         return true;
     for (size_t i = 0; i < count; i++) {
         double total = 0.0, squares = 0.0;
-        int64_t sum = 0;
+        film_sum sum = 0;
         for (size_t k = 0; k < shares; k++) {
-            sum = (int64_t)((uint64_t)sum + (uint64_t)f->sum[k * count + i]);
-            signs |= sum; /* a negative sum means overflow: no share's sum is negative */
-            total += (double)f->sum[k * count + i] / FILM_ONE;
+            sum = film_add(sum, f->sum[k * count + i]);
+            overflow |= film_overflow(sum);
+            total += film_radiance(f->sum[k * count + i]);
         }
         for (size_t k = 0; k < shares; k++) {
-            const double from_mean = (double)f->sum[k * count + i] / FILM_ONE - total / (double)shares;
+            const double from_mean = film_radiance(f->sum[k * count + i]) - total / (double)shares;
             squares += from_mean * from_mean;
         }
         if (variance) /* of a sum of n values, each with variance squares / (n - 1) */
@@ -99,7 +100,7 @@ bool film_merge_shares(film *f, double *variance)
         f->sum[i] = sum;
     }
     f->shares = 1;
-    return signs >= 0;
+    return overflow >= 0;
 }
 
 /* The pixel's colour, linear sRGB. */
@@ -108,10 +109,10 @@ static void pixel_rgb(const film *f, size_t pixel, double rgb[3])
     const size_t shares = (size_t)f->shares, stride = values_of(f);
     double value[3];
     for (size_t c = 0; c < 3; c++) {
-        uint64_t sum = 0;
+        film_sum sum = 0;
         for (size_t k = 0; k < shares; k++)
-            sum += (uint64_t)f->sum[k * stride + pixel * 3 + c];
-        value[c] = (double)(int64_t)sum / FILM_ONE;
+            sum = film_add(sum, f->sum[k * stride + pixel * 3 + c]);
+        value[c] = film_radiance(sum);
     }
     if (f->space == FILM_XYZ)
         xyz_to_linear_srgb(value, rgb);
@@ -131,9 +132,9 @@ void film_read(const film *f, int x0, int y0, int x1, int y1, float *rgb, size_t
     for (int y = y0; y < y1; y++) {
         float *row = rgb + (size_t)(y - y0) * stride;
         if (f->space == FILM_RGB && f->shares == 1) { /* the same, faster */
-            const int64_t *sum = f->sum + 3 * ((size_t)y * (size_t)f->width + (size_t)x0);
+            const film_sum *sum = f->sum + 3 * ((size_t)y * (size_t)f->width + (size_t)x0);
             for (size_t i = 0; i < 3 * (size_t)(x1 - x0); i++)
-                row[i] = (float)((double)sum[i] / FILM_ONE);
+                row[i] = (float)film_radiance(sum[i]);
             continue;
         }
         for (int x = x0; x < x1; x++, row += 3) {
@@ -149,7 +150,13 @@ uint64_t film_hash(const film *f)
 {
     const int64_t size[2] = {f->width, f->height};
     uint64_t hash = hash_words(HASH_START, size, 2);
-    return hash_finish(hash_words(hash, f->sum, values_of(f)));
+    int64_t words[512]; /* the sums as they are, whatever their type */
+    for (size_t at = 0, some; at < values_of(f); at += some) {
+        some = values_of(f) - at < 512 ? values_of(f) - at : 512;
+        memcpy(words, f->sum + at, some * sizeof words[0]);
+        hash = hash_words(hash, words, some);
+    }
+    return hash_finish(hash);
 }
 
 status film_image(const film *f, image **out, diagnostic *why)

@@ -16,16 +16,63 @@
 
 #define FILM_ONE 17592186044416.0 /* 2^44 */
 
+/* Builds float-... of make variants: sums of doubles, which depend on the order and have no range to check. Only to measure what fixed
+ * point costs (experiments/determinism.sh). */
+#ifndef CUVETTE_FILM_FLOAT
+#define CUVETTE_FILM_FLOAT 0
+#endif
+
+#if CUVETTE_FILM_FLOAT
+typedef double film_sum;
+static inline bool film_accepts(double radiance)
+{
+    (void)radiance;
+    return true;
+}
+static inline film_sum film_units(double radiance)
+{
+    return radiance;
+}
+static inline film_sum film_add(film_sum a, film_sum b)
+{
+    return a + b;
+}
+static inline double film_radiance(film_sum sum)
+{
+    return sum;
+}
+/* Negative if a sum left the film's range. */
+static inline int64_t film_overflow(film_sum sum)
+{
+    (void)sum;
+    return 0;
+}
+#else
+typedef int64_t film_sum;
 /* Is it in the range of a contribution? False for NaN. */
 static inline bool film_accepts(double radiance)
 {
     const double limit = 262144.0; /* half of a channel's range */
     return (int)(radiance >= 0.0) & (int)(radiance < limit);
 }
-static inline int64_t film_units(double radiance)
+static inline film_sum film_units(double radiance)
 {
     return (int64_t)(radiance * FILM_ONE + 0.5);
 }
+static inline film_sum film_add(film_sum a, film_sum b)
+{
+    return (int64_t)((uint64_t)a + (uint64_t)b);
+}
+static inline double film_radiance(film_sum sum)
+{
+    return (double)sum / FILM_ONE;
+}
+/* Negative if a sum left the film's range: no share's sum is negative. */
+static inline int64_t film_overflow(film_sum sum)
+{
+    return sum;
+}
+#endif
 
 typedef enum film_space { FILM_RGB, FILM_XYZ } film_space;
 enum { FILM_SHARES_MAX = 8 };
@@ -33,8 +80,8 @@ enum { FILM_SHARES_MAX = 8 };
 typedef struct film {
     int width, height;
     film_space space;
-    int shares;   /* 1, or the number of films of this size stored one after another: see film_merge_shares */
-    int64_t *sum; /* [(y*width + x)*3 + channel], a pointer into memory */
+    int shares;    /* 1, or the number of films of this size stored one after another: see film_merge_shares */
+    film_sum *sum; /* [(y*width + x)*3 + channel], a pointer into memory */
     void *memory;
     /* of a piece: the number of its first pixel in the image, and the width of the image, 0 for a whole film */
     int64_t first_pixel;
@@ -54,8 +101,8 @@ void film_destroy(film *f);
  * shares: as f was created, since film_merge_shares forgets them. */
 void film_begin_piece(film *f, int image_width, int x0, int y0, int x1, int y1, int shares);
 
-/* Copies the sums of the piece x0 <= x < x1, y0 <= y < y1, row by row, into a whole film with one share. */
-void film_put_piece(film *f, int x0, int y0, int x1, int y1, const int64_t *sum);
+/* Copies the sums (film_sum) of the piece x0 <= x < x1, y0 <= y < y1, row by row, into a whole film with one share. */
+void film_put_piece(film *f, int x0, int y0, int x1, int y1, const void *sums);
 
 /* The pixel's place in sum, in pixels; pixel: its number in the image, y*image_width + x. Truncation finds the row
  * exactly: the boundary of a row is half a pixel away, and rounding moves the quotient by less than 2^-52 of itself,

@@ -71,11 +71,11 @@ static void put(ray_queue *q, const ray_record *r)
 /* Traces a batch of one ray; brought: the radiance that the ray added to the film. */
 static void run_one(probe *p, int depth, double brought[3])
 {
-    int64_t before[3];
+    film_sum before[3];
     memcpy(before, p->img->sum, sizeof before);
     tracer_run_batch(p->rays, depth);
     for (int c = 0; c < 3; c++)
-        brought[c] = (double)(p->img->sum[c] - before[c]) / FILM_ONE;
+        brought[c] = film_radiance(p->img->sum[c] - before[c]);
 }
 
 static status add_node(probe *p, ray_tree *tree, const ray_record *r, ray_kind kind, int parent, size_t *at,

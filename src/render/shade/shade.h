@@ -5,6 +5,7 @@
 #include "base/isa.h"
 #include "geometry/rays.h"
 #include "image/texture.h"
+#include "render/core/film.h"
 #include "render/core/plan.h"
 #include "render/core/queue.h"
 
@@ -38,7 +39,7 @@ typedef struct branch_group {
 
 /* Contributions to the film, in its units. */
 typedef struct film_light {
-    int64_t r[ROW], g[ROW], b[ROW];
+    film_sum r[ROW], g[ROW], b[ROW];
     int64_t out_of_range; /* negative if some are out of the film's range, which are left out; otherwise 0 */
 } film_light;
 

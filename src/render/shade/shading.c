@@ -7,12 +7,11 @@
 #include <string.h>
 
 /* Negative if a sum left the film's range. */
-static inline int64_t add_units(int64_t *sum, int64_t r, int64_t g, int64_t b)
+static inline int64_t add_units(film_sum *sum, film_sum r, film_sum g, film_sum b)
 {
-    const int64_t red = (int64_t)((uint64_t)sum[0] + (uint64_t)r), green = (int64_t)((uint64_t)sum[1] + (uint64_t)g),
-                  blue = (int64_t)((uint64_t)sum[2] + (uint64_t)b);
+    const film_sum red = film_add(sum[0], r), green = film_add(sum[1], g), blue = film_add(sum[2], b);
     sum[0] = red, sum[1] = green, sum[2] = blue;
-    return red | green | blue;
+    return film_overflow(red) | film_overflow(green) | film_overflow(blue);
 }
 
 static inline void expose_at(tracer *t, int64_t place, double r, double g, double b)
@@ -56,7 +55,8 @@ void shading_expose(tracer *t, int64_t sample_key, double r, double g, double b)
 static void expose_all(tracer *t, const film_light *sent, int count, const int64_t *pixel)
 {
     const film *f = t->target.img;
-    int64_t *sums = f->sum, overflow = sent->out_of_range;
+    film_sum *sums = f->sum;
+    int64_t overflow = sent->out_of_range;
     if (f->image_width == 0)
         for (int i = 0; i < count; i++)
             overflow |= add_units(&sums[pixel[i] * 3], sent->r[i], sent->g[i], sent->b[i]);
