@@ -119,7 +119,8 @@ value("n") > 0 {
         if ($3 == 4 && two[$2]) set_value(study "/" $2 "/two-four", combine("/", two[$2], wall))
     }
     # The sufficient depth, by the rule of plots/convergence.gp.
-    if (study ~ /^(convergence|visible-(depth|lens|window|coin))$/ && value("flip") != "" && value("flip") < 0.01 && !($2 in enough)) {
+    if (study ~ /^(convergence|visible-(depth|lens|window|coin))$/ && \
+        value("flip") != "" && value("flip") < 0.01 && !($2 in enough)) {
         enough[$2] = $3
         set(study "/" $2 "/enough", $3)
     }

@@ -1,6 +1,7 @@
 # Numbers of what can be seen, \setval{KEY}{text}.
 #   plots/visible.awk -v which=liquid ... | awk -v which=liquid -f visible.awk        of an error of an index:
-#     visible-index/liquid/0.003/px, /display, /camera   shift of an edge: px, arc seconds at 67 px a degree, at the camera
+#     visible-index/liquid/0.003/px, /display, /camera   shift of an edge: px, arc seconds at 67 px a degree, at the
+#                                                        camera
 #     visible-index/liquid/vernier/display, /camera      the error whose shift is 5 arc seconds
 #     visible-index/liquid/acuity/display, /camera       ... 60 arc seconds; no number beyond the largest error
 #   awk -v grid=1 -f visible.awk visible-grid-metrics.tsv

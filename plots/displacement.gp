@@ -37,13 +37,15 @@ do for [i=1:2] {
     set arrow i from px(X[i], 0.001, -sin(side)), py(0, 0.001, -sin(side)) \
         to px(X[i], 3.001, -sin(side)), py(0, 3.001, -sin(side)) nohead lw 0.8 lc rgb grey back
 }
-shift(which) = sprintf("< awk -F, 'NR > 1 && $3 == \"%s\" { print $1 \",\" $2 \",\" $4 - $1 \",\" $5 - $2 }' '%s'", which, points)
+shift(which) = sprintf("< awk -F, 'NR > 1 && $3 == \"%s\" ". \
+    "{ print $1 \",\" $2 \",\" $4 - $1 \",\" $5 - $2 }' '%s'", which, points)
 set style arrow 1 head filled size 3,20,60 fixed lw 0.7 lc rgb blue
 set style arrow 2 head filled size 3,20,60 fixed lw 0.9 lc rgb vermillion
 set arrow 9 from 460,515 rto 200*scale,0 arrowstyle 1
 set label 9 "200 px" at 465 + 200*scale,515 left font ",7.2"
 plot px(cos(t), 3.001, sin(t)), py(cos(t), 3.001, sin(t)) with lines lw 0.8 lc rgb grey notitle, \
      px(cos(t), 0.001, sin(t)), py(cos(t), 0.001, sin(t)) with lines lw 0.8 lc rgb grey notitle, \
-     px(0.95*cos(t), 2.001, 0.95*sin(t)), py(0.95*cos(t), 2.001, 0.95*sin(t)) with lines lw 0.8 dt (4,2) lc rgb sky notitle, \
+     px(0.95*cos(t), 2.001, 0.95*sin(t)), py(0.95*cos(t), 2.001, 0.95*sin(t)) \
+         with lines lw 0.8 dt (4,2) lc rgb sky notitle, \
      shift("ground") using 1:2:($3*scale):($4*scale) with vectors arrowstyle 1 title "ground", \
      shift("rod") using 1:2:($3*scale):($4*scale) with vectors arrowstyle 2 title "rod"

@@ -24,16 +24,18 @@ set yrange [1:2.4]
 set xtics 0.2
 set ytics 0.4
 set xlabel "index of the liquid" offset 0,0.4
-set ylabel "index of the vessel" offset 1.2,0
+set ylabel "index of the vessel" offset 0.6,0
 set title font ",7.5" offset 0,-0.8
 set style textbox opaque noborder fillcolor rgb "#ffffff" margins 0.2,0.2
-set cntrlabel onecolor start 7 interval 1000 font ",6.6"
+set cntrlabel onecolor start 2 interval 1000 font ",6.6"
 set cntrparam levels incremental 0.01,0.01,0.09
 set title "FLIP against no refraction"
 splot grid_of(flip) using 1:2:3 with lines lc rgb blue lw 1.2, grid_of(flip) using 1:2:3 with labels boxed
 unset ylabel
+set cntrlabel onecolor start 4 interval 1000 font ",6.6"
 set format y ""
 set cntrparam levels incremental 1.1,0.1,1.9
 set title "magnification of the rod"
-splot grid_of(magnification) using 1:2:3 with lines lc rgb blue lw 1.2, grid_of(magnification) using 1:2:3 with labels boxed
+splot grid_of(magnification) using 1:2:3 with lines lc rgb blue lw 1.2, \
+      grid_of(magnification) using 1:2:3 with labels boxed
 unset multiplot

@@ -1,6 +1,6 @@
-# The four published series and ours on one axis each: every series relative to its own first value, so that machines and
-# units cancel. The times of empty scenes are marked at the left. Bars: 95 % intervals of medians where a cell has six
-# rows, else the smallest and the largest, both over the first value's other end; most are smaller than the points.
+# The four published series and ours on one axis each: every series relative to its own first value, so that machines
+# and units cancel. The times of empty scenes are marked at the left. Bars: 95 % intervals of medians where a cell has
+# six rows, else the smallest and the largest, both over the first value's other end; most are smaller than the points.
 # needs: tables/depth.tsv tables/triangles.tsv tables/coverage.tsv tables/crowding.tsv
 width = 658; height = 205
 load "plots/style.gp"
@@ -57,7 +57,8 @@ do for [i=1:3] {
     from = int(word(bases, i))
     theirs_i = theirs(study, word(x_columns, i))
     visible = i == 1 ? "model.visible=on " : ""
-    ours_i(accel) = ours(study, visible."render.accel=".accel, word(our_columns, i))." | awk '$1 <= 500000 && (".i." == 2 || $1 <= 50000)'"
+    ours_i(accel) = ours(study, visible."render.accel=".accel, word(our_columns, i)). \
+        " | awk '$1 <= 500000 && (".i." == 2 || $1 <= 50000)'"
     set title sprintf("%s (n = %d)", word(titles, i), n_of(study))
     set xrange [i == 2 ? -25 : -3 : i == 2 ? 510 : 53]
     set xtics i == 2 ? 100 : 10
@@ -69,7 +70,8 @@ do for [i=1:3] {
     set label 4 "boxes" at across(spot(spots, i, 3)),up(spot(spots, i, 3)) right font ",7" textcolor rgb blue
     set label 5 "empty scene" at across(spot(empties, i, 1)),up(spot(empties, i, 1)) left font ",6.6" textcolor rgb grey
     if (i == 1) {
-        set label 6 "empty, ours" at across(spot(empties, i, 2)),up(spot(empties, i, 2)) left font ",6.6" textcolor rgb blue
+        set label 6 "empty, ours" \
+            at across(spot(empties, i, 2)),up(spot(empties, i, 2)) left font ",6.6" textcolor rgb blue
     } else {
         unset label 6
     }

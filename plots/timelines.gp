@@ -46,7 +46,8 @@ do for [i=1:4] {
         schedule = word(schedules, k)
         set title (i == 1 ? word(titles, k) : "") offset 0,-0.9 font ",7.5"
         set ylabel (k == 1 ? threads." threads" : "") offset 0.5,0
-        plot lives(schedule, threads) using (($2 + longer($3 - $2) + $2)/2):1:(longer($3 - $2)/2):(workers > 100 ? 4 : workers > 8 ? 0.5 : 0.42):4 \
+        plot lives(schedule, threads) using \
+            ($2 + longer($3 - $2)/2):1:(longer($3 - $2)/2):(workers > 100 ? 4 : workers > 8 ? 0.5 : 0.42):4 \
             with boxxyerror fc palette
         unset colorbox
         unset label 100

@@ -3,7 +3,7 @@
 #   awk -v which=liquid -f visible.awk visible-index-metrics.tsv         which: liquid or vessel
 # Prints, tab separated: size of the error, displacement in px, and in arc seconds for FLIP's observer (below) and for an
 # eye at the camera. Pixels: FLIP's observer sees 3840 px on 0.7 m from 0.7 m, 3840 pi / 180 = 67 a degree (Andersson et
-# al. 2020, section 4.1.1); the camera sees 300 px under 45 degrees, near the middle one px under 1 / focal length.
+# al. 2020, section 4.1.1); the camera sees 300 px under 45 degrees, so a px near the middle is 1 / focal length.
 BEGIN {
     FS = OFS = "\t"
     pi = atan2(0, -1)
