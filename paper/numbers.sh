@@ -136,6 +136,7 @@ ball() {
     done | sort
     slab
     ball
+    [ ! -r "$results/detect/rows.csv" ] || awk -f "$here/detect.awk" "$results/detect/rows.csv" | sort
     machine
     laws
     polygons

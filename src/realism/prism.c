@@ -1,8 +1,8 @@
 /* Minimum deviation of a prism at the F, d and C lines. The scene has solids named prism, and left and right, the
  * half-spaces that cut its two faces (experiments/scenes/prism.yaml).
  *
- * The deviation is stationary in the angle of incidence at its minimum, so its value is good to rounding. Tolerance: the
- * bound of the path at the closed form's angle, with the rounding of the apex, a difference of two normals. */
+ * The deviation is stationary in the angle of incidence at its minimum, so its value is good to rounding. Tolerance:
+ * the bound of the path at the closed form's angle, with the rounding of the apex, a difference of two normals. */
 #include "realism/metrics.h"
 
 #include "scene/model/scene.h"
