@@ -1,5 +1,5 @@
 # What the metrics of optics detect: the power of ten of the smallest injected error that a family of metrics detects in
-# every scene in which it detects any, by the kind of error; experiments/detect.sh.
+# the median of the scenes in which it detects any, by the kind of error; experiments/detect.sh.
 # needs: detect/rows.csv
 width = 318; height = 300
 load "plots/style.gp"
@@ -15,7 +15,7 @@ title(i) = system("echo \"".titles."\" | cut -d '|' -f ".i)
 rows = "< awk -F , -v kinds='".kinds."' -v families='".families."' '".\
     "BEGIN { OFS = \"\t\"; for (i = split(kinds, k, \" \"); i > 0; i--) x[k[i]] = i; ".\
     "for (i = split(families, f, \" \"); i > 0; i--) y[f[i]] = i } ".\
-    "NR > 1 && sub(/\\.any$/, \"\", $2) { print x[$3], y[$2], $8 == \"NA\" ? 1 : substr($8, 3), $5 < $4 }' '".\
+    "NR > 1 && sub(/\\.any$/, \"\", $2) { print x[$3], y[$2], $7 == \"NA\" ? 1 : substr($7, 3), $5 < $4 }' '".\
     results."/detect/rows.csv'"
 shown(power) = power > 0 ? "·" : sprintf("%.0f", power)
 # Dark on bright colours, bright on dark ones; less contrast where some scenes detect nothing.
