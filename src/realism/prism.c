@@ -99,7 +99,7 @@ static status at_line(const metrics *m, double lambda_nm, double *measured, doub
     search look = {.t = &t, .at = faces_of(m->traced), .why = why};
     look.code = trial_start(&t, arrange_at(m->traced, lambda_nm), m->level, why);
     *measured = look.code == STATUS_OK ? least_deviation(&look) : NAN;
-    *tolerance = look.code == STATUS_OK ? tolerance_of(&look, apex, *theory) : NAN;
+    *tolerance = look.code == STATUS_OK && !isnan(*theory) ? tolerance_of(&look, apex, *theory) : NAN;
     trial_end(&t);
     return look.code;
 }
