@@ -1,7 +1,7 @@
 #!/bin/bash
 # experiments/detect.sh [OUT]: the smallest known error that each metric of `cuvette realism` detects. Copies the
-# sources to build/detect, puts errors of a chosen size into the copy (tests/faults/detect.tsv), and measures scenes with
-# them against the theory without: the pairs of indices of realism.study, stacks of plates, prisms and drops. Writes
+# sources to build/detect, puts errors of a chosen size into the copy (tests/faults/detect.tsv), and measures scenes
+# with them against the theory without: the pairs of indices of realism.study, stacks of plates, prisms and drops. Writes
 # OUT/rows.csv (results/detect): a line a scene, metric and kind of error. About ten minutes.
 set -euo pipefail
 export LC_ALL=C
@@ -30,6 +30,7 @@ make -s -j2 -C "$copy" warnings= build/tests/bench_detect >"$copy/log" 2>&1 || {
     exit 1
 }
 detect=$copy/build/tests/bench_detect
+# shellcheck disable=SC2016 # expanded by the inner bash
 {
     for vessel in 1.0 1.3 1.5 1.8; do
         for liquid in 1.0 1.2 1.33 1.47 1.6; do echo "rod experiments/scenes/rod.yaml $vessel $liquid"; done

@@ -36,7 +36,12 @@ END {
     for (k in kinds) {
         number++
         set("metrics/" k, detects[k] + 0)
-        if (k in by) { name = by[k]; gsub(/_/, "\\_", name); set("best/" k, name); set("best/" k "/size", power("1e" best[k])) }
+        if (k in by) {
+            name = by[k]
+            gsub(/_/, "\\_", name)
+            set("best/" k, name)
+            set("best/" k "/size", power("1e" best[k]))
+        }
         if (!detects[k]) none++
     }
     set("metrics", count + 0)

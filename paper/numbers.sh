@@ -163,6 +163,7 @@ visible() {
     slab
     ball
     visible
+    [ ! -r "$results/detect/rows.csv" ] || awk -f "$here/detect.awk" "$results/detect/rows.csv" | sort
     machine
     "$here/flips.sh" "$results" "$out"
     laws

@@ -105,8 +105,8 @@ bool trial_meets(trial *t, vec3 origin, vec3 direction, int which, bool upright,
 status trial_edges(trial *t, int which, bool upright, double py, const double range[2], int steps, double edge[2],
                    diagnostic *why);
 
-/* Bound of the distance, across the ray, of the place where the path through an edge just found meets the solid, towards
- * whose other edge it is moved by EDGE_INSIDE_PX. NaN if it does not meet it. */
+/* Bound of the place, across the ray, where the path through an edge just found meets the solid. The path is moved by
+ * EDGE_INSIDE_PX towards the other edge. NaN if it does not meet the solid. */
 #define EDGE_INSIDE_PX 1e-6
 status trial_edge_bound(trial *t, int which, double py, const double edge[2], int side, double curvature,
                         double *across, diagnostic *why);

@@ -1,8 +1,8 @@
 /* Minimum deviation of a prism at the F, d and C lines. The scene has solids named prism, and left and right, the
  * half-spaces that cut its two faces (experiments/scenes/prism.yaml).
  *
- * The deviation is stationary in the angle of incidence at its minimum, so its value is good to rounding. Tolerance: the
- * bound of the path at the closed form's angle, with the rounding of the apex, a difference of two normals. */
+ * The deviation is stationary in the angle of incidence at its minimum, so its value is good to rounding. Tolerance:
+ * the bound of the path at the closed form's angle, with the rounding of the apex, a difference of two normals. */
 #include "realism/metrics.h"
 
 #include "scene/model/scene.h"
@@ -99,7 +99,7 @@ static status at_line(const metrics *m, double lambda_nm, double *measured, doub
     search look = {.t = &t, .at = faces_of(m->traced), .why = why};
     look.code = trial_start(&t, arrange_at(m->traced, lambda_nm), m->level, why);
     *measured = look.code == STATUS_OK ? least_deviation(&look) : NAN;
-    *tolerance = look.code == STATUS_OK ? tolerance_of(&look, apex, *theory) : NAN;
+    *tolerance = look.code == STATUS_OK && !isnan(*theory) ? tolerance_of(&look, apex, *theory) : NAN;
     trial_end(&t);
     return look.code;
 }

@@ -3,8 +3,8 @@
  * small angles. The kink is the angle between two secants of the edge, above and below. In a line of the image the edge
  * is the leftmost image of the rod's four long edges, which bound its visible part.
  *
- * Tolerance: the bound of the path's place on the rod, times the movement of the edge's image by a movement of the edge,
- * and the widths of the bisections; over a secant's length. */
+ * Tolerance: the bound of the path's place on the rod times the movement of the edge's image by a movement of the edge,
+ * and the widths of the bisections; over the length of a secant. */
 #include "realism/metrics.h"
 #include "realism/view.h"
 #include "scene/model/scene.h"

@@ -1,7 +1,8 @@
 /* What the metrics of `cuvette realism` detect: measures scenes with an error of known size in what is traced, which
- * theory does not have. Built and run by experiments/detect.sh. One line a metric, scene, kind and size of the error. */
+ * theory does not have. Built and run by experiments/detect.sh. A line a metric, scene, kind and size of the error. */
 #include "injected.h"
 #include "realism/realism.h"
+#include "scene/model/params.h"
 #include "scene/model/scene.h"
 
 #include <math.h>
@@ -27,7 +28,7 @@ static const error_kind kinds[] = {
     {"reflectances", INJECT_SHARES, NULL, false},
     {"wrong-side", INJECT_SIDE, NULL, false},
     {"swapped", INJECT_SWAP, NULL, false},
-    {"total", INJECT_TOTAL, NULL, false},
+    {"leak", INJECT_TOTAL, NULL, false},
     {"normal", INJECT_TILT, NULL, false},
 };
 /* Powers of ten; 1, a complete exchange, and 0.01 are the largest. */
@@ -121,6 +122,8 @@ int main(int argc, char **argv)
         }
         set(s, rod ? text : argv[i]);
     }
+    if (rod)
+        set(s, "liquid.absorb_per_m=1.2,0.5,0.2");
     all_sizes(s, argv[1], index[0], index[1], rod);
     scene_destroy(s);
     return 0;
