@@ -228,11 +228,6 @@ END {
         ratio("triangles/" accel "/last-doubling", cpu_of, "triangles/" accel "/4000000", "triangles/" accel "/2000000")
         ratio("crowding/" accel "/growth", cpu_of, "crowding/" accel "/50000", "crowding/" accel "/10000")
         ratio("crowding/" accel "/gain", cpu_of, "crowding/none/10000", "crowding/" accel "/10000")
-        for (i = 1; i <= 3; i++)
-            for (count = 50000; count <= 500000; count *= 10) {
-                built = "build/" kind[i] "/" count "/" accel
-                ratio(built "/speedup", build_of, built "/1", built "/2")
-            }
     }
     # The number of rays after which a build with one thread has paid off.
     for (accel in hierarchy)

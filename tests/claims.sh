@@ -254,10 +254,10 @@ fi
 # A cost that is lost in noise is no number; a sentence that has it is replaced, though its claim is reproduced.
 copy flat shading
 edit "$work/flat/shading/rows.csv" \
-    'f("model.shading") == "smooth" && f("render.shadows") != "off"' \
+    'f("model.shading") == "smooth" && f("render.integrator") == "whitted" && f("render.shadows") == "off"' \
     cpu_s 'f("cpu_s") * (f("process") == 1 ? 0.8 : f("process") == 2 ? 1 : 1.25)'
 judge "$work/flat" "$work/out"
-same "a noisy cost of a frame with shadows changes no verdict" "$(changed "$work/out")" ""
+same "a noisy cost in Whitted ray tracing changes no verdict" "$(changed "$work/out")" ""
 text "$work/out" >"$work/plain"
 grep -q 'Reproduced, but without all numbers of this sentence:} Phong shading takes more' "$work/plain"
 verdict $? "its sentence does not print the cost" "$(grep -n 'Phong shading' "$work/plain")"

@@ -61,9 +61,9 @@ empty "README.md describes every column" \
     done)"
 # shellcheck disable=SC2016
 keys=$(sed -n 's/^| `\([a-z0-9]*\)` |.*\.txt` |$/\1/p' "$folder/README.md")
-empty "the paper cites every report" "$(for key in ${keys:-none}; do
+empty "paper or supplement cite every report" "$(for key in ${keys:-none}; do
     grep -q "^@[a-z]*{$key," "$root/paper/references.bib" || echo "$key is not in the bibliography"
-    grep -qE "\\\\cite\{([a-z0-9]*,)*${key}[,}]" "$root/paper/paper.tex" || echo "$key is not cited"
+    grep -qE "\\\\cite\{([a-z0-9]*,)*${key}[,}]" "$root"/paper/{paper,supplement}.tex || echo "$key is not cited"
 done)"
 
 # select.awk, which reads these files, must preserve commas and quotes within quoted fields.
