@@ -32,6 +32,10 @@ build() {
         done
     done
     strip -o "$folder/cuvette-import" "$built/cuvette-import"
+    # What a machine without these libraries lacks; glibc must be its own.
+    mkdir -p "$folder/lib"
+    ldd "$built/cuvette" "$built/cuvette-import" | awk '$2 == "=>" && $1 !~ /^lib(c|m)[.]/ { print $3 }' | sort -u |
+        xargs cp -L -t "$folder/lib"
 }
 
 # of NAME: the first value of that name in $json, in $value. Without a process, whose start takes longer than a film.
@@ -115,7 +119,8 @@ measure)
     results=$(cd "$3" && pwd)
     work=$(mktemp -d "${TMPDIR:-/tmp}/cuvette-determinism.XXXXXX")
     trap 'rm -rf "$work"' EXIT
-    if [[ -d $folder/lib ]]; then export LD_LIBRARY_PATH=$folder/lib; fi # of programs that were built elsewhere
+    # Of programs that were built elsewhere.
+    if ldd "$folder/fixed-off-${compilers[0]}" | grep -q 'not found'; then export LD_LIBRARY_PATH=$folder/lib; fi
     isas=()
     for isa in ${ISAS:-sse2 avx2 avx512}; do
         if CUVETTE_ISA=$isa "$folder/fixed-off-${compilers[0]}" machine --json >/dev/null 2>&1; then isas+=("$isa"); fi
