@@ -605,9 +605,14 @@ $(RESULTS)/tables/paths.tsv: | $(build)/cuvette
 	@mkdir -p $(@D)
 	TABLE=$@.new experiments/paths.sh $(build)/cuvette && mv $@.new $@
 
-figures: tables $(RESULTS)/figures/fan.svg $(RESULTS)/figures/trace.svg ## draw the figures whose rows or scripts are newer
+figures: tables $(RESULTS)/figures/fan.svg $(RESULTS)/figures/trace.svg $(RESULTS)/displacement/points.csv ## draw the figures whose rows or scripts are newer
 	@mkdir -p $(RESULTS)
 	plots/draw.sh --results $(RESULTS)
+
+# How far the vessel moves what is seen through it.
+$(RESULTS)/displacement/points.csv: experiments/displacement.sh experiments/scenes/rod.yaml | $(build)/cuvette
+	@mkdir -p $(@D)
+	experiments/displacement.sh $(build)/cuvette >$@.new && mv $@.new $@
 
 # Rays through the filled vessel with focus and caustic; and the ray tree of one ray.
 $(RESULTS)/figures/fan.svg: experiments/scenes/rod.yaml | $(build)/cuvette

@@ -27,12 +27,19 @@ done
 for table in "$from"/tables/*-{metrics,curves,motion}.tsv; do
     [[ ! -e $table ]] || cp "$table" "$to/tables/"
 done
-# Small float images that numbers of the paper are read from; of a large one, what the paper says about it.
+# Of studies that only measure the edges of the rod, these metrics.
+for name in ior-images visible-grid visible-index; do
+    awk 'NR == 1 || $5 ~ /^edges[.]/' FS='\t' "$from/tables/$name-metrics.tsv" >"$to/tables/$name-metrics.tsv"
+done
+mkdir -p "$to/displacement"
+cp "$from/displacement/points.csv" "$to/displacement/"
+# Small float images that numbers of the paper are read from; of a large one, its sums.
 for name in absorber slime-light; do
     mkdir -p "$to/$name/images"
     cp "$from/$name"/images/*.pfm "$to/$name/images/"
 done
-paper/blocks.sh "$from/maps/images/0000-rays.pfm" >"$to/tables/maps-blocks.tex"
+paper/cost.sh "$from/maps/images/0000-rays.pfm" >"$to/tables/maps-cost.tsv"
+experiments/views.sh >"$to/tables/maps-views.tsv"
 # Figures that need images; the others are drawn from the rows. And those of the README.
 for script in plots/*.gp; do
     name=$(basename "$script" .gp)
@@ -40,5 +47,6 @@ for script in plots/*.gp; do
         cp "$from/figures/$name.png" "$to/figures/"
     fi
 done
+plots/draw.sh --results "$from" --out "$to/figures" --format pdf ior-grid
 cp "$from"/figures/{fan,trace}.svg "$to/figures/"
 printf '%s: %s files, %s\n' "$to" "$(find "$to" -type f | wc -l)" "$(du -sh "$to" | cut -f1)"

@@ -27,9 +27,9 @@ function value_of_fields(fields, name,   mid) {
     return exact(mid + 0)
 }
 function known(fields, name) { return (name in fields) && fields[name] != "NA" && fields[name] != "" }
-# Columns that differ between repetitions.
+# Columns that differ between repetitions; an axis, such as toy.time_s, does not.
 function is_measured(name) {
-    return name !~ /^differing_share$/ && name ~ /(_s$|_s_|^imbalance$|_share$|^peak_rss|_switches$|^cycles|^instructions)/
+    return name !~ /^differing_share$|^[a-z-]+[.]/ && name ~ /(_s$|_s_|^imbalance$|_share$|^peak_rss|_switches$|^cycles|^instructions)/
 }
 
 function joint_kind(a, b) {

@@ -100,6 +100,10 @@ value("n") > 0 {
     if (value("others_share") != "") { others += value("others_share"); told++ }
     cells++
     rows += value("n")
+    if (fewest == "" || value("n") < fewest) fewest = value("n")
+    if (value("n") > most_rows) most_rows = value("n")
+    if (value("wall_s_low") != "") spans++
+    disturbed += value("disturbed")
     marked += value("marked")
     if (study == "depth") {
         if ($2 == 0) { cpu_0 = cpu; rays_0 = rays }
@@ -111,9 +115,11 @@ value("n") > 0 {
         if (one[$2]) set_value(key "/speedup", combine("/", one[$2], wall))
         if (!($2 in best) || value_mid[wall] < value_mid[best[$2]]) { best[$2] = wall; best_count[$2] = $3 }
         if ($3 == 1024) most[$2] = wall
+        if ($3 == 2) two[$2] = wall
+        if ($3 == 4 && two[$2]) set_value(study "/" $2 "/two-four", combine("/", two[$2], wall))
     }
     # The sufficient depth, by the rule of plots/convergence.gp.
-    if (study == "convergence" && value("flip") != "" && value("flip") < 0.01 && !($2 in enough)) {
+    if (study ~ /^(convergence|visible-(depth|lens|window|coin))$/ && value("flip") != "" && value("flip") < 0.01 && !($2 in enough)) {
         enough[$2] = $3
         set(study "/" $2 "/enough", $3)
     }
@@ -183,8 +189,16 @@ value("n") > 0 {
     }
     if (study == "sectors") {
         if ($4 == 1) one[$2, $3] = wall
-        if (one[$2, $3]) set_value(key "/speedup", combine("/", one[$2, $3], wall))
+        if ($4 == 2) two[$2, $3] = wall
+        if ($4 == 4 && two[$2, $3]) set_value(key "/two-four", combine("/", two[$2, $3], wall))
+        set_value(key "/wall", scaled(wall, 1e3))
     }
+}
+# What the bars of a study's figures are.
+function bars(   count) {
+    count = "$n = " fewest (most_rows > fewest ? "$ to~$" most_rows : "") "$"
+    if (spans == cells) return "95\\,\\% intervals of the median, " count
+    return most_rows > 1 ? "smallest and largest value, " count : count
 }
 # The ratio of the values of two keys.
 function ratio(result, of, above, below) {
@@ -194,6 +208,9 @@ END {
     set(study "/cells", cells)
     set(study "/rows", rows)
     set(study "/marked", marked + 0)
+    set(study "/disturbed-rows", disturbed + 0)
+    if (cells) set(study "/n", most_rows > fewest ? fewest "--" most_rows : fewest)
+    if (cells) set(study "/bars", bars())
     if (told) set(study "/others", sprintf("%.0f", others / told * 100))
     for (k in rays_of) if (rays_whitted) set(k "/rays-ratio", digits(rays_of[k] / rays_whitted))
     # Least-squares fit of log error against log N.
@@ -206,6 +223,8 @@ END {
     for (accel in hierarchy) {
         ratio("triangles/" accel "/growth", cpu_of, "triangles/" accel "/50000", "triangles/" accel "/10000")
         ratio("triangles/" accel "/gain", cpu_of, "triangles/none/10000", "triangles/" accel "/10000")
+        ratio("triangles/" accel "/first-doubling", cpu_of, "triangles/" accel "/20000", "triangles/" accel "/10000")
+        ratio("triangles/" accel "/last-doubling", cpu_of, "triangles/" accel "/4000000", "triangles/" accel "/2000000")
         ratio("crowding/" accel "/growth", cpu_of, "crowding/" accel "/50000", "crowding/" accel "/10000")
         ratio("crowding/" accel "/gain", cpu_of, "crowding/none/10000", "crowding/" accel "/10000")
         for (i = 1; i <= 3; i++)

@@ -119,6 +119,28 @@ ball() {
         done
 }
 
+# The design of each study that has rows: processes that share its repetitions, and frames before the first row.
+designs() {
+    for file in "$here"/../experiments/*.study; do
+        study=$(basename "$file" .study)
+        [ -r "$out/tables/$study.tsv" ] || continue
+        awk -v study="$study" 'BEGIN { of["processes"] = 1 }
+            /^(processes|warmups): *[0-9]+$/ { sub(/:/, "", $1); of[$1] = $2 }
+            END { for (name in of) printf "\\setval{%s/%s}{%d}\n", study, name, of[name] }' "$file"
+    done
+}
+
+# What can be seen of an error of an index, and how much of the magnification is the vessel's.
+visible() {
+    [ -r "$out/tables/visible-index-metrics.tsv" ] || return 0
+    for which in liquid vessel; do
+        awk -v which=$which -f "$here/../plots/visible.awk" "$out/tables/visible-index-metrics.tsv" |
+            awk -v which=$which -f "$here/visible.awk"
+    done
+    [ ! -r "$out/tables/visible-grid-metrics.tsv" ] ||
+        awk -v grid=1 -f "$here/visible.awk" "$out/tables/visible-grid-metrics.tsv" | sort
+}
+
 "$here/tables.sh" "$results" "$out"
 {
     echo "% made by paper/numbers.sh; change rows or scripts, not this"
@@ -127,7 +149,7 @@ ball() {
         [ -r "$table" ] || continue
         study=$(basename "$table" .tsv)
         case $study in
-        published-*) ;;
+        published-* | flips | visible-grid*) ;; # the grid is too large for numbers of each cell
         *-metrics) awk -v study="${study%-metrics}" -f "$here/scientific.awk" -f "$here/metrics.awk" "$table" ;;
         *-curves) awk -v study="${study%-curves}" -f "$here/scientific.awk" -f "$here/curves.awk" "$table" ;;
         *-motion) awk -v study="${study%-motion}" -f "$here/scientific.awk" -f "$here/motion.awk" "$table" ;;
@@ -137,18 +159,20 @@ ball() {
         *) awk -v study="$study" -f "$here/interval.awk" -f "$here/numbers.awk" "$table" ;;
         esac
     done | sort
+    designs
     slab
     ball
+    visible
     machine
+    "$here/flips.sh" "$results" "$out"
     laws
     polygons
-    # Rays by pixel are the same for every schedule.
-    for map in "$results"/maps/images/*-rays.pfm; do
-        if [ -r "$map" ]; then
-            "$here/blocks.sh" "$map"
-        elif [ -r "$results/tables/maps-blocks.tex" ]; then # the committed run has no large images
-            cat "$results/tables/maps-blocks.tex"
-        fi
-        break
-    done
+    # Rays by pixel are the same for every schedule and machine; the committed run has no large images, but their sums.
+    cost=$results/tables/maps-cost.tsv
+    map=$results/maps/images/0000-rays.pfm
+    [ ! -r "$map" ] || { cost=$out/cost && "$here/cost.sh" "$map" >"$cost"; }
+    if [ -r "$cost" ]; then
+        awk -f "$here/share.awk" -f "$here/blocks.awk" "$cost"
+        "$here/scaling.sh" "$results" "$out" "$cost"
+    fi
 } >"$out/numbers.tex"

@@ -173,6 +173,19 @@ refused "study new did not write" "no command" study
     failed=$((failed + 1))
     echo "not ok - study new wrote a file after an error"
 }
+printf 'cell,process,wall_s\n0,1,2\n0,2,2\n' >values.csv
+printf 'cell,process,wall_s\n0,1,NA\n' >empty-values.csv
+refused "study power without rows" "no rows are given" study power
+refused "study power of a missing file" "nowhere.csv: there is no such file" study power nowhere.csv
+refused "study power without a column" "there is no column 'cpu_s'" study power values.csv --column cpu_s
+refused "study power without values" "no row has a value" study power empty-values.csv
+refused "study power of too few processes" "too few processes or repetitions" study power values.csv --designs=2
+refused "study power of an unknown cell" "no cell '7'" study power values.csv --cells=0,7
+refused "study power of one cell" "two cells are necessary" study power values.csv --cells=0
+refused "study power with an unknown truth" "unknown truth 'slow'" study power values.csv --cells=0,0 --truth=slow
+refused "study power with a truth of each cell" "the truth is about two cells" study power values.csv --truth=same
+refused "study power with a wrong design" "invalid designs" study power values.csv --designs=1,3y1
+refused "study power of three files" "too many arguments" study power values.csv values.csv values.csv
 refused "study exclude without a file" "no study" study exclude
 refused "study exclude without a row" "no row is given" study exclude x.study --reason x
 refused "study exclude without a reason" "no reason is given" study exclude x.study --row 0:1

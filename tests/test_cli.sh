@@ -53,7 +53,7 @@ for command in render animate scene trace fan params media mesh study compare re
 done
 for command in render animate scene trace fan params media mesh study compare realism motion lab machine "study run" \
     "study new" "study list" "study status" "study merge" "study verify" "study upgrade" \
-    "study summary" "study exclude" "study compare" "study plot" "study submit"; do
+    "study summary" "study exclude" "study compare" "study power" "study plot" "study submit"; do
     # shellcheck disable=SC2086
     run help $command
     check "help $command" matches "$(head -1 out)" "^Usage: cuvette $command"
@@ -756,6 +756,19 @@ check "study summary has error and time" is "$(awk -F'\t' 'NR == 4 {print $(NF -
 sed -i 's/^reference: .*/reference: {render.depht: 2}/' studies/against.study
 run study run studies/against.study --results res
 check "a misspelt parameter in the reference is located" matches "$(<err)" 'against\.study:10:13: .*depht'
+
+# --- studies drawn from rows: two groups of equal processes; a warm-up and a row of a wrong film do not count
+printf '%s\n' cell,run,warmup,marked,wall_s 0,a,1,0,9 0,a,0,0,1 0,a,0,1,9 0,b,0,0,1 1,a,0,0,2 1,b,0,0,2 >power.csv
+run study power power.csv --designs=1 --tsv
+check "study power draws from rows" silent_success
+check "equal rows make no claim" is "$(awk -F'\t' '$1 == "all" && $6 == "effect" { print $3, $7, $8, $14 }' out)" \
+    "$(lines 'apart 800 1 0' 'turns 800 1 0')"
+run study power power.csv --designs=1 --tsv --cells=0,1 --truth=smaller
+check "claims against the truth are wrong" is \
+    "$(awk -F'\t' '$6 == "effect" { print $3, $8, $9, $14, $17 }' out)" \
+    "$(lines 'apart 1 2 1 0' 'turns 1 2 1 0' 'together 2 2 1 0')"
+run study power power.csv --designs=1 --cells=0,1
+check "study power prints a table" matches "$(cat out)" "together .* 0 / 0"
 
 # --- broken pipes, full disks, closed descriptors, signals
 "$program" params --json 2>err | head -1 >/dev/null

@@ -1,4 +1,5 @@
 /* Tests of the realism check on the rod in its vessel: theory at textbook numbers, metrics and curves. */
+#include <float.h>
 #include <math.h>
 #include <setjmp.h>
 #include <stdarg.h>
@@ -6,6 +7,7 @@
 #include <stdint.h>
 #include <cmocka.h>
 
+#include "realism/metrics.h"
 #include "realism/realism.h"
 #include "realism/theory.h"
 #include "realism/view.h"
@@ -49,6 +51,78 @@ static void the_transmittance_of_a_slab_is_a_geometric_series(void **state)
     assert_near(theory_slab_whole(0.04), 0.96 / 1.04, 1e-15);
     assert_near(theory_slab(0.04, 0), 0.0, 0.0);
     assert_near(theory_slab(1.0, 5), 0.0, 0.0);
+}
+
+/* Stokes, 1862: m plates transmit (1 - R) / (1 + (2 m - 1) R) in all, and (1 - R)^(2 m) without reflections. */
+static void a_pile_of_plates_transmits_what_stokes_derived(void **state)
+{
+    (void)state;
+    for (int plates = 1; plates <= 8; plates++)
+        for (double R = 0.01; R < 0.9; R += 0.11) {
+            assert_near(theory_pile(R, 2 * plates, 2 * plates), pow(1.0 - R, 2 * plates), 1e-15);
+            assert_near(theory_pile(R, 2 * plates, 2 * plates - 1), 0.0, 0.0);
+            assert_near(theory_pile(R, 2 * plates, 100000), (1.0 - R) / (1.0 + (2 * plates - 1) * R), 1e-12);
+        }
+    /* One plate: each order of the series of a slab meets two interfaces more. */
+    for (int order = 1; order <= 6; order++)
+        assert_near(theory_pile(0.3, 2, 2 * order), theory_slab(0.3, order), 1e-15);
+    assert_true(isnan(theory_pile(0.1, 17, 20)));
+}
+
+/* --- bounds of rounding errors */
+
+/* Higham, Accuracy and Stability, 2nd ed., 3.1: gamma_n = n u / (1 - n u). */
+static void gamma_is_highams(void **state)
+{
+    (void)state;
+    const double u = 0.5 * DBL_EPSILON;
+    assert_near(bound_gamma(8), 8.0 * u, 100.0 * u * u);
+    assert_true(bound_gamma(8) >= 8.0 * u);
+    assert_near(bound_difference(8), 16.0 * u, 200.0 * u * u);
+}
+
+static long double exact_share(long double sine, long double n_from, long double n_to)
+{
+    const long double in = sqrtl(1.0L - sine * sine), eta = n_from / n_to, out = 1.0L - eta * eta * sine * sine;
+    if (out <= 0.0L)
+        return 1.0L;
+    const long double a = n_from * in, b = n_to * sqrtl(out);
+    return (a - b) / (a + b) * ((a - b) / (a + b));
+}
+
+/* The bound exceeds what a change of sin i by a unit in the last place does, also next to the critical angle, where it
+ * grows as the square root of the error. */
+static void the_bound_of_a_reflectance_covers_a_rounded_sine(void **state)
+{
+    (void)state;
+    const double n_from = 1.5, n_to = 1.33, critical = asin(n_to / n_from);
+    for (int k = 0; k <= 50; k++) {
+        const double angle = critical - pow(10.0, -0.3 * k);
+        if (angle < 0.0)
+            continue;
+        const long double sine = sinl((long double)angle), off = 2.0L * DBL_EPSILON * sine;
+        const long double change =
+            fmaxl(fabsl(exact_share(sine + off, n_from, n_to) - exact_share(sine, n_from, n_to)),
+                  fabsl(exact_share(sine - off, n_from, n_to) - exact_share(sine, n_from, n_to)));
+        const share_bound b = bound_shares(angle, 0.0, n_from, n_to);
+        assert_true((double)change <= b.R_s && b.R_s < 1e-6);
+    }
+    assert_true(bound_shares(0.5 * critical, 0.0, n_from, n_to).R < 1e-14);
+    assert_true(bound_shares(critical + 1e-3, 0.0, n_from, n_to).R == 0.0);
+}
+
+static void a_failed_measurement_remains_the_worst(void **state)
+{
+    (void)state;
+    worst_pair w = WORST_NONE;
+    worst_take(&w, 1.0, NAN, 1.0); /* the closed form has no such point */
+    assert_false(w.any);
+    worst_take(&w, 1.0, 1.5, 1.0);
+    worst_take(&w, 1.0, 1.1, 0.1); /* larger in units of its tolerance */
+    assert_true(w.theory == 1.1);
+    worst_take(&w, NAN, 1.0, 1.0);
+    worst_take(&w, 1.0, 2.0, 1e-9);
+    assert_true(isnan(w.measured));
 }
 
 static void one_medium_focuses_like_a_ball_lens(void **state)
@@ -197,6 +271,26 @@ static void undefined_metrics_are_reported_as_undefined(void **state)
     assert_false(realism_is_defined(value(&r, "edges.left")));
     assert_true(realism_passes(value(&r, "edges.round_magnification")));
     scene_destroy(usual), scene_destroy(empty), scene_destroy(leaning);
+}
+
+/* At 85 degrees light is still under way at depth 16, which the closed form counts. */
+static void plates_near_grazing_agree_within_rounding(void **state)
+{
+    (void)state;
+    static const char *const settings_of[] = {"render.polarisation=on", "render.polarisation=off"};
+    for (size_t i = 0; i < COUNT(settings_of); i++) {
+        scene *s = NULL;
+        realism_value v;
+        diagnostic why = {0};
+        worked(scene_read("experiments/scenes/plates.yaml", &s, &why), &why);
+        set_all(s, "plate1.rotation.y=85 plate2.rotation.y=85");
+        set(s, settings_of[i]);
+        worked(realism_measure_one(s, isa_best(), "stack.whole", &v, &why), &why);
+        assert_true(realism_passes(&v) && v.tolerance < 1e-12);
+        const double n = 1.5, R_s = theory_fresnel_s(85.0 * DEGREE, 1.0, n), all = (1.0 - R_s) / (1.0 + 3.0 * R_s);
+        assert_true(all - theory_pile(R_s, 4, 16) > 0.01);
+        scene_destroy(s);
+    }
 }
 
 /* Compares measurements in the scene with `changed` applied to theory for the scene without it. Exactly the metrics
@@ -482,6 +576,11 @@ int main(void)
         cmocka_unit_test(critical_angles_of_water_glass_and_diamond_equal_the_textbooks_values),
         cmocka_unit_test(reflectances_at_known_angles_equal_the_textbooks_values),
         cmocka_unit_test(the_transmittance_of_a_slab_is_a_geometric_series),
+        cmocka_unit_test(a_pile_of_plates_transmits_what_stokes_derived),
+        cmocka_unit_test(gamma_is_highams),
+        cmocka_unit_test(the_bound_of_a_reflectance_covers_a_rounded_sine),
+        cmocka_unit_test(a_failed_measurement_remains_the_worst),
+        cmocka_unit_test(plates_near_grazing_agree_within_rounding),
         cmocka_unit_test(one_medium_focuses_like_a_ball_lens),
         cmocka_unit_test(an_empty_vessel_is_a_diverging_lens),
         cmocka_unit_test(apparent_depth_of_a_pond_follows_from_its_index),

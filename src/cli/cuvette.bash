@@ -100,6 +100,8 @@ _cuvette_value() # OPTION: completes its value; false for a flag
     --title | --name | --repetitions | --warmups | --row | --reason) COMPREPLY=() ;;
     --duration | --start) COMPREPLY=() ;;
     --bits) _cuvette_words 8 16 ;;
+    --truth) _cuvette_words same larger smaller ;;
+    --cells | --designs | --effect | --draws | --seed) COMPREPLY=() ;;
     --repeat | --shard | --at | --pixel | --ray | --depth | --lambda | --from | --to | --width | --spread | --plane) COMPREPLY=() ;;
     --count | --level | --major | --minor | --around | --tube | --profile | --crease | --size) COMPREPLY=() ;;
     --port | --threads) COMPREPLY=() ;;
@@ -120,6 +122,7 @@ _cuvette_study() # VERB
         [verify]=--results [upgrade]='--results --to' [summary]='--results --environment --interval' [list]=''
         [exclude]='--row --reason --results'
         [compare]='--results --column --detect --fail-if-slower --tsv --json'
+        [power]='--column --cells --truth --designs --effect --draws --seed --tsv'
         [plot]='--output --format --x --y --by --log --where --images --published --results')
     if [[ $current == -* ]]; then
         _cuvette_words "${options[$1]} --help --usage --version"
@@ -128,6 +131,8 @@ _cuvette_study() # VERB
         mapfile -t COMPREPLY < <(compgen -d -- "$current")
     elif [[ $1 == new ]]; then
         _cuvette_files 'yaml|yml'
+    elif [[ $1 == power ]]; then
+        _cuvette_files 'csv'
     else
         _cuvette_files 'study'
     fi
@@ -136,7 +141,7 @@ _cuvette_study() # VERB
 _cuvette()
 {
     local current=${COMP_WORDS[COMP_CWORD]} previous=${COMP_WORDS[COMP_CWORD - 1]}
-    local command=${COMP_WORDS[1]-} verbs='new run submit list status merge verify upgrade summary compare exclude plot'
+    local command=${COMP_WORDS[1]-} verbs='new run submit list status merge verify upgrade summary compare power exclude plot'
     COMPREPLY=()
     if ((COMP_CWORD == 1)); then
         _cuvette_words render animate scene trace fan params media mesh study compare realism motion lesson lab machine help --help --usage --version

@@ -367,6 +367,7 @@ static const command commands[] = {
     {"summary", "print medians and confidence intervals for each cell", command_summary},
     {"exclude", "exclude a row from summaries, with the reason", study_exclude},
     {"compare", "compare two runs, environments, cells or values: ratio, interval, verdict", study_compare},
+    {"power", "how often studies with fewer repetitions would mislead", study_power},
     {"plot", "draw a figure of studies with gnuplot", command_study_plot},
 };
 

@@ -17,6 +17,8 @@ status study_submit(int argc, char **argv, diagnostic *why);
 status study_exclude(int argc, char **argv, diagnostic *why);
 /* `study compare`: the ratio of two sides of a study, with a verdict. */
 status study_compare(int argc, char **argv, diagnostic *why);
+/* `study power`: false claims and missed differences of smaller studies, drawn from measured rows. */
+status study_power(int argc, char **argv, diagnostic *why);
 
 /* The repetitions of a study that divides them among processes, each a program of its own, one after the other; with
  * --against=PROGRAM each followed or preceded, at random, by the same process of the other program, whose rows go to

@@ -97,3 +97,24 @@ double chi_squared_quantile(double p, double degrees_of_freedom)
     const double v = degrees_of_freedom;
     return invert(chi_squared_rising, v, p, 0.0, v + 20.0 * sqrt(2.0 * v) + 60.0);
 }
+
+double beta_quantile(double p, double a, double b)
+{
+    double low = 0.0, high = 1.0;
+    for (int i = 0; i < 60; i++) {
+        const double middle = 0.5 * (low + high);
+        if (beta_below(a, b, middle) < p)
+            low = middle;
+        else
+            high = middle;
+    }
+    return 0.5 * (low + high);
+}
+
+share_interval binomial_interval(double hits, double count)
+{
+    if (!(count > 0))
+        return (share_interval){NAN, NAN, NAN};
+    return (share_interval){hits / count, hits > 0 ? beta_quantile(0.025, hits, count - hits + 1) : 0.0,
+                            hits < count ? beta_quantile(0.975, hits + 1, count - hits) : 1.0};
+}

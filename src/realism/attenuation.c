@@ -2,14 +2,14 @@
  * whose slope is the absorption coefficient (Hecht, Optics, 5th ed., eq. 4.78 with the coefficient of power). A liquid
  * without absorption is given coefficients.
  *
- * Tolerance: 2.2e-16 in a transmittance, divided by the optical depth of the longest path. */
+ * Tolerance: an error of a length or of exp and log is one of each -ln(transmittance); the slope of the line weighs
+ * them by the distances of their lengths from the mean. */
 #include "realism/metrics.h"
 
 #include "scene/model/medium.h"
 #include "scene/model/scene.h"
 #include <math.h>
 
-#define ABSORPTION_TOLERANCE 1e-10 /* relative, for an optical depth of at least 1e-4 */
 enum { LENGTHS = 9 };
 
 scene *attenuation_scene(const scene *s, const setup *at)
@@ -53,7 +53,7 @@ double attenuation_reach(const trial *t, const setup *at)
 }
 
 /* Slopes of the least squares lines through the points (length, -ln transmittance). */
-static status fit_slopes(const metrics *m, trial *t, double reach, double slope[3], diagnostic *why)
+static status fit_slopes(const metrics *m, trial *t, double reach, double slope[3], double off[3], diagnostic *why)
 {
     double mean_x = 0.0, xx = 0.0, x[LENGTHS], y[3][LENGTHS];
     status code = STATUS_OK;
@@ -68,18 +68,23 @@ static status fit_slopes(const metrics *m, trial *t, double reach, double slope[
     }
     if (code != STATUS_OK)
         return code;
-    slope[0] = slope[1] = slope[2] = 0.0;
+    slope[0] = slope[1] = slope[2] = off[0] = off[1] = off[2] = 0.0;
     for (int i = 0; i < LENGTHS; i++) {
         xx += (x[i] - mean_x) * (x[i] - mean_x);
-        for (int c = 0; c < 3; c++)
+        for (int c = 0; c < 3; c++) {
             slope[c] += (x[i] - mean_x) * y[c][i];
+            /* of exp and log; of their arguments */
+            off[c] += fabs(x[i] - mean_x) * bound_difference(BOUND_FORM) * (1.0 + 2.0 * fabs(y[c][i]));
+        }
     }
-    for (int c = 0; c < 3; c++)
+    for (int c = 0; c < 3; c++) {
         slope[c] /= xx;
+        off[c] = off[c] / xx + bound_gamma(BOUND_FORM) * fabs(slope[c]);
+    }
     return STATUS_OK;
 }
 
-static status compare_slopes(const metrics *m, worst_pair *worst, double *tolerance, diagnostic *why)
+static status compare_slopes(const metrics *m, worst_pair *worst, diagnostic *why)
 {
     scene *supposed = attenuation_scene(m->supposed, &m->theory_at);
     if (!supposed)
@@ -87,15 +92,13 @@ static status compare_slopes(const metrics *m, worst_pair *worst, double *tolera
     const vec3 a = material_absorption(&supposed->solids[m->theory_at.liquid].surface);
     scene_destroy(supposed);
     const double theory[3] = {a.x, a.y, a.z};
-    double slope[3] = {NAN, NAN, NAN};
+    double slope[3] = {NAN, NAN, NAN}, off[3] = {NAN, NAN, NAN};
     trial t;
     status code = trial_start(&t, attenuation_scene(m->traced, &m->at), m->level, why);
     if (code == STATUS_OK) {
-        const double reach = attenuation_reach(&t, &m->at);
-        code = fit_slopes(m, &t, reach, slope, why);
+        code = fit_slopes(m, &t, attenuation_reach(&t, &m->at), slope, off, why);
         for (int c = 0; c < 3; c++)
-            worst_take(worst, slope[c], theory[c]);
-        *tolerance = ABSORPTION_TOLERANCE * worst->theory + 1e-14 / (reach * t.s->render.unit_m);
+            worst_take(worst, slope[c], theory[c], off[c]);
     }
     trial_end(&t);
     return code;
@@ -103,14 +106,13 @@ static status compare_slopes(const metrics *m, worst_pair *worst, double *tolera
 
 status realism_absorption(const metrics *m, diagnostic *why)
 {
-    worst_pair worst = {NAN, NAN, false};
-    double tolerance = ABSORPTION_TOLERANCE;
+    worst_pair worst = WORST_NONE;
     const bool exists = m->theory_at.liquid >= 0 && m->at.liquid >= 0;
-    const status code = exists ? compare_slopes(m, &worst, &tolerance, why) : STATUS_OK;
+    const status code = exists ? compare_slopes(m, &worst, why) : STATUS_OK;
     metrics_add(m, (realism_value){
                        "absorption.slope",
                        exists ? "slope of -ln(transmittance) over length in the liquid; largest error of three channels"
                               : "there is no liquid",
-                       "1/m", worst.measured, worst.theory, tolerance});
+                       "1/m", worst.measured, worst.theory, worst.tolerance});
     return code;
 }

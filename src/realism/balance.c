@@ -2,13 +2,13 @@
  * whatever its ray tree, or 1 minus what the depth limit cut off. Materials with a transparency below 1 or with
  * emission fail.
  *
- * Tolerance: half a unit of the film, 2.9e-14, for each of the up to 512 rays of a tree that end in the sky. */
+ * Tolerance: half a unit of the film for each ray of the tree that ends in the sky, and the rounding of its weight, a
+ * product of one factor for each interface of the path. */
 #include "realism/metrics.h"
 #include "scene/model/scene.h"
 
 #include <math.h>
 
-#define BALANCE_TOLERANCE 1e-10
 enum { COLUMNS = 20, ROWS = 15, DEPTH_MAX = 8 };
 
 static scene *furnace(const scene *s, const setup *at)
@@ -28,6 +28,17 @@ static scene *furnace(const scene *s, const setup *at)
     return copy;
 }
 
+static double tolerance_of(const ray_tree *tree)
+{
+    double sum = 0.0;
+    for (size_t i = 0; i < tree->count; i++) {
+        const ray_node *n = &tree->node[i];
+        if (n->end == RAY_END_SKY || n->end == RAY_END_CUT_DEPTH)
+            sum += BOUND_FILM + n->throughput[0] * bound_gamma(BOUND_FORM * (n->depth + 1));
+    }
+    return sum;
+}
+
 static double seen_and_cut(const ray_tree *tree, int channel)
 {
     double sum = tree->radiance[channel];
@@ -40,7 +51,7 @@ static double seen_and_cut(const ray_tree *tree, int channel)
 status realism_balance(const metrics *m, diagnostic *why)
 {
     trial t;
-    worst_pair worst = {NAN, NAN, false};
+    worst_pair worst = WORST_NONE;
     scene *s = furnace(m->traced, &m->at);
     status code = trial_start(&t, s, m->level, why);
     for (int i = 0; i < COLUMNS * ROWS && code == STATUS_OK; i++) {
@@ -48,7 +59,7 @@ status realism_balance(const metrics *m, diagnostic *why)
                      y = (i / COLUMNS + 0.5) * (double)s->render.height / ROWS;
         code = probe_ray(t.p, s->camera.position, probe_camera_direction(t.p, x, y), &t.tree, why);
         for (int c = 0; c < 3 && code == STATUS_OK; c++)
-            worst_take(&worst, seen_and_cut(&t.tree, c), 1.0);
+            worst_take(&worst, seen_and_cut(&t.tree, c), 1.0, tolerance_of(&t.tree));
     }
     trial_end(&t);
     metrics_add(
@@ -56,6 +67,6 @@ status realism_balance(const metrics *m, diagnostic *why)
         (realism_value){
             "balance.furnace",
             "radiance plus the weight cut off at the depth limit, under a sky of radiance 1; largest error of 300 rays",
-            "", worst.measured, worst.theory, BALANCE_TOLERANCE});
+            "", worst.measured, worst.theory, worst.tolerance});
     return code;
 }

@@ -1,6 +1,7 @@
 /* The first rainbow of a drop: a sphere, the first solid whose name begins with drop (experiments/scenes/rainbow.yaml);
  * in a scene without one, a drop of its rain (rainbow-landscape.yaml). The rainbow appears where rays with one internal
- * reflection have minimum deviation, at an angle from the antisolar point. */
+ * reflection have minimum deviation, at an angle from the antisolar point. The angle is stationary in the ray's offset
+ * there. Tolerance: the bound of the path at the closed form's offset. */
 #include "realism/metrics.h"
 
 #include "geometry/shapes/shape.h"
@@ -9,8 +10,6 @@
 #include "scene/model/scene.h"
 #include <math.h>
 #include <string.h>
-
-#define ANGLE_TOLERANCE 1e-12 /* rad; the angle is stationary in the ray's offset, as in a prism's minimum deviation */
 
 static int drop_of(const scene *s)
 {
@@ -66,13 +65,15 @@ static void end(drop_metrics *own)
     scene_destroy(own->supposed);
 }
 
-/* A copy with the drop alone. */
+/* A copy with the drop alone, at the origin, where places have the smallest rounding errors. */
 static scene *drop_alone(const scene *s, double lambda_nm)
 {
     scene *copy = arrange_at(s, lambda_nm);
     const int drop = drop_of(s);
     for (size_t i = 0; copy && i < copy->solid_count; i++)
         copy->solids[i].visible = (int)i == drop;
+    if (copy)
+        copy->solids[drop].shape.position = vec3_make(0.0, 0.0, 0.0);
     return copy;
 }
 
@@ -80,7 +81,6 @@ typedef struct search {
     trial *t;
     status code;
     diagnostic *why;
-    vec3 center;
     double radius;
 } search;
 
@@ -89,7 +89,7 @@ static double minus_turned_back(void *context, double offset)
 {
     search *s = context;
     const vec3 in = vec3_make(0.0, 0.0, 1.0);
-    const vec3 from = vec3_add(s->center, vec3_make(offset * s->radius, 0.0, -4.0 * s->radius));
+    const vec3 from = vec3_make(offset * s->radius, 0.0, -4.0 * s->radius);
     if (s->code == STATUS_OK)
         s->code = probe_path(s->t->p, from, in, 1, &s->t->tree, s->why);
     if (s->code != STATUS_OK || s->t->tree.count != 4)
@@ -115,14 +115,26 @@ static double theory_rainbow(double n)
     return 4.0 * r - 2.0 * i;
 }
 
-static status at_line(const metrics *m, double lambda_nm, double *measured, double *theory, diagnostic *why)
+static double tolerance_of(search *look, double n)
+{
+    if (isnan(minus_turned_back(look, sqrt((4.0 - n * n) / 3.0)))) /* sin i */
+        return NAN;
+    return bound_around(&look->t->tree, vec3_make(0.0, 0.0, 0.0)) + bound_difference(BOUND_FORM) * M_PI;
+}
+
+static status at_line(const metrics *m, double lambda_nm, double *measured, double *theory, double *tolerance,
+                      diagnostic *why)
 {
     trial t;
     const solid *drop = &m->traced->solids[drop_of(m->traced)];
-    search look = {.t = &t, .why = why, .center = drop->shape.position, .radius = drop->shape.radius};
-    *theory = theory_rainbow(relative_index(m->supposed, drop_of(m->supposed), lambda_nm));
+    search look = {.t = &t, .why = why, .radius = drop->shape.radius};
+    const double n = relative_index(m->supposed, drop_of(m->supposed), lambda_nm);
+    *theory = theory_rainbow(n);
+    *tolerance = NAN;
     look.code = trial_start(&t, drop_alone(m->traced, lambda_nm), m->level, why);
     *measured = look.code == STATUS_OK && !isnan(*theory) ? rainbow_angle(&look) : NAN;
+    if (look.code == STATUS_OK && !isnan(*theory))
+        *tolerance = tolerance_of(&look, n);
     trial_end(&t);
     return look.code;
 }
@@ -133,11 +145,11 @@ status realism_drop(const metrics *m, diagnostic *why)
     static const char *const what[] = {
         "angle of the first rainbow at the F line, 486.1 nm", "angle of the first rainbow at the d line, 587.6 nm",
         "angle of the first rainbow at the C line, 656.3 nm", "angle of the first rainbow at render.lambda_nm"};
-    double unused[2];
+    double unused[3];
     drop_metrics own;
     status code = begin(m, &own, why);
     THEN(code, metrics_at_lines(&own.m, names, what, "a refractive index outside 1..2 has no primary rainbow", at_line,
-                                ANGLE_TOLERANCE, unused, why));
+                                unused, why));
     end(&own);
     return code;
 }
@@ -148,7 +160,7 @@ static status trace_curve(const metrics *m, realism_points *out, diagnostic *why
     const solid *drop = &m->traced->solids[drop_of(m->traced)];
     const double n = relative_index(m->supposed, drop_of(m->supposed), lambda_nm);
     trial t;
-    search look = {.t = &t, .why = why, .center = drop->shape.position, .radius = drop->shape.radius};
+    search look = {.t = &t, .why = why, .radius = drop->shape.radius};
     look.code = trial_start(&t, drop_alone(m->traced, lambda_nm), m->level, why);
     for (int i = 0; i < 100 && look.code == STATUS_OK; i++)
         curve_add(out, 0.01 * i, -minus_turned_back(&look, 0.01 * i) / degree, theory_drop_angle(0.01 * i, n) / degree);

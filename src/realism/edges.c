@@ -1,26 +1,30 @@
 /* The rod in the image: the position of its edges, their displacement by the filled vessel, and the magnification.
  *
- * Tolerance: bisection finds a position in the image to about 1e-12 px, and the position on the rod is good to 1e-14
- * scene units, which at a few hundred px per unit is as much; multiplied by the lens's magnification of errors near its
- * rim. */
+ * Tolerance: the bound of the path's distance from the rod's corner, over the change of that distance per px, and the
+ * widths of the bisections of both sides. */
 #include "realism/metrics.h"
 #include "realism/level_section.h"
 #include "scene/model/scene.h"
 
 #include <math.h>
 
-#define EDGE_TOLERANCE_PX 1e-9
-#define RATIO_TOLERANCE 1e-10 /* error of an edge over a rod at least about ten px wide */
 enum { SCAN_STEPS = 1024 };
 
-/* Edges measured with the tracer, in a scene that the function takes over; NaN if there are none. */
-static status traced_edges(scene *taken, const metrics *m, const double range[2], double py, double edge[2],
+/* Edges measured with the tracer, and the bounds of their paths' distances from the rod. */
+typedef struct traced_line {
+    double edge[2], across[2];
+} traced_line;
+
+/* In a scene that the function takes over; NaN if there are none. */
+static status traced_edges(scene *taken, const metrics *m, const double range[2], double py, traced_line *out,
                            diagnostic *why)
 {
     trial t;
     status code = trial_start(&t, taken, m->level, why);
-    edge[0] = edge[1] = NAN;
-    THEN(code, trial_edges(&t, m->at.rod, true, py, range, SCAN_STEPS, edge, why));
+    *out = (traced_line){{NAN, NAN}, {NAN, NAN}};
+    THEN(code, trial_edges(&t, m->at.rod, true, py, range, SCAN_STEPS, out->edge, why));
+    for (int i = 0; i < 2 && code == STATUS_OK; i++)
+        code = trial_edge_bound(&t, m->at.rod, py, out->edge, i, 1.0 / m->at.inner, &out->across[i], why);
     trial_end(&t);
     return code;
 }
@@ -39,6 +43,7 @@ static bool theory_sees(void *context, double x)
 /* The image line through the axis at half height of the filled part of the rod, and theory for that line. */
 typedef struct image_line {
     double py, range[2], filled[2], bare[2];
+    double filled_slope[2], bare_slope[2];
 } image_line;
 
 static const char *theory_edges(const scene *s, const setup *at, image_line *out)
@@ -62,10 +67,15 @@ static const char *theory_edges(const scene *s, const setup *at, image_line *out
     for (int i = 0; i < 2; i++)
         if (!level_section_stays(&c, out->filled[i], out->py, low, high))
             return "the view is too steep: no ray through the filled wall hits the rod below the surface";
+    for (int i = 0; i < 2; i++) {
+        out->filled_slope[i] = level_section_slope(&c, out->filled[i], out->py);
+        out->bare_slope[i] = level_section_slope(&bare, out->bare[i], out->py);
+    }
     return NULL;
 }
 
-static status measure_edges(const metrics *m, const image_line *of, double filled[2], double bare[2], diagnostic *why)
+static status measure_edges(const metrics *m, const image_line *of, traced_line *filled, traced_line *bare,
+                            diagnostic *why)
 {
     scene *vessel = arrange_vessel(m->traced, &m->at), *alone = arrange_empty(m->traced);
     if (vessel)
@@ -80,44 +90,55 @@ static status measure_edges(const metrics *m, const image_line *of, double fille
 status edges_displacement(const metrics *m, double measured[2], double theory[2], diagnostic *why)
 {
     image_line l;
-    double filled[2], bare[2];
+    traced_line filled, bare;
     for (int i = 0; i < 2; i++)
         measured[i] = theory[i] = NAN;
     if (theory_edges(m->supposed, &m->theory_at, &l))
         return STATUS_OK;
-    const status code = measure_edges(m, &l, filled, bare, why);
+    const status code = measure_edges(m, &l, &filled, &bare, why);
     for (int i = 0; i < 2; i++) {
-        measured[i] = filled[i] - bare[i];
+        measured[i] = filled.edge[i] - bare.edge[i];
         theory[i] = l.filled[i] - l.bare[i];
     }
     return code;
 }
 
+static double edge_tolerance(double px, double across, double slope)
+{
+    return 2.0 * bisect_width(px) + across / slope;
+}
+
 static status add_edges(const metrics *m, diagnostic *why)
 {
     image_line l = {.filled = {NAN, NAN}, .bare = {NAN, NAN}};
-    double filled[2] = {NAN, NAN}, bare[2] = {NAN, NAN};
+    traced_line in = {{NAN, NAN}, {NAN, NAN}}, out = in;
     const char *const none = theory_edges(m->supposed, &m->theory_at, &l);
-    const status code = none ? STATUS_OK : measure_edges(m, &l, filled, bare, why);
+    const status code = none ? STATUS_OK : measure_edges(m, &l, &in, &out, why);
     const double nothing = none ? NAN : 0.0; /* intermediate results are discarded then */
-    const double tolerance = EDGE_TOLERANCE_PX;
+    const double *const filled = in.edge, *const bare = out.edge;
+    double off[2], shift[2];
+    for (int i = 0; i < 2; i++) {
+        off[i] = edge_tolerance(l.filled[i], in.across[i], l.filled_slope[i]);
+        shift[i] = off[i] + edge_tolerance(l.bare[i], out.across[i], l.bare_slope[i]);
+    }
+    const double width = l.bare[1] - l.bare[0], ratio = (l.filled[1] - l.filled[0]) / width,
+                 off_ratio = (off[0] + off[1] + ratio * (shift[0] - off[0] + shift[1] - off[1])) / width;
     metrics_add(m, (realism_value){"edges.left",
                                    none ? none : "left edge of the rod in the image, seen through the filled vessel",
-                                   "px", filled[0], l.filled[0] + nothing, tolerance});
+                                   "px", filled[0], l.filled[0] + nothing, off[0]});
     metrics_add(m, (realism_value){"edges.right",
                                    none ? none : "right edge of the rod in the image, seen through the filled vessel",
-                                   "px", filled[1], l.filled[1] + nothing, tolerance});
+                                   "px", filled[1], l.filled[1] + nothing, off[1]});
     metrics_add(m, (realism_value){"edges.left_shift",
                                    none ? none : "shift of the left edge caused by the vessel and the liquid", "px",
-                                   filled[0] - bare[0], l.filled[0] - l.bare[0] + nothing, tolerance});
+                                   filled[0] - bare[0], l.filled[0] - l.bare[0] + nothing, shift[0]});
     metrics_add(m, (realism_value){"edges.right_shift",
                                    none ? none : "shift of the right edge caused by the vessel and the liquid", "px",
-                                   filled[1] - bare[1], l.filled[1] - l.bare[1] + nothing, tolerance});
+                                   filled[1] - bare[1], l.filled[1] - l.bare[1] + nothing, shift[1]});
     metrics_add(
         m, (realism_value){"edges.magnification",
                            none ? none : "ratio of the rod's width in the image with and without vessel and liquid", "",
-                           (filled[1] - filled[0]) / (bare[1] - bare[0]),
-                           (l.filled[1] - l.filled[0]) / (l.bare[1] - l.bare[0]) + nothing, RATIO_TOLERANCE});
+                           (filled[1] - filled[0]) / (bare[1] - bare[0]), ratio + nothing, off_ratio});
     return code;
 }
 
@@ -136,11 +157,23 @@ static scene *round_rod(const metrics *m, double radius, double distance)
     return s;
 }
 
+/* A ray at the rod's rim: whether it meets the cylinder is the sign of a discriminant, r^2 - d^2 with the errors of a
+ * distance of up to that of the wall. per_px: scene units of the axis's plane. */
+static double round_tolerance(const traced_line *l, double theory, double radius, double per_px)
+{
+    double sum = bound_difference(BOUND_FORM) * theory;
+    for (int i = 0; i < 2; i++) {
+        const double rim = bound_difference(BOUND_HIT) / (2.0 * radius);
+        sum += (theory * (l->across[i] + rim) + per_px * bisect_width(l->edge[i])) / (2.0 * radius);
+    }
+    return sum;
+}
+
 static status add_round(const metrics *m, diagnostic *why)
 {
     const double radius = 0.05 * m->at.inner, distance = 6.0 * m->at.outer;
     const theory_shells c = setup_shells(&m->theory_at);
-    double theory = c.n_core / c.n_around, edge[2] = {NAN, NAN};
+    double theory = c.n_core / c.n_around, edge[2] = {NAN, NAN}, tolerance = NAN;
     const bool visible = radius * theory < 0.9 * theory_shells_reach(&c);
     status code = STATUS_OK;
     scene *s = round_rod(m, radius, distance);
@@ -148,9 +181,11 @@ static status add_round(const metrics *m, diagnostic *why)
         const view eye = view_of(s);
         const double wide = eye.focal_px * tan(asin(m->at.outer / distance));
         const double range[2] = {eye.width / 2.0 - wide, eye.width / 2.0 + wide};
-        code = traced_edges(s, m, range, eye.height / 2.0, edge, why);
+        traced_line seen;
+        code = traced_edges(s, m, range, eye.height / 2.0, &seen, why);
+        tolerance = round_tolerance(&seen, theory, radius, distance / eye.focal_px);
         for (int i = 0; i < 2; i++)
-            edge[i] = distance * sin(atan((edge[i] - eye.width / 2.0) / eye.focal_px));
+            edge[i] = distance * sin(atan((seen.edge[i] - eye.width / 2.0) / eye.focal_px));
     } else {
         code = s ? STATUS_OK : out_of_memory(why);
         scene_destroy(s);
@@ -160,7 +195,7 @@ static status add_round(const metrics *m, diagnostic *why)
                        "edges.round_magnification",
                        visible ? "magnification of a thin round rod on the axis; theory: the liquid's refractive index"
                                : "its edges are hidden by the wall",
-                       "", (edge[1] - edge[0]) / (2.0 * radius), theory, RATIO_TOLERANCE});
+                       "", (edge[1] - edge[0]) / (2.0 * radius), theory, tolerance});
     return code;
 }
 

@@ -1,14 +1,12 @@
 /* Single interfaces between the scene's media: critical angles and reflectances.
  *
- * Tolerances: the cosine near the critical angle is good to 2e-16 divided by its slope. Reflectances have a few
- * rounding errors, but rise with infinite slope towards the critical angle, where 1e-16 in the squared cosine of
- * refraction can become 1e-10. */
+ * Tolerances: an error e of sin i or cos i moves the critical angle by e tan i or e cot i, to which half of the
+ * bisection's last interval is added. Those of reflectances are bound_shares. */
 #include "realism/metrics.h"
 
 #include <math.h>
 
-#define CRITICAL_TOLERANCE 1e-12
-#define SHARE_TOLERANCE 1e-10
+#define CRITICAL_WIDTH 1e-14 /* of the bisection's last interval */
 #define DEGREE (M_PI / 180.0)
 enum { ANGLES = 900 }; /* steps of 0.1 degrees */
 
@@ -43,7 +41,7 @@ static const char *const critical_what[] = {"critical angle between vessel and s
 static status bisect_critical(trial *t, double start_y, double *angle, diagnostic *why)
 {
     double low = 0.0, high = M_PI / 2.0 - 1e-9;
-    while (high - low > 1e-14) {
+    while (high - low > CRITICAL_WIDTH) {
         const double middle = (low + high) / 2.0;
         const vec3 d = vec3_make(sin(middle), start_y > 0.0 ? -cos(middle) : cos(middle), 0.0);
         TRY(probe_path(t->p, vec3_make(0.0, start_y, 0.0), d, -1, &t->tree, why));
@@ -59,6 +57,12 @@ static status bisect_critical(trial *t, double start_y, double *angle, diagnosti
 static bool has_media(const metrics *m, const crossing *at)
 {
     return at->to != SETUP_LIQUID || (m->theory_at.liquid >= 0 && m->at.liquid >= 0);
+}
+
+static double critical_tolerance(double angle)
+{
+    return 0.5 * CRITICAL_WIDTH + bound_difference(BOUND_SHARES) * (tan(angle) + 1.0 / tan(angle)) +
+           bound_difference(BOUND_FORM) * angle;
 }
 
 /* From the optically denser side. */
@@ -85,7 +89,7 @@ static status add_critical(const metrics *m, int which, diagnostic *why)
         trial_end(&t);
     }
     metrics_add(m, (realism_value){crossings[which].critical, exists ? critical_what[which] : none, "rad", measured,
-                                   theory, CRITICAL_TOLERANCE});
+                                   theory, critical_tolerance(theory)});
     return code;
 }
 
@@ -100,9 +104,10 @@ static status compare_shares(const metrics *m, const crossing *at, worst_pair wo
         const double angle = 0.1 * i * DEGREE;
         interface_shares seen;
         code = interface_measure(t.p, &t.tree, start_y, angle, &seen, why);
-        worst_take(&worst[0], seen.R_s, theory_fresnel_s(angle, n[at->from], n[at->to]));
-        worst_take(&worst[1], seen.R_p, theory_fresnel_p(angle, n[at->from], n[at->to]));
-        worst_take(&worst[2], seen.R, theory_fresnel(angle, n[at->from], n[at->to]));
+        const share_bound off = bound_shares(angle, 0.0, n[at->from], n[at->to]);
+        worst_take(&worst[0], seen.R_s, theory_fresnel_s(angle, n[at->from], n[at->to]), off.R_s);
+        worst_take(&worst[1], seen.R_p, theory_fresnel_p(angle, n[at->from], n[at->to]), off.R_p);
+        worst_take(&worst[2], seen.R, theory_fresnel(angle, n[at->from], n[at->to]), off.R);
     }
     trial_end(&t);
     return code;
@@ -112,15 +117,15 @@ static status add_fresnel(const metrics *m, int which, diagnostic *why)
 {
     const crossing *at = &crossings[which];
     const bool exists = has_media(m, at);
-    worst_pair worst[3] = {{NAN, NAN, false}, {NAN, NAN, false}, {NAN, NAN, false}};
+    worst_pair worst[3] = {WORST_NONE, WORST_NONE, WORST_NONE};
     const status code = exists ? compare_shares(m, at, worst, why) : STATUS_OK;
     const char *const none = exists ? NULL : "there is no liquid";
     metrics_add(m, (realism_value){at->s, none ? none : "reflectance, s-polarised; largest error for 0 to 89.9 degrees",
-                                   "", worst[0].measured, worst[0].theory, SHARE_TOLERANCE});
+                                   "", worst[0].measured, worst[0].theory, worst[0].tolerance});
     metrics_add(m, (realism_value){at->p, none ? none : "reflectance, p-polarised", "", worst[1].measured,
-                                   worst[1].theory, SHARE_TOLERANCE});
+                                   worst[1].theory, worst[1].tolerance});
     metrics_add(m, (realism_value){at->mean, none ? none : "reflectance, unpolarised", "", worst[2].measured,
-                                   worst[2].theory, SHARE_TOLERANCE});
+                                   worst[2].theory, worst[2].tolerance});
     return code;
 }
 

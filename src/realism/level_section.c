@@ -52,7 +52,8 @@ static flat_ray flatten(const level_section *c, double px, double py)
     return r;
 }
 
-bool level_section_sees_rod(const level_section *c, double px, double py)
+/* Distances of the ray inside from the rod's corners, with the sign of the side; false if it does not get inside. */
+static bool sides_of(const level_section *c, double px, double py, double side[4])
 {
     const flat_ray r = flatten(c, px, py);
     if (!(fabs(r.offset) < theory_shells_reach(&r.shells)))
@@ -60,13 +61,33 @@ bool level_section_sees_rod(const level_section *c, double px, double py)
     /* A ray with an offset to the left has the axis on its right, and turns towards it: the heading decreases. */
     const double heading = r.heading - theory_shells_turn(&r.shells, r.offset);
     const double offset = r.offset * r.shells.n_around / r.shells.n_core;
-    double least = INFINITY, most = -INFINITY;
+    for (int i = 0; i < 4; i++)
+        side[i] = c->corner_z[i] * cos(heading) - c->corner_x[i] * sin(heading) - offset;
+    return true;
+}
+
+bool level_section_sees_rod(const level_section *c, double px, double py)
+{
+    double side[4], least = INFINITY, most = -INFINITY;
+    if (!sides_of(c, px, py, side))
+        return false;
     for (int i = 0; i < 4; i++) {
-        const double side = c->corner_z[i] * cos(heading) - c->corner_x[i] * sin(heading) - offset;
-        least = fmin(least, side);
-        most = fmax(most, side);
+        least = fmin(least, side[i]);
+        most = fmax(most, side[i]);
     }
     return least <= 0.0 && most >= 0.0; /* corners on both sides */
+}
+
+double level_section_slope(const level_section *c, double px, double py)
+{
+    const double step = 1e-4;
+    double before[4], at[4], after[4];
+    if (!sides_of(c, px - step, py, before) || !sides_of(c, px, py, at) || !sides_of(c, px + step, py, after))
+        return NAN;
+    int nearest = 0;
+    for (int i = 1; i < 4; i++)
+        nearest = fabs(at[i]) < fabs(at[nearest]) ? i : nearest;
+    return fabs(after[nearest] - before[nearest]) / (2.0 * step);
 }
 
 void level_section_range(const level_section *c, double px, double py, double range[2])

@@ -22,6 +22,9 @@ level_section level_section_bare(const level_section *c);
 
 bool level_section_sees_rod(const level_section *c, double px, double py);
 
+/* Of an edge seen at px: change of the distance of the ray from the rod's corner there, scene units per px. */
+double level_section_slope(const level_section *c, double px, double py);
+
 /* The horizontal bounds of the vessel in image line py, around the axis at px. */
 void level_section_range(const level_section *c, double px, double py, double range[2]);
 

@@ -9,11 +9,13 @@ void metrics_add(const metrics *m, realism_value value)
         m->report->value[m->report->count++] = value;
 }
 
-void worst_take(worst_pair *w, double measured, double theory)
+void worst_take(worst_pair *w, double measured, double theory, double tolerance)
 {
-    /* Written so that a NaN counts as the worst measurement. */
-    if (!w->any || !(fabs(measured - theory) <= fabs(w->measured - w->theory)))
-        *w = (worst_pair){measured, theory, true};
+    /* A NaN counts as the worst measurement, whatever follows; where theory is NaN there is nothing to measure. */
+    if (isnan(theory) || (w->any && isnan(w->measured)))
+        return;
+    if (!w->any || !(fabs(measured - theory) * w->tolerance <= fabs(w->measured - w->theory) * tolerance))
+        *w = (worst_pair){measured, theory, tolerance, true};
 }
 
 double realism_error(const realism_value *v)

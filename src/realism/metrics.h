@@ -3,6 +3,7 @@
  * takes the scene over, trial_end releases everything. */
 #pragma once
 
+#include "realism/bound.h"
 #include "realism/realism.h"
 #include "realism/setup.h"
 #include "render/inspect/probe.h"
@@ -36,12 +37,13 @@ status realism_stack(const metrics *m, diagnostic *why); /* stack.c: a stack of 
 
 void metrics_add(const metrics *m, realism_value value);
 
-/* Keeps the pair with the largest difference. */
+/* Keeps the pair with the largest difference, each in units of its tolerance. */
 typedef struct worst_pair {
-    double measured, theory;
+    double measured, theory, tolerance;
     bool any;
 } worst_pair;
-void worst_take(worst_pair *w, double measured, double theory);
+#define WORST_NONE ((worst_pair){NAN, NAN, NAN, false})
+void worst_take(worst_pair *w, double measured, double theory, double tolerance);
 
 /* Points of curves, shared with curve.c. */
 status lens_deviation(probe *p, ray_tree *tree, const setup *at, double offset, double *radians, diagnostic *why);
@@ -103,11 +105,21 @@ bool trial_meets(trial *t, vec3 origin, vec3 direction, int which, bool upright,
 status trial_edges(trial *t, int which, bool upright, double py, const double range[2], int steps, double edge[2],
                    diagnostic *why);
 
-/* Adds an angle at the F, d and C lines and at render.lambda_nm; difference: F minus C, measured and theory. none is
- * the reason if there is no theory. */
-typedef status at_line_call(const metrics *m, double lambda_nm, double *measured, double *theory, diagnostic *why);
+/* Bound of the distance, across the ray, of the place where the path through an edge just found meets the solid, towards
+ * whose other edge it is moved by EDGE_INSIDE_PX. NaN if it does not meet it. */
+#define EDGE_INSIDE_PX 1e-6
+status trial_edge_bound(trial *t, int which, double py, const double edge[2], int side, double curvature,
+                        double *across, diagnostic *why);
+
+/* Width of the bisection's last interval, px or scene units, and the rounding of its ends. */
+double bisect_width(double at);
+
+/* Adds an angle at the F, d and C lines and at render.lambda_nm; difference: F minus C: measured, theory, tolerance.
+ * none is the reason if there is no theory. */
+typedef status at_line_call(const metrics *m, double lambda_nm, double *measured, double *theory, double *tolerance,
+                            diagnostic *why);
 status metrics_at_lines(const metrics *m, const char *const names[4], const char *const what[4], const char *none,
-                        at_line_call *at_line, double tolerance, double difference[2], diagnostic *why);
+                        at_line_call *at_line, double difference[3], diagnostic *why);
 
 /* A copy at a wavelength, with the settings needed to trace such an angle; NULL without memory. */
 scene *arrange_at(const scene *s, double lambda_nm);

@@ -1,13 +1,12 @@
 /* Minimum deviation of a prism at the F, d and C lines. The scene has solids named prism, and left and right, the
  * half-spaces that cut its two faces (experiments/scenes/prism.yaml).
  *
- * The deviation is stationary in the angle of incidence at its minimum, so its value is good to rounding. */
+ * The deviation is stationary in the angle of incidence at its minimum, so its value is good to rounding. Tolerance: the
+ * bound of the path at the closed form's angle, with the rounding of the apex, a difference of two normals. */
 #include "realism/metrics.h"
 
 #include "scene/model/scene.h"
 #include <math.h>
-
-#define ANGLE_TOLERANCE 1e-12 /* rad */
 
 /* point: on the left face; left, right: the prism's outward normals; up: along the left face, towards the apex. */
 typedef struct prism_faces {
@@ -83,7 +82,15 @@ static double theory_least_deviation(double apex, double n)
     return 2.0 * asin(n * sin(apex / 2.0)) - apex;
 }
 
-static status at_line(const metrics *m, double lambda_nm, double *measured, double *theory, diagnostic *why)
+static double tolerance_of(search *look, double apex, double least)
+{
+    if (isnan(deviation(look, (apex + least) / 2.0)))
+        return NAN;
+    return bound_path(&look->t->tree, 0.0).heading + bound_difference(BOUND_FORM) * (M_PI + 1.0 / sin(apex));
+}
+
+static status at_line(const metrics *m, double lambda_nm, double *measured, double *theory, double *tolerance,
+                      diagnostic *why)
 {
     const prism_faces supposed = faces_of(m->supposed);
     const double apex = M_PI - acos(vec3_dot(supposed.left, supposed.right));
@@ -92,6 +99,7 @@ static status at_line(const metrics *m, double lambda_nm, double *measured, doub
     search look = {.t = &t, .at = faces_of(m->traced), .why = why};
     look.code = trial_start(&t, arrange_at(m->traced, lambda_nm), m->level, why);
     *measured = look.code == STATUS_OK ? least_deviation(&look) : NAN;
+    *tolerance = look.code == STATUS_OK ? tolerance_of(&look, apex, *theory) : NAN;
     trial_end(&t);
     return look.code;
 }
@@ -102,12 +110,12 @@ status realism_prism(const metrics *m, diagnostic *why)
     static const char *const what[] = {
         "minimum deviation at the F line, 486.1 nm", "minimum deviation at the d line, 587.6 nm",
         "minimum deviation at the C line, 656.3 nm", "minimum deviation at render.lambda_nm"};
-    double off[2];
-    const status code = metrics_at_lines(m, names, what, NULL, at_line, ANGLE_TOLERANCE, off, why);
+    double off[3];
+    const status code = metrics_at_lines(m, names, what, NULL, at_line, off, why);
     if (code == STATUS_OK)
         metrics_add(m, (realism_value){"prism.F-C",
                                        "angular dispersion: minimum deviation at the F line minus that at the C line",
-                                       "rad", off[0], off[1], 2.0 * ANGLE_TOLERANCE});
+                                       "rad", off[0], off[1], off[2]});
     return code;
 }
 

@@ -3,14 +3,14 @@
  * the liquid has T (n_0 / n)^2 from above. A light above illuminates that floor through the surface with the T of its
  * own straight line, and the square of the index applies only to the returning path.
  *
- * Tolerance: as in gap.c; some film units and, near the critical angle, the square root of a rounding error. */
+ * Tolerance: as in gap.c; for the lamp, also the bound of its own light, whose angle follows from the point of the
+ * floor: an error e of the ray's direction moves that by e (1 + tan^2) of each length. */
 #include "realism/metrics.h"
 
 #include "scene/model/edit/edit.h"
 #include "scene/model/scene.h"
 #include <math.h>
 
-#define RADIANCE_TOLERANCE 1e-11
 enum { STEP_DEG = 5, LAST_DEG = 85, LAMP_HEIGHT = 40, EYE_HEIGHT = 2 };
 
 typedef enum look { LOOK_SKY, LOOK_FLOOR, LOOK_LAMP, LOOKS } look;
@@ -83,6 +83,25 @@ static double theory(const setup *at, look which, double angle)
     return T / (ratio * ratio) * (which == LOOK_LAMP ? lamp_theory(angle, n_around, n_liquid) : 1.0);
 }
 
+static double tolerance(const setup *at, look which, double angle)
+{
+    const double n_around = at->n[SETUP_OUTSIDE], n_liquid = at->n[SETUP_LIQUID], ratio = n_liquid / n_around;
+    const double gain = which == LOOK_SKY ? ratio * ratio : 1.0 / (ratio * ratio);
+    double off = bound_difference(BOUND_FORM) + (which == LOOK_SKY ? bound_shares(angle, 0.0, n_liquid, n_around)
+                                                                   : bound_shares(angle, 0.0, n_around, n_liquid))
+                                                    .R;
+    const double t = theory_snell(angle, n_around, n_liquid);
+    if (which == LOOK_LAMP && !isnan(t)) {
+        const double turn = bound_difference(BOUND_TURN), x = EYE_HEIGHT / cos(angle) + 1.0 / cos(t),
+                     aside = turn * (EYE_HEIGHT / pow(cos(angle), 2) + n_around / n_liquid / pow(cos(t), 3) + x) /
+                             LAMP_HEIGHT,
+                     across = hypot(lamp_place.x - (EYE_HEIGHT - 1.0) * tan(angle) - tan(t), lamp_place.z),
+                     incidence = atan2(across, lamp_place.y);
+        off += aside + turn + bound_shares(incidence, aside, fmin(n_around, n_liquid), fmax(n_around, n_liquid)).R;
+    }
+    return BOUND_FILM + gain * off;
+}
+
 static status measure(const metrics *m, look which, worst_pair *worst, diagnostic *why)
 {
     scene *s = pond(m->traced, &m->at, which);
@@ -99,7 +118,8 @@ static status measure(const metrics *m, look which, worst_pair *worst, diagnosti
         const double angle = degrees * M_PI / 180.0, up = which == LOOK_SKY ? 1.0 : -1.0;
         const vec3 from = vec3_make(0.0, which == LOOK_SKY ? 0.5 : EYE_HEIGHT, 0.0);
         code = probe_ray(t.p, from, vec3_make(sin(angle), up * cos(angle), 0.0), &t.tree, why);
-        worst_take(worst, code == STATUS_OK ? t.tree.radiance[0] : NAN, theory(&m->theory_at, which, angle));
+        worst_take(worst, code == STATUS_OK ? t.tree.radiance[0] : NAN, theory(&m->theory_at, which, angle),
+                   tolerance(&m->theory_at, which, angle));
     }
     trial_end(&t);
     return code;
@@ -116,14 +136,14 @@ status realism_radiance(const metrics *m, diagnostic *why)
     const bool fresnel = !scene_has_constant_shares(&m->traced->render);
     status code = STATUS_OK;
     for (int k = 0; k < LOOKS && code == STATUS_OK; k++) {
-        worst_pair worst = {NAN, NAN, false};
+        worst_pair worst = WORST_NONE;
         const bool defined = fresnel && m->at.liquid >= 0;
         if (defined)
             code = measure(m, (look)k, &worst, why);
         const char *line = m->at.liquid < 0 ? "there is no liquid"
                            : !fresnel       ? "constant weights do not depend on the angle"
                                             : what[k];
-        metrics_add(m, (realism_value){names[k], line, "", worst.measured, worst.theory, RADIANCE_TOLERANCE});
+        metrics_add(m, (realism_value){names[k], line, "", worst.measured, worst.theory, worst.tolerance});
     }
     return code;
 }

@@ -12,9 +12,9 @@
  * plates (plate1, plate2). Two polarisers (polariser, analyser), a coin in a cup (cup, coin, liquid), an arrow
  * behind a glass (vessel, liquid, arrow) and a thin film (film1) have a curve each.
  *
- * Tolerances are derived from arithmetic: a unit in the last place of a double is 2.2e-16 of the value, a unit of the
- * film 5.7e-14; the longest paths have about ten interfaces, each of which may multiply such an error by a small
- * factor. Ownership: values. Errors: STATUS_BAD_INPUT names the unsuitable solid. */
+ * Tolerances are computed for each measurement from bounds of its rounding errors (bound.h): of doubles, of the film's
+ * units, and of bisections, carried along the path. A largest error is the largest in units of its tolerance.
+ * Ownership: values. Errors: STATUS_BAD_INPUT names the unsuitable solid. */
 #pragma once
 
 #include "base/isa.h"

@@ -4,13 +4,12 @@
  * (Radiance has an additional factor n^2 in a medium; both ends are outside, where it cancels, and the tracer's
  * throughput omits it.) Paths near grazing incidence are excluded: errors grow there as 1 / cos.
  *
- * Tolerance: 1e-16 per surface, divided by the cosines of up to 16 surfaces, of at least 0.1. */
+ * Tolerance: the bound of the reversed path, to whose errors at each surface those of the path itself add. */
 #include "realism/metrics.h"
 
 #include "base/random.h"
 #include <math.h>
 
-#define REVERSAL_TOLERANCE 1e-9
 #define LEAST_COSINE 0.1
 enum { PATHS = 2000, HITS_MAX = 12 };
 
@@ -57,13 +56,14 @@ static int reflected_at(const ray_tree *tree, int asked)
 /* Of the reversed path: its throughput, and its distance from the origin of the path. */
 typedef struct round_trip {
     double forth, back, miss;
+    path_bound off;
     bool done;
 } round_trip;
 
 static status trace_back(trial *forth, trial *back, const setup *at, uint32_t number, round_trip *out, diagnostic *why)
 {
     const test_path w = random_path(at, number);
-    *out = (round_trip){NAN, NAN, NAN, false};
+    *out = (round_trip){NAN, NAN, NAN, {0.0, 0.0, 0.0}, false};
     status code = probe_path(forth->p, w.from, w.along, w.reflect_at, &forth->tree, why);
     const int hits = code == STATUS_OK ? surfaces(&forth->tree) : -1;
     if (hits < 0)
@@ -81,29 +81,31 @@ static status trace_back(trial *forth, trial *back, const setup *at, uint32_t nu
         return STATUS_OK; /* another path: nothing agrees */
     out->back = home->throughput[0];
     out->miss = vec3_length(vec3_cross(away, home->direction));
+    out->off = bound_path(&back->tree, 1.0 / at->inner);
+    out->off.across += out->off.heading * vec3_length(away);
     return STATUS_OK;
 }
 
 status realism_reversal(const metrics *m, diagnostic *why)
 {
     trial forth, back = {0};
-    worst_pair ratio = {NAN, NAN, false}, miss = {NAN, NAN, false};
+    worst_pair ratio = WORST_NONE, miss = WORST_NONE;
     status code = trial_start(&forth, arrange_vessel(m->supposed, &m->theory_at), m->level, why);
     THEN(code, trial_start(&back, arrange_vessel(m->traced, &m->at), m->level, why));
     for (uint32_t i = 0; i < PATHS && code == STATUS_OK; i++) {
         round_trip r;
         code = trace_back(&forth, &back, &m->theory_at, i, &r, why);
         if (r.done && r.forth > 0.0) {
-            worst_take(&ratio, r.back / r.forth, 1.0);
-            worst_take(&miss, r.miss, 0.0);
+            worst_take(&ratio, r.back / r.forth, 1.0, r.off.weight);
+            worst_take(&miss, r.miss, 0.0, r.off.across);
         }
     }
     trial_end(&forth);
     trial_end(&back);
     metrics_add(m, (realism_value){"reversal.throughput",
                                    "throughput of a reversed path over that of the path; largest error of about 1000",
-                                   "", ratio.measured, ratio.theory, REVERSAL_TOLERANCE});
+                                   "", ratio.measured, ratio.theory, ratio.tolerance});
     metrics_add(m, (realism_value){"reversal.way", "distance of the reversed path from the origin of the path",
-                                   "scene units", miss.measured, miss.theory, REVERSAL_TOLERANCE * m->at.outer});
+                                   "scene units", miss.measured, miss.theory, miss.tolerance});
     return code;
 }

@@ -3,14 +3,14 @@
  * 2, each further one two more. For unpolarised light this is the series of the mean R if each interface uses the mean,
  * and the mean of the two series if rays carry their polarisation, which is physically correct.
  *
- * Tolerance: some film units, 5.7e-14 each, and a few rounding errors. */
+ * Tolerance: half a unit of the film for each term, the rounding of its factors, and the bound of R times the largest
+ * derivative of the series by R, 2, at both faces. */
 #include "realism/metrics.h"
 #include "scene/model/scene.h"
 
 #include <math.h>
 
 #define SLAB_ANGLE (40.0 * M_PI / 180.0)
-#define SLAB_TOLERANCE 1e-11
 enum { DEPTH_MAX = 12 };
 
 static scene *slab_scene(const scene *s, const setup *at, int depth, bool polarised)
@@ -46,6 +46,14 @@ double slab_theory(const metrics *m, int depth, bool polarised)
                      : theory_slab((R_s + R_p) / 2.0, depth / 2);
 }
 
+static double tolerance_at(const metrics *m, int depth)
+{
+    const double n_from = m->theory_at.n[SETUP_OUTSIDE], n_to = m->theory_at.n[SETUP_VESSEL];
+    const share_bound off = bound_shares(SLAB_ANGLE, bound_difference(BOUND_TURN), n_from, n_to);
+    return (depth / 2 + 1) * BOUND_FILM + bound_difference(BOUND_FORM * (depth + 1)) +
+           2.0 * 2.0 * fmax(off.R, fmax(off.R_s, off.R_p));
+}
+
 status realism_slab(const metrics *m, diagnostic *why)
 {
     static const char *const names[] = {"slab.depth", "slab.depth_polarised"};
@@ -55,15 +63,15 @@ status realism_slab(const metrics *m, diagnostic *why)
     status code = STATUS_OK;
     for (int polarised = 0; polarised < 2 && code == STATUS_OK; polarised++) {
         const bool exists = !polarised || !scene_has_constant_shares(&m->traced->render);
-        worst_pair worst = {NAN, NAN, false};
+        worst_pair worst = WORST_NONE;
         for (int depth = 0; depth <= DEPTH_MAX && code == STATUS_OK && exists; depth++) {
             double measured = NAN;
             code = slab_measure(m, depth, polarised, &measured, why);
-            worst_take(&worst, measured, slab_theory(m, depth, polarised));
+            worst_take(&worst, measured, slab_theory(m, depth, polarised), tolerance_at(m, depth));
         }
         metrics_add(m, (realism_value){names[polarised],
                                        exists ? what[polarised] : "constant weights have no polarisation", "",
-                                       worst.measured, worst.theory, SLAB_TOLERANCE});
+                                       worst.measured, worst.theory, worst.tolerance});
     }
     return code;
 }

@@ -49,6 +49,27 @@ double theory_slab_whole(double R)
     return (1.0 - R) / (1.0 + R);
 }
 
+double theory_pile(double R, int interfaces, int depth)
+{
+    enum { MOST = 16 };
+    /* Light on its way to interface i from before it, and from behind it; sent by those met so far. */
+    double onwards[MOST + 1] = {1.0}, backwards[MOST + 1] = {0.0}, through = 0.0;
+    if (interfaces < 1 || interfaces > MOST)
+        return NAN;
+    for (int met = 0; met < depth; met++) {
+        double on[MOST + 1] = {0.0}, back[MOST + 1] = {0.0};
+        for (int i = 0; i < interfaces; i++) {
+            on[i + 1] += (1.0 - R) * onwards[i] + R * backwards[i];
+            if (i > 0)
+                back[i - 1] += R * onwards[i] + (1.0 - R) * backwards[i];
+        }
+        through += on[interfaces];
+        for (int i = 0; i < interfaces; i++)
+            onwards[i] = on[i], backwards[i] = back[i];
+    }
+    return through;
+}
+
 double theory_shells_reach(const theory_shells *c)
 {
     const double in_wall = c->inner * c->n_wall / c->n_around, in_core = c->inner * c->n_core / c->n_around;

@@ -21,6 +21,12 @@ double theory_fresnel(double angle, double n_from, double n_to);
 double theory_slab(double R, int passes);
 double theory_slab_whole(double R);
 
+/* Transmittance of a pile of interfaces of reflectance R each, of the paths that meet at most `depth` of them: the sum
+ * over the paths, of which those with k interfaces follow from those with k - 1. Without a limit it is (1 - R) / (1 +
+ * (interfaces - 1) R): Stokes, "On the intensity of the light reflected from or transmitted through a pile of plates",
+ * Proc. R. Soc. 11, 1862. interfaces: up to 16. */
+double theory_pile(double R, int interfaces, int depth);
+
 /* Coaxial cylinders: a wall of n_wall from `outer` to `inner` around n_core, in n_around. Along a ray n rho is
  * constant, rho its distance from the axis: Bouguer's invariant, Born and Wolf, 3.2. So a ray aimed past the axis at
  * `offset` passes it at offset n_around / n in each medium, and turns by a difference of asin at each surface. */

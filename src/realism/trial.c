@@ -36,9 +36,16 @@ bool trial_meets(trial *t, vec3 origin, vec3 direction, int which, bool upright,
     return false;
 }
 
+#define BISECT_WIDTH 1e-12
+
+double bisect_width(double at)
+{
+    return 0.5 * BISECT_WIDTH + bound_gamma(2) * fabs(at);
+}
+
 double bisect(seen_at *seen, void *context, double from, double to, bool before)
 {
-    while (to - from > 1e-12) {
+    while (to - from > BISECT_WIDTH) {
         const double middle = from + (to - from) / 2.0;
         if (middle <= from || middle >= to)
             break;
@@ -118,20 +125,34 @@ status trial_edges(trial *t, int which, bool upright, double py, const double ra
     return l.code;
 }
 
+status trial_edge_bound(trial *t, int which, double py, const double edge[2], int side, double curvature,
+                        double *across, diagnostic *why)
+{
+    *across = NAN;
+    if (isnan(edge[0]))
+        return STATUS_OK;
+    status code = STATUS_OK;
+    const double px = edge[side] + (side ? -EDGE_INSIDE_PX : EDGE_INSIDE_PX);
+    if (trial_meets(t, t->s->camera.position, probe_camera_direction(t->p, px, py), which, false, &code, why))
+        *across = bound_path(&t->tree, curvature).across;
+    return code;
+}
+
 status metrics_at_lines(const metrics *m, const char *const names[4], const char *const what[4], const char *none,
-                        at_line_call *at_line, double tolerance, double difference[2], diagnostic *why)
+                        at_line_call *at_line, double difference[3], diagnostic *why)
 {
     const double lambda_nm[] = {LINE_HYDROGEN_F_NM, LINE_HELIUM_D_NM, LINE_HYDROGEN_C_NM, m->traced->render.lambda_nm};
-    double measured[4], theory[4];
+    double measured[4], theory[4], tolerance[4];
     status code = STATUS_OK;
     for (int i = 0; i < 4 && code == STATUS_OK; i++) {
-        code = at_line(m, lambda_nm[i], &measured[i], &theory[i], why);
+        code = at_line(m, lambda_nm[i], &measured[i], &theory[i], &tolerance[i], why);
         metrics_add(m, (realism_value){names[i], none && isnan(theory[i]) ? none : what[i], "rad", measured[i],
-                                       theory[i], tolerance});
+                                       theory[i], tolerance[i]});
     }
     if (code == STATUS_OK) {
         difference[0] = measured[0] - measured[2];
         difference[1] = theory[0] - theory[2];
+        difference[2] = tolerance[0] + tolerance[2];
     }
     return code;
 }

@@ -3,7 +3,8 @@
  * small angles. The kink is the angle between two secants of the edge, above and below. In a line of the image the edge
  * is the leftmost image of the rod's four long edges, which bound its visible part.
  *
- * Tolerance: edges are good to 1e-11 px; over a secant of 50 px that is 1e-11 degrees. */
+ * Tolerance: the bound of the path's place on the rod, times the movement of the edge's image by a movement of the edge,
+ * and the widths of the bisections; over a secant's length. */
 #include "realism/metrics.h"
 #include "realism/view.h"
 #include "scene/model/scene.h"
@@ -13,7 +14,6 @@
 #define LEAN_DEG 20.0
 #define ROD_WIDTH 0.05
 #define ROD_LENGTH 3.0
-#define BREAK_TOLERANCE_DEG 1e-9
 
 enum { LINES = 4 };
 /* Distance in px from the centre of the image, where the rod enters the liquid. */
@@ -45,6 +45,7 @@ static scene *leaning_rod(const scene *s, const setup *at)
 typedef struct water {
     view eye;
     double n_above, n_below;
+    double moved_x, moved_z; /* of the edges in the cross-section */
 } water;
 
 /* Projection of a point on a long edge of the rod; the edge is given by its position in the cross-section, the point by
@@ -52,7 +53,8 @@ typedef struct water {
 static bool edge_image(const water *w, int edge, double along, double *px, double *py)
 {
     const double lean = -LEAN_DEG * M_PI / 180.0;
-    const double across = (edge & 1 ? 0.5 : -0.5) * ROD_WIDTH, z = (edge & 2 ? 0.5 : -0.5) * ROD_WIDTH;
+    const double across = (edge & 1 ? 0.5 : -0.5) * ROD_WIDTH + w->moved_x,
+                 z = (edge & 2 ? 0.5 : -0.5) * ROD_WIDTH + w->moved_z;
     const double x = across * cos(lean) - along * sin(lean), y = across * sin(lean) + along * cos(lean);
     if (y >= 0.0)
         return view_place(&w->eye, x, y, z, px, py);
@@ -90,34 +92,52 @@ static double break_deg(const double x[LINES])
     return (above - below) * 180.0 / M_PI;
 }
 
-static double theory_break(const scene *arranged, const setup *at)
+static double leftmost(const water *w, double line)
 {
-    const water w = {view_of(arranged), at->n[SETUP_OUTSIDE], at->n[SETUP_LIQUID]};
+    double px = INFINITY;
+    for (int edge = 0; edge < 4; edge++) {
+        const double at_line = crossing(w, edge, line);
+        if (isnan(at_line))
+            return NAN;
+        px = fmin(px, at_line);
+    }
+    return px;
+}
+
+/* slope: movement of the edge's image, px, by a movement of the edge in any direction across it, scene units. */
+static double theory_break(const scene *arranged, const setup *at, double slope[LINES])
+{
+    const double step = 1e-6;
+    const water w = {.eye = view_of(arranged), .n_above = at->n[SETUP_OUTSIDE], .n_below = at->n[SETUP_LIQUID]};
+    water aside = w, behind = w;
     double x[LINES];
+    aside.moved_x = step, behind.moved_z = step;
     for (int i = 0; i < LINES; i++) {
-        x[i] = INFINITY;
-        for (int edge = 0; edge < 4; edge++) {
-            const double at_line = crossing(&w, edge, w.eye.height / 2.0 + line_at[i]);
-            if (isnan(at_line))
-                return NAN;
-            x[i] = fmin(x[i], at_line);
-        }
+        const double line = w.eye.height / 2.0 + line_at[i];
+        x[i] = leftmost(&w, line);
+        if (isnan(x[i]))
+            return NAN;
+        slope[i] = (fabs(leftmost(&aside, line) - x[i]) + fabs(leftmost(&behind, line) - x[i])) / step;
     }
     return break_deg(x);
 }
 
-static status measure_break(const metrics *m, scene *arranged, double *degrees, diagnostic *why)
+static status measure_break(const metrics *m, scene *arranged, const double slope[LINES], double *degrees,
+                            double *tolerance, diagnostic *why)
 {
     trial t;
     status code = trial_start(&t, arranged, m->level, why);
-    double x[LINES] = {NAN, NAN, NAN, NAN};
+    double x[LINES] = {NAN, NAN, NAN, NAN}, off = 0.0;
     for (int i = 0; i < LINES && code == STATUS_OK; i++) {
         const double range[2] = {200.0, 600.0};
-        double edge[2];
+        double edge[2], across = NAN;
         code = trial_edges(&t, m->at.rod, false, 300.0 + line_at[i], range, 256, edge, why);
+        THEN(code, trial_edge_bound(&t, m->at.rod, 300.0 + line_at[i], edge, 0, 0.0, &across, why));
         x[i] = edge[0];
+        off += (across * slope[i] + 2.0 * bisect_width(x[i])) / (line_at[1] - line_at[0]);
     }
     *degrees = break_deg(x);
+    *tolerance = (off + bound_difference(BOUND_FORM)) * 180.0 / M_PI;
     trial_end(&t);
     return code;
 }
@@ -125,18 +145,18 @@ static status measure_break(const metrics *m, scene *arranged, double *degrees, 
 status realism_water_line(const metrics *m, diagnostic *why)
 {
     const char *what = "apparent bend of the leaning rod's left edge at the liquid's surface, in the image";
-    double measured = NAN, theory = NAN;
+    double measured = NAN, theory = NAN, tolerance = NAN, slope[LINES];
     status code = STATUS_OK;
     scene *supposed = leaning_rod(m->supposed, &m->theory_at);
     if (!supposed)
         return out_of_memory(why);
     if (m->theory_at.liquid < 0)
         what = "there is no liquid";
-    else if (isnan(theory = theory_break(supposed, &m->theory_at)))
+    else if (isnan(theory = theory_break(supposed, &m->theory_at, slope)))
         what = "the rod below the surface is not visible there";
     else
-        code = measure_break(m, leaning_rod(m->traced, &m->at), &measured, why);
+        code = measure_break(m, leaning_rod(m->traced, &m->at), slope, &measured, &tolerance, why);
     scene_destroy(supposed);
-    metrics_add(m, (realism_value){"water_line.break", what, "deg", measured, theory, BREAK_TOLERANCE_DEG});
+    metrics_add(m, (realism_value){"water_line.break", what, "deg", measured, theory, tolerance});
     return code;
 }

@@ -1,0 +1,44 @@
+/* How often smaller studies, drawn from measured rows, would have concluded something else: a rate for each pair of
+ * cells, order, design and rule. Cells of one name do the same work, so that each claim of a difference is false; of
+ * other pairs a claim is wrong if it has the other sign than the truth. Ownership: power_rates_make gives,
+ * power_rates_free releases; names are borrowed from the tables. */
+#pragma once
+
+#include "measure/design.h"
+#include "measure/quantiles.h"
+#include "study/value_table.h"
+
+/* What b is known to be, compared with a. */
+typedef enum power_truth { POWER_SAME, POWER_LARGER, POWER_SMALLER, POWER_OF_ALL_ROWS } power_truth;
+
+typedef struct power_options {
+    const char *a, *b; /* cells of the first and the last table; NULL: each cell, and the one of that name */
+    power_truth truth; /* of a and b; POWER_OF_ALL_ROWS: the sign of the ratio of all rows */
+    const design *designs;
+    size_t design_count, draws;
+    double effect;
+    uint64_t seed;
+} power_options;
+
+typedef struct power_rate {
+    const char *a, *b; /* NULL: the sum over all pairs */
+    design design;
+    design_tally tally;
+    level_interval ratio; /* b over a, of all rows */
+    int truth;            /* 1: b is larger; -1: smaller; 0: the same */
+} power_rate;
+
+typedef struct power_rates {
+    power_rate *rates; /* by pair, order and design; without those that the rows do not suffice for */
+    size_t count;
+} power_rates;
+
+/* other: the table of b, or the same as first. STATUS_BAD_INPUT for an unknown cell, or if no design can be drawn. */
+status power_rates_make(const value_table *first, const value_table *other, const power_options *options,
+                        power_rates *out, diagnostic *why);
+void power_rates_free(power_rates *r);
+
+/* The share of studies with a wrong claim; and with no claim. Its interval has as many trials as there are independent
+ * studies. */
+share_interval power_wrong(const power_rate *r, design_rule rule);
+share_interval power_silent(const power_rate *r, design_rule rule);

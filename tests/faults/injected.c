@@ -1,0 +1,3 @@
+#include "injected.h"
+
+double injected[INJECT_KINDS];
