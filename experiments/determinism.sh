@@ -7,7 +7,7 @@
 # program after another; the first in a round is another each time. bits.csv: the film and the number of rays of small
 # images for numbers of threads and schedules. images.csv: each distinct film of bits.csv against the film of the
 # program as it is. Environment: ROUNDS=15, FRAMES=5 (frames of one process, of which the median counts), SIZE=240x180;
-# QUICK=1: 6 rounds of 3 frames, two minutes. ISAS, COMPILERS and SCENES restrict the lists.
+# QUICK=1: 12 rounds of 3 frames of 160x120, four minutes. ISAS, COMPILERS and SCENES restrict the lists.
 set -euo pipefail
 export LC_ALL=C
 here=$(cd "$(dirname "$0")" && pwd)
@@ -125,9 +125,9 @@ measure)
     for isa in ${ISAS:-sse2 avx2 avx512}; do
         if CUVETTE_ISA=$isa "$folder/fixed-off-${compilers[0]}" machine --json >/dev/null 2>&1; then isas+=("$isa"); fi
     done
-    rounds=15 frames=5
-    if ((${QUICK:-0})); then rounds=6 frames=3; fi
-    times "${ROUNDS:-$rounds}" "${FRAMES:-$frames}" "${SIZE:-240x180}" |
+    rounds=15 frames=5 size=240x180
+    if ((${QUICK:-0})); then rounds=12 frames=3 size=160x120; fi
+    times "${ROUNDS:-$rounds}" "${FRAMES:-$frames}" "${SIZE:-$size}" |
         add rows 'film,contract,compiler,isa,scene,repetition,place,cpu_s,film_hash,rays_total,others_share'
     bits 64x48 >"$work/bits"
     add bits 'film,contract,compiler,isa,scene,threads,schedule,film_hash,rays_total' <"$work/bits"
