@@ -1,5 +1,5 @@
 #!/bin/bash
-# determinism.sh - what the same bits everywhere cost, and what they buy: the program as it is, beside builds whose film
+# determinism.sh - what the same bits everywhere cost, and what they buy: the program as it is, and builds whose film
 # sums doubles (float), whose compiler contracts products and sums to FMA (fast), or both: make variants.
 #   experiments/determinism.sh build FOLDER            the programs FOLDER/FILM-CONTRACT-COMPILER, by gcc and clang
 #   experiments/determinism.sh measure FOLDER RESULTS  adds to RESULTS/{rows,bits,images}.csv; needs only these programs
@@ -94,7 +94,7 @@ bits() { # SIZE
     done
 }
 
-# The image of each distinct film beside that of the first row of the program as it is, as floats.
+# The image of each distinct film, as floats, compared with that of the first row: the program as it is.
 images() {
     local scene hash expected=
     cut -d , -f 5,8 "$work/bits" | awk '!seen[$0]++' | while IFS=, read -r scene hash; do
