@@ -1,5 +1,5 @@
 #!/bin/bash
-# determinism.sh - what the same bits everywhere cost, and what they buy: the program as it is, beside builds whose film
+# determinism.sh - what the same bits everywhere cost, and what they buy: the program as it is, and builds whose film
 # sums doubles (float), whose compiler contracts products and sums to FMA (fast), or both: make variants.
 #   experiments/determinism.sh build FOLDER            the programs FOLDER/FILM-CONTRACT-COMPILER, by gcc and clang
 #   experiments/determinism.sh measure FOLDER RESULTS  adds to RESULTS/{rows,bits,images}.csv; needs only these programs
@@ -7,7 +7,7 @@
 # program after another; the first in a round is another each time. bits.csv: the film and the number of rays of small
 # images for numbers of threads and schedules. images.csv: each distinct film of bits.csv against the film of the
 # program as it is. Environment: ROUNDS=15, FRAMES=5 (frames of one process, of which the median counts), SIZE=240x180;
-# QUICK=1: 6 rounds of 3 frames, two minutes. ISAS, COMPILERS and SCENES restrict the lists.
+# QUICK=1: 12 rounds of 3 frames of 160x120, four minutes. ISAS, COMPILERS and SCENES restrict the lists.
 set -euo pipefail
 export LC_ALL=C
 here=$(cd "$(dirname "$0")" && pwd)
@@ -32,6 +32,10 @@ build() {
         done
     done
     strip -o "$folder/cuvette-import" "$built/cuvette-import"
+    # What a machine without these libraries lacks; glibc must be its own.
+    mkdir -p "$folder/lib"
+    ldd "$built/cuvette" "$built/cuvette-import" | awk '$2 == "=>" && $1 !~ /^lib(c|m)[.]/ { print $3 }' | sort -u |
+        xargs cp -L -t "$folder/lib"
 }
 
 # of NAME: the first value of that name in $json, in $value. Without a process, whose start takes longer than a film.
@@ -90,7 +94,7 @@ bits() { # SIZE
     done
 }
 
-# The image of each distinct film beside that of the first row of the program as it is, as floats.
+# The image of each distinct film, as floats, compared with that of the first row: the program as it is.
 images() {
     local scene hash expected=
     cut -d , -f 5,8 "$work/bits" | awk '!seen[$0]++' | while IFS=, read -r scene hash; do
@@ -115,14 +119,15 @@ measure)
     results=$(cd "$3" && pwd)
     work=$(mktemp -d "${TMPDIR:-/tmp}/cuvette-determinism.XXXXXX")
     trap 'rm -rf "$work"' EXIT
-    if [[ -d $folder/lib ]]; then export LD_LIBRARY_PATH=$folder/lib; fi # of programs that were built elsewhere
+    # Of programs that were built elsewhere.
+    if ldd "$folder/fixed-off-${compilers[0]}" | grep -q 'not found'; then export LD_LIBRARY_PATH=$folder/lib; fi
     isas=()
     for isa in ${ISAS:-sse2 avx2 avx512}; do
         if CUVETTE_ISA=$isa "$folder/fixed-off-${compilers[0]}" machine --json >/dev/null 2>&1; then isas+=("$isa"); fi
     done
-    rounds=15 frames=5
-    if ((${QUICK:-0})); then rounds=6 frames=3; fi
-    times "${ROUNDS:-$rounds}" "${FRAMES:-$frames}" "${SIZE:-240x180}" |
+    rounds=15 frames=5 size=240x180
+    if ((${QUICK:-0})); then rounds=12 frames=3 size=160x120; fi
+    times "${ROUNDS:-$rounds}" "${FRAMES:-$frames}" "${SIZE:-$size}" |
         add rows 'film,contract,compiler,isa,scene,repetition,place,cpu_s,film_hash,rays_total,others_share'
     bits 64x48 >"$work/bits"
     add bits 'film,contract,compiler,isa,scene,threads,schedule,film_hash,rays_total' <"$work/bits"

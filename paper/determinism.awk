@@ -6,7 +6,7 @@ function value(name,   f, i) {
     for (i = 1; i <= NF; i++) f[head[i]] = $i
     return value_of_fields(f, name)
 }
-function most(key, v) { if (v + 0 > largest[key] + 0) largest[key] = v }
+function most(key, v) { if (!(key in largest) || v + 0 > largest[key]) largest[key] = v + 0 }
 BEGIN { FS = "\t" }
 NR == 1 { for (i = 1; i <= NF; i++) { head[i] = $i; at[$i] = i }; next }
 table == "determinism" {

@@ -4,7 +4,8 @@
 # The interval of a median of n ratios is that of its order statistics: from the k-th to the (n+1-k)-th, with the
 # largest k for which a binomial (n, 1/2) is below k with a probability of at most 0.025 (Hahn and Meeker, Statistical
 # Intervals).
-# scene "all": in each round the geometric mean over the scenes.
+# scene "all": in each round the geometric mean over the scenes. disturbed: rounds in which others used more than a
+# quarter of the machine; the system counts in steps of 10 ms, and one step is up to a fifth of such a short frame.
 BEGIN {
     FS = ","; OFS = "\t"
     split("both film contraction", part_name, " ")
@@ -17,6 +18,8 @@ FNR == 1 { for (i = 1; i <= NF; i++) at[$i] = i; next }
     if (!($at["scene"] in known_scene)) { known_scene[$at["scene"]] = 1; scenes[++scene_count] = $at["scene"] }
     if ($at["repetition"] >= rounds) rounds = $at["repetition"] + 1
     cpu[$at["film"] "-" $at["contract"], group, $at["scene"], $at["repetition"]] = $at["cpu_s"]
+    if ($at["others_share"] > 0.25)
+        loud[group, $at["scene"], $at["repetition"]] = loud[group, "all", $at["repetition"]] = 1
 }
 function rank_of(n,   k, term, sum) {
     term = 0.5 ^ n
@@ -27,16 +30,17 @@ function rank_of(n,   k, term, sum) {
     }
     return k
 }
-function line(part, group, scene, list, ours, theirs,   n, v, k) {
+function line(part, group, scene, list, ours, theirs,   n, v, k, r, disturbed) {
     n = sorted(list, v)
     if (!n) return
     k = rank_of(n)
+    for (r = 0; r < rounds; r++) disturbed += (group, scene, r) in loud
     print machine, part, group, scene, n, median(list), k ? v[k] : "NA", k ? v[n + 1 - k] : "NA", v[1], v[n],
-        ours == "NA" ? ours : median(ours), theirs == "NA" ? theirs : median(theirs)
+        ours == "NA" ? ours : median(ours), theirs == "NA" ? theirs : median(theirs), disturbed + 0
 }
 END {
     print "machine", "part", "compiler", "isa", "scene", "n", "price_median", "price_low", "price_high", "price_min",
-        "price_max", "cpu_s_median", "without_cpu_s_median"
+        "price_max", "cpu_s_median", "without_cpu_s_median", "disturbed"
     for (p = 1; p <= 3; p++)
         for (g = 1; g <= group_count; g++) {
             split("", product); split("", factors)

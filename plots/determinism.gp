@@ -38,7 +38,7 @@ set bmargin at screen 0.13
 set tmargin at screen 0.92
 starts = "0.03 0.17 0.50"
 do for [p=1:3] {
-    set label 40 + p word(part_names, p) at screen real(word(starts, p)), screen 0.965 left point lt p textcolor lt p offset 0.8,0
+    set label 40 + p word(part_names, p) at screen real(word(starts, p)), screen 0.965 left point lt p ps 0.7 textcolor lt p offset 1,0
 }
 plot for [p=1:3] for [i=1:3] for [c=1:2] of(word(parts, p), word(isas, i), word(compilers, c)) \
-    using 1:(at(i, c, p)):2:3 with xerrorbars lt p
+    using 1:(at(i, c, p)):2:3 with xerrorbars lt p ps 0.7

@@ -16,8 +16,8 @@
 
 #define FILM_ONE 17592186044416.0 /* 2^44 */
 
-/* Builds float-... of make variants: sums of doubles, which depend on the order and have no range to check. Only to measure what fixed
- * point costs (experiments/determinism.sh). */
+/* Builds float-... of make variants: sums of doubles, which depend on the order and have no range to check. Only to
+ * measure what fixed point costs (experiments/determinism.sh). */
 #ifndef CUVETTE_FILM_FLOAT
 #define CUVETTE_FILM_FLOAT 0
 #endif
