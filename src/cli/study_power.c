@@ -146,7 +146,7 @@ static void print_tsv(const power_rates *r)
             if (isnan(wrong.share))
                 continue;
             printf("%s\t%s\t%s\t%zu\t%zu\t%s\t%zu\t%zu", p->a ? p->a : "all", p->b ? p->b : "all",
-                   design_order_text(p->design.order), p->design.processes, p->design.repetitions,
+                   design_order_text(p->of.order), p->of.processes, p->of.repetitions,
                    design_rule_text((design_rule)rule), p->tally.draws, p->tally.independent);
             const double values[] = {p->ratio.value,
                                      p->ratio.low,
@@ -179,9 +179,9 @@ enum { OWN_COLUMNS = 4, COLUMNS = OWN_COLUMNS + DESIGN_RULES };
 
 static void put_line(const power_rate *r, char **text)
 {
-    text[0] = strdup(design_order_text(r->design.order));
-    text[1] = text_format("%zu", r->design.processes);
-    text[2] = text_format("%zu", r->design.repetitions);
+    text[0] = strdup(design_order_text(r->of.order));
+    text[1] = text_format("%zu", r->of.processes);
+    text[2] = text_format("%zu", r->of.repetitions);
     text[3] = text_format("%zu", r->tally.independent);
     for (int rule = 0; rule < DESIGN_RULES; rule++)
         text[OWN_COLUMNS + rule] = rate_text(r, (design_rule)rule);
@@ -235,7 +235,7 @@ static status make_and_print(const request *q, const value_table *first, const v
                                   .effect = q->effect,
                                   .seed = (uint64_t)q->seed};
     power_rates rates;
-    TRY(power_rates_make(first, other, &wanted, &rates, why));
+    TRY(locate_failure(why, q->files[0], power_rates_make(first, other, &wanted, &rates, why)));
     status code = STATUS_OK;
     if (q->tsv)
         print_tsv(&rates);
