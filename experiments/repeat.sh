@@ -11,10 +11,10 @@ here=$(cd "$(dirname "$0")" && pwd)
 program=${CUVETTE:-$here/../build/cuvette}
 rates_only=
 [ "${1-}" != --rates ] || { rates_only=1 && shift; }
-[ -x "$program" ] && [ -n "${1-}" ] || {
+if [ ! -x "$program" ] || [ -z "${1-}" ]; then
     echo "repeat.sh: give a folder of results, and the program in CUVETTE; make builds it" >&2
     exit 2
-}
+fi
 results=$1
 work=$(mktemp -d)
 load=()
