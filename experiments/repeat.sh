@@ -1,6 +1,6 @@
 #!/bin/bash
-# repeat.sh - how often conclusions flip: the rows of experiments/repeat.study on the machine as it is, then under a load
-# of one rendering loop for each processing unit, and the rates of `cuvette study power`.
+# repeat.sh - how often conclusions flip: the rows of experiments/repeat.study on the machine as it is, then under a
+# load of one rendering loop for each processing unit, and the rates of `cuvette study power`.
 #   experiments/repeat.sh RESULTS          writes RESULTS/repeat and RESULTS/repeat-loaded; about a minute
 #   experiments/repeat.sh --rates RESULTS  only computes the rates again, from the values there; minutes
 # Each folder gets values.csv (the columns of rows.csv that are needed: 3600 rows), machine.tsv (whose they are) and
@@ -33,7 +33,8 @@ measure() { # FOLDER
         "$work/$1/repeat/rows.csv" |
         awk 'BEGIN { print "cell,process,repetition,wall_s,cpu_s,rays_total,others_share" }
             !($2 in number) { number[$2] = ++runs }
-            $4 == 0 { printf "%s,%d,%s,%.9f,%.9f,%s,%.3f\n", $1, number[$2], $3, $5, $6, $7, $8 }' >"$results/$1/values.csv"
+            $4 == 0 { printf "%s,%d,%s,%.9f,%.9f,%s,%.3f\n", $1, number[$2], $3, $5, $6, $7, $8 }' \
+            >"$results/$1/values.csv"
     {
         printf 'name\tvalue\n'
         for name in cpu_model processing_units started_utc load build_commit flags; do

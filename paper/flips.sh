@@ -14,7 +14,8 @@ rates() { # FOLDER MACHINE LOAD
     [ -r "$1/power.tsv" ] && [ -r "$1/values.csv" ] || return 0
     [ -s "$table.new" ] ||
         printf '%s\n' machine load others contrast work order design processes repetitions rule \
-            n ratio ratio_low ratio_high wrong wrong_low wrong_high silent silent_low silent_high | paste -s - >"$table.new"
+            n ratio ratio_low ratio_high wrong wrong_low wrong_high silent silent_low silent_high |
+        paste -s - >"$table.new"
     others=$(awk -f "$here/../plots/select.awk" -v columns=others_share "$1/values.csv" |
         awk '{ sum += $1 } END { if (NR) printf "%.3f", sum / NR }')
     printf '\\setval{flips/%s/%s/others}{%.0f}\n' "$2" "$3" "$(awk -v s="$others" 'BEGIN { print 100 * s }')"
