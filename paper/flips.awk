@@ -1,8 +1,9 @@
 # The rates of experiments/repeat.sh as one table and as numbers of the paper. One file a call: power.tsv of a folder.
 #   awk -v machine=here -v load=found -v others=0.83 -v table=flips.tsv -f flips.awk power.tsv
 # Appends to the table: machine, load, others (share of the machine that other processes used, mean of the rows),
-# contrast, work (ratio of the rays), order, design (processes x repetitions of each), processes, repetitions, rule,
-# n (studies that share no process), the ratio of all rows, and the shares of studies with a wrong claim and without one, with their intervals.
+# contrast, work (ratio of the rays), order, design (processes x repetitions of each), processes, repetitions, rule, n
+# (studies that share no process), the ratio of all rows, and the shares of studies with a wrong claim and without
+# one, with their intervals.
 # Prints \setval{flips/MACHINE/LOAD/CONTRAST/ORDER/DESIGN/RULE} in per cent, and .../silent.
 BEGIN {
     FS = OFS = "\t"

@@ -125,7 +125,7 @@ static share_interval share_of(const power_rate *r, design_rule rule, size_t hit
 {
     const double draws = (double)r->tally.draws, trials = (double)r->tally.independent;
     return design_has_rule(&r->of, rule) ? binomial_interval((double)hits / draws * trials, trials)
-                                             : (share_interval){NAN, NAN, NAN};
+                                         : (share_interval){NAN, NAN, NAN};
 }
 
 share_interval power_wrong(const power_rate *r, design_rule rule)
