@@ -13,8 +13,9 @@ table=$out/tables/flips.tsv
 rates() { # FOLDER MACHINE LOAD
     [ -r "$1/power.tsv" ] && [ -r "$1/values.csv" ] || return 0
     [ -s "$table.new" ] ||
-        printf '%s\n' machine load others contrast work order design processes repetitions rule n ratio ratio_low ratio_high \
-            wrong wrong_low wrong_high silent silent_low silent_high | paste -s - >"$table.new"
+        printf '%s\n' machine load others contrast work order design processes repetitions rule \
+            n ratio ratio_low ratio_high wrong wrong_low wrong_high silent silent_low silent_high |
+        paste -s - >"$table.new"
     others=$(awk -f "$here/../plots/select.awk" -v columns=others_share "$1/values.csv" |
         awk '{ sum += $1 } END { if (NR) printf "%.3f", sum / NR }')
     printf '\\setval{flips/%s/%s/others}{%.0f}\n' "$2" "$3" "$(awk -v s="$others" 'BEGIN { print 100 * s }')"
@@ -22,7 +23,11 @@ rates() { # FOLDER MACHINE LOAD
         awk 'BEGIN { split("inert two ten fifty threads", name, " ") } { rays[$1] = $2; print "kinds", NR }
             $1 > 0 { print name[$1], $2 / rays[0] }')
     printf '%s\n' "$works" | awk -v key="flips/$2/$3" '{ last[$1] = $2 }
-        END { for (c in last) printf(c == "kinds" ? "\\setval{%s/rays/%s}{%d}\n" : "\\setval{%s/%s/rays}{%.3f}\n", key, c, last[c]) }' |
+        END {
+            for (c in last)
+                if (c == "kinds") printf "\\setval{%s/rays/kinds}{%d}\n", key, last[c]
+                else printf "\\setval{%s/%s/rays}{%.3f}\n", key, c, last[c]
+        }' |
         sort
     printf '\\setval{flips/%s/%s/rows}{%d}\n' "$2" "$3" "$(($(wc -l <"$1/values.csv") - 1))"
     awk -v machine="$2" -v load="$3" -v others="$others" -v works="$works" -v table="$table.new" \

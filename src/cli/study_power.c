@@ -27,8 +27,10 @@ typedef struct request {
 static status take_effect(const command_option *o, void *context, const char *value, diagnostic *why)
 {
     double percent;
+    (void)o;
     if (!number_parse_real(value, &percent) || percent <= 0 || percent > 1000)
-        return options_wrong(o->name, value, why, "give a percentage, such as 5", "invalid percentage '%.64s'", value);
+        return options_wrong("--effect", value, why, "give a percentage, such as 5", "invalid percentage '%.64s'",
+                             value);
     ((request *)context)->effect = percent / 100;
     return STATUS_OK;
 }
@@ -36,10 +38,11 @@ static status take_effect(const command_option *o, void *context, const char *va
 static status take_cells(const command_option *o, void *context, const char *value, diagnostic *why)
 {
     request *r = context;
+    (void)o;
     const char *comma = strchr(value, ',');
     const size_t first = comma ? (size_t)(comma - value) : 0;
     if (!first || first >= sizeof r->cells[0] || !comma[1] || strlen(comma + 1) >= sizeof r->cells[1])
-        return options_wrong(o->name, value, why, "give two names in the column cell, such as 0,1",
+        return options_wrong("--cells", value, why, "give two names in the column cell, such as 0,1",
                              "two cells are necessary");
     snprintf(r->cells[0], sizeof r->cells[0], "%.*s", (int)first, value);
     snprintf(r->cells[1], sizeof r->cells[1], "%s", comma + 1);
@@ -49,7 +52,8 @@ static status take_cells(const command_option *o, void *context, const char *val
 static status take_truth(const command_option *o, void *context, const char *value, diagnostic *why)
 {
     static const char *const words[] = {"same", "larger", "smaller"}; /* the order of power_truth */
-    return options_choice(o->name, "truth", value, words, sizeof words / sizeof *words, &((request *)context)->truth,
+    (void)o;
+    return options_choice("--truth", "truth", value, words, sizeof words / sizeof *words, &((request *)context)->truth,
                           why);
 }
 
@@ -73,6 +77,7 @@ static bool read_design(const char *text, design *out)
 static status take_designs(const command_option *o, void *context, const char *value, diagnostic *why)
 {
     request *r = context;
+    (void)o;
     char text[512], *state = NULL;
     r->design_count = 0;
     bool good = strlen(value) < sizeof text;
@@ -81,8 +86,8 @@ static status take_designs(const command_option *o, void *context, const char *v
         good = r->design_count < DESIGNS_MOST && read_design(one, &r->designs[r->design_count++]);
     return good && r->design_count
                ? STATUS_OK
-               : options_wrong(o->name, value, why, "give repetitions, or processes x repetitions, such as 1,3,10,3x10",
-                               "invalid designs");
+               : options_wrong("--designs", value, why,
+                               "give repetitions, or processes x repetitions, such as 1,3,10,3x10", "invalid designs");
 }
 
 static const command_option options[] = {
@@ -141,11 +146,19 @@ static void print_tsv(const power_rates *r)
             if (isnan(wrong.share))
                 continue;
             printf("%s\t%s\t%s\t%zu\t%zu\t%s\t%zu\t%zu", p->a ? p->a : "all", p->b ? p->b : "all",
-                   design_order_text(p->design.order), p->design.processes, p->design.repetitions,
+                   design_order_text(p->of.order), p->of.processes, p->of.repetitions,
                    design_rule_text((design_rule)rule), p->tally.draws, p->tally.independent);
-            const double values[] = {p->ratio.value, p->ratio.low, p->ratio.high, (double)p->tally.larger[rule],
-                                     (double)p->tally.smaller[rule], wrong.share, wrong.low, wrong.high,
-                                     silent.share, silent.low, silent.high};
+            const double values[] = {p->ratio.value,
+                                     p->ratio.low,
+                                     p->ratio.high,
+                                     (double)p->tally.larger[rule],
+                                     (double)p->tally.smaller[rule],
+                                     wrong.share,
+                                     wrong.low,
+                                     wrong.high,
+                                     silent.share,
+                                     silent.low,
+                                     silent.high};
             for (size_t k = 0; k < sizeof values / sizeof *values; k++)
                 put_real(values[k]);
             putchar('\n');
@@ -166,9 +179,9 @@ enum { OWN_COLUMNS = 4, COLUMNS = OWN_COLUMNS + DESIGN_RULES };
 
 static void put_line(const power_rate *r, char **text)
 {
-    text[0] = strdup(design_order_text(r->design.order));
-    text[1] = text_format("%zu", r->design.processes);
-    text[2] = text_format("%zu", r->design.repetitions);
+    text[0] = strdup(design_order_text(r->of.order));
+    text[1] = text_format("%zu", r->of.processes);
+    text[2] = text_format("%zu", r->of.repetitions);
     text[3] = text_format("%zu", r->tally.independent);
     for (int rule = 0; rule < DESIGN_RULES; rule++)
         text[OWN_COLUMNS + rule] = rate_text(r, (design_rule)rule);
@@ -222,7 +235,7 @@ static status make_and_print(const request *q, const value_table *first, const v
                                   .effect = q->effect,
                                   .seed = (uint64_t)q->seed};
     power_rates rates;
-    TRY(power_rates_make(first, other, &wanted, &rates, why));
+    TRY(locate_failure(why, q->files[0], power_rates_make(first, other, &wanted, &rates, why)));
     status code = STATUS_OK;
     if (q->tsv)
         print_tsv(&rates);

@@ -46,7 +46,7 @@ typedef struct design_population {
 } design_population;
 
 typedef struct design_tally {
-    size_t draws;                                        /* 0: the population is too small */
+    size_t draws;                                       /* 0: the population is too small */
     size_t larger[DESIGN_RULES], smaller[DESIGN_RULES]; /* claims */
     /* Studies that the population can be divided into without sharing a process: that many independent ones stand
      * behind a rate, however many draws there are. The mean over draws is at least as precise as they are (it is a

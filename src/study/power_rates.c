@@ -41,10 +41,10 @@ static status try_pair(const pair *p, const power_options *o, power_rates *out, 
     const design_population of = {&p->a->sample, &p->b->sample, p->shared};
     for (int order = 0; order < DESIGN_ORDERS; order++)
         for (size_t i = 0; i < o->design_count; i++) {
-            power_rate rate = {.a = p->a->name, .b = p->b->name, .design = o->designs[i], .ratio = ratio};
-            rate.design.order = (design_order)order;
+            power_rate rate = {.a = p->a->name, .b = p->b->name, .of = o->designs[i], .ratio = ratio};
+            rate.of.order = (design_order)order;
             rate.truth = truth_of(o, &ratio);
-            TRY(design_try(&of, &rate.design, ~0u, o->draws, o->effect, o->seed, &rate.tally, why));
+            TRY(design_try(&of, &rate.of, ~0u, o->draws, o->effect, o->seed, &rate.tally, why));
             if (rate.tally.draws)
                 out->rates[out->count++] = rate;
         }
@@ -63,11 +63,11 @@ static void add_sums(power_rates *r)
     const size_t pairs = r->count;
     for (size_t i = 0; i < pairs; i++) {
         power_rate *sum = &r->rates[pairs];
-        while (sum < &r->rates[r->count] && !same_design(&sum->design, &r->rates[i].design))
+        while (sum < &r->rates[r->count] && !same_design(&sum->of, &r->rates[i].of))
             sum++;
         if (sum == &r->rates[r->count]) {
             r->count++;
-            *sum = (power_rate){.design = r->rates[i].design, .ratio = {NAN, NAN, NAN}};
+            *sum = (power_rate){.of = r->rates[i].of, .ratio = {NAN, NAN, NAN}};
         }
         const design_tally *from = &r->rates[i].tally;
         sum->tally.draws += from->draws;
@@ -108,7 +108,7 @@ status power_rates_make(const value_table *first, const value_table *other, cons
     status code = out->rates ? STATUS_OK : out_of_memory(why);
     THEN(code, try_all(first, other, options, out, why));
     if (code == STATUS_OK && out->count == 0)
-        code = diagnose(why, STATUS_BAD_INPUT, "ask for smaller designs, or measure in more processes",
+        code = diagnose(why, STATUS_BAD_INPUT, "choose smaller designs, or measure in more processes",
                         "the rows have too few processes or repetitions for every design");
     if (code != STATUS_OK)
         power_rates_free(out);
@@ -124,8 +124,8 @@ void power_rates_free(power_rates *r)
 static share_interval share_of(const power_rate *r, design_rule rule, size_t hits)
 {
     const double draws = (double)r->tally.draws, trials = (double)r->tally.independent;
-    return design_has_rule(&r->design, rule) ? binomial_interval((double)hits / draws * trials, trials)
-                                             : (share_interval){NAN, NAN, NAN};
+    return design_has_rule(&r->of, rule) ? binomial_interval((double)hits / draws * trials, trials)
+                                         : (share_interval){NAN, NAN, NAN};
 }
 
 share_interval power_wrong(const power_rate *r, design_rule rule)

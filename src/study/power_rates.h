@@ -22,7 +22,7 @@ typedef struct power_options {
 
 typedef struct power_rate {
     const char *a, *b; /* NULL: the sum over all pairs */
-    design design;
+    design of;
     design_tally tally;
     level_interval ratio; /* b over a, of all rows */
     int truth;            /* 1: b is larger; -1: smaller; 0: the same */
