@@ -51,6 +51,14 @@ polygons() {
     done
 }
 
+# Laws of the tests of a ray, and the time of a test.
+queries() {
+    [ -r "$out/tables/queries.tsv" ] || return 0
+    set -- "$out/tables/queries.tsv"
+    [ ! -r "$out/tables/triangles.tsv" ] || set -- "$@" "$out/tables/triangles.tsv"
+    awk -v show=numbers -v topology="$(fact triangles topology)" -f "$here/queries.awk" "$@"
+}
+
 # Columns of a published series, tab separated.
 series() { awk -f "$here/../plots/select.awk" -v columns="$2" "$published/$1.csv"; }
 
@@ -139,6 +147,7 @@ ball() {
     machine
     laws
     polygons
+    queries
     # Rays by pixel are the same for every schedule.
     for map in "$results"/maps/images/*-rays.pfm; do
         if [ -r "$map" ]; then
