@@ -182,8 +182,8 @@ static void none_and_one_sphere_test_every_triangle(void **state)
     }
 }
 
-/* Three small triangles at either end of a diagonal (tests/test_hierarchy_limits.c): the octants' root keeps none and has
- * two children. A ray through one end tests the three spheres and the three triangles of that end. */
+/* Three small triangles at either end of a diagonal (tests/test_hierarchy_limits.c): the octants' root keeps none and
+ * has two children. A ray through one end tests the three spheres and the three triangles of that end. */
 static void two_octants_by_hand(void **state)
 {
     (void)state;
@@ -250,9 +250,9 @@ static void counts_depend_on_scene_and_hierarchy_alone(void **state)
 {
     (void)state;
     need_counters();
-    static const char *const ways[] = {"render.threads=3", "render.tile=7 render.threads=2 render.pieces=0",
-                                       "render.schedule=rows render.threads=4",
-                                       "render.pool=off render.build_threads=3"};
+    static const char *const variants[] = {"render.threads=3", "render.tile=7 render.threads=2 render.pieces=0",
+                                           "render.schedule=rows render.threads=4",
+                                           "render.pool=off render.build_threads=3"};
     static const char *const kinds[] = {"none", "sphere", "octant", "bvh"};
     uint64_t film, plain_film;
     const query_counts off = frame_counts("render.count_tests=off", isa_best(), &plain_film);
@@ -263,10 +263,10 @@ static void counts_depend_on_scene_and_hierarchy_alone(void **state)
         const query_counts first = frame_counts(settings, isa_best(), &film);
         assert_true(film == plain_film && first.rays > 0 && first.triangles > 0);
         assert_true(kind > 0 || first.boxes == 0);
-        for (size_t i = 0; i < COUNT(ways) + (size_t)isa_best() + 1; i++) {
-            const isa level = i < COUNT(ways) ? isa_best() : (isa)(i - COUNT(ways));
+        for (size_t i = 0; i < COUNT(variants) + (size_t)isa_best() + 1; i++) {
+            const isa level = i < COUNT(variants) ? isa_best() : (isa)(i - COUNT(variants));
             snprintf(settings, sizeof settings, "render.count_tests=on render.accel=%s %s", kinds[kind],
-                     i < COUNT(ways) ? ways[i] : "render.threads=1");
+                     i < COUNT(variants) ? variants[i] : "render.threads=1");
             const query_counts c = frame_counts(settings, level, &film);
             assert_memory_equal(&c, &first, sizeof c);
             assert_true(film == plain_film);
