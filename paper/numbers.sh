@@ -51,6 +51,14 @@ polygons() {
     done
 }
 
+# Laws of the tests of a ray, and the time of a test.
+queries() {
+    [ -r "$out/tables/queries.tsv" ] || return 0
+    set -- "$out/tables/queries.tsv"
+    [ ! -r "$out/tables/triangles.tsv" ] || set -- "$@" "$out/tables/triangles.tsv"
+    awk -v show=numbers -v topology="$(fact triangles topology)" -f "$here/queries.awk" "$@"
+}
+
 # Columns of a published series, tab separated.
 series() { awk -f "$here/../plots/select.awk" -v columns="$2" "$published/$1.csv"; }
 
@@ -168,6 +176,7 @@ visible() {
     "$here/flips.sh" "$results" "$out"
     laws
     polygons
+    queries
     # Rays by pixel are the same for every schedule and machine; the committed run has no large images, but their sums.
     cost=$results/tables/maps-cost.tsv
     map=$results/maps/images/0000-rays.pfm

@@ -14,7 +14,8 @@ here=$(cd "$(dirname "$0")" && pwd)
 program=${CUVETTE:-$here/../build/cuvette}
 # Measured columns that have no interval in a summary; quotients are formed row by row.
 more='build_s imbalance visibility_s_sum motion_s visibility_s_sum/wall_s rays_total/cpu_s
-    visibility_s_sum/rays_total motion_s/motion_steps'
+    visibility_s_sum/rays_total motion_s/motion_steps query_rays query_boxes query_triangles
+    query_boxes/query_rays query_triangles/query_rays'
 
 rows_of() { ls "$results"/$1/rows*.csv >/dev/null 2>&1; }
 summaries=1

@@ -20,6 +20,15 @@ enum {
 /* Throughput is summed in fixed point, CUT_ONE = 1.0, so that the order of summation does not matter. */
 #define COUNTERS_CUT_ONE 68719476736.0 /* 2^36 */
 
+/* The tests of queries of meshes' hierarchies, each ray counted as if it were traversed alone: see hierarchy_count in
+ * geometry/hierarchy.h. */
+typedef struct query_counts {
+    uint64_t rays;      /* queries of one ray each */
+    uint64_t nodes;     /* nodes entered: inner nodes of a BVH, spheres of a tree of spheres */
+    uint64_t boxes;     /* boxes, or spheres, tested */
+    uint64_t triangles; /* triangles of entered leaves or nodes, each tested once */
+} query_counts;
+
 typedef struct ray_counters {
     uint64_t camera, reflect, refract, shadow; /* rays traced, by kind */
     uint64_t photon;                           /* rays of photons */
@@ -35,6 +44,7 @@ typedef struct ray_counters {
     uint64_t tests[COUNTERS_SOLID_MAX];
     uint64_t hits[COUNTERS_SOLID_MAX];       /* hits on the solid's interfaces, without shadow rays and photons */
     uint64_t first_hits[COUNTERS_SOLID_MAX]; /* camera rays whose first interface is on the solid */
+    query_counts queries;                    /* 0 without render.count_tests */
 } ray_counters;
 
 /* Throughput (0 .. 1) in those units, to the nearest; by the bits of 1.5 2^52 + v, a conversion that every instruction

@@ -175,6 +175,7 @@ bench *query_take_bench(const cuvette_query *query)
         b->scratch.segments = NULL;
         b->scratch.crossings = NULL;
         b->scratch.meshes = &b->meshes;
+        b->meshes.counts = NULL;
     }
     return b;
 }

@@ -13,6 +13,7 @@
  * it. Any number of threads may use it at once. */
 #pragma once
 
+#include "base/counters.h"
 #include "base/isa.h"
 #include "geometry/mesh.h"
 
@@ -92,6 +93,15 @@ typedef void mesh_visit(void *context, const mesh_hit *hit);
 /* Called with each triangle whose own box the ray may hit before t_max. Returns t_max or a smaller bound; a bound below
  * the ray's t_min ends the traversal. */
 typedef double box_visit(void *context, uint32_t triangle, double t_max);
+
+/* What a query looks for: the nearest hit, any hit, every hit, or the boxes of triangles. */
+enum query_mode { QUERY_NEAREST, QUERY_ANY, QUERY_ALL, QUERY_BOXES };
+
+/* Adds the tests that a query of this ray makes when it traverses the hierarchy alone, without a fused multiply-add:
+ * then their number depends on the mesh, the kind and the ray, and not on the other rays of its batch, on threads or on
+ * the instruction set. The kernels test at least as much: a packet enters a box for all of its rays, and four
+ * triangles or eight boxes are tested at once. Not for QUERY_BOXES; for embree only the ray is counted. */
+void hierarchy_count(const hierarchy *h, const mesh_ray *ray, enum query_mode mode, query_counts *counts);
 
 /* The kernels, one set per instruction set. All sets return bit-identical results. */
 typedef struct hierarchy_kernels {

@@ -16,8 +16,6 @@
 #include "geometry/hierarchy_lanes.h"
 #include "geometry/hierarchy_private.h"
 
-enum query_mode { QUERY_NEAREST, QUERY_ANY, QUERY_ALL, QUERY_BOXES };
-
 /* A direction is scaled so that its largest component is 1..2. A ray with a component smaller than PARALLEL counts as
  * parallel to the plane across that axis: over a length of 1e10, ten times the largest coordinate (MESH_FAR), it moves
  * across the plane by no more than PARALLEL_MARGIN. */

@@ -11,11 +11,11 @@ ALWAYS_INLINE double4 choose(int4x64 mask, double4 a, double4 b)
 {
     return (double4)((mask & (int4x64)a) | (~mask & (int4x64)b));
 }
-ALWAYS_INLINE double4 lesser(double4 a, double4 b)
+ALWAYS_INLINE double4 lesser4(double4 a, double4 b)
 {
     return choose(a < b, a, b);
 }
-ALWAYS_INLINE double4 greater(double4 a, double4 b)
+ALWAYS_INLINE double4 greater4(double4 a, double4 b)
 {
     return choose(a > b, a, b);
 }
@@ -52,8 +52,8 @@ ALWAYS_INLINE reach move_block(const mesh *m, void *block, bool single)
     for (int axis = 0; axis < 3; axis++) {
         for (int k = 0; k < 3; k++)
             place(block, single, k, axis, at[axis][k]);
-        r.low[axis] = lesser(lesser(at[axis][0], at[axis][1]), at[axis][2]);
-        r.high[axis] = greater(greater(at[axis][0], at[axis][1]), at[axis][2]);
+        r.low[axis] = lesser4(lesser4(at[axis][0], at[axis][1]), at[axis][2]);
+        r.high[axis] = greater4(greater4(at[axis][0], at[axis][1]), at[axis][2]);
     }
     return r;
 }
@@ -62,17 +62,17 @@ ALWAYS_INLINE reach move_block(const mesh *m, void *block, bool single)
 ALWAYS_INLINE double4 least_of_lanes(const double4 *v)
 {
     const double4 xy =
-        lesser(__builtin_shufflevector(v[0], v[1], 0, 4, 2, 6), __builtin_shufflevector(v[0], v[1], 1, 5, 3, 7));
-    const double4 z = lesser(v[2], __builtin_shufflevector(v[2], v[2], 1, 0, 3, 2));
-    return lesser(__builtin_shufflevector(xy, z, 0, 1, 4, 5), __builtin_shufflevector(xy, z, 2, 3, 6, 7));
+        lesser4(__builtin_shufflevector(v[0], v[1], 0, 4, 2, 6), __builtin_shufflevector(v[0], v[1], 1, 5, 3, 7));
+    const double4 z = lesser4(v[2], __builtin_shufflevector(v[2], v[2], 1, 0, 3, 2));
+    return lesser4(__builtin_shufflevector(xy, z, 0, 1, 4, 5), __builtin_shufflevector(xy, z, 2, 3, 6, 7));
 }
 
 ALWAYS_INLINE double4 most_of_lanes(const double4 *v)
 {
     const double4 xy =
-        greater(__builtin_shufflevector(v[0], v[1], 0, 4, 2, 6), __builtin_shufflevector(v[0], v[1], 1, 5, 3, 7));
-    const double4 z = greater(v[2], __builtin_shufflevector(v[2], v[2], 1, 0, 3, 2));
-    return greater(__builtin_shufflevector(xy, z, 0, 1, 4, 5), __builtin_shufflevector(xy, z, 2, 3, 6, 7));
+        greater4(__builtin_shufflevector(v[0], v[1], 0, 4, 2, 6), __builtin_shufflevector(v[0], v[1], 1, 5, 3, 7));
+    const double4 z = greater4(v[2], __builtin_shufflevector(v[2], v[2], 1, 0, 3, 2));
+    return greater4(__builtin_shufflevector(xy, z, 0, 1, 4, 5), __builtin_shufflevector(xy, z, 2, 3, 6, 7));
 }
 
 /* As bvh_cut_below, with a carry for negative numbers; bvh_cut_above carries for the others. */
@@ -113,8 +113,8 @@ ALWAYS_INLINE void refit_leaf(hierarchy *h, bvh_node *n, int slot, bool single)
         block += stride;
         const reach next = move_block(h->of, block, single);
         for (int axis = 0; axis < 3; axis++) {
-            r.low[axis] = lesser(next.low[axis], r.low[axis]);
-            r.high[axis] = greater(next.high[axis], r.high[axis]);
+            r.low[axis] = lesser4(next.low[axis], r.low[axis]);
+            r.high[axis] = greater4(next.high[axis], r.high[axis]);
         }
     }
     write_box(n, slot, least_of_lanes(r.low), most_of_lanes(r.high));

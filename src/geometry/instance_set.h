@@ -50,6 +50,7 @@ typedef struct instance_ray {
     int64_t before;       /* priority index of its current medium, which hides meshes below it */
     uint64_t inside;      /* primitives that contain its start */
     uint64_t wanted;      /* primitives that it looks for */
+    query_counts *counts; /* where its queries are counted (hierarchy_count), or NULL; one for all rays of a batch */
 } instance_ray;
 
 /* A mesh's faces have bit 62 set, so that they never equal the face number of an analytic solid. */

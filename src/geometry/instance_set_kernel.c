@@ -146,6 +146,15 @@ static const instanced_mesh *part_of_instance(const instance_set *f, size_t inst
     return p;
 }
 
+/* Counts the queries of rays in a copy's frame, if that is asked for; apart from the traversal, which it must not slow
+ * down. */
+static void count_queries(const instanced_mesh *p, const mesh_ray *local, int count, enum query_mode mode,
+                          query_counts *counts)
+{
+    for (int k = 0; counts && k < count; k++)
+        hierarchy_count(p->tree, &local[k], mode, counts);
+}
+
 static void ask_copy(traversal *q, size_t instance)
 {
     const instanced_mesh *p = part_of_instance(q->f, instance);
@@ -153,6 +162,7 @@ static void ask_copy(traversal *q, size_t instance)
     mesh_ray local;
     if (!ray_in(q, p, copy, &local))
         return;
+    count_queries(p, &local, 1, q->all ? QUERY_ALL : q->any ? QUERY_ANY : QUERY_NEAREST, q->ray->counts);
     if (q->all) {
         q->all->primitive = p->primitive;
         q->all->copy = copy;
@@ -211,6 +221,7 @@ static void nearest_of_copy(const instance_set *f, size_t instance, const instan
     if (queued == 0)
         return;
     TREES.nearest_batch(p->tree, local, queued, found);
+    count_queries(p, local, queued, QUERY_NEAREST, rays[0].counts);
     for (int k = 0; k < queued; k++) {
         traversal q = {.best = &hits[ray[k]]};
         accept_hit(&q, p, copy, &found[k]);
@@ -257,6 +268,7 @@ static void any_of_copy(const instance_set *f, size_t instance, const instance_r
     if (queued == 0)
         return;
     TREES.any_batch(p->tree, local, queued, found);
+    count_queries(p, local, queued, QUERY_ANY, rays[0].counts);
     for (int k = 0; k < queued; k++)
         blocked[ray[k]] = found[k];
 }

@@ -128,5 +128,5 @@ instance_hit KERNEL(mesh_hit_between)(const scene_geometry *a, const ray_batch *
                                       int bit, uint64_t before, double low, double high);
 
 /* Marks the shadow rays (except settled ones) that meshes of a set block. */
-void KERNEL(mesh_shadows)(const scene_geometry *a, const ray_batch *rays, uint64_t wanted, int64_t *marked,
-                          const int64_t *settled);
+void KERNEL(mesh_shadows)(const scene_geometry *a, const ray_batch *rays, uint64_t wanted, query_counts *counts,
+                          int64_t *marked, const int64_t *settled);

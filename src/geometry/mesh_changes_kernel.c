@@ -19,7 +19,8 @@ static instance_ray ray_of_column(const ray_batch *rays, int k, const ray_scratc
                           .t_max = HUGE_VAL,
                           .start = m->last[k],
                           .before = 0,
-                          .inside = s->inside[k]};
+                          .inside = s->inside[k],
+                          .counts = m->counts};
 }
 
 /* A front and a back of one mesh within this share of the distance and of the mesh's own extent coincide: well above
@@ -198,8 +199,8 @@ instance_hit KERNEL(mesh_hit_between)(const scene_geometry *a, const ray_batch *
 
 /* Marks rays that a mesh of the set blocks between 0 and 1. A ray that starts inside a closed mesh is blocked at its
  * start. */
-void KERNEL(mesh_shadows)(const scene_geometry *a, const ray_batch *rays, uint64_t wanted, int64_t *marked,
-                          const int64_t *settled)
+void KERNEL(mesh_shadows)(const scene_geometry *a, const ray_batch *rays, uint64_t wanted, query_counts *counts,
+                          int64_t *marked, const int64_t *settled)
 {
     instance_ray queries[BATCH];
     bool found[BATCH];
@@ -221,7 +222,8 @@ void KERNEL(mesh_shadows)(const scene_geometry *a, const ray_batch *rays, uint64
                                         .t_max = 1.0,
                                         .start = rays->start[i],
                                         .inside = rays->inside[i],
-                                        .wanted = wanted};
+                                        .wanted = wanted,
+                                        .counts = counts};
         ray[count++] = i;
     }
     if (count == 0)

@@ -530,9 +530,9 @@ static void quick_shadow_test(const scene_geometry *a, const ray_batch *rays, in
     if (a->tree)
         KERNEL(tree_shadows)(a, rays, solid_shadows, s);
     if (sure)
-        KERNEL(mesh_shadows)(a, rays, sure, s->blocked, s->blocked);
+        KERNEL(mesh_shadows)(a, rays, sure, s->meshes->counts, s->blocked, s->blocked);
     if (unsure)
-        KERNEL(mesh_shadows)(a, rays, unsure, s->undecided, s->blocked);
+        KERNEL(mesh_shadows)(a, rays, unsure, s->meshes->counts, s->undecided, s->blocked);
 }
 
 /* The material slot of the mesh face that column k crosses; 0 if the surface is another region's. */

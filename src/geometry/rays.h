@@ -2,6 +2,7 @@
  * arrays of a ray_batch belong to the caller that queued the rays; hits and scratch are plain values. */
 #pragma once
 
+#include "base/counters.h"
 #include "base/isa.h"
 #include "geometry/scene_geometry.h"
 #include "geometry/solid_view.h"
@@ -63,8 +64,9 @@ typedef struct mesh_scratch {
     /* The t for which the sets after a column's hit hold: that of the hit, or beyond its error bound if another
      * boundary is close to it. */
     double until[ROW];
-    int64_t last[ROW];  /* the mesh face at `from`, or the one that the ray starts on */
-    uint64_t near[ROW]; /* meshes with a boundary close to the column's crossing, other than the copy that is hit */
+    int64_t last[ROW];    /* the mesh face at `from`, or the one that the ray starts on */
+    uint64_t near[ROW];   /* meshes with a boundary close to the column's crossing, other than the copy that is hit */
+    query_counts *counts; /* the caller's; NULL: queries are not counted */
 } mesh_scratch;
 
 /* The most segments of a batch with analytic solids alone. Rays through many meshes may have more: a full list is

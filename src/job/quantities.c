@@ -79,6 +79,12 @@ static size_t solids_of(const job_account *a)
     return a->of->solid_count < COUNTERS_SOLID_MAX ? a->of->solid_count : COUNTERS_SOLID_MAX;
 }
 
+/* Unknown unless the frame counted its tests. */
+static int64_t counted(const job_account *a, uint64_t count)
+{
+    return CUVETTE_COUNTERS && a->of->render.count_tests ? (int64_t)count : -1;
+}
+
 /* --- the list --- */
 
 #define ROW true
@@ -132,6 +138,15 @@ static size_t solids_of(const job_account *a)
  Q(hits, "rays", SOLIDS, SAME, ROW, "hits", NULL, \
    "hits on interfaces of the solid by camera, reflected and refracted rays", c->hits) \
  Q(tests, "rays", SOLIDS, SAME, OUT, "tests", NULL, "rays tested against the solid", c->tests) \
+ Q(query_rays, "rays", COUNT, SAME, ROW, "queries.rays", NULL, \
+   "queries of a mesh's hierarchy by one ray each; this and the next three NA without render.count_tests", \
+   counted(a, c->queries.rays)) \
+ Q(query_nodes, "", COUNT, SAME, ROW, "queries.nodes", NULL, \
+   "nodes that these rays enter: inner nodes of a BVH, spheres of a tree of spheres", counted(a, c->queries.nodes)) \
+ Q(query_boxes, "", COUNT, SAME, ROW, "queries.boxes", NULL, \
+   "boxes, or spheres, that these rays test, each ray as if it were traversed alone", counted(a, c->queries.boxes)) \
+ Q(query_triangles, "", COUNT, SAME, ROW, "queries.triangles", NULL, \
+   "triangles that these rays test, each ray as if it were traversed alone", counted(a, c->queries.triangles)) \
  Q(noise_rms, "radiance", REAL, SAME, ROW, "noise.rms", "noise", \
    "standard error of the film's values, root mean square, 1 is white; NA without random paths", \
    render_noise_rms(r)) \

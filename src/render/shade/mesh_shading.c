@@ -10,6 +10,9 @@ bool mesh_begin(tracer *t)
     if (t->target.frame_plan->geometry->meshes && !t->meshes && !(t->meshes = malloc(sizeof *t->meshes)))
         return false;
     t->batch.scratch.meshes = t->meshes ? &t->meshes->scratch : NULL;
+    const bool counted = CUVETTE_COUNTERS && t->target.frame_plan->render.count_tests;
+    if (t->meshes)
+        t->meshes->scratch.counts = counted ? &t->account.counters.queries : NULL;
     return true;
 }
 

@@ -223,6 +223,9 @@ static const param table[] = {
         rebuild, "", 1, 1e6, "1.5",
         "rebuild the BVH of a deforming mesh when its expected cost exceeds that of the last build by this "
         "factor"),
+    PERFORMANCE_CHOICE(count_tests, off_on, "off",
+                       "count the boxes, spheres and triangles of meshes that each ray tests, in a traversal of its "
+                       "own that adds to the time"),
     CHOICE(PARAM_RENDER, render_settings, texturing, texturing_words, "perspective",
            "texture interpolation of the rasteriser: perspective-correct or affine"),
 

@@ -64,7 +64,8 @@ typedef struct render_settings {
     int64_t keep;           /* 1: a mesh keeps its hierarchy; 0: every frame builds it again */
     /* a refitted hierarchy of a moving mesh is rebuilt when its expected cost exceeds this factor */
     double rebuild;
-    int64_t texturing; /* texturing_rule, for the rasteriser */
+    int64_t count_tests; /* 1: count the tests of hierarchies */
+    int64_t texturing;   /* texturing_rule, for the rasteriser */
 } render_settings;
 
 static inline const integrator_traits *integrator_traits_of(const render_settings *r)

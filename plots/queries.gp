@@ -1,0 +1,90 @@
+# Tests of a ray against the number of triangles: the counts with the laws fitted up to 200000 triangles, the local
+# exponent between successive counts, and the time of a test against the memory of the hierarchy. One column of the paper.
+# needs: tables/queries.tsv tables/triangles.tsv
+width = 318; height = 520
+load "plots/style.gp"
+
+tables = "'".table("queries")."' '".table("triangles")."'"
+part(what, keep) = "< awk -v show=".what." -f paper/queries.awk ".tables." | awk -F '\t' '".keep."'"
+of(scene, tree) = "$1 == \"".scene."\" && $2 == \"".tree."\""
+named(tree) = "$1 == \"".tree."\""
+# Bytes of a level of the cache on the machine that measured the times: "32 KiB" or "1024 MiB".
+cache(level) = number(system("sed -n 's/.*\"topology\": *\"[^\"]*".level." \\([0-9.]*\\) \\([KM]\\)iB.*/\\1 \\2/p' '".results. \
+    "/triangles/runs.json' | head -n 1 | awk '{ print $1*($2 == \"K\" ? 1024 : 1048576) }'"))
+set border 3
+set lmargin at screen 0.135; set rmargin at screen 0.985
+set xtics font ",7"; set ytics font ",7"
+set xlabel font ",7.5" offset 0,0.6; set ylabel font ",7.5" offset 1.2,0
+set grid xtics ytics lc rgb pale lw 0.4 dt solid
+unset key
+set multiplot
+
+set logscale xy
+set xrange [800:3e7]
+set format x ""
+set tmargin at screen 0.985; set bmargin at screen 0.595
+set ylabel "tests a camera ray"
+set yrange [20:1500]
+set ytics (10, 20, 50, 100, 200, 500, 1000, 2000)
+set xtics (1e3, 1e4, 1e5, 1e6)
+last(scene, tree) = number(system(part("series", of(scene, tree)." { y = $4 } END { print y }")[3:*]))
+do for [i=1:4] {
+    y = last(word("sparse sparse sphere sphere", i), word("octant bvh octant bvh", i))
+    if (y == y) {
+        set label i word("'octants, soup' 'BVH, soup' 'octants, surface' 'BVH, surface'", i) at (i % 2 ? 1.25e6 : 4.8e6),y*(i % 2 ? 1.12 : 1) left noenhanced \
+            font ",6.8" textcolor rgb (i % 2 ? vermillion : blue)
+    }
+}
+set arrow 1 from 2e5,graph 0 to 2e5,graph 1 nohead lc rgb grey lw 0.6 dt (2,3)
+set label 5 "fitted " at 2e5,graph 0.97 right font ",6.5" textcolor rgb grey
+set label 6 " predicted" at 2e5,graph 0.97 left font ",6.5" textcolor rgb grey
+set label 7 "power" at graph 0.03,graph 0.95 left font ",6.8" textcolor rgb ink
+set label 8 "––– logarithm    ······ a + c n^{1/3}    — power" at graph 0.01,graph 1.02 left font ",6.5" textcolor rgb ink
+unset label 7
+plot for [i=1:4] part("fits", of(word("sparse sparse sphere sphere", i), word("octant bvh octant bvh", i))) \
+         using 3:4 with lines lc rgb (i % 2 ? vermillion : blue) lw 0.9 dt (5,3), \
+     for [i=1:4] part("fits", of(word("sparse sparse sphere sphere", i), word("octant bvh octant bvh", i))) \
+         using 3:5 with lines lc rgb (i % 2 ? vermillion : blue) lw 0.9, \
+     for [i=1:4] part("fits", of(word("sparse sparse sphere sphere", i), word("octant bvh octant bvh", i))) \
+         using 3:6 with lines lc rgb (i % 2 ? vermillion : blue) lw 1.2 dt (1,2), \
+     for [i=1:4] part("series", of(word("sparse sparse sphere sphere", i), word("octant bvh octant bvh", i))) \
+         using 3:4 with points pt (i < 3 ? (i % 2 ? 5 : 7) : (i % 2 ? 4 : 6)) ps 0.55 lc rgb (i % 2 ? vermillion : blue)
+unset label; unset arrow
+
+set tmargin at screen 0.575; set bmargin at screen 0.375
+unset logscale y
+set format x "10^{%T}"
+set ytics auto font ",7"
+set ytics 0.1
+set yrange [0:0.6]
+set ylabel "local exponent"
+set xlabel "triangles n"
+set arrow 1 from 800,1.0/3 to 4.5e6,1.0/3 nohead lc rgb ink lw 0.8 dt (2,3)
+set label 1 "1/3" at 4.8e6,1.0/3 left font ",6.8"
+plot for [i=1:4] part("exponents", of(word("sparse sparse sphere sphere", i), word("octant bvh octant bvh", i))) \
+         using 3:4 with linespoints pt (i < 3 ? (i % 2 ? 5 : 7) : (i % 2 ? 4 : 6)) ps 0.5 lw 0.8 \
+         lc rgb (i % 2 ? vermillion : blue)
+unset label; unset arrow
+
+set tmargin at screen 0.29; set bmargin at screen 0.075
+set logscale xy
+set xrange [5e5:2e9]
+set xtics ("1 MiB" 1048576, "10 MiB" 10485760, "100 MiB" 104857600, "1 GiB" 1073741824)
+set format x "%h"
+set xlabel "memory of the hierarchy"
+set ylabel "ns a test"
+set yrange [*:*]
+set ytics auto
+set ytics (0.5, 1, 2, 5, 10, 20, 50)
+l2 = cache("L2"); l3 = cache("L3")
+if (l2 == l2) {
+    set arrow 1 from l2,graph 0 to l2,graph 1 nohead lc rgb grey lw 0.8 dt (2,3)
+    set label 1 " L2" at l2,graph 0.96 left font ",6.8" textcolor rgb grey
+}
+if (l3 == l3) {
+    set arrow 2 from l3,graph 0 to l3,graph 1 nohead lc rgb grey lw 0.8 dt (2,3)
+    set label 2 " L3" at l3,graph 0.96 left font ",6.8" textcolor rgb grey
+}
+plot for [i=1:2] part("cache", named(word("octant bvh", i))) using 2:3:4:5 with yerrorlines pt (i % 2 ? 5 : 7) ps 0.5 \
+    lw 0.8 lc rgb (i % 2 ? vermillion : blue)
+unset multiplot
