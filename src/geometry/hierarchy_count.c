@@ -1,6 +1,6 @@
 /* Counts the tests of a query, in a traversal of one ray that follows the kernels' step by step: the same order, and
- * the same triangle and sphere tests. The box test is that of hierarchy_boxes.h with a product and a sum for each plane,
- * rounded one after the other, where some instruction sets fuse them. */
+ * the same triangle and sphere tests. The box test is that of hierarchy_boxes.h with a product and a sum for each
+ * plane, rounded one after the other, where some instruction sets fuse them. */
 #include "geometry/hierarchy_boxes.h"
 #include "geometry/hierarchy_spheres.h"
 

@@ -1,5 +1,5 @@
-/* The ray-sphere test of the sphere trees: a sphere is hit if the ray's line passes within its radius plus a margin wider
- * than the rounding error, and part of its inside is between t_min and the best hit. */
+/* The ray-sphere test of the sphere trees: a sphere is hit if the ray's line passes within its radius plus a margin
+ * wider than the rounding error, and part of its inside is between t_min and the best hit. */
 #pragma once
 
 #include "geometry/hierarchy_query.h"
