@@ -25,7 +25,7 @@ for rows in "$machines"/*/*/rows.csv; do
     folder=${rows%/rows.csv}
     study=${folder##*/}
     machine=${folder%/*}
-    [ -r "$results/$study/rows.csv" ] || continue
+    [ -r "$results/$study/runs.json" ] && [ -r "$folder/runs.json" ] || continue # those of a study
     cells "$rows" >"$work/theirs"
     cells "$results/$study/rows.csv" >"$work/ours"
     there=$(processor "$folder/runs.json")

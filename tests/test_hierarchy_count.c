@@ -40,7 +40,7 @@ static void expect(query_counts c, uint64_t nodes, uint64_t boxes, uint64_t tria
 
 /* A perfect octree over the cube [0, 1]^3 as a BVH: 8^levels cells, whose boxes are half as wide as the cells, so that
  * they are disjoint; and in each a triangle across the x axis at its middle, large enough that a ray through the
- * middle of the row hits it, or, with `holes`, beside the row's middle, so that the ray enters every box and hits
+ * middle of the row hits it, or, with `holes`, next to the row's middle, so that the ray enters every box and hits
  * nothing. */
 static void fill_node(fixture *f, uint32_t number, uint32_t *next_node, uint32_t *next_block, const double *corner,
                       double edge, int level, bool holes)

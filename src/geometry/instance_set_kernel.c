@@ -146,7 +146,7 @@ static const instanced_mesh *part_of_instance(const instance_set *f, size_t inst
     return p;
 }
 
-/* Counts the queries of rays in a copy's frame, if that is asked for; apart from the traversal, which it must not slow
+/* Counts the queries of rays in a copy's frame, if that is requested; apart from the traversal, which it must not slow
  * down. */
 static void count_queries(const instanced_mesh *p, const mesh_ray *local, int count, enum query_mode mode,
                           query_counts *counts)
