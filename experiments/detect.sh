@@ -1,8 +1,8 @@
 #!/bin/bash
 # experiments/detect.sh [OUT]: the smallest known error that each metric of `cuvette realism` detects. Copies the
 # sources to build/detect, puts errors of a chosen size into the copy (tests/faults/detect.tsv), and measures scenes
-# with them against the theory without: the pairs of indices of realism.study, stacks of plates, prisms and drops. Writes
-# OUT/rows.csv (results/detect): a line a scene, metric and kind of error. About ten minutes.
+# with them against the theory without: the pairs of indices of realism.study, stacks of plates, prisms and drops.
+# Writes OUT/rows.csv (results/detect): a line a scene, metric and kind of error. About ten minutes.
 set -euo pipefail
 export LC_ALL=C
 root=$(cd "$(dirname "$0")/.." && pwd)

@@ -45,6 +45,7 @@ function judge(line,   id, verdict) {
     id = $1
     verdict = $2
     number[verdict]++
+    if ($4 ~ /^no rows say it/) tests++
     if (verdict == "reproduced" && (id in lacking))
         printf "\\setclaim{%s}{\\emph{Reproduced, but without all numbers of this sentence:} %s (%s).}\n", id, plain($5), measured()
     if (verdict == "not reproduced")
@@ -64,7 +65,8 @@ END {
     look_for_numbers()
     for (i = 1; i <= claims; i++) line_of[i] = judge(verdict_of[i])
     printf "\\setval{claims/all}{%d}\n\\setval{claims/reproduced}{%d}\n", claims, number["reproduced"]
-    printf "\\setval{claims/not-reproduced}{%d}\n\\setval{claims/underpowered}{%d}\n", number["not reproduced"], number["underpowered"]
+    printf "\\setval{claims/not-reproduced}{%d}\n\\setval{claims/tests}{%d}\n", number["not reproduced"], tests
+    printf "\\setval{claims/underpowered}{%d}\n", number["underpowered"] - tests
     sub(/ +$/, "", environments)
     gsub(/ /, ", ", environments)
     printf "\\setval{claims/environments}{%s}\n", environments

@@ -84,7 +84,8 @@ empty "the tables, figures and sections that a claim names exist" "$(comm -23 \
     <(claims | cut -f 3 | tr ' ' '\n' | grep -v '^-$' | sort -u) \
     <(grep -oh '\\label{[^}]*}' paper/{paper,supplement}.tex | sed 's/.*{//; s/}//' | sort -u))"
 for text in paper supplement; do
-    empty "every measured number of a sentence of the $text is in a claim" "$(awk -f tests/unclaimed.awk "paper/$text.tex")"
+    empty "every measured number of a sentence of the $text is in a claim" \
+        "$(awk -f tests/unclaimed.awk "paper/$text.tex")"
 done
 # The check itself: a number after a claim, within a macro, in a caption, and published.
 cat >"$work/unclaimed.tex" <<'END'
@@ -113,7 +114,8 @@ if ((with_gnuplot)); then
         $2 == "underpowered" && !($1 in unmeasured) &&
             $4 !~ /^the interval is too wide|rows are disturbed|with processors>=2$/ { print $1 ": " $4 }
         $2 != "underpowered" && $1 in unmeasured { print $1 }' <(claims) "$work/reference/claims.tsv")"
-    empty "and no sentence of a reproduced claim lacks a number" "$(grep -F 'without all numbers' "$work/reference/claims.tex")"
+    empty "and no sentence of a reproduced claim lacks a number" \
+        "$(grep -F 'without all numbers' "$work/reference/claims.tex")"
     # Only times have such intervals: counts, errors and films are exact.
     empty "and those are claims about times" "$(awk -F'\t' '
         NR == FNR { about[$1] = $9; next }

@@ -1,6 +1,7 @@
 #!/bin/bash
-# Checks that the text of every fault in tests/faults/laws.tsv, checks.tsv and detect.tsv still occurs in its file: `make
-# law-faults`, `make fault-checks` and experiments/detect.sh, which take long, stop at the first one that does not.
+# Checks that the text of every fault in tests/faults/laws.tsv, checks.tsv and detect.tsv still occurs in its file:
+# `make law-faults`, `make fault-checks` and experiments/detect.sh, which take long, stop at the first one that does
+# not.
 set -uo pipefail
 cd "$(dirname "$0")/.."
 count=0 failed=0
@@ -15,7 +16,8 @@ while IFS=$'\t' read -r file old new _; do
         echo "not ok $count - $file does not contain '$old', which the fault replaces by '$new'"
     fi
 done < <(cat tests/faults/laws.tsv tests/faults/checks.tsv tests/faults/detect.tsv)
-if grep -q $'\t\t' tests/faults/laws.tsv tests/faults/checks.tsv tests/faults/detect.tsv; then # read takes two tabs for one
+if grep -q $'\t\t' tests/faults/laws.tsv tests/faults/checks.tsv tests/faults/detect.tsv; then
+    # read takes two tabs for one
     failed=1
     echo "not ok $((count + 1)) - a field is empty"
 fi
