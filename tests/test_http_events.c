@@ -115,6 +115,8 @@ static void slow_listeners_get_the_last_state(void **state)
     http_server *s = start((http_settings){0});
     int code;
     const int slow = listen_to(s, &code), fast = listen_to(s, &code);
+    const int little = 65536; /* a fixed size, which the system does not enlarge */
+    setsockopt(slow, SOL_SOCKET, SO_RCVBUF, &little, sizeof little);
     char *filling = malloc(SIZE + 1), end[64];
     memset(filling, 'x', SIZE);
     filling[SIZE] = 0;
