@@ -42,7 +42,7 @@ gallery=$site/gallery.html
 empty 'the gallery has every image of the README, every view and every figure' "$(
     cd "$root" && {
         grep -o '](\([^)]*\.\(png\|jpg\|svg\)\))' README.md | sed 's/^](//; s/)$//'
-        printf '%s\n' src/web/views/* results/reference/figures/*
+        printf '%s\n' src/web/views/* results/reference/figures/*.{png,svg}
     } | tr / - | sort -u | while read -r name; do grep -qF "images/$name" "$gallery" || echo "$name"; done
 )"
 grep -qF 'href="cuvette-scene.5.html"><b>cuvette-scene</b>(5)</a>' "$site/cuvette-render.1.html"

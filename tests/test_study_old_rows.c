@@ -82,8 +82,8 @@ static void rows_of_the_reference_run_are_read(void **state)
     assert_non_null(folder);
     for (struct dirent *entry; (entry = readdir(folder));) {
         char path[400];
-        snprintf(path, sizeof path, "results/reference/%.100s/rows.csv", entry->d_name);
-        if (access(path, F_OK) != 0)
+        snprintf(path, sizeof path, "results/reference/%.100s/runs.json", entry->d_name);
+        if (access(path, F_OK) != 0) /* no study's: rows of a script, or figures */
             continue;
         snprintf(path, sizeof path, "experiments/%.100s.study", entry->d_name);
         study *s = read_study(path);
