@@ -128,7 +128,7 @@ measure)
     rounds=15 frames=5 size=240x180
     if ((${QUICK:-0})); then rounds=12 frames=3 size=160x120; fi
     times "${ROUNDS:-$rounds}" "${FRAMES:-$frames}" "${SIZE:-$size}" |
-        add rows 'film,contract,compiler,isa,scene,repetition,place,cpu_s,film_hash,rays_total,others_share'
+        add rows 'film,contract,compiler,isa,scene,repetition,place,cpu_s,film_hash,rays_total,others_share,size'
     bits 64x48 >"$work/bits"
     add bits 'film,contract,compiler,isa,scene,threads,schedule,film_hash,rays_total' <"$work/bits"
     images | add images 'scene,film_hash,max_difference,differing_share'
