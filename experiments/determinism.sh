@@ -64,7 +64,7 @@ times() { # ROUNDS FRAMES SIZE
                         json=$(render "$variant-$compiler" "$isa" "$scene" "$3" --repeat "$2" --set render.threads=1)
                         row=${variant/-/,},$compiler,$isa,$scene,$round,$i
                         for name in cpu_s film_hash total others_share; do of "$name" && row+=,$value; done
-                        echo "$row"
+                        echo "$row,$3"
                     done
                 done
             done
