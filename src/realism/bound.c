@@ -53,6 +53,8 @@ static double place_of(const ray_node *n)
 
 path_bound bound_path(const ray_tree *tree, double curvature)
 {
+    if (tree->count == 0) /* the trace failed */
+        return (path_bound){NAN, NAN, NAN};
     const double hit = bound_difference(BOUND_HIT), turn = bound_difference(BOUND_TURN);
     path_bound b = {bound_difference(1) * vec3_length(tree->node[0].origin), turn, 0.0};
     for (size_t i = 0; i < tree->count && tree->node[i].end == RAY_END_HIT; i++) {
@@ -78,6 +80,8 @@ path_bound bound_path(const ray_tree *tree, double curvature)
 
 double bound_around(const ray_tree *tree, vec3 center)
 {
+    if (tree->count == 0) /* the trace failed */
+        return NAN;
     const double hit = bound_difference(BOUND_HIT), turn = bound_difference(BOUND_TURN);
     double heading = 0.0, invariant = tree->node[0].n * bound_difference(1) * vec3_length(tree->node[0].origin);
     for (size_t i = 0; i + 1 < tree->count && tree->node[i].end == RAY_END_HIT; i++) {

@@ -29,7 +29,8 @@ share_bound bound_shares(double angle, double aside, double n_from, double n_to)
 
 /* Of a path at the end of its last ray: distance across the ray; direction; throughput, relative. At each surface the
  * errors so far are multiplied by the derivatives of the law there, and those of the surface are added: of a place,
- * relative to the lengths of the vectors from which it is computed. curvature: the largest of the surfaces. */
+ * relative to the lengths of the vectors from which it is computed. curvature: the largest of the surfaces. NaN without
+ * a path, also below. */
 typedef struct path_bound {
     double across, heading, weight;
 } path_bound;
