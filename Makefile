@@ -627,7 +627,7 @@ claimed = $(if $(filter-out file,$(origin RESULTS))$(wildcard $(RESULTS)/*/rows*
 claims: $(build)/cuvette ## judge each claim of the paper by the rows: reproduced, not reproduced, underpowered; RESULTS=DIR, ENVIRONMENT=HEX
 	@CUVETTE='$(abspath $(build)/cuvette)' ENVIRONMENT='$(ENVIRONMENT)' paper/claims.sh '$(claimed)' $(build)/claims
 
-paper: $(build)/cuvette ## rebuild the report from existing rows, without measuring
+paper: $(build)/cuvette ## rebuild the paper and its supplement from existing rows, without measuring
 	$(MAKE) -C paper CUVETTE='$(abspath $(build)/cuvette)'
 
 # The build by clang, if it is installed and another compiler made this one.
