@@ -20,10 +20,20 @@ install_missing() {
         have sudo || give_up "$name" 'this needs root or sudo' "${missing[@]}"
         as_root=(sudo)
     fi
-    "${as_root[@]}" env DEBIAN_FRONTEND=noninteractive apt-get -q update &&
-        "${as_root[@]}" env DEBIAN_FRONTEND=noninteractive \
-            apt-get -qy install --no-install-recommends "${missing[@]}" ||
+    apt() { "${as_root[@]}" env DEBIAN_FRONTEND=noninteractive apt-get -q -o DPkg::Lock::Timeout=1200 "$@"; }
+    refresh_lists apt && apt -y install --no-install-recommends "${missing[@]}" ||
         give_up "$name" 'apt-get failed' "${missing[@]}"
+}
+
+# refresh_lists APT: waits while another program, such as a second setup or an upgrade, refreshes them; apt-get itself
+# waits for the other locks only.
+refresh_lists() {
+    local said tries=240
+    until said=$("$1" update 2>&1); do
+        echo "$said"
+        [[ $said == *'Could not get lock'* ]] && ((tries-- > 0)) || return
+        sleep 5
+    done
 }
 
 # have PROGRAM...: whether all of them are found.

@@ -1,7 +1,9 @@
 /* Every parameter has an effect, or a note explains why not: for each shipped scene and each parameter that `cuvette
  * params SCENE` prints, other legal values change the film, or a note states why none does, or the table marks the
  * parameter as not affecting the image. A note is proved by its remedy: once the remedy is applied, the parameter
- * changes the film. New parameters of the table are covered automatically. ACTS_SCENE=rod.yaml tests that scene alone;
+ * changes the film. New parameters of the table are covered automatically. ACTS_SCENE=rod.yaml tests that scene alone.
+ * ACTS_SLICE=2/12 tests every twelfth scene, mode, condition and setting from the third on, and appends the notes that
+ * it saw to the file ACTS_NOTES; ACTS_SLICE=notes tests that the slices of that file have proved each of them.
  * ACTS_VERBOSE=1 lists parameters of which only one value has an effect, and remedies that do not help. */
 #include <setjmp.h>
 #include <stdarg.h>
@@ -210,6 +212,24 @@ static status try_parameter(void *context, const char *path, const param *row, c
 
 /* --- jobs on two threads, each with its own account --- */
 
+/* Which jobs run: those whose number has the remainder `at` when divided by `of`; none if `of` is 0. */
+static struct {
+    int at, of;
+} slice = {0, 1};
+
+static void read_slice(void)
+{
+    const char *text = getenv("ACTS_SLICE");
+    if (!text || !*text)
+        return;
+    slice.at = slice.of = 0;
+    if (strcmp(text, "notes") != 0 &&
+        (sscanf(text, "%d/%d", &slice.at, &slice.of) != 2 || slice.at < 0 || slice.at >= slice.of)) {
+        fprintf(stderr, "test_acts: ACTS_SLICE=%s is neither K/N with 0 <= K < N nor \"notes\"\n", text);
+        exit(2);
+    }
+}
+
 typedef void job(int number, account *out);
 typedef struct bench {
     job *job;
@@ -224,7 +244,8 @@ static void *work(void *context)
 {
     bench *b = context;
     for (int i; (i = atomic_fetch_add(&b->next, 1)) < b->count;)
-        b->job(i, &b->accounts[i]);
+        if (slice.of > 0 && i % slice.of == slice.at)
+            b->job(i, &b->accounts[i]);
     return NULL;
 }
 
@@ -700,11 +721,45 @@ static void remedies_of_rare_notes_make_their_parameters_effective(void **state)
     add_jobs(try_counterpart, sizeof counterparts / sizeof *counterparts);
 }
 
-/* Of the cases before. */
+/* The notes of slices, a line each: rule, name, how often reported and proved. */
+static void append_notes(FILE *file)
+{
+    for (int i = 0; i < all.rule_count; i++)
+        fprintf(file, "%s %s %d %d\n", all.rules[i].rule, all.rules[i].name, all.rules[i].reported,
+                all.rules[i].proved);
+}
+
+static void add_notes(FILE *file)
+{
+    static char words[2 * RULES_MAX][80]; /* the accounts keep pointers */
+    int reported, proved;
+    for (int i = 0; fscanf(file, "%79s %79s %d %d", words[2 * i], words[2 * i + 1], &reported, &proved) == 4;) {
+        const int before = all.rule_count;
+        rule_count *r = count_of(&all, words[2 * i], words[2 * i + 1]);
+        r->reported += reported, r->proved += proved;
+        i += all.rule_count > before;
+        assert_true(i < RULES_MAX);
+    }
+    assert_true(all.rule_count > 0);
+}
+
+static void visit_notes(const char *mode, void (*visit)(FILE *))
+{
+    FILE *file = fopen(getenv("ACTS_NOTES"), mode);
+    assert_non_null(file);
+    visit(file);
+    assert_int_equal(fclose(file), 0);
+}
+
+/* Of the cases before, or of the slices that have run. */
 static void the_remedy_of_each_note_was_seen_to_make_a_parameter_effective(void **state)
 {
     (void)state;
-    if (getenv("ACTS_SCENE"))
+    if (slice.of > 1 && getenv("ACTS_NOTES"))
+        visit_notes("a", append_notes);
+    else if (slice.of == 0)
+        visit_notes("r", add_notes);
+    if (getenv("ACTS_SCENE") || slice.of > 1)
         skip();
     int unproved = 0;
     for (int i = 0; i < all.rule_count; i++) {
@@ -807,6 +862,7 @@ static void parameters_with_a_note_have_no_effect_under_other_settings(void **st
 
 int main(void)
 {
+    read_slice();
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(remedies_of_rare_notes_make_their_parameters_effective),
         cmocka_unit_test(every_parameter_of_every_shipped_scene_changes_the_film_or_has_a_note),
