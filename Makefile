@@ -698,7 +698,7 @@ test-deb: ## install the packages of make deb in a fresh Debian 12, use and remo
 
 # For clangd and other tools that parse C: all C files, with the flags of this configuration.
 .PHONY: compiled compile_commands.json
-by_scripts := tests/json_get.c tests/free_space.c $(wildcard tests/interrupt/*.c experiments/engine/*.c tests/faults/*.c tests/power/*.c)
+by_scripts := tests/json_get.c tests/free_space.c tests/limit.c $(wildcard tests/interrupt/*.c experiments/engine/*.c tests/faults/*.c tests/power/*.c)
 compiled: all peers $(mpi_objects) $(test_programs) $(benches) $(build)/tests/recheck $(fuzzers) $(by_scripts:%.c=$(build)/by-scripts/%.o)
 $(build)/by-scripts/%.o: %.c $(build)/flags
 	$(call say,$(CC) $<)
