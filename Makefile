@@ -396,13 +396,18 @@ include src/web/site/site.mk
 # Checks of the sources, run in one configuration only.
 source_checks := tests/layers.sh tests/headers.sh tests/vectorise.sh tests/targets.sh tests/format.sh tests/fault_texts.sh \
   tests/compile_commands.sh tests/words.sh tests/doc.sh
-scripts := $(filter-out $(source_checks) tests/arch.sh tests/mpi.sh tests/slurm.sh tests/simgrid.sh,$(wildcard tests/*.sh))
-ifeq ($(config)$(clang)$(RUNNER),release)
-scripts += $(wildcard $(source_checks))
-endif
-# make test only=statistics runs tests/test_statistics.c alone, without the scripts.
-selected := $(if $(only),$(only:%=$(build)/tests/test_%),$(test_programs))
-selected_scripts := $(if $(only),,$(scripts))
+every_script := $(filter-out tests/arch.sh tests/mpi.sh tests/slurm.sh tests/simgrid.sh,$(wildcard tests/*.sh))
+scripts := $(filter-out $(if $(filter-out release,$(config)$(clang)$(RUNNER)),$(source_checks)),$(every_script))
+# make test only=NAME runs what has that name: tests/test_NAME.c, tests/test_NAME.sh and tests/NAME.sh.
+named = $(filter $(build)/tests/test_$(1),$(test_programs)) $(filter tests/test_$(1).sh tests/$(1).sh,$(every_script))
+test_names = $(sort $(patsubst test_%,%,$(basename $(notdir $(tests) $(every_script)))))
+similar = $(shell name='$(1)'; printf '%s\n' $(test_names) | grep -F -e "$${name:0:3}")
+unknown = $(error only=$(1): there is no tests/test_$(1).c, tests/test_$(1).sh or tests/$(1).sh; \
+  $(or $(if $(similar),did you mean: $(similar)),ls tests shows the names))
+selected := $(if $(only),$(foreach name,$(only),$(or $(strip $(call named,$(name))),$(if $(filter test,$(MAKECMDGOALS)),$(call unknown,$(name))))), \
+  $(test_programs) $(scripts))
+selected_programs = $(filter-out %.sh,$(selected))
+selected_scripts = $(filter %.sh,$(selected))
 
 kernel_environment = KERNEL_FLAGS='$(code_flags)' $(foreach i,$(isas),KERNEL_FLAGS_$(i)='$(isa_flags_$(i))')
 
@@ -413,9 +418,9 @@ test_scenes := $(if $(LAWS_SCENES),$(LAWS_SCENES),$(if $(RUNNER)$(filter coverag
 # Programs that test scripts run.
 tested = $(build)/cuvette $(build)/$(soname) $(build)/engine/libcuvette.a $(build)/tests/bench_mesh $(build)/tests/recheck peers $(power_tools) \
   $(if $(filter release,$(config)),$(fault_tools))
-test: $(selected) $(build)/cuvette-import $(if $(only),,$(tested)) ## build and run every test; only=NAME for tests/test_NAME.c alone
+test: $(selected_programs) $(build)/cuvette-import $(if $(selected_scripts),$(tested)) ## build and run every test; only=NAME for tests/test_NAME.c and tests/NAME.sh alone
 	@LAWS_SCENES='$(test_scenes)' CC='$(CC)' BUILD='$(build)' CONFIG='$(config)' CUVETTE='$(abspath $(build)/cuvette)' CUVETTE_IMPORT='$(abspath $(build)/cuvette-import)' $(kernel_environment) \
-	  tests/run $(selected) $(selected_scripts)
+	  tests/run $(selected_programs) $(selected_scripts)
 
 # Documents generated from the list of quantities (src/job/quantities.c), the table of parameters and results/README.md;
 # tests compare them. A generated part of a page is between its comments "begin NAME" and "end NAME".
@@ -698,7 +703,7 @@ test-deb: ## install the packages of make deb in a fresh Debian 12, use and remo
 
 # For clangd and other tools that parse C: all C files, with the flags of this configuration.
 .PHONY: compiled compile_commands.json
-by_scripts := tests/json_get.c tests/free_space.c $(wildcard tests/interrupt/*.c experiments/engine/*.c tests/faults/*.c tests/power/*.c)
+by_scripts := tests/json_get.c tests/free_space.c tests/limit.c $(wildcard tests/interrupt/*.c experiments/engine/*.c tests/faults/*.c tests/power/*.c)
 compiled: all peers $(mpi_objects) $(test_programs) $(benches) $(build)/tests/recheck $(fuzzers) $(by_scripts:%.c=$(build)/by-scripts/%.o)
 $(build)/by-scripts/%.o: %.c $(build)/flags
 	$(call say,$(CC) $<)

@@ -1,31 +1,40 @@
 #!/bin/bash
-# Checks that make targets build the programs that their commands run. Reads the plan of `make -n` for an empty build
-# folder; builds nothing.
+# Checks that make targets build the programs that their commands run, and which tests `make test only=NAME` runs. Reads
+# the plan of `make -n` for an empty build folder; builds nothing.
 set -uo pipefail
 cd "$(dirname "$0")/.."
 work=$(mktemp -d "${TMPDIR:-/tmp}/cuvette-targets.XXXXXX") || exit 1
 trap 'rm -rf "$work"' EXIT
 unset MAKEFLAGS MFLAGS MAKELEVEL
 
-count=0 failed=0
+# shellcheck source=tests/shell/verdict.sh
+source tests/shell/verdict.sh
+
+plan() { make -n CC=gcc config=release build="$work/build" RESULTS="$work/results" "$@" 2>&1; }
 builds() { # TARGET PROGRAM...: passes if the plan links each program
     local target=$1 plan program
     shift
-    plan=$(make -n CC=gcc config=release build="$work/build" RESULTS="$work/results" "$target" 2>&1)
+    plan=$(plan "$target")
     for program in "$@"; do
-        count=$((count + 1))
-        if grep -qE -- "-o $work/build/$program( |$)" <<<"$plan"; then
-            echo "ok $count - make $target builds $program"
-        else
-            failed=1
-            echo "not ok $count - make $target builds $program"
-            tail -n 3 <<<"$plan" | cut -c 1-200 | sed 's/^/# /'
-        fi
+        grep -qE -- "-o $work/build/$program( |$)" <<<"$plan"
+        verdict $? "make $target builds $program" "$(tail -n 3 <<<"$plan" | cut -c 1-200)"
     done
 }
-
 # cuvette runs cuvette-import to read mesh files.
 builds experiments cuvette cuvette-import
 builds bench cuvette cuvette-import nocounters/cuvette peers/report tests/bench_mesh
 builds test peers/report tests/bench_mesh
-exit "$failed"
+
+# only=NAME: programs and scripts, with what they run.
+tests_of() { plan test only="$1" | sed -n "s, *tests/run *,,p" | sed "s,$work/build/,,g; s, *\$,,"; }
+equal "only=optics is a program" "$(tests_of optics)" tests/test_optics
+equal "only=cli is a script" "$(tests_of cli)" tests/test_cli.sh
+equal "only=study_plot is both" "$(tests_of study_plot)" "tests/test_study_plot tests/study_plot.sh"
+equal "two names" "$(tests_of "limits optics readme")" "tests/test_optics tests/limits.sh tests/readme.sh"
+[[ $(plan test only=limits) == *"-o $work/build/cuvette "*"-o $work/build/tests/bench_mesh "* ]]
+verdict $? "only=limits builds what scripts run"
+says=$(plan test only=limit)
+equal "an unknown name: status 2" $? 2
+[[ $(wc -l <<<"$says") == 1 && $says == *"tests/limit.sh; did you mean: "*limits* ]]
+verdict $? "an unknown name: one line, with names that resemble it" "$says"
+conclude
