@@ -367,6 +367,10 @@ setup: ## install the required packages (Debian 12); does nothing if they are in
 setup-python: | $(filter setup setup-peers,$(MAKECMDGOALS)) ## install what the Python module and its tests require (Debian's cffi, NumPy, pandas, pytest)
 	@PYTHON='$(PYTHON)' .ci/setup-python
 
+.PHONY: setup-paper
+setup-paper: | $(filter setup setup-doc,$(MAKECMDGOALS)) ## install what make paper requires: LaTeX
+	@.ci/setup-paper
+
 .PHONY: setup-peers
 setup-peers: | $(filter setup,$(MAKECMDGOALS)) ## install the programs that the benchmarks compare with: POV-Ray, Tachyon, Embree
 	@.ci/setup-peers
@@ -411,15 +415,17 @@ selected_scripts = $(filter %.sh,$(selected))
 
 kernel_environment = KERNEL_FLAGS='$(code_flags)' $(foreach i,$(isas),KERNEL_FLAGS_$(i)='$(isa_flags_$(i))')
 
-# Number of random scenes of tests/test_laws.c; fewer with instrumentation.
-test_scenes := $(if $(LAWS_SCENES),$(LAWS_SCENES),$(if $(RUNNER)$(filter coverage,$(config)),20,$(if $(filter release,$(config)),3000,500)))
+# The part of two long tests that `make test` runs; `make check` runs the others. Random scenes of tests/test_laws.c, fewer with
+# instrumentation, and the slice of tests/test_acts.c.
+test_scenes := $(if $(LAWS_SCENES),$(LAWS_SCENES),$(if $(RUNNER)$(filter coverage,$(config)),20,$(if $(filter release,$(config)),300,100)))
+ACTS_SLICE ?= 23/48
 
 .PHONY: test
 # Programs that test scripts run.
 tested = $(build)/cuvette $(build)/$(soname) $(build)/engine/libcuvette.a $(build)/tests/bench_mesh $(build)/tests/recheck peers $(power_tools) \
   $(if $(filter release,$(config)),$(fault_tools))
 test: $(selected_programs) $(build)/cuvette-import $(if $(selected_scripts),$(tested)) ## build and run every test; only=NAME for tests/test_NAME.c and tests/NAME.sh alone
-	@LAWS_SCENES='$(test_scenes)' CC='$(CC)' BUILD='$(build)' CONFIG='$(config)' CUVETTE='$(abspath $(build)/cuvette)' CUVETTE_IMPORT='$(abspath $(build)/cuvette-import)' $(kernel_environment) \
+	@LAWS_SCENES='$(test_scenes)' ACTS_SLICE='$(ACTS_SLICE)' CC='$(CC)' BUILD='$(build)' CONFIG='$(config)' CUVETTE='$(abspath $(build)/cuvette)' CUVETTE_IMPORT='$(abspath $(build)/cuvette-import)' $(kernel_environment) \
 	  tests/run $(selected_programs) $(selected_scripts)
 
 # Documents generated from the list of quantities (src/job/quantities.c), the table of parameters and results/README.md;
@@ -478,9 +484,9 @@ test-python: python | $(filter test test-mpi test-web experiments bench,$(MAKECM
 layers: ## check the layers of includes
 	@tests/run tests/layers.sh
 headers: $(build)/flags ## check that every header compiles alone, as C17 and as C++17
-	@CC='$(CC)' tests/run tests/headers.sh
+	@CHECK=1 CC='$(CC)' tests/run tests/headers.sh
 vectorise: $(build)/flags ## report which kernel loops are vectorised; fail if a required one is not
-	@$(kernel_environment) bash tests/vectorise.sh | sed -n 's/^# //p; /^not ok/p'; exit $${PIPESTATUS[0]}
+	@CHECK=1 $(kernel_environment) bash tests/vectorise.sh | sed -n 's/^# //p; /^not ok/p'; exit $${PIPESTATUS[0]}
 
 .PHONY: sanitize tsan valgrind clang
 sanitize: ## build and test with AddressSanitizer and UndefinedBehaviorSanitizer
@@ -540,12 +546,12 @@ report_coverage:
 	  --txt $(build)/report/missed.txt --print-summary $(build)
 	@echo 'report: $(build)/report/index.html; the lines that neither tests nor the inputs of fuzzers reach: $(build)/report/missed.txt'
 
-# Small errors in the sources, one at a time, that a test must detect; everything that checks, within an hour.
-.PHONY: mutants check-all
+# Small errors in the sources, one at a time, that a test must detect; everything that checks, in slices.
+.PHONY: mutants check
 mutants: $(build)/cuvette ## insert 600 small errors into physics and statistics: a unit test must detect each (hours; goes on)
 	@BUILD='$(build)' tests/mutants/mutants.sh
-check-all: $(build)/cuvette ## run every kind of check, long ones in rotation, about an hour: build/check/page.md
-	@BUILD='$(build)' CC='$(CC)' tests/check/all.sh
+check: $(build)/cuvette ## run everything that checks, in slices that go on where they stopped (hours); CHECK_SECONDS=300 for five minutes, only="acts sanitize-2" for some
+	@BUILD='$(build)' CC='$(CC)' tests/check/check.sh $(only)
 
 .PHONY: interrupts
 MOMENTS ?= 1000

@@ -1,6 +1,6 @@
 #!/bin/bash
 # Checks that every header under src/ compiles alone: as C17, and as C++17 if there is a C++ compiler and the header has
-# no C11 atomics.
+# no C11 atomics. As C++17 only src/cuvette.h, unless CHECK=1.
 set -uo pipefail
 cd "$(dirname "$0")/.."
 cc=${CC:-gcc}
@@ -25,7 +25,7 @@ compile() { # compile HEADER LANGUAGE COMPILER FLAG...
 
 for header in $(find src -name '*.h' | sort); do
     compile "$header" C17 "$cc" -std=c17 -Wpedantic -x c
-    if ! command -v "$cxx" >/dev/null; then
+    if ! command -v "$cxx" >/dev/null || [[ -z ${CHECK:-} && $header != src/cuvette.h ]]; then
         continue
     elif [[ $("$cc" -D_GNU_SOURCE -Isrc "${libraries[@]}" -M -x c "$header" 2>/dev/null) == */stdatomic.h* ]]; then
         case_number=$((case_number + 1)) # such headers are private to their folder

@@ -2,7 +2,7 @@
  * params SCENE` prints, other legal values change the film, or a note states why none does, or the table marks the
  * parameter as not affecting the image. A note is proved by its remedy: once the remedy is applied, the parameter
  * changes the film. New parameters of the table are covered automatically. ACTS_SCENE=rod.yaml tests that scene alone.
- * ACTS_SLICE=2/12 tests every twelfth scene, mode, condition and setting from the third on, and appends the notes that
+ * ACTS_SLICE=2/12 tests every twelfth scene, mode, condition and setting from the third on, and writes the notes that
  * it saw to the file ACTS_NOTES; ACTS_SLICE=notes tests that the slices of that file have proved each of them.
  * ACTS_VERBOSE=1 lists parameters of which only one value has an effect, and remedies that do not help. */
 #include <setjmp.h>
@@ -722,7 +722,7 @@ static void remedies_of_rare_notes_make_their_parameters_effective(void **state)
 }
 
 /* The notes of slices, a line each: rule, name, how often reported and proved. */
-static void append_notes(FILE *file)
+static void write_notes(FILE *file)
 {
     for (int i = 0; i < all.rule_count; i++)
         fprintf(file, "%s %s %d %d\n", all.rules[i].rule, all.rules[i].name, all.rules[i].reported,
@@ -756,7 +756,7 @@ static void the_remedy_of_each_note_was_seen_to_make_a_parameter_effective(void 
 {
     (void)state;
     if (slice.of > 1 && getenv("ACTS_NOTES"))
-        visit_notes("a", append_notes);
+        visit_notes("w", write_notes);
     else if (slice.of == 0)
         visit_notes("r", add_notes);
     if (getenv("ACTS_SCENE") || slice.of > 1)

@@ -59,7 +59,8 @@ static scene *committed_scene(const char *name)
     diagnostic why = {0};
     snprintf(path, sizeof path, SCENES "%s", name);
     worked(scene_read(path, &s, &why), &why);
-    set_all(s, "render.width=32 render.height=24 render.samples=1 render.wavelengths=4");
+    set_all(s, "render.width=32 render.height=24 render.samples=1 render.wavelengths=4 render.paths=2 "
+               "render.photons=2000");
     return s;
 }
 

@@ -11,7 +11,7 @@ import { fileURLToPath } from 'node:url';
 import { load } from '../../src/wasm/api/cuvette.js';
 
 export const ROOT = fileURLToPath(new URL('../../', import.meta.url));
-export const ISAS = ['simd128', 'plain'];
+export const ISAS = (process.env.WASM_ISAS || 'simd128 plain').split(' ');
 const SCENES = `${ROOT}experiments/scenes`;
 
 /* Shipped scenes that no browser renders, with the reason. */
