@@ -60,7 +60,7 @@ due() { # KEY NAME...
     local key=$1
     shift
     slices | awk -F '\t' -v OFS='\t' -v key="$key" -v names="$*" -v first="${CHECK_FIRST:-0}" '
-        FNR == NR { when[$1] = $3; passed[$1] = $2 == key && $4 == "passed"; failed[$1] = $4 == "failed"; next }
+        FILENAME != "-" { when[$1] = $3; passed[$1] = $2 == key && $4 == "passed"; failed[$1] = $4 == "failed"; next }
         function wanted(name, i, n, each) {
             if (names == "") return !passed[name]
             n = split(names, each, " ")
