@@ -2,7 +2,7 @@
 # Write all numbers of the paper, computed only from rows: OUT/numbers.tex (\setval lines that \val reads), from the
 # tables that tables.sh writes to OUT/tables.
 #   paper/numbers.sh RESULTS OUT        run from the repository's root
-# Environment: as tables.sh. Without gnuplot the fitted laws are missing.
+# Environment: as tables.sh. Without gnuplot the laws fitted to the studies of triangles and area are missing.
 export LC_ALL=C.UTF-8
 set -eu
 
@@ -32,16 +32,6 @@ machine() {
     done
 }
 
-units() {
-    count=$(fact threads processing_units 2>/dev/null || true)
-    echo "${count:-0}"
-}
-
-laws() {
-    [ -r "$out/tables/threads.tsv" ] && command -v gnuplot >/dev/null || return 0
-    (cd "$here/.." && gnuplot -e "results = '$out'; units = $(units)" paper/laws.gp)
-}
-
 # Laws fitted to the studies of many triangles and of the area that they cover.
 polygons() {
     command -v gnuplot >/dev/null || return 0
@@ -51,7 +41,7 @@ polygons() {
     done
 }
 
-# Laws of the tests of a ray, and the time of a test.
+# The tests of a ray, and the time of a test.
 queries() {
     [ -r "$out/tables/queries.tsv" ] || return 0
     set -- "$out/tables/queries.tsv"
@@ -138,17 +128,6 @@ designs() {
     done
 }
 
-# What can be seen of an error of an index, and how much of the magnification is the vessel's.
-visible() {
-    [ -r "$out/tables/visible-index-metrics.tsv" ] || return 0
-    for which in liquid vessel; do
-        awk -v which=$which -f "$here/../plots/visible.awk" "$out/tables/visible-index-metrics.tsv" |
-            awk -v which=$which -f "$here/visible.awk"
-    done
-    [ ! -r "$out/tables/visible-grid-metrics.tsv" ] ||
-        awk -v grid=1 -f "$here/visible.awk" "$out/tables/visible-grid-metrics.tsv" | sort
-}
-
 "$here/tables.sh" "$results" "$out"
 {
     echo "% made by paper/numbers.sh; change rows or scripts, not this"
@@ -157,7 +136,7 @@ visible() {
         [ -r "$table" ] || continue
         study=$(basename "$table" .tsv)
         case $study in
-        published-* | flips | visible-grid*) ;; # the grid is too large for numbers of each cell
+        published-* | visible-grid*) ;; # the grid is too large for numbers of each cell
         *-metrics) awk -v study="${study%-metrics}" -f "$here/scientific.awk" -f "$here/metrics.awk" "$table" ;;
         *-curves) awk -v study="${study%-curves}" -f "$here/scientific.awk" -f "$here/curves.awk" "$table" ;;
         *-motion) awk -v study="${study%-motion}" -f "$here/scientific.awk" -f "$here/motion.awk" "$table" ;;
@@ -170,19 +149,8 @@ visible() {
     designs
     slab
     ball
-    visible
     [ ! -r "$results/detect/rows.csv" ] || awk -f "$here/detect.awk" "$results/detect/rows.csv" | sort
     machine
-    "$here/flips.sh" "$results" "$out"
-    laws
     polygons
     queries
-    # Rays by pixel are the same for every schedule and machine; the committed run has no large images, but their sums.
-    cost=$results/tables/maps-cost.tsv
-    map=$results/maps/images/0000-rays.pfm
-    [ ! -r "$map" ] || { cost=$out/cost && "$here/cost.sh" "$map" >"$cost"; }
-    if [ -r "$cost" ]; then
-        awk -f "$here/share.awk" -f "$here/blocks.awk" "$cost"
-        "$here/scaling.sh" "$results" "$out" "$cost"
-    fi
 } >"$out/numbers.tex"
