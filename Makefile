@@ -589,24 +589,8 @@ experiments-full: $(build)/cuvette ## run the long studies of experiments/full a
 	$(build)/cuvette study run --results $(RESULTS) experiments/*.study experiments/full/*.study
 	@$(MAKE) --no-print-directory build=$(build) $(RESULTS)/tables/growth.tsv $(RESULTS)/tables/paths.tsv tables figures
 
-# A study's summary, if its rows are newer: of the environment with most rows.
-study_files := $(wildcard experiments/*.study experiments/full/*.study)
-study_file = $(filter %/$(1).study,$(study_files))
-studies := $(basename $(notdir $(study_files)))
-measured := $(foreach s,$(studies),$(if $(wildcard $(RESULTS)/$(s)/rows.csv),$(s)))
-# Tables of single cells, concatenated for a study.
-strung = $(patsubst $(RESULTS)/%/images/0000-$(1).tsv,$(RESULTS)/tables/%-$(1).tsv,$(wildcard $(RESULTS)/*/images/0000-$(1).tsv))
-tables: $(measured:%=$(RESULTS)/tables/%.tsv) $(foreach kind,metrics curves motion,$(call strung,$(kind))) ## summarise the existing rows
-define strung_rule
-$(RESULTS)/tables/%-$(1).tsv: $(RESULTS)/%/images/index.tsv
-	@mkdir -p $$(@D)
-	awk 'NR == 1 || FNR > 1' $(RESULTS)/$$*/images/*-$(1).tsv >$$@
-endef
-$(foreach kind,metrics curves motion,$(eval $(call strung_rule,$(kind))))
-.SECONDEXPANSION:
-$(RESULTS)/tables/%.tsv: $(RESULTS)/%/rows.csv $$(call study_file,$$*) $$(wildcard $(RESULTS)/$$*/compare.csv) | $(build)/cuvette
-	@mkdir -p $(@D)
-	$(build)/cuvette study summary --environment main --results $(RESULTS) $(call study_file,$*) >$@
+tables: $(build)/cuvette ## summarise the existing rows: RESULTS/tables, which figures, claims and the paper read; RESULTS=DIR, ENVIRONMENT=HEX
+	@CUVETTE='$(abspath $(build)/cuvette)' ENVIRONMENT='$(ENVIRONMENT)' experiments/tables.sh '$(RESULTS)'
 
 # What no study can sweep: measured once; remove the table to measure again.
 $(RESULTS)/tables/growth.tsv: | $(build)/cuvette
@@ -634,9 +618,10 @@ $(RESULTS)/figures/trace.svg: experiments/scenes/rod.yaml | $(build)/cuvette
 	$(build)/cuvette trace $< --ray=-3,1.5,0.6,1,0,0 --depth 5 --set rod.visible=off -o $@
 
 # The rows of this clone, or the committed run if there are none and no folder is given.
-claimed = $(if $(filter-out file,$(origin RESULTS))$(wildcard $(RESULTS)/*/rows*.csv $(RESULTS)/tables/*.tsv),$(RESULTS),results/reference)
+claimed = $(if $(filter-out file,$(origin RESULTS))$(wildcard $(RESULTS)/*/rows*.csv),$(RESULTS),results/reference)
 claims: $(build)/cuvette ## judge each claim of the paper by the rows: reproduced, not reproduced, underpowered; RESULTS=DIR, ENVIRONMENT=HEX
-	@CUVETTE='$(abspath $(build)/cuvette)' ENVIRONMENT='$(ENVIRONMENT)' paper/claims.sh '$(claimed)' $(build)/claims
+	@CUVETTE='$(abspath $(build)/cuvette)' ENVIRONMENT='$(ENVIRONMENT)' experiments/tables.sh '$(claimed)'
+	@paper/claims.sh '$(claimed)' $(build)/claims
 
 paper: $(build)/cuvette ## rebuild the paper and its supplement from existing rows, without measuring
 	$(MAKE) -C paper CUVETTE='$(abspath $(build)/cuvette)'

@@ -28,18 +28,16 @@ for table in "$from"/tables/*-{metrics,curves,motion}.tsv; do
     [[ ! -e $table ]] || cp "$table" "$to/tables/"
 done
 # Of studies that only measure the edges of the rod, these metrics.
-for name in ior-images visible-grid visible-index; do
+for name in ior-images visible-grid; do
     awk 'NR == 1 || $5 ~ /^edges[.]/' FS='\t' "$from/tables/$name-metrics.tsv" >"$to/tables/$name-metrics.tsv"
 done
 mkdir -p "$to/displacement"
 cp "$from/displacement/points.csv" "$to/displacement/"
-# Small float images that numbers of the paper are read from; of a large one, its sums.
+# Small float images that numbers of the paper are read from.
 for name in absorber slime-light; do
     mkdir -p "$to/$name/images"
     cp "$from/$name"/images/*.pfm "$to/$name/images/"
 done
-paper/cost.sh "$from/maps/images/0000-rays.pfm" >"$to/tables/maps-cost.tsv"
-experiments/views.sh >"$to/tables/maps-views.tsv"
 # Figures that need images; the others are drawn from the rows. And those of the README.
 for script in plots/*.gp; do
     name=$(basename "$script" .gp)

@@ -1,11 +1,10 @@
 #!/bin/sh
 # Judge every claim of paper/claims.tsv by the rows of a folder, and print its verdict: reproduced, not reproduced, or
 # underpowered, which is what rows are that cannot decide it.
-#   paper/claims.sh RESULTS OUT         run from the repository's root
+#   paper/claims.sh RESULTS OUT         after experiments/tables.sh RESULTS
 # Writes OUT/claims.tsv (id, verdict, figure, reason, sentence), OUT/claims.tex (the sentences that the paper prints
-# instead of claims that are not reproduced, and its table of claims) and, by numbers.sh, OUT/numbers.tex and
-# OUT/tables.
-# Environment: as tables.sh. Status: 0; 1 if a claim is not reproduced; 2 if claims.tsv is wrong, or there are no rows.
+# instead of claims that are not reproduced, and its table of claims) and, by numbers.sh, OUT/numbers.tex.
+# Status: 0; 1 if a claim is not reproduced; 2 if claims.tsv is wrong, or there are no rows.
 export LC_ALL=C.UTF-8
 set -eu
 
@@ -16,12 +15,18 @@ out=$(cd "$2" && pwd)
     echo "claims: there is no folder $1; give one with RESULTS=DIR" >&2
     exit 2
 }
-"$here/numbers.sh" "$1" "$out"
+# The environment of each study whose table has one.
+for table in "$1"/tables/*.tsv; do
+    [ ! -r "$table" ] || awk -F '\t' -v study="$(basename "$table" .tsv)" '
+        NR == 1 { for (i = 1; i <= NF; i++) if ($i == "environment") at = i }
+        NR > 1 && at && $at != "NA" { print study "\t" $at; exit }' "$table"
+done >"$out/environments"
 [ -s "$out/environments" ] || {
-    echo "claims: no rows in $1; run make experiments, or give another folder with RESULTS=DIR" >&2
+    echo "claims: no tables of rows in $1/tables; run make experiments, or give another folder with RESULTS=DIR" >&2
     exit 2
 }
-awk -v tables="$out/tables" -v numbers="$out/numbers.tex" -f "$here/interval.awk" -f "$here/claims.awk" \
+"$here/numbers.sh" "$1" "$out"
+awk -v tables="$1/tables" -v numbers="$out/numbers.tex" -f "$here/interval.awk" -f "$here/claims.awk" \
     "$here/claims.tsv" >"$out/claims.tsv" || exit 2
 awk -v environments="$(cut -f 2 "$out/environments" | sort -u | tr '\n' ' ')" -f "$here/claims_tex.awk" \
     "$out/numbers.tex" "$out/claims.tsv" "$here/paper.tex" "$here/supplement.tex" >"$out/claims.tex"

@@ -81,7 +81,7 @@ value("n") > 0 {
     if (alias() != "") key = alias()
     else for (i = 2; i <= axes + 1; i++) key = key "/" ($i ~ /^[-+0-9.]+$/ ? $i + 0 : $i)
     for (i = at["n"]; i <= NF; i++)
-        if (name[i] !~ /\/|^imbalance/) set(key "/" name[i], formatted(name[i], $i))
+        if (name[i] !~ /\/|^imbalance|^environment$/) set(key "/" name[i], formatted(name[i], $i))
     if (measured("imbalance")) set_value(key "/imbalance", scaled(measured("imbalance"), 100))
     rays = value("rays_total")
     cpu = measured("cpu_s")

@@ -1,14 +1,15 @@
 #!/bin/sh
 # Write all numbers of the paper, computed only from rows: OUT/numbers.tex (\setval lines that \val reads), from the
-# tables that tables.sh writes to OUT/tables.
-#   paper/numbers.sh RESULTS OUT        run from the repository's root
-# Environment: as tables.sh. Without gnuplot the fitted laws are missing.
+# tables of experiments/tables.sh, RESULTS/tables.
+#   paper/numbers.sh RESULTS OUT
+# Without gnuplot the laws fitted to the studies of triangles and area are missing.
 export LC_ALL=C.UTF-8
 set -eu
 
 results=$(cd "$1" && pwd)
 mkdir -p "$2"
 out=$(cd "$2" && pwd)
+tables=$results/tables
 here=$(cd "$(dirname "$0")" && pwd)
 published=$here/../experiments/published
 
@@ -32,30 +33,20 @@ machine() {
     done
 }
 
-units() {
-    count=$(fact threads processing_units 2>/dev/null || true)
-    echo "${count:-0}"
-}
-
-laws() {
-    [ -r "$out/tables/threads.tsv" ] && command -v gnuplot >/dev/null || return 0
-    (cd "$here/.." && gnuplot -e "results = '$out'; units = $(units)" paper/laws.gp)
-}
-
 # Laws fitted to the studies of many triangles and of the area that they cover.
 polygons() {
     command -v gnuplot >/dev/null || return 0
     for study in triangles coverage; do
-        [ -r "$out/tables/$study.tsv" ] || continue
-        (cd "$here/.." && gnuplot -e "results = '$out'" "paper/$study.gp")
+        [ -r "$tables/$study.tsv" ] || continue
+        (cd "$here/.." && gnuplot -e "results = '$results'" "paper/$study.gp")
     done
 }
 
-# Laws of the tests of a ray, and the time of a test.
+# The tests of a ray, and the time of a test.
 queries() {
-    [ -r "$out/tables/queries.tsv" ] || return 0
-    set -- "$out/tables/queries.tsv"
-    [ ! -r "$out/tables/triangles.tsv" ] || set -- "$@" "$out/tables/triangles.tsv"
+    [ -r "$tables/queries.tsv" ] || return 0
+    set -- "$tables/queries.tsv"
+    [ ! -r "$tables/triangles.tsv" ] || set -- "$@" "$tables/triangles.tsv"
     awk -v show=numbers -v topology="$(fact triangles topology)" -f "$here/queries.awk" "$@"
 }
 
@@ -87,8 +78,8 @@ published() {
 # Index
 # and coefficients are those of experiments/scenes/absorber.yaml, in 1/m; the law's R is Fresnel's at normal incidence.
 slab() {
-    [ -r "$out/tables/absorber.tsv" ] || return 0
-    lines=$(awk -f "$here/../plots/select.awk" -v columns='cell liquid.size.z' "$out/tables/absorber.tsv" |
+    [ -r "$tables/absorber.tsv" ] || return 0
+    lines=$(awk -f "$here/../plots/select.awk" -v columns='cell liquid.size.z' "$tables/absorber.tsv" |
         while read -r cell thickness; do
             picture=$(printf '%s/absorber/images/%04d.pfm' "$results" "$cell")
             [ ! -r "$picture" ] || printf '%s\t%s\n' "$thickness" "$("$here/../plots/pixel.sh" "$picture")"
@@ -117,9 +108,9 @@ slab() {
 # ball's
 # chord (rms over a row of pixels), and the light left by a surface that transmits a share, relative to its square.
 ball() {
-    [ -r "$out/tables/slime-light.tsv" ] || return 0
+    [ -r "$tables/slime-light.tsv" ] || return 0
     awk -f "$here/../plots/select.awk" -v columns='cell toy.level jelly.transparency' \
-        "$out/tables/slime-light.tsv" |
+        "$tables/slime-light.tsv" |
         while read -r cell level share; do
             picture=$(printf '%s/slime-light/images/%04d.pfm' "$results" "$cell")
             [ ! -r "$picture" ] || "$here/../plots/chord.sh" "$picture" 6 0.493 |
@@ -131,33 +122,22 @@ ball() {
 designs() {
     for file in "$here"/../experiments/*.study; do
         study=$(basename "$file" .study)
-        [ -r "$out/tables/$study.tsv" ] || continue
+        [ -r "$tables/$study.tsv" ] || continue
         awk -v study="$study" 'BEGIN { of["processes"] = 1 }
             /^(processes|warmups): *[0-9]+$/ { sub(/:/, "", $1); of[$1] = $2 }
             END { for (name in of) printf "\\setval{%s/%s}{%d}\n", study, name, of[name] }' "$file"
     done
 }
 
-# What can be seen of an error of an index, and how much of the magnification is the vessel's.
-visible() {
-    [ -r "$out/tables/visible-index-metrics.tsv" ] || return 0
-    for which in liquid vessel; do
-        awk -v which=$which -f "$here/../plots/visible.awk" "$out/tables/visible-index-metrics.tsv" |
-            awk -v which=$which -f "$here/visible.awk"
-    done
-    [ ! -r "$out/tables/visible-grid-metrics.tsv" ] ||
-        awk -v grid=1 -f "$here/visible.awk" "$out/tables/visible-grid-metrics.tsv" | sort
-}
-
-"$here/tables.sh" "$results" "$out"
 {
     echo "% made by paper/numbers.sh; change rows or scripts, not this"
     published
-    for table in "$out"/tables/*.tsv; do
+    for table in "$tables"/*.tsv; do
         [ -r "$table" ] || continue
         study=$(basename "$table" .tsv)
         case $study in
-        published-* | flips | visible-grid*) ;; # the grid is too large for numbers of each cell
+        published-* | growth* | paths) ;; # not in the paper
+        visible-grid*) ;;                 # too large for numbers of each cell
         *-metrics) awk -v study="${study%-metrics}" -f "$here/scientific.awk" -f "$here/metrics.awk" "$table" ;;
         *-curves) awk -v study="${study%-curves}" -f "$here/scientific.awk" -f "$here/curves.awk" "$table" ;;
         *-motion) awk -v study="${study%-motion}" -f "$here/scientific.awk" -f "$here/motion.awk" "$table" ;;
@@ -170,19 +150,8 @@ visible() {
     designs
     slab
     ball
-    visible
     [ ! -r "$results/detect/rows.csv" ] || awk -f "$here/detect.awk" "$results/detect/rows.csv" | sort
     machine
-    "$here/flips.sh" "$results" "$out"
-    laws
     polygons
     queries
-    # Rays by pixel are the same for every schedule and machine; the committed run has no large images, but their sums.
-    cost=$results/tables/maps-cost.tsv
-    map=$results/maps/images/0000-rays.pfm
-    [ ! -r "$map" ] || { cost=$out/cost && "$here/cost.sh" "$map" >"$cost"; }
-    if [ -r "$cost" ]; then
-        awk -f "$here/share.awk" -f "$here/blocks.awk" "$cost"
-        "$here/scaling.sh" "$results" "$out" "$cost"
-    fi
 } >"$out/numbers.tex"

@@ -1,18 +1,11 @@
-# The laws of the tests of a ray (experiments/queries.study), from the tables of that study and of triangles, which has
+# The tests of a ray (experiments/queries.study), from the tables of that study and of triangles, which has
 # the times of the same frames: those of one thread in visibility queries, nearest hits and shadows.
 #   awk -v show=WHAT [-v topology=TEXT] -f paper/queries.awk TABLES/queries.tsv [TABLES/triangles.tsv]
 # topology: of the machine with the times, as in runs.json, for the sizes of its caches.
-# WHAT: numbers    \setval lines: laws, predictions, exponents, what geometry asks for, time of a test
-#       series     scene, hierarchy, triangles, tests, boxes, triangles tested a ray
-#       fits       scene, hierarchy, triangles, logarithm, power, cube root   (curves of the laws fitted up to FITTED)
+# WHAT: numbers    \setval lines: counts, exponents, what geometry asks for, time of a test
+#       series     scene, hierarchy, triangles, tests, boxes, triangles tested a camera ray
 #       exponents  scene, hierarchy, triangles (geometric mean of two), local exponent
 #       cache      hierarchy, bytes, ns a test: median, least, most
-#
-# Laws for y, the boxes (or spheres) and triangles that a camera ray tests, against n, the triangles:
-#       a + b log2 n      c n^p      a + c n^(1/3)
-# Each has two parameters, fitted to the logarithms of y: deviations are relative, as in plots/polygons.gp. Counts have no
-# noise, so that residuals are the law's own; AICc (Hurvich and Tsai 1989) is then only a scale to compare laws on. What
-# counts is the prediction: fitted up to FITTED triangles, how far is each off at the largest n?
 #
 # What geometry asks for. A line that meets a convex body meets a convex part of it with a probability of the ratio of
 # their surfaces (Cauchy; MacDonald and Booth 1990 build on it). At a level of the tree with m boxes of edge h, a ray
@@ -21,9 +14,7 @@
 # sum is the number of levels: a logarithm.
 BEGIN {
     FS = "\t"
-    if (!FITTED) FITTED = 200000
     LATTICE = 4000
-    kinds = split("log power cube", kind, " ")
     scenes = split("sparse sphere dense", scene, " ")
     trees = split("octant bvh", tree, " ")
 }
@@ -76,87 +67,6 @@ value("query_rays_median") > 0 {
     y[s, k] = (boxes + tested) / rays
     asked_rays[s, k] = rays
     hits[s, k] = value("first_hits.model")
-}
-
-# --- fits ---
-
-function shape(law, x) {
-    return law == "log" ? log(x) / log(2) : law == "cube" ? exp(log(x) / 3) : log(x)
-}
-
-function predicted(law, a, b, x) {
-    return law == "power" ? exp(a + b * log(x)) : a + b * shape(law, x)
-}
-
-# Sum of squares of ln(y / law) over the fitted counts; -1 where the law is not positive.
-function misfit(s, law, a, b, upto,   k, f, sum) {
-    for (k = 1; k <= count[s]; k++) {
-        if (n[s, k] > upto) continue
-        f = predicted(law, a, b, n[s, k])
-        if (!(f > 0)) return -1
-        sum += log(y[s, k] / f) ^ 2
-    }
-    return sum
-}
-
-# Sets fit_a, fit_b, fit_n and fit_sum: least squares of the logarithms, by Gauss and Newton from a weighted line.
-function fit(s, law, upto,   k, step, f, r, u, v, w, x, suu, suv, svv, sur, svr, det, da, db, now, next_sum, half) {
-    suu = suv = svv = sur = svr = fit_n = 0
-    for (k = 1; k <= count[s]; k++) {
-        if (n[s, k] > upto) continue
-        fit_n++
-        x = shape(law, n[s, k])
-        w = law == "power" ? 1 : 1 / y[s, k] ^ 2
-        r = law == "power" ? log(y[s, k]) : y[s, k]
-        suu += w
-        suv += w * x
-        svv += w * x * x
-        sur += w * r
-        svr += w * x * r
-    }
-    det = suu * svv - suv * suv
-    fit_a = (svv * sur - suv * svr) / det
-    fit_b = (suu * svr - suv * sur) / det
-    fit_sum = misfit(s, law, fit_a, fit_b, upto)
-    if (law == "power") return
-    if (fit_sum < 0) { # a start that is positive everywhere
-        fit_a = y[s, 1]
-        fit_b = 0
-        fit_sum = misfit(s, law, fit_a, fit_b, upto)
-    }
-    for (step = 0; step < 100; step++) {
-        suu = suv = svv = sur = svr = 0
-        for (k = 1; k <= count[s]; k++) {
-            if (n[s, k] > upto) continue
-            f = predicted(law, fit_a, fit_b, n[s, k])
-            r = log(y[s, k] / f)
-            u = 1 / f
-            v = shape(law, n[s, k]) / f
-            suu += u * u
-            suv += u * v
-            svv += v * v
-            sur += u * r
-            svr += v * r
-        }
-        det = suu * svv - suv * suv
-        da = (svv * sur - suv * svr) / det
-        db = (suu * svr - suv * sur) / det
-        for (half = 1; half > 1e-9; half /= 2) {
-            next_sum = misfit(s, law, fit_a + half * da, fit_b + half * db, upto)
-            if (next_sum >= 0 && next_sum <= fit_sum) break
-        }
-        if (half <= 1e-9) return
-        now = fit_sum - next_sum
-        fit_a += half * da
-        fit_b += half * db
-        fit_sum = next_sum
-        if (now <= 1e-14 * fit_sum) return
-    }
-}
-
-function deviation(s, law,   k, sum) {
-    for (k = 1; k <= count[s]; k++) sum += (predicted(law, fit_a, fit_b, n[s, k]) / y[s, k] - 1) ^ 2
-    return 100 * sqrt(sum / count[s])
 }
 
 function exponent(s, k) {
@@ -250,7 +160,7 @@ function number_of(x) { # 4000000 as 4\,000\,000
     return x
 }
 
-function laws_of(s, name,   i, k, law, last, best, least, most) {
+function counts_of(s, name,   k, last, least, most) {
     last = count[s]
     set(name "/first", "%.1f", y[s, 1])
     set(name "/last", "%.1f", y[s, last])
@@ -267,19 +177,6 @@ function laws_of(s, name,   i, k, law, last, best, least, most) {
     }
     set(name "/exponent/least", "%.2f", least)
     set(name "/exponent/most", "%.2f", most)
-    for (i = 1; i <= kinds; i++) {
-        law = kind[i]
-        fit(s, law, 1e99)
-        set(name "/" law "/off", "%.1f", deviation(s, law))
-        set(name "/" law "/aicc", "%.0f", last * log(fit_sum / last) + 6 + 24 / (last - 4))
-        if (law == "power") set(name "/power/p", "%.2f", fit_b)
-        if (law == "log") set(name "/log/b", "%.2f", fit_b)
-        if (n[s, last] <= FITTED) continue
-        fit(s, law, FITTED)
-        off = 100 * (predicted(law, fit_a, fit_b, n[s, last]) / y[s, last] - 1)
-        set(name "/" law "/predict", "%+.0f", off)
-        set(name "/" law "/miss", "%.1f", off < 0 ? -off : off)
-    }
 }
 
 function soup_numbers(   k, s, last, worst, off, before) {
@@ -351,27 +248,16 @@ function ns_of(key, seconds) {
     return 1e9 * seconds / tests_of[key]
 }
 
-function each(what,   i, j, k, s, x, a, b, t) {
+function each(what,   i, j, k, s) {
     for (i = 1; i <= scenes; i++)
         for (j = 1; j <= trees; j++) {
             s = scene[i] SUBSEP tree[j]
             if (!count[s]) continue
-            if (what == "numbers") laws_of(s, scene[i] "/" tree[j])
+            if (what == "numbers") counts_of(s, scene[i] "/" tree[j])
             for (k = 1; k <= count[s] && what == "series"; k++)
                 print scene[i], tree[j], n[s, k], y[s, k], box[s, k], tri[s, k]
             for (k = 1; k < count[s] && what == "exponents"; k++)
                 print scene[i], tree[j], sqrt(n[s, k] * n[s, k + 1]), exponent(s, k)
-            if (what != "fits" || n[s, count[s]] <= FITTED) continue
-            for (k = 1; k <= kinds; k++) {
-                fit(s, kind[k], FITTED)
-                a[k] = fit_a
-                b[k] = fit_b
-            }
-            for (x = 0; x <= 40; x++) {
-                t = n[s, 1] * exp(x / 40 * log(n[s, count[s]] / n[s, 1]))
-                print scene[i], tree[j], t, predicted("log", a[1], b[1], t), predicted("power", a[2], b[2], t),
-                    predicted("cube", a[3], b[3], t)
-            }
         }
 }
 

@@ -30,7 +30,7 @@ do for [threads=1:2] {
     set title sprintf("Time to build, %d thread%s", threads, threads > 1 ? "s" : "")
     set ylabel "build time / s"
     set yrange [1e-4:10]
-    plot for [i=1:4] [1:6] '+' using (place(i, $1)):(bar(i, $1, threads, "build_s")) with boxes lt i title word(names, i)
+    plot for [i=1:4] [1:6] '+' using (place(i, $1)):(bar(i, $1, threads, "build_s_median")) with boxes lt i title word(names, i)
     unset label 100
 }
 unset logscale y

@@ -63,7 +63,7 @@ has_worker_rows() {
 look_for_inputs() {
     local pattern found needs
     missing=
-    inputs=("plots/$1.gp" plots/{style,rows,{image,growth}_panels,laws,media}.gp plots/*.{awk,sh}
+    inputs=("plots/$1.gp" plots/{style,rows,{image,growth}_panels,media}.gp plots/*.{awk,sh}
         experiments/published/*.csv)
     read -r -a needs <<<"$(sed -n 's/^# needs: *//p' "plots/$1.gp")"
     for pattern in "${needs[@]}"; do

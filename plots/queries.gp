@@ -1,5 +1,5 @@
-# Tests of a ray against the number of triangles: the counts with the laws fitted up to 200000 triangles, the local
-# exponent between successive counts, and the time of a test against the memory of the hierarchy. One column of the paper.
+# Tests of a ray against the number of triangles: the counts, the local exponent between successive counts, and the time
+# of a test against the memory of the hierarchy. One column of the paper.
 # needs: tables/queries.tsv tables/triangles.tsv
 width = 318; height = 520
 load "plots/style.gp"
@@ -35,20 +35,8 @@ do for [i=1:4] {
             font ",6.8" textcolor rgb (i % 2 ? vermillion : blue)
     }
 }
-set arrow 1 from 2e5,graph 0 to 2e5,graph 1 nohead lc rgb grey lw 0.6 dt (2,3)
-set label 5 "fitted " at 2e5,graph 0.97 right font ",6.5" textcolor rgb grey
-set label 6 " predicted" at 2e5,graph 0.97 left font ",6.5" textcolor rgb grey
-set label 7 "power" at graph 0.03,graph 0.95 left font ",6.8" textcolor rgb ink
-set label 8 "––– logarithm    ······ a + c n^{1/3}    — power" at graph 0.01,graph 1.02 left font ",6.5" textcolor rgb ink
-unset label 7
-plot for [i=1:4] part("fits", of(word("sparse sparse sphere sphere", i), word("octant bvh octant bvh", i))) \
-         using 3:4 with lines lc rgb (i % 2 ? vermillion : blue) lw 0.9 dt (5,3), \
-     for [i=1:4] part("fits", of(word("sparse sparse sphere sphere", i), word("octant bvh octant bvh", i))) \
-         using 3:5 with lines lc rgb (i % 2 ? vermillion : blue) lw 0.9, \
-     for [i=1:4] part("fits", of(word("sparse sparse sphere sphere", i), word("octant bvh octant bvh", i))) \
-         using 3:6 with lines lc rgb (i % 2 ? vermillion : blue) lw 1.2 dt (1,2), \
-     for [i=1:4] part("series", of(word("sparse sparse sphere sphere", i), word("octant bvh octant bvh", i))) \
-         using 3:4 with points pt (i < 3 ? (i % 2 ? 5 : 7) : (i % 2 ? 4 : 6)) ps 0.55 lc rgb (i % 2 ? vermillion : blue)
+plot for [i=1:4] part("series", of(word("sparse sparse sphere sphere", i), word("octant bvh octant bvh", i))) \
+         using 3:4 with linespoints pt (i < 3 ? (i % 2 ? 5 : 7) : (i % 2 ? 4 : 6)) ps 0.55 lw 0.8 lc rgb (i % 2 ? vermillion : blue)
 unset label; unset arrow
 
 set tmargin at screen 0.575; set bmargin at screen 0.375

@@ -32,10 +32,10 @@ unset offsets
 set yrange [0:*]
 set ylabel "imbalance / %"
 set key top left maxrows 4
-plot for [i=2:3] values("tiles", word(counts, i) + 0, "imbalance") using 1:($2*100) \
+plot for [i=2:3] values("tiles", word(counts, i) + 0, "imbalance_median") using 1:($2*100) \
          with linespoints lt i pt 6 dt (6,3) title "static tiles, ".word(counts, i)." threads", \
-     for [i=2:3] values("dynamic", word(counts, i) + 0, "imbalance") using 1:($2*100) \
+     for [i=2:3] values("dynamic", word(counts, i) + 0, "imbalance_median") using 1:($2*100) \
          with linespoints lt i title "dynamic tiles, ".word(counts, i)." threads", \
-     for [i=2:3] for [j=1:2] '+' using (j == 1 ? 500 : 1200):(block(word(label_blocks, j), word(counts, i) + 0, "imbalance")*100) every ::0::0 \
+     for [i=2:3] for [j=1:2] '+' using (j == 1 ? 500 : 1200):(block(word(label_blocks, j), word(counts, i) + 0, "imbalance_median")*100) every ::0::0 \
          with points lt i pt 2 ps 1.2 notitle
 unset multiplot

@@ -9,7 +9,7 @@ hierarchies = "none sphere octant bvh"
 names = "'no hierarchy' 'one sphere' 'octant tree of spheres' 'BVH of boxes'"
 moments = "0 0.5"
 frames(i, m) = select(rows, sprintf("render.accel=%s toy.time_s=%s", word(hierarchies, i), word(moments, m)), \
-    "triangles visibility_s_sum wall_s_median rays_total")
+    "triangles visibility_s_sum_median wall_s_median rays_total")
 set label 100 disturbed("slime-frame") at screen 0.5,0.02 center font ",8" textcolor rgb grey
 set multiplot layout 1,2 margins 0.07,0.985,0.15,0.93 spacing 0.1
 set logscale x

@@ -9,7 +9,7 @@ names = "'semi-implicit Euler' 'backward Euler'"
 threads = system(select(rows, "", "toy.threads")[3:*]." | sort -gu | tr '\\n' ' '")
 masses(level) = 10*4**level + 2
 steps(i, t) = select(rows, sprintf("toy.integrator=%s toy.threads=%s", word(integrators, i), word(threads, t)), \
-    "toy.level motion_s motion_steps toy.time_s")
+    "toy.level motion_s_median motion_steps toy.time_s")
 kind(i, t) = i == 1 ? t : t + 2
 set label 100 disturbed("slime-step") at screen 0.5,0.02 center font ",8" textcolor rgb grey
 set multiplot layout 1,2 margins 0.07,0.985,0.15,0.93 spacing 0.1

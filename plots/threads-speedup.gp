@@ -1,10 +1,13 @@
-# Speed-up by threads for each schedule, with the ideal line, a fitted law (laws.gp), and the published numbers. The ends
-# of an interval combine those of both times, so it contains the speed-up if both contain their medians.
+# Speed-up by threads for each schedule, with the ideal line and the published numbers. The ends of an interval combine
+# those of both times, so it contains the speed-up if both contain their medians.
 # needs: tables/threads.tsv
 width = 1000; height = 760
 load "plots/style.gp"
 
-load "plots/laws.gp"
+rows = table("threads")
+schedules = "columns rows tiles dynamic"
+together(n) = units > 0 && n > units ? units : n
+times(schedule) = select(rows, "render.schedule=".schedule, "render.threads wall_s_median wall_s_low wall_s_high")
 published_1 = first(published."threads.csv", "threads=1", "wall_s")
 
 set label 100 disturbed("threads") at screen 0.5,0.015 center font ",8" textcolor rgb grey
@@ -17,17 +20,14 @@ set samples 401
 set key top left font ",9" spacing 1.05
 do for [i=1:4] {
     schedule = word(schedules, i)
-    one = wall_1(schedule)
+    one = first(rows, "render.threads=1 render.schedule=".schedule, "wall_s_median")
     one_low = first(rows, "render.threads=1 render.schedule=".schedule, "wall_s_low")
     one_high = first(rows, "render.threads=1 render.schedule=".schedule, "wall_s_high")
-    name_g = gunther_fits[i] ? sprintf("Gunther: σ = %.4f ± %.4f, κ = (%.2f ± %.2f)·10^{-6}", \
-        gunther_s[i], gunther_s_error[i], gunther_k[i], gunther_k_error[i]) : "Gunther: too few rows"
     set title "schedule: ".schedule
     set xlabel (i > 2 ? "threads" : "")
     set ylabel (i % 2 ? "speed-up" : "")
     plot together(x) lt 8 title units > 0 ? sprintf("ideal on %d units, min(n, %d)", units, units) : "ideal", \
          select(published."threads.csv", "", "threads wall_s") using 1:(published_1/$2) with linespoints lt 7 title published_name, \
-         (gunther_fits[i] ? gunther(x, gunther_s[i], gunther_k[i]) : NaN) with lines lc rgb orange lw 4 title name_g, \
          times(schedule) using 1:(one/$2):(one_low/$4):($3 > 0 ? one_high/$3 : 1e3) with yerrorbars lt i title "measured, wall"
     unset label 100
 }

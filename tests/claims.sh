@@ -124,12 +124,6 @@ if ((with_gnuplot)); then
         <(claims) "$work/reference/claims.tsv")"
 fi
 
-# --- rates of small studies are drawn by experiments/repeat.sh, not here; those without a bootstrap take a second
-"$CUVETTE" study power --tsv --designs=1,3 "$reference/repeat/values.csv" >"$work/power"
-same "the program draws the committed rates from the committed values" \
-    "$(awk -F'\t' -v OFS='\t' '$1 == "all" { print "same", $0 }' "$work/power")" \
-    "$(grep -P '^same\tall\tall\t(apart|turns)\t1\t[13]\t' "$reference/repeat/power.tsv")"
-
 # LaTeX may not be installed: what it reads is well formed.
 empty "numbers.tex and claims.tex have balanced braces and no special characters" "$(awk '
     { line = $0; gsub(/\\./, "", line); open = gsub(/[{]/, "", line); close_ = gsub(/[}]/, "", line) }

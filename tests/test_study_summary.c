@@ -50,6 +50,10 @@ static void write_rows(const fixture *f, const study *s, const written *rows, si
                 sprintf(value, "%d.%d", (int)rows[i].wall_s, (int)(rows[i].wall_s * 10) % 10);
             else if (strcmp(name, "rays_total") == 0 || strcmp(name, "first_hits.ball") == 0)
                 sprintf(value, "%d", 1000 + rows[i].cell);
+            else if (strcmp(name, "motion_s") == 0)
+                sprintf(value, "%d.5", (int)rows[i].wall_s);
+            else if (strcmp(name, "motion_steps") == 0)
+                sprintf(value, "%d", (int)rows[i].wall_s - 1);
             size += (size_t)sprintf(text + size, "%s%s", value, rest ? "," : "\n");
         }
         free(names);
@@ -126,6 +130,16 @@ static void a_summary_has_medians_and_their_intervals(void **state)
     assert_string_equal(field(text, 1, "rays_total"), "1000");
     assert_string_equal(field(text, 1, "first_hits.ball"), "1000");
     assert_string_equal(field(text, 1, "first_hits.ground"), "NA");
+    /* The same of other columns: 1.5 to 6.5; and of their quotients, formed row by row: 6.5/5 to 2.5/1, without 1.5/0. */
+    assert_string_equal(field(text, 1, "motion_s_median"), "4");
+    assert_string_equal(field(text, 1, "motion_s_low"), "1.5");
+    assert_string_equal(field(text, 1, "motion_s_max"), "6.5");
+    assert_string_equal(field(text, 1, "motion_s/motion_steps_median"), "1.5"); /* 4.5/3 */
+    assert_string_equal(field(text, 1, "motion_s/motion_steps_low"), "NA");     /* of five values */
+    assert_string_equal(field(text, 1, "motion_s/motion_steps_min"), "1.3");
+    assert_string_equal(field(text, 1, "motion_s/motion_steps_max"), "2.5");
+    assert_string_equal(field(text, 1, "query_boxes_median"), "NA");
+    assert_string_equal(field(text, 1, "query_boxes/query_rays_max"), "NA");
     /* A cell without rows has a line. */
     assert_string_equal(field(text, 2, "render.depth"), "1");
     assert_string_equal(field(text, 2, "n"), "0");
@@ -151,17 +165,20 @@ static void columns_are_in_the_expected_order(void **state)
     assert_memory_equal(why.what, "no rows in ", 11);
     write_rows(f, s, &row, 1);
     char *text = summary_of(f, s);
-    static const char header[] =
-        "cell\trender.depth\tn\twall_s_median\twall_s_low\twall_s_high\twall_s_mean\twall_s_min\twall_s_max\tcpu_s_"
-        "median\tcpu_s_low\t"
-        "cpu_s_high\tcpu_s_mean\tcpu_s_min\tcpu_s_max\trays_total\trays_camera\trays_reflect\trays_refract\trays_"
-        "shadow\t"
-        "cut_depth_throughput\ttotal_internal\tfilm_hash\tmarked\texcluded\tbusy_s_mean\tbusy_s_max\twaiting_s_"
-        "mean\timbalance\tothers_share\t"
-        "worker_cpu_s_sum\tpeak_rss_bytes\tnoise_rms\ttriangles\tinstances\taccel_bytes\tbuild_s\tdrawn\tdrawn_bytes\t"
-        "visibility_s_sum\tmotion_steps\tmotion_s\tfirst_hits.ground\tfirst_hits.ball\tdisturbed\tundisturbed_"
-        "n\tundisturbed_wall_s_median\t"
-        "undisturbed_wall_s_low\tundisturbed_wall_s_high\tenvironment\n";
+#define SIX(name) name "_median\t" name "_low\t" name "_high\t" name "_mean\t" name "_min\t" name "_max\t"
+    static const char header[] = "cell\trender.depth\tn\t" SIX("wall_s") SIX(
+        "cpu_s") "rays_total\trays_camera\trays_reflect\trays_refract\trays_shadow\tcut_depth_throughput\ttotal_"
+                 "internal\t"
+                 "film_hash\tmarked\texcluded\tbusy_s_mean\tbusy_s_max\twaiting_s_mean\tothers_share\tworker_cpu_s_"
+                 "sum\t"
+                 "peak_rss_bytes\tnoise_rms\ttriangles\tinstances\taccel_bytes\tdrawn\tdrawn_bytes\tmotion_steps\t"
+                 "first_hits.ground\tfirst_hits.ball\t" SIX("build_s") SIX("imbalance") SIX("visibility_s_sum") SIX(
+                     "motion_s") SIX("query_rays") SIX("query_boxes") SIX("query_triangles") SIX("rays_total/cpu_s")
+                     SIX("visibility_s_sum/wall_s") SIX("visibility_s_sum/rays_total") SIX("motion_s/motion_steps")
+                         SIX("query_boxes/query_rays") SIX(
+                             "query_triangles/query_rays") "disturbed\tundisturbed_n\tundisturbed_wall_s_"
+                                                           "median\tundisturbed_wall_s_low\tundisturbed_wall_s_high\t"
+                                                           "environment\n";
     assert_memory_equal(text, header, sizeof header - 1);
     size_t columns = fixture_count(header, "\t");
     assert_int_equal(fixture_count(text, "\t"), 4 * columns);

@@ -1,24 +1,16 @@
 #include "study/spread.h"
-#include "measure/statistics.h"
 #include "study/cell_table.h"
 #include "study/excluded.h"
 #include "study/grid.h"
-#include "study/level_rows.h"
+#include "study/row_quantity.h"
 #include "study/row_environments.h"
-#include "study/row_files.h"
 #include "study/row_list.h"
-#include <math.h>
 #include <stdlib.h>
 #include <string.h>
 
-/* A column, or with below the quotient of two. Borrows the text of a column_list. */
-typedef struct spread_column {
-    const char *name, *below; /* below: NULL without a divisor */
-} spread_column;
-
 typedef struct column_list {
     char *text; /* owned, cut into names */
-    spread_column *columns;
+    row_quantity *columns;
     size_t count;
 } column_list;
 
@@ -42,7 +34,7 @@ static status column_list_read(const char *text, column_list *out, diagnostic *w
         if (!*name || (slash && !*slash))
             return diagnose(why, STATUS_BAD_INPUT, "give columns of rows.csv, such as build_s,visibility_s_sum/wall_s",
                             "invalid list of columns '%.128s'", text);
-        out->columns[out->count++] = (spread_column){name, slash};
+        out->columns[out->count++] = (row_quantity){name, slash};
     }
     return STATUS_OK;
 }
@@ -59,7 +51,7 @@ static bool is_known(const row_files *files, const char *name)
 static status check_columns(const row_files *files, const column_list *list, diagnostic *why)
 {
     for (size_t i = 0; i < list->count; i++) {
-        const spread_column *c = &list->columns[i];
+        const row_quantity *c = &list->columns[i];
         const char *unknown = !is_known(files, c->name)                ? c->name
                               : c->below && !is_known(files, c->below) ? c->below
                                                                        : NULL;
@@ -78,37 +70,17 @@ static int by_cell_and_environment(const void *a, const void *b)
     return strcmp(row_environment(x), row_environment(y));
 }
 
-static double value_of(const row_ref *ref, const spread_column *c)
-{
-    const double value = row_field_real(ref, c->name);
-    if (!c->below)
-        return value;
-    const double below = row_field_real(ref, c->below);
-    return below > 0 || below < 0 ? value / below : NAN;
-}
-
 /* The line of one column over the rows of one cell and environment. values: room for as many numbers. */
-static status put_line(const study *s, const row_ref **rows, size_t count, const spread_column *c, double *values,
+static status put_line(const study *s, const row_ref **rows, size_t count, const row_quantity *c, double *values,
                        FILE *out, diagnostic *why)
 {
-    size_t known = 0;
-    level_interval median;
-    for (size_t i = 0; i < count; i++) {
-        values[i] = value_of(rows[i], c);
-        values[i] = isfinite(values[i]) ? values[i] : NAN;
-    }
-    TRY(level_rows_median(rows, values, count, &median, why));
-    for (size_t i = 0; i < count; i++) {
-        const double value = value_of(rows[i], c);
-        if (isfinite(value))
-            values[known++] = value;
-    }
-    const summary of = known ? summarize(values, known) : (summary){0, NAN, NAN, NAN, NAN, NAN, NAN, NAN, NAN, NAN};
-    const double numbers[] = {median.value, median.low, median.high, of.minimum, of.maximum};
+    row_spread of;
+    TRY(row_quantity_spread(rows, count, *c, values, &of, why));
+    const double numbers[] = {of.median.value, of.median.low, of.median.high, of.minimum, of.maximum};
     fprintf(out, "%zu", rows[0]->cell);
     grid_put_values(s, rows[0]->cell, out);
     fprintf(out, "\t%s\t%s%s%s\t%zu", row_environment(rows[0]), c->name, c->below ? "/" : "", c->below ? c->below : "",
-            known);
+            of.known);
     for (size_t i = 0; i < sizeof numbers / sizeof numbers[0]; i++)
         cell_table_number(out, numbers[i]);
     fputc('\n', out);

@@ -6,6 +6,7 @@
 #include "study/excluded.h"
 #include "study/grid.h"
 #include "study/level_rows.h"
+#include "study/row_quantity.h"
 #include "study/row_environments.h"
 #include "study/row_list.h"
 #include "study/row_noise.h"
@@ -15,13 +16,28 @@
 #include <stdlib.h>
 #include <string.h>
 
-static const char *const timed[] = {"wall_s", "cpu_s"};
+/* Columns, and quotients formed row by row, whose median has an interval. */
+static const row_quantity timed[] = {{"wall_s", NULL}, {"cpu_s", NULL}};
 static const char *const before_hash[] = {"rays_total",  "rays_camera",          "rays_reflect",  "rays_refract",
                                           "rays_shadow", "cut_depth_throughput", "total_internal"};
 static const char *const after_marked[] = {
-    "busy_s_mean",    "busy_s_max",  "waiting_s_mean",   "imbalance",    "others_share", "worker_cpu_s_sum",
-    "peak_rss_bytes", "noise_rms",   "triangles",        "instances",    "accel_bytes",  "build_s",
-    "drawn",          "drawn_bytes", "visibility_s_sum", "motion_steps", "motion_s"};
+    "busy_s_mean", "busy_s_max", "waiting_s_mean", "others_share", "worker_cpu_s_sum", "peak_rss_bytes", "noise_rms",
+    "triangles",   "instances",  "accel_bytes",    "drawn",        "drawn_bytes",      "motion_steps"};
+static const row_quantity after_solids[] = {
+    {"build_s", NULL},
+    {"imbalance", NULL},
+    {"visibility_s_sum", NULL},
+    {"motion_s", NULL},
+    {"query_rays", NULL},
+    {"query_boxes", NULL},
+    {"query_triangles", NULL},
+    {"rays_total", "cpu_s"},
+    {"visibility_s_sum", "wall_s"},
+    {"visibility_s_sum", "rays_total"},
+    {"motion_s", "motion_steps"},
+    {"query_boxes", "query_rays"},
+    {"query_triangles", "query_rays"},
+};
 
 #define COUNT(array) (sizeof(array) / sizeof((array)[0]))
 
@@ -41,51 +57,26 @@ typedef struct cell_rows {
     FILE *out;
 } cell_rows;
 
-/* The values of one column over the cell's rows, NaN where unknown. */
-static void gather(const cell_rows *cell, const char *name)
-{
-    const csv *table = NULL;
-    int column = -1;
-    for (size_t i = 0; i < cell->count; i++) {
-        if (cell->rows[i]->table != table) {
-            table = cell->rows[i]->table;
-            column = csv_column(table, name);
-        }
-        cell->values[i] = csv_field_real(table, cell->rows[i]->row, column);
-    }
-}
-
-static summary summarize_column(const cell_rows *cell, const char *name)
-{
-    size_t count = 0;
-    gather(cell, name);
-    for (size_t i = 0; i < cell->count; i++)
-        if (!isnan(cell->values[i]))
-            cell->values[count++] = cell->values[i];
-    if (count == 0)
-        return (summary){0, NAN, NAN, NAN, NAN, NAN, NAN, NAN, NAN, NAN};
-    return summarize(cell->values, count);
-}
-
-static status find_interval(const cell_rows *cell, const char *name, level_interval *out, diagnostic *why)
-{
-    gather(cell, name);
-    return level_rows_median(cell->rows, cell->values, cell->count, out, why);
-}
-
-static status put_timed(const cell_rows *cell, const char *name, diagnostic *why)
+static status put_spread(const cell_rows *cell, row_quantity column, diagnostic *why)
 {
     static const char *const parts[] = {"median", "low", "high", "mean", "min", "max"};
-    level_interval median = {NAN, NAN, NAN};
+    row_spread of = {.known = 0};
     if (!cell->header)
-        TRY(find_interval(cell, name, &median, why));
-    const summary s = cell->header ? (summary){0} : summarize_column(cell, name);
-    const double values[] = {median.value, median.low, median.high, s.mean, s.minimum, s.maximum};
+        TRY(row_quantity_spread(cell->rows, cell->count, column, cell->values, &of, why));
+    const double values[] = {of.median.value, of.median.low, of.median.high, of.mean, of.minimum, of.maximum};
     for (size_t part = 0; part < COUNT(parts); part++)
         if (cell->header)
-            fprintf(cell->out, "\t%s_%s", name, parts[part]);
+            fprintf(cell->out, "\t%s%s%s_%s", column.name, column.below ? "/" : "", column.below ? column.below : "",
+                    parts[part]);
         else
             cell_table_number(cell->out, values[part]);
+    return STATUS_OK;
+}
+
+static status put_spreads(const cell_rows *cell, const row_quantity *columns, size_t count, diagnostic *why)
+{
+    for (size_t i = 0; i < count; i++)
+        TRY(put_spread(cell, columns[i], why));
     return STATUS_OK;
 }
 
@@ -103,7 +94,7 @@ static status put_undisturbed(const cell_rows *cell, diagnostic *why)
     }
     level_interval median = {NAN, NAN, NAN};
     row_noise_columns at = {.table = NULL};
-    gather(cell, "wall_s");
+    row_quantity_values(cell->rows, cell->count, timed[0], cell->values);
     for (size_t i = 0; i < cell->count; i++)
         if (row_noise_judge(cell->rule, &at, cell->rows[i]) != NOISE_UNDISTURBED)
             cell->values[i] = NAN;
@@ -117,10 +108,12 @@ static status put_undisturbed(const cell_rows *cell, diagnostic *why)
 
 static void put_median(const cell_rows *cell, const char *name)
 {
-    if (cell->header)
+    if (cell->header) {
         fprintf(cell->out, "\t%s", name);
-    else
-        cell_table_number(cell->out, summarize_column(cell, name).median);
+        return;
+    }
+    const size_t known = row_quantity_known(cell->rows, cell->count, (row_quantity){name, NULL}, cell->values);
+    cell_table_number(cell->out, known ? summarize(cell->values, known).median : NAN);
 }
 
 static status put_solids(const study *s, const cell_rows *cell, diagnostic *why)
@@ -156,8 +149,7 @@ static status put_line(const study *s, const cell_rows *cell, diagnostic *why)
         grid_put_values(s, cell->number, cell->out);
         fprintf(cell->out, "\t%zu", cell->count);
     }
-    for (size_t i = 0; i < COUNT(timed); i++)
-        TRY(put_timed(cell, timed[i], why));
+    TRY(put_spreads(cell, timed, COUNT(timed), why));
     for (size_t i = 0; i < COUNT(before_hash); i++)
         put_median(cell, before_hash[i]);
     if (cell->header)
@@ -168,6 +160,7 @@ static status put_line(const study *s, const cell_rows *cell, diagnostic *why)
     for (size_t i = 0; i < COUNT(after_marked); i++)
         put_median(cell, after_marked[i]);
     status code = put_solids(s, cell, why);
+    THEN(code, put_spreads(cell, after_solids, COUNT(after_solids), why));
     put_compared(s, cell);
     THEN(code, put_undisturbed(cell, why));
     fprintf(cell->out, "\t%s\n", cell->header ? "environment" : cell->environment);

@@ -62,7 +62,7 @@ export function quantitiesOf(summary, paths) {
       ({ column, i }) =>
         !own.has(column) &&
         !NOT_SHOWN.has(column) &&
-        !(part.test(column) && /^(wall|cpu)_s/.test(column)) &&
+        !(part.test(column) && columns.includes(column.replace(part, '_median'))) &&
         isNumeric(column, rows, i),
     )
     .map(({ column }) => {

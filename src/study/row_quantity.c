@@ -1,0 +1,46 @@
+#include "study/row_quantity.h"
+#include "measure/statistics.h"
+#include "study/level_rows.h"
+#include <math.h>
+
+void row_quantity_values(const row_ref *const *rows, size_t count, row_quantity column, double *values)
+{
+    const csv *table = NULL;
+    int name = -1, below = -1;
+    for (size_t i = 0; i < count; i++) {
+        if (rows[i]->table != table) {
+            table = rows[i]->table;
+            name = csv_column(table, column.name);
+            below = column.below ? csv_column(table, column.below) : -1;
+        }
+        values[i] = csv_field_real(table, rows[i]->row, name);
+        if (column.below)
+            values[i] /= csv_field_real(table, rows[i]->row, below);
+        values[i] = isfinite(values[i]) ? values[i] : NAN;
+    }
+}
+
+size_t row_quantity_known(const row_ref *const *rows, size_t count, row_quantity column, double *values)
+{
+    size_t known = 0;
+    row_quantity_values(rows, count, column, values);
+    for (size_t i = 0; i < count; i++)
+        if (!isnan(values[i]))
+            values[known++] = values[i];
+    return known;
+}
+
+status row_quantity_spread(const row_ref *const *rows, size_t count, row_quantity column, double *values,
+                           row_spread *out, diagnostic *why)
+{
+    *out = (row_spread){0, {NAN, NAN, NAN}, NAN, NAN, NAN};
+    out->known = row_quantity_known(rows, count, column, values);
+    if (out->known == 0)
+        return STATUS_OK;
+    const summary of = summarize(values, out->known);
+    out->mean = of.mean;
+    out->minimum = of.minimum;
+    out->maximum = of.maximum;
+    row_quantity_values(rows, count, column, values);
+    return level_rows_median(rows, values, count, &out->median, why);
+}
