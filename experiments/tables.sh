@@ -1,7 +1,7 @@
 #!/bin/sh
 # Write the tables that figures, claims and the paper read, RESULTS/tables: the summary of each study with rows, in one
 # environment; the tables of its single cells, concatenated; the published series; and those of paper/determinism.sh.
-# All are made anew; one that did not change stays as it is, and so do the figures drawn from it.
+# All are made anew; one that did not change stays as it is.
 #   experiments/tables.sh RESULTS [STUDY...]      with STUDY, only the tables of these studies
 # CUVETTE: the program (default: build/cuvette). ENVIRONMENT: the one to show, 8 hex digits, instead of the one with most
 # rows in each study. Status: 0; 1 if the rows of a study give no table; 2 for a wrong argument.

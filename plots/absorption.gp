@@ -1,5 +1,8 @@
 # A liquid of five concentrations, and the transmittance of a slab compared with the Beer-Lambert law.
-# needs: tables/absorption.tsv absorption/images/*.png tables/absorber.tsv absorber/images/*.pfm
+# needs: tables/absorption.tsv liquid.absorb_per_m
+# needs: absorption/images/*.png
+# needs: tables/absorber.tsv liquid.size.z
+# needs: absorber/images/*.pfm
 width = 1000; height = 640
 load "plots/style.gp"
 
@@ -18,7 +21,8 @@ set title "Light through a slab, n = 1.33"
 set key at screen 0.765,0.5 left top Left reverse samplen 2 spacing 1.25
 # thickness, red, green, blue of the pixel in the middle.
 measured = "< awk -f plots/select.awk -v columns='cell liquid.size.z' '".slab."' | while read -r cell d; do " \
-    ."printf '%s\t' $d; plots/pixel.sh $(printf '".results."/absorber/images/%04d.pfm' $cell); done"
+    ."image=$(printf '".results."/absorber/images/%04d.pfm' $cell); ".'[ -r "$image" ]'." || continue; " \
+    ."printf '%s\t' $d; plots/pixel.sh $image; done"
 # Reflectance of a face at normal incidence (Fresnel), and the transmittance of a slab with all its inner reflections.
 R = (0.33/2.33)**2
 through(a, d) = (1 - R)**2*exp(-a*d*1e-3)/(1 - R**2*exp(-2*a*d*1e-3))

@@ -1,5 +1,5 @@
 # Build time of the hierarchies with one thread and with two, their memory, and the rays traced per second.
-# needs: tables/build.tsv
+# needs: tables/build.tsv build_s_median
 width = 1000; height = 700
 load "plots/style.gp"
 
@@ -21,7 +21,7 @@ set arrow 11 from 3.5, graph 0 to 3.5, graph 1 nohead lc rgb pale back
 set logscale y
 set format y "10^{%T}"
 
-set label 100 disturbed("build") at screen 0.5,0.008 center font ",8" textcolor rgb grey
+set label 100 remarks("build") at screen 0.5,0.008 center font ",8" textcolor rgb grey
 set multiplot layout 2,2 margins 0.075,0.985,0.1,0.955 spacing 0.1,0.165
 set samples 6
 set boxwidth 1.8*half
@@ -29,7 +29,6 @@ unset key
 do for [threads=1:2] {
     set title sprintf("Time to build, %d thread%s", threads, threads > 1 ? "s" : "")
     set ylabel "build time / s"
-    set yrange [1e-4:10]
     plot for [i=1:4] [1:6] '+' using (place(i, $1)):(bar(i, $1, threads, "build_s_median")) with boxes lt i title word(names, i)
     unset label 100
 }
@@ -38,12 +37,15 @@ set format y "%h"
 set title "Memory"
 set ylabel "bytes / triangle"
 set yrange [0:*]
-plot for [i=1:4] [1:6] '+' using (place(i, $1)):(bar(i, $1, 1, "accel_bytes")/bar(i, $1, 1, "triangles")) with boxes lt i notitle
+set key top left maxrows 2 samplen 1
+set offsets 0, 0, graph 0.2, 0
+plot for [i=1:4] [1:6] '+' using (place(i, $1)):(bar(i, $1, 1, "accel_bytes")/bar(i, $1, 1, "triangles")) with boxes lt i title word(names, i)
+unset key
+unset offsets
 set logscale y
 set format y "10^{%T}"
 set title "Rays, one thread"
 set ylabel "rays / CPU second"
-set yrange [1e3:1e8]
-set key top left maxrows 2 samplen 1
-plot for [i=1:4] [1:6] '+' using (place(i, $1)):(bar(i, $1, 1, "rays_total")/bar(i, $1, 1, "cpu_s_median")) with boxes lt i title word(names, i)
+set yrange [*:*]
+plot for [i=1:4] [1:6] '+' using (place(i, $1)):(bar(i, $1, 1, "rays_total")/bar(i, $1, 1, "cpu_s_median")) with boxes lt i
 unset multiplot

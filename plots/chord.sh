@@ -14,8 +14,7 @@ set -eu
 read -r width height <<END
 $(head -n 2 "$1" | tail -n 1)
 END
-tail -c +$(($(head -n 3 "$1" | wc -c) + 12 * (height / 2) * width + 1)) "$1" | head -c $((12 * width)) |
-    od -An -v -t f4 -w12 |
+od -An -v -t f4 -w12 -j $(($(head -n 3 "$1" | wc -c) + 12 * (height / 2) * width)) -N $((12 * width)) "$1" |
     awk -v width="$width" -v height="$height" -v distance="$2" -v fov_deg="$3" '
         {
             half = fov_deg * atan2(0, -1) / 360

@@ -1,5 +1,5 @@
 # Efficiency on simulated clusters by the edge of the tiles, and with unequal hosts. Random paths, 8k frame, 100 Gbit/s.
-# needs: cluster.csv
+# needs: cluster.csv study=tile tile efficiency
 width = 1000; height = 430
 load "plots/style.gp"
 

@@ -1,5 +1,5 @@
 # Efficiency on simulated clusters by ranks: strong and weak scaling of random paths, and Whitted's method.
-# needs: cluster.csv
+# needs: cluster.csv study=strong-path platform variant ranks ideal_s time_s efficiency
 width = 1000; height = 430
 load "plots/style.gp"
 

@@ -1,6 +1,6 @@
 # Error against the reference, light cut at the depth limit, and time, by recursion depth. A depth is sufficient from
 # the first one whose mean FLIP error is below 0.01.
-# needs: tables/convergence.tsv
+# needs: tables/convergence.tsv error_rms flip wall_s_median
 width = 1000; height = 480
 load "plots/style.gp"
 
@@ -8,7 +8,7 @@ rows = table("convergence")
 of(beyond, columns) = select(rows, "render.beyond=".beyond, "render.depth ".columns)
 enough(beyond) = number(system(of(beyond, "flip")[3:*]." | awk '$2 < 0.01 { print $1; exit }'"))
 words_of = "sky black"
-set label 100 disturbed("convergence") at screen 0.5,0.015 center font ",8" textcolor rgb grey
+set label 100 remarks("convergence") at screen 0.5,0.015 center font ",8" textcolor rgb grey
 set multiplot layout 1,2 margins 0.08,0.985,0.125,0.92 spacing 0.105
 set xlabel "recursion depth"
 set xrange [-0.5:24.5]
@@ -42,7 +42,7 @@ unset arrow 3
 unset label 3
 set title "Time of a frame"
 set ylabel "wall time (median, minimum, maximum) / s"
-set yrange [1e-3:10]
+set yrange [*:*]
 set key top left Left reverse
 plot of("sky", "wall_s_median wall_s_min wall_s_max") using 1:2:3:4 with yerrorlines lt 1 title "sky beyond the limit", \
      of("black", "wall_s_median wall_s_min wall_s_max") using 1:2:3:4 with yerrorlines lt 1 pt 6 dt (6,3) title "black"

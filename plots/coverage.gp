@@ -1,14 +1,14 @@
 # Time by the area that a model covers, with fitted lines (areas.gp), and the published times with their line.
-# needs: tables/coverage.tsv
+# needs: tables/coverage.tsv first_hits.model cpu_s_median
 width = 1000; height = 470
 load "plots/style.gp"
 
 load "plots/areas.gp"
 names = "'octant tree of spheres' 'BVH of boxes'"
-set label 100 disturbed("coverage") at screen 0.5,0.015 center font ",8" textcolor rgb grey
+set label 100 remarks("coverage") at screen 0.5,0.015 center font ",8" textcolor rgb grey
 set multiplot layout 1,2 margins 0.075,0.985,0.13,0.92 spacing 0.1
 set xlabel "covered pixels / 1000"
-set xrange [0:500]
+set xrange [0:*]
 set yrange [0:*]
 set ylabel "CPU time of a frame / ms"
 set title "A ball of 40500 triangles, 800 by 600 pixels"

@@ -1,5 +1,5 @@
 # Throughput cut off at the depth limit, and the rays by kind, by recursion depth.
-# needs: tables/depth.tsv
+# needs: tables/depth.tsv rays_camera
 width = 1000; height = 430
 load "plots/style.gp"
 

@@ -1,5 +1,6 @@
 # The image by recursion depth.
-# needs: depth/images/*.png tables/depth.tsv
+# needs: depth/images/*.png
+# needs: tables/depth.tsv rays_total
 width = 1000; height = 790
 load "plots/style.gp"
 

@@ -1,6 +1,6 @@
 # What the metrics of optics detect: the power of ten of the smallest injected error that a family of metrics detects in
 # the median of the scenes in which it detects any, by the kind of error; experiments/detect.sh.
-# needs: detect/rows.csv
+# needs: detect/rows.csv metric error_kind cells cells_detected size_median
 width = 318; height = 300
 load "plots/style.gp"
 

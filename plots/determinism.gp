@@ -1,6 +1,6 @@
 # What the same bits everywhere cost: CPU time of the program as it is over that of builds without a part of it, by
 # instruction set and compiler; geometric mean of three scenes, median of the rounds with its 95% interval.
-# needs: tables/determinism.tsv
+# needs: tables/determinism.tsv machine=this scene=all price_median
 width = 318; height = 300
 load "plots/style.gp"
 
@@ -11,7 +11,7 @@ compilers = "gcc clang"
 parts = "both film contraction"
 part_names = "'both' 'fixed-point film' 'no contraction'"
 of(part, isa, compiler) = select(rows, sprintf("machine=this scene=all part=%s isa=%s compiler=%s", part, isa, compiler), \
-    "price_median price_low price_high")
+    "price_median price_low? price_high?")
 # A band an instruction set, in it a line a compiler, in it a dot a part.
 at(i, c, p) = -(3*(i - 1) + 1.35*(c - 1) + 0.33*(p - 1))
 

@@ -1,6 +1,9 @@
 # Dispersion: minimum deviation of a prism and angle of the first rainbow by wavelength, with their closed forms, and
 # images.
-# needs: tables/dispersion-metrics.tsv tables/rainbow-metrics.tsv prism-portrait/images/0000.png rainbow-portrait/images/0000.png
+# needs: tables/dispersion-metrics.tsv metric=prism.own measured
+# needs: tables/rainbow-metrics.tsv metric=rainbow.own measured
+# needs: prism-portrait/images/0000.png
+# needs: rainbow-portrait/images/0000.png
 width = 1000; height = 860
 load "plots/style.gp"
 load "plots/media.gp"

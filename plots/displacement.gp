@@ -1,7 +1,7 @@
 # Displacement field of the filled vessel, by experiments/displacement.sh: an arrow begins where a point is seen, and
 # points to where it would be seen without vessel and liquid, at a tenth of the distance. The rims of vessel and liquid
 # are drawn as the camera projects them. Where there is no arrow, the ray is totally reflected or ends in the sky.
-# needs: displacement/points.csv
+# needs: displacement/points.csv x y solid bare_x bare_y
 width = 318; height = 330
 scale = 0.1
 load "plots/style.gp"

@@ -1,17 +1,20 @@
 #!/bin/bash
-# Draw the figures whose rows exist and are newer than the figure, as PNG and SVG, or as PDF for the paper.
+# Draw figures as PNG and SVG, or as PDF for the paper: those named, or all.
 #   plots/draw.sh [--results DIR] [--out DIR] [--format png,svg,pdf] [FIGURE...]
-# DIR defaults to results; figures go to DIR/figures. A figure named on the command line is always drawn.
-# The head of a figure lists its inputs (`# needs:`, paths below DIR, * allowed); if one is missing, the figure is
-# skipped with one
-# line.
-# The same rows give the same bytes: no figure contains a time or a name of the machine.
+# DIR defaults to results; figures go to DIR/figures. One line says of each figure that it was drawn, why it was skipped,
+# or, with status 1, what is wrong. The same rows give the same bytes: no figure has a time or the name of a machine.
+#
+# The head of a figure has a line for each file that it is drawn from, a path below DIR (* allowed), with what at least
+# one of its rows must have: columns with given values, and columns that are not NA:
+#   # needs: tables/determinism.tsv machine=this price_median
+# A figure without such a file or row is skipped, which is no error. A column that the file lacks is one, and so is a
+# column that select.awk misses while the figure is drawn.
 set -euo pipefail
 export LC_ALL=C.UTF-8 TZ=UTC0
 
 fail() {
     echo "draw.sh: $*" >&2
-    exit 1
+    exit 2
 }
 
 root=$(cd "$(dirname "$0")/.." && pwd)
@@ -22,7 +25,7 @@ figures=()
 while [ $# -gt 0 ]; do
     case $1 in
     --results)
-        results=$(cd "${2:?--results needs a folder}" && pwd) || exit 1
+        results=$(cd "${2:?--results needs a folder}" && pwd) || exit 2
         shift
         ;;
     --out)
@@ -41,53 +44,42 @@ while [ $# -gt 0 ]; do
 done
 cd "$root"
 out=${out:-$results/figures}
-named=${#figures[@]}
-[ "$named" -gt 0 ] || mapfile -t figures < <(grep -l '^# needs:' plots/*.gp | sed 's|.*/||; s|\.gp$||')
+[ ${#figures[@]} -gt 0 ] || mapfile -t figures < <(grep -l '^# needs:' plots/*.gp | sed 's|.*/||; s|\.gp$||')
+for figure in "${figures[@]}"; do
+    grep -qs '^# needs:' "plots/$figure.gp" || fail "there is no figure $figure; the figures are the files" \
+        "plots/*.gp with a line '# needs:'"
+done
 command -v gnuplot >/dev/null || fail "gnuplot is missing; apt-get install --no-install-recommends gnuplot-nox"
 gnuplot -e 'set terminal pngcairo' 2>/dev/null || fail \
     "this gnuplot has no pngcairo; apt-get install --no-install-recommends gnuplot-nox"
 
-# Whether a table has a measured cell. A table without counts, of metrics or curves, needs a line.
-has_rows() {
-    awk -F '\t' 'NR == 1 { for (i = 1; i <= NF; i++) if ($i == "n") n = i }
-        NR > 1 && (!n || $n > 0) { found = 1 } END { exit !found }' "$1"
-}
-
-# Whether a file of worker rows has one that is not a warm-up.
-has_worker_rows() {
-    awk -F , 'NR == 1 { for (i = 1; i <= NF; i++) if ($i == "warmup") w = i }
-        NR > 1 && w && $w == 0 { found = 1; exit } END { exit !found }' "$1"
-}
-
-# Sets `missing` to the first missing input of a figure, or to nothing, and `inputs` to the files that it is drawn from.
-look_for_inputs() {
-    local pattern found needs
-    missing=
-    inputs=("plots/$1.gp" plots/{style,rows,{image,growth}_panels,media}.gp plots/*.{awk,sh}
-        experiments/published/*.csv)
-    read -r -a needs <<<"$(sed -n 's/^# needs: *//p' "plots/$1.gp")"
-    for pattern in "${needs[@]}"; do
-        mapfile -t found < <(compgen -G "$results/$pattern")
-        if [ ${#found[@]} -eq 0 ]; then
-            missing=${missing:-$pattern}
-        elif [[ $pattern == tables/* ]] && ! has_rows "${found[0]}"; then
-            missing=${missing:-measured cells in $pattern}
-        elif [[ $pattern == */workers.csv ]] && ! has_worker_rows "${found[0]}"; then
-            missing=${missing:-measured rows in $pattern}
+# What a figure lacks, in words; nothing if it has all. Status 1: a column is missing, and the words say which.
+lacking() { # FIGURE
+    local pattern file words word where columns rows
+    while read -r pattern words; do
+        file=$(compgen -G "$results/$pattern" | sed -n 1p)
+        if [ -z "$file" ]; then
+            echo "there is no $pattern"
+            return
         fi
-        inputs+=("${found[@]}")
-    done
+        [[ $file == *.tsv || $file == *.csv ]] || continue
+        where='' columns=''
+        for word in $words; do
+            if [[ $word == *=* ]]; then where+="$word "; else columns+="$word "; fi
+        done
+        rows=$(awk -f plots/select.awk -v where="$where" -v columns="$columns" "$file" 2>&1 | sed -n '1s/^$/a row/; 1p') || {
+            echo "$rows"
+            return 1
+        }
+        if [ -z "$rows" ]; then
+            words=${where% }${where:+${columns:+ and }}${columns:+a value of ${columns% }}
+            echo "no row of $pattern${words:+ has $words}"
+            return
+        fi
+    done < <(needs "$1")
 }
 
-is_fresh() {
-    local format input
-    for format in "${formats[@]}"; do
-        [ -s "$out/$1.$format" ] || return 1
-        for input in "${inputs[@]}"; do
-            [ ! "$input" -nt "$out/$1.$format" ] || return 1
-        done
-    done
-}
+needs() { sed -n 's/^# needs: *//p' "plots/$1.gp"; }
 
 # The number of processing units of the machine that measured, 0 if no list of runs has it.
 units() {
@@ -95,15 +87,29 @@ units() {
         sed -n 's/.*"processing_units": *\([0-9][0-9]*\).*/\1/p' | sed -n 1p
 }
 
-# The environments of the tables among the inputs, whose rows a figure shows: "3d2be922", or several.
-environments() {
-    local file tables=()
-    for file in "${inputs[@]}"; do
-        [[ $file != */tables/*.tsv ]] || tables+=("$file")
-    done
+# The environments of the tables of a figure, whose rows it shows: "3d2be922", or several.
+environments() { # FIGURE
+    local pattern tables=()
+    while read -r pattern _; do
+        [[ $pattern != tables/* ]] || mapfile -t -O ${#tables[@]} tables < <(compgen -G "$results/$pattern")
+    done < <(needs "$1")
     [ ${#tables[@]} -gt 0 ] || return 0
     awk -F '\t' 'FNR == 1 { at = 0; for (i = 1; i <= NF; i++) if ($i == "environment") at = i; next }
         at && $at != "NA" && !seen[$at]++ { text = text (text ? ", " : "") $at } END { print text }' "${tables[@]}"
+}
+
+# The first error in what gnuplot and its commands said, as "plots/depth.gp:12: undefined variable: x"; warnings are none.
+# A column that a command misses comes before others, which may follow from it.
+error_in() { # LOG
+    awk '
+        function keep(text) {
+            if (text ~ /has no column/) column = column ? column : text
+            else if (sub(/^"/, "", text) && sub(/" line /, ":", text)) located = located ? located : text
+            else other = other ? other : text
+        }
+        /^ *\^ *$/ { said = ""; next } # marks a place in the line before, a line of the script
+        { keep(said); said = /[Ww]arning: |^ *$/ ? "" : $0 }
+        END { keep(said); print column ? column : located ? located : other }' "$1" | sed "s|$results/||g; s/ *$//"
 }
 
 # Cairo writes the time into a PDF. Another date of the same length keeps all offsets.
@@ -111,43 +117,62 @@ undate() {
     sed -i 's|/CreationDate (D:[0-9]\{14\}|/CreationDate (D:19700101000000|' "$1"
 }
 
-draw() {
-    local format scratch=$out/.$1.drawing shown
-    shown=$(environments)
+# Says one line. Status 0: drawn; 3: skipped; 1: something is wrong.
+draw() { # FIGURE
+    local format lacks shown said empty wrong files=$scratch/$1 log=$scratch/$1.log
+    if ! lacks=$(lacking "$1"); then
+        echo "$1: error: ${lacks#"$results/"}" >&2
+        return 1
+    elif [ -n "$lacks" ]; then
+        echo "$1: skipped, $lacks"
+        return 3
+    fi
+    shown=$(environments "$1")
     for format in "${formats[@]}"; do
-        if ! gnuplot -e "results = '$results'; output = '$scratch'; format = '$format'; units = ${machine_units:-0}; \
-            environment = '$shown'" \
-            "plots/$1.gp" \
-            2>"$scratch.log" || [ ! -s "$scratch.$format" ]; then
-            sed "s/^/    /" "$scratch.log" | grep -v '^ *$' | head -n 5 >&2 || true
-            rm -f "$scratch".*
+        wrong="gnuplot ended with an error"
+        ! gnuplot -e "results = '$results'; output = '$files'; format = '$format'; units = ${machine_units:-0}; \
+            environment = '$shown'" "plots/$1.gp" 2>"$log" || wrong=
+        said=$(error_in "$log")
+        wrong=${said:-$wrong}
+        [ -n "$wrong" ] || [ -s "$files.$format" ] || wrong="gnuplot drew nothing"
+        case $wrong in
+        '') ;;
+        *' value undefined!' | *' range is invalid' | *'_min should not equal '*)
+            echo "$1: skipped, a panel has no point that can be drawn ($wrong)"
+            return 3
+            ;;
+        *)
+            echo "$1: error: $wrong" >&2
             return 1
-        fi
-        [ "$format" != pdf ] || undate "$scratch.pdf"
-        mv "$scratch.$format" "$out/$1.$format"
+            ;;
+        esac
+        [ "$format" != pdf ] || undate "$files.pdf"
     done
-    rm -f "$scratch.log"
+    for format in "${formats[@]}"; do
+        mv "$files.$format" "$out/$1.$format"
+    done
+    empty=$(grep -c 'warning: Skipping data file with no valid points' "$log" || true)
+    echo "$1: drawn$([ "$empty" = 0 ] || echo ", $empty series without rows")"
 }
 
-for figure in "${figures[@]}"; do
-    [ -f "plots/$figure.gp" ] || fail "there is no plots/$figure.gp"
-done
 mkdir -p "$out"
+scratch=$(mktemp -d "$out/.drawing.XXXXXX")
+trap 'rm -rf "$scratch"' EXIT
 machine_units=$(units)
-drawn=0 fresh=0 failed=0
+drawn=0 skipped=0 failed=0
+finish() { # waits for one figure
+    wait -n && drawn=$((drawn + 1)) && return
+    if [ $? -eq 3 ]; then skipped=$((skipped + 1)); else failed=$((failed + 1)); fi
+}
+running=0
 for figure in "${figures[@]}"; do
-    look_for_inputs "$figure"
-    if [ -n "$missing" ]; then
-        echo "$figure: skipped, no $missing (run make experiments)"
-    elif [ "$named" -eq 0 ] && is_fresh "$figure"; then
-        fresh=$((fresh + 1))
-    elif draw "$figure"; then
-        drawn=$((drawn + 1))
-        echo "$figure: drawn"
-    else
-        failed=$((failed + 1))
-        echo "$figure: gnuplot failed" >&2
+    if [ "$running" -ge "$(nproc)" ]; then
+        finish
+        running=$((running - 1))
     fi
+    draw "$figure" &
+    running=$((running + 1))
 done
-echo "figures: $drawn drawn, $fresh up to date, in ${out#"$root"/}"
+for (( ; running > 0; running--)); do finish; done
+echo "figures: $drawn drawn, $skipped skipped, $failed with errors, in ${out#"$root"/}"
 [ "$failed" -eq 0 ]

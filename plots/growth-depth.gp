@@ -1,5 +1,6 @@
 # Time of a ray and memory by the recursion depth.
-# needs: tables/growth-depth.tsv tables/growth.tsv
+# needs: tables/growth-depth.tsv cpu_s_median
+# needs: tables/growth.tsv series=depth peak_rss_bytes_median
 width = 1000; height = 430
 load "plots/style.gp"
 

@@ -1,5 +1,6 @@
 # Time of a ray and memory by the number of triangles, 10^3 to 10^7.
-# needs: tables/growth-triangles.tsv tables/growth.tsv
+# needs: tables/growth-triangles.tsv cpu_s_median
+# needs: tables/growth.tsv peak_rss_bytes_median
 width = 1000; height = 430
 load "plots/style.gp"
 

@@ -1,10 +1,10 @@
 # Time of a ray and memory by the number of analytic spheres and of lights.
-# needs: tables/growth.tsv
+# needs: tables/growth.tsv series=solids ray_ns_median
 width = 1000; height = 760
 load "plots/style.gp"
 
 rows = table("growth")
-times(series, kind) = select(rows, "series=".series, sprintf("count %s_median %s_low %s_high", kind, kind, kind))
+times(series, kind) = select(rows, "series=".series, sprintf("count %s_median %s_low? %s_high?", kind, kind, kind))
 rays(series) = times(series, "ray_ns")
 camera_rays(series) = times(series, "camera_ray_ns")
 memory(series) = times(series, "peak_rss_bytes")

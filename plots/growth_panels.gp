@@ -3,8 +3,8 @@
 # axis of x; memories (series of growth.tsv), memory_names, and the number of lines of hierarchies.
 of(i, columns) = select(rows, word(series, i), column." ".columns)
 memory(i) = select(table("growth"), "series=".word(memories, i), \
-    "count peak_rss_bytes_median peak_rss_bytes_low peak_rss_bytes_high")
-set label 100 disturbed(study) at screen 0.5,0.02 center font ",8" textcolor rgb grey
+    "count peak_rss_bytes_median peak_rss_bytes_low? peak_rss_bytes_high?")
+set label 100 remarks(study) at screen 0.5,0.02 center font ",8" textcolor rgb grey
 set multiplot layout 1,2 margins 0.075,0.985,0.15,0.93 spacing 0.1
 set grid xtics ytics lc rgb pale lw 0.5 dt solid
 set logscale y

@@ -1,6 +1,7 @@
 # Two maps over the refractive indices of vessel and liquid, as contours: FLIP against the image without refraction, and
 # the magnification of the rod in the image.
-# needs: tables/visible-grid.tsv tables/visible-grid-metrics.tsv
+# needs: tables/visible-grid.tsv flip
+# needs: tables/visible-grid-metrics.tsv metric=edges.magnification measured
 width = 318; height = 190
 load "plots/style.gp"
 

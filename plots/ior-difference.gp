@@ -1,5 +1,7 @@
 # Effect of the refractive indices: luminance of each pair's image minus that of pair 1, which has no interface.
-# needs: tables/ior.tsv ior/images/0000.pfm ior/images/*.pfm
+# needs: tables/ior.tsv liquid.ior
+# needs: ior/images/0000.pfm
+# needs: ior/images/*.pfm
 width = 1000; height = 345
 load "plots/style.gp"
 

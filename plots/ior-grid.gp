@@ -1,6 +1,8 @@
 # Images over the grid of the refractive indices of vessel and liquid, cropped to the vessel, with 16 samples a pixel.
 # Below each: magnification of the rod in the image, and FLIP against the image without refraction (top left).
-# needs: tables/ior-images.tsv tables/ior-images-metrics.tsv ior-images/images/*.png
+# needs: tables/ior-images.tsv flip
+# needs: tables/ior-images-metrics.tsv metric=edges.magnification measured
+# needs: ior-images/images/*.png
 width = 318; height = 505
 load "plots/style.gp"
 

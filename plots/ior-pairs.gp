@@ -1,6 +1,8 @@
 # Images of the four pairs of refractive indices, each with its optical metrics.
 # Old rows without metrics give only the images.
-# needs: tables/ior.tsv tables/ior[.-]*tsv ior/images/*.png
+# needs: tables/ior.tsv liquid.ior
+# needs: tables/ior[.-]*tsv
+# needs: ior/images/*.png
 width = 1000; height = 940
 load "plots/style.gp"
 

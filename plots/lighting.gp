@@ -1,6 +1,8 @@
 # One scene with three lighting models and by path tracing, for table 2 of the rod's report (Gouraud shading is in
 # shading.gp); each image with its time and its error against the last.
-# needs: tables/lighting.tsv lighting/images/*.png lighting/references/*.png
+# needs: tables/lighting.tsv wall_s_median flip
+# needs: lighting/images/*.png
+# needs: lighting/references/*.png
 width = 1000; height = 880
 load "plots/style.gp"
 

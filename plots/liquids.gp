@@ -1,5 +1,6 @@
 # One glass with five liquids, by their index, and the caustic behind each.
-# needs: tables/liquids.tsv liquids/images/*.png
+# needs: tables/liquids.tsv water.medium
+# needs: liquids/images/*.png
 width = 1000; height = 286
 load "plots/style.gp"
 

@@ -1,5 +1,5 @@
 # Error of random paths against time: the default sampler, the earlier one, and Blender's Cycles, on five scenes.
-# needs: tables/paths.tsv
+# needs: tables/paths.tsv time_s error
 width = 1000; height = 620
 load "plots/style.gp"
 
@@ -17,8 +17,12 @@ do for [i=1:5] {
     set title word(titles, i)
     set xlabel (i > 3 ? "CPU time, s" : "")
     set ylabel (i % 3 == 1 ? "RMS error of a film value" : "")
-    plot curve(word(scenes, i), "old") using 1:2 with linespoints lt 7 title "before", \
-         curve(word(scenes, i), "new") using 1:2 with linespoints lt 1 title "now", \
-         curve(word(scenes, i), "cycles") using 1:2 with linespoints lt 2 title "Cycles"
+    if (has_rows(select(rows, "scene=".word(scenes, i), "time_s error"))) {
+        plot curve(word(scenes, i), "old") using 1:2 with linespoints lt 7 title "before", \
+             curve(word(scenes, i), "new") using 1:2 with linespoints lt 1 title "now", \
+             curve(word(scenes, i), "cycles") using 1:2 with linespoints lt 2 title "Cycles"
+    } else {
+        @empty
+    }
 }
 unset multiplot

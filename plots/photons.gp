@@ -1,5 +1,5 @@
 # Error by time of random paths alone and with photons, on logarithmic axes.
-# needs: tables/photons.tsv
+# needs: tables/photons.tsv wall_s_median error_rms
 width = 760; height = 480
 load "plots/style.gp"
 
@@ -17,7 +17,7 @@ set grid xtics ytics lc rgb pale lw 0.5 dt solid
 set key top right
 
 set arrow 1 from graph 0, first noise to graph 1, first noise nohead dt (2,3) lc rgb grey
-set label 100 disturbed("photons") at screen 0.015,0.022 left font ",8" textcolor rgb grey
+set label 100 remarks("photons") at screen 0.015,0.022 left font ",8" textcolor rgb grey
 set label 1 sprintf("noise of the reference, %.2g", noise) at graph 0.015, first noise*1.13 left font ",8" textcolor rgb grey
 plot method("off") using 1:4:2:3 with xerrorlines lt 1 title "paths alone, N a pixel", \
      method("photons") using 1:4:2:3 with xerrorlines lt 2 title "with photons", \

@@ -12,5 +12,5 @@ read -r width height <<END
 $(head -n 2 "$1" | tail -n 1)
 END
 at=$((${3:-$((height / 2))} * width + ${2:-$((width / 2))}))
-tail -c +$(($(head -n 3 "$1" | wc -c) + 12 * at + 1)) "$1" | head -c 12 | od -An -v -t f4 -w12 |
+od -An -v -t f4 -w12 -j $(($(head -n 3 "$1" | wc -c) + 12 * at)) -N 12 "$1" |
     awk '{ printf "%s\t%s\t%s\n", $1, $2, $3 }'

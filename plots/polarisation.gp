@@ -1,7 +1,13 @@
 # Effect of polarisation: transmittance of a stack of two plates by angle, with s and p traced separately or averaged
 # at every
 # interface, and the image of the rod in the vessel with polarisation minus that without.
-# needs: tables/polarisation-metrics.tsv tables/polarised.tsv polarised/images/0000.pfm polarised/images/0001.pfm
+# needs: tables/polarisation-metrics.tsv metric=stack.straight measured
+# needs: tables/polarised.tsv render.polarisation=on flip
+# needs: tables/polarised.tsv render.polarisation=off cell
+# needs: polarised/images/0000.png
+# needs: polarised/images/0001.png
+# needs: polarised/images/0000.pfm
+# needs: polarised/images/0001.pfm
 width = 1000; height = 820
 load "plots/style.gp"
 

@@ -1,5 +1,5 @@
 # Busy and idle time of each worker, means over the repetitions, for every schedule and pinning.
-# needs: profile/workers.csv
+# needs: profile/workers.csv warmup=0 render.schedule render.pin worker busy_s waiting_s cpu_s
 width = 1000; height = 430
 load "plots/style.gp"
 
@@ -14,7 +14,7 @@ of(pin) = strcol(2) eq pin ? 1 : NaN
 
 stats bars using ($5 + $6)*1e3 nooutput
 longest = STATS_max
-set label 100 (readable(table("profile")) ? disturbed("profile") : "") at screen 0.985,0.97 right font ",8" textcolor rgb grey
+set label 100 (readable(table("profile")) ? remarks("profile") : "") at screen 0.5,0.015 center font ",8" textcolor rgb grey
 set multiplot layout 1,3 margins 0.08,0.985,0.13,0.86 spacing 0.02
 set yrange [4:0]
 set xrange [0:longest*1.08]

@@ -1,5 +1,6 @@
 # Which worker rendered which tile of the image when, from two threads to a thousand, for fixed tiles and tiles on demand.
-# needs: tables/timeline.tsv timeline/images/*-timeline.json
+# needs: tables/timeline.tsv wall_s_median
+# needs: timeline/images/*-timeline.json
 width = 1000; height = 900
 load "plots/style.gp"
 
@@ -22,7 +23,7 @@ do for [schedule in schedules] { do for [threads in counts] {
 if (end == 0) { end = 1 }
 # A pixel at least.
 longer(length) = length > 0.003*end ? length : 0.003*end
-set label 100 disturbed("timeline") at screen 0.5,0.012 center font ",8" textcolor rgb grey
+set label 100 remarks("timeline") at screen 0.5,0.012 center font ",8" textcolor rgb grey
 set palette defined @viridis
 set cbrange [0:1]
 set cbtics ("first" 0, "last" 1) scale 0

@@ -1,12 +1,15 @@
 # The four published series and ours on one axis each: every series relative to its own first value, so that machines
 # and units cancel. The times of empty scenes are marked at the left. Bars: 95 % intervals of medians where a cell has
 # six rows, else the smallest and the largest, both over the first value's other end; most are smaller than the points.
-# needs: tables/depth.tsv tables/triangles.tsv tables/coverage.tsv tables/crowding.tsv
+# needs: tables/depth.tsv cpu_s_median
+# needs: tables/triangles.tsv cpu_s_median
+# needs: tables/coverage.tsv cpu_s_median
+# needs: tables/crowding.tsv cpu_s_median
 width = 658; height = 205
 load "plots/style.gp"
 
 # Columns of the ends of a cell's median: an interval, or the range of fewer than six rows.
-ends(study) = number(text(table(study), "", "cpu_s_low")) > 0 ? "cpu_s_low cpu_s_high" : "cpu_s_min cpu_s_max"
+ends(study) = number(text(table(study), "", "cpu_s_low")) > 0 ? "cpu_s_low? cpu_s_high?" : "cpu_s_min cpu_s_max"
 ours(study, where, x) = select(table(study), where, x." cpu_s_median ".ends(study))
 # Lines of x, value and ends relative to the first line of at least `from`.
 relative(command, from) = command.sprintf(" | sort -g | awk '$1 >= %g { if (!n++) { m = $2; l = $3; h = $4 } ", from). \

@@ -1,6 +1,7 @@
 # Tests of a ray against the number of triangles: the counts, the local exponent between successive counts, and the time
 # of a test against the memory of the hierarchy. One column of the paper.
-# needs: tables/queries.tsv tables/triangles.tsv
+# needs: tables/queries.tsv query_rays_median query_boxes_median query_triangles_median
+# needs: tables/triangles.tsv visibility_s_sum_median visibility_s_sum_min visibility_s_sum_max accel_bytes
 width = 318; height = 520
 load "plots/style.gp"
 
@@ -73,6 +74,10 @@ if (l3 == l3) {
     set arrow 2 from l3,graph 0 to l3,graph 1 nohead lc rgb grey lw 0.8 dt (2,3)
     set label 2 " L3" at l3,graph 0.96 left font ",6.8" textcolor rgb grey
 }
-plot for [i=1:2] part("cache", named(word("octant bvh", i))) using 2:3:4:5 with yerrorlines pt (i % 2 ? 5 : 7) ps 0.5 \
-    lw 0.8 lc rgb (i % 2 ? vermillion : blue)
+if (has_rows(part("cache", "1"))) {
+    plot for [i=1:2] part("cache", named(word("octant bvh", i))) using 2:3:4:5 with yerrorlines pt (i % 2 ? 5 : 7) ps 0.5 \
+        lw 0.8 lc rgb (i % 2 ? vermillion : blue)
+} else {
+    @empty
+}
 unset multiplot

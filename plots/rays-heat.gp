@@ -1,6 +1,7 @@
 # Distribution of the work: rays of all kinds and time per pixel of one frame.
 # The color scale excludes 1 % of the pixels at either end.
-# needs: maps/images/0000-rays.pfm maps/images/0000-ns.pfm
+# needs: maps/images/0000-rays.pfm
+# needs: maps/images/0000-ns.pfm
 width = 1000; height = 338
 load "plots/style.gp"
 

@@ -1,5 +1,5 @@
 # Every metric of optics over the pairs of refractive indices: its error over its tolerance, and whether it passes.
-# needs: tables/realism-metrics.tsv
+# needs: tables/realism-metrics.tsv metric measured
 width = 1000; height = 800
 load "plots/style.gp"
 

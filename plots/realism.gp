@@ -1,5 +1,6 @@
 # Traced values and theory for a vessel of index 1.5 with a liquid of 1.33: lines are theory, points are traced.
-# needs: tables/realism-curves.tsv tables/realism-metrics.tsv
+# needs: tables/realism-curves.tsv vessel.ior=1.5 liquid.ior=1.33 measured
+# needs: tables/realism-metrics.tsv metric measured
 width = 1000; height = 660
 load "plots/style.gp"
 

@@ -8,16 +8,25 @@ image(study, cell) = sprintf("%s/%s/images/%04d.png", results, study, int(cell))
 readable(path) = int(system("test -r '".path."' && echo 1 || echo 0"))
 
 # The lines of a table or of rows whose columns have the given values, as tab separated numbers; see select.awk.
-select(file, where, columns) = sprintf("< awk -f plots/select.awk -v where='%s' -v columns='%s' '%s'", where, columns, file)
-# text(): the first value as text; first(): as a number; largest(): the largest value.
-text(file, where, column) = system(select(file, where, column)[3:*]." | head -n 1")
+query(file, where, columns) = sprintf("-v where='%s' -v columns='%s' '%s'", where, columns, file)
+select(file, where, columns) = "< awk -f plots/select.awk ".query(file, where, columns)
+# text(): the first value as text; first(): as a number; largest(): the largest value. has_rows(): whether a
+# command prints a line.
+text(file, where, column) = system("awk -f plots/select.awk -v most=1 ".query(file, where, column))
 largest(file, column) = number(system(select(file, "", column)[3:*]." | sort -g | tail -n 1"))
+has_rows(command) = int(system(command[3:*]." | sed -n 1p | wc -l")) > 0
 number(text) = text eq "" ? NaN : real(text)
 first(file, where, column) = number(text(file, where, column))
-# Fraction of the machine that other processes used during the measurement, mean over the cells; figures of a
-# disturbed run show it.
+# What a reader must know about the cells of a study: what fraction of the machine other processes used, in the mean,
+# and that few repetitions give no intervals.
 others(study) = number(system(select(table(study), "", "others_share")[3:*]." | awk '{ sum += $1 } END { if (NR) print sum/NR }'"))
-disturbed(study) = others(study) > 0.05 ? sprintf("other processes used %.0f %% of the machine during this run", others(study)*100) : ""
+fewest(study) = number(system(select(table(study), "", "n")[3:*]." | sort -g | awk '$1 > 0 { print $1; exit }'"))
+noisy(share) = share > 0.05 ? sprintf("other processes used %.0f %% of the machine during this run", share*100) : ""
+counted(n) = n < 6 ? sprintf("%d repetition%s a cell: no intervals", n, n > 1 ? "s" : "") : ""
+joined(a, b) = a.(a ne "" && b ne "" ? "; " : "").b
+remarks(study) = joined(noisy(others(study)), counted(fewest(study)))
+# The upper end of a quotient; no end where the divisor has none.
+over(high, low) = low > 0 ? high/low : low <= 0 ? 1e3 : NaN
 
 # PFM: three lines of text, then little-endian floats from the bottom row up.
 pfm_start(path) = int(system("head -n 3 '".path."' | wc -c"))

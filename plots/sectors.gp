@@ -1,5 +1,5 @@
 # Wall time and imbalance by tile size, for static and dynamic tiles, and for blocks of columns and rows.
-# needs: tables/sectors.tsv
+# needs: tables/sectors.tsv wall_s_median imbalance_median
 width = 1000; height = 470
 load "plots/style.gp"
 
@@ -9,7 +9,7 @@ block(schedule, threads, column) = first(rows, sprintf("render.schedule=%s rende
 counts = "1 2 4"
 label_blocks = "columns rows"
 
-set label 100 disturbed("sectors") at screen 0.5,0.012 center font ",8" textcolor rgb grey
+set label 100 remarks("sectors") at screen 0.5,0.012 center font ",8" textcolor rgb grey
 set multiplot layout 1,2 margins 0.08,0.985,0.13,0.92 spacing 0.11
 set logscale x 2
 set xrange [6:1700]

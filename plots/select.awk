@@ -1,7 +1,7 @@
 # Columns by name from a table with a header line (tab separated .tsv, or .csv after RFC 4180, one line per row), for the
-# lines where other columns have given values; tab separated, lines with NA are left out.
-#   awk -f select.awk -v where='render.schedule=rows warmup=0' -v columns='render.threads wall_s_median' FILE
-# A column that the table lacks counts as NA. Numbers are compared as numbers.
+# lines where other columns have given values; tab separated, lines with NA are left out. Numbers are compared as numbers.
+#   awk -f select.awk -v where='render.schedule=rows warmup=0' -v columns='render.threads wall_s_median wall_s_low?' FILE
+# most=1: only the first line. NaN stands for an NA in a column with a question mark. A column that the file lacks is an error, a line on stderr.
 function same(a, b) {
     return a == b || (a ~ number && b ~ number && a + 0 == b + 0)
 }
@@ -23,10 +23,21 @@ function cut_csv(line, field,   n, text) {
         line = substr(line, 2)
     }
 }
+function in_place(name) {
+    if (name in place) return place[name]
+    print FILENAME " has no column " name >"/dev/stderr"
+    exit 1
+}
 BEGIN {
     number = "^[-+]?[0-9]+[.]?[0-9]*([eE][-+]?[0-9]+)?$"
     conditions = split(where, condition, " ")
     wanted = split(columns, name, " ")
+    for (i = 1; i <= conditions; i++) {
+        cut = index(condition[i], "=")
+        key[i] = substr(condition[i], 1, cut - 1)
+        asked[i] = substr(condition[i], cut + 1)
+    }
+    for (i = 1; i <= wanted; i++) unknown[i] = sub(/\?$/, "", name[i]) ? "NaN" : ""
 }
 {
     gsub(/\r/, "")
@@ -38,19 +49,20 @@ BEGIN {
 }
 FNR == 1 {
     for (i = 1; i <= fields; i++) place[field[i]] = i
+    for (i = 1; i <= conditions; i++) key[i] = in_place(key[i])
+    for (i = 1; i <= wanted; i++) name[i] = in_place(name[i])
     next
 }
 {
-    for (i = 1; i <= conditions; i++) {
-        cut = index(condition[i], "=")
-        key = substr(condition[i], 1, cut - 1)
-        if (!(key in place) || !same(field[place[key]], substr(condition[i], cut + 1))) next
-    }
+    for (i = 1; i <= conditions; i++)
+        if (!same(field[key[i]], asked[i])) next
     line = ""
     for (i = 1; i <= wanted; i++) {
-        value = (name[i] in place) ? field[place[name[i]]] : "NA"
-        if (value == "NA" || value == "") next
+        value = field[name[i]]
+        if (value == "NA" || value == "") value = unknown[i]
+        if (value == "") next
         line = line (i > 1 ? "\t" : "") value
     }
     print line
+    if (++printed == most) exit
 }

@@ -1,6 +1,7 @@
 # A torus with flat, Gouraud and Phong shading, of few polygons; the cost of each, and its share of the frame,
 # compared with the polygons report.
-# needs: tables/shading.tsv shading/images/*.png
+# needs: tables/shading.tsv cpu_s_median
+# needs: shading/images/*.png
 width = 1000; height = 690
 load "plots/style.gp"
 
@@ -30,7 +31,7 @@ method_of(group, count) = int(group > count ? group - count : group)
 below(s, group) = least(poly_of(group, 3), method_of(group, 3), s)
 above(s, group) = most(poly_of(group, 3), method_of(group, 3), s)
 
-set label 100 disturbed("shading") at screen 0.5,0.012 center font ",8" textcolor rgb grey
+set label 100 remarks("shading") at screen 0.5,0.012 center font ",8" textcolor rgb grey
 set multiplot
 unset border
 unset tics
@@ -51,7 +52,7 @@ do for [s=1:3] {
     if (readable(file)) {
         plot file binary filetype=png with rgbimage notitle
     } else {
-        plot [0:1] [0:1] NaN notitle
+        @empty
     }
     unset label 100
 }
@@ -72,7 +73,8 @@ set rmargin at screen 0.485
 set title "Cost of shading: time of a frame minus that without it"
 set ylabel "CPU time / ms"
 set xrange [0.5:6.5]
-set yrange [0:30]
+set yrange [0:*]
+set offsets 0, 0, graph 0.15, 0
 set xtics ("depth buffer" 1, "rays" 2, "Whitted" 3, "depth buffer" 4, "rays" 5, "Whitted" 6) scale 0 font ",9"
 set ytics
 set samples 6
@@ -85,7 +87,6 @@ set rmargin at screen 0.99
 set title "Shading as a share of the frame"
 set ylabel "share of the CPU time / %"
 set xrange [0.5:8.5]
-set yrange [0:45]
 set arrow 11 from 4.5, graph 0 to 4.5, graph 1 nohead lc rgb pale back
 set xtics ("depth\nbuffer" 1, "rays" 2, "Whitted" 3, "with\nshadows" 4, "depth\nbuffer" 5, "rays" 6, "Whitted" 7, "with\nshadows" 8) scale 0 font ",9"
 set samples 8

@@ -1,5 +1,6 @@
 # Moments of the recorded grab.
-# needs: tables/slime-grab.tsv slime-grab/images/*.png
+# needs: tables/slime-grab.tsv toy.time_s
+# needs: slime-grab/images/*.png
 width = 1000; height = 425
 load "plots/style.gp"
 

@@ -1,14 +1,16 @@
 # Transmittance of a ball of slime by path length, compared with the Beer-Lambert law, and the error of the lengths
 # against the chords of the ball.
-# needs: tables/slime-light.tsv slime-light/images/*.pfm
+# needs: tables/slime-light.tsv toy.level=7 jelly.transparency=1 cell
+# needs: slime-light/images/*.pfm
 width = 1000; height = 430
 load "plots/style.gp"
 
 rows = table("slime-light")
-chords(level, share) = sprintf("< plots/chord.sh '%s/slime-light/images/%04d.pfm' 6 0.493", results, \
-    int(first(rows, sprintf("toy.level=%d jelly.transparency=%g", level, share), "cell")))
+cell(level, share) = first(rows, sprintf("toy.level=%d jelly.transparency=%g", level, share), "cell")
+float_image(cell) = cell >= 0 ? sprintf("%s/slime-light/images/%04d.pfm", results, int(cell)) : "/dev/null"
+chords(level, share) = sprintf("< image='%s'; [ ! -s $image ] || plots/chord.sh $image 6 0.493", float_image(cell(level, share)))
 # Rms over the row of pixels: length from the green channel, absorbed by 1 / m, minus the chord.
-off(level) = number(system(chords(level, 1)[3:*]." | awk '{ e = -log($3) - $1; s += e*e } END { print sqrt(s/NR) }'"))
+off(level) = number(system(chords(level, 1)[3:*]." | awk '{ e = -log($3) - $1; s += e*e } END { if (NR) print sqrt(s/NR) }'"))
 set multiplot layout 1,2 margins 0.08,0.985,0.135,0.93 spacing 0.1
 set title "Transmittance of the ball, level 7"
 set xlabel "path length d / m"

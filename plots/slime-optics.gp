@@ -1,5 +1,6 @@
 # Images of a ball of slime over the grid of transparency and absorption.
-# needs: tables/slime-optics.tsv slime-optics/images/*.png
+# needs: tables/slime-optics.tsv jelly.transparency
+# needs: slime-optics/images/*.png
 width = 1000; height = 800
 load "plots/style.gp"
 

@@ -1,6 +1,6 @@
 # Motion of a slime compared with mechanics: loss of energy and momentum of a free slime, orders, the fall, and the
 # longest stable step.
-# needs: tables/slime-physics-motion.tsv
+# needs: tables/slime-physics-motion.tsv measured
 width = 1000; height = 760
 load "plots/style.gp"
 

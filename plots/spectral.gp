@@ -1,5 +1,10 @@
 # The filled vessel, BK7 and water, with the indices of one wavelength and of each wavelength, and their difference.
-# needs: tables/spectral.tsv spectral/images/*.png spectral/images/*.pfm
+# needs: tables/spectral.tsv render.spectrum=rgb cell
+# needs: tables/spectral.tsv render.spectrum=spectral cell
+# needs: spectral/images/0000.png
+# needs: spectral/images/0001.png
+# needs: spectral/images/0000.pfm
+# needs: spectral/images/0001.pfm
 width = 1000; height = 790
 load "plots/style.gp"
 

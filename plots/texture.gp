@@ -1,7 +1,9 @@
 # A ground of two triangles with affine and perspective-correct interpolation and each filter, compared with 64
 # samples per pixel; with
 # the time of a frame and the error against the last.
-# needs: tables/texture.tsv texture/images/*.png texture/references/*.png
+# needs: tables/texture.tsv flip
+# needs: texture/images/*.png
+# needs: texture/references/*.png
 width = 1000; height = 625
 load "plots/style.gp"
 

@@ -1,5 +1,6 @@
 # What the threads of a frame did, as shares of its wall time, mean over all threads: from two threads to a thousand.
-# needs: timeline/workers.csv tables/timeline.tsv
+# needs: timeline/workers.csv warmup=0 render.schedule render.threads busy_s waiting_s start_s running_s runnable_s blocked_s
+# needs: tables/timeline.tsv wall_s_median
 width = 1000; height = 400
 load "plots/style.gp"
 
@@ -15,7 +16,7 @@ array tone[5] = [0xD9D9D9, blue, orange, vermillion, 0xEFEFEF]
 # From the sum of the first k shares to that of k + 1.
 sum(k) = (k > 0 ? $3 : 0) + (k > 1 ? $4 : 0) + (k > 2 ? $5 : 0) + (k > 3 ? $6 : 0) + (k > 4 ? $7 : 0)
 
-set label 100 disturbed("timeline") at screen 0.5,0.02 center font ",8" textcolor rgb grey
+set label 100 remarks("timeline") at screen 0.5,0.02 center font ",8" textcolor rgb grey
 set multiplot layout 1,2 margins 0.09,0.985,0.16,0.82 spacing 0.05
 set yrange [3.5:-0.5]
 set xrange [0:100]

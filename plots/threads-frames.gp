@@ -1,6 +1,6 @@
 # Speed-up by threads for frames of about 0.04, 0.4 and 4 s, by schedule; the longest are those of make experiments-full.
 # The ends of an interval combine those of both times, so it contains the speed-up if both contain their medians.
-# needs: tables/threads-frames.tsv
+# needs: tables/threads-frames.tsv wall_s_median
 width = 1000; height = 430
 load "plots/style.gp"
 
@@ -10,11 +10,11 @@ if (readable(full)) { frames = full }
 schedules = "tiles dynamic"
 samples = "1 9 25"
 where(schedule, rays) = sprintf("render.schedule=%s render.samples=%s", schedule, rays)
-times(schedule, rays) = select(frames, where(schedule, rays), "render.threads wall_s_median wall_s_low wall_s_high")
+times(schedule, rays) = select(frames, where(schedule, rays), "render.threads wall_s_median wall_s_low? wall_s_high?")
 one(schedule, rays, column) = first(frames, where(schedule, rays)." render.threads=1", column)
 together(n) = units > 0 && n > units ? units : n
 
-set label 100 disturbed("threads-frames") at screen 0.5,0.015 center font ",8" textcolor rgb grey
+set label 100 remarks("threads-frames") at screen 0.5,0.015 center font ",8" textcolor rgb grey
 set multiplot layout 1,2 margins 0.07,0.985,0.15,0.92 spacing 0.08
 set logscale x 2
 set xrange [0.8:1400]
@@ -36,7 +36,7 @@ do for [i=1:2] {
     }
     plot together(x) lt 8 title units > 0 ? sprintf("ideal on %d units, min(n, %d)", units, units) : "ideal", \
          for [k=1:3] times(schedule, word(samples, k)) \
-            using ($1*(1 + 0.06*(k - 2))):(base[k]/$2):(low[k]/$4):($3 > 0 ? high[k]/$3 : 1e3) with yerrorlines lt k title name[k]
+            using ($1*(1 + 0.06*(k - 2))):(base[k]/$2):(low[k]/$4):(over(high[k], $3)) with yerrorlines lt k title name[k]
     unset label 100
 }
 unset multiplot

@@ -1,16 +1,16 @@
 # Speed-up by threads for each schedule, with the ideal line and the published numbers. The ends of an interval combine
 # those of both times, so it contains the speed-up if both contain their medians.
-# needs: tables/threads.tsv
+# needs: tables/threads.tsv wall_s_median
 width = 1000; height = 760
 load "plots/style.gp"
 
 rows = table("threads")
 schedules = "columns rows tiles dynamic"
 together(n) = units > 0 && n > units ? units : n
-times(schedule) = select(rows, "render.schedule=".schedule, "render.threads wall_s_median wall_s_low wall_s_high")
+times(schedule) = select(rows, "render.schedule=".schedule, "render.threads wall_s_median wall_s_low? wall_s_high?")
 published_1 = first(published."threads.csv", "threads=1", "wall_s")
 
-set label 100 disturbed("threads") at screen 0.5,0.015 center font ",8" textcolor rgb grey
+set label 100 remarks("threads") at screen 0.5,0.015 center font ",8" textcolor rgb grey
 set multiplot layout 2,2 margins 0.07,0.97,0.09,0.955 spacing 0.1,0.12
 set logscale x 2
 set xrange [0.9:1140]
@@ -28,7 +28,7 @@ do for [i=1:4] {
     set ylabel (i % 2 ? "speed-up" : "")
     plot together(x) lt 8 title units > 0 ? sprintf("ideal on %d units, min(n, %d)", units, units) : "ideal", \
          select(published."threads.csv", "", "threads wall_s") using 1:(published_1/$2) with linespoints lt 7 title published_name, \
-         times(schedule) using 1:(one/$2):(one_low/$4):($3 > 0 ? one_high/$3 : 1e3) with yerrorbars lt i title "measured, wall"
+         times(schedule) using 1:(one/$2):(one_low/$4):(over(one_high, $3)) with yerrorbars lt i title "measured, wall"
     unset label 100
 }
 unset multiplot

@@ -1,13 +1,13 @@
 # Wall and CPU time of a frame by the number of threads, for each schedule.
-# needs: tables/threads.tsv
+# needs: tables/threads.tsv wall_s_median cpu_s_median
 width = 1000; height = 430
 load "plots/style.gp"
 
 rows = table("threads")
-times(schedule, v) = select(rows, "render.schedule=".schedule, sprintf("render.threads %s_median %s_low %s_high", v, v, v))
+times(schedule, v) = select(rows, "render.schedule=".schedule, sprintf("render.threads %s_median %s_low? %s_high?", v, v, v))
 schedules = "columns rows tiles dynamic"
 
-set label 100 disturbed("threads") at screen 0.5,0.015 center font ",8" textcolor rgb grey
+set label 100 remarks("threads") at screen 0.5,0.015 center font ",8" textcolor rgb grey
 set multiplot layout 1,2 margins 0.08,0.985,0.14,0.92 spacing 0.1
 set logscale x 2
 set xlabel "threads"

@@ -1,6 +1,7 @@
 # When each thread of a frame works, from two threads to a thousand, for fixed tiles and for tiles on demand, and for
 # what share of that time it has a processing unit. One frame each, drawn from the rows of the threads.
-# needs: timeline/workers.csv tables/timeline.tsv
+# needs: timeline/workers.csv warmup=0 render.schedule render.threads tiles start_s wall_s running_s
+# needs: tables/timeline.tsv wall_s_median
 width = 318; height = 330
 load "plots/style.gp"
 
@@ -20,7 +21,7 @@ if (end == 0) { end = 1 }
 # A point at least.
 longer(length) = length > 0.006*end ? length : 0.006*end
 set label 9999 font ",6.5"
-set label 100 disturbed("timeline") at screen 0.01,0.012 left font ",6.5" textcolor rgb grey
+set label 100 remarks("timeline") at screen 0.01,0.012 left font ",6.5" textcolor rgb grey
 # Viridis without its end, whose yellow is too light for thin lines.
 set palette defined (0 "#440154", 1 "#3b528b", 2 "#21918c", 3 "#5ec962")
 set cbrange [0:1]
