@@ -12,6 +12,9 @@ cd "$work" || exit 1
 unset CUVETTE_ISA NO_COLOR
 export LC_ALL=C
 
+# shellcheck source=tests/shell/await.sh
+source "$root/tests/shell/await.sh"
+
 passed=0 failed=0
 verdict() { # STATUS WHAT
     if (($1 == 0)); then
@@ -103,7 +106,7 @@ interrupted() { # SIGNAL FRAME: renders a long animation and sends the signal on
     "$program" animate slime.yaml -o long/%04d.png --fps 50 --duration 4 --set render.samples=9 --rows long.csv >out \
         2>err &
     local child=$!
-    until [[ -e long/$2.png ]] || ! kill -0 $child 2>/dev/null; do sleep 0.005; done
+    await $child test -e "long/$2.png"
     kill -"$1" $child 2>/dev/null
     wait $child
     code=$?
@@ -270,16 +273,13 @@ check "frames before the divergence are kept" eval '(($(frames blown) >= 1 && $(
 check "the kept frames are complete" is "$(./json_get out largest 2>&1)" 0.0
 
 # --- long simulations
-# stopped SECONDS ARGUMENT...: runs the program, sends SIGINT after that time, and kills it if it has not ended 10 s
-# later; its status is in code
+# stopped ARGUMENT...: runs the program, and sends SIGINT when it works; its status is in code
 stopped() {
-    "$program" "${@:2}" >out 2>err &
-    local child=$! left=100
-    sleep "$1"
+    "$program" "$@" >out 2>err &
+    local child=$!
+    await $child works $child
     kill -INT $child
-    while kill -0 $child 2>/dev/null && ((left-- > 0)); do sleep 0.1; done
-    kill -KILL $child 2>/dev/null
-    wait $child 2>/dev/null
+    wait $child
     code=$?
 }
 # A study may also note what disturbs the machine.
@@ -294,17 +294,17 @@ refused "too many steps to a late start are refused" 'toy: 2000 s with time step
 refused "too many steps to the end of the script are refused" 'toy: 2.4 s with time steps' -o steps/%d.png \
     --set toy.dt_s=1e-9 --script tug.yaml
 refused "a tiny time step is refused" 'toy.dt_s' -o steps/%d.png --set toy.dt_s=1e-300
-stopped 0.5 animate slime.yaml -o steps/%d.png --set toy.time_s=0 --set toy.dt_s=1e-9 --duration 0.1
+stopped animate slime.yaml -o steps/%d.png --set toy.time_s=0 --set toy.dt_s=1e-9 --duration 0.1
 check "SIGINT ends a simulation with short steps" heard 'interrupted at frame 2 of 3'
-stopped 0.5 animate slime.yaml -o late/%d.png --start 80000 --duration 0.1
+stopped animate slime.yaml -o late/%d.png --start 80000 --duration 0.1
 check "SIGINT ends a simulation up to a late start" heard 'interrupted at frame 1 of 3'
 for command in render\ --json trace\ --pixel=3,3 realism\ --json scene\ --check; do
     sed 's/generate: slime,/generate: slime, time_s: 86400,/' slime.yaml >day.yaml
-    stopped 0.5 ${command%% *} day.yaml ${command#* }
+    stopped ${command%% *} day.yaml ${command#* }
     check "SIGINT ends a simulation of a day: $command" heard 'toy: interrupted at'
 done
 printf '%s\n' 'study: day' 'scene: day.yaml' 'grid: [{camera.fov_deg: [40]}]' 'repetitions: 1' >day.study
-stopped 0.5 study run day.study --results day-results
+stopped study run day.study --results day-results
 check "SIGINT ends a simulation in a study" heard 'interrupted; its 0 new rows'
 
 # --- YUV4MPEG2

@@ -11,6 +11,8 @@ cd "$work" || exit 1
 export LC_ALL=C
 # shellcheck source=tests/shell/verdict.sh
 source "$root/tests/shell/verdict.sh"
+# shellcheck source=tests/shell/await.sh
+source "$root/tests/shell/await.sh"
 
 scene=$root/experiments/scenes/rod.yaml
 cat >tiny.study <<END
@@ -75,11 +77,15 @@ release | debug)
     verdict $? "the image does not depend on the limit of the stack"
     (
         ulimit -s 64
-        exec timeout -s INT 1 "$program" fan "$scene" --from=-3,1.5,0 --to=3,1.5,0 --width 1.9 --rays 100000 \
-            --tree -o fan.csv --set render.depth=12
-    ) >out 2>err
+        exec "$program" fan "$root/experiments/scenes/slime.yaml" --from=-3,1.5,0 --to=3,1.5,0 --tree -o fan.csv \
+            --set toy.time_s=86400 # a simulation of hours
+    ) >out 2>err &
+    job=$!
+    await $job works $job
+    kill -INT $job
+    wait $job
     equal "Ctrl-C with a small stack: interrupted, and no table" \
-        "$(cat err) $(ls fan.csv 2>/dev/null)" "cuvette: $scene: interrupted "
+        "$? $(grep -c '^cuvette: .*: interrupted' err) $(wc -l <err) $(ls fan.csv 2>/dev/null)" "130 1 1 "
     ;;
 *) skip "an instrumented program needs a large stack" ;;
 esac
@@ -90,10 +96,7 @@ start_long() { # PREFIX...: in the background, until two rows are there
     rm -rf long
     "$@" "$program" study run --quiet long.study --results long >out 2>err &
     job=$!
-    for _ in {1..300}; do
-        [[ -e long/long/rows.csv ]] && (($(wc -l <long/long/rows.csv) > 2)) && break
-        sleep 0.1
-    done
+    await "$job" has_lines long/long/rows.csv 3
 }
 start_long env
 kill -HUP "$job"
@@ -111,8 +114,7 @@ wait "$job"
 equal "a signal that comes twice is one: 130, and one line" "$? $(grep -c 'interrupted' err)" "130 1"
 start_long nohup
 kill -HUP "$job"
-sleep 0.3
-kill -0 "$job" 2>/dev/null
+await "$job" has_lines long/long/rows.csv $(($(wc -l <long/long/rows.csv) + 3)) # one may have been on its way
 verdict $? "nohup: SIGHUP does not end a study"
 kill -TERM "$job"
 wait "$job"
@@ -120,11 +122,16 @@ equal "nohup: SIGTERM ends it with 130" $? 130
 
 # --- killed while it writes a file
 mkdir stream
+wrote_a_part() { # PROCESS: it has written to a file in the folder; the file may have no name yet
+    for file in "/proc/$1/fd"/*; do [[ $(readlink "$file") == */stream/* && -s $file ]] && return; done
+    return 1
+}
 for _ in 1 2 3; do
-    "$program" animate "$root/experiments/scenes/slime.yaml" -o stream/film.y4m --duration 200 --fps 50 \
+    "$program" animate "$root/experiments/scenes/slime.yaml" -o stream/film.y4m --duration 2000 --fps 50 \
         --set render.width=64 --set render.height=48 --set toy.level=1 >out 2>err &
     job=$!
-    sleep 0.3
+    await $job wrote_a_part $job
+    verdict $? "a video is being written"
     kill -KILL "$job"
     wait "$job" 2>/dev/null
 done

@@ -14,7 +14,7 @@ export OMPI_ALLOW_RUN_AS_ROOT=1 OMPI_ALLOW_RUN_AS_ROOT_CONFIRM=1 # root, as in a
 on_ranks() {                                                     # N ARGUMENT...
     local n=$1
     shift
-    timeout 300 mpirun --oversubscribe --bind-to none -n "$n" "$mpi" "$@"
+    mpirun --oversubscribe --bind-to none -n "$n" "$mpi" "$@"
 }
 
 numbers() { # what must not depend on the ranks, of an account on standard input
@@ -39,7 +39,7 @@ for scene in rod models 'rod --set render.integrator=path --set render.paths=16'
     empty "1, 2, 3 and 8 ranks: film, counts and noise of $scene" "$wrong"
 done
 
-notes=$(timeout 60 mpirun --oversubscribe -n 2 "$cuvette" render experiments/scenes/rod.yaml "${small[@]}" \
+notes=$(mpirun --oversubscribe -n 2 "$cuvette" render experiments/scenes/rod.yaml "${small[@]}" \
     2>&1 >/dev/null)
 [[ $(grep -c 'cuvette-mpi shares' <<<"$notes") == 1 ]]
 verdict $? 'cuvette itself under mpirun says once that each process does the whole work' "$notes"
@@ -87,20 +87,24 @@ empty 'bad input gets one line, whatever the number of ranks' "${bad[*]:-}"
 verdict $? 'help is printed once'
 
 # A rank that dies: OpenMPI ends the others. The child that is not rank 0.
-kill_a_rank() { # once there are at least COUNT lines in the output of COMMAND...
+kill_a_rank() { # COUNT COMMAND...: once there are at least COUNT lines in the output; killed says whether it was
     local count=$1 pid
     shift
-    for ((i = 0; i < 600; i++)); do
-        (($("$@" 2>/dev/null | wc -l) >= count)) && break
-        sleep 0.05
+    rm -f "$work/killed"
+    while :; do
+        until (($("$@" 2>/dev/null | wc -l) >= count)); do sleep 0.05; done
+        for pid in $(pgrep -f "^$mpi"); do
+            if tr '\0' '\n' <"/proc/$pid/environ" 2>/dev/null | grep -q '^OMPI_COMM_WORLD_RANK=1$'; then
+                : >"$work/killed"
+                kill -KILL "$pid" && return
+                rm "$work/killed"
+            fi
+        done
     done
-    for pid in $(pgrep -f "^$mpi"); do
-        if tr '\0' '\n' <"/proc/$pid/environ" 2>/dev/null | grep -q '^OMPI_COMM_WORLD_RANK=1$'; then
-            kill -KILL "$pid"
-            return
-        fi
-    done
-    echo 'no rank 1 was found' >>"$work/kills"
+}
+no_more_kills() { # the ranks have ended
+    kill $! 2>/dev/null
+    wait
 }
 
 echo old >"$work/long.pfm"
@@ -108,7 +112,7 @@ kill_a_rank 3 pgrep -f "^$mpi" & # all have started
 on_ranks 3 render experiments/scenes/rod.yaml --set render.integrator=path --set render.paths=4096 -o "$work/long.pfm" \
     >"$work/out" 2>"$work/errors"
 code=$?
-wait
+no_more_kills
 [[ $code != 0 && $(cat "$work/long.pfm") == old ]] && grep -q 'signal 9' "$work/errors"
 verdict $? 'a killed rank ends the frame with an error; no file is half-written' "$code $(cat "$work/errors")"
 
@@ -117,18 +121,17 @@ film=(animate experiments/scenes/slime.yaml --duration 1 --fps 20 --set render.w
 kill_a_rank 3 find "$work/many" -name '*.png' &
 on_ranks 3 "${film[@]}" -o "$work/many/%03d.png" >/dev/null 2>"$work/errors"
 code=$?
-wait
+no_more_kills
 before=$(find "$work/many" -name '*.png' | wc -l)
 on_ranks 2 "${film[@]}" -o "$work/many/%03d.png" >"$work/out" 2>&1
 again=$?
-if [[ -e $work/kills ]]; then
+if [[ ! -e $work/killed ]]; then
     skip 'the animation ended before a rank could be killed'
 else
     [[ $code != 0 && $again == 0 ]] && ((before < 20)) && diff -r -x "*.json" "$work/one" "$work/many" >"$work/diff"
     verdict $? "an animation whose rank was killed after $before frames goes on with other ranks, with the same bytes" \
         "$code $again $(cat "$work/diff")"
 fi
-rm -f "$work/kills"
 
 cat >"$work/many.study" <<STUDY
 study: many
@@ -144,12 +147,12 @@ all_rows() { cat "$work"/results/many/rows*.csv; }
 kill_a_rank 40 all_rows &
 on_ranks 3 study run --results "$work/results" "$work/many.study" >/dev/null 2>"$work/errors"
 code=$?
-wait
+no_more_kills
 rows=$(all_rows | grep -vc '^study')
 on_ranks 2 study run --results "$work/results" "$work/many.study" >"$work/out" 2>&1
 again=$?
 checked=$("$cuvette" study verify --results "$work/results" "$work/many.study" 2>&1)
-if [[ -e $work/kills ]]; then
+if [[ ! -e $work/killed ]]; then
     skip 'the study ended before a rank could be killed'
 else
     [[ $code != 0 && $again == 0 ]] && ((rows > 0 && rows < 192)) && grep -q '192 rows, 0 faults' <<<"$checked"

@@ -14,6 +14,9 @@ gnuplot -e 'set terminal pngcairo' 2>/dev/null || {
     exit 77
 }
 
+# shellcheck source=tests/shell/await.sh
+source "$root/tests/shell/await.sh"
+
 count=0 failed=0
 check() { # WHAT COMMAND...
     local what=$1
@@ -121,19 +124,18 @@ check "without gnuplot, the package is named" grep -q 'gnuplot-nox' err
 # --- a gnuplot that draws nothing, and one that is killed with the program
 mkdir idle slow idle-figures slow-figures
 printf '#!/bin/sh\nexit 0\n' >idle/gnuplot
-printf '#!/bin/sh\nexec sleep 30\n' >slow/gnuplot
+printf '#!/bin/sh\nexec sleep 100000\n' >slow/gnuplot
 chmod +x idle/gnuplot slow/gnuplot
 PATH=$work/idle:$PATH "$program" study plot --results res own.study -o idle-figures/fig.png >out 2>err
 code=$?
 check "a gnuplot that draws nothing is a failure" eval '((code == 1)) && grep -q "gnuplot drew nothing" err'
 check "and leaves no figure" test -z "$(find idle-figures -name '*.png')"
 PATH=$work/slow:$PATH "$program" study plot --results res own.study -o slow-figures/fig.png >out 2>err &
-for _ in {1..100}; do
-    [[ -z $(find slow-figures -name '.cuvette-*.part.png') ]] || break
-    sleep 0.05
-done
-kill -KILL $!
-wait $! 2>/dev/null
+drawing=$!
+begun() { [[ -n $(find slow-figures -name '.cuvette-*.part.png') ]]; }
+await $drawing begun
+kill -KILL $drawing
+wait $drawing 2>/dev/null
 check "a killed drawing leaves a temporary file" test -n "$(find slow-figures -name '.cuvette-*.part.png')"
 run own.study -o slow-figures/fig.png
 check "which the next drawing removes" eval 'clean && [[ -z $(find slow-figures -name ".cuvette-*") ]]'

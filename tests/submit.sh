@@ -56,7 +56,7 @@ END
 
 submit() { # ARGUMENT...: its results are in out, err and code
     rm -f calls
-    PATH=$work/slurm:$PATH timeout 60 "$program" study submit "$@" >out 2>err
+    PATH=$work/slurm:$PATH "$program" study submit "$@" >out 2>err
     code=$?
 }
 fails() { # WHAT LINE: the last submission failed with this one line

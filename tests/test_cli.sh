@@ -14,6 +14,8 @@ unset CUVETTE_ISA NO_COLOR
 
 # shellcheck source=tests/shell/verdict.sh
 source "$root/tests/shell/verdict.sh"
+# shellcheck source=tests/shell/await.sh
+source "$root/tests/shell/await.sh"
 check() { # WHAT COMMAND...: passes when the command succeeds
     local what=$1
     shift
@@ -23,6 +25,14 @@ check() { # WHAT COMMAND...: passes when the command succeeds
 run() { # ARGUMENT...: runs the program; its results are in out, err and code
     "$program" "$@" >out 2>err
     code=$?
+}
+into_closed_pipe() { # ARGUMENT...: the same, with an output whose reader has ended; out is not written
+    local pipe
+    exec {pipe}> >(:)
+    wait $!
+    "$program" "$@" >&"$pipe" 2>err
+    code=$?
+    exec {pipe}>&-
 }
 small=(--set render.width=80 --set render.height=60)
 is() { [[ $1 == "$2" ]]; }
@@ -515,12 +525,8 @@ run trace "$scene" --pixel 40,30 --svg "${small[@]}"
 check "--svg: the same bytes" cmp out tree.svg
 check "the drawing has total reflection, media and axes" is \
     "$(grep -c 'total internal\|liquid, n = 1.33\|from above' tree.svg)" 3
-(
-    sleep 0.3
-    "$program" trace "$scene" --pixel 400,300 --depth 9 --json 2>err
-    echo $? >code
-) | true
-check "a tree into a closed pipe exits with 1 and no message" is "$(cat code err)" 1
+into_closed_pipe trace "$scene" --pixel 400,300 --depth 9 --json
+check "a tree into a closed pipe exits with 1 and no message" is "$code $(<err)" "1 "
 run fan "$scene" --from -3,1,0 --to 3,1,0 -o fan.csv --set render.spectrum=spectral
 check "fan prints the note on a spectral scene" matches "$(<err)" '^cuvette: note: .*spectral'
 pencil=(--from -3,1.5,0 --to 3,1.5,0 --width 1.6 --set rod.visible=off)
@@ -553,11 +559,8 @@ run_lab() {    # ARGUMENT...: starts a laboratory in the background; its address
     : >lab.out # remove the address of the previous laboratory
     "$program" lab --no-browser "$@" >lab.out 2>lab.err &
     lab=$!
-    for ((i = 0; i < 600; i++)); do
-        address=$(<lab.out)
-        [[ $address ]] || ! kill -0 $lab 2>/dev/null && break
-        sleep 0.1
-    done
+    await $lab test -s lab.out
+    address=$(<lab.out)
 }
 ask() { # PATH [JSON]: prints the whole reply, read through bash's /dev/tcp
     local port=${address#http://127.0.0.1:} method=GET body=${2-}
@@ -592,10 +595,7 @@ EOF
 chmod +x browser/xdg-open
 PATH=$PWD/browser:$PATH "$program" lab here.yaml >lab.out 2>lab.err &
 lab=$!
-for ((i = 0; i < 600; i++)); do
-    [[ -s browser/seen ]] && break
-    sleep 0.1
-done
+await $lab test -s browser/seen
 read -r _ _ _ _ _ session _ </proc/$lab/stat
 page=$(cut -d' ' -f2 browser/seen)
 check "lab opens a page that leads to its address" grep -qF "url=$(<lab.out)\"" browser/page
@@ -773,13 +773,8 @@ check "study power prints a table" matches "$(cat out)" "together .* 0 / 0"
 # --- broken pipes, full disks, closed descriptors, signals
 "$program" params --json 2>err | head -1 >/dev/null
 check "a pipe closed by its reader is not an error" is "$(<err)" ""
-# shellcheck disable=SC2216
-(
-    sleep 0.3
-    "$program" render "$scene" --json "${small[@]}" 2>err
-    echo $? >code
-) | true
-check "a closed pipe exits with 1 and no message" is "$(cat code err)" 1
+into_closed_pipe render "$scene" --json "${small[@]}"
+check "a closed pipe exits with 1 and no message" is "$code $(<err)" "1 "
 if [[ -w /dev/full ]]; then
     for words in params "params --json" media "media --json" "mesh --generate box" machine --help "render --help" \
         "render $scene --json --set render.width=8"; do
@@ -794,11 +789,10 @@ check "a closed standard output is exit 1" is $? 1
 check "an image is not written into a closed standard output" magic shut.png 89504e47
 for signal in INT TERM; do
     rm -f part.png
-    "$program" render "$scene" -o part.png --json --set render.width=4000 --set render.height=3000 --set \
-        render.depth=12 \
-        --set render.tile=8 >out 2>err &
+    "$program" render "$scene" -o part.png --json --set render.width=4000 --set render.height=3000 \
+        --set render.depth=40 --set render.samples=64 --set render.tile=8 >out 2>err &
     job=$!
-    sleep 0.4
+    await $job works $job
     kill -"$signal" $job
     wait $job
     check "SIG$signal ends a render with 130" is $? 130
@@ -812,12 +806,12 @@ done
     echo 'solids: {ball: {shape: mesh, mesh: many, transparency: 1, ior: 1.5}}'
 } >many.yaml
 for signal in INT TERM; do
-    for words in "$scene --set render.depth=40" "many.yaml --set render.depth=40 --set render.samples=64"; do
+    for words in "$scene" many.yaml; do
         rm -f part.png
-        # shellcheck disable=SC2086
-        "$program" render $words --set render.width=160 --set render.height=120 -o part.png >out 2>err &
+        "$program" render "$words" --set render.depth=40 --set render.samples=64 --set render.width=1600 \
+            --set render.height=1200 -o part.png >out 2>err &
         job=$!
-        sleep 0.4
+        await $job works $job
         kill -"$signal" $job
         wait $job
         check "SIG$signal ends ${words##*/} with 130" is $? 130
@@ -827,13 +821,10 @@ for signal in INT TERM; do
     done
 done
 sed -e 's/^study: .*/study: long/' -e 's/render.width: 40, render.height: 30/render.width: 1000, render.height: 750/' \
-    -e 's/repetitions: 2/repetitions: 500/' studies/tiny.study >studies/long.study
+    -e 's/repetitions: 2/repetitions: 100000/' studies/tiny.study >studies/long.study
 "$program" study run studies/long.study --results res >out 2>err &
 job=$!
-for _ in {1..600}; do # until two rows are there
-    [[ -e res/long/rows.csv ]] && (($(wc -l <res/long/rows.csv) > 2)) && break
-    sleep 0.1
-done
+await $job has_lines res/long/rows.csv 3
 kill -INT $job
 wait $job
 check "SIGINT ends a study with 130" is $? 130
@@ -849,9 +840,9 @@ if command -v script >/dev/null; then
     check "NO_COLOR turns colour off" is "$(grep -c $'\033' tty.txt)" 0
     TERM=dumb script -qec "'$program' rendr" /dev/null >tty.txt 2>&1
     check "TERM=dumb turns colour off" is "$(grep -c $'\033' tty.txt)" 0
-    lasting=(--set render.width=1600 --set render.height=1200 --set render.depth=8)
-    # longer than half a second, or there is no progress line
-    [[ ${CONFIG:-release} != release ]] && lasting=(--set render.depth=6)
+    # Longer than half a second on any machine, or there is no progress line.
+    lasting=(--set render.width=1600 --set render.height=1200 --set render.depth=8 --set render.threads=1)
+    [[ ${CONFIG:-release} == release ]] || lasting=(--set render.depth=6 --set render.threads=1)
     script -qec "'$program' render '$scene' --json ${lasting[*]} >/dev/null" /dev/null >tty.txt 2>&1
     check "the progress line is erased at the end" matches "$(tail -c 3 tty.txt)" $'^ +\r$'
     check "progress has a percentage and the time left" grep -q 'rendering: .*%, .* left' tty.txt

@@ -220,11 +220,10 @@ static bool ask(void *of)
 
 static void work_until_cancelled(void *of)
 {
-    enum { LONGEST_MS = 5000 };
     question *q = of;
-    for (int ms = 0; ms < LONGEST_MS && !q->was_stopped; ms++) {
-        q->was_stopped = cancel_asked();
+    while (!q->was_stopped) {
         nanosleep(&(struct timespec){.tv_nsec = 1000000}, NULL);
+        q->was_stopped = cancel_asked();
     }
 }
 

@@ -268,10 +268,13 @@ static void schedstat_is_read(void **state)
         assert_false(thread_usage_parse(bad[i], &runnable_s));
 }
 
+static pthread_barrier_t all_begin;
+
 static void *burn_and_sleep(void *context)
 {
     int spins = 0;
     const thread_usage before = thread_usage_now();
+    pthread_barrier_wait(&all_begin);
     burn(&spins);
     nanosleep(&(struct timespec){.tv_nsec = 20000000}, NULL);
     *(thread_usage *)context = thread_usage_since(&before);
@@ -292,10 +295,12 @@ static void a_thread_runs_waits_for_a_unit_or_is_blocked(void **state)
         if (CPU_ISSET(i, &all))
             CPU_SET(i, &one);
     assert_int_equal(sched_setaffinity(0, sizeof one, &one), 0); /* threads inherit it */
+    assert_int_equal(pthread_barrier_init(&all_begin, NULL, THREADS), 0);
     for (int i = 0; i < THREADS; i++)
         assert_int_equal(pthread_create(&threads[i], NULL, burn_and_sleep, &made[i]), 0);
     for (int i = 0; i < THREADS; i++)
         assert_int_equal(pthread_join(threads[i], NULL), 0);
+    pthread_barrier_destroy(&all_begin);
     assert_int_equal(sched_setaffinity(0, sizeof all, &all), 0);
     double longest_s = 0.0;
     for (int i = 0; i < THREADS; i++) {
