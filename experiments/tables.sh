@@ -12,7 +12,7 @@ wrong() { # MESSAGE
     echo "tables: $1" >&2
     exit 2
 }
-[ $# -gt 0 ] && [ -d "$1" ] || wrong "there is no folder ${1-}; usage: experiments/tables.sh RESULTS [STUDY...]"
+[ -d "${1-}" ] || wrong "there is no folder '${1-}'; usage: experiments/tables.sh RESULTS [STUDY...]"
 results=$(cd "$1" && pwd)
 shift
 here=$(cd "$(dirname "$0")" && pwd)

@@ -1,7 +1,8 @@
 #!/bin/bash
-# The claims of the paper (paper/claims.tsv): each has a verdict on the committed rows; a wrong row turns exactly the
-# claim about it to "not reproduced"; few, disturbed or missing rows make it "underpowered"; the paper's sentences
-# follow, and no number in them is nonsense. tests/claims.sh [PROGRAM]. One line per check ("ok ...", "not ok ...").
+# The tables of rows (experiments/tables.sh) and the claims of the paper (paper/claims.tsv): each has a verdict on the
+# committed rows; wrong rows turn exactly the claims about them to "not reproduced"; few, disturbed or missing rows make
+# them "underpowered"; the paper's sentences follow, and no number in them is nonsense. tests/claims.sh [PROGRAM].
+# One line per check ("ok ...", "not ok ...").
 set -uo pipefail
 
 root=$(cd "$(dirname "${BASH_SOURCE[0]}")/.." && pwd)
@@ -28,6 +29,31 @@ reference=results/reference
 with_gnuplot=1
 command -v gnuplot >/dev/null || with_gnuplot=0
 
+# A folder with the committed rows, whose studies and tables can be replaced: tables of cells, or all if there are any.
+mirror() { # NAME
+    mkdir -p "$work/$1/tables"
+    local entry
+    for entry in "$root/$reference"/*; do
+        [[ ${entry##*/} == tables ]] || ln -s "$entry" "$work/$1/"
+    done
+    if [[ -d $work/rows/tables && $1 != rows ]]; then
+        cp -p "$work/rows/tables"/* "$work/$1/tables/"
+    else
+        cp -p "$root/$reference"/tables/*-{metrics,curves,motion}.tsv "$work/$1/tables/"
+    fi
+}
+copy() { # NAME STUDY...: these studies of a mirror are copies that can be edited
+    local folder=$work/$1 study
+    mirror "$1"
+    shift
+    for study; do
+        rm "$folder/$study"
+        cp -r "$root/$reference/$study" "$folder/$study"
+    done
+}
+tables() { # FOLDER [STUDY...]
+    experiments/tables.sh "$@" 2>"$work/tables-said"
+}
 judge() { # RESULTS OUT: the verdicts in OUT/claims.tsv; sets code
     paper/claims.sh "$1" "$2" >"$work/said" 2>&1
     code=$?
@@ -42,15 +68,6 @@ of() { # OUT ID FIELD
 changed() { # OUT
     join -t "$(printf '\t')" <(cut -f 1,2 "$work/reference/claims.tsv" | sort) <(cut -f 1,2 "$1/claims.tsv" | sort) |
         awk -F'\t' '$2 != $3 { printf "%s%s: %s", comma, $1, $3; comma = ", " }'
-}
-# A folder of results in which only one study is a copy that can be edited.
-copy() { # NAME STUDY
-    mkdir -p "$work/$1"
-    local entry
-    for entry in "$root/$reference"/*; do
-        [[ ${entry##*/} == "$2" ]] || ln -s "$entry" "$work/$1/"
-    done
-    cp -r "$root/$reference/$2" "$work/$1/$2"
 }
 recheck() { "$build/tests/recheck" "$1" "$(dirname "$1")/runs.json"; } # FILE: of edited rows
 # Sets a column of the rows where an awk condition over the function f("column") holds.
@@ -97,8 +114,43 @@ END
 same "a number outside a claim would be found" "$(awk -f tests/unclaimed.awk "$work/unclaimed.tex" | tr '\n' ' ')" \
     "3: depth/8/cpu_s_median 4: b/c "
 
+# --- the tables
+mirror rows
+rows=$work/rows
+tables "$rows"
+same "the committed rows have tables" "$?$(<"$work/tables-said")" 0
+empty "one for each study" "$(for file in "$rows"/*/rows.csv; do
+    study=$(basename "$(dirname "$file")")
+    [[ ! -r experiments/$study.study || -s $rows/tables/$study.tsv ]] || echo "$study"
+done)"
+empty "none is left half-written" "$(find "$rows/tables" -mindepth 1 ! -name '*.tsv')"
+lines() { awk -F'\t' 'NR == 1 { for (i = 1; i <= NF; i++) if ($i == "n") n = i } NR > 1 && $n > 0' "$1" | wc -l; }
+copy some depth
+rm "$work/some/tables/threads.tsv"
+touch -d '2001-01-01' "$work/some/tables/depth.tsv"
+tables "$work/some" depth
+[[ ! $work/some/tables/depth.tsv -nt $reference/depth/rows.csv && ! -e $work/some/tables/threads.tsv ]]
+verdict $? "a table that did not change stays as it is, and only the studies that are named have new ones"
+environment=$(awk -F'\t' 'NR == 2 { print $NF }' "$rows/tables/depth.tsv")
+ENVIRONMENT=$environment tables "$work/some" depth
+cmp -s "$rows/tables/depth.tsv" "$work/some/tables/depth.tsv"
+verdict $? "ENVIRONMENT chooses one"
+ENVIRONMENT=0123abcd tables "$work/some" depth
+same "of another one there are no rows" "$(lines "$work/some/tables/depth.tsv")" 0
+judge "$work/some" "$work/out"
+same "and they decide nothing" "$(of "$work/out" depth-cut 2)" underpowered
+ENVIRONMENT=loud tables "$work/some"
+same "a wrong environment is an error" "$? $(<"$work/tables-said")" \
+    "2 tables: invalid environment 'loud'; give the 8 hex digits of one, as in the last column of a summary"
+sed -i 's/,/;/' "$work/some/depth/rows.csv"
+tables "$work/some" depth
+same "rows that give no table are an error" "$? $(tail -n 1 "$work/tables-said")" \
+    "1 tables: no table of depth, for the reasons above"
+[[ ! -e $work/some/tables/depth.tsv ]]
+verdict $? "and the old table is gone"
+
 # --- the committed rows
-judge "$reference" "$work/reference"
+judge "$rows" "$work/reference"
 same "make claims succeeds on the committed rows" "$code" 0
 same "every claim has a verdict" "$(cut -f 1 "$work/reference/claims.tsv" | sort | tr '\n' ' ')" \
     "$(claims | cut -f 1 | sort | tr '\n' ' ')"
@@ -145,68 +197,57 @@ empty "every \\begin of the paper has its \\end, and braces are balanced" "$(awk
       } }
     END { if (depth) print "braces: " depth; if (top) print "open: " stack[top] }' paper/{paper,supplement}.tex)"
 
-# --- wrong rows: exactly one claim turns
-copy film profile
-edit "$work/film/profile/rows.csv" 'NR == 9' film_hash '"00000000000000aa"'
-edit "$work/film/profile/rows.csv" 'NR == 9' marked 1
-judge "$work/film" "$work/out"
-same "another film in one row: not reproduced" "$(changed "$work/out")" \
-    "film-marked: not reproduced, film-threads: not reproduced"
-same "a claim that is not reproduced gives status 1" "$code" 1
-
-copy metrics tables
+# --- wrong rows: exactly the claims about them turn
+copy wrong profile lighting polarised pool shading
+edit "$work/wrong/profile/rows.csv" 'NR == 9' film_hash '"00000000000000aa"'
+edit "$work/wrong/profile/rows.csv" 'NR == 9' marked 1
+edit "$work/wrong/lighting/compare.csv" 'f("render.lighting") == "whitted"' flip 0.5
+edit "$work/wrong/polarised/rows.csv" 'f("render.polarisation") == "on"' cpu_s 'f("cpu_s") * 10'
+edit "$work/wrong/pool/rows.csv" 'f("render.pool") == "off" && f("render.threads") > 1' wall_s 'f("wall_s") * 0.3'
+# A cost that is lost in noise is no number, though its claim is reproduced.
+edit "$work/wrong/shading/rows.csv" \
+    'f("model.shading") == "smooth" && f("render.integrator") == "whitted" && f("render.shadows") == "off"' \
+    cpu_s 'f("cpu_s") * (f("process") == 1 ? 0.8 : f("process") == 2 ? 1 : 1.25)'
+tables "$work/wrong" profile lighting polarised pool shading
+grep -q '^profile: ' "$work/tables-said"
+verdict $? "a marked row is named" "$(<"$work/tables-said")"
 awk -F'\t' -v OFS='\t' 'NR == 1 { for (i = 1; i <= NF; i++) at[$i] = i }
     NR > 1 && !done && $at["passes"] == 1 { $at["passes"] = 0; done = 1 } { print }' \
-    "$reference/tables/realism-metrics.tsv" >"$work/metrics/tables/realism-metrics.tsv"
-judge "$work/metrics" "$work/out"
-same "a metric beyond its tolerance: not reproduced" "$(changed "$work/out")" "theory: not reproduced"
+    "$rows/tables/realism-metrics.tsv" >"$work/wrong/tables/realism-metrics.tsv"
+judge "$work/wrong" "$work/wrong-out"
+turned="film-marked: not reproduced, film-threads: not reproduced, lighting: not reproduced"
+turned+=", polarised-cost: not reproduced, pool-few: not reproduced, pool-many: not reproduced"
+turned+=", pool-some: not reproduced, theory: not reproduced"
+same "another film, a larger error, slower and faster rows, a failed metric: not reproduced" \
+    "$(changed "$work/wrong-out")" "$turned"
+same "a claim that is not reproduced gives status 1" "$code" 1
+[[ $(of "$work/wrong-out" polarised-cost 3) =~ ^2[01]\.[0-9]\ \[[0-9.]+,\ [0-9.]+\]$ ]]
+verdict $? "the figure has its interval" "$(of "$work/wrong-out" polarised-cost 3)"
 
-copy flip lighting
-edit "$work/flip/lighting/compare.csv" 'f("render.lighting") == "whitted"' flip 0.5
-judge "$work/flip" "$work/out"
-same "a larger error of an image: not reproduced" "$(changed "$work/out")" "lighting: not reproduced"
-
-copy slow polarised
-edit "$work/slow/polarised/rows.csv" 'f("render.polarisation") == "on"' cpu_s 'f("cpu_s") * 10'
-judge "$work/slow" "$work/out"
-same "slower rows: not reproduced" "$(changed "$work/out")" "polarised-cost: not reproduced"
-[[ $(of "$work/out" polarised-cost 3) =~ ^2[01]\.[0-9]\ \[[0-9.]+,\ [0-9.]+\]$ ]]
-verdict $? "the figure has its interval" "$(of "$work/out" polarised-cost 3)"
-
-# --- rows that cannot decide
-copy few polarised
+# --- rows that cannot decide: few, disturbed, of a wide spread, none
+copy few polarised profile pool lighting
 awk -F, 'NR == 1 { for (i = 1; i <= NF; i++) at[$i] = i } NR == 1 || $at["repetition"] < 5' \
-    "$work/few/polarised/rows.csv" >"$work/rows" && cp "$work/rows" "$work/few/polarised/rows.csv"
+    "$reference/polarised/rows.csv" >"$work/few/polarised/rows.csv"
 recheck "$work/few/polarised/rows.csv"
+edit "$work/few/profile/rows.csv" 'NR > 1' others_share 0.7
+edit "$work/few/pool/rows.csv" 'NR % 2' wall_s 'f("wall_s") * 4'
+rm -r "$work/few/lighting"
+tables "$work/few" polarised profile pool lighting
 judge "$work/few" "$work/out"
-same "few rows: underpowered" "$(changed "$work/out")" "polarised-cost: underpowered"
-same "underpowered alone gives status 0" "$code" 0
+turned="film-marked: underpowered, lighting: underpowered, lighting-highlights: underpowered"
+turned+=", polarised-cost: underpowered, pool-many: underpowered, profile-blocks: underpowered"
+turned+=", rows-quiet: not reproduced"
+same "they are underpowered, and the claim about disturbed rows is not reproduced" "$(changed "$work/out")" "$turned"
 [[ $(of "$work/out" polarised-cost 4) == "3 rows of a cell, 6 are needed" ]]
 verdict $? "the reason says how many are needed" "$(of "$work/out" polarised-cost 4)"
-
-copy loud profile
-edit "$work/loud/profile/rows.csv" 'NR > 1' others_share 0.7
-judge "$work/loud" "$work/out"
-same "disturbed rows: underpowered" "$(changed "$work/out")" \
-    "profile-blocks: underpowered, rows-quiet: not reproduced"
 grep -q 'disturbed or marked' <<<"$(of "$work/out" profile-blocks 4)"
-verdict $? "the reason names them" "$(of "$work/out" profile-blocks 4)"
-
-copy wide polarised
-edit "$work/wide/polarised/rows.csv" 'NR % 2' cpu_s 'f("cpu_s") * 4'
-judge "$work/wide" "$work/out"
-same "a wide interval: underpowered" "$(changed "$work/out")" "polarised-cost: underpowered"
-
-copy none polarised
-rm -r "$work/none/polarised"
-judge "$work/none" "$work/out"
-same "no rows: underpowered" "$(changed "$work/out")" \
-    "film-marked: underpowered, polarised-cost: underpowered, polarised-image: underpowered"
-grep -q '^for the missing rows: cuvette study run experiments/polarised.study$' "$work/said"
-verdict $? "with the command that measures them" "$(tail -n 3 "$work/said")"
+verdict $? "or that they are disturbed" "$(of "$work/out" profile-blocks 4)"
+same "or that the interval is too wide" "$(of "$work/out" pool-many 4)" "the interval is too wide to decide"
+grep -q '^for the missing rows: cuvette study run experiments/lighting.study$' "$work/said"
+verdict $? "the command that measures missing rows is printed" "$(tail -n 3 "$work/said")"
 mkdir "$work/empty"
 judge "$work/empty" "$work/out"
-same "a folder without rows is an error" "$code" 2
+same "a folder without tables of rows is an error" "$code" 2
 grep -q 'make experiments' "$work/said"
 verdict $? "with a remedy" "$(<"$work/said")"
 
@@ -236,29 +277,15 @@ verdict $? "an undecided sentence is replaced" "$(grep -n 'New threads add' "$wo
 tr '\n' ' ' <"$work/plain" | grep -qE '[0-9]\\within\{[0-9.]+\}\{[0-9.]+\}\\,ms to a frame with 1024 threads'
 verdict $? "a reproduced one is kept, with its interval" "$(grep -n 'frame with 1024' "$work/plain")"
 
-copy loaded pool
-edit "$work/loaded/pool/rows.csv" 'f("render.pool") == "off" && f("render.threads") > 1' wall_s 'f("wall_s") * 0.3'
-judge "$work/loaded" "$work/out"
-same "new threads that make frames faster: not reproduced" "$(changed "$work/out")" \
-    "pool-few: not reproduced, pool-many: not reproduced, pool-some: not reproduced"
-text "$work/out" >"$work/plain"
+text "$work/wrong-out" >"$work/plain"
 instead='Not reproduced on these rows:} new threads for every frame cost time with 1024 threads'
 grep -q "$instead (measured: -[0-9.]* \[-[0-9., -]*\] ms)" "$work/plain"
 verdict $? "the paper says so instead of adding negative times" "$(grep -n '1024 threads' "$work/plain")"
 if ((with_gnuplot)); then
-    empty "and has no negative cost anywhere" "$(nonsense "$work/out")"
+    empty "and has no negative cost anywhere" "$(nonsense "$work/wrong-out")"
 fi
-
-# A cost that is lost in noise is no number; a sentence that has it is replaced, though its claim is reproduced.
-copy flat shading
-edit "$work/flat/shading/rows.csv" \
-    'f("model.shading") == "smooth" && f("render.integrator") == "whitted" && f("render.shadows") == "off"' \
-    cpu_s 'f("cpu_s") * (f("process") == 1 ? 0.8 : f("process") == 2 ? 1 : 1.25)'
-judge "$work/flat" "$work/out"
-same "a noisy cost in Whitted ray tracing changes no verdict" "$(changed "$work/out")" ""
-text "$work/out" >"$work/plain"
 grep -q 'Reproduced, but without all numbers of this sentence:} Phong shading takes more' "$work/plain"
-verdict $? "its sentence does not print the cost" "$(grep -n 'Phong shading' "$work/plain")"
+verdict $? "a sentence does not print a cost that is lost in noise" "$(grep -n 'Phong shading' "$work/plain")"
 
 # --- intervals of any column agree with those of the summary
 spread=$("$CUVETTE" study summary --results "$reference" --interval wall_s,wall_s/wall_s experiments/depth.study)
@@ -284,29 +311,8 @@ refuses "an unknown column is an error" wall_z "no column 'wall_z'"
 refuses "an empty column is an error" wall_s, "invalid list"
 refuses "a quotient without a divisor is an error" wall_s/ "invalid list"
 
-# --- environments are not pooled
-tabs() { tr ' ' '\t'; }
-tabs >"$work/summary" <<'END'
-cell a.b environment n wall_s_median
-0 1 aaaaaaaa 6 1
-0 1 bbbbbbbb 9 2
-1 2 bbbbbbbb 9 3
-END
-tabs >"$work/spread" <<'END'
-cell a.b environment column n median low high min max
-0 1 aaaaaaaa x 6 5 4 6 3 7
-0 1 bbbbbbbb x 9 8 7 9 6 9
-END
-chosen() { awk -v wanted="$1" -f paper/environment.awk "$work/summary"; }
-same "the environment with most rows is taken" "$(chosen '')" bbbbbbbb
-same "or the one that is given" "$(chosen aaaaaaaa)" aaaaaaaa
-same "and no rows of another" \
-    "$(awk -v chosen=aaaaaaaa -f paper/join.awk "$work/spread" "$work/summary" | tr '\t\n' ' |')" \
-    "cell a.b n wall_s_median x_median x_low x_high x_min x_max|0 1 6 1 5 4 6 3 7|"
-ENVIRONMENT=0123abcd paper/claims.sh "$reference" "$work/out" >"$work/said" 2>&1
-same "an environment without rows decides nothing" "$?$(with "$work/out" "not reproduced")" 0
-
 # --- the language of predicates
+tabs() { tr ' ' '\t'; }
 mkdir -p "$work/small/tables"
 tabs >"$work/small/tables/t.tsv" <<'END'
 cell a.b kind n cpu_s_median cpu_s_low cpu_s_high rays marked

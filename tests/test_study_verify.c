@@ -447,6 +447,28 @@ static void without_rows_no_environment_is_the_main_one(void **state)
     assert_string_equal(key, "");
 }
 
+/* Warm-ups do not count; of equal environments the last one is shown. */
+static void the_environment_with_most_rows_is_the_main_one(void **state)
+{
+    (void)state;
+    row_ref rows[] = {
+        {.run = -1, .environment = "aaaaaaaa", .warmup = true},
+        {.run = -1, .environment = "aaaaaaaa", .warmup = true},
+        {.run = -1, .environment = "aaaaaaaa"},
+        {.run = -1, .environment = "bbbbbbbb"},
+        {.run = -1, .environment = "bbbbbbbb"},
+        {.run = -1, .environment = "aaaaaaaa"},
+        {.run = -1, .environment = "aaaaaaaa"},
+    };
+    const char *const expected[] = {[5] = "bbbbbbbb", [6] = "bbbbbbbb", [7] = "aaaaaaaa"};
+    for (size_t count = 5; count <= 7; count++) {
+        const row_files files = {.rows = rows, .row_count = count};
+        char key[ENVIRONMENT_KEY];
+        assert_int_equal(row_environments_main(&files, key, NULL), STATUS_OK);
+        assert_string_equal(key, expected[count]);
+    }
+}
+
 /* An error lists as many environments as 255 characters hold. */
 static void many_environments_are_listed_in_part(void **state)
 {
@@ -490,12 +512,19 @@ static void edited_environments_are_noticed(void **state)
 int main(void)
 {
     const struct CMUnitTest tests[] = {
-        CASE(all_damage_is_detected),          CASE(edited_rows_are_left_out),
-        CASE(torn_lines_are_no_fault),         cmocka_unit_test(checks_depend_on_names_and_values_only),
-        CASE(every_fact_is_part_of_the_key),   CASE(unlike_environments_are_never_pooled),
-        CASE(nodes_of_a_type_are_one_machine), CASE(edited_environments_are_noticed),
-        CASE(the_majority_is_right),           cmocka_unit_test(without_rows_no_environment_is_the_main_one),
-        CASE(absent_facts_are_no_error),       CASE(many_environments_are_listed_in_part),
+        CASE(all_damage_is_detected),
+        CASE(edited_rows_are_left_out),
+        CASE(torn_lines_are_no_fault),
+        cmocka_unit_test(checks_depend_on_names_and_values_only),
+        CASE(every_fact_is_part_of_the_key),
+        CASE(unlike_environments_are_never_pooled),
+        CASE(nodes_of_a_type_are_one_machine),
+        CASE(edited_environments_are_noticed),
+        CASE(the_majority_is_right),
+        cmocka_unit_test(without_rows_no_environment_is_the_main_one),
+        cmocka_unit_test(the_environment_with_most_rows_is_the_main_one),
+        CASE(absent_facts_are_no_error),
+        CASE(many_environments_are_listed_in_part),
     };
     return cmocka_run_group_tests_name("study_verify", tests, NULL, NULL);
 }
