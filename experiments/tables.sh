@@ -3,8 +3,8 @@
 # environment; the tables of its single cells, concatenated; the published series; and those of paper/determinism.sh.
 # All are made anew; one that did not change stays as it is.
 #   experiments/tables.sh RESULTS [STUDY...]      with STUDY, only the tables of these studies
-# CUVETTE: the program (default: build/cuvette). ENVIRONMENT: the one to show, 8 hex digits, instead of the one with most
-# rows in each study. Status: 0; 1 if the rows of a study give no table; 2 for a wrong argument.
+# CUVETTE: the program (default: build/cuvette). ENVIRONMENT: the one to show, 8 hex digits, instead of the one with
+# most rows in each study. Status: 0; 1 if the rows of a study give no table; 2 for a wrong argument.
 export LC_ALL=C
 set -eu
 
@@ -21,6 +21,13 @@ program=${CUVETTE:-$here/../build/cuvette}
 environment=${ENVIRONMENT:-main}
 expr "$environment" : '[0-9a-f]\{8\}$\|main$\|unknown$' >/dev/null ||
     wrong "invalid environment '$environment'; give the 8 hex digits of one, as in the last column of a summary"
+has_rows() { # FOLDER...: of studies
+    for folder; do
+        for rows in "$folder"/rows.csv "$folder"/rows.shard-*.csv; do [ ! -r "$rows" ] || return 0; done
+    done
+    return 1
+}
+has_rows "$results"/*/ || wrong "there are no rows in $results; run make experiments, or give another folder"
 tables=$results/tables
 mkdir -p "$tables"
 work=$(mktemp -d "$tables/.new.XXXXXX")
@@ -33,10 +40,6 @@ replace() { # TABLE: its file in $work takes its place; an empty or missing one 
     elif ! cmp -s "$work/$1" "$tables/$1"; then
         mv "$work/$1" "$tables/$1"
     fi
-}
-has_rows() { # FOLDER
-    for rows in "$1"/rows.csv "$1"/rows.shard-*.csv; do [ ! -r "$rows" ] || return 0; done
-    return 1
 }
 failed=
 tables_of() { # FILE.study

@@ -250,6 +250,9 @@ judge "$work/empty" "$work/out"
 same "a folder without tables of rows is an error" "$code" 2
 grep -q 'make experiments' "$work/said"
 verdict $? "with a remedy" "$(<"$work/said")"
+tables "$work/empty"
+same "a folder without rows too, in which nothing is written" "$? $(<"$work/tables-said")$(ls "$work/empty")" \
+    "2 tables: there are no rows in $work/empty; run make experiments, or give another folder"
 
 # --- the paper: its text with the sentences that it chooses, the numbers filled in
 text() { # OUT

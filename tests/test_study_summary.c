@@ -130,7 +130,7 @@ static void a_summary_has_medians_and_their_intervals(void **state)
     assert_string_equal(field(text, 1, "rays_total"), "1000");
     assert_string_equal(field(text, 1, "first_hits.ball"), "1000");
     assert_string_equal(field(text, 1, "first_hits.ground"), "NA");
-    /* The same of other columns: 1.5 to 6.5; and of their quotients, formed row by row: 6.5/5 to 2.5/1, without 1.5/0. */
+    /* The same of other columns: 1.5 to 6.5; and of quotients, formed row by row: 6.5/5 to 2.5/1, without 1.5/0. */
     assert_string_equal(field(text, 1, "motion_s_median"), "4");
     assert_string_equal(field(text, 1, "motion_s_low"), "1.5");
     assert_string_equal(field(text, 1, "motion_s_max"), "6.5");

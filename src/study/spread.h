@@ -1,6 +1,6 @@
 /* Any column of rows.csv by cell, with the 95% interval of its median: for quantities of which study/summary.h has only
- * the median or nothing, and for quotients of two columns, formed row by row. Warm-ups, marked and excluded rows are left out, and
- * rows of unlike environments are never in one line. Borrows its arguments; errors as study_summary. */
+ * the median or nothing, and for quotients of two columns, formed row by row. Warm-ups, marked and excluded rows are
+ * left out, and rows of unlike environments are never in one line. Borrows its arguments; errors as study_summary. */
 #pragma once
 
 #include "study/study.h"
