@@ -1,8 +1,9 @@
 #!/bin/bash
 # Draw figures as PNG and SVG, or as PDF for the paper: those named, or all.
 #   plots/draw.sh [--results DIR] [--out DIR] [--format png,svg,pdf] [FIGURE...]
-# DIR defaults to results; figures go to DIR/figures. One line says of each figure that it was drawn, why it was skipped,
-# or, with status 1, what is wrong. The same rows give the same bytes: no figure has a time or the name of a machine.
+# DIR defaults to results; figures go to DIR/figures. One line says of each figure that it was drawn, why it was
+# skipped, or, with status 1, what is wrong. The same rows give the same bytes: no figure has a time or the name of a
+# machine.
 #
 # The head of a figure has a line for each file that it is drawn from, a path below DIR (* allowed), with what at least
 # one of its rows must have: columns with given values, and columns that are not NA:
@@ -67,7 +68,8 @@ lacking() { # FIGURE
         for word in $words; do
             if [[ $word == *=* ]]; then where+="$word "; else columns+="$word "; fi
         done
-        rows=$(awk -f plots/select.awk -v where="$where" -v columns="$columns" "$file" 2>&1 | sed -n '1s/^$/a row/; 1p') || {
+        rows=$(awk -f plots/select.awk -v where="$where" -v columns="$columns" "$file" 2>&1 |
+            sed -n '1s/^$/a row/; 1p') || {
             echo "$rows"
             return 1
         }
@@ -98,8 +100,8 @@ environments() { # FIGURE
         at && $at != "NA" && !seen[$at]++ { text = text (text ? ", " : "") $at } END { print text }' "${tables[@]}"
 }
 
-# The first error in what gnuplot and its commands said, as "plots/depth.gp:12: undefined variable: x"; warnings are none.
-# A column that a command misses comes before others, which may follow from it.
+# The first error in what gnuplot and its commands said, as "plots/depth.gp:12: undefined variable: x". Warnings are not
+# errors. A column that a command misses comes before others, which may follow from it.
 error_in() { # LOG
     awk '
         function keep(text) {

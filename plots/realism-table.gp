@@ -1,5 +1,5 @@
 # Every metric of optics over the pairs of refractive indices: its error over its tolerance, and whether it passes.
-# needs: tables/realism-metrics.tsv metric measured
+# needs: tables/realism-metrics.tsv metric unit error tolerance passes
 width = 1000; height = 800
 load "plots/style.gp"
 
@@ -14,11 +14,16 @@ down(metric) = place(metrics, metric)
 across(vessel, liquid) = place(vessels, vessel)*words(liquids) + place(liquids, liquid)
 pairs = words(vessels)*words(liquids)
 lowest = -6
-# A fixed number of digits for a power of ten: 2.0e-14.
-worst(metric) = system(select(rows, "metric=".metric, "error")[3:*]." | sort -g | tail -n 1 | awk '{ printf \"%.0e\", $1 }'")
-loosest(metric) = system(select(rows, "metric=".metric, "tolerance")[3:*]." | sort -g | tail -n 1 | awk '{ printf \"%.0e\", $1 }'")
-unit(metric) = system("awk -F '\\t' -v m='".metric."' 'NR == 1 { for (i = 1; i <= NF; i++) at[$i] = i } \
-    $at[\"metric\"] == m && $at[\"unit\"] != \"NA\" { print $at[\"unit\"]; exit }' '".rows."'")
+# Four words for each metric in order: its name, largest error and tolerance (one digit and a power of ten), and unit, with
+# spaces that do not divide words.
+list = system("awk -F '\\t' 'NR == 1 { for (i = 1; i <= NF; i++) at[$i] = i; next } \
+    { m = $at[\"metric\"]; e = $at[\"error\"]; t = $at[\"tolerance\"]; u = $at[\"unit\"] } \
+    !(m in unit) { order[++n] = m; unit[m] = \"NA\" } \
+    e != \"NA\" && e + 0 > error[m] + 0 { error[m] = e } t != \"NA\" && t + 0 > tolerance[m] + 0 { tolerance[m] = t } \
+    u != \"NA\" { gsub(/ /, \" \", u); unit[m] = u } \
+    END { for (i = 1; i <= n; i++) printf \"%s %.0e %.0e %s \", order[i], error[order[i]], tolerance[order[i]], unit[order[i]] }' '".rows."'")
+of(i, k) = word(list, 4*(i - 1) + k)
+known(text) = text eq "NA" ? "" : text
 
 set multiplot
 unset key; unset grid
@@ -54,19 +59,18 @@ set label 6 "largest error" at screen 0.83,0.922 right font ",9"
 set label 7 "tolerance" at screen 0.9,0.922 right font ",9"
 set label 8 "unit" at screen 0.908,0.922 left font ",9"
 do for [i=1:words(metrics)] {
-    metric = word(metrics, i)
-    set label 200 + i "".(worst(metric) eq "0e+00" ? "0" : worst(metric)) at screen 0.83, first i - 1 right font ",9"
-    set label 300 + i loosest(metric) at screen 0.9, first i - 1 right font ",9"
-    set label 400 + i unit(metric) at screen 0.908, first i - 1 left font ",9"
+    set label 200 + i "".(of(i, 2) eq "0e+00" ? "0" : of(i, 2)) at screen 0.83, first i - 1 right font ",9"
+    set label 300 + i "".of(i, 3) at screen 0.9, first i - 1 right font ",9"
+    set label 400 + i known(of(i, 4)) at screen 0.908, first i - 1 left font ",9"
 }
 cells(where, columns) = select(rows, where, "metric vessel.ior liquid.ior ".columns)
 level(error, tolerance) = error > 0 ? (log10(error/tolerance) < lowest ? lowest : log10(error/tolerance)) : lowest
+# On the bright end of the colours the mark is dark.
+colour(error, tolerance, passes) = passes == 0 ? vermillion : level(error, tolerance) > -2 ? ink : 0xffffff
 half = 0.46
 plot cells("", "error tolerance") using (across(strcol(2), strcol(3))):(down(strcol(1))):(half):(half):(level($4, $5)) \
         with boxxyerror palette, \
      cells("passes=NA", "cell") using (across(strcol(2), strcol(3))):(down(strcol(1))):(half):(half) with boxxyerror lc rgb pale, \
-     cells("passes=1", "error tolerance") using (across(strcol(2), strcol(3))):(down(strcol(1))):(level($4, $5) > -2 ? "✓" : "") \
-        with labels font ",8" textcolor rgb ink, \
-     "" using (across(strcol(2), strcol(3))):(down(strcol(1))):(level($4, $5) > -2 ? "" : "✓") with labels font ",8" textcolor rgb "white", \
-     cells("passes=0", "cell") using (across(strcol(2), strcol(3))):(down(strcol(1))):("✗") with labels font ",12" textcolor rgb vermillion
+     cells("", "error tolerance passes") using (across(strcol(2), strcol(3))):(down(strcol(1))):($6 == 0 ? "✗" : "✓"):(colour($4, $5, $6)) \
+        with labels font ",9" textcolor rgb variable
 unset multiplot

@@ -1,7 +1,9 @@
-# Columns by name from a table with a header line (tab separated .tsv, or .csv after RFC 4180, one line per row), for the
-# lines where other columns have given values; tab separated, lines with NA are left out. Numbers are compared as numbers.
-#   awk -f select.awk -v where='render.schedule=rows warmup=0' -v columns='render.threads wall_s_median wall_s_low?' FILE
-# most=1: only the first line. NaN stands for an NA in a column with a question mark. A column that the file lacks is an error, a line on stderr.
+# Columns by name from a table with a header line (tab separated .tsv, or .csv after RFC 4180, one line per row), for
+# the lines where other columns have given values; tab separated, lines with NA are left out. Numbers are compared as
+# numbers. A column that the file lacks is an error, a line on stderr.
+#   awk -f select.awk -v where='render.schedule=rows warmup=0' -v columns='render.threads wall_s_median wall_s_low?' \
+#       [-v most=1] FILE
+# NaN stands for an NA in a column with a question mark. most: print only the first ones.
 function same(a, b) {
     return a == b || (a ~ number && b ~ number && a + 0 == b + 0)
 }
