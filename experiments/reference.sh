@@ -7,7 +7,7 @@ cd "$(dirname "$0")/.."
 from=${1:-results}
 to=results/reference
 
-for study in experiments/*.study; do
+for study in experiments/*.study experiments/full/*.study; do
     name=$(basename "$study" .study)
     [[ -e $from/$name/rows.csv ]] || {
         echo "reference.sh: $from has no rows of $name; run make experiments" >&2

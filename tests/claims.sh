@@ -72,7 +72,7 @@ needs=$(claims | while IFS=$'\t' read -r id _ _ needs _ _ _ _ predicate; do
         continue
     fi
     for study in $needs; do
-        [[ -r experiments/$study.study || -x experiments/$study.sh || $study == published ]] || echo "$id: $study"
+        [[ -r experiments/$study.study || -r experiments/full/$study.study || -x experiments/$study.sh || $study == published ]] || echo "$id: $study"
     done
 done)
 empty "every claim needs studies or a command that exist" "$needs"
@@ -202,7 +202,7 @@ rm -r "$work/none/polarised"
 judge "$work/none" "$work/out"
 same "no rows: underpowered" "$(changed "$work/out")" \
     "film-marked: underpowered, polarised-cost: underpowered, polarised-image: underpowered"
-grep -q '^for the missing rows: cuvette study run experiments/polarised.study$' "$work/said"
+grep -q '^for the missing rows: cuvette study run experiments/full/polarised.study$' "$work/said"
 verdict $? "with the command that measures them" "$(tail -n 3 "$work/said")"
 mkdir "$work/empty"
 judge "$work/empty" "$work/out"
