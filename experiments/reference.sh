@@ -14,7 +14,8 @@ for study in experiments/*.study experiments/full/*.study; do
         exit 1
     }
 done
-rm -rf "$to"
+# The committed quick run (below) stays.
+find "$to" -mindepth 1 -maxdepth 1 ! -name quick -exec rm -rf {} +
 mkdir -p "$to/tables" "$to/figures"
 for rows in "$from"/*/rows.csv; do
     name=$(basename "$(dirname "$rows")")

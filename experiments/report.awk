@@ -266,7 +266,7 @@ BEGIN {
     printf "What was reproduced: rows in %s%s\n\n", shown, environment == "" ? "" : ", environment " environment
     films()
     if (failed != "") print "FAILED: " failed
-    if (bad) printf "Disturbed by other programs: %d of %d measured rows; their times are less certain.\n", bad, measured_rows
+    if (bad && !quick) printf "Disturbed by other programs: %d of %d measured rows; their times are less certain.\n", bad, measured_rows
     print ""
     print "Times, published and here, each divided by its first (shapes compare); ratio: here/published"
     print ""

@@ -40,7 +40,6 @@ mkdir -p "$results/tables" || fail "$results cannot be made; give --results anot
 results=$(cd "$results" && pwd)
 
 # Those that give the first figures come first.
-files=()
 rank=()
 [[ ${#given[@]} -gt 0 ]] || given=("$root"/experiments/*.study)
 for file in "${given[@]}"; do
@@ -63,18 +62,18 @@ committed_s() { # STUDY
         END { printf "%.3f\n", sum }' "$committed/$1/runs.json"
 }
 
-# The figures that need a file of the study and have all that they need.
+# The figures that need a file of the study and have all files that they need (the `# needs:` lines of their scripts).
 figures_of() { # STUDY
-    local script need needs own
+    local script need own
     for script in "$root"/plots/*.gp; do
-        read -r -a needs <<<"$(sed -n 's/^# needs: *//p' "$script")"
         own=
-        for need in "${needs[@]}"; do
+        while read -r need _; do
             case $need in
-            tables/"$1".tsv | tables/"$1"-metrics.tsv | tables/"$1"-curves.tsv | tables/"$1"-motion.tsv | tables/"$1"\[* | "$1"/*) own=1 ;;
+            tables/"$1".tsv | tables/"$1"-metrics.tsv | tables/"$1"-curves.tsv | tables/"$1"-motion.tsv) own=1 ;;
+            tables/"$1"[[]* | "$1"/*) own=1 ;;
             esac
             compgen -G "$results/$need" >/dev/null || continue 2
-        done
+        done < <(sed -n 's/^# needs: *//p' "$script")
         [[ -z $own ]] || basename "$script" .gp
     done
 }
@@ -131,19 +130,17 @@ for i in "${!files[@]}"; do
     fi
     "$root/experiments/tables.sh" "$results" "$name" >"$log" 2>&1 || { cat "$log" >&2 && wrong "the tables of $name"; }
     mapfile -t figures < <(figures_of "$name")
-    if [[ ${#figures[@]} -gt 0 ]] &&
-        ! "$root/plots/draw.sh" --results "$results" "${figures[@]}" >"$log" 2>&1; then
-        cat "$log" >&2
-        wrong "a figure of $name"
-    fi
+    : >"$log"
+    [[ ${#figures[@]} -eq 0 ]] ||
+        "$root/plots/draw.sh" --results "$results" "${figures[@]}" >"$log" 2>&1 || { cat "$log" >&2 && wrong "a figure of $name"; }
+    drawn=$(sed -n 's/: drawn.*//p' "$log" | paste -sd ' ')
     took=$(awk -v a="$start" -v b="$EPOCHREALTIME" 'BEGIN { print b - a }')
     expected_done=$(awk -v a="$expected_done" -v b="${expected[i]}" 'BEGIN { print a + b }')
     took_done=$(awk -v a="$took_done" -v b="$took" 'BEGIN { print a + b }')
     printf '%s %s: %s%s; about %s left\n' "$place" "$name" "$(minutes "$took")" \
-        "${figures:+, figures ${figures[*]}}" "$(minutes "$(time_left $((i + 1)))")"
+        "${drawn:+, figures $drawn}" "$(minutes "$(time_left $((i + 1)))")"
 done
 
-different=
 if [[ -d $committed ]]; then
     "$program" study films --results "$results" --against "$committed" "${files[@]}" >"$results/tables/films.tsv.new" ||
         wrong 'the comparison of films'
