@@ -1,7 +1,7 @@
 # The closing page of `make experiments`: films and counts against the committed run, published and measured series side
 # by side, and the figures to open. Plain text, at most 100 columns. See experiments/report.sh.
-#   awk -v results=DIR -v shown=DIR -v published=DIR -v failed=TEXT -f report.awk
-# results: the folder with tables/ and figures/; shown: its name on the page.
+#   awk -v results=DIR -v shown=DIR -v tables=NAMES -v published=DIR -v failed=TEXT -f report.awk
+# results: the folder with tables/ and figures/; shown: its name on the page; tables: the names of all tables.
 
 # --- tables: T[name, row, column], rows from 1; R[name]: their number, 0 without the table ---
 
@@ -129,14 +129,14 @@ function polygons(side, title, name, x,    i, k, accel, ours, base, first, row) 
 # --- parts of the page ---
 
 function films(    row, n, same_cells, distinct, cells, list) {
-    if (!load("films")) return
-    for (row = 1; row <= R["films"]; row++) {
-        cells += T["films", row, "cells"]
-        n += T["films", row, "n"]
-        same_cells += T["films", row, "same"]
-        distinct += T["films", row, "films"]
-        if (T["films", row, "different"] != "none")
-            list = list "  different: " T["films", row, "study"] ", cells " T["films", row, "different"] "\n"
+    if (!load("reproduced")) return
+    for (row = 1; row <= R["reproduced"]; row++) {
+        cells += T["reproduced", row, "cells"]
+        n += T["reproduced", row, "n"]
+        same_cells += T["reproduced", row, "same"]
+        distinct += T["reproduced", row, "reproduced"]
+        if (T["reproduced", row, "different"] != "none")
+            list = list "  different: " T["reproduced", row, "study"] ", cells " T["reproduced", row, "different"] "\n"
     }
     printf "Films and ray counts: %d of %d cells equal the committed run's, bit for bit (%d distinct films).\n", \
         same_cells, n, distinct
@@ -145,10 +145,9 @@ function films(    row, n, same_cells, distinct, cells, list) {
 }
 
 function disturbed(    row, i, name, list, n, bad) {
-    n = split("depth ior lighting methods threads triangles coverage crowding shading profile sectors hidden texture",
-        list, " ")
+    n = split(tables, list, " ")
     for (i = 1; i <= n; i++)
-        for (row = 1; row <= load(list[i]); row++) {
+        for (row = 1; row <= load(list[i]) && ((list[i], "disturbed") in has); row++) {
             measured_rows += T[list[i], row, "n"]
             bad += known(T[list[i], row, "disturbed"])
             if (T[list[i], row, "quick"] == 1) quick = 1
@@ -185,7 +184,8 @@ function statements(    unlit, gouraud, phong, where, row, share, least, most, n
     gouraud = shading(where, "model.shading=gouraud")
     phong = shading(where, "model.shading=smooth")
     print "Said in the reports, and measured here"
-    statement("Gouraud's shading is about 5 times as fast as Phong's", quick ? no_time : unlit == "" || gouraud <= unlit ? "-" : sprintf("%.2f times as fast", (phong - unlit) / (gouraud - unlit)))
+    statement("Gouraud's shading is about 5 times as fast as Phong's", quick ? no_time \
+        : unlit == "" || gouraud <= unlit ? "-" : sprintf("%.2f times as fast", (phong - unlit) / (gouraud - unlit)))
     statement("Phong's shading takes at most 3 % of the time",
         quick ? no_time : unlit == "" ? "-" : sprintf("%.1f %% of a ray-cast frame", 100 * (phong - unlit) / phong))
     least = 2

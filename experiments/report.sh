@@ -8,7 +8,8 @@ export LC_ALL=C
     exit 2
 }
 here=$(cd "$(dirname "$0")" && pwd)
-awk -v results="$1" -v shown="${1#"${here%/experiments}"/}" -v published="$here/published" -v failed="${2:-}" \
+awk -v tables="$(cd "$1/tables" && ls | sed -n 's/\.tsv$//p' | tr '\n' ' ')" \
+    -v results="$1" -v shown="${1#"${here%/experiments}"/}" -v published="$here/published" -v failed="${2:-}" \
     -f "$here/report.awk" </dev/null >"$1/report.txt.new"
 mv "$1/report.txt.new" "$1/report.txt"
 cat "$1/report.txt"

@@ -142,9 +142,9 @@ for i in "${!files[@]}"; do
 done
 
 if [[ -d $committed ]]; then
-    "$program" study films --results "$results" --against "$committed" "${files[@]}" >"$results/tables/films.tsv.new" ||
+    "$program" study films --results "$results" --against "$committed" "${files[@]}" >"$results/tables/reproduced.tsv.new" ||
         wrong 'the comparison of films'
-    mv "$results/tables/films.tsv.new" "$results/tables/films.tsv"
+    mv "$results/tables/reproduced.tsv.new" "$results/tables/reproduced.tsv"
 fi
 echo
 printf -v list '%s, ' "${failed[@]}"

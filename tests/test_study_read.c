@@ -301,9 +301,11 @@ static void every_study_of_the_project_is_read(void **state)
     static const struct {
         const char *name;
         size_t cells;
-    } known[] = {{"depth", 9},    {"threads", 44}, {"ior", 4}, {"full/ior-grid", 25}, {"profile", 12}, {"full/pool", 10},
-                 {"full/maps", 1}, {"portrait", 1}, {"full/convergence", 30}, {"methods", 7}, {"lighting", 3},
-                 {"full/absorption", 5}, {"full/absorber", 11}, {"full/liquids", 5}, {"full/photons", 10}};
+    } known[] = {{"depth", 9},          {"threads", 44},     {"ior", 4},
+                 {"full/ior-grid", 25}, {"profile", 12},     {"full/pool", 10},
+                 {"full/maps", 1},      {"portrait", 1},     {"full/convergence", 30},
+                 {"methods", 7},        {"lighting", 3},     {"full/absorption", 5},
+                 {"full/absorber", 11}, {"full/liquids", 5}, {"full/photons", 10}};
     for (size_t i = 0; i < sizeof known / sizeof known[0]; i++) {
         char path[400], message[DIAGNOSTIC_TEXT_MAX];
         diagnostic why = {0};

@@ -5,14 +5,19 @@
 #include "study/row_files.h"
 #include <stdlib.h>
 
+static int64_t part(int64_t pixels, int64_t by)
+{
+    return pixels / by > 0 ? pixels / by : 1;
+}
+
 void quick_frame(scene *setting)
 {
     const int64_t width = setting->render.width, height = setting->render.height;
     int64_t by = 1;
-    while ((width / by) * (height / by) > QUICK_PIXELS)
+    while (part(width, by) * part(height, by) > QUICK_PIXELS)
         by++;
-    setting->render.width = width / by > 0 ? width / by : 1;
-    setting->render.height = height / by > 0 ? height / by : 1;
+    setting->render.width = part(width, by);
+    setting->render.height = part(height, by);
 }
 
 status study_make_quick(study *s, diagnostic *why)
