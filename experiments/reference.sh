@@ -2,8 +2,8 @@
 # experiments/reference.sh [RESULTS]: makes results/reference, the committed run, from a complete run in RESULTS
 # (results). It keeps what cannot be computed again from it: rows, runs, comparisons and metrics of cells, and figures
 # of images; not the images of single cells. `make setup experiments-full` in a fresh clone comes first.
-# experiments/reference.sh --quick [RESULTS]: makes results/reference/quick from `make experiments QUICK=1`: its rows and
-# runs, for films and counts.
+# experiments/reference.sh --quick [RESULTS]: makes results/reference/quick, the rows and runs of `make experiments
+# QUICK=1`, for films and counts.
 set -euo pipefail
 cd "$(dirname "$0")/.."
 to=results/reference

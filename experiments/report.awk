@@ -68,7 +68,11 @@ function trimmed(text) { sub(/ +$/, "", text); return text }
 function put(side, text) { if (side == "left") left(text); else right(text) }
 
 function ratio(a, b, form) { return a == "" || b == "" || b == 0 ? "-" : sprintf(form, a / b) }
-function seconds(x) { return x == "" ? "?" : x < 1e-3 ? sprintf("%.2g ms", x * 1e3) : x < 1 ? sprintf("%.3g ms", x * 1e3) : sprintf("%.3g s", x) }
+function seconds(x) {
+    if (x == "") return "?"
+    if (x >= 1) return sprintf("%.3g s", x)
+    return sprintf(x < 1e-3 ? "%.2g ms" : "%.3g ms", x * 1e3)
+}
 
 # A series of the rod's report: every value divided by the first, and the 95 % interval of ours.
 function series(side, title, name, x, y, study, where, axis, column,
@@ -170,7 +174,8 @@ function methods(    name) {
 function method(side, title, words, name, where,    flip) {
     flip = value(name, where, "flip")
     put(side, sprintf("  %-17s%-15s%s", title, words,
-        find(name, where) ? seconds(value(name, where, "cpu_s_median")) (flip == "" ? "" : sprintf(" %.3f", flip)) : "-"))
+        !find(name, where) ? "-" \
+        : seconds(value(name, where, "cpu_s_median")) (flip == "" ? "" : sprintf(" %.3f", flip))))
 }
 
 # Frames of the mesh of 512 x 256: a shading costs its frame minus the unlit one.
@@ -251,7 +256,7 @@ function figures(    i, n, part, list, path, line, there) {
         path = results "/figures/" part[1] ".png"
         there = (getline line < path) >= 0
         close(path)
-        if (there) { shown_figures++; put(shown_figures % 2 ? "left" : "right", sprintf("  %-16s%s", part[1], part[2])) }
+        if (there) put(shown_figures++ % 2 ? "right" : "left", sprintf("  %-16s%s", part[1], part[2]))
     }
     if (!shown_figures) return
     print "Figures: open " shown "/figures/NAME.png (or .svg)"
@@ -266,7 +271,8 @@ BEGIN {
     printf "What was reproduced: rows in %s%s\n\n", shown, environment == "" ? "" : ", environment " environment
     films()
     if (failed != "") print "FAILED: " failed
-    if (bad && !quick) printf "Disturbed by other programs: %d of %d measured rows; their times are less certain.\n", bad, measured_rows
+    if (bad && !quick)
+        printf "Disturbed by other programs: %d of %d measured rows; their times are less certain.\n", bad, measured_rows
     print ""
     print "Times, published and here, each divided by its first (shapes compare); ratio: here/published"
     print ""

@@ -132,7 +132,10 @@ for i in "${!files[@]}"; do
     mapfile -t figures < <(figures_of "$name")
     : >"$log"
     [[ ${#figures[@]} -eq 0 ]] ||
-        "$root/plots/draw.sh" --results "$results" "${figures[@]}" >"$log" 2>&1 || { cat "$log" >&2 && wrong "a figure of $name"; }
+        "$root/plots/draw.sh" --results "$results" "${figures[@]}" >"$log" 2>&1 || {
+        cat "$log" >&2
+        wrong "a figure of $name"
+    }
     drawn=$(sed -n 's/: drawn.*//p' "$log" | paste -sd ' ')
     took=$(awk -v a="$start" -v b="$EPOCHREALTIME" 'BEGIN { print b - a }')
     expected_done=$(awk -v a="$expected_done" -v b="${expected[i]}" 'BEGIN { print a + b }')

@@ -1,6 +1,6 @@
 #!/bin/bash
-# The way of `make experiments`: experiments/run.sh on small studies in a copy of the scripts, one of which fails; Ctrl-C
-# and going on; the comparison with a committed run; and the closing page from the reference rows. CUVETTE names the
+# The way of `make experiments`: experiments/run.sh on small studies in a copy of the scripts, one of which fails;
+# Ctrl-C and going on; the comparison with a committed run; and the closing page from the reference rows. CUVETTE names the
 # program, BUILD the build.
 set -uo pipefail
 cd "$(dirname "$0")/.." || exit 1
@@ -44,7 +44,8 @@ grep -q 'figures rod; about [0-9]* s left$' "$work/said"
 verdict $? "with the figure that was drawn and the time left" "$(cat "$work/said")"
 [[ -s $work/results/figures/rod.png && -s $work/results/tables/first.tsv ]]
 verdict $? "figure and tables are there" "$(ls "$work/results"/*)"
-equal "the page is saved" "$(cmp "$work/results/report.txt" <(tail -n "$(wc -l <"$work/results/report.txt")" "$work/said"))" ""
+page=$work/results/report.txt
+empty "the page is saved" "$(tail -n "$(wc -l <"$page")" "$work/said" | diff "$page" -)"
 
 # --- against a committed run
 mkdir -p "$work/results/reference"
@@ -108,7 +109,8 @@ equal "after it: status 0" "$code" 0
 equal "after it: no row is lost" "$(($(rows first) >= kept))" 1
 
 # --- mistakes
-for mistake in "--wrong:unknown option --wrong" "--results:--results is empty" "none.study:there is no study none.study"; do
+for mistake in "--wrong:unknown option --wrong" "--results:--results is empty" \
+    "none.study:there is no study none.study"; do
     run "${mistake%%:*}"
     equal "${mistake%%:*}: status 2" "$code" 2
     equal "${mistake%%:*}: one line" "$(wc -l <"$work/said")" 1

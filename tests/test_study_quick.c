@@ -1,5 +1,5 @@
-/* The quick form of a study: its frames, its repetitions, folders that have rows of one form; and the comparison of films
- * of two folders. */
+/* The quick form of a study: its frames, its repetitions, folders that have rows of one form; and the comparison of
+ * films of two folders. */
 #include "study_fixture.h"
 
 #include "scene/model/scene.h"
