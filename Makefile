@@ -9,7 +9,9 @@ CC := gcc
 endif
 PREFIX ?= /usr/local
 FUZZ_SECONDS ?= 60
-RESULTS ?= results
+# QUICK=1: the same path in seconds, with frames of at most 80 x 60 pixels, each measured once, in a folder of its own.
+QUICK ?=
+RESULTS ?= results$(if $(QUICK),/quick)
 
 # Short lines while it builds; `make V=1` shows the commands.
 quiet := $(if $(V),,@)
@@ -581,13 +583,15 @@ experiments-full: | $(call requested,test experiments)
 bench: | $(call requested,test experiments)
 claims paper: | $(call requested,experiments figures)
 experiments: $(build)/cuvette-import
-experiments: $(build)/cuvette ## run the studies (resumes), make tables and figures
-	$(build)/cuvette study run --results $(RESULTS) experiments/*.study
-	@$(MAKE) --no-print-directory build=$(build) tables figures
+experiments: $(build)/cuvette ## run the studies that reproduce the reports (resumes): tables, figures, closing page; QUICK=1 for a look
+	@$(MAKE) --no-print-directory build=$(build) RESULTS=$(RESULTS) $(RESULTS)/figures/fan.svg $(RESULTS)/figures/trace.svg
+	@$(run_studies)
+run_studies = CUVETTE='$(abspath $(build)/cuvette)' experiments/run.sh $(if $(QUICK),--quick) --results '$(RESULTS)'
 experiments-full: $(build)/cuvette-import
-experiments-full: $(build)/cuvette ## run the long studies of experiments/full as well: an hour more
-	$(build)/cuvette study run --results $(RESULTS) experiments/*.study experiments/full/*.study
-	@$(MAKE) --no-print-directory build=$(build) $(RESULTS)/tables/growth.tsv $(RESULTS)/tables/paths.tsv tables figures
+experiments-full: $(build)/cuvette ## run the studies of experiments/full as well: an hour more
+	@$(run_studies) experiments/*.study experiments/full/*.study
+	@$(if $(QUICK),,$(MAKE) --no-print-directory build=$(build) RESULTS=$(RESULTS) $(RESULTS)/tables/growth.tsv \
+	  $(RESULTS)/tables/paths.tsv figures)
 
 tables: $(build)/cuvette ## summarise the existing rows: RESULTS/tables, which figures, claims and the paper read; RESULTS=DIR, ENVIRONMENT=HEX
 	@CUVETTE='$(abspath $(build)/cuvette)' ENVIRONMENT='$(ENVIRONMENT)' experiments/tables.sh '$(RESULTS)'
@@ -618,13 +622,13 @@ $(RESULTS)/figures/trace.svg: experiments/scenes/rod.yaml | $(build)/cuvette
 	$(build)/cuvette trace $< --ray=-3,1.5,0.6,1,0,0 --depth 5 --set rod.visible=off -o $@
 
 # The rows of this clone, or the committed run if there are none and no folder is given.
-claimed = $(if $(filter-out file,$(origin RESULTS))$(wildcard $(RESULTS)/*/rows*.csv),$(RESULTS),results/reference)
+claimed = $(if $(QUICK)$(filter-out file,$(origin RESULTS))$(wildcard $(RESULTS)/*/rows*.csv),$(RESULTS),results/reference)
 claims: $(build)/cuvette ## judge each claim of the paper by the rows: reproduced, not reproduced, underpowered; RESULTS=DIR, ENVIRONMENT=HEX
 	@CUVETTE='$(abspath $(build)/cuvette)' ENVIRONMENT='$(ENVIRONMENT)' experiments/tables.sh '$(claimed)'
 	@paper/claims.sh '$(claimed)' $(build)/claims
 
 paper: $(build)/cuvette ## rebuild the paper and its supplement from existing rows, without measuring
-	$(MAKE) -C paper CUVETTE='$(abspath $(build)/cuvette)'
+	$(MAKE) -C paper CUVETTE='$(abspath $(build)/cuvette)' $(if $(QUICK),RESULTS='$(RESULTS)')
 
 # The build by clang, if it is installed and another compiler made this one.
 bench_clang = $(if $(clang),,$(shell command -v clang >/dev/null && echo $(build)/by-clang/cuvette))

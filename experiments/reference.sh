@@ -1,20 +1,41 @@
 #!/bin/bash
 # experiments/reference.sh [RESULTS]: makes results/reference, the committed run, from a complete run in RESULTS
 # (results). It keeps what cannot be computed again from it: rows, runs, comparisons and metrics of cells, and figures
-# of images; not the images of single cells. `make setup experiments` in a fresh clone comes first.
+# of images; not the images of single cells. `make setup experiments-full` in a fresh clone comes first.
+# experiments/reference.sh --quick [RESULTS]: makes results/reference/quick, the rows and runs of `make experiments
+# QUICK=1`, for films and counts.
 set -euo pipefail
 cd "$(dirname "$0")/.."
-from=${1:-results}
 to=results/reference
 
-for study in experiments/*.study; do
-    name=$(basename "$study" .study)
-    [[ -e $from/$name/rows.csv ]] || {
-        echo "reference.sh: $from has no rows of $name; run make experiments" >&2
-        exit 1
-    }
-done
-rm -rf "$to"
+need_rows() { # COMMAND FILE.study...
+    local study name
+    for study in "${@:2}"; do
+        name=$(basename "$study" .study)
+        [[ -e $from/$name/rows.csv ]] || {
+            echo "reference.sh: $from has no rows of $name; run $1" >&2
+            exit 1
+        }
+    done
+}
+if [[ ${1-} == --quick ]]; then
+    from=${2:-results/quick}
+    need_rows 'make experiments QUICK=1' experiments/*.study
+    rm -rf "$to/quick"
+    for study in experiments/*.study; do
+        name=$(basename "$study" .study)
+        mkdir -p "$to/quick/$name"
+        cp "$from/$name/rows.csv" "$to/quick/$name/"
+        # Without the description of the machine, which is most of it.
+        sed 's/^\( *"hwloc_xml": \)".*",$/\1"",/' "$from/$name/runs.json" >"$to/quick/$name/runs.json"
+    done
+    printf '%s: %s\n' "$to/quick" "$(du -sh "$to/quick" | cut -f1)"
+    exit
+fi
+from=${1:-results}
+need_rows 'make experiments-full' experiments/*.study experiments/full/*.study
+# The committed quick run (below) stays.
+find "$to" -mindepth 1 -maxdepth 1 ! -name quick -exec rm -rf {} +
 mkdir -p "$to/tables" "$to/figures"
 for rows in "$from"/*/rows.csv; do
     name=$(basename "$(dirname "$rows")")

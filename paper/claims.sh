@@ -35,13 +35,15 @@ echo "claims on the rows of $1"
 cut -f 2 "$out/environments" | sort | uniq -c | while read -r count environment; do
     echo "environment $environment: $count studies"
 done
-awk -F '\t' '{
+awk -F '\t' -v here="$here" '{
     printf "%-15s %-18s %s%s\n", $2, $1, $3 == "-" ? "" : $3 "  ", $4 == "-" ? "" : "(" $4 ")"
     if ($2 != "reproduced") printf "%34s %s\n", "", $5
     number[$2]++
     if (match($4, /^no rows of [a-z-]+$/)) {
         study = substr($4, 12)
-        if (!(study in missing)) studies = studies " experiments/" study ".study"
+        file = "experiments/" study ".study"
+        if (system("test -r \"" here "/../" file "\"")) file = "experiments/full/" study ".study"
+        if (!(study in missing)) studies = studies " " file
         missing[study] = 1
     }
 }

@@ -1,45 +1,16 @@
 #!/bin/sh
-# Compare the rows of other machines (results/machines/NAME/STUDY) with those of a run: one line a machine and study. A
-# cell is compared if both have it, by its identity; the same are film hash and ray count.
+# Compare the rows of other machines (results/machines/NAME/STUDY) with those of a run: one line a machine and study, of
+# `cuvette study films`.
 #   paper/machines.sh RESULTS
-# Columns: machine; study; its processor; other: 1 if the run has another one; n: cells; same; different: their numbers.
+# CUVETTE: the program (default: build/cuvette). Columns: machine; those of `study films`, of studies with cells that
+# both have.
 export LC_ALL=C
 set -eu
-results=$1
-machines=$(cd "$(dirname "$0")/../results" && pwd)/machines
-
-# The identity of each cell, its number, and each pair of film and count of its rows.
-cells() {
-    awk -F, '
-        /^#/ { next }
-        !column["identity"] { for (i = 1; i <= NF; i++) column[$i] = i; next }
-        { print $column["identity"], $column["cell"], $column["film_hash"], $column["rays_total"] }' "$1" | sort -u
-}
-# The processor is the last part of the topology.
-processor() { sed -n '/"topology"/ { s/.*, //; s/",*$//; s/ *$//; p; q; }' "$1"; }
-
-work=$(mktemp -d "${TMPDIR:-/tmp}/cuvette-machines.XXXXXX")
-trap 'rm -rf "$work"' EXIT
-printf 'machine\tstudy\tprocessor\tother\tn\tsame\tdifferent\n'
-for rows in "$machines"/*/*/rows.csv; do
-    folder=${rows%/rows.csv}
-    study=${folder##*/}
-    machine=${folder%/*}
-    [ -r "$results/$study/runs.json" ] && [ -r "$folder/runs.json" ] || continue # those of a study
-    cells "$rows" >"$work/theirs"
-    cells "$results/$study/rows.csv" >"$work/ours"
-    there=$(processor "$folder/runs.json")
-    here=$(processor "$results/$study/runs.json")
-    join "$work/theirs" "$work/ours" | awk -v OFS='\t' -v machine="${machine##*/}" -v study="$study" -v there="$there" \
-        -v other="$([ "$there" != "$here" ] && echo 1 || echo 0)" '
-        { cell[$1] = $2; if ($2 == $5 && $3 == $6 && $4 == $7) equal[$1] = 1; else if ($2 == $5) odd[$1] = 1 }
-        $2 == $5 { both[$1] = 1 }
-        END {
-            for (id in both) {
-                n++
-                if (id in odd) list = list (list == "" ? "" : " ") cell[id]
-                else same++
-            }
-            print machine, study, there, other, n + 0, same + 0, list == "" ? "none" : list
-        }'
-done
+root=$(cd "$(dirname "$0")/.." && pwd)
+for folder in "$root"/results/machines/*/; do
+    "${CUVETTE:-$root/build/cuvette}" study films --results "$1" --against "$folder" \
+        "$root"/experiments/*.study "$root"/experiments/full/*.study 2>/dev/null |
+        awk -F '\t' -v OFS='\t' -v machine="$(basename "$folder")" '
+            NR == 1 { for (i = 1; i <= NF; i++) if ($i == "n") n = i; print "machine", $0; next }
+            $n > 0 { print machine, $0 }'
+done | awk 'NR == 1 || !/^machine\t/'

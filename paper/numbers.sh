@@ -120,7 +120,7 @@ ball() {
 
 # The design of each study that has rows: processes that share its repetitions, and frames before the first row.
 designs() {
-    for file in "$here"/../experiments/*.study; do
+    for file in "$here"/../experiments/*.study "$here"/../experiments/full/*.study; do
         study=$(basename "$file" .study)
         [ -r "$tables/$study.tsv" ] || continue
         awk -v study="$study" 'BEGIN { of["processes"] = 1 }

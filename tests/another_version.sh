@@ -73,8 +73,9 @@ check "the later version has a parameter more" grep -q 'render.later' <("$later"
 # --- the reference run
 for rows in results/reference/*/rows.csv; do
     study=$(basename "$(dirname "$rows")")
-    "$program" study summary --results results/reference "experiments/$study.study" >"$work/now.tsv"
-    "$later" study summary --results results/reference "experiments/$study.study" >"$work/later.tsv"
+    file=$(ls experiments/{,full/}"$study.study" 2>/dev/null)
+    "$program" study summary --results results/reference "$file" >"$work/now.tsv"
+    "$later" study summary --results results/reference "$file" >"$work/later.tsv"
     check "$study: the reference rows have the same summary" cmp "$work/now.tsv" "$work/later.tsv"
 done
 

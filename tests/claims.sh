@@ -89,7 +89,8 @@ needs=$(claims | while IFS=$'\t' read -r id _ _ needs _ _ _ _ predicate; do
         continue
     fi
     for study in $needs; do
-        [[ -r experiments/$study.study || -x experiments/$study.sh || $study == published ]] || echo "$id: $study"
+        [[ -r experiments/$study.study || -r experiments/full/$study.study || -x experiments/$study.sh ||
+            $study == published ]] || echo "$id: $study"
     done
 done)
 empty "every claim needs studies or a command that exist" "$needs"

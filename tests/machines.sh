@@ -7,7 +7,7 @@ cd "$(dirname "$0")/.." || exit 1
 # shellcheck source=tests/shell/verdict.sh
 source tests/shell/verdict.sh
 
-while IFS=$'\t' read -r machine study _ _ cells same different; do
+while IFS=$'\t' read -r machine study _ cells same _ _ _ different; do
     [[ $different == none && $cells -gt 0 && $same == "$cells" ]]
     verdict $? "$machine, $study: films and counts of $cells cells" "cells that differ: $different"
 done < <(paper/machines.sh results/reference | tail -n +2)

@@ -142,7 +142,7 @@ check "which the next drawing removes" eval 'clean && [[ -z $(find slow-figures 
 
 # --- the committed rows
 drawn=0
-for file in "$root"/experiments/*.study; do
+for file in "$root"/experiments/*.study "$root"/experiments/full/*.study; do
     [[ -e $root/results/reference/$(basename "$file" .study)/rows.csv ]] || continue
     run "$file" --results "$root/results/reference" -o reference/
     clean || check "$(basename "$file") is drawn" false

@@ -86,6 +86,8 @@ static void rows_of_the_reference_run_are_read(void **state)
         if (access(path, F_OK) != 0) /* no study's: rows of a script, or figures */
             continue;
         snprintf(path, sizeof path, "experiments/%.100s.study", entry->d_name);
+        if (access(path, F_OK) != 0)
+            snprintf(path, sizeof path, "experiments/full/%.100s.study", entry->d_name);
         study *s = read_study(path);
         char *text = summary_of(s, "results/reference");
         assert_int_equal(fixture_count(text, "\n"), study_cell_count(s) + 1);

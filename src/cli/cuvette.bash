@@ -116,12 +116,13 @@ _cuvette_value() # OPTION: completes its value; false for a flag
 _cuvette_study() # VERB
 {
     local -A options=([new]='--axis --set --name --repetitions --warmups --output --force'
-        [run]='--results --shard --by --any-environment --processes --against --dry-run --quiet'
+        [run]='--results --shard --by --any-environment --processes --against --quick --dry-run --quiet --progress'
         [submit]='--slurm --partition --constraint --node-type --tasks --by --threads --memory --time --factor --sbatch --template --results --dry-run'
         [status]=--results [merge]=--results
         [verify]=--results [upgrade]='--results --to' [summary]='--results --environment --interval' [list]=''
         [exclude]='--row --reason --results'
         [compare]='--results --column --detect --fail-if-slower --tsv --json'
+        [films]='--results --against'
         [power]='--column --cells --truth --designs --effect --draws --seed --tsv'
         [plot]='--output --format --x --y --by --log --where --images --published --results')
     if [[ $current == -* ]]; then
@@ -141,7 +142,7 @@ _cuvette_study() # VERB
 _cuvette()
 {
     local current=${COMP_WORDS[COMP_CWORD]} previous=${COMP_WORDS[COMP_CWORD - 1]}
-    local command=${COMP_WORDS[1]-} verbs='new run submit list status merge verify upgrade summary compare power exclude plot'
+    local command=${COMP_WORDS[1]-} verbs='new run submit list status merge verify upgrade summary compare films power exclude plot'
     COMPREPLY=()
     if ((COMP_CWORD == 1)); then
         _cuvette_words render animate scene trace fan params media mesh study compare realism motion lesson lab machine help --help --usage --version

@@ -12,6 +12,7 @@
 #include "measure/usage.h"
 #include "study/estimate.h"
 #include "study/excluded.h"
+#include "study/quick.h"
 #include "study/spread.h"
 #include "study/study.h"
 #include "study/summary.h"
@@ -47,9 +48,15 @@ static status read_and_act(const study_request *request, study_action *act, diag
     if (!studies)
         return out_of_memory(why);
     status result = STATUS_OK;
-    for (size_t i = 0; i < request->file_count && result == STATUS_OK; i++)
-        if ((result = study_read(request->files[i], &studies[i], why)) == STATUS_OK && request->processes)
-            result = divide(studies[i], request, why);
+    for (size_t i = 0; i < request->file_count && result == STATUS_OK; i++) {
+        result = study_read(request->files[i], &studies[i], why);
+        if (request->verb != STUDY_RUN)
+            THEN(result, study_follow_runs(studies[i], request->results, why));
+        if (request->quick)
+            THEN(result, study_make_quick(studies[i], why));
+        if (request->processes)
+            THEN(result, divide(studies[i], request, why));
+    }
     for (size_t i = 0; i < request->file_count && result == STATUS_OK; i++)
         result = act(studies[i], request, why);
     for (size_t i = 0; i < request->file_count; i++)
@@ -157,7 +164,8 @@ static status check_room(const study *s, const study_request *request, const stu
 /* Measures what is missing, in fresh processes for a study that has some, or with --against. *rows: the new ones. */
 static status measure(const study *s, const study_request *request, size_t *rows, diagnostic *why)
 {
-    FILE *terminal = !request->quiet && terminal_is_smart(STDERR_FILENO) ? stderr : NULL;
+    const bool shows = !request->quiet || request->progress;
+    FILE *terminal = shows && terminal_is_smart(STDERR_FILENO) ? stderr : NULL;
     const study_options options = {.results = request->results,
                                    .shard = request->shard,
                                    .shards = request->shards,
@@ -367,6 +375,7 @@ static const command commands[] = {
     {"summary", "print medians and confidence intervals for each cell", command_summary},
     {"exclude", "exclude a row from summaries, with the reason", study_exclude},
     {"compare", "compare two runs, environments, cells or values: ratio, interval, verdict", study_compare},
+    {"films", "compare the films and ray counts of two results folders, cell by cell", study_films_command},
     {"power", "how often studies with fewer repetitions would mislead", study_power},
     {"plot", "draw a figure of studies with gnuplot", command_study_plot},
 };

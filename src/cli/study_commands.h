@@ -17,6 +17,8 @@ status study_submit(int argc, char **argv, diagnostic *why);
 status study_exclude(int argc, char **argv, diagnostic *why);
 /* `study compare`: the ratio of two sides of a study, with a verdict. */
 status study_compare(int argc, char **argv, diagnostic *why);
+/* `study films`: whether two results folders have the same films and ray counts. */
+status study_films_command(int argc, char **argv, diagnostic *why);
 /* `study power`: false claims and missed differences of smaller studies, drawn from measured rows. */
 status study_power(int argc, char **argv, diagnostic *why);
 

@@ -8,6 +8,7 @@
 #include "report/json.h"
 #include "study/contrast_json.h"
 #include "study/grid.h"
+#include "study/quick.h"
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
@@ -288,7 +289,8 @@ status study_compare(int argc, char **argv, diagnostic *why)
                              "two sides of a study are necessary");
     study *s = NULL;
     TRY(study_read(r.arguments[0], &s, why));
-    const status code = compare(s, &r, why);
+    status code = study_follow_runs(s, r.results, why);
+    THEN(code, compare(s, &r, why));
     study_destroy(s);
     return code;
 }

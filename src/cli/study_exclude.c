@@ -2,6 +2,7 @@
 #include "cli/options.h"
 #include "cli/study_commands.h"
 #include "study/excluded.h"
+#include "study/quick.h"
 #include <string.h>
 
 typedef struct exclude_request {
@@ -50,6 +51,7 @@ status study_exclude(int argc, char **argv, diagnostic *why)
     status code = command_form_read(&form, argc, argv, &request, why);
     THEN(code, check_request(&request, why));
     THEN(code, study_read(request.file, &s, why));
+    THEN(code, study_follow_runs(s, request.results, why));
     THEN(code, excluded_add(s, request.results, request.row, request.reason, why));
     if (code == STATUS_OK)
         printf("%s: row %s is excluded in %s/%s/excluded.csv\n", s->name, request.row, request.results, s->name);

@@ -90,16 +90,22 @@ static bool is_folder(const char *path)
     return d;
 }
 
+static status list_below(const char *folder, const char *name, const listed_kind *kind, diagnostic *why)
+{
+    char *below = text_format("%s/%s", folder, name);
+    if (!below)
+        return out_of_memory(why);
+    const status result = is_folder(below) ? list_folder(below, kind, why) : STATUS_OK;
+    free(below);
+    return result;
+}
+
 static status list_studies_and_scenes(const char *folder, diagnostic *why)
 {
     static const listed_kind studies = {".study", print_study}, scenes = {".yaml", print_scene};
     TRY(list_folder(folder, &studies, why));
-    char *below = text_format("%s/scenes", folder);
-    if (!below)
-        return out_of_memory(why);
-    const status result = is_folder(below) ? list_folder(below, &scenes, why) : STATUS_OK;
-    free(below);
-    return result;
+    TRY(list_below(folder, "full", &studies, why));
+    return list_below(folder, "scenes", &scenes, why);
 }
 
 status study_list(int argc, char **argv, diagnostic *why)

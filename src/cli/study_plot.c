@@ -4,6 +4,7 @@
 #include "base/file.h"
 #include "base/text.h"
 #include "study/plot.h"
+#include "study/quick.h"
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
@@ -181,7 +182,8 @@ static status draw_study(const request *r, const char *path, diagnostic *why)
     study *s = NULL;
     TRY(study_read(path, &s, why));
     char *base = base_of(r, s);
-    const status code = base ? draw(r, base, s, why) : out_of_memory(why);
+    status code = base ? study_follow_runs(s, r->plot.results, why) : out_of_memory(why);
+    THEN(code, draw(r, base, s, why));
     free(base);
     study_destroy(s);
     return code;

@@ -74,8 +74,12 @@ static status run_process(const study *s, const study_request *request, const ch
     snprintf(memory, sizeof memory, "--memory-limit=%llu", (unsigned long long)memory_budget_limit());
     if (memory_budget_limit() > 0)
         arguments[count++] = memory;
+    if (request->quick)
+        arguments[count++] = "--quick";
     if (request->quiet)
         arguments[count++] = "--quiet";
+    if (request->progress)
+        arguments[count++] = "--progress";
     arguments[count++] = "--";
     arguments[count++] = s->path;
     pid_t pid = 0;

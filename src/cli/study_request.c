@@ -77,9 +77,15 @@ static const command_option run_options[] = {
     {"wait-quiet", 0, "SECONDS",
      "before each repetition, wait until other processes, steal and frequency do not disturb; at most 60 s by default",
      .take = take_wait, .optional = true},
+    {"quick", 0, NULL,
+     "a look only: frames of at most 80 x 60 pixels, each measured once; its times mean nothing, and its rows need a "
+     "results folder of their own",
+     OPTION_FILLS(option_flag, study_request, quick)},
     {"dry-run", 'n', NULL, "print what would be measured and kept, and about how long it takes; write nothing",
      OPTION_FILLS(option_flag, study_request, dry_run)},
     {"quiet", 'q', NULL, "print errors only", OPTION_FILLS(option_flag, study_request, quiet)},
+    {"progress", 0, NULL, "with --quiet, show the progress on a terminal all the same",
+     OPTION_FILLS(option_flag, study_request, progress)},
     OPTION_MEMORY,
     {0},
 };
@@ -118,8 +124,8 @@ static const command_form forms[STUDY_VERB_COUNT] = {
                        "run again. Rows are never rewritten."},
     [STUDY_LIST] = {.take_argument = take_file,
                     .synopsis = "[DIR]",
-                    .about = "List the study files of a folder, and the scenes of its folder scenes (default: "
-                             "experiments, or those that were installed with the program)."},
+                    .about = "List the study files of a folder and of its folder full, and the scenes of its folder "
+                             "scenes (default: experiments, or those that were installed with the program)."},
     [STUDY_STATUS] =
         {.options = results_options,
          .take_argument = take_file,

@@ -9,7 +9,7 @@
 #include <stdbool.h>
 #include <stddef.h>
 
-enum { ENVIRONMENT_FACTS = 8, ENVIRONMENT_FACT_MAX = 120, ENVIRONMENT_KEY = 9 };
+enum { ENVIRONMENT_CPU_MODEL = 1, ENVIRONMENT_FACTS = 8, ENVIRONMENT_FACT_MAX = 120, ENVIRONMENT_KEY = 9 };
 
 typedef struct run_environment {
     char fact[ENVIRONMENT_FACTS][ENVIRONMENT_FACT_MAX]; /* in the order of environment_names */

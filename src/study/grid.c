@@ -2,6 +2,7 @@
 #include "base/hash.h"
 #include "scene/model/params_path.h"
 #include "study/meaning.h"
+#include "study/quick.h"
 #include <stdlib.h>
 #include <string.h>
 
@@ -114,6 +115,8 @@ status study_cell_scene(const study *s, size_t cell, scene **out, diagnostic *wh
             return code;
         }
     }
+    if (s->quick)
+        quick_frame(setting);
     *out = setting;
     return STATUS_OK;
 }

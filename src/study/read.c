@@ -80,7 +80,7 @@ static status read_switch(const document *d, const node *n, const char *key, boo
 /* A file name that needs no quoting, and that is not one of the reserved folders of results. */
 static bool name_is_fit(const char *name)
 {
-    static const char *const taken[] = {"figures", "tables", "reference"};
+    static const char *const taken[] = {"figures", "tables", "reference", "quick"};
     for (size_t i = 0; i < COUNT(taken); i++)
         if (strcmp(name, taken[i]) == 0)
             return false;
@@ -94,7 +94,7 @@ static status read_names(study *s, const document *d, const node *root, diagnost
     if (!name)
         return node_error(d, root, why, "add a line study: NAME", "the study has no name");
     if (name->kind != NODE_SCALAR || !name_is_fit(name->text))
-        return node_error(d, name, why, "use 1 to 64 letters, digits, - and _; not figures, tables or reference",
+        return node_error(d, name, why, "use 1 to 64 letters, digits, - and _; not figures, tables, reference or quick",
                           "invalid name of a study");
     if (title &&
         (title->kind != NODE_SCALAR || strlen(title->text) > TITLE_MAX_LENGTH || !read_grid_plain(title->text)))

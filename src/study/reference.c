@@ -5,6 +5,7 @@
 #include "scene/model/params_path.h"
 #include "study/grid.h"
 #include "study/manifest.h"
+#include "study/quick.h"
 #include "scene/model/scene.h"
 #include <inttypes.h>
 #include <math.h>
@@ -19,6 +20,8 @@ status reference_scene(const study *s, size_t cell, scene **out, diagnostic *why
         scene_destroy(*out);
         *out = NULL;
     }
+    if (code == STATUS_OK && s->quick)
+        quick_frame(*out);
     return code;
 }
 

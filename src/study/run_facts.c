@@ -170,6 +170,8 @@ json_t *run_facts(const study *s, const topology *machine, const run_environment
         "binding", taken(provenance_binding()), "libraries", libraries(), "disturbances", disturbances);
     json_t *texts = json_pack("{s:o, s:o, s:o, s:o}", "study_commit", taken(commit), "study_dirty", is_dirty,
                               "study_text", json_text_or_null(s->text), "scene_text", json_text_or_null(s->scene_text));
+    if (s->quick)
+        json_add_as(&run, "quick", json_true());
     if (json_object_update(run, program) != 0 || json_object_update(run, texts) != 0) {
         json_decref(run);
         run = NULL;

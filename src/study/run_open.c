@@ -1,4 +1,5 @@
 #include "base/file.h"
+#include "study/quick.h"
 #include "study/row_files.h"
 #include "study/run_state.h"
 #include "scene/model/open.h"
@@ -82,6 +83,7 @@ status run_read_rows(run *r, diagnostic *why)
 status run_prepare(run *r, diagnostic *why)
 {
     const topology *machine = NULL;
+    TRY(quick_check_runs(r->s, r->folder, why));
     TRY(file_make_directory(r->folder, why));
     TRY(job_machine(r->with, &machine, why));
     runs_make_id(&r->here, r->id);

@@ -57,6 +57,7 @@ typedef struct study {
     noise_rule disturbed;  /* which rows are */
     long processes;        /* fresh processes that divide the repetitions; 1: the program's own */
     long warmups;          /* unmeasured frames of a cell before its first measured one, in every process */
+    bool quick;            /* in its quick form (study/quick.h) */
     bool shuffle;
     uint64_t seed;
     bool keep_image, keep_pfm, keep_workers, keep_pixel_rays, keep_pixel_time, keep_timeline, keep_metrics, keep_curves,

@@ -163,6 +163,8 @@ static status put_line(const study *s, const cell_rows *cell, diagnostic *why)
     THEN(code, put_spreads(cell, after_solids, COUNT(after_solids), why));
     put_compared(s, cell);
     THEN(code, put_undisturbed(cell, why));
+    if (s->quick)
+        fputs(cell->header ? "\tquick" : "\t1", cell->out);
     fprintf(cell->out, "\t%s\n", cell->header ? "environment" : cell->environment);
     return code;
 }

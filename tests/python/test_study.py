@@ -141,7 +141,7 @@ def as_the_summary(study, rows, results, program):
 
 @pytest.mark.parametrize("name", ["depth", "threads", "slime-frame", "triangles", "crowding"])
 def test_rows_are_those_of_the_summary(name, program):
-    study = cuvette.study(ROOT / f"experiments/{name}.study")
+    study = cuvette.study(next((ROOT / "experiments").rglob(f"{name}.study")))
     rows = study.rows(ROOT / "results/reference", "all")
     as_the_summary(study, rows, ROOT / "results/reference", program)
     alone = cuvette.rows(ROOT / f"results/reference/{name}", "all")
