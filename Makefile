@@ -604,7 +604,7 @@ $(RESULTS)/tables/paths.tsv: | $(build)/cuvette
 	@mkdir -p $(@D)
 	TABLE=$@.new experiments/paths.sh $(build)/cuvette && mv $@.new $@
 
-figures: tables $(RESULTS)/figures/fan.svg $(RESULTS)/figures/trace.svg $(RESULTS)/displacement/points.csv ## draw the figures whose rows exist, two minutes; one line says why another is skipped
+figures: tables $(RESULTS)/figures/fan.svg $(RESULTS)/figures/trace.svg $(RESULTS)/displacement/points.csv ## draw the figures whose rows exist; one line says why another is skipped
 	@mkdir -p $(RESULTS)
 	plots/draw.sh --results $(RESULTS)
 

@@ -13,7 +13,7 @@ of(level, method, column) = first(rows, sprintf("ball.level=%s render.integrator
 # Memory of the hierarchies, or of the depth buffer and the triangles that it rasterised.
 drawn(bytes) = bytes == bytes ? bytes : 0
 memory(l, m) = of(l, m, "accel_bytes") + drawn(of(l, m, "drawn_bytes"))
-about(l, m) = !(of(l, m, "cpu_s_median") > 0) ? "" : sprintf("%.0f ms, %.1f MiB, FLIP %.3f", of(l, m, "cpu_s_median")*1e3, memory(l, m)/1048576, of(l, m, "flip"))
+about(l, m) = sprintf("%.0f ms, %.1f MiB, FLIP %.3f", of(l, m, "cpu_s_median")*1e3, memory(l, m)/1048576, of(l, m, "flip"))
 set title offset 0,-0.7
 said = "time of a frame on one thread, memory in addition to triangles and film, FLIP against the Whitted image"
 set label 2 said at screen 0.5,0.02 center font ",9" textcolor rgb grey
@@ -22,7 +22,7 @@ do for [l=1:2] {
     do for [m=1:words(methods)] {
         cell = of(l, m, "cell")
         set title word(names, m).(cell == cell ? sprintf(", %.0f triangles", of(l, m, "triangles")) : "")
-        set label 1 about(l, m) at graph 0.5, -0.06 center textcolor rgb ink
+        set label 1 caption(about(l, m)) at graph 0.5, -0.06 center textcolor rgb ink
         file = cell == cell ? image("hidden", cell) : ""
         if (cell == cell && readable(file)) {
             plot file binary filetype=png with rgbimage notitle

@@ -22,7 +22,7 @@ set border 15 lc rgb pale
 set datafile separator whitespace
 set multiplot layout 1,3 margins 0.005,0.885,0.02,0.92 spacing 0.006,0
 do for [i=1:3] {
-    set title sprintf("vessel %.2f, liquid %.2f", cell_value(rows, i, "vessel.ior"), cell_value(rows, i, "liquid.ior"))
+    set title caption(sprintf("vessel %.2f, liquid %.2f", cell_value(rows, i, "vessel.ior"), cell_value(rows, i, "liquid.ior")))
     if (i == 3) {
         set colorbox user origin 0.9,0.08 size 0.013,0.76
         set cblabel "luminance minus that of pair 1\n(white = 1)" offset 1.2,0

@@ -34,8 +34,8 @@ do for [i=0:3] {
     set rmargin at screen left + 0.49
     set tmargin at screen top
     set bmargin at screen top - 0.391
-    set title sprintf("pair %d: vessel %.2f, liquid %.2f", i + 1, vessel, liquid)
-    numbers = readable(table("ior-metrics")) ? edges(i)."\n".lens(i)."\n".reflected(vessel, liquid) : ""
+    set title caption(sprintf("pair %d: vessel %.2f, liquid %.2f", i + 1, vessel, liquid))
+    numbers = readable(table("ior-metrics")) && liquid == liquid ? edges(i)."\n".lens(i)."\n".reflected(vessel, liquid) : ""
     set label 1 numbers at screen left + 0.002, top - 0.409 left font ",9" textcolor rgb ink
     if (readable(file)) {
         plot file binary filetype=png with rgbimage notitle

@@ -16,7 +16,7 @@ set multiplot layout 2,2 margins 0.01,0.99,0.045,0.965 spacing 0.015,0.085
 do for [i=0:3] {
     file = i < 3 ? image("lighting", i) : results."/lighting/references/".text(rows, "cell=0", "reference").".png"
     set title word(names, i + 1)
-    set label 1 (i < 3 ? about(i) : sprintf("noise %.2g rms, linear", first(rows, "cell=0", "reference_noise_rms"))) \
+    set label 1 (i < 3 ? caption(about(i)) : sprintf("noise %.2g rms, linear", first(rows, "cell=0", "reference_noise_rms"))) \
         at graph 0.5, -0.04 center textcolor rgb ink
     if (readable(file)) {
         plot file binary filetype=png with rgbimage notitle

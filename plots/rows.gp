@@ -28,6 +28,9 @@ remarks(study) = joined(noisy(others(study)), counted(fewest(study)))
 # The upper end of a quotient; no end where the divisor has none.
 over(high, low) = low > 0 ? high/low : low <= 0 ? 1e3 : NaN
 
+# A panel without an image or a row.
+empty = "set label 9998 'no data' at graph 0.5,0.5 center textcolor rgb grey; plot [1:2] [1:2] NaN notitle; unset label 9998"
+
 # PFM: three lines of text, then little-endian floats from the bottom row up.
 pfm_start(path) = int(system("head -n 3 '".path."' | wc -c"))
 pfm_line(path) = system("head -n 2 '".path."' | tail -n 1")

@@ -42,9 +42,6 @@ set title font ",11" textcolor rgb ink offset 0,-0.4
 set bars small
 set style fill solid 1.0 noborder
 
-# A panel without an image or a row.
-empty = "set label 9998 'no data' at graph 0.5,0.5 center textcolor rgb grey; plot [1:2] [1:2] NaN notitle; unset label 9998"
-
 published = "experiments/published/"
 published_name = "published (4 cores, 8 logical)"
 viridis = "(0 '#440154', 1 '#472d7b', 2 '#3b528b', 3 '#2c728e', 4 '#21918c', 5 '#28ae80', 6 '#5ec962', 7 '#addc30', 8 '#fde725')"

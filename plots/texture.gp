@@ -18,7 +18,7 @@ set multiplot layout 2,3 margins 0.005,0.995,0.055,0.955 spacing 0.01,0.11
 do for [i=0:5] {
     file = i < 5 ? image("texture", i) : results."/texture/references/".text(rows, "cell=0", "reference").".png"
     set title word(names, i + 1)
-    set label 1 (i < 5 ? about(i) : "") at graph 0.5, -0.06 center textcolor rgb ink
+    set label 1 (i < 5 ? caption(about(i)) : "") at graph 0.5, -0.06 center textcolor rgb ink
     if (readable(file)) {
         plot file binary filetype=png with rgbimage notitle
     } else {

@@ -232,6 +232,7 @@ missed() { # FIGURE FILE COLUMN
     cp "$work/whole/$2" "$work/less/$2"
     [[ $(<"$work/errors") == "$1: error: $2 has no column $3" ]]
 }
+unchanged() { [[ ! -s $work/errors ]] && cmp -s "$work/less.figures/$1.svg" "$work/whole.figures/$1.svg"; } # FIGURE
 missed depth-cut tables/depth.tsv cut_depth_throughput
 verdict $? "missing: a column that a command misses is named" "$(<"$work/errors")"
 
@@ -244,9 +245,7 @@ if [[ -n ${CHECK:-} ]]; then
         while read -r file; do
             for column in $(head -n 1 "$work/whole/$file" | tr '\t,' '\n\n' | sort -u); do
                 grep -qwF -- "$column" <<<"$text" || continue
-                missed "$figure" "$file" "$column" ||
-                    [[ ! -s $work/errors && $(<"$work/less.figures/$figure.svg") == \
-                        "$(<"$work/whole.figures/$figure.svg")" ]] ||
+                missed "$figure" "$file" "$column" || unchanged "$figure" ||
                     wrong+="$figure, $file, $column: $(cat "$work/said" "$work/errors" | head -n 1)"$'\n'
             done
         done < <(needed "$figure" | awk '$1 !~ /\*/ && $1 ~ /[.](tsv|csv)$/ { print $1 }' | sort -u)
