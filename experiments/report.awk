@@ -138,11 +138,11 @@ function films(    row, n, same_cells, distinct, cells, list) {
         cells += T["reproduced", row, "cells"]
         n += T["reproduced", row, "n"]
         same_cells += T["reproduced", row, "same"]
-        distinct += T["reproduced", row, "reproduced"]
+        distinct += T["reproduced", row, "films"]
         if (T["reproduced", row, "different"] != "none")
             list = list "  different: " T["reproduced", row, "study"] ", cells " T["reproduced", row, "different"] "\n"
     }
-    printf "Films and ray counts: %d of %d cells equal the committed run's, bit for bit (%d distinct films).\n", \
+    printf "Films and ray counts: %d of %d cells equal the committed run's, bit for bit (%d films).\n", \
         same_cells, n, distinct
     if (n < cells) printf "  %d more cells have no rows there or here.\n", cells - n
     printf "%s", list

@@ -41,9 +41,9 @@ awk -F '\t' -v here="$here" '{
     number[$2]++
     if (match($4, /^no rows of [a-z-]+$/)) {
         study = substr($4, 12)
-        file = "experiments/" study ".study"
-        if (system("test -r \"" here "/../" file "\"")) file = "experiments/full/" study ".study"
-        if (!(study in missing)) studies = studies " " file
+        command = "cd \"" here "/..\" && ls experiments/" study ".study experiments/full/" study ".study 2>/dev/null"
+        if (!(study in missing) && (command | getline file) > 0) studies = studies " " file
+        close(command)
         missing[study] = 1
     }
 }
