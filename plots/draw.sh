@@ -89,15 +89,16 @@ units() {
         sed -n 's/.*"processing_units": *\([0-9][0-9]*\).*/\1/p' | sed -n 1p
 }
 
-# The environments of the tables of a figure, whose rows it shows: "3d2be922", or several.
+# The environments of the tables of a figure, whose rows it shows: "3d2be922", or several; whether the run is quick.
 environments() { # FIGURE
     local pattern tables=()
     while read -r pattern _; do
         [[ $pattern != tables/* ]] || mapfile -t -O ${#tables[@]} tables < <(compgen -G "$results/$pattern")
     done < <(needs "$1")
     [ ${#tables[@]} -gt 0 ] || return 0
-    awk -F '\t' 'FNR == 1 { at = 0; for (i = 1; i <= NF; i++) if ($i == "environment") at = i; next }
-        at && $at != "NA" && !seen[$at]++ { text = text (text ? ", " : "") $at } END { print text }' "${tables[@]}"
+    awk -F '\t' 'FNR == 1 { at = 0; for (i = 1; i <= NF; i++) { if ($i == "environment") at = i; quick += $i == "quick" } }
+        FNR > 1 && at && $at != "NA" && !seen[$at]++ { text = text (text ? ", " : "") $at }
+        END { print text (quick ? ", quick run" : "") }' "${tables[@]}"
 }
 
 # The first error in what gnuplot and its commands said, as "plots/depth.gp:12: undefined variable: x". Warnings are not
