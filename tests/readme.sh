@@ -1,7 +1,7 @@
 #!/bin/bash
-# The documents against the project: linked files exist, the commands of README.md work as printed, and
+# The documents against the project: linked files exist, every command of README.md works as printed, and
 # results/README.md describes every column that a study writes. tests/readme.sh [PROGRAM]; needs the compiler (CC) for
-# tests/json_get.c. One line per check ("ok ...", "not ok ...").
+# tests/json_get.c. CHECK=1 also builds and serves the site. One line per check ("ok ...", "not ok ...").
 set -uo pipefail
 
 root=$(cd "$(dirname "${BASH_SOURCE[0]}")/.." && pwd)
@@ -12,6 +12,8 @@ unset CUVETTE_ISA NO_COLOR
 
 # shellcheck source=tests/shell/verdict.sh
 source "$root/tests/shell/verdict.sh"
+# shellcheck source=tests/shell/await.sh
+source "$root/tests/shell/await.sh"
 
 # --- named files: links and images relative to the page's folder, `src/...` and similar paths relative to the root
 links() { # PAGE: targets of links, except on the web and within the page
@@ -59,15 +61,16 @@ echo '<!doctype html><html><head></head><body></body></html>' >"$CUVETTE_LIVE"
 cd "$work/lab" || exit 1
 
 try() { # COMMAND LINE: passes when it succeeds; its output is in said
-    bash -c "set -e -o pipefail; $1" >said 2>&1 </dev/null
+    eval "$1" >said 2>&1 </dev/null
     verdict $? "$1" "$(<said)"
 }
-# The fast commands of README.md and the gallery, without the part after a |, whose program may be missing.
+
+# --- the gallery's fast commands, with small images, without the part after a |, whose program may be missing
 while read -r line; do
-    try "${line%% | *}"
+    try "set -o pipefail; ${line%% | *}"
 done < <(sed -n \
     's/^    \(cuvette \(render\|fan\|trace\|realism\).*\)/\1/p' \
-    "$root/README.md" "$root/src/manual/site/gallery.md" | sed 's/ *#.*//' | awk '!seen[$0]++' |
+    "$root/src/manual/site/gallery.md" | sed 's/ *#.*//' | awk '!seen[$0]++' |
     sed "s/ render / render --set=render.width=160 --set=render.height=120 /")
 
 # --- the dictionary against the files of a study; a name with <...> represents several columns
@@ -106,5 +109,111 @@ compare runs.json "$(
 )"
 empty "runs.json has no other part" \
     "$(json_get $folder/runs.json @keys | grep -vx -e schema -e study -e machine -e runs)"
+
+# --- every command of README.md, as it stands and in order, in a copy of the tree with its build
+tree=$work/tree
+mkdir -p "$tree/build" "$tree/results" "$work/home"
+cp -a "$root"/{.ci,Makefile,README.md,CHANGELOG.md,LICENSE,src,experiments,plots,tests} "$tree/"
+cp -a "$root/results/README.md" "$tree/results/"
+built= # whether the program is that of README.md, not one with sanitizers
+if [[ $(dirname "$program") == "$(realpath "$root/build")" ]]; then
+    built=1
+    find "$root/build" -maxdepth 1 \( -type f -o -name obj -o -name plain -o -name web \) \
+        -exec cp -a -t "$tree/build" {} +
+else
+    ln -s "$program" "$(dirname "$program")/cuvette-import" "$tree/build/"
+fi
+printf '#!/bin/sh\n' >"$work/bin/xdg-open" # cuvette lab starts a browser
+chmod +x "$work/bin/xdg-open"
+export HOME=$work/home
+unset MAKEFLAGS MFLAGS MAKELEVEL
+cd "$tree" || exit 1
+
+# What does not run as it stands, and why; the first pattern that fits a line decides.
+exceptions=(
+    'sudo apt*|skip|it installs packages'
+    'cp -r /usr/share/cuvette/*|skip|only an installed package has that folder'
+    'make setup|skip|it installs packages'
+    'make setup experiments|plan|CI runs it'
+    'make experiments-full|plan|it takes an hour'
+    'make setup test|plan|this is a part of it'
+    'make setup setup-wasm setup-site site|site|it takes minutes, and needs emscripten'
+    'python3 -m http.server *|site|it serves the site'
+    'make setup-python install-python *|python|it needs cffi, NumPy and pandas'
+    'import cuvette*|python|it needs cffi, NumPy and pandas'
+    'cuvette: *|error|not a command, but an error that the program prints'
+    'cuvette lab*|serve|a server'
+    'cuvette study run experiments/depth.study|small|as it stands it takes two minutes; its frames are smaller'
+)
+python=python3
+[[ -x /usr/bin/python3 ]] && python=/usr/bin/python3
+
+one_page='import sys, urllib.error, urllib.request as web
+browser = web.build_opener(web.HTTPCookieProcessor())
+while True:
+    try:
+        print(browser.open(sys.argv[1]).read().decode())
+        break
+    except urllib.error.HTTPError:
+        raise
+    except urllib.error.URLError: # it is not yet listening
+        pass'
+serve() { # COMMAND [ADDRESS]: asks the server for one page; without ADDRESS it prints one
+    local server address=${2-}
+    : >printed
+    eval "exec $1" >printed 2>said </dev/null &
+    server=$!
+    if [[ -z $address ]]; then
+        await $server test -s printed
+        address=$(<printed)
+    fi
+    "$python" -c "$one_page" "$address" >page 2>>said
+    grep -qi '<title>' page
+    verdict $? "$1" "$(<said)"
+    kill -INT $server
+    wait $server
+}
+declare -A met=()
+command() { # TEXT: a line of README.md, or a text in Python
+    local line one pattern how=try reason
+    line=$(sed '1s/ *# .*//' <<<"$1")
+    for one in "${exceptions[@]}"; do
+        IFS='|' read -r pattern how reason <<<"$one"
+        # shellcheck disable=SC2053 # a pattern
+        [[ $line == $pattern ]] && met[$pattern]=1 && break
+        how=try
+    done
+    if [[ $line == make* && ! $built ]]; then how=skip reason='this is another build'; fi
+    [[ $how == python ]] && ! "$python" -c 'import cffi, numpy, pandas' 2>said && how=skip
+    [[ $how == site && ! ${CHECK:-} ]] && how=skip reason+='; CHECK=1 runs it'
+    case $how:$line in
+    try:*) try "$line" ;;
+    skip:*) skip "$line: $reason" ;;
+    plan:*) try "make -n${line#make}" ;;
+    serve:*) serve "$line" ;;
+    small:*)
+        sed -i 's/^set:$/set:\n  render.width: 80\n  render.height: 60/' experiments/depth.study
+        try "$line"
+        ;;
+    error:*)
+        printf '#\n%.0s' {1..10} >mine.yaml
+        printf '%s\n' 'solids: {ball: {shape: sphere,' '    raduis: 1}}' >>mine.yaml
+        equal "an error: $line" "$(cuvette render mine.yaml -o mine.png 2>&1)" "$line"
+        ;;
+    python:import*) [[ ! $built ]] || try "$python -c '$line'" ;;
+    python:*) try "${line/ setup-python/}" ;;
+    site:make*) try "${line/ setup setup-wasm setup-site/}" ;;
+    site:*) serve "$line" http://localhost:8000/ ;;
+    esac
+}
+# The indented blocks; one that begins with `import` is one text.
+mapfile -d '' -t commands < <(awk '
+    /^    / { line = substr($0, 5); if (line ~ /^import /) { python = 1; text = "" }
+        if (python) text = text line "\n"; else if (!seen[line]++) printf "%s%c", line, 0; next }
+    python { printf "%s%c", text, 0; python = 0 }' "$root/README.md")
+for one in "${commands[@]}"; do command "$one"; done
+unmet=
+for one in "${exceptions[@]}"; do [[ ${met[${one%%|*}]:-} ]] || unmet+="$one"$'\n'; done
+empty "each exception of this test is still a line of README.md" "$unmet"
 
 conclude

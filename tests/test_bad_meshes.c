@@ -327,7 +327,7 @@ static void folders_pipes_loops_and_devices_are_refused(void **state)
 
 static const char TOO_LONG[] = "longer than the limit";
 
-/* Reads a good file with a shell script in place of the importer; the limit is short where the script goes beyond it. */
+/* Reads a good file with a shell script in place of the importer; the limit is short where the script exceeds it. */
 static void with_importer(const char *script, const char *pattern, status expected)
 {
     char *path = in_folder("importer"), *mesh_path = in_folder("three.obj"), *old = strdup(getenv("CUVETTE_IMPORT"));

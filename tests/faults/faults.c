@@ -275,7 +275,7 @@ static void try_command(const char *name, const char *traits, char **words)
                    .out = out,
                    .err = error,
                    .library = options.library,
-                   .limit_s = 60};
+                   .limit_s = 180};
     reference ref;
     if (!reference_make(&ref, &r, options.template)) {
         printf("not ok %d - %s without a fault\n", ++cases, name);

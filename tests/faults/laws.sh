@@ -15,8 +15,8 @@ build() {
         exit 2
     }
 }
-# laws SEED SCENES SECONDS: 0 when all laws hold
-laws() { LAWS_SEED=$1 LAWS_SCENES=$2 timeout "$3" "$work/build/tests/test_laws" >"$work/out" 2>&1; }
+# laws SEED SCENES SECONDS, of CPU time: 0 when all laws hold
+laws() { (ulimit -t "$3" && LAWS_SEED=$1 LAWS_SCENES=$2 exec "$work/build/tests/test_laws") >"$work/out" 2>&1; }
 all_seeds() { for seed in 1 2 3 4 5 6 7 8; do laws "$seed" "${LAWS_SCENES:-10000}" 1800 || return; done; }
 build
 laws 1 500 600 || {
@@ -40,7 +40,7 @@ while IFS=$'\t' read -r file old new; do
     broken=$(sed -n 's/^law \([0-9]\).*, \([1-9][0-9]*\) broken.*/law \1/p' "$work/out" | sort -u | paste -s -d ',')
     case $status in
     0) echo "not ok $number - $file: $new: not caught" && missed=1 ;;
-    124) echo "ok $number - $file: $new: never ends" ;;
+    137 | 152) echo "ok $number - $file: $new: never ends" ;;
     *) echo "ok $number - $file: $new: caught by ${broken:-a crash}" ;;
     esac
     cp "$root/$file" "$work/$file"

@@ -117,7 +117,6 @@ export const cases = {
     const follows = async (page, generation) =>
       page.waitForFunction((g) => window.lab?.picture?.final && window.lab.picture.generation >= g, generation, {
         polling: 100, // a tab in the background may draw no frames
-        timeout: 90000,
       });
     const { generation } = await lab.post('/api/set', { set: { 'liquid.ior': 1.4 } });
     for (const page of tabs) await follows(page, generation);

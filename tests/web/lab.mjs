@@ -10,7 +10,7 @@ import { promisify } from 'node:util';
 
 const here = dirname(fileURLToPath(import.meta.url));
 const root = join(here, '..', '..');
-const START_LIMIT_MS = 30000;
+const START_LIMIT_MS = 300000;
 
 /** The first match of a pattern in the output of a program; an error with the whole output if the program ends
  * before. */

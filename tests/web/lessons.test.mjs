@@ -48,7 +48,7 @@ export const cases = {
         await answer.fill(String(Math.round(truth)));
         await screen.button('Compare', true).click();
       }
-      await panel(screen).getByText('That is right.').waitFor({ timeout: 60000 });
+      await panel(screen).getByText('That is right.').waitFor();
       await panel(screen).getByText(lesson.answer).waitFor();
       const least = lesson.measure.timed ? 5 : 9; /* markers: one a number of threads */
       const markers = panel(screen).locator('.lesson-chart .plot-marker');

@@ -35,7 +35,6 @@ const nextPicture = (screen) =>
 async function fallen(t) {
   const lab = await t.lab('tests/slime.yaml');
   const screen = await t.open(lab, { width: 1920, height: 1080 });
-  screen.context.setDefaultTimeout(90000);
   await screen.actualSize();
   await screen.showPanel('Slime');
   await screen.button('Play').click();

@@ -12,8 +12,8 @@ function kept(lab) {
 }
 
 async function until(what, so) {
-  for (let i = 0; i < 300 && !so(); i++) await new Promise((resolve) => setTimeout(resolve, 50));
-  if (!so()) throw new Error(`not within 15 s: ${what}`);
+  for (let i = 0; i < 6000 && !so(); i++) await new Promise((resolve) => setTimeout(resolve, 50));
+  if (!so()) throw new Error(`not within 300 s: ${what}`);
 }
 
 /** Changes values, kills the program when it has kept them, and starts it again at another address. */

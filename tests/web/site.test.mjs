@@ -6,7 +6,7 @@ import { dirname, join } from 'node:path';
 import { openFile, withFolder } from './file_page.mjs';
 import { serveSite } from './site_server.mjs';
 
-const DRAWN_MS = 60000;
+const DRAWN_MS = 300000;
 const program = process.argv[process.argv.indexOf('--program') + 1];
 const site = join(dirname(program), 'site');
 const oneFile = join(site, 'laboratory.html');

@@ -44,7 +44,6 @@ const measured = (rows) => rows.filter((row) => row.split(',')[4] === '0');
 export const cases = {
   'a study is started, stopped and resumed to its end': async (t) => {
     const { lab, screen, study } = await chosen(t);
-    screen.context.setDefaultTimeout(60000);
     await study.getByRole('button', { name: 'Start', exact: true }).click();
     await running(screen, true);
     await screen.until(() => window.lab.study.frames_done > 12);
@@ -182,7 +181,6 @@ export const cases = {
 
   'a change during a study is rendered afterwards': async (t) => {
     const { lab, screen, study } = await chosen(t);
-    screen.context.setDefaultTimeout(60000);
     await study.getByRole('button', { name: 'Start', exact: true }).click();
     await running(screen, true);
     const { generation } = await lab.post('/api/set', { set: { 'liquid.ior': 1.6 } });
@@ -237,7 +235,6 @@ export const cases = {
     const lab = await t.lab('scenes/rod.yaml');
     await lab.post('/api/set', { set: { 'render.width': 80, 'render.height': 60 } });
     const screen = await t.open(lab, { width: 1366, height: 900 });
-    screen.context.setDefaultTimeout(60000);
     screen.expect(/status of 4(00|09)/);
     const dialog = await openForm(screen);
     const button = (name) => dialog.getByRole('button', { name, exact: true });
