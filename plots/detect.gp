@@ -1,6 +1,6 @@
 # What the metrics of optics detect: the power of ten of the smallest injected error that a family of metrics detects in
 # the median of the scenes in which it detects any, by the kind of error; experiments/detect.sh.
-# needs: detect/rows.csv metric error_kind cells cells_detected size_median
+# needs: detect/rows.csv metric
 width = 318; height = 300
 load "plots/style.gp"
 
@@ -12,11 +12,11 @@ titles = "vessel's index|liquid's index|surroundings' index|denser index|… in 
     "wrong side's index|s and p swapped|total reflection leaks|normal tilted|transparency|absorption"
 title(i) = system("echo \"".titles."\" | cut -d '|' -f ".i)
 # Column, row, power of ten (1 for none), whether some scenes detect nothing.
-rows = "< awk -F , -v kinds='".kinds."' -v families='".families."' '".\
+rows = select(results."/detect/rows.csv", "", "metric error_kind size_median? cells cells_detected")." | awk -F '\t' -v kinds='".\
+    kinds."' -v families='".families."' '".\
     "BEGIN { OFS = \"\t\"; for (i = split(kinds, k, \" \"); i > 0; i--) x[k[i]] = i; ".\
     "for (i = split(families, f, \" \"); i > 0; i--) y[f[i]] = i } ".\
-    "NR > 1 && sub(/\\.any$/, \"\", $2) { print x[$3], y[$2], $7 == \"NA\" ? 1 : substr($7, 3), $5 < $4 }' '".\
-    results."/detect/rows.csv'"
+    "sub(/\\.any$/, \"\", $1) { print x[$2], y[$1], $3 == \"NaN\" ? 1 : substr($3, 3), $5 < $4 }'"
 shown(power) = power > 0 ? "·" : sprintf("%.0f", power)
 # Dark on bright colours, bright on dark ones; less contrast where some scenes detect nothing.
 number_color(power, some) = power > 0 ? ink : power > -6 ? \

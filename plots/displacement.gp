@@ -1,14 +1,13 @@
 # Displacement field of the filled vessel, by experiments/displacement.sh: an arrow begins where a point is seen, and
 # points to where it would be seen without vessel and liquid, at a tenth of the distance. The rims of vessel and liquid
 # are drawn as the camera projects them. Where there is no arrow, the ray is totally reflected or ends in the sky.
-# needs: displacement/points.csv x y solid bare_x bare_y
+# needs: displacement/points.csv x
 width = 318; height = 330
 scale = 0.1
 load "plots/style.gp"
 
 points = results."/displacement/points.csv"
 unset label 9999
-set datafile separator comma
 set size ratio -1
 set xrange [255:545]
 set yrange [540:100]
@@ -37,8 +36,7 @@ do for [i=1:2] {
     set arrow i from px(X[i], 0.001, -sin(side)), py(0, 0.001, -sin(side)) \
         to px(X[i], 3.001, -sin(side)), py(0, 3.001, -sin(side)) nohead lw 0.8 lc rgb grey back
 }
-shift(which) = sprintf("< awk -F, 'NR > 1 && $3 == \"%s\" ". \
-    "{ print $1 \",\" $2 \",\" $4 - $1 \",\" $5 - $2 }' '%s'", which, points)
+shift(which) = select(points, "solid=".which, "x y bare_x bare_y")
 set style arrow 1 head filled size 3,20,60 fixed lw 0.7 lc rgb blue
 set style arrow 2 head filled size 3,20,60 fixed lw 0.9 lc rgb vermillion
 set arrow 9 from 460,515 rto 200*scale,0 arrowstyle 1
@@ -47,5 +45,5 @@ plot px(cos(t), 3.001, sin(t)), py(cos(t), 3.001, sin(t)) with lines lw 0.8 lc r
      px(cos(t), 0.001, sin(t)), py(cos(t), 0.001, sin(t)) with lines lw 0.8 lc rgb grey notitle, \
      px(0.95*cos(t), 2.001, 0.95*sin(t)), py(0.95*cos(t), 2.001, 0.95*sin(t)) \
          with lines lw 0.8 dt (4,2) lc rgb sky notitle, \
-     shift("ground") using 1:2:($3*scale):($4*scale) with vectors arrowstyle 1 title "ground", \
-     shift("rod") using 1:2:($3*scale):($4*scale) with vectors arrowstyle 2 title "rod"
+     shift("ground") using 1:2:(($3 - $1)*scale):(($4 - $2)*scale) with vectors arrowstyle 1 title "ground", \
+     shift("rod") using 1:2:(($3 - $1)*scale):(($4 - $2)*scale) with vectors arrowstyle 2 title "rod"

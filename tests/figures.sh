@@ -154,9 +154,17 @@ else
 fi
 empty "one: every figure is drawn" "$(not_drawn)"
 
+# The committed quick run: small frames, one repetition.
+if [[ -n ${CHECK:-} ]]; then
+    cp -r "$reference/quick" "$work/quick"
+    experiments/tables.sh "$work/quick" >"$work/said" 2>&1
+    pictures quick
+    all quick "$formats"
+fi
+
 # The rows of one value of the first parameter of a study are missing, of the last value or of the first, and all images
 # but the first.
-cells=(0000)
+all_cells=("${cells[@]}") cells=(0000)
 for which in last first; do
     [[ $which == last || -n ${CHECK:-} ]] || continue
     tables_of "without-$which" whole '
@@ -168,6 +176,8 @@ for which in last first; do
             for (i = 1; i <= lines; i++) if (!parameter || value[i] != out) print line[i] }'
     all "without-$which" "$formats"
 done
+
+cells=("${all_cells[@]}")
 
 # One cell of each study; and ends of intervals, errors and counts that no logarithmic axis has.
 if [[ -n ${CHECK:-} ]]; then
@@ -237,13 +247,14 @@ missed depth-cut tables/depth.tsv cut_depth_throughput
 verdict $? "missing: a column that a command misses is named" "$(<"$work/errors")"
 
 # Every column whose name is in a script of a figure: without it, the figure is an error that names it, or the same.
+# Without the environment, figures leave it out.
 if [[ -n ${CHECK:-} ]]; then
     wrong=''
     for figure in "${figures[@]}"; do
         # shellcheck disable=SC2046 # a list of words
         text=$(cat "plots/$figure.gp" $(grep -ohE '(plots|paper)/[a-z_-]+\.(gp|awk|sh)' "plots/$figure.gp" | sort -u))
         while read -r file; do
-            for column in $(head -n 1 "$work/whole/$file" | tr '\t,' '\n\n' | sort -u); do
+            for column in $(head -n 1 "$work/whole/$file" | tr '\t,' '\n\n' | grep -vx environment); do
                 grep -qwF -- "$column" <<<"$text" || continue
                 missed "$figure" "$file" "$column" || unchanged "$figure" ||
                     wrong+="$figure, $file, $column: $(cat "$work/said" "$work/errors" | head -n 1)"$'\n'
