@@ -62,7 +62,7 @@ cd "$work/lab" || exit 1
 
 try() { # COMMAND LINE: passes when it succeeds; its output is in said
     eval "$1" >said 2>&1 </dev/null
-    verdict $? "$1" "$(<said)"
+    verdict $? "${1%%$'\n'*}" "$(<said)"
 }
 
 # --- the gallery's fast commands, with small images, without the part after a |, whose program may be missing
