@@ -96,7 +96,8 @@ environments() { # FIGURE
         [[ $pattern != tables/* ]] || mapfile -t -O ${#tables[@]} tables < <(compgen -G "$results/$pattern")
     done < <(needs "$1")
     [ ${#tables[@]} -gt 0 ] || return 0
-    awk -F '\t' 'FNR == 1 { at = 0; for (i = 1; i <= NF; i++) { if ($i == "environment") at = i; quick += $i == "quick" } }
+    awk -F '\t' '
+        FNR == 1 { at = 0; for (i = 1; i <= NF; i++) { if ($i == "environment") at = i; quick += $i == "quick" } }
         FNR > 1 && at && $at != "NA" && !seen[$at]++ { text = text (text ? ", " : "") $at }
         END { print text (quick ? ", quick run" : "") }' "${tables[@]}"
 }
