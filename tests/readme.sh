@@ -82,7 +82,7 @@ grid: [{render.depth: [0, 1]}]
 repetitions: 1
 keep: {image: on, workers: on}
 END
-cuvette study run --quiet experiments/columns.study
+cuvette study run --quick --quiet experiments/columns.study # which has columns of its own
 cuvette study summary experiments/columns.study >summary.tsv
 described() { # SECTION: first column of its table
     awk -v title="## $1" '/^## / {on = $0 == title} on && /^\| `/' "$root/results/README.md" |
@@ -135,6 +135,7 @@ exceptions=(
     'cp -r /usr/share/cuvette/*|skip|only an installed package has that folder'
     'make setup|skip|it installs packages'
     'make setup experiments|plan|CI runs it'
+    'make experiments QUICK=1|plan|CI runs it'
     'make experiments-full|plan|it takes an hour'
     'make setup test|plan|this is a part of it'
     'make setup setup-wasm setup-site site|site|it takes minutes, and needs emscripten'
