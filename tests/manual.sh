@@ -115,8 +115,9 @@ blocks() { # FILE: the lines of its examples, continued lines joined
     awk '/^\.EE/ {on = 0} on; /^\.EX/ {on = 1}' | plain | sed 's/\\e$/\\/' |
         sed -e ':a' -e '/\\$/{N; s/ *\\\n */ /; ba' -e '}'
 }
-small() { # a command line with small images
-    sed -E "s/^cuvette (render|animate) /cuvette \1 --set=render.width=80 --set=render.height=60 /
+small() { # a command line with small images of few paths and photons
+    local less='--set=render.width=40 --set=render.height=30 --set=render.paths=2 --set=render.photons=2000'
+    sed -E "s/^cuvette (render|animate) /cuvette \1 $less /
         s/^(cuvette animate .*)/\1 --duration 0.08/; s/ \| (jq|ffmpeg) .*//"
 }
 try() { # COMMAND LINE
