@@ -11,7 +11,7 @@ set xlabel "covered pixels / 1000"
 set xrange [0:*]
 set yrange [0:*]
 set ylabel "CPU time of a frame / ms"
-set title "A ball of 40500 triangles, 800 by 600 pixels"
+set title "A ball of 40500 triangles"
 set key top left spacing 2.3
 set offsets graph 0, graph 0, graph 0.25, graph 0
 plot for [i=1:2] areas(i) using ($1/1e3):($2*1e3):($3*1e3):($4*1e3) with yerrorbars lt i + 2 \

@@ -1,6 +1,6 @@
 # Images over the grid of the refractive indices of vessel and liquid, cropped to the vessel, with 16 samples a pixel.
 # Below each: magnification of the rod in the image, and FLIP against the image without refraction (top left).
-# needs: tables/ior-images.tsv flip
+# needs: tables/ior-images.tsv wall_s_median
 # needs: tables/ior-images-metrics.tsv metric=edges.magnification measured
 # needs: ior-images/images/*.png
 width = 318; height = 505
@@ -24,7 +24,7 @@ do for [i=1:words(vessel)] {
         file = cell >= 0 ? image("ior-images", int(cell)) : ""
         set title (i == 1 ? word(liquid, k) : "") font ",7.5" offset 0,-0.9
         set ylabel (k == 1 ? word(vessel, i) : "") rotate by 90 offset 2.2,0
-        set label 3 sprintf("×%.2f  F %.3f", magnification(i, k), first(rows, at(i, k), "flip")) \
+        set label 3 caption(sprintf("×%.2f", magnification(i, k))).caption(sprintf("  F %.3f", first(rows, at(i, k), "flip"))) \
             at graph 0.5,-0.065 center font small
         if (readable(file)) {
             # The vessel: fractions of the width from the left and of the height from the bottom.
