@@ -6,7 +6,7 @@
 # machine.
 #
 # The head of a figure has a line for each file that it is drawn from, a path below DIR (* allowed), with what at least
-# one of its rows must have: columns with given values, and columns that are not NA:
+# one of its rows must have: columns with given values, and columns that are not NA (NAME? may be):
 #   # needs: tables/determinism.tsv machine=this price_median
 # A figure without such a file or row is skipped, which is no error. A column that the file lacks is one, and so is a
 # column that select.awk misses while the figure is drawn.

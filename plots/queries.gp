@@ -1,7 +1,9 @@
 # Tests of a ray against the number of triangles: the counts, the local exponent between successive counts, and the time
 # of a test against the memory of the hierarchy. One column of the paper.
+# needs: tables/queries.tsv soup.generate soup.count render.accel render.shadows triangles film_hash
 # needs: tables/queries.tsv query_rays_median query_boxes_median query_triangles_median
-# needs: tables/triangles.tsv visibility_s_sum_median visibility_s_sum_min visibility_s_sum_max accel_bytes
+# needs: tables/triangles.tsv model.visible=on soup.count render.accel film_hash accel_bytes
+# needs: tables/triangles.tsv visibility_s_sum_median visibility_s_sum_min visibility_s_sum_max
 width = 318; height = 520
 load "plots/style.gp"
 

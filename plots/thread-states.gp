@@ -1,5 +1,5 @@
 # What the threads of a frame did, as shares of its wall time, mean over all threads: from two threads to a thousand.
-# needs: timeline/workers.csv warmup=0 render.schedule render.threads busy_s waiting_s start_s running_s runnable_s blocked_s
+# needs: timeline/workers.csv warmup=0 render.schedule render.threads running_s? runnable_s? blocked_s? busy_s waiting_s start_s
 # needs: tables/timeline.tsv wall_s_median
 width = 1000; height = 400
 load "plots/style.gp"

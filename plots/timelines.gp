@@ -1,6 +1,6 @@
 # When each thread of a frame works, from two threads to a thousand, for fixed tiles and for tiles on demand, and for
 # what share of that time it has a processing unit. One frame each, drawn from the rows of the threads.
-# needs: timeline/workers.csv warmup=0 render.schedule render.threads tiles start_s wall_s running_s
+# needs: timeline/workers.csv warmup=0 render.schedule render.threads run process repetition worker tiles running_s? start_s wall_s
 # needs: tables/timeline.tsv wall_s_median
 width = 318; height = 330
 load "plots/style.gp"
