@@ -65,12 +65,14 @@ try() { # COMMAND LINE: passes when it succeeds; its output is in said
     verdict $? "${1%%$'\n'*}" "$(<said)"
 }
 
-# --- the gallery's fast commands that README.md does not have, with small images, without the part after a |, whose program may be missing
+# --- the gallery's fast commands that README.md does not have, with small images, without the part after a |, whose
+# program may be missing
 while read -r line; do
     try "set -o pipefail; ${line%% | *}"
 done < <(sed -n \
     's/^    \(cuvette \(render\|fan\|trace\|realism\).*\)/\1/p' \
-    "$root/src/manual/site/gallery.md" | sed 's/ *#.*//' | grep -vxFf <(sed -n 's/^    //p' "$root/README.md") | awk '!seen[$0]++' |
+    "$root/src/manual/site/gallery.md" | sed 's/ *#.*//' |
+    grep -vxFf <(sed -n 's/^    //p' "$root/README.md") | awk '!seen[$0]++' |
     sed "s/ render / render --set=render.width=80 --set=render.height=60 /")
 
 # --- the dictionary against the files of a study; a name with <...> represents several columns
