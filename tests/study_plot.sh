@@ -124,7 +124,7 @@ check "without gnuplot, the package is named" grep -q 'gnuplot-nox' err
 # --- a gnuplot that draws nothing, and one that is killed with the program
 mkdir idle slow idle-figures slow-figures
 printf '#!/bin/sh\nexit 0\n' >idle/gnuplot
-printf '#!/bin/sh\nexec sleep 100000\n' >slow/gnuplot
+printf '#!/bin/sh\necho $$ >%s/slow/pid\nexec sleep 100000\n' "$work" >slow/gnuplot
 chmod +x idle/gnuplot slow/gnuplot
 PATH=$work/idle:$PATH "$program" study plot --results res own.study -o idle-figures/fig.png >out 2>err
 code=$?
@@ -132,9 +132,9 @@ check "a gnuplot that draws nothing is a failure" eval '((code == 1)) && grep -q
 check "and leaves no figure" test -z "$(find idle-figures -name '*.png')"
 PATH=$work/slow:$PATH "$program" study plot --results res own.study -o slow-figures/fig.png >out 2>err &
 drawing=$!
-begun() { [[ -n $(find slow-figures -name '.cuvette-*.part.png') ]]; }
+begun() { [[ -s slow/pid && -n $(find slow-figures -name '.cuvette-*.part.png') ]]; }
 await $drawing begun
-kill -KILL $drawing
+kill -KILL $drawing "$(<slow/pid)"
 wait $drawing 2>/dev/null
 check "a killed drawing leaves a temporary file" test -n "$(find slow-figures -name '.cuvette-*.part.png')"
 run own.study -o slow-figures/fig.png
