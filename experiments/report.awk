@@ -54,7 +54,7 @@ function load_published(name,    path, line, field, head, n, i) {
     close(path)
 }
 
-# --- two blocks of lines beside each other ---
+# --- two blocks of lines in two columns ---
 
 function left(text) { L[++left_count] = text }
 function right(text) { S[++right_count] = text }

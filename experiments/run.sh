@@ -145,7 +145,8 @@ for i in "${!files[@]}"; do
 done
 
 if [[ -d $committed ]]; then
-    "$program" study films --results "$results" --against "$committed" "${files[@]}" >"$results/tables/reproduced.tsv.new" ||
+    "$program" study films --results "$results" --against "$committed" "${files[@]}" \
+        >"$results/tables/reproduced.tsv.new" ||
         wrong 'the comparison of films'
     mv "$results/tables/reproduced.tsv.new" "$results/tables/reproduced.tsv"
 fi

@@ -1,7 +1,7 @@
 #!/bin/bash
 # The way of `make experiments`: experiments/run.sh on small studies in a copy of the scripts, one of which fails;
-# Ctrl-C and going on; the comparison with a committed run; and the closing page from the reference rows. CUVETTE names the
-# program, BUILD the build.
+# Ctrl-C and going on; the comparison with a committed run; and the closing page from the reference rows. CUVETTE names
+# the program, BUILD the build.
 set -uo pipefail
 cd "$(dirname "$0")/.." || exit 1
 # shellcheck source=tests/shell/verdict.sh

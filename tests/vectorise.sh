@@ -1,7 +1,7 @@
 #!/bin/bash
 # The loops of the kernels that gcc and clang vectorised, for each instruction set. Every copy of a loop under the
-# comment VECTORISE (functions are inlined) must be vectorised for AVX2 and AVX-512; with SSE2 it may stay scalar. Without
-# CHECK=1 only gcc's for AVX2.
+# comment VECTORISE (functions are inlined) must be vectorised for AVX2 and AVX-512; with SSE2 it may stay scalar.
+# Without CHECK=1 only gcc's for AVX2.
 # KERNEL_FLAGS and KERNEL_FLAGS_<isa> come from the Makefile.
 set -uo pipefail
 cd "$(dirname "$0")/.."

@@ -2,8 +2,8 @@
 # tests/check/check.sh, run by `make check`: everything that checks Cuvette, in slices. Each run goes on where the last
 # one stopped: slices that failed come first, then those that have waited longest; those that have passed with the
 # present sources are not run again. The last lines are a table of what ran, and how many have passed.
-#   check.sh [NAME...]    the slices of these names (acts-3, sanitize-2), or whose names begin with them (acts, sanitize)
-# CHECK_SECONDS: stop after so many; a slice that is not done then is stopped, and is no failure.
+#   check.sh [NAME...]    the slices of these names (acts-3), or whose names begin with them (acts, sanitize)
+# CHECK_SECONDS: when to stop, in seconds; a slice that is not done then is stopped, and is no failure.
 # CHECK_FIRST: begin with this slice of the list, a number of any size: another one each time where nothing is kept.
 set -uo pipefail
 cd "$(dirname "$0")/../.." || exit 1
@@ -53,7 +53,9 @@ slices() {
 mapfile -t whole < <(grep -lE '\{CHECK:-|getenv\("CHECK"\)' tests/*.sh tests/test_*.c |
     sed 's,tests/,,; s,^test_,,; s,\.[a-z]*$,,')
 
-sources() { find Makefile .ci src tests experiments plots paper -type f -print0 | sort -z | xargs -0 sha256sum | sha256sum; }
+sources() {
+    find Makefile .ci src tests experiments plots paper -type f -print0 | sort -z | xargs -0 sha256sum | sha256sum
+}
 
 # The slices of these sources that have not passed, in the order in which they are to run: name, tab, command.
 due() { # KEY NAME...
@@ -69,7 +71,8 @@ due() { # KEY NAME...
         { line[count++] = $0; name[count - 1] = $1 }
         END {
             for (i = 0; i < count; i++)
-                if (wanted(name[i])) print !failed[name[i]], when[name[i]] + 0, (i - first % count + count) % count, line[i]
+                if (wanted(name[i]))
+                    print !failed[name[i]], when[name[i]] + 0, (i - first % count + count) % count, line[i]
         }' "$state" - | sort -k1,1n -k2,2n -k3,3n | cut -f 4-
 }
 
@@ -112,7 +115,6 @@ done
 # One line for each slice: the last.
 awk -F '\t' '{ last[$1] = $0 } END { for (name in last) print last[name] }' "$state" | sort >"$state.new"
 mv "$state.new" "$state"
-awk -F '\t' -v key="$key" -v of="$(slices | wc -l)" -v ran=$ran -v failed=$failed '
-    $2 == key && $4 == "passed" { passed++ }
-    END { printf "%d slices ran, %d failed; with these sources %d of %d have passed\n", ran, failed, passed, of }' "$state"
+passed=$(awk -F '\t' -v key="$key" '$2 == key && $4 == "passed"' "$state" | wc -l)
+echo "$ran slices ran, $failed failed; with these sources $passed of $(slices | wc -l) have passed"
 ((failed == 0))
