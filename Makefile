@@ -420,7 +420,7 @@ kernel_environment = KERNEL_FLAGS='$(code_flags)' $(foreach i,$(isas),KERNEL_FLA
 # The part of two long tests that `make test` runs; `make check` runs the others. Random scenes of tests/test_laws.c, fewer with
 # instrumentation, and the slice of tests/test_acts.c.
 test_scenes := $(if $(LAWS_SCENES),$(LAWS_SCENES),$(if $(RUNNER)$(filter coverage,$(config)),20,$(if $(filter release,$(config)),300,100)))
-ACTS_SLICE ?= 23/48
+ACTS_SLICE ?= 34/48
 
 .PHONY: test
 # Programs that test scripts run.

@@ -4,16 +4,11 @@
 #include "study_fixture.h"
 #include "random_stream.h"
 #include "rows_fixture.h"
+#include "whole.h"
 #include "study/contrast.h"
 #include "study/contrast_json.h"
 
 enum { PROCESSES = 60 };
-
-/* Trials of the two laws of chance below; `make test` has the smaller number. */
-static bool is_whole(void)
-{
-    return getenv("CHECK") && *getenv("CHECK");
-}
 
 static const char study_text[] = "study: test\n"
                                  "scene: scene.yaml\n"

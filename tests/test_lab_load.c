@@ -8,6 +8,7 @@
 
 #include "lab_fixture.h"
 #include "random_stream.h"
+#include "whole.h"
 #include <poll.h>
 #include <pthread.h>
 
@@ -309,7 +310,7 @@ static void the_laboratory_survives_random_requests(void **state)
 {
     (void)state;
     const char *expected = getenv("CUVETTE_LAB_FUZZ");
-    const long count = expected ? atol(expected) : 4000;
+    const long count = expected ? atol(expected) : trials_of(4000);
     uint64_t seed = 6;
     long by_hundred[6] = {0}, early_kib = 0;
     for (long i = 0; i < count; i++) {

@@ -108,7 +108,8 @@ static void every_scene_of_the_project_round_trips_with_the_same_film(void **sta
             continue;
         scene *s = committed_scene(entry->d_name);
         assert_survives(s);
-        set_all(s, "render.width=32 render.height=24 render.samples=1 render.wavelengths=4 render.photons=3000");
+        set_all(s, "render.width=32 render.height=24 render.samples=1 render.wavelengths=4 render.photons=3000 "
+                   "render.paths=2");
         const uint64_t hash = hash_of(s);
         for (int all = 0; all < 2; all++) {
             scene *again = there_and_back(s, all);

@@ -11,6 +11,7 @@
 #include "random_stream.h"
 #include "ray_fixture.h"
 #include "solid_reference.h"
+#include "whole.h"
 
 #define COUNT(a) (sizeof(a) / sizeof((a)[0]))
 
@@ -358,7 +359,7 @@ static void from_near(const solid_shape *s, const scene_geometry *a, uint64_t *s
 static void random_rays_agree_with_quadruple_precision(void **state)
 {
     (void)state;
-    for_all_shapes(from_near, 600);
+    for_all_shapes(from_near, trials_of(600));
 }
 
 static void from_far(const solid_shape *s, const scene_geometry *a, uint64_t *seed)
@@ -370,7 +371,7 @@ static void from_far(const solid_shape *s, const scene_geometry *a, uint64_t *se
 static void distant_rays_agree_with_quadruple_precision(void **state)
 {
     (void)state;
-    for_all_shapes(from_far, 400);
+    for_all_shapes(from_far, trials_of(400));
 }
 
 static void from_beside(const solid_shape *s, const scene_geometry *a, uint64_t *seed)
@@ -384,7 +385,7 @@ static void from_beside(const solid_shape *s, const scene_geometry *a, uint64_t 
 static void solids_far_from_the_origin_agree_with_quadruple_precision(void **state)
 {
     (void)state;
-    for_all_shapes_at(vec3_make(3000.1, -7000.7, 5000.3), from_beside, 400);
+    for_all_shapes_at(vec3_make(3000.1, -7000.7, 5000.3), from_beside, trials_of(400));
 }
 
 /* Along a local axis except for a component that is 0, -0 or tiny. */
@@ -431,7 +432,7 @@ static void grazing(const solid_shape *s, const scene_geometry *a, uint64_t *see
 static void grazing_rays_agree_with_quadruple_precision(void **state)
 {
     (void)state;
-    for_all_shapes(grazing, 400);
+    for_all_shapes(grazing, trials_of(400));
 }
 
 /* The length of a line's chords within the solid, from hit to hit. */
@@ -531,7 +532,7 @@ static void check_chords(const solid_shape *s, const scene_geometry *a, uint64_t
 static void chords_are_where_a_line_is_inside(void **state)
 {
     (void)state;
-    for_all_shapes(check_chords, 400);
+    for_all_shapes(check_chords, trials_of(400));
 }
 
 int main(void)

@@ -10,6 +10,7 @@
 #include "random_stream.h"
 #include "ray_fixture.h"
 #include "solid_reference.h"
+#include "whole.h"
 
 static solid_shape torus_of(double radius, double tube_radius)
 {
@@ -56,11 +57,11 @@ static void a_line_through_both_tubes_has_four_crossings(void **state)
 static void crossings_of_random_lines_agree_with_quadruple_precision(void **state)
 {
     (void)state;
-    enum { RAYS = 120000 };
+    const int rays = trials_of(120000);
     uint64_t seed = 1;
     double worst = 0.0, worst_along = 0.0;
     long crossings = 0, with_four = 0, unlike = 0;
-    for (int ray = 0; ray < RAYS; ray++) {
+    for (int ray = 0; ray < rays; ray++) {
         const double R = exp(random_real(&seed, -3.0, 3.0));
         solid_shape s = torus_of(R, R * (1.0 - exp(random_real(&seed, -6.0, -0.002))));
         s.position = random_point(&seed, random_below(&seed, 4) ? 1.0 : 1000.0);
@@ -96,9 +97,9 @@ static void crossings_of_random_lines_agree_with_quadruple_precision(void **stat
     print_message("%d rays, %ld crossings, %ld rays with four, %ld grazing ones that differ; errors are at most %.3f "
                   "of the bound "
                   "for points, %.3f for distances\n",
-                  RAYS, crossings, with_four, unlike, worst, worst_along);
+                  rays, crossings, with_four, unlike, worst, worst_along);
     assert_true(worst <= 1.0 && worst_along <= 1.0);
-    assert_true(with_four > RAYS / 100 && crossings > RAYS / 2);
+    assert_true(with_four > rays / 100 && crossings > rays / 2);
 }
 
 /* Pappus and Guldin: 2 pi^2 R r^2. */
@@ -174,7 +175,7 @@ static void nothing_escapes_from_a_mirrored_tube(void **state)
 {
     (void)state;
     uint64_t seed = 3;
-    for (int trial = 0; trial < 20; trial++) {
+    for (int trial = 0; trial < trials_of(20); trial++) {
         solid_shape s = torus_of(1.0, random_real(&seed, 0.02, 0.98));
         s.rotation_deg = trial % 2 ? vec3_make(17.0, -33.0, 71.0) : vec3_make(0.0, 0.0, 0.0);
         scene_geometry *a = scene_geometry_of(&s, 1);

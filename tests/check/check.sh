@@ -49,8 +49,8 @@ slices() {
     printf 'fuzz\tmake -s fuzz FUZZ_TOTAL=120 FUZZ_SECONDS=30\n'
     printf 'mutants\tMUTANT_SECONDS=250 tests/mutants/mutants.sh\n'
 }
-# Tests that are shorter in `make test`: they look at the variable CHECK.
-mapfile -t whole < <(grep -lE '\{CHECK:-|getenv\("CHECK"\)' tests/*.sh tests/test_*.c |
+# Tests that are shorter in `make test`: scripts look at the variable CHECK, programs include whole.h.
+mapfile -t whole < <(grep -lE '\{CHECK:-|^#include "whole.h"' tests/*.sh tests/test_*.c |
     sed 's,tests/,,; s,^test_,,; s,\.[a-z]*$,,')
 
 sources() {
