@@ -145,13 +145,13 @@ wrongs() {
     done
 }
 
-# Is that about as long as the command takes without a signal? Then a signal near its end changed nothing.
+# Is that about the CPU time that the command takes without a signal? Then a signal near its end changed nothing.
 is_whole() { # SECONDS
-    [[ $whole ]] || read -r _ _ _ whole _ < <(./moment 0 0 "$program" "${line[@]}" 2>whole.err)
-    awk -v ran="$1" -v whole="$whole" 'BEGIN {exit !(ran > 0.8 * whole)}'
+    [[ $whole ]] || read -r _ _ _ _ _ whole < <(./moment 0 0 "$program" "${line[@]}" 2>whole.err)
+    awk -v used="$1" -v whole="$whole" 'BEGIN {exit !(used > 0.6 * whole)}'
 }
 
-# One moment: prints what is wrong. ran: seconds of a run that ended before its signal; whole: of one without.
+# One moment: prints what is wrong. ran: seconds of a run that ended before its signal; whole: of CPU of one without.
 interrupt() { # WORKLOAD SIGNAL
     local files='' kept='' longest=1 line=() after ms cpu code rest
     "w_$1"
@@ -160,12 +160,12 @@ interrupt() { # WORKLOAD SIGNAL
     after=$(awk -v r="$RANDOM" -v most="$longest" -v ran="${ran:-}" \
         'BEGIN {if (ran != "" && ran < most) most = ran; printf "%.3f", 0.03 + most * r / 32768}')
     read -r ms cpu code rest < <(./moment "$(kill -l "$2")" "$after" "$program" "${line[@]}" 2>err)
-    if [[ $ms == - ]] || { ((code == 0)) && is_whole "${rest%% *}"; }; then # it had ended, or was about to
+    if [[ $ms == - ]] || { ((code == 0)) && is_whole "${rest##* }"; }; then # it had ended, or was about to
         ((code == 0)) || echo "without a signal: exit $code: $(tail -1 err | head -c 200)"
         ran=${rest%% *}
         return
     fi
-    if [[ $code == -* && ! -s err ]] && awk -v ran="$rest" 'BEGIN {exit !(ran + 0 < 1)}'; then
+    if [[ $code == -* && ! -s err ]] && awk -v used="${rest##* }" 'BEGIN {exit !(used + 0 < 1)}'; then
         return # main had not begun
     fi
     [[ -z ${LATENCY:-} ]] || echo "$1 $2 $after $ms $cpu $code" >>"$LATENCY"
