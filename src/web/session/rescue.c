@@ -1,5 +1,6 @@
 /* The thread that keeps the unsaved scene. rescue_offers.c offers those of laboratories that died. */
 #include "web/session/rescue_private.h"
+#include "base/cancel.h"
 #include "base/float_environment.h"
 #include "base/text.h"
 #include "measure/clock.h"
@@ -147,8 +148,12 @@ void rescue_destroy(rescue *r, bool leave)
     pthread_mutex_unlock(&r->lock);
     if (r->started)
         pthread_join(r->thread, NULL);
-    if (leave && r->started)
+    if (leave && r->started) {
+        cancel_token shield; /* the signal that ends the program has cancelled all other work of this thread */
+        cancel_shield(&shield);
         step(r);
+        cancel_end(&shield);
+    }
     void (*end)(kept_scene *) = leave ? kept_scene_release : kept_scene_remove;
     end(&r->own);
     for (size_t i = 0; i < r->opened_count; i++)
