@@ -65,15 +65,16 @@ try() { # COMMAND LINE: passes when it succeeds; its output is in said
     verdict $? "${1%%$'\n'*}" "$(<said)"
 }
 
-# --- the gallery's fast commands that README.md does not have, with small images, without the part after a |, whose
-# program may be missing
+# --- the gallery's fast commands that README.md does not have, with small images of few paths and photons, without the
+# part after a |, whose program may be missing
+small='--set=render.width=40 --set=render.height=30 --set=render.paths=2 --set=render.photons=2000'
 while read -r line; do
     try "set -o pipefail; ${line%% | *}"
 done < <(sed -n \
     's/^    \(cuvette \(render\|fan\|trace\|realism\).*\)/\1/p' \
     "$root/src/manual/site/gallery.md" | sed 's/ *#.*//' |
     grep -vxFf <(sed -n 's/^    //p' "$root/README.md") | awk '!seen[$0]++' |
-    sed "s/ render / render --set=render.width=80 --set=render.height=60 /")
+    sed "s/ render / render $small /")
 
 # --- the dictionary against the files of a study; a name with <...> represents several columns
 cat >experiments/columns.study <<'END'

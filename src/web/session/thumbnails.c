@@ -17,7 +17,7 @@
 /* Pixels are about those of the widest card; more scenes than a folder's gallery shows at once. Fewer wavelengths would
  * show a prism's spectrum as grains of colour. */
 enum { KEPT = 128, PIXELS = 240 * 180, WAVELENGTHS = 96, SAMPLES = 4 };
-static const double limit_s = 8.0;
+static const double limit_s = 16.0; /* of the process's CPU time: a busy machine does not make a scene too large */
 
 typedef struct kept {
     char *key;
@@ -32,7 +32,7 @@ struct thumbnails {
     kept table[KEPT];
     int next; /* the place that is replaced next */
     atomic_bool ended;
-    double late_s; /* when the current render has taken too long */
+    double late_s; /* CPU time at which the current render has taken too long */
 };
 
 thumbnails *thumbnails_create(isa level)
@@ -67,7 +67,7 @@ void thumbnails_end(thumbnails *t)
 static bool must_end(void *context)
 {
     const thumbnails *t = context;
-    return atomic_load(&t->ended) || clock_wall_s() > t->late_s;
+    return atomic_load(&t->ended) || clock_process_cpu_s() > t->late_s;
 }
 
 status thumbnails_find(thumbnails *t, const char *key, unsigned char **bytes, size_t *size, diagnostic *why)
@@ -130,14 +130,14 @@ static status render_image(job *j, scene *s, image **img, diagnostic *why)
     return code;
 }
 
-/* The scene's own samples first, then more if the time is likely to suffice: a busy machine shows a coarser image, not
+/* The scene's own samples first, then more if the time is likely to suffice: a slow scene has a coarser image, not
  * none. */
 static status render_twice(thumbnails *t, job *j, scene *s, image **img, diagnostic *why)
 {
     const int64_t own = s->render.samples;
-    const double start_s = clock_wall_s();
+    const double start_s = clock_process_cpu_s();
     TRY(render_image(j, s, img, why));
-    if (own >= SAMPLES || (clock_wall_s() - start_s) * (double)(SAMPLES + own) / (double)own > limit_s)
+    if (own >= SAMPLES || (clock_process_cpu_s() - start_s) * (double)(SAMPLES + own) / (double)own > limit_s)
         return STATUS_OK;
     image *fine = NULL;
     s->render.samples = SAMPLES;
@@ -154,7 +154,7 @@ static status render(thumbnails *t, scene *s, unsigned char **bytes, size_t *siz
     job *j = NULL;
     image *img = NULL;
     make_small(s);
-    t->late_s = clock_wall_s() + limit_s;
+    t->late_s = clock_process_cpu_s() + limit_s;
     status code = job_create(&(job_settings){.level = &t->level, .stop = must_end, .context = t}, &j, why);
     THEN(code, job_load(j, s, NULL, why));
     THEN(code, render_twice(t, j, s, &img, why));
