@@ -76,7 +76,7 @@ async function toy(t, dark) {
 
 async function study(t, dark) {
   const lab = await t.lab('scenes/rod.yaml');
-  await lab.run('study', 'run', '--quiet', 'studies/quick.study');
+  await lab.run('study', 'run', '--quiet', 'studies/brief.study');
   const screen = await t.open(lab, { ...size, dark });
   await screen.showPanel('Studies');
   await screen.page.locator('.plot-marker').first().waitFor();

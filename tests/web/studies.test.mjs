@@ -12,7 +12,7 @@ async function chosen(t) {
   const lab = await t.lab('scenes/rod.yaml');
   const screen = await t.open(lab, { width: 1600, height: 1000 });
   await screen.showPanel('Studies');
-  await screen.page.getByRole('navigation', { name: 'Studies' }).getByRole('button', { name: /quick/ }).click();
+  await screen.page.getByRole('navigation', { name: 'Studies' }).getByRole('button', { name: /brief/ }).click();
   const study = screen.page.getByRole('article', { name: 'Study' });
   await study.getByRole('heading', { name: 'Time by recursion depth and index' }).waitFor();
   return { lab, screen, study };
@@ -37,7 +37,7 @@ const small = (dialog) =>
   );
 
 const rowsOf = async (lab) =>
-  (await readFile(join(lab.folder, 'results/quick/rows.csv'), 'utf8')).trim().split('\n').slice(1);
+  (await readFile(join(lab.folder, 'results/brief/rows.csv'), 'utf8')).trim().split('\n').slice(1);
 /** The rows without warm-ups, which a resumed run repeats. */
 const measured = (rows) => rows.filter((row) => row.split(',')[4] === '0');
 
@@ -66,7 +66,7 @@ export const cases = {
     const all = await rowsOf(lab);
     t.equal(measured(all).length, ROWS, 'rows at the end');
     t.equal(all.slice(0, some.length), some, 'the rows of the first run are unchanged');
-    const report = await lab.get('/api/studies/quick');
+    const report = await lab.get('/api/studies/brief');
     t.equal([report.cells_done, report.marked], [CELLS, 0], 'cells done, rows of another film');
     // One line per depth or index with four markers each, and one in the legend.
     t.equal(await plot.locator('.plot-series .plot-marker').count(), CELLS + 4, 'markers in the figure');
@@ -74,14 +74,14 @@ export const cases = {
     const complete = study.getByRole('button', { name: 'Complete', exact: true });
     t.check(await complete.isDisabled(), 'a complete study cannot be started again');
     t.equal(await study.getByRole('button', { name: 'Measure the missing rows' }).count(), 0, 'buttons that measure');
-    t.match(await study.locator('.facts').first().innerText(), /results\/quick/, 'the results folder');
+    t.match(await study.locator('.facts').first().innerText(), /results\/brief/, 'the results folder');
     t.equal(
       await study.locator('.notice.warning').count(),
       report.disturbed ? 1 : 0,
       `notices of ${report.disturbed} disturbed rows`,
     );
 
-    const summary = (await lab.run('study', 'summary', 'studies/quick.study'))
+    const summary = (await lab.run('study', 'summary', 'studies/brief.study'))
       .trim()
       .split('\n')
       .map((line) => line.split('\t'));
@@ -127,8 +127,8 @@ export const cases = {
 
     await study.getByText('Raw rows', { exact: true }).click();
     for (const [label, name, bytes] of [
-      ['rows as CSV', 'quick-rows.csv', await readFile(join(lab.folder, 'results/quick/rows.csv'), 'utf8')],
-      ['summary as TSV', 'quick.tsv', await lab.run('study', 'summary', 'studies/quick.study')],
+      ['rows as CSV', 'brief-rows.csv', await readFile(join(lab.folder, 'results/brief/rows.csv'), 'utf8')],
+      ['summary as TSV', 'brief.tsv', await lab.run('study', 'summary', 'studies/brief.study')],
     ]) {
       const saved = screen.page.waitForEvent('download');
       await study.getByRole('button', { name: `Save ${label}` }).click();
@@ -146,8 +146,8 @@ export const cases = {
       await compare.getByLabel('Compare', { exact: true }).selectOption(what);
       await compare.getByLabel('A', { exact: true }).selectOption(a);
       await compare.getByLabel('B', { exact: true }).selectOption(b);
-      const said = JSON.parse(await lab.run('study', 'compare', 'studies/quick.study', ...sides, '--json'));
-      const reply = await lab.get(`/api/studies/quick/compare?a=${sides[0]}&b=${sides[1]}`);
+      const said = JSON.parse(await lab.run('study', 'compare', 'studies/brief.study', ...sides, '--json'));
+      const reply = await lab.get(`/api/studies/brief/compare?a=${sides[0]}&b=${sides[1]}`);
       t.equal(reply, said, `the comparison of ${sides} is that of the program`);
       const words = compare.getByText(/^.*B takes .* times as long as A/);
       await words.waitFor();
@@ -159,7 +159,7 @@ export const cases = {
       await t.axe(screen, what);
       await t.picture(screen, `study-compare-${a}`);
     }
-    const outside = await lab.ask('GET', '/api/studies/quick/compare?a=/etc,cell=0&b=cell=1');
+    const outside = await lab.ask('GET', '/api/studies/brief/compare?a=/etc,cell=0&b=cell=1');
     t.equal(outside.status, 400, 'a side in another folder');
 
     for (const [format, start] of [
@@ -169,7 +169,7 @@ export const cases = {
       const saved = screen.page.waitForEvent('download');
       await study.getByRole('button', { name: `Save figure as ${format}` }).click();
       const file = await saved;
-      t.equal(file.suggestedFilename(), `quick.${format.toLowerCase()}`, 'name of the saved figure');
+      t.equal(file.suggestedFilename(), `brief.${format.toLowerCase()}`, 'name of the saved figure');
       const bytes = await readFile(await file.path(), 'latin1');
       t.equal(bytes.slice(0, start.length), start, `the saved figure is ${format}`);
     }
@@ -278,9 +278,9 @@ export const cases = {
     await facts.waitFor();
     t.match(await facts.innerText(), /Cells\s+6\s+Rows\s+12\s+Time\s+.*\d+ (ms|s)/, 'the estimate');
     await t.axe(screen, 'the form with an estimate');
-    t.equal((await lab.get('/api/files')).studies, ['studies/quick.study'], 'an estimate writes nothing');
+    t.equal((await lab.get('/api/files')).studies, ['studies/brief.study'], 'an estimate writes nothing');
 
-    await dialog.getByLabel('File', { exact: true }).fill('studies/quick');
+    await dialog.getByLabel('File', { exact: true }).fill('studies/brief');
     t.equal(await facts.count(), 0, 'a changed form has no estimate');
     await button('Save').click();
     await alert(dialog.locator('.form-part').first()).waitFor();
