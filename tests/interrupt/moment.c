@@ -1,10 +1,10 @@
 /* moment SIGNAL AFTER_S COMMAND...: runs a command in a process group of its own, sends the group a signal AFTER_S
  * seconds later, as a terminal does, and waits for the command's end. Prints one line: milliseconds from the signal to
  * the end (- if it ended before), milliseconds of CPU time that the command itself used in between (all threads; on a
- * busy machine the better measure of how soon it reacts), the exit code (-number if the signal itself ended it), seconds
- * that it ran, its peak memory in KiB, and seconds of CPU time in all. SIGNAL 0 sends none: how long does the command
- * take? A command that does not end within ten minutes is killed (code -9). Its standard output goes to the file
- * "out". */
+ * busy machine the better measure of how soon it reacts), the exit code (-number if the signal itself ended it),
+ * seconds that it ran, its peak memory in KiB, and seconds of CPU time in all. SIGNAL 0 sends none: how long does the
+ * command take? A command that does not end within ten minutes is killed (code -9). Its standard output goes to the
+ * file "out". */
 #define _GNU_SOURCE
 #include <errno.h>
 #include <poll.h>
