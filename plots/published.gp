@@ -5,7 +5,7 @@
 # needs: tables/triangles.tsv cpu_s_median
 # needs: tables/coverage.tsv cpu_s_median
 # needs: tables/crowding.tsv cpu_s_median
-width = 658; height = 205
+width = 658; height = 222
 load "plots/style.gp"
 
 # Columns of the ends of a cell's median: an interval, or the range of fewer than six rows.
@@ -21,18 +21,18 @@ n_of(study) = first(table(study), "", "n")
 
 set datafile separator whitespace
 set label 9999 font ",6.5"
-set multiplot layout 1,4 margins 0.045,0.995,0.17,0.92 spacing 0.042
+set multiplot layout 1,4 margins 0.058,0.995,0.25,0.92 spacing 0.042
 set key off
 set yrange [0:*]
 set grid ytics lc rgb pale lw 0.5 dt solid
 set tics font ",7"
 set title font ",7.5" offset 0,-0.7
-set xlabel offset 0,0.5
+set xlabel offset 0,0.5 font ",7.5"
 
 # a: recursion depth
 theirs_1 = theirs("depth", "depth cpu_s")
 ours_1 = ours("depth", "", "render.depth")
-set label 10 "CPU time / first value" at screen 0.008,0.55 center rotate
+set label 10 "CPU time / first value" at screen 0.008,0.55 center rotate font ",7.5"
 set title sprintf("a  recursion depth (n = %d)", n_of("depth"))
 set xrange [-0.3:8.5]
 set xtics 2
