@@ -196,8 +196,8 @@ function statements(    unlit, gouraud, phong, where, row, share, least, most, n
     least = 2
     for (row = 1; row <= load("triangles"); row++)
         if (T["triangles", row, "model.visible"] == "on" && T["triangles", row, "render.accel"] ~ /octant|bvh/ &&
-            known(T["triangles", row, "visibility_s_sum"]) != "") {
-            share = T["triangles", row, "visibility_s_sum"] / T["triangles", row, "cpu_s_median"]
+            known(T["triangles", row, "visibility_s_sum/wall_s_median"]) != "") {
+            share = T["triangles", row, "visibility_s_sum/wall_s_median"]
             least = share < least ? share : least
             most = share > most ? share : most
         }

@@ -124,6 +124,8 @@ ln -s "$root"/results/reference/{depth,threads,triangles,coverage,crowding,metho
 experiments/tables.sh "$work/page" depth threads triangles coverage crowding methods lighting shading
 experiments/report.sh "$work/page" >"$work/said"
 equal "page: status 0" "$?" 0
+empty "page: every statement has its number" \
+    "$(sed -n '/^Said in the reports/,/^$/p' "$work/said" | grep ' -$')"
 empty "page: at most 100 columns" "$(awk 'length($0) > 100' "$work/said")"
 ours() { # STUDY CELL BASE COLUMN
     awk -F '\t' -v cell="$2" -v base="$3" -v column="$4" 'NR == 1 { for (i = 1; i <= NF; i++) at[$i] = i; next }
