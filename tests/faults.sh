@@ -29,7 +29,7 @@ bash tests/faults/template.sh "$work/template" || exit 1
 without='^#'
 command -v gnuplot >/dev/null || without="$without| gnuplot "
 some=memory,thread,open-emfile,read-eio,write-enospc,fsync-eio,rename-eio
-[[ ${FAULTS_EVERY:-24} == 1 ]] || FAULTS_KINDS=${FAULTS_KINDS:-$some}
+[[ ${FAULTS_EVERY:-96} == 1 ]] || FAULTS_KINDS=${FAULTS_KINDS:-$some}
 jobs=${FAULTS_JOBS:-$(nproc)} only=${FAULTS_ONLY:-}
 grep -Ev "$without" tests/faults/commands.txt | awk -v jobs="$jobs" -v only="${only// /,}" -v folder="$work" '
     only == "" || index("," only ",", "," $1 ",") { print >(folder "/table." n++ % jobs) }'
@@ -37,7 +37,7 @@ started=()
 for table in "$work"/table.*; do
     own=$work/work.${table##*.}
     mkdir "$own"
-    "$build/faults/faults" --every "${FAULTS_EVERY:-24}" --depth "${FAULTS_DEPTH:-5}" \
+    "$build/faults/faults" --every "${FAULTS_EVERY:-96}" --depth "${FAULTS_DEPTH:-5}" \
         ${FAULTS_KINDS:+--kinds "${FAULTS_KINDS// /,}"} --shown "${FAULTS_SHOWN:-5}" \
         --library "$build/faults/preload.so" \
         --work "$own" --template "$work/template" "$table" "cuvette=$CUVETTE" "engine=$build/faults/engine_user" \

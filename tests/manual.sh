@@ -118,7 +118,8 @@ blocks() { # FILE: the lines of its examples, continued lines joined
 small() { # a command line with small images of few paths and photons
     local less='--set=render.width=40 --set=render.height=30 --set=render.paths=2 --set=render.photons=2000'
     sed -E "s/^cuvette (render|animate) /cuvette \1 $less /
-        s/^(cuvette animate .*)/\1 --duration 0.08/; s/ \| (jq|ffmpeg) .*//"
+        s/^(cuvette animate .*)/\1 --duration 0.08/; s/ \| (jq|ffmpeg) .*//
+        s/soup.count=[0-9]*/soup.count=20000/"
 }
 try() { # COMMAND LINE
     bash -c "set -e -o pipefail; $1" >said 2>&1 </dev/null
@@ -133,10 +134,14 @@ done)"
 
 # The study in cuvette-tour(7).
 sed 's/\\-/-/g' "$manual/man7/cuvette-tour.7" | awk '/^study: / {on = 1} /^\.EE/ {on = 0} on' >experiments/oils.study
+tried=()
 for page in "$manual"/man[157]/*; do
     title=EXAMPLES
     [[ $page == */cuvette-tour.7 ]] && title=
     while read -r line; do
+        [[ " ${tried[*]} " != *" $line; "* ]] || continue
+        tried+=("$line;")
+        [[ $line != "cuvette lesson check" || ${CHECK:-} ]] || continue # tests/test_lesson.c measures them
         try "$line"
     done < <(section "$title" "$page" | blocks | grep -E '^(cuvette|cat|awk) ' | grep -v '^cuvette lab' | small)
 done

@@ -1,7 +1,7 @@
 #!/bin/bash
 # The documents against the project: linked files exist, every command of README.md works as printed, and
 # results/README.md describes every column that a study writes. tests/readme.sh [PROGRAM]; needs the compiler (CC) for
-# tests/json_get.c. CHECK=1 also builds and serves the site. One line per check ("ok ...", "not ok ...").
+# tests/json_get.c. CHECK=1 also builds and serves the site, and runs a slow command as it stands. One line per check ("ok ...", "not ok ...").
 set -uo pipefail
 
 root=$(cd "$(dirname "${BASH_SOURCE[0]}")/.." && pwd)
@@ -147,6 +147,7 @@ exceptions=(
     'import cuvette*|python|it needs cffi, NumPy and pandas'
     'cuvette: *|error|not a command, but an error that the program prints'
     'cuvette lab*|serve|a server'
+    'cuvette render experiments/scenes/caustic.yaml *|fewer|as it stands it takes a quarter of a minute'
     'cuvette study run experiments/depth.study|small|as it stands it takes two minutes; its frames are smaller'
 )
 python=python3
@@ -195,6 +196,10 @@ command() { # TEXT: a line of README.md, or a text in Python
     skip:*) skip "$line: $reason" ;;
     plan:*) try "make -n${line#make}" ;;
     serve:*) serve "$line" ;;
+    fewer:*)
+        [[ ${CHECK:-} ]] || line+=' --set=render.photons=20000 --set=render.samples=1'
+        try "$line"
+        ;;
     small:*)
         sed -i 's/^set:$/set:\n  render.width: 80\n  render.height: 60/' experiments/depth.study
         try "$line"

@@ -12,6 +12,7 @@
 #include "render/shade/area_lights.h"
 #include "render/shade/lamp_shape.h"
 #include "scene/model/scene.h"
+#include "whole.h"
 
 #define PI 3.14159265358979323846
 #define assert_near(a, b, tolerance)                                    \
@@ -197,7 +198,8 @@ static void photons_leave_a_flat_lamp(void **state)
                           ", slab: {shape: box, position: [0, 2, 0], size: [1.5, 1, 1.5], transparency: 1, ior: 1.6}";
     const char *photons = "render.depth=8 render.caustics=photons render.photons=2000000 camera.position=0.5,0.3,0 "
                           "camera.fov_deg=20 render.paths=16 render.samples=16";
-    for (int k = 1; k < 3; k++) { /* random paths also have light that the floor and the slab exchange */
+    for (int k = is_whole() ? 1 : 2; k < 3;
+         k++) { /* random paths also have light that the floor and the slab exchange */
         assert_near(mean_of(integrators[k], disc, slab, photons), expected, 0.01 * expected);
         assert_near(mean_of(integrators[k], rectangle, slab, photons), expected, 0.01 * expected);
     }

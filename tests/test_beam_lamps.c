@@ -10,6 +10,7 @@
 #include "photon_fixture.h"
 #include "scene/model/edit/edit.h"
 #include "scene/model/scene.h"
+#include "whole.h"
 #include "zbuffer_fixture.h"
 
 #include <stdlib.h>
@@ -218,6 +219,7 @@ static void a_tilted_plate_displaces_the_spot(void **state)
 /* Irradiance of parallel light on an inclined surface, E = P cos i / A (Hecht, Optics, 3.3.1), seen along the beam. */
 static void an_inclined_plane_gets_the_cosine(void **state)
 {
+    ONLY_IN_CHECK();
     (void)state;
     scene *s = spot("kind: bundle, width: 1.2", "");
     const double area = PI * 0.36;

@@ -261,6 +261,7 @@ static void invalid_sides_are_refused(void **state)
  * exceeds 3 with 1.6%. */
 static void equal_sides_rarely_differ(void **state)
 {
+    ONLY_IN_CHECK();
     const fixture *f = *state;
     const size_t trials = is_whole() ? 90 : 10, most = is_whole() ? 14 : 3;
     size_t wrong = 0;

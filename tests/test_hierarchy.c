@@ -12,6 +12,7 @@
 #include "base/isa.h"
 #include "base/single.h"
 #include "hierarchy_scenes.h"
+#include "whole.h"
 
 #define COUNT(a) (sizeof(a) / sizeof((a)[0]))
 enum { BATCH = 128 };
@@ -103,7 +104,7 @@ static void every_hierarchy_gives_the_same_hits(void **state)
 {
     (void)state;
     uint64_t seed = 4;
-    for (int scene = 0; scene < effort(200); scene++)
+    for (int scene = 0; scene < effort(trials_of(200)); scene++)
         one_scene(&seed, 5000);
 }
 

@@ -12,6 +12,7 @@
 #include "web/live/render_worker.h"
 #include "web/live/passes.h"
 #include "scene/model/scene.h"
+#include "whole.h"
 #include <pthread.h>
 #include <stdatomic.h>
 #include <sys/resource.h>
@@ -404,7 +405,8 @@ static void *read_repeatedly(void *of)
 static void readers_get_only_loaded_scenes(void **state)
 {
     (void)state;
-    enum { READERS = 6, CHANGES = 300 };
+    enum { READERS = 6 };
+    const int changes = trials_of(300);
     static const char ring[] = "render: {width: 8, height: 8}\ncamera: {position: [0, 0, -5], target: [0, 0, 0]}\n"
                                "meshes: {ring: {generate: torus}}\nsolids: {body: {shape: mesh, mesh: ring}}\n";
     studio s;
@@ -417,7 +419,7 @@ static void readers_get_only_loaded_scenes(void **state)
         readers[i] = (reader){.s = &s, .ends = &ends};
         assert_int_equal(pthread_create(&thread[i], NULL, read_repeatedly, &readers[i]), 0);
     }
-    for (int i = 0; i < CHANGES; i++) {
+    for (int i = 0; i < changes; i++) {
         const shared_image *shown;
         diagnostic why;
         char text[48];

@@ -13,6 +13,7 @@
 #include "ray_fixture.h"
 #include "room_fixture.h"
 #include "solid_reference.h"
+#include "whole.h"
 
 static solid_shape lens_of(double radius_1, double radius_2, double thickness, double diameter)
 {
@@ -72,11 +73,11 @@ static solid_shape placed_lens(uint64_t *seed)
 static void crossings_of_random_lines_agree_with_quadruple_precision(void **state)
 {
     (void)state;
-    enum { RAYS = 60000 };
+    const int rays = is_whole() ? 60000 : 12000;
     uint64_t seed = 1;
     double worst = 0.0, worst_along = 0.0;
     long crossings = 0, with_four = 0, with_six = 0, unlike = 0;
-    for (int ray = 0; ray < RAYS; ray++) {
+    for (int ray = 0; ray < rays; ray++) {
         solid_shape s = placed_lens(&seed);
         const bool thin = ray % 4 == 0 && s.radius_1 < 0.0 && s.radius_2 > 0.0;
         if (thin)
@@ -117,9 +118,9 @@ static void crossings_of_random_lines_agree_with_quadruple_precision(void **stat
     print_message(
         "%d rays, %ld crossings, %ld rays with four, %ld with six, %ld grazing ones that differ; errors are at "
         "most %.3f of the bound for points, %.3f for distances\n",
-        RAYS, crossings, with_four, with_six, unlike, worst, worst_along);
+        rays, crossings, with_four, with_six, unlike, worst, worst_along);
     assert_true(worst <= 1.0 && worst_along <= 1.0);
-    assert_true(with_six > 10 && with_four > RAYS / 500 && crossings > RAYS / 2);
+    assert_true(with_six > rays / 6000 && with_four > rays / 500 && crossings > rays / 2);
 }
 
 /* Rays that start inside, or reflect within a lens, stay on its surface and alternate between inside and outside. */
@@ -153,7 +154,7 @@ static void reflected_rays_stay_within_a_lens(void **state)
 static void volumes_equal_those_of_spherical_caps(void **state)
 {
     (void)state;
-    enum { POINTS = 200000 };
+    const int points = trials_of(200000);
     static const double radii[][2] = {{1.0, -1.5}, {-1.0, 1.5}, {1.0, 1.5}, {0.0, -0.9}, {0.5, -0.5}};
     uint64_t seed = 3;
     for (size_t i = 0; i < sizeof radii / sizeof *radii; i++) {
@@ -174,7 +175,7 @@ static void volumes_equal_those_of_spherical_caps(void **state)
         const bounds3 box = shape_world_box(&s);
         const vec3 size = vec3_sub(box.high, box.low);
         int inside = 0;
-        for (int k = 0; k < POINTS; k++) {
+        for (int k = 0; k < points; k++) {
             const vec3 p = {box.low.x + size.x * random_real(&seed, 0.0, 1.0),
                             box.low.y + size.y * random_real(&seed, 0.0, 1.0),
                             box.low.z + size.z * random_real(&seed, 0.0, 1.0)};
@@ -185,8 +186,8 @@ static void volumes_equal_those_of_spherical_caps(void **state)
             inside += in;
         }
         const double share = volume / (size.x * size.y * size.z);
-        if (!(fabs((double)inside / POINTS - share) < 4.0 * sqrt(share * (1.0 - share) / POINTS)))
-            fail_msg("lens %zu: %.6g of the box instead of %.6g", i, (double)inside / POINTS, share);
+        if (!(fabs((double)inside / points - share) < 4.0 * sqrt(share * (1.0 - share) / points)))
+            fail_msg("lens %zu: %.6g of the box instead of %.6g", i, (double)inside / points, share);
         scene_geometry_destroy(a);
     }
 }

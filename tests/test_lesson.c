@@ -47,7 +47,7 @@ static void lessons_agree_with_theory(void **state)
     diagnostic why = {.what = ""};
     assert_int_equal(lesson_list_find("experiments/lessons", &all, &why), STATUS_OK);
     assert_true(all.count >= 8);
-    for (size_t i = 0; i < all.count; i++) {
+    for (size_t i = 0; i < all.count; i += is_whole() ? 1 : 3) {
         lesson *l = NULL;
         if (lesson_read(all.path[i], &l, &why) != STATUS_OK)
             fail_msg("%s:%ld:%ld: %s", why.file, why.line, why.column, why.what);

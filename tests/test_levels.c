@@ -11,6 +11,7 @@
 #include "measure/quantiles.h"
 #include "measure/statistics.h"
 #include "random_stream.h"
+#include "whole.h"
 #include <math.h>
 #include <string.h>
 
@@ -101,8 +102,8 @@ static double coverage(size_t processes, size_t repetitions, bool two, bool pair
     static drawn a, b;
     uint64_t seed = 7 + processes;
     size_t inside = 0;
-    enum { TRIALS = 400 };
-    for (size_t trial = 0; trial < TRIALS; trial++) {
+    const size_t trials = (size_t)(is_whole() ? 400 : 100);
+    for (size_t trial = 0; trial < trials; trial++) {
         level_interval interval;
         draw_sample(&a, &seed, processes, repetitions, 0, between, 1);
         draw_sample(&b, &seed, processes, repetitions, two ? 0.5 : 0, between, 1);
@@ -118,10 +119,10 @@ static double coverage(size_t processes, size_t repetitions, bool two, bool pair
         inside += interval.low <= (two ? 0.5 : 0) && (two ? 0.5 : 0) <= interval.high;
         assert_true(interval.low <= interval.value && interval.value <= interval.high);
     }
-    return (double)inside / TRIALS;
+    return (double)inside / (double)trials;
 }
 
-/* Four standard errors of a share of 400 at 0.95 are 0.044. */
+/* Four standard errors of a share of 400 at 0.95 are 0.044, of 100 0.088. */
 static void intervals_cover_the_truth(void **state)
 {
     (void)state;
@@ -134,7 +135,7 @@ static void intervals_cover_the_truth(void **state)
     for (size_t i = 0; i < sizeof cases / sizeof *cases; i++) {
         const double share =
             coverage(cases[i].processes, cases[i].repetitions, cases[i].two, cases[i].paired, cases[i].between);
-        if (share < 0.905 || share > 0.996)
+        if (share < (is_whole() ? 0.905 : 0.86) || (is_whole() && share > 0.996))
             fail_msg("case %zu covers %.3f", i, share);
     }
 }

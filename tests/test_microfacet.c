@@ -9,6 +9,7 @@
 #include "optics/microfacet.h"
 #include "random_stream.h"
 #include "walter.h"
+#include "whole.h"
 
 #define COUNT(a) (sizeof(a) / sizeof((a)[0]))
 #define assert_near(a, b, tolerance) assert_true(fabs((a) - (b)) <= (tolerance))
@@ -80,7 +81,7 @@ static void drawn_normals_have_their_density(void **state)
     (void)state;
     enum { GRID = 512, MOMENTS = 10 };
     for (size_t a = 0; a < COUNT(alphas); a++)
-        for (size_t k = 0; k < COUNT(angles); k++) {
+        for (size_t k = is_whole() ? 0 : a % 2; k < COUNT(angles); k += is_whole() ? 1 : 2) {
             facets f = {alphas[a], at_angles(angles[k], 2.1), 0};
             double sum[MOMENTS] = {0.0};
             for (int c = 0; c < GRID * GRID; c++) {
@@ -214,7 +215,7 @@ static void albedos_are_those_of_the_model(void **state)
 {
     (void)state;
     for (size_t k = 0; k < 4; k++)
-        for (size_t b = 0; b < COUNT(media); b++) {
+        for (size_t b = is_whole() ? 0 : k % 2; b < COUNT(media); b += is_whole() ? 1 : 2) {
             double before = 1.0;
             for (size_t a = 1; a < COUNT(alphas); a++) {
                 const scattering s = {alphas[a], at_angles(angles[k], 0.6), media[b]};

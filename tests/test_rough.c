@@ -11,6 +11,7 @@
 #include "optics/multilayer.h"
 #include "path_fixture.h"
 #include "walter.h"
+#include "whole.h"
 
 #define COUNT(a) (sizeof(a) / sizeof((a)[0]))
 
@@ -105,7 +106,7 @@ static void a_white_sky_shows_the_albedo(void **state)
     scene *s = scene_from(plane_scene);
     set_all(s, "background.color=1,1,1");
     for (size_t a = 0; a < COUNT(alphas); a++)
-        for (size_t c = 0; c < COUNT(cosines); c++) {
+        for (size_t c = is_whole() ? 0 : a % 2; c < COUNT(cosines); c += is_whole() ? 1 : 2) {
             model m = {alphas[a], towards_eye(cosines[c]), perfect_mirror, NULL, in};
             set_number(s, "floor.roughness", m.alpha);
             look_from(s, cosines[c]);

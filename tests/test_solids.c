@@ -407,7 +407,7 @@ static void along_an_axis(const solid_shape *s, const scene_geometry *a, uint64_
 static void axis_aligned_rays_agree_with_quadruple_precision(void **state)
 {
     (void)state;
-    for_all_shapes(along_an_axis, 800);
+    for_all_shapes(along_an_axis, trials_of(800));
 }
 
 /* Past a point of the surface in its tangent plane, at a height from 1e-14 to 1 above or below it. */

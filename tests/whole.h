@@ -10,10 +10,10 @@ static inline bool is_whole(void)
     return getenv("CHECK") && *getenv("CHECK");
 }
 
-/* A quarter of the random trials in `make test`: the first ones of the same stream. */
+/* A tenth of the random trials in `make test`: the first ones of the same stream. */
 static inline int trials_of(int whole)
 {
-    return is_whole() ? whole : whole / 4;
+    return is_whole() ? whole : whole / 10;
 }
 
 /* The first statement of a case that is left out by `make test`. */

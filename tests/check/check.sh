@@ -50,7 +50,7 @@ slices() {
     printf 'mutants\tMUTANT_SECONDS=250 tests/mutants/mutants.sh\n'
 }
 # Tests that are shorter in `make test`: scripts look at the variable CHECK, programs include whole.h.
-mapfile -t whole < <(grep -lE '\{CHECK:-|^#include "whole.h"' tests/*.sh tests/test_*.c |
+mapfile -t whole < <(grep -lE '\{CHECK:[-+]|^#include "whole.h"' tests/*.sh tests/test_*.c |
     sed 's,tests/,,; s,^test_,,; s,\.[a-z]*$,,')
 
 sources() {
