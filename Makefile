@@ -430,7 +430,7 @@ tested = $(build)/cuvette $(build)/$(soname) $(build)/engine/libcuvette.a $(buil
   $(if $(filter release,$(config)),$(fault_tools))
 test: $(selected_programs) $(build)/cuvette-import $(if $(selected_scripts),$(tested)) ## build and run every test; only=NAME for tests/test_NAME.c and tests/NAME.sh alone
 	@LAWS_SCENES='$(test_scenes)' ACTS_SLICE='$(ACTS_SLICE)' CC='$(CC)' BUILD='$(build)' CONFIG='$(config)' CUVETTE='$(abspath $(build)/cuvette)' CUVETTE_IMPORT='$(abspath $(build)/cuvette-import)' $(kernel_environment) \
-	  tests/run $(selected_programs) $(selected_scripts)
+	  tests/run $(selected_scripts) $(selected_programs)
 
 # Documents generated from the list of quantities (src/job/quantities.c), the table of parameters and results/README.md;
 # tests compare them. A generated part of a page is between its comments "begin NAME" and "end NAME".

@@ -1,6 +1,6 @@
 #!/bin/bash
 # The documentation as HTML (make doc): complete, well formed, every link and anchor leads somewhere, nothing is loaded
-# from elsewhere; with CHECK=1 also the same bytes twice, and beside a laboratory. tests/doc.sh [PROGRAM]; skipped
+# from elsewhere; with CHECK=1 also the same bytes twice, and next to a laboratory. tests/doc.sh [PROGRAM]; skipped
 # without the tools of make setup-doc.
 set -uo pipefail
 

@@ -1,9 +1,9 @@
 #!/bin/bash
-# Fault injection: makes allocations, threads and system calls fail in each command of tests/faults/commands.txt, one a
-# run, and judges how the command ends (tests/faults/judge.h). One line for each command and kind of fault ("ok ...",
-# "not ok ..."). A part of the sites, unless FAULTS_EVERY=1: every FAULTS_EVERYth, and call stacks count as the same
-# when their FAULTS_DEPTH innermost frames are (0: all frames). FAULTS_ONLY, FAULTS_KINDS: names, separated by commas.
-# FAULTS_TABLE: a file for the table of verdicts.
+# Fault injection: makes allocations, threads and system calls fail in each command of tests/faults/commands.txt, one
+# a run, and judges how the command ends (tests/faults/judge.h). One line for each command and kind of fault ("ok
+# ...", "not ok ..."). A part of the sites, unless FAULTS_EVERY=1: of every second command, every FAULTS_EVERYth site;
+# and call stacks count as the same when their FAULTS_DEPTH innermost frames are (0: all frames). FAULTS_ONLY,
+# FAULTS_KINDS: names, separated by commas. FAULTS_TABLE: a file for the table of verdicts.
 set -uo pipefail
 root=$(cd "$(dirname "${BASH_SOURCE[0]}")/.." && pwd)
 cd "$root" || exit 1
@@ -30,8 +30,12 @@ without='^#'
 command -v gnuplot >/dev/null || without="$without| gnuplot "
 some=memory,thread,open-emfile,read-eio,write-enospc,fsync-eio,rename-eio
 [[ ${FAULTS_EVERY:-96} == 1 ]] || FAULTS_KINDS=${FAULTS_KINDS:-$some}
+every=2
+[[ ${FAULTS_EVERY:-96} != 1 && ! ${FAULTS_ONLY:-} ]] || every=1
 jobs=${FAULTS_JOBS:-$(nproc)} only=${FAULTS_ONLY:-}
-grep -Ev "$without" tests/faults/commands.txt | awk -v jobs="$jobs" -v only="${only// /,}" -v folder="$work" '
+grep -Ev "$without" tests/faults/commands.txt |
+    awk -v every="$every" -v jobs="$jobs" -v only="${only// /,}" -v folder="$work" '
+    number++ % every { next }
     only == "" || index("," only ",", "," $1 ",") { print >(folder "/table." n++ % jobs) }'
 started=()
 for table in "$work"/table.*; do

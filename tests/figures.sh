@@ -2,7 +2,8 @@
 # Every figure of plots/ is drawn, or skipped with a reason, from the reference rows and from rows as bad as they come:
 # one repetition of each cell, all rows disturbed, a group of rows missing, tables without rows, no tables, rows of
 # other machines. A missing column is an error that names figure, table and column; that of a script, script and line.
-# With CHECK=1 each kind is drawn by itself, as PNG and SVG, also without a group of rows, and each column that a figure names is taken away once.
+# With CHECK=1 each kind is drawn by itself, as PNG and SVG, also without a group of rows; and each column that a figure
+# names is taken away once.
 # tests/figures.sh. One line per check ("ok ...", "not ok ...").
 set -uo pipefail
 export LC_ALL=C
@@ -126,10 +127,15 @@ not_drawn() { # those of the figures that are not in `drawn`
 
 formats=svg
 [[ -z ${CHECK:-} ]] || formats=png,svg
-# In the short form good rows give PNG, and bad rows SVG, which takes less time.
-whole_formats=${CHECK:+png,svg}
 measured='$at["warmup"] == 0'
 one="$measured"' && !seen[$at["cell"], ("worker" in at) ? $at["worker"] : ""]++'
+single='NR > 1 {
+    for (name in at) if (name ~ /_(low|high)$/) $at[name] = "NA"
+    if ("n" in at && $at["n"] > 1) $at["n"] = 1
+    if ("others_share" in at) $at["others_share"] = 0.93
+    if ("disturbed" in at) $at["disturbed"] = $at["n"]
+    for (name in at) if (name ~ /^undisturbed_/) $at[name] = name == "undisturbed_n" ? 0 : "NA"
+} { print }'
 disturb='NR > 1 {
     if ("others_share" in at) $at["others_share"] = 0.93
     for (name in at) if (name ~ /^undisturbed_/) $at[name] = name == "undisturbed_n" ? 0 : "NA"
@@ -138,7 +144,7 @@ disturb='NR > 1 {
 
 rows_of whole "$measured"
 verdict $? "tables are made of the reference rows" "$(<"$work/said")"
-all whole "${whole_formats:-png}"
+all whole "$formats"
 # What another machine measured, and what nobody has measured yet.
 empty "whole: every figure is drawn" "$(not_drawn)"
 
@@ -148,8 +154,7 @@ if [[ -n ${CHECK:-} ]]; then
     tables_of disturbed whole "$disturb"
     all disturbed "$formats"
 else
-    rows_of single "$one"
-    tables_of one single "$disturb"
+    tables_of one whole "$single"
     all one "$formats"
 fi
 empty "one: every figure is drawn" "$(not_drawn)"

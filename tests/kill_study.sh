@@ -1,7 +1,7 @@
 #!/bin/bash
-# A study that is killed (SIGKILL) at 5 random times, with CHECK=1 at 20, and resumed each time: no row is lost, duplicated or incomplete,
-# and the final cells equal those of an uninterrupted run. CUVETTE names the program; KILLS is the number of kills,
-# KILL_SEED the seed of their times.
+# A study that is killed (SIGKILL) at 5 random times, with CHECK=1 at 20, and resumed each time: no row is lost,
+# duplicated or incomplete, and the final cells equal those of an uninterrupted run. CUVETTE names the program; KILLS
+# is the number of kills, KILL_SEED the seed of their times.
 set -uo pipefail
 cd "$(dirname "$0")/.." || exit 1
 program=${CUVETTE:-build/cuvette}

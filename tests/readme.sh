@@ -1,7 +1,8 @@
 #!/bin/bash
 # The documents against the project: linked files exist, every command of README.md works as printed, and
 # results/README.md describes every column that a study writes. tests/readme.sh [PROGRAM]; needs the compiler (CC) for
-# tests/json_get.c. CHECK=1 also builds and serves the site, and runs a slow command as it stands. One line per check ("ok ...", "not ok ...").
+# tests/json_get.c. CHECK=1 also builds and serves the site, and runs a slow command as it stands. One line
+# per check ("ok ...", "not ok ...").
 set -uo pipefail
 
 root=$(cd "$(dirname "${BASH_SOURCE[0]}")/.." && pwd)

@@ -150,7 +150,8 @@ for file in "$root"/experiments/*.study "$root"/experiments/full/*.study; do
     clean || check "$(basename "$file") is drawn" false
     drawn=$((drawn + 1))
 done
-check "a figure of each of $drawn studies that have rows" test "$(find reference -name '*.png' -size +2k | wc -l)" = "$drawn"
+found=$(find reference -name '*.png' -size +2k | wc -l)
+check "a figure of each of $drawn studies that have rows" test "$found" = "$drawn"
 for script in reference/*.gp; do
     gnuplot -d -e "output = '$work/again'" "$script" >>warnings 2>&1
 done

@@ -239,7 +239,7 @@ static void beams_have_the_airlight_integral(void **state)
     expect_airlight_from(2.0, "lamp.kind=point cloud.size.z=10 cloud.position=0,0,7", by_point);
 }
 
-/* Narrow, wide, near and far ones, and those beside the path. */
+/* Narrow, wide, near and far ones, and those next to the path. */
 static void extreme_beams_have_the_airlight_integral(void **state)
 {
     ONLY_IN_CHECK();

@@ -11,6 +11,7 @@
 #include "scene/model/params_path.h"
 #include "scene/file/write.h"
 #include "scene/model/scene.h"
+#include "whole.h"
 #include <dirent.h>
 #include <stdlib.h>
 #include <sys/stat.h>
@@ -180,7 +181,8 @@ static size_t carry_row(const scene *s, const char *owner, const param *row)
     char text[64][100], path[200];
     snprintf(path, sizeof path, "%s.%s", owner, row->name);
     size_t count = candidates(row, text, 64), carried = 0;
-    for (size_t i = 0; i < count && carried < 2; i++) {
+    const size_t wanted = is_whole() ? 2 : 1;
+    for (size_t i = 0; i < count && carried < wanted; i++) {
         char *before = NULL, *after = NULL;
         if (!is_right(s, path, text[i]))
             continue;
