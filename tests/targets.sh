@@ -29,8 +29,8 @@ builds test peers/report tests/bench_mesh
 tests_of() { plan test only="$1" | sed -n "s, *tests/run *,,p" | sed "s,$work/build/,,g; s, *\$,,"; }
 equal "only=optics is a program" "$(tests_of optics)" tests/test_optics
 equal "only=cli is a script" "$(tests_of cli)" tests/test_cli.sh
-equal "only=study_plot is both" "$(tests_of study_plot)" "tests/test_study_plot tests/study_plot.sh"
-equal "two names" "$(tests_of "limits optics readme")" "tests/test_optics tests/limits.sh tests/readme.sh"
+equal "only=study_plot is both" "$(tests_of study_plot)" "tests/study_plot.sh tests/test_study_plot"
+equal "two names" "$(tests_of "limits optics readme")" "tests/limits.sh tests/readme.sh tests/test_optics"
 [[ $(plan test only=limits) == *"-o $work/build/cuvette "*"-o $work/build/tests/bench_mesh "* ]]
 verdict $? "only=limits builds what scripts run"
 says=$(plan test only=limit)
