@@ -28,7 +28,8 @@
  * while another function changes it; a change during a render is refused with CUVETTE_BUSY. A motion counts as its
  * scene here. An engine runs one render at a time (else CUVETTE_BUSY). A frame and a query are immutable: any number of
  * threads may use them. Any thread may call cuvette_engine_cancel and cuvette_query_cancel. Callbacks run on the
- * calling thread, never two at once.
+ * calling thread, never two at once. In a child of fork every handle is usable that no thread of the parent was using
+ * at that moment: an engine starts threads of its own there.
  *
  * Geometry. Lengths are in scene units (render.unit_m is the length of one in metres), y is up, angles are in degrees.
  * Pixels are counted from 0, with 0 at the top left; pixel x, y covers the square from x, y to x + 1, y + 1.
@@ -308,7 +309,7 @@ typedef struct cuvette_request {
     size_t size;       /* sizeof(cuvette_request) */
     int width, height; /* of the buffers: must equal the scene's render.width and render.height; 0 without buffers */
     float *rgb;        /* linear RGB, 1.0 is white, row by row from the top; NULL: none. Not negative for an rgb film */
-    size_t rgb_stride; /* floats from one row to the next; 0: 3 * width */
+    size_t rgb_stride; /* floats from one row to the next, at least 3 * width; 0: 3 * width */
     /* the same encoded as sRGB (IEC 61966-2-1), correctly rounded, one byte per channel; NULL: none */
     unsigned char *srgb;
     size_t srgb_stride; /* bytes from one row to the next; 0: 3 * width */

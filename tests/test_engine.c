@@ -12,6 +12,7 @@
 #include "cuvette.h"
 #include "probe_fixture.h"
 #include <stdatomic.h>
+#include <sys/wait.h>
 #include <unistd.h>
 
 static void fine(cuvette_status code, const cuvette_diagnostic *why)
@@ -391,6 +392,76 @@ static void an_image_file_carries_its_scene(void **state)
     unlink(path);
 }
 
+/* Strides whose last row would lie beyond all memory, where an address would overflow into the memory before it. */
+static void impossible_strides_are_refused(void **state)
+{
+    (void)state;
+    enum { W = 16, H = 12, ROW = 3 * W };
+    static float around[3 * ROW * H];
+    static unsigned char bytes_around[3 * ROW * H];
+    float *const rgb = around + ROW * H;
+    unsigned char *const srgb = bytes_around + ROW * H;
+    const size_t wrong[] = {
+        1, ROW - 1, SIZE_MAX, SIZE_MAX - ROW + 1, SIZE_MAX / 2, SIZE_MAX / 4 + 1, (size_t)PTRDIFF_MAX / H + 1};
+    cuvette_diagnostic why;
+    cuvette_engine *engine = make_engine();
+    cuvette_scene *s = rod(W, 2, 1);
+    cuvette_frame *frame, *none;
+    fine(cuvette_engine_render(engine, s, NULL, &frame, &why), &why);
+    for (size_t i = 0; i < COUNT(wrong); i++) {
+        cuvette_request linear = CUVETTE_REQUEST, encoded = CUVETTE_REQUEST;
+        linear.width = encoded.width = W, linear.height = encoded.height = H;
+        linear.rgb = rgb, linear.rgb_stride = wrong[i], encoded.srgb = srgb, encoded.srgb_stride = wrong[i];
+        assert_int_equal(cuvette_engine_render(engine, s, &linear, &none, &why), CUVETTE_BAD_INPUT);
+        assert_non_null(strstr(why.what, "a stride of "));
+        assert_int_equal(cuvette_engine_render(engine, s, &encoded, &none, &why), CUVETTE_BAD_INPUT);
+        assert_int_equal(cuvette_frame_rgb(frame, 0, 0, W, H, rgb, wrong[i], &why), CUVETTE_BAD_INPUT);
+        assert_int_equal(cuvette_frame_srgb(frame, 0, 0, W, H, srgb, wrong[i], &why), CUVETTE_BAD_INPUT);
+    }
+    for (size_t i = 0; i < COUNT(around); i++)
+        assert_true(around[i] == 0.0F && bytes_around[i] == 0);
+    /* one row has no next row */
+    fine(cuvette_frame_rgb(frame, 0, 3, W, 4, rgb, (size_t)PTRDIFF_MAX / sizeof *rgb, &why), &why);
+    cuvette_frame_destroy(frame);
+    cuvette_scene_destroy(s);
+    cuvette_engine_destroy(engine);
+}
+
+/* fork copies the calling thread only: workers and their states are the parent's. */
+static void a_child_of_fork_renders_with_its_parents_engine(void **state)
+{
+    (void)state;
+    static const char *const settings[] = {"on", "off"};
+    for (int threads = 1; threads <= 5; threads += 2)
+        for (size_t k = 0; k < COUNT(settings); k++) {
+            cuvette_diagnostic why;
+            cuvette_engine *engine = make_engine();
+            cuvette_scene *s = rod(16, 4, threads);
+            turn(s, "render.pool", settings[k]);
+            const uint64_t right = hash_of(engine, s);
+            const pid_t child = fork();
+            if (child == 0) {
+                cuvette_frame *frame;
+                alarm(100); /* a thread that does not exist is waited for without end */
+                for (int round = 0; round < 2; round++) {
+                    if (cuvette_engine_render(engine, s, NULL, &frame, &why) != CUVETTE_OK ||
+                        cuvette_frame_hash(frame) != right)
+                        _exit(2);
+                    cuvette_frame_destroy(frame);
+                    cuvette_scene_set_int(s, "render.threads", threads + 1, NULL);
+                }
+                cuvette_engine_destroy(engine);
+                _exit(0);
+            }
+            int ended;
+            assert_int_equal(waitpid(child, &ended, 0), child);
+            assert_true(WIFEXITED(ended) && WEXITSTATUS(ended) == 0);
+            assert_true(hash_of(engine, s) == right);
+            cuvette_scene_destroy(s);
+            cuvette_engine_destroy(engine);
+        }
+}
+
 static void counters_and_pixels_equal_the_renderers(void **state)
 {
     (void)state;
@@ -755,6 +826,8 @@ int main(void)
         cmocka_unit_test(a_texture_from_memory_is_visible),
         cmocka_unit_test(the_film_equals_the_programs_film),
         cmocka_unit_test(an_image_file_carries_its_scene),
+        cmocka_unit_test(impossible_strides_are_refused),
+        cmocka_unit_test(a_child_of_fork_renders_with_its_parents_engine),
         cmocka_unit_test(counters_and_pixels_equal_the_renderers),
         cmocka_unit_test(a_shorter_struct_is_filled_up_to_its_size),
         cmocka_unit_test(each_piece_is_reported_once_and_final),

@@ -18,6 +18,7 @@ typedef struct member {
 
 struct thread_team {
     int size;
+    pid_t process; /* that has the threads: a child of fork has none of them (fork(2)) */
     pthread_mutex_t lock;
     pthread_cond_t begin, end;
     unsigned long run; /* number of the current loop */
@@ -70,7 +71,7 @@ thread_team *thread_team_start(int threads)
     thread_team *t = malloc(sizeof *t + (size_t)threads * sizeof t->members[0]);
     if (!t)
         return NULL;
-    *t = (thread_team){.size = 1};
+    *t = (thread_team){.size = 1, .process = getpid()};
     pthread_mutex_init(&t->lock, NULL);
     pthread_cond_init(&t->begin, NULL);
     pthread_cond_init(&t->end, NULL);
@@ -84,10 +85,23 @@ thread_team *thread_team_start(int threads)
     return t;
 }
 
+/* In a child of fork the caller is alone. */
+static void forget_threads_of_parent(thread_team *t)
+{
+    if (t->process == getpid())
+        return;
+    t->size = 1;
+    t->process = getpid();
+    pthread_mutex_init(&t->lock, NULL);
+    pthread_cond_init(&t->begin, NULL);
+    pthread_cond_init(&t->end, NULL);
+}
+
 void thread_team_stop(thread_team *t)
 {
     if (!t)
         return;
+    forget_threads_of_parent(t);
     pthread_mutex_lock(&t->lock);
     t->quit = true;
     pthread_cond_broadcast(&t->begin);
@@ -107,6 +121,7 @@ int thread_team_size(const thread_team *t)
 
 void thread_team_run(thread_team *t, thread_team_task *task, void *context, size_t count)
 {
+    forget_threads_of_parent(t);
     pthread_mutex_lock(&t->lock);
     t->task = task;
     t->context = context;

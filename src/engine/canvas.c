@@ -2,6 +2,7 @@
 #include "engine/canvas.h"
 #include "base/grow.h"
 
+#include <stdint.h>
 #include <stdlib.h>
 #include <string.h>
 
@@ -10,6 +11,18 @@ enum { CHUNK = 256 /* pixels converted at a time */ };
 static int lesser(int a, int b)
 {
     return a < b ? a : b;
+}
+
+status canvas_stride(size_t *stride, size_t element_bytes, int width, int height, diagnostic *why)
+{
+    const size_t row = 3 * (size_t)width, most = (size_t)PTRDIFF_MAX / element_bytes / (size_t)height;
+    if (*stride == 0)
+        *stride = row;
+    if (*stride >= row && *stride <= most)
+        return STATUS_OK;
+    return diagnose(why, STATUS_BAD_INPUT, "set it to 0, or to the number of elements from one row to the next",
+                    "a stride of %zu is %s", *stride,
+                    *stride < row ? "shorter than a row" : "too large: the last row is beyond all memory");
 }
 
 status canvas_open(const cuvette_request *request, float_environment *host, canvas *c, diagnostic *why)

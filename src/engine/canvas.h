@@ -19,6 +19,11 @@ typedef struct canvas {
     bool out_of_memory;
 } canvas;
 
+/* Checks the caller's stride for height rows of width pixels, in elements of element_bytes; 0 becomes that of
+ * contiguous rows. STATUS_BAD_INPUT: shorter than a row, or the last row lies beyond the largest object (PTRDIFF_MAX
+ * bytes). */
+status canvas_stride(size_t *stride, size_t element_bytes, int width, int height, diagnostic *why);
+
 status canvas_open(const cuvette_request *request, float_environment *host, canvas *c, diagnostic *why);
 void canvas_close(canvas *c);
 

@@ -131,15 +131,8 @@ static status read_request(const cuvette_request *given, const scene *s, cuvette
                         "make the buffers as large as the image, or set render.width and render.height",
                         "the buffers are %d x %d, but the image is %lld x %lld", out->width, out->height,
                         (long long)s->render.width, (long long)s->render.height);
-    const size_t row = 3 * (size_t)out->width;
-    if (out->rgb_stride == 0)
-        out->rgb_stride = row;
-    if (out->srgb_stride == 0)
-        out->srgb_stride = row;
-    if (out->rgb_stride < row || out->srgb_stride < row)
-        return diagnose(why, STATUS_BAD_INPUT, "set it to 0, or at least 3 times the width",
-                        "the request's stride is shorter than a row");
-    return STATUS_OK;
+    TRY(canvas_stride(&out->rgb_stride, sizeof *out->rgb, out->width, out->height, why));
+    return canvas_stride(&out->srgb_stride, sizeof *out->srgb, out->width, out->height, why);
 }
 
 /* Renders the whole image at reduced size. */

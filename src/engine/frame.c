@@ -30,26 +30,22 @@ uint64_t cuvette_frame_hash(const cuvette_frame *frame)
     return frame ? job_account_hash(&frame->account) : 0;
 }
 
-/* *stride: 0 is replaced by that of contiguous rows. */
-static status check_rectangle(const film *f, int x0, int y0, int x1, int y1, size_t *stride, diagnostic *why)
+/* stride, element_bytes: as for canvas_stride. */
+static status check_rectangle(const film *f, int x0, int y0, int x1, int y1, size_t *stride, size_t element_bytes,
+                              diagnostic *why)
 {
-    if (*stride == 0)
-        *stride = 3 * (size_t)(x1 - x0);
     if (x0 < 0 || y0 < 0 || x1 > f->width || y1 > f->height || x0 >= x1 || y0 >= y1)
         return diagnose(why, STATUS_BAD_INPUT, "keep 0 <= x0 < x1 <= width, and y likewise",
                         "an image of %d x %d has no rectangle from %d,%d to %d,%d", f->width, f->height, x0, y0, x1,
                         y1);
-    if (*stride < 3 * (size_t)(x1 - x0))
-        return diagnose(why, STATUS_BAD_INPUT, "set it to 0, or to at least 3 * (x1 - x0) floats",
-                        "a stride of %zu is shorter than a row", *stride);
-    return STATUS_OK;
+    return canvas_stride(stride, element_bytes, x1 - x0, y1 - y0, why);
 }
 
 cuvette_status cuvette_frame_rgb(const cuvette_frame *frame, int x0, int y0, int x1, int y1, float *rgb, size_t stride,
                                  cuvette_diagnostic *why)
 {
     ENGINE_CALL(frame, rgb);
-    const status code = check_rectangle(frame->account.result->img, x0, y0, x1, y1, &stride, &inner);
+    const status code = check_rectangle(frame->account.result->img, x0, y0, x1, y1, &stride, sizeof *rgb, &inner);
     if (code == STATUS_OK)
         film_read(frame->account.result->img, x0, y0, x1, y1, rgb, stride);
     return engine_report(code, &inner, why);
@@ -59,7 +55,7 @@ cuvette_status cuvette_frame_srgb(const cuvette_frame *frame, int x0, int y0, in
                                   size_t stride, cuvette_diagnostic *why)
 {
     ENGINE_CALL(frame, srgb);
-    const status code = check_rectangle(frame->account.result->img, x0, y0, x1, y1, &stride, &inner);
+    const status code = check_rectangle(frame->account.result->img, x0, y0, x1, y1, &stride, sizeof *srgb, &inner);
     if (code == STATUS_OK) {
         codec_bytes bytes;
         codec_bytes_prepare(&bytes);

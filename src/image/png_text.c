@@ -26,6 +26,23 @@ static char *find(const png_library *job, const char *keyword, size_t limit)
     return NULL;
 }
 
+/* Whether a chunk of text (tEXt, zTXt, iTXt) has that keyword: libpng drops one that it cannot expand without a
+ * word. */
+static bool has_keyword(const unsigned char *bytes, size_t size, const char *keyword)
+{
+    const size_t name_size = strlen(keyword) + 1;
+    for (size_t at = 8; size > at && size - at >= 12;) {
+        const size_t length = png_get_uint_32(bytes + at);
+        if (length > size - at - 12)
+            return false;
+        const bool is_text = memcmp(bytes + at + 5, "TXt", 3) == 0 || memcmp(bytes + at + 5, "EXt", 3) == 0;
+        if (is_text && length >= name_size && memcmp(bytes + at + 8, keyword, name_size) == 0)
+            return true;
+        at += 12 + length;
+    }
+    return false;
+}
+
 static status read_text(const void *bytes, size_t size, const char *keyword, size_t limit, char **text, diagnostic *why)
 {
     png_library job = {.bytes = bytes, .size = size};
@@ -39,6 +56,9 @@ static status read_text(const void *bytes, size_t size, const char *keyword, siz
         const char *found = find(&job, keyword, limit);
         if (found && !(*text = strdup(found)))
             code = out_of_memory(why);
+        else if (!found && has_keyword(bytes, size, keyword))
+            code = diagnose(why, STATUS_BAD_INPUT, "copy the file again from where it is whole",
+                            "the text '%s' in this PNG file is damaged, or longer than %zu bytes", keyword, limit);
     }
     png_destroy_read_struct(&job.png, &job.info, NULL);
     return code;

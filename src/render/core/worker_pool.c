@@ -9,6 +9,7 @@
 #include <stdlib.h>
 #include <string.h>
 #include <time.h>
+#include <unistd.h>
 
 enum { STACK_BYTES = 512 * 1024 }; /* not the usual 8 MiB: a pool may have a thousand threads */
 
@@ -22,8 +23,9 @@ typedef struct worker {
 
 struct worker_pool {
     worker **workers;
-    int count;   /* threads in the pool */
-    int running; /* number of workers of this run */
+    int count;     /* threads in the pool */
+    int running;   /* number of workers of this run */
+    pid_t process; /* that has the threads: a child of fork has none of them (fork(2)) */
     worker_pool_task *task;
     void *context;
     _Alignas(64) atomic_int left;
@@ -37,7 +39,20 @@ worker_pool *worker_pool_create(void)
         return NULL;
     memset(p, 0, sizeof *p);
     sem_init(&p->done, 0, 0);
+    p->process = getpid();
     return p;
+}
+
+/* In a child of fork: frees what belonged to threads that exist only in the parent, so that new ones are started. */
+static void forget_threads_of_parent(worker_pool *p)
+{
+    if (p->process == getpid())
+        return;
+    for (int i = 0; i < p->count; i++)
+        free(p->workers[i]);
+    p->count = 0;
+    sem_init(&p->done, 0, 0);
+    p->process = getpid();
 }
 
 static void end_of_task(worker_pool *p)
@@ -135,6 +150,7 @@ static status grow_to(worker_pool *p, int count, diagnostic *why)
 
 status worker_pool_reserve(worker_pool *p, int count, diagnostic *why)
 {
+    forget_threads_of_parent(p);
     const int before = p->count;
     const status s = count > before ? grow_to(p, count, why) : STATUS_OK;
     if (s != STATUS_OK)
@@ -146,6 +162,7 @@ void worker_pool_destroy(worker_pool *p)
 {
     if (!p)
         return;
+    forget_threads_of_parent(p);
     end_workers(p, 0);
     sem_destroy(&p->done);
     free(p->workers);
@@ -198,6 +215,7 @@ static status run_fresh(worker_pool *p, int count, void (*watch)(void *), double
 status worker_pool_run(worker_pool *p, int count, bool keep, worker_pool_task *task, void (*watch)(void *),
                        double every_s, void *context, diagnostic *why)
 {
+    forget_threads_of_parent(p);
     if (keep)
         TRY(worker_pool_reserve(p, count, why));
     p->task = task;

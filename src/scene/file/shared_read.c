@@ -93,7 +93,9 @@ static status read_page(const char *name, const char *bytes, size_t size, scene 
         return no_scene(name, "page", why);
     begin += strlen(SHARED_PAGE_BEGIN);
     const char *end = memmem(begin, (size_t)(bytes + size - begin), SHARED_PAGE_END, strlen(SHARED_PAGE_END));
-    return end ? read_code(name, begin, (size_t)(end - begin), out, why) : no_scene(name, "page", why);
+    if (!end)
+        return diagnose_at(why, name, STATUS_BAD_INPUT, "copy all of it", "the scene in this page is cut short");
+    return read_code(name, begin, (size_t)(end - begin), out, why);
 }
 
 status shared_read_file(const char *name, const char *bytes, size_t size, scene **out, diagnostic *why)
