@@ -194,7 +194,7 @@ static void medians_are_resampled_by_process(void **state)
     size_t inside = 0, inside_without = 0;
     for (size_t processes = 3; processes < 14; processes++) {
         draw_sample(&d, &seed, processes, 3 + processes % 4, 0, 1, 1);
-        assert_int_equal(level_median(&d.sample, 4, &fast, NULL), STATUS_OK);
+        assert_int_equal(level_median(&d.sample, LEVEL_REAL, 4, &fast, NULL), STATUS_OK);
         assert_int_equal(level_bootstrap(&d.sample, NULL, false, pooled_median, NULL, 4, &slow, NULL), STATUS_OK);
         close_to(fast.value, slow.value, 1e-14);
         close_to(fast.low, slow.low, 1e-12);
@@ -202,14 +202,121 @@ static void medians_are_resampled_by_process(void **state)
     }
     for (size_t trial = 0; trial < 400; trial++) {
         draw_sample(&d, &seed, 8, 6, 0, 1, 0.5);
-        assert_int_equal(level_median(&d.sample, trial, &fast, NULL), STATUS_OK);
+        assert_int_equal(level_median(&d.sample, LEVEL_REAL, trial, &fast, NULL), STATUS_OK);
         inside += fast.low <= 0 && 0 <= fast.high;
         const size_t whole[] = {0, 48};
-        assert_int_equal(level_median(&(level_sample){d.values, whole, 1}, trial, &slow, NULL), STATUS_OK);
+        assert_int_equal(level_median(&(level_sample){d.values, whole, 1}, LEVEL_REAL, trial, &slow, NULL), STATUS_OK);
         inside_without += slow.low <= 0 && 0 <= slow.high;
     }
     assert_true(inside >= 362); /* 0.905, as above */
     assert_true(inside_without < 300);
+}
+
+/* --- intervals of medians of times --- */
+
+/* Times of processes around a typical time of 1, whose median is known in closed form or by symmetry. */
+typedef double time_maker(uint64_t *seed, size_t process, size_t processes, double *of_process);
+
+/* 3 % between processes, 3 % within: a quiet machine. */
+static double normal_time(uint64_t *seed, size_t process, size_t processes, double *of_process)
+{
+    (void)process, (void)processes;
+    return 1.0 + 0.03 * *of_process + 0.03 * normal(seed);
+}
+
+/* Log-normal with 50 % within and 50 % between: a busy machine; the median is exp(0). */
+static double skewed_time(uint64_t *seed, size_t process, size_t processes, double *of_process)
+{
+    (void)process, (void)processes;
+    return exp(0.5 * *of_process + 0.5 * normal(seed));
+}
+
+/* Half of the processes are 20 % slower (a memory layout); by symmetry of logarithms the median of all times is the
+ * geometric mean of both modes. */
+static double bimodal_time(uint64_t *seed, size_t process, size_t processes, double *of_process)
+{
+    (void)process, (void)processes;
+    return exp((*of_process > 0 ? 1 : -1) * 0.5 * log(1.2) + 0.05 * normal(seed));
+}
+
+/* The machine gets slower by 10 % from the first process to the last; the median is that of the middle. */
+static double drifting_time(uint64_t *seed, size_t process, size_t processes, double *of_process)
+{
+    const double at = ((double)process + 0.5) / (double)processes - 0.5;
+    return exp(0.1 * at + 0.03 * *of_process + 0.03 * normal(seed));
+}
+
+/* The share of intervals with the true median, 1. None may reach 0. */
+static double median_coverage(time_maker *make, size_t processes, size_t repetitions, size_t trials)
+{
+    static drawn d;
+    uint64_t seed = 17 + processes;
+    size_t inside = 0;
+    for (size_t trial = 0; trial < trials; trial++) {
+        for (size_t p = 0; p < processes; p++) {
+            double of_process = normal(&seed);
+            d.start[p] = p * repetitions;
+            for (size_t i = 0; i < repetitions; i++)
+                d.values[p * repetitions + i] = make(&seed, p, processes, &of_process);
+        }
+        d.start[processes] = processes * repetitions;
+        level_interval interval;
+        assert_int_equal(
+            level_median(&(level_sample){d.values, d.start, processes}, LEVEL_POSITIVE, trial, &interval, NULL),
+            STATUS_OK);
+        assert_true(interval.low > 0 && interval.low <= interval.value && interval.value <= interval.high);
+        inside += interval.low <= 1 && 1 <= interval.high;
+    }
+    return (double)inside / (double)trials;
+}
+
+static void intervals_of_times_cover_the_median(void **state)
+{
+    (void)state;
+    static const struct {
+        const char *name;
+        time_maker *make;
+        double least; /* of the coverage, by number of processes below */
+    } kinds[] = {{"normal", normal_time, 0.90},
+                 {"skewed", skewed_time, 0.90},
+                 {"bimodal", bimodal_time, 0.80},
+                 {"drift", drifting_time, 0.90}};
+    static const size_t processes[] = {3, 6, 12};
+    const size_t trials = is_whole() ? 1000 : 100;
+    for (size_t k = 0; k < 4; k++)
+        for (size_t i = 0; i < 3; i++) {
+            const double share = median_coverage(kinds[k].make, processes[i], 4, trials);
+            print_message("%s times, %zu processes: %.1f %% of the intervals cover the median\n", kinds[k].name,
+                          processes[i], 100 * share);
+            if (share < kinds[k].least - (is_whole() ? 0 : 0.06))
+                fail_msg("%s, %zu processes: %.3f", kinds[k].name, processes[i], share);
+        }
+}
+
+/* Quantities that may be 0, and shares: the interval stays in their range, and has the value. */
+static void intervals_stay_in_the_range_of_their_quantity(void **state)
+{
+    (void)state;
+    static const size_t start[] = {0, 3, 6, 9};
+    static const double waiting[] = {0, 0, 1, 0, 2, 9, 30, 0, 4}, shares[] = {0.9, 0.99, 1, 0.2, 0.95, 1, 0.5, 0.97, 1},
+                        negative[] = {-1, 2, 3, 4, 5, 9, 1, 2, 8}, times[] = {1, 2, 3, 90, 80, 70, 1, 2, 3};
+    level_interval of;
+    assert_int_equal(level_median(&(level_sample){waiting, start, 3}, LEVEL_NOT_NEGATIVE, 1, &of, NULL), STATUS_OK);
+    assert_true(of.low == 0 && of.value == 1 && of.high > 1);
+    assert_int_equal(level_median(&(level_sample){shares, start, 3}, LEVEL_SHARE, 1, &of, NULL), STATUS_OK);
+    assert_true(of.low >= 0 && of.high == 1);
+    /* a positive quantity that is 0 or negative was none */
+    assert_int_equal(level_median(&(level_sample){waiting, start, 3}, LEVEL_POSITIVE, 1, &of, NULL), STATUS_OK);
+    assert_true(of.low == 0);
+    assert_int_equal(level_median(&(level_sample){negative, start, 3}, LEVEL_POSITIVE, 1, &of, NULL), STATUS_OK);
+    assert_true(isfinite(of.low) && of.low < of.value);
+    assert_int_equal(level_median(&(level_sample){times, start, 3}, LEVEL_REAL, 1, &of, NULL), STATUS_OK);
+    assert_true(of.low < 0);
+    const double below = of.value - of.low, above = of.high - of.value;
+    assert_true(fabs(below - above) < 1e-9 * above); /* symmetric */
+    assert_int_equal(level_median(&(level_sample){times, start, 3}, LEVEL_POSITIVE, 1, &of, NULL), STATUS_OK);
+    assert_true(of.low > 0);
+    close_to(of.value / of.low, of.high / of.value, 1e-9 * of.high); /* symmetric as a ratio */
 }
 
 static void the_bootstrap_is_reproducible(void **state)
@@ -270,10 +377,16 @@ static void upper_deviations_are_limits(void **state)
 int main(void)
 {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(quantiles_are_those_of_tables), cmocka_unit_test(variances_are_separated_by_level),
-        cmocka_unit_test(intervals_cover_the_truth),     cmocka_unit_test(levels_matter),
-        cmocka_unit_test(few_values_have_no_interval),   cmocka_unit_test(medians_are_resampled_by_process),
-        cmocka_unit_test(the_bootstrap_is_reproducible), cmocka_unit_test(powers_are_reached),
+        cmocka_unit_test(quantiles_are_those_of_tables),
+        cmocka_unit_test(variances_are_separated_by_level),
+        cmocka_unit_test(intervals_cover_the_truth),
+        cmocka_unit_test(levels_matter),
+        cmocka_unit_test(few_values_have_no_interval),
+        cmocka_unit_test(medians_are_resampled_by_process),
+        cmocka_unit_test(intervals_of_times_cover_the_median),
+        cmocka_unit_test(intervals_stay_in_the_range_of_their_quantity),
+        cmocka_unit_test(the_bootstrap_is_reproducible),
+        cmocka_unit_test(powers_are_reached),
         cmocka_unit_test(upper_deviations_are_limits),
     };
     return cmocka_run_group_tests_name("levels", tests, NULL, NULL);

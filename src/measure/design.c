@@ -77,8 +77,8 @@ static status ratio_claim(const level_sample *a, const level_sample *b, bool pai
 static status processes_claim(const level_sample *a, const level_sample *b, uint64_t seed, int *claim, diagnostic *why)
 {
     level_interval ia, ib;
-    TRY(level_median(a, seed, &ia, why));
-    TRY(level_median(b, seed, &ib, why));
+    TRY(level_median(a, LEVEL_REAL, seed, &ia, why));
+    TRY(level_median(b, LEVEL_REAL, seed, &ib, why));
     *claim = disjoint(ia.low, ia.high, ib.low, ib.high);
     return STATUS_OK;
 }

@@ -87,7 +87,7 @@ double level_difference(const level_sample *a, const level_sample *b, void *unus
 /* --- bootstrap --- */
 
 /* 2000 resamples place the ends of a 95% interval within about half a percent of probability. */
-enum { RESAMPLES = 2000, PERCENTILES_LEAST = 10 };
+enum { RESAMPLES = LEVEL_RESAMPLES, PERCENTILES_LEAST = 10 };
 
 /* A resampled sample; its arrays have the size of the original, and may hold larger processes than were drawn. */
 typedef struct resample {
@@ -191,7 +191,7 @@ static void take_symmetric(const double *values, double t, level_interval *out)
     out->high = out->value + half;
 }
 
-static void take_interval(double *values, size_t draws, level_interval *out)
+void level_take_interval(double *values, size_t draws, level_interval *out)
 {
     const double n = (double)draws;
     const double z = student_quantile(0.975, n - 1) * sqrt(n / (n - 1)), tail = normal_below(-z);
@@ -221,13 +221,18 @@ status level_bootstrap(const level_sample *a, const level_sample *b, bool paired
         values[round] = statistic(&first.drawn, b ? &second.drawn : NULL, context);
     }
     if (values && has_memory)
-        take_interval(values, draws_of(a, b), out);
+        level_take_interval(values, draws_of(a, b), out);
     free(values);
     free(first.values);
     free(first.start);
     free(second.values);
     free(second.start);
     return values && has_memory ? STATUS_OK : out_of_memory(why);
+}
+
+size_t level_draw(uint64_t seed, uint32_t round, uint32_t stream, uint32_t process, size_t count)
+{
+    return draw(seed, round, stream, process, 0, count);
 }
 
 /* --- median --- */
@@ -284,7 +289,40 @@ static status median_of_few(const level_sample *s, size_t count, level_interval 
     return STATUS_OK;
 }
 
-status level_median(const level_sample *s, uint64_t seed, level_interval *out, diagnostic *why)
+/* The range itself, or a wider one where a value lies outside it. */
+static level_range range_of(const level_sample *s, level_range claimed)
+{
+    double least = INFINITY, largest = -INFINITY;
+    for (size_t i = 0; i < s->start[s->processes]; i++) {
+        least = fmin(least, s->values[i]);
+        largest = fmax(largest, s->values[i]);
+    }
+    if (claimed == LEVEL_REAL || least < 0)
+        return LEVEL_REAL;
+    if (claimed == LEVEL_POSITIVE && least > 0)
+        return LEVEL_POSITIVE;
+    return claimed == LEVEL_SHARE && largest <= 1 ? LEVEL_SHARE : LEVEL_NOT_NEGATIVE;
+}
+
+static void take_interval_within(level_range range, double *values, size_t draws, level_interval *out)
+{
+    if (range == LEVEL_POSITIVE && draws < PERCENTILES_LEAST) {
+        level_interval logarithm = {log(out->value), NAN, NAN};
+        for (size_t i = 0; i < RESAMPLES; i++)
+            values[i] = log(values[i]);
+        level_take_interval(values, draws, &logarithm);
+        out->low = exp(logarithm.low);
+        out->high = exp(logarithm.high);
+        return;
+    }
+    level_take_interval(values, draws, out);
+    if (range != LEVEL_REAL)
+        out->low = fmax(out->low, 0);
+    if (range == LEVEL_SHARE)
+        out->high = fmin(out->high, 1);
+}
+
+status level_median(const level_sample *s, level_range range, uint64_t seed, level_interval *out, diagnostic *why)
 {
     const size_t count = s->processes ? s->start[s->processes] : 0;
     *out = (level_interval){NAN, NAN, NAN};
@@ -303,7 +341,7 @@ status level_median(const level_sample *s, uint64_t seed, level_interval *out, d
                 sorted[i] = (labelled){s->values[i], p};
         qsort(sorted, count, sizeof *sorted, by_labelled_value);
         resample_medians(s, sorted, seed, drawn, medians);
-        take_interval(medians, s->processes, out);
+        take_interval_within(range_of(s, range), medians, s->processes, out);
     }
     free(medians);
     free(drawn);

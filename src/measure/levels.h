@@ -50,10 +50,27 @@ typedef double level_statistic(const level_sample *a, const level_sample *b, voi
  * interval for fewer than 6 values in all, or fewer than 3 processes if there is more than one. */
 status level_bootstrap(const level_sample *a, const level_sample *b, bool paired, level_statistic *statistic,
                        void *context, uint64_t seed, level_interval *out, diagnostic *why);
+/* The parts of level_bootstrap, for statistics with samples of their own (study/contrast_all.h). level_draw: a number
+ * below count, the same for the same arguments; stream: equal for what is drawn together. level_take_interval: the
+ * interval of out->value from LEVEL_RESAMPLES resampled values, of samples of `draws` processes; reorders them. */
+enum { LEVEL_RESAMPLES = 2000 };
+size_t level_draw(uint64_t seed, uint32_t round, uint32_t stream, uint32_t process, size_t count);
+void level_take_interval(double *values, size_t draws, level_interval *out);
+
 /* Of two samples of logarithms, the difference of their centres: the logarithm of a ratio. */
 double level_difference(const level_sample *a, const level_sample *b, void *unused);
 
-/* The median of all values with its interval: processes are drawn as in level_bootstrap. For fewer than 3 processes it
- * is that of the order statistics of all values (measure/statistics.h), as if they were independent. Values are
- * sorted by process as given, and not changed. */
-status level_median(const level_sample *s, uint64_t seed, level_interval *out, diagnostic *why);
+/* What values a quantity can have. Its interval stays within them: an interval that reaches beyond covers no more. */
+typedef enum level_range {
+    LEVEL_REAL,         /* any number, such as the logarithm of a time */
+    LEVEL_POSITIVE,     /* above 0, such as a time */
+    LEVEL_NOT_NEGATIVE, /* 0 or above, such as a time of waiting */
+    LEVEL_SHARE         /* 0 to 1 */
+} level_range;
+
+/* The median of all values with its interval: processes are drawn as in level_bootstrap. For 3 to 9 processes, where
+ * the interval is Student's t, that of a positive quantity is computed from logarithms, so that it is symmetric for
+ * ratios and never reaches 0; that of the others is cut at 0 and, for a share, at 1. A value outside its range makes
+ * the range that of what was measured. For fewer than 3 processes it is that of the order statistics of all values
+ * (measure/statistics.h), as if they were independent. Values are sorted by process as given, and not changed. */
+status level_median(const level_sample *s, level_range range, uint64_t seed, level_interval *out, diagnostic *why);

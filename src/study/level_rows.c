@@ -16,8 +16,8 @@ static int by_run(const void *a, const void *b)
     return (x->order > y->order) - (x->order < y->order);
 }
 
-status level_rows_median(const row_ref *const *rows, const double *values, size_t count, level_interval *out,
-                         diagnostic *why)
+status level_rows_median(const row_ref *const *rows, const double *values, size_t count, level_range range,
+                         level_interval *out, diagnostic *why)
 {
     of_run *sorted = malloc((count + 1) * sizeof *sorted);
     double *ordered = malloc((count + 1) * sizeof *ordered);
@@ -37,7 +37,7 @@ status level_rows_median(const row_ref *const *rows, const double *values, size_
             ordered[i] = sorted[i].value;
         }
         start[sample.processes] = known;
-        code = level_median(&sample, 1, out, why);
+        code = level_median(&sample, range, 1, out, why);
     }
     free(start);
     free(ordered);

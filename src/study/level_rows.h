@@ -6,5 +6,5 @@
 
 /* The median of the values of these rows and its 95% interval; values[i] is of rows[i], NaN ones are left out. All NaN
  * without a value; no interval for fewer than 6. */
-status level_rows_median(const row_ref *const *rows, const double *values, size_t count, level_interval *out,
-                         diagnostic *why);
+status level_rows_median(const row_ref *const *rows, const double *values, size_t count, level_range range,
+                         level_interval *out, diagnostic *why);

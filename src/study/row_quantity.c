@@ -2,6 +2,7 @@
 #include "measure/statistics.h"
 #include "study/level_rows.h"
 #include <math.h>
+#include <string.h>
 
 void row_quantity_values(const row_ref *const *rows, size_t count, row_quantity column, double *values)
 {
@@ -30,6 +31,25 @@ size_t row_quantity_known(const row_ref *const *rows, size_t count, row_quantity
     return known;
 }
 
+static bool ends_with(const char *text, const char *end)
+{
+    const size_t length = strlen(text), rest = strlen(end);
+    return length >= rest && strcmp(text + length - rest, end) == 0;
+}
+
+level_range row_quantity_range(row_quantity column)
+{
+    /* what waiting, idling and unequal shares of work cost: nothing, at best */
+    static const char *const may_be_zero[] = {"imbalance", "waiting_s",          "waiting_s_mean",       "runnable_s",
+                                              "blocked_s", "voluntary_switches", "involuntary_switches", "start_s"};
+    if (!column.below && (ends_with(column.name, "_share") || strcmp(column.name, "frequency_drop") == 0))
+        return LEVEL_SHARE;
+    for (size_t i = 0; i < sizeof may_be_zero / sizeof *may_be_zero; i++)
+        if (strcmp(column.name, may_be_zero[i]) == 0)
+            return LEVEL_NOT_NEGATIVE;
+    return LEVEL_POSITIVE;
+}
+
 status row_quantity_spread(const row_ref *const *rows, size_t count, row_quantity column, double *values,
                            row_spread *out, diagnostic *why)
 {
@@ -42,5 +62,5 @@ status row_quantity_spread(const row_ref *const *rows, size_t count, row_quantit
     out->minimum = of.minimum;
     out->maximum = of.maximum;
     row_quantity_values(rows, count, column, values);
-    return level_rows_median(rows, values, count, &out->median, why);
+    return level_rows_median(rows, values, count, row_quantity_range(column), &out->median, why);
 }

@@ -22,6 +22,10 @@ void row_quantity_values(const row_ref *const *rows, size_t count, row_quantity 
 /* The same without the unknown ones; returns their number. */
 size_t row_quantity_known(const row_ref *const *rows, size_t count, row_quantity column, double *values);
 
+/* What values the quantity can have (measure/levels.h): a share, 0 or more, or more than 0. Of a column that this
+ * version does not know the last, which a value of 0 or below corrects. */
+level_range row_quantity_range(row_quantity column);
+
 /* values: room for as many numbers; they are overwritten. */
 status row_quantity_spread(const row_ref *const *rows, size_t count, row_quantity column, double *values,
                            row_spread *out, diagnostic *why);
