@@ -23,6 +23,7 @@ typedef struct made_times {
     long processes, repetitions;         /* that stay; 0 repetitions: all */
     uint64_t seed;
     long delay_s; /* of the first row, after midnight */
+    bool halves;  /* the first half of the processes has the cells of one thread only, the second the others */
     double shared[PROCESSES], own[PROCESSES][4];
     char wall[40], time[100];
 } made_times;
@@ -48,7 +49,7 @@ static bool replace_times(void *context, const csv *table, char **fields)
     made_times *m = context;
     const long process = atol(fields[csv_column(table, "process")]);
     const long cell = atol(fields[csv_column(table, "cell")]);
-    if (process >= m->processes)
+    if (process >= m->processes || (m->halves && (2 * process < m->processes) != (cell % 2 == 0)))
         return false;
     const double noise = m->noise * normal(&m->seed);
     const double wall_s = 0.1 * exp(m->shared[process] + m->own[process][cell] + noise + (cell >= 2 ? m->effect : 0));
@@ -132,6 +133,54 @@ static void a_known_ratio_is_found(void **state)
     assert_int_equal(c->count, 1);
     assert_int_equal(c->lines[0].verdict, CONTRAST_FASTER);
     contrast_destroy(c);
+    study_destroy(s);
+}
+
+/* A grid that grew between two runs, or shards by cell: no process has all cells. */
+static void all_cells_count_though_no_process_has_them(void **state)
+{
+    const fixture *f = *state;
+    study *s = measured(f, study_text);
+    made_times m = {
+        .effect = log(4.7), .drift = 0.05, .layout = 0.004, .noise = 0.004, .processes = 12, .halves = true, .seed = 1};
+    make_times(f, "results", &m);
+    contrast *c = compared(s, "render.depth=1", "render.depth=2", f);
+    assert_int_equal(c->count, 2);
+    assert_true(c->lines[0].a.processes == 6 && c->lines[1].a.processes == 6);
+    assert_true(c->all.a.processes == 12 && c->all.b.processes == 12 && c->all.a.count == 12);
+    assert_true(c->all.reason == CONTRAST_CLEAR && c->all.verdict == CONTRAST_SLOWER && c->all.alternate);
+    assert_true(c->all.ratio.low < 4.7 && 4.7 < c->all.ratio.high && c->all.ratio.low > 4.6);
+    contrast_destroy(c);
+    study_destroy(s);
+}
+
+/* Runs, environments and columns that say nothing are refused: nothing was compared. */
+static void unknown_sides_are_refused(void **state)
+{
+    const fixture *f = *state;
+    static const char *const sides[][3] = {{"run=1", "run=2", "is of the run '1'"},
+                                           {"environment=nope", "environment=nope", "of the environment 'nope'"}};
+    study *s = fixture_study(f, "study: test\nscene: scene.yaml\ngrid: [{render.depth: [1, 2]}]\nwarmups: 0\n");
+    assert_int_equal(fixture_run(f, s), 12);
+    study_side a, b;
+    contrast *c;
+    diagnostic why;
+    for (size_t i = 0; i < 2; i++) {
+        assert_int_equal(side_read(s, sides[i][0], f->results, &a, NULL), STATUS_OK);
+        assert_int_equal(side_read(s, sides[i][1], f->results, &b, NULL), STATUS_OK);
+        assert_int_equal(contrast_make(s, &a, &b, &(contrast_options){.column = NULL}, &c, NULL, &why),
+                         STATUS_BAD_INPUT);
+        assert_non_null(strstr(why.what, sides[i][2]));
+        assert_non_null(strstr(why.remedy, "give one of these: "));
+        side_release(&a);
+        side_release(&b);
+    }
+    assert_int_equal(side_read(s, "cell=0", f->results, &a, NULL), STATUS_OK);
+    assert_int_equal(side_read(s, "cell=1", f->results, &b, NULL), STATUS_OK);
+    assert_int_equal(contrast_make(s, &a, &b, &(contrast_options){.column = "isa"}, &c, NULL, &why), STATUS_BAD_INPUT);
+    assert_string_equal(why.what, "the column 'isa' has no positive number");
+    side_release(&a);
+    side_release(&b);
     study_destroy(s);
 }
 
@@ -341,10 +390,16 @@ static void json_has_every_cell(void **state)
 int main(void)
 {
     const struct CMUnitTest tests[] = {
-        CASE(a_known_ratio_is_found),        CASE(only_sides_that_alternate_are_told_apart),
-        CASE(few_processes_tell_nothing),    CASE(environments_are_never_pooled),
-        CASE(invalid_sides_are_refused),     CASE(equal_sides_rarely_differ),
-        CASE(the_predicted_number_suffices), CASE(json_has_every_cell),
+        CASE(a_known_ratio_is_found),
+        CASE(only_sides_that_alternate_are_told_apart),
+        CASE(all_cells_count_though_no_process_has_them),
+        CASE(unknown_sides_are_refused),
+        CASE(few_processes_tell_nothing),
+        CASE(environments_are_never_pooled),
+        CASE(invalid_sides_are_refused),
+        CASE(equal_sides_rarely_differ),
+        CASE(the_predicted_number_suffices),
+        CASE(json_has_every_cell),
     };
     return cmocka_run_group_tests_name("contrast", tests, NULL, NULL);
 }

@@ -40,7 +40,8 @@ static const command_option options[] = {
     {"detect", 'd', "PERCENT", "difference for which the necessary number of processes is printed (default: 3)",
      OPTION_FILLS(take_percent, request, detect)},
     {"fail-if-slower", 0, "PERCENT",
-     "exit status 1 if the interval of the ratio over all cells lies above 1 + PERCENT / 100",
+     "exit status 1 if the interval of the ratio over all cells lies above 1 + PERCENT / 100, and 2 if there can be no "
+     "verdict",
      OPTION_FILLS(take_percent, request, fail)},
     {"tsv", 0, NULL, "print the table with all digits, separated by tabs", OPTION_FILLS(option_flag, request, tsv)},
     {"json", 0, NULL, "print JSON", OPTION_FILLS(option_flag, request, json)},
@@ -189,11 +190,25 @@ static void print_advice(const study_side *a, const study_side *b, const contras
         printf("The number of processes that find a difference of %g%% is unknown, or above 10000.\n", detect * 100);
 }
 
+/* Times of unlike work are no comparison of speed. */
+static void print_work(const contrast *c)
+{
+    if (c->compared == 0)
+        puts("No cell has rows on both sides.");
+    else if (c->same == c->compared)
+        printf("The same work: films and ray counts are equal in all %zu cells with rows on both sides.\n",
+               c->compared);
+    else
+        printf("Not the same work: films and ray counts are equal in %zu of %zu cells with rows on both sides.\n",
+               c->same, c->compared);
+}
+
 static status print_text(const study *s, const request *r, const study_side *a, const study_side *b, const contrast *c,
                          diagnostic *why)
 {
     print_side('A', a, c, 0);
     print_side('B', b, c, 1);
+    print_work(c);
     TRY(print_table(s, a, c, r->column, why));
     print_advice(a, b, c, r->detect);
     return STATUS_OK;
@@ -252,6 +267,11 @@ static status judge(const request *r, const contrast *c, const diagnostic *verdi
         *why = *verdict;
         return STATUS_FAILURE;
     }
+    const contrast_reason reason = c->all.reason;
+    if (r->fail >= 0 && reason != CONTRAST_CLEAR && reason != CONTRAST_INTERVAL)
+        return diagnose(why, STATUS_BAD_INPUT,
+                        "measure both sides in turn in fresh processes: cuvette-study(1), --against",
+                        "--fail-if-slower cannot judge: %s", contrast_reason_text(reason));
     if (r->fail >= 0 && c->all.verdict == CONTRAST_SLOWER && c->all.ratio.low > 1 + r->fail)
         return diagnose(why, STATUS_FAILURE, "see the table", "B is slower than A by more than %g%%", r->fail * 100);
     return STATUS_OK;

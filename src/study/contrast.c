@@ -1,7 +1,7 @@
 /* Ratios and verdicts of a comparison. */
 #include "study/contrast.h"
 #include "measure/power.h"
-#include "study/contrast_rows.h"
+#include "study/contrast_all.h"
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
@@ -22,6 +22,11 @@ const char *contrast_reason_text(contrast_reason reason)
                                         "there are fewer than 6 repetitions or 3 processes",
                                         "the sides did not alternate", ""};
     return texts[reason];
+}
+
+static size_t lesser(size_t a, size_t b)
+{
+    return a < b ? a : b;
 }
 
 static level_interval exponential(level_interval of)
@@ -47,19 +52,17 @@ static double deviation_of(const level_sample *a, const level_sample *b)
     return a->processes > 1 ? sqrt(fmax(0.0, (squares - sum * sum / n) / (n - 1))) : NAN;
 }
 
-static size_t pairs_needed(const level_sample *a, const level_sample *b, bool paired, double detect)
+/* detect: 0 for the default. */
+static size_t pairs_for(double deviation, size_t processes, double detect)
 {
-    const size_t count = a->processes < b->processes ? a->processes : b->processes;
-    const double deviation = paired ? deviation_of(a, b) : hypot(deviation_of(a, NULL), deviation_of(b, NULL));
-    return power_pairs(power_upper_deviation(deviation, count, UPPER), log1p(detect), POWER);
+    return power_pairs(power_upper_deviation(deviation, processes, UPPER), log1p(detect > 0 ? detect : DETECT), POWER);
 }
 
-static void decide(contrast_line *line, const level_sample *a, const level_sample *b)
+/* values, processes: the fewest of a side. */
+static void decide(contrast_line *line, size_t values, size_t processes)
 {
-    const size_t values_a = a->start[a->processes], values_b = b->start[b->processes];
     line->verdict = CONTRAST_CANNOT_TELL;
-    if (values_a < FEWEST_VALUES || values_b < FEWEST_VALUES || a->processes < FEWEST_PROCESSES ||
-        b->processes < FEWEST_PROCESSES)
+    if (values < FEWEST_VALUES || processes < FEWEST_PROCESSES)
         line->reason = CONTRAST_FEW;
     else if (!line->alternate)
         line->reason = CONTRAST_NO_TURNS;
@@ -89,8 +92,10 @@ static status judge(const contrast_rows *ra, const contrast_sample *a, const con
     level_interval difference;
     TRY(level_bootstrap(la, lb, line->alternate, level_difference, NULL, seed, &difference, why));
     line->ratio = exponential(difference);
-    line->pairs_needed = pairs_needed(la, lb, line->alternate, options->detect > 0 ? options->detect : DETECT);
-    decide(line, la, lb);
+    const double deviation =
+        line->alternate ? deviation_of(la, lb) : hypot(deviation_of(la, NULL), deviation_of(lb, NULL));
+    line->pairs_needed = pairs_for(deviation, lesser(la->processes, lb->processes), options->detect);
+    decide(line, lesser(line->a.count, line->b.count), lesser(la->processes, lb->processes));
     return STATUS_OK;
 }
 
@@ -114,6 +119,7 @@ static status describe(const contrast_rows *r, size_t cell, contrast_half *out, 
     qsort(values, count, sizeof *values, by_value);
     out->median = 0.5 * (values[(count - 1) / 2] + values[count / 2]);
     out->film = row_field(r->rows[from].ref, "film_expected");
+    out->rays = row_field(r->rows[from].ref, "rays_total");
     free(values);
     return STATUS_OK;
 }
@@ -135,22 +141,29 @@ static status make_line(const contrast_rows *a, const contrast_rows *b, const si
 static status make_all(const contrast_rows *a, const contrast_rows *b, const contrast_options *options, contrast *c,
                        diagnostic *why)
 {
-    size_t *cells = calloc(2 * c->count + 1, sizeof *cells), count = 0;
-    contrast_sample sa = {.values = NULL}, sb = {.values = NULL};
-    status code = cells ? STATUS_OK : out_of_memory(why);
-    for (size_t i = 0; cells && i < c->count; i++)
+    size_t(*pairs)[2] = calloc(c->count + 1, sizeof *pairs), count = 0;
+    if (!pairs)
+        return out_of_memory(why);
+    for (size_t i = 0; i < c->count; i++)
         if (c->lines[i].reason != CONTRAST_NO_ROWS) {
-            cells[count] = c->lines[i].a.cell;
-            cells[c->count + count++] = c->lines[i].b.cell;
+            pairs[count][0] = c->lines[i].a.cell;
+            pairs[count++][1] = c->lines[i].b.cell;
         }
-    c->all.a.median = c->all.b.median = NAN;
-    THEN(code, contrast_sample_of_cells(a, cells, count, &sa, why));
-    THEN(code, contrast_sample_of_cells(b, cells + c->count, count, &sb, why));
-    THEN(code, judge(a, &sa, b, &sb, options, 0, &c->all, why));
-    contrast_sample_free(&sa);
-    contrast_sample_free(&sb);
-    free(cells);
-    return code;
+    contrast_all all;
+    const status code = contrast_all_make(a, b, (const size_t(*)[2])pairs, count, &all, why);
+    free(pairs);
+    TRY(code);
+    contrast_line *line = &c->all;
+    *line = (contrast_line){.a = {.count = all.values[0], .processes = all.processes[0], .median = NAN},
+                            .b = {.count = all.values[1], .processes = all.processes[1], .median = NAN},
+                            .ratio = exponential(all.ratio),
+                            .alternate = all.alternate,
+                            .reason = CONTRAST_NO_ROWS};
+    if (count == 0)
+        return STATUS_OK;
+    line->pairs_needed = pairs_for(all.deviation, all.fewest, options->detect);
+    decide(line, all.fewest_values, all.fewest);
+    return STATUS_OK;
 }
 
 static status make_lines(const study *s, const study_side *a, const study_side *b, const contrast_options *options,
@@ -160,8 +173,14 @@ static status make_lines(const study *s, const study_side *a, const study_side *
     TRY(side_cells(s, a, b, &pairs, &c->count, why));
     c->lines = calloc(c->count + 1, sizeof *c->lines);
     status code = c->lines ? STATUS_OK : out_of_memory(why);
-    for (size_t i = 0; code == STATUS_OK && i < c->count; i++)
-        code = make_line(&rows[0], &rows[1], pairs[i], options, &c->lines[i], why);
+    for (size_t i = 0; code == STATUS_OK && i < c->count; i++) {
+        contrast_line *line = &c->lines[i];
+        code = make_line(&rows[0], &rows[1], pairs[i], options, line, why);
+        if (code != STATUS_OK || line->reason == CONTRAST_NO_ROWS)
+            continue;
+        c->compared++;
+        c->same += strcmp(line->a.film, line->b.film) == 0 && strcmp(line->a.rays, line->b.rays) == 0;
+    }
     free(pairs);
     THEN(code, make_all(&rows[0], &rows[1], options, c, why));
     return code;

@@ -23,8 +23,8 @@ typedef enum contrast_reason {
 
 typedef struct contrast_half {
     size_t cell, count, processes;
-    double median;    /* of all repetitions; NaN without one */
-    const char *film; /* the expected film hash, or NULL */
+    double median;           /* of all repetitions; NaN without one */
+    const char *film, *rays; /* the expected film hash and the number of rays of the first row, or NULL */
 } contrast_half;
 
 typedef struct contrast_line {
@@ -47,9 +47,11 @@ typedef struct contrast_options {
 typedef struct contrast {
     contrast_line *lines;
     size_t count;
-    contrast_line all; /* the geometric mean over the lines with rows, of the processes that have all of them */
+    contrast_line
+        all; /* the geometric mean over the lines with rows on both sides; each counts once, by its processes */
     char environment[2][ENVIRONMENT_KEY]; /* of both sides; "" without rows */
     size_t left_out[2];                   /* rows of other environments */
+    size_t compared, same;                /* lines with rows on both sides; those of one film and number of rays */
     row_files *rows[2];                   /* of the sides; contrast_half.film points into them */
 } contrast;
 

@@ -110,11 +110,28 @@ static status collect(const study *s, const study_side *side, const char *column
 
 static status check_column(const contrast_rows *r, const char *column, diagnostic *why)
 {
+    bool known = false;
     for (size_t i = 0; i < r->files->count; i++)
-        if (csv_column(r->files->tables[i], column) >= 0)
+        known |= csv_column(r->files->tables[i], column) >= 0;
+    for (size_t i = 0; known && i < r->files->row_count; i++)
+        if (row_field_real(&r->files->rows[i], column) > 0)
             return STATUS_OK;
     return diagnose(why, STATUS_BAD_INPUT, "see `man cuvette-results` for the columns of rows.csv",
-                    "the rows have no column '%.64s'", column);
+                    known ? "the column '%.64s' has no positive number" : "the rows have no column '%.64s'", column);
+}
+
+static status check_run(const contrast_rows *r, const char *wanted, diagnostic *why)
+{
+    char list[400] = "give one of these: ";
+    for (size_t i = 0; i < r->files->row_count; i++) {
+        const char *run = row_field(&r->files->rows[i], "run");
+        const size_t used = strlen(list);
+        if (strcmp(run, wanted) == 0)
+            return STATUS_OK;
+        if (!strstr(list, run) && used + strlen(run) + 2 < sizeof list)
+            snprintf(list + used, sizeof list - used, "%s ", run);
+    }
+    return diagnose(why, STATUS_BAD_INPUT, list, "no row in %.200s is of the run '%.64s'", r->results, wanted);
 }
 
 status contrast_rows_read(const study *s, const study_side *side, const char *column, contrast_rows *out,
@@ -126,9 +143,9 @@ status contrast_rows_read(const study *s, const study_side *side, const char *co
         return diagnose_at(why, s->path, STATUS_FAILURE, "run the study first, or give the folder of its results",
                            "no rows in %.200s/%s", side->results, s->name);
     TRY(check_column(out, column, why));
-    TRY(row_environments_main(out->files, out->environment, why));
-    if (side->environment)
-        snprintf(out->environment, sizeof out->environment, "%s", side->environment);
+    if (side->run)
+        TRY(check_run(out, side->run, why));
+    TRY(row_environments_choose(out->files, side->environment ? side->environment : "main", out->environment, why));
     out->rows = calloc(out->files->row_count + 1, sizeof *out->rows);
     out->first_of = calloc(study_cell_count(s) + 1, sizeof *out->first_of);
     out->processes = calloc(out->files->runs->count + 2, sizeof *out->processes);
@@ -171,44 +188,14 @@ void contrast_sample_free(contrast_sample *s)
 
 status contrast_sample_of_cell(const contrast_rows *r, size_t cell, contrast_sample *out, diagnostic *why)
 {
-    return contrast_sample_of_cells(r, &cell, 1, out, why);
-}
-
-/* The rows of a process among those of a cell. */
-static const contrast_row *find(const contrast_rows *r, size_t cell, size_t process, size_t *count)
-{
-    size_t from = r->first_of[cell], end = r->first_of[cell + 1];
-    while (from < end && r->rows[from].process < process)
-        from++;
-    *count = 0;
-    while (from + *count < end && r->rows[from + *count].process == process)
-        ++*count;
-    return &r->rows[from];
-}
-
-status contrast_sample_of_cells(const contrast_rows *r, const size_t *cells, size_t count, contrast_sample *out,
-                                diagnostic *why)
-{
-    const size_t room = count ? r->first_of[cells[0] + 1] - r->first_of[cells[0]] : 0;
-    TRY(make_room(out, room, r->process_count, why));
-    size_t at = 0;
-    for (size_t process = 0; count && process < r->process_count; process++) {
-        size_t least = SIZE_MAX;
-        for (size_t i = 0; i < count; i++) {
-            size_t here;
-            find(r, cells[i], process, &here);
-            least = here < least ? here : least;
-        }
-        if (least == 0)
-            continue;
-        for (size_t i = 0; i < count; i++) {
-            size_t here;
-            const contrast_row *rows = find(r, cells[i], process, &here);
-            for (size_t k = 0; k < least; k++)
-                out->values[at + k] += log(rows[k].value) / (double)count;
-        }
-        out->process[out->levels.processes++] = process;
-        out->start[out->levels.processes] = at += least;
+    const size_t from = r->first_of[cell], count = r->first_of[cell + 1] - from;
+    TRY(make_room(out, count, r->process_count, why));
+    for (size_t i = 0; i < count; i++) {
+        const size_t process = r->rows[from + i].process;
+        if (i == 0 || process != r->rows[from + i - 1].process)
+            out->process[out->levels.processes++] = process;
+        out->values[i] = log(r->rows[from + i].value);
+        out->start[out->levels.processes] = i + 1;
     }
     return STATUS_OK;
 }

@@ -43,9 +43,6 @@ typedef struct contrast_sample {
 } contrast_sample;
 
 status contrast_sample_of_cell(const contrast_rows *r, size_t cell, contrast_sample *out, diagnostic *why);
-/* The mean over several cells, repetition by repetition, of the processes that have rows of all of them. */
-status contrast_sample_of_cells(const contrast_rows *r, const size_t *cells, size_t count, contrast_sample *out,
-                                diagnostic *why);
 void contrast_sample_free(contrast_sample *s);
 
 /* Whether the processes of both samples are the same ones, or follow one another in pairs, one of each side, without

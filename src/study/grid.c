@@ -1,5 +1,6 @@
 #include "study/grid.h"
 #include "base/hash.h"
+#include "base/number.h"
 #include "scene/model/params_path.h"
 #include "study/meaning.h"
 #include "study/quick.h"
@@ -233,4 +234,48 @@ void grid_put_values(const study *s, size_t cell, FILE *out)
         for (size_t i = 0; i < point->count; i++)
             fprintf(out, "\t%s", point->values[i]);
     }
+}
+
+/* The next element of a vector without blanks, and what is left; NULL after the last. */
+static const char *next_element(const char *text, char *element, size_t size)
+{
+    size_t length = 0;
+    while (*text && *text != ',') {
+        if (*text != ' ' && length + 1 < size)
+            element[length++] = *text;
+        text++;
+    }
+    element[length] = 0;
+    return *text ? text + 1 : NULL;
+}
+
+static bool same_element(const char *a, const char *b)
+{
+    double first, second;
+    return strcmp(a, b) == 0 || (number_parse_real(a, &first) && number_parse_real(b, &second) && first == second);
+}
+
+bool grid_same_value(const char *a, const char *b)
+{
+    if (strcmp(a, b) == 0)
+        return true;
+    char *bare[] = {strdup(a), strdup(b)};
+    bool same = bare[0] && bare[1];
+    for (int i = 0; same && i < 2; i++) {
+        const size_t length = strlen(bare[i]);
+        if (length >= 2 && bare[i][0] == '[' && bare[i][length - 1] == ']') {
+            bare[i][length - 1] = 0;
+            memmove(bare[i], bare[i] + 1, length - 1);
+        }
+    }
+    const char *left = bare[0], *right = bare[1];
+    while (same && left && right) {
+        char first[128], second[128];
+        left = next_element(left, first, sizeof first);
+        right = next_element(right, second, sizeof second);
+        same = same_element(first, second) && !left == !right;
+    }
+    free(bare[0]);
+    free(bare[1]);
+    return same;
 }

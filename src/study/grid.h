@@ -35,6 +35,10 @@ void grid_hash_point(uint64_t *hash, const study_point *point);
 /* The paths of the grid, by index; NULL after the last. */
 const char *study_grid_path(const study *s, size_t index);
 
+/* Whether two texts are one value: equal texts, numbers or vectors, whose brackets and blanks may be left out: "0,
+ * 3, 1" and "[0,3,1]". */
+bool grid_same_value(const char *a, const char *b);
+
 /* Writes all paths, or all values of the cell as written in the study file, each preceded by a tab. */
 void grid_put_paths(const study *s, FILE *out);
 void grid_put_values(const study *s, size_t cell, FILE *out);

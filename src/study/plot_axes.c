@@ -28,12 +28,6 @@ static const char *list_of(const char *const *names, size_t count, char *text, s
     return text;
 }
 
-static bool same_value(const char *a, const char *b)
-{
-    double first, second;
-    return strcmp(a, b) == 0 || (number_parse_real(a, &first) && number_parse_real(b, &second) && first == second);
-}
-
 /* --- axes --- */
 
 static bool add_axis(plot_plan *p, const char *name, size_t group)
@@ -134,7 +128,7 @@ static status apply_where(plot_plan *p, const char *setting, diagnostic *why)
         return no_such_axis(p, "--where", name, why);
     size_t left = 0;
     for (size_t row = 0; row < p->table.rows; row++) {
-        p->shown[row] &= same_value(plot_table_text(&p->table, row, axis->column), equals + 1);
+        p->shown[row] &= grid_same_value(plot_table_text(&p->table, row, axis->column), equals + 1);
         left += p->shown[row];
     }
     if (left)

@@ -1,5 +1,6 @@
 #include "study/row_environments.h"
 #include "base/grow.h"
+#include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 
@@ -40,4 +41,27 @@ status row_environments_main(const row_files *files, char key[ENVIRONMENT_KEY], 
         memcpy(key, all[most].key, ENVIRONMENT_KEY);
     free(all);
     return STATUS_OK;
+}
+
+status row_environments_choose(const row_files *files, const char *text, char key[ENVIRONMENT_KEY], diagnostic *why)
+{
+    key[0] = 0;
+    if (!text)
+        return STATUS_OK;
+    if (strcmp(text, "main") == 0)
+        return row_environments_main(files, key, why);
+    row_environment_count *all;
+    size_t count, at = 0;
+    char remedy[300] = "give one of these: ";
+    TRY(row_environments_find(files, &all, &count, why));
+    while (at < count && strcmp(all[at].key, text) != 0)
+        at++;
+    for (size_t i = 0; i < count && strlen(remedy) + ENVIRONMENT_KEY + 2 < sizeof remedy; i++)
+        snprintf(remedy + strlen(remedy), sizeof remedy - strlen(remedy), "%s%s", i ? ", " : "", all[i].key);
+    const status code =
+        at < count ? STATUS_OK : diagnose(why, STATUS_BAD_INPUT, remedy, "no row is of the environment '%.64s'", text);
+    if (code == STATUS_OK)
+        memcpy(key, all[at].key, ENVIRONMENT_KEY);
+    free(all);
+    return code;
 }

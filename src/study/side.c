@@ -1,10 +1,24 @@
 /* Parsing a side of a comparison, and the cells that two sides compare. */
 #include "study/side.h"
 #include "base/number.h"
+#include "study/grid.h"
 #include <stdlib.h>
 #include <string.h>
 
-/* The next item of a list separated by commas; commas inside brackets belong to a value. */
+/* Whether a number follows, which is an element of a vector: folders and settings do not begin as one. */
+static bool is_element(const char *text)
+{
+    char number[64];
+    double value;
+    const size_t length = strcspn(text, ",");
+    if (length >= sizeof number)
+        return false;
+    memcpy(number, text, length);
+    number[length] = '\0';
+    return number_parse_real(number, &value);
+}
+
+/* The next item of a list separated by commas; commas inside brackets, and those before numbers, belong to a value. */
 static char *next_item(char **rest)
 {
     char *item = *rest;
@@ -13,7 +27,7 @@ static char *next_item(char **rest)
         return NULL;
     for (char *c = item; *c; c++) {
         depth += (*c == '[' || *c == '{') - (*c == ']' || *c == '}');
-        if (*c == ',' && depth <= 0) {
+        if (*c == ',' && depth <= 0 && !is_element(c + 1)) {
             *c = '\0';
             *rest = c + 1;
             return item;
@@ -21,12 +35,6 @@ static char *next_item(char **rest)
     }
     *rest = NULL;
     return item;
-}
-
-static bool same_value(const char *a, const char *b)
-{
-    double first, second;
-    return strcmp(a, b) == 0 || (number_parse_real(a, &first) && number_parse_real(b, &second) && first == second);
 }
 
 static void list_add(char *list, size_t size, const char *text)
@@ -55,7 +63,7 @@ static status set_value(const study *s, study_side *side, const char *path, cons
             if (strcmp(of->points[0].paths[i], path) != 0)
                 continue;
             for (size_t point = 0; point < of->count; point++) {
-                if (same_value(of->points[point].values[i], value)) {
+                if (grid_same_value(of->points[point].values[i], value)) {
                     side->point[axis] = point;
                     return STATUS_OK;
                 }

@@ -140,10 +140,7 @@ status study_spread(const study *s, const char *results, const char *columns, co
                            "run the study first, or give the folder of its results with --results", "no rows in %s/%s",
                            results, s->name);
     THEN(code, check_columns(files, &list, why));
-    if (code == STATUS_OK && options->environment && strcmp(options->environment, "main") == 0)
-        code = row_environments_main(files, environment, why);
-    else if (options->environment)
-        snprintf(environment, sizeof environment, "%s", options->environment);
+    THEN(code, row_environments_choose(files, options->environment, environment, why));
     THEN(code, excluded_read(s, results, &without, why));
     THEN(code, put_all(s, files, &list, without, environment, out, why));
     if (code == STATUS_OK && verdict)

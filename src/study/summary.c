@@ -98,7 +98,7 @@ static status put_undisturbed(const cell_rows *cell, diagnostic *why)
     for (size_t i = 0; i < cell->count; i++)
         if (row_noise_judge(cell->rule, &at, cell->rows[i]) != NOISE_UNDISTURBED)
             cell->values[i] = NAN;
-    TRY(level_rows_median(cell->rows, cell->values, cell->count, &median, why));
+    TRY(level_rows_median(cell->rows, cell->values, cell->count, row_quantity_range(timed[0]), &median, why));
     fprintf(cell->out, "\t%zu\t%zu", cell->disturbed, cell->judged - cell->disturbed);
     cell_table_number(cell->out, median.value);
     cell_table_number(cell->out, median.low);
@@ -268,13 +268,10 @@ status study_summary_of(const study *s, const char *results, const summary_optio
     status code = row_files_read(s, results, ROWS, &files, why);
     if (code == STATUS_OK && files->row_count == 0)
         code = no_rows(s, results, why);
+    THEN(code, row_environments_choose(files, options->environment, environment, why));
     THEN(code, excluded_read(s, results, &without, why));
     if (code == STATUS_OK && s->reference.count)
         code = row_files_read(s, results, COMPARE_ROWS, &compared, why);
-    if (code == STATUS_OK && options->environment && strcmp(options->environment, "main") == 0)
-        code = row_environments_main(files, environment, why);
-    else if (options->environment)
-        snprintf(environment, sizeof environment, "%s", options->environment);
     if (code == STATUS_OK)
         code = put_line(s, &(cell_rows){.header = true, .out = out}, why);
     THEN(code, put_cells(s, files, compared, without, environment, out, why));
