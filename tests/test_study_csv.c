@@ -56,6 +56,62 @@ static int rows_of(const fixture *f, const char *text, long *line)
     return rows;
 }
 
+/* The same table as people, spreadsheets and Python write it, and what it is in the form of this program. */
+static void files_of_other_programs_are_read(void **state)
+{
+    const fixture *f = *state;
+    static const char own[] = "a,b\n1,x\n2,y\n";
+    static const char *const written[] = {own,
+                                          "a,b\n1,x\n2,y",
+                                          "a,b\r\n1,x\r\n2,y\r\n",
+                                          "a,b\r\n1,x\r\n2,y",
+                                          "\xEF\xBB\xBF"
+                                          "a,b\n1,x\n2,y\n",
+                                          "\xEF\xBB\xBF"
+                                          "a,b\r\n1,x\r\n2,y",
+                                          "a,b\n1,x\n2,y\n\n",
+                                          "a,b\r\n1,x\r\n2,y\r\n\r\n\r\n"};
+    char path[400];
+    csv *table;
+    fixture_path(f, "t.csv", path);
+    for (size_t i = 0; i < sizeof written / sizeof *written; i++) {
+        fixture_write(f, "t.csv", written[i]);
+        assert_int_equal(csv_read_any(path, NULL, &table, NULL), STATUS_OK);
+        assert_true(table->row_count == 2 && table->column_count == 2 && !table->torn);
+        assert_true(csv_column(table, "a") == 0 && csv_column(table, "b") == 1);
+        assert_string_equal(csv_field(table, 1, 1), "y");
+        assert_string_equal(table->raw, own);
+        assert_int_equal(table->mended, i > 0);
+        csv_destroy(table);
+    }
+    fixture_write(f, "t.csv", "a,b\n1,x\n2");
+    assert_int_equal(csv_read_any(path, NULL, &table, NULL), STATUS_OK);
+    assert_true(table->row_count == 1 && table->torn);
+    csv_destroy(table);
+    fixture_write(f, "t.csv", "a,b\n1,\"x\ry\"\n"); /* a carriage return within a line is a character */
+    assert_int_equal(csv_read_any(path, NULL, &table, NULL), STATUS_OK);
+    assert_string_equal(csv_field(table, 0, 1), "x\ry");
+    csv_destroy(table);
+}
+
+/* Rows are what the program wrote: another form is named. */
+static void rows_in_another_form_are_named(void **state)
+{
+    const fixture *f = *state;
+    char path[400];
+    csv *table;
+    diagnostic why = {0};
+    fixture_path(f, "t.csv", path);
+    fixture_write(f, "t.csv", "a,b\r\n1,x\r\n");
+    assert_int_equal(csv_read_rows(path, NULL, &table, &why), STATUS_BAD_INPUT);
+    assert_non_null(strstr(why.what, "CR LF"));
+    fixture_write(f, "t.csv",
+                  "\xEF\xBB\xBF"
+                  "a,b\n1,x\n");
+    assert_int_equal(csv_read_rows(path, NULL, &table, &why), STATUS_BAD_INPUT);
+    assert_non_null(strstr(why.what, "byte order mark"));
+}
+
 /* A power cut can leave a line of which parts were never written; an earlier line like that is damage. */
 static void a_last_line_with_unwritten_parts_is_incomplete(void **state)
 {
@@ -137,6 +193,8 @@ int main(void)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test_setup_teardown(csv_fields_round_trip, fixture_setup, fixture_teardown),
+        cmocka_unit_test_setup_teardown(files_of_other_programs_are_read, fixture_setup, fixture_teardown),
+        cmocka_unit_test_setup_teardown(rows_in_another_form_are_named, fixture_setup, fixture_teardown),
         cmocka_unit_test(a_last_line_with_unwritten_parts_is_incomplete),
         cmocka_unit_test_setup_teardown(only_complete_lines_are_rows, fixture_setup, fixture_teardown),
         cmocka_unit_test_setup_teardown(damaged_rows_are_located, fixture_setup, fixture_teardown),

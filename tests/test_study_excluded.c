@@ -177,9 +177,16 @@ static void a_damaged_list_is_reported(void **state)
     fixture_write(f, "results/test/excluded.csv", "check,reason\nNA,reason\n");
     assert_int_equal(study_summary(s, f->results, stderr, &why), STATUS_BAD_INPUT);
     assert_non_null(strstr(why.what, "cell"));
-    /* Without what tells runs apart, cell and repetition decide; an unfinished last line is no line. */
-    fixture_write(f, "results/test/excluded.csv", "cell,repetition,reason\n0,1,reason\n0,2,rea");
+    /* Without what tells runs apart, cell and repetition decide; a last line that lacks fields is no line. */
+    fixture_write(f, "results/test/excluded.csv", "cell,repetition,reason\n0,1,reason\n0,2");
     assert_string_equal(summary_field(f, s, 0, "excluded"), "1");
+    /* People, editors and spreadsheets end lines as they please; the next exclusion keeps theirs. */
+    fixture_write(f, "results/test/excluded.csv",
+                  "\xEF\xBB\xBF"
+                  "cell,repetition,reason\r\n0,1,reason\r\n0,2,own");
+    assert_string_equal(summary_field(f, s, 0, "excluded"), "2");
+    assert_int_equal(add(f, s, "0:3", "third", NULL), STATUS_OK);
+    assert_string_equal(summary_field(f, s, 0, "excluded"), "3");
     fixture_write(f, "results/test/excluded.csv", "");
     assert_string_equal(summary_field(f, s, 0, "excluded"), "0");
     study_destroy(s);

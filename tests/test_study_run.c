@@ -267,6 +267,54 @@ static void count_calls(void *context, const study_moment *now)
 }
 
 /* Updates within a tenth of a second are not shown. */
+/* Another program removes, replaces or cuts rows.csv after the second row. */
+typedef struct meddler {
+    char path[500];
+    const char *command;
+    bool done;
+} meddler;
+
+static void meddle(void *context, const study_moment *now)
+{
+    meddler *m = context;
+    char line[1200];
+    if (m->done || now->frames_done < 2)
+        return;
+    m->done = true;
+    snprintf(line, sizeof line, "f='%s'; %s", m->path, m->command);
+    assert_int_equal(system(line), 0);
+}
+
+static void rows_that_vanish_are_noticed_and_kept(void **state)
+{
+    const fixture *f = *state;
+    static const struct {
+        const char *command, *what;
+    } cases[] = {
+        {"rm \"$f\"", "the file was removed while the study ran"},
+        {"cp \"$f\" \"$f.new\"; mv \"$f.new\" \"$f\"", "the file was replaced by another file while the study ran"},
+        {"truncate -s -10 \"$f\"", "the file was cut while the study ran"},
+        {"echo >>\"$f\"", "the file was changed while the study ran"}};
+    for (size_t i = 0; i < sizeof cases / sizeof *cases; i++) {
+        char line[1300];
+        diagnostic why = {0};
+        snprintf(line, sizeof line, "rm -rf '%s'", f->results);
+        assert_int_equal(system(line), 0);
+        study *s = fixture_study(f, "study: test\nscene: scene.yaml\nwarmups: 0\nrepetitions: 400\n"
+                                    "set: {render.width: 8, render.height: 6}\n");
+        meddler m = {.command = cases[i].command};
+        snprintf(m.path, sizeof m.path, "%s/test/rows.csv", f->results);
+        const study_options options = {.results = f->results, .progressed = meddle, .context = &m};
+        assert_int_equal(study_run(s, &options, NULL, &why), STATUS_FAILURE);
+        assert_string_equal(why.what, cases[i].what);
+        assert_non_null(strstr(why.remedy, "rows.rescued.csv"));
+        /* the two rows and the next one; one was cut */
+        snprintf(line, sizeof line, "test \"$(grep -c '^test,' '%s/test/rows.rescued.csv')\" -ge 2", f->results);
+        assert_int_equal(system(line), 0);
+        study_destroy(s);
+    }
+}
+
 static void progress_is_shown_ten_times_a_second(void **state)
 {
     const fixture *f = *state;
@@ -733,6 +781,7 @@ int main(void)
         cmocka_unit_test_setup_teardown(an_interrupted_study_resumes, fixture_setup, fixture_teardown),
         cmocka_unit_test_setup_teardown(the_callback_reports_the_progress_of_the_terminal, fixture_setup,
                                         fixture_teardown),
+        cmocka_unit_test_setup_teardown(rows_that_vanish_are_noticed_and_kept, fixture_setup, fixture_teardown),
         cmocka_unit_test_setup_teardown(progress_is_shown_ten_times_a_second, fixture_setup, fixture_teardown),
         cmocka_unit_test_setup_teardown(moving_slimes_are_reported_as_progress, fixture_setup, fixture_teardown),
         cmocka_unit_test_setup_teardown(kept_images_are_reported_as_progress, fixture_setup, fixture_teardown),

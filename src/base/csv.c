@@ -210,7 +210,72 @@ size_t csv_whole(const char *text, size_t size)
     return (size_t)((memchr(start, 0, (size_t)(newline - start)) ? start : newline + 1) - text);
 }
 
-static status read_table(const char *path, const char *root, bool strict, csv **out, diagnostic *why)
+typedef enum reading { READ_OWN, READ_ANY, READ_ROWS } reading;
+
+static const char byte_order_mark[] = "\xEF\xBB\xBF";
+
+static bool is_marked(const csv *table)
+{
+    return table->size >= 3 && memcmp(table->raw, byte_order_mark, 3) == 0;
+}
+
+static bool has_carriage_returns(const csv *table)
+{
+    const char *newline = table->size ? memchr(table->raw, '\n', table->size) : NULL;
+    return newline && newline > table->raw && newline[-1] == '\r';
+}
+
+/* What a spreadsheet, an editor or a checkout of git with other line ends makes of rows. */
+static status check_form(const csv *table, const char *path, diagnostic *why)
+{
+    if (is_marked(table))
+        return diagnose_at(why, path, STATUS_BAD_INPUT, "remove it: sed -i '1s/^\\xEF\\xBB\\xBF//' FILE",
+                           "the file begins with a byte order mark: another program has written it");
+    if (has_carriage_returns(table))
+        return diagnose_at(why, path, STATUS_BAD_INPUT, "convert it: sed -i 's/\\r$//' FILE",
+                           "the file has the line ends of Windows (CR LF): another program has written it");
+    return STATUS_OK;
+}
+
+/* The number of fields of the line from `start` to `end`; 0 for invalid quotes. */
+static size_t fields_of(const char *start, const char *end, diagnostic *why)
+{
+    char *copy = strndup(start, (size_t)(end - start));
+    const size_t count = copy ? csv_split(copy, NULL) : 0;
+    if (!copy)
+        (void)out_of_memory(why);
+    free(copy);
+    return count;
+}
+
+/* Brings the bytes into the form that this program writes. */
+static status mend(csv *table, diagnostic *why)
+{
+    char *bytes = malloc(table->size + 2), *to = bytes;
+    if (!bytes)
+        return out_of_memory(why);
+    const char *from = table->raw + (is_marked(table) ? 3 : 0), *end = table->raw + table->size;
+    for (; from < end; from++)
+        if (*from != '\r' || (from + 1 < end && from[1] != '\n'))
+            *to++ = *from;
+    while (to > bytes + 1 && to[-1] == '\n' && to[-2] == '\n')
+        to--;
+    const char *last = memrchr(bytes, '\n', (size_t)(to - bytes)),
+               *first_end = memchr(bytes, '\n', (size_t)(to - bytes));
+    if (to > bytes && to[-1] != '\n' &&
+        (!first_end || fields_of(bytes, first_end, why) == fields_of(last + 1, to, why)) &&
+        !memchr(last ? last + 1 : bytes, 0, (size_t)(to - (last ? last + 1 : bytes))))
+        *to++ = '\n';
+    const size_t size = (size_t)(to - bytes);
+    table->mended = size != table->size || memcmp(bytes, table->raw, size) != 0;
+    *to = 0;
+    free(table->raw);
+    table->raw = bytes;
+    table->size = size;
+    return STATUS_OK;
+}
+
+static status read_table(const char *path, const char *root, reading how, csv **out, diagnostic *why)
 {
     *out = NULL;
     if (access(path, F_OK) != 0)
@@ -219,9 +284,12 @@ static status read_table(const char *path, const char *root, bool strict, csv **
     if (!table)
         return out_of_memory(why);
     status code = file_read_below(path, root, CSV_BYTES_MAX, &table->raw, &table->size, why);
+    if (code == STATUS_OK && how != READ_OWN)
+        code = how == READ_ANY ? mend(table, why) : check_form(table, path, why);
     if (code == STATUS_OK) {
         table->whole = csv_whole(table->raw, table->size);
-        code = split_all(table, path, strict, why);
+        table->torn = table->whole < table->size;
+        code = split_all(table, path, how != READ_ROWS, why);
     }
     if (code != STATUS_OK) {
         csv_destroy(table);
@@ -233,12 +301,17 @@ static status read_table(const char *path, const char *root, bool strict, csv **
 
 status csv_read_below(const char *path, const char *root, csv **out, diagnostic *why)
 {
-    return read_table(path, root, true, out, why);
+    return read_table(path, root, READ_OWN, out, why);
+}
+
+status csv_read_any(const char *path, const char *root, csv **out, diagnostic *why)
+{
+    return read_table(path, root, READ_ANY, out, why);
 }
 
 status csv_read_rows(const char *path, const char *root, csv **out, diagnostic *why)
 {
-    return read_table(path, root, false, out, why);
+    return read_table(path, root, READ_ROWS, out, why);
 }
 
 void csv_destroy(csv *table)

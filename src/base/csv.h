@@ -1,6 +1,7 @@
-/* Comma-separated values (RFC 4180), restricted to fields without line breaks, so that a line is complete if and only
- * if its newline is present. Ownership: csv_read gives, csv_destroy releases; a csv_line is released with
- * csv_line_free. */
+/* Comma-separated values (RFC 4180), restricted to fields without line breaks. In a file of this program a line is
+ * complete if and only if its newline is present; other programs and people leave out the last one, end lines with
+ * CR LF, and begin with a byte order mark, which csv_read_any takes. Ownership: csv_read gives, csv_destroy
+ * releases; a csv_line is released with csv_line_free. */
 #pragma once
 
 #include "base/status.h"
@@ -28,7 +29,7 @@ void csv_line_free(csv_line *line);
  * a power cut, a part of the last line may never have been written, and reads as zeros. */
 size_t csv_whole(const char *text, size_t size);
 
-/* The complete lines of a file. An incomplete line at the end is ignored. */
+/* The complete lines of a file. */
 typedef struct csv {
     char *raw;
     size_t size; /* the file's bytes; whole is csv_whole of them */
@@ -39,7 +40,9 @@ typedef struct csv {
     size_t row_count;
     char **fields; /* row_count * column_count fields, after the header */
     size_t *start; /* offset of row i in raw; start[row_count] = whole */
-    bool *broken;  /* csv_read_rows: row i has another number of fields or invalid quotes; its fields are NA */
+    bool mended;   /* csv_read_any: raw is not what the file has, but the same in the form of this program */
+    bool torn; /* there is a last line without its newline, or, of csv_read_any, without its fields; it is left out */
+    bool *broken; /* csv_read_rows: row i has another number of fields or invalid quotes; its fields are NA */
 } csv;
 
 /* STATUS_OK and *out = NULL if the file does not exist. STATUS_BAD_INPUT if a row does not have as many fields as the
@@ -47,7 +50,10 @@ typedef struct csv {
 status csv_read(const char *path, csv **out, diagnostic *why);
 /* The same for a file below root (base/below.h). */
 status csv_read_below(const char *path, const char *root, csv **out, diagnostic *why);
-/* The same, but rows with another number of fields are no error. */
+/* The same for a file that people and other programs write. */
+status csv_read_any(const char *path, const char *root, csv **out, diagnostic *why);
+/* As csv_read_below, but rows with another number of fields are no error. A byte order mark and CR LF are: they are not
+ * what the program wrote. */
 status csv_read_rows(const char *path, const char *root, csv **out, diagnostic *why);
 void csv_destroy(csv *table);
 

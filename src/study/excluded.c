@@ -1,4 +1,5 @@
 #include "study/excluded.h"
+#include "base/file.h"
 #include "base/number.h"
 #include "base/text.h"
 #include "scene/model/open.h"
@@ -60,7 +61,7 @@ status excluded_read(const study *s, const char *results, excluded **out, diagno
     *out = NULL;
     char *path = excluded_path(s, results);
     excluded *list = calloc(1, sizeof *list);
-    status code = path && list ? csv_read_below(path, scene_root(s->base), &list->table, why) : out_of_memory(why);
+    status code = path && list ? csv_read_any(path, scene_root(s->base), &list->table, why) : out_of_memory(why);
     if (code == STATUS_OK && list->table && !list->table->header) { /* the program was killed before the header */
         csv_destroy(list->table);
         list->table = NULL;
@@ -162,7 +163,9 @@ static status find_row(const row_files *files, const excluded *list, const char 
     return STATUS_OK;
 }
 
-static status append(const study *s, const char *results, const row_ref *row, const char *reason, diagnostic *why)
+/* list: what the file has now; the line is added to it in the form of this program. */
+static status append(const study *s, const char *results, const excluded *list, const row_ref *row, const char *reason,
+                     diagnostic *why)
 {
     static const char header[] = "check,identity,run,process,cell,repetition,reason,time_utc\n";
     char *path = excluded_path(s, results), number[32], utc[ROW_TIME_MAX];
@@ -181,7 +184,10 @@ static status append(const study *s, const char *results, const row_ref *row, co
     clock_gettime(CLOCK_REALTIME, &now);
     csv_text(&line, row_time((int64_t)now.tv_sec * 1000 + now.tv_nsec / 1000000, utc));
     csv_end(&line);
-    status code = path && !line.failed ? table_open(path, header, &to, why) : out_of_memory(why);
+    status code = path && !line.failed ? STATUS_OK : out_of_memory(why);
+    if (code == STATUS_OK && list->table && list->table->mended)
+        code = file_write(path, list->table->raw, why);
+    THEN(code, table_open(path, header, &to, why));
     THEN(code, table_append(to, line.text, line.size, why));
     table_close(to);
     csv_line_free(&line);
@@ -201,7 +207,7 @@ status excluded_add(const study *s, const char *results, const char *row, const 
     status code = row_files_read(s, results, ROWS, &files, why);
     THEN(code, excluded_read(s, results, &list, why));
     THEN(code, find_row(files, list, row, &found, why));
-    THEN(code, append(s, results, found, reason, why));
+    THEN(code, append(s, results, list, found, reason, why));
     excluded_destroy(list);
     row_files_destroy(files);
     return code;

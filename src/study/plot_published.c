@@ -110,11 +110,16 @@ status plot_published_read(plot_plan *p, diagnostic *why)
     if (!p->request->published)
         return STATUS_OK;
     const char *name = p->x.value >= 0 ? p->x.name : p->along ? p->along->name : "";
-    status code = csv_read(p->request->published, &table, why);
+    status code = csv_read_any(p->request->published, NULL, &table, why);
     if (code == STATUS_OK && !table)
         code = diagnose_at(why, p->request->published, STATUS_BAD_INPUT, "give a CSV file", "no such file");
-    if (code != STATUS_OK)
+    if (code == STATUS_OK && table->torn)
+        code = diagnose_at(why, p->request->published, STATUS_BAD_INPUT, "complete it, or remove it",
+                           "the last line has fewer fields than the first");
+    if (code != STATUS_OK) {
+        csv_destroy(table);
         return code;
+    }
     const int x = column_named(table, name);
     int y = column_named(table, p->y.name);
     y = y < 0 ? column_of_time(table, p->y.name) : y;

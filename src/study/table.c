@@ -16,6 +16,7 @@
 struct table {
     char *path, *header;
     int fd;
+    off_t end;          /* the file's size after the last line that was appended; 0: none yet */
     bool settled;       /* the file has all columns of header, and layout is known */
     csv_layout *layout; /* converts header's columns to the file's; NULL if they are equal */
 };
@@ -114,6 +115,8 @@ status table_set_aside(table *t, size_t offset, diagnostic *why)
     THEN(code, keep_torn(t->path, bytes, size, why));
     if (code == STATUS_OK && (ftruncate(t->fd, (off_t)offset) != 0 || fsync(t->fd) != 0))
         code = failed(t->path, "truncating an incomplete row", errno, why);
+    if (t->end > 0)
+        t->end = (off_t)offset;
     free(bytes);
     return code;
 }
@@ -167,10 +170,56 @@ static status lock(table *t, diagnostic *why)
     }
 }
 
+/* What another program did to the file since the last row, or NULL. */
+static const char *what_was_done(const table *t)
+{
+    struct stat named, opened;
+    if (t->end == 0 || fstat(t->fd, &opened) != 0)
+        return NULL;
+    if (stat(t->path, &named) != 0)
+        return "was removed";
+    if (named.st_ino != opened.st_ino || named.st_dev != opened.st_dev)
+        return "was replaced by another file";
+    return opened.st_size < t->end ? "was cut" : opened.st_size > t->end ? "was changed" : NULL;
+}
+
+/* rows.csv -> rows.rescued.csv: the rows that this process still has, which nothing else may have any more. */
+static status rescue(const table *t, const char *done, const char *lines, size_t size, diagnostic *why)
+{
+    const size_t length = strlen(t->path);
+    struct stat now;
+    char *path = text_format("%.*s.rescued.csv", (int)(length > 4 ? length - 4 : length), t->path), *bytes = NULL;
+    status code = path ? STATUS_OK : out_of_memory(why);
+    int fd = -1;
+    if (code == STATUS_OK && (fd = open(path, O_WRONLY | O_APPEND | O_CREAT | O_CLOEXEC, 0666)) < 0)
+        code = failed(path, "writing", errno, why);
+    const size_t before = code == STATUS_OK && fstat(t->fd, &now) == 0 ? (size_t)now.st_size : 0;
+    if (code == STATUS_OK && !(bytes = malloc(before + 1)))
+        code = out_of_memory(why);
+    if (code == STATUS_OK && (read_all(t->fd, bytes, before, 0) != 0 || append_all(fd, bytes, before) != 0 ||
+                              append_all(fd, lines, size) != 0))
+        code = failed(path, "writing", errno, why);
+    if (code == STATUS_OK) {
+        char remedy[400];
+        snprintf(remedy, sizeof remedy, "its rows are in %.300s: put them back, and run the command again", path);
+        code = diagnose_at(why, t->path, STATUS_FAILURE, remedy, "the file %s while the study ran", done);
+    }
+    if (fd >= 0)
+        close(fd);
+    free(bytes);
+    free(path);
+    return code;
+}
+
 static status append(table *t, const char *lines, size_t size, diagnostic *why)
 {
+    struct stat now;
+    const char *done = what_was_done(t);
+    if (done)
+        return rescue(t, done, lines, size, why);
     if (append_all(t->fd, lines, size) != 0)
         return failed(t->path, "writing a row", errno, why);
+    t->end = fstat(t->fd, &now) == 0 ? now.st_size : 0;
     return STATUS_OK;
 }
 
@@ -192,6 +241,8 @@ status table_open(const char *path, const char *header, table **out, diagnostic 
         code = append(t, header, strlen(header), why);
         t->settled = true;
     }
+    struct stat now;
+    t->end = code == STATUS_OK && fstat(t->fd, &now) == 0 ? now.st_size : 0;
     file_flush_folder(path); /* also of an old file: the process that made it may have been killed before that */
     if (code != STATUS_OK) {
         table_close(t);
@@ -209,6 +260,7 @@ static status settle(table *t, diagnostic *why)
     if (code == STATUS_OK && replaced) {
         file_flush_folder(t->path);
         close(t->fd);
+        t->end = 0;
         code = lock(t, why);
     }
     t->settled = code == STATUS_OK;

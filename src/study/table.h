@@ -14,7 +14,9 @@ typedef struct table table;
  * missing. STATUS_BAD_INPUT if another process holds the lock. */
 status table_open(const char *path, const char *header, table **out, diagnostic *why);
 
-/* Appends complete lines, in the columns of the header given to table_open. If the disk is full, the file is truncated
+/* Appends complete lines, in the columns of the header given to table_open. STATUS_FAILURE if another program removed,
+ * replaced, cut or changed the file since the last lines: these and all that the old file has are then in
+ * x.rescued.csv. If the disk is full, the file is truncated
  * to its old size: a line is written completely or not at all. */
 status table_append(table *t, const char *lines, size_t size, diagnostic *why);
 

@@ -119,10 +119,13 @@ static status read_rows(const char *path, const char *column, value_table *t, di
 status value_table_read(const char *path, const char *column, value_table *out, diagnostic *why)
 {
     *out = (value_table){.count = 0};
-    status code = csv_read(path, &out->file, why);
+    status code = csv_read_any(path, NULL, &out->file, why);
     if (code == STATUS_OK && !out->file)
         code = diagnose_at(why, path, STATUS_BAD_INPUT, "give a CSV file, such as results/STUDY/rows.csv",
                            "there is no such file");
+    if (code == STATUS_OK && out->file->torn)
+        code = diagnose_at(why, path, STATUS_BAD_INPUT, "complete it, or remove it",
+                           "the last line has fewer fields than the first");
     THEN(code, read_rows(path, column, out, why));
     if (code != STATUS_OK)
         value_table_release(out);
