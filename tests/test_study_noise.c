@@ -202,6 +202,48 @@ static void waiting_ends_with_the_time_or_a_stop_request(void **state)
     study_destroy(s);
 }
 
+/* As Ctrl-Z and fg do, in the middle of the first frame. The child goes on until it has an effect. */
+static void stop_once(void *context, const study_moment *now)
+{
+    bool *stopped = context;
+    if (*stopped || now->stage != STUDY_MEASURING || !(now->share > 0))
+        return;
+    *stopped = true;
+    const pid_t own = getpid(), child = fork();
+    for (int i = 0; child == 0 && i < 20; i++) {
+        usleep(300000);
+        if (kill(own, SIGCONT) != 0)
+            break;
+    }
+    if (child == 0)
+        _exit(0);
+    kill(own, SIGSTOP);
+    kill(child, SIGKILL);
+    waitpid(child, NULL, 0);
+}
+
+static void a_stopped_process_is_disturbed(void **state)
+{
+    const fixture *f = *state;
+    study *s = fixture_study(f, "study: test\nscene: scene.yaml\nwarmups: 0\nrepetitions: 1\n"
+                                "set: {render.width: 400, render.height: 300, render.integrator: path, "
+                                "render.paths: 16, render.threads: 1}\n");
+    bool stopped = false;
+    const study_options options = {.results = f->results, .progressed = stop_once, .context = &stopped};
+    assert_int_equal(study_run(s, &options, NULL, NULL), STATUS_OK);
+    row_files *files;
+    assert_int_equal(row_files_read(s, f->results, ROWS, &files, NULL), STATUS_OK);
+    assert_int_equal(files->row_count, 1);
+    const row_ref *row = &files->rows[0];
+    assert_true(stopped && row_field_real(row, "stalled_share") > 0);
+    const double stopped_s = row_field_real(row, "wall_s") * row_field_real(row, "stalled_share");
+    assert_true(stopped_s > 0.25); /* of the 0.3 s or more */
+    if (row_field_real(row, "stalled_share") > 0.1)
+        assert_string_equal(row_field(row, "disturbed"), "1");
+    row_files_destroy(files);
+    study_destroy(s);
+}
+
 static void invalid_rules_are_refused(void **state)
 {
     const fixture *f = *state;
@@ -235,9 +277,13 @@ static void invalid_rules_are_refused(void **state)
 int main(void)
 {
     const struct CMUnitTest tests[] = {
-        CASE(quiet_rows_suffice),          CASE(disturbed_rows_are_kept_and_repeated_up_to_the_limit),
-        CASE(another_rule_keeps_the_rows), CASE(waiting_ends_with_the_time_or_a_stop_request),
-        CASE(invalid_rules_are_refused),   cmocka_unit_test(a_twentieth_of_the_machine_is_news),
+        CASE(quiet_rows_suffice),
+        CASE(disturbed_rows_are_kept_and_repeated_up_to_the_limit),
+        CASE(another_rule_keeps_the_rows),
+        CASE(waiting_ends_with_the_time_or_a_stop_request),
+        CASE(a_stopped_process_is_disturbed),
+        CASE(invalid_rules_are_refused),
+        cmocka_unit_test(a_twentieth_of_the_machine_is_news),
     };
     return cmocka_run_group_tests_name("study_noise", tests, NULL, NULL);
 }

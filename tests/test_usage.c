@@ -81,19 +81,19 @@ static void the_window_looks_back_half_a_second(void **state)
 static void rules_never_look_at_times(void **state)
 {
     (void)state;
-    const noise_rule usual = noise_rule_default(), all = {0.1, 0.01, 0.2}, none = {NAN, NAN, NAN};
+    const noise_rule usual = noise_rule_default(), all = {0.1, 0.01, 0.2, 0.5}, none = {NAN, NAN, NAN, NAN};
     static const struct {
         machine_noise noise;
         noise_verdict usual, all;
     } cases[] = {
-        {{0.05, 0, 2e9, 0}, NOISE_UNDISTURBED, NOISE_UNDISTURBED},
-        {{0.051, 0, 2e9, 0}, NOISE_DISTURBED, NOISE_UNDISTURBED},
-        {{0.2, 0, 2e9, 0}, NOISE_DISTURBED, NOISE_DISTURBED},
-        {{0, 0.02, 2e9, 0}, NOISE_UNDISTURBED, NOISE_DISTURBED},
-        {{0, 0, 1.5e9, 0.25}, NOISE_UNDISTURBED, NOISE_DISTURBED},
-        {{0, 0, 1.7e9, 0.15}, NOISE_UNDISTURBED, NOISE_UNDISTURBED},
-        {{NAN, 0.02, NAN, NAN}, NOISE_NOT_KNOWN, NOISE_DISTURBED},
-        {{NAN, NAN, NAN, NAN}, NOISE_NOT_KNOWN, NOISE_NOT_KNOWN},
+        {{0.05, 0, 2e9, 0, NAN}, NOISE_UNDISTURBED, NOISE_UNDISTURBED},
+        {{0.051, 0, 2e9, 0, NAN}, NOISE_DISTURBED, NOISE_UNDISTURBED},
+        {{0.2, 0, 2e9, 0, NAN}, NOISE_DISTURBED, NOISE_DISTURBED},
+        {{0, 0.02, 2e9, 0, NAN}, NOISE_UNDISTURBED, NOISE_DISTURBED},
+        {{0, 0, 1.5e9, 0.25, NAN}, NOISE_UNDISTURBED, NOISE_DISTURBED},
+        {{0, 0, 1.7e9, 0.15, NAN}, NOISE_UNDISTURBED, NOISE_UNDISTURBED},
+        {{NAN, 0.02, NAN, NAN, NAN}, NOISE_NOT_KNOWN, NOISE_DISTURBED},
+        {{NAN, NAN, NAN, NAN, NAN}, NOISE_NOT_KNOWN, NOISE_NOT_KNOWN},
     };
     for (size_t i = 0; i < sizeof cases / sizeof *cases; i++) {
         bool broken[NOISE_KINDS];

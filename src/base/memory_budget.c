@@ -1,6 +1,7 @@
 /* What is free: proc(5), cgroups(7), getrlimit(2); and sizes as text. */
 #include "base/memory_budget.h"
 
+#include "base/control_group.h"
 #include "base/number.h"
 #include <stdarg.h>
 #include <stdatomic.h>
@@ -30,8 +31,8 @@ uint64_t memory_budget_limit(void)
  * is none ("max"). */
 static bool read_number(const char *root, const char *path, const char *name, uint64_t *value)
 {
-    char place[1024], line[512];
-    snprintf(place, sizeof place, "%.200s%.800s", root, path);
+    char place[1600], line[512];
+    snprintf(place, sizeof place, "%.200s%.1300s", root, path);
     FILE *file = fopen(place, "re");
     bool found = false;
     while (file && !found && fgets(line, sizeof line, file)) {
@@ -53,60 +54,42 @@ static uint64_t least(uint64_t a, uint64_t b)
 
 /* The names of the files of one group: cgroup 2 (Documentation/admin-guide/cgroup-v2.rst), and 1 (cgroup-v1). */
 static const struct group_files {
-    const char *below, *limit, *used, *dropped; /* dropped: in memory.stat, what can be dropped */
-} version[2] = {{"/sys/fs/cgroup", "memory.max", "memory.current", "inactive_file "},
-                {"/sys/fs/cgroup/memory", "memory.limit_in_bytes", "memory.usage_in_bytes", "total_inactive_file "}};
+    const char *limit, *used, *dropped; /* dropped: in memory.stat, what can be dropped */
+} version[2] = {{"memory.max", "memory.current", "inactive_file "},
+                {"memory.limit_in_bytes", "memory.usage_in_bytes", "total_inactive_file "}};
 
-static uint64_t free_in_group(const char *root, const struct group_files *files, const char *group)
+static uint64_t free_in_group(const char *root, const struct group_files *files, const char *folder)
 {
-    char path[700];
+    char path[1300];
     uint64_t most, used, dropped = 0;
-    snprintf(path, sizeof path, "%s%s/%s", files->below, group, files->limit);
+    snprintf(path, sizeof path, "%.1200s/%s", folder, files->limit);
     if (!read_number(root, path, "", &most))
         return UINT64_MAX;
-    snprintf(path, sizeof path, "%s%s/%s", files->below, group, files->used);
+    snprintf(path, sizeof path, "%.1200s/%s", folder, files->used);
     if (!read_number(root, path, "", &used))
         return most;
-    snprintf(path, sizeof path, "%s%s/memory.stat", files->below, group);
+    snprintf(path, sizeof path, "%.1200s/memory.stat", folder);
     read_number(root, path, files->dropped, &dropped);
     used -= least(used, dropped);
     return most - least(most, used);
 }
 
-/* The least of a group and those around it; group is cut at its slashes. */
-static uint64_t free_in_groups(const char *root, const struct group_files *files, char *group)
+typedef struct free_room {
+    const char *root;
+    uint64_t left;
+} free_room;
+
+static void take_group(void *context, const char *folder, int kind)
 {
-    uint64_t left = UINT64_MAX;
-    for (;;) {
-        left = least(left, free_in_group(root, files, group));
-        char *slash = strrchr(group, '/');
-        if (!slash)
-            return left;
-        *slash = 0;
-    }
+    free_room *room = context;
+    room->left = least(room->left, free_in_group(room->root, &version[kind == 1], folder));
 }
 
-/* Lines of /proc/self/cgroup: "0::/path" of version 2, "5:memory:/path" of version 1. */
 static uint64_t free_by_groups(const char *root)
 {
-    char place[256], line[600];
-    uint64_t left = UINT64_MAX;
-    snprintf(place, sizeof place, "%.200s/proc/self/cgroup", root);
-    FILE *file = fopen(place, "re");
-    while (file && fgets(line, sizeof line, file)) {
-        char *controllers = strchr(line, ':'), *group = controllers ? strchr(controllers + 1, ':') : NULL;
-        if (!group)
-            continue;
-        *group++ = 0;
-        group[strcspn(group, "\n")] = 0;
-        if (controllers[1] == 0)
-            left = least(left, free_in_groups(root, &version[0], group));
-        else if (strstr(controllers, "memory"))
-            left = least(left, free_in_groups(root, &version[1], group));
-    }
-    if (file)
-        fclose(file);
-    return left;
+    free_room room = {root, UINT64_MAX};
+    (void)control_group_each(root, "memory", take_group, &room);
+    return room.left;
 }
 
 uint64_t memory_budget_free(const char *root, uint64_t address_space)

@@ -3,6 +3,7 @@
 
 #include "base/cancel.h"
 #include "base/memory_budget.h"
+#include "base/os_process.h"
 #include "job/shelf.h"
 #include "measure/clock.h"
 #include "scene/model/scene.h"
@@ -304,6 +305,17 @@ machine_noise job_noise(job *j)
     return noise;
 }
 
+static double stalled_share(const render_result *r)
+{
+    double wall_s = 0, longest_s = 0, cpu_s = 0;
+    for (int i = 0; r && i < r->worker_count; i++) {
+        wall_s += r->workers[i].wall_s;
+        longest_s = fmax(longest_s, r->workers[i].wall_s);
+        cpu_s += r->workers[i].cpu_s;
+    }
+    return r ? noise_stalled(r->worker_count, os_usable_units(), wall_s, longest_s, cpu_s) : NAN;
+}
+
 /* The counters are read first and last, so that they cover only the frames. */
 static status measure_all(work *w, const scene *s, size_t count, bool maps, job_account *a, diagnostic *why)
 {
@@ -328,6 +340,7 @@ static status measure_all(work *w, const scene *s, size_t count, bool maps, job_
         a->hardware = hardware_counts_since(j->hardware, &counted);
         a->spent = usage_since(&used);
         a->noise = noise_since(j, began_s);
+        a->noise.stalled_share = stalled_share(a->result);
         a->film_hash = a->result ? job_account_hash(a) : 0;
     }
     a->ended_ms = now_ms();

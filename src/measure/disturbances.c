@@ -1,6 +1,7 @@
 /* Checks of the machine's settings and load for disturbances. */
 #include "measure/disturbances.h"
 
+#include "base/control_group.h"
 #include "measure/small_file.h"
 #include "measure/usage.h"
 
@@ -108,23 +109,18 @@ static void check_hypervisor(const report *to)
         say(to, "virtual machine: its hypervisor may run others on the same cores");
 }
 
-/* The CPU quota of the control group, in units: cpu.max of cgroup 2, or the two files of cgroup 1. */
+/* The tightest CPU quota of the control groups, in units. */
 static void check_quota(const report *to)
 {
-    char text[64];
-    long long quota = -1, period = -1;
-    if (read_file(to, "/sys/fs/cgroup/cpu.max", text, sizeof text)) {
-        char *end;
-        quota = strtoll(text, &end, 10); /* "max 100000" reads as 0 */
-        period = strtoll(end, NULL, 10);
-    } else if (read_file(to, "/sys/fs/cgroup/cpu/cpu.cfs_quota_us", text, sizeof text)) {
-        quota = strtoll(text, NULL, 10);
-        read_file(to, "/sys/fs/cgroup/cpu/cpu.cfs_period_us", text, sizeof text);
-        period = strtoll(text, NULL, 10);
+    control_group_limits limits;
+    const int error = control_group_read(to->root, &limits);
+    if (error && !*to->incomplete) {
+        say(to, "unknown: the control group cannot be read: %s", strerrordesc_np(error));
+        *to->incomplete = true;
     }
-    if (quota <= 0 || period <= 0)
+    if (!limits.quota_us)
         return;
-    long long tenths = (quota * 10 + period / 2) / period;
+    const long long tenths = (limits.quota_us * 10 + limits.period_us / 2) / limits.period_us;
     say(to, "control group limits the process to %lld.%lld units", tenths / 10, tenths % 10);
 }
 

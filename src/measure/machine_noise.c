@@ -61,7 +61,7 @@ noise_reading noise_read(const char *root)
 
 machine_noise noise_unknown(void)
 {
-    return (machine_noise){NAN, NAN, NAN, NAN};
+    return (machine_noise){NAN, NAN, NAN, NAN, NAN};
 }
 
 /* Rounding to ticks can exceed either end. */
@@ -75,7 +75,7 @@ machine_noise noise_between(const noise_reading *before, const noise_reading *af
     const double capacity_s = (after->wall_s - before->wall_s) * after->units;
     const double others_s = (after->busy_s - before->busy_s) - (after->own_s - before->own_s);
     const double steal_s = after->steal_s - before->steal_s;
-    return (machine_noise){share(others_s, capacity_s), share(steal_s, capacity_s), after->frequency_hz, NAN};
+    return (machine_noise){share(others_s, capacity_s), share(steal_s, capacity_s), after->frequency_hz, NAN, NAN};
 }
 
 /* --- window --- */
@@ -107,17 +107,25 @@ machine_noise noise_window_since(noise_window *w, double since_s, const noise_re
     return noise;
 }
 
+double noise_stalled(int workers, int units, double wall_s, double longest_s, double cpu_s)
+{
+    const double could_s = workers <= units ? wall_s : longest_s;
+    return workers > 0 && could_s > 0 ? fmax(0.0, 1.0 - cpu_s / could_s) : NAN;
+}
+
 /* --- rule --- */
 
 noise_rule noise_rule_default(void)
 {
-    return (noise_rule){.others_share = 0.05, .steal_share = NAN, .frequency_drop = NAN};
+    return (noise_rule){.others_share = 0.05, .steal_share = NAN, .frequency_drop = NAN, .stalled_share = 0.1};
 }
 
 noise_verdict noise_judge(const noise_rule *rule, const machine_noise *noise, bool broken[NOISE_KINDS])
 {
-    const double bound[NOISE_KINDS] = {rule->others_share, rule->steal_share, rule->frequency_drop};
-    const double value[NOISE_KINDS] = {noise->others_share, noise->steal_share, noise->frequency_drop};
+    const double bound[NOISE_KINDS] = {rule->others_share, rule->steal_share, rule->frequency_drop,
+                                       rule->stalled_share};
+    const double value[NOISE_KINDS] = {noise->others_share, noise->steal_share, noise->frequency_drop,
+                                       noise->stalled_share};
     noise_verdict verdict = NOISE_NOT_KNOWN;
     for (noise_kind kind = 0; kind < NOISE_KINDS; kind++) {
         const bool breaks = value[kind] > bound[kind];

@@ -1,5 +1,6 @@
 #include "study/environment.h"
 #include "base/build_id.h"
+#include "base/control_group.h"
 #include "base/hash.h"
 #include "base/os_process.h"
 #include "base/system_error.h"
@@ -96,37 +97,35 @@ const char *environment_node_type(void)
     return type && type[0] ? type : NULL;
 }
 
-/* The path of the process' control group (version 2), "" if there is none: cgroups(7). */
-static void read_group(source *from, char *text, size_t size)
+/* The processing units that the process may use, as "0-3,8"; "" if these are all that there are. Nodes of a type are
+ * declared alike, whichever units a scheduler gives (CUVETTE_NODE_TYPE). */
+static void read_mask(source *from, char *text, size_t size)
 {
-    if (!read_line(from, "/proc/self/cgroup", "0::", text, size) || strcmp(text, "/") == 0)
+    char online[ENVIRONMENT_FACT_MAX];
+    const bool known = read_line(from, "/proc/self/status", "Cpus_allowed_list", text, size) &&
+                       read_line(from, "/sys/devices/system/cpu/online", "", online, sizeof online);
+    if (!known || strcmp(text, online) == 0 || environment_node_type())
         text[0] = 0;
 }
 
-/* A limit of the group or of one above it; the innermost that is set. */
-static void read_limit(source *from, const char *group, const char *name, char *text, size_t size)
+void environment_read_units(char *text, size_t size)
 {
-    char path[400], folder[ENVIRONMENT_FACT_MAX];
-    snprintf(folder, sizeof folder, "%s", group);
-    for (;;) {
-        snprintf(path, sizeof path, "/sys/fs/cgroup%s/%s", folder, name);
-        if (read_line(from, path, "", text, size) && strncmp(text, "max", 3) != 0)
-            return;
-        char *slash = strrchr(folder, '/');
-        if (!slash)
-            break;
-        *slash = 0;
-    }
-    snprintf(text, size, "max");
+    source from = {.root = ""};
+    read_line(&from, "/proc/self/status", "Cpus_allowed_list", text, size);
 }
 
 static void read_limits(source *from, char *text, size_t size)
 {
-    char group[ENVIRONMENT_FACT_MAX], cpu[32], memory[32];
-    read_group(from, group, sizeof group);
-    read_limit(from, group, "cpu.max", cpu, sizeof cpu);
-    read_limit(from, group, "memory.max", memory, sizeof memory);
-    snprintf(text, size, "cpu %s, memory %s, units %d", cpu, memory, os_usable_units());
+    char cpu[48] = "max", memory[24] = "max", mask[64];
+    control_group_limits limits;
+    const int error = control_group_read(from->root, &limits);
+    from->error = from->error ? from->error : error;
+    if (limits.quota_us)
+        snprintf(cpu, sizeof cpu, "%lld %lld", limits.quota_us, limits.period_us);
+    if (limits.memory_bytes != UINT64_MAX)
+        snprintf(memory, sizeof memory, "%" PRIu64, limits.memory_bytes);
+    read_mask(from, mask, sizeof mask);
+    snprintf(text, size, "cpu %s, memory %s, units %d%s%s", cpu, memory, os_usable_units(), mask[0] ? ": " : "", mask);
 }
 
 void environment_close(run_environment *e)

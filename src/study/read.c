@@ -175,16 +175,17 @@ static status read_share(const document *d, const node *n, const char *name, dou
     return STATUS_OK;
 }
 
-/* {others_share: 0.05, steal_share: 0.01, frequency_drop: 0.1} */
+/* {others_share: 0.05, steal_share: 0.01, frequency_drop: 0.1, stalled_share: 0.1} */
 static status read_noise_rule(study *s, const document *d, const node *n, diagnostic *why)
 {
-    static const char *const keys[] = {"others_share", "steal_share", "frequency_drop"};
+    static const char *const keys[] = {"others_share", "steal_share", "frequency_drop", "stalled_share"};
     s->disturbed = noise_rule_default();
     if (!n)
         return STATUS_OK;
     if (n->kind != NODE_MAP)
         return node_error(d, n, why, "write {others_share: 0.05}", "disturbed is not a map");
-    double *const parts[] = {&s->disturbed.others_share, &s->disturbed.steal_share, &s->disturbed.frequency_drop};
+    double *const parts[] = {&s->disturbed.others_share, &s->disturbed.steal_share, &s->disturbed.frequency_drop,
+                             &s->disturbed.stalled_share};
     TRY(node_check_keys(d, n, keys, COUNT(keys), why));
     for (size_t i = 0; i < COUNT(keys); i++) {
         *parts[i] = NAN;

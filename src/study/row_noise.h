@@ -7,6 +7,6 @@
 /* The columns of one table; looked up again when the table changes. Start with zeros. */
 typedef struct row_noise_columns {
     const csv *table;
-    int others, steal, drop;
+    int others, steal, drop, stalled;
 } row_noise_columns;
 noise_verdict row_noise_judge(const noise_rule *rule, row_noise_columns *at, const row_ref *ref);

@@ -95,6 +95,17 @@ status run_render(run *r, const scene *setting, const render_options *wanted, jo
     return say_interrupted(job_render(r->with, setting, &options, out, why), why);
 }
 
+/* taskset -p, or a control group that was changed. */
+static status check_units(const run *r, diagnostic *why)
+{
+    char now[sizeof r->units];
+    environment_read_units(now, sizeof now);
+    if (strcmp(now, r->units) == 0)
+        return STATUS_OK;
+    return diagnose(why, STATUS_FAILURE, "run the command again: it measures the rest in the new environment",
+                    "the processing units of the program changed during the run, from %s to %s", r->units, now);
+}
+
 /* One frame and its row. */
 static status measure(run *r, size_t cell, bool warmup, diagnostic *why)
 {
@@ -104,6 +115,7 @@ static status measure(run *r, size_t cell, bool warmup, diagnostic *why)
     THEN(code, run_load(r, setting, why));
     THEN(code, run_noise_wait(r, why));
     THEN(code, run_render(r, setting, &(render_options){.usage = r->s->keep_workers}, &made, why));
+    THEN(code, check_units(r, why));
     if (code == STATUS_OK) {
         const study_row row = {.of = r->s,
                                .cell = cell,
@@ -203,6 +215,7 @@ status study_run(const study *s, const study_options *options, size_t *ran, diag
                              : out_of_memory(why);
     if (code == STATUS_OK) {
         code = environment_read("", job_isa(r.with), &r.here, why);
+        environment_read_units(r.units, sizeof r.units);
         r.build = progress_index_build();
     }
     THEN(code, run_read_rows(&r, why));

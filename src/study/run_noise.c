@@ -12,7 +12,8 @@ static noise_rule rule_of_news(const noise_rule *rule)
 {
     return (noise_rule){.others_share = isnan(rule->others_share) ? 0.05 : rule->others_share,
                         .steal_share = isnan(rule->steal_share) ? 0.01 : rule->steal_share,
-                        .frequency_drop = isnan(rule->frequency_drop) ? 0.1 : rule->frequency_drop};
+                        .frequency_drop = isnan(rule->frequency_drop) ? 0.1 : rule->frequency_drop,
+                        .stalled_share = isnan(rule->stalled_share) ? 0.1 : rule->stalled_share};
 }
 
 static void describe(noise_kind kind, const machine_noise *noise, char *text, size_t size)
@@ -30,6 +31,13 @@ static void describe(noise_kind kind, const machine_noise *noise, char *text, si
         snprintf(text, size, "the clock frequency fell by %.0f%% to %.2f GHz: heat, or the governor",
                  100 * noise->frequency_drop, noise->frequency_hz * 1e-9);
         return;
+    case NOISE_STALLED:
+        snprintf(
+            text, size,
+            "the program could not run for %.0f%% of a frame: it was stopped, frozen, throttled by a quota, or others "
+            "had its processing units",
+            100 * noise->stalled_share);
+        return;
     case NOISE_KINDS: break;
     }
     text[0] = '\0';
@@ -37,8 +45,10 @@ static void describe(noise_kind kind, const machine_noise *noise, char *text, si
 
 static void tell(run *r, const char *text)
 {
-    if (r->options->news)
-        r->options->news(r->options->context, text);
+    if (!r->options->news)
+        return;
+    progress_erase_line(r->line);
+    r->options->news(r->options->context, text);
 }
 
 noise_verdict run_noise_judge(run *r, const machine_noise *noise)

@@ -35,9 +35,10 @@ typedef struct run {
     char id[RUN_ID]; /* of this run; "" before run_prepare */
     int process;
     run_environment here;
-    uint64_t build;                  /* progress_index_build */
-    double next_news_s[NOISE_KINDS]; /* when news of this kind may be reported again, monotonic */
-    bool said_waiting;               /* that the machine did not become quiet */
+    char units[ENVIRONMENT_FACT_MAX]; /* environment_read_units at the beginning */
+    uint64_t build;                   /* progress_index_build */
+    double next_news_s[NOISE_KINDS];  /* when news of this kind may be reported again, monotonic */
+    bool said_waiting;                /* that the machine did not become quiet */
     job *with;
     progress_line *line;
 } run;
