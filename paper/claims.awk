@@ -190,8 +190,7 @@ function over_cells(name,   chosen, count, i, v, result, seen, step, at) {
             at = v
         } else if (!result) result = v
         else if (name == "sum") result = combine("+", result, v)
-        else if (name == "most" && value_mid[v] > value_mid[result]) result = v
-        else if (name == "least" && value_mid[v] < value_mid[result]) result = v
+        else result = extreme(name == "most" ? 1 : -1, result, v)
     }
     return result ? result : exact(0)
 }

@@ -55,6 +55,13 @@ function combine(op, a, b,   kind, i, j, v, low, high, x, y) {
     return value_new(op == "*" ? value_mid[a] * value_mid[b] : value_mid[a] / value_mid[b], low, high, kind)
 }
 
+# The larger (way 1) or smaller (way -1) of two values, whichever that is: its ends are the larger or smaller ones.
+function extreme(way, a, b) {
+    return value_new(further(way, value_mid[a], value_mid[b]), further(way, value_low[a], value_low[b]), \
+        further(way, value_high[a], value_high[b]), joint_kind(a, b))
+}
+function further(way, x, y) { return way * (x - y) >= 0 ? x : y }
+
 # 1 or 0 if the ends decide a < b, "unknown" otherwise.
 function is_below(a, b, or_equal) {
     if (joint_kind(a, b) == "unbounded") return "unknown"

@@ -256,6 +256,14 @@ same "a folder without rows too, in which nothing is written" "$? $(<"$work/tabl
     "2 tables: there are no rows in $work/empty; run make experiments, or give another folder"
 
 # --- the paper: its text with the sentences that it chooses, the numbers filled in
+# A claim is a sentence or several: what is printed in its place is one, too, and nothing of it may be left over.
+# shellcheck disable=SC2016
+empty "each claim in the paper is whole sentences" "$(perl -0777 -ne '
+    while (/\\claim\{([^}]*)\}(\{(?:[^{}\\]|\\.|(?2))*\})(.?\s*.?)/gs) {
+        my ($id, $text, $after) = ($1, $2, $3);
+        my $whole = $text =~ /^\{["\\A-Z0-9]/ && $text =~ /[.)]\}$/;
+        print "$ARGV: $id\n" unless $whole && $after =~ /^\s*[A-Z0-9\\(%\x27]?$/;
+    }' paper/paper.tex paper/supplement.tex)"
 text() { # OUT
     awk -f tests/paper_text.awk "$1/numbers.tex" "$1/claims.tex" paper/paper.tex paper/supplement.tex
 }
@@ -324,6 +332,12 @@ cell a.b kind n cpu_s_median cpu_s_low cpu_s_high rays marked
 1 2 x 9 2 1.9 2.1 200 0
 2 3 y 9 2.05 1.95 2.15 300 1
 END
+# The cell with the larger median has the narrower interval; the other way round for the smaller one.
+tabs >"$work/small/tables/wide.tsv" <<'END'
+cell a.b n wall_s_median wall_s_low wall_s_high slow_s_median slow_s_low slow_s_high rays marked
+0 1 12 0.90 0.89 0.91 2 1.9 2.1 1 0
+1 2 12 0.85 0.60 1.30 3 0.5 4 1 0
+END
 cat >"$work/small/numbers" <<'END'
 \setval{fit/a}{\ensuremath{2.5\cdot 10^{-3}}}
 \setval{fit/b}{\ensuremath{-}0.5}
@@ -350,6 +364,12 @@ t[b=2].rays = 200 and t[b=3].rays < 300|not reproduced 200; 300
 sum(t[kind=x].rays) = 300|reproduced 300
 most(t[].rays) - least(t[b>1].rays) = 100|reproduced 100
 count(t[b<=2 kind!=y].rays) = 2|reproduced 2
+most(wide[].wall_s) < 1|underpowered 0.90 [0.89, 1.30]
+most(wide[].wall_s) < 1.31|reproduced 0.90 [0.89, 1.30]
+most(wide[b=1].wall_s) < 1|reproduced 0.900 [0.890, 0.910]
+least(wide[].slow_s) > 1|underpowered 2.00 [0.50, 2.10]
+least(wide[].slow_s) > 0.4|reproduced 2.00 [0.50, 2.10]
+least(wide[].wall_s) > 0.7|underpowered 0.85 [0.60, 0.91]
 distinct(t[].kind) = 2|reproduced 2
 rises(t[].rays) = 1|reproduced 1
 falls(t[].rays) = 1|not reproduced 0
