@@ -503,6 +503,12 @@ valgrind: ## run the test programs under valgrind
 clang: ## build and test with clang
 	@$(MAKE) STRICT=1 CC=clang build=$(build)/clang test
 
+.PHONY: instructions setup-instructions
+setup-instructions: | $(filter setup setup-doc,$(MAKECMDGOALS)) ## install what make instructions requires: valgrind
+	@.ci/setup-instructions
+instructions: $(build)/cuvette ## count the instructions of six frames: none may need over 1 % more than before
+	@CC='$(CC)' CUVETTE='$(abspath $(build)/cuvette)' tests/instructions/instructions.sh
+
 .PHONY: power-cuts
 power-cuts: $(build)/cuvette $(power_tools) ## judge every state that a power cut can leave of studies, animations, images (10 minutes)
 	@BUILD='$(build)' CONFIG='$(config)' CUVETTE='$(abspath $(build)/cuvette)' POWER_STATES=$${POWER_STATES:-1000000} \
