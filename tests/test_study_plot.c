@@ -382,7 +382,7 @@ static void captions_say_interval_or_range(void **state)
     }
     const hand none[] = {{0, 0, 0, "", "NA", "NA", "NA"}};
     plot_plan p = plan_of(s, &plain, none, 1, false);
-    refuse(f, &p, "no column of numbers", "");
+    refuse(f, &p, "no cell of test has a value of", "");
     study_destroy(s);
 }
 

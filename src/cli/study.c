@@ -173,6 +173,7 @@ static status measure(const study *s, const study_request *request, size_t *rows
                                    .any_environment = request->any_environment,
                                    .process = (long)request->process,
                                    .progress = terminal,
+                                   .progress_columns = terminal ? terminal_columns(STDERR_FILENO) : 0,
                                    .wait_quiet_s = request->wait_quiet_s,
                                    .news = request->quiet || request->process ? NULL : print_news,
                                    .stop = terminal_stop_requested};

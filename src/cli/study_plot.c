@@ -132,6 +132,18 @@ static char *base_of(const request *r, const study *s)
     return text_format("%.*s", (int)stem_length(r->output, &which), r->output);
 }
 
+/* The ending of another kind of image, or NULL; fig.1 and fig.v2 are names. */
+static const char *other_format(const char *path)
+{
+    static const char *const others[] = {".jpg", ".jpeg", ".gif", ".bmp", ".tif", ".tiff", ".webp",
+                                         ".eps", ".ps",   ".pfm", ".ppm", ".exr", ".txt",  ".gp"};
+    const char *ending = strrchr(path, '.');
+    for (size_t i = 0; ending && i < sizeof others / sizeof *others; i++)
+        if (strcasecmp(ending, others[i]) == 0)
+            return others[i];
+    return NULL;
+}
+
 static status check(request *r, const char *program, diagnostic *why)
 {
     int which = -1;
@@ -150,6 +162,10 @@ static status check(request *r, const char *program, diagnostic *why)
         return diagnose(why, STATUS_BAD_INPUT, "give a folder", "--results is empty");
     if (r->output && !r->output[0])
         return diagnose(why, STATUS_BAD_INPUT, "give a file or a folder", "--output is empty");
+    const char *other = r->output && !is_folder(r->output) && which < 0 ? other_format(r->output) : NULL;
+    if (other)
+        return diagnose(why, STATUS_BAD_INPUT, "give a name that ends in .png, .svg or .pdf",
+                        "a figure cannot be written as %s", other);
     if (r->file_count > 1 && r->output && !is_folder(r->output))
         return diagnose(why, STATUS_BAD_INPUT, "give a folder with a slash at the end, such as figures/",
                         "several studies cannot be drawn into one file");

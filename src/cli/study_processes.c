@@ -40,6 +40,8 @@ static int wait_for_end(pid_t pid)
     }
 }
 
+static const char own_program[] = "/proc/self/exe";
+
 static status ended(const study *s, const char *program, long process, int code, diagnostic *why)
 {
     if (code == 0)
@@ -91,7 +93,7 @@ static status run_process(const study *s, const study_request *request, const ch
     if (error)
         return options_wrong("--against", program, why, "give the path of a cuvette program", "cannot start it: %s",
                              strerrordesc_np(error));
-    return ended(s, program, process, wait_for_end(pid), why);
+    return ended(s, strcmp(program, own_program) == 0 ? "the study" : program, process, wait_for_end(pid), why);
 }
 
 /* Each process would repeat the news of the one before; so their rows are counted instead, once per minute. */
@@ -122,7 +124,6 @@ static status note_disturbed(const study *s, const study_request *request, distu
 
 status study_run_processes(const study *s, const study_request *request, diagnostic *why)
 {
-    static const char own[] = "/proc/self/exe";
     char *against = request->against ? study_against_folder(request) : NULL;
     if (request->against && !against)
         return out_of_memory(why);
@@ -134,7 +135,7 @@ status study_run_processes(const study *s, const study_request *request, diagnos
         for (int turn = 0; turn < (against ? 2 : 1) && code == STATUS_OK; turn++)
             code = against && (turn == 0) == other_first
                        ? run_process(s, request, request->against, against, process, why)
-                       : run_process(s, request, own, request->results, process, why);
+                       : run_process(s, request, own_program, request->results, process, why);
         THEN(code, note_disturbed(s, request, &disturbed, why));
     }
     free(against);

@@ -12,8 +12,10 @@ static bool is_value(const node *n)
 
 static bool is_integer(const node *n, bool with_sign)
 {
+    if (!is_value(n))
+        return false;
     const char *digits = n->text + (with_sign && *n->text == '-');
-    return is_value(n) && *digits && digits[strspn(digits, "0123456789")] == 0;
+    return *digits && digits[strspn(digits, "0123456789")] == 0;
 }
 
 static bool has_point(const node *n)
@@ -66,22 +68,27 @@ static bool is_steady(const node *list, size_t at, const char *joined)
     return true;
 }
 
-bool comma_slip_at(const node *list, size_t i, char joined[COMMA_SLIP_TEXT_MAX])
+bool comma_slip_at(const node *list, size_t i, bool real, char joined[COMMA_SLIP_TEXT_MAX])
 {
-    if (list->kind != NODE_LIST || i + 1 >= list->count || !list_has_point(list))
+    if (list->kind != NODE_LIST || i + 1 >= list->count)
         return false;
     const node *a = list->items[i], *b = list->items[i + 1];
     if (!is_integer(a, true) || !is_integer(b, false) || strlen(a->text) > 30 || strlen(b->text) > 30)
         return false;
     snprintf(joined, COMMA_SLIP_TEXT_MAX, "%.30s.%.30s", a->text, b->text);
+    const size_t first = strlen(a->text) - (a->text[0] == '-'), second = strlen(b->text);
+    if (touches_next(list, i) && second > 1 && (b->text[0] == '0' || (real && list->count == 2 && first == 1)))
+        return true;
+    if (!list_has_point(list))
+        return false;
     return (touches_next(list, i) && is_spaced(list)) || (!is_steady(list, i, NULL) && is_steady(list, i, joined));
 }
 
-status comma_slip_note(study *s, const char *path, const node *list, diagnostic *why)
+status comma_slip_note(study *s, const char *path, const node *list, bool real, diagnostic *why)
 {
     char joined[COMMA_SLIP_TEXT_MAX];
     for (size_t i = 0; list->kind == NODE_LIST && i + 1 < list->count; i++) {
-        if (!comma_slip_at(list, i, joined))
+        if (!comma_slip_at(list, i, real, joined))
             continue;
         if (!room_for_one(&s->notes, s->note_count, sizeof *s->notes))
             return out_of_memory(why);

@@ -8,9 +8,11 @@
 enum { COMMA_SLIP_TEXT_MAX = 64 };
 
 /* Whether items i and i + 1 of a list of values are probably one number, which is then written to joined ("1.4"). Both
- * are integers in a list with decimal points, and either the comma between them has no blank after it although another
- * one has, or the values increase or decrease steadily with the number but not with the two integers. */
-bool comma_slip_at(const node *list, size_t i, char joined[COMMA_SLIP_TEXT_MAX]);
+ * are integers. Either the second begins with 0, as in [1,05, 2]; or they are the whole list of a real parameter, one
+ * digit and several, as in [1,33]; or the list has decimal points, and the comma between them has no blank after it
+ * although another one has, or the values increase or decrease steadily with the number but not with the two integers.
+ * real: whether the parameter is a real number. */
+bool comma_slip_at(const node *list, size_t i, bool real, char joined[COMMA_SLIP_TEXT_MAX]);
 
 /* Adds a note for each such pair in the list of values of path. */
-status comma_slip_note(study *s, const char *path, const node *list, diagnostic *why);
+status comma_slip_note(study *s, const char *path, const node *list, bool real, diagnostic *why);

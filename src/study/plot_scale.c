@@ -54,6 +54,9 @@ static status no_such_column(const plot_plan *p, const char *name, diagnostic *w
             stem_of(p->table.names[i], stems[count++]);
         }
     const char *near = text_nearest(name, names, count);
+    if (near && strcmp(near, name) == 0)
+        return diagnose_at(why, "--y", STATUS_BAD_INPUT, "choose another quantity, or measure a scene that has it",
+                           "no cell of %s has a value of '%.64s'", p->s->name, name);
     char remedy[200] = "choose one, such as wall_s, cpu_s or rays_total; see cuvette-results(5)";
     if (near)
         snprintf(remedy, sizeof remedy, "did you mean '%.64s'?", near);

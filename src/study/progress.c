@@ -56,21 +56,27 @@ static void count_frames(progress_line *line, const progress_index *done, const 
     }
 }
 
+/* The name of the study gives way if the terminal is narrow, then the end of the line. */
 static void write_line(const progress_line *line, const char *more)
 {
     const study_moment *now = &line->now;
-    FILE *terminal = line->options->progress;
+    char text[160];
+    int length = 0;
     if (now->images) {
-        fprintf(terminal, "\r%s: images: %zu of %zu%s", line->s->name, now->img, now->images, more);
-        return;
+        length = snprintf(text, sizeof text, ": images: %zu of %zu%s", now->img, now->images, more);
+    } else {
+        const double share = now->stage == STUDY_MEASURING ? now->share : 0;
+        const double done = now->frames_all ? ((double)now->frames_done + share) / (double)now->frames_all : 1;
+        length = snprintf(text, sizeof text, ": %zu of %zu frames, %d%%", now->frames_done, now->frames_all,
+                          (int)(100 * done));
+        if (!isnan(now->left_s))
+            length +=
+                snprintf(text + length, sizeof text - (size_t)length, ", about %ld s left", (long)(now->left_s + 0.5));
+        length += snprintf(text + length, sizeof text - (size_t)length, "%s", more);
     }
-    double share = now->stage == STUDY_MEASURING ? now->share : 0;
-    double done = now->frames_all ? ((double)now->frames_done + share) / (double)now->frames_all : 1;
-    fprintf(terminal, "\r%s: %zu of %zu frames, %d%%", line->s->name, now->frames_done, now->frames_all,
-            (int)(100 * done));
-    if (!isnan(now->left_s))
-        fprintf(terminal, ", about %ld s left", (long)(now->left_s + 0.5));
-    fputs(more, terminal);
+    const int columns = line->options->progress_columns, room = columns ? columns - 1 : 10000;
+    const int name = length < room ? room - length : 0;
+    fprintf(line->options->progress, "\r%.*s%.*s", name, line->s->name, room, text);
 }
 
 static void show(progress_line *line, study_phase stage, double share_done, const char *more)
@@ -132,13 +138,16 @@ void progress_moving(progress_line *line, double share_done)
     show(line, STUDY_MOVING, share_done, text);
 }
 
-void progress_end(progress_line *line)
+void progress_erase_line(const progress_line *line)
 {
-    if (!line)
-        return;
-    if (line->options->progress && line->shown) {
+    if (line && line->options->progress && line->shown) {
         fputs("\r\033[K", line->options->progress);
         fflush(line->options->progress);
     }
+}
+
+void progress_end(progress_line *line)
+{
+    progress_erase_line(line);
     free(line);
 }

@@ -20,4 +20,6 @@ void progress_images(progress_line *line, size_t cell, size_t img, size_t images
 void progress_show(progress_line *line, double share_done);
 /* The same while slimes move before a frame; share_done is the completed fraction of the motion. */
 void progress_moving(progress_line *line, double share_done);
+/* Erases the line before other text; the next update shows it again. NULL is allowed. */
+void progress_erase_line(const progress_line *line);
 void progress_end(progress_line *line);

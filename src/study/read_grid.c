@@ -1,6 +1,7 @@
 #include "study/read_grid.h"
 #include "base/number.h"
 #include "scene/model/params.h"
+#include "scene/model/params_path.h"
 #include "study/comma_slip.h"
 #include "study/grid.h"
 #include <stdlib.h>
@@ -56,11 +57,22 @@ static status point_reserve(study_point *point, const node *at, size_t count, di
     return point->paths && point->values ? STATUS_OK : out_of_memory(why);
 }
 
+/* -0 is 0: otherwise [-0, 0] would be two cells of one scene. In vectors, too. */
+static void drop_signs_of_zeros(char *text)
+{
+    for (char *at = text; *at; at++) {
+        const bool begins = at == text || strchr("[, ", at[-1]) != NULL;
+        if (begins && at[0] == '-' && at[1] == '0' && (!at[2] || strchr(",] ", at[2])))
+            memmove(at, at + 1, strlen(at));
+    }
+}
+
 static status point_add(study_point *point, scene *on, const document *d, const node *key, const node *value,
                         diagnostic *why)
 {
     char *canonical;
     TRY(try_value(on, d, key, value, &canonical, why));
+    drop_signs_of_zeros(canonical);
     point->values[point->count] = canonical;
     point->paths[point->count] = strdup(key->text);
     return point->paths[point->count++] ? STATUS_OK : out_of_memory(why);
@@ -193,7 +205,7 @@ static const char *distinct_remedy(const node *at, char text[COMMA_SLIP_TEXT_MAX
 {
     char joined[COMMA_SLIP_TEXT_MAX];
     for (size_t i = 0; at->kind == NODE_LIST && i < at->count; i++)
-        if (comma_slip_at(at, i, joined)) {
+        if (comma_slip_at(at, i, false, joined)) {
             snprintf(text, COMMA_SLIP_TEXT_MAX + 24, "did you mean %s?", joined);
             return text;
         }
@@ -258,6 +270,12 @@ static status check_once(const study *s, size_t axis, const document *d, const n
     return STATUS_OK;
 }
 
+static bool is_real(const scene *s, const char *path)
+{
+    param_place at;
+    return param_place_find(s, path, &at, NULL) == STATUS_OK && at.row->type == PARAM_REAL;
+}
+
 static status read_axes(study *s, scene *on, const document *d, const node *grid, diagnostic *why)
 {
     if (grid->kind != NODE_LIST || grid->count == 0)
@@ -275,7 +293,8 @@ static status read_axes(study *s, scene *on, const document *d, const node *grid
             axis_find_films(&s->axes[i], on);
             code = check_once(s, i, d, grid->items[i], why);
             if (code == STATUS_OK && grid->items[i]->count == 1)
-                code = comma_slip_note(s, s->axes[i].name, grid->items[i]->items[0], why);
+                code = comma_slip_note(s, s->axes[i].name, grid->items[i]->items[0],
+                                       is_real(on, s->axes[i].points[0].paths[0]), why);
         }
         if (code != STATUS_OK)
             return code;

@@ -127,13 +127,14 @@ typedef struct study_options {
     bool any_environment;        /* rows of every environment count, not only those of the present one */
     const char *environment;     /* of an estimate: the key of that whose rows count instead, or NULL */
     FILE *progress;              /* a terminal for the progress line with ETA, or NULL */
+    int progress_columns;        /* its width, which the line does not exceed; 0: unknown */
     bool (*stop)(void *context); /* polled; true ends the run with STATUS_INTERRUPTED, rows kept. May be NULL */
     void (*progressed)(
         void *context,
         const study_moment *now); /* at most about ten times per second, from the thread that runs the study. May be
                                      NULL */
     /* News for the user: other processes, steal or a frequency drop disturb the measurement, or stopped to; at most one
-     * of a kind per minute. May be NULL. */
+     * of a kind per minute. The progress line is erased before. May be NULL. */
     void (*news)(void *context, const char *text);
     double wait_quiet_s; /* before each measured repetition, wait that long at most until nothing disturbs; 0: never */
     void *context;       /* passed to all */
