@@ -208,8 +208,8 @@ static int64_t counted(const job_account *a, uint64_t count)
  Q(frequency_drop, "", REAL, OVER, ROW, "frequency_drop", NULL, \
    "share by which frequency_hz is below the highest one so far in the process, 0..1", a->noise.frequency_drop) \
  Q(stalled_share, "", REAL, LAST, ROW, "stalled_share", NULL, \
-   "share of the workers' time in which they did not run although they could: stopped (Ctrl-Z), frozen or throttled by " \
-   "a control group, or without a processing unit; a lower bound for more workers than units", \
+   "share of the workers' time in which they did not run although they could: stopped (Ctrl-Z), frozen or throttled " \
+   "by a control group, or without a processing unit; a lower bound for more workers than units", \
    a->noise.stalled_share) \
  Q(cycles, "", COUNT, OVER, ROW, "hardware.cycles", NULL, \
    "processor cycles of the process during the frame, user mode (hardware counter)", a->hardware.cycles) \
