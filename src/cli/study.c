@@ -6,6 +6,7 @@
 #include "cli/options.h"
 #include "cli/scene_input.h"
 #include "cli/study_commands.h"
+#include "cli/study_instructions.h"
 #include "cli/study_notes.h"
 #include "cli/study_request.h"
 #include "cli/terminal.h"
@@ -177,7 +178,7 @@ static status measure(const study *s, const study_request *request, size_t *rows
                                    .wait_quiet_s = request->wait_quiet_s,
                                    .news = request->quiet || request->process ? NULL : print_news,
                                    .stop = terminal_stop_requested};
-    if (request->process || (s->processes == 1 && !request->against))
+    if (request->process || (s->processes == 1 && !request->against && !request->instructions))
         return study_run(s, &options, rows, why);
     size_t before = 0, after = 0, further = 0;
     TRY(check_room(s, request, &options, why));
@@ -185,7 +186,8 @@ static status measure(const study *s, const study_request *request, size_t *rows
     status result = study_run_processes(s, request, why);
     const status counted = count_rows(s, request, &after, result == STATUS_OK ? why : NULL);
     result = result == STATUS_OK ? counted : result;
-    THEN(result, study_run(s, &options, &further, why));
+    if (!request->instructions) /* this process does not count, and keeps no image of what was counted */
+        THEN(result, study_run(s, &options, &further, why));
     *rows = after - before + further;
     return result;
 }
@@ -240,6 +242,17 @@ static status run_one(const study *s, const study_request *request, diagnostic *
     else
         printf("%s: complete, nothing to do\n", s->name);
     return terminal_flush(why); /* the next study may take an hour */
+}
+
+/* With --instructions under valgrind. */
+static status run_counted(const study *s, const study_request *given, diagnostic *why)
+{
+    study_request request = *given;
+    counted_run counted;
+    status code = study_instructions_begin(&request, &counted, why);
+    THEN(code, run_one(s, &request, why));
+    study_instructions_end(&counted);
+    return code;
 }
 
 /* The first fault of the rows becomes the error of the command, after its output. */
@@ -346,7 +359,7 @@ static status command_verify(int argc, char **argv, diagnostic *why)
 
 static status command_run(int argc, char **argv, diagnostic *why)
 {
-    return for_each_study(STUDY_RUN, run_one, argc, argv, why);
+    return for_each_study(STUDY_RUN, run_counted, argc, argv, why);
 }
 
 static status command_status(int argc, char **argv, diagnostic *why)

@@ -1,11 +1,13 @@
 /* The fresh processes of `cuvette study run`: this program, or another build of it in turn, with --process=K. */
 #include "base/memory_budget.h"
+#include "base/os_process.h"
 #include "base/random.h"
 #include "base/spawn.h"
 #include "base/system_error.h"
 #include "base/text.h"
 #include "cli/options.h"
 #include "cli/study_commands.h"
+#include "cli/study_instructions.h"
 #include "cli/terminal.h"
 #include "measure/clock.h"
 #include <errno.h>
@@ -15,7 +17,7 @@
 #include <sys/wait.h>
 #include <unistd.h>
 
-enum { ARGUMENTS_MAX = 20 };
+enum { ARGUMENTS_MAX = 32 };
 
 char *study_against_folder(const study_request *request)
 {
@@ -58,9 +60,13 @@ static status run_process(const study *s, const study_request *request, const ch
                           long process, diagnostic *why)
 {
     char number[32], processes[32], shard[64], wait[64], memory[48];
-    const char *arguments[ARGUMENTS_MAX] = {"cuvette",   "study", "run",         "--results", results,
-                                            "--process", number,  "--processes", processes};
-    size_t count = 9;
+    const char *const own[] = {"study", "run", "--results", results, "--process", number, "--processes", processes};
+    const char *arguments[ARGUMENTS_MAX] = {NULL};
+    char option[STUDY_INSTRUCTIONS_OPTION];
+    size_t count = request->instructions ? study_instructions_words(arguments, option) : 0;
+    arguments[count++] = request->instructions ? program : "cuvette";
+    memcpy(arguments + count, own, sizeof own);
+    count += sizeof own / sizeof *own;
     snprintf(number, sizeof number, "%ld", process);
     snprintf(processes, sizeof processes, "%ld", s->processes);
     snprintf(shard, sizeof shard, "--shard=%ld/%ld", request->shard, request->shards);
@@ -87,13 +93,15 @@ static status run_process(const study *s, const study_request *request, const ch
     pid_t pid = 0;
     char *copies[ARGUMENTS_MAX] = {NULL};
     memcpy(copies, arguments, sizeof copies);
-    const int error = spawn_bound(&pid, program, copies, STDOUT_FILENO, STDERR_FILENO);
+    const char *started = request->instructions ? "/usr/bin/env" : program;
+    const int error = spawn_bound(&pid, started, copies, STDOUT_FILENO, STDERR_FILENO);
     if (error && system_error(why, STATUS_BAD_INPUT, NULL, "cannot start a process", error, "") == STATUS_FAILURE)
         return STATUS_FAILURE;
     if (error)
         return options_wrong("--against", program, why, "give the path of a cuvette program", "cannot start it: %s",
                              strerrordesc_np(error));
-    return ended(s, strcmp(program, own_program) == 0 ? "the study" : program, process, wait_for_end(pid), why);
+    return ended(s, request->against && program == request->against ? program : "the study", process, wait_for_end(pid),
+                 why);
 }
 
 /* Each process would repeat the news of the one before; so their rows are counted instead, once per minute. */
@@ -124,6 +132,9 @@ static status note_disturbed(const study *s, const study_request *request, distu
 
 status study_run_processes(const study *s, const study_request *request, diagnostic *why)
 {
+    char own[PATH_MAX];
+    if (!request->instructions || !os_program_path(own)) /* valgrind would take /proc/self for itself */
+        snprintf(own, sizeof own, "%s", own_program);
     char *against = request->against ? study_against_folder(request) : NULL;
     if (request->against && !against)
         return out_of_memory(why);
@@ -135,7 +146,7 @@ status study_run_processes(const study *s, const study_request *request, diagnos
         for (int turn = 0; turn < (against ? 2 : 1) && code == STATUS_OK; turn++)
             code = against && (turn == 0) == other_first
                        ? run_process(s, request, request->against, against, process, why)
-                       : run_process(s, request, own_program, request->results, process, why);
+                       : run_process(s, request, own, request->results, process, why);
         THEN(code, note_disturbed(s, request, &disturbed, why));
     }
     free(against);

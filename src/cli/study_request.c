@@ -74,6 +74,10 @@ static const command_option run_options[] = {
     {"against", 0, "PROGRAM",
      "alternate with PROGRAM, another build of cuvette, a fresh process each; its rows are written to DIR-against",
      OPTION_FILLS(option_text, study_request, against)},
+    {"instructions", 0, NULL,
+     "count the instructions of each frame by valgrind, for which the machine need not be quiet; rows go to "
+     "results-instructions, or DIR-instructions",
+     OPTION_FILLS(option_flag, study_request, instructions)},
     {"wait-quiet", 0, "SECONDS",
      "before each repetition, wait until other processes, steal and frequency do not disturb; at most 60 s by default",
      .take = take_wait, .optional = true},

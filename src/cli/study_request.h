@@ -31,7 +31,7 @@ typedef struct study_request {
     double wait_quiet_s;        /* of a run; 0: do not wait */
     int64_t process, processes; /* of a run: see study_options; processes: 0: those of the study file */
     long shard, shards;
-    bool by_repetition, any_environment, quick, quiet, progress, dry_run;
+    bool by_repetition, any_environment, quick, quiet, progress, dry_run, instructions;
 } study_request;
 
 status study_request_parse(study_verb verb, int argc, char **argv, study_request *out, diagnostic *why);

@@ -6,6 +6,7 @@
 #include "base/os_process.h"
 #include "job/shelf.h"
 #include "measure/clock.h"
+#include "measure/instruction_dumps.h"
 #include "scene/model/scene.h"
 #include <inttypes.h>
 #include <stdatomic.h>
@@ -18,6 +19,7 @@ struct job {
     renderer *renderer;
     topology *machine;          /* NULL until needed: reading it takes longer than many frames */
     hardware_counter *hardware; /* NULL unless measured */
+    instruction_dumps dumps;    /* used if the program runs under callgrind */
     noise_window noise;         /* empty unless measured */
     shelf meshes;               /* empty unless keeps_meshes */
     atomic_bool cancelled;
@@ -338,6 +340,8 @@ static status measure_all(work *w, const scene *s, size_t count, bool maps, job_
         code = render_one(w, s, maps, a, why);
     if (measured) {
         a->hardware = hardware_counts_since(j->hardware, &counted);
+        if (instruction_dumps_exist())
+            a->hardware.instructions = instruction_dumps_next(&j->dumps);
         a->spent = usage_since(&used);
         a->noise = noise_since(j, began_s);
         a->noise.stalled_share = stalled_share(a->result);

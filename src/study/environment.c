@@ -4,6 +4,7 @@
 #include "base/hash.h"
 #include "base/os_process.h"
 #include "base/system_error.h"
+#include "measure/instruction_dumps.h"
 #include <errno.h>
 #include <inttypes.h>
 #include <stdint.h>
@@ -151,7 +152,9 @@ status environment_read(const char *root, isa level, run_environment *out, diagn
     read_line(from, "/sys/devices/system/cpu/cpu0/cpufreq/scaling_governor", "", out->fact[GOVERNOR],
               ENVIRONMENT_FACT_MAX);
     read_limits(from, out->fact[LIMITS], ENVIRONMENT_FACT_MAX);
-    snprintf(out->fact[ISA], ENVIRONMENT_FACT_MAX, "%s", isa_name(level));
+    /* its times are those of an emulated processor */
+    snprintf(out->fact[ISA], ENVIRONMENT_FACT_MAX, "%s%s", isa_name(level),
+             instruction_dumps_exist() ? ", counted by valgrind" : "");
     snprintf(out->fact[BUILD], ENVIRONMENT_FACT_MAX, "%s", build_id());
     environment_close(out);
     return here.error ? system_error(why, STATUS_FAILURE, NULL, "the environment of the run cannot be read", here.error,
