@@ -195,6 +195,8 @@ static void times_are_utc(void **state)
     char text[ROW_TIME_MAX];
     assert_string_equal(row_time(0, text), "1970-01-01T00:00:00.000Z");
     assert_string_equal(row_time(INT64_C(951782400007), text), "2000-02-29T00:00:00.007Z");
+    assert_string_equal(row_time(-1, text), "1969-12-31T23:59:59.999Z");
+    assert_string_equal(row_time(-86400000, text), "1969-12-31T00:00:00.000Z");
 }
 
 int main(void)

@@ -4,9 +4,16 @@
 #include <math.h>
 #include <string.h>
 
+static bool ends_with(const char *text, const char *end)
+{
+    const size_t length = strlen(text), rest = strlen(end);
+    return length >= rest && strcmp(text + length - rest, end) == 0;
+}
+
 void row_quantity_values(const row_ref *const *rows, size_t count, row_quantity column, double *values)
 {
     const csv *table = NULL;
+    const bool is_time = ends_with(column.name, "_s");
     int name = -1, below = -1;
     for (size_t i = 0; i < count; i++) {
         if (rows[i]->table != table) {
@@ -17,7 +24,9 @@ void row_quantity_values(const row_ref *const *rows, size_t count, row_quantity 
         values[i] = csv_field_real(table, rows[i]->row, name);
         if (column.below)
             values[i] /= csv_field_real(table, rows[i]->row, below);
-        values[i] = isfinite(values[i]) ? values[i] : NAN;
+        /* a time is negative where the monotonic clock went back */
+        const bool wrong = !isfinite(values[i]) || (is_time && values[i] < 0);
+        values[i] = wrong ? NAN : values[i];
     }
 }
 
@@ -29,12 +38,6 @@ size_t row_quantity_known(const row_ref *const *rows, size_t count, row_quantity
         if (!isnan(values[i]))
             values[known++] = values[i];
     return known;
-}
-
-static bool ends_with(const char *text, const char *end)
-{
-    const size_t length = strlen(text), rest = strlen(end);
-    return length >= rest && strcmp(text + length - rest, end) == 0;
 }
 
 level_range row_quantity_range(row_quantity column)

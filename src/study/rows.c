@@ -11,11 +11,12 @@
 
 char *row_time(int64_t ms, char text[ROW_TIME_MAX])
 {
-    time_t seconds = (time_t)(ms / 1000);
+    const int64_t part = (ms % 1000 + 1000) % 1000; /* a clock may be before 1970 */
+    time_t seconds = (time_t)((ms - part) / 1000);
     struct tm utc;
     gmtime_r(&seconds, &utc);
     size_t size = strftime(text, ROW_TIME_MAX, "%Y-%m-%dT%H:%M:%S", &utc);
-    snprintf(text + size, ROW_TIME_MAX - size, ".%03dZ", (int)(ms % 1000));
+    snprintf(text + size, ROW_TIME_MAX - size, ".%03dZ", (int)part);
     return text;
 }
 
