@@ -121,6 +121,15 @@ undate() {
     sed -i 's|/CreationDate (D:[0-9]\{14\}|/CreationDate (D:19700101000000|' "$1"
 }
 
+# A picture of earlier rows is not taken for one of these.
+skip() { # FIGURE WHY
+    local format older=
+    for format in "${formats[@]}"; do
+        [ ! -e "$out/$1.$format" ] || older="; $1.$format is of earlier rows"
+    done
+    echo "$1: skipped, $2$older"
+}
+
 # Says one line. Status 0: drawn; 3: skipped; 1: something is wrong.
 draw() { # FIGURE
     local format lacks shown said empty wrong files=$scratch/$1 log=$scratch/$1.log
@@ -128,7 +137,7 @@ draw() { # FIGURE
         echo "$1: error: ${lacks#"$results/"}" >&2
         return 1
     elif [ -n "$lacks" ]; then
-        echo "$1: skipped, $lacks"
+        skip "$1" "$lacks"
         return 3
     fi
     shown=$(environments "$1")
@@ -142,7 +151,7 @@ draw() { # FIGURE
         case $wrong in
         '') ;;
         *' value undefined!' | *' range is invalid' | *'_min should not equal '*)
-            echo "$1: skipped, a panel has no point that can be drawn ($wrong)"
+            skip "$1" "a panel has no point that can be drawn ($wrong)"
             return 3
             ;;
         *)

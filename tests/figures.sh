@@ -202,6 +202,10 @@ plots/draw.sh --results "$work/foreign" --out "$work/foreign.figures" determinis
 equal "foreign: a named figure without rows is skipped with status 0" $? 0
 equal "foreign: rows of another machine are not drawn as this one's" "$(head -n 1 "$work/said")" \
     "determinism: skipped, no row of tables/determinism.tsv has machine=this scene=all and a value of price_median"
+touch "$work/foreign.figures/determinism.png"
+plots/draw.sh --results "$work/foreign" --out "$work/foreign.figures" determinism >"$work/said" 2>"$work/errors"
+equal "foreign: a picture of earlier rows is named" "$(sed -n '1s/.*; //p' "$work/said")" \
+    "determinism.png is of earlier rows"
 mkdir "$work/none"
 all none "$formats"
 equal "none: nothing is drawn" "$drawn" " "

@@ -52,6 +52,7 @@ json_t *contrast_json(const study *s, const contrast *c, size_t most)
         json_add(&paths, json_string(path));
     for (size_t i = 0; i < c->count && i < most; i++)
         json_add(&cells, cell_json(s, &c->lines[i]));
-    return json_pack("{s:o, s:I, s:[s, s], s:o, s:o}", "columns", paths, "count", (json_int_t)c->count, "environments",
-                     c->environment[0], c->environment[1], "cells", cells, "all", line_json(&c->all, false));
+    return json_pack("{s:o, s:I, s:[s, s], s:{s:I, s:I}, s:o, s:o}", "columns", paths, "count", (json_int_t)c->count,
+                     "environments", c->environment[0], c->environment[1], "films", "compared", (json_int_t)c->compared,
+                     "same", (json_int_t)c->same, "cells", cells, "all", line_json(&c->all, false));
 }
