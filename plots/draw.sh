@@ -121,7 +121,7 @@ undate() {
     sed -i 's|/CreationDate (D:[0-9]\{14\}|/CreationDate (D:19700101000000|' "$1"
 }
 
-# A picture of earlier rows is not taken for one of these.
+# A figure of earlier rows is not taken for one of these.
 skip() { # FIGURE WHY
     local format older=
     for format in "${formats[@]}"; do

@@ -207,6 +207,7 @@ static status trace(work *w, const scene *s, bool maps, render_result **out, dia
     render_options options = {.usage = w->requested->usage,
                               .progress = go_on,
                               .progress_s = w->requested->progress_s,
+                              .watch_s = instruction_dumps_exist() ? 0.9 : 0,
                               .context = w,
                               .source = w->requested->source};
     if (w->requested->piece_done)

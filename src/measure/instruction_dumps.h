@@ -1,7 +1,7 @@
-/* Instructions of frames as callgrind counts them (valgrind), where no clock can decide and no hardware counter is: the
- * same number within 0.03 % however busy the machine is. valgrind writes a dump whenever renderer_render returns, with the
- * counts since it was entered (INSTRUCTION_DUMPS_OPTIONS); this reads and removes them. `cuvette study run
- * --instructions` sets the variable. Plain values; nothing to release. */
+/* Instructions of frames as callgrind counts them (valgrind), where no clock can decide and no hardware counter is:
+ * the same number within 0.03 % however busy the machine is. valgrind writes a dump whenever renderer_render
+ * returns, with the counts since it was entered (INSTRUCTION_DUMPS_OPTIONS); this reads and removes them. `cuvette
+ * study run --instructions` sets the variable. Plain values; nothing to release. */
 #pragma once
 
 #include <stdbool.h>

@@ -36,7 +36,8 @@ count() {
         printf '%s\0%s\0' "$name" "${arguments//SPHERES/$work/spheres.yaml}"
     done | PROGRAM=$1 WORK=$work xargs -0 -n 2 -P "$(nproc)" bash -c '
         read -ra words <<<"$2"
-        said=$(CUVETTE_ISA=avx2 valgrind --tool=cachegrind --cache-sim=no --cachegrind-out-file=/dev/null \
+        export CUVETTE_ISA=avx2 CUVETTE_CALLGRIND=$WORK/none
+        said=$(valgrind --tool=cachegrind --cache-sim=no --cachegrind-out-file=/dev/null \
             "$PROGRAM" render "${words[@]}" --set render.threads=1 -o "$WORK/$1.pfm" 2>&1 >/dev/null) || {
             echo "$said" >&2
             exit 1

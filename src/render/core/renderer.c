@@ -243,7 +243,8 @@ static void watch(void *context)
 
 static double watch_s(const render_options *o)
 {
-    return o && o->progress && o->progress_s > 0 && o->progress_s < WATCH_S ? o->progress_s : WATCH_S;
+    const double usual_s = o && o->watch_s > 0 ? o->watch_s : WATCH_S;
+    return o && o->progress && o->progress_s > 0 && o->progress_s < usual_s ? o->progress_s : usual_s;
 }
 
 static int compare_events(const void *a, const void *b)

@@ -71,6 +71,9 @@ typedef struct render_options {
      * frame. May be NULL. */
     bool (*progress)(void *context, double share_done);
     double progress_s;
+    /* How often the calling thread looks whether it is to stop or to report, below 1; 0: 100 times a second. Looking
+     * costs instructions, more of them the longer others have the processor: where they are counted it is rare. */
+    double watch_s;
     /* Called by the worker that traced the last ray of a piece of the image (x0 <= x < x1, y0 <= y < y1), so possibly
      * by several threads at the same time; the callback may read the film in the piece. Batches are then not filled
      * across pieces, which costs time but leaves the film bit-identical. May be NULL. */
