@@ -262,9 +262,9 @@ static status mend(csv *table, diagnostic *why)
         to--;
     const char *last = memrchr(bytes, '\n', (size_t)(to - bytes)),
                *first_end = memchr(bytes, '\n', (size_t)(to - bytes));
-    if (to > bytes && to[-1] != '\n' &&
-        (!first_end || fields_of(bytes, first_end, why) == fields_of(last + 1, to, why)) &&
-        !memchr(last ? last + 1 : bytes, 0, (size_t)(to - (last ? last + 1 : bytes))))
+    /* Nothing is lost with a first line alone: a program may have been killed while it wrote it. */
+    if (first_end && to[-1] != '\n' && fields_of(bytes, first_end, why) == fields_of(last + 1, to, why) &&
+        !memchr(last + 1, 0, (size_t)(to - last - 1)))
         *to++ = '\n';
     const size_t size = (size_t)(to - bytes);
     table->mended = size != table->size || memcmp(bytes, table->raw, size) != 0;
