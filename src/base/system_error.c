@@ -20,8 +20,6 @@ const char *system_remedy(int error)
     case EPERM:
     case EROFS: return "change the permissions or choose another folder";
     case ENOENT: return "check the path";
-    case ENOTDIR: return "a part of the path is a file: move it away, or give another folder";
-    case EISDIR: return "give a file, not a folder";
     default: return NULL;
     }
 }

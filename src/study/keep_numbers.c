@@ -152,7 +152,7 @@ static status each_name(const study *s, const char *images, const numbering *old
     const int count = scandir(images, &names, NULL, alphasort);
     status code = STATUS_OK;
     if (count < 0 && errno != ENOENT)
-        return system_error(why, STATUS_FAILURE, images, "cannot be read", errno, "make the folder readable");
+        return system_error(why, STATUS_FAILURE, images, "cannot be read", errno, "give a folder that can be read");
     for (int i = 0; i < count; i++) {
         if (code == STATUS_OK)
             code =

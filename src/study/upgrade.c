@@ -214,7 +214,7 @@ static status copy_folder(const upgrade *u, const char *name, diagnostic *why)
     const int count = from ? scandir(from, &entries, NULL, alphasort) : -1;
     status code = from && to ? STATUS_OK : out_of_memory(why);
     if (code == STATUS_OK && count < 0 && errno != ENOENT)
-        code = system_error(why, STATUS_FAILURE, from, "cannot be read", errno, "make the folder readable");
+        code = system_error(why, STATUS_FAILURE, from, "cannot be read", errno, "give a folder that can be read");
     if (code == STATUS_OK && count > 0)
         code = file_make_directory(to, why);
     for (int i = 0; i < count; i++) {
