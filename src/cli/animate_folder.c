@@ -30,7 +30,8 @@ static status open_folder(const animate_names *names, DIR **out, diagnostic *why
     *out = opendir(names->folder);
     if (*out || errno == ENOENT)
         return STATUS_OK;
-    return system_error(why, STATUS_FAILURE, names->folder, "cannot be listed", errno, "give a folder that can be read");
+    return system_error(why, STATUS_FAILURE, names->folder, "cannot be listed", errno,
+                        "give a folder that can be read");
 }
 
 static bool is_folder(DIR *in, const char *name)

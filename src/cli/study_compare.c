@@ -211,7 +211,7 @@ static status print_text(const study *s, const request *r, const study_side *a, 
     print_work(c);
     TRY(print_table(s, a, c, r->column, why));
     print_advice(a, b, c, r->detect);
-    printf("Equal: %zu of %zu cells", c->same, c->compared);
+    printf("Films and ray counts are equal in %zu of %zu cells", c->same, c->compared);
     if (c->compared < c->count)
         printf("; %zu more have no rows on one side", c->count - c->compared);
     puts(".");

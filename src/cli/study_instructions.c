@@ -39,7 +39,11 @@ status study_instructions_begin(study_request *request, counted_run *out, diagno
         out->folder[0] = 0;
         return system_error(why, STATUS_FAILURE, path, "cannot be made", error, "set TMPDIR to another folder");
     }
-    snprintf(out->results, sizeof out->results, "%.4000s-instructions", request->results);
+    size_t length = strlen(request->results);
+    while (length > 1 && request->results[length - 1] == '/')
+        length--;
+    snprintf(out->results, sizeof out->results, "%.*s-instructions", (int)(length < 4000 ? length : 4000),
+             request->results);
     request->results = out->results;
     snprintf(path, sizeof path, "%s/frame", out->folder);
     setenv(INSTRUCTION_DUMPS_VARIABLE, path, 1);

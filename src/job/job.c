@@ -341,11 +341,13 @@ static status measure_all(work *w, const scene *s, size_t count, bool maps, job_
         code = render_one(w, s, maps, a, why);
     if (measured) {
         a->hardware = hardware_counts_since(j->hardware, &counted);
-        if (instruction_dumps_exist())
-            a->hardware.instructions = instruction_dumps_next(&j->dumps);
         a->spent = usage_since(&used);
         a->noise = noise_since(j, began_s);
         a->noise.stalled_share = stalled_share(a->result);
+        if (instruction_dumps_exist()) { /* nothing disturbs a count; the threads take turns, which is no stalling */
+            a->hardware.instructions = instruction_dumps_next(&j->dumps);
+            a->noise = noise_unknown();
+        }
         a->film_hash = a->result ? job_account_hash(a) : 0;
     }
     a->ended_ms = now_ms();

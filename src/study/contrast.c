@@ -179,7 +179,8 @@ static status make_lines(const study *s, const study_side *a, const study_side *
         if (code != STATUS_OK || line->reason == CONTRAST_NO_ROWS)
             continue;
         c->compared++;
-        c->same += strcmp(line->a.film, line->b.film) == 0 && strcmp(line->a.rays, line->b.rays) == 0;
+        c->same += strcmp(line->a.film, "NA") != 0 && strcmp(line->a.film, line->b.film) == 0 &&
+                   strcmp(line->a.rays, line->b.rays) == 0;
     }
     free(pairs);
     THEN(code, make_all(&rows[0], &rows[1], options, c, why));

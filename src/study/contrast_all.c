@@ -12,6 +12,7 @@ typedef struct side {
     size_t lines, processes, strata;
     size_t *process; /* index in rows->processes */
     size_t *stratum; /* stratum[k]: its first process; of strata + 1 */
+    bool *left_out;  /* by index in rows->processes */
     double *centre;  /* [process * lines + line]: the median of its logarithms; NaN: it has no row of the cell */
 } side;
 
@@ -19,6 +20,7 @@ static void side_free(side *s)
 {
     free(s->process);
     free(s->stratum);
+    free(s->left_out);
     free(s->centre);
 }
 
@@ -77,8 +79,9 @@ static bool has_a_cell(const side *s, size_t process)
 /* Insertion keeps the order of starts; there are few processes. */
 static void sort_by_cells(side *s)
 {
+    s->processes = s->strata = 0;
     for (size_t p = 0; p < s->rows->process_count; p++) {
-        if (!has_a_cell(s, p))
+        if (s->left_out[p] || !has_a_cell(s, p))
             continue;
         size_t at = s->processes++;
         for (; at > 0 && compare_cells(s, s->process[at - 1], p) > 0; at--)
@@ -99,8 +102,9 @@ static status side_make(const contrast_rows *r, const size_t (*pairs)[2], size_t
                 .lines = lines,
                 .process = calloc(processes, sizeof *s->process),
                 .stratum = calloc(processes + 1, sizeof *s->stratum),
+                .left_out = calloc(processes, sizeof *s->left_out),
                 .centre = calloc(processes * (lines + 1), sizeof *s->centre)};
-    if (!s->process || !s->stratum || !s->centre)
+    if (!s->process || !s->stratum || !s->left_out || !s->centre)
         return out_of_memory(why);
     TRY(take_centres(s, pairs, which, values, why));
     sort_by_cells(s);
@@ -139,6 +143,42 @@ static bool alternate(const side *a, const side *b)
     for (size_t k = 0; all && k < a->strata; k++)
         all = stratum_alternates(a, b, k);
     return all;
+}
+
+/* Whether each cell has a process that is not left out. */
+static bool covers_all(const side *s)
+{
+    for (size_t i = 0; i < s->lines; i++) {
+        bool found = false;
+        for (size_t p = 0; p < s->rows->process_count; p++)
+            found |= !s->left_out[p] && !isnan(s->centre[p * s->lines + i]);
+        if (!found)
+            return false;
+    }
+    return true;
+}
+
+static void mark_small(side *s)
+{
+    for (size_t k = 0; k < s->strata; k++)
+        for (size_t i = s->stratum[k]; i < s->stratum[k + 1]; i++)
+            s->left_out[s->process[i]] = s->stratum[k + 1] - s->stratum[k] < FEWEST_DRAWN;
+}
+
+/* A process that lacks a cell, because a row was excluded or the run interrupted, says nothing about the spread:
+ * without such ones there is an interval, if the others have all cells. The one that took turns with it goes, too. */
+static void leave_out_small(side *a, side *b)
+{
+    mark_small(a);
+    mark_small(b);
+    for (size_t p = 0; a->rows->process_count == b->rows->process_count && p < a->rows->process_count; p++)
+        a->left_out[p] = b->left_out[p] = a->left_out[p] || b->left_out[p];
+    if (!covers_all(a) || !covers_all(b)) {
+        memset(a->left_out, 0, a->rows->process_count * sizeof *a->left_out);
+        memset(b->left_out, 0, b->rows->process_count * sizeof *b->left_out);
+    }
+    sort_by_cells(a);
+    sort_by_cells(b);
 }
 
 /* --- estimates --- */
@@ -233,6 +273,7 @@ status contrast_all_make(const contrast_rows *a, const contrast_rows *b, const s
     status code = side_make(a, pairs, count, 0, &sa, &out->values[0], why);
     THEN(code, side_make(b, pairs, count, 1, &sb, &out->values[1], why));
     if (code == STATUS_OK && count > 0) {
+        leave_out_small(&sa, &sb);
         out->processes[0] = sa.processes;
         out->processes[1] = sb.processes;
         out->fewest = lesser(fewest_of(&sa), fewest_of(&sb));

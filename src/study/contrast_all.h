@@ -9,7 +9,7 @@
 typedef struct contrast_all {
     level_interval ratio; /* logarithm of b over a, mean over the cells; no interval if a stratum has 2 or less */
     size_t values[2], processes[2]; /* of each side; all of its cells together */
-    size_t fewest;                  /* processes in the smallest stratum of a side; values of a cell are not counted */
+    size_t fewest;                  /* processes in the smallest stratum of a side */
     size_t fewest_values;           /* of a cell, on the side with fewer */
     bool alternate;                 /* in each stratum; then the sides have the same strata, and are drawn together */
     double deviation;               /* of a process' or a pair's mean over the cells; NaN with several strata */

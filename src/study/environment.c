@@ -102,11 +102,17 @@ const char *environment_node_type(void)
  * declared alike, whichever units a scheduler gives (CUVETTE_NODE_TYPE). */
 static void read_mask(source *from, char *text, size_t size)
 {
-    char online[ENVIRONMENT_FACT_MAX];
-    const bool known = read_line(from, "/proc/self/status", "Cpus_allowed_list", text, size) &&
-                       read_line(from, "/sys/devices/system/cpu/online", "", online, sizeof online);
-    if (!known || strcmp(text, online) == 0 || environment_node_type())
-        text[0] = 0;
+    char allowed[1000], all[1000];
+    bool is_whole =
+        !read_line(from, "/proc/self/status", "Cpus_allowed_list", allowed, sizeof allowed) || environment_node_type();
+    is_whole |= !read_line(from, "/sys/devices/system/cpu/online", "", all, sizeof all) || strcmp(allowed, all) == 0;
+    /* a process that is not restricted may use units that are offline now */
+    is_whole |= read_line(from, "/sys/devices/system/cpu/possible", "", all, sizeof all) && strcmp(allowed, all) == 0;
+    text[0] = 0;
+    if (!is_whole && strlen(allowed) < size)
+        snprintf(text, size, "%s", allowed);
+    else if (!is_whole)
+        snprintf(text, size, "list %016" PRIx64, hash_finish(hash_text(HASH_START, allowed)));
 }
 
 void environment_read_units(char *text, size_t size)

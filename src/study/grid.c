@@ -236,23 +236,20 @@ void grid_put_values(const study *s, size_t cell, FILE *out)
     }
 }
 
-/* The next element of a vector without blanks, and what is left; NULL after the last. */
-static const char *next_element(const char *text, char *element, size_t size)
+/* The next element of a vector, and what is left; false if it is not a number. */
+static bool next_number(const char **text, double *value)
 {
-    size_t length = 0;
-    while (*text && *text != ',') {
-        if (*text != ' ' && length + 1 < size)
-            element[length++] = *text;
-        text++;
-    }
-    element[length] = 0;
-    return *text ? text + 1 : NULL;
-}
-
-static bool same_element(const char *a, const char *b)
-{
-    double first, second;
-    return strcmp(a, b) == 0 || (number_parse_real(a, &first) && number_parse_real(b, &second) && first == second);
+    char number[64];
+    *text += strspn(*text, " ");
+    size_t length = strcspn(*text, ","), used = length;
+    while (used > 0 && (*text)[used - 1] == ' ')
+        used--;
+    if (used >= sizeof number)
+        return false;
+    memcpy(number, *text, used);
+    number[used] = 0;
+    *text += length;
+    return number_parse_real(number, value);
 }
 
 bool grid_same_value(const char *a, const char *b)
@@ -269,11 +266,12 @@ bool grid_same_value(const char *a, const char *b)
         }
     }
     const char *left = bare[0], *right = bare[1];
-    while (same && left && right) {
-        char first[128], second[128];
-        left = next_element(left, first, sizeof first);
-        right = next_element(right, second, sizeof second);
-        same = same_element(first, second) && !left == !right;
+    for (bool more = true; same && more;) {
+        double first, second;
+        same = next_number(&left, &first) && next_number(&right, &second) && first == second && *left == *right;
+        more = same && *left == ',';
+        left += more;
+        right += more;
     }
     free(bare[0]);
     free(bare[1]);

@@ -115,7 +115,7 @@ status plot_published_read(plot_plan *p, diagnostic *why)
         code = diagnose_at(why, p->request->published, STATUS_BAD_INPUT, "give a CSV file", "no such file");
     if (code == STATUS_OK && table->torn)
         code = diagnose_at(why, p->request->published, STATUS_BAD_INPUT, "complete it, or remove it",
-                           "the last line has fewer fields than the first");
+                           "the last line is incomplete");
     if (code != STATUS_OK) {
         csv_destroy(table);
         return code;

@@ -10,7 +10,10 @@ static bool is_element(const char *text)
 {
     char number[64];
     double value;
-    const size_t length = strcspn(text, ",");
+    text += strspn(text, " ");
+    size_t length = strcspn(text, ",");
+    while (length > 0 && text[length - 1] == ' ')
+        length--;
     if (length >= sizeof number)
         return false;
     memcpy(number, text, length);

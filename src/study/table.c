@@ -190,6 +190,10 @@ static status rescue(const table *t, const char *done, const char *lines, size_t
     struct stat now;
     char *path = text_format("%.*s.rescued.csv", (int)(length > 4 ? length - 4 : length), t->path), *bytes = NULL;
     status code = path ? STATUS_OK : out_of_memory(why);
+    char *folder = code == STATUS_OK ? file_beside(t->path, ".") : NULL;
+    if (code == STATUS_OK) /* which may be gone, too */
+        code = folder ? file_make_directory(folder, why) : out_of_memory(why);
+    free(folder);
     int fd = -1;
     if (code == STATUS_OK && (fd = open(path, O_WRONLY | O_APPEND | O_CREAT | O_CLOEXEC, 0666)) < 0)
         code = failed(path, "writing", errno, why);

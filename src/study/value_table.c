@@ -126,7 +126,7 @@ status value_table_read(const char *path, const char *column, value_table *out, 
     if (code == STATUS_OK && out->file->torn)
         code =
             diagnose_at(why, path, STATUS_BAD_INPUT, "complete it, or remove it; if a study is writing the file, wait",
-                        "the last line has fewer fields than the first");
+                        "the last line is incomplete");
     THEN(code, read_rows(path, column, out, why));
     if (code != STATUS_OK)
         value_table_release(out);

@@ -16,7 +16,7 @@ command -v valgrind >/dev/null || {
 }
 work=$(mktemp -d "${TMPDIR:-/tmp}/cuvette-instructions.XXXXXX")
 trap 'rm -rf "$work"; git worktree prune' EXIT
-key="$($cc --version | sed 's/ (.*) / /; q') glibc-$(ldd --version | sed 's/.* //; q')"
+key="$($cc --version | sed -n '1s/ (.*) / /p') glibc-$(ldd --version | sed -n '1s/.* //p')"
 
 # A cube of a thousand balls of glass and clay.
 awk 'BEGIN {
@@ -47,7 +47,10 @@ count() {
 known() { awk -F '\t' -v OFS='\t' -v key="$key" '$1 == key { print $2, $3 }' "$1" | sort; }
 
 count "$program" >"$work/now"
-[[ $(wc -l <"$work/now") == $(grep -cv '^#' tests/instructions/frames.txt) ]]
+[[ $(wc -l <"$work/now") == $(grep -cv '^#' tests/instructions/frames.txt) ]] || {
+    echo 'instructions: a frame of frames.txt has no count' >&2
+    exit 1
+}
 if [[ ${1:-} == --renew ]]; then
     {
         grep -vF "$key"$'\t' "$table" 2>/dev/null || true
@@ -76,6 +79,11 @@ else
         exit 1
     fi
 fi
+new=$(join -t $'\t' -v 2 "$work/before" "$work/now" | cut -f 1)
+[[ ! $new ]] || {
+    echo "instructions: there is no number of ${new//$'\n'/, } to compare with; write it (--renew)" >&2
+    exit 1
+}
 echo "Instructions, compared with $what"
 join -t $'\t' "$work/before" "$work/now" | awk -F '\t' -v most=$most '
     { worse = $3 > most * $2
