@@ -39,7 +39,9 @@ is() { [[ $1 == "$2" ]]; }
 matches() { [[ $1 =~ $2 ]]; }
 silent_success() { ((code == 0)) && [[ ! -s err ]]; }
 # Notes of a study on this machine, and on what disturbs it now, are not the same everywhere.
-other_notes() { grep -vE '^cuvette: note: (this machine|other processes|the (hypervisor|clock|machine|program)) ?' err; }
+other_notes() { # but those about this machine
+    grep -vE '^cuvette: note: (this machine|other processes|the (hypervisor|clock|machine|program)) ?' err
+}
 # The only note on the rod scene is that its depth of 4 is too small.
 depth_noted() { ((code == 0)) && [[ $(wc -l <err) == 1 && $(<err) == 'cuvette: note: render.depth: '* ]]; }
 json() { ./json_get out "$@"; } # PATH...: prints the values of out at these paths
