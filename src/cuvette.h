@@ -389,7 +389,6 @@ typedef struct cuvette_counters {
     double cut_weight_throughput[3];
     uint64_t by_depth[65]; /* camera (0), reflected and refracted rays by recursion depth */
     uint64_t photon;       /* rays of photons (render.caustics) */
-    double cut_photon;     /* summed power of photons that met 64 interfaces before they arrived, in photons */
 } cuvette_counters;
 
 /* Counts of one solid; only the first 64 solids of a scene are counted. */

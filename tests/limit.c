@@ -137,6 +137,9 @@ int main(int n_arguments, char **arguments)
     pid_t program = fork();
     if (program == 0) {
         setpgid(0, 0); /* a test may send a signal to its group */
+        /* signals keep their meaning under nohup and in the background of a script, which ignore some */
+        for (const int *s = (const int[]){SIGINT, SIGTERM, SIGHUP, SIGQUIT, SIGPIPE, 0}; *s != 0; s++)
+            signal(*s, SIG_DFL);
         sigprocmask(SIG_SETMASK, &before, NULL);
         execvp(arguments[1], &arguments[1]);
         perror(arguments[1]);

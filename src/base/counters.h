@@ -13,7 +13,7 @@
 #endif
 
 enum {
-    COUNTERS_DEPTH_MAX = 64, /* render.depth is 0..64 */
+    COUNTERS_DEPTH_MAX = 64, /* deeper rays are counted with those of this depth */
     COUNTERS_SOLID_MAX = 64  /* the first solids of a scene: only these are counted one by one */
 };
 
@@ -32,12 +32,11 @@ typedef struct query_counts {
 typedef struct ray_counters {
     uint64_t camera, reflect, refract, shadow; /* rays traced, by kind */
     uint64_t photon;                           /* rays of photons */
-    uint64_t by_depth[COUNTERS_DEPTH_MAX + 1]; /* camera, reflected and refracted rays by depth */
+    uint64_t by_depth[COUNTERS_DEPTH_MAX + 1]; /* camera, reflected and refracted rays by depth; the last: and deeper */
     uint64_t total_internal;                   /* total internal reflections */
     uint64_t cut_depth, cut_weight;            /* rays not traced: beyond the last depth; under min_weight */
     int64_t cut_depth_throughput[3];           /* their throughput, RGB, in units of 1/COUNTERS_CUT_ONE */
     int64_t cut_weight_throughput[3];
-    int64_t cut_photon; /* the power of photons' rays beyond their last depth, in photons, in the same units */
     /* rays tested against the solid; 0 for one that a hierarchy finds (geometry/solid_tree.h). Shadow rays count only
      * for solids that can reduce light by themselves, and only once, without the second test of the few undecided
      * ones */

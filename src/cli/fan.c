@@ -4,6 +4,7 @@
 #include "cli/options.h"
 #include "cli/outputs.h"
 #include "cli/scene_input.h"
+#include "scene/model/beam.h"
 #include <math.h>
 #include <stdio.h>
 #include <string.h>
@@ -12,7 +13,7 @@ typedef struct fan_request {
     scene_input input;
     size_t format; /* FAN_SVG or FAN_CSV */
     fan_rule rule;
-    int64_t rays;
+    int64_t rays, depth; /* depth: -1: render.depth */
     bool has_width, whole_trees;
 } fan_request;
 
@@ -57,7 +58,8 @@ static const command_option options[] = {
     {"width", 0, "W", "width of a parallel beam (default: 1, without --spread)", .take = take_size},
     {"spread", 0, "DEG", "full angle of a fan from one point, in degrees", .take = take_size},
     {"plane", 0, "NX,NY,NZ", "normal of the plane of the rays", OPTION_FILLS(take_vector, fan_request, rule.normal)},
-    OPTION_DEPTH,
+    {"depth", 0, "N", "number of surfaces at which a ray is followed (default: render.depth)",
+     OPTION_FILLS(option_integer, fan_request, depth), .lowest = 0, .highest = BEAM_DEPTH_MAX},
     OPTION_LAMBDA,
     OPTION_SET("'rod.visible=off'"),
     OPTION_MEMORY,
@@ -72,6 +74,9 @@ static status check_request(void *context, diagnostic *why)
     static const char *const endings[] = {".svg", ".csv"};
     fan_request *request = context;
     request->rule.rays = (int)request->rays;
+    if (request->whole_trees && request->depth > DEPTH_TREE_MAX)
+        return options_wrong("--depth", NULL, why, "give 0 to 64, or omit --tree", "trees of rays end at depth %d",
+                             (int)DEPTH_TREE_MAX);
     if (isnan(request->rule.from.x) || isnan(request->rule.to.x))
         return options_wrong("fan", NULL, why, "give --from X,Y,Z and --to X,Y,Z", "the axis of the fan is not given");
     if (!request->input.output)
@@ -123,6 +128,8 @@ static status run(void *context, scene *s, isa level, diagnostic *why)
     status result = scene_input_probe(&request->input, s, level, &p, why);
     if (result == STATUS_OK) {
         scene_input_note_tree(s);
+        if (request->depth >= 0)
+            probe_limit_depth(p, (int)request->depth);
         result = follow(request, s, p, why);
     }
     probe_destroy(p);
@@ -146,6 +153,6 @@ static const scene_command fan_command = {
 
 status command_fan(int argc, char **argv, diagnostic *why)
 {
-    fan_request request = {.rays = 21, .rule = {.from.x = NAN, .to.x = NAN, .width = 1.0}};
+    fan_request request = {.rays = 21, .depth = -1, .rule = {.from.x = NAN, .to.x = NAN, .width = 1.0}};
     return scene_command_run(&fan_command, argc, argv, &request, why);
 }

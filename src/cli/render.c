@@ -15,6 +15,7 @@
 #include "base/number.h"
 #include "measure/statistics.h"
 #include "scene/file/shared.h"
+#include "scene/model/params.h"
 #include "scene/model/scene.h"
 #include <math.h>
 #include <stdio.h>
@@ -133,10 +134,13 @@ static void print_summary(const job_account *f, const outputs *files)
     const char *const written[] = {files->img, files->rays, files->time, files->noise, files->timeline};
     uint64_t rays = ray_counters_total(&f->result->counters);
     const double wall_s = job_account_wall_s(f);
-    printf("%s%lldx%lld pixels, depth %lld: %llu rays in %.3f s (%.1f million per second), film %016llx",
-           f->whole ? "" : "a part of ", (long long)s->render.width, (long long)s->render.height,
-           (long long)s->render.depth, (unsigned long long)rays, wall_s, wall_s > 0 ? (double)rays / wall_s / 1e6 : 0.0,
+    char *depth = NULL;
+    (void)scene_get(s, "render.depth", &depth, NULL);
+    printf("%s%lldx%lld pixels, depth %s: %llu rays in %.3f s (%.1f million per second), film %016llx",
+           f->whole ? "" : "a part of ", (long long)s->render.width, (long long)s->render.height, depth ? depth : "",
+           (unsigned long long)rays, wall_s, wall_s > 0 ? (double)rays / wall_s / 1e6 : 0.0,
            (unsigned long long)job_account_hash(f));
+    free(depth);
     if (f->result->variance)
         printf(", rms noise %.4f", render_noise_rms(f->result));
     const char *before = " -> ";

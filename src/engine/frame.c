@@ -86,7 +86,6 @@ cuvette_status cuvette_frame_counters(const cuvette_frame *frame, cuvette_counte
                                .refract = c->refract,
                                .shadow = c->shadow,
                                .photon = c->photon,
-                               .cut_photon = (double)c->cut_photon / COUNTERS_CUT_ONE,
                                .total_internal = c->total_internal,
                                .cut_depth = c->cut_depth,
                                .cut_weight = c->cut_weight};

@@ -47,9 +47,12 @@ cuvette_status cuvette_scene_set_int(cuvette_scene *s, const char *path, int64_t
     param_place at;
     char text[NUMBER_TEXT_MAX];
     snprintf(text, sizeof text, "%lld", (long long)value);
+    const param *row = param_place_find(s->model, path, &at, NULL) == STATUS_OK ? at.row : NULL;
     const bool is_small = value == 0 || value == 1;
-    const param *row = is_small && param_place_find(s->model, path, &at, NULL) == STATUS_OK ? at.row : NULL;
-    const char *word = row && is_switch(row) ? row->choices[value] : row && value == 0 ? row->automatic : NULL;
+    const char *word = !row                            ? NULL
+                       : is_switch(row)                ? (is_small ? row->choices[value] : NULL)
+                       : value == row->automatic_value ? row->automatic
+                                                       : NULL;
     return cuvette_scene_set(s, path, word ? word : text, why);
 }
 
@@ -126,7 +129,7 @@ cuvette_status cuvette_scene_get_int(const cuvette_scene *s, const char *path, i
     if (param_place_find(s->model, path, &at, NULL) == STATUS_OK && is_switch(at.row))
         *value = strcmp(text, "on") == 0;
     else if (at.row && at.row->automatic && strcmp(text, at.row->automatic) == 0)
-        *value = 0;
+        *value = at.row->automatic_value;
     else if (number_parse_int(text, &number))
         *value = number;
     else

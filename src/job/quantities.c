@@ -130,9 +130,6 @@ static int64_t counted(const job_account *a, uint64_t count)
  Q(cut_throughput, "rays", REAL, SAME, OUT, "cut_throughput", NULL, \
    "summed throughput of all rays not traced, mean of RGB", \
    mean_cut(c->cut_depth_throughput, c->cut_weight_throughput)) \
- Q(photons_cut, "photons", REAL, SAME, OUT, "cut.photons", NULL, \
-   "summed power of photons that met 64 interfaces before they arrived, in photons", \
-   (double)c->cut_photon / COUNTERS_CUT_ONE) \
  Q(first_hits, "rays", SOLIDS, SAME, ROW, "first_hits", NULL, \
    "camera rays whose first interface is on the solid", c->first_hits) \
  Q(hits, "rays", SOLIDS, SAME, ROW, "hits", NULL, \

@@ -8,7 +8,7 @@
 #include "report/svg.h"
 #include "scene/file/shared.h"
 #include "scene/file/write.h"
-#include "scene/model/render_settings.h"
+#include "scene/model/params.h"
 #include "scene/model/scene.h"
 #include <inttypes.h>
 #include <stdlib.h>
@@ -64,9 +64,11 @@ static status write_image(const report_page_content *page, const shared_texts *t
 
 static void write_account(const report_page_content *page, const page_rays *rays, FILE *out)
 {
-    const render_settings *r = scene_settings(page->s);
-    fprintf(out, "<p>%d × %d pixels, depth %" PRId64 ", film %016" PRIx64 ", Cuvette %s.</p>\n", page->rows.width,
-            page->rows.height, r->depth, page->film_hash, CUVETTE_VERSION);
+    char *depth = NULL;
+    (void)scene_get(page->s, "render.depth", &depth, NULL);
+    fprintf(out, "<p>%d × %d pixels, depth %s, film %016" PRIx64 ", Cuvette %s.</p>\n", page->rows.width,
+            page->rows.height, depth ? depth : "", page->film_hash, CUVETTE_VERSION);
+    free(depth);
     if (rays->beams)
         fprintf(out, "<h2>Rays of the beams</h2>\n<p>The %zu strongest of %zu segments.", rays->count, rays->traced);
     else

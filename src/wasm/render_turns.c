@@ -234,7 +234,7 @@ static void count(const tile_answer *a)
 {
     ray_counters c = a->counters;
     if (now.has_photons)
-        c.photon = 0, c.cut_photon = 0;
+        c.photon = 0;
     now.has_photons = true;
     ray_counters_add(&now.counters, &c);
 }

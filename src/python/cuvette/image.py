@@ -28,7 +28,6 @@ class Counts:
     cut_weight_throughput: Tuple[float, float, float]
     by_depth: Tuple[int, ...]  #: camera, reflected and refracted rays by recursion depth, up to the last one
     photon: int  #: rays of photons (render.caustics)
-    cut_photon: float  #: summed power of photons that met 64 interfaces before they arrived, in photons
 
     @property
     def total(self) -> int:
@@ -126,7 +125,6 @@ class Image:
             cut_weight_throughput=lost[1],
             by_depth=tuple(depths),
             photon=c.photon,
-            cut_photon=c.cut_photon,
         )
 
     def solid_counts(self, solid: Union[int, str]) -> SolidCounts:

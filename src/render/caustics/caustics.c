@@ -32,6 +32,24 @@ static bool stopped(const caustics *c)
     return atomic_load_explicit(c->stop, memory_order_relaxed) || atomic_load(&c->frame.out_of_memory);
 }
 
+static status prepare(caustics *c, plan *p, diagnostic *why)
+{
+    const bool sizes = integrator_traits_of(&p->render)->by_chance || scene_has_soft_shadows(&p->render);
+    c->found = calloc((size_t)c->workers, sizeof *c->found);
+    if (!c->found || !c->tracers)
+        return out_of_memory(why);
+    TRY(emission_create(p, p->render.photons, sizes, &c->from, why));
+    if (emission_count(c->from) == 0)
+        return STATUS_OK;
+    c->frame.from = c->from;
+    c->frame.arrived = calloc((size_t)emission_target_count(c->from) + 1, sizeof *c->frame.arrived);
+    const tracer_target target = {.frame_plan = &c->settings, .state = &c->frame, .rule = &integrator_of_photons};
+    if (!c->frame.arrived || !tracer_pool_begin(c->tracers, c->workers, &target))
+        return out_of_memory(why);
+    c->frame.is_pilot = emission_begin_pilot(c->from);
+    return STATUS_OK;
+}
+
 status caustics_create(plan *p, isa level, int workers, const atomic_bool *stop, caustics **out, diagnostic *why)
 {
     *out = NULL;
@@ -40,22 +58,13 @@ status caustics_create(plan *p, isa level, int workers, const atomic_bool *stop,
         return out_of_memory(why);
     c->of = p;
     c->settings = *p;
-    c->settings.render.depth = PHOTON_DEPTH;
+    c->settings.render.depth = DEPTH_UNLIMITED;
     c->settings.render.min_weight = 0.0;
     c->settings.light_count = 0; /* no shadow rays */
     c->workers = workers;
     c->stop = stop;
-    c->found = calloc((size_t)workers, sizeof *c->found);
     c->tracers = tracer_pool_create(level);
-    const bool sizes = integrator_traits_of(&p->render)->by_chance || scene_has_soft_shadows(&p->render);
-    status code =
-        c->found && c->tracers ? emission_create(p, p->render.photons, sizes, &c->from, why) : out_of_memory(why);
-    if (code == STATUS_OK && emission_count(c->from) > 0) {
-        c->frame.from = c->from;
-        const tracer_target target = {.frame_plan = &c->settings, .state = &c->frame, .rule = &integrator_of_photons};
-        if (!tracer_pool_begin(c->tracers, workers, &target))
-            code = out_of_memory(why);
-    }
+    status code = prepare(c, p, why);
     if (code != STATUS_OK || emission_count(c->from) == 0) {
         caustics_destroy(c);
         return code;
@@ -75,6 +84,7 @@ void caustics_destroy(caustics *c)
     free(c->found);
     photon_map_destroy(c->map);
     tracer_pool_destroy(c->tracers);
+    free(c->frame.arrived);
     emission_destroy(c->from);
     free(c);
 }
@@ -102,6 +112,31 @@ static void trace_together(caustics *c, int worker)
         trace(c, t, first, first + CHUNK < count ? first + CHUNK : count, &c->found[worker]);
         tracer_pool_return(c->tracers, t);
     }
+}
+
+static void trace_pilot(caustics *c, int worker)
+{
+    if (c->frame.is_pilot)
+        trace_together(c, worker);
+}
+
+static status end_pilot(caustics *c, diagnostic *why)
+{
+    const int targets = emission_target_count(c->from);
+    if (!c->frame.is_pilot || stopped(c))
+        return STATUS_OK;
+    bool *delivers = calloc((size_t)targets + 1, sizeof *delivers);
+    if (!delivers)
+        return out_of_memory(why);
+    for (int k = 0; k < targets; k++) {
+        delivers[k] = atomic_load(&c->frame.arrived[k]) > 0;
+        atomic_store(&c->frame.arrived[k], 0);
+    }
+    emission_end_pilot(c->from, delivers);
+    free(delivers);
+    c->frame.is_pilot = false;
+    atomic_store(&c->next, 0);
+    return STATUS_OK;
 }
 
 static status sort_alone(caustics *c, diagnostic *why)
@@ -146,16 +181,52 @@ static status finish_alone(caustics *c, diagnostic *why)
     return STATUS_OK;
 }
 
-const caustics_step caustics_steps[CAUSTICS_STEPS] = {{trace_together, sort_alone}, {spread_together, finish_alone}};
+const caustics_step caustics_steps[CAUSTICS_STEPS] = {
+    {trace_pilot, end_pilot}, {trace_together, sort_alone}, {spread_together, finish_alone}};
 
 void caustics_count(const caustics *c, ray_counters *counters)
 {
     ray_counters sum;
     memset(&sum, 0, sizeof sum);
     tracer_pool_collect(c->tracers, &sum);
-    for (int d = 0; d <= PHOTON_DEPTH; d++)
+    for (int d = 0; d <= COUNTERS_DEPTH_MAX; d++)
         counters->photon += sum.by_depth[d];
-    counters->cut_photon += sum.cut_photon;
+}
+
+/* A caustic that rests on fewer photons is mostly noise; one with less of all light that arrives is not missed. */
+enum { PHOTONS_ENOUGH = 1000 };
+#define LIGHT_SEEN 1e-3
+
+/* The light that arrives by way of a solid, and its photons. */
+static double light_by(const caustics *c, int number, int64_t *arrived)
+{
+    double sum = 0.0;
+    *arrived = 0;
+    for (int k = 0; k < emission_target_count(c->from); k++) {
+        const int64_t some = atomic_load(&c->frame.arrived[k]);
+        if (emission_target_solid(c->from, k) != number)
+            continue;
+        sum += emission_light(c->from, k, some);
+        *arrived += some;
+    }
+    return sum;
+}
+
+caustics_few caustics_count_few(const caustics *c)
+{
+    caustics_few few = {.solid = -1, .arrived = PHOTONS_ENOUGH};
+    double all = 0.0;
+    for (int k = 0; k < emission_target_count(c->from); k++)
+        all += emission_light(c->from, k, atomic_load(&c->frame.arrived[k]));
+    for (int k = 0; k < emission_target_count(c->from); k++) {
+        int64_t arrived;
+        const int number = emission_target_solid(c->from, k);
+        if (number >= 0 && light_by(c, number, &arrived) > LIGHT_SEEN * all && arrived < few.arrived)
+            few.solid = number, few.arrived = arrived;
+    }
+    if (few.solid >= 0)
+        few.enough = (c->settings.render.photons * PHOTONS_ENOUGH + few.arrived - 1) / few.arrived;
+    return few;
 }
 
 uint64_t caustics_bytes(const render_settings *r)

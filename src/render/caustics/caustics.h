@@ -26,11 +26,19 @@ typedef struct caustics_step {
     void (*together)(caustics *c, int worker);
     status (*alone)(caustics *c, diagnostic *why);
 } caustics_step;
-enum { CAUSTICS_STEPS = 2 };
+enum { CAUSTICS_STEPS = 3 };
 extern const caustics_step caustics_steps[CAUSTICS_STEPS];
 
-/* After the steps: the photons' rays, in counters->photon, and the light that they lost, in counters->cut_photon. */
+/* After the steps: the photons' rays, in counters->photon. */
 void caustics_count(const caustics *c, ray_counters *counters);
+
+/* The solid whose light rests on the fewest photons, if these are too few for a caustic: so many, of render.photons.
+ * enough: the number of photons that would do. solid: in the scene; -1: none, all are enough. */
+typedef struct caustics_few {
+    int solid;
+    int64_t arrived, enough;
+} caustics_few;
+caustics_few caustics_count_few(const caustics *c);
 
 /* Memory for a frame, bytes. */
 uint64_t caustics_bytes(const render_settings *r);

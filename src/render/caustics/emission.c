@@ -70,6 +70,8 @@ static double density_of(const emission *e, int lamp, int drawn, vec3 direction,
     for (int k = 0; k < e->ball_count; k++) {
         const ball *b = &e->balls[k];
         const bool from_ball = by_ball(e, lamp, k);
+        if (l->cones[k].share == 0.0)
+            continue;
         const bool meets =
             k == drawn || (off_axis(direction, l->cones[k].axis) <= l->cones[k].cap &&
                            (!from_ball || off_line(point, direction, b->centre) <= b->radius * b->radius));
@@ -92,14 +94,15 @@ static bool to_lamp(const emission *e, int lamp, vec3 direction, vec3 *point)
     return true;
 }
 
-/* The density of a sun's rays along a direction through a point, per area across, which ball `drawn` gave. */
+/* The density of a sun's rays along a direction through a point, per area across, which solid `drawn` gave. */
 static double sun_density(const emission *e, int lamp, int drawn, vec3 direction, vec3 point)
 {
     double density = 0.0;
     for (int k = 0; k < e->ball_count; k++) {
-        const ball b = sunlit_ball(e, k);
-        if (k == drawn || off_line(point, direction, b.centre) <= b.radius * b.radius)
-            density += e->lamps[lamp].cones[k].share / (PI * b.radius * b.radius);
+        const sunlit_area a = sunlit_area_of(e, k, direction);
+        const vec3 off = vec3_sub(point, a.centre);
+        if (k == drawn || (fabs(vec3_dot(off, a.u)) <= a.across && fabs(vec3_dot(off, a.v)) <= a.up))
+            density += e->lamps[lamp].cones[k].share / (4.0 * a.across * a.up);
     }
     return density;
 }
@@ -113,15 +116,28 @@ static bool before_all(const emission *e, vec3 direction, emitted_ray *out)
     return !g->regions[scene_geometry_priority_index(g, out->inside)].opaque;
 }
 
-/* A ray of a sun, whose direction is drawn, through the disc of ball k; returns the inverse of its density per area,
+/* A ray of a sun, whose direction is drawn, through the area of solid k; returns the inverse of its density per area,
  * times pi L dw over the density of directions and over that of parallel light: 2 (1 - cos a) / sin^2 a = 2 / (1 + cos
  * a). */
 static double draw_sun_ray(const emission *e, int lamp, int k, unit_pair place, emitted_ray *out)
 {
-    const ball b = sunlit_ball(e, k);
-    out->origin = on_disc(b.centre, b.radius, out->direction, place);
+    const sunlit_area a = sunlit_area_of(e, k, out->direction);
+    out->origin = vec3_add(a.centre, vec3_add(vec3_scale(a.u, a.across * (2.0 * place.u - 1.0)),
+                                              vec3_scale(a.v, a.up * (2.0 * place.v - 1.0))));
     const double density = sun_density(e, lamp, k, out->direction, out->origin);
     return before_all(e, out->direction, out) ? 2.0 / ((2.0 - e->lamps[lamp].cones[k].cap) * density) : 0.0;
+}
+
+/* The cone that a number in (0, 1) chooses; it then chooses within the cone. */
+static int choose_cone(const emission *e, int lamp, double *u)
+{
+    const cone *cones = e->lamps[lamp].cones;
+    int k = 0, last = e->ball_count - 1;
+    while (last > 0 && cones[last].share == 0.0)
+        last--;
+    while (k < last && *u >= cones[k].share)
+        *u -= cones[k++].share;
+    return k;
 }
 
 /* A ray, and the inverse of its density times the lamp's disc: 0 if it does not leave the lamp. The first number
@@ -130,9 +146,8 @@ static double draw_ray(const emission *e, int lamp, unit_pair s, unit_pair place
 {
     const lamp_emission *l = &e->lamps[lamp];
     const double radius = sphere_radius(e, lamp);
-    int k = 0;
-    while (k + 1 < e->ball_count && s.u >= l->cones[k].share)
-        s.u -= l->cones[k++].share;
+    const int k = choose_cone(e, lamp, &s.u);
+    out->target = lamp * e->ball_count + k;
     const cone *c = &l->cones[k];
     const double off = c->cap * fmin(s.u / c->share, 1.0);
     out->direction = along(c->axis, 1.0 - off, sqrt(off * (2.0 - off)), s.v);
@@ -216,8 +231,17 @@ double emission_chance(const emission *e, int64_t i, int depth, int which)
     return random_unit(words(e, i, depth, DRAW_PHOTON + which).word[0]);
 }
 
+static unit_pair two(random_words w)
+{
+    return (unit_pair){random_unit(w.word[0]), random_unit(w.word[1])};
+}
+
+unit_pair emission_roulette(const emission *e, int64_t i, int depth)
+{
+    return two(words(e, i, depth, DRAW_PHOTON_END));
+}
+
 unit_pair emission_facet(const emission *e, int64_t i, int depth)
 {
-    const random_words w = words(e, i, depth, DRAW_FACET);
-    return (unit_pair){random_unit(w.word[0]), random_unit(w.word[1])};
+    return two(words(e, i, depth, DRAW_FACET));
 }

@@ -1,10 +1,13 @@
-/* Where photons start towards: balls around what deflects light, the cones of each lamp around these, and the lamps'
- * shares of the photons. */
+/* Where photons start towards: balls around what deflects light, the cones of each lamp around these, and the shares of
+ * the photons. */
 #include "render/caustics/emission_parts.h"
 
 #include "geometry/shapes/shape.h"
+#include "optics/mueller.h"
 
 #include <stdlib.h>
+
+#define PI 3.14159265358979323846
 
 /* --- what deflects light --- */
 
@@ -18,26 +21,27 @@ static bool deflects(const plan *p, int priority_index)
     return any;
 }
 
-static ball ball_of(const solid_shape *shape)
+static ball ball_of(const plan *p, int priority_index)
 {
+    const solid_shape *shape = &p->geometry->shapes[priority_index];
     const bounds3 box = shape_world_box(shape);
     const vec3 half = vec3_scale(vec3_sub(box.high, box.low), 0.5);
     const bool bounded = vec3_is_finite(half);
-    return (ball){bounded ? vec3_add(box.low, half) : vec3_make(0.0, 0.0, 0.0),
-                  bounded ? vec3_length(half) : (double)INFINITY};
+    return (ball){bounded ? vec3_add(box.low, half) : vec3_make(0.0, 0.0, 0.0), half,
+                  bounded ? vec3_length(half) : (double)INFINITY, p->geometry->regions[priority_index].solid};
 }
 
-/* A ball that holds two. */
+/* One that holds two. */
 static ball joined(ball a, ball b)
 {
-    const vec3 off = vec3_sub(b.centre, a.centre);
-    const double d = vec3_length(off);
-    if (d + b.radius <= a.radius || isinf(a.radius))
-        return a;
-    if (d + a.radius <= b.radius || isinf(b.radius))
-        return b;
-    const double radius = 0.5 * (d + a.radius + b.radius);
-    return (ball){vec3_add(a.centre, vec3_scale(off, (radius - a.radius) / d)), radius};
+    if (isinf(a.radius) || isinf(b.radius))
+        return (ball){.radius = (double)INFINITY, .solid = -1};
+    const vec3 a_low = vec3_sub(a.centre, a.half), a_high = vec3_add(a.centre, a.half);
+    const vec3 b_low = vec3_sub(b.centre, b.half), b_high = vec3_add(b.centre, b.half);
+    const vec3 low = vec3_make(fmin(a_low.x, b_low.x), fmin(a_low.y, b_low.y), fmin(a_low.z, b_low.z)),
+               high = vec3_make(fmax(a_high.x, b_high.x), fmax(a_high.y, b_high.y), fmax(a_high.z, b_high.z));
+    const vec3 half = vec3_scale(vec3_sub(high, low), 0.5);
+    return (ball){vec3_add(low, half), half, vec3_length(half), -1};
 }
 
 static void find_balls(emission *e)
@@ -47,7 +51,7 @@ static void find_balls(emission *e)
     for (int r = 1; r <= p->geometry->region_count; r++) {
         if (!deflects(p, r))
             continue;
-        const ball one = ball_of(&p->geometry->shapes[r]);
+        const ball one = ball_of(p, r);
         many |= e->ball_count == CONES_MAX;
         if (many) /* from now on all are in the first */
             for (; e->ball_count > 1; e->ball_count--)
@@ -64,103 +68,214 @@ static void find_balls(emission *e)
 /* --- lamps --- */
 
 /* Around all directions from the lamp's points to the ball's. */
-static cone cone_to(vec3 from, double lamp_radius, ball b)
+static cone cone_to(vec3 from, double lamp_radius, const ball *b)
 {
-    const vec3 to = vec3_sub(b.centre, from);
-    const double d = vec3_length(to), sine = (b.radius + lamp_radius) / d;
+    const vec3 to = vec3_sub(b->centre, from);
+    const double d = vec3_length(to), sine = (b->radius + lamp_radius) / d;
     if (!(sine < 1.0))
-        return (cone){vec3_make(0.0, 1.0, 0.0), 2.0, 0.0};
+        return (cone){.axis = vec3_make(0.0, 1.0, 0.0), .cap = 2.0};
     /* 1 - cos = sin^2 / (1 + cos), without cancellation; widened beyond its rounding */
-    return (cone){vec3_scale(to, 1.0 / d), (1.0 + 1e-9) * sine * sine / (1.0 + sqrt(1.0 - sine * sine)), 0.0};
+    return (cone){.axis = vec3_scale(to, 1.0 / d), .cap = (1.0 + 1e-9) * sine * sine / (1.0 + sqrt(1.0 - sine * sine))};
 }
 
-/* The flux of a sun through these discs, over that of a lamp of intensity 1 and reach 1 into a unit of solid angle: the
- * discs' area. As aim below. */
-static double aim_sun(emission *e, int lamp)
+/* Do two cones have a direction in common? With half angles a and b and c between the axes: c <= a + b. */
+static bool overlap(const cone *a, const light_cone *b)
 {
-    const light *l = &e->p->lights[lamp];
-    const light_cone *c = &e->p->cones[lamp];
-    lamp_emission *out = &e->lamps[lamp];
-    double sum = 0.0;
-    for (int k = 0; k < e->ball_count; k++) {
-        const double radius = sunlit_ball(e, k).radius;
-        sum += radius * radius;
-        out->cones[k] = (cone){c->axis, e->sizes ? c->opening : 0.0, radius * radius};
+    const double cos_a = 1.0 - a->cap, cos_b = 1.0 - b->opening;
+    const double sum = cos_a * cos_b - sqrt(fmax(0.0, (1.0 - cos_a * cos_a) * (1.0 - cos_b * cos_b)));
+    const bool all = cos_a + cos_b <= 0.0; /* a + b is at least 180 degrees */
+    return all || light_cone_off(b, a->axis) <= (1.0 - sum) * (1.0 + 1e-9) + 1e-12;
+}
+
+/* The directions of a cone in which the lamp shines: the narrower of both cones. */
+static cone lit_part(cone c, const light *l, const light_cone *lamp)
+{
+    if (!light_has_cone(l) || lamp->opening > 2.0)
+        return c;
+    if (!overlap(&c, lamp))
+        return (cone){.axis = c.axis, .cap = c.cap, .flux = 0.0};
+    const double opening = (1.0 + 1e-9) * lamp->opening;
+    return opening < c.cap ? (cone){.axis = lamp->axis, .cap = opening, .flux = 1.0} : c;
+}
+
+sunlit_area sunlit_area_of(const emission *e, int k, vec3 direction)
+{
+    const ball *b = &e->balls[k];
+    sunlit_area a = {.centre = b->centre};
+    if (isinf(b->radius)) {
+        polarisation_frame(direction, &a.u, &a.v);
+        a.across = a.up = 2.0 * fmax(e->p->geometry->extent, vec3_length(e->p->view.eye));
+        return a;
     }
-    for (int k = 0; k < e->ball_count; k++)
-        out->cones[k].share /= sum;
-    return l->intensity * fmax(l->color.x, fmax(l->color.y, l->color.z)) * 0.5 * sum; /* over 2 pi, as there */
+    const vec3 edges[3] = {{b->half.x, 0.0, 0.0}, {0.0, b->half.y, 0.0}, {0.0, 0.0, b->half.z}};
+    vec3 longest = {0.0, 0.0, 0.0};
+    for (int i = 0; i < 3; i++) {
+        const vec3 seen = vec3_sub(edges[i], vec3_scale(direction, vec3_dot(edges[i], direction)));
+        longest = vec3_dot(seen, seen) > vec3_dot(longest, longest) ? seen : longest;
+    }
+    a.u = vec3_normalize(longest);
+    a.v = vec3_cross(direction, a.u);
+    for (int i = 0; i < 3; i++)
+        a.across += fabs(vec3_dot(edges[i], a.u)), a.up += fabs(vec3_dot(edges[i], a.v));
+    a.across *= 1.0 + 1e-9, a.up *= 1.0 + 1e-9; /* beyond their rounding */
+    return a;
 }
 
-/* The lamp's brightness times the solid angle of its cones: its photons are in proportion. */
-static double aim(emission *e, int lamp)
+/* A light's brightness in its strongest channel. */
+static double brightness(const light *l)
+{
+    return l->intensity * fmax(l->color.x, fmax(l->color.y, l->color.z));
+}
+
+/* The flux of a sun through the areas, over that of a lamp of intensity 1 and reach 1 into a unit of solid angle. As
+ * aim below. */
+static void aim_sun(emission *e, int lamp)
+{
+    const light_cone *c = &e->p->cones[lamp];
+    for (int k = 0; k < e->ball_count; k++) {
+        const sunlit_area a = sunlit_area_of(e, k, c->axis);
+        e->lamps[lamp].cones[k] = (cone){.axis = c->axis,
+                                         .cap = e->sizes ? c->opening : 0.0,
+                                         .flux = brightness(&e->p->lights[lamp]) * 4.0 * a.across * a.up / (2.0 * PI)};
+    }
+}
+
+/* The lamp's cones and the flux in each: the brightness times the solid angle over 2 pi. */
+static void aim(emission *e, int lamp)
 {
     const light *l = &e->p->lights[lamp];
     lamp_emission *out = &e->lamps[lamp];
-    double sum = 0.0;
-    if (is_sun(e, lamp))
-        return aim_sun(e, lamp);
-    for (int k = 0; k < e->ball_count; k++)
-        sum += (out->cones[k] = cone_to(l->position, e->sizes ? light_extent(l) : 0.0, e->balls[k])).cap;
-    for (int k = 0; k < e->ball_count; k++)
-        out->cones[k].share = out->cones[k].cap / sum;
     out->inside = scene_geometry_inside(e->p->geometry, l->position);
-    const double distance2 =
-                     vec3_dot(vec3_sub(l->position, e->balls[0].centre), vec3_sub(l->position, e->balls[0].centre)),
-                 extent = e->p->geometry->extent,
-                 falloff = l->reach > 0.0              ? l->reach * l->reach
-                           : isinf(e->balls[0].radius) ? extent * extent
-                                                       : distance2;
-    return l->intensity * fmax(l->color.x, fmax(l->color.y, l->color.z)) * falloff * sum;
+    if (is_sun(e, lamp)) {
+        aim_sun(e, lamp);
+        return;
+    }
+    for (int k = 0; k < e->ball_count; k++) {
+        const ball *b = &e->balls[k];
+        cone c = cone_to(l->position, e->sizes ? light_extent(l) : 0.0, b);
+        c.flux = 1.0;
+        out->cones[k] = c = lit_part(c, l, &e->p->cones[lamp]);
+        const vec3 to = vec3_sub(l->position, b->centre);
+        const double extent = e->p->geometry->extent, falloff = l->reach > 0.0     ? l->reach * l->reach
+                                                                : isinf(b->radius) ? extent * extent
+                                                                                   : vec3_dot(to, to);
+        out->cones[k].flux *= brightness(l) * falloff * c.cap;
+    }
 }
 
-/* power: of lamps, then of beams. */
-static void divide(emission *e, const double *power, int64_t photons)
+/* --- shares --- */
+
+/* Gives every target its wanted part of the photons: a lamp's cones in turn, then the beams. */
+static void divide(emission *e, int64_t photons)
 {
+    const double *wanted = e->wanted;
     const int lamps = e->p->light_count, sources = lamps + e->p->beam_count;
     double all = 0.0, so_far = 0.0;
-    for (int k = 0; k < sources; k++)
-        all += power[k];
-    for (int k = 0; k < sources && all > 0.0; k++) {
+    for (int k = 0; k < emission_target_count(e); k++)
+        all += wanted[k];
+    e->count = 0;
+    for (int k = 0, at = 0; k < sources; k++) {
         int64_t *first = k < lamps ? &e->lamps[k].first : &e->beams[k - lamps].first,
                 *count = k < lamps ? &e->lamps[k].count : &e->beams[k - lamps].count;
-        so_far += power[k];
+        const int targets = k < lamps ? e->ball_count : 1;
+        double own = 0.0;
+        for (int i = 0; i < targets; i++)
+            own += wanted[at + i];
+        for (int i = 0; k < lamps && i < targets; i++)
+            e->lamps[k].cones[i].share = own > 0.0 ? wanted[at + i] / own : 0.0;
+        at += targets;
+        so_far += own;
         *first = e->count;
-        e->count = (int64_t)(so_far / all * (double)photons + 0.5);
+        e->count = all > 0.0 ? (int64_t)(so_far / all * (double)photons + 0.5) : 0;
         *count = e->count - *first;
     }
+}
+
+int emission_target_count(const emission *e)
+{
+    return e->p->light_count * e->ball_count + e->p->beam_count;
+}
+
+int emission_target_solid(const emission *e, int target)
+{
+    return target < e->p->light_count * e->ball_count ? e->balls[target % e->ball_count].solid : -1;
+}
+
+static double flux_of(const emission *e, int target)
+{
+    const int cones = e->p->light_count * e->ball_count;
+    return target < cones ? e->lamps[target / e->ball_count].cones[target % e->ball_count].flux
+                          : e->beams[target - cones].flux;
+}
+
+double emission_light(const emission *e, int target, int64_t arrived)
+{
+    const int cones = e->p->light_count * e->ball_count;
+    const double emitted = target < cones ? (double)e->lamps[target / e->ball_count].count *
+                                                e->lamps[target / e->ball_count].cones[target % e->ball_count].share
+                                          : (double)e->beams[target - cones].count;
+    return arrived > 0 && emitted > 0.0 ? flux_of(e, target) * (double)arrived / emitted : 0.0;
+}
+
+/* What a target from which nothing arrived gets, of what it would get otherwise. */
+#define SILENT_SHARE 0.02
+
+void emission_end_pilot(emission *e, const bool *delivers)
+{
+    for (int k = 0; k < emission_target_count(e); k++)
+        e->wanted[k] = sqrt(flux_of(e, k)) * (!delivers || delivers[k] ? 1.0 : SILENT_SHARE);
+    divide(e, e->photons);
+    e->is_pilot = false;
+}
+
+/* Of all photons a pilot is at most one of PILOT_PART. */
+enum { PILOT_EACH_MOST = 256, PILOT_EACH_LEAST = 32, PILOT_PART = 16 };
+
+bool emission_begin_pilot(emission *e)
+{
+    int some = 0;
+    for (int k = 0; k < emission_target_count(e); k++) {
+        e->wanted[k] = flux_of(e, k) > 0.0 ? 1.0 : 0.0;
+        some += flux_of(e, k) > 0.0;
+    }
+    const int64_t each = e->photons / (PILOT_PART * (some > 0 ? some : 1));
+    if (some < 2 || each < PILOT_EACH_LEAST)
+        return false;
+    divide(e, some * (each < PILOT_EACH_MOST ? each : PILOT_EACH_MOST));
+    e->is_pilot = true;
+    return true;
 }
 
 status emission_create(const plan *p, int64_t photons, bool sizes, emission **out, diagnostic *why)
 {
     emission *e = calloc(1, sizeof *e);
-    double *power = calloc((size_t)p->light_count + (size_t)p->beam_count + 1, sizeof *power);
     *out = e;
     if (e) {
         e->p = p; /* which emission_destroy needs */
         e->lamps = calloc((size_t)p->light_count + 1, sizeof *e->lamps);
         e->beams = calloc((size_t)p->beam_count + 1, sizeof *e->beams);
     }
-    if (!e || !power || !e->lamps || !e->beams)
+    if (!e || !e->lamps || !e->beams)
         goto failed;
     e->sizes = sizes;
+    e->photons = photons;
     find_balls(e);
+    if (!(e->wanted = calloc((size_t)emission_target_count(e) + 1, sizeof *e->wanted)))
+        goto failed;
     for (int k = 0; k < p->light_count && e->ball_count > 0; k++) {
         if (!(e->lamps[k].cones = calloc((size_t)e->ball_count, sizeof(cone))))
             goto failed;
-        power[k] = aim(e, k);
+        aim(e, k);
     }
-    status code = emission_prepare_beams(e, power + p->light_count, why);
-    if (code == STATUS_OK)
-        divide(e, power, photons);
-    free(power);
-    if (code != STATUS_OK) {
-        emission_destroy(e);
-        *out = NULL;
+    status code = emission_prepare_beams(e, why);
+    if (code == STATUS_OK) {
+        emission_end_pilot(e, NULL);
+        return STATUS_OK;
     }
+    emission_destroy(e);
+    *out = NULL;
     return code;
 failed:
-    free(power);
     emission_destroy(e);
     *out = NULL;
     return out_of_memory(why);
@@ -174,6 +289,7 @@ void emission_destroy(emission *e)
         free(e->lamps[k].cones);
     free(e->lamps);
     free(e->beams);
+    free(e->wanted);
     free(e);
 }
 

@@ -22,7 +22,7 @@ static vec3 color_of(const beam *b)
 }
 
 /* A photon's flux is its power over pi; that of a lamp of intensity and reach 1 into 2 pi is 2 pi (emission_aim.c). */
-status emission_prepare_beams(emission *e, double *power, diagnostic *why)
+status emission_prepare_beams(emission *e, diagnostic *why)
 {
     for (int k = 0; k < e->p->beam_count; k++) {
         const beam *b = &e->p->beams[k];
@@ -30,7 +30,7 @@ status emission_prepare_beams(emission *e, double *power, diagnostic *why)
         const bool has_normal = is_flat && vec3_dot(b->normal, b->normal) > 0.0;
         TRY(ray_axes_set(&e->beams[k].axes, b->position, beam_axis(b), has_normal ? &b->normal : NULL, why));
         const vec3 color = e->beams[k].color = color_of(b);
-        power[k] = b->power * fmax(color.x, fmax(color.y, color.z)) / (2.0 * PI * PI);
+        e->beams[k].flux = b->power * fmax(color.x, fmax(color.y, color.z)) / (2.0 * PI * PI);
         e->extent = fmax(e->extent, beam_is_parallel(b) ? 0.5 * b->width : e->p->geometry->extent);
     }
     return STATUS_OK;
@@ -120,8 +120,12 @@ bool emission_beam_ray(const emission *e, int64_t i, emitted_ray *out)
     const uint64_t source = (uint64_t)(p->light_count + k) << 8;
     const int64_t number = i - from->first;
     const unit_pair s = emission_pair(e, number, source);
-    *out = (emitted_ray){
-        .origin = from->axes.from, .direction = from->axes.axis, .wavelength = -1, .of_beam = true, .falls = true};
+    *out = (emitted_ray){.origin = from->axes.from,
+                         .direction = from->axes.axis,
+                         .wavelength = -1,
+                         .of_beam = true,
+                         .falls = true,
+                         .target = p->light_count * e->ball_count + k};
     if (b->kind == BEAM_FAN || b->kind == BEAM_SHEET)
         start_in_plane(b, &from->axes, s, out);
     else

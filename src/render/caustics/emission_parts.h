@@ -11,13 +11,15 @@
 enum { CONES_MAX = 64 }; /* of a scene with more solids that deflect light, one ball holds them all */
 
 typedef struct ball {
-    vec3 centre;
-    double radius; /* infinite: no bounds */
+    vec3 centre, half; /* half: of the box around the solid, along the axes */
+    double radius;     /* infinite: no bounds */
+    int solid;         /* -1: several */
 } ball;
 
 typedef struct cone {
     vec3 axis;
     double cap;   /* 1 - the cosine of its half angle; 2: all directions; of a sun, 0: one direction */
+    double flux;  /* relative to that of the other cones and beams; 0: the lamp does not shine there */
     double share; /* of the lamp's photons */
 } cone;
 
@@ -29,30 +31,35 @@ typedef struct lamp_emission {
 
 typedef struct beam_emission {
     int64_t first, count;
+    double flux;
     ray_axes axes;
     vec3 color; /* in an rgb film */
 } beam_emission;
 
 struct emission {
     const plan *p;
-    bool sizes;
+    int64_t photons; /* wanted */
+    bool sizes, is_pilot;
     int ball_count;
     ball balls[CONES_MAX];
     double extent;
     lamp_emission *lamps;
     beam_emission *beams;
     int64_t count;
+    double *wanted; /* photons, relative, by target */
 };
 
 static inline unit_pair emission_pair(const emission *e, int64_t i, uint64_t purpose)
 {
-    const sobol_point s = sobol_at((uint32_t)i, (purpose << 32 | DRAW_PHOTON) ^ e->p->draws.seed_hash);
+    enum { PILOT = 0x80 };
+    const uint64_t own = e->is_pilot ? purpose | PILOT : purpose;
+    const sobol_point s = sobol_at((uint32_t)i, (own << 32 | DRAW_PHOTON) ^ e->p->draws.seed_hash);
     return (unit_pair){random_unit(s.x), random_unit(s.y)};
 }
 
-/* emission_beam.c: prepares the beams and sets their shares of the photons, as emission_aim.c does of lamps; then the
- * ray of photon i, which must be a beam's. */
-status emission_prepare_beams(emission *e, double *power, diagnostic *why);
+/* emission_beam.c: prepares the beams and sets their flux, as emission_aim.c does of lamps; then the ray of photon i,
+ * which must be a beam's. */
+status emission_prepare_beams(emission *e, diagnostic *why);
 bool emission_beam_ray(const emission *e, int64_t i, emitted_ray *out);
 
 /* Of a lamp that is a sphere, else 0. */
@@ -71,14 +78,14 @@ static inline bool is_sun(const emission *e, int lamp)
     return e->p->lights[lamp].kind == LIGHT_SUN;
 }
 
-/* The ball whose disc, across them, a sun's rays pass. */
-static inline ball sunlit_ball(const emission *e, int k)
-{
-    const camera_frame *view = &e->p->view;
-    if (!isinf(e->balls[k].radius))
-        return e->balls[k];
-    return (ball){vec3_make(0.0, 0.0, 0.0), 2.0 * fmax(e->p->geometry->extent, vec3_length(view->eye))};
-}
+/* The rectangle across a direction that a sun's rays along it pass: around the solid's box, along the longest of the
+ * box's edges as seen along the direction. */
+typedef struct sunlit_area {
+    vec3 centre, u, v; /* u and v: unit vectors across the direction */
+    double across, up; /* half its size along u and v */
+} sunlit_area;
+
+sunlit_area sunlit_area_of(const emission *e, int k, vec3 direction);
 
 /* From where a sun's rays begin to the middle of the scene. */
 static inline double sun_path(const emission *e)

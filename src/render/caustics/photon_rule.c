@@ -100,6 +100,9 @@ static void arrive(tracer *t, int depth)
         emitted_ray r;
         if (!emission_ray(f->from, number_of(g->sample_key[k]), &r) || (depth == 0 && !r.of_beam))
             continue;
+        atomic_fetch_add_explicit(&f->arrived[r.target], 1, memory_order_relaxed);
+        if (f->is_pilot)
+            continue;
         const double passed = w->passed[w->list[k]], bent = w->bent[w->list[k]],
                      falls = r.falls ? 1.0 : passed * passed;
         const photon one = {.position = {g->points.px[k], g->points.py[k], g->points.pz[k]},
@@ -113,34 +116,38 @@ static void arrive(tracer *t, int depth)
     }
 }
 
-/* The branch of record k: enqueued with its share of the power, or ended. rough: NULL for a smooth surface. */
-static void follow(tracer *t, int k, int depth, bool refracted, const rough_surface *rough)
+typedef struct photon_branch {
+    bool refracted;
+    vec3 direction, left; /* its share of the photon's power, by channel */
+} photon_branch;
+
+static double power_of(const photon_branch *b)
 {
-    const photon_frame *f = t->target.state;
-    const photon_work *w = work_of(t);
+    return fmax(b->left.x, fmax(b->left.y, b->left.z));
+}
+
+/* rough: NULL for a smooth surface. */
+static photon_branch branch_of(const tracer *t, int k, bool refracted, const rough_surface *rough)
+{
     const group *g = &t->surface.gathered;
     const branch_group *b = &t->surface.branches;
-    const double mean = refracted ? b->refract[k] : b->reflect[k];
-    if (!(mean > 0.0))
-        return;
-    const vec3 direction =
-        refracted ? vec3_make(b->tx[k], b->ty[k], b->tz[k]) : vec3_make(b->rx[k], b->ry[k], b->rz[k]);
-    const double passing = rough ? rough_share(t, rough, k, rough_in_frame(rough, k, direction), refracted) : 1.0;
+    photon_branch one = {.refracted = refracted};
+    if (!((refracted ? b->refract[k] : b->reflect[k]) > 0.0))
+        return one;
+    one.direction = refracted ? vec3_make(b->tx[k], b->ty[k], b->tz[k]) : vec3_make(b->rx[k], b->ry[k], b->rz[k]);
+    const double passing = rough ? rough_share(t, rough, k, rough_in_frame(rough, k, one.direction), refracted) : 1.0;
     const vec3 share = vec3_scale(layered_weight(t, k, !refracted), passing);
-    vec3 left = vec3_make(g->wr[k] * share.x, g->wg[k] * share.y, g->wb[k] * share.z);
-    const double power = fmax(left.x, fmax(left.y, left.z));
-    if (!(power > 0.0))
-        return;
-    if (depth == t->queues.depth_limit) {
-        COUNT(t->account.counters.cut_photon += counters_cut_units(power));
-        return;
-    }
-    if (power < LEAST_PHOTON) {
-        if (emission_chance(f->from, number_of(g->sample_key[k]), depth, refracted) * LEAST_PHOTON >= power)
-            return;
-        left = vec3_scale(left, LEAST_PHOTON / power);
-    }
-    ray_queue *q = &t->queues.waiting[depth + 1];
+    one.left = vec3_make(g->wr[k] * share.x, g->wg[k] * share.y, g->wb[k] * share.z);
+    return one;
+}
+
+static void go_on(tracer *t, int k, int depth, const photon_branch *b)
+{
+    const photon_work *w = work_of(t);
+    const group *g = &t->surface.gathered;
+    const vec3 direction = b->direction, left = b->left;
+    const bool refracted = b->refracted;
+    ray_queue *q = tracer_queue_at(t, depth + 1);
     const int at = q->count++;
     q->ox[at] = g->points.px[k], q->oy[at] = g->points.py[k], q->oz[at] = g->points.pz[k];
     q->dx[at] = direction.x, q->dy[at] = direction.y, q->dz[at] = direction.z;
@@ -154,6 +161,38 @@ static void follow(tracer *t, int k, int depth, bool refracted, const rough_surf
         q->sv[at] = refracted ? p->tv[k] : p->rv[k];
     }
     COUNT(refracted ? t->account.counters.refract++ : t->account.counters.reflect++);
+}
+
+/* A branch is enqueued with its share of the power, or ended. */
+static void follow(tracer *t, int k, int depth, photon_branch *b)
+{
+    const photon_frame *f = t->target.state;
+    const double power = power_of(b);
+    if (!(power > 0.0))
+        return;
+    if (power < LEAST_PHOTON) {
+        const int64_t number = number_of(t->surface.gathered.sample_key[k]);
+        if (emission_chance(f->from, number, depth, b->refracted) * LEAST_PHOTON >= power)
+            return;
+        b->left = vec3_scale(b->left, LEAST_PHOTON / power);
+    }
+    go_on(t, k, depth, b);
+}
+
+/* Of a deep photon one branch goes on, chosen by its power, with the power of both; a faint one ends at random. */
+static void follow_one(tracer *t, int k, int depth, photon_branch both[2])
+{
+    const photon_frame *f = t->target.state;
+    const double first = power_of(&both[0]), power = first + power_of(&both[1]);
+    if (!(power > 0.0))
+        return;
+    const unit_pair s = emission_roulette(f->from, number_of(t->surface.gathered.sample_key[k]), depth);
+    const double odds = fmin(power / LEAST_PHOTON, roulette_odds_most(depth));
+    if (s.u >= odds)
+        return;
+    photon_branch *chosen = &both[s.v * power >= first];
+    chosen->left = vec3_scale(chosen->left, power / power_of(chosen) / fmin(odds, 1.0));
+    go_on(t, k, depth, chosen);
 }
 
 /* The branches of photons at facets of a rough surface, one for each photon. */
@@ -186,8 +225,14 @@ static void shade(tracer *t, int depth, int priority_index)
     else
         shading_branches(t, opaque);
     for (int k = 0; k < t->surface.gathered.count; k++) {
-        follow(t, k, depth, false, alpha > 0.0 ? &rough : NULL);
-        follow(t, k, depth, true, alpha > 0.0 ? &rough : NULL);
+        photon_branch both[2] = {branch_of(t, k, false, alpha > 0.0 ? &rough : NULL),
+                                 branch_of(t, k, true, alpha > 0.0 ? &rough : NULL)};
+        if (depth >= DEPTH_DEEP - 1) {
+            follow_one(t, k, depth, both);
+            continue;
+        }
+        follow(t, k, depth, &both[0]);
+        follow(t, k, depth, &both[1]);
     }
 }
 

@@ -5,13 +5,11 @@
 #include "render/caustics/photon_map.h"
 #include "render/integrators/integrator.h"
 
-/* The greatest number of interfaces on a photon's path. In the wall of a glass vessel light is totally reflected dozens
- * of times before it leaves: of the rod's vessel a depth of 32 loses 0.9 % of all light, 64 loses 0.3 %. */
-enum { PHOTON_DEPTH = COUNTERS_DEPTH_MAX };
-
 /* The state of the photons' frame. */
 typedef struct photon_frame {
     const emission *from;
+    atomic_int_fast64_t *arrived; /* photons at matte surfaces, by target */
+    bool is_pilot;                /* which counts only */
     atomic_bool out_of_memory;
 } photon_frame;
 

@@ -52,10 +52,12 @@ typedef struct unit_pair {
     double u, v; /* uniform in (0, 1) */
 } unit_pair;
 
-/* The key of a replicate's points for one random choice. */
+/* The key of a replicate's points for one random choice. Of a depth, 8 bits have their own place; those above are
+ * spread by an odd number (that of a golden section of 2^64). */
 static inline uint64_t path_draw_key(const path_sampling *p, int64_t pixel, uint64_t replicate, int depth, int purpose)
 {
-    return ((uint64_t)pixel << 32 | replicate << 24 | (uint64_t)depth << 16 | (uint64_t)purpose) ^ p->seed_hash;
+    const uint64_t near = (uint64_t)depth & 0xff, far = ((uint64_t)depth >> 8) * 0x9e3779b97f4a7c15;
+    return ((uint64_t)pixel << 32 | replicate << 24 | near << 16 | (uint64_t)purpose) ^ far ^ p->seed_hash;
 }
 
 /* For one random choice of a path: purpose is one of draw.h. */

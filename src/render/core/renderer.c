@@ -345,7 +345,7 @@ uint64_t renderer_result_bytes(const scene *s, const render_options *options)
 
 uint64_t renderer_tracing_bytes(const scene *s)
 {
-    return (uint64_t)scene_threads(&s->render) * tracer_bytes((int)s->render.depth, scene_crystals(s) > 0) +
+    return (uint64_t)scene_threads(&s->render) * tracer_bytes(s->render.depth, scene_crystals(s) > 0) +
            caustics_bytes(&s->render);
 }
 

@@ -59,25 +59,51 @@ static int waiting_of(bool crystals)
     return crystals ? WAITING_CRYSTALS : WAITING;
 }
 
-uint64_t tracer_bytes(int depth, bool crystals)
+/* Deep rays wait until there are many: they are then traced to their ends, in batches that stay full for long. */
+enum { DEEP_AT_ONCE = 16 * BATCH };
+
+static bool goes_deep(int depth_limit)
 {
-    return sizeof(tracer) + (uint64_t)(depth + 1) * queue_bytes(waiting_of(crystals));
+    return depth_limit > DEPTH_DEEP;
 }
 
-/* Smaller queues, of frames without crystals, follow larger ones. */
-static bool make_queues(tracer *t, int depths, int waiting)
+static int capacity_of(int queue, int depth_limit, bool crystals)
 {
-    while (t->queues.made > 0 && t->queues.waiting[t->queues.made - 1].capacity < waiting)
-        queue_destroy(&t->queues.waiting[--t->queues.made]);
-    if (depths <= t->queues.made)
-        return true;
-    ray_queue *grown = realloc(t->queues.waiting, (size_t)depths * sizeof *grown);
+    return waiting_of(crystals) + (goes_deep(depth_limit) && queue >= DEPTH_DEEP ? DEEP_AT_ONCE : 0);
+}
+
+static int queue_count(int depth_limit)
+{
+    return (depth_limit < DEPTH_DEEP + 1 ? depth_limit : DEPTH_DEEP + 1) + 1;
+}
+
+uint64_t tracer_bytes(int64_t depth, bool crystals)
+{
+    uint64_t sum = sizeof(tracer);
+    for (int i = 0; i < queue_count((int)depth); i++)
+        sum += queue_bytes(capacity_of(i, (int)depth, crystals));
+    return sum;
+}
+
+/* Queues that are large enough are kept. */
+static bool make_queues(tracer *t, int depth_limit, bool crystals)
+{
+    const int count = queue_count(depth_limit);
+    ray_queue *grown =
+        count > t->queues.made ? realloc(t->queues.waiting, (size_t)count * sizeof *grown) : t->queues.waiting;
     if (!grown)
         return false;
     t->queues.waiting = grown;
-    for (; t->queues.made < depths; t->queues.made++)
-        if (!queue_create(&grown[t->queues.made], waiting))
+    for (; t->queues.made < count; t->queues.made++)
+        memset(&grown[t->queues.made], 0, sizeof *grown);
+    for (int i = 0; i < count; i++) {
+        const int capacity = capacity_of(i, depth_limit, crystals);
+        if (grown[i].capacity >= capacity)
+            continue;
+        queue_destroy(&grown[i]);
+        if (!queue_create(&grown[i], capacity))
             return false;
+    }
     return true;
 }
 
@@ -125,8 +151,8 @@ bool tracer_begin(tracer *t, const tracer_target *target)
         if (!queue_create(&t->queues.shadows, shadows_at_once))
             return false;
     }
-    if (!make_queues(t, t->queues.depth_limit + 1, waiting_of(p->crystals != NULL)) || !make_marks(t, p->geometry) ||
-        !mesh_begin(t) || !radiance_begin(t) || !layered_begin(t) || !crystals_begin(t) || !take_integrator(t) ||
+    if (!make_queues(t, t->queues.depth_limit, p->crystals != NULL) || !make_marks(t, p->geometry) || !mesh_begin(t) ||
+        !radiance_begin(t) || !layered_begin(t) || !crystals_begin(t) || !take_integrator(t) ||
         !absorption_begin(t, p->geometry->attenuates && t->rule->traced))
         return false;
     t->by_sample_key = t->rule->by_sample || r->spectrum == SPECTRUM_SPECTRAL || p->basic || scene_has_soft_shadows(r);
@@ -177,11 +203,13 @@ static void visibility_ends(tracer *t, int64_t began_ns)
 static void trace_batch(tracer *t, int depth)
 {
     const plan *p = t->target.frame_plan;
-    ray_queue *q = &t->queues.waiting[depth];
+    ray_queue *q = tracer_queue_at(t, depth);
     int first;
     const ray_batch rays = queue_take(q, &first);
+    t->queues.depth = depth;
     if (is_counted(t, depth))
-        COUNT(t->account.counters.by_depth[depth] += (uint64_t)rays.count);
+        COUNT(t->account.counters.by_depth[depth < COUNTERS_DEPTH_MAX ? depth : COUNTERS_DEPTH_MAX] +=
+              (uint64_t)rays.count);
     if (depth == 0)
         COUNT(t->account.counters.camera += (uint64_t)rays.count);
     if (t->batch.scratch.segments)
@@ -234,7 +262,7 @@ void tracer_run_batch(tracer *t, int depth)
         depth < 0 ? trace_shadows(t) : trace_batch(t, depth);
         return;
     }
-    const ray_queue *q = depth < 0 ? &t->queues.shadows : &t->queues.waiting[depth];
+    const ray_queue *q = depth < 0 ? &t->queues.shadows : tracer_queue_at(t, depth);
     ray_queue view = *q;
     int first;
     const int count = queue_take(&view, &first).count;
@@ -249,14 +277,42 @@ void tracer_run_batch(tracer *t, int depth)
     }
 }
 
+static bool stopped(const atomic_bool *stop)
+{
+    return atomic_load_explicit(stop, memory_order_relaxed);
+}
+
+/* Traces all deep rays to their ends, depth by depth. */
+static void run_deep(tracer *t, const atomic_bool *stop)
+{
+    for (int depth = DEPTH_DEEP; tracer_queue_at(t, depth)->count > 0; depth++)
+        while (tracer_queue_at(t, depth)->count > 0) {
+            if (stopped(stop))
+                return;
+            tracer_run_batch(t, depth);
+            while (t->queues.shadows.count >= BATCH)
+                tracer_run_batch(t, -1);
+        }
+}
+
+/* The deepest depth whose rays wait for a full batch only. */
+static int deepest(const tracer *t)
+{
+    return goes_deep(t->queues.depth_limit) ? DEPTH_DEEP - 1 : t->queues.depth_limit;
+}
+
 /* Traces the deepest full batch, shadow rays first; returns false when there is none. */
-static bool run_full(tracer *t)
+static bool run_full(tracer *t, const atomic_bool *stop)
 {
     if (t->queues.shadows.count >= BATCH) {
         tracer_run_batch(t, -1);
         return true;
     }
-    for (int d = t->queues.depth_limit; d >= 0; d--) {
+    if (goes_deep(t->queues.depth_limit) && t->queues.waiting[DEPTH_DEEP].count >= DEEP_AT_ONCE) {
+        run_deep(t, stop);
+        return true;
+    }
+    for (int d = deepest(t); d >= 0; d--) {
         if (t->queues.waiting[d].count >= BATCH) {
             tracer_run_batch(t, d);
             return true;
@@ -265,14 +321,9 @@ static bool run_full(tracer *t)
     return false;
 }
 
-static bool stopped(const atomic_bool *stop)
-{
-    return atomic_load_explicit(stop, memory_order_relaxed);
-}
-
 void tracer_run_full(tracer *t, const atomic_bool *stop)
 {
-    while (!stopped(stop) && run_full(t))
+    while (!stopped(stop) && run_full(t, stop))
         ;
 }
 
@@ -326,7 +377,7 @@ static bool trace_pixels(tracer *t, int y, int x0, int x1, int64_t each, const a
     const int at_once = rays_at_once(each);
     for (int64_t ray = 0; ray < all; ray += at_once) {
         camera_rays_enqueue(t, y, x0, ray, all - ray < at_once ? (int)(all - ray) : at_once);
-        while (run_full(t))
+        while (run_full(t, stop))
             if (stopped(stop))
                 return false;
     }
@@ -367,12 +418,14 @@ void tracer_span(tracer *t, const span *piece, atomic_uint_fast64_t *begun, cons
 /* When no full batch is left, the shallowest rays go first: their children refill the deeper queues. */
 void tracer_finish(tracer *t, const atomic_bool *stop)
 {
-    for (int d = 0; d <= t->queues.depth_limit && !stopped(stop); d++) {
+    for (int d = 0; d <= deepest(t) && !stopped(stop); d++) {
         while (t->queues.waiting[d].count > 0 && !stopped(stop))
             tracer_run_batch(t, d);
-        while (run_full(t) && !stopped(stop))
+        while (run_full(t, stop) && !stopped(stop))
             ;
     }
+    if (goes_deep(t->queues.depth_limit))
+        run_deep(t, stop);
     while (t->queues.shadows.count > 0 && !stopped(stop))
         tracer_run_batch(t, -1);
     drop_all(t);

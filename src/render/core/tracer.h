@@ -25,7 +25,7 @@ typedef struct tracer_target {
 } tracer_target;
 
 /* Memory of a tracer at that depth, bytes; larger where crystals are. */
-uint64_t tracer_bytes(int depth, bool crystals);
+uint64_t tracer_bytes(int64_t depth, bool crystals);
 tracer *tracer_create(isa level);
 void tracer_destroy(tracer *t);
 

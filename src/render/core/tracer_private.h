@@ -11,10 +11,13 @@
 #include "render/shade/radiance.h"
 #include "render/shade/shade.h"
 
-/* Rays that wait for a full batch. */
+/* Rays that wait for a full batch. From DEPTH_DEEP on, where rays do not branch, two queues take turns: whatever the
+ * limit, memory is bounded. */
+enum { DEPTH_DEEP = DEPTH_TREE_MAX };
 typedef struct tracer_queues {
     int depth_limit, made;
-    ray_queue *waiting; /* by depth, 0 .. depth_limit */
+    int depth;          /* of the batch that is being traced */
+    ray_queue *waiting; /* by depth, see tracer_queue_at */
     ray_queue shadows;
 } tracer_queues;
 
@@ -75,6 +78,18 @@ struct tracer {
     _Alignas(64) tracer_batch batch; /* aligned to cache lines, here and above */
     _Alignas(64) tracer_surface surface;
 };
+
+static inline ray_queue *tracer_queue_at(const tracer *t, int depth)
+{
+    return &t->queues.waiting[depth < DEPTH_DEEP ? depth : DEPTH_DEEP + (depth - DEPTH_DEEP) % 2];
+}
+
+/* The most that Russian roulette lets go on, for a path that loses no light may never end: without a limit of depth, one
+ * of 1024 ends at each surface from the 4096th on. */
+static inline double roulette_odds_most(int depth)
+{
+    return depth < 4096 ? 1.0 : 1.0 - 1.0 / 1024.0;
+}
 
 /* A build without counters compiles the statement but never executes it. */
 #define COUNT(statement) ((void)(CUVETTE_COUNTERS ? (statement) : 0))

@@ -16,12 +16,13 @@ static status probe_of_beam(const scene *s, const beam *b, double lambda_nm, isa
         code = scene_remove(alone, alone->lights[alone->light_count - 1].name, why);
     if (code == STATUS_OK) {
         alone->render.lambda_nm = lambda_nm;
-        alone->render.depth = b->depth;
         alone->render.min_weight = b->min_share;
         code = probe_create(alone, level, out, why);
     }
-    if (code == STATUS_OK)
+    if (code == STATUS_OK) {
+        probe_limit_depth(*out, (int)b->depth);
         probe_one_wavelength(*out);
+    }
     scene_destroy(alone);
     return code;
 }

@@ -68,6 +68,11 @@ void probe_one_wavelength(probe *p)
     }
 }
 
+void probe_limit_depth(probe *p, int depth)
+{
+    p->frame_plan->render.depth = depth;
+}
+
 void probe_destroy(probe *p)
 {
     if (!p)

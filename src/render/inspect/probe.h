@@ -85,6 +85,8 @@ void ray_tree_release(ray_tree *tree);
 typedef struct probe probe;
 
 status probe_create(const scene *s, isa level, probe **out, diagnostic *why);
+/* Instead of render.depth; more than DEPTH_TREE_MAX for paths alone. */
+void probe_limit_depth(probe *p, int depth);
 void probe_destroy(probe *p);
 
 /* From this call on, absorption by wavelength is evaluated at render.lambda_nm for all channels, as refractive indices

@@ -50,7 +50,7 @@ static void take(const ray_queue *q, int i, ray_record *out)
 
 void probe_take(const probe *p, int depth, int i, ray_record *out)
 {
-    take(&p->rays->queues.waiting[depth], i, out);
+    take(tracer_queue_at(p->rays, depth), i, out);
     out->depth = depth;
     out->medium_priority_index = scene_geometry_priority_index(p->frame_plan->geometry, out->inside);
     const bool in_crystal = p->frame_plan->crystals && p->frame_plan->crystals[out->medium_priority_index].uniaxial;
@@ -351,13 +351,13 @@ static void trace_node(probe *p, ray_tree *tree, size_t at, const ray_record *ra
 {
     tracer *t = p->rays;
     ray_node *node = &tree->node[at];
-    put(&t->queues.waiting[ray->depth], ray);
+    put(tracer_queue_at(t, ray->depth), ray);
     run_one(p, ray->depth, node->brought);
     out->count = 0;
     if (read_hit(p, node))
         read_branches(p, ray->depth, out);
     if (ray->depth < t->queues.depth_limit)
-        t->queues.waiting[ray->depth + 1].count = 0;
+        tracer_queue_at(t, ray->depth + 1)->count = 0;
 }
 
 static status add_cut(probe *p, ray_tree *tree, int parent, const branches *b, int i, diagnostic *why)

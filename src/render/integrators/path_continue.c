@@ -4,23 +4,25 @@
 /* Below this depth every path continues; from it on faint paths end by Russian roulette. */
 enum { ROULETTE_DEPTH = 3 };
 
-/* Russian roulette: ends a faint path at random; the survivors take over its weight. */
+/* Russian roulette (Arvo and Kirk, "Particle Transport and Image Synthesis", SIGGRAPH 1990): ends a faint path at
+ * random; the survivors take over its weight. Deep paths take part whatever render.roulette is. */
 static bool survives(const tracer *t, int k, int depth, vec3 *share)
 {
     const render_settings *r = &t->target.frame_plan->render;
     const group *g = &t->surface.gathered;
-    if (!r->roulette || depth < ROULETTE_DEPTH)
+    if (depth < (r->roulette ? ROULETTE_DEPTH : DEPTH_DEEP))
         return true;
     const int64_t paths = path_count(&t->target.frame_plan->draws, sample_key_pixel(g->sample_key[k]));
     /* of the weight with which paths begin, which an analyser halves */
     const double begins = t->target.frame_plan->analyser == ANALYSER_NONE ? 1.0 : 0.5;
     const double weight =
         fmax(g->wr[k] * share->x, fmax(g->wg[k] * share->y, g->wb[k] * share->z)) * ((double)paths / begins);
-    if (weight >= 1.0)
+    const double odds = fmin(weight, roulette_odds_most(depth));
+    if (odds >= 1.0)
         return true;
-    if (path_draw(&t->target.frame_plan->draws, g->sample_key[k], depth, DRAW_ROULETTE).u >= weight)
+    if (path_draw(&t->target.frame_plan->draws, g->sample_key[k], depth, DRAW_ROULETTE).u >= odds)
         return false;
-    *share = vec3_scale(*share, 1.0 / weight);
+    *share = vec3_scale(*share, 1.0 / odds);
     return true;
 }
 
@@ -38,7 +40,7 @@ static void cut(tracer *t, int k, const continuation *c)
 static void go_on(tracer *t, int k, int depth, const continuation *c)
 {
     const group *g = &t->surface.gathered;
-    ray_queue *q = &t->queues.waiting[depth + 1];
+    ray_queue *q = tracer_queue_at(t, depth + 1);
     const int at = q->count++;
     q->ox[at] = g->points.px[k], q->oy[at] = g->points.py[k], q->oz[at] = g->points.pz[k];
     q->dx[at] = c->direction.x, q->dy[at] = c->direction.y, q->dz[at] = c->direction.z;

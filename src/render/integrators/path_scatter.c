@@ -179,7 +179,7 @@ void path_scatter(tracer *t, const ray_queue *q, int first, const int *list, int
     const plan *p = t->target.frame_plan;
     const flight_work *w = &t->media->flights;
     const group *g = &t->surface.gathered;
-    const int depth = (int)(q - t->queues.waiting);
+    const int depth = t->queues.depth;
     scattering of;
     double u[ROW], v[ROW];
     gather(t, q, first, list, count, w->end, w->region);

@@ -154,7 +154,7 @@ static void follow(tracer *t, int depth, int k, const crystal_ray *ray)
     } else if (least > 0.0 && weight.x < least && weight.y < least && weight.z < least) {
         count_cut(&c->cut_weight, c->cut_weight_throughput, weight);
     } else {
-        push(&t->queues.waiting[depth + 1], g, k, ray, weight);
+        push(tracer_queue_at(t, depth + 1), g, k, ray, weight);
         COUNT(ray->reflected ? c->reflect++ : c->refract++);
     }
 }

@@ -368,7 +368,7 @@ static int keep_polarised(tracer *t, ray_queue *q, int first, bool reflected, co
 int enqueue_children(tracer *t, int depth, const double *dx, const double *dy, const double *dz, const double *weight,
                      const uint64_t *inside)
 {
-    ray_queue *q = &t->queues.waiting[depth];
+    ray_queue *q = tracer_queue_at(t, depth);
     const double least = t->least_weight;
     const int first = q->count;
     t->shade->append(&t->surface.gathered, dx, dy, dz, weight, inside, q);
@@ -491,15 +491,15 @@ static void shade_one_material(tracer *t, int depth, int first, const hit_group 
     const int priority_index = groups->priority_index;
     const primitive *surface = &p->geometry->primitives[groups->hit_primitive];
     group *g = &t->surface.gathered;
-    group_gather(&t->queues.waiting[depth], first, &t->batch.hits, p->ior, list, count, group_count == 1, g);
+    group_gather(tracer_queue_at(t, depth), first, &t->batch.hits, p->ior, list, count, group_count == 1, g);
     if (p->spectral)
         spectral_indices(t, list);
     if (t->layered)
         layered_gather(t, list, priority_index);
     if (t->crystals)
-        crystals_gather(t, &t->queues.waiting[depth], first, list);
+        crystals_gather(t, tracer_queue_at(t, depth), first, list);
     if (p->render.polarisation)
-        polarised_gather(t, &t->queues.waiting[depth], first, list);
+        polarised_gather(t, tracer_queue_at(t, depth), first, list);
     t->surface.on_mesh = !surface->rule;
     if (t->surface.on_mesh)
         mesh_surface(t, priority_index, list);

@@ -8,7 +8,7 @@
 #include <stdbool.h>
 #include <stdint.h>
 
-enum { SCENE_BEAMS_MAX = 64, BEAM_RAYS_MAX = 10000 };
+enum { SCENE_BEAMS_MAX = 64, BEAM_RAYS_MAX = 10000, BEAM_DEPTH_MAX = 10000 };
 
 /* From one point: within a cone, or in a plane. Parallel: in a plane, or over a disc. */
 typedef enum beam_kind { BEAM_PENCIL, BEAM_FAN, BEAM_SHEET, BEAM_BUNDLE } beam_kind;

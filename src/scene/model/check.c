@@ -78,8 +78,17 @@ static status check_own_name(const scene *s, const char *name, diagnostic *why)
     return code != STATUS_OK || count_name(s, name) == 1 ? code : name_taken(name, why);
 }
 
+static status check_depth(const render_settings *r, diagnostic *why)
+{
+    return r->depth < DEPTH_UNLIMITED || integrator_traits_of(r)->by_chance
+               ? STATUS_OK
+               : diagnose(why, STATUS_BAD_INPUT, "set render.integrator to path, or render.depth to 0..64",
+                          "render.depth: only random paths are unlimited, trees of rays grow with each level");
+}
+
 static status check_render(const scene *s, diagnostic *why)
 {
+    TRY(check_depth(&s->render, why));
     if (s->render.width > SCENE_PIXELS_MAX / s->render.height)
         return diagnose(why, STATUS_BAD_INPUT, "keep width times height within 268435456",
                         "an image of %lld x %lld pixels is too large", (long long)s->render.width,
@@ -147,6 +156,9 @@ static status check_beam(const beam *b, diagnostic *why)
     if (!(vec3_dot(axis, axis) > 0.0))
         return diagnose(why, STATUS_BAD_INPUT, "move its position or its target, or set its direction",
                         "%.80s: the beam is at its own target", b->name);
+    if (b->branches && b->depth > DEPTH_TREE_MAX)
+        return diagnose(why, STATUS_BAD_INPUT, "set branches to off, or depth to 0..64",
+                        "%.80s: a depth of %lld is for beams without branches", b->name, (long long)b->depth);
     const bool is_plane = b->kind == BEAM_FAN || b->kind == BEAM_SHEET;
     const double length = vec3_length(b->normal);
     if (is_plane && length > 0.0 && vec3_length(vec3_cross(vec3_normalize(axis), b->normal)) < 1e-9 * length)

@@ -9,6 +9,7 @@
 #pragma once
 
 #include "scene/model/open.h"
+#include <stdint.h>
 
 typedef enum param_group {
     PARAM_RENDER,
@@ -45,7 +46,8 @@ typedef struct param {
     const char *const *choices; /* PARAM_CHOICE: words by value, NULL at the end; switches are {"off", "on"}, and no,
                                    yes, false and true are accepted. PARAM_INT: the only allowed numbers, or NULL */
     unsigned makers;            /* PARAM_MESH: bits 1 << mesh_maker, the generators that have the parameter; 0 = all */
-    const char *automatic;      /* PARAM_INT: the word for the value 0, which is below lowest; NULL: none */
+    const char *automatic;      /* PARAM_INT: a word for a value outside lowest .. highest; NULL: none */
+    int64_t automatic_value;    /* that value */
     size_t offset;              /* in the group's struct */
     bool performance_only;      /* affects only performance: the film does not depend on it */
     bool by_shape;              /* PARAM_SOLID: only for solids whose shape rule lists it */

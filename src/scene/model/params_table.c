@@ -129,7 +129,9 @@ enum { ON_SLIME = 1 << MESH_SLIME, ON_ALL = 0 };
 static const param table[] = {
     INTEGER(PARAM_RENDER, render_settings, width, "px", 1, 65536, "800", "width of the image"),
     INTEGER(PARAM_RENDER, render_settings, height, "px", 1, 65536, "600", "height of the image"),
-    INTEGER(PARAM_RENDER, render_settings, depth, "", 0, 64, "4", "recursion depth; 0: camera rays only"),
+    ROW(PARAM_RENDER, "depth", PARAM_INT, "", 0, DEPTH_TREE_MAX, false, "4",
+        "recursion depth; 0: camera rays only; unlimited: random paths go on until Russian roulette ends them", NULL,
+        OF(render_settings, depth), .automatic = "unlimited", .automatic_value = DEPTH_UNLIMITED),
     {PARAM_RENDER, "samples", PARAM_INT, "", 1, SCENE_SAMPLES_MAX, false, "1",
      "camera rays per pixel, through the centres of a regular grid of cells; 1: no antialiasing", sample_counts,
      OF(render_settings, samples)},
@@ -414,7 +416,8 @@ static const param table[] = {
         "on: at each surface the reflected and the refracted ray; off: only the refracted one, or the "
         "reflected one where there is no other",
         off_on, BEAM_SHOWN(branches)),
-    BEAM_INTEGER(depth, 0, 64, "8", "number of surfaces at which a ray is followed"),
+    BEAM_INTEGER(depth, 0, BEAM_DEPTH_MAX, "8",
+                 "number of surfaces at which a ray is followed; with both branches at most 64"),
     ROW(PARAM_BEAM, "min_share", PARAM_REAL, "", 0, 1, false, "0.01",
         "rays with a smaller share of the power are not followed", NULL, BEAM_SHOWN(min_share)),
     ROW(PARAM_BEAM, "color", PARAM_COLOR, "", 0, 1, false, "0,0,0",

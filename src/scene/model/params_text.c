@@ -95,7 +95,8 @@ char *param_value_text(const param *row, int element, const void *field)
     switch (row->type) {
     case PARAM_INT: {
         const int64_t value = *(const int64_t *)field;
-        return row->automatic && value == 0 ? strdup(row->automatic) : text_format("%lld", (long long)value);
+        return row->automatic && value == row->automatic_value ? strdup(row->automatic)
+                                                               : text_format("%lld", (long long)value);
     }
     case PARAM_CHOICE: return strdup(row->choices[*(const int64_t *)field]);
     case PARAM_REAL: return strdup(number_format(*(const double *)field, number));

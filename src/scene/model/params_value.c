@@ -124,7 +124,7 @@ static status parse_integer(const param *row, const char *label, const char *tex
 {
     int64_t value, index;
     if (row->automatic && strcmp(text, row->automatic) == 0) {
-        *out = 0;
+        *out = row->automatic_value;
         return STATUS_OK;
     }
     if (!number_parse_int(text, &value))

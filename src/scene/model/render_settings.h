@@ -23,11 +23,13 @@ typedef enum light_sampling_rule { LIGHT_SAMPLING_ALL, LIGHT_SAMPLING_ONE } ligh
 typedef enum texturing_rule { TEXTURING_PERSPECTIVE, TEXTURING_AFFINE } texturing_rule;
 
 enum { SCENE_SAMPLES_MAX = 64 };
+/* Trees of rays end at DEPTH_TREE_MAX; random paths and photons may go on (render.depth=unlimited). */
+enum { DEPTH_TREE_MAX = 64, DEPTH_UNLIMITED = 1 << 30 };
 #define SCENE_PIXELS_MAX 268435456 /* 2^28 */
 
 typedef struct render_settings {
     int64_t width, height;  /* pixels */
-    int64_t depth;          /* recursion depth; 0 = camera rays only */
+    int64_t depth;          /* recursion depth; 0 = camera rays only; DEPTH_UNLIMITED, of random paths */
     int64_t samples;        /* per pixel: a square number, at most SCENE_SAMPLES_MAX */
     int64_t integrator;     /* integrator_rule */
     int64_t layer;          /* layer_rule: the layer that the film shows, for integrators that write layers */
@@ -83,11 +85,13 @@ static inline bool follows_trees(const render_settings *r)
 static inline void trace_trees(render_settings *r)
 {
     r->integrator = INTEGRATOR_WHITTED;
+    r->depth = r->depth == DEPTH_UNLIMITED ? DEPTH_TREE_MAX : r->depth;
 }
 
 static inline void draw_triangles(render_settings *r)
 {
     r->integrator = INTEGRATOR_ZBUFFER;
+    r->depth = r->depth == DEPTH_UNLIMITED ? DEPTH_TREE_MAX : r->depth;
 }
 
 /* Worker threads of a frame: render.threads, or one per processing unit that the process may use now (its CPU affinity,

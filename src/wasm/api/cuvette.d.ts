@@ -56,7 +56,6 @@ export interface Counters {
   cut_weight: number;
   cut_depth_throughput: Vector;
   cut_weight_throughput: Vector;
-  cut_photon: number;
   by_depth: number[];
 }
 export interface Image {

@@ -146,7 +146,7 @@ static void count(wasm_render *r, const ray_counters *turn)
 {
     ray_counters c = *turn;
     if (r->has_photons)
-        c.photon = 0, c.cut_photon = 0;
+        c.photon = 0;
     r->has_photons = true;
     ray_counters_add(&r->counters, &c);
 }
@@ -234,12 +234,12 @@ static json_t *counters_json(const ray_counters *c)
     json_t *depths = json_array();
     for (int i = 0; i <= COUNTERS_DEPTH_MAX; i++)
         json_add(&depths, json_integer((json_int_t)c->by_depth[i]));
-    return json_pack("{s:I,s:I,s:I,s:I,s:I,s:I,s:I,s:I,s:o,s:o,s:o,s:o}", "camera", (json_int_t)c->camera, "reflect",
+    return json_pack("{s:I,s:I,s:I,s:I,s:I,s:I,s:I,s:I,s:o,s:o,s:o}", "camera", (json_int_t)c->camera, "reflect",
                      (json_int_t)c->reflect, "refract", (json_int_t)c->refract, "shadow", (json_int_t)c->shadow,
                      "photon", (json_int_t)c->photon, "total_internal", (json_int_t)c->total_internal, "cut_depth",
                      (json_int_t)c->cut_depth, "cut_weight", (json_int_t)c->cut_weight, "cut_depth_throughput",
                      throughput(c->cut_depth_throughput), "cut_weight_throughput", throughput(c->cut_weight_throughput),
-                     "cut_photon", json_of_real((double)c->cut_photon / COUNTERS_CUT_ONE), "by_depth", depths);
+                     "by_depth", depths);
 }
 
 char *wasm_render_result(const wasm_render *r)

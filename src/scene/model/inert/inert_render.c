@@ -60,6 +60,8 @@ static bool beyond(const inert_case *c)
     const scene *s = c->s;
     if (no_tree(c))
         return true;
+    if (s->render.depth == DEPTH_UNLIMITED)
+        return inert_say(c, "nothing-cut", "set render.depth=8", "render.depth is unlimited: no path is cut");
     scene sky = *s; /* borrows from s */
     sky.render.beyond = DEPTH_LIMIT_SKY;
     if (is_dark_at_depth_limit(&sky))
