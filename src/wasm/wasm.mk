@@ -49,25 +49,42 @@ $(wasm)/libraries/complete: src/wasm/libraries.sh | $(wasm)/flags
 	@touch $@
 $(wasm_libs): $(wasm)/libraries/complete
 
+# emcc takes longer to start than to compile most files: one start compiles all changed files of a folder, and all of
+# them if a header has changed. build_id.c has flags of its own.
+wasm_folders := $(sort $(patsubst src/%/,%,$(dir $(wasm_sources))))
+wasm_root := $(CURDIR)
+wasm_folder_sources = $(filter-out src/base/build_id.c,$(foreach s,$(wasm_sources),$(if $(filter src/$(1)/,$(dir $(s))),$(s))))
+wasm_changed = $(if $(filter-out %.c,$?),$(filter %.c,$^),$(filter %.c,$?))
+wasm_absolute = $(subst -Isrc,-I$(wasm_root)/src,$(subst -I$(wasm),-I$(wasm_root)/$(wasm),$(subst src/wasm/,$(wasm_root)/src/wasm/,$(1)))) \
+  -fmacro-prefix-map=$(wasm_root)/=
+
+define wasm_folder_rules
+$(wasm)/$(1)/obj/$(2)/compiled: $(call wasm_folder_sources,$(2)) $(wasm)/flags $(wasm)/libraries/complete
+	$$(call say,emcc src/$(2) for $(1))
+	@mkdir -p $$(@D)
+	$$(quiet)cd $$(@D) && $(EMCC) $$(call wasm_absolute,$$(wasm_flags)) $(wasm_isa_flags_$(1)) -DKERNEL_ISA=$(1) -MMD -MP \
+	  -MT $$@ -c $$(addprefix $(wasm_root)/,$$(wasm_changed))
+	@touch $$@
+-include $$(patsubst src/%.c,$(wasm)/$(1)/obj/%.d,$(call wasm_folder_sources,$(2)))
+endef
+
 define wasm_rules
 wasm_objects_$(1) := $(patsubst src/%.c,$(wasm)/$(1)/obj/%.o,$(wasm_sources))
-$(wasm)/$(1)/obj/%.o: src/%.c $(wasm)/flags $(wasm)/libraries/complete
-	$$(call say,emcc $$< for $(1))
+$(wasm)/$(1)/obj/web/compiled $(wasm)/$(1)/obj/web/%/compiled: private wasm_flags += -include src/wasm/no_threads.h
+$(wasm)/$(1)/obj/base/build_id.o: src/base/build_id.c $(build)/build_id $(wasm)/flags $(wasm)/libraries/complete
 	@mkdir -p $$(@D)
-	$$(quiet)$(EMCC) $$(wasm_flags) $(wasm_isa_flags_$(1)) -DKERNEL_ISA=$(1) -MMD -MP -c -o $$@ $$<
-$(wasm)/$(1)/obj/web/%.o: private wasm_flags += -include src/wasm/no_threads.h
-$(wasm)/$(1)/obj/base/build_id.o: $(build)/build_id
-$(wasm)/$(1)/obj/base/build_id.o: private wasm_flags += -DCUVETTE_BUILD_ID='"$$(shell sed -n 1p $(build)/build_id)"' \
-  -DCUVETTE_BUILD_COMMIT='"$$(shell sed 1d $(build)/build_id)"'
-$(wasm)/$(1)/cuvette.wasm: $$(wasm_objects_$(1)) $(wasm_libs) $(wasm)/exports
+	$$(quiet)$(EMCC) $$(wasm_flags) $(wasm_isa_flags_$(1)) -DCUVETTE_BUILD_ID='"$$(shell sed -n 1p $(build)/build_id)"' \
+	  -DCUVETTE_BUILD_COMMIT='"$$(shell sed 1d $(build)/build_id)"' -c -o $$@ $$<
+$(wasm)/$(1)/cuvette.wasm: $(foreach f,$(wasm_folders),$(wasm)/$(1)/obj/$(f)/compiled) $(wasm)/$(1)/obj/base/build_id.o \
+  $(wasm_libs) $(wasm)/exports
 	$$(call say,link $$@)
-	$$(quiet)$(EMCC) -O3 $(wasm_isa_flags_$(1)) $$(wasm_link) -o $$(@:.wasm=.js) $$(filter %.o %.a,$$^)
+	$$(quiet)$(EMCC) -O3 $(wasm_isa_flags_$(1)) $$(wasm_link) -o $$(@:.wasm=.js) $$(wasm_objects_$(1)) $(wasm_libs)
 # The script of all workers.
 $(wasm)/$(1)/worker.js: $(wasm)/$(1)/cuvette.wasm $(wasm_scripts)
 	$$(quiet)cat $(wasm)/$(1)/cuvette.js $(wasm_scripts) >$$@
--include $$(wasm_objects_$(1):.o=.d)
 endef
 $(foreach i,$(wasm_isas),$(eval $(call wasm_rules,$(i))))
+$(foreach i,$(wasm_isas),$(foreach f,$(wasm_folders),$(eval $(call wasm_folder_rules,$(i),$(f)))))
 
 # Everything that cuvette.h declares, but for studies, and what the scripts of src/wasm call.
 $(wasm)/exports: src/cuvette.h src/wasm/exports.h src/wasm/wasm.mk
