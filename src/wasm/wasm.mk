@@ -63,7 +63,7 @@ $(wasm)/$(1)/obj/$(2)/compiled: $(call wasm_folder_sources,$(2)) $(wasm)/flags $
 	$$(call say,emcc src/$(2) for $(1))
 	@mkdir -p $$(@D)
 	$$(quiet)cd $$(@D) && $(EMCC) $$(call wasm_absolute,$$(wasm_flags)) $(wasm_isa_flags_$(1)) -DKERNEL_ISA=$(1) -MMD -MP \
-	  -MT $$@ -c $$(addprefix $(wasm_root)/,$$(wasm_changed))
+	  -MT $$@ -c $$(sort $$(abspath $$(wasm_changed)))
 	@touch $$@
 -include $$(patsubst src/%.c,$(wasm)/$(1)/obj/%.d,$(call wasm_folder_sources,$(2)))
 endef
