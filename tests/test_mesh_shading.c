@@ -13,6 +13,7 @@
 #include "random_stream.h"
 #include "render/core/layers.h"
 #include "render_fixture.h"
+#include "scene/model/face_materials.h"
 #include "scene/model/scene.h"
 
 #define DARK \
@@ -458,6 +459,69 @@ static void faces_are_shaded_by_their_materials(void **state)
     rmdir(folder);
 }
 
+static uint64_t hash_of_small_film(scene *s)
+{
+    set_all(s, "camera.position=0.3,0.3,-3 camera.target=0.2,0.2,0 camera.fov_deg=40 render.width=12 render.height=9");
+    render_result *r = render_at(s, isa_best(), NULL);
+    const uint64_t hash = film_hash(r->img);
+    render_result_destroy(r);
+    return hash;
+}
+
+/* A file that gives its faces no material has the solid's, whatever its format, in groups, and also as a metal: the same
+ * spectral film as with a material of the scene. */
+static void files_without_materials_have_that_of_their_solid(void **state)
+{
+    (void)state;
+    static const char tetrahedron[] = "solid a\n"
+                                      "facet normal 0 0 0\nouter loop\nvertex 0 0 0\nvertex 0 1 0\nvertex 1 0 0\n"
+                                      "endloop\nendfacet\n"
+                                      "facet normal 0 0 0\nouter loop\nvertex 0 0 0\nvertex 0 0 1\nvertex 0 1 0\n"
+                                      "endloop\nendfacet\n"
+                                      "facet normal 0 0 0\nouter loop\nvertex 0 0 0\nvertex 1 0 0\nvertex 0 0 1\n"
+                                      "endloop\nendfacet\n"
+                                      "facet normal 0 0 0\nouter loop\nvertex 1 0 0\nvertex 0 1 0\nvertex 0 0 1\n"
+                                      "endloop\nendfacet\nendsolid a\n";
+    static const struct {
+        const char *name, *text;
+    } files[] = {
+        {"a.obj", "v 0 0 0\nv 1 0 0\nv 0 1 0\nv 0 0 1\nf 1 3 2\nf 1 4 3\nf 1 2 4\nf 2 3 4\n"},
+        {"b.obj", "v 0 0 0\nv 1 0 0\nv 0 1 0\nv 0 0 1\no one\nf 1 3 2\nf 1 4 3\ng two\nf 1 2 4\nf 2 3 4\n"},
+        {"c.stl", tetrahedron},
+        {"d.ply", "ply\nformat ascii 1.0\nelement vertex 4\nproperty float x\nproperty float y\nproperty float z\n"
+                  "element face 4\nproperty list uchar int vertex_indices\nend_header\n0 0 0\n1 0 0\n0 1 0\n"
+                  "0 0 1\n3 0 2 1\n3 0 3 2\n3 0 1 3\n3 1 2 3\n"},
+    };
+    static const char *const made_of[] = {"transparency: 1, medium: bk7", "medium: gold",
+                                          "color: [0.2, 0.5, 0.9], diffuse: 0.7"};
+    char name[] = "/tmp/cuvette-plain-XXXXXX", path[64], text[1024], why[DIAGNOSTIC_TEXT_MAX];
+    assert_non_null(mkdtemp(name));
+    for (size_t i = 0; i < sizeof files / sizeof *files; i++) {
+        snprintf(path, sizeof path, "%s/%s", name, files[i].name);
+        FILE *f = fopen(path, "w");
+        assert_non_null(f);
+        fputs(files[i].text, f);
+        fclose(f);
+        for (size_t k = 0; k < sizeof made_of / sizeof *made_of; k++) {
+            uint64_t hash[2];
+            for (int own = 0; own < 2; own++) {
+                snprintf(text, sizeof text,
+                         "render: {spectrum: spectral}\nlights: {lamp: {position: [1, 2, -3]}}\nmaterials: {m: {%s}}\n"
+                         "meshes: {a: {file: %s}}\nsolids: {s: {shape: mesh, mesh: a, %s}}\n",
+                         made_of[k], path, own ? "material: m" : made_of[k]);
+                assert_string_equal(refusal_of(text, "", why), "");
+                scene *s = scene_with_meshes(text, "");
+                assert_false(has_face_materials(s, &s->solids[0]));
+                hash[own] = hash_of_small_film(s);
+                scene_destroy(s);
+            }
+            assert_true(hash[0] == hash[1]);
+        }
+        unlink(path);
+    }
+    rmdir(name);
+}
+
 /* A file's Ke sets the emission: its brightest channel is the intensity, in the surface's colour, or in Ke's own colour
  * if the surface is black; otherwise the solid's emission applies. */
 static void faces_emit_by_their_materials(void **state)
@@ -513,6 +577,7 @@ int main(void)
         cmocka_unit_test(an_open_dielectric_is_refused_with_its_open_edge),
         cmocka_unit_test(spectral_films_refuse_textures),
         cmocka_unit_test(faces_are_shaded_by_their_materials),
+        cmocka_unit_test(files_without_materials_have_that_of_their_solid),
         cmocka_unit_test(faces_emit_by_their_materials),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);

@@ -227,10 +227,9 @@ static status check_closed(const scene *s, const solid *owner, const mesh_entry 
 }
 
 /* In a spectral film each material's colour is a spectrum. */
-static status check_colors(const scene *s, const solid *owner, const mesh_entry *m, diagnostic *why)
+static status check_colors(const scene *s, const solid *owner, diagnostic *why)
 {
-    const bool by_face =
-        m && owner->material_index < 0 && (m->shading_materials || (m->data && m->data->slot_count > 1));
+    const bool by_face = has_face_materials(s, owner);
     if (s->render.spectrum != SPECTRUM_SPECTRAL || !(by_face || owner->surface.texture[0]))
         return STATUS_OK;
     return diagnose(why, STATUS_BAD_INPUT,
@@ -246,13 +245,13 @@ static status check_references(const scene *s, const solid *owner, diagnostic *w
     if (owner->surface.texture[0] && !scene_find_texture(s, owner->surface.texture))
         return unknown(s, PARAM_TEXTURE, owner->name, owner->surface.texture, why);
     if (!shape_of(&owner->shape)->triangles)
-        return check_colors(s, owner, NULL, why);
+        return check_colors(s, owner, why);
     if (!owner->mesh[0])
         return diagnose(why, STATUS_BAD_INPUT, "add 'mesh: NAME', the name of one of the meshes",
                         "%.80s: no mesh is given", owner->name);
     if (!m)
         return unknown(s, PARAM_MESH, owner->name, owner->mesh, why);
-    TRY(check_colors(s, owner, m, why));
+    TRY(check_colors(s, owner, why));
     return check_closed(s, owner, m, why);
 }
 

@@ -138,7 +138,14 @@ void face_materials_release(const face_materials *l)
 bool has_face_materials(const scene *s, const solid *owner)
 {
     const mesh_entry *m = owner->material_index < 0 ? scene_mesh_of(s, owner) : NULL;
-    return m && m->data && (m->shading_materials || m->data->slot_count > 1);
+    for (int slot = 0; m && m->data && slot < m->data->slot_count; slot++) {
+        const material *named;
+        const face_material *given;
+        face_material_source(s, owner, slot, &named, &given);
+        if (named || given)
+            return true;
+    }
+    return false;
 }
 
 int face_materials_count(const face_materials *l)

@@ -25,8 +25,9 @@ status face_materials_of(const face_material *list, int count, const face_materi
 void face_materials_retain(const face_materials *l); /* NULL is allowed here and in the functions below */
 void face_materials_release(const face_materials *l);
 
-/* Whether the mesh's slots determine the materials of the solid's faces: the mesh has several slots, or a file's
- * materials, and the solid has no material of its own. False before scene_load. */
+/* Whether the mesh's slots determine the materials of the solid's faces: the solid has no material of its own, and the
+ * file, or the scene by a slot's name, gives one to some slot (face_material_source). A file without materials has none.
+ * False before scene_load. */
 bool has_face_materials(const scene *s, const solid *owner);
 
 /* The material of one kind of face of a solid; the texture is borrowed. */
@@ -38,7 +39,7 @@ typedef struct shading_material {
 } shading_material;
 
 /* The source of a slot's material: the scene's material of the same name, else the file's; both NULL if the solid's own
- * material is used. For solids with materials by face. */
+ * material is used. For solids with a loaded mesh. */
 void face_material_source(const scene *s, const solid *owner, int slot, const material **named,
                           const face_material **given);
 

@@ -1,6 +1,7 @@
 /* Light transport facts that follow from the scene alone. The renderer makes the same decisions: see
  * render/shade/shading.c, render/integrators/path.c and render/core/plan.c. */
 #include "scene/model/inert/inert_private.h"
+#include "scene/model/face_materials.h"
 #include "scene/model/medium.h"
 #include "scene/model/scene.h"
 
@@ -105,7 +106,7 @@ bool only_spheres_shine(const scene *s)
 bool may_have_face_materials(const scene *s, const solid *owner)
 {
     const mesh_entry *m = owner->material_index < 0 ? scene_mesh_of(s, owner) : NULL;
-    return m && (m->source == MESH_FILE || m->source == MESH_ARRAYS);
+    return m && (m->data ? has_face_materials(s, owner) : m->source == MESH_FILE || m->source == MESH_ARRAYS);
 }
 
 const solid *first_visible(const scene *s, solid_is *is)

@@ -110,7 +110,7 @@ size_t shining_lights(const scene *s);
 bool beams_light(const scene *s);
 bool only_spheres_shine(const scene *s);
 
-/* Faces may have materials from the mesh file instead of the solid's. */
+/* Faces may have materials from the mesh file instead of the solid's: unknown until the mesh is loaded. */
 bool may_have_face_materials(const scene *s, const solid *owner);
 /* The first visible solid with the property (NULL: any); NULL if there is none. */
 typedef bool solid_is(const scene *s, const solid *one);
