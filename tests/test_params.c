@@ -375,7 +375,7 @@ static void errors_of_paths_and_values_name_the_valid_ones(void **state)
         {"camera.position=1,inf,2", "camera.position.y: 'inf' is not a finite number; give a number -1000000..1000000"},
         {"lamp.color=0,-1,0", "lamp.color.g: -1 is out of range; give a number 0..10000"},
         {"block.size.x=0", "block.size.x: 0 is out of range; give a number > 0, at most 1000000"},
-        {"vessel.ior=0x1p3", "vessel.ior: '0x1p3' is not a finite number; give a number 0.1..1000000000"},
+        {"vessel.ior=0x1p3", "vessel.ior: '0x1p3' is not a finite number; give a number > 0, at most 1000000000"},
         {"background.picture=a\nb", "background.picture: the path contains a control character; give a path of a file"},
     };
     scene *s = make(), *untouched = make();

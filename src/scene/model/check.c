@@ -329,6 +329,7 @@ static status check_solid(const scene *s, const solid *owner, diagnostic *why)
     TRY(check_references(s, owner, why));
     index_law unused;
     TRY(material_index_law(&owner->surface, owner->name, &unused, why));
+    TRY(material_ior_check(&owner->surface, owner->name, why));
     TRY(material_absorption_check(&owner->surface, owner->name, why));
     TRY(sheet_check(&owner->surface, owner->name, why));
     TRY(material_crystal_check(&owner->surface, owner->name, why));

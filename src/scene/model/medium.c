@@ -133,11 +133,24 @@ bool material_is_crystal(const material *m, const render_settings *r)
            r->lighting == LIGHTING_WHITTED && !scene_has_constant_shares(r);
 }
 
+/* No dielectric has a smaller index in visible light; n of silver is 0.03 to 0.06 (Johnson and Christy). */
+#define DIELECTRIC_IOR_LEAST 0.1
+
+status material_ior_check(const material *m, const char *label, diagnostic *why)
+{
+    if (m->medium != MEDIUM_IOR || m->ior >= DIELECTRIC_IOR_LEAST || material_is_conductor(m))
+        return STATUS_OK;
+    return diagnose(why, STATUS_BAD_INPUT,
+                    m->transparency > 0.0 ? "set it to 0.1 or more; only an opaque metal has less"
+                                          : "set it to 0.1 or more, or its extinction, as of a metal",
+                    "%.80s: ior %g is too small", label, m->ior);
+}
+
 status material_crystal_check(const material *m, const char *label, diagnostic *why)
 {
     if (m->extraordinary_ior == 0.0 || material_is_opaque(m))
         return STATUS_OK;
-    if (m->extraordinary_ior < 0.1)
+    if (m->extraordinary_ior < DIELECTRIC_IOR_LEAST)
         return diagnose(why, STATUS_BAD_INPUT, "set it to 0.1 or more, or to 0 for a medium with one index",
                         "%.80s: extraordinary_ior %g is too small", label, m->extraordinary_ior);
     if (!(vec3_dot(m->optic_axis, m->optic_axis) > 0.0))

@@ -57,6 +57,8 @@ bool material_is_layered(const material *m, const render_settings *r);
 double material_roughness(const material *m, const render_settings *r);
 /* Whether light is doubly refracted in it: in the trees of rays of whitted, with Fresnel weights. */
 bool material_is_crystal(const material *m, const render_settings *r);
+/* STATUS_BAD_INPUT if the constant index of a material that is not a metal is below 0.1. */
+status material_ior_check(const material *m, const char *label, diagnostic *why);
 /* STATUS_BAD_INPUT if a crystal has no axis, or a coating, a film or a sheet. */
 status material_crystal_check(const material *m, const char *label, diagnostic *why);
 /* k of an opaque material's complex index. */

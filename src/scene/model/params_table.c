@@ -447,8 +447,9 @@ static const param table[] = {
     REAL(PARAM_MATERIAL, material, transparency, "", 0, 1, "0",
          "fraction of the light that is not reflected which enters the solid (with constant weights or simple "
          "transmission: of the incident light); 0: opaque"),
-    REAL(PARAM_MATERIAL, material, ior, "", 0.1, 1e9, "1",
-         "refractive index, relative to vacuum; above 10000 a transparent surface is treated as a perfect mirror"),
+    POSITIVE(PARAM_MATERIAL, material, ior, "", 1e9, "1",
+             "refractive index, relative to vacuum: at least 0.1, of a metal (with extinction) any; above 10000 a "
+             "transparent surface is treated as a perfect mirror"),
     REAL(PARAM_MATERIAL, material, extinction, "", 0, 100, "0",
          "k of the complex refractive index ior - i k; above 0, an opaque surface reflects as this metal, and its "
          "reflectivity is not used"),
