@@ -200,12 +200,67 @@ static void invalid_fan_rules_are_refused(void **state)
     scene_destroy(s);
 }
 
+/* Plates and prisms leave parallel rays parallel (Hecht 4.4 and 5.5): there is no focus, whatever the angle. */
+static void plates_and_prisms_have_no_focus(void **state)
+{
+    (void)state;
+    static const int rays[] = {2, 3, 11, 41};
+    char text[300];
+    int followed = 0;
+    for (int prism = 0; prism < 2; prism++)
+        for (int i = 0; i < (prism ? 5 : 10); i++)
+            for (size_t k = 0; k < sizeof rays / sizeof *rays; k++) {
+                snprintf(text, sizeof text,
+                         prism
+                             ? "solids: {a: {shape: prism, sides: 3, transparency: 1, ior: 1.5, radius: 2, height: 4, "
+                               "position: [0, -2, 0], rotation: [0, %.17g, 0]}}"
+                             : "solids: {a: {shape: box, transparency: 1, ior: 1.5, size: [4, 1, 4], rotation: [3, 7, "
+                               "%.17g]}}",
+                         prism ? 50.0 + 7.3 * i : 8.1 * i);
+                scene *s = scene_from(text);
+                const fan_rule rule = {.from = {-5, 3.3, 0.1}, .to = {0, 0, 0}, .rays = rays[k], .width = 0.3};
+                const fan_rule level = {.from = {-5, 0.1, 0.2}, .to = {0, 0.1, 0.1}, .rays = rays[k], .width = 0.3};
+                fan f = follow(s, prism ? &level : &rule);
+                followed += f.ray[0].leaves && f.ray[0].count > 1;
+                assert_true(!f.has_focus && f.crossing_count == 0);
+                fan_release(&f);
+                scene_destroy(s);
+            }
+    assert_true(followed >= 50);
+}
+
+/* A ball of index n has its paraxial focus n R / (2 (n - 1)) behind its centre (Hecht 6.2), also 1e8 times as far away
+ * as the pencil is wide; of the ball of lower index than its surroundings it is virtual. */
+static void far_foci_are_found(void **state)
+{
+    (void)state;
+    static const double less_1[] = {5e-3, 5e-5, 5e-7, -5e-5, -5e-7};
+    char text[200];
+    for (size_t i = 0; i < sizeof less_1 / sizeof *less_1; i++)
+        for (int turned = 0; turned < 2; turned++) {
+            snprintf(text, sizeof text, "solids: {ball: {shape: sphere, transparency: 1, ior: %.17g, radius: 1}}",
+                     1.0 + less_1[i]);
+            scene *s = scene_from(text);
+            const vec3 axis = turned ? vec3_make(0.48, -0.6, 0.64) : vec3_make(1, 0, 0);
+            const fan_rule rule = {.from = vec3_scale(axis, -5), .to = {0, 0, 0}, .rays = 21, .width = 0.01};
+            fan f = follow(s, &rule);
+            const double n = 1.0 + less_1[i], at = n / (2.0 * (n - 1.0));
+            assert_true(f.has_focus && f.is_virtual == (at < 0.0));
+            assert_true(fabs(vec3_dot(f.focus, axis) / at - 1.0) < 1e-4);
+            assert_true(vec3_length(vec3_sub(f.focus, vec3_scale(axis, vec3_dot(f.focus, axis)))) < 1e-9 * fabs(at));
+            fan_release(&f);
+            scene_destroy(s);
+        }
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(a_thin_pencil_converges_at_the_focus_of_a_ball_lens),
         cmocka_unit_test(a_wide_pencil_obeys_snells_law),
         cmocka_unit_test(light_from_the_focus_leaves_parallel),
+        cmocka_unit_test(plates_and_prisms_have_no_focus),
+        cmocka_unit_test(far_foci_are_found),
         cmocka_unit_test(a_slab_shifts_the_virtual_image_of_a_point),
         cmocka_unit_test(only_deflected_rays_count_for_the_focus),
         cmocka_unit_test(rays_cross_only_where_both_are_unblocked),

@@ -9,6 +9,10 @@
 #include <stdlib.h>
 #include <string.h>
 
+/* Directions are rounded to 2^-53, at each surface and enlarged by its curvature: rays that differ less are parallel. A
+ * focus is found up to 1e11 times as far away as the fan is wide. */
+#define PARALLEL_RAD 1e-12
+
 void fan_release(fan *f)
 {
     free(f->ray);
@@ -51,8 +55,7 @@ static void cross_axis(const fan *f, fan_ray *ray)
 {
     const vec3 from_axis = vec3_sub(ray->exit_point, f->from);
     const double off = vec3_dot(from_axis, f->across), slope = vec3_dot(ray->exit_direction, f->across);
-    /* A smaller slope is rounding noise of a ray parallel to the axis. */
-    const double t = fabs(slope) > 1e-12 ? -off / slope : -1.0;
+    const double t = fabs(slope) > PARALLEL_RAD ? -off / slope : -1.0;
     ray->crosses_axis = t > 0.0 && t <= ray->reach;
     ray->axis_point = vec3_add(ray->exit_point, vec3_scale(ray->exit_direction, t));
     ray->axis_at = vec3_dot(vec3_sub(ray->axis_point, f->from), f->axis);
@@ -95,7 +98,7 @@ static bool cross(const fan *f, const fan_ray *a, const fan_ray *b, vec3 *at)
     const double dx = vec3_dot(a->exit_direction, f->axis), dy = vec3_dot(a->exit_direction, f->across);
     const double ex = vec3_dot(b->exit_direction, f->axis), ey = vec3_dot(b->exit_direction, f->across);
     const double turn = dx * ey - dy * ex;
-    if (fabs(turn) < 1e-12) /* parallel up to rounding */
+    if (fabs(turn) < PARALLEL_RAD)
         return false;
     const double t = (wx * ey - wy * ex) / turn, s = (wx * dy - wy * dx) / turn;
     *at = vec3_add(a->exit_point, vec3_scale(a->exit_direction, t));
@@ -117,33 +120,88 @@ static bool is_bent(const fan_ray *ray)
     return ray->leaves && ray->count > 1;
 }
 
-/* Solves sum (1 - d d^T) x = sum (1 - d d^T) p by Cramer's rule, with p relative to the first exit point to avoid
- * cancellation. */
+/* The sum of the directions of the deflected rays, each in the sense of the first one: two opposite rays are parallel.
+ * Returns their number. */
+static int sum_directions(const fan *f, const fan_ray **first, vec3 *sum)
+{
+    int count = 0;
+    for (int i = 0; i < f->count; i++) {
+        const fan_ray *ray = &f->ray[i];
+        if (!is_bent(ray))
+            continue;
+        *first = count++ == 0 ? ray : *first;
+        const double sense = vec3_dot(ray->exit_direction, (*first)->exit_direction) < 0.0 ? -1.0 : 1.0;
+        *sum = vec3_add(*sum, vec3_scale(ray->exit_direction, sense));
+    }
+    return count;
+}
+
+/* The rows of a frame with u along an axis. */
+static mat3 frame_along(vec3 u)
+{
+    const vec3 other = fabs(u.x) < 0.6 ? vec3_make(1, 0, 0) : vec3_make(0, 1, 0);
+    const vec3 v = vec3_normalize(vec3_cross(u, other));
+    return (mat3){{u, v, vec3_cross(u, v)}};
+}
+
+/* The normal equations sum (1 - d d^T) x = sum (1 - d d^T) p: a symmetric matrix and the right side. */
+typedef struct normal_equations {
+    double xx, yy, zz, xy, xz, yz;
+    vec3 right;
+} normal_equations;
+
+/* With x along the rays' mean direction xx is the sum of the squared angles from it, and nothing cancels: 1 - x^2 would
+ * leave only the rounding of 1 of angles below 1e-8. */
+static void add_line(normal_equations *e, vec3 d, vec3 p)
+{
+    const double xx = d.y * d.y + d.z * d.z, yy = d.x * d.x + d.z * d.z, zz = d.x * d.x + d.y * d.y;
+    e->xx += xx, e->yy += yy, e->zz += zz;
+    e->xy -= d.x * d.y, e->xz -= d.x * d.z, e->yz -= d.y * d.z;
+    e->right =
+        vec3_add(e->right, vec3_make(xx * p.x - d.x * (d.y * p.y + d.z * p.z), yy * p.y - d.y * (d.x * p.x + d.z * p.z),
+                                     zz * p.z - d.z * (d.x * p.x + d.y * p.y)));
+}
+
+/* By elimination of y and z. False if what is left of xx, the sum of the squared angles of `count` lines, is not above
+ * their rounding: the lines are parallel. */
+static bool solve(const normal_equations *e, int count, vec3 *out)
+{
+    const double det = e->yy * e->zz - e->yz * e->yz, of_y = (e->zz * e->xy - e->yz * e->xz) / det,
+                 of_z = (e->yy * e->xz - e->yz * e->xy) / det, left = e->xx - of_y * e->xy - of_z * e->xz;
+    if (!(left > count * (PARALLEL_RAD * PARALLEL_RAD)))
+        return false;
+    const double x = (e->right.x - of_y * e->right.y - of_z * e->right.z) / left, y = e->right.y - e->xy * x,
+                 z = e->right.z - e->xz * x;
+    *out = vec3_make(x, (e->zz * y - e->yz * z) / det, (e->yy * z - e->yz * y) / det);
+    return true;
+}
+
+/* The point nearest to the lines of the deflected rays, relative to the first exit point to avoid cancellation. */
+static bool nearest_point(const fan *f, int *count, vec3 *out)
+{
+    const fan_ray *first = NULL;
+    vec3 sum = {0, 0, 0}, x;
+    normal_equations e = {.right = {0, 0, 0}};
+    *count = sum_directions(f, &first, &sum);
+    if (*count < 2 || cancel_asked())
+        return false;
+    const mat3 frame = frame_along(vec3_normalize(sum));
+    for (int i = 0; i < f->count; i++)
+        if (is_bent(&f->ray[i]))
+            add_line(&e, mat3_apply(frame, f->ray[i].exit_direction),
+                     mat3_apply(frame, vec3_sub(f->ray[i].exit_point, first->exit_point)));
+    if (!solve(&e, *count, &x))
+        return false;
+    *out = vec3_add(first->exit_point, mat3_apply_transposed(frame, x));
+    return true;
+}
+
 static void find_focus(fan *f)
 {
-    vec3 row[3] = {{0, 0, 0}, {0, 0, 0}, {0, 0, 0}}, right = {0, 0, 0}, base = {0, 0, 0};
-    int count = 0;
-    for (int i = 0; i < f->count && !cancel_asked(); i++) {
-        if (!is_bent(&f->ray[i]))
-            continue;
-        if (count++ == 0)
-            base = f->ray[i].exit_point;
-        const vec3 d = f->ray[i].exit_direction, p = vec3_sub(f->ray[i].exit_point, base);
-        row[0] = vec3_add(row[0], vec3_sub(vec3_make(1, 0, 0), vec3_scale(d, d.x)));
-        row[1] = vec3_add(row[1], vec3_sub(vec3_make(0, 1, 0), vec3_scale(d, d.y)));
-        row[2] = vec3_add(row[2], vec3_sub(vec3_make(0, 0, 1), vec3_scale(d, d.z)));
-        right = vec3_add(right, vec3_sub(p, vec3_scale(d, vec3_dot(d, p))));
-    }
-    const double size = (double)count * count * count, det = vec3_dot(row[0], vec3_cross(row[1], row[2]));
-    /* det / count^3 is of the order of the squared angle between the rays, here 1e-8 rad. */
-    if (count < 2 || det < 1e-16 * size)
+    int count;
+    f->has_focus = nearest_point(f, &count, &f->focus);
+    if (!f->has_focus)
         return;
-    const vec3 x = vec3_scale(vec3_add(vec3_scale(vec3_cross(row[1], row[2]), right.x),
-                                       vec3_add(vec3_scale(vec3_cross(row[2], row[0]), right.y),
-                                                vec3_scale(vec3_cross(row[0], row[1]), right.z))),
-                              1.0 / det);
-    f->focus = vec3_add(base, x);
-    f->has_focus = true;
     double squares = 0.0, ahead = 0.0;
     for (int i = 0; i < f->count; i++) {
         if (!is_bent(&f->ray[i]))
