@@ -22,14 +22,19 @@ static void append_line(void *context, const scene_note *note)
     strcat(strcat(all, text), "\n");
 }
 
-static void expect_hints(const char *file, const char *hints)
+static void expect(void (*hint)(const scene *s, const note_taker *taker), const char *file, const char *hints)
 {
     scene *s;
     char all[1000] = "";
     assert_int_equal(scene_read_text("t.yaml", file, strlen(file), &s, NULL), STATUS_OK);
-    scene_hints(s, &(note_taker){append_line, all});
+    hint(s, &(note_taker){append_line, all});
     assert_string_equal(all, hints);
     scene_destroy(s);
+}
+
+static void expect_hints(const char *file, const char *hints)
+{
+    expect(scene_hints, file, hints);
 }
 
 static void missing_objects_and_lights_give_a_hint(void **state)
@@ -83,6 +88,90 @@ static void extrapolated_dispersion_laws_give_a_hint(void **state)
     expect_hints("background: {medium: water}\nsolids: {drop: {shape: sphere, transparency: 1, medium: water}}",
                  "drop.ior: drop is transparent with the refractive index of the surrounding medium: it is "
                  "invisible; set its ior\n");
+}
+
+static void at_one_wavelength(const scene *s, const note_taker *taker)
+{
+    scene_lambda_range_hints(s, true, taker);
+}
+
+/* An rgb film has metals in daylight, and a probe with --lambda at its wavelength. */
+static void metals_out_of_their_range_give_a_hint(void **state)
+{
+    (void)state;
+#define BEYOND "use wavelengths in this range, or the ior and extinction of the wavelength\n"
+    static const char mirror[] = "render: {lambda_nm: 250}\nsolids: {mirror: {shape: plane, medium: silver}}";
+    static const char silver[] =
+        "mirror.medium: silver was measured only from 367.9 to 821.1 nm and is constant outside; " BEYOND;
+    expect_hints(mirror, "");
+    expect(at_one_wavelength, mirror, silver);
+    expect_hints("render: {spectrum: spectral}\nsolids: {mirror: {shape: plane, medium: silver}}", "");
+    expect_hints("render: {spectrum: spectral}\nlights: {lamp: {spectrum: line, line_nm: 365}}\n"
+                 "solids: {mirror: {shape: plane, medium: silver}}",
+                 silver);
+    expect(scene_beam_range_hints,
+           "beams: {a: {lambda_nm: 600}, b: {lambda_nm: 250}, c: {lambda_nm: 200}}\n"
+           "solids: {one: {shape: sphere, medium: aluminium}, two: {shape: sphere, ior: 0.05, extinction: 3}}",
+           "one.medium: aluminium was measured only from 364.66 to 815.69 nm and is constant outside: the beam b has "
+           "250 nm; " BEYOND);
+#undef BEYOND
+}
+
+static void media_out_of_the_range_of_beams_give_a_hint(void **state)
+{
+    (void)state;
+#define BEYOND "use wavelengths in this range, or coefficients with a wider range\n"
+#define BALL "solids: {ball: {shape: sphere, transparency: 1, medium: bk7}}"
+    static const char bk7[] = "ball.medium: bk7 was measured only from 300 to 2500 nm and is extrapolated outside: the "
+                              "beam l has 210 nm; " BEYOND;
+    expect_hints("beams: {l: {lambda_nm: 210}}\n" BALL, "");
+    expect(scene_beam_range_hints, "beams: {l: {lambda_nm: 210}}\n" BALL, bk7);
+    expect(scene_beam_range_hints, "beams: {l: {lambda_nm: 210, visible: off}}\n" BALL, "");
+    expect(scene_beam_range_hints, "render: {lambda_nm: 210}\nbeams: {l: {lambda_nm: 300}}\n" BALL, "");
+    expect(scene_beam_range_hints,
+           "beams: {l: {lambda_nm: 210}}\n"
+           "solids: {ball: {shape: sphere, visible: off, transparency: 1, medium: bk7}}",
+           "");
+    expect(scene_beam_range_hints, "beams: {l: {white: on}}\nbackground: {medium: ethanol}\nsolids: {}",
+           "background.medium: ethanol was measured only from 476.5 to 830 nm and is extrapolated outside: the beam l "
+           "has 400 to 700 nm; " BEYOND);
+#undef BALL
+#undef BEYOND
+}
+
+/* The same notes as of a change on the command line, of a material that no solid shows once. */
+static void what_a_file_sets_in_vain_gives_a_hint(void **state)
+{
+    (void)state;
+    static const char smooth[] = "only the path integrator shows roughness: the surface is treated as smooth; set "
+                                 "render.integrator=path\n";
+    char text[300];
+    snprintf(text, sizeof text, "ball.roughness: %s", smooth);
+    expect_hints(LIT "solids: {ball: {shape: sphere, transparency: 1, ior: 1.5, roughness: 0.3}}", text);
+    expect_hints("render: {integrator: path}\nlights: {lamp: {radius: 1, reach: 5}}\n"
+                 "solids: {ball: {shape: sphere, transparency: 1, ior: 1.5, roughness: 0.3}}",
+                 "");
+    snprintf(text, sizeof text, "dull.roughness: %s", smooth);
+    expect_hints(LIT
+                 "materials: {dull: {reflectivity: 0.5, roughness: 0.3}, unused: {roughness: 0.2}}\n"
+                 "solids: {a: {shape: sphere, material: dull}, b: {shape: box, material: dull, position: [4, 0, 0]}}",
+                 text);
+    snprintf(text, sizeof text, "dull.roughness: %sb.roughness: %s", smooth, smooth);
+    expect_hints(LIT
+                 "materials: {dull: {reflectivity: 0.5, roughness: 0.3}}\n"
+                 "solids: {a: {shape: sphere, material: dull}, b: {shape: box, material: dull, position: [4, 0, 0], "
+                 "roughness: 0.2}}",
+                 text);
+    expect_hints(LIT "solids: {ball: {shape: sphere, transparency: 1, ior: 1.5, extinction: 2}}",
+                 "ball.extinction: the solid is transparent: what it absorbs is set by absorb_per_m; set "
+                 "ball.transparency=0\n");
+    expect_hints(LIT "materials: {m: {ior: 0.05, extinction: 3}}\nsolids: {a: {shape: sphere, material: m}, b: {shape: "
+                     "box, material: m, transparency: 1, ior: 1.5, position: [4, 0, 0]}}",
+                 "");
+    expect_hints(LIT "render: {weights: constant}\nsolids: {ball: {shape: sphere, transparency: 1, ior: 1.5, "
+                     "film_thickness_nm: 300}}",
+                 "ball.film_thickness_nm: a film needs the Fresnel equations, and this scene has constant weights; set "
+                 "render.weights=fresnel and render.transmission=refract\n");
 }
 
 static void ineffective_parameters_give_a_hint(void **state)
@@ -239,6 +328,9 @@ int main(void)
         cmocka_unit_test(crystals_that_split_no_light_give_a_hint),
         cmocka_unit_test(missing_objects_and_lights_give_a_hint),
         cmocka_unit_test(extrapolated_dispersion_laws_give_a_hint),
+        cmocka_unit_test(metals_out_of_their_range_give_a_hint),
+        cmocka_unit_test(media_out_of_the_range_of_beams_give_a_hint),
+        cmocka_unit_test(what_a_file_sets_in_vain_gives_a_hint),
         cmocka_unit_test(ineffective_parameters_give_a_hint),
         cmocka_unit_test(features_that_the_z_buffer_does_not_render_give_a_hint),
         cmocka_unit_test(hidden_solids_give_a_hint),

@@ -127,7 +127,7 @@ static status run(void *context, scene *s, isa level, diagnostic *why)
     probe *p = NULL;
     status result = scene_input_probe(&request->input, s, level, &p, why);
     if (result == STATUS_OK) {
-        scene_input_note_tree(s);
+        scene_input_note_tree(&request->input, s);
         if (request->depth >= 0)
             probe_limit_depth(p, (int)request->depth);
         result = follow(request, s, p, why);

@@ -262,6 +262,8 @@ static status run(void *context, scene *s, isa level, diagnostic *why)
     status result = scene_input_job(true, &with, why);
     if (result == STATUS_OK && !request->json) {
         result = scene_input_lint(s, level, why);
+        if (request->beams || (request->files.img && outputs_is_page(request->files.img)))
+            scene_input_note_beams(s);
         inert_note_changes(s, &request->input);
     }
     THEN(result, render_and_write(request, s, with, why));

@@ -139,6 +139,7 @@ static status check_files(const scene_request *request, scene *s, diagnostic *wh
     isa level = ISA_BASE;
     TRY(scene_input_isa(&level, why));
     TRY(scene_input_lint(s, level, why));
+    scene_input_note_beams(s);
     printf("%s: valid; meshes %zu, textures %zu, materials %zu, lights %zu, solids %zu\n",
            request->path ? request->path : "--new", s->mesh_count, s->texture_count, s->material_count, s->light_count,
            s->solid_count);

@@ -36,12 +36,20 @@ status option_memory(const command_option *o, void *request, const char *value, 
     return STATUS_OK;
 }
 
+/* Whether the command has --lambda. */
+static bool has_one_wavelength(const scene_input *input)
+{
+    bool any = false;
+    for (size_t i = 0; i < input->count; i++)
+        any |= strcmp(input->changes[i].option, "lambda") == 0;
+    return any;
+}
+
 status scene_input_probe(const scene_input *input, const scene *s, isa level, probe **out, diagnostic *why)
 {
     const status result = probe_create(s, level, out, why);
-    for (size_t i = 0; i < input->count && result == STATUS_OK; i++)
-        if (strcmp(input->changes[i].option, "lambda") == 0)
-            probe_one_wavelength(*out);
+    if (result == STATUS_OK && has_one_wavelength(input))
+        probe_one_wavelength(*out);
     return result;
 }
 
@@ -152,14 +160,17 @@ status scene_input_lint(const scene *s, isa level, diagnostic *why)
     return lint_scene(s, level, &printer, why);
 }
 
-void scene_input_note_tree(const scene *s)
+void scene_input_note_beams(const scene *s)
+{
+    scene_beam_range_hints(s, &printer);
+}
+
+void scene_input_note_tree(const scene_input *input, const scene *s)
 {
     const bool path = integrator_traits_of(&s->render)->by_chance, drawn = integrator_traits_of(&s->render)->drawn,
                layers = integrator_traits_of(&s->render)->layers;
     const bool spectral = s->render.spectrum == SPECTRUM_SPECTRAL;
-    scene one_lambda = *s; /* borrows what s owns */
-    one_lambda.render.spectrum = SPECTRUM_RGB;
-    scene_range_hints(&one_lambda, &printer);
+    scene_lambda_range_hints(s, has_one_wavelength(input), &printer);
     char text[160];
     if (!path && !drawn && !layers && !spectral)
         return;

@@ -86,7 +86,10 @@ status scene_input_load(scene *s, diagnostic *why);
 
 /* Notes for commands that trace ray trees, which have all branches and one wavelength: the scene is rendered with
  * another integrator or spectrally, or a medium was not measured at the wavelength. */
-void scene_input_note_tree(const scene *s);
+void scene_input_note_tree(const scene_input *input, const scene *s);
+
+/* Notes for what shows the beams: a medium was not measured at the wavelength of one. */
+void scene_input_note_beams(const scene *s);
 
 /* Prints the hints on likely mistakes in the scene (scene/model/hints.h) on standard error. */
 void scene_input_note_hints(const scene *s);

@@ -2,11 +2,13 @@
 #include "scene/model/camera.h"
 #include "scene/model/cover.h"
 #include "scene/model/face_materials.h"
+#include "scene/model/inert/inert.h"
 #include "scene/model/medium.h"
 #include "scene/model/scene.h"
 #include "scene/model/sheet.h"
 
 #include <stdio.h>
+#include <string.h>
 
 static bool is_lit(const material *m)
 {
@@ -116,23 +118,49 @@ static void hint_at_cover(const scene *s, const solid *hidden, const note_taker 
     }
 }
 
-/* A dispersion law used outside the range in which its medium was measured. */
-static void hint_at_range(const scene *s, const char *where, const char *name, const index_law *law,
-                          const note_taker *taker)
+/* Parameters of what is expected to be seen. Their notes are those of a change on the command line: see
+ * scene/model/inert. */
+static const struct {
+    const char *name;
+    size_t offset;
+} expected[] = {{"extinction", offsetof(material, extinction)},
+                {"film_thickness_nm", offsetof(material, film_thickness_nm)},
+                {"roughness", offsetof(material, roughness)}};
+
+static double expected_value(const material *m, size_t i)
 {
-    static const char remedy[] = "use wavelengths in this range, or coefficients with a wider range";
-    const bool spectral = s->render.spectrum == SPECTRUM_SPECTRAL;
-    const double low_nm = spectral ? VISIBLE_LOW_NM : s->render.lambda_nm,
-                 high_nm = spectral ? VISIBLE_HIGH_NM : s->render.lambda_nm;
-    if (dispersion_covers(&law->law, low_nm, high_nm))
+    double value;
+    memcpy(&value, (const char *)m + expected[i].offset, sizeof value);
+    return value;
+}
+
+static void hint_at_vain(const scene *s, const char *owner, const material *m, const material *same_as,
+                         const note_taker *taker)
+{
+    for (size_t i = 0; i < sizeof expected / sizeof *expected; i++) {
+        const double value = expected_value(m, i);
+        char path[2 * SCENE_NAME_MAX + 2];
+        inert_answer answer;
+        snprintf(path, sizeof path, "%s.%s", owner, expected[i].name);
+        if (value > 0.0 && !(same_as && value == expected_value(same_as, i)) && inert_ask(s, path, NULL, &answer) &&
+            strcmp(answer.rule, "unused-material") != 0 && strcmp(answer.rule, "covered") != 0)
+            taker->take(taker->context, &answer.note);
+    }
+}
+
+/* Materials first; then solids that have other values. Layers have no light. */
+static void hint_at_all_vain(const scene *s, const note_taker *taker)
+{
+    if (integrator_traits_of(&s->render)->layers)
         return;
-    if (law->law.kind == DISPERSION_TABLE)
-        note_give(taker, where, "coefficients", remedy,
-                  "its table of indices covers only %g to %g nm and is constant outside", law->law.coefficient[0],
-                  law->law.coefficient[law->law.count - 2]);
-    else
-        note_give(taker, where, "medium", remedy, "%s was measured only from %g to %g nm and is extrapolated outside",
-                  name, law->law.low_nm, law->law.high_nm);
+    for (size_t i = 0; i < s->material_count; i++)
+        hint_at_vain(s, s->materials[i].name, &s->materials[i].value, NULL, taker);
+    for (size_t i = 0; i < s->solid_count; i++) {
+        const solid *one = &s->solids[i];
+        if (one->visible)
+            hint_at_vain(s, one->name, &one->surface,
+                         one->material_index < 0 ? NULL : &s->materials[one->material_index].value, taker);
+    }
 }
 
 /* Settings without effect. */
@@ -298,18 +326,6 @@ static void hint_at_tone(const scene *s, const note_taker *taker)
         note_give(taker, "camera", "white", "set camera.tone to reinhard", "this tone curve has no white point");
 }
 
-void scene_range_hints(const scene *s, const note_taker *taker)
-{
-    index_law law = surrounding_index_law(&s->background);
-    hint_at_range(s, "background", surrounding_words[s->background.medium], &law, taker);
-    for (size_t i = 0; i < s->solid_count; i++) {
-        const solid *one = &s->solids[i];
-        if (one->visible && one->surface.transparency > 0.0 &&
-            material_index_law(&one->surface, "", &law, NULL) == STATUS_OK)
-            hint_at_range(s, one->name, medium_words[one->surface.medium], &law, taker);
-    }
-}
-
 void scene_hints(const scene *s, const note_taker *taker)
 {
     size_t visible = 0, lit = 0, shining = 0;
@@ -341,5 +357,6 @@ void scene_hints(const scene *s, const note_taker *taker)
             hint_at_cover(s, &s->solids[i], taker);
         }
     }
+    hint_at_all_vain(s, taker);
     scene_range_hints(s, taker);
 }

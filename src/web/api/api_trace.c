@@ -7,6 +7,7 @@
 #include "base/text_writer.h"
 #include "lint/lint.h"
 #include "report/trace_writers.h"
+#include "scene/model/hints.h"
 #include <limits.h>
 #include <stdlib.h>
 
@@ -103,7 +104,9 @@ static status collect_notes(void *context, scene *s, diagnostic *why)
 {
     call *c = context;
     json_t *list = json_array();
-    status code = lint_scene(s, c->l->settings.level, &(note_taker){take_note, &list}, why);
+    const note_taker taker = {take_note, &list};
+    status code = lint_scene(s, c->l->settings.level, &taker, why);
+    scene_beam_range_hints(s, &taker);
     if (json_object_set_new(c->json, "notes", list) != 0 && code == STATUS_OK)
         code = out_of_memory(why);
     return code;

@@ -51,11 +51,25 @@ static bool other_kind(const inert_case *c, const beam *b)
                      "all its rays are on its axis");
 }
 
+/* Whether the film is the same with the beam's light and without it. If the parameter in question makes the beam dark,
+ * light is that of another value. */
+static bool shows_no_light(const inert_case *c, const beam *b)
+{
+    const char *other = !b->lights                            ? "lights=on"
+                        : !b->visible                         ? "visible=on"
+                        : b->power == 0.0                     ? "power=1"
+                        : beam_lights_scene(b, &c->s->render) ? "lights=off"
+                                                              : "lambda_nm=550";
+    return inert_same(c, "%s.%s", c->name, other);
+}
+
+/* A spot between the samples of the pixels is in no film, too. */
 bool inert_beam(const inert_case *c)
 {
     const beam *b = &c->s->beams[c->at.index];
     return dark(c, b) || other_kind(c, b) ||
-           (inert_same(c, "%s.lights=%s", c->name, b->lights ? "off" : "on") &&
-            inert_say(c, "beam-lights-nothing", "aim it at a matte surface that the camera sees",
-                      "its light arrives at no matte surface in the image"));
+           (shows_no_light(c, b) &&
+            inert_say(c, "beam-lights-nothing",
+                      "aim it at a matte surface that the camera sees; a spot narrower than a pixel needs more samples",
+                      "no sample of the image shows its light"));
 }
