@@ -216,8 +216,9 @@ CUVETTE_API cuvette_status cuvette_scene_add_solid(cuvette_scene *scene, const c
 CUVETTE_API cuvette_status cuvette_scene_add_mesh(cuvette_scene *scene, const char *name, cuvette_diagnostic *why);
 
 /* The caller's triangles, which are copied. Of each pair of double and float arrays at least one is NULL; both are NULL
- * if the mesh has no such data. Seen from the front, vertices are in counterclockwise order. Coordinates are finite, at
- * most 1e9. Set size before the call; later versions add fields at the end. */
+ * if the mesh has no such data. The front of a triangle a, b, c is where (b - a) x (c - a) points; for an eye there the
+ * corners run clockwise, because the world is left-handed. Coordinates are finite, at most 1e9. Set size before the
+ * call; later versions add fields at the end. */
 typedef struct cuvette_triangles {
     size_t size;            /* sizeof(cuvette_triangles) */
     size_t vertex_count;    /* at most 2^29 */
@@ -255,8 +256,14 @@ CUVETTE_API cuvette_status cuvette_scene_remove(cuvette_scene *scene, const char
 CUVETTE_API cuvette_status cuvette_scene_move(cuvette_scene *scene, const char *name, const double *by,
                                               cuvette_diagnostic *why);
 /* Rotates a solid in place, or the direction of a cone light or "camera", about the world's x axis, then y, then z
- * (three angles), after the rotation that it has; right-handed about each axis. Several objects ("all") rotate about
- * the origin, the camera including its roll. */
+ * (three angles), after the rotation that it has. Several objects ("all") rotate about the origin, the camera including
+ * its roll. Positive degrees turn x to y about z, y to z about x, z to x about y. The world is left-handed, so that this
+ * is counter-clockwise for an eye that looks along the axis; here along z:
+ *
+ *     y
+ *     |     .  x after 0, 0, 20
+ *     |  .
+ *     o-------- x                z points away from the eye */
 CUVETTE_API cuvette_status cuvette_scene_turn(cuvette_scene *scene, const char *name, const double *degrees,
                                               cuvette_diagnostic *why);
 /* Multiplies all lengths of a solid or a light by a factor above 0, in place; or of several objects ("all+camera"),

@@ -108,7 +108,7 @@ typedef struct quad_rotation {
     quad3 row[3];
 } quad_rotation;
 
-/* Rotation about x, then y, then z, right-handed. */
+/* Rotation about x (y to z), then y (z to x), then z (x to y). */
 static inline quad_rotation quad_rotation_make(vec3 degrees)
 {
     const double angles[3] = {degrees.x, degrees.y, degrees.z};

@@ -227,7 +227,7 @@ static void the_medium_at_a_point_has_the_highest_priority(void **state)
     cuvette_query_destroy(q);
 }
 
-/* The cube about 0,0,0 of edge 2: corner i at the signs of its bits. Two triangles a side, counterclockwise from
+/* The cube about 0,0,0 of edge 2: corner i at the signs of its bits. Two triangles a side, with their fronts
  * outside. */
 static const float cube_vertices[] = {-1, -1, -1, 1, -1, -1, -1, 1, -1, 1, 1, -1,
                                       -1, -1, 1,  1, -1, 1,  -1, 1, 1,  1, 1, 1};

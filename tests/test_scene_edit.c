@@ -332,7 +332,7 @@ static vec3 direction_of(const camera *c)
     return vec3_make(cos(pitch) * sin(yaw), sin(pitch), cos(pitch) * cos(yaw));
 }
 
-/* Right-hand rule: about y, z goes to x. */
+/* About y, z goes to x. */
 static void moving_and_rotating_a_spotlight_transforms_its_target(void **state)
 {
     (void)state;

@@ -95,7 +95,7 @@ static void assert_near(vec3 a, vec3 b)
     assert_true(vec3_length(vec3_sub(a, b)) < 2e-15);
 }
 
-static void rotations_follow_the_right_hand_rule(void **state)
+static void rotations_take_x_to_y_to_z_to_x(void **state)
 {
     (void)state;
     vec3 x = vec3_make(1, 0, 0), y = vec3_make(0, 1, 0), z = vec3_make(0, 0, 1);
@@ -190,7 +190,7 @@ int main(void)
         cmocka_unit_test(a_cylinder_is_elliptic_with_its_origin_at_the_base),
         cmocka_unit_test(a_cup_contains_its_wall_and_floor),
         cmocka_unit_test(an_elliptic_cup_is_narrower_along_z),
-        cmocka_unit_test(rotations_follow_the_right_hand_rule),
+        cmocka_unit_test(rotations_take_x_to_y_to_z_to_x),
         cmocka_unit_test(a_rotation_is_the_product_of_its_axis_rotations),
         cmocka_unit_test(a_rotated_rod_leans),
         cmocka_unit_test(invalid_solids_are_refused),

@@ -2,8 +2,8 @@
  * everything that is specific to it (geometry/shapes/shape.h); the kernels work on the primitives that a shape consists
  * of.
  *
- * A solid has its own local frame with its axis along y. It is rotated by rotation_deg (about x, then y, then z,
- * right-handed) and then moved to position.
+ * A solid has its own local frame with its axis along y. It is rotated by rotation_deg (about x, then y, then z; see
+ * rotation_from_deg) and then moved to position.
  *
  * Pure; ownership: values; a shape borrows its mesh. */
 #pragma once
@@ -61,5 +61,7 @@ status solid_shape_check(const solid_shape *shape, diagnostic *why);
 /* Does the closed solid contain the point, by its definition? For tests and hints. Always false for a mesh. */
 bool solid_shape_contains(const solid_shape *shape, vec3 point);
 
-/* The rotation matrix of rotation_deg: local to world. */
+/* The rotation matrix of rotation_deg: local to world. A positive angle takes y to z about x, z to x about y, x to y
+ * about z: counter-clockwise for an eye that looks along the axis, because the world is left-handed (x right, y up, z
+ * away). */
 mat3 rotation_from_deg(vec3 rotation_deg);

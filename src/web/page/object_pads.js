@@ -3,9 +3,29 @@
  *   choice: {name, move(by, gesture), turn(by, gesture), scale(factor, gesture)}; id: key of the stored step sizes;
  *   many: a word for the labels */
 
-import { button, element, gestures, memory, number } from './ui.js';
+import { button, element, gestures, memory, number, svg } from './ui.js';
 
 const AXES = ['x', 'y', 'z'];
+/* What a positive angle does about each axis: the world is left-handed (cuvette-scene(5)). */
+const TURNS = ['y to z', 'z to x', 'x to y'];
+
+/* The axes as a new scene's camera sees them, and a turn about z. */
+function turnSense() {
+  const word = (x, y, label) => svg('text', { x, y }, label);
+  return element(
+    'div',
+    { class: 'object-sense hint' },
+    svg(
+      'svg',
+      { class: 'object-axes', viewBox: '0 0 72 60', role: 'img', 'aria-label': 'x right, y up, z away; x turns to y' },
+      svg('path', { d: 'M12 50H56M12 50V10M12 50 34 28M40 50A28 28 0 0 0 12 22M18 18l-6 4 5 5' }),
+      word(60, 54, 'x'),
+      word(9, 7, 'y'),
+      word(37, 27, 'z'),
+    ),
+    element('span', { text: 'Plus turns counter-clockwise for an eye that looks along the axis.' }),
+  );
+}
 
 export function createPads(choice, { id = 'object', many = '' } = {}) {
   const steps = {
@@ -28,7 +48,7 @@ export function createPads(choice, { id = 'object', many = '' } = {}) {
           const face = `${sign < 0 ? '\u2212' : '+'}${axis}`;
           return button(face, () => act(by(), nameOf(`${choice.name} ${label} ${face}`)), {
             small: true,
-            title: `${label}: ${face}`,
+            title: size === 'angle' && sign > 0 ? `${label}: ${face}, ${TURNS[index]}` : `${label}: ${face}`,
             'aria-label': `${label}: ${sign < 0 ? 'minus' : 'plus'} ${axis}`,
           });
         }),
@@ -71,7 +91,7 @@ export function createPads(choice, { id = 'object', many = '' } = {}) {
         { class: 'object-steps' },
         field('Step', 'length', 'units', 1e6),
         pad(named('Move'), 'length', choice.move),
-        turns ? [field('Angle', 'angle', '°', 360), pad(named('Turn'), 'angle', choice.turn)] : null,
+        turns ? [field('Angle', 'angle', '°', 360), pad(named('Turn'), 'angle', choice.turn), turnSense()] : null,
         scales ? [field('Factor', 'factor', '', 1000, 1.0001), sizes(named('Scale'))] : null,
       );
     },
