@@ -40,12 +40,13 @@ static pair airy(double angle, double n, double thickness_nm, double lambda_nm)
     return (pair){of_s / (1.0 + of_s), of_p / (1.0 + of_p)};
 }
 
-/* A metal in air; Siegel and Howell, Thermal Radiation Heat Transfer, 4th ed., (4-70). */
+/* A metal in air; Siegel and Howell, Thermal Radiation Heat Transfer, 4th ed., (4-70); a from a b = n k where its own
+ * formula loses digits. */
 static pair metal_by_siegel(double angle, double n, double k)
 {
     const double s2 = squared(sin(angle)), x = n * n - k * k - s2, root = sqrt(x * x + squared(2.0 * n * k)),
-                 b2 = 0.5 * (root - x), a = sqrt(0.5 * (root + x)), c = cos(angle), st = sin(angle) * tan(angle),
-                 R_s = (squared(a - c) + b2) / (squared(a + c) + b2);
+                 b2 = 0.5 * (root - x), a = x < 0.0 ? n * k / sqrt(b2) : sqrt(0.5 * (root + x)), c = cos(angle),
+                 st = sin(angle) * tan(angle), R_s = (squared(a - c) + b2) / (squared(a + c) + b2);
     return (pair){R_s, R_s * (squared(a - st) + b2) / (squared(a + st) + b2)};
 }
 
