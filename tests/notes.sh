@@ -101,5 +101,20 @@ cells 'grid: [{ball.ior: [1.3, 1,4, 1.5]}]' >/dev/null
 holds 'a decimal comma has a note with line and column' \
     "$folder/t\\.study:4:25: ball\\.ior: 1 and 4 are two values; did you mean 1\\.4\\?" \
     "$(cells 'grid: [{ball.ior: [1.3, 1,4, 1.5]}]')"
+cat >"$folder/spot.yaml" <<'END'
+background: {color: [0, 0, 0], ambient: [0, 0, 0]}
+render: {width: 40, height: 30, caustics: photons, photons: 2000}
+camera: {position: [0, 0, -5], target: [0, 0, 0]}
+beams: {spot: {position: [-2, 0, -2], target: [0.3, 0.1, 0], lights: on, kind: bundle, width: 0.5}}
+solids: {wall: {shape: box, diffuse: 1, size: [6, 5, 1], position: [0, 0, 0.5]}}
+END
+spot() { # spot PATH=VALUE: the notes of a render on the beam, which lights a wall
+    "$cuvette" render "$folder/spot.yaml" -o "$folder/a.png" --set "$1" 2>&1 | grep '^cuvette: note: spot'
+}
+none 'a beam that is made invisible' "$(spot spot.visible=off)"
+none 'a beam that is made dark' "$(spot spot.power=0)"
+none 'a beam that is made infrared' "$(spot spot.lambda_nm=900)"
+holds 'a beam that misses the wall' 'spot\.target: no sample of the image shows its light; aim it' \
+    "$(spot spot.target=0,0,-5)"
 echo "1..$number"
 exit $failed

@@ -106,9 +106,6 @@ static void metals_out_of_their_range_give_a_hint(void **state)
     expect_hints(mirror, "");
     expect(at_one_wavelength, mirror, silver);
     expect_hints("render: {spectrum: spectral}\nsolids: {mirror: {shape: plane, medium: silver}}", "");
-    expect_hints("render: {spectrum: spectral}\nlights: {lamp: {spectrum: line, line_nm: 365}}\n"
-                 "solids: {mirror: {shape: plane, medium: silver}}",
-                 silver);
     expect(scene_beam_range_hints,
            "beams: {a: {lambda_nm: 600}, b: {lambda_nm: 250}, c: {lambda_nm: 200}}\n"
            "solids: {one: {shape: sphere, medium: aluminium}, two: {shape: sphere, ior: 0.05, extinction: 3}}",

@@ -4,7 +4,6 @@
 #include "scene/model/medium.h"
 #include "scene/model/scene.h"
 
-#include <math.h>
 #include <stdio.h>
 
 typedef struct nm_range {
@@ -21,25 +20,13 @@ typedef struct range_case {
     bool beams;              /* instead: those of the visible beams */
 } range_case;
 
-static void widen(nm_range *r, double lambda_nm)
-{
-    r->low = fmin(r->low, lambda_nm), r->high = fmax(r->high, lambda_nm);
-}
-
-/* A spectral film has the visible range, and its lines wherever they are. An rgb film has one wavelength for all
- * transparent matter; what metals and films reflect is integrated over daylight (render/shade/layered_table.h). */
+/* All that a spectral film shows is in the visible range, lines too. An rgb film has one wavelength for transparent
+ * matter; what metals and films reflect is integrated over daylight (render/shade/layered_table.h). */
 static range_case of_film(const scene *s, const note_taker *taker)
 {
-    const bool spectral = s->render.spectrum == SPECTRUM_SPECTRAL;
-    nm_range r = visible;
-    for (size_t i = 0; i < s->light_count && spectral; i++)
-        if (s->lights[i].spectrum == LAMP_LINE && s->lights[i].intensity > 0.0)
-            widen(&r, s->lights[i].line_nm);
-    for (size_t i = 0; i < s->beam_count && spectral; i++)
-        if (beam_lights_scene(&s->beams[i], &s->render) && !s->beams[i].white)
-            widen(&r, s->beams[i].lambda_nm);
     const nm_range one = {s->render.lambda_nm, s->render.lambda_nm};
-    return (range_case){.s = s, .taker = taker, .clear = spectral ? r : one, .layered = r};
+    return (range_case){
+        .s = s, .taker = taker, .clear = s->render.spectrum == SPECTRUM_SPECTRAL ? visible : one, .layered = visible};
 }
 
 /* The wavelengths of the first visible beam outside the law's range; NULL for none. */
