@@ -257,8 +257,8 @@ CUVETTE_API cuvette_status cuvette_scene_move(cuvette_scene *scene, const char *
                                               cuvette_diagnostic *why);
 /* Rotates a solid in place, or the direction of a cone light or "camera", about the world's x axis, then y, then z
  * (three angles), after the rotation that it has. Several objects ("all") rotate about the origin, the camera including
- * its roll. Positive degrees turn x to y about z, y to z about x, z to x about y. The world is left-handed, so that this
- * is counter-clockwise for an eye that looks along the axis; here along z:
+ * its roll. Positive degrees turn x to y about z, y to z about x, z to x about y. The world is left-handed: for an eye
+ * that looks along the axis this is counter-clockwise; here along z:
  *
  *     y
  *     |     .  x after 0, 0, 20

@@ -468,8 +468,8 @@ static uint64_t hash_of_small_film(scene *s)
     return hash;
 }
 
-/* A file that gives its faces no material has the solid's, whatever its format, in groups, and also as a metal: the same
- * spectral film as with a material of the scene. */
+/* A file that gives its faces no material has the solid's, whatever its format, in groups, and also as a metal: the
+ * same spectral film as with a material of the scene. */
 static void files_without_materials_have_that_of_their_solid(void **state)
 {
     (void)state;

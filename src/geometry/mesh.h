@@ -1,6 +1,6 @@
 /* A triangle mesh: indexed vertices with optional normals and texture coordinates, and one material slot per face.
- * Triangles are visible from both sides. The geometric normal (b - a) x (c - a) of a triangle points towards a viewer in
- * front, who sees its corners run clockwise in the left-handed world. A mesh whose every edge joins two triangles,
+ * Triangles are visible from both sides. The geometric normal (b - a) x (c - a) of a triangle points towards a viewer
+ * in front, who sees its corners run clockwise in the left-handed world. A mesh whose every edge joins two triangles,
  * once in each direction, is closed: it bounds a volume, which is behind the fronts.
  *
  * A finished mesh is immutable (except for mesh_move) and shared: mesh_retain and mesh_release count its owners, from

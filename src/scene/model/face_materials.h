@@ -26,8 +26,8 @@ void face_materials_retain(const face_materials *l); /* NULL is allowed here and
 void face_materials_release(const face_materials *l);
 
 /* Whether the mesh's slots determine the materials of the solid's faces: the solid has no material of its own, and the
- * file, or the scene by a slot's name, gives one to some slot (face_material_source). A file without materials has none.
- * False before scene_load. */
+ * file, or the scene by a slot's name, gives one to some slot (face_material_source). A file without materials has
+ * none. False before scene_load. */
 bool has_face_materials(const scene *s, const solid *owner);
 
 /* The material of one kind of face of a solid; the texture is borrowed. */

@@ -61,8 +61,8 @@ status scene_scale(scene *s, const char *name, double factor, diagnostic *why);
 status scene_move(scene *s, const char *name, vec3 delta, diagnostic *why);
 
 /* Rotates a solid, a spotlight or "camera" in place, or many objects about the origin: about the world's x axis, then
- * y, then z (rotation_from_deg), in addition to its current rotation. For the camera the viewing direction is rotated; its
- * image stays upright, and it remains aimed by target or by angles as before. */
+ * y, then z (rotation_from_deg), in addition to its current rotation. For the camera the viewing direction is rotated;
+ * its image stays upright, and it remains aimed by target or by angles as before. */
 status scene_turn(scene *s, const char *name, vec3 degrees, diagnostic *why);
 
 /* Aims the camera at a point. */
