@@ -13,7 +13,7 @@
 #include "lint/lint.h"
 #include "random_stream.h"
 #include "render/inspect/probe.h"
-#include "render/inspect/segment_place.h"
+#include "render/inspect/ray_line.h"
 #include "render_fixture.h"
 #include "scene/model/camera.h"
 #include "scene/model/camera_moves.h"
@@ -81,6 +81,13 @@ static void single_rays_are_chief_rays(void **state)
     scene_destroy(s);
 }
 
+static bool segment_seen(const camera_frame *view, vec3 from, vec3 to, vec3 ends[2])
+{
+    const ray_line line = ray_line_between(from, to);
+    const image_frame frame = image_frame_of(40, 30, 0.0);
+    return ray_line_seen(&line, view, &frame, ends);
+}
+
 static void segments_are_placed_without_regard_to_depth(void **state)
 {
     (void)state;
@@ -88,13 +95,13 @@ static void segments_are_placed_without_regard_to_depth(void **state)
                                   "camera.yaw_deg=0 camera.pitch_deg=0");
     const camera_frame f = camera_frame_of(s);
     vec3 ends[2];
-    assert_true(segment_place(&f, 40, 30, vec3_make(1.0, 1.0, 2.0), vec3_make(-1.0, 2.0, 70.0), ends));
+    assert_true(segment_seen(&f, vec3_make(1.0, 1.0, 2.0), vec3_make(-1.0, 2.0, 70.0), ends));
     assert_at(ends[0], vec3_make(25.0, 10.0, 2.0), 1e-12);
     assert_at(ends[1], vec3_make(15.0, 5.0, 70.0), 1e-12);
-    assert_true(segment_place(&f, 40, 30, vec3_make(1.0, 0.0, -1.0), vec3_make(1.0, 1.0, 1.0), ends));
+    assert_true(segment_seen(&f, vec3_make(1.0, 0.0, -1.0), vec3_make(1.0, 1.0, 1.0), ends));
     assert_at(ends[0], vec3_make(25.0, 12.5, 0.0), 1e-12); /* cut at the camera's plane */
-    assert_false(segment_place(&f, 40, 30, vec3_make(1.0, 0.0, -1.0), vec3_make(1.0, 1.0, -2.0), ends));
-    assert_false(segment_place(&f, 40, 30, vec3_make(1.0, 0.0, -1.0), vec3_make(1.0, 1.0, 0.0), ends)); /* ends there */
+    assert_false(segment_seen(&f, vec3_make(1.0, 0.0, -1.0), vec3_make(1.0, 1.0, -2.0), ends));
+    assert_false(segment_seen(&f, vec3_make(1.0, 0.0, -1.0), vec3_make(1.0, 1.0, 0.0), ends)); /* ends there */
     scene_destroy(s);
 }
 

@@ -67,28 +67,6 @@ void diagram_end(diagram *d)
     free(d->needed);
 }
 
-/* Clips a segment to the window (Liang and Barsky 1984). Returns false if nothing is left. */
-static bool clip(const section_plane *w, section_point *a, section_point *b)
-{
-    const double du = b->u - a->u, dv = b->v - a->v;
-    const double along[4] = {-du, du, -dv, dv}, room[4] = {a->u - w->u0, w->u1 - a->u, a->v - w->v0, w->v1 - a->v};
-    double first = 0.0, last = 1.0;
-    for (int k = 0; k < 4; k++) {
-        if (along[k] == 0.0 && room[k] < 0.0)
-            return false;
-        if (along[k] < 0.0)
-            first = fmax(first, room[k] / along[k]);
-        if (along[k] > 0.0)
-            last = fmin(last, room[k] / along[k]);
-    }
-    if (first > last)
-        return false;
-    const section_point from = *a;
-    *a = (section_point){from.u + first * du, from.v + first * dv};
-    *b = (section_point){from.u + last * du, from.v + last * dv};
-    return true;
-}
-
 static double opacity_of(double weight)
 {
     return 0.25 + 0.7 * sqrt(weight);
@@ -104,17 +82,37 @@ double diagram_weight(const ray_node *node)
     return (node->throughput[0] + node->throughput[1] + node->throughput[2]) / 3.0;
 }
 
-void diagram_ray(const diagram *d, vec3 from, vec3 to, const char *color, double weight, const char *dashes)
+ray_line diagram_line_of(const diagram *d, const ray_node *node)
 {
-    section_point a = section_project(&d->plane, from), b = section_project(&d->plane, to);
-    if (!clip(&d->plane, &a, &b) || hypot(b.u - a.u, b.v - a.v) * d->scale < 0.02)
+    ray_line line = ray_line_of(node);
+    if (diagram_is_cut(node))
+        line.end = 0.04 * hypot(d->plane.u1 - d->plane.u0, d->plane.v1 - d->plane.v0);
+    return line;
+}
+
+/* Where the line is in the drawing, CSS pixels; false where nothing of it can be seen. */
+static bool line_ends(const diagram *d, const ray_line *line, double *length_px, section_point ends[2])
+{
+    if (!ray_line_projected(line, &d->plane, ends))
+        return false;
+    for (int k = 0; k < 2; k++)
+        ends[k] = (section_point){diagram_x(d, ends[k].u), diagram_y(d, ends[k].v)};
+    *length_px = hypot(ends[1].u - ends[0].u, ends[1].v - ends[0].v);
+    return *length_px >= 0.02;
+}
+
+void diagram_ray(const diagram *d, const ray_line *line, const char *color, double weight, const char *dashes)
+{
+    section_point ends[2];
+    double length_px;
+    if (!line_ends(d, line, &length_px, ends))
         return;
     char stroke[192], dashed[64] = "";
     if (dashes)
         snprintf(dashed, sizeof dashed, " stroke-dasharray=\"%s\"", dashes);
     snprintf(stroke, sizeof stroke, "stroke=\"%s\" stroke-width=\"%.2f\" stroke-opacity=\"%.2f\"%s", color,
              0.6 + 1.2 * sqrt(weight), opacity_of(weight), dashed);
-    svg_line(d->out, diagram_x(d, a.u), diagram_y(d, a.v), diagram_x(d, b.u), diagram_y(d, b.v), stroke);
+    svg_line(d->out, ends[0].u, ends[0].v, ends[1].u, ends[1].v, stroke);
 }
 
 bool diagram_shows(const diagram *d, vec3 at)
@@ -123,18 +121,18 @@ bool diagram_shows(const diagram *d, vec3 at)
     return p.u >= d->plane.u0 && p.u <= d->plane.u1 && p.v >= d->plane.v0 && p.v <= d->plane.v1;
 }
 
-void diagram_arrow(const diagram *d, vec3 from, vec3 to, const char *color, double weight)
+void diagram_arrow(const diagram *d, const ray_line *line, const char *color, double weight)
 {
-    const section_point a = section_project(&d->plane, from), b = section_project(&d->plane, to);
-    const double length = hypot(b.u - a.u, b.v - a.v);
-    if (!diagram_shows(d, to) || length * d->scale < 1.0)
+    section_point ends[2];
+    double length_px;
+    if (!line_ends(d, line, &length_px, ends) || length_px < 1.0)
         return;
     const double long_px = 4.0 + 3.0 * sqrt(weight), half_px = 0.36 * long_px;
-    const double along_x = (b.u - a.u) / length, along_y = -(b.v - a.v) / length;
-    const double x = diagram_x(d, b.u), y = diagram_y(d, b.v);
-    fprintf(d->out, "<path d=\"M%.2f %.2fL%.2f %.2fL%.2f %.2fZ\" fill=\"%s\" fill-opacity=\"%.2f\"/>\n",
-            x + long_px * along_x, y + long_px * along_y, x - half_px * along_y, y + half_px * along_x,
-            x + half_px * along_y, y - half_px * along_x, color, opacity_of(weight));
+    const double along_x = (ends[1].u - ends[0].u) / length_px, along_y = (ends[1].v - ends[0].v) / length_px;
+    const double x = ends[1].u - long_px * along_x, y = ends[1].v - long_px * along_y;
+    fprintf(d->out, "<path d=\"M%.2f %.2fL%.2f %.2fL%.2f %.2fZ\" fill=\"%s\" fill-opacity=\"%.2f\"/>\n", ends[1].u,
+            ends[1].v, x - half_px * along_y, y + half_px * along_x, x + half_px * along_y, y - half_px * along_x,
+            color, opacity_of(weight));
 }
 
 void diagram_dot(const diagram *d, vec3 at, double radius_px, const char *fill, const char *stroke)

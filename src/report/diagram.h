@@ -4,7 +4,7 @@
  * Ownership: the probe, its scene and the stream are borrowed; diagram_begin allocates, diagram_end frees. */
 #pragma once
 
-#include "render/inspect/section.h"
+#include "render/inspect/ray_line.h"
 #include "scene/model/solids.h"
 #include <stdio.h>
 
@@ -46,10 +46,12 @@ status diagram_begin(diagram *d, FILE *out, const probe *p, const scene *s, cons
                      const diagram_box *box, const diagram_frame *frame, const char *caption, diagnostic *why);
 void diagram_end(diagram *d);
 
-/* A line segment; a smaller weight (0..1) makes it thinner and paler. dashes: an SVG stroke-dasharray, or NULL. */
-void diagram_ray(const diagram *d, vec3 from, vec3 to, const char *color, double weight, const char *dashes);
-/* An arrow head at the end of such a segment; nothing outside the window. */
-void diagram_arrow(const diagram *d, vec3 from, vec3 to, const char *color, double weight);
+/* The line of a ray; of a ray that was cut, a short stub. */
+ray_line diagram_line_of(const diagram *d, const ray_node *node);
+/* A smaller weight (0..1) makes a line thinner and paler. dashes: an SVG stroke-dasharray, or NULL. */
+void diagram_ray(const diagram *d, const ray_line *line, const char *color, double weight, const char *dashes);
+/* An arrow head whose tip is the end of such a line, at the edge of the window if the ray leaves it. */
+void diagram_arrow(const diagram *d, const ray_line *line, const char *color, double weight);
 /* A circle; fill or stroke may be "none". Nothing outside the window. */
 void diagram_dot(const diagram *d, vec3 at, double radius_px, const char *fill, const char *stroke);
 void diagram_cross(const diagram *d, vec3 at, double radius_px, const char *stroke);

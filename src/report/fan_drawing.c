@@ -58,20 +58,6 @@ static diagram_box box_of(const fanned *t, const section_plane *plane)
     return box;
 }
 
-/* The end of a node's segment; a segment to the sky leads out of the window. */
-static vec3 end_of(const diagram *d, const ray_node *node)
-{
-    const double across = hypot(d->plane.u1 - d->plane.u0, d->plane.v1 - d->plane.v0);
-    vec3 from = node->origin;
-    if (node->end == RAY_END_HIT)
-        return node->hit.point;
-    if (diagram_is_cut(node))
-        return vec3_add(from, vec3_scale(node->direction, 0.04 * across));
-    const section_point at = section_project(&d->plane, from);
-    const double off = hypot(at.u - d->plane.u0, at.v - d->plane.v0);
-    return vec3_add(from, vec3_scale(node->direction, 2.0 * (across + off)));
-}
-
 /* Line weight factor: many rays are drawn thinner. */
 static double crowding(const fan *f)
 {
@@ -82,7 +68,8 @@ static void draw_piece(const diagram *d, const fan *f, const ray_node *node)
 {
     static const char *const colors[] = {
         [RAY_CAMERA] = SVG_INK, [RAY_REFLECT] = SVG_VERMILLION, [RAY_REFRACT] = SVG_BLUE, [RAY_SHADOW] = SVG_GREY};
-    diagram_ray(d, node->origin, end_of(d, node), colors[node->kind], crowding(f) * diagram_weight(node),
+    const ray_line line = diagram_line_of(d, node);
+    diagram_ray(d, &line, colors[node->kind], crowding(f) * diagram_weight(node),
                 diagram_is_cut(node) ? DIAGRAM_CUT : NULL);
 }
 
@@ -125,8 +112,9 @@ static void draw_caustic(const diagram *d, const fan *f)
 {
     for (int i = 0; i + 1 < f->crossing_count && !cancel_asked(); i++) {
         const fan_crossing *a = &f->crossing[i], *b = &f->crossing[i + 1];
+        const ray_line line = ray_line_between(a->at, b->at);
         if (b->ray == a->ray + 1 && diagram_shows(d, a->at) && diagram_shows(d, b->at))
-            diagram_ray(d, a->at, b->at, SVG_ORANGE, 0.5, NULL);
+            diagram_ray(d, &line, SVG_ORANGE, 0.5, NULL);
     }
     for (int i = 0; i < f->crossing_count && !cancel_asked(); i++)
         diagram_dot(d, f->crossing[i].at, 1.9, SVG_ORANGE, "none");

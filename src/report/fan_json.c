@@ -1,4 +1,5 @@
 /* A fan of rays as JSON: the points of each path, where neighbours cross, and the mean focus. */
+#include "render/inspect/ray_line.h"
 #include "report/fan_writers.h"
 #include "report/json.h"
 
@@ -20,15 +21,26 @@ static json_t *path_points(const fan *f, const fan_ray *ray)
     return json_whole(list, bad == 0);
 }
 
+/* The end of the last segment's line. */
+static json_t *far_end(const fan *f, const fan_ray *ray)
+{
+    const ray_line line = ray_line_of(&f->node[ray->first + ray->count - 1]);
+    double xyzw[4];
+    ray_line_far_end(&line, xyzw);
+    return json_pack("[o,o,o,o]", json_of_real(xyzw[0]), json_of_real(xyzw[1]), json_of_real(xyzw[2]),
+                     json_of_real(xyzw[3]));
+}
+
 static json_t *ray_json(const fanned *t, const fan_ray *ray)
 {
     const double none = NAN;
-    return json_pack("{s:o,s:I,s:o,s:o,s:o,s:o,s:o,s:o}", "offset", json_of_real(ray->offset), "interfaces",
+    return json_pack("{s:o,s:I,s:o,s:o,s:o,s:o,s:o,s:o,s:o}", "offset", json_of_real(ray->offset), "interfaces",
                      (json_int_t)ray->count - 1, "end", json_of_text(fan_end_words(t, ray)), "deviation_deg",
                      json_of_real(ray->leaves ? ray->deviation_deg : none), "weight",
                      json_of_real(ray->leaves ? ray->weight : none), "axis_at",
                      json_of_real(ray->crosses_axis ? ray->axis_at : none), "direction",
-                     ray->leaves ? point(ray->exit_direction) : json_null(), "points", path_points(t->f, ray));
+                     ray->leaves ? point(ray->exit_direction) : json_null(), "points", path_points(t->f, ray),
+                     "far_end", far_end(t->f, ray));
 }
 
 static json_t *focus_json(const fan *f)

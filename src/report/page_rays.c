@@ -2,7 +2,7 @@
 #include "report/page_rays.h"
 
 #include "base/grow.h"
-#include "render/inspect/segment_place.h"
+#include "render/inspect/ray_line.h"
 #include "scene/model/render_settings.h"
 #include "scene/model/scene.h"
 #include <math.h>
@@ -17,7 +17,7 @@ typedef struct collecting {
     page_rays *r;
     const scene *s;
     camera_frame view;
-    int width, height;
+    image_frame frame;
 } collecting;
 
 static int by_weight(const void *a, const void *b)
@@ -50,18 +50,6 @@ static void name_hit(const collecting *c, page_ray *ray, const probe *p)
     snprintf(ray->surface, sizeof ray->surface, "%s: %s", scene_solid_name(c->s, h->solid), probe_face_name(p, h));
 }
 
-static vec3 end_of(const collecting *c, const ray_node *node)
-{
-    if (node->end == RAY_END_HIT)
-        return node->hit.point;
-    double reach = 10.0 * vec3_length(vec3_sub(c->view.eye, node->origin));
-    if (node->kind == RAY_CAMERA)
-        reach = 1.0; /* a point in the image */
-    if (node->kind == RAY_SHADOW)
-        reach = fmin(reach, node->light_distance);
-    return vec3_add(node->origin, vec3_scale(node->direction, reach));
-}
-
 static page_ray *add(const collecting *c, const ray_node *node, double weight, const probe *p)
 {
     page_rays *r = c->r;
@@ -75,7 +63,8 @@ static page_ray *add(const collecting *c, const ray_node *node, double weight, c
         name_hit(c, ray, p);
     else
         snprintf(ray->from, sizeof ray->from, "%s", probe_medium_name(p, node->medium));
-    ray->drawn = segment_place(&c->view, c->width, c->height, node->origin, end_of(c, node), ray->ends);
+    const ray_line line = ray_line_of(node);
+    ray->drawn = ray_line_seen(&line, &c->view, &c->frame, ray->ends);
     return ray;
 }
 
@@ -136,7 +125,7 @@ static status collect_pixel(const collecting *c, isa level, diagnostic *why)
     probe *p = NULL;
     ray_tree tree = {0};
     status code = probe_create(c->s, level, &p, why);
-    c->r->x = c->width / 2, c->r->y = c->height / 2;
+    c->r->x = c->frame.width / 2, c->r->y = c->frame.height / 2;
     THEN(code, probe_pixel(p, c->r->x, c->r->y, &tree, why));
     THEN(code, take_tree(c, &tree, p, why));
     c->r->lambda_nm = tree.lambda_nm;
@@ -147,7 +136,7 @@ static status collect_pixel(const collecting *c, isa level, diagnostic *why)
 
 status page_rays_collect(page_rays *r, const scene *s, isa level, int width, int height, diagnostic *why)
 {
-    collecting c = {r, s, camera_frame_of(s), width, height};
+    collecting c = {r, s, camera_frame_of(s), image_frame_of(width, height, 0.0)};
     for (size_t i = 0; i < s->beam_count; i++)
         r->beams |= s->beams[i].visible != 0;
     TRY(r->beams ? beams_each_ray(s, level, 0, take_beam_ray, &c, why) : collect_pixel(&c, level, why));

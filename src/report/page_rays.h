@@ -9,8 +9,8 @@ enum { PAGE_RAYS_MAX = 300, PAGE_NAME_MAX = 64 };
 
 typedef struct page_ray {
     ray_node node;
-    vec3 ends[2];  /* segment_place */
-    bool drawn;    /* some of it is in front of the camera */
+    vec3 ends[2];  /* ray_line_seen */
+    bool drawn;    /* some of it is in the image */
     double weight; /* share of its light at its start */
     double rgb[3]; /* of a beam's line, linear */
     double power, lambda_nm;

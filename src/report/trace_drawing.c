@@ -21,11 +21,6 @@ static const ray_style styles[] = {
 };
 static const ray_style blocked = {SVG_GREY, "blocked", "5,3"};
 
-typedef struct drawing {
-    const traced *t;
-    double sky_length; /* drawn length of rays to the sky, scene units */
-} drawing;
-
 /* The weight of a shadow ray is that of its parent, because its own throughput is a radiance. */
 static double weight_of(const ray_tree *tree, const ray_node *node)
 {
@@ -37,15 +32,6 @@ static double weight_of(const ray_tree *tree, const ray_node *node)
 static vec3 along(const ray_node *node, double length)
 {
     return vec3_add(node->origin, vec3_scale(node->direction, length));
-}
-
-static vec3 end_of(const drawing *a, const ray_node *node)
-{
-    if (node->end == RAY_END_HIT)
-        return node->hit.point;
-    if (node->kind == RAY_SHADOW)
-        return along(node, node->light_distance);
-    return along(node, diagram_is_cut(node) ? 0.5 * a->sky_length : a->sky_length);
 }
 
 /* Marks the solids that the rays of the tree hit or pass through. */
@@ -153,28 +139,27 @@ static section_plane other_plane(const ray_tree *tree, const section_plane *inci
     return diagram_plane(tree->node[0].origin, vec3_normalize(vec3_make(d.x, 0, d.z)), vec3_make(0, 1, 0));
 }
 
-static void draw_node(const diagram *d, const drawing *a, const ray_node *node)
+static void draw_node(const diagram *d, const ray_tree *tree, const ray_node *node)
 {
-    const double weight = weight_of(a->t->tree, node);
+    const double weight = weight_of(tree, node);
     const ray_style *style = node->end == RAY_END_BLOCKED ? &blocked : &styles[node->kind];
     if (weight < LIGHTEST)
         return;
-    const vec3 end = end_of(a, node);
-    diagram_ray(d, node->origin, end, style->color, node->kind == RAY_SHADOW ? 0.3 * weight : weight,
+    const ray_line line = diagram_line_of(d, node);
+    diagram_ray(d, &line, style->color, node->kind == RAY_SHADOW ? 0.3 * weight : weight,
                 diagram_is_cut(node) ? DIAGRAM_CUT : style->dashes);
     if (node->end == RAY_END_SKY)
-        diagram_arrow(d, node->origin, end, style->color, weight);
+        diagram_arrow(d, &line, style->color, weight);
 }
 
 /* In drawing order: shadow rays first, the camera ray on top. */
-static void draw_tree(const diagram *d, const drawing *a)
+static void draw_tree(const diagram *d, const ray_tree *tree)
 {
-    const ray_tree *tree = a->t->tree;
     const ray_kind order[] = {RAY_SHADOW, RAY_REFLECT, RAY_REFRACT, RAY_CAMERA};
     for (int k = 0; k < 4; k++)
         for (size_t i = 0; i < tree->count && !cancel_asked_at(i); i++)
             if (tree->node[i].kind == order[k])
-                draw_node(d, a, &tree->node[i]);
+                draw_node(d, tree, &tree->node[i]);
     for (size_t i = 0; i < tree->count; i++) {
         const ray_node *node = &tree->node[i];
         if (node->end == RAY_END_HIT && node->hit.tir && weight_of(tree, node) >= LIGHTEST)
@@ -184,16 +169,14 @@ static void draw_tree(const diagram *d, const drawing *a)
         diagram_dot(d, tree->node[0].hit.point, 2.2, SVG_INK, "none");
 }
 
-static status draw_view(const drawing *a, FILE *out, const section_plane *plane, const diagram_frame *frame,
+static status draw_view(const traced *t, FILE *out, const section_plane *plane, const diagram_frame *frame,
                         const char *caption, diagnostic *why)
 {
     diagram d;
-    drawing own = *a;
-    const diagram_box box = box_of(a->t, plane);
-    status result = diagram_begin(&d, out, a->t->p, a->t->s, plane, &box, frame, caption, why);
-    own.sky_length = 0.13 * hypot(d.plane.u1 - d.plane.u0, d.plane.v1 - d.plane.v0);
+    const diagram_box box = box_of(t, plane);
+    status result = diagram_begin(&d, out, t->p, t->s, plane, &box, frame, caption, why);
     if (result == STATUS_OK)
-        draw_tree(&d, &own);
+        draw_tree(&d, t->tree);
     THEN(result, cancel_check(why));
     diagram_end(&d);
     return result;
@@ -226,19 +209,18 @@ status trace_write_drawing(const traced *t, FILE *out, diagnostic *why)
 {
     const double side = 470.0, full = DIAGRAM_BEFORE + side + DIAGRAM_BEHIND,
                  foot = DIAGRAM_ABOVE + side + DIAGRAM_BELOW;
-    const drawing a = {.t = t};
     char caption[160];
     const double media = diagram_media_key(NULL, t->p, t->s, DIAGRAM_BEFORE, 2.0 * full, foot + 36.0);
     svg_begin(out, 2.0 * full, media + 32.0, t->s->title && t->s->title[0] ? t->s->title : NULL);
     const section_plane incidence = plane_of_incidence(t->tree);
     const diagram_frame first = {DIAGRAM_BEFORE, DIAGRAM_ABOVE, side, side};
-    status result = draw_view(&a, out, &incidence, &first,
+    status result = draw_view(t, out, &incidence, &first,
                               t->tree->node[0].end == RAY_END_HIT ? "plane of incidence of the first hit"
                                                                   : "vertical plane through the ray",
                               why);
     const section_plane other = other_plane(t->tree, &incidence, caption, sizeof caption);
     const diagram_frame second = {full + DIAGRAM_BEFORE, DIAGRAM_ABOVE, side, side};
-    THEN(result, draw_view(&a, out, &other, &second, caption, why));
+    THEN(result, draw_view(t, out, &other, &second, caption, why));
     draw_key(out, DIAGRAM_BEFORE, foot + 14.0);
     diagram_media_key(out, t->p, t->s, DIAGRAM_BEFORE, 2.0 * full, foot + 36.0);
     snprintf(

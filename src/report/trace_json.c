@@ -1,5 +1,6 @@
 /* A ray tree as JSON. */
 #include "base/cancel.h"
+#include "render/inspect/ray_line.h"
 #include "report/json.h"
 #include "report/trace_writers.h"
 #include "scene/model/open.h"
@@ -85,6 +86,8 @@ static bool write_hit(const traced *t, FILE *out, const ray_hit *h)
 static bool write_extras(const traced *t, FILE *out, const ray_node *node)
 {
     bool good = true;
+    const ray_line line = ray_line_of(node);
+    double far_end[4];
     if (scene_settings(t->s)->polarisation)
         write_list(out, "stokes", node->stokes, 4);
     if (node->kind == RAY_SHADOW && node->light >= 0) {
@@ -95,6 +98,8 @@ static bool write_extras(const traced *t, FILE *out, const ray_node *node)
     write_list(out, "brought", node->brought, 3);
     if (node->kind == RAY_SHADOW)
         write_number(out, "let_through", node->let_through);
+    ray_line_far_end(&line, far_end);
+    write_list(out, "far_end", far_end, 4);
     return good;
 }
 

@@ -1,7 +1,7 @@
 /* Lines with soft edges, tested by pixel against the distance of opaque surfaces. */
 #include "render/inspect/beam_drawing.h"
 
-#include "render/inspect/segment_place.h"
+#include "render/inspect/ray_line.h"
 #include "scene/model/camera.h"
 #include "scene/model/medium.h"
 #include "scene/model/params.h"
@@ -18,6 +18,7 @@ typedef struct beam_canvas {
     const float *distance;
     image *img;
     camera_frame view;
+    image_frame frame;
     double half_width; /* of a line, px */
 } beam_canvas;
 
@@ -46,13 +47,18 @@ static void blend(beam_canvas *c, int x, int y, double distance, double cover, c
         at[k] = (float)(at[k] * (1.0 - share) + rgb[k] * share);
 }
 
-/* The distance at a share of the line a .. b in the image: 1 / z is linear there, and z under parallel rays. */
-static double distance_along(const beam_canvas *c, vec3 a, vec3 b, double t)
+/* The distance from the camera in a pixel at a share of the line a .. b in the image, whose z are depths: along it 1 / z
+ * is linear in perspective, and z under parallel rays. */
+static double distance_at(const beam_canvas *c, int x, int y, vec3 a, vec3 b, double t)
 {
-    return c->view.parallel ? (1.0 - t) * a.z + t * b.z : 1.0 / ((1.0 - t) / a.z + t / b.z);
+    if (c->view.parallel)
+        return t > 0.0 ? (1.0 - t) * a.z + t * b.z : a.z;
+    const double u = ((x + 0.5) / c->img->width * 2.0 - 1.0) * c->view.half_width;
+    const double v = (1.0 - (y + 0.5) / c->img->height * 2.0) * c->view.half_height;
+    return sqrt(1.0 + u * u + v * v) / ((1.0 - t) / a.z + t / b.z);
 }
 
-/* The pixels near a line a .. b, whose z are distances from the eye. */
+/* The pixels near a line a .. b. */
 static void draw_line(beam_canvas *c, vec3 a, vec3 b, double strength, const double rgb[3])
 {
     const double dx = b.x - a.x, dy = b.y - a.y, size = dx * dx + dy * dy, reach = c->half_width + 1.0;
@@ -65,7 +71,7 @@ static void draw_line(beam_canvas *c, vec3 a, vec3 b, double strength, const dou
             const double t = size > 0.0 ? fmin(1.0, fmax(0.0, (px * dx + py * dy) / size)) : 0.0;
             const double away = hypot(px - t * dx, py - t * dy), cover = fmin(1.0, c->half_width + 0.5 - away);
             if (cover > 0.0)
-                blend(c, x, y, distance_along(c, a, b, t), cover * strength, rgb);
+                blend(c, x, y, distance_at(c, x, y, a, b, t), cover * strength, rgb);
         }
 }
 
@@ -82,11 +88,9 @@ static status draw_ray(void *context, const beam_ray *ray, const ray_tree *tree,
         const ray_node *node = &tree->node[i];
         if (node->end != RAY_END_HIT && node->end != RAY_END_SKY)
             continue;
-        const double reach = 10.0 * vec3_length(vec3_sub(c->view.eye, node->origin));
-        const vec3 to =
-            node->end == RAY_END_HIT ? node->hit.point : vec3_add(node->origin, vec3_scale(node->direction, reach));
+        const ray_line line = ray_line_of(node);
         vec3 ends[2];
-        if (segment_place(&c->view, c->img->width, c->img->height, node->origin, to, ends))
+        if (ray_line_seen(&line, &c->view, &c->frame, ends))
             draw_line(c, ends[0], ends[1], 0.25 + 0.75 * sqrt(fmin(1.0, beam_share(node) / start)), rgb);
     }
     return STATUS_OK;
@@ -96,5 +100,7 @@ status beams_draw(const scene *s, isa level, const float *distance, image *img, 
 {
     beam_canvas c = {.s = s, .distance = distance, .img = img, .view = camera_frame_of(s)};
     c.half_width = fmax(0.6, img->height / 800.0);
+    /* A line whose middle is just outside the image still covers pixels. */
+    c.frame = image_frame_of(img->width, img->height, c.half_width + 1.0);
     return beams_each_ray(s, level, 0, draw_ray, &c, why);
 }

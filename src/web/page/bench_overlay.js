@@ -6,7 +6,8 @@
 
 import { labelSize } from './display.js';
 import { digits, svg } from './ui.js';
-import { clipBox, clipNear, distance } from './ray_overlay.js';
+import { lineBetween, pointAt, seenLine } from './ray_line.js';
+import { distance } from './ray_overlay.js';
 import { fanMarks } from './bench_fan_marks.js';
 import { isCut } from './ray_tree.js';
 import { add, length, minus, times } from './ray_vectors.js';
@@ -30,23 +31,21 @@ export function createBenchOverlay(lab, bench) {
     layer.replaceChildren(
       ...pieces.map((each) => line(each, 'bench-halo')),
       ...pieces.map((each) => line(each, each.segment === chosen ? 'bench-ray chosen' : 'bench-ray')),
-      ...(bench.fan ? fanMarks(bench.fan, 2 * (lab.state?.camera?.distance || 1), { stroke, dot }) : []),
+      ...(bench.fan ? fanMarks(bench.fan, { stroke, dot }) : []),
       ...(bench.screen ? outline(bench.screen) : []),
       ...(chosen ? atHit(chosen) : []),
       ...measured(points),
     );
   }
 
-  function flat(from, to) {
-    const camera = lab.state?.camera;
-    const seen = camera && clipNear(from, to, camera, 1e-4 * (camera.distance || 1));
-    const ends = seen && seen.map((point) => lab.view.project(point));
-    if (!ends || !ends[0] || !ends[1]) return null;
-    return clipBox([ends[0].x, ends[0].y], [ends[1].x, ends[1].y], lab.view.width, lab.view.height);
+  /* The part of a line on the canvas. */
+  function seen(line) {
+    const { view, state } = lab;
+    return state?.camera && view.width ? seenLine(line, state.camera, view, view.frame()) : null;
   }
 
   function piece(segment) {
-    const ends = flat(segment.from, segment.to);
+    const ends = seen(segment.line);
     return ends && { segment, a: ends[0], b: ends[1] };
   }
 
@@ -58,8 +57,8 @@ export function createBenchOverlay(lab, bench) {
     return svg('line', attributes);
   }
 
-  function stroke(from, to, name) {
-    const ends = flat(from, to);
+  function stroke(line, name) {
+    const ends = seen(line);
     return ends ? [svg('line', { class: name, ...at(ends[0], ends[1]) })] : [];
   }
 
@@ -78,13 +77,13 @@ export function createBenchOverlay(lab, bench) {
   }
 
   /* The normal to both sides of the surface, and the angles. */
-  function atHit({ one, from, to }) {
+  function atHit({ one }) {
     const { hit } = one.node;
     if (!hit) return [];
-    const arm = times(hit.normal, Math.max(0.25 * length(minus(to, from)), 0.06 * (lab.state.camera?.distance || 1)));
+    const arm = times(hit.normal, Math.max(0.25 * hit.t, 0.06 * (lab.state.camera?.distance || 1)));
     const second = hit.opaque ? 'opaque' : hit.tir ? 'total reflection' : degrees(hit.cos_t, 5);
     return [
-      ...stroke(minus(hit.point, arm), add(hit.point, arm), 'bench-normal'),
+      ...stroke(lineBetween(minus(hit.point, arm), add(hit.point, arm)), 'bench-normal'),
       ...dot(hit.point, 'bench-hit'),
       ...label(hit.point, `${degrees(hit.cos_i, 5)} → ${second}`),
     ];
@@ -92,35 +91,40 @@ export function createBenchOverlay(lab, bench) {
 
   function measured(points) {
     return points.flatMap((point, i) => [
-      ...(i ? stroke(points[i - 1], point, 'bench-measure') : []),
+      ...(i ? stroke(lineBetween(points[i - 1], point), 'bench-measure') : []),
       ...dot(point, 'bench-point'),
       ...label(point, i ? digits(length(minus(point, points[i - 1])), 5) : '0'),
     ]);
   }
 
   function outline({ corners }) {
-    return corners.flatMap((corner, i) => stroke(corner, corners[(i + 1) % corners.length], 'bench-screen'));
+    return corners.flatMap((corner, i) =>
+      stroke(lineBetween(corner, corners[(i + 1) % corners.length]), 'bench-screen'),
+    );
   }
 
   function nearest(point) {
     let best = null;
     let least = NEAR_PX / lab.view.scale;
-    for (const { segment, a, b } of pieces) {
-      const away = distance([point.x, point.y], a, b);
-      if (away < least) [best, least] = [segment, away];
+    for (const piece of pieces) {
+      const away = distance([point.x, point.y], piece.a, piece.b);
+      if (away < least) [best, least] = [piece, away];
     }
-    return best && { segment: best, at: snapped(best, point) };
+    return best && { segment: best.segment, at: snapped(best, point) };
   }
 
-  /* An end of the segment, or the point on it whose image is nearest. */
-  function snapped({ from, to }, point) {
+  /* An end of the segment, or the point on its drawn part whose image is nearest. */
+  function snapped({ segment: { line, one, tree }, a, b }, point) {
     const away = (place) => {
       const seen = lab.view.project(place);
       return seen ? Math.hypot(seen.x - point.x, seen.y - point.y) : Infinity;
     };
-    const end = [from, to].find((each) => away(each) * lab.view.scale < POINT_PX);
+    const ends = one.node.hit ? [line.from, one.node.hit.point] : [line.from];
+    const end = ends.find((each) => away(each) * lab.view.scale < POINT_PX);
     if (end) return end;
-    const along = (t) => add(from, times(minus(to, from), t));
+    const [first, last] = [a[2], b[2]];
+    const along = (t) =>
+      pointAt(line, Number.isFinite(last) ? first + (last - first) * t : first + (tree.reach * t) / (1 - t));
     let [low, high] = [0, 1];
     for (let i = 0; i < 60; i++) {
       const [a, b] = [low + (high - low) / 3, high - (high - low) / 3];

@@ -1,14 +1,12 @@
 /* The rays of the scene's beams, in world space: requested again when the scene changes, not when the camera moves.
  *
  * exports: createBenchRays(lab) -> {segments, error, on(f)}
- *   segments: [{beam, ray: {number, lambda_nm, power, color}, tree, one, from, to, power, css}] in the order of the
- *   reply; one: a ray of ray_tree.js; power: at its start */
+ *   segments: [{beam, ray: {number, lambda_nm, power, color}, tree, one, line, power, css}] in the order of the reply;
+ *   one: a ray of ray_tree.js, and its line; power: at its start */
 
 import { toByte } from './ui.js';
 import { buildTree } from './ray_tree.js';
 import { mean } from './ray_vectors.js';
-
-const TO_SKY = 2.5; /* rays that leave a lens are seen beyond their focus */
 
 export function createBenchRays(lab) {
   const listeners = new Set();
@@ -50,15 +48,14 @@ export function createBenchRays(lab) {
 
 function ofBeam({ name, rays }) {
   return rays.flatMap((ray) => {
-    const tree = buildTree({ root: ray.root }, { toSky: TO_SKY });
+    const tree = buildTree({ root: ray.root });
     const css = `rgb(${ray.color.map(toByte).join(' ')})`;
     return tree.rays.map((one) => ({
       beam: name,
       ray,
       tree,
       one,
-      from: one.from,
-      to: one.to,
+      line: one.line,
       power: ray.power * mean(one.node.throughput),
       css,
     }));

@@ -3,7 +3,8 @@
 
 import { button, check, count, digits, element, facts, notice, number, replace, toByte } from './ui.js';
 import { plot } from './plot.js';
-import { add, length, minus, times, unit } from './ray_vectors.js';
+import { pointAt } from './ray_line.js';
+import { add, length, times, unit } from './ray_vectors.js';
 
 const PARTS = [
   ['Centre x', 0],
@@ -69,15 +70,15 @@ export function createBenchScreen(lab, bench, changed) {
     changed();
   }
 
-  /* Across the chosen segment, at its end. */
+  /* Across the chosen segment, in its middle; of one that leaves the scene, as far on as the hits extend. */
   function place() {
     const { chosen } = bench;
     if (!chosen) {
       replace(result, notice('Choose a segment of a beam first: click it in the image with the tool Bench.'));
       return;
     }
-    const normal = unit(minus(chosen.to, chosen.from)) || [1, 0, 0];
-    const middle = times(add(chosen.from, chosen.to), 0.5);
+    const normal = unit(chosen.line.along) || [1, 0, 0];
+    const middle = pointAt(chosen.line, Math.min(chosen.line.end / 2, chosen.tree.reach));
     [...middle, ...normal].forEach((value, i) => {
       values[i] = Number(value.toPrecision(6));
       fields[i].set(values[i]);

@@ -6,12 +6,12 @@
  *                                      draw: after a move of the camera; count: rays that are drawn; left: rays
  *                                      omitted
  *                                      for their low weight or their number
- *   clipNear, clipBox, distance        of lines: in front of the camera, within the image, from a point
+ *   distance(p, a, b)                  of a point from a line in the image
  *   drawn(tree) -> rays                the rays that drawings show */
 
 import { svg } from './ui.js';
 import { lineClass } from './ray_tree.js';
-import { add, dot, length, minus, times } from './ray_vectors.js';
+import { seenLine } from './ray_line.js';
 
 const LIGHTEST = 0.002; /* weight below which rays are not drawn */
 const LINES_MAX = 1500;
@@ -95,12 +95,9 @@ export function createRayOverlay(lab) {
   }
 
   function piece(ray) {
-    const camera = lab.state?.camera;
-    const seen = camera && clipNear(ray.from, ray.to, camera, Math.max(1e-8, 1e-4 * tree.reach));
-    const ends = seen && seen.map((point) => lab.view.project(point));
-    if (!ends || !ends[0] || !ends[1]) return null;
-    const clipped = clipBox([ends[0].x, ends[0].y], [ends[1].x, ends[1].y], lab.view.width, lab.view.height);
-    return clipped && { ray, a: clipped[0], b: clipped[1] };
+    const { view, state } = lab;
+    const ends = state?.camera && view.width ? seenLine(ray.line, state.camera, view, view.frame()) : null;
+    return ends && { ray, a: ends[0], b: ends[1] };
   }
 
   function mark(ray) {
@@ -119,34 +116,6 @@ export function createRayOverlay(lab) {
     }
     return best;
   }
-}
-
-/* The part in front of the camera; null for none. */
-export function clipNear(a, b, camera, near) {
-  const size = length(camera.forward);
-  const depth = (p) => dot(minus(p, camera.eye), camera.forward) / size;
-  const [da, db] = [depth(a), depth(b)];
-  if (da < near && db < near) return null;
-  const between = () => add(a, times(minus(b, a), (near - da) / (db - da)));
-  return [da < near ? between() : a, db < near ? between() : b];
-}
-
-/* Liang and Barsky: the part inside the image; null for none. */
-export function clipBox(a, b, width, height) {
-  const [dx, dy] = [b[0] - a[0], b[1] - a[1]];
-  let [first, last] = [0, 1];
-  for (const [p, q] of [
-    [-dx, a[0]],
-    [dx, width - a[0]],
-    [-dy, a[1]],
-    [dy, height - a[1]],
-  ]) {
-    if (p === 0 && q < 0) return null;
-    if (p < 0) first = Math.max(first, q / p);
-    if (p > 0) last = Math.min(last, q / p);
-  }
-  const at = (t) => [a[0] + t * dx, a[1] + t * dy];
-  return first <= last ? [at(first), at(last)] : null;
 }
 
 export function distance(p, a, b) {

@@ -6,6 +6,7 @@
 
 import { digits, element, svg, unique } from './ui.js';
 import { lineClass } from './ray_tree.js';
+import { flatLine, pointAt } from './ray_line.js';
 import { drawn, strokeWidth } from './ray_overlay.js';
 import { hull } from './ray_solids.js';
 import { dot, unit } from './ray_vectors.js';
@@ -52,7 +53,7 @@ export function createRayPlot({ title, onmark, onchoose }) {
     const flat = (point) => [dot(point, plane.u), dot(point, plane.v)];
     const outlines = solids.map((solid) => ({ ...solid, parts: solid.points.map((points) => hull(points.map(flat))) }));
     const rays = drawn(tree);
-    const map = fit(windowOf(rays, outlines, flat));
+    const map = fit(windowOf(rays, outlines, flat, tree.reach));
     const inside = unique('plot');
     drawing.append(
       svg('clipPath', { id: inside }, svg('rect', map.frame)),
@@ -61,7 +62,7 @@ export function createRayPlot({ title, onmark, onchoose }) {
         'g',
         { 'clip-path': `url(#${inside})` },
         outlines.flatMap((solid) => outline(solid, map)),
-        rays.map((ray) => line(ray, flat, map)),
+        rays.flatMap((ray) => line(ray, plane, map)),
       ),
     );
   }
@@ -72,8 +73,10 @@ export function createRayPlot({ title, onmark, onchoose }) {
     );
   }
 
-  function line(ray, flat, map) {
-    const [a, b] = [map.at(flat(ray.from)), map.at(flat(ray.to))];
+  function line(ray, plane, map) {
+    const ends = flatLine(ray.line, plane, map.window);
+    if (!ends) return [];
+    const [a, b] = ends.map(map.at);
     const one = svg('line', {
       class: lineClass(ray),
       x1: a[0],
@@ -83,7 +86,7 @@ export function createRayPlot({ title, onmark, onchoose }) {
       'stroke-width': strokeWidth(ray),
     });
     lines.set(ray, one);
-    return one;
+    return [one];
   }
 
   function mark(ray) {
@@ -94,7 +97,7 @@ export function createRayPlot({ title, onmark, onchoose }) {
 }
 
 /* The bounds of the rays' hits, of the solids there, and of the camera if it is near. */
-function windowOf(rays, outlines, flat) {
+function windowOf(rays, outlines, flat, reach) {
   const box = [Infinity, Infinity, -Infinity, -Infinity];
   const take = ([u, v], into = box) =>
     into.splice(0, 4, Math.min(into[0], u), Math.min(into[1], v), Math.max(into[2], u), Math.max(into[3], v));
@@ -103,11 +106,12 @@ function windowOf(rays, outlines, flat) {
   for (const solid of outlines) if (hit.has(solid.name)) solid.parts.flat().forEach((point) => take(point));
   const near = size(box);
   for (const ray of rays) {
-    if (ray.node.hit && (near === 0 || within(flat(ray.to), box, near))) take(flat(ray.to));
-    if (!ray.node.hit && !ray.parent) take(flat(ray.to));
+    const { hit } = ray.node;
+    if (hit && (near === 0 || within(flat(hit.point), box, near))) take(flat(hit.point));
+    if (!hit && !ray.parent) take(flat(pointAt(ray.line, 0.5 * reach)));
   }
   const wide = [...box];
-  take(flat(rays[0].from), wide);
+  take(flat(rays[0].line.from), wide);
   return near === 0 || size(wide) < 4 * size(box) ? wide : box;
 }
 
@@ -132,8 +136,12 @@ function fit(box) {
       round(frame.x + frame.width / 2 + scale * (u - middle[0])),
       round(frame.y + frame.height / 2 - scale * (v - middle[1])),
     ],
-    low: [middle[0] - frame.width / 2 / scale, middle[1] - frame.height / 2 / scale],
-    high: [middle[0] + frame.width / 2 / scale, middle[1] + frame.height / 2 / scale],
+    window: {
+      left: middle[0] - frame.width / 2 / scale,
+      top: middle[1] + frame.height / 2 / scale,
+      right: middle[0] + frame.width / 2 / scale,
+      bottom: middle[1] - frame.height / 2 / scale,
+    },
   };
 }
 
@@ -150,19 +158,19 @@ function niceStep(across) {
   return power * (times > 5 ? 10 : times > 2 ? 5 : times > 1 ? 2 : 1);
 }
 
-function axes({ frame, at, low, high }, plane) {
-  const step = niceStep(high[0] - low[0]);
+function axes({ frame, at, window: { left, top, right, bottom: lowest } }, plane) {
+  const step = niceStep(right - left);
   const bottom = frame.y + frame.height;
   const text = (x, y, anchor, words) => svg('text', { x, y, 'text-anchor': anchor }, words);
-  const along = ticks(low[0], high[0], step).map((u) => {
-    const [x] = at([u, low[1]]);
+  const along = ticks(left, right, step).map((u) => {
+    const [x] = at([u, lowest]);
     return [
       svg('path', { class: 'ray-grid', d: `M${x} ${frame.y}V${bottom}` }),
       text(x, bottom + 13, 'middle', digits(u)),
     ];
   });
-  const up = ticks(low[1], high[1], step).map((v) => {
-    const [, y] = at([low[0], v]);
+  const up = ticks(lowest, top, step).map((v) => {
+    const [, y] = at([left, v]);
     return [
       svg('path', { class: 'ray-grid', d: `M${frame.x} ${y}h${frame.width}` }),
       text(frame.x - 5, y + 3.5, 'end', digits(v)),

@@ -1,9 +1,9 @@
 /* A pixel's ray tree from /api/trace as a list, and the texts for each ray. Pure functions without page and server.
  *
  * exports:
- *   buildTree(answer, {toSky}) -> {answer, rays, roots, reach}
- *     rays in table order; each {index, node, parent, level, children, weight, from, to}; weight: 0..1 of the camera
- *     ray's; reach: extent of the hits, toSky times that is the drawn length of rays that hit nothing
+ *   buildTree(answer) -> {answer, rays, roots, reach}
+ *     rays in table order; each {index, node, parent, level, children, weight, line}; weight: 0..1 of the camera ray's;
+ *     line: of ray_line.js, of a ray that was cut off a short stub; reach: extent of the hits
  *   isCut(ray)                                       whether it was cut off by depth or weight
  *   lineClass(ray)                                   the class of its line in a drawing
  *   kinds                                            [class, description] of each, for legends
@@ -11,7 +11,10 @@
  *   row */
 
 import { digits } from './ui.js';
-import { add, length, mean, times } from './ray_vectors.js';
+import { lineTo } from './ray_line.js';
+import { length, mean } from './ray_vectors.js';
+
+const CUT = 0.15; /* the stub of a ray that was cut off, by the extent of the hits */
 
 export const kinds = [
   ['ray-camera', 'camera ray'],
@@ -40,7 +43,7 @@ export function lineClass(ray) {
   return ray.node.end === 'blocked' ? 'ray ray-blocked' : `ray ray-${ray.node.kind}`;
 }
 
-export function buildTree(answer, { toSky = 0.5 } = {}) {
+export function buildTree(answer) {
   const first = answer.roots || [answer.root];
   const all = mean(first[0].throughput) || 1;
   const rays = [];
@@ -55,8 +58,8 @@ export function buildTree(answer, { toSky = 0.5 } = {}) {
   const roots = first.map((node) => visit(node, null, 1));
   const reach = extent(rays);
   for (const ray of rays) {
-    ray.from = ray.node.origin;
-    ray.to = endOf(ray, reach, toSky);
+    const { origin: from, direction, far_end: farEnd } = ray.node;
+    ray.line = isCut(ray) ? { from, along: direction, end: CUT * reach } : lineTo(from, farEnd);
   }
   return { answer, rays, roots, reach };
 }
@@ -75,13 +78,6 @@ function extent(rays) {
     return high - low;
   });
   return Math.max(length(sides), 0.25 * hits[0].t);
-}
-
-function endOf(ray, reach, toSky) {
-  const { node } = ray;
-  if (node.hit) return node.hit.point;
-  if (node.kind === 'shadow') return add(node.origin, times(node.direction, node.light_distance));
-  return add(node.origin, times(node.direction, (isCut(ray) ? 0.15 : toSky) * reach));
 }
 
 /* --- texts --- */

@@ -7,6 +7,8 @@
  *   view.toScreen(x, y)                 image pixels to {x, y} in CSS pixels from the upper left corner of the stage
  *   view.fromEvent(event)               {x, y, inside} in image pixels, not rounded: the pixel is Math.floor of each
  *   view.scale                          CSS pixels per image pixel
+ *   view.frame()                        {left, top, right, bottom}: the canvas in image pixels; drawings over the image
+ *                                       end at its edge
  *   view.layer(name)                    an SVG group over the image in image pixels (0,0 is the upper left corner of
  *   the
  *                                       first pixel); created on first use;
@@ -82,6 +84,7 @@ export function createView(root, lab) {
       return place.scale;
     },
     project,
+    frame,
     toScreen: (x, y) => place.toScreen(x, y),
     fromEvent,
     layer,
@@ -133,6 +136,11 @@ export function createView(root, lab) {
       y: ((1 - along(camera.up) / (spread * camera.half_height)) * view.height) / 2,
       depth,
     };
+  }
+
+  function frame() {
+    const [upper, lower] = [place.fromScreen(0, 0), place.fromScreen(place.width, place.height)];
+    return { left: upper.x, top: upper.y, right: lower.x, bottom: lower.y };
   }
 
   function fromEvent(event) {
