@@ -1,7 +1,7 @@
 /* Tests of the one rule by which rays are drawn: what leaves the scene runs to the edge of the frame. The expected ends
  * are closed forms that share no code with the rule: the projected ray meets each edge of the frame at one point, found
- * by solving for it; of these, of the start and of the vanishing point (Hartley and Zisserman, "Multiple View Geometry",
- * 2nd edition, 8.6.1), those in front of the camera and in the frame bound the line. */
+ * by solving for it; of these, of the start and of the vanishing point (Hartley and Zisserman, "Multiple View
+ * Geometry", 2nd edition, 8.6.1), those in front of the camera and in the frame bound the line. */
 #include <math.h>
 #include <setjmp.h>
 #include <stdarg.h>
@@ -130,7 +130,7 @@ static void lines_of_random_rays_have_the_ends_of_the_closed_form(void **state)
     (void)state;
     uint64_t seed = 47;
     scene *s = empty_room("");
-    int drawn = 0, to_edge = 0, vanishing = 0, from_behind = 0;
+    int drawn = 0, to_edge = 0, vanishing = 0, at_plane = 0, from_behind = 0;
     for (int k = 0; k < LINES; k++) {
         const camera_frame v = random_camera(s, &seed);
         const image_frame f = image_frame_of(WIDTH, HEIGHT, k % 3 ? 0.0 : random_real(&seed, 0.0, 40.0));
@@ -147,13 +147,15 @@ static void lines_of_random_rays_have_the_ends_of_the_closed_form(void **state)
         for (int e = 0; e < 2; e++)
             assert_true(apart((point2){ends[e].x, ends[e].y}, wanted.at[e]) < 1e-6 * WIDTH);
         drawn++;
-        to_edge += on_edge(&f, (point2){ends[1].x, ends[1].y}, 1e-9 * WIDTH);
-        vanishing += isinf(ends[1].z);
+        const bool edge = on_edge(&f, (point2){ends[1].x, ends[1].y}, 1e-9 * WIDTH);
+        to_edge += edge;
+        vanishing += !edge && isinf(ends[1].z);
+        at_plane += !edge && v.parallel && fabs(ends[1].z) < 1e-12; /* behind it nothing is seen */
         from_behind += vec3_dot(vec3_sub(from, v.eye), v.forward) < 0.0;
     }
-    fprintf(stderr, "%d %d %d %d\n", drawn, from_behind, to_edge, vanishing);
-    assert_true(drawn > LINES / 10 && from_behind > LINES / 40);
-    assert_true(to_edge + vanishing == drawn && vanishing > drawn / 20 && to_edge > drawn / 4);
+    assert_true(drawn > LINES / 4 && from_behind > LINES / 100);
+    assert_true(to_edge > drawn / 2 && vanishing > drawn / 20 && at_plane > drawn / 50);
+    assert_int_equal(to_edge + vanishing + at_plane, drawn);
     scene_destroy(s);
 }
 
@@ -202,7 +204,7 @@ static void special_rays(void **state)
     line = endless(vec3_make(0, 0, 4), vec3_normalize(vec3_make(-1, 0.2, -5)));
     assert_true(ray_line_seen(&line, &eye, &f, ends));
     assert_ends(ends, 60, 45, 0, 45 - 0.2 / 0.75 * 45);
-    /* A segment from behind the eye to a hit in front of it begins at the right edge: x = z at x = 0.5, where z = 0.5. */
+    /* A segment from behind the eye to a hit in front of it begins at the right edge, where x = z. */
     line = ray_line_between(vec3_make(0.5, 0, -2), vec3_make(0.5, 0, 2));
     assert_true(ray_line_seen(&line, &eye, &f, ends));
     assert_ends(ends, 120, 45, 75, 45);

@@ -1,7 +1,7 @@
-// Rays that leave the scene run to the edge of the canvas: twenty random beams over the image, a fan and a pixel's rays,
-// from several views and at several magnifications, against the closed form: the projected ray meets each edge of the
-// canvas at one point; of these, of its ends and of its vanishing point, those in front of the camera and on the canvas
-// bound the line.
+// Rays that leave the scene run to the edge of the canvas: twenty random beams over the image, a fan and a pixel's
+// rays, from several views and at several magnifications, against the closed form: the projected ray meets each edge of
+// the canvas at one point; of these, of its ends and of its vanishing point, those in front of the camera and on the
+// canvas bound the line.
 
 const dot = (a, b) => a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
 const minus = (a, b) => a.map((x, k) => x - b[k]);
@@ -17,8 +17,8 @@ function randomStream(seed) {
   };
 }
 
-/** The first and the last point of the ray from a point on the canvas; null where it does not cross it. end: distance of
- * its hit, or Infinity. */
+/** The first and the last point of the ray on the canvas; null where it does not cross it. end: distance of its hit,
+ * or Infinity. */
 function bounds({ camera, width, height, frame }, from, d, end) {
   const { eye, forward, right, up, half_width: w, half_height: h, parallel } = camera;
   const o = minus(from, eye);
@@ -144,11 +144,14 @@ export const cases = {
   'twenty random beams': async (t) => {
     const lab = await t.lab('scenes/rod.yaml');
     const random = randomStream(47);
-    const set = {};
+    const set = { 'ground.visible': 'off' };
     for (let k = 0; k < 20; k++) {
       const { name } = await lab.post('/api/objects', { kind: 'beam' });
-      set[`${name}.position`] = [4 * random(), 2 + 2 * random(), 6 * random()];
-      set[`${name}.direction`] = [random(), random(), random()];
+      const position = [4 * random(), 2 + 2 * random(), 6 * random()];
+      const direction = [random(), random(), random()];
+      set[`${name}.position`] = position;
+      set[`${name}.direction`] =
+        k % 4 ? direction : minus([0.2 * direction[0], 1.5, 0.2], position); /* at the vessel */
     }
     await lab.post('/api/set', { set });
     const screen = await t.open(lab);

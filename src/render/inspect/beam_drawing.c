@@ -47,8 +47,8 @@ static void blend(beam_canvas *c, int x, int y, double distance, double cover, c
         at[k] = (float)(at[k] * (1.0 - share) + rgb[k] * share);
 }
 
-/* The distance from the camera in a pixel at a share of the line a .. b in the image, whose z are depths: along it 1 / z
- * is linear in perspective, and z under parallel rays. */
+/* The distance from the camera in a pixel at a share of the line a .. b in the image, whose z are depths: along it
+ * 1 / z is linear in perspective, and z under parallel rays. */
 static double distance_at(const beam_canvas *c, int x, int y, vec3 a, vec3 b, double t)
 {
     if (c->view.parallel)
