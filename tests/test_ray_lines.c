@@ -218,7 +218,7 @@ static void special_rays(void **state)
     line = endless(vec3_make(-1.5, 0, -1), vec3_normalize(vec3_make(1, 0, 1)));
     assert_true(ray_line_seen(&line, &parallel, &f, ends));
     assert_ends(ends, 30, 45, 120, 45);
-    /* Behind, beside, and cut. */
+    /* Behind the camera, to its right, and cut. */
     line = endless(vec3_make(0, 0, -1), vec3_make(1, 0, 0));
     assert_false(ray_line_seen(&line, &eye, &f, ends) || ray_line_seen(&line, &parallel, &f, ends));
     line = endless(vec3_make(3, 0, 1), vec3_make(1, 0, 0));
