@@ -331,15 +331,15 @@ typedef struct cuvette_request {
     void (*piece)(void *context, const cuvette_piece *piece);
     void *context; /* passed to both callbacks */
     /* keep further values of each pixel, which cost memory and time: the named layers of render.integrator aov; the
-     * number of its rays; the nanoseconds spent on it */
-    bool layers, pixel_rays, pixel_time;
+     * number of its rays; the nanoseconds spent on it; the share of its light that was cut */
+    bool layers, pixel_rays, pixel_time, pixel_cut;
 } cuvette_request;
 
 #ifdef __cplusplus
-#define CUVETTE_REQUEST                                                                           \
-    cuvette_request                                                                               \
-    {                                                                                             \
-        sizeof(cuvette_request), 0, 0, NULL, 0, NULL, 0, 0, NULL, NULL, NULL, false, false, false \
+#define CUVETTE_REQUEST                                                                                  \
+    cuvette_request                                                                                      \
+    {                                                                                                    \
+        sizeof(cuvette_request), 0, 0, NULL, 0, NULL, 0, 0, NULL, NULL, NULL, false, false, false, false \
     }
 #else
 #define CUVETTE_REQUEST ((cuvette_request){.size = sizeof(cuvette_request)})
@@ -380,8 +380,10 @@ CUVETTE_API cuvette_status cuvette_frame_write(const cuvette_frame *frame, const
  * destroyed. The request must have had layers set. */
 CUVETTE_API cuvette_status cuvette_frame_layer(const cuvette_frame *frame, const char *name, const float **values,
                                                int *channels, cuvette_diagnostic *why);
-/* Writes one number for each pixel, width * height in all: "rays" or "time" (ns), if the request had pixel_rays or
- * pixel_time set; "noise", the standard error under random paths, root mean square over the channels. */
+/* Writes one number for each pixel, width * height in all: "rays", "time" (ns) or "cut", if the request had pixel_rays,
+ * pixel_time or pixel_cut set; "noise", the standard error under random paths, root mean square over the channels.
+ * "cut" is the share of the pixel's light, by weight, of rays that render.depth or render.min_weight cut: the error of
+ * the pixel is at most that share of the brightest light that such a ray could have brought. */
 CUVETTE_API cuvette_status cuvette_frame_map(const cuvette_frame *frame, const char *name, double *values,
                                              cuvette_diagnostic *why);
 

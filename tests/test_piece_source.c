@@ -176,8 +176,8 @@ static void the_film_of_a_source_is_as_small_as_its_pieces(void **state)
     const piece_source source = {.side = 32};
     assert_int_equal(renderer_result_bytes(s, &(render_options){.source = &source}), 2 * 32 * 32 * 24);
     assert_true(renderer_result_bytes(s, NULL) >= UINT64_C(16384) * 16384 * 24);
-    const render_options maps = {.pixel_rays = true, .pixel_time = true}; /* each has a double a pixel */
-    assert_int_equal(renderer_result_bytes(s, &maps) - renderer_result_bytes(s, NULL), UINT64_C(16384) * 16384 * 16);
+    const render_options maps = {.pixel_rays = true, .pixel_time = true, .pixel_cut = true}; /* a double a pixel */
+    assert_int_equal(renderer_result_bytes(s, &maps) - renderer_result_bytes(s, NULL), UINT64_C(16384) * 16384 * 24);
     scene_destroy(s);
 }
 

@@ -83,7 +83,7 @@ _cuvette_value() # OPTION: completes its value; false for a flag
         *) _cuvette_files 'png|jpg|jpeg|pfm' ;;
         esac
         ;;
-    --rays | --time | --noise)
+    --rays | --time | --cut | --noise)
         [[ ${COMP_WORDS[1]-} == @(fan|study) ]] || _cuvette_files 'png|pfm'
         ;;
     --timeline) _cuvette_files 'json' ;;
@@ -152,7 +152,7 @@ _cuvette()
     case $command in
     render)
         if [[ $current == -* ]]; then
-            _cuvette_words --output --set --json --bits --rays --time --noise --timeline --repeat --help --usage --version
+            _cuvette_words --output --set --json --bits --rays --time --cut --noise --timeline --repeat --help --usage --version
         else
             _cuvette_files 'yaml|yml'
         fi

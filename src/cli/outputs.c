@@ -158,7 +158,7 @@ static status check_not_read(const named_file *file, const scene *s, diagnostic 
 
 static status check_file(const outputs *o, const named_file *files, size_t at, const scene *s, diagnostic *why)
 {
-    enum { TIMELINE = 4 };
+    enum { TIMELINE = 5 };
     const named_file *file = &files[at];
     if (at < TIMELINE && !(at == 0 && outputs_is_page(file->path)))
         TRY(check_image(o, file, at > 0, why));
@@ -198,10 +198,10 @@ static status check_layers(const outputs *o, const named_file *files, size_t cou
 
 status outputs_check(const outputs *o, const scene *s, diagnostic *why)
 {
-    const named_file files[] = {
-        {"-o", o->img}, {"--rays", o->rays}, {"--time", o->time}, {"--noise", o->noise}, {"--timeline", o->timeline}};
+    const named_file files[] = {{"-o", o->img},    {"--rays", o->rays},   {"--time", o->time},
+                                {"--cut", o->cut}, {"--noise", o->noise}, {"--timeline", o->timeline}};
     if (o->noise && (!integrator_traits_of(&s->render)->by_chance || s->render.paths < 2))
-        return wrong(&files[3], why, "set render.integrator to path and render.paths to 16 or more",
+        return wrong(&files[4], why, "set render.integrator to path and render.paths to 16 or more",
                      "this scene is rendered without random samples");
     for (size_t i = 0; i < sizeof files / sizeof files[0]; i++)
         if (files[i].path)
@@ -271,6 +271,8 @@ status outputs_write(const outputs *o, const scene *s, const render_result *resu
         TRY(record_map(result->pixel_rays, result->img, "rays per pixel", o->rays, why));
     if (o->time && result->pixel_ns)
         TRY(record_map(result->pixel_ns, result->img, "nanoseconds per pixel", o->time, why));
+    if (o->cut && result->pixel_cut)
+        TRY(record_map(result->pixel_cut, result->img, "share of cut light per pixel", o->cut, why));
     if (o->noise && result->variance)
         TRY(record_noise(result, o->noise, why));
     if (o->timeline && result->events)

@@ -7,8 +7,8 @@
 #include <stdio.h>
 
 typedef struct outputs {
-    const char *img, *rays, *time, *noise, *timeline, *layers; /* NULL: none; layers: a prefix */
-    int bits;                                                  /* bits per channel of a PNG: 8 or 16; 0: not given */
+    const char *img, *rays, *time, *cut, *noise, *timeline, *layers; /* NULL: none; layers: a prefix */
+    int bits; /* bits per channel of a PNG: 8, 16; 0: not given */
 } outputs;
 
 /* The folder of a path, allocated; "." for a bare name. */

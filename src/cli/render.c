@@ -5,6 +5,7 @@
 #include "cli/options.h"
 #include "cli/outputs.h"
 #include "cli/render_page.h"
+#include "job/quantities.h"
 #include "render/core/record.h"
 #include "render/inspect/beam_drawing.h"
 #include "report/page_live.h"
@@ -58,6 +59,8 @@ static const command_option options[] = {
      OPTION_FILLS(option_text, render_request, files.rays)},
     {"time", 0, "FILE", "write the render time of each pixel in ns: .png with a colour scale, or .pfm",
      OPTION_FILLS(option_text, render_request, files.time)},
+    {"cut", 0, "FILE", "write the share of each pixel's light that is cut: .png with a colour scale, or .pfm",
+     OPTION_FILLS(option_text, render_request, files.cut)},
     {"noise", 0, "FILE", "write the standard error of each pixel (path tracing): .png with a colour scale, or .pfm",
      OPTION_FILLS(option_text, render_request, files.noise)},
     {"timeline", 0, "FILE", "write start, duration and thread of each tile: .json for chrome://tracing or Perfetto",
@@ -91,7 +94,8 @@ static status check_request(void *context, diagnostic *why)
     if (request->beams && (!files->img || image_format_of(files->img) == IMAGE_PFM))
         return options_wrong("--beams", NULL, why, "add -o FILE.png or -o FILE.jpg",
                              files->img ? "a PFM file holds the film, which has no beams" : "no image is written");
-    if (files->img || files->rays || files->time || files->noise || files->timeline || files->layers || request->json)
+    if (files->img || files->rays || files->time || files->cut || files->noise || files->timeline || files->layers ||
+        request->json)
         return STATUS_OK;
     return options_wrong("render", NULL, why, "add -o FILE for the image or --json for the counts",
                          "no output is given");
@@ -127,11 +131,19 @@ static void print_time(const char *name, const double *values, size_t count)
         free(sorted);
 }
 
+/* The share of the image's light that was cut, where it is large enough to be seen. */
+static void print_cut(const job_account *f)
+{
+    const double least = 0.01, share = frame_quantity("cut_share")->read(f, -1).real[0];
+    if (share >= least)
+        printf(", %.2g %% of the light cut", 100.0 * share);
+}
+
 /* Prints the summary, one line; programs use --json. */
 static void print_summary(const job_account *f, const outputs *files)
 {
     const scene *s = f->of;
-    const char *const written[] = {files->img, files->rays, files->time, files->noise, files->timeline};
+    const char *const written[] = {files->img, files->rays, files->time, files->cut, files->noise, files->timeline};
     uint64_t rays = ray_counters_total(&f->result->counters);
     const double wall_s = job_account_wall_s(f);
     char *depth = NULL;
@@ -143,6 +155,7 @@ static void print_summary(const job_account *f, const outputs *files)
     free(depth);
     if (f->result->variance)
         printf(", rms noise %.4f", render_noise_rms(f->result));
+    print_cut(f);
     const char *before = " -> ";
     for (size_t i = 0; i < sizeof written / sizeof written[0]; i++)
         if (written[i]) {
@@ -233,6 +246,7 @@ static status render_and_write(const render_request *request, const scene *s, jo
     progress_line line;
     const render_options frame_options = {.pixel_rays = files->rays,
                                           .pixel_time = files->time,
+                                          .pixel_cut = files->cut,
                                           .timeline = files->timeline,
                                           .layers = files->layers,
                                           .usage = request->json,

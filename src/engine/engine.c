@@ -162,6 +162,7 @@ static status render_frame(stage *now, const scene *s, cuvette_frame *frame, dia
     const cuvette_request *r = now->request;
     const render_options options = {.pixel_rays = r->pixel_rays,
                                     .pixel_time = r->pixel_time,
+                                    .pixel_cut = r->pixel_cut,
                                     .layers = r->layers,
                                     .progress = watch,
                                     .piece_done = r->piece ? take_piece : NULL,

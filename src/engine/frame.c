@@ -155,14 +155,15 @@ cuvette_status cuvette_frame_map(const cuvette_frame *frame, const char *name, d
     ENGINE_CALL(frame, name, values);
     const render_result *r = frame->account.result;
     const size_t pixels = (size_t)r->img->width * (size_t)r->img->height;
-    const bool rays = strcmp(name, "rays") == 0, ns = strcmp(name, "time") == 0, noise = strcmp(name, "noise") == 0;
-    const double *found = rays ? r->pixel_rays : ns ? r->pixel_ns : noise ? r->variance : NULL;
-    if (!rays && !ns && !noise)
-        diagnose(&inner, STATUS_BAD_INPUT, "use rays, time or noise", "there is no map '%.64s'", name);
+    const bool rays = strcmp(name, "rays") == 0, ns = strcmp(name, "time") == 0, cut = strcmp(name, "cut") == 0,
+               noise = strcmp(name, "noise") == 0;
+    const double *found = rays ? r->pixel_rays : ns ? r->pixel_ns : cut ? r->pixel_cut : noise ? r->variance : NULL;
+    if (!rays && !ns && !cut && !noise)
+        diagnose(&inner, STATUS_BAD_INPUT, "use rays, time, cut or noise", "there is no map '%.64s'", name);
     else if (!found)
         diagnose(&inner, STATUS_BAD_INPUT,
                  noise ? "set render.integrator to path and render.paths to 16 or more"
-                       : "set pixel_rays or pixel_time in the request",
+                       : "set pixel_rays, pixel_time or pixel_cut in the request",
                  "the frame has no map '%s'", name);
     if (!found)
         return engine_report(STATUS_BAD_INPUT, &inner, why);

@@ -215,6 +215,7 @@ static status trace(work *w, const scene *s, bool maps, render_result **out, dia
     if (maps) {
         options.pixel_rays = w->requested->pixel_rays;
         options.pixel_time = w->requested->pixel_time;
+        options.pixel_cut = w->requested->pixel_cut;
         options.timeline = w->requested->timeline;
         options.layers = w->requested->layers;
     }
@@ -276,6 +277,7 @@ static status add_maps(work *w, const scene *s, job_account *a, diagnostic *why)
         const render_result bare = *measured;
         measured->pixel_rays = result->pixel_rays, result->pixel_rays = bare.pixel_rays;
         measured->pixel_ns = result->pixel_ns, result->pixel_ns = bare.pixel_ns;
+        measured->pixel_cut = result->pixel_cut, result->pixel_cut = bare.pixel_cut;
         measured->events = result->events, result->events = bare.events;
         measured->event_count = result->event_count, result->event_count = bare.event_count;
         measured->layers = result->layers, result->layers = bare.layers;
@@ -359,7 +361,8 @@ status job_repeat(job *j, const scene *s, size_t frames, const render_options *o
 {
     static const render_options none = {.progress = NULL};
     const render_options *requested = options ? options : &none;
-    const bool maps = requested->pixel_rays || requested->pixel_time || requested->timeline || requested->layers;
+    const bool maps = requested->pixel_rays || requested->pixel_time || requested->pixel_cut || requested->timeline ||
+                      requested->layers;
     const bool extra = frames > 1 && maps;
     work w = {.of = j, .requested = requested, .frames = frames + extra};
     cancel_token token = {.ask = is_stopped, .context = j};

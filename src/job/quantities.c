@@ -1,5 +1,6 @@
 /* The table of quantities and the functions that read them from an account. */
 #include "job/quantities.h"
+#include "render/core/path_counts.h"
 #include "scene/model/scene.h"
 
 #include <math.h>
@@ -51,6 +52,27 @@ static double mean_cut(const int64_t one[3], const int64_t other[3])
     for (int channel = 0; channel < 3; channel++)
         sum += (double)one[channel] + (other ? (double)other[channel] : 0.0);
     return sum / (3 * COUNTERS_CUT_ONE);
+}
+
+/* Mean over the pixels of the throughput that was cut. The camera rays of a pixel have 1 in all, half of it behind an
+ * analyser; those of a pilot (render.error) have as much again. */
+static double cut_share(const job_account *a)
+{
+    const render_settings *r = &a->of->render;
+    const ray_counters *c = &a->result->counters;
+    const double begins = r->polarisation && a->of->camera.analyser != ANALYSER_NONE ? 0.5 : 1.0,
+                 passes = path_counts_apply(r) ? 2.0 : 1.0;
+    return mean_cut(c->cut_depth_throughput, c->cut_weight_throughput) /
+           ((double)r->width * (double)r->height * begins * passes);
+}
+
+static double largest_cut(const render_result *r)
+{
+    const size_t pixels = r->pixel_cut ? (size_t)r->img->width * (size_t)r->img->height : 0;
+    double largest = pixels > 0 ? 0.0 : (double)NAN;
+    for (size_t i = 0; i < pixels; i++)
+        largest = fmax(largest, r->pixel_cut[i]);
+    return largest;
 }
 
 /* Mean over all pixels, by channel; NaN without random paths. */
@@ -130,6 +152,12 @@ static int64_t counted(const job_account *a, uint64_t count)
  Q(cut_throughput, "rays", REAL, SAME, OUT, "cut_throughput", NULL, \
    "summed throughput of all rays not traced, mean of RGB", \
    mean_cut(c->cut_depth_throughput, c->cut_weight_throughput)) \
+ Q(cut_share, "", REAL, SAME, ROW, "cut.share", "cut", \
+   "share of the light of a mean pixel, by weight, that rays not traced would have brought: their throughput by that " \
+   "of the camera rays; 0 .. 1", \
+   cut_share(a)) \
+ Q(cut_share_largest, "", REAL, LAST, OUT, "cut.share_largest", NULL, \
+   "the same of the pixel that lacks most; NA without the map of cut light", largest_cut(r)) \
  Q(first_hits, "rays", SOLIDS, SAME, ROW, "first_hits", NULL, \
    "camera rays whose first interface is on the solid", c->first_hits) \
  Q(hits, "rays", SOLIDS, SAME, ROW, "hits", NULL, \

@@ -116,7 +116,7 @@ static status refuse(const scene *s, const render_options *o, diagnostic *why)
     if (s->render.error > 0.0 && s->render.integrator == INTEGRATOR_PATH)
         return diagnose(why, STATUS_BAD_INPUT, "set render.error to 0, or use one process",
                         "render.error needs the noise of the whole image, which no rank has");
-    if (o->pixel_rays || o->pixel_time || o->layers || o->timeline)
+    if (o->pixel_rays || o->pixel_time || o->pixel_cut || o->layers || o->timeline)
         return diagnose(why, STATUS_BAD_INPUT, "leave it out, or use one process",
                         "maps, layers and the timeline are not sent between ranks");
     return STATUS_OK;

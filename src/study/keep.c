@@ -27,6 +27,8 @@ static const struct {
     {offsetof(study, keep_pixel_rays), "-rays.pfm"},
     {offsetof(study, keep_pixel_time), "-ns.png"},
     {offsetof(study, keep_pixel_time), "-ns.pfm"},
+    {offsetof(study, keep_pixel_cut), "-cut.png"},
+    {offsetof(study, keep_pixel_cut), "-cut.pfm"},
     {offsetof(study, keep_timeline), "-timeline.json"},
     {offsetof(study, keep_metrics), "-metrics.tsv"},
     {offsetof(study, keep_curves), "-curves.tsv"},
@@ -113,8 +115,10 @@ const char *keep_ending(const study *s, size_t i)
 
 render_options keep_options(const study *s)
 {
-    return (render_options){
-        .pixel_rays = s->keep_pixel_rays, .pixel_time = s->keep_pixel_time, .timeline = s->keep_timeline};
+    return (render_options){.pixel_rays = s->keep_pixel_rays,
+                            .pixel_time = s->keep_pixel_time,
+                            .pixel_cut = s->keep_pixel_cut,
+                            .timeline = s->keep_timeline};
 }
 
 static status write_kept(const study *s, const kept_cell *c, size_t what, const char *path, diagnostic *why)
@@ -125,6 +129,8 @@ static status write_kept(const study *s, const kept_cell *c, size_t what, const 
         return record_map(frame->pixel_rays, frame->img, "rays per pixel", path, why);
     if (wish == offsetof(study, keep_pixel_time))
         return record_map(frame->pixel_ns, frame->img, "nanoseconds per pixel", path, why);
+    if (wish == offsetof(study, keep_pixel_cut))
+        return record_map(frame->pixel_cut, frame->img, "share of cut light per pixel", path, why);
     if (wish == offsetof(study, keep_timeline))
         return record_timeline(frame, path, why);
     if (wish == offsetof(study, keep_image) || wish == offsetof(study, keep_pfm))

@@ -206,7 +206,8 @@ void new_study_write(const new_study *s, FILE *out)
             "\nrepetitions: %lld # of each cell; from 6 on, medians have a 95%% interval\n"
             "warmups: %lld # frames of a cell before its first repetition, not part of the summary\n"
             "order: {shuffle: on, seed: 1} # each round of repetitions in a new order, against drift of the machine\n"
-            "# Files of each cell; also pfm, workers, pixel_rays, pixel_time, timeline, metrics, curves, motion:\n"
+            "# Files of each cell; also pfm, workers, pixel_rays, pixel_time, pixel_cut, timeline, metrics, curves, "
+            "motion:\n"
             "# keep: {image: on}\n"
             "# Comparison of each image with that of the same cell under other parameters:\n"
             "# reference: {render.depth: 40}\n",

@@ -13,8 +13,8 @@
  *   repetitions: 10                  or {min: 6, max: 20, relative_width: 0.02}
  *   warmups: 1
  *   order: {shuffle: on, seed: 1}
- *   keep: {image: on, pfm: off, workers: off, pixel_rays: off, pixel_time: off, timeline: off, metrics: off, curves:
- *   off, motion: off}
+ *   keep: {image: on, pfm: off, workers: off, pixel_rays: off, pixel_time: off, pixel_cut: off, timeline: off,
+ *   metrics: off, curves: off, motion: off}
  *
  * Every path and value is tried on the scene here, so that a study that was read can be run. */
 #include "base/file.h"
@@ -226,11 +226,11 @@ static status read_order(study *s, const document *d, const node *warmups, const
 
 static status read_keep(study *s, const document *d, const node *n, diagnostic *why)
 {
-    static const char *const keys[] = {"image",    "pfm",     "workers", "pixel_rays", "pixel_time",
-                                       "timeline", "metrics", "curves",  "motion"};
-    bool *const kept[] = {&s->keep_image,      &s->keep_pfm,        &s->keep_workers,
-                          &s->keep_pixel_rays, &s->keep_pixel_time, &s->keep_timeline,
-                          &s->keep_metrics,    &s->keep_curves,     &s->keep_motion};
+    static const char *const keys[] = {"image",     "pfm",      "workers", "pixel_rays", "pixel_time",
+                                       "pixel_cut", "timeline", "metrics", "curves",     "motion"};
+    bool *const kept[] = {&s->keep_image,      &s->keep_pfm,       &s->keep_workers,  &s->keep_pixel_rays,
+                          &s->keep_pixel_time, &s->keep_pixel_cut, &s->keep_timeline, &s->keep_metrics,
+                          &s->keep_curves,     &s->keep_motion};
     if (!n)
         return STATUS_OK;
     if (n->kind != NODE_MAP)

@@ -60,11 +60,11 @@ typedef struct study {
     bool quick;            /* in its quick form (study/quick.h) */
     bool shuffle;
     uint64_t seed;
-    bool keep_image, keep_pfm, keep_workers, keep_pixel_rays, keep_pixel_time, keep_timeline, keep_metrics, keep_curves,
-        keep_motion;         /* once per cell */
-    char *text, *scene_text; /* the texts of both files */
-    scene *base;             /* the scene with the fixed parameters applied */
-    uint64_t *identity;      /* of each cell: what determines its film and its measurement (study/identity.h) */
+    bool keep_image, keep_pfm, keep_workers, keep_pixel_rays, keep_pixel_time, keep_pixel_cut, keep_timeline,
+        keep_metrics, keep_curves, keep_motion; /* once per cell */
+    char *text, *scene_text;                    /* the texts of both files */
+    scene *base;                                /* the scene with the fixed parameters applied */
+    uint64_t *identity; /* of each cell: what determines its film and its measurement (study/identity.h) */
     /* Hash of name, scene, fixed parameters and grid, as in the rows of versions without identities of cells
      * (study/accepted.h). */
     uint64_t definition_hash;

@@ -22,7 +22,7 @@ static const char *const before_hash[] = {"rays_total",  "rays_camera",         
                                           "rays_shadow", "cut_depth_throughput", "total_internal"};
 static const char *const after_marked[] = {
     "busy_s_mean", "busy_s_max", "waiting_s_mean", "others_share", "worker_cpu_s_sum", "peak_rss_bytes", "noise_rms",
-    "triangles",   "instances",  "accel_bytes",    "drawn",        "drawn_bytes",      "motion_steps"};
+    "triangles",   "instances",  "accel_bytes",    "drawn",        "drawn_bytes",      "motion_steps",   "cut_share"};
 static const row_quantity after_solids[] = {
     {"build_s", NULL},
     {"imbalance", NULL},

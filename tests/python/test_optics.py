@@ -96,6 +96,7 @@ def test_layers_equal_the_rays(rod):
 def test_maps(rod):
     image = rod.render(maps=True, depth=3)
     assert image.map("rays").sum() == image.counts.total and (image.map("time") > 0).all()
+    assert 0 < image.map("cut").mean() < 1
     with pytest.raises(cuvette.InputError, match="pixel_rays"):
         rod.render().map("rays")
     with pytest.raises(cuvette.InputError, match="render.paths"):

@@ -19,7 +19,9 @@ export const cases = {
     const { picture } = await lab.get('/api/state');
     t.equal([maps.serial, maps.width, maps.height], [picture.serial, picture.full_width, picture.full_height], 'image');
     t.equal(maps.rays.total, picture.rays, 'sum of the rays of all pixels');
-    t.equal([maps.rays.unit, maps.time.unit], ['rays', 'ns'], 'units');
+    t.equal([maps.rays.unit, maps.time.unit, maps.cut.unit], ['rays', 'ns', ''], 'units');
+    const share = maps.cut.total / (maps.width * maps.height);
+    t.near(share, picture.cut, 1e-9, 'the mean of the map, and the share of the image');
     t.more(maps.time.total, 0, 'sum of the times of all pixels');
     t.less(maps.time.total, 1.05e9 * maps.wall_s * maps.threads, 'ns of all pixels, of the time of all threads');
 

@@ -102,7 +102,7 @@ class Image:
 
     @described("cuvette_frame_map")
     def map(self, name: str) -> NDArray[numpy.float64]:
-        """float64 of height x width. The image was rendered with maps=True for "rays" and "time"."""
+        """float64 of height x width. The image was rendered with maps=True for "rays", "time" and "cut"."""
         out = numpy.empty((self.height, self.width), numpy.float64)
         call(lib.cuvette_frame_map, self._frame, encoded(name), ffi.from_buffer("double[]", out))
         return out

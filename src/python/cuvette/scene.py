@@ -404,8 +404,8 @@ class Scene(Tracer):
         function that gets the share from 0 to 1 and may return False to stop. Ctrl-C stops the render and raises
         KeyboardInterrupt. Other Python threads run meanwhile.
 
-        layers: keep the layers of render.integrator aov, which is then set (Image.layer). maps: keep the number of rays
-        and the time of each pixel (Image.map)."""
+        layers: keep the layers of render.integrator aov, which is then set (Image.layer). maps: keep the number of
+        rays, the time and the share of cut light of each pixel (Image.map)."""
         if layers:
             short = {"integrator": "aov", **short}
         scene = self.copy().set(values, **short) if values or short else self
@@ -413,7 +413,7 @@ class Scene(Tracer):
         visit = Visit(bar or (lambda share: True))
         request = sized("request")
         request.progress, request.context = on_progress, visit.context
-        request.layers, request.pixel_rays, request.pixel_time = layers, maps, maps
+        request.layers, request.pixel_rays, request.pixel_time, request.pixel_cut = layers, maps, maps, maps
         engine, out, why = engines.take(), ffi.new("cuvette_frame **"), ffi.new("cuvette_diagnostic *")
         try:
             status = lib.cuvette_engine_render(engine, scene._scene, request, out, why)

@@ -23,6 +23,7 @@ void render_result_destroy(render_result *result)
     free(result->workers);
     free(result->pixel_rays);
     free(result->pixel_ns);
+    free(result->pixel_cut);
     free(result->variance);
     layers_destroy(result->layers);
     free(result->events);

@@ -284,6 +284,16 @@ static void count_tests(const plan *p, ray_counters *c)
     }
 }
 
+/* From the tracer's units (render/core/tracer.h) to the mean of RGB, relative to the pixel's camera rays, which have
+ * half the weight behind an analyser. */
+static void scale_cut(const plan *p, render_result *result)
+{
+    const size_t pixels = (size_t)result->img->width * (size_t)result->img->height;
+    const double begins = p->analyser == ANALYSER_NONE ? 1.0 : 0.5;
+    for (size_t i = 0; i < pixels; i++)
+        result->pixel_cut[i] /= 3.0 * COUNTERS_CUT_ONE * begins;
+}
+
 /* Collects the results of the workers' accounts. */
 static status collect(frame *f, bool in_range, render_result *result, diagnostic *why)
 {
@@ -334,7 +344,8 @@ uint64_t renderer_result_bytes(const scene *s, const render_options *options)
 {
     const uint64_t shares = (uint64_t)renderer_replicates(s),
                    pixels = (uint64_t)s->render.width * (uint64_t)s->render.height;
-    const uint64_t maps = options ? (uint64_t)options->pixel_rays + (uint64_t)options->pixel_time : 0;
+    const uint64_t maps =
+        options ? (uint64_t)options->pixel_rays + (uint64_t)options->pixel_time + (uint64_t)options->pixel_cut : 0;
     const uint64_t named = options && options->layers && integrator_traits_of(&s->render)->layers ? layers_bytes() : 0;
     if (options && options->source)
         return (uint64_t)s->render.threads * (uint64_t)options->source->side * (uint64_t)options->source->side *
@@ -384,6 +395,8 @@ static status make_result(const scene *s, const render_options *options, render_
             missing |= !(result->pixel_rays = make_map(pixels));
         if (options && options->pixel_time)
             missing |= !(result->pixel_ns = make_map(pixels));
+        if (options && options->pixel_cut)
+            missing |= !(result->pixel_cut = make_map(pixels));
         if (options && options->layers && integrator_traits_of(&s->render)->layers)
             missing |= !(result->layers = layers_create((int)s->render.width, (int)s->render.height));
         if (renderer_replicates(s) > 1 && !by_source)
@@ -481,7 +494,13 @@ static status run_frame(renderer *r, const scene *s, const render_options *optio
     worker_account *accounts = make_accounts(count);
     if (f)
         memset(f, 0, sizeof *f);
-    const tracer_target target = {p, result->img, result->pixel_rays, result->pixel_ns, state, result->layers, NULL};
+    const tracer_target target = {.frame_plan = p,
+                                  .img = result->img,
+                                  .pixel_rays = result->pixel_rays,
+                                  .pixel_ns = result->pixel_ns,
+                                  .pixel_cut = result->pixel_cut,
+                                  .state = state,
+                                  .layers = result->layers};
     bool has_memory = f && accounts && tracer_pool_begin(r->tracers, count, &target);
     status code = has_memory ? renderer_prepare(r, s, why) : out_of_memory(why);
     if (options && options->source)
@@ -504,6 +523,8 @@ static status run_frame(renderer *r, const scene *s, const render_options *optio
         THEN(code, worker_pool_run(r->threads, count, s->render.pool, work, watch, watch_s(options), f, why));
         result->wall_s = clock_wall_s() - f->began_s;
         result->cpu_s = clock_process_cpu_s() - cpu_s;
+        if (result->pixel_cut)
+            scale_cut(p, result);
         if (code == STATUS_OK) {
             const bool in_range = !result->img || film_merge_shares(result->img, result->variance);
             code = collect(f, in_range, result, why);

@@ -64,6 +64,7 @@ typedef struct piece_source {
 typedef struct render_options {
     bool pixel_rays; /* rays of all kinds by pixel */
     bool pixel_time; /* nanoseconds by pixel; a batch's time is divided among its rays */
+    bool pixel_cut;  /* throughput of the rays that are not traced, by pixel: see render_result */
     bool layers;     /* named layers, if the integrator supports them */
     bool timeline;   /* the worker and times of each tile */
     bool usage;      /* how long each worker ran, could have run, and was blocked; costs it about 20 microseconds */
@@ -101,12 +102,15 @@ typedef struct render_result {
     worker_report *workers;
     double *pixel_rays; /* NULL unless requested; width * height */
     double *pixel_ns;
+    /* the share of each pixel's light, by weight, that is unknown: the throughput of its rays that render.depth or
+     * render.min_weight cut, mean of RGB, where its camera rays have 1 in all */
+    double *pixel_cut;
     /* For random paths: square of the standard error of each film value, [(y * width + x) * 3 + channel] in the film's
      * own space, from the differences between the replicates (render/core/path_sampling.h). NULL if unknown. For a
      * spectral film under render.sampler=philox it is an overestimate: each replicate has its own wavelengths, so that
      * they differ by more than random noise. */
     double *variance;
-    /* Under render.error, rays and times include those of the pilot, pixel_rays and pixel_ns do not. */
+    /* Under render.error, rays and times include those of the pilot, the maps do not. */
     int replicates;     /* of the paths of a pixel, 1 if the variance is unknown */
     tile_event *events; /* in order of begin_s; NULL unless requested */
     size_t event_count;

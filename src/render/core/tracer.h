@@ -13,12 +13,14 @@
 
 typedef struct tracer tracer;
 
-/* The outputs of a frame. pixel_rays and pixel_ns may be NULL; state is the integrator's state for the frame; layers
- * receives named layers, NULL if they are not requested; rule: NULL for the integrator of the plan's settings. */
+/* The outputs of a frame. The maps may be NULL; pixel_cut receives the throughput of each pixel's rays that are not
+ * traced, red + green + blue in units of 1/COUNTERS_CUT_ONE: integers, so that their order does not matter. state is
+ * the integrator's state for the frame; layers receives named layers, NULL if they are not requested; rule: NULL for
+ * the integrator of the plan's settings. */
 typedef struct tracer_target {
     const plan *frame_plan;
     film *img;
-    double *pixel_rays, *pixel_ns;
+    double *pixel_rays, *pixel_ns, *pixel_cut;
     void *state;
     layer_set *layers;
     const struct integrator *rule;

@@ -94,6 +94,37 @@ static inline double roulette_odds_most(int depth)
 /* A build without counters compiles the statement but never executes it. */
 #define COUNT(statement) ((void)(CUVETTE_COUNTERS ? (statement) : 0))
 
+static inline void map_cut(tracer *t, int64_t sample_key, double r, double g, double b)
+{
+    const int64_t units = counters_cut_units(r) + counters_cut_units(g) + counters_cut_units(b);
+    t->target.pixel_cut[sample_key_pixel(sample_key)] += (double)units;
+}
+
+/* Counts a ray that is not traced, with its throughput: rays and sum are cut_depth and its sum, or cut_weight and
+ * its. */
+static inline void count_cut(tracer *t, uint64_t *rays, int64_t sum[3], int64_t sample_key, double r, double g,
+                             double b)
+{
+    COUNT(*rays += 1);
+    COUNT(sum[0] += counters_cut_units(r));
+    COUNT(sum[1] += counters_cut_units(g));
+    COUNT(sum[2] += counters_cut_units(b));
+    if (t->target.pixel_cut)
+        map_cut(t, sample_key, r, g, b);
+}
+
+static inline void count_cut_by_depth(tracer *t, int64_t sample_key, double r, double g, double b)
+{
+    ray_counters *c = &t->account.counters;
+    count_cut(t, &c->cut_depth, c->cut_depth_throughput, sample_key, r, g, b);
+}
+
+static inline void count_cut_by_weight(tracer *t, int64_t sample_key, double r, double g, double b)
+{
+    ray_counters *c = &t->account.counters;
+    count_cut(t, &c->cut_weight, c->cut_weight_throughput, sample_key, r, g, b);
+}
+
 /* Traces one batch of a queue (depth -1: shadow rays), and adds its time and rays to the pixels if requested. */
 void tracer_run_batch(tracer *t, int depth);
 

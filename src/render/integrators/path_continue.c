@@ -30,10 +30,7 @@ static void cut(tracer *t, int k, const continuation *c)
 {
     const group *g = &t->surface.gathered;
     const double r = g->wr[k] * c->share.x, gr = g->wg[k] * c->share.y, b = g->wb[k] * c->share.z;
-    COUNT(t->account.counters.cut_depth++);
-    COUNT(t->account.counters.cut_depth_throughput[0] += counters_cut_units(r));
-    COUNT(t->account.counters.cut_depth_throughput[1] += counters_cut_units(gr));
-    COUNT(t->account.counters.cut_depth_throughput[2] += counters_cut_units(b));
+    count_cut_by_depth(t, g->sample_key[k], r, gr, b);
     shading_expose_at_depth_limit(t, g->sample_key[k], c->direction, r, gr, b);
 }
 

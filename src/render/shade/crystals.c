@@ -120,14 +120,6 @@ void crystals_branches(tracer *t, bool opaque)
     }
 }
 
-static void count_cut(uint64_t *rays, int64_t throughput[3], vec3 weight)
-{
-    COUNT(*rays += 1);
-    COUNT(throughput[0] += counters_cut_units(weight.x));
-    COUNT(throughput[1] += counters_cut_units(weight.y));
-    COUNT(throughput[2] += counters_cut_units(weight.z));
-}
-
 static void push(ray_queue *q, const group *g, int k, const crystal_ray *ray, vec3 weight)
 {
     const int at = q->count++;
@@ -149,10 +141,10 @@ static void follow(tracer *t, int depth, int k, const crystal_ray *ray)
     const vec3 weight = vec3_make(g->wr[k] * ray->row.i, g->wg[k] * ray->row.i, g->wb[k] * ray->row.i);
     const double least = t->least_weight;
     if (depth == t->queues.depth_limit) {
-        count_cut(&c->cut_depth, c->cut_depth_throughput, weight);
+        count_cut_by_depth(t, g->sample_key[k], weight.x, weight.y, weight.z);
         shading_expose_at_depth_limit(t, g->sample_key[k], ray->d, weight.x, weight.y, weight.z);
     } else if (least > 0.0 && weight.x < least && weight.y < least && weight.z < least) {
-        count_cut(&c->cut_weight, c->cut_weight_throughput, weight);
+        count_cut_by_weight(t, g->sample_key[k], weight.x, weight.y, weight.z);
     } else {
         push(tracer_queue_at(t, depth + 1), g, k, ray, weight);
         COUNT(ray->reflected ? c->reflect++ : c->refract++);

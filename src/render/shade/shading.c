@@ -291,12 +291,20 @@ static void cut_colored(tracer *t, int k, bool reflected)
     const double wr = g->wr[k] * weight.x, wg = g->wg[k] * weight.y, wb = g->wb[k] * weight.z;
     if (!((reflected ? b->reflect[k] : b->refract[k]) > 0.0))
         return;
-    COUNT(t->account.counters.cut_depth++);
-    COUNT(t->account.counters.cut_depth_throughput[0] += counters_cut_units(wr));
-    COUNT(t->account.counters.cut_depth_throughput[1] += counters_cut_units(wg));
-    COUNT(t->account.counters.cut_depth_throughput[2] += counters_cut_units(wb));
+    count_cut_by_depth(t, g->sample_key[k], wr, wg, wb);
     if (t->target.frame_plan->render.beyond != DEPTH_LIMIT_BLACK)
         expose_at_depth_limit(t, g->sample_key[k], direction, wr, wg, wb);
+}
+
+/* The group's branches in the map, as the kernel below adds them to the counters. */
+static void map_cut_branches(tracer *t)
+{
+    const group *g = &t->surface.gathered;
+    const branch_group *b = &t->surface.branches;
+    for (int i = 0; i < g->count; i++) {
+        map_cut(t, g->sample_key[i], g->wr[i] * b->reflect[i], g->wg[i] * b->reflect[i], g->wb[i] * b->reflect[i]);
+        map_cut(t, g->sample_key[i], g->wr[i] * b->refract[i], g->wg[i] * b->refract[i], g->wb[i] * b->refract[i]);
+    }
 }
 
 void cut_branches(tracer *t)
@@ -316,6 +324,8 @@ void cut_branches(tracer *t)
         for (int c = 0; c < 3; c++)
             t->account.counters.cut_depth_throughput[c] += sum.throughput[c];
     }
+    if (t->target.pixel_cut)
+        map_cut_branches(t);
     if (p->render.beyond == DEPTH_LIMIT_BLACK)
         return;
     const bool uniform =
@@ -342,10 +352,7 @@ static bool is_below_least_weight(tracer *t, const ray_queue *q, int i, double l
 {
     if (q->wr[i] >= least || q->wg[i] >= least || q->wb[i] >= least)
         return false;
-    COUNT(t->account.counters.cut_weight++);
-    COUNT(t->account.counters.cut_weight_throughput[0] += counters_cut_units(q->wr[i]));
-    COUNT(t->account.counters.cut_weight_throughput[1] += counters_cut_units(q->wg[i]));
-    COUNT(t->account.counters.cut_weight_throughput[2] += counters_cut_units(q->wb[i]));
+    count_cut_by_weight(t, q->sample_key[i], q->wr[i], q->wg[i], q->wb[i]);
     return true;
 }
 

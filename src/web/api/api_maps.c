@@ -1,4 +1,5 @@
-/* API: maps of the rays and the time of each pixel of the final image, with the numbers of their scales. */
+/* API: maps of the rays, the time and the cut light of each pixel of the final image, with the numbers of their
+ * scales. */
 #include "base/json_build.h"
 #include "web/api/api.h"
 
@@ -9,8 +10,8 @@
 #include <stdlib.h>
 #include <string.h>
 
-static const char *const names[PIXEL_MAPS] = {[PIXEL_RAYS] = "rays", [PIXEL_TIME] = "time"};
-static const char *const units[PIXEL_MAPS] = {[PIXEL_RAYS] = "rays", [PIXEL_TIME] = "ns"};
+static const char *const names[PIXEL_MAPS] = {[PIXEL_RAYS] = "rays", [PIXEL_TIME] = "time", [PIXEL_CUT] = "cut"};
+static const char *const units[PIXEL_MAPS] = {[PIXEL_RAYS] = "rays", [PIXEL_TIME] = "ns", [PIXEL_CUT] = ""};
 
 typedef struct map_question {
     lab *l;
@@ -92,4 +93,9 @@ status api_map_of_rays(call *c)
 status api_map_of_time(call *c)
 {
     return send_map(c, PIXEL_TIME);
+}
+
+status api_map_of_cut(call *c)
+{
+    return send_map(c, PIXEL_CUT);
 }

@@ -48,6 +48,7 @@ static const struct api_route {
     {"GET", "/api/maps", api_maps, NO_BODY},
     {"GET", "/api/maps/rays.png", api_map_of_rays, NO_BODY},
     {"GET", "/api/maps/time.png", api_map_of_time, NO_BODY},
+    {"GET", "/api/maps/cut.png", api_map_of_cut, NO_BODY},
     {"POST", "/api/objects", api_add, ANY_BODY},
     {"DELETE", "/api/objects/{name}", api_remove, NO_BODY},
     {"POST", "/api/objects/{name}/move", api_move, ANY_BODY},

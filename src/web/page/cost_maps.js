@@ -1,11 +1,13 @@
-/* Maps of what each pixel of the final image costs, drawn over the image, with a legend in units.
+/* Maps of what each pixel of the final image costs, and of the light that it lacks because rays were cut, drawn over
+ * the image, with a legend in units.
  * exports: createCostMaps(lab) -> {node} */
 
 import { button, choice, count, element, digits, facts, group, notice, replace, seconds, svg } from './ui.js';
 import { showImage } from './image_address.js';
 import { saveReply } from './save_file.js';
 
-const TITLES = { rays: 'Rays per pixel', time: 'Time per pixel' };
+const TITLES = { rays: 'Rays per pixel', time: 'Time per pixel', cut: 'Cut light per pixel' };
+const UNITS = { rays: 'rays per pixel', time: 'ns per pixel', cut: 'share of cut light per pixel' };
 
 const ABOUT = {
   rays: () => 'Camera, reflected, refracted and shadow rays of each pixel; the same on every machine.',
@@ -13,11 +15,20 @@ const ABOUT = {
     `Measured once ${place}, in one frame of ${seconds(wall)} with ${threads} ` +
     `${threads === 1 ? 'thread' : 'threads'}: another measurement differs. Time is measured for batches of rays, and ` +
     `divided among the rays of each.`,
+  cut: () =>
+    'The share of each pixel\'s light, by weight, that rays would have brought which render.depth or ' +
+    'render.min_weight cut; the same on every machine. Its error is at most this share of the brightest such light.',
 };
 
 const valueOf = {
   rays: (value) => `${digits(value)} rays`,
   time: (value) => `${digits(value)} ns`,
+  cut: (value) => `${digits(100 * value, 3)} %`,
+};
+
+const sumOf = {
+  rays: (total) => `${count(total)} rays`,
+  time: (total) => `${seconds(total / 1e9)} of all threads`,
 };
 
 function legend(answer, which, place) {
@@ -34,11 +45,11 @@ function legend(answer, which, place) {
       style: { background: `linear-gradient(to right, ${colors.join(', ')})` },
     }),
     element('div', { class: 'cost-ticks', 'aria-hidden': 'true' }, ticks),
-    element('p', { class: 'cost-unit', text: which === 'rays' ? 'rays per pixel' : 'ns per pixel' }),
+    element('p', { class: 'cost-unit', text: UNITS[which] }),
     facts([
       ['Mean', valueOf[which](total / (width * height))],
       ['Largest', valueOf[which](largest)],
-      ['Sum', which === 'rays' ? `${count(total)} rays` : `${seconds(total / 1e9)} of all threads`],
+      ...(sumOf[which] ? [['Sum', sumOf[which](total)]] : []),
     ]),
     element('p', { class: 'hint', text: ABOUT[which](answer, place) }),
   ];
@@ -57,6 +68,7 @@ export function createCostMaps(lab) {
       ['none', 'Image'],
       ['rays', 'Rays'],
       ['time', 'Time'],
+      ['cut', 'Cut light'],
     ],
     onchange: update,
   });
@@ -113,7 +125,7 @@ export function createCostMaps(lab) {
     draw();
   }
 
-  /* With the key below it, as the file of `cuvette render --rays` or `--time`. */
+  /* With the key below it, as the file of `cuvette render --rays`, `--time` or `--cut`. */
   function save(which) {
     const act = () => saveReply(lab, `/api/maps/${which}.png`, `${lab.name()}-${which}.png`);
     return button('Save this map', act, { icon: 'save', small: true });

@@ -7,6 +7,7 @@ import { located } from './api.js';
 import { button, copy, count, digits, element, icon, replace, seconds } from './ui.js';
 
 const LINGER_MS = 6000;
+const CUT_SHOWN = 0.01; /* share of the light of a mean pixel */
 const PACE_MS = 200; /* numbers that change faster cannot be read, and cost the images time */
 
 export function createStatus(root, live, lab) {
@@ -100,6 +101,9 @@ function items(lab) {
     time(lab.engine, wall),
     fact('rays', count(rays)),
     rays && wall ? fact('rays/s', count(rays / wall)) : null,
+    picture.cut >= CUT_SHOWN
+      ? fact('cut light', `${digits(100 * picture.cut, 2)} %`, 'by weight: rays that render.depth or min_weight cut')
+      : null,
     Number.isFinite(picture.noise)
       ? fact('noise', digits(picture.noise, 3), 'standard error of the path-traced image')
       : null,

@@ -19,6 +19,7 @@ const NAMES = {
   cpu_s: 'CPU time per frame',
   rays_total: 'rays per frame',
   noise_rms: 'noise of path tracing',
+  cut_share: 'share of the light that was cut',
   imbalance: 'load imbalance of the workers',
   flip: 'FLIP error',
   error_rms: 'error against the reference, rms',

@@ -1,4 +1,4 @@
-/* Renders and keeps the maps of cost of the newest image. */
+/* Renders and keeps the maps of the newest image. */
 #include "web/session/pixel_maps.h"
 
 #include "image/image.h"
@@ -47,13 +47,15 @@ void pixel_maps_destroy(pixel_maps *m)
 static status draw(pixel_maps *m, const render_result *result, int which, diagnostic *why)
 {
     pixel_map_set *set = &m->set;
-    const double *values = which == PIXEL_RAYS ? result->pixel_rays : result->pixel_ns;
+    const double *const all[PIXEL_MAPS] = {result->pixel_rays, result->pixel_ns, result->pixel_cut};
+    static const char *const titles[PIXEL_MAPS] = {"rays per pixel", "ns per pixel, measured once",
+                                                   "share of cut light per pixel"};
+    const double *values = all[which];
     const size_t count = (size_t)set->width * (size_t)set->height;
     pixel_map *map = &set->map[which];
     image *img = NULL;
     status code = heatmap_scale_of(values, count, &map->scale, why);
-    THEN(code, heatmap_create(values, set->width, set->height,
-                              which == PIXEL_RAYS ? "rays per pixel" : "ns per pixel, measured once", &img, why));
+    THEN(code, heatmap_create(values, set->width, set->height, titles[which], &img, why));
     THEN(code, image_encode(img, IMAGE_PNG, 8, true, &m->png[which], &m->size[which], why));
     if (code == STATUS_OK) {
         set->picture_width = img->width;
@@ -86,7 +88,7 @@ static status draw_all(pixel_maps *m, const shared_image *of, const job_account 
 
 static status render(pixel_maps *m, const shared_image *of, bool (*stop)(void *context), void *context, diagnostic *why)
 {
-    static const render_options maps = {.pixel_rays = true, .pixel_time = true};
+    static const render_options maps = {.pixel_rays = true, .pixel_time = true, .pixel_cut = true};
     job *j = NULL;
     job_account account = {.result = NULL};
     forget(m);

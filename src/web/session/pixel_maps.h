@@ -1,4 +1,5 @@
-/* Maps of what each pixel of a final image costs: its rays, and its time. They are false-colour images with a key, from
+/* Maps of what each pixel of a final image costs, its rays and its time, and of the light that it lacks because rays
+ * were cut. They are false-colour images with a key, from
  * one frame of the frame job, which must give the film of the image; kept until maps of another image are requested.
  * Thread-safe; a request waits for a render in progress. Ownership: pixel_maps_create creates, pixel_maps_destroy
  * releases when no thread calls it any more. */
@@ -10,11 +11,11 @@
 
 typedef struct pixel_maps pixel_maps;
 
-enum { PIXEL_RAYS, PIXEL_TIME, PIXEL_MAPS };
+enum { PIXEL_RAYS, PIXEL_TIME, PIXEL_CUT, PIXEL_MAPS };
 
 typedef struct pixel_map {
     heatmap_scale scale;
-    double total, largest; /* rays; ns */
+    double total, largest; /* rays; ns; shares of a pixel's light */
 } pixel_map;
 
 typedef struct pixel_map_set {
