@@ -43,24 +43,26 @@ static void lint_parallel(const lint_room *room)
                   (100 * inside + ACROSS * ACROSS - 1) / (ACROSS * ACROSS), lint_solid(room, found)->name);
 }
 
-void lint_camera(const lint_room *room)
+bool lint_camera(const lint_room *room)
 {
     if (room->made->view.parallel) {
         lint_parallel(room);
-        return;
+        return false;
     }
     const int priority_index = medium_about(room->made);
     if (priority_index <= 0)
-        return;
+        return false;
     const solid *around = lint_solid(room, priority_index);
-    const bool opaque = room->made->geometry->regions[priority_index].opaque;
+    const bool opaque = room->made->geometry->regions[priority_index].opaque,
+               in_wall = !opaque && shape_of(&around->shape)->hollow;
     if (opaque && shape_of(&around->shape)->unbounded)
         note_give(room->taker, "camera", "position", "move the camera to the other side of the plane",
                   "the camera is below the surface of %s, which is opaque", around->name);
     else if (opaque)
         note_give(room->taker, "camera", "position", "move the camera out of it",
                   "the camera is inside %s, which is opaque", around->name);
-    else if (shape_of(&around->shape)->hollow)
+    else if (in_wall)
         note_give(room->taker, "camera", "position", "move the camera out of the wall, into the vessel or away from it",
                   "the camera is inside the wall of %s", around->name);
+    return opaque || in_wall;
 }

@@ -1,12 +1,11 @@
-/* Compares small images of the scene at its depth limit and at greater depths, until deeper images stop changing or the
- * ray budget is spent. A thread per processing unit traces stripes of an image; the images, their ray counts and so the
- * notes do not depend on the number of threads. */
-#include "base/cancel.h"
-#include "base/thread_team.h"
+/* Compares small images of the scene at its depth limit and at greater depths, until deeper images stop changing and
+ * cut little light, or the ray budget is spent. That images stop changing is not enough: between two mirrors every ray
+ * is cut at every depth, and every image shows render.beyond instead (lint/lack.h). */
+#include "lint/lack.h"
 #include "lint/parts.h"
-#include "render/core/tracer.h"
 #include "scene/model/scene.h"
 
+#include <limits.h>
 #include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
@@ -16,89 +15,35 @@
 #define CHANGED_PIXELS 0.05  /* fraction of the pixels ... */
 #define CHANGED_VALUE 0.05f  /* ... that change by more than this fraction of the brighter value */
 #define SETTLED_PIXELS 0.002 /* if fewer pixels change, deeper images count as equal */
-#define DARK (1.0f / 255.0f) /* darker values are displayed as black */
-enum { DEEPER_MAX = 24, SAFE_DEPTH = 8, THREADS_MAX = 8, STRIPES_PER_THREAD = 4 };
+enum { DEEPER_MAX = 24, SAFE_DEPTH = 8 };
 
-typedef struct depth_probe {
-    plan *made;
-    thread_team *team;
-    tracer *rays[THREADS_MAX]; /* one per member of the team */
-    int stripes;
-    atomic_int next_stripe;
-    float *shown[DEEPER_MAX + 1]; /* images as displayed, by depth, starting at the scene's: [pixel][channel], 0..1 */
-    double *pixel_rays;
-    double spent;
-} depth_probe;
+typedef struct depth_search {
+    const lint_room *room;
+    probe_images images;
+    probe_image at[DEEPER_MAX + 1]; /* by depth, starting at the scene's */
+    int depth, last;                /* the scene's; the index of the deepest image */
+    bool settled;
+    /* of the two deepest images below a depth that is too deep to trace */
+    int climbed;
+    double cut[2];
+} depth_search;
 
-/* Traces stripes, whichever is next, with one of the tracers. */
-static void trace_stripes(void *context, size_t index, int member)
+static size_t pixels_of(const depth_search *s)
 {
-    depth_probe *p = context;
-    const atomic_bool *stop = cancel_flag();
-    const int width = (int)p->made->render.width, height = (int)p->made->render.height;
-    atomic_uint_fast64_t begun = 0;
-    (void)member;
-    for (int i; (i = atomic_fetch_add(&p->next_stripe, 1)) < p->stripes;) {
-        const span stripe = {0, i * height / p->stripes, width, (i + 1) * height / p->stripes};
-        tracer_span(p->rays[index], &stripe, &begun, stop);
-    }
-    tracer_finish(p->rays[index], stop);
+    return probe_pixels(&s->images);
 }
 
-static size_t pixels_of(const depth_probe *p)
+static float white_at_most(float value)
 {
-    return (size_t)(p->made->render.width * p->made->render.height);
-}
-
-/* The image as displayed: values above white are white. */
-static bool show(const depth_probe *p, const film *f, float **shown)
-{
-    const size_t values = 3 * pixels_of(p);
-    float *rgb = *shown ? *shown : malloc(values * sizeof *rgb);
-    *shown = rgb;
-    if (!rgb)
-        return false;
-    film_read(f, 0, 0, f->width, f->height, rgb, 3 * (size_t)f->width);
-    for (size_t i = 0; i < values; i++)
-        rgb[i] = rgb[i] < 1.0f ? rgb[i] : 1.0f;
-    return true;
-}
-
-static status trace_film(depth_probe *p, film *f, diagnostic *why)
-{
-    const size_t pixels = pixels_of(p), members = (size_t)thread_team_size(p->team);
-    const tracer_target target = {.frame_plan = p->made, .img = f, .pixel_rays = p->pixel_rays};
-    for (size_t i = 0; i < pixels; i++)
-        p->pixel_rays[i] = 0.0;
-    for (size_t i = 0; i < members; i++)
-        if (!tracer_begin(p->rays[i], &target))
-            return out_of_memory(why);
-    atomic_store(&p->next_stripe, 0);
-    thread_team_run(p->team, trace_stripes, p, members);
-    TRY(cancel_check(why));
-    for (size_t i = 0; i < pixels; i++)
-        p->spent += p->pixel_rays[i];
-    return STATUS_OK;
-}
-
-static status trace_image(depth_probe *p, int deeper, diagnostic *why)
-{
-    const render_settings *r = &p->made->render;
-    film *f;
-    TRY(film_create((int)r->width, (int)r->height, 1, FILM_RGB, &f, why));
-    status code = trace_film(p, f, why);
-    if (code == STATUS_OK && !show(p, f, &p->shown[deeper]))
-        code = out_of_memory(why);
-    film_destroy(f);
-    return code;
+    return value < 1.0f ? value : 1.0f;
 }
 
 /* Whether a pixel's values, as displayed, differ. Comparisons alone: fmax and fmin are calls. */
 static bool pixel_changes(const float *a, const float *b)
 {
-    float brightest = DARK, change = 0.0f;
+    float brightest = PROBE_DARK, change = 0.0f;
     for (int c = 0; c < 3; c++) {
-        const float one = a[c], two = b[c], apart = one < two ? two - one : one - two;
+        const float one = white_at_most(a[c]), two = white_at_most(b[c]), apart = one < two ? two - one : one - two;
         brightest = one > brightest ? one : brightest;
         brightest = two > brightest ? two : brightest;
         change = apart > change ? apart : change;
@@ -107,124 +52,177 @@ static bool pixel_changes(const float *a, const float *b)
 }
 
 /* The fraction of pixels that change. */
-static double changed_share(const depth_probe *p, int one, int two)
+static double changed_share(const depth_search *s, int one, int two)
 {
-    const size_t pixels = pixels_of(p);
+    const size_t pixels = pixels_of(s);
     size_t changed = 0;
     for (size_t i = 0; i < pixels; i++)
-        changed += pixel_changes(p->shown[one] + 3 * i, p->shown[two] + 3 * i);
+        changed += pixel_changes(s->at[one].rgb + 3 * i, s->at[two].rgb + 3 * i);
     return (double)changed / (double)pixels;
 }
 
 /* The number of rays may double with each level of a ray tree: images below the scene's depth limit predict whether the
  * limit itself exceeds the budget. *affordable: it does not. */
-static status climb(depth_probe *p, int depth, double most, bool *affordable, diagnostic *why)
+static status climb(depth_search *s, double most, bool *affordable, diagnostic *why)
 {
-    status code = STATUS_OK;
-    for (int d = SAFE_DEPTH; d < depth && code == STATUS_OK && p->spent <= most; d += 2) {
-        p->made->render.depth = d;
-        code = trace_image(p, 0, why);
+    for (int d = SAFE_DEPTH; d < s->depth && s->images.spent <= most; d += 2) {
+        TRY(probe_images_trace(&s->images, d, &s->at[0], why));
+        s->climbed = d;
+        s->cut[0] = s->cut[1];
+        s->cut[1] = lack_cut(pixels_of(s), &s->at[0]);
     }
-    p->made->render.depth = depth;
-    *affordable = p->spent <= most;
-    return code;
+    *affordable = s->images.spent <= most;
+    return STATUS_OK;
 }
 
-/* The deepest image; *settled: deeper ones would be nearly equal. */
-static status look_deeper(depth_probe *p, int depth, int *last, bool *settled, diagnostic *why)
+/* The factor by which a level reduces the throughput that is cut; over two levels, because reflections in a plate
+ * alternate. NaN: unknown. */
+static double decay_at_last(const depth_search *s)
 {
-    const double most = p->made->geometry->meshes ? RAYS_MAX / MESH_RAY : RAYS_MAX;
-    bool affordable;
-    *last = 0;
-    TRY(climb(p, depth, most, &affordable, why));
-    if (!affordable)
-        return STATUS_OK;
-    TRY(trace_image(p, 0, why));
+    const size_t pixels = pixels_of(s);
+    const double last = lack_cut(pixels, &s->at[s->last]);
+    if (s->last >= 2)
+        return lack_decay(lack_cut(pixels, &s->at[s->last - 2]), last, 2);
+    return s->climbed ? lack_decay(s->cut[1], last, s->depth + s->last - s->climbed) : (double)NAN;
+}
+
+/* Traces deeper images, until they are nearly equal and nearly all light is known. */
+static status look_deeper(depth_search *s, double most, diagnostic *why)
+{
+    TRY(probe_images_trace(&s->images, s->depth, &s->at[0], why));
     int still = 0;
-    for (int d = 1; d <= DEEPER_MAX && depth + d <= COUNTERS_DEPTH_MAX && p->spent <= most; d++) {
-        p->made->render.depth = depth + d;
-        TRY(trace_image(p, d, why));
-        *last = d;
-        still = changed_share(p, d - 1, d) <= SETTLED_PIXELS ? still + 1 : 0;
-        if (still == 2) {
-            *settled = true;
-            return STATUS_OK;
-        }
+    for (int d = 1; d <= DEEPER_MAX && s->depth + d <= COUNTERS_DEPTH_MAX && s->images.spent <= most; d++) {
+        TRY(probe_images_trace(&s->images, s->depth + d, &s->at[d], why));
+        s->last = d;
+        still = changed_share(s, d - 1, d) <= SETTLED_PIXELS ? still + 1 : 0;
+        s->settled |= still >= 2;
+        if (s->settled && lack_of(pixels_of(s), &s->at[d], &s->at[d]).unknown <= 0.5 * LACK_ACCEPTED)
+            break;
     }
     return STATUS_OK;
 }
 
-/* The uncertainty of the fraction: four standard errors for a random sample of pixels; 0 if the image is the scene's
- * own. */
-static double doubt(const lint_room *room)
+/* Of a value that a random sample of the scene's pixels gives: 0 if the small images are the scene's own. */
+static double random_error(const depth_search *s, double error)
 {
-    const render_settings *r = &room->of->render, *small = &room->made->render;
-    const double pixels = (double)small->width * (double)small->height;
-    const bool own = r->width == small->width && r->height == small->height && r->samples == 1;
-    return own ? 0.0 : 4.0 * sqrt(CHANGED_PIXELS * (1.0 - CHANGED_PIXELS) / pixels);
+    const render_settings *r = &s->room->of->render, *small = &s->images.made->render;
+    return r->width == small->width && r->height == small->height && r->samples == 1 ? 0.0 : error;
 }
 
-static void note_depth(const lint_room *room, const depth_probe *p, int depth, int last, bool settled)
+/* The uncertainty of the fraction of pixels: four standard errors. */
+static double doubt(const depth_search *s)
 {
-    const double share = changed_share(p, 0, last);
-    if (share <= CHANGED_PIXELS + doubt(room))
-        return;
-    int enough = 1;
-    while (enough < last && changed_share(p, enough, last) > CHANGED_PIXELS)
-        enough++;
-    char remedy[NOTE_TEXT_MAX];
-    snprintf(remedy, sizeof remedy, "set render.depth=%d%s", depth + enough,
-             settled || enough < last ? "" : " or more");
+    return random_error(s, 4.0 * sqrt(CHANGED_PIXELS * (1.0 - CHANGED_PIXELS) / (double)pixels_of(s)));
+}
+
+/* enough: the depth that suffices, INT_MAX if none does; more: it may be too small. */
+static void write_remedy(char remedy[NOTE_TEXT_MAX], int enough, bool more)
+{
+    if (enough > COUNTERS_DEPTH_MAX)
+        snprintf(remedy, NOTE_TEXT_MAX, "set render.integrator=path and " REMEDY_WITHOUT_LIMIT);
+    else
+        snprintf(remedy, NOTE_TEXT_MAX, "set render.depth=%d%s", enough, more ? " or more" : "");
+}
+
+/* unknown, largest: shares. */
+static void note_unknown(const lint_room *room, const char *remedy, int depth, double unknown, double largest)
+{
     note_give(room->taker, "render", "depth", remedy,
-              "a depth of %d is too small: a greater depth changes about %.0f %% of the pixels by more "
-              "than 5 %%",
-              depth, 100.0 * share);
+              "rays that end at a depth of %d could bring about %.3g %% of the image's light, up to %.3g %% of a "
+              "pixel's; deeper "
+              "images that look alike prove nothing",
+              depth, 100.0 * fmin(unknown, 1.0), 100.0 * fmin(largest, 1.0));
 }
 
-static bool begin(depth_probe *p, isa level)
+/* Whether the image of that level lacks more than is accepted, so far as the deepest one shows. */
+static bool is_lacking_at(const depth_search *s, int level)
 {
-    const render_settings *r = &p->made->render;
-    const int units = thread_team_units();
-    p->pixel_rays = calloc((size_t)(r->width * r->height), sizeof *p->pixel_rays);
-    p->team = thread_team_start(units < THREADS_MAX ? units : THREADS_MAX);
-    if (!p->pixel_rays || !p->team)
-        return false;
-    const int members = thread_team_size(p->team), most = members == 1 ? 1 : members * STRIPES_PER_THREAD;
-    p->stripes = r->height < most ? (int)r->height : most;
-    for (int i = 0; i < members; i++)
-        if (!(p->rays[i] = tracer_create(level)))
-            return false;
-    return true;
+    const size_t pixels = pixels_of(s);
+    const lack l = lack_of(pixels, &s->at[level], &s->at[s->last]);
+    return lack_cut(pixels, &s->at[level]) > LACK_ACCEPTED && l.mean > LACK_ACCEPTED + random_error(s, 2.0 * l.error);
 }
 
-static bool overflowed(const depth_probe *p)
+static int enough_by_images(const depth_search *s)
 {
-    bool any = false;
-    for (int i = 0; i < thread_team_size(p->team); i++)
-        any |= tracer_overflowed(p->rays[i]);
-    return any;
+    int enough = 1;
+    while (enough < s->last && (changed_share(s, enough, s->last) > CHANGED_PIXELS || is_lacking_at(s, enough)))
+        enough++;
+    return enough;
 }
 
-static void end(depth_probe *p)
+static void note_depth(const depth_search *s)
 {
-    for (int d = 0; d <= DEEPER_MAX; d++)
-        free(p->shown[d]);
-    for (int i = 0; i < THREADS_MAX; i++)
-        tracer_destroy(p->rays[i]);
-    thread_team_stop(p->team);
-    free(p->pixel_rays);
+    const size_t pixels = pixels_of(s);
+    const probe_image *deepest = &s->at[s->last];
+    const double share = changed_share(s, 0, s->last);
+    const bool visible = share > CHANGED_PIXELS + doubt(s);
+    const lack here = lack_of(pixels, &s->at[0], deepest);
+    if (!visible && !is_lacking_at(s, 0))
+        return;
+    const int enough = enough_by_images(s), known = lack_depth_enough(s->depth + s->last, here.bound, decay_at_last(s));
+    const bool guess = here.unknown > LACK_ACCEPTED || (!s->settled && here.bound > LACK_ACCEPTED);
+    char remedy[NOTE_TEXT_MAX];
+    write_remedy(remedy, guess ? known : s->depth + enough, guess || (!s->settled && enough == s->last));
+    if (visible)
+        note_give(s->room->taker, "render", "depth", remedy,
+                  "a depth of %d is too small: a greater depth changes about %.0f %% of the pixels by more "
+                  "than 5 %%",
+                  s->depth, 100.0 * share);
+    else if (here.unknown > 0.5 * here.mean)
+        note_unknown(s->room, remedy, s->depth, here.mean, here.largest);
+    else
+        note_give(s->room->taker, "render", "depth", remedy,
+                  "a depth of %d is too small: a greater depth changes the image by about %.3g %% of its light",
+                  s->depth, 100.0 * here.mean);
+}
+
+/* The scene's own depth is too deep to trace: from the decay up to the deepest image. */
+static void note_from_below(const depth_search *s)
+{
+    const size_t pixels = pixels_of(s);
+    const lack there = lack_of(pixels, &s->at[0], &s->at[0]);
+    if (s->cut[0] == 0.0) /* one image shows no decay */
+        return;
+    const double decay = lack_decay(s->cut[0], s->cut[1], 2), more = pow(decay, (double)(s->depth - s->climbed)),
+                 unknown = there.unknown * more;
+    if (unknown <= LACK_ACCEPTED)
+        return;
+    char remedy[NOTE_TEXT_MAX];
+    write_remedy(remedy, lack_depth_enough(s->depth, there.bound * more, decay), true);
+    note_unknown(s->room, remedy, s->depth, unknown, there.largest);
+}
+
+static void note_weight(const lint_room *room, const probe_image *at)
+{
+    if (at->by_weight > LACK_ACCEPTED)
+        note_give(room->taker, "render", "min_weight", "set render.min_weight=0",
+                  "rays below render.min_weight could bring about %.3g %% of the image's light", 100.0 * at->by_weight);
+}
+
+static status search(depth_search *s, bool *affordable, diagnostic *why)
+{
+    const double most = s->images.made->geometry->meshes ? RAYS_MAX / MESH_RAY : RAYS_MAX;
+    TRY(climb(s, most, affordable, why));
+    return *affordable ? look_deeper(s, most, why) : STATUS_OK;
 }
 
 status lint_depth(const lint_room *room, diagnostic *why)
 {
-    const int depth = (int)room->made->render.depth;
-    depth_probe p = {.made = room->made};
-    int last = 0;
-    bool settled = false;
-    status code = begin(&p, room->level) ? look_deeper(&p, depth, &last, &settled, why) : out_of_memory(why);
-    if (code == STATUS_OK && last > 0 && !overflowed(&p))
-        note_depth(room, &p, depth, last, settled);
-    room->made->render.depth = depth;
-    end(&p);
+    depth_search s = {.room = room, .depth = (int)room->made->render.depth};
+    bool affordable = false;
+    if (room->made->render.depth > COUNTERS_DEPTH_MAX)
+        return STATUS_OK;
+    status code =
+        probe_images_begin(&s.images, room->made, room->level) ? search(&s, &affordable, why) : out_of_memory(why);
+    if (code == STATUS_OK && !probe_images_overflowed(&s.images)) {
+        if (affordable)
+            note_depth(&s);
+        else
+            note_from_below(&s);
+        note_weight(room, &s.at[0]);
+    }
+    for (int d = 0; d <= DEEPER_MAX; d++)
+        probe_image_free(&s.at[d]);
+    probe_images_end(&s.images);
     return code;
 }

@@ -38,8 +38,11 @@ static bool is_loaded(const scene *s)
     return s->background.kind != BACKGROUND_IMAGE || s->background.img;
 }
 
+/* Few: the share of the paths that are cut needs no more. */
+enum { PROBE_PATHS = 2 };
+
 /* A persistent hierarchy is the one that a frame would build at its first use; otherwise the linter builds its own. */
-static scene *small_copy(const scene *s)
+static scene *small_copy(const scene *s, bool by_chance)
 {
     scene *copy = scene_clone(s);
     if (!copy)
@@ -50,7 +53,10 @@ static scene *small_copy(const scene *s)
     r->spectrum = SPECTRUM_RGB;
     r->polarisation = 0;
     r->radiance = integrator_traits_of(r)->drawn ? RADIANCE_CLASSIC : r->radiance;
-    trace_trees(r);
+    if (by_chance)
+        r->paths = PROBE_PATHS, r->error = 0.0;
+    else
+        trace_trees(r);
     if (r->accel != HIERARCHY_BVH) {
         r->accel = HIERARCHY_BVH;
         r->keep = 0;
@@ -58,21 +64,35 @@ static scene *small_copy(const scene *s)
     return copy;
 }
 
-static bool follows_rays(const render_settings *r)
+/* A scene whose paths cannot be planned is refused when it is rendered. */
+static status lint_paths(const scene *s, isa level, const note_taker *taker, diagnostic *why)
 {
-    return integrator_traits_of(r)->tree;
+    scene *copy = small_copy(s, true);
+    lint_room room = {.of = s, .level = level, .taker = taker};
+    status code = copy ? STATUS_OK : out_of_memory(why);
+    if (copy && plan_build(copy, &room.made, NULL) == STATUS_OK)
+        code = lint_path_depth(&room, why);
+    plan_destroy(room.made);
+    scene_destroy(copy);
+    return code;
+}
+
+static status lint_cut_light(const lint_room *room, diagnostic *why)
+{
+    const render_settings *r = &room->of->render;
+    if (integrator_traits_of(r)->by_chance)
+        return lint_paths(room->of, room->level, room->taker, why);
+    return follows_trees(r) ? lint_depth(room, why) : STATUS_OK;
 }
 
 static status lint_traced(const scene *s, isa level, const note_taker *taker, diagnostic *why)
 {
-    scene *copy = small_copy(s);
+    scene *copy = small_copy(s, false);
     lint_room room = {.of = s, .level = level, .taker = taker};
     status code = copy ? plan_build(copy, &room.made, why) : out_of_memory(why);
     THEN(code, lint_neighbours(&room, why));
-    if (code == STATUS_OK)
-        lint_camera(&room);
-    if (code == STATUS_OK && follows_rays(&s->render))
-        code = lint_depth(&room, why);
+    if (code == STATUS_OK && !lint_camera(&room))
+        code = lint_cut_light(&room, why);
     plan_destroy(room.made);
     scene_destroy(copy);
     return code;

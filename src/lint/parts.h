@@ -16,11 +16,14 @@ typedef struct lint_room {
 status lint_neighbours(const lint_room *room, diagnostic *why);
 
 /* A camera that sees nothing: in an opaque solid, under the ground, in the wall of a cup; a part of an orthographic one
- * likewise. */
-void lint_camera(const lint_room *room);
+ * likewise. Returns whether the whole image is of no use; what it lacks is then of no interest. */
+bool lint_camera(const lint_room *room);
 
-/* A depth limit with a visible effect. */
+/* A depth limit of ray trees, or a least weight, with a visible effect, or with one that no image shows. */
 status lint_depth(const lint_room *room, diagnostic *why);
+
+/* The same of random paths; room->made is a plan of them. */
+status lint_path_depth(const lint_room *room, diagnostic *why);
 
 /* The solid with the given priority index. */
 static inline const solid *lint_solid(const lint_room *room, int priority_index)

@@ -93,7 +93,7 @@ export const cases = {
     const { page } = screen;
     await screen.button('Raise the depth').waitFor(); // next to the note in the status line
     await screen.button('1 note').click();
-    await page.getByText(/base of a vessel/).waitFor();
+    await page.getByText(/render.beyond replaces their light/).waitFor();
     await page.getByText(/The default is 4/).waitFor();
     await t.axe(screen, 'the notes');
     await page

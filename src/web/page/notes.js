@@ -1,5 +1,5 @@
 /* The linter's notes on the scene, fetched for each final image. A new note is shown in the status line; the button
- * there lists all. A remedy that sets a parameter is a button that sets it.
+ * there lists all. A remedy that sets parameters is a button that sets them.
  *
  * exports: createNotes(lab) -> {count(), show()}; emits 'notes' on the lab when the list has changed */
 
@@ -17,8 +17,9 @@ export function createNotes(lab) {
   function actionOf(note) {
     const action = noteAction(note);
     if (!action) return null;
-    const done = () => lab.say(`${action.path} is ${action.value}.`);
-    return { label: action.label, act: () => lab.set({ [action.path]: action.value }).then(done, lab.fail) };
+    const what = Object.entries(action.values).map(([path, value]) => `${path} is ${value}`);
+    const done = () => lab.say(`${what.join(', ')}.`);
+    return { label: action.label, act: () => lab.set(action.values).then(done, lab.fail) };
   }
 
   function actOn(note) {

@@ -166,7 +166,7 @@ function otherwise(lab) {
 function cutOff(lab, tree) {
   const cut = depthNote(tree, lab.param('render.beyond')?.value);
   if (!cut) return null;
-  const raise = () => lab.set({ [cut.path]: cut.value }).catch(lab.fail);
+  const raise = () => lab.set(cut.values).catch(lab.fail);
   return [
     notice(cut.text, { kind: 'warning' }),
     element('div', { class: 'buttons' }, button(cut.label, raise, { small: true })),
