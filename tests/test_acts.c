@@ -380,6 +380,8 @@ static const condition conditions[] = {
     {"rod", "render.integrator=path render.paths=4", "background.ambient", "path-ambient", true},
     {"rod", "render.integrator=path render.paths=4", "rod.ambient", "path-ambient", true},
     {"rod", "render.integrator=path render.paths=4 render.depth=3", "render.roulette", "roulette-depth", true},
+    {"rod", "liquid.roughness=0.5", "render.energy_compensation", "smooth-rays", true},
+    {"rod", "render.integrator=path render.paths=4", "render.energy_compensation", "no-roughness", true},
     {"rod", "render.integrator=path render.paths=4 lamp.reach=8 lamp.radius=0.3", "render.shadows", "spheres", true},
     {"rod", "render.integrator=path render.paths=4 lamp.reach=8 lamp.radius=0.3", "vessel.specular", "sphere-highlight",
      true},

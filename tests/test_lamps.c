@@ -124,6 +124,65 @@ static void wavelengths_are_drawn_from_lines_by_their_light(void **state)
     }
 }
 
+/* What emits nothing takes no wavelengths: colours of a sky of another kind, ambient light on surfaces without it or on
+ * random paths, black lamps and invisible solids. */
+static void a_dark_room_has_the_lines_alone(void **state)
+{
+    (void)state;
+    static const struct {
+        const char *assignments;
+        bool alone;
+    } rooms[] = {
+        {"", true},
+        {"background.horizon=1,1,1 background.ambient=1,1,1 background.rain=1", true},
+        {"ground.ambient=0.5", false},
+        {"ground.ambient=0.5 ground.color=0,0,0", true},
+        {"ground.ambient=0.5 render.integrator=path", true},
+        {"ground.emission=0.5 render.integrator=path", false},
+        {"ground.emission=0.5 ground.color=0,0,0", true},
+        {"ground.emission=0.5 ground.color=0,0,0 ground.checker=1 ground.checker_color=1,1,1", false},
+        {"ground.emission=0.5 ground.visible=off", true},
+        {"background.kind=gradient", false},
+        {"background.kind=gradient background.horizon=0,0,0", true},
+        {"background.kind=cie", false},
+        {"background.kind=rain background.horizon=0,0,0 background.rain=0", true},
+        {"background.kind=rain background.horizon=0,0,0 background.rain=1", false},
+        {"background.color=0,0,0.1", false},
+        {"other.intensity=1", false},
+        {"other.intensity=1 other.color=0,0,0", true},
+        {"other.intensity=1 other.color=0,0,0 other.spectrum=black_body", false},
+    };
+    for (size_t k = 0; k < COUNT(rooms); k++) {
+        scene *s = scene_from("background: {color: [0, 0, 0]}\n"
+                              "lights: {lamp: {position: [0, 1, 0], spectrum: mercury}, other: {intensity: 0}}\n"
+                              "solids: {ground: {shape: plane, diffuse: 1}}\n");
+        set_all(s, rooms[k].assignments);
+        if (line_table_of(s).alone != rooms[k].alone)
+            fail_msg("'%s': %s", rooms[k].assignments, rooms[k].alone ? "lines are not alone" : "lines are alone");
+        scene_destroy(s);
+    }
+}
+
+/* What does not shine changes no wavelength, and no film. */
+static void a_dark_rooms_film_has_no_wavelength_without_light(void **state)
+{
+    (void)state;
+    static const char *const dark[] = {"background.horizon=0,0,0 background.ambient=0,0,0", ""};
+    uint64_t hash[2];
+    for (size_t k = 0; k < COUNT(dark); k++) {
+        scene *s = scene_from("render: {width: 24, height: 24, spectrum: spectral, wavelengths: 16}\n"
+                              "background: {color: [0, 0, 0]}\n"
+                              "lights: {lamp: {position: [0, 4, -3], spectrum: mercury}}\n"
+                              "solids: {ground: {shape: plane, diffuse: 1}}\n");
+        set_all(s, dark[k]);
+        render_result *r = render(s);
+        hash[k] = film_hash(r->img);
+        render_result_destroy(r);
+        scene_destroy(s);
+    }
+    assert_true(hash[0] == hash[1]);
+}
+
 /* With another lamp, half of the wavelengths are for each; the sum is the same. */
 static void lines_and_daylight_add_up(void **state)
 {
@@ -218,6 +277,8 @@ int main(void)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(wavelengths_are_drawn_from_lines_by_their_light),
+        cmocka_unit_test(a_dark_room_has_the_lines_alone),
+        cmocka_unit_test(a_dark_rooms_film_has_no_wavelength_without_light),
         cmocka_unit_test(a_white_floor_shows_the_lamp),
         cmocka_unit_test(lines_and_daylight_add_up),
         cmocka_unit_test(paths_see_the_same_lines),

@@ -364,16 +364,24 @@ static void expect_alike(const render_result *a, const render_result *b)
 
 /* A lamp is sampled by surfaces; a matte ball that glows as brightly is hit by chance. Through glass its light is half
  * of the scene's here. */
-static void a_lamp_lights_as_a_glowing_ball_does(void **state)
+static void expect_lamp_as_ball(const char *assignments)
 {
-    (void)state;
+    char of_ball[160];
+    snprintf(of_ball, sizeof of_ball, "render.paths=16384 %s", assignments);
     render_result *lamp =
-        room_with("lights: {lamp: {position: [0.5, 2.4, -0.5], radius: 0.6, reach: 0.6, intensity: 3}}\n", "");
-    render_result *ball = room_with("  glow: {shape: sphere, position: [0.5, 2.4, -0.5], radius: 0.6, emission: 3}\n",
-                                    "render.paths=16384");
+        room_with("lights: {lamp: {position: [0.5, 2.4, -0.5], radius: 0.6, reach: 0.6, intensity: 3}}\n", assignments);
+    render_result *ball =
+        room_with("  glow: {shape: sphere, position: [0.5, 2.4, -0.5], radius: 0.6, emission: 3}\n", of_ball);
     expect_alike(lamp, ball);
     render_result_destroy(lamp);
     render_result_destroy(ball);
+}
+
+static void a_lamp_lights_as_a_glowing_ball_does(void **state)
+{
+    (void)state;
+    expect_lamp_as_ball("");
+    expect_lamp_as_ball("ball.roughness=0.7 bar.roughness=0.7 render.energy_compensation=on");
 }
 
 /* The same flux on the floor by photons, whose discs only move it a little. */
@@ -399,7 +407,9 @@ static void expect_photons_flux(const char *lamp, const char *assignments)
 static void photons_bring_the_light_of_rough_glass_and_metal(void **state)
 {
     (void)state;
-    expect_photons_flux("lights: {lamp: {position: [0.5, 2.4, -0.5], radius: 0.6, reach: 0.6, intensity: 3}}\n", "");
+    static const char lamp[] = "lights: {lamp: {position: [0.5, 2.4, -0.5], radius: 0.6, reach: 0.6, intensity: 3}}\n";
+    expect_photons_flux(lamp, "");
+    expect_photons_flux(lamp, "ball.roughness=0.7 bar.roughness=0.7 render.energy_compensation=on");
 }
 
 /* Paths find a point lamp's light through rough glass by its facets: a shadow ray must not bring it too. */

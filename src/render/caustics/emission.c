@@ -245,3 +245,10 @@ unit_pair emission_facet(const emission *e, int64_t i, int depth)
 {
     return two(words(e, i, depth, DRAW_FACET));
 }
+
+unit_pair emission_further(const emission *e, int64_t i, int depth, double *chance)
+{
+    const random_words w = words(e, i, depth, DRAW_FURTHER);
+    *chance = random_unit(w.word[2]);
+    return two(w);
+}

@@ -64,3 +64,5 @@ double emission_chance(const emission *e, int64_t i, int depth, int which);
 /* Two, for the end of a deep photon and its branch; two, for the facet of a rough surface. */
 unit_pair emission_roulette(const emission *e, int64_t i, int depth);
 unit_pair emission_facet(const emission *e, int64_t i, int depth);
+/* Two, and another one, for light of further facets. */
+unit_pair emission_further(const emission *e, int64_t i, int depth, double *chance);

@@ -117,8 +117,8 @@ static void arrive(tracer *t, int depth)
 }
 
 typedef struct photon_branch {
-    bool refracted;
-    vec3 direction, left; /* its share of the photon's power, by channel */
+    bool refracted, polarised; /* polarised: its Stokes vector is the surface's */
+    vec3 direction, left;      /* its share of the photon's power, by channel */
 } photon_branch;
 
 static double power_of(const photon_branch *b)
@@ -126,19 +126,64 @@ static double power_of(const photon_branch *b)
     return fmax(b->left.x, fmax(b->left.y, b->left.z));
 }
 
-/* rough: NULL for a smooth surface. */
-static photon_branch branch_of(const tracer *t, int k, bool refracted, const rough_surface *rough)
+static vec3 power_left(const tracer *t, int k, vec3 share)
 {
     const group *g = &t->surface.gathered;
+    return vec3_make(g->wr[k] * share.x, g->wg[k] * share.y, g->wb[k] * share.z);
+}
+
+static vec3 direction_of(const tracer *t, int k, bool refracted)
+{
     const branch_group *b = &t->surface.branches;
-    photon_branch one = {.refracted = refracted};
-    if (!((refracted ? b->refract[k] : b->reflect[k]) > 0.0))
+    return refracted ? vec3_make(b->tx[k], b->ty[k], b->tz[k]) : vec3_make(b->rx[k], b->ry[k], b->rz[k]);
+}
+
+static bool has_branch(const tracer *t, int k, bool refracted)
+{
+    return (refracted ? t->surface.branches.refract[k] : t->surface.branches.reflect[k]) > 0.0;
+}
+
+/* A branch of record k, of a surface that lets pass this share of it. */
+static photon_branch branch_of(const tracer *t, int k, bool refracted, double passing)
+{
+    photon_branch one = {.refracted = refracted, .polarised = true};
+    if (!has_branch(t, k, refracted))
         return one;
-    one.direction = refracted ? vec3_make(b->tx[k], b->ty[k], b->tz[k]) : vec3_make(b->rx[k], b->ry[k], b->rz[k]);
-    const double passing = rough ? rough_share(t, rough, k, rough_in_frame(rough, k, one.direction), refracted) : 1.0;
-    const vec3 share = vec3_scale(layered_weight(t, k, !refracted), passing);
-    one.left = vec3_make(g->wr[k] * share.x, g->wg[k] * share.y, g->wb[k] * share.z);
+    one.direction = direction_of(t, k, refracted);
+    one.left = power_left(t, k, vec3_scale(layered_weight(t, k, !refracted), passing));
     return one;
+}
+
+/* The share of a branch that its facet does not stop. */
+static double passing_of(tracer *t, int k, bool refracted, const rough_surface *r)
+{
+    return has_branch(t, k, refracted)
+               ? rough_share(t, r, k, rough_in_frame(r, k, direction_of(t, k, refracted)), refracted)
+               : 0.0;
+}
+
+/* Both branches of record k at a facet; or, with the chance that the facet's light is stopped, one of further facets. */
+static void meet_facet(tracer *t, int k, int depth, const rough_surface *r, photon_branch both[2])
+{
+    const photon_frame *f = t->target.state;
+    const branch_group *b = &t->surface.branches;
+    const double back = passing_of(t, k, false, r), on = passing_of(t, k, true, r);
+    double stopped = 0.0;
+    if (r->finish) {
+        const double clear = t->surface.mat->surface.transparency;
+        stopped = r->opaque ? 1.0 - back : b->reflect[k] * (1.0 - back) + b->refract[k] / clear * (1.0 - on);
+        double chance;
+        const unit_pair place = emission_further(f->from, number_of(t->surface.gathered.sample_key[k]), depth, &chance);
+        if (chance < stopped) {
+            const further_light l = rough_draw_further(t, r, k, chance / stopped, place);
+            both[0] =
+                (photon_branch){.refracted = l.refracted, .direction = l.direction, .left = power_left(t, k, l.factor)};
+            both[1] = (photon_branch){.refracted = !l.refracted};
+            return;
+        }
+    }
+    both[0] = branch_of(t, k, false, back / (1.0 - stopped));
+    both[1] = branch_of(t, k, true, on / (1.0 - stopped));
 }
 
 static void go_on(tracer *t, int k, int depth, const photon_branch *b)
@@ -159,6 +204,8 @@ static void go_on(tracer *t, int k, int depth, const photon_branch *b)
         const polar_group *p = &t->surface.polar;
         q->sq[at] = refracted ? p->tq[k] : p->rq[k], q->su[at] = refracted ? p->tu[k] : p->ru[k];
         q->sv[at] = refracted ? p->tv[k] : p->rv[k];
+        if (!b->polarised)
+            q->sq[at] = q->su[at] = q->sv[at] = 0.0;
     }
     COUNT(refracted ? t->account.counters.refract++ : t->account.counters.reflect++);
 }
@@ -225,8 +272,11 @@ static void shade(tracer *t, int depth, int priority_index)
     else
         shading_branches(t, opaque);
     for (int k = 0; k < t->surface.gathered.count; k++) {
-        photon_branch both[2] = {branch_of(t, k, false, alpha > 0.0 ? &rough : NULL),
-                                 branch_of(t, k, true, alpha > 0.0 ? &rough : NULL)};
+        photon_branch both[2];
+        if (alpha > 0.0)
+            meet_facet(t, k, depth, &rough, both);
+        else
+            both[0] = branch_of(t, k, false, 1.0), both[1] = branch_of(t, k, true, 1.0);
         if (depth >= DEPTH_DEEP - 1) {
             follow_one(t, k, depth, both);
             continue;

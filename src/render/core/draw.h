@@ -18,12 +18,14 @@ enum {
     DRAW_PIXEL = 0x1000,
     DRAW_PHOTON = 0x1001, /* and the next one */
     DRAW_LENS = 0x1003,
-    DRAW_FACET = 0x1004,                                /* of a rough surface */
-    DRAW_FACET_LIGHT = 0x1005,                          /* on its side; the next one: on the other */
-    DRAW_FLIGHT = 0x1007,                               /* of a ray in a medium that scatters */
-    DRAW_PHASE = 0x1008,                                /* its direction afterwards */
-    DRAW_AIRLIGHT = 0x1009,                             /* from there on, each light has its own number */
-    DRAW_PHOTON_END = DRAW_AIRLIGHT + SCENE_LIGHTS_MAX, /* Russian roulette of deep photons, and their branch */
+    DRAW_FACET = 0x1004,       /* of a rough surface */
+    DRAW_FACET_LIGHT = 0x1005, /* on its side; the next one: on the other */
+    DRAW_FLIGHT = 0x1007,      /* of a ray in a medium that scatters */
+    DRAW_PHASE = 0x1008,       /* its direction afterwards */
+    DRAW_AIRLIGHT = 0x1009,    /* from there on, each light has its own number */
+    DRAW_FURTHER =
+        DRAW_AIRLIGHT + SCENE_LIGHTS_MAX, /* whether light meets further facets; the next one: its direction */
+    DRAW_PHOTON_END = DRAW_FURTHER + 2,   /* Russian roulette of deep photons, and their branch */
     DRAW_NEXT
 };
 static_assert(DRAW_LIGHT + SCENE_LIGHTS_MAX <= DRAW_PIXEL,

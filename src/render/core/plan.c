@@ -267,6 +267,15 @@ static const material *material_of(const scene *s, plan *p, int solid_index)
     return mirror;
 }
 
+/* False when out of memory. */
+static bool add_roughness(const scene *s, plan *p, const material *m)
+{
+    const double alpha = material_roughness(m, &s->render);
+    p->rough |= alpha > 0.0;
+    return !(alpha > 0.0) || !s->render.energy_compensation ||
+           rough_energy_add(&p->energy, alpha, material_coating(m, &s->render), material_is_opaque(m));
+}
+
 /* Fills the tables by priority index: materials, refractive indices, absorption, shading materials. */
 static status fill_priority_indices(const scene *s, const index_law *laws, plan *p, diagnostic *why)
 {
@@ -289,7 +298,8 @@ static status fill_priority_indices(const scene *s, const index_law *laws, plan 
         if (!region_materials_make(s, &s->solids[solid_index], p->materials[r], &p->shading_materials[r]))
             return out_of_memory(why);
         for (int k = 0; k < p->shading_materials[r].count; k++)
-            p->rough |= material_roughness(&p->shading_materials[r].mat[k].surface, &s->render) > 0.0;
+            if (!add_roughness(s, p, &p->shading_materials[r].mat[k].surface))
+                return out_of_memory(why);
         p->absorption[r] = material_extinction(p->materials[r], s->render.unit_m);
     }
     if (!plan_find_alike(p))
@@ -426,6 +436,7 @@ void plan_destroy(plan *p)
     free(p->shapes);
     spectra_destroy(p->spectral);
     layered_plan_destroy(p->layered);
+    rough_energy_destroy(p->energy);
     free(p->sheets);
     free(p->crystals);
     free(p->scatter);

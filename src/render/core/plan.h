@@ -12,6 +12,7 @@
 #include "render/shade/layered_table.h"
 #include "render/shade/light_cone.h"
 #include "render/shade/rain.h"
+#include "render/shade/rough_energy.h"
 #include "render/shade/scattering.h"
 #include "render/shade/sheets.h"
 #include "render/shade/spectra.h"
@@ -53,6 +54,7 @@ typedef struct plan {
     optical_medium *crystals; /* by priority index; NULL if there are none */
     scatter_plan *scatter;    /* media that scatter; NULL if there are none */
     bool rough;               /* some surfaces are rough: see render/shade/rough.h */
+    rough_energy *energy;     /* of their further facets, with render.energy_compensation; else NULL */
     camera_frame view;
     uint64_t eye_inside;       /* the set of primitives that contain the camera */
     analyser_kind analyser;    /* of camera rays; ANALYSER_NONE without polarisation */

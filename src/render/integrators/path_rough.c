@@ -84,6 +84,29 @@ static double chance_of(const tracer *t, const rough_surface *r, int k, bool ref
     return both > 0.0 ? (reflected ? b->reflect[k] : other) / both : 0.0;
 }
 
+/* The chance that a path which a facet sends to o goes on there, not as light of further facets. */
+static double chance_to_leave(const rough_surface *r, vec3 o)
+{
+    return r->finish ? ggx_visible_share(r->alpha, o) : 1.0;
+}
+
+/* What further facets send to the lamps that were aimed at: these alone sample it, as that of a matte surface. */
+static void light_further(tracer *t, const rough_surface *r, const lamp_samples *s, const lamp_aims *a)
+{
+    const group *g = &t->surface.gathered;
+    for (int k = 0; k < g->count; k++) {
+        if (a->o[k].z == 0.0)
+            continue;
+        const bool refracted = a->o[k].z < 0.0;
+        const double light = a->density[k] > 0.0 ? a->light[k] / a->density[k] : a->light[k];
+        const vec3 share = vec3_scale(rough_further(t, r, k, a->o[k]), light);
+        if (share.x > 0.0 || share.y > 0.0 || share.z > 0.0)
+            path_enqueue_lamp(t, k, s->lamp[k], vec3_scale(a->to[k], a->distance[k]),
+                              refracted ? g->n_to[k] : g->n_from[k],
+                              refracted ? g->inside_after[k] : g->inside_before[k], share);
+    }
+}
+
 /* A point of each record's lamp, weighted against the path's own direction. */
 static void light_by_lamps(tracer *t, rough_surface *r, const lamp_samples *s, double side)
 {
@@ -91,6 +114,8 @@ static void light_by_lamps(tracer *t, rough_surface *r, const lamp_samples *s, d
     facet f[ROW];
     const int count = t->surface.gathered.count;
     aim_all(t, r, s, side, &a);
+    if (r->finish)
+        light_further(t, r, s, &a);
     for (int k = 0; k < count; k++) {
         f[k] = a.o[k].z != 0.0 ? rough_facet(t, r, k, a.o[k]) : (facet){vec3_make(0.0, 0.0, 1.0), 0.0};
         r->m[k] = f[k].m;
@@ -100,7 +125,7 @@ static void light_by_lamps(tracer *t, rough_surface *r, const lamp_samples *s, d
         if (!(f[k].density > 0.0))
             continue;
         const bool reflected = a.o[k].z > 0.0;
-        const double own = chance_of(t, r, k, reflected) * f[k].density,
+        const double own = chance_of(t, r, k, reflected) * f[k].density * chance_to_leave(r, a.o[k]),
                      weight = a.density[k] > 0.0 ? 1.0 / (a.density[k] + own) : 1.0;
         const vec3 share = vec3_scale(layered_weight(t, k, reflected),
                                       ggx_visible_share(r->alpha, a.o[k]) * f[k].density * a.light[k] * weight);
@@ -130,6 +155,33 @@ static void light_by_all_lamps(tracer *t, rough_surface *r, int depth)
 
 /* --- the path's facets --- */
 
+static void draw_further(tracer *t, int depth, rough_surface *r)
+{
+    const plan *p = t->target.frame_plan;
+    const group *g = &t->surface.gathered;
+    double unused[ROW];
+    t->path->draw(&p->draws, g->count, g->sample_key, depth, DRAW_FURTHER, r->chance, unused);
+    t->path->draw(&p->draws, g->count, g->sample_key, depth, DRAW_FURTHER + 1, r->u, r->v);
+}
+
+/* The path goes on as light of further facets, which is unpolarised; chance: even in (0, 1). What the surface absorbs at
+ * the facet is in r->kept, not in the path's share. */
+static bool follow_further(const tracer *t, const rough_surface *r, int k, double chance, continuation *c)
+{
+    const group *g = &t->surface.gathered;
+    const further_light f = rough_draw_further(t, r, k, chance, (unit_pair){r->u[k], r->v[k]});
+    const double clear = t->surface.mat->surface.transparency, chosen = r->opaque ? chance_of(t, r, k, true) : 1.0;
+    const vec3 one = vec3_make(1.0, 1.0, 1.0),
+               all = r->opaque ? one : vec3_scale(c->share, c->refracted ? 1.0 / clear : 1.0); /* a film's colours */
+    c->direction = f.direction;
+    c->share = vec3_make(f.factor.x * all.x / chosen, f.factor.y * all.y / chosen, f.factor.z * all.z / chosen);
+    c->refracted = f.refracted;
+    c->inside = f.refracted ? g->inside_after[k] : g->inside_before[k];
+    c->specular_bounce = false;
+    c->q = c->u = c->v = 0.0;
+    return f.factor.x > 0.0 || f.factor.y > 0.0 || f.factor.z > 0.0;
+}
+
 void path_rough_begin(tracer *t, double alpha, bool opaque, int depth, rough_surface *r)
 {
     const plan *p = t->target.frame_plan;
@@ -145,6 +197,8 @@ void path_rough_begin(tracer *t, double alpha, bool opaque, int depth, rough_sur
     for (int k = 0; k < g->count; k++)
         r->m[k] = ggx_draw_normal(alpha, r->i[k], u[k], v[k]);
     rough_branches(t, r);
+    if (r->finish)
+        draw_further(t, depth, r);
     if (!opaque)
         COUNT(t->account.counters.total_internal += (uint64_t)t->surface.branches.total);
 }
@@ -163,7 +217,7 @@ static void light_by_direction(tracer *t, const rough_surface *r, int k, vec3 o,
         const light_estimate by = estimate_on(o.z);
         const double chance = light_choice_applies(p) ? light_choice_chance(t, &by, k, lamp) : 1.0;
         const double density = chance * area_light_density(p, lamp, origin, c->direction, distance),
-                     own = chance_of(t, r, k, !c->refracted) * rough_facet(t, r, k, o).density;
+                     own = chance_of(t, r, k, !c->refracted) * rough_facet(t, r, k, o).density * chance_to_leave(r, o);
         if (own > 0.0)
             enqueue(t, k, lamp, vec3_scale(c->direction, distance), c->refracted,
                     vec3_scale(c->share, radiance * own / (density + own)));
@@ -175,9 +229,11 @@ bool path_rough_scatter(tracer *t, const rough_surface *r, int k, continuation *
     const group *g = &t->surface.gathered;
     const vec3 o = rough_in_frame(r, k, c->direction);
     const double share = rough_share(t, r, k, o, c->refracted);
+    if (r->finish && r->chance[k] >= share)
+        return follow_further(t, r, k, (r->chance[k] - share) / (1.0 - share), c);
     if (!(share > 0.0))
         return false;
-    c->share = vec3_scale(c->share, share);
+    c->share = r->finish ? c->share : vec3_scale(c->share, share);
     c->specular_bounce = c->refracted && g->n_from[k] == g->n_to[k]; /* straight on: no other direction has density */
     if (!c->specular_bounce && takes_lamps(t, k))
         light_by_direction(t, r, k, o, c);

@@ -108,6 +108,29 @@ vec3 layered_weight(const tracer *t, int k, bool reflected)
     return reflected ? vec3_make(w->rr[k], w->rg[k], w->rb[k]) : vec3_make(w->tr[k], w->tg[k], w->tb[k]);
 }
 
+vec3 layered_mean(const tracer *t, int k)
+{
+    enum { SQUARES = 8 };
+    const group *g = &t->surface.gathered;
+    const layered_work *w = t->layered;
+    const layered_surface *s = w->surface;
+    const double n_from = g->n_from[k], n_to = g->n_to[k];
+    vec3 sum = vec3_make(0.0, 0.0, 0.0);
+    for (int i = 0; i < SQUARES; i++) { /* even steps of the squared cosine */
+        const double cosine = sqrt((i + 0.5) / SQUARES);
+        vec3 R;
+        if (w->colored)
+            R = w->curve[k]->by_ray ? layered_color(s, cosine, n_from, n_to) : layered_curve_at(w->curve[k], cosine);
+        else {
+            const sp_amplitudes a = layered_amplitudes(s, cosine, n_from, n_to, wavelength_of(t, k));
+            const double mean = lesser(sp_response_of(a.r_s, a.r_p).mean, 1.0);
+            R = vec3_make(mean, mean, mean);
+        }
+        sum = vec3_add(sum, vec3_scale(R, 1.0 / SQUARES));
+    }
+    return sum;
+}
+
 void layered_color_children(tracer *t, ray_queue *q, int first, bool reflected)
 {
     const group *g = &t->surface.gathered;

@@ -29,5 +29,8 @@ void layered_turn_back(tracer *t, int k);
 /* The weight of a branch of ray k by channel. */
 vec3 layered_weight(const tracer *t, int k, bool reflected);
 
+/* The mean reflectance of the surface of ray k by channel: twice the integral over cosines of R times cosine. */
+vec3 layered_mean(const tracer *t, int k);
+
 /* Gives children first .. of the queue, which were appended with the mean weights, the colours of theirs. */
 void layered_color_children(tracer *t, ray_queue *q, int first, bool reflected);

@@ -1,6 +1,7 @@
 /* Rough surfaces (optics/microfacet.h) in the tracer: each ray of the gathered group meets one facet, at which it
  * reflects or refracts as at a smooth surface of that normal, metals and films included. A branch keeps the share of
- * light that other facets let pass; what they stop is lost. Plain values; nothing fails. */
+ * light that other facets let pass; what they stop is lost, or leaves in all directions (rough_energy.h). Plain values;
+ * nothing fails. */
 #pragma once
 
 #include "optics/microfacet.h"
@@ -12,7 +13,11 @@ typedef struct rough_surface {
     bool opaque;
     vec3 x[ROW], y[ROW], n[ROW], i[ROW]; /* i: towards the ray's origin, in its frame */
     double cos_i[ROW];
-    vec3 m[ROW]; /* the facets' normals, in the rays' frames; for rough_branches */
+    vec3 m[ROW];                /* the facets' normals, in the rays' frames; for rough_branches */
+    const rough_finish *finish; /* NULL: light of further facets is lost */
+    facet_energy energy[ROW];
+    vec3 kept[ROW];                     /* of light of further facets, by channel, at an opaque surface; else 1 */
+    double chance[ROW], u[ROW], v[ROW]; /* of the draw of light of further facets */
 } rough_surface;
 
 /* Alpha of the gathered group's surface; 0: it is smooth. */
@@ -38,6 +43,22 @@ bool rough_lets_out(const tracer *t, const rough_surface *r, int k, vec3 o, bool
 
 /* The share that a branch of ray k, whose direction is o in its frame, keeps; 0 if it leads back to the surface. */
 double rough_share(const tracer *t, const rough_surface *r, int k, vec3 o, bool refracted);
+
+/* --- light of further facets; r->finish is not NULL --- */
+
+/* The share of light in a direction o of the frame of ray k, f |cos o|. */
+vec3 rough_further(const tracer *t, const rough_surface *r, int k, vec3 o);
+
+/* Light that a facet sends and others stop leaves in a direction drawn by the law of cosines, on a side drawn by two
+ * numbers `chance` and `place`, with that factor. In the mean over all facets it is rough_further, whatever the error of
+ * the table at i. */
+typedef struct further_light {
+    vec3 direction, factor; /* in the world; 0: it does not leave the surface */
+    bool refracted;
+} further_light;
+further_light rough_draw_further(const tracer *t, const rough_surface *r, int k, double chance, unit_pair place);
+
+/* --- */
 
 /* The facet of ray k that sends light from o in its frame, and the density of such directions. */
 facet rough_facet(const tracer *t, const rough_surface *r, int k, vec3 o);

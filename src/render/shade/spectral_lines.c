@@ -2,6 +2,7 @@
 #include "render/shade/spectral_lines.h"
 
 #include "render/shade/spectra.h"
+#include "scene/model/face_materials.h"
 
 int spectral_lines_of(const light *l, lamp_line lines[LAMP_LINES_MAX])
 {
@@ -23,18 +24,59 @@ static int lines_of_beam(const scene *s, const beam *b, lamp_line lines[LAMP_LIN
     return beam_lights_scene(b, &s->render) && !b->white ? spectral_lines_of(&lamp, lines) : 0;
 }
 
-/* Does anything emit light of other wavelengths? */
+static bool is_black(vec3 color)
+{
+    return color.x == 0.0 && color.y == 0.0 && color.z == 0.0;
+}
+
+/* Each kind of sky has its own colours; render/shade/sky.h. */
+static bool sky_shines(const background *b)
+{
+    switch ((background_kind)b->kind) {
+    case BACKGROUND_UNIFORM: break;
+    case BACKGROUND_RAIN: return !is_black(b->color) || !is_black(b->horizon) || b->rain > 0.0;
+    case BACKGROUND_GRADIENT:
+    case BACKGROUND_CIE: return !is_black(b->color) || !is_black(b->horizon);
+    case BACKGROUND_IMAGE: return true;
+    }
+    return !is_black(b->color);
+}
+
+/* Random paths have no ambient light. */
+static bool surface_shines(const scene *s, const material *m)
+{
+    const bool ambient =
+        m->ambient > 0.0 && !is_black(s->background.ambient) && !integrator_traits_of(&s->render)->by_chance;
+    return (m->emission > 0.0 || ambient) && (!is_black(m->color) || (m->checker > 0.0 && !is_black(m->checker_color)));
+}
+
+static bool solid_shines(const scene *s, const solid *one)
+{
+    const int slots = face_material_slots(s, one);
+    bool any = slots == 0 && surface_shines(s, &one->surface);
+    for (int slot = 0; slot < slots; slot++) {
+        const shading_material of_face = shading_material_of_face(s, one, &one->surface, slot);
+        any |= surface_shines(s, &of_face.surface);
+    }
+    return any && one->visible;
+}
+
+static bool lamp_has_continuum(const light *l)
+{
+    return l->intensity > 0.0 &&
+           (l->spectrum == LAMP_BLACK_BODY || (l->spectrum == LAMP_OF_COLOR && !is_black(l->color)));
+}
+
+/* Does anything that the film shows emit light of other wavelengths? */
 static bool emits_a_continuum(const scene *s)
 {
-    const background *b = &s->background;
-    const vec3 sum = vec3_add(b->color, vec3_add(b->horizon, b->ambient));
-    bool any = sum.x + sum.y + sum.z > 0.0 || b->kind == BACKGROUND_IMAGE || b->rain > 0.0;
+    bool any = sky_shines(&s->background);
     for (size_t i = 0; i < s->light_count; i++)
-        any |= s->lights[i].spectrum < LAMP_SODIUM && s->lights[i].intensity > 0.0;
+        any |= lamp_has_continuum(&s->lights[i]);
     for (size_t i = 0; i < s->beam_count; i++)
         any |= s->beams[i].white && beam_lights_scene(&s->beams[i], &s->render);
     for (size_t i = 0; i < s->solid_count; i++)
-        any |= s->solids[i].surface.emission > 0.0 || s->solids[i].mesh[0];
+        any |= solid_shines(s, &s->solids[i]);
     return any;
 }
 

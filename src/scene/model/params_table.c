@@ -188,6 +188,9 @@ static const param table[] = {
         light_sampling_words, PATHS(light_sampling), .first_default = "all"),
     CHOICE(PARAM_RENDER, render_settings, roulette, off_on, "off",
            "Russian roulette: faint paths end at random, and the surviving ones are weighted up; integrator path"),
+    CHOICE(PARAM_RENDER, render_settings, energy_compensation, off_on, "off",
+           "rough surfaces: light that a facet sends to another is lost, or sent on, so that no light is lost; "
+           "integrator path"),
     INTEGER(PARAM_RENDER, render_settings, seed, "", 0, 2147483647, "1", "seed of the random numbers"),
     CHOICE(PARAM_RENDER, render_settings, polarisation, off_on, "off",
            "on: trace the Stokes vector of each ray (Mueller matrices of the Fresnel equations); off: average "

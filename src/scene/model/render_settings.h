@@ -68,6 +68,8 @@ typedef struct render_settings {
     double rebuild;
     int64_t count_tests; /* 1: count the tests of hierarchies */
     int64_t texturing;   /* texturing_rule, for the rasteriser */
+    /* 1: light that facets of rough surfaces send to one another is not lost; path integrator */
+    int64_t energy_compensation;
 } render_settings;
 
 static inline const integrator_traits *integrator_traits_of(const render_settings *r)

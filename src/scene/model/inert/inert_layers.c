@@ -11,10 +11,12 @@
 /* By group: parameters that concern only light. */
 static bool is_of_light(const inert_case *c)
 {
-    static const char *const of_render[] = {"caustics",  "photons",     "samples",      "depth",      "beyond",
-                                            "lighting",  "shadows",     "soft_shadows", "min_weight", "paths",
-                                            "roulette",  "seed",        "radiance",     "spectrum",   "polarisation",
-                                            "lambda_nm", "wavelengths", "unit_m",       "weights",    NULL};
+    static const char *const of_render[] = {"caustics",    "photons",  "samples",      "depth",
+                                            "beyond",      "lighting", "shadows",      "soft_shadows",
+                                            "min_weight",  "paths",    "roulette",     "seed",
+                                            "radiance",    "spectrum", "polarisation", "lambda_nm",
+                                            "wavelengths", "unit_m",   "weights",      "energy_compensation",
+                                            NULL};
     static const char *const of_sky[] = {"kind",     "color",   "horizon",           "picture",
                                          "rain",     "drops",   "sun_elevation_deg", "sun_azimuth_deg",
                                          "sky_type", "ambient", "absorb_per_m",      NULL};

@@ -33,6 +33,34 @@ static bool roulette(const inert_case *c)
                      (long long)c->s->render.depth);
 }
 
+static bool is_rough(const scene *s, const solid *one)
+{
+    return material_roughness(&one->surface, &s->render) > 0.0 || may_have_face_materials(s, one);
+}
+
+/* The first solid that would be rough with a roughness. */
+static bool could_be_rough(const scene *s, const solid *one)
+{
+    material rough = one->surface;
+    rough.roughness = 1.0;
+    return material_roughness(&rough, &s->render) > 0.0;
+}
+
+static bool energy_compensation(const inert_case *c)
+{
+    const scene *s = c->s;
+    if (!is_path(s))
+        return inert_say(c, "smooth-rays", "set render.integrator=path",
+                         "only the path integrator shows roughness: all surfaces are treated as smooth");
+    if (first_visible(s, is_rough))
+        return false;
+    const solid *one = first_visible(s, could_be_rough);
+    const char *name = one ? one->name : s->solid_count > 0 ? s->solids[0].name : "SOLID";
+    const inert_remedy remedy =
+        one ? inert_set("%s.roughness=0.5", name) : inert_set("%s.reflectivity=0.5 and %s.roughness=0.5", name, name);
+    return inert_say(c, "no-roughness", remedy.text, "no visible surface is rough");
+}
+
 static bool nothing_goes_on(const scene *s)
 {
     return !first_visible(s, sends_rays_on);
@@ -374,6 +402,7 @@ bool inert_render(const inert_case *c)
         {"filter", path_only},
         {"light_sampling", light_sampling},
         {"roulette", roulette},
+        {"energy_compensation", energy_compensation},
         {"seed", seed},
         {"radiance", inert_radiance},
         {"polarisation", polarisation},
