@@ -1,5 +1,5 @@
-/* Tests of light that facets of rough surfaces send to one another (render/shade/rough_energy.h): a surface that absorbs
- * nothing sends on all light from every direction, by quadrature of Walter's f, and in white furnaces; it is
+/* Tests of light that facets of rough surfaces send to one another (render/shade/rough_energy.h): a surface that
+ * absorbs nothing sends on all light from every direction, by quadrature of Walter's f, and in white furnaces; it is
  * reciprocal, so that photons and paths agree (test_rough.c); metals keep what Kulla and Conty give. */
 #include <math.h>
 #include <setjmp.h>

@@ -145,7 +145,11 @@ bool tracer_begin(tracer *t, const tracer_target *target)
     /* In a spectral film each wavelength has its own camera ray, with its share of the weight. */
     t->least_weight = r->spectrum == SPECTRUM_SPECTRAL ? r->min_weight / (double)r->wavelengths : r->min_weight;
     /* A batch waits; a rough surface samples each light up to three times (path_rough.c), a medium twice more. */
-    const int shadows_at_once = BATCH * (1 + ((p->energy ? 4 : p->rough ? 3 : 1) + (p->scatter ? 2 : 0)) * p->light_count);
+    const int shadows_at_once = BATCH * (1 + ((p->energy  ? 4
+                                               : p->rough ? 3
+                                                          : 1) +
+                                              (p->scatter ? 2 : 0)) *
+                                                 p->light_count);
     if (t->queues.shadows.capacity < shadows_at_once) {
         queue_destroy(&t->queues.shadows);
         if (!queue_create(&t->queues.shadows, shadows_at_once))

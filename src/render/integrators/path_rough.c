@@ -98,8 +98,8 @@ static void light_further(tracer *t, const rough_surface *r, const lamp_samples 
         if (a->o[k].z == 0.0)
             continue;
         const bool refracted = a->o[k].z < 0.0;
-        const double light = a->density[k] > 0.0 ? a->light[k] / a->density[k] : a->light[k];
-        const vec3 share = vec3_scale(rough_further(t, r, k, a->o[k]), light);
+        const double brought = a->density[k] > 0.0 ? a->light[k] / a->density[k] : a->light[k];
+        const vec3 share = vec3_scale(rough_further(t, r, k, a->o[k]), brought);
         if (share.x > 0.0 || share.y > 0.0 || share.z > 0.0)
             path_enqueue_lamp(t, k, s->lamp[k], vec3_scale(a->to[k], a->distance[k]),
                               refracted ? g->n_to[k] : g->n_from[k],
@@ -164,8 +164,8 @@ static void draw_further(tracer *t, int depth, rough_surface *r)
     t->path->draw(&p->draws, g->count, g->sample_key, depth, DRAW_FURTHER + 1, r->u, r->v);
 }
 
-/* The path goes on as light of further facets, which is unpolarised; chance: even in (0, 1). What the surface absorbs at
- * the facet is in r->kept, not in the path's share. */
+/* The path goes on as light of further facets, which is unpolarised; chance: even in (0, 1). What an opaque surface
+ * absorbs at the facet is in r->kept. */
 static bool follow_further(const tracer *t, const rough_surface *r, int k, double chance, continuation *c)
 {
     const group *g = &t->surface.gathered;

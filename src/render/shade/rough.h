@@ -50,8 +50,8 @@ double rough_share(const tracer *t, const rough_surface *r, int k, vec3 o, bool 
 vec3 rough_further(const tracer *t, const rough_surface *r, int k, vec3 o);
 
 /* Light that a facet sends and others stop leaves in a direction drawn by the law of cosines, on a side drawn by two
- * numbers `chance` and `place`, with that factor. In the mean over all facets it is rough_further, whatever the error of
- * the table at i. */
+ * numbers `chance` and `place`, with that factor. In the mean over all facets it is rough_further, whatever the error
+ * of the table at i. */
 typedef struct further_light {
     vec3 direction, factor; /* in the world; 0: it does not leave the surface */
     bool refracted;

@@ -9,11 +9,14 @@
  * and F^2 E / (1 - F (1 - E)): each further facet keeps F. A clear solid has shares for reflection and refraction whose
  * sum is 1. Light from side 1 to 2 is reciprocal if n_1^2 t_1 a_1 = n_2^2 t_2 a_2 (basic radiance); the mean
  * transmittances of smooth surfaces have n_1^2 T_1 = n_2^2 T_2, so that t_1 = T_1 min(1, a_2 / a_1) is the largest
- * share that obeys both; [KC] have a_2 / (a_1 + a_2) for the minimum.
+ * share that obeys both; [KC] have a_2 / (a_1 + a_2) for the minimum. From air into glass of index 1.5 at alpha 0.5, a
+ * random walk (Heitz and others, "Multiple-scattering microfacet BSDFs with the Smith model", SIGGRAPH 2016) refracts
+ * 0.96 to 0.98 of this light, the minimum has 0.91, and [KC] have 0.71.
  *
- * Tables of A by sqrt(cosine), for the ratios of indices 2^(k / 64) up to 4, between which A is interpolated. Films count
- * as the bare surface in these. A table is filled when a ray first needs it, by the worker that traces it; its values
- * depend on the material and the ratio alone. Ownership: rough_energy_add allocates, rough_energy_destroy releases. */
+ * Tables of A by sqrt(cosine), for the ratios of indices 2^(k / 64) up to 4, between which A is interpolated. In
+ * these films count as the bare surface. A table is filled when a ray first needs it, by the worker that traces it; its
+ * values depend on the material and the ratio alone. Ownership: rough_energy_add allocates, rough_energy_destroy
+ * releases. */
 #pragma once
 
 #include <pthread.h>
