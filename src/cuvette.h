@@ -33,6 +33,14 @@
  *
  * Geometry. Lengths are in scene units (render.unit_m is the length of one in metres), y is up, angles are in degrees.
  * Pixels are counted from 0, with 0 at the top left; pixel x, y covers the square from x, y to x + 1, y + 1.
+ * The world is left-handed: x to the right, y up, z away. Positive degrees turn x to y about z, y to z about x, z to x
+ * about y: counter-clockwise for an eye that looks along the axis, here along z:
+ *
+ *     y
+ *     |          .  x after 20 degrees
+ *     |     .
+ *     | .
+ *     o----------- x
  *
  * The film is a function of the scene only: it is bit-identical for any number of threads, schedule, instruction set or
  * compiler, and with or without pieces, previews and callbacks. Compare films by their hashes.
@@ -256,14 +264,8 @@ CUVETTE_API cuvette_status cuvette_scene_remove(cuvette_scene *scene, const char
 CUVETTE_API cuvette_status cuvette_scene_move(cuvette_scene *scene, const char *name, const double *by,
                                               cuvette_diagnostic *why);
 /* Rotates a solid in place, or the direction of a cone light or "camera", about the world's x axis, then y, then z
- * (three angles), after the rotation that it has. Several objects ("all") rotate about the origin, the camera including
- * its roll. Positive degrees turn x to y about z, y to z about x, z to x about y. The world is left-handed: for an eye
- * that looks along the axis this is counter-clockwise; here along z:
- *
- *     y
- *     |     .  x after 0, 0, 20
- *     |  .
- *     o-------- x                z points away from the eye */
+ * (three angles), after the rotation that it has: counter-clockwise for an eye that looks along the axis. Several
+ * objects ("all") rotate about the origin, the camera including its roll. */
 CUVETTE_API cuvette_status cuvette_scene_turn(cuvette_scene *scene, const char *name, const double *degrees,
                                               cuvette_diagnostic *why);
 /* Multiplies all lengths of a solid or a light by a factor above 0, in place; or of several objects ("all+camera"),
