@@ -136,7 +136,7 @@ static void print_cut(const job_account *f)
 {
     const double least = 0.01, share = frame_quantity("cut_share")->read(f, -1).real[0];
     if (share >= least)
-        printf(", %.2g %% of the light cut", 100.0 * share);
+        printf(", %.3g %% of the light cut", 100.0 * share);
 }
 
 /* Prints the summary, one line; programs use --json. */
