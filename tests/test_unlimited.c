@@ -167,8 +167,8 @@ static void films_are_the_same_for_any_threads(void **state)
 static void memory_is_bounded(void **state)
 {
     (void)state;
-    assert_true(tracer_bytes(DEPTH_UNLIMITED, false) == tracer_bytes(DEPTH_TREE_MAX + 1, false));
-    assert_true(tracer_bytes(DEPTH_UNLIMITED, false) < 2 * tracer_bytes(DEPTH_TREE_MAX, false));
+    assert_true(tracer_bytes(DEPTH_UNLIMITED, false, false) == tracer_bytes(DEPTH_TREE_MAX + 1, false, false));
+    assert_true(tracer_bytes(DEPTH_UNLIMITED, false, false) < 2 * tracer_bytes(DEPTH_TREE_MAX, false, false));
 }
 
 /* --- beams --- */

@@ -14,7 +14,8 @@
 
 enum {
     COUNTERS_DEPTH_MAX = 64, /* deeper rays are counted with those of this depth */
-    COUNTERS_SOLID_MAX = 64  /* the first solids of a scene: only these are counted one by one */
+    COUNTERS_SOLID_MAX = 64, /* the first solids of a scene: only these are counted one by one */
+    COUNTERS_FACTORS = 9     /* of undersampled light */
 };
 
 /* Throughput is summed in fixed point, CUT_ONE = 1.0, so that the order of summation does not matter. */
@@ -37,6 +38,9 @@ typedef struct ray_counters {
     uint64_t cut_depth, cut_weight;            /* rays not traced: beyond the last depth; under min_weight */
     int64_t cut_depth_throughput[3];           /* their throughput, RGB, in units of 1/COUNTERS_CUT_ONE */
     int64_t cut_weight_throughput[3];
+    /* the photons' light in the film that is narrower than its samples may see, summed over pixels and channels, in the
+     * same units: by the factor along a side by which samples would have to be closer; [0]: more than the others */
+    int64_t undersampled[COUNTERS_FACTORS];
     /* rays tested against the solid; 0 for one that a hierarchy finds (geometry/solid_tree.h). Shadow rays count only
      * for solids that can reduce light by themselves, and only once, without the second test of the few undecided
      * ones */

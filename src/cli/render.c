@@ -261,8 +261,10 @@ static status render_and_write(const render_request *request, const scene *s, jo
         status written = write_results(request, &measured, with, why);
         result = written == STATUS_OK ? result : written;
     }
-    if (result == STATUS_OK && !request->json)
+    if (result == STATUS_OK && !request->json) {
         inert_note_frame(&request->input, with, &measured);
+        scene_input_note_frame(&measured);
+    }
     if (result == STATUS_INTERRUPTED)
         result = report_interrupted(request, &measured, why);
     job_account_release(&measured);

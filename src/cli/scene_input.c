@@ -4,6 +4,7 @@
 #include "base/memory_budget.h"
 #include "cli/outputs.h"
 #include "cli/terminal.h"
+#include "job/frame_notes.h"
 #include "scene/model/hints.h"
 #include "scene/model/params.h"
 #include "scene/model/scene.h"
@@ -158,6 +159,11 @@ void scene_input_note_hints(const scene *s)
 status scene_input_lint(const scene *s, isa level, diagnostic *why)
 {
     return lint_scene(s, level, &printer, why);
+}
+
+void scene_input_note_frame(const job_account *frame)
+{
+    frame_notes(frame, &printer);
 }
 
 void scene_input_note_beams(const scene *s)

@@ -19,6 +19,11 @@ static int64_t cells_across(int64_t points)
     return k;
 }
 
+int64_t samples_across(const render_settings *r)
+{
+    return cells_across(r->samples);
+}
+
 /* Pixels and sample keys of consecutive rays of a row, and the points within the pixels where these are a grid. */
 typedef struct camera_places {
     double x[ROW], sx[ROW], sy[ROW];
@@ -127,5 +132,7 @@ void camera_rays_enqueue(tracer *t, int y, int x0, int64_t first, int count)
         t->camera->directions(&p->view, count, u, v, q->dx + at, q->dy + at, q->dz + at);
     if (p->analyser != ANALYSER_NONE)
         put_analyser(p, count, q, at);
+    if (t->footprints)
+        footprints_of_camera(t, q, at, count);
     q->count += count;
 }

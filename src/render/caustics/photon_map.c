@@ -83,39 +83,115 @@ size_t photon_map_bytes(void)
 typedef struct irradiance_sum {
     vec3 point, normal, sum;
     int wavelength;
+    const photon_footprint *footprint; /* or NULL */
+    photon_reach reach;                /* of the footprint */
+    double *narrow;                    /* or NULL */
+    double all, x, y, xx, yy, xy;      /* light, and its moments over the photons' places in deviations of one */
 } irradiance_sum;
 
-/* Adds a photon's share at the point. Its disc's weight is (3 / (pi r^2)) (1 - d^2 / r^2)^2, of integral 1 (biweight
- * kernel, Silverman, 4.2.1). Surfaces that turn away, and those in front or behind, are other surfaces. */
+/* The weight of a photon's disc at the offset from it, (3 / (pi r^2)) (1 - d^2 / r^2)^2, of integral 1 (biweight kernel,
+ * Silverman, 4.2.1). What is in front or behind is another surface. */
+static double disc_density(const photon *one, vec3 off)
+{
+    const vec3 n = vec3_make((double)one->normal[0], (double)one->normal[1], (double)one->normal[2]);
+    const double r = (double)one->radius, r2 = r * r, height = vec3_dot(off, n),
+                 d2 = vec3_dot(off, off) - height * height;
+    if (!(d2 < r2) || fabs(height) > 0.5 * r)
+        return 0.0;
+    const double share = 1.0 - d2 / r2;
+    return share * share * (3.0 / (PHOTON_PI * r2));
+}
+
+/* By which a photon's light counts at a wavelength. */
+static double wavelength_share(const photon *one, int wavelength)
+{
+    if (wavelength < 0)
+        return 1.0;
+    if (one->wavelength < 0)
+        return one->wavelength == photon_of_line(wavelength) ? RANGE : 0.0;
+    const double away = fabs((double)(wavelength - one->wavelength)) / BAND;
+    return away < 1.0 ? (1.0 - away) * (RANGE / BAND) : 0.0;
+}
+
+/* Of a disc with that radius in cells of samples the sum over samples varies by less than 1 %, as PHOTON_RESOLVED is for
+ * a tenth of that. */
+#define SAMPLED 2.5
+
+/* The smallest whole number by which `cells` has to be multiplied to be SAMPLED; 0 if it is too large. */
+static int factor_of(double cells)
+{
+    for (int k = 1; k < PHOTON_FACTORS; k++)
+        if (cells * k >= SAMPLED)
+            return k;
+    return 0;
+}
+
+static void add_narrow(irradiance_sum *s, const photon_place *p, double light)
+{
+    const double x = p->x / p->deviation_x, y = p->y / p->deviation_y;
+    s->narrow[factor_of(p->radius)] += light;
+    s->all += light, s->x += light * x, s->y += light * y;
+    s->xx += light * x * x, s->yy += light * y * y, s->xy += light * x * y;
+}
+
+/* Adds a photon's share at the point. Surfaces that turn away are other surfaces. */
 static void add(const photon *one, void *context)
 {
     irradiance_sum *s = context;
-    const vec3 off = vec3_sub(s->point, one->position),
-               n = vec3_make((double)one->normal[0], (double)one->normal[1], (double)one->normal[2]);
-    const double r = (double)one->radius, r2 = r * r, height = vec3_dot(off, n),
-                 d2 = vec3_dot(off, off) - height * height;
-    if (!(d2 < r2) || fabs(height) > 0.5 * r || vec3_dot(n, s->normal) < PHOTON_FACING)
+    const vec3 off = vec3_sub(s->point, one->position);
+    const double r = (double)one->radius, far = s->footprint ? fmax(r, s->reach.at_0 + s->reach.by_radius * r) : r;
+    if (!(vec3_dot(off, off) < 1.5 * far * far)) /* a disc may be half its radius in front or behind */
         return;
-    double share = 1.0 - d2 / r2;
-    share = share * share * (3.0 / (PHOTON_PI * r2));
-    if (s->wavelength >= 0 && one->wavelength < 0) {
-        if (one->wavelength != photon_of_line(s->wavelength))
-            return;
-        share *= RANGE;
-    } else if (s->wavelength >= 0) {
-        const double away = fabs((double)(s->wavelength - one->wavelength)) / BAND;
-        if (!(away < 1.0))
-            return;
-        share *= (1.0 - away) * (RANGE / BAND);
-    }
-    s->sum.x += share * (double)one->flux[0];
-    s->sum.y += share * (double)one->flux[1];
-    s->sum.z += share * (double)one->flux[2];
+    const vec3 n = vec3_make((double)one->normal[0], (double)one->normal[1], (double)one->normal[2]);
+    if (vec3_dot(n, s->normal) < PHOTON_FACING)
+        return;
+    photon_place place = {.radius = PHOTON_RESOLVED};
+    double share = s->footprint ? photon_footprint_density(s->footprint, one, vec3_scale(off, -1.0), &place) : -1.0;
+    share = share < 0.0 ? disc_density(one, off) : share;
+    share = share > 0.0 ? share * wavelength_share(one, s->wavelength) : 0.0;
+    if (!(share > 0.0))
+        return;
+    const vec3 light =
+        vec3_make(share * (double)one->flux[0], share * (double)one->flux[1], share * (double)one->flux[2]);
+    s->sum = vec3_add(s->sum, light);
+    if (s->narrow)
+        add_narrow(s, &place, light.x + light.y + light.z);
+}
+
+/* Light is not narrow, however narrow the photons' discs are, where it is spread over a good part of the window through
+ * which the sample sees it: even light has a variance of 1 in each direction, the half of a window about 1/3, its rim,
+ * a fifth as wide, as much as SPREAD. */
+#define SPREAD 0.05
+
+static bool is_spread(const irradiance_sum *s)
+{
+    const double x = s->x / s->all, y = s->y / s->all, a = s->xx / s->all - x * x, b = s->yy / s->all - y * y,
+                 c = s->xy / s->all - x * y;
+    const double least = 0.5 * (a + b - sqrt((a - b) * (a - b) + 4.0 * c * c)); /* in any direction */
+    return least >= SPREAD;
 }
 
 vec3 photon_map_irradiance(const photon_map *m, vec3 point, vec3 normal, int wavelength)
 {
-    irradiance_sum s = {point, normal, {0.0, 0.0, 0.0}, wavelength};
-    photon_tree_around(m, point, add, &s);
+    irradiance_sum s = {.point = point, .normal = normal, .wavelength = wavelength};
+    photon_tree_around(m, point, 0.0, add, &s);
+    return s.sum;
+}
+
+vec3 photon_map_seen(const photon_map *m, vec3 point, vec3 normal, int wavelength, const photon_footprint *f,
+                     double *narrow)
+{
+    irradiance_sum s = {.point = point, .normal = normal, .wavelength = wavelength, .footprint = f, .narrow = narrow};
+    s.reach = photon_footprint_reach(f, normal);
+    for (int k = 0; narrow && k < PHOTON_FACTORS; k++)
+        narrow[k] = 0.0;
+    if (isinf(s.reach.beyond))
+        s.footprint = NULL, s.narrow = NULL;
+    photon_tree_around(m, point, s.footprint ? s.reach.beyond : 0.0, add, &s);
+    if (s.narrow && s.all > 0.0 && is_spread(&s)) {
+        for (int k = 0; k < PHOTON_FACTORS; k++)
+            narrow[k] = 0.0;
+        narrow[1] = s.all;
+    }
     return s.sum;
 }

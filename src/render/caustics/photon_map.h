@@ -4,7 +4,8 @@
  * dense, so that sharp caustics stay sharp (the sample-point estimator of Silverman, Density Estimation, 1986, 5.3).
  * Where light is even all around, and where the lamp's width blurs the caustic anyway, the disc is wider, and nowhere
  * much narrower than a pixel (photon_radius.c). The discs overlap; irradiance at a point is the sum over the discs
- * around it.
+ * around it. Discs that are narrow in the image are averaged over the cell of the sample that sees them
+ * (photon_footprint.c), so that light narrower than a pixel keeps its power.
  *
  * The map is a function of the set of photons: they are sorted, so that sums have one order whichever worker added them
  * when. Ownership: photon_map_create allocates, photon_map_destroy releases; once built, any number of threads may
@@ -69,6 +70,21 @@ const photon *photon_map_at(const photon_map *m, size_t i);
  * (a photon counts for wavelengths near its own; that of a line for its own alone): wavelength is the ray's, or -1 in
  * an rgb map. */
 vec3 photon_map_irradiance(const photon_map *m, vec3 point, vec3 normal, int wavelength);
+
+/* A ray at the point that it hits, and its neighbours one sample of the image away in x and y: the one at (x, y) passes
+ * point + x across[0] + y across[1], towards toward + x turn[0] + y turn[1] (ray_footprint, render/core/queue.h). */
+typedef struct photon_footprint {
+    vec3 toward, across[2], turn[2];
+    double reach; /* scene units: if photons farther away would count too, discs are looked up at the point instead */
+} photon_footprint;
+
+/* The same for what the ray sees there, the mean over its sample's cell of the image (photon_footprint.c): the sum over
+ * all samples does not depend on where between them a photon is. Sets narrow[k], unless NULL, to the part of the light,
+ * summed over channels, that samples k times as close along each side would see even if the footprint were wrong:
+ * k = 1 as it is, and 0 for what needs more than PHOTON_FACTORS - 1. */
+enum { PHOTON_FACTORS = 9 };
+vec3 photon_map_seen(const photon_map *m, vec3 point, vec3 normal, int wavelength, const photon_footprint *f,
+                     double *narrow);
 
 /* Memory for each photon, bytes. */
 size_t photon_map_bytes(void);

@@ -153,27 +153,37 @@ double photon_tree_reach(const photon_map *m, size_t i, int k, double widest)
 
 /* --- the discs around a point --- */
 
-static bool contains(const photon_box *b, vec3 p)
+typedef struct visit_around {
+    const photon_map *map;
+    vec3 low, high; /* boxes that end before low, or begin after high, are too far away */
+    void (*visit)(const photon *one, void *context);
+    void *context;
+} visit_around;
+
+static bool meets(const photon_box *b, const visit_around *v)
 {
-    return (int)(p.x >= b->low[0]) & (int)(p.x <= b->high[0]) & (int)(p.y >= b->low[1]) & (int)(p.y <= b->high[1]) &
-           (int)(p.z >= b->low[2]) & (int)(p.z <= b->high[2]);
+    return (int)(v->high.x >= b->low[0]) & (int)(v->low.x <= b->high[0]) & (int)(v->high.y >= b->low[1]) &
+           (int)(v->low.y <= b->high[1]) & (int)(v->high.z >= b->low[2]) & (int)(v->low.z <= b->high[2]);
 }
 
-static void visit_box(const photon_map *m, int level, size_t box, vec3 point,
-                      void (*visit)(const photon *one, void *context), void *context)
+static void visit_box(const visit_around *v, int level, size_t box)
 {
-    if (!contains(&m->level[level][box], point))
+    const photon_map *m = v->map;
+    if (!meets(&m->level[level][box], v))
         return;
     const size_t end = photon_box_end(m, level, box);
     for (size_t i = photon_box_first(box); i < end; i++)
         if (level == 0)
-            visit(&m->photons[i], context);
+            v->visit(&m->photons[i], v->context);
         else
-            visit_box(m, level - 1, i, point, visit, context);
+            visit_box(v, level - 1, i);
 }
 
-void photon_tree_around(const photon_map *m, vec3 point, void (*visit)(const photon *one, void *context), void *context)
+void photon_tree_around(const photon_map *m, vec3 point, double within, void (*visit)(const photon *one, void *context),
+                        void *context)
 {
+    const vec3 off = vec3_make(within, within, within);
+    const visit_around v = {m, vec3_sub(point, off), vec3_add(point, off), visit, context};
     if (m->levels > 0)
-        visit_box(m, m->levels - 1, 0, point, visit, context);
+        visit_box(&v, m->levels - 1, 0);
 }

@@ -9,6 +9,9 @@
 #define PHOTON_PI 3.14159265358979323846
 /* The least cosine between the normals of neighbours, about 37 degrees: round surfaces are one, edges part two. */
 #define PHOTON_FACING 0.8
+/* The radius in cells of samples from which on a disc is looked up at points: along a line of light across the samples
+ * the sum then varies by 96 J_3(q) / q^3, q = 2 pi radius, below 1e-3 (see photon_footprint.c). */
+#define PHOTON_RESOLVED 4.0
 
 enum { PHOTON_WIDE = 8, PHOTON_LEVELS_MAX = 22 };
 
@@ -67,6 +70,22 @@ bool photon_tree_fit(photon_map *m, bool discs);
 /* The distance from photon i to its k-th nearest neighbour on the same surface, at most `widest`. Boxes must be those
  * of the positions, or larger. */
 double photon_tree_reach(const photon_map *m, size_t i, int k, double widest);
-/* Calls visit for the photons near the point, at least those whose disc may contain it, in order. */
-void photon_tree_around(const photon_map *m, vec3 point, void (*visit)(const photon *one, void *context),
+/* Calls visit for the photons near the point, at least those whose disc may come closer to it than `within`, in order.
+ */
+void photon_tree_around(const photon_map *m, vec3 point, double within, void (*visit)(const photon *one, void *context),
                         void *context);
+
+/* photon_footprint.c: how far from the ray's hit, on a surface with that normal, a photon can be and still be seen. */
+typedef struct photon_reach {
+    double beyond;          /* its radius; infinite if the footprint is unknown, too oblique or too wide */
+    double at_0, by_radius; /* also at most at_0 + by_radius times its radius, or else its radius */
+} photon_reach;
+photon_reach photon_footprint_reach(const photon_footprint *f, vec3 normal);
+/* A photon as the ray's samples see it, in cells: its place from the ray's sample, the deviation that its light has there
+ * in each direction, and the radius of its disc in the direction in which cells are widest. */
+typedef struct photon_place {
+    double x, y, deviation_x, deviation_y, radius;
+} photon_place;
+/* The density per area with which a photon at point + off counts for the ray, of integral 1 over the photon's surface;
+ * negative if its disc is wide enough to be looked up at the point alone. */
+double photon_footprint_density(const photon_footprint *f, const photon *one, vec3 off, photon_place *place);

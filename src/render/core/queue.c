@@ -39,9 +39,15 @@ bool queue_create(ray_queue *q, int capacity)
     return true;
 }
 
+bool queue_add_footprints(ray_queue *q)
+{
+    return q->footprint || (q->footprint = malloc((size_t)q->capacity * sizeof *q->footprint));
+}
+
 void queue_destroy(ray_queue *q)
 {
     free(q->memory);
+    free(q->footprint);
     memset(q, 0, sizeof *q);
 }
 

@@ -2,8 +2,18 @@
  * waiting rays small. Ownership: queue_create allocates, queue_destroy releases; each queue belongs to one worker. */
 #pragma once
 
+#include "base/vec3.h"
 #include "geometry/rays.h"
 #include <stdbool.h>
+
+/* The ray's neighbours, one sample of the image away in its two directions x and y (Igehy, "Tracing Ray Differentials",
+ * SIGGRAPH 1999): the one at (x, y) passes origin + x shift[0] + y shift[1], towards direction + x turn[0] + y turn[1],
+ * to first order. Any multiple of the direction may be added to a shift. All zeros: unknown. */
+typedef struct ray_footprint {
+    vec3 shift[2], turn[2];
+    bool bent;        /* it met a curved surface */
+    bool rough_guess; /* it met a surface whose curvature is unknown, and which counted as flat */
+} ray_footprint;
 
 typedef struct ray_queue {
     int count, capacity;
@@ -15,12 +25,15 @@ typedef struct ray_queue {
                               rays in a scene with sheets; in a crystal sq is the mode (render/shade/crystals.h) */
     double *passed, *bent;   /* of photons: the length of the path so far, and of its part after the first surface */
     double *lamp_q, *lamp_u; /* of shadow rays to polarised lamps, which are linear: theirs; in the same memory */
+    ray_footprint *footprint; /* of camera rays in scenes with photons (render/shade/footprints.h); else NULL */
     void *memory;
 } ray_queue;
 
 /* Memory of a queue, bytes. */
 size_t queue_bytes(int capacity);
 bool queue_create(ray_queue *q, int capacity);
+/* Adds the rays' footprints, if the queue has none; false when out of memory. */
+bool queue_add_footprints(ray_queue *q);
 void queue_destroy(ray_queue *q);
 
 /* Pops a batch from the end: at most BATCH rays, chosen so that the number of remaining rays is a multiple of the

@@ -11,6 +11,7 @@
 #include "render/core/schedule.h"
 #include "render/core/tracer_pool.h"
 #include "render/integrators/integrator.h"
+#include "render/shade/footprints.h"
 #include "scene/model/scene.h"
 #include <math.h>
 #include <stdlib.h>
@@ -356,7 +357,8 @@ uint64_t renderer_result_bytes(const scene *s, const render_options *options)
 
 uint64_t renderer_tracing_bytes(const scene *s)
 {
-    return (uint64_t)scene_threads(&s->render) * tracer_bytes(s->render.depth, scene_crystals(s) > 0) +
+    return (uint64_t)scene_threads(&s->render) *
+               tracer_bytes(s->render.depth, scene_crystals(s) > 0, footprints_are_followed(&s->render)) +
            caustics_bytes(&s->render);
 }
 

@@ -45,6 +45,7 @@ void tracer_destroy(tracer *t)
     radiance_end(t);
     layered_end(t);
     crystals_end(t);
+    footprints_end(t);
     forget_integrator(t);
     queue_destroy(&t->queues.shadows);
     free(t);
@@ -77,11 +78,13 @@ static int queue_count(int depth_limit)
     return (depth_limit < DEPTH_DEEP + 1 ? depth_limit : DEPTH_DEEP + 1) + 1;
 }
 
-uint64_t tracer_bytes(int64_t depth, bool crystals)
+uint64_t tracer_bytes(int64_t depth, bool crystals, bool footprints)
 {
-    uint64_t sum = sizeof(tracer);
-    for (int i = 0; i < queue_count((int)depth); i++)
-        sum += queue_bytes(capacity_of(i, (int)depth, crystals));
+    uint64_t sum = sizeof(tracer) + (footprints ? sizeof(footprint_work) : 0);
+    for (int i = 0; i < queue_count((int)depth); i++) {
+        const int capacity = capacity_of(i, (int)depth, crystals);
+        sum += queue_bytes(capacity) + (footprints ? (uint64_t)capacity * sizeof(ray_footprint) : 0);
+    }
     return sum;
 }
 
@@ -156,7 +159,7 @@ bool tracer_begin(tracer *t, const tracer_target *target)
             return false;
     }
     if (!make_queues(t, t->queues.depth_limit, p->crystals != NULL) || !make_marks(t, p->geometry) || !mesh_begin(t) ||
-        !radiance_begin(t) || !layered_begin(t) || !crystals_begin(t) || !take_integrator(t) ||
+        !radiance_begin(t) || !layered_begin(t) || !crystals_begin(t) || !footprints_begin(t) || !take_integrator(t) ||
         !absorption_begin(t, p->geometry->attenuates && t->rule->traced))
         return false;
     t->by_sample_key = t->rule->by_sample || r->spectrum == SPECTRUM_SPECTRAL || p->basic || scene_has_soft_shadows(r);

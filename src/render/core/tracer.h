@@ -26,8 +26,9 @@ typedef struct tracer_target {
     const struct integrator *rule;
 } tracer_target;
 
-/* Memory of a tracer at that depth, bytes; larger where crystals are. */
-uint64_t tracer_bytes(int64_t depth, bool crystals);
+/* Memory of a tracer at that depth, bytes; larger where crystals are, and where rays have footprints
+ * (render/shade/footprints.h). */
+uint64_t tracer_bytes(int64_t depth, bool crystals, bool footprints);
 tracer *tracer_create(isa level);
 void tracer_destroy(tracer *t);
 

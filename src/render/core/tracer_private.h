@@ -6,6 +6,7 @@
 #include "render/integrators/integrator.h"
 #include "render/shade/absorption.h"
 #include "render/shade/crystals.h"
+#include "render/shade/footprints.h"
 #include "render/shade/layered.h"
 #include "render/shade/mesh_shading.h"
 #include "render/shade/radiance.h"
@@ -75,6 +76,7 @@ struct tracer {
     radiance_work *basic;            /* for a scene with basic radiance */
     layered_work *layered;           /* for a scene with metals or films */
     crystal_work *crystals;          /* for a scene with crystals */
+    footprint_work *footprints;      /* for a scene with photons, unless paths are random */
     _Alignas(64) tracer_batch batch; /* aligned to cache lines, here and above */
     _Alignas(64) tracer_surface surface;
 };

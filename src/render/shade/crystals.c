@@ -146,7 +146,10 @@ static void follow(tracer *t, int depth, int k, const crystal_ray *ray)
     } else if (least > 0.0 && weight.x < least && weight.y < least && weight.z < least) {
         count_cut_by_weight(t, g->sample_key[k], weight.x, weight.y, weight.z);
     } else {
-        push(tracer_queue_at(t, depth + 1), g, k, ray, weight);
+        ray_queue *next = tracer_queue_at(t, depth + 1);
+        push(next, g, k, ray, weight);
+        if (t->footprints)
+            footprint_straight(t, next, next->count - 1, k);
         COUNT(ray->reflected ? c->reflect++ : c->refract++);
     }
 }

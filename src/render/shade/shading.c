@@ -186,6 +186,16 @@ static void expose_own_light(tracer *t, const material *m, bool ambient)
         expose(t, g->sample_key[i], g->wr[i] * a.x * g->cr[i], g->wg[i] * a.y * g->cg[i], g->wb[i] * a.z * g->cb[i]);
 }
 
+/* The share of light in the film, by its mean over channels, that ray i of the group brings from a white matte surface. */
+static double share_in_film(const tracer *t, int i)
+{
+    const group *g = &t->surface.gathered;
+    const spectra *s = t->target.frame_plan->spectral;
+    const double *eye = s ? spectra_row(s, g->sample_key[i])->eye : NULL;
+    return eye ? g->wr[i] * g->cr[i] * (eye[0] + eye[1] + eye[2]) / 3.0
+               : (g->wr[i] * g->cr[i] + g->wg[i] * g->cg[i] + g->wb[i] * g->cb[i]) / 3.0;
+}
+
 /* Adds the photons' light, which matte surfaces reflect. */
 static void caustic_light(tracer *t, const material *m)
 {
@@ -193,8 +203,11 @@ static void caustic_light(tracer *t, const material *m)
     const plan *p = t->target.frame_plan;
     for (int i = 0; i < g->count; i++) {
         const int wavelength = p->spectral ? (int)sample_key_wavelength(g->sample_key[i]) : -1;
-        const vec3 e = photon_map_irradiance(p->photons, vec3_make(g->points.px[i], g->points.py[i], g->points.pz[i]),
-                                             vec3_make(g->points.nx[i], g->points.ny[i], g->points.nz[i]), wavelength);
+        const vec3 e =
+            t->footprints
+                ? footprint_irradiance(t, i, wavelength, m->diffuse * share_in_film(t, i))
+                : photon_map_irradiance(p->photons, vec3_make(g->points.px[i], g->points.py[i], g->points.pz[i]),
+                                        vec3_make(g->points.nx[i], g->points.ny[i], g->points.nz[i]), wavelength);
         if (e.x > 0.0 || e.y > 0.0 || e.z > 0.0)
             expose(t, g->sample_key[i], g->wr[i] * m->diffuse * g->cr[i] * e.x, g->wg[i] * m->diffuse * g->cg[i] * e.y,
                    g->wb[i] * m->diffuse * g->cb[i] * e.z);
@@ -370,6 +383,25 @@ static int keep_polarised(tracer *t, ray_queue *q, int first, bool reflected, co
     return q->count - first;
 }
 
+/* The same with the footprints, which go with the ray that fills the place. */
+static int keep_footprints(tracer *t, ray_queue *q, int first, bool reflected, const double *weight, double least)
+{
+    footprints_of_children(t, q, first, reflected);
+    if (t->target.frame_plan->render.polarisation) {
+        const polar_group *p = &t->surface.polar;
+        const size_t bytes = (size_t)t->surface.gathered.count * sizeof(double);
+        memcpy(q->sq + first, reflected ? p->rq : p->tq, bytes);
+        memcpy(q->su + first, reflected ? p->ru : p->tu, bytes);
+        memcpy(q->sv + first, reflected ? p->rv : p->tv, bytes);
+    }
+    for (int i = t->surface.gathered.count - 1; i >= 0; i--)
+        if (weight[i] == 0.0 || (least > 0.0 && is_below_least_weight(t, q, first + i, least))) {
+            queue_move_polarised(q, first + i, --q->count);
+            q->footprint[first + i] = q->footprint[q->count];
+        }
+    return q->count - first;
+}
+
 /* Enqueues children of one kind: appends all of them at once, then fills the place of each one that does not exist or
  * has too small a weight with the last one. Returns their number. */
 int enqueue_children(tracer *t, int depth, const double *dx, const double *dy, const double *dz, const double *weight,
@@ -381,6 +413,8 @@ int enqueue_children(tracer *t, int depth, const double *dx, const double *dy, c
     t->shade->append(&t->surface.gathered, dx, dy, dz, weight, inside, q);
     if (surface_is_layered(t) && t->layered->colored)
         layered_color_children(t, q, first, weight == t->surface.branches.reflect);
+    if (t->footprints)
+        return keep_footprints(t, q, first, dx == t->surface.branches.rx, weight, least);
     if (t->target.frame_plan->render.polarisation)
         return keep_polarised(t, q, first, dx == t->surface.branches.rx, weight, least);
     for (int i = t->surface.gathered.count - 1; i >= 0; i--)
@@ -514,6 +548,8 @@ static void shade_one_material(tracer *t, int depth, int first, const hit_group 
         surface_points(t, groups->hit_primitive, 0, g->padded, &g->points);
     else
         points_of_groups(t, groups, group_count);
+    if (t->footprints)
+        footprints_gather(t, tracer_queue_at(t, depth), first, list);
     t->surface.texture_at = NULL;
     if (t->rule->place)
         t->rule->place(t, list);

@@ -22,6 +22,8 @@ void background_sky(tracer *t, const ray_queue *q, int first, const int *list, i
 
 /* Camera rays for a pixel's samples, each at all of a spectral film's wavelengths. */
 camera_sampling camera_samples(const render_settings *r);
+/* The samples along one side of a pixel. */
+int64_t samples_across(const render_settings *r);
 
 /* True if the surface of the region with that priority index transmits no light with the tracer's current material. */
 static inline bool surface_is_opaque(const tracer *t, int priority_index)

@@ -1,0 +1,47 @@
+/* Light narrower than a pixel: where the footprints of samples are known, it keeps its power at any number of samples
+ * (render/caustics/photon_footprint.c); behind crystals and surfaces with interpolated normals they are guessed. */
+#include "job/frame_notes.h"
+
+#include "scene/model/scene.h"
+
+#include <stdio.h>
+
+/* Of all light in the image, the part that may be missing. */
+#define NOTED 0.01
+
+/* The sum over all pixels and channels. */
+static double light_in(const film *f)
+{
+    double sum = 0.0;
+    for (size_t i = 0; i < 3 * (size_t)f->width * (size_t)f->height; i++)
+        sum += film_radiance(f->sum[i]);
+    return sum;
+}
+
+static void note_narrow_light(const job_account *a, const note_taker *taker)
+{
+    const render_result *r = a->result;
+    const int64_t *units = r->counters.undersampled;
+    double narrow = (double)units[0];
+    for (int k = 2; k < COUNTERS_FACTORS; k++)
+        narrow += (double)units[k];
+    const double one_percent = NOTED * COUNTERS_CUT_ONE * (r->img ? light_in(r->img) : 0.0), all = narrow;
+    if (!(narrow > one_percent))
+        return;
+    int factor = 1;
+    while (narrow > one_percent && ++factor < COUNTERS_FACTORS)
+        narrow -= (double)units[factor];
+    const int64_t samples = factor * factor * a->of->render.samples;
+    char remedy[NOTE_TEXT_MAX] = "set render.integrator=path, whose random points find all light on average";
+    if (factor < COUNTERS_FACTORS && samples <= SCENE_SAMPLES_MAX)
+        snprintf(remedy, sizeof remedy, "render.samples=%d suffice", (int)samples);
+    note_give(taker, "render", "samples", remedy,
+              "%.2g %% of the image's light is narrower than a pixel, behind surfaces where it may be missed",
+              100.0 * NOTED * all / one_percent);
+}
+
+void frame_notes(const job_account *a, const note_taker *taker)
+{
+    if (a->result && a->count > 0)
+        note_narrow_light(a, taker);
+}
