@@ -34,6 +34,7 @@ equal "without valgrind: what to install" "$? $said" \
 command -v valgrind >/dev/null || {
     skip "valgrind is not installed"
     conclude
+    exit
 }
 "$program" study run -q small.study >said 2>&1 && "$program" study run -q small.study --instructions >>said 2>&1
 verdict $? "a study is measured, and counted" "$(<said)"

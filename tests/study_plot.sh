@@ -78,7 +78,7 @@ check "several studies go into a folder" test -s many/own.png -a -s many/words.p
 
 mkdir elsewhere
 cp many/own.gp many/own.tsv elsewhere/
-(cd / && gnuplot -d "$work/elsewhere/own.gp") >out 2>err
+(cd / && LC_ALL=C.UTF-8 gnuplot -d "$work/elsewhere/own.gp") >out 2>err
 check "the script redraws from another folder" test -s elsewhere/own.png -a ! -s err
 check "to the same bytes" cmp elsewhere/own.png many/own.png
 (cd elsewhere && gnuplot -d -e "format = 'svg'" own.gp) >out 2>err
@@ -153,7 +153,7 @@ done
 found=$(find reference -name '*.png' -size +2k | wc -l)
 check "a figure of each of $drawn studies that have rows" test "$found" = "$drawn"
 for script in reference/*.gp; do
-    gnuplot -d -e "output = '$work/again'" "$script" >>warnings 2>&1
+    LC_ALL=C.UTF-8 gnuplot -d -e "output = '$work/again'" "$script" >>warnings 2>&1
 done
 check "gnuplot has nothing to say about any of them" test ! -s warnings
 ((failed == 0))

@@ -250,8 +250,8 @@ static void assert_note(const scene *s, const char *text)
         fail_msg("'%s' instead of '%s'", line, text ? text : "");
 }
 
-/* Through a crystal the footprint is guessed. The narrowest disc has a radius of half a pixel, at a slope a little less:
- * 2.5 cells at 36 samples, not at 25. */
+/* Through a crystal the footprint is guessed. The narrowest disc has a radius of half a pixel, at a slope a little
+ * less: 2.5 cells at 36 samples, not at 25. */
 static void a_note_tells_how_many_samples_suffice(void **state)
 {
     (void)state;

@@ -189,8 +189,8 @@ static status keep_longest(void *context, const beam_ray *ray, const ray_tree *t
     return STATUS_OK;
 }
 
-/* In a plate of thickness 1 and length 1000, light of a slope of 0.8 is totally reflected, at 51 degrees, once every 1.25
- * units of length; it leaves by the far end, at 39 degrees. */
+/* In a plate of thickness 1 and length 1000, light of a slope of 0.8 is totally reflected, at 51 degrees, once every
+ * 1.25 units of length; it leaves by the far end, at 39 degrees. */
 static void a_beam_in_a_long_plate_is_reflected_hundreds_of_times(void **state)
 {
     (void)state;

@@ -41,14 +41,15 @@ cd "$work/lab" || exit 1
 
 # The commands start in a locale with a decimal comma, if it can be made.
 mkdir "$work/locales"
-localedef -i de_DE -f UTF-8 "$work/locales/de_DE.UTF-8" 2>/dev/null
+foreign=C
+localedef -i de_DE -f UTF-8 "$work/locales/de_DE.UTF-8" 2>/dev/null && foreign=de_DE.UTF-8
 export LOCPATH=$work/locales
 expected=() command='' shown='' printed='' exports=''
 finish() { # runs the command and compares its output with the lines below it
     [[ -n $command ]] || return
     local output
     [[ $command != export* ]] || exports+="$command;"
-    output=$(LC_ALL=de_DE.UTF-8 bash -o pipefail -c "$exports$command" 2>&1 </dev/null)
+    output=$(LC_ALL=$foreign bash -o pipefail -c "$exports$command" 2>&1 </dev/null)
     verdict $? "$command" "$output"
     [[ $output == "${shown%$'\n'}" ]]
     verdict $? "$command prints the output on the page" "$(diff <(echo "${shown%$'\n'}") <(echo "$output"))"

@@ -197,7 +197,7 @@ void caustics_count(const caustics *c, ray_counters *counters)
 enum { PHOTONS_ENOUGH = 1000 };
 #define LIGHT_SEEN 1e-3
 
-/* The light that arrives by way of a solid, and its photons. */
+/* The light that a solid deflects to matte surfaces, and its photons. */
 static double light_by(const caustics *c, int number, int64_t *arrived)
 {
     double sum = 0.0;

@@ -32,8 +32,8 @@ extern const caustics_step caustics_steps[CAUSTICS_STEPS];
 /* After the steps: the photons' rays, in counters->photon. */
 void caustics_count(const caustics *c, ray_counters *counters);
 
-/* The solid whose light rests on the fewest photons, if these are too few for a caustic: so many, of render.photons.
- * enough: the number of photons that would do. solid: in the scene; -1: none, all are enough. */
+/* The solid whose light rests on the fewest photons, if these are too few for a caustic. arrived: their number; enough:
+ * the render.photons that would do; solid: its number in the scene, -1: there is none. */
 typedef struct caustics_few {
     int solid;
     int64_t arrived, enough;

@@ -2,11 +2,12 @@
  * towards what can deflect them, mirrors and clear solids: their directions are uniform over the cones, seen from the
  * lamp, around the bounding balls of these solids, with a density that is the sum over the cones. Where one has no
  * bounds, the cone is the whole sphere of directions; a lamp's own cone takes the place of one that is wider. A lamp
- * and the ball of a solid that it can light are a target. A lamp's flux into a small solid angle dw is pi I reach^2 dw, for
- * a point as for a sphere, whose every direction leaves from a disc across it; I is its intensity (path.c). A ray of a
- * direction passes a random point of the lamp's disc, or, of a lamp that is larger than the ball, as the sun is, of the
- * ball's disc. A sun's directions are uniform over its disc, or one; its rays pass rectangles around the solids across
- * them, and begin far before all solids. Where a ball has no bounds, they are followed within twice the extent of the scene.
+ * and the ball of a solid that it can light are a target. A lamp's flux into a small solid angle dw is pi I reach^2 dw,
+ * for a point as for a sphere, whose every direction leaves from a disc across it; I is its intensity (path.c). A ray
+ * of a direction passes a random point of the lamp's disc, or, of a lamp that is larger than the ball, as the sun is,
+ * of the ball's disc. A sun's directions are uniform over its disc, or one; its rays pass rectangles around the solids
+ * across them, and begin far before all solids. Where a ball has no bounds, they are followed within twice the extent
+ * of the scene.
  *
  * A beam that lights the scene is one more lamp: its photons start as its rays do, whatever they meet, and bring its
  * light to the first matte surface too, which no shadow ray does (emission_beam.c).
@@ -31,7 +32,7 @@ void emission_destroy(emission *e);
  * -1: a beam, or several solids. */
 int emission_target_count(const emission *e);
 int emission_target_solid(const emission *e, int target);
-/* The light that arrives from a target, relative to others, if so many of its photons do. */
+/* The light that arrives from a target, relative to others, when that number of its photons does. */
 double emission_light(const emission *e, int target, int64_t arrived);
 /* A pilot tells from which targets light arrives. While it goes on there are few photons, as many for each target, and
  * other ones than later. emission_end_pilot: delivers[target] is whether any did; the others get a small share. */

@@ -1,14 +1,15 @@
 /* What a sample of the image sees of a photon whose disc is not much wider than its cell.
  *
- * A disc that is looked up at points keeps its power on average only: the sum over a lattice of points with spacing 1 of
- * a density of integral 1 is the sum of its Fourier transform over the whole frequencies (Poisson), 1 only if all others
- * vanish. So such a photon's light is a product of two densities in the image's directions, x and y, and a sample sees
- * their mean over its cell, whose width is 1. A mean over the cell multiplies the transform by sin(pi f) / (pi f), which
- * is 0 at all whole frequencies: whatever the width and the place of the density, the sum over all samples is 1. It is
- * also the value that many samples in the cell would give.
+ * A disc that is looked up at points keeps its power on average only: the sum over a lattice of points with spacing 1
+ * of a density of integral 1 is the sum of its Fourier transform over the whole frequencies (Poisson), 1 only if all
+ * others vanish. So such a photon's light is a product of two densities in the image's directions, x and y, and a
+ * sample sees their mean over its cell, whose width is 1. A mean over the cell multiplies the transform by sin(pi f) /
+ * (pi f), which is 0 at all whole frequencies: whatever the width and the place of the density, the sum over all
+ * samples is 1. It is also the value that many samples in the cell would give.
  *
  * In each direction the density is the biweight (15 / 16) (1 - x^2)^2, whose variance is 1/7 of its half width squared,
- * that of a disc 1/8 of its radius squared; with a half width of sqrt(7/8) radii both blur alike, and are equally noisy.
+ * that of a disc 1/8 of its radius squared; with a half width of sqrt(7/8) radii both blur alike, and are equally
+ * noisy.
  *
  * A photon's place in the image is that of the ray among the neighbours of the given one that passes the photon: exact
  * for rays through one point and for parallel ones, also after flat mirrors, else to first order. */

@@ -89,8 +89,8 @@ typedef struct irradiance_sum {
     double all, x, y, xx, yy, xy;      /* light, and its moments over the photons' places in deviations of one */
 } irradiance_sum;
 
-/* The weight of a photon's disc at the offset from it, (3 / (pi r^2)) (1 - d^2 / r^2)^2, of integral 1 (biweight kernel,
- * Silverman, 4.2.1). What is in front or behind is another surface. */
+/* The weight of a photon's disc at the offset from it, (3 / (pi r^2)) (1 - d^2 / r^2)^2, of integral 1 (biweight
+ * kernel, Silverman, 4.2.1). What is in front or behind is another surface. */
 static double disc_density(const photon *one, vec3 off)
 {
     const vec3 n = vec3_make((double)one->normal[0], (double)one->normal[1], (double)one->normal[2]);
@@ -113,8 +113,8 @@ static double wavelength_share(const photon *one, int wavelength)
     return away < 1.0 ? (1.0 - away) * (RANGE / BAND) : 0.0;
 }
 
-/* Of a disc with that radius in cells of samples the sum over samples varies by less than 1 %, as PHOTON_RESOLVED is for
- * a tenth of that. */
+/* Of a disc with that radius in cells of samples the sum over samples varies by less than 1 %, as PHOTON_RESOLVED is
+ * for a tenth of that. */
 #define SAMPLED 2.5
 
 /* The smallest whole number by which `cells` has to be multiplied to be SAMPLED; 0 if it is too large. */

@@ -162,7 +162,8 @@ static double passing_of(tracer *t, int k, bool refracted, const rough_surface *
                : 0.0;
 }
 
-/* Both branches of record k at a facet; or, with the chance that the facet's light is stopped, one of further facets. */
+/* Both branches of record k at a facet; or, with the chance that the facet's light is stopped, one of further facets.
+ * */
 static void meet_facet(tracer *t, int k, int depth, const rough_surface *r, photon_branch both[2])
 {
     const photon_frame *f = t->target.state;

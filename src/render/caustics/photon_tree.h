@@ -81,8 +81,8 @@ typedef struct photon_reach {
     double at_0, by_radius; /* also at most at_0 + by_radius times its radius, or else its radius */
 } photon_reach;
 photon_reach photon_footprint_reach(const photon_footprint *f, vec3 normal);
-/* A photon as the ray's samples see it, in cells: its place from the ray's sample, the deviation that its light has there
- * in each direction, and the radius of its disc in the direction in which cells are widest. */
+/* A photon as the ray's samples see it, in cells: its place from the ray's sample, the deviation that its light has
+ * there in each direction, and the radius of its disc in the direction in which cells are widest. */
 typedef struct photon_place {
     double x, y, deviation_x, deviation_y, radius;
 } photon_place;

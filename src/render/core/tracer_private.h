@@ -86,8 +86,8 @@ static inline ray_queue *tracer_queue_at(const tracer *t, int depth)
     return &t->queues.waiting[depth < DEPTH_DEEP ? depth : DEPTH_DEEP + (depth - DEPTH_DEEP) % 2];
 }
 
-/* The most that Russian roulette lets go on, for a path that loses no light may never end: without a limit of depth, one
- * of 1024 ends at each surface from the 4096th on. */
+/* The largest share of rays that survives Russian roulette: without a limit of depth, a path that loses no light might
+ * never end. One of 1024 ends at each surface from the 4096th on. */
 static inline double roulette_odds_most(int depth)
 {
     return depth < 4096 ? 1.0 : 1.0 - 1.0 / 1024.0;

@@ -186,7 +186,8 @@ static void expose_own_light(tracer *t, const material *m, bool ambient)
         expose(t, g->sample_key[i], g->wr[i] * a.x * g->cr[i], g->wg[i] * a.y * g->cg[i], g->wb[i] * a.z * g->cb[i]);
 }
 
-/* The share of light in the film, by its mean over channels, that ray i of the group brings from a white matte surface. */
+/* The share of light in the film, by its mean over channels, that ray i of the group brings from a white matte surface.
+ * */
 static double share_in_film(const tracer *t, int i)
 {
     const group *g = &t->surface.gathered;
