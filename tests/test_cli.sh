@@ -882,7 +882,7 @@ if command -v script >/dev/null; then
     on_terminal 80 params
     check "no line of a table ends in a blank" is "$(grep -c ' $' tty.txt)" 0
     check "a meaning that does not fit is below its row" is "$(grep -A1 '^render.depth ' tty.txt | tail -1)" \
-        "    integer 0..64; recursion depth; 0: camera rays only"
+        "    integer 0..64, or unlimited; recursion depth; 0: camera rays only;"
     on_terminal 80 realism "$scene" --csv
     check "CSV is not wrapped" holds "$(widest tty.txt) > 80"
     COLUMNS=60 on_terminal 0 media

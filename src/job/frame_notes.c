@@ -1,10 +1,16 @@
-/* Light narrower than a pixel: where the footprints of samples are known, it keeps its power at any number of samples
- * (render/caustics/photon_footprint.c); behind crystals and surfaces with interpolated normals they are guessed. */
+/* Notes on light that photons bring to a frame. */
 #include "job/frame_notes.h"
 
+#include "scene/model/params.h"
 #include "scene/model/scene.h"
 
+#include <inttypes.h>
 #include <stdio.h>
+
+/* --- light narrower than a pixel --- */
+
+/* Where the footprints of samples are known, such light keeps its power at any number of samples
+ * (render/caustics/photon_footprint.c); behind crystals and surfaces with interpolated normals they are guessed. */
 
 /* Of all light in the image, the part that may be missing. */
 #define NOTED 0.01
@@ -40,8 +46,32 @@ static void note_narrow_light(const job_account *a, const note_taker *taker)
               100.0 * NOTED * all / one_percent);
 }
 
+/* --- light of few photons --- */
+
+/* To two significant digits, which are a safer reading of a random number than all of them. */
+static int64_t rounded_up(int64_t number)
+{
+    int64_t digit = 1;
+    while (number / digit >= 100)
+        digit *= 10;
+    return (number + digit - 1) / digit * digit;
+}
+
+static void note_few_photons(const job_account *a, const note_taker *taker)
+{
+    const caustics_few *few = &a->result->few;
+    if (few->solid < 0)
+        return;
+    const int64_t most = (int64_t)param_find(PARAM_RENDER, "photons")->highest, enough = rounded_up(few->enough);
+    char remedy[NOTE_TEXT_MAX];
+    snprintf(remedy, sizeof remedy, "set render.photons=%" PRId64, enough < most ? enough : most);
+    note_give(taker, "render", "photons", remedy,
+              "the light that '%s' throws on matte surfaces rests on only %" PRId64 " photon%s",
+              a->of->solids[few->solid].name, few->arrived, few->arrived == 1 ? "" : "s");
+}
+
 void frame_notes(const job_account *a, const note_taker *taker)
 {
     if (a->result && a->count > 0)
-        note_narrow_light(a, taker);
+        note_narrow_light(a, taker), note_few_photons(a, taker);
 }

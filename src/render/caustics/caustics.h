@@ -11,6 +11,7 @@
 
 #include "base/counters.h"
 #include "base/isa.h"
+#include "render/caustics/caustics_few.h"
 #include "render/core/plan.h"
 #include <stdatomic.h>
 
@@ -32,12 +33,7 @@ extern const caustics_step caustics_steps[CAUSTICS_STEPS];
 /* After the steps: the photons' rays, in counters->photon. */
 void caustics_count(const caustics *c, ray_counters *counters);
 
-/* The solid whose light rests on the fewest photons, if these are too few for a caustic. arrived: their number; enough:
- * the render.photons that would do; solid: its number in the scene, -1: there is none. */
-typedef struct caustics_few {
-    int solid;
-    int64_t arrived, enough;
-} caustics_few;
+/* After the steps. */
 caustics_few caustics_count_few(const caustics *c);
 
 /* Memory for a frame, bytes. */

@@ -385,6 +385,7 @@ static status make_result(const scene *s, const render_options *options, render_
     if (!result)
         return out_of_memory(why);
     result->replicates = renderer_replicates(s);
+    result->few.solid = -1;
     const bool by_source = options && options->source;
     status code = by_source ? STATUS_OK
                             : film_create((int)s->render.width, (int)s->render.height, renderer_replicates(s),
@@ -470,8 +471,10 @@ static status trace_photons(frame *f, int count, plan *p, isa level, render_resu
         if (cancel_asked())
             atomic_store(&f->stop, true);
     }
-    if (f->photons)
+    if (f->photons) {
         caustics_count(f->photons, &result->counters);
+        result->few = caustics_count_few(f->photons);
+    }
     return STATUS_OK;
 }
 

@@ -9,6 +9,7 @@
 #include "base/status.h"
 #include "measure/thread_usage.h"
 #include "measure/topology.h"
+#include "render/caustics/caustics_few.h"
 #include "render/core/film.h"
 #include "render/core/layers.h"
 #include "render/core/mesh_report.h"
@@ -116,6 +117,7 @@ typedef struct render_result {
     size_t event_count;
     mesh_report meshes;
     layer_set *layers; /* NULL unless requested and supported */
+    caustics_few few;  /* of render.caustics */
     /* of a frame that several processes share: by rank; NULL: of one process */
     rank_account *ranks;
     int rank_count, tile; /* the side of their pieces */

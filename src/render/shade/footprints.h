@@ -1,5 +1,5 @@
 /* Footprints: how far apart the neighbours of a ray are, one sample of the image away, after flat and curved mirrors
- * and clear surfaces (Igehy, "Tracing Ray Differentials", SIGGRAPH 1999). They tell how much of a matte surface a
+ * and clear surfaces (Igehy, "Tracing Ray Differentials", SIGGRAPH 1999). They state how much of a matte surface a
  * sample stands for, so that photons' light narrower than a pixel keeps its power
  * (render/caustics/photon_footprint.c). Only for integrators that send rays through a grid of points of each pixel;
  * random points need none. Ownership: footprints_begin allocates the tracer's memory, footprints_end frees it. */

@@ -16,7 +16,7 @@ const ABOUT = {
     `${threads === 1 ? 'thread' : 'threads'}: another measurement differs. Time is measured for batches of rays, and ` +
     `divided among the rays of each.`,
   cut: () =>
-    'The share of each pixel\'s light, by weight, that rays would have brought which render.depth or ' +
+    "The share of each pixel's light, by weight, that rays would have brought which render.depth or " +
     'render.min_weight cut; the same on every machine. Its error is at most this share of the brightest such light.',
 };
 
