@@ -65,14 +65,17 @@ quoted() { [[ $1 == *[,\ ]* ]] && echo "\"${1//\"/}\"" || echo "$1"; }
 
 mkdir -p "$(dirname "$out")"
 header='scene,film_hash,rays_camera,rays_reflect,rays_refract,rays_shadow,rays_photon,total_internal,size,name'
-header+=',architecture,processor,emulated,compiler,isa'
+header+=',architecture,processor,emulated,compiler,isa,version'
+# Of the films of shipped scenes: one more when the film or the ray counts of any of them change. Rows of machines that
+# are gone keep theirs, and are compared within it; rows without it are of version 1.
+version=2
 [[ $processor ]] || processor=$(sed -n 's/^model name[^:]*: *//p' /proc/cpuinfo | head -n 1)
 if [[ $wasm ]]; then
     for scene in "$here"/scenes/*.yaml; do
         shorter "$(basename "$scene" .yaml)" | sed "s/^/$(basename "$scene" .yaml) /"
     done | node "$here/films.mjs" "$wasm" >"$out.new.rows"
     while IFS= read -r row; do
-        echo "${row%,*},80x60,$name,wasm32,$(quoted "${processor:-unknown}"),no,${compiler:-emcc},${row##*,}"
+        echo "${row%,*},80x60,$name,wasm32,$(quoted "${processor:-unknown}"),no,${compiler:-emcc},${row##*,},$version"
     done <"$out.new.rows" | cat <(echo "$header") - >"$out.new"
     rm "$out.new.rows"
 else
@@ -84,7 +87,7 @@ else
         echo "$header"
         for isa in ${isas:-sse2 avx2 avx512 neon plain}; do
             CUVETTE_ISA=$isa "${run[@]}" "$cuvette" machine --json >/dev/null 2>&1 || continue
-            native "$isa" "$name,$architecture,$(quoted "${processor:-unknown}"),$emulated,$(quoted "$compiler"),$isa"
+            native "$isa" "$name,$architecture,$(quoted "${processor:-unknown}"),$emulated,$(quoted "$compiler"),$isa,$version"
         done
     } >"$out.new"
 fi

@@ -1,6 +1,6 @@
 # Films of experiments/films.sh: one line a scene, from the rows of every machine. Reads results/films/*.csv.
 #   awk -f paper/films.awk results/films/*.csv
-# A value that differs from the most frequent one of its scene is "different". Emulated machines are counted apart.
+# A value that differs from the most frequent one of its scene and version is "different". Emulated machines are counted apart.
 # processors: different models of processors that ran the scene themselves, not by emulation or in WebAssembly.
 BEGIN { OFS = "\t" }
 # Fields of a line of CSV, whose quoted fields have no quotes inside.
@@ -18,7 +18,7 @@ function note(set, scene, text) {
     noted[set, scene, text] = 1
     number[set, scene]++
 }
-FNR == 1 { n = fields_of($0, head); for (i = 1; i <= n; i++) at[head[i]] = i; next }
+FNR == 1 { delete at; n = fields_of($0, head); for (i = 1; i <= n; i++) at[head[i]] = i; next }
 {
     fields_of($0, f)
     scene = f[at["scene"]]
@@ -26,8 +26,10 @@ FNR == 1 { n = fields_of($0, head); for (i = 1; i <= n; i++) at[head[i]] = i; ne
     value = ""
     for (i = at["film_hash"]; i <= at["total_internal"]; i++) value = value " " f[i]
     rows[scene]++
-    times[scene, value]++
-    if (times[scene, value] > agree[scene]) agree[scene] = times[scene, value]
+    version = "version" in at ? f[at["version"]] : 1
+    versions[version] = 1
+    times[scene, version, value]++
+    if (times[scene, version, value] > agree[scene, version]) agree[scene, version] = times[scene, version, value]
     note("films", scene, f[at["film_hash"]])
     note("values", scene, value)
     if (f[at["emulated"]] == "no" && f[at["architecture"]] !~ /^wasm/) note("processors", scene, f[at["processor"]])
@@ -42,8 +44,10 @@ END {
         "different"
     for (s = 1; s <= scene_count; s++) {
         scene = scenes[s]
+        agreed = 0
+        for (version in versions) agreed += agree[scene, version]
         print scene, rows[scene], emulated[scene] + 0, number["names", scene], number["processors", scene] + 0,
             number["architectures", scene], number["compilers", scene], number["isas", scene], number["films", scene],
-            number["values", scene], rows[scene] - agree[scene]
+            number["values", scene], rows[scene] - agreed
     }
 }
