@@ -87,7 +87,8 @@ else
         echo "$header"
         for isa in ${isas:-sse2 avx2 avx512 neon plain}; do
             CUVETTE_ISA=$isa "${run[@]}" "$cuvette" machine --json >/dev/null 2>&1 || continue
-            native "$isa" "$name,$architecture,$(quoted "${processor:-unknown}"),$emulated,$(quoted "$compiler"),$isa,$version"
+            facts="$name,$architecture,$(quoted "${processor:-unknown}"),$emulated,$(quoted "$compiler"),$isa,$version"
+            native "$isa" "$facts"
         done
     } >"$out.new"
 fi
