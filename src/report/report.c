@@ -1,6 +1,7 @@
 /* The JSON account of a render, of its parameters and of an image comparison. */
 #include "base/json_build.h"
 #include "report/report.h"
+#include "job/frame_notes.h"
 #include "report/json.h"
 #include "report/param_rows.h"
 #include "base/number.h"
@@ -202,6 +203,19 @@ static int put_interval(json_t *o, const char *key, const double *values, size_t
     return json_object_set_new(o, key, json_pack("[o, o]", json_of_real(s.median_low), json_of_real(s.median_high)));
 }
 
+static void add_note(void *list, const scene_note *note)
+{
+    json_add(list, json_pack("{s:o, s:o, s:o}", "place", json_of_text(note->place), "text", json_of_text(note->text),
+                             "remedy", json_of_text(note->remedy)));
+}
+
+static json_t *notes(const job_account *a)
+{
+    json_t *list = json_array();
+    frame_notes(a, &(note_taker){add_note, &list});
+    return list;
+}
+
 json_t *report_create(const job_account *a, bool repeated)
 {
     json_t *o = json_pack("{s:i}", "schema", REPORT_SCHEMA);
@@ -216,6 +230,7 @@ json_t *report_create(const job_account *a, bool repeated)
         bad |= put_interval(o, "cpu_s_interval", a->cpu_s, a->count);
     }
     bad |= json_object_set_new(o, "threads", workers(a));
+    bad |= json_object_set_new(o, "notes", notes(a));
     if (a->result->ranks) {
         bad |= json_object_set_new(o, "ranks", ranks(a->result));
         bad |= json_object_set_new(o, "tile", json_integer(a->result->tile));
@@ -234,6 +249,7 @@ json_t *report_page(const job_account *a)
     for (size_t i = 0; i < frame_quantity_count; i++)
         if (frame_quantities[i].page)
             bad |= json_object_set_new(o, frame_quantities[i].page, report_quantity(&frame_quantities[i], a, -1));
+    bad |= json_object_set_new(o, "notes", notes(a));
     return json_whole(o, bad == 0);
 }
 

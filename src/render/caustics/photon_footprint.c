@@ -41,20 +41,27 @@ static vec3 on_surface(vec3 v, vec3 d, vec3 n, double cosine)
     return vec3_add(v, vec3_scale(d, vec3_dot(v, n) / cosine));
 }
 
-/* The photons with the widest densities have a radius of PHOTON_RESOLVED cells; the corner of both densities is the
- * farthest point, by the law of cosines. */
 photon_reach photon_footprint_reach(const photon_footprint *f, vec3 normal)
 {
     const double cosine = -vec3_dot(f->toward, normal);
     const vec3 a = on_surface(f->across[0], f->toward, normal, cosine),
                b = on_surface(f->across[1], f->toward, normal, cosine);
-    const double length = vec3_length(a), width = vec3_length(b), most = fmax(length, width);
-    const double area = vec3_length(vec3_cross(a, b));
-    const double corner = sqrt(2.0 + 2.0 * fabs(vec3_dot(a, b)) / (length * width)),
-                 by_radius = MARGIN * corner * HALF_WIDTH, at_0 = MARGIN * 0.5 * corner * most,
-                 beyond = (by_radius - 1.0) * PHOTON_RESOLVED * most + at_0;
-    const bool known = cosine > 0.0 && area * LONGEST > most * most && beyond <= f->reach;
-    return (photon_reach){known ? beyond : (double)INFINITY, at_0, by_radius};
+    const double length = vec3_length(a), width = vec3_length(b), most = fmax(length, width),
+                 area = vec3_length(vec3_cross(a, b));
+    photon_reach r = {.known = cosine > 0.0 && area * LONGEST > most * most};
+    if (!r.known)
+        return r;
+    /* the corner of both densities of the widest disc, by the law of cosines */
+    const double corner = sqrt(2.0 + 2.0 * fabs(vec3_dot(a, b)) / (length * width));
+    r.beyond = (MARGIN * corner * (HALF_WIDTH * PHOTON_RESOLVED + 0.5) - PHOTON_RESOLVED) * most;
+    r.groups = r.beyond > f->reach;
+    const vec3 x = vec3_cross(b, f->toward), y = vec3_cross(f->toward, a);
+    r.slab[REACH_X] = vec3_scale(x, 1.0 / vec3_dot(x, a)), r.slab[REACH_Y] = vec3_scale(y, 1.0 / vec3_dot(y, b));
+    r.slab[REACH_HEIGHT] = normal;
+    r.within[REACH_X] = r.within[REACH_Y] = 0.5, r.within[REACH_HEIGHT] = 0.5 * most;
+    for (int k = 0; k < REACH_SLABS; k++)
+        r.within[k] *= MARGIN, r.length[k] = MARGIN * vec3_length(r.slab[k]);
+    return r;
 }
 
 double photon_footprint_density(const photon_footprint *f, const photon *one, vec3 off, photon_place *place)

@@ -52,7 +52,7 @@ void photon_map_destroy(photon_map *m)
     if (!m)
         return;
     for (int k = 0; k < PHOTON_LEVELS_MAX; k++)
-        free(m->level[k]);
+        free(m->level[k]), free(m->group[k]);
     photon_sums_free(m->sums);
     free(m->photons);
     free(m);
@@ -71,7 +71,8 @@ const photon *photon_map_at(const photon_map *m, size_t i)
 /* A photon in a list, then in the map, with its key and its part of the tree. */
 size_t photon_map_bytes(void)
 {
-    return 3 * sizeof(photon) + 2 * sizeof(void *) + (sizeof(photon_box) + photon_sums_bytes()) / 7;
+    return 3 * sizeof(photon) + 2 * sizeof(void *) +
+           (sizeof(photon_box) + sizeof(photon_group) + photon_sums_bytes()) / 7;
 }
 
 /* --- irradiance --- */
@@ -134,13 +135,25 @@ static void add_narrow(irradiance_sum *s, const photon_place *p, double light)
     s->xx += light * x * x, s->yy += light * y * y, s->xy += light * x * y;
 }
 
+/* Whether a disc of that radius, that far away, can be seen. A disc may be half its radius in front or behind. */
+static bool can_be_seen(const irradiance_sum *s, vec3 off, double radius)
+{
+    if (!s->footprint)
+        return vec3_dot(off, off) < 1.5 * radius * radius;
+    const photon_reach *reach = &s->reach;
+    for (int k = 0; k < REACH_SLABS; k++)
+        if (fabs(vec3_dot(off, reach->slab[k])) > reach->within[k] + radius * reach->length[k])
+            return false;
+    return true;
+}
+
 /* Adds a photon's share at the point. Surfaces that turn away are other surfaces. */
-static void add(const photon *one, void *context)
+static void add(const photon *one, double disc, void *context)
 {
     irradiance_sum *s = context;
     const vec3 off = vec3_sub(s->point, one->position);
-    const double r = (double)one->radius, far = s->footprint ? fmax(r, s->reach.at_0 + s->reach.by_radius * r) : r;
-    if (!(vec3_dot(off, off) < 1.5 * far * far)) /* a disc may be half its radius in front or behind */
+    const double r = (double)one->radius;
+    if (!can_be_seen(s, off, r))
         return;
     const vec3 n = vec3_make((double)one->normal[0], (double)one->normal[1], (double)one->normal[2]);
     if (vec3_dot(n, s->normal) < PHOTON_FACING)
@@ -154,6 +167,7 @@ static void add(const photon *one, void *context)
     const vec3 light =
         vec3_make(share * (double)one->flux[0], share * (double)one->flux[1], share * (double)one->flux[2]);
     s->sum = vec3_add(s->sum, light);
+    place.radius *= disc / r; /* a group's light is as narrow as its photons' */
     if (s->narrow)
         add_narrow(s, &place, light.x + light.y + light.z);
 }
@@ -174,7 +188,7 @@ static bool is_spread(const irradiance_sum *s)
 vec3 photon_map_irradiance(const photon_map *m, vec3 point, vec3 normal, int wavelength)
 {
     irradiance_sum s = {.point = point, .normal = normal, .wavelength = wavelength};
-    photon_tree_around(m, point, 0.0, add, &s);
+    photon_tree_around(m, point, NULL, add, &s);
     return s.sum;
 }
 
@@ -185,9 +199,9 @@ vec3 photon_map_seen(const photon_map *m, vec3 point, vec3 normal, int wavelengt
     s.reach = photon_footprint_reach(f, normal);
     for (int k = 0; narrow && k < PHOTON_FACTORS; k++)
         narrow[k] = 0.0;
-    if (isinf(s.reach.beyond))
+    if (!s.reach.known)
         s.footprint = NULL, s.narrow = NULL;
-    photon_tree_around(m, point, s.footprint ? s.reach.beyond : 0.0, add, &s);
+    photon_tree_around(m, point, s.reach.known ? &s.reach : NULL, add, &s);
     if (s.narrow && s.all > 0.0 && is_spread(&s)) {
         for (int k = 0; k < PHOTON_FACTORS; k++)
             narrow[k] = 0.0;

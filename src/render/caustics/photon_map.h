@@ -75,7 +75,7 @@ vec3 photon_map_irradiance(const photon_map *m, vec3 point, vec3 normal, int wav
  * point + x across[0] + y across[1], towards toward + x turn[0] + y turn[1] (ray_footprint, render/core/queue.h). */
 typedef struct photon_footprint {
     vec3 toward, across[2], turn[2];
-    double reach; /* scene units: if photons farther away would count too, discs are looked up at the point instead */
+    double reach; /* scene units: if photons farther away count too, those close together are seen as one */
 } photon_footprint;
 
 /* The same for what the ray sees there, the mean over its sample's cell of the image (photon_footprint.c): the sum over

@@ -118,5 +118,5 @@ bool photon_map_finish(photon_map *m)
     photon_sums_free(m->sums);
     m->sums = NULL;
     photon_tree_count(m);
-    return photon_tree_fit(m, true);
+    return photon_tree_fit(m, true) && photon_groups_make(m);
 }

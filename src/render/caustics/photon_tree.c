@@ -155,35 +155,73 @@ double photon_tree_reach(const photon_map *m, size_t i, int k, double widest)
 
 typedef struct visit_around {
     const photon_map *map;
-    vec3 low, high; /* boxes that end before low, or begin after high, are too far away */
-    void (*visit)(const photon *one, void *context);
+    vec3 point, low, high;     /* boxes that end before low, or begin after high, are too far away */
+    const photon_reach *reach; /* or NULL */
+    photon_visit *visit;
     void *context;
 } visit_around;
 
-static bool meets(const photon_box *b, const visit_around *v)
+static double extent_along(const photon_box *b, vec3 d)
+{
+    return fabs(d.x) * (b->high[0] - b->low[0]) + fabs(d.y) * (b->high[1] - b->low[1]) +
+           fabs(d.z) * (b->high[2] - b->low[2]);
+}
+
+static bool is_near(const photon_box *b, const visit_around *v)
 {
     return (int)(v->high.x >= b->low[0]) & (int)(v->low.x <= b->high[0]) & (int)(v->high.y >= b->low[1]) &
            (int)(v->low.y <= b->high[1]) & (int)(v->high.z >= b->low[2]) & (int)(v->low.z <= b->high[2]);
 }
 
+/* A disc is in its box as a whole. */
+static bool is_in_cell(const photon_box *b, const visit_around *v)
+{
+    const photon_reach *reach = v->reach;
+    const vec3 off = {b->low[0] + b->high[0] - 2.0 * v->point.x, b->low[1] + b->high[1] - 2.0 * v->point.y,
+                      b->low[2] + b->high[2] - 2.0 * v->point.z};
+    for (int k = 0; k < REACH_SLABS; k++)
+        if (fabs(vec3_dot(off, reach->slab[k])) > 2.0 * reach->within[k] + extent_along(b, reach->slab[k]))
+            return false;
+    return true;
+}
+
+/* In the cells of the sample. */
+static bool is_seen_as_one(const visit_around *v, int level, size_t box)
+{
+    const photon_group *g = &v->map->group[level][box];
+    if (!(g->one.radius > 0.0F))
+        return false;
+    bool all = true;
+    for (int k = 0; k < REACH_HEIGHT; k++) {
+        const double per_unit2 = v->reach->length[k] * v->reach->length[k];
+        all &= (double)g->spread2 * per_unit2 <= PHOTON_ONE * (1.0 + (double)g->disc2 * per_unit2);
+    }
+    return all;
+}
+
 static void visit_box(const visit_around *v, int level, size_t box)
 {
     const photon_map *m = v->map;
-    if (!meets(&m->level[level][box], v))
+    const photon_box *b = &m->level[level][box];
+    if (!is_near(b, v) || (v->reach && !is_in_cell(b, v)))
         return;
+    if (v->reach && v->reach->groups && is_seen_as_one(v, level, box)) {
+        v->visit(&m->group[level][box].one, sqrt((double)m->group[level][box].disc2), v->context);
+        return;
+    }
     const size_t end = photon_box_end(m, level, box);
     for (size_t i = photon_box_first(box); i < end; i++)
         if (level == 0)
-            v->visit(&m->photons[i], v->context);
+            v->visit(&m->photons[i], (double)m->photons[i].radius, v->context);
         else
             visit_box(v, level - 1, i);
 }
 
-void photon_tree_around(const photon_map *m, vec3 point, double within, void (*visit)(const photon *one, void *context),
-                        void *context)
+void photon_tree_around(const photon_map *m, vec3 point, const photon_reach *reach, photon_visit *visit, void *context)
 {
+    const double within = reach ? reach->beyond : 0.0;
     const vec3 off = vec3_make(within, within, within);
-    const visit_around v = {m, vec3_sub(point, off), vec3_add(point, off), visit, context};
+    const visit_around v = {m, point, vec3_sub(point, off), vec3_add(point, off), reach, visit, context};
     if (m->levels > 0)
         visit_box(&v, m->levels - 1, 0);
 }

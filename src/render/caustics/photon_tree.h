@@ -26,11 +26,18 @@ typedef struct photon_box {
         }                                                           \
     }
 
+/* Photons of a box as one: their flux at its centre, with a disc that has the variance of their places and discs. */
+typedef struct photon_group {
+    photon one;           /* radius 0: they are no group, since they are of several wavelengths or surfaces */
+    float disc2, spread2; /* means by power: square of their discs' radius; variance of places in both directions */
+} photon_group;
+
 struct photon_map {
     photon *photons;
     size_t count;
-    struct photon_sums *sums;             /* until the radii are known; NULL for photons of several wavelengths */
-    photon_box *level[PHOTON_LEVELS_MAX]; /* level 0: boxes of PHOTON_WIDE photons; the last one has one box */
+    struct photon_sums *sums;               /* until the radii are known; NULL for photons of several wavelengths */
+    photon_box *level[PHOTON_LEVELS_MAX];   /* level 0: boxes of PHOTON_WIDE photons; the last one has one box */
+    photon_group *group[PHOTON_LEVELS_MAX]; /* of each box, once the radii are known */
     size_t boxes[PHOTON_LEVELS_MAX];
     int levels; /* 0 without photons */
 };
@@ -70,17 +77,30 @@ bool photon_tree_fit(photon_map *m, bool discs);
 /* The distance from photon i to its k-th nearest neighbour on the same surface, at most `widest`. Boxes must be those
  * of the positions, or larger. */
 double photon_tree_reach(const photon_map *m, size_t i, int k, double widest);
-/* Calls visit for the photons near the point, at least those whose disc may come closer to it than `within`, in order.
- */
-void photon_tree_around(const photon_map *m, vec3 point, double within, void (*visit)(const photon *one, void *context),
-                        void *context);
+/* photon_group.c: of all boxes, from the photons; false when out of memory or cancelled. */
+bool photon_groups_make(photon_map *m);
 
-/* photon_footprint.c: how far from the ray's hit, on a surface with that normal, a photon can be and still be seen. */
+/* photon_footprint.c: how far from the ray's hit, on a surface with that normal, photons can be and still be seen: as
+ * three slabs around it, of the cell in x and y and of the surface's normal. */
+enum { REACH_X, REACH_Y, REACH_HEIGHT, REACH_SLABS };
 typedef struct photon_reach {
-    double beyond;          /* its radius; infinite if the footprint is unknown, too oblique or too wide */
-    double at_0, by_radius; /* also at most at_0 + by_radius times its radius, or else its radius */
+    bool known; /* false: the surface is seen edge on or from behind, and discs are looked up at the point */
+    vec3 slab[REACH_SLABS]; /* the offset from the hit times this is at most `within` and the disc's part */
+    double within[REACH_SLABS];
+    double length[REACH_SLABS]; /* of slab */
+    double beyond;              /* how far away a disc is at most, whose photon can be seen */
+    bool groups;                /* photons close together are seen as one */
 } photon_reach;
 photon_reach photon_footprint_reach(const photon_footprint *f, vec3 normal);
+/* Of photons that are seen as one, the largest variance of places (in both directions) over 1 + r^2, in cells, for
+ * discs of radius r: a square's of side e is e^2 / 6. Sums of such groups vary by a few percent. */
+#define PHOTON_ONE (2.0 / 6.0)
+
+/* What a search finds: a photon, or a group, whose discs have that mean radius. */
+typedef void photon_visit(const photon *one, double disc, void *context);
+/* Calls visit for the photons near the point, in order: at least those in whose disc it is, or that the reach holds. */
+void photon_tree_around(const photon_map *m, vec3 point, const photon_reach *reach, photon_visit *visit, void *context);
+
 /* A photon as the ray's samples see it, in cells: its place from the ray's sample, the deviation that its light has
  * there in each direction, and the radius of its disc in the direction in which cells are widest. */
 typedef struct photon_place {

@@ -7,8 +7,8 @@
 #include <stdlib.h>
 #include <string.h>
 
-/* The reach of footprints after curved surfaces, in cells as the camera sees the point without deflection: they make
- * some views so small that a sample would have to look at thousands of photons. */
+/* Curved surfaces make some views so small that a sample would have to look at thousands of photons. Beyond this reach,
+ * in cells as the camera sees the point without deflection, those close together are seen as one. */
 #define REACH_BENT 4.0
 /* Normals are compared at this share of the way to the neighbour's hit. */
 #define NEAR 0x1p-10
@@ -224,11 +224,12 @@ vec3 footprint_irradiance(tracer *t, int k, int wavelength, double seen)
     const group *g = &t->surface.gathered;
     footprint_work *w = t->footprints;
     const vec3 point = vec3_make(g->points.px[k], g->points.py[k], g->points.pz[k]);
+    const bool guessed = w->rough_guess[k] || w->bent[k];
     double narrow[PHOTON_FACTORS];
     w->at[k].reach = w->bent[k] ? REACH_BENT * cell_at(t->target.frame_plan, point) : DBL_MAX;
     const vec3 e = photon_map_seen(t->target.frame_plan->photons, point, normal_of(&g->points, k), wavelength,
-                                   &w->at[k], w->rough_guess[k] ? narrow : NULL);
-    for (int i = 0; i < PHOTON_FACTORS && w->rough_guess[k]; i++)
+                                   &w->at[k], guessed ? narrow : NULL);
+    for (int i = 0; i < PHOTON_FACTORS && guessed; i++)
         COUNT(t->account.counters.undersampled[i] += counters_cut_units(fmin(narrow[i] * seen, 1024.0)));
     return e;
 }

@@ -1,5 +1,5 @@
-/* The linter's notes on the scene, fetched for each final image. A new note is shown in the status line; the button
- * there lists all. A remedy that sets parameters is a button that sets them.
+/* The linter's notes on the scene, fetched for each final image, and the notes on that image itself. A new note is
+ * shown in the status line; the button there lists all. A remedy that sets parameters is a button that sets them.
  *
  * exports: createNotes(lab) -> {count(), show()}; emits 'notes' on the lab when the list has changed */
 
@@ -51,8 +51,9 @@ export function createNotes(lab) {
     if (!generation || generation === checkedGeneration) return;
     checkedGeneration = generation;
     const known = new Set(notes.map(line));
+    const onImage = lab.picture.notes ?? [];
     try {
-      ({ notes } = await lab.get('/api/notes'));
+      notes = [...(await lab.get('/api/notes')).notes, ...onImage];
     } catch (error) {
       checkedGeneration = 0; /* a study is measuring, or the scene cannot be rendered: both are reported elsewhere */
       return;
