@@ -9,6 +9,7 @@
 
 #include "base/sobol.h"
 #include "base/random.h"
+#include "whole.h"
 #include "render/caustics/photon_map.h"
 #include <stdlib.h>
 #include <string.h>
@@ -330,6 +331,79 @@ static void maps_without_photons_or_with_coincident_ones(void **state)
     photon_map_destroy(m);
 }
 
+/* --- what samples of an image see --- */
+
+/* Of the lattice of samples seen along a direction, whose cells on the ground have these sides, by photons of `reach`:
+ * the flux, its centre, and its variance in both directions. */
+typedef struct lattice {
+    double flux, x, z, variance, image[64 * 64];
+} lattice;
+
+static void look(const photon_map *m, vec3 toward, double across, double down, double reach, lattice *out)
+{
+    const vec3 both = vec3_cross(vec3_make(across, 0.0, 0.0), vec3_make(0.0, 0.0, down));
+    const photon_footprint f = {.toward = toward,
+                                .across = {{across, 0.0, 0.0}, {0.0, 0.0, down}},
+                                .along = vec3_scale(both, 1.0 / vec3_dot(both, toward)),
+                                .reach = reach};
+    double xx = 0.0;
+    *out = (lattice){.flux = 0.0};
+    for (int i = 0; i < 64 * 64; i++) {
+        const double x = across * (i % 64 - 32), z = down * (i / 64 - 32);
+        const double e = across * down * photon_map_seen(m, vec3_make(x, 0.0, z), up, -1, &f, NULL).x;
+        out->image[i] = e;
+        out->flux += e, out->x += e * x, out->z += e * z, xx += e * (x * x + z * z);
+    }
+    out->x /= out->flux, out->z /= out->flux;
+    out->variance = xx / out->flux - out->x * out->x - out->z * out->z;
+}
+
+static double draw(uint32_t *draws, double low, double high)
+{
+    return low + (high - low) * random_unit(random_at(53, (*draws)++, 0, 0, 0).word[0]);
+}
+
+/* Photons that are seen as one keep their power, their centre and their variance, and look like themselves. (The mean
+ * over a cell moves what is narrow in it to the cell's centre, so that centres are those of the cells.) */
+static void groups_look_like_their_photons(void **state)
+{
+    (void)state;
+    static lattice whole, grouped;
+    uint32_t draws = 0;
+    const int trials = trials_of(60);
+    for (int trial = 0; trial < trials; trial++) {
+        photon_list all = {0};
+        const int clusters = 1 + (int)draw(&draws, 0.0, 4.0);
+        double flux = 0.0;
+        for (int c = 0; c < clusters; c++) {
+            const double x = draw(&draws, -1.0, 1.0), z = draw(&draws, -1.0, 1.0), width = draw(&draws, 0.01, 0.6),
+                         length = draw(&draws, 0.01, 0.6);
+            for (int i = 0; i < 800; i++) {
+                const photon one = photon_at(x + draw(&draws, -width, width), 0.0, z + draw(&draws, -length, length),
+                                             (float)draw(&draws, 0.5, 1.5));
+                flux += (double)one.flux[0];
+                assert_true(photon_list_add(&all, &one));
+            }
+        }
+        photon_map *m = map_of(&all, 1, draw(&draws, 0.02, 0.3));
+        const vec3 toward = vec3_make(draw(&draws, -0.8, 0.8), -1.0, draw(&draws, -0.8, 0.8));
+        const double across = draw(&draws, 0.07, 0.15), down = across * draw(&draws, 0.9, 2.0);
+        look(m, vec3_scale(toward, 1.0 / vec3_length(toward)), across, down, 1e9, &whole);
+        look(m, vec3_scale(toward, 1.0 / vec3_length(toward)), across, down, 0.0, &grouped);
+        double difference = 0.0;
+        for (int i = 0; i < 64 * 64; i++)
+            difference += fabs(whole.image[i] - grouped.image[i]);
+        assert_near(whole.flux / flux, 1.0, 1e-3);
+        assert_near(grouped.flux / flux, 1.0, 2e-3);
+        assert_near(grouped.x, whole.x, 0.1 * across);
+        assert_near(grouped.z, whole.z, 0.1 * across);
+        assert_near(grouped.variance, whole.variance, 0.02 * whole.variance + 0.05 * across * down);
+        assert_true(difference > 0.0);
+        assert_near(difference / flux, 0.0, 0.2);
+        photon_map_destroy(m);
+    }
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
@@ -345,6 +419,7 @@ int main(void)
         cmocka_unit_test(the_order_is_the_same_at_any_scale),
         cmocka_unit_test(a_spectral_map_counts_photons_of_near_wavelengths),
         cmocka_unit_test(maps_without_photons_or_with_coincident_ones),
+        cmocka_unit_test(groups_look_like_their_photons),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

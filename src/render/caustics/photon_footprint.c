@@ -41,6 +41,13 @@ static vec3 on_surface(vec3 v, vec3 d, vec3 n, double cosine)
     return vec3_add(v, vec3_scale(d, vec3_dot(v, n) / cosine));
 }
 
+/* The length of that. */
+static double length_on_surface(vec3 v, vec3 d, vec3 n, double cosine)
+{
+    const double times = vec3_dot(v, n) / cosine;
+    return sqrt(vec3_dot(v, v) + times * (2.0 * vec3_dot(v, d) + times * vec3_dot(d, d)));
+}
+
 photon_reach photon_footprint_reach(const photon_footprint *f, vec3 normal)
 {
     const double cosine = -vec3_dot(f->toward, normal);
@@ -68,8 +75,7 @@ double photon_footprint_density(const photon_footprint *f, const photon *one, ve
 {
     const vec3 n = vec3_make((double)one->normal[0], (double)one->normal[1], (double)one->normal[2]);
     const double r = (double)one->radius;
-    const vec3 both = vec3_cross(f->across[0], f->across[1]);
-    const double further = vec3_dot(off, both) / vec3_dot(f->toward, both);
+    const double further = vec3_dot(off, f->along);
     const vec3 a = vec3_add(f->across[0], vec3_scale(f->turn[0], further)),
                b = vec3_add(f->across[1], vec3_scale(f->turn[1], further));
     /* off = x a + y b + further toward */
@@ -80,10 +86,9 @@ double photon_footprint_density(const photon_footprint *f, const photon *one, ve
     const double cosine = -vec3_dot(d, n);
     if (!(cosine > 0.0))
         return 0.0;
-    const double length = vec3_length(on_surface(a, d, n, cosine)), width = vec3_length(on_surface(b, d, n, cosine));
+    const double length = length_on_surface(a, d, n, cosine), width = length_on_surface(b, d, n, cosine);
     const double hx = HALF_WIDTH * r / length, hy = HALF_WIDTH * r / width;
-    *place = (photon_place){x, y, sqrt(1.0 / 12.0 + hx * hx / 7.0), sqrt(1.0 / 12.0 + hy * hy / 7.0),
-                            r / fmax(length, width)};
+    *place = (photon_place){x, y, 1.0 / 12.0 + hx * hx / 7.0, 1.0 / 12.0 + hy * hy / 7.0, r / fmax(length, width)};
     if (place->radius >= PHOTON_RESOLVED)
         return -1.0;
     if (!(fabs(x) < 0.5 + hx && fabs(y) < 0.5 + hy) || fabs(vec3_dot(off, n)) > 0.5 * (r + fmax(length, width)))

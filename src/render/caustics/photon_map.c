@@ -129,7 +129,7 @@ static int factor_of(double cells)
 
 static void add_narrow(irradiance_sum *s, const photon_place *p, double light)
 {
-    const double x = p->x / p->deviation_x, y = p->y / p->deviation_y;
+    const double x = p->x / sqrt(p->variance_x), y = p->y / sqrt(p->variance_y);
     s->narrow[factor_of(p->radius)] += light;
     s->all += light, s->x += light * x, s->y += light * y;
     s->xx += light * x * x, s->yy += light * y * y, s->xy += light * x * y;

@@ -75,6 +75,7 @@ vec3 photon_map_irradiance(const photon_map *m, vec3 point, vec3 normal, int wav
  * point + x across[0] + y across[1], towards toward + x turn[0] + y turn[1] (ray_footprint, render/core/queue.h). */
 typedef struct photon_footprint {
     vec3 toward, across[2], turn[2];
+    vec3 along;   /* the ray is at point + t toward where t is the offset times this */
     double reach; /* scene units: if photons farther away count too, those close together are seen as one */
 } photon_footprint;
 

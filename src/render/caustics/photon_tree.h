@@ -101,10 +101,10 @@ typedef void photon_visit(const photon *one, double disc, void *context);
 /* Calls visit for the photons near the point, in order: at least those in whose disc it is, or that the reach holds. */
 void photon_tree_around(const photon_map *m, vec3 point, const photon_reach *reach, photon_visit *visit, void *context);
 
-/* A photon as the ray's samples see it, in cells: its place from the ray's sample, the deviation that its light has
+/* A photon as the ray's samples see it, in cells: its place from the ray's sample, the variance that its light has
  * there in each direction, and the radius of its disc in the direction in which cells are widest. */
 typedef struct photon_place {
-    double x, y, deviation_x, deviation_y, radius;
+    double x, y, variance_x, variance_y, radius;
 } photon_place;
 /* The density per area with which a photon at point + off counts for the ray, of integral 1 over the photon's surface;
  * negative if its disc is wide enough to be looked up at the point alone. */

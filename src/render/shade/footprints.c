@@ -226,6 +226,8 @@ vec3 footprint_irradiance(tracer *t, int k, int wavelength, double seen)
     const vec3 point = vec3_make(g->points.px[k], g->points.py[k], g->points.pz[k]);
     const bool guessed = w->rough_guess[k] || w->bent[k];
     double narrow[PHOTON_FACTORS];
+    const vec3 both = vec3_cross(w->at[k].across[0], w->at[k].across[1]);
+    w->at[k].along = vec3_scale(both, 1.0 / vec3_dot(w->at[k].toward, both));
     w->at[k].reach = w->bent[k] ? REACH_BENT * cell_at(t->target.frame_plan, point) : DBL_MAX;
     const vec3 e = photon_map_seen(t->target.frame_plan->photons, point, normal_of(&g->points, k), wavelength,
                                    &w->at[k], guessed ? narrow : NULL);
