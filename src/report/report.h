@@ -18,8 +18,8 @@ json_t *report_create(const job_account *a, bool repeated);
 /* One quantity of the account. worker: as for quantity.read. */
 json_t *report_quantity(const quantity *q, const job_account *a, int worker);
 
-/* The numbers of an image that the laboratory's page shows, and the notes on it. They reach it as part of `picture` in the state and in
- * events: web/live/render_worker_pass.c, shared_image.c, web/lab.c, page/store.js. */
+/* The numbers of an image that the laboratory's page shows, and the notes on it. They reach it as part of `picture` in
+ * the state and in events: web/live/render_worker_pass.c, shared_image.c, web/lab.c, page/store.js. */
 json_t *report_page(const job_account *a);
 
 /* Each parameter of the scene under its path, as a number, list or word. */
