@@ -207,7 +207,7 @@ static void what_is_between_changes_nothing(void **state)
         scene *s = scene_of("fov_deg: 40", "kind: pencil, angle_deg: 0", cases[k].solids);
         set_all(s, "floor.priority=2 render.width=96 render.height=72");
         s->camera.position = vec3_make(cases[k].eye[0], cases[k].eye[1], cases[k].eye[2]);
-        for (int i = 0; i < trials_of(20); i++) {
+        for (int i = 0; i < trials_of(10); i++) {
             const vec3 at = vec3_make(draw(-0.05, 0.05), 0.0, draw(-0.05, 0.05));
             s->beams[0].position = vec3_add(at, vec3_make(0.9, 0.9, 0.2));
             s->beams[0].target = at;
