@@ -5,6 +5,7 @@
 #include "scene/model/scene.h"
 
 #include <inttypes.h>
+#include <math.h>
 #include <stdio.h>
 
 /* --- light narrower than a pixel --- */
@@ -42,8 +43,8 @@ static void note_narrow_light(const job_account *a, const note_taker *taker)
     if (factor < COUNTERS_FACTORS && samples <= SCENE_SAMPLES_MAX)
         snprintf(remedy, sizeof remedy, "render.samples=%d suffice", (int)samples);
     note_give(taker, "render", "samples", remedy,
-              "%.2g %% of the image's light is narrower than a pixel, behind surfaces where it may be missed",
-              100.0 * NOTED * all / one_percent);
+              "%.0f %% of the image's light is narrower than a pixel, behind surfaces where it may be missed",
+              fmax(100.0 * NOTED * all / one_percent, 1.0));
 }
 
 /* --- light of few photons --- */
