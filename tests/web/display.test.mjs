@@ -105,6 +105,14 @@ export const cases = {
     t.equal((await lab.get('/api/state')).undo, 'set render.depth', 'undo');
   },
 
+  'a note on the image, not on the scene, is listed too': async (t) => {
+    const screen = await t.open(await t.lab('tests/narrow.yaml'), size);
+    await screen.button(/^\d+ notes?$/).click();
+    const note = screen.page.getByRole('dialog').getByText(/narrower than a pixel/);
+    await note.waitFor();
+    t.equal(await note.count(), 1, 'notes on narrow light');
+  },
+
   'what fits at 1366 px': async (t) => {
     const screen = await t.open(await t.lab('scenes/rod.yaml'), size);
     const { page } = screen;
