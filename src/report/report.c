@@ -203,10 +203,15 @@ static int put_interval(json_t *o, const char *key, const double *values, size_t
     return json_object_set_new(o, key, json_pack("[o, o]", json_of_real(s.median_low), json_of_real(s.median_high)));
 }
 
+json_t *report_note(const char *place, const char *text, const char *remedy)
+{
+    return json_pack("{s:o, s:o, s:o}", "place", json_of_text(place), "text", json_of_text(text), "remedy",
+                     json_of_text(remedy));
+}
+
 static void add_note(void *list, const scene_note *note)
 {
-    json_add(list, json_pack("{s:o, s:o, s:o}", "place", json_of_text(note->place), "text", json_of_text(note->text),
-                             "remedy", json_of_text(note->remedy)));
+    json_add(list, report_note(note->place, note->text, note->remedy));
 }
 
 static json_t *notes(const job_account *a)

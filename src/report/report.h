@@ -15,6 +15,9 @@ enum { REPORT_SCHEMA = 1 }; /* increases when a key changes its meaning or is re
  * includes the times of all repetitions. */
 json_t *report_create(const job_account *a, bool repeated);
 
+/* A note as an object of place, text and remedy. */
+json_t *report_note(const char *place, const char *text, const char *remedy);
+
 /* One quantity of the account. worker: as for quantity.read. */
 json_t *report_quantity(const quantity *q, const job_account *a, int worker);
 

@@ -1,7 +1,7 @@
-/* Groups: what is small in a sample's cell of the image is seen as one photon, so that a cell with any number of
- * photons costs a few (as in lightcuts: Walter and others, SIGGRAPH 2005). A group keeps their flux, centre and
- * variance. A disc of radius r has the variance r^2 / 8 in each direction, and a photon a distance d from the centre
- * adds d^2 / 2. */
+/* Groups: photons that are close together in a sample's cell of the image are seen as one, so that a cell with
+ * thousands costs much less (lightcuts do so for lamps: Walter and others, SIGGRAPH 2005). A group has the flux, centre
+ * and variance of its photons. A disc of radius r has the variance r^2 / 8 in each direction, and a photon a distance d
+ * from the centre adds d^2 / 2. */
 #include "render/caustics/photon_tree.h"
 
 #include "base/cancel.h"

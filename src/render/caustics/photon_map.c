@@ -135,7 +135,8 @@ static void add_narrow(irradiance_sum *s, const photon_place *p, double light)
     s->xx += light * x * x, s->yy += light * y * y, s->xy += light * x * y;
 }
 
-/* Whether a disc of that radius, that far away, can be seen. A disc may be half its radius in front or behind. */
+/* Whether a disc of that radius can be seen from that offset. At a point, it counts up to half its radius in front of
+ * its plane and behind. */
 static bool can_be_seen(const irradiance_sum *s, vec3 off, double radius)
 {
     if (!s->footprint)

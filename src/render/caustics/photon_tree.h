@@ -80,23 +80,22 @@ double photon_tree_reach(const photon_map *m, size_t i, int k, double widest);
 /* photon_group.c: of all boxes, from the photons; false when out of memory or cancelled. */
 bool photon_groups_make(photon_map *m);
 
-/* photon_footprint.c: how far from the ray's hit, on a surface with that normal, photons can be and still be seen: as
- * three slabs around it, of the cell in x and y and of the surface's normal. */
+/* photon_footprint.c: where photons can be seen from the ray's hit, on a surface with that normal: within three slabs
+ * around it, the sample's cell in x, in y, and the surface's thickness. */
 enum { REACH_X, REACH_Y, REACH_HEIGHT, REACH_SLABS };
 typedef struct photon_reach {
     bool known; /* false: the surface is seen edge on or from behind, and discs are looked up at the point */
-    vec3 slab[REACH_SLABS]; /* the offset from the hit times this is at most `within` and the disc's part */
-    double within[REACH_SLABS];
-    double length[REACH_SLABS]; /* of slab */
-    double beyond;              /* how far away a disc is at most, whose photon can be seen */
-    bool groups;                /* photons close together are seen as one */
+    vec3 slab[REACH_SLABS]; /* across the slab, 1 / cells or 1: a photon's offset times this is at most */
+    double within[REACH_SLABS], length[REACH_SLABS]; /* within + length times its radius; both with a margin */
+    double beyond;                                   /* distance to the farthest disc that can be seen, scene units */
+    bool groups;                                     /* photons close together are seen as one */
 } photon_reach;
 photon_reach photon_footprint_reach(const photon_footprint *f, vec3 normal);
-/* Of photons that are seen as one, the largest variance of places (in both directions) over 1 + r^2, in cells, for
- * discs of radius r: a square's of side e is e^2 / 6. Sums of such groups vary by a few percent. */
+/* Photons are seen as one if the variance of their places, over both directions, is at most this times 1 + r^2, where
+ * r is the radius of their discs, all in cells. A square of side e has the variance e^2 / 6. */
 #define PHOTON_ONE (2.0 / 6.0)
 
-/* What a search finds: a photon, or a group, whose discs have that mean radius. */
+/* Called with each photon that a search finds, or with a group as one; disc: the mean radius of its own discs. */
 typedef void photon_visit(const photon *one, double disc, void *context);
 /* Calls visit for the photons near the point, in order: at least those in whose disc it is, or that the reach holds. */
 void photon_tree_around(const photon_map *m, vec3 point, const photon_reach *reach, photon_visit *visit, void *context);

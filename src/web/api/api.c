@@ -31,12 +31,6 @@ status api_changed(call *c, status code, uint64_t generation)
     return code == STATUS_OK ? api_reply_json(c, json_pack("{s:I}", "generation", (json_int_t)generation)) : code;
 }
 
-json_t *api_note(const char *place, const char *text, const char *remedy)
-{
-    return json_pack("{s:o, s:o, s:o}", "place", json_of_text(place), "text", json_of_text(text), "remedy",
-                     json_of_text(remedy));
-}
-
 /* --- bodies --- */
 
 /* Reads value if the JSON has the expected type. */

@@ -41,9 +41,6 @@ status api_refuse(call *c, int code, const char *what, const char *remedy);
 /* Replies {"generation": N} after a change. */
 status api_changed(call *c, status code, uint64_t generation);
 
-/* One note on the scene as JSON; NULL when out of memory. */
-json_t *api_note(const char *place, const char *text, const char *remedy);
-
 /* The reply to GET /api/scene: the objects and one row per parameter. opened: the scene that `initial` is read from.
  * NULL when out of memory. */
 json_t *scene_json(const scene *s, const scene *opened, uint64_t generation);

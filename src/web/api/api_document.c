@@ -5,6 +5,7 @@
 #include "base/number.h"
 #include "base/text_writer.h"
 #include "report/json.h"
+#include "report/report.h"
 #include "scene/model/inert/inert.h"
 #include "scene/model/params.h"
 #include "scene/file/write.h"
@@ -99,7 +100,7 @@ static status note_inert(set_request *x, const scene *s, diagnostic *why)
         if (!inert_ask(s, path, NULL, &answer) || strcmp(answer.rule, "time-0") == 0)
             continue;
         x->notes = x->notes ? x->notes : json_array();
-        json_add(&x->notes, api_note(answer.note.place, answer.note.text, answer.note.remedy));
+        json_add(&x->notes, report_note(answer.note.place, answer.note.text, answer.note.remedy));
         if (!x->notes)
             return out_of_memory(why);
     }

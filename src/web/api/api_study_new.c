@@ -1,6 +1,7 @@
 /* API: a new study of the current scene, from axes and repetitions: its text, its estimated time, its file. */
 #include "base/json_build.h"
 #include "web/api/api.h"
+#include "report/report.h"
 
 #include "base/file.h"
 #include "base/text_writer.h"
@@ -134,7 +135,7 @@ static json_t *notes_json(const study *s)
 {
     json_t *notes = json_array();
     for (size_t i = 0; i < s->note_count; i++)
-        json_add(&notes, api_note(s->notes[i].note.place, s->notes[i].note.text, s->notes[i].note.remedy));
+        json_add(&notes, report_note(s->notes[i].note.place, s->notes[i].note.text, s->notes[i].note.remedy));
     return notes;
 }
 

@@ -6,6 +6,7 @@
 #include "base/number.h"
 #include "base/text_writer.h"
 #include "lint/lint.h"
+#include "report/report.h"
 #include "report/trace_writers.h"
 #include "scene/model/hints.h"
 #include <limits.h>
@@ -97,7 +98,7 @@ status api_trace_drawing(call *c)
 
 static void take_note(void *list, const scene_note *note)
 {
-    json_add(list, api_note(note->place, note->text, note->remedy));
+    json_add(list, report_note(note->place, note->text, note->remedy));
 }
 
 static status collect_notes(void *context, scene *s, diagnostic *why)
