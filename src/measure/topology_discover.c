@@ -81,7 +81,18 @@ static bool write_tree(hwloc_topology_t tree, FILE *out)
     if (model)
         fprintf(out, "model %s\n", model);
     fprintf(out, "xml\n%s", xml);
+    hwloc_free_xmlbuffer(tree, xml);
     return fflush(out) == 0 && !ferror(out);
+}
+
+static status describe(hwloc_topology_t tree, const char *synthetic, FILE *out)
+{
+    if (synthetic && hwloc_topology_set_synthetic(tree, synthetic) != 0)
+        return errno == ENOMEM ? STATUS_FAILURE : STATUS_BAD_INPUT;
+    if (hwloc_topology_load(tree) != 0 || (!synthetic && !respect_binding(tree)))
+        return STATUS_FAILURE;
+    forget_owner(tree);
+    return write_tree(tree, out) ? STATUS_OK : STATUS_FAILURE;
 }
 
 int topology_discover(const char *synthetic, FILE *out)
@@ -89,12 +100,9 @@ int topology_discover(const char *synthetic, FILE *out)
     hwloc_topology_t tree;
     if (hwloc_topology_init(&tree) != 0)
         return STATUS_FAILURE;
-    if (synthetic && hwloc_topology_set_synthetic(tree, synthetic) != 0)
-        return errno == ENOMEM ? STATUS_FAILURE : STATUS_BAD_INPUT;
-    if (hwloc_topology_load(tree) != 0 || (!synthetic && !respect_binding(tree)))
-        return STATUS_FAILURE;
-    forget_owner(tree);
-    return write_tree(tree, out) ? STATUS_OK : STATUS_FAILURE;
+    const status code = describe(tree, synthetic, out);
+    hwloc_topology_destroy(tree);
+    return code;
 }
 
 /* A crash leaves no message and no file, and an endless loop ends. */
