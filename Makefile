@@ -89,7 +89,7 @@ isas_flags = $(foreach i,$(isas),$(isa_flags_$(i)))
 
 sources := $(wildcard src/*.c src/*/*.c src/*/*/*.c src/*/*/*/*.c)
 kernels := $(filter %_kernel.c,$(sources))
-library := $(filter-out src/cli/% src/import/% src/web/% src/mpi/% src/wasm/% $(kernels),$(sources))
+library := $(filter-out src/cli/% src/import/% src/web/% src/mpi/% src/wasm/% src/manual/% $(kernels),$(sources))
 program := $(wildcard src/cli/*.c)
 mpi := $(filter src/mpi/%,$(sources))
 web := $(filter src/web/%,$(sources))
@@ -108,7 +108,7 @@ benches := $(patsubst tests/%.c,$(build)/tests/%,$(wildcard tests/bench_*.c))
 fuzzers := $(patsubst tests/fuzz/%.c,$(build)/tests/fuzz_%,$(wildcard tests/fuzz/*.c))
 
 .PHONY: all
-all: $(build)/cuvette $(build)/cuvette-import $(build)/$(soname) ## build build/cuvette and the library (the default)
+all: $(build)/cuvette $(build)/cuvette-import $(build)/$(soname) $(build)/man/made ## build build/cuvette, the library and the manual (the default)
 
 # A half-written file would look newer than its sources.
 .DELETE_ON_ERROR:
@@ -361,7 +361,7 @@ $(build)/peers/embree: experiments/peers/embree.c $(build)/libcuvette.a $(build)
 	$(quiet)$(CC) $(all_cflags) -march=native -MMD -MP -o $@ $< $(build)/libcuvette.a $(LDFLAGS) $(embree_libs) $(all_libs)
 
 -include $(build)/peers/embree.d
--include $(library_objects:.o=.d) $(program_objects:.o=.d) $(web_objects:.o=.d) $(mpi_objects:.o=.d) $(importer_objects:.o=.d) $(test_programs:=.d) $(fuzzers:=.d) $(replayed:.o=.d) $(fuzzed_objects:.o=.d) $(benches:=.d) $(build)/tests/power/reader.d
+-include $(library_objects:.o=.d) $(program_objects:.o=.d) $(web_objects:.o=.d) $(mpi_objects:.o=.d) $(importer_objects:.o=.d) $(test_programs:=.d) $(fuzzers:=.d) $(replayed:.o=.d) $(fuzzed_objects:.o=.d) $(benches:=.d) $(build)/tests/power/reader.d $(build)/account_keys.d
 
 .PHONY: setup
 setup: ## install the required packages (Debian 12); does nothing if they are installed
@@ -383,19 +383,32 @@ include src/wasm/wasm.mk
 
 # --- documentation ---
 
+# The manual in build/man: the pages of src/manual, three of them completed between their comments "begin PART" and "end PART" from the
+# table of parameters, the list of quantities (src/job/quantities.c) and results/README.md.
+complete = set -o pipefail; $(2) | sed -i '/^\.\\" begin $(1)/r /dev/stdin' $(build)/man/man5/$(3)
+$(build)/man/made: $(wildcard src/manual/man?/*) src/manual/results.awk results/README.md $(build)/cuvette $(build)/account_keys
+	@rm -rf $(@D) && mkdir -p $(@D) && cp -r src/manual/man? $(@D)
+	@$(call complete,parameters,$(build)/cuvette params --man,cuvette-scene.5)
+	@$(call complete,account,$(build)/account_keys,cuvette-account.5)
+	@$(call complete,results,awk -f src/manual/results.awk results/README.md,cuvette-results.5)
+	@touch $@
+$(build)/account_keys: src/manual/account_keys.c $(build)/libcuvette.a $(build)/flags
+	$(call say,$(CC) $<)
+	$(quiet)$(CC) $(all_cflags) $(pkg_cflags) -MMD -MP -o $@ $< $(build)/libcuvette.a $(LDFLAGS) $(all_libs)
+
 # The manual, the API, the lessons and the gallery as HTML in build/doc, to read offline.
 .PHONY: doc doc-tools setup-doc test-doc
 setup-doc: | $(filter setup setup-peers,$(MAKECMDGOALS)) ## install the programs that make doc needs: mandoc, cmark-gfm, python3
 	@.ci/setup-doc
-doc: $(build)/cuvette doc-tools ## write the documentation as HTML: build/doc/index.html
+doc: $(build)/cuvette $(build)/man/made doc-tools ## write the documentation as HTML: build/doc/index.html
 	@rm -rf $(build)/doc
-	@python3 -B src/manual/site/build.py $(build)/cuvette $(build)/doc
+	@python3 -B src/manual/site/build.py $(build)/cuvette $(build)/man $(build)/doc
 	@echo 'documentation: $(build)/doc/index.html'
 doc-tools: | $(filter setup-doc setup-site,$(MAKECMDGOALS))
 	@for tool in python3 mandoc cmark-gfm; do command -v $$tool >/dev/null || \
 	  { echo "doc: $$tool is not installed; run: make setup-doc" >&2; exit 1; }; done
-test-doc: $(build)/cuvette | doc-tools ## check the documentation: complete, every link resolves; part of make test
-	@CUVETTE='$(abspath $(build)/cuvette)' tests/run tests/doc.sh
+test-doc: $(build)/cuvette $(build)/man/made | doc-tools ## check the documentation: complete, every link resolves; part of make test
+	@BUILD='$(build)' CUVETTE='$(abspath $(build)/cuvette)' tests/run tests/doc.sh
 
 include src/web/site/site.mk
 
@@ -426,22 +439,16 @@ ACTS_SLICE ?= 34/96
 
 .PHONY: test
 # Programs that test scripts run.
-tested = $(build)/cuvette $(build)/$(soname) $(build)/engine/libcuvette.a $(build)/tests/bench_mesh $(build)/tests/recheck peers $(power_tools) \
+tested = $(build)/cuvette $(build)/man/made $(build)/$(soname) $(build)/engine/libcuvette.a $(build)/tests/bench_mesh $(build)/tests/recheck peers $(power_tools) \
   $(if $(filter release,$(config)),$(fault_tools))
 test: $(selected_programs) $(build)/cuvette-import $(if $(selected_scripts),$(tested)) ## build and run every test; only=NAME for tests/test_NAME.c and tests/NAME.sh alone
 	@LAWS_SCENES='$(test_scenes)' ACTS_SLICE='$(ACTS_SLICE)' CC='$(CC)' BUILD='$(build)' CONFIG='$(config)' CUVETTE='$(abspath $(build)/cuvette)' CUVETTE_IMPORT='$(abspath $(build)/cuvette-import)' $(kernel_environment) \
 	  tests/run $(selected_scripts) $(selected_programs)
 
-# Documents generated from the list of quantities (src/job/quantities.c), the table of parameters and results/README.md;
-# tests compare them. A generated part of a page is between its comments "begin NAME" and "end NAME".
-renew = sed -i -e '/^\.\\" begin $(1)/,/^\.\\" end $(1)/{//!d}' -e '/^\.\\" begin $(1)/r $(build)/$(1).roff' $(2)
+# The tables of results/README.md, which people read where nothing is built, equal the list of quantities.
 .PHONY: dictionary
-dictionary: $(build)/tests/test_quantities $(build)/cuvette ## renew the tables of results/README.md and the generated parts of the manual
-	@$(build)/cuvette params --man >$(build)/parameters.roff
-	@$(call renew,parameters,src/manual/man5/cuvette-scene.5)
+dictionary: $(build)/tests/test_quantities ## renew the tables of results/README.md from the list of quantities
 	@CUVETTE_RENEW=1 $< >/dev/null 2>&1 && $<
-	@awk -f src/manual/results.awk results/README.md >$(build)/results.roff
-	@$(call renew,results,src/manual/man5/cuvette-results.5)
 
 # The page in a real browser: only=NAME for tests/web/NAME.test.mjs alone, screenshots=FOLDER for images of every view, ENGINE=browser for the
 # laboratory of `make wasm` in the page instead of the program. Runs after everything that installs or measures.
@@ -677,14 +684,14 @@ define files
   echo 'link libcuvette.so.$(version) $(LIBDIR)/$(soname)'; \
   echo 'link $(soname) $(LIBDIR)/libcuvette.so'; \
   echo '644 $(build)/cuvette.pc $(LIBDIR)/pkgconfig/cuvette.pc'; \
-  for page in $(pages); do echo "644 src/manual/$$page $(share)/man/$$page"; done; \
+  for page in $(pages); do echo "644 $(build)/man/$$page $(share)/man/$$page"; done; \
   echo '644 src/cli/cuvette.bash $(share)/bash-completion/completions/cuvette'; \
   for text in LICENSE README.md CHANGELOG.md src/licences.md; do echo "644 $$text $(share)/doc/cuvette/$${text##*/}"; done; \
   $(if $(wildcard $(build)/live.html)$(filter site,$(MAKECMDGOALS)),echo '644 $(build)/live.html $(share)/cuvette/live.html';) \
   find experiments plots -type f ! -path '*/__pycache__/*' | while read -r file; do \
     test -x "$$file" && mode=755 || mode=644; echo "$$mode $$file $(share)/cuvette/$$file"; done
 endef
-install: $(build)/cuvette $(build)/cuvette-import $(build)/$(soname) $(build)/engine/libcuvette.a | $(filter mpi site,$(MAKECMDGOALS)) ## install under PREFIX (/usr/local), below DESTDIR; with cuvette-mpi where make mpi has built it, and live.html of make site
+install: $(build)/cuvette $(build)/man/made $(build)/cuvette-import $(build)/$(soname) $(build)/engine/libcuvette.a | $(filter mpi site,$(MAKECMDGOALS)) ## install under PREFIX (/usr/local), below DESTDIR; with cuvette-mpi where make mpi has built it, and live.html of make site
 	@sed 's|@PREFIX@|$(PREFIX)|; s|@LIBDIR@|$(LIBDIR)|; s|@VERSION@|$(version)|; s|@LIBRARIES@|$(strip $(all_libs))|' src/cuvette.pc.in >$(build)/cuvette.pc
 	@{ $(files); } | DESTDIR='$(DESTDIR)' .ci/install '$(list)'
 	@.ci/install-notes '$(DESTDIR)' '$(PREFIX)' '$(LIBDIR)'

@@ -6,6 +6,7 @@ set -uo pipefail
 
 root=$(cd "$(dirname "${BASH_SOURCE[0]}")/.." && pwd)
 program=$(realpath "${1:-${CUVETTE:-$root/build/cuvette}}")
+pages=$(realpath "${BUILD:-$root/build}/man")
 for tool in python3 mandoc cmark-gfm; do
     command -v "$tool" >/dev/null || {
         echo "# skipped: $tool is not installed; run: make setup-doc"
@@ -18,7 +19,7 @@ site=$work/site
 
 # shellcheck source=tests/shell/verdict.sh
 source "$root/tests/shell/verdict.sh"
-build() { python3 -B "$root/src/manual/site/build.py" "$program" "$1" 2>&1; }
+build() { python3 -B "$root/src/manual/site/build.py" "$program" "$pages" "$1" 2>&1; }
 check() { python3 -B "$root/tests/doc_check.py" "$1" 2>&1; }
 
 said=$(cd "$work" && TZ=Asia/Tokyo LC_ALL=C build "$site")
@@ -60,7 +61,7 @@ if [[ ${CHECK:-} ]]; then
     # --- with a laboratory: lessons and scenes of the gallery open in it
     with=$work/with
     mkdir "$with.laboratory" && touch "$with.laboratory/index.html"
-    python3 -B "$root/src/manual/site/build.py" "$program" "$with" laboratory/ >/dev/null
+    python3 -B "$root/src/manual/site/build.py" "$program" "$pages" "$with" laboratory/ >/dev/null
     mv "$with.laboratory" "$with/laboratory"
     empty 'with a laboratory, links and anchors resolve' "$(check "$with")"
     empty 'each lesson opens in the laboratory' "$(for lesson in "${lessons[@]}"; do

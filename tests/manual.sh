@@ -5,7 +5,7 @@ set -uo pipefail
 
 root=$(cd "$(dirname "${BASH_SOURCE[0]}")/.." && pwd)
 program=$(realpath "${1:-${CUVETTE:-$root/build/cuvette}}")
-manual=$root/src/manual
+manual=$(realpath "${BUILD:-$root/build}/man")
 work=$(mktemp -d "${TMPDIR:-/tmp}/cuvette-manual.XXXXXX") || exit 1
 trap 'rm -rf "$work"' EXIT
 unset CUVETTE_ISA NO_COLOR
@@ -92,15 +92,11 @@ for page in "$manual"/man?/*; do
     empty "$label has no line over 120 columns" \
         "$(plain <"$page" | awk '/^\.\\" begin/ {made = 1} /^\.\\" end/ {made = 0} !made && length > 120')"
 done
-empty "cuvette-results(5) has the text of results/README.md (to renew: make dictionary)" \
-    "$(diff <(awk -f "$manual/results.awk" "$root/results/README.md") \
-        <(sed '/^\.\\" begin results/,/^\.\\" end results/!d' "$manual/man5/cuvette-results.5" | sed '1d;$d'))"
 
 # --- the examples, in a reader's folder, with small images and short studies
 mkdir -p "$work/bin" "$work/lab"
 ln -s "$program" "$work/bin/cuvette"
 cp -r "$root/experiments" "$work/lab/"
-mkdir -p "$work/lab/src" && cp -r "$manual" "$work/lab/src/"
 export PATH=$work/bin:$PATH
 cd "$work/lab" || exit 1
 cat >experiments/depth.study <<'END'

@@ -6,7 +6,7 @@ set -uo pipefail
 root=$(cd "$(dirname "${BASH_SOURCE[0]}")/.." && pwd)
 program=$(realpath "${1:-${CUVETTE:-$root/build/cuvette}}")
 scene=$root/experiments/scenes/rod.yaml
-manual=$root/src/manual
+manual=$(realpath "${BUILD:-$root/build}/man")
 work=$(mktemp -d "${TMPDIR:-/tmp}/cuvette-cli.XXXXXX") || exit 1
 trap 'rm -rf "$work"' EXIT
 cd "$work" || exit 1
@@ -246,8 +246,6 @@ check "params of a word prints the parameters with the word in their meaning" is
 run params --man
 check "params --man is roff" grep -q '^\.SS ' out
 page=$manual/man5/cuvette-scene.5
-sed '/^\.\\" begin parameters/,/^\.\\" end parameters/!d' "$page" | sed '1d;$d' >page.txt
-check "cuvette-scene(5) has these parameters (to renew: make dictionary)" cmp out page.txt
 missing=0
 while read -r path _; do
     grep -qF -- "$path" "$page" || missing=$((missing + 1))

@@ -1,6 +1,6 @@
 /* Tests of the list of quantities: names, keys and columns are unique, rows and JSON agree for one frame, and the
- * dictionary in results/README.md and the manual's account agree with the list. With CUVETTE_RENEW=1 in the environment
- * these two are rewritten first (make dictionary). */
+ * dictionary in results/README.md agrees with the list. With CUVETTE_RENEW=1 in the environment it is rewritten first
+ * (make dictionary). */
 #include "base/file.h"
 #include "job/job.h"
 #include "scene/model/scene.h"
@@ -9,7 +9,6 @@
 #include "study/compare_rows.h"
 #include "study/rows.h"
 #include "study_fixture.h"
-#include <ctype.h>
 
 /* --- the list --- */
 
@@ -246,45 +245,6 @@ static void the_dictionary_equals_the_list(void **state)
     }
 }
 
-/* Escapes characters that roff would interpret. */
-static void print_roff(FILE *out, const char *text)
-{
-    for (const char *c = text; *c; c++)
-        fprintf(out, *c == '-' ? "\\-" : *c == '\\' ? "\\e" : "%c", *c);
-}
-
-static void print_keys(FILE *out, const quantity *list, size_t count, const char *before)
-{
-    for (size_t i = 0; i < count; i++) {
-        const quantity *q = &list[i];
-        static const char *const merges[] = {"", "median of the frames", "over all frames", "last frame"};
-        const char *merge = before[0] ? "" : merges[q->merge];
-        if (!q->json)
-            continue;
-        fprintf(out, ".TP\n.BR %s%s", before, q->json);
-        if (q->unit[0] || merge[0])
-            fprintf(out, " \" (%s%s%s)\"", q->unit, q->unit[0] && merge[0] ? "; " : "", merge);
-        fprintf(out, "\n%c", toupper((unsigned char)q->meaning[0]));
-        print_roff(out, q->meaning + 1);
-        fputs(".\n", out);
-    }
-}
-
-static void the_manual_equals_the_list(void **state)
-{
-    (void)state;
-    char *text = NULL;
-    size_t size;
-    FILE *out = open_memstream(&text, &size);
-    print_keys(out, frame_quantities, frame_quantity_count, "");
-    fputs(".PP\nAnd in each object of the list\n.BR threads ,\none a worker, of the last frame:\n", out);
-    print_keys(out, worker_quantities, worker_quantity_count, "threads[].");
-    fclose(out);
-    expect_part("src/manual/man5/cuvette-account.5", ".SH KEYS", ".\\\" begin account\n", ".\\\" end account\n", text,
-                size);
-    free(text);
-}
-
 int main(void)
 {
     const struct CMUnitTest tests[] = {
@@ -293,7 +253,6 @@ int main(void)
         cmocka_unit_test_setup_teardown(rows_and_json_agree, fixture_setup, fixture_teardown),
         cmocka_unit_test(values_of_several_frames_are_merged),
         cmocka_unit_test(the_dictionary_equals_the_list),
-        cmocka_unit_test(the_manual_equals_the_list),
     };
     return cmocka_run_group_tests_name("quantities", tests, NULL, NULL);
 }

@@ -1,5 +1,5 @@
 # The part of cuvette-results(5) that results/README.md holds, as roff: awk -f src/manual/results.awk results/README.md
-# (make dictionary). A row of a table becomes a tagged paragraph, a section a .SS.
+# (the build does). A row of a table becomes a tagged paragraph, a section a .SS.
 
 function escaped(text, hyphens) {
     gsub(/\\/, "\\e", text)

@@ -1,6 +1,6 @@
-"""The documentation as HTML: python3 -B src/manual/site/build.py CUVETTE FOLDER [LABORATORY] (make doc, make site).
+"""The documentation as HTML: build.py CUVETTE MANUAL FOLDER [LABORATORY] (make doc, make site).
 
-LABORATORY is the address of a laboratory that runs in the browser, relative to FOLDER: pages link to it.
+MANUAL is the folder of the complete manual pages, build/man. LABORATORY is the address of a laboratory that runs in the browser, relative to FOLDER: pages link to it.
 
 Every page comes from a source that is also read elsewhere: manual pages, Markdown, the public header, lessons. FOLDER
 must not exist or be empty. The same sources and program give the same bytes."""
@@ -48,11 +48,11 @@ LABELS = {
 }
 
 
-def convert(source, program):
+def convert(source, program, pages):
     """The page of one source, by its kind."""
     path = ROOT / source
     if re.fullmatch(r'src/manual/man\d/.*', source):
-        return manual.page(path)
+        return manual.page(pages / path.relative_to(ROOT / 'src/manual'))
     if source.endswith('.h'):
         return header.page(path, sorted((ROOT / 'experiments/engine').glob('*.c')), ROOT)
     if source.endswith('.lesson'):
@@ -76,7 +76,7 @@ def by_name(path):
     return path.parent, path.stem
 
 
-def collect(program):
+def collect(program, pages):
     """All pages of all groups, in the order of the navigation."""
     taken = set()
     found = {}
@@ -87,15 +87,15 @@ def collect(program):
         taken.update(sources)
     for group in GROUPS:
         for source in found[group.title]:
-            page = convert(source, program)
+            page = convert(source, program, pages)
             page.source, page.group = source, group
             group.pages.append(page)
     return [page for group in GROUPS for page in group.pages]
 
 
-def build(program, folder, address):
+def build(program, manual_pages, folder, address):
     laboratory = Laboratory(ROOT, program, address)
-    pages = collect(program)
+    pages = collect(program, manual_pages)
     links = Links(ROOT, folder, pages)
     readme = next(page for page in pages if page.source == 'README.md')
     first = Page('index', 'Cuvette', 'Cuvette', frame.index(readme.body, GROUPS))
@@ -111,13 +111,13 @@ def build(program, folder, address):
 
 
 def main():
-    if len(sys.argv) not in (3, 4):
-        raise Trouble('usage: build.py CUVETTE FOLDER [LABORATORY]')
-    program, folder = Path(sys.argv[1]).resolve(), Path(sys.argv[2]).resolve()
+    if len(sys.argv) not in (4, 5):
+        raise Trouble('usage: build.py CUVETTE MANUAL FOLDER [LABORATORY]')
+    program, pages, folder = (Path(argument).resolve() for argument in sys.argv[1:4])
     if folder.exists() and os.listdir(folder):
-        raise Trouble(f'{sys.argv[2]} is not empty; give a new folder')
+        raise Trouble(f'{sys.argv[3]} is not empty; give a new folder')
     folder.mkdir(parents=True, exist_ok=True)
-    build(program, folder, sys.argv[3] if len(sys.argv) == 4 else None)
+    build(program, pages, folder, sys.argv[4] if len(sys.argv) == 5 else None)
 
 
 if __name__ == '__main__':
