@@ -91,8 +91,8 @@ breakage index.html 's|href="cuvette-lab.1.html"|href="lost.html"|' 'the link lo
 breakage engine-api.html 's|href="#errors"|href="#lost"|' 'the anchor #lost does not exist'
 breakage first-steps.html 's|src="images/[^"]*rod.png"|src="/usr/x.png"|' '/usr/x.png is not in this folder'
 breakage lessons.html 's|href="style.css"|href="https://x.org/x.css"|' 'https://x.org/x.css is not in this folder'
-breakage changelog.html 's|<h1>|<h1><img src="images/src-web-views-small-dark.jpg" alt="">|' \
-    'the image images/src-web-views-small-dark.jpg has no alternative text'
+breakage changelog.html 's|<h1>|<h1><img src="images/src-web-views-gallery.jpg" alt="">|' \
+    'the image images/src-web-views-gallery.jpg has no alternative text'
 breakage cuvette.1.html '0,/<\/b>/s|</b>||' '</nav> closes <b>'
 breakage LICENSE.html 's|href="LICENSE.html"||' 'no page links to it'
 sed -i 's|href="LICENSE.html"|href="first-steps.html"|' "$broken"/*.html

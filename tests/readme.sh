@@ -139,8 +139,6 @@ exceptions=(
     'cp -r /usr/share/cuvette/*|skip|only an installed package has that folder'
     'make setup|skip|it installs packages'
     'make setup experiments|plan|CI runs it'
-    'make experiments QUICK=1|plan|CI runs it'
-    'make experiments-full|plan|it takes an hour'
     'make setup test|plan|this is a part of it'
     'make setup setup-wasm setup-site site|site|it takes minutes, and needs emscripten'
     'python3 -m http.server *|site|it serves the site'

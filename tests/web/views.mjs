@@ -1,10 +1,10 @@
-// tests/web/views.mjs --program CUVETTE --modules FOLDER --out FOLDER [--only VIEW] [--png]: screenshots of every view
-// of the laboratory, light and dark, for the README. Not a test; run it from the project's root,
-// whose scenes and studies it shows. The study on depth is measured first, half a minute on a quiet machine.
+// tests/web/views.mjs --program CUVETTE --modules FOLDER --out FOLDER [--only VIEW]: screenshots of the laboratory for
+// the documents (src/web/views). Not a test; run it from the project's root, whose scenes and studies it shows. The
+// study on depth is measured first, half a minute on a quiet machine.
 import { execFileSync } from 'node:child_process';
 import { mkdir } from 'node:fs/promises';
 import { createRequire } from 'node:module';
-import { join } from 'node:path';
+import { join, resolve } from 'node:path';
 import { parseArgs } from 'node:util';
 import { Lab } from './lab.mjs';
 import { Screen } from './screen.mjs';
@@ -15,10 +15,9 @@ const { values: options } = parseArgs({
     modules: { type: 'string' },
     out: { type: 'string' },
     only: { type: 'string' },
-    png: { type: 'boolean' },
   },
 });
-const { chromium } = createRequire(join(options.modules, 'package.json'))('playwright-core');
+const { chromium } = createRequire(resolve(options.modules, 'package.json'))('playwright-core');
 const size = { width: 1366, height: 768 };
 
 const results = 'build/views'; /* a run that is complete is not measured again */
@@ -88,22 +87,6 @@ const views = {
     scene: 'experiments/scenes/rod.yaml',
     show: (screen) => predict(screen, /^A glass of water is a lens/, '2.5'),
   },
-  parameters: {
-    scene: 'experiments/scenes/rod.yaml',
-    async show(screen) {
-      await screen.showPanel('Parameters');
-      await screen.setNumber('liquid.ior', 1.47);
-    },
-  },
-  objects: {
-    scene: 'experiments/scenes/models.yaml',
-    async show(screen) {
-      await screen.showPanel('Objects');
-      await screen.chooseTool('Object');
-      await screen.clickPixel(400, 330);
-      await screen.quiet();
-    },
-  },
   pixel: {
     scene: 'experiments/scenes/rod.yaml',
     async show(screen) {
@@ -117,39 +100,6 @@ const views = {
     scene: 'experiments/scenes/rod.yaml',
     show: showBench,
   },
-  compare: {
-    scene: 'experiments/scenes/rod.yaml',
-    async show(screen) {
-      await screen.showPanel('Compare');
-      await screen.button('Pin as A').click();
-      await screen.until(() => window.lab.state.pin);
-      const { generation } = await screen.lab.post('/api/set', {
-        set: { 'liquid.ior': 1.5, 'liquid.absorb_per_m': [0.9, 0.25, 0.05] },
-      });
-      await screen.settled(generation);
-      await screen.page.getByText(/ dB$/).first().waitFor();
-      await screen.quiet();
-    },
-  },
-  slime: {
-    scene: 'experiments/scenes/slime.yaml',
-    async show(screen) {
-      await screen.lab.post('/api/set', { set: { 'toy.script': '', 'toy.time_s': 0 } });
-      await screen.showPanel('Slime');
-      await screen.button('Play').click();
-      await screen.until(() => window.lab.slime?.playing && window.lab.slime.time_s > 0.6);
-      await screen.chooseTool('Grab');
-      const [from, to] = [await screen.place(400, 330), await screen.place(290, 200)];
-      await screen.page.mouse.move(from.x, from.y);
-      await screen.page.mouse.down();
-      await screen.until(() => window.lab.slime.held > 0);
-      await screen.page.mouse.move(to.x, to.y, { steps: 10 });
-      await screen.until(() => window.lab.slime.resting || window.lab.slime.speed < 0.2);
-      await screen.button('Pause').focus();
-      await screen.page.keyboard.press('Enter');
-      await screen.until(() => !window.lab.slime.playing && window.lab.picture.final);
-    },
-  },
   studies: {
     scene: 'experiments/scenes/rod.yaml',
     async show(screen) {
@@ -158,42 +108,6 @@ const views = {
         .getByRole('button', { name: /^depth\b/ })
         .first()
         .click();
-      await screen.quiet();
-    },
-  },
-  'study-form': {
-    scene: 'experiments/scenes/rod.yaml',
-    async show(screen) {
-      await screen.showPanel('Studies');
-      await screen.button('New study').click();
-      const form = screen.page.getByRole('dialog', { name: 'New study' });
-      const axis = (number) => form.getByRole('group', { name: `Axis ${number}` });
-      await axis(1).getByRole('combobox').fill('render.depth');
-      await axis(1).getByRole('option').first().click();
-      await axis(1).getByLabel('Values').fill('1, 2, 4');
-      await form.getByRole('button', { name: 'Add an axis' }).click();
-      await axis(2).getByRole('combobox').fill('liquid.ior');
-      await axis(2).getByRole('option').first().click();
-      await axis(2).getByText('Range', { exact: true }).click();
-      await axis(2).getByLabel('From').fill('1,1');
-      await axis(2).getByLabel('To').fill('1,7');
-      await form.getByRole('button', { name: 'Estimate' }).click();
-      await form.locator('.study-estimate .facts').waitFor();
-    },
-  },
-  cost: {
-    scene: 'experiments/scenes/rod.yaml',
-    async show(screen) {
-      await screen.showPanel('Compare');
-      await screen.page.getByText('Rays', { exact: true }).click();
-      await screen.page.getByText('rays per pixel', { exact: true }).waitFor();
-      await screen.quiet();
-    },
-  },
-  machine: {
-    scene: 'experiments/scenes/rod.yaml',
-    async show(screen) {
-      await screen.showPanel('Machine');
       await screen.quiet();
     },
   },
@@ -207,18 +121,6 @@ const views = {
       await screen.button('Dismiss').click();
     },
   },
-  small: {
-    scene: 'experiments/scenes/rod.yaml',
-    size: { width: 800, height: 600 },
-    async show(screen) {
-      await screen.showPanel('Pixel');
-      await screen.chooseTool('Inspect');
-      await screen.clickPixel(330, 420);
-      await screen.quiet();
-      await screen.page.getByRole('treegrid', { name: 'Rays of the pixel' }).scrollIntoViewIfNeeded();
-    },
-  },
-  projector: { scene: 'experiments/scenes/rod.yaml', key: 'p', show: showBench },
 };
 
 await mkdir(options.out, { recursive: true });
@@ -230,17 +132,14 @@ const browser = await chromium.launch({
   args: process.getuid() === 0 ? ['--no-sandbox'] : [],
 });
 try {
-  for (const [name, view] of Object.entries(views).filter(([each]) => !options.only || each === options.only))
-    for (const dark of [false, true]) {
-      const lab = await serve(view.scene);
-      const screen = await Screen.open(browser, lab, { ...size, ...view.size, dark });
-      if (view.key) await screen.page.keyboard.press(view.key);
-      await view.show(screen);
-      const path = join(options.out, `${name}-${dark ? 'dark' : 'light'}.${options.png ? 'png' : 'jpg'}`);
-      await screen.page.screenshot(options.png ? { path } : { path, type: 'jpeg', quality: 88 });
-      await screen.close();
-      await lab.stop();
-    }
+  for (const [name, view] of Object.entries(views).filter(([each]) => !options.only || each === options.only)) {
+    const lab = await serve(view.scene);
+    const screen = await Screen.open(browser, lab, { ...size, ...view.size });
+    await view.show(screen);
+    await screen.page.screenshot({ path: join(options.out, `${name}.jpg`), type: 'jpeg', quality: 88 });
+    await screen.close();
+    await lab.stop();
+  }
 } finally {
   await browser.close();
 }

@@ -14,17 +14,8 @@ TAG = re.compile(r'(<a\b.*?</a>|<h[1-6].*?</h[1-6]>|<[^>]*>)', re.S)
 NAMED = re.compile(r'(<b>|<code>)?\b(cuvette(?:-[a-z]+)?)(</b>|</code>)?\(([1-8])\)')
 COMMAND = re.compile(r'<code>man (?:-M \S+ )?(?:\d )?(cuvette(?:-[a-z]+)?)</code>')
 API = re.compile(r'\b(?:cuvette_[a-z0-9_]+|CUVETTE_[A-Z_]+)\b')
-TARGET = re.compile(r'\b(href|src|srcset)="([^"]*)"')
+TARGET = re.compile(r'\b(href|src)="([^"]*)"')
 IMAGE = re.compile(r'<img src="([^"]*)"[^>]*>')
-
-
-def enlargeable(base, body, match):
-    """An image that opens in full; a screenshot is light or dark as the page is, unless the page shows both."""
-    image, source = match[0], match[1]
-    dark = source.replace('-light.', '-dark.')
-    if dark != source and f'"{dark}"' not in body and (base / dark).exists():
-        image = f'<picture><source media="(prefers-color-scheme: dark)" srcset="{dark}">{image}</picture>'
-    return f'<a href="{source}">{image}</a>'
 
 
 class Links:
@@ -42,7 +33,7 @@ class Links:
     def resolve(self, page):
         base = self.root / page.source
         base = base if base.is_dir() else base.parent
-        body = IMAGE.sub(lambda match: enlargeable(base, page.body, match), page.body)
+        body = IMAGE.sub(r'<a href="\1">\g<0></a>', page.body)  # opens in full
         body = TARGET.sub(lambda match: f'{match[1]}="{self.target(base, page, match[2])}"', body)
         parts = LINK.split(body)
         parts[::2] = [COMMAND.sub(self.command, NAMED.sub(self.named, part)) for part in parts[::2]]
