@@ -640,7 +640,7 @@ $(RESULTS)/figures/trace.svg: experiments/scenes/rod.yaml | $(build)/cuvette
 claimed = $(if $(QUICK)$(filter-out file,$(origin RESULTS))$(wildcard $(RESULTS)/*/rows*.csv),$(RESULTS),results/reference)
 claims: $(build)/cuvette ## judge each claim of the paper by the rows: reproduced, not reproduced, underpowered; RESULTS=DIR, ENVIRONMENT=HEX
 	@CUVETTE='$(abspath $(build)/cuvette)' ENVIRONMENT='$(ENVIRONMENT)' experiments/tables.sh '$(claimed)'
-	@paper/claims.sh '$(claimed)' $(build)/claims
+	@paper/claims.py '$(claimed)' $(build)/claims
 
 paper: $(build)/cuvette ## rebuild the paper and its supplement from existing rows, without measuring
 	$(MAKE) -C paper CUVETTE='$(abspath $(build)/cuvette)' $(if $(QUICK),RESULTS='$(RESULTS)')

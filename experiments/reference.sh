@@ -27,7 +27,10 @@ if [[ ${1-} == --quick ]]; then
         mkdir -p "$to/quick/$name"
         cp "$from/$name/rows.csv" "$to/quick/$name/"
         # Without the description of the machine, which is most of it.
-        sed 's/^\( *"hwloc_xml": \)".*",$/\1"",/' "$from/$name/runs.json" >"$to/quick/$name/runs.json"
+        python3 -c 'import json, sys
+runs = json.load(sys.stdin)
+runs["machine"]["hwloc_xml"] = ""
+json.dump(runs, sys.stdout, indent=2, ensure_ascii=False)' <"$from/$name/runs.json" >"$to/quick/$name/runs.json"
     done
     printf '%s: %s\n' "$to/quick" "$(du -sh "$to/quick" | cut -f1)"
     exit
@@ -45,9 +48,11 @@ for rows in "$from"/*/rows.csv; do
         [[ ! -e $from/$name/$file ]] || cp "$from/$name/$file" "$to/$name/"
     done
 done
-for table in "$from"/tables/*-{metrics,curves,motion}.tsv; do
+for table in "$from"/tables/*-{metrics,curve-errors,motion}.tsv; do
     [[ ! -e $table ]] || cp "$table" "$to/tables/"
 done
+# Of the curves those of the pair of indices that plots/realism.gp draws.
+awk -F '\t' 'NR == 1 || ($3 == 1.5 && $4 == 1.33)' "$from/tables/realism-curves.tsv" >"$to/tables/realism-curves.tsv"
 # Of studies that only measure the edges of the rod, these metrics.
 for name in ior-images visible-grid; do
     awk 'NR == 1 || $5 ~ /^edges[.]/' FS='\t' "$from/tables/$name-metrics.tsv" >"$to/tables/$name-metrics.tsv"
@@ -66,6 +71,5 @@ for script in plots/*.gp; do
         cp "$from/figures/$name.png" "$to/figures/"
     fi
 done
-plots/draw.sh --results "$from" --out "$to/figures" --format pdf ior-grid
 cp "$from"/figures/{fan,trace}.svg "$to/figures/"
 printf '%s: %s files, %s\n' "$to" "$(find "$to" -type f | wc -l)" "$(du -sh "$to" | cut -f1)"

@@ -1,6 +1,6 @@
 #!/bin/sh
 # Write the tables that figures, claims and the paper read, RESULTS/tables: the summary of each study with rows, in one
-# environment; the tables of its single cells, concatenated; the published series; and those of paper/determinism.sh.
+# environment; the tables of its single cells, concatenated; the published series; and those of experiments/tables.py.
 # All are made anew; one that did not change stays as it is.
 #   experiments/tables.sh RESULTS [STUDY...]      with STUDY, only the tables of these studies
 # CUVETTE: the program (default: build/cuvette). ENVIRONMENT: the one to show, 8 hex digits, instead of the one with
@@ -76,10 +76,14 @@ else
             { for (i = 1; i <= columns; i++) printf "%s%s", $i, i < columns ? OFS : ORS }' >"$work/$table"
         replace "$table"
     done
-    # Installed without the paper's scripts, there are none of these.
-    if [ -x "$here/../paper/determinism.sh" ]; then
-        "$here/../paper/determinism.sh" "$results" "$work"
-        for table in determinism determinism-bits films machines; do replace "$table.tsv"; done
+    if command -v python3 >/dev/null; then
+        CUVETTE=$program python3 -B "$here/tables.py" "$results" "$work" || failed="$failed tables.py"
+        for table in determinism determinism-bits films machines query-tests query-exponents query-times laws; do
+            replace "$table.tsv"
+        done
+        for table in "$work"/*-curve-errors.tsv; do [ ! -e "$table" ] || replace "${table##*/}"; done
+    else
+        echo 'tables: without python3 the tables of experiments/tables.py are left out' >&2
     fi
 fi
 [ -z "$failed" ] || {

@@ -1,9 +1,19 @@
-# Time by the area that a model covers, with fitted lines (areas.gp), and the published times with their line.
+# Time by the area that a model covers, with fitted lines (tables/laws.tsv), and the published times with their line.
 # needs: tables/coverage.tsv first_hits.model cpu_s_median
+# needs: tables/laws.tsv study=coverage a b deviation
 width = 1000; height = 470
 load "plots/style.gp"
 
-load "plots/areas.gp"
+# For the octant tree, the box tree and the published series, with the line fitted to each.
+areas(i) = i < 3 ? select(table("coverage"), "render.accel=".word("octant bvh", i), "first_hits.model cpu_s_median cpu_s_min cpu_s_max") : \
+    select("experiments/published/coverage.csv", "", "pixels time_s")
+line(pixels, a, b) = a + b*pixels/1e5
+array line_a[3]; array line_b[3]; array line_off[3]
+do for [i=1:3] {
+    of = "study=coverage series=".word("octant bvh published", i)
+    line_a[i] = first(table("laws"), of, "a"); line_b[i] = first(table("laws"), of, "b")
+    line_off[i] = first(table("laws"), of, "deviation")
+}
 names = "'octant tree of spheres' 'BVH of boxes'"
 set label 100 remarks("coverage") at screen 0.5,0.015 center font ",8" textcolor rgb grey
 set multiplot layout 1,2 margins 0.075,0.985,0.13,0.92 spacing 0.1

@@ -1,19 +1,13 @@
 # Tests of a ray against the number of triangles: the counts, the local exponent between successive counts, and the time
 # of a test against the memory of the hierarchy. One column of the paper.
-# needs: tables/queries.tsv soup.generate soup.count render.accel render.shadows triangles film_hash
-# needs: tables/queries.tsv query_rays_median query_boxes_median query_triangles_median
-# needs: tables/triangles.tsv model.visible=on soup.count render.accel film_hash accel_bytes
-# needs: tables/triangles.tsv visibility_s_sum_median visibility_s_sum_min visibility_s_sum_max
+# needs: tables/query-tests.tsv scene hierarchy triangles tests
+# needs: tables/query-exponents.tsv scene hierarchy triangles exponent
+# needs: tables/query-times.tsv hierarchy accel_bytes ns_median ns_min ns_max l2_bytes? l3_bytes?
 width = 318; height = 520
 load "plots/style.gp"
 
-tables = "'".table("queries")."' '".table("triangles")."'"
-part(what, keep) = "< awk -v show=".what." -f paper/queries.awk ".tables." | awk -F '\t' '".keep."'"
-of(scene, tree) = "$1 == \"".scene."\" && $2 == \"".tree."\""
-named(tree) = "$1 == \"".tree."\""
-# Bytes of a level of the cache on the machine that measured the times: "32 KiB" or "1024 MiB".
-cache(level) = number(system("sed -n 's/.*\"topology\": *\"[^\"]*".level." \\([0-9.]*\\) \\([KM]\\)iB.*/\\1 \\2/p' '".results. \
-    "/triangles/runs.json' | head -n 1 | awk '{ print $1*($2 == \"K\" ? 1024 : 1048576) }'"))
+of(scene, tree) = "scene=".scene." hierarchy=".tree
+tests(scene, tree) = select(table("query-tests"), of(scene, tree), "triangles tests")
 set border 3
 set lmargin at screen 0.135; set rmargin at screen 0.985
 set xtics font ",7"; set ytics font ",7"
@@ -30,7 +24,7 @@ set ylabel "tests a camera ray"
 set yrange [20:1500]
 set ytics (10, 20, 50, 100, 200, 500, 1000, 2000)
 set xtics (1e3, 1e4, 1e5, 1e6)
-last(scene, tree) = number(system(part("series", of(scene, tree)." { y = $4 } END { print y }")[3:*]))
+last(scene, tree) = number(system(tests(scene, tree)[3:*]." | tail -n 1 | cut -f 2"))
 do for [i=1:4] {
     y = last(word("sparse sparse sphere sphere", i), word("octant bvh octant bvh", i))
     if (y == y) {
@@ -38,8 +32,8 @@ do for [i=1:4] {
             font ",6.8" textcolor rgb (i % 2 ? vermillion : blue)
     }
 }
-plot for [i=1:4] part("series", of(word("sparse sparse sphere sphere", i), word("octant bvh octant bvh", i))) \
-         using 3:4 with linespoints pt (i < 3 ? (i % 2 ? 5 : 7) : (i % 2 ? 4 : 6)) ps 0.55 lw 0.8 lc rgb (i % 2 ? vermillion : blue)
+plot for [i=1:4] tests(word("sparse sparse sphere sphere", i), word("octant bvh octant bvh", i)) \
+         using 1:2 with linespoints pt (i < 3 ? (i % 2 ? 5 : 7) : (i % 2 ? 4 : 6)) ps 0.55 lw 0.8 lc rgb (i % 2 ? vermillion : blue)
 unset label; unset arrow
 
 set tmargin at screen 0.575; set bmargin at screen 0.375
@@ -52,8 +46,8 @@ set ylabel "local exponent"
 set xlabel "triangles n"
 set arrow 1 from 800,1.0/3 to 4.5e6,1.0/3 nohead lc rgb ink lw 0.8 dt (2,3)
 set label 1 "1/3" at 4.8e6,1.0/3 left font ",6.8"
-plot for [i=1:4] part("exponents", of(word("sparse sparse sphere sphere", i), word("octant bvh octant bvh", i))) \
-         using 3:4 with linespoints pt (i < 3 ? (i % 2 ? 5 : 7) : (i % 2 ? 4 : 6)) ps 0.5 lw 0.8 \
+plot for [i=1:4] select(table("query-exponents"), \
+         of(word("sparse sparse sphere sphere", i), word("octant bvh octant bvh", i)), "triangles exponent") using 1:2 with linespoints pt (i < 3 ? (i % 2 ? 5 : 7) : (i % 2 ? 4 : 6)) ps 0.5 lw 0.8 \
          lc rgb (i % 2 ? vermillion : blue)
 unset label; unset arrow
 
@@ -67,7 +61,8 @@ set ylabel "ns a test"
 set yrange [*:*]
 set ytics auto
 set ytics (0.5, 1, 2, 5, 10, 20, 50)
-l2 = cache("L2"); l3 = cache("L3")
+# Of the machine that measured the times.
+l2 = first(table("query-times"), "", "l2_bytes"); l3 = first(table("query-times"), "", "l3_bytes")
 if (l2 == l2) {
     set arrow 1 from l2,graph 0 to l2,graph 1 nohead lc rgb grey lw 0.8 dt (2,3)
     set label 1 " L2" at l2,graph 0.96 left font ",6.8" textcolor rgb grey
@@ -76,10 +71,6 @@ if (l3 == l3) {
     set arrow 2 from l3,graph 0 to l3,graph 1 nohead lc rgb grey lw 0.8 dt (2,3)
     set label 2 " L3" at l3,graph 0.96 left font ",6.8" textcolor rgb grey
 }
-if (has_rows(part("cache", "1"))) {
-    plot for [i=1:2] part("cache", named(word("octant bvh", i))) using 2:3:4:5 with yerrorlines pt (i % 2 ? 5 : 7) ps 0.5 \
-        lw 0.8 lc rgb (i % 2 ? vermillion : blue)
-} else {
-    @empty
-}
+plot for [i=1:2] select(table("query-times"), "hierarchy=".word("octant bvh", i), "accel_bytes ns_median ns_min ns_max") \
+    using 1:2:3:4 with yerrorlines pt (i % 2 ? 5 : 7) ps 0.5 lw 0.8 lc rgb (i % 2 ? vermillion : blue)
 unset multiplot

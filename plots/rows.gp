@@ -1,7 +1,6 @@
 # Access of figures and paper to the measured rows. Input: results, a folder as described in results/README.md.
 set datafile missing "NA"
 set datafile separator tab
-set fit quiet nolog errorvariables
 
 table(study) = results."/tables/".study.".tsv"
 image(study, cell) = sprintf("%s/%s/images/%04d.png", results, study, int(cell))

@@ -1,10 +1,31 @@
-# Time by the number of triangles for each hierarchy, the fitted law a + b ln n (polygons.gp), the published times,
+# Time by the number of triangles for each hierarchy, the fitted law a + b ln n (tables/laws.tsv), the published times,
 # and the time of a ray.
 # needs: tables/triangles.tsv model.visible=on cpu_s_median
+# needs: tables/laws.tsv study=triangles a b deviation
 width = 1000; height = 790
 load "plots/style.gp"
 
-load "plots/polygons.gp"
+hierarchies = "none sphere octant bvh"
+measured_times(i) = i < 5 ? select(table("triangles"), "model.visible=on render.accel=".word(hierarchies, i), \
+    "soup.count cpu_s_median cpu_s_min cpu_s_max") : select("experiments/published/triangles.csv", "", "triangles time_s time_s time_s")
+wide(i) = measured_times(i)." | awk '$1 >= 10000'"
+few(i) = measured_times(i)." | awk '$1 >= 10000 && $1 <= 50000'"
+log_law(n, a, b) = a + b*log(n/1e4)
+power_law(n, c, p) = c*(n/1e4)**p
+# The laws of the octant tree, the box tree and the published series, NaN without enough rows: over the report's range, and
+# over all from 10000 on.
+law(i, extent, kind, column) = first(table("laws"), sprintf("study=triangles series=%s extent=%s law=%s", \
+    i < 5 ? word(hierarchies, i) : "published", extent, kind), column)
+array log_a[5]; array log_b[5]; array log_off[5]
+array wide_a[5]; array wide_b[5]; array wide_off[5]; array wide_c[5]; array wide_p[5]; array wide_power_off[5]
+do for [i=3:5] {
+    log_a[i] = law(i, "report", "log", "a"); log_b[i] = law(i, "report", "log", "b")
+    log_off[i] = law(i, "report", "log", "deviation")
+    wide_a[i] = law(i, "wide", "log", "a"); wide_b[i] = law(i, "wide", "log", "b")
+    wide_off[i] = law(i, "wide", "log", "deviation")
+    wide_c[i] = law(i, "wide", "power", "a"); wide_p[i] = law(i, "wide", "power", "b")
+    wide_power_off[i] = law(i, "wide", "power", "deviation")
+}
 rows = table("triangles")
 empty_s = first(rows, "model.visible=off", "cpu_s_median")
 names = "'no hierarchy' 'one sphere' 'octant tree of spheres' 'BVH of boxes'"
@@ -37,9 +58,9 @@ set y2range [0:10]
 set y2tics
 set border 11
 set key top left Left reverse font ",9"
-about(i) = log_fits[i] ? sprintf("%s: %.0f + %.0f ln(n / 10000) ms, rms deviation %.1f %%", \
+about(i) = log_a[i] == log_a[i] ? sprintf("%s: %.0f + %.0f ln(n / 10000) ms, rms deviation %.1f %%", \
     i == 3 ? "octants" : "boxes", log_a[i]*1e3, log_b[i]*1e3, log_off[i]*100) : word(names, i)
-fitted(i, n) = log_fits[i] && n >= 7 ? log_law(n*1e3, log_a[i], log_b[i]) : NaN
+fitted(i, n) = n >= 7 ? log_law(n*1e3, log_a[i], log_b[i]) : NaN
 plot for [i=3:4] few(i) using ($1/1e3):($2*1e3):($3*1e3):($4*1e3) with yerrorbars lt i title about(i), \
      for [i=3:4] '+' using 1:(fitted(i, $1)*1e3) with lines lt i notitle, \
      measured_times(5) using ($1/1e3):2 axes x1y2 with points lt 7 \
@@ -57,9 +78,9 @@ set xrange [7e3:6e6]
 set yrange [0:*]
 set offsets graph 0, graph 0, graph 0.35, graph 0
 plot for [i=3:4] wide(i) using 1:($2*1e3):($3*1e3):($4*1e3) with yerrorbars lt i title word(names, i), \
-     for [i=3:4] wide(i) using 1:(wide_fits[i] ? log_law($1, wide_a[i], wide_b[i])*1e3 : NaN) with lines lt i dt (6,3) \
+     for [i=3:4] wide(i) using 1:(log_law($1, wide_a[i], wide_b[i])*1e3) with lines lt i dt (6,3) \
          title sprintf("a + b ln n, rms deviation %.0f %%", wide_off[i]*100), \
-     for [i=3:4] wide(i) using 1:(wide_fits[i] ? power_law($1, wide_c[i], wide_p[i])*1e3 : NaN) with lines lt i \
+     for [i=3:4] wide(i) using 1:(power_law($1, wide_c[i], wide_p[i])*1e3) with lines lt i \
          title sprintf("n^{%.2f}, rms deviation %.0f %%", wide_p[i], wide_power_off[i]*100)
 unset offsets
 

@@ -26,8 +26,10 @@ reference=results/reference
     echo "ok 1 # SKIP there is no reference run"
     exit 0
 }
-with_gnuplot=1
-command -v gnuplot >/dev/null || with_gnuplot=0
+command -v python3 >/dev/null || {
+    echo "ok 1 # SKIP python3 is not installed"
+    exit 77
+}
 
 # A folder with the committed rows, whose studies and tables can be replaced: tables of cells, or all if there are any.
 mirror() { # NAME
@@ -39,7 +41,7 @@ mirror() { # NAME
     if [[ -d $work/rows/tables && $1 != rows ]]; then
         cp -p "$work/rows/tables"/* "$work/$1/tables/"
     else
-        cp -p "$root/$reference"/tables/*-{metrics,curves,motion}.tsv "$work/$1/tables/"
+        cp -p "$root/$reference"/tables/*-{metrics,curve-errors,motion}.tsv "$work/$1/tables/"
     fi
 }
 copy() { # NAME STUDY...: these studies of a mirror are copies that can be edited
@@ -55,7 +57,7 @@ tables() { # FOLDER [STUDY...]
     experiments/tables.sh "$@" 2>"$work/tables-said"
 }
 judge() { # RESULTS OUT: the verdicts in OUT/claims.tsv; sets code
-    paper/claims.sh "$1" "$2" >"$work/said" 2>&1
+    paper/claims.py "$1" "$2" >"$work/said" 2>&1
     code=$?
 }
 with() { # OUT VERDICT: ids with that verdict, in one line
@@ -161,21 +163,19 @@ empty "a claim without a figure has a reason" \
     "$(awk -F'\t' '$4 == "-" && ($3 == "-" || $2 == "underpowered") { print $1 }' "$work/reference/claims.tsv")"
 grep -qE '^environment [0-9a-z]+: [0-9]+ studies$' "$work/said"
 verdict $? "the environment is printed" "$(<"$work/said")"
-if ((with_gnuplot)); then
-    empty "a claim with rows is undecided only if its interval is too wide or others disturbed them" "$(awk -F'\t' '
-        NR == FNR { if ($9 == "-") unmeasured[$1] = 1; next }
-        $2 == "underpowered" && !($1 in unmeasured) &&
-            $4 !~ /^the interval is too wide|rows are disturbed|with processors>=2$/ { print $1 ": " $4 }
-        $2 != "underpowered" && $1 in unmeasured { print $1 }' <(claims) "$work/reference/claims.tsv")"
-    empty "and no sentence of a reproduced claim lacks a number" \
-        "$(grep -F 'without all numbers' "$work/reference/claims.tex")"
-    # Only times have such intervals: counts, errors and films are exact.
-    empty "and those are claims about times" "$(awk -F'\t' '
-        NR == FNR { about[$1] = $9; next }
-        $4 == "the interval is too wide to decide" &&
-            about[$1] !~ /_s[^a-z_]|_s$|[.]price/ { print $1 ": " about[$1] }' \
-        <(claims) "$work/reference/claims.tsv")"
-fi
+empty "a claim with rows is undecided only if its interval is too wide or others disturbed them" "$(awk -F'\t' '
+    NR == FNR { if ($9 == "-") unmeasured[$1] = 1; next }
+    $2 == "underpowered" && !($1 in unmeasured) &&
+        $4 !~ /^the interval is too wide|rows are disturbed|with processors>=2$/ { print $1 ": " $4 }
+    $2 != "underpowered" && $1 in unmeasured { print $1 }' <(claims) "$work/reference/claims.tsv")"
+empty "and no sentence of a reproduced claim lacks a number" \
+    "$(grep -F 'without all numbers' "$work/reference/claims.tex")"
+# Only times have such intervals: counts, errors and films are exact.
+empty "and those are claims about times" "$(awk -F'\t' '
+    NR == FNR { about[$1] = $9; next }
+    $4 == "the interval is too wide to decide" &&
+        about[$1] !~ /_s[^a-z_]|_s$|[.]price/ { print $1 ": " about[$1] }' \
+    <(claims) "$work/reference/claims.tsv")"
 
 # LaTeX may not be installed: what it reads is well formed.
 empty "numbers.tex and claims.tex have balanced braces and no special characters" "$(awk '
@@ -280,9 +280,7 @@ sed 's/^\\setval{pool\/1024\/added}.*/\\setval{pool\/1024\/added}{\\ensuremath{-
 touch "$work/bad/claims.tex"
 nonsense "$work/bad" | grep -q -- '-}35.57'
 verdict $? "a negative cost would be noticed" "$(nonsense "$work/bad")"
-if ((with_gnuplot)); then
-    empty "the paper has every number, and no negative cost" "$(nonsense "$work/reference")"
-fi
+empty "the paper has every number, and no negative cost" "$(nonsense "$work/reference")"
 text "$work/reference" >"$work/plain"
 grep -q 'These rows cannot establish whether} new threads for every frame cost time with 2 threads' "$work/plain"
 verdict $? "an undecided sentence is replaced" "$(grep -n 'New threads add' "$work/plain")"
@@ -293,9 +291,7 @@ text "$work/wrong-out" >"$work/plain"
 instead='Not reproduced on these rows:} new threads for every frame cost time with 1024 threads'
 grep -q "$instead (measured: -[0-9.]* \[-[0-9., -]*\] ms)" "$work/plain"
 verdict $? "the paper says so instead of adding negative times" "$(grep -n '1024 threads' "$work/plain")"
-if ((with_gnuplot)); then
-    empty "and has no negative cost anywhere" "$(nonsense "$work/wrong-out")"
-fi
+empty "and has no negative cost anywhere" "$(nonsense "$work/wrong-out")"
 grep -q 'Reproduced, but without all numbers of this sentence:} Phong shading takes more' "$work/plain"
 verdict $? "a sentence does not print a cost that is lost in noise" "$(grep -n 'Phong shading' "$work/plain")"
 
@@ -338,18 +334,32 @@ cell a.b n wall_s_median wall_s_low wall_s_high slow_s_median slow_s_low slow_s_
 0 1 12 0.90 0.89 0.91 2 1.9 2.1 1 0
 1 2 12 0.85 0.60 1.30 3 0.5 4 1 0
 END
-cat >"$work/small/numbers" <<'END'
-\setval{fit/a}{\ensuremath{2.5\cdot 10^{-3}}}
-\setval{fit/b}{\ensuremath{-}0.5}
+cat >"$work/predicates.py" <<'END'
+"""Prints the verdict and the figure of each predicate of standard input, or why it is malformed."""
+import pathlib
+import sys
+
+sys.path.insert(0, "paper")
+import claims
+from paper_numbers import Numbers, scientific, signed
+
+numbers = Numbers()
+numbers.put("fit/a", scientific(0.0025))
+numbers.put("fit/b", signed("-0.5"))
+tables = claims.Tables(pathlib.Path(sys.argv[1]))
+claim = {"id": "c", "sentence": "s", "needs": "t", "rows": "6", "disturbed": "0.5", "tolerance": "0.2", "unit": "-"}
+for line in sys.stdin:
+    try:
+        verdict = claims.judge(claim | {"predicate": line.rstrip("\n")}, tables, numbers, {})
+        print(verdict.verdict, verdict.figure)
+    except claims.Malformed as wrong:
+        print("malformed:", wrong)
 END
-predicate() { # PREDICATE: the verdict and the figure
-    printf 'id\tsentence\tneeds\trows\tdisturbed\ttolerance\tunit\tpredicate\nc\ts\tt\t6\t0.5\t0.2\t-\t%s\n' "$1" |
-        awk -v tables="$work/small/tables" -v numbers="$work/small/numbers" \
-            -f paper/interval.awk -f paper/claims.awk 2>&1 | cut -f 2,3
-}
-while IFS='|' read -r text wanted; do
-    same "$text" "$(predicate "$text" | tr '\t' ' ')" "$wanted"
-done <<'END'
+predicates() { python3 -B "$work/predicates.py" "$work/small/tables"; }
+while IFS='|' read -r text wanted have; do
+    same "$text" "$have" "$wanted"
+done < <(
+    tee "$work/predicates" <<'END' | cut -d '|' -f 1 | predicates 2>&1 | paste -d '|' "$work/predicates" -
 t[b=1].cpu_s < 1.2|reproduced 1.00 [0.90, 1.10]
 t[b=1].cpu_s > 1.2|not reproduced 1.00 [0.90, 1.10]
 t[b=1].cpu_s > 1|underpowered 1.00 [0.90, 1.10]
@@ -382,8 +392,10 @@ u[].rays = 1|underpowered -
 t[b=1].none = 1|underpowered -
 t[none=1].rays = 1|underpowered -
 END
+)
 for text in 't[b=1].rays' 't[].rays = 1' 't[b=1].rays = ' 't[b=1].rays = 1 or 2' 't[b~1].rays = 1' 'x = 1'; do
-    [[ $(predicate "$text") == *": claim c: "* ]]
-    verdict $? "malformed: $text" "$(predicate "$text")"
+    have=$(predicates <<<"$text")
+    [[ $have == malformed:* ]]
+    verdict $? "malformed: $text" "$have"
 done
 conclude

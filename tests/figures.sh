@@ -261,7 +261,7 @@ if [[ -n ${CHECK:-} ]]; then
     wrong=''
     for figure in "${figures[@]}"; do
         # shellcheck disable=SC2046 # a list of words
-        text=$(cat "plots/$figure.gp" $(grep -ohE '(plots|paper)/[a-z_-]+\.(gp|awk|sh)' "plots/$figure.gp" | sort -u))
+        text=$(cat "plots/$figure.gp" $(grep -ohE 'plots/[a-z_-]+\.(gp|awk|sh)' "plots/$figure.gp" | sort -u))
         while read -r file; do
             for column in $(head -n 1 "$work/whole/$file" | tr '\t,' '\n\n' | grep -vx environment); do
                 grep -qwF -- "$column" <<<"$text" || continue
@@ -276,7 +276,7 @@ fi
 # --- errors of scripts, in a copy
 
 mkdir -p "$work/copy/experiments"
-cp -r plots paper "$work/copy/"
+cp -r plots "$work/copy/"
 cp -r experiments/published "$work/copy/experiments/"
 broken() { # FIGURE FILE SED WANTED
     sed -i.good "$3" "$work/copy/plots/$2"

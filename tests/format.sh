@@ -15,7 +15,7 @@ mapfile -t shell < <(find .ci src tests plots experiments paper -type f -print0 
     xargs -0 grep -lE '^#!/bin/(ba)?sh' | sort)
 mapfile -t page < <(find src/web tests/web -name '*.js' -o -name '*.mjs' -o -name '*.css' -o -name '*.html' | sort)
 
-mapfile -t python < <(find src/python tests/python experiments -name '*.py' | sort)
+mapfile -t python < <(find src/python tests/python experiments paper plots -name '*.py' | sort)
 
 # check WHAT TOOL COMMAND...: the command prints the lines with another layout, and fails if there are any
 check() {

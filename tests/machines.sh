@@ -6,18 +6,25 @@ set -uo pipefail
 cd "$(dirname "$0")/.." || exit 1
 # shellcheck source=tests/shell/verdict.sh
 source tests/shell/verdict.sh
+command -v python3 >/dev/null || {
+    skip 'python3 is not installed'
+    exit 77
+}
 
+tables=$(mktemp -d "${TMPDIR:-/tmp}/cuvette-machines.XXXXXX") || exit 1
+trap 'rm -rf "$tables"' EXIT
+experiments/tables.py results/reference "$tables" || exit 1
 while IFS=$'\t' read -r machine study _ cells same _ _ _ different; do
     [[ $different == none && $cells -gt 0 && $same == "$cells" ]]
     verdict $? "$machine, $study: films and counts of $cells cells" "cells that differ: $different"
-done < <(paper/machines.sh results/reference | tail -n +2)
+done < <(tail -n +2 "$tables/machines.tsv")
 ((cases > 0)) || skip 'there are no rows of other machines'
 
 while IFS=$'\t' read -r scene rows _ names _ _ _ isas _ _ different; do
     [[ $different == 0 && $rows -gt 1 ]]
     verdict $? "$scene: one film and one set of counts in $rows rows of $names builds, $isas instruction sets" \
         "$(grep -h "^$scene," results/films/*.csv)"
-done < <(awk -f paper/films.awk results/films/*.csv 2>/dev/null | tail -n +2)
+done < <(tail -n +2 "$tables/films.tsv")
 shipped=$(cd experiments/scenes && printf '%s\n' *.yaml | sed 's/.yaml$//' | sort)
 for rows in results/films/*.csv; do
     [[ -r $rows ]] || continue
