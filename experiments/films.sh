@@ -44,20 +44,15 @@ shorter() { # SCENE
     esac
 }
 
-number() { sed -n "s/^ *\"$1\": *\"\\{0,1\\}\\([^\",]*\\)\"\\{0,1\\},\\{0,1\\}\$/\\1/p" | head -n 1; }
-
 # Every scene by one instruction set: the fields of a row after `scene`.
 native() { # ISA FACTS
-    local file scene json sets kind
+    local file scene sets counts
     for file in "$here"/scenes/*.yaml; do
         scene=$(basename "$file" .yaml)
         mapfile -t sets < <(shorter "$scene")
-        json=$(CUVETTE_ISA=$1 "${run[@]}" "$cuvette" render "$file" --json "${sets[@]/#/--set=}")
-        printf '%s,%s,' "$scene" "$(number film_hash <<<"$json")"
-        for kind in camera reflect refract shadow photon total_internal; do
-            printf '%s,' "$(number "$kind" <<<"$json")"
-        done
-        echo "80x60,$2"
+        counts=$(CUVETTE_ISA=$1 "${run[@]}" "$cuvette" render "$file" --json "${sets[@]/#/--set=}" |
+            "$here/json_value.py" film_hash rays.{camera,reflect,refract,shadow,photon} total_internal | paste -sd ,)
+        echo "$scene,$counts,80x60,$2"
     done
 }
 
@@ -80,9 +75,8 @@ if [[ $wasm ]]; then
     rm "$out.new.rows"
 else
     machine=$("${run[@]}" "$cuvette" machine --json)
-    # "kernel": [system, version, architecture]
-    architecture=$(sed -n 's/.*"kernel": .*"\([^"]*\)"\],*/\1/p' <<<"$machine")
-    compiler=${compiler:-$(number compiler <<<"$machine")}
+    architecture=$("$here/json_value.py" kernel.2 <<<"$machine") # system, version, architecture
+    compiler=${compiler:-$("$here/json_value.py" compiler <<<"$machine")}
     {
         echo "$header"
         for isa in ${isas:-sse2 avx2 avx512 neon plain}; do

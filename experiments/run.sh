@@ -52,14 +52,24 @@ for file in "${given[@]}"; do
 done
 mapfile -t files < <(printf '%s\n' "${rank[@]}" | sort -sn -k 1,1 | cut -f 2-)
 
-# Seconds that the committed run of a study took.
-committed_s() { # STUDY
-    [[ -r $committed/$1/runs.json ]] || { echo 1 && return; }
-    awk -F '"' '
-        function seconds(text) { return substr(text, 12, 2) * 3600 + substr(text, 15, 2) * 60 + substr(text, 18, 6) }
-        $2 == "started_utc" { start = seconds($4) }
-        $2 == "ended_utc" && $4 { took = seconds($4) - start; sum += took < 0 ? took + 86400 : took }
-        END { printf "%.3f\n", sum }' "$committed/$1/runs.json"
+# Seconds that the committed run of each study took, a line each; 1 where it is unknown.
+committed_s() { # STUDY...
+    if ! command -v python3 >/dev/null; then
+        printf '1%.0s\n' "$@"
+        return
+    fi
+    python3 - "$committed" "$@" <<'END'
+import datetime, json, pathlib, sys
+
+def moment(text):
+    return datetime.datetime.strptime(text, "%Y-%m-%dT%H:%M:%S.%fZ")
+
+for study in sys.argv[2:]:
+    path = pathlib.Path(sys.argv[1], study, "runs.json")
+    runs = json.loads(path.read_text(encoding="utf-8"))["runs"] if path.is_file() else []
+    took = [moment(run["ended_utc"]) - moment(run["started_utc"]) for run in runs if run.get("ended_utc")]
+    print(sum(took, datetime.timedelta()).total_seconds() if runs else 1)
+END
 }
 
 # The figures that need a file of the study and have all files that they need (the `# needs:` lines of their scripts).
@@ -97,13 +107,9 @@ minutes() { # SECONDS
 }
 
 # The time left: what the committed run took for the rest, by how much longer the studies so far took than there.
-names=()
-expected=()
-for file in "${files[@]}"; do
-    name=${file##*/}
-    names+=("${name%.study}")
-    expected+=("$(committed_s "${name%.study}")")
-done
+names=("${files[@]##*/}")
+names=("${names[@]%.study}")
+mapfile -t expected < <(committed_s "${names[@]}")
 expected_done=0 took_done=0
 time_left() { # INDEX of the next study
     awk -v done="$expected_done" -v took="$took_done" -v rest="${expected[*]:$1}" 'BEGIN {

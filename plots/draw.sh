@@ -85,8 +85,11 @@ needs() { sed -n 's/^# needs: *//p' "plots/$1.gp"; }
 
 # The number of processing units of the machine that measured, 0 if no list of runs has it.
 units() {
-    { cat "$results"/{threads,profile,depth,pool}/{runs,manifest}.json 2>/dev/null || true; } |
-        sed -n 's/.*"processing_units": *\([0-9][0-9]*\).*/\1/p' | sed -n 1p
+    local runs
+    for runs in "$results"/{threads,profile,depth,pool}/runs.json; do
+        [ -r "$runs" ] && experiments/json_value.py machine.processing_units <"$runs" && return
+    done 2>/dev/null
+    true
 }
 
 # The environments of the tables of a figure, whose rows it shows: "3d2be922", or several; whether the run is quick.

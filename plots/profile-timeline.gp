@@ -10,7 +10,7 @@ counts = "2 8 64 1024"
 cell(schedule, threads) = first(rows, "render.schedule=".schedule." render.threads=".threads, "cell")
 file(schedule, threads) = sprintf("%s/timeline/images/%04d-timeline.json", results, int(cell(schedule, threads)))
 known(schedule, threads) = cell(schedule, threads) >= 0 && readable(file(schedule, threads))
-pieces(schedule, threads) = sprintf("< plots/timeline.sh '%s' %s", file(schedule, threads), threads > 100 ? "0.5" : "")
+pieces(schedule, threads) = sprintf("< plots/timeline.py '%s' %s", file(schedule, threads), threads > 100 ? "0.5" : "")
 
 end = 0
 set datafile separator whitespace

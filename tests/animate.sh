@@ -85,7 +85,7 @@ done
 # Without what comes before the pixels: a rendered image holds its scene too.
 pixels() { tail -c "+$(grep -abom1 IDAT "$1" | head -n 1 | cut -d: -f1)" "$1"; }
 check "a frame equals a render at its time" cmp <(pixels still.png) <(pixels one/00008.png)
-film_of() { "$program" render "$1" --json 2>film.err | sed -n 's/.*"film_hash": *"\([0-9a-f]*\)".*/\1/p'; }
+film_of() { "$program" render "$1" --json 2>film.err | ./json_get - film_hash; }
 check "a frame holds its scene at its time" eval \
     '[[ $(film_of one/00008.png) =~ ^[0-9a-f]{16}$ ]] && is "$(film_of one/00008.png)" "$(film_of still.png)"'
 check "which is not that of another frame" eval '! is "$(film_of one/00008.png)" "$(film_of one/00003.png)"'

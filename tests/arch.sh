@@ -62,7 +62,7 @@ film_hash() { # ARCHITECTURE SCENE
     [[ $2 == */slime.yaml ]] && shorter=(--set toy.time_s=0.25)
     on "$1" render "$2" --json --set "render.width=${size%x*}" --set "render.height=${size#*x}" "${shorter[@]}" \
         2>"$work/why" |
-        sed -n 's/.*"film_hash": "\([0-9a-f]*\)".*/\1/p'
+        experiments/json_value.py film_hash
 }
 
 films() { # ARCHITECTURE: seconds and hash of each scene, in files

@@ -95,7 +95,7 @@ value() { # DEPTH THREADS NAME: from a row
         $at["depth"] == depth && $at["threads"] == threads { print $at[name] }' <<<"$rows"
 }
 first() { # SOLID: Cuvette's number of camera rays that hit it first
-    sed -n '/"first_hits"/,/}/s/^ *"'"$1"'": *\([0-9]*\),*$/\1/p' "$work/ours.json"
+    experiments/json_value.py "first_hits.$1" <"$work/ours.json"
 }
 "$cuvette" render experiments/scenes/rod.yaml --json --set render.depth=0 \
     --set render.width=160 --set render.height=120 >"$work/ours.json"

@@ -28,7 +28,7 @@ for ((i = 0; i < repeat; i++)); do
     values "$scratch/$i.pfm" >"$scratch/$i.values"
 done
 cpu_s=$("$cuvette" render "$@" "${settings[@]}" --json --repeat "$repeat" 2>/dev/null |
-    sed -n 's/.*"cpu_s": *\([0-9.e+-]*\).*/\1/p' | head -n 1)
+    "$(dirname "$0")/../../json_value.py" cpu_s)
 paste "$scratch"/*.values | awk -v factor="$factor" -v across="$across" -v paths="$paths" -v cpu_s="${cpu_s:?}" '
     {
         least = $1 + 0
