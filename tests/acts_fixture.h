@@ -5,7 +5,7 @@
 #include "acts_values.h"
 
 #include "render/core/renderer.h"
-#include "scene/model/inert/inert.h"
+#include "lint/lint.h"
 #include "scene/model/params_path.h"
 #include "scene/model/scene.h"
 

@@ -9,7 +9,7 @@
 #include <cmocka.h>
 
 #include "path_fixture.h"
-#include "scene/model/hints.h"
+#include "lint/lint.h"
 
 #define COUNT(a) (sizeof(a) / sizeof((a)[0]))
 #define assert_near(a, b, tolerance) assert_true(fabs((a) - (b)) <= (tolerance))

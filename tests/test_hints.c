@@ -6,7 +6,7 @@
 #include <stdint.h>
 #include <cmocka.h>
 
-#include "scene/model/hints.h"
+#include "lint/lint.h"
 #include "scene/model/params.h"
 #include <stdio.h>
 #include <string.h>

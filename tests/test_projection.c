@@ -17,7 +17,6 @@
 #include "render_fixture.h"
 #include "scene/model/camera.h"
 #include "scene/model/camera_moves.h"
-#include "scene/model/inert/inert.h"
 #include "scene/model/scene.h"
 #include "zbuffer_fixture.h"
 

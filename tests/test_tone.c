@@ -13,7 +13,7 @@
 #include "render/core/record.h"
 #include "render_fixture.h"
 #include "scene/model/camera.h"
-#include "scene/model/hints.h"
+#include "lint/lint.h"
 
 #define COUNT(a) (sizeof(a) / sizeof((a)[0]))
 

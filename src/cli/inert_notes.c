@@ -1,7 +1,7 @@
 /* Notes on command-line and study parameters that have no effect on the image. */
 #include "cli/inert_notes.h"
 #include "cli/terminal.h"
-#include "scene/model/hints.h"
+#include "lint/lint.h"
 #include "scene/model/params.h"
 #include "scene/model/scene.h"
 

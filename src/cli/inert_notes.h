@@ -1,9 +1,9 @@
-/* Notes on parameters that are set but have no effect (scene/model/inert/inert.h), one line each on standard error.
+/* Notes on parameters that are set but have no effect (lint/lint.h), one line each on standard error.
  * A place that already has a note of the linter gets no second one. Ownership: everything is borrowed. */
 #pragma once
 
 #include "cli/scene_input.h"
-#include "scene/model/inert/inert.h"
+#include "lint/lint.h"
 
 /* Notes on the changes of the command line. s: the changed scene. */
 void inert_note_changes(const scene *s, const scene_input *input);

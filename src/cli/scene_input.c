@@ -5,7 +5,7 @@
 #include "cli/outputs.h"
 #include "cli/terminal.h"
 #include "job/frame_notes.h"
-#include "scene/model/hints.h"
+#include "lint/lint.h"
 #include "scene/model/params.h"
 #include "scene/model/scene.h"
 #include <stdio.h>

@@ -91,7 +91,7 @@ void scene_input_note_tree(const scene_input *input, const scene *s);
 /* Notes for what shows the beams: a medium was not measured at the wavelength of one. */
 void scene_input_note_beams(const scene *s);
 
-/* Prints the hints on likely mistakes in the scene (scene/model/hints.h) on standard error. */
+/* Prints the hints on likely mistakes in the scene (lint/lint.h) on standard error. */
 void scene_input_note_hints(const scene *s);
 
 /* Prints all notes of the linter (lint/lint.h) on a loaded scene. */

@@ -3,8 +3,7 @@
 #include "cli/scene_input.h"
 #include "cli/terminal.h"
 #include "measure/clock.h"
-#include "scene/model/hints.h"
-#include "scene/model/inert/inert.h"
+#include "lint/lint.h"
 #include "scene/model/scene.h"
 #include "study/order.h"
 #include <ctype.h>

@@ -1,5 +1,5 @@
 /* Notes on a study before it runs, one line each on standard error: those of the linter, of hints and of parameters
- * without effect (lint/lint.h, scene/model/hints.h, scene/model/inert/inert.h), in all cells or in some, and those of
+ * without effect (lint/lint.h), in all cells or in some, and those of
  * the study file. Ownership: everything is borrowed. */
 #pragma once
 

@@ -3,7 +3,7 @@
 #include "engine/engine_private.h"
 
 #include "measure/clock.h"
-#include "scene/model/hints.h"
+#include "lint/lint.h"
 #include <stdlib.h>
 #include <string.h>
 

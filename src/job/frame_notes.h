@@ -2,7 +2,7 @@
 #pragma once
 
 #include "job/account.h"
-#include "scene/model/inert/note.h"
+#include "lint/lint.h"
 
 /* Passes the notes on the account's frame to the callback, none before a frame is complete. */
 void frame_notes(const job_account *a, const note_taker *taker);

@@ -2,7 +2,6 @@
 
 #include "geometry/shapes/shape.h"
 #include "lint/parts.h"
-#include "scene/model/hints.h"
 #include "scene/model/scene.h"
 #include <math.h>
 

@@ -2,7 +2,7 @@
 #pragma once
 
 #include "render/core/plan.h"
-#include "scene/model/inert/note.h"
+#include "lint/lint.h"
 #include "scene/model/scene.h"
 
 typedef struct lint_room {

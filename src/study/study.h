@@ -7,7 +7,7 @@
 
 #include "base/status.h"
 #include "measure/machine_noise.h"
-#include "scene/model/inert/note.h"
+#include "lint/lint.h"
 #include "scene/model/open.h"
 #include <stdbool.h>
 #include <stdint.h>

@@ -6,7 +6,7 @@
 #include "base/text_writer.h"
 #include "report/json.h"
 #include "report/report.h"
-#include "scene/model/inert/inert.h"
+#include "lint/lint.h"
 #include "scene/model/params.h"
 #include "scene/file/write.h"
 #include "scene/model/open.h"
@@ -83,7 +83,7 @@ status api_value_text(const json_t *value, const char *place, char **text, diagn
     return text_writer_close(&writer, text, NULL, why);
 }
 
-/* The parameters to set, and notes on those without effect (scene/model/inert/inert.h); NULL while there are none. */
+/* The parameters to set, and notes on those without effect (lint/lint.h); NULL while there are none. */
 typedef struct set_request {
     const json_t *values;
     json_t *notes;

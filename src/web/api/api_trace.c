@@ -8,7 +8,6 @@
 #include "lint/lint.h"
 #include "report/report.h"
 #include "report/trace_writers.h"
-#include "scene/model/hints.h"
 #include <limits.h>
 #include <stdlib.h>
 

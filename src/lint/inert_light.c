@@ -1,5 +1,5 @@
 /* Parameters of lights and of the background without effect. */
-#include "scene/model/inert/inert_private.h"
+#include "lint/inert_private.h"
 #include "scene/model/face_materials.h"
 #include "scene/model/medium.h"
 #include "scene/model/scene.h"

@@ -2,7 +2,8 @@
  * or returns false. Ownership: values; everything is borrowed for the call. */
 #pragma once
 
-#include "scene/model/inert/inert.h"
+#include "base/counters.h"
+#include "lint/lint.h"
 #include "scene/model/params_path.h"
 #include "scene/model/light.h"
 #include "scene/model/solids.h"

@@ -1,5 +1,5 @@
 /* Parameters of beams that light the scene without effect. */
-#include "scene/model/inert/inert_private.h"
+#include "lint/inert_private.h"
 #include "scene/model/scene.h"
 
 #include <string.h>

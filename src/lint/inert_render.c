@@ -1,5 +1,5 @@
 /* Renderer settings without effect. */
-#include "scene/model/inert/inert_private.h"
+#include "lint/inert_private.h"
 #include "geometry/shapes/shape.h"
 #include "scene/model/camera.h"
 #include "scene/model/face_materials.h"

@@ -1,4 +1,4 @@
-#include "scene/model/inert/inert_private.h"
+#include "lint/inert_private.h"
 
 #include <stdarg.h>
 #include <stdio.h>

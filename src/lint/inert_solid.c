@@ -1,5 +1,5 @@
 /* Parameters of a solid without effect. */
-#include "scene/model/inert/inert_private.h"
+#include "lint/inert_private.h"
 #include "geometry/shapes/shape.h"
 #include "geometry/shared_faces.h"
 #include "scene/model/cover.h"

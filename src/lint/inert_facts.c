@@ -1,6 +1,6 @@
 /* Light transport facts that follow from the scene alone. The renderer makes the same decisions: see
  * render/shade/shading.c, render/integrators/path.c and render/core/plan.c. */
-#include "scene/model/inert/inert_private.h"
+#include "lint/inert_private.h"
 #include "scene/model/face_materials.h"
 #include "scene/model/medium.h"
 #include "scene/model/scene.h"

@@ -1,5 +1,5 @@
 /* Material parameters that have no effect on the material's solids. */
-#include "scene/model/inert/inert_private.h"
+#include "lint/inert_private.h"
 #include "geometry/shapes/shape.h"
 #include "scene/model/cover.h"
 #include "scene/model/face_materials.h"

@@ -1,5 +1,5 @@
 /* Parameters of polarisers and wave plates that have no effect. */
-#include "scene/model/inert/inert_private.h"
+#include "lint/inert_private.h"
 #include "scene/model/medium.h"
 #include "scene/model/scene.h"
 #include "scene/model/sheet.h"

@@ -1,5 +1,5 @@
 /* Parameters of meshes and textures without effect. */
-#include "scene/model/inert/inert_private.h"
+#include "lint/inert_private.h"
 #include "geometry/shapes/shape.h"
 #include "scene/model/scene.h"
 

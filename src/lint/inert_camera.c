@@ -1,5 +1,5 @@
 /* Camera parameters without effect. */
-#include "scene/model/inert/inert_private.h"
+#include "lint/inert_private.h"
 #include "scene/model/camera.h"
 #include "scene/model/scene.h"
 

@@ -1,6 +1,6 @@
 /* Notes on refractive indices at wavelengths at which nobody measured them. A dispersion law is extrapolated there, a
  * table keeps the value of its end. */
-#include "scene/model/hints.h"
+#include "lint/lint.h"
 #include "scene/model/medium.h"
 #include "scene/model/scene.h"
 

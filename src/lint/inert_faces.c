@@ -1,5 +1,5 @@
 /* Surface parameters without effect on faces with materials from a mesh file: see shading_material_of_face. */
-#include "scene/model/inert/inert_private.h"
+#include "lint/inert_private.h"
 #include "scene/model/face_materials.h"
 #include "scene/model/medium.h"
 #include "scene/model/scene.h"

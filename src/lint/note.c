@@ -1,4 +1,4 @@
-#include "scene/model/inert/note.h"
+#include "lint/lint.h"
 
 #include <stdarg.h>
 #include <stdio.h>

@@ -1,6 +1,6 @@
 /* Conditions under which basic and classic radiance are equal: all light paths begin and end in a vacuum, where n^2 is
  * 1 (render/shade/radiance.c). */
-#include "scene/model/inert/inert_private.h"
+#include "lint/inert_private.h"
 #include "scene/model/cover.h"
 #include "scene/model/medium.h"
 #include "scene/model/scene.h"

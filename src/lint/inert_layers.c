@@ -1,6 +1,6 @@
 /* Parameters without effect for an integrator with named layers, which traces no light; and layers for other
  * integrators. */
-#include "scene/model/inert/inert_private.h"
+#include "lint/inert_private.h"
 
 #include "scene/model/params.h"
 #include "scene/model/render_settings.h"
