@@ -140,8 +140,7 @@ static void media_out_of_the_range_of_beams_give_a_hint(void **state)
 static void what_a_file_sets_in_vain_gives_a_hint(void **state)
 {
     (void)state;
-    static const char smooth[] = "only the path integrator shows roughness: the surface is treated as smooth; set "
-                                 "render.integrator=path\n";
+    static const char smooth[] = "no effect with render.integrator=whitted; set render.integrator=path\n";
     char text[300];
     snprintf(text, sizeof text, "ball.roughness: %s", smooth);
     expect_hints(LIT "solids: {ball: {shape: sphere, transparency: 1, ior: 1.5, roughness: 0.3}}", text);
@@ -160,8 +159,7 @@ static void what_a_file_sets_in_vain_gives_a_hint(void **state)
                  "roughness: 0.2}}",
                  text);
     expect_hints(LIT "solids: {ball: {shape: sphere, transparency: 1, ior: 1.5, extinction: 2}}",
-                 "ball.extinction: the solid is transparent: what it absorbs is set by absorb_per_m; set "
-                 "ball.transparency=0\n");
+                 "ball.extinction: no effect with ball.transparency=1; set ball.transparency=0\n");
     expect_hints(LIT "materials: {m: {ior: 0.05, extinction: 3}}\nsolids: {a: {shape: sphere, material: m}, b: {shape: "
                      "box, material: m, transparency: 1, ior: 1.5, position: [4, 0, 0]}}",
                  "");

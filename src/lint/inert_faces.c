@@ -1,20 +1,14 @@
-/* Surface parameters without effect on faces with materials from a mesh file: see shading_material_of_face. */
-#include "lint/inert_private.h"
+/* Parameters of a surface, for all that has it: solids with a material, and faces with materials from a mesh file (see
+ * shading_material_of_face). */
+#include "lint/needs.h"
 #include "scene/model/face_materials.h"
 #include "scene/model/medium.h"
 #include "scene/model/scene.h"
 
-#include <string.h>
-
-static bool is_row(const inert_case *c, const char *name)
-{
-    return strcmp(c->at.row->name, name) == 0;
-}
-
 /* Of the surface of a transparent solid, and of each face of an opaque one. */
 static bool is_of_mirror(const inert_case *c)
 {
-    return is_row(c, "reflectivity") || is_row(c, "roughness");
+    return is_named(c, "reflectivity") || is_named(c, "roughness");
 }
 
 /* Parameters of the interior. */
@@ -56,12 +50,12 @@ static bool is_own(const inert_case *c, const material *named, const face_materi
     const bool clear = !material_is_opaque(&c->owner->surface);
     if (!named && !given)
         return true;
-    if (is_row(c, "transparency"))
+    if (is_named(c, "transparency"))
         return !is_straight(c) || (!named && given->opacity == 1.0);
     if (named)
         return is_of_mirror(c) && !is_straight(c) && clear;
-    return is_among(c, never_given) || (is_row(c, "emission") && given->emission == 0.0) ||
-           (is_row(c, "color") && clear);
+    return is_among(c, never_given) || (is_named(c, "emission") && given->emission == 0.0) ||
+           (is_named(c, "color") && clear);
 }
 
 /* The rules of a uniform surface, applied to one kind of face. */
@@ -70,7 +64,7 @@ static bool inert_on_slot(const inert_case *c, int slot)
     const shading_material mat = shading_material_of_face(c->s, c->owner, &c->owner->surface, slot);
     inert_case face = *c;
     face.m = &mat.surface;
-    return inert_appearance(&face);
+    return needs_ask(&face, PARAM_MATERIAL);
 }
 
 static bool say_by_face(const inert_case *c)
@@ -90,8 +84,8 @@ bool inert_faces(const inert_case *c)
         material clear = *c->m;
         clear.transparency = 1.0;
         inert_case region = *c;
-        region.m = !solid_is_opaque(c->s, c->owner) && !is_row(c, "tint_distance") ? &clear : c->m;
-        return inert_appearance(&region);
+        region.m = !solid_is_opaque(c->s, c->owner) && !is_named(c, "tint_distance") ? &clear : c->m;
+        return needs_ask(&region, PARAM_MATERIAL);
     }
     bool some = false;
     for (int slot = 0; slot < face_material_slots(c->s, c->owner); slot++) {
@@ -112,7 +106,7 @@ static bool is_named_ones(const inert_case *c)
 {
     if (is_of_region(c))
         return false;
-    if (is_row(c, "transparency"))
+    if (is_named(c, "transparency"))
         return is_straight(c);
     return !is_of_mirror(c) || is_straight(c) || material_is_opaque(&c->owner->surface);
 }
@@ -137,4 +131,39 @@ bool inert_named_faces(const inert_case *c)
             return false;
     }
     return true; /* no result if no face has that name */
+}
+
+bool inert_surface(const inert_case *c)
+{
+    return may_have_face_materials(c->s, c->owner) ? inert_faces(c) : needs_ask(c, PARAM_MATERIAL);
+}
+
+static bool unused(const inert_case *c, const solid *hidden)
+{
+    const inert_remedy remedy =
+        hidden ? inert_set("%s.visible=on", hidden->name) : (inert_remedy){"assign it to a visible solid"};
+    return inert_say(c, "unused-material", remedy.text, "no visible solid has this material");
+}
+
+/* For each visible solid with the material, and each face with its name; the result is the first one's. */
+bool inert_material(const inert_case *c)
+{
+    const scene *s = c->s;
+    const solid *hidden = NULL;
+    inert_answer first = {.rule = ""}, other;
+    for (size_t i = 0; i < s->solid_count; i++) {
+        const solid *one = &s->solids[i];
+        const bool by_face = may_have_face_materials(s, one);
+        if (one->material_index != (int)c->at.index && !by_face)
+            continue;
+        hidden = one->visible || by_face ? hidden : one;
+        inert_case user = *c;
+        user.owner = one, user.m = &one->surface, user.out = first.rule[0] ? &other : &first;
+        if (one->visible && !(by_face ? inert_named_faces(&user) : needs_ask(&user, PARAM_MATERIAL)))
+            return false;
+    }
+    if (!first.rule[0])
+        return unused(c, hidden);
+    *c->out = first;
+    return true;
 }

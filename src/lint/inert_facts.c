@@ -1,9 +1,13 @@
 /* Light transport facts that follow from the scene alone. The renderer makes the same decisions: see
  * render/shade/shading.c, render/integrators/path.c and render/core/plan.c. */
-#include "lint/inert_private.h"
+#include "lint/inert_facts.h"
+#include "geometry/shapes/shape.h"
 #include "scene/model/face_materials.h"
 #include "scene/model/medium.h"
 #include "scene/model/scene.h"
+#include "scene/model/sheet.h"
+
+#include <string.h>
 
 bool is_black(vec3 color)
 {
@@ -15,6 +19,28 @@ bool is_path(const scene *s)
     return integrator_traits_of(&s->render)->by_chance;
 }
 
+bool is_drawn(const scene *s)
+{
+    return integrator_traits_of(&s->render)->drawn;
+}
+
+bool has_layers(const scene *s)
+{
+    return integrator_traits_of(&s->render)->layers;
+}
+
+bool is_named(const inert_case *c, const char *name)
+{
+    return strcmp(c->at.row->name, name) == 0;
+}
+
+bool is_among(const inert_case *c, const char *const *names)
+{
+    while (*names && !is_named(c, *names))
+        names++;
+    return *names != NULL;
+}
+
 bool follows_rays(const scene *s)
 {
     return is_path(s) || follows_trees(&s->render);
@@ -22,15 +48,14 @@ bool follows_rays(const scene *s)
 
 bool draws_through(const scene *s)
 {
-    return integrator_traits_of(&s->render)->drawn && s->render.lighting == LIGHTING_WHITTED &&
-           first_visible(s, is_clear);
+    return is_drawn(s) && s->render.lighting == LIGHTING_WHITTED && first_visible(s, is_clear);
 }
 
 /* Attenuated shadow rays pass through transparent solids. */
 bool nothing_passes(const scene *s)
 {
-    const bool lit_through = !integrator_traits_of(&s->render)->drawn && !integrator_traits_of(&s->render)->layers &&
-                             s->render.shadows == SHADOWS_ATTENUATED && shining_lights(s) > 0;
+    const bool lit_through =
+        !is_drawn(s) && !has_layers(s) && s->render.shadows == SHADOWS_ATTENUATED && shining_lights(s) > 0;
     return !follows_rays(s) && !draws_through(s) && !lit_through;
 }
 
@@ -45,18 +70,6 @@ bool no_lamp(const inert_case *c)
 {
     return shining_lights(c->s) == 0 &&
            inert_say(c, "no-lamp", lamp_remedy(c->s).text, "every light has intensity 0 or a black color");
-}
-
-bool no_ambient_on_paths(const inert_case *c)
-{
-    return is_path(c->s) && inert_say(c, "path-ambient", "set render.integrator=whitted",
-                                      "the path integrator does not use ambient light");
-}
-
-bool goes_straight(const inert_case *c)
-{
-    return c->s->render.transmission == TRANSMISSION_SIMPLE &&
-           inert_say(c, "straight", "set render.transmission=refract", "simple transmission does not refract");
 }
 
 bool say_not_bent(const inert_case *c)
@@ -153,7 +166,7 @@ bool shows_specular(const scene *s, const material *m)
 
 bool is_lit_by_lamps(const scene *s, const material *m)
 {
-    return !integrator_traits_of(&s->render)->layers &&
+    return !has_layers(s) &&
            (shows_specular(s, m) || (beams_light(s) && m->diffuse > 0.0 && has_color(m)) ||
             (shining_lights(s) > 0 && ((m->diffuse > 0.0 && has_color(m)) || material_roughness(m, &s->render) > 0.0 ||
                                        material_scattering(m, &s->render) > 0.0)));
@@ -161,7 +174,7 @@ bool is_lit_by_lamps(const scene *s, const material *m)
 
 bool shows_color(const scene *s, const material *m)
 {
-    if (integrator_traits_of(&s->render)->layers)
+    if (has_layers(s))
         return s->render.layer == LAYER_ALBEDO;
     material white = *m;
     white.color = vec3_make(1.0, 1.0, 1.0);
@@ -188,7 +201,7 @@ inert_remedy lamp_remedy(const scene *s)
 
 inert_remedy color_remedy(const scene *s, const material *m, const char *name)
 {
-    if (integrator_traits_of(&s->render)->layers)
+    if (has_layers(s))
         return inert_set("render.layer=albedo");
     material coated = *m;
     coated.diffuse = 0.7;
@@ -199,4 +212,69 @@ inert_remedy color_remedy(const scene *s, const material *m, const char *name)
         return inert_set("%s.ambient=0.5", name);
     return is_path(s) ? inert_set("%s.diffuse=0.7 and %s.transparency=0", name, name)
                       : inert_set("background.ambient=1,1,1 and %s.ambient=0.5", name);
+}
+
+/* --- facts that several groups share --- */
+
+bool no_tree(const inert_case *c)
+{
+    const scene *s = c->s;
+    if (draws_through(s))
+        return false;
+    if (!follows_rays(s))
+        return say_no_tree(c);
+    return !first_visible(s, sends_rays_on) &&
+           inert_say(c, "no-branches", inert_set_on(first_visible(s, NULL), "reflectivity=0.5").text,
+                     "no visible surface reflects or refracts");
+}
+
+/* A plane alone is a poor example of a transparent solid. */
+static inert_remedy clear_remedy(const scene *s)
+{
+    const solid *first = first_visible(s, NULL);
+    for (size_t i = 0; i < s->solid_count; i++)
+        first = first && shape_of(&first->shape)->unbounded && s->solids[i].visible ? &s->solids[i] : first;
+    return inert_set_clear(first);
+}
+
+bool no_clear(const inert_case *c)
+{
+    return !first_visible(c->s, is_clear) &&
+           inert_say(c, "no-clear", clear_remedy(c->s).text, "no visible solid is transparent");
+}
+
+bool nothing_lit(const inert_case *c)
+{
+    const scene *s = c->s;
+    return no_lamp(c) || (!first_visible(s, shows_lamps) &&
+                          inert_say(c, "nothing-lit", inert_set_on(first_visible(s, NULL), "diffuse=0.7").text,
+                                    "no visible surface is lit by lights"));
+}
+
+bool unpolarised(const inert_case *c)
+{
+    const render_settings *r = &c->s->render;
+    const char *first = is_drawn(c->s) || has_layers(c->s)       ? "render.integrator=whitted and "
+                        : r->weights == WEIGHTS_CONSTANT         ? "render.weights=fresnel and "
+                        : r->transmission == TRANSMISSION_SIMPLE ? "render.transmission=refract and "
+                                                                 : "";
+    return !r->polarisation && inert_say(c, "unpolarised", inert_set("%srender.polarisation=on", first).text,
+                                         "light is traced without its polarisation");
+}
+
+static bool is_layered(const scene *s, const solid *one)
+{
+    return material_is_layered(&one->surface, &s->render);
+}
+
+static bool has_sheet(const scene *s, const solid *one)
+{
+    return !solid_is_opaque(s, one) && (sheet_is_polariser(&one->surface) || sheet_retards(&one->surface));
+}
+
+bool inert_polarisation(const inert_case *c)
+{
+    if (!is_drawn(c->s) && first_visible(c->s, has_sheet))
+        return false;
+    return no_tree(c) || (!first_visible(c->s, is_layered) && no_clear(c));
 }

@@ -1,6 +1,6 @@
 /* Conditions under which basic and classic radiance are equal: all light paths begin and end in a vacuum, where n^2 is
  * 1 (render/shade/radiance.c). */
-#include "lint/inert_private.h"
+#include "lint/inert_facts.h"
 #include "scene/model/cover.h"
 #include "scene/model/medium.h"
 #include "scene/model/scene.h"
@@ -44,13 +44,8 @@ static bool glows_in_dense(const scene *s, const solid *one)
 bool inert_radiance(const inert_case *c)
 {
     const scene *s = c->s;
-    if (integrator_traits_of(&s->render)->drawn)
-        return inert_say(c, "zbuffer-radiance", "set render.integrator=whitted",
-                         "the depth buffer does not trace light through surfaces");
     if (scene_has_caustics(&s->render))
         return inert_say(c, "caustics-radiance", "set render.caustics=off", "with photons, rays carry basic radiance");
-    if (goes_straight(c))
-        return true;
     if (!is_bare(&s->background))
         return false;
     const solid *dense = first_visible(s, is_dense), *last = s->solid_count > 0 ? &s->solids[s->solid_count - 1] : NULL;

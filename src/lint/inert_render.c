@@ -1,5 +1,5 @@
-/* Renderer settings without effect. */
-#include "lint/inert_private.h"
+/* Facts of the image that leave settings of the renderer and the camera without effect. */
+#include "lint/inert_facts.h"
 #include "geometry/shapes/shape.h"
 #include "scene/model/camera.h"
 #include "scene/model/face_materials.h"
@@ -9,28 +9,10 @@
 
 static const char *const WHITTED = "set render.integrator=whitted";
 
-static bool path_only(const inert_case *c)
-{
-    return !is_path(c->s) &&
-           inert_say(c, "path-only", "set render.integrator=path", "only the path integrator uses random numbers");
-}
-
-static bool samples(const inert_case *c)
+bool path_samples(const inert_case *c)
 {
     return is_path(c->s) && c->s->render.filter == PIXEL_FILTER_BOX &&
            inert_say(c, "path-box", "set render.filter=centre", "every path has its own random point of the pixel");
-}
-
-/* Russian roulette starts after the third surface: render/integrators/path.c. */
-static bool roulette(const inert_case *c)
-{
-    enum { ROULETTE_DEPTH = 3 };
-    if (path_only(c))
-        return true;
-    return c->s->render.depth <= ROULETTE_DEPTH &&
-           inert_say(c, "roulette-depth", "set render.depth=8",
-                     "Russian roulette starts at depth %d, and render.depth is %lld", ROULETTE_DEPTH + 1,
-                     (long long)c->s->render.depth);
 }
 
 static bool is_rough(const scene *s, const solid *one)
@@ -46,12 +28,9 @@ static bool could_be_rough(const scene *s, const solid *one)
     return material_roughness(&rough, &s->render) > 0.0;
 }
 
-static bool energy_compensation(const inert_case *c)
+bool no_roughness(const inert_case *c)
 {
     const scene *s = c->s;
-    if (!is_path(s))
-        return inert_say(c, "smooth-rays", "set render.integrator=path",
-                         "only the path integrator shows roughness: all surfaces are treated as smooth");
     if (first_visible(s, is_rough))
         return false;
     const solid *one = first_visible(s, could_be_rough);
@@ -61,35 +40,14 @@ static bool energy_compensation(const inert_case *c)
     return inert_say(c, "no-roughness", remedy.text, "no visible surface is rough");
 }
 
-static bool nothing_goes_on(const scene *s)
-{
-    return !first_visible(s, sends_rays_on);
-}
-
 static inert_remedy mirror_remedy(const scene *s)
 {
     return inert_set_on(first_visible(s, NULL), "reflectivity=0.5");
 }
 
-/* No secondary rays. */
-static bool no_tree(const inert_case *c)
+bool nothing_beyond(const inert_case *c)
 {
     const scene *s = c->s;
-    if (draws_through(s))
-        return false;
-    if (!follows_rays(s))
-        return say_no_tree(c);
-    return nothing_goes_on(s) &&
-           inert_say(c, "no-branches", mirror_remedy(s).text, "no visible surface reflects or refracts");
-}
-
-static bool beyond(const inert_case *c)
-{
-    const scene *s = c->s;
-    if (no_tree(c))
-        return true;
-    if (s->render.depth == DEPTH_UNLIMITED)
-        return inert_say(c, "nothing-cut", "set render.depth=8", "render.depth is unlimited: no path is cut");
     scene sky = *s; /* borrows from s */
     sky.render.beyond = DEPTH_LIMIT_SKY;
     if (is_dark_at_depth_limit(&sky))
@@ -104,14 +62,12 @@ static bool beyond(const inert_case *c)
 }
 
 /* The lighting model affects only highlights and secondary rays. */
-static bool lighting(const inert_case *c)
+bool no_highlights(const inert_case *c)
 {
     const scene *s = c->s;
-    if (is_path(s))
-        return inert_say(c, "not-path", WHITTED, "the path integrator has one lighting model");
     scene shiny = *s; /* borrows what s owns */
     shiny.render.lighting = LIGHTING_PHONG;
-    bool highlight = integrator_traits_of(&s->render)->drawn && first_visible(s, is_clear);
+    bool highlight = is_drawn(s) && first_visible(s, is_clear);
     for (size_t i = 0; i < s->solid_count; i++) {
         const solid *one = &s->solids[i];
         highlight |= one->visible && (shows_specular(&shiny, &one->surface) || may_have_face_materials(s, one));
@@ -121,64 +77,26 @@ static bool lighting(const inert_case *c)
     if (!integrator_traits_of(&s->render)->tree)
         return inert_say(c, "no-highlight", WHITTED,
                          "no light produces a highlight, and this render.integrator traces no secondary rays");
-    return (nothing_goes_on(s) || (s->render.depth == 0 && is_dark_at_depth_limit(s))) &&
+    return (!first_visible(s, sends_rays_on) || (s->render.depth == 0 && is_dark_at_depth_limit(s))) &&
            inert_say(c, "no-highlight", mirror_remedy(s).text,
                      "no visible surface has a highlight, reflects or refracts");
 }
 
-/* A plane alone is a poor example of a transparent solid. */
-static inert_remedy clear_remedy(const scene *s)
+/* Faces from a file may be transparent under simple transmission. */
+bool some_face_materials(const inert_case *c)
 {
-    const solid *first = first_visible(s, NULL);
-    for (size_t i = 0; i < s->solid_count; i++)
-        first = first && shape_of(&first->shape)->unbounded && s->solids[i].visible ? &s->solids[i] : first;
-    return inert_set_clear(first);
+    return first_visible(c->s, may_have_face_materials) != NULL;
 }
 
-static bool no_clear(const inert_case *c)
-{
-    return !first_visible(c->s, is_clear) &&
-           inert_say(c, "no-clear", clear_remedy(c->s).text, "no visible solid is transparent");
-}
-
-/* For two words the film with the other one decides. */
-static bool same_but_for(const inert_case *c, const char *one, const char *other, bool is_one)
+/* Of two words: the film with the other one decides. */
+bool same_when_drawn(const inert_case *c)
 {
     const scene *s = c->s;
-    return !follows_rays(s) && !draws_through(s) &&
-           inert_same(c, "render.%s=%s", c->at.row->name, is_one ? other : one) && say_no_tree(c);
-}
-
-static bool transmission(const inert_case *c)
-{
-    if (first_visible(c->s, may_have_face_materials))
-        return false; /* faces from a file may be transparent under simple transmission */
-    return no_clear(c) || same_but_for(c, "refract", "simple", c->s->render.transmission != TRANSMISSION_SIMPLE);
-}
-
-static bool weights(const inert_case *c)
-{
-    return no_clear(c) || same_but_for(c, "fresnel", "constant", c->s->render.weights == WEIGHTS_FRESNEL) ||
-           (c->s->render.transmission == TRANSMISSION_SIMPLE &&
-            inert_say(c, "simple", "set render.transmission=refract",
-                      "simple transmission uses the materials' constants"));
-}
-
-static bool is_layered(const scene *s, const solid *one)
-{
-    return material_is_layered(&one->surface, &s->render);
-}
-
-static bool has_sheet(const scene *s, const solid *one)
-{
-    return !solid_is_opaque(s, one) && (sheet_is_polariser(&one->surface) || sheet_retards(&one->surface));
-}
-
-bool inert_polarisation(const inert_case *c)
-{
-    if (!integrator_traits_of(&c->s->render)->drawn && first_visible(c->s, has_sheet))
-        return false;
-    return no_tree(c) || (!first_visible(c->s, is_layered) && no_clear(c));
+    const char *other = is_named(c, "weights") ? (s->render.weights == WEIGHTS_FRESNEL ? "constant" : "fresnel")
+                        : s->render.transmission == TRANSMISSION_SIMPLE ? "refract"
+                                                                        : "simple";
+    return !follows_rays(s) && !draws_through(s) && inert_same(c, "render.%s=%s", c->at.row->name, other) &&
+           say_no_tree(c);
 }
 
 /* The rays of a crystal are polarised with either setting; the settings differ for what they meet outside. */
@@ -194,17 +112,9 @@ static bool one_crystal(const inert_case *c)
 }
 
 /* An analyser halves unpolarised light, but only where polarisation is traced. */
-static bool polarisation(const inert_case *c)
+bool polarisation_unseen(const inert_case *c)
 {
     return c->s->camera.analyser == ANALYSER_NONE && (inert_polarisation(c) || one_crystal(c));
-}
-
-static bool nothing_lit(const inert_case *c)
-{
-    const scene *s = c->s;
-    return no_lamp(c) || (!first_visible(s, shows_lamps) &&
-                          inert_say(c, "nothing-lit", inert_set_on(first_visible(s, NULL), "diffuse=0.7").text,
-                                    "no visible surface is lit by lights"));
 }
 
 static bool deflects_light(const scene *s, const solid *one)
@@ -213,32 +123,33 @@ static bool deflects_light(const scene *s, const solid *one)
            material_is_layered(&one->surface, &s->render) || may_have_face_materials(s, one);
 }
 
-static bool no_photons(const inert_case *c)
+bool no_photons(const inert_case *c)
 {
     const scene *s = c->s;
-    if (integrator_traits_of(&s->render)->drawn)
-        return inert_say(c, "zbuffer-caustics", WHITTED, "the depth buffer traces no light");
-    if (s->render.shadows == SHADOWS_OFF)
-        return inert_say(c, "no-shadows-caustics", "set render.shadows=opaque",
-                         "without shadows light passes every solid undeflected");
-    if (beams_light(s) || c->s->beam_count > 0) /* the witness knows */
+    if (beams_light(s) || s->beam_count > 0) /* the witness knows */
         return false;
     return nothing_lit(c) ||
            (!first_visible(s, deflects_light) &&
             inert_say(c, "nothing-deflects", mirror_remedy(s).text, "no visible surface reflects or transmits light"));
 }
 
-static bool soft_shadows(const inert_case *c)
+/* Photons also make radiance basic and shadows opaque, which may act where they do not. */
+bool same_photons(const inert_case *c)
+{
+    return no_photons(c) &&
+           inert_same(c, "render.caustics=%s", c->s->render.caustics == CAUSTICS_OFF ? "photons" : "off");
+}
+
+bool lit_by_hits(const inert_case *c)
+{
+    return only_spheres_shine(c->s) && c->s->render.caustics == CAUSTICS_OFF &&
+           inert_say(c, "spheres", WHITTED, "random paths hit lights that have a size");
+}
+
+/* After nothing_lit: some light has an intensity. */
+bool no_size(const inert_case *c)
 {
     const scene *s = c->s;
-    if (is_path(s))
-        return inert_say(c, "always-soft", WHITTED, "random paths always sample the size of lights");
-    if (integrator_traits_of(&s->render)->drawn)
-        return inert_say(c, "no-shadows", WHITTED, "the depth-buffer integrator renders no shadows");
-    if (s->render.shadows == SHADOWS_OFF)
-        return inert_say(c, "no-soft-shadows", "set render.shadows=opaque", "render.shadows is off");
-    if (nothing_lit(c))
-        return true;
     const light *first = NULL;
     for (size_t i = 0; i < s->light_count; i++) {
         const light *l = &s->lights[i];
@@ -254,67 +165,18 @@ static bool soft_shadows(const inert_case *c)
     return inert_say(c, "no-size", sized.text, "no light has a size");
 }
 
-/* Photons also make radiance basic and shadows opaque, which may act where they do not. */
-static bool caustics(const inert_case *c)
+bool one_light(const inert_case *c)
 {
-    return no_photons(c) &&
-           inert_same(c, "render.caustics=%s", c->s->render.caustics == CAUSTICS_OFF ? "photons" : "off");
-}
-
-static bool photons(const inert_case *c)
-{
-    const bool off = c->s->render.caustics == CAUSTICS_OFF && !integrator_traits_of(&c->s->render)->drawn;
-    return (off && inert_say(c, "no-photons", "set render.caustics=photons", "render.caustics is off")) ||
-           no_photons(c);
-}
-
-/* Wavelengths of the spectral film are also random, render/shade/spectra.c, and so are points of a lens. */
-static bool seed(const inert_case *c)
-{
-    if (scene_has_caustics(&c->s->render) || camera_lens_is_sampled(c->s) || scene_has_soft_shadows(&c->s->render))
-        return false;
-    return c->s->render.spectrum != SPECTRUM_SPECTRAL && path_only(c);
-}
-
-/* A pilot has 16 paths: render/core/path_counts.h. */
-static bool error(const inert_case *c)
-{
-    enum { PILOT_PATHS = 16 };
-    return path_only(c) ||
-           (c->s->render.paths <= PILOT_PATHS &&
-            inert_say(c, "few-paths", "set render.paths=256",
-                      "render.paths, the largest number of paths, is not above the pilot's %d", PILOT_PATHS));
-}
-
-static bool light_sampling(const inert_case *c)
-{
-    if (path_only(c) || nothing_lit(c))
-        return true;
     return shining_lights(c->s) < 2 && inert_say(c, "one-light", "add a second light", "the scene has one light");
 }
 
-static bool shadows(const inert_case *c)
+/* Wavelengths of the spectral film are also random, render/shade/spectra.c, and so are points of a lens. */
+bool no_random_numbers(const inert_case *c)
 {
-    const scene *s = c->s;
-    if (integrator_traits_of(&s->render)->drawn)
-        return inert_say(c, "no-shadows", WHITTED, "the depth-buffer integrator renders no shadows");
-    return nothing_lit(c) || (only_spheres_shine(s) && s->render.caustics == CAUSTICS_OFF &&
-                              inert_say(c, "spheres", WHITTED, "random paths hit lights that have a size"));
-}
-
-static bool min_weight(const inert_case *c)
-{
-    if (is_path(c->s))
-        return inert_say(c, "whitted-only", WHITTED,
-                         "the path integrator has no ray tree: render.roulette ends faint paths");
-    return no_tree(c) || (c->s->render.depth == 0 && inert_say(c, "depth-0", "set render.depth=4",
-                                                               "render.depth is 0: no secondary rays are traced"));
-}
-
-static bool wavelengths(const inert_case *c)
-{
-    return c->s->render.spectrum != SPECTRUM_SPECTRAL &&
-           inert_say(c, "spectral-only", "set render.spectrum=spectral", "the film is RGB");
+    const render_settings *r = &c->s->render;
+    return !scene_has_caustics(r) && !camera_lens_is_sampled(c->s) && !scene_has_soft_shadows(r) &&
+           r->spectrum != SPECTRUM_SPECTRAL && !is_path(c->s) &&
+           inert_say(c, "no-random", "set render.integrator=path", "this image needs no random numbers");
 }
 
 static bool is_dispersive(const index_law *law)
@@ -335,17 +197,13 @@ static bool retards_by_path(const scene *s, const solid *one)
     return !solid_is_opaque(s, one) && sheet_disperses(&one->surface, &s->render);
 }
 
-static bool lambda(const inert_case *c)
+bool no_dispersion(const inert_case *c)
 {
     const scene *s = c->s;
-    if (s->render.spectrum == SPECTRUM_SPECTRAL)
-        return inert_say(c, "rgb-only", "set render.spectrum=rgb",
-                         "the spectral film uses the index of each wavelength");
     const index_law around = surrounding_index_law(&s->background);
-    return no_clear(c) ||
-           (!is_dispersive(&around) && !first_visible(s, has_dispersion) && !first_visible(s, retards_by_path) &&
-            inert_say(c, "no-dispersion", inert_set_on(first_visible(s, is_clear), "medium=bk7").text,
-                      "the index of every transparent medium is constant"));
+    return !is_dispersive(&around) && !first_visible(s, has_dispersion) && !first_visible(s, retards_by_path) &&
+           inert_say(c, "no-dispersion", inert_set_on(first_visible(s, is_clear), "medium=bk7").text,
+                     "the index of every transparent medium is constant");
 }
 
 static bool absorbs(const scene *s, const solid *one)
@@ -354,7 +212,7 @@ static bool absorbs(const scene *s, const solid *one)
            (material_absorbs(&one->surface) || material_scattering(&one->surface, &s->render) > 0.0);
 }
 
-static bool unit(const inert_case *c)
+bool no_absorption(const inert_case *c)
 {
     const scene *s = c->s;
     const solid *clear = first_visible(s, is_clear);
@@ -369,11 +227,8 @@ static bool shows_texture(const scene *s, const solid *one)
     return (one->surface.texture[0] && shows_color(s, &one->surface)) || may_have_face_materials(s, one);
 }
 
-static bool texturing(const inert_case *c)
+bool untextured(const inert_case *c)
 {
-    if (!integrator_traits_of(&c->s->render)->drawn)
-        return inert_say(c, "zbuffer-only", "set render.integrator=zbuffer",
-                         "ray tracing is always perspective-correct");
     const solid *first = first_visible(c->s, NULL);
     const inert_remedy remedy = first && c->s->texture_count > 0
                                     ? inert_set("%s.texture=%s", first->name, c->s->textures[0].name)
@@ -382,35 +237,16 @@ static bool texturing(const inert_case *c)
            inert_say(c, "untextured", remedy.text, "no visible surface has a texture");
 }
 
-bool inert_render(const inert_case *c)
+/* The lens is not sampled. */
+bool chief_rays(const inert_case *c)
 {
-    static const inert_row rows[] = {
-        {"depth", no_tree},
-        {"beyond", beyond},
-        {"lighting", lighting},
-        {"weights", weights},
-        {"transmission", transmission},
-        {"shadows", shadows},
-        {"soft_shadows", soft_shadows},
-        {"caustics", caustics},
-        {"photons", photons},
-        {"min_weight", min_weight},
-        {"paths", path_only},
-        {"samples", samples},
-        {"error", error},
-        {"sampler", path_only},
-        {"filter", path_only},
-        {"light_sampling", light_sampling},
-        {"roulette", roulette},
-        {"energy_compensation", energy_compensation},
-        {"seed", seed},
-        {"radiance", inert_radiance},
-        {"polarisation", polarisation},
-        {"wavelengths", wavelengths},
-        {"lambda_nm", lambda},
-        {"unit_m", unit},
-        {"texturing", texturing},
-        {NULL, NULL},
-    };
-    return inert_by_name(rows, c);
+    scene wide = *c->s; /* borrows what c->s owns */
+    wide.camera.aperture = 1.0;
+    if (camera_lens_is_sampled(&wide))
+        return false;
+    if (is_drawn(c->s) || has_layers(c->s))
+        return inert_say(c, "chief-rays", "set render.integrator=whitted and render.samples=16",
+                         "this render.integrator sees along the rays through the centre of the lens");
+    return inert_say(c, "one-ray", is_path(c->s) ? "set render.paths=64" : "set render.samples=16",
+                     "the only ray of a pixel passes through the centre of the lens");
 }

@@ -45,9 +45,12 @@ struct ray_counters; /* base/counters.h */
 
 /* --- parameters without effect --- */
 
+struct param;        /* scene/model/params.h */
+struct ray_counters; /* base/counters.h */
+
 typedef struct inert_answer {
     const char *rule; /* a word for the condition, constant text */
-    scene_note note;  /* its place is the path; if a value gives the parameter an effect, the remedy has it as PATH=VALUE
+    scene_note note; /* its place is the path; if a value gives the parameter an effect, the remedy has it as PATH=VALUE
                        */
 } inert_answer;
 
@@ -63,6 +66,10 @@ typedef struct inert_witness {
 /* Whether the parameter has no effect: no value of it changes the film while the condition holds. witness may be NULL.
  * False also for an invalid path. */
 bool inert_ask(const scene *s, const char *path, const inert_witness *witness, inert_answer *out);
+
+/* The conditions on other parameters under which a parameter has an effect: "kind=rectangle, height>0", of the same
+ * object or with a full path; "" for none. What else it needs depends on the scene. Returns text. */
+char *inert_needs_text(const struct param *row, char *text, size_t size);
 
 /* --- hints --- */
 

@@ -3,6 +3,7 @@
 #include "geometry/solid.h"
 #include "report/param_rows.h"
 #include "geometry/shapes/shape.h"
+#include "lint/lint.h"
 #include "report/json.h"
 #include "report/report.h"
 #include "report/wrap.h"
@@ -43,7 +44,7 @@ static table_widths measure(const param_lines *all, const char *value_title, int
 }
 
 typedef struct table_cells {
-    const char *path, *value, *unit, *range, *meaning;
+    const char *path, *value, *unit, *range, *meaning, *needs;
 } table_cells;
 
 static bool print_cells(FILE *stream, const table_widths *w, const table_cells *c, int columns)
@@ -51,10 +52,11 @@ static bool print_cells(FILE *stream, const table_widths *w, const table_cells *
     char *start = w->range ? text_format("%-*s  %-*s  %-*s  %-*s  ", w->path, c->path, w->value, c->value, w->unit,
                                          c->unit, w->range, c->range)
                            : text_format("%-*s  %-*s  %-*s  ", w->path, c->path, w->value, c->value, w->unit, c->unit);
+    const char *before = c->needs[0] ? "; needs " : "";
     if (start && w->range)
-        wrap_row(stream, columns, start, "%s", c->meaning);
+        wrap_row(stream, columns, start, "%s%s%s", c->meaning, before, c->needs);
     else if (start)
-        wrap_row(stream, columns, start, "%s; %s", c->range, c->meaning);
+        wrap_row(stream, columns, start, "%s; %s%s%s", c->range, c->meaning, before, c->needs);
     free(start);
     return start != NULL;
 }
@@ -62,13 +64,17 @@ static bool print_cells(FILE *stream, const table_widths *w, const table_cells *
 static bool print_lines(FILE *stream, const param_lines *all, const char *value_title, int columns)
 {
     const table_widths widths = measure(all, value_title, columns);
-    const table_cells titles = {"name", value_title, "unit", "range", "meaning"};
+    const table_cells titles = {"name", value_title, "unit", "range", "meaning", ""};
     bool good = print_cells(stream, &widths, &titles, columns);
     for (size_t i = 0; i < all->count && good; i++) {
         const param_line *l = &all->line[i];
-        char range[PARAM_PATH_MAX];
-        const table_cells cells = {l->path, or_dash(l->value), or_dash(l->row->unit),
-                                   param_range_text(l->row, range, sizeof range), l->row->meaning};
+        char range[PARAM_PATH_MAX], needs[PARAM_PATH_MAX];
+        const table_cells cells = {l->path,
+                                   or_dash(l->value),
+                                   or_dash(l->row->unit),
+                                   param_range_text(l->row, range, sizeof range),
+                                   l->row->meaning,
+                                   inert_needs_text(l->row, needs, sizeof needs)};
         good = print_cells(stream, &widths, &cells, columns);
     }
     return good;
@@ -128,6 +134,7 @@ static json_t *line_json(const param_line *l, bool has_value)
     bad |= json_object_set_new(o, "default", report_value(row, row->fallback));
     bad |= has_value ? json_object_set_new(o, "value", report_value(row, l->value)) : 0;
     bad |= json_object_set_new(o, "meaning", json_string(row->meaning));
+    bad |= json_object_set_new(o, "needs", json_string(inert_needs_text(row, range, sizeof range)));
     return json_whole(o, bad == 0);
 }
 
@@ -205,6 +212,8 @@ void param_rows_manual(FILE *stream)
         write_roff(stream, row->unit);
         fprintf(stream, "; default ");
         write_roff(stream, row->fallback[0] ? row->fallback : "none");
+        fprintf(stream, "%s", inert_needs_text(row, text, sizeof text)[0] ? "; needs " : "");
+        write_roff(stream, text);
         fprintf(stream, ")\n");
     }
     write_shapes(stream);

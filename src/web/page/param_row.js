@@ -21,10 +21,11 @@ export function valueText(value) {
 export function createRow(first, lab, { onabout, long } = {}) {
   const { path } = first;
   const object = path.slice(0, path.length - first.name.length - 1);
+  const needs = first.needs ? `; needs ${first.needs}` : '';
   const meaning = element('span', {
     class: 'param-meaning',
     id: unique('meaning'),
-    text: `${first.meaning}. ${first.range}; default ${valueText(first.default)}`,
+    text: `${first.meaning}. ${first.range}; default ${valueText(first.default)}${needs}`,
   });
   const problem = element('p', { class: 'param-problem', role: 'alert', hidden: true });
   const unused = element('span', { class: 'param-unused', text: 'unused', hidden: true });
