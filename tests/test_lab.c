@@ -9,6 +9,7 @@
 #include "lab_fixture.h"
 #include "render_fixture.h"
 #include "scene/model/camera.h"
+#include "scene/model/params.h"
 #include "scene/file/write.h"
 #include "scene/model/scene.h"
 
@@ -47,6 +48,27 @@ static void assert_param(const char *path, const char *key, double expected)
     assert_non_null(row);
     assert_true(json_number_value(json_object_get(row, key)) == expected);
     json_decref(json);
+}
+
+static const char *found_at(const json_t *reply, size_t match, size_t place)
+{
+    return json_string_value(json_array_get(json_array_get(json_object_get(reply, "found"), match), place));
+}
+
+static void parameters_are_found_by_words(void **state)
+{
+    (void)state;
+    json_t *json = room_get(&room, "/api/params?find=lamp%20brightness");
+    assert_int_equal(json_array_size(json_object_get(json, "found")), PARAM_NO_MATCH);
+    assert_string_equal(found_at(json, PARAM_IN_PATH, 0), "lamp.intensity");
+    assert_null(found_at(json, PARAM_IN_NAME, 0));
+    json_decref(json);
+    json = room_get(&room, "/api/params?find=ior");
+    assert_non_null(strstr(found_at(json, PARAM_IN_NAME, 0), ".ior"));
+    json_decref(json);
+    char *reply = client_ask(room.server, "GET", "/api/params", "", NULL);
+    assert_non_null(strstr(reply, " 400 "));
+    free(reply);
 }
 
 static void parameters_are_set_as_by_the_option_set(void **state)
@@ -452,6 +474,7 @@ int main(void)
 {
 #define IN_A_ROOM(test) cmocka_unit_test_setup_teardown(test, open_room, close_room)
     const struct CMUnitTest cases[] = {
+        IN_A_ROOM(parameters_are_found_by_words),
         IN_A_ROOM(parameters_are_set_as_by_the_option_set),
         IN_A_ROOM(ineffective_values_are_noted),
         IN_A_ROOM(wrong_values_are_refused_with_a_remedy),

@@ -113,6 +113,97 @@ static void ranges_have_readable_texts(void **state)
     }
 }
 
+static void assert_slider(param_group group, const char *name, const char *initial, const char *value,
+                          param_slider expected)
+{
+    const param_slider s = param_slider_of(param_find(group, name), initial, value);
+    assert_true(s.lowest == expected.lowest && s.highest == expected.highest && s.step == expected.step &&
+                s.log_from == expected.log_from);
+}
+
+static void sliders_are_the_useful_part_of_a_range(void **state)
+{
+    (void)state;
+    assert_slider(PARAM_RENDER, "depth", NULL, "4", (param_slider){0, 64, 1, 0});
+    assert_slider(PARAM_RENDER, "width", NULL, "800", (param_slider){1, 2000, 1, 0});
+    assert_slider(PARAM_RENDER, "width", "4000", "800", (param_slider){1, 10000, 1, 0});
+    assert_slider(PARAM_RENDER, "threads", "auto", "auto", (param_slider){1, 20, 1, 0});
+    assert_slider(PARAM_RENDER, "build_threads", NULL, "0", (param_slider){0, 100, 1, 1});
+    assert_slider(PARAM_RENDER, "photons", NULL, "1000", (param_slider){10, 30000000, 1, 10});
+    assert_slider(PARAM_CAMERA, "fov_deg", NULL, "45", (param_slider){0.1, 179, 0.1, 0});
+    assert_slider(PARAM_CAMERA, "position", NULL, "[0, 1, -6]", (param_slider){-15, 15, 0.01, 0});
+    assert_slider(PARAM_CAMERA, "aperture", NULL, "0", (param_slider){0, 100, 0, 0.001});
+    assert_slider(PARAM_CAMERA, "aperture", NULL, "0.02", (param_slider){0, 0.05, 0.0001, 0});
+    assert_slider(PARAM_MATERIAL, "color", NULL, "1,1,1", (param_slider){0, 1, 0.001, 0});
+    assert_slider(PARAM_MATERIAL, "ior", NULL, "1.33", (param_slider){1, 2.5, 0.01, 0});
+    assert_slider(PARAM_MATERIAL, "ior", NULL, "0.05", (param_slider){0.01, 2.5, 0.01, 0});
+    assert_slider(PARAM_MATERIAL, "ior", NULL, "4", (param_slider){1, 8, 0.01, 0});
+    assert_slider(PARAM_MATERIAL, "absorb_per_m", NULL, "1,2,300", (param_slider){0, 600, 0, 1e-5 * 600});
+    assert_slider(PARAM_MESH, "gravity", NULL, "0,-50,0", (param_slider){-100, 100, 0.05, 0});
+}
+
+static void sliders_contain_the_value_and_stay_in_range(void **state)
+{
+    (void)state;
+    size_t count = 0;
+    for (size_t i = 0; i < param_count(); i++) {
+        const param *row = param_at(i);
+        double value;
+        if (!param_has_slider(row))
+            continue;
+        const param_slider s = param_slider_of(row, NULL, row->fallback);
+        assert_true(s.lowest >= row->lowest && s.highest <= row->highest && s.lowest < s.highest && s.step >= 0);
+        assert_true(!row->above_lowest || s.lowest > row->lowest);
+        assert_true(row->type != PARAM_INT || s.step == 1);
+        assert_true(s.log_from == 0 || s.log_from >= s.lowest);
+        if (number_parse_real(row->fallback, &value))
+            assert_true(value >= s.lowest && value <= s.highest);
+        assert_true(!row->coefficient || (row->type == PARAM_COLOR && row->highest > 1));
+        count++;
+    }
+    assert_true(count > 100);
+}
+
+static param_match match_of(const char *path, const char *words)
+{
+    const char *dot = strchr(path, '.');
+    const param *row = param_find(strncmp(path, "render", 6) == 0   ? PARAM_RENDER
+                                  : strncmp(path, "camera", 6) == 0 ? PARAM_CAMERA
+                                  : strncmp(path, "lamp", 4) == 0   ? PARAM_LIGHT
+                                                                    : PARAM_SOLID,
+                                  dot + 1);
+    assert_non_null(row);
+    return param_matches(row, path, words);
+}
+
+static void words_find_parameters(void **state)
+{
+    (void)state;
+    static const struct {
+        const char *path, *words;
+        param_match match;
+    } cases[] = {
+        {"render.depth", "", PARAM_IN_NAME},
+        {"render.depth", "dep", PARAM_IN_NAME},
+        {"render.depth", "RENDER  depth", PARAM_IN_NAME},
+        {"camera.fov_deg", "deg", PARAM_IN_NAME},
+        {"render.depth", "epth", PARAM_IN_PATH},
+        {"render.depth", "bounces", PARAM_IN_PATH},
+        {"lamp.intensity", "brightness", PARAM_IN_PATH},
+        {"lamp.intensity", "brigh", PARAM_IN_PATH},
+        {"lamp.intensity", "lamp brightness", PARAM_IN_PATH},
+        {"camera.fov_deg", "zoom", PARAM_IN_PATH},
+        {"vessel.ior", "mirrors", PARAM_IN_PATH},
+        {"render.depth", "recursion", PARAM_IN_TEXT},
+        {"vessel.medium", "diamond", PARAM_IN_TEXT},
+        {"render.depth", "recursion brightness", PARAM_NO_MATCH},
+        {"vessel.radius", "br", PARAM_NO_MATCH},
+        {"vessel.ior", "soaps", PARAM_NO_MATCH},
+    };
+    for (size_t i = 0; i < sizeof cases / sizeof *cases; i++)
+        assert_int_equal(match_of(cases[i].path, cases[i].words), cases[i].match);
+}
+
 static status same_as_fallback(void *context, const char *path, const param *row, const char *value)
 {
     (void)path;
@@ -477,6 +568,9 @@ int main(void)
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(rows_are_complete_and_defaults_are_in_range),
         cmocka_unit_test(ranges_have_readable_texts),
+        cmocka_unit_test(sliders_are_the_useful_part_of_a_range),
+        cmocka_unit_test(sliders_contain_the_value_and_stay_in_range),
+        cmocka_unit_test(words_find_parameters),
         cmocka_unit_test(an_empty_scene_has_the_defaults),
         cmocka_unit_test(values_of_every_type_are_set_and_read),
         cmocka_unit_test(a_material_changes_all_its_solids_and_a_solid_only_itself),

@@ -64,9 +64,10 @@ static bool names(const char *word, const char *path)
     return false;
 }
 
-static bool mentions(const char *word, const param_line *l)
+/* Whether the filter keeps a line; named: some path has it as a name. */
+static bool keeps(const char *filter, bool named, const param_line *l)
 {
-    return strcasestr(l->path, word) || strcasestr(l->row->meaning, word);
+    return named ? names(filter, l->path) : param_matches(l->row, l->path, filter) != PARAM_NO_MATCH;
 }
 
 static status no_match(const param_lines *all, const char *filter, bool of_scene, diagnostic *why)
@@ -93,13 +94,13 @@ static status narrow(param_lines *all, const char *filter, bool of_scene, diagno
     for (size_t i = 0; i < all->count; i++)
         named = named || names(filter, all->line[i].path);
     for (size_t i = 0; i < all->count; i++)
-        kept += named ? names(filter, all->line[i].path) : mentions(filter, &all->line[i]);
+        kept += keeps(filter, named, &all->line[i]);
     if (kept == 0)
         return no_match(all, filter, of_scene, why);
     kept = 0;
     for (size_t i = 0; i < all->count; i++) {
         param_line l = all->line[i];
-        if (named ? names(filter, l.path) : mentions(filter, &l)) {
+        if (keeps(filter, named, &l)) {
             all->line[kept++] = l;
         } else {
             free(l.path);

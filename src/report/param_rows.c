@@ -1,7 +1,9 @@
 /* The parameter table as text, as JSON, and as roff for the manual page. */
 #include "base/json_build.h"
+#include "base/number.h"
 #include "geometry/solid.h"
 #include "report/param_rows.h"
+#include "scene/model/medium.h"
 #include "geometry/shapes/shape.h"
 #include "lint/lint.h"
 #include "report/json.h"
@@ -113,9 +115,40 @@ static json_t *shapes(const param *row)
     return list;
 }
 
-static json_t *line_json(const param_line *l, bool has_value)
+static json_t *slider(const param *row, const char *initial, const char *value)
+{
+    const param_slider s = param_slider_of(row, initial, value);
+    return json_pack("{s:f,s:f,s:f,s:f}", "lowest", s.lowest, "highest", s.highest, "step", s.step, "log_from",
+                     s.log_from);
+}
+
+/* {LAW: coefficients} for the laws that need some. */
+static json_t *first_coefficients(const char *value)
+{
+    double ior = 1;
+    json_t *laws = json_object();
+    number_parse_real(value, &ior);
+    for (int law = MEDIUM_IOR + 1; law < MEDIUM_CATALOGUE; law++) {
+        const number_list first = medium_first_coefficients(law, ior);
+        json_t *list = json_array();
+        for (int64_t i = 0; i < first.count; i++)
+            json_add(&list, json_of_real(first.value[i]));
+        json_add_as(&laws, medium_words[law], list);
+    }
+    return laws;
+}
+
+/* The value of a path in the opened scene; NULL for none. */
+static const char *initial_of(const json_t *initial, const param_line *l)
+{
+    return json_string_value(json_object_get(initial, l->path));
+}
+
+/* initial: {path: text}; NULL for none. */
+static json_t *line_json(const param_line *l, bool has_value, const json_t *initial)
 {
     const param *row = l->row;
+    const char *first = initial_of(initial, l);
     bool bounded = row->type != PARAM_CHOICE && row->type != PARAM_PATH && row->type != PARAM_WORD;
     char range[PARAM_PATH_MAX];
     json_t *o = json_object();
@@ -128,26 +161,49 @@ static json_t *line_json(const param_line *l, bool has_value)
     bad |= json_object_set_new(o, "lowest", bounded ? json_of_real(row->lowest) : json_null());
     bad |= json_object_set_new(o, "highest", bounded ? json_of_real(row->highest) : json_null());
     bad |= json_object_set_new(o, "above_lowest", json_boolean(row->above_lowest));
+    if (param_has_slider(row))
+        bad |= json_object_set_new(o, "slider", slider(row, first, l->value));
+    bad |= row->coefficient ? json_object_set_new(o, "coefficient", json_true()) : 0;
     bad |= row->choices ? json_object_set_new(o, "choices", choices(row)) : 0;
     bad |= row->automatic ? json_object_set_new(o, "automatic", json_string(row->automatic)) : 0;
     bad |= row->group == PARAM_SOLID ? json_object_set_new(o, "shapes", shapes(row)) : 0;
     bad |= json_object_set_new(o, "default", report_value(row, row->fallback));
     bad |= has_value ? json_object_set_new(o, "value", report_value(row, l->value)) : 0;
+    bad |= initial ? json_object_set_new(o, "initial", first ? report_value(row, first) : json_null()) : 0;
     bad |= json_object_set_new(o, "meaning", json_string(row->meaning));
     bad |= json_object_set_new(o, "needs", json_string(inert_needs_text(row, range, sizeof range)));
     return json_whole(o, bad == 0);
 }
 
-status param_rows_json(const scene *s, const char *filter, json_t **out, diagnostic *why)
+static status add_text(void *values, const char *path, const param *row, const char *value)
+{
+    (void)row;
+    return json_object_set_new(values, path, json_of_text(value)) ? STATUS_FAILURE : STATUS_OK;
+}
+
+/* {path: text} of a scene. */
+static json_t *texts_of(const scene *s)
+{
+    json_t *values = json_object();
+    return json_whole(values, values && scene_each_param(s, add_text, values) == STATUS_OK);
+}
+
+status param_rows_json(const scene *s, const scene *opened, const char *filter, json_t **out, diagnostic *why)
 {
     param_lines all;
     *out = NULL;
     status result = param_lines_collect(s, filter, &all, why);
-    json_t *list = result == STATUS_OK ? json_array() : NULL;
-    int bad = !list;
-    for (size_t i = 0; i < all.count && !bad; i++)
-        bad |= json_array_append_new(list, line_json(&all.line[i], s != NULL));
+    json_t *list = result == STATUS_OK ? json_array() : NULL, *initial = opened && list ? texts_of(opened) : NULL;
+    int bad = !list || (opened && !initial);
+    const param *ior = param_find(PARAM_MATERIAL, "ior");
+    for (size_t i = 0; i < all.count && !bad; i++) {
+        json_t *line = line_json(&all.line[i], s != NULL, initial);
+        if (initial && all.line[i].row == ior)
+            bad |= json_object_set_new(line, "first_coefficients", first_coefficients(all.line[i].value));
+        bad |= json_array_append_new(list, line);
+    }
     param_lines_release(&all);
+    json_decref(initial);
     if (!bad)
         *out = json_pack("{s:i,s:o}", "schema", REPORT_SCHEMA, "params", list);
     else

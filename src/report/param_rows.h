@@ -33,8 +33,9 @@ char *param_lines_path(const param *row, char *text, size_t size);
  * to which meanings are wrapped; 0: no wrapping. */
 status param_rows_print(FILE *stream, const scene *s, const char *filter, int columns, diagnostic *why);
 
-/* The same as JSON; the caller owns *out. */
-status param_rows_json(const scene *s, const char *filter, json_t **out, diagnostic *why);
+/* The same as JSON; the caller owns *out. opened: NULL, or for the page an earlier state of the scene: adds its values
+ * as `initial` (null: it has no such parameter), and to indices `first_coefficients`, {LAW: numbers} to begin with. */
+status param_rows_json(const scene *s, const scene *opened, const char *filter, json_t **out, diagnostic *why);
 
 /* Prints the generated part of cuvette-scene(5). */
 void param_rows_manual(FILE *stream);

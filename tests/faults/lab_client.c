@@ -133,6 +133,7 @@ typedef struct request {
 static const request usual[] = {
     {"GET", "/api/state", "", false},
     {"GET", "/api/scene", "", true},
+    {"GET", "/api/params?find=lamp%20brightness", "", true},
     {"POST", "/api/set", "{\"set\": {\"liquid.ior\": 1.4}}", true},
     {"GET", "/api/picture.png?wait=1", "", false},
     {"POST", "/api/pin", "{}", false},

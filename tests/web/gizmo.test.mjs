@@ -196,13 +196,5 @@ export const cases = {
       await row.first().waitFor();
       t.more(await row.count(), 0, `${word} finds ${path}`);
     }
-    const known = await screen.page.evaluate(async () => {
-      const { meaningsOf } = await import('/param_synonyms.js');
-      return ['water', 'glass', 'zoom', 'brightness'].map((word) => meaningsOf(word).length);
-    });
-    t.check(
-      known.every((count) => count > 1),
-      'each of the words has synonyms',
-    );
   },
 };

@@ -1,6 +1,7 @@
 #include "scene/model/medium.h"
 
 #include "base/elementary_inline.h"
+#include "base/number.h"
 #include "optics/metals.h"
 #include <float.h>
 #include <string.h>
@@ -51,6 +52,36 @@ status material_index_law(const material *m, const char *label, index_law *out, 
     }
     status code = dispersion_check(&out->law, &bad);
     return code == STATUS_OK ? code : diagnose(why, code, bad.remedy, "%.80s: %s", label, bad.what);
+}
+
+static double six_digits(double x)
+{
+    char text[NUMBER_TEXT_MAX];
+    double rounded = x;
+    number_parse_real(number_format_digits(x, 6, text), &rounded);
+    return rounded;
+}
+
+number_list medium_first_coefficients(int word, double ior)
+{
+    const double spread = 0.004, d_um = LINE_HELIUM_D_NM / 1000; /* B of water and crown glass, um^2 */
+    const double lines[] = {LINE_HYDROGEN_F_NM, LINE_HELIUM_D_NM, LINE_HYDROGEN_C_NM};
+    const dispersion cauchy = {DISPERSION_CAUCHY, 2, {six_digits(ior - spread / (d_um * d_um)), spread}, 0, 0};
+    const dispersion *crown = &media_find("bk7")->law;
+    number_list list = {0};
+    if (word == MEDIUM_TABLE) {
+        for (size_t i = 0; i < sizeof lines / sizeof *lines; i++) {
+            list.value[list.count++] = six_digits(lines[i]);
+            list.value[list.count++] = six_digits(dispersion_index(&cauchy, lines[i]));
+        }
+        return list;
+    }
+    if (word != MEDIUM_CAUCHY && word != MEDIUM_SELLMEIER)
+        return list;
+    const dispersion *law = word == MEDIUM_CAUCHY ? &cauchy : crown;
+    list.count = law->count;
+    memcpy(list.value, law->coefficient, (size_t)law->count * sizeof *list.value);
+    return list;
 }
 
 index_law surrounding_index_law(const background *b)

@@ -30,6 +30,9 @@ typedef struct index_law {
  * metal is that of its n. */
 status material_index_law(const material *m, const char *label, index_law *out, diagnostic *why);
 index_law surrounding_index_law(const background *b);
+/* Coefficients from which a law can be edited: close to the constant index, with the dispersion of water and crown
+ * glass; for sellmeier those of N-BK7. None for a medium without coefficients. */
+number_list medium_first_coefficients(int word, double ior);
 
 double index_law_at(const index_law *law, double lambda_nm);
 /* Whether two laws give equal indices: at the single wavelength of an RGB film, or at all wavelengths. */

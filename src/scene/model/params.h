@@ -34,6 +34,13 @@ typedef enum param_type {
     PARAM_WORD
 } param_type;
 
+/* The useful part of a range, for a slider. */
+typedef struct param_slider {
+    double lowest, highest; /* lowest == highest: not declared */
+    double step;            /* 1 for integers; 0: any value, by the logarithm */
+    double log_from;        /* above 0: logarithmic from this value on, which is lowest, or follows a lowest of 0 */
+} param_slider;
+
 typedef struct param {
     param_group group;
     const char *name; /* "depth"; also the key in scene files */
@@ -49,6 +56,8 @@ typedef struct param {
     const char *automatic;      /* PARAM_INT: a word for a value outside lowest .. highest; NULL: none */
     int64_t automatic_value;    /* that value */
     size_t offset;              /* in the group's struct */
+    param_slider slider;        /* where the one that follows from the range, the default and the value is no use */
+    bool coefficient;           /* PARAM_COLOR: an absorption coefficient of each channel, not a colour */
     bool performance_only;      /* affects only performance: the film does not depend on it */
     bool by_shape;              /* PARAM_SOLID: only for solids whose shape rule lists it */
     bool by_chance; /* affects only films of random paths: the meaning of a row with another integrator omits it */
@@ -63,6 +72,18 @@ const char *param_group_name(param_group group);
 /* The row of a group with that name, or NULL. PARAM_SOLID also finds material rows, which apply to a solid's surface.
  * */
 const param *param_find(param_group group, const char *name);
+/* Whether a parameter has a slider: numbers, vectors and colours. */
+bool param_has_slider(const param *row);
+/* The slider of a value: the range, or a useful part of it that contains the default, the value and, unless NULL, the
+ * initial value. The elements of a vector share it. Values are text as of scene_get. Pure. */
+param_slider param_slider_of(const param *row, const char *initial, const char *value);
+
+/* A search by words of the path, the meaning, the choices, or everyday language ("brightness" for intensity). How well
+ * the row with that path matches all words of a text: parts of the path begin with them, the path has them or what they
+ * mean, or only the rest has; PARAM_NO_MATCH: a word is missing. Pure. */
+typedef enum param_match { PARAM_IN_NAME, PARAM_IN_PATH, PARAM_IN_TEXT, PARAM_NO_MATCH } param_match;
+param_match param_matches(const param *row, const char *path, const char *words);
+
 /* "integer 1..65536", "number > 0, at most 179", "one of: sky, black", "3 numbers, each 0..1"; returns text. */
 char *param_range_text(const param *row, char *text, size_t size);
 

@@ -67,6 +67,11 @@ enum { ON_SLIME = 1 << MESH_SLIME, ON_ALL = 0 };
 #define PATHS(field) OF(render_settings, field), .by_chance = true
 /* For slimes only. */
 #define SLIME(field) ON_SLIME, .offset = offsetof(mesh_entry, slime.field)
+/* Sliders: of positive numbers of any size, two decades on both sides of the default and the value; or from 0 to a
+ * usual maximum, over five decades. */
+#define DECADES .slider = {.log_from = 1}
+#define UP_TO(most) .slider = {0, most, 0, 1e-5 * (most)}
+#define COEFFICIENT .coefficient = true, UP_TO(100)
 /* Of beams. The film depends on them only if they light the scene (scene_film_depends_on), on how they are followed and
  * drawn never. */
 #define BEAM(field) OF(beam, field)
@@ -166,11 +171,13 @@ static const param table[] = {
     CHOICE(PARAM_RENDER, render_settings, caustics, caustics_words, "off",
            "light that mirrors and transparent solids throw on matte surfaces: none, or by photons traced from the "
            "lamps; then shadows are opaque and radiance is basic"),
-    INTEGER(PARAM_RENDER, render_settings, photons, "", 1, 67108864, "300000",
-            "photons that the lamps send towards mirrors and transparent solids, for caustics"),
+    ROW(PARAM_RENDER, "photons", PARAM_INT, "", 1, 67108864, false, "300000",
+        "photons that the lamps send towards mirrors and transparent solids, for caustics", NULL,
+        OF(render_settings, photons), DECADES),
     REAL(PARAM_RENDER, render_settings, min_weight, "", 0, 1, "0",
          "rays with a throughput below this are not traced; 0: trace the whole tree"),
-    INTEGER(PARAM_RENDER, render_settings, paths, "", 1, 1048576, "16", "paths per pixel of integrator path"),
+    ROW(PARAM_RENDER, "paths", PARAM_INT, "", 1, 1048576, false, "16", "paths per pixel of integrator path", NULL,
+        OF(render_settings, paths), DECADES),
     ROW(PARAM_RENDER, "error", PARAM_REAL, "", 0, 1e3, false, "0",
         "standard error of a pixel that integrator path aims at, with at most render.paths paths, which a pilot render "
         "chooses; 0: render.paths everywhere",
@@ -293,16 +300,17 @@ static const param table[] = {
          "refractive index of the surrounding medium, relative to vacuum"),
     CHOICE(PARAM_BACKGROUND, background, medium, surrounding_words, "ior",
            "the surrounding medium: given by ior, or one of the catalogue"),
-    COLOR(PARAM_BACKGROUND, background, absorb_per_m, 1e9, "0,0,0",
-          "absorption coefficient of the surrounding medium by channel, 1/m, along rays that end at a surface "
-          "or a light; light from the sky is not attenuated"),
+    ROW(PARAM_BACKGROUND, "absorb_per_m", PARAM_COLOR, "", 0, 1e9, false, "0,0,0",
+        "absorption coefficient of the surrounding medium by channel, 1/m, along rays that end at a surface "
+        "or a light; light from the sky is not attenuated",
+        NULL, OF(background, absorb_per_m), COEFFICIENT),
 
     {PARAM_MESH, "generate", PARAM_CHOICE, "", 0, 0, false, "file", "generated shape; file: read the mesh from a file",
      source_words, OF(mesh_entry, source)},
     {PARAM_MESH, "file", PARAM_PATH, "", 0, 0, false, "", "OBJ, PLY, STL or glTF file, relative to the scene file",
      NULL, OF(mesh_entry, path)},
-    INTEGER(PARAM_MESH, mesh_entry, count, "", 1, 100000000, "10000",
-            "number of triangles of sparse and dense; of sphere: the nearest 20 f^2"),
+    ROW(PARAM_MESH, "count", PARAM_INT, "", 1, 100000000, false, "10000",
+        "number of triangles of sparse and dense; of sphere: the nearest 20 f^2", NULL, OF(mesh_entry, count), DECADES),
     INTEGER(PARAM_MESH, mesh_entry, level, "", 0, 11, "4",
             "subdivision level of an icosphere or slime: 20 * 4^level triangles; of a slime at most 7"),
     POSITIVE(PARAM_MESH, mesh_entry, major, "scene units", FAR, "1",
@@ -325,19 +333,25 @@ static const param table[] = {
      ON_SLIME, .offset = offsetof(mesh_entry, time_s)},
     {PARAM_MESH, "script", PARAM_PATH, "", 0, 0, false, "", "slime: YAML script of grabs, relative to the scene file",
      NULL, ON_SLIME, .offset = offsetof(mesh_entry, script_path)},
-    SLIME_REAL(radius, "scene units", 0, 1e3, true, "1", "slime: radius of the sphere at rest"),
+    ROW(PARAM_MESH, "radius", PARAM_REAL, "scene units", 0, 1e3, true, "1", "slime: radius of the sphere at rest", NULL,
+        SLIME(radius), .slider = {0.01, 2.5, 0.01, 0}),
     SLIME_VECTOR(position, "scene units", FAR, "0,1,0", "slime: initial position of the centre, in the mesh's frame"),
     SLIME_VECTOR(velocity, "scene units/s", 1e3, "0,0,0", "slime: initial velocity"),
-    SLIME_REAL(mass_kg, "kg", 1e-6, 1e6, false, "1", "slime: total mass, distributed evenly over the vertices"),
-    SLIME_REAL(stiffness, "N/scene unit", 0, 1e9, false, "10", "slime: stiffness of each edge spring"),
+    ROW(PARAM_MESH, "mass_kg", PARAM_REAL, "kg", 1e-6, 1e6, false, "1",
+        "slime: total mass, distributed evenly over the vertices", NULL, SLIME(mass_kg), DECADES),
+    ROW(PARAM_MESH, "stiffness", PARAM_REAL, "N/scene unit", 0, 1e9, false, "10",
+        "slime: stiffness of each edge spring", NULL, SLIME(stiffness), UP_TO(200)),
     SLIME_REAL(bending, "N/scene unit", 0, 1e9, false, "4",
                "slime: stiffness of each bending spring, across two adjacent faces"),
     SLIME_REAL(through, "N/scene unit", 0, 1e9, false, "100",
                "slime: total stiffness of the springs through the interior"),
-    SLIME_REAL(damping, "N s/scene unit", 0, 1e6, false, "0.04", "slime: damping along each spring"),
-    SLIME_REAL(pressure, "N/scene unit^2", 0, 1e9, false, "300",
-               "slime: pressure at zero volume; it decreases linearly with the volume to zero at rest"),
-    SLIME_VECTOR(gravity, "scene units/s^2", 1e6, "0,-9.81,0", "slime: gravitational acceleration"),
+    ROW(PARAM_MESH, "damping", PARAM_REAL, "N s/scene unit", 0, 1e6, false, "0.04", "slime: damping along each spring",
+        NULL, SLIME(damping), UP_TO(2)),
+    ROW(PARAM_MESH, "pressure", PARAM_REAL, "N/scene unit^2", 0, 1e9, false, "300",
+        "slime: pressure at zero volume; it decreases linearly with the volume to zero at rest", NULL, SLIME(pressure),
+        UP_TO(5000)),
+    ROW(PARAM_MESH, "gravity", PARAM_VECTOR, "scene units/s^2", -1e6, 1e6, false, "0,-9.81,0",
+        "slime: gravitational acceleration", NULL, SLIME(gravity), .slider = {-30, 30, 0.05, 0}),
     SLIME_CHOICE(ground, off_on, "on", "slime: a floor at height ground_y of the mesh's frame"),
     SLIME_REAL(ground_y, "scene units", -FAR, FAR, false, "0", "slime: height of the floor"),
     SLIME_REAL(restitution, "", 0, 1, false, "0.3", "slime: coefficient of restitution at the floor"),
@@ -345,8 +359,9 @@ static const param table[] = {
     SLIME_CHOICE(integrator, motion_words, "euler",
                  "slime: time integrator: semi-implicit Euler, velocity Verlet, or backward Euler, which is stable "
                  "for stiff springs"),
-    SLIME_REAL(dt_s, "s", 1e-9, 1, false, "0.001",
-               "slime: time step; the default is stable up to level 4; above it, use a smaller step or adaptive"),
+    ROW(PARAM_MESH, "dt_s", PARAM_REAL, "s", 1e-9, 1, false, "0.001",
+        "slime: time step; the default is stable up to level 4; above it, use a smaller step or adaptive", NULL,
+        SLIME(dt_s), DECADES),
     SLIME_CHOICE(adaptive, off_on, "off",
                  "slime: split time steps until they are stable and short compared with the springs' periods"),
     {PARAM_MESH, "threads", PARAM_INT, "", 1, 1024, false, "1",
@@ -450,9 +465,10 @@ static const param table[] = {
     REAL(PARAM_MATERIAL, material, transparency, "", 0, 1, "0",
          "fraction of the light that is not reflected which enters the solid (with constant weights or simple "
          "transmission: of the incident light); 0: opaque"),
-    POSITIVE(PARAM_MATERIAL, material, ior, "", 1e9, "1",
-             "refractive index, relative to vacuum: at least 0.1, of a metal (with extinction) any; above 10000 a "
-             "transparent surface is treated as a perfect mirror"),
+    ROW(PARAM_MATERIAL, "ior", PARAM_REAL, "", 0, 1e9, true, "1",
+        "refractive index, relative to vacuum: at least 0.1, of a metal (with extinction) any; above 10000 a "
+        "transparent surface is treated as a perfect mirror",
+        NULL, OF(material, ior), .slider = {1, 2.5, 0.01, 0}),
     REAL(PARAM_MATERIAL, material, extinction, "", 0, 100, "0",
          "k of the complex refractive index ior - i k; above 0, an opaque surface reflects as this metal, and its "
          "reflectivity is not used"),
@@ -490,7 +506,8 @@ static const param table[] = {
     REAL(PARAM_MATERIAL, material, roughness, "", 0, 1, "0",
          "alpha of the GGX microfacets of a surface that reflects or refracts rays (ground glass, brushed metal), for "
          "integrator path; 0: smooth"),
-    COLOR(PARAM_MATERIAL, material, absorb_per_m, 1e9, "0,0,0", "Beer-Lambert absorption coefficient by channel, 1/m"),
+    ROW(PARAM_MATERIAL, "absorb_per_m", PARAM_COLOR, "", 0, 1e9, false, "0,0,0",
+        "Beer-Lambert absorption coefficient by channel, 1/m", NULL, OF(material, absorb_per_m), COEFFICIENT),
     LIST(PARAM_MATERIAL, material, absorb_spectrum, "nm, 1/m", 1e9, "[]",
          "Beer-Lambert absorption coefficient by wavelength, as nm,1/m,nm,1/m,...; replaces absorb_per_m"),
     REAL(PARAM_MATERIAL, material, scatter_per_m, "1/m", 0, 1e9, "0",

@@ -44,6 +44,40 @@ status api_scene(call *c)
     return text ? api_send(c, "application/json", text, strlen(text)) : out_of_memory(&c->why);
 }
 
+typedef struct param_question {
+    const char *words;
+    json_t *found[PARAM_NO_MATCH]; /* by param_match */
+} param_question;
+
+static status add_found(void *context, const char *path, const param *row, const char *value)
+{
+    param_question *q = context;
+    const param_match match = param_matches(row, path, q->words);
+    (void)value;
+    if (match != PARAM_NO_MATCH)
+        json_add(&q->found[match], json_of_text(path));
+    return STATUS_OK;
+}
+
+status api_find(call *c)
+{
+    param_question q = {.words = http_query_value(c->request, "find")};
+    if (!q.words)
+        return api_refuse(c, 400, "find is missing", "use ?find=WORDS");
+    scene *current = scene_document_take(c->l->scene_document, NULL);
+    json_t *found = json_array();
+    for (int i = 0; i < PARAM_NO_MATCH; i++)
+        q.found[i] = json_array();
+    if (!current || scene_each_param(current, add_found, &q) != STATUS_OK) {
+        json_decref(found);
+        found = NULL;
+    }
+    for (int i = 0; i < PARAM_NO_MATCH; i++)
+        json_add(&found, q.found[i]);
+    scene_destroy(current);
+    return api_reply_json(c, json_pack("{s:o}", "found", found));
+}
+
 /* --- set and reset --- */
 
 /* Whether it is one number or word. */

@@ -13,6 +13,7 @@ static const struct api_route {
 } routes[] = {
     {"GET", "/api/state", api_state, NO_BODY},
     {"GET", "/api/scene", api_scene, NO_BODY},
+    {"GET", "/api/params", api_find, NO_BODY},
     {"POST", "/api/set", api_set, ANY_BODY},
     {"POST", "/api/reset", api_reset, ANY_BODY},
     {"POST", "/api/undo", api_undo, NO_BODY},

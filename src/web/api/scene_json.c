@@ -82,41 +82,13 @@ static json_t *shapes_json(void)
     return list;
 }
 
-/* {path: value}, borrowed from rows. */
-static json_t *values_by_path(const json_t *rows)
-{
-    json_t *values = json_object();
-    for (size_t i = 0; values && i < json_array_size(rows); i++) {
-        const json_t *row = json_array_get(rows, i);
-        json_add_as(&values, json_string_value(json_object_get(row, "path")),
-                    json_incref(json_object_get(row, "value")));
-    }
-    return values;
-}
-
-static bool add_initial(json_t *rows, const json_t *opened_rows)
-{
-    json_t *initial = values_by_path(opened_rows);
-    int bad = !initial;
-    for (size_t i = 0; i < json_array_size(rows) && !bad; i++) {
-        json_t *row = json_array_get(rows, i),
-               *value = json_object_get(initial, json_string_value(json_object_get(row, "path")));
-        bad |= json_object_set_new(row, "initial", value ? json_incref(value) : json_null());
-    }
-    json_decref(initial);
-    return !bad;
-}
-
 json_t *scene_json(const scene *s, const scene *opened, uint64_t generation)
 {
-    json_t *rows = NULL, *before = NULL, *o = NULL;
-    if (param_rows_json(s, NULL, &rows, NULL) == STATUS_OK &&
-        param_rows_json(opened, NULL, &before, NULL) == STATUS_OK &&
-        add_initial(json_object_get(rows, "params"), json_object_get(before, "params")))
+    json_t *rows = NULL, *o = NULL;
+    if (param_rows_json(s, opened, NULL, &rows, NULL) == STATUS_OK)
         o = json_pack("{s:I,s:o,s:o,s:o,s:o,s:O}", "generation", (json_int_t)generation, "title",
                       json_of_text(s->title), "objects", objects_json(s), "outlines", outlines_json(s), "shapes",
                       shapes_json(), "params", json_object_get(rows, "params"));
     json_decref(rows);
-    json_decref(before);
     return o;
 }

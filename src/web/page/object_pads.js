@@ -89,7 +89,7 @@ export function createPads(choice, { id = 'object', many = '' } = {}) {
       return element(
         'div',
         { class: 'object-steps' },
-        field('Step', 'length', 'units', 1e6),
+        field('Step', 'length', 'units'),
         pad(named('Move'), 'length', choice.move),
         turns ? [field('Angle', 'angle', '°', 360), pad(named('Turn'), 'angle', choice.turn), turnSense()] : null,
         scales ? [field('Factor', 'factor', '', 1000, 1.0001), sizes(named('Scale'))] : null,

@@ -87,6 +87,7 @@ export const panel = {
     let built = '';
     let later = 0;
     let timer = 0;
+    let asked = 0;
 
     root.classList.toggle('explained', explain.value);
     root.append(
@@ -270,18 +271,31 @@ export const panel = {
       lab.change('/api/reset', { paths: changedRows(name).map((row) => row.path) }).catch(lab.fail);
     }
 
-    function find() {
+    async function find() {
       const words = search.value.trim();
-      rows.delete('found');
-      list.hidden = words !== '';
-      results.hidden = !list.hidden;
+      asked += 1;
+      const mine = asked;
       if (!words) {
+        rows.delete('found');
+        list.hidden = false;
+        results.hidden = true;
         countLabel.textContent = '';
         results.replaceChildren();
         return;
       }
       const near = new Set(handParts(lab, onceClear).flatMap(([, own]) => own.map((row) => row.path)));
-      const best = findParams(lab.scene.params, words, near);
+      try {
+        const best = await findParams(lab, words, near);
+        if (mine === asked) showFound(best);
+      } catch (error) {
+        lab.fail(error);
+      }
+    }
+
+    function showFound(best) {
+      rows.delete('found');
+      list.hidden = true;
+      results.hidden = false;
       countLabel.textContent = `${best.length} found`;
       replace(
         results,

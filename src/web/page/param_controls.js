@@ -1,17 +1,16 @@
 /* The control of one parameter, by its type.
  * exports: controlOf(row, context) -> {node, inputs, single, busy(), set(value)}
- *   context: {name (for screen readers), describedby, send(value, gesture), names: the suggested words}
+ *   context: {name (for screen readers), describedby, send(value, gesture), names: the suggested words, slider() -> the
+ *   newest row's}
  *   single: the one input that a label belongs to, or null for a group; busy: it is being dragged; set(value, true):
  *   after a rejected value */
 
 import { element, gesture, gestures, toByte, toLinear, unique } from './ui.js';
 import { scale } from './ui_controls.js';
 import { numberInput, numberOf } from './ui_number_input.js';
-import { workingRange } from './param_range.js';
 
 const CHANNELS = ['red', 'green', 'blue'];
 const AXES = ['x', 'y', 'z'];
-const COEFFICIENT = 1e6; /* colours with a larger upper bound are per-channel coefficients */
 
 export const written = (x) => (Number.isFinite(x) ? String(Number(x.toPrecision(7))) : '');
 const digitsOf = (x, n) => Number(x.toPrecision(n));
@@ -47,14 +46,14 @@ function slider(row, context, label, send) {
     show(value);
     send(value, gesture('number'));
   });
-  const fit = (value) => {
-    ruler = { ...workingRange(row, value) };
-    Object.assign(ruler, scale({ ...ruler, step: ruler.step || undefined }));
+  const fit = () => {
+    const { lowest: min, highest: max, step, log_from: logFrom } = context.slider();
+    ruler = { min, max, ...scale({ min, max, step, logFrom }) };
     range.max = ruler.steps;
-    box.input.dataset.step = row.type === 'integer' ? 1 : ruler.log ? 'any' : written(10 * ruler.step);
+    box.input.dataset.step = row.type === 'integer' ? 1 : logFrom ? 'any' : written(10 * step);
   };
   const show = (value) => {
-    if (!ruler || value > ruler.max || value < ruler.min) fit(value);
+    if (!ruler || value > ruler.max || value < ruler.min) fit();
     range.value = ruler.position(value);
     range.setAttribute('aria-valuetext', `${written(value)}${row.unit ? ` ${row.unit}` : ''}`);
     range.style.setProperty('--filled', `${(100 * range.value) / ruler.steps}%`);
@@ -76,7 +75,7 @@ function slider(row, context, label, send) {
     inputs: [range, box.input],
     busy: () => dragged,
     set(value, rescale) {
-      if (rescale) fit(value); /* not the range of the rejected value */
+      if (rescale) fit(); /* not the range of the rejected value */
       show(value);
       if (document.activeElement !== box.input) box.set(value);
     },
@@ -91,7 +90,7 @@ function scalar(row, context) {
 /* A slider with a check box for the row's word for an automatic value; unchecking it restores the last number. */
 function orAutomatic(row, context) {
   let number = typeof row.value === 'number' ? row.value : row.lowest;
-  const one = slider({ ...row, value: number }, context, null, context.send);
+  const one = slider(row, context, null, context.send);
   const box = element('input', { type: 'checkbox', ...attributes(context, `${context.name}, ${row.automatic}`) });
   const set = (value, rescale) => {
     const automatic = value === row.automatic;
@@ -133,7 +132,7 @@ function parts(row, context, names, make) {
 function vector(row, context) {
   const three = parts(row, context, AXES, (label, send) => {
     const part = numberBox(context, label, send);
-    part.input.step = written(10 * workingRange(row, row.value).step) || 'any';
+    part.input.dataset.step = written(10 * row.slider.step);
     return {
       ...part,
       set(x) {
@@ -324,7 +323,7 @@ export function controlOf(row, context) {
 function maker(row) {
   if (row.choices)
     return row.choices.length === 2 && row.choices[0] === 'off' && row.choices[1] === 'on' ? switches : words;
-  if (row.type === 'color') return row.highest > COEFFICIENT ? channels : colour;
+  if (row.type === 'color') return row.coefficient ? channels : colour;
   if (row.type === 'vector') return vector;
   if (row.automatic) return orAutomatic;
   if (row.type === 'real' || row.type === 'integer') return scalar;

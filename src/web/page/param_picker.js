@@ -30,6 +30,7 @@ export function createParamPicker(lab, { label, onchoose }) {
   );
   let rows = [];
   let at = -1;
+  let answer = null; /* to the search that is awaited */
 
   input.addEventListener('input', () => {
     show();
@@ -56,8 +57,20 @@ export function createParamPicker(lab, { label, onchoose }) {
     return lab.param(input.value.trim()) || null;
   }
 
-  function show() {
-    rows = findParams(lab.scene?.params || [], input.value).slice(0, FOUND_MAX);
+  async function show() {
+    const search = findParams(lab, input.value);
+    answer = search;
+    try {
+      const found = await search;
+      if (answer === search) draw(found.slice(0, FOUND_MAX));
+    } catch (error) {
+      lab.fail(error);
+    }
+    if (answer === search) answer = null;
+  }
+
+  function draw(found) {
+    rows = found;
     replace(
       list,
       rows.map((each) =>
@@ -75,6 +88,7 @@ export function createParamPicker(lab, { label, onchoose }) {
   }
 
   function hide() {
+    answer = null;
     list.hidden = true;
     mark(-1);
     input.setAttribute('aria-expanded', 'false');
@@ -98,17 +112,24 @@ export function createParamPicker(lab, { label, onchoose }) {
 
   function key(event) {
     const way = { ArrowDown: 1, ArrowUp: -1 }[event.key];
-    if (way) {
-      if (list.hidden) show();
-      if (rows.length) mark((at + way + rows.length) % rows.length);
-    } else if (event.key === 'Enter' && !list.hidden && rows.length) {
-      choose(rows[Math.max(0, at)]);
-    } else if (event.key === 'Escape' && !list.hidden) {
+    if (way) step(way);
+    else if (event.key === 'Enter' && (answer || (!list.hidden && rows.length))) enter();
+    else if (event.key === 'Escape' && (answer || !list.hidden)) {
       hide(); /* and the dialog stays open */
       event.stopPropagation();
     } else {
       return;
     }
     event.preventDefault();
+  }
+
+  async function step(way) {
+    if (list.hidden) await show();
+    if (rows.length && !list.hidden) mark((at + way + rows.length) % rows.length);
+  }
+
+  async function enter() {
+    await answer;
+    if (rows.length) choose(rows[Math.max(0, at)]);
   }
 }

@@ -1,6 +1,6 @@
 /* One parameter: its name, control, unit, reset button, description, and the reason for a rejected value.
  * exports: createRow(row, lab, {onabout(row), long}) -> {node, path, update(row, generation), busy()}
- *   long: the label includes the object's name; busy: it is being dragged.
+ *   long: the label includes the object's name; busy: it is being dragged; shortUnit(unit) -> the text after a field
  * node is .param with data-path, its slider an input of type range, its number field one of type number */
 
 import { button, element, unique } from './ui.js';
@@ -11,6 +11,15 @@ const FORGET_MS = 8000;
 
 const labelOf = (name) => name.replaceAll('_', ' ');
 const equal = (a, b) => JSON.stringify(a) === JSON.stringify(b);
+
+/* 'u' for scene units, and as a formula. */
+export const shortUnit = (unit) =>
+  unit === 'deg'
+    ? '°'
+    : unit
+        .replace(/scene units?/g, 'u')
+        .replace('^2', '²')
+        .replace('^3', '³');
 
 export function valueText(value) {
   if (Array.isArray(value)) return value.length ? value.map(valueText).join(', ') : 'none';
@@ -44,6 +53,7 @@ export function createRow(first, lab, { onabout, long } = {}) {
     name: `${object} ${labelOf(first.name)}`,
     describedby: meaning.id,
     send,
+    slider: () => known.slider,
     names: (lab.scene?.objects || []).filter((each) => each.kind === first.name).map((each) => each.name),
   });
   label.id = unique('label');
@@ -78,10 +88,6 @@ export function createRow(first, lab, { onabout, long } = {}) {
   showReset();
   showUse();
   return { node, path, update, busy: () => control.busy() };
-
-  function shortUnit(unit) {
-    return unit === 'scene units' ? 'u' : unit === 'deg' ? '°' : unit;
-  }
 
   function showReset() {
     const away = known.initial !== undefined && known.initial !== null && !equal(known.value, known.initial);

@@ -3,6 +3,7 @@
  * shows the slime and of its mesh */
 
 import { slider, element, gesture, toByte, toLinear, unique } from './ui.js';
+import { shortUnit } from './param_row.js';
 
 const CHANNELS = [
   ['red', 0],
@@ -12,39 +13,28 @@ const CHANNELS = [
 
 /* of: 'solid' or 'mesh'; at: index in a vector; sign: -1 shows the negative */
 const looks = [
-  { heading: 'Colour', of: 'solid', name: 'color', channels: true, min: 0, max: 1, step: 0.005 },
+  { heading: 'Colour', of: 'solid', name: 'color', channels: true },
   {
     label: 'Diffuse share',
     of: 'solid',
     name: 'diffuse',
-    min: 0,
-    max: 1,
-    step: 0.005,
     hint: 'strength of the surface colour; absorption colours transparent slime',
   },
-  { label: 'Transmission', of: 'solid', name: 'transparency', min: 0, max: 1, step: 0.005 },
-  { label: 'Refractive index', of: 'solid', name: 'ior', min: 1, max: 2.5, step: 0.005 },
-  {
-    heading: 'Absorption',
-    of: 'solid',
-    name: 'absorb_per_m',
-    channels: true,
-    tint: true,
-    min: 0,
-    max: 100,
-    log: true,
-    unit: '1/m',
-  },
+  { label: 'Transmission', of: 'solid', name: 'transparency' },
+  { label: 'Refractive index', of: 'solid', name: 'ior' },
+  { heading: 'Absorption', of: 'solid', name: 'absorb_per_m', channels: true, tint: true, unit: '1/m' },
 ];
 const body = [
-  { label: 'Stiffness', of: 'mesh', name: 'stiffness', min: 0, max: 200, log: true, unit: 'N/u' },
-  { label: 'Damping', of: 'mesh', name: 'damping', min: 0, max: 2, log: true, unit: 'N s/u' },
-  { label: 'Gravity', of: 'mesh', name: 'gravity', at: 1, sign: -1, min: 0, max: 30, step: 0.05, unit: 'u/s²' },
-  { label: 'Pressure', of: 'mesh', name: 'pressure', min: 0, max: 5000, log: true, unit: 'N/u²' },
+  { label: 'Stiffness', of: 'mesh', name: 'stiffness' },
+  { label: 'Damping', of: 'mesh', name: 'damping' },
+  { label: 'Gravity', of: 'mesh', name: 'gravity', at: 1, sign: -1 },
+  { label: 'Pressure', of: 'mesh', name: 'pressure' },
 ];
 
-function create(lab, path, entry, label, at) {
-  const { min, max, step, log, unit, hint, sign = 1 } = entry;
+function create(lab, path, { hint, sign = 1, unit }, label, at) {
+  const row = lab.param(path);
+  const { lowest, highest: max, step, log_from: logFrom } = row.slider;
+  const min = sign < 0 ? 0 : lowest;
   const read = () => {
     const value = lab.param(path)?.value;
     const one = at === undefined ? value : value?.[at];
@@ -57,7 +47,8 @@ function create(lab, path, entry, label, at) {
       lab.param(path).value = value; /* the next channel's slider may move before the new scene arrives */
     lab.set({ [path]: value }, gesture).catch(lab.fail);
   };
-  const one = slider({ label, min, max, step, log, unit, value: read(), oninput: send });
+  const shown = unit || shortUnit(row.unit);
+  const one = slider({ label, min, max, step, logFrom, unit: shown, value: read(), oninput: send });
   if (hint) one.node.append(element('span', { class: 'hint', text: hint }));
   return { node: one.node, update: () => one.set(read()) };
 }

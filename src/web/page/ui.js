@@ -24,8 +24,8 @@
  *   set(value)}
  *   text({label, value, placeholder, onchange(value)})                 a text field, the same
  *   check(label, checked, onchange(checked))                           a checkbox, the same
- *   slider({label, min, max, step, value, log, unit, oninput(value, gesture), onchange(value, gesture)})    a slider
- *       with a number field: {node, set(value)}
+ *   slider({label, min, max, step, value, logFrom, unit, oninput(value, gesture), onchange(value, gesture)})
+ *       a slider with a number field: {node, set(value)}
  *   choice({label, choices, value, radios, onchange(value)})           choices: words or [value, label]; a select or
  *       radio buttons: {node, set(value)}
  *   group(title, {open, id, hint}, ...children)                        a collapsible section (details); with an id

@@ -85,32 +85,31 @@ export function check(label, checked, onchange) {
   };
 }
 
-/* Slider positions are 0..steps; a logarithmic slider that starts at 0 has 0 at its left end. */
-export function scale({ min, max, step, log }) {
+/* Slider positions are 0..steps. logFrom: above 0, logarithmic from there on; position 0 is min. */
+export function scale({ min, max, step, logFrom }) {
   const integer = step >= 1;
-  const floor = log && min <= 0 ? max * 1e-5 : min;
-  const steps = !log && step && (max - min) / step <= 1000 ? Math.round((max - min) / step) : 1000;
+  const steps = !logFrom && step && (max - min) / step <= 1000 ? Math.round((max - min) / step) : 1000;
   const tidy = (x) => {
     if (integer) return Math.round(x);
-    return log ? Number(x.toPrecision(3)) : Number(Number((Math.round(x / step) * step).toPrecision(10)));
+    return logFrom ? Number(x.toPrecision(3)) : Number(Number((Math.round(x / step) * step).toPrecision(10)));
   };
   return {
     steps,
     position(value) {
-      if (!log) return Math.round(steps * Math.min(1, Math.max(0, (value - min) / (max - min))));
-      if (value <= floor) return 0;
-      return Math.round(steps * Math.min(1, Math.log(value / floor) / Math.log(max / floor)));
+      if (!logFrom) return Math.round(steps * Math.min(1, Math.max(0, (value - min) / (max - min))));
+      if (value <= logFrom) return 0;
+      return Math.round(steps * Math.min(1, Math.log(value / logFrom) / Math.log(max / logFrom)));
     },
     value(position) {
       if (position <= 0) return min;
       if (position >= steps) return max;
-      return tidy(log ? floor * (max / floor) ** (position / steps) : min + (max - min) * (position / steps));
+      return tidy(logFrom ? logFrom * (max / logFrom) ** (position / steps) : min + (max - min) * (position / steps));
     },
   };
 }
 
-export function slider({ label, min, max, step = (max - min) / 200, value, log = false, unit, oninput, onchange }) {
-  const ruler = scale({ min, max, step, log });
+export function slider({ label, min, max, step = (max - min) / 200, value, logFrom = 0, unit, oninput, onchange }) {
+  const ruler = scale({ min, max, step, logFrom });
   const input = element('input', {
     type: 'range',
     class: 'range',
