@@ -562,6 +562,7 @@ typedef struct cuvette_node {
     double gain_basic;       /* ... and T (n_before / n_after)^2 */
     double length_m;         /* of the ray, metres */
     double transmittance[3]; /* of the medium over this length (Beer and Lambert), RGB */
+    double angle_in_deg, angle_out_deg; /* of incidence and refraction; angle_out_deg is 0 if there is none */
 } cuvette_node;
 
 /* Traces the ray and all that follow from it; its reach and start are ignored. */

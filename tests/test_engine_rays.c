@@ -99,6 +99,8 @@ static void test_a_tree_outlives_its_query(void **state)
     const double sin_in = sqrt(1 - nodes[0].cos_in * nodes[0].cos_in),
                  sin_out = sqrt(1 - nodes[0].cos_out * nodes[0].cos_out);
     assert_true(fabs(nodes[0].n_before * sin_in - nodes[0].n_after * sin_out) < 1e-12);
+    assert_true(fabs(sin(nodes[0].angle_in_deg * (M_PI / 180)) - sin_in) < 1e-12 &&
+                fabs(sin(nodes[0].angle_out_deg * (M_PI / 180)) - sin_out) < 1e-12);
     char path[] = "/tmp/cuvette-tree-XXXXXX.json";
     close(mkstemps(path, 5));
     fine(cuvette_tree_write(tree, path, &why), &why);

@@ -77,7 +77,7 @@ static char *written(scene *s, trace_writer *write, const char *name, int x, int
     worked(probe_create(s, isa_best(), &p, &why), &why);
     worked(probe_pixel(p, x, y, &tree, &why), &why);
     FILE *out = open_memstream(&text, &size);
-    worked(write(&(traced){s, p, &tree, name}, out, &why), &why);
+    worked(write(&(traced){s, p, &tree, name, true}, out, &why), &why);
     assert_int_equal(fclose(out), 0);
     ray_tree_release(&tree);
     probe_destroy(p);

@@ -395,7 +395,7 @@ static void in_a_drawing_of_a_tree_escaping_rays_reach_the_edge(void **state)
         size_t size;
         worked(probe_ray(p, from, d, &tree, &why), &why);
         FILE *out = open_memstream(&text, &size);
-        worked(trace_write_drawing(&(traced){s, p, &tree, "test"}, out, &why), &why);
+        worked(trace_write_drawing(&(traced){s, p, &tree, "test", false}, out, &why), &why);
         fclose(out);
         drawn_line line;
         const image_frame side = panel_of(text, 0), top = panel_of(text, 1);

@@ -133,7 +133,7 @@ static status run_beams(const trace_request *request, const scene *s, isa level,
     if (s->beam_count == 0)
         return options_wrong("--beams", NULL, why, "add one: cuvette scene SCENE --add beam:laser", "%s has no beams",
                              request->input.path);
-    const formatted_beams f = {{s, level, request->input.path, 0}, request->format};
+    const formatted_beams f = {{s, level, request->input.path, 0, false}, request->format};
     scene_input_note_beams(s);
     return outputs_write_text(request->input.output, write_beams_as, &f, why);
 }
@@ -148,7 +148,7 @@ static status run(void *context, scene *s, isa level, diagnostic *why)
     status result = scene_input_probe(&request->input, s, level, &p, why);
     THEN(result, grow(request, p, &tree, why));
     if (result == STATUS_OK) {
-        const formatted f = {{s, p, &tree, request->input.path}, request->format};
+        const formatted f = {{s, p, &tree, request->input.path, false}, request->format};
         scene_input_note_tree(&request->input, s);
         result = outputs_write_text(request->input.output, write_as, &f, why);
     }

@@ -35,6 +35,8 @@ static void put_hit(const cuvette_query *q, const ray_hit *h, cuvette_node *out)
     out->gain_classic = h->gain_classic, out->gain_basic = h->gain_basic;
     out->length_m = h->path_length_m;
     memcpy(out->transmittance, h->transmittance, sizeof out->transmittance);
+    out->angle_in_deg = trace_angle_deg(h->cos_i);
+    out->angle_out_deg = h->opaque || h->tir ? 0 : trace_angle_deg(h->cos_t);
 }
 
 static void put_node(const cuvette_query *q, const ray_node *n, cuvette_node *out)
@@ -224,7 +226,7 @@ cuvette_status cuvette_tree_write(const cuvette_tree *tree, const char *path, cu
     status code = query_begin_trace(tree->of, &q, &inner);
     if (code != STATUS_OK)
         return engine_report(code, &inner, why);
-    const traced content = {q->model, q->inspector, &tree->traced, q->model->path ? q->model->path : ""};
+    const traced content = {q->model, q->inspector, &tree->traced, q->model->path ? q->model->path : "", false};
     code =
         query_write_file(writers, sizeof writers / sizeof *writers, "use .txt, .json or .svg", &content, path, &inner);
     query_end_trace(q);

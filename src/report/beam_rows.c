@@ -1,5 +1,6 @@
 /* The rays of beams as text and JSON: the rows of trace_writers.h, by beam and ray. */
 #include "report/beam_rows.h"
+#include "image/codec.h"
 #include "report/json.h"
 #include "report/trace_writers.h"
 #include "scene/model/scene.h"
@@ -30,7 +31,7 @@ static status write_text_ray(void *context, const beam_ray *ray, const ray_tree 
     TRY(count_segments(w, tree, why));
     fprintf(w->out, "%s: %s, ray %d of %d, %.6g nm, power %.6g\n", b->name, kind_words[b->kind], ray->number + 1,
             ray->rays, ray->lambda_nm, ray->power);
-    trace_write_text_rays(&(traced){w->of->s, p, tree, w->of->scene_path}, w->out);
+    trace_write_text_rays(&(traced){w->of->s, p, tree, w->of->scene_path, false}, w->out);
     return STATUS_OK;
 }
 
@@ -83,8 +84,12 @@ static status write_json_ray(void *context, const beam_ray *ray, const ray_tree 
     double rgb[3];
     beam_line_color(b, ray->lambda_nm, rgb);
     write_color(w->out, "color", rgb);
+    if (w->of->for_page)
+        fprintf(w->out, ",\"displayed\":[%u,%u,%u]", codec_quantize((float)rgb[0], 255),
+                codec_quantize((float)rgb[1], 255), codec_quantize((float)rgb[2], 255));
     fputs(",\"root\":", w->out);
-    w->short_of_memory |= !trace_write_json_ray(&(traced){w->of->s, p, tree, w->of->scene_path}, w->out, 0);
+    w->short_of_memory |=
+        !trace_write_json_ray(&(traced){w->of->s, p, tree, w->of->scene_path, w->of->for_page}, w->out, 0);
     fputc('}', w->out);
     return STATUS_OK;
 }

@@ -10,6 +10,7 @@ typedef struct beamed {
     isa level;
     const char *scene_path;
     size_t segments_max; /* more rays of the trees than this are STATUS_BAD_INPUT; 0: no limit */
+    bool for_page;       /* as of traced */
 } beamed;
 
 /* cuvette-trace(1) documents both. */

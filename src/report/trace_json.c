@@ -1,10 +1,14 @@
 /* A ray tree as JSON. */
 #include "base/cancel.h"
+#include "image/codec.h"
 #include "render/inspect/ray_line.h"
 #include "report/json.h"
 #include "report/trace_writers.h"
+#include "scene/model/camera.h"
 #include "scene/model/open.h"
 #include "scene/model/render_settings.h"
+
+#include <math.h>
 
 static void write_list(FILE *out, const char *key, const double *values, int count)
 {
@@ -42,6 +46,16 @@ static bool write_medium(const traced *t, FILE *out, const char *key, int medium
     return good;
 }
 
+/* The bytes with which the image shows a radiance. */
+static void write_bytes(FILE *out, const char *key, const scene *s, const double radiance[3])
+{
+    const image_tone tone = camera_tone(s);
+    float rgb[3] = {(float)radiance[0], (float)radiance[1], (float)radiance[2]};
+    image_tone_apply(&tone, rgb, 1);
+    fprintf(out, ",\"%s\":[%u,%u,%u]", key, codec_quantize(rgb[0], 255), codec_quantize(rgb[1], 255),
+            codec_quantize(rgb[2], 255));
+}
+
 /* The factor of radiance at the refraction, for each value of render.radiance. */
 static void write_factors(FILE *out, const ray_hit *h)
 {
@@ -49,6 +63,18 @@ static void write_factors(FILE *out, const ray_hit *h)
     fputs(",\"radiance_factor\":{\"classic\":", out);
     json_write_real(out, h->gain_classic);
     write_number(out, "basic", h->gain_basic);
+    fputc('}', out);
+}
+
+/* Both sides of Snell's law, and the angles; null behind a surface that no ray passes. */
+static void write_snell(FILE *out, const ray_hit *h)
+{
+    const bool passes = !h->opaque && !h->tir;
+    fputs(",\"snell\":{\"incidence_deg\":", out);
+    json_write_real(out, trace_angle_deg(h->cos_i));
+    write_number(out, "n_sin_i", h->n_from * sqrt(fmax(0.0, 1.0 - h->cos_i * h->cos_i)));
+    write_number(out, "refraction_deg", passes ? trace_angle_deg(h->cos_t) : NAN);
+    write_number(out, "n_sin_t", passes ? h->n_to * sqrt(fmax(0.0, 1.0 - h->cos_t * h->cos_t)) : NAN);
     fputc('}', out);
 }
 
@@ -78,6 +104,8 @@ static bool write_hit(const traced *t, FILE *out, const ray_hit *h)
         good = write_word(out, "surface_of", scene_solid_name(t->s, h->face_solid)) && good;
     }
     write_factors(out, h);
+    if (t->for_page)
+        write_snell(out, h);
     fputc('}', out);
     return good;
 }
@@ -148,6 +176,8 @@ status trace_write_json(const traced *t, FILE *out, diagnostic *why)
         fputc(']', out);
     }
     write_number(out, "lambda_nm", tree->lambda_nm);
+    if (t->for_page)
+        write_bytes(out, "displayed", t->s, tree->radiance);
     fprintf(out, ",\"carries\":\"%s\"", scene_has_basic_radiance(scene_settings(t->s)) ? "basic" : "classic");
     fputs("}\n", out);
     TRY(cancel_check(why));

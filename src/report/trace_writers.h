@@ -10,6 +10,7 @@ typedef struct traced {
     const probe *p;
     const ray_tree *tree;
     const char *scene_path;
+    bool for_page; /* JSON for the laboratory's page: further keys, so that it computes no optics */
 } traced;
 
 extern const char *const trace_kind_words[]; /* by ray_kind */

@@ -51,6 +51,8 @@ _HIT = (
     "gain_basic",
     "length_m",
     "transmittance",
+    "angle_in_deg",
+    "angle_out_deg",
 )
 
 
@@ -120,15 +122,9 @@ class Hit(_View):
     _fields = _HIT
 
     @property
-    def angle_in_deg(self) -> float:
-        return float(numpy.degrees(numpy.arccos(min(1.0, self.cos_in))))
-
-    @property
     def angle_out_deg(self) -> Optional[float]:
         """None for total internal reflection, and at an opaque surface."""
-        return (
-            None if self.total_internal or self.opaque else float(numpy.degrees(numpy.arccos(min(1.0, self.cos_out))))
-        )
+        return None if self.total_internal or self.opaque else float(self._struct.angle_out_deg)
 
     def __repr__(self) -> str:
         return f"<Hit {self.solid_name} {self.face_name} at {self.distance:.6g}, {self.angle_in_deg:.4f} deg>"

@@ -19,7 +19,7 @@ typedef struct beam_question {
 
 static status write_rays(beam_question *q, const scene *s, FILE *out, diagnostic *why)
 {
-    const beamed b = {s, q->lab->settings.level, q->scene_name, SEGMENTS_MAX};
+    const beamed b = {s, q->lab->settings.level, q->scene_name, SEGMENTS_MAX, true};
     return beams_write_json(&b, out, why);
 }
 

@@ -2,7 +2,10 @@
 #include "web/api/api.h"
 
 #include "base/cancel.h"
+#include "base/json_build.h"
+#include "base/text_writer.h"
 #include "measure/clock.h"
+#include "report/json.h"
 #include "report/motion_rows.h"
 #include "scene/model/scene.h"
 #include "scene/model/slime.h"
@@ -31,8 +34,10 @@ static bool must_stop(void *context)
            atomic_load(studies_ending(q->l->studies));
 }
 
-static status measure(call *c, motion_question *q, const scene *s, json_t *slimes)
+/* Lists the slimes, and writes them as the table of `cuvette motion --csv`. */
+static status measure(call *c, motion_question *q, const scene *s, json_t *slimes, FILE *table)
 {
+    motion_write_csv_header(table);
     status code = STATUS_OK;
     for (size_t i = 0; i < s->mesh_count && code == STATUS_OK; i++) {
         const mesh_entry *m = &s->meshes[i];
@@ -44,7 +49,10 @@ static status measure(call *c, motion_question *q, const scene *s, json_t *slime
         cancel_begin(&stop);
         code = softbody_trials(&settings, c->l->settings.level, &report, &c->why);
         cancel_end(&stop);
-        if (code == STATUS_OK && json_array_append_new(slimes, motion_slime_json(m, &report)) != 0)
+        if (code != STATUS_OK)
+            continue;
+        motion_write_csv(m, &report, table);
+        if (json_array_append_new(slimes, motion_slime_json(m, &report)) != 0)
             code = out_of_memory(&c->why);
     }
     if (code == STATUS_INTERRUPTED && is_late(q))
@@ -59,16 +67,23 @@ static status answer(call *c, const scene *s)
 {
     motion_question q = {.l = c->l, .stops = atomic_load(&c->l->motion_stops)};
     char *file = api_document_file(c);
+    char *text = NULL;
+    text_writer table;
     json_t *slimes = json_array();
     status code = file ? semaphore_acquire(c->l->heavy, &c->why) : out_of_memory(&c->why);
     if (code == STATUS_OK) {
         q.began_s = clock_wall_s();
-        code = measure(c, &q, s, slimes);
+        code = text_writer_open(&table, &c->why);
+        if (code == STATUS_OK)
+            code = text_writer_end(&table, measure(c, &q, s, slimes, table.stream), &text, NULL, &c->why);
         semaphore_release(c->l->heavy);
     }
-    if (code == STATUS_OK)
+    if (code == STATUS_OK) {
         api_reply_json(c, motion_json(json_incref(slimes), file));
+        json_add_as(&c->json, "csv", json_of_text(text));
+    }
     json_decref(slimes);
+    free(text);
     free(file);
     return code;
 }

@@ -32,7 +32,7 @@ static status write_tree(trace_question *q, const scene *s, const probe *p, cons
                         "the pixel's tree has %zu rays, more than the limit of %d", tree->count, TRACE_RAYS_MAX);
     text_writer writer;
     TRY(text_writer_open(&writer, why));
-    status code = q->write(&(traced){s, p, tree, q->scene_name}, writer.stream, why);
+    status code = q->write(&(traced){s, p, tree, q->scene_name, true}, writer.stream, why);
     return text_writer_end(&writer, code, &q->bytes, &q->size, why);
 }
 

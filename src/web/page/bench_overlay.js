@@ -81,11 +81,11 @@ export function createBenchOverlay(lab, bench) {
     const { hit } = one.node;
     if (!hit) return [];
     const arm = times(hit.normal, Math.max(0.25 * hit.t, 0.06 * (lab.state.camera?.distance || 1)));
-    const second = hit.opaque ? 'opaque' : hit.tir ? 'total reflection' : degrees(hit.cos_t, 5);
+    const second = hit.opaque ? 'opaque' : hit.tir ? 'total reflection' : degrees(hit.snell.refraction_deg, 5);
     return [
       ...stroke(lineBetween(minus(hit.point, arm), add(hit.point, arm)), 'bench-normal'),
       ...dot(hit.point, 'bench-hit'),
-      ...label(hit.point, `${degrees(hit.cos_i, 5)} → ${second}`),
+      ...label(hit.point, `${degrees(hit.snell.incidence_deg, 5)} → ${second}`),
     ];
   }
 

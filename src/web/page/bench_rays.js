@@ -1,10 +1,9 @@
 /* The rays of the scene's beams, in world space: requested again when the scene changes, not when the camera moves.
  *
  * exports: createBenchRays(lab) -> {segments, error, on(f)}
- *   segments: [{beam, ray: {number, lambda_nm, power, color}, tree, one, line, power, css}] in the order of the reply;
- *   one: a ray of ray_tree.js, and its line; power: at its start */
+ *   segments: [{beam, ray: {number, lambda_nm, power, displayed}, tree, one, line, power, css}] in the order of the
+ *   reply; one: a ray of ray_tree.js, and its line; power: at its start */
 
-import { toByte } from './ui.js';
 import { buildTree } from './ray_tree.js';
 import { mean } from './ray_vectors.js';
 
@@ -49,7 +48,7 @@ export function createBenchRays(lab) {
 function ofBeam({ name, rays }) {
   return rays.flatMap((ray) => {
     const tree = buildTree({ root: ray.root });
-    const css = `rgb(${ray.color.map(toByte).join(' ')})`;
+    const css = `rgb(${ray.displayed.join(' ')})`;
     return tree.rays.map((one) => ({
       beam: name,
       ray,

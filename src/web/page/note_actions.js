@@ -2,12 +2,11 @@
  * it shows.
  * exports: noteAction(note) -> {label, values: {path: value}} or null
  *          noteReason(note) -> paragraphs
- *          depthNote(tree, beyond) -> {text, label, values}: how much of a pixel's light the depth limit cuts off, as a
+ *          depthNote(tree, lab) -> {text, label, values}: how much of a pixel's light the depth limit cuts off, as a
  *          note and its remedy; null below 1 % */
 
 import { digits } from './ui.js';
 
-const DEPTH_MAX = 64;
 const CUT_LEAST = 0.01;
 const LABELS = { 'render.depth': 'Raise the depth' };
 const WITHOUT_LIMIT = { 'render.integrator': 'path', 'render.depth': 'unlimited' };
@@ -35,16 +34,18 @@ export function noteReason({ place }) {
   ];
 }
 
-export function depthNote(tree, beyond) {
+export function depthNote(tree, lab) {
+  const most = lab.param('render.depth').highest;
+  const beyond = lab.param('render.beyond')?.value;
   const cut = tree.rays.filter(({ node }) => node.end === 'cut_depth');
   const share = cut.reduce((sum, { weight }) => sum + weight, 0);
   const { depth } = tree.answer;
   if (share < CUT_LEAST) return null;
-  const value = Math.min(DEPTH_MAX, Math.max(depth + 2, 2 * depth));
+  const value = Math.min(most, Math.max(depth + 2, 2 * depth));
   const look = beyond === 'black' ? 'are black there, so the pixel is too dark' : 'have the colour of the sky there';
   return {
     text: `Rays with ${digits(100 * share, 2)} % of this pixel's weight end at the depth limit, ${depth}, and ${look}.`,
-    ...(depth < DEPTH_MAX
+    ...(depth < most
       ? { label: labelOf('render.depth', value), values: { 'render.depth': value } }
       : { label: 'Trace random paths without a limit', values: WITHOUT_LIMIT }),
   };

@@ -3,21 +3,7 @@
  * exports: panel. The tool Inspect selects the pixel: click, drag or arrow keys; Escape clears. */
 
 import { isDark } from './display.js';
-import {
-  button,
-  count,
-  dialog,
-  digits,
-  element,
-  empty,
-  facts,
-  group,
-  notice,
-  number,
-  replace,
-  svg,
-  toByte,
-} from './ui.js';
+import { button, count, dialog, digits, element, empty, facts, group, notice, number, replace, svg } from './ui.js';
 import { showImage } from './image_address.js';
 import { saveReply } from './save_file.js';
 import { depthNote } from './note_actions.js';
@@ -129,8 +115,8 @@ function parts(tree) {
 }
 
 function summary(tree) {
-  const { radiance, lambda_nm: lambda, depth } = tree.answer;
-  const [r, g, b] = radiance.map(toByte);
+  const { radiance, displayed, lambda_nm: lambda, depth } = tree.answer;
+  const [r, g, b] = displayed;
   const deepest = tree.rays.reduce((most, ray) => (isCut(ray) ? most : Math.max(most, ray.node.depth)), 0);
   const tinted = element(
     'span',
@@ -164,7 +150,7 @@ function otherwise(lab) {
 }
 
 function cutOff(lab, tree) {
-  const cut = depthNote(tree, lab.param('render.beyond')?.value);
+  const cut = depthNote(tree, lab);
   if (!cut) return null;
   const raise = () => lab.set(cut.values).catch(lab.fail);
   return [

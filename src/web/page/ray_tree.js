@@ -103,7 +103,7 @@ export const columns = [
 ];
 
 const share = (value) => `${digits(100 * value, 3)} %`;
-const degrees = (cosine) => `${digits((Math.acos(Math.min(1, Math.max(0, cosine))) * 180) / Math.PI, 4)}°`;
+const degrees = (angle) => `${digits(angle, 4)}°`;
 
 /* One number if the channels are equal, otherwise three. */
 const channels = (c) => (c[0] === c[1] && c[1] === c[2] ? digits(c[0], 3) : c.map((x) => digits(x, 3)).join(' · '));
@@ -114,9 +114,10 @@ function surface(hit) {
   return hit.surface_of ? `${hit.solid}: ${hit.surface} of ${hit.surface_of}` : `${hit.solid}: ${hit.surface}`;
 }
 
-function angles(hit) {
-  if (hit.opaque) return degrees(hit.cos_i);
-  return hit.tir ? `${degrees(hit.cos_i)}, no refraction` : `${degrees(hit.cos_i)} → ${degrees(hit.cos_t)}`;
+function angles({ opaque, tir, snell }) {
+  const incidence = degrees(snell.incidence_deg);
+  if (opaque) return incidence;
+  return tir ? `${incidence}, no refraction` : `${incidence} → ${degrees(snell.refraction_deg)}`;
 }
 
 function reflectance(hit) {

@@ -3,14 +3,6 @@
 
 import { button, digits, download, element, notice, replace, table } from './ui.js';
 
-const HEAD = ['slime', 'name', 'measured', 'theory', 'error', 'unit', 'what'];
-const cell = (value) => (value === null ? 'NA' : /[,"]/.test(value) ? `"${value}"` : String(value));
-
-function csv(slimes) {
-  const rows = slimes.flatMap(({ name: slime, values }) => values.map((value) => ({ ...value, slime })));
-  return [HEAD, ...rows.map((row) => HEAD.map((key) => cell(row[key])))].map((row) => `${row.join()}\n`).join('');
-}
-
 function shown({ name, level, integrator, dt_s: step, values }) {
   return table({
     caption: `${name}: level ${level}, ${integrator}, steps of ${digits(step)} s`,
@@ -55,8 +47,8 @@ export function createMotion(lab) {
     stop.disabled = false;
     replace(result, element('p', { class: 'hint', text: 'Measuring …' }));
     try {
-      const { slimes } = await lab.get('/api/motion');
-      replace(result, slimes.map(shown), save(slimes));
+      const { slimes, csv } = await lab.get('/api/motion');
+      replace(result, slimes.map(shown), save(csv));
     } catch (error) {
       replace(result, notice(error.message, { kind: 'error', remedy: error.remedy }));
     }
@@ -64,9 +56,9 @@ export function createMotion(lab) {
     stop.disabled = true;
   }
 
-  function save(slimes) {
+  function save(csv) {
     const name = `${lab.name()}-motion.csv`;
-    return button('Save table', () => download(new Blob([csv(slimes)], { type: 'text/csv' }), name), {
+    return button('Save table', () => download(new Blob([csv], { type: 'text/csv' }), name), {
       icon: 'save',
       small: true,
     });
