@@ -285,8 +285,8 @@ $(build)/flags: always | $(filter setup setup-peers setup-doc setup-mpi,$(MAKECM
 # SimGrid's compiler; and by OpenMPI's the same without tracing, whose time is that of the messages. All are built at once.
 .PHONY: simulated setup-simgrid simulate-mpi test-simgrid
 simulated_folder := experiments/cluster/simulated
-simulated_sources := $(wildcard $(simulated_folder)/*.c) src/mpi/handout.c src/render/core/schedule.c src/base/status.c
-simulated_flags = -std=gnu17 -O2 -g $(filter -W%,$(all_cflags)) -Isrc -I$(simulated_folder)
+simulated_sources := $(wildcard $(simulated_folder)/*.c) src/mpi/handout.c src/render/core/schedule.c src/base/status.c src/base/cancel.c
+simulated_flags = -std=gnu17 -D_GNU_SOURCE -O2 -g $(filter -W%,$(all_cflags)) -Isrc -I$(simulated_folder)
 simulated: $(build)/cluster/simulated
 setup-simgrid: | $(filter setup setup-mpi,$(MAKECMDGOALS)) ## install what make simulate-mpi requires: SimGrid
 	@.ci/setup-simgrid

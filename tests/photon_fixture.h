@@ -5,10 +5,10 @@
 #include "render/caustics/photon_map.h"
 #include "render_fixture.h"
 
-static inline caustics *photons_of(plan *p, const atomic_bool *stop)
+static inline caustics *photons_of(plan *p)
 {
     caustics *c = NULL;
-    assert_int_equal(caustics_create(p, isa_best(), 1, stop, &c, NULL), STATUS_OK);
+    assert_int_equal(caustics_create(p, isa_best(), 1, &c, NULL), STATUS_OK);
     assert_non_null(c);
     for (int k = 0; k < CAUSTICS_STEPS; k++) {
         caustics_steps[k].together(c, 0);

@@ -59,10 +59,9 @@ typedef struct moments {
 static moments moments_of(const scene *s, double radius, double x, double near)
 {
     plan *p = NULL;
-    const atomic_bool stop = false;
     moments m = {.power = 0.0};
     assert_int_equal(plan_build(s, &p, NULL), STATUS_OK);
-    caustics *c = photons_of(p, &stop);
+    caustics *c = photons_of(p);
     for (size_t i = 0; i < photon_map_count(p->photons); i++) {
         const photon *one = photon_map_at(p->photons, i);
         const double power = PI * (double)one->flux[1], at = hypot(one->position.x, one->position.z);

@@ -390,11 +390,11 @@ static void traced_rays_and_notes_are_whole_or_not_there(void **state)
     scene_destroy(s);
 }
 
-/* Cancelling a job from another thread ends the loading of a mesh that takes minutes. */
+/* Setting the token from another thread ends the loading of a mesh that takes minutes. */
 static void *cancel_soon(void *of)
 {
     usleep(50000);
-    job_cancel(of);
+    cancel_set(of);
     return NULL;
 }
 
@@ -407,12 +407,15 @@ static void a_job_is_cancelled_while_it_loads(void **state)
     pthread_t other;
     assert_int_equal(job_create(&(job_settings){.level = NULL}, &j, NULL), STATUS_OK);
     assert_int_equal(scene_read_text("cancel", text, sizeof text - 1, &s, NULL), STATUS_OK);
-    assert_int_equal(pthread_create(&other, NULL, cancel_soon, j), 0);
+    cancel_token token = {.ask = NULL};
+    cancel_begin(&token);
+    assert_int_equal(pthread_create(&other, NULL, cancel_soon, &token), 0);
     assert_int_equal(job_load(j, s, NULL, NULL), STATUS_INTERRUPTED);
     assert_null(s->meshes[0].data);
     pthread_join(other, NULL);
-    job_renew(j);
-    assert_false(job_must_stop(j));
+    cancel_clear(&token);
+    assert_false(cancel_asked());
+    cancel_end(&token);
     scene_destroy(s);
     job_destroy(j);
 }

@@ -239,11 +239,10 @@ static void a_ball_focuses_as_a_forward_tracer_says(void **state)
                           "  ground: {shape: plane, diffuse: 1}\n"
                           "  ball: {shape: sphere, position: [0, 1.5, 0], radius: 1, transparency: 1, ior: 1.5}\n");
     plan *p = NULL;
-    const atomic_bool stop = false;
     double rings[RINGS], found[RINGS] = {0.0}, seen = 0.0;
     const double all = expected_flux(rings);
     assert_int_equal(plan_build(s, &p, NULL), STATUS_OK);
-    caustics *c = photons_of(p, &stop);
+    caustics *c = photons_of(p);
     for (size_t i = 0; i < photon_map_count(p->photons); i++) {
         const photon *one = photon_map_at(p->photons, i);
         const double at = hypot(one->position.x, one->position.z);
@@ -290,9 +289,8 @@ static void no_light_is_lost(void **state)
                           "  back: {shape: box, diffuse: 1, position: [0, 0, 10], size: [60, 60, 2]}\n"
                           "  ball: {shape: sphere, position: [0.5, 0, 0], radius: 1, transparency: 1, ior: 1.5}\n");
     plan *p = NULL;
-    const atomic_bool stop = false;
     assert_int_equal(plan_build(s, &p, NULL), STATUS_OK);
-    caustics *c = photons_of(p, &stop);
+    caustics *c = photons_of(p);
     double seen = 0.0;
     for (size_t i = 0; i < photon_map_count(p->photons); i++)
         seen += (double)photon_map_at(p->photons, i)->flux[0];
@@ -383,9 +381,8 @@ static void the_vessel_loses_no_light(void **state)
     (void)state;
     scene *s = scene_from(ROOM_SCENE);
     plan *p = NULL;
-    const atomic_bool stop = false;
     assert_int_equal(plan_build(s, &p, NULL), STATUS_OK);
-    caustics *c = photons_of(p, &stop);
+    caustics *c = photons_of(p);
     double seen = 0.0;
     for (size_t i = 0; i < photon_map_count(p->photons); i++)
         seen += (double)photon_map_at(p->photons, i)->flux[0];

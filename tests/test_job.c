@@ -9,6 +9,7 @@
 #include <cmocka.h>
 
 #include "cuvette.h"
+#include "base/cancel.h"
 #include "base/memory_budget.h"
 #include "job/job.h"
 #include "render_fixture.h"
@@ -33,11 +34,12 @@ static job *job_with(job_settings settings)
 }
 
 typedef struct caller {
-    job *of;
-    int calls, limit; /* the call that stops */
+    cancel_token token;
+    int calls, limit; /* the call that cancels */
     double share;
 } caller;
 
+/* As the ask of a token. */
 static bool has_enough(void *context)
 {
     caller *c = context;
@@ -45,19 +47,12 @@ static bool has_enough(void *context)
 }
 
 /* Cancels from within the frame, as another thread would. */
-static bool cancel_soon(void *context, double share_done)
+static void cancel_soon(void *context, double share_done)
 {
     caller *c = context;
     c->share = share_done;
     if (++c->calls == c->limit)
-        job_cancel(c->of);
-    return true;
-}
-
-static bool refuse(void *context, double share_done)
-{
-    (void)share_done;
-    return ++((caller *)context)->calls < 1;
+        cancel_set(&c->token);
 }
 
 static void a_cancelled_job_starts_no_work(void **state)
@@ -67,8 +62,9 @@ static void a_cancelled_job_starts_no_work(void **state)
     job *j = job_with((job_settings){.measured = true});
     job_account made;
     diagnostic why = {.what = ""};
-    job_cancel(j);
-    assert_true(job_must_stop(j));
+    cancel_token token = {.ask = NULL};
+    cancel_begin(&token);
+    cancel_set(&token);
     assert_int_equal(job_load(j, s, NULL, &why), STATUS_INTERRUPTED);
     assert_int_equal(job_render(j, s, NULL, &made, &why), STATUS_INTERRUPTED);
     assert_null(made.result);
@@ -76,11 +72,11 @@ static void a_cancelled_job_starts_no_work(void **state)
     assert_false(made.whole);
     assert_string_equal(why.what, "interrupted");
     job_account_release(&made);
-    job_renew(j);
+    cancel_clear(&token);
     assert_int_equal(job_render(j, s, NULL, &made, &why), STATUS_OK);
+    cancel_end(&token);
     assert_true(made.whole);
     job_account_release(&made);
-    job_cancel(j); /* after the frame: the result does not change */
     job_destroy(j);
     scene_destroy(s);
 }
@@ -99,47 +95,44 @@ static void a_frame_ends_when_it_is_cancelled(void **state)
     (void)state;
     scene *s = long_scene();
     job *j = job_with((job_settings){.measured = true});
-    caller c = {.of = j, .limit = 2};
+    caller c = {.limit = 2};
     const render_options options = {.progress = cancel_soon, .progress_s = 0.001, .context = &c};
     job_account made;
+    cancel_begin(&c.token);
     assert_int_equal(job_render(j, s, &options, &made, NULL), STATUS_INTERRUPTED);
+    cancel_end(&c.token);
     assert_non_null(made.result); /* the unfinished frame */
     assert_false(made.whole);
     assert_int_equal(made.count, 0);
     assert_true(c.share < 1.0);
     assert_true(made.result->counters.camera < 2048u * 2048u * 64u);
     job_account_release(&made);
-
-    c = (caller){.of = j};
-    job_renew(j);
-    const render_options refused = {.progress = refuse, .progress_s = 0.001, .context = &c};
-    assert_int_equal(job_render(j, s, &refused, &made, NULL), STATUS_INTERRUPTED);
-    job_account_release(&made);
-    assert_false(job_must_stop(j)); /* the cancellation was for one frame */
     job_destroy(j);
     scene_destroy(s);
 }
 
-static void a_stop_request_is_obeyed(void **state)
+static void a_token_is_asked_during_a_frame(void **state)
 {
     (void)state;
     scene *s = long_scene();
-    caller c = {.limit = 3};
-    job *j = job_with((job_settings){.stop = has_enough, .context = &c});
+    caller c = {.limit = 3, .token = {.ask = has_enough, .context = &c}};
+    job *j = job_with((job_settings){.level = NULL});
     const render_options options = {.progress_s = 0.001};
     job_account made;
+    cancel_begin(&c.token);
     assert_int_equal(job_render(j, s, &options, &made, NULL), STATUS_INTERRUPTED);
-    assert_true(c.calls >= 3); /* workers may still be finishing at the next check */
+    cancel_end(&c.token);
+    assert_int_equal(c.calls, 3);
     job_account_release(&made);
     job_destroy(j);
     scene_destroy(s);
 }
 
 /* Complete frames are kept when a later one is interrupted. */
-static bool is_third(void *context, double share_done)
+static void end_in_the_third(void *context, double share_done)
 {
-    (void)context;
-    return share_done < 0.667;
+    if (share_done >= 0.667)
+        cancel_set(context);
 }
 
 static void finished_frames_are_kept(void **state)
@@ -149,9 +142,12 @@ static void finished_frames_are_kept(void **state)
     job *j = job_with((job_settings){.measured = true});
     s->render.width = s->render.height = 512;
     s->render.samples = 16;
-    const render_options options = {.progress = is_third, .progress_s = 0.0001};
+    cancel_token token = {.ask = NULL};
+    const render_options options = {.progress = end_in_the_third, .progress_s = 0.0001, .context = &token};
     job_account made;
+    cancel_begin(&token);
     assert_int_equal(job_repeat(j, s, 3, &options, &made, NULL), STATUS_INTERRUPTED);
+    cancel_end(&token);
     assert_int_equal(made.count, 2);
     assert_false(made.whole);
     assert_int_equal(made.result->counters.camera, 512 * 512 * 16);
@@ -336,7 +332,7 @@ int main(void)
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(a_cancelled_job_starts_no_work),
         cmocka_unit_test(a_frame_ends_when_it_is_cancelled),
-        cmocka_unit_test(a_stop_request_is_obeyed),
+        cmocka_unit_test(a_token_is_asked_during_a_frame),
         cmocka_unit_test(finished_frames_are_kept),
         cmocka_unit_test(invalid_scenes_are_refused),
         cmocka_unit_test(too_many_threads_are_an_error),

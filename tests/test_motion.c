@@ -5,6 +5,7 @@
 #include <stdint.h>
 #include <cmocka.h>
 
+#include "base/cancel.h"
 #include "render_fixture.h"
 #include "scene/motion/motion.h"
 #include "scene/model/scene.h"
@@ -247,10 +248,16 @@ static void an_unstable_slime_is_reported(void **state)
     scene_destroy(s);
 }
 
-static bool leave(void *context, double share_done)
+typedef struct leaving {
+    double share;
+    cancel_token token;
+} leaving;
+
+static void leave(void *context, double share_done)
 {
-    *(double *)context = share_done;
-    return false;
+    leaving *l = context;
+    l->share = share_done;
+    cancel_set(&l->token);
 }
 
 /* Interrupted at the first check of a long advance, twice; afterwards the motion equals one that was never
@@ -264,11 +271,13 @@ static void an_interrupted_advance_can_be_continued(void **state)
     const mesh *surface = s->meshes[1].data;
     const vec3 first = surface->vertices[0];
     for (int i = 0; i < 2; i++) {
-        double share = -1.0;
+        leaving l = {.share = -1.0};
         diagnostic why = {0};
-        assert_int_equal(scene_motion_advance_until(m, 4000.0, true, &(load_watch){leave, &share}, &why),
+        cancel_begin(&l.token);
+        assert_int_equal(scene_motion_advance_until(m, 4000.0, true, &(load_watch){leave, &l}, &why),
                          STATUS_INTERRUPTED);
-        assert_true(share > 0.0 && share < 0.5); /* of two slimes, during the first */
+        cancel_end(&l.token);
+        assert_true(l.share > 0.0 && l.share < 0.5); /* of two slimes, during the first */
         assert_true(s->meshes[1].data == surface && s->meshes[1].time_s == 0.0 && s->meshes[1].account.steps == 0);
         assert_memory_equal(&surface->vertices[0], &first, sizeof first);
     }

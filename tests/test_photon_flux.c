@@ -244,11 +244,10 @@ static size_t sum_photons(const room *a, tally *out)
 {
     char text[4096];
     plan *p = NULL;
-    const atomic_bool stop = false;
     write_room(a, text, sizeof text);
     scene *s = scene_from(text);
     assert_int_equal(plan_build(s, &p, NULL), STATUS_OK);
-    caustics *c = photons_of(p, &stop);
+    caustics *c = photons_of(p);
     const size_t count = photon_map_count(p->photons);
     for (size_t i = 0; i < count; i++) {
         const photon *one = photon_map_at(p->photons, i);

@@ -25,13 +25,14 @@ static bool next(void *context, int worker, span *out)
     hand_out *h = context;
     (void)worker;
     pthread_mutex_lock(&h->lock);
-    const bool more = h->given < h->whole.places.tile_count && schedule_tile(&h->whole.places, h->order[h->given], out);
+    const bool more = h->given < h->limit && h->given < h->whole.places.tile_count &&
+                      schedule_tile(&h->whole.places, h->order[h->given], out);
     h->given += more;
     pthread_mutex_unlock(&h->lock);
     return more;
 }
 
-static bool done(void *context, const span *piece, const film *traced, const double *variance)
+static void done(void *context, const span *piece, const film *traced, const double *variance)
 {
     hand_out *h = context;
     pthread_mutex_lock(&h->lock);
@@ -47,9 +48,8 @@ static bool done(void *context, const span *piece, const film *traced, const dou
         memcpy(message + sums, variance, sums * sizeof *variance);
     shared_frame_put(&h->whole, tile, message);
     free(message);
-    const bool goes_on = ++h->taken < h->limit;
+    h->taken++;
     pthread_mutex_unlock(&h->lock);
-    return goes_on;
 }
 
 static hand_out hand_out_of(const scene *s, int tile)
@@ -152,7 +152,7 @@ static void places_in_a_piece_are_exact_in_the_largest_images(void **state)
     }
 }
 
-static void a_frame_ends_when_the_source_takes_no_more(void **state)
+static void a_frame_ends_when_the_source_has_no_more(void **state)
 {
     (void)state;
     scene *s = rod_scene("render.width=64 render.height=48 render.threads=1");
@@ -186,7 +186,7 @@ int main(void)
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(pieces_of_all_integrators_are_the_whole_frame),
         cmocka_unit_test(places_in_a_piece_are_exact_in_the_largest_images),
-        cmocka_unit_test(a_frame_ends_when_the_source_takes_no_more),
+        cmocka_unit_test(a_frame_ends_when_the_source_has_no_more),
         cmocka_unit_test(the_film_of_a_source_is_as_small_as_its_pieces),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);

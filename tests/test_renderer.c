@@ -7,6 +7,7 @@
 #include <stdint.h>
 #include <cmocka.h>
 
+#include "base/cancel.h"
 #include "render_fixture.h"
 #include "scene/model/scene.h"
 
@@ -83,33 +84,35 @@ static void an_invalid_scene_is_refused(void **state)
 typedef struct watch {
     int calls;
     double last;
+    cancel_token token;
 } watch;
 
-static bool stop_at_once(void *context, double share)
+static void stop_at_once(void *context, double share)
 {
     watch *w = context;
     w->calls++;
     w->last = share;
-    return false;
+    cancel_set(&w->token);
 }
 
-static bool go_on(void *context, double share)
+static void note_share(void *context, double share)
 {
     watch *w = context;
     assert_true(share >= w->last && share <= 1.0);
     w->calls++;
     w->last = share;
-    return true;
 }
 
 /* Stops a large frame, then renders a small one, which must not be affected. */
 static void stop_and_go_on(renderer *r, const scene *large, const scene *small, const render_result *undisturbed)
 {
     render_result *part = NULL, *after = NULL;
-    watch w = {0, 0.0};
+    watch w = {0};
     const render_options options = {.progress = stop_at_once, .context = &w};
     const uint64_t pixels = (uint64_t)(large->render.width * large->render.height);
+    cancel_begin(&w.token);
     assert_int_equal(renderer_render(r, large, &options, &part, NULL), STATUS_INTERRUPTED);
+    cancel_end(&w.token);
     assert_non_null(part);
     assert_true(w.calls >= 1 && w.last < 1.0);
     assert_true(!CUVETTE_COUNTERS || (part->counters.camera > 0 && part->counters.camera < pixels));
@@ -157,8 +160,8 @@ static void progress_callbacks_do_not_change_the_film(void **state)
     (void)state;
     scene *s = rod_scene("render.width=64 render.height=48");
     render_result *plain = render(s);
-    watch w = {0, 0.0};
-    const render_options options = {.progress = go_on, .context = &w};
+    watch w = {0};
+    const render_options options = {.progress = note_share, .context = &w};
     render_result *watched = render_at(s, isa_best(), &options);
     assert_true(film_hash(plain->img) == film_hash(watched->img));
     render_result_destroy(plain);

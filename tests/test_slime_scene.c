@@ -1,6 +1,7 @@
 /* Tests of slimes in scene files: the mesh is exactly the surface of a body with these parameters and this script. */
 #include "study_fixture.h"
 
+#include "base/cancel.h"
 #include "scene/model/params.h"
 #include "scene/model/slime.h"
 #include "scene/file/write.h"
@@ -249,14 +250,16 @@ typedef struct waiting {
     int polls, patience; /* times */
     double share;
     bool in_order;
+    cancel_token token;
 } waiting;
 
-static bool wait(void *context, double share_done)
+static void wait(void *context, double share_done)
 {
     waiting *w = context;
     w->in_order &= share_done > w->share && share_done <= 1.0;
     w->share = share_done;
-    return ++w->polls < w->patience;
+    if (++w->polls >= w->patience)
+        cancel_set(&w->token);
 }
 
 /* Days of motion, interrupted at the first poll. */
@@ -267,7 +270,9 @@ static void an_interrupted_load_does_not_change_the_slime(void **state)
         "meshes:\n  ball: {generate: icosphere, level: 1}\n  toy: {generate: slime, level: 2, time_s: 86400}\n");
     waiting w = {.patience = 3, .in_order = true};
     diagnostic why = {0};
+    cancel_begin(&w.token);
     assert_int_equal(scene_load_until(s, &(load_watch){wait, &w}, &why), STATUS_INTERRUPTED);
+    cancel_end(&w.token);
     assert_int_equal(w.polls, 3);
     assert_true(w.in_order && w.share > 0.0 && w.share < 1.0);
     assert_non_null(strstr(why.what, "toy: interrupted at "));

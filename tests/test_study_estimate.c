@@ -1,5 +1,6 @@
 /* Tests of study/estimate.h: what a run would measure and keep, and how long it would take. */
 #include "study_fixture.h"
+#include "base/cancel.h"
 
 #include "measure/clock.h"
 #include "study/estimate.h"
@@ -148,19 +149,17 @@ static void a_cell_that_takes_too_long_is_unknown(void **state)
     study_destroy(s);
 }
 
-static bool stop_at_once(void *context)
-{
-    (void)context;
-    return true;
-}
-
 static void a_stop_request_ends_the_trials(void **state)
 {
     const fixture *f = *state;
     study *s = fixture_study(f, "study: test\nscene: scene.yaml\ngrid: [{render.depth: [0, 1]}]\n");
     study_estimate e;
-    const study_options options = {.results = f->results, .stop = stop_at_once};
+    const study_options options = {.results = f->results};
+    cancel_token token = {.ask = NULL};
+    cancel_set(&token);
+    cancel_begin(&token);
     assert_int_equal(study_estimate_run(s, &options, &e, NULL), STATUS_INTERRUPTED);
+    cancel_end(&token);
     study_destroy(s);
 }
 

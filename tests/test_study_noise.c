@@ -1,6 +1,7 @@
 /* Tests of disturbed rows: rule, further repetitions up to the limit, news, waiting, and the numbers in status and
  * summary. A rule that every row breaks, or none, makes them independent of the machine. */
 #include "study_fixture.h"
+#include "base/cancel.h"
 #include "measure/clock.h"
 #include "study/row_files.h"
 #include "study/run_noise.h"
@@ -185,9 +186,11 @@ static void waiting_ends_with_the_time_or_a_stop_request(void **state)
     const pid_t load = start_load();
     double until_s = clock_wall_s() + 0.5;
     size_t ran = 0;
-    study_options options = {
-        .results = f->results, .wait_quiet_s = 60, .stop = stop_after_a_while, .context = &until_s};
+    study_options options = {.results = f->results, .wait_quiet_s = 60};
+    cancel_token token = {.ask = stop_after_a_while, .context = &until_s};
+    cancel_begin(&token);
     const status stopped = study_run(s, &options, &ran, NULL);
+    cancel_end(&token);
     const double began_s = clock_wall_s();
     options = (study_options){.results = f->results, .wait_quiet_s = 0.3};
     const status waited = study_run(s, &options, &ran, NULL);

@@ -838,7 +838,7 @@ static void a_failed_figure_leaves_nothing(void **state)
     const int input = fcntl(0, F_DUPFD_CLOEXEC, 3);
     close(0);
     diagnostic why = {0};
-    const status code = study_plot_draw(base_in(f), "png", 60, NULL, &why);
+    const status code = study_plot_draw(base_in(f), "png", 60, &why);
     if (input >= 0) {
         assert_int_equal(dup2(input, 0), 0);
         close(input);

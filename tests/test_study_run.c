@@ -1,5 +1,6 @@
 /* Tests of study runs: repetitions, interruption and resumption, kept files, locks and full disks. */
 #include "study_fixture.h"
+#include "base/cancel.h"
 #include "base/os_process.h"
 #include "base/hash.h"
 #include "image/image.h"
@@ -156,10 +157,22 @@ static void without_shuffling_cells_go_in_order(void **state)
 }
 
 /* Polled before and during each frame: stops the run after a while. */
+/* As the ask of a token. */
 static bool stop_soon(void *context)
 {
     int *left = context;
     return --*left < 0;
+}
+
+/* Runs the study below a token. */
+static status run_until(bool (*ask)(void *context), void *context, const study *s, const study_options *options,
+                        size_t *ran, diagnostic *why)
+{
+    cancel_token token = {.ask = ask, .context = context};
+    cancel_begin(&token);
+    const status code = study_run(s, options, ran, why);
+    cancel_end(&token);
+    return code;
 }
 
 static void an_interrupted_study_resumes(void **state)
@@ -172,8 +185,8 @@ static void an_interrupted_study_resumes(void **state)
         diagnostic why = {0};
         size_t ran = 99;
         int stop_after = polls;
-        study_options options = {.results = f->results, .stop = stop_soon, .context = &stop_after};
-        status code = study_run(s, &options, &ran, &why);
+        const study_options options = {.results = f->results};
+        status code = run_until(stop_soon, &stop_after, s, &options, &ran, &why);
         total += ran;
         expect_begins(f, "results/test/rows.csv", earlier);
         free(earlier);
@@ -244,9 +257,8 @@ static void the_callback_reports_the_progress_of_the_terminal(void **state)
     size_t size, ran = 0;
     FILE *terminal = open_memstream(&message, &size);
     watch w = {.stop = true, .from = pthread_self()};
-    study_options options = {
-        .results = f->results, .progress = terminal, .stop = stop_when_known, .progressed = look, .context = &w};
-    assert_int_equal(study_run(s, &options, &ran, NULL), STATUS_INTERRUPTED);
+    const study_options options = {.results = f->results, .progress = terminal, .progressed = look, .context = &w};
+    assert_int_equal(run_until(stop_when_known, &w, s, &options, &ran, NULL), STATUS_INTERRUPTED);
     assert_true(w.calls >= 2 && w.frames_done > 0);
     assert_true(ran >= w.frames_done);
     fclose(terminal);
@@ -730,10 +742,7 @@ static void a_full_disk_leaves_only_complete_rows(void **state)
     size_t ran = 0;
     study_options options = {.results = f->results};
     int stop_after = 12;
-    options.stop = stop_soon;
-    options.context = &stop_after;
-    assert_int_equal(study_run(s, &options, NULL, NULL), STATUS_INTERRUPTED);
-    options.stop = NULL;
+    assert_int_equal(run_until(stop_soon, &stop_after, s, &options, NULL, NULL), STATUS_INTERRUPTED);
     char *earlier = fixture_text(f, "results/test/rows.csv"), *manifest = fixture_text(f, "results/test/runs.json");
     assert_int_equal(getrlimit(RLIMIT_FSIZE, &before), 0);
     small = before;

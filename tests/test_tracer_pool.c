@@ -67,9 +67,8 @@ static void trace_a_pixel(tracer *t)
 {
     const span piece = {32, 24, 33, 25};
     atomic_uint_fast64_t begun = 0;
-    const atomic_bool stop = false;
-    tracer_span(t, &piece, &begun, &stop);
-    tracer_finish(t, &stop);
+    tracer_span(t, &piece, &begun);
+    tracer_finish(t);
     assert_int_equal(begun, 1);
 }
 
@@ -103,14 +102,13 @@ static void counters_are_reset_for_each_frame(void **state)
 static void *work(void *context)
 {
     stage *st = context;
-    const atomic_bool stop = false;
     atomic_uint_fast64_t begun = 0;
     span piece;
     const int worker = atomic_fetch_add(&st->started, 1);
     for (uint64_t taken = 0; schedule_next(&st->pieces, worker, taken, &piece); taken++) {
         tracer *t = tracer_pool_take(st->set);
-        tracer_span(t, &piece, &begun, &stop);
-        tracer_finish(t, &stop);
+        tracer_span(t, &piece, &begun);
+        tracer_finish(t);
         tracer_pool_return(st->set, t);
     }
     return NULL;

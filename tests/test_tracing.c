@@ -51,7 +51,7 @@ static void a_piece_arrives_with_its_sums_and_variances(void **state)
     const double variance[6] = {0.5, 1.5, 2.5, 3.5, 4.5, 5.5};
     const film traced = {.sum = sums};
     assert_null(messenger->take(messenger->of));
-    assert_true(source->done(source->context, &(span){.x0 = 32, .x1 = 34, .y0 = 16, .y1 = 17}, &traced, variance));
+    source->done(source->context, &(span){.x0 = 32, .x1 = 34, .y0 = 16, .y1 = 17}, &traced, variance);
     piece_message *piece = messenger->take(messenger->of);
     assert_non_null(piece);
     assert_int_equal(piece->head.value, 6);
@@ -78,8 +78,8 @@ static void a_piece_without_memory_gives_the_frame_up(void **state)
     span at;
     messenger->give(messenger->of, (const int32_t[]){0, 1}, 2);
     assert_int_equal(team_status(t, STATUS_OK, &why), STATUS_OK);
-    assert_false(source->done(source->context, &(span){.x1 = 1 << 30, .y1 = 1 << 28}, &nothing, NULL));
-    assert_true(team_is_stopped(t));
+    source->done(source->context, &(span){.x1 = 1 << 30, .y1 = 1 << 28}, &nothing, NULL);
+    assert_true(cancel_is_set(team_token(t)));
     assert_false(source->next(source->context, 0, &at)); /* though tiles wait */
     assert_null(messenger->take(messenger->of));
     assert_int_equal(team_status(t, STATUS_OK, &why), STATUS_FAILURE);
@@ -87,17 +87,18 @@ static void a_piece_without_memory_gives_the_frame_up(void **state)
     team_destroy(t);
 }
 
-static void a_frame_that_is_given_up_refuses_further_pieces(void **state)
+static void a_frame_that_is_given_up_hands_out_no_tiles(void **state)
 {
     (void)state;
     team *t = begin();
     const tracing *messenger = team_tracing(t);
     const piece_source *source = team_source(t);
-    int64_t sums[3] = {0};
-    const film traced = {.sum = sums};
     diagnostic why = {0};
+    span at;
+    messenger->give(messenger->of, (const int32_t[]){0, 1}, 2);
     messenger->stop(messenger->of);
-    assert_false(source->done(source->context, &(span){.x1 = 1, .y1 = 1}, &traced, NULL));
+    assert_true(cancel_is_set(team_token(t)));
+    assert_false(source->next(source->context, 0, &at));
     assert_int_equal(team_status(t, STATUS_INTERRUPTED, &why), STATUS_INTERRUPTED);
     team_destroy(t);
 }
@@ -108,7 +109,7 @@ int main(void)
         cmocka_unit_test(tiles_come_out_as_spans_in_order),
         cmocka_unit_test(a_piece_arrives_with_its_sums_and_variances),
         cmocka_unit_test(a_piece_without_memory_gives_the_frame_up),
-        cmocka_unit_test(a_frame_that_is_given_up_refuses_further_pieces),
+        cmocka_unit_test(a_frame_that_is_given_up_hands_out_no_tiles),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -4,11 +4,9 @@
 #include "base/cancel.h"
 #include "base/memory_budget.h"
 #include "base/os_confine.h"
-#include <errno.h>
 #include <pthread.h>
 #include <signal.h>
 #include <stddef.h>
-#include <time.h>
 
 enum { STACK_BYTES = 1 << 20 };
 
@@ -30,20 +28,6 @@ static void *run_confined(void *of)
     return NULL;
 }
 
-/* Asks the caller's token meanwhile: the thread itself only sees that it was set. */
-static void wait_for(pthread_t thread)
-{
-    enum { ASK_NS = 10000000 };
-    struct timespec until;
-    do {
-        cancel_asked();
-        clock_gettime(CLOCK_REALTIME, &until);
-        until.tv_nsec += ASK_NS;
-        if (until.tv_nsec >= 1000000000)
-            until.tv_nsec -= 1000000000, until.tv_sec++;
-    } while (pthread_timedjoin_np(thread, NULL, &until) == ETIMEDOUT);
-}
-
 void apart_run(void (*work)(void *context), void *context)
 {
     call c = {work, context, cancel_current(), memory_budget_look()};
@@ -62,5 +46,5 @@ void apart_run(void (*work)(void *context), void *context)
     if (error)
         work(context);
     else
-        wait_for(thread);
+        cancel_join(thread);
 }

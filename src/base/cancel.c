@@ -1,6 +1,9 @@
 /* The stack of tokens of each thread. */
 #include "base/cancel.h"
 
+#include <errno.h>
+#include <time.h>
+
 static _Thread_local cancel_token *current;
 static _Thread_local char self; /* its address names the thread */
 
@@ -21,6 +24,16 @@ void cancel_set(cancel_token *t)
     atomic_store_explicit(&t->asked, true, memory_order_relaxed);
 }
 
+bool cancel_is_set(const cancel_token *t)
+{
+    return atomic_load_explicit(&t->asked, memory_order_relaxed);
+}
+
+void cancel_clear(cancel_token *t)
+{
+    atomic_store_explicit(&t->asked, false, memory_order_relaxed);
+}
+
 void cancel_shield(cancel_token *t)
 {
     *t = (cancel_token){.shields = true};
@@ -30,7 +43,7 @@ void cancel_shield(cancel_token *t)
 static bool asked_from(cancel_token *first)
 {
     for (cancel_token *t = first; t && !t->shields; t = t->outer) {
-        if (atomic_load_explicit(&t->asked, memory_order_relaxed))
+        if (cancel_is_set(t))
             return true;
         if (t->ask && t->thread == &self && t->ask(t->context)) {
             cancel_set(t);
@@ -53,12 +66,6 @@ bool cancel_hurries(void)
     return t && asked_from(t->outer);
 }
 
-const atomic_bool *cancel_flag(void)
-{
-    static const atomic_bool never = false;
-    return current && !current->shields ? &current->asked : &never;
-}
-
 status cancel_check(diagnostic *why)
 {
     return cancel_asked() ? diagnose(why, STATUS_INTERRUPTED, "", "interrupted") : STATUS_OK;
@@ -78,4 +85,17 @@ cancel_token *cancel_current(void)
 void cancel_follow(cancel_token *t)
 {
     current = t;
+}
+
+void cancel_join(pthread_t thread)
+{
+    enum { ASK_NS = 10000000 };
+    struct timespec until;
+    do {
+        cancel_asked();
+        clock_gettime(CLOCK_REALTIME, &until);
+        until.tv_nsec += ASK_NS;
+        if (until.tv_nsec >= 1000000000)
+            until.tv_nsec -= 1000000000, until.tv_sec++;
+    } while (pthread_timedjoin_np(thread, NULL, &until) == ETIMEDOUT);
 }

@@ -1,7 +1,8 @@
-/* Cancellation of long work: one token for everything that a call does, however deep. Whoever begins the work (a
- * command, a job, an engine's call) sets the token of its thread; every loop that may run for longer than 50 ms asks
- * cancel_asked, stops, and returns STATUS_INTERRUPTED. So no function below needs a parameter for it. A thread team
- * passes its caller's token on to its members; other threads begin without one.
+/* Cancellation of long work: the only way to end it early. Whoever begins work that may have to end (a command, a time
+ * limit, a call of the engine) begins a token on its thread, and sets it or lets it ask; every loop that may run for
+ * longer than 50 ms asks cancel_asked, stops, and returns STATUS_INTERRUPTED. So no function below needs a parameter
+ * for it, and functions that report progress return nothing: one that wants no more sets a token. Threads that work for
+ * a caller follow its tokens: a thread team, the worker pool, cancel_join; other threads begin without one.
  *
  * Once requested, cancellation stays so until the token ends: a function without a status may return early with
  * an incomplete result if its caller then asks before using it. Ownership: a token is its owner's, usually on the
@@ -10,14 +11,15 @@
 #pragma once
 
 #include "base/status.h"
+#include <pthread.h>
 #include <stdatomic.h>
 #include <stdbool.h>
 #include <stddef.h>
 
 /* Zeros but for ask and context; the other fields are private. */
 typedef struct cancel_token {
-    /* Whether the work should end: called only on the thread that began the token, often (cheap), possibly again after
-     * true. NULL: only cancel_set ends it. */
+    /* Whether the work should end: called only on the thread that began the token, often (cheap), not again after true.
+     * NULL: only cancel_set ends it. */
     bool (*ask)(void *context);
     void *context;
     atomic_bool asked;
@@ -29,8 +31,12 @@ typedef struct cancel_token {
 void cancel_begin(cancel_token *t);
 void cancel_end(cancel_token *t);
 
-/* From any thread, and from signal handlers. */
+/* From any thread, and from signal handlers; also before the token begins. */
 void cancel_set(cancel_token *t);
+/* Whether it was set or its ask was true; any thread may look. */
+bool cancel_is_set(const cancel_token *t);
+/* Before other work begins under it. */
+void cancel_clear(cancel_token *t);
 
 /* Begins a token that no one sets: for writing partial results after a cancellation. */
 void cancel_shield(cancel_token *t);
@@ -47,15 +53,14 @@ static inline bool cancel_asked_at(size_t i)
 /* Under a shield: whether the work outside should end, so that what is written should be written soon. */
 bool cancel_hurries(void);
 
-/* The flag of the innermost token, for a loop of a lower layer that takes one; a caller asks too, for the others. */
-const atomic_bool *cancel_flag(void);
-
 /* STATUS_INTERRUPTED with the reason "interrupted" if it should end, else STATUS_OK. */
 status cancel_check(diagnostic *why);
 
 /* For a step that returned nothing: it was cancelled, or out of memory. */
 status cancelled_or_out_of_memory(diagnostic *why);
 
-/* For thread teams: this thread's token, NULL for none; the members' (never calls ask). */
+/* For threads that work for this one: its token, NULL for none; theirs (never calls ask). */
 cancel_token *cancel_current(void);
 void cancel_follow(cancel_token *t);
+/* Waits for a thread that follows, and asks meanwhile, which it cannot. */
+void cancel_join(pthread_t thread);

@@ -1,5 +1,6 @@
 /* Running another program: collects its output and kills its process group. */
 #include "base/child.h"
+#include "base/cancel.h"
 #include "base/spawn.h"
 #include "base/system_error.h"
 #include <errno.h>
@@ -14,7 +15,7 @@
 #include <time.h>
 #include <unistd.h>
 
-enum { OUTPUT_MAX = 16384, POLL_MS = 100 /* how often stop is checked */ };
+enum { OUTPUT_MAX = 16384, POLL_MS = 100 /* how often the token is asked */ };
 
 typedef struct child {
     pid_t pid;
@@ -64,12 +65,12 @@ static bool read_output(child *c)
     }
 }
 
-/* Waits until the program has ended; false after the time limit or stop. */
-static bool wait_child(child *c, double limit_s, const atomic_bool *stop)
+/* Waits until the program has ended; false after the time limit or a cancellation. */
+static bool wait_child(child *c, double limit_s)
 {
     const double deadline_s = now_s() + limit_s;
     bool open = true;
-    while (now_s() < deadline_s && !atomic_load(stop)) {
+    while (now_s() < deadline_s && !cancel_asked()) {
         struct pollfd both[] = {{.fd = open ? c->out : -1, .events = POLLIN}, {.fd = c->pidfd, .events = POLLIN}};
         poll(both, 2, POLL_MS);
         if (both[0].revents)
@@ -96,8 +97,7 @@ static int end(child *c)
     return WIFEXITED(state) ? WEXITSTATUS(state) : -1;
 }
 
-status child_run(char *const *arguments, double limit_s, const atomic_bool *stop, char **output, int *exit_code,
-                 diagnostic *why)
+status child_run(char *const *arguments, double limit_s, char **output, int *exit_code, diagnostic *why)
 {
     child c = {.output = calloc(1, OUTPUT_MAX + 1)};
     *output = c.output;
@@ -107,9 +107,10 @@ status child_run(char *const *arguments, double limit_s, const atomic_bool *stop
     const int error = begin(&c, arguments);
     if (error)
         return system_error(why, STATUS_FAILURE, arguments[0], "the program cannot be started", error, "try again");
-    const bool in_time = wait_child(&c, limit_s, stop);
+    const bool in_time = wait_child(&c, limit_s);
     *exit_code = end(&c);
-    return in_time ? STATUS_OK
-                   : diagnose(why, STATUS_INTERRUPTED, "draw fewer figures at a time, or run it in a terminal",
-                              "the program took longer than %g s", limit_s);
+    return in_time          ? STATUS_OK
+           : cancel_asked() ? cancel_check(why)
+                            : diagnose(why, STATUS_INTERRUPTED, "draw fewer figures at a time, or run it in a terminal",
+                                       "the program took longer than %g s", limit_s);
 }

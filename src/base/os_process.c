@@ -62,7 +62,7 @@ int os_call_with_stack(int (*task)(void *context), void *context)
     pthread_attr_destroy(&attributes);
     if (!started)
         return task(context);
-    pthread_join(thread, NULL);
+    cancel_join(thread);
     return c.result;
 }
 

@@ -15,8 +15,8 @@ int os_usable_units(void);
 void os_signals_as_errors(void);
 
 /* Calls task(context) and returns its value. Where the limit of the stack is small (ulimit -s), the task gets a thread
- * with a stack of the usual size, and so do the threads that are created later. Setting the caller's token
- * (base/cancel.h) cancels it; nobody asks the token meanwhile. */
+ * with a stack of the usual size, and so do the threads that are created later. Cancelling the caller cancels it
+ * (base/cancel.h). */
 int os_call_with_stack(int (*task)(void *context), void *context);
 
 /* The kernel kills this process when the thread that started it ends. */

@@ -1,5 +1,6 @@
 /* Renders an animation frame by frame, into numbered images or one stream. */
 #include "cli/animate.h"
+#include "base/cancel.h"
 #include "base/file.h"
 #include "cli/terminal.h"
 #include "image/video.h"
@@ -31,11 +32,10 @@ typedef struct animation_job {
     animate_account *account;
 } animation_job;
 
-static bool show_progress(void *context, double share_done)
+static void show_progress(void *context, double share_done)
 {
     animation_job *f = context;
     progress_draw(&f->line, ((double)f->frame + share_done) / (double)f->count);
-    return !terminal_stop_requested(NULL);
 }
 
 static status report_interrupted(const animation_job *f, diagnostic *why)
@@ -52,13 +52,13 @@ static bool is_done(const animation_job *f, const char *path)
 }
 
 /* Frames take equal time, except the motion up to the first one, which has a progress line of its own. */
-static bool show_motion(void *context, double share_done)
+static void show_motion(void *context, double share_done)
 {
     animation_job *f = context;
     if (f->frame > 0)
-        return show_progress(f, 0);
-    progress_draw(&f->line, share_done);
-    return !terminal_stop_requested(NULL);
+        show_progress(f, 0);
+    else
+        progress_draw(&f->line, share_done);
 }
 
 static status advance(animation_job *f, double to_s, bool surfaces, diagnostic *why)
@@ -139,7 +139,8 @@ static status make_frame(animation_job *f, diagnostic *why)
         return out_of_memory(why);
     const bool exists = is_done(f, path);
     snprintf(f->label, sizeof f->label, "frame %" PRId64 " of %" PRId64, f->frame + 1, f->count);
-    status result = show_progress(f, 0) ? STATUS_OK : STATUS_INTERRUPTED;
+    show_progress(f, 0);
+    status result = cancel_check(why);
     THEN(result, advance(f, frame_times_at(&f->request->times, f->frame), !exists, why));
     if (result == STATUS_OK && exists)
         f->account->kept++;

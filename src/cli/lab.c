@@ -4,6 +4,7 @@
 #include "cli/options.h"
 #include "cli/scene_input.h"
 #include "cli/terminal.h"
+#include "base/cancel.h"
 #include "base/installed.h"
 #include "base/system_error.h"
 #include "base/text.h"
@@ -81,7 +82,7 @@ static char *state_folder(void)
 
 static void wait_for_stop(void)
 {
-    while (!terminal_stop_requested(NULL))
+    while (!cancel_asked())
         usleep(50000);
 }
 

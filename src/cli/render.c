@@ -234,10 +234,9 @@ static status report_interrupted(const render_request *request, const job_accoun
     return STATUS_INTERRUPTED;
 }
 
-static bool show_progress(void *context, double share_done)
+static void show_progress(void *context, double share_done)
 {
     progress_draw(context, share_done);
-    return true;
 }
 
 static status render_and_write(const render_request *request, const scene *s, job *with, diagnostic *why)

@@ -105,10 +105,9 @@ status scene_input_read(const scene_input *input, scene **out, diagnostic *why)
     return result;
 }
 
-static bool show_motion(void *context, double share_done)
+static void show_motion(void *context, double share_done)
 {
     progress_draw(context, share_done);
-    return !terminal_stop_requested(NULL);
 }
 
 status scene_input_load(scene *s, diagnostic *why)
@@ -136,8 +135,7 @@ void scene_input_share(const job_sharing *sharing)
 status scene_input_job(bool measured, job **out, diagnostic *why)
 {
     isa level = ISA_BASE;
-    const job_settings settings = {
-        .level = &level, .measured = measured, .stop = terminal_stop_requested, .sharing = shared_with};
+    const job_settings settings = {.level = &level, .measured = measured, .sharing = shared_with};
     TRY(scene_input_isa(&level, why));
     return job_create(&settings, out, why);
 }

@@ -1,4 +1,5 @@
 #include "cli/slurm_commands.h"
+#include "base/cancel.h"
 #include "base/child.h"
 #include "base/text.h"
 #include <limits.h>
@@ -23,9 +24,11 @@ static char *reason_of(char *output)
 /* Runs a program of Slurm, whose name is arguments[1]. *output is allocated. */
 static status ask(const char *const *arguments, const char *remedy, char **output, diagnostic *why)
 {
-    static const atomic_bool never;
     int exit_code = -1;
-    status code = child_run((char *const *)(uintptr_t)arguments, answer_limit_s, &never, output, &exit_code, why);
+    cancel_token shield; /* whether a job was submitted must be known */
+    cancel_shield(&shield);
+    status code = child_run((char *const *)(uintptr_t)arguments, answer_limit_s, output, &exit_code, why);
+    cancel_end(&shield);
     if (code == STATUS_OK && exit_code == NOT_FOUND)
         code = diagnose_at(why, arguments[1], STATUS_FAILURE,
                            "submit on a machine with Slurm's commands, or print the script with --dry-run",

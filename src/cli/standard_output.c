@@ -15,7 +15,7 @@ static ssize_t write_all(void *unused, const char *bytes, size_t size)
     (void)unused;
     for (size_t done = 0; done < size;) {
         const ssize_t count = write(STDOUT_FILENO, bytes + done, size - done);
-        if (count < 0 && errno == EINTR && !terminal_stop_requested(NULL))
+        if (count < 0 && errno == EINTR && !terminal_stop_requested())
             continue;
         if (count <= 0) {
             first_error = first_error ? first_error : count < 0 ? errno : ENOSPC;

@@ -1,5 +1,4 @@
 /* `cuvette study`: runs, lists, merges and summarises studies. */
-#include "base/cancel.h"
 #include "base/os_process.h"
 #include "base/text_writer.h"
 #include "cli/cli.h"
@@ -176,8 +175,7 @@ static status measure(const study *s, const study_request *request, size_t *rows
                                    .progress = terminal,
                                    .progress_columns = terminal ? terminal_columns(STDERR_FILENO) : 0,
                                    .wait_quiet_s = request->wait_quiet_s,
-                                   .news = request->quiet || request->process ? NULL : print_news,
-                                   .stop = terminal_stop_requested};
+                                   .news = request->quiet || request->process ? NULL : print_news};
     if (request->process || (s->processes == 1 && !request->against && !request->instructions))
         return study_run(s, &options, rows, why);
     size_t before = 0, after = 0, further = 0;
@@ -209,10 +207,7 @@ static status run_part(const study *s, const study_request *request, diagnostic 
         return options_wrong("--process", NULL, why, "see processes in the study file", "%s has %ld processes", s->path,
                              study_processes(s));
     os_die_with_parent(); /* rows survive that, and the next run needs their files */
-    cancel_token shield;
-    cancel_shield(&shield);
     const status result = measure(s, request, &rows, why);
-    cancel_end(&shield);
     if (result == STATUS_INTERRUPTED)
         *why = (diagnostic){.what = ""};
     return result;
@@ -226,12 +221,7 @@ static status run_one(const study *s, const study_request *request, diagnostic *
     status result = request->quiet ? STATUS_OK : print_notes(s, request, why);
     if (result == STATUS_OK && request->dry_run)
         return study_dry_run(s, request, why);
-    if (result == STATUS_OK) { /* after a stop request too, rows and images of what is complete are written */
-        cancel_token shield;
-        cancel_shield(&shield);
-        result = measure(s, request, &rows, why);
-        cancel_end(&shield);
-    }
+    THEN(result, measure(s, request, &rows, why));
     if (result == STATUS_INTERRUPTED)
         return say_interrupted(s, rows, why);
     if (result != STATUS_OK || request->quiet)

@@ -24,8 +24,7 @@ status study_dry_run(const study *s, const study_request *request, diagnostic *w
                                    .shard = request->shard,
                                    .shards = request->shards,
                                    .by_repetition = request->by_repetition,
-                                   .any_environment = request->any_environment,
-                                   .stop = terminal_stop_requested};
+                                   .any_environment = request->any_environment};
     study_estimate e;
     TRY(study_estimate_run(s, &options, &e, why));
     if (request->quiet)

@@ -186,7 +186,7 @@ static status draw(const request *r, const char *base, const study *s, diagnosti
     THEN(code, study_plot_write(s, &r->plot, base, why));
     for (int i = 0; code == STATUS_OK && i < FORMAT_COUNT; i++)
         if (r->wanted[i]) {
-            code = study_plot_draw(base, formats[i], draw_limit_s, NULL, why);
+            code = study_plot_draw(base, formats[i], draw_limit_s, why);
             if (code == STATUS_OK)
                 printf("%s: %s.%s\n", s->name, base, formats[i]);
         }

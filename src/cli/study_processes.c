@@ -1,4 +1,5 @@
 /* The fresh processes of `cuvette study run`: this program, or another build of it in turn, with --process=K. */
+#include "base/cancel.h"
 #include "base/memory_budget.h"
 #include "base/os_process.h"
 #include "base/random.h"
@@ -35,7 +36,7 @@ static int wait_for_end(pid_t pid)
             return WIFEXITED(ended) ? WEXITSTATUS(ended) : 128 + WTERMSIG(ended);
         if (found < 0 && errno != EINTR)
             return -1;
-        if (!told && terminal_stop_requested(NULL)) {
+        if (!told && cancel_asked()) {
             kill(pid, SIGTERM);
             told = true;
         }
@@ -49,7 +50,7 @@ static status ended(const study *s, const char *program, long process, int code,
     if (code == 0)
         return STATUS_OK;
     diagnostic_locate(why, s->path, 0, 0);
-    if (code == 130 || terminal_stop_requested(NULL))
+    if (code == 130 || cancel_asked())
         return diagnose(why, STATUS_INTERRUPTED, "run it again to resume", "interrupted; all completed rows are kept");
     return diagnose(why, code == 2 ? STATUS_BAD_INPUT : STATUS_FAILURE, "see its message above; rows so far are kept",
                     "process %ld of %s ended with status %d", process, program, code);

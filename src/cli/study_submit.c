@@ -164,8 +164,7 @@ static status find_parts(submission *job, diagnostic *why)
     const study_options as = {.results = asked->results,
                               .shards = (long)job->part_count,
                               .by_repetition = asked->by_repetition,
-                              .environment = key,
-                              .stop = terminal_stop_requested};
+                              .environment = key};
     TRY(study_estimate_parts(job->s, &as, !asked->time, job->parts, why));
     job->array = slurm_array(job->parts, job->part_count);
     job->longest_s = slurm_longest_s(job->parts, job->part_count);

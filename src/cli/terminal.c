@@ -37,9 +37,8 @@ static void request_stop(int signal_number)
     }
 }
 
-bool terminal_stop_requested(void *unused)
+bool terminal_stop_requested(void)
 {
-    (void)unused;
     return stop_requested != 0;
 }
 

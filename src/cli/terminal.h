@@ -11,8 +11,8 @@
  * that standard output was written. Must be called first. */
 void terminal_prepare(void);
 
-/* Returns whether SIGINT, SIGTERM or SIGHUP has arrived. unused: lets the function serve as a callback. */
-bool terminal_stop_requested(void *unused);
+/* Whether SIGINT, SIGTERM or SIGHUP has arrived, also under a shield. */
+bool terminal_stop_requested(void);
 
 /* Whether that was SIGINT: Ctrl-C, not the end of the session or the machine. */
 bool terminal_stopped_by_user(void);

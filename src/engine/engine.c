@@ -1,5 +1,4 @@
 /* Engines, and the rendering of a request: checks, a preview, the film, the caller's buffers and callbacks. */
-#include "base/cancel.h"
 #include "engine/canvas.h"
 #include "engine/engine_private.h"
 
@@ -46,62 +45,25 @@ void cuvette_engine_destroy(cuvette_engine *engine)
 void cuvette_engine_cancel(cuvette_engine *engine)
 {
     if (engine)
-        job_cancel(engine->workers);
+        cancel_set(&engine->token);
 }
 
 /* One render in progress. */
 typedef struct stage {
     cuvette_engine *engine;
     const cuvette_request *request;
-    float_environment *host; /* the caller's, for callbacks */
+    host_progress progress;
     canvas buffers;
-    double share;        /* largest share reported so far */
-    double load_asked_s; /* when the caller was asked last while slimes were simulated */
     bool is_preview;
     status noted; /* of passing pieces to the callback */
 } stage;
 
-static bool caller_goes_on(stage *now)
-{
-    float_environment_leave(now->host);
-    const bool goes_on = now->request->progress(now->request->context, now->share);
-    float_environment_enter(now->host);
-    return goes_on;
-}
-
-static bool report_share(stage *now, double share)
-{
-    if (share > now->share)
-        now->share = share;
-    if (now->request->progress && !caller_goes_on(now))
-        job_cancel(now->engine->workers);
-    return !job_must_stop(now->engine->workers);
-}
-
-static bool watch(void *context, double share)
+static void watch(void *context, double share)
 {
     stage *now = context;
     if (now->request->piece && now->noted == STATUS_OK)
         now->noted = canvas_hand_out(&now->buffers, NULL);
-    return report_share(now, now->is_preview ? 0.0 : share);
-}
-
-/* All is loaded, and slimes are simulated, before the first ray. */
-static bool watch_loading(void *context, double share)
-{
-    static const double ask_every_s = 0.1;
-    stage *now = context;
-    (void)share;
-    if (clock_wall_s() < now->load_asked_s + ask_every_s)
-        return !job_must_stop(now->engine->workers);
-    now->load_asked_s = clock_wall_s();
-    return report_share(now, 0.0);
-}
-
-/* As the ask of a token, for all that is loaded and built. */
-static bool host_stops(void *context)
-{
-    return !watch_loading(context, 0.0);
+    engine_tell(&now->progress, now->is_preview ? 0.0 : share);
 }
 
 static void take_piece(void *context, const film *img, int x0, int y0, int x1, int y1)
@@ -176,13 +138,14 @@ static status render_frame(stage *now, const scene *s, cuvette_frame *frame, dia
     if (code == STATUS_OK && now->noted != STATUS_OK)
         code = diagnose(why, now->noted, MEMORY_REMEDY, "out of memory for the list of finished pieces");
     if (code == STATUS_OK)
-        report_share(now, 1.0);
+        engine_tell(&now->progress, 1.0);
     return code;
 }
 
 static status render(stage *now, const scene *s, cuvette_frame *frame, diagnostic *why)
 {
-    if (!report_share(now, 0.0))
+    engine_tell(&now->progress, 0.0);
+    if (cancel_asked())
         return diagnose(why, STATUS_INTERRUPTED, "", "cancelled before the first ray");
     status code = STATUS_OK;
     if (now->request->preview && (now->request->rgb || now->request->srgb)) {
@@ -211,14 +174,16 @@ static status render_held(cuvette_engine *engine, cuvette_scene *s, const cuvett
                           float_environment *host, cuvette_frame *frame, diagnostic *why)
 {
     cuvette_request request;
-    stage now = {.engine = engine, .request = &request, .host = host, .load_asked_s = clock_wall_s()};
+    stage now = {.engine = engine, .request = &request};
     status code = engine_check(s, why);
     THEN(code, read_request(given, s->model, &request, why));
     if (code != STATUS_OK)
         return code;
-    cancel_token token = {.ask = host_stops, .context = &now};
-    cancel_begin(&token);
-    code = engine_load(s, &(load_watch){watch_loading, &now}, why);
+    now.progress = (host_progress){
+        .tell = request.progress, .context = request.context, .host = host, .next_s = clock_wall_s() + 0.1};
+    cancel_begin(&engine->token);
+    engine_begin_progress(&now.progress);
+    code = engine_load(s, NULL, why);
     THEN(code, keep_scene(s, frame, why));
     THEN(code, canvas_open(&request, host, &now.buffers, why));
     if (code == STATUS_OK) {
@@ -226,7 +191,8 @@ static status render_held(cuvette_engine *engine, cuvette_scene *s, const cuvett
         code = render(&now, s->model, frame, why);
         canvas_close(&now.buffers);
     }
-    cancel_end(&token);
+    engine_end_progress(&now.progress);
+    cancel_end(&engine->token);
     return code;
 }
 
@@ -249,7 +215,7 @@ cuvette_status cuvette_engine_render(cuvette_engine *engine, const cuvette_scene
         atomic_store(&engine->busy, false);
         return begun;
     }
-    job_renew(engine->workers);
+    cancel_clear(&engine->token);
     cuvette_frame *frame = calloc(1, sizeof *frame);
     const status code = frame ? render_held(engine, held, request, &host, frame, &inner) : out_of_memory(&inner);
     engine_end_render(held);

@@ -2,6 +2,7 @@
  * cuvette.h. Ownership as in cuvette.h. */
 #pragma once
 
+#include "base/cancel.h"
 #include "base/vec3.h"
 #include "base/float_environment.h"
 #include "base/isa.h"
@@ -26,6 +27,7 @@ struct cuvette_scene {
 struct cuvette_engine {
     job *workers;
     atomic_bool busy;
+    cancel_token token; /* cuvette_engine_cancel sets it */
 };
 
 struct cuvette_frame {
@@ -74,15 +76,22 @@ status engine_check(const cuvette_scene *s, diagnostic *why);
 /* Loads the files that the scene names, and its slimes, once; watch as for scene_load_until. */
 status engine_load(cuvette_scene *s, const load_watch *watch, diagnostic *why);
 
-/* The caller's progress function, asked about ten times a second with a share that never decreases. ask may be NULL. */
+/* The caller's progress function, called about ten times a second with a share that never decreases, behind a token
+ * that is set once the function returns false: nothing else turns that into a cancellation. */
 typedef struct host_progress {
-    bool (*ask)(void *context, double share);
+    bool (*tell)(void *context, double share); /* may be NULL */
     void *context;
     float_environment *host; /* the caller's, for the callback */
     double share, next_s;
+    cancel_token token;
 } host_progress;
-/* context: a host_progress. As the go_on of a load_watch. */
-bool engine_goes_on(void *context, double share);
+/* Begins the token, which also calls the function where there is no progress. */
+void engine_begin_progress(host_progress *p);
+void engine_end_progress(host_progress *p);
+/* Calls the function now. */
+void engine_tell(host_progress *p, double share);
+/* Calls it if a tenth of a second has passed; context: a host_progress. As the progress of a load_watch. */
+void engine_show(void *context, double share);
 
 /* Copies content, of `known` bytes, into the caller's struct of an older or a newer version, up to the caller's size;
  * the size field with which both begin is not changed. */

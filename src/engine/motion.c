@@ -3,6 +3,7 @@
 #include "engine/motion_private.h"
 
 #include "geometry/shapes/shape.h"
+#include "measure/clock.h"
 #include "scene/model/params_path.h"
 #include "scene/model/slime.h"
 #include "scene/model/scene.h"
@@ -123,11 +124,13 @@ cuvette_status cuvette_motion_advance_watched(cuvette_motion *motion, double tim
                                               cuvette_diagnostic *why)
 {
     ENGINE_CALL(motion);
-    host_progress asked = {.ask = progress, .context = context, .host = &host};
+    host_progress asked = {.tell = progress, .context = context, .host = &host, .next_s = clock_wall_s() + 0.01};
     ENGINE_TRY(engine_begin_advance(motion->of, why));
     status code = check_alive(motion, &inner);
     THEN(code, check_time(motion, time_s, &inner));
-    THEN(code, advance(motion, time_s, &(load_watch){engine_goes_on, &asked}, &inner));
+    engine_begin_progress(&asked);
+    THEN(code, advance(motion, time_s, &(load_watch){engine_show, &asked}, &inner));
+    engine_end_progress(&asked);
     engine_end_advance(motion->of);
     return engine_report(code, &inner, why);
 }

@@ -1,5 +1,4 @@
 /* Scene handles: creating, reading, cloning, checking. */
-#include "base/cancel.h"
 #include "engine/engine_private.h"
 
 #include "measure/clock.h"
@@ -164,25 +163,47 @@ status engine_load(cuvette_scene *s, const load_watch *watch, diagnostic *why)
     return code;
 }
 
-bool engine_goes_on(void *context, double share)
+void engine_tell(host_progress *p, double share)
 {
-    static const double ask_every_s = 0.1;
-    host_progress *p = context;
+    static const double every_s = 0.1;
     if (share > p->share)
         p->share = share;
-    if (!p->ask || clock_wall_s() < p->next_s)
-        return true;
-    p->next_s = clock_wall_s() + ask_every_s;
+    if (!p->tell || cancel_is_set(&p->token))
+        return;
+    p->next_s = clock_wall_s() + every_s;
     float_environment_leave(p->host);
-    const bool goes_on = p->ask(p->context, p->share);
+    const bool goes_on = p->tell(p->context, p->share);
     float_environment_enter(p->host);
-    return goes_on;
+    if (!goes_on)
+        cancel_set(&p->token);
+}
+
+void engine_show(void *context, double share)
+{
+    host_progress *p = context;
+    if (p->tell && clock_wall_s() >= p->next_s)
+        engine_tell(p, share);
+    else if (share > p->share)
+        p->share = share;
 }
 
 /* As the ask of a token. */
 static bool host_stops(void *context)
 {
-    return !engine_goes_on(context, 0.0);
+    const host_progress *p = context;
+    engine_show(context, p->share);
+    return cancel_is_set(&p->token);
+}
+
+void engine_begin_progress(host_progress *p)
+{
+    p->token = (cancel_token){.ask = host_stops, .context = p};
+    cancel_begin(&p->token);
+}
+
+void engine_end_progress(host_progress *p)
+{
+    cancel_end(&p->token);
 }
 
 cuvette_status cuvette_scene_load(const cuvette_scene *s, bool (*progress)(void *context, double share), void *context,
@@ -190,13 +211,12 @@ cuvette_status cuvette_scene_load(const cuvette_scene *s, bool (*progress)(void 
 {
     ENGINE_CALL(s);
     cuvette_scene *held = (cuvette_scene *)(uintptr_t)s; /* handles are never const objects */
-    host_progress asked = {.ask = progress, .context = context, .host = &host};
+    host_progress asked = {.tell = progress, .context = context, .host = &host};
     ENGINE_TRY(engine_begin_render(held, why)); /* the callback must not change the scene */
     status code = engine_check(held, &inner);
-    cancel_token token = {.ask = host_stops, .context = &asked};
-    cancel_begin(&token);
-    THEN(code, engine_load(held, &(load_watch){engine_goes_on, &asked}, &inner));
-    cancel_end(&token);
+    engine_begin_progress(&asked);
+    THEN(code, engine_load(held, &(load_watch){engine_show, &asked}, &inner));
+    engine_end_progress(&asked);
     engine_end_render(held);
     return engine_report(code, &inner, why);
 }

@@ -2,7 +2,6 @@
 #include "engine/engine_private.h"
 #include "engine/study_private.h"
 
-#include "measure/clock.h"
 #include "study/rows.h"
 #include <math.h>
 #include <stdlib.h>
@@ -123,50 +122,34 @@ cuvette_status cuvette_study_state(const cuvette_study *s, const char *results, 
     return engine_copy_struct(&result, sizeof result, out, why);
 }
 
-#define ASK_EVERY_S 0.1
-
 /* A run in progress. */
 typedef struct run_call {
     const cuvette_run *run;
-    float_environment *host; /* the caller's, for callbacks */
-    bool stopped;
-    double share, left_s; /* as told last */
-    double next_s;        /* when the caller is asked again */
+    host_progress host;
+    double left_s;
 } run_call;
 
-static void ask_caller(run_call *c)
+static bool tell_caller(void *context, double share)
 {
-    if (!c->run->progress || c->stopped || clock_wall_s() < c->next_s)
-        return;
-    c->next_s = clock_wall_s() + ASK_EVERY_S;
-    float_environment_leave(c->host);
-    c->stopped = !c->run->progress(c->run->context, c->share, c->left_s);
-    float_environment_enter(c->host);
+    const run_call *c = context;
+    return c->run->progress(c->run->context, share, c->left_s);
 }
 
 static void note_moment(void *context, const study_moment *now)
 {
     run_call *c = context;
     const double of_frame = now->stage == STUDY_MEASURING ? now->share : 0.0;
-    c->share = now->frames_all ? fmin(1.0, ((double)now->frames_done + of_frame) / (double)now->frames_all) : 1.0;
     c->left_s = now->left_s;
-    ask_caller(c);
-}
-
-/* Also polled where there is no progress: while the machine is not quiet, or a reference is rendered. */
-static bool must_stop(void *context)
-{
-    run_call *c = context;
-    ask_caller(c);
-    return c->stopped;
+    engine_show(&c->host,
+                now->frames_all ? fmin(1.0, ((double)now->frames_done + of_frame) / (double)now->frames_all) : 1.0);
 }
 
 static void pass_news(void *context, const char *text)
 {
     run_call *c = context;
-    float_environment_leave(c->host);
+    float_environment_leave(c->host.host);
     c->run->news(c->run->context, text);
-    float_environment_enter(c->host);
+    float_environment_enter(c->host.host);
 }
 
 static status check_run(const cuvette_study *s, const cuvette_run *run, diagnostic *why)
@@ -187,19 +170,21 @@ cuvette_status cuvette_study_run(const cuvette_study *s, const cuvette_run *run,
     ENGINE_NEED_NAMED(s, "study");
     ENGINE_NEED(run);
     size_t made = 0;
-    run_call call = {.run = run, .host = &host, .left_s = NAN};
+    run_call call = {.run = run, .host = {.context = &call, .host = &host}, .left_s = NAN};
     status code = check_run(s, run, &inner);
     if (code != STATUS_OK)
         return engine_report(code, &inner, why);
     const study_options options = {.results = engine_results(run->results),
                                    .process = run->process,
                                    .any_environment = run->any_environment,
-                                   .stop = must_stop,
                                    .progressed = note_moment,
                                    .news = run->news ? pass_news : NULL,
                                    .wait_quiet_s = run->wait_quiet_s,
                                    .context = &call};
+    call.host.tell = run->progress ? tell_caller : NULL;
+    engine_begin_progress(&call.host);
     code = study_run(s->of, &options, &made, &inner);
+    engine_end_progress(&call.host);
     if (rows)
         *rows = made;
     return engine_report(code, &inner, why);

@@ -129,6 +129,6 @@ cuvette_status cuvette_study_plot(const cuvette_study *s, const cuvette_plot *pl
                       : diagnose(&inner, STATUS_BAD_INPUT, "use png, svg or pdf", "unknown format '%.64s'", format);
     THEN(code, read_plot(plot, &request, &inner));
     THEN(code, study_plot_write(s->of, &request, base, &inner));
-    THEN(code, study_plot_draw(base, format, draw_limit_s, NULL, &inner));
+    THEN(code, study_plot_draw(base, format, draw_limit_s, &inner));
     return engine_report(code, &inner, why);
 }

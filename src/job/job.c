@@ -1,4 +1,4 @@
-/* Loading and rendering frames under supervision: stop requests, limits, measurements. */
+/* Loading and rendering frames under supervision: limits, measurements. */
 #include "job/job.h"
 
 #include "base/cancel.h"
@@ -9,7 +9,6 @@
 #include "measure/instruction_dumps.h"
 #include "scene/model/scene.h"
 #include <inttypes.h>
-#include <stdatomic.h>
 #include <stdlib.h>
 #include <time.h>
 
@@ -22,7 +21,6 @@ struct job {
     instruction_dumps dumps;    /* used if the program runs under callgrind */
     noise_window noise;         /* empty unless measured */
     shelf meshes;               /* empty unless keeps_meshes */
-    atomic_bool cancelled;
 };
 
 status job_create(const job_settings *settings, job **out, diagnostic *why)
@@ -74,60 +72,13 @@ status job_machine(job *j, const topology **out, diagnostic *why)
     return code;
 }
 
-/* --- stop requests --- */
-
-void job_cancel(job *j)
-{
-    atomic_store(&j->cancelled, true);
-}
-
-void job_renew(job *j)
-{
-    atomic_store(&j->cancelled, false);
-}
-
-bool job_must_stop(const job *j)
-{
-    return atomic_load(&j->cancelled) || (j->settings.stop && j->settings.stop(j->settings.context));
-}
-
-/* As the ask of a token. */
-static bool is_stopped(void *of)
-{
-    return job_must_stop(of);
-}
-
-static status interrupted(diagnostic *why)
-{
-    return diagnose(why, STATUS_INTERRUPTED, "", "interrupted");
-}
-
 /* --- loading --- */
-
-typedef struct loading {
-    const job *of;
-    const load_watch *watch;
-} loading;
-
-static bool go_on_loading(void *of, double share_done)
-{
-    const loading *l = of;
-    return !job_must_stop(l->of) && (!l->watch || l->watch->go_on(l->watch->context, share_done));
-}
 
 status job_load(job *j, scene *s, const load_watch *watch, diagnostic *why)
 {
-    loading l = {j, watch};
-    const load_watch watched = {go_on_loading, &l};
-    if (job_must_stop(j))
-        return interrupted(why);
+    TRY(cancel_check(why));
     TRY(scene_check(s, why));
-    cancel_token token = {.ask = is_stopped, .context = j};
-    cancel_begin(&token);
-    const status code =
-        j->settings.keeps_meshes ? shelf_load(&j->meshes, s, &watched, why) : scene_load_until(s, &watched, why);
-    cancel_end(&token);
-    return code;
+    return j->settings.keeps_meshes ? shelf_load(&j->meshes, s, watch, why) : scene_load_until(s, watch, why);
 }
 
 /* --- frames --- */
@@ -138,18 +89,17 @@ typedef struct work {
     const render_options *requested;
     size_t frame, frames; /* current frame, total number */
     double begun_s;       /* start of this frame */
-    bool timed_out;
+    cancel_token limit;   /* of its time */
 } work;
 
-static bool go_on(void *of, double share_done)
+static void show(void *of, double share_done)
 {
     work *w = of;
     const double limit_s = w->of->settings.time_s;
-    w->timed_out |= limit_s > 0.0 && clock_wall_s() - w->begun_s > limit_s;
-    if (w->timed_out || job_must_stop(w->of))
-        return false;
-    return !w->requested->progress ||
-           w->requested->progress(w->requested->context, ((double)w->frame + share_done) / (double)w->frames);
+    if (limit_s > 0.0 && clock_wall_s() - w->begun_s > limit_s)
+        cancel_set(&w->limit);
+    else if (w->requested->progress)
+        w->requested->progress(w->requested->context, ((double)w->frame + share_done) / (double)w->frames);
 }
 
 static void pass_on_piece(void *of, const film *img, int x0, int y0, int x1, int y1)
@@ -174,9 +124,8 @@ static status check_quota(const job *j, const scene *s, const render_options *re
 static status prepare(job *j, const scene *s, const render_options *requested, diagnostic *why)
 {
     const topology *machine = NULL;
-    if (job_must_stop(j))
-        return interrupted(why);
-    status code = scene_check(s, why);
+    status code = cancel_check(why);
+    THEN(code, scene_check(s, why));
     THEN(code, check_quota(j, s, requested, why));
     if (code == STATUS_OK && s->render.pin != PIN_RULE_NONE)
         code = job_machine(j, &machine, why);
@@ -191,12 +140,8 @@ static status prepare(job *j, const scene *s, const render_options *requested, d
 static status render_shared(work *w, const scene *s, render_options *options, render_result **out, diagnostic *why)
 {
     const job_sharing *sharing = w->of->settings.sharing;
-    const frame_watch watch = {go_on, w};
-    shared_part own;
-    TRY(sharing->begin(sharing->of, s, options, &watch, &own, why));
-    options->source = own.pieces;
-    options->progress = own.goes_on;
-    options->context = own.context;
+    TRY(sharing->begin(sharing->of, s, options, &options->source, why));
+    options->progress = NULL;
     const status traced = renderer_render(w->of->renderer, s, options, out, why);
     return sharing->end(sharing->of, traced, *out, why);
 }
@@ -205,7 +150,7 @@ static status render_shared(work *w, const scene *s, render_options *options, re
 static status trace(work *w, const scene *s, bool maps, render_result **out, diagnostic *why)
 {
     render_options options = {.usage = w->requested->usage,
-                              .progress = go_on,
+                              .progress = show,
                               .progress_s = w->requested->progress_s,
                               .watch_s = instruction_dumps_exist() ? 0.9 : 0,
                               .context = w,
@@ -220,14 +165,16 @@ static status trace(work *w, const scene *s, bool maps, render_result **out, dia
         options.layers = w->requested->layers;
     }
     w->begun_s = clock_wall_s();
-    w->timed_out = false;
     *out = NULL;
+    cancel_clear(&w->limit);
+    cancel_begin(&w->limit);
     const status code = w->of->settings.sharing ? render_shared(w, s, &options, out, why)
                                                 : renderer_render(w->of->renderer, s, &options, out, why);
+    cancel_end(&w->limit);
     if (code != STATUS_INTERRUPTED)
         return code;
-    if (!w->timed_out)
-        return interrupted(why);
+    if (!cancel_is_set(&w->limit))
+        return diagnose(why, code, "", "interrupted");
     render_result_destroy(*out);
     *out = NULL;
     return diagnose(why, STATUS_FAILURE, "render less, or allow more time", "the frame is not finished after %.3g s",
@@ -365,14 +312,11 @@ status job_repeat(job *j, const scene *s, size_t frames, const render_options *o
                       requested->layers;
     const bool extra = frames > 1 && maps;
     work w = {.of = j, .requested = requested, .frames = frames + extra};
-    cancel_token token = {.ask = is_stopped, .context = j};
-    cancel_begin(&token);
     status code = job_account_begin(s, j->level, frames, out, why);
     THEN(code, prepare(j, s, requested, why));
     THEN(code, measure_all(&w, s, frames, maps && !extra, out, why));
     if (code == STATUS_OK && extra)
         code = add_maps(&w, s, out, why);
-    cancel_end(&token);
     out->whole = code == STATUS_OK;
     return code;
 }

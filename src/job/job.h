@@ -1,13 +1,12 @@
 /* The job: the single interface for rendering, used by the program, studies, the laboratory and the engine. A job
  * chooses the instruction set, keeps the renderer and its threads between frames, reads the machine's topology when a
- * scene pins threads, loads scenes, renders frames, supervises them (progress, stop requests, a time limit, a memory
- * quota) and returns their results (job/account.h).
+ * scene pins threads, loads scenes, renders frames, supervises them (progress, a time limit, a memory quota) and
+ * returns their results (job/account.h). The caller's token (base/cancel.h) ends its work.
  *
  * Ownership: job_create allocates, job_destroy releases; scenes are borrowed for a call; the caller owns accounts. One
- * thread at a time uses a job, but job_cancel may be called from any thread, and from signal handlers. No global state:
- * several jobs may exist in one process.
+ * thread at a time uses a job. No global state: several jobs may exist in one process.
  *
- * Errors: STATUS_INTERRUPTED after a stop request, with the finished part in the account; STATUS_BAD_INPUT for an
+ * Errors: STATUS_INTERRUPTED when cancelled, with the finished part in the account; STATUS_BAD_INPUT for an
  * invalid scene and for a frame over the quota; STATUS_FAILURE for a frame over its time limit, when out of memory, and
  * when threads cannot be started or bound. The diagnostic describes the error. */
 #pragma once
@@ -22,11 +21,8 @@ typedef struct job_settings {
     const isa *level; /* NULL: isa_choose */
     /* measure usage, hardware counters and hashes of frames: costs about 0.1 ms and one pass over the film */
     bool measured;
-    bool fresh_peak;   /* reset the peak of memory at the beginning of each frame, if the system allows it */
-    bool keeps_meshes; /* keep meshes of loaded scenes for scenes that are loaded later (job/shelf.h) */
-    /* Called before and during a frame and while a scene is loaded; return true to stop. May be NULL. */
-    bool (*stop)(void *context);
-    void *context;
+    bool fresh_peak;            /* reset the peak of memory at the beginning of each frame, if the system allows it */
+    bool keeps_meshes;          /* keep meshes of loaded scenes for scenes that are loaded later (job/shelf.h) */
     const job_sharing *sharing; /* with other processes; NULL: none */
     double time_s;              /* time limit of a frame; 0: none */
     uint64_t memory_bytes;      /* limit for a frame's film and maps; 0: none */
@@ -42,17 +38,11 @@ status job_machine(job *j, const topology **out, diagnostic *why);
 /* What the rest of the machine did in the last NOISE_WINDOW_S, without frequency_drop; unknown without measured. */
 machine_noise job_noise(job *j);
 
-/* Stops the current operation, and all further ones until job_renew. */
-void job_cancel(job *j);
-void job_renew(job *j);
-/* True after a stop request. */
-bool job_must_stop(const job *j);
-
 /* Checks the scene and loads the files that it names. watch: as for scene_load_until, or NULL. */
 status job_load(job *j, scene *s, const load_watch *watch, diagnostic *why);
 
-/* Renders one frame of a loaded scene. options: as for renderer_render, or NULL; its progress need not check for stop
- * requests. Release *out whatever the return value. */
+/* Renders one frame of a loaded scene. options: as for renderer_render, or NULL. Release *out whatever the return
+ * value. */
 status job_render(job *j, const scene *s, const render_options *options, job_account *out, diagnostic *why);
 
 /* Renders `frames` frames, whose films must have equal hashes: otherwise their times would measure different work,

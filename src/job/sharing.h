@@ -1,29 +1,18 @@
 /* The interface by which a job shares its frames with other processes (src/mpi): each traces a part of the pieces of
  * every frame. The job calls begin before and end after it traces its own part; all else is as without sharing, since
  * the result that end completes is that of the whole frame. Ownership: the job borrows the interface for its life.
- * Errors: STATUS_BAD_INPUT for outputs that cannot be shared, and what the other processes report. */
+ * Errors: STATUS_BAD_INPUT for outputs that cannot be shared, STATUS_INTERRUPTED when cancelled, and what the other
+ * processes report. */
 #pragma once
 
 #include "render/core/renderer.h"
 
-/* Whether the whole frame goes on; called about every 0.1 s, by one thread at a time, with the share of the frame that
- * all have done. */
-typedef struct frame_watch {
-    bool (*goes_on)(void *context, double share_done);
-    void *context;
-} frame_watch;
-
-/* The part of a frame of this process. */
-typedef struct shared_part {
-    const piece_source *pieces;
-    bool (*goes_on)(void *context, double own_share); /* false: the frame was given up */
-    void *context;
-} shared_part;
-
 typedef struct job_sharing {
-    /* Gives the loaded scene to the others, and begins to hand out its pieces. watch is valid until end returns. */
-    status (*begin)(void *of, const scene *s, const render_options *requested, const frame_watch *watch,
-                    shared_part *own, diagnostic *why);
+    /* Gives the loaded scene to the others, and begins to hand out its pieces; *own: those of this process. progress of
+     * the options is called about every 0.1 s until end returns, by one thread at a time, with the share of the frame
+     * that all have done. Between begin and end the thread may have a further token, which gives up the frame. */
+    status (*begin)(void *of, const scene *s, const render_options *requested, const piece_source **own,
+                    diagnostic *why);
     /* traced, result: what the renderer returned for this process's part; result may be NULL after an error. Waits for
      * the others, and adds the film, the variance, counts, times and workers of all. Returns the status of the whole
      * frame. */

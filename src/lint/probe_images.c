@@ -11,15 +11,14 @@ enum { STRIPES_PER_THREAD = 4 };
 static void trace_stripes(void *context, size_t index, int member)
 {
     probe_images *p = context;
-    const atomic_bool *stop = cancel_flag();
     const int width = (int)p->made->render.width, height = (int)p->made->render.height;
     atomic_uint_fast64_t begun = 0;
     (void)member;
     for (int i; (i = atomic_fetch_add(&p->next_stripe, 1)) < p->stripes;) {
         const span stripe = {0, i * height / p->stripes, width, (i + 1) * height / p->stripes};
-        tracer_span(p->rays[index], &stripe, &begun, stop);
+        tracer_span(p->rays[index], &stripe, &begun);
     }
-    tracer_finish(p->rays[index], stop);
+    tracer_finish(p->rays[index]);
 }
 
 static status trace_film(probe_images *p, film *f, diagnostic *why)

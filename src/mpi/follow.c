@@ -1,6 +1,7 @@
 /* The loop of a rank other than 0. Its main thread is the messenger; a second one runs the job, whose pool traces. */
 #include "mpi/follow.h"
 
+#include "base/cancel.h"
 #include "job/job.h"
 #include "measure/usage.h"
 #include "mpi/scene_wire.h"
@@ -24,17 +25,12 @@ typedef struct follower {
     const render_options *options;
 } follower;
 
-static bool own_goes_on(void *context, double own_share)
-{
-    follower *f = context;
-    (void)own_share;
-    return !team_is_stopped(f->own);
-}
-
 static void *trace(void *context)
 {
     follower *f = context;
+    cancel_begin(team_token(f->own));
     const status traced = job_render(f->with, f->s, f->options, &f->account, &f->report.why);
+    cancel_end(team_token(f->own));
     f->report.code = team_status(f->own, traced, &f->report.why);
     team_left(f->own);
     return NULL;
@@ -69,8 +65,7 @@ static status trace_part(follower *f, diagnostic *why)
     schedule tiles;
     schedule_start(&tiles, &settings);
     TRY(team_create(&tiles, scene_threads(&f->s->render), &f->own, why));
-    const render_options options = {
-        .usage = f->order.usage, .progress = own_goes_on, .context = f, .source = team_source(f->own)};
+    const render_options options = {.usage = f->order.usage, .source = team_source(f->own)};
     f->options = &options;
     pthread_t thread;
     traffic moved = {0};

@@ -1,6 +1,7 @@
 /* A shared frame on rank 0: the order to the others, the messenger's thread, and the sum of all parts. */
 #include "mpi/lead.h"
 
+#include "base/cancel.h"
 #include "measure/clock.h"
 #include "measure/usage.h"
 #include "mpi/scene_wire.h"
@@ -11,7 +12,6 @@
 #include <math.h>
 #include <mpi.h>
 #include <pthread.h>
-#include <stdatomic.h>
 #include <stdlib.h>
 #include <string.h>
 
@@ -37,11 +37,12 @@ struct lead {
     shared_frame sum;
     team *own;
     frame_sink sink;
-    frame_watch watch;
+    void (*progress)(void *context, double share_done); /* or NULL */
+    void *context;
+    cancel_token *token; /* of the thread that renders */
     double begun_s, complete_s, watched_s;
     others rest;
     uint64_t scene_bytes;
-    atomic_bool stops; /* a stop request, or an error of this rank */
 };
 
 /* --- what the messenger brings --- */
@@ -69,7 +70,7 @@ static bool take_workers(others *o, int rank, const worker_report *workers, int 
     return true;
 }
 
-static bool take_report(void *of, int rank, const rank_report *report, const worker_report *workers)
+static void take_report(void *of, int rank, const rank_report *report, const worker_report *workers)
 {
     lead *l = of;
     others *o = &l->rest;
@@ -85,26 +86,25 @@ static bool take_report(void *of, int rank, const rank_report *report, const wor
         o->code = code;
         o->why = why;
         diagnose(&o->why, code, why.remedy, "rank %d: %.400s", rank, why.what);
+        cancel_set(team_token(l->own));
     }
-    return o->code == STATUS_OK;
 }
 
-static bool goes_on(void *of, double share_done)
+static void show_progress(void *of, double share_done)
 {
     lead *l = of;
     const double now_s = clock_wall_s();
-    if (now_s - l->watched_s >= WATCH_S) {
-        l->watched_s = now_s;
-        if (!l->watch.goes_on(l->watch.context, share_done))
-            atomic_store(&l->stops, true);
-    }
-    return !atomic_load(&l->stops);
+    if (!l->progress || now_s - l->watched_s < WATCH_S)
+        return;
+    l->watched_s = now_s;
+    l->progress(l->context, share_done);
 }
 
 static void *serve(void *of)
 {
     lead *l = of;
     traffic moved = {0}; /* the ranks report their own */
+    cancel_follow(l->token);
     messenger_serve(l->frame, l->ranks, l->tiles, team_tracing(l->own), &l->sink, &moved);
     return NULL;
 }
@@ -170,15 +170,8 @@ static status send_orders(lead *l, const scene *s, bool measured, diagnostic *wh
     return l->ranks > 1 ? scene_wire_send(s, &l->scene_bytes, why) : STATUS_OK;
 }
 
-static bool own_goes_on(void *context, double own_share)
-{
-    const lead *l = context;
-    (void)own_share;
-    return !team_is_stopped(l->own);
-}
-
-static status begin(void *of, const scene *s, const render_options *requested, const frame_watch *watch,
-                    shared_part *own, diagnostic *why)
+static status begin(void *of, const scene *s, const render_options *requested, const piece_source **own,
+                    diagnostic *why)
 {
     lead *l = of;
     TRY(refuse(s, requested, why));
@@ -189,12 +182,14 @@ static status begin(void *of, const scene *s, const render_options *requested, c
         release_frame(l);
         return code;
     }
-    l->sink = (frame_sink){l, put_piece, take_report, goes_on};
-    l->watch = *watch;
-    atomic_store(&l->stops, false);
+    l->sink = (frame_sink){l, put_piece, take_report, show_progress};
+    l->progress = requested->progress;
+    l->context = requested->context;
+    cancel_begin(team_token(l->own));
+    l->token = cancel_current();
     l->begun_s = l->watched_s = clock_wall_s();
     l->complete_s = NAN;
-    *own = (shared_part){team_source(l->own), own_goes_on, l};
+    *own = team_source(l->own);
     if (pthread_create(&l->thread, NULL, serve, l) != 0)
         MPI_Abort(MPI_COMM_WORLD, STATUS_FAILURE); /* the others are under way */
     return STATUS_OK;
@@ -250,10 +245,11 @@ static status end(void *of, status traced, render_result *result, diagnostic *wh
     lead *l = of;
     traced = team_status(l->own, traced, why);
     if (traced != STATUS_OK)
-        atomic_store(&l->stops, true);
+        cancel_set(team_token(l->own));
     team_left(l->own);
-    pthread_join(l->thread, NULL);
-    status code = traced == STATUS_OK && atomic_load(&l->stops) ? STATUS_INTERRUPTED : traced;
+    cancel_join(l->thread);
+    status code = traced == STATUS_OK && cancel_asked() ? STATUS_INTERRUPTED : traced;
+    cancel_end(team_token(l->own));
     if (l->rest.code != STATUS_OK) {
         code = l->rest.code;
         *why = l->rest.why;

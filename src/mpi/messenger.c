@@ -1,6 +1,7 @@
 /* The loops of rank 0 and of the other ranks during a frame. */
 #include "mpi/messenger.h"
 
+#include "base/cancel.h"
 #include <mpi.h>
 #include <stdlib.h>
 
@@ -94,8 +95,7 @@ static void take_report(serving *s, int rank, const void *bytes)
     const rank_report *report = bytes;
     const worker_report *workers = (const worker_report *)(report + 1);
     s->reports++;
-    if (!s->sink->report(s->sink->of, rank, report, workers))
-        give_up(s);
+    s->sink->report(s->sink->of, rank, report, workers);
 }
 
 /* Receives one message that has arrived. */
@@ -164,7 +164,8 @@ void messenger_serve(int64_t frame, int ranks, handout *tiles, const tracing *ow
         } else {
             own->wait(own->of, s.idle++);
         }
-        if (!sink->goes_on(sink->of, handout_share(tiles)))
+        sink->progress(sink->of, handout_share(tiles));
+        if (cancel_asked())
             give_up(&s);
     }
     free(s.ended);

@@ -26,10 +26,10 @@ typedef struct frame_sink {
     void *of;
     /* Takes a piece's sums and variances; the message is the callee's. */
     void (*piece)(void *of, piece_message *piece);
-    /* Takes a rank's report and its workers' reports. False: the frame is given up. */
-    bool (*report)(void *of, int rank, const rank_report *report, const worker_report *workers);
-    /* Called often; returns false when the frame is to be given up. */
-    bool (*goes_on)(void *of, double share_done);
+    /* Takes a rank's report and its workers' reports. */
+    void (*report)(void *of, int rank, const rank_report *report, const worker_report *workers);
+    /* Called often. */
+    void (*progress)(void *of, double share_done);
 } frame_sink;
 
 /* Bytes that moved, for the account. */
@@ -37,8 +37,8 @@ typedef struct traffic {
     uint64_t pieces, piece_bytes, messages;
 } traffic;
 
-/* Rank 0: hands out all tiles, and returns when all pieces and the reports of all other ranks have arrived, or, after
- * the frame was given up, the reports. */
+/* Rank 0: hands out all tiles, and returns when all pieces and the reports of all other ranks have arrived. Cancelling
+ * its thread gives the frame up: then it returns after the reports. */
 void messenger_serve(int64_t frame, int ranks, handout *tiles, const tracing *own, const frame_sink *sink,
                      traffic *moved);
 

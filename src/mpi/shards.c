@@ -2,6 +2,7 @@
  * of a study with fresh processes are measured by programs that this one must not be: they are not ranks. */
 #include "mpi/shards.h"
 
+#include "base/cancel.h"
 #include "base/spawn.h"
 #include "base/text.h"
 #include "cli/study_request.h"
@@ -51,7 +52,7 @@ static int wait_for_end(pid_t pid)
     for (int ended = 0;; pause_s(0.01)) {
         if (waitpid(pid, &ended, WNOHANG) == pid)
             return WIFEXITED(ended) ? WEXITSTATUS(ended) : STATUS_FAILURE;
-        if (!told && terminal_stop_requested(NULL)) {
+        if (!told && cancel_asked()) {
             kill(pid, SIGTERM);
             told = true;
         }

@@ -15,7 +15,8 @@ struct team {
     int32_t *queue; /* waiting tiles, a list that starts at first */
     size_t first, count, capacity;
     piece_message *oldest, **newest;
-    bool ended, left, stopped;
+    bool ended, left;
+    cancel_token token;
     atomic_bool failed; /* out of memory: the frame cannot be completed */
     tracing facing_messenger;
     piece_source facing_renderer;
@@ -33,7 +34,7 @@ static void give(void *of, const int32_t *tiles, int count)
         memcpy(t->queue + t->count, tiles, (size_t)count * sizeof *tiles);
         t->count += (size_t)count;
     } else {
-        t->stopped = true;
+        cancel_set(&t->token);
         atomic_store(&t->failed, true);
     }
     pthread_cond_broadcast(&t->has_tile);
@@ -51,25 +52,22 @@ static piece_message *take(void *of)
     return piece;
 }
 
-/* Sets a flag of the team that its threads wait for. */
-static void announce(team *t, bool *flag)
-{
-    pthread_mutex_lock(&t->lock);
-    *flag = true;
-    pthread_cond_broadcast(&t->has_tile);
-    pthread_mutex_unlock(&t->lock);
-}
-
 static void end(void *of)
 {
     team *t = of;
-    announce(t, &t->ended);
+    pthread_mutex_lock(&t->lock);
+    t->ended = true;
+    pthread_cond_broadcast(&t->has_tile);
+    pthread_mutex_unlock(&t->lock);
 }
 
 static void stop(void *of)
 {
     team *t = of;
-    announce(t, &t->stopped);
+    pthread_mutex_lock(&t->lock);
+    cancel_set(&t->token);
+    pthread_cond_broadcast(&t->has_tile);
+    pthread_mutex_unlock(&t->lock);
 }
 
 static bool over(void *of)
@@ -106,9 +104,9 @@ static bool next(void *context, int worker, span *out)
     team *t = context;
     (void)worker;
     pthread_mutex_lock(&t->lock);
-    while (t->first == t->count && !t->ended && !t->stopped)
+    while (t->first == t->count && !t->ended && !cancel_is_set(&t->token))
         pthread_cond_wait(&t->has_tile, &t->lock);
-    const bool any = t->first < t->count && !t->stopped;
+    const bool any = t->first < t->count && !cancel_is_set(&t->token);
     if (any)
         schedule_tile(&t->tiles, t->queue[t->first++], out);
     pthread_mutex_unlock(&t->lock);
@@ -120,7 +118,7 @@ static int64_t number_of(const schedule *s, const span *piece)
     return piece->y0 / s->tile * s->tiles_across + piece->x0 / s->tile;
 }
 
-static bool done(void *context, const span *piece, const film *traced, const double *variance)
+static void done(void *context, const span *piece, const film *traced, const double *variance)
 {
     team *t = context;
     const size_t values = 3 * (size_t)(piece->x1 - piece->x0) * (size_t)(piece->y1 - piece->y0);
@@ -129,7 +127,7 @@ static bool done(void *context, const span *piece, const film *traced, const dou
     if (!message) {
         atomic_store(&t->failed, true);
         stop(t);
-        return false;
+        return;
     }
     message->next = NULL;
     message->bytes = sizeof message->head + bytes;
@@ -140,10 +138,8 @@ static bool done(void *context, const span *piece, const film *traced, const dou
     pthread_mutex_lock(&t->lock);
     *t->newest = message;
     t->newest = &message->next;
-    const bool goes_on = !t->stopped;
     pthread_cond_signal(&t->has_piece);
     pthread_mutex_unlock(&t->lock);
-    return goes_on;
 }
 
 /* --- */
@@ -202,12 +198,9 @@ void team_left(team *t)
     pthread_mutex_unlock(&t->lock);
 }
 
-bool team_is_stopped(team *t)
+cancel_token *team_token(team *t)
 {
-    pthread_mutex_lock(&t->lock);
-    const bool stopped = t->stopped;
-    pthread_mutex_unlock(&t->lock);
-    return stopped;
+    return &t->token;
 }
 
 status team_status(const team *t, status traced, diagnostic *why)

@@ -3,6 +3,7 @@
  * team_create allocates, team_destroy releases, after the messenger and the renderer have ended. */
 #pragma once
 
+#include "base/cancel.h"
 #include "mpi/messenger.h"
 #include "render/core/schedule.h"
 
@@ -18,8 +19,8 @@ const piece_source *team_source(const team *t);
 
 /* The renderer has ended: its threads take no more tiles. */
 void team_left(team *t);
-/* Whether the frame was given up. Any thread may ask. */
-bool team_is_stopped(team *t);
+/* Set when the frame is given up, or to give it up: for the thread that renders. */
+cancel_token *team_token(team *t);
 /* The renderer's status, or that the team ran out of memory for tiles or pieces: the renderer then only sees its
  * end. */
 status team_status(const team *t, status traced, diagnostic *why);

@@ -1,4 +1,5 @@
 #include "study/estimate.h"
+#include "base/cancel.h"
 #include "measure/clock.h"
 #include "scene/model/scene.h"
 #include "study/keep.h"
@@ -23,11 +24,11 @@ typedef struct trials {
     bool cut;
 } trials;
 
-static bool must_stop(void *context)
+/* As the ask of a token. */
+static bool is_late(void *context)
 {
     const trials *t = context;
-    const study_options *o = t->r->options;
-    return (o->stop && o->stop(o->context)) || clock_wall_s() > t->deadline_s;
+    return clock_wall_s() > t->deadline_s;
 }
 
 static double mean(const double *values, size_t count)
@@ -127,7 +128,6 @@ static void take_rows_as_trials(const trials *t)
 static status try_cells(trials *t, diagnostic *why)
 {
     run *r = t->r;
-    const study_options *o = r->options;
     for (size_t i = 0; i < r->cell_count; i++)
         r->order[i] = i;
     order_shuffle(r->s->seed, 0, r->order, r->cell_count);
@@ -135,12 +135,15 @@ static status try_cells(trials *t, diagnostic *why)
         const size_t cell = r->cells[r->order[i]];
         if (r->done->cells[cell].counted || !(lacks_rows(r, cell) || lacks_files(r, cell)))
             continue;
-        if (clock_wall_s() > t->deadline_s)
+        if (is_late(t))
             return STATUS_OK;
         diagnostic error = {.what = ""};
+        cancel_token deadline = {.ask = is_late, .context = t};
+        cancel_begin(&deadline);
         status code = try_cell(t, cell, &error);
+        cancel_end(&deadline);
         t->cut = code == STATUS_INTERRUPTED;
-        if (t->cut && !(o->stop && o->stop(o->context)))
+        if (t->cut && !cancel_asked())
             code = STATUS_OK; /* the deadline */
         else if (code != STATUS_OK && why)
             *why = error;
@@ -240,7 +243,7 @@ static status open(trials *t, const study_options *options, diagnostic *why)
 {
     run *r = t->r;
     const size_t total = study_cell_count(r->s);
-    const job_settings settings = {.keeps_meshes = true, .stop = must_stop, .context = t};
+    const job_settings settings = {.keeps_meshes = true};
     r->folder = study_folder(r->s, options->results);
     r->cells = calloc(total, sizeof *r->cells);
     r->order = calloc(total, sizeof *r->order);

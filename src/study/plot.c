@@ -42,7 +42,6 @@ status study_plot_write(const study *s, const plot_request *request, const char 
 typedef struct drawing {
     const char *script, *scratch, *format; /* the figure appears at SCRATCH.FORMAT */
     double limit_s;
-    const atomic_bool *stop;
 } drawing;
 
 enum { NOT_FOUND = 127 /* of env(1) */ };
@@ -80,14 +79,12 @@ static status explain(const char *script, int code, char *output, diagnostic *wh
 
 static status run_gnuplot(const drawing *d, diagnostic *why)
 {
-    static const atomic_bool never;
     char *settings = settings_of(d->scratch, d->format), *output = NULL;
     int exit_code = -1;
     if (!settings)
         return out_of_memory(why);
     const char *const arguments[] = {"/usr/bin/env", "gnuplot", "-d", "-e", settings, d->script, NULL};
-    status code = child_run((char *const *)(uintptr_t)arguments, d->limit_s, d->stop ? d->stop : &never, &output,
-                            &exit_code, why);
+    status code = child_run((char *const *)(uintptr_t)arguments, d->limit_s, &output, &exit_code, why);
     if (code == STATUS_OK && exit_code != 0)
         code = explain(d->script, exit_code, output, why);
     free(settings);
@@ -131,10 +128,10 @@ static status draw_figure(drawing *d, const char *target, diagnostic *why)
     return code;
 }
 
-status study_plot_draw(const char *base, const char *format, double limit_s, const atomic_bool *stop, diagnostic *why)
+status study_plot_draw(const char *base, const char *format, double limit_s, diagnostic *why)
 {
     char *target = text_format("%s.%s", base, format), *script = text_format("%s.gp", base);
-    drawing d = {.script = script, .format = format, .limit_s = limit_s, .stop = stop};
+    drawing d = {.script = script, .format = format, .limit_s = limit_s};
     const status code = target && script ? draw_figure(&d, target, why) : out_of_memory(why);
     free(script);
     free(target);

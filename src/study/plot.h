@@ -9,7 +9,6 @@
 #pragma once
 
 #include "study/study.h"
-#include <stdatomic.h>
 
 typedef enum plot_log { PLOT_LOG_AUTO, PLOT_LOG_NONE, PLOT_LOG_X, PLOT_LOG_Y, PLOT_LOG_XY } plot_log;
 
@@ -27,5 +26,5 @@ typedef struct plot_request {
 status study_plot_write(const study *s, const plot_request *request, const char *base, diagnostic *why);
 
 /* Runs gnuplot on BASE.gp; BASE.png, .svg or .pdf (format: png, svg, pdf) appears complete or not at all.
- * STATUS_INTERRUPTED after limit_s, or when stop, which may be NULL, is set. */
-status study_plot_draw(const char *base, const char *format, double limit_s, const atomic_bool *stop, diagnostic *why);
+ * STATUS_INTERRUPTED after limit_s, or when cancelled. */
+status study_plot_draw(const char *base, const char *format, double limit_s, diagnostic *why);

@@ -2,6 +2,7 @@
  * measured repetitions, in a new random order, so that slow drift of the machine affects all cells alike (a randomised
  * complete block design; Montgomery, Design and Analysis of Experiments, 4.1). A cell's warm-ups come immediately
  * before its first repetition in this process. A resumed run derives the current round from the rows. */
+#include "base/cancel.h"
 #include "study/keep.h"
 #include "study/order.h"
 #include "study/row_files.h"
@@ -63,16 +64,21 @@ static status append_row(run *r, const study_row *row, diagnostic *why)
     return progress_index_add(r->done, &entry, why);
 }
 
-static bool show_motion(void *of, double share_done)
+static void show_motion(void *of, double share_done)
 {
     progress_moving(((run *)of)->line, share_done);
-    return true;
 }
 
-static bool show_frame(void *of, double share_done)
+static void show_frame(void *of, double share_done)
 {
     progress_show(((run *)of)->line, share_done);
-    return true;
+}
+
+/* As the ask of a token: the work outside of the run's shield is cancelled. */
+static bool is_outside_cancelled(void *unused)
+{
+    (void)unused;
+    return cancel_hurries();
 }
 
 static status say_interrupted(status code, diagnostic *why)
@@ -84,7 +90,11 @@ static status say_interrupted(status code, diagnostic *why)
 
 status run_load(run *r, scene *setting, diagnostic *why)
 {
-    return say_interrupted(job_load(r->with, setting, &(load_watch){show_motion, r}, why), why);
+    cancel_token token = {.ask = is_outside_cancelled};
+    cancel_begin(&token);
+    const status code = job_load(r->with, setting, &(load_watch){show_motion, r}, why);
+    cancel_end(&token);
+    return say_interrupted(code, why);
 }
 
 status run_render(run *r, const scene *setting, const render_options *wanted, job_account *out, diagnostic *why)
@@ -92,7 +102,11 @@ status run_render(run *r, const scene *setting, const render_options *wanted, jo
     render_options options = wanted ? *wanted : (render_options){.progress = NULL};
     options.progress = show_frame;
     options.context = r;
-    return say_interrupted(job_render(r->with, setting, &options, out, why), why);
+    cancel_token token = {.ask = is_outside_cancelled};
+    cancel_begin(&token);
+    const status code = job_render(r->with, setting, &options, out, why);
+    cancel_end(&token);
+    return say_interrupted(code, why);
 }
 
 /* taskset -p, or a control group that was changed. */
@@ -205,12 +219,10 @@ status study_run(const study *s, const study_options *options, size_t *ran, diag
              .order = calloc(total, sizeof *r.order),
              .compared = calloc(total, sizeof *r.compared),
              .line = progress_begin(s, options)};
+    cancel_token shield; /* rows and images of what is complete are written, however the run ends */
+    cancel_shield(&shield);
     bool has_memory = r.folder && r.cells && r.warm && r.order && r.compared && r.line;
-    status code = has_memory ? job_create(&(job_settings){.measured = true,
-                                                          .fresh_peak = true,
-                                                          .keeps_meshes = true,
-                                                          .stop = options->stop,
-                                                          .context = options->context},
+    status code = has_memory ? job_create(&(job_settings){.measured = true, .fresh_peak = true, .keeps_meshes = true},
                                           &r.with, why)
                              : out_of_memory(why);
     if (code == STATUS_OK) {
@@ -240,5 +252,6 @@ status study_run(const study *s, const study_options *options, size_t *ran, diag
     if (ran)
         *ran = r.ran;
     run_release(&r);
+    cancel_end(&shield);
     return code;
 }

@@ -1,4 +1,5 @@
 #include "study/run_noise.h"
+#include "base/cancel.h"
 #include "measure/clock.h"
 #include <math.h>
 #include <stdio.h>
@@ -84,7 +85,7 @@ status run_noise_wait(run *r, diagnostic *why)
             r->said_waiting = true;
             return STATUS_OK;
         }
-        if (r->options->stop && r->options->stop(r->options->context))
+        if (cancel_hurries()) /* the run has a shield */
             return diagnose(why, STATUS_INTERRUPTED, "run the command again to resume",
                             "interrupted; all completed rows are kept");
         nanosleep(&(struct timespec){.tv_nsec = 100000000}, NULL);

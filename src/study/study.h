@@ -124,11 +124,10 @@ typedef struct study_options {
     bool by_repetition;  /* instead, this process measures all cells, and every shards-th repetition of each */
     long process; /* from 1: this is one of study_processes, and measures only its part of the repetitions; 0: this
                              process measures all */
-    bool any_environment;        /* rows of every environment count, not only those of the present one */
-    const char *environment;     /* of an estimate: the key of that whose rows count instead, or NULL */
-    FILE *progress;              /* a terminal for the progress line with ETA, or NULL */
-    int progress_columns;        /* its width, which the line does not exceed; 0: unknown */
-    bool (*stop)(void *context); /* polled; true ends the run with STATUS_INTERRUPTED, rows kept. May be NULL */
+    bool any_environment;    /* rows of every environment count, not only those of the present one */
+    const char *environment; /* of an estimate: the key of that whose rows count instead, or NULL */
+    FILE *progress;          /* a terminal for the progress line with ETA, or NULL */
+    int progress_columns;    /* its width, which the line does not exceed; 0: unknown */
     void (*progressed)(
         void *context,
         const study_moment *now); /* at most about ten times per second, from the thread that runs the study. May be
@@ -145,7 +144,8 @@ typedef struct study_options {
  * differ in memory layout and placement, which repetitions within one do not show (Kalibera and Jones, ISMM 2013). */
 long study_processes(const study *s);
 
-/* Measures what is missing; for a complete study *ran = 0 rows are written. */
+/* Measures what is missing; for a complete study *ran = 0 rows are written. Cancelled, it ends with STATUS_INTERRUPTED
+ * after it has written the rows and images of what is complete. */
 status study_run(const study *s, const study_options *options, size_t *ran, diagnostic *why);
 
 /* *lacks: whether a kept file or a comparison with a reference is missing for a cell; rows are not looked at. */

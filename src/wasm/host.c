@@ -11,10 +11,9 @@
 #include <stddef.h>
 #include <unistd.h>
 
-status child_run(char *const *arguments, double limit_s, const atomic_bool *stop, char **output, int *exit_code,
-                 diagnostic *why)
+status child_run(char *const *arguments, double limit_s, char **output, int *exit_code, diagnostic *why)
 {
-    (void)limit_s, (void)stop;
+    (void)limit_s;
     *output = NULL;
     *exit_code = -1;
     return diagnose(why, STATUS_FAILURE, "use the program cuvette for it", "a browser cannot start %.200s",

@@ -65,14 +65,14 @@ static bool next(void *context, int worker, span *out)
     return now.next < now.end && !now.failed && schedule_tile(&now.tiles, now.next++, out);
 }
 
-static bool done(void *context, const span *piece, const film *traced, const double *variance)
+static void done(void *context, const span *piece, const film *traced, const double *variance)
 {
     (void)context;
     const int64_t tile = piece->y0 / now.tiles.tile * now.tiles.tiles_across + piece->x0 / now.tiles.tile;
     const size_t values = 3 * (size_t)(piece->x1 - piece->x0) * (size_t)(piece->y1 - piece->y0) * sizeof(int64_t);
     if (!make_room(sizeof tile + 2 * values)) {
         now.failed = true;
-        return false;
+        return;
     }
     memcpy(now.bytes + now.size, &tile, sizeof tile);
     memcpy(now.bytes + now.size + sizeof tile, traced->sum, values);
@@ -82,7 +82,6 @@ static bool done(void *context, const span *piece, const film *traced, const dou
         now.size += values;
     }
     head()->traced++;
-    return true;
 }
 
 static status trace(const tile_order *order, diagnostic *why)

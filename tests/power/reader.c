@@ -2,6 +2,7 @@
  * STUDY RESULTS KIND, separated by tabs, and one line of output each: the status, the checks of the rows, and what is
  * wrong. KIND is "read", or "resume" for the same after the start of a run that is interrupted before its first frame:
  * it locks the files, moves what is incomplete aside, and lists the run. */
+#include "base/cancel.h"
 #include "base/text.h"
 #include "study/excluded.h"
 #include "study/row_files.h"
@@ -9,12 +10,6 @@
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
-
-static bool at_once(void *unused)
-{
-    (void)unused;
-    return true;
-}
 
 static void print_error(const diagnostic *why)
 {
@@ -43,8 +38,12 @@ static status read_rows(const study *s, const char *results, diagnostic *why)
 
 static status start_run(const study *s, const char *results, diagnostic *why)
 {
-    const study_options options = {.results = results, .stop = at_once};
+    const study_options options = {.results = results};
+    cancel_token token = {.ask = NULL};
+    cancel_set(&token);
+    cancel_begin(&token);
     const status code = study_run(s, &options, NULL, why);
+    cancel_end(&token);
     return code == STATUS_INTERRUPTED ? STATUS_OK : code;
 }
 

@@ -108,20 +108,18 @@ static void put_piece(void *of, piece_message *piece)
 #endif
 }
 
-static bool take_report(void *of, int rank, const rank_report *report, const worker_report *workers)
+static void take_report(void *of, int rank, const rank_report *report, const worker_report *workers)
 {
     gathered *g = of;
     (void)rank;
     (void)workers;
     g->idle_s += report->account.wall_s - report->account.cpu_s;
-    return true;
 }
 
-static bool goes_on(void *of, double share_done)
+static void progress(void *of, double share_done)
 {
     (void)of;
     (void)share_done;
-    return true;
 }
 
 static void print_row(const gathered *g, int ranks, const traffic *moved)
@@ -160,7 +158,7 @@ static void broadcast_scene(const arguments *with)
 static void lead(const arguments *with, const frame_costs *frame, int ranks)
 {
     gathered g = {.with = with, .frame = frame};
-    const frame_sink sink = {&g, put_piece, take_report, goes_on};
+    const frame_sink sink = {&g, put_piece, take_report, progress};
     const frame_order order = {.head.frame = 1};
     const size_t tile_bytes = frame_tile_bytes(frame, 0);
     handout *tiles = NULL;

@@ -1,6 +1,7 @@
 /* Photons before a frame: tracing them, and the map of those that arrived. */
 #include "render/caustics/caustics.h"
 
+#include "base/cancel.h"
 #include "render/caustics/photon_rule.h"
 #include "render/core/tracer_pool.h"
 #include "render/core/tracer_private.h"
@@ -24,12 +25,11 @@ struct caustics {
     int workers;
     photon_map *map;
     atomic_int_fast64_t next; /* the first photon, then the first block of the map, that no worker has taken */
-    const atomic_bool *stop;
 };
 
 static bool stopped(const caustics *c)
 {
-    return atomic_load_explicit(c->stop, memory_order_relaxed) || atomic_load(&c->frame.out_of_memory);
+    return cancel_asked() || atomic_load(&c->frame.out_of_memory);
 }
 
 static status prepare(caustics *c, plan *p, diagnostic *why)
@@ -50,7 +50,7 @@ static status prepare(caustics *c, plan *p, diagnostic *why)
     return STATUS_OK;
 }
 
-status caustics_create(plan *p, isa level, int workers, const atomic_bool *stop, caustics **out, diagnostic *why)
+status caustics_create(plan *p, isa level, int workers, caustics **out, diagnostic *why)
 {
     *out = NULL;
     caustics *c = calloc(1, sizeof *c);
@@ -62,7 +62,6 @@ status caustics_create(plan *p, isa level, int workers, const atomic_bool *stop,
     c->settings.render.min_weight = 0.0;
     c->settings.light_count = 0; /* no shadow rays */
     c->workers = workers;
-    c->stop = stop;
     c->tracers = tracer_pool_create(level);
     status code = prepare(c, p, why);
     if (code != STATUS_OK || emission_count(c->from) == 0) {
@@ -95,9 +94,9 @@ static void trace(caustics *c, tracer *t, int64_t first, int64_t end, photon_lis
 {
     for (int64_t i = first; i < end && !stopped(c); i += BATCH) {
         photon_rule_emit(t, i, i + BATCH < end ? i + BATCH : end, found);
-        tracer_run_full(t, c->stop);
+        tracer_run_full(t);
     }
-    tracer_finish(t, c->stop);
+    tracer_finish(t);
 }
 
 static void trace_together(caustics *c, int worker)

@@ -13,16 +13,15 @@
 #include "base/isa.h"
 #include "render/caustics/caustics_few.h"
 #include "render/core/plan.h"
-#include <stdatomic.h>
 
 typedef struct caustics caustics;
 
 /* For a plan with render.caustics set; *out is NULL if nothing can make a caustic. level: of the kernels. */
-status caustics_create(plan *p, isa level, int workers, const atomic_bool *stop, caustics **out, diagnostic *why);
+status caustics_create(plan *p, isa level, int workers, caustics **out, diagnostic *why);
 void caustics_destroy(caustics *c);
 
 /* The steps before a frame, each by all workers at once (together) and then by one thread (alone, may be NULL). They
- * return early, with an incomplete map, once *stop is set. */
+ * return early, with an incomplete map, once cancelled. */
 typedef struct caustics_step {
     void (*together)(caustics *c, int worker);
     status (*alone)(caustics *c, diagnostic *why);

@@ -55,7 +55,6 @@ typedef struct frame {
     schedule pieces;
     worker_account *accounts;
     double began_s, asked_s; /* asked_s: when progress was called last */
-    atomic_bool stop;
 } frame;
 
 status renderer_create(isa level, const topology *machine, renderer **out, diagnostic *why)
@@ -133,41 +132,36 @@ static void note_tile(const frame *f, worker_account *d, int worker, const span 
         d->out_of_memory = true;
 }
 
-static bool must_stop(const frame *f)
-{
-    return atomic_load_explicit(&f->stop, memory_order_relaxed);
-}
-
 static bool next_piece(frame *f, int worker, uint64_t taken, span *out)
 {
     const piece_source *source = f->options ? f->options->source : NULL;
     worker_pool_pause(f->owner->threads);
-    return !must_stop(f) &&
+    return !cancel_asked() &&
            (source ? source->next(source->context, worker, out) : schedule_next(&f->pieces, worker, taken, out));
 }
 
 /* Traces a piece of a source to its last ray, and passes it on. */
-static bool trace_for_source(frame *f, tracer *t, worker_account *d, const span *piece)
+static void trace_for_source(frame *f, tracer *t, worker_account *d, const span *piece)
 {
     const piece_source *source = f->options->source;
     film_begin_piece(d->piece, (int)f->s->render.width, piece->x0, piece->y0, piece->x1, piece->y1, f->shares);
     tracer_expose_to(t, d->piece);
-    tracer_span(t, piece, &d->pixels, &f->stop);
-    tracer_finish(t, &f->stop);
-    if (must_stop(f))
-        return false;
+    tracer_span(t, piece, &d->pixels);
+    tracer_finish(t);
+    if (cancel_asked())
+        return;
     d->out_of_range |= !film_merge_shares(d->piece, d->variance);
-    return source->done(source->context, piece, d->piece, d->variance);
+    source->done(source->context, piece, d->piece, d->variance);
 }
 
 /* Traces a piece into the frame's film. */
 static void trace_piece(frame *f, tracer *t, worker_account *d, const span *piece)
 {
-    tracer_span(t, piece, &d->pixels, &f->stop);
+    tracer_span(t, piece, &d->pixels);
     if (!f->options || !f->options->piece_done)
         return;
-    tracer_finish(t, &f->stop);
-    if (!must_stop(f))
+    tracer_finish(t);
+    if (!cancel_asked())
         f->options->piece_done(f->options->context, f->img, piece->x0, piece->y0, piece->x1, piece->y1);
 }
 
@@ -176,7 +170,6 @@ static void trace_piece(frame *f, tracer *t, worker_account *d, const span *piec
 static void trace_pieces(frame *f, int worker, worker_account *d, span piece)
 {
     const bool timeline = f->options && f->options->timeline, by_source = f->options && f->options->source;
-    bool goes_on = true;
     const double began_s = since(f);
     tracer *t = tracer_pool_take(f->owner->tracers);
     if (!t) {
@@ -189,14 +182,14 @@ static void trace_pieces(frame *f, int worker, worker_account *d, span piece)
     do {
         double tile_began_s = timeline ? since(f) : 0.0;
         if (by_source)
-            goes_on = trace_for_source(f, t, d, &piece);
+            trace_for_source(f, t, d, &piece);
         else
             trace_piece(f, t, d, &piece);
         d->report.tiles++;
         if (timeline)
             note_tile(f, d, worker, &piece, tile_began_s);
-    } while (goes_on && next_piece(f, worker, d->report.tiles, &piece));
-    tracer_finish(t, &f->stop);
+    } while (next_piece(f, worker, d->report.tiles, &piece));
+    tracer_finish(t);
     if (timeline && d->events.count > 0)
         d->events.event[d->events.count - 1].end_s = since(f);
     d->report.busy_s = since(f) - began_s;
@@ -228,8 +221,7 @@ static void work(void *context, int worker)
 static void watch(void *context)
 {
     frame *f = context;
-    if (cancel_asked())
-        atomic_store(&f->stop, true);
+    cancel_asked(); /* the workers only see what is set */
     const render_options *o = f->options;
     if (!o || !o->progress || since(f) - f->asked_s < (o->progress_s > 0 ? o->progress_s : 0.1))
         return;
@@ -238,8 +230,7 @@ static void watch(void *context)
     for (int i = 0; i < (int)f->s->render.threads; i++)
         begun += atomic_load_explicit(&f->accounts[i].pixels, memory_order_relaxed);
     double share = (double)begun / ((double)f->s->render.width * (double)f->s->render.height);
-    if (!o->progress(o->context, share))
-        atomic_store(&f->stop, true);
+    o->progress(o->context, share);
 }
 
 static double watch_s(const render_options *o)
@@ -322,7 +313,7 @@ static status collect(frame *f, bool in_range, render_result *result, diagnostic
     if (overflow)
         return diagnose(why, STATUS_BAD_INPUT, "lower the lights' intensity, the colours or the sky",
                         "the radiance exceeds the film's range (262144 in one contribution, 524288 in a pixel)");
-    return atomic_load(&f->stop) ? STATUS_INTERRUPTED : STATUS_OK;
+    return cancel_asked() ? STATUS_INTERRUPTED : STATUS_OK;
 }
 
 /* A map of zeros that are really written, so that no pixel's time includes the allocation of a page; compilers turn
@@ -462,14 +453,12 @@ static status trace_photons(frame *f, int count, plan *p, isa level, render_resu
 {
     if (!scene_has_caustics(&p->render))
         return STATUS_OK;
-    TRY(caustics_create(p, level, count, &f->stop, &f->photons, why));
+    TRY(caustics_create(p, level, count, &f->photons, why));
     for (int k = 0; k < CAUSTICS_STEPS && f->photons; k++) {
         f->photon_step = &caustics_steps[k];
         TRY(worker_pool_run(f->owner->threads, count, f->s->render.pool, run_photon_step, watch, watch_s(f->options), f,
                             why));
         TRY(caustics_steps[k].alone(f->photons, why));
-        if (cancel_asked())
-            atomic_store(&f->stop, true);
     }
     if (f->photons) {
         caustics_count(f->photons, &result->counters);
@@ -576,12 +565,12 @@ static status render_with_threads(renderer *r, const scene *s, const render_opti
     return code;
 }
 
-/* A pilot can be stopped, and has no progress of its own. */
-static bool watch_pilot(void *context, double share_done)
+/* A pilot has no progress of its own. */
+static void watch_pilot(void *context, double share_done)
 {
     render_options *const *options = context;
     (void)share_done;
-    return (*options)->progress((*options)->context, 0.0);
+    (*options)->progress((*options)->context, 0.0);
 }
 
 static void add_pilot(render_result *result, const render_result *pilot)

@@ -50,14 +50,14 @@ typedef struct tile_event {
 
 /* Pieces of the image from elsewhere, for a frame that several processes share: this one traces those that it is given,
  * each into a film of that piece alone, and the result has no film. Both functions are called by all workers at the
- * same time; the first that returns false ends its worker's part of the frame. */
+ * same time. */
 typedef struct piece_source {
     int side; /* the largest width and height of a piece */
-    /* Waits for the worker's next piece. */
+    /* Waits for the worker's next piece; false ends its part of the frame. */
     bool (*next)(void *context, int worker, span *out);
     /* Takes a traced piece: its film, with all shares added, and the variance of its values, or NULL. Both are borrowed
      * for the call. */
-    bool (*done)(void *context, const span *piece, const film *traced, const double *variance);
+    void (*done)(void *context, const span *piece, const film *traced, const double *variance);
     void *context;
 } piece_source;
 
@@ -69,11 +69,10 @@ typedef struct render_options {
     bool layers;     /* named layers, if the integrator supports them */
     bool timeline;   /* the worker and times of each tile */
     bool usage;      /* how long each worker ran, could have run, and was blocked; costs it about 20 microseconds */
-    /* Called every progress_s seconds (0: 0.1) on the thread that called renderer_render; return false to stop the
-     * frame. May be NULL. */
-    bool (*progress)(void *context, double share_done);
+    /* Called every progress_s seconds (0: 0.1) on the thread that called renderer_render. May be NULL. */
+    void (*progress)(void *context, double share_done);
     double progress_s;
-    /* How often the calling thread looks whether it is to stop or to report, below 1; 0: 100 times a second. Looking
+    /* How often the calling thread looks whether it is cancelled or to report, below 1; 0: 100 times a second. Looking
      * costs instructions, more of them the longer others have the processor: where they are counted it is rare. */
     double watch_s;
     /* Called by the worker that traced the last ray of a piece of the image (x0 <= x < x1, y0 <= y < y1), so possibly
@@ -128,7 +127,7 @@ typedef struct render_result {
  * paths, or with too few paths for an estimate. */
 double render_noise_rms(const render_result *result);
 
-/* Call scene_load first. STATUS_INTERRUPTED when progress returned false: *out then holds the finished part. */
+/* Call scene_load first. STATUS_INTERRUPTED when cancelled: *out then holds the finished part. */
 status renderer_render(renderer *r, const scene *s, const render_options *options, render_result **out,
                        diagnostic *why);
 void render_result_destroy(render_result *result);

@@ -1,6 +1,7 @@
 /* The batch loop of a tracer: which queue is traced next, sorting of hits, shadow rays. */
 #include "render/core/tracer.h"
 
+#include "base/cancel.h"
 #include "measure/clock.h"
 #include "render/camera/camera_kernels.h"
 #include "render/shade/path_kernels.h"
@@ -284,17 +285,12 @@ void tracer_run_batch(tracer *t, int depth)
     }
 }
 
-static bool stopped(const atomic_bool *stop)
-{
-    return atomic_load_explicit(stop, memory_order_relaxed);
-}
-
 /* Traces all deep rays to their ends, depth by depth. */
-static void run_deep(tracer *t, const atomic_bool *stop)
+static void run_deep(tracer *t)
 {
     for (int depth = DEPTH_DEEP; tracer_queue_at(t, depth)->count > 0; depth++)
         while (tracer_queue_at(t, depth)->count > 0) {
-            if (stopped(stop))
+            if (cancel_asked())
                 return;
             tracer_run_batch(t, depth);
             while (t->queues.shadows.count >= BATCH)
@@ -309,14 +305,14 @@ static int deepest(const tracer *t)
 }
 
 /* Traces the deepest full batch, shadow rays first; returns false when there is none. */
-static bool run_full(tracer *t, const atomic_bool *stop)
+static bool run_full(tracer *t)
 {
     if (t->queues.shadows.count >= BATCH) {
         tracer_run_batch(t, -1);
         return true;
     }
     if (goes_deep(t->queues.depth_limit) && t->queues.waiting[DEPTH_DEEP].count >= DEEP_AT_ONCE) {
-        run_deep(t, stop);
+        run_deep(t);
         return true;
     }
     for (int d = deepest(t); d >= 0; d--) {
@@ -328,9 +324,9 @@ static bool run_full(tracer *t, const atomic_bool *stop)
     return false;
 }
 
-void tracer_run_full(tracer *t, const atomic_bool *stop)
+void tracer_run_full(tracer *t)
 {
-    while (!stopped(stop) && run_full(t, stop))
+    while (!cancel_asked() && run_full(t))
         ;
 }
 
@@ -377,33 +373,33 @@ static pixel_block block_of(const plan *p, const span *piece, int64_t each)
     return (pixel_block){piece->x1 - piece->x0, 1};
 }
 
-/* Traces pixels of a row with an equal number of rays; false when the frame was stopped. */
-static bool trace_pixels(tracer *t, int y, int x0, int x1, int64_t each, const atomic_bool *stop)
+/* Traces pixels of a row with an equal number of rays; false when cancelled. */
+static bool trace_pixels(tracer *t, int y, int x0, int x1, int64_t each)
 {
     const int64_t all = each * (x1 - x0);
     const int at_once = rays_at_once(each);
     for (int64_t ray = 0; ray < all; ray += at_once) {
         camera_rays_enqueue(t, y, x0, ray, all - ray < at_once ? (int)(all - ray) : at_once);
-        while (run_full(t, stop))
-            if (stopped(stop))
+        while (run_full(t))
+            if (cancel_asked())
                 return false;
     }
     return true;
 }
 
-/* Traces a row of a block; false when the frame was stopped. */
-static bool trace_row(tracer *t, int y, int x0, int x1, int64_t each, const atomic_bool *stop)
+/* Traces a row of a block; false when cancelled. */
+static bool trace_row(tracer *t, int y, int x0, int x1, int64_t each)
 {
     const plan *p = t->target.frame_plan;
     if (!p->draws.by_pixel)
-        return trace_pixels(t, y, x0, x1, each, stop);
+        return trace_pixels(t, y, x0, x1, each);
     for (int x = x0; x < x1; x++)
-        if (!trace_pixels(t, y, x, x + 1, path_count(&p->draws, (int64_t)y * p->render.width + x), stop))
+        if (!trace_pixels(t, y, x, x + 1, path_count(&p->draws, (int64_t)y * p->render.width + x)))
             return false;
     return true;
 }
 
-void tracer_span(tracer *t, const span *piece, atomic_uint_fast64_t *begun, const atomic_bool *stop)
+void tracer_span(tracer *t, const span *piece, atomic_uint_fast64_t *begun)
 {
     if (t->rule->piece)
         begin_piece(t, piece);
@@ -414,7 +410,7 @@ void tracer_span(tracer *t, const span *piece, atomic_uint_fast64_t *begun, cons
         for (int left = piece->x0; left < piece->x1; left += block.width) {
             const int right = left + block.width < piece->x1 ? left + block.width : piece->x1;
             for (int y = top; y < bottom; y++)
-                if (!trace_row(t, y, left, right, each, stop))
+                if (!trace_row(t, y, left, right, each))
                     return;
         }
         atomic_fetch_add_explicit(begun, (uint64_t)(piece->x1 - piece->x0) * (uint64_t)(bottom - top),
@@ -423,17 +419,17 @@ void tracer_span(tracer *t, const span *piece, atomic_uint_fast64_t *begun, cons
 }
 
 /* When no full batch is left, the shallowest rays go first: their children refill the deeper queues. */
-void tracer_finish(tracer *t, const atomic_bool *stop)
+void tracer_finish(tracer *t)
 {
-    for (int d = 0; d <= deepest(t) && !stopped(stop); d++) {
-        while (t->queues.waiting[d].count > 0 && !stopped(stop))
+    for (int d = 0; d <= deepest(t) && !cancel_asked(); d++) {
+        while (t->queues.waiting[d].count > 0 && !cancel_asked())
             tracer_run_batch(t, d);
-        while (run_full(t, stop) && !stopped(stop))
+        while (run_full(t) && !cancel_asked())
             ;
     }
     if (goes_deep(t->queues.depth_limit))
-        run_deep(t, stop);
-    while (t->queues.shadows.count > 0 && !stopped(stop))
+        run_deep(t);
+    while (t->queues.shadows.count > 0 && !cancel_asked())
         tracer_run_batch(t, -1);
     drop_all(t);
 }

@@ -40,13 +40,13 @@ void tracer_expose_to(tracer *t, film *img);
 
 /* Enqueues the camera rays of a piece of the image and traces until every queue holds less than a batch. Adds the
  * pixels of each row to *begun when they are enqueued. */
-void tracer_span(tracer *t, const span *piece, atomic_uint_fast64_t *begun, const atomic_bool *stop);
+void tracer_span(tracer *t, const span *piece, atomic_uint_fast64_t *begun);
 
-/* Traces until every queue holds less than a batch, unless *stop is set. */
-void tracer_run_full(tracer *t, const atomic_bool *stop);
+/* Traces until every queue holds less than a batch, unless cancelled. */
+void tracer_run_full(tracer *t);
 
-/* Traces the remaining rays, or discards them when *stop is set. All queues are empty afterwards. */
-void tracer_finish(tracer *t, const atomic_bool *stop);
+/* Traces the remaining rays, or discards them when cancelled. All queues are empty afterwards. */
+void tracer_finish(tracer *t);
 
 const ray_counters *tracer_counters(const tracer *t);
 /* Time spent in visibility queries (nearest hits and shadows). For a scene without meshes it is not measured, and 0:

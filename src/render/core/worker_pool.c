@@ -1,6 +1,7 @@
 /* Starting, waking and joining of worker threads. */
 #include "render/core/worker_pool.h"
 
+#include "base/cancel.h"
 #include "base/float_environment.h"
 #include <errno.h>
 #include <pthread.h>
@@ -28,6 +29,7 @@ struct worker_pool {
     pid_t process; /* that has the threads: a child of fork has none of them (fork(2)) */
     worker_pool_task *task;
     void *context;
+    cancel_token *token; /* of the caller */
     _Alignas(64) atomic_int left;
     sem_t done;
 };
@@ -78,6 +80,7 @@ static void *kept_worker(void *argument)
             return NULL;
         for (int child = 2 * w->index + 1; child <= 2 * w->index + 2 && child < p->running; child++)
             sem_post(&p->workers[child]->wake);
+        cancel_follow(p->token);
         p->task(p->context, w->index);
         end_of_task(p);
     }
@@ -87,6 +90,7 @@ static void *fresh_worker(void *argument)
 {
     worker *w = argument;
     float_environment_set();
+    cancel_follow(w->owner->token);
     w->owner->task(w->owner->context, w->index);
     end_of_task(w->owner);
     return NULL;
@@ -220,6 +224,7 @@ status worker_pool_run(worker_pool *p, int count, bool keep, worker_pool_task *t
         TRY(worker_pool_reserve(p, count, why));
     p->task = task;
     p->context = context;
+    p->token = cancel_current();
     p->running = count;
     atomic_store(&p->left, count);
     if (!keep)

@@ -1,8 +1,8 @@
 /* The worker pool: threads that run a task once per frame. A persistent pool starts its threads once and wakes them
  * for each frame in a tree (worker i wakes 2i+1 and 2i+2), so that a thousand of them do not queue up behind one
- * waker. Otherwise threads are created and joined for each run, as in the report. Ownership: worker_pool_create
- * allocates, worker_pool_destroy joins and releases. One run at a time. In a child of fork, a pool that was not
- * running starts threads of its own. */
+ * waker. Otherwise threads are created and joined for each run, as in the report. Workers follow the caller's
+ * cancellation (base/cancel.h). Ownership: worker_pool_create allocates, worker_pool_destroy joins and releases. One
+ * run at a time. In a child of fork, a pool that was not running starts threads of its own. */
 #pragma once
 
 #include "base/status.h"

@@ -215,10 +215,10 @@ typedef struct shared_watch {
     double before, own, all; /* as slime_work */
 } shared_watch;
 
-static bool go_on_all(void *context, double share_done)
+static void show_all(void *context, double share_done)
 {
     const shared_watch *w = context;
-    return w->whole->go_on(w->whole->context, (w->before + share_done * w->own) / w->all);
+    w->whole->progress(w->whole->context, (w->before + share_done * w->own) / w->all);
 }
 
 static double work_of(const mesh_entry *m)
@@ -236,7 +236,7 @@ static status load_meshes(scene *s, const load_watch *watch, diagnostic *why)
         mesh_entry *m = &s->meshes[i];
         shared.own = work_of(m);
         if (!m->data && m->source == MESH_SLIME)
-            code = slime_make(s, m, watch ? &(load_watch){go_on_all, &shared} : NULL, why);
+            code = slime_make(s, m, watch ? &(load_watch){show_all, &shared} : NULL, why);
         else if (!m->data && m->source == MESH_FILE)
             code = load_mesh(s, m, why);
         else if (!m->data)

@@ -41,14 +41,13 @@ status scene_limit(scene *s, const char *root, size_t triangles, diagnostic *why
  * that exceeded the limit is discarded. */
 status scene_load(scene *s, diagnostic *why);
 
-/* Watches moving slimes: go_on is called about every 10 ms, with the completed fraction of all motion; false stops it.
- * */
+/* Watches moving slimes: progress is called about every 10 ms, with the completed fraction of all motion. */
 typedef struct load_watch {
-    bool (*go_on)(void *context, double share_done);
+    void (*progress)(void *context, double share_done);
     void *context;
 } load_watch;
 
-/* scene_load that can be stopped: then it returns STATUS_INTERRUPTED. Completely loaded data is kept, and a later load
+/* scene_load with progress. Cancelled, it returns STATUS_INTERRUPTED: completely loaded data is kept, and a later load
  * continues; nothing else of the scene has changed. watch is borrowed; NULL: none. */
 status scene_load_until(scene *s, const load_watch *watch, diagnostic *why);
 

@@ -106,12 +106,12 @@ static status interrupted(const slime *x, const scene *s, const mesh_entry *m, d
                        x->steps * m->slime.dt_s, time_s);
 }
 
-/* One step per call, so that a request to stop is honoured quickly, however short the steps are. */
+/* One step per call, so that progress is shown often, however long the motion is. */
 static status advance_watched(slime *x, const scene *s, const mesh_entry *m, double time_s, const load_watch *watch,
                               diagnostic *bad)
 {
-    const double ask_s = 0.01, first = x->steps, last = steps_to(m, time_s);
-    double asked_s = clock_wall_s();
+    const double show_s = 0.01, first = x->steps, last = steps_to(m, time_s);
+    double shown_s = clock_wall_s();
     for (; x->steps < last; x->steps += 1.0) {
         const status code = softbody_advance(x->body, (x->steps + 1.0) * m->slime.dt_s, bad);
         if (code == STATUS_INTERRUPTED)
@@ -119,13 +119,10 @@ static status advance_watched(slime *x, const scene *s, const mesh_entry *m, dou
         if (code != STATUS_OK)
             return code;
         const double now_s = clock_wall_s();
-        if (now_s - asked_s < ask_s)
+        if (now_s - shown_s < show_s)
             continue;
-        asked_s = now_s;
-        if (!watch->go_on(watch->context, (x->steps + 1.0 - first) / (last - first))) {
-            x->steps += 1.0;
-            return interrupted(x, s, m, time_s, bad);
-        }
+        shown_s = now_s;
+        watch->progress(watch->context, (x->steps + 1.0 - first) / (last - first));
     }
     return STATUS_OK;
 }

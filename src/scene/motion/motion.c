@@ -1,5 +1,6 @@
 #include "scene/motion/motion_private.h"
 
+#include "base/cancel.h"
 #include "measure/clock.h"
 #include "scene/model/scene.h"
 #include <math.h>
@@ -125,10 +126,10 @@ typedef struct turn_watch {
     size_t turn, count;
 } turn_watch;
 
-static bool go_on_turn(void *context, double share_done)
+static void show_turn(void *context, double share_done)
 {
     const turn_watch *w = context;
-    return w->whole->go_on(w->whole->context, ((double)w->turn + share_done) / (double)w->count);
+    w->whole->progress(w->whole->context, ((double)w->turn + share_done) / (double)w->count);
 }
 
 static status advance_one(scene_motion *m, size_t i, double time_s, const load_watch *watch, diagnostic *why)
@@ -136,8 +137,8 @@ static status advance_one(scene_motion *m, size_t i, double time_s, const load_w
     moving_slime *one = &m->slimes[i];
     const double motion_before_s = one->x.motion_s;
     turn_watch turn = {watch, i, m->count};
-    const status code = slime_advance(&one->x, m->s, motion_entry(m, one), time_s,
-                                      watch ? &(load_watch){go_on_turn, &turn} : NULL, why);
+    const status code =
+        slime_advance(&one->x, m->s, motion_entry(m, one), time_s, watch ? &(load_watch){show_turn, &turn} : NULL, why);
     m->last.step_s += one->x.motion_s - motion_before_s;
     return code;
 }
@@ -165,9 +166,13 @@ status scene_motion_advance_until(scene_motion *m, double time_s, bool surfaces,
     m->last = (scene_motion_report){.steps = 0};
     for (size_t i = 0; i < m->count; i++)
         TRY(advance_one(m, i, time_s, watch, why));
-    for (size_t i = 0; i < m->count; i++)
-        TRY(show_one(m, &m->slimes[i], time_s, surfaces, why));
-    return STATUS_OK;
+    status code = STATUS_OK;
+    cancel_token shield; /* surfaces stay whole, and follow quickly */
+    cancel_shield(&shield);
+    for (size_t i = 0; i < m->count && code == STATUS_OK; i++)
+        code = show_one(m, &m->slimes[i], time_s, surfaces, why);
+    cancel_end(&shield);
+    return code;
 }
 
 status scene_motion_advance(scene_motion *m, double time_s, bool surfaces, diagnostic *why)

@@ -33,8 +33,8 @@ void scene_motion_leave(scene_motion *m);
 /* Advances to the time nearest to time_s that is a whole number of steps of each slime; not backwards. The slimes'
  * time_s are set to time_s. surfaces: false leaves the scene's meshes unchanged, for frames that are not rendered. */
 status scene_motion_advance(scene_motion *m, double time_s, bool surfaces, diagnostic *why);
-/* The same with a watch: STATUS_INTERRUPTED leaves the scene unchanged and the bodies between; a later advance
- * continues. Fractions refer to this advance; watch may be NULL. */
+/* The same with progress. Cancelled, STATUS_INTERRUPTED leaves the scene unchanged and the bodies between; a later
+ * advance continues. Fractions refer to this advance; watch may be NULL. */
 status scene_motion_advance_until(scene_motion *m, double time_s, bool surfaces, const load_watch *watch,
                                   diagnostic *why);
 

@@ -1,5 +1,6 @@
 #include "scene/motion/motion_hands.h"
 #include "scene/motion/motion_private.h"
+#include "base/cancel.h"
 #include "measure/clock.h"
 #include "scene/model/scene.h"
 
@@ -155,14 +156,14 @@ static void put_hands(softbody *body, const motion_hand *hands, double share)
             softbody_hold(body, i, vec3_add(hands[i].where, offset_at(&hands[i], share)));
 }
 
-/* Asks about every 10 ms; *asked_s is kept between the calls. */
-static bool goes_on(const load_watch *watch, double share, double *asked_s)
+/* About every 10 ms; *shown_s is kept between the calls. */
+static void show(const load_watch *watch, double share, double *shown_s)
 {
-    const double ask_s = 0.01, now_s = watch ? clock_wall_s() : 0.0;
-    if (!watch || now_s - *asked_s < ask_s)
-        return true;
-    *asked_s = now_s;
-    return watch->go_on(watch->context, share);
+    const double show_s = 0.01, now_s = watch ? clock_wall_s() : 0.0;
+    if (!watch || now_s - *shown_s < show_s)
+        return;
+    *shown_s = now_s;
+    watch->progress(watch->context, share);
 }
 
 status scene_motion_step_held(scene_motion *m, size_t i, motion_hand *hands, double time_s, const load_watch *watch,
@@ -176,12 +177,13 @@ status scene_motion_step_held(scene_motion *m, size_t i, motion_hand *hands, dou
         any |= is_moving(&hands[k]);
     diagnostic bad = {.line = 0};
     status code = STATUS_OK;
-    double share = any ? 0.0 : 1.0, asked_s = clock_wall_s();
+    double share = any ? 0.0 : 1.0, shown_s = clock_wall_s();
     for (uint64_t step = begin; any && step < end && code == STATUS_OK; step++) {
         share = (double)(step + 1 - begin) / (double)(end - begin);
         put_hands(body, hands, share);
         code = softbody_step(body, &bad);
-        if (code == STATUS_OK && step + 1 < end && !goes_on(watch, share, &asked_s))
+        show(watch, share, &shown_s);
+        if (code == STATUS_OK && step + 1 < end && cancel_asked())
             code = diagnose(&bad, STATUS_INTERRUPTED, "", "interrupted before %.6g s of simulated time", time_s);
     }
     for (int k = 0; k < SOFTBODY_HANDS_MAX && begin < end; k++)

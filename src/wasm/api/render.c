@@ -133,12 +133,11 @@ static bool next(void *context, int worker, span *out)
     return r->next < r->sum.places.tile_count && schedule_tile(&r->sum.places, r->next, out) && ++r->next;
 }
 
-static bool done(void *context, const span *piece, const film *traced, const double *variance)
+static void done(void *context, const span *piece, const film *traced, const double *variance)
 {
     wasm_render *r = context;
     (void)variance;
     film_put_piece(r->sum.img, piece->x0, piece->y0, piece->x1, piece->y1, traced->sum);
-    return true;
 }
 
 /* Every turn counts the same photons. */

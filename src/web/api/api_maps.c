@@ -1,5 +1,6 @@
 /* API: maps of the rays, the time and the cut light of each pixel of the final image, with the numbers of their
  * scales. */
+#include "base/cancel.h"
 #include "base/json_build.h"
 #include "web/api/api.h"
 
@@ -18,10 +19,11 @@ typedef struct map_question {
     const shared_image *of;
 } map_question;
 
-static bool must_stop(void *context)
+/* As the ask of a token. */
+static bool is_late(void *context)
 {
     const map_question *q = context;
-    return atomic_load(studies_ending(q->l->studies)) || studies_runs(q->l->studies, NULL) ||
+    return studies_ending(q->l->studies) || studies_runs(q->l->studies, NULL) ||
            scene_document_generation(q->l->scene_document) != q->of->generation;
 }
 
@@ -35,7 +37,10 @@ static status take_maps(call *c, pixel_map_set *set, int which, unsigned char **
     map_question q = {c->l, final};
     status code = semaphore_acquire(c->l->heavy, &c->why);
     if (code == STATUS_OK) {
-        code = pixel_maps_of(c->l->pixel_maps, final, must_stop, &q, set, which, png, size, &c->why);
+        cancel_token token = {.ask = is_late, .context = &q};
+        cancel_begin(&token);
+        code = pixel_maps_of(c->l->pixel_maps, final, set, which, png, size, &c->why);
+        cancel_end(&token);
         semaphore_release(c->l->heavy);
     }
     shared_image_release(final);

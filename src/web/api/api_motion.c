@@ -31,7 +31,7 @@ static bool must_stop(void *context)
 {
     const motion_question *q = context;
     return is_late(q) || atomic_load(&q->l->motion_stops) != q->stops || studies_runs(q->l->studies, NULL) ||
-           atomic_load(studies_ending(q->l->studies));
+           studies_ending(q->l->studies);
 }
 
 /* Lists the slimes, and writes them as the table of `cuvette motion --csv`. */

@@ -1,4 +1,5 @@
 /* API: the figure of a study, drawn as by `cuvette study plot`, in a temporary folder. */
+#include "base/cancel.h"
 #include "base/file.h"
 #include "base/text.h"
 #include "study/plot.h"
@@ -86,7 +87,10 @@ static status make_figure(call *c, const study *s, const plot_request *request, 
     char *base = text_format("%s/%s", room, s->name), *file = text_format("%s/%s.%s", room, s->name, format);
     status code = base && file ? STATUS_OK : out_of_memory(&c->why);
     THEN(code, study_plot_write(s, request, base, &c->why));
-    THEN(code, study_plot_draw(base, format, draw_limit_s, studies_ending(c->l->studies), &c->why));
+    cancel_token token = {.ask = studies_ending, .context = c->l->studies};
+    cancel_begin(&token);
+    THEN(code, study_plot_draw(base, format, draw_limit_s, &c->why));
+    cancel_end(&token);
     THEN(code, file_read(file, FIGURE_MAX, bytes, size, &c->why));
     remove_files(room, base ? base : "");
     free(file);

@@ -1,4 +1,5 @@
 /* API: a new study of the current scene, from axes and repetitions: its text, its estimated time, its file. */
+#include "base/cancel.h"
 #include "base/json_build.h"
 #include "web/api/api.h"
 #include "report/report.h"
@@ -125,10 +126,11 @@ static status compose(call *c, form *f, char **text, study **made)
     return code;
 }
 
-static bool must_stop(void *context)
+/* As the ask of a token. */
+static bool must_end(void *context)
 {
     const lab *l = context;
-    return atomic_load(studies_ending(l->studies)) || studies_runs(l->studies, NULL);
+    return studies_ending(l->studies) || studies_runs(l->studies, NULL);
 }
 
 static json_t *notes_json(const study *s)
@@ -141,12 +143,17 @@ static json_t *notes_json(const study *s)
 
 static status estimate(call *c, const study *s, const char *text)
 {
-    const study_options options = {.results = c->l->settings.results, .stop = must_stop, .context = c->l};
+    const study_options options = {.results = c->l->settings.results};
     study_estimate e;
     text_writer writer;
     char *said = NULL;
     TRY(study_check_results(c->l, options.results, s->name, &c->why));
-    TRY(study_estimate_run(s, &options, &e, &c->why));
+    cancel_token token = {.ask = must_end, .context = c->l};
+    cancel_begin(&token);
+    const status code = study_estimate_run(s, &options, &e, &c->why);
+    cancel_end(&token);
+    if (code != STATUS_OK)
+        return code;
     TRY(text_writer_open(&writer, &c->why));
     study_estimate_write(writer.stream, s, options.results, &e);
     TRY(text_writer_close(&writer, &said, NULL, &c->why));

@@ -230,7 +230,7 @@ status render_worker_create(scene_document *d, isa level, const render_worker_li
     p->listener = *listener;
     p->traced.step = p->raster.step = 3; /* start coarse until the frame time is known */
     p->live_slime = live_create(wake, p);
-    const job_settings settings = {.level = &level, .stop = render_worker_must_end, .context = p};
+    const job_settings settings = {.level = &level};
     status code = p->live_slime ? job_create(&settings, &p->renderer, why) : out_of_memory(why);
     THEN(code, render_worker_start(p, why));
     if (code == STATUS_OK)

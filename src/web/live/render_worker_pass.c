@@ -1,6 +1,7 @@
 /* One pass of the render worker: its settings, the render and the resulting image. See
  * web/live/render_worker_private.h. */
 #include "web/live/render_worker_private.h"
+#include "base/cancel.h"
 #include "measure/clock.h"
 #include "report/report.h"
 #include "scene/model/scene.h"
@@ -129,6 +130,9 @@ void render_worker_render_pass(render_worker *p)
     started_pass of;
     job_account account;
     render_worker_begin_pass(p, &of);
+    cancel_token token = {.ask = render_worker_must_end, .context = p};
+    cancel_begin(&token);
     const status code = job_render(p->renderer, &of.view, &options, &account, &why);
+    cancel_end(&token);
     render_worker_end_pass(p, &of, code, &account, &why);
 }

@@ -64,7 +64,7 @@ double render_worker_due_s(render_worker *p);
 
 /* Whether the document has a newer generation than the snapshot. */
 bool render_worker_is_stale(render_worker *p);
-/* Whether to interrupt the current load or pass; of is the render worker. */
+/* Whether to interrupt the current load or pass; of is the render worker. As the ask of a token. */
 bool render_worker_must_end(void *of);
 /* Copies the scene document to the snapshot. */
 void render_worker_renew_snapshot(render_worker *p);

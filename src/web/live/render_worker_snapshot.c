@@ -1,6 +1,7 @@
 /* The render worker's snapshot: the copy of the scene document that is rendered, kept up to date and moved. See
  * web/live/render_worker_private.h. */
 #include "web/live/render_worker_private.h"
+#include "base/cancel.h"
 #include "measure/clock.h"
 #include "scene/motion/motion.h"
 #include "scene/model/scene.h"
@@ -42,19 +43,29 @@ bool render_worker_must_end(void *of)
            (live_is_due(p->live_slime) && p->pass > 0);
 }
 
+typedef struct loading {
+    render_worker *of;
+    cancel_token token;
+} loading;
+
 /* Simulating a slime up to its time_s may take long: it is interrupted by a newer document or a command to the live
  * slime. */
-static bool continue_loading(void *of, double share_done)
+static void look_for_commands(void *context, double share_done)
 {
+    loading *l = context;
     (void)share_done;
-    return !live_is_due(((render_worker *)of)->live_slime);
+    if (live_is_due(l->of->live_slime))
+        cancel_set(&l->token);
 }
 
 static status load_snapshot(render_worker *p, diagnostic *why)
 {
-    const load_watch watch = {continue_loading, p};
+    loading l = {p, {.ask = render_worker_must_end, .context = p}};
     p->started_s = clock_wall_s();
-    return job_load(p->renderer, p->snapshot, &watch, why);
+    cancel_begin(&l.token);
+    const status code = job_load(p->renderer, p->snapshot, &(load_watch){look_for_commands, &l}, why);
+    cancel_end(&l.token);
+    return code;
 }
 
 static bool has_slime(const render_worker *p)

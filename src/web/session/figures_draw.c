@@ -1,4 +1,5 @@
 /* Drawing of a study's figures: writes its tables, then runs plots/draw.sh. */
+#include "base/cancel.h"
 #include "base/file.h"
 #include "base/text.h"
 #include "study/summary.h"
@@ -94,8 +95,10 @@ static status run_script(const lab *l, const char *script, const json_t *figures
     for (size_t i = 0; i < count; i++)
         arguments[BEFORE + i] = json_string_value(json_array_get(figures, i));
     int exit_code;
-    status code = child_run((char *const *)(uintptr_t)arguments, draw_limit_s, studies_ending(l->studies), output,
-                            &exit_code, why);
+    cancel_token token = {.ask = studies_ending, .context = l->studies};
+    cancel_begin(&token);
+    const status code = child_run((char *const *)(uintptr_t)arguments, draw_limit_s, output, &exit_code, why);
+    cancel_end(&token);
     free(arguments);
     *complete = exit_code == 0;
     return code;

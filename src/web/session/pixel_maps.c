@@ -86,14 +86,13 @@ static status draw_all(pixel_maps *m, const shared_image *of, const job_account 
     return code;
 }
 
-static status render(pixel_maps *m, const shared_image *of, bool (*stop)(void *context), void *context, diagnostic *why)
+static status render(pixel_maps *m, const shared_image *of, diagnostic *why)
 {
     static const render_options maps = {.pixel_rays = true, .pixel_time = true, .pixel_cut = true};
     job *j = NULL;
     job_account account = {.result = NULL};
     forget(m);
-    status code = job_create(
-        &(job_settings){.level = &m->level, .stop = stop, .context = context, .time_s = PIXEL_MAPS_LIMIT_S}, &j, why);
+    status code = job_create(&(job_settings){.level = &m->level, .time_s = PIXEL_MAPS_LIMIT_S}, &j, why);
     THEN(code, job_render(j, of->of, &maps, &account, why));
     THEN(code, draw_all(m, of, &account, why));
     if (code != STATUS_OK)
@@ -114,13 +113,13 @@ static status copy(const pixel_maps *m, int which, unsigned char **png, size_t *
     return STATUS_OK;
 }
 
-status pixel_maps_of(pixel_maps *m, const shared_image *of, bool (*stop)(void *context), void *context,
-                     pixel_map_set *out, int which, unsigned char **png, size_t *size, diagnostic *why)
+status pixel_maps_of(pixel_maps *m, const shared_image *of, pixel_map_set *out, int which, unsigned char **png,
+                     size_t *size, diagnostic *why)
 {
     status code = STATUS_OK;
     pthread_mutex_lock(&m->lock);
     if (m->set.serial != of->serial)
-        code = render(m, of, stop, context, why);
+        code = render(m, of, why);
     *out = m->set;
     if (code == STATUS_OK && png)
         code = copy(m, which, png, size, why);

@@ -31,8 +31,8 @@ pixel_maps *pixel_maps_create(isa level); /* NULL when out of memory */
 void pixel_maps_destroy(pixel_maps *m);   /* NULL is allowed */
 
 /* The maps of a final image; rendered if they are not kept. png: a copy of the PNG of one map, which the caller frees;
- * NULL: not wanted. stop: whether to end the render; STATUS_INTERRUPTED then. STATUS_FAILURE if the frame takes more
- * than PIXEL_MAPS_LIMIT_S. */
+ * NULL: not wanted. STATUS_INTERRUPTED when cancelled. STATUS_FAILURE if the frame takes more than
+ * PIXEL_MAPS_LIMIT_S. */
 #define PIXEL_MAPS_LIMIT_S 50.0
-status pixel_maps_of(pixel_maps *m, const shared_image *of, bool (*stop)(void *context), void *context,
-                     pixel_map_set *out, int which, unsigned char **png, size_t *size, diagnostic *why);
+status pixel_maps_of(pixel_maps *m, const shared_image *of, pixel_map_set *out, int which, unsigned char **png,
+                     size_t *size, diagnostic *why);

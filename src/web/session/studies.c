@@ -7,6 +7,7 @@
 #include "report/json.h"
 #include <math.h>
 #include <pthread.h>
+#include <stdatomic.h>
 #include <stdlib.h>
 #include <string.h>
 
@@ -99,12 +100,6 @@ static void on_progress(void *context, const study_moment *now)
         publish(st);
 }
 
-static bool should_stop(void *context)
-{
-    const studies *st = context;
-    return atomic_load(&st->task.stop);
-}
-
 /* --- the run --- */
 
 static void *run(void *context)
@@ -115,10 +110,11 @@ static void *run(void *context)
     render_worker_suspend(st->l->render_worker, text ? text : "a study is measuring");
     free(text);
     lab_publish_state(st->l);
-    const study_options options = {
-        .results = st->l->settings.results, .stop = should_stop, .progressed = on_progress, .context = st};
+    const study_options options = {.results = st->l->settings.results, .progressed = on_progress, .context = st};
     diagnostic why = {.what = ""};
+    cancel_begin(&st->task.token);
     const status code = study_run(st->s, &options, NULL, &why);
+    cancel_end(&st->task.token);
     render_worker_suspend(st->l->render_worker, NULL);
     pthread_mutex_lock(&st->lock);
     st->running = false;
@@ -194,15 +190,15 @@ status studies_stop(studies *st, const char *name, diagnostic *why)
     pthread_mutex_lock(&st->task.life); /* otherwise the next study might be stopped */
     const bool runs = studies_runs(st, name);
     if (runs)
-        atomic_store(&st->task.stop, true);
+        cancel_set(&st->task.token);
     pthread_mutex_unlock(&st->task.life);
     return runs ? STATUS_OK
                 : diagnose(why, STATUS_INTERRUPTED, "start the study first", "the study %s is not running", name);
 }
 
-const atomic_bool *studies_ending(const studies *st)
+bool studies_ending(void *st)
 {
-    return &st->task.ending;
+    return cancel_is_set(&((const studies *)st)->task.ending);
 }
 
 bool studies_begin_drawing(studies *st)

@@ -5,7 +5,6 @@
 
 #include "study/study.h"
 #include "web/lab_private.h"
-#include <stdatomic.h>
 
 status studies_create(lab *l, studies **out, diagnostic *why);
 /* Stops the running study, waits for it, and lets no other start. Call it while the server, render worker and scene
@@ -23,8 +22,8 @@ bool studies_runs(studies *st, const char *name); /* name NULL: whether any stud
 /* The study in the state JSON, null before the first study; NULL when out of memory. */
 json_t *studies_json(studies *st);
 
-/* The flag that is set when the laboratory ends, for long work. At most one thread draws figures:
+/* Whether the laboratory ends; st: studies. As the ask of a token, for long work. At most one thread draws figures:
  * studies_begin_drawing returns false while another does. */
-const atomic_bool *studies_ending(const studies *st);
+bool studies_ending(void *st);
 bool studies_begin_drawing(studies *st);
 void studies_end_drawing(studies *st);

@@ -16,14 +16,14 @@ void task_thread_destroy(task_thread *t)
 
 status task_thread_may_start(const task_thread *t, diagnostic *why)
 {
-    return atomic_load(&t->ending)
+    return cancel_is_set(&t->ending)
                ? diagnose(why, STATUS_INTERRUPTED, "start the laboratory again", "the laboratory is shutting down")
                : STATUS_OK;
 }
 
 status task_thread_start(task_thread *t, void *(*run)(void *), void *context, diagnostic *why)
 {
-    atomic_store(&t->stop, false);
+    cancel_clear(&t->token);
     t->started = pthread_create(&t->thread, NULL, run, context) == 0;
     return t->started ? STATUS_OK : diagnose(why, STATUS_FAILURE, "close other programs", "a thread cannot be started");
 }
@@ -39,8 +39,8 @@ bool task_thread_join(task_thread *t)
 
 void task_thread_end(task_thread *t)
 {
-    atomic_store(&t->ending, true);
-    atomic_store(&t->stop, true);
+    cancel_set(&t->ending);
+    cancel_set(&t->token);
 }
 
 bool task_publish_is_due(double *published_s)

@@ -1,17 +1,17 @@
-/* The thread of a long task of the laboratory, one at a time: a study, a video. Members other than life and stop are
- * private. Ownership: task_thread_create prepares a value; task_thread_destroy releases it, when no thread runs. */
+/* The thread of a long task of the laboratory, one at a time: a study, a video. Members other than life and the tokens
+ * are private. Ownership: task_thread_create prepares a value; task_thread_destroy releases it, when no thread runs. */
 #pragma once
 
-#include "base/status.h"
+#include "base/cancel.h"
 #include <pthread.h>
-#include <stdatomic.h>
 #include <stdbool.h>
 
 typedef struct task_thread {
     pthread_mutex_t life; /* held while the thread is started or joined */
     pthread_t thread;
-    bool started;             /* it must be joined */
-    atomic_bool stop, ending; /* requests: of this task, of the laboratory */
+    bool started;        /* it must be joined */
+    cancel_token token;  /* of the task: its thread begins it */
+    cancel_token ending; /* set when the laboratory ends */
 } task_thread;
 
 /* At most four events per second: sending disturbs a measurement. */

@@ -1,6 +1,7 @@
 /* Keeps and renders thumbnails, one render at a time. */
 #include "web/session/thumbnails.h"
 
+#include "base/cancel.h"
 #include "base/text.h"
 #include "image/image.h"
 #include "job/job.h"
@@ -10,7 +11,6 @@
 #include "scene/model/camera.h"
 #include <math.h>
 #include <pthread.h>
-#include <stdatomic.h>
 #include <stdlib.h>
 #include <string.h>
 
@@ -31,7 +31,7 @@ struct thumbnails {
     pthread_mutex_t one;  /* one render at a time */
     kept table[KEPT];
     int next; /* the place that is replaced next */
-    atomic_bool ended;
+    cancel_token ended;
     double late_s; /* CPU time at which the current render has taken too long */
 };
 
@@ -61,13 +61,14 @@ void thumbnails_destroy(thumbnails *t)
 
 void thumbnails_end(thumbnails *t)
 {
-    atomic_store(&t->ended, true);
+    cancel_set(&t->ended);
 }
 
+/* As the ask of a token. */
 static bool must_end(void *context)
 {
     const thumbnails *t = context;
-    return atomic_load(&t->ended) || clock_process_cpu_s() > t->late_s;
+    return cancel_is_set(&t->ended) || clock_process_cpu_s() > t->late_s;
 }
 
 status thumbnails_find(thumbnails *t, const char *key, unsigned char **bytes, size_t *size, diagnostic *why)
@@ -146,7 +147,7 @@ static status render_twice(thumbnails *t, job *j, scene *s, image **img, diagnos
         image_destroy(*img);
         *img = fine;
     }
-    return code == STATUS_INTERRUPTED && !atomic_load(&t->ended) ? STATUS_OK : code;
+    return code == STATUS_INTERRUPTED && !cancel_is_set(&t->ended) ? STATUS_OK : code;
 }
 
 static status render(thumbnails *t, scene *s, unsigned char **bytes, size_t *size, diagnostic *why)
@@ -155,13 +156,16 @@ static status render(thumbnails *t, scene *s, unsigned char **bytes, size_t *siz
     image *img = NULL;
     make_small(s);
     t->late_s = clock_process_cpu_s() + limit_s;
-    status code = job_create(&(job_settings){.level = &t->level, .stop = must_end, .context = t}, &j, why);
+    status code = job_create(&(job_settings){.level = &t->level}, &j, why);
+    cancel_token token = {.ask = must_end, .context = t};
+    cancel_begin(&token);
     THEN(code, job_load(j, s, NULL, why));
     THEN(code, render_twice(t, j, s, &img, why));
+    cancel_end(&token);
     THEN(code, image_encode(img, IMAGE_JPEG, 8, false, bytes, size, why));
     image_destroy(img);
     job_destroy(j);
-    return code == STATUS_INTERRUPTED && !atomic_load(&t->ended)
+    return code == STATUS_INTERRUPTED && !cancel_is_set(&t->ended)
                ? diagnose(why, STATUS_FAILURE, "open the scene", "the thumbnail takes too long")
                : code;
 }

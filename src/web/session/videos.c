@@ -110,13 +110,14 @@ static void publish(videos *v)
     lab_publish(v->l, "video", videos_json(v));
 }
 
-static bool must_stop(void *context)
+/* As the ask of a token. */
+static bool is_disturbing(void *context)
 {
-    videos *v = context;
-    return atomic_load(&v->task.stop) || studies_runs(v->l->studies, NULL);
+    const videos *v = context;
+    return studies_runs(v->l->studies, NULL);
 }
 
-static bool on_progress(void *context, double share)
+static void on_progress(void *context, double share)
 {
     videos *v = context;
     pthread_mutex_lock(&v->lock);
@@ -125,14 +126,13 @@ static bool on_progress(void *context, double share)
     pthread_mutex_unlock(&v->lock);
     if (due)
         publish(v);
-    return !must_stop(v);
 }
 
 /* Motion up to a frame is no share of the frame. */
-static bool on_motion(void *context, double share)
+static void on_motion(void *context, double share)
 {
     (void)share;
-    return on_progress(context, 0.0);
+    on_progress(context, 0.0);
 }
 
 /* --- frames --- */
@@ -210,12 +210,16 @@ static status make(videos *v, FILE *file, diagnostic *why)
 {
     job *j = NULL;
     scene_motion *motion = NULL;
-    const job_settings settings = {
-        .level = &v->l->settings.level, .keeps_meshes = true, .stop = must_stop, .context = v, .time_s = FRAME_LIMIT_S};
+    const job_settings settings = {.level = &v->l->settings.level, .keeps_meshes = true, .time_s = FRAME_LIMIT_S};
+    cancel_token token = {.ask = is_disturbing, .context = v};
+    cancel_begin(&v->task.token);
+    cancel_begin(&token);
     status code = job_create(&settings, &j, why);
     if (code == STATUS_OK && !v->plan.path)
         code = scene_motion_create(v->plan.s, &motion, why);
     THEN(code, render_frames(v, j, motion, file, why));
+    cancel_end(&token);
+    cancel_end(&v->task.token);
     scene_motion_destroy(motion);
     job_destroy(j);
     return code;
@@ -231,7 +235,7 @@ static void finish(videos *v, FILE *file, status code, const diagnostic *why)
     pthread_mutex_lock(&v->lock);
     v->running = false;
     v->wall_s = clock_wall_s() - v->began_s;
-    v->failed = code != STATUS_OK && !atomic_load(&v->task.stop);
+    v->failed = code != STATUS_OK && !cancel_is_set(&v->task.token);
     v->trouble = *why;
     v->file = whole ? file : NULL;
     v->size = whole ? (size_t)size : 0;
@@ -317,7 +321,7 @@ status videos_stop(videos *v, diagnostic *why)
     pthread_mutex_lock(&v->lock);
     const bool running = v->running;
     pthread_mutex_unlock(&v->lock);
-    atomic_store(&v->task.stop, true);
+    cancel_set(&v->task.token);
     pthread_mutex_unlock(&v->task.life);
     return running ? STATUS_OK : diagnose(why, STATUS_INTERRUPTED, "start one first", "no video is being rendered");
 }
