@@ -108,7 +108,7 @@ static bool is_same(void *context, const char *assignment)
     scene *s = f->frame->result->wall_s < moment_s ? scene_clone(f->frame->of) : NULL;
     job_account other = {.result = NULL};
     const bool rendered = s && scene_set_assignment(s, assignment, NULL) == STATUS_OK &&
-                          job_load(f->with, s, NULL, NULL) == STATUS_OK &&
+                          scene_check(s, NULL) == STATUS_OK && job_load(f->with, s, NULL, NULL) == STATUS_OK &&
                           job_render(f->with, s, NULL, &other, NULL) == STATUS_OK;
     const bool same = rendered && job_account_hash(&other) == job_account_hash(f->frame);
     job_account_release(&other);

@@ -77,7 +77,6 @@ status job_machine(job *j, const topology **out, diagnostic *why)
 status job_load(job *j, scene *s, const load_watch *watch, diagnostic *why)
 {
     TRY(cancel_check(why));
-    TRY(scene_check(s, why));
     return j->settings.keeps_meshes ? shelf_load(&j->meshes, s, watch, why) : scene_load_until(s, watch, why);
 }
 
@@ -125,7 +124,6 @@ static status prepare(job *j, const scene *s, const render_options *requested, d
 {
     const topology *machine = NULL;
     status code = cancel_check(why);
-    THEN(code, scene_check(s, why));
     THEN(code, check_quota(j, s, requested, why));
     if (code == STATUS_OK && s->render.pin != PIN_RULE_NONE)
         code = job_machine(j, &machine, why);

@@ -127,7 +127,7 @@ typedef struct render_result {
  * paths, or with too few paths for an estimate. */
 double render_noise_rms(const render_result *result);
 
-/* Call scene_load first. STATUS_INTERRUPTED when cancelled: *out then holds the finished part. */
+/* Checks the scene; call scene_load first. STATUS_INTERRUPTED when cancelled: *out then holds the finished part. */
 status renderer_render(renderer *r, const scene *s, const render_options *options, render_result **out,
                        diagnostic *why);
 void render_result_destroy(render_result *result);

@@ -58,8 +58,9 @@ status scene_load_files(scene *s, diagnostic *why);
 char *scene_file_path(const scene *s, const char *path);
 
 /* Checks beyond single ranges: shapes, energy (under constant weights or simple transmission: reflectivity +
- * transparency <= 1), names, limits, camera not at its own target, a background image has a file. Called by scene_read
- * and before every render. */
+ * transparency <= 1), names, limits, camera not at its own target, a background image has a file. Called where a
+ * scene is read or changed, so that the error has its place and nothing invalid is loaded, and by the renderer, which
+ * also knows the triangles that were loaded since; nowhere between. */
 status scene_check(const scene *s, diagnostic *why);
 
 /* Shares the triangles of meshes with equal parameters in another scene, for each mesh of s that is not loaded. Slimes
