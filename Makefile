@@ -73,11 +73,8 @@ all_cflags = $(code_flags) -DCUVETTE_VERSION='"$(version)"' \
   -DCUVETTE_COMPILER_FLAGS='"$(config): $(optimize) $(arithmetic)"' $(warnings) $(errors)
 all_libs = $(pkg_libs) -lm -pthread
 
-# Embree 3 is a reference for benchmarks, used if installed, in one file that loads the library when it is needed. Detected at
-# its first use, as above.
+# Embree 3, which one of the peers links if it is installed. Detected at its first use, as above.
 embree = $(eval embree := $$(shell $$(CC) -E -include embree3/rtcore.h -x c /dev/null >/dev/null 2>&1 && echo yes))$(embree)
-embree_cflags = $(if $(embree),-DCUVETTE_EMBREE=1)
-embree_libs = $(if $(embree),-lembree3)
 
 # One source for all instruction sets of the architecture (src/base/isa.h): *_kernel.c is compiled once for each.
 isa_flags_sse2   := -msse2 -Wno-psabi
@@ -183,7 +180,7 @@ $(build)/$(soname): $(library_objects)
 measured_code := $(sort $(foreach room,base optics geometry measure image softbody scene render realism job,$(wildcard \
   $(addprefix src/$(room)/,*.[ch] */*.[ch] */*/*.[ch]))))
 $(build)/build_id: always $(build)/flags
-	@{ $(CC) --version | head -n 1; echo '$(subst ','\'',$(code_flags) $(isas_flags) $(embree_cflags))'; cat $(measured_code); } | \
+	@{ $(CC) --version | head -n 1; echo '$(subst ','\'',$(code_flags) $(isas_flags))'; cat $(measured_code); } | \
 	  sha256sum | cut -c 1-16 >$@.new
 	@{ git rev-parse --short HEAD && git diff --quiet HEAD -- src Makefile || echo +; } 2>/dev/null | tr -d '\n' >>$@.new
 	@cmp -s $@.new $@ && rm $@.new || mv $@.new $@
@@ -197,7 +194,6 @@ $(build)/obj/%.o: src/%.c $(build)/flags
 	$(quiet)$(CC) $(all_cflags) $(pkg_cflags) $(own_cflags) -MMD -MP -c -o $@ $<
 $(build)/obj/study/plot_style.o: plots/style.gp
 $(build)/obj/study/slurm_script.o: experiments/cluster/study.slurm
-$(build)/obj/geometry/hierarchy_embree.o: private own_cflags = $(embree_cflags)
 web_cflags = $(eval web_cflags := $$(shell pkg-config --cflags libmicrohttpd))$(web_cflags)
 $(build)/obj/web/%.o: private own_cflags = $(web_cflags)
 
@@ -276,7 +272,7 @@ $(build)/tests/power/record.so: tests/power/record.c $(build)/flags
 # Rebuilds everything when the compiler or its flags change. Everything that is compiled depends on it, so that it
 # also waits for setup when both are requested.
 .PHONY: always
-flags_text = $(subst ','\'',$(filter-out -Werror,$(CC) $(all_cflags) $(isas_flags) $(embree_cflags)))
+flags_text = $(subst ','\'',$(filter-out -Werror,$(CC) $(all_cflags) $(isas_flags)))
 $(build)/flags: always | $(filter setup setup-peers setup-doc setup-mpi,$(MAKECMDGOALS))
 	@mkdir -p $(@D)
 	@echo '$(flags_text)' | cmp -s - $@ || echo '$(flags_text)' >$@
@@ -358,7 +354,7 @@ $(build)/peers/report: $(report_sources) $(build)/flags
 $(build)/peers/embree: experiments/peers/embree.c $(build)/libcuvette.a $(build)/flags
 	$(call say,$(CC) $<)
 	@mkdir -p $(@D)
-	$(quiet)$(CC) $(all_cflags) -march=native -MMD -MP -o $@ $< $(build)/libcuvette.a $(LDFLAGS) $(embree_libs) $(all_libs)
+	$(quiet)$(CC) $(all_cflags) -march=native -MMD -MP -o $@ $< $(build)/libcuvette.a $(LDFLAGS) -lembree3 $(all_libs)
 
 -include $(build)/peers/embree.d
 -include $(library_objects:.o=.d) $(program_objects:.o=.d) $(web_objects:.o=.d) $(mpi_objects:.o=.d) $(importer_objects:.o=.d) $(test_programs:=.d) $(fuzzers:=.d) $(replayed:.o=.d) $(fuzzed_objects:.o=.d) $(benches:=.d) $(build)/tests/power/reader.d $(build)/account_keys.d

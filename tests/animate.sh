@@ -178,9 +178,6 @@ for restart in '' --restart; do
     refused "a folder with the name of a frame is refused $restart" 'over/a2.png: is a folder' \
         -o over/a%d.png --duration 0.12 $restart
 done
-animate -o embree/%d.png --duration 0.04 --set render.accel=octant
-refused "frames by Embree are another animation" 'render.accel was not embree and is now embree' \
-    -o embree/%d.png --set render.accel=embree
 
 # --- files that the scene reads
 animate -o read/%05d.png --duration 0.2

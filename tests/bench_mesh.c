@@ -1,6 +1,6 @@
 /* bench_mesh - rays per second through the mesh hierarchies, for the rays of experiments/peers/mesh_rays.h: a camera of
  * 800 x 600 and, from each visible point, a ray to a point light.
- *  bench_mesh [-m sparse|dense|sphere|all] [-n N,...] [-a none|sphere|octant|bvh|embree] [-k 1|128,...] [-r REPEATS]
+ *  bench_mesh [-m sparse|dense|sphere|all] [-n N,...] [-a none|sphere|octant|bvh] [-k 1|128,...] [-r REPEATS]
  *  [-t BUILD_THREADS]
  * k: single rays, or batches of 128, tiles of 16 x 8 pixels. Times are CPU milliseconds per frame, medians. Prints a
  * row for each set and k; sum is over the triangles hit and the bits of t, so that equal sums mean equal hits. */
@@ -148,9 +148,8 @@ static bool bench(const char *mode, size_t count, hierarchy_kind kind, const cha
 
 int main(int count, char **words)
 {
-    static const char *const kind_names[] = {"none", "sphere", "octant", "bvh", "embree"}, *const modes[] = {"sparse",
-                                                                                                             "dense",
-                                                                                                             "sphere"};
+    static const char *const kind_names[] = {"none", "sphere", "octant", "bvh"}, *const modes[] = {"sparse", "dense",
+                                                                                                   "sphere"};
     const char *mode = "all", *numbers = "10000,50000,1000000", *kind = "bvh", *sizes = "1,128";
     int repeats = 7, threads = 1, chosen = 0;
     for (int i = 1; i + 1 < count; i += 2)

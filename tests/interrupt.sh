@@ -52,7 +52,6 @@ w_motion() { line=(motion "$scenes/slime.yaml" --set toy.level=5 --set toy.dt_s=
 w_lesson() { line=(lesson check) longest=1; }
 w_check() { line=(scene soup-bvh.yaml --check) longest=2 && soup sparse 3000000 bvh; }
 w_octant() { line=(render soup-octant.yaml -o s.png) files=s.png longest=2 && soup sparse 2000000 octant; }
-w_embree() { line=(render soup-embree.yaml -o s.png) files=s.png longest=2 && soup dense 3000000 embree; }
 w_slime() {
     line=(render "$scenes/slime.yaml" -o s.png --set toy.level=6 --set toy.dt_s=2e-5 --set toy.time_s=3)
     files=s.png longest=2
@@ -175,11 +174,6 @@ interrupt() { # WORKLOAD SIGNAL
 if (($# == 0)); then # the others take longer, or differ little
     set -- fan trace motion check terrain mesh_obj import texture compare render animate study
 elif [[ $1 == all ]]; then
-    soup sparse 10 embree
-    "$program" render soup-embree.yaml -o s.png >made 2>&1 || {
-        echo "# no moments of embree: $(head -1 made)"
-        unset -f w_embree
-    }
     mapfile -t every < <(declare -F | sed -n 's/^declare -f w_//p')
     set -- "${every[@]}"
 fi

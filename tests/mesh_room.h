@@ -176,7 +176,7 @@ static inline void mesh_room_fill(mesh_room *m, uint64_t *seed, bool on_a_grid)
         s->spacing = on_a_grid ? s->size : vec3_make(2.1 * s->scale.x, 1.0, 2.1 * s->scale.z);
         if (!on_a_grid)
             s->spacing = vec3_add(s->spacing, vec3_scale(s->size, 1.0));
-        assert_int_equal(hierarchy_build(m->mesh_solid[i], (hierarchy_kind)random_below(seed, HIERARCHY_EMBREE), 1,
+        assert_int_equal(hierarchy_build(m->mesh_solid[i], (hierarchy_kind)random_below(seed, HIERARCHY_KIND_COUNT), 1,
                                          &m->tree[i], NULL),
                          STATUS_OK);
         place_triangles(m, i);

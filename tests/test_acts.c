@@ -174,13 +174,9 @@ static void judge_note(visitor *x, const char *path, const param *row, acts_valu
     }
 }
 
-/* Parameters marked as not affecting the image: no value may change the film, except for Embree's hierarchy, whose
- * table row documents it. */
-static void judge_mark(visitor *x, const char *path, acts_values *v)
+/* Parameters marked as not affecting the image: no value may change the film. */
+static void judge_mark(visitor *x, const char *path, const acts_values *v)
 {
-    for (int i = 0; i < v->count; i++)
-        if (strcmp(v->text[i], "embree") == 0)
-            memmove(v->text[i], v->text[--v->count], sizeof v->text[i]);
     x->out->marked++;
     if (acts_try(x->a, path, v, 0, 1).changed > 0)
         complain(x->out, path, "changes the film, and yet the table marks it as not affecting it", NULL);

@@ -213,7 +213,7 @@ static void impossible_rays_test_nothing(void **state)
     mesh *m = row_of_triangles(5);
     mesh_ray still = along_x(0.0, 0.0, 0.0);
     still.direction = vec3_make(0.0, 0.0, 0.0);
-    for (int kind = 0; kind < HIERARCHY_EMBREE; kind++) {
+    for (int kind = 0; kind < HIERARCHY_KIND_COUNT; kind++) {
         hierarchy *h = built(m, (hierarchy_kind)kind);
         expect(counts_of(h, &still, QUERY_NEAREST), 0, 0, 0);
         hierarchy_destroy(h);

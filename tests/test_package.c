@@ -309,30 +309,6 @@ static void only_the_hierarchies_of_a_frame_are_built(void **state)
     }
 }
 
-static void embree_is_built_by_the_receiver(void **state)
-{
-    (void)state;
-    scene *s = committed_scene("models.yaml");
-    set_all(s, "render.accel=embree ball.level=3");
-    diagnostic why = {0};
-    worked(scene_load(s, &why), &why);
-    if (scene_build_hierarchies(s, &why) != STATUS_OK) { /* a build without Embree */
-        scene_destroy(s);
-        skip();
-    }
-    const package p = packed(s);
-    scene *again = unpacked(&p);
-    render_result *before = render(s), *after = render(again);
-    assert_true(film_hash(before->img) == film_hash(after->img));
-    assert_memory_equal(&before->counters, &after->counters, sizeof before->counters);
-    assert_true(before->meshes.build_s != after->meshes.build_s);
-    render_result_destroy(before);
-    render_result_destroy(after);
-    scene_destroy(s);
-    scene_destroy(again);
-    free(p.at);
-}
-
 static void a_scene_without_a_text_is_refused(void **state)
 {
     (void)state;
@@ -357,7 +333,6 @@ int main(void)
         cmocka_unit_test(an_unloaded_scene_is_loaded_by_the_receiver),
         cmocka_unit_test(only_the_hierarchies_of_a_frame_are_built),
         cmocka_unit_test(a_stream_has_the_same_bytes_in_calls_of_the_same_sizes),
-        cmocka_unit_test(embree_is_built_by_the_receiver),
         cmocka_unit_test(a_scene_without_a_text_is_refused),
     };
     return cmocka_run_group_tests(tests, make_folder, remove_folder);

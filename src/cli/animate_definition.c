@@ -34,15 +34,11 @@ static status add_param(void *context, const char *path, const param *row, const
     return json_object_set_new(state->into, path, json_of_text(value)) == 0 ? STATUS_OK : STATUS_FAILURE;
 }
 
-static bool add_request(json_t *parameters, const animate_request *request, const scene *s)
+static bool add_request(json_t *parameters, const animate_request *request)
 {
     char fps[64], start[NUMBER_TEXT_MAX];
     snprintf(fps, sizeof fps, "%" PRId64 "/%" PRId64, request->times.fps_num, request->times.fps_den);
-    const char *accel = s->render.accel == HIERARCHY_EMBREE
-                            ? "embree"
-                            : "not embree"; /* Embree's hits have single precision and give other frames */
-    return json_object_set_new(parameters, "render.accel", json_string(accel)) == 0 &&
-           json_object_set_new(parameters, "--fps", json_string(fps)) == 0 &&
+    return json_object_set_new(parameters, "--fps", json_string(fps)) == 0 &&
            json_object_set_new(parameters, "--start", json_string(number_format(request->times.start_s, start))) == 0;
 }
 
@@ -71,7 +67,7 @@ status animate_define(const animate_request *request, const scene *s, animate_de
 {
     *out = (animate_definition){.parameters = json_object(), .hash = HASH_START};
     visit_state state = {s, out->parameters};
-    if (!out->parameters || !add_request(out->parameters, request, s) ||
+    if (!out->parameters || !add_request(out->parameters, request) ||
         scene_each_param(s, add_param, &state) != STATUS_OK)
         return out_of_memory(why);
     hash_parameters(&out->hash, out->parameters);

@@ -43,10 +43,9 @@ static status build(hierarchy *h, int threads, diagnostic *why)
     case HIERARCHY_SPHERE:
     case HIERARCHY_OCTANT: return hierarchy_build_spheres(h, why);
     case HIERARCHY_BVH: return hierarchy_build_bvh(h, threads, why);
-    case HIERARCHY_EMBREE: return hierarchy_build_embree(h, threads, why);
     case HIERARCHY_KIND_COUNT: break;
     }
-    return diagnose(why, STATUS_BAD_INPUT, "choose none, sphere, octant, bvh or embree", "unknown hierarchy kind %d",
+    return diagnose(why, STATUS_BAD_INPUT, "choose none, sphere, octant or bvh", "unknown hierarchy kind %d",
                     (int)h->kind);
 }
 
@@ -60,7 +59,6 @@ static uint64_t bytes_by_triangle(hierarchy_kind kind, bool single)
     case HIERARCHY_SPHERE:
     case HIERARCHY_OCTANT: return 4 * block + 40;
     case HIERARCHY_BVH: return 2 * block + 120;
-    case HIERARCHY_EMBREE: return 250;
     case HIERARCHY_KIND_COUNT: break;
     }
     return 0;
@@ -94,8 +92,6 @@ void hierarchy_destroy(hierarchy *h)
 {
     if (!h)
         return;
-    if (h->foreign)
-        hierarchy_embree_destroy(h);
     free(h->blocks);
     free(h->nodes);
     free(h->spheres);
@@ -161,8 +157,8 @@ status hierarchy_of_mesh(const mesh *m, hierarchy_kind kind, int threads, const 
 {
     *out = NULL;
     if (kind < HIERARCHY_NONE || kind >= HIERARCHY_KIND_COUNT)
-        return diagnose(why, STATUS_BAD_INPUT, "choose none, sphere, octant, bvh or embree",
-                        "unknown hierarchy kind %d", (int)kind);
+        return diagnose(why, STATUS_BAD_INPUT, "choose none, sphere, octant or bvh", "unknown hierarchy kind %d",
+                        (int)kind);
     hierarchy **stored = &m->share->hierarchies[kind], *h = __atomic_load_n(stored, __ATOMIC_ACQUIRE);
     status s = STATUS_OK;
     if (!h) {

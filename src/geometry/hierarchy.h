@@ -7,7 +7,6 @@
  *   octant   the sphere tree of the original report: a shell passes its triangles to eight octants and keeps those
  *            larger than a quarter of its radius
  *   bvh      binned surface-area heuristic, eight children per node, single-precision boxes rounded outwards
- *   embree   Embree's BVH, if Embree was found at build time; single precision; a reference for speed
  *
  * A hierarchy borrows its mesh, which must outlive it. After the build only hierarchy_refit and hierarchy_follow change
  * it. Any number of threads may use it at once. */
@@ -22,7 +21,6 @@ typedef enum hierarchy_kind {
     HIERARCHY_SPHERE,
     HIERARCHY_OCTANT,
     HIERARCHY_BVH,
-    HIERARCHY_EMBREE,
     HIERARCHY_KIND_COUNT
 } hierarchy_kind;
 
@@ -36,8 +34,7 @@ typedef struct hierarchy_report {
     int threads;    /* threads that built it */
 } hierarchy_report;
 
-/* threads: 1..1024; no more threads are started than are useful. STATUS_FAILURE: out of memory; STATUS_BAD_INPUT:
- * Embree is not available. */
+/* threads: 1..1024; no more threads are started than are useful. STATUS_FAILURE: out of memory. */
 status hierarchy_build(const mesh *m, hierarchy_kind kind, int threads, hierarchy **out, diagnostic *why);
 void hierarchy_destroy(hierarchy *h);
 hierarchy_report hierarchy_describe(const hierarchy *h);
@@ -100,7 +97,7 @@ enum query_mode { QUERY_NEAREST, QUERY_ANY, QUERY_ALL, QUERY_BOXES };
 /* Adds the tests that a query of this ray makes when it traverses the hierarchy alone, without a fused multiply-add:
  * then their number depends on the mesh, the kind and the ray, and not on the other rays of its batch, on threads or on
  * the instruction set. The kernels test at least as much: a packet enters a box for all of its rays, and four
- * triangles or eight boxes are tested at once. Not for QUERY_BOXES; for embree only the ray is counted. */
+ * triangles or eight boxes are tested at once. Not for QUERY_BOXES. */
 void hierarchy_count(const hierarchy *h, const mesh_ray *ray, enum query_mode mode, query_counts *counts);
 
 /* The kernels, one set per instruction set. All sets return bit-identical results. */

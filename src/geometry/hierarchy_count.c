@@ -141,7 +141,7 @@ void hierarchy_count(const hierarchy *h, const mesh_ray *ray, enum query_mode mo
 {
     counting c = {.of = h, .mode = mode, .counts = counts};
     counts->rays++;
-    if (h->kind == HIERARCHY_EMBREE || !query_start(&c.query, ray) || h->block_count == 0)
+    if (!query_start(&c.query, ray) || h->block_count == 0)
         return;
     c.query.visit = pass_over;
     switch (h->kind) {
@@ -149,7 +149,6 @@ void hierarchy_count(const hierarchy *h, const mesh_ray *ray, enum query_mode mo
     case HIERARCHY_SPHERE:
     case HIERARCHY_OCTANT: count_spheres(&c); break;
     case HIERARCHY_NONE: test_blocks(&c, 0, h->block_count); break;
-    case HIERARCHY_EMBREE:
     case HIERARCHY_KIND_COUNT: break;
     }
 }

@@ -17,7 +17,6 @@ static void walk(const hierarchy *h, ray_query *q, enum query_mode mode)
     case HIERARCHY_SPHERE:
     case HIERARCHY_OCTANT: KERNEL(walk_spheres)(h, q, mode); break;
     case HIERARCHY_NONE: walk_blocks(h, q, mode); break;
-    case HIERARCHY_EMBREE:
     case HIERARCHY_KIND_COUNT: break;
     }
 }
@@ -25,20 +24,14 @@ static void walk(const hierarchy *h, ray_query *q, enum query_mode mode)
 static void nearest(const hierarchy *h, const mesh_ray *ray, mesh_hit *hit)
 {
     ray_query q;
-    if (h->kind == HIERARCHY_EMBREE) {
-        hierarchy_embree_nearest(h, ray, hit);
-    } else {
-        if (query_start(&q, ray) && h->block_count)
-            walk(h, &q, QUERY_NEAREST);
-        query_finish(&q, hit);
-    }
+    if (query_start(&q, ray) && h->block_count)
+        walk(h, &q, QUERY_NEAREST);
+    query_finish(&q, hit);
 }
 
 static bool any(const hierarchy *h, const mesh_ray *ray)
 {
     ray_query q;
-    if (h->kind == HIERARCHY_EMBREE)
-        return hierarchy_embree_any(h, ray);
     if (query_start(&q, ray) && h->block_count)
         walk(h, &q, QUERY_ANY);
     return q.best != TRIANGLE_NONE;
@@ -47,9 +40,7 @@ static bool any(const hierarchy *h, const mesh_ray *ray)
 static void all(const hierarchy *h, const mesh_ray *ray, mesh_visit *visit, void *context)
 {
     ray_query q;
-    if (h->kind == HIERARCHY_EMBREE) {
-        hierarchy_embree_all(h, ray, visit, context);
-    } else if (query_start(&q, ray) && h->block_count) {
+    if (query_start(&q, ray) && h->block_count) {
         q.visit = visit;
         q.context = context;
         walk(h, &q, QUERY_ALL);

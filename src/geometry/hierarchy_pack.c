@@ -79,7 +79,7 @@ static status check_head(const mesh *m, const hierarchy_head *head, const pack_r
 {
     const bool none = head->kind == HIERARCHY_NONE;
     const size_t node = none ? 1 : head->kind == HIERARCHY_BVH ? sizeof(bvh_node) : sizeof(sphere_node);
-    if (head->kind < HIERARCHY_NONE || head->kind >= HIERARCHY_EMBREE || (head->single != 0 && head->single != 1) ||
+    if (head->kind < HIERARCHY_NONE || head->kind >= HIERARCHY_KIND_COUNT || (head->single != 0 && head->single != 1) ||
         (head->single && !m->single))
         return pack_damaged(why, "the head of a hierarchy");
     if ((none ? head->nodes != 0 : head->nodes < 1 || head->nodes >= CHILD_LEAF) ||

@@ -62,21 +62,12 @@ struct hierarchy {
     size_t referred;   /* bvh: triangles in its blocks; fewer than the mesh's if some had no area at the build */
     double built_cost; /* hierarchy_cost at the build; 0 for other kinds */
     float reach[3];    /* bvh: the largest magnitude of a box's planes, by axis */
-    void *foreign;     /* Embree's scene */
     hierarchy_report report;
 };
 
 /* Builders by kind. Each fills h's arrays and report (except build_s and threads) from h->of. */
 status hierarchy_build_bvh(hierarchy *h, int threads, diagnostic *why);
 status hierarchy_build_spheres(hierarchy *h, diagnostic *why); /* HIERARCHY_SPHERE and HIERARCHY_OCTANT */
-status hierarchy_build_embree(hierarchy *h, int threads, diagnostic *why);
-
-/* The Embree backend, hierarchy_embree.c. Without Embree at build time its builder fails with STATUS_BAD_INPUT and its
- * queries never hit. */
-void hierarchy_embree_destroy(hierarchy *h);
-void hierarchy_embree_nearest(const hierarchy *h, const mesh_ray *ray, mesh_hit *hit);
-bool hierarchy_embree_any(const hierarchy *h, const mesh_ray *ray);
-void hierarchy_embree_all(const hierarchy *h, const mesh_ray *ray, mesh_visit *visit, void *context);
 
 /* Writes triangles order[0 .. count-1] into blocks from block number `first` on, fills the last block by repetition,
  * and returns the number of blocks. */

@@ -31,9 +31,9 @@ static void list_arrays(const mesh *m, mesh_array out[MESH_ARRAYS_OF])
     out[4] = (mesh_array){m->slots, m->slots ? m->triangle_count * sizeof *m->slots : 0};
 }
 
-static const hierarchy *travelling(const mesh *m, int kind)
+static const hierarchy *stored_hierarchy(const mesh *m, int kind)
 {
-    return kind == HIERARCHY_EMBREE ? NULL : __atomic_load_n(&m->share->hierarchies[kind], __ATOMIC_ACQUIRE);
+    return __atomic_load_n(&m->share->hierarchies[kind], __ATOMIC_ACQUIRE);
 }
 
 static mesh_head head_of(const mesh *m)
@@ -52,7 +52,7 @@ static mesh_head head_of(const mesh *m)
                       .hole_triangle = m->hole.triangle,
                       .hole_sharing = m->hole.sharing};
     for (int kind = 0; kind < HIERARCHY_KIND_COUNT; kind++)
-        head.hierarchies += travelling(m, kind) != NULL;
+        head.hierarchies += stored_hierarchy(m, kind) != NULL;
     return head;
 }
 
@@ -67,8 +67,8 @@ status mesh_pack(const mesh *m, pack_writer *to, diagnostic *why)
     for (int i = 0; i < m->slot_count; i++)
         TRY(pack_put_text(to, m->slot_names[i], why));
     for (int kind = 0; kind < HIERARCHY_KIND_COUNT; kind++)
-        if (travelling(m, kind))
-            TRY(hierarchy_pack(travelling(m, kind), to, why));
+        if (stored_hierarchy(m, kind))
+            TRY(hierarchy_pack(stored_hierarchy(m, kind), to, why));
     return STATUS_OK;
 }
 
@@ -83,7 +83,7 @@ static bool within(const double *values, int count)
 static status check_head(const mesh_head *h, const pack_reader *from, diagnostic *why)
 {
     const uint64_t flags = (uint64_t)(h->normals | h->uvs | h->slots | h->closed | h->single);
-    if (flags > 1 || h->slot_count < 1 || h->slot_count > MESH_SLOTS_MAX || h->hierarchies >= HIERARCHY_KIND_COUNT)
+    if (flags > 1 || h->slot_count < 1 || h->slot_count > MESH_SLOTS_MAX || h->hierarchies > HIERARCHY_KIND_COUNT)
         return pack_damaged(why, "the head of a mesh");
     if (!pack_holds(from, h->vertices, sizeof(vec3)) || !pack_holds(from, h->triangles, sizeof(mesh_triangle)))
         return pack_damaged(why, "a mesh is larger than the package");

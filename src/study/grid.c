@@ -72,17 +72,10 @@ static bool is_performance_only(const scene *s, const char *path)
     return param_place_find(s, path, &at, NULL) == STATUS_OK && at.row->performance_only;
 }
 
-/* Embree's hits are in single precision, so its film differs. */
-static bool is_foreign(const char *value)
-{
-    return strcmp(value, "embree") == 0;
-}
-
 static bool have_one_film(const scene *s, const study_point *a, const study_point *b)
 {
     for (size_t i = 0; i < a->count; i++)
-        if (strcmp(a->values[i], b->values[i]) != 0 &&
-            (!is_performance_only(s, a->paths[i]) || is_foreign(a->values[i]) || is_foreign(b->values[i])))
+        if (strcmp(a->values[i], b->values[i]) != 0 && !is_performance_only(s, a->paths[i]))
             return false;
     return true;
 }

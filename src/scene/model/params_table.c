@@ -22,7 +22,7 @@ static const char *const schedule_words[] = {"columns", "rows", "tiles", "dynami
 static const char *const pin_words[] = {"none", "compact", "scatter", NULL};
 static const char *const lighting_words[] = {"lambert", "phong", "whitted", NULL};
 static const char *const spectrum_words[] = {"rgb", "spectral", NULL};
-static const char *const accel_words[] = {"none", "sphere", "octant", "bvh", "embree", NULL};
+static const char *const accel_words[] = {"none", "sphere", "octant", "bvh", NULL};
 static const char *const sampler_words[] = {"philox", "sobol", NULL};
 static const char *const pixel_filter_words[] = {"centre", "box", NULL};
 static const char *const light_sampling_words[] = {"all", "one", NULL};
@@ -227,7 +227,7 @@ static const param table[] = {
                        "thread pinning: none, on adjacent processing units, or on distant ones"),
     PERFORMANCE_CHOICE(accel, accel_words, "bvh",
                        "acceleration structure of a mesh: none, one bounding sphere, the original report's octree of "
-                       "spheres, a BVH, or Embree's BVH (its film differs)"),
+                       "spheres, or a BVH"),
     PERFORMANCE_INTEGER(build_threads, "", 0, 1024, "0", "threads that build hierarchies; 0: one per processing unit"),
     PERFORMANCE_CHOICE(keep, off_on, "on",
                        "keep the hierarchies of meshes between frames; off: rebuild them for every frame"),

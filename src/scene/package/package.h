@@ -2,8 +2,7 @@
  * hierarchies, and others get everything without reading a file: a package. It holds the scene's parameters (as the
  * text of scene/file/write.h, whose numbers are exact), path and limits, and what is loaded: the sky, textures, meshes
  * with their hierarchies, the materials in mesh files, and the accounts of slimes. The scene that is unpacked gives the
- * same film, counters and mesh report, and its frames build no hierarchy that the package holds. Embree's hierarchies
- * are the exception: the receiver builds them.
+ * same film, counters and mesh report, and its frames build no hierarchy that the package holds.
  *
  * A package is for processes of the same build (base/build_id.h): another build refuses it. It is in native byte order
  * and is not a file format. The receiver trusts nothing: sizes, indices and numbers are checked, and a hash at the end
