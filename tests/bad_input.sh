@@ -415,13 +415,13 @@ bad_study "a range of one value" ":3:" "study: a\nscene: $scene\ngrid: [{liquid.
 bad_study "a minimum of repetitions above the maximum" ":3:.*less than" \
     "study: a\nscene: $scene\nrepetitions: {min: 9, max: 3, relative_width: 0.1}\n"
 [[ -e results ]] && echo "# a refused study has created results/"
-# Rows that nothing identifies.
+# Rows of a version without identities.
 printf '%s\n' 'study: unknown' "scene: $scene" 'set: {render.width: 8, render.height: 6}' 'repetitions: 1' \
     >unknown.study
 "$program" study run unknown.study --results unknown-results >/dev/null
 sed -i '1s/,identity,/,definition,/' unknown-results/unknown/rows.csv
 for verb in run status summary verify; do
-    refused "study $verb: rows of another definition" "rows\.csv.*move this folder away.*--results.*another name" \
+    refused "study $verb: rows without identities" "rows\.csv.*lack the column identity.*measure again" \
         study "$verb" unknown.study --results unknown-results
 done
 

@@ -64,7 +64,7 @@ for command in render animate scene trace fan params media mesh study compare re
     check "--help names $command" grep -q "^  $command " out
 done
 for command in render animate scene trace fan params media mesh study compare realism motion lab machine "study run" \
-    "study new" "study list" "study status" "study merge" "study verify" "study upgrade" \
+    "study new" "study list" "study status" "study merge" "study verify" \
     "study summary" "study exclude" "study compare" "study power" "study plot" "study submit"; do
     # shellcheck disable=SC2086
     run help $command

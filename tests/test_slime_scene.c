@@ -304,33 +304,33 @@ static void progress_callbacks_do_not_change_the_load(void **state)
     scene_destroy(watched);
 }
 
-static uint64_t definition(const fixture *f)
+static uint64_t identity(const fixture *f)
 {
     char path[400];
     study *s = NULL;
     diagnostic why = {0};
     fixture_path(f, "toy.study", path);
     worked(study_read(path, &s, &why), &why);
-    const uint64_t hash = s->definition_hash;
+    const uint64_t hash = s->identity[0];
     study_destroy(s);
     return hash;
 }
 
-static void the_definition_of_a_study_includes_the_text_of_the_script(void **state)
+static void the_identity_of_a_cell_includes_the_text_of_the_script(void **state)
 {
     const fixture *f = *state;
     write_scripts(f, tug);
     fixture_write(f, "toy.yaml", toy);
     fixture_write(f, "toy.study", "study: toy\nscene: toy.yaml\ngrid:\n  - {toy.stiffness: [10, 20]}\n");
-    const uint64_t hash = definition(f);
-    assert_true(definition(f) == hash);
+    const uint64_t hash = identity(f);
+    assert_true(identity(f) == hash);
     char other[sizeof tug];
     memcpy(other, tug, sizeof tug);
     *strstr(other, "0.4") = '1';
     write_scripts(f, other);
-    assert_true(definition(f) != hash);
+    assert_true(identity(f) != hash);
     write_scripts(f, tug);
-    assert_true(definition(f) == hash);
+    assert_true(identity(f) == hash);
 }
 
 static void a_slime_round_trips_and_its_script_path_is_adjusted(void **state)
@@ -395,7 +395,7 @@ int main(void)
         IN_FOLDER(the_rows_of_a_study_share_a_simulation_unless_keep_is_off),
         IN_FOLDER(an_interrupted_load_does_not_change_the_slime),
         IN_FOLDER(progress_callbacks_do_not_change_the_load),
-        IN_FOLDER(the_definition_of_a_study_includes_the_text_of_the_script),
+        IN_FOLDER(the_identity_of_a_cell_includes_the_text_of_the_script),
         IN_FOLDER(a_slime_round_trips_and_its_script_path_is_adjusted),
         IN_FOLDER(only_slimes_list_slime_parameters),
     };

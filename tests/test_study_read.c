@@ -1,5 +1,6 @@
-/* Tests of study files: the grammar, definitions and located diagnostics. Run from the repository root. */
+/* Tests of study files: the grammar, identities of cells and located diagnostics. Run from the repository root. */
 #include "study_fixture.h"
+#include "base/hash.h"
 #include "scene/model/params.h"
 #include "scene/model/scene.h"
 #include "whole.h"
@@ -134,16 +135,19 @@ static void the_largest_studies_are_read_and_larger_ones_refused(void **state)
     assert_int_equal(read_sized(f, 1, 1, 1), STATUS_BAD_INPUT);
 }
 
+/* A hash of the identities of all cells, in their order. */
 static uint64_t hash_of(const fixture *f, const char *text)
 {
     study *s = fixture_study(f, text);
-    uint64_t hash = s->definition_hash;
+    uint64_t hash = HASH_START;
+    for (size_t cell = 0; cell < study_cell_count(s); cell++)
+        hash = hash_words(hash, &(const int64_t){(int64_t)s->identity[cell]}, 1);
     study_destroy(s);
     return hash;
 }
 
-/* The definition depends on the meaning of a row, not on the form of the file or the number of repetitions. */
-static void equivalent_studies_have_the_same_definition(void **state)
+/* Identities depend on the meaning of a row, not on the form of the file or the number of repetitions. */
+static void equivalent_studies_have_the_same_identities(void **state)
 {
     const fixture *f = *state;
     uint64_t hash =
@@ -153,7 +157,6 @@ static void equivalent_studies_have_the_same_definition(void **state)
                    "grid: [{ball.ior: [1, 1.50]}]\nrepetitions: 9\nwarmups: 0\norder: {seed: 2}\nkeep: {image: on}\n"),
         hash);
     static const char *const others[] = {
-        "study: y\nscene: scene.yaml\nset: {render.width: 32}\ngrid:\n  - {ball.ior: [1.0, 1.5]}\n",
         "study: x\nscene: scene.yaml\nset: {render.width: 33}\ngrid:\n  - {ball.ior: [1.0, 1.5]}\n",
         "study: x\nscene: scene.yaml\nset: {render.width: 32}\ngrid:\n  - {ball.ior: [1.0, 1.6]}\n",
         "study: x\nscene: scene.yaml\nset: {render.width: 32}\ngrid:\n  - {ball.ior: [1.5, 1.0]}\n",
@@ -171,8 +174,8 @@ static void equivalent_studies_have_the_same_definition(void **state)
         hash_of(f, "study: x\nscene: scene.yaml\nset: {render.width: 32}\ngrid:\n  - {ball.ior: [1.0, 1.5]}\n"), hash);
 }
 
-/* The same names with other contents are another definition: for a mesh's positions, colours and normals. */
-static void contents_of_files_are_part_of_a_definition(void **state)
+/* The same names with other contents are other cells: for a mesh's positions, colours and normals. */
+static void contents_of_files_are_part_of_an_identity(void **state)
 {
     const fixture *f = *state;
     static const char text[] = "study: x\nscene: painted.yaml\n";
@@ -379,8 +382,8 @@ int main(void)
         cmocka_unit_test_setup_teardown(values_of_ranges_are_evenly_spaced, fixture_setup, fixture_teardown),
         cmocka_unit_test_setup_teardown(the_largest_studies_are_read_and_larger_ones_refused, fixture_setup,
                                         fixture_teardown),
-        cmocka_unit_test_setup_teardown(equivalent_studies_have_the_same_definition, fixture_setup, fixture_teardown),
-        cmocka_unit_test_setup_teardown(contents_of_files_are_part_of_a_definition, fixture_setup, fixture_teardown),
+        cmocka_unit_test_setup_teardown(equivalent_studies_have_the_same_identities, fixture_setup, fixture_teardown),
+        cmocka_unit_test_setup_teardown(contents_of_files_are_part_of_an_identity, fixture_setup, fixture_teardown),
         cmocka_unit_test_setup_teardown(paths_of_scenes_are_relative_to_the_study, fixture_setup, fixture_teardown),
         cmocka_unit_test_setup_teardown(errors_in_scenes_of_studies_are_located_in_the_scene, fixture_setup,
                                         fixture_teardown),

@@ -1,5 +1,6 @@
 /* Tests of the summary of a study: medians, their intervals and the columns. */
 #include "study_fixture.h"
+#include "rows_fixture.h"
 #include "study/row_files.h"
 #include "study/summary.h"
 #include <inttypes.h>
@@ -15,17 +16,25 @@ typedef struct written {
     double wall_s;
 } written;
 
+static const char run_id[] = "0123456789abcdef";
+
+/* runs.json with one run, of an environment without known facts. */
+static void write_run(const fixture *f)
+{
+    run_environment here = {.key = ""};
+    char text[300];
+    for (int i = 0; i < ENVIRONMENT_FACTS; i++)
+        strcpy(here.fact[i], "unknown");
+    environment_close(&here);
+    snprintf(text, sizeof text, "{\"runs\": [{\"id\": \"%s\", \"environment\": {\"key\": \"%s\"}}]}", run_id, here.key);
+    fixture_write(f, "results/test/runs.json", text);
+}
+
 /* rows.csv with these rows: every column that is not named below is NA. */
 static void write_rows(const fixture *f, const study *s, const written *rows, size_t count)
 {
-    char *made = row_file_header(s, ROWS), folder[400], *header = calloc(1, strlen(made) + 8);
-    memcpy(header, made, strlen(made) - 1);
-    free(made);
-    char *identity = strstr(header, ",identity,"); /* as in versions without checks */
-    assert_non_null(identity);
-    memmove(identity + strlen(",definition"), identity + strlen(",identity"),
-            strlen(identity + strlen(",identity")) + 1);
-    memcpy(identity, ",definition", strlen(",definition"));
+    char *header = row_file_header(s, ROWS), path[400];
+    header[strcspn(header, "\n")] = 0;
     char *text = malloc(1 << 18);
     size_t size = (size_t)sprintf(text, "%s\n", header);
     for (size_t i = 0; i < count; i++) {
@@ -34,8 +43,10 @@ static void write_rows(const fixture *f, const study *s, const written *rows, si
             char value[64] = "NA";
             if (strcmp(name, "study") == 0)
                 strcpy(value, "test");
-            else if (strcmp(name, "definition") == 0)
-                sprintf(value, "%016" PRIx64, s->definition_hash);
+            else if (strcmp(name, "identity") == 0)
+                sprintf(value, "%016" PRIx64, s->identity[rows[i].cell]);
+            else if (strcmp(name, "run") == 0)
+                strcpy(value, run_id);
             else if (strcmp(name, "cell") == 0)
                 sprintf(value, "%d", rows[i].cell);
             else if (strcmp(name, "repetition") == 0)
@@ -58,11 +69,14 @@ static void write_rows(const fixture *f, const study *s, const written *rows, si
         }
         free(names);
     }
-    fixture_path(f, "results", folder);
-    mkdir(folder, 0777);
-    fixture_path(f, "results/test", folder);
-    mkdir(folder, 0777);
+    fixture_path(f, "results", path);
+    mkdir(path, 0777);
+    fixture_path(f, "results/test", path);
+    mkdir(path, 0777);
     fixture_write(f, "results/test/rows.csv", text);
+    fixture_path(f, "results/test/rows.csv", path);
+    rows_recheck(path);
+    write_run(f);
     free(text);
     free(header);
 }

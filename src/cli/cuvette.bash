@@ -119,7 +119,7 @@ _cuvette_study() # VERB
         [run]='--results --shard --by --any-environment --processes --against --quick --dry-run --quiet --progress'
         [submit]='--slurm --partition --constraint --node-type --tasks --by --threads --memory --time --factor --sbatch --template --results --dry-run'
         [status]=--results [merge]=--results
-        [verify]=--results [upgrade]='--results --to' [summary]='--results --environment --interval' [list]=''
+        [verify]=--results [summary]='--results --environment --interval' [list]=''
         [exclude]='--row --reason --results'
         [compare]='--results --column --detect --fail-if-slower --tsv --json'
         [films]='--results --against'
@@ -142,7 +142,7 @@ _cuvette_study() # VERB
 _cuvette()
 {
     local current=${COMP_WORDS[COMP_CWORD]} previous=${COMP_WORDS[COMP_CWORD - 1]}
-    local command=${COMP_WORDS[1]-} verbs='new run submit list status merge verify upgrade summary compare films power exclude plot'
+    local command=${COMP_WORDS[1]-} verbs='new run submit list status merge verify summary compare films power exclude plot'
     COMPREPLY=()
     if ((COMP_CWORD == 1)); then
         _cuvette_words render animate scene trace fan params media mesh study compare realism motion lesson lab machine help --help --usage --version

@@ -16,7 +16,6 @@
 #include "study/spread.h"
 #include "study/study.h"
 #include "study/summary.h"
-#include "study/upgrade.h"
 #include "study/verify.h"
 #include <stdio.h>
 #include <stdlib.h>
@@ -326,22 +325,6 @@ static status verify_one(const study *s, const study_request *request, diagnosti
     return judge(&verdict.first, why);
 }
 
-static status upgrade_one(const study *s, const study_request *request, diagnostic *why)
-{
-    char folder[4096];
-    size_t rows = 0;
-    snprintf(folder, sizeof folder, "%s%s", request->to ? request->to : request->results,
-             request->to ? "" : "-upgraded");
-    TRY(study_upgrade(s, request->results, folder, &rows, why));
-    printf("%s: %zu rows written to %s/%s\n", s->name, rows, folder, s->name);
-    return STATUS_OK;
-}
-
-static status command_upgrade(int argc, char **argv, diagnostic *why)
-{
-    return for_each_study(STUDY_UPGRADE, upgrade_one, argc, argv, why);
-}
-
 static status command_verify(int argc, char **argv, diagnostic *why)
 {
     return for_each_study(STUDY_VERIFY, verify_one, argc, argv, why);
@@ -375,7 +358,6 @@ static const command commands[] = {
     {"status", "print the progress of studies", command_status},
     {"merge", "merge the rows of a study that was run in shards", command_merge},
     {"verify", "check every row: damaged, edited, missing, duplicate and marked ones", command_verify},
-    {"upgrade", "write rows of old versions in the present form", command_upgrade},
     {"summary", "print medians and confidence intervals for each cell", command_summary},
     {"exclude", "exclude a row from summaries, with the reason", study_exclude},
     {"compare", "compare two runs, environments, cells or values: ratio, interval, verdict", study_compare},

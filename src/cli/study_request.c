@@ -100,14 +100,6 @@ static const command_option results_options[] = {
     {0},
 };
 
-static const command_option upgrade_options[] = {
-    {"results", 'r', "DIR", "folder of the results (default: results)",
-     OPTION_FILLS(option_text, study_request, results)},
-    {"to", 0, "DIR", "results folder to write (default: the name of the other with -upgraded)",
-     OPTION_FILLS(option_text, study_request, to)},
-    {0},
-};
-
 static const command_option summary_options_list[] = {
     {"results", 'r', "DIR", "folder of the results (default: results)",
      OPTION_FILLS(option_text, study_request, results)},
@@ -145,11 +137,6 @@ static const command_form forms[STUDY_VERB_COUNT] = {
                       .synopsis = "FILE...",
                       .about = "Check every row of each study: damaged, edited, moved, missing, duplicate and marked "
                                "ones. Exit status 1 if there is one.\vNothing is changed."},
-    [STUDY_UPGRADE] = {.options = upgrade_options,
-                       .take_argument = take_file,
-                       .synopsis = "FILE...",
-                       .about = "Write rows of versions without runs and checks in the present form, to another "
-                                "folder.\vThe old rows stay as they are; they are readable without that, too."},
     [STUDY_SUMMARY] =
         {.options = summary_options_list,
          .take_argument = take_file,

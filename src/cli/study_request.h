@@ -15,7 +15,6 @@ typedef enum study_verb {
     STUDY_MERGE,
     STUDY_SUMMARY,
     STUDY_VERIFY,
-    STUDY_UPGRADE,
     STUDY_VERB_COUNT
 } study_verb;
 
@@ -24,7 +23,6 @@ typedef struct study_request {
     const char **files; /* study files; for STUDY_LIST the folder */
     size_t file_count;
     const char *results;
-    const char *to;             /* of an upgrade: the results folder to write; NULL: results-upgraded */
     const char *environment;    /* of the summary: a key, "main", or NULL for all */
     const char *columns;        /* of --interval, or NULL */
     const char *against;        /* of a run: the program to alternate with, or NULL */

@@ -7,7 +7,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-/* Rows of versions without runs are of one process, as far as is known. */
+/* Rows of runs that are not in runs.json are of one process, as far as is known. */
 static const char unknown_run[] = "unknown";
 
 static bool is_wanted(const study_side *side, const contrast_rows *r, const row_ref *ref)

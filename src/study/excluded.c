@@ -12,8 +12,8 @@
 
 enum { REASON_LENGTH = 500 };
 
-/* Columns that name a row, by name: rows of earlier versions lack some of them. cell is that of the grid when the row
- * was excluded; identity is the same in every grid. */
+/* Columns that name a row, by name: a list that a person wrote may lack the first four. cell is that of the grid when
+ * the row was excluded; identity is the same in every grid. */
 static const char *const keys[] = {"check", "identity", "run", "process", "cell", "repetition"};
 enum { CHECK, IDENTITY, RUN, PROCESS, CELL, REPETITION, KEY_COUNT };
 

@@ -12,7 +12,7 @@ status excluded_read(const study *s, const char *results, excluded **out, diagno
 void excluded_destroy(excluded *list);
 
 /* Whether the row is excluded. A line names its row by its check, or by cell (its identity where rows have one), run,
- * process and repetition, of which rows of earlier versions have only cell and repetition. */
+ * process and repetition; a list that a person wrote may have only cell and repetition. */
 bool excluded_has(const excluded *list, const row_ref *row);
 
 /* The number of lines of the list. */

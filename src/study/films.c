@@ -8,7 +8,7 @@ static const char *const compared[] = {"film_hash",    "rays_total",  "rays_came
 
 #define COUNT(array) (sizeof(array) / sizeof((array)[0]))
 
-/* Rows of earlier versions lack some columns. */
+/* Rows of other versions may lack some columns. */
 static bool has_same(const row_ref *a, const row_ref *b)
 {
     for (size_t i = 0; i < COUNT(compared); i++) {

@@ -188,20 +188,6 @@ void grid_hash_point(uint64_t *hash, const study_point *point)
     }
 }
 
-status grid_definition(const study *s, uint64_t *hash, diagnostic *why)
-{
-    meaning said = {0};
-    status code = scene_load_files(s->base, why); /* derived from the parameters */
-    if (code == STATUS_OK && meaning_of_study(&said, s) != STATUS_OK)
-        code = out_of_memory(why);
-    const int64_t word = (int64_t)meaning_hash(&said);
-    meaning_free(&said);
-    *hash = hash_words(HASH_START, &word, 1);
-    THEN(code, grid_hash_files(hash, s->base, why));
-    *hash = hash_finish(*hash);
-    return code;
-}
-
 const char *study_grid_path(const study *s, size_t index)
 {
     for (size_t axis = 0; axis < s->axis_count; axis++) {

@@ -20,9 +20,6 @@ status grid_check_cells(const study *s, diagnostic *why);
 /* Finds the film of each point (study_point.film); s has the objects that the points' paths name. */
 void axis_find_films(study_axis *axis, const scene *s);
 
-/* The hash of the meaning of a row (study/meaning.h). Loads the scene's files, whose contents are part of it. */
-status grid_definition(const study *s, uint64_t *hash, diagnostic *why);
-
 /* Parts of a hash: a text; everything in a scene that determines its image, with or without the parameters that affect
  * only performance (param.performance_only); the paths and values of a point. The scene's files must be loaded. */
 void grid_hash_text(uint64_t *hash, const char *text);

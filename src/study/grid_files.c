@@ -1,5 +1,5 @@
-/* Hashes the contents of a scene's files for the study's definition: equal names with other contents are another scene.
- * The hash is the same on every machine. */
+/* Hashes the contents of a scene's files for the identities of cells: equal names with other contents are another
+ * scene. The hash is the same on every machine. */
 #include "study/grid.h"
 
 #include "base/file.h"

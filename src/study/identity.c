@@ -3,7 +3,6 @@
 #include "scene/model/params_path.h"
 #include "study/grid.h"
 #include "study/meaning.h"
-#include "study/reference.h"
 #include <stdlib.h>
 
 static bool names_file(const study *s, const study_axis *axis)
@@ -85,30 +84,20 @@ static status separate_equals(const study *s, uint64_t *identity, diagnostic *wh
     return STATUS_OK;
 }
 
-static status find_all(const study *s, search *all, uint64_t **out, diagnostic *why)
-{
-    *out = NULL;
-    all->identity = calloc(study_cell_count(s), sizeof *all->identity);
-    status code = all->identity ? grid_each_cell(s, find_one, all, why) : out_of_memory(why);
-    THEN(code, separate_equals(s, all->identity, why));
-    if (code == STATUS_OK)
-        *out = all->identity;
-    else
-        free(all->identity);
-    return code;
-}
-
 status identities_find(const study *s, uint64_t **out, diagnostic *why)
 {
     search all = {.loads = files_vary(s), .files = HASH_START};
+    *out = NULL;
     if (!all.loads)
         TRY(grid_hash_files(&all.files, s->base, why));
-    return find_all(s, &all, out, why);
-}
-
-status identities_with_files(const study *s, uint64_t files, uint64_t **out, diagnostic *why)
-{
-    return find_all(s, &(search){.loads = files_vary(s), .files = files}, out, why);
+    all.identity = calloc(study_cell_count(s), sizeof *all.identity);
+    status code = all.identity ? grid_each_cell(s, find_one, &all, why) : out_of_memory(why);
+    THEN(code, separate_equals(s, all.identity, why));
+    if (code == STATUS_OK)
+        *out = all.identity;
+    else
+        free(all.identity);
+    return code;
 }
 
 size_t identity_cell(const study *s, uint64_t identity)
@@ -121,5 +110,8 @@ size_t identity_cell(const study *s, uint64_t identity)
 
 uint64_t identity_compared(const study *s, uint64_t identity)
 {
-    return reference_definition(s, identity);
+    const int64_t word = (int64_t)identity;
+    uint64_t hash = hash_words(HASH_START, &word, 1);
+    grid_hash_point(&hash, &s->reference);
+    return hash_finish(hash);
 }

@@ -9,9 +9,6 @@
 /* The identity of each cell, in their order. The files of s->base must be loaded; those that an axis names are loaded
  * here. */
 status identities_find(const study *s, uint64_t **out, diagnostic *why);
-/* The same for a study that was read only partially (study/accepted.h); files: the hash of the contents of its files.
- */
-status identities_with_files(const study *s, uint64_t files, uint64_t **out, diagnostic *why);
 
 /* The number of the cell with that identity, or study_cell_count(s). */
 size_t identity_cell(const study *s, uint64_t identity);

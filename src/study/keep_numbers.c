@@ -6,7 +6,6 @@
 #include "base/file.h"
 #include "base/text.h"
 #include "study/identity.h"
-#include "study/manifest.h"
 #include "scene/model/open.h"
 #include <ctype.h>
 #include <dirent.h>
@@ -74,31 +73,6 @@ static status write_numbering(const study *s, const char *images, diagnostic *wh
     return file_writer_commit(&writer, why);
 }
 
-/* Files of a version without numberings: those of the study itself if its definition is the recorded one. */
-static status assume_numbering(const study *s, const char *folder, numbering *out, diagnostic *why)
-{
-    manifest_study recorded = {0};
-    diagnostic refused = {.what = ""};
-    char *path = text_format("%s/manifest.json", folder);
-    if (!path)
-        return out_of_memory(why);
-    const status code =
-        access(path, F_OK) == 0 ? manifest_read(path, scene_root(s->base), &recorded, &refused) : STATUS_BAD_INPUT;
-    free(path);
-    const bool is_own = code == STATUS_OK && recorded.definition == s->definition_hash;
-    manifest_study_free(&recorded);
-    if (code == STATUS_FAILURE && why)
-        *why = refused;
-    if (!is_own)
-        return code == STATUS_FAILURE ? code : STATUS_OK;
-    out->identity = malloc((study_cell_count(s) + 1) * sizeof *out->identity);
-    if (!out->identity)
-        return out_of_memory(why);
-    out->count = study_cell_count(s);
-    memcpy(out->identity, s->identity, out->count * sizeof *out->identity);
-    return STATUS_OK;
-}
-
 static bool is_current(const study *s, const numbering *n)
 {
     return n->count == study_cell_count(s) && memcmp(n->identity, s->identity, n->count * sizeof *n->identity) == 0;
@@ -163,12 +137,10 @@ static status each_name(const study *s, const char *images, const numbering *old
     return code;
 }
 
-static status renumber(const study *s, const char *folder, const char *images, bool *changed, diagnostic *why)
+static status renumber(const study *s, const char *images, bool *changed, diagnostic *why)
 {
     numbering old;
     TRY(read_numbering(images, scene_root(s->base), &old, why));
-    if (!old.identity)
-        TRY(assume_numbering(s, folder, &old, why));
     status code = STATUS_OK;
     *changed = !old.identity || !is_current(s, &old);
     if (*changed)
@@ -190,7 +162,7 @@ status keep_renumber(const study *s, const char *folder, bool create, bool *chan
         const int lock = open(images, O_RDONLY | O_DIRECTORY | O_CLOEXEC);
         if (lock >= 0)
             flock(lock, LOCK_EX);
-        code = renumber(s, folder, images, changed, why);
+        code = renumber(s, images, changed, why);
         if (lock >= 0)
             close(lock);
     }

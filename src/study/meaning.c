@@ -74,49 +74,6 @@ status meaning_of_scene(meaning *m, const scene *of, bool without_performance)
     return STATUS_OK;
 }
 
-static status add_axis(meaning *m, const study_axis *axis, size_t number)
-{
-    for (size_t i = 0; i < axis->count; i++)
-        for (size_t k = 0; k < axis->points[i].count; k++)
-            TRY(add(m, text_format("%s of point %zu on axis %zu", axis->points[i].paths[k], i, number),
-                    strdup(axis->points[i].values[k])));
-    return STATUS_OK;
-}
-
-/* Beams that a point of the axis makes lamps, or not: then films depend on all their parameters. */
-static void light_beams(scene *base, const study_axis *axis)
-{
-    param_place at;
-    for (size_t i = 0; i < axis->count; i++)
-        for (size_t k = 0; k < axis->points[i].count; k++)
-            if (param_place_find(base, axis->points[i].paths[k], &at, NULL) == STATUS_OK &&
-                at.object_group == PARAM_BEAM && strcmp(at.row->name, "lights") == 0)
-                base->beams[at.index].lights = 1;
-}
-
-static status add_base(meaning *m, const study *s)
-{
-    if (s->base->beam_count == 0)
-        return meaning_of_scene(m, s->base, false);
-    scene *base = scene_clone(s->base);
-    if (!base)
-        return STATUS_FAILURE;
-    for (size_t axis = 0; axis < s->axis_count; axis++)
-        light_beams(base, &s->axes[axis]);
-    const status code = meaning_of_scene(m, base, false);
-    scene_destroy(base);
-    return code;
-}
-
-status meaning_of_study(meaning *m, const study *s)
-{
-    TRY(add(m, strdup("the study's name"), strdup(s->name)));
-    TRY(add_base(m, s));
-    for (size_t axis = 0; axis < s->axis_count; axis++)
-        TRY(add_axis(m, &s->axes[axis], axis));
-    return STATUS_OK;
-}
-
 void meaning_free(meaning *m)
 {
     for (size_t i = 0; i < m->count; i++) {

@@ -18,9 +18,6 @@ typedef struct meaning {
 /* The meaning of a scene, with or without the parameters that affect only performance (param.performance_only).
  * STATUS_FAILURE if memory runs out. */
 status meaning_of_scene(meaning *m, const scene *of, bool without_performance);
-/* The meaning of a study: its name, its scene with the fixed parameters, its grid. Contents of files are not included
- * (grid_hash_files). */
-status meaning_of_study(meaning *m, const study *s);
 void meaning_free(meaning *m);
 
 /* A hash that does not depend on the order of the items. */

@@ -131,7 +131,7 @@ static status add_missing(plot_plan *p, diagnostic *why)
                             environments > 1 ? ", counted by environment," : "", p->y.name);
 }
 
-/* Environments have no share in a line together; "unknown": rows of an earlier version of the program. */
+/* Environments share no line. */
 static status add_environments(plot_plan *p, diagnostic *why)
 {
     const plot_axis *axis = plot_axis_named(p, "environment");

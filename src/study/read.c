@@ -291,13 +291,12 @@ static status check_loads(void *context, const study *s, size_t cell, scene *own
     return code;
 }
 
-static status read_root(study *s, const document *d, const void *context, diagnostic *why)
+static status read_root(study *s, const document *d, const study_guard *guard, diagnostic *why)
 {
     static const char *const keys[] = {"study",       "title",     "scene",     "set",     "grid",  "reference",
                                        "repetitions", "processes", "disturbed", "warmups", "order", "keep"};
     static status (*const checks[])(const study *s, diagnostic *why) = {grid_check_cells, reference_check,
                                                                         cell_tables_check};
-    const study_guard *guard = context;
     const node *root = document_root(d);
     if (!root || root->kind != NODE_MAP) {
         if (root)
@@ -321,23 +320,8 @@ static status read_root(study *s, const document *d, const void *context, diagno
         TRY(guard->may_load(guard->context, s->base, why));
         TRY(grid_each_cell(s, check_loads, (void *)(uintptr_t)guard, why));
     }
-    TRY(grid_definition(s, &s->definition_hash, why));
+    TRY(scene_load_files(s->base, why)); /* their contents are part of an identity */
     return identities_find(s, &s->identity, why);
-}
-
-status study_parse(study *s, const char *text, size_t size, study_parts *read, const void *context, study **out,
-                   diagnostic *why)
-{
-    document *d = NULL;
-    *out = NULL;
-    status code = document_parse(s->path, text, size, &d, why);
-    THEN(code, read(s, d, context, why));
-    document_destroy(d);
-    if (code == STATUS_OK)
-        *out = s;
-    else
-        study_destroy(s);
-    return code;
 }
 
 static status read_text(const char *name, const char *text, size_t size, const study_guard *guard, study **out,
@@ -345,10 +329,17 @@ static status read_text(const char *name, const char *text, size_t size, const s
 {
     *out = NULL;
     study *s = calloc(1, sizeof *s);
-    if (s && (s->path = strdup(name)) && (s->text = strndup(text, size)))
-        return study_parse(s, text, size, read_root, guard, out, why);
-    study_destroy(s);
-    return out_of_memory(why);
+    document *d = NULL;
+    status code = s && (s->path = strdup(name)) && (s->text = strndup(text, size))
+                      ? document_parse(name, text, size, &d, why)
+                      : out_of_memory(why);
+    THEN(code, read_root(s, d, guard, why));
+    document_destroy(d);
+    if (code == STATUS_OK)
+        *out = s;
+    else
+        study_destroy(s);
+    return code;
 }
 
 status study_read_text(const char *name, const char *text, size_t size, study **out, diagnostic *why)

@@ -11,11 +11,5 @@ status read_grid(study *s, const document *d, const node *set, const node *grid,
 /* Validates the reference's paths and values on a copy of s->base, and fills s->reference. reference may be NULL. */
 status read_reference(study *s, const document *d, const node *reference, diagnostic *why);
 
-/* Reads a study from its text into s, whose path is set. On success *out is s; on failure s is released. context is
- * passed to read. */
-typedef status study_parts(study *s, const document *d, const void *context, diagnostic *why);
-status study_parse(study *s, const char *text, size_t size, study_parts *read, const void *context, study **out,
-                   diagnostic *why);
-
 /* Whether the text has no control characters: a row must be one line. */
 bool read_grid_plain(const char *text);

@@ -4,7 +4,7 @@
 #include "base/text.h"
 #include "scene/model/params_path.h"
 #include "study/grid.h"
-#include "study/manifest.h"
+#include "study/facts.h"
 #include "study/quick.h"
 #include "scene/model/scene.h"
 #include <inttypes.h>
@@ -46,14 +46,6 @@ static status check_cell(void *context, const study *s, size_t cell, scene *own,
 status reference_check(const study *s, diagnostic *why)
 {
     return s->reference.count ? grid_each_cell(s, check_cell, NULL, why) : STATUS_OK;
-}
-
-uint64_t reference_definition(const study *s, uint64_t definition)
-{
-    const int64_t word = (int64_t)definition;
-    uint64_t hash = hash_words(HASH_START, &word, 1);
-    grid_hash_point(&hash, &s->reference);
-    return hash_finish(hash);
 }
 
 status reference_scene_hash(const scene *setting, uint64_t *hash)

@@ -18,9 +18,6 @@ typedef struct reference {
  * */
 status reference_check(const study *s, diagnostic *why);
 
-/* The hash of a definition of the study and of its reference. */
-uint64_t reference_definition(const study *s, uint64_t definition);
-
 /* The scene of the cell's reference; image files are not loaded. */
 status reference_scene(const study *s, size_t cell, scene **out, diagnostic *why);
 /* Its hash, equal for scenes that differ only in performance parameters. Image files must be loaded. */

@@ -274,28 +274,22 @@ status row_check_quantities(row_files *files, diagnostic *why)
 /* --- columns --- */
 
 /* The required columns of a row; others are "NA" if they are missing. */
-static const char *const needed[][10] = {
-    [ROWS] = {"study", "cell", "repetition", "warmup", "film_hash", "film_expected", "marked", "wall_s"},
-    [WORKER_ROWS] = {"study", "cell", "repetition", "warmup", "worker"},
-    [COMPARE_ROWS] = {"study", "cell", "film_hash"},
+static const char *const needed[][12] = {
+    [ROWS] = {"study", "identity", "cell", "repetition", "warmup", "film_hash", "film_expected", "marked", "wall_s",
+              "run", "check"},
+    [WORKER_ROWS] = {"study", "identity", "cell", "repetition", "warmup", "worker", "run", "check"},
+    [COMPARE_ROWS] = {"study", "identity", "cell", "film_hash", "run", "check"},
 };
-
-static status lacks(const char *path, const char *column, diagnostic *why)
-{
-    diagnostic_locate(why, path, 1, 1);
-    return diagnose(why, STATUS_BAD_INPUT, "move the file away, or choose another folder with --results",
-                    "the rows lack the column %s, which identifies them", column);
-}
 
 status row_check_columns(const csv *table, const char *path, row_kind kind, diagnostic *why)
 {
-    for (size_t i = 0; needed[kind][i]; i++)
-        if (csv_column(table, needed[kind][i]) < 0)
-            return lacks(path, needed[kind][i], why);
-    const bool is_new = csv_column(table, "identity") >= 0;
-    if (!is_new && csv_column(table, "definition") < 0)
-        return lacks(path, "identity", why);
-    if (is_new && csv_column(table, "run") < 0)
-        return lacks(path, "run", why);
-    return is_new && csv_column(table, "check") < 0 ? lacks(path, "check", why) : STATUS_OK;
+    for (size_t i = 0; needed[kind][i]; i++) {
+        if (csv_column(table, needed[kind][i]) >= 0)
+            continue;
+        diagnostic_locate(why, path, 1, 1);
+        return diagnose(why, STATUS_BAD_INPUT,
+                        "move the file away and measure again, or choose another folder with --results",
+                        "the rows lack the column %s, which this version requires", needed[kind][i]);
+    }
+    return STATUS_OK;
 }

@@ -191,14 +191,11 @@ static status read_tables(row_reader *r, diagnostic *why)
 
 static status read_rows(row_files *files, const study *s, const char *folder, row_kind kind, diagnostic *why)
 {
-    accepted known;
-    row_reader r = {.s = s, .kind = kind, .into = files, .known = &known};
-    accepted_start(&known, s, folder);
+    row_reader r = {.s = s, .kind = kind, .into = files};
     status code = runs_read(folder, scene_root(s->base), &files->runs, why);
     THEN(code, row_cells_create(s, kind, &r.cells, why));
     THEN(code, read_tables(&r, why));
     row_cells_free(&r.cells);
-    accepted_end(&known);
     return code;
 }
 

@@ -23,8 +23,7 @@ typedef struct row_ref {
 /* The row's value in the named column; "NA" and NaN if there is none. For many rows, look the column up once. */
 const char *row_field(const row_ref *ref, const char *name);
 double row_field_real(const row_ref *ref, const char *name);
-/* The key of the row's environment, 8 hex digits. Rows of versions without runs have one for each pair of instruction
- * set and build configuration. */
+/* The key of the row's environment, 8 hex digits. */
 const char *row_environment(const row_ref *ref);
 
 /* What is wrong with a row, or between rows. */
@@ -70,8 +69,8 @@ char *row_file_header(const study *s, row_kind kind);
 status row_files_list(const char *folder, row_kind kind, char ***paths, size_t *count, diagnostic *why);
 
 /* Columns are identified by name; files of other versions of the program are read as well. STATUS_BAD_INPUT if a file
- * lacks an identifying column, is of another study, or has rows of an unknown definition (study/accepted.h). Worker
- * rows whose repetition has no row (the process was killed between the two) are dropped. */
+ * lacks a required column or is of another study. Worker rows whose repetition has no row (the process was killed
+ * between the two) are dropped. */
 status row_files_read(const study *s, const char *results, row_kind kind, row_files **out, diagnostic *why);
 void row_files_destroy(row_files *files);
 

@@ -1,5 +1,5 @@
-/* What disturbed a row: the noise that it recorded, judged by the study's present rule. Rows of versions without a
- * column lack its value. */
+/* What disturbed a row: the noise that it recorded, judged by the study's present rule. Rows of other versions may
+ * lack some of its values. */
 #pragma once
 
 #include "study/row_files.h"

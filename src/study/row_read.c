@@ -1,10 +1,7 @@
 #include "study/row_read.h"
-#include "base/hash.h"
 #include "base/number.h"
 #include "study/check.h"
 #include "study/identity.h"
-#include "study/row_type.h"
-#include <inttypes.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
@@ -53,7 +50,7 @@ static bool find_cell(const row_cells *c, uint64_t identity, size_t *cell)
 
 /* The columns that every reader needs, by index; -1: the table lacks it. */
 typedef struct columns {
-    int study, definition, identity, run, check, cell, repetition, warmup, worker, isa, config;
+    int study, identity, run, check, cell, repetition, warmup, worker;
 } columns;
 
 typedef struct table_state {
@@ -62,18 +59,16 @@ typedef struct table_state {
     const char *path;
     columns at;
     check_columns hashes;
-    row_types types;
-    long last_run; /* of the previous row with a run */
+    long last_run; /* of the previous row */
     bool gap;      /* the previous row is broken: its place in the chain is unknown */
     diagnostic *why;
 } table_state;
 
 static columns find_columns(const csv *t)
 {
-    return (columns){csv_column(t, "study"),      csv_column(t, "definition"), csv_column(t, "identity"),
-                     csv_column(t, "run"),        csv_column(t, "check"),      csv_column(t, "cell"),
-                     csv_column(t, "repetition"), csv_column(t, "warmup"),     csv_column(t, "worker"),
-                     csv_column(t, "isa"),        csv_column(t, "config")};
+    return (columns){csv_column(t, "study"),  csv_column(t, "identity"), csv_column(t, "run"),
+                     csv_column(t, "check"),  csv_column(t, "cell"),     csv_column(t, "repetition"),
+                     csv_column(t, "warmup"), csv_column(t, "worker")};
 }
 
 static bool read_integer(const csv *t, size_t row, int column, int64_t highest, int64_t *out)
@@ -114,7 +109,7 @@ static status issue(table_state *st, row_fault fault, size_t row, const char *te
     return noted(st, row_files_add_issue(st->r->into, fault, st->path, (long)row + 2, "%s", text));
 }
 
-/* The place of a row with a check in the chain of its run. */
+/* The place of a row in the chain of its run. */
 static status follow_chain(table_state *st, size_t row, const row_ref *ref, uint32_t content, uint32_t chain)
 {
     const char *text = csv_field(st->table, row, st->at.check);
@@ -131,8 +126,8 @@ static status follow_chain(table_state *st, size_t row, const row_ref *ref, uint
     return issue(st, ROW_MISPLACED, row, "rows before this one were removed, inserted or moved");
 }
 
-/* A row with an identity. *good: it can be used. */
-static status read_new(table_state *st, size_t row, row_ref *ref, uint64_t *identity, bool *good)
+/* *good: the row can be used. */
+static status read_values(table_state *st, size_t row, row_ref *ref, uint64_t *identity, bool *good)
 {
     char *const *fields = st->table->fields + row * st->table->column_count;
     uint32_t content = 0, chain = 0;
@@ -159,42 +154,14 @@ static status read_new(table_state *st, size_t row, row_ref *ref, uint64_t *iden
     return follow_chain(st, row, ref, content, chain);
 }
 
-static status another_definition(const table_state *st, size_t row, const char *reason)
+static status another_study(const table_state *st, size_t row)
 {
     diagnostic_locate(st->why, st->path, (long)row + 2, 1);
     return diagnose(st->why, STATUS_BAD_INPUT,
                     st->r->kind == COMPARE_ROWS
                         ? "move this file away: the images will be compared again; nothing is measured again"
                         : "move this folder away, choose another with --results, or give the study another name",
-                    "these rows have another definition%s%s", reason[0] ? ": " : "", reason);
-}
-
-/* A row of a version without identities and runs. Its environment is what is known of it. */
-static status read_old(table_state *st, size_t row, row_ref *ref, uint64_t *identity, bool *good)
-{
-    int64_t cell;
-    bool known;
-    char *const *fields = st->table->fields + row * st->table->column_count;
-    size_t column;
-    *good = false;
-    if (!read_numbers(st, row, ref, &cell))
-        return issue(st, ROW_DAMAGED, row, "the row is damaged");
-    if (!row_types_fit(&st->types, fields, &column))
-        return noted(st, row_files_add_issue(st->r->into, ROW_DAMAGED, st->path, (long)row + 2, "%s is '%.60s'",
-                                             st->table->header[column], fields[column]));
-    if (st->r->cells.any)
-        return diagnose_at(st->why, st->path, STATUS_BAD_INPUT, "write them in the present form: cuvette study upgrade",
-                           "the rows are of an early version");
-    TRY(accepted_identity(st->r->known, csv_field(st->table, row, st->at.definition), (size_t)cell,
-                          st->r->kind == COMPARE_ROWS, identity, &known, st->why));
-    if (!known)
-        return another_definition(st, row, accepted_why_not(st->r->known));
-    const char *isa_used = csv_field(st->table, row, st->at.isa), *config = csv_field(st->table, row, st->at.config);
-    uint64_t hash = hash_bytes(HASH_START, isa_used, strlen(isa_used) + 1);
-    hash = hash_finish(hash_bytes(hash, config, strlen(config) + 1));
-    snprintf(ref->environment, sizeof ref->environment, "%08" PRIx32, (uint32_t)(hash >> 32));
-    *good = true;
-    return STATUS_OK;
+                    "these rows belong to another study");
 }
 
 static status read_row(table_state *st, size_t row)
@@ -207,13 +174,9 @@ static status read_row(table_state *st, size_t row)
         st->gap = true;
         return issue(st, ROW_DAMAGED, row, "the line is not a row of this file");
     }
-    const bool is_new = strcmp(csv_field(st->table, row, st->at.identity), "NA") != 0;
-    const bool of_another = strcmp(csv_field(st->table, row, st->at.study), r->s->name) != 0;
-    if (of_another && !is_new)
-        return another_definition(st, row, "they belong to another study");
-    TRY((is_new ? read_new : read_old)(st, row, &ref, &identity, &good));
-    if (good && of_another)
-        return another_definition(st, row, "they belong to another study");
+    TRY(read_values(st, row, &ref, &identity, &good));
+    if (good && strcmp(csv_field(st->table, row, st->at.study), r->s->name) != 0)
+        return another_study(st, row);
     if (good && !find_cell(&r->cells, identity, &ref.cell))
         r->into->other_cells++;
     else if (good)
@@ -238,7 +201,6 @@ status row_read_table(row_reader *r, const csv *table, const char *path, diagnos
 {
     table_state st = {.r = r, .table = table, .path = path, .at = find_columns(table), .why = why};
     status code = check_columns_create(table->header, table->column_count, &st.hashes, why);
-    THEN(code, row_types_create(table->header, table->column_count, r->kind, &st.types, why));
     for (size_t row = 0; code == STATUS_OK && row < table->row_count; row++)
         code = read_row(&st, row);
     if (code == STATUS_OK && table->size > table->whole &&
@@ -246,7 +208,6 @@ status row_read_table(row_reader *r, const csv *table, const char *path, diagnos
                             "an incomplete line: the process was killed; the next run moves it away") != STATUS_OK)
         code = out_of_memory(why);
     finish_table(r);
-    row_types_free(&st.types);
     check_columns_free(&st.hashes);
     return code;
 }

@@ -1,7 +1,6 @@
 /* One row file: its lines to row_refs, with the checks of single rows and of their chain. For study/row_files.c. */
 #pragma once
 
-#include "study/accepted.h"
 #include "study/row_files.h"
 
 /* From the identities of a study's cells to their numbers. Without a known grid (study.identity is NULL) every identity
@@ -27,7 +26,6 @@ typedef struct row_reader {
     const study *s;
     row_kind kind;
     row_files *into;
-    accepted *known;
     row_cells cells;
     row_chain *chain; /* of each run */
 } row_reader;

@@ -5,7 +5,7 @@
 #include "base/system_error.h"
 #include "base/text.h"
 #include "scene/model/open.h"
-#include "study/manifest.h"
+#include "study/facts.h"
 #include <dirent.h>
 #include <errno.h>
 #include <fcntl.h>

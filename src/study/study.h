@@ -65,10 +65,7 @@ typedef struct study {
     char *text, *scene_text;                    /* the texts of both files */
     scene *base;                                /* the scene with the fixed parameters applied */
     uint64_t *identity; /* of each cell: what determines its film and its measurement (study/identity.h) */
-    /* Hash of name, scene, fixed parameters and grid, as in the rows of versions without identities of cells
-     * (study/accepted.h). */
-    uint64_t definition_hash;
-    study_note *notes; /* in the order of the file */
+    study_note *notes;  /* in the order of the file */
     size_t note_count;
 } study;
 

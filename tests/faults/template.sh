@@ -84,8 +84,6 @@ keep: {image: on}
 END
 sed 's/study: small/study: done/' small.study >done.study
 sed 's/study: small/study: parts/' small.study >parts.study
-cp "$root"/tests/old-rows/{old-rows.study,{scene,hand}.yaml,corner.obj,{spots,sky}.pfm} .
-cp -r "$root/tests/old-rows/results" old
 cuvette study run -q done.study
 cuvette study run -q --shard 0/2 parts.study
 cuvette study run -q --shard 1/2 parts.study

@@ -1,7 +1,5 @@
-/* The fuzzer of the lists of runs, and of the manifests of earlier versions: a file for the list of the study, one for
- * that of a shard, one for manifest.json. */
+/* The fuzzer of the lists of runs: a file for the list of the study, one for that of a shard. */
 #include "fuzz.h"
-#include "study/manifest.h"
 #include "study/runs.h"
 
 static void read_runs(void)
@@ -24,30 +22,14 @@ static void read_runs(void)
     runs_destroy(all);
 }
 
-static void read_manifest(void)
-{
-    manifest_study m;
-    diagnostic why = {.what = ""};
-    char *path = fuzz_path("manifest.json");
-    const status code = manifest_read(path, NULL, &m, &why);
-    if (code == STATUS_OK) {
-        must(m.text && m.scene_text);
-        manifest_study_free(&m);
-    } else {
-        must_refuse(code, &why);
-    }
-    free(path);
-}
-
 int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size)
 {
-    static const char *const names[] = {"runs.json", "runs.shard-0-of-2.json", "manifest.json"};
+    static const char *const names[] = {"runs.json", "runs.shard-0-of-2.json"};
     fuzz_part rest = {(const char *)data, size}, part;
-    for (int i = 0; i < 3; i++) {
+    for (int i = 0; i < 2; i++) {
         const bool is_there = fuzz_next(&rest, &part);
         fuzz_write(names[i], is_there ? part.at : "{\"runs\": []}", is_there ? part.size : 12);
     }
     read_runs();
-    read_manifest();
     return 0;
 }

@@ -66,7 +66,7 @@ status shared_scene_check(const scene *s, diagnostic *why)
     return STATUS_OK;
 }
 
-/* The acceleration structure stays: it decides the number of tests. Beams stay too: they are no setting of the machine. */
+/* The acceleration structure stays: it decides the number of tests. Beams stay: they are no setting of the machine. */
 static status forget_machine(void *of, const char *path, const param *row, const char *value)
 {
     (void)value;

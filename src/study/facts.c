@@ -1,19 +1,10 @@
-/* JSON values next to rows, and the recorded meaning of old rows. */
+#include "study/facts.h"
 #include "base/file.h"
 #include "base/json_build.h"
 #include "base/text.h"
-#include "study/manifest.h"
 #include <inttypes.h>
 #include <stdlib.h>
 #include <string.h>
-
-/* NULL if there is no such text. False: out of memory. */
-static bool copy_text(const json_t *object, const char *key, char **out)
-{
-    const char *text = json_string_value(json_object_get(object, key));
-    *out = text ? strdup(text) : NULL;
-    return !text || *out;
-}
 
 json_t *facts_hash(uint64_t value)
 {
@@ -53,29 +44,4 @@ status facts_write(const json_t *facts, size_t flags, const char *path, diagnost
     free(line);
     free(text);
     return code;
-}
-
-status manifest_read(const char *path, const char *root, manifest_study *out, diagnostic *why)
-{
-    json_t *whole;
-    *out = (manifest_study){0};
-    TRY(facts_read(path, root, &whole, why));
-    const json_t *about = json_object_get(whole, "study");
-    const bool copied = copy_text(about, "text", &out->text) && copy_text(about, "scene_text", &out->scene_text);
-    out->has_files = facts_get_hash(about, "files", &out->files);
-    const bool has_definition = facts_get_hash(about, "definition", &out->definition);
-    json_decref(whole);
-    if (out->text && out->scene_text && has_definition)
-        return STATUS_OK;
-    manifest_study_free(out);
-    if (!copied)
-        return out_of_memory(why);
-    return diagnose(why, STATUS_BAD_INPUT, "", "the manifest.json next to them does not define them");
-}
-
-void manifest_study_free(manifest_study *m)
-{
-    free(m->text);
-    free(m->scene_text);
-    *m = (manifest_study){0};
 }
