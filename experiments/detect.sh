@@ -11,7 +11,7 @@ out=${1:-results/detect} copy=build/detect
 mkdir -p "$out"
 rm -rf "$copy/src" "$copy/tests"
 mkdir -p "$copy"
-cp -r Makefile README.md CHANGELOG.md .ci src tests experiments plots paper "$copy"
+cp -r Makefile mk README.md CHANGELOG.md .ci src tests experiments plots paper "$copy"
 cp tests/faults/injected.h tests/faults/injected.c "$copy/src/base"
 while IFS=$'\t' read -r file old new; do
     [[ $file == \#* ]] && continue

@@ -36,7 +36,7 @@ check() { # NAME COMMAND...
 
 # --- the later version
 mkdir "$work/later"
-cp -r Makefile src plots .ci "$work/later"
+cp -r Makefile mk src plots .ci "$work/later"
 mkdir -p "$work/later/tests" "$work/later/experiments"
 cp -r experiments/cluster "$work/later/experiments"
 cd "$work/later" || exit 1

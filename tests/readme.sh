@@ -117,7 +117,7 @@ empty "runs.json has no other part" \
 # --- every command of README.md, as it stands and in order, in a copy of the tree with its build
 tree=$work/tree
 mkdir -p "$tree/build" "$tree/results" "$work/home"
-cp -a "$root"/{.ci,Makefile,README.md,CHANGELOG.md,LICENSE,src,experiments,plots,tests} "$tree/"
+cp -a "$root"/{.ci,Makefile,mk,README.md,CHANGELOG.md,LICENSE,src,experiments,plots,tests} "$tree/"
 cp -a "$root/results/README.md" "$tree/results/"
 built= # whether the program is that of README.md, not one with sanitizers
 if [[ $(dirname "$program") == "$(realpath "$root/build")" ]]; then

@@ -1,6 +1,6 @@
 #!/bin/bash
 # Checks that make targets build the programs that their commands run, and which tests `make test only=NAME` runs. Reads
-# the plan of `make -n` for an empty build folder; builds nothing.
+# the plan of `make -n` for an empty build folder; builds nothing. `make help` fits two screens and names targets.
 set -uo pipefail
 cd "$(dirname "$0")/.."
 work=$(mktemp -d "${TMPDIR:-/tmp}/cuvette-targets.XXXXXX") || exit 1
@@ -37,4 +37,14 @@ says=$(plan test only=limit)
 equal "an unknown name: status 2" $? 2
 [[ $(wc -l <<<"$says") == 1 && $says == *"tests/limit.sh; did you mean: "*limits* ]]
 verdict $? "an unknown name: one line, with names that resemble it" "$says"
+
+help=$(make --no-print-directory help)
+[[ $(wc -l <<<"$help") -le 48 ]]
+verdict $? "help has at most 48 lines" "$(wc -l <<<"$help")"
+equal "lines of help of more than 80 columns" "$(awk 'length > 80' <<<"$help")" ""
+missing=
+for name in $(sed 's/  .*//; s/\(.*\)\[-\(.*\)\]/\1 \1-\2/; s/|-.*//; s/,//; 1d; s/setup-NAME//' <<<"$help"); do
+    grep -qE "^$name( [^=]*)?:" Makefile mk/*.mk || [[ $name == setup ]] || missing+=" $name"
+done
+equal "targets of help that no rule has" "$missing" ""
 conclude

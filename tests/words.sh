@@ -4,7 +4,7 @@
 # tests/words_allowed.tsv: file (a glob; * for any), a part of the line, the reason. Read: sources, tests, documents.
 set -uo pipefail
 cd "$(dirname "$0")/.."
-mapfile -t files < <(git ls-files -- src tests experiments plots '*.md' 'paper/*.tex' .ci Makefile |
+mapfile -t files < <(git ls-files -- src tests experiments plots '*.md' 'paper/*.tex' .ci Makefile mk |
     grep -vE '\.(png|jpg|pfm|csv|obj|mtl|ply|glb|gltf|stl|tsv|svg|txt)$|^tests/(data|golden|fuzz/corpus)/')
 ((${#files[@]} > 100)) || {
     echo "not ok 1 - git ls-files finds ${#files[@]} files only"

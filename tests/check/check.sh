@@ -54,7 +54,7 @@ mapfile -t whole < <(grep -lE '\{CHECK:[-+]|^#include "whole.h"' tests/*.sh test
     sed 's,tests/,,; s,^test_,,; s,\.[a-z]*$,,')
 
 sources() {
-    find Makefile .ci src tests experiments plots paper -type f -print0 | sort -z | xargs -0 sha256sum | sha256sum
+    find Makefile mk .ci src tests experiments plots paper -type f -print0 | sort -z | xargs -0 sha256sum | sha256sum
 }
 
 # The slices of these sources that have not passed, in the order in which they are to run: name, tab, command.

@@ -6,7 +6,7 @@ set -euo pipefail
 root=$(cd "$(dirname "$0")/../.." && pwd)
 work=$(mktemp -d "${TMPDIR:-/tmp}/cuvette-checks.XXXXXX")
 trap 'rm -rf "$work"' EXIT
-cp -a "$root/Makefile" "$root/src" "$root/tests" "$root/.ci" "$root/plots" "$work"
+cp -a "$root/Makefile" "$root/mk" "$root/src" "$root/tests" "$root/.ci" "$root/plots" "$work"
 mkdir -p "$work/experiments" "$work/build"
 cp -r "$root"/experiments/{scenes,hands,cluster} "$work/experiments"
 # What is built already, with its times, so that only what changes is built again.

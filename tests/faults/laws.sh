@@ -6,7 +6,7 @@ set -euo pipefail
 root=$(cd "$(dirname "$0")/../.." && pwd)
 work=$(mktemp -d)
 trap 'rm -rf "$work"' EXIT
-cp -r "$root/Makefile" "$root/src" "$root/tests" "$root/.ci" "$work"
+cp -r "$root/Makefile" "$root/mk" "$root/src" "$root/tests" "$root/.ci" "$work"
 mkdir -p "$work/experiments"
 missed=0 number=0
 build() {

@@ -12,13 +12,13 @@ work=${BUILD:-build}/mutants tree=${BUILD:-build}/mutants/tree python=/usr/bin/p
     exit 1
 }
 mkdir -p "$work"
-sources=$(find src tests/mutants/instrument.py Makefile -type f -print0 | sort -z |
+sources=$(find src tests/mutants/instrument.py Makefile mk -type f -print0 | sort -z |
     xargs -0 sha256sum | sha256sum)
 wanted="$sources ${MUTANTS:-600} ${SEED:-1}"
 if [[ "$(cat "$work/made" 2>/dev/null)" != "$wanted" ]]; then
     rm -rf "$tree" "$work/made"
     mkdir -p "$tree"
-    cp -r Makefile README.md CHANGELOG.md .ci src tests experiments plots results paper "$tree"
+    cp -r Makefile mk README.md CHANGELOG.md .ci src tests experiments plots results paper "$tree"
     "$python" tests/mutants/instrument.py "$tree" "${MUTANTS:-600}" "${SEED:-1}"
     echo "$wanted" >"$work/made"
 fi

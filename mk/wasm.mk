@@ -15,7 +15,7 @@ wasm_isa_flags_simd128 := -msimd128 -mnontrapping-fptoint -mbulk-memory -msign-e
 # No studies, which measure a machine, and nothing of the operating system; src/wasm has what replaces them.
 wasm_without := src/study/% src/engine/study% src/base/below.c src/base/child.c src/base/spawn.c src/base/os_confine% \
   src/measure/hardware_counter.c src/measure/topology_discover.c src/measure/disturbances.c src/measure/levels.c \
-  src/scene/assets/mesh_child% src/scene/assets/mesh_program.c src/scene/assets/mesh_file.c src/render/core/worker_pool.c
+  $(addprefix src/scene/assets/,mesh_child% mesh_program.c mesh_file.c) src/render/core/worker_pool.c
 wasm_web := $(filter-out src/web/http/http.c $(addprefix src/web/http/http_,events.c guard.c gzip.c library.c \
   request.c send.c watch.c) src/web/lab_confine.c $(addprefix src/web/api/,api_machine.c api_studies.c api_study_% \
   api_video.c study_json.c) $(addprefix src/web/session/,figures% rescue% studies.c study_files.c task_thread.c \
@@ -29,15 +29,14 @@ wasm_flags = -std=gnu17 -D_GNU_SOURCE -O3 $(arithmetic) -Isrc -I$(wasm)/librarie
 wasm_scripts := $(addprefix src/wasm/,memory.js lab_worker.js tile_worker.js worker.js)
 wasm_libs := $(addprefix $(wasm)/libraries/lib/lib,png.a jpeg.a yaml.a jansson.a z.a)
 
-.PHONY: wasm setup-wasm
-setup-wasm: | $(filter setup setup-peers setup-python setup-mpi,$(MAKECMDGOALS)) ## install what make wasm requires: emscripten, the sources of its libraries
-	@.ci/setup-wasm
-wasm: $(foreach i,$(wasm_isas),$(wasm)/$(i)/worker.js) ## build the laboratory as WebAssembly, for browsers, in build/wasm
+.PHONY: wasm
+## wasm: the laboratory as WebAssembly: build/wasm
+wasm: $(foreach i,$(wasm_isas),$(wasm)/$(i)/worker.js)
 
 wasm_flags_text = $(subst ','\'',$(EMCC) $(filter-out -Werror,$(wasm_flags)) $(wasm_isa_flags_simd128))
 # Compiling would disturb what measures and what has time limits.
-wasm_after := setup-wasm test test-mpi test-python experiments bench $(if $(ENGINE),,test-web)
-$(wasm)/flags: always | $(filter $(wasm_after),$(MAKECMDGOALS))
+wasm_after := setup% test test-mpi test-python experiments bench $(if $(ENGINE),,test-web)
+$(wasm)/flags: always | $(call requested,$(wasm_after))
 	@command -v $(firstword $(EMCC)) >/dev/null || \
 	  { echo 'wasm: emscripten is not installed; run: make setup-wasm' >&2; exit 1; }
 	@mkdir -p $(@D)
@@ -53,9 +52,11 @@ $(wasm_libs): $(wasm)/libraries/complete
 # them if a header has changed. build_id.c has flags of its own.
 wasm_folders := $(sort $(patsubst src/%/,%,$(dir $(wasm_sources))))
 wasm_root := $(CURDIR)
-wasm_folder_sources = $(filter-out src/base/build_id.c,$(foreach s,$(wasm_sources),$(if $(filter src/$(1)/,$(dir $(s))),$(s))))
+wasm_folder_sources = $(filter-out src/base/build_id.c,$(foreach s,$(wasm_sources),$(if \
+  $(filter src/$(1)/,$(dir $(s))),$(s))))
 wasm_changed = $(if $(filter-out %.c,$?),$(filter %.c,$^),$(filter %.c,$?))
-wasm_absolute = $(subst -Isrc,-I$(wasm_root)/src,$(subst -I$(wasm),-I$(wasm_root)/$(wasm),$(subst src/wasm/,$(wasm_root)/src/wasm/,$(1)))) \
+wasm_absolute = $(subst -Isrc,-I$(wasm_root)/src,$(subst \
+  -I$(wasm),-I$(wasm_root)/$(wasm),$(subst src/wasm/,$(wasm_root)/src/wasm/,$(1)))) \
   -fmacro-prefix-map=$(wasm_root)/=
 
 define wasm_folder_rules
@@ -75,8 +76,8 @@ $(wasm)/$(1)/obj/base/build_id.o: src/base/build_id.c $(build)/build_id $(wasm)/
 	@mkdir -p $$(@D)
 	$$(quiet)$(EMCC) $$(wasm_flags) $(wasm_isa_flags_$(1)) -DCUVETTE_BUILD_ID='"$$(shell sed -n 1p $(build)/build_id)"' \
 	  -DCUVETTE_BUILD_COMMIT='"$$(shell sed 1d $(build)/build_id)"' -c -o $$@ $$<
-$(wasm)/$(1)/cuvette.wasm: $(foreach f,$(wasm_folders),$(wasm)/$(1)/obj/$(f)/compiled) $(wasm)/$(1)/obj/base/build_id.o \
-  $(wasm_libs) $(wasm)/exports
+$(wasm)/$(1)/cuvette.wasm: $(foreach f,$(wasm_folders),$(wasm)/$(1)/obj/$(f)/compiled) \
+  $(wasm)/$(1)/obj/base/build_id.o $(wasm_libs) $(wasm)/exports
 	$$(call say,link $$@)
 	$$(quiet)$(EMCC) -O3 $(wasm_isa_flags_$(1)) $$(wasm_link) -o $$(@:.wasm=.js) $$(wasm_objects_$(1)) $(wasm_libs)
 # The script of all workers.
@@ -87,10 +88,11 @@ $(foreach i,$(wasm_isas),$(eval $(call wasm_rules,$(i))))
 $(foreach i,$(wasm_isas),$(foreach f,$(wasm_folders),$(eval $(call wasm_folder_rules,$(i),$(f)))))
 
 # Everything that cuvette.h declares, but for studies, and what the scripts of src/wasm call.
-$(wasm)/exports: src/cuvette.h src/wasm/exports.h src/wasm/wasm.mk
+$(wasm)/exports: src/cuvette.h src/wasm/exports.h mk/wasm.mk
 	@mkdir -p $(@D)
 	@{ grep -oh '\bcuvette_[a-z0-9_]*(' src/cuvette.h | grep -v '_study_\|each_column\|text_destroy'; \
-	  grep -oh '\bwasm_[a-z0-9_]*(' src/wasm/exports.h; echo 'malloc('; echo 'free('; } | sort -u | sed 's/^/_/; s/($$//' >$@
+	  grep -oh '\bwasm_[a-z0-9_]*(' src/wasm/exports.h; echo 'malloc('; echo 'free('; } | sort -u | \
+	  sed 's/^/_/; s/($$//' >$@
 
 # Memory grows; a stack as that of a thread. The page compiles the module once for all its workers.
 wasm_link = -sEXPORTED_FUNCTIONS=@$(wasm)/exports \
@@ -101,7 +103,9 @@ wasm_link = -sEXPORTED_FUNCTIONS=@$(wasm)/exports \
 
 .PHONY: test-wasm bench-wasm
 wasm_tests = $(sort $(wildcard tests/wasm/*.test.mjs))
-test-wasm: wasm $(build)/cuvette $(build)/cuvette-import ## test the WebAssembly modules in node: films, ray counts, errors, the JavaScript API; WASM_ISAS=simd128 for one of the two modules
+## test-wasm: the WebAssembly modules in node
+test-wasm: wasm $(build)/cuvette $(build)/cuvette-import
 	@WASM_ISAS='$(wasm_isas)' node --test --test-reporter=tap $(wasm_tests) | node tests/wasm/summary.mjs
-bench-wasm: wasm $(build)/cuvette ## measure the speed of the WebAssembly modules and of the native program
+## bench-wasm: speed of the modules and the native program
+bench-wasm: wasm $(build)/cuvette
 	@WASM_ISAS='$(wasm_isas)' node tests/wasm/bench.mjs
