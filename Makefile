@@ -25,7 +25,7 @@ ifeq ($(MAKELEVEL)$(findstring -j,$(MAKEFLAGS)),0)
 MAKEFLAGS += -j$(shell nproc)
 endif
 
-# Of these targets, those that make runs now, order-only: nothing runs in parallel with a measurement or an installation.
+# Of these targets, those that make runs now. Order-only: nothing runs in parallel with a measurement or installation.
 requested = $(filter $(1),$(MAKECMDGOALS))
 
 # build, build/clang, build/sanitize, build/sanitize-clang, ...
@@ -220,7 +220,7 @@ compiled_objects := $(library_objects) $(program_objects) $(web_objects) $(mpi_o
 
 # For clangd and other tools that parse C: all C files, with the flags of this configuration.
 .PHONY: compiled compile_commands.json
-by_scripts := tests/json_get.c tests/free_space.c tests/limit.c \
+by_scripts := tests/json_get.c tests/free_space.c tests/limit.c tests/visible.c \
   $(wildcard tests/interrupt/*.c experiments/engine/*.c tests/faults/*.c tests/power/*.c)
 compiled: all peers $(mpi_objects) $(test_programs) $(benches) $(build)/tests/recheck $(fuzzers) \
   $(by_scripts:%.c=$(build)/by-scripts/%.o)

@@ -2,21 +2,33 @@
 
 tests := $(wildcard tests/test_*.c)
 test_programs := $(tests:tests/%.c=$(build)/tests/%)
-web_tests := $(filter $(addprefix $(build)/tests/test_,http% lab% quantities),$(test_programs))
 benches := $(patsubst tests/%.c,$(build)/tests/%,$(wildcard tests/bench_*.c))
 fuzzers := $(patsubst tests/fuzz/%.c,$(build)/tests/fuzz_%,$(wildcard tests/fuzz/*.c))
 
+# All test programs load one shared library of the program's objects, whose hidden symbols tests/visible.c makes
+# visible. Linked to archives each has a copy of the engine: gigabytes, and minutes of linking after each change. When
+# only the library changes, no program is linked anew; when this file changes, all are.
+tested_library := $(build)/tests/libtested.so
+tested_objects := $(library_objects) $(web_objects) $(mpi_pure)
+# It runs on this machine, also where CC compiles for another.
+HOSTCC ?= $(if $(findstring --sysroot,$(CC)),gcc,$(CC))
+$(build)/tests/visible: tests/visible.c $(build)/flags
+	@mkdir -p $(@D)
+	$(quiet)$(HOSTCC) -std=gnu17 -O1 -o $@ $<
+$(tested_library): $(tested_objects) $(build)/tests/visible
+	$(call say,link $@)
+	$(quiet)$(CC) -r -nostdlib -o $(@:.so=.o) $(tested_objects) && $(build)/tests/visible $(@:.so=.o)
+	$(quiet)$(CC) $(all_cflags) -shared -Wl,-soname,$(@F) -Wl,-Bsymbolic $(no_undefined) -o $@ $(@:.so=.o) $(LDFLAGS) \
+	  $(all_libs)
+	@rm $(@:.so=.o)
+
 # Test programs do little work of their own: with -O3 gcc takes twice as long for them.
 test_cflags = $(all_cflags:-O3=-O1)
-$(build)/tests/test_%: tests/test_%.c $(build)/libcuvette.a $(build)/flags
+test_libs = $(tested_library) -Wl,-rpath,'$$ORIGIN' $(LDFLAGS) $(all_libs)
+$(build)/tests/test_%: tests/test_%.c mk/tests.mk $(build)/flags | $(tested_library)
 	$(call say,$(CC) $<)
 	@mkdir -p $(@D)
-	$(quiet)$(CC) $(test_cflags) -Werror $(pkg_cflags) -Itests -MMD -MP -o $@ $< $(test_web) $(build)/libcuvette.a \
-	  $(LDFLAGS) $(all_libs) -lcmocka
-$(build)/tests/test_handout $(build)/tests/test_tracing: $(build)/tests/test_%: $(build)/obj/mpi/%.o
-$(build)/tests/test_handout $(build)/tests/test_tracing: private test_web = $(build)/obj/mpi/$(@F:test_%=%).o
-$(web_tests): $(build)/libweb.a
-$(web_tests): private test_web = $(build)/libweb.a
+	$(quiet)$(CC) $(test_cflags) -Werror $(pkg_cflags) -Itests -MMD -MP -o $@ $< $(test_libs) -lcmocka
 
 # Readers in programs, for fuzzers; their parsing of a command line does not run the command (tests/fuzz/arguments.c).
 fuzzed_objects := $(filter-out %/cli/main.o,$(program_objects)) \
@@ -35,8 +47,8 @@ $(build)/tests/fuzz_arguments: private own_libs = $(parse_only)
 replayed := $(patsubst tests/fuzz/%.c,$(build)/tests/replay/%.o,$(wildcard tests/fuzz/*.c))
 $(build)/tests/replay/%.o: tests/fuzz/%.c $(build)/flags
 	$(call compile,$(test_cflags) -Werror $(pkg_cflags) -Itests -DFUZZ_REPLAY -DLLVMFuzzerTestOneInput=fuzz_$*)
-$(build)/tests/test_fuzz_corpus: $(replayed) $(build)/libfuzzed.a $(build)/libweb.a
-$(build)/tests/test_fuzz_corpus: private test_web = $(replayed) $(parse_only) $(fuzzed_libs)
+$(build)/tests/test_fuzz_corpus: $(replayed) $(build)/libfuzzed.a $(build)/libweb.a $(build)/libcuvette.a
+$(build)/tests/test_fuzz_corpus: private test_libs = $(replayed) $(parse_only) $(fuzzed_libs)
 
 # Fault injection (tests/faults): a library to preload, the driver, and what it starts besides cuvette.
 fault_tools := $(addprefix $(build)/faults/,preload.so faults engine_user lab_client)

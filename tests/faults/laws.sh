@@ -6,8 +6,9 @@ set -euo pipefail
 root=$(cd "$(dirname "$0")/../.." && pwd)
 work=$(mktemp -d)
 trap 'rm -rf "$work"' EXIT
-cp -r "$root/Makefile" "$root/mk" "$root/src" "$root/tests" "$root/.ci" "$work"
+cp -r "$root/Makefile" "$root/mk" "$root/src" "$root/tests" "$root/.ci" "$root/plots" "$work"
 mkdir -p "$work/experiments"
+cp -r "$root/experiments/cluster" "$work/experiments"
 missed=0 number=0
 build() {
     make -s -j2 -C "$work" warnings= build/tests/test_laws >"$work/log" 2>&1 || {
