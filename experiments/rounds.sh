@@ -1,6 +1,6 @@
 # shellcheck shell=bash
-# rounds.sh - sourced by the benchmarks: a folder for their work, the values of contestants that take turns, and lines
-# of medians and ratios over the rounds.
+# rounds.sh - sourced by bench.sh: a folder for the work of benches, the values of contestants that take turns, and
+# lines of medians and ratios over the rounds.
 export LC_ALL=C
 name=${0##*/}
 order=$(<"$(dirname "${BASH_SOURCE[0]}")/order.awk")
@@ -8,10 +8,14 @@ work=$(mktemp -d)
 trap 'rm -rf "$work"' EXIT
 
 need() { # need PROGRAM HOW-TO-GET-IT
-    [ -x "$1" ] || {
+    command -v "$1" >/dev/null || {
         echo "$name: no program $1; $2" >&2
         exit 2
     }
+}
+failed() { # failed WHAT LOG
+    echo "$name: $1 failed: $(tail -n 1 "$2")" >&2
+    exit 1
 }
 # field NAME < JSON: the first number with that name
 field() { sed -n "s/^ *\"$1\": *\([-0-9.eE+]*\),*$/\1/p" | head -n 1; }
@@ -19,12 +23,15 @@ note() { # note CONTESTANT VALUE...: a line of values, one a round
     local IFS=$'\t'
     printf '%s\n' "${*:2}" >>"$work/$1"
 }
+# traced CONTESTANT CLOCK PROGRAM SCENE [ARGUMENT...]: notes seconds and rays of a frame of $size
+traced() {
+    local json
+    json=$("$3" render "$4" --json --set "render.width=${size%x*}" --set "render.height=${size#*x}" "${@:5}")
+    note "$1" "$(field "$2" <<<"$json")" "$(field total <<<"$json")"
+}
 seconds() { # seconds COMMAND...: wall time of a whole process
     local from=$EPOCHREALTIME
-    "$@" >"$work/out" 2>"$work/err" || {
-        echo "$name: $1 failed: $(tail -n 1 "$work/err")" >&2
-        exit 1
-    }
+    "$@" >"$work/out" 2>"$work/err" || failed "$1" "$work/err"
     awk -v from="$from" -v to="$EPOCHREALTIME" 'BEGIN { printf "%.6f\n", to - from }'
 }
 # median CONTESTANT COLUMN
@@ -45,4 +52,10 @@ random_scenes() {
     awk -v worst="$1" "$order"'{ sub(/ *\(.*/, ""); list = list " " $NF }
         END { n = sorted(list, v); if (n) printf "%66s %8.3f   (%d scenes, worst %.3f)\n", "random scenes, median",
             median(list), n, v[worst == "low" ? 1 : n] }'
+}
+# spheres SEED SOLIDS LIGHTS: the path of a random scene (random_scene.awk); seed 1 is the one that has a name
+spheres() {
+    local scene=$work/scene-$1-$2-$3.yaml
+    [ -s "$scene" ] || awk -v seed="$1" -v solids="$2" -v lights="$3" -f "$here/random_scene.awk" >"$scene"
+    echo "$scene"
 }

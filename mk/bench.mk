@@ -24,21 +24,8 @@ bench_clang = $(if $(clang),,$(shell command -v clang >/dev/null && echo $(build
 bench: all peers $(build)/tests/bench_mesh $(build)/tests/bench_rows
 	@$(MAKE) --no-print-directory config=nocounters build=$(build)/nocounters $(build)/nocounters/cuvette
 	@$(if $(bench_clang),$(MAKE) --no-print-directory CC=clang build=$(build)/by-clang $(build)/by-clang/cuvette)
-	CUVETTE='$(abspath $(build)/cuvette)' NOCOUNTERS='$(abspath $(build)/nocounters/cuvette)' experiments/bench.sh
-	@echo
-	experiments/solids_bench.sh $(build)/cuvette
-	@echo
-	experiments/lights_bench.sh $(build)/cuvette
-	@echo
-	experiments/slime_bench.sh $(build)/cuvette
-	@echo
-	experiments/process_bench.sh $(build)/cuvette $(bench_clang)
-	@echo
-	experiments/mesh_bench.sh $(build)/tests/bench_mesh
-	@echo
-	experiments/paths.sh $(build)/cuvette
-	@echo
-	$(build)/tests/bench_rows
+	CUVETTE='$(build)/cuvette' NOCOUNTERS='$(build)/nocounters/cuvette' CLANG='$(bench_clang)' experiments/bench.sh \
+	  frames solids lights slime processes rays paths rows
 
 # What the same bits everywhere cost (experiments/determinism.sh): the program without parts of that, in build/variants,
 # FILM-CONTRACT-COMPILER. Sums of the film fixed or float (render/core/film.h); products and sums of the kernels

@@ -24,10 +24,10 @@ tables: $(build)/cuvette
 # What no study can sweep: measured once; remove the table to measure again.
 $(RESULTS)/tables/growth.tsv: | $(build)/cuvette
 	@mkdir -p $(@D)
-	experiments/growth.sh $(build)/cuvette >$@.new && mv $@.new $@
+	CUVETTE='$(build)/cuvette' experiments/bench.sh growth >$@.new && mv $@.new $@
 $(RESULTS)/tables/paths.tsv: | $(build)/cuvette
 	@mkdir -p $(@D)
-	TABLE=$@.new experiments/paths.sh $(build)/cuvette && mv $@.new $@
+	CUVETTE='$(build)/cuvette' TABLE=$@.new experiments/bench.sh paths && mv $@.new $@
 
 # One line says why another is skipped.
 ## figures: draw the figures whose rows exist

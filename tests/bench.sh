@@ -26,13 +26,14 @@ mkdir "$work/bin"
 IFS=: read -ra folders <<<"$PATH"
 for folder in "${folders[@]}"; do ln -s "$folder"/* "$work/bin/" 2>/dev/null; done
 rm -f "$work/bin/povray"
-text=$(PATH=$work/bin REPS=1 SIZE=32x24 experiments/bench.sh "$cuvette" "$cuvette" 2>&1)
+export CUVETTE=$cuvette
+text=$(PATH=$work/bin REPS=1 SIZE=32x24 NOCOUNTERS=$cuvette experiments/bench.sh frames 2>&1)
 verdict $? 'the benchmark of frames runs without POV-Ray' "$text"
 for want in "${ours[@]}"; do has_ratio "$text" "$want"; done
-[[ $(grep -c 'bench.sh: POV-Ray is not installed.*make setup-peers' <<<"$text") == 1 && $text != *'POV-Ray /'* ]]
+[[ $(grep -c 'bench.sh frames: POV-Ray is not installed.*make setup-peers' <<<"$text") == 1 && $text != *'POV-Ray /'* ]]
 verdict $? 'a missing POV-Ray is skipped with a note on how to install it' "$text"
 if command -v povray >/dev/null; then
-    text=$(REPS=1 SIZE=32x24 experiments/bench.sh "$cuvette" "$cuvette" 2>&1)
+    text=$(REPS=1 SIZE=32x24 NOCOUNTERS=$cuvette experiments/bench.sh frames 2>&1)
     verdict $? 'the benchmark of frames runs with POV-Ray' "$text"
     for want in "${ours[@]}" "${theirs[@]}"; do has_ratio "$text" "$want"; done
 else
@@ -59,33 +60,36 @@ equal 'spheres of the named scene: the same cross-section for any number' "$(are
 equal 'and of a random one' "$(area 7 10)" "$(area 7 1000)"
 equal 'lights share one intensity' "$(spheres 1 3 64 |
     awk '/ l[0-9]+:/ { n++; sub(/.*intensity: /, ""); s += $1 } END { printf "%d %.3f", n, s }')" '64 1.000'
-small() { # small WHAT COMMAND...: one round in a small size
-    local what=$1
-    shift
-    text=$(env REPS=1 SIZE=32x24 SCENES=2 COUNTS='64 100' DURATION=0.04 LEVEL=1 TRIANGLES=320 "$@" 2>&1)
-    verdict $? "the benchmark of $what runs" "$text"
+small() { # small NAME [VARIABLE=VALUE...]: one round in a small size
+    text=$(env REPS=1 SIZE=32x24 SCENES=2 COUNTS='64 100' DURATION=0.04 LEVEL=1 TRIANGLES=320 CLANG="$cuvette" \
+        "${@:2}" experiments/bench.sh "$1" 2>&1)
+    verdict $? "the benchmark of $1 runs" "$text"
 }
-small solids experiments/solids_bench.sh "$cuvette"
+small solids
 for want in 'rod, depth 8: M rays/s' '100 spheres: time a ray / that of 64'; do has_ratio "$text" "$want"; done
 equal 'a median and a worst of the random scenes for each line' "$(grep -c '(2 scenes, worst ' <<<"$text")" 4
-small lights experiments/lights_bench.sh "$cuvette"
+small lights
 for want in whitted path; do has_ratio "$text" "$want: frame with 64 lights / with one"; done
-small slimes experiments/slime_bench.sh "$cuvette"
+small slime
 for want in 'slime film 32x24, whole program' 'slime step, level 1: times real time'; do has_ratio "$text" "$want"; done
-small processes experiments/process_bench.sh "$cuvette" "$cuvette"
+small processes
 for want in 'rod.yaml to a PNG of 8 bits' 'rod.yaml to a PNG of 16 bits' 'OBJ of 320 triangles' \
     'rod, depth 8: speed of the build by clang'; do has_ratio "$text" "$want"; done
-small growth env SOLIDS='1 100' LIGHTS='1 2' SIZES='8x6 16x12' DEPTHS='0 1' experiments/growth.sh "$cuvette"
+small growth SOLIDS='1 100' LIGHTS='1 2' SIZES='8x6 16x12' DEPTHS='0 1'
 rows=$(awk -F'\t' 'NR > 1 && NF == 14 && $3 == 1 && $4 >= $5 && $6 > 0 && $12 > 1e6' <<<"$text" | cut -f 1,2)
 wanted='solids 1;solids 100;lights 1;lights 2;lights-path 1;lights-path 2;sparse 320;sphere 320;pixels 48;pixels 192;'
 equal 'growth: a row for every size, each with its rays, times and memory' "$(tr '\t\n' ' ;' <<<"$rows")" \
     "${wanted}depth 0;depth 1;"
 equal 'growth: a camera ray a pixel' "$(awk -F'\t' '$1 == "pixels" { print $5 - $2 }' <<<"$text" | tr '\n' ' ')" '0 0 '
-for script in solids lights slime process; do
-    text=$(experiments/${script}_bench.sh "$work/nowhere" 2>&1)
-    [[ $? == 2 && $(wc -l <<<"$text") == 1 && $text == *"${script}_bench.sh: no program "*"make builds it" ]]
-    verdict $? "${script}_bench.sh without a program: exit status 2 and one line" "$text"
-done
+text=$(CUVETTE=$work/nowhere experiments/bench.sh solids 2>&1)
+[[ $? == 2 && $text == "bench.sh solids: no program $work/nowhere; make builds it" ]]
+verdict $? "bench.sh without a program: exit status 2 and one line" "$text"
+text=$(experiments/bench.sh solids "$cuvette" 2>&1)
+[[ $? == 2 && $text == "bench.sh: no bench $cuvette; there are: "*' solids'* ]]
+verdict $? "a bench that does not exist: exit status 2 and those that do" "$text"
+text=$(experiments/bench.sh 2>&1)
+[[ $? == 2 && $(grep -c '^  [a-z]*: ' <<<"$text") == $(ls experiments/bench/*.sh | wc -l) ]]
+verdict $? "bench.sh without a name: a line for each" "$text"
 
 # --- the report's algorithm: its counts of rays
 rows=$("$report" -s 160x120 -d 0,1,2,3 -t 1,7 2>&1)
@@ -124,8 +128,8 @@ text=$(REPS=1 SIZE=32x24 FOVS=45 THREADS='1 4' experiments/peers/growth.sh "$rep
 verdict $? 'growth.sh compares its growth with the published tables' "$text"
 
 # --- triangles
-text=$(REPS=1 SETS=sphere:320 experiments/mesh_bench.sh "$build/tests/bench_mesh" 2>&1)
-verdict $? 'the benchmark of meshes runs' "$text"
+text=$(CUVETTE=$build/cuvette REPS=1 SETS=sphere:320 experiments/bench.sh rays 2>&1)
+verdict $? 'the benchmark of rays runs' "$text"
 if [[ -x $build/peers/embree ]]; then
     # Rays and triangles are the same; at edges single precision may give other hits. Triangles across the border of the
     # image distinguish different rays.
@@ -140,7 +144,7 @@ if [[ -x $build/peers/embree ]]; then
     text=$("$build/peers/embree" -k 8 2>&1)
     equal 'embree -k 8 is refused with exit status 2' $? 2
 else
-    grep -q 'mesh_bench.sh: Embree is not installed.*make setup-peers' <<<"$text"
+    grep -q 'bench.sh rays: Embree is not installed.*make setup-peers' <<<"$text"
     verdict $? 'a missing Embree is skipped with a note on how to install it' "$text"
 fi
 conclude

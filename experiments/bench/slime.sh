@@ -1,13 +1,8 @@
-#!/bin/bash
-# slime_bench.sh - the film of a slime, whole program, and the steps of its simulation, on one thread.
-#   experiments/slime_bench.sh [CUVETTE]
-# Environment: REPS=5 (rounds), SIZE=800x600, DURATION=0.4 (s, the length of the film), LEVEL=4 (of the slime).
-# The film begins at 1.6 s, when the hand draws the toy out. Real time: simulated over wall time of the steps alone.
-set -euo pipefail
-here=$(cd "$(dirname "$0")" && pwd)
-source "$here/rounds.sh"
-ours=${1:-${CUVETTE:-build/cuvette}} reps=${REPS:-5} size=${SIZE:-800x600} duration=${DURATION:-0.4} level=${LEVEL:-4}
-need "$ours" 'make builds it'
+# shellcheck shell=bash
+# slime: the film of a slime, whole program, and the steps of its simulation, on one thread
+# SIZE=800x600, DURATION=0.4 (s, the length of the film), LEVEL=4 (of the slime). The film begins at 1.6 s, when the
+# hand draws the toy out. Real time: simulated over wall time of the steps alone.
+size=${SIZE:-800x600} duration=${DURATION:-0.4} level=${LEVEL:-4}
 
 film() { # film WIDTHxHEIGHT START DURATION: frames, seconds of the program, simulated seconds, seconds of the steps
     local wall
@@ -16,14 +11,18 @@ film() { # film WIDTHxHEIGHT START DURATION: frames, seconds of the program, sim
     echo "$(field frames <"$work/out") $wall $(field simulated_s <"$work/out") $(field step_s <"$work/out")"
     rm -f "$work/film.y4m"
 }
-for ((round = 0; round < reps; round++)); do
+round() {
+    local frames wall before lead simulated steps
     # The same film without its frames: the motion until then, and the start of the program.
     read -r frames wall _ < <(film "$size" 1.6 "$duration")
     read -r before lead simulated steps < <(film 1x1 1.6 "$duration")
     note film "$frames" "$wall"
     note frames "$before" "$(awk -v a="$wall" -v b="$lead" 'BEGIN { print a - b }')"
     note steps "$simulated" "$steps"
-done
-row film '$1 / $2' "slime film $size, whole program, frames/s"
-row frames '$1 / $2' "slime film $size without the motion, frames/s"
-row steps '$1 / $2' "slime step, level $level: times real time"
+}
+
+report() {
+    row film '$1 / $2' "slime film $size, whole program, frames/s"
+    row frames '$1 / $2' "slime film $size without the motion, frames/s"
+    row steps '$1 / $2' "slime step, level $level: times real time"
+}
