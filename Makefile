@@ -186,8 +186,9 @@ $(build)/$(soname): $(library_objects)
 measured_code := $(sort $(foreach room,base optics geometry measure image softbody scene render realism job,$(wildcard \
   $(addprefix src/$(room)/,*.[ch] */*.[ch] */*/*.[ch]))))
 $(build)/build_id: always $(build)/flags
-	@{ $(CC) --version | head -n 1; echo '$(subst ','\'',$(code_flags) $(isas_flags))'; \
-	  cat $(measured_code); } | sha256sum | cut -c 1-16 >$@.new
+	@{ $(CC) --version | head -n 1; \
+	  echo '$(subst ','\'',$(code_flags) $(isas_flags))'; cat $(measured_code); } | \
+	  sha256sum | cut -c 1-16 >$@.new
 	@{ git rev-parse --short HEAD && git diff --quiet HEAD -- src Makefile mk || echo +; } 2>/dev/null | \
 	  tr -d '\n' >>$@.new
 	@cmp -s $@.new $@ && rm $@.new || mv $@.new $@
