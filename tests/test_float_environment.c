@@ -9,7 +9,7 @@
 
 #include "base/thread_team.h"
 #include "cuvette.h"
-#include "render/core/worker_pool.h"
+#include "base/worker_pool.h"
 #include <fenv.h>
 #include <pthread.h>
 #include <stdio.h>
@@ -556,7 +556,7 @@ static void threads_start_in_the_default_environment(void **state)
         pthread_barrier_init(&r.all_there, NULL, THREADS);
         set_surroundings(&now);
         thread_team *t = kind == 0 ? thread_team_start(THREADS) : NULL;
-        worker_pool *p = kind == 0 ? NULL : worker_pool_create();
+        worker_pool *p = kind == 0 ? NULL : worker_pool_create(0);
         if (t)
             thread_team_run(t, sign_in_team, &r, THREADS);
         else

@@ -10,7 +10,7 @@
 #include <time.h>
 #include <cmocka.h>
 
-#include "render/core/worker_pool.h"
+#include "base/worker_pool.h"
 
 enum { WORKERS_MAX = 300 };
 
@@ -51,7 +51,7 @@ static void every_worker_runs_once(void **state)
     static const int counts[] = {1, 2, 3, 7, 64, 300, 5, 1};
     static job j;
     for (int keep = 0; keep <= 1; keep++) {
-        worker_pool *p = worker_pool_create();
+        worker_pool *p = worker_pool_create(1 << 16);
         assert_non_null(p);
         for (size_t k = 0; k < sizeof counts / sizeof *counts; k++)
             run_once(p, counts[k], keep, &j);
@@ -63,7 +63,7 @@ static void persistent_threads_are_reused(void **state)
 {
     (void)state;
     static job first, second;
-    worker_pool *p = worker_pool_create();
+    worker_pool *p = worker_pool_create(1 << 16);
     assert_non_null(p);
     assert_int_equal(worker_pool_reserve(p, 20, NULL), STATUS_OK);
     run_once(p, 20, true, &first);
@@ -80,7 +80,7 @@ static void a_pool_runs_many_tasks_in_sequence(void **state)
 {
     (void)state;
     static job j;
-    worker_pool *p = worker_pool_create();
+    worker_pool *p = worker_pool_create(1 << 16);
     assert_non_null(p);
     for (int i = 0; i < 3000; i++)
         assert_int_equal(worker_pool_run(p, 1 + i % 9, true, note, NULL, 0.0, &j, NULL), STATUS_OK);
@@ -95,7 +95,7 @@ static void persistent_and_new_threads_may_alternate(void **state)
 {
     (void)state;
     static job j;
-    worker_pool *p = worker_pool_create();
+    worker_pool *p = worker_pool_create(1 << 16);
     assert_non_null(p);
     for (int i = 0; i < 40; i++)
         run_once(p, 1 + 3 * i % 11, i % 3 != 0, &j);
@@ -124,7 +124,7 @@ static void the_progress_callback_runs_while_workers_run(void **state)
     (void)state;
     static job j;
     for (int keep = 0; keep <= 1; keep++) {
-        worker_pool *p = worker_pool_create();
+        worker_pool *p = worker_pool_create(1 << 16);
         assert_non_null(p);
         memset(&j, 0, sizeof j);
         assert_int_equal(worker_pool_run(p, 3, keep, wait_for_the_watcher, watch, 0.1, &j, NULL), STATUS_OK);
@@ -138,9 +138,9 @@ static void an_idle_pool_can_be_destroyed(void **state)
 {
     (void)state;
     worker_pool_destroy(NULL);
-    worker_pool *p = worker_pool_create();
+    worker_pool *p = worker_pool_create(1 << 16);
     worker_pool_destroy(p);
-    p = worker_pool_create();
+    p = worker_pool_create(1 << 16);
     assert_int_equal(worker_pool_reserve(p, 50, NULL), STATUS_OK);
     assert_int_equal(worker_pool_reserve(p, 10, NULL), STATUS_OK); /* never shrinks */
     worker_pool_destroy(p);

@@ -1,6 +1,7 @@
-/* A thread team for parallel loops of one caller. A team of one starts no thread. If the system provides fewer threads
- * than requested, the team is smaller; results must not depend on its size. thread_team_start creates, thread_team_stop
- * frees; for one caller at a time. Members work under the cancellation of their caller (base/cancel.h). */
+/* A parallel loop of one caller, who takes part, on the threads of a worker pool (base/worker_pool.h). A team of one
+ * starts no thread. If the system provides fewer threads than requested, the team is smaller; results must not depend
+ * on its size. thread_team_start creates, thread_team_stop frees; for one caller at a time. Members work under the
+ * cancellation of their caller (base/cancel.h). */
 #pragma once
 
 #include <stddef.h>

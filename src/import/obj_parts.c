@@ -4,7 +4,7 @@
 #include "base/below.h"
 #include "base/grow.h"
 #include "base/os_process.h"
-#include <pthread.h>
+#include "base/thread_team.h"
 #include <string.h>
 #include <sys/mman.h>
 #include <sys/stat.h>
@@ -54,23 +54,20 @@ static bool divide(obj_file *f, const char *text, size_t size)
     return true;
 }
 
-static void *parse(void *part)
+static void parse(void *parts, size_t index, int member)
 {
-    obj_parse(part);
-    return NULL;
+    (void)member;
+    obj_parse((obj_part *)parts + index);
 }
 
 /* Parses all parts; false: they are not plain. */
 static bool parse_all(obj_file *f)
 {
-    pthread_t threads[OBJ_PARTS_MAX];
-    int started = 1;
-    while (started < f->part_count && pthread_create(&threads[started], NULL, parse, &f->parts[started]) == 0)
-        started++;
-    for (int i = 0; i < f->part_count; i += i == 0 ? started : 1) /* and the parts that got no thread */
-        parse(&f->parts[i]);
-    for (int i = 1; i < started; i++)
-        pthread_join(threads[i], NULL);
+    thread_team *team = thread_team_start(f->part_count);
+    if (!team)
+        return false;
+    thread_team_run(team, parse, f->parts, (size_t)f->part_count);
+    thread_team_stop(team);
     bool plain = true;
     size_t uvs = 0;
     for (int i = 0; i < f->part_count; i++) {

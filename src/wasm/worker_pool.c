@@ -1,6 +1,6 @@
 /* The worker pool of a WebAssembly module, which has no threads: the workers run on the calling thread, one after
- * another. See render/core/worker_pool.h. */
-#include "render/core/worker_pool.h"
+ * another. See base/worker_pool.h. */
+#include "base/worker_pool.h"
 
 #include "measure/clock.h"
 #include <stdlib.h>
@@ -11,8 +11,9 @@ struct worker_pool {
     double every_s, watched_s;
 };
 
-worker_pool *worker_pool_create(void)
+worker_pool *worker_pool_create(size_t stack_bytes)
 {
+    (void)stack_bytes;
     return calloc(1, sizeof(worker_pool));
 }
 
@@ -35,6 +36,18 @@ status worker_pool_run(worker_pool *p, int count, bool keep, worker_pool_task *t
     for (int worker = 0; worker < count; worker++)
         task(context, worker);
     return STATUS_OK;
+}
+
+void worker_pool_begin(worker_pool *p, int count, worker_pool_task *task, void *context)
+{
+    p->watch = NULL;
+    for (int worker = 0; worker < count; worker++)
+        task(context, worker);
+}
+
+void worker_pool_end(worker_pool *p)
+{
+    (void)p;
 }
 
 void worker_pool_pause(worker_pool *p)

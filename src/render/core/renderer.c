@@ -3,11 +3,11 @@
 
 #include "base/cancel.h"
 #include "base/grow.h"
+#include "base/worker_pool.h"
 #include "measure/clock.h"
 #include "render/caustics/caustics.h"
 #include "render/core/path_counts.h"
 #include "render/core/plan.h"
-#include "render/core/worker_pool.h"
 #include "render/core/schedule.h"
 #include "render/core/tracer_pool.h"
 #include "render/integrators/integrator.h"
@@ -24,6 +24,7 @@ struct renderer {
 };
 
 #define WATCH_S 0.02
+enum { STACK_BYTES = 512 * 1024 }; /* not the usual 8 MiB: a pool may have a thousand threads */
 
 typedef struct event_list {
     tile_event *event;
@@ -61,7 +62,7 @@ status renderer_create(isa level, const topology *machine, renderer **out, diagn
 {
     renderer *r = calloc(1, sizeof *r);
     if (r) {
-        r->threads = worker_pool_create();
+        r->threads = worker_pool_create(STACK_BYTES);
         r->tracers = tracer_pool_create(level);
         r->machine = machine;
     }

@@ -1,5 +1,5 @@
 /* Starting, waking and joining of worker threads. */
-#include "render/core/worker_pool.h"
+#include "base/worker_pool.h"
 
 #include "base/cancel.h"
 #include "base/float_environment.h"
@@ -12,8 +12,6 @@
 #include <time.h>
 #include <unistd.h>
 
-enum { STACK_BYTES = 512 * 1024 }; /* not the usual 8 MiB: a pool may have a thousand threads */
-
 typedef struct worker {
     worker_pool *owner;
     int index;
@@ -24,8 +22,9 @@ typedef struct worker {
 
 struct worker_pool {
     worker **workers;
-    int count;     /* threads in the pool */
-    int running;   /* number of workers of this run */
+    int count;   /* threads in the pool */
+    int running; /* number of workers of this run */
+    size_t stack_bytes;
     pid_t process; /* that has the threads: a child of fork has none of them (fork(2)) */
     worker_pool_task *task;
     void *context;
@@ -34,7 +33,7 @@ struct worker_pool {
     sem_t done;
 };
 
-worker_pool *worker_pool_create(void)
+worker_pool *worker_pool_create(size_t stack_bytes)
 {
     worker_pool *p = aligned_alloc(64, (sizeof(worker_pool) + 63) / 64 * 64);
     if (!p)
@@ -42,6 +41,7 @@ worker_pool *worker_pool_create(void)
     memset(p, 0, sizeof *p);
     sem_init(&p->done, 0, 0);
     p->process = getpid();
+    p->stack_bytes = stack_bytes;
     return p;
 }
 
@@ -100,7 +100,8 @@ static int start_thread(worker *w, void *(*run)(void *))
 {
     pthread_attr_t attributes;
     pthread_attr_init(&attributes);
-    pthread_attr_setstacksize(&attributes, STACK_BYTES);
+    if (w->owner->stack_bytes)
+        pthread_attr_setstacksize(&attributes, w->owner->stack_bytes);
     int error = pthread_create(&w->thread, &attributes, run, w);
     pthread_attr_destroy(&attributes);
     return error;
@@ -216,20 +217,37 @@ static status run_fresh(worker_pool *p, int count, void (*watch)(void *), double
     return missing > 0 ? no_thread(started, error, why) : STATUS_OK;
 }
 
+static void prepare(worker_pool *p, int count, worker_pool_task *task, void *context)
+{
+    p->task = task;
+    p->context = context;
+    p->token = cancel_current();
+    p->running = count;
+    atomic_store(&p->left, count);
+}
+
+void worker_pool_begin(worker_pool *p, int count, worker_pool_task *task, void *context)
+{
+    prepare(p, count, task, context);
+    sem_post(&p->workers[0]->wake);
+}
+
+void worker_pool_end(worker_pool *p)
+{
+    wait_for(&p->done);
+}
+
 status worker_pool_run(worker_pool *p, int count, bool keep, worker_pool_task *task, void (*watch)(void *),
                        double every_s, void *context, diagnostic *why)
 {
     forget_threads_of_parent(p);
     if (keep)
         TRY(worker_pool_reserve(p, count, why));
-    p->task = task;
-    p->context = context;
-    p->token = cancel_current();
-    p->running = count;
-    atomic_store(&p->left, count);
-    if (!keep)
+    if (!keep) {
+        prepare(p, count, task, context);
         return run_fresh(p, count, watch, every_s, why);
-    sem_post(&p->workers[0]->wake);
+    }
+    worker_pool_begin(p, count, task, context);
     wait_until_done(p, watch, every_s);
     return STATUS_OK;
 }

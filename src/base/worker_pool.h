@@ -1,0 +1,44 @@
+/* The worker pool: the threads of all parallel work. A persistent pool starts its threads once and wakes them for each
+ * run in a tree (worker i wakes 2i+1 and 2i+2), so that a thousand of them do not queue up behind one waker. Otherwise
+ * threads are created and joined for each run, as in the report. Workers follow the caller's cancellation
+ * (base/cancel.h). base/thread_team.h is a loop on such a pool. Ownership: worker_pool_create allocates,
+ * worker_pool_destroy joins and releases. One run at a time. In a child of fork, a pool that was not running starts
+ * threads of its own.
+ *
+ * All other threads do not share work; each has a reason to be one:
+ *     base/apart.c                       the call is confined, and a confined thread cannot be used again
+ *     base/os_process.c                  the call needs a larger stack
+ *     mpi/lead.c, mpi/follow.c           one thread of a rank renders while another exchanges messages
+ *     web/http/http_watch.c              watches connections for as long as the server runs
+ *     web/lab.c                          starts the laboratory confined, from a thread that its threads inherit from
+ *     web/live/render_worker_thread.c    renders the document for as long as the laboratory runs
+ *     web/session/rescue.c               saves the document for as long as the laboratory runs
+ *     web/session/task_thread.c          a study or a video, while the server answers */
+#pragma once
+
+#include "base/status.h"
+#include <stdbool.h>
+
+typedef struct worker_pool worker_pool;
+typedef void worker_pool_task(void *context, int worker);
+
+/* stack_bytes: of each thread; 0: the system's usual size. NULL: out of memory. */
+worker_pool *worker_pool_create(size_t stack_bytes);
+void worker_pool_destroy(worker_pool *p);
+
+/* Makes sure that count threads are waiting for work. */
+status worker_pool_reserve(worker_pool *p, int count, diagnostic *why);
+
+/* Runs task(context, 0 .. count-1), each on its own thread, and returns when all have ended. Meanwhile watch (may be
+ * NULL) is called every every_s seconds (under 1) on the calling thread. keep: use the waiting threads, else new
+ * ones. */
+status worker_pool_run(worker_pool *p, int count, bool keep, worker_pool_task *task, void (*watch)(void *),
+                       double every_s, void *context, diagnostic *why);
+
+/* The same for count > 0 threads that are waiting, while the calling thread works too: between begin and end. */
+void worker_pool_begin(worker_pool *p, int count, worker_pool_task *task, void *context);
+void worker_pool_end(worker_pool *p);
+
+/* For tasks, between parts of their work: a pool without threads (src/wasm) runs its workers on the calling thread, one
+ * after another, and calls watch here when it is due. */
+void worker_pool_pause(worker_pool *p);
