@@ -38,7 +38,8 @@ status job_machine(job *j, const topology **out, diagnostic *why);
 /* What the rest of the machine did in the last NOISE_WINDOW_S, without frequency_drop; unknown without measured. */
 machine_noise job_noise(job *j);
 
-/* Loads the files that the scene names, which was checked when it was read or changed. watch: as for scene_load_until, or NULL. */
+/* Loads the files that the scene names, which was checked when it was read or changed. watch: as for scene_load_until,
+ * or NULL. */
 status job_load(job *j, scene *s, const load_watch *watch, diagnostic *why);
 
 /* Renders one frame of a loaded scene. options: as for renderer_render, or NULL. Release *out whatever the return
