@@ -196,11 +196,6 @@ static status split_all(csv *table, const char *path, bool strict, diagnostic *w
     return STATUS_OK;
 }
 
-status csv_read(const char *path, csv **out, diagnostic *why)
-{
-    return csv_read_below(path, NULL, out, why);
-}
-
 size_t csv_whole(const char *text, size_t size)
 {
     const char *newline = size ? memrchr(text, '\n', size) : NULL;
@@ -299,9 +294,9 @@ static status read_table(const char *path, const char *root, reading how, csv **
     return STATUS_OK;
 }
 
-status csv_read_below(const char *path, const char *root, csv **out, diagnostic *why)
+status csv_read(const char *path, csv **out, diagnostic *why)
 {
-    return read_table(path, root, READ_OWN, out, why);
+    return read_table(path, NULL, READ_OWN, out, why);
 }
 
 status csv_read_any(const char *path, const char *root, csv **out, diagnostic *why)

@@ -48,12 +48,10 @@ typedef struct csv {
 /* STATUS_OK and *out = NULL if the file does not exist. STATUS_BAD_INPUT if a row does not have as many fields as the
  * header. */
 status csv_read(const char *path, csv **out, diagnostic *why);
-/* The same for a file below root (base/below.h). */
-status csv_read_below(const char *path, const char *root, csv **out, diagnostic *why);
-/* The same for a file that people and other programs write. */
+/* The same for a file below root (base/below.h) that people and other programs write. */
 status csv_read_any(const char *path, const char *root, csv **out, diagnostic *why);
-/* As csv_read_below, but rows with another number of fields are no error. A byte order mark and CR LF are: they are not
- * what the program wrote. */
+/* As csv_read, for a file below root, but rows with another number of fields are no error. A byte order mark and CR LF
+ * are: they are not what the program wrote. */
 status csv_read_rows(const char *path, const char *root, csv **out, diagnostic *why);
 void csv_destroy(csv *table);
 

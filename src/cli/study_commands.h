@@ -24,9 +24,8 @@ status study_power(int argc, char **argv, diagnostic *why);
 
 /* The repetitions of a study that divides them among processes, each a program of its own, one after the other; with
  * --against=PROGRAM each followed or preceded, at random, by the same process of the other program, whose rows go to
- * the folder of study_against_folder (allocated): two builds that alternate can be compared. */
+ * the results folder with -against: two builds that alternate can be compared. */
 status study_run_processes(const study *s, const study_request *request, diagnostic *why);
-char *study_against_folder(const study_request *request);
 
 /* STATUS_FAILURE where what the run writes cannot fit; a note where it may not. */
 status study_check_room(const study *s, const study_request *request, const study_estimate *e, diagnostic *why);

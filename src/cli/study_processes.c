@@ -20,7 +20,7 @@
 
 enum { ARGUMENTS_MAX = 32 };
 
-char *study_against_folder(const study_request *request)
+static char *study_against_folder(const study_request *request)
 {
     return text_format("%s-against", request->results);
 }

@@ -9,7 +9,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-void png_library_error(png_structp png, png_const_charp message)
+static __attribute__((noreturn)) void png_library_error(png_structp png, png_const_charp message)
 {
     png_library *of = png_get_error_ptr(png);
     of->error = errno;
@@ -17,7 +17,7 @@ void png_library_error(png_structp png, png_const_charp message)
     png_longjmp(png, 1);
 }
 
-void png_library_warning(png_structp png, png_const_charp message)
+static void png_library_warning(png_structp png, png_const_charp message)
 {
     (void)png;
     (void)message;

@@ -24,8 +24,6 @@ bool png_library_write(png_library *of);
 status png_library_failed(const png_library *of, diagnostic *why);
 status png_library_unwritten(const png_library *of, diagnostic *why);
 
-void png_library_error(png_structp png, png_const_charp message) __attribute__((noreturn));
-void png_library_warning(png_structp png, png_const_charp message);
 /* Before the first byte of a file that anyone may have made, and after setjmp: it is read from memory, no chunk takes
  * more bytes than the file has or than chunk_max when it is expanded, and a wrong checksum is an error. */
 void png_library_guard(png_library *of, size_t chunk_max);

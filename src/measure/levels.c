@@ -11,43 +11,6 @@ static size_t count_of(const level_sample *s, size_t process)
     return s->start[process + 1] - s->start[process];
 }
 
-static double mean_of(const double *values, size_t count)
-{
-    double sum = 0;
-    for (size_t i = 0; i < count; i++)
-        sum += values[i];
-    return sum / (double)count;
-}
-
-level_variance level_variances(const level_sample *s)
-{
-    double squares = 0, inverse = 0, sum = 0, spread = 0;
-    size_t freedom = 0;
-    for (size_t p = 0; p < s->processes; p++) {
-        const size_t count = count_of(s, p);
-        const double *values = s->values + s->start[p], mean = mean_of(values, count);
-        for (size_t i = 0; i < count; i++)
-            squares += (values[i] - mean) * (values[i] - mean);
-        freedom += count - 1;
-        inverse += 1.0 / (double)count;
-        sum += mean;
-    }
-    const double n = (double)s->processes, centre = sum / n, within = freedom > 0 ? squares / (double)freedom : NAN;
-    for (size_t p = 0; p < s->processes; p++) {
-        const double mean = mean_of(s->values + s->start[p], count_of(s, p));
-        spread += (mean - centre) * (mean - centre);
-    }
-    const double of_means = s->processes > 1 ? spread / (n - 1) : NAN;
-    return (level_variance){within, of_means - within * inverse / n, centre, n / inverse};
-}
-
-double level_repetitions(const level_variance *v, double cost)
-{
-    if (!(v->within > 0) || isnan(v->between))
-        return 1;
-    return v->between > 0 ? fmax(1.0, ceil(sqrt(cost * v->within / v->between))) : INFINITY;
-}
-
 static int by_value(const void *a, const void *b)
 {
     const double x = *(const double *)a, y = *(const double *)b;

@@ -16,18 +16,6 @@ typedef struct level_sample {
     size_t processes;
 } level_sample;
 
-/* Components of the variance (their section 5: T1^2 and T2^2): of repetitions within a process, and of processes,
- * without the part that the repetitions cause; below 0: none. NaN if unknown: processes with one repetition, one
- * process. */
-typedef struct level_variance {
-    double within, between, mean, repetitions; /* repetitions: harmonic mean per process */
-} level_variance;
-level_variance level_variances(const level_sample *sample);
-
-/* The number of repetitions in each process that costs least for a given width, if starting a process (with its
- * warm-ups) takes as long as cost repetitions: their equation 3. At least 1. */
-double level_repetitions(const level_variance *v, double cost);
-
 /* The centre of a sample: the mean over processes of the median in each. With the logarithms of times it is that of a
  * typical time, and differences are logarithms of ratios. */
 double level_centre(const level_sample *sample);

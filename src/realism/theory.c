@@ -44,11 +44,6 @@ double theory_slab(double R, int passes)
     return passes <= 0 || R >= 1.0 ? 0.0 : pow(1.0 - R, 2) * (1.0 - pow(R, 2.0 * passes)) / (1.0 - R * R);
 }
 
-double theory_slab_whole(double R)
-{
-    return (1.0 - R) / (1.0 + R);
-}
-
 double theory_pile(double R, int interfaces, int depth)
 {
     enum { MOST = 16 };

@@ -16,10 +16,9 @@ double theory_fresnel_p(double angle, double n_from, double n_to);
 double theory_fresnel(double angle, double n_from, double n_to);
 
 /* Transmittance of the first `passes` orders of a slab of reflectance R at each face: (1 - R)^2 (1 + R^2 + R^4 + ...),
- * `passes` terms; and of all of them, (1 - R) / (1 + R). Born and Wolf, Principles of Optics, 7th ed., 7.6, without
+ * `passes` terms, which tend to (1 - R) / (1 + R). Born and Wolf, Principles of Optics, 7th ed., 7.6, without
  * phases. */
 double theory_slab(double R, int passes);
-double theory_slab_whole(double R);
 
 /* Transmittance of a pile of interfaces of reflectance R each, of the paths that meet at most `depth` of them: the sum
  * over the paths, of which those with k interfaces follow from those with k - 1. Without a limit it is (1 - R) / (1 +

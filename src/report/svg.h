@@ -7,12 +7,10 @@
 
 #define SVG_BLUE "#0072b2"
 #define SVG_VERMILLION "#d55e00"
-#define SVG_GREEN "#009e73"
 #define SVG_PURPLE "#cc79a7"
 #define SVG_ORANGE "#e69f00"
 #define SVG_INK "#222222"
 #define SVG_GREY "#777777"
-#define SVG_PALE "#d9d9d9"
 
 /* The start of the document with a white background and a title, which may be NULL. Sizes are CSS pixels. */
 void svg_begin(FILE *out, double width, double height, const char *title);

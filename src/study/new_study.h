@@ -22,8 +22,6 @@ typedef struct new_axis {
 /* Splits the value of --axis. Commas in brackets belong to one value: lamp.position=[0,1,2],[3,4,5]. */
 status new_axis_parse(const char *text, new_axis *out, diagnostic *why);
 void new_axis_release(new_axis *axis);
-/* The number of its values. */
-size_t new_axis_points(const new_axis *axis);
 
 typedef struct new_study {
     const char *name, *scene_path; /* the path relative to the study file */

@@ -94,7 +94,8 @@ void new_axis_release(new_axis *axis)
     *axis = (new_axis){.path = NULL};
 }
 
-size_t new_axis_points(const new_axis *axis)
+/* The number of its values. */
+static size_t new_axis_points(const new_axis *axis)
 {
     int64_t steps;
     return !axis->range ? axis->count : number_parse_int(axis->values[2], &steps) && steps > 0 ? (size_t)steps : 0;

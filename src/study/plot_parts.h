@@ -109,8 +109,6 @@ status plot_published_read(plot_plan *p, diagnostic *why);
 /* Columns, label and unit of the quantity. */
 status plot_quantity_find(const plot_plan *p, const char *name, plot_quantity *out, diagnostic *why);
 status plot_scale(plot_plan *p, diagnostic *why);
-/* The unit of a parameter of the study, "" if it has none or its name ends with it. */
-void plot_unit_of(const study *s, const char *path, char unit[32]);
 
 status plot_layout(plot_plan *p, diagnostic *why);
 /* Adds captions on n, spread, missing cells, marked rows, other processes and environments. */

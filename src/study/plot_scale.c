@@ -11,7 +11,8 @@ enum { QUANTITIES_MAX = 256 /* among which the nearest name is looked for */ };
 
 /* --- units --- */
 
-void plot_unit_of(const study *s, const char *path, char unit[32])
+/* The unit of a parameter of the study, "" if it has none or its name ends with it. */
+static void plot_unit_of(const study *s, const char *path, char unit[32])
 {
     param_place at;
     const bool is_one = param_place_find(s->base, path, &at, NULL) == STATUS_OK;

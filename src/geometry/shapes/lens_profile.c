@@ -17,7 +17,7 @@ lens_profile lens_profile_of(const solid_shape *s, int k)
     return e;
 }
 
-bool lens_has_asphere(const solid_shape *s)
+static bool lens_has_asphere(const solid_shape *s)
 {
     return lens_profile_of(s, 0).aspheric || lens_profile_of(s, 1).aspheric;
 }

@@ -30,8 +30,6 @@ static inline double lens_rim(const solid_shape *s)
     return 0.5 * s->diameter;
 }
 
-bool lens_has_asphere(const solid_shape *s);
-
 /* The heights of the rim's two edges. */
 double lens_edge(const solid_shape *s, int k);
 /* The distance between the sides at a radius, and the radius where they are nearest to each other. */
@@ -52,5 +50,3 @@ typedef enum lens_form { LENS_CONVEX = 1, LENS_CONCAVE = 2, LENS_ONE_TURN = 3, L
 /* A flat side is convex. within: the radius up to which a side with coefficients is not steep, and turns no more than
  * the kernels can bound. */
 lens_form lens_form_of(const solid_shape *s, int k, double *within);
-
-status lens_check_sides(const solid_shape *s, diagnostic *why);

@@ -42,7 +42,8 @@ static double retardance_deg(const region_sheet *sheet, vec3 d, double length_m,
     return sheet->retardance_deg + 360.0 * (waves - floor(waves));
 }
 
-stokes sheet_row(const region_sheet *sheet, stokes row, vec3 d, double length_m, double lambda_nm)
+/* The row beyond a passage of that length, in metres, along d. */
+static stokes sheet_row(const region_sheet *sheet, stokes row, vec3 d, double length_m, double lambda_nm)
 {
     double sine, cosine;
     switch (sheet->kind) {

@@ -28,9 +28,6 @@ typedef struct region_sheet {
 /* By priority index; *out is NULL if there are none. False when out of memory. */
 bool sheet_list_create(const scene *s, const struct scene_geometry *geometry, region_sheet **out);
 
-/* The row beyond a passage of that length, in metres, along d. */
-stokes sheet_row(const region_sheet *sheet, stokes row, vec3 d, double length_m, double lambda_nm);
-
 /* A ray's passage. */
 typedef struct sheet_passage {
     stokes row;    /* at its start; the first element: the share of unpolarised light so far */

@@ -134,7 +134,8 @@ const metal *material_metal(const material *m)
     return m->medium >= MEDIUM_METAL ? metals_at((size_t)(m->medium - MEDIUM_METAL)) : NULL;
 }
 
-bool material_is_conductor(const material *m)
+/* An opaque material whose surface is a metal's: by its medium, or by its extinction. */
+static bool material_is_conductor(const material *m)
 {
     return m->transparency == 0.0 && (material_metal(m) || material_extinction_index(m, VISIBLE_LOW_NM) > 0.0);
 }

@@ -49,8 +49,6 @@ bool material_is_opaque(const material *m);
 
 /* The metal that is its medium, or NULL. */
 const struct metal *material_metal(const material *m);
-/* An opaque material whose surface is a metal's: by its medium, or by its extinction. */
-bool material_is_conductor(const material *m);
 bool material_has_film(const material *m);
 /* Whether its surface reflects, and transmits, by optics/multilayer.h: a metal's, or one with a film. A film on a
  * transparent surface needs Fresnel weights. */

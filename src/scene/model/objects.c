@@ -51,7 +51,7 @@ static void set_array(scene *s, param_group group, void *array)
     memcpy((char *)s + lists[group].at, &array, sizeof array);
 }
 
-void *object_at(const scene *s, param_group group, size_t index)
+static void *object_at(const scene *s, param_group group, size_t index)
 {
     const object_list *l = &lists[group];
     return group_has_names(group) ? array_of(s, group) + index * l->size : (char *)(uintptr_t)s + l->at;

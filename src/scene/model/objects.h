@@ -10,8 +10,7 @@ static inline bool group_has_names(param_group group)
     return group > PARAM_BACKGROUND;
 }
 
-/* The object, and the struct in it that the rows of its group refer to. */
-void *object_at(const scene *s, param_group group, size_t index);
+/* The struct in an object that the rows of its group refer to. */
 void *object_values(const scene *s, param_group group, size_t index);
 
 /* Index of the object with that name, or -1. */

@@ -79,7 +79,9 @@ static bool add_params(json_t *delta, const json_t *before, const json_t *after)
     return !bad;
 }
 
-json_t *scene_delta(const json_t *before, const json_t *after)
+/* {"generation", "since", "params": [rows that differ or are new], "order"?: [all paths, if there are others or in
+ * another order], and every other key whose value differs}. */
+static json_t *scene_delta(const json_t *before, const json_t *after)
 {
     json_t *delta = json_pack("{s:I}", "since", generation_of(before));
     bool good = delta != NULL;

@@ -12,7 +12,3 @@ void sent_scenes_destroy(sent_scenes *s); /* NULL is allowed */
 /* The reply as allocated text: the scene (as scene_json makes it, which is taken over), or only what differs from the
  * generation `since`, if that was sent lately; -1 for none. */
 char *sent_scenes_reply(sent_scenes *s, json_t *scene, long long since);
-
-/* {"generation", "since", "params": [rows that differ or are new], "order"?: [all paths, if there are others or in
- * another order], and every other key whose value differs}. */
-json_t *scene_delta(const json_t *before, const json_t *after);
