@@ -52,6 +52,23 @@ static void every_truncation_of_a_valid_scene_is_read_or_refused(void **state)
     assert_true(refused > 100);
 }
 
+static void the_first_light_too_many_is_located(void **state)
+{
+    (void)state;
+    enum { LIGHTS = 1025 };
+    static char text[16 * LIGHTS];
+    int size = snprintf(text, sizeof text, "lights:\n");
+    for (int i = 0; i < LIGHTS; i++)
+        size += snprintf(text + size, sizeof text - (size_t)size, "  l%d: {}\n", i);
+    diagnostic why = {.what = ""};
+    scene *s;
+    assert_int_equal(scene_read_text("lights.yaml", text, (size_t)size, &s, &why), STATUS_BAD_INPUT);
+    assert_int_equal(why.line, LIGHTS + 1);
+    assert_int_equal(why.column, 3);
+    assert_string_equal(why.what, "more than 1024 lights");
+    assert_string_equal(why.remedy, "a scene can have 1024");
+}
+
 static void a_missing_file_is_named_in_the_error(void **state)
 {
     (void)state;
@@ -67,6 +84,7 @@ int main(void)
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(every_faulty_scene_is_refused_with_its_located_error),
         cmocka_unit_test(every_truncation_of_a_valid_scene_is_read_or_refused),
+        cmocka_unit_test(the_first_light_too_many_is_located),
         cmocka_unit_test(a_missing_file_is_named_in_the_error),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);

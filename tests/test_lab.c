@@ -116,7 +116,7 @@ static size_t notes_on(const char *body, const char *place, const char *words)
 static void ineffective_values_are_noted(void **state)
 {
     (void)state;
-    assert_int_equal(notes_on("{\"set\": {\"render.paths\": 7}}", "render.paths", "path integrator"), 1);
+    assert_int_equal(notes_on("{\"set\": {\"render.paths\": 7}}", "render.paths", "integrator=whitted"), 1);
     assert_int_equal(notes_on("{\"set\": {\"render.integrator\": \"path\", \"render.paths\": 9}}", NULL, NULL), 0);
     assert_int_equal(notes_on("{\"set\": {\"ball.ior\": 1.4}}", NULL, NULL), 0);
     assert_int_equal(notes_on("{\"set\": {\"ball.transparency\": 0, \"ball.ior\": 1.7}}", "ball.ior", "opaque"), 1);

@@ -326,14 +326,29 @@ bool needs_light(const inert_case *c)
     return ask_rows(c, c->at.row->group, light_rows, sizeof light_rows / sizeof *light_rows);
 }
 
+/* A condition with " or " between the values, where a narrow table can break the line. */
+static int add_condition(char *text, size_t size, const char *condition)
+{
+    int used = 0;
+    for (const char *at = condition; *at; at++)
+        if ((size_t)used < size)
+            used += *at == '|' ? snprintf(text + used, size - (size_t)used, " or ")
+                               : snprintf(text + used, size - (size_t)used, "%c", *at);
+    return used;
+}
+
 char *inert_needs_text(const param *row, char *text, size_t size)
 {
     int used = 0;
     text[0] = 0;
-    for (const needs_row *r = rows; r < rows + sizeof rows / sizeof *rows; r++)
-        if (r->needs && r->group == row->group && has_word(r->names, ' ', row->name, strlen(row->name)) &&
-            (size_t)used < size)
-            used += snprintf(text + used, size - (size_t)used, "%s%s", used ? ", " : "", r->needs);
+    for (const needs_row *r = rows; r < rows + sizeof rows / sizeof *rows; r++) {
+        if (!r->needs || r->group != row->group || !has_word(r->names, ' ', row->name, strlen(row->name)))
+            continue;
+        if (used && (size_t)used < size)
+            used += snprintf(text + used, size - (size_t)used, ", ");
+        if ((size_t)used < size)
+            used += add_condition(text + used, size - (size_t)used, r->needs);
+    }
     return text;
 }
 
