@@ -40,6 +40,8 @@ PACKAGES := libpng zlib libjpeg hwloc yaml-0.1 jansson
 warnings := -Wall -Wextra -Wpedantic -Wconversion -Wshadow -Wstrict-prototypes -Wmissing-prototypes -Wvla
 # Constants that are enumerators are exact as doubles; newer versions of clang warn about them.
 warnings += $(if $(clang),-Wno-enum-float-conversion)
+# No notes on vectors as arguments, which gcc passes in another way since version 4.6.
+warnings += -Wno-psabi
 # A user's newer compiler may give more warnings: they are errors only in CI (STRICT=1) and in test programs.
 STRICT ?=
 # An undeclared function is always an error: its pointer arguments would be truncated.

@@ -1,14 +1,14 @@
 # Instruction sets and other architectures. Included by the Makefile.
 
 # One source for all instruction sets of the architecture (src/base/isa.h): *_kernel.c is compiled once for each.
-isa_flags_sse2   := -msse2 -Wno-psabi
-isa_flags_avx2   := -mavx2 -Wno-psabi
+isa_flags_sse2   := -msse2
+isa_flags_avx2   := -mavx2
 isa_flags_avx512 := -mavx512f -mavx512dq -mavx512bw -mavx512vl -mprefer-vector-width=512
 isas = $(eval isas := $$(call isas_of,$$(shell $$(CC) -dumpmachine)))$(isas)
 isas_of = $(if $(filter x86_64-% amd64-%,$(1)),sse2 avx2 avx512,$(if $(filter aarch64-% arm64-%,$(1)),neon,plain))
 isas_flags = $(foreach i,$(isas),$(isa_flags_$(i)))
 # For scripts that compile kernels.
-kernel_environment = KERNEL_FLAGS='$(code_flags)' $(foreach i,$(isas),KERNEL_FLAGS_$(i)='$(isa_flags_$(i))')
+kernel_environment = KERNEL_FLAGS='$(code_flags) -Wno-psabi' $(foreach i,$(isas),KERNEL_FLAGS_$(i)='$(isa_flags_$(i))')
 
 kernel_objects := $(foreach i,$(isas),$(kernels:src/%.c=$(build)/obj/%.$(i).o))
 define kernel_rule

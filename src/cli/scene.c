@@ -98,7 +98,7 @@ static status make_scene(const scene_request *request, scene **out, diagnostic *
         result = out_of_memory(why);
     for (size_t i = 0; i < request->edit_count && result == STATUS_OK; i++)
         result = scene_edit_apply(*out, request->edits[i].edit, request->edits[i].text, why);
-    if (result == STATUS_OK) {
+    if (result == STATUS_OK && (request->edit_count > 0 || !request->path)) {
         /* The place of errors that have no line. */
         diagnostic_locate(why, request->path ? request->path : "--new", 0, 0);
         result = scene_check(*out, why);

@@ -98,7 +98,7 @@ status scene_input_read(const scene_input *input, scene **out, diagnostic *why)
     }
     for (size_t i = 0; result == STATUS_OK && input->from_beginning && i < (*out)->mesh_count; i++)
         (*out)->meshes[i].time_s = 0;
-    if (result == STATUS_OK) {
+    if (result == STATUS_OK && input->count > 0) {
         diagnostic_locate(why, input->path, 0, 0); /* the place of errors that have no line */
         result = scene_check(*out, why);
     }

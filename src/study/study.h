@@ -1,6 +1,6 @@
 /* A study: a scene, fixed parameters, a grid over any parameters, repetitions, and files to keep. Raw rows are never
  * changed (design, decision 7). results/<study>/ has rows.csv (one row per repetition, appended and flushed
- * immediately), manifest.json, images/ (one per cell); with a reference also compare.csv (one row per cell) and
+ * immediately), runs.json, images/ (one per cell); with a reference also compare.csv (one row per cell) and
  * references/. Ownership: study_read gives, study_destroy releases. Errors in the file are located by file, line and
  * column. */
 #pragma once
