@@ -82,7 +82,7 @@ char *wasm_query_medium(const cuvette_query *query, const double *point)
 static status write_tree(const cuvette_query *q, const ray_tree *tree, char **text, diagnostic *why)
 {
     text_writer writer;
-    const traced content = {q->model, q->inspector, tree, q->model->path ? q->model->path : ""};
+    const traced content = {q->model, q->inspector, tree, q->model->path ? q->model->path : "", .for_page = false};
     TRY(text_writer_open(&writer, why));
     return text_writer_end(&writer, trace_write_json(&content, writer.stream, why), text, NULL, why);
 }
