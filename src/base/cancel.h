@@ -62,5 +62,5 @@ status cancelled_or_out_of_memory(diagnostic *why);
 /* For threads that work for this one: its token, NULL for none; theirs (never calls ask). */
 cancel_token *cancel_current(void);
 void cancel_follow(cancel_token *t);
-/* Waits for a thread that follows, and asks meanwhile, which it cannot. */
+/* pthread_join of a thread that follows this one's token. Calls ask while it waits, as only this thread may. */
 void cancel_join(pthread_t thread);

@@ -26,7 +26,7 @@ typedef void worker_pool_task(void *context, int worker);
 worker_pool *worker_pool_create(size_t stack_bytes);
 void worker_pool_destroy(worker_pool *p);
 
-/* Makes sure that count threads are waiting for work. */
+/* Starts threads until count of them wait for work. */
 status worker_pool_reserve(worker_pool *p, int count, diagnostic *why);
 
 /* Runs task(context, 0 .. count-1), each on its own thread, and returns when all have ended. Meanwhile watch (may be

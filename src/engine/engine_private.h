@@ -76,8 +76,8 @@ status engine_check(const cuvette_scene *s, diagnostic *why);
 /* Loads the files that the scene names, and its slimes, once; watch as for scene_load_until. */
 status engine_load(cuvette_scene *s, const load_watch *watch, diagnostic *why);
 
-/* The caller's progress function, called about ten times a second with a share that never decreases, behind a token
- * that is set once the function returns false: nothing else turns that into a cancellation. */
+/* The caller's progress function, called about ten times a second with a share that never decreases. When it returns
+ * false, the token is set: the only place where a callback's result ends work. */
 typedef struct host_progress {
     bool (*tell)(void *context, double share); /* may be NULL */
     void *context;

@@ -1,4 +1,4 @@
-/* The linter's room: everything that says of a legal scene that part of it does nothing, or not what it seems to.
+/* The linter: notes on a valid scene, parts of which have no effect or not the one that its author expects.
  *
  * A note has a place, one sentence and a remedy. Three things make notes:
  * - inert_ask: one parameter has no effect, and what it needs. From the scene alone, in microseconds: for each --set,
