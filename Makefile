@@ -105,8 +105,7 @@ mpi := $(filter src/mpi/%,$(sources))
 web := $(filter src/web/%,$(sources))
 page := $(sort $(wildcard $(addprefix src/web/page/*.,html css js svg)))
 importer := $(wildcard src/import/*.c) $(addprefix src/base/,status.c cancel.c number.c below.c float_environment.c \
-  grow.c large_pages.c os_confine_calls.c os_confine_files.c os_process.c thread_team.c \
-  worker_pool.c)
+  array.c os_confine.c os_process.c thread_team.c worker_pool.c)
 objects_of = $(1:src/%.c=$(build)/obj/%.o)
 include mk/arch.mk
 library_objects := $(call objects_of,$(library)) $(kernel_objects)

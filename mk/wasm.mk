@@ -13,7 +13,7 @@ wasm_isas := $(WASM_ISAS)
 wasm_isa_flags_simd128 := -msimd128 -mnontrapping-fptoint -mbulk-memory -msign-ext
 
 # No studies, which measure a machine, and nothing of the operating system; src/wasm has what replaces them.
-wasm_without := src/study/% src/engine/study% src/base/below.c src/base/child.c src/base/spawn.c src/base/os_confine% \
+wasm_without := src/study/% src/engine/study% src/base/below.c src/base/child.c src/base/os_confine% \
   src/measure/hardware_counter.c src/measure/topology_discover.c src/measure/disturbances.c src/measure/levels.c \
   $(addprefix src/scene/assets/,mesh_child% mesh_program.c mesh_file.c) src/base/worker_pool.c
 wasm_web := $(filter-out src/web/http/http.c $(addprefix src/web/http/http_,events.c guard.c gzip.c library.c \

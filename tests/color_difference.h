@@ -4,7 +4,7 @@
  * last place. Pure; cannot fail. */
 #pragma once
 
-#include "optics/observer.h"
+#include "optics/spectrum.h"
 #include <math.h>
 
 static const double degrees_per_radian = 57.295779513082321;

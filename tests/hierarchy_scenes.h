@@ -2,7 +2,7 @@
  * mesh. */
 #pragma once
 
-#include "base/single.h"
+#include "base/lanes.h"
 #include "geometry/mesh_generators.h"
 #include "geometry/hierarchy.h"
 #include "random_stream.h"

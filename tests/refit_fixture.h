@@ -3,7 +3,7 @@
 #pragma once
 
 #include "base/isa.h"
-#include "base/single.h"
+#include "base/lanes.h"
 #include "geometry/hierarchy_private.h"
 #include "hierarchy_scenes.h"
 

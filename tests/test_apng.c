@@ -6,7 +6,7 @@
 #include <stdint.h>
 #include <cmocka.h>
 
-#include "image/apng.h"
+#include "image/video.h"
 #include <stdlib.h>
 #include <string.h>
 #include <unistd.h>

@@ -7,15 +7,11 @@
 
 #include "base/file.h"
 #include "base/os_process.h"
-#include "base/grow.h"
+#include "base/array.h"
 #include "base/hash.h"
-#include "base/large_pages.h"
 #include "base/number.h"
 #include "base/status.h"
-#include "base/temporary.h"
-#include "base/system_error.h"
 #include "base/text.h"
-#include "base/text_writer.h"
 #include <dirent.h>
 #include <errno.h>
 #include <fcntl.h>

@@ -99,7 +99,7 @@ static void members_of_a_team_have_the_token_of_their_caller(void **state)
     enum { TASKS = 64 };
     bool asked[TASKS];
     cancel_token t = {.ask = NULL};
-    thread_team *team = thread_team_start(4);
+    thread_team *team = thread_team_create(4);
     for (int set = 0; set < 2; set++) {
         cancel_begin(&t);
         if (set)
@@ -112,7 +112,7 @@ static void members_of_a_team_have_the_token_of_their_caller(void **state)
     thread_team_run(team, note, asked, TASKS); /* the token has ended, its members forget it */
     for (int i = 0; i < TASKS; i++)
         assert_false(asked[i]);
-    thread_team_stop(team);
+    thread_team_destroy(team);
 }
 
 /* --- all kinds of work --- */

@@ -1,4 +1,4 @@
-/* Tests of the rights that threads and programs give up: base/os_confine.h, base/apart.h, and the importer's process.
+/* Tests of the rights that threads and programs give up: base/os_confine.h, image/codec.h, and the importer's process.
  * What is given up cannot be had again, so that most tests run in a child process. Run from the repository root. */
 #include <setjmp.h>
 #include <stdarg.h>
@@ -6,9 +6,9 @@
 #include <stdint.h>
 #include <cmocka.h>
 
-#include "base/apart.h"
+#include "image/codec.h"
 #include "base/cancel.h"
-#include "base/memory_budget.h"
+#include "base/budget.h"
 #include "base/os_confine.h"
 #include "base/text.h"
 #include "image/image.h"
@@ -198,7 +198,7 @@ static void a_call_apart_reaches_nothing_and_its_caller_everything(void **state)
 {
     (void)state;
     findings f = {false}, own = {false};
-    apart_run(look_around, &f);
+    codec_run_confined(look_around, &f);
     assert_true(f.ran);
     if (in_child(has_calls) == GOOD)
         assert_false(f.reads || f.writes || f.connects);
@@ -233,7 +233,7 @@ static void a_call_apart_is_cancelled_with_its_caller(void **state)
     question q = {0};
     cancel_token token = {.ask = ask, .context = &q};
     cancel_begin(&token);
-    apart_run(work_until_cancelled, &q);
+    codec_run_confined(work_until_cancelled, &q);
     cancel_end(&token);
     assert_true(q.was_stopped);
 }
@@ -248,7 +248,7 @@ static void a_call_apart_has_the_budget_of_its_caller(void **state)
 {
     (void)state;
     status code = STATUS_OK;
-    apart_run(refuse, &code);
+    codec_run_confined(refuse, &code);
     assert_int_equal(code, STATUS_BAD_INPUT);
 }
 

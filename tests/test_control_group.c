@@ -8,7 +8,7 @@
 
 #include "base/control_group.h"
 #include "base/file.h"
-#include "measure/disturbances.h"
+#include "measure/usage.h"
 #include "measure/machine_noise.h"
 #include "study/environment.h"
 

@@ -6,7 +6,6 @@
 #include <cmocka.h>
 
 #include "measure/design.h"
-#include "measure/quantiles.h"
 #include "measure/statistics.h"
 #include "random_stream.h"
 #include <math.h>

@@ -7,7 +7,7 @@
 #include <cmocka.h>
 
 #include "base/elementary.h"
-#include "base/elementary_inline.h"
+#include "base/lanes.h"
 #include "random_stream.h"
 
 #define assert_near(a, b, tolerance) assert_true(fabsl((long double)(a) - (long double)(b)) <= (tolerance))

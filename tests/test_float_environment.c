@@ -555,13 +555,13 @@ static void threads_start_in_the_default_environment(void **state)
         memset(&r, 0xff, sizeof r);
         pthread_barrier_init(&r.all_there, NULL, THREADS);
         set_surroundings(&now);
-        thread_team *t = kind == 0 ? thread_team_start(THREADS) : NULL;
+        thread_team *t = kind == 0 ? thread_team_create(THREADS) : NULL;
         worker_pool *p = kind == 0 ? NULL : worker_pool_create(0);
         if (t)
             thread_team_run(t, sign_in_team, &r, THREADS);
         else
             worker_pool_run(p, THREADS, kind == 1, sign_in_pool, NULL, 0.1, &r, NULL);
-        thread_team_stop(t);
+        thread_team_destroy(t);
         worker_pool_destroy(p);
         fesetenv(FE_DFL_ENV);
         pthread_barrier_destroy(&r.all_there);

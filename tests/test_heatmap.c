@@ -6,7 +6,6 @@
 #include <cmocka.h>
 
 #include "image/codec.h"
-#include "image/font.h"
 #include "image/heatmap.h"
 #include "image/image.h"
 #include <math.h>

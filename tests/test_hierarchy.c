@@ -10,7 +10,7 @@
 #include <cmocka.h>
 
 #include "base/isa.h"
-#include "base/single.h"
+#include "base/lanes.h"
 #include "hierarchy_scenes.h"
 #include "whole.h"
 

@@ -7,7 +7,7 @@
 #include <stdint.h>
 #include <cmocka.h>
 
-#include "base/single.h"
+#include "base/lanes.h"
 #include "base/thread_team.h"
 #include "hierarchy_fixture.h"
 #include "random_stream.h"
@@ -350,7 +350,7 @@ static void a_thread_team_runs_each_task_once(void **state)
 {
     (void)state;
     for (int threads = 1; threads <= 5; threads += 2) {
-        thread_team *t = thread_team_start(threads);
+        thread_team *t = thread_team_create(threads);
         assert_non_null(t);
         static const size_t counts[] = {1000, 0, 1, 999};
         for (size_t k = 0; k < 4; k++) {
@@ -360,7 +360,7 @@ static void a_thread_team_runs_each_task_once(void **state)
                 assert_int_equal(own.calls[i], i < counts[k]);
             assert_int_equal(own.bad_members, 0);
         }
-        thread_team_stop(t);
+        thread_team_destroy(t);
     }
 }
 

@@ -10,7 +10,7 @@
 
 #include "cuvette.h"
 #include "base/cancel.h"
-#include "base/memory_budget.h"
+#include "base/budget.h"
 #include "job/job.h"
 #include "render_fixture.h"
 #include <sys/resource.h>

@@ -7,7 +7,7 @@
 #include <stdint.h>
 #include <cmocka.h>
 
-#include "base/below.h"
+#include "base/file.h"
 #include "base/os_confine.h"
 #include "image/image.h"
 #include "lab_fixture.h"

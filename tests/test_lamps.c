@@ -8,7 +8,7 @@
 #include <stdlib.h>
 #include <cmocka.h>
 
-#include "optics/lamp_spectrum.h"
+#include "optics/spectrum.h"
 #include "random_scene.h"
 #include "render/shade/spectra.h"
 #include "render_fixture.h"

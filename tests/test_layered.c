@@ -8,8 +8,8 @@
 #include <cmocka.h>
 
 #include "mueller_matrix.h"
-#include "optics/metals.h"
-#include "optics/observer.h"
+#include "optics/media.h"
+#include "optics/spectrum.h"
 #include "probe_fixture.h"
 #include "render/shade/layered_table.h"
 

@@ -7,8 +7,6 @@
 #include <cmocka.h>
 
 #include "measure/levels.h"
-#include "measure/power.h"
-#include "measure/quantiles.h"
 #include "measure/statistics.h"
 #include "random_stream.h"
 #include "whole.h"
@@ -290,7 +288,7 @@ static void intervals_stay_in_the_range_of_their_quantity(void **state)
     level_interval of;
     assert_int_equal(level_median(&(level_sample){waiting, start, 3}, LEVEL_NOT_NEGATIVE, 1, &of, NULL), STATUS_OK);
     assert_true(of.low == 0 && of.value == 1 && of.high > 1);
-    assert_int_equal(level_median(&(level_sample){shares, start, 3}, LEVEL_SHARE, 1, &of, NULL), STATUS_OK);
+    assert_int_equal(level_median(&(level_sample){shares, start, 3}, LEVEL_FRACTION, 1, &of, NULL), STATUS_OK);
     assert_true(of.low >= 0 && of.high == 1);
     /* a positive quantity that is 0 or negative was none */
     assert_int_equal(level_median(&(level_sample){waiting, start, 3}, LEVEL_POSITIVE, 1, &of, NULL), STATUS_OK);

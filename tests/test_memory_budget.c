@@ -1,4 +1,4 @@
-/* Tests of base/memory_budget.h: what is free by made-up files of /proc and /sys, the refusal, sizes as text. */
+/* Tests of base/budget.h: what is free by made-up files of /proc and /sys, the refusal, sizes as text. */
 #include <setjmp.h>
 #include <stdarg.h>
 #include <stddef.h>
@@ -6,7 +6,7 @@
 #include <cmocka.h>
 
 #include "base/file.h"
-#include "base/memory_budget.h"
+#include "base/budget.h"
 
 #include <stdio.h>
 #include <stdlib.h>

@@ -9,7 +9,7 @@
 #include <string.h>
 #include <cmocka.h>
 
-#include "base/memory_budget.h"
+#include "base/budget.h"
 #include "geometry/mesh_generators.h"
 
 #define COUNT(a) (sizeof(a) / sizeof((a)[0]))

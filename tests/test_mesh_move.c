@@ -9,7 +9,7 @@
 #include <string.h>
 #include <cmocka.h>
 
-#include "base/single.h"
+#include "base/lanes.h"
 #include "geometry/mesh_generators.h"
 #include "geometry/mesh.h"
 #include "random_stream.h"

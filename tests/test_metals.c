@@ -6,7 +6,7 @@
 #include <stdint.h>
 #include <cmocka.h>
 
-#include "optics/metals.h"
+#include "optics/media.h"
 #include "optics/multilayer.h"
 
 #define COUNT(a) (sizeof(a) / sizeof((a)[0]))

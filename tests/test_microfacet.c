@@ -27,7 +27,7 @@ typedef struct facets {
 static double projected(vec3 m, const void *context)
 {
     const facets *f = context;
-    return ggx_normals(f->alpha, m) * m.z;
+    return ggx_distribution(f->alpha, m) * m.z;
 }
 
 /* Walter et al., (4): the facets' projected area is that of the surface. */
@@ -39,8 +39,8 @@ static void facets_cover_the_surface_once(void **state)
         assert_near(over_normals(projected, &f, 2000, 4), 1.0, 1e-6);
         for (size_t k = 0; k < COUNT(angles); k++) {
             const vec3 m = at_angles(angles[k], 0.7);
-            assert_near(ggx_normals(alphas[a], m) / walter_D(alphas[a], m), 1.0, 1e-9);
-            assert_near(ggx_visible_share(alphas[a], m), walter_G1(alphas[a], m, m), 1e-12);
+            assert_near(ggx_distribution(alphas[a], m) / walter_D(alphas[a], m), 1.0, 1e-9);
+            assert_near(ggx_masking(alphas[a], m), walter_G1(alphas[a], m, m), 1e-12);
         }
     }
 }
@@ -48,7 +48,7 @@ static void facets_cover_the_surface_once(void **state)
 static double visible(vec3 m, const void *context)
 {
     const facets *f = context;
-    return ggx_visible_share(f->alpha, f->i) * ggx_normals(f->alpha, m) * fmax(vec3_dot(f->i, m), 0.0);
+    return ggx_masking(f->alpha, f->i) * ggx_distribution(f->alpha, m) * fmax(vec3_dot(f->i, m), 0.0);
 }
 
 /* Heitz, "Understanding the masking-shadowing function in microfacet-based BRDFs", JCGT 3(2), 2014, (14): the visible
@@ -72,7 +72,7 @@ static double moment_of(int number, vec3 m)
 static double visible_moment(vec3 m, const void *context)
 {
     const facets *f = context;
-    return moment_of(f->moment, m) * ggx_visible_normals(f->alpha, f->i, m);
+    return moment_of(f->moment, m) * ggx_visible_distribution(f->alpha, f->i, m);
 }
 
 /* Ten moments of 512 x 512 normals from the midpoints of a grid of random numbers. */
@@ -85,7 +85,7 @@ static void drawn_normals_have_their_density(void **state)
             facets f = {alphas[a], at_angles(angles[k], 2.1), 0};
             double sum[MOMENTS] = {0.0};
             for (int c = 0; c < GRID * GRID; c++) {
-                const vec3 m = ggx_draw_normal(f.alpha, f.i, (c / GRID + 0.5) / GRID, (c % GRID + 0.5) / GRID);
+                const vec3 m = ggx_sample_normal(f.alpha, f.i, (c / GRID + 0.5) / GRID, (c % GRID + 0.5) / GRID);
                 assert_true(m.z > 0.0 && vec3_dot(m, f.i) > -1e-12);
                 for (int j = 0; j < MOMENTS; j++)
                     sum[j] += moment_of(j, m) / GRID / GRID;
@@ -97,8 +97,8 @@ static void drawn_normals_have_their_density(void **state)
 
 static double pass(double alpha, vec3 i, vec3 o, two_media n)
 {
-    return o.z > 0.0 ? facet_that_reflects(alpha, i, o).density * ggx_visible_share(alpha, o)
-                     : facet_that_refracts(alpha, i, o, n.n_i, n.n_o).density * ggx_visible_share(alpha, o);
+    return o.z > 0.0 ? facet_that_reflects(alpha, i, o).density * ggx_masking(alpha, o)
+                     : facet_that_refracts(alpha, i, o, n.n_i, n.n_o).density * ggx_masking(alpha, o);
 }
 
 /* A facet's share of light, times density and G_1, is f cos: Walter et al., (20) and (21). */
@@ -168,15 +168,15 @@ static albedo drawn_albedo(double alpha, vec3 i, two_media n)
     enum { GRID = 400 };
     albedo sum = {0.0, 0.0};
     for (int c = 0; c < GRID * GRID; c++) {
-        const vec3 m = ggx_draw_normal(alpha, i, (c / GRID + 0.5) / GRID, (c % GRID + 0.5) / GRID),
+        const vec3 m = ggx_sample_normal(alpha, i, (c / GRID + 0.5) / GRID, (c % GRID + 0.5) / GRID),
                    d = vec3_scale(i, -1.0);
         const double cos_i = vec3_dot(i, m);
         const fresnel f = fresnel_dielectric(cos_i, n.n_i, n.n_o);
         const vec3 back = direction_reflect(d, m, cos_i), ahead = direction_refract(d, m, cos_i, f.eta, f.cos_t);
         if (back.z > 0.0)
-            sum.reflected += f.R * ggx_visible_share(alpha, back) / GRID / GRID;
+            sum.reflected += f.R * ggx_masking(alpha, back) / GRID / GRID;
         if (!f.total && ahead.z < 0.0)
-            sum.refracted += (1.0 - f.R) * ggx_visible_share(alpha, ahead) / GRID / GRID;
+            sum.refracted += (1.0 - f.R) * ggx_masking(alpha, ahead) / GRID / GRID;
     }
     return sum;
 }
@@ -243,9 +243,9 @@ static void a_perfect_mirror_keeps_a_known_share_at_normal_incidence(void **stat
         }
         const vec3 i = vec3_make(0.0, 0.0, 1.0);
         for (int c = 0; c < GRID * GRID; c++) {
-            const vec3 m = ggx_draw_normal(alphas[a], i, (c / GRID + 0.5) / GRID, (c % GRID + 0.5) / GRID),
+            const vec3 m = ggx_sample_normal(alphas[a], i, (c / GRID + 0.5) / GRID, (c % GRID + 0.5) / GRID),
                        o = vec3_sub(vec3_scale(m, 2.0 * m.z), i);
-            drawn += o.z > 0.0 ? ggx_visible_share(alphas[a], o) / GRID / GRID : 0.0;
+            drawn += o.z > 0.0 ? ggx_masking(alphas[a], o) / GRID / GRID : 0.0;
         }
         assert_near(drawn, expected, 5e-4);
     }

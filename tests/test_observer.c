@@ -6,7 +6,7 @@
 #include <stdint.h>
 #include <cmocka.h>
 
-#include "optics/observer.h"
+#include "optics/spectrum.h"
 
 #define COUNT(a) (sizeof(a) / sizeof((a)[0]))
 #define assert_near(a, b, tolerance) assert_true(fabs((a) - (b)) <= (tolerance))

@@ -9,7 +9,7 @@
 #include <cmocka.h>
 
 #include "base/elementary.h"
-#include "base/elementary_inline.h"
+#include "base/lanes.h"
 #include "base/isa.h"
 #include "base/random.h"
 #include "render/shade/path_kernels.h"

@@ -7,7 +7,6 @@
 #include <stdint.h>
 #include <cmocka.h>
 
-#include "base/sobol.h"
 #include "base/random.h"
 #include "whole.h"
 #include "render/caustics/photon_map.h"

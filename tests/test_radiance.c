@@ -8,7 +8,7 @@
 #include <stdint.h>
 #include <cmocka.h>
 
-#include "optics/observer.h"
+#include "optics/spectrum.h"
 #include "path_fixture.h"
 #include "probe_fixture.h"
 #include "realism/theory.h"

@@ -8,9 +8,9 @@
 #include <stdlib.h>
 #include <cmocka.h>
 
-#include "optics/drop_scattering.h"
+#include "optics/phase_function.h"
 #include "optics/media.h"
-#include "optics/observer.h"
+#include "optics/spectrum.h"
 #include "render/shade/rain.h"
 #include "render_fixture.h"
 
@@ -161,7 +161,7 @@ static double sum_of(const drop_angles *a)
 {
     double sum = 0.0;
     for (int b = 0; b < DROP_BINS; b++)
-        sum += p[b] * drop_bin_share(a, b);
+        sum += p[b] * drop_bin_fraction(a, b);
     return sum;
 }
 
@@ -192,7 +192,7 @@ static void no_light_is_lost_but_that_of_later_orders(void **state)
             assert_near(sum_of(&sunny), share_of_orders(index[k]), 1e-4);
     }
     drop_scattering(&sharp, 1.0, p); /* nothing happens to the light, except at exactly grazing incidence */
-    assert_near(p[DROP_BINS - 1] * drop_bin_share(&sharp, DROP_BINS - 1), 1.0, 1e-5);
+    assert_near(p[DROP_BINS - 1] * drop_bin_fraction(&sharp, DROP_BINS - 1), 1.0, 1e-5);
     assert_true(p[DROP_BINS / 2] < 1e-20);
 }
 

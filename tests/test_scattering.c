@@ -8,7 +8,7 @@
 #include <cmocka.h>
 
 #include "base/random.h"
-#include "optics/henyey_greenstein.h"
+#include "optics/phase_function.h"
 #include "path_fixture.h"
 #include "whole.h"
 

@@ -89,10 +89,10 @@ static void threads_agree_on_the_sets(void **state)
     (void)state;
     static crowd c;
     c.t = set_table_create();
-    thread_team *team = thread_team_start(4);
+    thread_team *team = thread_team_create(4);
     assert_non_null(team);
     thread_team_run(team, make_sets, &c, 4);
-    thread_team_stop(team);
+    thread_team_destroy(team);
     for (int k = 0; k < 1000; k++) {
         set_members m;
         set_table_members(c.t, c.made[0][k], &m);

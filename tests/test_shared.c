@@ -8,7 +8,6 @@
 
 #include "image/image.h"
 #include "scene/file/shared.h"
-#include "base/base64.h"
 #include "base/text.h"
 #include "scene/model/params.h"
 #include "scene/model/scene.h"

@@ -8,7 +8,7 @@
 #include <stdlib.h>
 #include <cmocka.h>
 
-#include "optics/observer.h"
+#include "optics/spectrum.h"
 #include "sheet_fixture.h"
 #include "zbuffer_fixture.h"
 

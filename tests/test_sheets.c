@@ -9,7 +9,7 @@
 #include <stdlib.h>
 #include <cmocka.h>
 
-#include "optics/polarisers.h"
+#include "optics/mueller.h"
 #include "random_stream.h"
 #include "render/inspect/probe.h"
 #include "render_fixture.h"

@@ -9,7 +9,6 @@
 #include <cmocka.h>
 
 #include "base/random.h"
-#include "base/sobol.h"
 
 enum { M_MAX = 10 };
 

@@ -121,12 +121,12 @@ static void a_last_line_with_unwritten_parts_is_incomplete(void **state)
 {
     (void)state;
     static const char torn[] = "a,b\n1,2\n\0\0,4\n", header[] = "a\0b\n", inside[] = "a,b\n\0,2\n3,4\n";
-    assert_int_equal(csv_whole("", 0), 0);
-    assert_int_equal(csv_whole("a,b", 3), 0);
-    assert_int_equal(csv_whole("a,b\n1,2\n3", 9), 8);
-    assert_int_equal(csv_whole(torn, sizeof torn - 1), 8);
-    assert_int_equal(csv_whole(header, sizeof header - 1), 0);
-    assert_int_equal(csv_whole(inside, sizeof inside - 1), sizeof inside - 1);
+    assert_int_equal(csv_complete_size("", 0), 0);
+    assert_int_equal(csv_complete_size("a,b", 3), 0);
+    assert_int_equal(csv_complete_size("a,b\n1,2\n3", 9), 8);
+    assert_int_equal(csv_complete_size(torn, sizeof torn - 1), 8);
+    assert_int_equal(csv_complete_size(header, sizeof header - 1), 0);
+    assert_int_equal(csv_complete_size(inside, sizeof inside - 1), sizeof inside - 1);
 }
 
 static void only_complete_lines_are_rows(void **state)

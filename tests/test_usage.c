@@ -7,12 +7,9 @@
 #include <cmocka.h>
 
 #include "measure/clock.h"
-#include "measure/disturbances.h"
-#include "measure/machine_noise.h"
-#include "measure/proc_stat.h"
-#include "measure/small_file.h"
-#include "measure/thread_usage.h"
 #include "measure/usage.h"
+#include "measure/machine_noise.h"
+#include "measure/proc_file.h"
 
 #include <ftw.h>
 #include <pthread.h>
@@ -185,14 +182,14 @@ static void fields_of_proc_files_are_found(void **state)
 {
     (void)state;
     static const char text[] = "Name:\tcuvette\nVmHWM:\t    1234 kB\nVmHWMx:\t 9 kB\nEmpty:\n";
-    assert_int_equal(small_file_field(text, "VmHWM"), 1234);
-    assert_int_equal(small_file_field(text, "Vm"), -1);
-    assert_int_equal(small_file_field(text, "Name"), -1);
-    assert_int_equal(small_file_field("", "Name"), -1);
+    assert_int_equal(proc_file_field(text, "VmHWM"), 1234);
+    assert_int_equal(proc_file_field(text, "Vm"), -1);
+    assert_int_equal(proc_file_field(text, "Name"), -1);
+    assert_int_equal(proc_file_field("", "Name"), -1);
     char read[8];
-    assert_false(small_file_read("/nowhere", "/file", read, sizeof read));
+    assert_false(proc_file_read("/nowhere", "/file", read, sizeof read));
     assert_string_equal(read, "");
-    assert_true(small_file_read("/proc", "/self/status", read, sizeof read));
+    assert_true(proc_file_read("/proc", "/self/status", read, sizeof read));
     assert_int_equal(strlen(read), sizeof read - 1);
 }
 
@@ -201,16 +198,16 @@ static void the_share_of_other_processes_is_computed(void **state)
     (void)state;
     /* 2 s on 4 units are 8 s; 3 of the 5 busy seconds belong to other processes */
     usage d = {.wall_s = 2.0, .cpu_s = 2.0, .machine_busy_s = 5.0, .machine_units = 4.0};
-    assert_near(usage_others_share(&d), 0.375, 1e-15);
+    assert_near(usage_others_fraction(&d), 0.375, 1e-15);
     d.machine_busy_s = 1.99;
-    assert_near(usage_others_share(&d), 0.0, 0.0);
+    assert_near(usage_others_fraction(&d), 0.0, 0.0);
     d.machine_busy_s = 20.0;
-    assert_near(usage_others_share(&d), 1.0, 0.0);
+    assert_near(usage_others_fraction(&d), 1.0, 0.0);
     d.machine_busy_s = NAN;
-    assert_true(isnan(usage_others_share(&d)));
+    assert_true(isnan(usage_others_fraction(&d)));
     d.machine_busy_s = 5.0;
     d.wall_s = 0.0;
-    assert_true(isnan(usage_others_share(&d)));
+    assert_true(isnan(usage_others_fraction(&d)));
 }
 
 static void *burn(void *context)
@@ -238,7 +235,7 @@ static void cpu_time_includes_all_threads(void **state)
     assert_true(d.voluntary_switches >= 1 && d.involuntary_switches >= 0);
     assert_true(d.machine_units >= 1.0);
     assert_true(isnan(d.machine_busy_s) || d.machine_busy_s >= 0.0);
-    double share = usage_others_share(&d);
+    double share = usage_others_fraction(&d);
     assert_true(isnan(share) || (share >= 0.0 && share <= 1.0));
 }
 

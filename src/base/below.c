@@ -1,5 +1,5 @@
-/* Opening files below a root folder. */
-#include "base/below.h"
+/* Opening files below a root folder: the file is checked after it was opened, through /proc/self/fd. */
+#include "base/file.h"
 
 #include <errno.h>
 #include <fcntl.h>

@@ -1,12 +1,13 @@
-/* Cancellation of long work: the only way to end it early. Whoever begins work that may have to end (a command, a time
- * limit, a call of the engine) begins a token on its thread, and sets it or lets it ask; every loop that may run for
- * longer than 50 ms asks cancel_asked, stops, and returns STATUS_INTERRUPTED. So no function below needs a parameter
- * for it, and functions that report progress return nothing: one that wants no more sets a token. Threads that work for
- * a caller follow its tokens: a thread team, the worker pool, cancel_join; other threads begin without one.
+/* Cancellation of long work, through one token. Whoever begins work that may have to end early (a command, a time
+ * limit, a call of the engine) begins a token on its thread, and sets it or supplies the function `ask`; every loop
+ * that may run for longer than 50 ms calls cancel_asked, stops, and returns STATUS_INTERRUPTED. So no function below
+ * needs a parameter for it, and functions that report progress return nothing: one that wants no more sets a token.
+ * Threads that work for a caller follow its tokens: a thread team, the worker pool, cancel_join; other threads begin
+ * without one.
  *
- * Once requested, cancellation stays so until the token ends: a function without a status may return early with
- * an incomplete result if its caller then asks before using it. Ownership: a token is its owner's, usually on the
- * stack, and must outlive the work; begin and end are paired on one thread, and nest: work below two tokens ends with
+ * Once requested, cancellation stays so until the token ends: a function without a status may return early with an
+ * incomplete result if its caller then asks before using it. Ownership: a token is its owner's, usually on the stack,
+ * and must outlive the work; begin and end are paired on one thread, and nest: work below two tokens ends with
  * either. */
 #pragma once
 
@@ -33,7 +34,7 @@ void cancel_end(cancel_token *t);
 
 /* From any thread, and from signal handlers; also before the token begins. */
 void cancel_set(cancel_token *t);
-/* Whether it was set or its ask was true; any thread may look. */
+/* Whether it was set or its ask returned true; for any thread. */
 bool cancel_is_set(const cancel_token *t);
 /* Before other work begins under it. */
 void cancel_clear(cancel_token *t);
@@ -59,7 +60,8 @@ status cancel_check(diagnostic *why);
 /* For a step that returned nothing: it was cancelled, or out of memory. */
 status cancelled_or_out_of_memory(diagnostic *why);
 
-/* For threads that work for this one: its token, NULL for none; theirs (never calls ask). */
+/* For threads that work for this one: cancel_current returns this thread's token, or NULL; the other threads follow it,
+ * without calls of ask. */
 cancel_token *cancel_current(void);
 void cancel_follow(cancel_token *t);
 /* pthread_join of a thread that follows this one's token. Calls ask while it waits, as only this thread may. */

@@ -1,10 +1,23 @@
-/* Runs another program to its end, with an empty standard input, no other open file of ours, in a process group of
- * its own that is killed with it. Ownership: the output belongs to the caller. Errors: STATUS_FAILURE if the program
- * cannot be started, STATUS_INTERRUPTED after the time limit or a cancellation. */
+/* Starting other programs, and running one to its end. They get a minimal environment of file descriptors and signals:
+ * standard input is empty, no other file of ours is open, and no signal is blocked or ignored. */
 #pragma once
 
 #include "base/status.h"
+#include <stdbool.h>
+#include <sys/types.h>
 
-/* arguments[0] is the program's path; the last element is NULL. *output: the first OUTPUT_MAX bytes of its standard
- * output and error, also after an error; NULL when out of memory. *exit_code: -1 if a signal ended it. */
+/* Starts a program whose output and errors go to the given descriptors; the caller waits for it. program: its path.
+ * arguments: from its name on; NULL-terminated. own_group: it leads its own process group. Returns 0 or an errno. */
+int spawn_program(pid_t *pid, const char *program, char *const *arguments, int out, int err, bool own_group);
+
+/* The same for another `cuvette`, which the kernel ends when this thread has ended, however it did: it must stop
+ * measuring when its caller has gone, and not run together with its successor. One thread at a time calls it. */
+int spawn_bound(pid_t *pid, const char *program, char *const *arguments, int out, int err);
+/* The other end: the program calls it first, and ends at once if it returns false: the parent has ended already. */
+bool spawn_follow_parent(void);
+
+/* Runs a program to its end, in a process group of its own that is killed with it. arguments[0] is its path; the last
+ * element is NULL. *output: the first 16 KiB of its standard output and error, also after an error; the caller's, freed
+ * with free; NULL when out of memory. *exit_code: -1 if a signal ended it. STATUS_FAILURE if the program cannot be
+ * started, STATUS_INTERRUPTED after the time limit or a cancellation. */
 status child_run(char *const *arguments, double limit_s, char **output, int *exit_code, diagnostic *why);

@@ -8,7 +8,7 @@
 
 enum { PATH_SIZE = 1200 };
 
-/* An error that may pass, unlike that of a file which is not there or not for us. */
+/* An error that may be temporary, unlike that of a file that does not exist or may not be read. */
 static int passing(int error)
 {
     return error == EMFILE || error == ENFILE || error == ENOMEM || error == EIO || error == EINTR ? error : 0;
@@ -24,8 +24,8 @@ static bool has_word(const char *list, const char *word)
     return false;
 }
 
-/* The group and those around it, up to the root of the tree; group is cut at its slashes. In a container the tree
- * begins at its own group, and the outer part of the path leads nowhere. */
+/* The group and those that contain it, up to the root of the tree; group is cut at its slashes. In a container the tree
+ * begins at the container's group, and the outer part of the path does not exist. */
 static void each_above(const char *tree, char *group, int version, control_group_visit *visit, void *context)
 {
     for (;;) {
@@ -95,7 +95,7 @@ static bool read_text(reader *r, const char *folder, const char *name, char *tex
     return found;
 }
 
-static void take_cpu(void *context, const char *folder, int version)
+static void add_cpu(void *context, const char *folder, int version)
 {
     reader *r = context;
     char text[64], period_text[64] = "";
@@ -117,7 +117,7 @@ static void take_cpu(void *context, const char *folder, int version)
     }
 }
 
-static void take_memory(void *context, const char *folder, int version)
+static void add_memory(void *context, const char *folder, int version)
 {
     /* version 1 has the largest multiple of a page that fits into a signed number where there is no limit */
     const uint64_t none = (uint64_t)1 << 62;
@@ -134,7 +134,7 @@ int control_group_read(const char *root, control_group_limits *out)
 {
     reader r = {.root = root, .limits = out};
     *out = (control_group_limits){.memory_bytes = UINT64_MAX};
-    const int cpu = control_group_each(root, "cpu", take_cpu, &r);
-    const int memory = control_group_each(root, "memory", take_memory, &r);
+    const int cpu = control_group_each(root, "cpu", add_cpu, &r);
+    const int memory = control_group_each(root, "memory", add_memory, &r);
     return r.error ? r.error : cpu ? cpu : memory;
 }

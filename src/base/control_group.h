@@ -1,7 +1,7 @@
-/* The control groups of this process (cgroups(7)): its own and those around it, whose limits hold as well; a slice of
- * systemd is one. Version 2 has one tree, version 1 one for each controller. Files are read below a root, "" for this
- * machine, so that recorded ones can take their place. Nothing is owned; a group without files limits nothing. Without
- * /proc/self/cgroup the roots of the trees are taken. */
+/* The control groups of this process (cgroups(7)): the innermost and those that contain it, whose limits hold as well;
+ * a slice of systemd is one. Version 2 has one tree, version 1 one for each controller. Files are read below a root, ""
+ * for this machine, so that a test can use recorded files. Nothing is owned; a group without files limits nothing.
+ * Without /proc/self/cgroup the roots of the trees are used. */
 #pragma once
 
 #include <stdint.h>

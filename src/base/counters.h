@@ -6,6 +6,7 @@
 #pragma once
 
 #include "base/lanes.h"
+#include <assert.h>
 #include <stdint.h>
 
 #ifndef CUVETTE_COUNTERS
@@ -21,8 +22,8 @@ enum {
 /* Throughput is summed in fixed point, CUT_ONE = 1.0, so that the order of summation does not matter. */
 #define COUNTERS_CUT_ONE 68719476736.0 /* 2^36 */
 
-/* The tests of queries of meshes' hierarchies, each ray counted as if it were traversed alone: see hierarchy_count in
- * geometry/hierarchy.h. */
+/* The tests of queries of meshes' hierarchies, each ray counted as if it were the only one of its packet: see
+ * hierarchy_count in geometry/hierarchy.h. */
 typedef struct query_counts {
     uint64_t rays;      /* queries of one ray each */
     uint64_t nodes;     /* nodes entered: inner nodes of a BVH, spheres of a tree of spheres */
@@ -57,8 +58,18 @@ static inline int64_t counters_cut_units(double throughput)
     return lanes_bits(throughput * COUNTERS_CUT_ONE + 6755399441055744.0) - lanes_bits(6755399441055744.0);
 }
 
-/* Adds from to *into, field by field. */
-void ray_counters_add(ray_counters *into, const ray_counters *from);
+static_assert(sizeof(ray_counters) % sizeof(uint64_t) == 0, "ray_counters consists only of 64-bit integers");
 
-/* camera + reflect + refract + shadow + photon. */
-uint64_t ray_counters_total(const ray_counters *counters);
+/* Adds from to *into, field by field. */
+static inline void ray_counters_add(ray_counters *into, const ray_counters *from)
+{
+    uint64_t *sum = (uint64_t *)into;
+    const uint64_t *term = (const uint64_t *)from;
+    for (unsigned i = 0; i < sizeof *into / sizeof *sum; i++)
+        sum[i] += term[i];
+}
+
+static inline uint64_t ray_counters_total(const ray_counters *counters)
+{
+    return counters->camera + counters->reflect + counters->refract + counters->shadow + counters->photon;
+}

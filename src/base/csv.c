@@ -129,7 +129,7 @@ static status damaged(const char *path, long line, diagnostic *why)
     return diagnose(why, STATUS_BAD_INPUT, "move the file away, or use a copy without this line", "the row is damaged");
 }
 
-/* Finds the starts of the lines, and makes the newlines of the copy ends of texts. Returns the number of lines. */
+/* Finds the starts of the lines, and replaces the newlines of the copy by 0. Returns the number of lines. */
 static size_t find_lines(csv *table)
 {
     size_t lines = 0;
@@ -196,7 +196,7 @@ static status split_all(csv *table, const char *path, bool strict, diagnostic *w
     return STATUS_OK;
 }
 
-size_t csv_whole(const char *text, size_t size)
+size_t csv_complete_size(const char *text, size_t size)
 {
     const char *newline = size ? memrchr(text, '\n', size) : NULL;
     if (!newline)
@@ -220,7 +220,7 @@ static bool has_carriage_returns(const csv *table)
     return newline && newline > table->raw && newline[-1] == '\r';
 }
 
-/* What a spreadsheet, an editor or a checkout of git with other line ends makes of rows. */
+/* Refuses rows that a spreadsheet, an editor or a checkout of git with other line ends has converted. */
 static status check_form(const csv *table, const char *path, diagnostic *why)
 {
     if (is_marked(table))
@@ -243,7 +243,7 @@ static size_t fields_of(const char *start, const char *end, diagnostic *why)
     return count;
 }
 
-/* Brings the bytes into the form that this program writes. */
+/* Converts the bytes to the form that this program writes. */
 static status mend(csv *table, diagnostic *why)
 {
     char *bytes = malloc(table->size + 2), *to = bytes;
@@ -257,7 +257,7 @@ static status mend(csv *table, diagnostic *why)
         to--;
     const char *last = memrchr(bytes, '\n', (size_t)(to - bytes)),
                *first_end = memchr(bytes, '\n', (size_t)(to - bytes));
-    /* Nothing is lost with a first line alone: a program may have been killed while it wrote it. */
+    /* A first line without its newline holds no row: a program may have been killed while it wrote it. */
     if (first_end && to[-1] != '\n' && fields_of(bytes, first_end, why) == fields_of(last + 1, to, why) &&
         !memchr(last + 1, 0, (size_t)(to - last - 1)))
         *to++ = '\n';
@@ -282,7 +282,7 @@ static status read_table(const char *path, const char *root, reading how, csv **
     if (code == STATUS_OK && how != READ_OWN)
         code = how == READ_ANY ? mend(table, why) : check_form(table, path, why);
     if (code == STATUS_OK) {
-        table->whole = csv_whole(table->raw, table->size);
+        table->whole = csv_complete_size(table->raw, table->size);
         table->torn = table->whole < table->size;
         code = split_all(table, path, how != READ_ROWS, why);
     }

@@ -1,6 +1,6 @@
 /* Comma-separated values (RFC 4180), restricted to fields without line breaks. In a file of this program a line is
- * complete if and only if its newline is present; other programs and people leave out the last one, end lines with
- * CR LF, and begin with a byte order mark, which csv_read_any takes. Ownership: csv_read gives, csv_destroy
+ * complete if and only if its newline is present; other programs and people leave out the last one, end lines with CR
+ * LF, and begin with a byte order mark, which csv_read_any accepts. Ownership: csv_read allocates, csv_destroy
  * releases; a csv_line is released with csv_line_free. */
 #pragma once
 
@@ -27,12 +27,12 @@ void csv_line_free(csv_line *line);
 
 /* The offset after the last complete line of a text. A line is complete if its newline is there and no byte is 0: after
  * a power cut, a part of the last line may never have been written, and reads as zeros. */
-size_t csv_whole(const char *text, size_t size);
+size_t csv_complete_size(const char *text, size_t size);
 
 /* The complete lines of a file. */
 typedef struct csv {
     char *raw;
-    size_t size; /* the file's bytes; whole is csv_whole of them */
+    size_t size; /* the file's bytes; whole is csv_complete_size of them */
     size_t whole;
     char *split; /* the same bytes split into fields; owned */
     size_t column_count;
@@ -48,7 +48,7 @@ typedef struct csv {
 /* STATUS_OK and *out = NULL if the file does not exist. STATUS_BAD_INPUT if a row does not have as many fields as the
  * header. */
 status csv_read(const char *path, csv **out, diagnostic *why);
-/* The same for a file below root (base/below.h) that people and other programs write. */
+/* The same for a file below root (base/file.h) that people and other programs write. */
 status csv_read_any(const char *path, const char *root, csv **out, diagnostic *why);
 /* As csv_read, for a file below root, but rows with another number of fields are no error. A byte order mark and CR LF
  * are: they are not what the program wrote. */

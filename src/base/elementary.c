@@ -1,7 +1,7 @@
-/* Powers and angles from + - * / and sqrt alone. */
+/* Powers and angles, only from + - * / and sqrt. */
 #include "base/elementary.h"
-#include "base/elementary_inline.h"
 
+#include "base/lanes.h"
 #include <math.h>
 
 double elementary_pow(double x, double y)

@@ -1,33 +1,43 @@
-/* Reading and atomic writing of whole files, and folders. */
+/* Reading and atomic writing of files, temporary files (unnamed, or named and locked: open(2), flock(2)), and
+ * folders. */
 #include "base/file.h"
 
-#include "base/below.h"
+#include "base/budget.h"
 #include "base/cancel.h"
-#include "base/memory_budget.h"
-#include "base/system_error.h"
-#include "base/temporary.h"
+#include "base/hash.h"
+#include "base/status.h"
 #include "base/text.h"
 #include <errno.h>
 #include <fcntl.h>
 #include <limits.h>
 #include <stdbool.h>
 #include <stdint.h>
+#include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
+#include <sys/file.h>
 #include <sys/stat.h>
 #include <unistd.h>
 
-static status no_room(diagnostic *why, const char *path)
+const char *file_name_of(const char *path)
 {
-    diagnostic_locate(why, path, 0, 0);
-    return out_of_memory(why);
+    const char *slash = strrchr(path, '/');
+    return slash ? slash + 1 : path;
 }
+
+char *file_next_to(const char *path, const char *name)
+{
+    const int folder = name[0] == '/' ? 0 : (int)(file_name_of(path) - path);
+    return text_format("%.*s%s", folder, path, name);
+}
+
+/* ---- reading ---- */
 
 /* Reads to the end of the file regardless of the size from fstat: files of /proc report 0. */
 static status read_descriptor(int fd, const char *path, size_t limit, size_t expected, char **text, size_t *size,
                               diagnostic *why)
 {
-    enum { AT_ONCE = 1 << 24 }; /* some 10 ms, between two questions whether to stop */
+    enum { AT_ONCE = 1 << 24 }; /* about 10 ms between two tests for cancellation */
     size_t capacity = expected < limit ? expected + 1 : limit + 1, used = 0;
     char *buffer = malloc(capacity + 1);
     while (buffer) {
@@ -64,7 +74,7 @@ static status read_descriptor(int fd, const char *path, size_t limit, size_t exp
             buffer = larger;
         }
     }
-    return no_room(why, path);
+    return locate_failure(why, path, out_of_memory(why));
 }
 
 status file_read(const char *path, size_t limit, char **text, size_t *size, diagnostic *why)
@@ -101,17 +111,134 @@ status file_read_below(const char *path, const char *root, size_t limit, char **
     return code;
 }
 
-const char *file_name_of(const char *path)
+/* ---- temporary files ---- */
+
+enum { NAMES_MAX = 10000 };
+
+/* Short, because the name of the target may be as long as the file system allows. */
+static char *name_at(const char *path, const char *ending, unsigned n)
 {
-    const char *slash = strrchr(path, '/');
-    return slash ? slash + 1 : path;
+    char host[256] = "", name[64];
+    gethostname(host, sizeof host - 1);
+    const uint64_t hash = hash_finish(hash_bytes(HASH_START, host, strlen(host)));
+    snprintf(name, sizeof name, ".cuvette-%08x-%u.part%.16s", (unsigned)(hash >> 32), n, ending);
+    char *whole = file_next_to(path, name);
+    if (!whole)
+        errno = ENOMEM;
+    return whole;
 }
 
-char *file_beside(const char *path, const char *name)
+static bool is_named(int fd, const char *name)
 {
-    const int folder = name[0] == '/' ? 0 : (int)(file_name_of(path) - path);
-    return text_format("%.*s%s", folder, path, name);
+    struct stat opened, named;
+    return fstat(fd, &opened) == 0 && lstat(name, &named) == 0 && opened.st_dev == named.st_dev &&
+           opened.st_ino == named.st_ino;
 }
+
+/* Removes a file whose writer is gone. Returns whether the name is free. */
+static bool remove_left(const char *name)
+{
+    const int fd = open(name, O_RDWR | O_CLOEXEC | O_NOFOLLOW | O_NONBLOCK);
+    if (fd < 0)
+        return errno == ENOENT;
+    const bool left = flock(fd, LOCK_EX | LOCK_NB) == 0 && is_named(fd, name) && unlink(name) == 0;
+    close(fd);
+    return left;
+}
+
+/* Removes files of killed writers with the names after n. */
+static void remove_all_left(const char *path, const char *ending, unsigned n)
+{
+    struct stat about;
+    char *name;
+    for (bool there = true; there && n < NAMES_MAX && (name = name_at(path, ending, n)); n++) {
+        there = lstat(name, &about) == 0;
+        if (there)
+            remove_left(name);
+        free(name);
+    }
+}
+
+/* A file of that name and its lock. Some file systems have no locks: only O_EXCL then protects the name, and nobody
+ * removes the file. */
+static int create(const char *name)
+{
+    const int fd = open(name, O_WRONLY | O_CREAT | O_EXCL | O_CLOEXEC, 0666);
+    if (fd < 0)
+        return -1;
+    const bool is_locked = flock(fd, LOCK_EX | LOCK_NB) == 0 || errno != EWOULDBLOCK;
+    if (is_locked && is_named(fd, name))
+        return fd;
+    close(fd); /* another process removed it as a file without a writer */
+    errno = EEXIST;
+    return -1;
+}
+
+/* Through /proc, because AT_EMPTY_PATH needs a capability. */
+static int link_name(int fd, const char *name)
+{
+    char own[64];
+    snprintf(own, sizeof own, "/proc/self/fd/%d", fd);
+    return linkat(AT_FDCWD, own, AT_FDCWD, name, AT_SYMLINK_FOLLOW);
+}
+
+/* The first free name: for a new file (fd < 0), or for the open one. Returns the descriptor. */
+static int reserve_name(const char *path, const char *ending, int fd, char **name)
+{
+    for (unsigned n = 0; n < NAMES_MAX; n++) {
+        *name = name_at(path, ending, n);
+        if (!*name)
+            return -1;
+        int taken;
+        bool exists;
+        do {
+            taken = fd < 0 ? create(*name) : link_name(fd, *name) == 0 ? fd : -1;
+            exists = taken < 0 && errno == EEXIST;
+        } while (exists && remove_left(*name));
+        if (taken >= 0)
+            remove_all_left(path, ending, n + 1);
+        if (!exists)
+            return taken;
+        free(*name);
+        *name = NULL;
+    }
+    return -1;
+}
+
+static int open_unnamed(const char *path)
+{
+    if (access("/proc/self/fd", X_OK) != 0)
+        return -1;
+    char *folder = file_next_to(path, ".");
+    const int fd = folder ? open(folder, O_WRONLY | O_TMPFILE | O_CLOEXEC, 0666) : -1;
+    free(folder);
+    if (fd >= 0)
+        flock(fd, LOCK_EX | LOCK_NB); /* for the time when it has a temporary name */
+    return fd;
+}
+
+int temporary_open(const char *path, char **name)
+{
+    *name = NULL;
+    const int fd = open_unnamed(path);
+    return fd >= 0 ? fd : reserve_name(path, "", -1, name);
+}
+
+int temporary_open_named(const char *path, const char *ending, char **name)
+{
+    return reserve_name(path, ending, -1, name);
+}
+
+int temporary_move(int fd, char **name, const char *path)
+{
+    if (!*name && link_name(fd, path) == 0)
+        return 0;
+    if (!*name && (errno != EEXIST || reserve_name(path, "", fd, name) < 0))
+        return -1;
+    return rename(*name, path);
+}
+
+/* ---- writing ---- */
 
 /* The file that path refers to after its symbolic links, which need not exist yet; NULL with errno. */
 static char *resolve(const char *path)
@@ -123,7 +250,7 @@ static char *resolve(const char *path)
         if (length < 0)
             return current;
         target[length] = 0;
-        char *next = file_beside(current, target);
+        char *next = file_next_to(current, target);
         free(current);
         current = next;
     }
@@ -184,7 +311,7 @@ status file_writer_open(file_writer *writer, const char *path, diagnostic *why)
                            "the name of the file to write is empty");
     writer->path = strdup(path);
     if (!writer->path)
-        return no_room(why, path);
+        return locate_failure(why, path, out_of_memory(why));
     int fd = open_target(writer);
     if (fd >= 0)
         writer->stream = fdopen(fd, "wb");
@@ -201,7 +328,7 @@ status file_writer_open(file_writer *writer, const char *path, diagnostic *why)
 
 void file_flush_folder(const char *path)
 {
-    char *folder = file_beside(path, ".");
+    char *folder = file_next_to(path, ".");
     int fd = folder ? open(folder, O_RDONLY | O_DIRECTORY | O_CLOEXEC) : -1;
     if (fd >= 0) {
         fsync(fd);
@@ -210,14 +337,14 @@ void file_flush_folder(const char *path)
     free(folder);
 }
 
-/* The reason of a write that failed before, which the stream has lost: the next one fails likewise. The file is thrown
- * away. */
+/* The reason of a write that failed before, which the stream has lost: another write fails in the same way. The file is
+ * discarded. */
 static int lost_reason(const file_writer *writer)
 {
     return writer->whole && write(fileno(writer->stream), "", 1) < 0 ? errno : 0;
 }
 
-/* A whole file gets its name while it is open, and so locked; after fsync, closing has no errors to report. */
+/* A temporary file gets its name while it is open, and so locked; after fsync, closing has no errors to report. */
 static int finish(file_writer *writer)
 {
     const int fd = fileno(writer->stream);
@@ -232,7 +359,7 @@ static int finish(file_writer *writer)
 
 status file_writer_commit(file_writer *writer, diagnostic *why)
 {
-    const status cancelled = cancel_check(why); /* its writer may have left early */
+    const status cancelled = cancel_check(why); /* the writer may have returned early */
     if (cancelled != STATUS_OK) {
         file_writer_abandon(writer);
         return cancelled;
@@ -281,8 +408,10 @@ status file_write(const char *path, const char *text, diagnostic *why)
     return file_writer_commit(&writer, why);
 }
 
-/* A new folder lasts only once its entry in the folder above is on disk. The last folder is flushed even if it exists:
- * the process that made it may have been killed before that. */
+/* ---- folders ---- */
+
+/* A new folder survives a power cut only once its entry in the parent folder is on disk. The last folder is flushed even
+ * if it exists: the process that made it may have been killed before that. */
 static int make_one_directory(const char *path, bool last)
 {
     struct stat about;
@@ -302,7 +431,7 @@ status file_make_directory(const char *path, diagnostic *why)
 {
     char *part = strdup(path);
     if (!part)
-        return no_room(why, path);
+        return locate_failure(why, path, out_of_memory(why));
     size_t length = strlen(part);
     while (length > 1 && part[length - 1] == '/')
         part[--length] = 0;

@@ -27,7 +27,7 @@ isa isa_best(void)
 #endif
 }
 
-/* NAME's place in the list; ISA_COUNT if it is not there. */
+/* The index of the name in the list; ISA_COUNT if it is not there. */
 static isa find(const char *name)
 {
     int level = 0;

@@ -115,7 +115,7 @@ char *number_format_within(double value, double half, char text[NUMBER_TEXT_MAX]
     snprintf(text, NUMBER_TEXT_MAX, "%.*f", decimals > 0 ? decimals : 0,
              decimals < 0 ? round(value / unit) * unit : value);
     uselocale(before);
-    /* what is not 0 is not shown as 0 */
+    /* only 0 is written as 0 */
     double shown = 0;
     if (value != 0 && (!number_parse_real(text, &shown) || shown == 0))
         return number_format_digits(value, 2, text);

@@ -1,9 +1,9 @@
-/* Rights that a thread gives up for good, so that a fault in a reader of other people's files reaches little: Landlock
- * for files and outgoing TCP connections (Linux 5.13), seccomp for system calls. They hold for the calling thread, and
- * for the threads and processes that it starts later; other threads of the process keep theirs. Where the kernel or a
- * container refuses, the functions return false and nothing has changed: the caller goes on without. Both also rule out
- * new privileges by set-user-ID programs (no_new_privs). CUVETTE_SANDBOX=off in the environment, valgrind, and for
- * system calls a build with sanitizers, which need more, switch them off. */
+/* Rights that a thread drops permanently, so that a fault in a reader of other people's files does little harm:
+ * Landlock for files and outgoing TCP connections (Linux 5.13), seccomp for system calls. They hold for the calling
+ * thread, and for the threads and processes that it starts later; other threads of the process keep theirs. Where the
+ * kernel or a container refuses, the functions return false and nothing has changed: the caller continues unconfined.
+ * Both also rule out new privileges by set-user-ID programs (no_new_privs). CUVETTE_SANDBOX=off in the environment,
+ * valgrind, and for system calls a build with sanitizers, which need more, switch them off. */
 #pragma once
 
 #include <stdbool.h>
@@ -18,7 +18,7 @@ typedef struct confine_place {
 } confine_place;
 
 /* From now on only these places; those that do not exist are skipped. Files that are open stay open. If it returns
- * false, errno is 0, or says what there was too little of: memory, open files. */
+ * false, errno is 0, or that of a shortage: memory, open files. */
 bool os_confine_files(const confine_place *places, size_t count);
 
 /* CONFINE_COMPUTING: memory, locks, clocks and the end of the thread; no files, no descriptors. CONFINE_READING: also

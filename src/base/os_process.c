@@ -1,4 +1,4 @@
-/* What a process knows of itself and of its parent: proc(5), sched_setaffinity(2), prctl(2). */
+/* Facts about this process and its parent: proc(5), sched_setaffinity(2), prctl(2). */
 #include "base/os_process.h"
 
 #include "base/cancel.h"
@@ -46,7 +46,7 @@ static void *call(void *of)
     return NULL;
 }
 
-/* glibc takes the size of a thread's stack from the limit at the start of the process. */
+/* glibc sets the size of threads' stacks from the limit at the start of the process. */
 int os_call_with_stack(int (*task)(void *context), void *context)
 {
     enum { ENOUGH_BYTES = 1 << 20, STACK_BYTES = 8 << 20 };

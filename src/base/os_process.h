@@ -1,4 +1,4 @@
-/* What a process knows of itself and of its parent, and what differs between systems in that: Linux. */
+/* This process and its parent, as far as it depends on the operating system: Linux. */
 #pragma once
 
 #include <limits.h>

@@ -4,7 +4,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-/* Words of the buffer through which bytes are hashed: they need not be aligned, nor be whole words. */
+/* Words of the buffer through which bytes are hashed: they need not be aligned, nor be a multiple of words. */
 enum { HASHED = 512 };
 
 static uint64_t hash_of(uint64_t hash, const void *bytes, size_t size)

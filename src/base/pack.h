@@ -1,6 +1,6 @@
 /* Values and arrays as one sequence of bytes, from one process to another of the same build: in native byte order, as
- * they lie in memory, each padded to whole words (8 bytes), and hashed on both sides. The reader does not trust what it
- * reads: it takes no more than the sequence's own size, so that callers can check a count before they allocate.
+ * they are in memory, each padded to words (8 bytes), and hashed on both sides. The reader does not trust what it
+ * reads: it reads no more than the size of the sequence, so that callers can check a count before they allocate.
  *
  * A writer without a function only counts. The reader requests the same sizes in the same order as the writer wrote.
  * Ownership: both borrow the context; texts that are read are the caller's, released with free. Errors: those of the

@@ -1,6 +1,7 @@
-/* Diagnostics: their text and position. */
+/* Diagnostics: their text and position; and the meaning of system errors. */
 #include "base/status.h"
 
+#include <errno.h>
 #include <stdarg.h>
 #include <stdbool.h>
 #include <stdio.h>
@@ -109,4 +110,44 @@ char *diagnostic_text(const diagnostic *why, char *text, size_t size)
     snprintf(text, size, "%s%s%s%s%s%s%s", why->file, line, column, located ? ": " : "", why->what,
              why->remedy[0] ? "; " : "", why->remedy);
     return text;
+}
+
+/* ---- system errors ---- */
+
+const char *system_remedy(int error)
+{
+    switch (error) {
+    case ENOSPC:
+    case EDQUOT: return "free some space or choose another disk";
+    case EFBIG: return "raise the limit on file size (ulimit -f)";
+    case EMFILE: return "raise the limit on open files (ulimit -n)";
+    case ENFILE: return "close other programs";
+    case EAGAIN: return "close other programs, or raise the limit on processes (ulimit -u)";
+    case EINTR: return "run the command again";
+    case EIO: return "check the disk (dmesg), or choose another";
+    case EACCES:
+    case EPERM:
+    case EROFS: return "change the permissions or choose another folder";
+    case ENOENT: return "check the path";
+    default: return NULL;
+    }
+}
+
+static bool is_the_machines(int error)
+{
+    return error == ENOSPC || error == EDQUOT || error == EFBIG || error == EMFILE || error == ENFILE || error == EIO ||
+           error == EAGAIN;
+}
+
+/* strerrordesc_np and not strerror, which is not thread-safe and depends on the locale. */
+status system_error(diagnostic *why, status otherwise, const char *path, const char *doing, int error,
+                    const char *advice)
+{
+    const char *reason = strerrordesc_np(error), *remedy = system_remedy(error);
+    if (path)
+        diagnostic_locate(why, path, 0, 0);
+    if (error == ENOMEM)
+        return out_of_memory(why);
+    return diagnose(why, is_the_machines(error) ? STATUS_FAILURE : otherwise, remedy ? remedy : advice, "%s: %s", doing,
+                    reason ? reason : "unknown error");
 }

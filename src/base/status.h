@@ -40,7 +40,7 @@ status diagnose(diagnostic *why, status code, const char *remedy, const char *wh
 /* For steps with clean-up: makes the call if all succeeded so far, and stores its status. */
 #define THEN(code, call) ((void)((code) == STATUS_OK ? ((code) = (call)) : STATUS_OK))
 
-/* STATUS_FAILURE with the common text for out of memory; and the remedy, for those that say for what. */
+/* STATUS_FAILURE with the common text for out of memory; and the remedy, for texts that name what needs it. */
 status out_of_memory(diagnostic *why);
 #define MEMORY_REMEDY "close other programs, or use a smaller scene or image"
 
@@ -56,3 +56,14 @@ status locate_failure(diagnostic *why, const char *place, status code);
 
 /* Writes "file:line:column: what; remedy" (without absent parts) into text; returns text. */
 char *diagnostic_text(const diagnostic *why, char *text, size_t size);
+
+/* ---- system errors ---- */
+
+/* What to do about an errno; NULL if that depends on what was being done. */
+const char *system_remedy(int error);
+
+/* Fills *why with "doing: reason" and a remedy. error: an errno. path: the place, or NULL to leave it unchanged.
+ * Returns STATUS_FAILURE for what only the machine can lack (memory, room, open files, a sound disk), otherwise
+ * `otherwise`, with the remedy `advice` if system_remedy has none. */
+status system_error(diagnostic *why, status otherwise, const char *path, const char *doing, int error,
+                    const char *advice);

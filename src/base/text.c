@@ -1,9 +1,14 @@
-/* Edit distance, the nearest word, and formatted strings. */
+/* Texts: similar words, formatting, a stream into memory, words of a shell, Base64. */
 #include "base/text.h"
 
 #include <stdarg.h>
+#include <stdint.h>
 #include <stdio.h>
+#include <stdlib.h>
 #include <string.h>
+#include <sys/types.h>
+
+/* ---- similar words ---- */
 
 enum { WORD_MAX = 63 };
 
@@ -57,6 +62,8 @@ const char *text_nearest(const char *wrong, const char *const *words, size_t cou
     return nearest;
 }
 
+/* ---- formatting ---- */
+
 char *text_format(const char *format, ...)
 {
     char *text = NULL;
@@ -65,4 +72,142 @@ char *text_format(const char *format, ...)
     int length = vasprintf(&text, format, arguments);
     va_end(arguments);
     return length < 0 ? NULL : text;
+}
+
+/* ---- a stream into memory ---- */
+
+/* Room for more bytes and a final 0. */
+static bool make_room(text_writer *w, size_t more)
+{
+    if (more < w->capacity - w->size)
+        return true;
+    if (more > SIZE_MAX / 4 - w->size)
+        return false;
+    const size_t capacity = 2 * (w->size + more) + 128;
+    char *larger = realloc(w->text, capacity);
+    if (!larger)
+        return false;
+    w->text = larger;
+    w->capacity = capacity;
+    return true;
+}
+
+static ssize_t append(void *of, const char *bytes, size_t count)
+{
+    text_writer *w = of;
+    if (w->failed || !make_room(w, count)) {
+        w->failed = true;
+        return 0; /* reports an error to the stream */
+    }
+    memcpy(w->text + w->size, bytes, count);
+    w->size += count;
+    return (ssize_t)count;
+}
+
+status text_writer_open(text_writer *writer, diagnostic *why)
+{
+    *writer = (text_writer){.stream = NULL};
+    if (make_room(writer, 0) && (writer->stream = fopencookie(writer, "w", (cookie_io_functions_t){.write = append})))
+        return STATUS_OK;
+    text_writer_abandon(writer);
+    return out_of_memory(why);
+}
+
+/* Closes the stream; returns whether everything fit. */
+static bool end_stream(text_writer *w)
+{
+    const bool bad = !w->stream || ferror(w->stream);
+    const bool ended = w->stream && fclose(w->stream) == 0;
+    w->stream = NULL;
+    return ended && !bad && !w->failed;
+}
+
+status text_writer_close(text_writer *writer, char **text, size_t *size, diagnostic *why)
+{
+    *text = NULL;
+    if (!end_stream(writer)) {
+        text_writer_abandon(writer);
+        return out_of_memory(why);
+    }
+    writer->text[writer->size] = 0;
+    *text = writer->text;
+    if (size)
+        *size = writer->size;
+    *writer = (text_writer){.stream = NULL};
+    return STATUS_OK;
+}
+
+void text_writer_abandon(text_writer *writer)
+{
+    end_stream(writer);
+    free(writer->text);
+    *writer = (text_writer){.stream = NULL};
+}
+
+status text_writer_end(text_writer *writer, status code, char **text, size_t *size, diagnostic *why)
+{
+    *text = NULL;
+    if (code == STATUS_OK)
+        return text_writer_close(writer, text, size, why);
+    text_writer_abandon(writer);
+    return code;
+}
+
+/* ---- words of a shell ---- */
+
+void shell_word_write(FILE *out, const char *word)
+{
+    if (*word && word[strspn(word, "abcdefghijklmnopqrstuvwxyzABCDEFGHIJKLMNOPQRSTUVWXYZ0123456789_./,=:+-")] == 0) {
+        fputs(word, out);
+        return;
+    }
+    fputc('\'', out);
+    for (const char *c = word; *c; c++)
+        fputs(*c == '\'' ? "'\\''" : (const char[]){*c, 0}, out);
+    fputc('\'', out);
+}
+
+/* ---- Base64 and base64url: RFC 4648, 4 and 5 ---- */
+
+static const char plain_digits[] = "ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789+/";
+static const char address_digits[] = "ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789-_";
+
+char *base64_encode(const void *bytes, size_t size, bool for_address)
+{
+    const unsigned char *from = bytes;
+    const char *digits = for_address ? address_digits : plain_digits;
+    char *text = size < SIZE_MAX / 2 ? malloc((size + 2) / 3 * 4 + 1) : NULL, *to = text;
+    if (!text)
+        return NULL;
+    for (size_t i = 0; i < size; i += 3) {
+        const size_t left = size - i;
+        const unsigned group = (unsigned)from[i] << 16 | (left > 1 ? (unsigned)from[i + 1] << 8 : 0u) |
+                               (left > 2 ? (unsigned)from[i + 2] : 0u);
+        const int count = left > 2 ? 4 : (int)left + 1;
+        for (int k = 0; k < 4; k++)
+            if (k < count)
+                *to++ = digits[group >> (18 - 6 * k) & 63];
+            else if (!for_address)
+                *to++ = '=';
+    }
+    *to = 0;
+    return text;
+}
+
+unsigned char *base64_decode(const char *text, size_t length, size_t *size)
+{
+    unsigned char *bytes = length % 4 == 1 ? NULL : malloc(length / 4 * 3 + 3), *to = bytes;
+    unsigned group = 0;
+    for (size_t i = 0; bytes && i < length; i++) {
+        const char *digit = text[i] ? strchr(address_digits, text[i]) : NULL;
+        if (!digit) {
+            free(bytes);
+            return NULL;
+        }
+        group = group << 6 | (unsigned)(digit - address_digits);
+        if (i % 4 > 0)
+            *to++ = (unsigned char)(group >> (i % 4 == 1 ? 4 : i % 4 == 2 ? 2 : 0));
+    }
+    *size = bytes ? (size_t)(to - bytes) : 0;
+    return bytes;
 }

@@ -9,7 +9,7 @@
 
 struct thread_team {
     int size;
-    pid_t process; /* a child of fork is alone: the threads are its parent's */
+    pid_t process; /* a child of fork has one thread: the others are its parent's */
     worker_pool *others;
     thread_team_task *task;
     void *context;
@@ -32,7 +32,7 @@ static void join_in(void *team, int worker)
     work(team, worker + 1);
 }
 
-thread_team *thread_team_start(int threads)
+thread_team *thread_team_create(int threads)
 {
     thread_team *t = malloc(sizeof *t);
     if (!t)
@@ -43,7 +43,7 @@ thread_team *thread_team_start(int threads)
     return t;
 }
 
-void thread_team_stop(thread_team *t)
+void thread_team_destroy(thread_team *t)
 {
     if (!t)
         return;

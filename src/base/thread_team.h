@@ -1,7 +1,7 @@
-/* A parallel loop of one caller, who takes part, on the threads of a worker pool (base/worker_pool.h). A team of one
+/* A parallel loop of one caller, who works too, on the threads of a worker pool (base/worker_pool.h). A team of one
  * starts no thread. If the system provides fewer threads than requested, the team is smaller; results must not depend
- * on its size. thread_team_start creates, thread_team_stop frees; for one caller at a time. Members work under the
- * cancellation of their caller (base/cancel.h). */
+ * on its size. thread_team_create allocates, thread_team_destroy frees; for one caller at a time. Members work under
+ * the cancellation of their caller (base/cancel.h). */
 #pragma once
 
 #include <stddef.h>
@@ -10,8 +10,8 @@ typedef struct thread_team thread_team;
 typedef void thread_team_task(void *context, size_t index, int member); /* member: 0 .. thread_team_size - 1 */
 
 /* NULL: out of memory. threads: at least 1. */
-thread_team *thread_team_start(int threads);
-void thread_team_stop(thread_team *t); /* NULL is allowed */
+thread_team *thread_team_create(int threads);
+void thread_team_destroy(thread_team *t); /* NULL is allowed */
 int thread_team_size(const thread_team *t);
 
 /* The number of processing units that the process may use now (its CPU affinity), at least 1. */

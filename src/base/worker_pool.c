@@ -25,7 +25,7 @@ struct worker_pool {
     int count;   /* threads in the pool */
     int running; /* number of workers of this run */
     size_t stack_bytes;
-    pid_t process; /* that has the threads: a child of fork has none of them (fork(2)) */
+    pid_t process; /* the process with the threads: a child of fork has none of them (fork(2)) */
     worker_pool_task *task;
     void *context;
     cancel_token *token; /* of the caller */

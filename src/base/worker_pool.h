@@ -3,10 +3,10 @@
  * threads are created and joined for each run, as in the report. Workers follow the caller's cancellation
  * (base/cancel.h). base/thread_team.h is a loop on such a pool. Ownership: worker_pool_create allocates,
  * worker_pool_destroy joins and releases. One run at a time. In a child of fork, a pool that was not running starts
- * threads of its own.
+ * new threads.
  *
- * All other threads do not share work; each has a reason to be one:
- *     base/apart.c                       the call is confined, and a confined thread cannot be used again
+ * All other threads run one function each, for a reason:
+ *     image/codec.c                      the call is confined, and a confined thread cannot be used again
  *     base/os_process.c                  the call needs a larger stack
  *     mpi/lead.c, mpi/follow.c           one thread of a rank renders while another exchanges messages
  *     web/http/http_watch.c              watches connections for as long as the server runs

@@ -1,6 +1,6 @@
 /* Checks of the folder of an animation: its own frames, frames of other animations, and files that the scene reads. */
 #include "cli/animate.h"
-#include "base/system_error.h"
+#include "base/status.h"
 #include "base/file.h"
 #include "base/text.h"
 #include "cli/outputs.h"

@@ -1,8 +1,8 @@
 /* Whether an animation fits on its file system. */
 #include "cli/animate.h"
-#include "base/disk_room.h"
+#include "base/budget.h"
 #include "cli/terminal.h"
-#include "image/image_room.h"
+#include "image/image.h"
 #include "image/video.h"
 #include "scene/model/scene.h"
 #include <math.h>

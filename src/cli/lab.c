@@ -6,7 +6,7 @@
 #include "cli/terminal.h"
 #include "base/cancel.h"
 #include "base/installed.h"
-#include "base/system_error.h"
+#include "base/status.h"
 #include "base/text.h"
 #include "measure/topology.h"
 #include "web/lab.h"

@@ -1,9 +1,7 @@
 /* Writes a page with the command that made it. */
 #include "cli/render_page.h"
 
-#include "base/shell_word.h"
 #include "base/text.h"
-#include "base/text_writer.h"
 #include "cli/outputs.h"
 #include "report/page.h"
 #include "scene/model/camera.h"

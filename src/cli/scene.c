@@ -1,5 +1,5 @@
 /* `cuvette scene`: checks, lists, edits and writes scene files. */
-#include "base/grow.h"
+#include "base/array.h"
 #include "cli/cli.h"
 #include "cli/inert_notes.h"
 #include "cli/options.h"

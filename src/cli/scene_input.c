@@ -1,7 +1,7 @@
 /* The scene of a command: --set and its short forms, reading, loading, notes. */
 #include "cli/scene_input.h"
-#include "base/grow.h"
-#include "base/memory_budget.h"
+#include "base/array.h"
+#include "base/budget.h"
 #include "cli/outputs.h"
 #include "cli/terminal.h"
 #include "job/frame_notes.h"

@@ -1,6 +1,6 @@
 /* `cuvette study`: runs, lists, merges and summarises studies. */
 #include "base/os_process.h"
-#include "base/text_writer.h"
+#include "base/text.h"
 #include "cli/cli.h"
 #include "cli/options.h"
 #include "cli/scene_input.h"

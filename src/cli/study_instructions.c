@@ -1,6 +1,6 @@
 #include "cli/study_instructions.h"
 #include "base/isa.h"
-#include "base/system_error.h"
+#include "base/status.h"
 #include "cli/options.h"
 #include "measure/instruction_dumps.h"
 #include <errno.h>

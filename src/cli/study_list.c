@@ -1,7 +1,7 @@
 /* `cuvette study list`: the studies of a folder and the scenes below it. */
 #include "cli/study_commands.h"
 
-#include "base/system_error.h"
+#include "base/status.h"
 #include "base/installed.h"
 #include "base/text.h"
 #include "cli/cli.h"

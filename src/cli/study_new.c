@@ -1,7 +1,7 @@
 /* `cuvette study new`: writes a study file for a scene and axes, after reading it as `study run` would. */
 #include "study/new_study.h"
 #include "base/file.h"
-#include "base/grow.h"
+#include "base/array.h"
 #include "cli/options.h"
 #include "cli/outputs.h"
 #include "cli/study_commands.h"

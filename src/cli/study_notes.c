@@ -1,5 +1,5 @@
 #include "cli/study_notes.h"
-#include "base/grow.h"
+#include "base/array.h"
 #include "cli/scene_input.h"
 #include "cli/terminal.h"
 #include "measure/clock.h"

@@ -180,7 +180,7 @@ static status check(request *r, const char *program, diagnostic *why)
 
 static status draw(const request *r, const char *base, const study *s, diagnostic *why)
 {
-    char *folder = file_beside(base, ".");
+    char *folder = file_next_to(base, ".");
     status code = folder ? file_make_directory(folder, why) : out_of_memory(why);
     free(folder);
     THEN(code, study_plot_write(s, &r->plot, base, why));

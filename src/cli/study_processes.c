@@ -1,10 +1,10 @@
 /* The fresh processes of `cuvette study run`: this program, or another build of it in turn, with --process=K. */
 #include "base/cancel.h"
-#include "base/memory_budget.h"
+#include "base/budget.h"
 #include "base/os_process.h"
 #include "base/random.h"
-#include "base/spawn.h"
-#include "base/system_error.h"
+#include "base/child.h"
+#include "base/status.h"
 #include "base/text.h"
 #include "cli/options.h"
 #include "cli/study_commands.h"

@@ -3,7 +3,7 @@
 #include "base/cancel.h"
 #include "base/number.h"
 #include "base/os_process.h"
-#include "base/system_error.h"
+#include "base/status.h"
 #include "cli/standard_output.h"
 #include "measure/clock.h"
 #include <errno.h>

@@ -3,7 +3,6 @@
 #include "engine/study_private.h"
 
 #include "base/text.h"
-#include "base/text_writer.h"
 #include "report/json.h"
 #include "study/contrast_json.h"
 #include "study/plot.h"

@@ -1,6 +1,6 @@
 /* The random triangle sets of the speed studies. */
 #include "base/cancel.h"
-#include "base/single.h"
+#include "base/lanes.h"
 #include "geometry/mesh_generators_parts.h"
 
 #include <string.h>

@@ -2,7 +2,7 @@
  * + 1 of them, so that texture coordinates may be discontinuous at an edge; positions on a common edge are
  * bit-identical. */
 #include "base/cancel.h"
-#include "base/single.h"
+#include "base/lanes.h"
 #include "geometry/mesh_generators_parts.h"
 
 static const uint8_t faces[20][3] = {{0, 11, 5}, {0, 5, 1},  {0, 1, 7},   {0, 7, 10}, {0, 10, 11},

@@ -2,7 +2,7 @@
 #include "geometry/hierarchy_private.h"
 
 #include "base/cancel.h"
-#include "base/memory_budget.h"
+#include "base/budget.h"
 #include "geometry/mesh_share.h"
 #include <stdlib.h>
 #include <time.h>

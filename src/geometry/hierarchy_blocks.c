@@ -1,6 +1,6 @@
 /* The memory of a hierarchy, and its blocks of four triangles, in single or double precision. */
 #include "base/cancel.h"
-#include "base/large_pages.h"
+#include "base/array.h"
 #include "geometry/hierarchy_private.h"
 
 #include <stdlib.h>

@@ -1,6 +1,6 @@
 /* The driver of the bvh builder: computes the references, builds the tree and collapses it. */
 #include "base/cancel.h"
-#include "base/large_pages.h"
+#include "base/array.h"
 #include "geometry/hierarchy_bvh.h"
 
 #include <stdlib.h>
@@ -112,9 +112,9 @@ status hierarchy_build_bvh(hierarchy *h, int threads, diagnostic *why)
     h->single = m->single;
     const size_t bytes = (m->triangle_count + 2) / 2 * 2 * sizeof(bvh_ref);
     bvh_ref *refs = large_pages(aligned_alloc(64, bytes), bytes);
-    thread_team *t = thread_team_start(useful(threads, m->triangle_count));
+    thread_team *t = thread_team_create(useful(threads, m->triangle_count));
     status code = refs && t ? build(h, t, refs, why) : out_of_memory(why);
-    thread_team_stop(t);
+    thread_team_destroy(t);
     free(refs);
     size_t block = h->single ? sizeof(block_single) : sizeof(block_double);
     h->report.bytes = sizeof *h + h->node_count * sizeof *h->nodes + h->block_count * block;

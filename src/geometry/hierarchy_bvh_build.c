@@ -1,6 +1,6 @@
 /* The binary tree of the bvh builder: the top is split by all threads together, the subtrees by one thread each. */
 #include "base/cancel.h"
-#include "base/large_pages.h"
+#include "base/array.h"
 #include "geometry/hierarchy_bvh.h"
 
 #include <stdlib.h>

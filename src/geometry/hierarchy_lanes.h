@@ -2,7 +2,7 @@
  * share. Pure; cannot fail. */
 #pragma once
 
-#include "base/kernel.h"
+#include "base/isa.h"
 #include <stdint.h>
 #include <string.h>
 

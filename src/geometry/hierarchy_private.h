@@ -72,7 +72,7 @@ status hierarchy_build_spheres(hierarchy *h, diagnostic *why); /* HIERARCHY_SPHE
 /* Writes triangles order[0 .. count-1] into blocks from block number `first` on, fills the last block by repetition,
  * and returns the number of blocks. */
 size_t hierarchy_fill_blocks(hierarchy *h, const uint32_t *order, size_t count, size_t first);
-/* Memory that starts at a cache line, in large pages (base/large_pages.h): a ray through a large mesh jumps between
+/* Memory that starts at a cache line, in large pages (base/array.h): a ray through a large mesh jumps between
  * pages, and looking up their addresses would cost as much as the data. Freed with free; NULL: out of memory. */
 void *hierarchy_allocate(size_t bytes);
 /* Allocates memory for that many blocks; false: out of memory. */

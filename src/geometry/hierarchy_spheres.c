@@ -4,7 +4,7 @@
 #include "geometry/hierarchy_private.h"
 
 #include "base/cancel.h"
-#include "base/single.h"
+#include "base/lanes.h"
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>

@@ -1,6 +1,6 @@
 /* Traversal of the instance set. Each copy is traversed in its own frame. The ray's direction is not normalised there,
  * so that distances along the ray are the same in all frames. */
-#include "base/kernel.h"
+#include "base/isa.h"
 #include "base/lanes.h"
 #include "geometry/box_passes.h"
 #include "geometry/instance_set.h"

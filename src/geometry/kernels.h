@@ -1,7 +1,7 @@
 /* Functions that the geometry kernels share, by instruction set; private to those kernels. */
 #pragma once
 
-#include "base/kernel.h"
+#include "base/isa.h"
 #include "geometry/instance_set.h"
 #include "geometry/primitives/primitive.h"
 #include "geometry/rays.h"

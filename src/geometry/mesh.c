@@ -1,6 +1,6 @@
 /* Creation, ownership, volume and area of triangle meshes. */
-#include "base/large_pages.h"
-#include "base/memory_budget.h"
+#include "base/array.h"
+#include "base/budget.h"
 #include "geometry/mesh.h"
 #include "geometry/mesh_parts.h"
 #include "geometry/mesh_share.h"

@@ -53,7 +53,7 @@ typedef struct mesh {
     struct mesh_share *share; /* number of owners, and the hierarchies built for it (geometry/hierarchy.h) */
 } mesh;
 
-/* Whether a mesh of that size is allowed, and has room (base/memory_budget.h), with the work of mesh_finish: before its
+/* Whether a mesh of that size is allowed, and has room (base/budget.h), with the work of mesh_finish: before its
  * vertices are computed. STATUS_BAD_INPUT if not. */
 status mesh_check_size(size_t vertex_count, size_t triangle_count, bool with_normals, bool with_uvs, bool with_slots,
                        diagnostic *why);

@@ -2,7 +2,7 @@
  * the higher of their two positions: first by counting, into a list for each lower position, then within each list,
  * which is short. Linear time in practice. */
 #include "base/cancel.h"
-#include "base/large_pages.h"
+#include "base/array.h"
 #include "geometry/mesh_parts.h"
 
 #include <stdlib.h>

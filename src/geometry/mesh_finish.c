@@ -1,6 +1,6 @@
 /* The checks, normals and bounds of a mesh at mesh_finish. */
 #include "base/cancel.h"
-#include "base/single.h"
+#include "base/lanes.h"
 #include "geometry/mesh.h"
 #include "geometry/mesh_parts.h"
 

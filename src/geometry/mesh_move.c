@@ -1,6 +1,6 @@
 /* The motion of a finished mesh's vertices, once per frame. One pass checks the new positions and computes their
  * bounds; only then are they copied, so that a failure leaves the mesh unchanged. */
-#include "base/single.h"
+#include "base/lanes.h"
 #include "geometry/mesh.h"
 #include "geometry/mesh_parts.h"
 #include "geometry/mesh_share.h"

@@ -1,6 +1,6 @@
 /* The search for vertices at equal positions: a hash table of vertex numbers with open addressing. */
 #include "base/cancel.h"
-#include "base/large_pages.h"
+#include "base/array.h"
 #include "geometry/mesh_parts.h"
 
 #include <stdlib.h>

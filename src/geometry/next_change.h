@@ -3,7 +3,7 @@
  * branches; pure. */
 #pragma once
 
-#include "base/kernel.h"
+#include "base/isa.h"
 #include "base/lanes.h"
 #include <math.h>
 

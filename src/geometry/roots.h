@@ -6,7 +6,7 @@
  * without a special case. */
 #pragma once
 
-#include "base/kernel.h"
+#include "base/isa.h"
 #include "base/lanes.h"
 #include "geometry/scene_geometry.h"
 #include <math.h>

@@ -1,7 +1,7 @@
 /* Builds the scene geometry, and answers queries for points. */
 #include "geometry/scene_geometry.h"
 #include "base/elementary.h"
-#include "base/large_pages.h"
+#include "base/array.h"
 #include "geometry/capillary.h"
 #include "geometry/instance_set.h"
 #include "geometry/primitives/primitive.h"

@@ -4,7 +4,7 @@
  * 2013), those of the origin by widening the boxes. */
 #pragma once
 
-#include "base/kernel.h"
+#include "base/isa.h"
 #include "base/lanes.h"
 #include "geometry/rays.h"
 #include "geometry/solid_boxes.h"

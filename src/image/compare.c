@@ -1,10 +1,11 @@
-/* The per-pixel measures of compare.h, and the call of those that use neighbours. */
+/* The per-pixel measures of compare.h, the call of those that use neighbours, and the map of FLIP errors. */
 #include "image/compare.h"
-#include "base/cancel.h"
-#include "base/memory_budget.h"
 
+#include "base/budget.h"
+#include "base/cancel.h"
 #include "image/codec.h"
 #include "image/compare_parts.h"
+#include "image/heatmap.h"
 #include <math.h>
 #include <stdbool.h>
 #include <stdlib.h>
@@ -26,7 +27,8 @@ static status check_numbers(const image *img, const char *which, diagnostic *why
     return STATUS_OK;
 }
 
-status compare_check(const image *a, const image *b, diagnostic *why)
+/* STATUS_BAD_INPUT unless the sizes are equal and no channel is NaN. */
+static status compare_check(const image *a, const image *b, diagnostic *why)
 {
     if (a->width != b->width || a->height != b->height)
         return diagnose(why, STATUS_BAD_INPUT, "use two images of the same size",
@@ -105,4 +107,37 @@ status image_compare(const image *a, const image *b, image_comparison *out, diag
     free(first);
     free(second);
     return code;
+}
+
+/* ---- the map of errors ---- */
+
+/* The map's colour for 0..1 in linear values. */
+static void magma(double t, float linear[3])
+{
+    double rgb[3];
+    color_map_at(MAGMA, t, rgb);
+    for (int channel = 0; channel < 3; channel++)
+        linear[channel] = (float)srgb_decode(rgb[channel] / 255.0);
+}
+
+status image_compare_map(const image *a, const image *b, image **map, diagnostic *why)
+{
+    image *img = NULL;
+    *map = NULL;
+    TRY(compare_check(a, b, why));
+    size_t count = (size_t)a->width * (size_t)a->height;
+    double *errors = malloc(count * sizeof *errors);
+    status code = errors ? image_create(a->width, a->height, &img, why)
+                         : diagnose(why, STATUS_FAILURE, MEMORY_REMEDY, "out of memory for the map of errors");
+    THEN(code, compare_flip(a, b, errors, why));
+    for (size_t i = 0; code == STATUS_OK && i < count && !cancel_asked(); i++)
+        magma(errors[i], img->pixel + 3 * i);
+    THEN(code, cancel_check(why));
+    free(errors);
+    if (code != STATUS_OK) {
+        image_destroy(img);
+        return code;
+    }
+    *map = img;
+    return STATUS_OK;
 }

@@ -1,11 +1,9 @@
-/* The measures of compare.h that use neighbourhoods, one file each. Their images and planes have passed compare_check.
- * Ownership: everything is the caller's. Errors: STATUS_FAILURE without memory. */
+/* The measures of compare.h that use neighbourhoods, one file each, and the convolution that they use. Their images
+ * have the same size and no channel is NaN. Ownership: everything is the caller's. Errors: STATUS_FAILURE without
+ * memory. */
 #pragma once
 
 #include "image/image.h"
-
-/* STATUS_BAD_INPUT unless the sizes are equal and no channel is NaN. */
-status compare_check(const image *a, const image *b, diagnostic *why);
 
 /* Mean structural similarity of two planes of encoded luma, 0..1. */
 status compare_ssim(const double *a, const double *b, int width, int height, double *mean, diagnostic *why);
@@ -13,14 +11,23 @@ status compare_ssim(const double *a, const double *b, int width, int height, dou
 /* Writes the FLIP error of each pixel, 0..1, to errors, width * height values. */
 status compare_flip(const image *a, const image *b, double *errors, diagnostic *why);
 
-/* The colour space of FLIP: conversion relative to white, and distance. */
+/* ---- convolve.c ---- */
 
-/* Luminance and two opponent colours, red-green and yellow-blue: YCxCz without its scales and offset, which filters of
- * sum 1 preserve. Linear in rgb, which is clamped to 0..1 first. */
-void flip_opponent(const float rgb[3], double opponent[3]);
-/* Back to linear RGB, clamped to 0..1, and from there to CIELAB with Hunt's adjustment. */
-void flip_hunt_lab(const double opponent[3], double lab[3]);
-/* HyAB distance between green and blue, the most distant colours of the RGB cube, raised to the power 0.7. */
-double flip_farthest(void);
-/* The distance of two colours of flip_hunt_lab, mapped to 0..1. */
-double flip_color_error(const double a[3], const double b[3], double farthest);
+/* Convolution of a plane of doubles with separable filters: along the rows, then along the columns. Border values are
+ * repeated outside the plane. Pure; cannot fail. Planes are the caller's, width * height values, rows from the top. */
+
+enum { CONVOLVE_TAPS_MAX = 32 };
+
+/* weight[i] applies to the value i - before positions to the right (or below): a correlation, as usual for image
+ * filters. */
+typedef struct convolve_taps {
+    int count, before;
+    double weight[CONVOLVE_TAPS_MAX];
+} convolve_taps;
+
+/* A Gaussian at count positions, centred, with sum 1. 1 <= count <= CONVOLVE_TAPS_MAX. */
+convolve_taps convolve_gaussian(int count, double sigma);
+
+/* Adds scale times the filtered plane to out. The three planes do not overlap; scratch is overwritten. */
+void convolve_add(const double *plane, int width, int height, const convolve_taps *across, const convolve_taps *down,
+                  double scale, double *scratch, double *out);

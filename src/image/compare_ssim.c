@@ -5,7 +5,6 @@
 #include "image/compare_parts.h"
 
 #include "base/cancel.h"
-#include "image/convolve.h"
 #include <stdlib.h>
 
 enum { WINDOW = 11, MEAN_A = 0, MEAN_B, SQUARE_A, SQUARE_B, PRODUCT, SUMS };

@@ -1,5 +1,5 @@
 /* Convolution with separable filters. */
-#include "image/convolve.h"
+#include "image/compare_parts.h"
 
 #include "base/cancel.h"
 #include "base/elementary.h"

@@ -1,20 +1,11 @@
-/* Images: memory, and reading and writing files in the format of each codec. */
+/* Images in memory: creation, ownership, rows, packing. */
 #include "image/image.h"
 
-#include "base/apart.h"
-#include "base/cancel.h"
-#include "base/file.h"
-#include "base/memory_budget.h"
-#include "base/text_writer.h"
-#include "image/codec.h"
+#include "base/budget.h"
 #include <stdbool.h>
 #include <stdint.h>
 #include <stdlib.h>
 #include <string.h>
-#include <strings.h>
-
-/* The largest file of an image with CODEC_PIXELS_MAX pixels: a PFM with 12 bytes per pixel and its header. */
-#define FILE_BYTES_MAX ((size_t)CODEC_PIXELS_MAX * 12 + 4096)
 
 status image_create(int width, int height, image **out, diagnostic *why)
 {
@@ -45,54 +36,11 @@ void image_destroy(image *img)
     }
 }
 
-image *image_share(const image *img)
+image *image_retain(const image *img)
 {
-    image *own = (image *)(uintptr_t)img; /* only the reference count changes */
-    __atomic_add_fetch(&own->owners, 1, __ATOMIC_RELAXED);
-    return own;
-}
-
-image_format image_format_of(const char *path)
-{
-    static const struct {
-        const char *ending;
-        image_format format;
-    } endings[] = {
-        {".png", IMAGE_PNG},
-        {".jpg", IMAGE_JPEG},
-        {".jpeg", IMAGE_JPEG},
-        {".pfm", IMAGE_PFM},
-    };
-    size_t length = strlen(path);
-    for (size_t i = 0; i < sizeof endings / sizeof *endings; i++) {
-        size_t ending = strlen(endings[i].ending);
-        if (length > ending && strcasecmp(path + length - ending, endings[i].ending) == 0)
-            return endings[i].format;
-    }
-    bool nameless = strcmp(path, "-") == 0 || strncmp(path, "/dev/", 5) == 0;
-    return nameless ? IMAGE_PNG : IMAGE_UNKNOWN;
-}
-
-status codec_check_size(long long width, long long height, size_t file_bytes, diagnostic *why)
-{
-    bool sides = width >= 1 && height >= 1 && width <= IMAGE_SIDE_MAX && height <= IMAGE_SIDE_MAX;
-    if (!sides || width * height > CODEC_PIXELS_MAX)
-        return diagnose(why, STATUS_BAD_INPUT, "use sides of 1 to 65536 and at most 2^28 pixels in total",
-                        "the image has %lld x %lld pixels", width, height);
-    if (width * height > CODEC_PIXELS_FREE && width * height / CODEC_PIXELS_A_BYTE > (long long)file_bytes)
-        return diagnose(why, STATUS_BAD_INPUT, "save a smaller image: its size does not match its contents",
-                        "the image has %lld x %lld pixels in only %zu bytes", width, height, file_bytes);
-    return STATUS_OK;
-}
-
-status codec_begin(long long width, long long height, size_t file_bytes, unsigned maximum, image **img, float **linear,
-                   diagnostic *why)
-{
-    TRY(codec_check_size(width, height, file_bytes, why));
-    TRY(image_create((int)width, (int)height, img, why));
-    if (!(*linear = codec_decode_table(maximum)))
-        return out_of_memory(why);
-    return STATUS_OK;
+    image *retained = (image *)(uintptr_t)img; /* only the reference count changes */
+    __atomic_add_fetch(&retained->owners, 1, __ATOMIC_RELAXED);
+    return retained;
 }
 
 static void copy_row(const void *of, int y, float *rgb)
@@ -107,141 +55,48 @@ image_rows image_rows_of(const image *img)
     return (image_rows){.width = img->width, .height = img->height, .read = copy_row, .of = img, .tone = img->tone};
 }
 
-static void read_toned(const void *of, int y, float *rgb)
+/* ---- packing ---- */
+
+typedef struct image_head {
+    int64_t width, height, coded_bits;
+} image_head;
+
+static bool is_side(int64_t length)
 {
-    const image_rows *rows = of;
-    rows->read(rows->of, y, rgb);
-    image_tone_apply(&rows->tone, rgb, (size_t)rows->width);
+    return length >= 1 && length <= IMAGE_SIDE_MAX;
 }
 
-static status write_as(const image_rows *rows, image_format format, FILE *stream, int bits, bool fast, diagnostic *why)
+bool image_pack_holds(const pack_reader *from, int64_t width, int64_t height, size_t pixel)
 {
-    image_rows shown = *rows;
-    if (!image_tone_is_plain(&rows->tone) && (bits == 8 || format == IMAGE_JPEG))
-        shown.read = read_toned, shown.of = rows;
-    switch (format) {
-    case IMAGE_PNG: return codec_png_write(&shown, stream, bits, fast || cancel_hurries(), why);
-    case IMAGE_JPEG: return codec_jpeg_write(&shown, stream, fast, why);
-    case IMAGE_PFM: return codec_pfm_write(rows, stream, why);
-    case IMAGE_BMP:
-    case IMAGE_UNKNOWN: break;
-    }
-    return diagnose(why, STATUS_BAD_INPUT, "use PNG, JPEG or PFM", "unknown image format");
+    return is_side(width) && is_side(height) && pack_holds(from, (uint64_t)width * (uint64_t)height, pixel);
 }
 
-status image_encode(const image *img, image_format format, int bits, bool fast, unsigned char **bytes, size_t *size,
-                    diagnostic *why)
+static size_t image_bytes(const image *img)
 {
-    const image_rows rows = image_rows_of(img);
-    return image_encode_rows(&rows, format, bits, fast, bytes, size, why);
+    return (size_t)img->width * (size_t)img->height * 3 * sizeof *img->pixel;
 }
 
-status image_encode_rows(const image_rows *rows, image_format format, int bits, bool fast, unsigned char **bytes,
-                         size_t *size, diagnostic *why)
+status image_pack(const image *img, pack_writer *to, diagnostic *why)
 {
-    char *text = NULL;
-    text_writer writer;
-    *bytes = NULL;
-    TRY(text_writer_open(&writer, why));
-    const status code =
-        text_writer_end(&writer, write_as(rows, format, writer.stream, bits, fast, why), &text, size, why);
-    *bytes = (unsigned char *)text;
-    return code;
+    const image_head head = {img->width, img->height, img->coded_bits};
+    TRY(pack_put(to, &head, sizeof head, why));
+    return pack_put(to, img->pixel, image_bytes(img), why);
 }
 
-status image_write(const image *img, const char *path, int bits, diagnostic *why)
+status image_unpack(pack_reader *from, image **out, diagnostic *why)
 {
-    const image_rows rows = image_rows_of(img);
-    return image_write_rows(&rows, path, bits, why);
-}
-
-status image_write_rows(const image_rows *rows, const char *path, int bits, diagnostic *why)
-{
-    image_format format = image_format_of(path);
-    if (format == IMAGE_UNKNOWN)
-        return diagnose_at(why, path, STATUS_BAD_INPUT, "end the name in .png, .jpg, .jpeg or .pfm",
-                           "unknown image format");
-    if (format == IMAGE_PNG && bits != 8 && bits != 16)
-        return diagnose_at(why, path, STATUS_BAD_INPUT, "8 or 16", "a PNG image cannot have %d bits per channel", bits);
-    file_writer writer;
-    TRY(file_writer_open(&writer, path, why));
-    status code = write_as(rows, format, writer.stream, bits, false, why);
-    if (code == STATUS_OK || ferror(writer.stream))
-        return file_writer_commit(&writer, why); /* errno has the reason of the stream's failure */
-    file_writer_abandon(&writer);
-    diagnostic_locate(why, path, 0, 0);
-    return code;
-}
-
-bool image_is_png(const void *bytes, size_t size)
-{
-    return size >= 8 && memcmp(bytes, "\x89PNG\r\n\x1a\n", 8) == 0;
-}
-
-/* The formats' signatures: PNG specification 5.2; JPEG's SOI and the next marker; PFM's PF or Pf; BMP's BM. */
-static image_format format_of_bytes(const unsigned char *bytes, size_t size)
-{
-    if (image_is_png(bytes, size))
-        return IMAGE_PNG;
-    if (size >= 3 && memcmp(bytes, "\xff\xd8\xff", 3) == 0)
-        return IMAGE_JPEG;
-    if (size >= 2 && memcmp(bytes, "BM", 2) == 0)
-        return IMAGE_BMP;
-    bool pfm = size >= 3 && bytes[0] == 'P' && (bytes[1] == 'F' || bytes[1] == 'f') &&
-               (bytes[2] == '\n' || bytes[2] == '\r' || bytes[2] == ' ');
-    return pfm ? IMAGE_PFM : IMAGE_UNKNOWN;
-}
-
-static status decode(const unsigned char *bytes, size_t size, image **out, int *bits, diagnostic *why)
-{
-    switch (format_of_bytes(bytes, size)) {
-    case IMAGE_PNG: return codec_png_read(bytes, size, out, bits, why);
-    case IMAGE_JPEG: *bits = 8; return codec_jpeg_read(bytes, size, out, why);
-    case IMAGE_PFM: *bits = 32; return codec_pfm_read(bytes, size, out, why);
-    case IMAGE_BMP: *bits = 8; return codec_bmp_read(bytes, size, out, why);
-    case IMAGE_UNKNOWN: break;
-    }
-    return diagnose(why, STATUS_BAD_INPUT, "give a PNG, JPEG, PFM or 24-bit BMP file", "%s",
-                    size == 0 ? "the file is empty" : "unknown image format");
-}
-
-status image_read(const char *path, image **out, int *file_bits, diagnostic *why)
-{
-    return image_read_below(path, NULL, out, file_bits, why);
-}
-
-typedef struct decoding {
-    const char *bytes;
-    size_t size;
-    image **out;
-    int bits;
-    diagnostic *why;
-    status code;
-} decoding;
-
-static void decode_apart(void *of)
-{
-    decoding *d = of;
-    d->code = decode((const unsigned char *)d->bytes, d->size, d->out, &d->bits, d->why);
-}
-
-status image_read_below(const char *path, const char *root, image **out, int *file_bits, diagnostic *why)
-{
-    char *bytes;
-    size_t size;
+    image_head head;
     *out = NULL;
-    TRY(file_read_below(path, root, FILE_BYTES_MAX, &bytes, &size, why));
-    decoding d = {.bytes = bytes, .size = size, .out = out, .why = why};
-    apart_run(decode_apart, &d);
-    free(bytes);
-    const status code = d.code;
-    const int bits = d.bits;
+    TRY(pack_get(from, &head, sizeof head, why));
+    if (!image_pack_holds(from, head.width, head.height, 3 * sizeof(float)) || head.coded_bits < 0 ||
+        head.coded_bits > 16)
+        return pack_damaged(why, "the size of an image");
+    TRY(image_create((int)head.width, (int)head.height, out, why));
+    (*out)->coded_bits = (int)head.coded_bits;
+    const status code = pack_get(from, (*out)->pixel, image_bytes(*out), why);
     if (code != STATUS_OK) {
-        diagnostic_locate(why, path, 0, 0);
-        return code;
+        image_destroy(*out);
+        *out = NULL;
     }
-    (*out)->coded_bits = bits == 32 ? 0 : bits;
-    if (file_bits)
-        *file_bits = bits;
-    return STATUS_OK;
+    return code;
 }

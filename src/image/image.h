@@ -1,11 +1,14 @@
 /* Images in memory and in files: PNG (libpng), JPEG (libjpeg-turbo), PFM (Debevec); BMP for reading only. No time
- * stamps, the same bytes for the same image; files are written atomically. Ownership: image_create and image_read give
- * an image to the caller, image_destroy releases it. */
+ * stamps, the same bytes for the same image; files are written atomically. Ownership: image_create and image_read
+ * allocate an image, image_destroy releases it. */
 #pragma once
 
+#include "base/budget.h"
+#include "base/pack.h"
 #include "base/status.h"
 #include "image/tone.h"
 #include <stdbool.h>
+#include <stdint.h>
 
 /* RGB, linear, rows from the top, pixel[(y * width + x) * 3 + channel]; 1.0 is white. coded_bits is 8 or 16 if
  * image_read decoded the pixels from sRGB values with that many bits, otherwise 0. tone: how 8 bits show it. */
@@ -23,7 +26,14 @@ status image_create(int width, int height, image **out, diagnostic *why);
 void image_destroy(image *img);
 
 /* Adds a reference to an image that is constant from now on: the last image_destroy releases it. Thread safe. */
-image *image_share(const image *img);
+image *image_retain(const image *img);
+
+/* An image as bytes (base/pack.h); its values are not checked. What is unpacked is the caller's. STATUS_BAD_INPUT for
+ * damaged bytes, STATUS_FAILURE without memory. */
+status image_pack(const image *img, pack_writer *to, diagnostic *why);
+status image_unpack(pack_reader *from, image **out, diagnostic *why);
+/* Whether pixels of that size, with sides that are allowed, can still follow. */
+bool image_pack_holds(const pack_reader *from, int64_t width, int64_t height, size_t pixel);
 
 /* The sRGB transfer function, IEC 61966-2-1, and its inverse. The encoder clamps to 0..1. */
 double srgb_encode(double linear);
@@ -73,11 +83,15 @@ status image_encode(const image *img, image_format format, int bits, bool fast, 
 status image_encode_rows(const image_rows *rows, image_format format, int bits, bool fast, unsigned char **bytes,
                          size_t *size, diagnostic *why);
 
+/* Adds what count image files with 8 bits may occupy on a disk. PFM has an exact size; of the others the least is that
+ * of the best possible compression. */
+void image_room(image_format format, double width, double height, double count, disk_room *to);
+
 /* Whether the bytes begin as a PNG file does. */
 bool image_is_png(const void *bytes, size_t size);
 
-/* The text with that keyword that stands before the pixels of a PNG file; nothing after it is read. STATUS_BAD_INPUT
- * for a damaged file; *text is NULL if there is none, or if it is longer than limit. Fresh memory. */
+/* The text with that keyword before the pixels of a PNG file; nothing after it is read. STATUS_BAD_INPUT for a damaged
+ * file; *text is NULL if there is none, or if it is longer than limit. Fresh memory. */
 status image_png_text(const void *bytes, size_t size, const char *keyword, size_t limit, char **text, diagnostic *why);
 
 /* Reads PNG (any depth and kind; alpha is dropped after blending over black), JPEG (grey or RGB), PFM (colour or grey,
@@ -85,5 +99,5 @@ status image_png_text(const void *bytes, size_t size, const char *keyword, size_
  * and BMP are decoded from sRGB to linear. Truncated or damaged files and more than 2^28 pixels are STATUS_BAD_INPUT.
  * file_bits, if not NULL, receives 8 or 16 for PNG, 8 for JPEG and BMP, and 32 for PFM. */
 status image_read(const char *path, image **out, int *file_bits, diagnostic *why);
-/* The same for a file below root (base/below.h). */
+/* The same for a file below root (below_open of base/file.h). */
 status image_read_below(const char *path, const char *root, image **out, int *file_bits, diagnostic *why);

@@ -1,10 +1,8 @@
 /* JPEG through libjpeg-turbo. Everything that must survive a longjmp is in a job, which belongs to a function that does
  * not call setjmp; the function that does has no modified local variables. */
 #include "base/cancel.h"
+#include "base/status.h"
 #include "image/codec.h"
-
-#include "base/system_error.h"
-
 #include <errno.h>
 #include <jpeglib.h>
 #include <jerror.h>
@@ -35,8 +33,8 @@ static _Noreturn void on_error(j_common_ptr cinfo)
     longjmp(job->escape, 1);
 }
 
-/* libjpeg reports damage as a warning and invents the missing pixels: here it is an error, unless no pixel is affected.
- * */
+/* libjpeg reports damage as a warning and invents the missing pixels: here it is an error, unless no pixel is
+ * affected. */
 static void on_message(j_common_ptr cinfo, int level)
 {
     int message = cinfo->err->msg_code;
@@ -50,7 +48,7 @@ static void no_output(j_common_ptr cinfo)
     (void)cinfo;
 }
 
-/* libjpeg works through a whole image inside single calls, and reports after each row of blocks. */
+/* libjpeg processes an image inside single calls, and reports progress after each row of blocks. */
 static void leave_if_cancelled(j_common_ptr cinfo)
 {
     if (cancel_asked())

@@ -1,34 +1,18 @@
-/* Textures: creation, reading, ownership, hash. */
+/* Textures: memory, mipmap, creation, reading, ownership, hash, packing. */
 #include "image/texture_parts.h"
 
+#include "base/budget.h"
 #include "base/cancel.h"
 #include "base/hash.h"
-#include "base/memory_budget.h"
 #include "image/codec.h"
 #include <math.h>
 #include <stdbool.h>
 #include <stdlib.h>
 
-static status check(const image *img, diagnostic *why)
-{
-    if (img->width < 1 || img->height < 1 || img->width > IMAGE_SIDE_MAX || img->height > IMAGE_SIDE_MAX) {
-        return diagnose(why, STATUS_BAD_INPUT, "use a width and height of 1 to 65536",
-                        "a texture cannot have %d x %d texels", img->width, img->height);
-    }
-    const size_t width = (size_t)img->width, count = width * (size_t)img->height;
-    for (size_t i = 0; i < 3 * count; i++) {
-        if (cancel_asked_at(i))
-            return cancel_check(why);
-        if (!isfinite(img->pixel[i]))
-            return diagnose(why, STATUS_BAD_INPUT, NULL,
-                            "the pixel in column %zu, row %zu from the top is not a finite number", i / 3 % width,
-                            i / 3 / width);
-    }
-    return STATUS_OK;
-}
+/* ---- memory ---- */
 
 /* Sets the sizes of all levels and allocates their memory. */
-static bool allocate(texture *t, int width, int height)
+static bool allocate_levels(texture *t, int width, int height)
 {
     size_t count = 0, start[TEXTURE_LEVELS_MAX];
     do {
@@ -47,16 +31,102 @@ static bool allocate(texture *t, int width, int height)
     return t->block;
 }
 
-texture *texture_allocate(int width, int height, texture_wrap wrap_u, texture_wrap wrap_v, texture_filter filter)
+/* A texture with memory for its texels, which are not set; NULL if memory runs out. Sides are at least 1. */
+static texture *allocate_texture(int width, int height, texture_wrap wrap_u, texture_wrap wrap_v, texture_filter filter)
 {
     texture *t = malloc(sizeof *t);
     if (t)
         *t = (texture){.wrap_u = wrap_u, .wrap_v = wrap_v, .filter = filter, .owners = 1};
-    if (t && !allocate(t, width, height)) {
+    if (t && !allocate_levels(t, width, height)) {
         free(t);
         return NULL;
     }
     return t;
+}
+
+void texture_retain(const texture *t)
+{
+    __atomic_add_fetch(&((texture *)t)->owners, 1, __ATOMIC_RELAXED);
+}
+
+void texture_release(const texture *t)
+{
+    if (t && __atomic_sub_fetch(&((texture *)t)->owners, 1, __ATOMIC_ACQ_REL) == 0) {
+        free(t->block);
+        free((texture *)t);
+    }
+}
+
+/* ---- the mipmap ---- */
+
+/* Each level is the box filter of the one before, with the exact area fractions of texels if a side is odd (Guthe and
+ * Heckbert, "Non-power-of-two mipmap creation", NVIDIA TR-01838-001, 2005). */
+
+/* The texels of a row of `from` that one texel of the next smaller row covers, and their weights: a texel of the
+ * smaller row is n/m = 2 + 1/m texels wide if n = 2m + 1. */
+typedef struct cover {
+    int first, count;
+    double weight[3];
+} cover;
+
+static cover cover_of(int texel_index, int from, int to)
+{
+    if (from == to)
+        return (cover){.first = texel_index, .count = 1, .weight = {1.0, 0.0, 0.0}};
+    if (from % 2 == 0)
+        return (cover){.first = 2 * texel_index, .count = 2, .weight = {0.5, 0.5, 0.0}};
+    double n = from;
+    return (cover){
+        .first = 2 * texel_index, .count = 3, .weight = {(to - texel_index) / n, to / n, (texel_index + 1) / n}};
+}
+
+static texel mean_of(const texture_level *from, cover columns, cover rows)
+{
+    double r = 0.0, g = 0.0, b = 0.0;
+    for (int y = 0; y < rows.count; y++) {
+        const texel *row = from->texels + (size_t)(rows.first + y) * (size_t)from->width + columns.first;
+        for (int x = 0; x < columns.count; x++) {
+            double weight = rows.weight[y] * columns.weight[x];
+            r += weight * (double)row[x].r;
+            g += weight * (double)row[x].g;
+            b += weight * (double)row[x].b;
+        }
+    }
+    return (texel){.r = (float)r, .g = (float)g, .b = (float)b};
+}
+
+/* Computes level 1 and above from level 0; sizes and memory are set. */
+static void build_pyramid(texture *t)
+{
+    for (int level = 1; level < t->levels; level++) {
+        const texture_level *from = &t->level[level - 1], *to = &t->level[level];
+        for (int y = 0; y < to->height && !cancel_asked(); y++) {
+            cover rows = cover_of(y, from->height, to->height);
+            for (int x = 0; x < to->width; x++)
+                to->texels[(size_t)y * (size_t)to->width + (size_t)x] =
+                    mean_of(from, cover_of(x, from->width, to->width), rows);
+        }
+    }
+}
+
+/* ---- creation ---- */
+
+static status check(const image *img, diagnostic *why)
+{
+    if (img->width < 1 || img->height < 1 || img->width > IMAGE_SIDE_MAX || img->height > IMAGE_SIDE_MAX) {
+        return diagnose(why, STATUS_BAD_INPUT, "use a width and height of 1 to 65536",
+                        "a texture cannot have %d x %d texels", img->width, img->height);
+    }
+    const size_t width = (size_t)img->width, count = width * (size_t)img->height;
+    for (size_t i = 0; i < 3 * count; i++) {
+        if (cancel_asked_at(i))
+            return cancel_check(why);
+        if (!isfinite(img->pixel[i]))
+            return diagnose(why, STATUS_BAD_INPUT, NULL,
+                            "the pixel in column %zu, row %zu from the top is not a finite number", i / 3 % width,
+                            i / 3 / width);
+    }
+    return STATUS_OK;
 }
 
 /* The encoded value of a linear value; bytes is filled if coded_bits is 8. */
@@ -93,12 +163,12 @@ status texture_create(const image *img, texture_space space, texture_wrap wrap_u
     const uint64_t texels = (uint64_t)img->width * (uint64_t)img->height;
     TRY(memory_budget_check((filter == TEXTURE_TRILINEAR ? texels / 3 * 4 : texels) * sizeof(texel),
                             "use a smaller one", why, "a texture of %d x %d texels", img->width, img->height));
-    texture *t = texture_allocate(img->width, img->height, wrap_u, wrap_v, filter);
+    texture *t = allocate_texture(img->width, img->height, wrap_u, wrap_v, filter);
     if (!t)
         return diagnose(why, STATUS_FAILURE, MEMORY_REMEDY, "out of memory for a texture of %d x %d texels", img->width,
                         img->height);
     copy_pixels(t, img, space == TEXTURE_LINEAR ? img->coded_bits : 0);
-    texture_build_pyramid(t);
+    build_pyramid(t);
     const status code = cancel_check(why);
     if (code == STATUS_OK)
         *out = t;
@@ -120,24 +190,13 @@ status texture_read_below(const char *path, const char *root, texture_space spac
     return code;
 }
 
+/* ---- sampling and hash ---- */
+
 vec3 texture_sample(const texture *t, double u, double v, double footprint)
 {
     vec3 c = {1.0, 1.0, 1.0};
     ISA_BASE_OF(texture_tint)(t, 1, &u, &v, &footprint, &c.x, &c.y, &c.z);
     return c;
-}
-
-void texture_retain(const texture *t)
-{
-    __atomic_add_fetch(&((texture *)t)->owners, 1, __ATOMIC_RELAXED);
-}
-
-void texture_release(const texture *t)
-{
-    if (t && __atomic_sub_fetch(&((texture *)t)->owners, 1, __ATOMIC_ACQ_REL) == 0) {
-        free(t->block);
-        free((texture *)t);
-    }
 }
 
 uint64_t texture_hash(const texture *t, uint64_t hash)
@@ -150,4 +209,56 @@ uint64_t texture_hash(const texture *t, uint64_t hash)
         hash = hash_numbers(hash, c, 3, sizeof *c);
     }
     return hash;
+}
+
+/* ---- packing ---- */
+
+typedef struct texture_head {
+    int64_t width, height, wrap_u, wrap_v, filter;
+} texture_head;
+
+static size_t texels_of(const texture *t)
+{
+    return (size_t)t->level[0].width * (size_t)t->level[0].height;
+}
+
+status texture_pack(const texture *t, pack_writer *to, diagnostic *why)
+{
+    const texture_head head = {t->level[0].width, t->level[0].height, t->wrap_u, t->wrap_v, t->filter};
+    TRY(pack_put(to, &head, sizeof head, why));
+    return pack_put(to, t->level[0].texels, texels_of(t) * sizeof(texel), why);
+}
+
+static status unpack_texels(texture *t, pack_reader *from, diagnostic *why)
+{
+    const texel *texels = t->level[0].texels;
+    TRY(pack_get(from, t->level[0].texels, texels_of(t) * sizeof *texels, why));
+    bool finite = true;
+    for (size_t i = 0; i < texels_of(t); i++)
+        finite &= isfinite(texels[i].r) && isfinite(texels[i].g) && isfinite(texels[i].b);
+    if (!finite)
+        return pack_damaged(why, "a texel is not a finite number");
+    build_pyramid(t);
+    return STATUS_OK;
+}
+
+status texture_unpack(pack_reader *from, const texture **out, diagnostic *why)
+{
+    texture_head head;
+    *out = NULL;
+    TRY(pack_get(from, &head, sizeof head, why));
+    const bool known = head.wrap_u >= TEXTURE_REPEAT && head.wrap_u <= TEXTURE_CLAMP && head.wrap_v >= TEXTURE_REPEAT &&
+                       head.wrap_v <= TEXTURE_CLAMP && head.filter >= TEXTURE_NEAREST &&
+                       head.filter <= TEXTURE_TRILINEAR;
+    if (!known || !image_pack_holds(from, head.width, head.height, sizeof(texel)))
+        return pack_damaged(why, "the size of a texture");
+    texture *t = allocate_texture((int)head.width, (int)head.height, (texture_wrap)head.wrap_u,
+                                  (texture_wrap)head.wrap_v, (texture_filter)head.filter);
+    const status code = t ? unpack_texels(t, from, why) : out_of_memory(why);
+    if (code != STATUS_OK) {
+        texture_release(t);
+        return code;
+    }
+    *out = t;
+    return STATUS_OK;
 }

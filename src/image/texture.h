@@ -6,6 +6,7 @@
 #pragma once
 
 #include "base/isa.h"
+#include "base/pack.h"
 #include "base/status.h"
 #include "base/vec3.h"
 #include "image/image.h"
@@ -32,7 +33,8 @@ typedef struct texture texture;
 status texture_create(const image *img, texture_space space, texture_wrap wrap_u, texture_wrap wrap_v,
                       texture_filter filter, texture **out, diagnostic *why);
 
-/* The same from a file below root (base/below.h; NULL: anywhere): with image_read's diagnostics and limits. */
+/* The same from a file below root (below_open of base/file.h; NULL: anywhere): with image_read's diagnostics and
+ * limits. */
 status texture_read_below(const char *path, const char *root, texture_space space, texture_wrap wrap_u,
                           texture_wrap wrap_v, texture_filter filter, texture **out, diagnostic *why);
 
@@ -55,3 +57,9 @@ ISA_DECLARE(texture_tinter, texture_tint)
 
 /* Adds size and texels of the image itself to a hash (base/hash.h). */
 uint64_t texture_hash(const texture *t, uint64_t hash);
+
+/* A texture as bytes (base/pack.h): the image itself travels, and the receiver computes the smaller levels again. What
+ * is read is checked: sizes, and that texels are finite. What is unpacked is the caller's. STATUS_BAD_INPUT for damaged
+ * bytes, STATUS_FAILURE without memory. */
+status texture_pack(const texture *t, pack_writer *to, diagnostic *why);
+status texture_unpack(pack_reader *from, const texture **out, diagnostic *why);

@@ -1,5 +1,5 @@
-/* Memory layout of a texture, shared by the files of image/texture.h. Private to them. Ownership: all texels of all
- * levels are one block, owned by the texture. */
+/* Memory layout of a texture, shared by texture.c and texture_sample_kernel.c. Private to them. Ownership: all texels
+ * of all levels are one block, owned by the texture. */
 #pragma once
 
 #include "image/texture.h"
@@ -24,9 +24,3 @@ struct texture {
     size_t block_bytes;
     size_t owners; /* modified atomically */
 };
-
-/* A texture with memory for its texels, which are not set; NULL if memory runs out. Sides are at least 1. */
-texture *texture_allocate(int width, int height, texture_wrap wrap_u, texture_wrap wrap_v, texture_filter filter);
-
-/* Computes level 1 and above from level 0; sizes and memory are set. Cannot fail. */
-void texture_build_pyramid(texture *t);

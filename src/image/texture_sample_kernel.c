@@ -1,8 +1,30 @@
 /* Sampling of a texture: nearest, bilinear, trilinear. One source for all instruction sets, with bit-identical
  * results. */
-#include "base/elementary_inline.h"
-#include "image/texel_lanes.h"
+#include "base/isa.h"
+#include "base/lanes.h"
+#include "image/texture_parts.h"
 #include <math.h>
+
+/* ---- a texel and a colour as vectors of four, in the vector extensions that gcc and clang share ---- */
+
+/* Without AVX compilers warn about passing wide vectors to functions; all functions here are inlined. */
+#pragma GCC diagnostic ignored "-Wpsabi"
+
+typedef float texel4 __attribute__((vector_size(16)));
+typedef double color4 __attribute__((vector_size(32)));
+
+ALWAYS_INLINE color4 color_of_texel(const texel *t)
+{
+    return __builtin_convertvector(*(const texel4 *)(const void *)t, color4);
+}
+
+ALWAYS_INLINE color4 color_mix(color4 from, color4 to, double part)
+{
+    const color4 weight = {part, part, part, part};
+    return from + weight * (to - from);
+}
+
+/* ---- positions ---- */
 
 /* Positions in the image, 0 to 1, of coordinates; the comparisons map NaN to 0. */
 static void repeat(int count, const double *restrict c, double *restrict place)
@@ -59,6 +81,8 @@ ALWAYS_INLINE between locate(double place, int size, texture_wrap wrap)
     b.high = (size_t)(high < size ? high : wrap == TEXTURE_REPEAT ? 0 : size - 1);
     return b;
 }
+
+/* ---- filters ---- */
 
 ALWAYS_INLINE color4 nearest(const texture *t, double u, double v)
 {

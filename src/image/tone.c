@@ -9,7 +9,7 @@ bool image_tone_is_plain(const image_tone *t)
     return t->exposure == 0.0 && t->curve == TONE_NONE;
 }
 
-/* 2^stops, exact for whole stops. */
+/* 2^stops, exact for integers. */
 static double factor_of(double stops)
 {
     const double whole = floor(stops), part = stops - whole;
@@ -21,9 +21,9 @@ static double factor_of(double stops)
 static void reinhard(double white, double rgb[3])
 {
     const double luminance = 0.2126 * rgb[0] + 0.7152 * rgb[1] + 0.0722 * rgb[2];
-    const double share = (1.0 + luminance / (white * white)) / (1.0 + luminance);
+    const double scale = (1.0 + luminance / (white * white)) / (1.0 + luminance);
     for (int c = 0; c < 3 && luminance > 0.0; c++)
-        rgb[c] *= share;
+        rgb[c] *= scale;
 }
 
 /* The fit by K. Narkowicz, "ACES Filmic Tone Mapping Curve" (2015), of the Academy Color Encoding System's reference

@@ -1,7 +1,7 @@
 /* File access for assimp: regular files below the root, read only. */
 #include "import/import.h"
 
-#include "base/below.h"
+#include "base/file.h"
 #include <errno.h>
 #include <stdlib.h>
 #include <string.h>

@@ -14,7 +14,7 @@ typedef struct request {
     file_kind kind;               /* by the file's extension */
     uint64_t memory_mib, seconds; /* limits on this process */
     uint64_t triangles, vertices; /* limits on the mesh */
-    const char *root;             /* all files that are opened must be below it (base/below.h); "": anywhere */
+    const char *root;             /* all files that are opened must be below it (base/file.h); "": anywhere */
     enum { READER_ANY, READER_PLAIN, READER_ASSIMP } reader; /* of OBJ files; plain: obj.h */
 } request;
 

@@ -1,5 +1,5 @@
 /* The hash table of vertices, keyed by their bits: open addressing with linear probing, at most half full. */
-#include "base/large_pages.h"
+#include "base/array.h"
 #include "import/flat_mesh.h"
 
 #include <stdlib.h>

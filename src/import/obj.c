@@ -1,7 +1,7 @@
 /* Puts the triangles of a plain OBJ file into the order in which assimp returns them, and joins their vertices. To find
  * the order, the materials and what the statements on groups mean, assimp reads a text with the same statements and one
  * triangle for each run of faces, whose vertex has the run's number as its x. */
-#include "base/large_pages.h"
+#include "base/array.h"
 #include "import/import.h"
 #include "import/obj.h"
 

@@ -1,7 +1,7 @@
 /* The statements of an OBJ file, line by line. No function reads beyond the \n of its line. */
 #include "import/obj.h"
 
-#include "base/grow.h"
+#include "base/array.h"
 #include <string.h>
 
 #define ROOM_FOR_ONE(o, array, room, count) ((o)->count < (o)->room || GROW((o)->array, (o)->room, (o)->count + 1))

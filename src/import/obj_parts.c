@@ -1,8 +1,8 @@
 /* The parts of an OBJ file, parsed in parallel, with the vertices of all. The parts do not alter the result. */
 #include "import/obj.h"
 
-#include "base/below.h"
-#include "base/grow.h"
+#include "base/file.h"
+#include "base/array.h"
 #include "base/os_process.h"
 #include "base/thread_team.h"
 #include <string.h>
@@ -63,11 +63,11 @@ static void parse(void *parts, size_t index, int member)
 /* Parses all parts; false: they are not plain. */
 static bool parse_all(obj_file *f)
 {
-    thread_team *team = thread_team_start(f->part_count);
+    thread_team *team = thread_team_create(f->part_count);
     if (!team)
         return false;
     thread_team_run(team, parse, f->parts, (size_t)f->part_count);
-    thread_team_stop(team);
+    thread_team_destroy(team);
     bool plain = true;
     size_t uvs = 0;
     for (int i = 0; i < f->part_count; i++) {

@@ -1,7 +1,7 @@
 /* Reading of a mesh file with assimp, and the explanation of its errors. */
 #include "import/import.h"
 
-#include "base/below.h"
+#include "base/file.h"
 #include <assimp/cimport.h>
 #include <assimp/postprocess.h>
 #include <jansson.h>

@@ -5,7 +5,7 @@
  * count, 50 bytes a facet; or a text from solid to endsolid. */
 #include "import/import.h"
 
-#include "base/below.h"
+#include "base/file.h"
 #include <ctype.h>
 #include <stdlib.h>
 #include <string.h>

@@ -2,7 +2,7 @@
 #include "job/job.h"
 
 #include "base/cancel.h"
-#include "base/memory_budget.h"
+#include "base/budget.h"
 #include "base/os_process.h"
 #include "job/shelf.h"
 #include "measure/clock.h"

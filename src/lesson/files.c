@@ -1,8 +1,8 @@
 /* Where lessons are. */
 #include "lesson/lesson.h"
 
-#include "base/system_error.h"
-#include "base/grow.h"
+#include "base/status.h"
+#include "base/array.h"
 #include "base/installed.h"
 #include "base/text.h"
 #include <dirent.h>

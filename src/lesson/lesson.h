@@ -45,7 +45,7 @@ typedef struct lesson {
 } lesson;
 
 status lesson_read(const char *path, lesson **out, diagnostic *why);
-/* The same for a file below root (base/below.h), and a scene below it. */
+/* The same for a file below root (base/file.h), and a scene below it. */
 status lesson_read_below(const char *path, const char *root, lesson **out, diagnostic *why);
 void lesson_destroy(lesson *l); /* NULL is allowed */
 

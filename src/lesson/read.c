@@ -177,7 +177,7 @@ static status read_scene(const reader *r, const node *root)
     lesson *l = r->l;
     char *name = NULL;
     TRY(read_text(r, root, "scene", true, &name));
-    char *joined = name[0] == '/' ? strdup(name) : file_beside(l->path, name);
+    char *joined = name[0] == '/' ? strdup(name) : file_next_to(l->path, name);
     l->scene_path = joined ? short_path(joined) : NULL;
     free(joined);
     free(name);

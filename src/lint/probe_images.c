@@ -104,7 +104,7 @@ bool probe_images_begin(probe_images *p, plan *made, isa level)
     const int units = thread_team_units(), height = (int)made->render.height;
     p->pixel_rays = calloc(pixels, sizeof *p->pixel_rays);
     p->pixel_cut = calloc(pixels, sizeof *p->pixel_cut);
-    p->team = thread_team_start(units < PROBE_THREADS_MAX ? units : PROBE_THREADS_MAX);
+    p->team = thread_team_create(units < PROBE_THREADS_MAX ? units : PROBE_THREADS_MAX);
     if (!p->pixel_rays || !p->pixel_cut || !p->team)
         return false;
     const int members = thread_team_size(p->team), most = members == 1 ? 1 : members * STRIPES_PER_THREAD;
@@ -128,7 +128,7 @@ void probe_images_end(probe_images *p)
     p->made->render.depth = p->depth;
     for (int i = 0; i < PROBE_THREADS_MAX; i++)
         tracer_destroy(p->rays[i]);
-    thread_team_stop(p->team);
+    thread_team_destroy(p->team);
     free(p->pixel_rays);
     free(p->pixel_cut);
 }

@@ -1,6 +1,6 @@
 #include "measure/design.h"
+
 #include "base/random.h"
-#include "measure/quantiles.h"
 #include "measure/statistics.h"
 #include <math.h>
 #include <stdlib.h>
@@ -145,7 +145,7 @@ static bool side_create(const level_sample *of, const level_sample *other, const
     return true;
 }
 
-/* What is drawn, of one study: counters of the random numbers. */
+/* The counters of the random numbers for one choice of one study. */
 typedef struct stream {
     uint64_t seed;
     uint32_t draw, purpose;
@@ -167,8 +167,8 @@ static void choose(stream *of, size_t *list, size_t count, size_t wanted)
     }
 }
 
-/* Successive repetitions from a random one; `together`: the same ones of both sides. */
-static void take(stream *of, side *s, const design *d, size_t k, size_t process)
+/* Successive repetitions, from a random one on. */
+static void draw_block(stream *of, side *s, const design *d, size_t k, size_t process)
 {
     const size_t spare = count_of(s->of, process) - d->repetitions;
     const size_t from = s->of->start[process] + below(of, (uint32_t)k, spare + 1);
@@ -183,14 +183,14 @@ static void draw_apart(const design *d, bool shared, uint64_t seed, uint32_t dra
     memcpy(list, a->able, a->count * sizeof *list);
     choose(&of, list, a->count, shared ? 2 * d->processes : d->processes);
     for (size_t k = 0; k < d->processes; k++)
-        take(&block_a, a, d, k, list[k]);
+        draw_block(&block_a, a, d, k, list[k]);
     if (!shared) {
         of.purpose = CHOICE_B;
         memcpy(list, b->able, b->count * sizeof *list);
         choose(&of, list, b->count, d->processes);
     }
     for (size_t k = 0; k < d->processes; k++)
-        take(&block_b, b, d, k, list[shared ? d->processes + k : k]);
+        draw_block(&block_b, b, d, k, list[shared ? d->processes + k : k]);
 }
 
 static void draw_in_turn(const design *d, uint64_t seed, uint32_t draw, side *a, side *b, size_t *list)
@@ -204,8 +204,8 @@ static void draw_in_turn(const design *d, uint64_t seed, uint32_t draw, side *a,
     choose(&of, list, groups, d->processes);
     for (size_t k = 0; k < d->processes; k++) {
         const size_t first = together ? 0 : below(&swap, (uint32_t)k, 2);
-        take(&block_a, a, d, k, a->able[together ? list[k] : 2 * list[k] + first]);
-        take(together ? &block_a : &block_b, b, d, k, a->able[together ? list[k] : 2 * list[k] + 1 - first]);
+        draw_block(&block_a, a, d, k, a->able[together ? list[k] : 2 * list[k] + first]);
+        draw_block(together ? &block_a : &block_b, b, d, k, a->able[together ? list[k] : 2 * list[k] + 1 - first]);
     }
 }
 

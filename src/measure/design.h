@@ -1,13 +1,13 @@
 /* How often a small study misleads: measured values are the population from which studies of one or a few repetitions
- * are drawn, and each is judged by rules that people use. A rule claims that b is larger than a, or smaller, or says
- * nothing. Values are logarithms of times, so that differences are ratios. Ownership: samples are borrowed. */
+ * are drawn, and each is judged by rules that people use. A rule claims that b is larger than a, or smaller, or makes
+ * no claim. Values are logarithms of times, so that differences are ratios. Ownership: samples are borrowed. */
 #pragma once
 
 #include "measure/levels.h"
 
 typedef enum design_rule {
     DESIGN_SIGN,      /* the larger median is larger */
-    DESIGN_EFFECT,    /* the medians differ by more than a given share, such as 5% */
+    DESIGN_EFFECT,    /* the medians differ by more than a given fraction, such as 5% */
     DESIGN_T,         /* Student's two-sample t test at 5%, over all values as if independent */
     DESIGN_MEDIANS,   /* the 95% intervals of the medians by order statistics are disjoint, as if independent */
     DESIGN_PROCESSES, /* the same with the intervals of level_median: the rule of `make claims` */
@@ -17,8 +17,8 @@ typedef enum design_rule {
 
 /* When both sides are measured. */
 typedef enum design_order {
-    DESIGN_APART,    /* each in processes of its own, at any time */
-    DESIGN_TURNS,    /* each in processes of its own that follow one another in pairs */
+    DESIGN_APART,    /* each in separate processes, at any time */
+    DESIGN_TURNS,    /* each in separate processes that follow one another in pairs */
     DESIGN_TOGETHER, /* both in the same processes; only for two cells */
     DESIGN_ORDERS
 } design_order;
@@ -34,7 +34,7 @@ const char *design_order_text(design_order order);
 /* Whether the rule can ever claim anything: an interval of the median needs 6 values, a t test 2. */
 bool design_has_rule(const design *d, design_rule rule);
 
-/* 1: b is larger; -1: smaller; 0: no claim. paired: process k of both belong together. effect: 0.05 for 5%. */
+/* 1: b is larger; -1: smaller; 0: no claim. paired: process k of both are a pair. effect: 0.05 for 5%. */
 status design_claim(design_rule rule, const level_sample *a, const level_sample *b, bool paired, double effect,
                     uint64_t seed, int *claim, diagnostic *why);
 
@@ -48,9 +48,9 @@ typedef struct design_population {
 typedef struct design_tally {
     size_t draws;                                       /* 0: the population is too small */
     size_t larger[DESIGN_RULES], smaller[DESIGN_RULES]; /* claims */
-    /* Studies that the population can be divided into without sharing a process: that many independent ones stand
-     * behind a rate, however many draws there are. The mean over draws is at least as precise as they are (it is a
-     * U-statistic: Hoeffding, Annals of Mathematical Statistics 19, 1948). */
+    /* The number of studies without a common process into which the population can be divided: a rate is as precise as
+     * that many independent studies, however many draws there are. The mean over draws is at least as precise as they
+     * are (it is a U-statistic: Hoeffding, Annals of Mathematical Statistics 19, 1948). */
     size_t independent;
 } design_tally;
 

@@ -1,10 +1,8 @@
-/* Checks of the machine's settings and load for disturbances. */
-#include "measure/disturbances.h"
-
-#include "base/control_group.h"
-#include "measure/small_file.h"
+/* Disturbances by the machine's settings and load. */
 #include "measure/usage.h"
 
+#include "base/control_group.h"
+#include "measure/proc_file.h"
 #include <errno.h>
 #include <math.h>
 #include <stdarg.h>
@@ -30,11 +28,11 @@ __attribute__((format(printf, 2, 3))) static void say(const report *to, const ch
     to->line(to->context, text);
 }
 
-/* What is in a file that cannot be read, for lack of open files or for a broken disk, may disturb: that is said. False
- * without its text. */
+/* Reads a file. What a file contains that cannot be read, for lack of open files or for a broken disk, may disturb:
+ * that is reported, once. */
 static bool read_file(const report *to, const char *path, char *text, size_t size)
 {
-    if (small_file_read(to->root, path, text, size))
+    if (proc_file_read(to->root, path, text, size))
         return true;
     const int reason = errno;
     if (*to->incomplete || (reason != EMFILE && reason != ENFILE && reason != ENOMEM && reason != EIO))
@@ -140,7 +138,7 @@ static void check_swap(const report *to)
 {
     char text[8192];
     read_file(to, "/proc/meminfo", text, sizeof text);
-    int64_t total_kib = small_file_field(text, "SwapTotal"), free_kib = small_file_field(text, "SwapFree");
+    int64_t total_kib = proc_file_field(text, "SwapTotal"), free_kib = proc_file_field(text, "SwapFree");
     if (free_kib >= 0 && total_kib - free_kib >= 1024)
         say(to, "swap in use, %lld MiB", (long long)(total_kib - free_kib) / 1024);
 }
@@ -180,10 +178,10 @@ void usage_disturbances(double sample_s, void (*line)(void *context, const char 
     pause.tv_nsec = (long)((sample_s - (double)pause.tv_sec) * 1e9);
     nanosleep(&pause, NULL);
     usage passed = usage_since(&before);
-    double share = usage_others_share(&passed);
+    double fraction = usage_others_fraction(&passed);
     /* Less is within one tick of /proc/stat: 10 ms of half a second on one unit. */
-    if (!isnan(share) && share >= 0.02)
-        say(&to, "others use %ld%% of the machine", lround(100.0 * share));
+    if (!isnan(fraction) && fraction >= 0.02)
+        say(&to, "others use %ld%% of the machine", lround(100.0 * fraction));
 }
 
 const char *usage_advice(const char *disturbance)

@@ -31,7 +31,7 @@ static int open_event(uint64_t code)
     attributes.size = sizeof attributes;
     attributes.config = code;
     attributes.inherit = 1;
-    attributes.exclude_kernel = 1; /* perf_event_paranoid = 2, the usual value, lets a user count nothing more */
+    attributes.exclude_kernel = 1; /* all that a user may count with perf_event_paranoid = 2, the usual value */
     attributes.exclude_hv = 1;
     attributes.read_format = PERF_FORMAT_TOTAL_TIME_ENABLED | PERF_FORMAT_TOTAL_TIME_RUNNING;
     return (int)syscall(SYS_perf_event_open, &attributes, 0, -1, -1, PERF_FLAG_FD_CLOEXEC);

@@ -1,7 +1,7 @@
-/* Instructions of frames as callgrind counts them (valgrind), where no clock can decide and no hardware counter is:
- * the same number within 0.03 % however busy the machine is. valgrind writes a dump whenever renderer_render
- * returns, with the counts since it was entered (INSTRUCTION_DUMPS_OPTIONS); this reads and removes them. `cuvette
- * study run --instructions` sets the variable. Plain values; nothing to release. */
+/* Instructions of frames as callgrind counts them (valgrind), where no clock can decide and no hardware counter is: the
+ * same number within 0.03 % however busy the machine is. valgrind writes a dump whenever renderer_render returns, with
+ * the counts since it was entered (INSTRUCTION_DUMPS_OPTIONS); this reads and removes them. `cuvette study run
+ * --instructions` sets the variable. Plain values; nothing to release. */
 #pragma once
 
 #include <stdbool.h>
@@ -16,8 +16,8 @@ typedef struct instruction_dumps {
     long last; /* number of the last dump; start with 0 */
 } instruction_dumps;
 
-/* Whether the program runs in this way. */
+/* Whether the program runs under callgrind with such dumps. */
 bool instruction_dumps_exist(void);
 
-/* The instructions of the last frame, all threads together; -1 if there is no new dump. */
+/* The instructions of the last frame, of all threads; -1 if there is no new dump. */
 int64_t instruction_dumps_next(instruction_dumps *dumps);

@@ -1,6 +1,6 @@
 #include "measure/levels.h"
+
 #include "base/random.h"
-#include "measure/quantiles.h"
 #include "measure/statistics.h"
 #include <math.h>
 #include <stdlib.h>
@@ -94,7 +94,8 @@ static void draw_repetitions(resample *r, uint64_t seed, uint32_t round, uint32_
     r->start[1] = count;
 }
 
-/* Whole processes; with one, nothing is known of others. stream: equal for paired samples. */
+/* Draws processes with all of their repetitions; of a single process its repetitions. stream: equal for paired
+ * samples. */
 static void resample_draw(resample *r, uint64_t seed, uint32_t round, uint32_t stream)
 {
     const level_sample *s = r->of;
@@ -139,9 +140,9 @@ static bool has_interval(const level_sample *a, const level_sample *b)
     return values >= 6 && processes != 2;
 }
 
-/* Resamples of a few processes never lie outside their range, which is too narrow (three of one sign are no
- * evidence), so that percentiles do not suffice: Student's t with the bootstrap's standard error. */
-static void take_symmetric(const double *values, double t, level_interval *out)
+/* Resamples of a few processes are never outside their range, which is too narrow (three of one sign are no evidence),
+ * so that percentiles do not suffice: Student's t with the bootstrap's standard error. */
+static void set_symmetric(const double *values, double t, level_interval *out)
 {
     double sum = 0, squares = 0;
     for (size_t i = 0; i < RESAMPLES; i++)
@@ -154,12 +155,12 @@ static void take_symmetric(const double *values, double t, level_interval *out)
     out->high = out->value + half;
 }
 
-void level_take_interval(double *values, size_t draws, level_interval *out)
+void level_set_interval(double *values, size_t draws, level_interval *out)
 {
     const double n = (double)draws;
     const double z = student_quantile(0.975, n - 1) * sqrt(n / (n - 1)), tail = normal_below(-z);
     if (draws < PERCENTILES_LEAST) {
-        take_symmetric(values, z, out);
+        set_symmetric(values, z, out);
         return;
     }
     qsort(values, RESAMPLES, sizeof *values, by_value);
@@ -184,7 +185,7 @@ status level_bootstrap(const level_sample *a, const level_sample *b, bool paired
         values[round] = statistic(&first.drawn, b ? &second.drawn : NULL, context);
     }
     if (values && has_memory)
-        level_take_interval(values, draws_of(a, b), out);
+        level_set_interval(values, draws_of(a, b), out);
     free(values);
     free(first.values);
     free(first.start);
@@ -264,24 +265,24 @@ static level_range range_of(const level_sample *s, level_range claimed)
         return LEVEL_REAL;
     if (claimed == LEVEL_POSITIVE && least > 0)
         return LEVEL_POSITIVE;
-    return claimed == LEVEL_SHARE && largest <= 1 ? LEVEL_SHARE : LEVEL_NOT_NEGATIVE;
+    return claimed == LEVEL_FRACTION && largest <= 1 ? LEVEL_FRACTION : LEVEL_NOT_NEGATIVE;
 }
 
-static void take_interval_within(level_range range, double *values, size_t draws, level_interval *out)
+static void set_interval_within(level_range range, double *values, size_t draws, level_interval *out)
 {
     if (range == LEVEL_POSITIVE && draws < PERCENTILES_LEAST) {
         level_interval logarithm = {log(out->value), NAN, NAN};
         for (size_t i = 0; i < RESAMPLES; i++)
             values[i] = log(values[i]);
-        level_take_interval(values, draws, &logarithm);
+        level_set_interval(values, draws, &logarithm);
         out->low = exp(logarithm.low);
         out->high = exp(logarithm.high);
         return;
     }
-    level_take_interval(values, draws, out);
+    level_set_interval(values, draws, out);
     if (range != LEVEL_REAL)
         out->low = fmax(out->low, 0);
-    if (range == LEVEL_SHARE)
+    if (range == LEVEL_FRACTION)
         out->high = fmin(out->high, 1);
 }
 
@@ -304,7 +305,7 @@ status level_median(const level_sample *s, level_range range, uint64_t seed, lev
                 sorted[i] = (labelled){s->values[i], p};
         qsort(sorted, count, sizeof *sorted, by_labelled_value);
         resample_medians(s, sorted, seed, drawn, medians);
-        take_interval_within(range_of(s, range), medians, s->processes, out);
+        set_interval_within(range_of(s, range), medians, s->processes, out);
     }
     free(medians);
     free(drawn);

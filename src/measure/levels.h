@@ -1,7 +1,7 @@
 /* Repeated measurements on two levels: repetitions within processes. The times of one process are more alike than those
- * of several, because memory layout, address randomisation and placement differ, so that repetitions in one process
- * alone give intervals that are too narrow (Kalibera and Jones, Rigorous benchmarking in reasonable time, ISMM 2013).
- * Pure, except that level_bootstrap allocates its resamples. */
+ * of several, because memory layout, address randomisation and placement differ, so that repetitions in only one
+ * process lead to intervals that are too narrow (Kalibera and Jones, Rigorous benchmarking in reasonable time, ISMM
+ * 2013). Pure, except that level_bootstrap allocates its resamples. */
 #pragma once
 
 #include "base/status.h"
@@ -28,22 +28,23 @@ typedef struct level_interval {
 /* A function of one or two samples, of resampled ones too; b is NULL for one. */
 typedef double level_statistic(const level_sample *a, const level_sample *b, void *context);
 
-/* The statistic with the interval of a hierarchical bootstrap: whole processes are drawn with replacement. Drawing
- * their repetitions again would count the variance of repetitions twice (Davison and Hinkley, Bootstrap Methods and
- * their Application, 1997, 3.8; Ren et al., Nonparametric bootstrapping for hierarchical data, Journal of Applied
- * Statistics 37, 2010). With one process its repetitions are drawn. paired: process i of both was run at about the same
- * time, so both are drawn together; needs equal numbers. From 10 processes on it is the expanded percentile interval,
- * which has the width of Student's t; for fewer, Student's t with the bootstrap's standard error (Hesterberg, What
- * teachers should know about the bootstrap, The American Statistician 69, 2015). seed makes it reproducible. No
- * interval for fewer than 6 values in all, or fewer than 3 processes if there is more than one. */
+/* The statistic with the interval of a hierarchical bootstrap: processes are drawn with replacement, each with all of
+ * its repetitions. Drawing their repetitions again would count the variance of repetitions twice (Davison and Hinkley,
+ * Bootstrap Methods and their Application, 1997, 3.8; Ren et al., Nonparametric bootstrapping for hierarchical data,
+ * Journal of Applied Statistics 37, 2010). With one process its repetitions are drawn. paired: process i of both was
+ * run at about the same time, so the same process of both is drawn; needs equal numbers. From 10 processes on it is the
+ * expanded percentile interval, which has the width of Student's t; for fewer, Student's t with the bootstrap's
+ * standard error (Hesterberg, What teachers should know about the bootstrap, The American Statistician 69, 2015). seed
+ * makes it reproducible. No interval for fewer than 6 values in all, or fewer than 3 processes if there is more than
+ * one. */
 status level_bootstrap(const level_sample *a, const level_sample *b, bool paired, level_statistic *statistic,
                        void *context, uint64_t seed, level_interval *out, diagnostic *why);
-/* The parts of level_bootstrap, for statistics with samples of their own (study/contrast_all.h). level_draw: a number
- * below count, the same for the same arguments; stream: equal for what is drawn together. level_take_interval: the
+/* The parts of level_bootstrap, for statistics with other samples (study/contrast_all.h). level_draw: a number below
+ * count, the same for the same arguments; stream: equal for samples that are drawn as pairs. level_set_interval: the
  * interval of out->value from LEVEL_RESAMPLES resampled values, of samples of `draws` processes; reorders them. */
 enum { LEVEL_RESAMPLES = 2000 };
 size_t level_draw(uint64_t seed, uint32_t round, uint32_t stream, uint32_t process, size_t count);
-void level_take_interval(double *values, size_t draws, level_interval *out);
+void level_set_interval(double *values, size_t draws, level_interval *out);
 
 /* Of two samples of logarithms, the difference of their centres: the logarithm of a ratio. */
 double level_difference(const level_sample *a, const level_sample *b, void *unused);
@@ -53,12 +54,12 @@ typedef enum level_range {
     LEVEL_REAL,         /* any number, such as the logarithm of a time */
     LEVEL_POSITIVE,     /* above 0, such as a time */
     LEVEL_NOT_NEGATIVE, /* 0 or above, such as a time of waiting */
-    LEVEL_SHARE         /* 0 to 1 */
+    LEVEL_FRACTION      /* 0 to 1 */
 } level_range;
 
 /* The median of all values with its interval: processes are drawn as in level_bootstrap. For 3 to 9 processes, where
  * the interval is Student's t, that of a positive quantity is computed from logarithms, so that it is symmetric for
- * ratios and never reaches 0; that of the others is cut at 0 and, for a share, at 1. A value outside its range makes
+ * ratios and never reaches 0; that of the others is cut at 0 and, for a fraction, at 1. A value outside its range makes
  * the range that of what was measured. For fewer than 3 processes it is that of the order statistics of all values
  * (measure/statistics.h), as if they were independent. Values are sorted by process as given, and not changed. */
 status level_median(const level_sample *s, level_range range, uint64_t seed, level_interval *out, diagnostic *why);

@@ -1,8 +1,8 @@
 /* Readings of the machine's load, and the rule that calls a measurement disturbed. */
 #include "measure/machine_noise.h"
+
 #include "measure/clock.h"
-#include "measure/proc_stat.h"
-#include "measure/small_file.h"
+#include "measure/proc_file.h"
 #include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
@@ -18,7 +18,7 @@ static double frequency_of_sysfs(const char *root)
     for (int unit = 0; unit < UNITS_READ; unit++) {
         char path[96], text[32];
         snprintf(path, sizeof path, "/sys/devices/system/cpu/cpu%d/cpufreq/scaling_cur_freq", unit);
-        if (!small_file_read(root, path, text, sizeof text))
+        if (!proc_file_read(root, path, text, sizeof text))
             break;
         most = fmax(most, (double)strtoll(text, NULL, 10) * 1e3);
     }
@@ -30,7 +30,7 @@ static double frequency_of_cpuinfo(const char *root)
 {
     char text[CPUINFO_MAX];
     double most = 0;
-    if (!small_file_read(root, "/proc/cpuinfo", text, sizeof text))
+    if (!proc_file_read(root, "/proc/cpuinfo", text, sizeof text))
         return NAN;
     for (const char *at = text; (at = strstr(at, "cpu MHz")) != NULL; at++) {
         const char *colon = strchr(at, ':');
@@ -46,7 +46,7 @@ noise_reading noise_read(const char *root)
     char text[PROC_STAT_MAX];
     proc_stat machine;
     noise_reading r = {.busy_s = NAN, .steal_s = NAN, .units = NAN};
-    if (small_file_read(root, "/proc/stat", text, sizeof text) &&
+    if (proc_file_read(root, "/proc/stat", text, sizeof text) &&
         proc_stat_parse(text, (double)sysconf(_SC_CLK_TCK), &machine)) {
         r.busy_s = machine.busy_s;
         r.steal_s = machine.steal_s;
@@ -65,7 +65,7 @@ machine_noise noise_unknown(void)
 }
 
 /* Rounding to ticks can exceed either end. */
-static double share(double part_s, double capacity_s)
+static double fraction(double part_s, double capacity_s)
 {
     return capacity_s > 0 && !isnan(part_s) ? fmin(fmax(part_s / capacity_s, 0.0), 1.0) : NAN;
 }
@@ -75,7 +75,8 @@ machine_noise noise_between(const noise_reading *before, const noise_reading *af
     const double capacity_s = (after->wall_s - before->wall_s) * after->units;
     const double others_s = (after->busy_s - before->busy_s) - (after->own_s - before->own_s);
     const double steal_s = after->steal_s - before->steal_s;
-    return (machine_noise){share(others_s, capacity_s), share(steal_s, capacity_s), after->frequency_hz, NAN, NAN};
+    return (machine_noise){fraction(others_s, capacity_s), fraction(steal_s, capacity_s), after->frequency_hz, NAN,
+                           NAN};
 }
 
 /* --- window --- */

@@ -1,7 +1,7 @@
-/* What the rest of the machine did during a measurement: other processes, the hypervisor, the clock frequency; and
- * what was done to this process. Differences between two readings of /proc and /sys. The counters there tick in 10
- * ms, so a difference over less than half a second means little: a noise_window keeps the readings that are needed
- * to look back that far. Plain values, nothing to release. Unknown values are NaN. */
+/* What the rest of the machine did during a measurement: other processes, the hypervisor, the clock frequency; and what
+ * was done to this process. Differences between two readings of /proc and /sys. The counters there tick in 10 ms, so a
+ * difference over less than half a second means little: a noise_window keeps the readings that are needed to look back
+ * that far. Plain values, nothing to release. Unknown values are NaN. */
 #pragma once
 
 #include <stdbool.h>
@@ -19,7 +19,7 @@ typedef struct machine_noise {
     double others_share;   /* of the machine, 0..1: busy but not with this process; includes steal */
     double steal_share;    /* of the machine, 0..1 */
     double frequency_hz;   /* at the end */
-    double frequency_drop; /* share by which that is below the highest one so far, 0..1 */
+    double frequency_drop; /* fraction by which that is below the highest one so far, 0..1 */
     double stalled_share;  /* of the time of the workers, 0..1: see noise_stalled */
 } machine_noise;
 
@@ -30,10 +30,10 @@ machine_noise noise_between(const noise_reading *before, const noise_reading *af
 /* All unknown. */
 machine_noise noise_unknown(void);
 
-/* The share of the time of `workers` threads in which they did not run, of wall_s and cpu_s over all of them:
- * stopped (Ctrl-Z), frozen or throttled by their control group, or held up by others. Threads that compute all the
- * time run all the time. More of them than units wait for one another: then longest_s, the wall time of the longest,
- * is what one unit must have computed at least, and the share is a lower bound. NaN without workers. */
+/* The fraction of the time of `workers` threads in which they did not run, of wall_s and cpu_s over all of them:
+ * stopped (Ctrl-Z), frozen or throttled by their control group, or held up by others. Threads that compute all the time
+ * run all the time. More of them than units wait for one another: then longest_s, the wall time of the longest, is what
+ * one unit must have computed at least, and the fraction is a lower bound. NaN without workers. */
 double noise_stalled(int workers, int units, double wall_s, double longest_s, double cpu_s);
 
 #define NOISE_WINDOW_S 0.5

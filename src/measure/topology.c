@@ -1,16 +1,45 @@
-/* Counts of a topology and placement of threads on its processing units. */
+/* A topology: its tree, read from the text of topology_discover.c; counts, placement and binding of threads, texts. */
 #include "measure/topology.h"
 
+#include "base/array.h"
 #include "measure/topology_private.h"
-
 #include <errno.h>
+#include <inttypes.h>
 #include <sched.h>
 #include <stdbool.h>
+#include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 #include <unistd.h>
 
 /* ---- the tree ---- */
+
+/* Appends a node. */
+static bool add_node(topology *machine, int depth, char kind, int unit)
+{
+    if (!room_for_one(&machine->nodes, (size_t)machine->count, sizeof *machine->nodes))
+        return false;
+    machine->nodes[machine->count++] = (topology_node){.depth = depth, .kind = kind, .unit = unit};
+    return true;
+}
+
+/* Computes end and round of every node after the last add_node. */
+static void complete_tree(topology *machine)
+{
+    int core = -1, in_core = 0; /* the core that the walk is in, and the units seen in it */
+    for (int i = 0; i < machine->count; i++) {
+        topology_node *n = &machine->nodes[i];
+        n->end = i + 1;
+        while (n->end < machine->count && machine->nodes[n->end].depth > n->depth)
+            n->end++;
+        if (n->kind == 'c') {
+            core = i;
+            in_core = 0;
+        }
+        if (n->kind == 'u')
+            n->round = core >= 0 && i < machine->nodes[core].end ? in_core++ : 0;
+    }
+}
 
 static int count_kind(const topology *machine, char kind)
 {
@@ -61,8 +90,47 @@ static bool keep_units(topology *machine, const cpu_set_t *set, size_t size)
             machine->nodes[kept++] = machine->nodes[i];
     }
     machine->count = kept;
-    topology_complete(machine);
+    complete_tree(machine);
     return true;
+}
+
+/* ---- reading ---- */
+
+static bool read_line(topology *machine, const char *line)
+{
+    int depth, unit, level;
+    char kind;
+    int64_t bytes;
+    if (sscanf(line, "node %d %c %d", &depth, &kind, &unit) == 3)
+        return add_node(machine, depth, kind, unit);
+    if (sscanf(line, "cache %d %" SCNd64, &level, &bytes) == 2 && level >= 0 && level < TOPOLOGY_CACHES)
+        machine->cache[level] = bytes;
+    else if (strncmp(line, "model ", 6) == 0)
+        snprintf(machine->model, sizeof machine->model, "%s", line + 6);
+    else if (sscanf(line, "installed %d", &machine->installed) != 1)
+        (void)!sscanf(line, "memory %" SCNd64, &machine->memory);
+    return true;
+}
+
+/* Fills an empty topology from the text of topology_discover.c. STATUS_BAD_INPUT: it is truncated or damaged. */
+static status read_tree(topology *machine, char *text, diagnostic *why)
+{
+    bool has_unit = false;
+    for (char *rest = text, *line; (line = strsep(&rest, "\n"));) {
+        if (strcmp(line, "xml") == 0) {
+            machine->xml = rest ? strdup(rest) : NULL;
+            break;
+        }
+        if (!read_line(machine, line))
+            return out_of_memory(why);
+    }
+    if (!machine->xml)
+        return out_of_memory(why);
+    complete_tree(machine);
+    for (int i = 0; i < machine->count; i++)
+        has_unit |= machine->nodes[i].kind == 'u';
+    return has_unit ? STATUS_OK
+                    : diagnose(why, STATUS_BAD_INPUT, "", "the description of the machine has no processing unit");
 }
 
 /* ---- creation ---- */
@@ -74,21 +142,21 @@ static status no_room(diagnostic *why)
     return diagnose(why, STATUS_FAILURE, "close other programs", "out of memory for the topology of the machine");
 }
 
-/* hwloc failed: each unit that this process may use is taken for a core, and all for one package. */
+/* hwloc failed: each unit that this process may use counts as a core, and all as one package. */
 static status assume(topology *machine, diagnostic *why)
 {
     const size_t size = CPU_ALLOC_SIZE(UNITS_MAX);
     cpu_set_t *own = CPU_ALLOC(UNITS_MAX);
     const bool known = own && sched_getaffinity(0, size, own) == 0;
-    bool good = topology_add(machine, 0, 'p', -1);
+    bool good = add_node(machine, 0, 'p', -1);
     for (int i = 0; good && i < UNITS_MAX; i++)
         if (known ? CPU_ISSET_S((size_t)i, size, own) : i == 0)
-            good = topology_add(machine, 1, 'c', -1) && topology_add(machine, 2, 'u', i);
+            good = add_node(machine, 1, 'c', -1) && add_node(machine, 2, 'u', i);
     CPU_FREE(own);
     const long installed = sysconf(_SC_NPROCESSORS_CONF);
     machine->installed = installed > 0 && installed < UNITS_MAX ? (int)installed : 1;
     machine->assumed = true;
-    topology_complete(machine);
+    complete_tree(machine);
     return good ? STATUS_OK : no_room(why);
 }
 
@@ -96,9 +164,9 @@ static status fill(topology *machine, const char *synthetic, diagnostic *why)
 {
     status code;
     bool no_memory;
-    char *text = topology_ask(synthetic, &code, &no_memory);
+    char *text = topology_discover_in_child(synthetic, &code, &no_memory);
     if (text) {
-        code = topology_read(machine, text, why);
+        code = read_tree(machine, text, why);
         free(text);
         return code;
     }
@@ -269,7 +337,7 @@ static bool add_units(const topology *machine, int unit, cpu_set_t *set, size_t 
 
 status topology_bind_thread(const topology *machine, int pu, diagnostic *why)
 {
-    cpu_set_t set[UNITS_MAX / CPU_SETSIZE]; /* 8 KiB: a worker, which has no way to say so, must not lack memory */
+    cpu_set_t set[UNITS_MAX / CPU_SETSIZE]; /* 8 KiB on the stack: a worker cannot report a lack of memory */
     memset(set, 0, sizeof set);
     const bool found = add_units(machine, pu, set, sizeof set);
     const int failed = found && !machine->described ? sched_setaffinity(0, sizeof set, set) : 0, reason = errno;
@@ -285,4 +353,72 @@ status topology_bind_thread(const topology *machine, int pu, diagnostic *why)
 int topology_current_pu(void)
 {
     return sched_getcpu();
+}
+
+/* ---- texts ---- */
+
+typedef struct line {
+    char text[512];
+    size_t used;
+} line;
+
+static void append(line *to, const char *text)
+{
+    size_t length = strlen(text);
+    if (to->used + length >= sizeof to->text)
+        return;
+    memcpy(to->text + to->used, text, length + 1);
+    to->used += length;
+}
+
+static void append_count(line *to, int count, const char *noun)
+{
+    char part[64];
+    snprintf(part, sizeof part, "%s%d %s%s", to->used > 0 ? ", " : "", count, noun, count == 1 ? "" : "s");
+    append(to, part);
+}
+
+static void append_size(line *to, const char *name, uint64_t bytes)
+{
+    char part[64];
+    bool large = bytes >= UINT64_C(10) << 20;
+    snprintf(part, sizeof part, ", %s %" PRIu64 " %s", name, bytes >> (large ? 20 : 10), large ? "MiB" : "KiB");
+    append(to, part);
+}
+
+static void append_caches(line *to, const topology *machine)
+{
+    static const char *const names[TOPOLOGY_CACHES] = {"L1d", "L2", "L3"};
+    for (int i = 0; i < TOPOLOGY_CACHES; i++)
+        if (machine->cache[i] > 0)
+            append_size(to, names[i], (uint64_t)machine->cache[i]);
+}
+
+char *topology_summary(const topology *machine)
+{
+    line summary = {.used = 0};
+    int units = topology_pu_count(machine);
+    append_count(&summary, topology_package_count(machine), "package");
+    append_count(&summary, topology_core_count(machine), "core");
+    append_count(&summary, units, "thread");
+    if (machine->installed > units) {
+        char part[64];
+        snprintf(part, sizeof part, " (of the machine's %d)", machine->installed);
+        append(&summary, part);
+    }
+    append_caches(&summary, machine);
+    if (machine->memory > 0)
+        append_size(&summary, "memory", (uint64_t)machine->memory);
+    if (machine->model[0]) {
+        append(&summary, ", ");
+        append(&summary, machine->model);
+    }
+    if (machine->assumed)
+        append(&summary, ", cores and packages assumed (hwloc failed)");
+    return strdup(summary.text);
+}
+
+char *topology_xml(const topology *machine)
+{
+    return strdup(machine->xml ? machine->xml : "");
 }

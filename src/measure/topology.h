@@ -1,7 +1,7 @@
-/* The topology of the machine: its processors and the placement of threads on them. hwloc finds it, in a child
- * process (fork), so that its failures are not ours: if it fails, each processing unit is taken for a core, and the
- * summary says so. The creator owns a topology; several threads may read it. The process's own CPU binding (taskset,
- * cgroup) at the time of creation is respected: only those units are used. */
+/* The topology of the machine: its processors and the placement of threads on them. hwloc finds it, in a child process
+ * (fork), so that its failures are not ours: if it fails, each processing unit counts as a core, and the summary
+ * reports it. The creator owns a topology; several threads may read it. The process's own CPU binding (taskset, cgroup)
+ * at the time of creation is respected: only those units are used. */
 #pragma once
 
 #include "base/status.h"
@@ -30,15 +30,14 @@ int topology_package_count(const topology *machine);
  * twice. More workers than units wrap around. */
 int topology_place(const topology *machine, pin_policy policy, int worker, int count);
 
-/* Binds the calling thread to one processing unit; -1 restores the process's whole set. Has no effect for a synthetic
+/* Binds the calling thread to one processing unit; -1 restores all units of the process. Has no effect for a synthetic
  * topology. STATUS_BAD_INPUT for a unit that the process may not use. */
 status topology_bind_thread(const topology *machine, int pu, diagnostic *why);
 
 /* The OS index of the current unit of the calling thread; -1 if unknown. */
 int topology_current_pu(void);
 
-/* A one-line summary ("1 package, 2 cores, 2 threads, L2 1024 KiB ..."), and the whole tree as hwloc XML as
- * it was created (without host name and serial numbers; "" if hwloc failed). The caller frees the text; NULL on
- * failure. */
+/* A one-line summary ("1 package, 2 cores, 2 threads, L2 1024 KiB ..."), and the tree as hwloc XML as it was created
+ * (without host name and serial numbers; "" if hwloc failed). The caller frees the text; NULL on failure. */
 char *topology_summary(const topology *machine);
 char *topology_xml(const topology *machine);

@@ -154,7 +154,7 @@ static char *read_all(int fd, bool *no_memory)
     return NULL;
 }
 
-/* The exit status; 0 if the caller's own handler has already taken it: the text shows whether it is complete. */
+/* The exit status; 0 if a handler of the caller has already reaped the child: the text shows whether it is complete. */
 static int reap(pid_t child)
 {
     int state;
@@ -164,7 +164,7 @@ static int reap(pid_t child)
     return WIFEXITED(state) ? WEXITSTATUS(state) : STATUS_FAILURE;
 }
 
-char *topology_ask(const char *synthetic, status *code, bool *no_memory)
+char *topology_discover_in_child(const char *synthetic, status *code, bool *no_memory)
 {
     int ends[2];
     *no_memory = false;

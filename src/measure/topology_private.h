@@ -3,7 +3,6 @@
 #pragma once
 
 #include "measure/topology.h"
-
 #include <stdbool.h>
 #include <stdint.h>
 #include <stdio.h>
@@ -22,9 +21,9 @@ enum { TOPOLOGY_CACHES = 3 };
 struct topology {
     topology_node *nodes; /* with at least one processing unit each; only units that this process may use */
     int count;
-    int installed;                  /* units of the whole machine, usable or not */
+    int installed;                  /* units of the machine, usable or not */
     bool described;                 /* by a text: threads cannot be bound */
-    bool assumed;                   /* hwloc failed: every unit is taken for a core */
+    bool assumed;                   /* hwloc failed: every unit counts as a core */
     int64_t cache[TOPOLOGY_CACHES]; /* bytes of the first L1d, L2 and L3; 0: unknown */
     int64_t memory;                 /* bytes; 0: unknown */
     char model[128];                /* of the processor; "": unknown */
@@ -36,14 +35,6 @@ struct topology {
  * writes a part of the text in case of a failure. Calls no function of hwloc's outside the child. */
 int topology_discover(const char *synthetic, FILE *out);
 
-/* The output of topology_discover in a child process; NULL, with a status, if that failed. *no_memory: it failed
- * here, not there. The caller frees the text. */
-char *topology_ask(const char *synthetic, status *code, bool *no_memory);
-
-/* Fills an empty topology from such a text. STATUS_BAD_INPUT: it is truncated or damaged. */
-status topology_read(topology *machine, char *text, diagnostic *why);
-
-/* Appends a node. */
-bool topology_add(topology *machine, int depth, char kind, int unit);
-/* Computes end and round of every node after the last topology_add. */
-void topology_complete(topology *machine);
+/* The output of topology_discover in a child process; NULL, with a status, if that failed. *no_memory: memory ran out
+ * in this process, not in the child. The caller frees the text. */
+char *topology_discover_in_child(const char *synthetic, status *code, bool *no_memory);

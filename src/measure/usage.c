@@ -1,14 +1,21 @@
-/* Readings of resource usage from getrusage, /proc and clocks. */
+/* Readings of resource usage from getrusage, /proc and clocks: of the process and machine, and of one thread. */
 #include "measure/usage.h"
 
 #include "measure/clock.h"
-#include "measure/proc_stat.h"
-#include "measure/small_file.h"
-
+#include "measure/proc_file.h"
 #include <fcntl.h>
+#include <inttypes.h>
 #include <math.h>
+#include <stdio.h>
 #include <sys/resource.h>
 #include <unistd.h>
+
+static int64_t difference(int64_t before, int64_t after)
+{
+    return before < 0 || after < 0 ? -1 : after - before;
+}
+
+/* ---- the process and the machine ---- */
 
 /* VmHWM rather than ru_maxrss: the latter survives exec, so that a small program started by a large one would appear
  * large. */
@@ -16,8 +23,8 @@ static int64_t peak_rss_bytes(int64_t maxrss_kib)
 {
     char text[4096];
     int64_t kib = -1;
-    if (small_file_read("", "/proc/self/status", text, sizeof text))
-        kib = small_file_field(text, "VmHWM");
+    if (proc_file_read("", "/proc/self/status", text, sizeof text))
+        kib = proc_file_field(text, "VmHWM");
     if (kib < 0)
         kib = maxrss_kib;
     return kib < 0 ? -1 : kib * 1024;
@@ -25,15 +32,14 @@ static int64_t peak_rss_bytes(int64_t maxrss_kib)
 
 static void read_machine(usage *u)
 {
-    enum {
-        PROC_STAT_MAX = 65536
-    }; /* a line is shorter than 128 bytes, so this holds over 500 units; the interrupts after them may be cut off */
+    /* a line is shorter than 128 bytes, so this holds over 500 units; the interrupts after them may be cut off */
+    enum { PROC_STAT_MAX = 65536 };
     char text[PROC_STAT_MAX];
     proc_stat machine;
     long units = sysconf(_SC_NPROCESSORS_ONLN);
     u->machine_busy_s = NAN;
     u->machine_units = units > 0 ? (double)units : NAN;
-    if (!small_file_read("", "/proc/stat", text, sizeof text))
+    if (!proc_file_read("", "/proc/stat", text, sizeof text))
         return;
     if (!proc_stat_parse(text, (double)sysconf(_SC_CLK_TCK), &machine))
         return;
@@ -69,11 +75,6 @@ void usage_forget_peak(void)
     close(fd);
 }
 
-static int64_t difference(int64_t before, int64_t after)
-{
-    return before < 0 || after < 0 ? -1 : after - before;
-}
-
 usage usage_since(const usage *before)
 {
     usage u = usage_now();
@@ -85,11 +86,68 @@ usage usage_since(const usage *before)
     return u;
 }
 
-double usage_others_share(const usage *d)
+double usage_others_fraction(const usage *d)
 {
     double capacity_s = d->wall_s * d->machine_units;
     if (!(capacity_s > 0.0) || isnan(d->machine_busy_s) || isnan(d->cpu_s))
         return NAN;
-    double share = (d->machine_busy_s - d->cpu_s) / capacity_s;
-    return share < 0.0 ? 0.0 : share > 1.0 ? 1.0 : share; /* rounding to 10 ms ticks can exceed either end */
+    double fraction = (d->machine_busy_s - d->cpu_s) / capacity_s;
+    return fraction < 0.0 ? 0.0 : fraction > 1.0 ? 1.0 : fraction; /* rounding to 10 ms ticks can exceed either end */
+}
+
+/* ---- a thread ---- */
+
+bool thread_usage_parse(const char *schedstat, double *runnable_s)
+{
+    uint64_t running_ns, runnable_ns, slices;
+    if (sscanf(schedstat, "%" SCNu64 " %" SCNu64 " %" SCNu64, &running_ns, &runnable_ns, &slices) != 3)
+        return false;
+    if (running_ns == 0 && runnable_ns == 0 && slices == 0)
+        return false;
+    *runnable_s = (double)runnable_ns * 1e-9;
+    return true;
+}
+
+thread_usage thread_usage_unknown(void)
+{
+    return (thread_usage){(double)NAN, (double)NAN, (double)NAN, (double)NAN, -1, -1};
+}
+
+static void read_switches(thread_usage *u)
+{
+#ifdef RUSAGE_THREAD
+    struct rusage r;
+    if (getrusage(RUSAGE_THREAD, &r) == 0) {
+        u->voluntary_switches = r.ru_nvcsw;
+        u->involuntary_switches = r.ru_nivcsw;
+    }
+#else
+    (void)u;
+#endif
+}
+
+/* Running time comes from the thread's clock: it counts the same as schedstat, which lags by up to a tick (4 ms). */
+thread_usage thread_usage_now(void)
+{
+    char text[128];
+    thread_usage u = thread_usage_unknown();
+    if (proc_file_read("", "/proc/thread-self/schedstat", text, sizeof text))
+        (void)thread_usage_parse(text, &u.runnable_s);
+    read_switches(&u);
+    u.running_s = clock_thread_cpu_s();
+    u.wall_s = clock_wall_s();
+    return u;
+}
+
+thread_usage thread_usage_since(const thread_usage *before)
+{
+    thread_usage u = thread_usage_now();
+    u.wall_s -= before->wall_s;
+    u.running_s -= before->running_s;
+    u.runnable_s -= before->runnable_s;
+    u.voluntary_switches = difference(before->voluntary_switches, u.voluntary_switches);
+    u.involuntary_switches = difference(before->involuntary_switches, u.involuntary_switches);
+    const double rest_s = u.wall_s - u.running_s - u.runnable_s;
+    u.blocked_s = rest_s < 0.0 ? 0.0 : rest_s; /* the clocks are read one after another; NaN remains */
+    return u;
 }

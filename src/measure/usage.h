@@ -1,9 +1,13 @@
-/* Resource usage of the process and the machine, read before and after some work and subtracted. */
+/* Resources that a piece of work uses, read before and after it and subtracted: of the process and the machine, of a
+ * thread, of the processor; and what could disturb a measurement. Unknown values are NaN (reals) or -1 (integers), and
+ * are written as NA. */
 #pragma once
 
+#include <stdbool.h>
 #include <stdint.h>
 
-/* Unknown values are NaN (reals) or -1 (integers), and are written as NA. */
+/* ---- the process and the machine ---- */
+
 typedef struct usage {
     double wall_s, cpu_s;   /* of the process; differences after usage_since */
     int64_t peak_rss_bytes; /* peak resident memory of the process so far; never a difference */
@@ -17,9 +21,35 @@ usage usage_now(void);
 void usage_forget_peak(void);
 /* The difference between an earlier reading and now. */
 usage usage_since(const usage *before);
-/* The share of the machine that other processes used during a difference, 0..1; NaN if unknown. /proc/stat ticks in 10
- * ms, so the value is imprecise for intervals below 0.1 s. */
-double usage_others_share(const usage *difference);
+/* The fraction of the machine that other processes used during a difference, 0..1; NaN if unknown. /proc/stat ticks in
+ * 10 ms, so the value is imprecise for intervals below 0.1 s. */
+double usage_others_fraction(const usage *difference);
+
+/* ---- a thread ---- */
+
+/* What the calling thread did in an interval: it ran, it waited for a processing unit although it could run, or it was
+ * blocked (by a lock, a semaphore, a page from the disk). On more threads than units, the second is the price of their
+ * number. Read at the start and at the end by the thread itself; a reading takes some 10 microseconds, because it opens
+ * a file of /proc. */
+typedef struct thread_usage {
+    double wall_s;     /* monotonic clock; the length of the interval after thread_usage_since */
+    double running_s;  /* CPU time of the thread */
+    double runnable_s; /* waiting for a processing unit: Linux, /proc/thread-self/schedstat */
+    double blocked_s;  /* wall_s - running_s - runnable_s; NaN before thread_usage_since */
+    int64_t voluntary_switches, involuntary_switches; /* getrusage, RUSAGE_THREAD */
+} thread_usage;
+
+thread_usage thread_usage_unknown(void);
+thread_usage thread_usage_now(void);
+/* The difference between an earlier reading of this thread and now. */
+thread_usage thread_usage_since(const thread_usage *before);
+
+/* Reads a file schedstat: nanoseconds of running and of waiting while runnable, and the number of time slices (Linux,
+ * Documentation/scheduler/sched-stats.rst). False if it is something else, or three zeros: a kernel that does not
+ * measure it writes these. */
+bool thread_usage_parse(const char *schedstat, double *runnable_s);
+
+/* ---- hardware counters: hardware_counter.c ---- */
 
 /* Hardware counters of the calling thread and of threads that it starts later (perf_event_open), user mode only;
  * unavailable counts are -1. */
@@ -36,6 +66,8 @@ hardware_counts hardware_counter_read(const hardware_counter *counter);
 hardware_counts hardware_counts_since(const hardware_counter *counter, const hardware_counts *before);
 void hardware_counter_destroy(hardware_counter *counter);
 
+/* ---- disturbances: disturbances.c ---- */
+
 /* Reports what could disturb a measurement now: calls line with one short text for each ("governor powersave", "turbo
  * on", "load 3.2", "others use 40% of the machine"), never if nothing is found. The load is observed for sample_s
  * seconds (0: not at all, and nothing is reported about other processes). */
@@ -43,3 +75,9 @@ void usage_disturbances(double sample_s, void (*line)(void *context, const char 
 
 /* What to do about such a disturbance; "" if nothing is known to help. Static text. */
 const char *usage_advice(const char *disturbance);
+
+typedef void (*disturbance_line)(void *context, const char *text);
+
+/* The settings (governor, turbo, threads per core, hypervisor, quota), load and swap by the files of /proc and /sys
+ * below root, "" for this machine: so that it can be tested with copies of any machine's files. */
+void disturbances_of_machine(const char *root, disturbance_line line, void *context);

@@ -1,6 +1,6 @@
 /* The entry point of `cuvette-mpi`: commands of `cuvette` on the ranks of an MPI job. Rank 0 reads the command line and
  * writes the files; the other ranks follow it. */
-#include "base/json_memory.h"
+#include "base/json_build.h"
 #include "base/build_id.h"
 #include "base/float_environment.h"
 #include "cli/cli.h"

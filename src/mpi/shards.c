@@ -3,7 +3,7 @@
 #include "mpi/shards.h"
 
 #include "base/cancel.h"
-#include "base/spawn.h"
+#include "base/child.h"
 #include "base/text.h"
 #include "cli/study_request.h"
 #include "cli/terminal.h"

@@ -1,7 +1,7 @@
 /* Queues between the messenger and the tracing threads of a rank. */
 #include "mpi/tracing.h"
 
-#include "base/grow.h"
+#include "base/array.h"
 #include <pthread.h>
 #include <stdatomic.h>
 #include <stdlib.h>

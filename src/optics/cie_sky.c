@@ -2,7 +2,7 @@
 #include "optics/cie_sky.h"
 
 #include "base/elementary.h"
-#include "base/elementary_inline.h"
+#include "base/lanes.h"
 
 #define PI 3.14159265358979323846
 

@@ -2,7 +2,7 @@
  * leave the interface are continuous, which is a linear system of four complex equations. */
 #include "optics/crystal.h"
 
-#include "base/complex_pair.h"
+#include "optics/complex_pair.h"
 
 typedef struct complex_vec3 {
     complex_pair x, y, z;
@@ -286,7 +286,8 @@ static stokes row_across(complex_pair J[2][2], int sides, stokes row)
         for (int b = 0; b < 2; b++)
             for (int c = 0; c < sides; c++)
                 for (int d = 0; d < sides; d++)
-                    out[a][b] = complex_add(out[a][b], complex_multiply(complex_between(J[a][c], W[c][d]), J[b][d]));
+                    out[a][b] =
+                        complex_add(out[a][b], complex_multiply(complex_conj_multiply(J[a][c], W[c][d]), J[b][d]));
     const stokes s = {0.5 * (out[0][0].re + out[1][1].re), 0.5 * (out[0][0].re - out[1][1].re), out[1][0].re,
                       out[1][0].im};
     return s;
@@ -297,7 +298,7 @@ static double weight_across(const complex_pair j[2], int sides, stokes row)
 {
     if (sides == 1)
         return row.i * complex_norm2(j[0]);
-    const complex_pair between = complex_between(j[0], j[1]);
+    const complex_pair between = complex_conj_multiply(j[0], j[1]);
     const double x = complex_norm2(j[0]), y = complex_norm2(j[1]);
     const stokes light = {x + y, x - y, 2.0 * between.re, 2.0 * between.im};
     return 0.5 * analyser_sees(row, light);

@@ -15,7 +15,7 @@
 #include "optics/mueller.h"
 #include <stdbool.h>
 
-/* isotropic: index n_o alone; otherwise n_o, and n_e for a field along the optic axis, a unit vector. */
+/* isotropic: only n_o, the index; otherwise n_o, and n_e for a field along the optic axis, a unit vector. */
 typedef struct optical_medium {
     bool uniaxial;
     double n_o, n_e;

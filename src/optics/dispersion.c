@@ -1,6 +1,9 @@
-/* The formulas of the dispersion laws, and the Abbe number. */
+/* The formulas of the dispersion laws, the Abbe number, and the check of a law. */
 #include "optics/dispersion.h"
+
+#include "base/number.h"
 #include <math.h>
+#include <stdio.h>
 
 static const struct {
     const char *name, *formula;
@@ -79,8 +82,8 @@ static double table(const dispersion *law, double lambda_nm)
         point += 2;
     if (point == last)
         return last[1];
-    const double share = (lambda_nm - point[0]) / (point[2] - point[0]);
-    return point[1] * (1.0 - share) + point[3] * share;
+    const double part = (lambda_nm - point[0]) / (point[2] - point[0]);
+    return point[1] * (1.0 - part) + point[3] * part;
 }
 
 double dispersion_index(const dispersion *law, double lambda_nm)
@@ -113,4 +116,149 @@ double dispersion_abbe_number(const dispersion *law)
     const double n_d = dispersion_index(law, LINE_HELIUM_D_NM);
     const double spread = dispersion_index(law, LINE_HYDROGEN_F_NM) - dispersion_index(law, LINE_HYDROGEN_C_NM);
     return spread != 0.0 ? (n_d - 1.0) / spread : (double)INFINITY;
+}
+
+/* ---- the check of a law ---- */
+
+/* Beyond every real medium at visible wavelengths: an index outside is a mistake in the coefficients. */
+static const double index_low = 0.1, index_high = 100.0;
+
+/* The valid numbers of coefficients: from `first` in steps of `step`, up to `most`. */
+static const struct {
+    const char *remedy;
+    int first, step, most;
+} numbers[DISPERSION_KIND_COUNT] = {
+    [DISPERSION_CONSTANT] = {"give one number, n", 1, 1, 1},
+    [DISPERSION_SELLMEIER] = {"give pairs B C, with C in um^2", 2, 2, DISPERSION_TERMS_MAX},
+    [DISPERSION_SELLMEIER_LENGTHS] = {"give pairs B C, with C in um", 2, 2, DISPERSION_TERMS_MAX},
+    [DISPERSION_POLYNOMIAL] = {"give a0, then pairs of a coefficient and its power", 1, 2, DISPERSION_TERMS_MAX},
+    [DISPERSION_CAUCHY_POWERS] = {"give a0, then pairs of a coefficient and its power", 1, 2, DISPERSION_TERMS_MAX},
+    [DISPERSION_CAUCHY] = {"give A, then B in um^2, C in um^4 and so on", 1, 1, DISPERSION_TERMS_MAX},
+    [DISPERSION_GAS] = {"give pairs B C, both in um^-2", 2, 2, DISPERSION_TERMS_MAX},
+    [DISPERSION_TABLE] = {"give pairs of a wavelength in nm and an index, by ascending wavelength", 2, 2,
+                          DISPERSION_TERMS_MAX},
+};
+
+static const char *coefficients_of(dispersion_kind kind)
+{
+    return numbers[kind].remedy;
+}
+
+static bool count_fits(dispersion_kind kind, int count)
+{
+    const int first = numbers[kind].first;
+    return count >= first && count <= numbers[kind].most && (count - first) % numbers[kind].step == 0;
+}
+
+static status check_numbers(const dispersion *law, diagnostic *why)
+{
+    if ((unsigned)law->kind >= DISPERSION_KIND_COUNT)
+        return diagnose(why, STATUS_BAD_INPUT, "", "unknown dispersion law %d", (int)law->kind);
+    const char *remedy = coefficients_of(law->kind), *name = dispersion_name(law->kind);
+    if (law->count > DISPERSION_TERMS_MAX)
+        return diagnose(why, STATUS_BAD_INPUT, remedy, "a dispersion law has at most %d numbers, not %d",
+                        DISPERSION_TERMS_MAX, law->count);
+    if (!count_fits(law->kind, law->count))
+        return diagnose(why, STATUS_BAD_INPUT, remedy, "%d numbers do not fit the dispersion law '%s'", law->count,
+                        name);
+    for (int i = 0; i < law->count; i++)
+        if (!isfinite(law->coefficient[i]))
+            return diagnose(why, STATUS_BAD_INPUT, "use finite numbers",
+                            "number %d of the dispersion law '%s' is not finite", i + 1, name);
+    const double low = law->low_nm, high = law->high_nm;
+    if ((low != 0.0 || high != 0.0) && !(low > 0.0 && low <= high && isfinite(high)))
+        return diagnose(why, STATUS_BAD_INPUT, "use a lower and a higher wavelength in nm, both above 0",
+                        "%g..%g nm is not a range of wavelengths", low, high);
+    return STATUS_OK;
+}
+
+static status check_powers(const dispersion *law, diagnostic *why)
+{
+    char remedy[64];
+    snprintf(remedy, sizeof remedy, "use an integer power from %d to %d", -DISPERSION_POWER_MAX, DISPERSION_POWER_MAX);
+    for (int i = 2; i < law->count; i += 2) {
+        const double p = law->coefficient[i];
+        if (p != floor(p) || fabs(p) > DISPERSION_POWER_MAX)
+            return diagnose(why, STATUS_BAD_INPUT, remedy,
+                            "the exponent %g of the wavelength is not valid in a dispersion law", p);
+    }
+    return STATUS_OK;
+}
+
+static status check_table(const dispersion *law, diagnostic *why)
+{
+    char n[NUMBER_TEXT_MAX], before[NUMBER_TEXT_MAX], after[NUMBER_TEXT_MAX];
+    for (int i = 0; i < law->count; i += 2) {
+        const double lambda_nm = law->coefficient[i], previous = i ? law->coefficient[i - 2] : 0.0;
+        if (lambda_nm > previous && lambda_nm < 100.0)
+            return diagnose(why, STATUS_BAD_INPUT, "write them in nm, as 589.3",
+                            "a table of indices has the wavelength %s nm", number_format(lambda_nm, after));
+        if (!(lambda_nm > previous))
+            return diagnose(why, STATUS_BAD_INPUT, "give wavelengths above 0 in ascending order",
+                            "a table of indices has %s nm after %s nm", number_format(lambda_nm, after),
+                            number_format(previous, before));
+        if (!(law->coefficient[i + 1] >= index_low && law->coefficient[i + 1] <= index_high))
+            return diagnose(why, STATUS_BAD_INPUT, coefficients_of(law->kind), "a table of indices has the index %s",
+                            number_format(law->coefficient[i + 1], n));
+    }
+    return STATUS_OK;
+}
+
+/* A resonance, where the index is infinite, could fall between the samples of the visible range. */
+static status check_resonances(const dispersion *law, diagnostic *why)
+{
+    for (int i = 1; i < law->count; i += 2) {
+        const double C = law->coefficient[i];
+        double lambda_nm = 0.0;
+        if (law->kind == DISPERSION_SELLMEIER)
+            lambda_nm = 1000.0 * sqrt(C > 0.0 ? C : 0.0);
+        else if (law->kind == DISPERSION_SELLMEIER_LENGTHS)
+            lambda_nm = 1000.0 * fabs(C);
+        else if (C > 0.0)
+            lambda_nm = 1000.0 / sqrt(C);
+        if (lambda_nm >= VISIBLE_LOW_NM && lambda_nm <= VISIBLE_HIGH_NM)
+            return diagnose(why, STATUS_BAD_INPUT, coefficients_of(law->kind),
+                            "the dispersion law '%s' has a resonance at %.6g nm, in the visible",
+                            dispersion_name(law->kind), lambda_nm);
+    }
+    return STATUS_OK;
+}
+
+static status check_own(const dispersion *law, diagnostic *why)
+{
+    switch (law->kind) {
+    case DISPERSION_SELLMEIER:
+    case DISPERSION_SELLMEIER_LENGTHS:
+    case DISPERSION_GAS: return check_resonances(law, why);
+    case DISPERSION_POLYNOMIAL:
+    case DISPERSION_CAUCHY_POWERS: return check_powers(law, why);
+    case DISPERSION_TABLE: return check_table(law, why);
+    case DISPERSION_CONSTANT:
+    case DISPERSION_CAUCHY: break;
+    }
+    return STATUS_OK;
+}
+
+static status check_visible(const dispersion *law, diagnostic *why)
+{
+    for (double lambda_nm = VISIBLE_LOW_NM; lambda_nm <= VISIBLE_HIGH_NM; lambda_nm += 1.0) {
+        const double n = dispersion_index(law, lambda_nm);
+        if (n >= index_low && n <= index_high)
+            continue;
+        if (isnan(n))
+            return diagnose(why, STATUS_BAD_INPUT, coefficients_of(law->kind),
+                            "the dispersion law '%s' gives no real index at %g nm", dispersion_name(law->kind),
+                            lambda_nm);
+        return diagnose(why, STATUS_BAD_INPUT, coefficients_of(law->kind),
+                        "the dispersion law '%s' gives the index %.6g at %g nm, which is not from 0.1 to 100",
+                        dispersion_name(law->kind), n, lambda_nm);
+    }
+    return STATUS_OK;
+}
+
+status dispersion_check(const dispersion *law, diagnostic *why)
+{
+    TRY(check_numbers(law, why));
+    TRY(check_own(law, why));
+    return check_visible(law, why);
 }

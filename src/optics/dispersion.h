@@ -24,8 +24,8 @@ typedef enum dispersion_kind {
     DISPERSION_CONSTANT,          /* n = a; a */
     DISPERSION_SELLMEIER,         /* n^2 = 1 + sum B L^2 / (L^2 - C), C in um^2; B C B C ... */
     DISPERSION_SELLMEIER_LENGTHS, /* n^2 = 1 + sum B L^2 / (L^2 - C^2), C in um; B C B C ... */
-    DISPERSION_POLYNOMIAL,        /* n^2 = a0 + sum a L^p, p whole; a0 a p a p ... */
-    DISPERSION_CAUCHY_POWERS,     /* n = a0 + sum a L^p, p whole; a0 a p a p ... */
+    DISPERSION_POLYNOMIAL,        /* n^2 = a0 + sum a L^p, p integer; a0 a p a p ... */
+    DISPERSION_CAUCHY_POWERS,     /* n = a0 + sum a L^p, p integer; a0 a p a p ... */
     DISPERSION_CAUCHY,            /* n = A + B / L^2 + C / L^4 + ...; A B C ... */
     DISPERSION_GAS,               /* n - 1 = sum B / (C - L^-2), both in um^-2; B C B C ... */
     DISPERSION_TABLE              /* linear, constant beyond the ends; lambda_nm n lambda_nm n ... */
@@ -48,11 +48,11 @@ const char *dispersion_formula(dispersion_kind kind);
 double dispersion_index(const dispersion *law, double lambda_nm);
 
 /* Checks a law: the number of coefficients for its kind, all finite, powers integers, a table ascending, no resonance
- * in the visible, and an index from 0.1 to 100 there at each whole nanometre. STATUS_BAD_INPUT otherwise. */
+ * in the visible, and an index from 0.1 to 100 there at each integer nanometre. STATUS_BAD_INPUT otherwise. */
 status dispersion_check(const dispersion *law, diagnostic *why);
 
-/* Was the law measured over all of low_nm..high_nm? If the range is not stated: yes, but a table has the range of its
- * own wavelengths. */
+/* Whether the law was measured over all of low_nm..high_nm. If the range is not stated, true, but a table has the range
+ * of its wavelengths. */
 bool dispersion_covers(const dispersion *law, double low_nm, double high_nm);
 
 /* Abbe number V_d = (n_d - 1) / (n_F - n_C); infinite for a law without dispersion between F and C. */

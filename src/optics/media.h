@@ -1,11 +1,16 @@
-/* The catalogue of media: refractive indices of a laboratory's liquids, glasses, plastics and crystals, by published
- * dispersion laws. Each row states its source, temperature and range of wavelengths. Ownership: all data are constant.
- * Errors: none; an unknown name gives NULL. Refractometers and goniometers measure relative to the surrounding air, and
- * glass catalogues do the same: such a law is relative to air. medium_index is absolute (relative to vacuum) for all
- * media; air itself is a row. */
+/* The catalogues of media and of metals, by published measurements. Each row states its source. Ownership: all data are
+ * constant. Errors: none; an unknown name gives NULL. */
 #pragma once
 
+#include "optics/complex_pair.h"
 #include "optics/dispersion.h"
+
+/* ---- media ---- */
+
+/* Refractive indices of a laboratory's liquids, glasses, plastics and crystals, by published dispersion laws, with
+ * temperature and range of wavelengths. Refractometers and goniometers measure relative to the surrounding air, and
+ * glass catalogues do the same: such a law is relative to air. medium_index is absolute (relative to vacuum) for all
+ * media; air itself is a row. */
 
 /* The names in the catalogue's order, for use as words. */
 #define MEDIA_NAMES(X) \
@@ -46,3 +51,33 @@ const medium *media_find(const char *name);
 /* Index relative to vacuum. A law relative to air is multiplied by the index of dry air at 15 C and 101325 Pa; Ciddor,
  * Appl. Opt. 35, 1566 (1996). The warmer and moister air of a laboratory at sea level changes it by less than 4e-5. */
 double medium_index(const medium *m, double lambda_nm);
+
+/* ---- metals ---- */
+
+/* Complex refractive indices n + i k (the n and k of n - i k) over the visible range, as published tables, linear
+ * between their points. Relative to vacuum. */
+
+#define METAL_NAMES(X) \
+    X("silver")        \
+    X("gold")          \
+    X("copper")        \
+    X("aluminium")
+
+typedef struct metal {
+    const char *name;     /* "gold" */
+    const char *title;    /* what was measured */
+    dispersion n, k;      /* tables with the same wavelengths */
+    const char *source;   /* who measured or published it */
+    const char *verified; /* what the numbers were compared with */
+    const char *note;     /* limits of the data; "" for none */
+} metal;
+
+size_t metals_count(void);
+const metal *metals_at(size_t i); /* i < metals_count() */
+const metal *metals_find(const char *name);
+
+/* n + i k; outside the table that of its end. */
+complex_pair metal_index(const metal *m, double lambda_nm);
+
+/* Reflectance in vacuum at normal incidence. Hecht, Optics, 5th ed., (4.83). */
+double metal_reflectance(const metal *m, double lambda_nm);

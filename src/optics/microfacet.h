@@ -1,21 +1,20 @@
 /* Rough interfaces: plane facets, each smooth by itself (optics/interface.h, optics/multilayer.h), whose normals m are
- * spread about the surface's normal n by the GGX distribution, and which hide one another by Smith's function. Light
+ * spread about the surface's normal n by the GGX distribution, and which mask one another by Smith's function. Light
  * that meets a second facet is lost.
  *   [W] Walter, Marschner, Li and Torrance, "Microfacet models for refraction through rough surfaces", EGSR 2007.
  *   [H] Heitz, "Sampling the GGX distribution of visible normals", JCGT 7(4), 2018.
  * Vectors are unit vectors in a frame whose z is n; i points back along the ray, i.z > 0, and o along the scattered
  * ray. alpha, in (0, 1], is the roughness: the slope at which the density of the facets' slopes is a quarter of its
- * peak. Inline; only + - * / sqrt and base/elementary_inline.h, so that every platform gives the same bits. Pure;
+ * peak. Inline; only + - * / sqrt and base/lanes.h, so that every platform gives the same bits. Pure;
  * cannot fail. */
 #pragma once
 
-#include "base/elementary_inline.h"
 #include "base/lanes.h"
 #include "base/vec3.h"
 #include <math.h>
 
 /* D(m), [W] (33), without its tangent: the integral of D cos(m) over the hemisphere is 1. */
-static inline double ggx_normals(double alpha, vec3 m)
+static inline double ggx_distribution(double alpha, vec3 m)
 {
     const double pi = 3.14159265358979323846, a2 = alpha * alpha, s = a2 * m.z * m.z + m.x * m.x + m.y * m.y;
     return a2 / (pi * s * s);
@@ -27,22 +26,23 @@ static inline double ggx_stretch(double alpha, vec3 v)
     return sqrt(v.z * v.z + alpha * alpha * (v.x * v.x + v.y * v.y));
 }
 
-/* G_1: the share of facets turned towards v, on either side of the surface, that others do not hide; [W] (34). */
-static inline double ggx_visible_share(double alpha, vec3 v)
+/* Smith's G_1: the fraction of facets turned towards v, on either side of the surface, that others do not mask; [W]
+ * (34). */
+static inline double ggx_masking(double alpha, vec3 v)
 {
     const double cosine = magnitude(v.z);
     return 2.0 * cosine / (cosine + ggx_stretch(alpha, v));
 }
 
-/* The density of the normals of the facets that i sees, per solid angle: G_1 max(0, i.m) D / cos; [H] (3). */
-static inline double ggx_visible_normals(double alpha, vec3 i, vec3 m)
+/* D_i(m), the density of the visible normals from i, per solid angle: G_1 max(0, i.m) D / cos; [H] (3). */
+static inline double ggx_visible_distribution(double alpha, vec3 i, vec3 m)
 {
-    return 2.0 * greater(vec3_dot(i, m), 0.0) * ggx_normals(alpha, m) / (i.z + ggx_stretch(alpha, i));
+    return 2.0 * greater(vec3_dot(i, m), 0.0) * ggx_distribution(alpha, m) / (i.z + ggx_stretch(alpha, i));
 }
 
 /* One of these normals, for u and v uniform in (0, 1); [H], listing 1: a point of the half disc and half ellipse that
  * the stretched hemisphere shows to i. */
-static inline vec3 ggx_draw_normal(double alpha, vec3 i, double u, double v)
+static inline vec3 ggx_sample_normal(double alpha, vec3 i, double u, double v)
 {
     const vec3 from = vec3_normalize(vec3_make(alpha * i.x, alpha * i.y, i.z));
     const double across2 = from.x * from.x + from.y * from.y, across = across2 > 0.0 ? 1.0 / sqrt(across2) : 0.0;
@@ -58,8 +58,8 @@ static inline vec3 ggx_draw_normal(double alpha, vec3 i, double u, double v)
 }
 
 /* The facet that sends light from o to i, or from i to o; density: of the directions o of rays from i that meet facets
- * by ggx_visible_normals, per solid angle; 0 where no facet does. A facet's share of light, R or 1 - R, times the
- * density and G_1(o) is f cos(o), with f of [W] (20) and (21), the latter without the factor (n_o / n_i)^2 by which
+ * by ggx_visible_distribution, per solid angle; 0 where no facet does. A facet's fraction of light, R or 1 - R, times
+ * the density and G_1(o) is f cos(o), with f of [W] (20) and (21), the latter without the factor (n_o / n_i)^2 by which
  * refraction changes radiance: that of basic radiance, L / n^2, and of power. */
 typedef struct facet {
     vec3 m;
@@ -70,7 +70,7 @@ typedef struct facet {
 static inline facet facet_that_reflects(double alpha, vec3 i, vec3 o)
 {
     const vec3 m = vec3_normalize(vec3_add(i, o));
-    return (facet){m, ggx_visible_normals(alpha, i, m) / (4.0 * vec3_dot(i, m))};
+    return (facet){m, ggx_visible_distribution(alpha, i, m) / (4.0 * vec3_dot(i, m))};
 }
 
 /* [W] (16) and (17), for the indices on the sides of i and o. o.z < 0. Between equal indices light goes straight on,
@@ -87,5 +87,5 @@ static inline facet facet_that_refracts(double alpha, vec3 i, vec3 o, double n_i
     if (!(m.z > 0.0 && i_m > 0.0 && o_m < 0.0))
         return none;
     const double change = n_o / length; /* (n_i i.m + n_o o.m)^2 is the square of the sum's length */
-    return (facet){m, ggx_visible_normals(alpha, i, m) * -o_m * change * change};
+    return (facet){m, ggx_visible_distribution(alpha, i, m) * -o_m * change * change};
 }

@@ -31,9 +31,9 @@ typedef struct stokes {
 
 /* --- frames --- */
 
-/* The canonical frame of direction d, a function of d alone, so that no ray stores its frame; also two unit vectors
- * across any unit vector: Duff and others, Building
- * an Orthonormal Basis, Revisited, JCGT 6(1), 2017. It is discontinuous where d.z changes sign. */
+/* The canonical frame of direction d, a function of d, so that no ray stores its frame; also two unit vectors across
+ * any unit vector: Duff and others, Building an Orthonormal Basis, Revisited, JCGT 6(1), 2017. It is discontinuous
+ * where d.z changes sign. */
 static inline void polarisation_frame(vec3 d, vec3 *x, vec3 *y)
 {
     double sign = blend(mask_less(d.z, 0.0), -1.0, 1.0);
@@ -44,7 +44,7 @@ static inline void polarisation_frame(vec3 d, vec3 *x, vec3 *y)
 
 /* The direction across a ray d that a direction across an axis f, of a camera or a lamp, becomes under the shortest
  * rotation from f to d, which must not be -f (Rodrigues' formula): directions at right angles stay so, and crossed
- * filters are crossed in the whole image. */
+ * filters are crossed everywhere in the image. */
 static inline vec3 polarisation_across_ray(vec3 across, vec3 f, vec3 d)
 {
     return vec3_sub(across, vec3_scale(vec3_add(f, d), vec3_dot(across, d) / (1.0 + vec3_dot(f, d))));
@@ -55,8 +55,8 @@ typedef struct frame_turn {
     double cos_2a, sin_2a;
 } frame_turn;
 
-/* The rotation that brings x of the frame (x, y) to the direction e, of any length, projected onto the frame's plane.
- * The identity if that projection is zero. */
+/* The rotation of x of the frame (x, y) to the direction e, of any length, projected onto the frame's plane. The
+ * identity if that projection is zero. */
 static inline frame_turn frame_turn_to(vec3 x, vec3 y, vec3 e)
 {
     double c = vec3_dot(e, x), s = vec3_dot(e, y), length2 = c * c + s * s;
@@ -68,7 +68,7 @@ static inline frame_turn frame_turn_to(vec3 x, vec3 y, vec3 e)
     return t;
 }
 
-/* The same light in a frame rotated by a: q + i u rotates by -2a. The row of an analyser rotates in the same way. */
+/* The same light in a frame rotated by a: q + i u rotates by -2a. The row of an analyser rotates likewise. */
 static inline stokes stokes_rotate(stokes s, double cos_2a, double sin_2a)
 {
     stokes r = {s.i, s.q * cos_2a + s.u * sin_2a, s.u * cos_2a - s.q * sin_2a, s.v};
@@ -182,10 +182,10 @@ static inline stokes analyser_refract(stokes row, vec3 d, vec3 n, double cos_i, 
     return analyser_across(row, d, n, refracted, sp_refract(fresnel_dielectric(cos_i, n_from, n_to)));
 }
 
-/* A coating that returns a share of 1 of the light that would be transmitted, unpolarised. Its matrix has the first row
- * of refraction's matrix and zeros elsewhere, so that returned and transmitted light add up for every polarisation of
- * the incident light. Such a matrix is not its own reverse: an analyser whose row is (1, q) in the plane of incidence
- * sees 1 + c q (R_s - R_p) / 2 of a surrounding light of 1. To be scaled by the coating's share c. */
+/* A coating that returns all of the light that would be transmitted, unpolarised. Its matrix has the first row of
+ * refraction's matrix and zeros elsewhere, so that returned and transmitted light add up for every polarisation of the
+ * incident light. Such a matrix is not its own reverse: an analyser whose row is (1, q) in the plane of incidence sees
+ * 1 + c q (R_s - R_p) / 2 of a surrounding light of 1. To be scaled by the coating's fraction c. */
 static inline stokes analyser_coating(stokes row, vec3 d, vec3 n, double cos_i, double n_from, double n_to,
                                       vec3 reflected)
 {
@@ -197,4 +197,46 @@ static inline stokes analyser_coating(stokes row, vec3 d, vec3 n, double cos_i, 
 static inline stokes analyser_mirror(stokes row, vec3 d, vec3 n, vec3 reflected)
 {
     return analyser_across(row, d, n, reflected, sp_mirror());
+}
+
+/* --- ideal polarising filters and wave plates --- */
+
+/* They do not bend the ray, and act on its Stokes vector alike in both directions. */
+
+/* A linear polariser in the frame of its axis, with the transmittances of light whose field is along and across it.
+ * Goldstein, Polarized Light, Mueller matrix of a linear diattenuator, with p_x^2 and p_y^2 as these. */
+static inline sp_response sp_polariser(double along, double across)
+{
+    sp_response r = {0.5 * (along + across), 0.5 * (along - across), sqrt(along * across), 0.0};
+    return r;
+}
+
+/* A wave plate in the frame of its slow axis: the field along it lags behind the field across it by delta. In exp(-i
+ * omega t) a lag is a factor exp(i delta), so that conj(E_x) E_y turns by -delta. Goldstein, Mueller matrix of a linear
+ * retarder. */
+static inline sp_response sp_retarder(double sin_delta, double cos_delta)
+{
+    sp_response r = {1.0, 0.0, cos_delta, -sin_delta};
+    return r;
+}
+
+/* The row across an element that a ray of direction d passes; axis: of any length, projected onto the plane across the
+ * ray. Along the ray it has no direction there, and the frame's x is used. */
+static inline stokes analyser_through(stokes row, vec3 d, vec3 axis, sp_response r)
+{
+    vec3 x, y;
+    polarisation_frame(d, &x, &y);
+    const frame_turn to_axis = frame_turn_to(x, y, axis);
+    const stokes beyond = analyser_times(stokes_rotate(row, to_axis.cos_2a, to_axis.sin_2a), r);
+    return stokes_rotate(beyond, to_axis.cos_2a, -to_axis.sin_2a);
+}
+
+/* A circular polariser with the transmittances of left- and right-handed light, which stay circular: the homogeneous
+ * diattenuator along v. Lu and Chipman, Interpretation of Mueller matrices based on polar decomposition, J. Opt. Soc.
+ * Am. A 13, 1106 (1996). */
+static inline stokes analyser_through_circular(stokes row, double left, double right)
+{
+    const double mean = 0.5 * (left + right), half = 0.5 * (left - right), between = sqrt(left * right);
+    const stokes s = {row.i * mean + row.v * half, row.q * between, row.u * between, row.i * half + row.v * mean};
+    return s;
 }

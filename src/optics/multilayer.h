@@ -1,18 +1,32 @@
-/* Smooth interfaces by wave optics: metals, and stacks of homogeneous films between two media, for s and p light, any
- * wavelength and angle. The method is that of the characteristic matrix: Born and Wolf, Principles of Optics, 7th ed.,
- * 1.6.2 to 1.6.4; metals: 14.2; Macleod, Thin-Film Optical Filters, 4th ed., chapter 2. Inline and branch-free, so that
- * kernels and tests share one formula; only + - * / sqrt and base/elementary_inline.h, so that every platform gives the
- * same bits. Pure; cannot fail; all values, nothing is owned.
+/* Smooth interfaces by wave optics: metals, and stacks of homogeneous thin films between two media, for s and p light,
+ * any wavelength and angle. The method is that of the characteristic matrix: Born and Wolf, Principles of Optics, 7th
+ * ed., 1.6.2 to 1.6.4; metals: 14.2; Macleod, Thin-Film Optical Filters, 4th ed., chapter 2. Inline and branch-free, so
+ * that kernels and tests share one formula; only + - * / sqrt and base/lanes.h, so that every platform gives the same
+ * bits. Pure; cannot fail; all values, nothing is owned.
  *
  * Signs are those of optics/mueller.h: amplitudes with exp(-i omega t), so that an absorbing medium has the index n + i
  * k with k >= 0 (the same n and k as in n - i k of books that write exp(+i omega t)); at normal incidence r_p = -r_s.
- * Films are plane, their faces parallel, and light is coherent across the whole stack. The medium on the ray's side
- * does not absorb. */
+ * Films are plane, their faces parallel, and light is coherent across the stack. The medium on the ray's side does not
+ * absorb. */
 #pragma once
 
-#include "base/complex_pair.h"
-#include "base/elementary_inline.h"
+#include "base/lanes.h"
+#include "optics/complex_pair.h"
 #include "optics/mueller.h"
+
+/* The square root with both parts >= 0, of z with z.im >= 0; without cancellation. */
+static inline complex_pair complex_sqrt_upper(complex_pair z)
+{
+    const double length = sqrt(complex_norm2(z)), large = sqrt(0.5 * (length + magnitude(z.re)));
+    const int64_t zero = mask_less_equal(large, 0.0), left = mask_less(z.re, 0.0);
+    const double small = blend(zero, 0.0, z.im / blend(zero, 1.0, 2.0 * large));
+    return complex_of(blend(left, small, large), blend(left, large, small));
+}
+
+static inline complex_pair complex_blend(int64_t mask, complex_pair a, complex_pair b)
+{
+    return complex_of(blend(mask, a.re, b.re), blend(mask, a.im, b.im));
+}
 
 typedef struct thin_film {
     complex_pair index; /* n + i k; n > 0, k >= 0 */
@@ -103,8 +117,8 @@ static inline void multilayer_ends(characteristic m, double q_from, complex_pair
     *t = complex_divide(complex_of(2.0 * sqrt(q_from * q_to.re) * left, 0.0), sum);
 }
 
-/* From a medium of index n_from at an angle of incidence with cosine cos_i, through films[0 .. count - 1] in the
- * order of the ray, into a medium of index `to`. */
+/* From a medium of index n_from at an angle of incidence with cosine cos_i, through films[0 .. count - 1] in the order
+ * of the ray, into a medium of index `to`. */
 static inline sp_amplitudes multilayer_amplitudes(double cos_i, double n_from, const thin_film *films, int count,
                                                   complex_pair to, double lambda_nm)
 {
@@ -136,7 +150,7 @@ static inline sp_amplitudes conductor_amplitudes(double cos_i, double n_from, co
 static inline sp_response sp_response_of(complex_pair s, complex_pair p)
 {
     const double of_s = complex_norm2(s), of_p = complex_norm2(p);
-    const complex_pair between = complex_between(s, p);
+    const complex_pair between = complex_conj_multiply(s, p);
     const sp_response r = {0.5 * (of_s + of_p), 0.5 * (of_s - of_p), between.re, between.im};
     return r;
 }

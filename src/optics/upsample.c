@@ -27,14 +27,14 @@ typedef struct trial {
 static void daylight_make(daylight *d)
 {
     const double offset[3] = {-sqrt(0.6), 0.0, sqrt(0.6)},
-                 share[3] = {5.0, 8.0, 5.0}; /* offsets within -1 .. 1; weights out of 18 */
+                 gauss[3] = {5.0, 8.0, 5.0}; /* offsets within -1 .. 1; weights out of 18 */
     double sum[3] = {0.0, 0.0, 0.0};
     for (int k = 0; k < SAMPLES; k++) {
         double intervals = k / 3 + 0.5 + 0.5 * offset[k % 3], lambda_nm = OBSERVER_LOW_NM + STEP_NM * intervals, xyz[3];
         observer_xyz(lambda_nm, xyz);
         d->t[k] = 2.0 * intervals / INTERVALS - 1.0;
         for (int i = 0; i < 3; i++) {
-            d->weight[i][k] = share[k % 3] * observer_d65(lambda_nm) * xyz[i];
+            d->weight[i][k] = gauss[k % 3] * observer_d65(lambda_nm) * xyz[i];
             sum[i] += d->weight[i][k];
         }
     }

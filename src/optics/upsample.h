@@ -8,7 +8,7 @@
  * steepest. Values, not objects: nothing to free. Pure; cannot fail. */
 #pragma once
 
-#include "optics/observer.h"
+#include "optics/spectrum.h"
 #include <math.h>
 
 typedef struct upsampled_spectrum {

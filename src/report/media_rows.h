@@ -3,7 +3,6 @@
 #pragma once
 
 #include "optics/media.h"
-#include "optics/metals.h"
 #include <jansson.h>
 #include <stdio.h>
 

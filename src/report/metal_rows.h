@@ -2,7 +2,7 @@
  * wavelength, 0 for none. Ownership: the JSON is a new reference. Errors of the stream stay in the stream. */
 #pragma once
 
-#include "optics/metals.h"
+#include "optics/media.h"
 #include <jansson.h>
 #include <stdio.h>
 

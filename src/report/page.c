@@ -1,7 +1,7 @@
 /* Writes a page: the parts of the document. Every text of the scene is escaped. */
 #include "report/page.h"
 
-#include "base/base64.h"
+#include "base/text.h"
 #include "report/page_live.h"
 #include "report/page_rays.h"
 #include "report/page_style.h"

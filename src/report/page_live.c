@@ -2,7 +2,7 @@
  * scene that the page holds; the page's policy allows this, but no request. */
 #include "report/page_live.h"
 
-#include "base/base64.h"
+#include "base/text.h"
 #include "base/file.h"
 #include "base/installed.h"
 #include <errno.h>

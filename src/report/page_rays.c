@@ -1,7 +1,7 @@
 /* Collects the rays of a page, and keeps the heaviest. */
 #include "report/page_rays.h"
 
-#include "base/grow.h"
+#include "base/array.h"
 #include "render/inspect/ray_line.h"
 #include "scene/model/render_settings.h"
 #include "scene/model/scene.h"

@@ -1,6 +1,6 @@
 /* The lines of the parameter table: collection and filter. */
 #include "report/param_rows.h"
-#include "base/grow.h"
+#include "base/array.h"
 #include "base/text.h"
 #include <stdbool.h>
 #include <stdio.h>

@@ -3,7 +3,7 @@
  * lanes have twice as many springs in flight. Pure; cannot fail. */
 #pragma once
 
-#include "base/kernel.h"
+#include "base/isa.h"
 #include "softbody/softbody_private.h"
 
 /* Without AVX compilers warn about passing wide vectors to functions; all functions here are inlined. */

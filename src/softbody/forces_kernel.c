@@ -2,7 +2,7 @@
  *
  * The costly part of a spring's force, its amount over the distance, is computed once, for the spring's owner. Each
  * mass then sums the forces of its springs in the order of its slots, along the vectors to their other ends. */
-#include "base/kernel.h"
+#include "base/isa.h"
 #include "softbody/columns.h"
 #include "softbody/softbody_private.h"
 

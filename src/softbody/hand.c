@@ -1,5 +1,5 @@
 #include "softbody/hand.h"
-#include "base/grow.h"
+#include "base/array.h"
 #include "softbody/softbody.h"
 
 #include <math.h>

@@ -1,5 +1,5 @@
 /* Steps over arrays. One source for all instruction sets, with bit-identical results. */
-#include "base/kernel.h"
+#include "base/isa.h"
 #include "base/lanes.h"
 #include "softbody/softbody_private.h"
 

@@ -136,7 +136,7 @@ static status fill(softbody *b, const softbody_net *net, diagnostic *why)
 {
     TRY(springs_build(&b->net, net, why));
     TRY(batches_build(&b->batches, &b->net, net, why));
-    b->workers = thread_team_start(useful_threads(b));
+    b->workers = thread_team_create(useful_threads(b));
     if (!make_arrays(b) || !copy_net(b, net) || !b->workers)
         return diagnose(why, STATUS_FAILURE, "use a lower level", "out of memory for a slime");
     fill_masses(b, net);
@@ -240,7 +240,7 @@ void softbody_destroy(softbody *b)
         free(stiff[i]);
     for (int i = 0; i < SOFTBODY_HANDS_MAX; i++)
         free(b->hands[i].masses);
-    thread_team_stop(b->workers);
+    thread_team_destroy(b->workers);
     springs_release(&b->net);
     batches_release(&b->batches);
     free(b->spring_list);

@@ -1,5 +1,5 @@
 #include "study/comma_slip.h"
-#include "base/grow.h"
+#include "base/array.h"
 #include "base/number.h"
 #include <stdio.h>
 #include <string.h>

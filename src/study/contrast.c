@@ -1,6 +1,6 @@
 /* Ratios and verdicts of a comparison. */
 #include "study/contrast.h"
-#include "measure/power.h"
+#include "measure/statistics.h"
 #include "study/contrast_all.h"
 #include <math.h>
 #include <stdlib.h>

@@ -226,7 +226,7 @@ static status estimate(const side *a, const side *b, contrast_all *out, diagnost
             values[round] = mean_of(b, drawn_b) - mean_of(a, drawn_a);
         }
         if (out->fewest >= FEWEST_DRAWN)
-            level_take_interval(values, out->fewest, &out->ratio);
+            level_set_interval(values, out->fewest, &out->ratio);
     }
     free(values);
     free(drawn_b);

@@ -3,7 +3,7 @@
 #include "base/control_group.h"
 #include "base/hash.h"
 #include "base/os_process.h"
-#include "base/system_error.h"
+#include "base/status.h"
 #include "measure/instruction_dumps.h"
 #include <errno.h>
 #include <inttypes.h>

@@ -3,7 +3,7 @@
  * take at most a few seconds for the whole study. Ownership: values; everything else is borrowed. */
 #pragma once
 
-#include "base/disk_room.h"
+#include "base/budget.h"
 #include "study/study.h"
 
 typedef struct study_estimate {

@@ -1,7 +1,7 @@
 #include "study/keep.h"
 #include "base/file.h"
 #include "base/text.h"
-#include "image/image_room.h"
+#include "image/image.h"
 #include "render/core/record.h"
 #include "study/cell_table.h"
 #include "study/grid.h"

@@ -3,7 +3,7 @@
  * not disturb measurements; the film must equal that of the rows. Files are written atomically. */
 #pragma once
 
-#include "base/disk_room.h"
+#include "base/budget.h"
 #include "job/account.h"
 #include "study/study.h"
 

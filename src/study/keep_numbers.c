@@ -2,7 +2,7 @@
  * when the grid has changed, the files are renamed. Files of cells that the study no longer has are named by identity,
  * and get a number again when the cell returns. */
 #include "study/keep.h"
-#include "base/system_error.h"
+#include "base/status.h"
 #include "base/file.h"
 #include "base/text.h"
 #include "study/identity.h"

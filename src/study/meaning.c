@@ -1,6 +1,6 @@
 #include "study/meaning.h"
 #include "base/hash.h"
-#include "base/grow.h"
+#include "base/array.h"
 #include "base/text.h"
 #include "scene/model/params_path.h"
 #include "scene/model/params_value.h"

@@ -1,7 +1,7 @@
 /* Composes the text of a new study file, and reads it as a run would. */
 #include "study/new_study.h"
 #include "base/file.h"
-#include "base/text_writer.h"
+#include "base/text.h"
 #include "scene/file/write_parts.h"
 #include "scene/model/params.h"
 #include "scene/model/scene.h"

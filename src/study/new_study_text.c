@@ -1,6 +1,6 @@
 /* The axes of a new study, and the text of its file. */
 #include "study/new_study.h"
-#include "base/grow.h"
+#include "base/array.h"
 #include "base/number.h"
 #include "scene/file/write_parts.h"
 #include "scene/model/params_path.h"

@@ -2,8 +2,7 @@
 #include "study/plot.h"
 #include "base/child.h"
 #include "base/file.h"
-#include "base/system_error.h"
-#include "base/temporary.h"
+#include "base/status.h"
 #include "base/text.h"
 #include "study/plot_parts.h"
 #include <errno.h>
@@ -104,7 +103,7 @@ static status move_figure(int fd, char **made, const char *target, diagnostic *w
     return STATUS_OK;
 }
 
-/* gnuplot writes a temporary file, which has a name: base/temporary.h. */
+/* gnuplot writes a temporary file, which has a name: base/file.h. */
 static status draw_figure(drawing *d, const char *target, diagnostic *why)
 {
     char *made = NULL, *ending = text_format(".%s", d->format);

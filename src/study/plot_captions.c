@@ -1,7 +1,6 @@
 /* The small print under a figure: how many repetitions, which spread, what is missing, what disturbed. */
 #include "study/plot_parts.h"
 #include "base/text.h"
-#include "base/text_writer.h"
 #include <math.h>
 #include <stdarg.h>
 #include <stdio.h>

@@ -201,7 +201,7 @@ static void put_frame(FILE *out, const plot_plan *p, const sheet *s, size_t numb
 static status put_script(const plot_plan *p, const sheet *s, const char *base, diagnostic *why)
 {
     file_writer file;
-    char *path = text_format("%s.gp", base), *parent = file_beside(base, "."), *folder = NULL;
+    char *path = text_format("%s.gp", base), *parent = file_next_to(base, "."), *folder = NULL;
     status code = path && parent ? STATUS_OK : out_of_memory(why);
     THEN(code, file_writer_open(&file, path, why));
     if (code == STATUS_OK) {

@@ -1,7 +1,7 @@
 /* Reading a summary back. */
 #include "study/plot_table.h"
 #include "base/number.h"
-#include "base/text_writer.h"
+#include "base/text.h"
 #include "study/summary.h"
 #include <math.h>
 #include <stdlib.h>

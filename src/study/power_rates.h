@@ -5,7 +5,7 @@
 #pragma once
 
 #include "measure/design.h"
-#include "measure/quantiles.h"
+#include "measure/statistics.h"
 #include "study/value_table.h"
 
 /* What b is known to be, compared with a. */

@@ -1,6 +1,6 @@
 #include "study/progress_index.h"
 #include "base/build_id.h"
-#include "base/grow.h"
+#include "base/array.h"
 #include "base/hash.h"
 #include "base/isa.h"
 #include "measure/statistics.h"

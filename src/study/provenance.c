@@ -1,6 +1,5 @@
 #include "study/provenance.h"
 #include "base/text.h"
-#include "base/text_writer.h"
 #include <fcntl.h>
 #include <sched.h>
 #include <spawn.h>

@@ -23,7 +23,7 @@ status reference_scene(const study *s, size_t cell, scene **out, diagnostic *why
 /* Its hash, equal for scenes that differ only in performance parameters. Image files must be loaded. */
 status reference_scene_hash(const scene *setting, uint64_t *hash);
 
-/* The reference with that scene_hash from the study's folder, below root (base/below.h); out->img is NULL if it does
+/* The reference with that scene_hash from the study's folder, below root (base/file.h); out->img is NULL if it does
  * not exist. STATUS_BAD_INPUT if a file was changed. */
 status reference_load(const char *folder, const char *root, uint64_t scene_hash, reference *out, diagnostic *why);
 /* Stores it there, with the parameters of its scene; also as PNG if the study keeps images. */

@@ -1,5 +1,5 @@
 #include "study/row_environments.h"
-#include "base/grow.h"
+#include "base/array.h"
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>

@@ -46,7 +46,7 @@ level_range row_quantity_range(row_quantity column)
     static const char *const may_be_zero[] = {"imbalance", "waiting_s",          "waiting_s_mean",       "runnable_s",
                                               "blocked_s", "voluntary_switches", "involuntary_switches", "start_s"};
     if (!column.below && (ends_with(column.name, "_share") || strcmp(column.name, "frequency_drop") == 0))
-        return LEVEL_SHARE;
+        return LEVEL_FRACTION;
     for (size_t i = 0; i < sizeof may_be_zero / sizeof *may_be_zero; i++)
         if (strcmp(column.name, may_be_zero[i]) == 0)
             return LEVEL_NOT_NEGATIVE;

@@ -1,7 +1,7 @@
 /* What a run will write: rows, the list of runs, kept files, references. */
 #pragma once
 
-#include "base/disk_room.h"
+#include "base/budget.h"
 #include "study/run_state.h"
 
 /* Of the cells of r; r->done and r->compared are read. */

@@ -2,7 +2,7 @@
 #include "study/runs.h"
 #include "base/file.h"
 #include "base/hash.h"
-#include "base/system_error.h"
+#include "base/status.h"
 #include "base/text.h"
 #include "scene/model/open.h"
 #include "study/facts.h"

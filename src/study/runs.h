@@ -22,7 +22,7 @@ typedef struct run_list {
     size_t count;
 } run_list;
 
-/* All lists of the folder, below root (base/below.h); none is no error. STATUS_BAD_INPUT if one is damaged. */
+/* All lists of the folder, below root (base/file.h); none is no error. STATUS_BAD_INPUT if one is damaged. */
 status runs_read(const char *folder, const char *root, run_list **out, diagnostic *why);
 void runs_destroy(run_list *all);
 /* The index of the run of that id, or -1. NULL is allowed. */

@@ -1,6 +1,6 @@
 #include "study/slurm.h"
 #include "base/build_id.h"
-#include "base/text_writer.h"
+#include "base/text.h"
 #include "scene/model/scene.h"
 #include "study/row_environments.h"
 #include <math.h>

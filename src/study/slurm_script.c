@@ -1,5 +1,5 @@
 /* The script of an array job. */
-#include "base/text_writer.h"
+#include "base/text.h"
 #include "study/slurm.h"
 #include <stdlib.h>
 #include <string.h>

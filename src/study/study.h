@@ -80,7 +80,7 @@ typedef struct study_guard {
     status (*may_load)(void *context, const scene *setting,
                        diagnostic *why); /* the files of the scene of a cell, or of its reference */
     void *context;
-    const char *root; /* files, including rows, are read only below this folder (base/below.h); NULL or "": anywhere */
+    const char *root; /* files, including rows, are read only below this folder (base/file.h); NULL or "": anywhere */
 } study_guard;
 status study_read_guarded(const char *path, const study_guard *guard, study **out, diagnostic *why);
 /* The same from memory; name is used in diagnostics, and scene paths are relative to its folder. */

@@ -1,7 +1,7 @@
 #include "study/table.h"
 #include "base/csv.h"
 #include "base/file.h"
-#include "base/system_error.h"
+#include "base/status.h"
 #include "base/text.h"
 #include "study/csv_layout.h"
 #include <errno.h>
@@ -121,7 +121,7 @@ status table_set_aside(table *t, size_t offset, diagnostic *why)
     return code;
 }
 
-/* Offset after the last complete line (csv_whole), from as much of the file's end as holds two newlines. */
+/* Offset after the last complete line (csv_complete_size), from as much of the file's end as holds two newlines. */
 static status whole_lines(table *t, size_t *end, diagnostic *why)
 {
     enum { BLOCK_BYTES = 4096 };
@@ -142,7 +142,7 @@ static status whole_lines(table *t, size_t *end, diagnostic *why)
         const char *last = code == STATUS_OK ? memrchr(text, '\n', part) : NULL;
         enough = part == size || (last && memrchr(text, '\n', (size_t)(last - text)));
         if (code == STATUS_OK && enough)
-            *end = from + csv_whole(text, part);
+            *end = from + csv_complete_size(text, part);
         free(text);
     }
     return code;
@@ -190,7 +190,7 @@ static status rescue(const table *t, const char *done, const char *lines, size_t
     struct stat now;
     char *path = text_format("%.*s.rescued.csv", (int)(length > 4 ? length - 4 : length), t->path), *bytes = NULL;
     status code = path ? STATUS_OK : out_of_memory(why);
-    char *folder = code == STATUS_OK ? file_beside(t->path, ".") : NULL;
+    char *folder = code == STATUS_OK ? file_next_to(t->path, ".") : NULL;
     if (code == STATUS_OK) /* which may be gone, too */
         code = folder ? file_make_directory(folder, why) : out_of_memory(why);
     free(folder);

@@ -1,5 +1,5 @@
-/* Opening files below a root folder, in the files of a module, which nobody else changes. See base/below.h. */
-#include "base/below.h"
+/* Opening files below a root folder, in the files of a module, which nobody else changes. See base/file.h. */
+#include "base/file.h"
 
 #include <errno.h>
 #include <fcntl.h>

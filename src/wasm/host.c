@@ -1,7 +1,6 @@
 /* What a WebAssembly module lacks of an operating system: other programs, confinement, hardware counters, hwloc. */
 #include "base/child.h"
 #include "base/os_confine.h"
-#include "base/spawn.h"
 #include "measure/topology_private.h"
 #include "measure/usage.h"
 
@@ -56,7 +55,7 @@ bool os_confine_is_off(void)
 }
 
 /* Each unit is then taken for a core. */
-char *topology_ask(const char *synthetic, status *code, bool *no_memory)
+char *topology_discover_in_child(const char *synthetic, status *code, bool *no_memory)
 {
     (void)synthetic;
     *code = STATUS_FAILURE;

@@ -4,7 +4,7 @@
 #include "base/installed.h"
 #include "base/os_confine.h"
 #include "base/os_process.h"
-#include "base/system_error.h"
+#include "base/status.h"
 #include "base/text.h"
 #include "report/page_live.h"
 #include "web/lab_private.h"

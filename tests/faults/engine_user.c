@@ -1,7 +1,7 @@
 /* A program that uses the library (cuvette.h): each argument is a part of the interface. It prints what it computes,
  * so that the oracle compares it, and what a call that fails says, as the program `cuvette` does. The library must
  * leave no memory and no descriptor behind, whatever failed. */
-#include "base/json_memory.h"
+#include "base/json_build.h"
 #include "cuvette.h"
 
 #include <stdio.h>

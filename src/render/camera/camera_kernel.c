@@ -1,8 +1,8 @@
 /* The kernels of camera rays, compiled once for each instruction set. */
 #include "render/camera/camera_kernels.h"
 
-#include "base/elementary_inline.h"
-#include "base/kernel.h"
+#include "base/lanes.h"
+#include "base/isa.h"
 #include <math.h>
 
 static void directions(const camera_frame *view, int count, const double *u, const double *v, double *restrict dx,

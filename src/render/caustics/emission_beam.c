@@ -2,8 +2,8 @@
 #include "render/caustics/emission_parts.h"
 
 #include "base/elementary.h"
-#include "base/elementary_inline.h"
-#include "optics/lamp_spectrum.h"
+#include "base/lanes.h"
+#include "optics/spectrum.h"
 
 #define PI 3.14159265358979323846
 

@@ -2,8 +2,7 @@
 #include "render/caustics/photon_map.h"
 
 #include "base/cancel.h"
-#include "base/grow.h"
-#include "base/large_pages.h"
+#include "base/array.h"
 #include "base/status.h"
 #include "render/caustics/photon_even.h"
 #include "render/caustics/photon_tree.h"

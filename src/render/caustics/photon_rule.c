@@ -251,7 +251,7 @@ static void meet_facets(tracer *t, double alpha, bool opaque, int depth, rough_s
     rough_begin(t, alpha, opaque, r);
     for (int k = 0; k < g->count; k++) {
         const unit_pair s = emission_facet(f->from, number_of(g->sample_key[k]), depth);
-        r->m[k] = ggx_draw_normal(alpha, r->i[k], s.u, s.v);
+        r->m[k] = ggx_sample_normal(alpha, r->i[k], s.u, s.v);
     }
     rough_branches(t, r);
     if (!opaque)

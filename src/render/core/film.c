@@ -2,8 +2,8 @@
 #include "render/core/film.h"
 
 #include "base/hash.h"
-#include "base/large_pages.h"
-#include "optics/observer.h"
+#include "base/array.h"
+#include "optics/spectrum.h"
 #include <stdlib.h>
 #include <string.h>
 

@@ -6,7 +6,7 @@
  * overestimate its error. Every pair of dimensions has its own scrambling and order (padding). Pure; plain values. */
 #pragma once
 
-#include "base/sobol.h"
+#include "base/random.h"
 #include "render/core/draw.h"
 #include "scene/model/render_settings.h"
 

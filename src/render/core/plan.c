@@ -1,7 +1,7 @@
 /* Building a render plan: media, hierarchies, materials and light cones from the scene. */
 #include "render/core/plan.h"
 #include "base/elementary.h"
-#include "base/large_pages.h"
+#include "base/array.h"
 #include "geometry/shapes/shape.h"
 
 #include "render/shade/sky.h"

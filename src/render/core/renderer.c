@@ -2,7 +2,7 @@
 #include "render/core/renderer.h"
 
 #include "base/cancel.h"
-#include "base/grow.h"
+#include "base/array.h"
 #include "base/worker_pool.h"
 #include "measure/clock.h"
 #include "render/caustics/caustics.h"

@@ -7,7 +7,7 @@
 #include "base/counters.h"
 #include "base/isa.h"
 #include "base/status.h"
-#include "measure/thread_usage.h"
+#include "measure/usage.h"
 #include "measure/topology.h"
 #include "render/caustics/caustics_few.h"
 #include "render/core/film.h"

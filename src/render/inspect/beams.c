@@ -1,7 +1,7 @@
 /* The rays of beams: each wavelength has a probe, since a probe has one wavelength. */
 #include "render/inspect/beams.h"
 
-#include "optics/observer.h"
+#include "optics/spectrum.h"
 #include "render/inspect/ray_axes.h"
 #include "scene/model/edit/edit.h"
 #include "scene/model/scene.h"

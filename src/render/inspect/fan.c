@@ -3,8 +3,8 @@
 
 #include "base/cancel.h"
 #include "base/elementary.h"
-#include "base/grow.h"
-#include "base/memory_budget.h"
+#include "base/array.h"
+#include "base/budget.h"
 #include "render/inspect/ray_axes.h"
 #include <stdlib.h>
 #include <string.h>

@@ -1,8 +1,8 @@
 /* Building a ray tree: each ray is traced alone, and the tracer's hits, gathered group, branches and queues are read
  * back. */
-#include "base/memory_budget.h"
+#include "base/budget.h"
 #include "base/cancel.h"
-#include "base/grow.h"
+#include "base/array.h"
 #include "render/inspect/probe_private.h"
 
 #include "optics/interface.h"

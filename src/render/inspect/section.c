@@ -1,6 +1,6 @@
 /* The grid of a section: sampling of media and crossings on grid edges. */
 #include "base/cancel.h"
-#include "base/grow.h"
+#include "base/array.h"
 #include "render/inspect/section_private.h"
 
 #include <stdlib.h>

@@ -1,5 +1,5 @@
 /* Lines from pieces of boundary, and areas from lines. */
-#include "base/grow.h"
+#include "base/array.h"
 #include "render/inspect/section_private.h"
 
 #include <stdlib.h>

@@ -1,5 +1,5 @@
 /* Marching squares with junctions: the pieces of boundary within one cell. */
-#include "base/grow.h"
+#include "base/array.h"
 #include "render/inspect/section_private.h"
 
 #include <stdlib.h>

@@ -87,7 +87,7 @@ static double chance_of(const tracer *t, const rough_surface *r, int k, bool ref
 /* The chance that a path which a facet sends to o goes on there, not as light of further facets. */
 static double chance_to_leave(const rough_surface *r, vec3 o)
 {
-    return r->finish ? ggx_visible_share(r->alpha, o) : 1.0;
+    return r->finish ? ggx_masking(r->alpha, o) : 1.0;
 }
 
 /* What further facets send to the lamps that were aimed at: these alone sample it, as that of a matte surface. */
@@ -128,7 +128,7 @@ static void light_by_lamps(tracer *t, rough_surface *r, const lamp_samples *s, d
         const double own = chance_of(t, r, k, reflected) * f[k].density * chance_to_leave(r, a.o[k]),
                      weight = a.density[k] > 0.0 ? 1.0 / (a.density[k] + own) : 1.0;
         const vec3 share = vec3_scale(layered_weight(t, k, reflected),
-                                      ggx_visible_share(r->alpha, a.o[k]) * f[k].density * a.light[k] * weight);
+                                      ggx_masking(r->alpha, a.o[k]) * f[k].density * a.light[k] * weight);
         if (share.x > 0.0 || share.y > 0.0 || share.z > 0.0)
             enqueue(t, k, s->lamp[k], vec3_scale(a.to[k], a.distance[k]), !reflected, share);
     }
@@ -195,7 +195,7 @@ void path_rough_begin(tracer *t, double alpha, bool opaque, int depth, rough_sur
             light_by_one_lamp(t, r, depth, side);
     t->path->draw(&p->draws, g->count, g->sample_key, depth, DRAW_FACET, u, v);
     for (int k = 0; k < g->count; k++)
-        r->m[k] = ggx_draw_normal(alpha, r->i[k], u[k], v[k]);
+        r->m[k] = ggx_sample_normal(alpha, r->i[k], u[k], v[k]);
     rough_branches(t, r);
     if (r->finish)
         draw_further(t, depth, r);

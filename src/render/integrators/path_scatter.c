@@ -2,7 +2,7 @@
 #include "render/integrators/path_scatter.h"
 
 #include "base/elementary.h"
-#include "optics/henyey_greenstein.h"
+#include "optics/phase_function.h"
 #include "optics/mueller.h"
 #include "render/integrators/path_continue.h"
 #include "render/integrators/path_lights.h"

@@ -2,7 +2,7 @@
  * (sheets.h). Ownership: absorption_begin allocates the tracer's memory, absorption_end frees it. */
 #pragma once
 
-#include "base/elementary_inline.h"
+#include "base/lanes.h"
 #include "render/core/queue.h"
 #include "render/core/tracer.h"
 #include "render/shade/scattering.h"

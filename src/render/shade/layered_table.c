@@ -1,7 +1,7 @@
 /* Tables of the colours of metals and films by angle. */
 #include "render/shade/layered_table.h"
 
-#include "optics/observer.h"
+#include "optics/spectrum.h"
 #include <stdlib.h>
 
 /* Three-point Gauss quadrature on every 5 nm interval of the observer's tables: fringes of films up to 20 um are

@@ -1,6 +1,6 @@
 /* Surfaces that reflect by wave optics: metals, and films on any surface (optics/multilayer.h). A spectral film
  * evaluates them exactly, ray by ray. For an rgb film each surface has a table by angle of the colour that it reflects
- * of daylight: its spectrum under D65, seen by the standard observer (optics/observer.h), in linear sRGB, where white
+ * of daylight: its spectrum under D65, seen by the standard observer (optics/spectrum.h), in linear sRGB, where white
  * is 1 at every angle; the media on both sides have their indices at render.lambda_nm. Colours outside the gamut are
  * clamped to 0 .. 1, so that no light is created; a film that does not absorb transmits the rest, channel by channel.
  * This is exact for one reflection of daylight; of several the product of colours is not the colour of the product.

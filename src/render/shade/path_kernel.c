@@ -1,8 +1,8 @@
 /* The kernels of random paths, compiled once for each instruction set. */
 #include "render/shade/path_kernels.h"
 
-#include "base/elementary_inline.h"
-#include "base/kernel.h"
+#include "base/lanes.h"
+#include "base/isa.h"
 #include "optics/mueller.h"
 #include <math.h>
 

@@ -2,8 +2,8 @@
 #include "render/shade/rain.h"
 
 #include "base/elementary.h"
-#include "optics/drop_scattering.h"
-#include "optics/observer.h"
+#include "optics/phase_function.h"
+#include "optics/spectrum.h"
 #include "scene/model/medium.h"
 #include <math.h>
 #include <stdlib.h>
@@ -38,7 +38,7 @@ static double mean_of(const drop_angles *a, const double *p)
 {
     double sum = 0.0;
     for (int b = 0; b < DROP_BINS; b++)
-        sum += p[b] * drop_bin_share(a, b);
+        sum += p[b] * drop_bin_fraction(a, b);
     return sum;
 }
 

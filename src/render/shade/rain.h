@@ -1,6 +1,6 @@
 /* Sunlit rain: what a thin sheet of falling drops adds to the sky, with rainbows around the antisolar point. The sun's
  * light is white (D65) and comes from a disc. Radiance = background.rain times the drops' scattering function
- * (optics/drop_scattering.h). The tables are computed once per frame. Ownership: rain_create allocates, rain_destroy
+ * (optics/phase_function.h). The tables are computed once per frame. Ownership: rain_create allocates, rain_destroy
  * releases; the background is borrowed during the call only. Lookups are pure. */
 #pragma once
 

@@ -81,7 +81,7 @@ bool rough_lets_out(const tracer *t, const rough_surface *r, int k, vec3 o, bool
 
 double rough_share(const tracer *t, const rough_surface *r, int k, vec3 o, bool refracted)
 {
-    return rough_lets_out(t, r, k, o, refracted) ? ggx_visible_share(r->alpha, o) : 0.0;
+    return rough_lets_out(t, r, k, o, refracted) ? ggx_masking(r->alpha, o) : 0.0;
 }
 
 /* A(o) / a of light that further facets send to a side, times what they keep. */

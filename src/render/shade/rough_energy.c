@@ -1,8 +1,8 @@
 /* What one facet of a rough surface loses, and where it goes. */
 #include "render/shade/rough_energy.h"
 
-#include "base/elementary_inline.h"
-#include "base/grow.h"
+#include "base/lanes.h"
+#include "base/array.h"
 #include "optics/interface.h"
 #include "optics/microfacet.h"
 #include <stdlib.h>
@@ -22,12 +22,12 @@ static double sent_by_facet(const rough_finish *finish, const double index[2], i
     const vec3 mirrored = vec3_sub(vec3_scale(m, 2.0 * i_m), i);
     const fresnel f = fresnel_dielectric(lesser(i_m, 1.0), index[side], index[1 - side]);
     const double R = finish->opaque ? 1.0 : f.R + (1.0 - f.R) * finish->coating;
-    double sent = mirrored.z > 0.0 ? R * ggx_visible_share(finish->alpha, mirrored) : 0.0;
+    double sent = mirrored.z > 0.0 ? R * ggx_masking(finish->alpha, mirrored) : 0.0;
     if (finish->opaque || f.total)
         return sent;
     const vec3 refracted = direction_refract(vec3_scale(i, -1.0), m, i_m, f.eta, f.cos_t);
     if (refracted.z < 0.0)
-        sent += (1.0 - R) * ggx_visible_share(finish->alpha, refracted);
+        sent += (1.0 - R) * ggx_masking(finish->alpha, refracted);
     return sent;
 }
 
@@ -40,7 +40,7 @@ static double lost_at(const rough_finish *finish, const double index[2], int sid
     for (int a = 0; a < ACROSS; a++) {
         const double s = (a + 0.5) / ACROSS, u = s * s * (3.0 - 2.0 * s), weight = 6.0 * s * (1.0 - s);
         for (int b = 0; b < AROUND; b++) {
-            const vec3 m = ggx_draw_normal(finish->alpha, i, u, 0.25 + 0.5 * ((b + 0.5) / AROUND));
+            const vec3 m = ggx_sample_normal(finish->alpha, i, u, 0.25 + 0.5 * ((b + 0.5) / AROUND));
             sum += weight * sent_by_facet(finish, index, side, i, m);
         }
     }

@@ -16,7 +16,7 @@ struct scene_geometry;
 
 typedef struct region_scatter {
     double per_unit;  /* scattering coefficient, 1 / scene unit */
-    double asymmetry; /* of the phase function, optics/henyey_greenstein.h */
+    double asymmetry; /* of the phase function, optics/phase_function.h */
 } region_scatter;
 
 /* The most lamps whose beams are sampled along each ray (airlight.h). */

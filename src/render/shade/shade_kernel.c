@@ -2,8 +2,8 @@
 #include "render/shade/shade.h"
 
 #include "base/counters.h"
-#include "base/elementary_inline.h"
-#include "base/kernel.h"
+#include "base/lanes.h"
+#include "base/isa.h"
 #include "geometry/primitives/primitive.h"
 #include "optics/interface.h"
 #include "render/core/film.h"

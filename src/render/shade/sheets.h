@@ -9,7 +9,7 @@
  * Ownership: sheet_list_create allocates, free releases. */
 #pragma once
 
-#include "optics/polarisers.h"
+#include "optics/mueller.h"
 #include "render/core/queue.h"
 #include "scene/model/open.h"
 #include "scene/model/sheet.h"

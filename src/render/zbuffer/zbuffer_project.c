@@ -1,7 +1,7 @@
 /* Projection of triangles into the image: corners on the grid, and the plane of nearness. */
 #include "render/zbuffer/zbuffer_private.h"
 
-#include "base/grow.h"
+#include "base/array.h"
 #include "base/lanes.h"
 #include <math.h>
 #include <stdlib.h>

@@ -72,7 +72,7 @@ status asset_error(const scene *s, const char *what, long line, long column, con
 
 char *scene_file_path(const scene *s, const char *path)
 {
-    return file_beside(s->path, path);
+    return file_next_to(s->path, path);
 }
 
 status sky_check(const image *sky, const char *path, diagnostic *bad)

@@ -1,7 +1,7 @@
 #include "base/cancel.h"
 #include "scene/assets/mesh_child.h"
 
-#include "base/system_error.h"
+#include "base/status.h"
 #include "base/text.h"
 #include <errno.h>
 #include <poll.h>

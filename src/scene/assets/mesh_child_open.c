@@ -1,6 +1,6 @@
 #include "scene/assets/mesh_child.h"
-#include "base/spawn.h"
-#include "base/system_error.h"
+#include "base/child.h"
+#include "base/status.h"
 
 #include "base/text.h"
 #include <errno.h>

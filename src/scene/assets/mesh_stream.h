@@ -14,7 +14,7 @@ typedef struct mesh_limits {
     size_t triangles, vertices; /* 2^25 and 2^26 */
     uint64_t memory_bytes;      /* memory of the importer process; 4 GiB */
     double wall_s;              /* 60 */
-    const char *root; /* the file, and all files that it refers to, are read below this folder (base/below.h); NULL or
+    const char *root; /* the file, and all files that it refers to, are read below this folder (base/file.h); NULL or
                          "": anywhere. Borrowed */
 } mesh_limits;
 

@@ -34,13 +34,13 @@ static bool is_file(const char *path)
 /* The original spelling is tried first. */
 static status resolve(const char *path, imported_material *m, diagnostic *why)
 {
-    char *found = file_beside(path, m->texture);
+    char *found = file_next_to(path, m->texture);
     if (!is_file(found)) {
         char *respelt = strdup(m->texture);
         if (respelt) {
             respell(respelt);
             free(found);
-            found = file_beside(path, respelt);
+            found = file_next_to(path, respelt);
         }
         free(respelt);
     }

@@ -1,7 +1,7 @@
 /* Builds the tree from events (document_events.c). Queries on its nodes are in document_node.c. */
 #include "scene/file/document.h"
 #include "base/file.h"
-#include "base/grow.h"
+#include "base/array.h"
 #include "scene/file/document_events.h"
 
 #include <stdlib.h>

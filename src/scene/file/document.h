@@ -22,7 +22,7 @@ typedef struct document document;
 
 /* Limits: 1 MiB, depth 16, 65536 nodes. name is the file name in diagnostics. */
 status document_parse(const char *name, const char *text, size_t size, document **out, diagnostic *why);
-/* The same for a file below root (base/below.h; NULL: anywhere). */
+/* The same for a file below root (base/file.h; NULL: anywhere). */
 status document_read_below(const char *path, const char *root, document **out, diagnostic *why);
 void document_destroy(document *d);
 

@@ -1,6 +1,6 @@
 /* What may be shared, and its text, code and metadata. shared_read.c reads them. */
 #include "scene/file/shared.h"
-#include "base/base64.h"
+#include "base/text.h"
 #include "scene/file/write.h"
 #include "scene/model/params.h"
 #include "scene/model/scene.h"

@@ -1,6 +1,6 @@
 /* Reading shared scenes: a link, the metadata of a PNG image, a shared page. */
 #include "scene/file/shared.h"
-#include "base/base64.h"
+#include "base/text.h"
 #include "scene/model/scene.h"
 
 #include <stdlib.h>

@@ -2,7 +2,7 @@
  * (write_wanted.c). Quoting of text is in write_text.c, relative paths in write_paths.c. */
 #include "scene/file/write.h"
 #include "base/file.h"
-#include "base/text_writer.h"
+#include "base/text.h"
 #include "scene/model/params_path.h"
 #include "scene/file/write_parts.h"
 #include "scene/file/write_wanted.h"

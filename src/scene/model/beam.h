@@ -3,7 +3,7 @@
 #pragma once
 
 #include "base/vec3.h"
-#include "optics/observer.h"
+#include "optics/spectrum.h"
 #include "scene/model/render_settings.h"
 #include <stdbool.h>
 #include <stdint.h>

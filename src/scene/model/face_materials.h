@@ -16,7 +16,7 @@ typedef struct face_material {
     const texture *img; /* one reference; NULL for none */
 } face_material;
 
-/* Converts the importer's result; reads its image files, each once, below root (base/below.h). A diagnostic has the
+/* Converts the importer's result; reads its image files, each once, below root (base/file.h). A diagnostic has the
  * path of the image file. */
 status face_materials_create(const mesh_import *imported, const char *root, const face_materials **out,
                              diagnostic *why);

@@ -2,7 +2,7 @@
 #pragma once
 
 #include "base/vec3.h"
-#include "optics/lamp_spectrum.h"
+#include "optics/spectrum.h"
 #include <math.h>
 #include <stdbool.h>
 #include <stdint.h>

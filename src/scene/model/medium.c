@@ -1,8 +1,8 @@
 #include "scene/model/medium.h"
 
-#include "base/elementary_inline.h"
+#include "base/lanes.h"
 #include "base/number.h"
-#include "optics/metals.h"
+#include "optics/media.h"
 #include <float.h>
 #include <string.h>
 

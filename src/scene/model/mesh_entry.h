@@ -62,7 +62,7 @@ typedef struct texture_entry {
 
 /* Limits of loading, for scenes from others; copies of a scene have the same limits. */
 typedef struct load_limits {
-    char *root;       /* all files are read below this folder (base/below.h); NULL or "": anywhere */
+    char *root;       /* all files are read below this folder (base/file.h); NULL or "": anywhere */
     size_t triangles; /* of all meshes together; 0: only the importer's limit */
 } load_limits;
 

@@ -16,7 +16,7 @@ void scene_destroy(scene *s);
 /* Reads a scene file (YAML; grammar at the top of scene/file/read.c and in cuvette-scene(5)). Images, textures and
  * meshes are not loaded yet. */
 status scene_read(const char *path, scene **out, diagnostic *why);
-/* The same for a file below root (base/below.h), which becomes the root of its limits. */
+/* The same for a file below root (base/file.h), which becomes the root of its limits. */
 status scene_read_below(const char *path, const char *root, scene **out, diagnostic *why);
 /* The same from memory; name is used in diagnostics, and paths are relative to its folder. */
 status scene_read_text(const char *name, const char *text, size_t size, scene **out, diagnostic *why);

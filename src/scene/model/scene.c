@@ -46,7 +46,7 @@ static bool clone_texture(background *to, const background *from)
     if (!to->image_path)
         return false;
     if (from->img)
-        to->img = image_share(from->img); /* not modified after loading */
+        to->img = image_retain(from->img); /* not modified after loading */
     return true;
 }
 

@@ -1,7 +1,7 @@
 /* Attachment of a simulation to a scene: saving and restoring its data, and comparing the slimes of another scene. */
 #include "scene/motion/motion_private.h"
 
-#include "base/text_writer.h"
+#include "base/text.h"
 #include "scene/model/params.h"
 #include "scene/model/params_value.h"
 #include "scene/model/scene.h"

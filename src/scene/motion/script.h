@@ -14,7 +14,7 @@
 
 #include "softbody/hand.h"
 
-/* From a file below root (base/below.h; NULL: anywhere). */
+/* From a file below root (base/file.h; NULL: anywhere). */
 status script_read_below(const char *path, const char *root, hand_script **out, diagnostic *why);
 /* The same from memory; name is used in diagnostics. */
 status script_read_text(const char *name, const char *text, size_t size, hand_script **out, diagnostic *why);

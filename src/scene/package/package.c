@@ -2,7 +2,7 @@
 #include "scene/package/package.h"
 #include "base/build_id.h"
 #include "base/hash.h"
-#include "base/large_pages.h"
+#include "base/array.h"
 #include "scene/file/write.h"
 #include "scene/model/scene.h"
 #include "scene/package/package_parts.h"

@@ -1,5 +1,5 @@
 /* The materials in a mesh file, and their images, each once. */
-#include "image/image_pack.h"
+#include "image/texture.h"
 #include "scene/package/package_parts.h"
 
 #include <stdlib.h>

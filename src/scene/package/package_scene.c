@@ -1,5 +1,5 @@
 /* The contents of a package: the scene's text, path and limits, and what is loaded. */
-#include "image/image_pack.h"
+#include "image/texture.h"
 #include "geometry/mesh_pack.h"
 #include "scene/assets/assets.h"
 #include "scene/model/scene.h"

@@ -2,7 +2,7 @@
 #include "wasm/api/results.h"
 
 #include "base/json_build.h"
-#include "base/text_writer.h"
+#include "base/text.h"
 #include "engine/query_private.h"
 #include "render/inspect/fan.h"
 #include "report/fan_writers.h"

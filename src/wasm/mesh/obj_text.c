@@ -4,7 +4,7 @@
 #include "wasm/mesh/mesh.h"
 
 #include "base/file.h"
-#include "base/grow.h"
+#include "base/array.h"
 #include "import/obj.h"
 #include <stdlib.h>
 #include <string.h>
@@ -151,7 +151,7 @@ static status use_material(obj_text *o, const char *name, size_t length)
 
 static status use_library(obj_text *o, const char *name, size_t length)
 {
-    char *own = strndup(name, length), *path = own ? file_beside(o->path, own) : NULL;
+    char *own = strndup(name, length), *path = own ? file_next_to(o->path, own) : NULL;
     free(own);
     if (!path)
         return out_of_memory(o->why);

@@ -1,7 +1,7 @@
 /* The mesh and the materials that a reader collects, and their import, through the checks of the importer's answers. */
 #include "wasm/mesh/mesh.h"
 
-#include "base/grow.h"
+#include "base/array.h"
 #include <stdlib.h>
 #include <string.h>
 

@@ -1,7 +1,7 @@
 /* The elements of a PLY file, as text or binary. */
 #include "wasm/mesh/ply.h"
 
-#include "base/grow.h"
+#include "base/array.h"
 #include <stdlib.h>
 #include <string.h>
 

@@ -2,7 +2,7 @@
  * power. */
 #include "web/api/api.h"
 
-#include "base/text_writer.h"
+#include "base/text.h"
 #include "report/beam_rows.h"
 #include <stdlib.h>
 

@@ -3,7 +3,7 @@
 #include "web/api/api.h"
 #include "web/api/scene_since.h"
 #include "base/number.h"
-#include "base/text_writer.h"
+#include "base/text.h"
 #include "report/json.h"
 #include "report/report.h"
 #include "lint/lint.h"

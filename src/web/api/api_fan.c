@@ -1,7 +1,7 @@
 /* API: a fan of rays through the scene as JSON, CSV or drawing, as `cuvette fan` writes it. */
 #include "web/api/api.h"
 
-#include "base/text_writer.h"
+#include "base/text.h"
 #include "report/fan_writers.h"
 #include <stdlib.h>
 

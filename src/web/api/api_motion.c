@@ -3,7 +3,7 @@
 
 #include "base/cancel.h"
 #include "base/json_build.h"
-#include "base/text_writer.h"
+#include "base/text.h"
 #include "measure/clock.h"
 #include "report/json.h"
 #include "report/motion_rows.h"

@@ -1,7 +1,7 @@
 /* API: the self-contained page of the final image, as `cuvette render -o FILE.html` writes it. See web/README.md. */
 #include "web/api/api.h"
 
-#include "base/text_writer.h"
+#include "base/text.h"
 #include "report/page.h"
 #include "report/page_live.h"
 

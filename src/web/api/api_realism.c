@@ -2,7 +2,7 @@
 #include "base/json_build.h"
 #include "web/api/api.h"
 
-#include "base/text_writer.h"
+#include "base/text.h"
 #include "report/realism_rows.h"
 #include "report/json.h"
 #include <stdlib.h>

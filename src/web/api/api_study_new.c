@@ -5,7 +5,7 @@
 #include "report/report.h"
 
 #include "base/file.h"
-#include "base/text_writer.h"
+#include "base/text.h"
 #include "report/json.h"
 #include "study/estimate.h"
 #include "study/new_study.h"

@@ -4,7 +4,7 @@
 #include "web/api/api.h"
 
 #include "base/number.h"
-#include "base/text_writer.h"
+#include "base/text.h"
 #include "lint/lint.h"
 #include "report/report.h"
 #include "report/trace_writers.h"

@@ -1,8 +1,6 @@
 /* The command line that renders the film of the scene document. */
 #include "web/api/api.h"
-#include "base/shell_word.h"
 #include "base/text.h"
-#include "base/text_writer.h"
 #include "scene/model/params.h"
 #include "scene/model/params_path.h"
 #include "scene/file/write.h"

@@ -1,6 +1,6 @@
 /* Studies as JSON: axes of the grid, summaries and rows. */
 #include "web/api/study_json.h"
-#include "base/text_writer.h"
+#include "base/text.h"
 #include "report/json.h"
 #include "scene/model/params_path.h"
 #include "study/row_files.h"

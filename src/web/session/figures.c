@@ -2,7 +2,7 @@
 #include "web/session/figures.h"
 #include "base/file.h"
 #include "base/json_build.h"
-#include "base/system_error.h"
+#include "base/status.h"
 #include "base/text.h"
 #include <dirent.h>
 #include <errno.h>

@@ -15,7 +15,7 @@ void folder_close(folder *f); /* NULL is allowed */
 /* The path of the folder as given, and its last part. */
 const char *folder_root(const folder *f);
 const char *folder_title(const folder *f);
-/* The resolved path without links: the root of all reads (base/below.h). */
+/* The resolved path without links: the root of all reads (base/file.h). */
 const char *folder_real(const folder *f);
 
 /* The path of an existing file, for reading; with must_exist false the path of a file whose folder exists. Relative

@@ -2,9 +2,9 @@
  * YAML, by their keys. Breadth-first, so that a large deep folder cannot hide the files above it when a limit is
  * reached. */
 #include "web/session/folder.h"
-#include "base/grow.h"
+#include "base/array.h"
 #include "base/json_build.h"
-#include "base/system_error.h"
+#include "base/status.h"
 #include "base/text.h"
 #include "scene/file/document.h"
 

@@ -318,7 +318,7 @@ static void share_loaded(scene *s, const scene *loaded)
             texture_retain(s->textures[i].data);
         }
     if (!s->background.img && loaded->background.img)
-        s->background.img = image_share(loaded->background.img);
+        s->background.img = image_retain(loaded->background.img);
     scene_borrow_meshes(s, loaded);
 }
 

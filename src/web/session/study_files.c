@@ -1,7 +1,7 @@
 /* Search for study files and for the folders of their rows. */
 #include "web/session/study_files.h"
 #include "base/json_build.h"
-#include "base/system_error.h"
+#include "base/status.h"
 #include "base/text.h"
 #include "scene/file/document.h"
 #include <dirent.h>

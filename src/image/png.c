@@ -1,0 +1,388 @@
+/* PNG through libpng. Everything that must survive a longjmp is in a job, which belongs to a function that does not
+ * call setjmp; the function that does has no modified local variables. */
+#include "base/budget.h"
+#include "base/cancel.h"
+#include "base/status.h"
+#include "image/codec.h"
+#include "image/image.h"
+#include "image/png_bands.h"
+#include <errno.h>
+#include <png.h>
+#include <stdbool.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+/* ---- for reading and writing ---- */
+
+/* An error of libpng jumps back with its message kept, warnings are ignored, and the bytes come from memory. A job
+ * starts with a png_library, which is the pointer that libpng hands back. */
+typedef struct png_library {
+    png_structp png;
+    png_infop info;
+    char message[256];          /* of libpng's error */
+    const unsigned char *bytes; /* of a file that is read */
+    size_t size, used;
+    int error;      /* errno when libpng ended */
+    bool no_memory; /* an allocation of libpng or zlib failed, which is reported like damage */
+} png_library;
+
+static __attribute__((noreturn)) void png_library_error(png_structp png, png_const_charp message)
+{
+    png_library *of = png_get_error_ptr(png);
+    of->error = errno;
+    snprintf(of->message, sizeof of->message, "%s", message);
+    png_longjmp(png, 1);
+}
+
+static void png_library_warning(png_structp png, png_const_charp message)
+{
+    (void)png;
+    (void)message;
+}
+
+static png_voidp allocate_memory(png_structp png, png_alloc_size_t size)
+{
+    png_library *of = png_get_mem_ptr(png);
+    void *memory = malloc(size);
+    of->no_memory |= !memory;
+    return memory;
+}
+
+static void free_memory(png_structp png, png_voidp memory)
+{
+    (void)png;
+    free(memory);
+}
+
+/* Creates png and info of a job for reading, or for writing; false: out of memory. */
+static bool png_library_read(png_library *of)
+{
+    of->png = png_create_read_struct_2(PNG_LIBPNG_VER_STRING, of, png_library_error, png_library_warning, of,
+                                       allocate_memory, free_memory);
+    of->info = of->png ? png_create_info_struct(of->png) : NULL;
+    return of->info;
+}
+
+static bool png_library_write(png_library *of)
+{
+    of->png = png_create_write_struct_2(PNG_LIBPNG_VER_STRING, of, png_library_error, png_library_warning, of,
+                                        allocate_memory, free_memory);
+    of->info = of->png ? png_create_info_struct(of->png) : NULL;
+    return of->info;
+}
+
+/* The status of a write, and of a read, that ended with an error of libpng. */
+static status png_library_unwritten(const png_library *of, diagnostic *why)
+{
+    return of->no_memory ? out_of_memory(why)
+                         : system_error(why, STATUS_FAILURE, NULL, "cannot write the PNG file", of->error,
+                                        "write a PFM file instead");
+}
+
+static status png_library_failed(const png_library *of, diagnostic *why)
+{
+    return of->no_memory ? out_of_memory(why)
+                         : diagnose(why, STATUS_BAD_INPUT, "copy the file again, or save it again as PNG",
+                                    "the PNG file is damaged: %s", of->message);
+}
+
+/* ---- writing: libpng writes the chunks, png_bands.c compresses the pixels ---- */
+
+typedef struct png_writing {
+    png_library of; /* first: libpng hands it back */
+    const image_rows *rows;
+    png_bands *bands;
+    int bits;
+    png_text texts[IMAGE_TEXTS_MAX];
+} png_writing;
+
+static void set_texts(png_writing *job)
+{
+    for (int i = 0; i < job->rows->text_count && i < IMAGE_TEXTS_MAX; i++) {
+        const image_text *from = &job->rows->texts[i];
+        job->texts[i] = (png_text){.compression = PNG_ITXT_COMPRESSION_zTXt,
+                                   .key = (png_charp)(uintptr_t)from->keyword,
+                                   .text = (png_charp)(uintptr_t)from->text,
+                                   .itxt_length = strlen(from->text)};
+        png_set_text(job->of.png, job->of.info, &job->texts[i], 1);
+    }
+}
+
+static void write_chunks(png_writing *job, FILE *stream)
+{
+    png_init_io(job->of.png, stream);
+    png_set_IHDR(job->of.png, job->of.info, (png_uint_32)job->rows->width, (png_uint_32)job->rows->height, job->bits,
+                 PNG_COLOR_TYPE_RGB, PNG_INTERLACE_NONE, PNG_COMPRESSION_TYPE_DEFAULT, PNG_FILTER_TYPE_DEFAULT);
+    png_set_sRGB(job->of.png, job->of.info, PNG_sRGB_INTENT_PERCEPTUAL);
+    set_texts(job);
+    png_write_info(job->of.png, job->of.info);
+    for (size_t count; (count = png_bands_compress(job->bands)) > 0;)
+        for (size_t i = 0; i < count; i++) {
+            const unsigned char *bytes;
+            size_t size;
+            if (!png_bands_get(job->bands, i, &bytes, &size))
+                png_error(job->of.png, "zlib failed");
+            png_write_chunk(job->of.png, (png_const_bytep) "IDAT", bytes, size);
+        }
+    /* not png_write_end, which requires IDAT chunks written by libpng */
+    png_write_chunk(job->of.png, (png_const_bytep) "IEND", NULL, 0);
+}
+
+static bool write_guarded(png_writing *job, FILE *stream)
+{
+    if (setjmp(png_jmpbuf(job->of.png)))
+        return false;
+    write_chunks(job, stream);
+    return true;
+}
+
+status codec_png_write(const image_rows *rows, FILE *stream, int bits, bool fast, diagnostic *why)
+{
+    png_writing job = {.rows = rows, .bits = bits};
+    status code = png_bands_create(rows, bits, fast, &job.bands, why);
+    if (code != STATUS_OK)
+        return code;
+    if (!png_library_write(&job.of))
+        code = out_of_memory(why);
+    else if (!write_guarded(&job, stream))
+        code = cancel_asked() ? cancel_check(why) : png_library_unwritten(&job.of, why);
+    png_destroy_write_struct(&job.of.png, &job.of.info);
+    png_bands_destroy(job.bands);
+    return code;
+}
+
+/* ---- reading ---- */
+
+static void read_bytes(png_structp png, png_bytep to, size_t count)
+{
+    png_library *from = png_get_io_ptr(png);
+    if (count > from->size - from->used)
+        png_error(png, "the file is truncated");
+    memcpy(to, from->bytes + from->used, count);
+    from->used += count;
+}
+
+/* libpng allocates memory for a chunk of any length, up to 2 GiB, before it reads it: its limit is only a warning. */
+static void check_lengths(const png_library *of)
+{
+    for (size_t at = 8; of->size > at && of->size - at >= 8;) {
+        const size_t length = png_get_uint_32(of->bytes + at), left = of->size - at - 8;
+        if (length > left)
+            png_error(of->png, "the file is truncated");
+        if (memcmp(of->bytes + at + 4, "IEND", 4) == 0)
+            return;
+        at += 12 + length;
+    }
+}
+
+/* Before the first byte of a file that anyone may have made, and after setjmp: it is read from memory, no chunk has
+ * more bytes than the file has or than chunk_max when it is expanded, and a wrong checksum is an error. */
+static void png_library_guard(png_library *of, size_t chunk_max)
+{
+    png_set_read_fn(of->png, of, read_bytes);
+    png_set_user_limits(of->png, IMAGE_SIDE_MAX, IMAGE_SIDE_MAX);
+    png_set_chunk_malloc_max(of->png, chunk_max);
+    png_set_chunk_cache_max(of->png, 128);
+    png_set_crc_action(of->png, PNG_CRC_ERROR_QUIT, PNG_CRC_ERROR_QUIT);
+    check_lengths(of);
+}
+
+typedef struct png_reading {
+    png_library of;     /* first: libpng hands it back */
+    unsigned char *raw; /* one row, or the image if it is interlaced */
+    image *img;
+    float *linear; /* sRGB decoding table */
+    int bits;
+    status code; /* for errors not from libpng */
+    diagnostic *why;
+} png_reading;
+
+/* Requests RGB or RGBA with 8 or 16 bits from libpng, for any kind of file. */
+static void normalize(png_reading *job)
+{
+    job->bits = png_get_bit_depth(job->of.png, job->of.info) == 16 ? 16 : 8;
+    png_set_expand(job->of.png); /* palettes, depths below 8 and transparent colours */
+    png_set_gray_to_rgb(job->of.png);
+}
+
+static unsigned sample(const png_reading *job, const unsigned char *row, size_t index)
+{
+    return job->bits == 8 ? row[index] : (unsigned)row[2 * index] << 8 | row[2 * index + 1];
+}
+
+/* Linear values, blended over black with alpha, which is linear itself (PNG specification 13.16). */
+static void store_row(png_reading *job, const unsigned char *row, int y, size_t channels)
+{
+    float *pixel = job->img->pixel + (size_t)y * (size_t)job->img->width * 3;
+    for (size_t x = 0; x < (size_t)job->img->width; x++) {
+        for (size_t channel = 0; channel < 3; channel++)
+            pixel[3 * x + channel] = job->linear[sample(job, row, channels * x + channel)];
+        if (channels == 4) {
+            double alpha = (double)sample(job, row, 4 * x + 3) / (job->bits == 8 ? 255.0 : 65535.0);
+            for (size_t channel = 0; channel < 3; channel++)
+                pixel[3 * x + channel] = (float)(alpha * (double)pixel[3 * x + channel]);
+        }
+    }
+}
+
+static bool allocate(png_reading *job, long long width, long long height, bool interlaced)
+{
+    job->code =
+        codec_begin(width, height, job->of.size, job->bits == 8 ? 255 : 65535, &job->img, &job->linear, job->why);
+    if (job->code != STATUS_OK)
+        return false;
+    if (interlaced)
+        job->code = memory_budget_check((uint64_t)height * png_get_rowbytes(job->of.png, job->of.info),
+                                        "save it without interlacing", job->why, "the interlaced image");
+    if (job->code != STATUS_OK)
+        return false;
+    /* Zeroed, because an interlaced image is read by combining with the previous contents. */
+    job->raw = calloc(interlaced ? (size_t)height : 1, png_get_rowbytes(job->of.png, job->of.info));
+    if (!job->raw)
+        job->code = out_of_memory(job->why);
+    return job->raw;
+}
+
+static bool read_rows(png_reading *job)
+{
+    png_library_guard(&job->of, 8000000);
+    png_set_keep_unknown_chunks(job->of.png, PNG_HANDLE_CHUNK_NEVER, NULL, -1);
+    png_read_info(job->of.png, job->of.info);
+    normalize(job);
+    int passes = png_set_interlace_handling(job->of.png);
+    png_read_update_info(job->of.png, job->of.info);
+    png_uint_32 width = png_get_image_width(job->of.png, job->of.info),
+                height = png_get_image_height(job->of.png, job->of.info);
+    if (!allocate(job, width, height, passes > 1))
+        return false;
+    size_t channels = png_get_channels(job->of.png, job->of.info),
+           row_bytes = png_get_rowbytes(job->of.png, job->of.info);
+    for (int pass = 0; pass < passes; pass++) {
+        for (int y = 0; y < job->img->height; y++) {
+            unsigned char *row = job->raw + (passes > 1 ? (size_t)y * row_bytes : 0);
+            if (cancel_asked()) {
+                job->code = cancel_check(job->why);
+                return false;
+            }
+            png_read_row(job->of.png, row, NULL);
+            if (pass == passes - 1)
+                store_row(job, row, y, channels);
+        }
+    }
+    png_read_end(job->of.png, NULL); /* the remaining chunks must be valid as well */
+    return true;
+}
+
+static void read_guarded(png_reading *job)
+{
+    if (setjmp(png_jmpbuf(job->of.png))) {
+        job->code = png_library_failed(&job->of, job->why);
+        return;
+    }
+    if (read_rows(job))
+        job->code = STATUS_OK;
+}
+
+status codec_png_read(const unsigned char *bytes, size_t size, image **out, int *bits, diagnostic *why)
+{
+    png_reading job = {.of = {.bytes = bytes, .size = size}, .why = why, .code = STATUS_FAILURE};
+    *out = NULL;
+    if (!png_library_read(&job.of))
+        out_of_memory(why);
+    else
+        read_guarded(&job);
+    png_destroy_read_struct(&job.of.png, &job.of.info, NULL);
+    free(job.raw);
+    free(job.linear);
+    if (job.code != STATUS_OK) {
+        image_destroy(job.img);
+        return job.code;
+    }
+    *bits = job.bits;
+    *out = job.img;
+    return STATUS_OK;
+}
+
+/* ---- reading a text ---- */
+
+/* The limit on a chunk's memory also bounds what a compressed text expands to. */
+static bool read_text_guarded(png_library *job, size_t limit)
+{
+    if (setjmp(png_jmpbuf(job->png)))
+        return false;
+    png_library_guard(job, limit + 4096);
+    png_read_info(job->png, job->info);
+    return true;
+}
+
+static char *find_text(const png_library *job, const char *keyword, size_t limit)
+{
+    png_textp texts = NULL;
+    const int count = png_get_text(job->png, job->info, &texts, NULL);
+    for (int i = 0; i < count; i++)
+        if (strcmp(texts[i].key, keyword) == 0 && texts[i].text && strlen(texts[i].text) <= limit)
+            return texts[i].text;
+    return NULL;
+}
+
+/* Whether a chunk of text (tEXt, zTXt, iTXt) has that keyword: libpng drops one that it cannot expand, and does not
+ * report it. */
+static bool has_keyword(const unsigned char *bytes, size_t size, const char *keyword)
+{
+    const size_t name_size = strlen(keyword) + 1;
+    for (size_t at = 8; size > at && size - at >= 12;) {
+        const size_t length = png_get_uint_32(bytes + at);
+        if (length > size - at - 12)
+            return false;
+        const bool is_text = memcmp(bytes + at + 5, "TXt", 3) == 0 || memcmp(bytes + at + 5, "EXt", 3) == 0;
+        if (is_text && length >= name_size && memcmp(bytes + at + 8, keyword, name_size) == 0)
+            return true;
+        at += 12 + length;
+    }
+    return false;
+}
+
+static status read_text(const void *bytes, size_t size, const char *keyword, size_t limit, char **text, diagnostic *why)
+{
+    png_library job = {.bytes = bytes, .size = size};
+    status code = STATUS_OK;
+    *text = NULL;
+    if (!png_library_read(&job)) {
+        code = out_of_memory(why);
+    } else if (!read_text_guarded(&job, limit)) {
+        code = png_library_failed(&job, why);
+    } else {
+        const char *found = find_text(&job, keyword, limit);
+        if (found && !(*text = strdup(found)))
+            code = out_of_memory(why);
+        else if (!found && has_keyword(bytes, size, keyword))
+            code = diagnose(why, STATUS_BAD_INPUT, "copy the file again from where it is whole",
+                            "the text '%s' in this PNG file is damaged, or longer than %zu bytes", keyword, limit);
+    }
+    png_destroy_read_struct(&job.png, &job.info, NULL);
+    return code;
+}
+
+typedef struct text_job {
+    const void *bytes;
+    size_t size;
+    const char *keyword;
+    size_t limit;
+    char **text;
+    diagnostic *why;
+    status code;
+} text_job;
+
+static void read_text_apart(void *of)
+{
+    text_job *w = of;
+    w->code = read_text(w->bytes, w->size, w->keyword, w->limit, w->text, w->why);
+}
+
+status image_png_text(const void *bytes, size_t size, const char *keyword, size_t limit, char **text, diagnostic *why)
+{
+    text_job w = {bytes, size, keyword, limit, text, why, STATUS_OK};
+    codec_run_confined(read_text_apart, &w);
+    return w.code;
+}
