@@ -1,7 +1,7 @@
 /* Meshes and hierarchies for tests of the builders. A fixture owns both; fixture_free frees it. */
 #pragma once
 
-#include "geometry/hierarchy_private.h"
+#include "geometry/hierarchy/layout.h"
 
 #include <stdlib.h>
 #include <string.h>

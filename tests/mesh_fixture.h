@@ -1,7 +1,7 @@
 /* Small meshes for tests, made from lists, and a cube that tests modify. */
 #pragma once
 
-#include "geometry/mesh.h"
+#include "geometry/mesh/mesh.h"
 #include <string.h>
 
 /* An unfinished mesh of these vertices and triangles. */

@@ -3,8 +3,8 @@
  * creates, mesh_room_empty frees. */
 #pragma once
 
-#include "geometry/mesh_generators.h"
-#include "geometry/instance_set.h"
+#include "geometry/mesh/mesh_generators.h"
+#include "geometry/regions/instance_set.h"
 #include "room_fixture.h"
 #include <stdlib.h>
 

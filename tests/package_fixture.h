@@ -2,7 +2,7 @@
  * call asserts that it succeeded. Ownership: scene_destroy releases scenes, free a package's bytes. */
 #pragma once
 
-#include "geometry/hierarchy.h"
+#include "geometry/hierarchy/hierarchy.h"
 #include "mesh_files.h"
 #include "render_fixture.h"
 #include "scene/package/package.h"

@@ -3,7 +3,7 @@
 #pragma once
 
 #include "base/isa.h"
-#include "geometry/instance_set.h"
+#include "geometry/regions/instance_set.h"
 #include "geometry/rays.h"
 
 typedef struct one_ray {

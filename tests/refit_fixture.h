@@ -4,7 +4,7 @@
 
 #include "base/isa.h"
 #include "base/lanes.h"
-#include "geometry/hierarchy_private.h"
+#include "geometry/hierarchy/layout.h"
 #include "hierarchy_scenes.h"
 
 #include <stdlib.h>

@@ -105,6 +105,6 @@ static inline void steps_of(softbody *b, long count)
 
 static inline double energy_of(const softbody *b)
 {
-    const softbody_account a = softbody_measure(b);
+    const softbody_quantities a = softbody_measure(b);
     return a.kinetic + a.elastic + a.compression + a.gravity;
 }

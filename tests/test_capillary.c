@@ -8,7 +8,7 @@
 #include <string.h>
 #include <cmocka.h>
 
-#include "geometry/capillary.h"
+#include "geometry/primitives/capillary.h"
 #include "geometry/shapes/meniscus.h"
 #include "random_stream.h"
 #include "ray_fixture.h"

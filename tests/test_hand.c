@@ -5,7 +5,6 @@
 #include <stdint.h>
 #include <cmocka.h>
 
-#include "softbody/hand.h"
 #include "softbody/softbody.h"
 #include <math.h>
 #include <stdio.h>

@@ -15,7 +15,7 @@
 
 static const hierarchy_kernels *const kernels[ISA_COUNT] = ISA_ARRAY(hierarchy_kernels);
 
-/* Nearly along x: a ray exactly across two axes is not culled on the far side of a box (hierarchy_boxes.h). */
+/* Nearly along x: a ray exactly across two axes is not culled on the far side of a box (query.h). */
 static mesh_ray along_x(double x, double y, double z)
 {
     return (mesh_ray){{x, y, z}, {1.0, 0x1p-10, 0x1p-10}, 0.0, (double)INFINITY, TRIANGLE_NONE, FACING_ANY};

@@ -10,7 +10,7 @@
 #include <time.h>
 #include <cmocka.h>
 
-#include "geometry/mesh_share.h"
+#include "geometry/mesh/mesh_private.h"
 #include "refit_fixture.h"
 
 /* Four triangles that span the unit cube at x. */
@@ -187,11 +187,11 @@ static void hierarchies_follow_only_while_no_other_thread_builds_them(void **sta
     (void)state;
     mesh *m = icosphere(1);
     pthread_t other;
-    assert_int_equal(pthread_mutex_lock(&m->share->mutex), 0);
+    assert_int_equal(pthread_mutex_lock(&m->shared->mutex), 0);
     assert_int_equal(pthread_create(&other, NULL, follow_aside, m), 0);
     nanosleep(&(struct timespec){.tv_nsec = 50000000}, NULL);
     assert_false(atomic_load(&followed));
-    assert_int_equal(pthread_mutex_unlock(&m->share->mutex), 0);
+    assert_int_equal(pthread_mutex_unlock(&m->shared->mutex), 0);
     assert_int_equal(pthread_join(other, NULL), 0);
     assert_true(atomic_load(&followed));
     mesh_release(m);

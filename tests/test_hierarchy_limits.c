@@ -9,7 +9,7 @@
 #include <cmocka.h>
 
 #include "base/isa.h"
-#include "geometry/hierarchy_private.h"
+#include "geometry/hierarchy/layout.h"
 #include "hierarchy_scenes.h"
 
 #define COUNT(a) (sizeof(a) / sizeof((a)[0]))

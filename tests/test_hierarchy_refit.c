@@ -7,7 +7,7 @@
 #include <string.h>
 #include <cmocka.h>
 
-#include "geometry/hierarchy_bvh.h"
+#include "geometry/hierarchy/bvh.h"
 #include "refit_fixture.h"
 
 static hierarchy_refitter *const refit_nodes[ISA_COUNT] = ISA_ARRAY(hierarchy_refit_nodes);

@@ -6,7 +6,7 @@
 #include <stdint.h>
 #include <cmocka.h>
 
-#include "geometry/mesh_share.h"
+#include "geometry/mesh/mesh_private.h"
 #include "mesh_fixture.h"
 
 #define assert_near(a, b, tolerance) assert_true(fabs((a) - (b)) <= (tolerance))
@@ -344,8 +344,8 @@ static void the_last_owner_frees_the_hierarchies(void **state)
 {
     (void)state;
     mesh *m = cubes(1);
-    m->share->destroy = destroy;
-    m->share->hierarchies[HIERARCHY_BVH] = (hierarchy *)&destroyed;
+    m->shared->destroy = destroy;
+    m->shared->hierarchies[HIERARCHY_BVH] = (hierarchy *)&destroyed;
     destroyed = 0;
     pthread_t threads[2];
     for (int k = 0; k < 2; k++) {
@@ -354,7 +354,7 @@ static void the_last_owner_frees_the_hierarchies(void **state)
     }
     for (int k = 0; k < 2; k++)
         pthread_join(threads[k], NULL);
-    assert_int_equal(m->share->owners, 1);
+    assert_int_equal(m->shared->owners, 1);
     assert_int_equal(destroyed, 0);
     mesh_release(m);
     assert_int_equal(destroyed, 1);

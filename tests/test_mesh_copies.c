@@ -8,7 +8,7 @@
 #include <cmocka.h>
 
 #include "base/counters.h"
-#include "geometry/mesh_generators.h"
+#include "geometry/mesh/mesh_generators.h"
 #include "geometry/shapes/shape.h"
 #include "measure/clock.h"
 #include "mesh_stage.h"

@@ -10,8 +10,8 @@
 #include <cmocka.h>
 
 #include "base/lanes.h"
-#include "geometry/mesh_generators.h"
-#include "geometry/mesh.h"
+#include "geometry/mesh/mesh_generators.h"
+#include "geometry/mesh/mesh.h"
 #include "random_stream.h"
 
 #define COUNT(a) (sizeof(a) / sizeof((a)[0]))

@@ -1,9 +1,9 @@
 /* Rays that pass a mesh's box by are not traced through its hierarchy; rays close to the box find what a query of the
  * hierarchy finds. */
-#include "geometry/box_passes.h"
-#include "geometry/hierarchy_private.h"
-#include "geometry/instance_set.h"
-#include "geometry/mesh_generators.h"
+#include "geometry/regions/box_tests.h"
+#include "geometry/hierarchy/layout.h"
+#include "geometry/regions/instance_set.h"
+#include "geometry/mesh/mesh_generators.h"
 #include "random_stream.h"
 
 #include <setjmp.h>
@@ -70,7 +70,7 @@ static void compare(const placed_mesh *p, uint64_t *seed, int *hits, int *misses
     if (expected.triangle != TRIANGLE_NONE) {
         assert_int_equal(mesh_face_triangle(got.face), expected.triangle);
         assert_true(got.t == expected.t);
-        assert_false(box_passes(p->set->world.low, p->set->world.high, ray.origin, ray.direction));
+        assert_false(ray_misses_box(p->set->world.low, p->set->world.high, ray.origin, ray.direction));
     }
     (*hits) += blocked;
     (*misses) += !blocked;
@@ -116,8 +116,8 @@ static void the_box_of_a_set_has_the_vertices_of_all_copies(void **state)
             const vec3 at = instance_set_vertex_point(set->parts, copy, vertex);
             assert_true(at.x >= low.x && at.y >= low.y && at.z >= low.z);
             assert_true(at.x <= high.x && at.y <= high.y && at.z <= high.z);
-            assert_int_equal(box_passes(low, high, outside, vec3_sub(at, outside)), 0);
-            assert_int_equal(box_passes(low, high, outside, vec3_sub(outside, at)), -1);
+            assert_int_equal(ray_misses_box(low, high, outside, vec3_sub(at, outside)), 0);
+            assert_int_equal(ray_misses_box(low, high, outside, vec3_sub(outside, at)), -1);
         }
     instance_set_destroy(set);
     hierarchy_destroy(tree);

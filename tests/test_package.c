@@ -7,7 +7,7 @@
 #include <cmocka.h>
 
 #include "base/hash.h"
-#include "geometry/hierarchy_private.h"
+#include "geometry/hierarchy/layout.h"
 #include "package_fixture.h"
 #include "scene/model/face_materials.h"
 

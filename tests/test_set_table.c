@@ -7,7 +7,7 @@
 #include <cmocka.h>
 
 #include "base/thread_team.h"
-#include "geometry/set_table.h"
+#include "geometry/regions/set_table.h"
 #include "random_stream.h"
 
 enum { MEMBERS = 300 };

@@ -6,10 +6,10 @@
 #include <stdint.h>
 #include <cmocka.h>
 
-#include "geometry/mesh_generators.h"
+#include "geometry/mesh/mesh_generators.h"
 #include "geometry/scene_geometry.h"
 #include "geometry/primitives/primitive.h"
-#include "geometry/shapes/placed.h"
+#include "geometry/shapes/shape.h"
 #include "random_stream.h"
 #include "scene/model/params_value.h"
 #include "scene/model/scene.h"

@@ -5,8 +5,8 @@
 #include <stdint.h>
 #include <cmocka.h>
 
-#include "geometry/mesh_generators.h"
-#include "geometry/shared_faces.h"
+#include "geometry/mesh/mesh_generators.h"
+#include "geometry/shapes/shape.h"
 #include "geometry/solid.h"
 
 static bool share(solid_shape a, solid_shape b)

@@ -12,7 +12,7 @@ typedef struct extent {
 /* Shape of the body about its centre of mass, in radii; turned_over: inverted faces. */
 static extent extent_of(const softbody *b)
 {
-    const softbody_account a = softbody_measure(b);
+    const softbody_quantities a = softbody_measure(b);
     const size_t count = softbody_mass_count(b);
     vec3 *at = malloc(count * sizeof *at);
     softbody_positions(b, at);
@@ -84,7 +84,7 @@ static void a_toy_on_its_floor_recovers_its_rest_shape(void **state)
     const softbody_settings s = default_toy();
     extent before, stretched;
     softbody *b = after_a_minute(&s, &before, &stretched);
-    const softbody_account a = softbody_measure(b);
+    const softbody_quantities a = softbody_measure(b);
     const extent after = extent_of(b), rest = left_alone(&s);
     assert_true(stretched.farthest > 1.2 * before.farthest);
     assert_near(after.tall, rest.tall, 0.01 * s.radius);
@@ -106,7 +106,7 @@ static void a_toy_without_gravity_recovers_the_sphere(void **state)
     s.ground = 0;
     extent before, stretched;
     softbody *b = after_a_minute(&s, &before, &stretched);
-    const softbody_account a = softbody_measure(b);
+    const softbody_quantities a = softbody_measure(b);
     const extent after = extent_of(b);
     assert_true(stretched.farthest > 1.1);
     assert_near(after.nearest, s.radius, 0.01 * s.radius);

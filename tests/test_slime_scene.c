@@ -67,7 +67,7 @@ static void set(scene *s, const char *assignment)
 }
 
 /* The body of a scene, made without the scene. */
-static mesh *skin_of(const mesh_entry *m, const hand_script *script, softbody_account *account)
+static mesh *skin_of(const mesh_entry *m, const hand_script *script, softbody_quantities *account)
 {
     const softbody_settings settings = slime_settings(m);
     softbody *b = NULL;
@@ -85,7 +85,7 @@ static mesh *skin_of(const mesh_entry *m, const hand_script *script, softbody_ac
 
 static void expect_skin(const mesh_entry *m, const hand_script *script)
 {
-    softbody_account account;
+    softbody_quantities account;
     mesh *surface = skin_of(m, script, &account);
     assert_int_equal(m->data->vertex_count, surface->vertex_count);
     assert_int_equal(m->data->triangle_count, surface->triangle_count);

@@ -38,7 +38,7 @@ static void the_net_has_the_numbers_of_eulers_formula(void **state)
         const size_t masses = 10 * ((size_t)1 << 2 * level) + 2;
         assert_int_equal(softbody_mass_count(b), masses);
         assert_int_equal(softbody_spring_count(b), 2 * 3 * (masses - 2) + masses / 2);
-        const softbody_account a = softbody_measure(b);
+        const softbody_quantities a = softbody_measure(b);
         assert_near(a.elastic, 0.0, 1e-25);
         assert_near(a.volume, a.volume_at_rest, 1e-13);
         assert_near(a.center.y, 1.0, 1e-12);
@@ -59,9 +59,9 @@ static void momenta_are_conserved_up_to_rounding(void **state)
         s.level = 1;
         softbody *b = toy_of(&s);
         stir(b, 0.5, vec3_make(0.3, 0.7, -0.4));
-        const softbody_account before = softbody_measure(b);
+        const softbody_quantities before = softbody_measure(b);
         steps_of(b, 100000);
-        const softbody_account after = softbody_measure(b);
+        const softbody_quantities after = softbody_measure(b);
         assert_near(vec3_length(vec3_sub(after.momentum, before.momentum)), 0.0, 1e-13);
         assert_near(vec3_length(vec3_sub(after.angular_momentum, before.angular_momentum)), 0.0, 1e-12);
         assert_true(vec3_length(before.angular_momentum) > 0.3);
@@ -148,7 +148,7 @@ static void pressure_acts_along_the_area_normals(void **state)
     for (size_t i = 0; i < count; i++)
         at[i] = vec3_scale(at[i], 0.95);
     softbody_place(b, at, v);
-    const softbody_account a = softbody_measure(b);
+    const softbody_quantities a = softbody_measure(b);
     assert_near(a.volume / a.volume_at_rest, 0.95 * 0.95 * 0.95, 1e-14);
     steps_of(b, 1);
     softbody_velocities(b, v);
@@ -245,7 +245,7 @@ static void hands_grab_hold_and_release_masses(void **state)
     assert_near(where.z, -1.0, 0.02);
     const int hand = softbody_grab(b, where, 0.3), other = softbody_grab(b, vec3_make(0.0, 1.0, 1.0), 0.0);
     assert_true(hand >= 0 && other >= 0 && other != hand);
-    const softbody_account held = softbody_measure(b);
+    const softbody_quantities held = softbody_measure(b);
     assert_true(held.held > 5 && held.held < 60);
     const size_t count = softbody_mass_count(b);
     vec3 *at = malloc(count * sizeof *at), *later = malloc(count * sizeof *later);

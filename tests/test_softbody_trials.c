@@ -192,7 +192,7 @@ static double speed_of_rest(double dt_s)
     return speed;
 }
 
-/* For the spring to 1e-5, as derived in trials_stable.c. For the toy at least the bound, up to the bisection's 1/512;
+/* For the spring to 1e-5, as derived in trials_spring.c. For the toy at least the bound, up to the bisection's 1/512;
  * and a toy at rest, excited only by rounding, stays so with steps shorter by a tenth, and diverges with longer ones:
  * by exp(2 acosh 1.1) = 2.4 per step. */
 static void the_longest_stable_step_is_found(void **state)

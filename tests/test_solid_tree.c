@@ -190,7 +190,7 @@ static void hits_at_equal_distances_are_those_of_direct_primitives(void **state)
 
 enum { CONE = 96 };
 
-/* A bundle of rays from one point, narrow enough to be traced in a view of the few solids ahead (solid_view.h). */
+/* A bundle of rays from one point, narrow enough to be traced in a view of the few solids ahead (rays.h). */
 typedef struct bundle {
     double o[3][CONE], d[3][CONE];
     int64_t start[CONE];

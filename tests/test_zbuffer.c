@@ -8,7 +8,7 @@
 #include <stdlib.h>
 #include <cmocka.h>
 
-#include "geometry/mesh_generators.h"
+#include "geometry/mesh/mesh_generators.h"
 #include "mesh_fixture.h"
 #include "random_stream.h"
 #include "zbuffer_fixture.h"

@@ -1,11 +1,11 @@
 /* embree - camera and shadow rays through the triangle sets of Cuvette's mesh bench, traced by Embree 3 on one thread.
  *   embree [-m sparse|dense|sphere] [-n TRIANGLES] [-k 1|16|1,16] [-r ROUNDS]
  * k: rays one at a time (rtcIntersect1, rtcOccluded1), or in packets of 16, squares of 4 x 4 pixels. The triangles are
- * Cuvette's own (geometry/mesh_generators.h), the rays those of mesh_rays.h. Prints a line for each k and round:
+ * Cuvette's own (geometry/mesh/mesh_generators.h), the rays those of mesh_rays.h. Prints a line for each k and round:
  * milliseconds of CPU time, and exact counts of hits and of shadow rays that are blocked. */
 #include <embree3/rtcore.h>
 
-#include "geometry/mesh_generators.h"
+#include "geometry/mesh/mesh_generators.h"
 #include "mesh_rays.h"
 
 #include <errno.h>

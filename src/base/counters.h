@@ -23,7 +23,7 @@ enum {
 #define COUNTERS_CUT_ONE 68719476736.0 /* 2^36 */
 
 /* The tests of queries of meshes' hierarchies, each ray counted as if it were the only one of its packet: see
- * hierarchy_count in geometry/hierarchy.h. */
+ * hierarchy_count in geometry/hierarchy/hierarchy.h. */
 typedef struct query_counts {
     uint64_t rays;      /* queries of one ray each */
     uint64_t nodes;     /* nodes entered: inner nodes of a BVH, spheres of a tree of spheres */
@@ -42,9 +42,9 @@ typedef struct ray_counters {
     /* the photons' light in the film that is narrower than its samples may see, summed over pixels and channels, in the
      * same units: by the factor along a side by which samples would have to be closer; [0]: more than the others */
     int64_t undersampled[COUNTERS_FACTORS];
-    /* rays tested against the solid; 0 for one that a hierarchy finds (geometry/solid_tree.h). Shadow rays count only
-     * for solids that can reduce light by themselves, and only once, without the second test of the few undecided
-     * ones */
+    /* rays tested against the solid; 0 for one that a hierarchy finds (geometry/regions/solid_tree.h). Shadow rays
+     * count only for solids that can reduce light by themselves, and only once, without the second test of the few
+     * undecided ones */
     uint64_t tests[COUNTERS_SOLID_MAX];
     uint64_t hits[COUNTERS_SOLID_MAX];       /* hits on the solid's interfaces, without shadow rays and photons */
     uint64_t first_hits[COUNTERS_SOLID_MAX]; /* camera rays whose first interface is on the solid */

@@ -70,7 +70,7 @@ static void put_header(csv_line *line)
 static void put_row(csv_line *line, const animate_row *r)
 {
     const scene_motion_report m = r->motion;
-    const softbody_account b = softbody_measure(r->body);
+    const softbody_quantities b = softbody_measure(r->body);
 #define VALUE(name, put) put;
     COLUMNS(VALUE)
 #undef VALUE

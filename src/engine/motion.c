@@ -180,7 +180,7 @@ cuvette_status cuvette_motion_state(const cuvette_motion *motion, const char *na
     if (code != STATUS_OK)
         return engine_report(code, &inner, why);
     const softbody *body = scene_motion_body(motion->bodies, i);
-    const softbody_account a = softbody_measure(body);
+    const softbody_quantities a = softbody_measure(body);
     cuvette_slime result = {.time_s = a.time_s,
                             .steps = a.steps,
                             .substeps = a.substeps,

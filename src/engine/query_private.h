@@ -4,7 +4,7 @@
 
 #include "base/cancel.h"
 #include "engine/engine_private.h"
-#include "geometry/instance_set.h"
+#include "geometry/regions/instance_set.h"
 #include "geometry/rays.h"
 #include "render/core/plan.h"
 #include "render/inspect/probe.h"

@@ -2,7 +2,7 @@
  * scene's terms. */
 #include "engine/query_private.h"
 
-#include "geometry/solid_tree.h"
+#include "geometry/regions/solid_tree.h"
 
 #include <math.h>
 #include <string.h>

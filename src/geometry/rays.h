@@ -5,7 +5,6 @@
 #include "base/counters.h"
 #include "base/isa.h"
 #include "geometry/scene_geometry.h"
-#include "geometry/solid_view.h"
 #include <float.h>
 #include <stdint.h>
 
@@ -13,7 +12,7 @@
  * first-level cache and evict each other. */
 enum { BATCH = 128, LANES_MAX = 8 /* doubles in the widest vector */, ROW = BATCH + LANES_MAX };
 
-/* The error bound of a computed point, as a share of the sum of the magnitudes of its terms: see primitives/kind.h. */
+/* The error bound of a computed point, relative to the sum of the magnitudes of its terms: see primitives/kind.h. */
 #define POINT_ERROR (16.0 * DBL_EPSILON)
 
 /* A view of up to BATCH rays. A ray that looks for its nearest interface has a unit direction; a shadow ray's direction
@@ -26,7 +25,7 @@ typedef struct ray_batch {
     const uint64_t *inside;
 } ray_batch;
 
-/* Ray i alone; with another set, which is borrowed. */
+/* A batch of ray i only, with another set, which is borrowed. */
 static inline ray_batch ray_batch_one(const ray_batch *rays, int i, const uint64_t *inside)
 {
     return (ray_batch){
@@ -52,8 +51,8 @@ typedef struct medium_segment {
 
 /* A hit of a ray on a mesh. */
 typedef struct instance_hit {
-    double t, u, v; /* as in mesh_hit (geometry/hierarchy.h); t is infinite for a miss */
-    int64_t face;   /* mesh_face_number (geometry/instance_set.h); FACE_NONE for a miss */
+    double t, u, v; /* as in mesh_hit (geometry/hierarchy/hierarchy.h); t is infinite for a miss */
+    int64_t face;   /* mesh_face_number (geometry/regions/instance_set.h); FACE_NONE for a miss */
     int facing;
 } instance_hit;
 
@@ -69,7 +68,7 @@ typedef struct mesh_scratch {
     query_counts *counts; /* the caller's; NULL: queries are not counted */
 } mesh_scratch;
 
-/* The most segments of a batch with analytic solids alone. Rays through many meshes may have more: a full list is
+/* The most segments of a batch with analytic solids only. Rays through many meshes may have more: a full list is
  * passed to `full`, which empties it. */
 enum { SEGMENTS_MAX = BATCH * (2 * PRIMITIVES_MAX + 2) };
 
@@ -102,7 +101,7 @@ typedef struct ray_crossings {
     ray_crossing crossings[CROSSINGS_MAX];
 } ray_crossings;
 
-/* Per-column state of the search in a solid tree (geometry/solid_tree.h). */
+/* Per-column state of the search in a solid tree (geometry/regions/solid_tree.h). */
 typedef struct tree_columns {
     uint64_t start[ROW];              /* by ray: the tree's primitives that contain its start */
     double from[ROW];                 /* the t up to which a column has been traced; -infinity at first */
@@ -110,6 +109,22 @@ typedef struct tree_columns {
     uint64_t before[ROW], after[ROW]; /* those just before and just after the crossing */
     bool simple[ROW]; /* the crossing itself is the only change of the tree's primitives near it, or none is */
 } tree_columns;
+
+/* A solid view: the few solids of a large scene that any ray of a batch may meet, as a scene geometry of their own with
+ * other numbers, in which all primitives are direct. For coherent batches it is faster to find these solids once and to
+ * test all rays against each of them, eight at a time, than to search the solid tree for every ray. It borrows the
+ * outer geometry. */
+enum { VIEW_PRIMITIVES_MAX = 24 }; /* with more the search for every ray was measured to be faster */
+
+typedef struct solid_view {
+    const scene_geometry *of; /* the whole scene */
+    scene_geometry inner;     /* its arrays are those below */
+    primitive primitives[VIEW_PRIMITIVES_MAX];
+    region regions[VIEW_PRIMITIVES_MAX + 1];
+    int direct_regions[VIEW_PRIMITIVES_MAX];
+    int outer_primitive[VIEW_PRIMITIVES_MAX];  /* by primitive */
+    int outer_region[VIEW_PRIMITIVES_MAX + 1]; /* by priority index */
+} solid_view;
 
 /* Intervals [in, out] by row and ray, and values derived from them. Apart from the segments and crossings, nothing is
  * kept between calls. */
@@ -152,7 +167,7 @@ typedef struct mesh_points {
 typedef struct geometry_kernels {
     /* The nearest interface of every ray. */
     void (*nearest)(const scene_geometry *a, const ray_batch *rays, ray_scratch *scratch, hit_batch *hits);
-    /* The share of light, 0..1, that arrives from the other end (t = 1). With solid_shadows any interface blocks. */
+    /* The fraction of light, 0..1, that arrives from the other end (t = 1). With solid_shadows any interface blocks. */
     void (*shadow)(const scene_geometry *a, const ray_batch *rays, int solid_shadows, ray_scratch *scratch,
                    double *transmitted);
     /* The points where rays hit a primitive at t; all rays hit it. Here rays->inside is the set just

@@ -5,14 +5,14 @@
  * (ray_scratch), in order. The entries after its own in the list of primitives reserve these rows and hold nothing
  * else; their bits are never set in a ray's set.
  *
- * Where a scene has many bounded solids, a hierarchy finds those that a ray may meet (geometry/solid_tree.h); the other
- * primitives are direct: every batch of rays is tested against each of them.
+ * Where a scene has many bounded solids, a hierarchy finds those that a ray may meet (geometry/regions/solid_tree.h);
+ * the other primitives are direct: every batch of rays is tested against each of them.
  *
  * The medium at a point is that of the containing region with the highest priority index (0: the surrounding medium). A
  * ray carries the set of primitives that contain it: with one bit each if all are direct, otherwise as
- * geometry/set_table.h describes. A closed mesh is a primitive too, though not convex; an open mesh is an open surface
- * and contains no points. An interface is a point of the ray where the medium changes: a boundary that a region of
- * higher priority hides, or that leads into an equal medium, is not an interface (Schmidt and Budge, "Simple Nested
+ * geometry/regions/set_table.h describes. A closed mesh is a primitive too, though not convex; an open mesh is an open
+ * surface and contains no points. An interface is a point of the ray where the medium changes: a boundary that a region
+ * of higher priority hides, or that leads into an equal medium, is not an interface (Schmidt and Budge, "Simple Nested
  * Dielectrics in Ray Traced Images", JGT 7(2), 2002).
  *
  * Ownership: scene_geometry_build creates, scene_geometry_destroy frees; kernels borrow. The geometry is independent
@@ -67,7 +67,7 @@ typedef struct region {
     int outside, hollow; /* primitives; hollow = -1 for none */
     int64_t medium;      /* equal numbers are equal media */
     bool opaque;
-    double shadow_transmittance; /* share of the light that a shadow ray keeps at each interface; 0 when opaque */
+    double shadow_transmittance; /* fraction of the light that a shadow ray keeps at each interface; 0 if opaque */
     /* The same by material slot, for a mesh whose faces differ; shadow_transmittance is then the least. Borrowed, or
      * NULL. */
     const double *face_shadow_transmittance;
@@ -100,7 +100,7 @@ typedef struct scene_geometry {
     int surface_count;
 } scene_geometry;
 
-/* Can a region by itself reduce the light along a shadow ray? With solid_shadows every region does. */
+/* Whether a region reduces the light along a shadow ray. With solid_shadows every region does. */
 static inline bool region_casts_shadow(const region *b, bool solid_shadows)
 {
     return b->opaque || solid_shadows || b->shadow_transmittance < 1.0 || b->attenuates || b->reflects;
@@ -137,10 +137,10 @@ void scene_geometry_surroundings_absorb(scene_geometry *a);
 /* The set of primitives that contain a point, by the primitives' own definitions (surfaces included). */
 uint64_t scene_geometry_inside(const scene_geometry *a, vec3 point);
 
-/* Is the primitive in the set? False for -1. */
+/* Whether the primitive is in the set; false for -1. */
 bool scene_geometry_set_has(const scene_geometry *a, uint64_t set, int p);
 
-/* Was there no memory for a set of this geometry? What was traced since is then wrong. */
+/* Whether memory ran out for a set of this geometry. What was rendered since is then wrong. */
 bool scene_geometry_failed(const scene_geometry *a);
 
 /* The priority index of the region that owns the interface between two media: an opaque region if either is opaque (the

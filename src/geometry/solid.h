@@ -10,7 +10,7 @@
 
 #include "base/status.h"
 #include "base/vec3.h"
-#include "geometry/mesh.h"
+#include "geometry/mesh/mesh.h"
 #include <stdbool.h>
 
 /* In order of introduction: hashes of studies contain the number of a kind, so a new kind goes last. */
@@ -58,7 +58,7 @@ const struct shape_rule *shape_of(const solid_shape *shape);
 /* Checks constraints between parameters: inner_radius < radius, floor < height. */
 status solid_shape_check(const solid_shape *shape, diagnostic *why);
 
-/* Does the closed solid contain the point, by its definition? For tests and hints. Always false for a mesh. */
+/* Whether the closed solid contains the point, by its definition. For tests and hints. Always false for a mesh. */
 bool solid_shape_contains(const solid_shape *shape, vec3 point);
 
 /* The rotation matrix of rotation_deg: local to world. A positive angle takes y to z about x, z to x about y, x to y

@@ -31,8 +31,6 @@ typedef struct flat_mesh {
     unsigned material_count, materials[256]; /* by slot: index into the scene's materials */
 } flat_mesh;
 
-/* ---- join.c ---- */
-
 /* A hash table of the vertices of flat, by the bits of their position, normal and texture coordinates; 0 for what they
  * lack, and never -0. join_vertex finds the vertex with these numbers or adds it. */
 typedef struct joiner {

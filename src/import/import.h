@@ -28,16 +28,15 @@ typedef struct file_access {
     bool outside;       /* it is not below the root */
 } file_access;
 
+status no_memory_for(const request *req, diagnostic *why);
 void files_prepare(file_access *access, const request *req);
 /* Opens the mesh file itself; NULL if that fails. */
 FILE *files_open(const request *req);
 /* Checks that the mesh file is a regular file and not empty. */
 status files_check(const request *req, diagnostic *why);
 
-/* ---- whole.c ---- */
-
 /* Checks that a PLY or STL file has the length that its header implies, and a glTF file the form of its ending. */
-status check_whole(const request *req, diagnostic *why);
+status files_check_complete(const request *req, diagnostic *why);
 
 /* ---- read.c ---- */
 
@@ -45,9 +44,6 @@ status check_whole(const request *req, diagnostic *why);
 status read_scene(const request *req, const struct aiScene **out, diagnostic *why);
 /* The same for a text in place of the mesh file's; NULL: it cannot be read. */
 const struct aiScene *read_scene_text(const request *req, const char *text, size_t length);
-status no_memory_for(const request *req, diagnostic *why);
-
-/* ---- flatten.c ---- */
 
 status flatten(const request *req, const struct aiScene *scene, flat_mesh *flat, diagnostic *why);
 

@@ -52,19 +52,12 @@ typedef struct obj_file {
 /* Parses the lines of the part; each must end in \n. */
 void obj_parse(obj_part *part);
 
-/* ---- obj_number.c ---- */
-
 /* Reads a decimal number and moves *at past it. The float is that of assimp 5's fast_atoreal_move: the integer and the
  * fraction of at most 15 digits are rounded one after the other. For numbers below 1 in magnitude that is the nearest
  * float, up to double rounding; for others it may be the next one. False: another form. */
 bool obj_number(const char **at, float *number);
 /* Reads an index from 1 to 999999999. */
 bool obj_index(const char **at, uint32_t *index);
-
-/* ---- obj_parts.c ---- */
-
-/* Parses the file. False: it is not plain, or out of memory; what was allocated remains. */
-bool obj_load(const request *req, obj_file *f);
 
 /* ---- obj.c ---- */
 

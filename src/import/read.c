@@ -1,20 +1,16 @@
-/* Reading of a mesh file with assimp, and the explanation of its errors. */
-#include "import/import.h"
-
+/* Reading of a mesh file with assimp, and its scene as one flat mesh. */
 #include "base/file.h"
+#include "import/import.h"
 #include <assimp/cimport.h>
 #include <assimp/postprocess.h>
 #include <jansson.h>
+#include <stdlib.h>
 #include <string.h>
 
-/* Equal vertices are joined in join.c: assimp's own step also joins vertices that differ by up to 1e-5. */
-enum { STEPS = aiProcess_ValidateDataStructure | aiProcess_Triangulate };
+/* --- reading, and the explanation of errors --- */
 
-status no_memory_for(const request *req, diagnostic *why)
-{
-    return diagnose_at(why, req->path, STATUS_BAD_INPUT, "use a mesh of less detail, if the file is complete",
-                       "the file requires more memory than the limit of %llu MiB", (unsigned long long)req->memory_mib);
-}
+/* Equal vertices are joined in flat_mesh.c: assimp's own step also joins vertices that differ by up to 1e-5. */
+enum { STEPS = aiProcess_ValidateDataStructure | aiProcess_Triangulate };
 
 /* Reports the position of a JSON error, which assimp does not. True if the file has one. */
 static bool locate_json(const request *req, diagnostic *why)
@@ -63,7 +59,7 @@ status read_scene(const request *req, const struct aiScene **out, diagnostic *wh
     if (req->kind == FILE_UNKNOWN)
         return diagnose(why, STATUS_BAD_INPUT, "use a file that ends in .obj, .ply, .stl, .gltf or .glb",
                         "unknown mesh format");
-    TRY(check_whole(req, why));
+    TRY(files_check_complete(req, why));
     files_prepare(&access, req);
     const struct aiScene *scene = aiImportFileEx(req->path, STEPS, &access.io);
     if (!scene || access.missing[0]) {
@@ -83,4 +79,229 @@ const struct aiScene *read_scene_text(const request *req, const char *text, size
     access.text_length = length;
     const struct aiScene *scene = aiImportFileEx(req->path, STEPS, &access.io);
     return access.missing[0] ? NULL : scene;
+}
+
+/* --- flattening ---
+ *
+ * Every mesh is transformed to world coordinates, in double precision. A mesh without a transform keeps the exact
+ * numbers of the file. */
+
+enum { DEPTH_MAX = 1000 }; /* nesting of nodes */
+
+typedef struct affine {
+    double m[3][4];
+} affine;
+
+typedef struct walk {
+    const request *req;
+    const struct aiScene *scene;
+    flat_mesh *flat;
+    joiner join;
+    uint64_t triangles;      /* counted by the first traversal */
+    uint16_t slot_of[65536]; /* by material: slot + 1, or 0 if unused */
+    diagnostic *why;
+    status (*visit)(struct walk *w, const struct aiMesh *mesh, const affine *place);
+} walk;
+
+static affine compose(const affine *a, const struct aiMatrix4x4 *b)
+{
+    double c[4][4] = {
+        {b->a1, b->a2, b->a3, b->a4}, {b->b1, b->b2, b->b3, b->b4}, {b->c1, b->c2, b->c3, b->c4}, {0, 0, 0, 1}};
+    affine product;
+    for (int row = 0; row < 3; row++) {
+        for (int column = 0; column < 4; column++) {
+            double sum = 0;
+            for (int k = 0; k < 4; k++)
+                sum += a->m[row][k] * c[k][column];
+            product.m[row][column] = sum;
+        }
+    }
+    return product;
+}
+
+static status visit_node(walk *w, const struct aiNode *node, const affine *parent, int depth)
+{
+    if (depth > DEPTH_MAX)
+        return diagnose(w->why, STATUS_BAD_INPUT, "flatten the hierarchy in the program that made the file",
+                        "nodes are nested more than %d deep", DEPTH_MAX);
+    affine place = compose(parent, &node->mTransformation);
+    for (unsigned i = 0; i < node->mNumMeshes; i++)
+        TRY(w->visit(w, w->scene->mMeshes[node->mMeshes[i]], &place));
+    for (unsigned i = 0; i < node->mNumChildren; i++)
+        TRY(visit_node(w, node->mChildren[i], &place, depth + 1));
+    return STATUS_OK;
+}
+
+static status visit_all(walk *w, status (*visit)(walk *, const struct aiMesh *, const affine *))
+{
+    static const affine identity = {{{1, 0, 0, 0}, {0, 1, 0, 0}, {0, 0, 1, 0}}};
+    w->visit = visit;
+    return visit_node(w, w->scene->mRootNode, &identity, 0);
+}
+
+/* ---- first traversal: count triangles, find materials and attributes ---- */
+
+static status count_mesh(walk *w, const struct aiMesh *mesh, const affine *place)
+{
+    (void)place;
+    uint64_t before = w->triangles;
+    for (unsigned i = 0; i < mesh->mNumFaces; i++)
+        w->triangles += mesh->mFaces[i].mNumIndices == 3;
+    if (w->triangles > w->req->triangles)
+        return diagnose(w->why, STATUS_BAD_INPUT, "use a mesh of less detail", "more triangles than the limit of %llu",
+                        (unsigned long long)w->req->triangles);
+    if (w->triangles == before)
+        return STATUS_OK;
+    if (mesh->mMaterialIndex >= w->scene->mNumMaterials ||
+        mesh->mMaterialIndex >= sizeof w->slot_of / sizeof *w->slot_of) {
+        return diagnose(w->why, STATUS_BAD_INPUT, "repair the file or export it again",
+                        "a part refers to a missing material");
+    }
+    w->slot_of[mesh->mMaterialIndex] = 1;
+    /* The normals of an STL file are those of the facets, which follow from the triangles; with them no two facets
+     * would share a vertex. */
+    w->flat->with_normals |= mesh->mNormals != NULL && w->req->kind != FILE_STL;
+    w->flat->with_uvs |= mesh->mTextureCoords[0] != NULL;
+    return STATUS_OK;
+}
+
+static status number_slots(walk *w)
+{
+    for (unsigned i = 0; i < sizeof w->slot_of / sizeof *w->slot_of; i++) {
+        if (w->slot_of[i]) {
+            if (w->flat->material_count == 256)
+                return diagnose(w->why, STATUS_BAD_INPUT, "merge equal materials",
+                                "more than 256 materials are in use");
+            w->flat->materials[w->flat->material_count++] = i;
+            w->slot_of[i] = (uint16_t)w->flat->material_count;
+        }
+    }
+    return STATUS_OK;
+}
+
+/* ---- second traversal: copy vertices and triangles ---- */
+
+static bool is_identity(const affine *a)
+{
+    static const affine identity = {{{1, 0, 0, 0}, {0, 1, 0, 0}, {0, 0, 1, 0}}};
+    return memcmp(a, &identity, sizeof identity) == 0;
+}
+
+/* The transform of normals: the inverse transpose, up to a positive factor. The inverse transpose is the matrix of
+ * cofactors divided by the determinant, of which only the sign matters. */
+static affine normal_transform(const affine *a, double *determinant)
+{
+    affine c = {0};
+    for (int row = 0; row < 3; row++) {
+        int r1 = (row + 1) % 3, r2 = (row + 2) % 3;
+        for (int column = 0; column < 3; column++) {
+            int c1 = (column + 1) % 3, c2 = (column + 2) % 3;
+            c.m[row][column] = a->m[r1][c1] * a->m[r2][c2] - a->m[r1][c2] * a->m[r2][c1];
+        }
+    }
+    *determinant = a->m[0][0] * c.m[0][0] + a->m[0][1] * c.m[0][1] + a->m[0][2] * c.m[0][2];
+    for (int i = 0; i < 9 && *determinant < 0; i++)
+        c.m[i / 3][i % 3] = -c.m[i / 3][i % 3];
+    return c;
+}
+
+static void apply(const affine *a, struct aiVector3D v, double to[3])
+{
+    for (int row = 0; row < 3; row++)
+        to[row] = a->m[row][0] * (double)v.x + a->m[row][1] * (double)v.y + a->m[row][2] * (double)v.z + a->m[row][3];
+}
+
+typedef struct placed {
+    affine place, turn;
+    bool identity, mirrored;
+} placed;
+
+static void gather(const walk *w, const struct aiMesh *mesh, const placed *at, unsigned i, double numbers[8])
+{
+    memset(numbers, 0, 8 * sizeof *numbers);
+    struct aiVector3D p = mesh->mVertices[i];
+    memcpy(numbers, (double[3]){p.x, p.y, p.z}, 3 * sizeof *numbers);
+    if (!at->identity)
+        apply(&at->place, p, numbers);
+    if (w->flat->with_normals && mesh->mNormals) {
+        struct aiVector3D n = mesh->mNormals[i];
+        memcpy(numbers + 3, (double[3]){n.x, n.y, n.z}, 3 * sizeof *numbers);
+        if (!at->identity)
+            apply(&at->turn, n, numbers + 3);
+    }
+    if (mesh->mTextureCoords[0]) {
+        numbers[6] = (double)mesh->mTextureCoords[0][i].x;
+        numbers[7] = (double)mesh->mTextureCoords[0][i].y;
+    }
+    for (int k = 0; k < 8; k++)
+        numbers[k] += 0.0; /* -0 becomes 0, so that vertices with either are joined */
+}
+
+/* Joins the vertices that a triangle uses; index[i] is set to the new index of vertex i. */
+static status take_vertices(walk *w, const struct aiMesh *mesh, const placed *at, uint32_t *index)
+{
+    enum { UNUSED = 0, USED = 1 };
+    for (unsigned f = 0; f < mesh->mNumFaces; f++) {
+        const struct aiFace *face = &mesh->mFaces[f];
+        for (unsigned k = 0; face->mNumIndices == 3 && k < 3; k++) {
+            if (face->mIndices[k] >= mesh->mNumVertices)
+                return diagnose(w->why, STATUS_BAD_INPUT, "repair the file or export it again",
+                                "a triangle refers to vertex %u of %u", face->mIndices[k], mesh->mNumVertices);
+            index[face->mIndices[k]] = USED;
+        }
+    }
+    for (unsigned i = 0; i < mesh->mNumVertices; i++) {
+        double numbers[8];
+        if (index[i] == UNUSED)
+            continue;
+        gather(w, mesh, at, i, numbers);
+        switch (join_vertex(&w->join, w->flat, w->req->vertices, numbers, join_hash(w->flat, numbers), &index[i])) {
+        case JOINED: break;
+        case JOIN_NO_MEMORY: return no_memory_for(w->req, w->why);
+        case JOIN_TOO_MANY:
+            return diagnose(w->why, STATUS_BAD_INPUT, "use a mesh of less detail",
+                            "more vertices than the limit of %llu", (unsigned long long)w->req->vertices);
+        }
+    }
+    return STATUS_OK;
+}
+
+static status take_mesh(walk *w, const struct aiMesh *mesh, const affine *place)
+{
+    double determinant;
+    placed at = {.place = *place, .turn = normal_transform(place, &determinant), .identity = is_identity(place)};
+    at.mirrored = determinant < 0;
+    uint32_t *index = calloc((size_t)mesh->mNumVertices + 1, sizeof *index);
+    if (!index)
+        return no_memory_for(w->req, w->why);
+    status code = take_vertices(w, mesh, &at, index);
+    for (unsigned f = 0; f < mesh->mNumFaces && code == STATUS_OK; f++) {
+        const unsigned *corner = mesh->mFaces[f].mIndices;
+        if (mesh->mFaces[f].mNumIndices == 3) {
+            size_t t = w->flat->triangle_count++;
+            w->flat->triangles[t][0] = index[corner[0]];
+            w->flat->triangles[t][1] =
+                index[corner[at.mirrored ? 2 : 1]]; /* a mirrored transform reverses the winding */
+            w->flat->triangles[t][2] = index[corner[at.mirrored ? 1 : 2]];
+            w->flat->slots[t] = (uint8_t)(w->slot_of[mesh->mMaterialIndex] - 1);
+        }
+    }
+    free(index);
+    return code;
+}
+
+status flatten(const request *req, const struct aiScene *scene, flat_mesh *flat, diagnostic *why)
+{
+    walk w = {.req = req, .scene = scene, .flat = flat, .why = why};
+    diagnostic_locate(why, req->path, 0, 0);
+    status code = scene->mRootNode ? visit_all(&w, count_mesh) : STATUS_OK;
+    if (code == STATUS_OK && w.triangles == 0)
+        code = diagnose(why, STATUS_BAD_INPUT, "points and lines are ignored; use a file with faces",
+                        "the file has no triangles");
+    THEN(code, number_slots(&w));
+    if (code != STATUS_OK)
+        return code;
+    flat->triangles = malloc((size_t)w.triangles * sizeof *flat->triangles);
+    flat->slots = malloc((size_t)w.triangles);
+    return flat->triangles && flat->slots ? visit_all(&w, take_mesh) : no_memory_for(req, why);
 }

@@ -1,6 +1,5 @@
 /* Facts of solids, meshes and textures that leave their parameters without effect. */
 #include "geometry/shapes/shape.h"
-#include "geometry/shared_faces.h"
 #include "lint/inert_facts.h"
 #include "scene/model/cover.h"
 #include "scene/model/scene.h"

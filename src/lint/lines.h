@@ -2,7 +2,7 @@
 #pragma once
 
 #include "geometry/scene_geometry.h"
-#include "geometry/instance_set.h"
+#include "geometry/regions/instance_set.h"
 
 typedef struct line {
     vec3 origin, direction;

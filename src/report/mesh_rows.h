@@ -2,7 +2,7 @@
  * Errors of the stream stay in the stream, where the caller checks them. */
 #pragma once
 
-#include "geometry/mesh.h"
+#include "geometry/mesh/mesh.h"
 #include <jansson.h>
 #include <stdio.h>
 

@@ -10,7 +10,7 @@
  * back the same. */
 #pragma once
 
-#include "geometry/mesh.h"
+#include "geometry/mesh/mesh.h"
 #include <stdio.h>
 
 typedef enum mesh_format { MESH_OBJ, MESH_BIN, MESH_PLY, MESH_FORMAT_COUNT } mesh_format;

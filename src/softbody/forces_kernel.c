@@ -3,8 +3,161 @@
  * The costly part of a spring's force, its amount over the distance, is computed once, for the spring's owner. Each
  * mass then sums the forces of its springs in the order of its slots, along the vectors to their other ends. */
 #include "base/isa.h"
-#include "softbody/columns.h"
 #include "softbody/softbody_private.h"
+
+/* --- vectors of four doubles, or of eight with AVX-512 ---
+ *
+ * Loads, products, and the transposition of masses' states, which are one cache line each. Transposing lines costs half
+ * as much as gathering numbers; eight lanes have twice as many springs in flight. */
+
+/* Without AVX compilers warn about passing wide vectors to functions; all functions here are inlined. */
+#pragma GCC diagnostic ignored "-Wpsabi"
+
+typedef double four __attribute__((vector_size(32)));
+#ifdef __AVX512F__
+enum { WIDE = 8 };
+#else
+enum { WIDE = 4 };
+#endif
+typedef double wide __attribute__((vector_size(8 * WIDE)));
+typedef int64_t wide_int __attribute__((vector_size(8 * WIDE)));
+
+typedef struct columns {
+    wide x, y, z;
+} columns;
+/* Positions and velocities. */
+typedef struct moving {
+    columns at, velocity;
+} moving;
+
+ALWAYS_INLINE wide load(const double *from)
+{
+    return *(const wide *)from;
+}
+
+ALWAYS_INLINE columns load_columns(vectors v, size_t i)
+{
+    return (columns){load(v.x + i), load(v.y + i), load(v.z + i)};
+}
+
+ALWAYS_INLINE void store_columns(vectors v, size_t i, columns a)
+{
+    *(wide *)(v.x + i) = a.x;
+    *(wide *)(v.y + i) = a.y;
+    *(wide *)(v.z + i) = a.z;
+}
+
+ALWAYS_INLINE columns minus(columns a, columns b)
+{
+    return (columns){a.x - b.x, a.y - b.y, a.z - b.z};
+}
+
+ALWAYS_INLINE wide dot(columns a, columns b)
+{
+    return a.x * b.x + a.y * b.y + a.z * b.z;
+}
+
+/* sum += k a */
+ALWAYS_INLINE void add_scaled(columns *sum, wide k, columns a)
+{
+    sum->x += k * a.x;
+    sum->y += k * a.y;
+    sum->z += k * a.z;
+}
+
+/* sum += a x b */
+ALWAYS_INLINE void add_cross(columns *sum, columns a, columns b)
+{
+    sum->x += a.y * b.z - a.z * b.y;
+    sum->y += a.z * b.x - a.x * b.z;
+    sum->z += a.x * b.y - a.y * b.x;
+}
+
+/* Numbers of two vectors: those at even places, those at odd places; pairs at even places, pairs at odd places. The
+ * first two interleave a and b, the last two keep them one behind the other. */
+#ifdef __AVX512F__
+#define EVEN(a, b) __builtin_shufflevector(a, b, 0, 8, 2, 10, 4, 12, 6, 14)
+#define ODD(a, b) __builtin_shufflevector(a, b, 1, 9, 3, 11, 5, 13, 7, 15)
+#define EVEN_PAIRS(a, b) __builtin_shufflevector(a, b, 0, 1, 4, 5, 8, 9, 12, 13)
+#define ODD_PAIRS(a, b) __builtin_shufflevector(a, b, 2, 3, 6, 7, 10, 11, 14, 15)
+#else
+#define EVEN(a, b) __builtin_shufflevector(a, b, 0, 4, 2, 6)
+#define ODD(a, b) __builtin_shufflevector(a, b, 1, 5, 3, 7)
+#define EVEN_PAIRS(a, b) __builtin_shufflevector(a, b, 0, 1, 4, 5)
+#define ODD_PAIRS(a, b) __builtin_shufflevector(a, b, 2, 3, 6, 7)
+#endif
+
+/* x, y and z of WIDE rows of four numbers. */
+ALWAYS_INLINE columns gather_three(const double *from, const int32_t *row)
+{
+#ifdef __AVX512F__
+    wide two[4]; /* rows 0 and 2, 1 and 3, 4 and 6, 5 and 7 */
+    for (int k = 0; k < 4; k++) {
+        const int first = k / 2 * 4 + k % 2;
+        two[k] = __builtin_shufflevector(*(const four *)(from + row[first]), *(const four *)(from + row[first + 2]), 0,
+                                         1, 2, 3, 4, 5, 6, 7);
+    }
+    const wide a = EVEN(two[0], two[1]), b = EVEN(two[2], two[3]); /* x x z z x x z z */
+    const wide c = ODD(two[0], two[1]), d = ODD(two[2], two[3]);
+#else
+    const wide a = EVEN(load(from + row[0]), load(from + row[1])), b = EVEN(load(from + row[2]), load(from + row[3]));
+    const wide c = ODD(load(from + row[0]), load(from + row[1])), d = ODD(load(from + row[2]), load(from + row[3]));
+#endif
+    return (columns){EVEN_PAIRS(a, b), EVEN_PAIRS(c, d), ODD_PAIRS(a, b)};
+}
+
+/* The states of WIDE masses. */
+ALWAYS_INLINE moving gather_state(const double *state, const int32_t *row)
+{
+#ifdef __AVX512F__
+    wide line[WIDE];
+    for (int lane = 0; lane < WIDE; lane++)
+        line[lane] = load(state + row[lane]);
+    const wide e0 = EVEN(line[0], line[1]), e1 = EVEN(line[2], line[3]), e2 = EVEN(line[4], line[5]),
+               e3 = EVEN(line[6], line[7]); /* x x z z u u w w */
+    const wide o0 = ODD(line[0], line[1]), o1 = ODD(line[2], line[3]), o2 = ODD(line[4], line[5]),
+               o3 = ODD(line[6], line[7]);                         /* y y 0 0 v v 0 0 */
+    const wide xu0 = EVEN_PAIRS(e0, e1), xu1 = EVEN_PAIRS(e2, e3); /* x x u u x x u u */
+    const wide zw0 = ODD_PAIRS(e0, e1), zw1 = ODD_PAIRS(e2, e3);
+    const wide yv0 = EVEN_PAIRS(o0, o1), yv1 = EVEN_PAIRS(o2, o3);
+    return (moving){{EVEN_PAIRS(xu0, xu1), EVEN_PAIRS(yv0, yv1), EVEN_PAIRS(zw0, zw1)},
+                    {ODD_PAIRS(xu0, xu1), ODD_PAIRS(yv0, yv1), ODD_PAIRS(zw0, zw1)}};
+#else
+    return (moving){gather_three(state, row), gather_three(state + STATE / 2, row)};
+#endif
+}
+
+ALWAYS_INLINE wide gather(const double *from, const uint32_t *place)
+{
+#ifdef __AVX512F__
+    return (wide){from[place[0]], from[place[1]], from[place[2]], from[place[3]],
+                  from[place[4]], from[place[5]], from[place[6]], from[place[7]]};
+#else
+    return (wide){from[place[0]], from[place[1]], from[place[2]], from[place[3]]};
+#endif
+}
+
+/* Writes vectors i .. i + 3 into one half of four states. */
+ALWAYS_INLINE void store_half(double *half, vectors v, size_t i)
+{
+#ifdef __AVX2__
+    const four x = *(const four *)(v.x + i), y = *(const four *)(v.y + i), z = *(const four *)(v.z + i), zero = {0.0};
+    const four xy = __builtin_shufflevector(x, y, 0, 4, 2, 6), xy_odd = __builtin_shufflevector(x, y, 1, 5, 3, 7);
+    const four z0 = __builtin_shufflevector(z, zero, 0, 4, 2, 6), z0_odd = __builtin_shufflevector(z, zero, 1, 5, 3, 7);
+    *(four *)half = __builtin_shufflevector(xy, z0, 0, 1, 4, 5);
+    *(four *)(half + STATE) = __builtin_shufflevector(xy_odd, z0_odd, 0, 1, 4, 5);
+    *(four *)(half + 2 * STATE) = __builtin_shufflevector(xy, z0, 2, 3, 6, 7);
+    *(four *)(half + 3 * STATE) = __builtin_shufflevector(xy_odd, z0_odd, 2, 3, 6, 7);
+#else
+    for (size_t lane = 0; lane < FOUR; lane++) {
+        half[STATE * lane] = v.x[i + lane];
+        half[STATE * lane + 1] = v.y[i + lane];
+        half[STATE * lane + 2] = v.z[i + lane];
+    }
+#endif
+}
+
+/* --- forces --- */
 
 static void pack(vectors at, vectors velocity, double *state, size_t begin, size_t end)
 {
@@ -43,9 +196,9 @@ static void pull(const spring_batches *t, const double *state, vectors at, vecto
  * relative to one mass, for the least cancellation. The sum is in the order of the masses. */
 ALWAYS_INLINE double add_volume(double sum, columns place, columns origin, columns gradient)
 {
-    const wide share = dot(minus(place, origin), gradient);
+    const wide part = dot(minus(place, origin), gradient);
     for (int lane = 0; lane < WIDE; lane++)
-        sum += share[lane];
+        sum += part[lane];
     return sum;
 }
 

@@ -159,12 +159,12 @@ static void stiffen_slot(double dt, FIXED3(p), const int32_t *__restrict other, 
         const double x = px[j] - px[i], y = py[j] - py[i], z = pz[j] - pz[i];
         const double square = x * x + y * y + z * z;
         const double inverse = 1.0 / sqrt(blend(mask_less(0.0, square), square, 1.0));
-        const double share = dt * dt * k[i] * greater(0.0, 1.0 - rest[i] * inverse);
+        const double k_across = dt * dt * k[i] * greater(0.0, 1.0 - rest[i] * inverse);
         nx[i] = x * inverse;
         ny[i] = y * inverse;
         nz[i] = z * inverse;
-        across[i] = share;
-        along[i] = dt * dt * k[i] + dt * kd[i] - share;
+        across[i] = k_across;
+        along[i] = dt * dt * k[i] + dt * kd[i] - k_across;
     }
 }
 
@@ -184,10 +184,10 @@ static void resist_slot(const int32_t *__restrict other, FIXED3(n), const double
     for (size_t i = begin; i < end; i++) {
         const int64_t j = other[i];
         const double x = vx[i] - vx[j], y = vy[i] - vy[j], z = vz[i] - vz[j];
-        const double share = along[i] * (x * nx[i] + y * ny[i] + z * nz[i]);
-        fx[i] += across[i] * x + share * nx[i];
-        fy[i] += across[i] * y + share * ny[i];
-        fz[i] += across[i] * z + share * nz[i];
+        const double radial = along[i] * (x * nx[i] + y * ny[i] + z * nz[i]);
+        fx[i] += across[i] * x + radial * nx[i];
+        fy[i] += across[i] * y + radial * ny[i];
+        fz[i] += across[i] * z + radial * nz[i];
     }
 }
 

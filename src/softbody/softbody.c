@@ -1,16 +1,58 @@
+/* A soft body: its settings, its memory, and its quantities: energies, momenta, volume, masses. */
+#include "softbody/softbody.h"
 #include "softbody/softbody_private.h"
-
 #include <stdlib.h>
 #include <string.h>
 
-double *softbody_array(size_t count)
+/* --- settings --- */
+
+static status refuse(diagnostic *why, const char *name, double value, const char *remedy)
 {
-    const size_t bytes = (count * sizeof(double) / 64 + 1) * 64;
-    double *array = aligned_alloc(64, bytes);
-    if (array)
-        memset(array, 0, bytes);
-    return array;
+    return diagnose(why, STATUS_BAD_INPUT, remedy, "%s is %g", name, value);
 }
+
+typedef struct bounded {
+    const char *name;
+    double value;
+} bounded;
+
+static status check_shape(const softbody_settings *s, diagnostic *why)
+{
+    const bounded above[] = {{"radius", s->radius}, {"mass_kg", s->mass_kg}, {"dt_s", s->dt_s}};
+    const double lowest[] = {1e-6, SOFTBODY_MASS_MIN_KG, SOFTBODY_DT_MIN_S};
+    for (size_t i = 0; i < sizeof above / sizeof above[0]; i++)
+        if (!(above[i].value >= lowest[i] && above[i].value <= 1e6))
+            return refuse(why, above[i].name, above[i].value,
+                          i == 2 ? "a number of at least 1e-9" : "a number of at least 1e-6");
+    const bounded least[] = {{"stiffness", s->stiffness}, {"bending", s->bending},   {"through", s->through},
+                             {"damping", s->damping},     {"pressure", s->pressure}, {"friction", s->friction}};
+    for (size_t i = 0; i < sizeof least / sizeof least[0]; i++)
+        if (!(least[i].value >= 0.0 && least[i].value <= 1e9))
+            return refuse(why, least[i].name, least[i].value, "give a number from 0 to 1e9");
+    if (!(s->restitution >= 0.0 && s->restitution <= 1.0))
+        return refuse(why, "restitution", s->restitution, "give a number from 0 to 1");
+    if (!(fabs(s->ground_y) < 1e9))
+        return refuse(why, "ground_y", s->ground_y, "give a finite number");
+    const vec3 all[] = {s->position, s->velocity, s->gravity};
+    for (size_t i = 0; i < sizeof all / sizeof all[0]; i++)
+        if (!(vec3_length(all[i]) < 1e9))
+            return diagnose(why, STATUS_BAD_INPUT, "finite numbers", "position, velocity or gravity is too large");
+    return STATUS_OK;
+}
+
+status softbody_check(const softbody_settings *s, diagnostic *why)
+{
+    if (s->level < 0 || s->level > SOFTBODY_LEVEL_MAX)
+        return diagnose(why, STATUS_BAD_INPUT, "a level from 0 to 7", "a slime of level %ld", (long)s->level);
+    if (s->threads < 1 || s->threads > 1024)
+        return diagnose(why, STATUS_BAD_INPUT, "1 to 1024", "%ld threads", (long)s->threads);
+    if (s->integrator < SOFTBODY_EULER || s->integrator > SOFTBODY_IMPLICIT)
+        return diagnose(why, STATUS_BAD_INPUT, "euler, verlet or implicit", "unknown integrator %ld",
+                        (long)s->integrator);
+    return check_shape(s, why);
+}
+
+/* --- creation --- */
 
 static bool make_vectors(vectors *v, size_t stride)
 {
@@ -253,4 +295,101 @@ void softbody_destroy(softbody *b)
     free(b->plays);
     free(b->mass_of);
     free(b);
+}
+
+/* --- quantities ---
+ *
+ * Independent of the code of the steps, so that it can check them. */
+
+static double elastic_energy(const softbody *b)
+{
+    double sum = 0.0;
+    for (size_t i = 0; i < b->spring_count; i++) {
+        const softbody_spring *s = &b->spring_list[i];
+        const double longer =
+            vec3_length(vec3_sub(vectors_at(b->at, s->end[1]), vectors_at(b->at, s->end[0]))) - s->rest;
+        sum += 0.5 * s->stiffness * longer * longer;
+    }
+    return sum;
+}
+
+/* Signed tetrahedra between the faces and a mass (divergence theorem). */
+static double volume_of(const softbody *b)
+{
+    const vec3 o = vectors_at(b->at, 0);
+    double sum = 0.0;
+    for (size_t i = 0; i < b->face_count; i++) {
+        const uint32_t *corner = b->faces[i].corner;
+        const vec3 p = vec3_sub(vectors_at(b->at, corner[0]), o), q = vec3_sub(vectors_at(b->at, corner[1]), o);
+        sum += vec3_dot(p, vec3_cross(q, vec3_sub(vectors_at(b->at, corner[2]), o)));
+    }
+    return sum / 6.0;
+}
+
+static void add_mass(const softbody *b, size_t i, softbody_quantities *out)
+{
+    const double m = b->mass_kg[i];
+    const vec3 p = vectors_at(b->at, i), v = vectors_at(b->velocity, i);
+    out->kinetic += 0.5 * m * vec3_dot(v, v);
+    out->gravity -= m * vec3_dot(b->set.gravity, p);
+    out->momentum = vec3_add(out->momentum, vec3_scale(v, m));
+    out->angular_momentum = vec3_add(out->angular_momentum, vec3_scale(vec3_cross(p, v), m));
+    out->center = vec3_add(out->center, vec3_scale(p, m));
+    out->speed_max = fmax(out->speed_max, vec3_length(v));
+    out->low = fmin(out->low, p.y);
+    out->high = fmax(out->high, p.y);
+    out->held += b->inverse_mass[i] == 0.0;
+}
+
+softbody_quantities softbody_measure(const softbody *b)
+{
+    softbody_quantities out = {.time_s = (double)b->steps * b->set.dt_s,
+                               .steps = b->steps,
+                               .substeps = b->substeps,
+                               .low = INFINITY,
+                               .high = -INFINITY};
+    double mass = 0.0;
+    for (size_t i = 0; i < b->net.count; i++) {
+        add_mass(b, i, &out);
+        mass += b->mass_kg[i];
+    }
+    out.center = vec3_scale(out.center, 1.0 / mass);
+    out.elastic = elastic_energy(b);
+    out.volume_at_rest = b->volume_at_rest;
+    out.volume = volume_of(b);
+    const double missing = out.volume_at_rest - out.volume;
+    out.compression = out.volume_at_rest > 0.0 ? 0.5 * b->set.pressure * missing * missing / out.volume_at_rest : 0.0;
+    return out;
+}
+
+size_t softbody_mass_count(const softbody *b)
+{
+    return b->net.count;
+}
+
+size_t softbody_spring_count(const softbody *b)
+{
+    return b->spring_count;
+}
+
+void softbody_positions(const softbody *b, vec3 *out)
+{
+    for (size_t i = 0; i < b->net.count; i++)
+        out[i] = vectors_at(b->at, i);
+}
+
+void softbody_velocities(const softbody *b, vec3 *out)
+{
+    for (size_t i = 0; i < b->net.count; i++)
+        out[i] = vectors_at(b->velocity, i);
+}
+
+void softbody_place(softbody *b, const vec3 *positions, const vec3 *velocities)
+{
+    for (size_t i = 0; i < b->net.count; i++) {
+        vectors_put(b->at, i, positions[i]);
+        vectors_put(b->velocity, i, velocities[i]);
+    }
+    b->has_acceleration = false;
+    memset(b->bad, 0, softbody_chunks(b) * sizeof *b->bad);
 }

@@ -11,7 +11,7 @@
  * all vertices in blocks of fixed size: bit-identical for any number of threads and any instruction set.
  *
  * Units: lengths in scene units, time in seconds, masses in kilograms; a force is kg scene units / s^2, called N here.
- * Ownership: *_create gives, *_destroy releases; scripts are borrowed. Errors: STATUS_BAD_INPUT for invalid settings
+ * Ownership: *_create creates, *_destroy frees; scripts are borrowed. Errors: STATUS_BAD_INPUT for invalid settings
  * and for a diverged simulation, with the step and the quantity; STATUS_FAILURE if memory runs out. No global state;
  * one thread at a time for each body. */
 #pragma once
@@ -19,9 +19,9 @@
 #include "base/isa.h"
 #include "base/status.h"
 #include "base/vec3.h"
-#include "geometry/mesh.h"
-#include "softbody/hand.h"
+#include "geometry/mesh/mesh.h"
 #include <stdbool.h>
+#include <stddef.h>
 #include <stdint.h>
 
 /* euler: the slime report's step (eqs. 2.6 and 2.7), v += a dt, then x += v dt, so x gets a dt^2 where the closed form
@@ -85,6 +85,48 @@ typedef struct softbody_net {
 status softbody_create_net(const softbody_net *net, const softbody_settings *s, isa level, softbody **out,
                            diagnostic *why);
 
+/* --- scripts of hands ---
+ *
+ * Recorded hands: what is grabbed, where it is moved, when it is released; playback is bit-identical. A script has a
+ * track for each hand. Ownership: hand_script_create creates an empty one, hand_script_add appends, hand_script_destroy
+ * releases. Times of a track do not decrease; between a grab and a release the hand moves linearly from key to key. */
+
+typedef enum hand_act { HAND_GRAB, HAND_MOVE, HAND_RELEASE } hand_act;
+
+typedef struct hand_key {
+    double time_s;
+    hand_act act;
+    vec3 origin, direction; /* of a grab: the grab ray in the frame of the body's mesh */
+    double reach;           /* of a grab: radius around the hit of the ray with the surface; scene units */
+    vec3 by;                /* of a move: displacement from the point of the grab at time_s */
+    long line, column;      /* location in its file */
+} hand_key;
+
+enum { HAND_NAME_MAX = 63 };
+typedef struct hand_track {
+    char name[HAND_NAME_MAX + 1];
+    hand_key *keys;
+    size_t key_count;
+} hand_track;
+
+typedef struct hand_script {
+    char *path; /* path of its file; "" for none */
+    hand_track *tracks;
+    size_t track_count;
+} hand_script;
+
+/* NULL if memory runs out. path is copied. */
+hand_script *hand_script_create(const char *path);
+void hand_script_destroy(hand_script *s); /* NULL is allowed */
+
+/* Appends a key to the hand's track, which is created with its first key. STATUS_BAD_INPUT: more hands than
+ * SOFTBODY_HANDS_MAX, a time before the previous key, a move or release of a hand without a grab, a grab of a hand that
+ * already holds something; the script is then unchanged. The diagnostic is not located. */
+status hand_script_add(hand_script *s, const char *hand, const hand_key *key, diagnostic *why);
+
+/* Time of the last key of all; 0 for none. */
+double hand_script_end_s(const hand_script *s);
+
 /* --- time --- */
 
 /* Attaches a script, borrowed for the life of the body, before the first step. NULL, at any time: detaches it, and its
@@ -112,7 +154,7 @@ void softbody_release(softbody *b, int hand);
 
 /* --- state --- */
 
-typedef struct softbody_account {
+typedef struct softbody_quantities {
     double time_s;
     uint64_t steps, substeps;
     double kinetic, elastic, compression,
@@ -123,8 +165,8 @@ typedef struct softbody_account {
     double speed_max;                /* of any mass */
     double low, high;                /* smallest and largest y of the masses */
     size_t held;                     /* masses in hands */
-} softbody_account;
-softbody_account softbody_measure(const softbody *b);
+} softbody_quantities;
+softbody_quantities softbody_measure(const softbody *b);
 
 size_t softbody_mass_count(const softbody *b);
 size_t softbody_spring_count(const softbody *b);

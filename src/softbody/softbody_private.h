@@ -81,7 +81,7 @@ typedef struct softbody_force_kernels {
     void (*pull)(const spring_batches *t, const double *state, vectors at, vectors velocity, size_t begin, size_t end);
     /* For masses begin .. end - 1 the sum of the springs' forces; and with faces six times the volume's gradient with
      * respect to the mass's position, which is twice the sum of the area vectors around it.
-     * Returns 18 times their share of the volume, 0 without faces. */
+     * Returns 18 times their part of the volume, 0 without faces. */
     double (*forces)(const springs *s, const double *pulls, const double *state, vectors at, vectors force,
                      vectors gradient, size_t begin, size_t end);
 } softbody_force_kernels;
@@ -156,9 +156,6 @@ static inline void vectors_put(vectors v, size_t i, vec3 a)
     v.z[i] = a.z;
 }
 
-/* Calls work for each chunk, on any worker. */
-typedef void chunk_work(softbody *b, size_t begin, size_t end, size_t chunk);
-void softbody_for_chunks(softbody *b, chunk_work *work);
 static inline size_t softbody_chunks(const softbody *b)
 {
     return (b->net.stride + CHUNK - 1) / CHUNK;
@@ -192,12 +189,6 @@ void batches_release(spring_batches *t);
 void softbody_find_forces(softbody *b, const vectors *velocity);
 /* Volume from the gradient of the last find_forces. */
 double softbody_volume_of_gradient(softbody *b);
-
-/* Backward Euler: the change of velocities in b->change; pushing is set. False if it does not converge. */
-bool softbody_solve(softbody *b);
-
-/* Sum of the chunks' sums, in order. */
-double softbody_sum(const softbody *b);
 
 /* Hands: velocities of the masses that they hold, for a step to their targets; execution of due keys before a step;
  * targets after it. */

@@ -1,10 +1,12 @@
-/* Time integration: forces, substeps, and detection of divergence. */
+/* Time integration: forces, the solver of backward Euler, substeps, and detection of divergence. */
 #include "base/cancel.h"
 #include "softbody/softbody_private.h"
-
 #include <math.h>
 #include <stdio.h>
 #include <string.h>
+
+/* The work of a step is done in chunks of masses, on any worker. */
+typedef void chunk_work(softbody *b, size_t begin, size_t end, size_t chunk);
 
 typedef struct chunk_task {
     softbody *b;
@@ -19,7 +21,7 @@ static void run_chunk(void *context, size_t chunk, int member)
     t->work(t->b, begin, begin + CHUNK < stride ? begin + CHUNK : stride, chunk);
 }
 
-void softbody_for_chunks(softbody *b, chunk_work *work)
+static void for_chunks(softbody *b, chunk_work *work)
 {
     chunk_task t = {b, work};
     const size_t count = softbody_chunks(b);
@@ -31,7 +33,7 @@ void softbody_for_chunks(softbody *b, chunk_work *work)
         run_chunk(&t, chunk, 0);
 }
 
-double softbody_sum(const softbody *b)
+static double sum_of_chunks(const softbody *b)
 {
     double sum = 0.0;
     for (size_t chunk = 0; chunk < softbody_chunks(b); chunk++)
@@ -59,19 +61,147 @@ static void find(softbody *b, size_t begin, size_t end, size_t chunk)
 
 double softbody_volume_of_gradient(softbody *b)
 {
-    return softbody_sum(b) / 18.0;
+    return sum_of_chunks(b) / 18.0;
 }
 
 void softbody_find_forces(softbody *b, const vectors *velocity)
 {
     b->damped = velocity;
-    softbody_for_chunks(b, pack);
-    softbody_for_chunks(b, pull);
-    softbody_for_chunks(b, find);
+    for_chunks(b, pack);
+    for_chunks(b, pull);
+    for_chunks(b, find);
     const double at_rest = b->volume_at_rest;
     b->pushing.pressure =
         at_rest > 0.0 ? b->set.pressure * (at_rest - softbody_volume_of_gradient(b)) / at_rest / 6.0 : 0.0;
 }
+
+/* --- backward Euler ---
+ *
+ * (M + dt D + dt^2 K) dv = dt (f + f_damping) - dt^2 K v, with K and D of the springs in their current state (Baraff
+ * and Witkin, 1998, equation 6), and for the pressure the term K V'V'^T / V0. With f for springs at rest, the right
+ * side is dt f minus the product of the matrix without M with v. Grabbed masses keep their velocities. Solved by
+ * conjugate gradients from dv = 0, so that dv has the momentum of the forces (Shewchuk, "An introduction to the
+ * conjugate gradient method", 1994). */
+
+enum { ITERATIONS_MAX = 10000 };
+#define TOLERANCE 1e-10 /* of the residual, relative to the first one */
+
+static void stiffen(softbody *b, size_t begin, size_t end, size_t chunk)
+{
+    (void)chunk;
+    b->kernels->stiffen(&b->net, b->solver_dt_s, b->at, b->stiff, begin, end);
+}
+
+/* Sum over a chunk of a . b. */
+static double dot(vectors a, vectors b, size_t begin, size_t end)
+{
+    double sum = 0.0;
+    for (size_t i = begin; i < end; i++)
+        sum += a.x[i] * b.x[i] + a.y[i] * b.y[i] + a.z[i] * b.z[i];
+    return sum;
+}
+
+static void press_velocity(softbody *b, size_t begin, size_t end, size_t chunk)
+{
+    b->sums[chunk] = dot(b->gradient, b->velocity, begin, end);
+}
+static void press_direction(softbody *b, size_t begin, size_t end, size_t chunk)
+{
+    b->sums[chunk] = dot(b->gradient, b->direction, begin, end);
+}
+
+/* Applies the pressure's stiffness to a field whose product with the gradient has just been summed. */
+static double pressing(const softbody *b)
+{
+    const double dt = b->solver_dt_s;
+    return b->volume_at_rest > 0.0 ? dt * dt * b->set.pressure / b->volume_at_rest / 36.0 * sum_of_chunks(b) : 0.0;
+}
+
+/* The right side, as the first residual and direction. */
+static void begin_chunk(softbody *b, size_t begin, size_t end, size_t chunk)
+{
+    const push *p = &b->pushing;
+    b->kernels->resist(&b->net, b->stiff, b->velocity, b->image, begin, end);
+    for (size_t i = begin; i < end; i++) {
+        const bool free = b->inverse_mass[i] > 0.0;
+        const vec3 g = vectors_at(b->gradient, i);
+        const vec3 force = vec3_add(vec3_add(vectors_at(b->force, i), vec3_scale(g, p->pressure)),
+                                    vec3_scale(p->gravity, b->mass_kg[i]));
+        const vec3 right =
+            vec3_sub(vec3_scale(force, p->dt_s), vec3_add(vectors_at(b->image, i), vec3_scale(g, b->pressing)));
+        vectors_put(b->residual, i, free ? right : vec3_make(0.0, 0.0, 0.0));
+        vectors_put(b->direction, i, free ? right : vec3_make(0.0, 0.0, 0.0));
+        vectors_put(b->change, i, vec3_make(0.0, 0.0, 0.0));
+    }
+    b->sums[chunk] = dot(b->residual, b->residual, begin, end);
+}
+
+/* The product of the matrix with the direction, and its scalar product with the direction. */
+static void apply_chunk(softbody *b, size_t begin, size_t end, size_t chunk)
+{
+    b->kernels->resist(&b->net, b->stiff, b->direction, b->image, begin, end);
+    for (size_t i = begin; i < end; i++) {
+        const vec3 sum =
+            vec3_add(vec3_add(vectors_at(b->image, i), vec3_scale(vectors_at(b->direction, i), b->mass_kg[i])),
+                     vec3_scale(vectors_at(b->gradient, i), b->pressing));
+        vectors_put(b->image, i, b->inverse_mass[i] > 0.0 ? sum : vec3_make(0.0, 0.0, 0.0));
+    }
+    b->sums[chunk] = dot(b->direction, b->image, begin, end);
+}
+
+static void walk_chunk(softbody *b, size_t begin, size_t end, size_t chunk)
+{
+    for (size_t i = begin; i < end; i++) {
+        vectors_put(b->change, i,
+                    vec3_add(vectors_at(b->change, i), vec3_scale(vectors_at(b->direction, i), b->factor)));
+        vectors_put(b->residual, i,
+                    vec3_sub(vectors_at(b->residual, i), vec3_scale(vectors_at(b->image, i), b->factor)));
+    }
+    b->sums[chunk] = dot(b->residual, b->residual, begin, end);
+}
+
+static void turn_chunk(softbody *b, size_t begin, size_t end, size_t chunk)
+{
+    (void)chunk;
+    for (size_t i = begin; i < end; i++)
+        vectors_put(b->direction, i,
+                    vec3_add(vectors_at(b->residual, i), vec3_scale(vectors_at(b->direction, i), b->factor)));
+}
+
+static void clear_chunk(softbody *b, size_t begin, size_t end, size_t chunk)
+{
+    (void)chunk;
+    for (size_t i = begin; i < end; i++)
+        vectors_put(b->change, i, vec3_make(0.0, 0.0, 0.0));
+}
+
+static bool solve(softbody *b)
+{
+    b->solver_dt_s = b->pushing.dt_s;
+    for_chunks(b, clear_chunk);
+    softbody_find_forces(b, &b->change); /* damping is part of the matrix */
+    for_chunks(b, stiffen);
+    for_chunks(b, press_velocity);
+    b->pressing = pressing(b);
+    for_chunks(b, begin_chunk);
+    double square = sum_of_chunks(b);
+    const double enough = TOLERANCE * TOLERANCE * square;
+    int left = ITERATIONS_MAX;
+    for (; left > 0 && square > enough; left--) {
+        for_chunks(b, press_direction);
+        b->pressing = pressing(b);
+        for_chunks(b, apply_chunk);
+        b->factor = square / sum_of_chunks(b);
+        for_chunks(b, walk_chunk);
+        const double before = square;
+        square = sum_of_chunks(b);
+        b->factor = square / before;
+        for_chunks(b, turn_chunk);
+    }
+    return left > 0 && square <= enough; /* false for NaN */
+}
+
+/* --- substeps --- */
 
 static void push_euler(softbody *b, size_t begin, size_t end, size_t chunk)
 {
@@ -103,7 +233,7 @@ static void find_acceleration(softbody *b)
     softbody_find_forces(b, &b->velocity);
     b->pushing.dt_s = 0.0;
     b->pushing.ground_y = -INFINITY;
-    softbody_for_chunks(b, push_kick);
+    for_chunks(b, push_kick);
     b->pushing = step;
     b->has_acceleration = true;
 }
@@ -112,9 +242,9 @@ static void substep_verlet(softbody *b)
 {
     if (!b->has_acceleration)
         find_acceleration(b);
-    softbody_for_chunks(b, push_drift);
+    for_chunks(b, push_drift);
     softbody_find_forces(b, &b->guess);
-    softbody_for_chunks(b, push_kick);
+    for_chunks(b, push_kick);
 }
 
 /* False if backward Euler does not converge. */
@@ -131,13 +261,13 @@ static bool substep(softbody *b, double dt_s)
     switch ((softbody_integrator)s->integrator) {
     case SOFTBODY_EULER:
         softbody_find_forces(b, &b->velocity);
-        softbody_for_chunks(b, push_euler);
+        for_chunks(b, push_euler);
         break;
     case SOFTBODY_VERLET: substep_verlet(b); break;
     case SOFTBODY_IMPLICIT:
-        if (!softbody_solve(b))
+        if (!solve(b))
             return false;
-        softbody_for_chunks(b, push_settle);
+        for_chunks(b, push_settle);
         break;
     }
     b->substeps++;
@@ -207,7 +337,7 @@ static size_t find_blown(const softbody *b, double *speed)
     return i;
 }
 
-/* The kernels check absolute speeds. A fast body as a whole has not diverged. */
+/* The kernels check absolute speeds. A fast body has not diverged. */
 static bool has_blown(softbody *b)
 {
     double speed;
@@ -267,7 +397,7 @@ status softbody_advance(softbody *b, double time_s, diagnostic *why)
 {
     const double steps = floor(time_s / b->set.dt_s + 0.5);
     while ((double)b->steps < steps) {
-        TRY(cancel_check(why)); /* between steps, so that the body may go on later */
+        TRY(cancel_check(why)); /* between steps, so that the motion can continue later */
         TRY(softbody_step(b, why));
     }
     return STATUS_OK;

@@ -42,7 +42,7 @@ static inline void trial_put(const trials *t, trial_name name, double measured, 
 }
 
 /* The settings at the origin, at rest, without gravity, floor or splitting. */
-softbody_settings trial_alone(const trials *t);
+softbody_settings trial_free_settings(const trials *t);
 
 /* For one of the toy's masses, and for two of them on a spring along an edge: omega^2 = k / (m / 2) (Goldstein,
  * "Classical mechanics", 3.1). */

@@ -52,7 +52,7 @@ static bool is_inside(const asphere_line *l, double t)
     return height_inside(l, t, &slope) >= 0.0;
 }
 
-/* Is it known that f changes its sign at most once between a and b, up to rounding? */
+/* Whether f is known to change its sign at most once between a and b, up to rounding. */
 static bool is_simple(const asphere_line *l, double a, double b)
 {
     const double half = 0.5 * (b - a), middle = 0.5 * (a + b), q_a = rho2_at(l, a), q_b = rho2_at(l, b);

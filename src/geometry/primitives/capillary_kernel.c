@@ -1,6 +1,6 @@
 /* A cylinder of liquid with a meniscus: x^2 + z^2 <= radius^2, y >= 0, below the surface y = h(x^2 + z^2) within the
- * tube's radius (geometry/capillary.h), and below the height of its contact with the wall outside that, where it is
- * within the wall. Faces: 0 side, 1 bottom, 2 the surface, 3 the level ring around it.
+ * tube's radius (capillary.h), and below the height of its contact with the wall outside that, where it is within the
+ * wall. Faces: 0 side, 1 bottom, 2 the surface, 3 the level ring around it.
  *
  * h(r) is convex for a contact angle below 90 degrees and concave above (the curvature of a capillary surface keeps its
  * sign, Finn, 2.3). So, along a line within the tube, f = y - h, or h - y, is concave: it is positive in one interval.
@@ -10,7 +10,7 @@
  *
  * For a ray that starts on the surface, f(0) = 0 is taken as exact: f = t times the difference quotient, whose terms do
  * not cancel. */
-#include "geometry/capillary.h"
+#include "geometry/primitives/capillary.h"
 #include "geometry/primitives/kind.h"
 
 enum { CAPILLARY_CHORDS = 2 };

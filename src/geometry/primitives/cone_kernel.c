@@ -54,7 +54,7 @@ DEFINE_SPANS(p->turned, span)
 ALWAYS_INLINE local_point point(const primitive *p, bool general, local_ray r, vec3 q, int64_t at, int64_t leaving)
 {
     (void)general;
-    const double slope = cone_slope(p), share = 1.0 / (1.0 + slope * slope);
+    const double slope = cone_slope(p), cosine2 = 1.0 / (1.0 + slope * slope);
     double inverse_y = inverse_of_component(r.dy);
     quadric_roots side = cone_side(p, r, mask_same(at, 0));
     slab_roots caps = slab_cross(r.y, inverse_y, 0.0, p->top, mask_same(at, 1), mask_same(at, 2));
@@ -62,7 +62,7 @@ ALWAYS_INLINE local_point point(const primitive *p, bool general, local_ray r, v
     int64_t is_top = leaving ^ mask_less(inverse_y, 0.0);
     double around = sqrt(q.x * q.x + q.z * q.z), inverse = inverse_of_component(around);
     double ux = q.x * inverse, uz = q.z * inverse, norm = 1.0 / sqrt(ux * ux + uz * uz + slope * slope);
-    double off = (around - (p->radius + slope * q.y)) * share, on = around - off;
+    double off = (around - (p->radius + slope * q.y)) * cosine2, on = around - off;
     double cap = blend(is_top, p->top, 0.0), up = blend(is_top, 1.0, -1.0);
     local_point l;
     l.point =

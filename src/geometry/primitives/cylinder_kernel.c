@@ -2,7 +2,8 @@
  * Faces: 0 side, 1 bottom, 2 top. */
 #include "geometry/primitives/kind.h"
 
-/* Is the general code needed? An upright elliptic cylinder uses it with the identity rotation, which changes no bit. */
+/* Whether the general code is needed. An upright elliptic cylinder uses it with the identity rotation, which changes no
+ * bit. */
 static bool is_general(const primitive *p)
 {
     return p->turned || p->m2 != 1.0;

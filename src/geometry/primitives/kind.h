@@ -10,7 +10,7 @@
  * check against quadruple precision. Pure; cannot fail. */
 #pragma once
 
-#include "geometry/kernels.h"
+#include "base/isa.h"
 #include "geometry/primitives/primitive.h"
 
 static inline interval interval_both(interval a, interval b)

@@ -1,12 +1,16 @@
-/* The shape cylinder: x^2 + m^2 z^2 <= radius^2, 0 <= y <= height, or below a meniscus (meniscus.h). Its position is
- * the centre of its base. Also the functions that a cup's outside shares with it. */
+/* The shapes cylinder and cup. */
 #include "geometry/shapes/meniscus.h"
 #include "geometry/shapes/parts.h"
+
+/* --- cylinder ---
+ *
+ * x^2 + m^2 z^2 <= radius^2, 0 <= y <= height, or below a meniscus (meniscus.h). Its position is the centre of its
+ * base. */
 
 PRIMITIVE_RULE(cylinder);
 PRIMITIVE_RULE(capillary);
 
-status cylinder_check(const solid_shape *shape, diagnostic *why)
+static status cylinder_check(const solid_shape *shape, diagnostic *why)
 {
     TRY(check_length(shape->radius, "radius", why));
     TRY(check_length(shape->height, "height", why));
@@ -14,7 +18,7 @@ status cylinder_check(const solid_shape *shape, diagnostic *why)
     return meniscus_check(shape, why);
 }
 
-bool cylinder_contains(const solid_shape *shape, vec3 p)
+static bool cylinder_contains(const solid_shape *shape, vec3 p)
 {
     const double m = shape->m, r = shape->radius;
     if (has_meniscus(shape))
@@ -22,7 +26,7 @@ bool cylinder_contains(const solid_shape *shape, vec3 p)
     return p.x * p.x + m * m * p.z * p.z <= r * r && p.y >= 0.0 && p.y <= shape->height;
 }
 
-primitive cylinder_placed(const solid_shape *shape, double radius, double bottom, double top)
+static primitive cylinder_placed(const solid_shape *shape, double radius, double bottom, double top)
 {
     primitive p = primitive_placed(shape, &cylinder_rule, shape->height + radius);
     p.radius = radius;
@@ -34,7 +38,7 @@ primitive cylinder_placed(const solid_shape *shape, double radius, double bottom
     return p;
 }
 
-static void primitives(const solid_shape *shape, primitive *out)
+static void cylinder_primitives(const solid_shape *shape, primitive *out)
 {
     out[0] = cylinder_placed(shape, shape->radius, 0.0, shape->height);
     if (!has_meniscus(shape))
@@ -43,25 +47,25 @@ static void primitives(const solid_shape *shape, primitive *out)
     out[0].extent += fmax(0.0, meniscus_high(shape) - shape->height);
 }
 
-static int more_rows(const solid_shape *shape)
+static int cylinder_more_rows(const solid_shape *shape)
 {
     return has_meniscus(shape) ? 1 : 0;
 }
 
-static bool flat(const solid_shape *shape, size_t i, vec3 *normal, vec3 *point)
+static bool cylinder_flat(const solid_shape *shape, size_t i, vec3 *normal, vec3 *point)
 {
     const bool is_level = !has_meniscus(shape) || meniscus_of(shape)->radius < shape->radius;
     return level_faces((const double[]){0.0, meniscus_wall(shape)}, is_level ? 2 : 1, i, normal, point);
 }
 
-shape_extent cylinder_extent(const solid_shape *shape)
+static shape_extent cylinder_extent(const solid_shape *shape)
 {
     const double r = shape->radius, deep = r / shape->m, high = meniscus_high(shape);
     return (shape_extent){{vec3_make(-r, 0.0, -deep), vec3_make(r, high, deep)},
                           hypot(r / fmin(shape->m, 1.0), 0.5 * high)};
 }
 
-double cylinder_farthest(const solid_shape *shape, vec3 d)
+static double cylinder_farthest(const solid_shape *shape, vec3 d)
 {
     const double whole = fmax(0.0, meniscus_wall(shape) * d.y) + shape->radius * hypot(d.x, d.z / shape->m);
     return has_meniscus(shape) ? fmax(whole, meniscus_farthest(shape, d)) : whole;
@@ -69,7 +73,7 @@ double cylinder_farthest(const solid_shape *shape, vec3 d)
 
 /* Exact around a point if the cylinder is round, and about an axis if it is round and upright along the axis; otherwise
  * an overestimate. */
-double cylinder_farthest_from(const placed_shape *placed, const round_frame *f)
+static double cylinder_farthest_from(const placed_shape *placed, const round_frame *f)
 {
     const solid_shape *s = &placed->shape;
     const double wide = s->radius * fmax(1.0, 1.0 / s->m), high = meniscus_high(s);
@@ -81,7 +85,7 @@ double cylinder_farthest_from(const placed_shape *placed, const round_frame *f)
     return fmax(round_distance(f, s->position), round_distance(f, top)) + wide * fmax(1.0, f->m);
 }
 
-bool cylinder_covers(const placed_shape *cover, const placed_shape *hidden)
+static bool cylinder_covers(const placed_shape *cover, const placed_shape *hidden)
 {
     const solid_shape *c = &cover->shape;
     const round_frame frame = {c->position, cover->turn, c->m, false};
@@ -89,19 +93,19 @@ bool cylinder_covers(const placed_shape *cover, const placed_shape *hidden)
            is_within(placed_farthest_from(hidden, &frame), c->radius, c->radius);
 }
 
-static double thickness(const solid_shape *shape)
+static double cylinder_thickness(const solid_shape *shape)
 {
     return fmin(meniscus_low(shape), 2.0 * fmin(shape->radius, shape->radius / shape->m));
 }
 
-void cylinder_fit(solid_shape *shape, double size)
+static void cylinder_fit(solid_shape *shape, double size)
 {
     shape->radius = 0.5 * size;
     shape->height = size;
     shape->capillary_length = shape->contact_radius = 0.0;
 }
 
-int cylinder_rings(const solid_shape *shape, shape_ring *out)
+static int outline_rings(const solid_shape *shape, shape_ring *out)
 {
     const double r = shape->radius;
     out[0] = (shape_ring){.x = r, .z = r / shape->m};
@@ -110,10 +114,10 @@ int cylinder_rings(const solid_shape *shape, shape_ring *out)
 }
 
 /* A meniscus is a piece of its own. */
-static int rings(const solid_shape *shape, shape_ring *out)
+static int cylinder_rings(const solid_shape *shape, shape_ring *out)
 {
     enum { CIRCLES = 9 };
-    const int whole = cylinder_rings(shape, out);
+    const int whole = outline_rings(shape, out);
     if (!has_meniscus(shape))
         return whole;
     profile_point surface[CIRCLES];
@@ -125,7 +129,7 @@ static int rings(const solid_shape *shape, shape_ring *out)
     return whole + CIRCLES;
 }
 
-static status tessellation(const solid_shape *shape, int part, mesh **out, diagnostic *why)
+static status cylinder_tessellation(const solid_shape *shape, int part, mesh **out, diagnostic *why)
 {
     (void)part;
     const double r = shape->radius, h = shape->height;
@@ -137,7 +141,7 @@ static status tessellation(const solid_shape *shape, int part, mesh **out, diagn
     return tessellate_lathe(profile, (size_t)(2 + ring + MENISCUS_POINTS), out, why);
 }
 
-vec3 cylinder_tessellation_scale(const solid_shape *shape)
+static vec3 cylinder_tessellation_scale(const solid_shape *shape)
 {
     return vec3_make(1.0, 1.0, 1.0 / shape->m);
 }
@@ -151,17 +155,135 @@ const shape_rule shape_cylinder = {
     .check = cylinder_check,
     .contains = cylinder_contains,
     .primitive_count = 1,
-    .more_rows = more_rows,
-    .primitives = primitives,
+    .more_rows = cylinder_more_rows,
+    .primitives = cylinder_primitives,
     .faces = {WORDS("side", "bottom", "top", "ring")},
-    .flat = flat,
+    .flat = cylinder_flat,
     .extent = cylinder_extent,
     .farthest = cylinder_farthest,
     .farthest_from = cylinder_farthest_from,
     .covers = cylinder_covers,
-    .thickness = thickness,
+    .thickness = cylinder_thickness,
     .fit = cylinder_fit,
-    .rings = rings,
-    .tessellation = tessellation,
+    .rings = cylinder_rings,
+    .tessellation = cylinder_tessellation,
+    .tessellation_scale = cylinder_tessellation_scale,
+};
+
+/* --- cup ---
+ *
+ * A cylinder of radius, m and height, minus a cylinder of inner_radius and the same m that starts at the height of the
+ * floor and is open at the top. Its position is the centre of its base. The ellipses are similar, so that the wall is
+ * radius - inner_radius thick along x, and 1 / m of that along z. */
+
+static status cup_check(const solid_shape *shape, diagnostic *why)
+{
+    status code = cylinder_check(shape, why);
+    THEN(code, check_length(shape->inner_radius, "inner_radius", why));
+    THEN(code, check_length(shape->floor, "floor", why));
+    if (code != STATUS_OK)
+        return code;
+    if (shape->inner_radius >= shape->radius)
+        return diagnose(why, STATUS_BAD_INPUT, "make inner_radius smaller than radius, or the cup has no wall",
+                        "inner_radius %g is not smaller than radius %g", shape->inner_radius, shape->radius);
+    if (shape->floor >= shape->height)
+        return diagnose(why, STATUS_BAD_INPUT, "make floor smaller than height, or the cup has no hollow",
+                        "floor %g is not smaller than height %g", shape->floor, shape->height);
+    return STATUS_OK;
+}
+
+/* The cup is a closed set, so its hollow is open: the hollow's own surface belongs to the cup. */
+static bool cup_contains(const solid_shape *shape, vec3 p)
+{
+    const double m = shape->m, r = shape->inner_radius;
+    return cylinder_contains(shape, p) && !(p.x * p.x + m * m * p.z * p.z < r * r && p.y > shape->floor);
+}
+
+static void cup_primitives(const solid_shape *shape, primitive *out)
+{
+    out[0] = cylinder_placed(shape, shape->radius, 0.0, shape->height);
+    out[1] = cylinder_placed(shape, shape->inner_radius, shape->floor, HUGE_VAL);
+}
+
+static bool cup_flat(const solid_shape *shape, size_t i, vec3 *normal, vec3 *point)
+{
+    return level_faces((const double[]){0.0, shape->height, shape->floor}, 3, i, normal, point);
+}
+
+/* Whether the hidden shape is outside the hollow: below the floor, or to one side of the hollow. */
+static bool avoids_hollow(const placed_shape *cover, const placed_shape *hidden)
+{
+    const solid_shape *cup = &cover->shape;
+    const vec3 up = placed_axis(&cover->turn, 1);
+    if (is_within(placed_farthest(hidden, up), vec3_dot(up, cup->position) + cup->floor, cup->height))
+        return true;
+    const vec3 local = mat3_apply_transposed(cover->turn, vec3_sub(hidden->shape.position, cup->position));
+    const double r = hypot(local.x, local.z);
+    if (r == 0.0)
+        return false;
+    const vec3 out = mat3_apply(cover->turn, vec3_make(local.x / r, 0.0, local.z / r));
+    const double hollow = cup->inner_radius * hypot(local.x / r, local.z / (r * cup->m));
+    return is_within(placed_farthest(hidden, vec3_scale(out, -1.0)), -vec3_dot(out, cup->position) - hollow,
+                     cup->radius);
+}
+
+static bool cup_covers(const placed_shape *cover, const placed_shape *hidden)
+{
+    return cylinder_covers(cover, hidden) && avoids_hollow(cover, hidden);
+}
+
+/* The thickness of the wall or of the floor. */
+static double cup_thickness(const solid_shape *shape)
+{
+    return fmin((shape->radius - shape->inner_radius) * fmin(1.0, 1.0 / shape->m), shape->floor);
+}
+
+static void cup_fit(solid_shape *shape, double size)
+{
+    cylinder_fit(shape, size);
+    shape->inner_radius = 0.9 * shape->radius;
+    shape->floor = 0.1 * size;
+}
+
+static int cup_rings(const solid_shape *shape, shape_ring *out)
+{
+    const double r = shape->inner_radius;
+    const int outside = outline_rings(shape, out);
+    out[outside] = (shape_ring){.part = 1, .y = shape->floor, .x = r, .z = r / shape->m};
+    out[outside + 1] = (shape_ring){.part = 1, .y = shape->height, .x = r, .z = r / shape->m};
+    return outside + 2;
+}
+
+/* Its outside, whose top is a ring; and the wall and floor of its hollow. */
+static status cup_tessellation(const solid_shape *shape, int part, mesh **out, diagnostic *why)
+{
+    const double r = shape->radius, inner = shape->inner_radius, low = shape->floor, h = shape->height;
+    const profile_point outside[4] = {{0.0, 0.0}, {r, 0.0}, {r, h}, {inner, h}};
+    const profile_point hollow[3] = {{0.0, low}, {inner, low}, {inner, h}};
+    return part == 0 ? tessellate_lathe(outside, 4, out, why) : tessellate_lathe(hollow, 3, out, why);
+}
+
+const shape_rule shape_cup = {
+    .word = "cup",
+    .meaning =
+        "a cylinder minus a cylinder of inner_radius that starts at the height of its floor and is open at the top; "
+        "its position is the centre of its base",
+    .parameters = WORDS("radius", "height", "m", "inner_radius", "floor"),
+    .hollow = true,
+    .curved = true,
+    .check = cup_check,
+    .contains = cup_contains,
+    .primitive_count = 2,
+    .primitives = cup_primitives,
+    .faces = {WORDS("outer side", "bottom", "rim"), WORDS("inner side", "floor", "rim")},
+    .flat = cup_flat,
+    .extent = cylinder_extent,
+    .farthest = cylinder_farthest,
+    .farthest_from = cylinder_farthest_from,
+    .covers = cup_covers,
+    .thickness = cup_thickness,
+    .fit = cup_fit,
+    .rings = cup_rings,
+    .tessellation = cup_tessellation,
     .tessellation_scale = cylinder_tessellation_scale,
 };

@@ -25,8 +25,8 @@ static status check_side(const solid_shape *s, int k, diagnostic *why)
     if (!isfinite(radius) || !isfinite(e.conic))
         return diagnose(why, STATUS_BAD_INPUT, "use finite numbers; a radius of 0 is a flat side",
                         "radius_%d or conic_%d is not finite", k + 1, k + 1);
-    const double share = e.aspheric ? sqrt(1.0 - ASPHERE_ROOT2_LEAST) : 1.0;
-    const double half = e.conic > -1.0 ? share * fabs(radius) / sqrt(1.0 + e.conic) : HUGE_VAL;
+    const double fraction = e.aspheric ? sqrt(1.0 - ASPHERE_ROOT2_LEAST) : 1.0;
+    const double half = e.conic > -1.0 ? fraction * fabs(radius) / sqrt(1.0 + e.conic) : HUGE_VAL;
     if (radius == 0.0 || s->diameter <= 2.0 * half)
         return STATUS_OK;
     char remedy[160];

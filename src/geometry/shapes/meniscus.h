@@ -1,15 +1,18 @@
 /* The meniscus of a cylinder of liquid: where it is on, the shape's top is the capillary surface that
- * geometry/capillary.h solves for. Pure; cannot fail. */
+ * geometry/primitives/capillary.h solves for. Pure; cannot fail. */
 #pragma once
 
-#include "geometry/capillary.h"
-#include "geometry/mesh_generators.h"
+#include "geometry/primitives/capillary.h"
+#include "geometry/mesh/mesh_generators.h"
 #include "geometry/shapes/shape.h"
 
-static inline bool has_meniscus(const solid_shape *shape)
-{
-    return shape->kind == SHAPE_CYLINDER && shape->capillary_length > 0.0 && shape->contact_angle_deg != 90.0;
-}
+/* radius, capillary_length: above 0, their quotient at most CAPILLARY_WIDEST; contact_angle_deg: within 1..179. The
+ * volume up to the surface is that up to y = height without it: the mean of u is 2 a^2 cos(contact angle) / radius, by
+ * the balance of the wall's force and the weight that it carries. */
+void capillary_solve(double radius, double capillary_length, double contact_angle_deg, double height,
+                     capillary_profile *out);
+
+bool has_meniscus(const solid_shape *shape);
 
 /* The surface of a shape that has one; valid until the thread's next call for another shape. */
 const capillary_profile *meniscus_of(const solid_shape *shape);

@@ -1,7 +1,21 @@
-/* Functions that several shapes share. */
+/* Functions that several shapes share, and the extents of placed shapes. */
+#include "base/elementary.h"
 #include "geometry/shapes/parts.h"
-
 #include <math.h>
+
+/* R = R_z R_y R_x: rotation about x comes first. R_x takes y towards z, R_y z towards x, R_z x towards y. */
+mat3 rotation_from_deg(vec3 rotation_deg)
+{
+    double sx, cx, sy, cy, sz, cz;
+    elementary_sincos_deg(rotation_deg.x, &sx, &cx);
+    elementary_sincos_deg(rotation_deg.y, &sy, &cy);
+    elementary_sincos_deg(rotation_deg.z, &sz, &cz);
+    mat3 r;
+    r.row[0] = vec3_make(cz * cy, cz * sy * sx - sz * cx, cz * sy * cx + sz * sx);
+    r.row[1] = vec3_make(sz * cy, sz * sy * sx + cz * cx, sz * sy * cx - cz * sx);
+    r.row[2] = vec3_make(-sy, cy * sx, cy * cx);
+    return r;
+}
 
 status check_length(double value, const char *name, diagnostic *why)
 {
@@ -36,4 +50,59 @@ bool level_faces(const double *heights, size_t count, size_t i, vec3 *normal, ve
     *normal = vec3_make(0.0, 1.0, 0.0);
     *point = vec3_make(0.0, i < count ? heights[i] : 0.0, 0.0);
     return i < count;
+}
+
+/* --- placed shapes --- */
+
+vec3 placed_axis(const mat3 *turn, int k)
+{
+    return mat3_apply(*turn, vec3_make(k == 0, k == 1, k == 2));
+}
+
+double placed_limit(const placed_shape *placed, vec3 direction)
+{
+    const solid_shape *shape = &placed->shape;
+    return vec3_dot(direction, shape->position) +
+           placed->rule->farthest(shape, mat3_apply_transposed(placed->turn, direction));
+}
+
+double placed_farthest(const placed_shape *placed, vec3 direction)
+{
+    return placed->rule->unbounded ? INFINITY : placed_limit(placed, direction);
+}
+
+double round_distance(const round_frame *f, vec3 point)
+{
+    const vec3 p = mat3_apply_transposed(f->turn, vec3_sub(point, f->origin));
+    return f->from_point ? vec3_length(p) : hypot(p.x, f->m * p.z);
+}
+
+static vec3 corner_of(bounds3 b, int i)
+{
+    return vec3_make(i & 1 ? b.high.x : b.low.x, i & 2 ? b.high.y : b.low.y, i & 4 ? b.high.z : b.low.z);
+}
+
+double placed_farthest_from(const placed_shape *placed, const round_frame *frame)
+{
+    const solid_shape *shape = &placed->shape;
+    const shape_rule *rule = placed->rule;
+    if (rule->unbounded)
+        return INFINITY;
+    if (rule->farthest_from)
+        return rule->farthest_from(placed, frame);
+    const bounds3 box = rule->extent(shape).box;
+    double most = -INFINITY;
+    for (int i = 0; i < 8; i++) {
+        const vec3 corner = mat3_apply(placed->turn, corner_of(box, i));
+        most = fmax(most, round_distance(frame, vec3_add(shape->position, corner)));
+    }
+    return most;
+}
+
+bool placed_is_between(const placed_shape *cover, const placed_shape *hidden, int k, double low, double high)
+{
+    const vec3 up = placed_axis(&cover->turn, k);
+    const double from = vec3_dot(up, cover->shape.position), length = high - low + fabs(from);
+    return is_within(placed_farthest(hidden, up), from + high, length) &&
+           is_within(placed_farthest(hidden, vec3_scale(up, -1.0)), -from - low, length);
 }

@@ -1,10 +1,10 @@
 /* Functions that several shapes share. Pure. */
 #pragma once
 
-#include "geometry/scene_geometry.h"
-#include "geometry/mesh_generators.h"
+#include "geometry/mesh/mesh_generators.h"
 #include "geometry/primitives/primitive.h"
-#include "geometry/shapes/placed.h"
+#include "geometry/scene_geometry.h"
+#include "geometry/shapes/shape.h"
 
 /* A NULL-terminated list of words. */
 #define WORDS(...) ((const char *const[]){__VA_ARGS__, NULL})
@@ -24,9 +24,6 @@ static inline double largest_of(double a, double b, double c)
 
 /* A primitive with the shape's position and rotation; rule: NULL for a mesh; reach: its extent from the position. */
 primitive primitive_placed(const solid_shape *shape, const primitive_rule *rule, double reach);
-/* The elliptic cylinder with the shape's m. */
-primitive cylinder_placed(const solid_shape *shape, double radius, double bottom, double top);
-
 static inline double least_of_three(vec3 v)
 {
     return fmin(v.x, fmin(v.y, v.z));
@@ -38,15 +35,17 @@ shape_extent extent_of_size(vec3 size);
 /* A surface of revolution about y, with sharp edges where the profile turns by more than 30 degrees. */
 status tessellate_lathe(const profile_point *profile, size_t count, mesh **out, diagnostic *why);
 
-/* The common checks of a cylinder and the outside of a cup: radius, height and m. */
-status cylinder_check(const solid_shape *shape, diagnostic *why);
-bool cylinder_contains(const solid_shape *shape, vec3 local);
-shape_extent cylinder_extent(const solid_shape *shape);
-double cylinder_farthest(const solid_shape *shape, vec3 direction);
-double cylinder_farthest_from(const placed_shape *placed, const round_frame *frame);
-bool cylinder_covers(const placed_shape *cover, const placed_shape *hidden);
-void cylinder_fit(solid_shape *shape, double size);
-int cylinder_rings(const solid_shape *shape, shape_ring *out);
-vec3 cylinder_tessellation_scale(const solid_shape *shape);
 /* Horizontal faces at these heights, for a rule's `flat`. */
 bool level_faces(const double *heights, size_t count, size_t i, vec3 *normal, vec3 *point);
+
+/* --- whether one placed shape covers another; lengths are compared up to rounding --- */
+
+#define PLACED_SLACK 1e-12 /* fraction of a length: rounding error of equal lengths */
+
+static inline bool is_within(double reach, double limit, double length)
+{
+    return reach <= limit + PLACED_SLACK * length;
+}
+
+/* Whether the hidden shape is between low and high along the cover's axis k. */
+bool placed_is_between(const placed_shape *cover, const placed_shape *hidden, int k, double low, double high);

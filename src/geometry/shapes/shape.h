@@ -29,10 +29,11 @@ typedef struct shape_ring {
     double from_deg;
 } shape_ring;
 
-/* A shape and its rotation matrix, local to world. */
+/* A shape, its rotation matrix, local to world, and its rule. */
 typedef struct placed_shape {
     solid_shape shape;
     mat3 turn;
+    const struct shape_rule *rule;
 } placed_shape;
 
 /* Distances from an axis along local y (x^2 + m^2 z^2), or from a point. */
@@ -59,7 +60,7 @@ typedef struct shape_rule {
 
     /* Checks for numbers that are invalid together, and for invalid lengths. NULL: nothing to check. */
     status (*check)(const solid_shape *shape, diagnostic *why);
-    /* Does the closed solid contain the local point? NULL: unknown. */
+    /* Whether the closed solid contains the local point. NULL: unknown. */
     bool (*contains)(const solid_shape *shape, vec3 local);
     /* Writes the primitives for the kernels, primitive_count of them; the second one is subtracted from the first. */
     int primitive_count;
@@ -78,7 +79,7 @@ typedef struct shape_rule {
     /* An upper bound of round_distance over the points of the shape. NULL: the caller uses the corners of its bounding
      * box. */
     double (*farthest_from)(const placed_shape *placed, const round_frame *frame);
-    /* Is `hidden` known to be entirely inside `cover`? NULL: never. */
+    /* Whether `hidden` is known to be entirely inside `cover`. NULL: never. */
     bool (*covers)(const placed_shape *cover, const placed_shape *hidden);
     /* Its least thickness. */
     double (*thickness)(const solid_shape *shape);
@@ -106,10 +107,27 @@ const char *shape_face_name(const shape_rule *rule, int64_t face);
 /* A point, as a solid that contains nothing else. */
 solid_shape shape_point(vec3 at);
 placed_shape shape_placed(const solid_shape *shape);
+/* A local axis (0 x, 1 y, 2 z) in the world. */
+vec3 placed_axis(const mat3 *turn, int k);
+
+/* The maximum of direction . p over all its points; INFINITY for an unbounded shape, and while its mesh is not
+ * loaded. */
+double placed_farthest(const placed_shape *placed, vec3 direction);
+/* The same, but finite for an unbounded shape in the direction of its surface normal. */
+double placed_limit(const placed_shape *placed, vec3 direction);
+
+double round_distance(const round_frame *frame, vec3 point);
+/* An upper bound of that distance over all its points. */
+double placed_farthest_from(const placed_shape *placed, const round_frame *frame);
+
 /* Its maximum along a local direction: as `farthest`, but for triangles that of their bounding box. */
 double shape_reach(const solid_shape *shape, vec3 direction);
 /* Its bounding box in the world (for a mesh, that of its local box); infinite for an unbounded shape. */
 bounds3 shape_world_box(const solid_shape *shape);
+
+/* False: no face of one coincides with part of a face of the other, flat with flat (in the same plane) or curved with
+ * curved. True: perhaps. Two meshes of many triangles are not compared. */
+bool solid_shapes_may_share_faces(const solid_shape *a, const solid_shape *b);
 
 /* The number of PRIMITIVES_MAX entries of a scene geometry that the shape uses. */
 static inline int shape_places(const solid_shape *shape)

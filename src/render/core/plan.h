@@ -3,7 +3,7 @@
  * allocates, plan_destroy releases; it borrows the scene's sky. */
 #pragma once
 
-#include "geometry/hierarchy.h"
+#include "geometry/hierarchy/hierarchy.h"
 #include "geometry/scene_geometry.h"
 #include "render/core/mesh_report.h"
 #include "render/core/path_sampling.h"

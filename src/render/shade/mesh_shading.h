@@ -1,7 +1,7 @@
 /* Shading of rays that hit meshes. Ownership: mesh_begin allocates the tracer's memory, mesh_end frees it. */
 #pragma once
 
-#include "geometry/instance_set.h"
+#include "geometry/regions/instance_set.h"
 #include "render/core/tracer.h"
 #include "render/shade/shade.h"
 

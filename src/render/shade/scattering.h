@@ -6,7 +6,7 @@
  * Ownership: scatter_plan_create allocates, free releases; flights belong to the tracer's media_work. */
 #pragma once
 
-#include "geometry/mesh.h"
+#include "geometry/mesh/mesh.h"
 #include "render/core/queue.h"
 #include "render/shade/sheets.h"
 #include "scene/model/open.h"

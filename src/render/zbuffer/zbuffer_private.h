@@ -6,7 +6,7 @@
  * rounded ends, and by the top-left rule no point on the edge is drawn twice or left out. */
 #pragma once
 
-#include "geometry/instance_set.h"
+#include "geometry/regions/instance_set.h"
 #include "render/zbuffer/zbuffer.h"
 #include <stdatomic.h>
 

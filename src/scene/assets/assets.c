@@ -19,7 +19,7 @@ void mesh_entry_unload(mesh_entry *m)
     face_materials_release(m->shading_materials);
     m->data = NULL;
     m->shading_materials = NULL;
-    m->account = (softbody_account){.steps = 0};
+    m->account = (softbody_quantities){.steps = 0};
     m->motion_s = 0.0;
 }
 

@@ -2,7 +2,7 @@
 
 #include "base/cancel.h"
 #include "base/random.h"
-#include "geometry/mesh_generators.h"
+#include "geometry/mesh/mesh_generators.h"
 #include "scene/model/face_materials.h"
 #include "scene/assets/mesh_file.h"
 #include <stdlib.h>

@@ -4,7 +4,7 @@
 #pragma once
 
 #include "base/status.h"
-#include "geometry/mesh.h"
+#include "geometry/mesh/mesh.h"
 #include <stdbool.h>
 #include <stddef.h>
 #include <stdint.h>

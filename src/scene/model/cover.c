@@ -1,5 +1,5 @@
 #include "scene/model/cover.h"
-#include "geometry/shapes/placed.h"
+#include "geometry/shapes/shape.h"
 #include "scene/model/camera.h"
 #include "scene/model/scene.h"
 

@@ -7,7 +7,7 @@
 #pragma once
 
 #include "softbody/softbody.h"
-#include "geometry/hierarchy.h"
+#include "geometry/hierarchy/hierarchy.h"
 #include "scene/model/open.h"
 
 typedef struct scene_motion scene_motion;

@@ -1,5 +1,5 @@
 /* Picking, grabbing and moving soft bodies with the pointer, for interactive front ends; scripted hands are in
- * softbody/hand.h.
+ * softbody/softbody.h.
  *
  * A solid shows the point x of its mesh at p + R (s x + c), with its position p, rotation R, scale s, and the offset c
  * of a copy. Rays and displacements in world coordinates are converted to the mesh's frame; distances along a ray, as

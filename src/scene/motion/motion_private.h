@@ -9,7 +9,7 @@
 typedef struct given_slime {
     double time_s;
     const mesh *data; /* one reference; NULL for none */
-    softbody_account account;
+    softbody_quantities account;
     double motion_s;
 } given_slime;
 

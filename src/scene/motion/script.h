@@ -12,7 +12,7 @@
  * column. */
 #pragma once
 
-#include "softbody/hand.h"
+#include "softbody/softbody.h"
 
 /* From a file below root (base/file.h; NULL: anywhere). */
 status script_read_below(const char *path, const char *root, hand_script **out, diagnostic *why);

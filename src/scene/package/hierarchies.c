@@ -1,5 +1,5 @@
 /* The hierarchies that the plan of a frame (render/core/plan.c) takes from the meshes. */
-#include "geometry/hierarchy.h"
+#include "geometry/hierarchy/hierarchy.h"
 #include "scene/model/integrators.h"
 #include "scene/model/scene.h"
 #include "scene/package/package.h"

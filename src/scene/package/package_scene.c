@@ -1,6 +1,6 @@
 /* The contents of a package: the scene's text, path and limits, and what is loaded. */
 #include "image/texture.h"
-#include "geometry/mesh_pack.h"
+#include "geometry/hierarchy/hierarchy.h"
 #include "scene/assets/assets.h"
 #include "scene/model/scene.h"
 #include "scene/package/package_parts.h"
@@ -22,10 +22,10 @@ typedef struct texture_record {
 
 typedef struct mesh_record {
     int64_t path_line, path_column, script_line, script_column, data;
-    softbody_account account;
+    softbody_quantities account;
     double motion_s;
 } mesh_record;
-_Static_assert(sizeof(softbody_account) == 22 * 8 && sizeof(mesh_record) == 28 * 8, "no padding");
+_Static_assert(sizeof(softbody_quantities) == 22 * 8 && sizeof(mesh_record) == 28 * 8, "no padding");
 
 static int64_t data_of_texture(const scene *s, size_t index)
 {

@@ -98,7 +98,7 @@ static bool is_quiet(const live *l)
     bool quiet = l->time_s >= scene_motion_script_end_s(l->motion);
     for (size_t i = 0; i < scene_motion_count(l->motion) && quiet; i++) {
         const softbody_settings *set = &entry_of(l, i)->slime;
-        const softbody_account a = entry_of(l, i)->account;
+        const softbody_quantities a = entry_of(l, i)->account;
         quiet = a.held == 0 && a.speed_max < rest_speed * set->radius + 4.0 * vec3_length(set->gravity) * set->dt_s;
     }
     return quiet;

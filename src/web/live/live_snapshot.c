@@ -20,7 +20,7 @@ static void measure(live *l)
     a->speed = a->volume = a->volume_at_rest = 0.0;
     a->held = 0;
     for (size_t i = 0; l->motion && i < scene_motion_count(l->motion); i++) {
-        const softbody_account of = softbody_measure(scene_motion_body(l->motion, i));
+        const softbody_quantities of = softbody_measure(scene_motion_body(l->motion, i));
         a->speed = fmax(a->speed, of.speed_max);
         a->volume += of.volume;
         a->volume_at_rest += of.volume_at_rest;

@@ -1,0 +1,103 @@
+/* A triangle mesh: indexed vertices with optional normals and texture coordinates, and one material slot per face.
+ * Triangles are visible from both sides. The geometric normal (b - a) x (c - a) of a triangle points towards a viewer
+ * in front, who sees its corners run clockwise in the left-handed world. A mesh whose every edge joins two triangles,
+ * once in each direction, is closed: it bounds a volume, which is behind the fronts.
+ *
+ * A finished mesh is immutable (except for mesh_move) and shared: mesh_retain and mesh_release count its owners, from
+ * any thread. Generators and readers create a mesh with mesh_create, fill it, and end with mesh_finish. */
+#pragma once
+
+#include "base/status.h"
+#include "base/vec3.h"
+#include <stdbool.h>
+#include <stddef.h>
+#include <stdint.h>
+
+/* Numbers of triangles and of vertices fit into 32 bits, and three corners per triangle times the memory of one into
+ * any size_t. */
+enum { MESH_TRIANGLES_MAX = 1 << 28, MESH_VERTICES_MAX = 1 << 29, MESH_SLOTS_MAX = 256 };
+#define MESH_FAR 1e9 /* the largest magnitude of a coordinate */
+
+typedef struct mesh_triangle {
+    uint32_t corner[3];
+} mesh_triangle;
+typedef struct mesh_uv {
+    double u, v;
+} mesh_uv; /* u to the right, v upwards in the texture image; 0, 0 is its lower left corner */
+typedef struct bounds3 {
+    vec3 low, high;
+} bounds3;
+
+/* The hierarchies that a mesh owns, one per kind (geometry/hierarchy/hierarchy.h). */
+typedef struct hierarchy hierarchy;
+typedef enum hierarchy_kind {
+    HIERARCHY_NONE,
+    HIERARCHY_SPHERE,
+    HIERARCHY_OCTANT,
+    HIERARCHY_BVH,
+    HIERARCHY_KIND_COUNT
+} hierarchy_kind;
+
+/* Why mesh_finish found a mesh not closed: an edge (by two vertices) that is not shared by two triangles. */
+typedef struct mesh_hole {
+    uint32_t from, to;
+    size_t triangle;
+    int sharing;
+} mesh_hole;
+
+typedef struct mesh {
+    size_t vertex_count, triangle_count;
+    vec3 *vertices;
+    mesh_triangle *triangles;
+    vec3 *normals;                    /* by vertex, unit vectors; NULL if there are none */
+    mesh_uv *uvs;                     /* by vertex; NULL if there are none */
+    uint8_t *slots;                   /* material slot by triangle; NULL: all 0 */
+    int slot_count;                   /* at least 1 */
+    char *slot_names[MESH_SLOTS_MAX]; /* owned; NULL where a slot has no name */
+    bool distinct; /* no two vertices have the same position (-0 equals 0): mesh_finish need not look; it resets this */
+    /* set by mesh_finish: */
+    bounds3 bounds;             /* of the vertices that triangles use; low > high without triangles */
+    bool closed;                /* closed, with every front facing outwards */
+    bool single;                /* every coordinate is exactly a float */
+    mesh_hole hole;             /* for a mesh that is not closed */
+    struct mesh_shared *shared; /* number of owners, and the hierarchies built for it */
+} mesh;
+
+/* Whether a mesh of that size is allowed, and has room (base/budget.h), with the work of mesh_finish: before its
+ * vertices are computed. STATUS_BAD_INPUT if not. */
+status mesh_check_size(size_t vertex_count, size_t triangle_count, bool with_normals, bool with_uvs, bool with_slots,
+                       diagnostic *why);
+
+/* Creates an unfinished mesh, all zero; with_* select the optional arrays. STATUS_BAD_INPUT as mesh_check_size,
+ * STATUS_FAILURE: out of memory. The caller is its only owner. */
+status mesh_create(size_t vertex_count, size_t triangle_count, bool with_normals, bool with_uvs, bool with_slots,
+                   mesh **out, diagnostic *why);
+
+/* Finishes a mesh. Checks that indices are in range and coordinates finite and within MESH_FAR, normalises normals (a
+ * zero normal becomes the triangle's), computes the bounds, and finds whether the mesh is closed; for this, vertices at
+ * equal positions are one vertex (-0 equals 0) and a triangle with two equal corners is skipped.
+ *
+ * Triangles with the wrong winding in an otherwise closed mesh are flipped, and so is a closed mesh that is inside out
+ * (negative volume). A connected part of which three quarters of the triangles agree keeps their direction, so that a
+ * hollow stays a hollow; a more mixed part is made to face outwards. Given normals are not changed. For a one-sided
+ * surface the hole is an edge shared by 2 triangles. The message of STATUS_BAD_INPUT names the triangle or vertex. */
+status mesh_finish(mesh *m, diagnostic *why);
+
+void mesh_retain(const mesh *m);
+void mesh_release(const mesh *m); /* NULL is allowed */
+long mesh_owners(const mesh *m);  /* the current number of owners */
+
+/* Moves the vertices of a finished mesh, and replaces its normals if it has any (normalised as by mesh_finish): for an
+ * animated solid between frames, while no other thread uses the mesh. Vertices with equal positions must stay together,
+ * since `closed` is not computed again. The mesh's hierarchies are invalid until hierarchy_follow
+ * (geometry/hierarchy/hierarchy.h). vertices and normals: one per vertex; normals NULL keeps them. STATUS_BAD_INPUT as
+ * mesh_finish, with the mesh unchanged. */
+status mesh_move(mesh *m, const vec3 *vertices, const vec3 *normals, diagnostic *why);
+
+/* same[v] is the lowest vertex at v's position, where -0 equals 0. The caller frees it. STATUS_FAILURE: out of
+ * memory. */
+status mesh_weld(const mesh *m, uint32_t **same, diagnostic *why);
+
+/* The volume enclosed by a closed mesh (negative when inside out), and the surface area. */
+double mesh_volume(const mesh *m);
+double mesh_area(const mesh *m);

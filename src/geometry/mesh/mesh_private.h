@@ -1,0 +1,58 @@
+/* Inside a mesh: the state that its owners share, the steps of mesh_finish, and what the generators have in common.
+ * Private to src/geometry/mesh and src/geometry/hierarchy. */
+#pragma once
+
+#include "geometry/mesh/mesh.h"
+#include <pthread.h>
+
+/* --- owners and hierarchies --- */
+
+/* Whether triangles use all vertices of a mesh; mesh_move computes it once. */
+enum mesh_used { MESH_USED_UNKNOWN, MESH_USED_ALL, MESH_USED_SOME };
+
+/* mesh.c creates it (all zero but owners and the mutex) and, at the last release, calls `destroy` on each hierarchy
+ * before it frees the mesh; hierarchy.c builds under the mutex and stores finished hierarchies. owners and hierarchies
+ * are accessed only with the compiler's __atomic operations; destroy is set under the mutex before the first hierarchy
+ * is stored. */
+struct mesh_shared {
+    long owners;
+    enum mesh_used used;                          /* read and written only by the owner that moves the mesh */
+    pthread_mutex_t mutex;                        /* held while a hierarchy is built, so that each is built only once */
+    hierarchy *hierarchies[HIERARCHY_KIND_COUNT]; /* NULL until first used */
+    void (*destroy)(hierarchy *h);                /* NULL while there is no hierarchy */
+};
+
+/* --- steps of mesh_finish --- */
+
+/* Checks that indices and slots are in range and coordinates finite and within MESH_FAR. The message of
+ * STATUS_BAD_INPUT names the triangle or vertex. */
+status mesh_check(const mesh *m, diagnostic *why);
+
+/* Sets m->closed or m->hole, and flips triangles with the wrong winding. m has passed mesh_check. */
+status mesh_close(mesh *m, diagnostic *why);
+
+/* Sets m->bounds and m->single from the vertices that triangles use. */
+void mesh_find_bounds(mesh *m);
+
+/* Makes every normal a unit vector; a zero normal becomes that of the first adjacent triangle that has one. */
+void mesh_normalize(mesh *m);
+
+/* --- generators --- */
+
+/* Finishes a generated mesh and returns it; releases it on failure. A mesh that should be closed and is not has
+ * features too small for doubles: STATUS_BAD_INPUT. A generator may leave its loops early when it is cancelled. */
+status generate_finish(mesh *m, bool must_be_closed, mesh **out, diagnostic *why);
+
+/* Returns whether it is a length greater than 0 and not above MESH_FAR. */
+bool generate_is_length(double x);
+
+/* Texture coordinates by direction: u = 1/2 is at -z, facing a viewer in front, and increases to that viewer's right,
+ * +x. Longitude in degrees -180..180; latitude by 1/180. */
+double generate_longitude_deg(vec3 p);
+double generate_latitude_v(vec3 p);
+/* Unit vector of longitude 360 u - 180 with u = at / around; identical bits at 0 and at around. */
+vec3 generate_azimuth(int at, int around);
+
+/* Adds two triangles between four corners of a grid: seen from the front, b is to the right of a, c above b, d above
+ * a. */
+void generate_quad(mesh *m, size_t *triangle, size_t a, size_t b, size_t c, size_t d);

@@ -1,0 +1,318 @@
+/* Builds the scene geometry, and answers queries for points. */
+#include "geometry/scene_geometry.h"
+#include "base/elementary.h"
+#include "base/array.h"
+#include "geometry/primitives/capillary.h"
+#include "geometry/regions/instance_set.h"
+#include "geometry/primitives/primitive.h"
+#include "geometry/shapes/meniscus.h"
+#include "geometry/shapes/shape.h"
+#include "geometry/regions/solid_tree.h"
+
+#include <stdlib.h>
+
+typedef struct ordered_source {
+    int64_t priority;
+    int index; /* of the source */
+} ordered_source;
+
+static int compare_priorities(const void *one, const void *other)
+{
+    const ordered_source *a = one, *b = other;
+    if (a->priority != b->priority)
+        return a->priority < b->priority ? -1 : 1;
+    return a->index > b->index ? -1 : 1;
+}
+
+/* The sources in the order of priority indices: ascending priority, and of equal priorities the later source first. */
+static void order_by_priority(const region_source *sources, int count, ordered_source *order)
+{
+    for (int i = 0; i < count; i++)
+        order[i] = (ordered_source){sources[i].priority, i};
+    qsort(order, (size_t)count, sizeof *order, compare_priorities);
+}
+
+/* Outward unit normals; the corner before the first side is in front, at -z, the next ones follow to its right as seen
+ * from outside. */
+static const vec3 *add_normals(scene_geometry *a, int sides)
+{
+    vec3 *normals = a->normals + a->normal_count;
+    for (int k = 0; k < sides; k++) {
+        double sine, cosine;
+        elementary_sincos_deg(180.0 * (2 * k + 1) / sides, &sine, &cosine);
+        normals[k] = vec3_make(sine, 0.0, -cosine);
+    }
+    a->normal_count += sides;
+    return normals;
+}
+
+static void add_primitive(scene_geometry *a, int priority_index, const primitive *part)
+{
+    primitive *p = &a->primitives[a->primitive_count];
+    *p = *part;
+    p->priority_index = priority_index;
+    p->first_face = (int64_t)a->primitive_count++ * FACES_MAX;
+    p->rows = p->rule ? p->rule->ISA_BASELINE->intervals : 1;
+    p->normals = p->sides > 0 ? add_normals(a, p->sides) : NULL;
+    if (p->extent > a->extent)
+        a->extent = p->extent;
+    for (int row = 1; row < p->rows; row++)
+        a->primitives[a->primitive_count++] = (primitive){.priority_index = priority_index, .rows = 1};
+}
+
+static void add_region(scene_geometry *a, int priority_index, const region_source *source)
+{
+    primitive parts[SHAPE_PRIMITIVES];
+    const shape_rule *shape = shape_of(source->shape);
+    const int n = shape->primitive_count;
+    shape->primitives(source->shape, parts);
+    if (has_meniscus(source->shape)) {
+        capillary_profile *surface = &a->surfaces[a->surface_count++];
+        *surface = *meniscus_of(source->shape);
+        parts[0].surface = surface;
+    }
+    if (!source->opaque && priority_index > a->highest_clear)
+        a->highest_clear = priority_index;
+    region *b = &a->regions[priority_index];
+    a->shapes[priority_index] = *source->shape;
+    *b = (region){.outside = a->primitive_count,
+                  .hollow = n == 2 ? a->primitive_count + 1 : -1,
+                  .medium = source->medium,
+                  .opaque = source->opaque,
+                  .shadow_transmittance = source->opaque ? 0.0 : source->shadow_transmittance,
+                  .face_shadow_transmittance = source->opaque ? NULL : source->face_shadow_transmittance,
+                  .attenuates = source->attenuates && !source->opaque,
+                  .reflects = source->reflects && !source->opaque,
+                  .solid = source->solid};
+    a->attenuates |= b->attenuates;
+    for (int k = 0; k < n; k++)
+        add_primitive(a, priority_index, &parts[k]);
+}
+
+/* Only for a geometry without a tree: with many solids there are nearly always equal media. */
+static bool media_are_distinct(const scene_geometry *a)
+{
+    for (int r = 1; r <= a->region_count; r++)
+        for (int q = 0; q < r; q++)
+            if (a->regions[q].medium == a->regions[r].medium)
+                return false;
+    return true;
+}
+
+/* Builds the instance set. order: the sources by priority index. */
+static status build_instance_set(scene_geometry *a, const region_source *sources, const ordered_source *order,
+                                 diagnostic *why)
+{
+    instance_source mesh_sources[PRIMITIVES_MAX];
+    int count = 0;
+    for (int k = 0; k < a->direct_region_count; k++) {
+        const int r = a->direct_regions[k];
+        const region_source *source = &sources[order[r - 1].index];
+        if (shape_of(source->shape)->triangles)
+            mesh_sources[count++] = (instance_source){source->shape, source->tree, a->regions[r].outside, r};
+    }
+    return count > 0 ? instance_set_build(mesh_sources, count, a->region_count, &a->meshes, why) : STATUS_OK;
+}
+
+/* Whether a solid tree can hold the solid. */
+static bool can_be_in_tree(const region_source *source)
+{
+    const shape_rule *rule = shape_of(source->shape);
+    return !rule->unbounded && !rule->triangles;
+}
+
+/* From this number of primitives on, a hierarchy over the bounded ones was measured to be faster. */
+enum { MANY = 24 };
+
+/* The primitives of a scene, counted by how rays find them. */
+typedef struct primitive_counts {
+    int all, findable; /* findable: those that a tree can find */
+    int normals;       /* of all their sides */
+    int surfaces;      /* of liquids with a meniscus */
+} primitive_counts;
+
+static primitive_counts count_primitives(const region_source *sources, int count)
+{
+    primitive_counts n = {0, 0, 0, 0};
+    for (int i = 0; i < count; i++) {
+        const int places = shape_places(sources[i].shape);
+        n.all += places;
+        n.findable += can_be_in_tree(&sources[i]) ? places : 0;
+        n.normals += (int)sources[i].shape->sides;
+        n.surfaces += has_meniscus(sources[i].shape);
+    }
+    return n;
+}
+
+static bool uses_tree(tree_use use, const primitive_counts *n)
+{
+    return n->findable > 0 &&
+           (n->all > PRIMITIVES_MAX || use == TREE_ALWAYS || (use == TREE_IF_MANY && n->findable >= MANY));
+}
+
+/* Adds the regions: first the direct ones, then those for the tree. */
+static void add_regions(scene_geometry *a, const region_source *sources, const ordered_source *order, bool with_tree)
+{
+    for (int r = 1; r <= a->region_count; r++) {
+        const region_source *source = &sources[order[r - 1].index];
+        if (with_tree && can_be_in_tree(source))
+            continue;
+        add_region(a, r, source);
+        a->opaque_regions |= with_tree ? 0 : (uint64_t)source->opaque << (r - 1);
+        a->direct_regions[a->direct_region_count++] = r;
+    }
+    a->direct_count = a->primitive_count;
+    for (int p = 0; p < a->direct_count; p += a->primitives[p].rows)
+        for (int row = 1; row < a->primitives[p].rows; row++)
+            a->further |= (uint64_t)1 << (p + row);
+    for (int r = 1; with_tree && r <= a->region_count; r++)
+        if (can_be_in_tree(&sources[order[r - 1].index]))
+            add_region(a, r, &sources[order[r - 1].index]);
+}
+
+static status check_counts(const primitive_counts *n, bool with_tree, diagnostic *why)
+{
+    const int direct = with_tree ? n->all - n->findable : n->all;
+    if (direct > PRIMITIVES_MAX)
+        return diagnose(why, STATUS_BAD_INPUT, "use at most 64", "the visible solids are %d planes and meshes", direct);
+    if (n->all > SET_PRIMITIVES_MAX)
+        return diagnose(why, STATUS_BAD_INPUT, "use at most 2097151", "the visible solids have %d primitives", n->all);
+    return STATUS_OK;
+}
+
+status scene_geometry_build(const region_source *sources, int count, int64_t outside_medium, tree_use use,
+                            scene_geometry **out, diagnostic *why)
+{
+    const primitive_counts n = count_primitives(sources, count);
+    const bool with_tree = uses_tree(use, &n);
+    status code = check_counts(&n, with_tree, why);
+    if (code != STATUS_OK)
+        return code;
+    scene_geometry *a = calloc(1, sizeof *a);
+    ordered_source *order = calloc((size_t)count + 1, sizeof *order);
+    if (a) {
+        a->primitives = large_calloc((size_t)n.all + 1, sizeof *a->primitives);
+        a->regions = large_calloc((size_t)count + 1, sizeof *a->regions);
+        a->shapes = calloc((size_t)count + 1, sizeof *a->shapes);
+        a->normals = large_calloc((size_t)n.normals + 1, sizeof *a->normals);
+        a->surfaces = calloc((size_t)n.surfaces + !n.surfaces, sizeof *a->surfaces);
+        a->direct_regions = calloc((size_t)count + 1, sizeof *a->direct_regions);
+    }
+    if (!a || !order || !a->primitives || !a->regions || !a->shapes || !a->normals || !a->surfaces ||
+        !a->direct_regions) {
+        free(order);
+        scene_geometry_destroy(a);
+        return out_of_memory(why);
+    }
+    a->regions[0] =
+        (region){.outside = -1, .hollow = -1, .medium = outside_medium, .shadow_transmittance = 1.0, .solid = -1};
+    a->region_count = count;
+    order_by_priority(sources, count, order);
+    add_regions(a, sources, order, with_tree);
+    code = build_instance_set(a, sources, order, why);
+    if (code == STATUS_OK && with_tree)
+        code = solid_tree_build(a, &a->tree, why);
+    free(order);
+    if (code != STATUS_OK) {
+        scene_geometry_destroy(a);
+        return code;
+    }
+    a->distinct = !a->tree && media_are_distinct(a);
+    *out = a;
+    return STATUS_OK;
+}
+
+void scene_geometry_destroy(scene_geometry *a)
+{
+    if (!a)
+        return;
+    instance_set_destroy(a->meshes);
+    solid_tree_destroy(a->tree);
+    free(a->direct_regions);
+    free(a->primitives);
+    free(a->regions);
+    free(a->normals);
+    free(a->surfaces);
+    free(a->shapes);
+    free(a);
+}
+
+void scene_geometry_surroundings_absorb(scene_geometry *a)
+{
+    a->regions[0].attenuates = a->attenuates = true;
+}
+
+/* True if the point is inside the mesh: the first hit along a fixed direction is a back and not a front. The direction
+ * is neither an axis nor a diagonal, so that a ray seldom hits an edge of a regular mesh. Where a back and a front
+ * coincide (copies that touch, or an edge), within the tolerance of mesh_changes_kernel.c, the hits after them
+ * decide. */
+static bool is_inside_mesh(const instance_set *f, uint64_t bit, double reach, vec3 point)
+{
+    instance_ray ray = {.origin = point,
+                        .direction = vec3_make(0.5396, 0.6180, 0.5716),
+                        .t_max = HUGE_VAL,
+                        .start = FACE_NONE,
+                        .wanted = bit};
+    for (;;) {
+        instance_hit back, front;
+        ray.inside = bit; /* look for backs */
+        ISA_BASE_OF(instance_kernels).nearest(f, &ray, 1, &back);
+        ray.inside = 0;
+        ISA_BASE_OF(instance_kernels).nearest(f, &ray, 1, &front);
+        const double first = fmin(back.t, front.t), tie = 0x1p-40 * (first + reach);
+        if (first == HUGE_VAL || fabs(back.t - front.t) > tie)
+            return back.t < front.t;
+        ray.t_min = first + tie;
+    }
+}
+
+/* The set of meshes that contain a point, by the side of the nearest surface in a fixed direction. */
+static uint64_t meshes_around(const instance_set *f, vec3 point)
+{
+    uint64_t inside = 0;
+    for (int i = 0; i < f->part_count; i++) {
+        const instanced_mesh *p = &f->parts[i];
+        const uint64_t bit = (uint64_t)1 << p->primitive;
+        const double reach = p->reach + fabs(p->origin.x) + fabs(p->origin.y) + fabs(p->origin.z);
+        inside |= p->closed && is_inside_mesh(f, bit, reach, point) ? bit : 0;
+    }
+    return inside;
+}
+
+uint64_t scene_geometry_inside(const scene_geometry *a, vec3 point)
+{
+    uint64_t inside = a->meshes ? meshes_around(a->meshes, point) : 0;
+    for (int i = 0; i < a->direct_count; i++)
+        inside |= (uint64_t)primitive_contains(&a->primitives[i], point) << i;
+    return a->tree ? solid_tree_inside(a->tree, inside, point) : inside;
+}
+
+bool scene_geometry_set_has(const scene_geometry *a, uint64_t set, int p)
+{
+    if (a->tree && p >= 0)
+        return set_table_has(a->tree->sets, set, p);
+    return p >= 0 && (set >> p & 1);
+}
+
+bool scene_geometry_failed(const scene_geometry *a)
+{
+    return a->tree && set_table_failed(a->tree->sets);
+}
+
+int scene_geometry_priority_index(const scene_geometry *a, uint64_t inside)
+{
+    if (a->tree)
+        return solid_tree_priority_index(a->tree, inside);
+    for (int r = a->region_count; r > 0; r--)
+        if (scene_geometry_set_has(a, inside, a->regions[r].outside) &&
+            !scene_geometry_set_has(a, inside, a->regions[r].hollow))
+            return r;
+    return 0;
+}
+
+int scene_geometry_surface(const scene_geometry *a, int before, int after)
+{
+    if (a->regions[after].opaque || a->regions[before].opaque)
+        return a->regions[after].opaque ? after : before;
+    return after > before ? after : before;
+}
