@@ -164,7 +164,7 @@ $(build)/plain/%.o: src/%.c $(build)/flags
 
 # The last place where the importer is looked for; not part of the flags, which a PREFIX only for `make install` must
 # not change.
-$(build)/obj/scene/assets/mesh_program.o: private all_cflags += -DCUVETTE_LIBEXEC='"$(PREFIX)/libexec/cuvette"'
+$(build)/obj/scene/assets/mesh_file.o: private all_cflags += -DCUVETTE_LIBEXEC='"$(PREFIX)/libexec/cuvette"'
 
 $(build)/libcuvette.a: $(library_objects)
 	$(archive)

@@ -15,7 +15,7 @@ wasm_isa_flags_simd128 := -msimd128 -mnontrapping-fptoint -mbulk-memory -msign-e
 # No studies, which measure a machine, and nothing of the operating system; src/wasm has what replaces them.
 wasm_without := src/study/% src/engine/study% src/base/below.c src/base/child.c src/base/os_confine% \
   src/measure/hardware_counter.c src/measure/topology_discover.c src/measure/disturbances.c src/measure/levels.c \
-  $(addprefix src/scene/assets/,mesh_child% mesh_program.c mesh_file.c) src/base/worker_pool.c
+  src/scene/assets/mesh_file.c src/base/worker_pool.c
 wasm_web := $(filter-out src/web/http/http.c $(addprefix src/web/http/http_,events.c guard.c gzip.c library.c \
   request.c send.c watch.c) src/web/lab_confine.c $(addprefix src/web/api/,api_machine.c api_studies.c api_study_% \
   api_video.c study_json.c) $(addprefix src/web/session/,figures% rescue% studies.c study_files.c task_thread.c \

@@ -6,7 +6,7 @@
 
 #include "render/core/renderer.h"
 #include "lint/lint.h"
-#include "scene/model/params_path.h"
+#include "scene/model/params.h"
 #include "scene/model/scene.h"
 
 /* Reductions: meshes of fewer triangles, fewer wavelengths. The features of each scene remain. */

@@ -2,7 +2,7 @@
 #pragma once
 
 #include "scene/model/edit/edit.h"
-#include "scene/model/slime.h"
+#include "scene/assets/slime.h"
 #include "softbody/softbody.h"
 #include "scene/model/scene.h"
 

@@ -12,7 +12,7 @@
 #include <cmocka.h>
 
 #include "acts_fixture.h"
-#include "lint/needs.h"
+#include "lint/inert.h"
 #include "scene/model/medium.h"
 
 #include <glob.h>

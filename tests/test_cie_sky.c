@@ -9,7 +9,7 @@
 
 #include "optics/cie_sky.h"
 #include "render_fixture.h"
-#include "scene/model/sun.h"
+#include "scene/model/scene.h"
 
 #define PI 3.14159265358979323846
 #define RAD (PI / 180.0)

@@ -14,7 +14,7 @@
 #include "job/job.h"
 #include "job/quantities.h"
 #include "law_judge.h"
-#include "lint/lack.h"
+#include "lint/probe_images.h"
 #include "lint/lint.h"
 #include "scene/model/scene.h"
 

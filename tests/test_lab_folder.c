@@ -9,7 +9,7 @@
 #include "scene/model/edit/edit.h"
 #include "scene/model/params.h"
 #include "web/session/folder.h"
-#include "scene/model/place/new_scene.h"
+#include "scene/model/open.h"
 #include "scene/model/scene.h"
 #include <stdio.h>
 #include <stdlib.h>

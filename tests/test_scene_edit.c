@@ -98,8 +98,8 @@ static void invalid_names_are_refused(void **state)
     assert_refused(s, scene_rename(s, "lamp", "other", &why), "the name 'other' is already in use");
     assert_refused(s, scene_rename(s, "camera", "eye", &why), "the camera has no name");
     assert_refused(s, scene_rename(s, "a", "9", &why), "'9' is not a valid name");
-    assert_refused(s, scene_give_material(s, "a", "glas", &why), "no material 'glas'");
-    assert_refused(s, scene_give_material(s, "lamp", "glass", &why), "lamp is a light, which has no material");
+    assert_refused(s, scene_assign_material(s, "a", "glas", &why), "no material 'glas'");
+    assert_refused(s, scene_assign_material(s, "lamp", "glass", &why), "lamp is a light, which has no material");
     assert_refused(s, scene_move(s, "glass", vec3_make(1, 0, 0), &why), "glass is a material, which has no place");
     assert_refused(s, scene_turn(s, "lamp", vec3_make(1, 0, 0), &why), "lamp is a light, which has no direction");
     assert_refused(s, scene_move(s, "render", vec3_make(1, 0, 0), &why), "render is the render, which has no place");
@@ -379,7 +379,7 @@ static void solid_with(scene *s, const char *name, shape_kind shape, const char 
 {
     diagnostic why = {0};
     worked(scene_add_solid(s, name, shape, NULL, &why), &why);
-    worked(scene_give_material(s, name, material_name, &why), &why);
+    worked(scene_assign_material(s, name, material_name, &why), &why);
     set_all(s, values);
 }
 

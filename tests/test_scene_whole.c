@@ -10,7 +10,6 @@
 #include <cmocka.h>
 
 #include "render_fixture.h"
-#include "scene/model/edit/contents.h"
 #include "scene/model/edit/edit.h"
 #include "scene/model/scene.h"
 
@@ -287,20 +286,20 @@ static void objects_together_are_one_rigid_body(void **state)
     scene *s = rod_scene("");
     const char *others[] = {"rod", "liquid", "rod", "vessel"}, *wrong[] = {"clear"}, *missing[] = {"rods"};
     const object_list all = {"vessel", others, 4};
-    assert_int_equal(scene_move_together(s, &all, vec3_make(1, 0, 0), NULL), STATUS_OK);
+    assert_int_equal(scene_move_objects(s, &all, vec3_make(1, 0, 0), NULL), STATUS_OK);
     assert_at(s, "vessel", 1, 0.001, 0);
     assert_at(s, "liquid", 1, 0.051, 0);
     assert_at(s, "rod", 1.2, 2.101, 0);
-    assert_int_equal(scene_turn_together(s, &all, vec3_make(0, 90, 0), NULL), STATUS_OK);
+    assert_int_equal(scene_turn_objects(s, &all, vec3_make(0, 90, 0), NULL), STATUS_OK);
     assert_at(s, "vessel", 1, 0.001, 0);
     assert_at(s, "rod", 1, 2.101, -0.2);
     assert_true(s->solids[scene_find_solid(s, "rod")].shape.rotation_deg.y == 90.0);
-    assert_int_equal(scene_scale_together(s, &all, 0.5, NULL), STATUS_OK);
+    assert_int_equal(scene_scale_objects(s, &all, 0.5, NULL), STATUS_OK);
     assert_at(s, "rod", 1, 0.001 + 0.5 * 2.1, -0.1);
     assert_true(s->solids[scene_find_solid(s, "liquid")].shape.radius == 0.475);
-    assert_int_equal(scene_move_together(s, &(object_list){"vessel", wrong, 1}, vec3_make(1, 0, 0), NULL),
+    assert_int_equal(scene_move_objects(s, &(object_list){"vessel", wrong, 1}, vec3_make(1, 0, 0), NULL),
                      STATUS_BAD_INPUT);
-    assert_int_equal(scene_move_together(s, &(object_list){"vessel", missing, 1}, vec3_make(1, 0, 0), NULL),
+    assert_int_equal(scene_move_objects(s, &(object_list){"vessel", missing, 1}, vec3_make(1, 0, 0), NULL),
                      STATUS_BAD_INPUT);
     scene_destroy(s);
 }

@@ -8,7 +8,7 @@
 
 #include "render_fixture.h"
 #include "scene/model/edit/edit.h"
-#include "scene/model/params_path.h"
+#include "scene/model/params.h"
 #include "scene/file/write.h"
 #include "scene/model/scene.h"
 #include "whole.h"

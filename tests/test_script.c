@@ -7,7 +7,7 @@
 #include <cmocka.h>
 
 #include "bad_files.h"
-#include "scene/motion/script.h"
+#include "scene/assets/script.h"
 #include <stdbool.h>
 #include <stdio.h>
 #include <stdlib.h>

@@ -3,9 +3,9 @@
 
 #include "base/cancel.h"
 #include "scene/model/params.h"
-#include "scene/model/slime.h"
+#include "scene/assets/slime.h"
 #include "scene/file/write.h"
-#include "job/shelf.h"
+#include "job/job.h"
 #include "scene/model/scene.h"
 #include <limits.h>
 
@@ -229,20 +229,20 @@ static void slimes_are_reused_only_if_meshes_are_kept(void **state)
 static void the_rows_of_a_study_share_a_simulation_unless_keep_is_off(void **state)
 {
     for (int keep = 0; keep < 2; keep++) {
-        shelf shared = {.count = 0};
+        mesh_cache shared = {.count = 0};
         scene *rows[2];
         for (int i = 0; i < 2; i++) {
             diagnostic why = {0};
             rows[i] = read_scene(*state, falling);
             set(rows[i], keep ? "render.keep=on" : "render.keep=off");
-            worked(shelf_load(&shared, rows[i], NULL, &why), &why);
+            worked(mesh_cache_load(&shared, rows[i], NULL, &why), &why);
             assert_int_equal(rows[i]->meshes[0].account.steps, 250);
         }
         assert_true((rows[0]->meshes[0].data == rows[1]->meshes[0].data) == keep);
         assert_int_equal(shared.count, keep);
         for (int i = 0; i < 2; i++)
             scene_destroy(rows[i]);
-        shelf_clear(&shared);
+        mesh_cache_clear(&shared);
     }
 }
 

@@ -3,7 +3,7 @@
 #include "study_fixture.h"
 #include "base/hash.h"
 #include "rows_fixture.h"
-#include "scene/model/params_path.h"
+#include "scene/model/params.h"
 #include "scene/model/params_value.h"
 #include "base/csv.h"
 #include "study/meaning.h"

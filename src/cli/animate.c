@@ -6,7 +6,7 @@
 #include "cli/outputs.h"
 #include "report/report.h"
 #include "scene/model/params.h"
-#include "scene/model/slime.h"
+#include "scene/assets/slime.h"
 #include "base/text.h"
 #include "scene/model/scene.h"
 #include <inttypes.h>

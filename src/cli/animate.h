@@ -8,7 +8,6 @@
 
 #include "cli/scene_input.h"
 #include "job/account.h"
-#include "scene/motion/frame_times.h"
 #include "scene/motion/motion.h"
 #include <jansson.h>
 #include <stdbool.h>

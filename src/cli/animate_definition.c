@@ -3,8 +3,8 @@
 #include "base/hash.h"
 #include "base/number.h"
 #include "report/json.h"
-#include "scene/model/params_path.h"
-#include "scene/model/slime.h"
+#include "scene/model/params.h"
+#include "scene/assets/slime.h"
 #include "study/grid.h"
 #include "scene/model/scene.h"
 #include <inttypes.h>

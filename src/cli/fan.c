@@ -4,7 +4,7 @@
 #include "cli/options.h"
 #include "cli/outputs.h"
 #include "cli/scene_input.h"
-#include "scene/model/beam.h"
+#include "scene/model/lights.h"
 #include <math.h>
 #include <stdio.h>
 #include <string.h>

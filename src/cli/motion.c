@@ -7,7 +7,7 @@
 #include "cli/scene_input.h"
 #include "cli/terminal.h"
 #include "scene/motion/motion.h"
-#include "scene/model/slime.h"
+#include "scene/assets/slime.h"
 #include "scene/model/scene.h"
 #include <math.h>
 #include <stdio.h>

@@ -6,7 +6,7 @@
 #include "cli/outputs.h"
 #include "cli/scene_edits.h"
 #include "cli/scene_input.h"
-#include "scene/model/params_path.h"
+#include "scene/model/params.h"
 #include "scene/file/shared.h"
 #include "scene/file/write.h"
 #include "scene/model/scene.h"

@@ -4,8 +4,8 @@
 
 #include "geometry/shapes/shape.h"
 #include "measure/clock.h"
-#include "scene/model/params_path.h"
-#include "scene/model/slime.h"
+#include "scene/model/params.h"
+#include "scene/assets/slime.h"
 #include "scene/model/scene.h"
 #include <math.h>
 #include <stdlib.h>

@@ -2,7 +2,7 @@
 #include "engine/engine_private.h"
 
 #include "scene/model/edit/edit.h"
-#include "scene/model/params_path.h"
+#include "scene/model/params.h"
 #include "scene/model/scene.h"
 
 cuvette_status cuvette_scene_add_light(cuvette_scene *s, const char *name, cuvette_diagnostic *why)
@@ -25,7 +25,7 @@ cuvette_status cuvette_scene_add_solid(cuvette_scene *s, const char *name, const
     status code = scene_shape_named(shape, &kind, &inner);
     THEN(code, scene_add_solid(s->model, name, kind, NULL, &inner));
     if (code == STATUS_OK && of) {
-        code = scene_give_material(s->model, name, of, &inner);
+        code = scene_assign_material(s->model, name, of, &inner);
         if (code != STATUS_OK)
             scene_remove(s->model, name, NULL);
     }
@@ -51,7 +51,7 @@ cuvette_status cuvette_scene_give_material(cuvette_scene *s, const char *to, con
 {
     ENGINE_CHANGE(s);
     ENGINE_NEED_NAMED(to, "solid");
-    return engine_report(scene_give_material(s->model, to, of, &inner), &inner, why);
+    return engine_report(scene_assign_material(s->model, to, of, &inner), &inner, why);
 }
 
 cuvette_status cuvette_scene_move(cuvette_scene *s, const char *name, const double *by, cuvette_diagnostic *why)

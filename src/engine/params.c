@@ -4,7 +4,6 @@
 
 #include "base/number.h"
 #include "scene/model/params.h"
-#include "scene/model/params_path.h"
 #include "scene/model/scene.h"
 #include <stdio.h>
 #include <stdlib.h>

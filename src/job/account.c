@@ -1,7 +1,7 @@
 /* Memory, hash and medians of a job's account. */
 #include "job/account.h"
-
 #include "measure/statistics.h"
+
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>

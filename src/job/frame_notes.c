@@ -1,6 +1,5 @@
-/* Notes on light that photons bring to a frame. */
+/* Notes on the light of photons in a frame. */
 #include "job/frame_notes.h"
-
 #include "scene/model/params.h"
 #include "scene/model/scene.h"
 
@@ -42,9 +41,9 @@ static void note_narrow_light(const job_account *a, const note_taker *taker)
     char remedy[NOTE_TEXT_MAX] = "set render.integrator=path, whose random points find all light on average";
     if (factor < COUNTERS_FACTORS && samples <= SCENE_SAMPLES_MAX)
         snprintf(remedy, sizeof remedy, "render.samples=%d suffice", (int)samples);
-    note_give(taker, "render", "samples", remedy,
-              "%.0f %% of the image's light is narrower than a pixel, behind surfaces where it may be missed",
-              fmax(100.0 * NOTED * all / one_percent, 1.0));
+    note_report(taker, "render", "samples", remedy,
+                "%.0f %% of the image's light is narrower than a pixel, behind surfaces where it may be missed",
+                fmax(100.0 * NOTED * all / one_percent, 1.0));
 }
 
 /* --- light of few photons --- */
@@ -66,9 +65,9 @@ static void note_few_photons(const job_account *a, const note_taker *taker)
     const int64_t most = (int64_t)param_find(PARAM_RENDER, "photons")->highest, enough = rounded_up(few->enough);
     char remedy[NOTE_TEXT_MAX];
     snprintf(remedy, sizeof remedy, "set render.photons=%" PRId64, enough < most ? enough : most);
-    note_give(taker, "render", "photons", remedy,
-              "the light that '%s' throws on matte surfaces rests on only %" PRId64 " photon%s",
-              a->of->solids[few->solid].name, few->arrived, few->arrived == 1 ? "" : "s");
+    note_report(taker, "render", "photons", remedy,
+                "the light that '%s' throws on matte surfaces rests on only %" PRId64 " photon%s",
+                a->of->solids[few->solid].name, few->arrived, few->arrived == 1 ? "" : "s");
 }
 
 void frame_notes(const job_account *a, const note_taker *taker)

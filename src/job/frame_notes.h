@@ -1,4 +1,4 @@
-/* Notes on a rendered frame: what its image lacks, and what would bring it. Pure; ownership: values. */
+/* Notes on a rendered frame: what its image lacks, and the remedy. Pure; ownership: values. */
 #pragma once
 
 #include "job/account.h"

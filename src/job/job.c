@@ -1,16 +1,66 @@
 /* Loading and rendering frames under supervision: limits, measurements. */
-#include "job/job.h"
-
 #include "base/cancel.h"
 #include "base/budget.h"
 #include "base/os_process.h"
-#include "job/shelf.h"
+#include "job/job.h"
 #include "measure/clock.h"
 #include "measure/instruction_dumps.h"
 #include "scene/model/scene.h"
+
 #include <inttypes.h>
 #include <stdlib.h>
 #include <time.h>
+
+/* --- the mesh cache --- */
+
+void mesh_cache_clear(mesh_cache *s)
+{
+    while (s->count > 0)
+        scene_destroy(s->scenes[--s->count]);
+}
+
+static size_t triangles_of(const scene *s)
+{
+    size_t sum = 0;
+    for (size_t i = 0; i < s->mesh_count; i++)
+        sum += s->meshes[i].data ? s->meshes[i].data->triangle_count : 0;
+    return sum;
+}
+
+/* True if the scene already has all meshes that the cache could provide. */
+static bool has_all_meshes(const scene *s)
+{
+    bool all = true;
+    for (size_t i = 0; i < s->mesh_count; i++)
+        all &= s->meshes[i].data || (s->meshes[i].source == MESH_SLIME && !s->render.keep);
+    return all;
+}
+
+/* A full cache is cleared: the cells of a study repeat in cycles, for which no replacement order is better. */
+static void add_to_cache(mesh_cache *s, const scene *setting)
+{
+    size_t triangles = triangles_of(setting);
+    for (size_t i = 0; i < s->count; i++)
+        triangles += triangles_of(s->scenes[i]);
+    if (s->count == MESH_CACHE_SCENES || triangles > MESH_CACHE_TRIANGLES)
+        mesh_cache_clear(s);
+    scene *copy = scene_clone(setting); /* if this fails, the mesh is merely built again */
+    if (copy)
+        s->scenes[s->count++] = copy;
+}
+
+status mesh_cache_load(mesh_cache *s, scene *setting, const load_watch *watch, diagnostic *why)
+{
+    for (size_t i = 0; i < s->count; i++)
+        scene_borrow_meshes(setting, s->scenes[i]);
+    const bool new_ones = !has_all_meshes(setting);
+    const status code = scene_load_until(setting, watch, why);
+    if (code == STATUS_OK && new_ones)
+        add_to_cache(s, setting);
+    return code;
+}
+
+/* --- jobs --- */
 
 struct job {
     isa level;
@@ -20,7 +70,7 @@ struct job {
     hardware_counter *hardware; /* NULL unless measured */
     instruction_dumps dumps;    /* used if the program runs under callgrind */
     noise_window noise;         /* empty unless measured */
-    shelf meshes;               /* empty unless keeps_meshes */
+    mesh_cache meshes;          /* empty unless keeps_meshes */
 };
 
 status job_create(const job_settings *settings, job **out, diagnostic *why)
@@ -52,7 +102,7 @@ void job_destroy(job *j)
 {
     if (!j)
         return;
-    shelf_clear(&j->meshes);
+    mesh_cache_clear(&j->meshes);
     renderer_destroy(j->renderer);
     topology_destroy(j->machine);
     if (j->hardware)
@@ -77,7 +127,7 @@ status job_machine(job *j, const topology **out, diagnostic *why)
 status job_load(job *j, scene *s, const load_watch *watch, diagnostic *why)
 {
     TRY(cancel_check(why));
-    return j->settings.keeps_meshes ? shelf_load(&j->meshes, s, watch, why) : scene_load_until(s, watch, why);
+    return j->settings.keeps_meshes ? mesh_cache_load(&j->meshes, s, watch, why) : scene_load_until(s, watch, why);
 }
 
 /* --- frames --- */
@@ -91,14 +141,14 @@ typedef struct work {
     cancel_token limit;   /* of its time */
 } work;
 
-static void show(void *of, double share_done)
+static void show(void *of, double fraction)
 {
     work *w = of;
     const double limit_s = w->of->settings.time_s;
     if (limit_s > 0.0 && clock_wall_s() - w->begun_s > limit_s)
         cancel_set(&w->limit);
     else if (w->requested->progress)
-        w->requested->progress(w->requested->context, ((double)w->frame + share_done) / (double)w->frames);
+        w->requested->progress(w->requested->context, ((double)w->frame + fraction) / (double)w->frames);
 }
 
 static void pass_on_piece(void *of, const film *img, int x0, int y0, int x1, int y1)

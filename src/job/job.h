@@ -12,7 +12,32 @@
 #pragma once
 
 #include "job/account.h"
-#include "job/sharing.h"
+#include "render/core/renderer.h"
+#include "scene/model/open.h"
+
+/* --- sharing ---
+ *
+ * The interface by which a job shares its frames with other processes (src/mpi): each traces a part of the pieces of
+ * every frame. The job calls begin before and end after it traces its own part; all else is as without sharing, since
+ * the result that end completes is that of the complete frame. Ownership: the job borrows the interface for its life.
+ * Errors: STATUS_BAD_INPUT for outputs that cannot be shared, STATUS_INTERRUPTED when cancelled, and what the other
+ * processes report. */
+
+typedef struct job_sharing {
+    /* Sends the loaded scene to the others, and begins to hand out its pieces; *own: those of this process. progress
+     * of the options is called about every 0.1 s until end returns, by one thread at a time, with the fraction of the
+     * frame that all have finished. Between begin and end the thread may have a further token, which gives up the
+     * frame. */
+    status (*begin)(void *of, const scene *s, const render_options *requested, const piece_source **own,
+                    diagnostic *why);
+    /* traced, result: what the renderer returned for this process's part; result may be NULL after an error. Waits for
+     * the others, and adds the film, the variance, counts, times and workers of all. Returns the status of the
+     * frame. */
+    status (*end)(void *of, status traced, render_result *result, diagnostic *why);
+    void *of;
+} job_sharing;
+
+/* --- jobs --- */
 
 typedef struct job job;
 
@@ -22,7 +47,7 @@ typedef struct job_settings {
     /* measure usage, hardware counters and hashes of frames: costs about 0.1 ms and one pass over the film */
     bool measured;
     bool fresh_peak;            /* reset the peak of memory at the beginning of each frame, if the system allows it */
-    bool keeps_meshes;          /* keep meshes of loaded scenes for scenes that are loaded later (job/shelf.h) */
+    bool keeps_meshes;          /* keep meshes of loaded scenes for scenes that are loaded later (mesh_cache_load) */
     const job_sharing *sharing; /* with other processes; NULL: none */
     double time_s;              /* time limit of a frame; 0: none */
     uint64_t memory_bytes;      /* limit for a frame's film and maps; 0: none */
@@ -48,6 +73,24 @@ status job_render(job *j, const scene *s, const render_options *options, job_acc
 
 /* Renders `frames` frames, whose films must have equal hashes: otherwise their times would measure different work,
  * which is a failure. Outputs that options requests in addition to the film disturb the times: with more than one frame
- * they are taken from one additional frame, which is not measured. progress receives the share of all frames. */
+ * they are taken from one additional frame, which is not measured. progress receives the fraction of all frames. */
 status job_repeat(job *j, const scene *s, size_t frames, const render_options *options, job_account *out,
                   diagnostic *why);
+
+/* --- the mesh cache ---
+ *
+ * Meshes of recently loaded scenes, so that a scene that is loaded again need not rebuild its triangles and
+ * hierarchies. Ownership: the cache owns copies of scenes, which share their meshes; mesh_cache_clear releases them. */
+
+enum { MESH_CACHE_SCENES = 64 };
+/* Over all meshes; a mesh takes about 200 bytes per triangle with its hierarchies. */
+#define MESH_CACHE_TRIANGLES 16000000u
+
+typedef struct mesh_cache {
+    scene *scenes[MESH_CACHE_SCENES];
+    size_t count;
+} mesh_cache;
+
+/* scene_load_until that uses the meshes of the cache and adds newly built ones to it. */
+status mesh_cache_load(mesh_cache *s, scene *setting, const load_watch *watch, diagnostic *why);
+void mesh_cache_clear(mesh_cache *s);

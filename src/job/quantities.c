@@ -38,8 +38,8 @@ static workers_sum sum_workers(const job_account *a)
     return sum;
 }
 
-/* In units of the throughput of one whole ray. */
-static void take_cut(quantity_value *v, const int64_t throughput[3])
+/* In units of the throughput of one camera ray. */
+static void set_cut(quantity_value *v, const int64_t throughput[3])
 {
     for (int channel = 0; channel < 3; channel++)
         v->real[channel] = (double)throughput[channel] / COUNTERS_CUT_ONE;
@@ -76,7 +76,7 @@ static double largest_cut(const render_result *r)
 }
 
 /* Mean over all pixels, by channel; NaN without random paths. */
-static void take_variance(quantity_value *v, const render_result *r)
+static void set_variance(quantity_value *v, const render_result *r)
 {
     const size_t pixels = r->variance ? (size_t)r->img->width * (size_t)r->img->height : 0;
     for (int channel = 0; channel < 3; channel++)
@@ -139,14 +139,14 @@ static int64_t counted(const job_account *a, uint64_t count)
    "rays not traced because of the depth limit, render.depth", c->cut_depth) \
  Q(cut_depth_color, "rays", COLOR, SAME, OUT, "cut.depth.throughput", NULL, \
    "summed throughput of the rays that the depth limit cut, in red, green and blue", \
-   take_cut(&v, c->cut_depth_throughput)) \
+   set_cut(&v, c->cut_depth_throughput)) \
  Q(cut_depth_throughput, "rays", REAL, SAME, ROW, "cut.depth.throughput_mean", NULL, \
    "summed throughput of the rays that the depth limit cut, mean of RGB", mean_cut(c->cut_depth_throughput, NULL)) \
  Q(cut_weight, "rays", COUNT, SAME, ROW, "cut.weight.rays", NULL, \
    "rays not traced because their weight is below render.min_weight", c->cut_weight) \
  Q(cut_weight_color, "rays", COLOR, SAME, OUT, "cut.weight.throughput", NULL, \
    "summed throughput of the rays that render.min_weight cut, in red, green and blue", \
-   take_cut(&v, c->cut_weight_throughput)) \
+   set_cut(&v, c->cut_weight_throughput)) \
  Q(cut_weight_throughput, "rays", REAL, SAME, ROW, "cut.weight.throughput_mean", NULL, \
    "summed throughput of the rays that render.min_weight cut, mean of RGB", mean_cut(c->cut_weight_throughput, NULL)) \
  Q(cut_throughput, "rays", REAL, SAME, OUT, "cut_throughput", NULL, \
@@ -176,7 +176,7 @@ static int64_t counted(const job_account *a, uint64_t count)
    "standard error of the film's values, root mean square, 1 is white; NA without random paths", \
    render_noise_rms(r)) \
  Q(noise_variance, "radiance^2", COLOR, SAME, OUT, "noise.variance", NULL, \
-   "mean variance of the film's values by channel; NA without random paths", take_variance(&v, r)) \
+   "mean variance of the film's values by channel; NA without random paths", set_variance(&v, r)) \
  Q(triangles, "", COUNT, SAME, ROW, "meshes.triangles", NULL, \
    "triangles in all instances of all meshes; 0 without meshes", r->meshes.triangles) \
  Q(instances, "", COUNT, SAME, ROW, "meshes.instances", NULL, "instances of meshes", r->meshes.instances) \

@@ -1,10 +1,10 @@
 /* Where lessons are. */
-#include "lesson/lesson.h"
-
-#include "base/status.h"
 #include "base/array.h"
 #include "base/installed.h"
+#include "base/status.h"
 #include "base/text.h"
+#include "lesson/lesson.h"
+
 #include <dirent.h>
 #include <errno.h>
 #include <stdlib.h>

@@ -27,6 +27,7 @@
 #include "lesson/lesson.h"
 #include "scene/file/document.h"
 #include "scene/model/params.h"
+
 #include <limits.h>
 #include <math.h>
 #include <stdlib.h>

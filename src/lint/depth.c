@@ -1,14 +1,17 @@
-/* Compares small images of the scene at its depth limit and at greater depths, until deeper images stop changing and
- * cut little light, or the ray budget is spent. That images stop changing is not enough: between two mirrors every ray
- * is cut at every depth, and every image shows render.beyond instead (lint/lack.h). */
-#include "lint/lack.h"
+/* What the depth limit cuts. */
 #include "lint/parts.h"
+#include "lint/probe_images.h"
 #include "scene/model/scene.h"
 
 #include <limits.h>
 #include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
+
+/* --- trees of rays ---
+ * Compares small images of the scene at its depth limit and at greater depths, until deeper images stop changing and
+ * cut little light, or the ray budget is spent. That images stop changing is not enough: between two mirrors every ray
+ * is cut at every depth, and every image shows render.beyond instead (lint/probe_images.h). */
 
 #define RAYS_MAX 400000.0    /* budget of all images, in rays: some ten milliseconds */
 #define MESH_RAY 10.0        /* cost of a ray in a scene with triangles, in rays */
@@ -52,7 +55,7 @@ static bool pixel_changes(const float *a, const float *b)
 }
 
 /* The fraction of pixels that change. */
-static double changed_share(const depth_search *s, int one, int two)
+static double changed_fraction(const depth_search *s, int one, int two)
 {
     const size_t pixels = pixels_of(s);
     size_t changed = 0;
@@ -94,7 +97,7 @@ static status look_deeper(depth_search *s, double most, diagnostic *why)
     for (int d = 1; d <= DEEPER_MAX && s->depth + d <= COUNTERS_DEPTH_MAX && s->images.spent <= most; d++) {
         TRY(probe_images_trace(&s->images, s->depth + d, &s->at[d], why));
         s->last = d;
-        still = changed_share(s, d - 1, d) <= SETTLED_PIXELS ? still + 1 : 0;
+        still = changed_fraction(s, d - 1, d) <= SETTLED_PIXELS ? still + 1 : 0;
         s->settled |= still >= 2;
         if (s->settled && lack_of(pixels_of(s), &s->at[d], &s->at[d]).unknown <= 0.5 * LACK_ACCEPTED)
             break;
@@ -124,14 +127,14 @@ static void write_remedy(char remedy[NOTE_TEXT_MAX], int enough, bool more)
         snprintf(remedy, NOTE_TEXT_MAX, "set render.depth=%d%s", enough, more ? " or more" : "");
 }
 
-/* unknown, largest: shares. */
+/* unknown, largest: fractions. */
 static void note_unknown(const lint_room *room, const char *remedy, int depth, double unknown, double largest)
 {
-    note_give(room->taker, "render", "depth", remedy,
-              "rays that end at a depth of %d could bring about %.3g %% of the image's light, up to %.3g %% of a "
-              "pixel's; deeper "
-              "images that look alike prove nothing",
-              depth, 100.0 * fmin(unknown, 1.0), 100.0 * fmin(largest, 1.0));
+    note_report(room->taker, "render", "depth", remedy,
+                "rays that end at a depth of %d could bring about %.3g %% of the image's light, up to %.3g %% of a "
+                "pixel's; deeper "
+                "images that look alike prove nothing",
+                depth, 100.0 * fmin(unknown, 1.0), 100.0 * fmin(largest, 1.0));
 }
 
 /* Whether the image of that level lacks more than is accepted, so far as the deepest one shows. */
@@ -145,7 +148,7 @@ static bool is_lacking_at(const depth_search *s, int level)
 static int enough_by_images(const depth_search *s)
 {
     int enough = 1;
-    while (enough < s->last && (changed_share(s, enough, s->last) > CHANGED_PIXELS || is_lacking_at(s, enough)))
+    while (enough < s->last && (changed_fraction(s, enough, s->last) > CHANGED_PIXELS || is_lacking_at(s, enough)))
         enough++;
     return enough;
 }
@@ -154,8 +157,8 @@ static void note_depth(const depth_search *s)
 {
     const size_t pixels = pixels_of(s);
     const probe_image *deepest = &s->at[s->last];
-    const double share = changed_share(s, 0, s->last);
-    const bool visible = share > CHANGED_PIXELS + doubt(s);
+    const double changed = changed_fraction(s, 0, s->last);
+    const bool visible = changed > CHANGED_PIXELS + doubt(s);
     const lack here = lack_of(pixels, &s->at[0], deepest);
     if (!visible && !is_lacking_at(s, 0))
         return;
@@ -164,16 +167,16 @@ static void note_depth(const depth_search *s)
     char remedy[NOTE_TEXT_MAX];
     write_remedy(remedy, guess ? known : s->depth + enough, guess || (!s->settled && enough == s->last));
     if (visible)
-        note_give(s->room->taker, "render", "depth", remedy,
-                  "a depth of %d is too small: a greater depth changes about %.0f %% of the pixels by more "
-                  "than 5 %%",
-                  s->depth, 100.0 * share);
+        note_report(s->room->taker, "render", "depth", remedy,
+                    "a depth of %d is too small: a greater depth changes about %.0f %% of the pixels by more "
+                    "than 5 %%",
+                    s->depth, 100.0 * changed);
     else if (here.unknown > 0.5 * here.mean)
         note_unknown(s->room, remedy, s->depth, here.mean, here.largest);
     else
-        note_give(s->room->taker, "render", "depth", remedy,
-                  "a depth of %d is too small: a greater depth changes the image by about %.3g %% of its light",
-                  s->depth, 100.0 * here.mean);
+        note_report(s->room->taker, "render", "depth", remedy,
+                    "a depth of %d is too small: a greater depth changes the image by about %.3g %% of its light",
+                    s->depth, 100.0 * here.mean);
 }
 
 /* The scene's own depth is too deep to trace: from the decay up to the deepest image. */
@@ -195,8 +198,9 @@ static void note_from_below(const depth_search *s)
 static void note_weight(const lint_room *room, const probe_image *at)
 {
     if (at->by_weight > LACK_ACCEPTED)
-        note_give(room->taker, "render", "min_weight", "set render.min_weight=0",
-                  "rays below render.min_weight could bring about %.3g %% of the image's light", 100.0 * at->by_weight);
+        note_report(room->taker, "render", "min_weight", "set render.min_weight=0",
+                    "rays below render.min_weight could bring about %.3g %% of the image's light",
+                    100.0 * at->by_weight);
 }
 
 static status search(depth_search *s, bool *affordable, diagnostic *why)
@@ -224,5 +228,70 @@ status lint_depth(const lint_room *room, diagnostic *why)
     for (int d = 0; d <= DEEPER_MAX; d++)
         probe_image_free(&s.at[d]);
     probe_images_end(&s.images);
+    return code;
+}
+
+/* --- random paths ---
+ * Random paths that a depth limit ends. A path of a greater depth begins like that of a smaller one, with
+ * the same random numbers: the difference of two images is the light of the deeper events, nearly free of noise. */
+
+/* The least depth of a doubling sequence whose image lacks little; the deepest image is at COUNTERS_DEPTH_MAX. *enough
+ * is INT_MAX if none is. */
+static status find_enough(probe_images *images, int depth, const probe_image *deepest, int *enough, diagnostic *why)
+{
+    const size_t pixels = probe_pixels(images);
+    probe_image at = {.rgb = NULL};
+    status code = STATUS_OK;
+    for (*enough = 2 * depth + 2; *enough < COUNTERS_DEPTH_MAX && code == STATUS_OK; *enough *= 2) {
+        code = probe_images_trace(images, *enough, &at, why);
+        if (code == STATUS_OK && lack_of(pixels, &at, deepest).mean <= LACK_ACCEPTED)
+            break;
+    }
+    *enough = *enough < COUNTERS_DEPTH_MAX ? *enough : COUNTERS_DEPTH_MAX;
+    probe_image_free(&at);
+    return code;
+}
+
+static status note_paths(const lint_room *room, probe_images *images, lack here, const probe_image *deepest,
+                         diagnostic *why)
+{
+    const int depth = (int)images->depth;
+    char remedy[NOTE_TEXT_MAX] = "set " REMEDY_WITHOUT_LIMIT;
+    if (here.unknown <= LACK_ACCEPTED) {
+        int enough;
+        TRY(find_enough(images, depth, deepest, &enough, why));
+        snprintf(remedy, sizeof remedy, "set render.depth=%d", enough);
+    }
+    note_report(room->taker, "render", "depth", remedy,
+                "paths that end at a depth of %d could bring about %.3g %% of the image's light", depth,
+                100.0 * fmin(here.mean, 1.0));
+    return STATUS_OK;
+}
+
+static status examine(const lint_room *room, probe_images *images, probe_image at[2], diagnostic *why)
+{
+    const size_t pixels = probe_pixels(images);
+    const int depth = (int)images->depth;
+    TRY(probe_images_trace(images, depth, &at[0], why));
+    if (lack_cut(pixels, &at[0]) == 0.0)
+        return STATUS_OK;
+    TRY(probe_images_trace(images, COUNTERS_DEPTH_MAX, &at[1], why));
+    const lack here = lack_of(pixels, &at[0], &at[1]);
+    if (probe_images_overflowed(images) || here.mean <= LACK_ACCEPTED + 2.0 * here.error)
+        return STATUS_OK;
+    return note_paths(room, images, here, &at[1], why);
+}
+
+status lint_path_depth(const lint_room *room, diagnostic *why)
+{
+    probe_images images;
+    probe_image at[2] = {{.rgb = NULL}};
+    if (room->made->render.depth > COUNTERS_DEPTH_MAX)
+        return STATUS_OK;
+    const status code =
+        probe_images_begin(&images, room->made, room->level) ? examine(room, &images, at, why) : out_of_memory(why);
+    probe_image_free(&at[0]);
+    probe_image_free(&at[1]);
+    probe_images_end(&images);
     return code;
 }

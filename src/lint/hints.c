@@ -4,7 +4,6 @@
 #include "scene/model/face_materials.h"
 #include "scene/model/medium.h"
 #include "scene/model/scene.h"
-#include "scene/model/sheet.h"
 
 #include <stdio.h>
 #include <string.h>
@@ -46,17 +45,17 @@ static void hint_at_clear(const scene *s, const solid *owner, const note_taker *
     const material *m = &owner->surface;
     if (integrator_traits_of(&s->render)->drawn && s->render.lighting != LIGHTING_WHITTED) {
         if (m->ambient == 0.0 && m->diffuse == 0.0 && m->emission == 0.0)
-            note_give(taker, "render", "lighting", "set render.lighting to whitted",
-                      "%s is transparent: without reflected and refracted rays its surface is black except for "
-                      "highlights",
-                      owner->name);
-    } else if (!scene_has_constant_shares(&s->render) && material_matches_surroundings(s, m) && !material_tints(m) &&
+            note_report(taker, "render", "lighting", "set render.lighting to whitted",
+                        "%s is transparent: without reflected and refracted rays its surface is black except for "
+                        "highlights",
+                        owner->name);
+    } else if (!scene_has_constant_weights(&s->render) && material_matches_surroundings(s, m) && !material_tints(m) &&
                m->reflectivity == 0.0 && m->emission == 0.0 && !material_is_layered(m, &s->render) &&
                m->sheet == SHEET_NONE && m->extraordinary_ior == 0.0 && material_scattering(m, &s->render) == 0.0 &&
                !is_inside_medium(s, owner) && !cuts_another(s, owner)) {
-        note_give(taker, owner->name, "ior", "set its ior",
-                  "%s is transparent with the refractive index of the surrounding medium: it %s", owner->name,
-                  material_absorbs(m) ? "refracts no light" : "is invisible");
+        note_report(taker, owner->name, "ior", "set its ior",
+                    "%s is transparent with the refractive index of the surrounding medium: it %s", owner->name,
+                    material_absorbs(m) ? "refracts no light" : "is invisible");
     }
 }
 
@@ -75,13 +74,13 @@ static bool hint_at_index(const scene *s, const solid *owner, const note_taker *
     const double index = index_law_at(&law, s->render.lambda_nm);
     if (!(index > INDEX_MOST))
         return false;
-    note_give(taker, owner->name, m->medium == MEDIUM_IOR ? "ior" : "medium",
-              m->transparency > 0.0
-                  ? "set its ior between 1 and 5; for a mirror set its reflectivity, and its transparency to 0"
-                  : "for a mirror set its reflectivity; the index of an opaque solid has no effect",
-              "%s has a refractive index of %.4g, higher than any transparent material, and a "
-              "reflectivity of 0",
-              owner->name, index);
+    note_report(taker, owner->name, m->medium == MEDIUM_IOR ? "ior" : "medium",
+                m->transparency > 0.0
+                    ? "set its ior between 1 and 5; for a mirror set its reflectivity, and its transparency to 0"
+                    : "for a mirror set its reflectivity; the index of an opaque solid has no effect",
+                "%s has a refractive index of %.4g, higher than any transparent material, and a "
+                "reflectivity of 0",
+                owner->name, index);
     return true;
 }
 
@@ -96,13 +95,13 @@ static void hint_at_solid(const scene *s, const solid *owner, const note_taker *
     } else if (material_is_layered(m, &s->render)) {
         return; /* it shows reflections */
     } else if ((m->medium != MEDIUM_IOR || m->ior != 1.0) && !has_face_materials(s, owner)) {
-        note_give(taker, owner->name, m->medium == MEDIUM_IOR ? "ior" : "medium", "set its transparency",
-                  "%s has a refractive index but is opaque", owner->name);
+        note_report(taker, owner->name, m->medium == MEDIUM_IOR ? "ior" : "medium", "set its transparency",
+                    "%s has a refractive index but is opaque", owner->name);
     } else if (m->ambient == 0.0 && m->emission == 0.0 && m->reflectivity == 0.0 && !is_lit(m) &&
                !has_face_materials(s, owner) &&
                !scene_is_behind_camera(s, owner)) { /* a black board behind the camera keeps reflections dark */
-        note_give(taker, owner->name, "diffuse", "set its diffuse",
-                  "%s is black: it is neither transparent, nor diffuse, nor ambient, nor emitting", owner->name);
+        note_report(taker, owner->name, "diffuse", "set its diffuse",
+                    "%s is black: it is neither transparent, nor diffuse, nor ambient, nor emitting", owner->name);
     }
 }
 
@@ -112,8 +111,8 @@ static void hint_at_cover(const scene *s, const solid *hidden, const note_taker 
     char remedy[NOTE_TEXT_MAX];
     if (cover) {
         snprintf(remedy, sizeof remedy, "give %s the higher priority", hidden->name);
-        note_give(taker, hidden->name, "priority", remedy,
-                  "%s is entirely inside %s, which has precedence there and hides it", hidden->name, cover->name);
+        note_report(taker, hidden->name, "priority", remedy,
+                    "%s is entirely inside %s, which has precedence there and hides it", hidden->name, cover->name);
     }
 }
 
@@ -167,26 +166,26 @@ static void hint_at_idle(const scene *s, const solid *owner, const note_taker *t
 {
     const material *m = &owner->surface;
     if (m->transparency == 0.0 && material_absorbs(m) && solid_is_opaque(s, owner))
-        note_give(taker, owner->name, m->absorb_spectrum.count > 0 ? "absorb_spectrum" : "absorb_per_m",
-                  "set its transparency", "%s absorbs but is opaque", owner->name);
+        note_report(taker, owner->name, m->absorb_spectrum.count > 0 ? "absorb_spectrum" : "absorb_per_m",
+                    "set its transparency", "%s absorbs but is opaque", owner->name);
     if (m->scatter_per_m > 0.0 && solid_is_opaque(s, owner))
-        note_give(taker, owner->name, "scatter_per_m", "set its transparency", "%s scatters light but is opaque",
-                  owner->name);
+        note_report(taker, owner->name, "scatter_per_m", "set its transparency", "%s scatters light but is opaque",
+                    owner->name);
     else if (m->scatter_per_m > 0.0 && !integrator_traits_of(&s->render)->by_chance)
-        note_give(taker, owner->name, "scatter_per_m", "set render.integrator to path",
-                  "%s is treated as clear: only the path integrator shows scattering", owner->name);
+        note_report(taker, owner->name, "scatter_per_m", "set render.integrator to path",
+                    "%s is treated as clear: only the path integrator shows scattering", owner->name);
     else if (material_scattering(m, &s->render) > 0.0 && s->render.polarisation)
-        note_give(taker, owner->name, "scatter_per_m", "",
-                  "the light that %s scatters is unpolarised: its phase function does not polarise", owner->name);
+        note_report(taker, owner->name, "scatter_per_m", "",
+                    "the light that %s scatters is unpolarised: its phase function does not polarise", owner->name);
     if (m->coefficients.count > 0 && (m->medium == MEDIUM_IOR || m->medium >= MEDIUM_CATALOGUE))
-        note_give(taker, owner->name, "coefficients", "set its medium to cauchy, sellmeier or table",
-                  "%s has coefficients but no dispersion law", owner->name);
+        note_report(taker, owner->name, "coefficients", "set its medium to cauchy, sellmeier or table",
+                    "%s has coefficients but no dispersion law", owner->name);
     if (ignores_face_transparency(s, owner))
-        note_give(taker, owner->name, "transparency",
-                  "set it for the whole solid, or set render.transmission to simple",
-                  "the transparency and reflectivity of the faces of %s have no effect: with refraction they "
-                  "are properties of the solid",
-                  owner->name);
+        note_report(taker, owner->name, "transparency",
+                    "set it for the whole solid, or set render.transmission to simple",
+                    "the transparency and reflectivity of the faces of %s have no effect: with refraction they "
+                    "are properties of the solid",
+                    owner->name);
 }
 
 /* Below it, noise in soft shadows is plain. */
@@ -204,33 +203,34 @@ static void hint_at_lights(const scene *s, const note_taker *taker)
     for (size_t i = 0; i < s->light_count; i++) {
         const light *lamp = &s->lights[i];
         if (lamp->spectrum >= LAMP_SODIUM && lamp->intensity > 0.0 && s->render.spectrum != SPECTRUM_SPECTRAL)
-            note_give(taker, lamp->name, "spectrum", "set render.spectrum=spectral, which traces each line",
-                      "%s emits spectral lines, and an rgb image shows only their colour", lamp->name);
+            note_report(taker, lamp->name, "spectrum", "set render.spectrum=spectral, which traces each line",
+                        "%s emits spectral lines, and an rgb image shows only their colour", lamp->name);
         if (lamp->polarised > 0.0 && !s->render.polarisation)
-            note_give(taker, lamp->name, "polarised", "set render.polarisation to on",
-                      "light is traced without its polarisation: that of %s has no effect", lamp->name);
+            note_report(taker, lamp->name, "polarised", "set render.polarisation to on",
+                        "light is traced without its polarisation: that of %s has no effect", lamp->name);
         const bool soft = scene_has_soft_shadows(&s->render);
         const char *size = lamp->kind == LIGHT_RECTANGLE ? "width"
                            : lamp->kind == LIGHT_SUN     ? "angular_diameter_deg"
                                                          : "radius";
         if (lamp->kind == LIGHT_SUN && path && clear && !scatters && lamp->intensity > 0.0 &&
             !scene_has_caustics(&s->render))
-            note_give(taker, lamp->name, size, "set render.caustics=photons",
-                      "random paths through transparent solids rarely hit %s, which is small: caustics are noise",
-                      lamp->name);
+            note_report(taker, lamp->name, size, "set render.caustics=photons",
+                        "random paths through transparent solids rarely hit %s, which is small: caustics are noise",
+                        lamp->name);
         else if (soft && light_has_size(lamp) && s->render.samples < SOFT_SAMPLES)
-            note_give(taker, lamp->name, size, "set render.samples=16",
-                      "each pixel takes the light of %lld points of %s: its shadows are grainy",
-                      (long long)s->render.samples, lamp->name);
+            note_report(taker, lamp->name, size, "set render.samples=16",
+                        "each pixel takes the light of %lld points of %s: its shadows are grainy",
+                        (long long)s->render.samples, lamp->name);
         else if (light_has_size(lamp) && !path && !soft)
-            note_give(taker, lamp->name, size, "set render.soft_shadows=on, or render.integrator=path",
-                      lamp->kind == LIGHT_SUN ? "all light of %s is parallel" : "%s acts as a point light", lamp->name);
+            note_report(taker, lamp->name, size, "set render.soft_shadows=on, or render.integrator=path",
+                        lamp->kind == LIGHT_SUN ? "all light of %s is parallel" : "%s acts as a point light",
+                        lamp->name);
         else if (!light_has_size(lamp) && path && clear && lamp->intensity > 0.0 && !scene_has_caustics(&s->render))
-            note_give(taker, lamp->name, "radius",
-                      scatters ? "set its radius and its reach"
-                               : "set render.caustics=photons, or its radius and its reach",
-                      "%s is a point light, which random paths cannot hit through transparent solids: no caustics",
-                      lamp->name);
+            note_report(taker, lamp->name, "radius",
+                        scatters ? "set its radius and its reach"
+                                 : "set render.caustics=photons, or its radius and its reach",
+                        "%s is a point light, which random paths cannot hit through transparent solids: no caustics",
+                        lamp->name);
     }
 }
 
@@ -239,11 +239,11 @@ static void hint_at_beams(const scene *s, const note_taker *taker)
     for (size_t i = 0; i < s->beam_count; i++) {
         const beam *b = &s->beams[i];
         if (b->lights && b->visible && !scene_has_caustics(&s->render))
-            note_give(taker, b->name, "lights", "set render.caustics=photons",
-                      "%s lights nothing: photons alone bring the light of beams", b->name);
+            note_report(taker, b->name, "lights", "set render.caustics=photons",
+                        "%s lights nothing: photons alone bring the light of beams", b->name);
         else if (!b->lights && b->profile != BEAM_UNIFORM)
-            note_give(taker, b->name, "profile", "set its lights to on",
-                      "the rays of %s are shown evenly: its profile is that of its light", b->name);
+            note_report(taker, b->name, "profile", "set its lights to on",
+                        "the rays of %s are shown evenly: its profile is that of its light", b->name);
     }
 }
 
@@ -252,18 +252,18 @@ static void hint_at_lens(const scene *s, const note_taker *taker)
     const integrator_traits *traits = integrator_traits_of(&s->render);
     if (s->camera.aperture == 0.0 || camera_lens_is_sampled(s))
         return;
-    note_give(taker, "camera", "aperture",
-              traits->by_chance                 ? "set render.paths to 64"
-              : traits->drawn || traits->layers ? "set render.integrator to whitted and render.samples to 16"
-                                                : "set render.samples to 16",
-              "nothing is blurred: each pixel has only rays through the centre of the lens");
+    note_report(taker, "camera", "aperture",
+                traits->by_chance                 ? "set render.paths to 64"
+                : traits->drawn || traits->layers ? "set render.integrator to whitted and render.samples to 16"
+                                                  : "set render.samples to 16",
+                "nothing is blurred: each pixel has only rays through the centre of the lens");
 }
 
 static void hint_at_analyser(const scene *s, const note_taker *taker)
 {
     if (s->camera.analyser != ANALYSER_NONE && !s->render.polarisation)
-        note_give(taker, "camera", "analyser", "set render.polarisation to on",
-                  "light is traced without its polarisation: the analyser has no effect");
+        note_report(taker, "camera", "analyser", "set render.polarisation to on",
+                    "light is traced without its polarisation: the analyser has no effect");
 }
 
 /* A polariser or a wave plate that does less than its name says. */
@@ -274,21 +274,22 @@ static void hint_at_sheet(const scene *s, const solid *owner, const note_taker *
     if (m->sheet == SHEET_NONE)
         return;
     if (solid_is_opaque(s, owner))
-        note_give(taker, owner->name, "sheet", "set its transparency", "%s is opaque: no light passes its sheet",
-                  owner->name);
+        note_report(taker, owner->name, "sheet", "set its transparency", "%s is opaque: no light passes its sheet",
+                    owner->name);
     else if (integrator_traits_of(r)->drawn)
-        note_give(taker, owner->name, "sheet", "set render.integrator to whitted and render.polarisation to on",
-                  "the depth buffer does not show what the sheet of %s does", owner->name);
+        note_report(taker, owner->name, "sheet", "set render.integrator to whitted and render.polarisation to on",
+                    "the depth buffer does not show what the sheet of %s does", owner->name);
     else if (!r->polarisation)
-        note_give(taker, owner->name, "sheet", "set render.polarisation to on",
-                  m->sheet == SHEET_RETARDER ? "light is traced without its polarisation: the retarder %s has no effect"
-                                             : "light is traced without its polarisation: %s is a grey filter",
-                  owner->name);
+        note_report(taker, owner->name, "sheet", "set render.polarisation to on",
+                    m->sheet == SHEET_RETARDER
+                        ? "light is traced without its polarisation: the retarder %s has no effect"
+                        : "light is traced without its polarisation: %s is a grey filter",
+                    owner->name);
     else if (m->sheet == SHEET_RETARDER && !sheet_retards(m))
-        note_give(taker, owner->name, "retardance_deg", "set its retardance_deg, or its birefringence",
-                  "the retarder %s has a retardance of 0: it has no effect", owner->name);
+        note_report(taker, owner->name, "retardance_deg", "set its retardance_deg, or its birefringence",
+                    "the retarder %s has a retardance of 0: it has no effect", owner->name);
     else if (sheet_disperses(m, r) && r->spectrum != SPECTRUM_SPECTRAL)
-        note_give(
+        note_report(
             taker, owner->name, "birefringence", "set render.spectrum to spectral",
             "the retardance of %s is that of render.lambda_nm in every channel: there are no interference colours",
             owner->name);
@@ -301,17 +302,19 @@ static void hint_at_crystal(const scene *s, const solid *owner, const note_taker
     if (m->extraordinary_ior == 0.0 || solid_is_opaque(s, owner))
         return;
     if (!material_is_crystal(m, &s->render))
-        note_give(taker, owner->name, "extraordinary_ior",
-                  integrator_traits_of(&s->render)->tree ? "set render.lighting to whitted, render.weights to fresnel, "
-                                                           "and render.transmission to refract"
-                                                         : "set render.integrator to whitted",
-                  "the crystal %s gives one image: light is refracted by its ordinary index alone", owner->name);
+        note_report(taker, owner->name, "extraordinary_ior",
+                    integrator_traits_of(&s->render)->tree
+                        ? "set render.lighting to whitted, render.weights to fresnel, "
+                          "and render.transmission to refract"
+                        : "set render.integrator to whitted",
+                    "the crystal %s gives one image: light is refracted by its ordinary index alone", owner->name);
     else if (scene_has_caustics(&s->render))
-        note_give(taker, owner->name, "extraordinary_ior", "set render.caustics to off",
-                  "photons are refracted by the ordinary index of the crystal %s alone", owner->name);
+        note_report(taker, owner->name, "extraordinary_ior", "set render.caustics to off",
+                    "photons are refracted by the ordinary index of the crystal %s alone", owner->name);
     else if (scene_crystals(s) > 1 && !s->render.polarisation)
-        note_give(taker, owner->name, "extraordinary_ior", "set render.polarisation to on",
-                  "light is traced without its polarisation: each crystal divides light from another one into halves");
+        note_report(
+            taker, owner->name, "extraordinary_ior", "set render.polarisation to on",
+            "light is traced without its polarisation: each crystal divides light from another one into halves");
 }
 
 /* The film does not depend on them, so that scene/model/inert has no rules for them. */
@@ -319,10 +322,10 @@ static void hint_at_tone(const scene *s, const note_taker *taker)
 {
     const camera *c = &s->camera;
     if (integrator_traits_of(&s->render)->layers && (c->exposure != 0.0 || c->tone != TONE_NONE))
-        note_give(taker, "camera", c->exposure != 0.0 ? "exposure" : "tone", "set render.integrator to whitted",
-                  "layers are no light: their images are shown as they are");
+        note_report(taker, "camera", c->exposure != 0.0 ? "exposure" : "tone", "set render.integrator to whitted",
+                    "layers are no light: their images are shown as they are");
     else if (c->white != 4.0 && c->tone != TONE_REINHARD)
-        note_give(taker, "camera", "white", "set camera.tone to reinhard", "this tone curve has no white point");
+        note_report(taker, "camera", "white", "set camera.tone to reinhard", "this tone curve has no white point");
 }
 
 void scene_hints(const scene *s, const note_taker *taker)
@@ -334,14 +337,14 @@ void scene_hints(const scene *s, const note_taker *taker)
         shining += s->solids[i].visible && s->solids[i].surface.emission > 0.0;
     }
     if (visible == 0)
-        note_give(taker, "solids", NULL, "add solids:", "no visible solids: the image shows only the background");
+        note_report(taker, "solids", NULL, "add solids:", "no visible solids: the image shows only the background");
     bool beams = false;
     for (size_t i = 0; i < s->beam_count; i++)
         beams |= beam_lights_scene(&s->beams[i], &s->render);
     const bool emitters_light = beams || (shining > 0 && integrator_traits_of(&s->render)->by_chance);
     if (lit > 0 && s->light_count == 0 && !emitters_light)
-        note_give(taker, "lights", NULL,
-                  "add lights:", "no lights: opaque surfaces show only ambient and emitted light");
+        note_report(taker, "lights", NULL,
+                    "add lights:", "no lights: opaque surfaces show only ambient and emitted light");
     hint_at_lights(s, taker);
     hint_at_beams(s, taker);
     hint_at_lens(s, taker);

@@ -1,61 +1,185 @@
-/* Asks the table (needs.c) about a parameter; and what the first hits of an image show. */
-#include "lint/needs.h"
-
+/* Asks the table (needs.c) about a parameter: for all that has a surface, which are solids with a material, and faces
+ * with materials from a mesh file (see shading_material_of_face); and what the first hits of an image show. */
+#include "lint/inert.h"
+#include "scene/model/face_materials.h"
+#include "scene/model/medium.h"
 #include "scene/model/params.h"
 #include "scene/model/render_settings.h"
 #include "scene/model/scene.h"
 
-#include <stdarg.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 
-bool inert_say(const inert_case *c, const char *rule, const char *remedy, const char *text, ...)
+/* --- surfaces --- */
+
+/* Of the surface of a transparent solid, and of each face of an opaque one. */
+static bool is_of_mirror(const inert_case *c)
 {
-    scene_note *note = &c->out->note;
-    va_list arguments;
-    va_start(arguments, text);
-    vsnprintf(note->text, sizeof note->text, text, arguments);
-    va_end(arguments);
-    snprintf(note->remedy, sizeof note->remedy, "%s", remedy);
-    c->out->rule = rule;
+    return is_named(c, "reflectivity") || is_named(c, "roughness");
+}
+
+/* Parameters of the interior. */
+static bool is_of_region(const inert_case *c)
+{
+    static const char *const of_body[] = {"extraordinary_ior",
+                                          "optic_axis",
+                                          "ior",
+                                          "medium",
+                                          "coefficients",
+                                          "absorb_per_m",
+                                          "absorb_spectrum",
+                                          "scatter_per_m",
+                                          "asymmetry",
+                                          "tint_distance",
+                                          "extinction",
+                                          "film_thickness_nm",
+                                          "film_ior",
+                                          "sheet",
+                                          "sheet_axis",
+                                          "sheet_pass",
+                                          "sheet_block",
+                                          "retardance_deg",
+                                          "birefringence",
+                                          NULL};
+    return is_among(c, of_body);
+}
+
+static bool is_straight(const inert_case *c)
+{
+    return c->s->render.transmission == TRANSMISSION_SIMPLE;
+}
+
+/* Whether the solid's own surface determines it on faces whose other properties come from a material of the scene or
+ * the file. */
+static bool is_from_solid(const inert_case *c, const material *named, const face_material *given)
+{
+    static const char *const never_given[] = {"ambient", "reflectivity", "roughness", "checker", "checker_color", NULL};
+    const bool clear = !material_is_opaque(&c->owner->surface);
+    if (!named && !given)
+        return true;
+    if (is_named(c, "transparency"))
+        return !is_straight(c) || (!named && given->opacity == 1.0);
+    if (named)
+        return is_of_mirror(c) && !is_straight(c) && clear;
+    return is_among(c, never_given) || (is_named(c, "emission") && given->emission == 0.0) ||
+           (is_named(c, "color") && clear);
+}
+
+/* The rules of a uniform surface, applied to one kind of face. */
+static bool inert_on_slot(const inert_case *c, int slot)
+{
+    const shading_material mat = shading_material_of_face(c->s, c->owner, &c->owner->surface, slot);
+    inert_case face = *c;
+    face.m = &mat.surface;
+    return needs_ask(&face, PARAM_MATERIAL);
+}
+
+static bool say_by_face(const inert_case *c)
+{
+    return inert_say(c, "by-face",
+                     "assign a material to the solid, or give a material of the scene the name of the faces' "
+                     "material",
+                     "the materials of the faces of %s come from the mesh file", c->owner->name);
+}
+
+/* Unknown until the mesh is loaded. */
+static bool inert_faces(const inert_case *c)
+{
+    if (!has_face_materials(c->s, c->owner))
+        return false;
+    if (is_of_region(c)) { /* transparent if any face is */
+        material clear = *c->m;
+        clear.transparency = 1.0;
+        inert_case region = *c;
+        region.m = !solid_is_opaque(c->s, c->owner) && !is_named(c, "tint_distance") ? &clear : c->m;
+        return needs_ask(&region, PARAM_MATERIAL);
+    }
+    bool some = false;
+    for (int slot = 0; slot < face_material_slots(c->s, c->owner); slot++) {
+        const material *named;
+        const face_material *given;
+        face_material_source(c->s, c->owner, slot, &named, &given);
+        if (!is_from_solid(c, named, given))
+            continue;
+        some = true;
+        if (!inert_on_slot(c, slot))
+            return false;
+    }
+    return some || say_by_face(c);
+}
+
+/* For the scene's material of c: whether it applies to a face with its name. */
+static bool is_named_ones(const inert_case *c)
+{
+    if (is_of_region(c))
+        return false;
+    if (is_named(c, "transparency"))
+        return is_straight(c);
+    return !is_of_mirror(c) || is_straight(c) || material_is_opaque(&c->owner->surface);
+}
+
+static bool say_of_solid(const inert_case *c)
+{
+    const inert_remedy remedy = inert_set("%s.%s", c->owner->name, c->at.row->name);
+    return inert_say(c, "of-solid", remedy.text, "the face uses the value of its solid, %s", c->owner->name);
+}
+
+static bool inert_named_faces(const inert_case *c)
+{
+    if (!has_face_materials(c->s, c->owner))
+        return false;
+    for (int slot = 0; slot < face_material_slots(c->s, c->owner); slot++) {
+        const material *named;
+        const face_material *given;
+        face_material_source(c->s, c->owner, slot, &named, &given);
+        if (named != &c->s->materials[c->at.index].value)
+            continue;
+        if (is_named_ones(c) ? !inert_on_slot(c, slot) : !say_of_solid(c))
+            return false;
+    }
+    return true; /* no result if no face has that name */
+}
+
+static bool inert_surface(const inert_case *c)
+{
+    return may_have_face_materials(c->s, c->owner) ? inert_faces(c) : needs_ask(c, PARAM_MATERIAL);
+}
+
+static bool unused(const inert_case *c, const solid *hidden)
+{
+    const inert_remedy remedy =
+        hidden ? inert_set("%s.visible=on", hidden->name) : (inert_remedy){"assign it to a visible solid"};
+    return inert_say(c, "unused-material", remedy.text, "no visible solid has this material");
+}
+
+/* For each visible solid with the material, and each face with its name; the result is the first one's. */
+static bool inert_material(const inert_case *c)
+{
+    const scene *s = c->s;
+    const solid *hidden = NULL;
+    inert_answer first = {.rule = ""}, other;
+    for (size_t i = 0; i < s->solid_count; i++) {
+        const solid *one = &s->solids[i];
+        const bool by_face = may_have_face_materials(s, one);
+        if (one->material_index != (int)c->at.index && !by_face)
+            continue;
+        hidden = one->visible || by_face ? hidden : one;
+        inert_case user = *c;
+        user.owner = one, user.m = &one->surface, user.out = first.rule[0] ? &other : &first;
+        if (one->visible && !(by_face ? inert_named_faces(&user) : needs_ask(&user, PARAM_MATERIAL)))
+            return false;
+    }
+    if (!first.rule[0])
+        return unused(c, hidden);
+    *c->out = first;
     return true;
-}
-
-inert_remedy inert_set(const char *format, ...)
-{
-    inert_remedy r = {"set "};
-    va_list arguments;
-    va_start(arguments, format);
-    vsnprintf(r.text + 4, sizeof r.text - 4, format, arguments);
-    va_end(arguments);
-    return r;
-}
-
-inert_remedy inert_set_on(const solid *one, const char *assignment)
-{
-    return one ? inert_set("%s.%s", one->name, assignment) : (inert_remedy){"add a solid"};
-}
-
-inert_remedy inert_set_clear(const solid *one)
-{
-    return one ? inert_set("%s.transparency=0.9 and %s.ior=1.5", one->name, one->name) : inert_set_on(one, "");
-}
-
-bool inert_same(const inert_case *c, const char *format, ...)
-{
-    char assignment[NOTE_TEXT_MAX];
-    va_list arguments;
-    va_start(arguments, format);
-    vsnprintf(assignment, sizeof assignment, format, arguments);
-    va_end(arguments);
-    return c->witness->same && c->witness->same(c->witness->context, assignment);
 }
 
 /* --- what the first hits show --- */
 
 /* Whether the film is unchanged with the parameter scaled by that factor. */
-static bool same_times(const inert_case *c, const char *path, double factor)
+static bool unchanged_scaled(const inert_case *c, const char *path, double factor)
 {
     char *now = NULL;
     if (scene_get(c->s, path, &now, NULL) != STATUS_OK)
@@ -64,7 +188,7 @@ static bool same_times(const inert_case *c, const char *path, double factor)
     free(now);
     if (value == 0.0 && c->at.row->group == PARAM_SOLID) /* of contact_radius: the solid's radius */
         value = c->s->solids[c->at.index].shape.radius;
-    return inert_same(c, "%s=%.6g", path, value * factor);
+    return inert_unchanged(c, "%s=%.6g", path, value * factor);
 }
 
 /* The background, and surface properties that only decide whether there is a surface, may matter for this image of a
@@ -94,10 +218,10 @@ static bool is_unmet_by_camera(const inert_case *c, const char *path)
         if (!is_named(c, rows[i].name))
             continue;
         const bool part = strcmp(rows[i].name, "contact_radius") == 0;
-        bool same =
-            (rows[i].values[0] && !part) || (same_times(c, path, 0.5) && same_times(c, path, part ? 0.9 : 1.05));
+        bool same = (rows[i].values[0] && !part) ||
+                    (unchanged_scaled(c, path, 0.5) && unchanged_scaled(c, path, part ? 0.9 : 1.05));
         for (size_t k = 0; k < 3 && rows[i].values[k] && same; k++)
-            same = inert_same(c, "%s=%s", path, rows[i].values[k]);
+            same = inert_unchanged(c, "%s=%s", path, rows[i].values[k]);
         return same &&
                inert_say(c, "met-first", "set render.integrator=whitted", "the first hits of this image do not change");
     }
@@ -108,9 +232,9 @@ static bool is_unmet_by_camera(const inert_case *c, const char *path)
 
 static bool ask_solid(const inert_case *c)
 {
-    inert_case own = *c;
-    own.owner = &c->s->solids[c->at.index], own.m = &own.owner->surface;
-    return needs_ask(&own, PARAM_SOLID) || (c->at.row->group == PARAM_MATERIAL && inert_surface(&own));
+    inert_case of_solid = *c;
+    of_solid.owner = &c->s->solids[c->at.index], of_solid.m = &of_solid.owner->surface;
+    return needs_ask(&of_solid, PARAM_SOLID) || (c->at.row->group == PARAM_MATERIAL && inert_surface(&of_solid));
 }
 
 static bool ask_group(const inert_case *c)

@@ -1,13 +1,60 @@
-/* Light transport facts that follow from the scene alone. The renderer makes the same decisions: see
+/* Facts of light transport that follow from the scene. The renderer makes the same decisions: see
  * render/shade/shading.c, render/integrators/path.c and render/core/plan.c. */
-#include "lint/inert_facts.h"
 #include "geometry/shapes/shape.h"
+#include "lint/inert.h"
 #include "scene/model/face_materials.h"
 #include "scene/model/medium.h"
 #include "scene/model/scene.h"
-#include "scene/model/sheet.h"
 
+#include <stdarg.h>
+#include <stdio.h>
 #include <string.h>
+
+/* --- notes --- */
+
+bool inert_say(const inert_case *c, const char *rule, const char *remedy, const char *text, ...)
+{
+    scene_note *note = &c->out->note;
+    va_list arguments;
+    va_start(arguments, text);
+    vsnprintf(note->text, sizeof note->text, text, arguments);
+    va_end(arguments);
+    snprintf(note->remedy, sizeof note->remedy, "%s", remedy);
+    c->out->rule = rule;
+    return true;
+}
+
+inert_remedy inert_set(const char *format, ...)
+{
+    inert_remedy r = {"set "};
+    va_list arguments;
+    va_start(arguments, format);
+    vsnprintf(r.text + 4, sizeof r.text - 4, format, arguments);
+    va_end(arguments);
+    return r;
+}
+
+inert_remedy inert_set_on(const solid *one, const char *assignment)
+{
+    return one ? inert_set("%s.%s", one->name, assignment) : (inert_remedy){"add a solid"};
+}
+
+inert_remedy inert_set_clear(const solid *one)
+{
+    return one ? inert_set("%s.transparency=0.9 and %s.ior=1.5", one->name, one->name) : inert_set_on(one, "");
+}
+
+bool inert_unchanged(const inert_case *c, const char *format, ...)
+{
+    char assignment[NOTE_TEXT_MAX];
+    va_list arguments;
+    va_start(arguments, format);
+    vsnprintf(assignment, sizeof assignment, format, arguments);
+    va_end(arguments);
+    return c->witness->same && c->witness->same(c->witness->context, assignment);
+}
+
+/* --- facts about the scene --- */
 
 bool is_black(vec3 color)
 {
@@ -214,7 +261,7 @@ inert_remedy color_remedy(const scene *s, const material *m, const char *name)
                       : inert_set("background.ambient=1,1,1 and %s.ambient=0.5", name);
 }
 
-/* --- facts that several groups share --- */
+/* --- facts of several groups --- */
 
 bool no_tree(const inert_case *c)
 {
@@ -228,7 +275,7 @@ bool no_tree(const inert_case *c)
                      "no visible surface reflects or refracts");
 }
 
-/* A plane alone is a poor example of a transparent solid. */
+/* A plane is a poor example of a transparent solid. */
 static inert_remedy clear_remedy(const scene *s)
 {
     const solid *first = first_visible(s, NULL);

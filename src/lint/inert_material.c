@@ -1,11 +1,10 @@
 /* Facts of a surface that leave its parameters without effect. */
 #include "geometry/shapes/shape.h"
-#include "lint/inert_facts.h"
+#include "lint/inert.h"
 #include "scene/model/cover.h"
 #include "scene/model/face_materials.h"
 #include "scene/model/medium.h"
 #include "scene/model/scene.h"
-#include "scene/model/sheet.h"
 
 static inert_remedy set_on(const inert_case *c, const char *assignment)
 {
@@ -125,7 +124,7 @@ bool no_highlight(const inert_case *c)
     if (only_spheres_shine(s) && !material_is_opaque(c->m))
         return inert_say(c, "sphere-highlight", "set render.integrator=whitted",
                          "a transparent surface reflects the lights directly and has no Phong highlight");
-    return is_named(c, "specular") && c->m->specular < 1.0 && inert_same(c, "%s.specular=1", c->name) &&
+    return is_named(c, "specular") && c->m->specular < 1.0 && inert_unchanged(c, "%s.specular=1", c->name) &&
            inert_say(c, "unseen-highlight", "move it, the light or the camera",
                      "no lit part of it in this image reflects a light towards the camera");
 }
@@ -139,7 +138,8 @@ static bool mirrors_black(const inert_case *c)
     const background *sky = &c->s->background;
     const bool dark = sky->kind == BACKGROUND_UNIFORM && is_black(sky->color), clear = !material_is_opaque(c->m);
     return dark && c->m->reflectivity < 1.0 && !(clear && shining_lights(c->s) > 0) &&
-           inert_same(c, "%s.reflectivity=1", c->name) && (!clear || inert_same(c, "%s.reflectivity=0.5", c->name)) &&
+           inert_unchanged(c, "%s.reflectivity=1", c->name) &&
+           (!clear || inert_unchanged(c, "%s.reflectivity=0.5", c->name)) &&
            inert_say(c, "mirrors-black", "set background.color=0.5,0.5,0.5",
                      "everything that it could reflect in this image is black");
 }
@@ -153,7 +153,7 @@ static bool nothing_at_depth_0(const inert_case *c)
                      "render.depth is 0, and the radiance beyond the depth limit is black");
 }
 
-/* No ray brings what the surface reflects. */
+/* No ray is traced to what the surface reflects. */
 bool nothing_reflected(const inert_case *c)
 {
     const scene *s = c->s;
@@ -182,7 +182,7 @@ bool no_reflectivity(const inert_case *c)
     if (layered_reflectivity(c))
         return true;
     /* The coating of a transparent surface also attenuates shadow rays. */
-    const bool coats = !material_is_opaque(c->m) && !scene_has_constant_shares(&s->render);
+    const bool coats = !material_is_opaque(c->m) && !scene_has_constant_weights(&s->render);
     if (coats)
         return (!material_matches_surroundings(s, c->m) && unpassed(c)) || mirrors_black(c);
     if (is_drawn(s) && !material_is_opaque(c->m))
@@ -191,7 +191,7 @@ bool no_reflectivity(const inert_case *c)
         return say_no_tree(c);
     if (nothing_at_depth_0(c))
         return true;
-    if (material_is_mirror(c->m) && !scene_has_constant_shares(&s->render))
+    if (material_is_mirror(c->m) && !scene_has_constant_weights(&s->render))
         return inert_say(c, "mirror", set_on(c, "transparency=0").text,
                          "its refractive index already makes it a mirror");
     return mirrors_black(c);
@@ -202,7 +202,7 @@ bool no_reflectivity(const inert_case *c)
 /* They need the Fresnel equations. */
 bool constant_weights(const inert_case *c)
 {
-    return !material_is_opaque(c->m) && scene_has_constant_shares(&c->s->render) &&
+    return !material_is_opaque(c->m) && scene_has_constant_weights(&c->s->render) &&
            inert_say(c, "constant", "set render.weights=fresnel and render.transmission=refract",
                      "a %s needs the Fresnel equations, and this scene has constant weights",
                      is_named(c, "roughness") ? "rough surface" : "film");
@@ -304,7 +304,7 @@ bool unseen(const inert_case *c)
                    is_among(c, of_surface) || (c->m->transparency == 0.0 && (is_among(c, of_opaque) || mirrors));
     /* photons may reach it, and what it reflects may reach what is seen: not if a full mirror changes nothing */
     const bool lights = mirrors && scene_has_caustics(&c->s->render);
-    return sent_back && !(lights && !inert_same(c, "%s.reflectivity=1", c->name)) && c->frame &&
+    return sent_back && !(lights && !inert_unchanged(c, "%s.reflectivity=1", c->name)) && c->frame &&
            c->frame->hits[c->owner - c->s->solids] == 0 && say_unseen(c);
 }
 
@@ -312,7 +312,7 @@ bool unseen(const inert_case *c)
 bool no_interface(const inert_case *c)
 {
     const scene *s = c->s;
-    if (scene_has_constant_shares(&s->render) || !(is_among(c, of_surface) || is_named(c, "roughness")))
+    if (scene_has_constant_weights(&s->render) || !(is_among(c, of_surface) || is_named(c, "roughness")))
         return false;
     for (size_t i = 0; i < s->solid_count; i++) {
         const solid *one = &s->solids[i];

@@ -1,11 +1,11 @@
 /* Facts of the image that leave settings of the renderer and the camera without effect. */
-#include "lint/inert_facts.h"
 #include "geometry/shapes/shape.h"
+#include "lint/inert.h"
 #include "scene/model/camera.h"
+#include "scene/model/cover.h"
 #include "scene/model/face_materials.h"
 #include "scene/model/medium.h"
 #include "scene/model/scene.h"
-#include "scene/model/sheet.h"
 
 static const char *const WHITTED = "set render.integrator=whitted";
 
@@ -52,11 +52,11 @@ bool nothing_beyond(const inert_case *c)
     sky.render.beyond = DEPTH_LIMIT_SKY;
     if (is_dark_at_depth_limit(&sky))
         return inert_say(c, "dark-sky", "set background.color=0.5,0.5,0.5", "the background is black as well");
-    /* Each word except black gives cut rays some radiance, and weights are not negative: if the film is the same with
-     * both, no ray is cut. */
+    /* With each word except black cut rays have some radiance, and weights are not negative: if the film is the same
+     * with both, no ray is cut. */
     const bool nothing_cut = s->render.beyond != DEPTH_LIMIT_BLACK
-                                 ? inert_same(c, "render.beyond=black")
-                                 : inert_same(c, "render.beyond=sky") && inert_same(c, "render.beyond=mean");
+                                 ? inert_unchanged(c, "render.beyond=black")
+                                 : inert_unchanged(c, "render.beyond=sky") && inert_unchanged(c, "render.beyond=mean");
     return nothing_cut && inert_say(c, "nothing-cut", s->render.depth > 1 ? "set render.depth=1" : "set render.depth=0",
                                     "no ray beyond render.depth carries more light than the film resolves");
 }
@@ -95,7 +95,7 @@ bool same_when_drawn(const inert_case *c)
     const char *other = is_named(c, "weights") ? (s->render.weights == WEIGHTS_FRESNEL ? "constant" : "fresnel")
                         : s->render.transmission == TRANSMISSION_SIMPLE ? "refract"
                                                                         : "simple";
-    return !follows_rays(s) && !draws_through(s) && inert_same(c, "render.%s=%s", c->at.row->name, other) &&
+    return !follows_rays(s) && !draws_through(s) && inert_unchanged(c, "render.%s=%s", c->at.row->name, other) &&
            say_no_tree(c);
 }
 
@@ -106,7 +106,7 @@ static bool one_crystal(const inert_case *c)
     for (size_t i = 0; i < c->s->solid_count; i++)
         clear += c->s->solids[i].visible && !solid_is_opaque(c->s, &c->s->solids[i]);
     return clear == 1 && scene_crystals(c->s) == 1 &&
-           inert_same(c, "render.polarisation=%s", c->s->render.polarisation ? "off" : "on") &&
+           inert_unchanged(c, "render.polarisation=%s", c->s->render.polarisation ? "off" : "on") &&
            inert_say(c, "one-crystal", "set camera.analyser=linear",
                      "the rays that leave the only transparent solid, a crystal, meet no other one");
 }
@@ -137,7 +137,7 @@ bool no_photons(const inert_case *c)
 bool same_photons(const inert_case *c)
 {
     return no_photons(c) &&
-           inert_same(c, "render.caustics=%s", c->s->render.caustics == CAUSTICS_OFF ? "photons" : "off");
+           inert_unchanged(c, "render.caustics=%s", c->s->render.caustics == CAUSTICS_OFF ? "photons" : "off");
 }
 
 bool lit_by_hits(const inert_case *c)
@@ -249,4 +249,65 @@ bool chief_rays(const inert_case *c)
                          "this render.integrator sees along the rays through the centre of the lens");
     return inert_say(c, "one-ray", is_path(c->s) ? "set render.paths=64" : "set render.samples=16",
                      "the only ray of a pixel passes through the centre of the lens");
+}
+
+/* --- basic and classic radiance are equal where all light paths begin and end in a vacuum, where n^2 is 1
+ * (render/shade/radiance.c) --- */
+
+static bool is_bare(const background *b)
+{
+    return b->medium == MEDIUM_IOR && b->ior == 1.0;
+}
+
+/* Radiance differs inside it. */
+static bool is_dense(const scene *s, const solid *one)
+{
+    (void)s;
+    const material *m = &one->surface;
+    return one->visible && !material_is_opaque(m) && !(m->medium == MEDIUM_IOR && m->ior == 1.0);
+}
+
+/* An emitting solid, or one around the camera, may be inside a dense medium. */
+static bool may_lie_in_dense(const scene *s, const solid *one)
+{
+    for (size_t i = 0; i < s->solid_count; i++) {
+        const solid *other = &s->solids[i];
+        if (is_dense(s, other) && (other == one || !scene_apart(s, one, other)))
+            return true;
+    }
+    return false;
+}
+
+static bool may_hold_eye(const scene *s, const solid *one)
+{
+    return is_dense(s, one) && !scene_apart_from_eye(s, one);
+}
+
+static bool glows_in_dense(const scene *s, const solid *one)
+{
+    const bool glows =
+        one->surface.emission > 0.0 || shows_ambient(s, &one->surface) || may_have_face_materials(s, one);
+    return glows && may_lie_in_dense(s, one);
+}
+
+bool inert_radiance(const inert_case *c)
+{
+    const scene *s = c->s;
+    if (scene_has_caustics(&s->render))
+        return inert_say(c, "caustics-radiance", "set render.caustics=off", "with photons, rays carry basic radiance");
+    if (!is_bare(&s->background))
+        return false;
+    const solid *dense = first_visible(s, is_dense), *last = s->solid_count > 0 ? &s->solids[s->solid_count - 1] : NULL;
+    if (!dense)
+        return inert_say(c, "no-dense", inert_set_clear(last).text,
+                         "no visible transparent solid has a different refractive index");
+    if (first_visible(s, may_hold_eye) || first_visible(s, glows_in_dense))
+        return false;
+    /* paths reach light spheres by the surfaces between; where one is in a dense medium the film decides */
+    const bool outside =
+        shining_lights(s) == 0 ||
+        (only_spheres_shine(s) &&
+         inert_unchanged(c, "render.radiance=%s", s->render.radiance == RADIANCE_BASIC ? "classic" : "basic"));
+    return outside && inert_say(c, "light-outside", inert_set("%s.emission=0.5", dense->name).text,
+                                "all light paths begin and end outside transparent solids");
 }

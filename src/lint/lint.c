@@ -1,9 +1,79 @@
-#include "lint/lint.h"
-
 #include "geometry/shapes/shape.h"
+#include "lint/lint.h"
 #include "lint/parts.h"
 #include "scene/model/scene.h"
+
 #include <math.h>
+
+/* --- the camera --- */
+
+#define CAMERA_CLOSE 1e-9 /* fraction of the scene's extent: a camera so close to a surface does not count as inside */
+
+/* The priority index of the medium at the camera and in a neighbourhood around it; -1 if it is not constant there. */
+static int medium_about(const plan *made)
+{
+    const vec3 eye = made->view.eye;
+    const double far = CAMERA_CLOSE * fmax(1.0, fmax(fabs(eye.x), fmax(fabs(eye.y), fabs(eye.z))));
+    const int priority_index =
+        scene_geometry_priority_index(made->geometry, scene_geometry_inside(made->geometry, eye));
+    for (int i = 0; i < 6; i++) {
+        const double by = i % 2 ? far : -far;
+        const vec3 at = vec3_add(eye, vec3_make(i / 2 == 0 ? by : 0.0, i / 2 == 1 ? by : 0.0, i / 2 == 2 ? by : 0.0));
+        if (scene_geometry_priority_index(made->geometry, scene_geometry_inside(made->geometry, at)) != priority_index)
+            return -1;
+    }
+    return priority_index;
+}
+
+/* An orthographic camera whose image cuts an opaque solid, on a lattice of its rays: often the ground, for a wide image
+ * that is seen from little above. */
+static void lint_parallel(const lint_room *room)
+{
+    enum { ACROSS = 16 };
+    const plan *made = room->made;
+    int inside = 0, found = 0;
+    for (int i = 0; i < ACROSS * ACROSS; i++) {
+        const double u = (2.0 * (i % ACROSS) + 1.0) / ACROSS - 1.0, v = (2.0 * (i / ACROSS) + 1.0) / ACROSS - 1.0;
+        const camera_ray r =
+            camera_ray_through(&made->view, u * made->view.half_width, v * made->view.half_height, 0.0, 0.0);
+        const int at = scene_geometry_priority_index(made->geometry, scene_geometry_inside(made->geometry, r.origin));
+        if (made->geometry->regions[at].opaque)
+            inside++, found = at;
+    }
+    if (inside > 0)
+        note_report(room->taker, "camera", "position", "move the camera away from it, or lower camera.view_height",
+                    "%d%% of the orthographic camera's rays start inside %s, which is opaque",
+                    (100 * inside + ACROSS * ACROSS - 1) / (ACROSS * ACROSS), lint_solid(room, found)->name);
+}
+
+/* A camera that sees nothing: in an opaque solid, under the ground, in the wall of a cup; a part of an orthographic one
+ * likewise. Returns whether the image is of no use; what it lacks does not matter then. */
+static bool lint_camera(const lint_room *room)
+{
+    if (room->made->view.parallel) {
+        lint_parallel(room);
+        return false;
+    }
+    const int priority_index = medium_about(room->made);
+    if (priority_index <= 0)
+        return false;
+    const solid *around = lint_solid(room, priority_index);
+    const bool opaque = room->made->geometry->regions[priority_index].opaque,
+               in_wall = !opaque && shape_of(&around->shape)->hollow;
+    if (opaque && shape_of(&around->shape)->unbounded)
+        note_report(room->taker, "camera", "position", "move the camera to the other side of the plane",
+                    "the camera is below the surface of %s, which is opaque", around->name);
+    else if (opaque)
+        note_report(room->taker, "camera", "position", "move the camera out of it",
+                    "the camera is inside %s, which is opaque", around->name);
+    else if (in_wall)
+        note_report(room->taker, "camera", "position",
+                    "move the camera out of the wall, into the vessel or away from it",
+                    "the camera is inside the wall of %s", around->name);
+    return opaque || in_wall;
+}
+
+/* --- the scene --- */
 
 enum { PROBE_PIXELS = 2400, PROBE_PIXELS_MESHES = 800 };
 
@@ -37,7 +107,7 @@ static bool is_loaded(const scene *s)
     return s->background.kind != BACKGROUND_IMAGE || s->background.img;
 }
 
-/* Few: the share of the paths that are cut needs no more. */
+/* Few suffice for the fraction of the paths that is cut. */
 enum { PROBE_PATHS = 2 };
 
 /* A persistent hierarchy is the one that a frame would build at its first use; otherwise the linter builds its own. */

@@ -1,9 +1,9 @@
 /* The linter: notes on a valid scene, parts of which have no effect or not the one that its author expects.
  *
  * A note has a place, one sentence and a remedy. Three things make notes:
- * - inert_ask: one parameter has no effect, and what it needs. From the scene alone, in microseconds: for each --set,
- *   each change in the page, each axis of a study. What only an image can tell, a witness tells, if there is one.
- * - scene_hints and its relatives: what a scene seems to lack, from the scene alone.
+ * - inert_ask: one parameter has no effect, and what it needs. From the scene, in microseconds: for each --set,
+ *   each change in the page, each axis of a study. What only an image shows, a witness decides, if there is one.
+ * - scene_hints and its relatives: what a scene seems to lack.
  * - lint_scene: the hints, and what lines through the solids and a small image show.
  *
  * If the answer is uncertain there is no note: a false note is worse than none. Pure: later frames are not affected,
@@ -35,8 +35,8 @@ typedef struct note_taker {
 } note_taker;
 
 /* Passes a note to the callback. Its place is object.parameter, or whichever of them is not NULL. */
-void note_give(const note_taker *taker, const char *object, const char *parameter, const char *remedy, const char *text,
-               ...) __attribute__((format(printf, 5, 6)));
+void note_report(const note_taker *taker, const char *object, const char *parameter, const char *remedy,
+                 const char *text, ...) __attribute__((format(printf, 5, 6)));
 
 /* Writes "place: text; remedy" (missing parts are omitted) to line, at most NOTE_LINE_MAX; returns line. */
 char *note_line(const scene_note *note, char *line, size_t size);

@@ -1,5 +1,4 @@
-#include "lint/needs.h"
-
+#include "lint/inert.h"
 #include "scene/model/objects.h"
 #include "scene/model/params_value.h"
 #include "scene/model/scene.h"

@@ -2,23 +2,133 @@
  * points before it becomes a note: touching is not overlapping, and the closest point of two curved surfaces is not a
  * gap. */
 #include "base/cancel.h"
+#include "geometry/regions/instance_set.h"
+#include "geometry/primitives/primitive.h"
+#include "geometry/scene_geometry.h"
 #include "geometry/shapes/shape.h"
-#include "lint/lines.h"
 #include "lint/parts.h"
 #include "scene/model/cover.h"
 
 #include <math.h>
 #include <stdlib.h>
+#include <string.h>
+
+/* --- intersections of lines with solids --- */
+
+typedef struct line {
+    vec3 origin, direction;
+} line; /* with a unit direction; infinite in both directions */
+
+enum { SPANS_MAX = 32 };
+/* Sorted and disjoint. Ends may be infinite. */
+typedef struct line_spans {
+    int count;
+    double in[SPANS_MAX], out[SPANS_MAX];
+} line_spans;
+
+static void add_span(line_spans *s, double in, double out)
+{
+    if (in < out && s->count < SPANS_MAX) {
+        s->in[s->count] = in;
+        s->out[s->count++] = out;
+    }
+}
+
+typedef struct mesh_crossings {
+    int count;
+    double t[2 * SPANS_MAX];
+    int facing[2 * SPANS_MAX];
+} mesh_crossings;
+
+static void add_crossing(void *context, const mesh_hit *hit)
+{
+    mesh_crossings *c = context;
+    int i = c->count++;
+    if (i >= 2 * SPANS_MAX) /* too many: the count shows it */
+        return;
+    for (; i > 0 && c->t[i - 1] > hit->t; i--) {
+        c->t[i] = c->t[i - 1];
+        c->facing[i] = c->facing[i - 1];
+    }
+    c->t[i] = hit->t;
+    c->facing[i] = hit->facing;
+}
+
+/* One copy: alternating front and back faces. The line is traced from its origin, in front of the mesh. */
+static bool through_copy(const instanced_mesh *p, uint32_t copy, const line *l, line_spans *out)
+{
+    const vec3 o = mat3_apply_transposed(p->rotation, vec3_sub(l->origin, instance_set_origin(p, copy)));
+    const vec3 d = mat3_apply_transposed(p->rotation, l->direction), s = p->scale;
+    const mesh_ray ray = {.origin = vec3_make(o.x / s.x, o.y / s.y, o.z / s.z),
+                          .direction = vec3_make(d.x / s.x, d.y / s.y, d.z / s.z),
+                          .t_max = HUGE_VAL,
+                          .skip = TRIANGLE_NONE,
+                          .facing = FACING_ANY};
+    mesh_crossings c = {.count = 0};
+    ISA_BASE_OF(hierarchy_kernels).all(p->tree, &ray, add_crossing, &c);
+    if (c.count > 2 * SPANS_MAX || c.count % 2 || out->count + c.count / 2 > SPANS_MAX)
+        return false;
+    for (int i = 0; i < c.count; i++)
+        if (c.facing[i] != (i % 2 ? FACING_BACK : FACING_FRONT))
+            return false;
+    for (int i = 0; i < c.count; i += 2)
+        add_span(out, c.t[i], c.t[i + 1]);
+    return true;
+}
+
+/* Copies do not overlap, but those on one line are not in the order of distance for every direction. */
+static void sort_spans(line_spans *s)
+{
+    for (int i = 1; i < s->count; i++)
+        for (int k = i; k > 0 && s->in[k - 1] > s->in[k]; k--) {
+            const interval swap = {s->in[k], s->out[k]};
+            s->in[k] = s->in[k - 1], s->out[k] = s->out[k - 1];
+            s->in[k - 1] = swap.in, s->out[k - 1] = swap.out;
+        }
+}
+
+enum { COPIES_FEW = 64 };
+
+static bool through_mesh(const instanced_mesh *p, const line *l, line_spans *out)
+{
+    const uint64_t copies = (uint64_t)p->copies[0] * p->copies[1] * p->copies[2];
+    bool known = p->closed && copies <= COPIES_FEW;
+    for (uint32_t i = 0; known && i < copies; i++)
+        known = through_copy(p, i, l, out);
+    sort_spans(out);
+    return known;
+}
+
+/* False if undecidable: an open mesh, more than SPANS_MAX spans, or a line through an edge of a mesh that counts as no
+ * or two crossings. */
+static bool line_through(const scene_geometry *a, const region *b, const line *l, line_spans *out)
+{
+    out->count = 0;
+    const primitive *p = &a->primitives[b->outside];
+    if (!p->rule)
+        return through_mesh(&a->meshes->parts[a->meshes->by_primitive[b->outside]], l, out);
+    interval whole[CHORDS_MAX], hollow[CHORDS_MAX] = {{HUGE_VAL, HUGE_VAL}};
+    const int count = primitive_chords(p, l->origin, l->direction, whole);
+    if (b->hollow >= 0 && primitive_chords(&a->primitives[b->hollow], l->origin, l->direction, hollow) == 0)
+        hollow[0] = (interval){HUGE_VAL, HUGE_VAL};
+    for (int i = 0; i < count; i++) {
+        add_span(out, whole[i].in, fmin(whole[i].out, hollow[0].in));
+        add_span(out, fmax(whole[i].in, hollow[0].out), whole[i].out);
+    }
+    return true;
+}
+
+/* --- pairs of solids --- */
 
 enum { LATTICE_LEAST = 8, LATTICE_MOST = 32, LINES_MAX = 200000 };
-#define GAP_SHARE 1e-3      /* fraction of the thinner solid's thickness: a smaller gap is narrow */
-#define PATCH_SHARE 0.25    /* fraction of the thinner solid's thickness: the minimum extent of a narrow gap */
-#define OVERLAP_SHARE 1e-6  /* fraction of the thinner solid's thickness: a smaller overlap counts as touching */
-#define CONTACT_SHARE 1e-12 /* fraction of the coordinates: closer surfaces are in contact */
+#define GAP_FRACTION 1e-3      /* fraction of the thinner solid's thickness: a smaller gap is narrow */
+#define PATCH_FRACTION 0.25    /* fraction of the thinner solid's thickness: the minimum extent of a narrow gap */
+#define OVERLAP_FRACTION 1e-6  /* fraction of the thinner solid's thickness: a smaller overlap counts as touching */
+#define CONTACT_FRACTION 1e-12 /* fraction of the coordinates: closer surfaces are in contact */
 
 typedef struct neighbour {
     const region *of;
-    const solid *said;
+    const solid *owner;
     bounds3 box;
     double thickness;
     int priority_index;
@@ -48,7 +158,7 @@ static bool is_in(const scene_geometry *a, const region *b, uint64_t inside)
 /* The minimum depth of an overlap. */
 static double deep_enough(const pair *p)
 {
-    return fmax(OVERLAP_SHARE * p->thinner, CONTACT_SHARE * p->extent);
+    return fmax(OVERLAP_FRACTION * p->thinner, CONTACT_FRACTION * p->extent);
 }
 
 /* Whether both contain the point and a neighbourhood around it. */
@@ -78,7 +188,7 @@ static line lattice_line(const pair *p, int axis, int i, int j)
     const double before =
         fmin(isfinite(*component(&first, axis)) ? *component(&first, axis) : *component(&low, axis),
              isfinite(*component(&second, axis)) ? *component(&second, axis) : *component(&low, axis));
-    *component(&l.origin, axis) = before - 0.01 * (*component(&high, axis) - before) - p->thinner * GAP_SHARE;
+    *component(&l.origin, axis) = before - 0.01 * (*component(&high, axis) - before) - p->thinner * GAP_FRACTION;
     *component(&l.direction, axis) = 1.0;
     return l;
 }
@@ -103,13 +213,13 @@ static bool spans_overlap(const pair *p, const line *l, const line_spans *a, con
 /* The narrowest gap between a span of one and a span of the other above the minimum; 0 for none. */
 static double spans_gap(const pair *p, const line_spans *a, const line_spans *b, double *middle)
 {
-    double best = GAP_SHARE * p->thinner;
+    double best = GAP_FRACTION * p->thinner;
     bool found = false;
     for (int i = 0; i < a->count; i++)
         for (int k = 0; k < b->count; k++) {
             const bool first = a->out[i] <= b->in[k];
             const double from = first ? a->out[i] : b->out[k], to = first ? b->in[k] : a->in[i];
-            if (to - from < best && to - from > CONTACT_SHARE * p->extent) {
+            if (to - from < best && to - from > CONTACT_FRACTION * p->extent) {
                 best = to - from;
                 *middle = 0.5 * (from + to);
                 found = true;
@@ -119,7 +229,7 @@ static double spans_gap(const pair *p, const line_spans *a, const line_spans *b,
 }
 
 /* Examines all lines of an axis; true if the solids overlap. */
-static bool look_along(const pair *p, int axis)
+static bool examine_along(const pair *p, int axis)
 {
     const scene_geometry *a = p->room->made->geometry;
     for (int i = 0; i < p->lattice && !cancel_asked(); i++)
@@ -166,7 +276,7 @@ static int patch_step(const pair *p, int axis)
 {
     vec3 size = vec3_sub(p->high, p->low);
     const double apart = *component(&size, axis) / p->lattice;
-    return (int)fmin(p->lattice, fmax(1.0, ceil(0.5 * PATCH_SHARE * p->thinner / apart)));
+    return (int)fmin(p->lattice, fmax(1.0, ceil(0.5 * PATCH_FRACTION * p->thinner / apart)));
 }
 
 /* The narrowest gap of an axis. */
@@ -191,24 +301,25 @@ static double find_patch(const pair *p, int axis)
 
 static void note_overlap(const pair *p)
 {
-    const solid *first = p->a->said < p->b->said ? p->a->said : p->b->said,
-                *second = first == p->a->said ? p->b->said : p->a->said;
-    note_give(p->room->taker, second->name, "priority", "give a higher priority to the solid that displaces the other",
-              "%s and %s overlap with equal priority and different media: the medium there is that of %s "
-              "only because it is listed first",
-              first->name, second->name, first->name);
+    const solid *first = p->a->owner < p->b->owner ? p->a->owner : p->b->owner,
+                *second = first == p->a->owner ? p->b->owner : p->a->owner;
+    note_report(p->room->taker, second->name, "priority",
+                "give a higher priority to the solid that displaces the other",
+                "%s and %s overlap with equal priority and different media: the medium there is that of %s "
+                "only because it is listed first",
+                first->name, second->name, first->name);
 }
 
 static void note_gap(const pair *p, double gap)
 {
     const neighbour *thin = p->a->thickness <= p->b->thickness ? p->a : p->b;
-    const solid *first = p->a->said < p->b->said ? p->a->said : p->b->said,
-                *second = first == p->a->said ? p->b->said : p->a->said;
-    note_give(p->room->taker, second->name, NULL,
-              "make them touch exactly or overlap (the higher priority then decides), or move them apart",
-              "the gap between %s and %s is about %.2g, less than a thousandth of the thickness of %s "
-              "(%.3g): it acts as a thin film",
-              first->name, second->name, gap, thin->said->name, thin->thickness);
+    const solid *first = p->a->owner < p->b->owner ? p->a->owner : p->b->owner,
+                *second = first == p->a->owner ? p->b->owner : p->a->owner;
+    note_report(p->room->taker, second->name, NULL,
+                "make them touch exactly or overlap (the higher priority then decides), or move them apart",
+                "the gap between %s and %s is about %.2g, less than a thousandth of the thickness of %s "
+                "(%.3g): it acts as a thin film",
+                first->name, second->name, gap, thin->owner->name, thin->thickness);
 }
 
 /* Two half-spaces intersect unless they face away from each other. */
@@ -219,16 +330,16 @@ static bool planes_overlap(const pair *p)
     const vec3 up_a = vec3_make(a->rotation.row[0].y, a->rotation.row[1].y, a->rotation.row[2].y);
     const vec3 up_b = vec3_make(b->rotation.row[0].y, b->rotation.row[1].y, b->rotation.row[2].y);
     const double apart = vec3_dot(vec3_sub(b->origin, a->origin), up_a);
-    return vec3_dot(up_a, up_b) > -1.0 + 1e-9 || apart < -OVERLAP_SHARE * fmax(1.0, fmax(a->extent, b->extent));
+    return vec3_dot(up_a, up_b) > -1.0 + 1e-9 || apart < -OVERLAP_FRACTION * fmax(1.0, fmax(a->extent, b->extent));
 }
 
-static void look_at_pair(pair *p)
+static void examine_pair(pair *p)
 {
     bool overlap = false;
     double gap = 0.0;
     if (isfinite(p->high.x - p->low.x)) {
         for (int axis = 0; axis < 3 && !overlap; axis++) {
-            overlap = look_along(p, axis);
+            overlap = examine_along(p, axis);
             if (!overlap && p->gaps && gap == 0.0)
                 gap = find_patch(p, axis);
         }
@@ -258,7 +369,7 @@ static bool shows(const region *b)
 
 static bool is_covered(const lint_room *room, const neighbour *a, const neighbour *b)
 {
-    return scene_cover(room->of, a->said) == b->said || scene_cover(room->of, b->said) == a->said;
+    return scene_cover(room->of, a->owner) == b->owner || scene_cover(room->of, b->owner) == a->owner;
 }
 
 /* False: the pair needs no examination. */
@@ -269,14 +380,14 @@ static bool prepare_pair(const lint_room *room, const neighbour *a, const neighb
     *p = (pair){.room = room, .a = a, .b = b, .thinner = fmin(a->thickness, b->thickness)};
     if (!isfinite(p->thinner))
         p->thinner = 1.0;
-    const double pad = GAP_SHARE * p->thinner;
+    const double pad = GAP_FRACTION * p->thinner;
     p->low = vec3_make(fmax(a->box.low.x, b->box.low.x) - pad, fmax(a->box.low.y, b->box.low.y) - pad,
                        fmax(a->box.low.z, b->box.low.z) - pad);
     p->high = vec3_make(fmin(a->box.high.x, b->box.high.x) + pad, fmin(a->box.high.y, b->box.high.y) + pad,
                         fmin(a->box.high.z, b->box.high.z) + pad);
     p->extent = fmax(fmax(fmax(fabs(p->low.x), fabs(p->low.y)), fmax(fabs(p->low.z), fabs(p->high.x))),
                      fmax(fabs(p->high.y), fabs(p->high.z)));
-    p->overlaps = a->said->priority == b->said->priority && media_differ(room->made, a, b);
+    p->overlaps = a->owner->priority == b->owner->priority && media_differ(room->made, a, b);
     p->gaps = shows(a->of) && shows(b->of);
     return (p->overlaps || p->gaps) && p->low.x < p->high.x && p->low.y < p->high.y && p->low.z < p->high.z;
 }
@@ -291,7 +402,7 @@ static size_t count_pairs(const lint_room *room, const neighbour *all, int count
     return pairs;
 }
 
-static void look_at_all(const lint_room *room, const neighbour *all, int count, float *gap, double *middle)
+static void examine_all(const lint_room *room, const neighbour *all, int count, float *gap, double *middle)
 {
     const size_t pairs = count_pairs(room, all, count);
     for (int i = 0; i < count && !cancel_asked(); i++)
@@ -302,7 +413,7 @@ static void look_at_all(const lint_room *room, const neighbour *all, int count, 
             p.lattice = (int)fmax(LATTICE_LEAST, fmin(LATTICE_MOST, sqrt(LINES_MAX / (3.0 * (double)pairs))));
             p.gap = gap;
             p.middle = middle;
-            look_at_pair(&p);
+            examine_pair(&p);
         }
 }
 
@@ -318,15 +429,15 @@ status lint_neighbours(const lint_room *room, diagnostic *why)
     int count = 0;
     for (int priority_index = 1; there && priority_index <= a->region_count; priority_index++) {
         const region *b = &a->regions[priority_index];
-        const solid *said = lint_solid(room, priority_index);
-        const solid_shape shape = scene_loaded_shape(room->of, said);
+        const solid *owner = lint_solid(room, priority_index);
+        const solid_shape shape = scene_loaded_shape(room->of, owner);
         if (shape.mesh && !shape.mesh->closed)
             continue; /* it contains nothing */
         all[count++] =
-            (neighbour){b, said, shape_world_box(&shape), shape_of(&shape)->thickness(&shape), priority_index};
+            (neighbour){b, owner, shape_world_box(&shape), shape_of(&shape)->thickness(&shape), priority_index};
     }
     if (there)
-        look_at_all(room, all, count, gap, middle);
+        examine_all(room, all, count, gap, middle);
     free(all);
     free(gap);
     free(middle);

@@ -3,8 +3,8 @@
 #include <stdarg.h>
 #include <stdio.h>
 
-void note_give(const note_taker *taker, const char *object, const char *parameter, const char *remedy, const char *text,
-               ...)
+void note_report(const note_taker *taker, const char *object, const char *parameter, const char *remedy,
+                 const char *text, ...)
 {
     scene_note note;
     va_list arguments;

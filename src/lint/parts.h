@@ -1,8 +1,8 @@
 /* The parts of the linter; private to src/lint. Each examines a plan and passes its notes on. */
 #pragma once
 
-#include "render/core/plan.h"
 #include "lint/lint.h"
+#include "render/core/plan.h"
 #include "scene/model/scene.h"
 
 typedef struct lint_room {
@@ -14,10 +14,6 @@ typedef struct lint_room {
 
 /* Overlapping solids of equal priority, and narrow gaps. */
 status lint_neighbours(const lint_room *room, diagnostic *why);
-
-/* A camera that sees nothing: in an opaque solid, under the ground, in the wall of a cup; a part of an orthographic one
- * likewise. Returns whether the whole image is of no use; what it lacks is then of no interest. */
-bool lint_camera(const lint_room *room);
 
 /* A depth limit of ray trees, or a least weight, with a visible effect, or with one that no image shows. */
 status lint_depth(const lint_room *room, diagnostic *why);

@@ -48,14 +48,15 @@ static void say(const range_case *c, const char *where, const char *name, const 
     const double low_nm = is_stated ? law->low_nm : law->coefficient[0],
                  high_nm = is_stated ? law->high_nm : law->coefficient[law->count - 2];
     if (is_own)
-        note_give(c->taker, where, "coefficients", "use wavelengths in this range, or coefficients with a wider range",
-                  "its table of indices covers only %g to %g nm and is constant outside%s", low_nm, high_nm, who);
+        note_report(c->taker, where, "coefficients",
+                    "use wavelengths in this range, or coefficients with a wider range",
+                    "its table of indices covers only %g to %g nm and is constant outside%s", low_nm, high_nm, who);
     else
-        note_give(c->taker, where, "medium",
-                  is_table ? "use wavelengths in this range, or the ior and extinction of the wavelength"
-                           : "use wavelengths in this range, or coefficients with a wider range",
-                  "%s was measured only from %g to %g nm and is %s outside%s", name, low_nm, high_nm,
-                  is_table ? "constant" : "extrapolated", who);
+        note_report(c->taker, where, "medium",
+                    is_table ? "use wavelengths in this range, or the ior and extinction of the wavelength"
+                             : "use wavelengths in this range, or coefficients with a wider range",
+                    "%s was measured only from %g to %g nm and is %s outside%s", name, low_nm, high_nm,
+                    is_table ? "constant" : "extrapolated", who);
 }
 
 /* name: of the medium; NULL for a table of the scene's. */

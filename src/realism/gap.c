@@ -59,7 +59,7 @@ status realism_gap(const metrics *m, diagnostic *why)
         "radiance through an empty gap of 1e-7; largest error for 0 to 85 degrees",
         "radiance through a gap of 0.001, with a solid at distance 100000 that no ray hits"};
     const bool fresnel =
-        !scene_has_constant_shares(&m->traced->render) && m->traced->render.transmission == TRANSMISSION_REFRACT;
+        !scene_has_constant_weights(&m->traced->render) && m->traced->render.transmission == TRANSMISSION_REFRACT;
     status code = STATUS_OK;
     for (int far_solid = 0; far_solid < 2 && code == STATUS_OK; far_solid++) {
         const bool third = !far_solid || m->at.liquid >= 0;

@@ -5,7 +5,7 @@
 
 #include "realism/theory.h"
 #include "scene/model/scene.h"
-#include "scene/model/sheet.h"
+#include "scene/model/medium.h"
 #include <math.h>
 #include <string.h>
 

@@ -133,7 +133,7 @@ status realism_radiance(const metrics *m, diagnostic *why)
                                         "(render.radiance=basic); largest error at 0 to 85 degrees"),
                                        "radiance of a floor of radiance 1 below the liquid, seen from above",
                                        "radiance of a diffuse floor below the liquid, lit by a light above it"};
-    const bool fresnel = !scene_has_constant_shares(&m->traced->render);
+    const bool fresnel = !scene_has_constant_weights(&m->traced->render);
     status code = STATUS_OK;
     for (int k = 0; k < LOOKS && code == STATUS_OK; k++) {
         worst_pair worst = WORST_NONE;

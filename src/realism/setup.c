@@ -2,7 +2,6 @@
 
 #include "scene/model/medium.h"
 #include "scene/model/scene.h"
-#include "scene/model/sheet.h"
 #include <math.h>
 
 static status wrong(const scene *s, diagnostic *why, const char *remedy, const char *what)

@@ -62,7 +62,7 @@ status realism_slab(const metrics *m, diagnostic *why)
         "radiance behind a slab at 40 degrees with render.polarisation=on; largest error for depths 0 to 12"};
     status code = STATUS_OK;
     for (int polarised = 0; polarised < 2 && code == STATUS_OK; polarised++) {
-        const bool exists = !polarised || !scene_has_constant_shares(&m->traced->render);
+        const bool exists = !polarised || !scene_has_constant_weights(&m->traced->render);
         worst_pair worst = WORST_NONE;
         for (int depth = 0; depth <= DEPTH_MAX && code == STATUS_OK && exists; depth++) {
             double measured = NAN;

@@ -3,7 +3,7 @@
  * memory. */
 #pragma once
 
-#include "scene/model/mesh_entry.h"
+#include "scene/model/solids.h"
 #include "softbody/trials.h"
 #include <jansson.h>
 #include <stdio.h>

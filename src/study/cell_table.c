@@ -4,7 +4,7 @@
 #include "base/number.h"
 #include "realism/realism.h"
 #include "scene/model/scene.h"
-#include "scene/model/slime.h"
+#include "scene/assets/slime.h"
 #include "scene/motion/motion.h"
 #include "softbody/trials.h"
 #include "study/grid.h"

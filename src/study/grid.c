@@ -1,7 +1,7 @@
 #include "study/grid.h"
 #include "base/hash.h"
 #include "base/number.h"
-#include "scene/model/params_path.h"
+#include "scene/model/params.h"
 #include "study/meaning.h"
 #include "study/quick.h"
 #include <stdlib.h>

@@ -1,6 +1,6 @@
 #include "study/identity.h"
 #include "base/hash.h"
-#include "scene/model/params_path.h"
+#include "scene/model/params.h"
 #include "study/grid.h"
 #include "study/meaning.h"
 #include <stdlib.h>

@@ -2,7 +2,7 @@
 #include "base/hash.h"
 #include "base/array.h"
 #include "base/text.h"
-#include "scene/model/params_path.h"
+#include "scene/model/params.h"
 #include "scene/model/params_value.h"
 #include "scene/model/scene.h"
 #include <stdio.h>

@@ -2,7 +2,7 @@
 #include "study/new_study.h"
 #include "base/file.h"
 #include "base/text.h"
-#include "scene/file/write_parts.h"
+#include "scene/file/write.h"
 #include "scene/model/params.h"
 #include "scene/model/scene.h"
 #include <stdlib.h>

@@ -2,8 +2,8 @@
 #include "study/new_study.h"
 #include "base/array.h"
 #include "base/number.h"
-#include "scene/file/write_parts.h"
-#include "scene/model/params_path.h"
+#include "scene/file/write.h"
+#include "scene/model/params.h"
 #include <stdlib.h>
 #include <string.h>
 

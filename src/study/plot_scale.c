@@ -1,7 +1,7 @@
 /* Quantities of a figure: their columns, units and scales. */
 #include "study/plot_parts.h"
 #include "base/text.h"
-#include "scene/model/params_path.h"
+#include "scene/model/params.h"
 #include <math.h>
 #include <stdio.h>
 #include <stdlib.h>

@@ -1,7 +1,6 @@
 #include "study/read_grid.h"
 #include "base/number.h"
 #include "scene/model/params.h"
-#include "scene/model/params_path.h"
 #include "study/comma_slip.h"
 #include "study/grid.h"
 #include <stdlib.h>

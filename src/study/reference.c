@@ -2,7 +2,7 @@
 #include "base/file.h"
 #include "base/hash.h"
 #include "base/text.h"
-#include "scene/model/params_path.h"
+#include "scene/model/params.h"
 #include "study/grid.h"
 #include "study/facts.h"
 #include "study/quick.h"

@@ -3,7 +3,7 @@
 #include "scene/assets/mesh_file.h"
 
 #include "base/file.h"
-#include "scene/assets/mesh_textures.h"
+#include "scene/assets/mesh_stream.h"
 #include "wasm/mesh/mesh.h"
 #include <stdlib.h>
 #include <string.h>

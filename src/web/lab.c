@@ -2,7 +2,7 @@
 #include "web/lab_private.h"
 #include "base/text.h"
 #include "scene/model/camera.h"
-#include "scene/model/place/new_scene.h"
+#include "scene/model/open.h"
 #include "report/json.h"
 #include "web/api/api.h"
 #include "web/api/scene_since.h"

@@ -4,7 +4,7 @@
 
 #include "base/random.h"
 #include "render/core/sample_key.h"
-#include "scene/model/light.h"
+#include "scene/model/lights.h"
 #include <assert.h>
 
 /* These numbers affect every image and must never change. New purposes are numbered from DRAW_NEXT, below 2^16; each

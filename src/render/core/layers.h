@@ -4,7 +4,7 @@
 #pragma once
 
 #include "base/vec3.h"
-#include "scene/model/layers.h"
+#include "scene/model/integrators.h"
 #include <stdint.h>
 
 typedef struct layer_set {

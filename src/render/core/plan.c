@@ -7,7 +7,6 @@
 #include "render/shade/sky.h"
 #include "scene/model/cover.h"
 #include "scene/model/scene.h"
-#include "scene/model/sun.h"
 #include <stdlib.h>
 
 /* Under Fresnel weights equal refractive indices are one medium, and a boundary between them is no interface unless it
@@ -35,7 +34,7 @@ static bool are_alike_crystals(const scene *s, const solid *a, const solid *b)
 static int64_t medium_of(const scene *s, const index_law *laws, int solid_index)
 {
     const material *m = &s->solids[solid_index].surface;
-    if (material_is_opaque(m) || scene_has_constant_shares(&s->render) || shows_itself(s, m))
+    if (material_is_opaque(m) || scene_has_constant_weights(&s->render) || shows_itself(s, m))
         return solid_index + 1;
     if (!material_is_crystal(m, &s->render) && index_laws_match(&s->render, &laws[solid_index], &laws[s->solid_count]))
         return 0;
@@ -137,7 +136,7 @@ static status arrange(const scene *s, const index_law *laws, plan *p, diagnostic
                                          .attenuates = material_attenuates(&one->surface) ||
                                                        material_scattering(&one->surface, &s->render) > 0.0 ||
                                                        sheet_acts(&one->surface, &s->render),
-                                         .reflects = p->basic && !scene_has_constant_shares(&s->render),
+                                         .reflects = p->basic && !scene_has_constant_weights(&s->render),
                                          .solid = i};
         if (code == STATUS_OK && shape_of(&one->shape)->triangles)
             code = fetch_mesh(s, (size_t)i, p, &shapes[i], &sources[count], why);
@@ -262,7 +261,7 @@ static const material *material_of(const scene *s, plan *p, int solid_index)
     material *mirror = &p->mirrors[solid_index];
     *mirror = *m;
     const double both = m->reflectivity + m->transparency;
-    mirror->reflectivity = scene_has_constant_shares(&s->render) && both < 1.0 ? both : 1.0;
+    mirror->reflectivity = scene_has_constant_weights(&s->render) && both < 1.0 ? both : 1.0;
     mirror->transparency = mirror->extinction = mirror->film_thickness_nm = 0.0;
     return mirror;
 }

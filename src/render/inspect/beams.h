@@ -3,7 +3,7 @@
 #pragma once
 
 #include "render/inspect/probe.h"
-#include "scene/model/beam.h"
+#include "scene/model/lights.h"
 
 typedef struct beam_ray {
     int beam;         /* index in the scene's beams */

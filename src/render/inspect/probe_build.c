@@ -124,7 +124,7 @@ static void read_gain(const probe *p, ray_hit *h)
     const material *m = &p->rays->surface.mat->surface;
     if (h->opaque || h->tir)
         return;
-    h->T = m->transparency * (scene_has_constant_shares(r) ? 1.0 : 1.0 - h->R);
+    h->T = m->transparency * (scene_has_constant_weights(r) ? 1.0 : 1.0 - h->R);
     const double ratio = r->transmission == TRANSMISSION_SIMPLE ? 1.0 : h->n_from / h->n_to;
     h->gain_classic = h->T;
     h->gain_basic = ratio * ratio * h->T;

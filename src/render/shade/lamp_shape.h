@@ -6,7 +6,7 @@
 
 #include "base/elementary.h"
 #include "base/vec3.h"
-#include "scene/model/light.h"
+#include "scene/model/lights.h"
 #include <math.h>
 #include <stdbool.h>
 

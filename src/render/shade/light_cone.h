@@ -7,7 +7,7 @@
 #include "base/elementary.h"
 #include "base/lanes.h"
 #include "base/vec3.h"
-#include "scene/model/light.h"
+#include "scene/model/lights.h"
 #include <stdbool.h>
 
 typedef struct light_cone {

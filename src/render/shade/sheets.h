@@ -1,4 +1,4 @@
-/* Polarising filters and wave plates in the tracer (scene/model/sheet.h). They act once at each passage: what the ray
+/* Polarising filters and wave plates in the tracer (scene/model/medium.h). They act once at each passage: what the ray
  * carries is multiplied where it leaves the region, or ends in it, so that a reflection in it starts another passage.
  * Between regions of equal index there is no interface: the ray goes straight on, at the same depth.
  *
@@ -12,7 +12,7 @@
 #include "optics/mueller.h"
 #include "render/core/queue.h"
 #include "scene/model/open.h"
-#include "scene/model/sheet.h"
+#include "scene/model/medium.h"
 
 struct tracer;
 struct scene_geometry;

@@ -55,3 +55,7 @@ typedef struct mesh_source {
 status mesh_stream_read(const mesh_source *source, const mesh_limits *limits, mesh_import **out, diagnostic *why);
 
 void mesh_import_destroy(mesh_import *imported); /* NULL is allowed */
+
+/* Turns the images that a mesh file names, at path, into paths that can be opened: absolute, or relative to the mesh
+ * file. Their existence is checked; they are not opened. STATUS_BAD_INPUT for a missing one. */
+status mesh_textures_find(const char *path, mesh_import *imported, diagnostic *why);

@@ -1,11 +1,107 @@
-/* Builds the tree from events (document_events.c). Queries on its nodes are in document_node.c. */
-#include "scene/file/document.h"
+/* The tree of a YAML file: from libyaml's events, with its errors as diagnostics; and queries on the nodes. */
 #include "base/file.h"
 #include "base/array.h"
-#include "scene/file/document_events.h"
+#include "base/status.h"
+#include "scene/file/document.h"
+#include "scene/model/names.h"
 
+#include <stdarg.h>
+#include <stdbool.h>
+#include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
+#include <yaml.h>
+
+/* --- events --- */
+
+typedef struct event_reader {
+    yaml_parser_t parser;
+    const char *name, *text; /* the name and the content of the file */
+    size_t size, node_count;
+    diagnostic *why;
+} event_reader;
+
+static status events_error(event_reader *r, yaml_mark_t mark, const char *remedy, const char *what)
+{
+    diagnostic_locate(r->why, r->name, (long)mark.line + 1, (long)mark.column + 1);
+    return diagnose(r->why, STATUS_BAD_INPUT, remedy, "%s", what);
+}
+
+static bool is_utf8_follower(char c)
+{
+    return ((unsigned char)c & 0xc0) == 0x80;
+}
+
+/* Line and column (in characters) of a byte: libyaml reports only the byte where decoding failed. */
+static yaml_mark_t mark_of_byte(const event_reader *r, size_t offset)
+{
+    yaml_mark_t mark = {.index = 0, .line = 0, .column = 0};
+    for (size_t i = 0; i < offset && i < r->size; i++) {
+        if (r->text[i] == '\n') {
+            mark.line++;
+            mark.column = 0;
+        } else if (!is_utf8_follower(r->text[i])) {
+            mark.column++;
+        }
+    }
+    return mark;
+}
+
+static bool tab_stands_at(const event_reader *r, yaml_mark_t mark)
+{
+    size_t line = 0, i = 0;
+    while (i < r->size && line < mark.line)
+        line += r->text[i++] == '\n';
+    for (size_t column = 0; i < r->size && r->text[i] != '\n' && column < mark.column; column++)
+        i++;
+    return i < r->size && r->text[i] == '\t';
+}
+
+static status syntax_error(event_reader *r)
+{
+    const yaml_parser_t *p = &r->parser;
+    switch (p->error) {
+    case YAML_MEMORY_ERROR: return out_of_memory(r->why);
+    case YAML_READER_ERROR:
+        return events_error(r, mark_of_byte(r, p->problem_offset), "save the file as plain UTF-8 text",
+                            p->problem ? p->problem : "the file is not text");
+    case YAML_NO_ERROR:
+    case YAML_SCANNER_ERROR:
+    case YAML_PARSER_ERROR:
+    case YAML_COMPOSER_ERROR:
+    case YAML_WRITER_ERROR:
+    case YAML_EMITTER_ERROR: break;
+    }
+    const char *remedy = tab_stands_at(r, p->problem_mark) ? "indent with spaces instead of tabs"
+                                                           : "check the indentation, colons, brackets and quotes here";
+    diagnostic_locate(r->why, r->name, (long)p->problem_mark.line + 1, (long)p->problem_mark.column + 1);
+    return diagnose(r->why, STATUS_BAD_INPUT, remedy, "%s%s%s", p->context ? p->context : "", p->context ? ", " : "",
+                    p->problem ? p->problem : "invalid YAML");
+}
+
+/* The next event; constructs that scene and study files exclude (aliases, anchors, tags) are refused here. */
+static status events_next(event_reader *r, yaml_event_t *event)
+{
+    if (!yaml_parser_parse(&r->parser, event))
+        return syntax_error(r);
+    const yaml_char_t *anchor = NULL, *tag = NULL;
+    if (event->type == YAML_ALIAS_EVENT)
+        anchor = event->data.alias.anchor;
+    else if (event->type == YAML_SCALAR_EVENT)
+        anchor = event->data.scalar.anchor, tag = event->data.scalar.tag;
+    else if (event->type == YAML_SEQUENCE_START_EVENT)
+        anchor = event->data.sequence_start.anchor, tag = event->data.sequence_start.tag;
+    else if (event->type == YAML_MAPPING_START_EVENT)
+        anchor = event->data.mapping_start.anchor, tag = event->data.mapping_start.tag;
+    if (!anchor && !tag)
+        return STATUS_OK;
+    status code = events_error(r, event->start_mark, "write the value where it is used",
+                               anchor ? "anchors and aliases (& and *) are not allowed" : "tags (!) are not allowed");
+    yaml_event_delete(event);
+    return code;
+}
+
+/* --- the tree --- */
 
 enum { SIZE_LIMIT = 64 << 20, DEPTH_LIMIT = 16, NODE_LIMIT = 1 << 21 };
 
@@ -268,4 +364,88 @@ const node *document_root(const document *d)
 const char *document_name(const document *d)
 {
     return d->name;
+}
+
+/* --- queries --- */
+
+const node *node_get(const node *map, const char *key)
+{
+    if (!map || map->kind != NODE_MAP)
+        return NULL;
+    for (size_t i = 0; i < map->count; i++)
+        if (strcmp(map->keys[i]->text, key) == 0)
+            return map->items[i];
+    return NULL;
+}
+
+status node_error(const document *d, const node *at, diagnostic *why, const char *remedy, const char *what, ...)
+{
+    char text[sizeof why->what];
+    va_list arguments;
+    va_start(arguments, what);
+    if (vsnprintf(text, sizeof text, what, arguments) < 0)
+        text[0] = 0;
+    va_end(arguments);
+    diagnostic_locate(why, document_name(d), at->line, at->column);
+    return diagnose(why, STATUS_BAD_INPUT, remedy, "%s", text);
+}
+
+static bool is_among(const char *word, const char *const *words, size_t count)
+{
+    for (size_t i = 0; i < count; i++)
+        if (strcmp(word, words[i]) == 0)
+            return true;
+    return false;
+}
+
+status node_check_keys(const document *d, const node *map, const char *const *words, size_t count, diagnostic *why)
+{
+    for (size_t i = 0; i < map->count; i++) {
+        const node *key = map->keys[i];
+        if (is_among(key->text, words, count))
+            continue;
+        char remedy[500];
+        suggest_key(key->text, words, count, remedy, sizeof remedy);
+        return node_error(d, key, why, remedy, "unknown key '%.80s'", key->text);
+    }
+    return STATUS_OK;
+}
+
+bool node_is_value(const node *n)
+{
+    for (size_t i = 0; n->kind == NODE_LIST && i < n->count; i++) {
+        /* A comma in an element would be read back as a separator. */
+        if (n->items[i]->kind != NODE_SCALAR || strchr(n->items[i]->text, ','))
+            return false;
+    }
+    return n->kind != NODE_MAP;
+}
+
+static char *list_text(const node *list)
+{
+    size_t size = 1;
+    for (size_t i = 0; i < list->count; i++)
+        size += strlen(list->items[i]->text) + 1;
+    char *text = malloc(size), *end = text;
+    if (!text)
+        return NULL;
+    *end = 0;
+    for (size_t i = 0; i < list->count; i++) {
+        if (i)
+            *end++ = ',';
+        end = stpcpy(end, list->items[i]->text);
+    }
+    return text;
+}
+
+char *node_value_text(const node *n)
+{
+    if (!node_is_value(n))
+        return NULL;
+    switch (n->kind) {
+    case NODE_SCALAR: return strdup(n->text);
+    case NODE_LIST: return list_text(n);
+    case NODE_MAP: break;
+    }
+    return NULL;
 }

@@ -34,7 +34,7 @@ const node *node_get(const node *map, const char *key);
 /* diagnose() located at a node. */
 status node_error(const document *d, const node *at, diagnostic *why, const char *remedy, const char *what, ...)
     __attribute__((format(printf, 5, 6)));
-/* Fails, with a suggestion (scene/model/suggest.h), if the map has a key that is not one of words[0..count-1]. */
+/* Fails, with a suggestion (scene/model/names.h), if the map has a key that is not one of words[0..count-1]. */
 status node_check_keys(const document *d, const node *map, const char *const *words, size_t count, diagnostic *why);
 
 /* Whether it is a scalar, or a list of scalars, that scene_set can accept. */

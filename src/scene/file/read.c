@@ -15,16 +15,224 @@
  * yes or no, true or false. SHAPE is the word of a rule in geometry/shapes/. The parameters are the rows of the table
  * (scene/model/params.h); a solid also takes those of a material, for itself alone. Vectors and colours are lists:
  * [0, 1, 2]. The file's order is kept. Sections and objects may be empty. */
-#include "base/file.h"
-#include "base/installed.h"
-#include "scene/file/shared.h"
+#include "scene/file/document.h"
 #include "scene/model/check.h"
 #include "scene/model/edit/edit.h"
-#include "scene/file/read_entries.h"
+#include "scene/model/params.h"
+#include "scene/model/params_value.h"
 #include "scene/model/scene.h"
 
+#include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
+
+typedef struct scene_reader {
+    const document *file;
+    struct scene *scene;
+    diagnostic *why;
+} scene_reader;
+
+/* --- entries: rows of the parameter table --- */
+
+/* Returns code; on failure, adds the node's location to a diagnostic from a function that does not know the file. */
+static status read_located(const scene_reader *r, const node *at, status code)
+{
+    if (code != STATUS_OK)
+        diagnostic_locate(r->why, document_name(r->file), at->line, at->column);
+    return code;
+}
+
+static bool is_empty(const node *n)
+{
+    return n->kind == NODE_SCALAR && !n->quoted && !n->text[0];
+}
+
+/* Requires a map, or nothing (an empty map). */
+static status read_expect_map(const scene_reader *r, const node *n, const char *name)
+{
+    if (n->kind == NODE_MAP || is_empty(n))
+        return STATUS_OK;
+    return node_error(r->file, n, r->why, "write indented lines 'key: value' below it",
+                      "%.80s is not a map of keys and values", name);
+}
+
+/* Requires a scalar that is not empty. */
+static status read_expect_word(const scene_reader *r, const node *n, const char *name)
+{
+    if (n->kind == NODE_SCALAR && n->text[0])
+        return STATUS_OK;
+    return node_error(r->file, n, r->why, "give one word", "%.80s is not a word", name);
+}
+
+static status check_value_kind(const scene_reader *r, const param *row, const char *path, const node *value)
+{
+    bool vector = row->type == PARAM_VECTOR || row->type == PARAM_COLOR || row->type == PARAM_LIST;
+    bool number = row->type == PARAM_INT || row->type == PARAM_REAL;
+    char remedy[420];
+    param_remedy(row, false, remedy, sizeof remedy);
+    if (value->kind == NODE_MAP || (value->kind == NODE_LIST && !vector))
+        return node_error(r->file, value, r->why, remedy, "%.150s is a %s", path,
+                          value->kind == NODE_MAP ? "map" : "list");
+    if (value->quoted && number)
+        return node_error(r->file, value, r->why, "remove the quotes", "%.150s is a text, but must be a number", path);
+    return STATUS_OK;
+}
+
+static status read_value(const scene_reader *r, const char *path, const param *row, const node *value)
+{
+    TRY(check_value_kind(r, row, path, value));
+    char *text = node_value_text(value);
+    if (!text && node_is_value(value))
+        return out_of_memory(r->why);
+    if (!text)
+        return node_error(r->file, value, r->why, row->type == PARAM_LIST ? "give plain numbers" : "give 3 numbers",
+                          "%.150s contains something other than plain numbers", path);
+    status code = read_located(r, value, scene_set(r->scene, path, text, r->why));
+    free(text);
+    return code;
+}
+
+/* Sets the entries of a map that are rows of the group; name is the path's first word. Other entries are left to the
+ * caller. */
+static status read_entries(const scene_reader *r, const char *name, param_group group, const node *map)
+{
+    for (size_t i = 0; i < map->count; i++) {
+        const char *key = map->keys[i]->text;
+        const param *row = param_find(group, key);
+        if (!row)
+            continue;
+        char path[2 * SCENE_NAME_MAX + 2];
+        snprintf(path, sizeof path, "%s.%s", name, key);
+        param_place unused;
+        TRY(read_located(r, map->keys[i], param_place_find(r->scene, path, &unused, r->why)));
+        TRY(read_value(r, path, row, map->items[i]));
+    }
+    return STATUS_OK;
+}
+
+/* Refuses a map that has both an index and a medium. */
+static status read_one_medium(const scene_reader *r, const node *map)
+{
+    const node *ior = node_get(map, "ior"), *medium = node_get(map, "medium");
+    if (ior && medium && strcmp(medium->text ? medium->text : "", "ior") != 0)
+        return node_error(r->file, ior, r->why, "keep either the ior or the medium",
+                          "both an ior and a medium are given");
+    return STATUS_OK;
+}
+
+/* Refuses keys that are not rows of the group. */
+static status read_check_keys(const scene_reader *r, param_group group, const node *map)
+{
+    enum { ROOM = 128 };
+    const char *words[ROOM];
+    size_t count = 0;
+    if (group == PARAM_SOLID) {
+        words[count++] = "shape";
+        words[count++] = "material";
+    }
+    for (size_t i = 0; i < param_count() && count < ROOM; i++) {
+        const param *row = param_at(i);
+        if (row->group == group || (group == PARAM_SOLID && row->group == PARAM_MATERIAL))
+            words[count++] = row->name;
+    }
+    return node_check_keys(r->file, map, words, count, r->why);
+}
+
+/* --- objects: meshes, textures, materials, lights, beams, solids --- */
+
+static status read_shape(const scene_reader *r, const node *key, const node *map, shape_kind *out)
+{
+    const node *shape = node_get(map, "shape");
+    if (!shape) {
+        char remedy[200] = "add shape: ";
+        const size_t used = strlen(remedy);
+        scene_shape_words("or", remedy + used, sizeof remedy - used);
+        return node_error(r->file, key, r->why, remedy, "%s has no shape", key->text);
+    }
+    TRY(read_expect_word(r, shape, "shape"));
+    return read_located(r, shape, scene_shape_named(shape->text, out, r->why));
+}
+
+/* Assigns the material in the solid's entry, if any. */
+static status read_material_name(const scene_reader *r, const node *key, const node *map)
+{
+    const node *word = node_get(map, "material");
+    if (!word)
+        return STATUS_OK;
+    TRY(read_expect_word(r, word, "material"));
+    return read_located(r, word, scene_assign_material(r->scene, key->text, word->text, r->why));
+}
+
+/* Adds a solid; its shape and material are not rows of the table. */
+static status begin_solid(const scene_reader *r, const node *key, const node *map, size_t *index)
+{
+    shape_kind shape = {0};
+    TRY(read_check_keys(r, PARAM_SOLID, map));
+    TRY(read_one_medium(r, map));
+    TRY(read_shape(r, key, map, &shape));
+    TRY(read_located(r, key, scene_add_solid(r->scene, key->text, shape, index, r->why)));
+    return read_material_name(r, key, map);
+}
+
+static status begin_object(const scene_reader *r, param_group group, const node *key, const node *map, size_t *index)
+{
+    if (group == PARAM_SOLID)
+        return begin_solid(r, key, map, index);
+    status code = read_located(r, key, scene_add(r->scene, group, key->text, index, r->why));
+    THEN(code, read_check_keys(r, group, map));
+    if (code == STATUS_OK && group == PARAM_MATERIAL)
+        code = read_one_medium(r, map);
+    const node *generate = node_get(map, "generate");
+    if (code == STATUS_OK && group == PARAM_MESH && generate && node_get(map, "file"))
+        return node_error(r->file, generate, r->why, "keep one of them", "%.80s has both a file and a generator",
+                          key->text);
+    return code;
+}
+
+static void note_place(const node *file, long *line, long *column)
+{
+    if (file) {
+        *line = file->line;
+        *column = file->column;
+    }
+}
+
+/* Stores the locations of file names, for diagnostics when the files are read. */
+static void note_places(const scene_reader *r, param_group group, size_t index, const node *map)
+{
+    const node *file = node_get(map, "file");
+    if (group == PARAM_MESH) {
+        mesh_entry *m = &r->scene->meshes[index];
+        note_place(file ? file : node_get(map, "generate"), &m->path_line, &m->path_column);
+        note_place(node_get(map, "script"), &m->script_line, &m->script_column);
+    } else if (group == PARAM_TEXTURE) {
+        texture_entry *t = &r->scene->textures[index];
+        note_place(file, &t->path_line, &t->path_column);
+    }
+}
+
+static status read_object(const scene_reader *r, param_group group, const node *key, const node *map)
+{
+    size_t index = 0;
+    TRY(begin_object(r, group, key, map, &index));
+    TRY(read_entries(r, key->text, group, map));
+    note_places(r, group, index, map);
+    return read_located(r, key, check_object(r->scene, group, index, r->why));
+}
+
+/* Reads a section of named objects: each is added to the scene and checked. Materials come before solids, which refer
+ * to them. */
+static status read_objects(const scene_reader *r, const char *name, param_group group, const node *map)
+{
+    status code = read_expect_map(r, map, name);
+    for (size_t i = 0; i < map->count && code == STATUS_OK; i++) {
+        code = read_expect_map(r, map->items[i], map->keys[i]->text);
+        THEN(code, read_object(r, group, map->keys[i], map->items[i]));
+    }
+    return code;
+}
+
+/* --- sections --- */
 
 /* Whether an image is given for a background of another kind. */
 static status check_sky(const scene_reader *r, const node *map)
@@ -134,46 +342,27 @@ static status build_and_release(document *file, scene **out, diagnostic *why)
     return code;
 }
 
-status scene_read(const char *path, scene **out, diagnostic *why)
-{
-    return scene_read_below(path, NULL, out, why);
-}
-
-/* A shared image may be larger than a scene's text, whose own limit document_parse checks. */
-enum { FILE_LIMIT = 1 << 28 };
-
-static status read_file(const char *path, const char *root, scene **out, diagnostic *why)
-{
-    char *text;
-    size_t size;
-    const status read = file_read_below(path, root, FILE_LIMIT, &text, &size, why);
-    if (read != STATUS_OK) {
-        if (!root)
-            installed_suggest(path, "experiments/scenes", ".yaml", why);
-        return read;
-    }
-    const status code = shared_is_file(text, size) ? shared_read_file(path, text, size, out, why)
-                                                   : scene_read_text(path, text, size, out, why);
-    free(text);
-    return code;
-}
-
-status scene_read_below(const char *path, const char *root, scene **out, diagnostic *why)
-{
-    *out = NULL;
-    TRY(shared_is_link(path) ? shared_read_link(path, out, why) : read_file(path, root, out, why));
-    const status code = scene_limit(*out, root, 0, why);
-    if (code != STATUS_OK) {
-        scene_destroy(*out);
-        *out = NULL;
-    }
-    return code;
-}
-
 status scene_read_text(const char *name, const char *text, size_t size, scene **out, diagnostic *why)
 {
     *out = NULL;
     document *file;
     TRY(document_parse(name, text, size, &file, why));
     return build_and_release(file, out, why);
+}
+
+static const char initial_scene[] =
+    "title: A new scene\n"
+    "render: {width: 800, height: 600, depth: 6}\n"
+    "camera: {position: [0, 1.8, -6], target: [0, 0.8, 0], fov_deg: 40}\n"
+    "background: {kind: gradient, color: [0.25, 0.45, 0.75], horizon: [0.85, 0.9, 0.95]}\n"
+    "materials:\n"
+    "  paving: {color: [0.8, 0.8, 0.78], ambient: 0.25, diffuse: 0.7, checker: 1, checker_color: [0.45, 0.47, 0.5]}\n"
+    "lights:\n"
+    "  lamp: {position: [5, 9, -7]}\n"
+    "solids:\n"
+    "  ground: {shape: plane, material: paving}\n";
+
+status new_scene(scene **out, diagnostic *why)
+{
+    return scene_read_text("", initial_scene, sizeof initial_scene - 1, out, why);
 }

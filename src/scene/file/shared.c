@@ -1,11 +1,10 @@
 /* What may be shared, and its text, code and metadata. shared_read.c reads them. */
-#include "scene/file/shared.h"
 #include "base/text.h"
+#include "scene/file/shared.h"
 #include "scene/file/write.h"
 #include "scene/model/params.h"
 #include "scene/model/scene.h"
 #include "scene/model/work.h"
-#include "scene/model/slime.h"
 
 #include <stdlib.h>
 #include <string.h>

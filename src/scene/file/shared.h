@@ -1,8 +1,9 @@
-/* Scenes that travel alone: in the metadata of a PNG image, in a link, in a shared page. They come from strangers, so
- * they may name no files, and are bounded in size and work. What is written obeys the same rules as what is read, so
- * that everything shared can be opened. A shared text is that of scene/file/write.h without the parameters that tell
- * how this machine renders, such as render.threads, so that the same image has the same file on every machine.
- * Ownership: texts are the caller's, released with free. Errors: STATUS_BAD_INPUT with the reason. */
+/* Shared scenes, which consist of a text only: in the metadata of a PNG image, in a link, in a shared page. They come
+ * from strangers, so they may name no files, and are bounded in size and work. What is written obeys the same rules as
+ * what is read, so that everything shared can be opened. A shared text is that of scene/file/write.h without the
+ * parameters that only affect how fast a machine renders, such as render.threads, so that the same image has the same
+ * file on every machine. Ownership: texts are the caller's, released with free. Errors: STATUS_BAD_INPUT with the
+ * reason. */
 #pragma once
 
 #include "image/image.h"

@@ -6,11 +6,27 @@
 #pragma once
 
 #include "scene/model/open.h"
+#include <stdio.h>
 
 /* path is the destination of the text: paths of files in it are written relative to that folder, or absolute if the two
- * folders share only the root. NULL or "" means a file in the working folder. all writes every parameter in use,
- * including defaults. STATUS_BAD_INPUT if a title or path is not valid UTF-8. */
+ * folders have only the root in common. NULL or "" means a file in the working folder. all writes every parameter in
+ * use, including defaults. STATUS_BAD_INPUT if a title or path is not valid UTF-8. */
 status scene_write_text(const scene *s, const char *path, bool all, char **text, diagnostic *why);
 
 /* The same to a file, written atomically; "-" is standard output. */
 status scene_write(const scene *s, const char *path, bool all, diagnostic *why);
+
+/* --- parts of such a text, for others that write YAML: write_parts.c --- */
+
+/* STATUS_BAD_INPUT if the text of the item called label is not UTF-8. */
+status write_check_text(const char *label, const char *text, diagnostic *why);
+
+/* A word or text, quoted if a YAML reader would interpret it otherwise. It must be UTF-8. */
+void write_word(FILE *out, const char *text);
+
+/* "0,1,2" or "[0,1,2]" as [0, 1, 2]. */
+void write_list(FILE *out, const char *numbers);
+
+/* Converts path, relative to the folder of old_file, to a path relative to the folder of new_file. "" means a file in
+ * the working folder. */
+status write_moved_path(const char *path, const char *old_file, const char *new_file, char **moved, diagnostic *why);

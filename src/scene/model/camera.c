@@ -1,5 +1,5 @@
-#include "scene/model/camera.h"
 #include "base/elementary.h"
+#include "scene/model/camera.h"
 #include "scene/model/view_settings.h"
 
 static void aim_at_target(const struct camera *c, camera_frame *f)

@@ -1,17 +1,97 @@
-#include "scene/model/camera_moves.h"
+/* Camera moves, and their bounds, so that no gesture loses the scene: the camera stays above the grounds that it is
+ * above, and its distance from the pivot stays within the scene's scale. A ground is a visible opaque plane that faces
+ * up. Lengths in scene units. */
+#include "base/elementary.h"
+#include "geometry/shapes/shape.h"
 #include "scene/model/camera.h"
-#include "scene/model/camera_limits.h"
+#include "scene/model/camera_moves.h"
 #include "scene/model/edit/edit.h"
 #include "scene/model/place/placement.h"
-
-#include "base/elementary.h"
 #include "scene/model/scene.h"
+
 #include <math.h>
 #include <string.h>
 
+/* --- bounds --- */
+
+static const double ground_up_y = 0.9;
+
+/* The ground's normal; false for another solid. One can dive into a transparent plane, such as a sea. */
+static bool is_ground(const solid *one, vec3 *up)
+{
+    if (!one->visible || !shape_of(&one->shape)->unbounded || one->surface.transparency > 0.0)
+        return false;
+    *up = mat3_apply(rotation_from_deg(one->shape.rotation_deg), vec3_make(0.0, 1.0, 0.0));
+    return up->y >= ground_up_y;
+}
+
+/* How much a point is too low for a camera that comes from above; 0 or less: it is not. */
+static double missing(const solid *one, vec3 up, vec3 from, vec3 to, double gap)
+{
+    const double before = vec3_dot(up, vec3_sub(from, one->shape.position)),
+                 after = vec3_dot(up, vec3_sub(to, one->shape.position));
+    return before > 0.0 ? fmin(before, gap) - after : 0.0;
+}
+
+/* Whether a camera that moves from one point to another keeps its distance from every ground below the first. */
+static bool is_clear(const scene *s, vec3 from, vec3 to, double gap)
+{
+    vec3 up;
+    for (size_t i = 0; i < s->solid_count; i++)
+        if (is_ground(&s->solids[i], &up) && missing(&s->solids[i], up, from, to, gap) > 0.0)
+            return false;
+    return true;
+}
+
+/* The nearest such point above `to`, for one ground; for several, one that is clear of each in turn. */
+static vec3 lifted(const scene *s, vec3 from, vec3 to, double gap)
+{
+    vec3 up;
+    for (size_t i = 0; i < s->solid_count; i++)
+        if (is_ground(&s->solids[i], &up))
+            to = vec3_add(to, vec3_scale(up, fmax(0.0, missing(&s->solids[i], up, from, to, gap))));
+    return to;
+}
+
+/* The distance from a point to the farthest end of a solid. */
+static double extent_about(const scene *s, vec3 point)
+{
+    double extent = 0.0, radius;
+    vec3 centre;
+    for (size_t i = 0; i < s->solid_count; i++)
+        if (s->solids[i].visible && placement_bounding_sphere(s, &s->solids[i], &centre, &radius))
+            extent = fmax(extent, vec3_length(vec3_sub(centre, point)) + radius);
+    return extent;
+}
+
+/* A distance from the pivot within bounds: a thousandth of the scene's extent about the pivot, and twenty times it. A
+ * camera that is already beyond a bound may stay there. */
+static double distance_within(const scene *s, vec3 pivot, double now, double wanted)
+{
+    const double nearest = 1e-3, farthest = 20.0, extent = extent_about(s, pivot), scale = extent > 0.0 ? extent : now;
+    return fmin(fmax(wanted, fmin(nearest * scale, now)), fmax(farthest * scale, now));
+}
+
+/* A ball around all visible solids with bounds; false for none. */
+static bool scene_ball(const scene *s, vec3 *centre, double *radius)
+{
+    vec3 low = vec3_make(INFINITY, INFINITY, INFINITY), high = vec3_scale(low, -1.0), at;
+    double r;
+    for (size_t i = 0; i < s->solid_count; i++)
+        if (s->solids[i].visible && placement_bounding_sphere(s, &s->solids[i], &at, &r)) {
+            low = vec3_make(fmin(low.x, at.x - r), fmin(low.y, at.y - r), fmin(low.z, at.z - r));
+            high = vec3_make(fmax(high.x, at.x + r), fmax(high.y, at.y + r), fmax(high.z, at.z + r));
+        }
+    *centre = vec3_scale(vec3_add(low, high), 0.5);
+    *radius = low.x <= high.x ? extent_about(s, *centre) : 0.0;
+    return *radius > 0.0;
+}
+
+/* --- moves --- */
+
 static const double pitch_max_deg = 89.5;
-/* Of the distance from the pivot, kept from the ground. */
-static const double gap_share = 1e-3;
+/* Distance that is kept from the ground, as a fraction of that from the pivot. */
+static const double gap_fraction = 1e-3;
 
 static vec3 direction_of(double yaw_deg, double pitch_deg)
 {
@@ -62,20 +142,20 @@ static vec3 seen_from(vec3 pivot, vec3 direction, double distance)
     return vec3_sub(pivot, vec3_scale(direction, distance));
 }
 
-/* The largest share of a pitch, after all of the yaw, that is clear of the ground. */
+/* The largest fraction of a pitch, after all of the yaw, that is clear of the ground. */
 static vec3 clear_direction(const scene *s, vec3 forward, vec3 pivot, double distance, const double by_deg[2])
 {
     enum { HALVINGS = 50 };
-    double clear = 0.0, share = 1.0, step = 1.0;
+    double clear = 0.0, fraction = 1.0, step = 1.0;
     for (int i = 0; i < HALVINGS; i++) {
-        const vec3 direction = turned(forward, (double[2]){by_deg[0], share * by_deg[1]});
+        const vec3 direction = turned(forward, (double[2]){by_deg[0], fraction * by_deg[1]});
         const bool good =
-            camera_is_clear(s, s->camera.position, seen_from(pivot, direction, distance), gap_share * distance);
-        if (good && share == 1.0)
+            is_clear(s, s->camera.position, seen_from(pivot, direction, distance), gap_fraction * distance);
+        if (good && fraction == 1.0)
             return direction;
-        clear = good ? share : clear;
+        clear = good ? fraction : clear;
         step *= 0.5;
-        share = good ? share + step : share - step;
+        fraction = good ? fraction + step : fraction - step;
     }
     return turned(forward, (double[2]){by_deg[0], clear * by_deg[1]});
 }
@@ -87,7 +167,7 @@ static void orbit(const camera_move *m, scene *s)
     const double distance = vec3_length(vec3_sub(pivot, s->camera.position));
     unrolled(s->camera.roll_deg, m->orbit_deg[0], -m->orbit_deg[1], by);
     const vec3 direction = clear_direction(s, forward, pivot, distance, by), to = seen_from(pivot, direction, distance);
-    if (!camera_is_clear(s, s->camera.position, to, gap_share * distance))
+    if (!is_clear(s, s->camera.position, to, gap_fraction * distance))
         return; /* on a slope even the yaw may lead below it */
     s->camera.position = to;
     aim(s, direction, pivot);
@@ -108,7 +188,7 @@ static void turn(camera_move *m, scene *s)
 static void zoom_parallel(const camera_move *m, scene *s)
 {
     const double height = s->camera.view_height;
-    s->camera.view_height = camera_distance_within(s, m->pivot.at, height, m->zoom * height);
+    s->camera.view_height = distance_within(s, m->pivot.at, height, m->zoom * height);
 }
 
 /* Moves along the line to the pivot, whose height above a ground is linear in the distance. */
@@ -116,17 +196,17 @@ static void zoom(const camera_move *m, scene *s)
 {
     const vec3 from = s->camera.position, offset = vec3_sub(from, m->pivot.at);
     const double distance = vec3_length(offset);
-    double share = camera_distance_within(s, m->pivot.at, distance, m->zoom * distance) / distance, bad = share,
+    double fraction = distance_within(s, m->pivot.at, distance, m->zoom * distance) / distance, bad = fraction,
            clear = 1.0;
     for (int i = 0; i < 50; i++) {
-        const vec3 to = vec3_add(m->pivot.at, vec3_scale(offset, share));
-        if (camera_is_clear(s, from, to, gap_share * distance))
-            clear = share;
+        const vec3 to = vec3_add(m->pivot.at, vec3_scale(offset, fraction));
+        if (is_clear(s, from, to, gap_fraction * distance))
+            clear = fraction;
         else
-            bad = share;
+            bad = fraction;
         if (clear == bad)
             break;
-        share = 0.5 * (clear + bad);
+        fraction = 0.5 * (clear + bad);
     }
     s->camera.position = vec3_add(m->pivot.at, vec3_scale(offset, clear));
 }
@@ -136,9 +216,9 @@ static status step(camera_move *m, scene *s, diagnostic *why)
     const camera_frame f = camera_frame_of(s);
     const vec3 by = vec3_add(vec3_scale(f.right, m->step[0]),
                              vec3_add(vec3_scale(f.up, m->step[1]), vec3_scale(f.forward, m->step[2])));
-    const double gap = gap_share * vec3_length(vec3_sub(m->pivot.at, f.eye));
-    const vec3 slide = vec3_sub(camera_lifted(s, f.eye, vec3_add(f.eye, by), gap), f.eye);
-    const bool blocked = !camera_is_clear(s, f.eye, vec3_add(f.eye, by), gap);
+    const double gap = gap_fraction * vec3_length(vec3_sub(m->pivot.at, f.eye));
+    const vec3 slide = vec3_sub(lifted(s, f.eye, vec3_add(f.eye, by), gap), f.eye);
+    const bool blocked = !is_clear(s, f.eye, vec3_add(f.eye, by), gap);
     m->pivot.at = vec3_add(m->pivot.at, blocked ? slide : by);
     return scene_move(s, "camera", blocked ? slide : by, why);
 }
@@ -149,7 +229,7 @@ static status step(camera_move *m, scene *s, diagnostic *why)
 static void look_at_pivot(const camera_move *m, scene *s, vec3 direction, double distance)
 {
     const vec3 pivot = m->pivot.at, to = seen_from(pivot, direction, distance);
-    s->camera.position = camera_lifted(s, s->camera.position, to, gap_share * distance);
+    s->camera.position = lifted(s, s->camera.position, to, gap_fraction * distance);
     aim(s, vec3_normalize(vec3_sub(pivot, s->camera.position)), pivot);
 }
 
@@ -184,7 +264,7 @@ static status ball_of(const scene *s, const char *name, double distance, vec3 *c
         }
     if (strcmp(name, "all") != 0)
         return diagnose(why, STATUS_BAD_INPUT, "give a solid, a light or all", "no solid or light '%.80s'", name);
-    return camera_scene_ball(s, centre, radius)
+    return scene_ball(s, centre, radius)
                ? STATUS_OK
                : diagnose(why, STATUS_BAD_INPUT, "add a solid with an end", "the scene has nothing to be framed");
 }

@@ -24,8 +24,8 @@ typedef struct camera_move {
 } camera_move;
 
 /* Changes nothing but the camera. Directions stay 0.5 degrees away from vertical, except from the top, so that the
- * camera never turns upside down. No move goes through a ground (scene/model/camera_limits.h): orbits and zooms stop
- * there, steps slide along it. */
+ * camera never turns upside down. No move goes through a ground (a visible opaque plane that faces up): orbits and
+ * zooms stop there, steps slide along it. */
 status camera_move_apply(camera_move *m, scene *s, diagnostic *why);
 
 /* The current pivot. known: of the last move. */

@@ -1,51 +1,17 @@
 /* Checks beyond single ranges: parameters that depend on each other, names that must exist, invalid combinations. The
  * range of one value is checked when it is set (params_value.c). */
-#include "scene/model/check.h"
-#include "geometry/shapes/shape.h"
+#include "base/cancel.h"
 #include "geometry/scene_geometry.h"
+#include "geometry/shapes/shape.h"
+#include "scene/model/check.h"
 #include "scene/model/face_materials.h"
 #include "scene/model/medium.h"
 #include "scene/model/objects.h"
-#include "scene/model/params_path.h"
-#include "scene/model/slime.h"
 #include "scene/model/scene.h"
-#include "scene/model/sheet.h"
 
 #include <string.h>
 
 _Static_assert((int)SCENE_UNBOUNDED_MAX == (int)PRIMITIVES_MAX, "each can be a direct primitive");
-
-static bool is_reserved(const char *name)
-{
-    static const char *const sections[] = {"title", "meshes", "textures", "materials", "lights", "solids"};
-    for (size_t i = 0; i < sizeof sections / sizeof sections[0]; i++)
-        if (strcmp(name, sections[i]) == 0)
-            return true;
-    for (int g = 0; g < PARAM_GROUP_COUNT; g++) /* objects of older scenes may be called "beam" */
-        if (g != PARAM_BEAM && strcmp(name, param_group_name((param_group)g)) == 0)
-            return true;
-    return false;
-}
-
-static bool is_letter(char c)
-{
-    return (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') || c == '_';
-}
-
-status check_name(const char *name, diagnostic *why)
-{
-    size_t length = strlen(name);
-    bool right = is_letter(name[0]) && length <= SCENE_NAME_MAX;
-    for (const char *c = name; right && *c; c++)
-        right = is_letter(*c) || (*c >= '0' && *c <= '9') || *c == '-';
-    if (!right)
-        return diagnose(why, STATUS_BAD_INPUT, "use at most 63 letters, digits, _ and -, beginning with a letter or _",
-                        "'%.80s' is not a valid name", name);
-    if (is_reserved(name))
-        return diagnose(why, STATUS_BAD_INPUT, "choose another name", "the name '%s' is a reserved word of scene files",
-                        name);
-    return STATUS_OK;
-}
 
 static size_t count_name(const scene *s, const char *name)
 {
@@ -173,6 +139,23 @@ static status check_camera(const scene *s, diagnostic *why)
     if (s->camera.aimed && !(vec3_dot(d, d) > 0.0))
         return diagnose(why, STATUS_BAD_INPUT, "move camera.position or camera.target",
                         "the camera is at its own target");
+    return STATUS_OK;
+}
+
+status sky_check(const image *sky, const char *path, diagnostic *bad)
+{
+    for (int y = 0; y < sky->height; y++) {
+        TRY(cancel_check(bad));
+        for (int x = 0; x < sky->width; x++) {
+            const float *pixel = &sky->pixel[((size_t)y * (size_t)sky->width + (size_t)x) * 3];
+            for (int channel = 0; channel < 3; channel++) {
+                if (!(pixel[channel] >= 0.0F && pixel[channel] <= SCENE_SKY_MAX))
+                    return diagnose_at(bad, path, STATUS_BAD_INPUT, "scale the image to 0..65536",
+                                       "pixel %d,%d is %g in channel %d; the radiance of the sky must be in 0..65536",
+                                       x, y, (double)pixel[channel], channel);
+            }
+        }
+    }
     return STATUS_OK;
 }
 
@@ -339,7 +322,7 @@ static status check_solid(const scene *s, const solid *owner, diagnostic *why)
     /* A surface must not return more light than it receives; the tolerance is for sums such as 0.7 + 0.2 + 0.1. Under
      * Fresnel weights R + T = 1 always holds, and reflectivity applies only to opaque surfaces. */
     double sum = owner->surface.reflectivity + owner->surface.transparency;
-    if (scene_has_constant_shares(&s->render) && sum > 1.0 + 1e-12) {
+    if (scene_has_constant_weights(&s->render) && sum > 1.0 + 1e-12) {
         const bool simple = s->render.transmission == TRANSMISSION_SIMPLE;
         return diagnose(why, STATUS_BAD_INPUT,
                         simple ? "lower one of them, or set render.transmission to refract"

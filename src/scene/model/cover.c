@@ -1,6 +1,6 @@
-#include "scene/model/cover.h"
 #include "geometry/shapes/shape.h"
 #include "scene/model/camera.h"
+#include "scene/model/cover.h"
 #include "scene/model/scene.h"
 
 #include <math.h>

@@ -1,138 +1,29 @@
+/* Which material a face has. */
 #include "scene/model/face_materials.h"
+#include "scene/model/medium.h"
 #include "scene/model/scene.h"
 
-#include <math.h>
-#include <stdatomic.h>
-#include <stdio.h>
-#include <stdlib.h>
 #include <string.h>
 
-#define EMISSION_MAX 1e4 /* as in the parameter table */
-
-struct face_materials {
-    atomic_int owners;
-    int count;
-    face_material mat[];
-};
-
-/* Only the owner count changes; all other fields are constant. */
-static face_materials *counted(const face_materials *l)
+/* The material of that name in the scene, which takes precedence over the file's. */
+static const material *named_material_of(const scene *s, const char *name)
 {
-    return (face_materials *)(uintptr_t)l;
+    for (size_t i = 0; name[0] && i < s->material_count; i++)
+        if (strcmp(s->materials[i].name, name) == 0)
+            return &s->materials[i].value;
+    return NULL;
 }
 
-static double at_most_one(double value)
+void face_material_source(const scene *s, const solid *owner, int slot, const material **named,
+                          const face_material **given)
 {
-    return value < 1.0 ? value : 1.0;
-}
-
-/* Shared with an earlier slot that has the same image file. */
-static status read_image(const mesh_import *imported, int slot, const char *root, face_materials *shading_materials,
-                         diagnostic *why)
-{
-    const char *path = imported->materials[slot].texture;
-    for (int i = 0; i < slot; i++) {
-        const char *other = imported->materials[i].texture;
-        if (other && shading_materials->mat[i].img && strcmp(other, path) == 0) {
-            shading_materials->mat[slot].img = shading_materials->mat[i].img;
-            texture_retain(shading_materials->mat[i].img);
-            return STATUS_OK;
-        }
-    }
-    texture *img;
-    const status code =
-        texture_read_below(path, root, TEXTURE_SRGB, TEXTURE_REPEAT, TEXTURE_REPEAT, TEXTURE_TRILINEAR, &img, why);
-    if (code == STATUS_OK)
-        shading_materials->mat[slot].img = img;
-    return code;
-}
-
-static double brightest(vec3 color)
-{
-    return fmax(color.x, fmax(color.y, color.z));
-}
-
-/* Emission is the surface's colour times a scalar in this program: the scalar is the brightest channel of the file's
- * emission; an emitter with a black surface takes the colour of the emission. */
-static void emit(face_material *mat, const imported_material *m)
-{
-    const vec3 sent = vec3_make(m->emissive[0], m->emissive[1], m->emissive[2]);
-    if (!(brightest(sent) > 0.0))
-        return;
-    if (brightest(mat->color) == 0.0) {
-        mat->color = vec3_scale(sent, 1.0 / brightest(sent));
-        mat->diffuse = 0.0;
-    }
-    mat->emission = fmin(brightest(sent) / brightest(mat->color), EMISSION_MAX);
-}
-
-/* Material files have a colour for each term of Phong's equation, this program a coefficient: the brightest channel. */
-static face_material look_of(const imported_material *m)
-{
-    face_material mat = {.given = m->given, .diffuse = 1.0, .shininess = m->shininess, .opacity = m->opacity};
-    snprintf(mat.name, sizeof mat.name, "%s", m->name ? m->name : "");
-    mat.color = vec3_make(at_most_one(m->color[0]), at_most_one(m->color[1]), at_most_one(m->color[2]));
-    /* A highlight without an exponent is ignored: with exponent 0 it would cover the whole surface. */
-    for (int c = 0; c < 3 && m->shininess > 0.0; c++)
-        mat.specular = m->specular[c] > mat.specular ? at_most_one(m->specular[c]) : mat.specular;
-    emit(&mat, m);
-    return mat;
-}
-
-/* NULL: out of memory. */
-static face_materials *allocate(int count)
-{
-    face_materials *l = calloc(1, sizeof *l + (size_t)count * sizeof l->mat[0]);
-    if (!l)
-        return NULL;
-    atomic_init(&l->owners, 1);
-    l->count = count;
-    return l;
-}
-
-status face_materials_create(const mesh_import *imported, const char *root, const face_materials **out, diagnostic *why)
-{
-    face_materials *shading_materials = allocate(imported->material_count);
-    if (!shading_materials)
-        return out_of_memory(why);
-    for (int i = 0; i < shading_materials->count; i++) {
-        shading_materials->mat[i] = look_of(&imported->materials[i]);
-        const status code =
-            imported->materials[i].texture ? read_image(imported, i, root, shading_materials, why) : STATUS_OK;
-        if (code != STATUS_OK) {
-            face_materials_release(shading_materials);
-            return code;
-        }
-    }
-    *out = shading_materials;
-    return STATUS_OK;
-}
-
-status face_materials_of(const face_material *list, int count, const face_materials **out, diagnostic *why)
-{
-    face_materials *l = allocate(count);
-    for (int i = 0; i < count; i++)
-        if (l)
-            l->mat[i] = list[i];
-        else
-            texture_release(list[i].img);
-    *out = l;
-    return l ? STATUS_OK : out_of_memory(why);
-}
-
-void face_materials_retain(const face_materials *l)
-{
-    if (l)
-        atomic_fetch_add(&counted(l)->owners, 1);
-}
-
-void face_materials_release(const face_materials *l)
-{
-    if (!l || atomic_fetch_sub(&counted(l)->owners, 1) > 1)
-        return;
-    for (int i = 0; i < l->count; i++)
-        texture_release(l->mat[i].img);
-    free(counted(l));
+    const mesh_entry *m = scene_mesh_of(s, owner);
+    const char *name = m->data->slot_names[slot];
+    *named = named_material_of(s, name ? name : "");
+    *given = !*named && slot < face_materials_count(m->shading_materials) &&
+                     face_materials_at(m->shading_materials, slot)->given
+                 ? face_materials_at(m->shading_materials, slot)
+                 : NULL;
 }
 
 bool has_face_materials(const scene *s, const solid *owner)
@@ -148,12 +39,91 @@ bool has_face_materials(const scene *s, const solid *owner)
     return false;
 }
 
-int face_materials_count(const face_materials *l)
+static const texture *image_of(const scene *s, const material *m)
 {
-    return l ? l->count : 0;
+    const texture_entry *t = m->texture[0] ? scene_find_texture(s, m->texture) : NULL;
+    return t ? t->data : NULL;
 }
 
-const face_material *face_materials_at(const face_materials *l, int slot)
+static void apply_file_material(shading_material *l, const material *own, const face_material *given)
 {
-    return &l->mat[slot];
+    l->surface.color = given->color;
+    l->surface.diffuse = given->diffuse;
+    l->surface.ambient = own->ambient > 0.0 ? own->ambient : 0.1;
+    l->surface.specular = given->specular;
+    l->surface.emission = given->emission > 0.0 ? given->emission : own->emission;
+    l->surface.shininess = given->shininess;
+    l->img = given->img;
+}
+
+/* With refraction, medium and transparency are properties of the solid, and a face's material affects only the
+ * reflection of opaque surfaces. Without refraction, transparency and reflectivity are properties of each face. */
+shading_material shading_material_of_face(const scene *s, const solid *owner, const material *own, int slot)
+{
+    const material *named;
+    const face_material *given;
+    face_material_source(s, owner, slot, &named, &given);
+    shading_material l = {.surface = *own, .img = image_of(s, named ? named : own)};
+    if (named)
+        l.surface = *named;
+    else if (given)
+        apply_file_material(&l, own, given);
+    if (s->render.transmission == TRANSMISSION_SIMPLE) {
+        l.surface.transparency = named                           ? named->transparency
+                                 : given && given->opacity < 1.0 ? 1.0 - given->opacity
+                                                                 : own->transparency;
+        return l;
+    }
+    l.surface.transparency = own->transparency;
+    if (!material_is_opaque(own)) { /* both fractions are the solid's, so that their sum is at most 1 */
+        l.surface.reflectivity = own->reflectivity;
+        l.surface.roughness = own->roughness;
+    }
+    return l;
+}
+
+shading_material shading_material_of_solid(const scene *s, const material *own)
+{
+    return (shading_material){.surface = *own, .img = image_of(s, own)};
+}
+
+int face_material_slots(const scene *s, const solid *owner)
+{
+    return has_face_materials(s, owner) ? scene_mesh_of(s, owner)->data->slot_count : 0;
+}
+
+bool solid_is_opaque(const scene *s, const solid *owner)
+{
+    const int slots = s->render.transmission == TRANSMISSION_SIMPLE ? face_material_slots(s, owner) : 0;
+    bool opaque = slots > 0 || material_is_opaque(&owner->surface);
+    for (int slot = 0; slot < slots; slot++)
+        opaque &= shading_material_of_face(s, owner, &owner->surface, slot).surface.transparency == 0.0;
+    return opaque;
+}
+
+int scene_crystals(const scene *s)
+{
+    int count = 0;
+    for (size_t i = 0; i < s->solid_count; i++) {
+        const solid *one = &s->solids[i];
+        count += one->visible && !solid_is_opaque(s, one) && material_is_crystal(&one->surface, &s->render);
+    }
+    return count;
+}
+
+bool ignores_face_transparency(const scene *s, const solid *owner)
+{
+    const material *own = &owner->surface;
+    const int slots = s->render.transmission == TRANSMISSION_SIMPLE ? 0 : face_material_slots(s, owner);
+    for (int slot = 0; slot < slots; slot++) {
+        const material *named;
+        const face_material *given;
+        face_material_source(s, owner, slot, &named, &given);
+        const bool clear = !material_is_opaque(own);
+        if ((named &&
+             (named->transparency != own->transparency || (clear && named->reflectivity != own->reflectivity))) ||
+            (!named && given && given->opacity < 1.0 && 1.0 - given->opacity != own->transparency))
+            return true;
+    }
+    return false;
 }

@@ -1,29 +1,9 @@
-/* The materials in a mesh file, by slot: the coefficients of Phong's equation and a texture. Reference counted like
- * their mesh: face_materials_retain and face_materials_release are thread safe. */
+/* The materials of a solid's faces: its own, or those of its mesh by slot, which a mesh file defines, or the scene by
+ * the slot's name. Pure. */
 #pragma once
 
-#include "scene/assets/mesh_stream.h"
-#include "scene/model/material.h"
-#include "scene/model/mesh_entry.h"
 #include "scene/model/open.h"
 #include "scene/model/solids.h"
-
-typedef struct face_material {
-    char name[SCENE_NAME_MAX + 1]; /* truncated if longer; "" for none */
-    bool given;                    /* the file defines the material; otherwise the solid's own material is used */
-    vec3 color;                    /* linear RGB, each at most 1 */
-    double diffuse, specular, shininess, emission, opacity;
-    const texture *img; /* one reference; NULL for none */
-} face_material;
-
-/* Converts the importer's result; reads its image files, each once, below root (base/file.h). A diagnostic has the
- * path of the image file. */
-status face_materials_create(const mesh_import *imported, const char *root, const face_materials **out,
-                             diagnostic *why);
-/* Of a list of materials; takes over its references to images, also after an error. STATUS_FAILURE without memory. */
-status face_materials_of(const face_material *list, int count, const face_materials **out, diagnostic *why);
-void face_materials_retain(const face_materials *l); /* NULL is allowed here and in the functions below */
-void face_materials_release(const face_materials *l);
 
 /* Whether the mesh's slots determine the materials of the solid's faces: the solid has no material of its own, and the
  * file, or the scene by a slot's name, gives one to some slot (face_material_source). A file without materials has
@@ -55,11 +35,8 @@ shading_material shading_material_of_solid(const scene *s, const material *own);
 
 /* Whether all its faces are opaque. */
 bool solid_is_opaque(const scene *s, const solid *owner);
-/* How many solids that can be seen are clear crystals. */
+/* The number of visible solids that are clear crystals. */
 int scene_crystals(const scene *s);
 
 /* Whether its faces have a transparency or reflectivity without effect, because the solid refracts. */
 bool ignores_face_transparency(const scene *s, const solid *owner);
-
-int face_materials_count(const face_materials *l); /* 0 for NULL */
-const face_material *face_materials_at(const face_materials *l, int slot);

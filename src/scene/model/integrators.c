@@ -15,3 +15,8 @@ const char *integrator_with_layers(void)
             return integrator_words[i];
     return NULL;
 }
+
+const char *const layer_words[] = {LAYERS(WORD) NULL};
+
+#define CHANNELS(name, word, channels) channels,
+const int layer_channels[LAYER_COUNT] = {LAYERS(CHANNELS)};

@@ -31,7 +31,7 @@ typedef struct material {
     double extinction;        /* of an opaque material with medium MEDIUM_IOR: k of its complex index ior - i k */
     double film_thickness_nm, film_ior;   /* of a film on the surface; thickness 0: none */
     double roughness;                     /* alpha of optics/microfacet.h, for random paths; 0: smooth */
-    int64_t sheet;                        /* see scene/model/sheet.h; of a transparent solid */
+    int64_t sheet;                        /* see scene/model/medium.h; of a transparent solid */
     vec3 sheet_axis;                      /* in the solid's own frame, of any length */
     double sheet_pass, sheet_block;       /* a polariser's transmittances */
     double retardance_deg, birefringence; /* of a retarder: fixed, and along the path */

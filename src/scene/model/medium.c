@@ -1,8 +1,9 @@
-#include "scene/model/medium.h"
-
 #include "base/lanes.h"
 #include "base/number.h"
 #include "optics/media.h"
+#include "scene/model/medium.h"
+#include "scene/model/scene.h"
+
 #include <float.h>
 #include <string.h>
 
@@ -114,8 +115,8 @@ bool index_laws_match(const render_settings *r, const index_law *a, const index_
 bool material_matches_surroundings(const scene *s, const material *m)
 {
     index_law own;
-    const index_law around = surrounding_index_law(scene_background(s));
-    return material_index_law(m, "", &own, NULL) == STATUS_OK && index_laws_match(scene_settings(s), &own, &around);
+    const index_law around = surrounding_index_law(&s->background);
+    return material_index_law(m, "", &own, NULL) == STATUS_OK && index_laws_match(&s->render, &own, &around);
 }
 
 bool material_is_mirror(const material *m)
@@ -147,14 +148,14 @@ bool material_has_film(const material *m)
 
 bool material_is_layered(const material *m, const render_settings *r)
 {
-    const bool film = material_has_film(m) && (material_is_opaque(m) || !scene_has_constant_shares(r));
+    const bool film = material_has_film(m) && (material_is_opaque(m) || !scene_has_constant_weights(r));
     return film || material_is_conductor(m);
 }
 
 double material_roughness(const material *m, const render_settings *r)
 {
     const bool clear = !material_is_opaque(m),
-               sends = clear ? !scene_has_constant_shares(r)
+               sends = clear ? !scene_has_constant_weights(r)
                              : m->reflectivity > 0.0 || material_is_mirror(m) || material_is_layered(m, r);
     return integrator_traits_of(r)->by_chance && sends ? m->roughness : 0.0;
 }
@@ -162,7 +163,7 @@ double material_roughness(const material *m, const render_settings *r)
 bool material_is_crystal(const material *m, const render_settings *r)
 {
     return m->extraordinary_ior > 0.0 && !material_is_opaque(m) && integrator_traits_of(r)->tree &&
-           r->lighting == LIGHTING_WHITTED && !scene_has_constant_shares(r);
+           r->lighting == LIGHTING_WHITTED && !scene_has_constant_weights(r);
 }
 
 /* No dielectric has a smaller index in visible light; n of silver is 0.03 to 0.06 (Johnson and Christy). */
@@ -223,8 +224,8 @@ static double interpolate(const double *points, int64_t count, double x)
         return points[1];
     for (int64_t i = 2; i < count; i += 2) {
         if (x <= points[i]) {
-            const double share = (x - points[i - 2]) / (points[i] - points[i - 2]);
-            return points[i - 1] + share * (points[i + 1] - points[i - 1]);
+            const double fraction = (x - points[i - 2]) / (points[i] - points[i - 2]);
+            return points[i - 1] + fraction * (points[i + 1] - points[i - 1]);
         }
     }
     return points[count - 1];
@@ -281,12 +282,12 @@ bool material_tints(const material *m)
     return !material_is_opaque(m) && (m->color.x < 1.0 || m->color.y < 1.0 || m->color.z < 1.0);
 }
 
-double material_tint(const material *m, double share)
+double material_tint(const material *m, double value)
 {
     const double black = 1e9, ln_2 = 0.69314718055994530942;
-    if (share >= 1.0)
+    if (value >= 1.0)
         return 0.0;
-    return (share > DBL_MIN ? -ln_2 * elementary_log2_inline(share) : black) / m->tint_distance;
+    return (value > DBL_MIN ? -ln_2 * elementary_log2_inline(value) : black) / m->tint_distance;
 }
 
 bool material_attenuates(const material *m)
@@ -310,7 +311,7 @@ vec3 material_extinction(const material *m, double unit_m)
 
 double material_coating(const material *m, const render_settings *r)
 {
-    return material_is_opaque(m) || scene_has_constant_shares(r) ? 0.0 : m->reflectivity;
+    return material_is_opaque(m) || scene_has_constant_weights(r) ? 0.0 : m->reflectivity;
 }
 
 status material_absorption_check(const material *m, const char *label, diagnostic *why)
@@ -323,4 +324,41 @@ status material_absorption_check(const material *m, const char *label, diagnosti
                  : diagnose(why, STATUS_BAD_INPUT,
                             "write nm,1/m,nm,1/m.. with ascending wavelengths, as [400, 0.1, 700, 2]",
                             "%.80s: absorb_spectrum is not a list of pairs of wavelength and coefficient", label);
+}
+
+/* --- sheets --- */
+
+bool sheet_is_polariser(const material *m)
+{
+    return m->sheet != SHEET_NONE && m->sheet != SHEET_RETARDER;
+}
+
+bool sheet_has_axis(const material *m)
+{
+    return m->sheet == SHEET_POLARISER || m->sheet == SHEET_RETARDER;
+}
+
+bool sheet_retards(const material *m)
+{
+    return m->sheet == SHEET_RETARDER && (m->retardance_deg != 0.0 || m->birefringence != 0.0);
+}
+
+bool sheet_acts(const material *m, const render_settings *r)
+{
+    const bool transports = !integrator_traits_of(r)->drawn && !integrator_traits_of(r)->layers;
+    return transports && (sheet_is_polariser(m) || (r->polarisation && sheet_retards(m)));
+}
+
+bool sheet_disperses(const material *m, const render_settings *r)
+{
+    return sheet_acts(m, r) && m->sheet == SHEET_RETARDER && m->birefringence != 0.0;
+}
+
+status sheet_check(const material *m, const char *label, diagnostic *why)
+{
+    const vec3 a = m->sheet_axis;
+    if (!sheet_has_axis(m) || vec3_dot(a, a) > 0.0)
+        return STATUS_OK;
+    return diagnose(why, STATUS_BAD_INPUT, "set it to a vector in the solid's frame, such as 1,0,0",
+                    "%.80s: the sheet_axis has no direction", label);
 }

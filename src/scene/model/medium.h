@@ -41,7 +41,7 @@ bool index_laws_match(const render_settings *r, const index_law *a, const index_
 bool material_matches_surroundings(const scene *s, const material *m);
 
 /* Above this index a transparent material is a perfect mirror: the limit of Fresnel's equations; with constant weights
- * it reflects both the reflected and the transmitted share. */
+ * it reflects both the reflected and the transmitted fraction. */
 #define MIRROR_IOR 1e4
 bool material_is_mirror(const material *m);
 /* Whether neither light nor a ray passes its surface. */
@@ -84,19 +84,43 @@ bool material_absorbs(const material *m);
  * tint_distance): the Beer-Lambert law with the coefficient -ln(color) / tint_distance. A channel of 0 transmits
  * nothing, white absorbs nothing. */
 bool material_tints(const material *m);
-/* That coefficient in 1 / scene unit, for a channel or wavelength at which the color is share, 0..1. */
-double material_tint(const material *m, double share);
+/* That coefficient in 1 / scene unit, for a channel or wavelength at which the color has that value, 0..1. */
+double material_tint(const material *m, double value);
 /* Whether light is attenuated inside a transparent solid with this material. */
 bool material_attenuates(const material *m);
 /* Scattering coefficient in 1/m of a transparent solid's medium, for random paths; 0 for other integrators. */
 double material_scattering(const material *m, const render_settings *r);
 /* By channel in 1 / scene unit, absorption plus tint; not defined for opaque materials. */
 vec3 material_extinction(const material *m, double unit_m);
-/* The share of the transmitted light that the coating of a transparent surface reflects; 0 with constant weights, which
- * are used unchanged. */
+/* The fraction of the transmitted light that the coating of a transparent surface reflects; 0 with constant weights,
+ * which are used unchanged. */
 double material_coating(const material *m, const render_settings *r);
 double surrounding_absorption_at(const background *b, double lambda_nm);
 bool surroundings_absorb(const background *b);
 
 /* Pairs of wavelength and coefficient, wavelengths ascending, coefficients not negative. */
 status material_absorption_check(const material *m, const char *label, diagnostic *why);
+
+/* --- sheets: polarising filters and wave plates; what a passage through a transparent solid does to light --- */
+
+typedef enum sheet_kind {
+    SHEET_NONE,
+    SHEET_POLARISER,
+    SHEET_CIRCULAR_LEFT,
+    SHEET_CIRCULAR_RIGHT,
+    SHEET_RETARDER
+} sheet_kind;
+
+bool sheet_is_polariser(const material *m);
+/* Whether it is a polariser or a wave plate with an axis, on which its light depends. */
+bool sheet_has_axis(const material *m);
+bool sheet_retards(const material *m);
+
+/* Whether light that passes the solid, if any does, changes: a polariser's without polarisation too, where it is a grey
+ * filter. Not in the depth buffer. */
+bool sheet_acts(const material *m, const render_settings *r);
+/* Whether it acts differently by wavelength. */
+bool sheet_disperses(const material *m, const render_settings *r);
+
+/* STATUS_BAD_INPUT if its axis has no direction. */
+status sheet_check(const material *m, const char *label, diagnostic *why);

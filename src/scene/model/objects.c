@@ -1,8 +1,8 @@
-#include "scene/model/objects.h"
 #include "scene/model/face_materials.h"
-#include "scene/model/params_path.h"
+#include "scene/model/names.h"
+#include "scene/model/objects.h"
+#include "scene/model/params.h"
 #include "scene/model/scene.h"
-#include "scene/model/suggest.h"
 
 #include <stdio.h>
 #include <stdlib.h>
@@ -142,7 +142,7 @@ void object_remove(scene *s, param_group group, size_t index)
 }
 
 /* Makes a bitwise copy independent: copies owned memory, and adds a reference to loaded data. */
-static bool own(param_group group, void *object)
+static bool copy_owned(param_group group, void *object)
 {
     if (group == PARAM_MESH) {
         const mesh_entry *m = object;
@@ -160,10 +160,10 @@ bool object_assign(scene *s, param_group group, size_t to, size_t from)
     char *object = object_at(s, group, to), *name = strdup(*(char **)object);
     release(group, object);
     memcpy(object, object_at(s, group, from), lists[group].size);
-    const bool whole = own(group, object);
+    const bool complete = copy_owned(group, object);
     free(*(char **)object);
     *(char **)object = name;
-    return whole && name;
+    return complete && name;
 }
 
 static bool clone_list(scene *s, const scene *original, param_group group)
@@ -175,20 +175,20 @@ static bool clone_list(scene *s, const scene *original, param_group group)
     memcpy(array, array_of(original, group), count * size);
     set_array(s, group, array);
     *count_of(s, group) = count;
-    bool whole = true;
+    bool complete = true;
     for (char *object = array; object < array + count * size; object += size) {
-        whole &= own(group, object);
+        complete &= copy_owned(group, object);
         name_tally_add(&s->names, *(char **)object ? *(char **)object : "");
     }
-    return whole;
+    return complete;
 }
 
 bool objects_clone(scene *s, const scene *original)
 {
-    bool whole = true;
+    bool complete = true;
     for (int g = PARAM_MESH; g < PARAM_GROUP_COUNT; g++)
-        whole &= clone_list(s, original, (param_group)g);
-    return whole;
+        complete &= clone_list(s, original, (param_group)g);
+    return complete;
 }
 
 void objects_release(scene *s)

@@ -1,5 +1,7 @@
-/* Scenes as opaque values: create, read, load, check, destroy. Ownership: scene_create, scene_read and scene_clone give
- * a scene to the caller, scene_destroy releases it. */
+/* Scenes as opaque values: create, read, load, check, destroy. The folders of src/scene, each of which includes only
+ * those before it: model (the scene in memory, its parameters and edits), file (scene files and shared scenes), assets
+ * (the files that a scene names: meshes, textures, scripts of slimes), motion (slimes in time), package. Ownership:
+ * scene_create, scene_read and scene_clone give a scene to the caller, scene_destroy releases it. */
 #pragma once
 
 #include "base/status.h"
@@ -20,6 +22,8 @@ status scene_read(const char *path, scene **out, diagnostic *why);
 status scene_read_below(const char *path, const char *root, scene **out, diagnostic *why);
 /* The same from memory; name is used in diagnostics, and paths are relative to its folder. */
 status scene_read_text(const char *name, const char *text, size_t size, scene **out, diagnostic *why);
+/* The initial scene of an editor: a floor, a light and a camera. */
+status new_scene(scene **out, diagnostic *why);
 
 /* Properties for callers that treat scenes as opaque: the file it came from ("" for none); the folder of its limits (""
  * for anywhere); its settings; the names of its solids and lights. Borrowed from the scene. */
@@ -43,7 +47,7 @@ status scene_load(scene *s, diagnostic *why);
 
 /* Watches moving slimes: progress is called about every 10 ms, with the completed fraction of all motion. */
 typedef struct load_watch {
-    void (*progress)(void *context, double share_done);
+    void (*progress)(void *context, double fraction);
     void *context;
 } load_watch;
 
@@ -56,6 +60,10 @@ status scene_load_files(scene *s, diagnostic *why);
 
 /* A path of the scene relative to the working folder; fresh memory, NULL if that runs out. */
 char *scene_file_path(const scene *s, const char *path);
+/* Passes on an error of a file that the scene refers to as what: located in the scene file at line and column, or, if
+ * line is 0, at bad. Returns code. */
+status scene_file_error(const scene *s, const char *what, long line, long column, const diagnostic *bad, status code,
+                        diagnostic *why);
 
 /* Checks beyond single ranges: shapes, energy (under constant weights or simple transmission: reflectivity +
  * transparency <= 1), names, limits, camera not at its own target, a background image has a file. Called where a

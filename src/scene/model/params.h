@@ -4,11 +4,13 @@
  * A parameter's path is group.name: `render.depth`, `camera.position`, `background.color`; for a mesh, a texture, a
  * light, a beam, a solid or a material the group is its name in the scene: `soup.count`, `lamp.intensity`,
  * `vessel.ior`, `glass.ior`. One element of a vector is `lamp.position.x` (.x .y .z, for colours .r .g .b). Setting a
- * material's field applies to all solids with that material; setting it by a solid's name applies to that solid alone;
+ * material's field applies to all solids with that material; setting it by a solid's name applies to that solid only;
  * the last setting wins. Ownership: the table is constant. */
 #pragma once
 
+#include "geometry/solid.h"
 #include "scene/model/open.h"
+#include "scene/model/solids.h"
 #include <stdint.h>
 
 typedef enum param_group {
@@ -113,3 +115,35 @@ status scene_get(const scene *s, const char *path, char **value, diagnostic *why
  * STATUS_OK. */
 typedef status param_visit(void *context, const char *path, const param *row, const char *value);
 status scene_each_param(const scene *s, param_visit *visit, void *context);
+
+/* --- the target of a path: `lamp.position.x` refers to the row, the light and the element --- */
+
+typedef struct param_place {
+    const param *row;
+    param_group object_group; /* from the path's first word: PARAM_SOLID for vessel.ior, whose row is a material's */
+    size_t index;             /* index of the light, material or solid */
+    int element;              /* 0..2, or -1 for the whole value */
+} param_place;
+
+/* STATUS_BAD_INPUT, with the nearest valid path as remedy, for an invalid path. */
+status param_place_find(const scene *s, const char *path, param_place *out, diagnostic *why);
+
+/* The same for a path's first word alone: an object's name, camera, background or render. Row and element are not set.
+ */
+status param_place_find_object(const scene *s, const char *name, param_place *out, diagnostic *why);
+
+/* Whether the film can depend on a parameter: not on those that affect only performance or what is shown with an image,
+ * nor on those of a beam that does not light the scene, except for the one that makes it a lamp. */
+bool scene_film_depends_on(const scene *s, const char *path);
+
+/* Whether the row applies to the solid (its shape has that dimension). */
+bool solid_has(const solid *owner, const param *row);
+
+/* The name of a light, material or solid; "camera" and so on for the other groups. */
+const char *param_place_group_name(const scene *s, param_group group, size_t index);
+
+/* The number of objects in a group: 1, or the scene's lights, materials or solids. */
+size_t param_place_group_size(const scene *s, param_group group);
+
+/* "sphere" */
+const char *shape_name(shape_kind kind);

@@ -1,10 +1,8 @@
 /* The table itself: a new parameter is a row here, and a field in the struct of its group (render_settings.h,
- * material.h, light.h, solids.h, mesh_entry.h, view_settings.h). */
+ * material.h, lights.h, solids.h, view_settings.h). */
+#include "scene/model/lights.h"
 #include "scene/model/medium.h"
 #include "scene/model/params.h"
-#include "scene/model/mesh_entry.h"
-#include "scene/model/beam.h"
-#include "scene/model/light.h"
 #include "scene/model/solids.h"
 
 #include <stddef.h>
@@ -617,7 +615,7 @@ const char *param_group_name(param_group group)
     return (size_t)group < PARAM_GROUP_COUNT ? names[group] : "";
 }
 
-static const param *find_own(param_group group, const char *name)
+static const param *find_row(param_group group, const char *name)
 {
     for (size_t i = 0; i < TABLE_COUNT; i++)
         if (table[i].group == group && strcmp(table[i].name, name) == 0)
@@ -627,6 +625,6 @@ static const param *find_own(param_group group, const char *name)
 
 const param *param_find(param_group group, const char *name)
 {
-    const param *row = find_own(group, name);
-    return !row && group == PARAM_SOLID ? find_own(PARAM_MATERIAL, name) : row;
+    const param *row = find_row(group, name);
+    return !row && group == PARAM_SOLID ? find_row(PARAM_MATERIAL, name) : row;
 }

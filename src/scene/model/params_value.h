@@ -2,8 +2,8 @@
  * param_value_text gives fresh memory; a PARAM_PATH field owns its text. */
 #pragma once
 
-#include "scene/model/params.h"
 #include "scene/model/material.h"
+#include "scene/model/params.h"
 
 typedef union param_value {
     int64_t integer;

@@ -3,7 +3,6 @@
 #pragma once
 
 #include "scene/model/integrators.h"
-#include "scene/model/layers.h"
 #include <stdbool.h>
 #include <stdint.h>
 
@@ -23,7 +22,7 @@ typedef enum light_sampling_rule { LIGHT_SAMPLING_ALL, LIGHT_SAMPLING_ONE } ligh
 typedef enum texturing_rule { TEXTURING_PERSPECTIVE, TEXTURING_AFFINE } texturing_rule;
 
 enum { SCENE_SAMPLES_MAX = 64 };
-/* Trees of rays end at DEPTH_TREE_MAX; random paths and photons may go on (render.depth=unlimited). */
+/* Trees of rays end at DEPTH_TREE_MAX; random paths and photons may be longer (render.depth=unlimited). */
 enum { DEPTH_TREE_MAX = 64, DEPTH_UNLIMITED = 1 << 30 };
 #define SCENE_PIXELS_MAX 268435456 /* 2^28 */
 
@@ -104,7 +103,7 @@ int scene_threads(const render_settings *r);
 int scene_build_threads(const render_settings *r);
 
 /* Whether the weights of a transparent surface are the material's constants, whatever its index. */
-static inline bool scene_has_constant_shares(const render_settings *r)
+static inline bool scene_has_constant_weights(const render_settings *r)
 {
     return r->weights == WEIGHTS_CONSTANT || r->transmission == TRANSMISSION_SIMPLE;
 }
@@ -116,7 +115,7 @@ static inline bool scene_has_soft_shadows(const render_settings *r)
     return r->soft_shadows && r->shadows != SHADOWS_OFF && !traits->by_chance && !traits->drawn && !traits->layers;
 }
 
-/* Whether photons bring the light that mirrors and clear solids deflect; then radiance is basic, and shadows opaque. */
+/* Whether photons carry the light that mirrors and clear solids deflect; then radiance is basic, and shadows opaque. */
 static inline bool scene_has_caustics(const render_settings *r)
 {
     return r->caustics == CAUSTICS_PHOTONS && r->shadows != SHADOWS_OFF && !integrator_traits_of(r)->drawn &&

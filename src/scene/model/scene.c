@@ -1,9 +1,11 @@
-#include "scene/model/open.h"
+#include "base/elementary.h"
+#include "base/file.h"
+#include "base/thread_team.h"
+#include "geometry/shapes/shape.h"
 #include "scene/model/objects.h"
+#include "scene/model/open.h"
 #include "scene/model/params_value.h"
 #include "scene/model/scene.h"
-
-#include "base/thread_team.h"
 
 #include <stdlib.h>
 #include <string.h>
@@ -60,10 +62,10 @@ scene *scene_clone(const scene *original)
     s->background = original->background;
     s->path = strdup(original->path);
     s->title = strdup(original->title);
-    bool whole = clone_texture(&s->background, &original->background);
-    whole = objects_clone(s, original) && whole;
-    whole = scene_limit(s, original->limits.root, original->limits.triangles, NULL) == STATUS_OK && whole;
-    if (!whole || !s->path || !s->title) {
+    bool complete = clone_texture(&s->background, &original->background);
+    complete = objects_clone(s, original) && complete;
+    complete = scene_limit(s, original->limits.root, original->limits.triangles, NULL) == STATUS_OK && complete;
+    if (!complete || !s->path || !s->title) {
         scene_destroy(s);
         return NULL;
     }
@@ -120,10 +122,74 @@ status scene_limit(scene *s, const char *root, size_t triangles, diagnostic *why
     return STATUS_OK;
 }
 
+char *scene_file_path(const scene *s, const char *path)
+{
+    return file_next_to(s->path, path);
+}
+
+status scene_file_error(const scene *s, const char *what, long line, long column, const diagnostic *bad, status code,
+                        diagnostic *why)
+{
+    if (line == 0) {
+        diagnostic_locate(why, bad->file, bad->line, bad->column);
+        return diagnose(why, code, bad->remedy, "%s: %s", what, bad->what);
+    }
+    diagnostic_locate(why, s->path, line, column);
+    return diagnose(why, code, bad->remedy, "%s: %s%s%s", what, bad->file, bad->file[0] ? ": " : "", bad->what);
+}
+
+/* --- objects by name --- */
+
 int scene_find_solid(const scene *s, const char *name)
 {
     return object_find(s, PARAM_SOLID, name);
 }
+
+const mesh_entry *scene_find_mesh(const scene *s, const char *name)
+{
+    const int at = object_find(s, PARAM_MESH, name);
+    return at < 0 ? NULL : &s->meshes[at];
+}
+
+const mesh_entry *scene_mesh_of(const scene *s, const solid *owner)
+{
+    return shape_of(&owner->shape)->triangles ? scene_find_mesh(s, owner->mesh) : NULL;
+}
+
+solid_shape scene_loaded_shape(const scene *s, const solid *owner)
+{
+    solid_shape shape = owner->shape;
+    const mesh_entry *m = scene_mesh_of(s, owner);
+    shape.mesh = m ? m->data : NULL;
+    return shape;
+}
+
+const texture_entry *scene_find_texture(const scene *s, const char *name)
+{
+    const int at = object_find(s, PARAM_TEXTURE, name);
+    return at < 0 ? NULL : &s->textures[at];
+}
+
+const light *scene_sun(const scene *s)
+{
+    for (size_t i = 0; i < s->light_count; i++)
+        if (s->lights[i].kind == LIGHT_SUN)
+            return &s->lights[i];
+    return NULL;
+}
+
+vec3 scene_to_sun(const scene *s)
+{
+    const light *l = scene_sun(s);
+    double up, level, side, ahead;
+    if (l)
+        return vec3_normalize(vec3_sub(l->position, l->target));
+    elementary_sincos_deg(s->background.sun_elevation_deg, &up, &level);
+    elementary_sincos_deg(s->background.sun_azimuth_deg, &side, &ahead);
+    return vec3_make(level * side, up, level * ahead);
+}
+
+/* --- threads --- */
 
 int scene_threads(const render_settings *r)
 {

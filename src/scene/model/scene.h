@@ -3,10 +3,8 @@
  * scenes on includes scene/model/open.h. Ownership: see there; the renderer borrows a scene. */
 #pragma once
 
-#include "scene/model/beam.h"
-#include "scene/model/light.h"
-#include "scene/model/mesh_entry.h"
-#include "scene/model/name_tally.h"
+#include "scene/model/lights.h"
+#include "scene/model/names.h"
 #include "scene/model/open.h"
 #include "scene/model/render_settings.h"
 #include "scene/model/solids.h"
@@ -44,3 +42,10 @@ const mesh_entry *scene_mesh_of(const scene *s, const solid *owner);
 /* The solid's shape, with the triangles of its mesh if they are loaded. */
 solid_shape scene_loaded_shape(const scene *s, const solid *owner);
 const texture_entry *scene_find_texture(const scene *s, const char *name);
+
+/* The first light of kind sun, or NULL. */
+const light *scene_sun(const scene *s);
+
+/* The direction to the sun that the background shows, a unit vector: to that light, or by sun_elevation_deg and
+ * sun_azimuth_deg of the background. */
+vec3 scene_to_sun(const scene *s);

@@ -1,8 +1,17 @@
-/* The solids of a scene: shape, material and priority. A solid owns its name. */
+/* The solids, meshes and textures of a scene. A solid owns its name; the entry of a mesh or a texture owns its strings
+ * and one reference to its loaded data. */
 #pragma once
 
+#include "base/status.h"
+#include "geometry/mesh/mesh.h"
 #include "geometry/solid.h"
+#include "image/texture.h"
 #include "scene/model/material.h"
+#include "softbody/softbody.h"
+#include <stdbool.h>
+#include <stdint.h>
+
+/* --- solids --- */
 
 typedef enum shading_rule { SHADING_FLAT, SHADING_SMOOTH, SHADING_GOURAUD } shading_rule;
 
@@ -23,3 +32,97 @@ typedef struct solid {
 
 /* Whether its shape has triangles and it refers to that mesh. */
 bool solid_shows(const solid *owner, const char *mesh_name);
+
+enum { SCENE_MESHES_MAX = 64, SCENE_TEXTURES_MAX = 64 };
+
+/* The source of a mesh: a file, or a generator (geometry/mesh/mesh_generators.h). */
+typedef enum mesh_maker {
+    MESH_FILE,
+    MESH_SPARSE,
+    MESH_DENSE,
+    MESH_SPHERE,
+    MESH_ICOSPHERE,
+    MESH_TORUS,
+    MESH_LATHE,
+    MESH_TERRAIN,
+    MESH_BOX,
+    MESH_SLIME,
+    MESH_ARRAYS
+} mesh_maker;
+
+/* --- the materials in a mesh file --- */
+
+typedef struct face_material {
+    char name[SCENE_NAME_MAX + 1]; /* truncated if longer; "" for none */
+    bool given;                    /* the file defines the material; otherwise the solid's own material is used */
+    vec3 color;                    /* linear RGB, each at most 1 */
+    double diffuse, specular, shininess, emission, opacity;
+    const texture *img; /* one reference; NULL for none */
+} face_material;
+
+/* By slot. Reference counted like their mesh: face_materials_retain and face_materials_release are thread safe. */
+typedef struct face_materials face_materials;
+
+/* Of a list of materials; takes over its references to images, also after an error. STATUS_FAILURE without memory. */
+status face_materials_of(const face_material *list, int count, const face_materials **out, diagnostic *why);
+/* NULL is allowed here and in the next two. */
+void face_materials_retain(const face_materials *l);
+void face_materials_release(const face_materials *l);
+int face_materials_count(const face_materials *l); /* 0 for NULL */
+const face_material *face_materials_at(const face_materials *l, int slot);
+
+/* --- meshes and textures --- */
+
+typedef struct mesh_entry {
+    char *name;
+    int64_t source;              /* mesh_maker */
+    char *path;                  /* relative to the scene file; "" for none */
+    long path_line, path_column; /* location of the file or the generator in the scene file; 0 if it was set otherwise
+                                    */
+    int64_t count;               /* triangles, for sparse, dense and sphere */
+    int64_t level;               /* for icosphere */
+    double major, minor;         /* for torus */
+    int64_t around, tube;        /* segments of torus and lathe; edges of terrain along x and z */
+    number_list profile;         /* for lathe: radius, height, radius, height, ... */
+    double crease_deg;
+    vec3 size;                       /* for box; for terrain with the height of its hills */
+    double depth;                    /* for terrain: the height of its solid base below y = 0; 0: an open surface */
+    int64_t seed;                    /* for terrain */
+    softbody_settings slime;         /* for slime; its level is the field `level` above */
+    double time_s;                   /* for slime: the simulated time that is shown */
+    char *script_path;               /* for slime: the script of its hands; "" for none; relative to the scene file */
+    long script_line, script_column; /* its location in the scene file; 0 if it was set otherwise */
+    softbody_quantities account;        /* for a loaded slime: the account of its motion */
+    double motion_s;                 /* for a loaded slime: the wall time of its steps */
+    const mesh *data;                /* a counted reference that the entry owns; NULL until scene_load */
+    const face_materials *shading_materials; /* a counted reference; NULL for none */
+} mesh_entry;
+
+typedef struct texture_entry {
+    char *name;
+    char *path; /* relative to the scene file */
+    long path_line, path_column;
+    int64_t filter, wrap_u, wrap_v, space; /* texture_filter, texture_wrap, texture_space */
+    const texture *data;                   /* one owner of it; NULL until scene_load */
+} texture_entry;
+
+/* Limits of loading, for scenes from others; copies of a scene have the same limits. */
+typedef struct load_limits {
+    char *root;       /* all files are read below this folder (base/file.h); NULL or "": anywhere */
+    size_t triangles; /* of all meshes together; 0: only the importer's limit */
+} load_limits;
+
+/* Releases the loaded data of an entry whose parameters change. */
+void mesh_entry_unload(mesh_entry *m);
+void texture_entry_unload(texture_entry *t);
+
+/* --- slimes --- */
+
+/* The settings of its body; the level is the entry's. */
+softbody_settings slime_settings(const mesh_entry *m);
+
+/* Checks that the settings are valid and need at most SLIME_STEPS_MAX steps to time_s. Not located. */
+#define SLIME_STEPS_MAX 1e9
+status slime_check(const mesh_entry *m, diagnostic *why);
+/* Checks the number of steps to another time, such as the end of an animation. */
+status slime_check_end(const mesh_entry *m, double end_s, diagnostic *why);

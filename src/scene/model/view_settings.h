@@ -28,7 +28,7 @@ typedef struct camera {
     vec3 position;
     vec3 target;               /* used if aimed */
     double yaw_deg, pitch_deg; /* used if not aimed */
-    int64_t aimed;             /* 1: aimed at target; 0: along yaw and pitch. Set by whichever was written last */
+    int64_t aimed;             /* 1: aimed at target; 0: along yaw and pitch. Set by the one that was written last */
     double roll_deg;           /* about the viewing direction, right side down: the image turns counter-clockwise */
     int64_t projection;        /* projection_rule */
     double fov_deg;            /* vertical; perspective */

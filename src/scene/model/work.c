@@ -1,6 +1,5 @@
-/* Triangles and rays that a scene's parameters imply. */
-#include "scene/model/work.h"
 #include "scene/model/scene.h"
+#include "scene/model/work.h"
 
 #include <math.h>
 
@@ -43,4 +42,10 @@ double scene_most_rays(const render_settings *r)
     const double levels = (double)r->depth + 1.0;
     const double tree = fmin(exp2(levels), r->min_weight > 0.0 ? levels / r->min_weight : INFINITY);
     return scene_camera_rays(r) * (integrator_traits_of(r)->by_chance ? levels : tree);
+}
+
+double slime_work(const mesh_entry *m)
+{
+    const double steps = floor(m->time_s / m->slime.dt_s + 0.5); /* counted as by softbody_advance */
+    return steps * (10.0 * pow(4.0, (double)m->level) + 2.0);
 }

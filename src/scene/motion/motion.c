@@ -1,12 +1,22 @@
+/* A simulated scene: its slimes, attached to it, and moved through time. */
+#include "base/cancel.h"
+#include "base/text.h"
+#include "measure/clock.h"
+#include "scene/assets/script.h"
+#include "scene/assets/slime.h"
+#include "scene/model/params.h"
+#include "scene/model/params_value.h"
+#include "scene/model/scene.h"
 #include "scene/motion/motion_private.h"
 
-#include "base/cancel.h"
-#include "measure/clock.h"
-#include "scene/model/scene.h"
 #include <math.h>
+#include <stdio.h>
 #include <stdlib.h>
+#include <string.h>
 
-size_t motion_count_slimes(const scene *s)
+/* --- slimes, and what their scene had before --- */
+
+static size_t count_slimes(const scene *s)
 {
     size_t count = 0;
     for (size_t i = 0; i < s->mesh_count; i++)
@@ -16,10 +26,75 @@ size_t motion_count_slimes(const scene *s)
 
 bool scene_moves(const scene *s)
 {
-    return motion_count_slimes(s) > 0;
+    return count_slimes(s) > 0;
 }
 
-status motion_give_surface(const scene_motion *m, const moving_slime *one, diagnostic *why)
+static bool affects_body(const param *row)
+{
+    return row->group == PARAM_MESH && row->offset != offsetof(mesh_entry, time_s);
+}
+
+/* All its parameters except time_s as one text, and the path of its script. NULL if memory runs out. */
+static char *motion_parameters(const scene *s, const mesh_entry *entry)
+{
+    char *text = NULL, *script = scene_file_path(s, entry->script_path);
+    text_writer writer;
+    bool good = script && text_writer_open(&writer, NULL) == STATUS_OK;
+    const bool begun = good;
+    for (size_t i = 0; i < param_count() && good; i++) {
+        const param *row = param_at(i);
+        char *value = affects_body(row) ? param_value_text(row, -1, (const char *)entry + row->offset) : NULL;
+        good = !affects_body(row) || (value && fprintf(writer.stream, "%s\n", value) >= 0);
+        free(value);
+    }
+    good = good && (!entry->script_path[0] || fprintf(writer.stream, "%s\n", script) >= 0);
+    free(script);
+    if (begun)
+        text_writer_end(&writer, good ? STATUS_OK : STATUS_FAILURE, &text, NULL, NULL);
+    return text;
+}
+
+static void save_original(original_slime *original, mesh_entry *entry)
+{
+    *original = (original_slime){
+        .time_s = entry->time_s, .data = entry->data, .account = entry->account, .motion_s = entry->motion_s};
+    entry->data = NULL;
+}
+
+static void restore_original(mesh_entry *entry, original_slime *original)
+{
+    mesh_entry_unload(entry);
+    entry->time_s = original->time_s;
+    entry->data = original->data;
+    entry->account = original->account;
+    entry->motion_s = original->motion_s;
+    *original = (original_slime){.data = NULL};
+}
+
+static status remember(scene_motion *m, moving_slime *one, diagnostic *why)
+{
+    mesh_entry *entry = motion_entry(m, one);
+    one->name = strdup(entry->name);
+    one->parameters = motion_parameters(m->s, entry);
+    if (!one->name || !one->parameters)
+        return out_of_memory(why);
+    save_original(&one->original, entry);
+    return STATUS_OK;
+}
+
+static void forget(moving_slime *one)
+{
+    slime_destroy(&one->x);
+    mesh_release(one->original.data);
+    mesh_release(one->surface);
+    free(one->name);
+    free(one->parameters);
+}
+
+/* --- surfaces --- */
+
+/* Gives the entry a surface of its own, since the current one may be shared. */
+static status make_surface(const scene_motion *m, const moving_slime *one, diagnostic *why)
 {
     mesh_entry *entry = motion_entry(m, one);
     mesh *surface = NULL;
@@ -42,8 +117,8 @@ static status move_surface(scene_motion *m, const moving_slime *one, diagnostic 
 {
     mesh_entry *entry = motion_entry(m, one);
     if (!entry->data || mesh_owners(entry->data) > 1)
-        return motion_give_surface(m, one, why);
-    /* Made by motion_give_surface for this scene, its only owner. */
+        return make_surface(m, one, why);
+    /* Made by make_surface for this scene, its only owner. */
     status code = softbody_move_surface(one->x.body, (mesh *)(uintptr_t)entry->data, why);
     hierarchy_moves moves = {.refitted = 0};
     THEN(code, hierarchy_follow(entry->data, m->s->render.rebuild, scene_build_threads(&m->s->render), &moves, why));
@@ -55,13 +130,45 @@ static status move_surface(scene_motion *m, const moving_slime *one, diagnostic 
     return STATUS_OK;
 }
 
-void motion_take_account(scene_motion *m, moving_slime *one, double time_s)
+static void update_entry(scene_motion *m, moving_slime *one, double time_s)
 {
     mesh_entry *entry = motion_entry(m, one);
     one->time_s = time_s;
     entry->time_s = time_s;
     entry->account = softbody_measure(one->x.body);
     entry->motion_s = one->x.motion_s;
+}
+
+/* --- scenes: attaching and leaving --- */
+
+void scene_motion_leave(scene_motion *m)
+{
+    for (size_t i = 0; m->s && i < m->count; i++) {
+        moving_slime *one = &m->slimes[i];
+        mesh_entry *entry = motion_entry(m, one);
+        one->surface = entry->data;
+        entry->data = NULL;
+        restore_original(entry, &one->original);
+    }
+    m->s = NULL;
+}
+
+void scene_motion_destroy(scene_motion *m)
+{
+    if (!m)
+        return;
+    for (size_t i = 0; i < m->count; i++)
+        forget(&m->slimes[i]);
+    free(m->slimes);
+    free(m);
+}
+
+void scene_motion_end(scene_motion *m)
+{
+    if (m) {
+        scene_motion_leave(m);
+        scene_motion_destroy(m);
+    }
 }
 
 static status begin(scene_motion *m, diagnostic *why)
@@ -72,16 +179,16 @@ static status begin(scene_motion *m, diagnostic *why)
         moving_slime *one = &m->slimes[m->count];
         *one = (moving_slime){.entry = i};
         TRY(slime_create(m->s, &m->s->meshes[i], &one->x, why));
-        status code = motion_remember(m, one, why);
+        status code = remember(m, one, why);
         if (code != STATUS_OK) {
-            motion_forget(one);
+            forget(one);
             return code;
         }
         m->count++;
-        code = motion_give_surface(m, one, why);
+        code = make_surface(m, one, why);
         if (code != STATUS_OK)
             return code;
-        motion_take_account(m, one, 0.0);
+        update_entry(m, one, 0.0);
     }
     return scene_load(m->s, why); /* all other slimes */
 }
@@ -89,7 +196,7 @@ static status begin(scene_motion *m, diagnostic *why)
 status scene_motion_create(scene *s, scene_motion **out, diagnostic *why)
 {
     *out = NULL;
-    const size_t count = motion_count_slimes(s);
+    const size_t count = count_slimes(s);
     if (count == 0)
         return diagnose(why, STATUS_BAD_INPUT, "add a mesh with 'generate: slime'", "nothing moves in this scene");
     scene_motion *m = calloc(1, sizeof *m);
@@ -110,26 +217,70 @@ status scene_motion_create(scene *s, scene_motion **out, diagnostic *why)
     return STATUS_OK;
 }
 
-void scene_motion_destroy(scene_motion *m)
+/* Index of the mesh with the same name and parameters. */
+static status find_equal(const scene *s, const moving_slime *one, size_t *mesh_index, bool *found, diagnostic *why)
 {
-    if (!m)
-        return;
-    for (size_t i = 0; i < m->count; i++)
-        motion_forget(&m->slimes[i]);
-    free(m->slimes);
-    free(m);
+    *found = false;
+    for (size_t i = 0; i < s->mesh_count; i++) {
+        const mesh_entry *entry = &s->meshes[i];
+        if (entry->source != MESH_SLIME || strcmp(entry->name, one->name) != 0)
+            continue;
+        char *parameters = motion_parameters(s, entry);
+        if (!parameters)
+            return out_of_memory(why);
+        *mesh_index = i;
+        *found = strcmp(parameters, one->parameters) == 0;
+        free(parameters);
+        break;
+    }
+    return STATUS_OK;
 }
+
+static void attach(scene_motion *m, moving_slime *one)
+{
+    mesh_entry *entry = motion_entry(m, one);
+    save_original(&one->original, entry);
+    mesh_entry_unload(entry);
+    entry->data = one->surface;
+    one->surface = NULL;
+    update_entry(m, one, one->time_s);
+}
+
+status scene_motion_join(scene_motion *m, scene *s, bool *joined, diagnostic *why)
+{
+    *joined = count_slimes(s) == m->count;
+    size_t places[SCENE_MESHES_MAX];
+    status code = STATUS_OK;
+    for (size_t i = 0; i < m->count && *joined && code == STATUS_OK; i++)
+        code = find_equal(s, &m->slimes[i], &places[i], joined, why);
+    if (code != STATUS_OK || !*joined) {
+        *joined = false;
+        return code;
+    }
+    scene_motion_leave(m);
+    m->s = s;
+    for (size_t i = 0; i < m->count && code == STATUS_OK; i++) {
+        moving_slime *one = &m->slimes[i];
+        const bool had_surface = one->surface != NULL;
+        one->entry = places[i];
+        attach(m, one);
+        code = had_surface ? STATUS_OK : make_surface(m, one, why);
+    }
+    return code;
+}
+
+/* --- time --- */
 
 /* Advances one of count slimes. */
 typedef struct turn_watch {
-    const load_watch *whole;
+    const load_watch *watch;
     size_t turn, count;
 } turn_watch;
 
-static void show_turn(void *context, double share_done)
+static void show_turn(void *context, double fraction)
 {
     const turn_watch *w = context;
-    w->whole->progress(w->whole->context, ((double)w->turn + share_done) / (double)w->count);
+    w->watch->progress(w->watch->context, ((double)w->turn + fraction) / (double)w->count);
 }
 
 static status advance_one(scene_motion *m, size_t i, double time_s, const load_watch *watch, diagnostic *why)
@@ -153,7 +304,7 @@ static status show_one(scene_motion *m, moving_slime *one, double time_s, bool s
         m->last.skin_s += clock_wall_s() - begun_s;
     }
     if (code == STATUS_OK) {
-        motion_take_account(m, one, time_s > entry->time_s ? time_s : entry->time_s); /* time does not go back */
+        update_entry(m, one, time_s > entry->time_s ? time_s : entry->time_s); /* time does not go back */
         m->last.steps += entry->account.steps - one->steps;
         one->steps = entry->account.steps;
     }
@@ -167,7 +318,7 @@ status scene_motion_advance_until(scene_motion *m, double time_s, bool surfaces,
     for (size_t i = 0; i < m->count; i++)
         TRY(advance_one(m, i, time_s, watch, why));
     status code = STATUS_OK;
-    cancel_token shield; /* surfaces stay whole, and follow quickly */
+    cancel_token shield; /* a surface is moved completely or not at all; that takes little time */
     cancel_shield(&shield);
     for (size_t i = 0; i < m->count && code == STATUS_OK; i++)
         code = show_one(m, &m->slimes[i], time_s, surfaces, why);
@@ -220,4 +371,55 @@ bool scene_motion_drop_scripts(scene_motion *m)
         x->script = NULL;
     }
     return any;
+}
+
+/* --- the times of frames --- */
+
+int64_t frame_times_count(const frame_times *t)
+{
+    return (int64_t)fmax(1, round(t->duration_s * (double)t->fps_num / (double)t->fps_den));
+}
+
+double frame_times_at(const frame_times *t, int64_t frame)
+{
+    return t->start_s + (double)(frame * t->fps_den) / (double)t->fps_num;
+}
+
+/* *end_s: the latest key time of all scripts of the scene's slimes; *any: whether any slime has a script. */
+static status find_script_end(const scene *s, bool *any, double *end_s, diagnostic *why)
+{
+    *any = false;
+    *end_s = 0;
+    status result = STATUS_OK;
+    for (size_t i = 0; i < s->mesh_count && result == STATUS_OK; i++) {
+        hand_script *script = NULL;
+        if (s->meshes[i].source == MESH_SLIME)
+            result = slime_read_script(s, &s->meshes[i], &script, why);
+        if (script) {
+            *any = true;
+            *end_s = fmax(*end_s, hand_script_end_s(script));
+        }
+        hand_script_destroy(script);
+    }
+    return result;
+}
+
+status frame_times_choose(frame_times *t, const scene *s, diagnostic *why)
+{
+    const double rest_s = 2, without_script_s = 4;
+    bool any;
+    double end_s;
+    TRY(find_script_end(s, &any, &end_s, why));
+    if (t->duration_s < 0)
+        t->duration_s = any ? fmax(0, end_s + rest_s - t->start_s) : without_script_s;
+    return STATUS_OK;
+}
+
+status frame_times_check_end(const frame_times *t, const scene *s, diagnostic *why)
+{
+    status result = STATUS_OK;
+    for (size_t i = 0; i < s->mesh_count && result == STATUS_OK; i++)
+        if (s->meshes[i].source == MESH_SLIME)
+            result = slime_check_end(&s->meshes[i], t->start_s + t->duration_s, why);
+    return result;
 }

@@ -1,8 +1,8 @@
-#include "scene/motion/motion_hands.h"
-#include "scene/motion/motion_private.h"
 #include "base/cancel.h"
 #include "measure/clock.h"
 #include "scene/model/scene.h"
+#include "scene/motion/motion_hands.h"
+#include "scene/motion/motion_private.h"
 
 #include <math.h>
 #include <string.h>
@@ -143,27 +143,27 @@ static bool is_moving(const motion_hand *h)
 }
 
 /* With the same arithmetic as for scripts. */
-static vec3 offset_at(const motion_hand *h, double share)
+static vec3 offset_at(const motion_hand *h, double fraction)
 {
-    return share >= 1.0 ? h->to : vec3_add(h->from, vec3_scale(vec3_sub(h->to, h->from), share));
+    return fraction >= 1.0 ? h->to : vec3_add(h->from, vec3_scale(vec3_sub(h->to, h->from), fraction));
 }
 
 /* Targets of the hands at the end of a step, interpolated along their displacement. */
-static void put_hands(softbody *body, const motion_hand *hands, double share)
+static void move_hands(softbody *body, const motion_hand *hands, double fraction)
 {
     for (int i = 0; i < SOFTBODY_HANDS_MAX; i++)
         if (is_moving(&hands[i]))
-            softbody_hold(body, i, vec3_add(hands[i].where, offset_at(&hands[i], share)));
+            softbody_hold(body, i, vec3_add(hands[i].where, offset_at(&hands[i], fraction)));
 }
 
 /* About every 10 ms; *shown_s is kept between the calls. */
-static void show(const load_watch *watch, double share, double *shown_s)
+static void show(const load_watch *watch, double fraction, double *shown_s)
 {
     const double show_s = 0.01, now_s = watch ? clock_wall_s() : 0.0;
     if (!watch || now_s - *shown_s < show_s)
         return;
     *shown_s = now_s;
-    watch->progress(watch->context, share);
+    watch->progress(watch->context, fraction);
 }
 
 status scene_motion_step_held(scene_motion *m, size_t i, motion_hand *hands, double time_s, const load_watch *watch,
@@ -177,17 +177,17 @@ status scene_motion_step_held(scene_motion *m, size_t i, motion_hand *hands, dou
         any |= is_moving(&hands[k]);
     diagnostic bad = {.line = 0};
     status code = STATUS_OK;
-    double share = any ? 0.0 : 1.0, shown_s = clock_wall_s();
+    double fraction = any ? 0.0 : 1.0, shown_s = clock_wall_s();
     for (uint64_t step = begin; any && step < end && code == STATUS_OK; step++) {
-        share = (double)(step + 1 - begin) / (double)(end - begin);
-        put_hands(body, hands, share);
+        fraction = (double)(step + 1 - begin) / (double)(end - begin);
+        move_hands(body, hands, fraction);
         code = softbody_step(body, &bad);
-        show(watch, share, &shown_s);
+        show(watch, fraction, &shown_s);
         if (code == STATUS_OK && step + 1 < end && cancel_asked())
             code = diagnose(&bad, STATUS_INTERRUPTED, "", "interrupted before %.6g s of simulated time", time_s);
     }
     for (int k = 0; k < SOFTBODY_HANDS_MAX && begin < end; k++)
-        hands[k].from = offset_at(&hands[k], share);
+        hands[k].from = offset_at(&hands[k], fraction);
     if (code == STATUS_OK)
         return code;
     diagnostic_locate(why, bad.file, bad.line, bad.column);

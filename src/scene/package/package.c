@@ -1,11 +1,13 @@
-/* The head and the hash of a package, and packages in memory. */
-#include "scene/package/package.h"
+/* The head and the hash of a package, packages in memory, and the hierarchies that one holds. */
 #include "base/build_id.h"
 #include "base/hash.h"
 #include "base/array.h"
+#include "geometry/hierarchy/hierarchy.h"
 #include "scene/file/write.h"
+#include "scene/model/integrators.h"
 #include "scene/model/scene.h"
-#include "scene/package/package_parts.h"
+#include "scene/package/package.h"
+#include "scene/package/package_scene.h"
 
 #include <stdlib.h>
 #include <string.h>
@@ -86,13 +88,13 @@ status scene_pack_to(const scene *s, pack_write *write, void *context, diagnosti
     return code;
 }
 
-/* whole: the size that the package must have; 0: any. */
-static status get_all(pack_reader *from, uint64_t whole, scene **out, diagnostic *why)
+/* expected_size: the size that the package must have; 0: any. */
+static status get_all(pack_reader *from, uint64_t expected_size, scene **out, diagnostic *why)
 {
     package_head head;
     TRY(pack_get(from, &head, sizeof head, why));
     TRY(check_head(&head, why));
-    if (head.size < sizeof head || (whole && head.size != whole))
+    if (head.size < sizeof head || (expected_size && head.size != expected_size))
         return pack_damaged(why, "it has another size");
     from->left = head.size - sizeof head;
     TRY(package_get_scene(from, out, why));
@@ -104,11 +106,11 @@ static status get_all(pack_reader *from, uint64_t whole, scene **out, diagnostic
     return from->left == 0 ? STATUS_OK : pack_damaged(why, "it has another size");
 }
 
-static status unpack(pack_read *read, void *context, uint64_t whole, scene **out, diagnostic *why)
+static status unpack(pack_read *read, void *context, uint64_t expected_size, scene **out, diagnostic *why)
 {
     pack_reader from = {.read = read, .context = context, .left = sizeof(package_head), .hash = HASH_START};
     *out = NULL;
-    const status code = get_all(&from, whole, out, why);
+    const status code = get_all(&from, expected_size, out, why);
     if (code != STATUS_OK) {
         scene_destroy(*out);
         *out = NULL;
@@ -172,4 +174,19 @@ status scene_unpack(const void *bytes, size_t size, scene **out, diagnostic *why
 {
     memory there = {.from = bytes, .left = size};
     return unpack(from_memory, &there, size ? size : 1, out, why);
+}
+
+/* Those that the plan of a frame (render/core/plan.c) takes from the meshes. */
+status scene_build_hierarchies(const scene *s, diagnostic *why)
+{
+    if (!s->render.keep || integrator_traits_of(&s->render)->drawn)
+        return STATUS_OK;
+    for (size_t i = 0; i < s->solid_count; i++) {
+        const mesh_entry *m = s->solids[i].visible ? scene_mesh_of(s, &s->solids[i]) : NULL;
+        const hierarchy *built;
+        if (m && m->data)
+            TRY(hierarchy_of_mesh(m->data, (hierarchy_kind)s->render.accel, scene_build_threads(&s->render), &built,
+                                  why));
+    }
+    return STATUS_OK;
 }

@@ -1,15 +1,128 @@
 /* The contents of a package: the scene's text, path and limits, and what is loaded. */
-#include "image/texture.h"
 #include "geometry/hierarchy/hierarchy.h"
-#include "scene/assets/assets.h"
+#include "image/texture.h"
+#include "scene/model/check.h"
 #include "scene/model/scene.h"
-#include "scene/package/package_parts.h"
+#include "scene/package/package_scene.h"
 
 #include <stdlib.h>
 #include <string.h>
 
+/* --- the materials in a mesh file, and their images, each once --- */
+
+/* Numbers that the parameter table and the importer allow at most. */
+#define NUMBER_MAX 1e6
+
+typedef struct face_record {
+    char name[SCENE_NAME_MAX + 1];
+    int64_t given;
+    double number[8]; /* colour, diffuse, specular, shininess, emission, opacity */
+    int64_t image;    /* 0: none; 1: it follows; else that of slot image - 2 */
+} face_record;
+_Static_assert(sizeof(face_record) == SCENE_NAME_MAX + 1 + 10 * 8 && SCENE_NAME_MAX % 8 == 7, "no padding");
+
+static int64_t image_of(const face_materials *l, int slot)
+{
+    const texture *img = face_materials_at(l, slot)->img;
+    for (int i = 0; img && i < slot; i++)
+        if (face_materials_at(l, i)->img == img)
+            return i + 2;
+    return img != NULL;
+}
+
+static status put_material(pack_writer *to, const face_materials *l, int slot, diagnostic *why)
+{
+    const face_material *m = face_materials_at(l, slot);
+    face_record record = {
+        .given = m->given,
+        .number = {m->color.x, m->color.y, m->color.z, m->diffuse, m->specular, m->shininess, m->emission, m->opacity},
+        .image = image_of(l, slot)};
+    memcpy(record.name, m->name, sizeof record.name);
+    TRY(pack_put(to, &record, sizeof record, why));
+    return record.image == 1 ? texture_pack(m->img, to, why) : STATUS_OK;
+}
+
+static status put_face_materials(pack_writer *to, const face_materials *l, diagnostic *why)
+{
+    const int64_t count = face_materials_count(l), any = l != NULL;
+    TRY(pack_put(to, &any, sizeof any, why));
+    TRY(pack_put(to, &count, sizeof count, why));
+    for (int i = 0; i < count; i++)
+        TRY(put_material(to, l, i, why));
+    return STATUS_OK;
+}
+
+static bool is_record(const face_record *r, int slot)
+{
+    bool sound =
+        memchr(r->name, 0, sizeof r->name) && r->given >= 0 && r->given <= 1 && r->image >= 0 && r->image <= slot + 1;
+    for (size_t i = 0; i < sizeof r->number / sizeof *r->number; i++)
+        sound = sound && r->number[i] >= 0.0 && r->number[i] <= NUMBER_MAX;
+    return sound;
+}
+
+static status get_material(pack_reader *from, face_material *list, int slot, diagnostic *why)
+{
+    face_record record;
+    TRY(pack_get(from, &record, sizeof record, why));
+    if (!is_record(&record, slot))
+        return pack_damaged(why, "a material of a mesh");
+    face_material *m = &list[slot];
+    const double *n = record.number;
+    *m = (face_material){.given = record.given,
+                         .color = {n[0], n[1], n[2]},
+                         .diffuse = n[3],
+                         .specular = n[4],
+                         .shininess = n[5],
+                         .emission = n[6],
+                         .opacity = n[7]};
+    memcpy(m->name, record.name, sizeof m->name);
+    if (record.image == 1)
+        return texture_unpack(from, &m->img, why);
+    if (record.image > 1 && (m->img = list[record.image - 2].img))
+        texture_retain(m->img);
+    return STATUS_OK;
+}
+
+static status get_list(pack_reader *from, face_material *list, int count, const face_materials **out, diagnostic *why)
+{
+    for (int i = 0; i < count; i++) {
+        const status code = get_material(from, list, i, why);
+        if (code != STATUS_OK) {
+            for (int k = 0; k <= i; k++)
+                texture_release(list[k].img);
+            return code;
+        }
+    }
+    return face_materials_of(list, count, out, why);
+}
+
+static status get_face_materials(pack_reader *from, const face_materials **out, diagnostic *why)
+{
+    int64_t any, count;
+    *out = NULL;
+    TRY(pack_get(from, &any, sizeof any, why));
+    TRY(pack_get(from, &count, sizeof count, why));
+    if (any < 0 || any > 1 || count < 0 || count > (any ? MESH_SLOTS_MAX : 0))
+        return pack_damaged(why, "the number of a mesh's materials");
+    if (!any)
+        return STATUS_OK;
+    face_material *list = calloc((size_t)count + 1, sizeof *list);
+    if (!list)
+        return out_of_memory(why);
+    const status code = get_list(from, list, (int)count, out, why);
+    free(list);
+    return code;
+}
+
+/* --- what is loaded --- */
+
 /* How an entry's data are given. */
-enum { DATA_NONE, DATA_FOLLOWS, DATA_SHARED }; /* from DATA_SHARED on: those of entry number (value - DATA_SHARED) */
+enum {
+    DATA_NONE,
+    DATA_FOLLOWS,
+    DATA_OF_ENTRY
+}; /* from DATA_OF_ENTRY on: those of entry number (value - DATA_OF_ENTRY) */
 
 typedef struct scene_record {
     uint64_t triangles; /* of its limits */
@@ -32,7 +145,7 @@ static int64_t data_of_texture(const scene *s, size_t index)
     const texture *data = s->textures[index].data;
     for (size_t i = 0; data && i < index; i++)
         if (s->textures[i].data == data)
-            return (int64_t)i + DATA_SHARED;
+            return (int64_t)i + DATA_OF_ENTRY;
     return data ? DATA_FOLLOWS : DATA_NONE;
 }
 
@@ -41,7 +154,7 @@ static int64_t data_of_mesh(const scene *s, size_t index)
     const mesh *data = s->meshes[index].data;
     for (size_t i = 0; data && i < index; i++)
         if (s->meshes[i].data == data)
-            return (int64_t)i + DATA_SHARED;
+            return (int64_t)i + DATA_OF_ENTRY;
     return data ? DATA_FOLLOWS : DATA_NONE;
 }
 
@@ -67,7 +180,7 @@ static status put_mesh(pack_writer *to, const scene *s, size_t index, diagnostic
     if (record.data != DATA_FOLLOWS)
         return STATUS_OK;
     TRY(mesh_pack(m->data, to, why));
-    return package_put_face_materials(to, m->shading_materials, why);
+    return put_face_materials(to, m->shading_materials, why);
 }
 
 status package_put_scene(pack_writer *to, const scene *s, const char *text, diagnostic *why)
@@ -107,7 +220,7 @@ static status get_sky(pack_reader *from, background *sky, diagnostic *why)
 /* Whether data are none, follow, or belong to one of the entries before that have any. */
 static bool is_known(int64_t data, size_t index)
 {
-    return data >= DATA_NONE && (data <= DATA_FOLLOWS || (uint64_t)(data - DATA_SHARED) < index);
+    return data >= DATA_NONE && (data <= DATA_FOLLOWS || (uint64_t)(data - DATA_OF_ENTRY) < index);
 }
 
 static status get_texture(pack_reader *from, scene *s, size_t index, diagnostic *why)
@@ -121,12 +234,12 @@ static status get_texture(pack_reader *from, scene *s, size_t index, diagnostic 
     t->path_column = record.column;
     if (record.data == DATA_FOLLOWS)
         return texture_unpack(from, &t->data, why);
-    if (record.data >= DATA_SHARED && (t->data = s->textures[record.data - DATA_SHARED].data))
+    if (record.data >= DATA_OF_ENTRY && (t->data = s->textures[record.data - DATA_OF_ENTRY].data))
         texture_retain(t->data);
     return STATUS_OK;
 }
 
-static void share_mesh(mesh_entry *m, const mesh_entry *other)
+static void reference_mesh(mesh_entry *m, const mesh_entry *other)
 {
     if (!other->data)
         return;
@@ -136,9 +249,9 @@ static void share_mesh(mesh_entry *m, const mesh_entry *other)
     face_materials_retain(m->shading_materials);
 }
 
-static status get_face_materials(pack_reader *from, mesh_entry *m, diagnostic *why)
+static status get_fitting_materials(pack_reader *from, mesh_entry *m, diagnostic *why)
 {
-    TRY(package_get_face_materials(from, &m->shading_materials, why));
+    TRY(get_face_materials(from, &m->shading_materials, why));
     const bool fit = !m->shading_materials || face_materials_count(m->shading_materials) == m->data->slot_count;
     return fit ? STATUS_OK : pack_damaged(why, "the number of a mesh's materials");
 }
@@ -156,12 +269,12 @@ static status get_mesh(pack_reader *from, scene *s, size_t index, diagnostic *wh
     m->script_column = record.script_column;
     m->account = record.account;
     m->motion_s = record.motion_s;
-    if (record.data >= DATA_SHARED)
-        share_mesh(m, &s->meshes[record.data - DATA_SHARED]);
+    if (record.data >= DATA_OF_ENTRY)
+        reference_mesh(m, &s->meshes[record.data - DATA_OF_ENTRY]);
     if (record.data != DATA_FOLLOWS)
         return STATUS_OK;
     TRY(mesh_unpack(from, &m->data, why));
-    return get_face_materials(from, m, why);
+    return get_fitting_materials(from, m, why);
 }
 
 /* The scene of the text, with nothing loaded. */

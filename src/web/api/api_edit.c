@@ -6,9 +6,8 @@
 #include "report/json.h"
 #include "scene/model/place/new_objects.h"
 #include "scene/model/check.h"
-#include "scene/model/edit/contents.h"
 #include "scene/model/edit/edit.h"
-#include "scene/model/params_path.h"
+#include "scene/model/params.h"
 #include "scene/model/scene.h"
 
 #include <stdio.h>
@@ -134,17 +133,17 @@ static status displace(call *c, edit e, const char *verb)
 
 status api_move(call *c)
 {
-    return displace(c, (edit){.displace = scene_move, .displace_together = scene_move_together}, "move");
+    return displace(c, (edit){.displace = scene_move, .displace_together = scene_move_objects}, "move");
 }
 
 status api_turn(call *c)
 {
-    return displace(c, (edit){.displace = scene_turn, .displace_together = scene_turn_together}, "turn");
+    return displace(c, (edit){.displace = scene_turn, .displace_together = scene_turn_objects}, "turn");
 }
 
 static status scale_it(edit *e, scene *s, diagnostic *why)
 {
-    return e->together.first ? scene_scale_together(s, &e->together, e->factor, why)
+    return e->together.first ? scene_scale_objects(s, &e->together, e->factor, why)
                              : scene_scale(s, e->name, e->factor, why);
 }
 
@@ -176,7 +175,7 @@ static status give_material(edit *e, scene *s, diagnostic *why)
 {
     const int index = scene_find_solid(s, e->name);
     if (e->word || index < 0)
-        return scene_give_material(s, e->name, e->word, why);
+        return scene_assign_material(s, e->name, e->word, why);
     s->solids[index].material_index = -1;
     return STATUS_OK;
 }

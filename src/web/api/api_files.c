@@ -1,12 +1,11 @@
 /* API: the files of the folder, opening and saving scenes, the media catalogue. */
 #include "web/api/api.h"
 #include "base/json_build.h"
-#include "scene/model/place/new_scene.h"
+#include "scene/model/open.h"
 #include "report/json.h"
 #include "report/media_rows.h"
 #include "scene/file/shared.h"
 #include "scene/file/write.h"
-#include "scene/model/open.h"
 
 #include <stdlib.h>
 #include <string.h>

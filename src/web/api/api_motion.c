@@ -8,7 +8,7 @@
 #include "report/json.h"
 #include "report/motion_rows.h"
 #include "scene/model/scene.h"
-#include "scene/model/slime.h"
+#include "scene/assets/slime.h"
 #include "scene/motion/motion.h"
 #include "web/session/studies.h"
 #include <stdlib.h>

@@ -2,7 +2,6 @@
 #include "web/api/api.h"
 #include "base/text.h"
 #include "scene/model/params.h"
-#include "scene/model/params_path.h"
 #include "scene/file/write.h"
 #include "scene/model/scene.h"
 

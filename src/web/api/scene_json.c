@@ -4,7 +4,7 @@
 #include "geometry/shapes/shape.h"
 #include "report/json.h"
 #include "report/param_rows.h"
-#include "scene/model/params_path.h"
+#include "scene/model/params.h"
 #include "scene/model/scene.h"
 
 static const char *const light_words[] = {"point", "cone", "soft-cone", "disc", "rectangle", "sun"};

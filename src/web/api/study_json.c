@@ -2,7 +2,7 @@
 #include "web/api/study_json.h"
 #include "base/text.h"
 #include "report/json.h"
-#include "scene/model/params_path.h"
+#include "scene/model/params.h"
 #include "study/row_files.h"
 #include "study/summary.h"
 #include <stdlib.h>

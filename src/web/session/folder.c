@@ -1,7 +1,7 @@
 /* The names and paths of the folder. folder_list.c lists its files. */
 #include "web/session/folder.h"
 #include "base/text.h"
-#include "scene/file/write_parts.h"
+#include "scene/file/write.h"
 #include "scene/model/scene.h"
 
 #include <errno.h>

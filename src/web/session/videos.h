@@ -5,7 +5,7 @@
 #pragma once
 
 #include "image/video.h"
-#include "scene/motion/frame_times.h"
+#include "scene/motion/motion.h"
 #include "web/lab_private.h"
 
 typedef struct videos videos;

@@ -1,7 +1,6 @@
-#include "scene/model/edit/contents.h"
 #include "geometry/shapes/shape.h"
 #include "scene/model/edit/edit.h"
-#include "scene/model/edit/edit_vector.h"
+#include "scene/model/edit/edit_place.h"
 #include "scene/model/place/placement.h"
 #include "scene/model/scene.h"
 
@@ -132,17 +131,17 @@ static status scale_one(const group_edit *e, scene *s, const char *name, vec3 fr
     return scene_scale(s, name, e->factor, why);
 }
 
-status scene_move_together(scene *s, const object_list *of, vec3 by, diagnostic *why)
+status scene_move_objects(scene *s, const object_list *of, vec3 by, diagnostic *why)
 {
     return apply(&(group_edit){.by = by, .act = move_one}, s, of, why);
 }
 
-status scene_turn_together(scene *s, const object_list *of, vec3 degrees, diagnostic *why)
+status scene_turn_objects(scene *s, const object_list *of, vec3 degrees, diagnostic *why)
 {
     return apply(&(group_edit){.by = degrees, .act = turn_one}, s, of, why);
 }
 
-status scene_scale_together(scene *s, const object_list *of, double factor, diagnostic *why)
+status scene_scale_objects(scene *s, const object_list *of, double factor, diagnostic *why)
 {
     return apply(&(group_edit){.factor = factor, .act = scale_one}, s, of, why);
 }

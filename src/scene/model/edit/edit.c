@@ -1,15 +1,154 @@
-/* Removes and renames objects. Adding is in edit_add.c, materials and shapes of solids in edit_solid.c, placement in
- * edit_place.c. */
-#include "scene/model/edit/edit.h"
+/* Adds, removes and renames objects; gives solids their material and shape. Placement is in edit_place.c. */
+#include "base/text.h"
+#include "geometry/shapes/shape.h"
 #include "scene/model/check.h"
+#include "scene/model/edit/edit.h"
+#include "scene/model/names.h"
 #include "scene/model/objects.h"
-#include "scene/model/params_path.h"
+#include "scene/model/params.h"
 #include "scene/model/params_value.h"
 #include "scene/model/scene.h"
 
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
+
+status scene_set_title(scene *s, const char *title, diagnostic *why)
+{
+    char *copy = strdup(title);
+    if (!copy)
+        return out_of_memory(why);
+    free(s->title);
+    s->title = copy;
+    return STATUS_OK;
+}
+
+/* --- adding --- */
+
+/* shape is for solids. */
+static status add(scene *s, param_group group, shape_kind shape, const char *name, size_t *index, diagnostic *why)
+{
+    const size_t at = param_place_group_size(s, group);
+    TRY(check_name(name, why));
+    TRY(check_name_is_free(s, name, why));
+    if (!object_append(s, group, name))
+        return out_of_memory(why);
+    status code = param_set_defaults(group, object_values(s, group, at), why);
+    if (group == PARAM_SOLID && code == STATUS_OK) {
+        solid *new = &s->solids[at];
+        new->shape.kind = shape;
+        new->material_index = -1;
+        code = param_set_defaults(PARAM_MATERIAL, &new->surface, why);
+    }
+    /* A bounded solid is within the limits as long as there are few. */
+    const shape_rule *rule = shape_of_kind(shape);
+    if (group != PARAM_SOLID || rule->unbounded || rule->triangles || s->solid_count > SCENE_PRIMITIVES_MAX / 3)
+        THEN(code, check_limits(s, why));
+    if (code != STATUS_OK)
+        object_remove(s, group, at);
+    else if (index)
+        *index = at;
+    return code;
+}
+
+status scene_add(scene *s, param_group group, const char *name, size_t *index, diagnostic *why)
+{
+    return add(s, group, (shape_kind){0}, name, index, why);
+}
+
+status scene_add_solid(scene *s, const char *name, shape_kind shape, size_t *index, diagnostic *why)
+{
+    return add(s, PARAM_SOLID, shape, name, index, why);
+}
+
+/* --- material and shape of a solid: its properties that are not rows of the table --- */
+
+status scene_assign_material(scene *s, const char *solid_name, const char *material_name, diagnostic *why)
+{
+    param_place at;
+    TRY(param_place_find_object(s, solid_name, &at, why));
+    if (at.object_group != PARAM_SOLID)
+        return diagnose(why, STATUS_BAD_INPUT, "name a solid", "%.80s is a %s, which has no material", solid_name,
+                        param_group_name(at.object_group));
+    solid *owner = &s->solids[at.index];
+    if (!material_name || !material_name[0]) {
+        owner->material_index = -1;
+        return param_set_defaults(PARAM_MATERIAL, &owner->surface, why);
+    }
+    const int material_index = object_find(s, PARAM_MATERIAL, material_name);
+    if (material_index >= 0) {
+        owner->material_index = material_index;
+        owner->surface = s->materials[material_index].value;
+        return STATUS_OK;
+    }
+    char remedy[SCENE_NAME_MAX + 80];
+    return diagnose(why, STATUS_BAD_INPUT, object_remedy(s, PARAM_MATERIAL, material_name, remedy, sizeof remedy),
+                    "no material '%.80s'", material_name);
+}
+
+enum { SHAPES_MAX = 64 };
+
+static size_t shape_words(const char *words[SHAPES_MAX])
+{
+    size_t count = 0;
+    for (const shape_rule *rule; count < SHAPES_MAX && (rule = shape_of_kind((shape_kind)count)); count++)
+        words[count] = rule->word;
+    return count;
+}
+
+char *scene_shape_words(const char *conjunction, char *text, size_t size)
+{
+    const char *words[SHAPES_MAX];
+    const size_t last = shape_words(words) - 1;
+    suggest_list("", words, last, text, size);
+    const size_t used = strlen(text);
+    snprintf(text + used, size - used, " %s %s", conjunction, words[last]);
+    return text;
+}
+
+status scene_shape_named(const char *word, shape_kind *out, diagnostic *why)
+{
+    if (shape_named(word, out))
+        return STATUS_OK;
+    const char *words[SHAPES_MAX], *nearest = text_nearest(word, words, shape_words(words));
+    char remedy[200], all[160];
+    snprintf(remedy, sizeof remedy, nearest ? "did you mean '%s'?" : "the shapes are %s",
+             nearest ? nearest : scene_shape_words("and", all, sizeof all));
+    return diagnose(why, STATUS_BAD_INPUT, remedy, "'%.60s' is not a shape", word);
+}
+
+static status put_shape(scene *s, solid *owner, const char *word, diagnostic *why)
+{
+    const shape_kind before = owner->shape.kind;
+    status code = scene_shape_named(word, &owner->shape.kind, why);
+    THEN(code, check_limits(s, why));
+    if (code != STATUS_OK)
+        owner->shape.kind = before;
+    return code;
+}
+
+/* The solid at the start of a path, or NULL. */
+static solid *owner_of(const scene *s, const char *path)
+{
+    const size_t length = strcspn(path, ".");
+    for (size_t i = 0; i < s->solid_count; i++)
+        if (strlen(s->solids[i].name) == length && strncmp(s->solids[i].name, path, length) == 0)
+            return &s->solids[i];
+    return NULL;
+}
+
+status scene_put(scene *s, const char *path, const char *value, diagnostic *why)
+{
+    solid *owner = owner_of(s, path);
+    const char *rest = path + strcspn(path, ".");
+    if (owner && strcmp(rest, ".material") == 0)
+        return scene_assign_material(s, owner->name, value, why);
+    if (owner && strcmp(rest, ".shape") == 0)
+        return put_shape(s, owner, value, why);
+    return scene_set(s, path, value, why);
+}
+
+/* --- removing and renaming --- */
 
 static status remove_material(scene *s, size_t index, diagnostic *why)
 {
@@ -118,15 +257,5 @@ status scene_rename(scene *s, const char *name, const char *new_name, diagnostic
         return out_of_memory(why);
     follow_name(s, &at, name, copy);
     object_rename(s, at.object_group, at.index, copy);
-    return STATUS_OK;
-}
-
-status scene_set_title(scene *s, const char *title, diagnostic *why)
-{
-    char *copy = strdup(title);
-    if (!copy)
-        return out_of_memory(why);
-    free(s->title);
-    s->title = copy;
     return STATUS_OK;
 }

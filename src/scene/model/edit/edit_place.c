@@ -1,14 +1,23 @@
-/* Moves and rotates single objects and the camera. Groups of objects: edit_whole.c. */
-#include "scene/model/edit/edit.h"
-#include "scene/model/edit/edit_vector.h"
+/* Moves and rotates one object or the camera. Groups of objects: edit_parts.c. */
 #include "base/elementary.h"
 #include "base/number.h"
 #include "base/text.h"
-#include "scene/model/params_path.h"
-#include "scene/model/light.h"
+#include "scene/model/edit/edit.h"
+#include "scene/model/edit/edit_place.h"
 #include "scene/model/scene.h"
 
+#include <stdio.h>
 #include <stdlib.h>
+#include <string.h>
+
+status edit_find(const scene *s, const char *name, param_place *at, diagnostic *why)
+{
+    const status code = param_place_find_object(s, name, at, why);
+    if (code == STATUS_BAD_INPUT && why && strncmp(why->remedy, "did you mean", 12) != 0)
+        snprintf(why->remedy, sizeof why->remedy,
+                 "give the name of a solid or light, or of camera, solids, lights, all, or a sum as all+camera");
+    return code;
+}
 
 typedef enum axis { AXIS_X, AXIS_Y, AXIS_Z } axis;
 
@@ -65,12 +74,9 @@ static status move_beam(scene *s, size_t index, vec3 delta, diagnostic *why)
     return code;
 }
 
-status scene_move(scene *s, const char *name, vec3 delta, diagnostic *why)
+status edit_move(scene *s, const char *name, vec3 delta, diagnostic *why)
 {
     param_place at;
-    scene_parts parts;
-    if (scene_parts_named(s, name, &parts))
-        return scene_move_parts(s, parts, delta, why);
     TRY(edit_find(s, name, &at, why));
     if (at.object_group == PARAM_CAMERA)
         return move_camera(s, delta, why);
@@ -166,11 +172,6 @@ static status turn_camera(scene *s, vec3 degrees, diagnostic *why)
     return STATUS_OK;
 }
 
-static bool is_angle(double degrees)
-{
-    return fabs(degrees) <= 1e6; /* range in which elementary_sincos_deg has its stated error; false for NaN */
-}
-
 /* A spotlight's target rotates about its position. */
 static status turn_light(scene *s, const light *l, vec3 degrees, diagnostic *why)
 {
@@ -190,18 +191,24 @@ static status turn_beam(scene *s, const beam *b, vec3 degrees, diagnostic *why)
     return code;
 }
 
-status scene_turn(scene *s, const char *name, vec3 degrees, diagnostic *why)
+static bool is_angle(double degrees)
+{
+    return fabs(degrees) <= 1e6; /* range in which elementary_sincos_deg has its stated error; false for NaN */
+}
+
+status edit_check_angles(const char *name, vec3 degrees, diagnostic *why)
+{
+    if (is_angle(degrees.x) && is_angle(degrees.y) && is_angle(degrees.z))
+        return STATUS_OK;
+    return diagnose(why, STATUS_BAD_INPUT, "give 3 angles, each -1000000..1000000 degrees",
+                    "%.80s cannot be rotated by these angles", name);
+}
+
+status edit_turn(scene *s, const char *name, vec3 degrees, diagnostic *why)
 {
     param_place at;
-    scene_parts parts;
-    const bool is_many = scene_parts_named(s, name, &parts);
-    if (!is_many)
-        TRY(edit_find(s, name, &at, why));
-    if (!is_angle(degrees.x) || !is_angle(degrees.y) || !is_angle(degrees.z))
-        return diagnose(why, STATUS_BAD_INPUT, "give 3 angles, each -1000000..1000000 degrees",
-                        "%.80s cannot be rotated by these angles", name);
-    if (is_many)
-        return scene_turn_parts(s, parts, degrees, why);
+    TRY(edit_find(s, name, &at, why));
+    TRY(edit_check_angles(name, degrees, why));
     if (at.object_group == PARAM_CAMERA)
         return turn_camera(s, degrees, why);
     if (at.object_group == PARAM_LIGHT && s->lights[at.index].kind != LIGHT_POINT)

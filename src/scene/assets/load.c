@@ -1,0 +1,417 @@
+/* Loads the files of a scene, and makes its generated meshes: the background image, textures, meshes. */
+#include "base/cancel.h"
+#include "base/file.h"
+#include "base/random.h"
+#include "geometry/mesh/mesh_generators.h"
+#include "geometry/shapes/shape.h"
+#include "scene/assets/mesh_file.h"
+#include "scene/assets/slime.h"
+#include "scene/model/check.h"
+#include "scene/model/face_materials.h"
+#include "scene/model/objects.h"
+#include "scene/model/params_value.h"
+#include "scene/model/scene.h"
+#include "scene/model/work.h"
+
+#include <math.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+/* --- generated meshes --- */
+
+/* Value noise: random values at the points of a grid of `cells` cells per edge, interpolated with the fade curve 6 s^5
+ * - 15 s^4 + 10 s^3 (Perlin, "Improving noise", SIGGRAPH 2002). x and z in cells. Result 0 to 1. */
+static double noise(int64_t seed, uint32_t octave, double x, double z)
+{
+    const double cx = floor(x), cz = floor(z), s = x - cx, r = z - cz;
+    double corner[2][2];
+    for (int k = 0; k < 4; k++) {
+        const uint32_t across = (uint32_t)(int64_t)cx + (uint32_t)(k & 1),
+                       down = (uint32_t)(int64_t)cz + (uint32_t)(k >> 1);
+        corner[k >> 1][k & 1] = random_unit(random_at((uint64_t)seed, across, down, octave, 0).word[0]);
+    }
+    const double u = s * s * s * (s * (s * 6.0 - 15.0) + 10.0), v = r * r * r * (r * (r * 6.0 - 15.0) + 10.0);
+    const double low = corner[0][0] + u * (corner[0][1] - corner[0][0]),
+                 high = corner[1][0] + u * (corner[1][1] - corner[1][0]);
+    return low + v * (high - low);
+}
+
+/* Hills: five octaves of noise, each with half the amplitude and twice the frequency of the one before. */
+static status make_terrain(const mesh_entry *m, mesh **out, diagnostic *why)
+{
+    enum { OCTAVES = 5, CELLS = 4 };
+    const int columns = (int)m->around + 1, rows = (int)m->tube + 1;
+    double *heights = malloc((size_t)columns * (size_t)rows * sizeof *heights);
+    if (!heights)
+        return out_of_memory(why);
+    for (int row = 0; row < rows && !cancel_asked(); row++) {
+        for (int column = 0; column < columns; column++) {
+            double sum = 0.0, weight = 0.5, fine = CELLS;
+            for (uint32_t k = 0; k < OCTAVES; k++, weight *= 0.5, fine *= 2.0)
+                sum += weight * noise(m->seed, k, fine * column / (columns - 1), fine * row / (rows - 1));
+            heights[(size_t)row * (size_t)columns + (size_t)column] = m->size.y * sum;
+        }
+    }
+    status code = cancel_check(why);
+    THEN(code, generate_height_field(heights, columns, rows, m->size.x, m->size.z, m->depth, out, why));
+    free(heights);
+    return code;
+}
+
+static status make_lathe(const mesh_entry *m, mesh **out, diagnostic *why)
+{
+    profile_point profile[NUMBER_LIST_MAX / 2];
+    const size_t count = (size_t)m->profile.count / 2;
+    for (size_t i = 0; i < count; i++)
+        profile[i] = (profile_point){m->profile.value[2 * i], m->profile.value[2 * i + 1]};
+    return generate_lathe(profile, count, (int)m->around, m->crease_deg, out, why);
+}
+
+static status generate(const mesh_entry *m, mesh **out, diagnostic *why)
+{
+    switch ((mesh_maker)m->source) {
+    case MESH_SPARSE: return generate_sparse_soup((size_t)m->count, out, why);
+    case MESH_DENSE: return generate_dense_soup((size_t)m->count, out, why);
+    case MESH_SPHERE: return generate_sphere((size_t)m->count, out, why);
+    case MESH_ICOSPHERE: return generate_icosphere((int)m->level, out, why);
+    case MESH_TORUS: return generate_torus(m->major, m->minor, (int)m->around, (int)m->tube, out, why);
+    case MESH_LATHE: return make_lathe(m, out, why);
+    case MESH_TERRAIN: return make_terrain(m, out, why);
+    case MESH_BOX: return generate_box(m->size, out, why);
+    case MESH_FILE:
+    case MESH_SLIME:
+    case MESH_ARRAYS: break;
+    }
+    return diagnose(why, STATUS_BAD_INPUT, "set its triangles, or another source", "%.80s has no triangles", m->name);
+}
+
+/* As the generators count; 0 for those that are small anyway. A solid terrain has a few more. */
+static void size_of(const mesh_entry *m, size_t *vertices, size_t *triangles)
+{
+    const size_t count = (size_t)m->count, around = (size_t)m->around, tube = (size_t)m->tube;
+    size_t f = 0; /* triangles along an edge of the icosahedron */
+    *vertices = *triangles = 0;
+    switch ((mesh_maker)m->source) {
+    case MESH_SPARSE:
+    case MESH_DENSE: *vertices = 3 * count, *triangles = count; return;
+    case MESH_SPHERE: f = (size_t)floor(sqrt((double)count / 20.0) + 0.5); break;
+    case MESH_ICOSPHERE: f = (size_t)1 << m->level; break;
+    case MESH_TORUS:
+    case MESH_TERRAIN: *vertices = (around + 1) * (tube + 1), *triangles = 2 * around * tube; return;
+    case MESH_LATHE: /* small */
+    case MESH_BOX:
+    case MESH_FILE:
+    case MESH_SLIME:
+    case MESH_ARRAYS: return;
+    }
+    *vertices = 10 * (f + 1) * (f + 2);
+    *triangles = 20 * f * f;
+}
+
+static size_t planned_triangles(const mesh_entry *m)
+{
+    size_t vertices, triangles;
+    size_of(m, &vertices, &triangles);
+    return triangles;
+}
+
+static status make_mesh(mesh_entry *m, diagnostic *why)
+{
+    mesh *made = NULL;
+    size_t vertices, triangles;
+    size_of(m, &vertices, &triangles);
+    const bool smooth = m->source != MESH_SPARSE && m->source != MESH_DENSE;
+    TRY(mesh_check_size(vertices, triangles, smooth, smooth, false, why));
+    const status code = generate(m, &made, why);
+    m->data = made;
+    return code;
+}
+
+/* --- meshes from files, and the materials in them --- */
+
+#define EMISSION_MAX 1e4 /* as in the parameter table */
+
+static double at_most_one(double value)
+{
+    return value < 1.0 ? value : 1.0;
+}
+
+/* Shared with an earlier slot that has the same image file. */
+static status read_image(const mesh_import *imported, int slot, const char *root, face_material *list, diagnostic *why)
+{
+    const char *path = imported->materials[slot].texture;
+    for (int i = 0; i < slot; i++) {
+        const char *other = imported->materials[i].texture;
+        if (other && list[i].img && strcmp(other, path) == 0) {
+            list[slot].img = list[i].img;
+            texture_retain(list[i].img);
+            return STATUS_OK;
+        }
+    }
+    texture *img;
+    const status code =
+        texture_read_below(path, root, TEXTURE_SRGB, TEXTURE_REPEAT, TEXTURE_REPEAT, TEXTURE_TRILINEAR, &img, why);
+    if (code == STATUS_OK)
+        list[slot].img = img;
+    return code;
+}
+
+static double brightest(vec3 color)
+{
+    return fmax(color.x, fmax(color.y, color.z));
+}
+
+/* Emission is the surface's colour times a scalar in this program: the scalar is the brightest channel of the file's
+ * emission; an emitter with a black surface takes the colour of the emission. */
+static void emit(face_material *mat, const imported_material *m)
+{
+    const vec3 sent = vec3_make(m->emissive[0], m->emissive[1], m->emissive[2]);
+    if (!(brightest(sent) > 0.0))
+        return;
+    if (brightest(mat->color) == 0.0) {
+        mat->color = vec3_scale(sent, 1.0 / brightest(sent));
+        mat->diffuse = 0.0;
+    }
+    mat->emission = fmin(brightest(sent) / brightest(mat->color), EMISSION_MAX);
+}
+
+/* Material files have a colour for each term of Phong's equation, this program a coefficient: the brightest channel. */
+static face_material face_material_of(const imported_material *m)
+{
+    face_material mat = {.given = m->given, .diffuse = 1.0, .shininess = m->shininess, .opacity = m->opacity};
+    snprintf(mat.name, sizeof mat.name, "%s", m->name ? m->name : "");
+    mat.color = vec3_make(at_most_one(m->color[0]), at_most_one(m->color[1]), at_most_one(m->color[2]));
+    /* A highlight without an exponent is ignored: with exponent 0 it would cover the whole surface. */
+    for (int c = 0; c < 3 && m->shininess > 0.0; c++)
+        mat.specular = m->specular[c] > mat.specular ? at_most_one(m->specular[c]) : mat.specular;
+    emit(&mat, m);
+    return mat;
+}
+
+static status read_face_materials(const mesh_import *imported, const char *root, face_material *list, diagnostic *why)
+{
+    for (int i = 0; i < imported->material_count; i++) {
+        list[i] = face_material_of(&imported->materials[i]);
+        if (imported->materials[i].texture)
+            TRY(read_image(imported, i, root, list, why));
+    }
+    return STATUS_OK;
+}
+
+/* Converts the importer's result; reads its image files, each once, below root (base/file.h). A diagnostic has the
+ * path of the image file. */
+static status make_face_materials(const mesh_import *imported, const char *root, const face_materials **out,
+                                  diagnostic *why)
+{
+    const int count = imported->material_count;
+    face_material *list = calloc((size_t)count, sizeof *list);
+    if (!list)
+        return out_of_memory(why);
+    status code = read_face_materials(imported, root, list, why);
+    if (code == STATUS_OK)
+        code = face_materials_of(list, count, out, why);
+    else
+        for (int i = 0; i < count; i++)
+            texture_release(list[i].img);
+    free(list);
+    return code;
+}
+
+static status read_mesh_file(mesh_entry *m, const char *path, const load_limits *limits, diagnostic *why)
+{
+    const mesh_limits import_limits = {.root = limits->root, .triangles = limits->triangles};
+    mesh_import *imported;
+    TRY(mesh_read_file(path, &import_limits, &imported, why));
+    status code = make_face_materials(imported, limits->root, &m->shading_materials, why);
+    if (code == STATUS_OK) {
+        m->data = imported->mesh;
+        mesh_retain(m->data);
+    }
+    mesh_import_destroy(imported);
+    return code;
+}
+
+/* --- the scene --- */
+
+static status load_sky(scene *s, diagnostic *why)
+{
+    background *sky = &s->background;
+    if (sky->kind != BACKGROUND_IMAGE || sky->img || !sky->image_path[0])
+        return STATUS_OK;
+    char *path = scene_file_path(s, sky->image_path);
+    if (!path)
+        return out_of_memory(why);
+    diagnostic bad = {.what = ""};
+    status code = image_read_below(path, s->limits.root, &sky->img, NULL, &bad);
+    if (code == STATUS_OK && (code = sky_check(sky->img, path, &bad)) != STATUS_OK) {
+        image_destroy(sky->img);
+        sky->img = NULL;
+    }
+    free(path);
+    return code == STATUS_OK
+               ? code
+               : scene_file_error(s, "background.picture", sky->image_line, sky->image_column, &bad, code, why);
+}
+
+static status load_texture(const scene *s, texture_entry *t, diagnostic *why)
+{
+    char *path = scene_file_path(s, t->path);
+    if (!path)
+        return out_of_memory(why);
+    diagnostic bad = {.what = ""};
+    texture *data = NULL;
+    const status code = texture_read_below(path, s->limits.root, (texture_space)t->space, (texture_wrap)t->wrap_u,
+                                           (texture_wrap)t->wrap_v, (texture_filter)t->filter, &data, &bad);
+    free(path);
+    t->data = data;
+    return code == STATUS_OK ? code : scene_file_error(s, t->name, t->path_line, t->path_column, &bad, code, why);
+}
+
+static bool values_equal(const param *row, const char *a, const char *b)
+{
+    char *x = param_value_text(row, -1, a + row->offset), *y = param_value_text(row, -1, b + row->offset);
+    const bool same = x && y && strcmp(x, y) == 0;
+    free(x);
+    free(y);
+    return same;
+}
+
+static bool meshes_equal(const mesh_entry *a, const mesh_entry *b)
+{
+    bool same = true;
+    for (size_t i = 0; i < param_count() && same; i++) {
+        const param *row = param_at(i);
+        same = row->group != PARAM_MESH || values_equal(row, (const char *)a, (const char *)b);
+    }
+    return same;
+}
+
+void scene_borrow_meshes(scene *s, const scene *from)
+{
+    for (size_t i = 0; i < s->mesh_count; i++) {
+        mesh_entry *m = &s->meshes[i];
+        const bool simulates = m->source == MESH_SLIME && !s->render.keep;
+        for (size_t k = 0; k < from->mesh_count && !m->data && !simulates; k++) {
+            const mesh_entry *other = &from->meshes[k];
+            if (!other->data || !meshes_equal(m, other))
+                continue;
+            m->data = other->data;
+            m->shading_materials = other->shading_materials;
+            m->account = other->account;
+            m->motion_s = other->motion_s;
+            mesh_retain(m->data);
+            face_materials_retain(m->shading_materials);
+        }
+    }
+}
+
+static status load_mesh(const scene *s, mesh_entry *m, diagnostic *why)
+{
+    char *path = scene_file_path(s, m->path);
+    if (!path)
+        return out_of_memory(why);
+    diagnostic bad = {.what = ""};
+    const status code = read_mesh_file(m, path, &s->limits, &bad);
+    free(path);
+    return code == STATUS_OK ? code : scene_file_error(s, m->name, m->path_line, m->path_column, &bad, code, why);
+}
+
+/* Whether all meshes together exceed the limit: before m is generated, with the triangles that it will have, or after
+ * it was loaded. */
+static status check_triangles(const scene *s, mesh_entry *m, size_t further, diagnostic *why)
+{
+    size_t all = further;
+    for (size_t i = 0; i < s->mesh_count; i++)
+        all += s->meshes[i].data ? s->meshes[i].data->triangle_count : 0;
+    if (!s->limits.triangles || all <= s->limits.triangles)
+        return STATUS_OK;
+    diagnostic bad = {.what = ""};
+    const status code =
+        diagnose(&bad, STATUS_BAD_INPUT, "use smaller or fewer meshes",
+                 "the meshes have %zu triangles together, more than the limit of %zu", all, s->limits.triangles);
+    mesh_entry_unload(m);
+    return scene_file_error(s, m->name, m->path_line, m->path_column, &bad, code, why);
+}
+
+static status generate_mesh(const scene *s, mesh_entry *m, diagnostic *why)
+{
+    TRY(check_triangles(s, m, planned_triangles(m), why));
+    return make_mesh(m, why);
+}
+
+/* Background image and textures. */
+static status load_textures(scene *s, diagnostic *why)
+{
+    TRY(load_sky(s, why));
+    for (size_t i = 0; i < s->texture_count; i++)
+        if (!s->textures[i].data)
+            TRY(load_texture(s, &s->textures[i], why));
+    return STATUS_OK;
+}
+
+/* Progress of one slime as a part of all slimes that must move. */
+typedef struct motion_watch {
+    const load_watch *watch;
+    double before, current, total; /* as slime_work */
+} motion_watch;
+
+static void show_total(void *context, double fraction)
+{
+    const motion_watch *w = context;
+    w->watch->progress(w->watch->context, (w->before + fraction * w->current) / w->total);
+}
+
+static double work_of(const mesh_entry *m)
+{
+    return m->source == MESH_SLIME && !m->data ? slime_work(m) : 0.0;
+}
+
+static status load_meshes(scene *s, const load_watch *watch, diagnostic *why)
+{
+    motion_watch all = {.watch = watch};
+    for (size_t i = 0; i < s->mesh_count; i++)
+        all.total += work_of(&s->meshes[i]);
+    status code = STATUS_OK;
+    for (size_t i = 0; i < s->mesh_count && code == STATUS_OK; i++) {
+        mesh_entry *m = &s->meshes[i];
+        all.current = work_of(m);
+        if (!m->data && m->source == MESH_SLIME)
+            code = slime_make(s, m, watch ? &(load_watch){show_total, &all} : NULL, why);
+        else if (!m->data && m->source == MESH_FILE)
+            code = load_mesh(s, m, why);
+        else if (!m->data)
+            code = generate_mesh(s, m, why);
+        THEN(code, check_triangles(s, m, 0, why));
+        all.before += all.current;
+    }
+    return code;
+}
+
+status scene_load_until(scene *s, const load_watch *watch, diagnostic *why)
+{
+    TRY(load_textures(s, why));
+    return load_meshes(s, watch, why);
+}
+
+status scene_load(scene *s, diagnostic *why)
+{
+    return scene_load_until(s, NULL, why);
+}
+
+status scene_load_files(scene *s, diagnostic *why)
+{
+    status code = load_textures(s, why);
+    for (size_t i = 0; i < s->mesh_count && code == STATUS_OK; i++) {
+        mesh_entry *m = &s->meshes[i];
+        if (m->source == MESH_FILE && !m->data) {
+            code = load_mesh(s, m, why);
+            THEN(code, check_triangles(s, m, 0, why));
+        } else if (m->source == MESH_SLIME) {
+            hand_script *script;
+            code = slime_read_script(s, m, &script, why);
+            hand_script_destroy(script);
+        }
+    }
+    return code;
+}

@@ -1,0 +1,20 @@
+/* Script files: recorded hands that act on a slime. YAML:
+ *
+ *   title: A tug to the left            # optional
+ *   hands:
+ *     left:                             # any name; each hand holds one place at a time
+ *       - {time_s: 0.5, grab: [0, 1, -6], towards: [0, 0, 1], reach: 0.3}   # under the ray from a point in a direction
+ *       - {time_s: 1.5, move: [-1.2, 0.8, 0]}                               # displacement from the grab by then
+ *       - {time_s: 2.0, release: on}
+ *
+ * Points are in the frame of the slime's mesh, which is the world's where its solid is neither moved, turned nor
+ * scaled. Ownership: the caller releases with hand_script_destroy. Errors: STATUS_BAD_INPUT, located: file, line,
+ * column. */
+#pragma once
+
+#include "softbody/softbody.h"
+
+/* From a file below root (base/file.h; NULL: anywhere). */
+status script_read_below(const char *path, const char *root, hand_script **out, diagnostic *why);
+/* The same from memory; name is used in diagnostics. */
+status script_read_text(const char *name, const char *text, size_t size, hand_script **out, diagnostic *why);

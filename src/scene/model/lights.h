@@ -1,0 +1,125 @@
+/* The lights and the beams of a scene. A beam of the optical bench consists of rays that are shown; with `lights`
+ * it is also a lamp, whose light photons carry. Plain values; each owns its name. */
+#pragma once
+
+#include "base/vec3.h"
+#include "optics/spectrum.h"
+#include "scene/model/render_settings.h"
+#include <math.h>
+#include <stdbool.h>
+#include <stdint.h>
+
+enum { SCENE_LIGHTS_MAX = 1024 };
+
+typedef enum light_kind {
+    LIGHT_POINT,
+    LIGHT_CONE,
+    LIGHT_SOFT_CONE,
+    LIGHT_DISC,
+    LIGHT_RECTANGLE,
+    LIGHT_SUN /* infinitely far away, in the direction from target to position */
+} light_kind;
+
+typedef struct light {
+    char *name;
+    int64_t kind;          /* light_kind */
+    vec3 position, target; /* target: the point that a spotlight or a flat light is aimed at */
+    double half_angle_deg; /* of a spotlight, from its axis */
+    vec3 color;
+    double intensity;
+    int64_t spectrum;                   /* lamp_spectrum */
+    double temperature_k;               /* of a black body */
+    double line_nm;                     /* of a lamp of one line */
+    double radius;                      /* of an emitting sphere or disc; 0 = a point light */
+    double width, height, roll_deg;     /* of a rectangle */
+    double angular_diameter_deg;        /* of a sun; 0: all its light is parallel */
+    double polarised, polarisation_deg; /* degree of linear polarisation, and the field's angle from the horizontal */
+    double reach; /* the distance at which the intensity applies, with inverse square falloff; 0 = no falloff */
+} light;
+
+/* A disc or a rectangle. */
+static inline bool light_is_flat(const light *l)
+{
+    return l->kind == LIGHT_DISC || l->kind == LIGHT_RECTANGLE;
+}
+
+/* The radius of a ball around the light: 0 for a point and for a sun. */
+static inline double light_extent(const light *l)
+{
+    return l->kind == LIGHT_SUN                ? 0.0
+           : l->kind != LIGHT_RECTANGLE        ? l->radius
+           : l->width > 0.0 && l->height > 0.0 ? 0.5 * sqrt(l->width * l->width + l->height * l->height)
+                                               : 0.0;
+}
+
+/* Whether it is seen under an angle, so that its shadows can be soft. */
+static inline bool light_has_size(const light *l)
+{
+    return l->kind == LIGHT_SUN ? l->angular_diameter_deg > 0.0 : light_extent(l) > 0.0;
+}
+
+/* --- beams --- */
+
+enum { SCENE_BEAMS_MAX = 64, BEAM_RAYS_MAX = 10000, BEAM_DEPTH_MAX = 10000 };
+
+/* From one point: within a cone, or in a plane. Parallel: in a plane, or over a disc. */
+typedef enum beam_kind { BEAM_PENCIL, BEAM_FAN, BEAM_SHEET, BEAM_BUNDLE } beam_kind;
+
+/* Of the power of its photons: even within the angle or width; or exp(-2 r^2 / w^2), whose 2 w is the angle or width.
+ */
+typedef enum beam_profile { BEAM_UNIFORM, BEAM_GAUSSIAN } beam_profile;
+
+typedef struct beam {
+    char *name;
+    int64_t kind; /* beam_kind */
+    vec3 position, target;
+    vec3 direction; /* used instead of the target unless it is zero */
+    vec3 normal;    /* of the plane of a fan or sheet; zero: as in `cuvette fan` */
+    int64_t rays;
+    double angle_deg, width; /* full angle of a pencil or fan; width of a sheet, diameter of a bundle, scene units */
+    int64_t white;           /* 1: `wavelengths` wavelengths from BEAM_LOW_NM to BEAM_HIGH_NM instead of lambda_nm */
+    double lambda_nm;
+    int64_t wavelengths;
+    double power;     /* sum over all rays, at their starts */
+    int64_t branches; /* 1: reflected and refracted rays; 0: the refracted path, as in `cuvette fan` */
+    int64_t depth;
+    double min_share;
+    vec3 color; /* of the drawn lines; black: the colour of the wavelength */
+    int64_t visible;
+    int64_t lights, profile; /* 1: it lights the scene, with that beam_profile */
+} beam;
+
+/* White light: evenly spaced, of equal power. */
+enum { BEAM_LOW_NM = 400, BEAM_HIGH_NM = 700 };
+
+static inline int beam_wavelengths(const beam *b)
+{
+    return b->white ? (int)b->wavelengths : 1;
+}
+
+static inline double beam_lambda(const beam *b, int number)
+{
+    if (!b->white)
+        return b->lambda_nm;
+    if (b->wavelengths == 1)
+        return 0.5 * (BEAM_LOW_NM + BEAM_HIGH_NM);
+    return BEAM_LOW_NM + (double)(BEAM_HIGH_NM - BEAM_LOW_NM) * number / (double)(b->wavelengths - 1);
+}
+
+/* The direction of its axis, of any length. */
+static inline vec3 beam_axis(const beam *b)
+{
+    return vec3_dot(b->direction, b->direction) > 0.0 ? b->direction : vec3_sub(b->target, b->position);
+}
+
+/* Whether photons carry its light. Light of a wavelength that the eye does not see is none. */
+static inline bool beam_lights_scene(const beam *b, const render_settings *r)
+{
+    const bool seen = b->white || (b->lambda_nm >= OBSERVER_LOW_NM && b->lambda_nm <= OBSERVER_HIGH_NM);
+    return b->lights && b->visible && b->power > 0.0 && seen && scene_has_caustics(r);
+}
+
+static inline bool beam_is_parallel(const beam *b)
+{
+    return b->kind == BEAM_SHEET || b->kind == BEAM_BUNDLE;
+}

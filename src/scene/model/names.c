@@ -1,0 +1,202 @@
+/* Names of objects and other words of a scene file. */
+#include "base/hash.h"
+#include "base/number.h"
+#include "base/text.h"
+#include "scene/model/names.h"
+#include "scene/model/params.h"
+
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+#include <strings.h>
+
+/* --- valid names --- */
+
+static bool is_reserved(const char *name)
+{
+    static const char *const sections[] = {"title", "meshes", "textures", "materials", "lights", "solids"};
+    for (size_t i = 0; i < sizeof sections / sizeof sections[0]; i++)
+        if (strcmp(name, sections[i]) == 0)
+            return true;
+    for (int g = 0; g < PARAM_GROUP_COUNT; g++) /* objects of older scenes may be called "beam" */
+        if (g != PARAM_BEAM && strcmp(name, param_group_name((param_group)g)) == 0)
+            return true;
+    return false;
+}
+
+static bool is_letter(char c)
+{
+    return (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') || c == '_';
+}
+
+status check_name(const char *name, diagnostic *why)
+{
+    size_t length = strlen(name);
+    bool right = is_letter(name[0]) && length <= SCENE_NAME_MAX;
+    for (const char *c = name; right && *c; c++)
+        right = is_letter(*c) || (*c >= '0' && *c <= '9') || *c == '-';
+    if (!right)
+        return diagnose(why, STATUS_BAD_INPUT, "use at most 63 letters, digits, _ and -, beginning with a letter or _",
+                        "'%.80s' is not a valid name", name);
+    if (is_reserved(name))
+        return diagnose(why, STATUS_BAD_INPUT, "choose another name", "the name '%s' is a reserved word of scene files",
+                        name);
+    return STATUS_OK;
+}
+
+/* --- names in use --- */
+
+/* Never 0. */
+static uint64_t hash_of(const char *name)
+{
+    const uint64_t h = hash_finish(hash_bytes(HASH_START, name, strlen(name)));
+    return h ? h : 1;
+}
+
+/* The place of a hash, or the free place where it belongs. size: a power of two with a free place. */
+static size_t place_of(const name_tally *t, uint64_t hash)
+{
+    size_t at = (size_t)hash & (t->size - 1);
+    while (t->hash[at] != 0 && t->hash[at] != hash)
+        at = (at + 1) & (t->size - 1);
+    return at;
+}
+
+static bool grow(name_tally *t)
+{
+    const size_t size = t->size ? 2 * t->size : 64;
+    name_tally larger = {.hash = calloc(size, sizeof *t->hash), .count = calloc(size, sizeof *t->count), .size = size};
+    if (!larger.hash || !larger.count) {
+        name_tally_clear(&larger);
+        return false;
+    }
+    for (size_t i = 0; i < t->size; i++) {
+        if (t->hash[i] == 0 || t->count[i] == 0)
+            continue;
+        const size_t at = place_of(&larger, t->hash[i]);
+        larger.hash[at] = t->hash[i];
+        larger.count[at] = t->count[i];
+        larger.used++;
+    }
+    name_tally_clear(t);
+    *t = larger;
+    return true;
+}
+
+void name_tally_add(name_tally *t, const char *name)
+{
+    if (t->lost || (2 * (t->used + 1) > t->size && !grow(t))) {
+        t->lost = true;
+        return;
+    }
+    const uint64_t hash = hash_of(name);
+    const size_t at = place_of(t, hash);
+    t->used += t->hash[at] == 0;
+    t->hash[at] = hash;
+    t->count[at]++;
+}
+
+void name_tally_remove(name_tally *t, const char *name)
+{
+    if (t->lost || t->size == 0)
+        return;
+    const size_t at = place_of(t, hash_of(name));
+    if (t->count[at] > 0)
+        t->count[at]--;
+}
+
+size_t name_tally_most(const name_tally *t, const char *name)
+{
+    if (t->lost)
+        return SIZE_MAX;
+    return t->size ? t->count[place_of(t, hash_of(name))] : 0;
+}
+
+void name_tally_clear(name_tally *t)
+{
+    free(t->hash);
+    free(t->count);
+    *t = (name_tally){.lost = t->lost};
+}
+
+/* --- suggestions --- */
+
+static bool is_number(const char *text)
+{
+    double value;
+    return number_parse_real(text, &value);
+}
+
+static const char *word_in(const char *word, const char *const *words, size_t count)
+{
+    for (size_t i = 0; i < count; i++)
+        if (strcmp(words[i], word) == 0)
+            return words[i];
+    return NULL;
+}
+
+/* Names of our parameters in other programs. */
+static const char *by_alias(const char *wrong, const char *const *words, size_t count)
+{
+    static const char *const aliases[][2] = {
+        {"n", "ior"},        {"index", "ior"},      {"refractive_index", "ior"}, {"opacity", "transparency"},
+        {"type", "shape"},   {"kind", "shape"},     {"alpha", "transparency"},   {"colour", "color"},
+        {"light", "lights"}, {"objects", "solids"}, {"shapes", "solids"},        {"spheres", "solids"},
+    };
+    for (size_t i = 0; i < sizeof aliases / sizeof *aliases; i++)
+        if (strcasecmp(aliases[i][0], wrong) == 0)
+            return word_in(aliases[i][1], words, count);
+    return NULL;
+}
+
+static const char *by_beginning(const char *wrong, const char *const *words, size_t count)
+{
+    const char *only = NULL;
+    for (size_t i = 0; i < count; i++) {
+        if (strncasecmp(words[i], wrong, strlen(wrong)) == 0) {
+            if (only)
+                return NULL;
+            only = words[i];
+        }
+    }
+    return only;
+}
+
+const char *suggest_word(const char *wrong, const char *const *words, size_t count)
+{
+    enum { TELLING = 3 }; /* characters */
+    const char *meant = by_alias(wrong, words, count);
+    if (meant || strlen(wrong) < TELLING || is_number(wrong))
+        return meant;
+    meant = by_beginning(wrong, words, count);
+    return meant ? meant : text_nearest(wrong, words, count);
+}
+
+/* A list that does not fit ends after a complete word, with dots. */
+void suggest_list(const char *prefix, const char *const *words, size_t count, char *text, size_t size)
+{
+    static const char more[] = ", ...";
+    int used = snprintf(text, size, "%s", prefix);
+    size_t fits = 0; /* the length after the last word behind which the dots would fit */
+    for (size_t i = 0; i < count && used >= 0 && (size_t)used < size; i++) {
+        if ((size_t)used + sizeof more <= size)
+            fits = (size_t)used;
+        used += snprintf(text + used, size - (size_t)used, "%s%s", i ? ", " : "", words[i]);
+    }
+    if (used >= 0 && (size_t)used >= size && fits > 0)
+        snprintf(text + fits, size - fits, "%s", more);
+}
+
+char *suggest_key(const char *wrong, const char *const *words, size_t count, char *text, size_t size)
+{
+    const char *meant = suggest_word(wrong, words, count);
+    if (is_number(wrong)) /* in braces a comma ends the entry: {radius: 1,5} has a key 5 */
+        snprintf(text, size, "a decimal comma? write 1.5; a vector is [0, 1, 2]");
+    else if (strchr(wrong, ':'))
+        snprintf(text, size, "put a space after the colon");
+    else if (meant)
+        snprintf(text, size, "did you mean '%s'?", meant);
+    else
+        suggest_list("the keys here are: ", words, count, text, size);
+    return text;
+}

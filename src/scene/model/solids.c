@@ -1,0 +1,124 @@
+/* The solids, meshes and textures of a scene. */
+#include "geometry/shapes/shape.h"
+#include "scene/model/solids.h"
+
+#include <stdatomic.h>
+#include <stdlib.h>
+#include <string.h>
+
+/* --- materials in a mesh file --- */
+
+struct face_materials {
+    atomic_int owners;
+    int count;
+    face_material mat[];
+};
+
+/* Only the owner count changes; all other fields are constant. */
+static face_materials *counted(const face_materials *l)
+{
+    return (face_materials *)(uintptr_t)l;
+}
+
+/* NULL: out of memory. */
+static face_materials *allocate(int count)
+{
+    face_materials *l = calloc(1, sizeof *l + (size_t)count * sizeof l->mat[0]);
+    if (!l)
+        return NULL;
+    atomic_init(&l->owners, 1);
+    l->count = count;
+    return l;
+}
+
+status face_materials_of(const face_material *list, int count, const face_materials **out, diagnostic *why)
+{
+    face_materials *l = allocate(count);
+    for (int i = 0; i < count; i++)
+        if (l)
+            l->mat[i] = list[i];
+        else
+            texture_release(list[i].img);
+    *out = l;
+    return l ? STATUS_OK : out_of_memory(why);
+}
+
+void face_materials_retain(const face_materials *l)
+{
+    if (l)
+        atomic_fetch_add(&counted(l)->owners, 1);
+}
+
+void face_materials_release(const face_materials *l)
+{
+    if (!l || atomic_fetch_sub(&counted(l)->owners, 1) > 1)
+        return;
+    for (int i = 0; i < l->count; i++)
+        texture_release(l->mat[i].img);
+    free(counted(l));
+}
+
+int face_materials_count(const face_materials *l)
+{
+    return l ? l->count : 0;
+}
+
+const face_material *face_materials_at(const face_materials *l, int slot)
+{
+    return &l->mat[slot];
+}
+
+/* --- loaded data --- */
+
+void mesh_entry_unload(mesh_entry *m)
+{
+    mesh_release(m->data);
+    face_materials_release(m->shading_materials);
+    m->data = NULL;
+    m->shading_materials = NULL;
+    m->account = (softbody_quantities){.steps = 0};
+    m->motion_s = 0.0;
+}
+
+void texture_entry_unload(texture_entry *t)
+{
+    texture_release(t->data);
+    t->data = NULL;
+}
+
+bool solid_shows(const solid *owner, const char *mesh_name)
+{
+    return shape_of(&owner->shape)->triangles && strcmp(owner->mesh, mesh_name) == 0;
+}
+
+/* --- slimes --- */
+
+softbody_settings slime_settings(const mesh_entry *m)
+{
+    softbody_settings settings = m->slime;
+    settings.level = m->level;
+    return settings;
+}
+
+static status check_steps(const mesh_entry *m, double time_s, const char *remedy, diagnostic *why)
+{
+    if (time_s / m->slime.dt_s > SLIME_STEPS_MAX)
+        return diagnose(why, STATUS_BAD_INPUT, remedy, "%.80s: %g s with time steps of %g s exceed %g steps", m->name,
+                        time_s, m->slime.dt_s, SLIME_STEPS_MAX);
+    return STATUS_OK;
+}
+
+status slime_check(const mesh_entry *m, diagnostic *why)
+{
+    const softbody_settings settings = slime_settings(m);
+    diagnostic bad = {.what = ""};
+    const status code = softbody_check(&settings, &bad);
+    if (code != STATUS_OK)
+        return diagnose(why, code, bad.remedy, "%.80s: %s", m->name, bad.what);
+    return check_steps(m, m->time_s, "raise dt_s, or lower time_s", why);
+}
+
+status slime_check_end(const mesh_entry *m, double end_s, diagnostic *why)
+{
+    return check_steps(m, end_s, "raise dt_s, or end earlier", why);
+}
