@@ -28,7 +28,7 @@ bench: all peers $(build)/tests/bench_mesh $(build)/tests/bench_rows
 	  frames solids lights slime processes rays paths rows
 
 # What the same bits everywhere cost (experiments/determinism.sh): the program without parts of that, in build/variants,
-# FILM-CONTRACT-COMPILER. Sums of the film fixed or float (render/core/film.h); products and sums of the kernels
+# FILM-CONTRACT-COMPILER. Sums of the film fixed or float (render/plan/film.h); products and sums of the kernels
 # contracted (fast) to FMA, which SSE2 does not have, or not (off). gcc or clang compiles the kernels and what writes
 # the film; all else is that of $(build).
 .PHONY: variants
@@ -82,7 +82,7 @@ endif
 # built at once.
 .PHONY: simulated simulate-mpi
 simulated_folder := experiments/cluster/simulated
-simulated_sources := $(wildcard $(simulated_folder)/*.c) src/mpi/handout.c src/render/core/schedule.c \
+simulated_sources := $(wildcard $(simulated_folder)/*.c) src/mpi/handout.c src/render/plan/schedule.c \
   src/base/status.c src/base/cancel.c
 simulated_flags = -std=gnu17 -D_GNU_SOURCE -O2 -g $(filter -W%,$(all_cflags)) -Isrc -I$(simulated_folder)
 simulated: $(build)/cluster/simulated

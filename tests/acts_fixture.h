@@ -4,7 +4,7 @@
 
 #include "acts_values.h"
 
-#include "render/core/renderer.h"
+#include "render/frame/renderer.h"
 #include "lint/lint.h"
 #include "scene/model/params.h"
 #include "scene/model/scene.h"

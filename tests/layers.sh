@@ -63,7 +63,7 @@ failed=0
 folder=$(mktemp -d)
 trap 'rm -rf "$folder"' EXIT
 report 'includes are from the own folder or lower layers' "$(check src)"
-callers=$(grep -rl --include='*.c' 'renderer_render(' src | grep -vx -e src/render/core/renderer.c -e src/job/job.c)
+callers=$(grep -rl --include='*.c' 'renderer_render(' src | grep -vx -e src/render/frame/renderer.c -e src/job/job.c)
 report 'only the job calls renderer_render' "${callers#src/}"
 plant base/a.h '"optics/interface.h"' 'higher layer'
 plant render/a.c '"cuvette.h"' 'higher layer'
@@ -73,7 +73,7 @@ plant cli/lab.c '"web/lab.h"' ''
 plant cli/lab.c '"web/http/http.h"' 'same layer'
 plant cli/a.c '"job/job.h"' ''
 plant job/a.c '"study/study.h"' 'higher layer'
-plant job/a.c '"render/core/renderer.h"' ''
+plant job/a.c '"render/frame/renderer.h"' ''
 plant render/a.c '"job/job.h"' 'higher layer'
 plant cli/a.c '"mpi/shards.h"' 'higher layer'
 plant web/a.c '"cli/cli.h"' 'same layer'

@@ -3,7 +3,7 @@
 #pragma once
 
 #include "scene/model/scene.h"
-#include "render/core/renderer.h"
+#include "render/frame/renderer.h"
 #include "scene/model/params.h"
 #include <stdio.h>
 #include <string.h>

@@ -9,8 +9,8 @@
 #include <cmocka.h>
 
 #include "render_fixture.h"
-#include "render/shade/area_lights.h"
-#include "render/shade/lamp_shape.h"
+#include "render/shade/light_sampling.h"
+#include "render/plan/lights.h"
 #include "scene/model/scene.h"
 #include "whole.h"
 

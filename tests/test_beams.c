@@ -7,8 +7,7 @@
 #include <stdlib.h>
 #include <cmocka.h>
 
-#include "render/inspect/beam_drawing.h"
-#include "render/inspect/beam_screen.h"
+#include "render/inspect/beams.h"
 #include "render/inspect/fan.h"
 #include "render_fixture.h"
 #include "scene/file/write.h"
@@ -233,13 +232,14 @@ static void a_beam_obeys_snell_and_fresnel(void **state)
     const double t = asin(sin(45.0 / DEGREES) / 1.5), ci = cos(45.0 / DEGREES), ct = cos(t);
     const double r_s = (ci - 1.5 * ct) / (ci + 1.5 * ct), r_p = (1.5 * ci - ct) / (1.5 * ci + ct);
     const double R = 0.5 * (r_s * r_s + r_p * r_p);
-    assert_true(fabs(beam_share(&g.last.node[1]) - R) < 1e-14 && fabs(beam_share(&g.last.node[2]) - (1 - R)) < 1e-14);
+    assert_true(fabs(beam_fraction(&g.last.node[1]) - R) < 1e-14 &&
+                fabs(beam_fraction(&g.last.node[2]) - (1 - R)) < 1e-14);
     assert_true(fabs(g.last.node[2].direction.x - sin(t)) < 1e-14);
     free(g.last.node);
     g = (gathered){.count = 0};
     set(s, "ray.position=-1,-1,0");
     worked(beams_each_ray(s, isa_best(), 0, gather, &g, &why), &why);
-    assert_true(g.last.node[0].hit.tir && beam_share(&g.last.node[1]) == 1.0);
+    assert_true(g.last.node[0].hit.tir && beam_fraction(&g.last.node[1]) == 1.0);
     free(g.last.node);
     scene_destroy(s);
 }

@@ -7,8 +7,8 @@
 #include <string.h>
 #include <cmocka.h>
 
-#include "render/core/film.h"
-#include "render/core/queue.h"
+#include "render/plan/film.h"
+#include "render/tracer/queue.h"
 
 static film *made(int width, int height)
 {
@@ -79,7 +79,7 @@ static void a_film_becomes_an_image(void **state)
     film_destroy(f);
 }
 
-/* queue_take removes the end of the queue, at most a batch, and leaves whole vectors in it. */
+/* queue_pop removes the end of the queue, at most a batch, and leaves whole vectors in it. */
 static void a_queue_is_last_in_first_out(void **state)
 {
     (void)state;
@@ -91,7 +91,7 @@ static void a_queue_is_last_in_first_out(void **state)
         q.count = count;
         int first, left = count;
         while (left > 0) {
-            const ray_batch b = queue_take(&q, &first);
+            const ray_batch b = queue_pop(&q, &first);
             assert_true(b.count > 0 && b.count <= BATCH && first + b.count == left && first == q.count);
             assert_int_equal(first % LANES_MAX, 0);
             assert_true(left <= BATCH ? first == 0 : b.count > BATCH - LANES_MAX);

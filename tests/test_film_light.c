@@ -10,8 +10,8 @@
 
 #include "base/isa.h"
 #include "base/random.h"
-#include "render/core/film.h"
-#include "render/shade/shade.h"
+#include "render/plan/film.h"
+#include "render/shade/kernels.h"
 
 static const shade_kernels *const kernels[ISA_COUNT] = ISA_ARRAY(shade_kernels);
 static const int counts[] = {1, 2, 3, 7, 8, 9, 31, 32, 33, 63, 64, 100, ROW};

@@ -9,7 +9,7 @@
 
 #include "lab_study_fixture.h"
 #include "lesson/lesson.h"
-#include "render/core/film.h"
+#include "render/plan/film.h"
 #include "render_fixture.h"
 #include <pthread.h>
 

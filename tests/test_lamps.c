@@ -10,7 +10,7 @@
 
 #include "optics/spectrum.h"
 #include "random_scene.h"
-#include "render/shade/spectra.h"
+#include "render/plan/spectra.h"
 #include "render_fixture.h"
 #include "scene/model/scene.h"
 
@@ -99,7 +99,7 @@ static void wavelengths_are_drawn_from_lines_by_their_light(void **state)
         set_all(s, "lamp.spectrum=mercury background.horizon=0,0,0 background.ambient=0,0,0 background.rain=0");
         set(s, alone ? "background.color=0,0,0" : "background.color=1,1,1");
         const line_table t = line_table_of(s);
-        assert_int_equal(t.alone, alone);
+        assert_int_equal(t.lines_only, alone);
         for (int i = 0; i < NUMBERS; i++) {
             bool of_line;
             const double u = (i + 0.5) / NUMBERS;
@@ -157,7 +157,7 @@ static void a_dark_room_has_the_lines_alone(void **state)
                               "lights: {lamp: {position: [0, 1, 0], spectrum: mercury}, other: {intensity: 0}}\n"
                               "solids: {ground: {shape: plane, diffuse: 1}}\n");
         set_all(s, rooms[k].assignments);
-        if (line_table_of(s).alone != rooms[k].alone)
+        if (line_table_of(s).lines_only != rooms[k].alone)
             fail_msg("'%s': %s", rooms[k].assignments, rooms[k].alone ? "lines are not alone" : "lines are alone");
         scene_destroy(s);
     }

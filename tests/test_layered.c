@@ -11,7 +11,7 @@
 #include "optics/media.h"
 #include "optics/spectrum.h"
 #include "probe_fixture.h"
-#include "render/shade/layered_table.h"
+#include "render/plan/layered_table.h"
 
 #define assert_near(a, b, tolerance) assert_true(fabs((a) - (b)) <= (tolerance))
 

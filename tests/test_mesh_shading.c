@@ -11,7 +11,7 @@
 
 #include "mesh_stage.h"
 #include "random_stream.h"
-#include "render/core/layers.h"
+#include "render/plan/film.h"
 #include "render_fixture.h"
 #include "scene/model/face_materials.h"
 #include "scene/model/scene.h"

@@ -635,7 +635,7 @@ static void any_number_of_paths_is_valid(void **state)
         s->render.paths = cases[k].paths;
         render_result *r = render(s);
         assert_true((r->variance != NULL) == cases[k].known);
-        assert_int_equal(r->img->shares, 1);
+        assert_int_equal(r->img->replicates, 1);
         for (int i = 0; i < 32 * 24; i++)
             assert_true(fabs(film_value(r->img, i % 32, i / 32, 1) - 1.0) < ROUNDINGS);
         render_result_destroy(r);
@@ -657,15 +657,15 @@ static void the_sum_and_variance_of_shares(void **state)
     static const int values[] = {1, 2, 6};
     for (int k = 0; k < 3; k++)
         f->sum[3 * k] = (int64_t)values[k] << 44;
-    assert_true(film_merge_shares(f, variance));
+    assert_true(film_merge_replicates(f, variance));
     assert_true(film_value(f, 0, 0, 0) == 9.0 && film_value(f, 0, 0, 1) == 0.0);
     assert_true(fabs(variance[0] - 21.0) < 1e-12 && variance[1] == 0.0);
     film_destroy(f);
-    for (int layers = 2; layers <= FILM_SHARES_MAX; layers++) { /* each in range, the sum is not */
+    for (int layers = 2; layers <= FILM_REPLICATES_MAX; layers++) { /* each in range, the sum is not */
         assert_int_equal(film_create(1, 1, layers, FILM_RGB, &f, NULL), STATUS_OK);
         for (int k = 0; k < layers; k++)
             f->sum[3 * k + 1] = INT64_MAX / layers + 1;
-        assert_false(film_merge_shares(f, NULL));
+        assert_false(film_merge_replicates(f, NULL));
         film_destroy(f);
     }
 }

@@ -7,9 +7,9 @@
 #include <stdint.h>
 #include <cmocka.h>
 
-#include "render/core/path_counts.h"
-#include "render/core/path_sampling.h"
-#include "render/core/record.h"
+#include "render/frame/renderer.h"
+#include "render/plan/sampling.h"
+#include "render/frame/record.h"
 #include "render_fixture.h"
 #include "scene/model/scene.h"
 #include <stdlib.h>

@@ -12,9 +12,9 @@
 #include "base/lanes.h"
 #include "base/isa.h"
 #include "base/random.h"
-#include "render/shade/path_kernels.h"
+#include "render/shade/kernels.h"
 
-static const path_kernels *const kernels[ISA_COUNT] = ISA_ARRAY(path_kernels);
+static const sampling_kernels *const kernels[ISA_COUNT] = ISA_ARRAY(sampling_kernels);
 
 static double unit(uint32_t a, uint32_t b)
 {

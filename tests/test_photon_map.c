@@ -9,7 +9,7 @@
 
 #include "base/random.h"
 #include "whole.h"
-#include "render/caustics/photon_map.h"
+#include "render/photons/photon_map.h"
 #include <stdlib.h>
 #include <string.h>
 

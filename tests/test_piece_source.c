@@ -10,7 +10,7 @@
 #include <cmocka.h>
 
 #include "base/random.h"
-#include "render/core/shared_frame.h"
+#include "render/frame/renderer.h"
 #include "render_fixture.h"
 
 /* Hands out the tiles of an image in a random order and puts them together. */
@@ -20,7 +20,7 @@ typedef struct hand_out {
     int64_t *order, given, taken, limit; /* limit: the number of pieces after which done refuses */
 } hand_out;
 
-static bool next(void *context, int worker, span *out)
+static bool next(void *context, int worker, image_tile *out)
 {
     hand_out *h = context;
     (void)worker;
@@ -32,11 +32,11 @@ static bool next(void *context, int worker, span *out)
     return more;
 }
 
-static void done(void *context, const span *piece, const film *traced, const double *variance)
+static void done(void *context, const image_tile *piece, const film *traced, const double *variance)
 {
     hand_out *h = context;
     pthread_mutex_lock(&h->lock);
-    assert_int_equal(traced->shares, 1);
+    assert_int_equal(traced->replicates, 1);
     const schedule *places = &h->whole.places;
     const int64_t tile = piece->y0 / places->tile * places->tiles_across + piece->x0 / places->tile;
     const size_t sums = 3 * (size_t)(piece->x1 - piece->x0) * (size_t)(piece->y1 - piece->y0);
@@ -84,7 +84,7 @@ static void expect_the_whole_frame(const char *path, const char *assignments, in
     worked(scene_load(s, &why), &why);
     render_result *expected = render(s);
     hand_out h = hand_out_of(s, tile);
-    const piece_source source = {.side = tile, .next = next, .done = done, .context = &h};
+    const tile_source source = {.side = tile, .next = next, .done = done, .context = &h};
     render_result *result = render_at(s, isa_best(), &(render_options){.source = &source});
     assert_null(result->img);
     assert_int_equal(h.taken, h.whole.places.tile_count);
@@ -143,7 +143,7 @@ static void places_in_a_piece_are_exact_in_the_largest_images(void **state)
         film *f = NULL;
         diagnostic why = {0};
         worked(film_create(x1 - x0, y1 - y0, 1, FILM_RGB, &f, &why), &why);
-        film_begin_piece(f, pieces[i].width, x0, y0, x1, y1, 1);
+        film_begin_tile(f, pieces[i].width, x0, y0, x1, y1, 1);
         int64_t place = 0;
         for (int y = y0; y < y1; y++)
             for (int x = x0; x < x1; x++)
@@ -158,7 +158,7 @@ static void a_frame_ends_when_the_source_has_no_more(void **state)
     scene *s = rod_scene("render.width=64 render.height=48 render.threads=1");
     hand_out h = hand_out_of(s, 16);
     h.limit = 5;
-    const piece_source source = {.side = 16, .next = next, .done = done, .context = &h};
+    const tile_source source = {.side = 16, .next = next, .done = done, .context = &h};
     render_result *result = render_at(s, isa_best(), &(render_options){.source = &source});
     assert_int_equal(h.taken, 5);
     assert_int_equal(result->workers[0].tiles, 5);
@@ -173,7 +173,7 @@ static void the_film_of_a_source_is_as_small_as_its_pieces(void **state)
 {
     (void)state;
     scene *s = rod_scene("render.width=16384 render.height=16384 render.threads=2");
-    const piece_source source = {.side = 32};
+    const tile_source source = {.side = 32};
     assert_int_equal(renderer_result_bytes(s, &(render_options){.source = &source}), 2 * 32 * 32 * 24);
     assert_true(renderer_result_bytes(s, NULL) >= UINT64_C(16384) * 16384 * 24);
     const render_options maps = {.pixel_rays = true, .pixel_time = true, .pixel_cut = true}; /* a double a pixel */

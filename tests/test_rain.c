@@ -11,7 +11,7 @@
 #include "optics/phase_function.h"
 #include "optics/media.h"
 #include "optics/spectrum.h"
-#include "render/shade/rain.h"
+#include "render/plan/sky.h"
 #include "render_fixture.h"
 
 #define assert_near(a, b, tolerance) assert_true(fabs((a) - (b)) <= (tolerance))
@@ -281,10 +281,10 @@ static void the_mean_is_that_of_all_directions(void **state)
         for (int k = 0; k < PARTS; k++) {
             const double angle = (k + 0.5) / PARTS * 180.0 * DEGREE;
             const vec3 d = vec3_make(sin(angle), -cos(angle), 0.0);
-            sum +=
-                0.5 * sin(angle) * 180.0 * DEGREE / PARTS * (spectral ? rain_share(r, 501.0, d) : rain_color(r, d).y);
+            sum += 0.5 * sin(angle) * 180.0 * DEGREE / PARTS *
+                   (spectral ? rain_radiance(r, 501.0, d) : rain_color(r, d).y);
         }
-        assert_near(spectral ? rain_share_mean(r, 501.0) : rain_color_mean(r).y, sum, 1e-4);
+        assert_near(spectral ? rain_radiance_mean(r, 501.0) : rain_color_mean(r).y, sum, 1e-4);
         assert_near(sum, 0.8, 0.8 * 0.01);
         rain_destroy(r);
     }
@@ -321,7 +321,7 @@ static void the_bow_is_that_of_water_in_air(void **state)
     double most = 0.0;
     for (int b = (int)(38.0 / DROP_BIN_DEG); b < (int)(46.0 / DROP_BIN_DEG); b++) {
         const double angle = (b + 0.5) * DROP_BIN_DEG * DEGREE,
-                     share = rain_share(r, 550.0, vec3_make(sin(angle), -cos(angle), 0.0));
+                     share = rain_radiance(r, 550.0, vec3_make(sin(angle), -cos(angle), 0.0));
         best = p[b] > p[best] || best == 0 ? b : best;
         found = share > most ? b : found;
         most = fmax(most, share);

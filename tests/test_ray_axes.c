@@ -6,7 +6,7 @@
 #include <cmocka.h>
 
 #include "random_stream.h"
-#include "render/inspect/ray_axes.h"
+#include "render/plan/ray_axes.h"
 #include <string.h>
 
 static void assert_vec(vec3 a, double x, double y, double z)

@@ -11,7 +11,7 @@
 #include <cmocka.h>
 
 #include "random_stream.h"
-#include "render/inspect/beam_drawing.h"
+#include "render/inspect/beams.h"
 #include "render/inspect/fan.h"
 #include "render/inspect/ray_line.h"
 #include "render_fixture.h"

@@ -10,7 +10,7 @@
 #include "realism/metrics.h"
 #include "realism/realism.h"
 #include "realism/theory.h"
-#include "realism/view.h"
+#include "realism/setup.h"
 #include "render/inspect/probe.h"
 #include "render_fixture.h"
 
@@ -103,24 +103,24 @@ static void the_bound_of_a_reflectance_covers_a_rounded_sine(void **state)
         const long double change =
             fmaxl(fabsl(exact_share(sine + off, n_from, n_to) - exact_share(sine, n_from, n_to)),
                   fabsl(exact_share(sine - off, n_from, n_to) - exact_share(sine, n_from, n_to)));
-        const share_bound b = bound_shares(angle, 0.0, n_from, n_to);
+        const reflectance_bound b = bound_reflectances(angle, 0.0, n_from, n_to);
         assert_true((double)change <= b.R_s && b.R_s < 1e-6);
     }
-    assert_true(bound_shares(0.5 * critical, 0.0, n_from, n_to).R < 1e-14);
-    assert_true(bound_shares(critical + 1e-3, 0.0, n_from, n_to).R == 0.0);
+    assert_true(bound_reflectances(0.5 * critical, 0.0, n_from, n_to).R < 1e-14);
+    assert_true(bound_reflectances(critical + 1e-3, 0.0, n_from, n_to).R == 0.0);
 }
 
 static void a_failed_measurement_remains_the_worst(void **state)
 {
     (void)state;
     worst_pair w = WORST_NONE;
-    worst_take(&w, 1.0, NAN, 1.0); /* the closed form has no such point */
+    worst_pair_add(&w, 1.0, NAN, 1.0); /* the closed form has no such point */
     assert_false(w.any);
-    worst_take(&w, 1.0, 1.5, 1.0);
-    worst_take(&w, 1.0, 1.1, 0.1); /* larger in units of its tolerance */
+    worst_pair_add(&w, 1.0, 1.5, 1.0);
+    worst_pair_add(&w, 1.0, 1.1, 0.1); /* larger in units of its tolerance */
     assert_true(w.theory == 1.1);
-    worst_take(&w, NAN, 1.0, 1.0);
-    worst_take(&w, 1.0, 2.0, 1e-9);
+    worst_pair_add(&w, NAN, 1.0, 1.0);
+    worst_pair_add(&w, 1.0, 2.0, 1e-9);
     assert_true(isnan(w.measured));
 }
 

@@ -1,4 +1,4 @@
-/* Tests of light that facets of rough surfaces send to one another (render/shade/rough_energy.h): a surface that
+/* Tests of light that facets of rough surfaces send to one another (render/plan/rough_energy.h): a surface that
  * absorbs nothing sends on all light from every direction, by quadrature of Walter's f, and in white furnaces; it is
  * reciprocal, so that photons and paths agree (test_rough.c); metals keep what Kulla and Conty give. */
 #include <math.h>
@@ -10,7 +10,7 @@
 #include <cmocka.h>
 
 #include "path_fixture.h"
-#include "render/shade/rough_energy.h"
+#include "render/plan/rough_energy.h"
 #include "walter.h"
 #include "whole.h"
 

@@ -7,7 +7,7 @@
 #include <stdint.h>
 #include <cmocka.h>
 
-#include "render/core/sample_key.h"
+#include "render/plan/sampling.h"
 #include "render_fixture.h"
 #include "scene/model/scene.h"
 

@@ -8,7 +8,7 @@
 #include <stdlib.h>
 #include <cmocka.h>
 
-#include "render/core/schedule.h"
+#include "render/plan/schedule.h"
 
 #define COUNT(a) (sizeof(a) / sizeof((a)[0]))
 
@@ -18,7 +18,7 @@ static render_settings settings_of(schedule_rule rule, int width, int height, in
 }
 
 /* Marks a piece, which must be inside the image and not marked yet. */
-static void mark(unsigned char *seen, int width, int height, const span *s)
+static void mark(unsigned char *seen, int width, int height, const image_tile *s)
 {
     assert_true(s->x0 >= 0 && s->x0 < s->x1 && s->x1 <= width);
     assert_true(s->y0 >= 0 && s->y0 < s->y1 && s->y1 <= height);
@@ -41,7 +41,7 @@ static void every_pixel_goes_to_exactly_one_worker(void **state)
                     settings.pieces = 4 * (int64_t)(k % 2);
                     unsigned char *seen = calloc((size_t)(width * height), 1);
                     schedule s;
-                    span piece;
+                    image_tile piece;
                     assert_non_null(seen);
                     schedule_start(&s, &settings);
                     for (int w = 0; w < workers[n]; w++)
@@ -60,7 +60,7 @@ static void columns_and_rows_are_one_block_per_worker(void **state)
     const render_settings columns = settings_of(SCHEDULE_COLUMNS, 800, 600, 32, 7),
                           rows = settings_of(SCHEDULE_ROWS, 800, 600, 32, 7);
     schedule s;
-    span piece;
+    image_tile piece;
     for (int w = 0; w < 7; w++) {
         schedule_start(&s, &columns);
         assert_true(schedule_next(&s, w, 0, &piece));
@@ -82,7 +82,7 @@ static void workers_without_pixels_get_no_piece(void **state)
     (void)state;
     const render_settings settings = settings_of(SCHEDULE_COLUMNS, 10, 10, 8, 1024);
     schedule s;
-    span piece;
+    image_tile piece;
     schedule_start(&s, &settings);
     for (int w = 0; w < 1024; w++)
         assert_true(schedule_next(&s, w, 0, &piece) == (w < 10));
@@ -94,7 +94,7 @@ static void static_tiles_are_assigned_round_robin(void **state)
     (void)state;
     const render_settings settings = settings_of(SCHEDULE_TILES, 100, 50, 32, 3);
     schedule s;
-    span piece;
+    image_tile piece;
     schedule_start(&s, &settings);
     assert_true(schedule_next(&s, 1, 0, &piece)); /* tile 1 of 4 across */
     assert_true(piece.x0 == 32 && piece.x1 == 64 && piece.y0 == 0 && piece.y1 == 32);
@@ -138,7 +138,7 @@ static void every_worker_has_a_tile_reserved(void **state)
     render_settings settings = settings_of(SCHEDULE_DYNAMIC, 800, 600, 32, 1024);
     settings.pieces = 4;
     schedule s;
-    span piece;
+    image_tile piece;
     schedule_start(&s, &settings);
     uint64_t taken = 0;
     while (schedule_next(&s, 0, taken, &piece))
@@ -163,7 +163,7 @@ typedef struct asker {
 static void *ask(void *argument)
 {
     const asker *a = argument;
-    span piece;
+    image_tile piece;
     for (uint64_t taken = 0; schedule_next(a->pieces, a->worker, taken, &piece); taken++)
         for (int y = piece.y0; y < piece.y1; y++)
             for (int x = piece.x0; x < piece.x1; x++)

@@ -8,7 +8,7 @@
 
 #include "quad.h"
 #include "random_stream.h"
-#include "render/shade/sky.h"
+#include "render/plan/sky.h"
 
 #define assert_near(a, b, tolerance) assert_true(fabs((a) - (b)) <= (tolerance))
 

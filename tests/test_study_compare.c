@@ -1,7 +1,7 @@
 /* Tests of comparisons of a study's cells with its reference image. */
 #include "study_fixture.h"
 #include "image/compare.h"
-#include "render/core/renderer.h"
+#include "render/frame/renderer.h"
 #include "scene/model/params.h"
 #include "base/csv.h"
 #include "study/summary.h"

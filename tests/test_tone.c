@@ -10,7 +10,7 @@
 
 #include "image/codec.h"
 #include "image/video.h"
-#include "render/core/record.h"
+#include "render/frame/record.h"
 #include "render_fixture.h"
 #include "scene/model/camera.h"
 #include "lint/lint.h"

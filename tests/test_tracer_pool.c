@@ -8,7 +8,7 @@
 #include <stdlib.h>
 #include <cmocka.h>
 
-#include "render/core/tracer_pool.h"
+#include "render/frame/tracers.h"
 #include "render_fixture.h"
 #include "scene/model/scene.h"
 
@@ -48,15 +48,15 @@ static void the_tracer_returned_last_is_reused_first(void **state)
     stage st;
     open_stage(&st);
     assert_true(tracer_pool_begin(st.set, 3, &st.target));
-    tracer *a = tracer_pool_take(st.set), *b = tracer_pool_take(st.set);
+    tracer *a = tracer_pool_acquire(st.set), *b = tracer_pool_acquire(st.set);
     assert_non_null(a);
     assert_non_null(b);
     assert_ptr_not_equal(a, b);
-    tracer_pool_return(st.set, b);
-    tracer_pool_return(st.set, a);
-    assert_ptr_equal(tracer_pool_take(st.set), a);
-    assert_ptr_equal(tracer_pool_take(st.set), b);
-    tracer *c = tracer_pool_take(st.set);
+    tracer_pool_release(st.set, b);
+    tracer_pool_release(st.set, a);
+    assert_ptr_equal(tracer_pool_acquire(st.set), a);
+    assert_ptr_equal(tracer_pool_acquire(st.set), b);
+    tracer *c = tracer_pool_acquire(st.set);
     assert_ptr_not_equal(c, a);
     assert_ptr_not_equal(c, b);
     close_stage(&st);
@@ -65,9 +65,9 @@ static void the_tracer_returned_last_is_reused_first(void **state)
 /* One pixel. */
 static void trace_a_pixel(tracer *t)
 {
-    const span piece = {32, 24, 33, 25};
+    const image_tile piece = {32, 24, 33, 25};
     atomic_uint_fast64_t begun = 0;
-    tracer_span(t, &piece, &begun);
+    tracer_render_tile(t, &piece, &begun);
     tracer_finish(t);
     assert_int_equal(begun, 1);
 }
@@ -84,15 +84,15 @@ static void counters_are_reset_for_each_frame(void **state)
         assert_false(tracer_pool_collect(st.set, &sum));
         assert_int_equal(sum.camera, 0);
         for (int turn = 0; turn < 2; turn++) {
-            tracer *t = tracer_pool_take(st.set);
+            tracer *t = tracer_pool_acquire(st.set);
             trace_a_pixel(t);
             assert_int_equal(tracer_counters(t)->camera, turn + 1);
-            tracer_pool_return(st.set, t);
+            tracer_pool_release(st.set, t);
         }
-        tracer *other = tracer_pool_take(st.set), *none = tracer_pool_take(st.set);
+        tracer *other = tracer_pool_acquire(st.set), *none = tracer_pool_acquire(st.set);
         trace_a_pixel(none);
-        tracer_pool_return(st.set, none);
-        tracer_pool_return(st.set, other);
+        tracer_pool_release(st.set, none);
+        tracer_pool_release(st.set, other);
         assert_false(tracer_pool_collect(st.set, &sum));
         assert_int_equal(sum.camera, 3);
     }
@@ -103,13 +103,13 @@ static void *work(void *context)
 {
     stage *st = context;
     atomic_uint_fast64_t begun = 0;
-    span piece;
+    image_tile piece;
     const int worker = atomic_fetch_add(&st->started, 1);
     for (uint64_t taken = 0; schedule_next(&st->pieces, worker, taken, &piece); taken++) {
-        tracer *t = tracer_pool_take(st->set);
-        tracer_span(t, &piece, &begun);
+        tracer *t = tracer_pool_acquire(st->set);
+        tracer_render_tile(t, &piece, &begun);
         tracer_finish(t);
-        tracer_pool_return(st->set, t);
+        tracer_pool_release(st->set, t);
     }
     return NULL;
 }

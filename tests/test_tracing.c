@@ -8,7 +8,7 @@
 #include <cmocka.h>
 
 #include "mpi/tracing.h"
-#include "render/core/shared_frame.h"
+#include "render/frame/renderer.h"
 #include <string.h>
 
 static team *begin(void)
@@ -27,8 +27,8 @@ static void tiles_come_out_as_spans_in_order(void **state)
     (void)state;
     team *t = begin();
     const tracing *messenger = team_tracing(t);
-    const piece_source *source = team_source(t);
-    span at;
+    const tile_source *source = team_source(t);
+    image_tile at;
     messenger->give(messenger->of, (const int32_t[]){0, 5, 11}, 3);
     messenger->end(messenger->of);
     assert_true(source->next(source->context, 0, &at));
@@ -46,12 +46,12 @@ static void a_piece_arrives_with_its_sums_and_variances(void **state)
     (void)state;
     team *t = begin();
     const tracing *messenger = team_tracing(t);
-    const piece_source *source = team_source(t);
+    const tile_source *source = team_source(t);
     int64_t sums[6] = {1, 2, 3, 4, 5, 6};
     const double variance[6] = {0.5, 1.5, 2.5, 3.5, 4.5, 5.5};
     const film traced = {.sum = sums};
     assert_null(messenger->take(messenger->of));
-    source->done(source->context, &(span){.x0 = 32, .x1 = 34, .y0 = 16, .y1 = 17}, &traced, variance);
+    source->done(source->context, &(image_tile){.x0 = 32, .x1 = 34, .y0 = 16, .y1 = 17}, &traced, variance);
     piece_message *piece = messenger->take(messenger->of);
     assert_non_null(piece);
     assert_int_equal(piece->head.value, 6);
@@ -72,13 +72,13 @@ static void a_piece_without_memory_gives_the_frame_up(void **state)
     (void)state;
     team *t = begin();
     const tracing *messenger = team_tracing(t);
-    const piece_source *source = team_source(t);
+    const tile_source *source = team_source(t);
     const film nothing = {0};
     diagnostic why = {0};
-    span at;
+    image_tile at;
     messenger->give(messenger->of, (const int32_t[]){0, 1}, 2);
     assert_int_equal(team_status(t, STATUS_OK, &why), STATUS_OK);
-    source->done(source->context, &(span){.x1 = 1 << 30, .y1 = 1 << 28}, &nothing, NULL);
+    source->done(source->context, &(image_tile){.x1 = 1 << 30, .y1 = 1 << 28}, &nothing, NULL);
     assert_true(cancel_is_set(team_token(t)));
     assert_false(source->next(source->context, 0, &at)); /* though tiles wait */
     assert_null(messenger->take(messenger->of));
@@ -92,9 +92,9 @@ static void a_frame_that_is_given_up_hands_out_no_tiles(void **state)
     (void)state;
     team *t = begin();
     const tracing *messenger = team_tracing(t);
-    const piece_source *source = team_source(t);
+    const tile_source *source = team_source(t);
     diagnostic why = {0};
-    span at;
+    image_tile at;
     messenger->give(messenger->of, (const int32_t[]){0, 1}, 2);
     messenger->stop(messenger->of);
     assert_true(cancel_is_set(team_token(t)));

@@ -8,7 +8,7 @@
 #include <cmocka.h>
 
 #include "path_fixture.h"
-#include "render/core/tracer.h"
+#include "render/frame/tracers.h"
 #include "render/inspect/beams.h"
 #include "whole.h"
 

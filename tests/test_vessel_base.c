@@ -11,7 +11,7 @@
 #include <cmocka.h>
 
 #include "base/isa.h"
-#include "render/core/renderer.h"
+#include "render/frame/renderer.h"
 #include "scene/model/params.h"
 #include "scene/model/scene.h"
 #include <math.h>

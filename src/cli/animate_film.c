@@ -4,7 +4,7 @@
 #include "base/file.h"
 #include "cli/terminal.h"
 #include "image/video.h"
-#include "render/core/record.h"
+#include "render/frame/record.h"
 #include "scene/model/open.h"
 #include "scene/model/render_settings.h"
 #include "scene/model/camera.h"

@@ -2,7 +2,7 @@
 #include "cli/outputs.h"
 #include "base/file.h"
 #include "cli/options.h"
-#include "render/core/record.h"
+#include "render/frame/record.h"
 #include "scene/model/scene.h"
 #include <stdio.h>
 #include <stdlib.h>

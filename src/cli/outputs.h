@@ -3,7 +3,7 @@
  * borrowed. */
 #pragma once
 
-#include "render/core/renderer.h"
+#include "render/frame/renderer.h"
 #include <stdio.h>
 
 typedef struct outputs {

@@ -6,7 +6,7 @@
 #include "base/float_environment.h"
 #include "cuvette.h"
 #include "image/codec.h"
-#include "render/core/film.h"
+#include "render/plan/film.h"
 #include <pthread.h>
 
 typedef struct canvas {

@@ -127,7 +127,7 @@ static status render_frame(stage *now, const scene *s, cuvette_frame *frame, dia
                                     .pixel_cut = r->pixel_cut,
                                     .layers = r->layers,
                                     .progress = watch,
-                                    .piece_done = r->piece ? take_piece : NULL,
+                                    .tile_done = r->piece ? take_piece : NULL,
                                     .context = now};
     status code = job_render(now->engine->workers, s, &options, &frame->account, why);
     const film *img = frame->account.result ? frame->account.result->img : NULL;

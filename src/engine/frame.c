@@ -2,7 +2,7 @@
 #include "engine/canvas.h"
 #include "engine/engine_private.h"
 
-#include "render/core/record.h"
+#include "render/frame/record.h"
 #include <stdlib.h>
 #include <string.h>
 

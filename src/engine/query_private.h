@@ -6,7 +6,7 @@
 #include "engine/engine_private.h"
 #include "geometry/regions/instance_set.h"
 #include "geometry/rays.h"
-#include "render/core/plan.h"
+#include "render/plan/plan.h"
 #include "render/inspect/probe.h"
 #include <stdio.h>
 

@@ -7,7 +7,7 @@
 #include "base/isa.h"
 #include "measure/machine_noise.h"
 #include "measure/usage.h"
-#include "render/core/renderer.h"
+#include "render/frame/renderer.h"
 
 typedef struct job_account {
     const scene *of;

@@ -10,7 +10,7 @@
 /* --- light narrower than a pixel --- */
 
 /* Where the footprints of samples are known, such light keeps its power at any number of samples
- * (render/caustics/photon_footprint.c); behind crystals and surfaces with interpolated normals they are guessed. */
+ * (render/photons/photon_map.c); behind crystals and surfaces with interpolated normals they are guessed. */
 
 /* Of all light in the image, the part that may be missing. */
 #define NOTED 0.01

@@ -154,7 +154,7 @@ static void show(void *of, double fraction)
 static void pass_on_piece(void *of, const film *img, int x0, int y0, int x1, int y1)
 {
     const work *w = of;
-    w->requested->piece_done(w->requested->context, img, x0, y0, x1, y1);
+    w->requested->tile_done(w->requested->context, img, x0, y0, x1, y1);
 }
 
 static status check_quota(const job *j, const scene *s, const render_options *requested, diagnostic *why)
@@ -203,8 +203,8 @@ static status trace(work *w, const scene *s, bool maps, render_result **out, dia
                               .watch_s = instruction_dumps_exist() ? 0.9 : 0,
                               .context = w,
                               .source = w->requested->source};
-    if (w->requested->piece_done)
-        options.piece_done = pass_on_piece;
+    if (w->requested->tile_done)
+        options.tile_done = pass_on_piece;
     if (maps) {
         options.pixel_rays = w->requested->pixel_rays;
         options.pixel_time = w->requested->pixel_time;

@@ -12,7 +12,7 @@
 #pragma once
 
 #include "job/account.h"
-#include "render/core/renderer.h"
+#include "render/frame/renderer.h"
 #include "scene/model/open.h"
 
 /* --- sharing ---
@@ -28,7 +28,7 @@ typedef struct job_sharing {
      * of the options is called about every 0.1 s until end returns, by one thread at a time, with the fraction of the
      * frame that all have finished. Between begin and end the thread may have a further token, which gives up the
      * frame. */
-    status (*begin)(void *of, const scene *s, const render_options *requested, const piece_source **own,
+    status (*begin)(void *of, const scene *s, const render_options *requested, const tile_source **own,
                     diagnostic *why);
     /* traced, result: what the renderer returned for this process's part; result may be NULL after an error. Waits for
      * the others, and adds the film, the variance, counts, times and workers of all. Returns the status of the

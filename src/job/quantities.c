@@ -1,6 +1,6 @@
 /* The table of quantities and the functions that read them from an account. */
 #include "job/quantities.h"
-#include "render/core/path_counts.h"
+#include "render/frame/renderer.h"
 #include "scene/model/scene.h"
 
 #include <math.h>

@@ -1,5 +1,5 @@
 /* Facts of a scene that parameters need, and how a fact says its note. The renderer makes the same decisions: see
- * render/shade/shading.c, render/integrators/path.c and render/core/plan.c. Private to src/lint. Ownership: values;
+ * render/shade/shading.c, render/integrators/path.c and render/plan/plan.c. Private to src/lint. Ownership: values;
  * everything is borrowed for the call. */
 #pragma once
 

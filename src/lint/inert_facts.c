@@ -1,5 +1,5 @@
 /* Facts of light transport that follow from the scene. The renderer makes the same decisions: see
- * render/shade/shading.c, render/integrators/path.c and render/core/plan.c. */
+ * render/shade/shading.c, render/integrators/path.c and render/plan/plan.c. */
 #include "geometry/shapes/shape.h"
 #include "lint/inert.h"
 #include "scene/model/face_materials.h"

@@ -170,7 +170,7 @@ bool one_light(const inert_case *c)
     return shining_lights(c->s) < 2 && inert_say(c, "one-light", "add a second light", "the scene has one light");
 }
 
-/* Wavelengths of the spectral film are also random, render/shade/spectra.c, and so are points of a lens. */
+/* Wavelengths of the spectral film are also random, render/plan/spectra.c, and so are points of a lens. */
 bool no_random_numbers(const inert_case *c)
 {
     const render_settings *r = &c->s->render;

@@ -42,7 +42,7 @@ static const needs_row light_rows[] = {
 static const needs_row rows[] = {
     PATHS(RENDER, "paths error sampler filter light_sampling roulette energy_compensation"),
     FACT(RENDER, "samples", path_samples),
-    NEEDS_SET(RENDER, "error", "render.paths>16", "render.paths=256"), /* a pilot's: render/core/path_counts.h */
+    NEEDS_SET(RENDER, "error", "render.paths>16", "render.paths=256"), /* a pilot's: render/frame/renderer.h */
     FACT(RENDER, "light_sampling", nothing_lit),
     FACT(RENDER, "light_sampling", one_light),
     NEEDS_SET(RENDER, "roulette", "render.depth>3", "render.depth=8"), /* render/integrators/path.c */

@@ -2,7 +2,7 @@
 #pragma once
 
 #include "lint/lint.h"
-#include "render/core/plan.h"
+#include "render/plan/plan.h"
 #include "scene/model/scene.h"
 
 typedef struct lint_room {

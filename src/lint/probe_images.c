@@ -1,6 +1,6 @@
 #include "base/cancel.h"
 #include "lint/probe_images.h"
-#include "render/integrators/integrator.h"
+#include "render/tracer/integrator.h"
 
 #include <limits.h>
 #include <math.h>
@@ -16,8 +16,8 @@ static void trace_stripes(void *context, size_t index, int member)
     atomic_uint_fast64_t begun = 0;
     (void)member;
     for (int i; (i = atomic_fetch_add(&p->next_stripe, 1)) < p->stripes;) {
-        const span stripe = {0, i * height / p->stripes, width, (i + 1) * height / p->stripes};
-        tracer_span(p->rays[index], &stripe, &begun);
+        const image_tile stripe = {0, i * height / p->stripes, width, (i + 1) * height / p->stripes};
+        tracer_render_tile(p->rays[index], &stripe, &begun);
     }
     tracer_finish(p->rays[index]);
 }
@@ -81,10 +81,10 @@ status probe_images_trace(probe_images *p, int depth, probe_image *to, diagnosti
     const integrator *rule = integrator_for(r);
     film *f;
     p->made->render.depth = depth;
-    TRY(film_create((int)r->width, (int)r->height, rule->shares ? rule->shares(r) : 1, FILM_RGB, &f, why));
+    TRY(film_create((int)r->width, (int)r->height, rule->replicates ? rule->replicates(r) : 1, FILM_RGB, &f, why));
     status code = trace_film(p, f, why);
     if (code == STATUS_OK) {
-        film_merge_shares(f, NULL);
+        film_merge_replicates(f, NULL);
         code = store(p, f, to, why);
     }
     film_destroy(f);

@@ -21,7 +21,7 @@ typedef struct range_case {
 } range_case;
 
 /* All that a spectral film shows is in the visible range, lines too. An rgb film has one wavelength for transparent
- * matter; what metals and films reflect is integrated over daylight (render/shade/layered_table.h). */
+ * matter; what metals and films reflect is integrated over daylight (render/plan/layered_table.h). */
 static range_case of_film(const scene *s, const note_taker *taker)
 {
     const nm_range one = {s->render.lambda_nm, s->render.lambda_nm};

@@ -6,7 +6,7 @@
 #include "measure/usage.h"
 #include "mpi/scene_wire.h"
 #include "mpi/tracing.h"
-#include "render/core/shared_frame.h"
+#include "render/frame/renderer.h"
 #include "scene/model/scene.h"
 #include <assert.h>
 #include <mpi.h>

@@ -6,7 +6,7 @@
 #include "measure/usage.h"
 #include "mpi/scene_wire.h"
 #include "mpi/tracing.h"
-#include "render/core/shared_frame.h"
+#include "render/frame/renderer.h"
 #include "scene/model/scene.h"
 #include "scene/package/package.h"
 #include <math.h>
@@ -20,7 +20,7 @@
 /* What the other ranks report, all of their workers one after another. */
 typedef struct others {
     ray_counters counters;
-    rank_account *ranks; /* by rank, all of the frame */
+    rank_usage *ranks; /* by rank, all of the frame */
     worker_report *workers;
     int count;
     status code; /* the first that is not STATUS_OK */
@@ -138,7 +138,7 @@ static void release_frame(lead *l)
 enum { SIDE_MOST = 4096, SIDE_GROWN = 128, TILES_ENOUGH = 64 };
 
 /* As a process alone, for the workers of all ranks. Where each would still have TILES_ENOUGH, the tiles are larger: a
- * tile's last rays do not fill batches (renderer.h, piece_source), which costs the less, the larger it is. */
+ * tile's last rays do not fill batches (renderer.h, tile_source), which costs the less, the larger it is. */
 static int tile_side(const scene *s, int ranks)
 {
     render_settings all = s->render;
@@ -170,8 +170,7 @@ static status send_orders(lead *l, const scene *s, bool measured, diagnostic *wh
     return l->ranks > 1 ? scene_wire_send(s, &l->scene_bytes, why) : STATUS_OK;
 }
 
-static status begin(void *of, const scene *s, const render_options *requested, const piece_source **own,
-                    diagnostic *why)
+static status begin(void *of, const scene *s, const render_options *requested, const tile_source **own, diagnostic *why)
 {
     lead *l = of;
     TRY(refuse(s, requested, why));
@@ -198,8 +197,8 @@ static status begin(void *of, const scene *s, const render_options *requested, c
 /* The account of each rank; this one's is the first. */
 static void add_ranks(lead *l, render_result *result)
 {
-    rank_account *ranks = l->rest.ranks;
-    ranks[0] = (rank_account){
+    rank_usage *ranks = l->rest.ranks;
+    ranks[0] = (rank_usage){
         .wall_s = result->wall_s, .cpu_s = result->cpu_s, .peak_rss_bytes = (uint64_t)usage_now().peak_rss_bytes};
     for (int rank = 1; rank < l->ranks; rank++)
         result->cpu_s += ranks[rank].cpu_s;

@@ -19,7 +19,7 @@ struct team {
     cancel_token token;
     atomic_bool failed; /* out of memory: the frame cannot be completed */
     tracing facing_messenger;
-    piece_source facing_renderer;
+    tile_source facing_renderer;
 };
 
 /* --- the messenger's side --- */
@@ -99,7 +99,7 @@ static void wait_for_event(void *of, int idle)
 
 /* --- the renderer's side --- */
 
-static bool next(void *context, int worker, span *out)
+static bool next(void *context, int worker, image_tile *out)
 {
     team *t = context;
     (void)worker;
@@ -113,12 +113,12 @@ static bool next(void *context, int worker, span *out)
     return any;
 }
 
-static int64_t number_of(const schedule *s, const span *piece)
+static int64_t number_of(const schedule *s, const image_tile *piece)
 {
     return piece->y0 / s->tile * s->tiles_across + piece->x0 / s->tile;
 }
 
-static void done(void *context, const span *piece, const film *traced, const double *variance)
+static void done(void *context, const image_tile *piece, const film *traced, const double *variance)
 {
     team *t = context;
     const size_t values = 3 * (size_t)(piece->x1 - piece->x0) * (size_t)(piece->y1 - piece->y0);
@@ -160,7 +160,7 @@ status team_create(const schedule *tiles, int threads, team **out, diagnostic *w
     t->tiles = *tiles;
     t->newest = &t->oldest;
     t->facing_messenger = (tracing){threads, t, give, take, end, stop, over, wait_for_event};
-    t->facing_renderer = (piece_source){.side = tiles->tile, .next = next, .done = done, .context = t};
+    t->facing_renderer = (tile_source){.side = tiles->tile, .next = next, .done = done, .context = t};
     *out = t;
     return STATUS_OK;
 }
@@ -185,7 +185,7 @@ const tracing *team_tracing(const team *t)
     return &t->facing_messenger;
 }
 
-const piece_source *team_source(const team *t)
+const tile_source *team_source(const team *t)
 {
     return &t->facing_renderer;
 }

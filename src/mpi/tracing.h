@@ -1,11 +1,11 @@
 /* The threads that trace the tiles of one rank, behind the interface of its messenger (mpi/messenger.h): two queues, of
- * tiles to trace and of traced pieces. The renderer takes the tiles as its source (render/core/renderer.h). Ownership:
+ * tiles to trace and of traced pieces. The renderer takes the tiles as its source (render/frame/renderer.h). Ownership:
  * team_create allocates, team_destroy releases, after the messenger and the renderer have ended. */
 #pragma once
 
 #include "base/cancel.h"
 #include "mpi/messenger.h"
-#include "render/core/schedule.h"
+#include "render/plan/schedule.h"
 
 typedef struct team team;
 
@@ -15,7 +15,7 @@ void team_destroy(team *t); /* NULL is allowed */
 
 /* For the messenger, and for the renderer; borrowed from the team. */
 const tracing *team_tracing(const team *t);
-const piece_source *team_source(const team *t);
+const tile_source *team_source(const team *t);
 
 /* The renderer has ended: its threads take no more tiles. */
 void team_left(team *t);

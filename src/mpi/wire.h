@@ -5,7 +5,7 @@
 
 #include "base/counters.h"
 #include "base/status.h"
-#include "render/core/renderer.h"
+#include "render/frame/renderer.h"
 #include <stdint.h>
 
 enum {
@@ -40,7 +40,7 @@ typedef struct rank_report {
     int64_t code; /* status; of any other than STATUS_OK, why */
     diagnostic why;
     ray_counters counters;
-    rank_account account;
+    rank_usage account;
     int64_t workers;
 } rank_report;
 

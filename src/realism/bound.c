@@ -20,29 +20,29 @@ static double of_square(double a, double b, double da, double db)
     return off * (2.0 * r + off) + bound_difference(BOUND_FORM) * r * r;
 }
 
-share_bound bound_shares(double angle, double aside, double n_from, double n_to)
+reflectance_bound bound_reflectances(double angle, double aside, double n_from, double n_to)
 {
-    const double rounding = bound_difference(BOUND_SHARES), eta = n_from / n_to;
+    const double rounding = bound_difference(BOUND_REFLECTANCES), eta = n_from / n_to;
     const double cos_i = cos(angle), sin_t = eta * sin(angle), square = 1.0 - sin_t * sin_t;
     /* Of cos i, and of cos^2 t = 1 - eta^2 (1 - cos^2 i). */
     const double off_i = rounding + sin(angle) * aside, off = rounding + 2.0 * eta * eta * cos_i * off_i;
     if (square < -off)
-        return (share_bound){0.0, 0.0, 0.0}; /* total reflection: exactly 1 on both sides */
+        return (reflectance_bound){0.0, 0.0, 0.0}; /* total reflection: exactly 1 on both sides */
     const double cos_t = sqrt(fmax(square, 0.0)), off_t = fmin(cos_t > 0.0 ? off / cos_t : INFINITY, sqrt(off));
-    const share_bound b = {
+    const reflectance_bound b = {
         .R_s = of_square(n_from * cos_i, n_to * cos_t, n_from * off_i, n_to * off_t),
         .R_p = of_square(n_to * cos_i, n_from * cos_t, n_to * off_i, n_from * off_t),
     };
-    return (share_bound){b.R_s, b.R_p, 0.5 * (b.R_s + b.R_p) + bound_difference(BOUND_FORM)};
+    return (reflectance_bound){b.R_s, b.R_p, 0.5 * (b.R_s + b.R_p) + bound_difference(BOUND_FORM)};
 }
 
-/* Relative, of the ray that follows a hit: its share of the light, and the medium's transmittance, exp(-a t). */
+/* Relative, of the ray that follows a hit: its fraction of the light, and the medium's transmittance, exp(-a t). */
 static double weight_at(const ray_hit *h, bool reflected, double aside, double slide)
 {
-    const double shares = bound_shares(acos(fmin(h->cos_i, 1.0)), aside, h->n_from, h->n_to).R,
-                 share = reflected ? h->R : 1.0 - h->R;
+    const double fractions = bound_reflectances(acos(fmin(h->cos_i, 1.0)), aside, h->n_from, h->n_to).R,
+                 fraction = reflected ? h->R : 1.0 - h->R;
     const double kept = h->transmittance[0], per_length = kept > 0.0 && h->t > 0.0 ? -log(kept) / h->t : 0.0;
-    return (share > 0.0 ? shares / share : 0.0) + per_length * slide + bound_difference(BOUND_FORM);
+    return (fraction > 0.0 ? fractions / fraction : 0.0) + per_length * slide + bound_difference(BOUND_FORM);
 }
 
 /* Of a place on a surface: the distance along the ray is at most the sum of both lengths. */

@@ -9,12 +9,12 @@
 
 #include "render/inspect/probe.h"
 
-/* Half a unit of the film (render/core/film.h): the rounding error of one contribution to a pixel. */
+/* Half a unit of the film (render/plan/film.h): the rounding error of one contribution to a pixel. */
 #define BOUND_FILM 0x1p-45
 
 /* Operations that a datum passes through, at most: the intersection with a surface and its normal; the refraction or
  * reflection of a direction, with tidying; Fresnel's equations; a closed form or a function of the C library. */
-enum { BOUND_HIT = 32, BOUND_TURN = 24, BOUND_SHARES = 12, BOUND_FORM = 8 };
+enum { BOUND_HIT = 32, BOUND_TURN = 24, BOUND_REFLECTANCES = 12, BOUND_FORM = 8 };
 
 /* gamma_n, and twice that, for a difference. */
 double bound_gamma(int operations);
@@ -22,10 +22,10 @@ double bound_difference(int operations);
 
 /* Of reflectances, for an angle of incidence that is off by up to aside. Towards the critical angle, where their
  * slope is infinite, an error e of cos^2 t is one of min(e / cos t, sqrt(e)) of cos t. */
-typedef struct share_bound {
+typedef struct reflectance_bound {
     double R_s, R_p, R;
-} share_bound;
-share_bound bound_shares(double angle, double aside, double n_from, double n_to);
+} reflectance_bound;
+reflectance_bound bound_reflectances(double angle, double aside, double n_from, double n_to);
 
 /* Of a path at the end of its last ray: distance across the ray; direction; throughput, relative. At each surface the
  * errors so far are multiplied by the derivatives of the law there, and those of the surface are added: of a place,

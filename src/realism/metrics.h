@@ -7,6 +7,9 @@
 #include "realism/realism.h"
 #include "realism/setup.h"
 #include "render/inspect/probe.h"
+#include <math.h>
+
+#define DEGREE (M_PI / 180.0)
 
 typedef struct metrics {
     const scene *traced, *supposed; /* the scene to measure; the scene for theory */
@@ -16,24 +19,24 @@ typedef struct metrics {
 } metrics;
 
 status realism_edges(const metrics *m, diagnostic *why); /* edges.c: edges of the rod in the image, magnification */
-status realism_water_line(const metrics *m, diagnostic *why); /* water_line.c: kink of the leaning rod */
+status realism_water_line(const metrics *m, diagnostic *why); /* apparent.c: kink of the leaning rod */
 status realism_lens(const metrics *m, diagnostic *why);       /* lens.c: deviation, power, dispersion */
-status realism_interfaces(const metrics *m, diagnostic *why); /* interfaces.c: critical angles, Fresnel */
-status realism_balance(const metrics *m, diagnostic *why);    /* balance.c: white furnace */
-status realism_slab(const metrics *m, diagnostic *why);       /* slab.c: convergence with depth */
-status realism_gap(const metrics *m, diagnostic *why);        /* gap.c: empty gaps, and solids far away */
-status realism_radiance(const metrics *m, diagnostic *why);   /* radiance.c: radiance across a flat surface */
-status realism_absorption(const metrics *m, diagnostic *why); /* attenuation.c: Beer and Lambert */
-status realism_reversal(const metrics *m, diagnostic *why);   /* reversal.c: reversed paths */
+status realism_interfaces(const metrics *m, diagnostic *why); /* flat.c: critical angles, Fresnel */
+status realism_balance(const metrics *m, diagnostic *why);    /* energy.c: white furnace */
+status realism_slab(const metrics *m, diagnostic *why);       /* flat.c: convergence with depth */
+status realism_gap(const metrics *m, diagnostic *why);        /* flat.c: empty gaps, and solids far away */
+status realism_radiance(const metrics *m, diagnostic *why);   /* energy.c: radiance across a flat surface */
+status realism_absorption(const metrics *m, diagnostic *why); /* energy.c: Beer and Lambert */
+status realism_reversal(const metrics *m, diagnostic *why);   /* lens.c: reversed paths */
 
 /* Metrics with scenes of their own: the required solids, and whether a scene has them. Only the scenes, the level and
  * the report of m are used. */
 bool prism_is_there(const scene *s);
-status realism_prism(const metrics *m, diagnostic *why); /* prism.c: minimum deviation */
+status realism_prism(const metrics *m, diagnostic *why); /* dispersion.c: minimum deviation */
 bool drop_is_there(const scene *s);
-status realism_drop(const metrics *m, diagnostic *why); /* drop.c: the first rainbow */
+status realism_drop(const metrics *m, diagnostic *why); /* dispersion.c: the first rainbow */
 bool stack_is_there(const scene *s);
-status realism_stack(const metrics *m, diagnostic *why); /* stack.c: a stack of two plates */
+status realism_stack(const metrics *m, diagnostic *why); /* plates.c: a stack of two plates */
 
 void metrics_add(const metrics *m, realism_value value);
 
@@ -43,14 +46,14 @@ typedef struct worst_pair {
     bool any;
 } worst_pair;
 #define WORST_NONE ((worst_pair){NAN, NAN, NAN, false})
-void worst_take(worst_pair *w, double measured, double theory, double tolerance);
+void worst_pair_add(worst_pair *w, double measured, double theory, double tolerance);
 
-/* Points of curves, shared with curve.c. */
+/* Points of curves, for realism.c. */
 status lens_deviation(probe *p, ray_tree *tree, const setup *at, double offset, double *radians, diagnostic *why);
-typedef struct interface_shares {
+typedef struct interface_reflectances {
     double R_s, R_p, R;
-} interface_shares;
-status interface_measure(probe *p, ray_tree *tree, double start_y, double angle, interface_shares *out,
+} interface_reflectances;
+status interface_measure(probe *p, ray_tree *tree, double start_y, double angle, interface_reflectances *out,
                          diagnostic *why);
 status slab_measure(const metrics *m, int depth, bool polarised, double *transmitted, diagnostic *why);
 double slab_theory(const metrics *m, int depth, bool polarised);

@@ -1,5 +1,5 @@
-/* The vessel, liquid and rod of a scene as the numbers that theory needs; and copies of a scene with some of its media
- * in other solids. Ownership: arrange_* give a scene, or NULL if memory runs out. */
+/* The vessel, liquid, rod and camera of a scene as the numbers that theory needs; and copies of a scene with some of
+ * its media in other solids. Ownership: arrange_* give a scene, or NULL if memory runs out. */
 #pragma once
 
 #include "geometry/solid.h"
@@ -47,3 +47,26 @@ scene *arrange_shining(const scene *s, const setup *at, solid_shape slab, double
 /* Two media that meet at y = 0, for a ray from (0, *start_y, 0); one of them may be SETUP_OUTSIDE, neither a missing
  * liquid. */
 scene *arrange_interface(const scene *s, const setup *at, setup_medium from, setup_medium to, double *start_y);
+
+/* --- the camera --- */
+
+/* The camera in scalars: direction of an image point, and projection of a scene point. Pinhole geometry, independent of
+ * render/plan/plan.c. Image coordinates start at the top left corner, px; lengths in scene units. Pure. */
+typedef struct view {
+    double x, y, z;       /* of the camera */
+    double yaw, pitch;    /* radians: 0 along +z, towards +x; up */
+    double roll;          /* radians: the camera's right side down */
+    double width, height; /* px */
+    double focal_px;      /* focal length in px: size of a slope of 1 at the centre of the image */
+} view;
+
+view view_of(const scene *s);
+
+/* Unit direction through a point of the image. */
+typedef struct sight {
+    double x, y, z;
+} sight;
+sight view_through(const view *v, double px, double py);
+
+/* Projection of a scene point; false behind the camera. */
+bool view_place(const view *v, double x, double y, double z, double *px, double *py);

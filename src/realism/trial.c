@@ -1,8 +1,31 @@
+/* What all metrics share: a scene with a probe for it, edges by bisection, the pair with the largest error, and the
+ * report. */
 #include "realism/metrics.h"
 
 #include "scene/model/medium.h"
 #include "scene/model/scene.h"
 #include <math.h>
+
+void metrics_add(const metrics *m, realism_value value)
+{
+    if (m->report->count < REALISM_MAX)
+        m->report->value[m->report->count++] = value;
+}
+
+void curve_add(realism_points *out, double x, double measured, double theory)
+{
+    if (out->count < REALISM_POINTS_MAX)
+        out->at[out->count++] = (realism_point){x, measured, theory};
+}
+
+void worst_pair_add(worst_pair *w, double measured, double theory, double tolerance)
+{
+    /* A NaN counts as the worst measurement, whatever follows; where theory is NaN there is nothing to measure. */
+    if (isnan(theory) || (w->any && isnan(w->measured)))
+        return;
+    if (!w->any || !(fabs(measured - theory) * w->tolerance <= fabs(w->measured - w->theory) * tolerance))
+        *w = (worst_pair){measured, theory, tolerance, true};
+}
 
 status trial_start(trial *t, scene *taken, isa level, diagnostic *why)
 {

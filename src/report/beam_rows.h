@@ -2,7 +2,7 @@
  * the stream. Ownership: everything is borrowed. */
 #pragma once
 
-#include "render/inspect/beam_screen.h"
+#include "render/inspect/beams.h"
 #include <stdio.h>
 
 typedef struct beamed {

@@ -76,8 +76,8 @@ static bool is_traced(const ray_node *node)
 /* A shadow ray has the weight of its parent, because its own throughput is a radiance. */
 static double weight_of(const ray_tree *tree, const ray_node *node)
 {
-    const double all = beam_share(&tree->node[0]);
-    return beam_share(node->kind == RAY_SHADOW ? &tree->node[node->parent] : node) / (all > 0.0 ? all : 1.0);
+    const double all = beam_fraction(&tree->node[0]);
+    return beam_fraction(node->kind == RAY_SHADOW ? &tree->node[node->parent] : node) / (all > 0.0 ? all : 1.0);
 }
 
 static status take_beam_ray(void *context, const beam_ray *ray, const ray_tree *tree, const probe *p, diagnostic *why)
@@ -95,7 +95,7 @@ static status take_beam_ray(void *context, const beam_ray *ray, const ray_tree *
         page_ray *one = add(c, node, weight, p);
         if (!one)
             return out_of_memory(why);
-        one->power = ray->power * beam_share(node);
+        one->power = ray->power * beam_fraction(node);
         one->lambda_nm = ray->lambda_nm;
         beam_line_color(b, ray->lambda_nm, one->rgb);
         snprintf(one->of, sizeof one->of, "%s %d", b->name, ray->number + 1);

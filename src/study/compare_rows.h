@@ -4,7 +4,7 @@
 #pragma once
 
 #include "image/compare.h"
-#include "render/core/renderer.h"
+#include "render/frame/renderer.h"
 #include "study/reference.h"
 #include "study/rows.h"
 

@@ -2,7 +2,7 @@
 #include "base/file.h"
 #include "base/text.h"
 #include "image/image.h"
-#include "render/core/record.h"
+#include "render/frame/record.h"
 #include "study/cell_table.h"
 #include "study/grid.h"
 #include "scene/model/scene.h"

@@ -2,7 +2,7 @@
 #include "wasm/render_turns.h"
 
 #include "measure/clock.h"
-#include "render/core/shared_frame.h"
+#include "render/frame/renderer.h"
 #include "scene/model/integrators.h"
 #include "scene/package/package.h"
 #include "wasm/exports.h"

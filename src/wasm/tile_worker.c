@@ -1,7 +1,7 @@
 /* A tile worker: traces the tiles of orders in the scene that it was given last. */
 #include "job/job.h"
 #include "measure/clock.h"
-#include "render/core/shared_frame.h"
+#include "render/frame/renderer.h"
 #include "scene/model/scene.h"
 #include "scene/package/package.h"
 #include "wasm/exports.h"
@@ -57,7 +57,7 @@ int wasm_tiles_scene(const void *bytes, size_t size)
     return trouble_note(code, &no_scene);
 }
 
-static bool next(void *context, int worker, span *out)
+static bool next(void *context, int worker, image_tile *out)
 {
     (void)context, (void)worker;
     if (isnan(head()->setup_s))
@@ -65,7 +65,7 @@ static bool next(void *context, int worker, span *out)
     return now.next < now.end && !now.failed && schedule_tile(&now.tiles, now.next++, out);
 }
 
-static void done(void *context, const span *piece, const film *traced, const double *variance)
+static void done(void *context, const image_tile *piece, const film *traced, const double *variance)
 {
     (void)context;
     const int64_t tile = piece->y0 / now.tiles.tile * now.tiles.tiles_across + piece->x0 / now.tiles.tile;
@@ -95,7 +95,7 @@ static status trace(const tile_order *order, diagnostic *why)
     view.render.threads = 1;
     const render_settings settings = tiles_settings(&view.render, order->side);
     schedule_start(&now.tiles, &settings);
-    const piece_source source = {.side = order->side, .next = next, .done = done};
+    const tile_source source = {.side = order->side, .next = next, .done = done};
     const render_options options = {.source = &source};
     job_account account;
     status code = job_render(own_job, &view, &options, &account, why);

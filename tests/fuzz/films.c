@@ -9,7 +9,7 @@
 
 #include "fuzz.h"
 #include "random_scene.h"
-#include "render/core/renderer.h"
+#include "render/frame/renderer.h"
 #include "scene/model/params.h"
 
 enum { SEED_BYTES = 4, CHANGE_BYTES = 4, PATHS_MAX = 2048 };

@@ -11,7 +11,7 @@
 
 double frame_tile_ns(const frame_costs *f, int64_t tile)
 {
-    span at;
+    image_tile at;
     const double w = f->tiles->width, h = f->tiles->height;
     schedule_tile(f->tiles, tile, &at);
     return f->scale * (at.x1 - at.x0) * (at.y1 - at.y0) *
@@ -20,7 +20,7 @@ double frame_tile_ns(const frame_costs *f, int64_t tile)
 
 size_t frame_tile_bytes(const frame_costs *f, int64_t tile)
 {
-    span at;
+    image_tile at;
     schedule_tile(f->tiles, tile, &at);
     return f->pixel_bytes * (size_t)(at.x1 - at.x0) * (size_t)(at.y1 - at.y0);
 }

@@ -5,7 +5,7 @@
 
 #include "cost_map.h"
 #include "mpi/messenger.h"
-#include "render/core/schedule.h"
+#include "render/plan/schedule.h"
 
 /* The frame, the same for all ranks. */
 typedef struct frame_costs {

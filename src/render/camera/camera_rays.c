@@ -1,27 +1,14 @@
 /* Camera rays: their number per pixel, sample positions, origins and directions. */
-#include "render/camera/camera_kernels.h"
+#include "render/camera/camera_rays.h"
+
 #include "optics/mueller.h"
-#include "render/shade/path_kernels.h"
-#include "render/shade/shading.h"
+#include "render/shade/footprints.h"
 
 camera_sampling camera_samples(const render_settings *r)
 {
-    const int64_t together = r->spectrum == SPECTRUM_SPECTRAL ? r->wavelengths : 1;
-    return (camera_sampling){.rays = r->samples * together, .points = r->samples, .together = together};
-}
-
-/* Cells along one side of the largest square grid with at most `points` cells. */
-static int64_t cells_across(int64_t points)
-{
-    int64_t k = 1;
-    while ((k + 1) * (k + 1) <= points)
-        k++;
-    return k;
-}
-
-int64_t samples_across(const render_settings *r)
-{
-    return cells_across(r->samples);
+    const int64_t rays_per_point = r->spectrum == SPECTRUM_SPECTRAL ? r->wavelengths : 1;
+    return (camera_sampling){
+        .rays = r->samples * rays_per_point, .points = r->samples, .rays_per_point = rays_per_point};
 }
 
 /* Pixels and sample keys of consecutive rays of a row, and the points within the pixels where these are a grid. */
@@ -39,8 +26,8 @@ static void place(const tracer *t, camera_sampling need, int64_t each, int y, in
         at->x[k] = (double)x, at->sx[k] = 0.5, at->sy[k] = 0.5;
         at->key[k] = sample_key_make(row + x, ray);
         sample_key[k] = t->by_sample_key ? at->key[k] : sample_key_make(row + x, 0);
-        if (each > 1 && !need.jittered) {                            /* avoids divisions with one ray per pixel */
-            const int64_t s = ray / need.together % (cells * cells); /* row by row */
+        if (each > 1 && !need.jittered) {                                  /* avoids divisions with one ray per pixel */
+            const int64_t s = ray / need.rays_per_point % (cells * cells); /* row by row */
             at->sx[k] = ((double)(s % cells) + 0.5) / (double)cells;
             at->sy[k] = ((double)(s / cells) + 0.5) / (double)cells;
         }
@@ -56,7 +43,7 @@ void camera_chief_rays(const tracer *t, int count, const double *u, const double
     view.lens_radius = 0.0;
     for (int k = 0; k < count; k++)
         centre[k] = 0.0;
-    t->camera->rays(&view, count, u, v, (lens_points){centre, centre}, out);
+    t->sampling->camera_rays(&view, count, u, v, (lens_points){centre, centre}, out);
 }
 
 /* Rays of a camera that is no pinhole in perspective. One ray per pixel, and those of a depth buffer or of layers, pass
@@ -68,8 +55,8 @@ static void leave_lens(const tracer *t, int64_t each, int count, const camera_pl
     const camera_rays_out out = {q->ox + at, q->oy + at, q->oz + at, q->dx + at, q->dy + at, q->dz + at};
     double area[ROW], turn[ROW];
     if (p->view.lens_radius > 0.0 && each > 1 && t->rule->traced) {
-        t->path->draw(&p->draws, count, places->key, 0, DRAW_LENS, area, turn);
-        t->camera->rays(&p->view, count, u, v, (lens_points){area, turn}, out);
+        t->sampling->draw(&p->draws, count, places->key, 0, DRAW_LENS, area, turn);
+        t->sampling->camera_rays(&p->view, count, u, v, (lens_points){area, turn}, out);
     } else {
         camera_chief_rays(t, count, u, v, out);
     }
@@ -109,7 +96,7 @@ void camera_rays_enqueue(tracer *t, int y, int x0, int64_t first, int count)
     const int at = q->count;
     place(t, need, each, y, x0, first, count, q->sample_key + at, &places);
     if (need.jittered)
-        t->path->draw(&p->draws, count, q->sample_key + at, 0, DRAW_PIXEL, places.sx, places.sy);
+        t->sampling->draw(&p->draws, count, q->sample_key + at, 0, DRAW_PIXEL, places.sx, places.sy);
     for (int k = 0; k < count; k++) {
         const int i = at + k;
         q->ox[i] = p->view.eye.x, q->oy[i] = p->view.eye.y, q->oz[i] = p->view.eye.z;
@@ -129,7 +116,7 @@ void camera_rays_enqueue(tracer *t, int y, int x0, int64_t first, int count)
     if (p->view.parallel || p->view.lens_radius > 0.0)
         leave_lens(t, each, count, &places, u, v, q, at);
     else
-        t->camera->directions(&p->view, count, u, v, q->dx + at, q->dy + at, q->dz + at);
+        t->sampling->camera_directions(&p->view, count, u, v, q->dx + at, q->dy + at, q->dz + at);
     if (p->analyser != ANALYSER_NONE)
         put_analyser(p, count, q, at);
     if (t->footprints)

@@ -1,8 +1,9 @@
-/* The rays that photons begin with, their densities and their power. */
-#include "render/caustics/emission_parts.h"
+/* The rays that photons begin with, from lamps and from beams: their densities and their power. */
+#include "render/caustics/emission_private.h"
 
 #include "base/elementary.h"
-#include "render/shade/lamp_polarisation.h"
+#include "base/lanes.h"
+#include "render/shade/polarisation.h"
 
 #define PI 3.14159265358979323846
 
@@ -41,7 +42,7 @@ static vec3 lamp_at(const emission *e, int lamp)
     return e->p->lights[lamp].position;
 }
 
-/* Do the rays of a lamp's cone pass the ball's disc, not the lamp's? */
+/* Whether the rays of a lamp's cone pass the ball's disc, not the lamp's. */
 static bool by_ball(const emission *e, int lamp, int k)
 {
     return e->balls[k].radius < sphere_radius(e, lamp);
@@ -70,14 +71,14 @@ static double density_of(const emission *e, int lamp, int drawn, vec3 direction,
     for (int k = 0; k < e->ball_count; k++) {
         const ball *b = &e->balls[k];
         const bool from_ball = by_ball(e, lamp, k);
-        if (l->cones[k].share == 0.0)
+        if (l->cones[k].fraction == 0.0)
             continue;
         const bool meets =
             k == drawn || (off_axis(direction, l->cones[k].axis) <= l->cones[k].cap &&
                            (!from_ball || off_line(point, direction, b->centre) <= b->radius * b->radius));
         if (meets)
             density +=
-                l->cones[k].share / (2.0 * PI * l->cones[k].cap) / (from_ball ? PI * b->radius * b->radius : area);
+                l->cones[k].fraction / (2.0 * PI * l->cones[k].cap) / (from_ball ? PI * b->radius * b->radius : area);
     }
     return density;
 }
@@ -102,7 +103,7 @@ static double sun_density(const emission *e, int lamp, int drawn, vec3 direction
         const sunlit_area a = sunlit_area_of(e, k, direction);
         const vec3 off = vec3_sub(point, a.centre);
         if (k == drawn || (fabs(vec3_dot(off, a.u)) <= a.across && fabs(vec3_dot(off, a.v)) <= a.up))
-            density += e->lamps[lamp].cones[k].share / (4.0 * a.across * a.up);
+            density += e->lamps[lamp].cones[k].fraction / (4.0 * a.across * a.up);
     }
     return density;
 }
@@ -133,10 +134,10 @@ static int choose_cone(const emission *e, int lamp, double *u)
 {
     const cone *cones = e->lamps[lamp].cones;
     int k = 0, last = e->ball_count - 1;
-    while (last > 0 && cones[last].share == 0.0)
+    while (last > 0 && cones[last].fraction == 0.0)
         last--;
-    while (k < last && *u >= cones[k].share)
-        *u -= cones[k++].share;
+    while (k < last && *u >= cones[k].fraction)
+        *u -= cones[k++].fraction;
     return k;
 }
 
@@ -149,13 +150,13 @@ static double draw_ray(const emission *e, int lamp, unit_pair s, unit_pair place
     const int k = choose_cone(e, lamp, &s.u);
     out->target = lamp * e->ball_count + k;
     const cone *c = &l->cones[k];
-    const double off = c->cap * fmin(s.u / c->share, 1.0);
+    const double off = c->cap * fmin(s.u / c->fraction, 1.0);
     out->direction = along(c->axis, 1.0 - off, sqrt(off * (2.0 - off)), s.v);
     out->origin = lamp_at(e, lamp);
     out->inside = l->inside;
     if (is_sun(e, lamp))
         return draw_sun_ray(e, lamp, k, place, out);
-    if (is_flat(e, lamp)) /* by Lambert's law, which is the lamp's share of the direction */
+    if (is_flat(e, lamp)) /* by Lambert's law, which light_fraction applies */
         out->origin = lamp_shape_point(&e->p->shapes[lamp], out->origin, place.u, place.v);
     if (radius == 0.0)
         return 1.0 / density_of(e, lamp, k, out->direction, out->origin);
@@ -187,6 +188,119 @@ static double draw_wavelength(const emission *e, int lamp, double u, emitted_ray
     return all > 0.0 ? lines[k].radiance / SPECTRA_COUNT * (all / lines[k].bright) : 0.0;
 }
 
+/* --- beams as lamps: photons start as the beam's rays do, with its power over their number --- */
+
+static double log_of(double u)
+{
+    return 0.69314718055994530942 * elementary_log2_inline(u);
+}
+
+/* Of a disc of radius 1: 1 - exp(-2 r^2 / w^2) of a Gaussian beam's power is within r (Siegman, Lasers, 1986, 17.1);
+ * with r^2 / w^2 = -log(u) / 2, u is the fraction outside. */
+static double radius_of(const beam *b, double u)
+{
+    return b->profile == BEAM_GAUSSIAN ? sqrt(-0.5 * log_of(u)) : sqrt(u);
+}
+
+/* Of a line from -1 to 1: exp(-2 x^2 / w^2) is a normal distribution of variance w^2 / 4 (Box and Muller, Ann. Math.
+ * Stat. 29, 1958). */
+static double offset_of(const beam *b, unit_pair s)
+{
+    double sine, cosine;
+    if (b->profile == BEAM_UNIFORM)
+        return 2.0 * s.u - 1.0;
+    elementary_sincos_deg(360.0 * s.v, &sine, &cosine);
+    return 0.5 * sqrt(-2.0 * log_of(s.u)) * cosine;
+}
+
+/* A direction at an angle whose tangent is given, towards `side`. */
+static vec3 inclined(const ray_axes *a, vec3 side, double tangent)
+{
+    return vec3_normalize(vec3_add(a->axis, vec3_scale(side, tangent)));
+}
+
+/* Over a disc, or within a cone: even in solid angle, or Gaussian in every plane across the axis. */
+static void start_round(const beam *b, const ray_axes *a, unit_pair s, emitted_ray *out)
+{
+    double sine, cosine, half_sine, half_cosine;
+    elementary_sincos_deg(360.0 * s.v, &sine, &cosine);
+    const vec3 radial = vec3_add(vec3_scale(a->across, cosine), vec3_scale(a->normal, sine));
+    if (b->kind == BEAM_BUNDLE) {
+        out->origin = vec3_add(a->from, vec3_scale(radial, 0.5 * b->width * radius_of(b, s.u)));
+        return;
+    }
+    if (b->profile == BEAM_GAUSSIAN) {
+        elementary_sincos_deg(0.5 * b->angle_deg, &half_sine, &half_cosine);
+        out->direction = inclined(a, radial, half_sine / half_cosine * radius_of(b, s.u));
+        return;
+    }
+    elementary_sincos_deg(0.25 * b->angle_deg, &half_sine, &half_cosine);
+    const double versine = 2.0 * half_sine * half_sine * s.u; /* as ray_axes_round */
+    out->direction = vec3_add(vec3_scale(a->axis, 1.0 - versine), vec3_scale(radial, sqrt(versine * (2.0 - versine))));
+}
+
+/* In a plane: even in offset or angle, or Gaussian in every line across the axis. */
+static void start_in_plane(const beam *b, const ray_axes *a, unit_pair s, emitted_ray *out)
+{
+    double sine, cosine;
+    const double offset = offset_of(b, s);
+    if (b->kind == BEAM_SHEET) {
+        out->origin = vec3_add(a->from, vec3_scale(a->across, 0.5 * b->width * offset));
+        return;
+    }
+    elementary_sincos_deg(0.5 * b->angle_deg * (b->profile == BEAM_GAUSSIAN ? 1.0 : offset), &sine, &cosine);
+    out->direction = inclined(a, a->across, sine / cosine * (b->profile == BEAM_GAUSSIAN ? offset : 1.0));
+}
+
+/* In a spectral film: of white, of a random wavelength; else of the line, as of a lamp of that line. Radiance there for
+ * a power of 1. */
+static double beam_wavelength(const emission *e, const beam *b, double u, emitted_ray *out)
+{
+    const light lamp = {.spectrum = LAMP_LINE, .line_nm = b->lambda_nm, .intensity = 1.0};
+    lamp_line lines[LAMP_LINES_MAX];
+    out->of_line = !b->white;
+    if (b->white) {
+        out->wavelength = (int)(u * SPECTRA_COUNT);
+        return spectra_row(e->p->spectral, sample_key_with_wavelength(0, out->wavelength))->basis[SKY_BASIS_WHITE];
+    }
+    spectral_lines_of(&lamp, lines);
+    out->wavelength = lines[0].wavelength;
+    return lines[0].radiance / SPECTRA_COUNT;
+}
+
+static bool emission_beam_ray(const emission *e, int64_t i, emitted_ray *out)
+{
+    const plan *p = e->p;
+    int k = p->beam_count - 1;
+    while (k > 0 && i < e->beams[k].first)
+        k--;
+    const beam *b = &p->beams[k];
+    const beam_emission *from = &e->beams[k];
+    const uint64_t source = (uint64_t)(p->light_count + k) << 8;
+    const int64_t number = i - from->first;
+    const unit_pair s = emission_pair(e, number, source);
+    *out = (emitted_ray){.origin = from->axes.from,
+                         .direction = from->axes.axis,
+                         .wavelength = -1,
+                         .of_beam = true,
+                         .falls = true,
+                         .target = p->light_count * e->ball_count + k};
+    if (b->kind == BEAM_FAN || b->kind == BEAM_SHEET)
+        start_in_plane(b, &from->axes, s, out);
+    else
+        start_round(b, &from->axes, s, out);
+    out->inside = scene_geometry_inside(p->geometry, out->origin);
+    vec3 color = from->color;
+    if (p->spectral) {
+        const double radiance = beam_wavelength(e, b, emission_pair(e, number, source | 1).u, out);
+        color = vec3_make(radiance, radiance, radiance);
+    }
+    out->power = vec3_scale(color, b->power / (PI * (double)from->count));
+    return !p->geometry->regions[scene_geometry_priority_index(p->geometry, out->inside)].opaque;
+}
+
+/* --- a photon --- */
+
 bool emission_ray(const emission *e, int64_t i, emitted_ray *out)
 {
     const plan *p = e->p;
@@ -199,8 +313,8 @@ bool emission_ray(const emission *e, int64_t i, emitted_ray *out)
     const int64_t number = i - from->first;
     const double angle = draw_ray(e, lamp, emission_pair(e, number, (uint64_t)lamp << 8),
                                   emission_pair(e, number, (uint64_t)lamp << 8 | 1), out);
-    const double share = light_share(l, &p->cones[lamp], out->direction);
-    if (share == 0.0 || angle == 0.0)
+    const double fraction = light_fraction(l, &p->cones[lamp], out->direction);
+    if (fraction == 0.0 || angle == 0.0)
         return false;
     out->lamp_radius = sun                ? sun_path(e) * sqrt(from->cones[0].cap * (2.0 - from->cones[0].cap))
                        : is_flat(e, lamp) ? sqrt(p->shapes[lamp].area / PI)
@@ -217,7 +331,8 @@ bool emission_ray(const emission *e, int64_t i, emitted_ray *out)
         const double radiance = draw_wavelength(e, lamp, emission_pair(e, number, (uint64_t)lamp << 8 | 2).u, out);
         color = vec3_make(radiance, radiance, radiance);
     }
-    out->power = vec3_scale(color, share * (l->reach > 0.0 ? l->reach * l->reach : 1.0) * angle / (double)from->count);
+    out->power =
+        vec3_scale(color, fraction * (l->reach > 0.0 ? l->reach * l->reach : 1.0) * angle / (double)from->count);
     return true;
 }
 

@@ -10,18 +10,18 @@
  * of the scene.
  *
  * A beam that lights the scene is one more lamp: its photons start as its rays do, whatever they meet, and bring its
- * light to the first matte surface too, which no shadow ray does (emission_beam.c).
+ * light to the first matte surface too, which no shadow ray does.
  *
  * Photons are points of a scrambled Sobol sequence for each lamp, a function of the seed and the photon's number.
  * Ownership: emission_create allocates, emission_destroy releases; the plan is borrowed. */
 #pragma once
 
 #include "base/status.h"
-#include "render/core/plan.h"
+#include "render/plan/plan.h"
 
 typedef struct emission emission;
 
-/* Of `photons` photons in all. With C the flux towards a target, n its photons of which the share h arrives, the
+/* Of `photons` photons in all. With C the flux towards a target, n its photons of which the fraction h arrives, the
  * squared error of the light that arrives, C h, is C^2 h / n: n in proportion to sqrt(C) makes the sum of the squared
  * errors, each over its light, the least (the Lagrange function of sum C / n). sizes: lights with a size have it,
  * otherwise they are points. */
@@ -35,7 +35,7 @@ int emission_target_solid(const emission *e, int target);
 /* The light that arrives from a target, relative to others, when that number of its photons does. */
 double emission_light(const emission *e, int target, int64_t arrived);
 /* A pilot tells from which targets light arrives. While it goes on there are few photons, as many for each target, and
- * other ones than later. emission_end_pilot: delivers[target] is whether any did; the others get a small share. */
+ * other ones than later. emission_end_pilot: delivers[target] is whether any did; the others get a small fraction. */
 bool emission_begin_pilot(emission *e);
 void emission_end_pilot(emission *e, const bool *delivers);
 

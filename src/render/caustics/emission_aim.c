@@ -1,8 +1,9 @@
-/* Where photons start towards: balls around what deflects light, the cones of each lamp around these, and the shares of
- * the photons. */
-#include "render/caustics/emission_parts.h"
+/* Where photons start towards: balls around what deflects light, the cones of each lamp around these, and the fractions
+ * of the photons. */
+#include "render/caustics/emission_private.h"
 
 #include "geometry/shapes/shape.h"
+#include "optics/spectrum.h"
 #include "optics/mueller.h"
 
 #include <stdlib.h>
@@ -163,7 +164,33 @@ static void aim(emission *e, int lamp)
     }
 }
 
-/* --- shares --- */
+/* --- beams --- */
+
+static vec3 color_of(const beam *b)
+{
+    double rgb[3];
+    if (b->white)
+        return vec3_make(1.0, 1.0, 1.0);
+    lamp_rgb(LAMP_LINE, 0.0, b->lambda_nm, rgb);
+    return vec3_make(rgb[0], rgb[1], rgb[2]);
+}
+
+/* A photon's flux is its power over pi; that of a lamp of intensity and reach 1 into 2 pi is 2 pi (aim above). */
+static status prepare_beams(emission *e, diagnostic *why)
+{
+    for (int k = 0; k < e->p->beam_count; k++) {
+        const beam *b = &e->p->beams[k];
+        const bool is_flat = b->kind == BEAM_FAN || b->kind == BEAM_SHEET;
+        const bool has_normal = is_flat && vec3_dot(b->normal, b->normal) > 0.0;
+        TRY(ray_axes_set(&e->beams[k].axes, b->position, beam_axis(b), has_normal ? &b->normal : NULL, why));
+        const vec3 color = e->beams[k].color = color_of(b);
+        e->beams[k].flux = b->power * fmax(color.x, fmax(color.y, color.z)) / (2.0 * PI * PI);
+        e->extent = fmax(e->extent, beam_is_parallel(b) ? 0.5 * b->width : e->p->geometry->extent);
+    }
+    return STATUS_OK;
+}
+
+/* --- fractions --- */
 
 /* Gives every target its wanted part of the photons: a lamp's cones in turn, then the beams. */
 static void divide(emission *e, int64_t photons)
@@ -182,7 +209,7 @@ static void divide(emission *e, int64_t photons)
         for (int i = 0; i < targets; i++)
             own += wanted[at + i];
         for (int i = 0; k < lamps && i < targets; i++)
-            e->lamps[k].cones[i].share = own > 0.0 ? wanted[at + i] / own : 0.0;
+            e->lamps[k].cones[i].fraction = own > 0.0 ? wanted[at + i] / own : 0.0;
         at += targets;
         so_far += own;
         *first = e->count;
@@ -212,18 +239,18 @@ double emission_light(const emission *e, int target, int64_t arrived)
 {
     const int cones = e->p->light_count * e->ball_count;
     const double emitted = target < cones ? (double)e->lamps[target / e->ball_count].count *
-                                                e->lamps[target / e->ball_count].cones[target % e->ball_count].share
+                                                e->lamps[target / e->ball_count].cones[target % e->ball_count].fraction
                                           : (double)e->beams[target - cones].count;
     return arrived > 0 && emitted > 0.0 ? flux_of(e, target) * (double)arrived / emitted : 0.0;
 }
 
 /* What a target from which nothing arrived gets, of what it would get otherwise. */
-#define SILENT_SHARE 0.02
+#define SILENT_FRACTION 0.02
 
 void emission_end_pilot(emission *e, const bool *delivers)
 {
     for (int k = 0; k < emission_target_count(e); k++)
-        e->wanted[k] = sqrt(flux_of(e, k)) * (!delivers || delivers[k] ? 1.0 : SILENT_SHARE);
+        e->wanted[k] = sqrt(flux_of(e, k)) * (!delivers || delivers[k] ? 1.0 : SILENT_FRACTION);
     divide(e, e->photons);
     e->is_pilot = false;
 }
@@ -267,7 +294,7 @@ status emission_create(const plan *p, int64_t photons, bool sizes, emission **ou
             goto failed;
         aim(e, k);
     }
-    status code = emission_prepare_beams(e, why);
+    status code = prepare_beams(e, why);
     if (code == STATUS_OK) {
         emission_end_pilot(e, NULL);
         return STATUS_OK;

@@ -1,29 +1,35 @@
-/* The rays of beams: each wavelength has a probe, since a probe has one wavelength. */
+/* The rays of beams: each wavelength has a probe, since a probe has one wavelength. Crossings of their segments with
+ * a rectangle; lines with soft edges, tested by pixel against the distance of opaque surfaces. */
 #include "render/inspect/beams.h"
 
 #include "optics/spectrum.h"
-#include "render/inspect/ray_axes.h"
+#include "render/inspect/ray_line.h"
+#include "render/plan/ray_axes.h"
+#include "scene/model/camera.h"
 #include "scene/model/edit/edit.h"
+#include "scene/model/medium.h"
+#include "scene/model/params.h"
 #include "scene/model/scene.h"
 #include <math.h>
+#include <stdlib.h>
 
 /* A probe without lights, whose shadow rays would be traced for nothing. */
 static status probe_of_beam(const scene *s, const beam *b, double lambda_nm, isa level, probe **out, diagnostic *why)
 {
-    scene *alone = scene_clone(s);
-    status code = alone ? STATUS_OK : out_of_memory(why);
-    while (code == STATUS_OK && alone->light_count > 0)
-        code = scene_remove(alone, alone->lights[alone->light_count - 1].name, why);
+    scene *unlit = scene_clone(s);
+    status code = unlit ? STATUS_OK : out_of_memory(why);
+    while (code == STATUS_OK && unlit->light_count > 0)
+        code = scene_remove(unlit, unlit->lights[unlit->light_count - 1].name, why);
     if (code == STATUS_OK) {
-        alone->render.lambda_nm = lambda_nm;
-        alone->render.min_weight = b->min_share;
-        code = probe_create(alone, level, out, why);
+        unlit->render.lambda_nm = lambda_nm;
+        unlit->render.min_weight = b->min_share;
+        code = probe_create(unlit, level, out, why);
     }
     if (code == STATUS_OK) {
         probe_limit_depth(*out, (int)b->depth);
         probe_one_wavelength(*out);
     }
-    scene_destroy(alone);
+    scene_destroy(unlit);
     return code;
 }
 
@@ -110,13 +116,13 @@ status beams_each_ray(const scene *s, isa level, int rays, beam_visit *visit, vo
     return code;
 }
 
-double beam_share(const ray_node *node)
+double beam_fraction(const ray_node *node)
 {
     return (node->throughput[0] + node->throughput[1] + node->throughput[2]) / 3.0;
 }
 
 /* Beer and Lambert: the transmittance over a part of the length is a power of that over the whole. */
-double beam_share_at(const ray_node *node, double t)
+double beam_fraction_at(const ray_node *node, double t)
 {
     double sum = 0.0;
     for (int k = 0; k < 3; k++)
@@ -143,4 +149,183 @@ void beam_line_color(const beam *b, double lambda_nm, double rgb[3])
     rgb[0] = b->color.x, rgb[1] = b->color.y, rgb[2] = b->color.z;
     if (rgb[0] == 0.0 && rgb[1] == 0.0 && rgb[2] == 0.0)
         beam_wavelength_color(lambda_nm, rgb);
+}
+
+/* --- screens --- */
+
+void beam_screen_release(beam_screen *screen)
+{
+    free(screen->bin);
+    free(screen->color);
+    screen->bin = screen->color = NULL;
+}
+
+static status prepare_screen(beam_screen *screen, diagnostic *why)
+{
+    const double length = vec3_length(screen->normal);
+    if (!(length > 0.0 && isfinite(length)))
+        return diagnose(why, STATUS_BAD_INPUT, "give a vector that is not zero", "the screen's normal is zero");
+    if (!(screen->width > 0.0 && screen->width <= 1e6 && screen->height > 0.0 && screen->height <= 1e6))
+        return diagnose(why, STATUS_BAD_INPUT, "give a width and a height above 0, at most 1e6",
+                        "the size of the screen is out of range");
+    if (screen->columns < 1 || screen->columns > SCREEN_BINS_MAX || screen->rows < 1 || screen->rows > SCREEN_BINS_MAX)
+        return diagnose(why, STATUS_BAD_INPUT, "give 1 to 512 columns and rows", "the number of bins is out of range");
+    if (screen->rays_of_beam < 0 || screen->rays_of_beam > SCREEN_RAYS_MAX)
+        return diagnose(why, STATUS_BAD_INPUT, "give 1 to 100000, or 0 for the beams' own number",
+                        "the number of rays is out of range");
+    screen->normal = vec3_scale(screen->normal, 1.0 / length);
+    const vec3 level = vec3_cross(vec3_make(0, 1, 0), screen->normal);
+    screen->e_u = vec3_length(level) > 1e-9 ? vec3_normalize(level) : vec3_make(1, 0, 0);
+    screen->e_v = vec3_cross(screen->normal, screen->e_u);
+    const size_t bins = (size_t)screen->columns * (size_t)screen->rows;
+    screen->bin = calloc(bins, sizeof *screen->bin);
+    screen->color = calloc(3 * bins, sizeof *screen->color);
+    return screen->bin && screen->color ? STATUS_OK : out_of_memory(why);
+}
+
+/* The bin of a coordinate in -half..half; -1 outside. */
+static int bin_of(double at, double size, int count)
+{
+    const double fraction = at / size + 0.5;
+    return fraction >= 0.0 && fraction < 1.0 ? (int)fmin(fraction * count, count - 1) : -1;
+}
+
+static void expose(beam_screen *screen, const beam_ray *ray, const ray_node *node, const double rgb[3])
+{
+    const double slope = vec3_dot(node->direction, screen->normal);
+    const double t = vec3_dot(vec3_sub(screen->centre, node->origin), screen->normal) / slope;
+    const bool traced = node->end == RAY_END_HIT || node->end == RAY_END_SKY;
+    if (!traced || slope == 0.0 || !(t > 0.0) || (node->end == RAY_END_HIT && t > node->hit.t))
+        return;
+    const vec3 at = vec3_sub(vec3_add(node->origin, vec3_scale(node->direction, t)), screen->centre);
+    const int column = bin_of(vec3_dot(at, screen->e_u), screen->width, screen->columns);
+    const int row = bin_of(-vec3_dot(at, screen->e_v), screen->height, screen->rows);
+    if (column < 0 || row < 0)
+        return;
+    const double power = ray->power * beam_fraction_at(node, t);
+    const int bin = row * screen->columns + column;
+    screen->hit_count++;
+    screen->received += power;
+    screen->bin[bin] += power;
+    for (int k = 0; k < 3; k++)
+        screen->color[3 * bin + k] += power * rgb[k];
+}
+
+static status cross_screen(void *context, const beam_ray *ray, const ray_tree *tree, const probe *p, diagnostic *why)
+{
+    beam_screen *screen = context;
+    double rgb[3];
+    (void)p;
+    (void)why;
+    beam_wavelength_color(ray->lambda_nm, rgb);
+    screen->ray_count++;
+    screen->power += ray->power;
+    for (size_t i = 0; i < tree->count; i++)
+        expose(screen, ray, &tree->node[i], rgb);
+    return STATUS_OK;
+}
+
+status beam_screen_expose(const scene *s, isa level, beam_screen *screen, diagnostic *why)
+{
+    TRY(prepare_screen(screen, why));
+    return beams_each_ray(s, level, screen->rays_of_beam, cross_screen, screen, why);
+}
+
+/* --- drawing --- */
+
+/* Share of a line's colour where it is hidden. */
+#define HIDDEN 0.15
+/* A segment starts or ends on the surface that would hide it. */
+#define ON_SURFACE 1e-3
+
+typedef struct beam_canvas {
+    const scene *s;
+    const float *distance;
+    image *img;
+    camera_frame view;
+    image_frame frame;
+    double half_width; /* of a line, px */
+} beam_canvas;
+
+status beams_hiding_scene(const scene *s, scene **out, diagnostic *why)
+{
+    scene *only = scene_clone(s);
+    if (!only)
+        return out_of_memory(why);
+    render_settings *r = &only->render;
+    for (size_t i = 0; i < only->solid_count; i++)
+        only->solids[i].visible = only->solids[i].visible && material_is_opaque(&only->solids[i].surface);
+    r->polarisation = 0;
+    r->spectrum = SPECTRUM_RGB;
+    r->samples = 1;
+    *out = only;
+    return scene_set(only, "render.integrator", integrator_with_layers(), why);
+}
+
+static void blend_pixel(beam_canvas *c, int x, int y, double distance, double cover, const double rgb[3])
+{
+    const size_t pixel = (size_t)y * (size_t)c->img->width + (size_t)x;
+    const double surface = c->distance[pixel];
+    const double fraction = surface > 0.0 && distance > surface * (1.0 + ON_SURFACE) ? HIDDEN * cover : cover;
+    float *at = c->img->pixel + 3 * pixel;
+    for (int k = 0; k < 3; k++)
+        at[k] = (float)(at[k] * (1.0 - fraction) + rgb[k] * fraction);
+}
+
+/* The distance from the camera in a pixel at a fraction of the line a .. b in the image, whose z are depths: along it
+ * 1 / z is linear in perspective, and z under parallel rays. */
+static double distance_at(const beam_canvas *c, int x, int y, vec3 a, vec3 b, double t)
+{
+    if (c->view.parallel)
+        return t > 0.0 ? (1.0 - t) * a.z + t * b.z : a.z;
+    const double u = ((x + 0.5) / c->img->width * 2.0 - 1.0) * c->view.half_width;
+    const double v = (1.0 - (y + 0.5) / c->img->height * 2.0) * c->view.half_height;
+    return sqrt(1.0 + u * u + v * v) / ((1.0 - t) / a.z + t / b.z);
+}
+
+/* The pixels near a line a .. b. */
+static void draw_line(beam_canvas *c, vec3 a, vec3 b, double strength, const double rgb[3])
+{
+    const double dx = b.x - a.x, dy = b.y - a.y, size = dx * dx + dy * dy, reach = c->half_width + 1.0;
+    const int x0 = (int)fmax(0.0, floor(fmin(a.x, b.x) - reach)), y0 = (int)fmax(0.0, floor(fmin(a.y, b.y) - reach));
+    const int x1 = (int)fmin(c->img->width, ceil(fmax(a.x, b.x) + reach));
+    const int y1 = (int)fmin(c->img->height, ceil(fmax(a.y, b.y) + reach));
+    for (int y = y0; y < y1; y++)
+        for (int x = x0; x < x1; x++) {
+            const double px = x + 0.5 - a.x, py = y + 0.5 - a.y;
+            const double t = size > 0.0 ? fmin(1.0, fmax(0.0, (px * dx + py * dy) / size)) : 0.0;
+            const double away = hypot(px - t * dx, py - t * dy), cover = fmin(1.0, c->half_width + 0.5 - away);
+            if (cover > 0.0)
+                blend_pixel(c, x, y, distance_at(c, x, y, a, b, t), cover * strength, rgb);
+        }
+}
+
+static status draw_ray(void *context, const beam_ray *ray, const ray_tree *tree, const probe *p, diagnostic *why)
+{
+    beam_canvas *c = context;
+    const beam *b = &c->s->beams[ray->beam];
+    double rgb[3];
+    (void)p;
+    (void)why;
+    beam_line_color(b, ray->lambda_nm, rgb);
+    const double start = beam_fraction(&tree->node[0]);
+    for (size_t i = 0; i < tree->count; i++) {
+        const ray_node *node = &tree->node[i];
+        if (node->end != RAY_END_HIT && node->end != RAY_END_SKY)
+            continue;
+        const ray_line line = ray_line_of(node);
+        vec3 ends[2];
+        if (ray_line_seen(&line, &c->view, &c->frame, ends))
+            draw_line(c, ends[0], ends[1], 0.25 + 0.75 * sqrt(fmin(1.0, beam_fraction(node) / start)), rgb);
+    }
+    return STATUS_OK;
+}
+
+status beams_draw(const scene *s, isa level, const float *distance, image *img, diagnostic *why)
+{
+    beam_canvas c = {.s = s, .distance = distance, .img = img, .view = camera_frame_of(s)};
+    c.half_width = fmax(0.6, img->height / 800.0);
+    /* A line whose middle is just outside the image still covers pixels. */
+    c.frame = image_frame_of(img->width, img->height, c.half_width + 1.0);
+    return beams_each_ray(s, level, 0, draw_ray, &c, why);
 }

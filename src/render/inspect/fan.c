@@ -5,7 +5,7 @@
 #include "base/elementary.h"
 #include "base/array.h"
 #include "base/budget.h"
-#include "render/inspect/ray_axes.h"
+#include "render/plan/ray_axes.h"
 #include <stdlib.h>
 #include <string.h>
 

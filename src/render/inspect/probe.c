@@ -1,9 +1,9 @@
 /* The probe's interface: pixels, free rays, paths, media and names. */
 #include "render/inspect/probe.h"
-#include "geometry/shapes/shape.h"
 
-#include "scene/model/medium.h"
+#include "geometry/shapes/shape.h"
 #include "render/inspect/probe_private.h"
+#include "scene/model/medium.h"
 #include "scene/model/scene.h"
 #include <stdlib.h>
 #include <string.h>
@@ -40,14 +40,14 @@ status probe_create(const scene *s, isa level, probe **out, diagnostic *why)
 /* By channel, or for a spectral film at the tree's wavelength. */
 static vec3 tint_of(const probe *p, const material *m)
 {
-    vec3 share = m->color;
+    vec3 fraction = m->color;
     if (!material_tints(m))
         return vec3_make(0.0, 0.0, 0.0);
     if (p->spectral) {
-        const upsampled_spectrum color = upsample_reflectance((const double[3]){share.x, share.y, share.z});
-        share.x = share.y = share.z = upsampled_reflectance(&color, p->frame_plan->render.lambda_nm);
+        const upsampled_spectrum color = upsample_reflectance((const double[3]){fraction.x, fraction.y, fraction.z});
+        fraction.x = fraction.y = fraction.z = upsampled_reflectance(&color, p->frame_plan->render.lambda_nm);
     }
-    return vec3_make(material_tint(m, share.x), material_tint(m, share.y), material_tint(m, share.z));
+    return vec3_make(material_tint(m, fraction.x), material_tint(m, fraction.y), material_tint(m, fraction.z));
 }
 
 void probe_one_wavelength(probe *p)
@@ -124,7 +124,7 @@ status probe_pixel(probe *p, int x, int y, ray_tree *tree, diagnostic *why)
     ray_record roots[SCENE_SAMPLES_MAX];
     const int count = tracer_camera_rays(p->rays, x, y);
     for (int i = 0; i < count; i++)
-        probe_take(p, 0, i, &roots[i]);
+        probe_read_ray(p, 0, i, &roots[i]);
     p->rays->queues.waiting[0].count = 0;
     size_t last = 0;
     for (int i = 0; i < count && code == STATUS_OK; i++) {

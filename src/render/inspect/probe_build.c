@@ -1,11 +1,17 @@
 /* Building a ray tree: each ray is traced alone, and the tracer's hits, gathered group, branches and queues are read
  * back. */
-#include "base/budget.h"
-#include "base/cancel.h"
-#include "base/array.h"
 #include "render/inspect/probe_private.h"
 
+#include "base/cancel.h"
+#include "base/array.h"
+#include "base/budget.h"
+#include "geometry/regions/instance_set.h"
 #include "optics/interface.h"
+#include "render/shade/crystals.h"
+#include "render/shade/layered.h"
+#include "render/shade/media.h"
+#include "render/shade/polarisation.h"
+#include "render/shade/shading.h"
 #include "scene/model/medium.h"
 #include <math.h>
 #include <stdlib.h>
@@ -38,7 +44,7 @@ ray_record probe_free_ray(const probe *p, vec3 origin, vec3 direction)
     return r;
 }
 
-static void take(const ray_queue *q, int i, ray_record *out)
+static void read_ray(const ray_queue *q, int i, ray_record *out)
 {
     *out = (ray_record){.origin = vec3_make(q->ox[i], q->oy[i], q->oz[i]),
                         .direction = vec3_make(q->dx[i], q->dy[i], q->dz[i]),
@@ -48,9 +54,9 @@ static void take(const ray_queue *q, int i, ray_record *out)
                         .inside = q->inside[i]};
 }
 
-void probe_take(const probe *p, int depth, int i, ray_record *out)
+void probe_read_ray(const probe *p, int depth, int i, ray_record *out)
 {
-    take(tracer_queue_at(p->rays, depth), i, out);
+    read_ray(tracer_queue_at(p->rays, depth), i, out);
     out->depth = depth;
     out->medium_priority_index = scene_geometry_priority_index(p->frame_plan->geometry, out->inside);
     const bool in_crystal = p->frame_plan->crystals && p->frame_plan->crystals[out->medium_priority_index].uniaxial;
@@ -252,7 +258,7 @@ static void add_branch(const probe *p, int depth, bool reflected, vec3 direction
         return;
     }
     out->end[i] = RAY_END_HIT; /* to be traced */
-    probe_take(p, depth + 1, (*queued)++, r);
+    probe_read_ray(p, depth + 1, (*queued)++, r);
 }
 
 /* A reflected or a refracted branch, if there is one. */
@@ -276,8 +282,8 @@ static void add_crystal_rays(const probe *p, int depth, int *queued, branches *o
     const crystal_children *c = &p->rays->crystals->children[0];
     for (int i = 0; i < c->count; i++) {
         const crystal_ray *ray = &c->ray[i];
-        const double none[3] = {0.0, 0.0, 0.0}, share = ray->row.i;
-        add_branch(p, depth, ray->reflected, ray->d, vec3_make(share, share, share), none, queued, out);
+        const double none[3] = {0.0, 0.0, 0.0}, fraction = ray->row.i;
+        add_branch(p, depth, ray->reflected, ray->d, vec3_make(fraction, fraction, fraction), none, queued, out);
     }
 }
 
@@ -302,7 +308,7 @@ static int light_of(const plan *of, const ray_record *r, int from)
 {
     for (int k = from; k < of->light_count; k++) {
         const vec3 to_light = light_towards(&of->lights[k], r->origin);
-        if (light_share(&of->lights[k], &of->cones[k], vec3_scale(to_light, -1.0 / vec3_length(to_light))) == 0.0)
+        if (light_fraction(&of->lights[k], &of->cones[k], vec3_scale(to_light, -1.0 / vec3_length(to_light))) == 0.0)
             continue;
         if (to_light.x == r->direction.x && to_light.y == r->direction.y && to_light.z == r->direction.z)
             return k;
@@ -318,7 +324,7 @@ static status build_shadows(probe *p, ray_tree *tree, int parent, diagnostic *wh
     const int count = t->queues.shadows.count;
     const int depth = tree->node[parent].depth, priority_index = (int)t->batch.hits.before[0];
     for (int i = 0; i < count; i++)
-        take(&t->queues.shadows, i, &record[i]);
+        read_ray(&t->queues.shadows, i, &record[i]);
     t->queues.shadows.count = 0;
     status code = STATUS_OK;
     for (int i = 0, lamp = 0; i < count && code == STATUS_OK; i++) {

@@ -1,8 +1,9 @@
 /* Internals of the probe, shared by probe.c (the interface) and probe_build.c (building the tree). */
 #pragma once
 
+#include "render/frame/tracers.h"
 #include "render/inspect/probe.h"
-#include "render/shade/shading.h"
+#include "render/tracer/tracer.h"
 
 struct probe {
     scene *setting; /* its own copy */
@@ -26,7 +27,7 @@ status probe_check_ray(vec3 origin, vec3 direction, diagnostic *why);
 ray_record probe_free_ray(const probe *p, vec3 origin, vec3 direction);
 
 /* Copies record i of the queue of a depth. */
-void probe_take(const probe *p, int depth, int i, ray_record *out);
+void probe_read_ray(const probe *p, int depth, int i, ray_record *out);
 
 /* Adds a ray and all its descendants to the tree; *at is set to its index. */
 status probe_build(probe *p, ray_tree *tree, const ray_record *ray, ray_kind kind, int parent, size_t *at,

@@ -9,17 +9,18 @@
  * and 0 in all of them for a miss. The film shows one of them, render.layer, as an image: normals as (n + 1) / 2, as
  * normal maps do; depths d as s / (s + d), with s the mean distance of the solids, and positions likewise, 1/2 at 0;
  * numbers as distinct colours. */
-#include "render/shade/shading.h"
-
 #include "geometry/shapes/shape.h"
 #include "image/image.h"
+#include "render/shade/exposure.h"
+#include "render/shade/shading.h"
+#include "render/tracer/tracer.h"
 #include <math.h>
 #include <stdlib.h>
 
 static camera_sampling one_ray(const render_settings *r)
 {
     (void)r;
-    return (camera_sampling){.rays = 1, .points = 1, .together = 1};
+    return (camera_sampling){.rays = 1, .points = 1, .rays_per_point = 1};
 }
 
 /* --- state of a frame: the length scale of depth and position views --- */
@@ -44,9 +45,9 @@ static status prepare(const plan *p, void **frame, diagnostic *why)
 
 /* --- views: linear light whose sRGB encoding is the intended value --- */
 
-static double shown(double share)
+static double shown(double fraction)
 {
-    return srgb_decode(fmin(fmax(share, 0.0), 1.0));
+    return srgb_decode(fmin(fmax(fraction, 0.0), 1.0));
 }
 
 /* Hues that differ by a golden section of the circle: numbers close to each other get distinct colours. */
@@ -61,7 +62,7 @@ static vec3 color_of(double number)
     return vec3_make(rgb[0], rgb[1], rgb[2]);
 }
 
-static double signed_share(double x, double scale)
+static double signed_fraction(double x, double scale)
 {
     return shown(0.5 + 0.5 * x / (scale + fabs(x)));
 }
@@ -76,7 +77,8 @@ static vec3 view_of(layer_rule layer, vec3 v, double scale)
     }
     case LAYER_SOLID:
     case LAYER_MATERIAL: return color_of(v.x);
-    case LAYER_POSITION: return vec3_make(signed_share(v.x, scale), signed_share(v.y, scale), signed_share(v.z, scale));
+    case LAYER_POSITION:
+        return vec3_make(signed_fraction(v.x, scale), signed_fraction(v.y, scale), signed_fraction(v.z, scale));
     case LAYER_ALBEDO:
     case LAYER_COUNT: break;
     }

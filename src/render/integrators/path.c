@@ -1,11 +1,11 @@
 /* Path tracing (Kajiya, "The Rendering Equation", SIGGRAPH 1986): at each surface one continuation is sampled at
  * random, weighted so that the mean over all paths is that of the whole tree. Sampling by surface:
  *   a clear surface  reflects or refracts with Fresnel's weights as probabilities, so the throughput stays the same;
- *   a matte surface  is lit by every light, at a random point of those with a size (render/shade/area_lights.h), and
+ *   a matte surface  is lit by every light, at a random point of those with a size (render/shade/light_sampling.h), and
  *                    continues the path by the cosine law, or like a mirror with its reflectivity;
- *   a rough one      does as a smooth one of the normal of one of its facets, and samples the lamps (path_rough.h);
+ *   a rough one      does as a smooth one of the normal of one of its facets, and samples the lamps (path_rough.c);
  *   a medium that scatters ends a ray's flight, lights the point by every lamp, and continues the path by its phase
- *                    function (path_scatter.h).
+ *                    function (path_scatter.c).
  * Only rays from the camera and from specular surfaces hit lights: matte surfaces have sampled them directly.
  * This is how light through a vessel makes caustics; with render.caustics photons bring that light instead, and rays
  * hit lights only along specular surfaces from the camera on. In a scene with lights of a size, clear solids block
@@ -18,14 +18,16 @@
  * "Bidirectional Rendering of Vector Light Transport", 2018). Its first element is part of the throughput, and the
  * weights of branches, by which they are chosen, are those of the row. Matte surfaces and media that scatter see the
  * intensity alone. */
-#include "render/integrators/path_continue.h"
-#include "render/integrators/path_lights.h"
-#include "render/integrators/path_rough.h"
-#include "render/integrators/path_scatter.h"
-#include "render/shade/lamp_polarisation.h"
-#include "render/shade/path_kernels.h"
+#include "render/integrators/path.h"
 
-#include <string.h>
+#include "geometry/rays.h"
+#include "render/shade/exposure.h"
+#include "render/shade/layered.h"
+#include "render/shade/media.h"
+#include "render/shade/mesh_shading.h"
+#include "render/shade/polarisation.h"
+#include "render/shade/radiance.h"
+#include "render/shade/shading.h"
 
 /* Clips the medium segments of a ray at the light. */
 static void clip_segments(medium_segments *w, int ray, double end)
@@ -68,7 +70,7 @@ static void intersect_lights(tracer *t, const ray_queue *q, int first, const ray
     for (int k = 0; seen && k < p->light_count; k++) {
         const light *l = &p->lights[k];
         const double extent = light_extent(l);
-        if (extent == 0.0 || !t->path->near_sphere(rays, l->position, extent, near))
+        if (extent == 0.0 || !t->sampling->near_sphere(rays, l->position, extent, near))
             continue;
         for (int i = 0; i < rays->count; i++) {
             if (!near[i] || !(q->sample_key[first + i] & SAMPLE_KEY_SPECULAR_BOUNCE))
@@ -105,7 +107,7 @@ static void expose_light(tracer *t, const ray_queue *q, int at, int lamp, int pr
     const int64_t sample_key = q->sample_key[at];
     const vec3 way = vec3_make(q->dx[at], q->dy[at], q->dz[at]);
     double radiance =
-        area_light_radiance(p, lamp, way) * (p->basic ? radiance_share(p, sample_key, priority_index) : 1.0);
+        area_light_radiance(p, lamp, way) * (p->basic ? radiance_scale(p, sample_key, priority_index) : 1.0);
     if (p->render.polarisation && p->lights[lamp].polarised > 0.0)
         radiance *= lamp_seen(p, lamp, (stokes){1.0, q->sq[at], q->su[at], q->sv[at]}, way);
     const vec3 l = vec3_scale(light_color_of(t, lamp, sample_key), radiance);
@@ -164,9 +166,9 @@ static bool draw_clear(const tracer *t, int k, double chance, continuation *c)
     c->refracted = chance * both >= b->reflect[k] && b->refract[k] > 0.0;
     c->direction = c->refracted ? vec3_make(b->tx[k], b->ty[k], b->tz[k]) : vec3_make(b->rx[k], b->ry[k], b->rz[k]);
     c->inside = c->refracted ? t->surface.gathered.inside_after[k] : t->surface.gathered.inside_before[k];
-    c->share = vec3_make(both, both, both);
+    c->factor = vec3_make(both, both, both);
     if (surface_is_layered(t)) /* of its mean over the channels the branch was chosen by */
-        c->share =
+        c->factor =
             vec3_scale(layered_weight(t, k, !c->refracted), both / (c->refracted ? b->refract[k] : b->reflect[k]));
     c->specular_bounce = true;
     keep_polarisation(t, k, c);
@@ -185,11 +187,11 @@ static void choose(tracer *t, const material *m, bool opaque, int depth, path_ch
     const group *g = &t->surface.gathered;
     double u[ROW], v[ROW];
     if (!opaque || surface_reflects(t))
-        t->path->draw(draws, g->count, g->sample_key, depth, DRAW_BRANCH, c->branch, v);
+        t->sampling->draw(draws, g->count, g->sample_key, depth, DRAW_BRANCH, c->branch, v);
     if (!opaque || !(m->diffuse > 0.0))
         return;
-    t->path->draw(draws, g->count, g->sample_key, depth, DRAW_DIRECTION, u, v);
-    t->path->cosine(g, u, v, c->x, c->y, c->z);
+    t->sampling->draw(draws, g->count, g->sample_key, depth, DRAW_DIRECTION, u, v);
+    t->sampling->cosine(g, u, v, c->x, c->y, c->z);
 }
 
 static bool draw_matte(const tracer *t, const material *m, int k, const path_choices *chosen, continuation *c)
@@ -199,7 +201,7 @@ static bool draw_matte(const tracer *t, const material *m, int k, const path_cho
                  mirror = surface_is_layered(t) ? t->surface.branches.reflect[k] : m->reflectivity;
     if (!(matte + mirror > 0.0))
         return false;
-    /* of a subnormal share the product is rounded to the share itself */
+    /* of a subnormal fraction the product is rounded to the fraction itself */
     const bool mirrored = mirror > 0.0 && (!(matte > 0.0) || chosen->branch[k] * (matte + mirror) < mirror);
     const double odds = (mirrored ? mirror : matte) / (matte + mirror);
     c->inside = g->inside_before[k];
@@ -208,13 +210,13 @@ static bool draw_matte(const tracer *t, const material *m, int k, const path_cho
     c->matte = !mirrored;
     if (mirrored) {
         c->direction = vec3_make(t->surface.branches.rx[k], t->surface.branches.ry[k], t->surface.branches.rz[k]);
-        c->share = surface_is_layered(t) ? vec3_scale(layered_weight(t, k, true), 1.0 / odds)
-                                         : vec3_make(mirror / odds, mirror / odds, mirror / odds);
+        c->factor = surface_is_layered(t) ? vec3_scale(layered_weight(t, k, true), 1.0 / odds)
+                                          : vec3_make(mirror / odds, mirror / odds, mirror / odds);
         keep_polarisation(t, k, c);
         return true;
     }
     c->direction = vec3_make(chosen->x[k], chosen->y[k], chosen->z[k]);
-    c->share = vec3_scale(vec3_make(g->cr[k], g->cg[k], g->cb[k]), m->diffuse / odds);
+    c->factor = vec3_scale(vec3_make(g->cr[k], g->cg[k], g->cb[k]), m->diffuse / odds);
     return mesh_lets_out(t, k, c->direction);
 }
 
@@ -254,12 +256,12 @@ static camera_sampling paths_of(const render_settings *r)
     const int64_t points = r->paths < r->samples ? r->paths : r->samples;
     return (camera_sampling){.rays = r->paths,
                              .points = points,
-                             .together = 1,
+                             .rays_per_point = 1,
                              .jittered = r->filter == PIXEL_FILTER_BOX,
                              .marks = SAMPLE_KEY_SPECULAR_BOUNCE};
 }
 
-static int shares(const render_settings *r)
+static int replicates(const render_settings *r)
 {
     return (int)path_sampling_of(r).replicates;
 }
@@ -267,7 +269,7 @@ static int shares(const render_settings *r)
 const integrator integrator_of_path = {.traced = true,
                                        .by_sample = true,
                                        .sampling = paths_of,
-                                       .shares = shares,
+                                       .replicates = replicates,
                                        .intersect = intersect,
                                        .background = expose_background,
                                        .shade = shade};

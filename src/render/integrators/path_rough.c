@@ -1,9 +1,10 @@
 /* Rough surfaces on random paths. */
-#include "render/integrators/path_rough.h"
+#include "render/integrators/path.h"
 
-#include "render/integrators/path_lights.h"
-#include "render/shade/lamp_polarisation.h"
-#include "render/shade/light_choice.h"
+#include "render/shade/layered.h"
+#include "render/shade/polarisation.h"
+#include "render/shade/radiance.h"
+#include "render/shade/shading.h"
 
 #define PI 3.14159265358979323846
 
@@ -25,14 +26,14 @@ static bool takes_lamps(const tracer *t, int k)
 }
 
 /* Enqueues a shadow ray from record k to a lamp, which brings that light of colour 1, or adds it at once. */
-static void enqueue(tracer *t, int k, int lamp, vec3 to_lamp, bool refracted, vec3 share)
+static void enqueue(tracer *t, int k, int lamp, vec3 to_lamp, bool refracted, vec3 factor)
 {
     const group *g = &t->surface.gathered;
     const plan *p = t->target.frame_plan;
     ray_queue *q = &t->queues.shadows;
     const int before = q->count;
     path_enqueue_lamp(t, k, lamp, to_lamp, refracted ? g->n_to[k] : g->n_from[k],
-                      refracted ? g->inside_after[k] : g->inside_before[k], share);
+                      refracted ? g->inside_after[k] : g->inside_before[k], factor);
     if (!p->render.polarisation || q->count == before)
         return;
     if (p->sheets)
@@ -99,11 +100,11 @@ static void light_further(tracer *t, const rough_surface *r, const lamp_samples 
             continue;
         const bool refracted = a->o[k].z < 0.0;
         const double brought = a->density[k] > 0.0 ? a->light[k] / a->density[k] : a->light[k];
-        const vec3 share = vec3_scale(rough_further(t, r, k, a->o[k]), brought);
-        if (share.x > 0.0 || share.y > 0.0 || share.z > 0.0)
+        const vec3 factor = vec3_scale(rough_further(t, r, k, a->o[k]), brought);
+        if (factor.x > 0.0 || factor.y > 0.0 || factor.z > 0.0)
             path_enqueue_lamp(t, k, s->lamp[k], vec3_scale(a->to[k], a->distance[k]),
                               refracted ? g->n_to[k] : g->n_from[k],
-                              refracted ? g->inside_after[k] : g->inside_before[k], share);
+                              refracted ? g->inside_after[k] : g->inside_before[k], factor);
     }
 }
 
@@ -127,10 +128,10 @@ static void light_by_lamps(tracer *t, rough_surface *r, const lamp_samples *s, d
         const bool reflected = a.o[k].z > 0.0;
         const double own = chance_of(t, r, k, reflected) * f[k].density * chance_to_leave(r, a.o[k]),
                      weight = a.density[k] > 0.0 ? 1.0 / (a.density[k] + own) : 1.0;
-        const vec3 share = vec3_scale(layered_weight(t, k, reflected),
-                                      ggx_masking(r->alpha, a.o[k]) * f[k].density * a.light[k] * weight);
-        if (share.x > 0.0 || share.y > 0.0 || share.z > 0.0)
-            enqueue(t, k, s->lamp[k], vec3_scale(a.to[k], a.distance[k]), !reflected, share);
+        const vec3 factor = vec3_scale(layered_weight(t, k, reflected),
+                                       ggx_masking(r->alpha, a.o[k]) * f[k].density * a.light[k] * weight);
+        if (factor.x > 0.0 || factor.y > 0.0 || factor.z > 0.0)
+            enqueue(t, k, s->lamp[k], vec3_scale(a.to[k], a.distance[k]), !reflected, factor);
     }
 }
 
@@ -160,8 +161,8 @@ static void draw_further(tracer *t, int depth, rough_surface *r)
     const plan *p = t->target.frame_plan;
     const group *g = &t->surface.gathered;
     double unused[ROW];
-    t->path->draw(&p->draws, g->count, g->sample_key, depth, DRAW_FURTHER, r->chance, unused);
-    t->path->draw(&p->draws, g->count, g->sample_key, depth, DRAW_FURTHER + 1, r->u, r->v);
+    t->sampling->draw(&p->draws, g->count, g->sample_key, depth, DRAW_FURTHER, r->chance, unused);
+    t->sampling->draw(&p->draws, g->count, g->sample_key, depth, DRAW_FURTHER + 1, r->u, r->v);
 }
 
 /* The path goes on as light of further facets, which is unpolarised; chance: even in (0, 1). What an opaque surface
@@ -172,9 +173,9 @@ static bool follow_further(const tracer *t, const rough_surface *r, int k, doubl
     const further_light f = rough_draw_further(t, r, k, chance, (unit_pair){r->u[k], r->v[k]});
     const double clear = t->surface.mat->surface.transparency, chosen = r->opaque ? chance_of(t, r, k, true) : 1.0;
     const vec3 one = vec3_make(1.0, 1.0, 1.0),
-               all = r->opaque ? one : vec3_scale(c->share, c->refracted ? 1.0 / clear : 1.0); /* a film's colours */
+               all = r->opaque ? one : vec3_scale(c->factor, c->refracted ? 1.0 / clear : 1.0); /* a film's colours */
     c->direction = f.direction;
-    c->share = vec3_make(f.factor.x * all.x / chosen, f.factor.y * all.y / chosen, f.factor.z * all.z / chosen);
+    c->factor = vec3_make(f.factor.x * all.x / chosen, f.factor.y * all.y / chosen, f.factor.z * all.z / chosen);
     c->refracted = f.refracted;
     c->inside = f.refracted ? g->inside_after[k] : g->inside_before[k];
     c->specular_bounce = false;
@@ -193,7 +194,7 @@ void path_rough_begin(tracer *t, double alpha, bool opaque, int depth, rough_sur
     else
         for (double side = 1.0; side >= (opaque ? 1.0 : -1.0); side -= 2.0)
             light_by_one_lamp(t, r, depth, side);
-    t->path->draw(&p->draws, g->count, g->sample_key, depth, DRAW_FACET, u, v);
+    t->sampling->draw(&p->draws, g->count, g->sample_key, depth, DRAW_FACET, u, v);
     for (int k = 0; k < g->count; k++)
         r->m[k] = ggx_sample_normal(alpha, r->i[k], u[k], v[k]);
     rough_branches(t, r);
@@ -220,7 +221,7 @@ static void light_by_direction(tracer *t, const rough_surface *r, int k, vec3 o,
                      own = chance_of(t, r, k, !c->refracted) * rough_facet(t, r, k, o).density * chance_to_leave(r, o);
         if (own > 0.0)
             enqueue(t, k, lamp, vec3_scale(c->direction, distance), c->refracted,
-                    vec3_scale(c->share, radiance * own / (density + own)));
+                    vec3_scale(c->factor, radiance * own / (density + own)));
     }
 }
 
@@ -228,12 +229,12 @@ bool path_rough_scatter(tracer *t, const rough_surface *r, int k, continuation *
 {
     const group *g = &t->surface.gathered;
     const vec3 o = rough_in_frame(r, k, c->direction);
-    const double share = rough_share(t, r, k, o, c->refracted);
-    if (r->finish && r->chance[k] >= share)
-        return follow_further(t, r, k, (r->chance[k] - share) / (1.0 - share), c);
-    if (!(share > 0.0))
+    const double fraction = rough_masking(t, r, k, o, c->refracted);
+    if (r->finish && r->chance[k] >= fraction)
+        return follow_further(t, r, k, (r->chance[k] - fraction) / (1.0 - fraction), c);
+    if (!(fraction > 0.0))
         return false;
-    c->share = r->finish ? c->share : vec3_scale(c->share, share);
+    c->factor = r->finish ? c->factor : vec3_scale(c->factor, fraction);
     c->specular_bounce = c->refracted && g->n_from[k] == g->n_to[k]; /* straight on: no other direction has density */
     if (!c->specular_bounce && takes_lamps(t, k))
         light_by_direction(t, r, k, o, c);

@@ -1,13 +1,14 @@
 /* Scattering by media on random paths. */
-#include "render/integrators/path_scatter.h"
+#include "render/integrators/path.h"
 
 #include "base/elementary.h"
 #include "optics/phase_function.h"
 #include "optics/mueller.h"
-#include "render/integrators/path_continue.h"
-#include "render/integrators/path_lights.h"
-#include "render/shade/airlight.h"
-#include "render/shade/light_choice.h"
+#include "render/shade/layered.h"
+#include "render/shade/media.h"
+#include "render/shade/polarisation.h"
+#include "render/shade/radiance.h"
+#include "render/shade/shading.h"
 
 /* The lamps' light from everywhere. */
 static light_estimate estimate(void)
@@ -52,11 +53,12 @@ static void gather(tracer *t, const ray_queue *q, int first, const int *list, in
     }
 }
 
-static void enqueue(tracer *t, int k, int lamp, vec3 to_lamp, double share)
+static void enqueue(tracer *t, int k, int lamp, vec3 to_lamp, double fraction)
 {
     const group *g = &t->surface.gathered;
-    if (share > 0.0)
-        path_enqueue_lamp(t, k, lamp, to_lamp, g->n_from[k], g->inside_before[k], vec3_make(share, share, share));
+    if (fraction > 0.0)
+        path_enqueue_lamp(t, k, lamp, to_lamp, g->n_from[k], g->inside_before[k],
+                          vec3_make(fraction, fraction, fraction));
 }
 
 /* --- along rays --- */
@@ -117,14 +119,14 @@ static void light_by_lamps(tracer *t, const lamp_samples *s, const scattering *o
             continue;
         const lamp_aim a = path_lamp_aim(t, s, k);
         const double phase = henyey_greenstein(vec3_dot(direction_of(g, k), a.to), of->asymmetry[k]);
-        double share = 0.0;
+        double fraction = 0.0;
         if (a.light > 0.0 && a.density > 0.0)
-            share = a.light * phase / (a.density + phase);
+            fraction = a.light * phase / (a.density + phase);
         else if (a.light > 0.0)
-            share = a.light * phase * of->flights[k] /
-                    (of->flights[k] + airlight_density(p, s->lamp[k], vec3_make(g->ox[k], g->oy[k], g->oz[k]),
-                                                       direction_of(g, k), g->t[k]));
-        enqueue(t, k, s->lamp[k], vec3_scale(a.to, a.distance), share);
+            fraction = a.light * phase * of->flights[k] /
+                       (of->flights[k] + airlight_density(p, s->lamp[k], vec3_make(g->ox[k], g->oy[k], g->oz[k]),
+                                                          direction_of(g, k), g->t[k]));
+        enqueue(t, k, s->lamp[k], vec3_scale(a.to, a.distance), fraction);
     }
 }
 
@@ -189,11 +191,11 @@ void path_scatter(tracer *t, const ray_queue *q, int first, const int *list, int
         of.flights[k] = here->per_unit * w->u[list[k]];
     }
     sample_lamps(t, depth, &of);
-    t->path->draw(&p->draws, count, g->sample_key, depth, DRAW_PHASE, u, v);
+    t->sampling->draw(&p->draws, count, g->sample_key, depth, DRAW_PHASE, u, v);
     for (int k = 0; k < count; k++) {
         const double cosine = henyey_greenstein_cosine(u[k], of.asymmetry[k]);
         continuation c = {.direction = turned(direction_of(g, k), cosine, v[k]),
-                          .share = vec3_make(1.0, 1.0, 1.0),
+                          .factor = vec3_make(1.0, 1.0, 1.0),
                           .inside = g->inside_before[k]};
         light_by_direction(t, k, c.direction, henyey_greenstein(cosine, of.asymmetry[k]));
         path_continue(t, k, depth, &c);

@@ -1,5 +1,5 @@
 /* The table of integrators, from INTEGRATORS (scene/model/integrators.h). */
-#include "render/integrators/integrator.h"
+#include "render/tracer/integrator.h"
 
 #define DECLARE(name, word, ...) extern const integrator integrator_of_##word;
 INTEGRATORS(DECLARE)

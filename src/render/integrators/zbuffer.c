@@ -1,11 +1,13 @@
 /* The z-buffer preview: the surfaces that the depth buffer (render/zbuffer) shows at the tracer's camera rays are
- * shaded as if they had been traced. Its pre-pass projects the triangles into the image; each piece is rasterised
+ * shaded as if they had been traced. Its pre-pass projects the triangles into the image; each tile is rasterised
  * before its rays start. */
-#include "render/camera/camera_kernels.h"
+#include "base/lanes.h"
+#include "render/camera/camera_rays.h"
+#include "render/shade/exposure.h"
+#include "render/shade/media.h"
+#include "render/shade/mesh_shading.h"
 #include "render/shade/shading.h"
 #include "render/zbuffer/zbuffer_private.h"
-
-#include "base/lanes.h"
 #include <stdlib.h>
 #include <string.h>
 
@@ -23,9 +25,9 @@ typedef struct raster_work {
 
 static bool begin(tracer *t)
 {
-    if (!t->own && !(t->own = calloc(1, sizeof(raster_work))))
+    if (!t->worker_data && !(t->worker_data = calloc(1, sizeof(raster_work))))
         return false;
-    zbuffer_square_begin(&((raster_work *)t->own)->square);
+    zbuffer_square_begin(&((raster_work *)t->worker_data)->square);
     return true;
 }
 
@@ -36,9 +38,9 @@ static void end(void *own)
     free(own);
 }
 
-static void draw_piece(tracer *t, const span *piece)
+static void draw_tile(tracer *t, const image_tile *tile)
 {
-    zbuffer_draw(t->target.state, piece, &((raster_work *)t->own)->square);
+    zbuffer_draw(t->target.state, tile, &((raster_work *)t->worker_data)->square);
 }
 
 /* The grid point of a ray. */
@@ -95,7 +97,7 @@ static raster_hit hit_triangle(const rasterised_part *p, const screen_triangle *
 static vec3 eye_of(const tracer *t, int i)
 {
     const zbuffer *z = t->target.state;
-    const raster_work *w = t->own;
+    const raster_work *w = t->worker_data;
     return z->frame_plan->view.parallel ? vec3_make(w->ex[i], w->ey[i], w->ez[i]) : z->frame_plan->view.eye;
 }
 
@@ -142,7 +144,7 @@ static void undeflected_views(tracer *t, int count)
 {
     const zbuffer *z = t->target.state;
     const camera_frame *view = &z->frame_plan->view;
-    raster_work *w = t->own;
+    raster_work *w = t->worker_data;
     const double across = 1.0 / z->units_x, down = 1.0 / z->units_y;
     double u[ROW], v[ROW];
     for (int i = 0; i < count; i++) {
@@ -152,14 +154,14 @@ static void undeflected_views(tracer *t, int count)
     if (view->parallel)
         camera_chief_rays(t, count, u, v, (camera_rays_out){w->ex, w->ey, w->ez, w->vx, w->vy, w->vz});
     else
-        t->camera->directions(view, count, u, v, w->vx, w->vy, w->vz);
+        t->sampling->camera_directions(view, count, u, v, w->vx, w->vy, w->vz);
 }
 
 /* The views of camera rays are their own. */
 static void first_views(tracer *t, const ray_batch *rays)
 {
     const size_t bytes = (size_t)rays->count * sizeof(double);
-    raster_work *w = t->own;
+    raster_work *w = t->worker_data;
     memcpy(w->vx, rays->dx, bytes), memcpy(w->vy, rays->dy, bytes), memcpy(w->vz, rays->dz, bytes);
     memcpy(w->ex, rays->ox, bytes), memcpy(w->ey, rays->oy, bytes), memcpy(w->ez, rays->oz, bytes);
 }
@@ -182,7 +184,7 @@ static const rasterised_layer *layer_at(const zbuffer *z, uint32_t place)
 static inline raster_hit hit_layer(const tracer *t, int i, const rasterised_layer *l)
 {
     const zbuffer *z = t->target.state;
-    const raster_work *w = t->own;
+    const raster_work *w = t->worker_data;
     const screen_triangle *s = &z->triangles[l->number - 1];
     const vec3 view = vec3_make(w->vx[i], w->vy[i], w->vz[i]);
     raster_hit m = l->ends || !z->parts[s->part].own ? hit_part(z, s, eye_of(t, i), view)
@@ -199,7 +201,7 @@ static void record_layer(tracer *t, ray_queue *q, int at, int i, uint32_t place)
     const zbuffer *z = t->target.state;
     const plan *p = z->frame_plan;
     const rasterised_layer *l = layer_at(z, place);
-    raster_work *w = t->own;
+    raster_work *w = t->worker_data;
     const vec3 view = vec3_make(w->vx[i], w->vy[i], w->vz[i]), eye = eye_of(t, i);
     double passed = vec3_dot(vec3_sub(vec3_make(q->ox[at], q->oy[at], q->oz[at]), eye), view);
     w->straight[i] = false;
@@ -236,7 +238,7 @@ static void record_layer(tracer *t, ray_queue *q, int at, int i, uint32_t place)
 static void find_hits(tracer *t, ray_queue *q, int first, int depth, const ray_batch *rays)
 {
     const zbuffer *z = t->target.state;
-    raster_work *w = t->own;
+    raster_work *w = t->worker_data;
     uint32_t seen[ROW];
     for (int i = 0; i < rays->count; i++)
         seen[i] = z->seen[point_of(z, q->sample_key[first + i], &w->x[i], &w->y[i])];
@@ -280,7 +282,7 @@ static void repeat_last(group *g)
  * sin, which is the same in all layers. */
 static void bend(tracer *t, const int *list)
 {
-    const raster_work *w = t->own;
+    const raster_work *w = t->worker_data;
     const zbuffer *z = t->target.state;
     group *g = &t->surface.gathered;
     if (!z->layered || z->frame_plan->render.transmission == TRANSMISSION_SIMPLE)
@@ -339,7 +341,7 @@ static void straighten(tracer *t, const int *list)
 {
     const zbuffer *z = t->target.state;
     const surface_batch *points = &t->surface.gathered.points;
-    raster_work *w = t->own;
+    raster_work *w = t->worker_data;
     for (int k = 0; k < t->surface.gathered.count; k++) {
         const int i = list[k];
         const screen_triangle *s = &z->triangles[w->number[i]];
@@ -363,7 +365,7 @@ static void straighten(tracer *t, const int *list)
 
 static void place(tracer *t, const int *list)
 {
-    raster_work *w = t->own;
+    raster_work *w = t->worker_data;
     bend(t, list);
     if (t->target.frame_plan->render.texturing != TEXTURING_AFFINE || !t->surface.mat->img)
         return;
@@ -440,7 +442,7 @@ const integrator integrator_of_zbuffer = {.by_solid = true,
                                           .release = release,
                                           .begin = begin,
                                           .end = end,
-                                          .piece = draw_piece,
+                                          .tile = draw_tile,
                                           .intersect = find_hits,
                                           .background = background_sky,
                                           .place = place,

@@ -1,29 +1,11 @@
+/* Double refraction: the children of rays that meet crystals. */
 #include "render/shade/crystals.h"
 
-#include "geometry/solid.h"
-#include "render/shade/shading.h"
-#include "scene/model/scene.h"
-
+#include "optics/interface.h"
+#include "render/shade/exposure.h"
+#include "render/shade/footprints.h"
+#include "render/shade/mesh_shading.h"
 #include <stdlib.h>
-
-bool crystal_list_create(const scene *s, const scene_geometry *geometry, optical_medium **out)
-{
-    optical_medium *list = NULL;
-    *out = NULL;
-    for (int r = 1; r <= geometry->region_count; r++) {
-        const solid *one = &s->solids[geometry->regions[r].solid];
-        if (geometry->regions[r].opaque || !material_is_crystal(&one->surface, &s->render))
-            continue;
-        if (!list && !(list = calloc((size_t)geometry->region_count + 1, sizeof *list)))
-            return false;
-        const mat3 turn = rotation_from_deg(one->shape.rotation_deg);
-        list[r] = (optical_medium){.uniaxial = true,
-                                   .n_e = one->surface.extraordinary_ior,
-                                   .axis = mat3_apply(turn, vec3_normalize(one->surface.optic_axis))};
-    }
-    *out = list;
-    return true;
-}
 
 bool crystals_begin(tracer *t)
 {
@@ -62,9 +44,9 @@ bool crystals_meet(const tracer *t, int k)
     return t->crystals && t->crystals->any && t->crystals->meets[k];
 }
 
-/* The shares of ray k's children of the light: what an opaque surface in a crystal reflects, as a perfect mirror that
- * loses the rest, and what the solid transmits. Along the crystal's symmetries one mode gets nothing but what rounding
- * makes, 1e-32, which would double the tree at each surface. */
+/* The fractions of ray k's children of the light: what an opaque surface in a crystal reflects, as a perfect mirror
+ * that loses the rest, and what the solid transmits. Along the crystal's symmetries one mode gets nothing but what
+ * rounding makes, 1e-32, which would double the tree at each surface. */
 static void weigh_children(tracer *t, int k, bool opaque)
 {
     const double of_rounding = 1e-24;
@@ -72,9 +54,9 @@ static void weigh_children(tracer *t, int k, bool opaque)
     crystal_children *c = &t->crystals->children[k];
     int kept = 0;
     for (int i = 0; i < c->count; i++) {
-        const double share = opaque ? t->surface.branches.reflect[k] : c->ray[i].reflected ? 1.0 : m->transparency;
+        const double fraction = opaque ? t->surface.branches.reflect[k] : c->ray[i].reflected ? 1.0 : m->transparency;
         stokes *row = &c->ray[i].row;
-        row->i *= share, row->q *= share, row->u *= share, row->v *= share;
+        row->i *= fraction, row->q *= fraction, row->u *= fraction, row->v *= fraction;
         if (row->i > of_rounding)
             c->ray[kept++] = c->ray[i];
     }

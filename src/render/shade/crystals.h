@@ -1,20 +1,12 @@
 /* Double refraction in the tracer (optics/crystal.h). A ray that meets a crystal's surface, from outside or inside, has
  * up to four children instead of two. A ray in a crystal is of one mode, which its record keeps in place of Stokes's q:
  * 1 for an ordinary ray, -1 for an extraordinary one, with or without polarisation. Coatings and films are refused on
- * crystals, and a mesh's faces are flat for them. Ownership: crystal_list_create allocates, free releases;
- * crystals_begin allocates the tracer's memory, crystals_end frees it. */
+ * crystals, and a mesh's faces are flat for them. Ownership: crystals_begin allocates the tracer's memory, crystals_end
+ * frees it. */
 #pragma once
 
-#include "geometry/rays.h"
 #include "optics/crystal.h"
-#include "scene/model/open.h"
-
-struct tracer;
-struct ray_queue;
-struct scene_geometry;
-
-/* By priority index; n_o is not set. *out is NULL if there are none. False when out of memory. */
-bool crystal_list_create(const scene *s, const struct scene_geometry *geometry, optical_medium **out);
+#include "render/tracer/tracer.h"
 
 /* The children of ray k of the gathered group. */
 typedef struct crystal_children {
@@ -31,16 +23,16 @@ typedef struct crystal_work {
     crystal_children children[ROW];
 } crystal_work;
 
-bool crystals_begin(struct tracer *t); /* begins a frame; false when out of memory */
-void crystals_end(struct tracer *t);
+bool crystals_begin(tracer *t); /* begins a frame; false when out of memory */
+void crystals_end(tracer *t);
 
 /* Notes the media and modes of the gathered group, which are rays list[0 ..] of the batch at `first` in their queue. */
-void crystals_gather(struct tracer *t, const struct ray_queue *q, int first, const int *list);
+void crystals_gather(tracer *t, const ray_queue *q, int first, const int *list);
 
 /* The two below call these where some rays of the group meet a crystal. crystals_branches: computes their children, and
  * takes their two branches away. crystals_follow: enqueues the children, or cuts them off at the depth limit. */
-void crystals_branches(struct tracer *t, bool opaque);
-void crystals_follow(struct tracer *t, int depth);
+void crystals_branches(tracer *t, bool opaque);
+void crystals_follow(tracer *t, int depth);
 
 /* Whether ray k of the gathered group meets a crystal. */
-bool crystals_meet(const struct tracer *t, int k);
+bool crystals_meet(const tracer *t, int k);

@@ -1,8 +1,8 @@
 /* Ray differentials, Igehy's equations 10 to 18, for the grid of samples. */
 #include "render/shade/footprints.h"
 
-#include "render/core/tracer_private.h"
-#include "render/shade/shading.h"
+#include "render/shade/mesh_shading.h"
+#include <float.h>
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
@@ -10,7 +10,7 @@
 /* Curved surfaces make some views so small that a sample would have to look at thousands of photons. Beyond this reach,
  * in cells as the camera sees the point without deflection, those close together are seen as one. */
 #define REACH_BENT 4.0
-/* Normals are compared at this share of the way to the neighbour's hit. */
+/* Normals are compared at this fraction of the way to the neighbour's hit. */
 #define NEAR 0x1p-10
 
 bool footprints_are_followed(const render_settings *r)
@@ -45,7 +45,7 @@ void footprints_of_camera(tracer *t, ray_queue *q, int first, int count)
     const plan *p = t->target.frame_plan;
     const camera_frame *view = &p->view;
     const camera_pixel pixel = camera_pixel_of(view, &p->render);
-    const double per_side = (double)samples_across(&p->render);
+    const double per_side = (double)cells_across(p->render.samples);
     const vec3 zero = {0.0, 0.0, 0.0}, x = vec3_scale(view->right, pixel.across / per_side),
                y = vec3_scale(view->up, pixel.down / per_side);
     for (int i = first; i < first + count; i++) {
@@ -215,7 +215,7 @@ void footprint_straight(tracer *t, ray_queue *q, int at, int k)
 static double cell_at(const plan *p, vec3 point)
 {
     const camera_pixel pixel = camera_pixel_of(&p->view, &p->render);
-    const double cell = fmax(pixel.across, pixel.down) / (double)samples_across(&p->render);
+    const double cell = fmax(pixel.across, pixel.down) / (double)cells_across(p->render.samples);
     return p->view.parallel ? cell : cell * vec3_length(vec3_sub(point, p->view.eye));
 }
 

@@ -1,13 +1,12 @@
 /* Footprints: how far apart the neighbours of a ray are, one sample of the image away, after flat and curved mirrors
  * and clear surfaces (Igehy, "Tracing Ray Differentials", SIGGRAPH 1999). They state how much of a matte surface a
  * sample stands for, so that photons' light narrower than a pixel keeps its power
- * (render/caustics/photon_footprint.c). Only for integrators that send rays through a grid of points of each pixel;
+ * (render/photons/photon_map.c). Only for integrators that send rays through a grid of points of each pixel;
  * random points need none. Ownership: footprints_begin allocates the tracer's memory, footprints_end frees it. */
 #pragma once
 
-#include "render/caustics/photon_map.h"
-#include "render/core/tracer.h"
-#include "render/shade/shade.h"
+#include "render/photons/photon_map.h"
+#include "render/tracer/tracer.h"
 
 /* Of the gathered group, at its hits. */
 typedef struct footprint_work {
@@ -34,5 +33,5 @@ void footprints_of_children(tracer *t, ray_queue *q, int first, bool reflected);
 void footprint_straight(tracer *t, ray_queue *q, int at, int k);
 
 /* Irradiance over pi that ray k of the gathered group sees, from photons (photon_map.h); counts light that is
- * undersampled in the tracer's counters, where `seen` is the share of radiance that arrives in the film. */
+ * undersampled in the tracer's counters, where `seen` is the fraction of radiance that arrives in the film. */
 vec3 footprint_irradiance(tracer *t, int k, int wavelength, double seen);

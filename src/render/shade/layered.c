@@ -1,7 +1,8 @@
 /* Metals and films in the tracer: exact at each ray's wavelength, or by the colours of a table in an rgb film. */
 #include "render/shade/layered.h"
 
-#include "render/shade/shading.h"
+#include "render/shade/polarisation.h"
+#include <math.h>
 #include <stdlib.h>
 
 bool layered_begin(tracer *t)

@@ -2,8 +2,7 @@
  * layered_begin allocates the tracer's memory, layered_end frees it. */
 #pragma once
 
-#include "render/core/tracer.h"
-#include "render/shade/shade.h"
+#include "render/tracer/tracer.h"
 
 /* Of the gathered group. */
 typedef struct layered_work {

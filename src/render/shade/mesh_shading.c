@@ -1,8 +1,9 @@
 /* Shading of rays that hit meshes: hit points, normals, and the correction for light that an interpolated normal would
  * let through the triangle. */
-#include "render/shade/shading.h"
+#include "render/shade/mesh_shading.h"
 
-#include "render/core/film.h"
+#include "render/shade/kernels.h"
+#include "render/shade/layered.h"
 #include <stdlib.h>
 
 bool mesh_begin(tracer *t)

@@ -2,8 +2,7 @@
 #pragma once
 
 #include "geometry/regions/instance_set.h"
-#include "render/core/tracer.h"
-#include "render/shade/shade.h"
+#include "render/tracer/tracer.h"
 
 typedef struct mesh_work {
     mesh_scratch scratch;

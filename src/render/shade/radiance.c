@@ -1,16 +1,16 @@
 /* Basic radiance (render.radiance). Where light is refracted from a medium of index n_1 into one of index n_2 its solid
  * angle narrows or widens: n^2 cos(theta) dA d(omega) is invariant, and so, except for reflection, is L / n^2
  * (Nicodemus, "Radiance", American Journal of Physics 31, 1963; Veach, Robust Monte Carlo Methods for Light Transport
- * Simulation, 1997, 5.2). A ray's throughput is its share of L / n^2, so that interfaces add no factor of the index.
+ * Simulation, 1997, 5.2). A ray's throughput is its fraction of L / n^2, so that interfaces add no factor of the index.
  * The indices matter where light is emitted, in a medium of index n, and where the camera receives it, in one of index
  * n_eye: radiance L there counts (n_eye / n)^2 times. The camera's factor is applied at the emitting end too, so that
- * throughputs, which weight limits compare, are shares of the camera ray whatever the camera's medium.
+ * throughputs, which weight limits compare, are fractions of the camera ray whatever the camera's medium.
  *
  * A shadow ray carries irradiance, in which the square of the index cancels against the solid angle: E = E_straight T,
  * with each interface's unpolarised transmittance. It is straight where light would be refracted. Its angle at an
- * interface is taken on the side of the lower index: this is correct for a lamp far above water, and for both faces of
+ * interface is done on the side of the lower index: this is correct for a lamp far above water, and for both faces of
  * a pane in air; and no angle on that side exceeds the critical one. */
-#include "render/shade/shading.h"
+#include "render/shade/radiance.h"
 
 #include "optics/interface.h"
 #include <stdlib.h>
@@ -46,13 +46,13 @@ static double index_of(const plan *p, int64_t sample_key, int priority_index)
     return p->spectral ? spectra_region(p->spectral, sample_key, priority_index)->index : p->ior[priority_index];
 }
 
-double radiance_share(const plan *p, int64_t sample_key, int priority_index)
+double radiance_scale(const plan *p, int64_t sample_key, int priority_index)
 {
     const double ratio = index_of(p, sample_key, p->camera_priority_index) / index_of(p, sample_key, priority_index);
     return ratio * ratio;
 }
 
-double radiance_share_at_index(const plan *p, int64_t sample_key, double index)
+double radiance_scale_at_index(const plan *p, int64_t sample_key, double index)
 {
     const double ratio = p->basic ? index_of(p, sample_key, p->camera_priority_index) / index : 1.0;
     return ratio * ratio;
@@ -68,8 +68,8 @@ void radiance_weigh(tracer *t)
     const size_t bytes = (size_t)g->padded * sizeof(double);
     memcpy(w->wr, g->wr, bytes), memcpy(w->wg, g->wg, bytes), memcpy(w->wb, g->wb, bytes);
     for (int k = 0; k < g->padded; k++) {
-        const double share = radiance_share_at_index(p, g->sample_key[k], g->n_from[k]);
-        g->wr[k] *= share, g->wg[k] *= share, g->wb[k] *= share;
+        const double fraction = radiance_scale_at_index(p, g->sample_key[k], g->n_from[k]);
+        g->wr[k] *= fraction, g->wg[k] *= fraction, g->wb[k] *= fraction;
     }
 }
 
@@ -136,19 +136,19 @@ static void cross_surface(tracer *t, int hit_primitive, straight_rays *s)
 
 /* Processes and empties the list of crossings: surfaces one primitive at a time, the product in order along each ray,
  * so that the result does not depend on the other rays of the batch. */
-static void take_crossings(void *context)
+static void apply_crossings(void *context)
 {
     tracer *t = context;
     radiance_work *w = t->basic;
     straight_rays s;
-    bool taken[CROSSINGS_MAX] = {false};
+    bool done[CROSSINGS_MAX] = {false};
     s.count = 0;
     for (int first = 0; first < w->crossings.count; first++) {
         const int hit_primitive = w->crossings.crossings[first].primitive;
-        for (int k = first; k < w->crossings.count && !taken[first]; k++) {
+        for (int k = first; k < w->crossings.count && !done[first]; k++) {
             if (w->crossings.crossings[k].primitive != hit_primitive)
                 continue;
-            taken[k] = k > first;
+            done[k] = k > first;
             add_ray(w, k, &s);
             if (s.count == BATCH)
                 cross_surface(t, hit_primitive, &s);
@@ -168,7 +168,7 @@ void radiance_begin_shadows(tracer *t, const ray_batch *rays, const int64_t *sam
         return;
     w->rays = *rays;
     w->sample_keys = sample_keys;
-    w->crossings.full = take_crossings;
+    w->crossings.full = apply_crossings;
     w->crossings.context = t;
     for (int i = 0; i < rays->count; i++)
         w->through[i] = 1.0;
@@ -179,7 +179,7 @@ void radiance_end_shadows(tracer *t)
     const radiance_work *w = t->basic;
     if (!t->target.frame_plan->basic)
         return;
-    take_crossings(t);
+    apply_crossings(t);
     for (int i = 0; i < w->rays.count; i++)
         t->batch.transmitted[i] *= w->through[i];
 }

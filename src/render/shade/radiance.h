@@ -3,19 +3,19 @@
 #pragma once
 
 #include "geometry/rays.h"
-#include "render/core/tracer.h"
+#include "render/tracer/tracer.h"
 
 typedef struct radiance_work radiance_work;
 
 bool radiance_begin(tracer *t); /* begins a frame; false when out of memory */
 void radiance_end(tracer *t);
 
-/* The share of radiance emitted in the medium of a priority index that arrives at the camera, (n_eye / n)^2. */
-double radiance_share(const plan *p, int64_t sample_key, int priority_index);
+/* The factor of radiance emitted in the medium of a priority index, as the camera receives it, (n_eye / n)^2. */
+double radiance_scale(const plan *p, int64_t sample_key, int priority_index);
 /* The same for a medium of that index; 1 with classic radiance. */
-double radiance_share_at_index(const plan *p, int64_t sample_key, double index);
+double radiance_scale_at_index(const plan *p, int64_t sample_key, double index);
 
-/* Multiplies the gathered group's throughput by that share, and divides it again; no effect with classic radiance. */
+/* Multiplies the gathered group's throughput by that factor, and divides it again; no effect with classic radiance. */
 void radiance_weigh(tracer *t);
 void radiance_weigh_back(tracer *t);
 

@@ -1,8 +1,12 @@
 /* Facets of rough surfaces, and the branches of rays at them. */
 #include "render/shade/rough.h"
 
+#include "base/lanes.h"
 #include "optics/mueller.h"
 #include "render/shade/layered.h"
+#include "render/shade/mesh_shading.h"
+#include "render/shade/shading.h"
+#include <math.h>
 
 /* The least cosine between the normal and a ray: an interpolated normal may be turned away from it. */
 #define LEAST_COSINE 1e-9
@@ -79,7 +83,7 @@ bool rough_lets_out(const tracer *t, const rough_surface *r, int k, vec3 o, bool
     return o.z > 0.0 && mesh_lets_out(t, k, direction);
 }
 
-double rough_share(const tracer *t, const rough_surface *r, int k, vec3 o, bool refracted)
+double rough_masking(const tracer *t, const rough_surface *r, int k, vec3 o, bool refracted)
 {
     return rough_lets_out(t, r, k, o, refracted) ? ggx_masking(r->alpha, o) : 0.0;
 }

@@ -1,11 +1,11 @@
 /* Rough surfaces (optics/microfacet.h) in the tracer: each ray of the gathered group meets one facet, at which it
- * reflects or refracts as at a smooth surface of that normal, metals and films included. A branch keeps the share of
+ * reflects or refracts as at a smooth surface of that normal, metals and films included. A branch keeps the fraction of
  * light that other facets let pass; what they stop is lost, or leaves in all directions (rough_energy.h). Plain values;
  * nothing fails. */
 #pragma once
 
 #include "optics/microfacet.h"
-#include "render/shade/shading.h"
+#include "render/tracer/tracer.h"
 
 /* The gathered group's surface, with the points' normals n as z of a frame for each ray. */
 typedef struct rough_surface {
@@ -38,15 +38,16 @@ static inline vec3 rough_in_frame(const rough_surface *r, int k, vec3 v)
 /* The branches of the group at the facets r->m. */
 void rough_branches(tracer *t, const rough_surface *r);
 
-/* Does a direction in the frame of ray k lead away from the surface on the side of that branch? */
+/* Whether a direction in the frame of ray k leads away from the surface on the side of that branch. */
 bool rough_lets_out(const tracer *t, const rough_surface *r, int k, vec3 o, bool refracted);
 
-/* The share that a branch of ray k, whose direction is o in its frame, keeps; 0 if it leads back to the surface. */
-double rough_share(const tracer *t, const rough_surface *r, int k, vec3 o, bool refracted);
+/* Masking: the fraction of a branch of ray k, whose direction is o in its frame, that other facets let pass; 0 if it
+ * leads back to the surface. */
+double rough_masking(const tracer *t, const rough_surface *r, int k, vec3 o, bool refracted);
 
 /* --- light of further facets; r->finish is not NULL --- */
 
-/* The share of light in a direction o of the frame of ray k, f |cos o|. */
+/* The fraction of light in a direction o of the frame of ray k, f |cos o|. */
 vec3 rough_further(const tracer *t, const rough_surface *r, int k, vec3 o);
 
 /* Light that a facet sends and others stop leaves in a direction drawn by the law of cosines, on a side drawn by two

@@ -1,13 +1,12 @@
 /* The shading kernels, compiled once for each instruction set. */
-#include "render/shade/shade.h"
+#include "render/shade/kernels.h"
 
 #include "base/counters.h"
 #include "base/lanes.h"
 #include "base/isa.h"
 #include "geometry/primitives/primitive.h"
 #include "optics/interface.h"
-#include "render/core/film.h"
-#include "render/shade/absorption.h"
+#include "render/shade/media.h"
 
 /* Largest integer exponent that is computed by repeated squaring, with a relative error below 4.6e-13. */
 enum { SHININESS_SQUARED_MAX = 4096 };
@@ -112,10 +111,10 @@ static void fall_off(double reach, int count, lit_group *restrict lit)
     const double least = 0.5 / FILM_ONE, reach2 = reach * reach;
     /* VECTORISE */
     for (int i = 0; i < count; i++) {
-        double share = reach2 / (lit->lx[i] * lit->lx[i] + lit->ly[i] * lit->ly[i] + lit->lz[i] * lit->lz[i]);
-        lit->r[i] *= share;
-        lit->g[i] *= share;
-        lit->b[i] *= share;
+        double fraction = reach2 / (lit->lx[i] * lit->lx[i] + lit->ly[i] * lit->ly[i] + lit->lz[i] * lit->lz[i]);
+        lit->r[i] *= fraction;
+        lit->g[i] *= fraction;
+        lit->b[i] *= fraction;
         lit->contributes[i] =
             ~(mask_less(lit->r[i], least) & mask_less(lit->g[i], least) & mask_less(lit->b[i], least));
     }
@@ -178,10 +177,10 @@ ALWAYS_INLINE void within_cone(const light_cone *cone, bool soft, const group *g
     /* VECTORISE */
     for (int i = 0; i < count; i++) {
         const vec3 l = vec3_make(lit->lx[i], lit->ly[i], lit->lz[i]);
-        const double share = light_cone_share(&c, soft, vec3_scale(l, -1.0 / vec3_length(l)));
-        lit->r[i] *= share;
-        lit->g[i] *= share;
-        lit->b[i] *= share;
+        const double fraction = light_cone_fraction(&c, soft, vec3_scale(l, -1.0 / vec3_length(l)));
+        lit->r[i] *= fraction;
+        lit->g[i] *= fraction;
+        lit->b[i] *= fraction;
         lit->contributes[i] =
             ~(mask_less(lit->r[i], least) & mask_less(lit->g[i], least) & mask_less(lit->b[i], least));
     }
@@ -231,7 +230,7 @@ static void fresnel_branches(const material *m, const group *g, branch_group *re
     b->total = without_padding(g, total);
 }
 
-/* Under total internal reflection the transmitted share is reflected too. */
+/* Under total internal reflection the transmitted fraction is reflected too. */
 static void constant_branches(const material *m, bool opaque, const group *g, branch_group *restrict b)
 {
     const double reflectivity = m->reflectivity, transparency = opaque ? 0.0 : m->transparency;
@@ -313,12 +312,13 @@ static void cut_light(const group *g, const branch_group *b, vec3 radiance, film
     out->out_of_range = bad;
 }
 
-static void arrived(int count, const double *share, const double *r, const double *g, const double *b,
+static void arrived(int count, const double *fraction, const double *r, const double *g, const double *b,
                     film_light *restrict out)
 {
     int64_t bad = 0;
     for (int i = 0; i < count; i++)
-        bad += store_light(share[i] * r[i], share[i] * g[i], share[i] * b[i], mask_less(0.0, share[i]), i, out);
+        bad += store_light(fraction[i] * r[i], fraction[i] * g[i], fraction[i] * b[i], mask_less(0.0, fraction[i]), i,
+                           out);
     out->out_of_range = bad;
 }
 

@@ -34,18 +34,10 @@ static bool make_chunks(zbuffer *z)
     return true;
 }
 
-static int points_across(int64_t samples)
-{
-    int n = 1;
-    while ((n + 1) * (n + 1) <= samples)
-        n++;
-    return n;
-}
-
 static void make_grid(zbuffer *z)
 {
     const plan *p = z->frame_plan;
-    z->points = points_across(p->render.samples);
+    z->points = (int)cells_across(p->render.samples);
     z->side = SQUARE_POINTS / z->points < SQUARE_PIXELS ? SQUARE_POINTS / z->points : SQUARE_PIXELS;
     z->width = (int)p->render.width * z->points;
     z->height = (int)p->render.height * z->points;

@@ -9,13 +9,13 @@
  *
  * A frame is made in steps: zbuffer_create cuts analytic solids into triangles; zbuffer_project, called by all workers
  * at once, projects the triangles into the image; zbuffer_sort assigns them to squares of the image; zbuffer_draw,
- * called by the worker of a piece of the image, rasterises it. Each step starts when the previous one has ended. The
+ * called by the worker of a tile, rasterises it. Each step starts when the previous one has ended. The
  * result does not depend on the order. Ownership: zbuffer_create allocates, zbuffer_destroy releases; the plan is
  * borrowed. */
 #pragma once
 
-#include "render/core/plan.h"
-#include "render/core/schedule.h"
+#include "render/plan/plan.h"
+#include "render/plan/schedule.h"
 
 typedef struct zbuffer zbuffer;
 
@@ -46,8 +46,8 @@ typedef struct zbuffer_square {
 void zbuffer_square_begin(zbuffer_square *s); /* call it before each frame; zero the square before the first one */
 void zbuffer_square_release(zbuffer_square *s);
 
-/* Different threads may draw different pieces. */
-void zbuffer_draw(zbuffer *z, const span *piece, zbuffer_square *square);
+/* Different threads may draw different tiles. */
+void zbuffer_draw(zbuffer *z, const image_tile *tile, zbuffer_square *square);
 
 /* True when drawing ran out of memory; the image is then incomplete. */
 bool zbuffer_failed(const zbuffer *z);

@@ -109,15 +109,15 @@ static void draw_square(zbuffer *z, int x, int y, const window *w, zbuffer_squar
         zbuffer_resolve(z, w->x0, w->y0, w->x1, w->y1, square);
 }
 
-void zbuffer_draw(zbuffer *z, const span *piece, zbuffer_square *square)
+void zbuffer_draw(zbuffer *z, const image_tile *tile, zbuffer_square *square)
 {
     const int side = z->side, n = z->points;
-    for (int y = piece->y0 / side; y * side < piece->y1; y++) {
-        for (int x = piece->x0 / side; x * side < piece->x1; x++) {
-            const int x0 = x * side > piece->x0 ? x * side : piece->x0,
-                      x1 = (x + 1) * side < piece->x1 ? (x + 1) * side : piece->x1;
-            const int y0 = y * side > piece->y0 ? y * side : piece->y0,
-                      y1 = (y + 1) * side < piece->y1 ? (y + 1) * side : piece->y1;
+    for (int y = tile->y0 / side; y * side < tile->y1; y++) {
+        for (int x = tile->x0 / side; x * side < tile->x1; x++) {
+            const int x0 = x * side > tile->x0 ? x * side : tile->x0,
+                      x1 = (x + 1) * side < tile->x1 ? (x + 1) * side : tile->x1;
+            const int y0 = y * side > tile->y0 ? y * side : tile->y0,
+                      y1 = (y + 1) * side < tile->y1 ? (y + 1) * side : tile->y1;
             draw_square(z, x, y, &(window){x0 * n, y0 * n, x1 * n, y1 * n}, square);
         }
     }

@@ -114,10 +114,10 @@ static inline double zbuffer_nearness(const zbuffer *z, const clip_corner *c)
     return z->frame_plan->view.parallel ? -c->z / c->h : c->h / c->z;
 }
 
-/* zbuffer_cover.c: computes layered and eye_inside. */
+/* zbuffer_parts.c: computes layered and eye_inside. */
 void zbuffer_find_layers(zbuffer *z);
 
-/* zbuffer_regions.c */
+/* The parts and their triangles. */
 status zbuffer_cut(zbuffer *z, diagnostic *why);
 
 /* zbuffer_layers.c: adds a point of a layered triangle, and resolves all points of a window after its triangles are
@@ -125,7 +125,7 @@ status zbuffer_cut(zbuffer *z, diagnostic *why);
 void zbuffer_add_fragment(zbuffer *z, zbuffer_square *s, int point, double nearness, uint32_t number);
 void zbuffer_resolve(zbuffer *z, int x0, int y0, int x1, int y1, zbuffer_square *s);
 
-/* zbuffer_clip.c: the triangle's corners in the camera frame; the polygon that remains after clipping, in order; the
+/* zbuffer_project.c: the triangle's corners in the camera frame; the polygon that remains after clipping, in order; the
  * position of a corner on the grid. */
 void zbuffer_corners(const zbuffer *z, const rasterised_part *p, uint32_t copy, uint32_t triangle,
                      clip_corner out[POLYGON_MAX]);

@@ -100,7 +100,7 @@ static status check_light(const scene *s, const light *lamp, diagnostic *why)
     return STATUS_OK;
 }
 
-/* As many as render/shade/spectral_lines.h distinguishes, with those of all other lamps. */
+/* As many as render/plan/spectra.h distinguishes, with those of all other lamps. */
 enum { LINE_LAMPS_MAX = 100 };
 
 static status check_lines(const scene *s, diagnostic *why)

@@ -176,7 +176,7 @@ status scene_unpack(const void *bytes, size_t size, scene **out, diagnostic *why
     return unpack(from_memory, &there, size ? size : 1, out, why);
 }
 
-/* Those that the plan of a frame (render/core/plan.c) takes from the meshes. */
+/* Those that the plan of a frame (render/plan/plan.c) takes from the meshes. */
 status scene_build_hierarchies(const scene *s, diagnostic *why)
 {
     if (!s->render.keep || integrator_traits_of(&s->render)->drawn)

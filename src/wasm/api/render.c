@@ -7,7 +7,7 @@
 #include "engine/canvas.h"
 #include "engine/engine_private.h"
 #include "measure/clock.h"
-#include "render/core/shared_frame.h"
+#include "render/frame/renderer.h"
 #include "report/json.h"
 #include "scene/model/integrators.h"
 #include "scene/model/render_settings.h"
@@ -120,7 +120,7 @@ static int side(const wasm_render *r)
     return r->sum.places.tile;
 }
 
-static bool next(void *context, int worker, span *out)
+static bool next(void *context, int worker, image_tile *out)
 {
     wasm_render *r = context;
     (void)worker;
@@ -133,11 +133,11 @@ static bool next(void *context, int worker, span *out)
     return r->next < r->sum.places.tile_count && schedule_tile(&r->sum.places, r->next, out) && ++r->next;
 }
 
-static void done(void *context, const span *piece, const film *traced, const double *variance)
+static void done(void *context, const image_tile *piece, const film *traced, const double *variance)
 {
     wasm_render *r = context;
     (void)variance;
-    film_put_piece(r->sum.img, piece->x0, piece->y0, piece->x1, piece->y1, traced->sum);
+    film_put_tile(r->sum.img, piece->x0, piece->y0, piece->x1, piece->y1, traced->sum);
 }
 
 /* Every turn counts the same photons. */
@@ -152,7 +152,7 @@ static void count(wasm_render *r, const ray_counters *turn)
 
 static status trace(wasm_render *r, diagnostic *why)
 {
-    const piece_source source = {.side = side(r), .next = next, .done = done, .context = r};
+    const tile_source source = {.side = side(r), .next = next, .done = done, .context = r};
     const render_options options = {.source = r->at_once ? NULL : &source};
     job_account account;
     r->began = false;
@@ -193,7 +193,7 @@ double wasm_render_share(const wasm_render *r)
 char *wasm_render_pieces(wasm_render *r)
 {
     json_t *list = json_array();
-    span at;
+    image_tile at;
     if (r->at_once && r->told < r->next) {
         r->told = r->next;
         json_add(&list, json_pack("[i,i,i,i]", 0, 0, r->sum.img->width, r->sum.img->height));

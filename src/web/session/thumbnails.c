@@ -6,7 +6,7 @@
 #include "image/image.h"
 #include "job/job.h"
 #include "measure/clock.h"
-#include "render/core/film.h"
+#include "render/plan/film.h"
 #include "scene/model/scene.h"
 #include "scene/model/camera.h"
 #include <math.h>

@@ -4,7 +4,7 @@
 #include "base/number.h"
 #include "job/job.h"
 #include "measure/clock.h"
-#include "render/core/film.h"
+#include "render/plan/film.h"
 #include "report/json.h"
 #include "scene/model/params.h"
 #include "scene/model/render_settings.h"

@@ -1,0 +1,29 @@
+/* The files of a frame: the image, maps of a quantity by pixel, the timeline. Every file is written completely or not
+ * at all; results are borrowed. */
+#pragma once
+
+#include "render/frame/renderer.h"
+
+/* Writes the film as an image in the format of the path's ending; bits as image_write takes them. of: the scene, whose
+ * tone images with 8 bits show, and which a PNG file carries in its metadata (scene/file/shared.h); NULL: neither. */
+status record_image(const film *f, const scene *of, const char *path, int bits, diagnostic *why);
+/* The same for an image of the film with something drawn over it. */
+status record_drawing(const image *img, const scene *of, const char *path, int bits, diagnostic *why);
+
+/* Writes values, one per pixel of f, as a false-colour image with a colour key and a title; or, if path ends in .pfm,
+ * the numbers themselves (equal in all three channels). */
+status record_map(const double *values, const film *f, const char *title, const char *path, diagnostic *why);
+
+/* record_layer_path returns the path of a named layer, PREFIX-WORD.pfm, in newly allocated memory, NULL when out of
+ * memory; record_layers writes all layers to these paths, a layer of one channel into all three. */
+char *record_layer_path(const char *prefix, int layer);
+status record_layers(const render_result *result, const char *prefix, diagnostic *why);
+
+/* The standard error of each pixel, root mean square over its channels; result must have a variance. record_noise
+ * writes it to a file. */
+void record_noise_values(const render_result *result, double *values);
+status record_noise(const render_result *result, const char *path, diagnostic *why);
+
+/* Writes the timeline in Chrome's trace event format (Google 2016): one row per worker, one bar per tile, in
+ * microseconds from the frame's start. Open it in chrome://tracing or Perfetto. result must have events. */
+status record_timeline(const render_result *result, const char *path, diagnostic *why);

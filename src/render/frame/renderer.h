@@ -1,0 +1,192 @@
+/* The renderer: renders the frames of a scene on a pool of workers. The film depends only on the scene and its
+ * parameters, and not on threads, schedule, tile, pinning, batch or instruction set. Ownership: a renderer owns its
+ * pool, and may serve many frames and scenes, one at a time; the caller owns a result and releases it with
+ * render_result_destroy. No global state: several renderers may run in one process. */
+#pragma once
+
+#include "base/counters.h"
+#include "base/isa.h"
+#include "base/status.h"
+#include "measure/usage.h"
+#include "measure/topology.h"
+#include "render/plan/film.h"
+#include "render/plan/frame_report.h"
+#include "render/plan/schedule.h"
+#include "scene/model/open.h"
+#include "scene/model/render_settings.h"
+#include <stdbool.h>
+
+typedef struct renderer renderer;
+
+/* level: from isa_choose. machine is borrowed for pinning; if it is NULL, threads are not pinned. */
+status renderer_create(isa level, const topology *machine, renderer **out, diagnostic *why);
+void renderer_destroy(renderer *r);
+
+/* Sets the machine of a renderer that was created without it. */
+void renderer_set_machine(renderer *r, const topology *machine);
+
+/* One worker's report of a frame; times are seconds from the frame's start. */
+typedef struct worker_report {
+    double wall_s;  /* from its first to its last instruction in this frame */
+    double cpu_s;   /* CLOCK_THREAD_CPUTIME_ID over the same interval */
+    double start_s; /* when it began to work, after the frame's start */
+    double busy_s;  /* from its first tile to its last ray; 0 without a tile */
+    /* part of busy_s spent in visibility queries (nearest hits and shadows); NaN for scenes without meshes */
+    double visibility_s;
+    double waiting_s;                          /* the frame's wall time less busy_s */
+    int rank;                                  /* of the processes that render the frame; 0: the only one */
+    uint64_t tiles;                            /* tiles that it rendered */
+    uint64_t camera, reflect, refract, shadow; /* rays that it traced */
+    int pu;                                    /* processing unit at the end; -1: unknown */
+    thread_usage usage;                        /* over the interval of wall_s; unknown unless requested */
+} worker_report;
+
+typedef struct tile_event {
+    int worker;
+    int x0, y0, x1, y1;
+    double begin_s, end_s;
+} tile_event;
+
+/* Tiles from elsewhere, for a frame that several processes render: this one renders those that it is given,
+ * each into a film of that tile alone, and the result has no film. Both functions are called by all workers at the
+ * same time. */
+typedef struct tile_source {
+    int side; /* the largest width and height of a tile */
+    /* Waits for the worker's next tile; false ends its part of the frame. */
+    bool (*next)(void *context, int worker, image_tile *out);
+    /* Receives a rendered tile: its film, with all replicates added, and the variance of its values, or NULL. Both are
+     * borrowed for the call. */
+    void (*done)(void *context, const image_tile *tile, const film *traced, const double *variance);
+    void *context;
+} tile_source;
+
+/* Outputs of a render in addition to the film. */
+typedef struct render_options {
+    bool pixel_rays; /* rays of all kinds by pixel */
+    bool pixel_time; /* nanoseconds by pixel; a batch's time is divided among its rays */
+    bool pixel_cut;  /* throughput of the rays that are not traced, by pixel: see render_result */
+    bool layers;     /* named layers, if the integrator supports them */
+    bool timeline;   /* the worker and times of each tile */
+    bool usage;      /* how long each worker ran, could have run, and was blocked; costs it about 20 microseconds */
+    /* Called every progress_s seconds (0: 0.1) on the thread that called renderer_render. May be NULL. */
+    void (*progress)(void *context, double share_done);
+    double progress_s;
+    /* How often the calling thread looks whether it is cancelled or to report, below 1; 0: 100 times a second. Looking
+     * costs instructions, more of them the longer others have the processor: where they are counted it is rare. */
+    double watch_s;
+    /* Called by the worker that traced the last ray of a tile (x0 <= x < x1, y0 <= y < y1), so possibly
+     * by several threads at the same time; the callback may read the film in the tile. Batches are then not filled
+     * across tiles, which costs time but leaves the film bit-identical. May be NULL. */
+    void (*tile_done)(void *context, const film *img, int x0, int y0, int x1, int y1);
+    void *context;
+    /* NULL: all tiles. Not with maps, layers, tile_done, or render.error. */
+    const tile_source *source;
+} render_options;
+
+/* One of the processes that render a frame; its workers are those with its number. */
+typedef struct rank_usage {
+    double wall_s, cpu_s;         /* as those of the result, of its own part */
+    uint64_t peak_rss_bytes;      /* of the process so far */
+    uint64_t pieces, piece_bytes; /* that it sent to rank 0 */
+} rank_usage;
+
+typedef struct render_result {
+    film *img;             /* NULL if the tiles came from a source */
+    ray_counters counters; /* sums over all workers */
+    /* from the start of the workers to the end of the last one; with render.pool off, including creating and joining
+     * them */
+    double wall_s;
+    double cpu_s; /* CPU time of the process over the same interval */
+    int worker_count;
+    worker_report *workers;
+    double *pixel_rays; /* NULL unless requested; width * height */
+    double *pixel_ns;
+    /* the fraction of each pixel's light, by weight, that is unknown: the throughput of its rays that render.depth or
+     * render.min_weight cut, mean of RGB, where its camera rays have 1 in all */
+    double *pixel_cut;
+    /* For random paths: square of the standard error of each film value, [(y * width + x) * 3 + channel] in the film's
+     * own space, from the differences between the replicates (render/plan/sampling.h). NULL if unknown. For a
+     * spectral film under render.sampler=philox it is an overestimate: each replicate has its own wavelengths, so that
+     * they differ by more than random noise. */
+    double *variance;
+    /* Under render.error, rays and times include those of the pilot, the maps do not. */
+    int replicates;     /* of the paths of a pixel, 1 if the variance is unknown */
+    tile_event *events; /* in order of begin_s; NULL unless requested */
+    size_t event_count;
+    mesh_report meshes;
+    layer_set *layers; /* NULL unless requested and supported */
+    caustics_few few;  /* of render.caustics */
+    /* of a frame that several processes render: by rank; NULL: of one process */
+    rank_usage *ranks;
+    int rank_count, tile; /* tile: the side of their tiles */
+    uint64_t scene_bytes; /* sent to each rank */
+} render_result;
+
+/* Root of the mean variance over pixels and channels: the typical random error of a film value. NaN without random
+ * paths, or with too few paths for an estimate. */
+double render_noise_rms(const render_result *result);
+
+/* Checks the scene; call scene_load first. STATUS_INTERRUPTED when cancelled: *out then holds the finished part. */
+status renderer_render(renderer *r, const scene *s, const render_options *options, render_result **out,
+                       diagnostic *why);
+void render_result_destroy(render_result *result);
+
+/* The film, with one replicate, and the variance (NULL if it is unknown) of a whole frame whose tiles come from
+ * sources. The caller owns both. */
+status renderer_film(const scene *s, film **img, double **variance, diagnostic *why);
+/* The replicates of the paths of a pixel, as in a result. */
+int renderer_replicates(const scene *s);
+
+/* Memory of the film and the maps of such a frame, bytes. */
+uint64_t renderer_result_bytes(const scene *s, const render_options *options);
+
+/* Memory of the rays that wait, for all threads, bytes. */
+uint64_t renderer_tracing_bytes(const scene *s);
+
+/* Starts the threads that s requires in advance (render.pool on), so that the first frame's time does not include
+ * it. */
+status renderer_prepare(renderer *r, const scene *s, diagnostic *why);
+
+/* --- adaptive numbers of random paths --- */
+
+/* With render.error a pilot render of PILOT_PATHS paths per pixel gives the variance of each pixel, from which the
+ * number of paths for the requested standard error follows. The pilot's paths do not enter the film: a mean that stops
+ * when its own samples look good is biased (Kirk and Arvo, "Unbiased sampling techniques for image synthesis", SIGGRAPH
+ * 1991). The caller owns and frees the counts. */
+enum { PILOT_PATHS = 16 };
+
+/* Whether the number of paths differs between pixels. */
+static inline bool path_counts_apply(const render_settings *r)
+{
+    return integrator_traits_of(r)->by_chance && r->error > 0.0 && r->paths > PILOT_PATHS;
+}
+
+/* The settings of the pilot: a seed that no scene has. */
+render_settings path_counts_pilot(const render_settings *r);
+
+/* The number of paths of each pixel: a multiple of the replicates of r, at most r->paths. */
+status path_counts_create(const render_settings *r, const render_result *pilot, uint32_t **out, diagnostic *why);
+
+/* --- a frame whose tiles are traced in several places --- */
+
+/* Such as the ranks of an MPI job or the workers of a browser, each by a tile_source: the tiles, and their sum, which
+ * is the film of the whole frame bit for bit. Ownership: shared_frame_begin allocates film and variance;
+ * shared_frame_release frees them, unless the owner took them and set them to NULL. One thread at a time. */
+
+/* The settings with which all places have the same tiles: of that side, whatever their threads. */
+render_settings tiles_settings(const render_settings *r, int side);
+
+typedef struct shared_frame {
+    schedule places; /* of the tiles */
+    film *img;
+    double *variance; /* NULL: unknown */
+} shared_frame;
+
+status shared_frame_begin(const scene *s, int side, shared_frame *out, diagnostic *why);
+void shared_frame_release(shared_frame *f);
+
+/* The number of values of a traced tile: its sums, 3 for each pixel, then as many variances (doubles) if there are
+ * any. */
+size_t shared_frame_values(const shared_frame *f, int64_t tile);
+/* Adds a traced tile. */
+void shared_frame_put(shared_frame *f, int64_t tile, const int64_t *values);

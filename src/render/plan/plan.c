@@ -1,0 +1,443 @@
+/* Building a render plan: media, hierarchies, materials and light cones from the scene. */
+#include "render/plan/plan.h"
+
+#include "base/elementary.h"
+#include "base/array.h"
+#include "geometry/shapes/shape.h"
+#include "scene/model/cover.h"
+#include "scene/model/scene.h"
+#include <stdlib.h>
+
+/* Under Fresnel weights equal refractive indices are one medium, and a boundary between them is no interface unless it
+ * is coated, has a film, or emits light; a crystal is one medium only with one of equal indices and axis. With constant
+ * weights, as in the report, every surface reflects whatever its index. laws: dispersion laws by solid; [solid_count]
+ * is that of the surrounding medium. */
+static bool shows_itself(const scene *s, const material *m)
+{
+    return m->emission > 0.0 || material_coating(m, &s->render) > 0.0 || material_is_layered(m, &s->render);
+}
+
+/* Both crystals with one extraordinary index and one axis in the world, or neither a crystal. */
+static bool are_alike_crystals(const scene *s, const solid *a, const solid *b)
+{
+    const bool first = material_is_crystal(&a->surface, &s->render),
+               second = material_is_crystal(&b->surface, &s->render);
+    if (!first || !second)
+        return first == second;
+    const vec3 one = mat3_apply(rotation_from_deg(a->shape.rotation_deg), a->surface.optic_axis),
+               other = mat3_apply(rotation_from_deg(b->shape.rotation_deg), b->surface.optic_axis);
+    return a->surface.extraordinary_ior == b->surface.extraordinary_ior && one.x == other.x && one.y == other.y &&
+           one.z == other.z;
+}
+
+static int64_t medium_of(const scene *s, const index_law *laws, int solid_index)
+{
+    const material *m = &s->solids[solid_index].surface;
+    if (material_is_opaque(m) || scene_has_constant_weights(&s->render) || shows_itself(s, m))
+        return solid_index + 1;
+    if (!material_is_crystal(m, &s->render) && index_laws_match(&s->render, &laws[solid_index], &laws[s->solid_count]))
+        return 0;
+    for (int i = 0; i < solid_index; i++) {
+        const solid *other = &s->solids[i];
+        if (other->visible && !material_is_opaque(&other->surface) && !shows_itself(s, &other->surface) &&
+            index_laws_match(&s->render, &laws[i], &laws[solid_index]) &&
+            are_alike_crystals(s, other, &s->solids[solid_index]))
+            return i + 1;
+    }
+    return solid_index + 1;
+}
+
+/* The hierarchy of the solid's mesh: the mesh's own, or one built for this frame, which the first of the solids with
+ * that mesh owns and the others share. */
+static status tree_of(const scene *s, size_t i, plan *p, const mesh *m, const hierarchy **out, diagnostic *why)
+{
+    const hierarchy_kind kind = (hierarchy_kind)s->render.accel;
+    if (integrator_traits_of(&s->render)->drawn)
+        return STATUS_OK; /* rasterisation needs none */
+    if (s->render.keep)
+        return hierarchy_of_mesh(m, kind, scene_build_threads(&s->render), out, why);
+    for (size_t k = 0; k < i; k++) {
+        const mesh_entry *other = scene_mesh_of(s, &s->solids[k]);
+        if (p->own_trees[k] && other && other->data == m) {
+            *out = p->own_trees[k];
+            return STATUS_OK;
+        }
+    }
+    const status code = hierarchy_build(m, kind, scene_build_threads(&s->render), &p->own_trees[i], why);
+    *out = p->own_trees[i];
+    return code;
+}
+
+static void report_mesh(plan *p, const mesh_entry *m, const solid_shape *shape, const hierarchy *tree, bool first)
+{
+    const double copies = shape->copies.x * shape->copies.y * shape->copies.z;
+    p->meshes.instances += (uint64_t)copies;
+    p->meshes.triangles += (uint64_t)copies * shape->mesh->triangle_count;
+    if (first && m->source == MESH_SLIME) {
+        p->meshes.motion_steps += m->account.substeps;
+        p->meshes.motion_s += m->motion_s;
+    }
+    if (first && tree) {
+        const hierarchy_report r = hierarchy_describe(tree);
+        p->meshes.bytes += r.bytes;
+        p->meshes.build_s += r.build_s;
+    }
+}
+
+/* The shape of a mesh solid with its triangles, and the hierarchy over them. */
+static status fetch_mesh(const scene *s, size_t i, plan *p, solid_shape *shape, region_source *source, diagnostic *why)
+{
+    const solid *one = &s->solids[i];
+    const mesh_entry *m = scene_find_mesh(s, one->mesh);
+    if (!m || !m->data)
+        return diagnose(why, STATUS_FAILURE, "call scene_load first", "%.80s: the mesh is not loaded", one->name);
+    *shape = one->shape;
+    shape->mesh = m->data;
+    source->shape = shape;
+    const status code = tree_of(s, i, p, m->data, &source->tree, why);
+    bool first = true;
+    for (size_t k = 0; k < i; k++)
+        first &= !(s->solids[k].visible && solid_shows(&s->solids[k], one->mesh));
+    if (code == STATUS_OK)
+        report_mesh(p, m, shape, source->tree, first);
+    return code;
+}
+
+static status arrange(const scene *s, const index_law *laws, plan *p, diagnostic *why)
+{
+    region_source *sources = calloc(s->solid_count + 1, sizeof *sources);
+    solid_shape *shapes = calloc(s->solid_count + 1, sizeof *shapes);
+    p->own_trees = calloc(s->solid_count + 1, sizeof(hierarchy *));
+    p->own_tree_count = s->solid_count;
+    p->shadow_transmittance = calloc(s->solid_count + 1, sizeof *p->shadow_transmittance);
+    if (!sources || !shapes || !p->own_trees || !p->shadow_transmittance) {
+        free(sources);
+        free(shapes);
+        return out_of_memory(why);
+    }
+    status code = STATUS_OK;
+    int count = 0;
+    for (int i = 0; i < (int)s->solid_count && code == STATUS_OK; i++) {
+        const solid *one = &s->solids[i];
+        if (!one->visible)
+            continue;
+        double shadow_transmittance;
+        if (!region_shadow_transmittance(s, one, &shadow_transmittance, &p->shadow_transmittance[i]))
+            code = out_of_memory(why);
+        if (material_roughness(&one->surface, &s->render) > 0.0) /* random paths find what it transmits */
+            shadow_transmittance = 0.0;
+        sources[count] = (region_source){.shape = &one->shape,
+                                         .priority = one->priority,
+                                         .medium = medium_of(s, laws, i),
+                                         .opaque = solid_is_opaque(s, one),
+                                         .shadow_transmittance = shadow_transmittance,
+                                         .face_shadow_transmittance = p->shadow_transmittance[i],
+                                         .attenuates = material_attenuates(&one->surface) ||
+                                                       material_scattering(&one->surface, &s->render) > 0.0 ||
+                                                       sheet_acts(&one->surface, &s->render),
+                                         .reflects = p->basic && !scene_has_constant_weights(&s->render),
+                                         .solid = i};
+        if (code == STATUS_OK && shape_of(&one->shape)->triangles)
+            code = fetch_mesh(s, (size_t)i, p, &shapes[i], &sources[count], why);
+        count++;
+    }
+    const bool drawn = integrator_traits_of(&s->render)->drawn;
+    const tree_use use = drawn || s->render.accel == HIERARCHY_NONE ? TREE_IF_TOO_MANY : TREE_IF_MANY;
+    THEN(code, scene_geometry_build(sources, count, 0, use, &p->geometry, why));
+    if (code == STATUS_OK && drawn && p->geometry->tree)
+        code = diagnose(why, STATUS_BAD_INPUT, "use another render.method, or fewer solids",
+                        "the z-buffer draws at most 64 solids; a cup and a torus count as two, a lens as three");
+    if (code == STATUS_OK && surroundings_absorb(&s->background))
+        scene_geometry_surroundings_absorb(p->geometry);
+    free(shapes);
+    free(sources);
+    return code;
+}
+
+/* What a lamp's spectrum looks like. */
+static vec3 seen_color(const light *l)
+{
+    double rgb[3];
+    if (l->spectrum == LAMP_OF_COLOR)
+        return l->color;
+    lamp_rgb((lamp_spectrum)l->spectrum, l->temperature_k, l->line_nm, rgb);
+    return vec3_make(rgb[0], rgb[1], rgb[2]);
+}
+
+/* Shadow rays end at a sun's place, and what is beyond does not block them: half-spaces that a ray meets at an angle
+ * below 2^-16. A power of two, so that directions are scaled exactly, and a solid far away changes nothing. */
+static void place_suns(plan *p)
+{
+    double extent = p->geometry->extent;
+    for (int i = 0; i < p->light_count; i++)
+        if (p->lights[i].kind != LIGHT_SUN)
+            extent = fmax(extent, vec3_length(p->lights[i].position));
+    for (p->sun_distance = 0x1p16; p->sun_distance < 0x1p16 * extent;)
+        p->sun_distance *= 2.0;
+    for (int i = 0; i < p->light_count; i++) {
+        light *l = &p->lights[i];
+        if (l->kind == LIGHT_SUN)
+            l->position = vec3_scale(p->cones[i].axis, -p->sun_distance), l->radius = l->reach = 0.0;
+    }
+}
+
+static status prepare_lights(const scene *s, plan *p, diagnostic *why)
+{
+    p->lights = calloc(s->light_count + 1, sizeof *p->lights);
+    p->cones = calloc(s->light_count + 1, sizeof *p->cones);
+    p->shapes = calloc(s->light_count + 1, sizeof *p->shapes);
+    if (!p->lights || !p->cones || !p->shapes)
+        return out_of_memory(why);
+    p->light_count = (int)s->light_count;
+    for (size_t i = 0; i < s->light_count; i++) {
+        p->lights[i] = s->lights[i];
+        p->lights[i].color = seen_color(&s->lights[i]);
+        if (s->lights[i].kind != LIGHT_POINT)
+            p->cones[i] = light_cone_of(&s->lights[i]);
+        p->has_sun |= s->lights[i].kind == LIGHT_SUN;
+        if (light_is_flat(&s->lights[i]))
+            p->shapes[i] = lamp_shape_of(&s->lights[i]);
+    }
+    place_suns(p);
+    return STATUS_OK;
+}
+
+static status prepare_beams(const scene *s, plan *p, diagnostic *why)
+{
+    if (!(p->beams = calloc(s->beam_count + 1, sizeof *p->beams)))
+        return out_of_memory(why);
+    for (size_t i = 0; i < s->beam_count; i++)
+        if (beam_lights_scene(&s->beams[i], &s->render))
+            p->beams[p->beam_count++] = s->beams[i];
+    return STATUS_OK;
+}
+
+static status add_rain(const scene *s, plan *p, diagnostic *why)
+{
+    const bool traced = !integrator_traits_of(&s->render)->layers;
+    if (s->background.kind != BACKGROUND_RAIN || s->background.rain == 0.0 || !traced)
+        return STATUS_OK;
+    p->rain = rain_create(&s->background, scene_to_sun(s), s->render.spectrum == SPECTRUM_SPECTRAL);
+    return p->rain ? STATUS_OK : out_of_memory(why);
+}
+
+/* A gradient between equal colours is uniform to the last bit, and so is a uniform CIE sky over ground of its
+ * colour. */
+static const background *sky_of(const scene *s, plan *p)
+{
+    const background *b = &s->background;
+    const bool level = b->color.x == b->horizon.x && b->color.y == b->horizon.y && b->color.z == b->horizon.z;
+    if (b->kind == BACKGROUND_CIE && !(level && b->sky_type == CIE_SKY_UNIFORM)) {
+        p->own_sky = *b;
+        p->own_sky.cie = cie_sky_make((int)b->sky_type, scene_to_sun(s));
+        p->own_sky.cie.mean = s->render.beyond == DEPTH_LIMIT_MEAN ? cie_sky_mean(&p->own_sky.cie) : 0.0;
+        return &p->own_sky;
+    }
+    const bool gradient = b->kind == BACKGROUND_GRADIENT || (b->kind == BACKGROUND_RAIN && !p->rain);
+    if (!level || !(gradient || b->kind == BACKGROUND_CIE))
+        return b;
+    p->own_sky = *b;
+    p->own_sky.kind = BACKGROUND_UNIFORM;
+    return &p->own_sky;
+}
+
+/* By solid; the last one is that of the surrounding medium. */
+static status laws_of(const scene *s, index_law *laws, diagnostic *why)
+{
+    status code = STATUS_OK;
+    for (size_t i = 0; i < s->solid_count && code == STATUS_OK; i++)
+        code = material_index_law(&s->solids[i].surface, s->solids[i].name, &laws[i], why);
+    laws[s->solid_count] = surrounding_index_law(&s->background);
+    return code;
+}
+
+/* The material with which a solid is traced. */
+static const material *material_of(const scene *s, plan *p, int solid_index)
+{
+    const material *m = &s->solids[solid_index].surface;
+    if (!material_is_mirror(m))
+        return m;
+    material *mirror = &p->mirrors[solid_index];
+    *mirror = *m;
+    const double both = m->reflectivity + m->transparency;
+    mirror->reflectivity = scene_has_constant_weights(&s->render) && both < 1.0 ? both : 1.0;
+    mirror->transparency = mirror->extinction = mirror->film_thickness_nm = 0.0;
+    return mirror;
+}
+
+/* False when out of memory. */
+static bool add_roughness(const scene *s, plan *p, const material *m)
+{
+    const double alpha = material_roughness(m, &s->render);
+    p->rough |= alpha > 0.0;
+    return !(alpha > 0.0) || !s->render.energy_compensation ||
+           rough_energy_add(&p->energy, alpha, material_coating(m, &s->render), material_is_opaque(m));
+}
+
+/* Fills the tables by priority index: materials, refractive indices, absorption, shading materials. */
+static status fill_priority_indices(const scene *s, const index_law *laws, plan *p, diagnostic *why)
+{
+    const size_t priority_indices = (size_t)p->geometry->region_count + 1;
+    p->materials = large_calloc(priority_indices, sizeof *p->materials);
+    p->ior = large_calloc(priority_indices, sizeof *p->ior);
+    p->laws = large_calloc(priority_indices, sizeof *p->laws);
+    p->absorption = large_calloc(priority_indices, sizeof *p->absorption);
+    p->shading_materials = large_calloc(priority_indices, sizeof *p->shading_materials);
+    p->mirrors = calloc(s->solid_count + 1, sizeof *p->mirrors);
+    if (!p->mirrors || !p->materials || !p->ior || !p->laws || !p->absorption || !p->shading_materials)
+        return out_of_memory(why);
+    for (size_t r = 0; r < priority_indices; r++) {
+        const int solid_index = p->geometry->regions[r].solid;
+        p->laws[r] = laws[solid_index < 0 ? (int)s->solid_count : solid_index];
+        p->ior[r] = index_law_at(&p->laws[r], s->render.lambda_nm);
+        if (solid_index < 0)
+            continue;
+        p->materials[r] = material_of(s, p, solid_index);
+        if (!region_materials_make(s, &s->solids[solid_index], p->materials[r], &p->shading_materials[r]))
+            return out_of_memory(why);
+        for (int k = 0; k < p->shading_materials[r].count; k++)
+            if (!add_roughness(s, p, &p->shading_materials[r].mat[k].surface))
+                return out_of_memory(why);
+        p->absorption[r] = material_extinction(p->materials[r], s->render.unit_m);
+    }
+    if (!plan_find_alike(p))
+        return out_of_memory(why);
+    p->absorption[0] = vec3_scale(s->background.absorb_per_m, s->render.unit_m);
+    if (s->render.spectrum == SPECTRUM_SPECTRAL &&
+        !(p->spectral = spectra_create(s, p->materials, p->laws, priority_indices)))
+        return out_of_memory(why);
+    if (!sheet_list_create(s, p->geometry, &p->sheets))
+        return out_of_memory(why);
+    if (!crystal_list_create(s, p->geometry, &p->crystals))
+        return out_of_memory(why);
+    if (!scatter_plan_create(s, p->geometry, &p->scatter))
+        return out_of_memory(why);
+    return layered_plan_create(&s->render, p->materials, p->laws, p->ior, p->alike, priority_indices, &p->layered)
+               ? STATUS_OK
+               : out_of_memory(why);
+}
+
+/* Basic radiance has one index at the camera, and the depth buffer one list of media. */
+static status needs_one_medium(const scene *s, const plan *p, const solid *cut, diagnostic *why)
+{
+    if (solid_is_opaque(s, cut) || !(p->basic || integrator_traits_of(&s->render)->drawn))
+        return STATUS_OK;
+    return diagnose(why, STATUS_BAD_INPUT,
+                    p->basic ? "move camera.position away from it, or set render.radiance to classic"
+                             : "move camera.position away from it, or set render.integrator to whitted",
+                    "%.80s reaches into the camera's %s, so that rays start in several media", cut->name,
+                    p->view.parallel ? "image" : "lens");
+}
+
+static void add_analyser(const scene *s, plan *p)
+{
+    double sine, cosine;
+    if (!s->render.polarisation)
+        return;
+    elementary_sincos_deg(s->camera.analyser_angle_deg, &sine, &cosine);
+    p->analyser = (analyser_kind)s->camera.analyser;
+    p->analyser_axis = vec3_add(vec3_scale(p->view.right, cosine), vec3_scale(p->view.up, sine));
+}
+
+/* Light in a crystal is of one of two modes, which no camera ray has. */
+static status refuse_crystal(const solid *crystal, diagnostic *why)
+{
+    return diagnose(why, STATUS_BAD_INPUT, "move camera.position out of it, or set its extraordinary_ior to 0",
+                    "the camera is in the crystal %.80s", crystal->name);
+}
+
+/* The camera's view, and the solids that its rays start in. */
+static status place_camera(const scene *s, plan *p, diagnostic *why)
+{
+    const bool spread = (p->view = camera_frame_of(s)).parallel || p->view.lens_radius > 0.0;
+    add_analyser(s, p);
+    for (size_t i = 0; spread && i < s->solid_count; i++) {
+        const solid *one = &s->solids[i];
+        if (!one->visible || scene_apart_from_eye(s, one))
+            continue;
+        p->starts_vary = true;
+        if (!solid_is_opaque(s, one) && material_is_crystal(&one->surface, &s->render))
+            return refuse_crystal(one, why);
+        TRY(needs_one_medium(s, p, one, why));
+    }
+    if (!integrator_traits_of(&s->render)->drawn)
+        p->eye_inside = scene_geometry_inside(p->geometry, p->view.eye);
+    p->camera_priority_index = scene_geometry_priority_index(p->geometry, p->eye_inside);
+    if (p->crystals && p->crystals[p->camera_priority_index].uniaxial)
+        return refuse_crystal(&s->solids[p->geometry->regions[p->camera_priority_index].solid], why);
+    return STATUS_OK;
+}
+
+status plan_build(const scene *s, plan **out, diagnostic *why)
+{
+    plan *p = calloc(1, sizeof *p);
+    index_law *laws = calloc(s->solid_count + 1, sizeof *laws);
+    status code = p && laws ? laws_of(s, laws, why) : out_of_memory(why);
+    if (code == STATUS_OK)
+        p->basic = scene_has_basic_radiance(&s->render);
+    THEN(code, arrange(s, laws, p, why));
+    THEN(code, fill_priority_indices(s, laws, p, why));
+    THEN(code, prepare_lights(s, p, why));
+    THEN(code, prepare_beams(s, p, why));
+    THEN(code, add_rain(s, p, why));
+    THEN(code, place_camera(s, p, why));
+    free(laws);
+    if (code != STATUS_OK) {
+        plan_destroy(p);
+        return code;
+    }
+    p->render = s->render;
+    p->draws = integrator_traits_of(&s->render)->by_chance
+                   ? path_sampling_of(&s->render)
+                   : path_sampling_of_grid(&s->render,
+                                           s->render.samples *
+                                               (s->render.spectrum == SPECTRUM_SPECTRAL ? s->render.wavelengths : 1));
+    if (integrator_traits_of(&s->render)->drawn)
+        p->render.shadows = SHADOWS_OFF;
+    p->sky = sky_of(s, p);
+    if (s->render.beyond == DEPTH_LIMIT_MEAN)
+        p->sky_mean = p->rain && !p->spectral ? vec3_add(sky_mean(p->sky), rain_color_mean(p->rain)) : sky_mean(p->sky);
+    if (scene_has_caustics(&s->render))
+        p->render.shadows = SHADOWS_OPAQUE; /* the photons bring the rest */
+    p->solid_shadows = p->render.shadows == SHADOWS_OPAQUE;
+    for (size_t i = 0; i < s->light_count && integrator_traits_of(&s->render)->by_chance; i++)
+        p->solid_shadows |= light_has_size(&s->lights[i]);
+    for (int i = 0; i < p->light_count; i++)
+        p->polarised_shadows |= p->sheets && s->render.polarisation && p->lights[i].polarised > 0.0;
+    *out = p;
+    return STATUS_OK;
+}
+
+void plan_destroy(plan *p)
+{
+    if (!p)
+        return;
+    for (int r = 0; p->shading_materials && r <= p->geometry->region_count; r++)
+        free(p->shading_materials[r].mat);
+    free(p->shading_materials);
+    free(p->alike);
+    scene_geometry_destroy(p->geometry);
+    for (size_t i = 0; p->own_trees && i < p->own_tree_count; i++)
+        hierarchy_destroy(p->own_trees[i]);
+    free(p->own_trees);
+    for (size_t i = 0; p->shadow_transmittance && i < p->own_tree_count; i++)
+        free(p->shadow_transmittance[i]);
+    free(p->shadow_transmittance);
+    free(p->materials);
+    free(p->mirrors);
+    free(p->ior);
+    free(p->laws);
+    free(p->absorption);
+    free(p->lights);
+    free(p->beams);
+    free(p->cones);
+    free(p->shapes);
+    spectra_destroy(p->spectral);
+    layered_plan_destroy(p->layered);
+    rough_energy_destroy(p->energy);
+    free(p->sheets);
+    free(p->crystals);
+    free(p->scatter);
+    rain_destroy(p->rain);
+    free(p);
+}

@@ -1,0 +1,128 @@
+/* The render plan: a scene prepared for tracing, with solids in order of priority, materials and refractive indices by
+ * priority index, and the camera frame. It is built once per frame and then read by all workers. Ownership: plan_build
+ * allocates, plan_destroy releases; it borrows the scene's sky. */
+#pragma once
+
+#include "geometry/hierarchy/hierarchy.h"
+#include "geometry/mesh/mesh.h"
+#include "geometry/scene_geometry.h"
+#include "optics/crystal.h"
+#include "render/plan/frame_report.h"
+#include "render/plan/layered_table.h"
+#include "render/plan/lights.h"
+#include "render/plan/rough_energy.h"
+#include "render/plan/sampling.h"
+#include "render/plan/sky.h"
+#include "render/plan/spectra.h"
+#include "scene/model/lights.h"
+#include "scene/model/camera.h"
+#include "scene/model/face_materials.h"
+#include "scene/model/material.h"
+#include "scene/model/medium.h"
+#include "scene/model/open.h"
+#include "scene/model/render_settings.h"
+#include "scene/model/solids.h"
+#include "scene/model/view_settings.h"
+
+/* What a sheet, a polarising filter or wave plate, does to light that passes it. */
+typedef struct region_sheet {
+    sheet_kind kind;
+    vec3 axis; /* in the world, of any length */
+    double pass, block;
+    double retardance_deg, birefringence;
+} region_sheet;
+
+typedef struct region_scatter {
+    double per_unit;  /* scattering coefficient, 1 / scene unit */
+    double asymmetry; /* of the phase function, optics/phase_function.h */
+} region_scatter;
+
+/* The most lamps whose beams are sampled along each ray (render/shade/media.h). */
+enum { AIRLIGHTS_MAX = 8 };
+
+/* A box around a solid whose medium scatters; of more solids than that, one box holds all. */
+enum { SCATTER_BOXES_MAX = 8 };
+
+typedef struct scatter_plan {
+    int box_count, lamp_count, lamps[AIRLIGHTS_MAX];
+    bounds3 boxes[SCATTER_BOXES_MAX];
+    region_scatter region[]; /* by priority index */
+} scatter_plan;
+
+/* The shading materials of a region: one for each slot of its mesh, or one for all faces. */
+typedef struct region_materials {
+    int count;
+    shading_material *mat;
+    shading_rule shading;
+} region_materials;
+
+typedef struct plan {
+    scene_geometry *geometry;
+    const material **materials;          /* by priority index; [0] is NULL */
+    region_materials *shading_materials; /* by priority index; [0] is empty */
+    int *alike;            /* by priority index: equal numbers for regions whose hits may be shaded together */
+    hierarchy **own_trees; /* by solid; hierarchies that the plan owns because the meshes do not keep them */
+    size_t own_tree_count;
+    double **shadow_transmittance; /* by solid: that of its faces by slot, or NULL; own_tree_count entries */
+    mesh_report meshes;
+    material *mirrors; /* by solid: opaque substitutes of clear materials whose refractive index makes them mirrors */
+    double *ior;       /* by priority index; [0] is the surrounding medium's; at render.lambda_nm */
+    index_law *laws;   /* by priority index: the source of ior */
+    vec3 *absorption;  /* by priority index: Beer-Lambert coefficients and tints, by channel, in 1 / scene unit */
+    spectra *spectral; /* for a spectral film, else NULL */
+    layered_plan *layered;    /* metals and films; NULL if there are none */
+    bool polarised_shadows;   /* some lamp is polarised, and sheets in shadow rays can tell */
+    region_sheet *sheets;     /* by priority index: polarisers and wave plates; NULL if there are none */
+    optical_medium *crystals; /* by priority index; NULL if there are none */
+    scatter_plan *scatter;    /* media that scatter; NULL if there are none */
+    bool rough;               /* some surfaces are rough: see render/shade/rough.h */
+    rough_energy *energy;     /* of their further facets, with render.energy_compensation; else NULL */
+    camera_frame view;
+    uint64_t eye_inside;       /* the set of primitives that contain the camera */
+    analyser_kind analyser;    /* of camera rays; ANALYSER_NONE without polarisation */
+    vec3 analyser_axis;        /* a linear one's */
+    bool starts_vary;          /* other primitives may contain other origins of camera rays: they fill an area */
+    int camera_priority_index; /* and of the medium there */
+    bool basic;                /* rays carry basic radiance (L / n^2): see radiance.c */
+    render_settings render;
+    path_sampling draws; /* of random paths */
+    /* every solid blocks light: either render settings require it, or random paths find the transmitted light */
+    bool solid_shadows;
+    const struct photon_map *photons; /* borrowed: light that arrives through clear solids and mirrors; NULL: none */
+    const background *sky;            /* the scene's, or own_sky */
+    background own_sky;
+    struct rain *rain;  /* what rain adds to the sky, or NULL */
+    vec3 sky_mean;      /* over all directions; computed if render.beyond is mean */
+    light *lights;      /* the scene's; their colour is what their spectrum looks like; names are borrowed */
+    light_cone *cones;  /* by light; undefined for a point light */
+    lamp_shape *shapes; /* by light; defined for discs and rectangles */
+    int light_count;
+    beam *beams; /* those that light the scene; names are borrowed */
+    int beam_count;
+    bool has_sun; /* some light is a sun; suns are at sun_distance from the origin, and without radius and reach */
+    double sun_distance; /* far beyond all solids and other lights */
+} plan;
+
+/* Call scene_load first. */
+status plan_build(const scene *s, plan **out, diagnostic *why);
+void plan_destroy(plan *p);
+
+/* Whether the region has one material whose values do not depend on the place, as those of a texture or a checker
+ * do. */
+bool plan_is_plain(const plan *p, int priority_index);
+
+/* --- plan_materials.c, for plan.c; each returns false when out of memory --- */
+
+/* Fills p->alike from the shading materials. */
+bool plan_find_alike(plan *p);
+
+/* Fills *out with the shading materials of a region of the solid `owner`, with `surface` as the solid's own surface. */
+bool region_materials_make(const scene *s, const solid *owner, const material *surface, region_materials *out);
+/* The fraction of a shadow ray that a solid's surface transmits: sets the least over its faces, and *by_slot to the
+ * fraction for each slot where faces differ, else NULL; the caller frees *by_slot. */
+bool region_shadow_transmittance(const scene *s, const solid *owner, double *least, double **by_slot);
+/* Lists by priority index of what media do to light; *out is NULL if no medium of the frame does, free releases it.
+ * n_o of a crystal is not set. */
+bool sheet_list_create(const scene *s, const scene_geometry *geometry, region_sheet **out);
+bool crystal_list_create(const scene *s, const scene_geometry *geometry, optical_medium **out);
+bool scatter_plan_create(const scene *s, const scene_geometry *geometry, scatter_plan **out);

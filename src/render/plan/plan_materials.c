@@ -1,0 +1,206 @@
+/* The materials of a plan's regions: the shading materials of each region's surface, the solid's own or those that
+ * the mesh file assigns to its faces; the regions that look alike; and what media do to light: sheets, crystals,
+ * scattering. */
+#include "render/plan/plan.h"
+
+#include "geometry/shapes/shape.h"
+#include "geometry/solid.h"
+#include "scene/model/scene.h"
+#include <stdlib.h>
+#include <string.h>
+
+/* The number of a shading material, see shading_material. A modified copy of a scene's material keeps its number. */
+static int number_of(const scene *s, const solid *owner, const material *named)
+{
+    for (size_t i = 0; named && i < s->material_count; i++)
+        if (named == &s->materials[i].value)
+            return (int)i + 1;
+    return !named && owner->material_index >= 0 ? owner->material_index + 1
+                                                : (int)(s->material_count + (size_t)(owner - s->solids)) + 1;
+}
+
+bool region_materials_make(const scene *s, const solid *owner, const material *surface, region_materials *out)
+{
+    const int slots = face_material_slots(s, owner);
+    out->shading = (shading_rule)owner->shading;
+    out->count = slots > 0 ? slots : 1;
+    out->mat = calloc((size_t)out->count, sizeof *out->mat);
+    if (!out->mat)
+        return false;
+    out->mat[0] = shading_material_of_solid(s, surface);
+    out->mat[0].number = number_of(s, owner, NULL);
+    for (int slot = 0; slot < slots; slot++) {
+        const material *named;
+        const face_material *given;
+        face_material_source(s, owner, slot, &named, &given);
+        out->mat[slot] = shading_material_of_face(s, owner, surface, slot);
+        out->mat[slot].number = number_of(s, owner, named);
+    }
+    return true;
+}
+
+bool region_shadow_transmittance(const scene *s, const solid *owner, double *least, double **by_slot)
+{
+    const int slots = s->render.transmission == TRANSMISSION_SIMPLE ? face_material_slots(s, owner) : 0;
+    *by_slot = NULL;
+    *least = owner->surface.transparency * (1.0 - material_coating(&owner->surface, &s->render));
+    if (slots == 0)
+        return true;
+    if (!(*by_slot = calloc((size_t)slots, sizeof **by_slot)))
+        return false;
+    *least = 1.0;
+    for (int slot = 0; slot < slots; slot++) {
+        (*by_slot)[slot] = shading_material_of_face(s, owner, &owner->surface, slot).surface.transparency;
+        *least = (*by_slot)[slot] < *least ? (*by_slot)[slot] : *least;
+    }
+    return true;
+}
+
+/* --- regions whose hits may be shaded together --- */
+
+/* They have one material of equal parameters, without a texture or a checker, which lie in each solid's own frame. */
+typedef struct looks {
+    const shading_material *mat;
+    int priority_index;
+    bool opaque;
+} looks;
+
+static int compare_materials(const looks *a, const looks *b)
+{
+    const int order = memcmp(&a->mat->surface, &b->mat->surface, sizeof a->mat->surface);
+    return order ? order : (int)a->opaque - (int)b->opaque;
+}
+
+static int compare_looks(const void *one, const void *other)
+{
+    const looks *a = one, *b = other;
+    const int order = compare_materials(a, b);
+    return order ? order : a->priority_index - b->priority_index;
+}
+
+bool plan_is_plain(const plan *p, int priority_index)
+{
+    const region_materials *m = &p->shading_materials[priority_index];
+    return m->count == 1 && !m->mat->img && !(m->mat->surface.checker > 0.0) && !p->spectral;
+}
+
+bool plan_find_alike(plan *p)
+{
+    const int regions = p->geometry->region_count;
+    looks *all = calloc((size_t)regions + 1, sizeof *all);
+    p->alike = calloc((size_t)regions + 1, sizeof *p->alike);
+    if (!all || !p->alike) {
+        free(all);
+        return false;
+    }
+    int count = 0;
+    for (int r = 1; r <= regions; r++) {
+        p->alike[r] = r;
+        if (plan_is_plain(p, r))
+            all[count++] = (looks){p->shading_materials[r].mat, r, p->geometry->regions[r].opaque};
+    }
+    qsort(all, (size_t)count, sizeof *all, compare_looks);
+    for (int k = 1; k < count; k++)
+        if (compare_materials(&all[k - 1], &all[k]) == 0)
+            p->alike[all[k].priority_index] = p->alike[all[k - 1].priority_index];
+    free(all);
+    return true;
+}
+
+/* --- media --- */
+
+bool sheet_list_create(const scene *s, const scene_geometry *geometry, region_sheet **out)
+{
+    region_sheet *list = NULL;
+    *out = NULL;
+    for (int r = 1; r <= geometry->region_count; r++) {
+        const solid *one = &s->solids[geometry->regions[r].solid];
+        const material *m = &one->surface;
+        if (geometry->regions[r].opaque || !sheet_acts(m, &s->render))
+            continue;
+        if (!list && !(list = calloc((size_t)geometry->region_count + 1, sizeof *list)))
+            return false;
+        const mat3 turn = rotation_from_deg(one->shape.rotation_deg);
+        list[r] = (region_sheet){.kind = (sheet_kind)m->sheet,
+                                 .axis = mat3_apply(turn, vec3_normalize(m->sheet_axis)),
+                                 .pass = m->sheet_pass,
+                                 .block = m->sheet_block,
+                                 .retardance_deg = m->retardance_deg,
+                                 .birefringence = m->birefringence};
+    }
+    *out = list;
+    return true;
+}
+
+bool crystal_list_create(const scene *s, const scene_geometry *geometry, optical_medium **out)
+{
+    optical_medium *list = NULL;
+    *out = NULL;
+    for (int r = 1; r <= geometry->region_count; r++) {
+        const solid *one = &s->solids[geometry->regions[r].solid];
+        if (geometry->regions[r].opaque || !material_is_crystal(&one->surface, &s->render))
+            continue;
+        if (!list && !(list = calloc((size_t)geometry->region_count + 1, sizeof *list)))
+            return false;
+        const mat3 turn = rotation_from_deg(one->shape.rotation_deg);
+        list[r] = (optical_medium){.uniaxial = true,
+                                   .n_e = one->surface.extraordinary_ior,
+                                   .axis = mat3_apply(turn, vec3_normalize(one->surface.optic_axis))};
+    }
+    *out = list;
+    return true;
+}
+
+static void find_lamps(const scene *s, scatter_plan *of)
+{
+    if (s->render.light_sampling == LIGHT_SAMPLING_ONE && s->light_count > 1)
+        return;
+    for (size_t i = 0; i < s->light_count && of->lamp_count < AIRLIGHTS_MAX; i++)
+        if (light_extent(&s->lights[i]) == 0.0 && s->lights[i].kind != LIGHT_SUN && s->lights[i].intensity > 0.0)
+            of->lamps[of->lamp_count++] = (int)i;
+}
+
+static void join(bounds3 *a, bounds3 b)
+{
+    a->low = vec3_make(fmin(a->low.x, b.low.x), fmin(a->low.y, b.low.y), fmin(a->low.z, b.low.z));
+    a->high = vec3_make(fmax(a->high.x, b.high.x), fmax(a->high.y, b.high.y), fmax(a->high.z, b.high.z));
+}
+
+static void add_box(scatter_plan *of, bounds3 around, bool many)
+{
+    if (of->box_count == 0 || !many)
+        of->boxes[of->box_count++] = around;
+    else
+        join(&of->boxes[0], around);
+}
+
+static int media_that_scatter(const scene *s, const scene_geometry *geometry)
+{
+    int count = 0;
+    for (int r = 1; r <= geometry->region_count; r++)
+        count += !geometry->regions[r].opaque &&
+                 material_scattering(&s->solids[geometry->regions[r].solid].surface, &s->render) > 0.0;
+    return count;
+}
+
+bool scatter_plan_create(const scene *s, const scene_geometry *geometry, scatter_plan **out)
+{
+    const int count = media_that_scatter(s, geometry);
+    *out = NULL;
+    if (count == 0)
+        return true;
+    scatter_plan *of = calloc(1, sizeof *of + ((size_t)geometry->region_count + 1) * sizeof of->region[0]);
+    if (!of)
+        return false;
+    for (int r = 1; r <= geometry->region_count; r++) {
+        const material *m = &s->solids[geometry->regions[r].solid].surface;
+        const double per_m = geometry->regions[r].opaque ? 0.0 : material_scattering(m, &s->render);
+        if (per_m == 0.0)
+            continue;
+        of->region[r] = (region_scatter){.per_unit = per_m * s->render.unit_m, .asymmetry = m->asymmetry};
+        add_box(of, shape_world_box(&geometry->shapes[r]), count > SCATTER_BOXES_MAX);
+    }
+    find_lamps(s, of);
+    *out = of;
+    return true;
+}

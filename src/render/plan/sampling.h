@@ -1,0 +1,168 @@
+/* Random numbers of rays: pure functions of the seed, pixel, sample, depth and purpose, so that an image does not
+ * depend on which worker draws when.
+ *
+ * The sample points of random paths: which point of which replicate a path has, and its coordinates for each random
+ * choice. A pixel's paths are divided into equal replicates, whose means are independent estimates: their differences
+ * give the standard error. Under render.sampler=philox all paths are independent, and consecutive ones take turns;
+ * under sobol the points of one replicate are a low-discrepancy set, and each replicate has its own scrambling (Owen,
+ * "Randomly permuted (t,m,s)-nets and (t,s)-sequences", 1995): the differences between parts of one such set would
+ * overestimate its error. Every pair of dimensions has its own scrambling and order (padding, as in pbrt-v4's
+ * PaddedSobolSampler). Plain values. */
+#pragma once
+
+#include "base/random.h"
+#include "scene/model/lights.h"
+#include "scene/model/render_settings.h"
+#include <assert.h>
+#include <stdint.h>
+
+/* --- sample keys --- */
+
+/* A sample key is one number that identifies the pixel of a ray, for films with more than one sample per pixel
+ * (spectral films, random paths) also the sample, and for spectral films also the wavelength. An rgb film with
+ * Whitted's rays uses only the pixel.
+ *     bits 0..27 the pixel, fewer than SCENE_PIXELS_MAX
+ *          28..49 the sample: at most 1048576 paths, 64 x 65536 wavelengths
+ *          50..61 the wavelength's number (render/plan/spectra.h)
+ *          62     see SAMPLE_KEY_SPECULAR_BOUNCE
+ *          63     see SAMPLE_KEY_PHOTONS */
+
+/* The ray may hit a light source and collect its emission: it starts at the camera or at a specular surface. */
+#define SAMPLE_KEY_SPECULAR_BOUNCE ((int64_t)1 << 62)
+/* The path has left a matte surface, whose photons bring the light that mirrors and clear solids throw on it. */
+#define SAMPLE_KEY_PHOTONS INT64_MIN
+
+static inline int64_t sample_key_make(int64_t pixel, int64_t sample)
+{
+    return pixel | sample << 28;
+}
+
+static inline int64_t sample_key_with_wavelength(int64_t sample_key, int64_t number)
+{
+    return sample_key | number << 50;
+}
+
+static inline int64_t sample_key_pixel(int64_t sample_key)
+{
+    return sample_key & 0xfffffff;
+}
+
+static inline int64_t sample_key_sample(int64_t sample_key)
+{
+    return sample_key >> 28 & 0x3fffff;
+}
+
+static inline int64_t sample_key_wavelength(int64_t sample_key)
+{
+    return sample_key >> 50 & 0xfff;
+}
+
+/* --- random draws --- */
+
+/* These numbers affect every image and must never change. New purposes are numbered from DRAW_NEXT, below 2^16; each
+ * light has its own number from DRAW_LIGHT on. */
+enum {
+    DRAW_WAVELENGTH = 0,
+    DRAW_BRANCH = 1,
+    DRAW_DIRECTION = 2,
+    DRAW_ROULETTE = 3,
+    DRAW_LIGHT = 4,
+    DRAW_PIXEL = 0x1000,
+    DRAW_PHOTON = 0x1001, /* and the next one */
+    DRAW_LENS = 0x1003,
+    DRAW_FACET = 0x1004,       /* of a rough surface */
+    DRAW_FACET_LIGHT = 0x1005, /* on its side; the next one: on the other */
+    DRAW_FLIGHT = 0x1007,      /* of a ray in a medium that scatters */
+    DRAW_PHASE = 0x1008,       /* its direction afterwards */
+    DRAW_AIRLIGHT = 0x1009,    /* from there on, each light has its own number */
+    DRAW_FURTHER =
+        DRAW_AIRLIGHT + SCENE_LIGHTS_MAX, /* whether light meets further facets; the next one: its direction */
+    DRAW_PHOTON_END = DRAW_FURTHER + 2,   /* Russian roulette of deep photons, and their branch */
+    DRAW_NEXT
+};
+static_assert(DRAW_LIGHT + SCENE_LIGHTS_MAX <= DRAW_PIXEL,
+              "the lights' numbers must not overlap those of the next purpose");
+
+static inline random_words draw(int64_t seed, int64_t sample_key, int depth, int purpose)
+{
+    return random_at((uint64_t)seed, (uint32_t)sample_key_pixel(sample_key), (uint32_t)sample_key_sample(sample_key),
+                     (uint32_t)depth, (uint32_t)purpose);
+}
+
+/* --- sample points of random paths --- */
+
+typedef struct path_sampling {
+    int64_t seed, sampler;
+    uint64_t seed_hash;
+    int64_t replicates, each; /* paths in each */
+    int64_t paths;            /* per pixel */
+    const uint32_t *by_pixel; /* borrowed: the number of paths of each pixel instead; NULL: none */
+    int64_t turns;            /* consecutive paths of one replicate under philox */
+} path_sampling;
+
+path_sampling path_sampling_of(const render_settings *r);
+
+/* For the points on the lens of a film with that many camera rays per pixel in a regular grid, as of Whitted's
+ * integrator: one scrambled Sobol set. */
+path_sampling path_sampling_of_grid(const render_settings *r, int64_t rays);
+
+/* The pixel's number of paths. */
+static inline int64_t path_count(const path_sampling *p, int64_t pixel)
+{
+    return p->by_pixel ? p->by_pixel[pixel] : p->paths;
+}
+
+/* The pixel's number of paths in each replicate. 32 bits, of which there are enough, are divided faster. */
+static inline uint32_t path_replicate_count(const path_sampling *p, int64_t pixel)
+{
+    return p->by_pixel ? p->by_pixel[pixel] / (uint32_t)p->replicates : (uint32_t)p->each;
+}
+
+/* The replicate of a path. */
+static inline int64_t path_replicate(const path_sampling *p, int64_t sample_key)
+{
+    const uint32_t sample = (uint32_t)sample_key_sample(sample_key);
+    if (p->replicates == 1)
+        return 0;
+    if (p->sampler == SAMPLER_SOBOL)
+        return sample / path_replicate_count(p, sample_key_pixel(sample_key));
+    return sample / (uint32_t)p->turns % (uint32_t)p->replicates;
+}
+
+typedef struct unit_pair {
+    double u, v; /* uniform in (0, 1) */
+} unit_pair;
+
+/* The key of a replicate's points for one random choice. Of a depth, 8 bits have their own place; those above are
+ * spread by an odd number (that of a golden section of 2^64). */
+static inline uint64_t path_draw_key(const path_sampling *p, int64_t pixel, uint64_t replicate, int depth, int purpose)
+{
+    const uint64_t near = (uint64_t)depth & 0xff, far = ((uint64_t)depth >> 8) * 0x9e3779b97f4a7c15;
+    return ((uint64_t)pixel << 32 | replicate << 24 | near << 16 | (uint64_t)purpose) ^ far ^ p->seed_hash;
+}
+
+/* For one random choice of a path: purpose is one of draw.h. */
+static inline unit_pair path_draw(const path_sampling *p, int64_t sample_key, int depth, int purpose)
+{
+    if (p->sampler == SAMPLER_SOBOL) {
+        const uint32_t sample = (uint32_t)sample_key_sample(sample_key),
+                       each = path_replicate_count(p, sample_key_pixel(sample_key)), replicate = sample / each,
+                       index = sample - replicate * each;
+        const sobol_point s =
+            sobol_at(index, path_draw_key(p, sample_key_pixel(sample_key), replicate, depth, purpose));
+        return (unit_pair){random_unit(s.x), random_unit(s.y)};
+    }
+    const random_words drawn = draw(p->seed, sample_key, depth, purpose);
+    return (unit_pair){random_unit(drawn.word[0]), random_unit(drawn.word[1])};
+}
+
+/* --- grids of sample points --- */
+
+/* Cells along one side of the largest square grid with at most `points` cells. */
+static inline int64_t cells_across(int64_t points)
+{
+    int64_t k = 1;
+    while ((k + 1) * (k + 1) <= points)
+        k++;
+    return k;
+}

@@ -1,0 +1,109 @@
+/* The kernels of shading and of sampling: operations on a group of rays, loops without per-ray branches, compiled
+ * once for each instruction set. Shading kernels: colours, Phong's light, branches, light in film units, children.
+ * Sampling kernels: random numbers, and the camera rays, directions and points of lamps that are chosen by them.
+ * Ownership: the caller owns all arrays, of at most ROW elements (the tracer's scratch); nothing fails. */
+#pragma once
+
+#include "base/isa.h"
+#include "geometry/rays.h"
+#include "image/texture.h"
+#include "render/plan/plan.h"
+#include "render/tracer/groups.h"
+
+/* --- shading --- */
+
+typedef struct cut_sum {
+    int64_t branches, throughput[3];
+} cut_sum;
+
+typedef struct shade_kernels {
+    /* The material's colour at the points of its surface on p: checker cells in the solid's own frame. */
+    void (*color)(const material *m, const primitive *p, group *g);
+    /* Phong's direct light of one light at every point, weighted by the throughput. */
+    void (*direct)(const material *m, const light *lamp, const group *g, lit_group *lit);
+    /* Multiplies this light by the fraction that the cone emits towards the point. */
+    void (*spot)(const light_cone *c, bool soft, const group *g, lit_group *lit);
+    /* Reflected and refracted directions with Fresnel weights at a clear surface, including its coating, which reflects
+     * a fraction of what would be transmitted: R' = R + (1 - R) reflectivity. */
+    void (*fresnel_branches)(const material *m, const group *g, branch_group *b);
+    /* The same with the material's constant weights; opaque surfaces too. */
+    void (*constant_branches)(const material *m, bool opaque, const group *g, branch_group *b);
+    /* Undeflected transmission at a clear surface, with the material's constant weights. */
+    void (*straight_branches)(const material *m, const group *g, branch_group *b);
+    /* Adds branches that the depth limit cuts off to *sum: their number, and their throughput in units of
+     * 1/COUNTERS_CUT_ONE. */
+    void (*cut)(const group *g, const branch_group *b, cut_sum *sum);
+    /* The light of a group in film units: a surface's own, of that radiance in its colour; and that of the branches
+     * that the depth limit cuts off, the same for all directions. */
+    void (*own_light)(const group *g, vec3 radiance, film_light *out);
+    void (*cut_light)(const group *g, const branch_group *b, vec3 radiance, film_light *out);
+    /* The fractions of the rays' radiance in film units. */
+    void (*arrived)(int count, const double *fraction, const double *r, const double *g, const double *b,
+                    film_light *out);
+    /* Appends all of g to q as rays along (dx, dy, dz) with throughput times weight; the caller then removes rays of
+     * weight 0. */
+    void (*append)(const group *g, const double *dx, const double *dy, const double *dz, const double *weight,
+                   const uint64_t *inside, ray_queue *q);
+    /* Transmittances of optical depths, in place: 1 for 0. */
+    void (*absorb)(double *depth, int count);
+    texture_tinter *tint; /* a texture's colours */
+} shade_kernels;
+
+ISA_DECLARE(const shade_kernels, shade_kernels)
+
+/* --- sampling --- */
+
+/* Points on the lens, as uniform random numbers: the fraction of its area nearer to the centre, and of a turn. */
+typedef struct lens_points {
+    const double *area, *turn;
+} lens_points;
+
+typedef struct camera_rays_out {
+    double *ox, *oy, *oz, *dx, *dy, *dz;
+} camera_rays_out;
+
+/* Points of spheres, as seen from the points of a group. */
+typedef struct sphere_samples {
+    double x[ROW], y[ROW], z[ROW], radius[ROW]; /* the sphere; its centre from the point */
+    double u[ROW], v[ROW];                      /* random numbers */
+    /* Results: the unit direction, uniform over the cone that the sphere fills; 1 - the cosine of the cone's half
+     * angle; the distance to the sphere; the cosine to the normal, 0 from within the sphere. */
+    double dx[ROW], dy[ROW], dz[ROW], cap[ROW], reach[ROW], n_l[ROW];
+} sphere_samples;
+
+/* The lights' parameters as arrays, of whole blocks, padded with lights of strength 0. */
+enum { LAMP_BLOCK = 8, LAMPS_MAX = (SCENE_LIGHTS_MAX + LAMP_BLOCK - 1) / LAMP_BLOCK * LAMP_BLOCK };
+typedef struct lamp_table {
+    int blocks;
+    bool cones; /* some are cone lights that are points */
+    bool suns;  /* some are suns, whose strength here is 0: light_choice.c weighs them */
+    double x[LAMPS_MAX], y[LAMPS_MAX], z[LAMPS_MAX];
+    float radius[LAMPS_MAX], strength[LAMPS_MAX]; /* intensity; with falloff, times the square of the reach */
+    float even[LAMPS_MAX], falling[LAMPS_MAX];    /* 1 and 0 for a light without falloff, otherwise 0 and 1 */
+} lamp_table;
+
+typedef struct sampling_kernels {
+    /* path_draw for each sample key. */
+    void (*draw)(const path_sampling *p, int count, const int64_t *sample_key, int depth, int purpose, double *u,
+                 double *v);
+    /* --- camera rays --- */
+    /* Directions of the rays of a perspective pinhole camera through the image points (u, v). */
+    void (*camera_directions)(const camera_frame *view, int count, const double *u, const double *v, double *dx,
+                              double *dy, double *dz);
+    /* Rays of any camera. A lens radius of 0 gives the chief rays. */
+    void (*camera_rays)(const camera_frame *view, int count, const double *u, const double *v, lens_points lens,
+                        camera_rays_out out);
+    /* --- directions from a group's points --- */
+    /* Unit directions about the normals of g's points by the cosine law. */
+    void (*cosine)(const group *g, const double *u, const double *v, double *dx, double *dy, double *dz);
+    void (*spheres)(const group *g, sphere_samples *s);
+    /* The rays, -1 each, whose lines ahead pass within the radius of a centre, and some that just miss; returns whether
+     * there are any. */
+    bool (*near_sphere)(const ray_batch *rays, vec3 centre, double radius, int64_t *near);
+    /* An estimate of each light's radiance at a point with normal n, for the choice of one:
+     * weight[blocks * LAMP_BLOCK]. Lights below the horizon have none, unless n is 0 and `least` below 0. */
+    void (*light_weights)(const lamp_table *lamps, vec3 point, vec3 n, float k_d, float k_s, float least,
+                          float *weight);
+} sampling_kernels;
+
+ISA_DECLARE(const sampling_kernels, sampling_kernels)

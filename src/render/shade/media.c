@@ -1,0 +1,371 @@
+/* Points along rays that are chosen by lamps, free flights, and absorption of the segments up to their ends. */
+#include "render/shade/media.h"
+
+#include "base/elementary.h"
+#include "render/shade/kernels.h"
+#include <stdlib.h>
+
+/* Coefficients of a priority index in 1 / scene unit, by channel; in a spectral film at the ray's wavelength. */
+static vec3 absorption_coefficients(const plan *p, int priority_index, int64_t sample_key)
+{
+    if (!p->spectral)
+        return p->absorption[priority_index];
+    const double a = spectra_region(p->spectral, sample_key, priority_index)->absorption;
+    return vec3_make(a, a, a);
+}
+
+/* --- airlight: points along rays, chosen by lamps --- */
+
+/* A part of a ray. */
+typedef struct stretch {
+    double low, high; /* none if high <= low */
+} stretch;
+
+static void clip_axis(double o, double d, double low, double high, stretch *s)
+{
+    const double a = (low - o) / d, b = (high - o) / d;
+    if (d != 0.0) {
+        s->low = fmax(s->low, fmin(a, b));
+        s->high = fmin(s->high, fmax(a, b));
+    } else if (o < low || o > high) {
+        s->high = 0.0;
+    }
+}
+
+/* From the first to the last point in one of the boxes around media that scatter. */
+static stretch within_boxes(const scatter_plan *of, vec3 o, vec3 d)
+{
+    stretch all = {(double)INFINITY, 0.0};
+    for (int k = 0; k < of->box_count; k++) {
+        const bounds3 *b = &of->boxes[k];
+        stretch s = {0.0, (double)INFINITY};
+        clip_axis(o.x, d.x, b->low.x, b->high.x, &s);
+        clip_axis(o.y, d.y, b->low.y, b->high.y, &s);
+        clip_axis(o.z, d.z, b->low.z, b->high.z, &s);
+        if (s.high > s.low)
+            all = (stretch){fmin(all.low, s.low), fmax(all.high, s.high)};
+    }
+    return all;
+}
+
+/* The part in a cone of a half angle below 90 degrees: where (x.a)^2 >= cos^2 |x|^2 and x.a > 0 of the vector x from
+ * the lamp to the point, a quadratic in the distance. */
+static void clip_cone(const light_cone *c, vec3 from, vec3 d, stretch *s)
+{
+    const double cosine = 1.0 - c->opening, cos2 = cosine * cosine, along = vec3_dot(d, c->axis),
+                 start = vec3_dot(from, c->axis);
+    const double a = along * along - cos2, b = start * along - cos2 * vec3_dot(from, d),
+                 e = start * start - cos2 * vec3_dot(from, from), discriminant = b * b - a * e;
+    if (!(cosine > 0.0) || a == 0.0)
+        return;
+    if (!(discriminant > 0.0)) { /* outside the cone, or through its tip */
+        s->high = a < 0.0 ? 0.0 : s->high;
+        return;
+    }
+    const double far = -(b + (b < 0.0 ? -sqrt(discriminant) : sqrt(discriminant))), one = far / a, other = e / far;
+    const double low = fmin(one, other), high = fmax(one, other);
+    if (a > 0.0) { /* one root in the cone's mirror image */
+        s->low = along > 0.0 ? fmax(s->low, high) : s->low;
+        s->high = along > 0.0 ? s->high : fmin(s->high, low);
+    } else {
+        s->low = fmax(s->low, low);
+        s->high = start + 0.5 * (low + high) * along > 0.0 ? fmin(s->high, high) : 0.0;
+    }
+}
+
+/* The part of a ray that is sampled for a lamp, and how. */
+typedef struct line_sampling {
+    stretch part;
+    double nearest, across;  /* where the ray is nearest to the lamp, and its distance there */
+    double from_deg, by_deg; /* angles, seen from the lamp, from its nearest point */
+    bool even;               /* by length, of a part that is seen under a tiny angle */
+} line_sampling;
+
+static bool sampling_of(const plan *p, int lamp, vec3 origin, vec3 d, line_sampling *out)
+{
+    const double tiny_deg = 1e-6;
+    const light *l = &p->lights[lamp];
+    const vec3 from = vec3_sub(origin, l->position);
+    stretch s = within_boxes(p->scatter, origin, d);
+    if (l->kind != LIGHT_POINT && s.high > s.low)
+        clip_cone(&p->cones[lamp], from, d, &s);
+    if (!(s.high > s.low))
+        return false;
+    const double nearest = -vec3_dot(from, d), across = vec3_length(vec3_cross(from, d));
+    if (!(across > 0.0))
+        return false;
+    *out = (line_sampling){.part = s, .nearest = nearest, .across = across};
+    out->from_deg = elementary_atan2_deg(s.low - nearest, across);
+    out->by_deg = (s.high < (double)INFINITY ? elementary_atan2_deg(s.high - nearest, across) : 90.0) - out->from_deg;
+    out->even = out->by_deg < tiny_deg;
+    return !out->even || s.high < (double)INFINITY;
+}
+
+static double density_at(const line_sampling *s, double distance)
+{
+    const double deg_per_rad = 57.295779513082320877, off = distance - s->nearest;
+    if (!(distance >= s->part.low && distance <= s->part.high))
+        return 0.0;
+    if (s->even)
+        return 1.0 / (s->part.high - s->part.low);
+    return deg_per_rad * s->across / (s->by_deg * (s->across * s->across + off * off));
+}
+
+static double distance_at(const line_sampling *s, double u)
+{
+    double sine, cosine;
+    if (s->even)
+        return s->part.low + u * (s->part.high - s->part.low);
+    elementary_sincos_deg(s->from_deg + u * s->by_deg, &sine, &cosine);
+    return fmin(fmax(s->nearest + s->across * sine / cosine, s->part.low), s->part.high);
+}
+
+double airlight_density(const plan *p, int lamp, vec3 origin, vec3 direction, double distance)
+{
+    line_sampling s;
+    bool chosen = false;
+    for (int k = 0; k < p->scatter->lamp_count; k++)
+        chosen |= p->scatter->lamps[k] == lamp;
+    return chosen && sampling_of(p, lamp, origin, direction, &s) ? density_at(&s, distance) : 0.0;
+}
+
+static void choose_for(tracer *t, int lamp, const ray_queue *q, int first, int count, const double *u, airlight *out)
+{
+    for (int i = 0; i < count; i++) {
+        const int k = first + i;
+        line_sampling s;
+        out->at[i] = (double)INFINITY;
+        out->region[i] = 0;
+        out->passes[i] = 1.0;
+        if (!sampling_of(t->target.frame_plan, lamp, vec3_make(q->ox[k], q->oy[k], q->oz[k]),
+                         vec3_make(q->dx[k], q->dy[k], q->dz[k]), &s))
+            continue;
+        out->at[i] = distance_at(&s, u[i]);
+        out->density[i] = density_at(&s, out->at[i]);
+    }
+}
+
+/* The points of a batch of rays, chosen before their interfaces are searched. */
+static void airlight_choose(tracer *t, const ray_queue *q, int first, int depth, int count)
+{
+    const plan *p = t->target.frame_plan;
+    double u[ROW], unused[ROW];
+    for (int k = 0; k < p->scatter->lamp_count; k++) {
+        t->sampling->draw(&p->draws, count, q->sample_key + first, depth, DRAW_AIRLIGHT + p->scatter->lamps[k], u,
+                          unused);
+        choose_for(t, p->scatter->lamps[k], q, first, count, u, &t->media->flights.lamps[k]);
+    }
+}
+
+/* Follows a segment of a ray's media. */
+static void airlight_follow(tracer *t, const medium_segment *s)
+{
+    const plan *p = t->target.frame_plan;
+    flight_work *w = &t->media->flights;
+    const int i = s->ray;
+    const double scatters = p->scatter->region[s->priority_index].per_unit;
+    const vec3 a = absorption_coefficients(p, s->priority_index, t->media->sample_keys[i]);
+    const double each[4] = {a.x, a.y, a.z, scatters};
+    for (int k = 0; k < p->scatter->lamp_count; k++) {
+        airlight *l = &w->lamps[k];
+        const double length = l->at[i] - w->passed[i];
+        if (!(scatters > 0.0 && length >= 0.0 && length < s->length))
+            continue;
+        l->region[i] = s->priority_index;
+        for (int c = 0; c < 4; c++)
+            l->depth[c][i] = w->depth[c][i] + each[c] * length;
+        if (p->sheets)
+            l->passes[i] = sheets_fraction_within(t, &w->sheets, s, length);
+    }
+    if (p->sheets)
+        sheets_segment(t, &w->sheets, s);
+    for (int c = 0; c < 4; c++)
+        w->depth[c][i] += each[c] * s->length;
+}
+
+/* --- free flights --- */
+
+void scattering_begin(tracer *t, const ray_queue *q, int first, int depth, int count)
+{
+    const double ln_2 = 0.69314718055994530942;
+    flight_work *w = &t->media->flights;
+    double unused[ROW];
+    t->sampling->draw(&t->target.frame_plan->draws, count, q->sample_key + first, depth, DRAW_FLIGHT, w->u, unused);
+    for (int i = 0; i < count; i++) {
+        w->left[i] = -ln_2 * elementary_log2_inline(w->u[i]);
+        w->passed[i] = 0.0;
+        w->end[i] = (double)INFINITY;
+        w->region[i] = 0;
+        for (int c = 0; c < 4; c++)
+            w->depth[c][i] = 0.0;
+    }
+    if (t->target.frame_plan->sheets)
+        sheets_begin(t, &w->sheets, q, first, count);
+    airlight_choose(t, q, first, depth, count);
+    w->flies = w->flying = true;
+}
+
+/* A segment of a ray, up to where it scatters. */
+static void fly(flight_work *w, double per_unit, medium_segment *s)
+{
+    const int i = s->ray;
+    const double thickness = per_unit * s->length;
+    if (thickness > w->left[i]) {
+        s->length = w->left[i] / per_unit;
+        w->end[i] = w->passed[i] + s->length;
+        w->region[i] = s->priority_index;
+    }
+    w->left[i] -= thickness;
+}
+
+/* Follows the recorded medium segments, and removes those beyond where a ray scatters; called before they are used. */
+static void follow_segments(tracer *t)
+{
+    const scatter_plan *of = t->target.frame_plan->scatter;
+    flight_work *w = &t->media->flights;
+    medium_segments *list = &t->media->segments;
+    int kept = 0;
+    for (int k = 0; k < list->count; k++) {
+        medium_segment s = list->segment[k];
+        const double passed = w->passed[s.ray], length = s.length;
+        const bool over = w->end[s.ray] < (double)INFINITY;
+        airlight_follow(t, &s);
+        if (!over) {
+            fly(w, of->region[s.priority_index].per_unit, &s);
+            list->segment[kept++] = s;
+        }
+        w->passed[s.ray] = passed + length;
+    }
+    list->count = kept;
+}
+
+void scattering_end(tracer *t)
+{
+    follow_segments(t);
+    t->media->flights.flying = false;
+}
+
+/* --- absorption --- */
+
+/* Extinction by scattering, of rays that do not scatter themselves. */
+static void add_scattering(tracer *t)
+{
+    const region_scatter *of = t->target.frame_plan->scatter->region;
+    for (int k = 0; k < t->batch.scratch.segments->count; k++) {
+        const medium_segment *s = &t->batch.scratch.segments->segment[k];
+        for (int c = 0; c < 3; c++)
+            t->media->transmittance[c][s->ray] += of[s->priority_index].per_unit * s->length;
+    }
+}
+
+/* Adds the optical depths of the segments to transmittance. */
+static void add_depths(tracer *t)
+{
+    const plan *p = t->target.frame_plan;
+    const int64_t *sample_keys = t->media->sample_keys;
+    if (p->scatter && !t->media->flights.flies)
+        add_scattering(t);
+    for (int k = 0; p->sheets && k < t->batch.scratch.segments->count; k++)
+        sheets_segment(t, &t->media->sheets, &t->batch.scratch.segments->segment[k]);
+    for (int k = 0; k < t->batch.scratch.segments->count; k++) {
+        const medium_segment *s = &t->batch.scratch.segments->segment[k];
+        if (!p->geometry->regions[s->priority_index].attenuates)
+            continue;
+        const vec3 a = absorption_coefficients(p, s->priority_index, sample_keys[s->ray]);
+        t->media->transmittance[0][s->ray] += a.x * s->length;
+        t->media->transmittance[1][s->ray] += a.y * s->length;
+        t->media->transmittance[2][s->ray] += a.z * s->length;
+    }
+    t->batch.scratch.segments->count = 0;
+}
+
+/* Removes absorption by the surrounding medium from segments of more than that length. */
+static void exempt(tracer *t, double length)
+{
+    for (int k = 0; k < t->batch.scratch.segments->count; k++) {
+        medium_segment *s = &t->batch.scratch.segments->segment[k];
+        if (s->priority_index == 0 && s->length > length)
+            s->length = 0.0;
+    }
+}
+
+/* What only the last segment to a sun exceeds. */
+static double sun_leg(const tracer *t)
+{
+    return 0.5 * t->target.frame_plan->sun_distance;
+}
+
+/* Called when the list is full. Paths to the sky are exempt here too; they are recognised by their length. */
+static void make_room(void *context)
+{
+    tracer *t = context;
+    exempt(t, t->media->to_lamps ? sun_leg(t) : 1e100); /* paths that leave the scene have 1e120 (medium_segment) */
+    if (t->media->flights.flying)
+        follow_segments(t);
+    add_depths(t);
+}
+
+bool absorption_begin(tracer *t, bool absorbs)
+{
+    if (absorbs && !t->media && !(t->media = malloc(sizeof *t->media)))
+        return false;
+    t->batch.scratch.segments = absorbs ? &t->media->segments : NULL;
+    return true;
+}
+
+void absorption_end(tracer *t)
+{
+    free(t->media);
+}
+
+void absorption_announce(tracer *t, const ray_queue *q, int first, int count)
+{
+    t->media->sample_keys = q->sample_key + first;
+    t->media->to_lamps = q == &t->queues.shadows;
+    t->media->flights.flies = t->media->flights.flying = false;
+    t->batch.scratch.segments->full = make_room;
+    t->batch.scratch.segments->context = t;
+    /* optical depths at first */
+    for (int i = 0; i < count; i++)
+        t->media->transmittance[0][i] = t->media->transmittance[1][i] = t->media->transmittance[2][i] = 0.0;
+    sheets_announce(t, q, first, count);
+}
+
+static void apply_transmittances(tracer *t, int count)
+{
+    add_depths(t);
+    for (int c = 0; c < 3; c++)
+        t->shade->absorb(t->media->transmittance[c], count);
+    if (t->target.frame_plan->sheets)
+        sheets_leave(t, count, t->media->transmittance);
+}
+
+/* A path to the sky has no finite length: its light is taken to arrive unattenuated at the surface where the path
+ * starts. */
+void absorption_exempt_sky(tracer *t)
+{
+    const plan *p = t->target.frame_plan;
+    for (int k = 0; p->geometry->regions[0].attenuates && k < t->batch.scratch.segments->count; k++) {
+        medium_segment *s = &t->batch.scratch.segments->segment[k];
+        if (s->priority_index == 0 && t->batch.hits.hit_primitive[s->ray] == -1)
+            s->length = 0.0;
+    }
+}
+
+void absorption_exempt_suns(tracer *t)
+{
+    if (t->target.frame_plan->has_sun && t->target.frame_plan->geometry->regions[0].attenuates)
+        exempt(t, sun_leg(t));
+}
+
+void absorption_dim(tracer *t, ray_queue *q, int first, int count)
+{
+    apply_transmittances(t, count);
+    for (int i = 0; i < count; i++) {
+        q->wr[first + i] *= t->media->transmittance[0][i];
+        q->wg[first + i] *= t->media->transmittance[1][i];
+        q->wb[first + i] *= t->media->transmittance[2][i];
+    }
+    if (t->target.frame_plan->sheets)
+        sheets_store(t, q, first, count);
+}

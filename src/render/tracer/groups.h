@@ -1,0 +1,73 @@
+/* Groups of rays that are shaded together, as structures of arrays.
+ *
+ * First those of a batch that hit one primitive on one region's surface are listed (hit_groups), then neighbours among
+ * these groups that look alike: in a scene of many solids small groups would leave most lanes of a vector empty. The
+ * rays of a group are gathered into contiguous arrays (group), in which the shading kernels compute light (lit_group)
+ * and branches (branch_group).
+ *
+ * Ownership: values; the table of marks belongs to the tracer. Cannot fail. */
+#pragma once
+
+#include "geometry/rays.h"
+#include "render/plan/film.h"
+#include "render/tracer/queue.h"
+
+/* Rays first .. first + count - 1 of the list hit that primitive on the surface of the region with that priority
+ * index. */
+typedef struct hit_group {
+    int hit_primitive, priority_index;
+    int first, count;
+} hit_group;
+
+typedef struct hit_groups {
+    int count;
+    hit_group group[BATCH]; /* those that look alike are neighbours */
+    int list[ROW];          /* of the batch's rays */
+    int missed, miss[ROW];  /* rays that hit nothing */
+} hit_groups;
+
+/* alike: by priority index, equal numbers (from 0, below the number of priority indices) for regions whose hits may be
+ * shaded together. marks: for each primitive and, from alike_marks on, for each of these numbers; all -1 before and
+ * after. Groups are in the order of their first rays. */
+void hit_groups_make(const hit_batch *hits, int count, const int *alike, int16_t *marks, int16_t *alike_marks,
+                     hit_groups *out);
+
+/* Rays that hit the same surface, gathered by index into contiguous arrays. */
+typedef struct group {
+    double ox[ROW], oy[ROW], oz[ROW], dx[ROW], dy[ROW], dz[ROW];
+    double wr[ROW], wg[ROW], wb[ROW]; /* throughput */
+    double t[ROW];
+    double n_from[ROW], n_to[ROW]; /* refractive indices on the ray's side and behind */
+    int64_t start[ROW], sample_key[ROW];
+    uint64_t inside_before[ROW], inside_after[ROW];
+    surface_batch points;
+    double cr[ROW], cg[ROW], cb[ROW]; /* the material's colour at the point */
+    int count;
+    int padded; /* count rounded up to whole vectors; the lanes past count repeat the last ray and are never read */
+} group;
+
+/* Shadow rays to one light: direction, and the radiance that each contributes if unblocked. */
+typedef struct lit_group {
+    double lx[ROW], ly[ROW], lz[ROW]; /* from the point to the light, not normalised */
+    double r[ROW], g[ROW], b[ROW];
+    int64_t contributes[ROW]; /* -1 where it can change the film: at least half a film unit in some channel */
+} lit_group;
+
+/* The two branches at an interface: directions and weights; a weight of 0 is a branch that does not exist. */
+typedef struct branch_group {
+    double rx[ROW], ry[ROW], rz[ROW], reflect[ROW];
+    double tx[ROW], ty[ROW], tz[ROW], refract[ROW];
+    int64_t total; /* number of total internal reflections in the group */
+} branch_group;
+
+/* Contributions to the film, in its units. */
+typedef struct film_light {
+    film_sum r[ROW], g[ROW], b[ROW];
+    int64_t out_of_range; /* negative if some are out of the film's range, which are left out; otherwise 0 */
+} film_light;
+
+/* Fills g from rays list[0..count-1] of a batch; ascending: the list is; first is the batch's start in the queue;
+ * ior: by priority index. Not a kernel: scalar copies are faster than the gather instructions of the processors it
+ * was measured on. */
+void group_gather(const ray_queue *q, int first, const hit_batch *hits, const double *ior, const int *list, int count,
+                  bool ascending, group *g);

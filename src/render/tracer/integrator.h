@@ -1,0 +1,90 @@
+/* The integrator interface. An integrator decides which rays the camera sends out, what they hit, and how hits and
+ * misses contribute to the film. Everything else is common to all integrators and belongs to the renderer and the
+ * tracer: workers, tiles, queues of rays by depth, batches, groups by surface, colours, lights, counters, times.
+ *
+ * A new integrator is a row of INTEGRATORS (scene/model/integrators.h) and a file in render/integrators that defines
+ * its table of functions, most of which may be NULL. Each function is called once per frame, tile, batch or group,
+ * never per ray. Integrators read and write the tracer (tracer.h) and call the functions of render/shade and
+ * render/camera; several tables share intersect_nearest (shading.h), background_sky (exposure.h) and camera_samples
+ * (camera_rays.h).
+ *
+ * Order of calls in a frame: `prepare`; each step, by all workers and then by one; on each worker that gets a tile
+ * `begin`, then for its tiles `tile`, and for its batches `intersect`, `background`, `place` and `shade`; `finish`;
+ * `release`. The image must not depend on the order or thread of these calls. Ownership: what `prepare` returns belongs
+ * to the frame until `release`; what `begin` stores in t->worker_data belongs to the worker, is kept for later frames
+ * of the same integrator, and is released by `end`. */
+#pragma once
+
+#include "geometry/rays.h"
+#include "render/plan/film.h"
+#include "render/plan/frame_report.h"
+#include "render/plan/plan.h"
+#include "render/plan/schedule.h"
+#include "render/tracer/queue.h"
+
+typedef struct tracer tracer;
+
+/* The outputs of a frame. The maps may be NULL; pixel_cut receives the throughput of each pixel's rays that are not
+ * traced, red + green + blue in units of 1/COUNTERS_CUT_ONE: integers, so that their order does not matter. state is
+ * the integrator's state for the frame; layers receives named layers, NULL if they are not requested; rule: NULL for
+ * the integrator of the plan's settings. */
+typedef struct tracer_target {
+    const plan *frame_plan;
+    film *img;
+    double *pixel_rays, *pixel_ns, *pixel_cut;
+    void *state;
+    layer_set *layers;
+    const struct integrator *rule;
+} tracer_target;
+
+/* The numbers of camera rays of one pixel. camera_rays_enqueue (render/camera/camera_rays.c) makes the rays. */
+typedef struct camera_sampling {
+    int64_t rays;
+    int64_t points; /* upper limit of sample points in a pixel: the largest k x k grid with at most that many */
+    int64_t
+        rays_per_point; /* number of consecutive rays through one point; the next ones use the next point, cyclically */
+    bool jittered;      /* instead, each ray has its own random point of the pixel */
+    int64_t marks;      /* further bits of their sample keys besides pixel and sample (render/plan/sampling.h) */
+} camera_sampling;
+
+/* A step of a pre-pass. A step starts when the previous one has ended. */
+typedef struct integrator_step {
+    void (*parallel)(void *frame);                  /* by all workers at once; it distributes its own work among them */
+    status (*serial)(void *frame, diagnostic *why); /* then by one thread; NULL: none */
+} integrator_step;
+
+typedef struct integrator {
+    bool traced;    /* hits are found by ray tests of the solids: all rays count, and media absorb */
+    bool by_solid;  /* its values depend on which solid a ray hits, beyond the material */
+    bool by_sample; /* it needs the sample number of each ray within its pixel */
+
+    /* --- a frame --- */
+    camera_sampling (*sampling)(const render_settings *r);
+    /* The number of replicates of a pixel's rays, equal in size, which are exposed separately, so that their
+     * differences give the noise; NULL: 1. */
+    int (*replicates)(const render_settings *r);
+    status (*prepare)(const plan *p, void **frame, diagnostic *why);
+    const integrator_step *steps; /* ends with a row of NULLs; NULL: none */
+    /* Called after the last ray: adds to the frame's mesh report; returns an error if the image is incomplete. */
+    status (*finish)(void *frame, mesh_report *report, diagnostic *why);
+    void (*release)(void *frame); /* frame may be NULL */
+
+    /* --- a worker --- */
+    bool (*begin)(tracer *t); /* begins a frame, with t->target set; false when out of memory */
+    void (*end)(void *worker_data);
+
+    /* --- a tile, a batch, a group --- */
+    void (*tile)(tracer *t, const image_tile *tile); /* called before the tile's camera rays */
+    /* Fills t->batch.hits; a traced integrator uses intersect_nearest. */
+    void (*intersect)(tracer *t, ray_queue *q, int first, int depth, const ray_batch *rays);
+    /* Handles rays list[0 .. count - 1] of the batch, which hit nothing. */
+    void (*background)(tracer *t, const ray_queue *q, int first, const int *list, int count);
+    /* May move points of the gathered group before its colours are computed; list: its rays in the batch. */
+    void (*place)(tracer *t, const int *list);
+    /* Shades the gathered group, whose colours are computed: adds light to the film, enqueues shadow rays and
+     * children. */
+    void (*shade)(tracer *t, int depth, int priority_index);
+} integrator;
+
+/* The integrator of render.integrator: render/integrators/table.c. */
+const integrator *integrator_for(const render_settings *r);

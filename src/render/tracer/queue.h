@@ -1,0 +1,57 @@
+/* A ray queue: rays that wait to be traced, as a structure of arrays; last in, first out, which keeps the number of
+ * waiting rays small. Ownership: queue_create allocates, queue_destroy releases; each queue belongs to one worker. */
+#pragma once
+
+#include "base/vec3.h"
+#include "geometry/rays.h"
+#include <stdbool.h>
+
+/* The ray's neighbours, one sample of the image away in its two directions x and y (Igehy, "Tracing Ray Differentials",
+ * SIGGRAPH 1999): the one at (x, y) passes origin + x shift[0] + y shift[1], towards direction + x turn[0] + y turn[1],
+ * to first order. Any multiple of the direction may be added to a shift. All zeros: unknown. */
+typedef struct ray_footprint {
+    vec3 shift[2], turn[2];
+    bool bent;        /* it met a curved surface */
+    bool rough_guess; /* it met a surface whose curvature is unknown, and which counted as flat */
+} ray_footprint;
+
+typedef struct ray_queue {
+    int count, capacity;
+    double *ox, *oy, *oz, *dx, *dy, *dz;
+    double *wr, *wg, *wb;        /* throughput; for a shadow ray the radiance that it contributes if unblocked */
+    int64_t *start, *sample_key; /* face it starts on; see render/plan/sampling.h */
+    uint64_t *inside;
+    double *sq, *su, *sv;    /* with polarisation: the analyser's Stokes vector relative to its first element, of shadow
+                              rays in a scene with sheets; in a crystal sq is the mode (render/shade/crystals.h) */
+    double *passed, *bent;   /* of photons: the length of the path so far, and of its part after the first surface */
+    double *lamp_q, *lamp_u; /* of shadow rays to polarised lamps, which are linear: theirs; in the same memory */
+    ray_footprint *footprint; /* of camera rays in scenes with photons (render/shade/footprints.h); else NULL */
+    void *memory;
+} ray_queue;
+
+/* Memory of a queue, bytes. */
+size_t queue_bytes(int capacity);
+bool queue_create(ray_queue *q, int capacity);
+/* Adds the rays' footprints, if the queue has none; false when out of memory. */
+bool queue_add_footprints(ray_queue *q);
+void queue_destroy(ray_queue *q);
+
+/* Pops a batch from the end: at most BATCH rays, chosen so that the number of remaining rays is a multiple of the
+ * widest vector. The view is valid until rays are added. */
+ray_batch queue_pop(ray_queue *q, int *first);
+
+/* Copies record `from` to record `to`. */
+static inline void queue_move(ray_queue *q, int to, int from)
+{
+    q->ox[to] = q->ox[from], q->oy[to] = q->oy[from], q->oz[to] = q->oz[from];
+    q->dx[to] = q->dx[from], q->dy[to] = q->dy[from], q->dz[to] = q->dz[from];
+    q->wr[to] = q->wr[from], q->wg[to] = q->wg[from], q->wb[to] = q->wb[from];
+    q->start[to] = q->start[from], q->sample_key[to] = q->sample_key[from], q->inside[to] = q->inside[from];
+}
+
+/* Copies a record with its Stokes vector. */
+static inline void queue_move_polarised(ray_queue *q, int to, int from)
+{
+    queue_move(q, to, from);
+    q->sq[to] = q->sq[from], q->su[to] = q->su[from], q->sv[to] = q->sv[from];
+}

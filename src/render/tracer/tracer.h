@@ -1,0 +1,136 @@
+/* The tracer of one worker: queues of rays by depth, the batch of rays that is being traced, the group of its rays
+ * that is being shaded, counters and scratch memory. There is no other tracer: a single ray is a batch of one. Shared
+ * by the code that shades (render/shade), the integrators, and the loop that takes batches from the queues
+ * (render/frame/batches.c), which also says who owns a tracer (render/frame/tracers.h). */
+#pragma once
+
+#include "base/counters.h"
+#include "geometry/rays.h"
+#include "render/plan/film.h"
+#include "render/plan/plan.h"
+#include "render/tracer/groups.h"
+#include "render/tracer/integrator.h"
+#include "render/tracer/queue.h"
+
+/* Rays that wait for a full batch. From DEPTH_DEEP on, where rays do not branch, two queues take turns: whatever the
+ * limit, memory is bounded. */
+enum { DEPTH_DEEP = DEPTH_TREE_MAX };
+
+/* Deep rays wait until there are many: they are then traced to their ends, in batches that stay full for long. */
+enum { DEEP_AT_ONCE = 16 * BATCH };
+
+static inline bool goes_deep(int depth_limit)
+{
+    return depth_limit > DEPTH_DEEP;
+}
+
+typedef struct tracer_queues {
+    int depth_limit, made;
+    int depth;          /* of the batch that is being traced */
+    ray_queue *waiting; /* by depth, see tracer_queue_at */
+    ray_queue shadows;
+} tracer_queues;
+
+/* Counters since the frame began. */
+typedef struct tracer_account {
+    ray_counters counters;
+    int64_t visibility_ns; /* in a scene with meshes: time in the geometry kernels */
+    uint64_t frame;        /* number of the tracer_pool's frame in which it last began; 0 before */
+    int64_t overflow;      /* negative: a sum or a contribution left the film's range */
+} tracer_account;
+
+/* A batch of rays and its hits. */
+typedef struct tracer_batch {
+    ray_scratch scratch;
+    /* hit_primitive is -1 for rays that hit nothing, and less than -1 for rays with an end that only the integrator
+     * defines (path.c: a light's sphere) */
+    _Alignas(64) hit_batch hits;
+    _Alignas(64) double transmitted[ROW]; /* of shadow rays */
+    hit_groups groups;
+} tracer_batch;
+
+/* Stokes vectors relative to their first element, of a group and of its two branches. */
+typedef struct polar_group {
+    double q[ROW], u[ROW], v[ROW], rq[ROW], ru[ROW], rv[ROW], tq[ROW], tu[ROW], tv[ROW];
+} polar_group;
+
+/* Gathered rays of the batch that hit one surface, and their shading results. */
+typedef struct tracer_surface {
+    group gathered;
+    _Alignas(64) lit_group lit;
+    _Alignas(64) branch_group branches;
+    polar_group polar;
+    const shading_material *mat;
+    const vec3 *texture_at; /* points of the texture lookup; NULL: the hit points themselves */
+    bool on_mesh;
+} tracer_surface;
+
+struct tracer {
+    const geometry_kernels *geometry;
+    const struct shade_kernels *shade;
+    const struct sampling_kernels *sampling;
+    tracer_target target;
+    const integrator *rule; /* of the frame; NULL before the first one */
+    void *worker_data;      /* the integrator's data of this worker */
+    /* branches with a smaller weight are not traced: render.min_weight times the fraction of a camera ray */
+    double least_weight;
+    bool by_sample_key; /* the film uses more of the sample key than its pixel */
+    tracer_queues queues;
+    tracer_account account;
+    int16_t *marks; /* see hit_groups_make */
+    size_t mark_count;
+    struct mesh_work *meshes;          /* NULL until a scene with meshes is traced; the next two likewise */
+    struct media_work *media;          /* for a scene with absorption */
+    struct radiance_work *basic;       /* for a scene with basic radiance */
+    struct layered_work *layered;      /* for a scene with metals or films */
+    struct crystal_work *crystals;     /* for a scene with crystals */
+    struct footprint_work *footprints; /* for a scene with photons, unless paths are random */
+    _Alignas(64) tracer_batch batch;   /* aligned to cache lines, here and above */
+    _Alignas(64) tracer_surface surface;
+};
+
+static inline ray_queue *tracer_queue_at(const tracer *t, int depth)
+{
+    return &t->queues.waiting[depth < DEPTH_DEEP ? depth : DEPTH_DEEP + (depth - DEPTH_DEEP) % 2];
+}
+
+/* The largest fraction of rays that survives Russian roulette: without a limit of depth, a path that loses no light
+ * might never end. One of 1024 ends at each surface from the 4096th on. */
+static inline double roulette_odds_most(int depth)
+{
+    return depth < 4096 ? 1.0 : 1.0 - 1.0 / 1024.0;
+}
+
+/* A build without counters compiles the statement but never executes it. */
+#define COUNT(statement) ((void)(CUVETTE_COUNTERS ? (statement) : 0))
+
+static inline void map_cut(tracer *t, int64_t sample_key, double r, double g, double b)
+{
+    const int64_t units = counters_cut_units(r) + counters_cut_units(g) + counters_cut_units(b);
+    t->target.pixel_cut[sample_key_pixel(sample_key)] += (double)units;
+}
+
+/* Counts a ray that is not traced, with its throughput: rays and sum are cut_depth and its sum, or cut_weight and
+ * its. */
+static inline void count_cut(tracer *t, uint64_t *rays, int64_t sum[3], int64_t sample_key, double r, double g,
+                             double b)
+{
+    COUNT(*rays += 1);
+    COUNT(sum[0] += counters_cut_units(r));
+    COUNT(sum[1] += counters_cut_units(g));
+    COUNT(sum[2] += counters_cut_units(b));
+    if (t->target.pixel_cut)
+        map_cut(t, sample_key, r, g, b);
+}
+
+static inline void count_cut_by_depth(tracer *t, int64_t sample_key, double r, double g, double b)
+{
+    ray_counters *c = &t->account.counters;
+    count_cut(t, &c->cut_depth, c->cut_depth_throughput, sample_key, r, g, b);
+}
+
+static inline void count_cut_by_weight(tracer *t, int64_t sample_key, double r, double g, double b)
+{
+    ray_counters *c = &t->account.counters;
+    count_cut(t, &c->cut_weight, c->cut_weight_throughput, sample_key, r, g, b);
+}
