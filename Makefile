@@ -201,8 +201,8 @@ $(build)/obj/base/build_id.o: private all_cflags += \
 
 $(build)/obj/%.o: src/%.c $(build)/flags
 	$(call compile,$(all_cflags) $(pkg_cflags) $(own_cflags))
-$(build)/obj/study/plot_style.o: plots/style.gp
-$(build)/obj/study/slurm_script.o: experiments/cluster/study.slurm
+$(build)/obj/study/plot/plot_script.o: plots/style.gp
+$(build)/obj/study/run/slurm.o: experiments/cluster/study.slurm
 web_cflags = $(eval web_cflags := $$(shell pkg-config --cflags libmicrohttpd))$(web_cflags)
 $(build)/obj/web/%.o: private own_cflags = $(web_cflags)
 

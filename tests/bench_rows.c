@@ -3,11 +3,11 @@
  * each: medians of 5, wall time. Files are written below TMPDIR and removed. */
 #include "base/number.h"
 #include "measure/clock.h"
-#include "study/check.h"
+#include "study/rows/checksum.h"
 #include "base/csv.h"
-#include "study/row_files.h"
-#include "study/runs.h"
-#include "study/summary.h"
+#include "study/rows/row_files.h"
+#include "study/rows/runs.h"
+#include "study/summary/summary.h"
 #include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
@@ -62,16 +62,16 @@ static void put_copy(const csv *table, size_t row, long repetition, long order, 
 static void write_shard(const char *folder, row_kind kind, const csv *table, long shard, long times)
 {
     diagnostic why = {.what = ""};
-    check_columns columns;
-    char last[CHECK_TEXT];
+    checksum_columns columns;
+    char last[CHECKSUM_TEXT];
     char *path = row_file_path(folder, kind, shard, SHARDS);
     FILE *out = fopen(path, "w");
     require(out != NULL, path, NULL);
     fwrite(table->raw, 1, table->start[0], out);
     snprintf(last, sizeof last, "%.16s", csv_field(table, 0, csv_column(table, "run")));
     last[0] = shard ? 'a' : 'b'; /* a run of its own */
-    require(check_columns_create(table->header, table->column_count, &columns, &why) == STATUS_OK, path, &why);
-    char run[CHECK_TEXT];
+    require(checksum_columns_create(table->header, table->column_count, &columns, &why) == STATUS_OK, path, &why);
+    char run[CHECKSUM_TEXT];
     memcpy(run, last, sizeof run);
     const int run_at = csv_column(table, "run");
     long order = 0;
@@ -82,12 +82,12 @@ static void write_shard(const char *folder, row_kind kind, const csv *table, lon
             *field = run;
             put_copy(table, row, i * SHARDS + shard, order++, &line);
             *field = before;
-            require(check_lines(&columns, last, &line, &why) == STATUS_OK, path, &why);
+            require(checksum_lines(&columns, last, &line, &why) == STATUS_OK, path, &why);
             fwrite(line.text, 1, line.size, out);
             csv_line_free(&line);
         }
     require(fclose(out) == 0, path, NULL);
-    check_columns_free(&columns);
+    checksum_columns_free(&columns);
     free(path);
 }
 

@@ -1,7 +1,7 @@
 /* Rows that a test has changed, made consistent again: their checks, and the ends of runs in runs.json. */
 #pragma once
 
-#include "study/check.h"
+#include "study/rows/checksum.h"
 #include "base/csv.h"
 #include <jansson.h>
 #include <stdio.h>
@@ -15,11 +15,11 @@ typedef bool rows_editor(void *context, const csv *table, char **fields);
 __attribute__((unused)) static void rows_edit(const char *path, rows_editor *edit, void *context)
 {
     csv *table = NULL;
-    check_columns columns;
-    char last[256][2][CHECK_TEXT]; /* the runs, and the last check of each */
+    checksum_columns columns;
+    char last[256][2][CHECKSUM_TEXT]; /* the runs, and the last check of each */
     size_t runs = 0;
     assert_int_equal(csv_read(path, &table, NULL), STATUS_OK);
-    assert_int_equal(check_columns_create(table->header, table->column_count, &columns, NULL), STATUS_OK);
+    assert_int_equal(checksum_columns_create(table->header, table->column_count, &columns, NULL), STATUS_OK);
     FILE *out = fopen(path, "w");
     assert_non_null(out);
     fwrite(table->raw, 1, table->start[0], out);
@@ -33,19 +33,19 @@ __attribute__((unused)) static void rows_edit(const char *path, rows_editor *edi
             at++;
         assert_true(at < 256);
         if (at == runs) {
-            snprintf(last[at][0], CHECK_TEXT, "%.16s", fields[run]);
-            memcpy(last[runs++][1], last[at][0], CHECK_TEXT);
+            snprintf(last[at][0], CHECKSUM_TEXT, "%.16s", fields[run]);
+            memcpy(last[runs++][1], last[at][0], CHECKSUM_TEXT);
         }
         csv_line line = {0};
         for (size_t k = 0; k < table->column_count; k++)
             csv_text(&line, fields[k]);
         csv_end(&line);
-        assert_int_equal(check_lines(&columns, last[at][1], &line, NULL), STATUS_OK);
+        assert_int_equal(checksum_lines(&columns, last[at][1], &line, NULL), STATUS_OK);
         fputs(line.text, out);
         csv_line_free(&line);
     }
     assert_int_equal(fclose(out), 0);
-    check_columns_free(&columns);
+    checksum_columns_free(&columns);
     csv_destroy(table);
 }
 

@@ -8,7 +8,7 @@
 #include <stdint.h>
 #include <cmocka.h>
 
-#include "study/plot_table.h"
+#include "study/summary/summary.h"
 #include "study/study.h"
 
 #include <ftw.h>
@@ -136,13 +136,13 @@ __attribute__((unused)) static size_t fixture_count(const char *text, const char
 /* The summary has the columns of comparisons, without values, in each of its lines. */
 __attribute__((unused)) static void fixture_lacks_comparisons(const fixture *f, const study *s, size_t lines)
 {
-    plot_table table;
-    assert_int_equal(plot_table_of_study(s, f->results, &table, NULL), STATUS_OK);
+    summary_table table;
+    assert_int_equal(summary_table_read(s, f->results, &table, NULL), STATUS_OK);
     assert_int_equal(table.rows, lines);
-    const long from = plot_table_column(&table, "reference"), to = plot_table_column(&table, "reference_noise_rms");
+    const long from = summary_table_column(&table, "reference"), to = summary_table_column(&table, "reference_noise_rms");
     assert_int_equal(to - from, 8);
     for (long column = from; column <= to; column++)
         for (size_t row = 0; row < lines; row++)
-            assert_string_equal(plot_table_text(&table, row, column), "NA");
-    plot_table_free(&table);
+            assert_string_equal(summary_table_text(&table, row, column), "NA");
+    summary_table_free(&table);
 }

@@ -5,8 +5,7 @@
 #include "random_stream.h"
 #include "rows_fixture.h"
 #include "whole.h"
-#include "study/contrast.h"
-#include "study/contrast_json.h"
+#include "study/summary/contrast.h"
 
 enum { PROCESSES = 60 };
 

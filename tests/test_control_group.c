@@ -10,7 +10,7 @@
 #include "base/file.h"
 #include "measure/usage.h"
 #include "measure/machine_noise.h"
-#include "study/environment.h"
+#include "study/rows/environment.h"
 
 #include <math.h>
 #include <stdio.h>

@@ -8,7 +8,7 @@
 #include "lab_study_fixture.h"
 #include "rows_fixture.h"
 #include "base/csv.h"
-#include "study/summary.h"
+#include "study/summary/summary.h"
 #include <pthread.h>
 
 /* --- tables --- */

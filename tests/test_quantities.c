@@ -6,8 +6,8 @@
 #include "scene/model/scene.h"
 #include "base/text.h"
 #include "report/report.h"
-#include "study/compare_rows.h"
-#include "study/rows.h"
+#include "study/rows/compare_rows.h"
+#include "study/rows/rows.h"
 #include "study_fixture.h"
 
 /* --- the list --- */

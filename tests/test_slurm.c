@@ -1,7 +1,7 @@
-/* Tests of study/slurm.h: what a study asks of a cluster, and the script of its jobs. */
+/* Tests of study/run/slurm.h: what a study asks of a cluster, and the script of its jobs. */
 #include "study_fixture.h"
 
-#include "study/slurm.h"
+#include "study/run/slurm.h"
 
 static char *array_of(const char *missing)
 {

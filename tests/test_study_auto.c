@@ -1,7 +1,7 @@
 /* Tests of render.threads=auto in studies: a value like any other, whose rows have the number of workers. */
 #include "study_fixture.h"
 
-#include "study/row_files.h"
+#include "study/rows/row_files.h"
 #include <sched.h>
 
 static const char text[] = "study: test\nscene: scene.yaml\nset: {render.pool: off}\n"

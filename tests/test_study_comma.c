@@ -1,4 +1,4 @@
-/* Tests of study/comma_slip.h: decimal commas in lists of an axis. */
+/* Tests of study/plan/read_grid.h: decimal commas in lists of an axis. */
 #include "study_fixture.h"
 
 typedef struct example {

@@ -4,7 +4,7 @@
 #include "render/frame/renderer.h"
 #include "scene/model/params.h"
 #include "base/csv.h"
-#include "study/summary.h"
+#include "study/summary/summary.h"
 #include <dirent.h>
 
 /* Depths 0 and 2 with one and two threads, all compared with depth 2. */

@@ -1,10 +1,10 @@
-/* Tests of study/estimate.h: what a run would measure and keep, and how long it would take. */
+/* Tests of study/run/estimate.h: what a run would measure and keep, and how long it would take. */
 #include "study_fixture.h"
 #include "base/cancel.h"
 
 #include "measure/clock.h"
-#include "study/estimate.h"
-#include "study/row_files.h"
+#include "study/run/estimate.h"
+#include "study/rows/row_files.h"
 
 static study_estimate estimate_part(const fixture *f, const study *s, long shard, long shards)
 {

@@ -1,8 +1,8 @@
-/* Tests of study/excluded.h: rows that a person excludes from summaries. */
+/* Tests of study/rows/excluded.h: rows that a person excludes from summaries. */
 #include "study_fixture.h"
 
-#include "study/excluded.h"
-#include "study/summary.h"
+#include "study/rows/excluded.h"
+#include "study/summary/summary.h"
 
 static const char text[] =
     "study: test\nscene: scene.yaml\ngrid: [{render.depth: [0, 1]}]\nrepetitions: 3\nwarmups: 1\n";

@@ -3,7 +3,7 @@
 #include "study_fixture.h"
 #include "scene/model/open.h"
 #include "scene/model/scene.h"
-#include "study/new_study.h"
+#include "study/plan/new_study.h"
 
 static const char *const sets[] = {"render.samples=1"};
 

@@ -3,9 +3,9 @@
 #include "study_fixture.h"
 #include "base/cancel.h"
 #include "measure/clock.h"
-#include "study/row_files.h"
-#include "study/run_noise.h"
-#include "study/summary.h"
+#include "study/rows/row_files.h"
+#include "study/run/run_state.h"
+#include "study/summary/summary.h"
 #include <signal.h>
 #include <sys/wait.h>
 

@@ -5,7 +5,7 @@
 #include <stdint.h>
 #include <cmocka.h>
 
-#include "study/order.h"
+#include "study/plan/grid.h"
 
 #include <stdbool.h>
 #include <string.h>

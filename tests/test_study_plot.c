@@ -5,7 +5,7 @@
 #include "study_fixture.h"
 #include <dirent.h>
 #include <fcntl.h>
-#include "study/plot_parts.h"
+#include "study/plot/plot_parts.h"
 
 /* --- summaries by hand --- */
 
@@ -45,7 +45,7 @@ static plot_plan plan_of(const study *s, const plot_request *request, const hand
                 lines[i].marked);
     }
     fclose(out);
-    assert_int_equal(plot_table_split(text, &p.table, &why), STATUS_OK);
+    assert_int_equal(summary_table_split(text, &p.table, &why), STATUS_OK);
     return p;
 }
 
@@ -399,11 +399,11 @@ static void times_are_named_without_their_unit(void **state)
         plot_quantity q;
         snprintf(text, sizeof text, "cell\t%s\n0\t1.5\n", names[i][0]);
         char *table = strdup(text);
-        assert_int_equal(plot_table_split(table, &p.table, NULL), STATUS_OK);
+        assert_int_equal(summary_table_split(table, &p.table, NULL), STATUS_OK);
         assert_int_equal(plot_quantity_find(&p, names[i][0], &q, NULL), STATUS_OK);
         assert_string_equal(q.label, names[i][1]);
         assert_string_equal(q.unit, "s");
-        plot_table_free(&p.table);
+        summary_table_free(&p.table);
     }
 }
 

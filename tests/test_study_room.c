@@ -1,8 +1,8 @@
 /* Tests of what a study is going to write: bytes at least and at most, and the lines of `study run --dry-run`. */
 #include "study_fixture.h"
 
-#include "study/estimate.h"
-#include "study/row_files.h"
+#include "study/run/estimate.h"
+#include "study/rows/row_files.h"
 
 /* What nothing of the study exists of, without trial frames. */
 static disk_room needed_by(const fixture *f, const char *more)

@@ -6,10 +6,9 @@
 #include "image/image.h"
 #include "measure/clock.h"
 #include "rows_fixture.h"
-#include "study/progress.h"
+#include "study/run/progress.h"
 #include <inttypes.h>
 #include <jansson.h>
-#include "image/image.h"
 #include "base/csv.h"
 #include <pthread.h>
 #include <signal.h>

@@ -1,8 +1,8 @@
-/* Tests of study/spread.h: any column by cell, quotients row by row. The rows are those of a run, whose counts of rays
+/* Tests of study/summary/summary.h: any column by cell, quotients row by row. The rows are those of a run, whose counts of rays
  * are the same in every repetition. */
 #include "study_fixture.h"
 #include "base/csv.h"
-#include "study/spread.h"
+#include "study/summary/summary.h"
 
 static char *spread(const fixture *f, const study *s, const char *columns, status expected)
 {

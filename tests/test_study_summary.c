@@ -1,8 +1,8 @@
 /* Tests of the summary of a study: medians, their intervals and the columns. */
 #include "study_fixture.h"
 #include "rows_fixture.h"
-#include "study/row_files.h"
-#include "study/summary.h"
+#include "study/rows/row_files.h"
+#include "study/summary/summary.h"
 #include <inttypes.h>
 #include <locale.h>
 

@@ -4,13 +4,12 @@
 #include "base/build_id.h"
 #include "random_stream.h"
 #include "rows_fixture.h"
-#include "study/check.h"
+#include "study/rows/checksum.h"
 #include "base/csv.h"
-#include "study/environment.h"
-#include "study/row_environments.h"
-#include "study/row_list.h"
-#include "study/summary.h"
-#include "study/verify.h"
+#include "study/rows/environment.h"
+#include "study/rows/row_files.h"
+#include "study/summary/summary.h"
+#include "study/summary/verify.h"
 #include <errno.h>
 
 static const char study_text[] = "study: test\n"
@@ -246,22 +245,22 @@ static void checks_depend_on_names_and_values_only(void **state)
     char *header[] = {"a", "b", "check", "c"}, *other[] = {"c", "check", "b", "later", "a"};
     char *row[] = {"1", "NA", "x", "2;3"}, *same[] = {"2;3", "y", "NA", "NA", "1"},
          *swapped[] = {"1", "NA", "y", "NA", "2;3"};
-    check_columns first, second;
-    assert_int_equal(check_columns_create(header, 4, &first, NULL), STATUS_OK);
-    assert_int_equal(check_columns_create(other, 5, &second, NULL), STATUS_OK);
-    assert_int_equal(check_content(&first, row), check_content(&second, same));
-    assert_int_not_equal(check_content(&first, row), check_content(&second, swapped));
-    check_columns_free(&first);
-    check_columns_free(&second);
-    char text[CHECK_TEXT];
+    checksum_columns first, second;
+    assert_int_equal(checksum_columns_create(header, 4, &first, NULL), STATUS_OK);
+    assert_int_equal(checksum_columns_create(other, 5, &second, NULL), STATUS_OK);
+    assert_int_equal(checksum_content(&first, row), checksum_content(&second, same));
+    assert_int_not_equal(checksum_content(&first, row), checksum_content(&second, swapped));
+    checksum_columns_free(&first);
+    checksum_columns_free(&second);
+    char text[CHECKSUM_TEXT];
     uint32_t content, chain;
-    check_text(0x12345678, 0x9abcdef0, text);
+    checksum_text(0x12345678, 0x9abcdef0, text);
     assert_string_equal(text, "123456789abcdef0");
-    assert_true(check_parse(text, &content, &chain));
+    assert_true(checksum_parse(text, &content, &chain));
     assert_int_equal(content, 0x12345678);
     assert_int_equal(chain, UINT32_C(0x9abcdef0));
-    assert_false(check_parse("123456789abcdef", &content, &chain));
-    assert_false(check_parse("123456789abcdefX", &content, &chain));
+    assert_false(checksum_parse("123456789abcdef", &content, &chain));
+    assert_false(checksum_parse("123456789abcdefX", &content, &chain));
 }
 
 /* --- environments --- */

@@ -6,9 +6,9 @@
 #include "scene/model/params.h"
 #include "scene/model/params_value.h"
 #include "base/csv.h"
-#include "study/meaning.h"
-#include "study/row_files.h"
-#include "study/summary.h"
+#include "study/plan/identity.h"
+#include "study/rows/row_files.h"
+#include "study/summary/summary.h"
 #include "scene/model/scene.h"
 #include <dirent.h>
 

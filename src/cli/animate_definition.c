@@ -3,9 +3,15 @@
 #include "base/hash.h"
 #include "base/number.h"
 #include "report/json.h"
+<<<<<<< /work/s/src/cli/animate_definition.c
 #include "scene/model/params.h"
 #include "scene/assets/slime.h"
-#include "study/grid.h"
+#include "study/plan/grid.h"
+=======
+#include "scene/model/params_path.h"
+#include "scene/model/slime.h"
+#include "study/plan/identity.h"
+>>>>>>> /tmp/q6/n
 #include "scene/model/scene.h"
 #include <inttypes.h>
 #include <math.h>
@@ -72,7 +78,7 @@ status animate_define(const animate_request *request, const scene *s, animate_de
         return out_of_memory(why);
     hash_parameters(&out->hash, out->parameters);
     hash_solids(&out->hash, s);
-    TRY(grid_hash_files(&out->hash, s, why));
+    TRY(identity_hash_files(&out->hash, s, why));
     out->hash = hash_finish(out->hash);
     return STATUS_OK;
 }

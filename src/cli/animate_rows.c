@@ -2,8 +2,8 @@
 #include "cli/animate.h"
 #include "base/number.h"
 #include "base/csv.h"
-#include "study/rows.h"
-#include "study/table.h"
+#include "study/rows/rows.h"
+#include "study/rows/table.h"
 #include <inttypes.h>
 #include <stdlib.h>
 #include <string.h>

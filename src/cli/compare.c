@@ -96,7 +96,7 @@ static status print_json(const compare_request *request, const pair *p, diagnost
     bad |= json_object_set_new(o, "width", json_integer(p->images[0]->width));
     bad |= json_object_set_new(o, "height", json_integer(p->images[0]->height));
     bad |= !report_comparison(o, c);
-    return json_print(json_whole(o, bad == 0), why);
+    return json_print(json_if(o, bad == 0), why);
 }
 
 status command_compare(int argc, char **argv, diagnostic *why)

@@ -29,7 +29,7 @@ static void print_disturbance(int columns, const char *label, const char *text)
     wrap_row(stdout, columns, label, "%s%s%s", text, advice[0] ? ": " : "", advice);
 }
 
-static void print_text(const machine_account *a)
+static void print_text(const machine_report *a)
 {
     const int columns = terminal_columns(STDOUT_FILENO);
     char *summary = topology_summary(a->machine);
@@ -58,7 +58,7 @@ static void print_text(const machine_account *a)
 status command_machine(int argc, char **argv, diagnostic *why)
 {
     bool as_json = false;
-    machine_account a = {0};
+    machine_report a = {0};
     status result = command_form_read(&form, argc, argv, &as_json, why);
     THEN(result, machine_measure(&a, why));
     if (result == STATUS_OK && as_json)

@@ -2,7 +2,6 @@
 #include "cli/cli.h"
 #include "report/json.h"
 #include "report/media_rows.h"
-#include "report/metal_rows.h"
 #include "cli/options.h"
 #include "cli/terminal.h"
 #include "base/number.h"

@@ -1,7 +1,7 @@
 /* `cuvette motion`: the motion of a scene's slimes against closed-form mechanics, as a table, CSV or JSON. */
 #include "cli/cli.h"
 #include "report/json.h"
-#include "report/motion_rows.h"
+#include "report/theory_rows.h"
 #include "report/wrap.h"
 #include "base/number.h"
 #include "cli/scene_input.h"

@@ -1,7 +1,7 @@
 /* `cuvette realism`: metrics of a traced scene against closed-form optics, as a table, CSV, JSON or a curve. */
 #include "cli/cli.h"
 #include "report/json.h"
-#include "report/realism_rows.h"
+#include "report/theory_rows.h"
 #include "report/wrap.h"
 #include "cli/options.h"
 #include "cli/scene_input.h"

@@ -8,7 +8,7 @@
 #include "job/quantities.h"
 #include "render/frame/record.h"
 #include "render/inspect/beams.h"
-#include "report/page_live.h"
+#include "report/page.h"
 #include "report/report.h"
 #include "cli/inert_notes.h"
 #include "cli/scene_input.h"

@@ -3,6 +3,6 @@
 
 #include "cli/scene_input.h"
 
-/* Written completely or not at all. live: with the laboratory (report/page_live.h), NULL for none. */
+/* Written completely or not at all. live: with the laboratory (report/page.h), NULL for none. */
 status render_page_write(const scene_input *input, const job_account *f, isa level, const char *path, int bits,
                          const char *live, diagnostic *why);

@@ -10,13 +10,11 @@
 #include "cli/study_request.h"
 #include "cli/terminal.h"
 #include "measure/usage.h"
-#include "study/estimate.h"
-#include "study/excluded.h"
-#include "study/quick.h"
-#include "study/spread.h"
+#include "study/run/estimate.h"
+#include "study/rows/excluded.h"
 #include "study/study.h"
-#include "study/summary.h"
-#include "study/verify.h"
+#include "study/summary/summary.h"
+#include "study/summary/verify.h"
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>

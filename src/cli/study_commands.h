@@ -3,7 +3,7 @@
 #pragma once
 
 #include "cli/study_request.h"
-#include "study/estimate.h"
+#include "study/run/estimate.h"
 #include "study/study.h"
 
 /* `study new`: writes a study file. */

@@ -6,9 +6,9 @@
 #include "cli/study_commands.h"
 #include "cli/terminal.h"
 #include "report/json.h"
-#include "study/contrast_json.h"
-#include "study/grid.h"
-#include "study/quick.h"
+#include "study/summary/contrast.h"
+#include "study/plan/grid.h"
+#include "study/study.h"
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>

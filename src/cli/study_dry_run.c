@@ -2,7 +2,7 @@
 #include "cli/study_commands.h"
 #include "base/text.h"
 #include "cli/terminal.h"
-#include "study/estimate.h"
+#include "study/run/estimate.h"
 #include <stdlib.h>
 
 status study_check_room(const study *s, const study_request *request, const study_estimate *e, diagnostic *why)

@@ -1,8 +1,8 @@
 /* `cuvette study exclude`. */
 #include "cli/options.h"
 #include "cli/study_commands.h"
-#include "study/excluded.h"
-#include "study/quick.h"
+#include "study/rows/excluded.h"
+#include "study/study.h"
 #include <string.h>
 
 typedef struct exclude_request {

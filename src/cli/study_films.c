@@ -2,8 +2,8 @@
 #include "cli/options.h"
 #include "cli/study_commands.h"
 #include "cli/terminal.h"
-#include "study/films.h"
-#include "study/quick.h"
+#include "study/summary/verify.h"
+#include "study/study.h"
 #include <stdlib.h>
 #include <string.h>
 #include <unistd.h>

@@ -1,5 +1,5 @@
 /* `cuvette study new`: writes a study file for a scene and axes, after reading it as `study run` would. */
-#include "study/new_study.h"
+#include "study/plan/new_study.h"
 #include "base/file.h"
 #include "base/array.h"
 #include "cli/options.h"

@@ -5,7 +5,7 @@
 #include "measure/clock.h"
 #include "lint/lint.h"
 #include "scene/model/scene.h"
-#include "study/order.h"
+#include "study/plan/grid.h"
 #include <ctype.h>
 #include <stdlib.h>
 #include <string.h>

@@ -3,8 +3,8 @@
 #include "cli/study_request.h"
 #include "base/file.h"
 #include "base/text.h"
-#include "study/plot.h"
-#include "study/quick.h"
+#include "study/plot/plot.h"
+#include "study/study.h"
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>

@@ -5,7 +5,7 @@
 #include "cli/options.h"
 #include "cli/study_commands.h"
 #include "cli/terminal.h"
-#include "study/power_rates.h"
+#include "study/summary/power_rates.h"
 #include <math.h>
 #include <stdio.h>
 #include <stdlib.h>

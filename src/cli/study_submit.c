@@ -6,8 +6,8 @@
 #include "cli/slurm_commands.h"
 #include "cli/study_commands.h"
 #include "cli/terminal.h"
-#include "study/row_files.h"
-#include "study/slurm.h"
+#include "study/rows/row_files.h"
+#include "study/run/slurm.h"
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>

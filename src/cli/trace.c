@@ -3,7 +3,6 @@
 #include "cli/options.h"
 #include "cli/outputs.h"
 #include "cli/scene_input.h"
-#include "report/beam_rows.h"
 #include "report/trace_writers.h"
 #include "scene/model/scene.h"
 #include <math.h>

@@ -2,7 +2,7 @@
 #include "engine/engine_private.h"
 
 #include "realism/realism.h"
-#include "report/realism_rows.h"
+#include "report/theory_rows.h"
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>

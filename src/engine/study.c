@@ -2,7 +2,7 @@
 #include "engine/engine_private.h"
 #include "engine/study_private.h"
 
-#include "study/rows.h"
+#include "study/rows/rows.h"
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>

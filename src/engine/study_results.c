@@ -4,10 +4,9 @@
 
 #include "base/text.h"
 #include "report/json.h"
-#include "study/contrast_json.h"
-#include "study/plot.h"
-#include "study/row_list.h"
-#include "study/summary.h"
+#include "study/summary/contrast.h"
+#include "study/plot/plot.h"
+#include "study/summary/summary.h"
 #include <stdlib.h>
 #include <string.h>
 

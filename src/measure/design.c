@@ -6,7 +6,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-enum { INTERVAL_VALUES = 6, RATIO_PROCESSES = 3 }; /* as study/contrast.h */
+enum { INTERVAL_VALUES = 6, RATIO_PROCESSES = 3 }; /* as study/summary/contrast.h */
 
 const char *design_rule_text(design_rule rule)
 {

@@ -1,9 +1,16 @@
-/* A diagram: window, rays, arrows and marks. */
-#include "report/diagram_parts.h"
-
+/* A diagram: window, media, axes, rays and marks. */
+#include "base/number.h"
 #include "geometry/shapes/shape.h"
+#include "image/image.h"
+#include "report/diagram.h"
+#include "report/svg.h"
+#include "scene/model/medium.h"
+#include "scene/model/scene.h"
 #include "scene/model/solids.h"
 #include <stdlib.h>
+#include <string.h>
+
+/* --- window --- */
 
 void diagram_include(diagram_box *box, const section_plane *plane, vec3 p)
 {
@@ -49,6 +56,202 @@ static void fit(diagram *d, const diagram_box *box)
     d->plane.v0 = v - 0.5 * d->frame.height / d->scale, d->plane.v1 = v + 0.5 * d->frame.height / d->scale;
 }
 
+static double x_of(const diagram *d, double u)
+{
+    return d->frame.left + (u - d->plane.u0) * d->scale;
+}
+
+static double y_of(const diagram *d, double v)
+{
+    return d->frame.top + (d->plane.v1 - v) * d->scale;
+}
+
+/* --- media --- */
+
+/* Refractive index at render.lambda_nm; 1 where it is unknown. */
+static double index_of(const scene *s, int i)
+{
+    index_law law;
+    if (material_index_law(&s->solids[i].surface, s->solids[i].name, &law, NULL) != STATUS_OK)
+        return 1.0;
+    return index_law_at(&law, s->render.lambda_nm);
+}
+
+static bool is_opaque(const scene *s, int i)
+{
+    return material_is_opaque(&s->solids[i].surface);
+}
+
+/* Opaque solids have a pale tone of their colour; the blue of transparent ones deepens with their refractive index. */
+static void write_fill(FILE *out, const scene *s, int i)
+{
+    if (is_opaque(s, i)) {
+        const vec3 c = s->solids[i].surface.color;
+        const double tones[3] = {srgb_encode(c.x), srgb_encode(c.y), srgb_encode(c.z)};
+        int byte[3];
+        for (int k = 0; k < 3; k++)
+            byte[k] = (int)(255.0 * (0.62 + 0.38 * tones[k]) + 0.5);
+        fprintf(out, "fill=\"#%02x%02x%02x\"", (unsigned)byte[0], (unsigned)byte[1], (unsigned)byte[2]);
+        return;
+    }
+    const double power = fabs(index_of(s, i) - 1.0);
+    fprintf(out, "fill=\"#56b4e9\" fill-opacity=\"%.3f\"", power < 0.8 ? 0.06 + 0.5 * power : 0.46);
+}
+
+static status write_area(const diagram *d, int of, section_step *steps, diagnostic *why)
+{
+    const section *cut = &d->cut;
+    size_t count;
+    const status code = section_area(cut, of, steps, &count, why);
+    if (code != STATUS_OK || count == 0)
+        return code;
+    fprintf(d->out, "<path ");
+    write_fill(d->out, d->s, of);
+    fputs(" fill-rule=\"evenodd\" d=\"", d->out);
+    for (size_t i = 0; i < count; i++) {
+        const section_line *line = &cut->line[steps[i].line];
+        fputs(steps[i].starts_ring && i > 0 ? "Z" : "", d->out);
+        for (size_t k = steps[i].starts_ring ? 0 : 1; k < line->count; k++) {
+            const size_t index = line->first + (steps[i].backwards ? line->count - 1 - k : k);
+            const section_point at = cut->point[index];
+            if (d->needed[index])
+                fprintf(d->out, "%s%.2f %.2f", k == 0 ? "M" : "L", x_of(d, at.u), y_of(d, at.v));
+        }
+    }
+    fputs("Z\"/>\n", d->out);
+    return STATUS_OK;
+}
+
+static void write_boundary(const diagram *d, const section_line *line)
+{
+    fputs("<path d=\"", d->out);
+    for (size_t k = 0; k < line->count; k++) {
+        const section_point at = d->cut.point[line->first + k];
+        if (d->needed[line->first + k])
+            fprintf(d->out, "%s%.2f %.2f", k == 0 ? "M" : "L", x_of(d, at.u), y_of(d, at.v));
+    }
+    fputs("\"/>\n", d->out);
+}
+
+/* Squared distance of p from the segment ab, in scene units squared. */
+static double distance2(section_point p, section_point a, section_point b)
+{
+    const double du = b.u - a.u, dv = b.v - a.v, length2 = du * du + dv * dv;
+    const double fraction = length2 > 0.0 ? ((p.u - a.u) * du + (p.v - a.v) * dv) / length2 : 0.0;
+    const double within = fraction < 0.0 ? 0.0 : fraction > 1.0 ? 1.0 : fraction;
+    const double off_u = p.u - a.u - within * du, off_v = p.v - a.v - within * dv;
+    return off_u * off_u + off_v * off_v;
+}
+
+/* Marks the points that the line needs within the tolerance (Douglas and Peucker 1973). */
+static void mark_needed(diagram *d, size_t first, size_t last)
+{
+    const double tolerance = 0.03 / d->scale; /* pixels */
+    size_t farthest = first;
+    double most = tolerance * tolerance;
+    d->needed[first] = d->needed[last] = true;
+    for (size_t k = first + 1; k < last; k++) {
+        const double off = distance2(d->cut.point[k], d->cut.point[first], d->cut.point[last]);
+        if (off > most)
+            most = off, farthest = k;
+    }
+    if (farthest == first)
+        return;
+    mark_needed(d, first, farthest);
+    mark_needed(d, farthest, last);
+}
+
+/* The areas of the media, filled, and the boundaries between them. */
+static status draw_media(diagram *d, diagnostic *why)
+{
+    section_step *steps = calloc(d->cut.line_count + 1, sizeof *steps);
+    d->needed = calloc(d->cut.point_count + 1, sizeof *d->needed);
+    for (size_t i = 0; i < d->cut.line_count && d->needed; i++)
+        mark_needed(d, d->cut.line[i].first, d->cut.line[i].first + d->cut.line[i].count - 1);
+    if (!steps || !d->needed) {
+        free(steps);
+        return out_of_memory(why);
+    }
+    status code = STATUS_OK;
+    fputs("<g>\n", d->out);
+    for (int i = 0; i < (int)d->s->solid_count && code == STATUS_OK; i++)
+        code = write_area(d, i, steps, why);
+    fputs("</g>\n<g stroke=\"" SVG_INK "\" stroke-width=\"0.9\" stroke-opacity=\"0.65\">\n", d->out);
+    for (size_t i = 0; i < d->cut.line_count; i++)
+        if (d->cut.line[i].a != SECTION_EDGE)
+            write_boundary(d, &d->cut.line[i]);
+    fputs("</g>\n", d->out);
+    free(steps);
+    return code;
+}
+
+/* --- axes --- */
+
+/* The smallest step of 1, 2 or 5 times a power of ten with at most `most` ticks. */
+static double tick_step(double extent, double most)
+{
+    double power = 1e-6;
+    while (power * 10.0 * most < extent)
+        power *= 10.0;
+    const double factors[] = {1.0, 2.0, 5.0, 10.0};
+    for (int i = 0; i < 3; i++)
+        if (factors[i] * power * most >= extent)
+            return factors[i] * power;
+    return factors[3] * power;
+}
+
+/* "x", or the components of a direction that is not a world axis. */
+static void name_axis(vec3 e, char *text, size_t size)
+{
+    const double parts[3] = {e.x, e.y, e.z};
+    for (int k = 0; k < 3; k++)
+        if (fabs(parts[k]) > 1.0 - 1e-12) {
+            snprintf(text, size, "%s%c", parts[k] < 0 ? "-" : "", "xyz"[k]);
+            return;
+        }
+    double rounded[3];
+    for (int k = 0; k < 3; k++)
+        rounded[k] = floor(parts[k] * 1000.0 + 0.5) / 1000.0 + 0.0; /* + 0: no -0 */
+    snprintf(text, size, "along (%.3f, %.3f, %.3f)", rounded[0], rounded[1], rounded[2]);
+}
+
+static void tick_text(double value, char text[NUMBER_TEXT_MAX])
+{
+    number_format_digits(value, 6, text);
+    if (strcmp(text, "-0") == 0)
+        strcpy(text, "0");
+}
+
+static void draw_axes(const diagram *d, const char *caption)
+{
+    const section_plane *w = &d->plane;
+    const diagram_frame *f = &d->frame;
+    const double bottom = f->top + f->height, step = tick_step(w->u1 - w->u0, f->width / 70.0);
+    char text[NUMBER_TEXT_MAX], name[96];
+    for (double k = ceil(w->u0 / step); k * step <= w->u1; k += 1.0) {
+        const double x = x_of(d, k * step);
+        svg_line(d->out, x, bottom, x, bottom + 4.0, "stroke=\"" SVG_INK "\" stroke-width=\"0.8\"");
+        tick_text(k * step, text);
+        svg_label(d->out, x, bottom + 16.0, "middle", SVG_INK, text);
+    }
+    for (double k = ceil(w->v0 / step); k * step <= w->v1; k += 1.0) {
+        const double y = y_of(d, k * step);
+        svg_line(d->out, f->left - 4.0, y, f->left, y, "stroke=\"" SVG_INK "\" stroke-width=\"0.8\"");
+        tick_text(k * step, text);
+        svg_label(d->out, f->left - 7.0, y + 4.0, "end", SVG_INK, text);
+    }
+    fprintf(d->out, "<path d=\"M%.2f %.2fV%.2fH%.2f\" stroke=\"" SVG_INK "\" stroke-width=\"0.8\"/>\n", f->left, f->top,
+            bottom, f->left + f->width);
+    name_axis(w->e_u, name, sizeof name);
+    svg_label(d->out, f->left + 0.5 * f->width, bottom + 33.0, "middle", SVG_INK, name);
+    name_axis(w->e_v, name, sizeof name);
+    fprintf(d->out, "<text transform=\"translate(%.2f %.2f) rotate(-90)\" text-anchor=\"middle\" fill=\"" SVG_INK "\">",
+            f->left - 40.0, f->top + 0.5 * f->height);
+    svg_escape(d->out, name);
+    fputs("</text>\n", d->out);
+    svg_label(d->out, f->left, f->top - 9.0, "start", SVG_INK, caption);
+}
+
 status diagram_begin(diagram *d, FILE *out, const probe *p, const scene *s, const section_plane *plane,
                      const diagram_box *box, const diagram_frame *frame, const char *caption, diagnostic *why)
 {
@@ -56,8 +259,8 @@ status diagram_begin(diagram *d, FILE *out, const probe *p, const scene *s, cons
     fit(d, box);
     const double longer = frame->width > frame->height ? frame->width : frame->height;
     TRY(section_cut(p, &d->plane, (int)(longer / 1.5), &d->cut, why));
-    TRY(diagram_media(d, why));
-    diagram_axes(d, caption);
+    TRY(draw_media(d, why));
+    draw_axes(d, caption);
     return STATUS_OK;
 }
 
@@ -66,6 +269,8 @@ void diagram_end(diagram *d)
     section_release(&d->cut);
     free(d->needed);
 }
+
+/* --- rays and marks --- */
 
 static double opacity_of(double weight)
 {
@@ -96,7 +301,7 @@ static bool line_ends(const diagram *d, const ray_line *line, double *length_px,
     if (!ray_line_projected(line, &d->plane, ends))
         return false;
     for (int k = 0; k < 2; k++)
-        ends[k] = (section_point){diagram_x(d, ends[k].u), diagram_y(d, ends[k].v)};
+        ends[k] = (section_point){x_of(d, ends[k].u), y_of(d, ends[k].v)};
     *length_px = hypot(ends[1].u - ends[0].u, ends[1].v - ends[0].v);
     return *length_px >= 0.02;
 }
@@ -140,14 +345,55 @@ void diagram_dot(const diagram *d, vec3 at, double radius_px, const char *fill, 
     const section_point p = section_project(&d->plane, at);
     if (diagram_shows(d, at))
         fprintf(d->out, "<circle cx=\"%.2f\" cy=\"%.2f\" r=\"%.2f\" fill=\"%s\" stroke=\"%s\" stroke-width=\"1.2\"/>\n",
-                diagram_x(d, p.u), diagram_y(d, p.v), radius_px, fill, stroke);
+                x_of(d, p.u), y_of(d, p.v), radius_px, fill, stroke);
 }
 
 void diagram_cross(const diagram *d, vec3 at, double radius_px, const char *stroke)
 {
     const section_point p = section_project(&d->plane, at);
-    const double x = diagram_x(d, p.u), y = diagram_y(d, p.v), r = radius_px;
+    const double x = x_of(d, p.u), y = y_of(d, p.v), r = radius_px;
     if (diagram_shows(d, at))
         fprintf(d->out, "<path d=\"M%.2f %.2fL%.2f %.2fM%.2f %.2fL%.2f %.2f\" stroke=\"%s\" stroke-width=\"1.8\"/>\n",
                 x - r, y - r, x + r, y + r, x - r, y + r, x + r, y - r, stroke);
+}
+
+/* --- legend of the media --- */
+
+static void key_words(const probe *p, const scene *s, int i, char *text, size_t size)
+{
+    const char *name = s->solids[i].name, *substance = probe_medium_name(p, i);
+    if (is_opaque(s, i))
+        snprintf(text, size, "%s", name);
+    else if (strcmp(substance, name) == 0)
+        snprintf(text, size, "%s, n = %.6g", name, index_of(s, i));
+    else
+        snprintf(text, size, "%s (%s), n = %.6g", name, substance, index_of(s, i));
+}
+
+double diagram_media_key(FILE *out, const probe *p, const scene *s, double left, double right, double y)
+{
+    double x = left;
+    for (int i = 0; i < (int)s->solid_count; i++) {
+        char text[160];
+        int letters = 0;
+        if (!s->solids[i].visible)
+            continue;
+        key_words(p, s, i, text, sizeof text);
+        for (const char *c = text; *c; c++)
+            letters += ((unsigned char)*c & 0xc0) != 0x80;
+        const double width = 39.0 + 6.9 * letters; /* estimated: 6.9 px per letter at font size 11 */
+        if (x > left && x + width > right)
+            x = left, y += DIAGRAM_ROW;
+        if (out) {
+            fprintf(out,
+                    "<rect x=\"%.2f\" y=\"%.2f\" width=\"16\" height=\"10\" stroke=\"" SVG_INK
+                    "\" stroke-width=\"0.9\" stroke-opacity=\"0.65\" ",
+                    x, y - 9.0);
+            write_fill(out, s, i);
+            fputs("/>\n", out);
+            svg_label(out, x + 21.0, y, "start", SVG_INK, text);
+        }
+        x += width;
+    }
+    return y;
 }

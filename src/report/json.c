@@ -76,7 +76,7 @@ void json_write_real(FILE *stream, double value)
 {
     char text[NUMBER_TEXT_MAX];
     const bool is_digit = value >= 0.0 && value <= 9.0 && floor(value) == value && !signbit(value);
-    if (is_digit) /* zeros and ones dominate large ray trees; this takes a tenth of printf's time */
+    if (is_digit) /* zeros and ones dominate large ray trees; this needs a tenth of the time of printf */
         fputc('0' + (int)value, stream);
     else
         fputs(isfinite(value) ? number_format_digits(value, 17, text) : "null", stream);
@@ -170,9 +170,9 @@ status json_print(json_t *value, diagnostic *why)
     return json_put(stdout, value, why);
 }
 
-json_t *json_whole(json_t *value, bool whole)
+json_t *json_if(json_t *value, bool good)
 {
-    if (whole)
+    if (good)
         return value;
     json_decref(value);
     return NULL;

@@ -18,8 +18,8 @@ json_t *json_of_text(const char *text);
 /* An object with "error" and "remedy", and "file", "line", "column" where known; NULL when memory is out. */
 json_t *json_of_diagnostic(const diagnostic *why);
 
-/* Returns value if whole is true; otherwise frees it and returns NULL. */
-json_t *json_whole(json_t *value, bool whole);
+/* Returns value if good is true; otherwise frees it and returns NULL. */
+json_t *json_if(json_t *value, bool good);
 
 /* For output too large to build as a value: a quoted text (as json_of_text), and a real with 17 significant digits
  * (%.17g), null for one that is not finite. */

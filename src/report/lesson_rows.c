@@ -1,4 +1,4 @@
-/* Writes the columns of lessons. */
+/* Lessons and their results as JSON. */
 #include "base/json_build.h"
 #include "report/lesson_rows.h"
 

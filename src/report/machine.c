@@ -20,7 +20,7 @@ static bool counts_cycles(void)
     return counts.cycles >= 0;
 }
 
-status machine_measure(machine_account *a, diagnostic *why)
+status machine_measure(machine_report *a, diagnostic *why)
 {
     status result = isa_choose(&a->chosen, why);
     if (result != STATUS_OK) {
@@ -43,7 +43,7 @@ static json_t *clock_json(clock_quality clock)
     return json_pack("{s:o,s:o}", "tick_s", json_of_real(clock.tick_s), "overhead_s", json_of_real(clock.overhead_s));
 }
 
-json_t *machine_json(const machine_account *a)
+json_t *machine_json(const machine_report *a)
 {
     char *summary = topology_summary(a->machine);
     json_t *o = json_object();
@@ -64,12 +64,12 @@ json_t *machine_json(const machine_account *a)
     bad |= json_object_set_new(o, "flags", json_string(CUVETTE_COMPILER_FLAGS));
     bad |= json_object_set(o, "disturbances", a->disturbances);
     free(summary);
-    return json_whole(o, bad == 0);
+    return json_if(o, bad == 0);
 }
 
-void machine_release(machine_account *a)
+void machine_release(machine_report *a)
 {
     json_decref(a->disturbances);
     topology_destroy(a->machine);
-    *a = (machine_account){0};
+    *a = (machine_report){0};
 }

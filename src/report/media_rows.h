@@ -1,5 +1,6 @@
-/* The media catalogue as a table, one medium in detail, or JSON. at_nm is a further wavelength, 0 for none. Ownership:
- * the JSON is a new reference. Errors of the stream stay in the stream, where the caller checks them. */
+/* The catalogues of media and metals as tables, one entry in detail, or JSON. at_nm is a further wavelength, 0 for
+ * none. Ownership: the JSON is a new reference. Errors of the stream stay in the stream, where the caller checks them.
+ */
 #pragma once
 
 #include "optics/media.h"
@@ -14,6 +15,15 @@ char *media_range_text(const medium *m, char text[MEDIA_RANGE_MAX]);
 /* columns: width of the terminal to which lines are wrapped; 0: no wrapping. */
 void media_rows_table(FILE *stream, double at_nm, int columns);
 void media_rows_details(FILE *stream, const medium *m, double at_nm, int columns);
+
+/* Whether the table of the metal covers the wavelength. */
+bool metal_covers(const metal *m, double lambda_nm);
+/* "367.9..821.1"; returns text. */
+enum { METAL_RANGE_MAX = 72 };
+char *metal_range_text(const metal *m, char text[METAL_RANGE_MAX]);
+
+void metal_rows_table(FILE *stream, double at_nm, int columns);
+void metal_rows_details(FILE *stream, const metal *m, double at_nm, int columns);
 
 /* All media and metals; or one of them, unless both are NULL. NULL when memory is out. */
 json_t *media_rows_json(const medium *only, const metal *only_metal, double at_nm);

@@ -17,9 +17,20 @@ typedef struct report_page_content {
     int bits;        /* of its PNG */
     uint64_t film_hash;
     const char *command; /* that rendered it */
-    const char *live;    /* page_live_write; NULL: without the laboratory. A scene that reads files is always without */
+    const char *live;    /* page_live_code; NULL: without the laboratory. A scene that reads files is always without */
 } report_page_content;
 
 /* The rays are those of the visible beams, or the ray tree of the middle pixel if there are none. STATUS_BAD_INPUT for
  * a tree that probe_pixel refuses, and for beams beyond the limits of beams_each_ray. */
 status report_page_write(const report_page_content *page, FILE *out, diagnostic *why);
+
+/* The laboratory within a page: live.html, which `make site` makes, compressed (zlib) as base64, and the script that
+ * starts it with the page's scene. Results are the caller's, freed with free. */
+#define PAGE_LIVE_FILE "live.html"
+
+/* The path of live.html, the first that exists: $CUVETTE_LIVE (only this one if it is set); the folder of the running
+ * program; ../share/cuvette relative to it, where `make install` puts it. NULL: there is none, or with ENOMEM. */
+char *page_live_path(void);
+
+/* STATUS_BAD_INPUT with the remedy where there is no live.html. */
+status page_live_code(char **code, diagnostic *why);

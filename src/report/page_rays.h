@@ -11,7 +11,7 @@ typedef struct page_ray {
     ray_node node;
     vec3 ends[2];  /* ray_line_seen */
     bool drawn;    /* some of it is in the image */
-    double weight; /* share of its light at its start */
+    double weight; /* fraction of the light at its start */
     double rgb[3]; /* of a beam's line, linear */
     double power, lambda_nm;
     char from[PAGE_NAME_MAX], to[PAGE_NAME_MAX], surface[2 * PAGE_NAME_MAX], of[PAGE_NAME_MAX];

@@ -51,8 +51,8 @@ void param_lines_release(param_lines *all)
     *all = (param_lines){0};
 }
 
-/* Returns whether word is the path or whole components of it ("rod", "priority", "lamp.position"), or an element of
- * that vector. */
+/* Whether word is the path, one or more of its components ("rod", "priority", "lamp.position"), or an element of the
+ * vector at that path. */
 static bool names(const char *word, const char *path)
 {
     size_t length = strlen(word), whole = strlen(path);
@@ -64,7 +64,7 @@ static bool names(const char *word, const char *path)
     return false;
 }
 
-/* Whether the filter keeps a line; named: some path has it as a name. */
+/* Whether the filter keeps a line; named: the filter is the name of a parameter. */
 static bool keeps(const char *filter, bool named, const param_line *l)
 {
     return named ? names(filter, l->path) : param_matches(l->row, l->path, filter) != PARAM_NO_MATCH;

@@ -172,7 +172,7 @@ static json_t *line_json(const param_line *l, bool has_value, const json_t *init
     bad |= initial ? json_object_set_new(o, "initial", first ? report_value(row, first) : json_null()) : 0;
     bad |= json_object_set_new(o, "meaning", json_string(row->meaning));
     bad |= json_object_set_new(o, "needs", json_string(inert_needs_text(row, range, sizeof range)));
-    return json_whole(o, bad == 0);
+    return json_if(o, bad == 0);
 }
 
 static status add_text(void *values, const char *path, const param *row, const char *value)
@@ -185,7 +185,7 @@ static status add_text(void *values, const char *path, const param *row, const c
 static json_t *texts_of(const scene *s)
 {
     json_t *values = json_object();
-    return json_whole(values, values && scene_each_param(s, add_text, values) == STATUS_OK);
+    return json_if(values, values && scene_each_param(s, add_text, values) == STATUS_OK);
 }
 
 status param_rows_json(const scene *s, const scene *opened, const char *filter, json_t **out, diagnostic *why)

@@ -25,7 +25,7 @@ static bool list_of_numbers(const char *text, json_t **out)
         json_add(out, json_of_real(number));
     }
     free(copy);
-    *out = json_whole(*out, good);
+    *out = json_if(*out, good);
     return good;
 }
 
@@ -83,8 +83,8 @@ static status add_alternatives(json_t *params, const scene *s)
 json_t *report_params(const scene *s)
 {
     json_t *params = json_object();
-    return json_whole(params, params && add_alternatives(params, s) == STATUS_OK &&
-                                  scene_each_param(s, add_param, params) == STATUS_OK);
+    return json_if(params, params && add_alternatives(params, s) == STATUS_OK &&
+                               scene_each_param(s, add_param, params) == STATUS_OK);
 }
 
 /* --- frames --- */
@@ -131,7 +131,7 @@ json_t *report_quantity(const quantity *q, const job_account *a, int worker)
     return NULL;
 }
 
-/* Returns whether the group of key is null: noise of a render without random samples, meshes of a scene without any. */
+/* Whether the group of a key is null: noise of a render without random samples, meshes of a scene without any. */
 static bool is_void(const job_account *a, const char *key)
 {
     const mesh_report *m = &a->result->meshes;
@@ -139,7 +139,7 @@ static bool is_void(const job_account *a, const char *key)
            (strncmp(key, "meshes.", 7) == 0 && m->triangles == 0 && m->drawn == 0);
 }
 
-/* Stores value, and takes its reference: "rays.camera" is camera in the object rays. value NULL sets the group to
+/* Stores value and owns it: "rays.camera" is camera in the object rays. value NULL sets the group to
  * null. */
 static int put(json_t *o, const char *key, json_t *value)
 {
@@ -173,12 +173,12 @@ static json_t *workers(const job_account *a)
     for (int i = 0; list && i < a->result->worker_count; i++) {
         json_t *one = json_object();
         if (put_all(one, worker_quantities, worker_quantity_count, a, i) | json_array_append_new(list, one))
-            return json_whole(list, false);
+            return json_if(list, false);
     }
     return list;
 }
 
-/* The processes that share the frame. */
+/* The processes that rendered the frame. */
 static json_t *ranks(const render_result *r)
 {
     json_t *list = json_array();
@@ -244,7 +244,7 @@ json_t *report_create(const job_account *a, bool repeated)
     bad |= json_object_set_new(o, "version", json_string(CUVETTE_VERSION));
     bad |= json_object_set_new(o, "scene", json_of_text(a->of->path ? a->of->path : ""));
     bad |= json_object_set_new(o, "params", report_params(a->of));
-    return json_whole(o, bad == 0);
+    return json_if(o, bad == 0);
 }
 
 json_t *report_page(const job_account *a)
@@ -255,7 +255,7 @@ json_t *report_page(const job_account *a)
         if (frame_quantities[i].page)
             bad |= json_object_set_new(o, frame_quantities[i].page, report_quantity(&frame_quantities[i], a, -1));
     bad |= json_object_set_new(o, "notes", notes(a));
-    return json_whole(o, bad == 0);
+    return json_if(o, bad == 0);
 }
 
 bool report_comparison(json_t *o, const image_comparison *c)

@@ -1,7 +1,9 @@
-/* Writers of a ray tree, as text, JSON and a drawing. Errors of the stream stay in the stream, where the caller checks
+/* Writers of a ray tree, as text, JSON and a drawing; of the ray trees of a scene's beams; and of what a screen
+ * receives of them. cuvette-trace(1) documents them. Errors of the stream stay in the stream, where the caller checks
  * them. Ownership: everything is borrowed. */
 #pragma once
 
+#include "render/inspect/beams.h"
 #include "render/inspect/probe.h"
 #include <stdio.h>
 
@@ -13,18 +15,23 @@ typedef struct traced {
     bool for_page; /* JSON for the laboratory's page: further keys, so that it computes no optics */
 } traced;
 
-extern const char *const trace_kind_words[]; /* by ray_kind */
-extern const char *const trace_end_words[];  /* by ray_end */
-
 /* The angle of a ray from the normal. */
 double trace_angle_deg(double cosine);
-
-/* The rays only, without the line of the radiance; and one ray with its children as a JSON object, false if memory runs
- * out. */
-void trace_write_text_rays(const traced *t, FILE *out);
-bool trace_write_json_ray(const traced *t, FILE *out, int at);
 
 status trace_write_text(const traced *t, FILE *out, diagnostic *why);
 /* cuvette-trace(1) documents the fixed schema in JSON OUTPUT. */
 status trace_write_json(const traced *t, FILE *out, diagnostic *why);
 status trace_write_drawing(const traced *t, FILE *out, diagnostic *why);
+
+typedef struct beamed {
+    const scene *s;
+    isa level;
+    const char *scene_path;
+    size_t segments_max; /* more rays of the trees than this are STATUS_BAD_INPUT; 0: no limit */
+    bool for_page;       /* as of traced */
+} beamed;
+
+status beams_write_text(const beamed *b, FILE *out, diagnostic *why);
+status beams_write_json(const beamed *b, FILE *out, diagnostic *why);
+
+status beam_screen_write_json(const beam_screen *screen, FILE *out, diagnostic *why);

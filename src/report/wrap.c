@@ -38,7 +38,7 @@ static size_t part_of_word(const char *word, size_t length, int room)
     return good ? good : fits;
 }
 
-/* Writes words from column indent on, with all lines from there to columns, and a newline. */
+/* Writes words wrapped between the columns indent and columns, and a newline. */
 static void write_words(FILE *stream, const char *text, int indent, int columns)
 {
     int column = indent;

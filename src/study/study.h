@@ -57,14 +57,14 @@ typedef struct study {
     noise_rule disturbed;  /* which rows are */
     long processes;        /* fresh processes that divide the repetitions; 1: the program's own */
     long warmups;          /* unmeasured frames of a cell before its first measured one, in every process */
-    bool quick;            /* in its quick form (study/quick.h) */
+    bool quick;            /* in its quick form (study_make_quick) */
     bool shuffle;
     uint64_t seed;
     bool keep_image, keep_pfm, keep_workers, keep_pixel_rays, keep_pixel_time, keep_pixel_cut, keep_timeline,
         keep_metrics, keep_curves, keep_motion; /* once per cell */
     char *text, *scene_text;                    /* the texts of both files */
     scene *base;                                /* the scene with the fixed parameters applied */
-    uint64_t *identity; /* of each cell: what determines its film and its measurement (study/identity.h) */
+    uint64_t *identity; /* of each cell: what determines its film and its measurement (study/plan/identity.h) */
     study_note *notes;  /* in the order of the file */
     size_t note_count;
 } study;
@@ -89,6 +89,17 @@ status study_read_text_guarded(const char *name, const char *text, size_t size, 
                                diagnostic *why);
 void study_destroy(study *s);
 
+/* The quick form of a study, for a look at all results within seconds: every frame is divided to at most QUICK_PIXELS
+ * pixels (study/plan/grid.h), and every cell is measured once, without warm-up, in one process. Its times mean nothing;
+ * its films and counts are as exact as any. Its runs carry `quick` in runs.json, and a results folder of a study has
+ * either quick runs or others. */
+status study_make_quick(study *s, diagnostic *why);
+/* Gives the study the form of its runs in the results folder. */
+status study_follow_runs(study *s, const char *results, diagnostic *why);
+
+/* results/<name>, the folder of the study's rows; fresh memory, or NULL. */
+char *study_folder(const study *s, const char *results);
+
 /* Cells are the grid's points, numbered 0.. with the last axis fastest. */
 size_t study_cell_count(const study *s);
 /* The axis point of a cell: study.axes[axis].points[study_cell_point(...)]. */
@@ -108,7 +119,7 @@ typedef enum study_phase {
 typedef struct study_moment {
     study_phase stage;
     size_t cell;                    /* the cell of the current frame */
-    double share;                   /* completed fraction of that frame, or of the motion before it, 0..1 */
+    double share;                   /* the completed fraction of that frame, or of the motion before it, 0..1 */
     size_t frames_done, frames_all; /* repetitions of this process' cells, without warm-ups */
     double left_s;                  /* estimated time of the remaining frames; NaN: unknown */
     size_t img, images;             /* number of the current kept file, from 1; 0 of 0 while rows are measured */
@@ -137,7 +148,7 @@ typedef struct study_options {
 } study_options;
 
 /* The number of processes that the study divides its repetitions among: its processes for the least number of
- * repetitions, and as many again for further ones. Each measures, cell by cell, until its share exists; fresh processes
+ * repetitions, and as many again for further ones. Each measures, cell by cell, until its part exists; fresh processes
  * differ in memory layout and placement, which repetitions within one do not show (Kalibera and Jones, ISMM 2013). */
 long study_processes(const study *s);
 
@@ -149,7 +160,7 @@ status study_run(const study *s, const study_options *options, size_t *ran, diag
 status study_lacks_files(const study *s, const char *results, bool *lacks, diagnostic *why);
 
 /* The progress of a study on disk, over rows.csv and the files of shards. Cells, rows and warm-up rows are those of the
- * present environment (study/environment.h). */
+ * present environment (study/rows/environment.h). */
 typedef struct study_progress {
     size_t cells, cells_done, rows, warmups, rows_marked;
     size_t rows_disturbed;   /* by the rule of the study; warm-ups do not count */

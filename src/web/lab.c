@@ -53,7 +53,7 @@ json_t *lab_state(lab *l)
                                                 "pixels", DOCUMENT_PIXELS_MAX, "triangles", DOCUMENT_TRIANGLES_MAX)) ==
             0 &&
         rescue_json(l->rescue, state);
-    return json_whole(state, good);
+    return json_if(state, good);
 }
 
 static bool is_open(lab *l)

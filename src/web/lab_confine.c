@@ -6,7 +6,7 @@
 #include "base/os_process.h"
 #include "base/status.h"
 #include "base/text.h"
-#include "report/page_live.h"
+#include "report/page.h"
 #include "web/lab_private.h"
 #include "web/session/kept_scenes.h"
 

@@ -4,12 +4,11 @@
 #include "base/csv.h"
 #include "base/file.h"
 #include "fuzz.h"
-#include "study/check.h"
-#include "study/excluded.h"
-#include "study/progress_index.h"
-#include "study/row_list.h"
-#include "study/summary.h"
-#include "study/verify.h"
+#include "study/rows/checksum.h"
+#include "study/rows/excluded.h"
+#include "study/run/progress.h"
+#include "study/summary/summary.h"
+#include "study/summary/verify.h"
 
 static const char text_of_study[] = "study: fuzz\nscene: scenes/rod.yaml\n"
                                     "set: {render.width: 8, render.height: 6, render.threads: 1}\n"
@@ -18,10 +17,10 @@ static const char text_of_study[] = "study: fuzz\nscene: scenes/rod.yaml\n"
 static const char *const names[] = {"rows.csv", "runs.json", "excluded.csv", "workers.csv", "compare.csv"};
 enum { FILES = sizeof names / sizeof *names };
 
-static void check_row(const check_columns *columns, char *const *fields, char last[CHECK_TEXT], csv_line *out)
+static void check_row(const checksum_columns *columns, char *const *fields, char last[CHECKSUM_TEXT], csv_line *out)
 {
-    const uint32_t content = check_content(columns, fields);
-    check_text(content, check_chain(last, content), last);
+    const uint32_t content = checksum_content(columns, fields);
+    checksum_text(content, checksum_chain(last, content), last);
     for (size_t k = 0; k < columns->count; k++)
         csv_text(out, columns->name[k] ? fields[k] : last);
     csv_end(out);
@@ -31,12 +30,12 @@ static void check_row(const check_columns *columns, char *const *fields, char la
 static void check_again(const char *path)
 {
     csv *table = NULL;
-    check_columns columns;
+    checksum_columns columns;
     if (csv_read_rows(path, NULL, &table, NULL) != STATUS_OK || !table)
         return;
-    must(check_columns_create(table->header, table->column_count, &columns, NULL) == STATUS_OK);
+    must(checksum_columns_create(table->header, table->column_count, &columns, NULL) == STATUS_OK);
     csv_line out = {0};
-    char last[CHECK_TEXT] = "";
+    char last[CHECKSUM_TEXT] = "";
     for (size_t k = 0; k < table->column_count; k++)
         csv_text(&out, table->header[k]);
     csv_end(&out);
@@ -49,7 +48,7 @@ static void check_again(const char *path)
     }
     must(file_write(path, out.text, NULL) == STATUS_OK);
     csv_line_free(&out);
-    check_columns_free(&columns);
+    checksum_columns_free(&columns);
     csv_destroy(table);
 }
 

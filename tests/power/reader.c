@@ -4,8 +4,8 @@
  * it locks the files, moves what is incomplete aside, and lists the run. */
 #include "base/cancel.h"
 #include "base/text.h"
-#include "study/excluded.h"
-#include "study/row_files.h"
+#include "study/rows/excluded.h"
+#include "study/rows/row_files.h"
 #include "study/study.h"
 #include <stdio.h>
 #include <stdlib.h>

@@ -3,7 +3,7 @@
 #include "web/api/api.h"
 
 #include "base/text.h"
-#include "report/beam_rows.h"
+#include "report/trace_writers.h"
 #include <stdlib.h>
 
 /* A page draws fewer; about one kilobyte each. */

@@ -100,7 +100,7 @@ static status take_pair(call *c, reference_pair **pair, const shared_image **b)
 static json_t *comparison_json(const image_comparison *found)
 {
     json_t *o = json_object();
-    return json_whole(o, o && report_comparison(o, found));
+    return json_if(o, o && report_comparison(o, found));
 }
 
 status api_compare(call *c)

@@ -5,7 +5,7 @@
 
 status api_machine(call *c)
 {
-    machine_account account = {0};
+    machine_report account = {0};
     const status code = machine_measure(&account, &c->why);
     if (code == STATUS_OK)
         api_reply_json(c, machine_json(&account));

@@ -6,7 +6,7 @@
 #include "base/text.h"
 #include "measure/clock.h"
 #include "report/json.h"
-#include "report/motion_rows.h"
+#include "report/theory_rows.h"
 #include "scene/model/scene.h"
 #include "scene/assets/slime.h"
 #include "scene/motion/motion.h"

@@ -3,7 +3,6 @@
 
 #include "base/text.h"
 #include "report/page.h"
-#include "report/page_live.h"
 
 #include <stdlib.h>
 #include <string.h>

@@ -3,7 +3,7 @@
 #include "web/api/api.h"
 
 #include "base/text.h"
-#include "report/realism_rows.h"
+#include "report/theory_rows.h"
 #include "report/json.h"
 #include <stdlib.h>
 #include <string.h>

@@ -1,6 +1,6 @@
 /* API: two sides of a study compared as by `cuvette study compare`: runs, cells, or values of an axis. */
 #include "base/text.h"
-#include "study/contrast_json.h"
+#include "study/summary/contrast.h"
 #include "web/api/api.h"
 #include "web/api/study_json.h"
 #include "web/session/study_files.h"

@@ -2,7 +2,7 @@
 #include "base/cancel.h"
 #include "base/file.h"
 #include "base/text.h"
-#include "study/plot.h"
+#include "study/plot/plot.h"
 #include "web/api/api.h"
 #include "web/session/studies.h"
 #include <errno.h>

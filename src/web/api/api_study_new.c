@@ -7,8 +7,8 @@
 #include "base/file.h"
 #include "base/text.h"
 #include "report/json.h"
-#include "study/estimate.h"
-#include "study/new_study.h"
+#include "study/run/estimate.h"
+#include "study/plan/new_study.h"
 #include "web/session/studies.h"
 #include "web/session/study_files.h"
 #include <stdlib.h>

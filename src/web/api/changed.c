@@ -17,7 +17,7 @@ static status add_value(void *context, const char *path, const param *row, const
 static json_t *values_of(const scene *s)
 {
     json_t *values = json_object();
-    return json_whole(values, values && scene_each_param(s, add_value, values) == STATUS_OK);
+    return json_if(values, values && scene_each_param(s, add_value, values) == STATUS_OK);
 }
 
 static int add_change(json_t *list, const char *path, json_t *a, json_t *b)
@@ -56,7 +56,7 @@ static json_t *list_changes(const scene *scene_a, const scene *scene_b, json_t *
         bad |= add_change(list, path, before, value);
     }
     json_object_foreach(a, path, value) if (!json_object_get(b, path)) bad |= add_change(list, path, value, NULL);
-    return json_whole(list, !bad);
+    return json_if(list, !bad);
 }
 
 json_t *changed_params(const scene *a, const scene *b)

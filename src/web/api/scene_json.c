@@ -22,7 +22,7 @@ static json_t *solid_json(const scene *s, const solid *one)
         o, "material", one->material_index >= 0 ? json_of_text(s->materials[one->material_index].name) : json_null());
     if (shape_of(&one->shape)->triangles)
         bad |= json_object_set_new(o, "mesh", json_of_text(one->mesh));
-    return json_whole(o, !bad);
+    return json_if(o, !bad);
 }
 
 static json_t *objects_json(const scene *s)
@@ -41,7 +41,7 @@ static json_t *objects_json(const scene *s)
         for (size_t i = 0; i < param_place_group_size(s, rest[group]); i++)
             bad |= json_array_append_new(
                 list, object_json(param_place_group_name(s, rest[group], i), param_group_name(rest[group])));
-    return json_whole(list, !bad);
+    return json_if(list, !bad);
 }
 
 /* [[ring..]..] by convex part, each [y, x, z, corners, from_deg] as shape_ring has them. */

@@ -53,7 +53,7 @@ static json_t *rows_by_path(const json_t *params)
     int bad = !rows;
     for (size_t i = 0; i < json_array_size(params) && !bad; i++)
         bad = json_object_set(rows, path_of(json_array_get(params, i)), json_array_get(params, i));
-    return json_whole(rows, !bad);
+    return json_if(rows, !bad);
 }
 
 /* Adds the rows that differ, and all paths in their order if there are others than before. */
@@ -93,7 +93,7 @@ static json_t *scene_delta(const json_t *before, const json_t *after)
             good = good && json_object_set(delta, key, value) == 0;
     }
     good = good && json_object_set(delta, "generation", json_object_get(after, "generation")) == 0;
-    return json_whole(delta, good && add_params(delta, before, after));
+    return json_if(delta, good && add_params(delta, before, after));
 }
 
 /* Jansson's reference counts are not atomic, so all uses of the remembered scenes are under the lock. */

@@ -3,8 +3,8 @@
 #include "base/text.h"
 #include "report/json.h"
 #include "scene/model/params.h"
-#include "study/row_files.h"
-#include "study/summary.h"
+#include "study/rows/row_files.h"
+#include "study/summary/summary.h"
 #include <stdlib.h>
 #include <string.h>
 
@@ -26,7 +26,7 @@ static json_t *axis_json(const study *s, const study_axis *axis)
     }
     json_t *json = json_pack("{s:o, s:o, s:o, s:I}", "name", json_of_text(axis->name), "paths", paths, "units", units,
                              "count", (json_int_t)axis->count);
-    return json_whole(json, !bad);
+    return json_if(json, !bad);
 }
 
 bool study_json_about(const study *s, json_t *into)
@@ -49,7 +49,7 @@ static json_t *fields_json(char *line)
     int bad = 0;
     for (char *field; (field = strsep(&line, "\t"));)
         bad |= json_array_append_new(fields, json_of_text(field));
-    return json_whole(fields, !bad);
+    return json_if(fields, !bad);
 }
 
 static json_t *table_json(json_t *columns, json_t *rows, size_t count)
@@ -66,7 +66,7 @@ static json_t *lines_json(char *text)
     while ((line = strsep(&text, "\n")) && *line)
         if (count++ < STUDY_JSON_CELLS_MAX)
             bad |= json_array_append_new(rows, fields_json(line));
-    return json_whole(table_json(columns, rows, count), !bad);
+    return json_if(table_json(columns, rows, count), !bad);
 }
 
 status study_summary_text(const study *s, const char *results, char **text, size_t *size, diagnostic *why)
@@ -101,7 +101,7 @@ static json_t *row_json(const csv *columns, const row_ref *of)
         const int column = of && of->table != columns ? csv_column(of->table, name) : (int)i;
         bad |= json_array_append_new(row, json_of_text(of ? csv_field(of->table, of->row, column) : name));
     }
-    return json_whole(row, !bad);
+    return json_if(row, !bad);
 }
 
 status study_json_rows(const study *s, const char *results, size_t from, json_t **out, diagnostic *why)
@@ -116,7 +116,7 @@ status study_json_rows(const study *s, const char *results, size_t from, json_t 
     int bad = 0;
     for (size_t i = from; i < files->row_count && i - from < STUDY_JSON_ROWS_MAX; i++)
         bad |= json_array_append_new(rows, row_json(first, &files->rows[i]));
-    *out = json_whole(table_json(row_json(first, NULL), rows, files->row_count), !bad);
+    *out = json_if(table_json(row_json(first, NULL), rows, files->row_count), !bad);
     row_files_destroy(files);
     return *out ? STATUS_OK : out_of_memory(why);
 }

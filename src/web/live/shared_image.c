@@ -82,5 +82,5 @@ json_t *shared_image_json(const shared_image *p)
     int bad = !numbers || json_object_update(o, numbers);
     json_decref(numbers);
     bad |= json_object_set_new(o, "film_hash", p->final ? json_string(hash) : json_null());
-    return json_whole(o, !bad);
+    return json_if(o, !bad);
 }

@@ -1,5 +1,5 @@
 /* Saved pages that hold the laboratory, where the engine is in this page: it leaves a place for the laboratory
- * (report/page_live.h). The site tells the text of the laboratory in one file (src/web/site/boot.js).
+ * (report/page.h). The site tells the text of the laboratory in one file (src/web/site/boot.js).
  * exports: PLACE_FOR_LABORATORY                the query of /api/page.html for a page with that place
  *          withLaboratory(blob) -> promise of a blob: the page with the laboratory; as it is where there is no place,
  *                                  or no laboratory in one file */

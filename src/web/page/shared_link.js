@@ -1,5 +1,5 @@
 /* Scenes in links: the fragment #scene=CODE of the page's address; and the scene that a page with the laboratory holds
- * (report/page_live.h).
+ * (report/page.h).
  * exports: namesScene()         whether page or address have a scene, or the address names a file (engine_boot.js)
  *          openLink(lab)        opens that scene, and that of the address whenever a link changes only the fragment
  *          openText(lab, link)  opens the scene of a link; undo restores the scene before

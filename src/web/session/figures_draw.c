@@ -2,7 +2,7 @@
 #include "base/cancel.h"
 #include "base/file.h"
 #include "base/text.h"
-#include "study/summary.h"
+#include "study/summary/summary.h"
 #include "base/child.h"
 #include "web/session/figures.h"
 #include "web/session/studies.h"

@@ -1,0 +1,44 @@
+/* The cells of a study, for its reader and for code that iterates over them: scenes, references, values as text, and
+ * the order in which cells are measured. Pure except for memory. */
+#pragma once
+
+#include "study/study.h"
+
+/* Frames of a study in its quick form have at most that many pixels. */
+enum { QUICK_PIXELS = 80 * 60 };
+
+/* Calls visit with the scene of every cell, until the first error. */
+typedef status grid_visit(void *context, const study *s, size_t cell, scene *setting, diagnostic *why);
+status grid_each_cell(const study *s, grid_visit *visit, void *context, diagnostic *why);
+
+/* Calls scene_check for every cell; an error is located in the study file at the point of its last axis. */
+status grid_check_cells(const study *s, diagnostic *why);
+
+/* Finds the film of each point (study_point.film); s has the objects that the points' paths name. */
+void grid_find_films(study_axis *axis, const scene *s);
+
+/* The scene of the cell's reference; image files are not loaded. */
+status reference_scene(const study *s, size_t cell, scene **out, diagnostic *why);
+/* Checks every cell's reference: a valid scene with the size of the cell's image. Errors are located in the study file.
+ */
+status reference_check(const study *s, diagnostic *why);
+
+/* The paths of the grid, by index; NULL after the last. */
+const char *study_grid_path(const study *s, size_t index);
+
+/* Whether two texts are one value: equal texts, numbers or vectors, whose brackets and blanks may be left out: "0,
+ * 3, 1" and "[0,3,1]". */
+bool grid_same_value(const char *a, const char *b);
+
+/* Writes all paths, or all values of the cell as written in the study file, each preceded by a tab. */
+void grid_put_paths(const study *s, FILE *out);
+void grid_put_values(const study *s, size_t cell, FILE *out);
+/* A tab and a number, with as many digits as read back the same; NA if it is not finite. */
+void grid_put_number(FILE *out, double value);
+
+/* Independent streams of one seed: the rounds of repetitions are 0, 1, ... */
+#define ORDER_STREAM_SHARDS UINT64_MAX
+
+/* order[0..count-1] = a uniform random permutation of 0..count-1 (Fisher and Yates; Durstenfeld 1964) from the
+ * counter-based generator Philox4x32-10 (Salmon et al., SC11): the same everywhere for the same (seed, stream). */
+void order_shuffle(uint64_t seed, uint64_t stream, size_t *order, size_t count);

@@ -1,0 +1,31 @@
+/* Checksums of rows: `check`, the last column of each file. Eight hex digits of a hash of the row's values by column
+ * name, then eight of a hash of these and of the checksum of the previous row of the same run (for the first row, of
+ * the run's id). The first part detects an edited row, the second a row that was removed, inserted or moved. Both
+ * ignore NA and the order of the columns, so that a file may get more columns. They detect accidents and careless
+ * edits, not forgery. */
+#pragma once
+
+#include "base/csv.h"
+
+enum { CHECKSUM_TEXT = 17 };
+
+/* Hashes of the names of a header's columns; checksum_columns_free releases. The column `check` itself is ignored. */
+typedef struct checksum_columns {
+    uint64_t *name; /* 0: the column check */
+    size_t count;
+} checksum_columns;
+
+status checksum_columns_create(char *const *names, size_t count, checksum_columns *out, diagnostic *why);
+void checksum_columns_free(checksum_columns *c);
+
+/* A hash of the values of one row with c->count fields; its upper half is the first part. */
+uint64_t checksum_values(const checksum_columns *c, char *const *fields);
+uint32_t checksum_content(const checksum_columns *c, char *const *fields);
+/* The second part; previous: the text of the checksum before, the run's id at first. */
+uint32_t checksum_chain(const char *previous, uint32_t content);
+/* "1234567890abcdef"; and back, false if the text is no checksum. */
+void checksum_text(uint32_t content, uint32_t chain, char text[CHECKSUM_TEXT]);
+bool checksum_parse(const char *text, uint32_t *content, uint32_t *chain);
+
+/* Fills in the checksums of complete lines whose last field, check, is empty ("...,NA"), and updates previous. */
+status checksum_lines(const checksum_columns *c, char previous[CHECKSUM_TEXT], csv_line *lines, diagnostic *why);

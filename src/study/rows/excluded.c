@@ -1,0 +1,223 @@
+/* The list of excluded rows: reading, comparing with rows, and adding to it. */
+#include "base/file.h"
+#include "base/number.h"
+#include "base/text.h"
+#include "scene/model/open.h"
+#include "study/plan/read_grid.h"
+#include "study/rows/excluded.h"
+#include "study/rows/rows.h"
+#include "study/rows/table.h"
+#include <stdlib.h>
+#include <string.h>
+#include <time.h>
+
+enum { REASON_LENGTH = 500 };
+
+/* Columns that name a row, by name: a list that a person wrote may lack the first four. cell is that of the grid when
+ * the row was excluded; identity is the same in every grid. */
+static const char *const keys[] = {"check", "identity", "run", "process", "cell", "repetition"};
+enum { CHECK, IDENTITY, RUN, PROCESS, CELL, REPETITION, KEY_COUNT };
+
+struct excluded {
+    csv *table; /* NULL without a file */
+    int column[KEY_COUNT];
+};
+
+static char *excluded_path(const study *s, const char *results)
+{
+    return text_format("%s/%s/excluded.csv", results, s->name);
+}
+
+static bool is_known(const char *field)
+{
+    return field[0] && strcmp(field, "NA") != 0;
+}
+
+static const char *field_of(const excluded *list, size_t line, int key)
+{
+    return csv_field(list->table, line, list->column[key]);
+}
+
+static status check_list(const excluded *list, const char *path, diagnostic *why)
+{
+    for (int key = CELL; key < KEY_COUNT; key++)
+        if (list->column[key] < 0) {
+            diagnostic_locate(why, path, 1, 0);
+            return diagnose(why, STATUS_BAD_INPUT, "restore the file, or move it away", "there is no column '%s'",
+                            keys[key]);
+        }
+    for (size_t line = 0; line < list->table->row_count; line++)
+        for (int key = CELL; key < KEY_COUNT; key++) {
+            int64_t number;
+            if (number_parse_int(field_of(list, line, key), &number))
+                continue;
+            diagnostic_locate(why, path, (long)line + 2, 0);
+            return diagnose(why, STATUS_BAD_INPUT, "restore the line, or remove it", "%s is not a number", keys[key]);
+        }
+    return STATUS_OK;
+}
+
+status excluded_read(const study *s, const char *results, excluded **out, diagnostic *why)
+{
+    *out = NULL;
+    char *path = excluded_path(s, results);
+    excluded *list = calloc(1, sizeof *list);
+    status code = path && list ? csv_read_any(path, scene_root(s->base), &list->table, why) : out_of_memory(why);
+    if (code == STATUS_OK && list->table && !list->table->header) { /* the program was killed before the header */
+        csv_destroy(list->table);
+        list->table = NULL;
+    }
+    for (int key = 0; code == STATUS_OK && list->table && key < KEY_COUNT; key++)
+        list->column[key] = csv_column(list->table, keys[key]);
+    if (code == STATUS_OK && list->table)
+        code = check_list(list, path, why);
+    free(path);
+    if (code == STATUS_OK)
+        *out = list;
+    else
+        excluded_destroy(list);
+    return code;
+}
+
+void excluded_destroy(excluded *list)
+{
+    if (list)
+        csv_destroy(list->table);
+    free(list);
+}
+
+/* Whether the line and the row agree in a column; a column that either lacks is ignored (*decided = false). */
+static bool agrees(const excluded *list, size_t line, const row_ref *row, int key, bool *decided)
+{
+    const char *here = field_of(list, line, key), *there = row_field(row, keys[key]);
+    *decided = is_known(here) && is_known(there);
+    return !*decided || strcmp(here, there) == 0;
+}
+
+static bool names(const excluded *list, size_t line, const row_ref *row)
+{
+    int64_t repetition = -1, cell = -1;
+    bool decided;
+    if (agrees(list, line, row, CHECK, &decided) && decided)
+        return true;
+    number_parse_int(field_of(list, line, REPETITION), &repetition);
+    number_parse_int(field_of(list, line, CELL), &cell);
+    if (repetition != row->repetition || !agrees(list, line, row, RUN, &decided) ||
+        !agrees(list, line, row, PROCESS, &decided) || !agrees(list, line, row, IDENTITY, &decided))
+        return false;
+    return decided || cell == (int64_t)row->cell;
+}
+
+bool excluded_has(const excluded *list, const row_ref *row)
+{
+    for (size_t line = 0; list->table && line < list->table->row_count; line++)
+        if (names(list, line, row))
+            return true;
+    return false;
+}
+
+row_use row_use_of(const excluded *without, const row_ref *row)
+{
+    return row->warmup                                  ? ROW_IS_WARMUP
+           : strcmp(row_field(row, "marked"), "0") != 0 ? ROW_IS_MARKED
+           : excluded_has(without, row)                 ? ROW_IS_EXCLUDED
+                                                        : ROW_COUNTS;
+}
+
+size_t excluded_count(const excluded *list)
+{
+    return list->table ? list->table->row_count : 0;
+}
+
+/* --- excluding --- */
+
+/* Whether text is CELL:REPETITION of the row, or its checksum. */
+static bool is_meant(const char *text, const row_ref *row)
+{
+    const char *check = row_field(row, keys[CHECK]);
+    if (is_known(check) && strcmp(check, text) == 0)
+        return true;
+    char here[64];
+    snprintf(here, sizeof here, "%zu:%ld", row->cell, row->repetition);
+    return strcmp(here, text) == 0;
+}
+
+static status wrong_row(const char *text, diagnostic *why, const char *remedy, const char *what)
+{
+    char where[160];
+    snprintf(where, sizeof where, "--row %.120s", text);
+    diagnostic_locate(why, where, 0, 0);
+    return diagnose(why, STATUS_BAD_INPUT, remedy, "%s", what);
+}
+
+static status find_row(const row_files *files, const excluded *list, const char *text, const row_ref **out,
+                       diagnostic *why)
+{
+    *out = NULL;
+    for (size_t i = 0; i < files->row_count; i++) {
+        if (!is_meant(text, &files->rows[i]))
+            continue;
+        if (*out)
+            return wrong_row(text, why, "give the row's value in the column check",
+                             "more than one row has this number");
+        *out = &files->rows[i];
+    }
+    if (!*out)
+        return wrong_row(text, why, "give CELL:REPETITION as in the columns of rows.csv, such as 3:2",
+                         "there is no such row");
+    if ((*out)->warmup)
+        return wrong_row(text, why, "", "this row is a warm-up, which summaries leave out anyway");
+    if (excluded_has(list, *out))
+        return wrong_row(text, why, "", "this row is excluded already");
+    return STATUS_OK;
+}
+
+/* Appends a line with the columns of this version; list: the present contents of the file. */
+static status append(const study *s, const char *results, const excluded *list, const row_ref *row, const char *reason,
+                     diagnostic *why)
+{
+    static const char header[] = "check,identity,run,process,cell,repetition,reason,time_utc\n";
+    char *path = excluded_path(s, results), number[32], utc[ROW_TIME_MAX];
+    struct timespec now = {0};
+    table *to = NULL;
+    csv_line line = {0};
+    for (int key = CHECK; key < CELL; key++) {
+        const char *field = row_field(row, keys[key]);
+        csv_text(&line, is_known(field) ? field : NULL);
+    }
+    snprintf(number, sizeof number, "%zu", row->cell);
+    csv_text(&line, number);
+    snprintf(number, sizeof number, "%ld", row->repetition);
+    csv_text(&line, number);
+    csv_text(&line, reason);
+    clock_gettime(CLOCK_REALTIME, &now);
+    csv_text(&line, row_time((int64_t)now.tv_sec * 1000 + now.tv_nsec / 1000000, utc));
+    csv_end(&line);
+    status code = path && !line.failed ? STATUS_OK : out_of_memory(why);
+    if (code == STATUS_OK && list->table && list->table->mended)
+        code = file_write(path, list->table->raw, why);
+    THEN(code, table_open(path, header, &to, why));
+    THEN(code, table_append(to, line.text, line.size, why));
+    table_close(to);
+    csv_line_free(&line);
+    free(path);
+    return code;
+}
+
+status excluded_add(const study *s, const char *results, const char *row, const char *reason, diagnostic *why)
+{
+    if (reason[strspn(reason, " ")] == '\0' || strlen(reason) > REASON_LENGTH || !read_grid_plain(reason)) {
+        diagnostic_locate(why, "--reason", 0, 0);
+        return diagnose(why, STATUS_BAD_INPUT, "write one line of at most 500 characters", "this is not a reason");
+    }
+    row_files *files = NULL;
+    excluded *list = NULL;
+    const row_ref *found = NULL;
+    status code = row_files_read(s, results, ROWS, &files, why);
+    THEN(code, excluded_read(s, results, &list, why));
+    THEN(code, find_row(files, list, row, &found, why));
+    THEN(code, append(s, results, list, found, reason, why));
+    excluded_destroy(list);
+    row_files_destroy(files);
+    return code;
+}

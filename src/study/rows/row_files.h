@@ -1,0 +1,93 @@
+/* All rows of a study on disk: rows.csv and the files of shards, or the same of workers.csv or compare.csv, read and
+ * verified. Equal rows in several files (after a merge) count once. Rows that cannot be trusted are left out and listed
+ * as issues; rows of cells that the study does not have (any more) are left out and counted. Ownership: row_files_read
+ * gives, row_files_destroy releases; results point into it. */
+#pragma once
+
+#include "base/csv.h"
+#include "study/rows/runs.h"
+#include "study/study.h"
+
+typedef enum row_kind { ROWS, WORKER_ROWS, COMPARE_ROWS } row_kind;
+
+typedef struct row_ref {
+    const csv *table;
+    size_t row;
+    size_t cell;             /* in the study as it is now */
+    long repetition, worker; /* worker: 0 in rows.csv; compare.csv has no repetitions, workers or warm-ups */
+    long run;                /* index in row_files.runs; below 0: the row has no known run */
+    bool warmup;
+    char environment[ENVIRONMENT_KEY]; /* 8 hex digits, or "unknown" */
+} row_ref;
+
+/* The row's value in the named column; "NA" and NaN if there is none. For many rows, look the column up once. */
+const char *row_field(const row_ref *ref, const char *name);
+double row_field_real(const row_ref *ref, const char *name);
+/* The key of the row's environment, 8 hex digits. */
+const char *row_environment(const row_ref *ref);
+
+/* What is wrong with a row, or between rows. */
+typedef enum row_fault {
+    ROW_TORN,      /* an incomplete last line: the process was killed while writing it; not a problem */
+    ROW_MARKED,    /* its film differs from the expected one; the row is in the list, with column marked = 1 */
+    ROW_DAMAGED,   /* not a row: wrong number of fields, or values of a wrong type or out of range */
+    ROW_EDITED,    /* its values do not agree with its checksum */
+    ROW_MISPLACED, /* rows before it were removed, inserted or moved; the row itself is intact and in the list */
+    ROW_MISSING,   /* rows at the end of a run are missing */
+    ROW_DUPLICATE, /* the same repetition twice in one file, or with different values */
+    ROW_DIFFERS,   /* a quantity that does not depend on the machine differs from the other rows of the cell */
+    ROW_UNKNOWN    /* its run or its place in runs.json is not known, or was edited */
+} row_fault;
+typedef struct row_issue {
+    row_fault fault;
+    const char *path;
+    long line; /* 0: of the file */
+    char text[200];
+} row_issue;
+
+typedef struct row_files {
+    char **paths; /* rows.csv first if it exists, then the shards in order */
+    csv **tables;
+    size_t count;
+    row_ref *rows; /* in the order of the files */
+    size_t row_count;
+    run_list *runs;
+    row_issue *issues;
+    size_t issue_count, fault_count; /* fault_count: issues other than ROW_TORN */
+    size_t other_cells;              /* rows of cells that the study does not have */
+} row_files;
+
+/* row_file_path: the file of that kind in the folder of a study, such as rows.csv, or rows.shard-i-of-N.csv when
+ * shards > 1; fresh memory, or NULL. row_file_stem: "rows", "workers", "compare". */
+char *row_file_path(const char *folder, row_kind kind, long shard, long shards);
+const char *row_file_stem(row_kind kind);
+/* The header line of files of that kind; fresh memory, or NULL. */
+char *row_file_header(const study *s, row_kind kind);
+
+/* The existing files of that kind: rows.csv first, then the shards in order. The caller frees each and the array. */
+status row_files_list(const char *folder, row_kind kind, char ***paths, size_t *count, diagnostic *why);
+
+/* Columns are identified by name; files of other versions of the program are read as well. STATUS_BAD_INPUT if a file
+ * lacks a required column or is of another study. Worker rows whose repetition has no row (the process was killed
+ * between the two) are dropped. */
+status row_files_read(const study *s, const char *results, row_kind kind, row_files **out, diagnostic *why);
+void row_files_destroy(row_files *files);
+
+/* Adds an issue; format as printf. */
+__attribute__((format(printf, 5, 6))) status row_files_add_issue(row_files *files, row_fault fault, const char *path,
+                                                                 long line, const char *format, ...);
+/* Reports the first faults: the summary line that commands print, and STATUS_FAILURE; STATUS_OK without faults. */
+status row_files_judge(const row_files *files, diagnostic *why);
+
+/* The environments of the rows: an array for free, in the order of the first row of each. */
+typedef struct row_environment_count {
+    char key[ENVIRONMENT_KEY];
+    size_t rows;          /* without warm-ups */
+    const run_entry *run; /* its last run in row_files.runs, or NULL */
+} row_environment_count;
+status row_environments_find(const row_files *files, row_environment_count **out, size_t *count, diagnostic *why);
+/* The key that an option chooses: "" for NULL; of "main", as row_environments_main; or the text. STATUS_BAD_INPUT if no
+ * row is of that environment. */
+status row_environments_choose(const row_files *files, const char *text, char key[ENVIRONMENT_KEY], diagnostic *why);
+/* The one with most rows, of equal ones the last; "" without rows. */
+status row_environments_main(const row_files *files, char key[ENVIRONMENT_KEY], diagnostic *why);

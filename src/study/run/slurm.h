@@ -1,0 +1,41 @@
+/* A study as an array job of Slurm: what `cuvette study submit --slurm` requests, and its script. Pure, except for the
+ * functions that read rows. Ownership: texts are allocated, for free; other values are borrowed. */
+#pragma once
+
+#include "study/rows/environment.h"
+#include "study/run/estimate.h"
+
+/* The script's template, experiments/cluster/study.slurm. */
+extern const char slurm_template[];
+
+/* A word of the template, between @ signs there. A line with a word whose value is NULL is left out. */
+typedef struct slurm_word {
+    const char *name, *value;
+} slurm_word;
+
+/* Replaces each word by its value, quoted for the shell where necessary (sbatch reads the quotes of its lines alike).
+ * STATUS_BAD_INPUT for an unknown word, located in the file. */
+status slurm_fill(const char *file, const char *text, const slurm_word *words, size_t count, char **out,
+                  diagnostic *why);
+
+/* The parts that lack something, as the option --array takes them ("0-3,7"); "" if none does. NULL without memory. */
+char *slurm_array(const study_estimate *parts, size_t count);
+
+/* The longest part, s; NaN if it is unknown, or longer than known. */
+double slurm_longest_s(const study_estimate *parts, size_t count);
+
+/* The time limit of a part, in whole minutes: factor times the longest, and at least SLURM_LEAST_MIN. */
+enum { SLURM_LEAST_MIN = 10, SLURM_TIME = 32 };
+void slurm_time_limit(double longest_s, double factor, char text[SLURM_TIME]);
+
+/* What the largest cell needs. memory_gib: a half for the program and its scene, and 64 bytes for each pixel. */
+typedef struct slurm_needs {
+    long threads, memory_gib;
+} slurm_needs;
+status slurm_needs_of(const study *s, slurm_needs *out, diagnostic *why);
+
+/* The key of the environment with most rows among those of nodes of the type, measured by this build; "none", which is
+ * no key, without rows. unlike: how another such environment differs from it; "" if there is none. others: the rows of
+ * other types and builds. */
+status slurm_environment(const study *s, const char *results, const char *node_type, char key[ENVIRONMENT_KEY],
+                         char *unlike, size_t size, size_t *others, diagnostic *why);

@@ -1,0 +1,31 @@
+/* Whether the rows of a study hold: `study verify` checks every row in rows.csv, workers.csv and compare.csv, and
+ * `study films` compares films and ray counts with those of another results folder, cell by cell: whether another
+ * machine, build or time made the same. Ownership: study_films_release frees the list. */
+#pragma once
+
+#include "study/study.h"
+
+typedef struct study_verdict {
+    size_t rows, faults;
+    diagnostic first; /* the first fault; what is empty without one */
+} study_verdict;
+
+/* Writes one line per issue, "FILE:LINE: KIND: TEXT", then one line for each environment, and a last line with the
+ * number of rows. */
+status study_verify(const study *s, const char *results, FILE *out, study_verdict *verdict, diagnostic *why);
+
+/* What distinguishes the present environment from that of the last rows of another one; "" if unknown. */
+void study_environment_difference(const study *s, const char *results, char *text, size_t size);
+
+typedef struct study_films {
+    size_t compared, same; /* cells with rows in both folders, and those with one film and equal counts in all rows */
+    size_t distinct;       /* films of the compared cells */
+    size_t *different;     /* cells, in order */
+    size_t different_count;
+    bool other_processor; /* the rows of the two folders are of unlike processors */
+    char processor[160];  /* of the folder that is compared with; "unknown" without one */
+} study_films;
+
+/* Rows that cannot be trusted (study/rows/row_files.h) are left out; marked ones are not. */
+status study_films_compare(const study *s, const char *results, const char *against, study_films *out, diagnostic *why);
+void study_films_release(study_films *films);
