@@ -30,7 +30,7 @@ static void tiles_are_given_in_order_and_only_once(void **state)
         handout_join(h, rank, rank + 1, now_s);
     while (!handout_is_complete(h))
         for (int rank = 0; rank < 3; rank++) {
-            const int count = handout_give(h, rank, tiles);
+            const int count = handout_assign(h, rank, tiles);
             assert_int_equal(handout_held(h, rank), count);
             for (int i = 0; i < count; i++) {
                 assert_int_equal(tiles[i], expected++);
@@ -39,7 +39,7 @@ static void tiles_are_given_in_order_and_only_once(void **state)
         }
     assert_int_equal(expected, 1000);
     assert_true(handout_is_empty(h));
-    assert_true(handout_share(h) == 1.0);
+    assert_true(handout_fraction(h) == 1.0);
     handout_destroy(h);
 }
 
@@ -50,7 +50,7 @@ static void a_tile_is_taken_back_only_from_the_rank_that_holds_it(void **state)
     int32_t tiles[HANDOUT_MOST];
     handout_join(h, 0, 1, 0.0);
     handout_join(h, 1, 1, 0.0);
-    assert_true(handout_give(h, 0, tiles) > 0);
+    assert_true(handout_assign(h, 0, tiles) > 0);
     assert_false(handout_return(h, 1, tiles[0], 1.0)); /* another rank's */
     assert_false(handout_return(h, 0, 9, 1.0));        /* not given yet */
     assert_false(handout_return(h, 0, 10, 1.0));       /* no tile */
@@ -65,9 +65,9 @@ static void a_rank_that_has_not_joined_gets_nothing(void **state)
     (void)state;
     handout *h = begin(4, 2);
     int32_t tiles[HANDOUT_MOST];
-    assert_int_equal(handout_give(h, 1, tiles), 0);
+    assert_int_equal(handout_assign(h, 1, tiles), 0);
     handout_join(h, 1, 2, 0.0);
-    assert_true(handout_give(h, 1, tiles) > 0);
+    assert_true(handout_assign(h, 1, tiles) > 0);
     handout_destroy(h);
 }
 
@@ -82,7 +82,7 @@ typedef struct cluster {
 static void fetch(cluster *c, handout *h, int rank, double now_s)
 {
     int32_t tiles[HANDOUT_MOST];
-    const int given = handout_give(h, rank, tiles);
+    const int given = handout_assign(h, rank, tiles);
     if (c->count[rank] == 0 && given > 0)
         c->free_s[rank] = fmax(c->free_s[rank], now_s + c->latency_s);
     for (int i = 0; i < given; i++)

@@ -6,7 +6,7 @@
 #include <stdint.h>
 #include <cmocka.h>
 
-#include "web/live/adaptive_resolution.h"
+#include "web/live/passes.h"
 
 static const double wanted_s = 0.03;
 

@@ -9,7 +9,7 @@
 #include "render_fixture.h"
 #include "scene/model/camera.h"
 #include "scene/model/camera_moves.h"
-#include "web/lab_private.h"
+#include "web/session/session.h"
 #include "scene/model/scene.h"
 
 /* Tests of the camera on the page: moves of a rolled camera follow the image, an image point maps to the tracer's ray,

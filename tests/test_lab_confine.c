@@ -12,7 +12,7 @@
 #include "image/image.h"
 #include "lab_fixture.h"
 #include "study/study.h"
-#include "web/lab_private.h"
+#include "web/session/session.h"
 #include "scene/model/scene.h"
 #include <sys/wait.h>
 

@@ -7,7 +7,7 @@
 
 #include "lab_fixture.h"
 #include "render_fixture.h"
-#include "web/session/scene_document.h"
+#include "web/document/scene_document.h"
 #include "scene/model/scene.h"
 #include <pthread.h>
 
@@ -49,7 +49,7 @@ static uint64_t apply(scene_document *d, const char *assignment)
 static void assert_value(scene_document *d, const char *path, const char *expected)
 {
     char *value = NULL;
-    scene *s = scene_document_take(d, NULL);
+    scene *s = scene_document_copy(d, NULL);
     assert_int_equal(scene_get(s, path, &value, NULL), STATUS_OK);
     assert_string_equal(value, expected);
     free(value);
@@ -240,13 +240,13 @@ static uint64_t orbit_view(scene_document *d, double yaw_deg, const char *gestur
 
 static scene *take_kept(scene_document *d, uint64_t *generation)
 {
-    return scene_document_take_kept(d, generation, NULL);
+    return scene_document_copy_kept(d, generation, NULL);
 }
 
 static uint64_t version_now(scene_document *d)
 {
     uint64_t number = 0;
-    scene_destroy(scene_document_take_kept(d, NULL, &number));
+    scene_destroy(scene_document_copy_kept(d, NULL, &number));
     return number;
 }
 
@@ -321,7 +321,7 @@ static double eye_x(scene_document *d, scene *(*take)(scene_document *d, uint64_
 
 static double view_x(scene_document *d)
 {
-    return eye_x(d, scene_document_take);
+    return eye_x(d, scene_document_copy);
 }
 
 /* A view makes a new image, but changes no scene: no undo step, nothing to save. */
@@ -397,20 +397,20 @@ static void loaded_data_is_shared(void **state)
     scene_document *d = open_document(
         BALL_SCENE "  heap: {shape: mesh, mesh: soup, priority: 2}\nmeshes:\n  soup: {generate: sphere, count: 100}\n");
     uint64_t generation;
-    scene *s = scene_document_take(d, &generation);
+    scene *s = scene_document_copy(d, &generation);
     assert_int_equal(scene_load(s, NULL), STATUS_OK);
     const mesh *loaded = s->meshes[0].data;
     scene_document_share_loaded(d, s, generation + 1); /* of another generation */
-    scene *other = scene_document_take(d, NULL);
+    scene *other = scene_document_copy(d, NULL);
     assert_null(other->meshes[0].data);
     scene_destroy(other);
     scene_document_share_loaded(d, s, generation);
     apply(d, "ball.ior=1.6");
-    other = scene_document_take(d, NULL);
+    other = scene_document_copy(d, NULL);
     assert_ptr_equal(other->meshes[0].data, loaded);
     scene_destroy(other);
     apply(d, "soup.count=200");
-    other = scene_document_take(d, NULL);
+    other = scene_document_copy(d, NULL);
     assert_null(other->meshes[0].data);
     scene_destroy(other);
     scene_destroy(s);

@@ -8,7 +8,7 @@
 #include "base/text.h"
 #include "scene/model/edit/edit.h"
 #include "scene/model/params.h"
-#include "web/session/folder.h"
+#include "web/document/folder.h"
 #include "scene/model/open.h"
 #include "scene/model/scene.h"
 #include <stdio.h>

@@ -171,7 +171,7 @@ static void a_slime_is_off_until_played(void **state)
     assert_true(live_is_due(l) && live_is_on(l));
     assert_true(advance(l));
     assert_true(live_is_moving(l));
-    assert_true(live_take_moved(l));
+    assert_true(live_fetch_moved(l));
     assert_ptr_not_equal(s->meshes[TOY].data, own);
     assert_non_null(s->meshes[0].data);
     live_send(l, LIVE_OFF);
@@ -179,8 +179,8 @@ static void a_slime_is_off_until_played(void **state)
     assert_ptr_equal(s->meshes[TOY].data, own);
     assert_true(s->meshes[TOY].time_s == 0.05);
     assert_false(live_is_on(l));
-    assert_true(live_take_moved(l));
-    assert_false(live_take_moved(l));
+    assert_true(live_fetch_moved(l));
+    assert_false(live_fetch_moved(l));
     live_detach(l);
     live_destroy(l);
     scene_destroy(s);

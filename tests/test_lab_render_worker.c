@@ -92,7 +92,7 @@ static uint64_t final_film(studio *s)
 {
     const shared_image *shown;
     diagnostic why = {0};
-    worked(render_worker_take_final(s->p, 600.0, &shown, &why), &why);
+    worked(render_worker_wait_for_final(s->p, 600.0, &shown, &why), &why);
     assert_true(shown->final);
     assert_int_equal(shown->generation, scene_document_generation(s->d));
     assert_non_null(shown->of);
@@ -183,7 +183,7 @@ static void errors_are_reported_and_cleared(void **state)
     apply(&s, "background.picture=/nowhere/sky.png");
     const shared_image *shown;
     diagnostic why = {0};
-    assert_int_equal(render_worker_take_final(s.p, 600.0, &shown, &why), STATUS_BAD_INPUT);
+    assert_int_equal(render_worker_wait_for_final(s.p, 600.0, &shown, &why), STATUS_BAD_INPUT);
     assert_null(shown);
     assert_non_null(strstr(why.what, "background.picture"));
     json_t *json = json_object();
@@ -195,7 +195,7 @@ static void errors_are_reported_and_cleared(void **state)
     apply(&s, "lamp.color=1000,1000,1000");
     apply(&s, "lamp.intensity=10000"); /* brighter than a film can store: detected while rendering */
     apply(&s, "ball.transparency=0");
-    assert_int_equal(render_worker_take_final(s.p, 600.0, &shown, &why), STATUS_BAD_INPUT);
+    assert_int_equal(render_worker_wait_for_final(s.p, 600.0, &shown, &why), STATUS_BAD_INPUT);
     close_studio(&s);
 }
 
@@ -213,8 +213,8 @@ static void a_lack_of_the_machine_is_forgotten(void **state)
     apply(&s, "background.picture=experiments/scenes/chequer.png");
     const shared_image *shown;
     diagnostic why = {0}, later = {0};
-    const status refused = render_worker_take_final(s.p, 600.0, &shown, &why),
-                 again = render_worker_take_final(s.p, 600.0, &shown, &later);
+    const status refused = render_worker_wait_for_final(s.p, 600.0, &shown, &why),
+                 again = render_worker_wait_for_final(s.p, 600.0, &shown, &later);
     assert_int_equal(setrlimit(RLIMIT_NOFILE, &usual), 0);
     assert_int_equal(refused, STATUS_FAILURE);
     assert_int_equal(again, STATUS_FAILURE);
@@ -233,9 +233,9 @@ static void nothing_is_rendered_while_suspended(void **state)
     apply(&s, "ball.ior=1.7");
     const shared_image *shown;
     diagnostic why = {0};
-    assert_int_equal(render_worker_take_final(s.p, 600.0, &shown, &why), STATUS_INTERRUPTED);
+    assert_int_equal(render_worker_wait_for_final(s.p, 600.0, &shown, &why), STATUS_INTERRUPTED);
     assert_non_null(strstr(why.what, "a study is measuring"));
-    shown = render_worker_take(s.p);
+    shown = render_worker_newest(s.p);
     assert_int_equal(shown->generation, 1);
     shared_image_release(shown);
     render_worker_suspend(s.p, NULL);
@@ -248,7 +248,7 @@ static void *wait_for_final(void *of)
     studio *s = of;
     const shared_image *shown;
     diagnostic why;
-    const status code = render_worker_take_final(s->p, 600.0, &shown, &why);
+    const status code = render_worker_wait_for_final(s->p, 600.0, &shown, &why);
     shared_image_release(shown);
     return (void *)(intptr_t)code;
 }
@@ -350,7 +350,7 @@ static void an_unrenderable_scene_leaves_the_worker_idle(void **state)
     apply(&s, "background.picture=/nowhere/sky.png");
     const shared_image *shown;
     diagnostic why = {0};
-    assert_int_equal(render_worker_take_final(s.p, 600.0, &shown, &why), STATUS_BAD_INPUT);
+    assert_int_equal(render_worker_wait_for_final(s.p, 600.0, &shown, &why), STATUS_BAD_INPUT);
     assert_true(comes_to_rest());
     live_send(render_worker_live(s.p), LIVE_PAUSE); /* a command is executed even then */
     assert_true(comes_to_rest());
@@ -426,7 +426,7 @@ static void readers_get_only_loaded_scenes(void **state)
         apply(&s, "background.picture=/nowhere/sky.png");
         snprintf(text, sizeof text, "ring.major=%d", 2 + i % 7);
         apply(&s, text);
-        assert_int_equal(render_worker_take_final(s.p, 600.0, &shown, &why), STATUS_BAD_INPUT);
+        assert_int_equal(render_worker_wait_for_final(s.p, 600.0, &shown, &why), STATUS_BAD_INPUT);
         apply(&s, "background.kind=uniform");
         final_film(&s);
     }

@@ -10,7 +10,7 @@
 #include "base/cancel.h"
 #include "lab_study_fixture.h"
 #include "base/os_process.h"
-#include "web/session/kept_scenes.h"
+#include "web/document/kept_scenes.h"
 #include <dirent.h>
 #include <fcntl.h>
 #include <signal.h>

@@ -6,7 +6,7 @@
 #include <cmocka.h>
 
 #include "lab_fixture.h"
-#include "web/api/scene_since.h"
+#include "web/api/api.h"
 
 static lab_room room;
 

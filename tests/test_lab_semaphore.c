@@ -7,7 +7,7 @@
 #include <stdint.h>
 #include <cmocka.h>
 
-#include "web/session/semaphore.h"
+#include "web/session/tasks.h"
 #include <pthread.h>
 #include <sched.h>
 

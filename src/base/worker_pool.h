@@ -8,12 +8,12 @@
  * All other threads run one function each, for a reason:
  *     image/codec.c                      the call is confined, and a confined thread cannot be used again
  *     base/os_process.c                  the call needs a larger stack
- *     mpi/lead.c, mpi/follow.c           one thread of a rank renders while another exchanges messages
+ *     mpi/frame.c                        one thread of a rank renders while another exchanges messages
  *     web/http/http_watch.c              watches connections for as long as the server runs
  *     web/lab.c                          starts the laboratory confined, from a thread that its threads inherit from
  *     web/live/render_worker_thread.c    renders the document for as long as the laboratory runs
  *     web/session/rescue.c               saves the document for as long as the laboratory runs
- *     web/session/task_thread.c          a study or a video, while the server answers */
+ *     web/session/tasks.c                a study or a video, while the server answers */
 #pragma once
 
 #include "base/status.h"

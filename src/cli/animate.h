@@ -1,5 +1,5 @@
 /* The parts of `cuvette animate`: the request, the names of the frames, the definition of an animation, its progress
- * index, its table of rows, and the rendering. Frames are written atomically, one file each. An interrupted animation
+ * index, and its table of rows. Frames are written atomically, one file each. An interrupted animation
  * can be resumed: existing frames are not rendered again, but the motion is simulated again from the start, so that the
  * frames are bit-identical with those of an uninterrupted run. A video file always starts again.
  * Ownership: arguments of the command line are borrowed; *_create and *_parse allocate, *_release frees. Errors are
@@ -9,6 +9,7 @@
 #include "cli/scene_input.h"
 #include "job/account.h"
 #include "scene/motion/motion.h"
+
 #include <jansson.h>
 #include <stdbool.h>
 #include <stdint.h>
@@ -41,8 +42,6 @@ status animate_names_parse(const char *pattern, animate_names *out, diagnostic *
 void animate_names_release(animate_names *names);
 /* The path of a frame, allocated; NULL when memory is out. */
 char *animate_name(const animate_names *names, int64_t frame);
-/* The number of the frame whose file name is name, or -1. */
-int64_t animate_name_frame(const animate_names *names, const char *name);
 
 /* The definition of an animation: everything that changes its frames. parameters holds all parameters except those that
  * affect only performance (param.performance_only) and file names, plus frame rate and start; hash also covers the
@@ -68,12 +67,6 @@ status animate_index_begin(const animate_names *names, const animate_definition 
 /* The number of frames that a progress index records; -1 for a file that is not a progress index. */
 int64_t animate_index_count(const char *path);
 
-/* STATUS_BAD_INPUT for files that have a frame's name but are not among the first `known` frames (known < 0: there is
- * no index, so no frame is known), and where the index of another animation covers frame names of this animation, of
- * which the larger of known and wanted frames are checked. */
-status animate_folder_check(const animate_names *names, int64_t known, int64_t wanted, diagnostic *why);
-/* Removes all frames. */
-status animate_folder_clear(const animate_names *names, diagnostic *why);
 /* STATUS_BAD_INPUT where a file that the scene reads has the name of a frame or of the index. */
 status animate_names_check(const animate_names *names, const scene *s, diagnostic *why);
 
@@ -106,17 +99,3 @@ typedef struct animate_row {
 /* Does nothing if the file has the same row already. STATUS_BAD_INPUT if its row of this frame has another image
  * hash. */
 status animate_rows_add(animate_rows *rows, const animate_row *row, diagnostic *why);
-
-/* The account of an animation. */
-typedef struct animate_account {
-    int64_t rendered, kept;
-    double wall_s;         /* seconds of the renders */
-    double step_s, skin_s; /* seconds spent on all motion, including that of kept frames */
-    double simulated_s;
-    uint64_t steps;
-} animate_account;
-
-/* Renders the animation frame by frame. names is NULL for a stream. STATUS_INTERRUPTED after a signal: the existing
- * frames are complete. */
-status animate_film(const animate_request *request, const animate_names *names, const animate_definition *d, job *with,
-                    scene *s, scene_motion *motion, animate_account *account, diagnostic *why);

@@ -1,9 +1,10 @@
 /* The CSV table of an animation: one row per rendered frame. */
-#include "cli/animate.h"
-#include "base/number.h"
 #include "base/csv.h"
+#include "base/number.h"
+#include "cli/animate.h"
 #include "study/rows/rows.h"
 #include "study/rows/table.h"
+
 #include <inttypes.h>
 #include <stdlib.h>
 #include <string.h>
@@ -95,7 +96,7 @@ static int compare_frames(const void *a, const void *b)
 }
 
 /* Reads the existing rows; all must belong to this animation. */
-static status take_rows(animate_rows *rows, const char *path, const csv *there, const char *header, uint64_t definition,
+static status read_rows(animate_rows *rows, const char *path, const csv *there, const char *header, uint64_t definition,
                         diagnostic *why)
 {
     char hash[32];
@@ -140,7 +141,7 @@ status animate_rows_open(const char *path, uint64_t definition, bool restart, an
         rows->path = strdup(path);
     status result = rows && rows->path && !header.failed ? csv_read(path, &there, why) : out_of_memory(why);
     if (result == STATUS_OK && there)
-        result = take_rows(rows, path, there, header.text, definition, why);
+        result = read_rows(rows, path, there, header.text, definition, why);
     if (result == STATUS_OK && restart && rows->count > 0)
         result = refuse(path, "already has rows, but this animation starts from the beginning", why);
     THEN(result, open_table(path, header.text, &rows->file, why));

@@ -5,6 +5,7 @@
 #pragma once
 
 #include "base/status.h"
+
 #include <stddef.h>
 
 typedef struct command {

@@ -1,8 +1,9 @@
 /* The dispatcher of commands: help text, selection by name, unknown names. */
+#include "base/text.h"
 #include "cli/cli.h"
 #include "cli/options.h"
 #include "cli/outputs.h"
-#include "base/text.h"
+
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
@@ -20,9 +21,9 @@ static char *table_text(const command *table, size_t count, const char *about, c
     }
     if (!text)
         return NULL;
-    char *whole = text_format("%s\n'%s COMMAND --help' prints help for a command.", text, program);
+    char *help = text_format("%s\n'%s COMMAND --help' prints help for a command.", text, program);
     free(text);
-    return whole;
+    return help;
 }
 
 static status unknown_command(const command *table, size_t count, const char *program, const char *word,

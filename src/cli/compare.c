@@ -1,11 +1,12 @@
 /* `cuvette compare`: the difference of two images, as numbers and as a map. */
 #include "cli/cli.h"
-#include "report/json.h"
-#include "report/report.h"
 #include "cli/options.h"
 #include "cli/outputs.h"
 #include "cli/scene_input.h"
 #include "image/compare.h"
+#include "report/json.h"
+#include "report/report.h"
+
 #include <stdio.h>
 
 typedef struct compare_request {

@@ -1,10 +1,11 @@
 /* `cuvette fan`: follows a fan of rays and writes its caustic and focus as a drawing or CSV. */
 #include "cli/cli.h"
-#include "report/fan_writers.h"
 #include "cli/options.h"
 #include "cli/outputs.h"
 #include "cli/scene_input.h"
+#include "report/fan_writers.h"
 #include "scene/model/lights.h"
+
 #include <math.h>
 #include <stdio.h>
 #include <string.h>
@@ -19,7 +20,7 @@ typedef struct fan_request {
 
 enum { FAN_SVG, FAN_CSV };
 
-static status take_vector(const command_option *o, void *request, const char *value, diagnostic *why)
+static status parse_vector(const command_option *o, void *request, const char *value, diagnostic *why)
 {
     char name[32];
     double v[3];
@@ -31,7 +32,7 @@ static status take_vector(const command_option *o, void *request, const char *va
     return result;
 }
 
-static status take_size(const command_option *o, void *context, const char *value, diagnostic *why)
+static status parse_size(const command_option *o, void *context, const char *value, diagnostic *why)
 {
     fan_request *request = context;
     const bool spreads = strcmp(o->name, "spread") == 0;
@@ -51,13 +52,13 @@ static status take_size(const command_option *o, void *context, const char *valu
 }
 
 static const command_option options[] = {
-    {"from", 0, "X,Y,Z", "origin of the central ray", OPTION_FILLS(take_vector, fan_request, rule.from)},
-    {"to", 0, "X,Y,Z", "point on the central ray", OPTION_FILLS(take_vector, fan_request, rule.to)},
+    {"from", 0, "X,Y,Z", "origin of the central ray", OPTION_FILLS(parse_vector, fan_request, rule.from)},
+    {"to", 0, "X,Y,Z", "point on the central ray", OPTION_FILLS(parse_vector, fan_request, rule.to)},
     {"rays", 0, "N", "number of rays (default: 21)", OPTION_FILLS(option_integer, fan_request, rays), .lowest = 1,
      .highest = FAN_RAYS_MAX},
-    {"width", 0, "W", "width of a parallel beam (default: 1, without --spread)", .take = take_size},
-    {"spread", 0, "DEG", "full angle of a fan from one point, in degrees", .take = take_size},
-    {"plane", 0, "NX,NY,NZ", "normal of the plane of the rays", OPTION_FILLS(take_vector, fan_request, rule.normal)},
+    {"width", 0, "W", "width of a parallel beam (default: 1, without --spread)", .take = parse_size},
+    {"spread", 0, "DEG", "full angle of a fan from one point, in degrees", .take = parse_size},
+    {"plane", 0, "NX,NY,NZ", "normal of the plane of the rays", OPTION_FILLS(parse_vector, fan_request, rule.normal)},
     {"depth", 0, "N", "number of surfaces at which a ray is followed (default: render.depth)",
      OPTION_FILLS(option_integer, fan_request, depth), .lowest = 0, .highest = BEAM_DEPTH_MAX},
     OPTION_LAMBDA,

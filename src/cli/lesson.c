@@ -7,6 +7,7 @@
 #include "lesson/lesson.h"
 #include "report/json.h"
 #include "report/lesson_rows.h"
+
 #include <math.h>
 #include <stdio.h>
 #include <stdlib.h>

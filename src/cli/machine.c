@@ -1,11 +1,12 @@
 /* `cuvette machine`: hardware, clocks, and what disturbs measurements. */
 #include "cli/cli.h"
-#include "report/json.h"
 #include "cli/options.h"
 #include "cli/terminal.h"
 #include "measure/usage.h"
+#include "report/json.h"
 #include "report/machine.h"
 #include "report/wrap.h"
+
 #include <stdio.h>
 #include <stdlib.h>
 #include <unistd.h>

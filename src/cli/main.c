@@ -1,11 +1,12 @@
 /* The entry point of `cuvette`: the table of commands, --version, and the exit code. */
-#include "base/json_build.h"
-#include "base/float_environment.h"
-#include "base/os_process.h"
 #include "base/build_id.h"
+#include "base/float_environment.h"
+#include "base/json_build.h"
+#include "base/os_process.h"
 #include "base/child.h"
 #include "cli/cli.h"
 #include "cli/terminal.h"
+
 #include <argp.h>
 #include <stdio.h>
 #include <stdlib.h>
@@ -65,8 +66,8 @@ static void print_version(FILE *stream, struct argp_state *state)
     fprintf(stream, "cuvette %s (build %s%s%s)\n", CUVETTE_VERSION, build_id(), commit[0] ? ", commit " : "", commit);
 }
 
-/* Under mpirun, every process of `cuvette` does the whole work: most likely cuvette-mpi was meant. Environment of
- * OpenMPI. */
+/* Notes that under mpirun every process of `cuvette` does all the work: most likely cuvette-mpi was meant. The
+ * variables are OpenMPI's. */
 static void note_whole_work(int argc, char **argv)
 {
     const char *rank = getenv("OMPI_COMM_WORLD_RANK"), *ranks = getenv("OMPI_COMM_WORLD_SIZE");

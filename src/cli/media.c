@@ -1,10 +1,11 @@
 /* `cuvette media`: the media catalogue as a table, one medium in detail, or JSON. */
+#include "base/number.h"
 #include "cli/cli.h"
-#include "report/json.h"
-#include "report/media_rows.h"
 #include "cli/options.h"
 #include "cli/terminal.h"
-#include "base/number.h"
+#include "report/json.h"
+#include "report/media_rows.h"
+
 #include <stdbool.h>
 #include <stdlib.h>
 #include <unistd.h>
@@ -15,7 +16,7 @@ typedef struct media_request {
     bool json;
 } media_request;
 
-static status take_wavelength(const command_option *o, void *context, const char *value, diagnostic *why)
+static status parse_wavelength(const command_option *o, void *context, const char *value, diagnostic *why)
 {
     media_request *request = context;
     (void)o;
@@ -26,7 +27,7 @@ static status take_wavelength(const command_option *o, void *context, const char
 }
 
 static const command_option options[] = {
-    {"at", 0, "NM", "also print the index at this wavelength", .take = take_wavelength},
+    {"at", 0, "NM", "also print the index at this wavelength", .take = parse_wavelength},
     {"json", 0, NULL, "print JSON", OPTION_FILLS(option_flag, media_request, json)},
     {0},
 };

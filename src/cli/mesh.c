@@ -2,14 +2,15 @@
  * of the generators are parameters of a scene's mesh, set through the parameter table. */
 #include "base/cancel.h"
 #include "cli/cli.h"
+#include "cli/options.h"
+#include "cli/outputs.h"
+#include "cli/scene_input.h"
 #include "report/json.h"
 #include "report/mesh_writers.h"
-#include "cli/options.h"
-#include "cli/scene_input.h"
-#include "cli/outputs.h"
 #include "scene/model/edit/edit.h"
 #include "scene/model/params.h"
 #include "scene/model/scene.h"
+
 #include <stdio.h>
 #include <string.h>
 
@@ -22,7 +23,7 @@ typedef struct mesh_request {
     bool json;
 } mesh_request;
 
-static status take_format(const command_option *o, void *context, const char *value, diagnostic *why)
+static status parse_format(const command_option *o, void *context, const char *value, diagnostic *why)
 {
     mesh_request *request = context;
     (void)o;
@@ -32,7 +33,7 @@ static status take_format(const command_option *o, void *context, const char *va
     return options_choice("--format", "format", value, names, MESH_FORMAT_COUNT, &request->format, why);
 }
 
-static status take_parameter(const command_option *o, void *context, const char *value, diagnostic *why)
+static status parse_parameter(const command_option *o, void *context, const char *value, diagnostic *why)
 {
     mesh_request *request = context;
     char path[64], name[64];
@@ -44,25 +45,25 @@ static status take_parameter(const command_option *o, void *context, const char 
 
 static const command_option options[] = {
     {"generate", 0, "KIND", "generate sparse, dense, sphere, icosphere, torus, lathe, terrain or box",
-     .take = take_parameter},
+     .take = parse_parameter},
     {"count", 0, "N", "number of triangles of sparse and dense, approximate for sphere; default 10000",
-     .take = take_parameter},
-    {"level", 0, "N", "icosphere: number of subdivisions, 0 to 11; default 4", .take = take_parameter},
-    {"major", 0, "R", "torus: radius of the centre line of the tube; default 1", .take = take_parameter},
-    {"minor", 0, "R", "torus: radius of the tube; default 0.4", .take = take_parameter},
+     .take = parse_parameter},
+    {"level", 0, "N", "icosphere: number of subdivisions, 0 to 11; default 4", .take = parse_parameter},
+    {"major", 0, "R", "torus: radius of the centre line of the tube; default 1", .take = parse_parameter},
+    {"minor", 0, "R", "torus: radius of the tube; default 0.4", .take = parse_parameter},
     {"around", 0, "N", "torus, lathe: segments around the axis; terrain: cells along x; default 64",
-     .take = take_parameter},
-    {"tube", 0, "N", "torus: segments around the tube; terrain: cells along z; default 32", .take = take_parameter},
+     .take = parse_parameter},
+    {"tube", 0, "N", "torus: segments around the tube; terrain: cells along z; default 32", .take = parse_parameter},
     {"profile", 0, "R,Y,R,Y,...", "lathe: radius and height of each point of the profile; default a cylinder",
-     .take = take_parameter},
+     .take = parse_parameter},
     {"crease", 0, "DEG", "lathe: angle of the profile above which an edge stays sharp; default 30",
-     .take = take_parameter, .parameter = "crease_deg"},
+     .take = parse_parameter, .parameter = "crease_deg"},
     {"size", 0, "X,Y,Z", "box: edge lengths; terrain: size, with the height of the hills as Y; default 1,1,1",
-     .take = take_parameter},
-    {"depth", 0, "D", "terrain: depth of its flat bottom, 0 leaves the mesh open; default 0", .take = take_parameter},
-    {"seed", 0, "N", "terrain: seed of the random hills; default 1", .take = take_parameter},
+     .take = parse_parameter},
+    {"depth", 0, "D", "terrain: depth of its flat bottom, 0 leaves the mesh open; default 0", .take = parse_parameter},
+    {"seed", 0, "N", "terrain: seed of the random hills; default 1", .take = parse_parameter},
     {"format", 'f', "FORMAT", "write the triangles as obj, bin or ply (default: by the ending of -o FILE)",
-     .take = take_format},
+     .take = parse_format},
     {"output", 'o', "FILE", "write to FILE instead of standard output",
      OPTION_FILLS(option_text, mesh_request, output)},
     OPTION_MEMORY,

@@ -1,14 +1,15 @@
 /* `cuvette motion`: the motion of a scene's slimes against closed-form mechanics, as a table, CSV or JSON. */
+#include "base/number.h"
 #include "cli/cli.h"
+#include "cli/scene_input.h"
+#include "cli/terminal.h"
 #include "report/json.h"
 #include "report/theory_rows.h"
 #include "report/wrap.h"
-#include "base/number.h"
-#include "cli/scene_input.h"
-#include "cli/terminal.h"
-#include "scene/motion/motion.h"
-#include "scene/assets/slime.h"
 #include "scene/model/scene.h"
+#include "scene/assets/slime.h"
+#include "scene/motion/motion.h"
+
 #include <math.h>
 #include <stdio.h>
 #include <string.h>

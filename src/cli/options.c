@@ -1,7 +1,8 @@
 /* The command-line parser: options and arguments by argp, with diagnostics in place of argp's error output. */
-#include "cli/options.h"
 #include "base/number.h"
 #include "base/text.h"
+#include "cli/options.h"
+
 #include <argp.h>
 #include <errno.h>
 #include <getopt.h>
@@ -146,11 +147,11 @@ typedef struct form_reading {
     status wrong; /* the status behind EINVAL */
 } form_reading;
 
-static error_t take_word(form_reading *reading, const char *word, struct argp_state *state)
+static error_t parse_word(form_reading *reading, const char *word, struct argp_state *state)
 {
     const command_form *form = reading->form;
-    if (form->take_argument)
-        return form->take_argument(reading->request, word), 0;
+    if (form->store_argument)
+        return form->store_argument(reading->request, word), 0;
     if (reading->arguments == form->argument_limit) {
         char remedy[192];
         snprintf(remedy, sizeof remedy, "see '%s --help'", reading->program);
@@ -166,11 +167,11 @@ static error_t take_word(form_reading *reading, const char *word, struct argp_st
 }
 
 /* Returns EINVAL for an error, with the reason in *why. */
-static error_t take_key(int key, char *value, struct argp_state *state)
+static error_t handle_key(int key, char *value, struct argp_state *state)
 {
     form_reading *reading = state->input;
     if (key == ARGP_KEY_ARG)
-        return take_word(reading, value, state);
+        return parse_word(reading, value, state);
     for (const command_option *o = reading->form->options; o && o->name; o++)
         if (key == o->letter || key == KEY_FIRST + (int)(o - reading->form->options)) {
             const status taken = o->take(o, reading->request, value, reading->why);
@@ -202,7 +203,7 @@ status command_form_read(const command_form *form, int argc, char **argv, void *
                                           o->form,    o->optional ? OPTION_ARG_OPTIONAL : 0,
                                           o->purpose, 0};
     }
-    struct argp argp = {.options = options, .parser = take_key, .args_doc = form->synopsis};
+    struct argp argp = {.options = options, .parser = handle_key, .args_doc = form->synopsis};
     TRY(check(&argp, flags, argc, argv, why));
     char *about = about_with_page(form->about, argv[0]);
     if (!about)
@@ -259,9 +260,9 @@ status options_integer(const char *option, const char *value, int64_t lowest, in
         char remedy[96];
         snprintf(remedy, sizeof remedy, "give an integer from %lld to %lld", (long long)lowest, (long long)highest);
         const char *digits = value + (value[0] == '-');
-        bool whole = digits[0] && digits[strspn(digits, "0123456789")] == 0;
-        return options_wrong(option, value, why, remedy, whole ? "%.64s is out of range" : "'%.64s' is not an integer",
-                             value);
+        bool is_integer = digits[0] && digits[strspn(digits, "0123456789")] == 0;
+        return options_wrong(option, value, why, remedy,
+                             is_integer ? "%.64s is out of range" : "'%.64s' is not an integer", value);
     }
     *out = number;
     return STATUS_OK;

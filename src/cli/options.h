@@ -4,6 +4,7 @@
 #pragma once
 
 #include "base/status.h"
+
 #include <stdbool.h>
 #include <stddef.h>
 #include <stdint.h>
@@ -40,8 +41,8 @@ typedef struct command_form {
     const char *synopsis, *about;
     size_t arguments_at, argument_limit; /* offset of the array in the request, and its length */
     const char *excess, *excess_remedy;  /* error for a surplus argument, with one %s; NULL: a general one */
-    void (*take_argument)(void *request, const char *argument); /* takes each argument, without a limit; or NULL */
-    bool ends_at_argument;                                      /* parsing stops after the first argument */
+    void (*store_argument)(void *request, const char *argument); /* takes each argument, without a limit; or NULL */
+    bool ends_at_argument;                                       /* parsing stops after the first argument */
 } command_form;
 
 /* Reads a command line into the request. */

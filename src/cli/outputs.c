@@ -1,9 +1,10 @@
 /* Output files of the commands: checks of their names before any work, and writing. */
-#include "cli/outputs.h"
 #include "base/file.h"
 #include "cli/options.h"
+#include "cli/outputs.h"
 #include "render/frame/record.h"
 #include "scene/model/scene.h"
+
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
@@ -115,9 +116,9 @@ bool scene_files_any(const scene *s, bool (*matches)(void *context, const char *
 
 static bool is_file_of(const char *path, const scene *s, const char *named)
 {
-    char *whole = named && named[0] ? scene_file_path(s, named) : NULL;
-    bool same = whole && same_file(path, whole);
-    free(whole);
+    char *full_path = named && named[0] ? scene_file_path(s, named) : NULL;
+    bool same = full_path && same_file(path, full_path);
+    free(full_path);
     return same;
 }
 

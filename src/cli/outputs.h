@@ -4,6 +4,7 @@
 #pragma once
 
 #include "render/frame/renderer.h"
+
 #include <stdio.h>
 
 typedef struct outputs {
@@ -15,7 +16,7 @@ typedef struct outputs {
 char *outputs_folder_of(const char *path);
 bool outputs_same_entry(const char *a, const char *b);
 bool outputs_ends_with(const char *path, const char *ending); /* ignores case */
-bool outputs_is_page(const char *path);                       /* .html: cli/render_page.h writes it */
+bool outputs_is_page(const char *path);                       /* .html: cli/render.c writes it */
 
 /* Calls matches with each file that a scene reads until it returns true, and returns whether it did. Paths are relative
  * to the working folder: the scene file, its environment image, textures, meshes and scripts of slimes, but not files

@@ -1,9 +1,10 @@
 /* `cuvette params`: the parameter table as text, JSON or roff. */
 #include "cli/cli.h"
-#include "report/json.h"
 #include "cli/options.h"
-#include "report/param_rows.h"
 #include "cli/terminal.h"
+#include "report/json.h"
+#include "report/param_rows.h"
+
 #include <stdbool.h>
 #include <string.h>
 #include <sys/stat.h>

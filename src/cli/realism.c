@@ -1,11 +1,12 @@
 /* `cuvette realism`: metrics of a traced scene against closed-form optics, as a table, CSV, JSON or a curve. */
 #include "cli/cli.h"
-#include "report/json.h"
-#include "report/theory_rows.h"
-#include "report/wrap.h"
 #include "cli/options.h"
 #include "cli/scene_input.h"
 #include "cli/terminal.h"
+#include "report/json.h"
+#include "report/theory_rows.h"
+#include "report/wrap.h"
+
 #include <stdio.h>
 #include <string.h>
 #include <unistd.h>
@@ -16,7 +17,7 @@ typedef struct realism_request {
     int curve; /* realism_curve, or -1 */
 } realism_request;
 
-static status take_curve(const command_option *o, void *context, const char *value, diagnostic *why)
+static status parse_curve(const command_option *o, void *context, const char *value, diagnostic *why)
 {
     realism_request *request = context;
     const char *names[REALISM_CURVE_COUNT];
@@ -34,7 +35,7 @@ static const command_option options[] = {
     {"curve", 0, "NAME",
      "print one curve (x, measured, theory) as CSV: fresnel-s, fresnel-p, fresnel, deviation, depth, absorption, "
      "edges, mirror, apparent-depth, prism, rainbow, plates, malus, coin, arrow or soap",
-     .take = take_curve},
+     .take = parse_curve},
     {0},
 };
 

@@ -1,27 +1,81 @@
 /* `cuvette render`: renders a scene, writes image, maps and timeline, prints the account. */
 #include "base/cancel.h"
+#include "base/number.h"
+#include "base/text.h"
 #include "cli/cli.h"
-#include "report/json.h"
 #include "cli/options.h"
 #include "cli/outputs.h"
-#include "cli/render_page.h"
-#include "job/quantities.h"
-#include "render/frame/record.h"
-#include "render/inspect/beams.h"
-#include "report/page.h"
-#include "report/report.h"
-#include "cli/inert_notes.h"
 #include "cli/scene_input.h"
 #include "cli/terminal.h"
-#include "base/number.h"
+#include "job/quantities.h"
 #include "measure/statistics.h"
+#include "render/frame/record.h"
+#include "render/inspect/beams.h"
+#include "report/json.h"
+#include "report/page.h"
+#include "report/report.h"
 #include "scene/file/shared.h"
+#include "scene/model/camera.h"
 #include "scene/model/params.h"
 #include "scene/model/scene.h"
+
 #include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
+
+/* --- the page of a rendered scene (report/page.h), with the command that made it --- */
+
+static status command_of(const scene_input *input, const char *path, bool live, char **text, diagnostic *why)
+{
+    text_writer writer;
+    TRY(text_writer_open(&writer, why));
+    fputs("cuvette render ", writer.stream);
+    shell_word_write(writer.stream, input->path);
+    for (size_t i = 0; i < input->count; i++) {
+        const scene_change *change = &input->changes[i];
+        char *both = change->path ? text_format("%s=%s", change->path, change->text) : NULL;
+        fputs(" --set ", writer.stream);
+        shell_word_write(writer.stream, both ? both : change->text);
+        free(both);
+    }
+    fputs(" -o ", writer.stream);
+    shell_word_write(writer.stream, path);
+    fputs(live ? " --live" : "", writer.stream);
+    return text_writer_close(&writer, text, NULL, why);
+}
+
+static status write_page(const void *content, FILE *out, diagnostic *why)
+{
+    return report_page_write(content, out, why);
+}
+
+/* Written completely or not at all. live: with the laboratory (report/page.h), NULL for none. */
+static status render_page_write(const scene_input *input, const job_account *f, isa level, const char *path, int bits,
+                                const char *live, diagnostic *why)
+{
+    image *img = NULL;
+    char *command_text = NULL;
+    status code = film_image(f->result->img, &img, why);
+    if (code == STATUS_OK)
+        img->tone = camera_tone(f->of);
+    THEN(code, command_of(input, path, live, &command_text, why));
+    if (code == STATUS_OK) {
+        const report_page_content page = {.s = f->of,
+                                          .level = level,
+                                          .rows = image_rows_of(img),
+                                          .bits = bits,
+                                          .film_hash = job_account_hash(f),
+                                          .command = command_text,
+                                          .live = live};
+        code = outputs_write_text(path, write_page, &page, why);
+    }
+    free(command_text);
+    image_destroy(img);
+    return code;
+}
+
+/* --- the command --- */
 
 typedef struct render_request {
     scene_input input;
@@ -31,7 +85,7 @@ typedef struct render_request {
     int64_t repeat;   /* 0: not given */
 } render_request;
 
-static status take_bits(const command_option *o, void *context, const char *value, diagnostic *why)
+static status parse_bits(const command_option *o, void *context, const char *value, diagnostic *why)
 {
     render_request *request = context;
     int64_t bits = 8;
@@ -54,7 +108,7 @@ static const command_option options[] = {
      OPTION_FILLS(option_flag, render_request, beams)},
     {"live", 0, NULL, "put the laboratory into the page of -o: its scene can be turned and changed there",
      OPTION_FILLS(option_flag, render_request, live)},
-    {"bits", 0, "N", "bits per channel of a PNG: 8 (the default) or 16", .take = take_bits},
+    {"bits", 0, "N", "bits per channel of a PNG: 8 (the default) or 16", .take = parse_bits},
     {"rays", 0, "FILE", "write the ray count of each pixel: .png with a colour scale, or .pfm",
      OPTION_FILLS(option_text, render_request, files.rays)},
     {"time", 0, "FILE", "write the render time of each pixel in ns: .png with a colour scale, or .pfm",
@@ -73,7 +127,7 @@ static const command_option options[] = {
 };
 
 /* Read before anything is rendered, so that a missing file costs no time. */
-static status take_laboratory(render_request *request, diagnostic *why)
+static status load_laboratory(render_request *request, diagnostic *why)
 {
     if (!request->files.img || !outputs_is_page(request->files.img))
         return options_wrong("--live", NULL, why, "add -o FILE.html", "only a page can hold the laboratory");
@@ -88,7 +142,7 @@ static status check_request(void *context, diagnostic *why)
     render_request *request = context;
     const outputs *files = &request->files;
     if (request->live)
-        TRY(take_laboratory(request, why));
+        TRY(load_laboratory(request, why));
     if (request->beams && files->img && outputs_is_page(files->img))
         return options_wrong("--beams", NULL, why, "remove it", "a page shows the beams anyway");
     if (request->beams && (!files->img || image_format_of(files->img) == IMAGE_PFM))
@@ -131,12 +185,12 @@ static void print_time(const char *name, const double *values, size_t count)
         free(sorted);
 }
 
-/* The share of the image's light that was cut, where it is large enough to be seen. */
+/* Prints the fraction of the image's light that was cut, if it is large enough to be seen. */
 static void print_cut(const job_account *f)
 {
-    const double least = 0.01, share = frame_quantity("cut_share")->read(f, -1).real[0];
-    if (share >= least)
-        printf(", %.3g %% of the light cut", 100.0 * share);
+    const double least = 0.01, fraction = frame_quantity("cut_share")->read(f, -1).real[0];
+    if (fraction >= least)
+        printf(", %.3g %% of the light cut", 100.0 * fraction);
 }
 
 /* Prints the summary, one line; programs use --json. */
@@ -201,8 +255,8 @@ static status write_files(const render_request *request, const job_account *f, j
     return STATUS_OK;
 }
 
-/* Ctrl-C does not lose what was rendered, before or while files are written: they are written, or written again, with
- * less effort, but no page, beams and layers, which take long. STATUS_INTERRUPTED then. */
+/* Writes the results. After Ctrl-C, before or while files are written, what was rendered is still written, or written
+ * again, with less effort, but no page, beams and layers, which take long; STATUS_INTERRUPTED then. */
 static status write_results(const render_request *request, const job_account *f, job *with, diagnostic *why)
 {
     status first = cancel_check(why);

@@ -107,3 +107,17 @@ status scene_input_isa(isa *level, diagnostic *why);
  * processes after scene_input_share, which a program calls once, first. */
 void scene_input_share(const job_sharing *sharing);
 status scene_input_job(bool measured, job **out, diagnostic *why);
+
+/* --- notes on parameters that are set but have no effect (lint/lint.h), one line each on standard error --- */
+
+/* A place that already has a note of the linter gets no second one. Everything is borrowed. */
+
+/* Notes on the changes of the command line. s: the changed scene. */
+void inert_note_changes(const scene *s, const scene_input *input);
+
+/* Further notes on the command line that need the rendered frame. Where a note needs a second frame for comparison, the
+ * job renders it, if the first one took less than a second. */
+void inert_note_frame(const scene_input *input, job *with, const job_account *frame);
+
+/* A note on one PATH=VALUE. */
+void inert_note_assignment(const scene *s, const char *assignment);

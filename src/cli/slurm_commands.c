@@ -1,7 +1,8 @@
-#include "cli/slurm_commands.h"
 #include "base/cancel.h"
 #include "base/child.h"
 #include "base/text.h"
+#include "cli/slurm_commands.h"
+
 #include <limits.h>
 #include <stdbool.h>
 #include <stdint.h>

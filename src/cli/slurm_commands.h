@@ -3,6 +3,7 @@
 #pragma once
 
 #include "base/status.h"
+
 #include <stdio.h>
 
 /* A script to submit. */

@@ -4,10 +4,7 @@
 #include "cli/cli.h"
 #include "cli/options.h"
 #include "cli/scene_input.h"
-#include "cli/study_commands.h"
-#include "cli/study_instructions.h"
-#include "cli/study_notes.h"
-#include "cli/study_request.h"
+#include "cli/study.h"
 #include "cli/terminal.h"
 #include "measure/usage.h"
 #include "study/run/estimate.h"
@@ -15,6 +12,7 @@
 #include "study/study.h"
 #include "study/summary/summary.h"
 #include "study/summary/verify.h"
+
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
@@ -109,7 +107,7 @@ static void note_disturbance(void *context, const char *text)
     terminal_note(line);
 }
 
-/* Once per command: what disturbs measurements on this machine, and what to do. */
+/* Notes once per command what disturbs measurements on this machine, and what to do about it. */
 static void note_machine(void)
 {
     static bool noted;

@@ -1,14 +1,14 @@
 /* `cuvette study compare`: two runs, environments, cells or values of an axis. */
 #include "base/number.h"
 #include "base/text.h"
-#include "cli/aligned_table.h"
 #include "cli/options.h"
-#include "cli/study_commands.h"
+#include "cli/study.h"
 #include "cli/terminal.h"
 #include "report/json.h"
 #include "study/summary/contrast.h"
 #include "study/plan/grid.h"
 #include "study/study.h"
+
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
@@ -18,11 +18,11 @@ enum { ARGUMENTS = 3 }; /* study, A, B */
 typedef struct request {
     const char *arguments[ARGUMENTS];
     const char *results, *column;
-    double detect, fail; /* shares; fail below 0: not given */
+    double detect, fail; /* fractions; fail below 0: not given */
     bool tsv, json;
 } request;
 
-static status take_percent(const command_option *o, void *context, const char *value, diagnostic *why)
+static status parse_percent(const command_option *o, void *context, const char *value, diagnostic *why)
 {
     double percent;
     const double least = strcmp(o->name, "detect") == 0 ? 0.001 : 0.0;
@@ -38,11 +38,11 @@ static const command_option options[] = {
     {"column", 'c', "COLUMN", "column of rows.csv to compare (default: wall_s)",
      OPTION_FILLS(option_text, request, column)},
     {"detect", 'd', "PERCENT", "difference for which the necessary number of processes is printed (default: 3)",
-     OPTION_FILLS(take_percent, request, detect)},
+     OPTION_FILLS(parse_percent, request, detect)},
     {"fail-if-slower", 0, "PERCENT",
      "exit status 1 if the interval of the ratio over all cells lies above 1 + PERCENT / 100, and 2 if there can be no "
      "verdict",
-     OPTION_FILLS(take_percent, request, fail)},
+     OPTION_FILLS(parse_percent, request, fail)},
     {"tsv", 0, NULL, "print the table with all digits, separated by tabs", OPTION_FILLS(option_flag, request, tsv)},
     {"json", 0, NULL, "print JSON", OPTION_FILLS(option_flag, request, json)},
     {0},
@@ -132,15 +132,15 @@ static status print_table(const study *s, const study_side *a, const contrast *c
     size_t shared = put_shared(s, a, NULL, names);
     for (size_t i = 0; i < shared; i++)
         free(names[i]);
-    const bool whole = c->count > 1;
-    const size_t columns = shared + OWN_COLUMNS, rows = 1 + c->count + whole;
+    const bool has_total = c->count > 1;
+    const size_t columns = shared + OWN_COLUMNS, rows = 1 + c->count + has_total;
     char **text = calloc(rows * columns + 1, sizeof *text);
     if (!text)
         return out_of_memory(why);
     put_line(s, a, NULL, true, column, shared, text);
     for (size_t i = 0; i < c->count; i++)
         put_line(s, a, &c->lines[i], true, column, shared, text + (i + 1) * columns);
-    if (whole)
+    if (has_total)
         put_line(s, a, &c->all, false, column, shared, text + (c->count + 1) * columns);
     bool has_memory = true;
     for (size_t i = 0; i < rows * columns; i++)

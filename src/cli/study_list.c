@@ -1,13 +1,13 @@
 /* `cuvette study list`: the studies of a folder and the scenes below it. */
-#include "cli/study_commands.h"
-
-#include "base/status.h"
 #include "base/installed.h"
+#include "base/status.h"
 #include "base/text.h"
 #include "cli/cli.h"
 #include "cli/options.h"
+#include "cli/study.h"
 #include "cli/terminal.h"
 #include "scene/model/scene.h"
+
 #include <dirent.h>
 #include <errno.h>
 #include <stdio.h>

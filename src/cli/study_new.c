@@ -1,14 +1,14 @@
 /* `cuvette study new`: writes a study file for a scene and axes, after reading it as `study run` would. */
-#include "study/plan/new_study.h"
 #include "base/file.h"
 #include "base/array.h"
 #include "cli/options.h"
 #include "cli/outputs.h"
-#include "cli/study_commands.h"
-#include "cli/study_notes.h"
+#include "cli/study.h"
 #include "cli/terminal.h"
 #include "scene/model/scene.h"
+#include "study/plan/new_study.h"
 #include "study/study.h"
+
 #include <stdlib.h>
 #include <string.h>
 #include <unistd.h>
@@ -21,7 +21,7 @@ typedef struct new_request {
     bool force;
 } new_request;
 
-static status take_axis(const command_option *o, void *context, const char *value, diagnostic *why)
+static status parse_axis(const command_option *o, void *context, const char *value, diagnostic *why)
 {
     new_request *r = context;
     (void)o;
@@ -31,7 +31,7 @@ static status take_axis(const command_option *o, void *context, const char *valu
     return STATUS_OK;
 }
 
-static status take_set(const command_option *o, void *context, const char *value, diagnostic *why)
+static status parse_set(const command_option *o, void *context, const char *value, diagnostic *why)
 {
     new_request *r = context;
     (void)o;
@@ -43,8 +43,8 @@ static status take_set(const command_option *o, void *context, const char *value
 
 static const command_option options[] = {
     {"axis", 'a', "PATH=VALUES", "vary a parameter: PATH=1,2,3 or PATH=FROM..TO:STEPS; may be repeated",
-     .take = take_axis},
-    {"set", 's', "PATH=VALUE", "set a parameter in all cells; may be repeated", .take = take_set},
+     .take = parse_axis},
+    {"set", 's', "PATH=VALUE", "set a parameter in all cells; may be repeated", .take = parse_set},
     {"name", 0, "NAME", "name of the study (default: from -o, or from the scene and the first axis)",
      OPTION_FILLS(option_text, new_request, name)},
     {"repetitions", 0, "N", "measured frames of each cell (default: 6)",

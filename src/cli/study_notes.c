@@ -1,11 +1,12 @@
-#include "cli/study_notes.h"
 #include "base/array.h"
 #include "cli/scene_input.h"
+#include "cli/study.h"
 #include "cli/terminal.h"
-#include "measure/clock.h"
 #include "lint/lint.h"
+#include "measure/clock.h"
 #include "scene/model/scene.h"
 #include "study/plan/grid.h"
+
 #include <ctype.h>
 #include <stdlib.h>
 #include <string.h>
@@ -17,7 +18,7 @@ typedef struct found_note {
     scene_note note; /* of the first cell */
     size_t first, last, cells;
     bool traced, differs; /* differs: in the numbers */
-    bool counts_whole;    /* of interest only if all cells have it */
+    bool needs_all_cells; /* of interest only if all cells have it */
     bool dropped;         /* not printed */
 } found_note;
 
@@ -26,7 +27,7 @@ typedef struct collector {
     found_note *found;
     size_t count;
     size_t cell, weight; /* the current cell, and the number of cells that it stands for */
-    bool traced, counts_whole, out_of_memory;
+    bool traced, needs_all_cells, out_of_memory;
     bool keeps_intended; /* also notes on what the study varies */
 } collector;
 
@@ -43,15 +44,16 @@ static bool is_part(const char *place, const char *path)
 static bool is_of_material(const scene *s, const char *place, const char *path)
 {
     const char *dot = strchr(place, '.');
-    char name[SCENE_NAME_MAX + 1], whole[NOTE_PLACE_MAX];
+    char name[SCENE_NAME_MAX + 1], material_path[NOTE_PLACE_MAX];
     if (!dot || (size_t)(dot - place) >= sizeof name)
         return false;
     snprintf(name, sizeof name, "%.*s", (int)(dot - place), place);
     const int solid_index = scene_find_solid(s, name);
     if (solid_index < 0 || s->solids[solid_index].material_index < 0)
         return false;
-    snprintf(whole, sizeof whole, "%s%s", s->materials[s->solids[solid_index].material_index].name, dot);
-    return is_part(whole, path);
+    snprintf(material_path, sizeof material_path, "%s%s", s->materials[s->solids[solid_index].material_index].name,
+             dot);
+    return is_part(material_path, path);
 }
 
 static bool varies(const study *s, const char *place)
@@ -121,7 +123,7 @@ static void take(void *context, const scene_note *note)
                                         .last = c->cell,
                                         .cells = c->weight,
                                         .traced = c->traced,
-                                        .counts_whole = c->counts_whole,
+                                        .needs_all_cells = c->needs_all_cells,
                                         .dropped = is_intended(c, note->place)};
 }
 
@@ -147,16 +149,16 @@ static void ask_inert(collector *c, const scene *setting, const char *path)
 static void ask_all_inert(collector *c, const scene *setting)
 {
     const study *s = c->s;
-    c->counts_whole = c->keeps_intended = true;
+    c->needs_all_cells = c->keeps_intended = true;
     for (size_t i = 0; i < s->fixed.count; i++)
         ask_inert(c, setting, s->fixed.paths[i]);
     for (size_t a = 0; a < s->axis_count; a++) {
         const study_point *point = &s->axes[a].points[0];
-        c->counts_whole = point->count > 1;
+        c->needs_all_cells = point->count > 1;
         for (size_t i = 0; i < point->count; i++)
             ask_inert(c, setting, point->paths[i]);
     }
-    c->counts_whole = c->keeps_intended = false;
+    c->needs_all_cells = c->keeps_intended = false;
 }
 
 static status note_settings(collector *c, diagnostic *why)
@@ -239,7 +241,7 @@ static bool same_but_object(const found_note *a, const found_note *b)
     const char *x = strchr(a->note.place, '.'), *y = strchr(b->note.place, '.');
     return x && y && strcmp(x, y) == 0 && strcmp(a->note.text, b->note.text) == 0 &&
            strcmp(a->note.remedy, b->note.remedy) == 0 && a->first == b->first && a->cells == b->cells &&
-           a->traced == b->traced && a->counts_whole == b->counts_whole && !a->dropped && !b->dropped;
+           a->traced == b->traced && a->needs_all_cells == b->needs_all_cells && !a->dropped && !b->dropped;
 }
 
 /* Keeps the first of such notes, and adds the number of the others to its place. */
@@ -264,20 +266,20 @@ static void print_found(const study *s, const found_note *f, size_t examined)
 {
     const size_t total = f->traced ? examined : study_cell_count(s);
     const char *which = total < study_cell_count(s) ? " examined" : "";
-    char line[NOTE_LINE_MAX], cell[300], whole[NOTE_LINE_MAX + 400];
-    if (f->dropped || (f->counts_whole && f->cells < total))
+    char line[NOTE_LINE_MAX], cell[300], text[NOTE_LINE_MAX + 400];
+    if (f->dropped || (f->needs_all_cells && f->cells < total))
         return;
     note_line(&f->note, line, sizeof line);
     cell_text(s, f->first, cell, sizeof cell);
     if (f->cells == total && !f->differs)
-        snprintf(whole, sizeof whole, "%s", line);
+        snprintf(text, sizeof text, "%s", line);
     else if (f->cells == total)
-        snprintf(whole, sizeof whole, "in all %zu%s cells, such as %s: %s", total, which, cell, line);
+        snprintf(text, sizeof text, "in all %zu%s cells, such as %s: %s", total, which, cell, line);
     else if (f->cells > 1)
-        snprintf(whole, sizeof whole, "in %zu of %zu%s cells, such as %s: %s", f->cells, total, which, cell, line);
+        snprintf(text, sizeof text, "in %zu of %zu%s cells, such as %s: %s", f->cells, total, which, cell, line);
     else
-        snprintf(whole, sizeof whole, "in %s: %s", cell, line);
-    terminal_note(whole);
+        snprintf(text, sizeof text, "in %s: %s", cell, line);
+    terminal_note(text);
 }
 
 status study_notes_print_cells(const study *s, diagnostic *why)
@@ -302,9 +304,9 @@ status study_notes_print_cells(const study *s, diagnostic *why)
 void study_notes_print_file(const study *s)
 {
     for (size_t i = 0; i < s->note_count; i++) {
-        char line[NOTE_LINE_MAX], whole[NOTE_LINE_MAX + 400];
-        snprintf(whole, sizeof whole, "%.350s:%ld:%ld: %s", s->path, s->notes[i].line, s->notes[i].column,
+        char line[NOTE_LINE_MAX], text[NOTE_LINE_MAX + 400];
+        snprintf(text, sizeof text, "%.350s:%ld:%ld: %s", s->path, s->notes[i].line, s->notes[i].column,
                  note_line(&s->notes[i].note, line, sizeof line));
-        terminal_note(whole);
+        terminal_note(text);
     }
 }

@@ -1,10 +1,11 @@
 /* The command `cuvette study plot`. */
-#include "cli/options.h"
-#include "cli/study_request.h"
 #include "base/file.h"
 #include "base/text.h"
+#include "cli/options.h"
+#include "cli/study.h"
 #include "study/plot/plot.h"
 #include "study/study.h"
+
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
@@ -24,7 +25,7 @@ typedef struct request {
 
 /* --- the command line --- */
 
-static status take_formats(const command_option *o, void *context, const char *value, diagnostic *why)
+static status parse_formats(const command_option *o, void *context, const char *value, diagnostic *why)
 {
     request *r = context;
     (void)o;
@@ -38,7 +39,7 @@ static status take_formats(const command_option *o, void *context, const char *v
     return STATUS_OK;
 }
 
-static status take_log(const command_option *o, void *context, const char *value, diagnostic *why)
+static status parse_log(const command_option *o, void *context, const char *value, diagnostic *why)
 {
     static const char *const words[] = {"none", "x", "y", "xy"};
     static const plot_log meaning[] = {PLOT_LOG_NONE, PLOT_LOG_X, PLOT_LOG_Y, PLOT_LOG_XY};
@@ -49,7 +50,7 @@ static status take_log(const command_option *o, void *context, const char *value
     return STATUS_OK;
 }
 
-static status take_where(const command_option *o, void *context, const char *value, diagnostic *why)
+static status parse_where(const command_option *o, void *context, const char *value, diagnostic *why)
 {
     request *r = context;
     (void)o;
@@ -58,7 +59,7 @@ static status take_where(const command_option *o, void *context, const char *val
     return STATUS_OK;
 }
 
-static void take_file(void *context, const char *file)
+static void store_file(void *context, const char *file)
 {
     request *r = context;
     r->files[r->file_count++] = file;
@@ -72,12 +73,12 @@ static void take_file(void *context, const char *file)
 static const command_option plot_options[] = {
     {"output", 'o', "FIGURE", "figure to write, or a folder (default: results/STUDY/figure.png)",
      OPTION_FILLS(option_text, request, output)},
-    {"format", 'f', "LIST", "formats of the figure, separated by commas: png, svg, pdf", .take = take_formats},
+    {"format", 'f', "LIST", "formats of the figure, separated by commas: png, svg, pdf", .take = parse_formats},
     PLOT_OPTION("x", "PATH", "parameter or column of the x axis", x),
     PLOT_OPTION("y", "COLUMN", "quantity to show: a column of the summary (default: wall_s)", y),
     PLOT_OPTION("by", "PATH", "parameter whose values become lines", by),
-    {"log", 0, "AXES", "logarithmic axes: x, y, xy or none (default: by the values)", .take = take_log},
-    {"where", 'w', "PATH=VALUE", "show only cells with this value; can be repeated", .take = take_where},
+    {"log", 0, "AXES", "logarithmic axes: x, y, xy or none (default: by the values)", .take = parse_log},
+    {"where", 'w', "PATH=VALUE", "show only cells with this value; can be repeated", .take = parse_where},
     {"images", 0, NULL, "draw the kept images with captions instead", OPTION_FILLS(option_flag, request, plot.images)},
     PLOT_OPTION("published", "CSV", "add numbers from a file with columns of the same names", published),
     {"results", 'r', "DIR", "folder of the results (default: results)",
@@ -87,7 +88,7 @@ static const command_option plot_options[] = {
 
 static const command_form form = {
     .options = plot_options,
-    .take_argument = take_file,
+    .store_argument = store_file,
     .synopsis = "FILE...",
     .about =
         "Draw a figure of each study with gnuplot.\vOne numeric parameter gives lines with 95% intervals, two with "

@@ -1,11 +1,11 @@
 /* `cuvette study power`: how often smaller studies, drawn from measured rows, would mislead. */
 #include "base/number.h"
 #include "base/text.h"
-#include "cli/aligned_table.h"
 #include "cli/options.h"
-#include "cli/study_commands.h"
+#include "cli/study.h"
 #include "cli/terminal.h"
 #include "study/summary/power_rates.h"
+
 #include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
@@ -18,13 +18,13 @@ typedef struct request {
     char cells[2][64];
     design designs[DESIGNS_MOST];
     size_t design_count;
-    double effect; /* share */
+    double effect; /* fraction */
     int64_t draws, seed;
     int truth; /* power_truth */
     bool tsv;
 } request;
 
-static status take_effect(const command_option *o, void *context, const char *value, diagnostic *why)
+static status parse_effect(const command_option *o, void *context, const char *value, diagnostic *why)
 {
     double percent;
     (void)o;
@@ -35,7 +35,7 @@ static status take_effect(const command_option *o, void *context, const char *va
     return STATUS_OK;
 }
 
-static status take_cells(const command_option *o, void *context, const char *value, diagnostic *why)
+static status parse_cells(const command_option *o, void *context, const char *value, diagnostic *why)
 {
     request *r = context;
     (void)o;
@@ -49,7 +49,7 @@ static status take_cells(const command_option *o, void *context, const char *val
     return STATUS_OK;
 }
 
-static status take_truth(const command_option *o, void *context, const char *value, diagnostic *why)
+static status parse_truth(const command_option *o, void *context, const char *value, diagnostic *why)
 {
     static const char *const words[] = {"same", "larger", "smaller"}; /* the order of power_truth */
     (void)o;
@@ -74,7 +74,7 @@ static bool read_design(const char *text, design *out)
     return processes >= 1 && processes <= 1000 && repetitions >= 1 && repetitions <= 1000;
 }
 
-static status take_designs(const command_option *o, void *context, const char *value, diagnostic *why)
+static status parse_designs(const command_option *o, void *context, const char *value, diagnostic *why)
 {
     request *r = context;
     (void)o;
@@ -92,14 +92,14 @@ static status take_designs(const command_option *o, void *context, const char *v
 
 static const command_option options[] = {
     {"column", 'c', "COLUMN", "measured column (default: wall_s)", OPTION_FILLS(option_text, request, column)},
-    {"cells", 0, "A,B", "two cells with a difference, instead of each cell with itself", .take = take_cells},
+    {"cells", 0, "A,B", "two cells with a difference, instead of each cell with itself", .take = parse_cells},
     {"truth", 0, "WORD", "what B is known to be: same, larger or smaller than A (default: as in all rows)",
-     .take = take_truth},
+     .take = parse_truth},
     {"designs", 0, "LIST",
      "studies to draw: R repetitions, or PxR, R in each of P processes (default: 1,3,10,3x1,10x1,3x10)",
-     .take = take_designs},
+     .take = parse_designs},
     {"effect", 'e', "PERCENT", "difference of the medians that the rule 'effect' takes for one (default: 5)",
-     .take = take_effect},
+     .take = parse_effect},
     {"draws", 0, "N", "studies to draw for each rate, 10 to 100000 (default: 400)",
      OPTION_FILLS(option_integer, request, draws), 10, 100000},
     {"seed", 0, "N", "of the draws (default: 1)", OPTION_FILLS(option_integer, request, seed), 0, INT64_MAX},
@@ -165,7 +165,7 @@ static void print_tsv(const power_rates *r)
         }
 }
 
-/* "12 [4, 27]": per cent; of a pair also the share without a claim. */
+/* "12 [4, 27]": per cent; of a pair also the fraction without a claim. */
 static char *rate_text(const power_rate *r, design_rule rule)
 {
     const share_interval wrong = power_wrong(r, rule), silent = power_silent(r, rule);
@@ -250,7 +250,7 @@ status study_power(int argc, char **argv, diagnostic *why)
     request q = {.column = "wall_s", .effect = 0.05, .draws = 400, .seed = 1, .truth = POWER_OF_ALL_ROWS};
     value_table first, second = {.count = 0};
     const command_option designs = {.name = "designs"};
-    TRY(take_designs(&designs, &q, "1,3,10,3x1,10x1,3x10", why));
+    TRY(parse_designs(&designs, &q, "1,3,10,3x1,10x1,3x10", why));
     TRY(command_form_read(&form, argc, argv, &q, why));
     if (!q.files[0])
         return options_wrong("study power", NULL, why, "give a CSV file, such as results/STUDY/rows.csv",

@@ -1,16 +1,17 @@
 /* The command lines of the subcommands of `cuvette study`. */
-#include "cli/study_request.h"
+#include "base/number.h"
 #include "cli/options.h"
 #include "cli/scene_input.h"
-#include "base/number.h"
+#include "cli/study.h"
 #include "study/study.h"
+
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 
 enum { SHARDS_MAX = 10000 };
 
-static status take_shard(const command_option *o, void *context, const char *value, diagnostic *why)
+static status parse_shard(const command_option *o, void *context, const char *value, diagnostic *why)
 {
     study_request *request = context;
     char part[24];
@@ -28,7 +29,7 @@ static status take_shard(const command_option *o, void *context, const char *val
     return STATUS_OK;
 }
 
-static status take_by(const command_option *o, void *context, const char *value, diagnostic *why)
+static status parse_by(const command_option *o, void *context, const char *value, diagnostic *why)
 {
     study_request *request = context;
     (void)o;
@@ -38,7 +39,7 @@ static status take_by(const command_option *o, void *context, const char *value,
     return STATUS_OK;
 }
 
-static status take_wait(const command_option *o, void *context, const char *value, diagnostic *why)
+static status parse_wait(const command_option *o, void *context, const char *value, diagnostic *why)
 {
     study_request *request = context;
     (void)o;
@@ -50,7 +51,7 @@ static status take_wait(const command_option *o, void *context, const char *valu
     return STATUS_OK;
 }
 
-static void take_file(void *request, const char *file)
+static void store_file(void *request, const char *file)
 {
     study_request *r = request;
     r->files[r->file_count++] = file;
@@ -60,11 +61,11 @@ static const command_option run_options[] = {
     {"results", 'r', "DIR", "write to DIR/STUDY/ instead of results/STUDY/",
      OPTION_FILLS(option_text, study_request, results)},
     {"shard", 0, "I/N", "run part I of N, counted from 0; parts can run concurrently, on one or several machines",
-     .take = take_shard},
+     .take = parse_shard},
     {"by", 0, "WHAT",
      "what --shard divides: cell (default), or repetition, so that each part measures every cell and cells do not "
      "differ by machine",
-     .take = take_by},
+     .take = parse_by},
     {"any-environment", 0, NULL, "count the rows of every environment, not only those of this machine and build",
      OPTION_FILLS(option_flag, study_request, any_environment)},
     {"processes", 0, "P", "divide the repetitions among P fresh processes, with as many in each as the study file asks",
@@ -80,7 +81,7 @@ static const command_option run_options[] = {
      OPTION_FILLS(option_flag, study_request, instructions)},
     {"wait-quiet", 0, "SECONDS",
      "before each repetition, wait until other processes, steal and frequency do not disturb; at most 60 s by default",
-     .take = take_wait, .optional = true},
+     .take = parse_wait, .optional = true},
     {"quick", 0, NULL,
      "a look only: frames of at most 80 x 60 pixels, each measured once; its times mean nothing, and its rows need a "
      "results folder of their own",
@@ -113,33 +114,33 @@ static const command_option summary_options_list[] = {
 
 static const command_form forms[STUDY_VERB_COUNT] = {
     [STUDY_RUN] = {.options = run_options,
-                   .take_argument = take_file,
+                   .store_argument = store_file,
                    .synopsis = "FILE...",
                    .about =
                        "Measure the missing rows of each study.\vAn interrupted or killed study resumes when it is "
                        "run again. Rows are never rewritten."},
-    [STUDY_LIST] = {.take_argument = take_file,
+    [STUDY_LIST] = {.store_argument = store_file,
                     .synopsis = "[DIR]",
                     .about = "List the study files of a folder and of its folder full, and the scenes of its folder "
                              "scenes (default: experiments, or those that were installed with the program)."},
     [STUDY_STATUS] =
         {.options = results_options,
-         .take_argument = take_file,
+         .store_argument = store_file,
          .synopsis = "FILE...",
          .about =
              "Print the number of finished cells of each study, and of rows marked because their film hash differs."},
     [STUDY_MERGE] = {.options = results_options,
-                     .take_argument = take_file,
+                     .store_argument = store_file,
                      .synopsis = "FILE...",
                      .about = "Merge the rows of a study's shards into its rows.csv."},
     [STUDY_VERIFY] = {.options = results_options,
-                      .take_argument = take_file,
+                      .store_argument = store_file,
                       .synopsis = "FILE...",
                       .about = "Check every row of each study: damaged, edited, moved, missing, duplicate and marked "
                                "ones. Exit status 1 if there is one.\vNothing is changed."},
     [STUDY_SUMMARY] =
         {.options = summary_options_list,
-         .take_argument = take_file,
+         .store_argument = store_file,
          .synopsis = "FILE",
          .about =
              "Print one line per cell and environment: medians, 95% confidence intervals, counts.\vA terminal gets "

@@ -4,10 +4,11 @@
 #include "base/text.h"
 #include "cli/options.h"
 #include "cli/slurm_commands.h"
-#include "cli/study_commands.h"
+#include "cli/study.h"
 #include "cli/terminal.h"
 #include "study/rows/row_files.h"
 #include "study/run/slurm.h"
+
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
@@ -25,7 +26,7 @@ typedef struct submit_request {
 
 /* --- the command line --- */
 
-static status take_by(const command_option *o, void *request, const char *value, diagnostic *why)
+static status parse_by(const command_option *o, void *request, const char *value, diagnostic *why)
 {
     static const char *const words[] = {"cell", "repetition"};
     int which = 0;
@@ -35,7 +36,7 @@ static status take_by(const command_option *o, void *request, const char *value,
     return STATUS_OK;
 }
 
-static status take_sbatch(const command_option *o, void *request, const char *value, diagnostic *why)
+static status parse_sbatch(const command_option *o, void *request, const char *value, diagnostic *why)
 {
     submit_request *r = request;
     (void)o;
@@ -59,7 +60,7 @@ static const command_option options[] = {
     {"tasks", 0, "N", "parts of the study, a task of the array each (default: 16, or one per cell)",
      OPTION_FILLS(option_integer, submit_request, tasks), .lowest = 1, .highest = TASKS_MAX},
     {"by", 0, "WHAT", "what the tasks divide: cell (default), or repetition, so that cells do not differ by node",
-     .take = take_by},
+     .take = parse_by},
     {"threads", 0, "N", "processing units of a task (default: the largest render.threads of a cell)",
      OPTION_FILLS(option_integer, submit_request, threads), .lowest = 1, .highest = 1024},
     TEXT("memory", 0, "SIZE", "memory of a task, such as 4G (default: 512M and 64 bytes per pixel, in whole G)",
@@ -68,7 +69,7 @@ static const command_option options[] = {
     {"factor", 0, "F", "time limit as a multiple of the estimate of the longest task (default: 3)",
      OPTION_FILLS(option_integer, submit_request, factor), .lowest = 1, .highest = 1000},
     {"sbatch", 0, "OPTION", "a further option of sbatch, such as --sbatch=--account=optics; can be repeated",
-     .take = take_sbatch},
+     .take = parse_sbatch},
     TEXT("template", 0, "FILE", "script to fill in (default: experiments/cluster/study.slurm)", template),
     TEXT("results", 'r', "DIR", "folder of the results (default: results)", results),
     {"dry-run", 'n', NULL, "print the commands and the script; write and submit nothing",
@@ -103,7 +104,7 @@ static status check_request(const submit_request *r, diagnostic *why)
     return what ? options_wrong("study submit", NULL, why, remedy, "%s", what) : STATUS_OK;
 }
 
-/* --- what is asked of the cluster --- */
+/* --- the submission --- */
 
 /* A study on its way to a cluster. Texts are allocated. */
 typedef struct submission {
@@ -243,7 +244,7 @@ static status write_script(submission *job, diagnostic *why)
     return code;
 }
 
-/* --- what is said --- */
+/* --- messages --- */
 
 static void note_rows_apart(const submission *job)
 {

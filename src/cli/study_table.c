@@ -1,12 +1,27 @@
-/* The summary of a study as an aligned table for a terminal. */
-#include "cli/aligned_table.h"
-#include "cli/study_request.h"
+/* Tables with aligned columns for a terminal, and the summary of a study as one. */
 #include "base/number.h"
 #include "base/text.h"
+#include "cli/study.h"
+
 #include <math.h>
 #include <stdbool.h>
 #include <stdlib.h>
 #include <string.h>
+
+status aligned_table_print(FILE *out, char *const *text, size_t rows, size_t columns, diagnostic *why)
+{
+    int *width = calloc(columns + 1, sizeof *width);
+    if (!width)
+        return out_of_memory(why);
+    for (size_t i = 0; i < rows * columns; i++) {
+        const int length = (int)strlen(text[i]);
+        width[i % columns] = length > width[i % columns] ? length : width[i % columns];
+    }
+    for (size_t i = 0; i < rows * columns; i++)
+        fprintf(out, "%*s%s", width[i % columns], text[i], (i + 1) % columns ? "  " : "\n");
+    free(width);
+    return STATUS_OK;
+}
 
 /* The fields of the summary, by rows; row 0 is the header. */
 typedef struct fields {

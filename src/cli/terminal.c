@@ -1,11 +1,11 @@
 /* Terminal and signals of the program: stop request, checked standard output, colour, progress line. */
-#include "cli/terminal.h"
 #include "base/cancel.h"
 #include "base/number.h"
 #include "base/os_process.h"
 #include "base/status.h"
-#include "cli/standard_output.h"
+#include "cli/terminal.h"
 #include "measure/clock.h"
+
 #include <errno.h>
 #include <fcntl.h>
 #include <poll.h>
@@ -16,6 +16,7 @@
 #include <stdlib.h>
 #include <string.h>
 #include <sys/ioctl.h>
+#include <sys/types.h>
 #include <unistd.h>
 
 static atomic_int stop_requested; /* the signal */
@@ -37,14 +38,41 @@ static void request_stop(int signal_number)
     }
 }
 
-bool terminal_stop_requested(void)
-{
-    return stop_requested != 0;
-}
-
 bool terminal_stopped_by_user(void)
 {
     return stop_requested == SIGINT;
+}
+
+/* --- standard output with writes of our own --- */
+
+/* An interrupted or short write goes on, and the reason of the first write that failed is kept, which stdio forgets. */
+
+static int first_error; /* the errno of the first write that failed; 0: none */
+
+static ssize_t write_all(void *unused, const char *bytes, size_t size)
+{
+    (void)unused;
+    for (size_t done = 0; done < size;) {
+        const ssize_t count = write(STDOUT_FILENO, bytes + done, size - done);
+        if (count < 0 && errno == EINTR && stop_requested == 0)
+            continue;
+        if (count <= 0) {
+            first_error = first_error ? first_error : count < 0 ? errno : ENOSPC;
+            return 0; /* a failure, for a cookie's write */
+        }
+        done += (size_t)count;
+    }
+    return (ssize_t)size;
+}
+
+/* Out of memory, standard output stays that of stdio. */
+static void prepare_output(void)
+{
+    FILE *own = fopencookie(NULL, "w", (cookie_io_functions_t){.write = write_all});
+    if (!own)
+        return;
+    setvbuf(own, NULL, isatty(STDOUT_FILENO) ? _IOLBF : _IOFBF, BUFSIZ);
+    stdout = own;
 }
 
 /* An image file must never get descriptor 1 because the caller has closed it: a closed descriptor is opened on
@@ -69,8 +97,9 @@ status terminal_flush(diagnostic *why)
     errno = 0;
     if (fflush(stdout) == 0 && !failed_before)
         return STATUS_OK;
-    const int first = standard_output_error();
-    int error = first ? first : errno ? errno : ENOMEM; /* without a write that failed, printf had no memory */
+    int error = first_error ? first_error
+                : errno     ? errno
+                            : ENOMEM; /* without a write that failed, printf had no memory */
     __fpurge(stdout);
     clearerr(stdout); /* report the error once */
     if (error == EPIPE || reader_left())
@@ -93,7 +122,7 @@ static void check_stdout_at_exit(void)
 void terminal_prepare(void)
 {
     hold_standard_descriptors();
-    standard_output_prepare();
+    prepare_output();
     struct sigaction action = {.sa_handler = request_stop};
     sigemptyset(&action.sa_mask);
     sigaction(SIGINT, &action, NULL);
@@ -173,11 +202,11 @@ void progress_draw(progress_line *line, double share_done)
     if (!line->enabled || elapsed_s < 0.5)
         return;
     static const char full[] = "####################";
-    const int whole = (int)sizeof full - 1, done = (int)(share_done * whole);
+    const int width = (int)sizeof full - 1, done = (int)(share_done * width);
     char text[160], left[48] = "?";
     if (share_done > 0)
         write_duration(elapsed_s * (1 - share_done) / share_done, left, sizeof left);
-    snprintf(text, sizeof text, "%.64s: [%-*.*s] %3d%%, %s left", line->label, whole, done, full,
+    snprintf(text, sizeof text, "%.64s: [%-*.*s] %3d%%, %s left", line->label, width, done, full,
              (int)(share_done * 100), left);
     int wide = terminal_columns(STDERR_FILENO) - 1;
     int length = (int)strlen(text) < wide ? (int)strlen(text) : wide;

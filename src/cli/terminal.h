@@ -3,6 +3,7 @@
 #pragma once
 
 #include "base/status.h"
+
 #include <stdbool.h>
 
 /* The place of all signals. Opens closed descriptors among 0 to 2, turns SIGPIPE and SIGXFSZ into errors of the write,
@@ -11,10 +12,7 @@
  * that standard output was written. Must be called first. */
 void terminal_prepare(void);
 
-/* Whether SIGINT, SIGTERM or SIGHUP has arrived, also under a shield. */
-bool terminal_stop_requested(void);
-
-/* Whether that was SIGINT: Ctrl-C, not the end of the session or the machine. */
+/* Whether SIGINT has arrived, also under a shield: Ctrl-C, not the end of the session or the machine. */
 bool terminal_stopped_by_user(void);
 
 /* Flushes standard output. STATUS_FAILURE where data could not be written; if the reader of a pipe has closed it, *why

@@ -5,6 +5,7 @@
 #include "cli/scene_input.h"
 #include "report/trace_writers.h"
 #include "scene/model/scene.h"
+
 #include <math.h>
 #include <stdio.h>
 #include <string.h>
@@ -18,7 +19,7 @@ typedef struct trace_request {
     double pixel[2], ray[6];
 } trace_request;
 
-static status take_format(const command_option *o, void *context, const char *value, diagnostic *why)
+static status parse_format(const command_option *o, void *context, const char *value, diagnostic *why)
 {
     trace_request *request = context;
     const trace_format format = strcmp(o->name, "text") == 0   ? FORMAT_TEXT
@@ -32,7 +33,7 @@ static status take_format(const command_option *o, void *context, const char *va
     return STATUS_OK;
 }
 
-static status take_pixel(const command_option *o, void *context, const char *value, diagnostic *why)
+static status parse_pixel(const command_option *o, void *context, const char *value, diagnostic *why)
 {
     trace_request *request = context;
     (void)o;
@@ -44,7 +45,7 @@ static status take_pixel(const command_option *o, void *context, const char *val
     return result;
 }
 
-static status take_ray(const command_option *o, void *context, const char *value, diagnostic *why)
+static status parse_ray(const command_option *o, void *context, const char *value, diagnostic *why)
 {
     trace_request *request = context;
     request->by_ray = true;
@@ -52,17 +53,17 @@ static status take_ray(const command_option *o, void *context, const char *value
 }
 
 static const command_option options[] = {
-    {"pixel", 0, "X,Y", "trace the camera rays of a pixel; 0,0 is at the top left", .take = take_pixel},
-    {"ray", 0, "OX,OY,OZ,DX,DY,DZ", "trace the ray from a point in a direction of any length", .take = take_ray},
+    {"pixel", 0, "X,Y", "trace the camera rays of a pixel; 0,0 is at the top left", .take = parse_pixel},
+    {"ray", 0, "OX,OY,OZ,DX,DY,DZ", "trace the ray from a point in a direction of any length", .take = parse_ray},
     {"beams", 0, NULL, "trace the rays of the scene's beams, each with its own depth and wavelengths",
      OPTION_FILLS(option_flag, trace_request, beams)},
     OPTION_DEPTH,
     OPTION_LAMBDA,
     OPTION_SET("'liquid.ior=1.4'"),
     OPTION_MEMORY,
-    {"text", 0, NULL, "print an indented tree, one line per ray (the default)", .take = take_format},
-    {"json", 0, NULL, "print one JSON object", .take = take_format},
-    {"svg", 0, NULL, "draw the tree in the plane of incidence and from above", .take = take_format},
+    {"text", 0, NULL, "print an indented tree, one line per ray (the default)", .take = parse_format},
+    {"json", 0, NULL, "print one JSON object", .take = parse_format},
+    {"svg", 0, NULL, "draw the tree in the plane of incidence and from above", .take = parse_format},
     OPTION_OUTPUT("write to FILE; its ending selects the format: .txt, .json, .svg"),
     {0},
 };

@@ -1,6 +1,6 @@
 /* Filling the caller's buffers, and passing finished pieces to the caller. */
-#include "engine/canvas.h"
 #include "base/array.h"
+#include "engine/canvas.h"
 
 #include <stdint.h>
 #include <stdlib.h>

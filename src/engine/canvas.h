@@ -7,6 +7,7 @@
 #include "cuvette.h"
 #include "image/codec.h"
 #include "render/plan/film.h"
+
 #include <pthread.h>
 
 typedef struct canvas {

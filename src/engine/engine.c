@@ -1,10 +1,10 @@
 /* Engines, and the rendering of a request: checks, a preview, the film, the caller's buffers and callbacks. */
 #include "engine/canvas.h"
 #include "engine/engine_private.h"
-
 #include "measure/clock.h"
 #include "scene/file/shared.h"
 #include "scene/model/scene.h"
+
 #include <stdlib.h>
 #include <string.h>
 
@@ -58,12 +58,12 @@ typedef struct stage {
     status noted; /* of passing pieces to the callback */
 } stage;
 
-static void watch(void *context, double share)
+static void watch(void *context, double fraction)
 {
     stage *now = context;
     if (now->request->piece && now->noted == STATUS_OK)
         now->noted = canvas_hand_out(&now->buffers, NULL);
-    engine_tell(&now->progress, now->is_preview ? 0.0 : share);
+    engine_tell(&now->progress, now->is_preview ? 0.0 : fraction);
 }
 
 static void take_piece(void *context, const film *img, int x0, int y0, int x1, int y1)

@@ -3,12 +3,13 @@
 #pragma once
 
 #include "base/cancel.h"
-#include "base/vec3.h"
 #include "base/float_environment.h"
 #include "base/isa.h"
+#include "base/vec3.h"
 #include "cuvette.h"
 #include "job/job.h"
 #include "scene/model/open.h"
+
 #include <pthread.h>
 #include <stdatomic.h>
 
@@ -63,10 +64,6 @@ cuvette_status engine_is_advancing(cuvette_diagnostic *why); /* always CUVETTE_B
 /* A handle that owns the model, which is destroyed when out of memory. */
 cuvette_status engine_own_scene(scene *model, cuvette_scene **out, cuvette_diagnostic *why);
 
-/* Locks the scene (its lock `loading`) against loading by another thread: renders of one scene may begin together, and
- * each checks what is loaded. */
-cuvette_scene *engine_hold(const cuvette_scene *s);
-
 /* Drops one reference; the last one frees the scene. */
 void engine_release_scene(cuvette_scene *s);
 
@@ -76,31 +73,34 @@ status engine_check(const cuvette_scene *s, diagnostic *why);
 /* Loads the files that the scene names, and its slimes, once; watch as for scene_load_until. */
 status engine_load(cuvette_scene *s, const load_watch *watch, diagnostic *why);
 
-/* The caller's progress function, called about ten times a second with a share that never decreases. When it returns
+/* The caller's progress function, called about ten times a second with a fraction that never decreases. When it returns
  * false, the token is set: the only place where a callback's result ends work. */
 typedef struct host_progress {
-    bool (*tell)(void *context, double share); /* may be NULL */
+    bool (*tell)(void *context, double fraction); /* may be NULL */
     void *context;
     float_environment *host; /* the caller's, for the callback */
-    double share, next_s;
+    double fraction, next_s;
     cancel_token token;
 } host_progress;
 /* Begins the token, which also calls the function where there is no progress. */
 void engine_begin_progress(host_progress *p);
 void engine_end_progress(host_progress *p);
 /* Calls the function now. */
-void engine_tell(host_progress *p, double share);
+void engine_tell(host_progress *p, double fraction);
 /* Calls it if a tenth of a second has passed; context: a host_progress. As the progress of a load_watch. */
-void engine_show(void *context, double share);
+void engine_show(void *context, double fraction);
 
 /* Copies content, of `known` bytes, into the caller's struct of an older or a newer version, up to the caller's size;
  * the size field with which both begin is not changed. */
 cuvette_status engine_copy_struct(const void *content, size_t known, void *out, cuvette_diagnostic *why);
 
-bool engine_is_finite(const double *v); /* of three numbers */
 static inline vec3 engine_vector(const double v[3])
 {
     return vec3_make(v[0], v[1], v[2]);
+}
+static inline bool engine_is_finite(const double v[3])
+{
+    return vec3_is_finite(engine_vector(v));
 }
 static inline void engine_put_vector(double out[3], vec3 v)
 {

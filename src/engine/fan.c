@@ -1,9 +1,9 @@
 /* Fans of rays, followed by the query's probe. */
 #include "engine/query_private.h"
-
 #include "render/inspect/fan.h"
 #include "report/fan_writers.h"
 #include "scene/model/scene.h"
+
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
@@ -104,7 +104,7 @@ cuvette_status cuvette_query_fan(const cuvette_query *query, const cuvette_fan_r
         return engine_report(code, &inner, why);
     cuvette_fan *f = calloc(1, sizeof *f);
     if (f)
-        f->of = query_share(q), f->rule = read;
+        f->of = query_retain(q), f->rule = read;
     code = f ? fan_follow(q->inspector, &read, &f->followed, &inner) : out_of_memory(&inner);
     THEN(code, copy_out(f, &inner));
     query_end_trace(q);

@@ -1,9 +1,11 @@
-/* Lights, materials and solids: adding, removing, translating, rotating, scaling. */
+/* The objects of a scene: lights, materials and solids are added, removed, translated, rotated, scaled; meshes and
+ * textures are read from a file, generated, or given as arrays. */
 #include "engine/engine_private.h"
-
 #include "scene/model/edit/edit.h"
 #include "scene/model/params.h"
 #include "scene/model/scene.h"
+
+#include <string.h>
 
 cuvette_status cuvette_scene_add_light(cuvette_scene *s, const char *name, cuvette_diagnostic *why)
 {
@@ -96,4 +98,122 @@ size_t cuvette_scene_count(const cuvette_scene *s, cuvette_object kind)
 const char *cuvette_scene_name(const cuvette_scene *s, cuvette_object kind, size_t index)
 {
     return index < cuvette_scene_count(s, kind) ? param_place_group_name(s->model, group_of(kind), index) : NULL;
+}
+
+cuvette_status cuvette_scene_add_mesh(cuvette_scene *s, const char *name, cuvette_diagnostic *why)
+{
+    ENGINE_CHANGE(s, name);
+    return engine_report(scene_add(s->model, PARAM_MESH, name, NULL, &inner), &inner, why);
+}
+
+cuvette_status cuvette_scene_add_texture(cuvette_scene *s, const char *name, cuvette_diagnostic *why)
+{
+    ENGINE_CHANGE(s, name);
+    return engine_report(scene_add(s->model, PARAM_TEXTURE, name, NULL, &inner), &inner, why);
+}
+
+/* Element i of the array that is not NULL. */
+static double element(const double *doubles, const float *floats, size_t i)
+{
+    return doubles ? doubles[i] : (double)floats[i];
+}
+
+static void copy_vectors(const double *doubles, const float *floats, size_t count, vec3 *out)
+{
+    for (size_t i = 0; i < count; i++)
+        out[i] = vec3_make(element(doubles, floats, 3 * i), element(doubles, floats, 3 * i + 1),
+                           element(doubles, floats, 3 * i + 2));
+}
+
+static status make_mesh(const cuvette_triangles *t, mesh **out, diagnostic *why)
+{
+    const bool normals = t->normals || t->normals_float, uvs = t->uvs || t->uvs_float;
+    mesh *m = NULL;
+    TRY(mesh_create(t->vertex_count, t->triangle_count, normals, uvs, t->slots != NULL, &m, why));
+    status code = STATUS_OK;
+    copy_vectors(t->vertices, t->vertices_float, t->vertex_count, m->vertices);
+    if (normals)
+        copy_vectors(t->normals, t->normals_float, t->vertex_count, m->normals);
+    for (size_t i = 0; uvs && i < t->vertex_count; i++)
+        m->uvs[i] = (mesh_uv){element(t->uvs, t->uvs_float, 2 * i), element(t->uvs, t->uvs_float, 2 * i + 1)};
+    for (size_t i = 0; i < t->triangle_count; i++)
+        for (size_t k = 0; k < 3; k++)
+            m->triangles[i].corner[k] = t->corners[3 * i + k];
+    m->slot_count = 1;
+    for (size_t i = 0; t->slots && i < t->triangle_count; i++) {
+        m->slots[i] = t->slots[i];
+        m->slot_count = m->slot_count > t->slots[i] ? m->slot_count : t->slots[i] + 1;
+    }
+    for (int i = 0; t->slot_names && i < t->slot_count && i < MESH_SLOTS_MAX && code == STATUS_OK; i++) {
+        m->slot_count = m->slot_count > i ? m->slot_count : i + 1;
+        if (t->slot_names[i] && !(m->slot_names[i] = strdup(t->slot_names[i])))
+            code = out_of_memory(why);
+    }
+    THEN(code, mesh_finish(m, why));
+    if (code != STATUS_OK) {
+        mesh_release(m);
+        return code;
+    }
+    *out = m;
+    return STATUS_OK;
+}
+
+static status check_arrays(const cuvette_triangles *t, diagnostic *why)
+{
+    if (t->size < sizeof *t) /* there is no earlier version yet */
+        return diagnose(why, STATUS_BAD_INPUT, "set it to sizeof(cuvette_triangles)",
+                        "the triangles' size is %zu, which is too small", t->size);
+    if ((!t->vertices == !t->vertices_float && t->vertex_count > 0) || (!t->corners && t->triangle_count > 0))
+        return diagnose(why, STATUS_BAD_INPUT, "give vertices, as doubles or floats, and corners",
+                        "the triangles lack vertices or corners, or have vertices twice");
+    if ((t->normals && t->normals_float) || (t->uvs && t->uvs_float))
+        return diagnose(why, STATUS_BAD_INPUT, "give either doubles or floats",
+                        "normals or texture coordinates are given twice");
+    return STATUS_OK;
+}
+
+cuvette_status cuvette_scene_add_triangles(cuvette_scene *s, const char *name, const cuvette_triangles *triangles,
+                                           cuvette_diagnostic *why)
+{
+    ENGINE_CHANGE(s, name, triangles);
+    mesh *made = NULL;
+    size_t index = 0;
+    status code = check_arrays(triangles, &inner);
+    THEN(code, make_mesh(triangles, &made, &inner));
+    THEN(code, scene_add(s->model, PARAM_MESH, name, &index, &inner));
+    if (code != STATUS_OK) {
+        mesh_release(made);
+        return engine_report(code, &inner, why);
+    }
+    mesh_entry_unload(&s->model->meshes[index]);
+    s->model->meshes[index].source = MESH_ARRAYS;
+    s->model->meshes[index].data = made;
+    return CUVETTE_OK;
+}
+
+cuvette_status cuvette_scene_add_pixels(cuvette_scene *s, const char *name, int width, int height, const float *rgb,
+                                        cuvette_diagnostic *why)
+{
+    ENGINE_CHANGE(s, name, rgb);
+    image *img = NULL;
+    texture *made = NULL;
+    size_t index = 0;
+    status code = width >= 1 && height >= 1 && width <= IMAGE_SIDE_MAX && height <= IMAGE_SIDE_MAX &&
+                          width <= SCENE_PIXELS_MAX / height
+                      ? image_create(width, height, &img, &inner)
+                      : diagnose(&inner, STATUS_BAD_INPUT, "use sides from 1 to 65536, and at most 268435456 pixels",
+                                 "a texture cannot be %d x %d", width, height);
+    if (code == STATUS_OK) {
+        memcpy(img->pixel, rgb, 3 * (size_t)width * (size_t)height * sizeof *rgb);
+        code = texture_create(img, TEXTURE_LINEAR, TEXTURE_REPEAT, TEXTURE_REPEAT, TEXTURE_TRILINEAR, &made, &inner);
+    }
+    image_destroy(img);
+    THEN(code, scene_add(s->model, PARAM_TEXTURE, name, &index, &inner));
+    if (code != STATUS_OK) {
+        texture_release(made);
+        return engine_report(code, &inner, why);
+    }
+    texture_entry_unload(&s->model->textures[index]);
+    s->model->textures[index].data = made;
+    return CUVETTE_OK;
 }

@@ -1,8 +1,8 @@
 /* Optics against theory: the metrics and curves of a scene. */
 #include "engine/engine_private.h"
-
 #include "realism/realism.h"
 #include "report/theory_rows.h"
+
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
@@ -26,8 +26,8 @@ cuvette_status cuvette_scene_each_metric(const cuvette_scene *s,
     realism_report *report = malloc(sizeof *report);
     status code = report ? prepare(s, &level, &inner) : out_of_memory(&inner);
     THEN(code, realism_measure(s->model, level, report, &inner));
-    bool goes_on = true;
-    for (int i = 0; code == STATUS_OK && goes_on && i < report->count; i++) {
+    bool wants_more = true;
+    for (int i = 0; code == STATUS_OK && wants_more && i < report->count; i++) {
         const realism_value *v = &report->value[i];
         const cuvette_metric one = {.name = v->metric,
                                     .meaning = v->what,
@@ -38,7 +38,7 @@ cuvette_status cuvette_scene_each_metric(const cuvette_scene *s,
                                     .error = realism_error(v),
                                     .tolerance = v->tolerance};
         float_environment_leave(&host);
-        goes_on = visit(context, &one);
+        wants_more = visit(context, &one);
         float_environment_enter(&host);
     }
     free(report);
@@ -50,14 +50,14 @@ cuvette_status cuvette_scene_each_curve(const cuvette_scene *s, bool (*visit)(vo
 {
     ENGINE_CALL(s);
     ENGINE_NEED_NAMED(visit, "visit");
-    bool goes_on = true;
-    for (int i = 0; goes_on && i < REALISM_CURVE_COUNT; i++) {
+    bool wants_more = true;
+    for (int i = 0; wants_more && i < REALISM_CURVE_COUNT; i++) {
         const realism_curve which = (realism_curve)i;
         if (realism_check_curve(s->model, which, NULL) != STATUS_OK)
             continue;
         const cuvette_curve one = {realism_curve_name(which), realism_curve_x(which), realism_curve_y(which)};
         float_environment_leave(&host);
-        goes_on = visit(context, &one);
+        wants_more = visit(context, &one);
         float_environment_enter(&host);
     }
     return CUVETTE_OK;

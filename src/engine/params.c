@@ -1,10 +1,10 @@
 /* Parameters by name: every value passes through the parameter table as text, so that a value set as a number equals
  * the value set by its digits. */
-#include "engine/engine_private.h"
-
 #include "base/number.h"
+#include "engine/engine_private.h"
 #include "scene/model/params.h"
 #include "scene/model/scene.h"
+
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
@@ -190,9 +190,9 @@ static status visit_one(void *context, const char *path, const param *row, const
                                    .initial = row->fallback,
                                    .meaning = row->meaning};
     float_environment_leave(v->host);
-    const bool goes_on = v->visit(v->context, &one);
+    const bool wants_more = v->visit(v->context, &one);
     float_environment_enter(v->host);
-    return goes_on ? STATUS_OK : STATUS_INTERRUPTED;
+    return wants_more ? STATUS_OK : STATUS_INTERRUPTED;
 }
 
 cuvette_status cuvette_scene_each_parameter(const cuvette_scene *s,

@@ -1,8 +1,8 @@
-/* Queries: a scene prepared for the caller's rays. A query is immutable; the scratch memory of a call (a bench) is
+/* Queries: a scene prepared for the caller's rays. A query is immutable; the scratch memory of a call (query_buffers) is
  * taken from a free list and returned to it, so that any number of threads may query, and a single ray costs no
  * allocation. */
-#include "engine/query_private.h"
 #include "base/number.h"
+#include "engine/query_private.h"
 #include "scene/model/params.h"
 #include "scene/model/scene.h"
 
@@ -14,9 +14,9 @@ void cuvette_query_destroy(cuvette_query *query)
 {
     if (!query || atomic_fetch_sub(&query->owners, 1) > 1)
         return;
-    while (query->free_benches) {
-        bench *b = query->free_benches;
-        query->free_benches = b->next;
+    while (query->free_buffers) {
+        query_buffers *b = query->free_buffers;
+        query->free_buffers = b->next;
         free(b);
     }
     probe_destroy(query->inspector);
@@ -66,7 +66,7 @@ static cuvette_query *new_query(void)
     return q;
 }
 
-cuvette_query *query_share(cuvette_query *query)
+cuvette_query *query_retain(cuvette_query *query)
 {
     atomic_fetch_add(&query->owners, 1);
     return query;
@@ -163,13 +163,13 @@ cuvette_status cuvette_query_wavelength_create(const cuvette_scene *s, double la
     return create(s, number_format(lambda_nm, text), instructions, out, why);
 }
 
-bench *query_take_bench(const cuvette_query *query)
+query_buffers *query_acquire_buffers(const cuvette_query *query)
 {
     cuvette_query *q = (cuvette_query *)(uintptr_t)query; /* handles are never const objects */
     pthread_mutex_lock(&q->lock);
-    bench *b = q->free_benches;
+    query_buffers *b = q->free_buffers;
     if (b)
-        q->free_benches = b->next;
+        q->free_buffers = b->next;
     pthread_mutex_unlock(&q->lock);
     if (!b && (b = aligned_alloc(64, (sizeof *b + 63) / 64 * 64))) {
         b->scratch.segments = NULL;
@@ -180,12 +180,12 @@ bench *query_take_bench(const cuvette_query *query)
     return b;
 }
 
-void query_give_bench(const cuvette_query *query, bench *b)
+void query_release_buffers(const cuvette_query *query, query_buffers *b)
 {
     cuvette_query *q = (cuvette_query *)(uintptr_t)query;
     pthread_mutex_lock(&q->lock);
-    b->next = q->free_benches;
-    q->free_benches = b;
+    b->next = q->free_buffers;
+    q->free_buffers = b;
     pthread_mutex_unlock(&q->lock);
 }
 

@@ -1,4 +1,4 @@
-/* Internals of a query, shared by query.c (creation), query_rays.c (ray queries), tree.c, beams.c and fan.c (ray
+/* Internals of a query, shared by query.c (creation), query_rays.c (ray queries), tree.c and fan.c (ray
  * trees): the query, the scratch memory of a call, and the nodes of a tree. */
 #pragma once
 
@@ -8,9 +8,10 @@
 #include "geometry/rays.h"
 #include "render/plan/plan.h"
 #include "render/inspect/probe.h"
+
 #include <stdio.h>
 
-typedef struct bench {
+typedef struct query_buffers {
     _Alignas(64) ray_scratch scratch;
     _Alignas(64) hit_batch hits;
     _Alignas(64) double ox[ROW], oy[ROW], oz[ROW], dx[ROW], dy[ROW], dz[ROW];
@@ -27,8 +28,8 @@ typedef struct bench {
     mesh_points on_mesh;
     double transmitted[ROW];
     size_t caller_index[ROW]; /* the index of the caller's ray in each column */
-    struct bench *next;
-} bench;
+    struct query_buffers *next;
+} query_buffers;
 
 /* A call of the query that another thread can cancel, from query_call_begin to query_call_end on one thread. */
 typedef struct query_call {
@@ -42,7 +43,7 @@ struct cuvette_query {
     plan *ready;
     const geometry_kernels *kernels;
     pthread_mutex_t lock;
-    bench *free_benches;
+    query_buffers *free_buffers;
     isa level;
     pthread_mutex_t tracing; /* held while the probe traces */
     query_call traced;       /* of who holds it */
@@ -61,17 +62,14 @@ static inline unsigned query_cancels(const cuvette_query *query)
 }
 status query_cancelled(diagnostic *why);
 
-/* A query, and the right to use its probe until query_end_trace. */
+/* Locks the query's probe for the caller until query_end_trace. */
 status query_begin_trace(const cuvette_query *query, cuvette_query **out, diagnostic *why);
 void query_end_trace(cuvette_query *query);
-/* One more and one less owner; the last one frees it. */
-cuvette_query *query_share(cuvette_query *query);
+/* Adds an owner; cuvette_query_destroy removes one. */
+cuvette_query *query_retain(cuvette_query *query);
 
 /* The nodes of a tree for the caller, newly allocated; NULL when out of memory. */
 cuvette_node *tree_nodes_make(const cuvette_query *query, const ray_node *nodes, size_t count);
-
-/* A tree that another probe of the query's scene traced, as the caller's own. */
-status tree_copy(cuvette_query *query, const ray_tree *from, cuvette_tree **out, diagnostic *why);
 
 /* Writes a text file with one of the writers of a traced result, by the path's ending; remedy: names the endings. */
 typedef struct ray_writer {
@@ -81,6 +79,6 @@ typedef struct ray_writer {
 status query_write_file(const ray_writer *writers, size_t count, const char *remedy, const void *content,
                         const char *path, diagnostic *why);
 
-/* Takes a bench from the free list, or allocates one; NULL when out of memory. */
-bench *query_take_bench(const cuvette_query *query);
-void query_give_bench(const cuvette_query *query, bench *b);
+/* The memory of one call, from the free list or newly allocated; NULL when out of memory. */
+query_buffers *query_acquire_buffers(const cuvette_query *query);
+void query_release_buffers(const cuvette_query *query, query_buffers *b);

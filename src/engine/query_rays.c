@@ -1,7 +1,6 @@
 /* Ray queries: the caller's rays are traced in batches by the tracer's own kernels, and their hits are converted to the
  * scene's terms. */
 #include "engine/query_private.h"
-
 #include "geometry/regions/solid_tree.h"
 
 #include <math.h>
@@ -13,11 +12,6 @@
 static cuvette_start start_at(int64_t face, uint64_t inside)
 {
     return (cuvette_start){{1, (uint64_t)face, inside, 0}};
-}
-
-bool engine_is_finite(const double *v)
-{
-    return isfinite(v[0]) && isfinite(v[1]) && isfinite(v[2]);
 }
 
 /* True if the word is a set that a hit of this query can have. */
@@ -69,7 +63,7 @@ vec3 engine_unit(const double *d)
     return vec3_normalize(vec3_make(v.x / largest, v.y / largest, v.z / largest));
 }
 
-static void put_ray(const cuvette_query *q, bench *b, int column, const cuvette_ray *ray, double length)
+static void put_ray(const cuvette_query *q, query_buffers *b, int column, const cuvette_ray *ray, double length)
 {
     const vec3 origin = engine_vector(ray->origin), d = vec3_scale(engine_unit(ray->direction), length);
     b->ox[column] = origin.x, b->oy[column] = origin.y, b->oz[column] = origin.z;
@@ -78,7 +72,7 @@ static void put_ray(const cuvette_query *q, bench *b, int column, const cuvette_
     b->inside[column] = ray->start.word[0] ? ray->start.word[2] : scene_geometry_inside(q->ready->geometry, origin);
 }
 
-static ray_batch view_of(const bench *b, int count)
+static ray_batch view_of(const query_buffers *b, int count)
 {
     return (ray_batch){count, b->ox, b->oy, b->oz, b->dx, b->dy, b->dz, b->start, b->inside};
 }
@@ -96,7 +90,7 @@ static cuvette_hit no_hit(const cuvette_query *q, int priority_index)
     return h;
 }
 
-static cuvette_hit hit_of(const cuvette_query *q, const bench *b, int column, int k, int hit_primitive)
+static cuvette_hit hit_of(const cuvette_query *q, const query_buffers *b, int column, int k, int hit_primitive)
 {
     const plan *p = q->ready;
     const hit_batch *hits = &b->hits;
@@ -124,7 +118,7 @@ static cuvette_hit hit_of(const cuvette_query *q, const bench *b, int column, in
 }
 
 /* Hits on one primitive: their points are computed together. */
-static void report_hits(const cuvette_query *q, bench *b, int hit_primitive, int count, cuvette_hit *out)
+static void report_hits(const cuvette_query *q, query_buffers *b, int hit_primitive, int count, cuvette_hit *out)
 {
     for (int k = 0; k < count; k++) {
         const int i = b->list[k];
@@ -150,7 +144,8 @@ static bool within(double distance, double reach)
     return reach == 0.0 || distance <= reach;
 }
 
-static void nearest_batch(const cuvette_query *q, bench *b, const cuvette_ray *rays, int count, cuvette_hit *hits)
+static void nearest_batch(const cuvette_query *q, query_buffers *b, const cuvette_ray *rays, int count,
+                          cuvette_hit *hits)
 {
     const scene_geometry *a = q->ready->geometry;
     for (int i = 0; i < count; i++)
@@ -177,15 +172,15 @@ static void nearest_batch(const cuvette_query *q, bench *b, const cuvette_ray *r
 }
 
 /* cancels: of the query when the call began. */
-static status begin(const cuvette_query *q, unsigned cancels, const cuvette_ray *rays, size_t count, bench **out,
-                    diagnostic *why)
+static status begin(const cuvette_query *q, unsigned cancels, const cuvette_ray *rays, size_t count,
+                    query_buffers **out, diagnostic *why)
 {
     for (size_t i = 0; i < count; i++) {
         if (i % 4096 == 0 && query_cancels(q) != cancels)
             return query_cancelled(why);
         TRY(engine_check_ray(q->ready, &rays[i], i, why));
     }
-    *out = query_take_bench(q);
+    *out = query_acquire_buffers(q);
     return *out ? STATUS_OK : out_of_memory(why);
 }
 
@@ -196,7 +191,7 @@ cuvette_status cuvette_query_nearest(const cuvette_query *query, const cuvette_r
     if (count == 0)
         return CUVETTE_OK;
     ENGINE_NEED(rays, hits);
-    bench *b = NULL;
+    query_buffers *b = NULL;
     const unsigned cancels = query_cancels(query);
     status code = begin(query, cancels, rays, count, &b, &inner);
     if (code != STATUS_OK)
@@ -204,13 +199,13 @@ cuvette_status cuvette_query_nearest(const cuvette_query *query, const cuvette_r
     size_t i = 0;
     for (; i < count && query_cancels(query) == cancels; i += BATCH)
         nearest_batch(query, b, rays + i, count - i < BATCH ? (int)(count - i) : BATCH, hits + i);
-    query_give_bench(query, b);
+    query_release_buffers(query, b);
     code = i < count ? query_cancelled(&inner) : STATUS_OK;
     return engine_report(code, &inner, why);
 }
 
 /* A batch of rays of one kind: those with a reach end there, as shadow rays end at their light. */
-static void occluded_batch(const cuvette_query *q, bench *b, int count, bool ends, unsigned char *blocked)
+static void occluded_batch(const cuvette_query *q, query_buffers *b, int count, bool ends, unsigned char *blocked)
 {
     const ray_batch view = view_of(b, count);
     if (ends)
@@ -222,7 +217,7 @@ static void occluded_batch(const cuvette_query *q, bench *b, int count, bool end
 }
 
 /* False if the query was cancelled meanwhile. */
-static bool occluded(const cuvette_query *q, bench *b, unsigned cancels, const cuvette_ray *rays, size_t count,
+static bool occluded(const cuvette_query *q, query_buffers *b, unsigned cancels, const cuvette_ray *rays, size_t count,
                      bool ends, unsigned char *blocked)
 {
     int waiting = 0;
@@ -250,14 +245,14 @@ cuvette_status cuvette_query_occluded(const cuvette_query *query, const cuvette_
     if (count == 0)
         return CUVETTE_OK;
     ENGINE_NEED(rays, blocked);
-    bench *b = NULL;
+    query_buffers *b = NULL;
     const unsigned cancels = query_cancels(query);
     status code = begin(query, cancels, rays, count, &b, &inner);
     if (code != STATUS_OK)
         return engine_report(code, &inner, why);
-    const bool whole = occluded(query, b, cancels, rays, count, true, blocked) &&
-                       occluded(query, b, cancels, rays, count, false, blocked);
-    query_give_bench(query, b);
-    code = whole ? STATUS_OK : query_cancelled(&inner);
+    const bool completed = occluded(query, b, cancels, rays, count, true, blocked) &&
+                           occluded(query, b, cancels, rays, count, false, blocked);
+    query_release_buffers(query, b);
+    code = completed ? STATUS_OK : query_cancelled(&inner);
     return engine_report(code, &inner, why);
 }

@@ -1,8 +1,10 @@
-/* Scene handles: creating, reading, cloning, checking. */
+/* Scene handles: creating, reading, cloning, checking, loading, writing. */
 #include "engine/engine_private.h"
-
-#include "measure/clock.h"
 #include "lint/lint.h"
+#include "measure/clock.h"
+#include "scene/file/shared.h"
+#include "scene/file/write.h"
+
 #include <stdlib.h>
 #include <string.h>
 
@@ -61,7 +63,9 @@ cuvette_status cuvette_scene_read_text(const char *name, const char *text, size_
     return code == STATUS_OK ? engine_own_scene(model, out, why) : engine_report(code, &inner, why);
 }
 
-cuvette_scene *engine_hold(const cuvette_scene *s)
+/* Locks the scene (its lock `loading`) against loading by another thread: renders of one scene may begin together, and
+ * each checks what is loaded. */
+static cuvette_scene *hold(const cuvette_scene *s)
 {
     cuvette_scene *held = (cuvette_scene *)(uintptr_t)s; /* handles are never const objects */
     pthread_mutex_lock(&held->loading);
@@ -73,7 +77,7 @@ cuvette_status cuvette_scene_clone(const cuvette_scene *s, cuvette_scene **out, 
     ENGINE_CALL(out);
     *out = NULL;
     ENGINE_NEED(s);
-    cuvette_scene *source = engine_hold(s);
+    cuvette_scene *source = hold(s);
     scene *model = scene_clone(source->model);
     const bool grabbed = source->grabbed;
     pthread_mutex_unlock(&source->loading);
@@ -95,7 +99,7 @@ void cuvette_scene_destroy(cuvette_scene *s)
     if (!s)
         return;
     scene_destroy(s->model);
-    s->model = NULL; /* shows its motions that the scene is destroyed */
+    s->model = NULL; /* tells the scene's motions that it is destroyed */
     engine_release_scene(s);
 }
 
@@ -163,35 +167,35 @@ status engine_load(cuvette_scene *s, const load_watch *watch, diagnostic *why)
     return code;
 }
 
-void engine_tell(host_progress *p, double share)
+void engine_tell(host_progress *p, double fraction)
 {
     static const double every_s = 0.1;
-    if (share > p->share)
-        p->share = share;
+    if (fraction > p->fraction)
+        p->fraction = fraction;
     if (!p->tell || cancel_is_set(&p->token))
         return;
     p->next_s = clock_wall_s() + every_s;
     float_environment_leave(p->host);
-    const bool goes_on = p->tell(p->context, p->share);
+    const bool wants_more = p->tell(p->context, p->fraction);
     float_environment_enter(p->host);
-    if (!goes_on)
+    if (!wants_more)
         cancel_set(&p->token);
 }
 
-void engine_show(void *context, double share)
+void engine_show(void *context, double fraction)
 {
     host_progress *p = context;
     if (p->tell && clock_wall_s() >= p->next_s)
-        engine_tell(p, share);
-    else if (share > p->share)
-        p->share = share;
+        engine_tell(p, fraction);
+    else if (fraction > p->fraction)
+        p->fraction = fraction;
 }
 
 /* As the ask of a token. */
 static bool host_stops(void *context)
 {
     const host_progress *p = context;
-    engine_show(context, p->share);
+    engine_show(context, p->fraction);
     return cancel_is_set(&p->token);
 }
 
@@ -223,7 +227,7 @@ cuvette_status cuvette_scene_load(const cuvette_scene *s, bool (*progress)(void 
 
 status engine_check(const cuvette_scene *s, diagnostic *why)
 {
-    cuvette_scene *held = engine_hold(s);
+    cuvette_scene *held = hold(s);
     const status code = scene_check(held->model, why);
     pthread_mutex_unlock(&held->loading);
     return code;
@@ -256,7 +260,7 @@ cuvette_status cuvette_scene_hints(const cuvette_scene *s, void (*note)(void *co
 {
     ENGINE_CALL(s);
     ENGINE_NEED_NAMED(note, "note");
-    cuvette_scene *held = engine_hold(s);
+    cuvette_scene *held = hold(s);
     scene *copy = scene_clone(held->model); /* the callback may use the scene */
     pthread_mutex_unlock(&held->loading);
     if (!copy)
@@ -266,4 +270,71 @@ cuvette_status cuvette_scene_hints(const cuvette_scene *s, void (*note)(void *co
     scene_beam_range_hints(copy, &taker);
     scene_destroy(copy);
     return CUVETTE_OK;
+}
+
+cuvette_status engine_copy_text(char *content, char *text, size_t size, size_t *length, cuvette_diagnostic *why)
+{
+    const size_t needed = strlen(content);
+    if (length)
+        *length = needed;
+    const bool fits = needed < size;
+    if (fits)
+        memcpy(text, content, needed + 1);
+    free(content);
+    if (fits)
+        return CUVETTE_OK;
+    diagnostic inner = {.line = 0};
+    return engine_report(diagnose(&inner, STATUS_BAD_INPUT, "make room for the reported length plus 1",
+                                  "the text has %zu characters, but the buffer only %zu bytes", needed, size),
+                         &inner, why);
+}
+
+cuvette_status cuvette_scene_write(const cuvette_scene *s, const char *path, cuvette_diagnostic *why)
+{
+    ENGINE_CALL(s, path);
+    cuvette_scene *held = hold(s);
+    const status code = scene_write(held->model, path, false, &inner);
+    pthread_mutex_unlock(&held->loading);
+    return engine_report(code, &inner, why);
+}
+
+static status make_text(const scene *s, char **text, diagnostic *why)
+{
+    return scene_write_text(s, NULL, false, text, why);
+}
+
+static status make_link(const scene *s, char **code, diagnostic *why)
+{
+    char *text = NULL;
+    TRY(shared_scene_text(s, &text, why));
+    const status result = shared_scene_code(text, code, why);
+    free(text);
+    return result;
+}
+
+/* Copies what make made of the scene; inner: the diagnostic of the calling function. */
+static cuvette_status copy_made(const cuvette_scene *s, status (*make)(const scene *s, char **text, diagnostic *why),
+                                char *text, size_t size, size_t *length, diagnostic *inner, cuvette_diagnostic *why)
+{
+    if (size > 0)
+        ENGINE_NEED(text);
+    char *content = NULL;
+    cuvette_scene *held = hold(s);
+    const status code = make(held->model, &content, inner);
+    pthread_mutex_unlock(&held->loading);
+    return code == STATUS_OK ? engine_copy_text(content, text, size, length, why) : engine_report(code, inner, why);
+}
+
+cuvette_status cuvette_scene_write_text(const cuvette_scene *s, char *text, size_t size, size_t *length,
+                                        cuvette_diagnostic *why)
+{
+    ENGINE_CALL(s);
+    return copy_made(s, make_text, text, size, length, &inner, why);
+}
+
+cuvette_status cuvette_scene_write_link(const cuvette_scene *s, char *text, size_t size, size_t *length,
+                                        cuvette_diagnostic *why)
+{
+    ENGINE_CALL(s);
+    return copy_made(s, make_link, text, size, length, &inner, why);
 }

@@ -1,11 +1,20 @@
-/* Studies: reading, cells, running. */
+/* Studies: reading, cells, running, and what their rows say: summary, comparison, figure. */
+#include "base/text.h"
 #include "engine/engine_private.h"
-#include "engine/study_private.h"
-
+#include "report/json.h"
+#include "study/summary/contrast.h"
+#include "study/plot/plot.h"
+#include "study/summary/summary.h"
 #include "study/rows/rows.h"
+#include "study/study.h"
+
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
+
+struct cuvette_study {
+    study *of;
+};
 
 void cuvette_text_destroy(char *text)
 {
@@ -81,19 +90,20 @@ cuvette_status cuvette_study_each_value(const cuvette_study *s, size_t cell,
     ENGINE_NEED_NAMED(s, "study");
     ENGINE_NEED_NAMED(visit, "visit");
     const status code = check_cell(s, cell, &inner);
-    bool goes_on = code == STATUS_OK;
-    for (size_t axis = 0; goes_on && axis < s->of->axis_count; axis++) {
+    bool wants_more = code == STATUS_OK;
+    for (size_t axis = 0; wants_more && axis < s->of->axis_count; axis++) {
         const study_point *point = &s->of->axes[axis].points[study_cell_point(s->of, cell, axis)];
-        for (size_t i = 0; goes_on && i < point->count; i++) {
+        for (size_t i = 0; wants_more && i < point->count; i++) {
             float_environment_leave(&host);
-            goes_on = visit(context, point->paths[i], point->values[i]);
+            wants_more = visit(context, point->paths[i], point->values[i]);
             float_environment_enter(&host);
         }
     }
     return engine_report(code, &inner, why);
 }
 
-const char *engine_results(const char *results)
+/* The results folder: "results" for NULL. */
+static const char *results_folder(const char *results)
 {
     return results ? results : "results";
 }
@@ -105,7 +115,7 @@ cuvette_status cuvette_study_state(const cuvette_study *s, const char *results, 
     ENGINE_NEED_NAMED(s, "study");
     ENGINE_NEED(out);
     study_progress found;
-    const status code = study_status(s->of, engine_results(results), &found, &inner);
+    const status code = study_status(s->of, results_folder(results), &found, &inner);
     if (code != STATUS_OK)
         return engine_report(code, &inner, why);
     cuvette_study_progress result = {.cells = found.cells,
@@ -174,7 +184,7 @@ cuvette_status cuvette_study_run(const cuvette_study *s, const cuvette_run *run,
     status code = check_run(s, run, &inner);
     if (code != STATUS_OK)
         return engine_report(code, &inner, why);
-    const study_options options = {.results = engine_results(run->results),
+    const study_options options = {.results = results_folder(run->results),
                                    .process = run->process,
                                    .any_environment = run->any_environment,
                                    .progressed = note_moment,
@@ -194,17 +204,17 @@ typedef struct column_call {
     bool (*visit)(void *context, const cuvette_column *one);
     void *context;
     float_environment *host;
-    bool goes_on;
+    bool wants_more;
 } column_call;
 
 static void pass_column(void *context, const row_column *column)
 {
     column_call *c = context;
     const cuvette_column one = {column->name, column->unit, column->meaning};
-    if (!c->goes_on)
+    if (!c->wants_more)
         return;
     float_environment_leave(c->host);
-    c->goes_on = c->visit(c->context, &one);
+    c->wants_more = c->visit(c->context, &one);
     float_environment_enter(c->host);
 }
 
@@ -215,4 +225,127 @@ cuvette_status cuvette_each_column(bool (*visit)(void *context, const cuvette_co
     ENGINE_NEED_NAMED(visit, "visit");
     row_each_column(pass_column, &(column_call){visit, context, &host, true});
     return CUVETTE_OK;
+}
+
+/* --- what the rows say --- */
+
+static const double draw_limit_s = 300;
+
+/* Passes the first fault of the rows to the caller: *out stays NULL without one. */
+static status put_fault(const diagnostic *verdict, char **out, diagnostic *why)
+{
+    if (!out || !verdict->what[0])
+        return STATUS_OK;
+    *out = strdup(verdict->what);
+    return *out ? STATUS_OK : out_of_memory(why);
+}
+
+cuvette_status cuvette_study_summary(const cuvette_study *s, const char *results, const char *environment, char **out,
+                                     char **fault, cuvette_diagnostic *why)
+{
+    ENGINE_CALL(out);
+    *out = NULL;
+    if (fault)
+        *fault = NULL;
+    ENGINE_NEED_NAMED(s, "study");
+    const summary_options options = {.environment = environment};
+    diagnostic verdict = {.what = ""};
+    text_writer writer;
+    status code = text_writer_open(&writer, &inner);
+    if (code != STATUS_OK)
+        return engine_report(code, &inner, why);
+    code = study_summary_of(s->of, results_folder(results), &options, writer.stream, &verdict, &inner);
+    code = text_writer_end(&writer, code, out, NULL, &inner);
+    THEN(code, put_fault(&verdict, fault, &inner));
+    return engine_report(code, &inner, why);
+}
+
+cuvette_status cuvette_study_rows(const cuvette_study *s, const char *results, const char *environment, char **out,
+                                  char **fault, cuvette_diagnostic *why)
+{
+    ENGINE_CALL(out);
+    *out = NULL;
+    if (fault)
+        *fault = NULL;
+    if (!s)
+        ENGINE_NEED(results);
+    diagnostic verdict = {.what = ""};
+    text_writer writer;
+    status code = text_writer_open(&writer, &inner);
+    if (code != STATUS_OK)
+        return engine_report(code, &inner, why);
+    code = row_list_write(s ? s->of : NULL, results_folder(results), environment, writer.stream, &verdict, &inner);
+    code = text_writer_end(&writer, code, out, NULL, &inner);
+    THEN(code, put_fault(&verdict, fault, &inner));
+    return engine_report(code, &inner, why);
+}
+
+static status write_comparison(const study *s, const contrast *c, char **out, diagnostic *why)
+{
+    text_writer writer;
+    TRY(text_writer_open(&writer, why));
+    const status code = json_put(writer.stream, contrast_json(s, c, SIZE_MAX), why);
+    return text_writer_end(&writer, code, out, NULL, why);
+}
+
+cuvette_status cuvette_study_compare(const cuvette_study *s, const char *results, const char *a, const char *b,
+                                     const char *column, char **out, char **fault, cuvette_diagnostic *why)
+{
+    ENGINE_CALL(out);
+    *out = NULL;
+    if (fault)
+        *fault = NULL;
+    ENGINE_NEED_NAMED(s, "study");
+    ENGINE_NEED(a, b);
+    study_side one = {.text = NULL}, other = {.text = NULL};
+    contrast *found = NULL;
+    diagnostic verdict = {.what = ""};
+    status code = side_read(s->of, a, results_folder(results), &one, &inner);
+    THEN(code, side_read(s->of, b, results_folder(results), &other, &inner));
+    THEN(code, contrast_make(s->of, &one, &other, &(contrast_options){.column = column}, &found, &verdict, &inner));
+    THEN(code, write_comparison(s->of, found, out, &inner));
+    THEN(code, put_fault(&verdict, fault, &inner));
+    contrast_destroy(found);
+    side_release(&one);
+    side_release(&other);
+    return engine_report(code, &inner, why);
+}
+
+static status read_plot(const cuvette_plot *given, plot_request *out, diagnostic *why)
+{
+    static const char *const words[] = {"none", "x", "y", "xy"};
+    static const plot_log scales[] = {PLOT_LOG_NONE, PLOT_LOG_X, PLOT_LOG_Y, PLOT_LOG_XY};
+    if (given->size < sizeof *given) /* there is no earlier version yet */
+        return diagnose(why, STATUS_BAD_INPUT, "set it to sizeof(cuvette_plot)",
+                        "the plot's size is %zu, which is too small", given->size);
+    *out = (plot_request){.results = results_folder(given->results),
+                          .x = given->x,
+                          .y = given->y,
+                          .by = given->by,
+                          .where = given->where,
+                          .where_count = given->where ? given->where_count : 0,
+                          .published = given->published,
+                          .images = given->images};
+    bool known = !given->log;
+    for (size_t i = 0; given->log && i < sizeof words / sizeof *words; i++)
+        if (strcmp(given->log, words[i]) == 0)
+            out->log = scales[i], known = true;
+    return known ? STATUS_OK
+                 : diagnose(why, STATUS_BAD_INPUT, "use x, y, xy or none", "unknown scale '%.64s'", given->log);
+}
+
+cuvette_status cuvette_study_plot(const cuvette_study *s, const cuvette_plot *plot, const char *base,
+                                  const char *format, cuvette_diagnostic *why)
+{
+    ENGINE_ENTER();
+    ENGINE_NEED_NAMED(s, "study");
+    ENGINE_NEED(plot, base, format);
+    plot_request request;
+    status code = strcmp(format, "png") == 0 || strcmp(format, "svg") == 0 || strcmp(format, "pdf") == 0
+                      ? STATUS_OK
+                      : diagnose(&inner, STATUS_BAD_INPUT, "use png, svg or pdf", "unknown format '%.64s'", format);
+    THEN(code, read_plot(plot, &request, &inner));
+    THEN(code, study_plot_write(s->of, &request, base, &inner));
+    THEN(code, study_plot_draw(base, format, draw_limit_s, &inner));
+    return engine_report(code, &inner, why);
 }

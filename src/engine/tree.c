@@ -1,9 +1,11 @@
-/* Ray trees: traced by the query's probe, copied into the caller's form of a node. */
-#include "engine/query_private.h"
-
+/* Ray trees: traced by the query's probe, copied into the caller's form of a node; and the rays of a scene's beams,
+ * each with its tree. */
 #include "base/file.h"
+#include "engine/query_private.h"
+#include "render/inspect/beams.h"
 #include "report/trace_writers.h"
 #include "scene/model/scene.h"
+
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
@@ -103,13 +105,14 @@ static status give_nodes(cuvette_query *query, cuvette_tree *tree, diagnostic *w
     return tree->nodes ? STATUS_OK : out_of_memory(why);
 }
 
-status tree_copy(cuvette_query *query, const ray_tree *from, cuvette_tree **out, diagnostic *why)
+/* A tree that another probe of the query's scene traced, as the caller's own. */
+static status tree_copy(cuvette_query *query, const ray_tree *from, cuvette_tree **out, diagnostic *why)
 {
     *out = NULL;
     cuvette_tree *tree = calloc(1, sizeof *tree);
     if (!tree)
         return out_of_memory(why);
-    tree->of = query_share(query);
+    tree->of = query_retain(query);
     status code = copy_tree(from, &tree->traced, why);
     THEN(code, give_nodes(query, tree, why));
     if (code == STATUS_OK)
@@ -146,7 +149,7 @@ static cuvette_status trace(const cuvette_query *query, const tree_root *root, c
         return engine_report(code, inner, why);
     cuvette_tree *tree = calloc(1, sizeof *tree);
     if (tree)
-        tree->of = query_share(q);
+        tree->of = query_retain(q);
     code = tree ? grow(q, root, tree, inner) : out_of_memory(inner);
     query_end_trace(q);
     if (code == STATUS_OK)
@@ -231,4 +234,48 @@ cuvette_status cuvette_tree_write(const cuvette_tree *tree, const char *path, cu
         query_write_file(writers, sizeof writers / sizeof *writers, "use .txt, .json or .svg", &content, path, &inner);
     query_end_trace(q);
     return engine_report(code, &inner, why);
+}
+
+/* --- the rays of a scene's beams --- */
+
+typedef struct beam_call {
+    cuvette_query *of;
+    bool (*visit)(void *context, const cuvette_beam_ray *ray, cuvette_tree *tree);
+    void *context;
+    float_environment *host; /* the caller's, for the callback */
+    bool stopped;
+} beam_call;
+
+static status pass_ray(void *context, const beam_ray *ray, const ray_tree *grown, const probe *p, diagnostic *why)
+{
+    beam_call *c = context;
+    cuvette_tree *tree;
+    (void)p;
+    TRY(tree_copy(c->of, grown, &tree, why));
+    const cuvette_beam_ray one = {.beam_name = c->of->model->beams[ray->beam].name,
+                                  .beam = ray->beam,
+                                  .number = ray->number,
+                                  .rays = ray->rays,
+                                  .lambda_nm = ray->lambda_nm,
+                                  .power = ray->power};
+    float_environment_leave(c->host);
+    c->stopped = !c->visit(c->context, &one, tree);
+    float_environment_enter(c->host);
+    return c->stopped ? STATUS_INTERRUPTED : STATUS_OK;
+}
+
+cuvette_status cuvette_query_each_beam_ray(const cuvette_query *query,
+                                           bool (*visit)(void *context, const cuvette_beam_ray *ray,
+                                                         cuvette_tree *tree),
+                                           void *context, cuvette_diagnostic *why)
+{
+    ENGINE_CALL(query);
+    ENGINE_NEED_NAMED(visit, "visit");
+    cuvette_query *q = (cuvette_query *)(uintptr_t)query; /* handles are never const objects */
+    beam_call call = {q, visit, context, &host, false};
+    query_call cancellable;
+    query_call_begin(&cancellable, query);
+    const status code = beams_each_ray(q->model, q->level, 0, pass_ray, &call, &inner);
+    query_call_end(&cancellable);
+    return engine_report(call.stopped ? STATUS_OK : code, &inner, why);
 }

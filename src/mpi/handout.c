@@ -67,11 +67,11 @@ static int64_t limit_of(const handout *h, const rank_state *r)
     if (slow && last)
         return r->threads;
     const double wanted = each_s > 0.0 ? ceil(r->threads * HANDOUT_AHEAD_S / each_s) : (double)r->threads;
-    const double fair = (double)(h->tiles - h->next) / (2.0 * h->ranks); /* leave the others their share */
+    const double fair = (double)(h->tiles - h->next) / (2.0 * h->ranks); /* leave tiles for the others */
     return r->threads + (int64_t)fmax(1.0, fmin(wanted, fair));
 }
 
-int handout_give(handout *h, int rank, int32_t *tiles)
+int handout_assign(handout *h, int rank, int32_t *tiles)
 {
     rank_state *r = &h->rank[rank];
     if (r->threads == 0)
@@ -111,7 +111,7 @@ bool handout_is_complete(const handout *h)
     return h->returned == h->tiles;
 }
 
-double handout_share(const handout *h)
+double handout_fraction(const handout *h)
 {
     return (double)h->returned / (double)h->tiles;
 }

@@ -7,6 +7,7 @@
 #pragma once
 
 #include "base/status.h"
+
 #include <stdbool.h>
 #include <stdint.h>
 
@@ -23,7 +24,7 @@ void handout_join(handout *h, int rank, int threads, double now_s);
 
 /* Gives tiles to a rank that has joined: writes their numbers to tiles (HANDOUT_MOST of them at most) and returns how
  * many. */
-int handout_give(handout *h, int rank, int32_t *tiles);
+int handout_assign(handout *h, int rank, int32_t *tiles);
 
 /* The rank has traced the tile. False: it does not hold it. */
 bool handout_return(handout *h, int rank, int64_t tile, double now_s);
@@ -32,7 +33,7 @@ bool handout_return(handout *h, int rank, int64_t tile, double now_s);
 bool handout_is_empty(const handout *h);
 /* All tiles have been returned. */
 bool handout_is_complete(const handout *h);
-/* The returned share of all tiles. */
-double handout_share(const handout *h);
+/* The fraction of the tiles that has been returned. */
+double handout_fraction(const handout *h);
 /* The tiles that the rank holds. */
 int64_t handout_held(const handout *h, int rank);

@@ -1,7 +1,7 @@
 /* The loops of rank 0 and of the other ranks during a frame. */
+#include "base/cancel.h"
 #include "mpi/messenger.h"
 
-#include "base/cancel.h"
 #include <mpi.h>
 #include <stdlib.h>
 
@@ -44,7 +44,7 @@ static void give_up(serving *s)
         tell(s, rank, TAG_STOP);
 }
 
-/* Gives the rank what it should hold, and tells it once when there is no more. */
+/* Sends the rank the tiles that it should hold, and once the message that none is left. */
 static void give(serving *s, int rank)
 {
     struct {
@@ -53,7 +53,7 @@ static void give(serving *s, int rank)
     } message = {.head.frame = s->frame};
     if (s->given_up)
         return;
-    const int count = handout_give(s->tiles, rank, message.tiles);
+    const int count = handout_assign(s->tiles, rank, message.tiles);
     if (count > 0 && rank == 0)
         s->own->give(s->own->of, message.tiles, count);
     if (count > 0 && rank != 0) {
@@ -164,7 +164,7 @@ void messenger_serve(int64_t frame, int ranks, handout *tiles, const tracing *ow
         } else {
             own->wait(own->of, s.idle++);
         }
-        sink->progress(sink->of, handout_share(tiles));
+        sink->progress(sink->of, handout_fraction(tiles));
         if (cancel_asked())
             give_up(&s);
     }

@@ -1,7 +1,7 @@
 /* Parts of a package, between ranks. */
 #include "mpi/scene_wire.h"
-
 #include "scene/package/package.h"
+
 #include <mpi.h>
 #include <stdlib.h>
 #include <string.h>

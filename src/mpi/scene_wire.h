@@ -5,6 +5,7 @@
 
 #include "base/status.h"
 #include "scene/model/open.h"
+
 #include <stdint.h>
 
 /* Rank 0, with the hierarchies built (scene_build_hierarchies). *sent: bytes that each rank got. After an error the

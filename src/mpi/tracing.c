@@ -1,7 +1,7 @@
 /* Queues between the messenger and the tracing threads of a rank. */
+#include "base/array.h"
 #include "mpi/tracing.h"
 
-#include "base/array.h"
 #include <pthread.h>
 #include <stdatomic.h>
 #include <stdlib.h>
@@ -79,8 +79,9 @@ static bool over(void *of)
     return is_over;
 }
 
-/* Messages can only be looked for, which takes time from the threads that trace. Within HANDOUT_AHEAD_S these have
- * tiles enough, so that a look per millisecond will do; only a rank that waits for tiles looks more often, at first. */
+/* MPI has to be polled for messages, which takes time from the threads that trace. These have tiles for
+ * HANDOUT_AHEAD_S, so that one poll per millisecond is enough; only a rank that waits for tiles polls more often, at
+ * first. */
 static void wait_for_event(void *of, int idle)
 {
     enum { SHORT_NS = 50000, LONG_NS = 1000000, SHORT_TIMES = 40 };
@@ -142,7 +143,7 @@ static void done(void *context, const image_tile *piece, const film *traced, con
     pthread_mutex_unlock(&t->lock);
 }
 
-/* --- */
+/* --- creation and status --- */
 
 status team_create(const schedule *tiles, int threads, team **out, diagnostic *why)
 {

@@ -32,7 +32,7 @@ void wasm_lab_request(int id, const char *method, const char *target, const char
  * the next turn is due: 0 for at once, negative for none until something arrives. */
 double wasm_lab_turn(void);
 
-/* A tile worker cannot start: the laboratory goes on without it. */
+/* A tile worker cannot start: the laboratory continues without it. */
 void wasm_lab_lost(int worker);
 /* Takes what a tile worker sent (wasm_tiles_trace). */
 void wasm_lab_traced(int worker, const void *bytes, size_t size);

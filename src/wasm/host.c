@@ -1,13 +1,21 @@
-/* What a WebAssembly module lacks of an operating system: other programs, confinement, hardware counters, hwloc. */
+/* What a WebAssembly module lacks of an operating system: other programs, confinement, hardware counters, hwloc,
+ * threads. */
+#include "base/file.h"
 #include "base/child.h"
 #include "base/os_confine.h"
+#include "base/worker_pool.h"
+#include "measure/clock.h"
 #include "measure/topology_private.h"
 #include "measure/usage.h"
 
 #include <errno.h>
+#include <fcntl.h>
+#include <limits.h>
 #include <pthread.h>
 #include <sched.h>
 #include <stddef.h>
+#include <stdlib.h>
+#include <string.h>
 #include <unistd.h>
 
 status child_run(char *const *arguments, double limit_s, char **output, int *exit_code, diagnostic *why)
@@ -121,4 +129,77 @@ int pthread_timedjoin_np(pthread_t thread, void **result, const struct timespec 
 int euidaccess(const char *path, int mode)
 {
     return access(path, mode);
+}
+
+/* --- files --- */
+
+/* The files of a module are its own: nobody else changes them meanwhile. See base/file.h. */
+int below_open(const char *path, const char *root)
+{
+    char real[PATH_MAX];
+    if (!root || !*root)
+        return open(path, O_RDONLY);
+    const size_t length = strlen(root);
+    if (!realpath(path, real))
+        return -1;
+    if (strncmp(real, root, length) != 0 || real[length] != '/') {
+        errno = EXDEV;
+        return -1;
+    }
+    return open(real, O_RDONLY);
+}
+
+/* --- threads: the workers of a pool run on the calling thread, one after another. See base/worker_pool.h. --- */
+
+struct worker_pool {
+    void (*watch)(void *context);
+    void *context;
+    double every_s, watched_s;
+};
+
+worker_pool *worker_pool_create(size_t stack_bytes)
+{
+    (void)stack_bytes;
+    return calloc(1, sizeof(worker_pool));
+}
+
+void worker_pool_destroy(worker_pool *p)
+{
+    free(p);
+}
+
+status worker_pool_reserve(worker_pool *p, int count, diagnostic *why)
+{
+    (void)p, (void)count, (void)why;
+    return STATUS_OK;
+}
+
+status worker_pool_run(worker_pool *p, int count, bool keep, worker_pool_task *task, void (*watch)(void *),
+                       double every_s, void *context, diagnostic *why)
+{
+    (void)keep, (void)why;
+    *p = (worker_pool){watch, context, every_s, clock_wall_s()};
+    for (int worker = 0; worker < count; worker++)
+        task(context, worker);
+    return STATUS_OK;
+}
+
+void worker_pool_begin(worker_pool *p, int count, worker_pool_task *task, void *context)
+{
+    p->watch = NULL;
+    for (int worker = 0; worker < count; worker++)
+        task(context, worker);
+}
+
+void worker_pool_end(worker_pool *p)
+{
+    (void)p;
+}
+
+void worker_pool_pause(worker_pool *p)
+{
+    if (!p->watch || clock_wall_s() - p->watched_s < p->every_s)
+        return;
+    p->watch(p->context);
+    p->watched_s = clock_wall_s();
 }

@@ -1,10 +1,30 @@
-/* The laboratory of a module: start, turns, and the answers of its tile workers. */
+/* The laboratory of a module: start, turns, and the answers of its tile workers. And for scripts of any worker: the
+ * last error and the name of the instruction set. */
+#include "base/isa.h"
 #include "wasm/exports.h"
-#include "wasm/render_turns.h"
-#include "wasm/trouble.h"
+#include "wasm/worker.h"
 #include "web/lab.h"
 
 #include <string.h>
+
+static char text[2048];
+
+int trouble_note(status code, const diagnostic *why)
+{
+    if (code != STATUS_OK)
+        diagnostic_text(why, text, sizeof text);
+    return (int)code;
+}
+
+const char *wasm_why(void)
+{
+    return text;
+}
+
+const char *wasm_isa(void)
+{
+    return isa_name(isa_best());
+}
 
 int wasm_lab_start(const char *folder, const char *scene, int workers)
 {

@@ -63,10 +63,11 @@ status api_video_file(call *c)
     return no_video(c);
 }
 
-/* --- what the rest of the laboratory asks of them --- */
+/* --- what the rest of the laboratory calls --- */
 
-status studies_create(lab *l, studies **out, diagnostic *why)
+status studies_create(lab *l, void (*ended)(lab *l), studies **out, diagnostic *why)
 {
+    (void)ended;
     (void)l, (void)why;
     *out = NULL;
     return STATUS_OK;

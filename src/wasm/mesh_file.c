@@ -1,10 +1,10 @@
 /* Meshes from files in a module: OBJ and PLY, by readers of its own, which its sandbox confines as the program's
  * importer confines itself. See scene/assets/mesh_file.h. */
-#include "scene/assets/mesh_file.h"
-
 #include "base/file.h"
+#include "scene/assets/mesh_file.h"
 #include "scene/assets/mesh_stream.h"
 #include "wasm/mesh/mesh.h"
+
 #include <stdlib.h>
 #include <string.h>
 #include <strings.h>

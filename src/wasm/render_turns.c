@@ -1,14 +1,11 @@
 /* Turns of the render worker, and passes whose tiles are traced by tile workers. */
-#include "wasm/render_turns.h"
-
 #include "measure/clock.h"
 #include "render/frame/renderer.h"
 #include "scene/model/integrators.h"
 #include "scene/package/package.h"
 #include "wasm/exports.h"
 #include "wasm/no_threads.h"
-#include "wasm/request.h"
-#include "wasm/tiles.h"
+#include "wasm/worker.h"
 #include "web/live/render_worker_private.h"
 
 #include <math.h>
@@ -17,13 +14,13 @@
 
 enum { WORKERS_MAX = 64, SIDE = 32 };
 
-/* An order should take that long: a worker notices only between orders that its pass was given up. Where the frame's
- * preparation takes longer, such as photons, setup_shares as long as that. */
-static const double order_s = 0.05, setup_shares = 4.0;
+/* The time that an order should take: a worker notices only between orders that its pass was abandoned. Where the
+ * frame's preparation takes longer, such as photons, setup_factor times that. */
+static const double order_s = 0.05, setup_factor = 4.0;
 
 typedef struct remote {
     bool busy, lost;             /* lost: it could not start */
-    uint64_t generation;         /* of the scene that it has; UINT64_MAX: with a slime of its moment */
+    uint64_t generation;         /* of the worker's scene; UINT64_MAX: with a moving slime */
     double tiles_per_s, setup_s; /* of its last order in this pass; 0: none yet */
 } remote;
 
@@ -72,7 +69,7 @@ static int64_t order_size(const remote *r)
     const int64_t all = now.sum.places.tile_count, left = all - now.next;
     if (scene_has_caustics(&now.pass.view.render))
         return ceil_div(all, now.workers);
-    const double wanted_s = fmax(order_s, setup_shares * r->setup_s);
+    const double wanted_s = fmax(order_s, setup_factor * r->setup_s);
     const int64_t wanted =
         r->tiles_per_s > 0.0 ? (int64_t)ceil(r->tiles_per_s * wanted_s) : ceil_div(all, 16 * now.workers);
     const int64_t fair = ceil_div(left, 2 * (int64_t)now.workers); /* so that all end at about the same time */
@@ -106,7 +103,7 @@ static void finish(status code, job_account *account, diagnostic *why)
 }
 
 /* The pass is out of date; the answers to its orders are dropped. */
-static void give_up(void)
+static void abandon_pass(void)
 {
     diagnostic why = {.line = 0};
     job_account none = {.result = NULL};
@@ -152,7 +149,7 @@ static void complete(void)
 }
 
 /* render.error needs the noise of the whole image, which no worker has. */
-static bool can_share(const scene *view)
+static bool can_distribute(const scene *view)
 {
     int present = 0;
     for (int i = 0; i < now.workers; i++)
@@ -160,7 +157,7 @@ static bool can_share(const scene *view)
     return present > 0 && !(view->render.error > 0.0 && view->render.integrator == INTEGRATOR_PATH);
 }
 
-/* Gives the snapshot to the workers that have an older one. */
+/* Sends the snapshot to the workers that have an older one. */
 static status send_scene(render_worker *p, diagnostic *why)
 {
     bool all = true;
@@ -181,13 +178,13 @@ static status send_scene(render_worker *p, diagnostic *why)
 }
 
 /* Starts the pass with the workers; false if it has to be rendered here. */
-static bool share_pass(render_worker *p)
+static bool distribute_pass(render_worker *p)
 {
     diagnostic why = {.line = 0};
     if (p->pass == 0 || live_is_moving(p->live_slime))
         return false;
     render_worker_begin_pass(p, &now.pass);
-    if (!can_share(&now.pass.view) || send_scene(p, &why) != STATUS_OK) {
+    if (!can_distribute(&now.pass.view) || send_scene(p, &why) != STATUS_OK) {
         pthread_rwlock_unlock(&p->snapshot_lock);
         return false;
     }
@@ -210,7 +207,7 @@ static bool share_pass(render_worker *p)
 
 /* --- answers --- */
 
-/* Adds the tiles; false for an answer that is not whole. */
+/* Adds the tiles; false for an incomplete answer. */
 static bool merge(const tile_answer *a, const char *at, const char *end)
 {
     for (int i = 0; i < a->traced; i++) {
@@ -273,7 +270,7 @@ void render_turns_lost(int worker)
 {
     now.remotes[worker].lost = true;
     if (now.active)
-        give_up();
+        abandon_pass();
 }
 
 /* --- turns --- */
@@ -285,10 +282,10 @@ bool wasm_work_at_once(void)
     if (!p)
         return false;
     const bool stale = render_worker_is_stale(p);
-    if (!stale && !(p->snapshot && live_is_asked(p->live_slime)))
+    if (!stale && !(p->snapshot && live_has_request(p->live_slime)))
         return false;
     if (now.active)
-        give_up();
+        abandon_pass();
     if (stale)
         render_worker_renew_snapshot(p);
     else
@@ -303,7 +300,7 @@ static void work(render_worker *p)
         render_worker_renew_snapshot(p);
     if (p->snapshot && (live_is_due(p->live_slime) || p->was_on))
         render_worker_move_snapshot(p);
-    if (p->snapshot_ready && p->pass < p->plan.count && !share_pass(p))
+    if (p->snapshot_ready && p->pass < p->plan.count && !distribute_pass(p))
         render_worker_render_pass(p);
 }
 
@@ -317,7 +314,7 @@ double render_turns_take(void)
     p->again = false;
     const bool changed = render_worker_is_stale(p) || live_is_due(p->live_slime);
     if (now.active && changed)
-        give_up();
+        abandon_pass();
     if (!now.active && render_worker_due_s(p) <= 0.0)
         work(p);
     requests_retry();

@@ -1,7 +1,6 @@
 /* The functions of web/http/http.h for messages: requests come from the page's script, replies go back to it. */
-#include "wasm/request.h"
-
 #include "wasm/exports.h"
+#include "wasm/worker.h"
 #include "web/http/http_private.h"
 #include "web/page.h"
 
@@ -77,9 +76,9 @@ void http_reply_static(http_reply *r, int code, const char *type, const void *by
 void http_reply_file(http_reply *r, int code, const char *type, int file, size_t size)
 {
     char *bytes = malloc(size + 1);
-    const bool whole = bytes && pread(file, bytes, size, 0) == (ssize_t)size;
+    const bool complete = bytes && pread(file, bytes, size, 0) == (ssize_t)size;
     close(file);
-    if (!whole) {
+    if (!complete) {
         free(bytes);
         bytes = NULL;
     }

@@ -5,8 +5,7 @@
 #include "scene/model/scene.h"
 #include "scene/package/package.h"
 #include "wasm/exports.h"
-#include "wasm/tiles.h"
-#include "wasm/trouble.h"
+#include "wasm/worker.h"
 #include "web/live/passes.h"
 
 #include <math.h>

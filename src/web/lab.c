@@ -1,38 +1,25 @@
-/* The laboratory: start and stop, the contexts of its routes, and the state that it sends to pages. */
-#include "web/lab_private.h"
+/* The laboratory: start and stop of its parts, and the state that it sends to pages. */
 #include "base/text.h"
-#include "scene/model/camera.h"
-#include "scene/model/open.h"
 #include "report/json.h"
+#include "scene/model/open.h"
+#include "scene/model/scene.h"
 #include "web/api/api.h"
-#include "web/api/scene_since.h"
+#include "web/lab.h"
+#include "web/live/images.h"
 #include "web/page.h"
-#include "web/session/pixel_maps.h"
 #include "web/session/rescue.h"
-#include "web/session/thumbnails.h"
-#include "web/session/reference_image.h"
+#include "web/session/session.h"
 #include "web/session/studies.h"
 #include "web/session/videos.h"
-#include "scene/model/scene.h"
 
 #include <errno.h>
 #include <stdlib.h>
 #include <string.h>
-#include <strings.h>
 
 /* The number of handlers that may do work with much memory and time at once. */
 enum { HEAVY_AT_ONCE = 2 };
 
-/* --- events and the state --- */
-
-void lab_publish(lab *l, const char *event, json_t *value)
-{
-    pthread_mutex_lock(&l->publish_lock);
-    if (l->open && value)
-        http_publish(l->server, event, value, NULL);
-    pthread_mutex_unlock(&l->publish_lock);
-    json_decref(value);
-}
+/* --- the state, and its changes --- */
 
 /* What serves the page: the program, or a module in the page's own browser (src/wasm). */
 #if defined __EMSCRIPTEN__
@@ -41,7 +28,7 @@ static const char engine[] = "browser";
 static const char engine[] = "server";
 #endif
 
-json_t *lab_state(lab *l)
+static json_t *state_json(lab *l)
 {
     json_t *state = json_pack("{s:s, s:s}", "version", CUVETTE_VERSION, "engine", engine);
     const bool good =
@@ -56,22 +43,6 @@ json_t *lab_state(lab *l)
     return json_if(state, good);
 }
 
-static bool is_open(lab *l)
-{
-    pthread_mutex_lock(&l->publish_lock);
-    const bool open = l->open;
-    pthread_mutex_unlock(&l->publish_lock);
-    return open;
-}
-
-void lab_publish_state(lab *l)
-{
-    pthread_mutex_lock(&l->state_lock);
-    if (is_open(l))
-        lab_publish(l, "state", lab_state(l));
-    pthread_mutex_unlock(&l->state_lock);
-}
-
 static void on_document(void *of)
 {
     lab *l = of;
@@ -83,12 +54,18 @@ static void on_document(void *of)
 static void on_image(void *of, const shared_image *p)
 {
     lab *l = of;
-    if (!is_open(l))
+    if (!lab_is_open(l))
         return;
     lab_publish(l, "picture", shared_image_json(p));
     live *live_slime = render_worker_live(l->render_worker);
     if (live_is_on(live_slime))
         lab_publish(l, "slime", live_json(live_slime));
+}
+
+/* An unsaved scene is not written while a study runs. */
+static void on_study_end(lab *l)
+{
+    rescue_wake(l->rescue);
 }
 
 static void on_state_changed(void *of)
@@ -97,13 +74,6 @@ static void on_state_changed(void *of)
 }
 
 /* --- start and stop --- */
-
-bool lab_is_scene_name(const char *name)
-{
-    const char *ending = strrchr(name, '.');
-    return ending && (strcasecmp(ending, ".yaml") == 0 || strcasecmp(ending, ".yml") == 0) && name[0] != '.' &&
-           !strstr(name, "/.");
-}
 
 static status first_scene(const lab *l, scene **out, char **file, diagnostic *why)
 {
@@ -116,18 +86,6 @@ static status first_scene(const lab *l, scene **out, char **file, diagnostic *wh
                            "choose a scene below the folder, or another folder",
                            "is not in the folder of the laboratory");
     return scene_read_below(l->settings.scene, folder_real(l->files), out, why);
-}
-
-void lab_set_default_threads(const lab *l, scene *s)
-{
-    if (l->settings.threads > 0 && s->render.threads == 1)
-        s->render.threads = l->settings.threads;
-}
-
-void lab_clear_default_threads(const lab *l, scene *s)
-{
-    if (s->render.threads == l->settings.threads)
-        s->render.threads = 1;
 }
 
 /* folder_name returns NULL for the folder itself, so a file inside is tested too. */
@@ -201,7 +159,7 @@ static status start(lab *l, diagnostic *why)
          !(l->heavy = semaphore_create(HEAVY_AT_ONCE)) || !(l->thumbnails = thumbnails_create(settings->level)) ||
          !(l->pixel_maps = pixel_maps_create(settings->level))))
         code = out_of_memory(why);
-    THEN(code, studies_create(l, &l->studies, why));
+    THEN(code, studies_create(l, on_study_end, &l->studies, why));
     THEN(code, videos_create(l, &l->videos, why));
     THEN(code, rescue_create(l, &l->rescue, why));
     THEN(code, serve(l, why));
@@ -222,7 +180,8 @@ static void *start_confined(void *of)
     return NULL;
 }
 
-/* Threads pass on what they gave up: a thread of its own confines all those of the laboratory, and not the caller's. */
+/* A thread inherits the confinement of the thread that starts it: started from a new thread, all threads of the
+ * laboratory are confined, and the caller's are not. */
 static status start_in_thread(lab *l, diagnostic *why)
 {
     starting s = {l, why, STATUS_OK};
@@ -240,8 +199,10 @@ status lab_start(const lab_settings *settings, lab **out, diagnostic *why)
     lab *l = calloc(1, sizeof *l);
     if (!l)
         return out_of_memory(why);
-    *l = (lab){
-        .settings = *settings, .state_lock = PTHREAD_MUTEX_INITIALIZER, .publish_lock = PTHREAD_MUTEX_INITIALIZER};
+    *l = (lab){.settings = *settings,
+               .state = state_json,
+               .state_lock = PTHREAD_MUTEX_INITIALIZER,
+               .publish_lock = PTHREAD_MUTEX_INITIALIZER};
     const status code = settings->confine ? start_in_thread(l, why) : start(l, why);
     if (code == STATUS_OK)
         *out = l;
@@ -302,12 +263,4 @@ const char *lab_address(const lab *l)
 const http_server *lab_server(const lab *l)
 {
     return l->server;
-}
-
-void lab_camera_ray(const scene *s, double x, double y, vec3 *origin, vec3 *direction)
-{
-    const camera_frame f = camera_frame_of(s);
-    const camera_ray chief = camera_chief_ray(&f, scene_settings(s), x, y);
-    *origin = chief.origin;
-    *direction = chief.direction;
 }

@@ -5,29 +5,7 @@
  * handles no signal. */
 #pragma once
 
-#include "base/isa.h"
-#include "scene/model/open.h"
-
-typedef struct lab lab;
-
-typedef struct lab_settings {
-    const char *folder; /* nothing outside it is read or written */
-    /* Scene file to open, relative to the working directory and below folder; NULL: a room with a floor, a light and a
-     * camera. */
-    const char *scene;
-    /* Folder that keeps the unsaved scene while it is unsaved (web/session/rescue.h), created when it is needed (with
-     * confine at the start, and removed at the stop if it is empty); "": there is no such folder, which pages report;
-     * NULL: nothing is kept or offered. */
-    const char *rescue;
-    const char *results; /* folder for the rows of studies: folder itself or below it; it need not exist */
-    int port;            /* 0: any free port */
-    isa level;
-    int threads;           /* default of render.threads for opened scenes; 0: keep the scene's value */
-    double requests_per_s; /* 0: the default of web/http/http.h */
-    /* The laboratory's threads, and programs that they start, give up all other access to files: in addition to its own
-     * checks, and where the kernel has Landlock. The caller's threads keep theirs. */
-    bool confine;
-} lab_settings;
+#include "web/session/settings.h"
 
 status lab_start(const lab_settings *settings, lab **out, diagnostic *why);
 void lab_stop(lab *l); /* NULL is allowed */

@@ -154,7 +154,7 @@ static void broadcast_scene(const arguments *with)
     MPI_Bcast(&length, 1, MPI_INT64_T, 0, MPI_COMM_WORLD);
 }
 
-/* As mpi/lead.c: the order to each rank, the scene by broadcast, then the messenger. */
+/* As mpi/frame.c: the order to each rank, the scene by broadcast, then the messenger. */
 static void lead(const arguments *with, const frame_costs *frame, int ranks)
 {
     gathered g = {.with = with, .frame = frame};
@@ -211,7 +211,7 @@ static status run(int argc, char **argv, int rank, int ranks, diagnostic *why)
     TRY(read_arguments(argc, argv, &with, why));
     if (!map.before)
         TRY(cost_map_read(with.map, &map, why));
-    /* The tiles that mpi/lead.c makes: its ranks are these without the serving one. */
+    /* The tiles that mpi/frame.c makes: its ranks are these without the serving one. */
     const render_settings settings = {.width = (int64_t)with.width,
                                       .height = (int64_t)with.height,
                                       .schedule = SCHEDULE_DYNAMIC,

@@ -1,6 +1,4 @@
 /* Ray queries, ray trees and fans for scripts. A script's ray is 7 numbers: origin, direction, reach. */
-#include "wasm/api/results.h"
-
 #include "base/json_build.h"
 #include "base/text.h"
 #include "engine/query_private.h"
@@ -9,7 +7,9 @@
 #include "report/json.h"
 #include "report/trace_writers.h"
 #include "scene/model/scene.h"
+#include "wasm/api/results.h"
 #include "wasm/exports.h"
+
 #include <stdlib.h>
 #include <string.h>
 

@@ -1,8 +1,6 @@
-/* A render in turns, for scripts: each turn traces tiles for a while, so that the script can show them, hear of a
- * cancellation and let other work through. The film is that of cuvette_engine_render: its tiles add exactly, whichever
- * turn traced them. */
-#include "wasm/api/results.h"
-
+/* A render in turns, for scripts: each turn traces tiles for a while, so that the script can show them, be cancelled
+ * and do other work in between. The film is that of cuvette_engine_render: its tiles add exactly, whichever turn traced
+ * them. */
 #include "base/json_build.h"
 #include "engine/canvas.h"
 #include "engine/engine_private.h"
@@ -14,6 +12,7 @@
 #include "scene/model/scene.h"
 #include "scene/model/work.h"
 #include "scene/package/package.h"
+#include "wasm/api/results.h"
 #include "wasm/exports.h"
 
 #include <inttypes.h>
@@ -24,7 +23,7 @@
 enum { SIDE_MAX = 32, SIDE_MIN = 4, RAYS_OF_TILE = 4096 };
 
 /* A turn lasts at least that many times as long as its preparation, which each one repeats. */
-static const double setup_shares = 3.0;
+static const double setup_factor = 3.0;
 
 struct wasm_render {
     cuvette_scene *of; /* refuses changes until the end */
@@ -42,7 +41,7 @@ struct wasm_render {
 };
 
 /* Photons would be traced again in each turn; render.error needs the noise of the whole image. */
-static bool must_be_whole(const render_settings *r)
+static bool must_be_undivided(const render_settings *r)
 {
     return scene_has_caustics(r) || (r->error > 0.0 && r->integrator == INTEGRATOR_PATH);
 }
@@ -68,7 +67,7 @@ static status begin(wasm_render *r, int coarse, diagnostic *why)
     r->view.render.threads = 1;
     r->view.render.width = (s->render.width + coarse - 1) / coarse;
     r->view.render.height = (s->render.height + coarse - 1) / coarse;
-    r->at_once = must_be_whole(&r->view.render);
+    r->at_once = must_be_undivided(&r->view.render);
     codec_bytes_prepare(&r->bytes);
     return shared_frame_begin(&r->view, side_of(&r->view.render), &r->sum, why);
 }
@@ -126,7 +125,7 @@ static bool next(void *context, int worker, image_tile *out)
     (void)worker;
     const double now_s = clock_wall_s();
     if (!r->began) /* the preparation ends */
-        r->until_s = now_s + fmax(r->budget_s, setup_shares * (now_s - r->until_s));
+        r->until_s = now_s + fmax(r->budget_s, setup_factor * (now_s - r->until_s));
     else if (now_s >= r->until_s)
         return false;
     r->began = true;

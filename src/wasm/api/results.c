@@ -1,9 +1,8 @@
 /* The last error, and results as JSON texts. */
-#include "wasm/api/results.h"
-
 #include "base/json_build.h"
 #include "engine/engine_private.h"
 #include "report/json.h"
+#include "wasm/api/results.h"
 #include "wasm/exports.h"
 
 cuvette_diagnostic results_last;

@@ -3,8 +3,9 @@
  * error, which results_last keeps. */
 #pragma once
 
-#include "cuvette.h"
 #include "base/status.h"
+#include "cuvette.h"
+
 #include <jansson.h>
 
 /* Where the functions of cuvette.h that are called from here, and from scripts, put their diagnostic. */

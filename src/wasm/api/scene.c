@@ -1,9 +1,12 @@
-/* A scene's texts, parameters, hints and names for scripts. */
-#include "wasm/api/results.h"
-
+/* A scene's texts, parameters, hints and names, its optics compared with theory, and its slimes in motion, for scripts;
+ * and random numbers. */
 #include "base/json_build.h"
+#include "base/random.h"
 #include "report/json.h"
+#include "wasm/api/results.h"
 #include "wasm/exports.h"
+
+#include <math.h>
 #include <stdlib.h>
 
 /* Reads a text of a length that the first call finds out. */
@@ -94,4 +97,118 @@ char *wasm_scene_names(const cuvette_scene *scene)
         json_add_as(&all, kinds[k].key, list);
     }
     return results_text(all);
+}
+
+/* --- optics compared with theory, and random numbers --- */
+
+enum { POINTS_MAX = 1024 };
+
+static bool add_metric(void *list, const cuvette_metric *m)
+{
+    json_add(list,
+             json_pack("{s:o,s:o,s:o,s:o,s:o,s:o,s:o,s:o}", "name", json_of_text(m->name), "meaning",
+                       json_of_text(m->meaning), "unit", json_of_text(m->unit), "verdict", json_of_text(m->verdict),
+                       "measured", json_of_real(m->measured), "theory", json_of_real(m->theory), "error",
+                       json_of_real(m->error), "tolerance", json_of_real(m->tolerance)));
+    return true;
+}
+
+static bool add_curve(void *list, const cuvette_curve *c)
+{
+    json_add(list, json_pack("{s:o,s:o,s:o}", "name", json_of_text(c->name), "x", json_of_text(c->x), "y",
+                             json_of_text(c->y)));
+    return true;
+}
+
+char *wasm_scene_realism(const cuvette_scene *scene)
+{
+    json_t *metrics = json_array(), *curves = json_array(), *both = json_object();
+    cuvette_status code = results_note(cuvette_scene_each_metric(scene, add_metric, &metrics, &results_last));
+    if (code == CUVETTE_OK)
+        code = results_note(cuvette_scene_each_curve(scene, add_curve, &curves, &results_last));
+    json_add_as(&both, "metrics", metrics);
+    json_add_as(&both, "curves", curves);
+    if (code == CUVETTE_OK)
+        return results_text(both);
+    json_decref(both);
+    return NULL;
+}
+
+char *wasm_scene_curve(const cuvette_scene *scene, const char *name)
+{
+    double(*points)[3] = malloc(POINTS_MAX * sizeof *points);
+    size_t count = 0;
+    diagnostic why = {.line = 0};
+    const cuvette_status code =
+        points ? results_note(cuvette_scene_curve(scene, name, points, POINTS_MAX, &count, &results_last))
+               : results_report(out_of_memory(&why), &why);
+    json_t *list = json_array();
+    for (size_t i = 0; code == CUVETTE_OK && i < count; i++)
+        json_add(&list, results_vector(points[i]));
+    free(points);
+    if (code == CUVETTE_OK)
+        return results_text(list);
+    json_decref(list);
+    return NULL;
+}
+
+void wasm_random(uint32_t key_low, uint32_t key_high, uint32_t a, uint32_t b, uint32_t c, uint32_t d, uint32_t *words)
+{
+    const random_words r = random_at((uint64_t)key_high << 32 | key_low, a, b, c, d);
+    for (int i = 0; i < 4; i++)
+        words[i] = r.word[i];
+}
+
+/* --- slimes in motion: states and hands --- */
+
+char *wasm_motion_names(const cuvette_motion *motion)
+{
+    json_t *list = json_array();
+    for (size_t i = 0; i < cuvette_motion_count(motion); i++)
+        json_add(&list, json_of_text(cuvette_motion_name(motion, i)));
+    return results_text(list);
+}
+
+char *wasm_motion_state(const cuvette_motion *motion, const char *name)
+{
+    cuvette_slime s = {.size = sizeof s};
+    if (results_note(cuvette_motion_state(motion, name, &s, &results_last)) != CUVETTE_OK)
+        return NULL;
+    json_t *json =
+        json_pack("{s:o,s:I,s:I,s:I,s:I,s:o,s:o,s:o,s:o}", "time_s", json_of_real(s.time_s), "steps",
+                  (json_int_t)s.steps, "substeps", (json_int_t)s.substeps, "masses", (json_int_t)s.masses, "held",
+                  (json_int_t)s.held, "kinetic", json_of_real(s.kinetic), "elastic", json_of_real(s.elastic),
+                  "compression", json_of_real(s.compression), "gravity", json_of_real(s.gravity));
+    json_add_all(&json, json_pack("{s:o,s:o,s:o,s:o,s:o,s:o,s:o}", "center", results_vector(s.center), "momentum",
+                                  results_vector(s.momentum), "volume", json_of_real(s.volume), "volume_at_rest",
+                                  json_of_real(s.volume_at_rest), "low", json_of_real(s.low), "high",
+                                  json_of_real(s.high), "speed_max", json_of_real(s.speed_max)));
+    return results_text(json);
+}
+
+static cuvette_ray hand_ray(const double *n)
+{
+    return (cuvette_ray){.origin = {n[0], n[1], n[2]}, .direction = {n[3], n[4], n[5]}, .reach = n[6]};
+}
+
+char *wasm_motion_pick(const cuvette_motion *motion, const char *name, const double *ray)
+{
+    const cuvette_ray along = hand_ray(ray);
+    double where[3] = {0, 0, 0}, distance;
+    if (results_note(cuvette_motion_pick(motion, name, &along, where, &distance, &results_last)) != CUVETTE_OK)
+        return NULL;
+    return results_text(isfinite(distance)
+                            ? json_pack("{s:o,s:o}", "distance", json_of_real(distance), "where", results_vector(where))
+                            : json_null());
+}
+
+char *wasm_motion_grab(cuvette_motion *motion, const char *name, const double *ray, double reach)
+{
+    const cuvette_ray along = hand_ray(ray);
+    double where[3] = {0, 0, 0};
+    int hand = CUVETTE_NO_HAND;
+    if (results_note(cuvette_motion_grab(motion, name, &along, reach, &hand, where, &results_last)) != CUVETTE_OK)
+        return NULL;
+    return results_text(hand == CUVETTE_NO_HAND ? json_null()
+                                                : json_pack("{s:i,s:o}", "hand", hand, "where", results_vector(where)));
 }

@@ -1,7 +1,7 @@
 /* Lines of words. */
-#include "wasm/mesh/lines.h"
-
 #include "import/obj.h"
+#include "wasm/mesh/mesh.h"
+
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>

@@ -9,6 +9,9 @@
 #include "import/mesh_wire.h"
 #include "scene/assets/mesh_stream.h"
 
+#include <stdbool.h>
+#include <stddef.h>
+
 enum { POLYGON_MAX = 4096 /* corners */ };
 
 typedef struct mesh_material {
@@ -41,5 +44,24 @@ size_t polygon_divide(const float (*places)[3], size_t count, uint32_t (*triangl
 
 /* text: size bytes and a final 0. path: of the file, next to which others are; it is the diagnostic's file already. */
 status obj_read_text(const char *path, const char *text, size_t size, mesh_parts *p, diagnostic *why);
-status mtl_read(const char *path, const char *root, mesh_parts *p, diagnostic *why);
 status ply_read_text(const char *text, size_t size, mesh_parts *p, diagnostic *why);
+
+/* --- lines of words, for readers of text. All functions stop at the end of the text or of the line. --- */
+
+typedef struct lines {
+    const char *at, *end; /* the rest of the text; a 0 follows */
+    const char *word, *line_end;
+    long line;
+} lines;
+
+/* Begins the next line; false at the end of the text. A \ at its end joins it with the one after. */
+bool lines_next(lines *l);
+/* The next word of the line and its length; false: none. */
+bool lines_word(lines *l, const char **word, size_t *length);
+/* Whether the word is that text. */
+bool lines_is(const char *word, size_t length, const char *text);
+/* The rest of the line, without blanks at both ends. */
+size_t lines_rest(const lines *l, const char **text);
+/* Reads the line's further words as numbers, at most `most`, rounded as the importer rounds them (import/obj.h);
+ * returns how many, -1: a word is none. */
+int lines_numbers(lines *l, int most, float *numbers);

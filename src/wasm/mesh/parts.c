@@ -1,7 +1,7 @@
 /* The mesh and the materials that a reader collects, and their import, through the checks of the importer's answers. */
+#include "base/array.h"
 #include "wasm/mesh/mesh.h"
 
-#include "base/array.h"
 #include <stdlib.h>
 #include <string.h>
 
@@ -73,7 +73,7 @@ status mesh_parts_triangle(mesh_parts *p, const uint32_t corners[3], size_t mate
     return STATUS_OK;
 }
 
-/* ---- as the importer's answer ---- */
+/* --- as the importer's answer --- */
 
 typedef struct answer {
     char *bytes;

@@ -1,7 +1,7 @@
 /* Helpers of the API's handlers: replies, values of a request's body and query, and the current image. */
-#include "web/api/api.h"
 #include "base/number.h"
 #include "report/json.h"
+#include "web/api/api.h"
 
 #include <math.h>
 #include <stdlib.h>
@@ -36,7 +36,7 @@ status api_changed(call *c, status code, uint64_t generation)
 /* Reads value if the JSON has the expected type. */
 typedef bool reader(const json_t *json, void *value);
 
-static bool take(call *c, const char *key, bool needed, const char *form, reader *read, void *value)
+static bool read_value(call *c, const char *key, bool needed, const char *form, reader *read, void *value)
 {
     const json_t *json = json_object_get(c->body, key);
     const bool missing = !json || json_is_null(json);
@@ -82,31 +82,31 @@ static bool read_flag(const json_t *json, void *value)
     return json_is_boolean(json);
 }
 
-bool api_take_number(call *c, const char *key, bool needed, double *value)
+bool api_read_number(call *c, const char *key, bool needed, double *value)
 {
-    return take(c, key, needed, "a number", read_number, value);
+    return read_value(c, key, needed, "a number", read_number, value);
 }
 
-bool api_take_vector(call *c, const char *key, bool needed, double value[3])
+bool api_read_vector(call *c, const char *key, bool needed, double value[3])
 {
-    return take(c, key, needed, "a list of three numbers", read_vector, value);
+    return read_value(c, key, needed, "a list of three numbers", read_vector, value);
 }
 
-bool api_take_text(call *c, const char *key, bool needed, const char **value)
+bool api_read_text(call *c, const char *key, bool needed, const char **value)
 {
-    return take(c, key, needed, "a string", read_text, value);
+    return read_value(c, key, needed, "a string", read_text, value);
 }
 
-bool api_take_flag(call *c, const char *key, bool *value)
+bool api_read_flag(call *c, const char *key, bool *value)
 {
-    return take(c, key, false, "true or false", read_flag, value);
+    return read_value(c, key, false, "true or false", read_flag, value);
 }
 
-bool api_take_gesture(call *c, const char **gesture)
+bool api_read_gesture(call *c, const char **gesture)
 {
     *gesture = NULL;
-    return api_take_text(c, "gesture", false, gesture) &&
-           take(c, "gesture", false, "a string of at most 64 characters", read_short, gesture);
+    return api_read_text(c, "gesture", false, gesture) &&
+           read_value(c, "gesture", false, "a string of at most 64 characters", read_short, gesture);
 }
 
 /* --- queries and the current document --- */
@@ -136,7 +136,7 @@ bool api_query_numbers(call *c, const char *key, int count, double *out, const c
     return false;
 }
 
-bool api_take_bits(const call *c, int *bits)
+bool api_read_bits(const call *c, int *bits)
 {
     const char *bits_text = http_query_value(c->request, "bits");
     *bits = bits_text ? atoi(bits_text) : 8;
@@ -146,7 +146,7 @@ bool api_take_bits(const call *c, int *bits)
 status api_wait_for_final(call *c, const shared_image **out)
 {
     const double most_s = 120.0;
-    return render_worker_take_final(c->l->render_worker, most_s, out, &c->why);
+    return render_worker_wait_for_final(c->l->render_worker, most_s, out, &c->why);
 }
 
 char *api_document_file(const call *c)

@@ -4,7 +4,7 @@
 #pragma once
 
 #include "study/study.h"
-#include "web/lab_private.h"
+#include "web/session/session.h"
 
 typedef struct call {
     lab *l;
@@ -42,9 +42,10 @@ status api_refuse(call *c, int code, const char *what, const char *remedy);
 /* Replies {"generation": N} after a change. */
 status api_changed(call *c, status code, uint64_t generation);
 
-/* The reply to GET /api/scene: the objects and one row per parameter. opened: the scene that `initial` is read from.
- * NULL when out of memory. */
-json_t *scene_json(const scene *s, const scene *opened, uint64_t generation);
+/* The scenes that were sent lately, for GET /api/scene?since=GENERATION. Thread-safe. */
+typedef struct sent_scenes sent_scenes;
+sent_scenes *sent_scenes_create(void);    /* NULL when out of memory */
+void sent_scenes_destroy(sent_scenes *s); /* NULL is allowed */
 
 /* [{"path", "a", "b"}]: the parameters in which two scenes differ; values are numbers, lists or words, null where
  * that scene has no such parameter or it is unused there; b's parameters in their order, then those only in a.
@@ -68,25 +69,28 @@ status command_settings(const folder *files, const char *file, const scene *s, i
 
 /* Read one value of the body. Each returns false and sets the diagnostic where the key has another type; a missing
  * key is an error only if needed, and leaves value unchanged. */
-bool api_take_number(call *c, const char *key, bool needed, double *value);
-bool api_take_vector(call *c, const char *key, bool needed, double value[3]);
-bool api_take_text(call *c, const char *key, bool needed, const char **value);
-bool api_take_flag(call *c, const char *key, bool *value);
+bool api_read_number(call *c, const char *key, bool needed, double *value);
+bool api_read_vector(call *c, const char *key, bool needed, double value[3]);
+bool api_read_text(call *c, const char *key, bool needed, const char **value);
+bool api_read_flag(call *c, const char *key, bool *value);
 /* A parameter's value in the syntax of scene_set, in allocated memory; place: what a message calls it. STATUS_BAD_INPUT
  * for unsupported JSON. */
 status api_value_text(const json_t *value, const char *place, char **text, diagnostic *why);
 /* Reads the gesture; NULL for none. */
-bool api_take_gesture(call *c, const char **gesture);
+bool api_read_gesture(call *c, const char **gesture);
 
 /* Whether the query contains the key with a value other than "0". */
 bool api_query_flag(const call *c, const char *key);
 /* Reads the `count` numbers of a query's key, separated by commas; form: the remedy where they are not. */
 bool api_query_numbers(call *c, const char *key, int count, double *out, const char *form);
 /* Reads ?bits, the bit depth of a PNG; 8 by default. Returns false for values other than 8 and 16. */
-bool api_take_bits(const call *c, int *bits);
+bool api_read_bits(const call *c, int *bits);
+
+/* Rows of a study's tables and comparisons that a reply has. */
+enum { STUDY_JSON_CELLS_MAX = 5000 };
 
 /* Reads the study {name} of the path, whose results may be read too; the caller destroys it. */
-status api_take_study(call *c, study **s);
+status api_read_study(call *c, study **s);
 
 /* Waits for the final image of the current scene document. */
 status api_wait_for_final(call *c, const shared_image **out);

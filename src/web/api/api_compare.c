@@ -1,19 +1,24 @@
-/* API: compares two images, the pinned reference image A and the newest image B. */
-#include "web/api/api.h"
-
+/* API: compares two images, the pinned reference image A and the newest image B; and maps of the rays, the time and the
+ * cut light of each pixel of the final image, with the numbers of their scales. */
+#include "base/cancel.h"
+#include "base/json_build.h"
+#include "image/heatmap.h"
 #include "report/json.h"
 #include "report/report.h"
-#include "web/session/reference_image.h"
+#include "web/api/api.h"
+#include "web/live/images.h"
+#include "web/session/studies.h"
+
 #include <stdlib.h>
 #include <string.h>
 
 /* The newest image if it is final; with ?wait, the next final one. */
-static status take_final(call *c, const shared_image **out)
+static status wait_for_newest(call *c, const shared_image **out)
 {
     *out = NULL;
     if (api_query_flag(c, "wait"))
         return api_wait_for_final(c, out);
-    const shared_image *newest = render_worker_take(c->l->render_worker);
+    const shared_image *newest = render_worker_newest(c->l->render_worker);
     if (newest && newest->final) {
         *out = newest;
         return STATUS_OK;
@@ -34,7 +39,7 @@ status api_set_reference(call *c)
 {
     const shared_image *newest;
     c->refused = 409;
-    TRY(take_final(c, &newest));
+    TRY(wait_for_newest(c, &newest));
     return set_reference(c, newest);
 }
 
@@ -63,9 +68,9 @@ status api_reference_image(call *c)
     const unsigned char *shared = NULL;
     unsigned char *own = NULL;
     size_t size = 0;
-    if (!api_take_bits(c, &bits))
+    if (!api_read_bits(c, &bits))
         return api_refuse(c, 400, "unsupported bit depth", "use ?bits=8 or ?bits=16");
-    const shared_image *a = reference_image_take(c->l->reference_image);
+    const shared_image *a = reference_image_get(c->l->reference_image);
     if (!a)
         return refuse_without_reference(c, 404);
     c->refused = 409;
@@ -82,15 +87,15 @@ status api_reference_image(call *c)
 }
 
 /* Gets A and B; the caller releases both. */
-static status take_pair(call *c, reference_pair **pair, const shared_image **b)
+static status get_pair(call *c, reference_pair **pair, const shared_image **b)
 {
     c->refused = 409;
     const shared_image *a =
-        reference_image_take(c->l->reference_image); /* fail early: without A the newest image is not needed */
+        reference_image_get(c->l->reference_image); /* fail early: without A the newest image is not needed */
     shared_image_release(a);
     if (!a)
         return refuse_without_reference(c, 409);
-    const status code = take_final(c, b);
+    const status code = wait_for_newest(c, b);
     if (code != STATUS_OK || (*pair = reference_image_compare(c->l->reference_image, *b)))
         return code;
     shared_image_release(*b);
@@ -108,7 +113,7 @@ status api_compare(call *c)
     reference_pair *pair;
     const shared_image *b;
     image_comparison found;
-    TRY(take_pair(c, &pair, &b));
+    TRY(get_pair(c, &pair, &b));
     status code = STATUS_OK;
     const shared_image *a = reference_pair_a(pair);
     const bool fits = reference_pair_fits(pair);
@@ -131,7 +136,7 @@ status api_compare_map(call *c)
     const shared_image *b;
     const unsigned char *bytes;
     size_t size;
-    TRY(take_pair(c, &pair, &b));
+    TRY(get_pair(c, &pair, &b));
     status code = STATUS_OK;
     if ((code = semaphore_acquire(c->l->heavy, &c->why)) == STATUS_OK) {
         code = reference_pair_map(pair, &bytes, &size, &c->why);
@@ -142,4 +147,100 @@ status api_compare_map(call *c)
     shared_image_release(b);
     reference_pair_release(pair);
     return code;
+}
+
+/* --- maps --- */
+
+static const char *const names[PIXEL_MAPS] = {[PIXEL_RAYS] = "rays", [PIXEL_TIME] = "time", [PIXEL_CUT] = "cut"};
+static const char *const units[PIXEL_MAPS] = {[PIXEL_RAYS] = "rays", [PIXEL_TIME] = "ns", [PIXEL_CUT] = ""};
+
+typedef struct map_question {
+    lab *l;
+    const shared_image *of;
+} map_question;
+
+/* As the ask of a token. */
+static bool is_late(void *context)
+{
+    const map_question *q = context;
+    return studies_ending(q->l->studies) || studies_runs(q->l->studies, NULL) ||
+           scene_document_generation(q->l->scene_document) != q->of->generation;
+}
+
+static status get_maps(call *c, pixel_map_set *set, int which, unsigned char **png, size_t *size)
+{
+    const shared_image *final = NULL;
+    if (studies_runs(c->l->studies, NULL))
+        return api_refuse(c, 409, "a study is measuring, and the frame of the maps would disturb it",
+                          "wait until it ends, or stop it");
+    TRY(api_wait_for_final(c, &final));
+    map_question q = {c->l, final};
+    status code = semaphore_acquire(c->l->heavy, &c->why);
+    if (code == STATUS_OK) {
+        cancel_token token = {.ask = is_late, .context = &q};
+        cancel_begin(&token);
+        code = pixel_maps_of(c->l->pixel_maps, final, set, which, png, size, &c->why);
+        cancel_end(&token);
+        semaphore_release(c->l->heavy);
+    }
+    shared_image_release(final);
+    return code;
+}
+
+/* The scale's colours at equal distances, for a legend. */
+static json_t *colors_json(void)
+{
+    enum { COLORS = 17 };
+    json_t *list = json_array();
+    for (int i = 0; i < COLORS; i++) {
+        unsigned char rgb[3];
+        char text[8];
+        heatmap_color(i / (COLORS - 1.0), rgb);
+        snprintf(text, sizeof text, "#%02x%02x%02x", rgb[0], rgb[1], rgb[2]);
+        json_add(&list, json_string(text));
+    }
+    return list;
+}
+
+static json_t *map_json(const pixel_map *map, const char *unit)
+{
+    return json_pack("{s:s, s:o, s:b, s:o, s:o}", "unit", unit, "end", json_of_real(map->scale.end), "cut",
+                     map->scale.cut, "total", json_of_real(map->total), "largest", json_of_real(map->largest));
+}
+
+status api_maps(call *c)
+{
+    pixel_map_set set;
+    TRY(get_maps(c, &set, 0, NULL, NULL));
+    json_t *json = json_pack("{s:I, s:i, s:i, s:{s:i, s:i, s:i}, s:o, s:i, s:o}", "serial", (json_int_t)set.serial,
+                             "width", set.width, "height", set.height, "picture", "width", set.picture_width, "height",
+                             set.picture_height, "left", set.left, "wall_s", json_of_real(set.wall_s), "threads",
+                             set.threads, "colors", colors_json());
+    for (int i = 0; json && i < PIXEL_MAPS; i++)
+        json_add_as(&json, names[i], map_json(&set.map[i], units[i]));
+    return api_reply_json(c, json);
+}
+
+static status send_map(call *c, int which)
+{
+    pixel_map_set set;
+    unsigned char *png = NULL;
+    size_t size = 0;
+    TRY(get_maps(c, &set, which, &png, &size));
+    return api_send(c, "image/png", png, size);
+}
+
+status api_map_of_rays(call *c)
+{
+    return send_map(c, PIXEL_RAYS);
+}
+
+status api_map_of_time(call *c)
+{
+    return send_map(c, PIXEL_TIME);
+}
+
+status api_map_of_cut(call *c)
+{
+    return send_map(c, PIXEL_CUT);
 }

@@ -1,81 +1,28 @@
-/* API: the state, the scene, its parameters and undo. See web/README.md. */
+/* API: the scene document: the state, changes of parameters, undo, the camera, the scene as a file, a command or a
+ * link, and opening and saving files of the folder. See web/README.md. */
 #include "base/json_build.h"
-#include "web/api/api.h"
-#include "web/api/scene_since.h"
 #include "base/number.h"
 #include "base/text.h"
-#include "report/json.h"
-#include "report/report.h"
 #include "lint/lint.h"
-#include "scene/model/params.h"
+#include "report/json.h"
+#include "report/media_rows.h"
+#include "report/report.h"
+#include "scene/file/shared.h"
 #include "scene/file/write.h"
+#include "scene/model/camera_moves.h"
 #include "scene/model/open.h"
+#include "scene/model/params.h"
+#include "web/api/api.h"
+#include "web/session/rescue.h"
 
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
+#include <unistd.h>
 
 status api_state(call *c)
 {
-    return api_reply_json(c, lab_state(c->l));
-}
-
-/* The generation in ?since; -1 for none. */
-static bool take_since(call *c, long long *since)
-{
-    const char *text = http_query_value(c->request, "since");
-    char *end = NULL;
-    *since = text ? strtoll(text, &end, 10) : -1;
-    return !text || (end > text && *end == '\0' && *since >= 0);
-}
-
-status api_scene(call *c)
-{
-    uint64_t generation;
-    long long since;
-    if (!take_since(c, &since))
-        return api_refuse(c, 400, "since is not a generation", "use ?since=N with the generation of an earlier reply");
-    scene *current = scene_document_take(c->l->scene_document, &generation),
-          *opened = scene_document_take_opened(c->l->scene_document);
-    json_t *all = current && opened ? scene_json(current, opened, generation) : NULL;
-    char *text = all ? sent_scenes_reply(c->l->sent, all, since) : NULL;
-    scene_destroy(current);
-    scene_destroy(opened);
-    return text ? api_send(c, "application/json", text, strlen(text)) : out_of_memory(&c->why);
-}
-
-typedef struct param_question {
-    const char *words;
-    json_t *found[PARAM_NO_MATCH]; /* by param_match */
-} param_question;
-
-static status add_found(void *context, const char *path, const param *row, const char *value)
-{
-    param_question *q = context;
-    const param_match match = param_matches(row, path, q->words);
-    (void)value;
-    if (match != PARAM_NO_MATCH)
-        json_add(&q->found[match], json_of_text(path));
-    return STATUS_OK;
-}
-
-status api_find(call *c)
-{
-    param_question q = {.words = http_query_value(c->request, "find")};
-    if (!q.words)
-        return api_refuse(c, 400, "find is missing", "use ?find=WORDS");
-    scene *current = scene_document_take(c->l->scene_document, NULL);
-    json_t *found = json_array();
-    for (int i = 0; i < PARAM_NO_MATCH; i++)
-        q.found[i] = json_array();
-    if (!current || scene_each_param(current, add_found, &q) != STATUS_OK) {
-        json_decref(found);
-        found = NULL;
-    }
-    for (int i = 0; i < PARAM_NO_MATCH; i++)
-        json_add(&found, q.found[i]);
-    scene_destroy(current);
-    return api_reply_json(c, json_pack("{s:o}", "found", found));
+    return api_reply_json(c, c->l->state(c->l));
 }
 
 /* --- set and reset --- */
@@ -176,7 +123,7 @@ status api_set(call *c)
     char what[128];
     if (!json_is_object(values) || json_object_size(values) == 0)
         return api_refuse(c, 400, "nothing to set", "give {\"set\": {PATH: VALUE}}");
-    if (!api_take_gesture(c, &gesture))
+    if (!api_read_gesture(c, &gesture))
         return STATUS_BAD_INPUT;
     snprintf(what, sizeof what, "set %.100s", json_object_iter_key(json_object_iter(values)));
     set_request x = {values, NULL};
@@ -227,12 +174,12 @@ status api_redo(call *c)
     return undo_or_redo(c, true);
 }
 
-/* --- the scene as a file, and as a command --- */
+/* --- the scene as a file, a command, a link --- */
 
 status api_scene_file(call *c)
 {
     char *text = NULL;
-    scene *current = scene_document_take(c->l->scene_document, NULL);
+    scene *current = scene_document_copy(c->l->scene_document, NULL);
     if (current)
         lab_clear_default_threads(c->l, current);
     const status code =
@@ -245,7 +192,7 @@ status api_command(call *c)
 {
     char *text = NULL, *file = api_document_file(c);
     bool complete = false;
-    scene *current = scene_document_take(c->l->scene_document, NULL);
+    scene *current = scene_document_copy(c->l->scene_document, NULL);
     const status code = current && file ? command_line(c->l->files, *file ? file : NULL, current,
                                                        c->l->settings.threads, &text, &complete, &c->why)
                                         : out_of_memory(&c->why);
@@ -255,4 +202,205 @@ status api_command(call *c)
     free(file);
     scene_destroy(current);
     return code;
+}
+
+status api_link(call *c)
+{
+    char *text = NULL, *code = NULL;
+    scene *current = scene_document_copy(c->l->scene_document, NULL);
+    status result = current ? shared_scene_text(current, &text, &c->why) : out_of_memory(&c->why);
+    THEN(result, shared_scene_code(text, &code, &c->why));
+    c->refused = 409;
+    if (result == STATUS_OK)
+        api_reply_json(c, json_pack("{s:s, s:s}", "fragment", SHARED_FRAGMENT, "code", code));
+    free(text);
+    free(code);
+    scene_destroy(current);
+    return result;
+}
+
+/* --- the camera, as a view of the scene with a history of its own --- */
+
+static bool read_pair(call *c, const char *key, double pair[2])
+{
+    const json_t *angles = json_object_get(c->body, key);
+    for (size_t i = 0; angles && i < 2; i++) {
+        const json_t *item = json_array_get(angles, i);
+        if (json_array_size(angles) != 2 || !json_is_number(item) || !(fabs(json_number_value(item)) <= 1e6)) {
+            api_refuse(c, 400, "the camera needs two angles", "give [YAW, PITCH] in degrees, each -1e6..1e6");
+            return false;
+        }
+        pair[i] = json_number_value(item);
+    }
+    return true;
+}
+
+static bool read_zoom(call *c, double *zoom)
+{
+    const double most = 1e6;
+    if (!api_read_number(c, "zoom", false, zoom))
+        return false;
+    if (!json_object_get(c->body, "zoom") || (*zoom >= 1.0 / most && *zoom <= most))
+        return true;
+    api_refuse(c, 400, "'zoom' is out of range", "give a factor of the distance, 1e-6..1e6");
+    return false;
+}
+
+status api_camera(call *c)
+{
+    camera_move move = {.zoom = 0.0};
+    const char *gesture;
+    uint64_t generation = 0;
+    if (!read_pair(c, "orbit", move.orbit_deg) || !read_pair(c, "turn", move.turn_deg) || !read_zoom(c, &move.zoom) ||
+        !api_read_vector(c, "step", false, move.step) || !api_read_text(c, "look", false, &move.look) ||
+        !api_read_text(c, "frame", false, &move.frame) || !api_read_gesture(c, &gesture))
+        return STATUS_BAD_INPUT;
+    const status code = scene_document_move_view(c->l->scene_document, &move, gesture, &generation, &c->why);
+    return api_changed(c, code, generation);
+}
+
+status api_view(call *c)
+{
+    static const char *const words[] = {
+        [VIEW_BACK] = "back", [VIEW_FORWARD] = "forward", [VIEW_HOME] = "home", [VIEW_KEEP] = "keep"};
+    const char *word = NULL;
+    uint64_t generation = 0;
+    if (!api_read_text(c, "do", true, &word))
+        return STATUS_BAD_INPUT;
+    for (size_t i = 0; i < sizeof words / sizeof *words; i++)
+        if (strcmp(words[i], word) == 0) {
+            c->refused = 409;
+            const status code = scene_document_view(c->l->scene_document, (view_command)i, &generation, &c->why);
+            return api_changed(c, code, generation);
+        }
+    return api_refuse(c, 400, "'do' is not a command for views", "use back, forward, home or keep");
+}
+
+/* --- the files of the folder, and the media catalogue --- */
+
+/* The path from the scene's folder to the chosen folder; NULL when out of memory. */
+static char *prefix_of(const lab *l)
+{
+    static const char any[] = "name";
+    scene *s = scene_document_copy(l->scene_document, NULL);
+    char *path = NULL;
+    const status code = s ? folder_path_from(l->files, any, scene_path(s), &path, NULL) : STATUS_FAILURE;
+    scene_destroy(s);
+    if (code == STATUS_OK)
+        path[strlen(path) - strlen(any)] = 0;
+    return path;
+}
+
+status api_files(call *c)
+{
+    json_t *all = NULL;
+    char *prefix = prefix_of(c->l);
+    status code = prefix ? STATUS_OK : out_of_memory(&c->why);
+    THEN(code, folder_json(c->l->files, &all, &c->why));
+    if (code == STATUS_OK)
+        json_add_as(&all, "prefix", json_of_text(prefix));
+    free(prefix);
+    return code == STATUS_OK ? api_reply_json(c, all) : code;
+}
+
+status api_media(call *c)
+{
+    return api_reply_json(c, media_rows_json(NULL, NULL, 0.0));
+}
+
+/* --- opening --- */
+
+/* Reads a scene; 404 for a valid name without a file. */
+static status read_scene(call *c, const char *name, scene **out)
+{
+    const folder *files = c->l->files;
+    char *path = NULL;
+    status code = folder_path(files, name, true, &path, &c->why);
+    if (code == STATUS_OK)
+        code = scene_read_below(path, folder_real(files), out, &c->why);
+    else if (code == STATUS_BAD_INPUT && folder_path(files, name, false, &path, NULL) == STATUS_OK)
+        c->refused = 404;
+    free(path);
+    return code;
+}
+
+status api_open(call *c)
+{
+    const char *name = NULL, *link = NULL;
+    bool fresh = false;
+    scene *s = NULL;
+    uint64_t generation = 0;
+    if (!api_read_flag(c, "new", &fresh) || !api_read_text(c, "link", false, &link) ||
+        !api_read_text(c, "file", !fresh && !link, &name))
+        return STATUS_BAD_INPUT;
+    if (fresh + (name != NULL) + (link != NULL) > 1)
+        return api_refuse(c, 400, "'file', 'new' and 'link' cannot be combined", "give only one of them");
+    if (link && !shared_is_link(link))
+        return api_refuse(c, 400, "the link holds no scene", "give a link with #scene=CODE");
+    TRY(fresh ? new_scene(&s, &c->why) : link ? shared_read_link(link, &s, &c->why) : read_scene(c, name, &s));
+    lab_set_default_threads(c->l, s);
+    const char *file = name && lab_is_scene_name(name) ? name : NULL; /* no saving into an image */
+    status code = scene_document_open(c->l->scene_document, s, file, &generation, &c->why);
+    return api_changed(c, code, generation);
+}
+
+/* --- saving --- */
+
+/* Whether the file is the open scene document. */
+static bool is_open(const call *c, const char *name)
+{
+    char *file = api_document_file(c);
+    const bool same = file && strcmp(file, name) == 0;
+    free(file);
+    return same;
+}
+
+static status write_file(call *c, const char *name, const char *path)
+{
+    uint64_t generation = 0, version = 0;
+    scene *s = scene_document_copy_kept(c->l->scene_document, &generation, &version);
+    if (s)
+        lab_clear_default_threads(c->l, s);
+    const status code = s ? scene_write(s, path, false, &c->why) : out_of_memory(&c->why);
+    scene_destroy(s);
+    if (code == STATUS_OK)
+        scene_document_saved(c->l->scene_document, name, version);
+    return api_changed(c, code, generation);
+}
+
+status api_save(call *c)
+{
+    const char *name = NULL;
+    char *path = NULL;
+    bool replace = false;
+    if (!api_read_text(c, "file", true, &name) || !api_read_flag(c, "replace", &replace))
+        return STATUS_BAD_INPUT;
+    status code = folder_path(c->l->files, name, false, &path, &c->why);
+    if (code == STATUS_OK && !lab_is_scene_name(name))
+        code =
+            diagnose(&c->why, STATUS_BAD_INPUT, "use a name that ends in .yaml and has no part that begins with a dot",
+                     "'%.200s' is not a valid scene name", name);
+    else if (code == STATUS_OK && !replace && access(path, F_OK) == 0 && !is_open(c, name))
+        code = api_refuse(c, 409, "the file already exists", "choose another name, or set 'replace'");
+    else if (code == STATUS_OK)
+        code = write_file(c, name, path);
+    free(path);
+    return code;
+}
+
+/* --- scenes of laboratories that ended without saving --- */
+
+status api_rescue(call *c)
+{
+    const char *action = NULL, *id = NULL;
+    uint64_t generation = 0;
+    if (!api_read_text(c, "action", true, &action) || !api_read_text(c, "id", true, &id))
+        return STATUS_BAD_INPUT;
+    const bool opens = strcmp(action, "open") == 0;
+    if (!opens && strcmp(action, "discard") != 0)
+        return api_refuse(c, 400, "'action' is neither open nor discard", "give open or discard");
+    if (opens)
+        return api_changed(c, rescue_open(c->l->rescue, id, &generation, &c->why), generation);
+    TRY(rescue_discard(c->l->rescue, id, &c->why));
+    return api_state(c);
 }

@@ -1,14 +1,14 @@
 /* API: objects: add, remove, move, turn, scale, rename, change material (/api/objects). new_objects.c sets the
  * properties of new objects. */
 #include "base/json_build.h"
-#include "web/api/api.h"
 #include "base/text.h"
 #include "report/json.h"
-#include "scene/model/place/new_objects.h"
 #include "scene/model/check.h"
 #include "scene/model/edit/edit.h"
 #include "scene/model/params.h"
+#include "scene/model/place/new_objects.h"
 #include "scene/model/scene.h"
+#include "web/api/api.h"
 
 #include <stdio.h>
 #include <stdlib.h>
@@ -23,10 +23,10 @@ typedef struct edit {
     const folder *files;
     const scene *loaded; /* scene loaded from a model or texture file */
     shape_kind shape;
-    const json_t *values; /* of a new object's parameters; NULL: none */
-    object_list together; /* the object and those that are moved, turned or scaled with it; first is NULL: it alone */
+    const json_t *values; /* parameters of a new object; NULL: none */
+    object_list together; /* the object and those that are edited with it; first is NULL: only the object */
     status (*displace)(scene *s, const char *name, vec3 by, diagnostic *why);
-    status (*displace_together)(scene *s, const object_list *of, vec3 by, diagnostic *why);
+    status (*displace_group)(scene *s, const object_list *of, vec3 by, diagnostic *why);
     vec3 by;
     double factor;
     object_name new_name; /* name of the new object; "" for none */
@@ -86,11 +86,11 @@ status api_remove(call *c)
 
 static status displace_it(edit *e, scene *s, diagnostic *why)
 {
-    return e->together.first ? e->displace_together(s, &e->together, e->by, why) : e->displace(s, e->name, e->by, why);
+    return e->together.first ? e->displace_group(s, &e->together, e->by, why) : e->displace(s, e->name, e->by, why);
 }
 
 /* Reads `with`; the caller frees together->others. */
-static status take_together(call *c, object_list *together)
+static status read_group(call *c, object_list *together)
 {
     enum { NAMES_MAX = 1000 };
     const json_t *list = json_object_get(c->body, "with");
@@ -109,11 +109,11 @@ static status take_together(call *c, object_list *together)
 }
 
 /* Reads `with` and the gesture, and makes the edit. */
-static status apply_together(call *c, edit *e, const char *verb)
+static status apply_to_group(call *c, edit *e, const char *verb)
 {
     const char *gesture = NULL;
-    status code = take_together(c, &e->together);
-    if (code == STATUS_OK && !api_take_gesture(c, &gesture))
+    status code = read_group(c, &e->together);
+    if (code == STATUS_OK && !api_read_gesture(c, &gesture))
         code = STATUS_BAD_INPUT;
     THEN(code, apply_to(c, *e, verb, gesture));
     free(e->together.others);
@@ -125,20 +125,20 @@ static status displace(call *c, edit e, const char *verb)
     e.or_camera = true;
     e.act = displace_it;
     double by[3];
-    if (!api_take_vector(c, "by", true, by))
+    if (!api_read_vector(c, "by", true, by))
         return STATUS_BAD_INPUT;
     e.by = vec3_make(by[0], by[1], by[2]);
-    return apply_together(c, &e, verb);
+    return apply_to_group(c, &e, verb);
 }
 
 status api_move(call *c)
 {
-    return displace(c, (edit){.displace = scene_move, .displace_together = scene_move_objects}, "move");
+    return displace(c, (edit){.displace = scene_move, .displace_group = scene_move_objects}, "move");
 }
 
 status api_turn(call *c)
 {
-    return displace(c, (edit){.displace = scene_turn, .displace_together = scene_turn_objects}, "turn");
+    return displace(c, (edit){.displace = scene_turn, .displace_group = scene_turn_objects}, "turn");
 }
 
 static status scale_it(edit *e, scene *s, diagnostic *why)
@@ -153,7 +153,7 @@ status api_scale(call *c)
     edit e = {.or_camera = true, .factor = json_number_value(factor), .act = scale_it};
     if (!json_is_number(factor))
         return api_refuse(c, 400, "'factor' is not a number", "give a factor above 0");
-    return apply_together(c, &e, "scale");
+    return apply_to_group(c, &e, "scale");
 }
 
 static status rename_it(edit *e, scene *s, diagnostic *why)
@@ -167,7 +167,7 @@ static status rename_it(edit *e, scene *s, diagnostic *why)
 status api_rename(call *c)
 {
     edit e = {.act = rename_it};
-    return api_take_text(c, "to", true, &e.word) ? apply_to(c, e, "rename", NULL) : STATUS_BAD_INPUT;
+    return api_read_text(c, "to", true, &e.word) ? apply_to(c, e, "rename", NULL) : STATUS_BAD_INPUT;
 }
 
 /* A solid that loses its material keeps a copy of the material's values: the defaults would be black. */
@@ -183,7 +183,7 @@ static status give_material(edit *e, scene *s, diagnostic *why)
 status api_material(call *c)
 {
     edit e = {.act = give_material};
-    if (!json_is_null(json_object_get(c->body, "material")) && !api_take_text(c, "material", true, &e.word))
+    if (!json_is_null(json_object_get(c->body, "material")) && !api_read_text(c, "material", true, &e.word))
         return STATUS_BAD_INPUT;
     return apply_to(c, e, e.word ? "set the material of" : "remove the material of", NULL);
 }
@@ -202,7 +202,7 @@ status api_copy(call *c)
 status api_contents(call *c)
 {
     const char *name = http_path_value(c->request, "name");
-    scene *s = scene_document_take(c->l->scene_document, NULL);
+    scene *s = scene_document_copy(c->l->scene_document, NULL);
     json_t *names = json_array(), *ball = json_null();
     contents inside = {.count = 0};
     vec3 centre;
@@ -279,7 +279,7 @@ static status add_object(edit *e, scene *s, diagnostic *why)
 }
 
 /* Loads the model or texture into a scene of its own, without holding the lock of the scene document. */
-static status load_alone(lab *l, const char *file, bool is_model, scene **out, diagnostic *why)
+static status load_file(lab *l, const char *file, bool is_model, scene **out, diagnostic *why)
 {
     char *path = NULL;
     status code = folder_path(l->files, file, true, &path, why);
@@ -300,21 +300,21 @@ static status load_alone(lab *l, const char *file, bool is_model, scene **out, d
     return code;
 }
 
-static status take_new(call *c, edit *e, scene **loaded)
+static status read_new(call *c, edit *e, scene **loaded)
 {
     const char *shape = NULL;
-    if (!api_take_text(c, "kind", true, &e->word) || !api_take_text(c, "name", false, &e->requested_name))
+    if (!api_read_text(c, "kind", true, &e->word) || !api_read_text(c, "name", false, &e->requested_name))
         return STATUS_BAD_INPUT;
     const bool is_model = strcmp(e->word, "model") == 0, is_file = is_model || strcmp(e->word, "texture") == 0,
                is_solid = strcmp(e->word, "solid") == 0;
-    if (!api_take_text(c, "shape", is_solid, &shape) || !api_take_text(c, "file", is_file, &e->file))
+    if (!api_read_text(c, "shape", is_solid, &shape) || !api_read_text(c, "file", is_file, &e->file))
         return STATUS_BAD_INPUT;
     e->values = json_object_get(c->body, "set");
     if (e->values && !json_is_object(e->values))
         return api_refuse(c, 400, "'set' is not an object", "give {PARAMETER: VALUE} of the new object");
     status code = is_solid ? scene_shape_named(shape, &e->shape, &c->why) : STATUS_OK;
     if (is_file && (code = semaphore_acquire(c->l->heavy, &c->why)) == STATUS_OK) {
-        code = load_alone(c->l, e->file, is_model, loaded, &c->why);
+        code = load_file(c->l, e->file, is_model, loaded, &c->why);
         semaphore_release(c->l->heavy);
     }
     return code;
@@ -324,7 +324,7 @@ status api_add(call *c)
 {
     edit e = {.act = add_object, .files = c->l->files};
     scene *loaded = NULL;
-    status code = take_new(c, &e, &loaded);
+    status code = read_new(c, &e, &loaded);
     e.loaded = loaded;
     THEN(code, apply(c, &e, "add",
                      e.requested_name               ? e.requested_name

@@ -1,6 +1,9 @@
-/* API: the rendered image. See web/README.md. */
-#include "web/api/api.h"
+/* API: the rendered image, and the self-contained page of it, as `cuvette render -o FILE.html` writes it. See
+ * web/README.md. */
+#include "base/text.h"
+#include "report/page.h"
 #include "scene/file/shared.h"
+#include "web/api/api.h"
 
 #include <ctype.h>
 #include <stdio.h>
@@ -82,7 +85,7 @@ static status reply_image(call *c, encoding e)
     const shared_image *p = NULL;
     unsigned char *bytes = NULL;
     size_t size;
-    if (!api_take_bits(c, &e.bits))
+    if (!api_read_bits(c, &e.bits))
         return api_refuse(c, 400, "unsupported bit depth", "use ?bits=8 or ?bits=16");
     e.with_scene = e.format == IMAGE_PNG && api_query_flag(c, "scene");
     e.quick = e.format == IMAGE_PNG ? e.bits == 8 : api_query_flag(c, "quick");
@@ -90,7 +93,7 @@ static status reply_image(call *c, encoding e)
         c->refused = 409;
         return STATUS_INTERRUPTED;
     }
-    if (!p && !(p = render_worker_take(c->l->render_worker)))
+    if (!p && !(p = render_worker_newest(c->l->render_worker)))
         return api_refuse(c, 404, "no image is rendered yet", "add ?wait=1");
     const status code = encode(c->l, p, &e, &bytes, &size, &c->why);
     if (code == STATUS_OK) {
@@ -114,4 +117,64 @@ status api_image_png(call *c)
 status api_image_jpeg(call *c)
 {
     return reply_image(c, (encoding){.format = IMAGE_JPEG, .type = "image/jpeg"});
+}
+
+/* --- the page --- */
+
+/* ?live=0: without the laboratory; ?live=empty: with a place for it, which the caller fills; otherwise with the
+ * laboratory if the program has it. */
+static status load_laboratory(call *c, char **laboratory)
+{
+    const char *asked = http_query_value(c->request, "live");
+    diagnostic missing = {.line = 0};
+    *laboratory = NULL;
+    if (asked && strcmp(asked, "0") == 0)
+        return STATUS_OK;
+    if (asked && strcmp(asked, "empty") == 0)
+        return (*laboratory = strdup("")) ? STATUS_OK : out_of_memory(&c->why);
+    const status code = page_live_code(laboratory, &missing);
+    if (code == STATUS_FAILURE)
+        c->why = missing;
+    return code == STATUS_BAD_INPUT ? STATUS_OK : code;
+}
+
+static status write_page(call *c, const shared_image *p, const char *command, const char *laboratory, char **bytes,
+                         size_t *size)
+{
+    const report_page_content page = {.s = p->of,
+                                      .level = c->l->settings.level,
+                                      .rows = image_rows_of(p->linear),
+                                      .bits = 8,
+                                      .film_hash = p->film_hash,
+                                      .command = command,
+                                      .live = laboratory};
+    text_writer writer;
+    TRY(semaphore_acquire(c->l->heavy, &c->why));
+    status code = text_writer_open(&writer, &c->why);
+    if (code == STATUS_OK)
+        code = text_writer_end(&writer, report_page_write(&page, writer.stream, &c->why), bytes, size, &c->why);
+    semaphore_release(c->l->heavy);
+    return code;
+}
+
+status api_page(call *c)
+{
+    const shared_image *p = NULL;
+    char *command = NULL, *bytes = NULL, *laboratory = NULL, *file = api_document_file(c);
+    size_t size = 0;
+    bool complete;
+    status code = file ? STATUS_OK : out_of_memory(&c->why);
+    if (code == STATUS_OK && api_wait_for_final(c, &p) != STATUS_OK) {
+        c->refused = 409;
+        code = STATUS_INTERRUPTED;
+    }
+    THEN(code,
+         command_line(c->l->files, *file ? file : NULL, p->of, c->l->settings.threads, &command, &complete, &c->why));
+    THEN(code, load_laboratory(c, &laboratory));
+    THEN(code, write_page(c, p, command, laboratory, &bytes, &size));
+    shared_image_release(p);
+    free(laboratory);
+    free(command);
+    free(file);
+    return code == STATUS_OK ? api_send(c, "text/html; charset=utf-8", bytes, size) : code;
 }

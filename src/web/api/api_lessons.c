@@ -1,19 +1,20 @@
 /* API: the lessons of the gallery, those of the folder and those that belong to the program, and thumbnails. Lessons of
  * the program are read from its own folder, which is outside the chosen one; requests name lessons, never paths. */
-#include "web/api/api.h"
-
 #include "base/json_build.h"
 #include "base/text.h"
 #include "report/json.h"
 #include "report/lesson_rows.h"
 #include "scene/model/edit/edit.h"
 #include "scene/model/scene.h"
-#include "web/session/thumbnails.h"
+#include "web/api/api.h"
+#include "web/live/images.h"
+
 #include <stdlib.h>
 #include <string.h>
 #include <sys/stat.h>
 
-/* Calls act for each lesson; one that cannot be read is NULL and has its error. *done stops. */
+/* A visit to the lessons: act is called with each one, or with NULL and the error if it cannot be read, until *done is
+ * set. */
 typedef struct lesson_visit {
     void (*act)(struct lesson_visit *v, lesson *l, const char *path, bool own, const diagnostic *error);
     call *c;
@@ -39,7 +40,7 @@ static void visit_file(lesson_visit *v, const char *path, const char *root, bool
         lesson_destroy(l);
 }
 
-/* A file that went away after the list was made is left out. */
+/* A file that was removed after the list was made is left out. */
 static status visit_folder(lesson_visit *v)
 {
     const folder *files = v->c->l->files;
@@ -65,7 +66,7 @@ static status visit_folder(lesson_visit *v)
     return code;
 }
 
-/* Those of the folder first: a teacher's copy replaces the program's lesson of that name. */
+/* The folder's lessons come first: a teacher's copy replaces the program's lesson of that name. */
 static status visit_lessons(lesson_visit *v)
 {
     TRY(visit_folder(v));
@@ -122,7 +123,7 @@ status api_lessons(call *c)
 }
 
 /* The lesson {name} of the path; the caller destroys it. */
-static status take_lesson(call *c, lesson **out)
+static status find_lesson(call *c, lesson **out)
 {
     lesson_visit v = {.act = find_one, .c = c, .name = http_path_value(c->request, "name")};
     const status code = visit_lessons(&v);
@@ -140,7 +141,7 @@ status api_lesson_open(call *c)
 {
     lesson *l = NULL;
     uint64_t generation = 0;
-    TRY(take_lesson(c, &l));
+    TRY(find_lesson(c, &l));
     scene *s = l->start;
     l->start = NULL;
     char *inside, *path = strdup("");
@@ -183,7 +184,7 @@ status api_lesson_measure(call *c)
 {
     lesson_question q = {.lab = c->l, .result = malloc(sizeof *q.result)};
     lesson *l = NULL;
-    status code = q.result ? take_lesson(c, &l) : out_of_memory(&c->why);
+    status code = q.result ? find_lesson(c, &l) : out_of_memory(&c->why);
     q.lesson = l;
     THEN(code, semaphore_acquire(c->l->heavy, &c->why));
     if (code == STATUS_OK) {
@@ -199,7 +200,7 @@ status api_lesson_measure(call *c)
 
 /* --- thumbnails --- */
 
-/* Takes the scene. */
+/* Owns the scene from now on. */
 static status send_thumbnail(call *c, const char *key, scene *s)
 {
     unsigned char *bytes = NULL;
@@ -222,7 +223,7 @@ static char *key_of(const char *kind, const char *path)
                        about.st_mtim.tv_nsec);
 }
 
-/* A study measures: a thumbnail would disturb it. */
+/* Refuses while a study measures, which a render would disturb. */
 static status may_render(call *c)
 {
     json_t *state = json_object();
@@ -236,7 +237,7 @@ status api_lesson_thumbnail(call *c)
 {
     lesson *l = NULL;
     TRY(may_render(c));
-    TRY(take_lesson(c, &l));
+    TRY(find_lesson(c, &l));
     scene *s = l->start;
     char *key = key_of("lesson", l->path);
     l->start = NULL;

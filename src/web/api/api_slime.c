@@ -1,20 +1,30 @@
-/* API: the live slime: play, pause, and hands that drag it through the image. */
-#include "web/api/api.h"
-
+/* API: the live slime: play, pause, and hands that drag it through the image; and the motion of the scene's slimes
+ * compared with closed forms, as `cuvette motion` prints it. */
+#include "base/cancel.h"
+#include "base/json_build.h"
+#include "base/text.h"
+#include "measure/clock.h"
 #include "report/json.h"
-#include "scene/motion/motion.h"
+#include "report/theory_rows.h"
 #include "scene/model/open.h"
 #include "scene/model/render_settings.h"
+#include "scene/model/scene.h"
+#include "scene/assets/slime.h"
+#include "scene/motion/motion.h"
+#include "web/api/api.h"
+#include "web/session/studies.h"
+
 #include <limits.h>
 #include <math.h>
+#include <stdlib.h>
 #include <string.h>
 
 /* Reads one of the words as its index; -1 where the key is missing. */
-static bool take_word(call *c, const char *key, const char *const *words, const char *remedy, int *index)
+static bool read_word(call *c, const char *key, const char *const *words, const char *remedy, int *index)
 {
     const char *word = NULL;
     *index = -1;
-    if (!api_take_text(c, key, false, &word))
+    if (!api_read_text(c, key, false, &word))
         return false;
     for (int i = 0; word && words[i] && *index < 0; i++)
         if (strcmp(words[i], word) == 0)
@@ -26,7 +36,7 @@ static bool take_word(call *c, const char *key, const char *const *words, const 
 
 static bool has_slime(lab *l)
 {
-    scene *current = scene_document_take(l->scene_document, NULL);
+    scene *current = scene_document_copy(l->scene_document, NULL);
     const bool has = current && scene_moves(current);
     scene_destroy(current);
     return has;
@@ -39,8 +49,8 @@ status api_slime(call *c)
     static const char *const previews[] = {[LIVE_TRACED] = "traced", [LIVE_ZBUFFER] = "zbuffer", NULL};
     live *live_slime = render_worker_live(c->l->render_worker);
     int what, preview;
-    if (!take_word(c, "do", orders, "use play, pause, restart or off for 'do'", &what) ||
-        !take_word(c, "preview", previews, "use traced or zbuffer for 'preview'", &preview))
+    if (!read_word(c, "do", orders, "use play, pause, restart or off for 'do'", &what) ||
+        !read_word(c, "preview", previews, "use traced or zbuffer for 'preview'", &preview))
         return STATUS_BAD_INPUT;
     if (what < 0 && preview < 0)
         return api_refuse(c, 400, "neither 'do' nor 'preview' is given",
@@ -56,10 +66,10 @@ status api_slime(call *c)
 }
 
 /* Reads the number of a hand; LIVE_ALL where it is missing. */
-static bool take_hand(call *c, bool needed, int *hand)
+static bool read_hand(call *c, bool needed, int *hand)
 {
     double number = LIVE_ALL;
-    if (!api_take_number(c, "hand", needed, &number))
+    if (!api_read_number(c, "hand", needed, &number))
         return false;
     const bool is_one = number == LIVE_ALL || (number >= 0 && number <= INT_MAX && number == floor(number));
     if (!is_one)
@@ -68,10 +78,10 @@ static bool take_hand(call *c, bool needed, int *hand)
     return is_one;
 }
 
-static bool take_point(call *c, double *x, double *y)
+static bool read_point(call *c, double *x, double *y)
 {
     const double limit = 1e6;
-    if (!api_take_number(c, "x", true, x) || !api_take_number(c, "y", true, y))
+    if (!api_read_number(c, "x", true, x) || !api_read_number(c, "y", true, y))
         return false;
     const bool good = fabs(*x) <= limit && fabs(*y) <= limit;
     if (!good)
@@ -82,13 +92,13 @@ static bool take_point(call *c, double *x, double *y)
 status api_grab(call *c)
 {
     double x, y, reach = 0.0;
-    if (!take_point(c, &x, &y) || !api_take_number(c, "reach", false, &reach))
+    if (!read_point(c, &x, &y) || !api_read_number(c, "reach", false, &reach))
         return STATUS_BAD_INPUT;
     if (reach < 0.0)
         return api_refuse(c, 400, "'reach' is below 0", "give scene units; 0 or omitted: 0.3 of the slime's radius");
     vec3 origin, direction, where;
     int hand = LIVE_MISSED;
-    scene *current = scene_document_take(c->l->scene_document, NULL);
+    scene *current = scene_document_copy(c->l->scene_document, NULL);
     if (!current)
         return out_of_memory(&c->why);
     lab_camera_ray(current, x, y, &origin, &direction);
@@ -122,12 +132,12 @@ status api_move_hand(call *c)
 {
     double x, y, depth = 0.0;
     int hand;
-    if (!take_hand(c, true, &hand) || !take_point(c, &x, &y) || !api_take_number(c, "depth", false, &depth))
+    if (!read_hand(c, true, &hand) || !read_point(c, &x, &y) || !api_read_number(c, "depth", false, &depth))
         return STATUS_BAD_INPUT;
     live *live_slime = render_worker_live(c->l->render_worker);
     vec3 where;
     c->refused = 409;
-    scene *current = scene_document_take(c->l->scene_document, NULL);
+    scene *current = scene_document_copy(c->l->scene_document, NULL);
     status code = current ? live_where(live_slime, hand, &where, &c->why) : out_of_memory(&c->why);
     THEN(code, live_move(live_slime, hand, hand_offset(current, x, y, depth, where), &c->why));
     scene_destroy(current);
@@ -138,9 +148,107 @@ status api_move_hand(call *c)
 status api_release(call *c)
 {
     int hand;
-    if (!take_hand(c, false, &hand))
+    if (!read_hand(c, false, &hand))
         return STATUS_BAD_INPUT;
     c->refused = 409;
     api_reply_json(c, json_object());
     return live_release(render_worker_live(c->l->render_worker), hand, &c->why);
+}
+
+/* --- the motion compared with closed forms --- */
+
+/* Less than the time that a page waits for a reply. */
+#define LIMIT_S 50.0
+
+typedef struct motion_question {
+    lab *l;
+    unsigned stops; /* when it began */
+    double began_s;
+} motion_question;
+
+static bool is_late(const motion_question *q)
+{
+    return clock_wall_s() - q->began_s > LIMIT_S;
+}
+
+static bool must_stop(void *context)
+{
+    const motion_question *q = context;
+    return is_late(q) || atomic_load(&q->l->motion_stops) != q->stops || studies_runs(q->l->studies, NULL) ||
+           studies_ending(q->l->studies);
+}
+
+/* Lists the slimes, and writes them as the table of `cuvette motion --csv`. */
+static status measure(call *c, motion_question *q, const scene *s, json_t *slimes, FILE *table)
+{
+    motion_write_csv_header(table);
+    status code = STATUS_OK;
+    for (size_t i = 0; i < s->mesh_count && code == STATUS_OK; i++) {
+        const mesh_entry *m = &s->meshes[i];
+        if (m->source != MESH_SLIME)
+            continue;
+        const softbody_settings settings = slime_settings(m);
+        softbody_trial_report report;
+        cancel_token stop = {.ask = must_stop, .context = q};
+        cancel_begin(&stop);
+        code = softbody_trials(&settings, c->l->settings.level, &report, &c->why);
+        cancel_end(&stop);
+        if (code != STATUS_OK)
+            continue;
+        motion_write_csv(m, &report, table);
+        if (json_array_append_new(slimes, motion_slime_json(m, &report)) != 0)
+            code = out_of_memory(&c->why);
+    }
+    if (code == STATUS_INTERRUPTED && is_late(q))
+        diagnose(&c->why, code, "lower 'level' of the slime, or raise its 'dt_s'",
+                 "the measurement takes more than 50 s");
+    else if (code == STATUS_INTERRUPTED)
+        diagnose(&c->why, code, "measure again", "the measurement was stopped");
+    return code;
+}
+
+static status answer(call *c, const scene *s)
+{
+    motion_question q = {.l = c->l, .stops = atomic_load(&c->l->motion_stops)};
+    char *file = api_document_file(c);
+    char *text = NULL;
+    text_writer table;
+    json_t *slimes = json_array();
+    status code = file ? semaphore_acquire(c->l->heavy, &c->why) : out_of_memory(&c->why);
+    if (code == STATUS_OK) {
+        q.began_s = clock_wall_s();
+        code = text_writer_open(&table, &c->why);
+        if (code == STATUS_OK)
+            code = text_writer_end(&table, measure(c, &q, s, slimes, table.stream), &text, NULL, &c->why);
+        semaphore_release(c->l->heavy);
+    }
+    if (code == STATUS_OK) {
+        api_reply_json(c, motion_json(json_incref(slimes), file));
+        json_add_as(&c->json, "csv", json_of_text(text));
+    }
+    json_decref(slimes);
+    free(text);
+    free(file);
+    return code;
+}
+
+/* The trials simulate bodies of their own: what hands did to the live slime does not matter. */
+status api_motion(call *c)
+{
+    if (studies_runs(c->l->studies, NULL))
+        return api_refuse(c, 409, "a study is measuring, and this would disturb it", "wait until it ends, or stop it");
+    scene *s = scene_document_copy(c->l->scene_document, NULL);
+    if (!s)
+        return out_of_memory(&c->why);
+    const status code = scene_moves(s) ? answer(c, s)
+                                       : api_refuse(c, 409, "nothing moves in this scene: it has no slime",
+                                                    "add one, or open a scene that has a mesh with 'generate: slime'");
+    scene_destroy(s);
+    return code;
+}
+
+status api_motion_stop(call *c)
+{
+    atomic_fetch_add(&c->l->motion_stops, 1);
+    return api_reply_json(c, json_object());
 }

@@ -1,15 +1,137 @@
-/* API: studies and their results: the section "Studies" of web/README.md. */
+/* API: studies and their results: the section "Studies" of web/README.md; and the machine that they measure. */
+#include "base/file.h"
 #include "base/json_build.h"
 #include "base/number.h"
 #include "base/text.h"
 #include "report/json.h"
-#include "web/session/figures.h"
+#include "report/machine.h"
+#include "scene/model/params.h"
+#include "study/rows/row_files.h"
+#include "study/summary/summary.h"
 #include "web/api/api.h"
 #include "web/session/studies.h"
-#include "web/session/study_files.h"
-#include "web/api/study_json.h"
+
 #include <stdlib.h>
 #include <string.h>
+#include <unistd.h>
+
+enum { STUDY_JSON_ROWS_MAX = 1000 };
+
+/* --- studies as JSON. Values of rows and summaries are strings exactly as in the files, so no digit is lost. --- */
+
+static const char *unit_of(const study *s, const char *path)
+{
+    param_place at;
+    return param_place_find(s->base, path, &at, NULL) == STATUS_OK ? at.row->unit : "";
+}
+
+static json_t *axis_json(const study *s, const study_axis *axis)
+{
+    json_t *paths = json_array(), *units = json_array();
+    int bad = 0;
+    for (size_t i = 0; i < axis->points[0].count; i++) {
+        bad |= json_array_append_new(paths, json_of_text(axis->points[0].paths[i]));
+        bad |= json_array_append_new(units, json_of_text(unit_of(s, axis->points[0].paths[i])));
+    }
+    json_t *json = json_pack("{s:o, s:o, s:o, s:I}", "name", json_of_text(axis->name), "paths", paths, "units", units,
+                             "count", (json_int_t)axis->count);
+    return json_if(json, !bad);
+}
+
+/* Adds title, cells and axes: [{"name", "paths", "units", "count"}]; false when out of memory. */
+static bool study_json_about(const study *s, json_t *into)
+{
+    json_t *axes = json_array();
+    int bad = 0;
+    for (size_t i = 0; i < s->axis_count; i++)
+        bad |= json_array_append_new(axes, axis_json(s, &s->axes[i]));
+    bad |= json_object_update_new(into, json_pack("{s:o, s:I, s:o}", "title", json_of_text(s->title), "cells",
+                                                  (json_int_t)study_cell_count(s), "axes", axes));
+    return !bad;
+}
+
+/* Splits a tab-separated line in place. */
+static json_t *fields_json(char *line)
+{
+    json_t *fields = json_array();
+    int bad = 0;
+    for (char *field; (field = strsep(&line, "\t"));)
+        bad |= json_array_append_new(fields, json_of_text(field));
+    return json_if(fields, !bad);
+}
+
+static json_t *table_json(json_t *columns, json_t *rows, size_t count)
+{
+    return json_pack("{s:o, s:o, s:I}", "columns", columns, "rows", rows, "count", (json_int_t)count);
+}
+
+static json_t *lines_json(char *text)
+{
+    char *line = strsep(&text, "\n");
+    json_t *columns = fields_json(line), *rows = json_array();
+    size_t count = 0;
+    int bad = 0;
+    while ((line = strsep(&text, "\n")) && *line)
+        if (count++ < STUDY_JSON_CELLS_MAX)
+            bad |= json_array_append_new(rows, fields_json(line));
+    return json_if(table_json(columns, rows, count), !bad);
+}
+
+/* The output of `cuvette study summary`, allocated memory; NULL without rows. */
+static status study_summary_text(const study *s, const char *results, char **text, size_t *size, diagnostic *why)
+{
+    study_progress progress;
+    *text = NULL;
+    TRY(study_status(s, results, &progress, why));
+    if (progress.rows == 0)
+        return STATUS_OK;
+    text_writer writer;
+    TRY(text_writer_open(&writer, why));
+    return text_writer_end(&writer, study_summary(s, results, writer.stream, why), text, size, why);
+}
+
+/* {"columns", "rows", "count"}: the output of `cuvette study summary`, limited to STUDY_JSON_CELLS_MAX cells; null
+ * without rows. */
+static status study_json_summary(const study *s, const char *results, json_t **out, diagnostic *why)
+{
+    char *text;
+    *out = NULL;
+    TRY(study_summary_text(s, results, &text, NULL, why));
+    *out = text ? lines_json(text) : json_null();
+    free(text);
+    return *out ? STATUS_OK : out_of_memory(why);
+}
+
+/* The column names, or the fields of one row (of any file) in these columns. */
+static json_t *row_json(const csv *columns, const row_ref *of)
+{
+    json_t *row = json_array();
+    int bad = 0;
+    for (size_t i = 0; columns && i < columns->column_count; i++) {
+        const char *name = columns->header[i];
+        const int column = of && of->table != columns ? csv_column(of->table, name) : (int)i;
+        bad |= json_array_append_new(row, json_of_text(of ? csv_field(of->table, of->row, column) : name));
+    }
+    return json_if(row, !bad);
+}
+
+/* The raw rows in the same form, from row `from` on, at most STUDY_JSON_ROWS_MAX. */
+static status study_json_rows(const study *s, const char *results, size_t from, json_t **out, diagnostic *why)
+{
+    row_files *files;
+    *out = NULL;
+    TRY(row_files_read(s, results, ROWS, &files, why));
+    const csv *first = NULL;
+    for (size_t i = 0; !first && i < files->count; i++)
+        first = files->tables[i]->header ? files->tables[i] : NULL;
+    json_t *rows = json_array();
+    int bad = 0;
+    for (size_t i = from; i < files->row_count && i - from < STUDY_JSON_ROWS_MAX; i++)
+        bad |= json_array_append_new(rows, row_json(first, &files->rows[i]));
+    *out = json_if(table_json(row_json(first, NULL), rows, files->row_count), !bad);
+    row_files_destroy(files);
+    return *out ? STATUS_OK : out_of_memory(why);
+}
 
 /* --- the list --- */
 
@@ -94,7 +216,7 @@ static status find_study(call *c, study **s, char **file)
     return code;
 }
 
-status api_take_study(call *c, study **s)
+status api_read_study(call *c, study **s)
 {
     char *file;
     const status code = find_study(c, s, &file);
@@ -102,7 +224,7 @@ status api_take_study(call *c, study **s)
     return code;
 }
 
-/* Whether a run would make files: true also if those that are there are damaged, since a run tells why. */
+/* Whether a run would write files; true also if existing files are damaged, since a run reports the damage. */
 static status lacks_files(const lab *l, const study *s, bool *lacks, diagnostic *why)
 {
     const status code = study_lacks_files(s, l->settings.results, lacks, why);
@@ -110,7 +232,7 @@ static status lacks_files(const lab *l, const study *s, bool *lacks, diagnostic 
     return code == STATUS_BAD_INPUT ? STATUS_OK : code;
 }
 
-/* What it lacks, its other runs and its figures; none of a study that cannot be read. */
+/* Whether files are missing, the study's other runs and its figures; nothing for a study that cannot be read. */
 static status files_of(const lab *l, const study *s, json_t **out, diagnostic *why)
 {
     json_t *runs = NULL, *figures = NULL, *drawable = NULL;
@@ -167,7 +289,7 @@ static status reply_run(call *c, status code)
 status api_study_run(call *c)
 {
     study *s;
-    TRY(api_take_study(c, &s));
+    TRY(api_read_study(c, &s));
     return reply_run(c, studies_start(c->l->studies, s, &c->why));
 }
 
@@ -185,7 +307,7 @@ status api_study_rows(call *c)
     study *s;
     if (text && (!number_parse_int(text, &from) || from < 0))
         return api_refuse(c, 400, "'from' is not a row number", "use ?from=N with N >= 0");
-    status code = api_take_study(c, &s);
+    status code = api_read_study(c, &s);
     THEN(code, study_json_rows(s, c->l->settings.results, (size_t)from, &c->json, &c->why));
     study_destroy(s);
     return code;
@@ -227,8 +349,58 @@ static status draw(call *c, const study *s)
 status api_study_draw(call *c)
 {
     study *s;
-    status code = api_take_study(c, &s);
+    status code = api_read_study(c, &s);
     THEN(code, draw(c, s));
     study_destroy(s);
+    return code;
+}
+
+/* --- the tables as files: the rows as on disk, the summary as `cuvette study summary` prints it --- */
+
+enum { ROWS_MAX = 1 << 30 }; /* bytes */
+
+static status no_rows(call *c)
+{
+    return api_refuse(c, 404, "the study has no rows yet", "measure it, or merge the rows of its shards, first");
+}
+
+status api_study_rows_csv(call *c)
+{
+    study *s;
+    char *bytes = NULL;
+    size_t size = 0;
+    TRY(api_read_study(c, &s));
+    char *path = text_format("%s/%s/rows.csv", c->l->settings.results, s->name);
+    status code = path ? STATUS_OK : out_of_memory(&c->why);
+    if (code == STATUS_OK && access(path, F_OK) != 0)
+        code = no_rows(c);
+    THEN(code, file_read_below(path, folder_real(c->l->files), ROWS_MAX, &bytes, &size, &c->why));
+    free(path);
+    study_destroy(s);
+    return code == STATUS_OK ? api_send(c, "text/csv", bytes, size) : code;
+}
+
+status api_study_summary_tsv(call *c)
+{
+    study *s;
+    char *text = NULL;
+    size_t size = 0;
+    TRY(api_read_study(c, &s));
+    status code = study_summary_text(s, c->l->settings.results, &text, &size, &c->why);
+    if (code == STATUS_OK && !text)
+        code = no_rows(c);
+    study_destroy(s);
+    return code == STATUS_OK ? api_send(c, "text/tab-separated-values", text, size) : code;
+}
+
+/* --- the machine, as `cuvette machine` describes it --- */
+
+status api_machine(call *c)
+{
+    machine_report account = {0};
+    const status code = machine_measure(&account, &c->why);
+    if (code == STATUS_OK)
+        api_reply_json(c, machine_json(&account));
+    machine_release(&account);
     return code;
 }

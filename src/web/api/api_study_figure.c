@@ -1,10 +1,13 @@
-/* API: the figure of a study, drawn as by `cuvette study plot`, in a temporary folder. */
+/* API: the figure of a study, drawn as by `cuvette study plot`, in a temporary folder; and two sides of a study
+ * compared as by `cuvette study compare`: runs, cells, or values of an axis. */
 #include "base/cancel.h"
 #include "base/file.h"
 #include "base/text.h"
+#include "study/summary/contrast.h"
 #include "study/plot/plot.h"
 #include "web/api/api.h"
 #include "web/session/studies.h"
+
 #include <errno.h>
 #include <stdlib.h>
 #include <string.h>
@@ -20,7 +23,7 @@ static const struct {
 } formats[] = {{"svg", "image/svg+xml"}, {"png", "image/png"}, {"pdf", "application/pdf"}};
 enum { FORMAT_COUNT = sizeof formats / sizeof *formats };
 
-static status take_format(call *c, size_t *which)
+static status read_format(call *c, size_t *which)
 {
     const char *text = http_query_value(c->request, "format");
     for (*which = 0; text && *which < FORMAT_COUNT; ++*which)
@@ -30,7 +33,7 @@ static status take_format(call *c, size_t *which)
     return text ? api_refuse(c, 400, "unknown format", "use ?format=svg, png or pdf") : STATUS_OK;
 }
 
-static status take_log(call *c, plot_log *log)
+static status read_log(call *c, plot_log *log)
 {
     static const char *const words[] = {"auto", "none", "x", "y", "xy"};
     static const plot_log meaning[] = {PLOT_LOG_AUTO, PLOT_LOG_NONE, PLOT_LOG_X, PLOT_LOG_Y, PLOT_LOG_XY};
@@ -43,7 +46,7 @@ static status take_log(call *c, plot_log *log)
     return text ? api_refuse(c, 400, "unknown scale", "use ?log=none, x, y or xy") : STATUS_OK;
 }
 
-/* An empty value is none. */
+/* The option's value; NULL if it is missing or empty. */
 static const char *option(const call *c, const char *key)
 {
     const char *text = http_query_value(c->request, key);
@@ -106,8 +109,8 @@ static status draw(call *c, const study *s)
     char *bytes = NULL;
     plot_request request = {
         .results = l->settings.results, .x = option(c, "x"), .y = option(c, "y"), .by = option(c, "by")};
-    TRY(take_format(c, &which));
-    TRY(take_log(c, &request.log));
+    TRY(read_format(c, &which));
+    TRY(read_log(c, &request.log));
     if (studies_runs(l->studies, NULL))
         return api_refuse(c, 409, "a study is measuring, and drawing would disturb it",
                           "save the figure after it has ended, or stop it");
@@ -121,8 +124,76 @@ static status draw(call *c, const study *s)
 status api_study_figure(call *c)
 {
     study *s;
-    status code = api_take_study(c, &s);
+    status code = api_read_study(c, &s);
     THEN(code, draw(c, s));
+    study_destroy(s);
+    return code;
+}
+
+/* The results folder of that name, which holds rows of the study. */
+static status read_run(call *c, const char *run, const study *s, char **results)
+{
+    char *rows = text_format("%s/%s/rows.csv", run, s->name);
+    status code = rows ? folder_path(c->l->files, rows, true, results, &c->why) : out_of_memory(&c->why);
+    if (code == STATUS_OK) {
+        (*results)[strlen(*results) - strlen(rows) + strlen(run)] = 0;
+        code = study_check_results(c->l, *results, s->name, &c->why);
+    }
+    free(rows);
+    return code;
+}
+
+/* Reads a side of a comparison. side_read would accept any folder, so only items of the laboratory's results are passed
+ * to it. */
+static status read_side(call *c, const study *s, const char *key, study_side *side)
+{
+    const char *results = c->l->settings.results, *text = http_query_value(c->request, key);
+    TRY(side_read(s, text, results, side, &c->why));
+    if (side->results == results)
+        return STATUS_OK;
+    return api_refuse(c, 400, "a side names a results folder", "use ?with=FOLDER to compare with a folder");
+}
+
+static status compare(call *c, const study *s, const study_side *a, const study_side *b)
+{
+    contrast *made = NULL;
+    TRY(contrast_make(s, a, b, &(contrast_options){.column = NULL}, &made, NULL, &c->why));
+    json_t *json = contrast_json(s, made, STUDY_JSON_CELLS_MAX);
+    contrast_destroy(made);
+    return json ? api_reply_json(c, json) : out_of_memory(&c->why);
+}
+
+static status compare_runs(call *c, const study *s, const char *with)
+{
+    char *other = NULL;
+    TRY(read_run(c, with, s, &other));
+    const study_side a = side_of_folder(c->l->settings.results), b = side_of_folder(other);
+    const status code = compare(c, s, &a, &b);
+    free(other);
+    return code;
+}
+
+static status compare_sides(call *c, const study *s)
+{
+    study_side a = {.text = NULL}, b = {.text = NULL};
+    status code = read_side(c, s, "a", &a);
+    THEN(code, read_side(c, s, "b", &b));
+    THEN(code, compare(c, s, &a, &b));
+    side_release(&a);
+    side_release(&b);
+    return code;
+}
+
+status api_study_compare(call *c)
+{
+    const char *with = http_query_value(c->request, "with");
+    const bool sides = http_query_value(c->request, "a") && http_query_value(c->request, "b");
+    study *s;
+    if (!sides && (!with || !with[0]))
+        return api_refuse(c, 400, "it is not said what to compare",
+                          "add ?with=FOLDER, one of the study's runs, or ?a=SIDE&b=SIDE, such as a=cell=0&b=cell=1");
+    TRY(api_read_study(c, &s));
+    const status code = sides ? compare_sides(c, s) : compare_runs(c, s, with);
     study_destroy(s);
     return code;
 }

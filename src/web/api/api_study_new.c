@@ -1,16 +1,15 @@
 /* API: a new study of the current scene, from axes and repetitions: its text, its estimated time, its file. */
 #include "base/cancel.h"
-#include "base/json_build.h"
-#include "web/api/api.h"
-#include "report/report.h"
-
 #include "base/file.h"
+#include "base/json_build.h"
 #include "base/text.h"
 #include "report/json.h"
+#include "report/report.h"
 #include "study/run/estimate.h"
 #include "study/plan/new_study.h"
+#include "web/api/api.h"
 #include "web/session/studies.h"
-#include "web/session/study_files.h"
+
 #include <stdlib.h>
 #include <string.h>
 #include <unistd.h>
@@ -27,7 +26,7 @@ typedef struct form {
     json_t *settings;     /* by which the current scene differs from its file */
 } form;
 
-static status take_axes(call *c, form *f)
+static status read_axes(call *c, form *f)
 {
     const json_t *list = json_object_get(c->body, "axes");
     f->axis_count = json_array_size(list);
@@ -45,28 +44,28 @@ static bool is_study_name(const char *name)
     return length > 6 && strcmp(name + length - 6, ".study") == 0 && name[0] != '.' && !strstr(name, "/.");
 }
 
-static status take_frames(call *c, const char *key, double least, double most, const char *range, double *value)
+static status read_frames(call *c, const char *key, double least, double most, const char *range, double *value)
 {
-    if (!api_take_number(c, key, false, value))
+    if (!api_read_number(c, key, false, value))
         return STATUS_BAD_INPUT;
     if (!(*value >= least && *value <= most) || *value != (double)(long)*value)
         return diagnose_at(&c->why, key, STATUS_BAD_INPUT, range, "invalid number of %s", key);
     return STATUS_OK;
 }
 
-static status take_form(call *c, form *f)
+static status read_form(call *c, form *f)
 {
     f->repetitions = 6;
     f->warmups = 1;
-    if (!api_take_text(c, "file", true, &f->file) || !api_take_flag(c, "save", &f->save) ||
-        !api_take_flag(c, "replace", &f->replace))
+    if (!api_read_text(c, "file", true, &f->file) || !api_read_flag(c, "save", &f->save) ||
+        !api_read_flag(c, "replace", &f->replace))
         return STATUS_BAD_INPUT;
-    TRY(take_frames(c, "repetitions", 1, STUDY_REPETITIONS_MAX, "give an integer from 1 to 100000", &f->repetitions));
-    TRY(take_frames(c, "warmups", 0, STUDY_WARMUPS_MAX, "give an integer from 0 to 1000", &f->warmups));
+    TRY(read_frames(c, "repetitions", 1, STUDY_REPETITIONS_MAX, "give an integer from 1 to 100000", &f->repetitions));
+    TRY(read_frames(c, "warmups", 0, STUDY_WARMUPS_MAX, "give an integer from 0 to 1000", &f->warmups));
     if (!is_study_name(f->file))
         return diagnose_at(&c->why, "file", STATUS_BAD_INPUT, "use a name such as depth.study",
                            "'%.200s' is not a valid study name", f->file);
-    return take_axes(c, f);
+    return read_axes(c, f);
 }
 
 /* The file of the scene, and the settings that differ from it. */
@@ -75,7 +74,7 @@ static status find_scene(call *c, form *f)
     lab *l = c->l;
     bool complete = false;
     char *file = api_document_file(c);
-    scene *s = scene_document_take(l->scene_document, NULL);
+    scene *s = scene_document_copy(l->scene_document, NULL);
     if (s)
         lab_clear_default_threads(l, s);
     status code = file && s ? STATUS_OK : out_of_memory(&c->why);
@@ -89,7 +88,7 @@ static status find_scene(call *c, form *f)
     return code;
 }
 
-/* A parameter of an axis is not set in all cells too. */
+/* Whether an axis varies the parameter, which is then not set for all cells. */
 static bool is_varied(const form *f, const char *setting)
 {
     const size_t length = strcspn(setting, "=") + 1;
@@ -203,7 +202,7 @@ status api_study_new(call *c)
     if (studies_runs(c->l->studies, NULL))
         return api_refuse(c, 409, "a study is measuring, and the trial frames would disturb it",
                           "wait until it ends, or stop it");
-    status code = take_form(c, &f);
+    status code = read_form(c, &f);
     THEN(code, folder_path(c->l->files, f.file, false, &f.target, &c->why));
     THEN(code, find_scene(c, &f));
     if (code == STATUS_OK && (code = semaphore_acquire(c->l->heavy, &c->why)) == STATUS_OK) {

@@ -1,11 +1,11 @@
 /* API: a video of the current scene: its slimes as they move, or a parameter from one value to another. */
-#include "web/api/api.h"
-
 #include "scene/model/params.h"
 #include "scene/model/render_settings.h"
 #include "scene/motion/motion.h"
+#include "web/api/api.h"
 #include "web/session/studies.h"
 #include "web/session/videos.h"
+
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
@@ -25,12 +25,12 @@ static status match(void *context, const char *path, const param *row, const cha
     return STATUS_OK;
 }
 
-static status take_sweep(call *c, const char *path, video_plan *plan)
+static status read_sweep(call *c, const char *path, video_plan *plan)
 {
     double frames = 0;
     param_search q = {.path = path};
-    if (!api_take_number(c, "from", true, &plan->from) || !api_take_number(c, "to", true, &plan->to) ||
-        !api_take_number(c, "frames", true, &frames))
+    if (!api_read_number(c, "from", true, &plan->from) || !api_read_number(c, "to", true, &plan->to) ||
+        !api_read_number(c, "frames", true, &frames))
         return STATUS_BAD_INPUT;
     if (!(frames >= 2 && frames <= VIDEO_FRAMES_MAX && frames == floor(frames)))
         return api_refuse(c, 400, "the number of frames is out of range", "give 2 to 1000 frames");
@@ -40,7 +40,7 @@ static status take_sweep(call *c, const char *path, video_plan *plan)
         return api_refuse(c, 400, "the scene has no such parameter", "GET /api/scene lists its parameters");
     if (q.found->type != PARAM_REAL && q.found->type != PARAM_INT)
         return api_refuse(c, 400, "the parameter is not a number", "choose a parameter whose value is one number");
-    plan->whole = q.found->type == PARAM_INT;
+    plan->is_integer = q.found->type == PARAM_INT;
     plan->count = (int64_t)frames;
     plan->path = strdup(path);
     return plan->path ? STATUS_OK : out_of_memory(&c->why);
@@ -61,12 +61,12 @@ static status check_sweep(call *c, const video_plan *plan)
     return STATUS_OK;
 }
 
-static status take_motion(call *c, video_plan *plan)
+static status read_motion(call *c, video_plan *plan)
 {
     if (!scene_moves(plan->s))
         return api_refuse(c, 409, "nothing moves in this scene: it has no slime",
                           "give 'parameter', 'from', 'to' and 'frames', or add a slime");
-    if (!api_take_number(c, "duration_s", false, &plan->times.duration_s))
+    if (!api_read_number(c, "duration_s", false, &plan->times.duration_s))
         return STATUS_BAD_INPUT;
     TRY(frame_times_choose(&plan->times, plan->s, &c->why));
     plan->count = frame_times_count(&plan->times);
@@ -76,11 +76,11 @@ static status take_motion(call *c, video_plan *plan)
     return frame_times_check_end(&plan->times, plan->s, &c->why);
 }
 
-static status take_form(call *c, video_plan *plan)
+static status read_form(call *c, video_plan *plan)
 {
     const char *format = "y4m";
     double fps = 25;
-    if (!api_take_text(c, "format", false, &format) || !api_take_number(c, "fps", false, &fps))
+    if (!api_read_text(c, "format", false, &format) || !api_read_number(c, "fps", false, &fps))
         return STATUS_BAD_INPUT;
     plan->format = strcmp(format, "y4m") == 0 ? VIDEO_Y4M : strcmp(format, "apng") == 0 ? VIDEO_APNG : VIDEO_NONE;
     if (plan->format == VIDEO_NONE)
@@ -103,10 +103,10 @@ static status check_size(call *c, const video_plan *plan)
 static status read_plan(call *c, video_plan *plan)
 {
     const char *parameter = NULL;
-    TRY(take_form(c, plan));
-    if (!api_take_text(c, "parameter", false, &parameter))
+    TRY(read_form(c, plan));
+    if (!api_read_text(c, "parameter", false, &parameter))
         return STATUS_BAD_INPUT;
-    TRY(parameter ? take_sweep(c, parameter, plan) : take_motion(c, plan));
+    TRY(parameter ? read_sweep(c, parameter, plan) : read_motion(c, plan));
     if (parameter)
         TRY(check_sweep(c, plan));
     return check_size(c, plan);
@@ -117,7 +117,7 @@ status api_video(call *c)
     if (studies_runs(c->l->studies, NULL))
         return api_refuse(c, 409, "a study is measuring, and a video would disturb it",
                           "wait until it ends, or stop it");
-    video_plan plan = {.s = scene_document_take(c->l->scene_document, NULL)};
+    video_plan plan = {.s = scene_document_copy(c->l->scene_document, NULL)};
     status code = plan.s ? read_plan(c, &plan) : out_of_memory(&c->why);
     if (code != STATUS_OK) {
         video_plan_release(&plan);

@@ -1,7 +1,7 @@
 /* The table of all routes of the API, and the handling of one call. */
+#include "report/json.h"
 #include "web/api/api.h"
 
-#include "report/json.h"
 #include <stdlib.h>
 
 typedef enum body_kind { NO_BODY, ANY_BODY, OBJECT, EMPTY } body_kind;
@@ -98,7 +98,7 @@ struct api_bound {
 };
 
 /* Reads the body; false with an error reply set. */
-static bool take_body(call *c, body_kind kind)
+static bool read_body(call *c, body_kind kind)
 {
     if (kind == NO_BODY)
         return true;
@@ -116,7 +116,7 @@ static void answer(void *context, const http_request *request, http_reply *reply
 {
     const struct api_bound *bound = context;
     call c = {.l = bound->l, .request = request, .reply = reply};
-    if (take_body(&c, bound->route->body)) {
+    if (read_body(&c, bound->route->body)) {
         const status code = bound->route->handle(&c);
         if (code == STATUS_OK && !c.sent)
             http_reply_json(reply, 200, json_incref(c.json));

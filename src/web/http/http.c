@@ -1,5 +1,5 @@
 /* Start and stop of the HTTP server. */
-#include "web/http/http_callbacks.h"
+#include "web/http/http_library.h"
 
 #include <arpa/inet.h>
 #include <errno.h>
@@ -13,7 +13,7 @@
 #include <sys/stat.h>
 #include <unistd.h>
 
-/* A socket of our own: libmicrohttpd may share its port with another program (SO_REUSEPORT). */
+/* Opens the socket, because libmicrohttpd would let another program share its port (SO_REUSEPORT). */
 static status listen_at(int port, int backlog, int *out, diagnostic *why)
 {
     const int fd = *out = socket(AF_INET, SOCK_STREAM | SOCK_CLOEXEC | SOCK_NONBLOCK, 0);
@@ -62,14 +62,8 @@ static status make_token(http_server *s, diagnostic *why)
     return STATUS_OK;
 }
 
-status http_no_threads(diagnostic *why)
-{
-    return diagnose(why, STATUS_FAILURE, "close other programs, or raise the limits (ulimit -u, ulimit -n)",
-                    "cannot start the server's threads, for lack of memory, threads or open files");
-}
-
-/* Closes the socket of a server that did not start, unless libmicrohttpd has: it does, but not where the first
- * allocation fails. */
+/* Closes the socket of a server that did not start, unless libmicrohttpd has closed it, which it does except when its
+ * first allocation fails. */
 static void close_unserved(int fd, const struct stat *listening)
 {
     struct stat now;

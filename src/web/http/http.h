@@ -43,6 +43,7 @@
 #pragma once
 
 #include "base/status.h"
+
 #include <jansson.h>
 #include <stddef.h>
 

@@ -2,7 +2,7 @@
  * all streams; its connection's thread sleeps until an event arrives, the client leaves, or a keep-alive comment is
  * due. */
 #include "base/json_build.h"
-#include "web/http/http_callbacks.h"
+#include "web/http/http_library.h"
 
 #include <errno.h>
 #include <poll.h>

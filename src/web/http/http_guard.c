@@ -1,7 +1,7 @@
 /* The checks of a request: path, host, origin, token and rate. */
-#include "web/http/http_callbacks.h"
-
 #include "measure/clock.h"
+#include "web/http/http_library.h"
+
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>

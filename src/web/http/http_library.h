@@ -1,8 +1,12 @@
-/* libmicrohttpd's functions, loaded when a server starts: the library brings GnuTLS, and all its dependencies would
- * cost every command 6 ms at its start. The library's own header gives their types and their meanings. */
+/* libmicrohttpd, for the files of the HTTP server: its functions, and those of the server with its types. See
+ * web/http/http_private.h. The functions are loaded when a server starts: the library brings GnuTLS, and all its
+ * dependencies would cost every command 6 ms at its start. The library's own header gives their types and their
+ * meanings. */
 #pragma once
 
 #include "base/status.h"
+#include "web/http/http_private.h"
+
 #include <microhttpd.h>
 
 #define EACH_MHD_FUNCTION(X)         \
@@ -31,3 +35,12 @@ extern mhd_functions mhd;
 
 /* Fills mhd, once for the process; any thread may call it. A failure says which package to install. */
 status http_library_load(diagnostic *why);
+
+/* --- http_watch.c --- */
+void http_watch_notify(void *server, struct MHD_Connection *c, void **place, enum MHD_ConnectionNotificationCode what);
+
+/* --- http_request.c: libmicrohttpd's callbacks --- */
+void *http_on_target(void *server, const char *target, struct MHD_Connection *c);
+enum MHD_Result http_on_request(void *server, struct MHD_Connection *c, const char *url, const char *method,
+                                const char *version, const char *upload, size_t *upload_size, void **request);
+void http_on_end(void *server, struct MHD_Connection *c, void **request, enum MHD_RequestTerminationCode why);

@@ -1,5 +1,5 @@
 /* Declarations shared by the files of the HTTP server; private to them. See web/http/http.h. Those that need
- * libmicrohttpd's types are in http_callbacks.h: requests in a browser (src/wasm) come without it. */
+ * libmicrohttpd's types are in http_library.h: requests in a browser (src/wasm) come without it. */
 #pragma once
 
 #include "web/http/http.h"
@@ -79,25 +79,20 @@ struct http_request {
 
 int http_guard(http_request *q, const char *version);
 
-/* --- http_route.c --- */
+/* --- http_shared.c: sets q->route or q->file. Returns 0, or the HTTP code with the reply set. --- */
 int http_find_route(http_request *q);
 
-/* --- http_reply.c --- */
+/* --- http_send.c, and what replaces it in a browser (src/wasm/request.c) --- */
 void http_reply_release(http_reply *r);
 void http_reply_set(http_reply *r, int code, const char *type,
                     struct MHD_Response *response); /* takes it; NULL: out of memory */
 
-/* --- http_gzip.c --- */
-/* The bytes compressed by gzip, in allocated memory; NULL where the client does not accept it, the type is not text, or
- * it does not pay. */
-void *http_gzip(const http_reply *r, const char *type, const void *bytes, size_t size, size_t *packed_size);
-
 /* --- http_watch.c: closes connections that exceed timeout_s --- */
 status http_watch_start(http_server *s, diagnostic *why);
-/* The server's threads cannot be started. */
+/* Reports that the server's threads cannot be started. */
 status http_no_threads(diagnostic *why);
 void http_watch_stop(http_server *s);
-/* The connection belongs to somebody with the token: strangers do not displace it. */
+/* Marks the connection as one with the token: strangers do not displace it. */
 void http_watch_known(http_server *s, struct MHD_Connection *c);
 /* Sets the time limit of the connection's current action; 0: none. */
 void http_watch_deadline(http_server *s, struct MHD_Connection *c, double in_s);

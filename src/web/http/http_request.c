@@ -1,5 +1,5 @@
-/* libmicrohttpd's callbacks of a request: its target, its headers, its body, its end. */
-#include "web/http/http_callbacks.h"
+/* libmicrohttpd's callbacks of a request: its target, its headers, its body, its reply, its end. */
+#include "web/http/http_library.h"
 
 #include <stdlib.h>
 #include <string.h>
@@ -39,6 +39,38 @@ void http_on_end(void *server, struct MHD_Connection *c, void **request, enum MH
     http_watch_deadline(server, c, ((http_server *)server)->settings.timeout_s);
 }
 
+/* --- the reply --- */
+
+static const char *const on_every_reply[][2] = {
+    {"Content-Security-Policy",
+     "default-src 'none'; script-src 'self'; style-src 'self'; img-src 'self' blob: data:; connect-src 'self'; "
+     "base-uri 'none'; form-action 'none'; frame-ancestors 'none'"},
+    {"X-Content-Type-Options", "nosniff"},
+    {"Referrer-Policy", "no-referrer"},
+    {"Cache-Control", "no-store"},
+    {"Cross-Origin-Opener-Policy", "same-origin"},
+    {"Cross-Origin-Resource-Policy", "same-origin"},
+};
+
+/* Queues the reply with the headers common to all replies. */
+static enum MHD_Result send_reply(http_reply *r)
+{
+    if (!r->response)
+        http_reply_error(r, 500, r->code ? "no memory for the reply" : "the handler set no reply",
+                         r->code ? "try again later" : "report this as a bug, with the request");
+    if (!r->response)
+        return MHD_NO;
+    bool complete = true;
+    for (size_t i = 0; i < sizeof on_every_reply / sizeof *on_every_reply; i++)
+        complete &= mhd.add_response_header(r->response, on_every_reply[i][0], on_every_reply[i][1]) == MHD_YES;
+    for (int i = 0; i < r->header_count; i++)
+        complete &= mhd.add_response_header(r->response, r->header_name[i], r->header_value[i]) == MHD_YES;
+    /* Send nothing rather than a reply without the security headers. */
+    return complete ? mhd.queue_response(r->connection, (unsigned)r->code, r->response) : MHD_NO;
+}
+
+/* --- the request --- */
+
 static bool changes(const http_request *q)
 {
     return strcmp(q->method, "GET") != 0 && strcmp(q->method, "HEAD") != 0;
@@ -72,7 +104,7 @@ static enum MHD_Result read_head(http_request *q, const char *method, const char
     if (size > q->server->settings.body_max)
         too_large(q);
     if (size / PATIENCE > q->server->settings.body_max)
-        return http_reply_send(&q->reply);
+        return send_reply(&q->reply);
     return MHD_YES;
 }
 
@@ -102,7 +134,7 @@ static enum MHD_Result read_body(http_request *q, const char *bytes, size_t size
     return MHD_YES;
 }
 
-/* False: a refusal for which there was no memory either. */
+/* False if the request was refused and there was no memory for that reply. */
 static bool can_answer(const http_request *q)
 {
     return q->reply.response || q->file || q->route;
@@ -142,7 +174,7 @@ enum MHD_Result http_on_request(void *server, struct MHD_Connection *c, const ch
         if (!q->route || q->route->handle != http_events)
             mhd.set_connection_option(c, MHD_CONNECTION_OPTION_TIMEOUT, (unsigned)s->settings.timeout_s);
     }
-    return http_reply_send(&q->reply);
+    return send_reply(&q->reply);
 }
 
 const char *http_query_value(const http_request *q, const char *name)

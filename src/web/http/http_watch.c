@@ -2,10 +2,10 @@
  * now and then. So each connection has a slot with the deadline of its request or reply, and a thread checks all
  * slots once a second. Connections without a request with the token have a limit of their own, so that strangers cannot
  * take all: a new one displaces the oldest of them. */
-#include "web/http/http_callbacks.h"
-
 #include "base/float_environment.h"
 #include "measure/clock.h"
+#include "web/http/http_library.h"
+
 #include <math.h>
 #include <stdlib.h>
 #include <sys/socket.h>
@@ -29,6 +29,12 @@ static void *watch(void *context)
     }
     pthread_mutex_unlock(&s->watch_lock);
     return NULL;
+}
+
+status http_no_threads(diagnostic *why)
+{
+    return diagnose(why, STATUS_FAILURE, "close other programs, or raise the limits (ulimit -u, ulimit -n)",
+                    "cannot start the server's threads, for lack of memory, threads or open files");
 }
 
 status http_watch_start(http_server *s, diagnostic *why)
@@ -55,10 +61,10 @@ void http_watch_stop(http_server *s)
     free(s->slots);
 }
 
-/* The share of all connections that strangers may have. */
+/* Strangers may have at most one in STRANGERS_PART connections. */
 enum { STRANGERS_PART = 4 };
 
-/* Closes the oldest stranger if there are as many as may be. The caller holds the lock. */
+/* Closes the oldest stranger's connection if they have reached their limit. The caller holds the lock. */
 static void displace_stranger(http_server *s)
 {
     http_slot *oldest = NULL;

@@ -1,8 +1,8 @@
 /* The thread-safe interface of the live slime. */
-#include "web/live/live_private.h"
-
 #include "measure/clock.h"
 #include "report/json.h"
+#include "web/live/live_private.h"
+
 #include <errno.h>
 #include <math.h>
 #include <stdlib.h>
@@ -46,7 +46,7 @@ void live_send(live *l, live_command order)
     switch (order) {
     case LIVE_PLAY:
         l->mode = LIVE_IS_PLAYING;
-        l->restart |= l->account.in_trouble;
+        l->restart |= l->report.in_trouble;
         break;
     case LIVE_PAUSE: l->mode = LIVE_IS_PAUSED; break;
     case LIVE_RESTART:
@@ -102,10 +102,10 @@ static status wait_for(live *l, grab_request *q, diagnostic *why)
 /* Checks that the slime can be grabbed. The caller holds the lock. */
 static status check_on(const live *l, diagnostic *why)
 {
-    if (l->mode == LIVE_IS_OFF || !l->account.has_slime)
+    if (l->mode == LIVE_IS_OFF || !l->report.has_slime)
         return diagnose(why, STATUS_BAD_INPUT, "play the slime first", "the slime is not live");
-    if (l->account.in_trouble && !l->restart)
-        return diagnose(why, STATUS_BAD_INPUT, "restart it", "the slime has stopped: %s", l->account.trouble.what);
+    if (l->report.in_trouble && !l->restart)
+        return diagnose(why, STATUS_BAD_INPUT, "restart it", "the slime has stopped: %s", l->report.trouble.what);
     return STATUS_OK;
 }
 
@@ -195,7 +195,7 @@ bool live_is_on(live *l)
 /* The caller holds the lock. */
 static bool is_moving(const live *l)
 {
-    const live_account *a = &l->account;
+    const live_report *a = &l->report;
     return l->mode == LIVE_IS_PLAYING && a->has_slime && !a->resting && !a->in_trouble;
 }
 
@@ -207,7 +207,7 @@ bool live_is_moving(live *l)
     return moving;
 }
 
-bool live_is_asked(live *l)
+bool live_has_request(live *l)
 {
     pthread_mutex_lock(&l->lock);
     const bool asked = l->requested || l->first;
@@ -231,7 +231,7 @@ live_preview live_preview_of(live *l)
     return preview;
 }
 
-static json_t *json_of_trouble(const live_account *a)
+static json_t *json_of_trouble(const live_report *a)
 {
     return a->in_trouble ? json_of_diagnostic(&a->trouble) : json_null();
 }
@@ -239,7 +239,7 @@ static json_t *json_of_trouble(const live_account *a)
 json_t *live_json(live *l)
 {
     pthread_mutex_lock(&l->lock);
-    const live_account a = l->account;
+    const live_report a = l->report;
     const live_mode mode = l->mode;
     const live_preview preview = l->preview;
     pthread_mutex_unlock(&l->lock);

@@ -10,6 +10,7 @@
 
 #include "base/vec3.h"
 #include "scene/model/open.h"
+
 #include <jansson.h>
 
 typedef struct live live;
@@ -53,10 +54,10 @@ json_t *live_json(live *l);
 
 /* --- render worker --- */
 
-bool live_is_on(live *l);     /* playing or paused */
-bool live_is_moving(live *l); /* playing, and not at rest without hands */
-bool live_is_asked(live *l);  /* a command or a grab is pending */
-bool live_is_due(live *l);    /* moving, or asked: live_advance has work */
+bool live_is_on(live *l);       /* playing or paused */
+bool live_is_moving(live *l);   /* playing, and not at rest without hands */
+bool live_has_request(live *l); /* a command or a grab is pending */
+bool live_is_due(live *l);      /* moving, or asked: live_advance has work */
 live_preview live_preview_of(live *l);
 
 /* Takes over the slimes of a new snapshot: from their beginning, or in their live state where the slimes' own
@@ -72,7 +73,7 @@ void live_detach(live *l);
  * slime was switched off must be loaded again. A diverged body is reported by live_json and is not an error here. */
 status live_advance(live *l, double most_s, bool *state_changed, diagnostic *why);
 /* Whether the snapshot's appearance changed since the last call. */
-bool live_take_moved(live *l);
+bool live_fetch_moved(live *l);
 
 /* A snapshot with a live slime must not be passed to scene_document_share_loaded: its slimes are shaped by hands, not
  * by their time_s. */

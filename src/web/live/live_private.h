@@ -1,9 +1,10 @@
-/* The private struct of the live slime, shared by live.c (requests of other threads), live_snapshot.c (its scene,
- * commands and hands) and live_move.c (its motion). */
+/* The private struct of the live slime, shared by live.c (requests of other threads) and live_simulation.c (its scene,
+ * commands, hands and motion). */
 #pragma once
 
 #include "scene/motion/motion_hands.h"
 #include "web/live/live.h"
+
 #include <pthread.h>
 
 typedef enum live_mode { LIVE_IS_OFF, LIVE_IS_PAUSED, LIVE_IS_PLAYING } live_mode;
@@ -33,12 +34,12 @@ typedef struct live_hand {
 } live_hand;
 
 /* The published summary of the simulation. */
-typedef struct live_account {
+typedef struct live_report {
     bool has_slime, resting, in_trouble;
     double time_s, speed, volume, volume_at_rest, realtime;
     size_t held;
     diagnostic trouble;
-} live_account;
+} live_report;
 
 struct live {
     void (*wake)(void *context);
@@ -53,7 +54,7 @@ struct live {
     grab_request *first;
     live_hand held[LIVE_HANDS_MAX];
     int last_id;
-    live_account account;
+    live_report report;
 
     /* Used by the render worker alone. */
     scene *snapshot;      /* NULL: detached */
@@ -66,11 +67,3 @@ struct live {
     double quiet_s;      /* time without motion */
     bool moved, changed; /* the snapshot's appearance changed; the published state changed by more than the motion */
 };
-
-/* --- live_move.c --- */
-
-/* Simulates the wall time since the last call, with at most about most_s of computation. The caller does not hold the
- * lock. STATUS_BAD_INPUT: the body diverged. */
-status live_move_on(live *l, double most_s, diagnostic *why);
-/* Resets the motion's clock and rates. */
-void live_reset_clock(live *l);

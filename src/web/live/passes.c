@@ -1,23 +1,27 @@
-/* The choice of the render passes from the measured speed. */
-#include "web/live/passes.h"
+/* The choice of the render passes from the measured speed, and the steps of the adaptive resolution, with
+ * hysteresis. */
 #include "scene/model/work.h"
-#include "web/live/adaptive_resolution.h"
+#include "web/live/passes.h"
 
 #include <math.h>
+
+const int resolution_shrinks[RESOLUTION_STEPS] = {1, 2, 3, 4, 6, 8, 12, 16, 24, 32};
+
+/* --- passes --- */
 
 /* The rate before any measurement: a scene of moderate depth on one slow core. */
 static const double rate_unknown = 1e6;
 
 enum { STEP = 4 }; /* from one pass to the next */
 
-/* Photons of a pass: a share like that of its pixels, a quarter of all in one of single samples. A photon costs about
- * ten camera rays. */
-enum { PHOTONS_MIN = 2000, SINGLE_SHARE = 4 };
+/* Photons of a pass: reduced like its pixels, and to a quarter in a pass with single samples. A photon costs about ten
+ * camera rays. */
+enum { PHOTONS_MIN = 2000, SINGLE_DIVISOR = 4 };
 #define PHOTON_COST 10.0
 
 static int64_t photons_of(int64_t all, int shrink, bool single)
 {
-    const int64_t share = (int64_t)shrink * shrink * (single ? SINGLE_SHARE : 1), part = all / share;
+    const int64_t divisor = (int64_t)shrink * shrink * (single ? SINGLE_DIVISOR : 1), part = all / divisor;
     return part > PHOTONS_MIN ? part : all < PHOTONS_MIN ? all : PHOTONS_MIN;
 }
 
@@ -61,4 +65,38 @@ pass_plan passes_plan(const render_settings *r, double rate, double first_s)
     }
     put(&plan, 1, false);
     return plan;
+}
+
+/* --- the live frames --- */
+
+enum { STEPS = 8 }; /* of a live frame: the slime is still seen in the coarsest */
+
+int adaptive_resolution_divisor(const adaptive_resolution *p)
+{
+    return resolution_shrinks[p->step];
+}
+
+/* The ratio of the pixel counts of two steps. */
+static double growth(int from, int to)
+{
+    const double ratio = (double)resolution_shrinks[from] / resolution_shrinks[to];
+    return ratio * ratio;
+}
+
+static void go(adaptive_resolution *p, int step)
+{
+    p->frame_s *= growth(p->step, step);
+    p->step = step;
+}
+
+void adaptive_resolution_update(adaptive_resolution *p, double wall_s, double wanted_s)
+{
+    /* The weight of the newest frame; the fraction of the wanted time above which the resolution drops, and the
+     * predicted fraction below which it rises. The gap between both prevents oscillation. */
+    const double recent = 0.3, late = 1.3, early = 0.8;
+    p->frame_s = p->frame_s > 0.0 ? p->frame_s + recent * (wall_s - p->frame_s) : wall_s;
+    if (p->frame_s > late * wanted_s && p->step < STEPS - 1)
+        go(p, p->step + 1);
+    else if (p->step > 0 && p->frame_s * growth(p->step, p->step - 1) < early * wanted_s)
+        go(p, p->step - 1);
 }

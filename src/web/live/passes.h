@@ -1,9 +1,19 @@
-/* The plan of the render passes: their number and resolution, chosen from the measured speed so that the first image
- * appears quickly. Pure functions. */
+/* The resolution of what is shown before an image is final. Pure functions.
+ *
+ * Passes of a still scene: their number and resolution are chosen from the measured speed, so that the first image
+ * appears quickly. Live frames of a moving one: the resolution drops when frames take longer than their time and rises
+ * when there is time left, one step at a time, with hysteresis. */
 #pragma once
 
 #include "scene/model/render_settings.h"
+
 #include <stdbool.h>
+
+/* The factors by which width and height are divided, finest first. */
+enum { RESOLUTION_STEPS = 10 };
+extern const int resolution_shrinks[RESOLUTION_STEPS];
+
+/* --- passes --- */
 
 enum { PASSES_MAX = 6 };
 typedef struct pass_plan {
@@ -20,3 +30,16 @@ pass_plan passes_plan(const render_settings *r, double rate, double first_s);
 
 /* The settings of one pass. */
 render_settings passes_settings(const render_settings *r, int shrink, bool single);
+
+/* --- live frames --- */
+
+typedef struct adaptive_resolution {
+    int step;       /* index of the resolution step; 0 is the finest */
+    double frame_s; /* smoothed frame time; 0: unknown */
+} adaptive_resolution;
+
+/* The factor by which width and height are divided. */
+int adaptive_resolution_divisor(const adaptive_resolution *p);
+
+/* Updates the step: a frame at the current step took wall_s and may take wanted_s. */
+void adaptive_resolution_update(adaptive_resolution *p, double wall_s, double wanted_s);

@@ -1,10 +1,10 @@
 /* The interface of the render worker for other threads: requests, newest image, state. */
-#include "web/live/render_worker_private.h"
 #include "measure/clock.h"
-#include "scene/model/camera.h"
 #include "report/json.h"
+#include "scene/model/camera.h"
 #include "scene/model/open.h"
 #include "scene/model/view_settings.h"
+#include "web/live/render_worker_private.h"
 
 #include <errno.h>
 #include <math.h>
@@ -13,37 +13,6 @@
 
 /* How long a caller waits for the current scene to be loaded. */
 static const double scene_wait_s = 60.0;
-
-/* --- what the thread reports --- */
-
-void render_worker_notify(render_worker *p)
-{
-    p->listener.state_changed(p->listener.context);
-}
-
-/* A failed attempt that took longer is not repeated before the same time has passed. */
-static const double soon_s = 0.25;
-
-/* The caller holds the lock; true if the listener must be called. */
-bool render_worker_take_error(render_worker *p, status code, const diagnostic *why)
-{
-    const bool differs = code != p->trouble_code || (code != STATUS_OK && strcmp(why->what, p->trouble.what) != 0);
-    p->trouble_code = code;
-    p->trouble = *why;
-    const double now_s = clock_wall_s(); /* a scene that never fits must not keep the machine busy */
-    p->again_from_s = now_s + fmax(0.0, now_s - p->started_s - soon_s);
-    pthread_cond_broadcast(&p->changed);
-    return differs;
-}
-
-void render_worker_set_error(render_worker *p, status code, const diagnostic *why)
-{
-    pthread_mutex_lock(&p->lock);
-    const bool differs = render_worker_take_error(p, code, why);
-    pthread_mutex_unlock(&p->lock);
-    if (differs)
-        render_worker_notify(p);
-}
 
 /* --- requests of other threads --- */
 
@@ -74,7 +43,7 @@ void render_worker_suspend(render_worker *p, const char *text)
     p->listener.state_changed(p->listener.context);
 }
 
-const shared_image *render_worker_take(render_worker *p)
+const shared_image *render_worker_newest(render_worker *p)
 {
     pthread_mutex_lock(&p->lock);
     const shared_image *newest = p->newest;
@@ -84,8 +53,8 @@ const shared_image *render_worker_take(render_worker *p)
     return newest;
 }
 
-/* What the machine had too little of (memory, open files) may be there by now: whoever asks later has the scene loaded
- * and rendered once more. The caller holds the lock. */
+/* After a failure of the machine (memory, open files), a later request has the scene loaded and rendered once more. The
+ * caller holds the lock. */
 static void try_again(render_worker *p)
 {
 #ifdef __EMSCRIPTEN__
@@ -100,7 +69,7 @@ static void try_again(render_worker *p)
     pthread_cond_signal(&p->wake);
 }
 
-/* Waits for the next change; an error where none can come. The caller holds the lock. */
+/* Waits for the next change; an error if none can come. The caller holds the lock. */
 static status wait_for_change(render_worker *p, const struct timespec *until, const char *reason,
                               const char *timeout_text, diagnostic *why)
 {
@@ -111,7 +80,7 @@ static status wait_for_change(render_worker *p, const struct timespec *until, co
     return STATUS_OK;
 }
 
-status render_worker_take_final(render_worker *p, double limit_s, const shared_image **out, diagnostic *why)
+status render_worker_wait_for_final(render_worker *p, double limit_s, const shared_image **out, diagnostic *why)
 {
     const uint64_t min_generation = scene_document_generation(p->scene_document);
     const struct timespec until = clock_after(limit_s);
@@ -204,7 +173,7 @@ static bool prepare_locks(render_worker *p)
 
 static void release(render_worker *p)
 {
-    if (p->live_slime) /* it may be the one that could not be made */
+    if (p->live_slime) /* NULL if its creation failed */
         live_detach(p->live_slime);
     live_destroy(p->live_slime);
     scene_destroy(p->snapshot);
@@ -278,7 +247,7 @@ static json_t *camera_json(const scene *s)
 
 bool render_worker_json(render_worker *p, json_t *state)
 {
-    scene *current = scene_document_take(p->scene_document, NULL);
+    scene *current = scene_document_copy(p->scene_document, NULL);
     pthread_mutex_lock(&p->lock);
     json_t *json = json_pack(
         "{s:o, s:o, s:o, s:o}", "trouble", p->trouble_code != STATUS_OK ? json_of_diagnostic(&p->trouble) : json_null(),

@@ -1,29 +1,17 @@
 /* The render worker: renders the scene document in a thread of its own, in passes from coarse to fine; a change
  * interrupts the current pass. It also simulates the live slime (web/live/live.h). The newest image is shared with
- * all threads. Ownership: render_worker_create creates, render_worker_end joins, render_worker_destroy releases.
- * Images are immutable and reference-counted by shared_image_retain and shared_image_release. */
+ * all threads (web/live/images.h). Ownership: render_worker_create creates, render_worker_end joins,
+ * render_worker_destroy releases. */
 #pragma once
 
 #include "base/isa.h"
-#include "image/image.h"
-#include "web/session/scene_document.h"
+#include "web/document/scene_document.h"
+#include "web/live/images.h"
 #include "web/live/live.h"
+
 #include <stdint.h>
 
 typedef struct render_worker render_worker;
-
-typedef struct shared_image {
-    uint64_t generation;
-    uint64_t serial;   /* increases with each image, whatever its generation */
-    int pass, passes;  /* from 1 */
-    bool final;        /* the complete film of the scene */
-    int width, height; /* of this pass */
-    int full_width, full_height;
-    const json_t *numbers; /* of report_page */
-    uint64_t film_hash;    /* of the final image */
-    const image *linear;
-    const scene *of; /* final: the rendered scene; otherwise NULL */
-} shared_image;
 
 /* published: called after each pass without the document's and the worker's locks; the image is borrowed.
  * state_changed: called when the result of render_worker_json changes. */
@@ -48,22 +36,11 @@ void render_worker_wake(render_worker *p);
 void render_worker_suspend(render_worker *p, const char *text);
 
 /* A new reference to the newest image; NULL before the first. */
-const shared_image *render_worker_take(render_worker *p);
+const shared_image *render_worker_newest(render_worker *p);
 /* The final image of the document's current generation or a newer one. Waits at most limit_s. NULL and *why if the
  * scene cannot be rendered (STATUS_BAD_INPUT), after the time limit, or while the worker is suspended
  * (STATUS_INTERRUPTED). */
-status render_worker_take_final(render_worker *p, double limit_s, const shared_image **out, diagnostic *why);
-void shared_image_retain(const shared_image *p);
-void shared_image_release(const shared_image *p); /* NULL is allowed */
-
-/* The image as an 8-bit PNG or as a JPEG (image_encode's fast ones), encoded once for all callers; the bytes belong to
- * the image. */
-status shared_image_encode(const shared_image *p, image_format format, const unsigned char **bytes, size_t *size,
-                           diagnostic *why);
-
-/* The image's JSON as described in web/README.md; NULL when out of memory. */
-json_t *shared_image_json(const shared_image *p);
-
+status render_worker_wait_for_final(render_worker *p, double limit_s, const shared_image **out, diagnostic *why);
 /* Adds trouble, waiting, picture and camera; false when out of memory. */
 bool render_worker_json(render_worker *p, json_t *state);
 

@@ -1,13 +1,13 @@
 /* The private struct of the render worker. render_worker.c is the thread-safe interface, and starts and ends the
- * thread; render_worker_thread.c is the thread's main loop; render_worker_snapshot.c updates and moves the snapshot;
- * render_worker_pass.c renders it. See web/live/render_worker.h. */
+ * thread; render_worker_thread.c is the thread's main loop; render_worker_snapshot.c updates, moves and renders the
+ * snapshot. See web/live/render_worker.h. */
 #pragma once
 
 #include "job/job.h"
 #include "scene/model/scene.h"
-#include "web/live/adaptive_resolution.h"
-#include "web/live/render_worker.h"
 #include "web/live/passes.h"
+#include "web/live/render_worker.h"
+
 #include <pthread.h>
 
 struct render_worker {
@@ -64,8 +64,6 @@ double render_worker_due_s(render_worker *p);
 
 /* Whether the document has a newer generation than the snapshot. */
 bool render_worker_is_stale(render_worker *p);
-/* Whether to interrupt the current load or pass; of is the render worker. As the ask of a token. */
-bool render_worker_must_end(void *of);
 /* Copies the scene document to the snapshot. */
 void render_worker_renew_snapshot(render_worker *p);
 /* Runs the slime's commands and its motion. */
@@ -89,10 +87,3 @@ void shared_image_drop(const shared_image *p);
 /* Moves the contents of `shown` into a new shared image with one reference. Returns NULL when out of memory; the
  * contents then still belong to the caller. */
 const shared_image *shared_image_create(const shared_image *shown);
-
-/* Calls the listener's state_changed. */
-void render_worker_notify(render_worker *p);
-/* Sets the snapshot's error. render_worker_take_error expects the lock and returns true if the listener must be
- * called; render_worker_set_error locks and calls it. */
-bool render_worker_take_error(render_worker *p, status code, const diagnostic *why);
-void render_worker_set_error(render_worker *p, status code, const diagnostic *why);

@@ -1,8 +1,8 @@
 /* The main loop of the render worker's thread. See web/live/render_worker_private.h. */
-#include "web/live/render_worker_private.h"
-
 #include "base/float_environment.h"
 #include "measure/clock.h"
+#include "web/live/render_worker_private.h"
+
 #include <errno.h>
 #include <math.h>
 #include <string.h>
@@ -37,9 +37,9 @@ static bool wait_for_work(render_worker *p)
         sleep_for(p, due_s);
     }
     p->busy = !p->stop;
-    const bool go_on = !p->stop;
+    const bool runs = !p->stop;
     pthread_mutex_unlock(&p->lock);
-    return go_on;
+    return runs;
 }
 
 static void *render_worker_thread(void *of)

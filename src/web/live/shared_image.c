@@ -1,6 +1,6 @@
-/* Reference-counted images: see web/live/render_worker.h. */
-#include "web/live/render_worker_private.h"
+/* Reference-counted images: see web/live/images.h. */
 #include "report/json.h"
+#include "web/live/render_worker_private.h"
 
 #include <pthread.h>
 #include <stdatomic.h>

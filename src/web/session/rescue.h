@@ -5,7 +5,7 @@
  * STATUS_BAD_INPUT for unknown scenes and those that cannot be opened. */
 #pragma once
 
-#include "web/lab_private.h"
+#include "web/session/session.h"
 
 typedef struct rescue rescue;
 

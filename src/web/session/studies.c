@@ -1,10 +1,10 @@
 /* The thread that runs a study, and its progress for pages. */
-#include "web/session/studies.h"
-#include "web/session/rescue.h"
-#include "web/session/task_thread.h"
 #include "base/float_environment.h"
 #include "base/text.h"
 #include "report/json.h"
+#include "web/session/studies.h"
+#include "web/session/tasks.h"
+
 #include <math.h>
 #include <pthread.h>
 #include <stdatomic.h>
@@ -13,6 +13,7 @@
 
 struct studies {
     lab *l;
+    void (*ended)(lab *l);
     task_thread task; /* its lock is acquired before this one's */
     study *s;         /* used by the thread while it runs */
     atomic_bool drawing;
@@ -26,12 +27,13 @@ struct studies {
     diagnostic trouble;
 };
 
-status studies_create(lab *l, studies **out, diagnostic *why)
+status studies_create(lab *l, void (*ended)(lab *l), studies **out, diagnostic *why)
 {
     *out = calloc(1, sizeof **out);
     if (!*out)
         return out_of_memory(why);
     (*out)->l = l;
+    (*out)->ended = ended;
     task_thread_create(&(*out)->task);
     pthread_mutex_init(&(*out)->lock, NULL);
     return STATUS_OK;
@@ -121,7 +123,7 @@ static void *run(void *context)
     st->failed = code != STATUS_OK && code != STATUS_INTERRUPTED;
     st->trouble = why;
     pthread_mutex_unlock(&st->lock);
-    rescue_wake(st->l->rescue);
+    st->ended(st->l);
     publish(st);
     lab_publish_state(st->l);
     return NULL;

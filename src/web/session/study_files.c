@@ -1,9 +1,10 @@
 /* Search for study files and for the folders of their rows. */
-#include "web/session/study_files.h"
 #include "base/json_build.h"
 #include "base/status.h"
 #include "base/text.h"
 #include "scene/file/document.h"
+#include "web/session/studies.h"
+
 #include <dirent.h>
 #include <errno.h>
 #include <stdlib.h>
@@ -43,12 +44,12 @@ static status each(const lab *l, study_visit *visit, void *context, diagnostic *
     json_t *json = NULL;
     status code = folder_json(l->files, &json, why);
     const json_t *files = json_object_get(json, "studies");
-    bool go_on = true;
-    for (size_t i = 0; go_on && code == STATUS_OK && i < json_array_size(files); i++) {
+    bool wants_more = true;
+    for (size_t i = 0; wants_more && code == STATUS_OK && i < json_array_size(files); i++) {
         const char *file = json_string_value(json_array_get(files, i));
         char *name = file ? name_of(l, file, unread) : NULL;
         if (name)
-            go_on = visit(context, name, file);
+            wants_more = visit(context, name, file);
         else
             code = out_of_memory(why);
         free(name);
@@ -59,7 +60,7 @@ static status each(const lab *l, study_visit *visit, void *context, diagnostic *
 
 status study_each(const lab *l, study_visit *visit, void *context, diagnostic *why)
 {
-    diagnostic unread; /* opening the study says so */
+    diagnostic unread; /* reported when the study is opened */
     return each(l, visit, context, &unread, why);
 }
 
@@ -88,7 +89,7 @@ status study_find(const lab *l, const char *name, char **file, diagnostic *why)
     if (w.found && !w.file)
         return out_of_memory(why);
     if (!w.found && unread.what[0]) {
-        *why = unread; /* it may be the one */
+        *why = unread; /* that file may be the study */
         return STATUS_FAILURE;
     }
     *file = w.file;
@@ -190,7 +191,7 @@ static int is_shown_folder(const struct dirent *entry)
     return entry->d_type == DT_DIR && entry->d_name[0] != '.';
 }
 
-/* The study's rows in a folder, whose path and name relative to the chosen folder these are. */
+/* Looks for rows of the study in a folder. name: of the folder, relative to the chosen folder. */
 static void look_into(run_search *search, const char *path, const char *name)
 {
     char *rows = text_format("%s/%s/rows.csv", path, search->name);

@@ -1,17 +1,18 @@
 /* The thread that renders a video, and its progress for pages. */
-#include "web/session/videos.h"
 #include "base/float_environment.h"
 #include "base/number.h"
 #include "job/job.h"
 #include "measure/clock.h"
 #include "render/plan/film.h"
 #include "report/json.h"
+#include "scene/model/camera.h"
 #include "scene/model/params.h"
 #include "scene/model/render_settings.h"
 #include "scene/motion/motion.h"
 #include "web/session/studies.h"
-#include "web/session/task_thread.h"
-#include "scene/model/camera.h"
+#include "web/session/tasks.h"
+#include "web/session/videos.h"
+
 #include <errno.h>
 #include <math.h>
 #include <stdlib.h>
@@ -28,7 +29,7 @@ struct videos {
     pthread_mutex_t lock; /* guards the fields below */
     bool running, begun;
     int64_t done;
-    double share, began_s, published_s, wall_s;
+    double fraction, began_s, published_s, wall_s;
     FILE *file; /* of the finished video; NULL: none */
     size_t size;
     bool failed;
@@ -87,7 +88,7 @@ void videos_destroy(videos *v)
 
 static double left_s(const videos *v)
 {
-    const double done = (double)v->done + v->share;
+    const double done = (double)v->done + v->fraction;
     return v->running && done > 0.0 ? (clock_wall_s() - v->began_s) / done * ((double)v->plan.count - done) : NAN;
 }
 
@@ -117,21 +118,21 @@ static bool is_disturbing(void *context)
     return studies_runs(v->l->studies, NULL);
 }
 
-static void on_progress(void *context, double share)
+static void on_progress(void *context, double fraction)
 {
     videos *v = context;
     pthread_mutex_lock(&v->lock);
     const bool due = task_publish_is_due(&v->published_s);
-    v->share = share;
+    v->fraction = fraction;
     pthread_mutex_unlock(&v->lock);
     if (due)
         publish(v);
 }
 
-/* Motion up to a frame is no share of the frame. */
-static void on_motion(void *context, double share)
+/* The motion before a frame does not count as progress of the frame. */
+static void on_motion(void *context, double fraction)
 {
-    (void)share;
+    (void)fraction;
     on_progress(context, 0.0);
 }
 
@@ -139,10 +140,10 @@ static void on_motion(void *context, double share)
 
 status video_plan_scene(const video_plan *plan, int64_t frame, scene **out, diagnostic *why)
 {
-    const double share = plan->count > 1 ? (double)frame / (double)(plan->count - 1) : 0.0;
-    const double value = share == 1.0 ? plan->to : plan->from + share * (plan->to - plan->from);
+    const double fraction = plan->count > 1 ? (double)frame / (double)(plan->count - 1) : 0.0;
+    const double value = fraction == 1.0 ? plan->to : plan->from + fraction * (plan->to - plan->from);
     char text[NUMBER_TEXT_MAX];
-    number_format(plan->whole ? round(value) : value, text);
+    number_format(plan->is_integer ? round(value) : value, text);
     *out = scene_clone(plan->s);
     if (!*out)
         return out_of_memory(why);
@@ -200,7 +201,7 @@ static status render_frames(videos *v, job *j, scene_motion *motion, FILE *file,
         code = next_frame(v, j, motion, i, &out, why);
         pthread_mutex_lock(&v->lock);
         v->done += code == STATUS_OK;
-        v->share = 0.0;
+        v->fraction = 0.0;
         pthread_mutex_unlock(&v->lock);
     }
     return code;
@@ -227,20 +228,20 @@ static status make(videos *v, FILE *file, diagnostic *why)
 
 /* --- the thread --- */
 
-/* Keeps the video if it is whole. */
+/* Keeps the video if it is complete. */
 static void finish(videos *v, FILE *file, status code, const diagnostic *why)
 {
     const off_t size = file ? ftello(file) : 0;
-    const bool whole = code == STATUS_OK && size > 0;
+    const bool complete = code == STATUS_OK && size > 0;
     pthread_mutex_lock(&v->lock);
     v->running = false;
     v->wall_s = clock_wall_s() - v->began_s;
     v->failed = code != STATUS_OK && !cancel_is_set(&v->task.token);
     v->trouble = *why;
-    v->file = whole ? file : NULL;
-    v->size = whole ? (size_t)size : 0;
+    v->file = complete ? file : NULL;
+    v->size = complete ? (size_t)size : 0;
     pthread_mutex_unlock(&v->lock);
-    if (file && !whole)
+    if (file && !complete)
         fclose(file);
     publish(v);
     lab_publish_state(v->l);
@@ -277,7 +278,7 @@ static status claim(videos *v, diagnostic *why)
         v->running = v->begun = true;
         v->failed = false;
         v->done = 0;
-        v->share = v->published_s = v->wall_s = 0.0;
+        v->fraction = v->published_s = v->wall_s = 0.0;
         v->began_s = clock_wall_s();
     }
     pthread_mutex_unlock(&v->lock);

@@ -6,7 +6,7 @@
 
 #include "image/video.h"
 #include "scene/motion/motion.h"
-#include "web/lab_private.h"
+#include "web/session/session.h"
 
 typedef struct videos videos;
 
@@ -14,7 +14,7 @@ typedef struct video_plan {
     scene *s;          /* the first frame's, loaded; owned */
     char *path;        /* of the parameter; NULL: the slimes move; owned */
     double from, to;   /* its values in the first and the last frame */
-    bool whole;        /* the parameter is an integer: values are rounded */
+    bool is_integer;   /* the parameter is an integer: values are rounded */
     frame_times times; /* start and duration only of moving slimes */
     int64_t count;     /* of frames */
     video_format format;

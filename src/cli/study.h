@@ -1,0 +1,110 @@
+/* The parts of `cuvette study`: its command lines, its subcommands, the notes before a run, and tables for a terminal.
+ * Ownership: study_request_release frees a request, also after a parsing error; strings are borrowed from argv;
+ * everything else is borrowed. Errors are located at the command line or in the study file. */
+#pragma once
+
+#include "base/status.h"
+#include "study/run/estimate.h"
+#include "study/study.h"
+
+#include <stdbool.h>
+#include <stddef.h>
+#include <stdint.h>
+#include <stdio.h>
+
+/* --- command lines --- */
+
+typedef enum study_verb {
+    STUDY_RUN,
+    STUDY_LIST,
+    STUDY_STATUS,
+    STUDY_MERGE,
+    STUDY_SUMMARY,
+    STUDY_VERIFY,
+    STUDY_VERB_COUNT
+} study_verb;
+
+typedef struct study_request {
+    study_verb verb;
+    const char **files; /* study files; for STUDY_LIST the folder */
+    size_t file_count;
+    const char *results;
+    const char *environment;    /* of the summary: a key, "main", or NULL for all */
+    const char *columns;        /* of --interval, or NULL */
+    const char *against;        /* of a run: the program to alternate with, or NULL */
+    double wait_quiet_s;        /* of a run; 0: do not wait */
+    int64_t process, processes; /* of a run: see study_options; processes: 0: those of the study file */
+    long shard, shards;
+    bool by_repetition, any_environment, quick, quiet, progress, dry_run, instructions;
+} study_request;
+
+status study_request_parse(study_verb verb, int argc, char **argv, study_request *out, diagnostic *why);
+void study_request_release(study_request *request);
+
+/* --- subcommands with a file of their own --- */
+
+/* `study new`: writes a study file. */
+status study_new(int argc, char **argv, diagnostic *why);
+
+/* `study list`: the studies of a folder, and the scenes of its folder scenes. */
+status study_list(int argc, char **argv, diagnostic *why);
+/* `study submit`: the missing parts of a study as an array job of a cluster. */
+status study_submit(int argc, char **argv, diagnostic *why);
+/* `study exclude`: excludes a row from summaries. */
+status study_exclude(int argc, char **argv, diagnostic *why);
+/* `study compare`: the ratio of two sides of a study, with a verdict. */
+status study_compare(int argc, char **argv, diagnostic *why);
+/* `study films`: whether two results folders have the same films and ray counts. */
+status study_films_command(int argc, char **argv, diagnostic *why);
+/* `study power`: false claims and missed differences of smaller studies, drawn from measured rows. */
+status study_power(int argc, char **argv, diagnostic *why);
+/* `cuvette study plot`, which has options of its own (study_plot.c). */
+status command_study_plot(int argc, char **argv, diagnostic *why);
+
+/* --- `study run` (study_run.c) --- */
+
+/* STATUS_FAILURE where what the run writes cannot fit; a note where it may not. */
+status study_check_room(const study *s, const study_request *request, const study_estimate *e, diagnostic *why);
+
+/* `study run --dry-run`: prints what a run would measure and keep, and about how long it would take. */
+status study_dry_run(const study *s, const study_request *request, diagnostic *why);
+
+/* The repetitions of a study that divides them among processes, each a program of its own, one after the other; with
+ * --against=PROGRAM each followed or preceded, at random, by the same process of the other program, whose rows go to
+ * the results folder with -against: two builds that alternate can be compared. */
+status study_run_processes(const study *s, const study_request *request, diagnostic *why);
+
+/* `study run --instructions`: the study runs under valgrind, which counts the instructions of each frame
+ * (measure/instruction_dumps.h). counted_run is a value, which study_instructions_end ends, whatever begin returned; a
+ * request that it has changed borrows from it. */
+typedef struct counted_run {
+    char folder[200];   /* of the counts; "" without one */
+    char results[4096]; /* DIR-instructions */
+} counted_run;
+
+/* Does nothing without --instructions. Otherwise the rows go to a folder of their own, and the environment of this
+ * process and of those that it starts is that of counted rows: the instruction set is one that valgrind knows. */
+status study_instructions_begin(study_request *request, counted_run *out, diagnostic *why);
+void study_instructions_end(const counted_run *run);
+
+/* --- notes on a study before it runs, one line each on standard error --- */
+
+/* Those of the linter, of hints and of parameters without effect (lint/lint.h), in all cells or in some, and those of
+ * the study file. */
+
+/* Notes on the study file, located in it. */
+void study_notes_print_file(const study *s);
+
+/* Notes on the scenes of the cells, each once with the number of its cells. Overlaps, gaps, the camera and the depth
+ * limit need traced rays: cells are examined for at most a second, and slimes are not simulated. */
+status study_notes_print_cells(const study *s, diagnostic *why);
+
+/* --- tables with aligned columns, for a terminal or a reader --- */
+
+/* text[row * columns + column]; numbers are right-aligned. */
+status aligned_table_print(FILE *out, char *const *text, size_t rows, size_t columns, diagnostic *why);
+
+/* Prints the summary of a study for a terminal, with aligned columns: cell, axes, n, median and 95% interval of the
+ * wall time, median CPU time, rays and marked rows, excluded and disturbed ones if there are some; with a reference
+ * also flip and error_rms. tsv is the output of study_summary and is modified. */
+status study_table_print(FILE *out, char *tsv, diagnostic *why);

@@ -1,0 +1,411 @@
+/* A frame on the ranks of an MPI job. Rank 0 leads: the order to the others, the messenger's thread, and the sum of all
+ * parts. The others follow: their main thread is the messenger; a second one runs the job, whose pool traces. */
+#include "base/cancel.h"
+#include "job/job.h"
+#include "measure/clock.h"
+#include "measure/usage.h"
+#include "mpi/frame.h"
+#include "mpi/scene_wire.h"
+#include "mpi/tracing.h"
+#include "render/frame/renderer.h"
+#include "scene/model/scene.h"
+#include "scene/package/package.h"
+
+#include <assert.h>
+#include <math.h>
+#include <mpi.h>
+#include <pthread.h>
+#include <stdlib.h>
+#include <string.h>
+#include <time.h>
+
+/* --- rank 0 --- */
+
+#define WATCH_S 0.1
+
+/* What the other ranks report, all of their workers one after another. */
+typedef struct others {
+    ray_counters counters;
+    rank_usage *ranks; /* by rank, all of the frame */
+    worker_report *workers;
+    int count;
+    status code; /* the first that is not STATUS_OK */
+    diagnostic why;
+} others;
+
+struct lead {
+    int ranks;
+    int64_t frame;
+    job_sharing facing_job;
+    /* of the current frame */
+    pthread_t thread;
+    handout *tiles;
+    shared_frame sum;
+    team *own;
+    frame_sink sink;
+    void (*progress)(void *context, double share_done); /* or NULL */
+    void *context;
+    cancel_token *token; /* of the thread that renders */
+    double begun_s, complete_s, watched_s;
+    others rest;
+    uint64_t scene_bytes;
+};
+
+/* --- messages that arrive --- */
+
+static void put_piece(void *of, piece_message *piece)
+{
+    lead *l = of;
+    shared_frame_put(&l->sum, piece->head.value, piece->values);
+    free(piece);
+    if (handout_is_complete(l->tiles))
+        l->complete_s = clock_wall_s();
+}
+
+/* The times of a rank's workers start at its own beginning of the frame. */
+static bool append_workers(others *o, int rank, const worker_report *workers, int count)
+{
+    worker_report *grown = realloc(o->workers, (size_t)(o->count + count) * sizeof *grown);
+    if (!grown)
+        return false;
+    o->workers = grown;
+    for (int i = 0; i < count; i++) {
+        grown[o->count] = workers[i];
+        grown[o->count++].rank = rank;
+    }
+    return true;
+}
+
+static void add_report(void *of, int rank, const rank_report *report, const worker_report *workers)
+{
+    lead *l = of;
+    others *o = &l->rest;
+    ray_counters_add(&o->counters, &report->counters);
+    o->ranks[rank] = report->account;
+    status code = (status)report->code;
+    diagnostic why = report->why;
+    if (!append_workers(o, rank, workers, (int)report->workers))
+        code = out_of_memory(&why);
+    if (code == STATUS_OK && handout_held(l->tiles, rank) > 0)
+        code = diagnose(&why, STATUS_FAILURE, "report this as a bug, with the scene", "tiles are not traced");
+    if (o->code == STATUS_OK && code != STATUS_OK && code != STATUS_INTERRUPTED) {
+        o->code = code;
+        o->why = why;
+        diagnose(&o->why, code, why.remedy, "rank %d: %.400s", rank, why.what);
+        cancel_set(team_token(l->own));
+    }
+}
+
+static void show_progress(void *of, double share_done)
+{
+    lead *l = of;
+    const double now_s = clock_wall_s();
+    if (!l->progress || now_s - l->watched_s < WATCH_S)
+        return;
+    l->watched_s = now_s;
+    l->progress(l->context, share_done);
+}
+
+static void *serve(void *of)
+{
+    lead *l = of;
+    traffic moved = {0}; /* the ranks report their own */
+    cancel_follow(l->token);
+    messenger_serve(l->frame, l->ranks, l->tiles, team_tracing(l->own), &l->sink, &moved);
+    return NULL;
+}
+
+/* --- the frame --- */
+
+static status refuse(const scene *s, const render_options *o, diagnostic *why)
+{
+    if (s->render.error > 0.0 && s->render.integrator == INTEGRATOR_PATH)
+        return diagnose(why, STATUS_BAD_INPUT, "set render.error to 0, or use one process",
+                        "render.error needs the noise of the whole image, which no rank has");
+    if (o->pixel_rays || o->pixel_time || o->pixel_cut || o->layers || o->timeline)
+        return diagnose(why, STATUS_BAD_INPUT, "leave it out, or use one process",
+                        "maps, layers and the timeline are not sent between ranks");
+    return STATUS_OK;
+}
+
+static void release_frame(lead *l)
+{
+    shared_frame_release(&l->sum);
+    free(l->rest.workers);
+    free(l->rest.ranks);
+    handout_destroy(l->tiles);
+    team_destroy(l->own);
+    l->rest = (others){.code = STATUS_OK};
+    l->tiles = NULL;
+    l->own = NULL;
+}
+
+/* SIDE_MOST: a message of a tile has fewer bytes than MPI can count. */
+enum { SIDE_MOST = 4096, SIDE_GROWN = 128, TILES_ENOUGH = 64 };
+
+/* The tile's side of a single process with the workers of all ranks. Where each worker would still have TILES_ENOUGH
+ * tiles, they are larger: the last rays of a tile do not fill batches (renderer.h, tile_source), which costs less in
+ * larger tiles. */
+static int tile_side(const scene *s, int ranks)
+{
+    render_settings all = s->render;
+    schedule tiles;
+    all.threads = (int64_t)scene_threads(&s->render) * ranks;
+    schedule_start(&tiles, &all);
+    int side = tiles.tile < SIDE_MOST ? tiles.tile : SIDE_MOST;
+    while (2 * side <= SIDE_GROWN &&
+           s->render.width * s->render.height / (4 * side * side) >= TILES_ENOUGH * all.threads)
+        side *= 2;
+    return side;
+}
+
+static status prepare(lead *l, const scene *s, diagnostic *why)
+{
+    TRY(shared_frame_begin(s, tile_side(s, l->ranks), &l->sum, why));
+    TRY(handout_create(l->sum.places.tile_count, l->ranks, &l->tiles, why));
+    TRY(team_create(&l->sum.places, scene_threads(&s->render), &l->own, why));
+    return (l->rest.ranks = calloc((size_t)l->ranks, sizeof *l->rest.ranks)) ? STATUS_OK : out_of_memory(why);
+}
+
+/* Sends the scene to the others, which answer when they are ready. */
+static status send_orders(lead *l, const scene *s, bool measured, diagnostic *why)
+{
+    const frame_order order = {.head.frame = ++l->frame, .tile = l->sum.places.tile, .usage = measured};
+    for (int rank = 1; rank < l->ranks; rank++)
+        MPI_Send(&order, sizeof order, MPI_BYTE, rank, TAG_FRAME, MPI_COMM_WORLD);
+    l->scene_bytes = 0;
+    return l->ranks > 1 ? scene_wire_send(s, &l->scene_bytes, why) : STATUS_OK;
+}
+
+static status begin(void *of, const scene *s, const render_options *requested, const tile_source **own,
+                    diagnostic *why)
+{
+    lead *l = of;
+    TRY(refuse(s, requested, why));
+    status code = prepare(l, s, why);
+    THEN(code, scene_build_hierarchies(s, why)); /* before the others wait for the scene */
+    THEN(code, send_orders(l, s, requested->usage, why));
+    if (code != STATUS_OK) {
+        release_frame(l);
+        return code;
+    }
+    l->sink = (frame_sink){l, put_piece, add_report, show_progress};
+    l->progress = requested->progress;
+    l->context = requested->context;
+    cancel_begin(team_token(l->own));
+    l->token = cancel_current();
+    l->begun_s = l->watched_s = clock_wall_s();
+    l->complete_s = NAN;
+    *own = team_source(l->own);
+    if (pthread_create(&l->thread, NULL, serve, l) != 0)
+        MPI_Abort(MPI_COMM_WORLD, STATUS_FAILURE); /* the others are under way */
+    return STATUS_OK;
+}
+
+/* The account of each rank; this one's is the first. */
+static void add_ranks(lead *l, render_result *result)
+{
+    rank_usage *ranks = l->rest.ranks;
+    ranks[0] = (rank_usage){
+        .wall_s = result->wall_s, .cpu_s = result->cpu_s, .peak_rss_bytes = (uint64_t)usage_now().peak_rss_bytes};
+    for (int rank = 1; rank < l->ranks; rank++)
+        result->cpu_s += ranks[rank].cpu_s;
+    result->ranks = ranks;
+    result->rank_count = l->ranks;
+    result->tile = l->sum.places.tile;
+    result->scene_bytes = l->scene_bytes;
+    l->rest.ranks = NULL;
+}
+
+/* Adds the workers of all ranks; a worker waits for the rest of the frame's time. */
+static status add_workers(const lead *l, render_result *result, double wall_s, diagnostic *why)
+{
+    const others *o = &l->rest;
+    worker_report *all = realloc(result->workers, (size_t)(result->worker_count + o->count) * sizeof *all);
+    if (!all)
+        return out_of_memory(why);
+    if (o->count > 0)
+        memcpy(all + result->worker_count, o->workers, (size_t)o->count * sizeof *all);
+    result->workers = all;
+    result->worker_count += o->count;
+    for (int i = 0; i < result->worker_count; i++)
+        all[i].waiting_s = wall_s - all[i].busy_s;
+    return STATUS_OK;
+}
+
+/* Adds the others' parts to this rank's. */
+static status add_others(lead *l, render_result *result, diagnostic *why)
+{
+    const double wall_s = (isfinite(l->complete_s) ? l->complete_s : clock_wall_s()) - l->begun_s;
+    ray_counters_add(&result->counters, &l->rest.counters);
+    add_ranks(l, result);
+    result->wall_s = wall_s;
+    result->img = l->sum.img;
+    result->variance = l->sum.variance;
+    l->sum.img = NULL;
+    l->sum.variance = NULL;
+    return add_workers(l, result, wall_s, why);
+}
+
+static status end(void *of, status traced, render_result *result, diagnostic *why)
+{
+    lead *l = of;
+    traced = team_status(l->own, traced, why);
+    if (traced != STATUS_OK)
+        cancel_set(team_token(l->own));
+    team_left(l->own);
+    cancel_join(l->thread);
+    status code = traced == STATUS_OK && cancel_asked() ? STATUS_INTERRUPTED : traced;
+    cancel_end(team_token(l->own));
+    if (l->rest.code != STATUS_OK) {
+        code = l->rest.code;
+        *why = l->rest.why;
+    }
+    if (result) {
+        const status added = add_others(l, result, why);
+        code = added == STATUS_OK ? code : added;
+    }
+    release_frame(l);
+    return code;
+}
+
+/* --- creation --- */
+
+status lead_create(int ranks, lead **out, diagnostic *why)
+{
+    lead *l = aligned_alloc(64, (sizeof *l + 63) / 64 * 64); /* a schedule is aligned to cache lines */
+    if (!l)
+        return out_of_memory(why);
+    memset(l, 0, sizeof *l);
+    l->ranks = ranks;
+    l->facing_job = (job_sharing){begin, end, l};
+    *out = l;
+    return STATUS_OK;
+}
+
+void lead_destroy(lead *l)
+{
+    if (!l)
+        return;
+    const wire_head head = {.frame = l->frame + 1};
+    for (int rank = 1; rank < l->ranks; rank++)
+        MPI_Send(&head, sizeof head, MPI_BYTE, rank, TAG_QUIT, MPI_COMM_WORLD);
+    free(l);
+}
+
+const job_sharing *lead_sharing(const lead *l)
+{
+    return &l->facing_job;
+}
+
+/* --- the other ranks --- */
+
+typedef struct follower {
+    job *with;
+    frame_order order;
+    scene *s;
+    team *own;
+    job_account account;
+    rank_report report;
+    const render_options *options;
+} follower;
+
+static void *trace(void *context)
+{
+    follower *f = context;
+    cancel_begin(team_token(f->own));
+    const status traced = job_render(f->with, f->s, f->options, &f->account, &f->report.why);
+    cancel_end(team_token(f->own));
+    f->report.code = team_status(f->own, traced, &f->report.why);
+    team_left(f->own);
+    return NULL;
+}
+
+static void send_report(follower *f)
+{
+    const render_result *result = f->account.result;
+    const size_t workers = result ? (size_t)result->worker_count : 0;
+    const size_t bytes = sizeof f->report + workers * sizeof *result->workers;
+    char *message = malloc(bytes);
+    if (!message)
+        MPI_Abort(MPI_COMM_WORLD, STATUS_FAILURE);
+    f->report.head.frame = f->order.head.frame;
+    f->report.workers = (int64_t)workers;
+    f->report.account.peak_rss_bytes = (uint64_t)usage_now().peak_rss_bytes;
+    if (result) {
+        f->report.counters = result->counters;
+        f->report.account.wall_s = result->wall_s;
+        f->report.account.cpu_s = result->cpu_s;
+        memcpy(message + sizeof f->report, result->workers, workers * sizeof *result->workers);
+    }
+    memcpy(message, &f->report, sizeof f->report);
+    MPI_Send(message, (int)bytes, MPI_BYTE, 0, TAG_REPORT, MPI_COMM_WORLD);
+    free(message);
+}
+
+/* Traces this rank's part of the frame. */
+static status trace_part(follower *f, diagnostic *why)
+{
+    const render_settings settings = tiles_settings(&f->s->render, f->order.tile);
+    schedule tiles;
+    schedule_start(&tiles, &settings);
+    TRY(team_create(&tiles, scene_threads(&f->s->render), &f->own, why));
+    const render_options options = {.usage = f->order.usage, .source = team_source(f->own)};
+    f->options = &options;
+    pthread_t thread;
+    traffic moved = {0};
+    if (pthread_create(&thread, NULL, trace, f) != 0)
+        return diagnose(why, STATUS_FAILURE, "use fewer threads", "a thread cannot be started");
+    messenger_work(f->order.head.frame, team_tracing(f->own), &moved);
+    pthread_join(thread, NULL);
+    f->report.account.pieces = moved.pieces;
+    f->report.account.piece_bytes = moved.piece_bytes;
+    return STATUS_OK;
+}
+
+static void run_frame(job *with, const frame_order *order)
+{
+    follower f = {.with = with, .order = *order};
+    bool given_up = false;
+    status code = scene_wire_receive(&f.s, &given_up, &f.report.why);
+    if (given_up)
+        return;
+    THEN(code, trace_part(&f, &f.report.why));
+    if (code != STATUS_OK)
+        f.report.code = code;
+    send_report(&f);
+    job_account_release(&f.account);
+    team_destroy(f.own);
+    scene_destroy(f.s);
+}
+
+/* Waits for the next order; MPI would wait without sleeping. Messages of earlier frames are dropped. */
+static int next_order(frame_order *order)
+{
+    for (;;) {
+        MPI_Status arrived;
+        int there = 0;
+        MPI_Iprobe(0, MPI_ANY_TAG, MPI_COMM_WORLD, &there, &arrived);
+        if (!there) {
+            nanosleep(&(struct timespec){.tv_nsec = 500000}, NULL);
+            continue;
+        }
+        char message[sizeof(wire_head) + HANDOUT_MOST * sizeof(int32_t)];
+        static_assert(sizeof message >= sizeof *order, "any message to a rank fits");
+        MPI_Recv(message, sizeof message, MPI_BYTE, 0, arrived.MPI_TAG, MPI_COMM_WORLD, MPI_STATUS_IGNORE);
+        memcpy(order, message, sizeof *order);
+        if (arrived.MPI_TAG == TAG_FRAME || arrived.MPI_TAG == TAG_QUIT)
+            return arrived.MPI_TAG;
+    }
+}
+
+status follow(diagnostic *why)
+{
+    job *with = NULL;
+    frame_order order;
+    TRY(job_create(&(job_settings){.level = NULL}, &with, why));
+    while (next_order(&order) == TAG_FRAME)
+        run_frame(with, &order);
+    job_destroy(with);
+    return STATUS_OK;
+}

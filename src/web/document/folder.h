@@ -1,0 +1,42 @@
+/* The chosen folder: validates the names that pages send and confines reads and writes to the folder. A name is
+ * relative to the folder, with '/', without "." or "..", without empty parts; a symbolic link that leads outside is
+ * refused like a path with "..". Ownership: folder_open creates, folder_close releases; returned paths are allocated
+ * memory. Errors: STATUS_BAD_INPUT. */
+#pragma once
+
+#include "scene/model/open.h"
+
+#include <jansson.h>
+
+typedef struct folder folder;
+
+status folder_open(const char *path, folder **out, diagnostic *why);
+void folder_close(folder *f); /* NULL is allowed */
+
+/* The path of the folder as given, and its last part. */
+const char *folder_root(const folder *f);
+const char *folder_title(const folder *f);
+/* The resolved path without links: the root of all reads (base/file.h). */
+const char *folder_real(const folder *f);
+
+/* The path of an existing file, for reading; with must_exist false the path of a file whose folder exists. Relative
+ * to the working directory of the program. */
+status folder_path(const folder *f, const char *name, bool must_exist, char **path, diagnostic *why);
+/* The name in the folder of a path relative to the working directory; NULL where the path is outside. The file need
+ * not exist. NULL with ENOMEM in errno: out of memory. */
+char *folder_name(const folder *f, const char *path);
+/* The same: *name is NULL where the path is outside. Fails only if memory runs out. */
+status folder_find(const folder *f, const char *path, char **name, diagnostic *why);
+
+/* A name as the scene in `file` refers to it: relative to the file's folder, absolute where they have no common
+ * folder. file: "" is a scene in the working directory. */
+status folder_path_from(const folder *f, const char *name, const char *file, char **path, diagnostic *why);
+
+/* Checks that all files of the scene (textures, environment maps, meshes, scripts) are inside the folder. For files
+ * that do not exist, the path decides. */
+status folder_check_scene(const folder *f, const scene *s, diagnostic *why);
+
+/* The reply to GET /api/files: three levels of folders, at most FOLDER_FILES_MAX files, no hidden files. The caller
+ * releases *out; STATUS_FAILURE when out of memory, since a list that lacks a file is not given. */
+enum { FOLDER_FILES_MAX = 2000 };
+status folder_json(const folder *f, json_t **out, diagnostic *why);
