@@ -103,7 +103,7 @@ library := $(filter-out src/cli/% src/import/% src/web/% src/mpi/% src/wasm/% sr
 program := $(wildcard src/cli/*.c)
 mpi := $(filter src/mpi/%,$(sources))
 web := $(filter src/web/%,$(sources))
-page := $(sort $(wildcard $(addprefix src/web/page/*.,html css js svg)))
+page := $(sort $(wildcard $(foreach e,html css js svg,src/web/page/*.$(e) src/web/page/*/*.$(e))))
 importer := $(wildcard src/import/*.c) $(addprefix src/base/,status.c cancel.c number.c below.c float_environment.c \
   array.c os_confine.c os_process.c thread_team.c worker_pool.c)
 objects_of = $(1:src/%.c=$(build)/obj/%.o)
@@ -128,9 +128,9 @@ $(build)/cuvette: $(program_objects) $(build)/libweb.a $(build)/libcuvette.a
 # The laboratory's server and its page: only for the program, not for the library.
 $(build)/libweb.a: $(web_objects)
 	$(archive)
-$(build)/web/page_files.c: src/web/embed.sh src/web/page $(page)
+$(build)/web/page_files.c: src/web/embed.sh $(sort $(dir $(page))) $(page)
 	@mkdir -p $(@D)
-	$(quiet)src/web/embed.sh $(page) >$@
+	$(quiet)src/web/embed.sh src/web/page $(page) >$@
 $(build)/web/page_files.o: $(build)/web/page_files.c $(build)/flags
 	$(call compile,$(all_cflags) $(pkg_cflags))
 

@@ -53,7 +53,7 @@ wanted.append(root / "scenes/chequer.png")
 print(*(path.name for path in wanted if str(path.relative_to(root)) not in packed), sep="\n", end="")
 END
 )"
-empty 'every style sheet of the page is in it' "$(for sheet in "$root"/src/web/page/*.css; do
+empty 'every style sheet of the page is in it' "$(for sheet in "$root"/src/web/page/{,*/}*.css; do
     name=$(grep -om1 -- '^\.[a-z-]*' "$sheet" | head -n 1)
     grep -qF -- "$name" "$site/laboratory/index.html" || echo "${sheet##*/}"
 done)"

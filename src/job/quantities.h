@@ -3,7 +3,7 @@
  * of rows.csv and workers.csv (study/rows/rows.c), `cuvette render --json` and the page's numbers (report/report.c), the
  * dictionary in results/README.md (make dictionary renews it) and cuvette-account(5). A
  * new quantity is one new line in quantities.c; summaries of studies and the page name those that they show
- * (study/summary/summary.c, web/page/status.js, compare_numbers.js, study_data.js). Ownership: constant; values borrow from the
+ * (study/summary/summary.c, web/page/status.js, panel_compare.js, studies/data.js). Ownership: constant; values borrow from the
  * account. Nothing fails. */
 #pragma once
 

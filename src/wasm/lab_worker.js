@@ -1,5 +1,5 @@
 /* The laboratory's worker: it gets its module and its files in the first message, and answers the page's requests
- * (page/engine_browser.js). Tile workers are its own.
+ * (page/shared/engine.js). Tile workers are its own.
  *
  * page -> worker  {boot: {wasm, files, scene, workers, script}}
  *                   wasm: a WebAssembly.Module, or the bytes of one; files: [{name, bytes}]; scene: a name, or null for

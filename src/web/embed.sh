@@ -1,18 +1,18 @@
 #!/bin/bash
-# src/web/embed.sh FILE...: prints a C file that embeds these files and defines page.h's table of them. The assembler's
-# .incbin reads the bytes; gcc and clang accept the same directive.
+# src/web/embed.sh FOLDER FILE...: prints a C file that embeds these files of FOLDER and defines page.h's table of them,
+# by their paths in it. The assembler's .incbin reads the bytes; gcc and clang accept the same directive.
 set -euo pipefail
 declare -A types=([html]='text/html; charset=utf-8' [css]='text/css; charset=utf-8'
     [js]='text/javascript; charset=utf-8' [svg]='image/svg+xml')
 
 echo '#include "web/page.h"'
-number=0 rows=
+folder=$1 number=0 rows=
+shift
 for file in "$@"; do
-    name=${file##*/} size=$(stat -c %s "$file")
+    name=${file#"$folder/"} size=$(stat -c %s "$file")
     type=${types[${name##*.}]-}
-    [[ $type && $name =~ ^[a-z0-9_.-]+$ ]] || {
-        echo "embed.sh: $file is not an html, css, js or svg file with a plain name" \
-            >&2
+    [[ $type && $name =~ ^([a-z0-9_-]+/)*[a-z0-9_.-]+$ ]] || {
+        echo "embed.sh: $file is not an html, css, js or svg file with a plain name" >&2
         exit 1
     }
     echo "__asm__(\".pushsection .rodata\\npage_file_$number: .incbin \\\"$file\\\"\\n.byte 0\\n.popsection\");"

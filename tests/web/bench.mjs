@@ -1,6 +1,6 @@
 // tests/web/bench.mjs --program CUVETTE --modules FOLDER [--changes N] [--drag SECONDS]: the latency of the page in
 // milliseconds: from the start of the program to the first drawn image, and from a change of an index to its first and
-// its final drawn image, as median and worst of N; images a second while the camera is dragged at 60 Hz (or a slime
+// its final drawn image, as median and worst of N; images per second while the camera is dragged at 60 Hz (or a slime
 // plays): the median over the seconds, the longest gap, drawn over fetched images, and their pixels; and, over a link
 // of 1 Mbit/s and 100 ms, the time from a change to the first full-size image and to the final, exact one, with the
 // bytes of a change. Not a test: times depend on the machine.
@@ -69,7 +69,7 @@ async function measure(screen, what, settings) {
   console.log(`${what}: first image ${summary(first)} ms, final image ${summary(final)} ms`);
 }
 
-/** Drags the camera for the given time, a move each 1/60 s, unless the scene moves by itself. */
+/** Drags the camera for the given time, a move every 1/60 s, unless the scene moves by itself. */
 async function drag(screen, scene, moves) {
   const { page } = screen;
   let fetched = 0;

@@ -1,4 +1,4 @@
-// Handles of the selected object: move, turn and scale, with snapping, by mouse and by keyboard; a vessel takes its
+// Handles of the selected object: move, turn and scale, with snapping, by mouse and by keyboard; a vessel moves its
 // contents along.
 import { camera } from './optics.mjs';
 

@@ -51,7 +51,7 @@ export const cases = {
       await panel(screen).getByText('That is right.').waitFor();
       await panel(screen).getByText(lesson.answer).waitFor();
       const least = lesson.measure.timed ? 5 : 9; /* markers: one a number of threads */
-      const markers = panel(screen).locator('.lesson-chart .plot-marker');
+      const markers = panel(screen).locator('.theory-chart .plot-marker');
       await markers.nth(least - 1).waitFor({ state: 'attached' });
       if (lesson.measure.timed) t.equal(await markers.count(), least, 'numbers of threads');
       if (lesson.measure.timed) {

@@ -236,7 +236,7 @@ export class Screen {
   }
 }
 
-/** The share of pixels that differ by more than one level in any channel; Infinity for different sizes. keep(x, y):
+/** The fraction of pixels that differ by more than one level in any channel; Infinity for different sizes. keep(x, y):
  * which pixels count. */
 export function difference(a, b, keep = () => true) {
   if (a.width !== b.width || a.height !== b.height) return Infinity;

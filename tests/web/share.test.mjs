@@ -1,10 +1,10 @@
-// Scenes shared by link, PNG image and HTML file: all give the film again.
+// Scenes shared by link, PNG image and HTML file: the film is the same.
 import { execFileSync } from 'node:child_process';
 import { mkdtempSync, readFileSync, rmSync } from 'node:fs';
 import { tmpdir } from 'node:os';
 import { join } from 'node:path';
 
-// A link that holds the scene: copied from one page, opened by another, it gives the same film; undo goes back.
+// A link that holds the scene: copied from one page, opened by another, the film is the same; undo goes back.
 export const cases = {
   'a link reproduces the film': async (t) => {
     const lab = await t.lab('scenes/rod.yaml');

@@ -1,4 +1,4 @@
-// Films: that of a parameter has the frames of `cuvette render`, that of a slime is the file of `cuvette animate`;
+// Videos: that of a parameter has the frames of `cuvette render`, that of a slime is the file of `cuvette animate`;
 // progress, stop, refusals, and the dialog Save film.
 import { readFile, writeFile } from 'node:fs/promises';
 import { join } from 'node:path';
@@ -9,7 +9,7 @@ const SCENE = 'scenes/rod.yaml';
 const SMALL = { 'render.width': 120, 'render.height': 90 };
 const sets = (values) => Object.entries(values).flatMap(([path, value]) => ['--set', `${path}=${value}`]);
 
-/** Waits for the end of the film; the state's `video`. */
+/** Waits for the end of the video; the state's `video`. */
 async function ended(lab) {
   for (;;) {
     const { video } = await lab.get('/api/state');

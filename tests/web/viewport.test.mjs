@@ -1,5 +1,5 @@
 // Views: the pivot stays, the distance is bounded, two fingers zoom and pan, views have a history apart from undo, and
-// the whole of it by keyboard.
+// all of it by keyboard.
 
 const PIVOT = [0, 1.5, 0]; // of rod.yaml
 

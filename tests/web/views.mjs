@@ -70,7 +70,7 @@ const predict = async (screen, title, guess) => {
   await screen.button('Compare', true).click();
   await page.locator('.lesson-value').waitFor();
   await screen.settled();
-  await page.locator('.lesson-chart figcaption').evaluate((node) => node.scrollIntoView({ block: 'end' }));
+  await page.locator('.theory-chart figcaption').evaluate((node) => node.scrollIntoView({ block: 'end' }));
   await screen.quiet();
 };
 

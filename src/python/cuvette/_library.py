@@ -189,9 +189,9 @@ def _pass_news(context: Any, text: Any) -> None:
 on_news = ffi.callback("void(void *, const char *)", _pass_news, onerror=_keep_error)
 
 
-def visited(function: Callable[..., Any], callback: Any, take: Callable[..., Any], *arguments: Any) -> None:
+def visited(function: Callable[..., Any], callback: Any, act: Callable[..., Any], *arguments: Any) -> None:
     """Calls a function of the kind f(arguments, callback, context, why)."""
-    visit = Visit(take)
+    visit = Visit(act)
     call(function, *arguments, callback, visit.context)
     visit.finish()
 
@@ -220,13 +220,13 @@ class Engines:
         """A child process has none of the threads, and must not wait for them to end."""
         self.free, self.lock = [ffi.gc(one, None) for one in self.free] and [], threading.Lock()
 
-    def take(self) -> Any:
+    def acquire(self) -> Any:
         with self.lock:
             if self.free:
                 return self.free.pop()
         return made("engine", lib.cuvette_engine_create, lib.cuvette_engine_destroy, NULL)
 
-    def give(self, engine: Any) -> None:
+    def release(self, engine: Any) -> None:
         with self.lock:
             self.free.append(engine)
 
@@ -241,8 +241,8 @@ def sized(kind: str) -> Any:
     return out
 
 
-def taken(text: Any) -> Optional[str]:
-    """A text that the library gave away; None for NULL."""
+def owned_text(text: Any) -> Optional[str]:
+    """The text that the library allocated for the caller, freed here; None for NULL."""
     if not text:
         return None
     try:

@@ -24,17 +24,18 @@ class Bar:
     def __init__(self, what: str, after_s: float = AFTER_S) -> None:
         self.what, self.begin, self.next, self.shown = what, time.monotonic(), time.monotonic() + after_s, False
 
-    def __call__(self, share: float) -> None:
+    def __call__(self, fraction: float) -> None:
         now = time.monotonic()
         if now >= self.next:
             self.next = now + 0.1
-            left = f", {(now - self.begin) * (1 / share - 1):.0f} s left" if share > 0 else ""
-            self.show(share, left)
+            left = f", {(now - self.begin) * (1 / fraction - 1):.0f} s left" if fraction > 0 else ""
+            self.show(fraction, left)
             self.shown = True
 
-    def show(self, share: float, left: str) -> None:
-        bar = "#" * int(WIDTH * share)
-        print(f"\r{self.what} [{bar:<{WIDTH}}] {100 * share:3.0f} %{left}\033[K", end="", file=sys.stderr, flush=True)
+    def show(self, fraction: float, left: str) -> None:
+        bar = "#" * int(WIDTH * fraction)
+        text = f"\r{self.what} [{bar:<{WIDTH}}] {100 * fraction:3.0f} %{left}\033[K"
+        print(text, end="", file=sys.stderr, flush=True)
 
     def end(self) -> None:
         if self.shown:
@@ -46,10 +47,11 @@ class NotebookBar(Bar):
 
     display: Any = None
 
-    def show(self, share: float, left: str) -> None:
+    def show(self, fraction: float, left: str) -> None:
         from IPython.display import HTML, display
 
-        text = HTML(f"{html.escape(self.what)} <progress value='{share:.3f}'></progress> {100 * share:.0f} %{left}")
+        bar = f"<progress value='{fraction:.3f}'></progress>"
+        text = HTML(f"{html.escape(self.what)} {bar} {100 * fraction:.0f} %{left}")
         if self.display is None:
             self.display = display(text, display_id=True)
         else:
@@ -63,7 +65,7 @@ class NotebookBar(Bar):
 
 
 def bar_of(progress: Progress, what: str) -> Optional[Callable[..., object]]:
-    """None: a bar if someone sees it; True, False: always, never; a function: it gets the share from 0 to 1."""
+    """None: a bar if someone sees it; True, False: always, never; a function: it receives the fraction done, 0 to 1."""
     if callable(progress):
         return progress
     show = _is_notebook() or sys.stderr.isatty() if progress is None else progress
@@ -81,7 +83,7 @@ def watched(progress: Progress, what: str) -> Iterator[Visit]:
     """A bar for a call with on_progress and the context of the Visit. What its function raised is raised again, Ctrl-C
     too; Cancelled if it returned False."""
     bar = bar_of(progress, what)
-    visit = Visit(bar or (lambda share: True))
+    visit = Visit(bar or (lambda fraction: True))
     try:
         yield visit
     except Cancelled:

@@ -397,10 +397,10 @@ class Tracer:
         """The rays of the scene's beams, by beam, wavelength and number."""
         found: List[BeamRay] = []
 
-        def take(ray: Any, tree: Any) -> None:
+        def add(ray: Any, tree: Any) -> None:
             found.append(BeamRay(ray, Tree(ffi.gc(tree, lib.cuvette_tree_destroy))))
 
-        visited(lib.cuvette_query_each_beam_ray, on_beam_ray, take, self.query(**short)._query)
+        visited(lib.cuvette_query_each_beam_ray, on_beam_ray, add, self.query(**short)._query)
         return found
 
 

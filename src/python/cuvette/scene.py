@@ -97,10 +97,10 @@ class Scene(Tracer):
         name, text = encoded(path), read_text(lib.cuvette_scene_get, self._scene, encoded(path))
         if text in ("on", "off"):
             return text == "on"
-        whole, real, count = ffi.new("int64_t *"), ffi.new("double *"), ffi.new("size_t *")
+        integer, real, count = ffi.new("int64_t *"), ffi.new("double *"), ffi.new("size_t *")
         several = ffi.new("double[64]")
-        if text != "auto" and lib.cuvette_scene_get_int(self._scene, name, whole, NULL) == lib.CUVETTE_OK:
-            return int(whole[0])
+        if text != "auto" and lib.cuvette_scene_get_int(self._scene, name, integer, NULL) == lib.CUVETTE_OK:
+            return int(integer[0])
         if lib.cuvette_scene_get_double(self._scene, name, real, NULL) == lib.CUVETTE_OK:
             return float(real[0])
         if lib.cuvette_scene_get_vector(self._scene, name, several, 64, count, NULL) == lib.CUVETTE_OK:
@@ -132,10 +132,10 @@ class Scene(Tracer):
         found = Parameters()
         fields = list(Parameter.__dataclass_fields__)
 
-        def take(one: Any) -> None:
+        def add(one: Any) -> None:
             found.append(Parameter(*(text_of(getattr(one, name)) for name in fields)))
 
-        visited(lib.cuvette_scene_each_parameter, on_parameter, take, self._scene)
+        visited(lib.cuvette_scene_each_parameter, on_parameter, add, self._scene)
         return found
 
     @property
@@ -282,7 +282,7 @@ class Scene(Tracer):
     def textures(self) -> Tuple[str, ...]:
         return self._names(lib.CUVETTE_TEXTURE)
 
-    # --- the whole scene
+    # --- the scene
 
     @described("cuvette_scene_clone")
     def copy(self) -> "Scene":
@@ -351,13 +351,13 @@ class Scene(Tracer):
         """Traced quantities and textbook formulas; a notebook shows a table, `.table()` is a pandas DataFrame."""
         found = Metrics()
 
-        def take(one: Any) -> None:
+        def add(one: Any) -> None:
             numbers = (one.measured, one.theory, one.error, one.tolerance)
             found.append(
                 Metric(text_of(one.name), text_of(one.verdict), *numbers, text_of(one.unit), text_of(one.meaning))
             )
 
-        visited(lib.cuvette_scene_each_metric, on_metric, take, self.load()._scene)
+        visited(lib.cuvette_scene_each_metric, on_metric, add, self.load()._scene)
         return found
 
     @property
@@ -368,10 +368,10 @@ class Scene(Tracer):
     def _curves(self) -> Dict[str, Tuple[str, str]]:
         found = {}
 
-        def take(one: Any) -> None:
+        def add(one: Any) -> None:
             found[text_of(one.name)] = text_of(one.x), text_of(one.y)
 
-        visited(lib.cuvette_scene_each_curve, on_curve, take, self._scene)
+        visited(lib.cuvette_scene_each_curve, on_curve, add, self._scene)
         return found
 
     @described("cuvette_scene_curve")
@@ -401,25 +401,25 @@ class Scene(Tracer):
         """Renders the scene. Parameters as for `set` count for this render only: `scene.render(depth=8)`.
 
         progress: None, a bar on a terminal or in a notebook if it takes longer than half a second; True or False; or a
-        function that gets the share from 0 to 1 and may return False to stop. Ctrl-C stops the render and raises
-        KeyboardInterrupt. Other Python threads run meanwhile.
+        function that receives the fraction done, 0 to 1, and may return False to stop. Ctrl-C stops the render and
+        raises KeyboardInterrupt. Other Python threads run meanwhile.
 
         layers: keep the layers of render.integrator aov, which is then set (Image.layer). maps: keep the number of
-        rays, the time and the share of cut light of each pixel (Image.map)."""
+        rays, the time and the fraction of cut light of each pixel (Image.map)."""
         if layers:
             short = {"integrator": "aov", **short}
         scene = self.copy().set(values, **short) if values or short else self
         bar = bars.bar_of(progress, "render")
-        visit = Visit(bar or (lambda share: True))
+        visit = Visit(bar or (lambda fraction: True))
         request = sized("request")
         request.progress, request.context = on_progress, visit.context
         request.layers, request.pixel_rays, request.pixel_time, request.pixel_cut = layers, maps, maps, maps
-        engine, out, why = engines.take(), ffi.new("cuvette_frame **"), ffi.new("cuvette_diagnostic *")
+        engine, out, why = engines.acquire(), ffi.new("cuvette_frame **"), ffi.new("cuvette_diagnostic *")
         try:
             status = lib.cuvette_engine_render(engine, scene._scene, request, out, why)
         finally:
             bars.end(bar)
-        engines.give(engine)
+        engines.release(engine)
         frame = ffi.gc(out[0], lib.cuvette_frame_destroy) if out[0] else None
         visit.finish()
         if status == lib.CUVETTE_CANCELLED:

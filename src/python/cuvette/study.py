@@ -27,8 +27,8 @@ from ._library import (
     on_news,
     on_run,
     on_value,
+    owned_text,
     sized,
-    taken,
     text_of,
     visited,
 )
@@ -58,10 +58,10 @@ def columns() -> Dict[str, Tuple[str, str]]:
     """Unit and meaning of every column of rows.csv; a name with <axis> or <solid> stands for one column for each."""
     found: Dict[str, Tuple[str, str]] = {}
 
-    def take(one: Any) -> None:
+    def add(one: Any) -> None:
         found[text_of(one.name)] = text_of(one.unit), text_of(one.meaning)
 
-    visited(lib.cuvette_each_column, on_column, take)
+    visited(lib.cuvette_each_column, on_column, add)
     return found
 
 
@@ -94,7 +94,7 @@ def _rows(
 ) -> "pandas.DataFrame":
     out, fault = ffi.new("char **"), ffi.new("char **")
     call(lib.cuvette_study_rows, handle, encoded(results), _or_null(environment), out, fault)
-    table, found = _table(taken(out[0])), taken(fault[0])
+    table, found = _table(owned_text(out[0])), owned_text(fault[0])
     if found:
         warnings.warn(f"{folder}: {found}; see cuvette study verify", stacklevel=3)
     reason = table.pop("left_out")
@@ -177,10 +177,10 @@ class Study:
     def values(self, cell: int) -> Dict[str, str]:
         found: Dict[str, str] = {}
 
-        def take(path: Any, value: Any) -> None:
+        def add(path: Any, value: Any) -> None:
             found[text_of(path)] = text_of(value)
 
-        visited(lib.cuvette_study_each_value, on_value, take, self._study, cell)
+        visited(lib.cuvette_study_each_value, on_value, add, self._study, cell)
         return found
 
     def state(self, results: Path = "results") -> Dict[str, Any]:
@@ -214,7 +214,7 @@ class Study:
         return self
 
     def _run(self, results: Path, any_environment: bool, wait_quiet_s: float, process: int, bar: Any) -> None:
-        visit = Visit(lambda share, left_s: bar(share) if bar else True)
+        visit = Visit(lambda fraction, left_s: bar(fraction) if bar else True)
         visit.also = lambda text: warnings.warn(
             f"{self.name}: {text_of(text)}".replace("--wait-quiet", "wait_quiet_s=60"), stacklevel=8
         )
@@ -266,7 +266,7 @@ class Study:
         """One line per cell and environment, as a DataFrame."""
         out, fault = ffi.new("char **"), ffi.new("char **")
         call(lib.cuvette_study_summary, self._study, encoded(results), _or_null(environment), out, fault)
-        text = taken(out[0])
+        text = owned_text(out[0])
         self._warn(fault, results)
         return _table(text, "\t")
 
@@ -286,7 +286,7 @@ class Study:
             out,
             fault,
         )
-        found = json.loads(taken(out[0]) or "{}")
+        found = json.loads(owned_text(out[0]) or "{}")
         self._warn(fault, results)
         lines = []
         for line in [*found["cells"], found["all"]]:
@@ -300,7 +300,7 @@ class Study:
         return table
 
     def _warn(self, fault: Any, results: Path) -> None:
-        text = taken(fault[0])
+        text = owned_text(fault[0])
         if text:
             warnings.warn(f"{self._folder(results)}: {text}; see cuvette study verify", stacklevel=3)
 

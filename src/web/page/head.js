@@ -2,11 +2,11 @@
  * exports: createHead(root, lab); sets lab.undo(redo) and lab.name() (the scene's file name without folder and
  * extension) */
 
-import { ask, button, copy, element, icon, write } from './ui.js';
-import { displayButton, themeButton } from './display.js';
+import { saveVideo } from './edit/video_dialog.js';
 import { showHelp } from './keys.js';
-import { saveFile } from './save_file.js';
-import { saveVideo } from './video_dialog.js';
+import { displayButton, themeButton } from './shared/display.js';
+import { saveFile } from './shared/save_file.js';
+import { ask, button, copy, element, icon, write } from './shared/ui.js';
 
 export function createHead(root, lab) {
   lab.undo = (redo = false) => lab.change(redo ? '/api/redo' : '/api/undo', {}).catch(lab.fail);

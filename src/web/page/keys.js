@@ -1,6 +1,6 @@
 /* The keyboard shortcuts of the whole page and the dialog that lists them. exports: createKeys(lab), showHelp() */
 
-import { dialog, element, table } from './ui.js';
+import { dialog, element, table } from './shared/ui.js';
 
 const list = [
   ['Ctrl Z', 'undo; Ctrl Shift Z or Ctrl Y: redo'],

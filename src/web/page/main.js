@@ -1,33 +1,31 @@
 /* Assembles the laboratory: one object lab (store.js), the image (view.js), the panels, header and status line.
  * Exports nothing; the browser's console can use lab. */
 
-import { createLab } from './store.js';
-import { createView } from './view.js';
+import { createLab } from './shared/store.js';
+import { createView } from './view/view.js';
 import { createPanels } from './panels.js';
 import { createHead } from './head.js';
-import { createStatus } from './status.js';
-import { createNotes } from './notes.js';
-import { createBanner } from './banner.js';
+import { createBanner, createStatus } from './status.js';
+import { createNotes } from './shared/notes.js';
 import { createRescue } from './rescue.js';
-import { createDisplay } from './display.js';
+import { createDisplay } from './shared/display.js';
 import { createKeys } from './keys.js';
-import { orbitTool } from './tool_orbit.js';
-import { lightTool } from './tool_light.js';
-import { cameraBox } from './camera_box.js';
-import { acceptDrops } from './shared_file.js';
-import { namesScene, openLink } from './shared_link.js';
+import { orbitTool } from './view/camera_moves.js';
+import { lightTool } from './view/point_handles.js';
+import { cameraBox } from './view/camera_box.js';
+import { acceptDrops, namesScene, openLink } from './shared/share.js';
 
-/* A panel that cannot be loaded does not affect the others. Written out for bundlers. */
+/* A panel that cannot be loaded does not affect the others. Bundlers follow only imports that are written out. */
 const modules = [
-  () => import('./panel_lessons.js'),
-  () => import('./panel_params.js'),
-  () => import('./panel_edit.js'),
-  () => import('./panel_pixel.js'),
-  () => import('./panel_bench.js'),
-  () => import('./panel_compare.js'),
-  () => import('./panel_slime.js'),
-  () => import('./panel_studies.js'),
-  () => import('./panel_machine.js'),
+  () => import('./lessons/panel_lessons.js'),
+  () => import('./edit/panel_params.js'),
+  () => import('./edit/panel_edit.js'),
+  () => import('./bench/panel_pixel.js'),
+  () => import('./bench/panel_bench.js'),
+  () => import('./view/panel_compare.js'),
+  () => import('./edit/panel_slime.js'),
+  () => import('./studies/panel_studies.js'),
+  () => import('./studies/panel_machine.js'),
 ];
 
 const at = (id) => document.getElementById(id);

@@ -1,17 +1,19 @@
 /* The panels as tabs next to the image, and the splitter between them. A panel is created when it is first shown.
  * exports: createPanels(side, splitter, workspace, panels, lab) -> {use(id), chosen(), reveal()}
- * reveal(): shows the image if a wide panel covers it
- * panel: {id, title, wide?, css?, start?(lab), create(root, lab), shown?(), hidden?()}; start is called once when
- * the page opens, for tools of the image; a wide panel takes the whole width, without the image; css is the name of
- * its own style sheet (panel_ID.css), which uses the variables of lab.css for all colours and starts each rule with
- * .panel-ID; a site has all style sheets in its page, as #styles (src/web/site). The panel's title is its h2: headings
- * within start at h3. */
+ *   reveal(): shows the image if a wide panel covers it
+ *
+ * A panel is {id, title, wide?, css?, start?(lab), create(root, lab), shown?(), hidden?()}:
+ *   start    called once when the page opens, for tools of the image
+ *   wide     it covers the image too
+ *   css      the path of its style sheet (FOLDER/panel_ID.css), which uses the variables of lab.css for all colours and
+ *            begins each rule with .panel-ID; a site has all style sheets in its page, as #styles (src/web/site)
+ * The panel's title is its h2: headings in it begin at h3. */
 
-import { element, memory, notice, replace } from './ui.js';
+import { element, memory, notice, replace } from './shared/ui.js';
 
 const NARROWEST = 300;
 const SHORTEST = 120;
-const IMAGE_WIDTH = 360; /* what is left to the image, with the splitter */
+const IMAGE_WIDTH = 360; /* what remains for the image and the splitter */
 const IMAGE_HEIGHT = 240;
 const STEP = 24;
 const FIRST = 'params';
@@ -168,8 +170,8 @@ function createSplitter(splitter, workspace) {
   });
   splitter.addEventListener('dblclick', () => set(null));
   splitter.addEventListener('keydown', (event) => {
-    const way = { [sheet.matches ? 'ArrowUp' : 'ArrowLeft']: 1, [sheet.matches ? 'ArrowDown' : 'ArrowRight']: -1 };
-    if (way[event.key]) set(here() + way[event.key] * STEP);
+    const signs = { [sheet.matches ? 'ArrowUp' : 'ArrowLeft']: 1, [sheet.matches ? 'ArrowDown' : 'ArrowRight']: -1 };
+    if (signs[event.key]) set(here() + signs[event.key] * STEP);
     else if (event.key === 'Home') set(null);
     else return;
     event.preventDefault();

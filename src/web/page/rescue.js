@@ -2,17 +2,66 @@
  * that changes cannot be kept.
  * exports: createRescue(root, lab) */
 
-import { ask, button, element, icon, replace } from './ui.js';
-import { keepUnsaved } from './unsaved_scene.js';
+import { ask, button, element, icon, replace } from './shared/ui.js';
+
+/* --- the unsaved scene of a laboratory in the browser, which ends with its page ---
+ * The scene is kept as the code of a link, and the next page of the tab offers it. A scene that reads files has no such
+ * code and is not kept. */
+
+const KEY = 'cuvette.unsaved';
+const REST_MS = 1000; /* kept when the scene rests */
+
+/* Storage may be forbidden or full: then nothing is kept. */
+function stored(act) {
+  try {
+    return act(sessionStorage);
+  } catch {
+    return null;
+  }
+}
+
+function keepUnsaved(lab) {
+  let found = null; /* the scene of the page before */
+  let timer = 0;
+  if (lab.engine.kind === 'browser') {
+    found = stored((storage) => JSON.parse(storage.getItem(KEY)));
+    lab.on('state', () => {
+      clearTimeout(timer);
+      timer = setTimeout(keep, REST_MS);
+    });
+  }
+  return {
+    offer: () => found && { id: KEY, ...found },
+    async open() {
+      await lab.change('/api/open', { link: `#scene=${found.code}` });
+      lab.panels.reveal();
+      found = null;
+    },
+    drop() {
+      found = null;
+      stored((storage) => storage.removeItem(KEY));
+    },
+  };
+
+  async function keep() {
+    const { saved, unsaved, undo, title, file } = lab.state;
+    if (saved && undo) stored((storage) => storage.removeItem(KEY));
+    if (!unsaved) return;
+    const { code } = await lab.get('/api/link').catch(() => ({}));
+    if (code) stored((storage) => storage.setItem(KEY, JSON.stringify({ code, time: Date.now(), title, file })));
+  }
+}
+
+/* --- the bar --- */
 
 const when = (time) => new Date(time).toLocaleString(undefined, { dateStyle: 'medium', timeStyle: 'short' });
 
 export function createRescue(root, lab) {
-  let shown = ''; /* what the bar tells: it is not drawn again at every change */
+  let shown = ''; /* key of what the bar shows: the same is not drawn again */
   const ours = keepUnsaved(lab);
-  let told = false; /* unkept changes are reported once */
+  let reported = false; /* one report of unkept changes is enough */
 
-  function tell(key, ...parts) {
+  function fill(key, ...parts) {
     if (shown === key) return;
     const focused = root.contains(document.activeElement);
     shown = key;
@@ -43,7 +92,7 @@ export function createRescue(root, lab) {
 
   function offer(scene, more) {
     const name = [scene.title || 'Untitled scene', scene.file].filter(Boolean).join(', ');
-    tell(
+    fill(
       `${scene.id} ${more}`,
       icon('info'),
       element(
@@ -62,7 +111,7 @@ export function createRescue(root, lab) {
   }
 
   function report({ file, error, remedy }) {
-    tell(
+    fill(
       'unkept',
       icon('warning'),
       element(
@@ -71,20 +120,20 @@ export function createRescue(root, lab) {
         element('strong', { text: 'Unsaved changes would be lost in a crash: ' }),
         [[file, error].filter(Boolean).join(': '), remedy].filter(Boolean).join('; '),
       ),
-      button('Close', () => tell(''), { small: true }),
+      button('Close', () => fill(''), { small: true }),
     );
-    told = true;
+    reported = true;
   }
 
   lab.on('restarted', () => {
-    told = false;
+    reported = false;
   });
   lab.on('state', show);
 
   function show({ rescued = [], unkept }) {
     const offers = [...rescued, ours.offer()].filter(Boolean);
     if (offers.length) offer(offers[0], offers.length - 1);
-    else if (unkept && !told) report(unkept);
-    else if (shown !== 'unkept' || !unkept) tell('');
+    else if (unkept && !reported) report(unkept);
+    else if (shown !== 'unkept' || !unkept) fill('');
   }
 }

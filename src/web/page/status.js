@@ -1,13 +1,60 @@
-/* The status line: properties and cost of the displayed image, the last message; and the live region for screen
- * readers.
- * exports: createStatus(root, live, lab); sets lab.say(words, remedy, {label, act} of a button), which returns
- * a function that withdraws the message, and lab.fail */
+/* The status line: properties and cost of the displayed image, the last message, and the live region for screen
+ * readers; and the banner that reports a lost server, or an engine in the browser that stopped.
+ * exports:
+ *   createStatus(root, live, lab)       sets lab.say(words, remedy, {label, act} of a button), which returns a function
+ *                                       that withdraws the message, and lab.fail(error)
+ *   createBanner(banner, parts, lab)    the parts become inert while the engine is lost */
 
-import { located } from './api.js';
-import { button, copy, count, digits, element, icon, replace, seconds } from './ui.js';
+import { located } from './shared/api.js';
+import { button, copy, count, digits, element, icon, replace, seconds } from './shared/ui.js';
+
+/* --- the banner --- */
+
+const sentence = (text) => `${text[0].toUpperCase()}${text.slice(1)}.`;
+
+const words = {
+  lost: ({ kind, lost }) =>
+    kind === 'server'
+      ? ['The server does not answer.', 'Is cuvette lab still running? The page reconnects by itself.']
+      : [lost().error, lost().remedy].map(sentence),
+  refused: () => [
+    "The server does not accept this page's token.",
+    'The server was probably restarted: open the new address in its terminal.',
+  ],
+};
+
+export function createBanner(banner, parts, lab) {
+  let held = null; /* the element that had the focus and gets it back */
+  const show = (how) => {
+    const [what, remedy] = words[how]?.(lab.engine) || [];
+    banner.hidden = !what;
+    document.body.classList.toggle('lost', Boolean(what));
+    if (what && banner.dataset.how !== how)
+      replace(banner, icon('warning'), element('strong', { text: what }), element('span', { text: remedy }));
+    banner.dataset.how = what ? how : '';
+    const gone = Boolean(what);
+    if (gone && !parts[0].inert) held = document.activeElement;
+    for (const part of parts) {
+      part.inert = Boolean(what);
+      part.setAttribute('aria-busy', String(Boolean(what)));
+    }
+    if (gone) return;
+    banner.replaceChildren();
+    if (document.activeElement === document.body) held?.focus?.({ preventScroll: true });
+    held = null;
+  };
+  let before = lab.connected;
+  lab.on('connection', (how) => {
+    show(how);
+    if (how === 'open' && before !== 'opening') lab.say('Reconnected to the server.');
+    before = how;
+  });
+}
+
+/* --- the status line --- */
 
 const LINGER_MS = 6000;
-const CUT_SHOWN = 0.01; /* share of the light of a mean pixel */
+const CUT_SHOWN = 0.01; /* fraction of the light of a mean pixel */
 const PACE_MS = 200; /* numbers that change faster cannot be read, and cost the images time */
 
 export function createStatus(root, live, lab) {

@@ -1,9 +1,9 @@
 /* Starts the engine of the site's page before the page's own modules are there; engine_boot.js describes what
  * globalThis.cuvetteEngine tells. The laboratory in one file has the parts in elements of the page, each the base64 of
  * its gzip: a page that is opened as a file can load nothing else.
- * globalThis.cuvetteDocument() is a promise of the text of that file, for pages that hold it (live_page.js). */
+ * globalThis.cuvetteDocument() is a promise of the text of that file, for pages that hold it (save_file.js). */
 
-import { startWorker } from '../page/engine_boot.js';
+import { startWorker } from '../page/shared/engine_boot.js';
 
 const FIRST_SCENE = 'scenes/rod.yaml';
 const ONE_FILE = '../laboratory.html';

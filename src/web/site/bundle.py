@@ -52,8 +52,8 @@ def minified(path):
 def style():
     """All style sheets, in the order in which the page loads them: its own, then those of the panels."""
     own = re.findall(r'<link rel="stylesheet" href="([^"]+)"', (PAGE / 'index.html').read_text(encoding='utf-8'))
-    panels = sorted(path.name for path in PAGE.glob('panel_*.css'))
-    sheets = '\n'.join((PAGE / name).read_text(encoding='utf-8') for name in own + panels)
+    panels = sorted(PAGE.glob('*/panel_*.css'), key=lambda path: path.name)
+    sheets = '\n'.join(path.read_text(encoding='utf-8') for path in [PAGE / name for name in own] + panels)
     return esbuild('--loader=css', text=sheets)
 
 

@@ -1,0 +1,124 @@
+/* Draws the rays of a pixel over the image.
+ *
+ * exports:
+ *   createRayOverlay(lab) -> {show(tree or null, pixel), draw(), mark(ray or null), nearest(point) -> ray or null,
+ *                             count, left}
+ *     draw: after a move of the camera; count: rays that are drawn; left: rays omitted for their low weight or their
+ *     number
+ *   distance(p, a, b)                  of a point from a line in the image
+ *   drawn(tree) -> rays                the rays that drawings show */
+
+import { svg } from '../shared/ui.js';
+import { lineClass, seenLine } from './ray_tree.js';
+
+const LIGHTEST = 0.002; /* weight below which rays are not drawn */
+const LINES_MAX = 1500;
+const NEAR_PX = 8; /* distance at which the pointer marks a ray */
+
+export function drawn(tree) {
+  const heavy = tree.rays.filter((ray) => ray.weight >= LIGHTEST);
+  return heavy.length <= LINES_MAX ? heavy : heavy.sort((a, b) => b.weight - a.weight).slice(0, LINES_MAX);
+}
+
+export const strokeWidth = (ray) => (1.4 + 1.4 * Math.sqrt(ray.weight)).toFixed(2);
+
+export function createRayOverlay(lab) {
+  const layer = lab.view.layer('pixel');
+  let tree = null;
+  let pixel = null;
+  let pieces = []; /* {ray, a: [x, y], b: [x, y], node} */
+  let marked = null;
+
+  const overlay = {
+    count: 0,
+    left: 0,
+    draw,
+    mark,
+    nearest,
+    show(next, at) {
+      tree = next;
+      pixel = at;
+      marked = null;
+      draw();
+    },
+  };
+  return overlay;
+
+  function draw() {
+    const rays = tree ? drawn(tree) : [];
+    pieces = rays.map(piece).filter(Boolean);
+    for (const one of pieces) {
+      one.node = svg('line', {
+        class: lineClass(one.ray),
+        x1: one.a[0],
+        y1: one.a[1],
+        x2: one.b[0],
+        y2: one.b[1],
+        'stroke-width': strokeWidth(one.ray),
+      });
+    }
+    overlay.count = rays.length;
+    overlay.left = tree ? tree.rays.length - rays.length : 0;
+    layer.replaceChildren(...pieces.map(halo), ...pieces.map((one) => one.node), ...(pixel ? [cross()] : []));
+    const again = marked;
+    marked = null;
+    mark(again);
+  }
+
+  /* Visible on any image. */
+  function halo({ ray, a, b }) {
+    return svg('line', {
+      class: 'ray-halo',
+      x1: a[0],
+      y1: a[1],
+      x2: b[0],
+      y2: b[1],
+      'stroke-width': Number(strokeWidth(ray)) + 2,
+    });
+  }
+
+  /* The pixel itself with arms of 10 CSS pixels, at any zoom. */
+  function cross() {
+    const { x, y } = pixel;
+    const arm = 10 / lab.view.scale;
+    const d =
+      `M${x} ${y}h1v1h-1zM${x + 0.5} ${y - arm}V${y}M${x + 0.5} ${y + 1}v${arm}M${x - arm} ` +
+      `${y + 0.5}H${x}M${x + 1} ${y + 0.5}h${arm}`;
+    return svg(
+      'g',
+      {},
+      svg('path', { class: 'ray-halo', d, 'stroke-width': 4 }),
+      svg('path', { class: 'ray-pixel', d }),
+    );
+  }
+
+  function piece(ray) {
+    const { view, state } = lab;
+    const ends = state?.camera && view.width ? seenLine(ray.line, state.camera, view, view.frame()) : null;
+    return ends && { ray, a: ends[0], b: ends[1] };
+  }
+
+  function mark(ray) {
+    if (ray === marked) return;
+    for (const one of pieces)
+      if (one.ray === marked || one.ray === ray) one.node.classList.toggle('marked', one.ray === ray);
+    marked = ray;
+  }
+
+  function nearest(point) {
+    let best = null;
+    let least = NEAR_PX / lab.view.scale;
+    for (const { ray, a, b } of pieces) {
+      const away = distance([point.x, point.y], a, b);
+      if (away < least && ray.node.kind !== 'camera') [best, least] = [ray, away];
+    }
+    return best;
+  }
+}
+
+export function distance(p, a, b) {
+  const [dx, dy] = [b[0] - a[0], b[1] - a[1]];
+  const size = dx * dx + dy * dy;
+  const t = size ? Math.min(1, Math.max(0, ((p[0] - a[0]) * dx + (p[1] - a[1]) * dy) / size)) : 0;
+  return Math.hypot(p[0] - a[0] - t * dx, p[1] - a[1] - t * dy);
+}

@@ -1,0 +1,235 @@
+/* A pixel's ray tree from /api/trace as a list, and the texts for each ray. Pure functions without page and server.
+ *
+ * A line of a ray has `from` and `along`, [x, y, z], and `end`: its points are from + s along for 0 <= s <= end. The
+ * program decides where rays end, `far_end` of the API (render/inspect/ray_line.h): a ray that leaves the scene has no
+ * end (Infinity), and its line runs to the edge of the frame.
+ *
+ * exports:
+ *   buildTree(answer) -> {answer, rays, roots, reach}
+ *     rays: in the order of the table, each {index, node, parent, level, children, weight, line}; weight: 0..1 of the
+ *     camera ray's; line: a short stub for a ray that was cut off; reach: extent of the hits
+ *   isCut(ray)                           whether it was cut off by depth or weight
+ *   lineClass(ray)                       the class of its line in a drawing
+ *   kinds                                [class, description] of each, for legends
+ *   columns, describe(ray)               [key, head, title] of the table's columns, and the texts of a row
+ *   lineTo(from, farEnd), lineBetween(from, to) -> line
+ *   pointAt(line, s) -> [x, y, z]
+ *   seenLine(line, camera, {width, height}, frame) -> [[x, y, s], [x, y, s]] or null
+ *     the part that the camera of the state sees in the frame, in pixels of an image of that size
+ *   flatLine(line, {u, v}, frame) -> [[u, v], [u, v]] or null
+ *     the part whose projection onto the axes is in the frame
+ *   frame: {left, top, right, bottom}; for flatLine v increases from bottom to top */
+
+import { digits } from '../shared/ui.js';
+import { add, dot, length, mean, minus, times } from '../shared/vectors.js';
+
+const NEAR = 1e-6; /* the constants of render/inspect/ray_line.c */
+const NEAR_OF_EYE = 1e-9;
+const ALONG_THE_VIEW = 1e-12;
+
+export const lineBetween = (from, to) => ({ from, along: minus(to, from), end: 1 });
+
+export function lineTo(from, [x, y, z, w]) {
+  return w ? lineBetween(from, [x, y, z]) : { from, along: [x, y, z], end: Infinity };
+}
+
+export const pointAt = ({ from, along }, s) => add(from, times(along, s));
+
+/* Where each start + s slope >= 0, from 0 to end: [first, last], or null (Liang and Barsky). */
+function within(end, conditions) {
+  let [first, last] = [0, end];
+  for (const [start, slope] of conditions) {
+    if (slope === 0 && start < 0) return null;
+    if (slope > 0) first = Math.max(first, -start / slope);
+    if (slope < 0) last = Math.min(last, -start / slope);
+  }
+  return first < last ? [first, last] : null;
+}
+
+/* Of a parallel view: a line along it is a point. */
+const flattened = ([x, y, z]) => (Math.hypot(x, y) <= ALONG_THE_VIEW * Math.abs(z) ? [0, 0, z] : [x, y, z]);
+
+export function seenLine(line, camera, { width, height }, frame) {
+  const { eye, forward, right, up, half_width: halfWidth, half_height: halfHeight, parallel } = camera;
+  const offset = minus(line.from, eye);
+  const inView = (v) => [dot(v, right), dot(v, up), dot(v, forward)];
+  const inImage = ([x, y, z]) => [x / halfWidth, y / halfHeight, z];
+  const from = inImage(inView(offset));
+  const along = inImage(parallel ? flattened(inView(line.along)) : inView(line.along));
+  const near = parallel ? 0 : NEAR * length(offset) + NEAR_OF_EYE * length(eye);
+  const [spread, widening] = parallel ? [1, 0] : [from[2], along[2]];
+  const edge = (axis, side, sign) => [sign * (from[axis] - side * spread), sign * (along[axis] - side * widening)];
+  const found = within(line.end, [
+    [from[2] - near, along[2]],
+    edge(0, (2 * frame.left) / width - 1, 1),
+    edge(0, (2 * frame.right) / width - 1, -1),
+    edge(1, 1 - (2 * frame.bottom) / height, 1),
+    edge(1, 1 - (2 * frame.top) / height, -1),
+  ]);
+  /* In perspective the direction decides at the vanishing point, and at the eye. */
+  const image = (s) => {
+    const point = add(from, times(along, Number.isFinite(s) ? s : 0));
+    const [x, y, z] = !parallel && (!Number.isFinite(s) || point[2] <= 0) ? along : point;
+    const size = parallel ? 1 : z;
+    return [((1 + x / size) / 2) * width, ((1 - y / size) / 2) * height, s];
+  };
+  return found && found.map(image);
+}
+
+export function flatLine(line, { u, v }, { left, top, right, bottom }) {
+  const normal = [u[1] * v[2] - u[2] * v[1], u[2] * v[0] - u[0] * v[2], u[0] * v[1] - u[1] * v[0]];
+  const [x, y] = [dot(line.from, u), dot(line.from, v)];
+  const along = flattened([dot(line.along, u), dot(line.along, v), dot(line.along, normal)]);
+  const found = within(line.end, [
+    [x - left, along[0]],
+    [right - x, -along[0]],
+    [y - bottom, along[1]],
+    [top - y, -along[1]],
+  ]);
+  return found && found.map((s) => (Number.isFinite(s) ? [x + s * along[0], y + s * along[1]] : [x, y]));
+}
+
+const CUT = 0.15; /* the stub of a ray that was cut off, by the extent of the hits */
+
+export const kinds = [
+  ['ray-camera', 'camera ray'],
+  ['ray-reflect', 'reflected'],
+  ['ray-refract', 'refracted'],
+  ['ray-shadow', 'to a light'],
+  ['ray-blocked', 'shadow ray, blocked'],
+  ['ray-cut', 'cut off'],
+];
+
+const kindWords = { camera: 'camera ray', reflect: 'reflected', refract: 'refracted', shadow: 'to a light' };
+
+const endWords = {
+  hit: 'hits a surface',
+  sky: 'background',
+  cut_depth: 'cut off: depth limit',
+  cut_weight: 'cut off: weight too small',
+  lit: 'unoccluded',
+  blocked: 'blocked',
+};
+
+export const isCut = ({ node }) => node.end === 'cut_depth' || node.end === 'cut_weight';
+
+export function lineClass(ray) {
+  if (isCut(ray)) return 'ray ray-cut';
+  return ray.node.end === 'blocked' ? 'ray ray-blocked' : `ray ray-${ray.node.kind}`;
+}
+
+export function buildTree(answer) {
+  const first = answer.roots || [answer.root];
+  const all = mean(first[0].throughput) || 1;
+  const rays = [];
+  const visit = (node, parent, level) => {
+    const ray = { index: rays.length, node, parent, level, children: [] };
+    /* A shadow ray's throughput is a radiance, so it gets the weight of its parent ray. */
+    ray.weight = node.kind === 'shadow' && parent ? parent.weight : Math.min(1, mean(node.throughput) / all);
+    rays.push(ray);
+    ray.children = node.children.map((child) => visit(child, ray, level + 1));
+    return ray;
+  };
+  const roots = first.map((node) => visit(node, null, 1));
+  const reach = extent(rays);
+  for (const ray of rays) {
+    const { origin: from, direction, far_end: farEnd } = ray.node;
+    ray.line = isCut(ray) ? { from, along: direction, end: CUT * reach } : lineTo(from, farEnd);
+  }
+  return { answer, rays, roots, reach };
+}
+
+/* The extent of the hits; for a single hit, a part of its distance. */
+function extent(rays) {
+  const hits = rays.filter((ray) => ray.node.hit).map((ray) => ray.node.hit);
+  if (!hits.length) return 1;
+  const sides = [0, 1, 2].map((k) => {
+    let low = Infinity;
+    let high = -Infinity;
+    for (const { point } of hits) {
+      low = Math.min(low, point[k]);
+      high = Math.max(high, point[k]);
+    }
+    return high - low;
+  });
+  return Math.max(length(sides), 0.25 * hits[0].t);
+}
+
+/* --- texts --- */
+
+export const columns = [
+  ['kind', 'Ray', 'origin of the ray'],
+  ['media', 'Media', 'on both sides of the surface, with refractive indices'],
+  ['angles', 'Angles', 'angles of incidence and refraction, from the normal'],
+  ['reflectance', 'R', 'reflectance of unpolarised light'],
+  ['transmitted', 'T', 'transmittance of the surface'],
+  ['polarised', 'R_s, R_p', 'reflectance of each polarisation'],
+  ['surface', 'Hits', 'solid and surface'],
+  ['depth', 'Depth', 'number of reflections and refractions since the camera'],
+  ['path', 'Path', 'length of the ray up to the hit'],
+  [
+    'transmittance',
+    'Transmittance',
+    'share of the light that the medium does not absorb on the path; red, green, blue where they differ',
+  ],
+  ['weight', 'Weight', "share of the ray's light in the pixel"],
+  ['brought', 'Contribution', 'radiance that this ray itself adds to the pixel'],
+  ['end', 'End', 'how the ray ends'],
+];
+
+const percent = (value) => `${digits(100 * value, 3)} %`;
+const degrees = (angle) => `${digits(angle, 4)}°`;
+
+/* One number if the channels are equal, otherwise three. */
+const channels = (c) => (c[0] === c[1] && c[1] === c[2] ? digits(c[0], 3) : c.map((x) => digits(x, 3)).join(' · '));
+
+const medium = ({ medium: name, n }) => (name === digits(n) ? name : `${name} ${digits(n)}`);
+
+function surface(hit) {
+  return hit.surface_of ? `${hit.solid}: ${hit.surface} of ${hit.surface_of}` : `${hit.solid}: ${hit.surface}`;
+}
+
+function angles({ opaque, tir, snell }) {
+  const incidence = degrees(snell.incidence_deg);
+  if (opaque) return incidence;
+  return tir ? `${incidence}, no refraction` : `${incidence} → ${degrees(snell.refraction_deg)}`;
+}
+
+function reflectance(hit) {
+  if (hit.tir) return 'total reflection';
+  if (hit.opaque) return hit.R > 0 ? `${percent(hit.R)}, opaque` : 'opaque';
+  return percent(hit.R);
+}
+
+function ofHit(hit) {
+  return {
+    surface: surface(hit),
+    media: hit.opaque ? `in ${medium(hit.from)}` : `${medium(hit.from)} → ${medium(hit.to)}`,
+    angles: angles(hit),
+    reflectance: reflectance(hit),
+    transmitted: hit.opaque || hit.tir ? '' : percent(hit.T),
+    polarised: hit.opaque || hit.tir ? '' : `${percent(hit.R_s)}, ${percent(hit.R_p)}`,
+    path: `${digits(hit.path_length)} m`,
+    transmittance: channels(hit.transmittance),
+  };
+}
+
+export function describe(ray) {
+  const { node } = ray;
+  return {
+    kind: node.kind === 'shadow' && node.light ? `to ${node.light}` : kindWords[node.kind],
+    depth: String(node.depth),
+    surface: '',
+    media: `in ${medium(node)}`,
+    angles: '',
+    reflectance: '',
+    transmitted: '',
+    polarised: '',
+    path: '',
+    transmittance: '',
+    weight: channels(node.throughput),
+    brought: node.brought.some((x) => x !== 0) ? channels(node.brought) : '',
+    end: endWords[node.end] || node.end,
+    ...(node.hit ? ofHit(node.hit) : {}),
+  };
+}

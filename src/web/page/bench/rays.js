@@ -1,0 +1,62 @@
+/* The rays of the scene's beams, in world space: requested again when the scene changes, not when the camera moves.
+ *
+ * exports: createBenchRays(lab) -> {segments, error, on(f)}
+ *   segments: [{beam, ray: {number, lambda_nm, power, displayed}, tree, one, line, power, css}] in the order of the
+ *   reply; one: a ray of ray_tree.js, and its line; power: at its start */
+
+import { mean } from '../shared/vectors.js';
+import { buildTree } from './ray_tree.js';
+
+export function createBenchRays(lab) {
+  const listeners = new Set();
+  const rays = { segments: [], error: null, on: (listener) => listeners.add(listener) };
+  let traced = '';
+  let asking = false;
+
+  lab.on('scene', follow);
+  lab.on('restarted', () => {
+    traced = '';
+  });
+  if (lab.scene) follow();
+  return rays;
+
+  /* Only the last request counts; a change during it causes another one. */
+  async function follow() {
+    if (asking || !lab.scene) return;
+    const now = dependence();
+    if (now === traced) return;
+    asking = true;
+    traced = now;
+    try {
+      const some = lab.scene.objects.some((object) => object.kind === 'beam');
+      rays.segments = some ? (await lab.get('/api/beams')).beams.flatMap(ofBeam) : [];
+      rays.error = null;
+    } catch (error) {
+      Object.assign(rays, { segments: [], error });
+    }
+    asking = false;
+    for (const listener of listeners) listener();
+    follow();
+  }
+
+  function dependence() {
+    const rows = lab.scene.params.filter(({ path }) => !path.startsWith('camera.'));
+    return JSON.stringify([lab.scene.objects, rows.map(({ path, value }) => [path, value])]);
+  }
+}
+
+function ofBeam({ name, rays }) {
+  return rays.flatMap((ray) => {
+    const tree = buildTree({ root: ray.root });
+    const css = `rgb(${ray.displayed.join(' ')})`;
+    return tree.rays.map((one) => ({
+      beam: name,
+      ray,
+      tree,
+      one,
+      line: one.line,
+      power: ray.power * mean(one.node.throughput),
+      css,
+    }));
+  });
+}

@@ -1,0 +1,311 @@
+/* The panel Parameters, generated from the rows of the parameter table: a short list of main parameters, then all
+ * parameters by object, and a search.
+ * exports: panel */
+
+import { button, checkbox, element, empty, group, icon, memory, replace } from '../shared/ui.js';
+import { findParams } from './param_picker.js';
+import { createRow, hasLaw, valueText } from './param_row.js';
+
+const FOUND_MAX = 80;
+const LATER_MS = 300; /* the list is not rebuilt while one of its controls is dragged */
+const MANY = 36; /* with more main parameters, only the first groups and Rendering start unfolded */
+const LAST = ['camera', 'background', 'render'];
+const TITLES = { camera: 'Camera', background: 'Background', render: 'Rendering' };
+
+/* The main parameters, shown where the scene has them. */
+const HAND = {
+  clear: ['medium', 'ior', 'coefficients', 'color', 'reflectivity', 'transparency', 'absorb_per_m'],
+  opaque: ['color', 'reflectivity'],
+  light: ['position', 'intensity'],
+  render: ['depth', 'lighting', 'samples', 'shadows', 'transmission', 'width', 'height', 'accel', 'threads'],
+};
+
+const objectOf = (row) => row.path.slice(0, row.path.length - row.name.length - 1);
+
+function grouped(rows) {
+  const groups = new Map();
+  for (const row of rows) {
+    const name = objectOf(row);
+    if (!groups.has(name)) groups.set(name, []);
+    groups.get(name).push(row);
+  }
+  return groups;
+}
+
+const rank = { solid: 0, light: 1, material: 2, mesh: 3, texture: 4 };
+
+function ordered(names, lab) {
+  const place = (name) => (LAST.includes(name) ? 10 + LAST.indexOf(name) : (rank[lab.object(name)?.kind] ?? 5));
+  return [...names].sort((a, b) => place(a) - place(b));
+}
+
+/* A solid that was transparent once stays in that list, so that its transparency slider does not vanish while it is
+ * dragged. */
+function handParts(lab, onceClear) {
+  const rowsOf = (name, fields) =>
+    fields
+      .map((word) => lab.param(`${name}.${word}`))
+      .filter((row) => row && (row.name !== 'coefficients' || hasLaw(lab, name)));
+  const solids = lab.scene.objects.filter((object) => object.kind === 'solid').map((object) => object.name);
+  for (const name of solids) if ((lab.param(`${name}.transparency`)?.value ?? 0) > 0) onceClear.add(name);
+  const isClear = (name) => onceClear.has(name);
+  const parts = [
+    ...solids.filter(isClear).map((name) => [name, rowsOf(name, HAND.clear)]),
+    ...solids.filter((name) => !isClear(name)).map((name) => [name, rowsOf(name, HAND.opaque)]),
+    ...lab.scene.objects
+      .filter((object) => object.kind === 'light')
+      .map((object) => [object.name, rowsOf(object.name, HAND.light)]),
+    ['render', rowsOf('render', HAND.render)],
+  ];
+  return parts.filter(([, rows]) => rows.length);
+}
+
+export const panel = {
+  id: 'params',
+  title: 'Parameters',
+  css: 'edit/panel_params.css',
+
+  create(root, lab) {
+    const list = element('div', { class: 'param-list' });
+    const results = element('div', { class: 'param-list', hidden: true });
+    const about = element('div', { class: 'param-about', 'aria-hidden': 'true' });
+    const search = element('input', {
+      type: 'search',
+      class: 'input',
+      placeholder: 'Find a parameter',
+      'aria-label': 'Find a parameter by name or description',
+      spellcheck: 'false',
+    });
+    const countLabel = element('span', { class: 'visually-hidden', role: 'status' });
+    const explain = checkbox('Descriptions', memory.get('meanings', false), (on) => {
+      root.classList.toggle('explained', on);
+      memory.set('meanings', on);
+    });
+    const rows = new Map();
+    const onceClear = new Set();
+    let built = '';
+    let later = 0;
+    let timer = 0;
+    let searches = 0;
+
+    root.classList.toggle('explained', explain.value);
+    root.append(
+      element(
+        'div',
+        { class: 'param-head' },
+        element('div', { class: 'param-search' }, icon('search'), search),
+        explain.node,
+        countLabel,
+      ),
+      list,
+      results,
+      about,
+    );
+    search.addEventListener('input', () => {
+      clearTimeout(timer);
+      timer = setTimeout(find, 120);
+    });
+    search.addEventListener('keydown', (event) => {
+      if (event.key !== 'Escape' || !search.value) return;
+      search.value = '';
+      find();
+    });
+    lab.on('scene', show);
+    tell(null);
+    if (lab.scene) show(lab.scene);
+    else replace(list, empty('Waiting for the scene …'));
+
+    /* Rows are created for one part of the list ('hand', an object's name, 'found') and dropped with it. */
+    function make(part, row, long) {
+      const made = createRow(row, lab, { onabout: tell, long });
+      if (!rows.has(part)) rows.set(part, []);
+      rows.get(part).push(made);
+      return made.node;
+    }
+
+    function tell(row) {
+      replace(
+        about,
+        row
+          ? [
+              element(
+                'p',
+                { class: 'about-path' },
+                element('code', { text: row.path }),
+                element('span', { text: `default ${valueText(row.default)}` }),
+              ),
+              element('p', { text: row.meaning }),
+              element('p', { class: 'about-range', text: [row.range, row.unit].filter(Boolean).join(', ') }),
+            ]
+          : element('p', { class: 'about-range', text: 'Point at a parameter to read its description.' }),
+      );
+    }
+
+    function show(scene) {
+      const shape = JSON.stringify([
+        scene.objects,
+        scene.params.map((row) => [row.path, row.type, row.choices?.length]),
+        handParts(lab, onceClear).map(([name, own]) => [name, own.length]),
+      ]);
+      if (shape !== built && [...rows.values()].flat().some((made) => made.busy())) {
+        clearTimeout(later);
+        later = setTimeout(() => show(lab.scene), LATER_MS);
+      } else if (shape !== built) {
+        built = shape;
+        build();
+      } else {
+        for (const part of rows.values()) for (const made of part) update(made, scene);
+      }
+      for (const node of list.querySelectorAll('.param-group')) mark(node);
+    }
+
+    function update(made, scene) {
+      const row = lab.param(made.path);
+      if (row) made.update(row, scene.generation);
+    }
+
+    function build() {
+      const held = document.activeElement?.closest?.('.panel-params .param');
+      const focused = held?.dataset.path;
+      const nth = held ? [...held.querySelectorAll('input, select')].indexOf(document.activeElement) : -1;
+      const place = list.scrollTop;
+      rows.clear();
+      replace(list, hand(), ordered(grouped(lab.scene.params).keys(), lab).map(objectGroup));
+      list.scrollTop = place;
+      if (focused && root.contains(document.activeElement) === false) {
+        list
+          .querySelector(`.param[data-path="${CSS.escape(focused)}"]`)
+          ?.querySelectorAll('input, select')
+          [nth]?.focus({ preventScroll: true });
+      }
+      if (search.value) find();
+    }
+
+    function hand() {
+      const parts = handParts(lab, onceClear);
+      const many = parts.reduce((sum, [, own]) => sum + own.length, 0) > MANY;
+      return group(
+        'Main parameters',
+        { id: 'params.hand' },
+        parts.map(([name, own], index) => {
+          const open = memory.get(`group.hand.${name}`, !many || index < 2 || name === 'render');
+          const node = element(
+            'details',
+            { class: 'hand-part', open },
+            element(
+              'summary',
+              {},
+              element('h4', { text: TITLES[name] || name }),
+              element('span', { class: 'group-hint', text: hint(name) }),
+            ),
+            own.map((row) => make('hand', row)),
+          );
+          node.addEventListener('toggle', () => memory.set(`group.hand.${name}`, node.open));
+          return node;
+        }),
+      );
+    }
+
+    function hint(name) {
+      const object = lab.object(name);
+      if (!object) return '';
+      return [
+        object.kind === 'solid' ? object.shape || 'solid' : object.kind,
+        object.material ? `of ${object.material}` : '',
+      ]
+        .filter(Boolean)
+        .join(' ');
+    }
+
+    /* A folded group is filled when it is first opened. */
+    function objectGroup(name) {
+      const node = group(TITLES[name] || name, { open: false, id: `params.${name}`, hint: hint(name) });
+      const body = node.querySelector('.group-body');
+      node.classList.add('param-group');
+      node.dataset.object = name;
+      node.querySelector('summary').append(element('span', { class: 'changed-count' }));
+      const fill = () => {
+        if (!node.open || body.childElementCount) return;
+        const own = grouped(lab.scene.params).get(name) || [];
+        const kinds = [...new Set(own.map((row) => row.group))];
+        const titles = { solid: 'Shape and placement', material: 'Material', mesh: 'Mesh', light: 'Light' };
+        body.append(
+          ...kinds
+            .flatMap((kind) => [
+              kinds.length > 1 ? element('h4', { class: 'param-kind', text: titles[kind] || kind }) : null,
+              ...own.filter((row) => row.group === kind).map((row) => make(name, row)),
+            ])
+            .filter(Boolean),
+          button(`Reset ${name}`, () => resetGroup(name), {
+            icon: 'reset',
+            small: true,
+            kind: 'quiet',
+            class: 'button quiet small param-reset-group',
+          }),
+        );
+      };
+      node.addEventListener('toggle', fill);
+      fill();
+      mark(node);
+      return node;
+    }
+
+    function changedRows(name) {
+      return (grouped(lab.scene.params).get(name) || []).filter(
+        (row) =>
+          row.initial !== null &&
+          row.initial !== undefined &&
+          JSON.stringify(row.value) !== JSON.stringify(row.initial),
+      );
+    }
+
+    function mark(node) {
+      const many = changedRows(node.dataset.object).length;
+      node.querySelector('.changed-count').textContent = many ? `${many} changed` : '';
+      const reset = node.querySelector('.param-reset-group');
+      if (reset) reset.hidden = !many;
+    }
+
+    function resetGroup(name) {
+      lab.change('/api/reset', { paths: changedRows(name).map((row) => row.path) }).catch(lab.fail);
+    }
+
+    async function find() {
+      const words = search.value.trim();
+      searches += 1;
+      const mine = searches;
+      if (!words) {
+        rows.delete('found');
+        list.hidden = false;
+        results.hidden = true;
+        countLabel.textContent = '';
+        results.replaceChildren();
+        return;
+      }
+      const near = new Set(handParts(lab, onceClear).flatMap(([, own]) => own.map((row) => row.path)));
+      try {
+        const best = await findParams(lab, words, near);
+        if (mine === searches) showFound(best);
+      } catch (error) {
+        lab.fail(error);
+      }
+    }
+
+    function showFound(best) {
+      rows.delete('found');
+      list.hidden = true;
+      results.hidden = false;
+      countLabel.textContent = `${best.length} found`;
+      replace(
+        results,
+        best.length
+          ? element('p', {
+              class: 'hint',
+              text: best.length > FOUND_MAX ? `${FOUND_MAX} of ${best.length} found` : `${best.length} found`,
+            })
+          : empty('No parameter matches in name or description.'),
+        best.slice(0, FOUND_MAX).map((row) => make('found', row, true)),
+      );
+    }
+  },
+};

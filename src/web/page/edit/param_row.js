@@ -1,0 +1,195 @@
+/* One parameter: its name, control, unit, reset button, description, and the reason for a rejected value.
+ * exports:
+ *   createRow(row, lab, {onabout(row), long}) -> {node, path, update(row, generation), busy()}
+ *     long: the label includes the object's name; busy: the control is being dragged; node is .param with data-path,
+ *     its slider an input of type range, its number field one of type number
+ *   shortUnit(unit) -> the text after a field
+ *   hasLaw(lab, object)               whether its medium is given by coefficients
+ *   whyUnused(lab, object, name)      why that parameter has no effect now; '' if it has one */
+
+import { button, element, unique } from '../shared/ui.js';
+import { controlOf, written } from './param_controls.js';
+
+/* --- which rows of a medium are in use ---
+ * A medium has its refractive index from `ior`, from a dispersion law with coefficients, or from the catalogue. */
+
+const value = (lab, object, name) => lab.param(`${object}.${name}`)?.value;
+
+const lawsOf = (lab, object) => lab.param(`${object}.ior`)?.first_coefficients ?? {};
+
+export const hasLaw = (lab, object) => value(lab, object, 'medium') in lawsOf(lab, object);
+
+export function whyUnused(lab, object, name) {
+  const medium = value(lab, object, 'medium');
+  if (!medium) return '';
+  if (name === 'ior' && medium !== 'ior')
+    return `the index comes from the medium ${medium}; a value set here replaces it`;
+  if (name === 'coefficients' && value(lab, object, name).length && !hasLaw(lab, object))
+    return `the medium ${medium} uses no coefficients`;
+  return '';
+}
+
+/* The coefficients of the opened scene if it had that law; otherwise ones close to the current index. */
+function withMedium(lab, object, medium) {
+  const set = { [`${object}.medium`]: medium };
+  const first = lawsOf(lab, object)[medium];
+  if (!first) return set;
+  const was = lab.param(`${object}.coefficients`)?.initial;
+  const kept = lab.param(`${object}.medium`)?.initial === medium && was?.length;
+  return { ...set, [`${object}.coefficients`]: kept ? was : first };
+}
+
+const FORGET_MS = 8000;
+
+const labelOf = (name) => name.replaceAll('_', ' ');
+const equal = (a, b) => JSON.stringify(a) === JSON.stringify(b);
+
+/* 'u' for scene units, and as a formula. */
+export const shortUnit = (unit) =>
+  unit === 'deg'
+    ? '°'
+    : unit
+        .replace(/scene units?/g, 'u')
+        .replace('^2', '²')
+        .replace('^3', '³');
+
+export function valueText(value) {
+  if (Array.isArray(value)) return value.length ? value.map(valueText).join(', ') : 'none';
+  if (typeof value === 'number') return written(value);
+  return value === '' || value === null ? 'none' : String(value);
+}
+
+export function createRow(first, lab, { onabout, long } = {}) {
+  const { path } = first;
+  const object = path.slice(0, path.length - first.name.length - 1);
+  const needs = first.needs ? `; needs ${first.needs}` : '';
+  const meaning = element('span', {
+    class: 'param-meaning',
+    id: unique('meaning'),
+    text: `${first.meaning}. ${first.range}; default ${valueText(first.default)}${needs}`,
+  });
+  const problem = element('p', { class: 'param-problem', role: 'alert', hidden: true });
+  const unused = element('span', { class: 'param-unused', text: 'unused', hidden: true });
+  const title = () =>
+    [long ? element('span', { class: 'param-object', text: object }) : null, labelOf(first.name), unused].filter(
+      Boolean,
+    );
+  const label = element('label', { class: 'param-label', title: path }, title());
+  const reset = button(`Reset ${path}`, undo, { icon: 'reset', bare: true, small: true, kind: 'quiet' });
+  let known = first;
+  let waiting = 0;
+  let settled = 0;
+  let forget = 0;
+
+  const control = controlOf(first, {
+    name: `${object} ${labelOf(first.name)}`,
+    describedby: meaning.id,
+    send,
+    slider: () => known.slider,
+    names: (lab.scene?.objects || []).filter((each) => each.kind === first.name).map((each) => each.name),
+  });
+  label.id = unique('label');
+  if (control.single) label.htmlFor = control.single.id;
+  const node = element(
+    'div',
+    {
+      class: 'param',
+      role: control.single ? null : 'group',
+      'aria-label': control.single ? null : `${object} ${labelOf(first.name)}`,
+      dataset: { path },
+    },
+    control.single ? label : element('span', { class: 'param-label', title: path }, title()),
+    element(
+      'div',
+      { class: 'param-control' },
+      control.node,
+      element('span', { class: 'unit', text: shortUnit(first.unit), title: first.unit || null }),
+    ),
+    reset,
+    meaning,
+    problem,
+  );
+  node.addEventListener('pointerenter', () => onabout?.(known));
+  node.addEventListener('focusin', () => onabout?.(known));
+  node.addEventListener('focusout', () => {
+    clearTimeout(forget);
+    forget = setTimeout(() => {
+      if (!node.contains(document.activeElement)) refuse(null);
+    }, FORGET_MS);
+  });
+  showReset();
+  showUse();
+  return { node, path, update, busy: () => control.busy() };
+
+  function showReset() {
+    const away = known.initial !== undefined && known.initial !== null && !equal(known.value, known.initial);
+    reset.classList.toggle('unseen', !away);
+    reset.disabled = !away;
+    reset.title = away ? `Reset to ${valueText(known.initial)}` : '';
+    node.classList.toggle('changed', away);
+  }
+
+  function showUse() {
+    const why = whyUnused(lab, object, first.name);
+    unused.hidden = !why;
+    unused.title = why;
+  }
+
+  function refuse(error) {
+    problem.hidden = !error;
+    problem.textContent = error ? [error.message, error.remedy].filter(Boolean).join(' – ') : '';
+    for (const input of control.inputs) {
+      if (error) input.setAttribute('aria-invalid', 'true');
+      else input.removeAttribute('aria-invalid');
+    }
+  }
+
+  async function send(value, gesture) {
+    waiting += 1;
+    let error = null;
+    try {
+      const reply = await lab.set(
+        first.name === 'medium' ? withMedium(lab, object, value) : { [path]: value },
+        gesture,
+      );
+      settled = Math.max(settled, reply.generation || 0);
+      known = { ...known, value };
+    } catch (caught) {
+      error = caught;
+    }
+    waiting -= 1;
+    if (waiting) return;
+    if (error && error.status !== 0 && error.status !== 401) refuse(error);
+    else refuse(null);
+    if (error) {
+      known = lab.param(path) || known;
+      force(known.value);
+    }
+    showReset();
+  }
+
+  /* Also updates the field that has the focus. */
+  function force(value) {
+    const held = document.activeElement;
+    if (control.inputs.includes(held)) held.blur();
+    control.set(value, true);
+    if (control.inputs.includes(held)) held.focus({ preventScroll: true });
+  }
+
+  function undo() {
+    refuse(null);
+    lab.change('/api/reset', { paths: [path] }).catch(refuse);
+    (control.single || control.inputs[0]).focus();
+  }
+
+  /* A value sent from here is newer than a scene that was requested before. */
+  function update(row, generation) {
+    showUse();
+    if (waiting || control.busy() || generation < settled) return;
+    const changed = !equal(row.value, known.value);
+    known = row;
+    control.set(row.value);
+    if (changed) refuse(null);
+    showReset();
+  }
+}

@@ -1,0 +1,97 @@
+/* The panel Lessons: a gallery of guided experiments, the start page of a laboratory without a scene; and the lesson
+ * that was chosen, next to the image. exports: panel */
+
+import { thumbnail } from '../shared/images.js';
+import { namesScene } from '../shared/share.js';
+import { element, empty, notice, replace } from '../shared/ui.js';
+import { createLesson } from './lesson.js';
+
+let place = null;
+let lesson = null; /* the view of the chosen one */
+let loaded = false;
+let wanted = null; /* the lesson of a link: the fragment #lesson=NAME of the page's address */
+
+const cover = (on) => document.getElementById('workspace').classList.toggle('wide', on);
+
+function card(lab, one) {
+  if (one.error) return notice(`${one.file}: ${one.error.error}`, { kind: 'warning', remedy: one.error.remedy });
+  return element(
+    'button',
+    { type: 'button', class: 'lesson-card', lang: one.language, onclick: () => choose(lab, one) },
+    thumbnail(lab, `/api/lessons/${encodeURIComponent(one.name)}/thumbnail.jpg`),
+    element('span', { class: 'lesson-card-title', text: one.title }),
+    element('span', { class: 'lesson-card-question', text: one.question }),
+  );
+}
+
+async function gallery(lab) {
+  lesson?.end();
+  lesson = null;
+  cover(true);
+  replace(place, empty('Reading the lessons …'));
+  try {
+    const { lessons } = await lab.get('/api/lessons');
+    replace(
+      place,
+      element('h3', { class: 'lesson-head', text: 'Experiments with light' }),
+      element('p', {
+        class: 'lesson-lead',
+        text: 'Choose a question. Predict, measure with traced rays, compare with the textbook.',
+      }),
+      lessons.length
+        ? element(
+            'div',
+            { class: 'lesson-cards' },
+            lessons.map((one) => card(lab, one)),
+          )
+        : empty('There are no lessons: the laboratory is not installed completely.'),
+    );
+    const asked = lessons.find(({ name }) => name === wanted);
+    wanted = null;
+    if (asked) await choose(lab, asked);
+  } catch (error) {
+    replace(place, notice(error.message, { kind: 'error', remedy: error.remedy }));
+  }
+}
+
+async function choose(lab, one) {
+  try {
+    if (lab.state && !lab.state.saved) lab.say('The scene before is kept: Undo returns to it.');
+    await lab.change(`/api/lessons/${encodeURIComponent(one.name)}/open`, {});
+    lab.choice?.choose('');
+    cover(false);
+    lesson?.end();
+    lesson = createLesson(place, lab, one, { back: () => gallery(lab), again: () => choose(lab, one) });
+  } catch (error) {
+    lab.fail(error);
+  }
+}
+
+export const panel = {
+  id: 'lessons',
+  title: 'Lessons',
+  css: 'lessons/panel_lessons.css',
+  get wide() {
+    return !lesson;
+  },
+  /* A laboratory without a scene, of a file or of a link, starts with the gallery. */
+  start(lab) {
+    wanted = /^#lesson=([\w-]+)$/.exec(location.hash)?.[1] ?? null;
+    if (wanted)
+      history.replaceState(null, '', location.pathname + location.search); // as for a scene
+    else if (namesScene()) return;
+    const end = lab.on('state', (state) => {
+      end();
+      if (wanted || (!state.file && !state.undo)) lab.panels.use('lessons');
+    });
+  },
+  create(root, lab) {
+    place = root;
+    this.lab = lab;
+  },
+  shown() {
+    if (!loaded) gallery(this.lab);
+    else lesson?.shown();
+    loaded = true;
+  },
+};

@@ -1,0 +1,135 @@
+/* The linter's notes on the scene, fetched for each final image, and the notes on that image itself. A new note is
+ * shown in the status line; the button there lists all. A remedy that sets parameters is a button that sets them.
+ * exports:
+ *   createNotes(lab) -> {count(), show()}               emits 'notes' on the lab when the list has changed
+ *   depthNote(tree, lab) -> {text, label, values}       how much of a pixel's light the depth limit cuts off, as a note
+ *                                                       and its remedy; null below 1 % */
+
+import { button, dialog, digits, element } from './ui.js';
+
+export function createNotes(lab) {
+  let notes = [];
+  let checkedGeneration = 0; /* the last generation that was checked */
+  let openDialog = null;
+  let said = null; /* the note in the status line, withdrawn when it is no longer true */
+
+  const line = (note) => [note.place, note.text].filter(Boolean).join(': ');
+
+  function actionOf(note) {
+    const action = noteAction(note);
+    if (!action) return null;
+    const what = Object.entries(action.values).map(([path, value]) => `${path} is ${value}`);
+    const done = () => lab.say(`${what.join(', ')}.`);
+    return { label: action.label, act: () => lab.set(action.values).then(done, lab.fail) };
+  }
+
+  function actOn(note) {
+    const action = actionOf(note);
+    return action && element('p', {}, button(action.label, action.act, { small: true, kind: 'primary' }));
+  }
+
+  const list = () =>
+    notes.length
+      ? element(
+          'ul',
+          { class: 'notes' },
+          notes.map((note) =>
+            element(
+              'li',
+              {},
+              note.place ? element('code', { text: note.place }) : null,
+              element('span', { text: `${note.place ? ' ' : ''}${note.text}.` }),
+              note.remedy ? element('span', { class: 'notes-remedy', text: ` Remedy: ${note.remedy}.` }) : null,
+              noteReason(note).map((text) => element('p', { class: 'notes-remedy', text })),
+              actOn(note),
+            ),
+          ),
+        )
+      : element('p', { text: 'No notes.' });
+
+  async function ask() {
+    const generation = lab.picture?.final ? lab.picture.generation : 0;
+    if (!generation || generation === checkedGeneration) return;
+    checkedGeneration = generation;
+    const known = new Set(notes.map(line));
+    const onImage = lab.picture.notes ?? [];
+    try {
+      notes = [...(await lab.get('/api/notes')).notes, ...onImage];
+    } catch (error) {
+      checkedGeneration = 0; /* a study is measuring, or the scene cannot be rendered: both are reported elsewhere */
+      return;
+    }
+    const [first, ...more] = notes.filter((note) => !known.has(line(note)));
+    const rest = more.length ? `; and ${more.length} more` : '';
+    if (said && !notes.some((note) => line(note) === said.line)) {
+      said.withdraw();
+      said = null;
+    }
+    if (first && !openDialog)
+      said = {
+        line: line(first),
+        withdraw: lab.say(`Note: ${line(first)}`, `${first.remedy}${rest}`, actionOf(first)),
+      };
+    if (openDialog) openDialog.node.querySelector('.dialog-body').replaceChildren(list());
+    lab.emit('notes', notes);
+  }
+
+  lab.on('picture', ask);
+  lab.on('restarted', () => {
+    checkedGeneration = 0;
+  });
+  return {
+    count: () => notes.length,
+    show() {
+      openDialog = dialog({ title: 'Notes on the scene', content: list() });
+      openDialog.closed.then(() => {
+        openDialog = null;
+      });
+    },
+  };
+}
+
+const CUT_LEAST = 0.01;
+const LABELS = { 'render.depth': 'Raise the depth' };
+const WITHOUT_LIMIT = { 'render.integrator': 'path', 'render.depth': 'unlimited' };
+
+const labelOf = (path, text) => `${LABELS[path] || `Set ${path}`} to ${text}`;
+
+function noteAction({ remedy }) {
+  const set = /^set ([\w.-]+=[\w.+-]+(?: and [\w.-]+=[\w.+-]+)*)/.exec(remedy || '');
+  if (!set) return null;
+  const pairs = set[1].split(' and ').map((one) => one.split('='));
+  const values = pairs.map(([path, text]) => [path, Number.isFinite(Number(text)) ? Number(text) : text]);
+  const label =
+    pairs.length === 1 ? labelOf(...pairs[0]) : `Set ${pairs.map(([path, text]) => `${path} to ${text}`).join(', ')}`;
+  return { label, values: Object.fromEntries(values) };
+}
+
+function noteReason({ place }) {
+  if (place !== 'render.depth') return [];
+  return [
+    'Rays end at the depth limit, and render.beyond replaces their light: by the sky, its mean, or black. So places ' +
+      'seen through many surfaces or in several mirrors have a wrong colour. The panel Compare shows where: Cut light.',
+    'An image that no longer changes with the depth is not right for that: between two mirrors rays end at any depth.',
+    'The default is 4, because a ray can split at each surface and the work can double with each level: 4 keeps an ' +
+      'image fast while it is changed.',
+  ];
+}
+
+export function depthNote(tree, lab) {
+  const most = lab.param('render.depth').highest;
+  const beyond = lab.param('render.beyond')?.value;
+  const cut = tree.rays.filter(({ node }) => node.end === 'cut_depth');
+  const fraction = cut.reduce((sum, { weight }) => sum + weight, 0);
+  const { depth } = tree.answer;
+  if (fraction < CUT_LEAST) return null;
+  const percent = digits(100 * fraction, 2);
+  const value = Math.min(most, Math.max(depth + 2, 2 * depth));
+  const effect = beyond === 'black' ? 'are black there, so the pixel is too dark' : 'have the colour of the sky there';
+  return {
+    text: `Rays with ${percent} % of this pixel's weight end at the depth limit, ${depth}, and ${effect}.`,
+    ...(depth < most
+      ? { label: labelOf('render.depth', value), values: { 'render.depth': value } }
+      : { label: 'Trace random paths without a limit', values: WITHOUT_LIMIT }),
+  };
+}

@@ -1,0 +1,50 @@
+/* Numbers as text, and the sRGB curve. exports: digits, seconds, timeUnit, count, vector, toLinear, toByte
+ * (see ui.js) */
+
+const MINUS = '\u2212';
+
+export function digits(x, n = 4) {
+  if (x === null || x === undefined || Number.isNaN(x)) return '–';
+  if (!Number.isFinite(x)) return x > 0 ? '∞' : `${MINUS}∞`;
+  const size = Math.abs(x);
+  if (size !== 0 && (size >= 1e7 || size < 1e-4))
+    return x
+      .toExponential(Math.max(0, n - 1))
+      .replace(/\.?0+e/, 'e')
+      .replace('e+', 'e')
+      .replace('-', MINUS);
+  return String(Number(x.toPrecision(n))).replace('-', MINUS);
+}
+
+/* The unit for a list of times in s, and the factor to it. */
+export function timeUnit(times) {
+  const largest = Math.max(0, ...times.filter((time) => Number.isFinite(time)).map(Math.abs));
+  if (largest === 0 || largest >= 1) return { unit: 's', factor: 1 };
+  return largest >= 1e-3 ? { unit: 'ms', factor: 1e3 } : { unit: 'µs', factor: 1e6 };
+}
+
+export function seconds(s) {
+  if (s === null || s === undefined || !Number.isFinite(s)) return '–';
+  if (s < 1e-3) return `${digits(s * 1e6, 3)} µs`;
+  if (s < 1) return `${digits(s * 1e3, 3)} ms`;
+  if (s < 60) return `${digits(s, 3)} s`;
+  const rounded = Math.round(s);
+  if (rounded < 3600) return `${Math.floor(rounded / 60)} min ${String(rounded % 60).padStart(2, '0')} s`;
+  return `${Math.floor(rounded / 3600)} h ${String(Math.floor(rounded / 60) % 60).padStart(2, '0')} min`;
+}
+
+export function count(n) {
+  if (n === null || n === undefined || !Number.isFinite(n)) return '–';
+  if (Math.abs(n) < 1e5) return Math.round(n).toLocaleString('en').replaceAll(',', '\u2009');
+  const [scale, unit] = n >= 1e12 ? [1e12, 'T'] : n >= 1e9 ? [1e9, 'G'] : n >= 1e6 ? [1e6, 'M'] : [1e3, 'k'];
+  return `${digits(n / scale, 3)}\u2009${unit}`;
+}
+
+export const vector = (values, n = 4) => (values || []).map((x) => digits(x, n)).join(', ');
+
+export const toLinear = (byte) => (byte / 255 <= 0.04045 ? byte / 255 / 12.92 : ((byte / 255 + 0.055) / 1.055) ** 2.4);
+
+export function toByte(linear) {
+  const x = Math.min(1, Math.max(0, linear));
+  return Math.round(255 * (x <= 0.0031308 ? 12.92 * x : 1.055 * x ** (1 / 2.4) - 0.055));
+}

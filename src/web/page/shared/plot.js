@@ -1,0 +1,262 @@
+/* A line chart with intervals over one axis; series differ by colour, marker and dash.
+ *
+ * exports: plot({title, x, y, series, heading, mark, marks, spots, width, legends}) -> SVG element
+ *   x: {label, log, values}       values: words of a categorical axis; points are then at 0, 1, 2 ..
+ *   y: {label, log}
+ *   series: [{name, points: [{x, y, low, high}], marked, joined}]      low and high NaN: no interval is known;
+ *     marked or joined false: without markers or without the line
+ *   width: of the drawing in its own units; legends false: none
+ *   heading: title of the legend, the parameters in which the series differ
+ *   mark: a value of y with a horizontal line, such as 1 for ratios
+ *   marks: [{axis: 'x' or 'y', at, text, kind}] labelled lines; one beyond the axis is at its end, with an arrow
+ *   spots: [{x, y, text}] points with a ring
+ *
+ * Curves that share an x with intervals are shifted sideways, each by a few units of the drawing. */
+
+import { digits, svg, unique } from './ui.js';
+
+const WIDTH = 860;
+const HEIGHT = 400;
+const FRAME = { left: 76, top: 34, right: 22, bottom: 48 };
+const WORDS = 30; /* more fit on an axis with slanted words */
+const LEGEND = 226;
+const NAME_MAX = 23; /* characters that fit into the legend's width */
+const TICKS = 6;
+const COLOURS = 5;
+const SHIFT = 7; /* of a curve from the next */
+const SHIFTS = 28; /* of the last curve from the first, about */
+const DASHES = ['', '7 4', '2 3', '9 3 2 3', '4 2'];
+const MARKERS = [
+  'M-4 0a4 4 0 1 0 8 0a4 4 0 1 0-8 0',
+  'M-3.600-3.600h7.200v7.200h-7.200z',
+  'M0-5 4.600 3.600h-9.200z',
+  'M0-5 5 0 0 5-5 0z',
+  'M0 5-4.600-3.600h9.200z',
+  'M-4-4 4 4M4-4-4 4',
+  'M-5 0h10M0-5v10',
+];
+
+const round = (value) => Math.round(value * 100) / 100;
+const finite = (values) => values.filter((value) => Number.isFinite(value));
+
+/* Maps values to positions between two ends of the drawing. */
+function ruler({ log, from, to, a, b }) {
+  const bend = log ? Math.log10 : (value) => value;
+  const [low, high] = [bend(from), bend(to)];
+  return { log, from, to, at: (value) => round(a + ((bend(value) - low) / (high - low)) * (b - a)) };
+}
+
+function niceStep(across) {
+  const power = 10 ** Math.floor(Math.log10(across / TICKS));
+  const times = across / TICKS / power;
+  return power * (times > 5 ? 10 : times > 2 ? 5 : times > 1 ? 2 : 1);
+}
+
+function linearTicks(from, to) {
+  const step = niceStep(to - from);
+  const first = Math.ceil(from / step - 1e-9);
+  const last = Math.floor(to / step + 1e-9);
+  return Array.from({ length: last - first + 1 }, (_, k) => Number(((first + k) * step).toPrecision(12)));
+}
+
+function logTicks(from, to) {
+  const decades = Math.log10(to / from);
+  const times = decades < 1.5 ? [1, 2, 3, 5, 7] : decades < 3.5 ? [1, 2, 5] : [1];
+  const all = [];
+  for (let power = Math.floor(Math.log10(from)); power <= Math.ceil(Math.log10(to)); power++) {
+    for (const time of times) all.push(Number((time * 10 ** power).toPrecision(6)));
+  }
+  return all.filter((value) => value >= from * 0.999 && value <= to * 1.001);
+}
+
+/* The ends of an axis: slightly beyond the values; a linear axis starts at 0 if that is close. */
+function ends(values, log, wide) {
+  let [from, to] = [Math.min(...values), Math.max(...values)];
+  if (log) {
+    const more = from === to ? 2 : (to / from) ** 0.06;
+    return [from / more, to * more];
+  }
+  if (wide && from > 0 && from < 0.6 * to) from = 0;
+  if (from === to) [from, to] = [from - Math.abs(from || 1) / 2, to + Math.abs(to || 1) / 2];
+  const more = (to - from) * 0.05;
+  return [from === 0 && wide ? 0 : from - more, to + more];
+}
+
+/* On a logarithmic axis with few values, each value is a better tick than powers of ten. */
+function ticksOf(scale, own) {
+  if (!scale.log) return linearTicks(scale.from, scale.to);
+  const apart = own?.every((value, i) => i === 0 || Math.abs(scale.at(value) - scale.at(own[i - 1])) > 34);
+  return own && own.length <= 12 && apart ? own : logTicks(scale.from, scale.to);
+}
+
+const text = (x, y, anchor, words, more) => svg('text', { x, y, 'text-anchor': anchor, ...more }, words);
+
+/* Words under the axis are slanted if they do not fit next to each other. */
+const areSlanted = (values, width) =>
+  values && Math.max(...values.map((value) => value.length)) * 6.5 > width / values.length;
+
+function words(values, scale, bottom, slanted) {
+  const short = (value) => (slanted && value.length > 14 ? `${value.slice(0, 13)}…` : value);
+  return values.map((value, i) => {
+    const x = scale.at(i);
+    const turn = slanted ? { transform: `rotate(-28 ${x} ${bottom + 14})` } : {};
+    return text(x + (slanted ? 4 : 0), bottom + 16, slanted ? 'end' : 'middle', short(value), turn);
+  });
+}
+
+function axes(area, x, y, across, up) {
+  const own = [...new Set(finite(x.points))].sort((a, b) => a - b);
+  const right = area.x + area.width;
+  const bottom = area.y + area.height;
+  return svg(
+    'g',
+    { class: 'plot-axes' },
+    ticksOf(up).map((value) => [
+      svg('path', { class: 'plot-grid', d: `M${area.x} ${up.at(value)}H${right}` }),
+      text(area.x - 7, up.at(value) + 4, 'end', digits(value)),
+    ]),
+    x.values
+      ? words(x.values, across, bottom, areSlanted(x.values, area.width))
+      : ticksOf(across, own).map((value) => [
+          svg('path', { class: 'plot-grid', d: `M${across.at(value)} ${area.y}V${bottom}` }),
+          text(across.at(value), bottom + 16, 'middle', digits(value)),
+        ]),
+    svg('path', { class: 'plot-frame', d: `M${area.x} ${area.y}V${bottom}H${right}` }),
+    text(area.x + area.width / 2, HEIGHT - 8, 'middle', x.label, { class: 'plot-label' }),
+    text(0, 0, 'middle', y.label, {
+      class: 'plot-label',
+      transform: `translate(15 ${area.y + area.height / 2}) rotate(-90)`,
+    }),
+  );
+}
+
+const styleOf = (index) => ({ class: `plot-series plot-colour-${(index % COLOURS) + 1}` });
+
+const hasInterval = (point) => point.low < point.high;
+
+/* How far each curve is shifted sideways. */
+function shiftsOf(series) {
+  const owners = series.filter((one) => one.points.some(hasInterval));
+  const xs = owners.map((one) => one.points.filter(hasInterval).map((point) => point.x));
+  const shared = xs.some((some, i) => xs.slice(0, i).some((other) => some.some((x) => other.includes(x))));
+  const step = Math.min(SHIFT, SHIFTS / owners.length);
+  return series.map((one) =>
+    shared && owners.includes(one) ? round((owners.indexOf(one) - (owners.length - 1) / 2) * step) : 0,
+  );
+}
+
+function line(one, index, across, up, shift) {
+  const points = one.points.filter(
+    (point) =>
+      Number.isFinite(point.x) && Number.isFinite(point.y) && (!up.log || point.y > 0) && (!across.log || point.x > 0),
+  );
+  const place = ({ x }) => round(across.at(x) + shift);
+  const at = points.map((point) => `${place(point)} ${up.at(point.y)}`);
+  return svg(
+    'g',
+    styleOf(index),
+    at.length > 1 && one.joined !== false
+      ? svg('path', { class: 'plot-line', d: `M${at.join('L')}`, 'stroke-dasharray': DASHES[index % DASHES.length] })
+      : null,
+    points
+      .filter((point) => hasInterval(point) && (!up.log || point.low > 0))
+      .map((point) =>
+        svg('path', {
+          class: 'plot-interval',
+          d: `M${place(point) - 4} ${up.at(point.low)}h8m-4 0V${up.at(point.high)}m-4 0h8`,
+        }),
+      ),
+    (one.marked === false ? [] : points).map((point, i) =>
+      svg(
+        'path',
+        { class: 'plot-marker', d: MARKERS[index % MARKERS.length], transform: `translate(${at[i]})` },
+        svg('title', {}, `${one.name ? `${one.name}: ` : ''}${digits(point.y, 5)}`),
+      ),
+    ),
+  );
+}
+
+/* Texts of vertical lines are at the top, each lower than the one before; those of horizontal ones at the right. */
+function lines(marks, area, across, up) {
+  const inside = (scale, at) => Math.min(Math.max(at, scale.from), scale.to);
+  let down = 0;
+  return marks.map(({ axis, at, text: words, kind }) => {
+    const [scale, arrows] = axis === 'x' ? [across, '←→'] : [up, '↓↑'];
+    const arrow = at < scale.from ? `${arrows[0]} ` : at > scale.to ? `${arrows[1]} ` : '';
+    const to = scale.at(inside(scale, at));
+    const right = to > area.x + area.width / 2;
+    down += axis === 'x' ? 16 : 0;
+    return svg(
+      'g',
+      { class: `plot-line-mark plot-${kind}` },
+      svg('path', { d: axis === 'x' ? `M${to} ${area.y}v${area.height}` : `M${area.x} ${to}h${area.width}` }),
+      axis === 'x'
+        ? text(to + (right ? -5 : 5), area.y + down - 4, right ? 'end' : 'start', arrow + words)
+        : text(area.x + area.width - 4, to + (to < area.y + 20 ? 15 : -5), 'end', arrow + words),
+    );
+  });
+}
+
+const rings = (spots, across, up) =>
+  spots.map(({ x, y, text: words }) =>
+    svg('circle', { class: 'plot-spot', cx: across.at(x), cy: up.at(y), r: 8 }, svg('title', {}, words)),
+  );
+
+function legend(series, heading, left) {
+  const short = (name) => (name.length > NAME_MAX ? `${name.slice(0, NAME_MAX - 1)}…` : name);
+  return svg(
+    'g',
+    { class: 'plot-legend' },
+    text(left, FRAME.top + 4, 'start', short(heading), { class: 'plot-label' }),
+    series.map((one, index) => {
+      const y = FRAME.top + 26 + index * 20;
+      return svg(
+        'g',
+        styleOf(index),
+        svg('path', { class: 'plot-line', d: `M${left} ${y}h34`, 'stroke-dasharray': DASHES[index % DASHES.length] }),
+        svg('path', {
+          class: 'plot-marker',
+          d: MARKERS[index % MARKERS.length],
+          transform: `translate(${left + 17} ${y})`,
+        }),
+        text(left + 44, y + 4, 'start', short(one.name)),
+        svg('title', {}, one.name),
+      );
+    }),
+  );
+}
+
+export function plot({ title, x, y, series, heading = '', mark, marks = [], spots = [], ...more }) {
+  const { width: outer = WIDTH, legends = true } = more;
+  const many = legends && series.length > 1;
+  const width = outer - FRAME.left - FRAME.right - (many ? LEGEND : 0);
+  const area = {
+    x: FRAME.left,
+    y: FRAME.top,
+    width,
+    height: HEIGHT - FRAME.top - FRAME.bottom - (areSlanted(x.values, width) ? WORDS : 0),
+  };
+  const points = series.flatMap((one) => one.points);
+  const xs = points.map((point) => point.x);
+  const ys = finite([...points.flatMap((point) => [point.y, point.low, point.high]), mark]).filter(
+    (value) => !y.log || value > 0,
+  );
+  const [left, right] = x.values ? [-0.5, x.values.length - 0.5] : ends(finite(xs), x.log, false);
+  const [low, high] = ends(ys, y.log, mark === undefined);
+  const across = ruler({ log: x.log && !x.values, from: left, to: right, a: area.x, b: area.x + area.width });
+  const up = ruler({ log: y.log, from: low, to: high, a: area.y + area.height, b: area.y });
+  const shifts = shiftsOf(series);
+  const name = unique('plot');
+  return svg(
+    'svg',
+    { class: 'plot', viewBox: `0 0 ${outer} ${HEIGHT}`, role: 'img', 'aria-labelledby': name },
+    svg('title', { id: name }, title),
+    text(area.x, 17, 'start', title, { class: 'plot-title', 'aria-hidden': 'true' }),
+    axes(area, { ...x, points: xs }, y, across, up),
+    mark === undefined ? null : svg('path', { class: 'plot-mark', d: `M${area.x} ${up.at(mark)}h${area.width}` }),
+    lines(marks, area, across, up),
+    series.map((one, index) => line(one, index, across, up, shifts[index])),
+    rings(spots, across, up),
+    many ? legend(series, heading, area.x + area.width + 24) : null,
+  );
+}

@@ -1,0 +1,203 @@
+/* Shared scenes: links, files of the reader's computer, and the dialog Share. A link is the fragment #scene=CODE of the
+ * page's address; PNG images and HTML files hold the same code, which the laboratory checks; a page with the laboratory
+ * may hold one too (report/page.h).
+ * exports:
+ *   namesScene()        whether page or address have a scene, or the address names a file (engine_boot.js)
+ *   openLink(lab)       opens that scene, and that of the address whenever a link changes only the fragment
+ *   acceptDrops(lab)    opens a file that is dropped on the page
+ *   share(lab)          the dialog: copies a link, saves a file with the scene, and opens such a file */
+
+import { saveFile, savePage } from './save_file.js';
+import { button, copy, dialog, element, notice, replace } from './ui.js';
+
+/* --- links --- */
+
+const held = document.getElementById('cuvette-scene')?.textContent;
+const hasLink = () => location.hash.startsWith('#scene=');
+export const namesScene = () => Boolean(held) || hasLink() || new URLSearchParams(location.search).has('scene');
+
+export async function openLink(lab) {
+  addEventListener('hashchange', () => openFragment(lab));
+  if (held) await openText(lab, `#scene=${held}`);
+  else await openFragment(lab);
+}
+
+async function openFragment(lab) {
+  const link = location.hash;
+  if (!hasLink()) return;
+  history.replaceState(null, '', location.pathname + location.search); // a reload does not open it again
+  await openText(lab, link);
+}
+
+/* A page within another one, as in a notebook, has no address: only the fragment is copied. */
+const pageAddress = () => (location.protocol === 'about:' ? '' : new URL(location.pathname, location.href).href);
+
+const COPIED = {
+  server: 'Link copied. It holds the whole scene, and opens in any laboratory at that address.',
+  browser: 'Link copied. It holds the whole scene, and opens in any browser that can reach this page.',
+};
+
+async function openText(lab, link) {
+  try {
+    await lab.change('/api/open', { link });
+    lab.panels.reveal();
+    lab.say('The shared scene is shown. Undo restores the scene before.');
+  } catch (error) {
+    lab.fail(error);
+  }
+}
+
+async function copyLink(lab) {
+  try {
+    const { fragment, code } = await lab.get('/api/link');
+    await copy(`${pageAddress()}${fragment}${code}`);
+    lab.say(COPIED[lab.engine.kind]);
+  } catch (error) {
+    lab.fail(error);
+  }
+}
+
+/* --- files: PNG images and HTML pages --- */
+
+const BEGIN = '<script type="text/plain" id="cuvette-scene">';
+const KEYWORD = 'Cuvette scene';
+const LARGEST = 1 << 28; // bytes, as for files of the laboratory's folder
+
+async function openFile(lab, file) {
+  const code = file.size <= LARGEST ? codeOf(new Uint8Array(await file.arrayBuffer())) : null;
+  if (code) await openText(lab, `#scene=${code}`);
+  else
+    lab.fail({
+      message: `${file.name} holds no scene`,
+      remedy: 'choose a PNG image or HTML file of Cuvette; an image of a scene that reads files holds none',
+    });
+}
+
+export function acceptDrops(lab) {
+  const holdsFile = (event) => event.dataTransfer?.types.includes('Files');
+  addEventListener('dragover', (event) => {
+    if (holdsFile(event)) event.preventDefault();
+  });
+  addEventListener('drop', (event) => {
+    if (!holdsFile(event)) return;
+    event.preventDefault();
+    openFile(lab, event.dataTransfer.files[0]);
+  });
+}
+
+function codeOf(bytes) {
+  const png = [0x89, 0x50, 0x4e, 0x47].every((byte, at) => bytes[at] === byte);
+  return png ? codeOfPng(bytes) : codeOfPage(new TextDecoder().decode(bytes));
+}
+
+function codeOfPage(text) {
+  const at = text.indexOf(BEGIN);
+  return at < 0 ? null : text.slice(at + BEGIN.length).split('<', 1)[0];
+}
+
+/* The chunks of a PNG: length, type, data, checksum. iTXt (PNG specification, 11.3.3): keyword, 0, compressed, method,
+ * language, 0, translated keyword, 0, text. */
+function codeOfPng(bytes) {
+  const view = new DataView(bytes.buffer);
+  for (let at = 8; at + 12 <= bytes.length; at += 12 + view.getUint32(at)) {
+    const data = bytes.subarray(at + 8, at + 8 + view.getUint32(at));
+    if (word(bytes.subarray(at + 4, at + 8)) !== 'iTXt' || word(data.subarray(0, KEYWORD.length)) !== KEYWORD) continue;
+    const rest = data.subarray(KEYWORD.length + 3);
+    const text = rest.subarray(rest.indexOf(0, rest.indexOf(0) + 1) + 1);
+    return data[KEYWORD.length + 1] === 1 ? base64url(text) : null;
+  }
+  return null;
+}
+
+const word = (bytes) => String.fromCharCode(...bytes);
+
+function base64url(bytes) {
+  let text = '';
+  for (const byte of bytes) text += String.fromCharCode(byte);
+  return btoa(text).replace(/\+/g, '-').replace(/\//g, '_').replace(/=+$/, '');
+}
+
+/* --- the dialog --- */
+
+/* Why the scene cannot be shared, such as the files that it names; null if it can. */
+async function refusalOf(lab) {
+  try {
+    await lab.get('/api/link');
+  } catch (error) {
+    if (error.status === 409) return error;
+  }
+  return null;
+}
+
+export function share(lab) {
+  const input = element('input', { type: 'file', accept: '.png,.html', hidden: true });
+  const refusing = refusalOf(lab);
+  const act = (what) => async () => {
+    made.close();
+    what(await refusing);
+  };
+  const save = (file) => act((refusal) => file(refusal ? ` without the scene: ${refusal.message}` : ''));
+  const link = form(
+    'Copy link',
+    'copy',
+    lab.engine.kind === 'server'
+      ? 'A link with the scene, for a laboratory at the same address on this machine. Others can open the HTML file.'
+      : 'A link with the scene, which opens in any browser that can reach this page.',
+    act(() => copyLink(lab)),
+  );
+  const png = form(
+    'PNG with the scene',
+    'image',
+    'The image; Cuvette opens it again as a scene.',
+    save((more) => saveFile(lab, '/api/picture.png?wait=1&scene=1', 'png', more)),
+  );
+  const html = form(
+    'HTML file',
+    'save',
+    'Image, rays with their numbers, scene and command in one file that every browser opens, without Cuvette. ' +
+      'With the engine for browsers, if this laboratory has it, the reader can turn the scene too.',
+    save((more) => savePage(lab, more)),
+  );
+  const trouble = element('div', { 'aria-live': 'polite' });
+  const made = dialog({
+    title: 'Share',
+    content: [
+      trouble,
+      link.node,
+      png.node,
+      html.node,
+      form('Open a shared file …', 'folder', 'A PNG or HTML file, which can also be dropped on the page.', () =>
+        input.click(),
+      ).node,
+      input,
+    ],
+  });
+  input.addEventListener('change', () => {
+    made.close();
+    if (input.files[0]) openFile(lab, input.files[0]);
+  });
+  refusing.then((refusal) => {
+    if (!refusal) return;
+    const message = `Files are saved without the scene: ${refusal.message}.`;
+    replace(trouble, notice(message, { kind: 'warning', remedy: refusal.remedy }));
+    link.set('Copy link', 'Not possible for this scene.', true);
+    png.set('PNG without the scene', 'The image alone; Cuvette cannot open it as a scene.');
+    html.set(
+      'HTML file without the scene',
+      'Image, rays with their numbers and command; Cuvette cannot open it as a scene.',
+    );
+  });
+}
+
+function form(label, icon, words, act) {
+  const made = button(label, act, { icon });
+  const hint = element('p', { class: 'hint', text: words });
+  return {
+    node: element('div', { class: 'share-form' }, made, hint),
+    set(nextLabel, nextWords, disabled = false) {
+      made.querySelector('.button-label').textContent = nextLabel;
+      made.disabled = disabled;
+      hint.textContent = nextWords;
+    },
+  };
+}

@@ -1,0 +1,276 @@
+/* The page's copy of the laboratory's state, and the queue of changes: the object lab.
+ *
+ * exports: createLab() -> lab
+ *   lab.engine                          see engine.js
+ *   lab.get, lab.post, lab.del, lab.blob   see api.js; for requests that do not change the scene or need no order
+ *   lab.state, lab.scene, lab.picture, lab.slime, lab.study    the latest values; null before the first
+ *   lab.newestGeneration                the newest known generation; older images are shown until one of it exists
+ *   lab.dragging()                      whether changes follow each other
+ *   lab.newestPass                      the newest known pass, displayed or not
+ *   lab.connected                       'opening', 'open', 'lost' or 'refused'
+ *   lab.on(name, f) -> end()            names: state, scene, picture (a pass is displayed), pass (a pass is available),
+ *                                       slime, study, video, connection, restarted (a new server: all earlier data is
+ *                                       void), view (the image's placement changed), tool, panel (one was selected)
+ *   lab.emit(name, value)
+ *   lab.param(path)                     the row of that parameter; undefined: the scene has none
+ *   lab.object(name)                    the object of that name; undefined
+ *   lab.set(values, gesture)            {path: value}; promise of the reply. Sent in order; only the newest of a
+ *                                       gesture waits
+ *   lab.change(path, body, {gesture, merge})   any other POST that changes the scene, in the same order as set;
+ *                                       merge(waiting, body) -> body merges two of one gesture and path (default: the
+ *                                       newer replaces the older)
+ *   lab.refresh()                       fetches state and scene again
+ *   lab.start()                         opens the event stream
+ *   lab.say(text, remedy), lab.fail(error), lab.notes      set by main.js */
+
+import { createApi } from './api.js';
+import { createQueue } from './change_queue.js';
+import { engine } from './engine.js';
+
+const RETRY_MS = 1000;
+const STRANGER_RETRY_MS = 5000;
+const PULSE_MS = 10000;
+const SCENE_MS = 150; /* minimum time between two fetches of the scene */
+const DRAG_MS = 250; /* changes that follow each other within this time are a drag */
+const REST_MS = 150; /* a drag without a change for this time rests */
+const EVENTS = ['state', 'picture', 'slime', 'study', 'video'];
+
+function createEmitter() {
+  const listeners = new Map();
+  return {
+    on(name, listener) {
+      if (!listeners.has(name)) listeners.set(name, new Set());
+      listeners.get(name).add(listener);
+      return () => listeners.get(name).delete(listener);
+    },
+    emit(name, value) {
+      for (const listener of [...(listeners.get(name) || [])]) {
+        try {
+          listener(value);
+        } catch (error) {
+          console.error(error);
+        }
+      }
+    },
+  };
+}
+
+export function createLab() {
+  const { on, emit } = createEmitter();
+  let rows = new Map();
+  let objects = new Map();
+  let stream = null;
+  let retry = 0;
+  let fetching = null;
+  let again = false;
+  let stale = false;
+  let changedAt = -Infinity;
+  let dragged = false;
+
+  const api = createApi(engine, {
+    generation: (value) => want(value),
+    reached: () => undefined,
+    lost: () => lose('lost'),
+    refused: () => lose('refused'),
+  });
+
+  const lab = {
+    state: null,
+    scene: null,
+    picture: null,
+    newestPass: null,
+    slime: null,
+    study: null,
+    newestGeneration: 0,
+    connected: 'opening',
+    engine,
+    ...api,
+    on,
+    emit,
+    dragging: () => dragged && performance.now() - changedAt < REST_MS,
+    param: (path) => rows.get(path),
+    object: (name) => objects.get(name),
+    say: (text) => console.info(text),
+    fail: (error) => console.error(error),
+    start: connect,
+    refresh,
+  };
+  if (engine.reconnects) setInterval(pulse, PULSE_MS);
+  lab.change = createQueue(api.post, imageOf);
+  lab.set = (values, gesture) =>
+    lab
+      .change(
+        '/api/set',
+        { set: values },
+        {
+          gesture,
+          merge: (waiting, newer) => ({ set: { ...waiting.set, ...newer.set } }),
+        },
+      )
+      .then((reply) => {
+        const [first] = reply.notes || []; /* parameters that have no effect */
+        if (first) lab.say(`Note: ${first.place}: ${first.text}`, first.remedy);
+        return reply;
+      });
+  return lab;
+
+  function want(generation) {
+    if (generation <= lab.newestGeneration) return;
+    const now = performance.now();
+    dragged = now - changedAt < DRAG_MS;
+    changedAt = now;
+    lab.newestGeneration = generation;
+  }
+
+  function connection(value) {
+    if (lab.connected === value) return;
+    lab.connected = value;
+    emit('connection', value);
+  }
+
+  function lose(how) {
+    stream?.close();
+    stream = null;
+    connection(how);
+    clearTimeout(retry);
+    if (engine.reconnects) retry = setTimeout(connect, how === 'refused' ? STRANGER_RETRY_MS : RETRY_MS);
+  }
+
+  /* Events that come while recover waits for the state are held back: they may be newer than it. */
+  function connect() {
+    clearTimeout(retry);
+    stream?.close();
+    const mine = { held: null };
+    stream = mine;
+    mine.close = engine.events(EVENTS, {
+      open: () => recover(mine),
+      error() {
+        if (stream !== mine) return;
+        if (lab.connected === 'refused') lose('refused');
+        else ask();
+      },
+      event(name, value) {
+        if (stream !== mine) return;
+        if (mine.held) mine.held.push([name, value]);
+        else receive(name, value);
+      },
+    });
+  }
+
+  /* A broken connection may look open at this end. */
+  function pulse() {
+    if (lab.connected === 'open')
+      api.get('/api/state', PULSE_MS).catch((error) => {
+        if (error.status === 0) lose('lost');
+      });
+  }
+
+  /* The stream does not report the cause of its failure, but a request does. */
+  async function ask() {
+    lose('lost');
+    await lab.get('/api/state').catch(() => undefined);
+  }
+
+  /* A restarted server counts its generations from the beginning. */
+  async function recover(mine) {
+    if (stream !== mine) return;
+    mine.held ??= [];
+    try {
+      const state = await api.get('/api/state');
+      if (stream !== mine) return;
+      if (!lab.state || state.generation < lab.state.generation || lab.connected !== 'open') {
+        Object.assign(lab, { newestGeneration: 0, newestPass: null });
+        stale = true;
+        emit('restarted', null);
+      }
+      connection('open');
+      receive('state', state);
+    } catch (error) {
+      if (stream === mine && error.status !== 401 && error.status !== 0) lab.fail(error);
+    }
+    const held = mine.held ?? [];
+    mine.held = null;
+    if (stream === mine) for (const [name, value] of held) receive(name, value);
+  }
+
+  function receive(name, value) {
+    if (name === 'state') {
+      want(value.generation);
+      lab.state = value;
+      lab.slime = value.slime;
+      lab.study = value.study;
+      if (value.picture && !(lab.newestPass?.serial > value.picture.serial)) lab.newestPass = value.picture;
+      emit('state', value);
+      if (stale || !lab.scene || lab.scene.generation < value.generation) fetchScene();
+    } else if (name === 'picture') {
+      lab.newestPass = value;
+      emit('pass', value);
+    } else {
+      lab[name] = value;
+      if (lab.state) lab.state[name] = value;
+      emit(name, value);
+    }
+  }
+
+  function refresh() {
+    return api.get('/api/state').then((state) => receive('state', state));
+  }
+
+  /* Resolves when an image of the generation or a newer one exists, or when the signal is aborted. */
+  function imageOf(generation, signal) {
+    return new Promise((resolve) => {
+      const ends = ['pass', 'state', 'restarted'].map((name) =>
+        on(name, () => {
+          if (name === 'restarted' || exists()) finish();
+        }),
+      );
+      const exists = () => (lab.newestPass?.generation ?? 0) >= generation;
+      const finish = () => {
+        for (const end of ends) end();
+        resolve();
+      };
+      signal.addEventListener('abort', finish, { once: true });
+      if (exists()) finish();
+    });
+  }
+
+  /* Calls during a fetch are merged into one more fetch. */
+  async function fetchScene() {
+    if (fetching) {
+      again = true;
+      return;
+    }
+    fetching = true;
+    do {
+      again = false;
+      const complete = stale;
+      stale = false;
+      try {
+        const known = complete ? null : lab.scene;
+        const reply = await api.get(known ? `/api/scene?since=${known.generation}` : '/api/scene');
+        const scene = applyScene(known, reply);
+        rows = new Map(scene.params.map((row) => [row.path, row]));
+        objects = new Map(scene.objects.map((object) => [object.name, object]));
+        lab.scene = scene;
+        emit('scene', scene);
+        await new Promise((resolve) => setTimeout(resolve, SCENE_MS));
+      } catch (error) {
+        if (error.status) lab.fail(error);
+        again = false;
+        stale ||= complete;
+      }
+    } while (again && lab.state && lab.scene && lab.scene.generation < lab.state.generation);
+    fetching = null;
+  }
+}
+
+/* The scene of /api/scene?since=GENERATION: the differences from that generation are applied to the page's copy, which
+ * is not altered. A complete reply is the scene itself. */
+function applyScene(known, reply) {
+  if (reply.since === undefined) return reply;
+  const { since, order, params, ...parts } = reply;
+  const rows = new Map(known.params.map((row) => [row.path, row]));
+  for (const row of params) rows.set(row.path, row);
+  const paths = order || known.params.map((row) => row.path);
+  return { ...known, ...parts, params: paths.map((path) => rows.get(path)) };
+}

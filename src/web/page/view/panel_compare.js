@@ -1,0 +1,340 @@
+/* The panel Compare: the reference image A and the newest image B, as images and in numbers, and maps of the cost of
+ * each pixel. exports: panel */
+
+import {
+  button,
+  choice,
+  count,
+  digits,
+  element,
+  empty,
+  facts,
+  notice,
+  replace,
+  seconds,
+  slider,
+  table,
+  vector,
+} from '../shared/ui.js';
+import { createCompareView } from './compare_view.js';
+import { createCostMaps } from './cost_maps.js';
+
+const CLOSE_UP = 12; /* CSS pixels per image pixel */
+const writes = (target) =>
+  target.closest?.(
+    'input:not([type=range]):not([type=checkbox]):not([type=radio]), textarea, select, [contenteditable]',
+  );
+
+let model = null;
+
+/* Requests a comparison whenever there is a reference image and a final image that is not compared yet. */
+function createModel(lab) {
+  const listeners = new Set();
+  const mine = { answer: null, error: null, pin: null, current: false, on: (listener) => listeners.add(listener) };
+  let asking = false;
+  let again = false;
+  const key = (pin) => (pin ? pin.serial : 0);
+  lab.on('state', ({ pin }) => {
+    if (key(pin) === key(mine.pin)) return;
+    Object.assign(mine, { pin: pin || null, answer: null, error: null });
+    ask();
+  });
+  lab.on('picture', (picture) => {
+    mine.current = Boolean(mine.answer) && picture.final && mine.answer.b.serial === picture.serial;
+    if (picture.final && !mine.current) ask();
+    else tell();
+  });
+  lab.on('restarted', () => {
+    Object.assign(mine, { pin: null, answer: null, error: null });
+    tell();
+  });
+  return mine;
+
+  function tell() {
+    for (const listener of listeners) listener(mine);
+  }
+
+  async function ask() {
+    again = true;
+    tell();
+    if (asking) return;
+    asking = true;
+    while (again) {
+      again = false;
+      if (mine.pin && lab.picture?.final) await fetchAnswer(key(mine.pin));
+    }
+    asking = false;
+  }
+
+  async function fetchAnswer(of) {
+    try {
+      const answer = await lab.get('/api/compare');
+      if (key(answer.a) === of && of === key(mine.pin))
+        Object.assign(mine, { answer, error: null, current: answer.b.serial === lab.picture?.serial });
+    } catch (error) {
+      if (error.status === 409)
+        mine.current = false; /* B is being rendered again, or A was cleared: an event will follow */
+      else mine.error = error;
+    }
+    tell();
+  }
+}
+
+const same = ({ a, b }) => a.width === b.width && a.height === b.height;
+
+/* How A and B are shown: the mode, its slider, and the flip key. */
+function createShow(lab) {
+  const view = createCompareView(lab, setFraction);
+  const how = choice({
+    label: 'Show',
+    radios: true,
+    value: 'wipe',
+    choices: [
+      ['b', 'B'],
+      ['wipe', 'Wipe'],
+      ['map', 'Difference'],
+    ],
+    onchange: () => draw(),
+  });
+  const fraction = slider({
+    label: 'Share of A',
+    min: 0,
+    max: 100,
+    step: 1,
+    value: 50,
+    unit: '%',
+    oninput: (value) => setFraction(value / 100),
+  });
+  const strength = slider({
+    label: 'Strength',
+    min: 0,
+    max: 100,
+    step: 1,
+    value: 100,
+    unit: '%',
+    oninput: (value) => view.set({ strength: value / 100 }),
+  });
+  const flip = button('Hold to see A', null, { icon: 'eye', small: true, title: 'Hold the button or the key F' });
+  const legend = element('p', {
+    class: 'hint',
+    text: 'FLIP error: black for no difference, through purple and orange to pale yellow for large ones.',
+  });
+  const node = element(
+    'div',
+    { class: 'compare-show', hidden: true },
+    how.node,
+    fraction.node,
+    strength.node,
+    legend,
+    flip,
+  );
+  let addresses = { a: null, map: null };
+
+  hold(flip, view.flip);
+  return { node, set, markPixel: (pixel) => view.set({ pixel }) };
+
+  function setFraction(value) {
+    fraction.set(100 * value);
+    view.set({ fraction: value });
+  }
+
+  function set(next) {
+    addresses = next;
+    node.hidden = !next.a;
+    draw();
+  }
+
+  function draw() {
+    fraction.node.hidden = how.value !== 'wipe';
+    strength.node.hidden = legend.hidden = how.value !== 'map';
+    view.set({ ...addresses, map: how.value === 'map' ? addresses.map : null, mode: how.value });
+    const named = addresses.map ? 'Difference from A' : 'Difference from A: shown when the image is finished';
+    lab.view.note('compare', how.value === 'map' && addresses.a ? named : null, () => {
+      how.set('b');
+      draw();
+      lab.view.stage.focus();
+    });
+  }
+}
+
+function hold(node, flip) {
+  const on = (down) => (event) => {
+    if (event.type.startsWith('key') && event.key !== ' ' && event.key !== 'Enter') return;
+    flip(down);
+    if (event.type.startsWith('key')) event.preventDefault();
+  };
+  for (const name of ['pointerdown', 'keydown']) node.addEventListener(name, on(true));
+  for (const name of ['pointerup', 'pointercancel', 'pointerleave', 'keyup']) node.addEventListener(name, on(false));
+  node.addEventListener('blur', () => flip(false));
+  document.addEventListener('keydown', (event) => {
+    if (event.key.toLowerCase() === 'f' && !event.ctrlKey && !event.metaKey && !event.altKey && !writes(event.target))
+      flip(true);
+  });
+  document.addEventListener('keyup', (event) => {
+    if (event.key.toLowerCase() === 'f') flip(false);
+  });
+  window.addEventListener('blur', () => flip(false));
+}
+
+/* Zooms in with that pixel in the centre. */
+function closeUp(lab, x, y) {
+  const { view } = lab;
+  view.zoom(CLOSE_UP / view.scale, view.toScreen(x + 0.5, y + 0.5));
+  const at = view.toScreen(x + 0.5, y + 0.5);
+  view.pan(view.stage.clientWidth / 2 - at.x, view.stage.clientHeight / 2 - at.y);
+  view.stage.focus();
+}
+
+function pinButtons(lab) {
+  const ask = (work, done) => () =>
+    work()
+      .then(() => lab.say(done))
+      .catch(lab.fail);
+  const pin = button(
+    'Pin as A',
+    ask(() => lab.post('/api/pin', {}), 'Image pinned as A'),
+    { icon: 'pin', kind: 'primary' },
+  );
+  const drop = button(
+    'Clear A',
+    ask(() => lab.del('/api/pin'), 'A cleared'),
+    { icon: 'close', kind: 'quiet' },
+  );
+  return {
+    node: element('div', { class: 'compare-buttons' }, pin, drop),
+    show() {
+      pin.disabled = !lab.picture?.final;
+      pin.title = pin.disabled ? 'available when the image is finished' : 'make the current image the reference A';
+      drop.disabled = !model.pin;
+    },
+  };
+}
+
+function numbers({ a, b, comparison, changed }, goto) {
+  return element(
+    'div',
+    { class: 'compare-numbers' },
+    comparison ? null : notice(sizes(a, b), { kind: 'warning' }),
+    comparison && a.film_hash === b.film_hash ? notice('The two films are bit-identical.', { kind: 'good' }) : null,
+    comparison ? similarity(comparison, goto) : null,
+    changes(changed),
+    costs(a, b),
+  );
+}
+
+/* The map of an earlier image would hide the newest one while the scene changes or a slime plays. */
+function addressesOf({ pin, answer, current }) {
+  if (!pin || (answer && !same(answer))) return { a: null, map: null };
+  const map = current && answer?.comparison ? `/api/compare.png?a=${pin.serial}&b=${answer.b.serial}` : null;
+  return { a: `/api/pin.png?a=${pin.serial}`, map };
+}
+
+function create(root, lab) {
+  const buttons = pinButtons(lab);
+  const how = createShow(lab);
+  const below = element('div', { class: 'compare-below' });
+  root.append(buttons.node, how.node, below, createCostMaps(lab).node);
+  const goto = (x, y) => {
+    how.markPixel([x, y]);
+    closeUp(lab, x, y);
+  };
+  let shown = null;
+  const show = () => {
+    buttons.show();
+    how.set(addressesOf(model));
+    if (model.answer && !model.error) {
+      if (shown !== model.answer) {
+        replace(below, numbers(model.answer, goto));
+        how.markPixel(null);
+      }
+      below.firstChild.setAttribute('aria-busy', String(!model.current));
+      shown = model.answer;
+      return;
+    }
+    shown = null;
+    how.markPixel(null);
+    if (model.error) replace(below, notice(model.error.message, { kind: 'error', remedy: model.error.remedy }));
+    else
+      replace(
+        below,
+        empty(
+          model.pin
+            ? 'A is pinned. The comparison appears when the image is finished.'
+            : 'Pin the finished image as A, then change the scene to compare.',
+        ),
+      );
+  };
+  model.on(show);
+  show();
+}
+
+export const panel = {
+  id: 'compare',
+  title: 'Compare',
+  css: 'view/panel_compare.css',
+  start: (lab) => {
+    model = createModel(lab);
+  },
+  create,
+};
+
+/* --- the numbers: tables of the reply of /api/compare --- */
+
+const sizes = (a, b) =>
+  `A has ${a.width} × ${a.height} pixels, B ${b.width} × ${b.height}: only images of the same ` +
+  `size can be compared.`;
+
+/* null means infinity: identical images have no error. */
+const decibels = (value) => (value === null ? '∞ (equal)' : `${digits(value)} dB`);
+
+function similarity(comparison, goto) {
+  const { largest, largest_at: place } = comparison;
+  const where = place
+    ? element(
+        'span',
+        { class: 'compare-largest' },
+        `${digits(largest)} at `,
+        button(`${place[0]}, ${place[1]}`, () => goto(...place), { small: true, title: 'Show this pixel' }),
+      )
+    : '0';
+  return facts([
+    ['PSNR', decibels(comparison.psnr_db)],
+    ['SSIM', digits(comparison.ssim, 5)],
+    ['FLIP', digits(comparison.flip)],
+    ['Largest difference', where],
+    ['Pixels that differ', `${digits(100 * comparison.differing_share)} %`],
+  ]);
+}
+
+const ratio = (a, b) => (a > 0 && Number.isFinite(b) ? `× ${digits(b / a, 3)}` : '–');
+const rate = ({ rays, wall_s: wall }) => (wall > 0 ? rays / wall : NaN);
+
+function costs(a, b) {
+  const line = (name, x, y, words) => [name, words(x), words(y), ratio(x, y)];
+  return table({
+    caption: 'Rendering cost',
+    columns: ['Cost', { label: 'A', numeric: true }, { label: 'B', numeric: true }, { label: 'B / A', numeric: true }],
+    rows: [
+      line('Wall time', a.wall_s, b.wall_s, seconds),
+      line('CPU time', a.cpu_s, b.cpu_s, seconds),
+      line('Rays', a.rays, b.rays, count),
+      line('Rays per second', rate(a), rate(b), count),
+      line('Threads', a.threads, b.threads, count),
+      ['Film', hash(a), hash(b), a.film_hash === b.film_hash ? 'the same' : 'different'],
+    ],
+  });
+}
+
+const hash = ({ film_hash: text }) => element('code', { class: 'film-hash', text: text || '–' });
+
+const value = (what) =>
+  what === null ? '–' : Array.isArray(what) ? vector(what) : typeof what === 'number' ? digits(what, 6) : String(what);
+
+function changes(list) {
+  if (!list.length) return element('p', { class: 'hint', text: 'Both scenes have the same parameters.' });
+  return table({
+    caption: 'Parameters that changed',
+    columns: ['Parameter', 'A', 'B'],
+    rows: list.map(({ path, a, b }) => [path, value(a), value(b)]),
+  });
+}
