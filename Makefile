@@ -218,13 +218,13 @@ include mk/install.mk mk/tests.mk mk/check.mk mk/doc.mk mk/wasm.mk mk/bench.mk m
 
 compiled_objects := $(library_objects) $(program_objects) $(web_objects) $(mpi_objects) $(importer_objects) \
   $(replayed) $(fuzzed_objects)
--include $(compiled_objects:.o=.d) $(addsuffix .d,$(test_programs) $(fuzzers) $(benches) $(build)/tests/power/reader \
+-include $(compiled_objects:.o=.d) $(test_dependencies) $(addsuffix .d,$(fuzzers) $(build)/tests/power/reader \
   $(build)/peers/embree $(build)/account_keys)
 
 # For clangd and other tools that parse C: all C files, with the flags of this configuration.
 .PHONY: compiled compile_commands.json
-by_scripts := tests/json_get.c tests/free_space.c tests/limit.c tests/visible.c \
-  $(wildcard tests/interrupt/*.c experiments/engine/*.c tests/faults/*.c tests/power/*.c)
+by_scripts := $(filter-out %/recheck.c,$(wildcard tests/tools/*.c)) \
+  $(wildcard experiments/engine/*.c tests/faults/*.c tests/power/*.c)
 compiled: all peers $(mpi_objects) $(test_programs) $(benches) $(build)/tests/recheck $(fuzzers) \
   $(by_scripts:%.c=$(build)/by-scripts/%.o)
 $(build)/by-scripts/%.o: %.c $(build)/flags
@@ -238,7 +238,7 @@ compile_commands.json:
 .PHONY: format clean distclean help
 ## format: lay out C, shell and, after setup-web, the page
 format:
-	@tests/format.sh --write $(build)/web-tests
+	@tests/source/format.sh --write $(build)/web-tests
 ## clean, distclean: remove the build folder; also tables and figures
 clean:
 	rm -rf $(build)

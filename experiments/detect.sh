@@ -23,8 +23,8 @@ while IFS=$'\t' read -r file old new; do
     [[ $text == *base/injected.h* ]] || text=${text/'#include'/$'#include "base/injected.h"\n#include'}
     printf '%s\n' "${text/"$old"/"$new"}" >"$copy/$file"
 done <tests/faults/detect.tsv
-cp tests/faults/detect.c "$copy/tests/bench_detect.c" # a name that the Makefile has a rule for
-echo '#include "base/injected.h"' >"$copy/tests/injected.h"
+cp tests/faults/detect.c "$copy/tests/bench/bench_detect.c" # a name that the Makefile has a rule for
+echo '#include "base/injected.h"' >"$copy/tests/bench/injected.h"
 make -s -j2 -C "$copy" warnings= build/tests/bench_detect >"$copy/log" 2>&1 || {
     cat "$copy/log" >&2
     exit 1

@@ -1,6 +1,6 @@
 #!/bin/bash
 # films.sh - the film hash and ray counts of every shipped scene, small, on one machine: one row a scene. The rows of
-# all machines must agree (tests/machines.sh).
+# all machines must agree (tests/experiments/machines.sh).
 #   experiments/films.sh --cuvette PROGRAM --name NAME --out FILE [--isas "sse2 avx2"] [--compiler NAME]
 #                        [--processor NAME] [--emulated qemu] [--run "qemu-s390x -L SYSTEM"]
 #   experiments/films.sh --wasm MODULES --name NAME --out FILE     the modules of make wasm, in node

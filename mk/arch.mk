@@ -20,9 +20,9 @@ $(foreach i,$(isas),$(eval $(call kernel_rule,$(i))))
 .PHONY: vectorise test-arch
 ## vectorise: report which kernel loops are vectorised
 vectorise: $(build)/flags
-	@CHECK=1 $(kernel_environment) bash tests/vectorise.sh | sed -n 's/^# //p; /^not ok/p'; exit $${PIPESTATUS[0]}
+	@CHECK=1 $(kernel_environment) bash tests/source/vectorise.sh | sed -n 's/^# //p; /^not ok/p'; exit $${PIPESTATUS[0]}
 
 # Debian's cross compilers and qemu-user: arch="s390x" for one of .ci/architectures, SIZE=160x120 for larger films.
 ## test-arch: arm64, s390x, riscv64: films, files as on this machine
 test-arch: $(build)/cuvette $(build)/cuvette-import
-	@CUVETTE='$(abspath $(build)/cuvette)' MAKE='$(MAKE)' tests/arch.sh $(build)/arch $(arch)
+	@CUVETTE='$(abspath $(build)/cuvette)' MAKE='$(MAKE)' tests/check/arch.sh $(build)/arch $(arch)

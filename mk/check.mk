@@ -4,7 +4,7 @@
 .PHONY: sanitize tsan valgrind clang
 ## sanitize, tsan: test with the sanitizers; only=NAME
 under_valgrind := valgrind -q --error-exitcode=9 --leak-check=full --max-threads=1100 \
-  --suppressions=tests/valgrind.supp
+  --suppressions=tests/tools/valgrind.supp
 ## valgrind, clang: test programs under valgrind; all tests with clang
 sanitize:
 	@$(MAKE) STRICT=1 config=sanitize build=$(build)/sanitize TEST_LIMIT_S=3600 test
@@ -24,7 +24,8 @@ instructions: $(build)/cuvette
 ## power-cuts: all states that a power cut can leave (10 min)
 power-cuts: $(build)/cuvette $(power_tools)
 	@BUILD='$(build)' CONFIG='$(config)' CUVETTE='$(abspath $(build)/cuvette)' POWER_STATES=$${POWER_STATES:-1000000} \
-	  POWER_STATES_PER_CUT=$${POWER_STATES_PER_CUT:-20000} POWER_RESUMED=$${POWER_RESUMED:-30} bash tests/power_cuts.sh
+	  POWER_STATES_PER_CUT=$${POWER_STATES_PER_CUT:-20000} POWER_RESUMED=$${POWER_RESUMED:-30} \
+	  bash tests/power/power_cuts.sh
 
 # Random scenes in runs of 10 000, one run per processing unit at a time; LAWS_SCENES in total for each law, starting
 # with LAWS_SEED. law-faults inserts known faults into the sources, one at a time: the laws must detect each.
@@ -45,7 +46,7 @@ law-faults:
 ## faults, fault-checks: fail all allocations and calls; and without some checks
 faults: $(build)/cuvette $(build)/cuvette-import $(fault_tools)
 	@BUILD='$(build)' CUVETTE='$(abspath $(build)/cuvette)' FAULTS_EVERY=1 FAULTS_DEPTH=0 FAULTS_ONLY='$(only)' \
-	  FAULTS_KINDS='$(kinds)' bash tests/faults.sh
+	  FAULTS_KINDS='$(kinds)' bash tests/faults/faults.sh
 fault-checks: $(build)/cuvette $(build)/cuvette-import $(fault_tools)
 	@BUILD='$(abspath $(build))' tests/faults/checks.sh
 
@@ -91,7 +92,7 @@ MOMENTS ?= 1000
 ## interrupts: Ctrl-C at MOMENTS=1000 moments of all commands
 interrupts: $(build)/cuvette $(build)/cuvette-import
 	@rm -f $(build)/interrupts.txt; $(programs) CC='$(CC)' \
-	  LATENCY='$(abspath $(build)/interrupts.txt)' MOMENTS=$$((($(MOMENTS) + 31) / 32)) bash tests/interrupt.sh all
+	  LATENCY='$(abspath $(build)/interrupts.txt)' MOMENTS=$$((($(MOMENTS) + 31) / 32)) bash tests/cli/interrupt.sh all
 
 # The fuzzers that have waited longest: FUZZ_TOTAL seconds in all, FUZZ_SECONDS each; only=NAME for tests/fuzz/NAME.c
 # alone. fuzz-merge renews tests/fuzz/corpus from what they kept.

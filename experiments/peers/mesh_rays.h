@@ -1,4 +1,4 @@
-/* The rays of the mesh benches, the same for Cuvette (tests/bench_mesh.c) and for Embree (embree.c): a camera of 800 x
+/* The rays of the mesh benches, the same for Cuvette (bench_mesh.c) and for Embree (embree.c): a camera of 800 x
  * 600 pixels in front of the sets of triangles, and a shadow ray to a point light from each hit. Single precision, so
  * that both start from the same bits. Pure functions; cannot fail. */
 #pragma once

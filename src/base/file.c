@@ -410,8 +410,8 @@ status file_write(const char *path, const char *text, diagnostic *why)
 
 /* ---- folders ---- */
 
-/* A new folder survives a power cut only once its entry in the parent folder is on disk. The last folder is flushed even
- * if it exists: the process that made it may have been killed before that. */
+/* A new folder survives a power cut only once its entry in the parent folder is on disk. The last folder is flushed
+ * even if it exists: the process that made it may have been killed before that. */
 static int make_one_directory(const char *path, bool last)
 {
     struct stat about;

@@ -1,5 +1,5 @@
-/* Queries: a scene prepared for the caller's rays. A query is immutable; the scratch memory of a call (query_buffers) is
- * taken from a free list and returned to it, so that any number of threads may query, and a single ray costs no
+/* Queries: a scene prepared for the caller's rays. A query is immutable; the scratch memory of a call (query_buffers)
+ * is taken from a free list and returned to it, so that any number of threads may query, and a single ray costs no
  * allocation. */
 #include "base/number.h"
 #include "engine/query_private.h"

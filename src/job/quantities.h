@@ -1,10 +1,10 @@
 /* The list of measured quantities: name, unit, type and meaning of each, how the values of several frames are combined,
  * where it is shown, and how it is read from an account. Everything that shows them is generated from it: the columns
- * of rows.csv and workers.csv (study/rows/rows.c), `cuvette render --json` and the page's numbers (report/report.c), the
- * dictionary in results/README.md (make dictionary renews it) and cuvette-account(5). A
+ * of rows.csv and workers.csv (study/rows/rows.c), `cuvette render --json` and the page's numbers (report/report.c),
+ * the dictionary in results/README.md (make dictionary renews it) and cuvette-account(5). A
  * new quantity is one new line in quantities.c; summaries of studies and the page name those that they show
- * (study/summary/summary.c, web/page/status.js, panel_compare.js, studies/data.js). Ownership: constant; values borrow from the
- * account. Nothing fails. */
+ * (study/summary/summary.c, web/page/status.js, panel_compare.js, studies/data.js). Ownership: constant; values borrow
+ * from the account. Nothing fails. */
 #pragma once
 
 #include "job/account.h"

@@ -39,9 +39,10 @@ typedef double level_statistic(const level_sample *a, const level_sample *b, voi
  * one. */
 status level_bootstrap(const level_sample *a, const level_sample *b, bool paired, level_statistic *statistic,
                        void *context, uint64_t seed, level_interval *out, diagnostic *why);
-/* The parts of level_bootstrap, for statistics with other samples (study/summary/contrast_parts.h). level_draw: a number below
- * count, the same for the same arguments; stream: equal for samples that are drawn as pairs. level_set_interval: the
- * interval of out->value from LEVEL_RESAMPLES resampled values, of samples of `draws` processes; reorders them. */
+/* The parts of level_bootstrap, for statistics with other samples (study/summary/contrast_parts.h). level_draw: a
+ * number below count, the same for the same arguments; stream: equal for samples that are drawn as pairs.
+ * level_set_interval: the interval of out->value from LEVEL_RESAMPLES resampled values, of samples of `draws`
+ * processes; reorders them. */
 enum { LEVEL_RESAMPLES = 2000 };
 size_t level_draw(uint64_t seed, uint32_t round, uint32_t stream, uint32_t process, size_t count);
 void level_set_interval(double *values, size_t draws, level_interval *out);

@@ -177,8 +177,7 @@ static status send_orders(lead *l, const scene *s, bool measured, diagnostic *wh
     return l->ranks > 1 ? scene_wire_send(s, &l->scene_bytes, why) : STATUS_OK;
 }
 
-static status begin(void *of, const scene *s, const render_options *requested, const tile_source **own,
-                    diagnostic *why)
+static status begin(void *of, const scene *s, const render_options *requested, const tile_source **own, diagnostic *why)
 {
     lead *l = of;
     TRY(refuse(s, requested, why));

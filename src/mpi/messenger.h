@@ -24,9 +24,9 @@ enum {
     TAG_TILES,     /* from rank 0: wire_head, then the tiles' numbers, int32_t */
     TAG_END,       /* from rank 0: wire_head; no tile is left */
     TAG_STOP,      /* from rank 0: wire_head; the frame is given up */
-    TAG_PIECE, /* to rank 0: wire_head, then sums and, with replicates, variances: 3 values for each pixel of the tile */
-    TAG_REPORT, /* to rank 0: rank_report, then its workers' reports */
-    TAG_QUIT    /* to all: wire_head; the program ends */
+    TAG_PIECE,     /* to rank 0: wire_head, then sums and, with replicates, variances: 3 values per pixel */
+    TAG_REPORT,    /* to rank 0: rank_report, then its workers' reports */
+    TAG_QUIT       /* to all: wire_head; the program ends */
 };
 
 typedef struct wire_head {

@@ -1,6 +1,7 @@
 /* A tile worker.
  *
- * laboratory -> worker  {tiles: WebAssembly.Module}, first; {scene: bytes}, whose error the next answer has; {order: bytes}
+ * laboratory -> worker  {tiles: WebAssembly.Module}, first; {scene: bytes}, whose error the next answer has;
+ *                       {order: bytes}
  * worker -> laboratory  {traced: bytes} for each order, or {failed: text} */
 
 let tracer = null; /* emscripten's module */

@@ -50,7 +50,8 @@ typedef struct tile_order {
     int32_t first, count;   /* tiles first .. first + count - 1 */
 } tile_order;
 
-/* Then, for each tile: its number as int64_t, sums and, with replicates, variances: 3 values for each pixel of the tile. */
+/* Then, for each tile: its number as int64_t, sums and, with replicates, variances: 3 values for each pixel of the
+ * tile. */
 typedef struct tile_answer {
     tile_order of;
     int32_t code, traced;   /* a status; tiles that follow */

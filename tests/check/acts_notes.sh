@@ -1,6 +1,6 @@
 #!/bin/bash
-# tests/check/acts_notes.sh FOLDER: whether the twelve slices of test_acts, whose notes are in FOLDER, have proved each
-# note (tests/test_acts.c). The status is 77 if not all of them have run.
+# acts_notes.sh FOLDER: whether the twelve slices of test_acts, whose notes are in FOLDER, have proved each
+# note (tests/lint/test_acts.c). The status is 77 if not all of them have run.
 set -euo pipefail
 notes=("$1"/acts-*.notes)
 ((${#notes[@]} == 12)) || {

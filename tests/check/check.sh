@@ -1,5 +1,5 @@
 #!/bin/bash
-# tests/check/check.sh, run by `make check`: everything that checks Cuvette, in slices. Each run goes on where the last
+# check.sh, run by `make check`: everything that checks Cuvette, in slices. Each run goes on where the last
 # one stopped: slices that failed come first, then those that have waited longest; those that have passed with the
 # present sources are not run again. The last lines are a table of what ran, and how many have passed.
 #   check.sh [NAME...]    the slices of these names (acts-3), or whose names begin with them (acts, sanitize)
@@ -27,9 +27,9 @@ in_groups() {
 # All slices, a line each: name, tab, command.
 slices() {
     local i
-    local -a tests commands threaded=(tracer_pool worker_pool renderer render path_determinism determinism
+    local -a tests commands threaded=(worker_pool renderer render sampling_kernels determinism
         lab_render_worker lab_live lab_semaphore lab_rescue lab_load http study_run engine piece_source tracing)
-    mapfile -t tests < <(printf '%s\n' tests/test_*.c | sed 's,tests/test_\(.*\)\.c,\1,')
+    mapfile -t tests < <(find tests -name 'test_*.c' | sed 's,.*/test_\(.*\)\.c,\1,' | sort)
     mapfile -t commands < <(awk '/^[a-z]/ { print $1 }' tests/faults/commands.txt)
     for i in {0..11}; do
         printf 'acts-%d\tACTS_SLICE=%d/12 ACTS_NOTES="%s" make -s test only=acts\n' "$i" "$i" "$check/acts-$i.notes"
@@ -50,8 +50,8 @@ slices() {
     printf 'mutants\tMUTANT_SECONDS=250 tests/mutants/mutants.sh\n'
 }
 # Tests that are shorter in `make test`: scripts look at the variable CHECK, programs include whole.h.
-mapfile -t whole < <(grep -lE '\{CHECK:[-+]|^#include "whole.h"' tests/*.sh tests/test_*.c |
-    sed 's,tests/,,; s,^test_,,; s,\.[a-z]*$,,')
+mapfile -t whole < <(grep -rlE --include='*.sh' --include='test_*.c' '\{CHECK:[-+]|^#include "whole.h"' tests |
+    sed 's,.*/,,; s,^test_,,; s,\.[a-z]*$,,' | sort)
 
 sources() {
     find Makefile mk .ci src tests experiments plots paper -type f -print0 | sort -z | xargs -0 sha256sum | sha256sum
@@ -77,7 +77,7 @@ due() { # KEY NAME...
 }
 
 # Runs a slice within what is left of the time, and notes how it ended: name, key, when, result, seconds, last line.
-# tests/limit.c, without limits here, ends all its processes at the end of the time and at Ctrl-C.
+# tests/tools/limit.c, without limits here, ends all its processes at the end of the time and at Ctrl-C.
 run_slice() { # NAME COMMAND KEY
     local begun=$SECONDS code=0 result
     TEST_LIMIT_S=1e9 TEST_IDLE_S=1e9 timeout --foreground $((CHECK_SECONDS - SECONDS)) "$check/limit" \
@@ -104,7 +104,7 @@ fi
 key=$(sources | cut -c 1-16)
 [[ $(cat "$check/key" 2>/dev/null) == "$key" ]] || rm -f "$check"/acts-*.notes
 echo "$key" >"$check/key"
-"${CC:-gcc}" -std=gnu17 -D_GNU_SOURCE -O1 -o "$check/limit" tests/limit.c -lm || exit 1
+"${CC:-gcc}" -std=gnu17 -D_GNU_SOURCE -O1 -o "$check/limit" tests/tools/limit.c -lm || exit 1
 failed=0 ran=0
 mapfile -t list < <(due "$key" "$@")
 for line in "${list[@]}"; do

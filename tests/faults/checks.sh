@@ -1,5 +1,5 @@
 #!/bin/bash
-# tests/faults/checks.sh [N...]: removes each check of checks.tsv (or those of the numbers given) from a copy of the
+# checks.sh [N...]: removes each check of checks.tsv (or those of the numbers given) from a copy of the
 # sources, builds it, and expects that the injected faults find it. A missing check that they do not find is reported,
 # and the status is 1. BUILD is the folder with the tools of make faults.
 set -euo pipefail
@@ -32,7 +32,7 @@ while IFS=$'\t' read -r file old new command kind; do
     printf '%s\n' "${text/"$old"/"$new"}" >"$work/$file"
     build
     CUVETTE=$work/build/cuvette FAULTS_EVERY=1 FAULTS_DEPTH=0 FAULTS_ONLY=$command FAULTS_KINDS=$kind \
-        FAULTS_SHOWN=1 bash "$work/tests/faults.sh" >"$work/out" 2>&1 && status=0 || status=$?
+        FAULTS_SHOWN=1 bash "$work/tests/faults/faults.sh" >"$work/out" 2>&1 && status=0 || status=$?
     found=$(sed -n 's/^# \(crash\|silent\|message\|leftover\|leak\), call/\1 of call/p' "$work/out" |
         head -1 | cut -c 1-150)
     if ((status == 1)) && [[ $found ]]; then

@@ -1,5 +1,5 @@
 #!/bin/bash
-# tests/faults/laws.sh [N...]: puts each fault of laws.tsv (or those of the numbers given) into a copy of the sources,
+# laws.sh [N...]: puts each fault of laws.tsv (or those of the numbers given) into a copy of the sources,
 # builds tests/test_laws there and expects it to fail. A fault that no law catches is reported, and the status is 1.
 # LAWS_SCENES=10000 is how many scenes each law may use, of each of eight seeds: some faults show once in 40 000 scenes.
 set -euo pipefail

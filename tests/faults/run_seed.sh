@@ -1,5 +1,5 @@
 #!/bin/bash
-# tests/faults/run_seed.sh PROGRAM SEED: one run of tests/test_laws; what it says of each law behind its seed, and all
+# run_seed.sh PROGRAM SEED: one run of tests/test_laws; what it says of each law behind its seed, and all
 # of it when a law is broken.
 output=$(LAWS_SEED=$2 nice "$1" 2>&1)
 status=$?

@@ -1,5 +1,5 @@
 #!/bin/bash
-# tests/faults/template.sh FOLDER: the files that the commands of tests/faults/commands.txt use: small scenes, images,
+# template.sh FOLDER: the files that the commands of tests/faults/commands.txt use: small scenes, images,
 # rows. CUVETTE names the program.
 set -euo pipefail
 root=$(cd "$(dirname "$0")/../.." && pwd)

@@ -1,5 +1,5 @@
 /* What the fuzzers share. A fuzzer is a file tests/fuzz/NAME.c with one function for one reader: any bytes are read or
- * refused, and what is accepted is checked. `make fuzz` runs them with libFuzzer; tests/test_fuzz_corpus.c replays
+ * refused, and what is accepted is checked. `make fuzz` runs them with libFuzzer; test_fuzz_corpus.c replays
  * tests/fuzz/corpus/NAME in every build (FUZZ_REPLAY is then defined, and the function has the name fuzz_NAME). A wrong
  * result aborts. Ownership: values; the folder of a process is removed when it ends. */
 #pragma once

@@ -1,8 +1,8 @@
 #!/bin/bash
-# tests/fuzz/run.sh BUILD [NAME...] runs the fuzzers of BUILD/tests, the one that has waited longest first, each for
+# run.sh BUILD [NAME...] runs the fuzzers of BUILD/tests, the one that has waited longest first, each for
 # FUZZ_SECONDS (60) and all for FUZZ_TOTAL seconds (without it: each once). New inputs are kept in BUILD/corpus/NAME,
 # the time of the last run is that of BUILD/corpus/NAME.ran, and an input that fails is BUILD/corpus/NAME-crash-...
-#   tests/fuzz/run.sh --merge BUILD [NAME...]   renews tests/fuzz/corpus/NAME: the fewest and shortest inputs that
+#   run.sh --merge BUILD [NAME...]   renews tests/fuzz/corpus/NAME: the fewest and shortest inputs that
 #                                               reach the same code. SEEDS: a folder of further inputs, SEEDS/NAME
 # Status: 0; 1 if a fuzzer found something.
 set -uo pipefail
@@ -33,7 +33,7 @@ folders() {
         [[ -n $folder && -d $folder ]] && printf '%s\n' "$folder"
     done
     case $1 in
-    scene | script | shared | study | lesson) find experiments tests/bad* -type d ;;
+    scene | script | shared | study | lesson) find experiments tests/bad -type d ;;
     esac
 }
 

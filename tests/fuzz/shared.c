@@ -1,6 +1,6 @@
 /* The libFuzzer entry for scenes of strangers: any bytes are a PNG image or a shared page, the code of a link, or the
  * text of a shared scene. An accepted scene names no files, and can be shared again: the text is then read as the same
- * scene. tests/bad-shared has whole ones to start from, and what was found. */
+ * scene. tests/bad/shared has whole ones to start from, and what was found. */
 #include "scene/file/shared.h"
 #include "image_fuzz.h"
 

@@ -1,6 +1,6 @@
 /* The libFuzzer entry for the study reader: any bytes give a study or one located error; an accepted study provides the
  * scene of every cell. The scenes that it may name are those of experiments/scenes. `make fuzz` builds and runs it;
- * seeds are experiments/ and tests/bad-studies/. */
+ * seeds are experiments/ and tests/bad/studies/. */
 #include "study/study.h"
 
 #include "fuzz.h"

@@ -1,5 +1,5 @@
 #!/bin/bash
-# tests/mutants/mutants.sh, run by `make mutants`: small errors in src/optics, src/geometry, src/render and src/study,
+# mutants.sh, run by `make mutants`: small errors in src/optics, src/geometry, src/render and src/study,
 # one at a time, that a unit test must detect. MUTANTS (600) are drawn by SEED (1) and compiled into one copy of the
 # sources, build/mutants/tree (instrument.py); run.py runs the tests. The same command goes on where it stopped, after
 # MUTANT_SECONDS at most, as long as the sources are the same; tests that changed or are new run with those that
@@ -26,7 +26,7 @@ cp -ru tests "$tree"
 begun=$SECONDS limit=${MUTANT_SECONDS:-1000000} code=0
 # shellcheck disable=SC2046 # names of programs
 nice timeout --foreground "$limit" make -j"$(nproc)" -s -C "$tree" warnings=-w all \
-    $(cd "$tree" && printf 'build/%s ' tests/test_*.c | sed 's/\.c / /g') \
+    $(find "$tree/tests" -name 'test_*.c' -printf 'build/tests/%f\n' | sed 's/\.c$//') \
     >"$work/build.log" 2>&1 || code=$?
 if ((code == 124)); then
     echo "${MUTANTS:-600} mutants: still being compiled after $limit s; the same command goes on"

@@ -1,7 +1,7 @@
 """What must hold after a power cut: the rules by which tests/power/power_cuts.py judges a tree.
 
-A row is acknowledged when fsync of its file has returned; any other file when the program has gone on after it, which is
-known for certain when the program has ended with status 0. The promise is in cuvette-study(1).
+A row is acknowledged when fsync of its file has returned; any other file when the program has gone on after it, which
+is certain when the program has ended with status 0. The promise is in cuvette-study(1).
 """
 
 import csv

@@ -1,7 +1,7 @@
-// The films of all shipped scenes in real browsers: node tests/wasm/browsers.mjs --program build/cuvette --wasm build/wasm
+// The films of all shipped scenes in real browsers: browsers.mjs --program build/cuvette --wasm build/wasm
 // [--browser chromium] [--browser firefox-esr] [--size 160x120] [SCENE ..]. Each browser runs headless, by its own
-// command line alone, on a page that renders every scene in the laboratory's worker, with and without SIMD, with one and
-// with several tile workers, and sends back film hashes and ray counts; they have to equal those of the program.
+// command line alone, on a page that renders every scene in the laboratory's worker, with and without SIMD, with one
+// and with several tile workers, and sends back film hashes and ray counts; they have to equal those of the program.
 import { execFileSync, spawn } from 'node:child_process';
 import { createServer } from 'node:http';
 import { mkdtempSync, readdirSync, readFileSync, rmSync, statSync } from 'node:fs';

@@ -1,7 +1,7 @@
 """The documentation as HTML: build.py CUVETTE MANUAL FOLDER [LABORATORY] (make doc, make site).
 
-MANUAL is the folder of the complete manual pages, build/man. LABORATORY is the address of a laboratory that runs in the browser, relative to FOLDER: pages link to it.
-
+MANUAL is the folder of the complete manual pages, build/man. LABORATORY is the address of a laboratory that runs in the
+browser, relative to FOLDER: pages link to it. 
 Every page comes from a source that is also read elsewhere: manual pages, Markdown, the public header, lessons. FOLDER
 must not exist or be empty. The same sources and program give the same bytes."""
 

@@ -9,13 +9,13 @@
  * is between lamp and surface can tell: sheets in shadow rays, all surfaces on the paths of photons, and those that a
  * random path meets last before the lamp.
  *
- * Sheets: polarising filters and wave plates (scene/model/medium.h). They act once at each passage: what the ray carries
- * is multiplied where it leaves the region, or ends in it, so that a reflection in it starts another passage. Between
- * regions of equal index there is no interface: the ray goes straight on, at the same depth. A shadow ray starts with
- * the row of a matte surface, which sees the intensity alone, or of a rough one's facet, and ends at a lamp, whose
- * Stokes vector waits in its queue: two crossed polarisers leave nothing of unpolarised light, one that is crossed with
- * a polarised lamp is enough. Without polarisation every passage keeps the mean of a polariser's transmittances.
- * Ownership: values; nothing fails. */
+ * Sheets: polarising filters and wave plates (scene/model/medium.h). They act once at each passage: what the ray
+ * carries is multiplied where it leaves the region, or ends in it, so that a reflection in it starts another passage.
+ * Between regions of equal index there is no interface: the ray goes straight on, at the same depth. A shadow ray
+ * starts with the row of a matte surface, which sees the intensity alone, or of a rough one's facet, and ends at a
+ * lamp, whose Stokes vector waits in its queue: two crossed polarisers leave nothing of unpolarised light, one that is
+ * crossed with a polarised lamp is enough. Without polarisation every passage keeps the mean of a polariser's
+ * transmittances. Ownership: values; nothing fails. */
 #pragma once
 
 #include "optics/mueller.h"

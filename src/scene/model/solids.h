@@ -92,7 +92,7 @@ typedef struct mesh_entry {
     double time_s;                   /* for slime: the simulated time that is shown */
     char *script_path;               /* for slime: the script of its hands; "" for none; relative to the scene file */
     long script_line, script_column; /* its location in the scene file; 0 if it was set otherwise */
-    softbody_quantities account;        /* for a loaded slime: the account of its motion */
+    softbody_quantities account;     /* for a loaded slime: the account of its motion */
     double motion_s;                 /* for a loaded slime: the wall time of its steps */
     const mesh *data;                /* a counted reference that the entry owns; NULL until scene_load */
     const face_materials *shading_materials; /* a counted reference; NULL for none */

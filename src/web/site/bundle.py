@@ -88,7 +88,8 @@ def document(head, end):
     icon = base64.b64encode((PAGE / 'icon.svg').read_bytes()).decode()
     text = replaced(text, r'href="icon\.svg"', f'href="data:image/svg+xml;base64,{icon}"')
     text = replaced(text, r' *<script type="module" src="main\.js"></script>\n', '')
-    text = replaced(text, r' *<link rel="stylesheet" href="[^"]+" />\n', f'{head}<style id="styles">{style()}</style>\n')
+    styles = f'{head}<style id="styles">{style()}</style>\n'
+    text = replaced(text, r' *<link rel="stylesheet" href="[^"]+" />\n', styles)
     text = replaced(text, r'<meta charset="utf-8" />', f'<meta charset="utf-8" />\n{META}')
     return replaced(text, r' *</body>', f'{end}</body>')
 

@@ -1,0 +1,289 @@
+/* Tests of the film, of ray queues, and of the kernels that turn light into film units. */
+#include <math.h>
+#include <setjmp.h>
+#include <stdarg.h>
+#include <stddef.h>
+#include <stdint.h>
+#include <string.h>
+#include <cmocka.h>
+
+#include "base/isa.h"
+#include "base/random.h"
+#include "render/plan/film.h"
+#include "render/tracer/queue.h"
+#include "render/shade/kernels.h"
+
+static film *made(int width, int height)
+{
+    film *f = NULL;
+    assert_int_equal(film_create(width, height, 1, FILM_RGB, &f, NULL), STATUS_OK);
+    return f;
+}
+
+static void a_new_film_is_black(void **state)
+{
+    (void)state;
+    film *f = made(5, 3);
+    for (int y = 0; y < 3; y++)
+        for (int x = 0; x < 5; x++)
+            for (int c = 0; c < 3; c++)
+                assert_true(film_value(f, x, y, c) == 0.0);
+    film_destroy(f);
+    film_destroy(NULL);
+}
+
+/* One unit is 2^-44; rows from the top, channels interleaved. */
+static void sums_are_fixed_point(void **state)
+{
+    (void)state;
+    film *f = made(5, 3);
+    f->sum[(2 * 5 + 4) * 3 + 1] = 1;
+    f->sum[0] = (int64_t)1 << 44;
+    f->sum[3] = ((int64_t)1 << 62) + 3;
+    assert_true(film_value(f, 4, 2, 1) == 0x1p-44);
+    assert_true(film_value(f, 0, 0, 0) == 1.0);
+    assert_true(fabs(film_value(f, 1, 0, 0) - 262144.0) < 1e-9);
+    film_destroy(f);
+}
+
+/* The hash depends on every bit of every sum, on the size, and on the order. */
+static void different_films_have_different_hashes(void **state)
+{
+    (void)state;
+    film *f = made(6, 4), *same = made(6, 4), *other = made(4, 6);
+    const uint64_t blank = film_hash(f);
+    assert_true(blank == film_hash(same));
+    assert_true(blank != film_hash(other));
+    for (int i = 0; i < 6 * 4 * 3; i++)
+        for (int bit = 0; bit < 64; bit += 7) {
+            f->sum[i] = (int64_t)((uint64_t)1 << bit);
+            assert_true(film_hash(f) != blank);
+            f->sum[i] = 0;
+        }
+    f->sum[0] = 1, f->sum[1] = 2;
+    same->sum[0] = 2, same->sum[1] = 1;
+    assert_true(film_hash(f) != film_hash(same));
+    film_destroy(f);
+    film_destroy(same);
+    film_destroy(other);
+}
+
+static void a_film_becomes_an_image(void **state)
+{
+    (void)state;
+    film *f = made(2, 2);
+    image *img = NULL;
+    for (int i = 0; i < 12; i++)
+        f->sum[i] = (int64_t)i << 42; /* quarters */
+    assert_int_equal(film_image(f, &img, NULL), STATUS_OK);
+    for (int i = 0; i < 12; i++)
+        assert_true(img->pixel[i] == 0.25f * (float)i);
+    image_destroy(img);
+    film_destroy(f);
+}
+
+/* queue_pop removes the end of the queue, at most a batch, and leaves whole vectors in it. */
+static void a_queue_is_last_in_first_out(void **state)
+{
+    (void)state;
+    ray_queue q;
+    assert_true(queue_create(&q, 3 * BATCH + LANES_MAX));
+    for (int count = 1; count <= 3 * BATCH + LANES_MAX; count++) {
+        for (int i = 0; i < count; i++)
+            q.ox[i] = i, q.inside[i] = (uint64_t)i, q.sample_key[i] = i, q.wb[i] = -i;
+        q.count = count;
+        int first, left = count;
+        while (left > 0) {
+            const ray_batch b = queue_pop(&q, &first);
+            assert_true(b.count > 0 && b.count <= BATCH && first + b.count == left && first == q.count);
+            assert_int_equal(first % LANES_MAX, 0);
+            assert_true(left <= BATCH ? first == 0 : b.count > BATCH - LANES_MAX);
+            for (int i = 0; i < b.count; i++)
+                assert_true(b.ox[i] == first + i && b.inside[i] == (uint64_t)(first + i));
+            left = first;
+        }
+    }
+    queue_move(&q, 3, 200);
+    assert_true(q.ox[3] == 200.0 && q.inside[3] == 200 && q.sample_key[3] == 200 && q.wb[3] == -200.0);
+    queue_destroy(&q);
+}
+
+/* The kernels that turn light into film units: the arithmetic of integers, exact at the ends of a
+ * contribution's range, with each instruction set and any number of rays. */
+
+static const shade_kernels *const kernels[ISA_COUNT] = ISA_ARRAY(shade_kernels);
+static const int counts[] = {1, 2, 3, 7, 8, 9, 31, 32, 33, 63, 64, 100, ROW};
+enum { COUNTS = sizeof counts / sizeof *counts };
+
+/* A radiance and its film units, by hand: 2^44 units are 1, halves round up, and the range ends before 2^18. */
+static const struct {
+    double radiance;
+    int64_t units; /* -1: out of range */
+} known[] = {
+    {0.0, 0},
+    {-0.0, 0},
+    {1.0, (int64_t)1 << 44},
+    {0x1p-44, 1},
+    {0x1p-45, 1},      /* half a unit */
+    {0x1.ffffp-46, 0}, /* less than half */
+    {3.0 * 0x1p-45, 2},
+    {262143.0, (int64_t)262143 << 44},
+    {0x1.fffffffffffffp17, ((int64_t)1 << 62) - 512},
+    {262144.0, -1},
+    {-0x1p-1074, -1},
+    {-1.0, -1},
+    {1e300, -1},
+    {(double)INFINITY, -1},
+    {-(double)INFINITY, -1},
+    {(double)NAN, -1},
+};
+enum { KNOWN = sizeof known / sizeof *known };
+
+static void arrived_light_is_exact(void **state)
+{
+    (void)state;
+    for (int level = ISA_BASE; level <= (int)isa_best(); level++)
+        for (int channel = 0; channel < 3; channel++)
+            for (int k = 0; k < KNOWN; k++)
+                for (int c = 0; c < COUNTS; c++) {
+                    static double share[ROW], rgb[3][ROW];
+                    static film_light sent;
+                    const int count = counts[c], at = (count * 5 + k) % count;
+                    for (int i = 0; i < count; i++)
+                        share[i] = 1.0, rgb[0][i] = rgb[1][i] = rgb[2][i] = 0.25;
+                    rgb[channel][at] = known[k].radiance;
+                    kernels[level]->arrived(count, share, rgb[0], rgb[1], rgb[2], &sent);
+                    const int64_t *units[3] = {sent.r, sent.g, sent.b}, quarter = (int64_t)1 << 42;
+                    assert_int_equal(sent.out_of_range < 0, known[k].units < 0);
+                    for (int i = 0; i < count; i++)
+                        for (int ch = 0; ch < 3; ch++)
+                            assert_int_equal(units[ch][i], i != at              ? quarter
+                                                           : known[k].units < 0 ? 0 /* the whole light is left out */
+                                                           : ch == channel      ? known[k].units
+                                                                                : quarter);
+                }
+}
+
+/* A share of 0 is a ray that did not leave the scene: whatever its other numbers are, it neither adds nor counts. */
+static void rays_without_a_share_add_nothing(void **state)
+{
+    (void)state;
+    for (int level = ISA_BASE; level <= (int)isa_best(); level++)
+        for (int k = 0; k < KNOWN; k++) {
+            static double share[ROW], value[ROW];
+            static film_light sent;
+            for (int i = 0; i < ROW; i++)
+                share[i] = i % 3 ? 1.0 : 0.0, value[i] = i % 3 ? 2.0 : known[k].radiance;
+            kernels[level]->arrived(ROW, share, value, value, value, &sent);
+            assert_int_equal(sent.out_of_range, 0);
+            for (int i = 0; i < ROW; i++)
+                assert_int_equal(sent.g[i], i % 3 ? (int64_t)1 << 45 : 0);
+        }
+}
+
+static double unit(uint32_t a, uint32_t b)
+{
+    return random_unit(random_at(11, a, b, 0, 0).word[0]);
+}
+
+/* The lanes past the last ray repeat it. */
+static void fill(group *g, branch_group *b, int count)
+{
+    for (int i = 0; i < ROW; i++) {
+        const uint32_t from = (uint32_t)(i < count ? i : count - 1);
+        g->wr[i] = unit(from, 0), g->wg[i] = unit(from, 1), g->wb[i] = unit(from, 2);
+        g->cr[i] = unit(from, 3), g->cg[i] = unit(from, 4), g->cb[i] = unit(from, 5);
+        b->reflect[i] = from % 4 == 1 ? 0.0 : unit(from, 6);
+        b->refract[i] = from % 4 < 2 ? 0.0 : unit(from, 7);
+    }
+    g->count = count;
+    g->padded = (count + 7) / 8 * 8 < ROW ? (count + 7) / 8 * 8 : ROW;
+}
+
+/* Within one unit of the product in extended precision. */
+static void expect_units(int64_t units, long double radiance)
+{
+    const long double apart = (long double)units - radiance * (long double)FILM_ONE;
+    assert_true(apart <= 1.0L && apart >= -1.0L);
+}
+
+static void own_and_cut_light_are_products(void **state)
+{
+    (void)state;
+    static group g;
+    static branch_group b;
+    static film_light own, cut;
+    const vec3 radiance = vec3_make(0.5, 0.0, 0.001);
+    for (int level = ISA_BASE; level <= (int)isa_best(); level++)
+        for (int c = 0; c < COUNTS; c++) {
+            fill(&g, &b, counts[c]);
+            kernels[level]->own_light(&g, radiance, &own);
+            kernels[level]->cut_light(&g, &b, radiance, &cut);
+            assert_int_equal(own.out_of_range, 0);
+            assert_int_equal(cut.out_of_range, 0);
+            for (int i = 0; i < counts[c]; i++) {
+                const long double both = (long double)b.reflect[i] + (long double)b.refract[i];
+                expect_units(own.r[i], (long double)g.wr[i] * (long double)g.cr[i] * 0.5L);
+                assert_int_equal(own.g[i], 0);
+                expect_units(own.b[i], (long double)g.wb[i] * (long double)g.cb[i] * (long double)radiance.z);
+                expect_units(cut.r[i], (long double)g.wr[i] * both * 0.5L);
+                assert_int_equal(cut.g[i], 0);
+                expect_units(cut.b[i], (long double)g.wb[i] * both * (long double)radiance.z);
+            }
+        }
+}
+
+/* One light out of range is noted wherever it is; a repeat past the last ray is not a light. */
+static void light_out_of_range_is_noted(void **state)
+{
+    (void)state;
+    static group g;
+    static branch_group b;
+    static film_light sent;
+    for (int level = ISA_BASE; level <= (int)isa_best(); level++)
+        for (int c = 0; c < COUNTS; c++)
+            for (int at = 0; at < ROW; at++) {
+                fill(&g, &b, counts[c]);
+                g.wg[at] = 1e9;
+                b.reflect[at] = g.cg[at] = 1.0;
+                kernels[level]->own_light(&g, vec3_make(1.0, 1.0, 1.0), &sent);
+                assert_int_equal(sent.out_of_range < 0, at < counts[c]);
+                kernels[level]->cut_light(&g, &b, vec3_make(1.0, 1.0, 1.0), &sent);
+                assert_int_equal(sent.out_of_range < 0, at < counts[c]);
+            }
+}
+
+/* Shares are n values of a sum; by hand: 1, 2 and 6 add up to 9, their variance is 7, and that of the sum 3 x 7. */
+static void the_sum_and_variance_of_shares(void **state)
+{
+    (void)state;
+    film *f = NULL;
+    double variance[3];
+    assert_int_equal(film_create(1, 1, 3, FILM_RGB, &f, NULL), STATUS_OK);
+    static const int values[] = {1, 2, 6};
+    for (int k = 0; k < 3; k++)
+        f->sum[3 * k] = (int64_t)values[k] << 44;
+    assert_true(film_merge_replicates(f, variance));
+    assert_true(film_value(f, 0, 0, 0) == 9.0 && film_value(f, 0, 0, 1) == 0.0);
+    assert_true(fabs(variance[0] - 21.0) < 1e-12 && variance[1] == 0.0);
+    film_destroy(f);
+    for (int layers = 2; layers <= FILM_REPLICATES_MAX; layers++) { /* each in range, the sum is not */
+        assert_int_equal(film_create(1, 1, layers, FILM_RGB, &f, NULL), STATUS_OK);
+        for (int k = 0; k < layers; k++)
+            f->sum[3 * k + 1] = INT64_MAX / layers + 1;
+        assert_false(film_merge_replicates(f, NULL));
+        film_destroy(f);
+    }
+}
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(the_sum_and_variance_of_shares), cmocka_unit_test(a_new_film_is_black),
+        cmocka_unit_test(sums_are_fixed_point),           cmocka_unit_test(different_films_have_different_hashes),
+        cmocka_unit_test(a_film_becomes_an_image),        cmocka_unit_test(a_queue_is_last_in_first_out),
+        cmocka_unit_test(arrived_light_is_exact),         cmocka_unit_test(rays_without_a_share_add_nothing),
+        cmocka_unit_test(own_and_cut_light_are_products), cmocka_unit_test(light_out_of_range_is_noted),
+    };
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}
