@@ -86,13 +86,15 @@ static inline bool follows_trees(const render_settings *r)
 static inline void trace_trees(render_settings *r)
 {
     r->integrator = INTEGRATOR_WHITTED;
-    r->depth = r->depth == DEPTH_UNLIMITED ? DEPTH_TREE_MAX : r->depth;
+    if (r->depth == DEPTH_UNLIMITED)
+        r->depth = DEPTH_TREE_MAX;
 }
 
 static inline void draw_triangles(render_settings *r)
 {
     r->integrator = INTEGRATOR_ZBUFFER;
-    r->depth = r->depth == DEPTH_UNLIMITED ? DEPTH_TREE_MAX : r->depth;
+    if (r->depth == DEPTH_UNLIMITED)
+        r->depth = DEPTH_TREE_MAX;
 }
 
 /* Worker threads of a frame: render.threads, or one per processing unit that the process may use now (its CPU affinity,

@@ -3,6 +3,7 @@
 
 #include "base/isa.h"
 #include "base/status.h"
+#include <stdbool.h>
 
 typedef struct lab lab;
 
