@@ -141,7 +141,7 @@ static inline uint64_t path_draw_key(const path_sampling *p, int64_t pixel, uint
     return ((uint64_t)pixel << 32 | replicate << 24 | near << 16 | (uint64_t)purpose) ^ far ^ p->seed_hash;
 }
 
-/* For one random choice of a path: purpose is one of draw.h. */
+/* For one random choice of a path: purpose is one of those above. */
 static inline unit_pair path_draw(const path_sampling *p, int64_t sample_key, int depth, int purpose)
 {
     if (p->sampler == SAMPLER_SOBOL) {

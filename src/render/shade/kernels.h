@@ -76,7 +76,7 @@ enum { LAMP_BLOCK = 8, LAMPS_MAX = (SCENE_LIGHTS_MAX + LAMP_BLOCK - 1) / LAMP_BL
 typedef struct lamp_table {
     int blocks;
     bool cones; /* some are cone lights that are points */
-    bool suns;  /* some are suns, whose strength here is 0: light_choice.c weighs them */
+    bool suns;  /* some are suns, whose strength here is 0: light_sampling.c weighs them */
     double x[LAMPS_MAX], y[LAMPS_MAX], z[LAMPS_MAX];
     float radius[LAMPS_MAX], strength[LAMPS_MAX]; /* intensity; with falloff, times the square of the reach */
     float even[LAMPS_MAX], falling[LAMPS_MAX];    /* 1 and 0 for a light without falloff, otherwise 0 and 1 */

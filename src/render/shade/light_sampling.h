@@ -65,7 +65,7 @@ static inline bool light_choice_applies(const plan *p)
 typedef struct light_estimate {
     float k_d, k_s; /* fractions of the light with and without Lambert's cosine */
     double side;    /* 1: light of the ray's side; -1: of the other side; 0: from everywhere, without k_d */
-    int purpose;    /* of the random numbers, draw.h */
+    int purpose;    /* of the random numbers, sampling.h */
 } light_estimate;
 
 /* Of a matte surface with Phong's highlight. */

@@ -1,7 +1,7 @@
 /* The medium of a material or of the surroundings: the law of its refractive index, and its absorption. The choice is
  * an index into medium_words: `ior` for a constant index, then the laws for which a scene gives coefficients, then the
- * names of the catalogue (optics/media.h), then those of the metals (optics/media.h). Pure; indices are relative to
- * vacuum, wavelengths are in vacuum. */
+ * names of the catalogue, then those of the metals (both optics/media.h). Pure; indices are relative to vacuum,
+ * wavelengths are in vacuum. */
 #pragma once
 
 #include "optics/dispersion.h"

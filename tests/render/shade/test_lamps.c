@@ -258,7 +258,7 @@ static void photons_carry_lines(void **state)
     scene_destroy(s);
 }
 
-/* As many lasers as spectral_lines.h distinguishes, whatever their lines; other lamps have few lines. */
+/* As many lasers as spectra.h distinguishes, whatever their lines; other lamps have few lines. */
 static void too_many_lasers_are_refused(void **state)
 {
     (void)state;

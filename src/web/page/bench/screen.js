@@ -22,7 +22,7 @@ const PARTS = [
 
 const cross = (a, b) => [a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]];
 
-/* The axes of beam_screen.c. */
+/* The axes of beams.c (src/render/inspect). */
 function cornersOf([x, y, z, nx, ny, nz, width, height]) {
   const normal = unit([nx, ny, nz]);
   if (!normal) return null;
