@@ -143,7 +143,7 @@ static photon_reach footprint_reach(const photon_footprint *f, vec3 normal)
     const vec3 x = vec3_cross(b, f->toward), y = vec3_cross(f->toward, a);
     r.slab[REACH_X] = vec3_scale(x, 1.0 / vec3_dot(x, a)), r.slab[REACH_Y] = vec3_scale(y, 1.0 / vec3_dot(y, b));
     r.slab[REACH_HEIGHT] = normal;
-    r.within[REACH_X] = r.within[REACH_Y] = 0.5, r.within[REACH_HEIGHT] = 0.5 * most;
+    r.within[REACH_X] = r.within[REACH_Y] = 0.5 + f->blur, r.within[REACH_HEIGHT] = 0.5 * most;
     for (int k = 0; k < REACH_SLABS; k++)
         r.within[k] *= MARGIN, r.length[k] = MARGIN * vec3_length(r.slab[k]);
     return r;
@@ -154,9 +154,19 @@ static photon_reach footprint_reach(const photon_footprint *f, vec3 normal)
 typedef struct photon_place {
     double x, y, variance_x, variance_y, radius;
 } photon_place;
+
+/* The half width in cells of the density of a group of that radius, whose photons have discs of radius `disc`, each with
+ * half widths of at least `blur`: variances add up. */
+static double half_width(double radius, double disc, double cell, double blur)
+{
+    const double plain = HALF_WIDTH * radius / cell, own = HALF_WIDTH * disc / cell;
+    return own >= blur ? plain : sqrt(blur * blur + (plain - own) * (plain + own));
+}
+
 /* The density per area with which a photon at point + off counts for the ray, of integral 1 over the photon's surface;
- * negative if its disc is wide enough to be looked up at the point alone. */
-static double footprint_density(const photon_footprint *f, const photon *one, vec3 off, photon_place *place)
+ * negative if it is wide enough to be looked up at the point alone. A group's photons have discs of radius `disc`. */
+static double footprint_density(const photon_footprint *f, const photon *one, double disc, vec3 off,
+                                photon_place *place)
 {
     const vec3 n = vec3_make((double)one->normal[0], (double)one->normal[1], (double)one->normal[2]);
     const double r = (double)one->radius;
@@ -172,7 +182,7 @@ static double footprint_density(const photon_footprint *f, const photon *one, ve
     if (!(cosine > 0.0))
         return 0.0;
     const double length = length_on_surface(a, d, n, cosine), width = length_on_surface(b, d, n, cosine);
-    const double hx = HALF_WIDTH * r / length, hy = HALF_WIDTH * r / width;
+    const double hx = half_width(r, disc, length, f->blur), hy = half_width(r, disc, width, f->blur);
     *place = (photon_place){x, y, 1.0 / 12.0 + hx * hx / 7.0, 1.0 / 12.0 + hy * hy / 7.0, r / fmax(length, width)};
     if (place->radius >= PHOTON_RESOLVED)
         return -1.0;
@@ -267,7 +277,7 @@ static void add(const photon *one, double disc, void *context)
     if (vec3_dot(n, s->normal) < PHOTON_FACING)
         return;
     photon_place place = {.radius = PHOTON_RESOLVED};
-    double fraction = s->footprint ? footprint_density(s->footprint, one, vec3_scale(off, -1.0), &place) : -1.0;
+    double fraction = s->footprint ? footprint_density(s->footprint, one, disc, vec3_scale(off, -1.0), &place) : -1.0;
     fraction = fraction < 0.0 ? disc_density(one, off) : fraction;
     fraction = fraction > 0.0 ? fraction * wavelength_weight(one, s->wavelength) : 0.0;
     if (!(fraction > 0.0))

@@ -77,6 +77,7 @@ typedef struct photon_footprint {
     vec3 toward, across[2], turn[2];
     vec3 along;   /* the ray is at point + t toward where t is the offset times this */
     double reach; /* scene units: if photons farther away count too, those close together are seen as one */
+    double blur;  /* samples: densities are at least that wide to each side; where neighbours disagree about places */
 } photon_footprint;
 
 /* The same for what the ray sees there, the mean over its sample's cell of the image (photon_map.c): the sum over

@@ -332,19 +332,20 @@ static void maps_without_photons_or_with_coincident_ones(void **state)
 
 /* --- what samples of an image see --- */
 
-/* Of the lattice of samples seen along a direction, whose cells on the ground have these sides, by photons of `reach`:
- * the flux, its centre, and its variance in both directions. */
+/* Of the lattice of samples seen along a direction, whose cells on the ground have these sides, by photons of `reach`
+ * and with `blur`: the flux, its centre, and its variance in both directions. */
 typedef struct lattice {
     double flux, x, z, variance, image[64 * 64];
 } lattice;
 
-static void look(const photon_map *m, vec3 toward, double across, double down, double reach, lattice *out)
+static void look(const photon_map *m, vec3 toward, double across, double down, double reach, double blur, lattice *out)
 {
     const vec3 both = vec3_cross(vec3_make(across, 0.0, 0.0), vec3_make(0.0, 0.0, down));
     const photon_footprint f = {.toward = toward,
                                 .across = {{across, 0.0, 0.0}, {0.0, 0.0, down}},
                                 .along = vec3_scale(both, 1.0 / vec3_dot(both, toward)),
-                                .reach = reach};
+                                .reach = reach,
+                                .blur = blur};
     double xx = 0.0;
     *out = (lattice){.flux = 0.0};
     for (int i = 0; i < 64 * 64; i++) {
@@ -386,9 +387,10 @@ static void groups_look_like_their_photons(void **state)
         }
         photon_map *m = map_of(&all, 1, draw(&draws, 0.02, 0.3));
         const vec3 toward = vec3_make(draw(&draws, -0.8, 0.8), -1.0, draw(&draws, -0.8, 0.8));
-        const double across = draw(&draws, 0.07, 0.15), down = across * draw(&draws, 0.9, 2.0);
-        look(m, vec3_scale(toward, 1.0 / vec3_length(toward)), across, down, 1e9, &whole);
-        look(m, vec3_scale(toward, 1.0 / vec3_length(toward)), across, down, 0.0, &grouped);
+        const double across = draw(&draws, 0.07, 0.15), down = across * draw(&draws, 0.9, 2.0),
+                     blur = trial % 2 ? 0.5 : 0.0;
+        look(m, vec3_scale(toward, 1.0 / vec3_length(toward)), across, down, 1e9, blur, &whole);
+        look(m, vec3_scale(toward, 1.0 / vec3_length(toward)), across, down, 0.0, blur, &grouped);
         double difference = 0.0;
         for (int i = 0; i < 64 * 64; i++)
             difference += fabs(whole.image[i] - grouped.image[i]);

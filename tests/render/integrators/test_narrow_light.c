@@ -236,7 +236,7 @@ static void a_focus_keeps_its_power(void **state)
 }
 
 /* In round mirrors a whole room is a few pixels wide, and the dot far narrower than one. Differentials are of first
- * order there. */
+ * order there, so that two neighbours can both miss a dot between them, unless its density is blurred. */
 static void a_dot_in_a_round_surface_keeps_its_power(void **state)
 {
     (void)state;
