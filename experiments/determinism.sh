@@ -63,7 +63,7 @@ times() { # ROUNDS FRAMES SIZE
                         variant=${variants[(round + i) % ${#variants[@]}]}
                         json=$(render "$variant-$compiler" "$isa" "$scene" "$3" --repeat "$2" --set render.threads=1)
                         row=${variant/-/,},$compiler,$isa,$scene,$round,$i
-                        for name in cpu_s film_hash total others_share; do of "$name" && row+=,$value; done
+                        for name in cpu_s film_hash total others_fraction; do of "$name" && row+=,$value; done
                         echo "$row,$3"
                     done
                 done
@@ -128,10 +128,10 @@ measure)
     rounds=15 frames=5 size=240x180
     if ((${QUICK:-0})); then rounds=12 frames=3 size=160x120; fi
     times "${ROUNDS:-$rounds}" "${FRAMES:-$frames}" "${SIZE:-$size}" |
-        add rows 'film,contract,compiler,isa,scene,repetition,place,cpu_s,film_hash,rays_total,others_share,size'
+        add rows 'film,contract,compiler,isa,scene,repetition,place,cpu_s,film_hash,rays_total,others_fraction,size'
     bits 64x48 >"$work/bits"
     add bits 'film,contract,compiler,isa,scene,threads,schedule,film_hash,rays_total' <"$work/bits"
-    images | add images 'scene,film_hash,max_difference,differing_share'
+    images | add images 'scene,film_hash,max_difference,differing_fraction'
     ;;
 *) usage ;;
 esac

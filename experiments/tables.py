@@ -31,7 +31,7 @@ PRICES = (
     "without_cpu_s_median disturbed"
 ).split()
 BITS = (
-    "machine film contract scenes frames n films most_films counts max_difference differing_share ray_difference "
+    "machine film contract scenes frames n films most_films counts max_difference differing_fraction ray_difference "
     "ray_error"
 ).split()
 FILMS = "scene n emulated names processors architectures compilers isas films values different".split()
@@ -90,7 +90,7 @@ def prices(machine, rows):
     for row in rows:
         group, repetition = (row["compiler"], row["isa"]), int(row["repetition"])
         cpu_s[f"{row['film']}-{row['contract']}", group, row["scene"], repetition] = float(row["cpu_s"])
-        if float(row["others_share"]) > 0.25:
+        if float(row["others_fraction"]) > 0.25:
             loud |= {(group, row["scene"], repetition), (group, "all", repetition)}
 
     def line(part, group, scene, ratios, ours, theirs):
@@ -123,7 +123,7 @@ def prices(machine, rows):
 def bits(machine, images, rows):
     """How many films each build makes of one scene, and how far they are from the film of the program as it is."""
     far = {
-        (row["scene"], row["film_hash"]): (float(row["max_difference"]), float(row["differing_share"]))
+        (row["scene"], row["film_hash"]): (float(row["max_difference"]), float(row["differing_fraction"]))
         for row in images
     }
     expected, builds = {}, defaultdict(list)

@@ -244,7 +244,7 @@ def bits(numbers, rows):
         ):
             numbers.put(f"{key}/{name}", row[column])
         numbers.put(f"{key}/difference", scientific(float(row["max_difference"])))
-        numbers.put(f"{key}/share", f"{100 * float(row['differing_share']):.1f}")
+        numbers.put(f"{key}/share", f"{100 * float(row['differing_fraction']):.1f}")
 
 
 def films(numbers, rows):

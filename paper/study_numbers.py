@@ -19,7 +19,7 @@ def formatted(column, text):
         return digits(float(text) * 1e3)
     if column.startswith("rays_"):
         return f"{float(text) / 1e6:.3f}"
-    if column in ("others_share", "differing_share"):
+    if column in ("others_fraction", "differing_fraction"):
         return f"{float(text) * 100:.1f}"
     if column in ("peak_rss_bytes", "accel_bytes"):
         return f"{float(text) / 1048576:.1f}"
@@ -149,7 +149,7 @@ def whole_study(numbers, cells):
         numbers.put(f"{study}/bars", rf"95\,\% intervals of the median, {count}")
     else:
         numbers.put(f"{study}/bars", f"smallest and largest value, {count}" if most > 1 else count)
-    others = [real(row, "others_share") for row in cells.rows if known(row, "others_share")]
+    others = [real(row, "others_fraction") for row in cells.rows if known(row, "others_fraction")]
     if others:
         numbers.put(f"{study}/others", f"{sum(others) / len(others) * 100:.0f}")
 

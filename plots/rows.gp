@@ -18,7 +18,7 @@ number(text) = text eq "" ? NaN : real(text)
 first(file, where, column) = number(text(file, where, column))
 # What a reader must know about the cells of a study: what fraction of the machine other processes used, in the mean,
 # and that few repetitions give no intervals.
-others(study) = number(system(select(table(study), "", "others_share")[3:*]." | awk '{ sum += $1 } END { if (NR) print sum/NR }'"))
+others(study) = number(system(select(table(study), "", "others_fraction")[3:*]." | awk '{ sum += $1 } END { if (NR) print sum/NR }'"))
 fewest(study) = number(system(select(table(study), "", "n")[3:*]." | sort -g | awk '$1 > 0 { print $1; exit }'"))
 noisy(share) = share > 0.05 ? sprintf("other processes used %.0f %% of the machine during this run", share*100) : ""
 counted(n) = n < 6 ? sprintf("%d repetition%s a cell: no intervals", n, n > 1 ? "s" : "") : ""

@@ -48,7 +48,7 @@ do for [i=0:2] {
 unset object; unset label
 ratio(name) = with_all(name)/first(rows, "render.spectrum=rgb", name)
 said = sprintf("FLIP %.4f, PSNR %.1f dB, SSIM %.4f between the two; %.0f %% of the pixels differ in 8 bits. ", \
-    with_all("flip"), with_all("psnr_db"), with_all("ssim"), with_all("differing_share")*100)
+    with_all("flip"), with_all("psnr_db"), with_all("ssim"), with_all("differing_fraction")*100)
 set label 1 said.sprintf("48 wavelengths: %.0f times the rays.", ratio("rays_total")) at screen 0.5,0.045 center font ",10" textcolor rgb ink
 set tmargin at screen 0.333
 set bmargin at screen 0.098

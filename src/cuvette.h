@@ -688,13 +688,13 @@ CUVETTE_API const float *cuvette_image_rgb(const cuvette_image *image, int *widt
 
 /* The difference of two images as a display shows them: clamped to 0..1 and sRGB-encoded. */
 typedef struct cuvette_comparison {
-    size_t size;            /* sizeof(cuvette_comparison) */
-    double mse;             /* mean squared difference of the encoded channels */
-    double psnr_db;         /* 10 log10(1 / mse), infinite if mse is 0 */
-    double ssim;            /* mean structural similarity of the luma, 1 for equal images */
-    double flip;            /* mean FLIP error at 67 pixels per degree, 0 for equal images */
-    double largest;         /* largest difference of an encoded channel */
-    double differing_share; /* fraction of the pixels whose 8-bit encodings differ */
+    size_t size;               /* sizeof(cuvette_comparison) */
+    double mse;                /* mean squared difference of the encoded channels */
+    double psnr_db;            /* 10 log10(1 / mse), infinite if mse is 0 */
+    double ssim;               /* mean structural similarity of the luma, 1 for equal images */
+    double flip;               /* mean FLIP error at 67 pixels per degree, 0 for equal images */
+    double largest;            /* largest difference of an encoded channel */
+    double differing_fraction; /* fraction of the pixels whose 8-bit encodings differ */
     int largest_x, largest_y;
 } cuvette_comparison;
 

@@ -83,7 +83,7 @@ static void print_text(const pair *p)
         printf("largest     %.6g at %d,%d\n", c->largest, c->largest_x, c->largest_y);
     else
         printf("largest     0\n");
-    printf("differing   %.4g%% of the pixels, at 8 bits\n", 100.0 * c->differing_share);
+    printf("differing   %.4g%% of the pixels, at 8 bits\n", 100.0 * c->differing_fraction);
 }
 
 static status print_json(const compare_request *request, const pair *p, diagnostic *why)

@@ -188,7 +188,7 @@ static void print_time(const char *name, const double *values, size_t count)
 /* Prints the fraction of the image's light that was cut, if it is large enough to be seen. */
 static void print_cut(const job_account *f)
 {
-    const double least = 0.01, fraction = frame_quantity("cut_share")->read(f, -1).real[0];
+    const double least = 0.01, fraction = frame_quantity("cut_fraction")->read(f, -1).real[0];
     if (fraction >= least)
         printf(", %.3g %% of the light cut", 100.0 * fraction);
 }

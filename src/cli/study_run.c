@@ -234,11 +234,11 @@ static status note_disturbed(const study *s, const study_request *request, distu
     if (!more || clock_wall_s() < last->next_s)
         return STATUS_OK;
     last->next_s = clock_wall_s() + 60;
-    snprintf(
-        text, sizeof text,
-        "%s: %zu of %zu rows are disturbed: see others_share, steal_share, frequency_drop and stalled_share in the "
-        "rows; stop other programs, or measure with --wait-quiet",
-        s->name, now.rows_disturbed, now.rows - now.warmups);
+    snprintf(text, sizeof text,
+             "%s: %zu of %zu rows are disturbed: see others_fraction, steal_fraction, frequency_drop and "
+             "stalled_fraction in the "
+             "rows; stop other programs, or measure with --wait-quiet",
+             s->name, now.rows_disturbed, now.rows - now.warmups);
     terminal_note(text);
     return STATUS_OK;
 }

@@ -243,7 +243,7 @@ cuvette_status cuvette_compare(int width, int height, const float *a, const floa
                                        .ssim = found.ssim,
                                        .flip = found.flip,
                                        .largest = found.largest,
-                                       .differing_share = found.differing_share,
+                                       .differing_fraction = found.differing_fraction,
                                        .largest_x = found.largest_x,
                                        .largest_y = found.largest_y};
     return engine_copy_struct(&result, sizeof result, out, why);

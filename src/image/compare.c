@@ -73,7 +73,7 @@ static void compare_pixels(const image *a, const image *b, double *luma_a, doubl
     }
     out->mse = sum / (3.0 * (double)count);
     out->psnr_db = out->mse > 0 ? -10.0 * log10(out->mse) : (double)INFINITY;
-    out->differing_share = (double)differing / (double)count;
+    out->differing_fraction = (double)differing / (double)count;
 }
 
 static double mean(const double *values, size_t count)

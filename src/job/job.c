@@ -305,7 +305,7 @@ machine_noise job_noise(job *j)
     return noise;
 }
 
-static double stalled_share(const render_result *r)
+static double stalled_fraction(const render_result *r)
 {
     double wall_s = 0, longest_s = 0, cpu_s = 0;
     for (int i = 0; r && i < r->worker_count; i++) {
@@ -340,7 +340,7 @@ static status measure_all(work *w, const scene *s, size_t count, bool maps, job_
         a->hardware = hardware_counts_since(j->hardware, &counted);
         a->spent = usage_since(&used);
         a->noise = noise_since(j, began_s);
-        a->noise.stalled_share = stalled_share(a->result);
+        a->noise.stalled_fraction = stalled_fraction(a->result);
         if (instruction_dumps_exist()) { /* nothing disturbs a count; the threads take turns, which is no stalling */
             a->hardware.instructions = instruction_dumps_next(&j->dumps);
             a->noise = noise_unknown();

@@ -56,7 +56,7 @@ static double mean_cut(const int64_t one[3], const int64_t other[3])
 
 /* Mean over the pixels of the throughput that was cut. The camera rays of a pixel have 1 in all, half of it behind an
  * analyser; those of a pilot (render.error) have as much again. */
-static double cut_share(const job_account *a)
+static double cut_fraction(const job_account *a)
 {
     const render_settings *r = &a->of->render;
     const ray_counters *c = &a->result->counters;
@@ -152,11 +152,11 @@ static int64_t counted(const job_account *a, uint64_t count)
  Q(cut_throughput, "rays", REAL, SAME, OUT, "cut_throughput", NULL, \
    "summed throughput of all rays not traced, mean of RGB", \
    mean_cut(c->cut_depth_throughput, c->cut_weight_throughput)) \
- Q(cut_share, "", REAL, SAME, ROW, "cut.share", "cut", \
+ Q(cut_fraction, "", REAL, SAME, ROW, "cut.share", "cut", \
    "share of the light of a mean pixel, by weight, that rays not traced would have brought: their throughput by that " \
    "of the camera rays; 0 .. 1", \
-   cut_share(a)) \
- Q(cut_share_largest, "", REAL, LAST, OUT, "cut.share_largest", NULL, \
+   cut_fraction(a)) \
+ Q(cut_fraction_largest, "", REAL, LAST, OUT, "cut.share_largest", NULL, \
    "the same of the pixel that lacks most; NA without the map of cut light", largest_cut(r)) \
  Q(first_hits, "rays", SOLIDS, SAME, ROW, "first_hits", NULL, \
    "camera rays whose first interface is on the solid", c->first_hits) \
@@ -221,21 +221,21 @@ static int64_t counted(const job_account *a, uint64_t count)
    "voluntary context switches of the process during the frame", a->spent.voluntary_switches) \
  Q(involuntary_switches, "", COUNT, OVER, ROW, "involuntary_switches", NULL, \
    "involuntary context switches of the process during the frame", a->spent.involuntary_switches) \
- Q(others_share, "", REAL, OVER, ROW, "others_share", NULL, \
+ Q(others_fraction, "", REAL, OVER, ROW, "others_fraction", NULL, \
    "share of the machine used by other processes, 0..1: during the frame, or the last 0.5 s before its end if it is " \
-   "shorter; includes steal_share", \
-   a->noise.others_share) \
- Q(steal_share, "", REAL, OVER, ROW, "steal_share", NULL, \
-   "share of the machine that a hypervisor withheld, 0..1, in the same time", a->noise.steal_share) \
+   "shorter; includes steal_fraction", \
+   a->noise.others_fraction) \
+ Q(steal_fraction, "", REAL, OVER, ROW, "steal_fraction", NULL, \
+   "share of the machine that a hypervisor withheld, 0..1, in the same time", a->noise.steal_fraction) \
  Q(frequency_hz, "Hz", REAL, OVER, ROW, "frequency_hz", NULL, \
    "clock frequency at the end of the frame, the highest of 16 units; NA if the system does not report it", \
    a->noise.frequency_hz) \
  Q(frequency_drop, "", REAL, OVER, ROW, "frequency_drop", NULL, \
    "share by which frequency_hz is below the highest one so far in the process, 0..1", a->noise.frequency_drop) \
- Q(stalled_share, "", REAL, LAST, ROW, "stalled_share", NULL, \
+ Q(stalled_fraction, "", REAL, LAST, ROW, "stalled_fraction", NULL, \
    "share of the workers' time in which they did not run although they could: stopped (Ctrl-Z), frozen or throttled " \
    "by a control group, or without a processing unit; a lower bound for more workers than units", \
-   a->noise.stalled_share) \
+   a->noise.stalled_fraction) \
  Q(cycles, "", COUNT, OVER, ROW, "hardware.cycles", NULL, \
    "processor cycles of the process during the frame, user mode (hardware counter)", a->hardware.cycles) \
  Q(instructions, "", COUNT, OVER, ROW, "hardware.instructions", NULL, \

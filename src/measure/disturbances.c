@@ -190,7 +190,7 @@ const char *usage_advice(const char *disturbance)
         {"governor ", "set the governor performance (cpupower frequency-set -g performance)"},
         {"turbo on", "the frequency depends on load and heat; switch turbo off to compare small differences"},
         {"threads share cores", "pin workers to cores (render.pin: scatter), or switch SMT off"},
-        {"virtual machine", "look at steal_share in the rows; repeat at other times"},
+        {"virtual machine", "look at steal_fraction in the rows; repeat at other times"},
         {"control group", "use at most that many threads, or raise the limit"},
         {"load ", "stop other programs, or measure with --wait-quiet"},
         {"swap in use", "close programs that use much memory"},

@@ -118,15 +118,15 @@ double noise_stalled(int workers, int units, double wall_s, double longest_s, do
 
 noise_rule noise_rule_default(void)
 {
-    return (noise_rule){.others_share = 0.05, .steal_share = NAN, .frequency_drop = NAN, .stalled_share = 0.1};
+    return (noise_rule){.others_fraction = 0.05, .steal_fraction = NAN, .frequency_drop = NAN, .stalled_fraction = 0.1};
 }
 
 noise_verdict noise_judge(const noise_rule *rule, const machine_noise *noise, bool broken[NOISE_KINDS])
 {
-    const double bound[NOISE_KINDS] = {rule->others_share, rule->steal_share, rule->frequency_drop,
-                                       rule->stalled_share};
-    const double value[NOISE_KINDS] = {noise->others_share, noise->steal_share, noise->frequency_drop,
-                                       noise->stalled_share};
+    const double bound[NOISE_KINDS] = {rule->others_fraction, rule->steal_fraction, rule->frequency_drop,
+                                       rule->stalled_fraction};
+    const double value[NOISE_KINDS] = {noise->others_fraction, noise->steal_fraction, noise->frequency_drop,
+                                       noise->stalled_fraction};
     noise_verdict verdict = NOISE_NOT_KNOWN;
     for (noise_kind kind = 0; kind < NOISE_KINDS; kind++) {
         const bool breaks = value[kind] > bound[kind];

@@ -16,11 +16,11 @@ typedef struct noise_reading {
 } noise_reading;
 
 typedef struct machine_noise {
-    double others_share;   /* of the machine, 0..1: busy but not with this process; includes steal */
-    double steal_share;    /* of the machine, 0..1 */
-    double frequency_hz;   /* at the end */
-    double frequency_drop; /* fraction by which that is below the highest one so far, 0..1 */
-    double stalled_share;  /* of the time of the workers, 0..1: see noise_stalled */
+    double others_fraction;  /* of the machine, 0..1: busy but not with this process; includes steal */
+    double steal_fraction;   /* of the machine, 0..1 */
+    double frequency_hz;     /* at the end */
+    double frequency_drop;   /* fraction by which that is below the highest one so far, 0..1 */
+    double stalled_fraction; /* of the time of the workers, 0..1: see noise_stalled */
 } machine_noise;
 
 /* Reads /proc/stat, /sys/devices/system/cpu/cpuN/cpufreq (or /proc/cpuinfo) below root, "" for this machine. */
@@ -55,10 +55,10 @@ machine_noise noise_window_since(noise_window *w, double since_s, const noise_re
 /* A rule that calls a measurement disturbed: it is, if one of these is above its bound. The rule never looks at the
  * measured time. NaN: not part of the rule. */
 typedef struct noise_rule {
-    double others_share, steal_share, frequency_drop, stalled_share;
+    double others_fraction, steal_fraction, frequency_drop, stalled_fraction;
 } noise_rule;
 
-/* others_share above 0.05, or stalled_share above 0.1: on a quiet machine that is below 0.03. */
+/* others_fraction above 0.05, or stalled_fraction above 0.1: on a quiet machine that is below 0.03. */
 noise_rule noise_rule_default(void);
 
 typedef enum noise_kind { NOISE_OTHERS, NOISE_STEAL, NOISE_FREQUENCY, NOISE_STALLED, NOISE_KINDS } noise_kind;

@@ -313,7 +313,7 @@ status realism_reversal(const metrics *m, diagnostic *why)
     metrics_add(m, (realism_value){"reversal.throughput",
                                    "throughput of a reversed path over that of the path; largest error of about 1000",
                                    "", ratio.measured, ratio.theory, ratio.tolerance});
-    metrics_add(m, (realism_value){"reversal.way", "distance of the reversed path from the origin of the path",
+    metrics_add(m, (realism_value){"reversal.path", "distance of the reversed path from the origin of the path",
                                    "scene units", miss.measured, miss.theory, miss.tolerance});
     return code;
 }

@@ -267,6 +267,6 @@ bool report_comparison(json_t *o, const image_comparison *c)
     bad |= json_object_set_new(o, "flip", json_of_real(c->flip));
     bad |= json_object_set_new(o, "largest", json_of_real(c->largest));
     bad |= json_object_set_new(o, "largest_at", place);
-    bad |= json_object_set_new(o, "differing_share", json_of_real(c->differing_share));
+    bad |= json_object_set_new(o, "differing_fraction", json_of_real(c->differing_fraction));
     return !bad;
 }

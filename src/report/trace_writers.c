@@ -282,7 +282,8 @@ static status count_segments(beam_writer *w, const ray_tree *tree, diagnostic *w
     w->segments += tree->count;
     if (w->of->segments_max == 0 || w->segments <= w->of->segments_max)
         return STATUS_OK;
-    return diagnose(why, STATUS_BAD_INPUT, "lower 'rays', 'wavelengths' or 'depth' of a beam, or raise its 'min_share'",
+    return diagnose(why, STATUS_BAD_INPUT,
+                    "lower 'rays', 'wavelengths' or 'depth' of a beam, or raise its 'min_fraction'",
                     "the beams have more than %zu segments", w->of->segments_max);
 }
 

@@ -166,7 +166,7 @@ typedef struct study_progress {
     size_t rows_disturbed;   /* by the rule of the study; warm-ups do not count */
     size_t rows_elsewhere;   /* rows of other environments */
     size_t rows_other_cells; /* rows of cells that the study does not have (any more) */
-    size_t faults;           /* rows that are marked, fail a check, or are missing */
+    size_t faults;           /* rows that are marked, have a wrong checksum, or are missing */
     diagnostic fault;        /* the first of them */
     char environment[16];    /* key of the present environment */
 } study_progress;

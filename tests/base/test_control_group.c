@@ -175,10 +175,10 @@ static void stalled_workers_are_disturbed(void **state)
     assert_true(fabs(noise_stalled(2, 2, 2.0, 1.0, 1.5) - 0.25) < 1e-12);
     assert_true(noise_stalled(64, 2, 64.0, 1.0, 1.9) == 0.0); /* they waited for one another */
     assert_true(fabs(noise_stalled(64, 2, 128.0, 2.0, 0.5) - 0.75) < 1e-12);
-    noise.others_share = 0.0;
-    noise.stalled_share = 0.05;
+    noise.others_fraction = 0.0;
+    noise.stalled_fraction = 0.05;
     assert_int_equal(noise_judge(&rule, &noise, broken), NOISE_UNDISTURBED);
-    noise.stalled_share = 0.5;
+    noise.stalled_fraction = 0.5;
     assert_int_equal(noise_judge(&rule, &noise, broken), NOISE_DISTURBED);
     assert_true(broken[NOISE_STALLED] && !broken[NOISE_OTHERS]);
 }

@@ -142,7 +142,7 @@ check "keys of a worker" is "$(json 'threads[0]@keys' | sort | tr '\n' ' ')" \
     "$(lines blocked_s busy_s cpu_s involuntary_switches pu rank rays runnable_s running_s start_s tiles visibility_s \
         voluntary_switches waiting_s wall_s worker | tr '\n' ' ')"
 check "times and process" holds "$(json wall_s) > 0 && $(json cpu_s) > 0 && $(json peak_rss_bytes) > 0"
-check "context switches and the share of other processes" json voluntary_switches involuntary_switches others_share
+check "context switches and the share of other processes" json voluntary_switches involuntary_switches others_fraction
 check "noise is null without random samples" is "$(json noise@type)" null
 check "hardware counters are numbers or null" is "$(json hardware@keys | sort | tr '\n' ' ')" \
     "branch_misses cache_misses cycles instructions "
@@ -282,10 +282,10 @@ check "one channel of six: mse 1/6, psnr 10 log10 6" is "$(sed -n 's/^\(mse\|psn
 check "compare prints the largest difference and its pixel" grep -q '^largest     1 at 1,0$' out
 check "compare prints the share of differing pixels" grep -q '^differing   50% of the pixels' out
 run compare left.pfm right.pfm --json
-check "compare --json" is "$(json schema width height mse 'largest_at[]' differing_share 'bits[]')" \
+check "compare --json" is "$(json schema width height mse 'largest_at[]' differing_fraction 'bits[]')" \
     "$(lines 1 2 1 0.16666666666666666 1 0 0.5 32 32)"
 check "keys of compare --json" is "$(json @keys | sort | tr '\n' ' ')" \
-    "bits differing_share files flip height largest largest_at mse psnr_db schema ssim width "
+    "bits differing_fraction files flip height largest largest_at mse psnr_db schema ssim width "
 run compare a.png b.png --diff where.png
 check "compare of equal images" is "$(sed -n '/^size/d; s/  */ /p' out | tr '\n' ';')" \
     "mse 0;psnr identical;ssim 1.000000;flip 0.000000;largest 0;differing 0% of the pixels, at 8 bits;"
@@ -295,7 +295,7 @@ run compare a.png b.png --json
 check "equal images have no psnr" is "$(json psnr_db@type largest_at@type flip)" "$(lines null null 0.0)"
 run compare a.png a.pfm --json
 check "8 bits differ by at most half a step" holds "$(json largest) <= 0.5 / 255 + 1e-6 && $(json largest) > 0.4 / 255"
-check "half a step is no difference at 8 bits" is "$(json differing_share)" 0.0
+check "half a step is no difference at 8 bits" is "$(json differing_fraction)" 0.0
 run compare a.jpg a.png --diff where.jpg
 check "a JPEG can be compared with a PNG" silent_success
 check "--diff writes a JPEG" magic where.jpg ffd8ff

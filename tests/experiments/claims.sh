@@ -231,7 +231,7 @@ copy few polarised profile pool lighting
 awk -F, 'NR == 1 { for (i = 1; i <= NF; i++) at[$i] = i } NR == 1 || $at["repetition"] < 5' \
     "$reference/polarised/rows.csv" >"$work/few/polarised/rows.csv"
 recheck "$work/few/polarised/rows.csv"
-edit "$work/few/profile/rows.csv" 'NR > 1' others_share 0.7
+edit "$work/few/profile/rows.csv" 'NR > 1' others_fraction 0.7
 edit "$work/few/pool/rows.csv" 'NR % 2' wall_s 'f("wall_s") * 4'
 rm -r "$work/few/lighting"
 tables "$work/few" polarised profile pool lighting

@@ -27,7 +27,7 @@ tables.write(out, getattr(tables, kind.upper()), lines)' "$work/table.tsv" "$@" 
 
 # --- prices: in round r every program takes r + 1 times as long, and what is left out saves a known share
 rounds() { # NUMBER
-    echo 'film,contract,compiler,isa,scene,repetition,place,cpu_s,film_hash,rays_total,others_share'
+    echo 'film,contract,compiler,isa,scene,repetition,place,cpu_s,film_hash,rays_total,others_fraction'
     awk -v n="$1" 'BEGIN { for (r = 0; r < n; r++) for (s = 1; s <= 2; s++) {
         row = sprintf("gcc,avx2,%s,%d,0", s == 1 ? "rod" : "ball", r)
         printf "fixed,off,%s,%.9g,a,1,0\n", row, 1.5 * s * (r + 1)
@@ -61,7 +61,7 @@ verdict $? "5 rounds have no interval"
 
 # --- films
 cat >"$work/images.csv" <<'END'
-scene,film_hash,max_difference,differing_share
+scene,film_hash,max_difference,differing_fraction
 rod,a,0,0
 rod,b,0.25,0.5
 rod,c,1e-7,0.75

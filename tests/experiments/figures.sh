@@ -132,12 +132,12 @@ one="$measured"' && !seen[$at["cell"], ("worker" in at) ? $at["worker"] : ""]++'
 single='NR > 1 {
     for (name in at) if (name ~ /_(low|high)$/) $at[name] = "NA"
     if ("n" in at && $at["n"] > 1) $at["n"] = 1
-    if ("others_share" in at) $at["others_share"] = 0.93
+    if ("others_fraction" in at) $at["others_fraction"] = 0.93
     if ("disturbed" in at) $at["disturbed"] = $at["n"]
     for (name in at) if (name ~ /^undisturbed_/) $at[name] = name == "undisturbed_n" ? 0 : "NA"
 } { print }'
 disturb='NR > 1 {
-    if ("others_share" in at) $at["others_share"] = 0.93
+    if ("others_fraction" in at) $at["others_fraction"] = 0.93
     for (name in at) if (name ~ /^undisturbed_/) $at[name] = name == "undisturbed_n" ? 0 : "NA"
     if ("disturbed" in at) $at["disturbed"] = $at["n"]
 } { print }'

@@ -100,7 +100,7 @@ typedef struct expectation {
     int width, height;
     double mse, psnr_db, ssim, flip, largest;
     int largest_x, largest_y;
-    double differing_share;
+    double differing_fraction;
 } expectation;
 
 static const expectation expectations[] = {
@@ -133,7 +133,7 @@ static void every_measure_equals_independent_programs(void **state)
         assert_near(c.largest, e->largest, 1e-10);
         assert_int_equal(c.largest_x, e->largest_x);
         assert_int_equal(c.largest_y, e->largest_y);
-        assert_near(c.differing_share, e->differing_share, 1e-10);
+        assert_near(c.differing_fraction, e->differing_fraction, 1e-10);
     }
 }
 
@@ -158,7 +158,7 @@ static void an_image_is_identical_to_itself(void **state)
     image_destroy(a);
     assert_true(c.mse == 0 && isinf(c.psnr_db) && c.psnr_db > 0);
     assert_near(c.ssim, 1.0, 1e-12);
-    assert_true(c.flip == 0 && c.largest == 0 && c.differing_share == 0 && c.largest_x == 0 && c.largest_y == 0);
+    assert_true(c.flip == 0 && c.largest == 0 && c.differing_fraction == 0 && c.largest_x == 0 && c.largest_y == 0);
 }
 
 /* A known offset of the encoded values: mse is its square, psnr follows by definition; the variances of two constants
@@ -173,7 +173,7 @@ static void constants_have_closed_forms(void **state)
     assert_near(c.largest, 0.2, 1e-7);
     double expected = (2 * encoded_a * encoded_b + c1) / (encoded_a * encoded_a + encoded_b * encoded_b + c1);
     assert_near(c.ssim, expected, 1e-7);
-    assert_true(c.differing_share == 1);
+    assert_true(c.differing_fraction == 1);
 }
 
 /* Two grey images of constant lightness: without chroma, HyAB is the difference of the lightnesses; the filters leave
@@ -211,7 +211,7 @@ static void a_single_differing_pixel_is_located(void **state)
     assert_int_equal(c.largest_y, 17);
     assert_near(c.largest, difference, 1e-12);
     assert_near(c.mse, difference * difference / (64 * 48 * 3), 1e-15);
-    assert_near(c.differing_share, 1.0 / (64 * 48), 1e-15);
+    assert_near(c.differing_fraction, 1.0 / (64 * 48), 1e-15);
     assert_true(c.ssim < 1 && c.flip > 0);
 }
 
@@ -221,7 +221,7 @@ static void differences_below_an_8_bit_step_still_have_an_error(void **state)
     (void)state;
     image_comparison c =
         compare_once(constant(20, 20, srgb_decode(100.0 / 255)), constant(20, 20, srgb_decode(100.25 / 255)));
-    assert_true(c.differing_share == 0);
+    assert_true(c.differing_fraction == 0);
     assert_near(c.largest, 0.25 / 255, 1e-7);
     assert_true(c.flip > 0);
 }
@@ -233,7 +233,7 @@ static void values_beyond_the_displays_range_are_clamped(void **state)
     a->pixel[0] = -3.0f;
     b->pixel[0] = 0.0f;
     image_comparison c = compare_once(a, b);
-    assert_true(c.mse == 0 && c.flip == 0 && c.largest == 0 && c.differing_share == 0);
+    assert_true(c.mse == 0 && c.flip == 0 && c.largest == 0 && c.differing_fraction == 0);
     assert_near(c.ssim, 1.0, 1e-12);
 }
 

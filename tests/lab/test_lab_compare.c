@@ -104,7 +104,7 @@ static void equal_images_have_no_difference(void **state)
     assert_true(json_is_null(json_object_get(c, "psnr_db")));
     assert_true(json_is_null(json_object_get(c, "largest_at")));
     assert_true(number(c, "mse") == 0.0 && number(c, "flip") == 0.0 && number(c, "largest") == 0.0 &&
-                number(c, "differing_share") == 0.0);
+                number(c, "differing_fraction") == 0.0);
     assert_true(number(c, "ssim") == 1.0);
     assert_int_equal(json_array_size(json_object_get(json, "changed")), 0);
     assert_true(json_equal(json_object_get(json, "a"), json_object_get(json, "b")));
@@ -118,7 +118,7 @@ static void check_numbers(const json_t *c, const image_comparison *found)
     assert_true(number(c, "ssim") == found->ssim);
     assert_true(number(c, "flip") == found->flip);
     assert_true(number(c, "largest") == found->largest);
-    assert_true(number(c, "differing_share") == found->differing_share);
+    assert_true(number(c, "differing_fraction") == found->differing_fraction);
     const json_t *place = json_object_get(c, "largest_at");
     assert_int_equal(json_integer_value(json_array_get(place, 0)), found->largest_x);
     assert_int_equal(json_integer_value(json_array_get(place, 1)), found->largest_y);

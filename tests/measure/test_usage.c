@@ -47,12 +47,12 @@ static void noise_is_the_rest_of_the_machine(void **state)
     const noise_reading after = {
         .wall_s = 11, .busy_s = 100.8, .steal_s = 5.2, .own_s = 1.3, .units = 2, .frequency_hz = 2e9};
     const machine_noise noise = noise_between(&before, &after);
-    assert_true(fabs(noise.others_share - 0.25) < 1e-12);
-    assert_true(fabs(noise.steal_share - 0.1) < 1e-12);
+    assert_true(fabs(noise.others_fraction - 0.25) < 1e-12);
+    assert_true(fabs(noise.steal_fraction - 0.1) < 1e-12);
     assert_true(noise.frequency_hz == 2e9);
     const noise_reading unknown = {.wall_s = 11, .busy_s = NAN, .steal_s = NAN, .own_s = 1.3, .units = NAN};
-    assert_true(isnan(noise_between(&before, &unknown).others_share));
-    assert_true(isnan(noise_between(&before, &unknown).steal_share));
+    assert_true(isnan(noise_between(&before, &unknown).others_fraction));
+    assert_true(isnan(noise_between(&before, &unknown).steal_fraction));
 }
 
 /* A short interval looks back half a second, a long one to its beginning, whatever readings lie between. */
@@ -60,7 +60,7 @@ static void the_window_looks_back_half_a_second(void **state)
 {
     (void)state;
     noise_window w = {.count = 0};
-    assert_true(isnan(noise_window_since(&w, 0, &(noise_reading){.wall_s = 1}).others_share));
+    assert_true(isnan(noise_window_since(&w, 0, &(noise_reading){.wall_s = 1}).others_fraction));
     noise_reading at = {.units = 1, .own_s = 0};
     for (int i = 0; i <= 3000; i++) { /* others are busy in every second from 1 s to 1.5 s after its start */
         at.wall_s = 0.001 * i;
@@ -70,8 +70,8 @@ static void the_window_looks_back_half_a_second(void **state)
         assert_true(w.count <= NOISE_READINGS);
     }
     /* At 3 s: the last half second was quiet, the last 0.75 s had a third of use. */
-    assert_true(noise_window_since(&w, 2.999, &at).others_share < 0.13);
-    assert_true(fabs(noise_window_since(&w, 2.25, &at).others_share - 1.0 / 3) < 0.06);
+    assert_true(noise_window_since(&w, 2.999, &at).others_fraction < 0.13);
+    assert_true(fabs(noise_window_since(&w, 2.25, &at).others_fraction - 1.0 / 3) < 0.06);
 }
 
 static void rules_never_look_at_times(void **state)

@@ -168,7 +168,7 @@ class Trial:
         """The rows of the table that was flushed, or of all tables."""
         for path, content in check.all_files(disk):
             if cases.is_rows(path) and (node is None or check.folder_node(disk, path) is node):
-                promise.rows.update(check.column(content, "check"))
+                promise.rows.update(check.column(content, "checksum"))
 
     def learn(self, disk, events):
         """What belongs where, from every complete run of the case."""
@@ -181,7 +181,7 @@ class Trial:
             if fields[0] in ("write", "rename"):
                 for path, content in check.all_files(disk):
                     if cases.is_rows(path):
-                        self.rows.update(dict.fromkeys(check.column(content, "check")))
+                        self.rows.update(dict.fromkeys(check.column(content, "checksum")))
 
     def run(self, recorded):
         log, self.final, begin = recorded.events, recorded.final, recorded.begin

@@ -26,7 +26,7 @@ static status read_rows(const study *s, const char *results, diagnostic *why)
     TRY(row_files_read(s, results, ROWS, &files, why));
     printf("ok\t");
     for (size_t i = 0; i < files->row_count; i++)
-        printf("%s%s", i ? "," : "", row_field(&files->rows[i], "check"));
+        printf("%s%s", i ? "," : "", row_field(&files->rows[i], "checksum"));
     printf("\t");
     for (size_t i = 0; i < files->issue_count; i++)
         if (files->issues[i].fault != ROW_TORN)

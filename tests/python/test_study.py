@@ -111,7 +111,7 @@ def test_excluded_and_damaged_rows(study, tmp_path, program):
         str(results),
         str(tmp_path / "tiny.study"),
         "--row",
-        first["check"],
+        first["checksum"],
         "--reason",
         "a cat on the keyboard",
     )

@@ -199,7 +199,7 @@ static const realism_value *value(const realism_report *r, const char *metric)
 static void one_metric_equals_that_of_the_report(void **state)
 {
     (void)state;
-    static const char *const names[] = {"edges.left", "lens.focal_length", "reversal.way"};
+    static const char *const names[] = {"edges.left", "lens.focal_length", "reversal.path"};
     scene *s = rod_scene("");
     const realism_report r = measured_against(s, s);
     realism_value one;

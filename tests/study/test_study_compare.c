@@ -101,7 +101,7 @@ static void an_image_does_not_differ_from_itself(void **state)
         assert_string_equal(text_of(table, cell, "ssim"), "1");
         assert_string_equal(text_of(table, cell, "flip"), "0");
         assert_string_equal(text_of(table, cell, "error_rms"), "0");
-        assert_string_equal(text_of(table, cell, "differing_share"), "0");
+        assert_string_equal(text_of(table, cell, "differing_fraction"), "0");
         assert_string_equal(text_of(table, cell, "noise_rms"), "NA");
         assert_string_equal(text_of(table, cell, "film_hash"), text_of(table, cell, "reference_film"));
     }
@@ -125,7 +125,7 @@ static void differences_equal_those_of_the_films(void **state)
     assert_true(real_of(table, 0, "ssim") == metrics.ssim);
     assert_true(real_of(table, 0, "flip") == metrics.flip);
     assert_true(real_of(table, 0, "largest") == metrics.largest);
-    assert_true(real_of(table, 0, "differing_share") == metrics.differing_share);
+    assert_true(real_of(table, 0, "differing_fraction") == metrics.differing_fraction);
     double sum = 0;
     for (size_t i = 0; i < 24 * 18 * 3; i++)
         sum +=
@@ -289,7 +289,7 @@ static void a_summary_has_time_and_error_on_one_line(void **state)
     fixture_run(f, s);
     csv *table = read_table(f, "results/test/compare.csv");
     char *text = summary_of(f, s), values[400], compare[400];
-    assert_int_equal(fixture_count(text, "\treference\tmse\tpsnr_db\tssim\tflip\tlargest\tdiffering_share\terror_"
+    assert_int_equal(fixture_count(text, "\treference\tmse\tpsnr_db\tssim\tflip\tlargest\tdiffering_fraction\terror_"
                                          "rms\treference_noise_rms\tdisturbed\t"),
                      1);
     char *lines = text, *line = NULL;

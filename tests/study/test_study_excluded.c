@@ -68,7 +68,7 @@ static void a_row_is_left_out_and_stays(void **state)
     assert_string_equal(summary_field(f, s, 1, "excluded"), "1");
     char *after = fixture_text(f, "results/test/rows.csv"), *list = fixture_text(f, "results/test/excluded.csv");
     assert_string_equal(before, after);
-    assert_non_null(strstr(list, "check,identity,run,process,cell,repetition,reason,time_utc\n"));
+    assert_non_null(strstr(list, "checksum,identity,run,process,cell,repetition,reason,time_utc\n"));
     assert_non_null(strstr(list, ",0,2,\"the fan of the machine failed\",2"));
     assert_non_null(strstr(list, ",1,1,\"a comma, and \"\"quotes\"\"\",2"));
     assert_int_equal(fixture_run(f, s), 0); /* an excluded row is not measured again */
@@ -83,13 +83,13 @@ static void the_check_names_a_row(void **state)
     const fixture *f = *state;
     study *s = fixture_study(f, text);
     row_files *files = NULL;
-    char check[64];
+    char checksum[64];
     fixture_run(f, s);
     assert_int_equal(row_files_read(s, f->results, ROWS, &files, NULL), STATUS_OK);
-    snprintf(check, sizeof check, "%s", row_field(row_of(files, 1, 2), "check"));
+    snprintf(checksum, sizeof checksum, "%s", row_field(row_of(files, 1, 2), "checksum"));
     row_files_destroy(files);
-    assert_int_equal(strlen(check), 16);
-    assert_int_equal(add(f, s, check, "reason", NULL), STATUS_OK);
+    assert_int_equal(strlen(checksum), 16);
+    assert_int_equal(add(f, s, checksum, "reason", NULL), STATUS_OK);
     diagnostic why = {0};
     assert_int_equal(add(f, s, "1:2", "again", &why), STATUS_BAD_INPUT);
     assert_string_equal(why.what, "this row is excluded already");
@@ -169,12 +169,12 @@ static void a_damaged_list_is_reported(void **state)
     fixture_run(f, s);
     assert_int_equal(add(f, s, "0:1", "reason", NULL), STATUS_OK);
     fixture_write(f, "results/test/excluded.csv",
-                  "check,identity,run,process,cell,repetition,reason,time_utc\n"
+                  "checksum,identity,run,process,cell,repetition,reason,time_utc\n"
                   "NA,NA,NA,NA,0,1,reason,NA\nNA,NA,NA,NA,0,two,reason,NA\n");
     diagnostic why = {0};
     assert_int_equal(study_summary(s, f->results, stderr, &why), STATUS_BAD_INPUT);
     assert_int_equal(why.line, 3);
-    fixture_write(f, "results/test/excluded.csv", "check,reason\nNA,reason\n");
+    fixture_write(f, "results/test/excluded.csv", "checksum,reason\nNA,reason\n");
     assert_int_equal(study_summary(s, f->results, stderr, &why), STATUS_BAD_INPUT);
     assert_non_null(strstr(why.what, "cell"));
     /* Without what tells runs apart, cell and repetition decide; a last line that lacks fields is no line. */

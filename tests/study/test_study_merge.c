@@ -145,7 +145,7 @@ static void contradictory_rows_are_errors(void **state)
     study *s = fixture_study(f, study_text);
     run_shard(f, s, 0, 1);
     char *rows = fixture_text(f, "results/test/rows.csv");
-    char *digit = rows + strlen(rows) - 2; /* the last digit of the row's check */
+    char *digit = rows + strlen(rows) - 2; /* the last digit of the row's checksum */
     *digit = *digit == '0' ? '1' : '0';
     fixture_write(f, "results/test/rows.shard-0-of-2.csv", rows);
     free(rows);
@@ -173,7 +173,7 @@ static void duplicate_rows_in_a_file_are_faults(void **state)
     fixture_write(f, "results/test/rows.csv", twice);
     study_progress progress;
     assert_int_equal(study_status(s, f->results, &progress, NULL), STATUS_OK);
-    assert_int_equal(progress.faults, 2); /* it is twice there, and not after the row that its check names */
+    assert_int_equal(progress.faults, 2); /* it is twice there, and not after the row that its checksum names */
     assert_int_equal(progress.rows, 18);
     assert_int_equal(study_merge(s, f->results, NULL, NULL, NULL), STATUS_BAD_INPUT);
     free(twice);

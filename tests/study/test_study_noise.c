@@ -10,7 +10,7 @@
 #include <sys/wait.h>
 
 static const char study_format[] = "study: test\nscene: scene.yaml\nwarmups: 0\nrepetitions: %s\ndisturbed: %s\n";
-static const char never[] = "{others_share: 1}", always[] = "{others_share: 0}";
+static const char never[] = "{others_fraction: 1}", always[] = "{others_fraction: 0}";
 
 static study *study_with(const fixture *f, const char *repetitions, const char *rule)
 {
@@ -55,13 +55,13 @@ static void end_load(pid_t pid)
 static void a_twentieth_of_the_machine_is_news(void **state)
 {
     (void)state;
-    const study s = {.disturbed = {.others_share = NAN, .steal_share = NAN, .frequency_drop = NAN}};
+    const study s = {.disturbed = {.others_fraction = NAN, .steal_fraction = NAN, .frequency_drop = NAN}};
     for (int more = 0; more < 2; more++) {
         said heard = {.count = 0};
         const study_options options = {.news = hear, .context = &heard};
         run r = {.s = &s, .options = &options};
         machine_noise noise = noise_unknown();
-        noise.others_share = more ? 0.0502 : 0.0498;
+        noise.others_fraction = more ? 0.0502 : 0.0498;
         (void)run_noise_judge(&r, &noise);
         assert_int_equal(heard.count, more);
     }
@@ -151,25 +151,25 @@ static void another_rule_keeps_the_rows(void **state)
     study *s = study_with(f, "3", never);
     assert_int_equal(fixture_run(f, s), 3);
     study_destroy(s);
-    s = study_with(f, "3", "{steal_share: 0.5, frequency_drop: 0.9}");
-    assert_true(isnan(s->disturbed.others_share) && s->disturbed.steal_share == 0.5);
+    s = study_with(f, "3", "{steal_fraction: 0.5, frequency_drop: 0.9}");
+    assert_true(isnan(s->disturbed.others_fraction) && s->disturbed.steal_fraction == 0.5);
     assert_int_equal(fixture_run(f, s), 0);
     study_destroy(s);
-    s = study_with(f, "3", "{others_share: 0, steal_share: 0, frequency_drop: 0}"); /* the present rule judges */
+    s = study_with(f, "3", "{others_fraction: 0, steal_fraction: 0, frequency_drop: 0}"); /* the present rule judges */
     row_files *files;
     study_progress progress;
     size_t above = 0;
     assert_int_equal(row_files_read(s, f->results, ROWS, &files, NULL), STATUS_OK);
     for (size_t i = 0; i < files->row_count; i++)
-        above += row_field_real(&files->rows[i], "others_share") > 0 ||
-                 row_field_real(&files->rows[i], "steal_share") > 0 ||
+        above += row_field_real(&files->rows[i], "others_fraction") > 0 ||
+                 row_field_real(&files->rows[i], "steal_fraction") > 0 ||
                  row_field_real(&files->rows[i], "frequency_drop") > 0;
     row_files_destroy(files);
     assert_int_equal(study_status(s, f->results, &progress, NULL), STATUS_OK);
     assert_int_equal(progress.rows_disturbed, above);
     study_destroy(s);
     s = fixture_study(f, "study: test\nscene: scene.yaml\nwarmups: 0\nrepetitions: 3\n");
-    assert_true(s->disturbed.others_share == 0.05 && isnan(s->disturbed.steal_share));
+    assert_true(s->disturbed.others_fraction == 0.05 && isnan(s->disturbed.steal_fraction));
     assert_int_equal(fixture_run(f, s), 0);
     study_destroy(s);
 }
@@ -238,10 +238,10 @@ static void a_stopped_process_is_disturbed(void **state)
     assert_int_equal(row_files_read(s, f->results, ROWS, &files, NULL), STATUS_OK);
     assert_int_equal(files->row_count, 1);
     const row_ref *row = &files->rows[0];
-    assert_true(stopped && row_field_real(row, "stalled_share") > 0);
-    const double stopped_s = row_field_real(row, "wall_s") * row_field_real(row, "stalled_share");
+    assert_true(stopped && row_field_real(row, "stalled_fraction") > 0);
+    const double stopped_s = row_field_real(row, "wall_s") * row_field_real(row, "stalled_fraction");
     assert_true(stopped_s > 0.25); /* of the 0.3 s or more */
-    if (row_field_real(row, "stalled_share") > 0.1)
+    if (row_field_real(row, "stalled_fraction") > 0.1)
         assert_string_equal(row_field(row, "disturbed"), "1");
     row_files_destroy(files);
     study_destroy(s);
@@ -255,8 +255,8 @@ static void invalid_rules_are_refused(void **state)
     } cases[] = {
         {"3", "0.1", "disturbed is not a map"},
         {"3", "{others: 0.1}", "unknown key 'others'"},
-        {"3", "{others_share: 1.5}", "others_share is not a share"},
-        {"3", "{steal_share: much}", "steal_share is not a share"},
+        {"3", "{others_fraction: 1.5}", "others_fraction is not a share"},
+        {"3", "{steal_fraction: much}", "steal_fraction is not a share"},
         {"{undisturbed: 3}", never, "repetitions has no max"},
         {"{undisturbed: 5, max: 4}", never, "max 4 is less than undisturbed 5"},
         {"{undisturbed: 5, max: 8, min: 2}", never, "unknown key 'min'"},

@@ -305,7 +305,7 @@ static void labels_below_1_have_room(void **state)
 {
     const fixture *f = *state;
     study *s = study_of(f, "[{render.depth: [0, 1, 2]}]");
-    const plot_request r = {.y = "others_share"};
+    const plot_request r = {.y = "others_fraction"};
     plot_plan p = full_plan(s, &r, 0);
     draw(f, &p);
     assert_true(p.y.from > 0 && p.y.to < 0.05);

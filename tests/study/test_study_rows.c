@@ -135,8 +135,8 @@ static void rows_record_the_measured_values(void **state)
         {"peak_rss_bytes", "4096"},
         {"voluntary_switches", "1"},
         {"involuntary_switches", "0"},
-        {"others_share", "NA"},
-        {"steal_share", "0.125"},
+        {"others_fraction", "NA"},
+        {"steal_fraction", "0.125"},
         {"frequency_hz", "2000000000"},
         {"frequency_drop", "0.25"},
         {"disturbed", "1"},
@@ -165,7 +165,7 @@ static void columns_are_in_the_expected_order(void **state)
         header,
         "study,identity,cell,repetition,warmup,render.schedule,ball.ior,lamp.position,worker,pu,tiles,rays_total,"
         "rays_camera,rays_reflect,rays_refract,rays_shadow,start_s,wall_s,cpu_s,busy_s,visibility_s,waiting_s,"
-        "running_s,runnable_s,blocked_s,voluntary_switches,involuntary_switches,schema,run,process,check\n");
+        "running_s,runnable_s,blocked_s,voluntary_switches,involuntary_switches,schema,run,process,checksum\n");
     free(header);
     study_destroy(s);
 }

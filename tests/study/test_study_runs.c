@@ -61,7 +61,7 @@ static void runs_record_the_provenance_of_rows(void **state)
         assert_true(text_at(environment, facts[i])[0]);
     const json_t *sealed = json_object_get(json_object_get(run, "rows"), "rows");
     assert_int_equal(json_integer_value(json_object_get(sealed, "count")), 1);
-    assert_int_equal(strlen(text_at(sealed, "check")), 16);
+    assert_int_equal(strlen(text_at(sealed, "checksum")), 16);
     static const char *const libraries[] = {"libpng", "libjpeg-turbo", "hwloc", "libyaml", "jansson"};
     for (size_t i = 0; i < sizeof libraries / sizeof libraries[0]; i++)
         assert_true(strchr(text_at(json_object_get(run, "libraries"), libraries[i]), '.') != NULL);

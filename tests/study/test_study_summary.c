@@ -186,7 +186,7 @@ static void columns_are_in_the_expected_order(void **state)
     static const char header[] = "cell\trender.depth\tn\t" SIX("wall_s") SIX(
         "cpu_s") "rays_total\trays_camera\trays_reflect\trays_refract\trays_shadow\tcut_depth_throughput\ttotal_"
                  "internal\t"
-                 "film_hash\tmarked\texcluded\tbusy_s_mean\tbusy_s_max\twaiting_s_mean\tothers_share\tworker_cpu_s_"
+                 "film_hash\tmarked\texcluded\tbusy_s_mean\tbusy_s_max\twaiting_s_mean\tothers_fraction\tworker_cpu_s_"
                  "sum\t"
                  "peak_rss_bytes\tnoise_rms\ttriangles\tinstances\taccel_bytes\tdrawn\tdrawn_bytes\tmotion_steps\tcut_"
                  "share\t"

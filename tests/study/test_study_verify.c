@@ -238,11 +238,11 @@ static void torn_lines_are_no_fault(void **state)
     study_destroy(s);
 }
 
-/* Closed form: a column's order, and columns without a value, do not change the check of a row; anything else does. */
+/* Closed form: a column's order, and columns without a value, do not change the checksum of a row; anything else does. */
 static void checks_depend_on_names_and_values_only(void **state)
 {
     (void)state;
-    char *header[] = {"a", "b", "check", "c"}, *other[] = {"c", "check", "b", "later", "a"};
+    char *header[] = {"a", "b", "checksum", "c"}, *other[] = {"c", "checksum", "b", "later", "a"};
     char *row[] = {"1", "NA", "x", "2;3"}, *same[] = {"2;3", "y", "NA", "NA", "1"},
          *swapped[] = {"1", "NA", "y", "NA", "2;3"};
     checksum_columns first, second;

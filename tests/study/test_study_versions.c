@@ -290,7 +290,7 @@ static void expect_no_faults(const fixture *f, const study *s)
 }
 
 /* Summaries under a permuted header, with one column less and one more; a missing one is unknown. A column that this
- * version does not know is part of the row's check, so the checks are made again. */
+ * version does not know is part of the row's checksum, so the checksums are made again. */
 static void columns_are_identified_by_name(void **state)
 {
     const fixture *f = *state;
@@ -439,7 +439,7 @@ static void missing_required_columns_are_reported(void **state)
     study *s = fixture_study(f, study_text);
     fixture_run(f, s);
     char *whole = fixture_text(f, rows_name);
-    static const char *const required[] = {"repetition", "identity", "run", "check"};
+    static const char *const required[] = {"repetition", "identity", "run", "checksum"};
     for (size_t i = 0; i < sizeof required / sizeof *required; i++) {
         rearrange(f, rows_name, required[i], NULL);
         diagnostic why = refusal_of(f, s);

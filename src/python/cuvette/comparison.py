@@ -35,7 +35,7 @@ class Comparison:
     ssim: float
     flip: float
     largest: float
-    differing_share: float
+    differing_fraction: float
     largest_at: Tuple[int, int]
     map: Optional[NDArray[numpy.float32]]  #: FLIP error of each pixel in false colour, linear RGB
 
@@ -78,7 +78,7 @@ def compare(a: Pixels, b: Pixels, map: bool = False) -> Comparison:
         found.ssim,
         found.flip,
         found.largest,
-        found.differing_share,
+        found.differing_fraction,
         (found.largest_x, found.largest_y),
         drawn,
     )

@@ -49,7 +49,7 @@ TEXTS = (
     "isa",
     "config",
     "run",
-    "check",
+    "checksum",
 )
 REASONS = {"warm-up": "warm-ups", "marked": "marked", "excluded": "excluded"}
 
@@ -256,8 +256,8 @@ class Study:
     def rows(
         self, results: Path = "results", environment: Optional[str] = None, raw: bool = False
     ) -> "pandas.DataFrame":
-        """The rows of the study, as of cuvette.rows, with the units of the grid's parameters; warns of rows that fail
-        a check."""
+        """The rows of the study, as of cuvette.rows, with the units of the grid's parameters; warns of rows that have
+        a wrong checksum."""
         units = {p.path: p.unit for p in self.scene(0).parameters}
         return _rows(self._study, self._folder(results), os.fspath(results), environment, raw, units)
 

@@ -22,7 +22,7 @@ static status probe_of_beam(const scene *s, const beam *b, double lambda_nm, isa
         code = scene_remove(unlit, unlit->lights[unlit->light_count - 1].name, why);
     if (code == STATUS_OK) {
         unlit->render.lambda_nm = lambda_nm;
-        unlit->render.min_weight = b->min_share;
+        unlit->render.min_weight = b->min_fraction;
         code = probe_create(unlit, level, out, why);
     }
     if (code == STATUS_OK) {
@@ -61,7 +61,7 @@ static status visit_ray(beam_work *w, const beam *b, const ray_axes *a, const be
         TRY(probe_path(p, origin, direction, -1, &w->tree, w->why));
     w->segments += w->tree.count;
     if (w->segments > BEAMS_SEGMENTS_MAX)
-        return diagnose(w->why, STATUS_BAD_INPUT, "use fewer rays, a smaller depth or a larger min_share",
+        return diagnose(w->why, STATUS_BAD_INPUT, "use fewer rays, a smaller depth or a larger min_fraction",
                         "the beams have more than %d segments", BEAMS_SEGMENTS_MAX);
     return w->visit(w->context, ray, &w->tree, p, w->why);
 }

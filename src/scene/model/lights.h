@@ -83,7 +83,7 @@ typedef struct beam {
     double power;     /* sum over all rays, at their starts */
     int64_t branches; /* 1: reflected and refracted rays; 0: the refracted path, as in `cuvette fan` */
     int64_t depth;
-    double min_share;
+    double min_fraction;
     vec3 color; /* of the drawn lines; black: the colour of the wavelength */
     int64_t visible;
     int64_t lights, profile; /* 1: it lights the scene, with that beam_profile */

@@ -174,17 +174,17 @@ static status read_fraction(const document *d, const node *n, const char *name, 
     return STATUS_OK;
 }
 
-/* {others_share: 0.05, steal_share: 0.01, frequency_drop: 0.1, stalled_share: 0.1} */
+/* {others_fraction: 0.05, steal_fraction: 0.01, frequency_drop: 0.1, stalled_fraction: 0.1} */
 static status read_noise_rule(study *s, const document *d, const node *n, diagnostic *why)
 {
-    static const char *const keys[] = {"others_share", "steal_share", "frequency_drop", "stalled_share"};
+    static const char *const keys[] = {"others_fraction", "steal_fraction", "frequency_drop", "stalled_fraction"};
     s->disturbed = noise_rule_default();
     if (!n)
         return STATUS_OK;
     if (n->kind != NODE_MAP)
-        return node_error(d, n, why, "write {others_share: 0.05}", "disturbed is not a map");
-    double *const parts[] = {&s->disturbed.others_share, &s->disturbed.steal_share, &s->disturbed.frequency_drop,
-                             &s->disturbed.stalled_share};
+        return node_error(d, n, why, "write {others_fraction: 0.05}", "disturbed is not a map");
+    double *const parts[] = {&s->disturbed.others_fraction, &s->disturbed.steal_fraction, &s->disturbed.frequency_drop,
+                             &s->disturbed.stalled_fraction};
     TRY(node_check_keys(d, n, keys, COUNT(keys), why));
     for (size_t i = 0; i < COUNT(keys); i++) {
         *parts[i] = NAN;

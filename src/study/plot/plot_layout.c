@@ -190,7 +190,7 @@ static double sum_of(const plot_plan *p, const char *name)
 static facts collect(const plot_plan *p)
 {
     facts f = {.least_n = INFINITY, .others = NAN, .marked = sum_of(p, "marked"), .disturbed = sum_of(p, "disturbed")};
-    const long n = summary_table_column(&p->table, "n"), others = summary_table_column(&p->table, "others_share");
+    const long n = summary_table_column(&p->table, "n"), others = summary_table_column(&p->table, "others_fraction");
     for (size_t i = 0; i < p->point_count; i++) {
         const plot_point *point = &p->points[i];
         const double count = summary_table_real(&p->table, point->row, n);

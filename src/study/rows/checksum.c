@@ -16,7 +16,7 @@ status checksum_columns_create(char *const *names, size_t count, checksum_column
     if (!out->name)
         return out_of_memory(why);
     for (size_t i = 0; i < count; i++)
-        out->name[i] = strcmp(names[i], "check") == 0 ? 0 : hash_bytes(HASH_START, names[i], strlen(names[i]) + 1);
+        out->name[i] = strcmp(names[i], "checksum") == 0 ? 0 : hash_bytes(HASH_START, names[i], strlen(names[i]) + 1);
     return STATUS_OK;
 }
 

@@ -1,4 +1,4 @@
-/* Checksums of rows: `check`, the last column of each file. Eight hex digits of a hash of the row's values by column
+/* Checksums of rows: `checksum`, the last column of each file. Eight hex digits of a hash of the row's values by column
  * name, then eight of a hash of these and of the checksum of the previous row of the same run (for the first row, of
  * the run's id). The first part detects an edited row, the second a row that was removed, inserted or moved. Both
  * ignore NA and the order of the columns, so that a file may get more columns. They detect accidents and careless
@@ -9,9 +9,9 @@
 
 enum { CHECKSUM_TEXT = 17 };
 
-/* Hashes of the names of a header's columns; checksum_columns_free releases. The column `check` itself is ignored. */
+/* Hashes of the names of a header's columns; checksum_columns_free releases. The column `checksum` itself is ignored. */
 typedef struct checksum_columns {
-    uint64_t *name; /* 0: the column check */
+    uint64_t *name; /* 0: the column checksum */
     size_t count;
 } checksum_columns;
 
@@ -27,5 +27,5 @@ uint32_t checksum_chain(const char *previous, uint32_t content);
 void checksum_text(uint32_t content, uint32_t chain, char text[CHECKSUM_TEXT]);
 bool checksum_parse(const char *text, uint32_t *content, uint32_t *chain);
 
-/* Fills in the checksums of complete lines whose last field, check, is empty ("...,NA"), and updates previous. */
+/* Fills in the checksums of complete lines whose last field, checksum, is empty ("...,NA"), and updates previous. */
 status checksum_lines(const checksum_columns *c, char previous[CHECKSUM_TEXT], csv_line *lines, diagnostic *why);

@@ -163,8 +163,8 @@ status compare_row_measure(compare_row *row, const render_result *frame, diagnos
     X("ssim", "", "mean structural similarity of the luma, 1 for equal images", csv_real(line, r->difference.ssim))    \
     X("flip", "", "mean FLIP error at 67 pixels per degree, 0 for equal images", csv_real(line, r->difference.flip))   \
     X("largest", "", "largest difference in any encoded channel, 0..1", csv_real(line, r->difference.largest))         \
-    X("differing_share", "", "share of the pixels whose 8-bit encodings differ, 0..1",                                 \
-      csv_real(line, r->difference.differing_share))                                                                   \
+    X("differing_fraction", "", "share of the pixels whose 8-bit encodings differ, 0..1",                              \
+      csv_real(line, r->difference.differing_fraction))                                                                \
     X("error_rms", "radiance",                                                                                         \
       "root of the mean square of film less reference, over all pixels and channels, linear, not clamped; 1 is white", \
       csv_real(line, r->error_rms))                                                                                    \
@@ -181,7 +181,7 @@ void compare_each_column(row_column_visitor *visit, void *context)
 }
 
 const char *const compare_shown[] = {
-    "reference", "mse", "psnr_db", "ssim", "flip", "largest", "differing_share", "error_rms", "reference_noise_rms"};
+    "reference", "mse", "psnr_db", "ssim", "flip", "largest", "differing_fraction", "error_rms", "reference_noise_rms"};
 const size_t compare_shown_count = sizeof compare_shown / sizeof compare_shown[0];
 
 void compare_row_write(csv_line *line, const compare_row *r)

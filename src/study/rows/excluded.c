@@ -15,8 +15,8 @@ enum { REASON_LENGTH = 500 };
 
 /* Columns that name a row, by name: a list that a person wrote may lack the first four. cell is that of the grid when
  * the row was excluded; identity is the same in every grid. */
-static const char *const keys[] = {"check", "identity", "run", "process", "cell", "repetition"};
-enum { CHECK, IDENTITY, RUN, PROCESS, CELL, REPETITION, KEY_COUNT };
+static const char *const keys[] = {"checksum", "identity", "run", "process", "cell", "repetition"};
+enum { CHECKSUM, IDENTITY, RUN, PROCESS, CELL, REPETITION, KEY_COUNT };
 
 struct excluded {
     csv *table; /* NULL without a file */
@@ -98,7 +98,7 @@ static bool names(const excluded *list, size_t line, const row_ref *row)
 {
     int64_t repetition = -1, cell = -1;
     bool decided;
-    if (agrees(list, line, row, CHECK, &decided) && decided)
+    if (agrees(list, line, row, CHECKSUM, &decided) && decided)
         return true;
     number_parse_int(field_of(list, line, REPETITION), &repetition);
     number_parse_int(field_of(list, line, CELL), &cell);
@@ -134,8 +134,8 @@ size_t excluded_count(const excluded *list)
 /* Whether text is CELL:REPETITION of the row, or its checksum. */
 static bool is_meant(const char *text, const row_ref *row)
 {
-    const char *check = row_field(row, keys[CHECK]);
-    if (is_known(check) && strcmp(check, text) == 0)
+    const char *checksum = row_field(row, keys[CHECKSUM]);
+    if (is_known(checksum) && strcmp(checksum, text) == 0)
         return true;
     char here[64];
     snprintf(here, sizeof here, "%zu:%ld", row->cell, row->repetition);
@@ -158,7 +158,7 @@ static status find_row(const row_files *files, const excluded *list, const char 
         if (!is_meant(text, &files->rows[i]))
             continue;
         if (*out)
-            return wrong_row(text, why, "give the row's value in the column check",
+            return wrong_row(text, why, "give the row's value in the column checksum",
                              "more than one row has this number");
         *out = &files->rows[i];
     }
@@ -176,12 +176,12 @@ static status find_row(const row_files *files, const excluded *list, const char 
 static status append(const study *s, const char *results, const excluded *list, const row_ref *row, const char *reason,
                      diagnostic *why)
 {
-    static const char header[] = "check,identity,run,process,cell,repetition,reason,time_utc\n";
+    static const char header[] = "checksum,identity,run,process,cell,repetition,reason,time_utc\n";
     char *path = excluded_path(s, results), number[32], utc[ROW_TIME_MAX];
     struct timespec now = {0};
     table *to = NULL;
     csv_line line = {0};
-    for (int key = CHECK; key < CELL; key++) {
+    for (int key = CHECKSUM; key < CELL; key++) {
         const char *field = row_field(row, keys[key]);
         csv_text(&line, is_known(field) ? field : NULL);
     }

@@ -286,7 +286,7 @@ static void add_disturbance(void *list, const char *text)
 }
 
 /* The fraction of time since boot that the hypervisor spent on others; null if unknown: proc(5), /proc/stat. */
-static json_t *steal_share(void)
+static json_t *steal_fraction(void)
 {
     unsigned long long t[8] = {0}, sum = 0;
     FILE *file = fopen("/proc/stat", "re");
@@ -346,7 +346,7 @@ json_t *run_facts(const study *s, const topology *machine, const run_environment
         json_pack("{s:s, s:o, s:o, s:o, s:n, s:i, s:i, s:o, s:o, s:o, s:o}", "id", id, "environment",
                   environment_facts(here), "node", node(), "started_utc", run_time(), "ended_utc", "shard", (int)shard,
                   "shards", (int)(shards > 1 ? shards : 1), "processor", processor_facts(), "topology",
-                  certain(topology_summary(machine)), "load", load_average(), "steal_share", steal_share());
+                  certain(topology_summary(machine)), "load", load_average(), "steal_fraction", steal_fraction());
     json_t *program =
         json_pack("{s:s, s:o, s:s, s:s, s:s#, s:o, s:o, s:o, s:o}", "version", CUVETTE_VERSION, "build_commit",
                   json_text_or_null(build_commit()), "compiler", COMPILER, "flags", CUVETTE_COMPILER_FLAGS, "config",

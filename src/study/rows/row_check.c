@@ -276,9 +276,9 @@ status row_check_quantities(row_files *files, diagnostic *why)
 /* The required columns of a row; others are "NA" if they are missing. */
 static const char *const needed[][12] = {
     [ROWS] = {"study", "identity", "cell", "repetition", "warmup", "film_hash", "film_expected", "marked", "wall_s",
-              "run", "check"},
-    [WORKER_ROWS] = {"study", "identity", "cell", "repetition", "warmup", "worker", "run", "check"},
-    [COMPARE_ROWS] = {"study", "identity", "cell", "film_hash", "run", "check"},
+              "run", "checksum"},
+    [WORKER_ROWS] = {"study", "identity", "cell", "repetition", "warmup", "worker", "run", "checksum"},
+    [COMPARE_ROWS] = {"study", "identity", "cell", "film_hash", "run", "checksum"},
 };
 
 status row_check_columns(const csv *table, const char *path, row_kind kind, diagnostic *why)

@@ -115,9 +115,9 @@ status row_quantity_spread(const row_ref *const *rows, size_t count, row_quantit
 noise_verdict row_noise_judge(const noise_rule *rule, row_noise_columns *at, const row_ref *ref)
 {
     if (ref->table != at->table)
-        *at = (row_noise_columns){ref->table, csv_column(ref->table, "others_share"),
-                                  csv_column(ref->table, "steal_share"), csv_column(ref->table, "frequency_drop"),
-                                  csv_column(ref->table, "stalled_share")};
+        *at = (row_noise_columns){ref->table, csv_column(ref->table, "others_fraction"),
+                                  csv_column(ref->table, "steal_fraction"), csv_column(ref->table, "frequency_drop"),
+                                  csv_column(ref->table, "stalled_fraction")};
     const machine_noise noise = {
         csv_field_real(ref->table, ref->row, at->others), csv_field_real(ref->table, ref->row, at->steal), NAN,
         csv_field_real(ref->table, ref->row, at->drop), csv_field_real(ref->table, ref->row, at->stalled)};

@@ -79,7 +79,7 @@ static bool find_cell(const row_cells *c, uint64_t identity, size_t *cell)
 
 /* The columns that every reader needs, by index; -1: the table lacks it. */
 typedef struct columns {
-    int study, identity, run, check, cell, repetition, warmup, worker;
+    int study, identity, run, checksum, cell, repetition, warmup, worker;
 } columns;
 
 typedef struct table_state {
@@ -95,9 +95,9 @@ typedef struct table_state {
 
 static columns find_columns(const csv *t)
 {
-    return (columns){csv_column(t, "study"),  csv_column(t, "identity"), csv_column(t, "run"),
-                     csv_column(t, "check"),  csv_column(t, "cell"),     csv_column(t, "repetition"),
-                     csv_column(t, "warmup"), csv_column(t, "worker")};
+    return (columns){csv_column(t, "study"),    csv_column(t, "identity"), csv_column(t, "run"),
+                     csv_column(t, "checksum"), csv_column(t, "cell"),     csv_column(t, "repetition"),
+                     csv_column(t, "warmup"),   csv_column(t, "worker")};
 }
 
 static bool read_integer(const csv *t, size_t row, int column, int64_t highest, int64_t *out)
@@ -141,7 +141,7 @@ static status issue(table_state *st, row_fault fault, size_t row, const char *te
 /* The place of a row in the chain of its run. */
 static status follow_chain(table_state *st, size_t row, const row_ref *ref, uint32_t content, uint32_t chain)
 {
-    const char *text = csv_field(st->table, row, st->at.check);
+    const char *text = csv_field(st->table, row, st->at.checksum);
     row_chain *of = &st->r->chain[ref->run];
     const char *previous = of->rows ? of->last : st->r->into->runs->entry[ref->run].id;
     const bool continues = checksum_chain(previous, content) == chain, in_order = ref->run >= st->last_run;
@@ -162,17 +162,17 @@ static status read_values(table_state *st, size_t row, row_ref *ref, uint64_t *i
     uint32_t content = 0, chain = 0;
     int64_t cell;
     *good = false;
-    if (!checksum_parse(csv_field(st->table, row, st->at.check), &content, &chain))
-        return issue(st, ROW_EDITED, row, "the check of the row is damaged");
+    if (!checksum_parse(csv_field(st->table, row, st->at.checksum), &content, &chain))
+        return issue(st, ROW_EDITED, row, "the checksum of the row is damaged");
     const bool intact = checksum_content(&st->hashes, fields) == content;
     ref->run = runs_find(st->r->into->runs, csv_field(st->table, row, st->at.run));
     if (ref->run >= 0) {
         if (!intact) /* the next row follows the checksum that this one states */
-            snprintf(st->r->chain[ref->run].last, RUN_ID, "%.16s", csv_field(st->table, row, st->at.check));
+            snprintf(st->r->chain[ref->run].last, RUN_ID, "%.16s", csv_field(st->table, row, st->at.checksum));
         st->r->chain[ref->run].rows += !intact;
     }
     if (!intact)
-        return issue(st, ROW_EDITED, row, "the values do not agree with the row's check");
+        return issue(st, ROW_EDITED, row, "the values do not agree with the row's checksum");
     if (!parse_hash(csv_field(st->table, row, st->at.identity), identity) || !read_numbers(st, row, ref, &cell))
         return issue(st, ROW_DAMAGED, row, "the row is damaged");
     *good = true;
@@ -255,7 +255,7 @@ static status read_seals(row_reader *r, diagnostic *why)
             code = row_files_add_issue(r->into, ROW_UNKNOWN, "runs.json", 0,
                                        "the environment of run %.16s does not agree with its key", all->entry[i].id);
         if (code == STATUS_OK && runs_seal(&all->entry[i], stem, &seal) && seal.rows > 0 &&
-            (of->most < seal.rows || strcmp(of->end, seal.check) != 0))
+            (of->most < seal.rows || strcmp(of->end, seal.checksum) != 0))
             code = row_files_add_issue(r->into, ROW_MISSING, stem, 0, "run %.16s wrote %zu rows, %zu are there%s",
                                        all->entry[i].id, seal.rows, of->most,
                                        of->most < seal.rows ? "" : ", the last one is another");

@@ -106,7 +106,8 @@ static void put_verdict(csv_line *line, noise_verdict verdict)
     X("marked", "", "1: film_hash differs from film_expected; do not use this row",                                    \
       csv_count(line, job_account_hash(r->made) != r->film_expected))                                                  \
     X("disturbed", "",                                                                                                 \
-      "1: others_share, steal_share, frequency_drop or stalled_share broke the study's rule (key disturbed) when the " \
+      "1: others_fraction, steal_fraction, frequency_drop or stalled_fraction broke the study's rule (key disturbed) " \
+      "when the "                                                                                                      \
       "row was measured; readers apply the present rule",                                                              \
       put_verdict(line, r->disturbed))
 

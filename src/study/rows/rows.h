@@ -36,7 +36,7 @@ typedef struct study_row {
 /* The version of the row format: 2 has identities, runs and checksums; earlier rows have no such column. */
 enum { ROW_SCHEMA = 2 };
 
-/* A line of rows.csv; the lines of workers.csv, one per worker. The last field, check, is NA: study/rows/checksum.h
+/* A line of rows.csv; the lines of workers.csv, one per worker. The last field, checksum, is NA: study/rows/checksum.h
  * fills it. */
 void row_write(csv_line *line, const study_row *r);
 void worker_rows_write(csv_line *line, const study_row *r);
@@ -48,11 +48,11 @@ void row_put_axes(csv_line *line, const study *s, const scene *setting);
 void row_put(csv_line *line, const quantity *q, const job_account *made, int worker);
 
 /* The names and meanings of the columns at the end of every table. */
-#define ROW_ORIGIN(X)                                                                                           \
-    X("schema", "", "version of the row format", csv_count(line, ROW_SCHEMA))                                   \
-    X("run", "", "id of the run, 16 hex digits; runs.json has its environment", csv_text(line, r->run))         \
-    X("process", "", "number of the process within the run, from 0", csv_count(line, r->process))               \
-    X("check", "", "8 hex digits for the values of the row, 8 for its place after the previous row of its run", \
+#define ROW_ORIGIN(X)                                                                                              \
+    X("schema", "", "version of the row format", csv_count(line, ROW_SCHEMA))                                      \
+    X("run", "", "id of the run, 16 hex digits; runs.json has its environment", csv_text(line, r->run))            \
+    X("process", "", "number of the process within the run, from 0", csv_count(line, r->process))                  \
+    X("checksum", "", "8 hex digits for the values of the row, 8 for its place after the previous row of its run", \
       csv_text(line, NULL))
 
 /* "2026-01-31T12:00:00.250Z"; text holds ROW_TIME_MAX. */

@@ -144,11 +144,11 @@ long runs_find(const run_list *all, const char *id)
 bool runs_seal(const run_entry *run, const char *table, run_seal *out)
 {
     const json_t *seal = json_object_get(json_object_get(run->facts, "rows"), table);
-    const char *check = json_string_value(json_object_get(seal, "check"));
-    if (!check)
+    const char *checksum = json_string_value(json_object_get(seal, "checksum"));
+    if (!checksum)
         return false;
     *out = (run_seal){.table = table, .rows = (size_t)json_integer_value(json_object_get(seal, "count"))};
-    snprintf(out->check, sizeof out->check, "%s", check);
+    snprintf(out->checksum, sizeof out->checksum, "%s", checksum);
     return true;
 }
 
@@ -229,8 +229,9 @@ static status end_run(json_t *list, void *context, diagnostic *why)
             continue;
         json_t *rows = json_object();
         for (size_t k = 0; k < e->count; k++)
-            json_add_as(&rows, e->seals[k].table,
-                        json_pack("{s:I, s:s}", "count", (json_int_t)e->seals[k].rows, "check", e->seals[k].check));
+            json_add_as(
+                &rows, e->seals[k].table,
+                json_pack("{s:I, s:s}", "count", (json_int_t)e->seals[k].rows, "checksum", e->seals[k].checksum));
         return json_object_set_new(run, "rows", rows) == 0 && json_object_set_new(run, "ended_utc", run_time()) == 0
                    ? STATUS_OK
                    : out_of_memory(why);

@@ -32,7 +32,7 @@ long runs_find(const run_list *all, const char *id);
 typedef struct run_seal {
     const char *table;
     size_t rows;
-    char check[RUN_ID];
+    char checksum[RUN_ID];
 } run_seal;
 /* The seal of a run for "rows", "workers" or "compare"; false if the run has none. */
 bool runs_seal(const run_entry *run, const char *table, run_seal *out);

@@ -29,10 +29,10 @@ typedef struct progress_index {
     long shard, shards;                /* as in the filter */
     progress_index_cell *cells;
     size_t cell_count, rows, marked, warmups, disturbed;
-    size_t elsewhere;                       /* rows of other environments */
-    size_t other_cells;                     /* rows of cells that the study does not have */
-    size_t fault_count;                     /* rows that fail a check, or are missing (study/rows/row_files.h) */
-    diagnostic fault;                       /* the first one */
+    size_t elsewhere;   /* rows of other environments */
+    size_t other_cells; /* rows of cells that the study does not have */
+    size_t fault_count; /* rows that have a wrong checksum, or are missing (study/rows/row_files.h) */
+    diagnostic fault;   /* the first one */
     char last_environment[ENVIRONMENT_KEY]; /* of the last row of another environment; "" without one */
 } progress_index;
 

@@ -13,10 +13,10 @@ static const double NEWS_APART_S = 60;
 /* The rule for news: that of the study, with defaults for limits that it lacks. */
 static noise_rule rule_of_news(const noise_rule *rule)
 {
-    return (noise_rule){.others_share = isnan(rule->others_share) ? 0.05 : rule->others_share,
-                        .steal_share = isnan(rule->steal_share) ? 0.01 : rule->steal_share,
+    return (noise_rule){.others_fraction = isnan(rule->others_fraction) ? 0.05 : rule->others_fraction,
+                        .steal_fraction = isnan(rule->steal_fraction) ? 0.01 : rule->steal_fraction,
                         .frequency_drop = isnan(rule->frequency_drop) ? 0.1 : rule->frequency_drop,
-                        .stalled_share = isnan(rule->stalled_share) ? 0.1 : rule->stalled_share};
+                        .stalled_fraction = isnan(rule->stalled_fraction) ? 0.1 : rule->stalled_fraction};
 }
 
 static void describe(noise_kind kind, const machine_noise *noise, char *text, size_t size)
@@ -24,11 +24,11 @@ static void describe(noise_kind kind, const machine_noise *noise, char *text, si
     switch (kind) {
     case NOISE_OTHERS:
         snprintf(text, size, "other processes use %.0f%% of the machine: stop them, or measure with --wait-quiet",
-                 100 * noise->others_share);
+                 100 * noise->others_fraction);
         return;
     case NOISE_STEAL:
         snprintf(text, size, "the hypervisor withholds %.1f%% of the machine: measure at another time or place",
-                 100 * noise->steal_share);
+                 100 * noise->steal_fraction);
         return;
     case NOISE_FREQUENCY:
         snprintf(text, size, "the clock frequency fell by %.0f%% to %.2f GHz: heat, or the governor",
@@ -39,7 +39,7 @@ static void describe(noise_kind kind, const machine_noise *noise, char *text, si
             text, size,
             "the program could not run for %.0f%% of a frame: it was stopped, frozen, throttled by a quota, or others "
             "had its processing units",
-            100 * noise->stalled_share);
+            100 * noise->stalled_fraction);
         return;
     case NOISE_KINDS: break;
     }

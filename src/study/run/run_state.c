@@ -153,7 +153,7 @@ status run_seal_rows(const run *r, diagnostic *why)
         if (tables[kind]->file) {
             run_seal *seal = &seals[count++];
             *seal = (run_seal){.table = row_file_stem(kind), .rows = tables[kind]->count};
-            memcpy(seal->check, tables[kind]->last, sizeof seal->check);
+            memcpy(seal->checksum, tables[kind]->last, sizeof seal->checksum);
         }
     return runs_end(r->folder, scene_root(r->s->base), r->options->shard, r->options->shards, r->id, seals, count, why);
 }

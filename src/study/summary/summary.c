@@ -17,9 +17,10 @@
 static const row_quantity timed[] = {{"wall_s", NULL}, {"cpu_s", NULL}};
 static const char *const before_hash[] = {"rays_total",  "rays_camera",          "rays_reflect",  "rays_refract",
                                           "rays_shadow", "cut_depth_throughput", "total_internal"};
-static const char *const after_marked[] = {
-    "busy_s_mean", "busy_s_max", "waiting_s_mean", "others_share", "worker_cpu_s_sum", "peak_rss_bytes", "noise_rms",
-    "triangles",   "instances",  "accel_bytes",    "drawn",        "drawn_bytes",      "motion_steps",   "cut_share"};
+static const char *const after_marked[] = {"busy_s_mean",      "busy_s_max",     "waiting_s_mean", "others_fraction",
+                                           "worker_cpu_s_sum", "peak_rss_bytes", "noise_rms",      "triangles",
+                                           "instances",        "accel_bytes",    "drawn",          "drawn_bytes",
+                                           "motion_steps",     "cut_fraction"};
 static const row_quantity after_solids[] = {
     {"build_s", NULL},
     {"imbalance", NULL},

@@ -55,8 +55,8 @@ static void between_mirrors_the_share_is_a_power_of_the_reflectance(void **state
         scene *s = scene_from(text);
         render_result *r = with_map(s);
         const double expected = pow(0.9, depth + 1);
-        assert_true(fabs(value_of("cut_share", s, r).real[0] - expected) < 1e-9);
-        assert_true(fabs(value_of("cut_share_largest", s, r).real[0] - expected) < 1e-9);
+        assert_true(fabs(value_of("cut_fraction", s, r).real[0] - expected) < 1e-9);
+        assert_true(fabs(value_of("cut_fraction_largest", s, r).real[0] - expected) < 1e-9);
         for (int i = 0; i < 24; i++)
             assert_true(fabs(r->pixel_cut[i] - expected) < 1e-9);
         render_result_destroy(r);
@@ -126,7 +126,7 @@ static void the_map_adds_up_to_the_share(void **state)
             set_all(s, settings[i]);
             set_all(s, k ? "render.threads=3 render.tile=8" : "render.threads=1");
             r[k] = with_map(s);
-            share = value_of("cut_share", s, r[k]).real[0];
+            share = value_of("cut_fraction", s, r[k]).real[0];
             scene_destroy(s);
         }
         double sum = 0.0;
@@ -287,7 +287,7 @@ static double lost_light(const scene *s, int deeper, double *cut)
     r->paths = r->paths < 16 ? r->paths : 16;
     r->error = 0.0;
     render_result *here = law_render(&j, copy);
-    *cut = value_of("cut_share", copy, here).real[0];
+    *cut = value_of("cut_fraction", copy, here).real[0];
     r->depth += deeper;
     render_result *there = law_render(&j, copy);
     double moved = 0.0, whole = 0.0;

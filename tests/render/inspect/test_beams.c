@@ -164,7 +164,7 @@ static void rays_equal_those_of_a_fan(void **state)
     };
     for (size_t i = 0; i < sizeof pairs / sizeof *pairs; i++) {
         char text[300];
-        snprintf(text, sizeof text, "%s, branches: off, depth: 6, min_share: 0", pairs[i].beam);
+        snprintf(text, sizeof text, "%s, branches: off, depth: 6, min_fraction: 0", pairs[i].beam);
         scene *s = with_beam(text, BALL);
         diagnostic why = {.line = 0};
         probe *p = NULL;
@@ -225,7 +225,7 @@ static void a_beam_obeys_snell_and_fresnel(void **state)
 {
     (void)state;
     const char *block = "block: {shape: box, size: [9, 9, 9], position: [0, -4.5, 0], transparency: 1, ior: 1.5}";
-    scene *s = with_beam("position: [-1, 1, 0], target: [0, 0, 0], depth: 1, min_share: 0", block);
+    scene *s = with_beam("position: [-1, 1, 0], target: [0, 0, 0], depth: 1, min_fraction: 0", block);
     diagnostic why = {.line = 0};
     gathered g = {.count = 0};
     worked(beams_each_ray(s, isa_best(), 0, gather, &g, &why), &why);
@@ -333,7 +333,7 @@ static void rays_that_miss_a_screen_are_in_no_bin(void **state)
 static void a_screen_in_a_medium_receives_what_is_not_absorbed(void **state)
 {
     (void)state;
-    scene *s = with_beam("position: [-3, 0, 0], target: [0, 0, 0], depth: 1, min_share: 0, branches: off",
+    scene *s = with_beam("position: [-3, 0, 0], target: [0, 0, 0], depth: 1, min_fraction: 0, branches: off",
                          "slab: {shape: box, size: [2, 4, 4], position: [1, 0, 0], transparency: 1, ior: 1.5, "
                          "absorb_per_m: [0.7, 0.7, 0.7]}");
     beam_screen screen = {.centre = {0.5, 0, 0}, .normal = {1, 0, 0}, .width = 1, .height = 1, .columns = 1, .rows = 1};

@@ -199,7 +199,7 @@ static void a_beam_in_a_long_plate_is_reflected_hundreds_of_times(void **state)
     diagnostic why = {0};
     scene *s = scene_from("solids:\n  plate: {shape: box, size: [1000, 1, 4], position: [500, 0, 0], transparency: 1, "
                           "ior: 1.5}\nbeams:\n  laser: {position: [0.2, 0, 0], target: [1.2, 0.8, 0], branches: off, "
-                          "depth: 4000, min_share: 0}\n");
+                          "depth: 4000, min_fraction: 0}\n");
     longest l = {.nodes = 0};
     worked(beams_each_ray(s, isa_best(), 0, keep_longest, &l, &why), &why);
     printf("# %zu segments\n", l.nodes);

@@ -18,7 +18,7 @@ const NAMES = {
   cpu_s: 'CPU time per frame',
   rays_total: 'rays per frame',
   noise_rms: 'noise of path tracing',
-  cut_share: 'share of the light that was cut',
+  cut_fraction: 'share of the light that was cut',
   imbalance: 'load imbalance of the workers',
   flip: 'FLIP error',
   error_rms: 'error against the reference, rms',
@@ -27,7 +27,7 @@ const NAMES = {
   peak_rss_bytes: 'peak memory',
   psnr_db: 'PSNR against the reference',
   ssim: 'SSIM against the reference',
-  others_share: 'CPU share of other programs',
+  others_fraction: 'CPU share of other programs',
 };
 const NOT_SHOWN = new Set(['cell', 'n', 'marked', 'excluded', 'disturbed', 'undisturbed_n']);
 

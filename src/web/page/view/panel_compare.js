@@ -302,7 +302,7 @@ function similarity(comparison, goto) {
     ['SSIM', digits(comparison.ssim, 5)],
     ['FLIP', digits(comparison.flip)],
     ['Largest difference', where],
-    ['Pixels that differ', `${digits(100 * comparison.differing_share)} %`],
+    ['Pixels that differ', `${digits(100 * comparison.differing_fraction)} %`],
   ]);
 }
 
