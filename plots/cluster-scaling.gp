@@ -28,9 +28,9 @@ set key bottom right
 set format y "%g"
 plot rows_of("strong-whitted", "switch-100g", "tile-32") using 1:(1/$2) with lines lt 8 title "ideal", \
      rows_of("strong-whitted", "switch-100g", "link-only") using 1:(1/$3) with linespoints lt 3 \
-         title "100 Gbit/s, 1 µs a piece at rank 0", \
+         title "100 Gbit/s, 1 µs per tile at rank 0", \
      rows_of("strong-whitted", "switch-100g", "tile-32") using 1:(1/$3) with linespoints lt 1 title "100 Gbit/s", \
      rows_of("strong-whitted", "ethernet-10g", "eager-64k") using 1:(1/$3) with linespoints lt 4 \
-         title "10 Gbit/s, pieces sent at once", \
+         title "10 Gbit/s, tiles sent at once", \
      rows_of("strong-whitted", "ethernet-10g", "tile-32") using 1:(1/$3) with linespoints lt 2 title "10 Gbit/s"
 unset multiplot

@@ -43,7 +43,7 @@
  *     o----------- x
  *
  * The film is a function of the scene only: it is bit-identical for any number of threads, schedule, instruction set or
- * compiler, and with or without pieces, previews and callbacks. Compare films by their hashes.
+ * compiler, and with or without tiles, previews and callbacks. Compare films by their hashes.
  *
  * Floating-point environment. Functions that return a cuvette_status compute in C's default environment (round to
  * nearest, no traps, subnormal numbers kept), whatever the caller's rounding mode, traps (feenableexcept), FTZ, DAZ or
@@ -307,10 +307,10 @@ CUVETTE_API void cuvette_engine_destroy(cuvette_engine *engine);
 CUVETTE_API void cuvette_engine_cancel(cuvette_engine *engine);
 
 /* A rectangle of the image, x0 <= x < x1, y0 <= y < y1, whose pixels in the caller's buffers are new. */
-typedef struct cuvette_piece {
+typedef struct cuvette_tile {
     int x0, y0, x1, y1;
     int coarse; /* 1: the pixels are final; n: one value for each n x n pixels, from a preview */
-} cuvette_piece;
+} cuvette_tile;
 
 /* Options of a render. Begin with CUVETTE_REQUEST, which sets the size and zeros, then set the options you need. Later
  * versions add fields at the end. */
@@ -328,9 +328,9 @@ typedef struct cuvette_request {
     /* finished share of the frame, 0..1, never decreasing, about ten times a second: 0 before the first ray and while
      * slimes are simulated, 1 at the end; return false to cancel. May be NULL */
     bool (*progress)(void *context, double share);
-    /* finished pieces of the buffers: one for a preview, then each tile of the image once (render.schedule,
+    /* finished tiles of the buffers: one for a preview, then each tile of the image once (render.schedule,
      * render.tile), about ten times a second. Without it the buffers are filled at the end. May be NULL */
-    void (*piece)(void *context, const cuvette_piece *piece);
+    void (*tile)(void *context, const cuvette_tile *tile);
     void *context; /* passed to both callbacks */
     /* keep further values of each pixel, which cost memory and time: the named layers of render.integrator aov; the
      * number of its rays; the nanoseconds spent on it; the share of its light that was cut */
@@ -349,7 +349,7 @@ typedef struct cuvette_request {
 
 /* Renders the scene with render.threads threads. request and out may be NULL. A cancelled render returns
  * CUVETTE_CANCELLED and still creates the frame, with the film and counts of the rays that were traced (NULL if it was
- * cancelled before the first ray); the buffers then hold the finished part, and with pieces, their previous content
+ * cancelled before the first ray); the buffers then hold the finished part, and with tiles, their previous content
  * elsewhere. Returns CUVETTE_BAD_INPUT also when the radiance exceeds the film's range (262144 in one contribution,
  * 524288 in a pixel). */
 CUVETTE_API cuvette_status cuvette_engine_render(cuvette_engine *engine, const cuvette_scene *scene,

@@ -42,11 +42,11 @@ static cuvette_scene *make_scene(void)
     return scene;
 }
 
-/* Called for each finished piece; a program with a window would draw the rectangle now. */
-static void show(void *context, const cuvette_piece *piece)
+/* Called for each finished tile; a program with a window would draw the rectangle now. */
+static void show(void *context, const cuvette_tile *tile)
 {
-    size_t *pieces = (size_t *)context;
-    pieces[piece->coarse > 1]++;
+    size_t *tiles = (size_t *)context;
+    tiles[tile->coarse > 1]++;
 }
 
 static bool report(void *context, double share)
@@ -59,7 +59,7 @@ static bool report(void *context, double share)
 int main(void)
 {
     static unsigned char img[3 * WIDTH * HEIGHT];
-    size_t pieces[2] = {0, 0};
+    size_t tiles[2] = {0, 0};
     cuvette_diagnostic why;
     cuvette_engine *engine;
     cuvette_frame *frame;
@@ -71,8 +71,8 @@ int main(void)
     request.srgb = img;
     request.preview = 8;
     request.progress = report;
-    request.piece = show;
-    request.context = pieces;
+    request.tile = show;
+    request.context = tiles;
     need(cuvette_engine_render(engine, scene, &request, &frame, &why), &why);
 
     cuvette_counters rays;
@@ -83,8 +83,8 @@ int main(void)
     need(cuvette_frame_statistics(frame, &times, &why), &why);
     fprintf(
         stderr,
-        "film %016llx, %zu preview, %zu pieces, %.3f s; rays: camera %llu, reflect %llu, refract %llu, shadow %llu\n",
-        (unsigned long long)cuvette_frame_hash(frame), pieces[1], pieces[0], times.wall_s,
+        "film %016llx, %zu preview, %zu tiles, %.3f s; rays: camera %llu, reflect %llu, refract %llu, shadow %llu\n",
+        (unsigned long long)cuvette_frame_hash(frame), tiles[1], tiles[0], times.wall_s,
         (unsigned long long)rays.camera, (unsigned long long)rays.reflect, (unsigned long long)rays.refract,
         (unsigned long long)rays.shadow);
 

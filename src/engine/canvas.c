@@ -1,4 +1,4 @@
-/* Filling the caller's buffers, and passing finished pieces to the caller. */
+/* Filling the caller's buffers, and passing finished tiles to the caller. */
 #include "base/array.h"
 #include "engine/canvas.h"
 
@@ -99,35 +99,35 @@ void canvas_fill(const canvas *c, const film *f, int x0, int y0, int x1, int y1,
                      r->srgb_stride);
 }
 
-void canvas_note(canvas *c, cuvette_piece piece)
+void canvas_note(canvas *c, cuvette_tile tile)
 {
     pthread_mutex_lock(&c->lock);
     if (GROW(c->noted, c->capacity, c->count + 1))
-        c->noted[c->count++] = piece;
+        c->noted[c->count++] = tile;
     else
         c->out_of_memory = true;
     pthread_mutex_unlock(&c->lock);
 }
 
-void canvas_hand_piece(canvas *c, const cuvette_piece *piece)
+void canvas_hand_tile(canvas *c, const cuvette_tile *tile)
 {
     float_environment_leave(c->host);
-    c->request->piece(c->request->context, piece);
+    c->request->tile(c->request->context, tile);
     float_environment_enter(c->host);
 }
 
 status canvas_hand_out(canvas *c, diagnostic *why)
 {
     pthread_mutex_lock(&c->lock);
-    cuvette_piece *pieces = c->noted;
+    cuvette_tile *tiles = c->noted;
     const size_t count = c->count;
     const bool out_of_memory = c->out_of_memory;
-    c->noted = NULL; /* the callback may be slow; workers continue to add pieces */
+    c->noted = NULL; /* the callback may be slow; workers continue to add tiles */
     c->count = c->capacity = 0;
     pthread_mutex_unlock(&c->lock);
     for (size_t i = 0; i < count; i++)
-        canvas_hand_piece(c, &pieces[i]);
-    free(pieces);
-    return out_of_memory ? diagnose(why, STATUS_FAILURE, MEMORY_REMEDY, "out of memory for the list of finished pieces")
+        canvas_hand_tile(c, &tiles[i]);
+    free(tiles);
+    return out_of_memory ? diagnose(why, STATUS_FAILURE, MEMORY_REMEDY, "out of memory for the list of finished tiles")
                          : STATUS_OK;
 }

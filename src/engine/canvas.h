@@ -1,4 +1,4 @@
-/* The canvas: the caller's buffers and the list of their finished pieces. Workers fill pieces and record them; the
+/* The canvas: the caller's buffers and the list of their finished tiles. Workers fill tiles and record them; the
  * calling thread passes the records to the caller. Ownership: canvas_open allocates, canvas_close releases; film and
  * request are borrowed. */
 #pragma once
@@ -15,7 +15,7 @@ typedef struct canvas {
     float_environment *host;        /* the caller's, for callbacks */
     codec_bytes *bytes;             /* NULL unless the request has srgb */
     pthread_mutex_t lock;           /* protects the fields below */
-    cuvette_piece *noted;
+    cuvette_tile *noted;
     size_t count, capacity;
     bool out_of_memory;
 } canvas;
@@ -32,12 +32,12 @@ void canvas_close(canvas *c);
  * image's edge. */
 void canvas_fill(const canvas *c, const film *f, int x0, int y0, int x1, int y1, int coarse);
 
-/* canvas_note records a piece, from any thread; canvas_hand_out passes the recorded pieces to the callback, on the
+/* canvas_note records a tile, from any thread; canvas_hand_out passes the recorded tiles to the callback, on the
  * caller's thread. */
-void canvas_note(canvas *c, cuvette_piece piece);
+void canvas_note(canvas *c, cuvette_tile tile);
 status canvas_hand_out(canvas *c, diagnostic *why);
-/* Passes a single piece to the callback. */
-void canvas_hand_piece(canvas *c, const cuvette_piece *piece);
+/* Passes a single tile to the callback. */
+void canvas_hand_tile(canvas *c, const cuvette_tile *tile);
 
 /* Writes a rectangle of the film as sRGB bytes; stride: bytes from one row to the next. */
 void canvas_bytes(const film *f, const codec_bytes *bytes, int x0, int y0, int x1, int y1, unsigned char *srgb,

@@ -55,22 +55,22 @@ typedef struct stage {
     host_progress progress;
     canvas buffers;
     bool is_preview;
-    status noted; /* of passing pieces to the callback */
+    status noted; /* of passing tiles to the callback */
 } stage;
 
 static void watch(void *context, double fraction)
 {
     stage *now = context;
-    if (now->request->piece && now->noted == STATUS_OK)
+    if (now->request->tile && now->noted == STATUS_OK)
         now->noted = canvas_hand_out(&now->buffers, NULL);
     engine_tell(&now->progress, now->is_preview ? 0.0 : fraction);
 }
 
-static void take_piece(void *context, const film *img, int x0, int y0, int x1, int y1)
+static void take_tile(void *context, const film *img, int x0, int y0, int x1, int y1)
 {
     stage *now = context;
     canvas_fill(&now->buffers, img, x0, y0, x1, y1, 1);
-    canvas_note(&now->buffers, (cuvette_piece){x0, y0, x1, y1, 1});
+    canvas_note(&now->buffers, (cuvette_tile){x0, y0, x1, y1, 1});
 }
 
 /* Copies a request into the library's current version of it: one of an earlier version has fewer fields. */
@@ -111,9 +111,8 @@ static status render_preview(stage *now, const scene *s, diagnostic *why)
     now->is_preview = false;
     if (code == STATUS_OK) {
         canvas_fill(&now->buffers, made.result->img, 0, 0, (int)small.render.width, (int)small.render.height, coarse);
-        if (now->request->piece)
-            canvas_hand_piece(&now->buffers,
-                              &(cuvette_piece){0, 0, (int)s->render.width, (int)s->render.height, coarse});
+        if (now->request->tile)
+            canvas_hand_tile(&now->buffers, &(cuvette_tile){0, 0, (int)s->render.width, (int)s->render.height, coarse});
     }
     job_account_release(&made);
     return code;
@@ -127,16 +126,16 @@ static status render_frame(stage *now, const scene *s, cuvette_frame *frame, dia
                                     .pixel_cut = r->pixel_cut,
                                     .layers = r->layers,
                                     .progress = watch,
-                                    .tile_done = r->piece ? take_piece : NULL,
+                                    .tile_done = r->tile ? take_tile : NULL,
                                     .context = now};
     status code = job_render(now->engine->workers, s, &options, &frame->account, why);
     const film *img = frame->account.result ? frame->account.result->img : NULL;
-    if (img && r->piece && now->noted == STATUS_OK)
+    if (img && r->tile && now->noted == STATUS_OK)
         now->noted = canvas_hand_out(&now->buffers, why);
-    else if (img && !r->piece)
+    else if (img && !r->tile)
         canvas_fill(&now->buffers, img, 0, 0, img->width, img->height, 1);
     if (code == STATUS_OK && now->noted != STATUS_OK)
-        code = diagnose(why, now->noted, MEMORY_REMEDY, "out of memory for the list of finished pieces");
+        code = diagnose(why, now->noted, MEMORY_REMEDY, "out of memory for the list of finished tiles");
     if (code == STATUS_OK)
         engine_tell(&now->progress, 1.0);
     return code;

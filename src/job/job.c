@@ -151,7 +151,7 @@ static void show(void *of, double fraction)
         w->requested->progress(w->requested->context, ((double)w->frame + fraction) / (double)w->frames);
 }
 
-static void pass_on_piece(void *of, const film *img, int x0, int y0, int x1, int y1)
+static void pass_on_tile(void *of, const film *img, int x0, int y0, int x1, int y1)
 {
     const work *w = of;
     w->requested->tile_done(w->requested->context, img, x0, y0, x1, y1);
@@ -204,7 +204,7 @@ static status trace(work *w, const scene *s, bool maps, render_result **out, dia
                               .context = w,
                               .source = w->requested->source};
     if (w->requested->tile_done)
-        options.tile_done = pass_on_piece;
+        options.tile_done = pass_on_tile;
     if (maps) {
         options.pixel_rays = w->requested->pixel_rays;
         options.pixel_time = w->requested->pixel_time;

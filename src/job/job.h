@@ -17,14 +17,14 @@
 
 /* --- sharing ---
  *
- * The interface by which a job shares its frames with other processes (src/mpi): each traces a part of the pieces of
+ * The interface by which a job shares its frames with other processes (src/mpi): each traces a part of the tiles of
  * every frame. The job calls begin before and end after it traces its own part; all else is as without sharing, since
  * the result that end completes is that of the complete frame. Ownership: the job borrows the interface for its life.
  * Errors: STATUS_BAD_INPUT for outputs that cannot be shared, STATUS_INTERRUPTED when cancelled, and what the other
  * processes report. */
 
 typedef struct job_sharing {
-    /* Sends the loaded scene to the others, and begins to hand out its pieces; *own: those of this process. progress
+    /* Sends the loaded scene to the others, and begins to hand out its tiles; *own: those of this process. progress
      * of the options is called about every 0.1 s until end returns, by one thread at a time, with the fraction of the
      * frame that all have finished. Between begin and end the thread may have a further token, which gives up the
      * frame. */

@@ -200,7 +200,7 @@ static int64_t counted(const job_account *a, uint64_t count)
    "memory of the depth buffer and of the rasterised triangles", r->meshes.raster_bytes) \
  Q(workers, "", COUNT, SAME, ROW, "workers", "threads", "worker threads of the frame", r->worker_count) \
  Q(workers_with_tiles, "", COUNT, LAST, ROW, "workers_with_tiles", NULL, \
-   "workers that rendered at least one piece of the image (tile)", \
+   "workers that rendered at least one tile", \
    sum_workers(a).with_tiles) \
  Q(busy_s_mean, "s", REAL, LAST, ROW, "busy_s_mean", NULL, \
    "time from a worker's first tile to its last ray, 0 without a tile; mean over all workers", \
@@ -256,7 +256,7 @@ static int64_t counted(const job_account *a, uint64_t count)
  Q(rank, "", COUNT, LAST, OUT, "rank", NULL, \
    "rank of the worker's process, of those that share the frame (cuvette-mpi)", k->rank) \
  Q(pu, "", NUMBER, LAST, ROW, "pu", NULL, "processing unit at the end of the frame (OS index)", k->pu) \
- Q(tiles, "", COUNT, LAST, ROW, "tiles", NULL, "pieces of the image (tiles) rendered", k->tiles) \
+ Q(tiles, "", COUNT, LAST, ROW, "tiles", NULL, "tiles rendered", k->tiles) \
  Q(rays_total, "rays", COUNT, LAST, ROW, "rays.total", NULL, "rays of all kinds traced by this worker", \
    k->camera + k->reflect + k->refract + k->shadow) \
  Q(rays_camera, "rays", COUNT, LAST, ROW, "rays.camera", NULL, "camera rays traced by this worker", k->camera) \

@@ -31,7 +31,7 @@
 static const needs_row light_rows[] = {
     LIT(RENDER, "caustics photons samples depth beyond lighting shadows soft_shadows min_weight seed radiance spectrum "
                 "polarisation lambda_nm wavelengths unit_m weights"),
-    LIT(BACKGROUND, "kind color horizon picture rain drops sun_elevation_deg sun_azimuth_deg sky_type ambient "
+    LIT(BACKGROUND, "kind color horizon image rain drops sun_elevation_deg sun_azimuth_deg sky_type ambient "
                     "absorb_per_m"),
     LIT(LIGHT, "*"),
     LIT(MATERIAL, "ambient diffuse specular shininess absorb_per_m absorb_spectrum tint_distance extinction "
@@ -89,7 +89,7 @@ static const needs_row rows[] = {
     FACT(CAMERA, "analyser_angle_deg", inert_polarisation),
 
     FACT(BACKGROUND, "kind", flat_sky),
-    NEEDS_SET(BACKGROUND, "color", "background.kind!=picture", "background.kind=uniform"),
+    NEEDS_SET(BACKGROUND, "color", "background.kind!=image", "background.kind=uniform"),
     NEEDS(BACKGROUND, "horizon", "background.kind=gradient|rain|cie"),
     NEEDS(BACKGROUND, "rain drops", "background.kind=rain"),
     NEEDS_SET(BACKGROUND, "drops", "background.rain>0", "background.rain=0.3"),

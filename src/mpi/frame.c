@@ -53,11 +53,11 @@ struct lead {
 
 /* --- messages that arrive --- */
 
-static void put_piece(void *of, piece_message *piece)
+static void put_tile(void *of, tile_message *tile)
 {
     lead *l = of;
-    shared_frame_put(&l->sum, piece->head.value, piece->values);
-    free(piece);
+    shared_frame_put(&l->sum, tile->head.value, tile->values);
+    free(tile);
     if (handout_is_complete(l->tiles))
         l->complete_s = clock_wall_s();
 }
@@ -188,7 +188,7 @@ static status begin(void *of, const scene *s, const render_options *requested, c
         release_frame(l);
         return code;
     }
-    l->sink = (frame_sink){l, put_piece, add_report, show_progress};
+    l->sink = (frame_sink){l, put_tile, add_report, show_progress};
     l->progress = requested->progress;
     l->context = requested->context;
     cancel_begin(team_token(l->own));
@@ -357,8 +357,8 @@ static status trace_part(follower *f, diagnostic *why)
         return diagnose(why, STATUS_FAILURE, "use fewer threads", "a thread cannot be started");
     messenger_work(f->order.head.frame, team_tracing(f->own), &moved);
     pthread_join(thread, NULL);
-    f->report.account.pieces = moved.pieces;
-    f->report.account.piece_bytes = moved.piece_bytes;
+    f->report.account.tiles_sent = moved.tiles;
+    f->report.account.tile_bytes_sent = moved.tile_bytes;
     return STATUS_OK;
 }
 

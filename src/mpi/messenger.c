@@ -80,13 +80,13 @@ static void tell_end(serving *s)
         give(s, rank);
 }
 
-static void take_piece(serving *s, int rank, piece_message *piece)
+static void take_tile(serving *s, int rank, tile_message *tile)
 {
-    if (!handout_return(s->tiles, rank, piece->head.value, MPI_Wtime()))
+    if (!handout_return(s->tiles, rank, tile->head.value, MPI_Wtime()))
         MPI_Abort(MPI_COMM_WORLD, STATUS_FAILURE);
-    s->moved->pieces += rank != 0;
-    s->moved->piece_bytes += rank != 0 ? piece->bytes : 0;
-    s->sink->piece(s->sink->of, piece);
+    s->moved->tiles += rank != 0;
+    s->moved->tile_bytes += rank != 0 ? tile->bytes : 0;
+    s->sink->tile(s->sink->of, tile);
     give(s, rank);
 }
 
@@ -104,23 +104,23 @@ static void receive(serving *s, const MPI_Status *arrived)
     int bytes = 0;
     MPI_Get_count(arrived, MPI_BYTE, &bytes);
     const size_t size = (size_t)bytes;
-    piece_message *piece = message_memory(sizeof *piece + size);
-    piece->bytes = size;
-    piece->next = NULL;
-    MPI_Recv(&piece->head, bytes, MPI_BYTE, arrived->MPI_SOURCE, arrived->MPI_TAG, MPI_COMM_WORLD, MPI_STATUS_IGNORE);
+    tile_message *tile = message_memory(sizeof *tile + size);
+    tile->bytes = size;
+    tile->next = NULL;
+    MPI_Recv(&tile->head, bytes, MPI_BYTE, arrived->MPI_SOURCE, arrived->MPI_TAG, MPI_COMM_WORLD, MPI_STATUS_IGNORE);
     s->moved->messages++;
-    if (piece->head.frame == s->frame && arrived->MPI_TAG == TAG_PIECE) {
-        take_piece(s, arrived->MPI_SOURCE, piece);
+    if (tile->head.frame == s->frame && arrived->MPI_TAG == TAG_RESULT) {
+        take_tile(s, arrived->MPI_SOURCE, tile);
         return;
     }
-    if (piece->head.frame == s->frame && arrived->MPI_TAG == TAG_READY) {
-        handout_join(s->tiles, arrived->MPI_SOURCE, (int)((const ready_note *)(const void *)&piece->head)->threads,
+    if (tile->head.frame == s->frame && arrived->MPI_TAG == TAG_READY) {
+        handout_join(s->tiles, arrived->MPI_SOURCE, (int)((const ready_note *)(const void *)&tile->head)->threads,
                      MPI_Wtime());
         give(s, arrived->MPI_SOURCE);
-    } else if (piece->head.frame == s->frame && arrived->MPI_TAG == TAG_REPORT) {
-        take_report(s, arrived->MPI_SOURCE, &piece->head);
+    } else if (tile->head.frame == s->frame && arrived->MPI_TAG == TAG_REPORT) {
+        take_report(s, arrived->MPI_SOURCE, &tile->head);
     }
-    free(piece);
+    free(tile);
 }
 
 /* Takes everything that has arrived or is finished; false if there was nothing. */
@@ -136,8 +136,8 @@ static bool serve_once(serving *s)
         receive(s, &arrived);
         any = true;
     }
-    for (piece_message *piece; (piece = s->own->take(s->own->of)); any = true)
-        take_piece(s, 0, piece);
+    for (tile_message *tile; (tile = s->own->take(s->own->of)); any = true)
+        take_tile(s, 0, tile);
     return any;
 }
 
@@ -173,20 +173,20 @@ void messenger_serve(int64_t frame, int ranks, handout *tiles, const tracing *ow
 
 /* --- the other ranks --- */
 
-/* Pieces on their way, a ring. */
+/* Tiles on their way, a ring. */
 enum { SENDING_MOST = 64 };
 
 typedef struct working {
     int64_t frame;
     const tracing *own;
     traffic *moved;
-    piece_message *sending[SENDING_MOST];
+    tile_message *sending[SENDING_MOST];
     MPI_Request request[SENDING_MOST];
     int oldest, count;
     bool given_up;
 } working;
 
-/* Releases the oldest pieces that have left; waits until at most `most` are on their way. */
+/* Releases the oldest tiles that have left; waits until at most `most` are on their way. */
 static void finish_sending(working *w, int most)
 {
     while (w->count > 0) {
@@ -203,15 +203,15 @@ static void finish_sending(working *w, int most)
     }
 }
 
-static void send_piece(working *w, piece_message *piece)
+static void send_tile(working *w, tile_message *tile)
 {
     finish_sending(w, SENDING_MOST - 1);
     const int at = (w->oldest + w->count++) % SENDING_MOST;
-    piece->head.frame = w->frame;
-    w->sending[at] = piece;
-    MPI_Isend(&piece->head, (int)piece->bytes, MPI_BYTE, 0, TAG_PIECE, MPI_COMM_WORLD, &w->request[at]);
-    w->moved->pieces++;
-    w->moved->piece_bytes += piece->bytes;
+    tile->head.frame = w->frame;
+    w->sending[at] = tile;
+    MPI_Isend(&tile->head, (int)tile->bytes, MPI_BYTE, 0, TAG_RESULT, MPI_COMM_WORLD, &w->request[at]);
+    w->moved->tiles++;
+    w->moved->tile_bytes += tile->bytes;
     w->moved->messages++;
 }
 
@@ -240,11 +240,11 @@ static void obey(working *w, const MPI_Status *arrived)
 static bool work_once(working *w)
 {
     bool any = false;
-    for (piece_message *piece; (piece = w->own->take(w->own->of)); any = true)
+    for (tile_message *tile; (tile = w->own->take(w->own->of)); any = true)
         if (w->given_up)
-            free(piece);
+            free(tile);
         else
-            send_piece(w, piece);
+            send_tile(w, tile);
     MPI_Status arrived;
     int there = 0;
     MPI_Iprobe(0, MPI_ANY_TAG, MPI_COMM_WORLD, &there, &arrived);

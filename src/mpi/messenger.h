@@ -1,5 +1,5 @@
 /* The messages of a frame between rank 0, which hands out its tiles, and the others, which trace them; and the
- * messengers: the loops that exchange tiles for traced pieces, one for rank 0 and one for the others. They know nothing
+ * messengers: the loops that exchange tiles for traced tiles, one for rank 0 and one for the others. They know nothing
  * of scenes. What traces is behind an interface, so that the same loops run with threads that trace (mpi/tracing.h) and
  * in a simulated cluster with measured costs (experiments/cluster/simulated).
  *
@@ -24,13 +24,13 @@ enum {
     TAG_TILES,     /* from rank 0: wire_head, then the tiles' numbers, int32_t */
     TAG_END,       /* from rank 0: wire_head; no tile is left */
     TAG_STOP,      /* from rank 0: wire_head; the frame is given up */
-    TAG_PIECE,     /* to rank 0: wire_head, then sums and, with replicates, variances: 3 values per pixel */
+    TAG_RESULT,    /* to rank 0: wire_head, then sums and, with replicates, variances: 3 values per pixel */
     TAG_REPORT,    /* to rank 0: rank_report, then its workers' reports */
     TAG_QUIT       /* to all: wire_head; the program ends */
 };
 
 typedef struct wire_head {
-    int64_t frame, value; /* value: of a piece, its tile; otherwise 0 */
+    int64_t frame, value; /* value: of a traced tile, its number; otherwise 0 */
 } wire_head;
 
 typedef struct frame_order {
@@ -55,12 +55,12 @@ typedef struct rank_report {
 } rank_report;
 
 /* A finished tile on its way: the message's bytes, and the tile again. The receiver frees it. */
-typedef struct piece_message {
-    struct piece_message *next;
+typedef struct tile_message {
+    struct tile_message *next;
     size_t bytes; /* of head and values */
     wire_head head;
     int64_t values[]; /* sums, then variances (doubles) */
-} piece_message;
+} tile_message;
 
 /* --- messengers --- */
 
@@ -69,34 +69,34 @@ typedef struct tracing {
     int threads; /* 0: it traces nothing */
     void *of;
     void (*give)(void *of, const int32_t *tiles, int count);
-    piece_message *(*take)(void *of); /* a finished piece, or NULL */
-    void (*end)(void *of);            /* no more tiles follow */
-    void (*stop)(void *of);           /* the frame is given up */
-    bool (*over)(void *of);           /* it traces nothing any more, and all its pieces were taken */
-    /* Waits for a finished piece or a message, or a short time. idle: the number of calls since anything happened. */
+    tile_message *(*take)(void *of); /* a finished tile, or NULL */
+    void (*end)(void *of);           /* no more tiles follow */
+    void (*stop)(void *of);          /* the frame is given up */
+    bool (*over)(void *of);          /* it traces nothing any more, and all its tiles were taken */
+    /* Waits for a finished tile or a message, or a short time. idle: the number of calls since anything happened. */
     void (*wait)(void *of, int idle);
 } tracing;
 
 /* What rank 0 does with what arrives. */
 typedef struct frame_sink {
     void *of;
-    /* Takes a piece's sums and variances; the message is the callee's. */
-    void (*piece)(void *of, piece_message *piece);
+    /* Takes a tile's sums and variances; the message is the callee's. */
+    void (*tile)(void *of, tile_message *tile);
     /* Takes a rank's report and its workers' reports. */
     void (*report)(void *of, int rank, const rank_report *report, const worker_report *workers);
     /* Called often. */
     void (*progress)(void *of, double share_done);
 } frame_sink;
 
-/* Pieces and bytes that were sent or received, for the report. */
+/* Tiles and bytes that were sent or received, for the report. */
 typedef struct traffic {
-    uint64_t pieces, piece_bytes, messages;
+    uint64_t tiles, tile_bytes, messages;
 } traffic;
 
-/* Rank 0: hands out all tiles, and returns when all pieces and the reports of all other ranks have arrived. Cancelling
+/* Rank 0: hands out all tiles, and returns when all tiles and the reports of all other ranks have arrived. Cancelling
  * its thread gives the frame up: then it returns after the reports. */
 void messenger_serve(int64_t frame, int ranks, handout *tiles, const tracing *own, const frame_sink *sink,
                      traffic *moved);
 
-/* Another rank: passes tiles and pieces until its tracing is over. */
+/* Another rank: receives tiles and sends traced ones until its tracing is over. */
 void messenger_work(int64_t frame, const tracing *own, traffic *moved);

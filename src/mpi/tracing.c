@@ -10,11 +10,11 @@
 
 struct team {
     pthread_mutex_t lock;
-    pthread_cond_t has_tile, has_piece;
+    pthread_cond_t has_tile, has_result;
     schedule tiles;
     int32_t *queue; /* waiting tiles, a list that starts at first */
     size_t first, count, capacity;
-    piece_message *oldest, **newest;
+    tile_message *oldest, **newest;
     bool ended, left;
     cancel_token token;
     atomic_bool failed; /* out of memory: the frame cannot be completed */
@@ -41,15 +41,15 @@ static void give(void *of, const int32_t *tiles, int count)
     pthread_mutex_unlock(&t->lock);
 }
 
-static piece_message *take(void *of)
+static tile_message *take(void *of)
 {
     team *t = of;
     pthread_mutex_lock(&t->lock);
-    piece_message *piece = t->oldest;
-    if (piece && !(t->oldest = piece->next))
+    tile_message *tile = t->oldest;
+    if (tile && !(t->oldest = tile->next))
         t->newest = &t->oldest;
     pthread_mutex_unlock(&t->lock);
-    return piece;
+    return tile;
 }
 
 static void end(void *of)
@@ -94,7 +94,7 @@ static void wait_for_event(void *of, int idle)
     if (until.tv_nsec >= 1000000000)
         until.tv_nsec -= 1000000000, until.tv_sec++;
     if (!t->oldest)
-        pthread_cond_timedwait(&t->has_piece, &t->lock, &until);
+        pthread_cond_timedwait(&t->has_result, &t->lock, &until);
     pthread_mutex_unlock(&t->lock);
 }
 
@@ -114,17 +114,17 @@ static bool next(void *context, int worker, image_tile *out)
     return any;
 }
 
-static int64_t number_of(const schedule *s, const image_tile *piece)
+static int64_t number_of(const schedule *s, const image_tile *tile)
 {
-    return piece->y0 / s->tile * s->tiles_across + piece->x0 / s->tile;
+    return tile->y0 / s->tile * s->tiles_across + tile->x0 / s->tile;
 }
 
-static void done(void *context, const image_tile *piece, const film *traced, const double *variance)
+static void done(void *context, const image_tile *tile, const film *traced, const double *variance)
 {
     team *t = context;
-    const size_t values = 3 * (size_t)(piece->x1 - piece->x0) * (size_t)(piece->y1 - piece->y0);
+    const size_t values = 3 * (size_t)(tile->x1 - tile->x0) * (size_t)(tile->y1 - tile->y0);
     const size_t bytes = values * sizeof(int64_t) * (variance ? 2 : 1);
-    piece_message *message = malloc(sizeof *message + bytes);
+    tile_message *message = malloc(sizeof *message + bytes);
     if (!message) {
         atomic_store(&t->failed, true);
         stop(t);
@@ -132,14 +132,14 @@ static void done(void *context, const image_tile *piece, const film *traced, con
     }
     message->next = NULL;
     message->bytes = sizeof message->head + bytes;
-    message->head = (wire_head){.value = number_of(&t->tiles, piece)};
+    message->head = (wire_head){.value = number_of(&t->tiles, tile)};
     memcpy(message->values, traced->sum, values * sizeof(int64_t));
     if (variance)
         memcpy(message->values + values, variance, values * sizeof *variance);
     pthread_mutex_lock(&t->lock);
     *t->newest = message;
     t->newest = &message->next;
-    pthread_cond_signal(&t->has_piece);
+    pthread_cond_signal(&t->has_result);
     pthread_mutex_unlock(&t->lock);
 }
 
@@ -156,7 +156,7 @@ status team_create(const schedule *tiles, int threads, team **out, diagnostic *w
     pthread_condattr_setclock(&monotonic, CLOCK_MONOTONIC);
     pthread_mutex_init(&t->lock, NULL);
     pthread_cond_init(&t->has_tile, NULL);
-    pthread_cond_init(&t->has_piece, &monotonic);
+    pthread_cond_init(&t->has_result, &monotonic);
     pthread_condattr_destroy(&monotonic);
     t->tiles = *tiles;
     t->newest = &t->oldest;
@@ -170,11 +170,11 @@ void team_destroy(team *t)
 {
     if (!t)
         return;
-    for (piece_message *piece = t->oldest, *following; piece; piece = following) {
-        following = piece->next;
-        free(piece);
+    for (tile_message *tile = t->oldest, *following; tile; tile = following) {
+        following = tile->next;
+        free(tile);
     }
-    pthread_cond_destroy(&t->has_piece);
+    pthread_cond_destroy(&t->has_result);
     pthread_cond_destroy(&t->has_tile);
     pthread_mutex_destroy(&t->lock);
     free(t->queue);
@@ -195,7 +195,7 @@ void team_left(team *t)
 {
     pthread_mutex_lock(&t->lock);
     t->left = true;
-    pthread_cond_signal(&t->has_piece);
+    pthread_cond_signal(&t->has_result);
     pthread_mutex_unlock(&t->lock);
 }
 

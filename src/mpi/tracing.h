@@ -1,5 +1,5 @@
 /* The threads that trace the tiles of one rank, behind the interface of its messenger (mpi/messenger.h): two queues, of
- * tiles to trace and of traced pieces. The renderer takes the tiles as its source (render/frame/renderer.h). Ownership:
+ * tiles to trace and of traced tiles. The renderer takes the tiles as its source (render/frame/renderer.h). Ownership:
  * team_create allocates, team_destroy releases, after the messenger and the renderer have ended. */
 #pragma once
 
@@ -21,6 +21,6 @@ const tile_source *team_source(const team *t);
 void team_left(team *t);
 /* Set when the frame is given up, or to give it up: for the thread that renders. */
 cancel_token *team_token(team *t);
-/* The renderer's status, or that the team ran out of memory for tiles or pieces: the renderer then only sees its
+/* The renderer's status, or that the team ran out of memory for tiles: the renderer then only sees its
  * end. */
 status team_status(const team *t, status traced, diagnostic *why);

@@ -186,7 +186,7 @@ static json_t *ranks(const render_result *r)
         const rank_usage *k = &r->ranks[i];
         json_add(&list, json_pack("{s:o, s:o, s:I, s:I, s:I}", "wall_s", json_of_real(k->wall_s), "cpu_s",
                                   json_of_real(k->cpu_s), "peak_rss_bytes", (json_int_t)k->peak_rss_bytes, "tiles_sent",
-                                  (json_int_t)k->pieces, "bytes_sent", (json_int_t)k->piece_bytes));
+                                  (json_int_t)k->tiles_sent, "bytes_sent", (json_int_t)k->tile_bytes_sent));
     }
     return list;
 }

@@ -21,7 +21,7 @@ json_t *report_note(const char *place, const char *text, const char *remedy);
 /* One quantity of the account. worker: as for quantity.read. */
 json_t *report_quantity(const quantity *q, const job_account *a, int worker);
 
-/* The numbers of an image that the laboratory's page shows, and the notes on it. They reach it as part of `picture` in
+/* The numbers of an image that the laboratory's page shows, and the notes on it. They reach it as part of `image` in
  * the state and in events: web/live/render_worker_snapshot.c, shared_image.c, web/lab.c, page/shared/store.js. */
 json_t *report_page(const job_account *a);
 

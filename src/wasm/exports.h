@@ -68,7 +68,7 @@ wasm_render *wasm_render_create(struct cuvette_scene *scene, int coarse);
 void wasm_render_destroy(wasm_render *r);
 int wasm_render_turn(wasm_render *r, double budget_s);
 double wasm_render_share(const wasm_render *r); /* 1: complete */
-char *wasm_render_pieces(wasm_render *r);       /* [[x0, y0, x1, y1]]: traced since the last call */
+char *wasm_render_tiles(wasm_render *r);        /* [[x0, y0, x1, y1]]: traced since the last call */
 char *wasm_render_result(const wasm_render *r); /* {width, height, hash, counters, wall_s} */
 /* 4 bytes for each pixel of the rectangle, of which the last is 255; 3 floats for each pixel of the image. */
 void wasm_render_srgb(const wasm_render *r, int x0, int y0, int x1, int y1, unsigned char *rgba);

@@ -64,11 +64,11 @@ static bool next(void *context, int worker, image_tile *out)
     return now.next < now.end && !now.failed && schedule_tile(&now.tiles, now.next++, out);
 }
 
-static void done(void *context, const image_tile *piece, const film *traced, const double *variance)
+static void done(void *context, const image_tile *rect, const film *traced, const double *variance)
 {
     (void)context;
-    const int64_t tile = piece->y0 / now.tiles.tile * now.tiles.tiles_across + piece->x0 / now.tiles.tile;
-    const size_t values = 3 * (size_t)(piece->x1 - piece->x0) * (size_t)(piece->y1 - piece->y0) * sizeof(int64_t);
+    const int64_t tile = rect->y0 / now.tiles.tile * now.tiles.tiles_across + rect->x0 / now.tiles.tile;
+    const size_t values = 3 * (size_t)(rect->x1 - rect->x0) * (size_t)(rect->y1 - rect->y0) * sizeof(int64_t);
     if (!make_room(sizeof tile + 2 * values)) {
         now.failed = true;
         return;

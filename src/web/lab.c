@@ -34,7 +34,7 @@ static json_t *state_json(lab *l)
     const bool good =
         state && scene_document_json(l->scene_document, state) && render_worker_json(l->render_worker, state) &&
         json_object_update_new(state, json_pack("{s:o, s:o, s:o, s:o, s:{s:i, s:i}}", "slime",
-                                                live_json(render_worker_live(l->render_worker)), "pin",
+                                                live_json(render_worker_live(l->render_worker)), "reference",
                                                 reference_image_json(l->reference_image), "study",
                                                 studies_json(l->studies), "video", videos_json(l->videos), "limits",
                                                 "pixels", DOCUMENT_PIXELS_MAX, "triangles", DOCUMENT_TRIANGLES_MAX)) ==
@@ -56,7 +56,7 @@ static void on_image(void *of, const shared_image *p)
     lab *l = of;
     if (!lab_is_open(l))
         return;
-    lab_publish(l, "picture", shared_image_json(p));
+    lab_publish(l, "image", shared_image_json(p));
     live *live_slime = render_worker_live(l->render_worker);
     if (live_is_on(live_slime))
         lab_publish(l, "slime", live_json(live_slime));

@@ -238,7 +238,7 @@ static void hierarchies_are_whole_or_not_there(void **state)
     mesh_release(m);
 }
 
-static image *make_picture(void)
+static image *make_image(void)
 {
     image *img = NULL;
     assert_int_equal(image_create(160, 120, &img, NULL), STATUS_OK);
@@ -314,7 +314,7 @@ static void images_are_whole_or_not_there(void **state)
         const char *name;
         image_format format;
     } kinds[] = {{"cancel.png", IMAGE_PNG}, {"cancel.jpg", IMAGE_JPEG}, {"cancel.pfm", IMAGE_PFM}};
-    image *img = make_picture();
+    image *img = make_image();
     for (size_t i = 0; i < sizeof kinds / sizeof *kinds; i++) {
         char path[64];
         snprintf(path, sizeof path, "/tmp/%ld-%s", (long)getpid(), kinds[i].name);

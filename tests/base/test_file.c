@@ -453,7 +453,7 @@ static void a_path_of_minus_is_standard_output(void **state)
         free(path);
         file_writer writer;
         printf("before ");
-        bool good = file_writer_open(&writer, "-", NULL) == STATUS_OK && fputs("picture", writer.stream) >= 0 &&
+        bool good = file_writer_open(&writer, "-", NULL) == STATUS_OK && fputs("image", writer.stream) >= 0 &&
                     file_writer_commit(&writer, NULL) == STATUS_OK;
         printf(" after");
         fflush(stdout);
@@ -462,7 +462,7 @@ static void a_path_of_minus_is_standard_output(void **state)
     int result;
     assert_int_equal(waitpid(child, &result, 0), child);
     assert_int_equal(result, 0);
-    check_content(path, "before picture after");
+    check_content(path, "before image after");
     free(path);
 }
 

@@ -436,9 +436,9 @@ static bool hear_progress(void *context, double share)
     return !l->cancels;
 }
 
-static void hear_piece(void *context, const cuvette_piece *piece)
+static void hear_tile(void *context, const cuvette_tile *tile)
 {
-    (void)piece;
+    (void)tile;
     hear(context);
 }
 
@@ -461,7 +461,7 @@ static cuvette_status render_with(cuvette_engine *engine, const cuvette_scene *s
     cuvette_frame *frame;
     cuvette_request request = CUVETTE_REQUEST;
     request.width = 48, request.height = 36, request.rgb = rgb, request.preview = 4;
-    request.progress = hear_progress, request.piece = hear_piece, request.context = l;
+    request.progress = hear_progress, request.tile = hear_tile, request.context = l;
     const cuvette_status code = cuvette_engine_render(engine, s, &request, &frame, NULL);
     cuvette_frame_destroy(frame);
     return code;

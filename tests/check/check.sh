@@ -28,7 +28,7 @@ in_groups() {
 slices() {
     local i
     local -a tests commands threaded=(worker_pool renderer render sampling_kernels determinism
-        lab_render_worker lab_live lab_semaphore lab_rescue lab_load http study_run engine piece_source tracing)
+        lab_render_worker lab_live lab_semaphore lab_rescue lab_load http study_run engine tile_source tracing)
     mapfile -t tests < <(find tests -name 'test_*.c' | sed 's,.*/test_\(.*\)\.c,\1,' | sort)
     mapfile -t commands < <(awk '/^[a-z]/ { print $1 }' tests/faults/commands.txt)
     for i in {0..11}; do

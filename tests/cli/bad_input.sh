@@ -157,7 +157,7 @@ new_study "a parameter in set and axis" "--axis render.depth=2: .*already set fo
     "$scene" --axis render.depth=2 --set render.depth=3
 new_study "a wrong setting" "--set render.tile=0: .*out of range" "$scene" --axis render.depth=1 --set render.tile=0
 new_study "a setting without a value" "--set render.tile" "$scene" --axis render.depth=1 --set render.tile
-new_study "a control character" "--axis .*control characters" "$scene" --axis $'background.picture=a\tb'
+new_study "a control character" "--axis .*control characters" "$scene" --axis $'background.image=a\tb'
 new_study "a name with a slash" "--name a/b: invalid name" "$scene" --axis render.depth=1 --name a/b
 new_study "a reserved name" "--name tables: invalid name" "$scene" --axis render.depth=1 --name tables
 new_study "no repetitions" "integer from 1" "$scene" --axis render.depth=1 --repetitions 0
@@ -222,10 +222,10 @@ render "--set of a parameter that the shape lacks" "ground" --set ground.radius=
 render "--set of control characters" "--set" --set $'render.depth=\e[31m4'
 render "--set that gives an invalid shape" "vessel" --set vessel.inner_radius=2
 render "a camera at its own target" "camera" --set camera.target=0,2.75,-6
-render "an environment without an image" "picture" --set background.kind=picture
+render "an environment without an image" "image" --set background.kind=image
 
 # --- environment images
-printf '%s\n' 'background: {kind: picture, picture: sky.png}' 'render: {width: 8, height: 6}' >sky.yaml
+printf '%s\n' 'background: {kind: image, image: sky.png}' 'render: {width: 8, height: 6}' >sky.yaml
 sky() { # WHAT: the file sky.png is invalid
     refused "sky: $1" "sky\." render sky.yaml --json
 }
@@ -285,7 +285,7 @@ printf 'GIF89a\1\0\1\0\0\0\0;' >sky.png
 sky "a GIF"
 rm sky.png
 cp good.jpg sky.jpg
-printf '%s\n' 'background: {kind: picture, picture: sky.jpg}' 'render: {width: 8, height: 6}' >sky.yaml
+printf '%s\n' 'background: {kind: image, image: sky.jpg}' 'render: {width: 8, height: 6}' >sky.yaml
 refused "image over the environment image" "the scene reads this file" render sky.yaml -o sky.jpg
 
 # --- scripts of slimes; tests/bad/scripts covers the messages of their reader

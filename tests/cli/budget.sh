@@ -70,7 +70,7 @@ allowed=$((allowed + 60 * 1024)) refused "a hierarchy" "the hierarchy of 327680 
 "$program" render "$scenes/rod.yaml" -o big.png --set render.width=2400 --set render.height=1800 \
     --set render.integrator=raycast >made 2>&1
 printf 'textures: {t: {file: big.png}}\nsolids: {s: {shape: sphere, radius: 1, texture: t}}\n' >texture.yaml
-printf 'background: {kind: picture, picture: big.png}\nsolids: {s: {shape: sphere, radius: 1}}\n' >sky.yaml
+printf 'background: {kind: image, image: big.png}\nsolids: {s: {shape: sphere, radius: 1}}\n' >sky.yaml
 refused "a texture's image" "texture.yaml.*an image of 2400 x 1800 pixels $needs" scene texture.yaml --check \
     --memory-limit=40M
 refused "a background" "sky.yaml.*an image of 2400 x 1800 pixels $needs" render sky.yaml -o out.png --memory-limit=40M

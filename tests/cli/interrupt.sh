@@ -28,7 +28,7 @@ source "$root/tests/shell/verdict.sh"
 
 # The workloads: a function each that sets `line` (the command), `files` (what it may not leave behind), `kept` (what it
 # keeps) and `longest` (latest moment, s, for a fast machine); and perhaps makes its inputs.
-picture() { # FILE WIDTH HEIGHT
+image() { # FILE WIDTH HEIGHT
     [[ -e $1 ]] || "$program" render "$scenes/rod.yaml" -o "$1" --set render.width="$2" --set render.height="$3" \
         --set render.depth=1 --set render.lighting=ambient >made 2>&1 || "$program" render "$scenes/rod.yaml" -o "$1" \
         --set render.width="$2" --set render.height="$3" --set render.depth=1 >made 2>&1
@@ -73,17 +73,17 @@ w_import_ply() { # by assimp
 }
 w_texture() {
     line=(render texture.yaml -o t.png) files=t.png longest=0.5
-    picture big.png 6000 4000
+    image big.png 6000 4000
     printf 'textures: {t: {file: big.png}}\nsolids: {s: {shape: sphere, radius: 1, texture: t}}\n' >texture.yaml
 }
 w_sky() {
     line=(render sky.yaml -o t.png --set render.integrator=path) kept=t.png longest=0.5
-    picture big.png 6000 4000
-    printf 'background: {kind: picture, picture: big.png}\nsolids: {s: {shape: sphere, radius: 1}}\n' >sky.yaml
+    image big.png 6000 4000
+    printf 'background: {kind: image, image: big.png}\nsolids: {s: {shape: sphere, radius: 1}}\n' >sky.yaml
 }
 w_compare() {
     line=(compare small.png other.png --diff diff.png) files=diff.png longest=2
-    picture small.png 2400 1800 && cp small.png other.png
+    image small.png 2400 1800 && cp small.png other.png
 }
 w_render() {
     line=(render "$scenes/rod.yaml" -o r.png --set render.width=1600 --set render.height=1200 --set render.samples=16)
@@ -136,7 +136,7 @@ wrongs() {
     [[ -z $(find . -name '.cuvette-*') ]] || echo "a temporary file is left"
     for name in $kept; do
         if [[ -e $name && $name == *.png ]]; then
-            printf 'background: {kind: picture, picture: %s}\n' "$name" >decoded.yaml
+            printf 'background: {kind: image, image: %s}\n' "$name" >decoded.yaml
             "$program" scene decoded.yaml --check >made 2>&1 || echo "$name is damaged: $(head -1 made)"
         elif [[ -e $name && $name == *rows.csv ]]; then
             "$program" study verify "${line[2]}" -r results >made 2>&1 || echo "rows are damaged: $(head -1 made)"

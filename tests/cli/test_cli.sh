@@ -579,7 +579,7 @@ check "lab prints its address, and nothing else" matches "$address $(wc -l <lab.
     '^http://127\.0\.0\.1:[0-9]+/\?token=[0-9a-f]{32} 1 0$'
 check "lab serves its page" grep -q '<title>' <(ask /)
 check "lab's image is the film of render" grep -q '"film_hash":"b92bb012fd9c5f71"' <(
-    ask '/api/picture.png?wait=1' \
+    ask '/api/image.png?wait=1' \
         >/dev/null
     ask /api/state
 )
@@ -944,11 +944,11 @@ check "transformed with its camera it gives the same image" matches "$(<out)" 'f
 run render built.yaml "${small[@]}" --set camera.roll_deg=180 -o after.png
 run compare before.png after.png
 check "a roll changes the image" matches "$(<out)" 'flip  *0\.[0-9]*[1-9]'
-mkdir -p pictures/scenes
-cp a.png pictures/sky.png
-run scene built.yaml --set background.picture=pictures/sky.png -o pictures/scenes/moved.yaml
-check "relative paths are adjusted to the folder of the file" grep -q '  picture: ../sky.png' pictures/scenes/moved.yaml
-run scene pictures/scenes/moved.yaml --check
+mkdir -p images/scenes
+cp a.png images/sky.png
+run scene built.yaml --set background.image=images/sky.png -o images/scenes/moved.yaml
+check "relative paths are adjusted to the folder of the file" grep -q '  image: ../sky.png' images/scenes/moved.yaml
+run scene images/scenes/moved.yaml --check
 check "the adjusted path leads to the image" depth_noted
 refused() { # WHAT ERROR ARGUMENT...: exit 2, one line, nothing written
     local what=$1 error=$2

@@ -240,7 +240,7 @@ typedef struct audience {
     pthread_t thread;
     cuvette_engine *engine;
     cuvette_scene *scene;
-    int previews, pieces, calls, covered[WIDTH * HEIGHT];
+    int previews, tiles, calls, covered[WIDTH * HEIGHT];
     double share, first;
     double stop_at; /* share at which progress returns false */
     float rgb[3 * WIDTH * HEIGHT], seen[3 * WIDTH * HEIGHT];
@@ -257,17 +257,17 @@ static bool watch_progress(void *context, double share)
     return share < a->stop_at;
 }
 
-static void watch_pieces(void *context, const cuvette_piece *piece)
+static void watch_tiles(void *context, const cuvette_tile *tile)
 {
     audience *a = context;
     assert_true(pthread_equal(pthread_self(), a->thread));
-    assert_true(piece->x0 >= 0 && piece->x0 < piece->x1 && piece->x1 <= WIDTH && piece->y0 >= 0 &&
-                piece->y0 < piece->y1 && piece->y1 <= HEIGHT);
-    *(piece->coarse == 1 ? &a->pieces : &a->previews) += 1;
-    assert_true(piece->coarse == 1 || (piece->coarse == 8 && a->pieces == 0));
-    for (int y = piece->y0; y < piece->y1; y++)
-        for (int x = piece->x0; x < piece->x1; x++) {
-            a->covered[y * WIDTH + x] += piece->coarse == 1;
+    assert_true(tile->x0 >= 0 && tile->x0 < tile->x1 && tile->x1 <= WIDTH && tile->y0 >= 0 && tile->y0 < tile->y1 &&
+                tile->y1 <= HEIGHT);
+    *(tile->coarse == 1 ? &a->tiles : &a->previews) += 1;
+    assert_true(tile->coarse == 1 || (tile->coarse == 8 && a->tiles == 0));
+    for (int y = tile->y0; y < tile->y1; y++)
+        for (int x = tile->x0; x < tile->x1; x++) {
+            a->covered[y * WIDTH + x] += tile->coarse == 1;
             for (int k = 0; k < 3; k++)
                 a->seen[3 * (y * WIDTH + x) + k] = a->rgb[3 * (y * WIDTH + x) + k];
         }
@@ -278,13 +278,13 @@ static cuvette_request request_for(audience *a)
     cuvette_request request = CUVETTE_REQUEST;
     request.width = WIDTH, request.height = HEIGHT, request.rgb = a->rgb;
     request.preview = 8;
-    request.progress = watch_progress, request.piece = watch_pieces, request.context = a;
+    request.progress = watch_progress, request.tile = watch_tiles, request.context = a;
     a->thread = pthread_self();
     return request;
 }
 
 /* With every schedule, and with the shares of random paths and of a spectrum too. */
-static void each_piece_is_reported_once_and_final(void **state)
+static void each_tile_is_reported_once_and_final(void **state)
 {
     (void)state;
     static const char *const how[] = {"dynamic", "tiles", "rows", "columns", "path", "spectral"};
@@ -304,7 +304,7 @@ static void each_piece_is_reported_once_and_final(void **state)
         const cuvette_request request = request_for(a);
         cuvette_frame *frame;
         fine(cuvette_engine_render(engine, s, &request, &frame, &why), &why);
-        assert_true(a->first == 0.0 && a->share == 1.0 && a->calls >= 2 && a->previews == 1 && a->pieces >= 3);
+        assert_true(a->first == 0.0 && a->share == 1.0 && a->calls >= 2 && a->previews == 1 && a->tiles >= 3);
         for (int k = 0; k < WIDTH * HEIGHT; k++)
             assert_int_equal(a->covered[k], 1);
         float *whole = calloc(3 * WIDTH * HEIGHT, sizeof *whole);
@@ -333,7 +333,7 @@ static void progress_can_cancel_before_the_first_ray(void **state)
     const cuvette_request request = request_for(a);
     cuvette_frame *frame = (cuvette_frame *)a;
     assert_int_equal(cuvette_engine_render(engine, s, &request, &frame, &why), CUVETTE_CANCELLED);
-    assert_true(!frame && a->calls == 1 && a->pieces == 0 && a->previews == 0);
+    assert_true(!frame && a->calls == 1 && a->tiles == 0 && a->previews == 0);
     free(a);
     cuvette_scene_destroy(s);
     cuvette_engine_destroy(engine);
@@ -503,7 +503,7 @@ int main(void)
         cmocka_unit_test(a_child_of_fork_renders_with_its_parents_engine),
         cmocka_unit_test(counters_and_pixels_equal_the_renderers),
         cmocka_unit_test(a_shorter_struct_is_filled_up_to_its_size),
-        cmocka_unit_test(each_piece_is_reported_once_and_final),
+        cmocka_unit_test(each_tile_is_reported_once_and_final),
         cmocka_unit_test(progress_can_cancel_before_the_first_ray),
         cmocka_unit_test(another_thread_cancels_and_the_next_frame_is_complete),
         cmocka_unit_test(objects_in_use_return_busy),

@@ -396,7 +396,7 @@ static void invalid_triangles_are_refused_and_not_added(void **state)
     for (size_t i = 0; i < COUNT(wrong); i++)
         assert_int_equal(cuvette_scene_add_triangles(s, "piece", &wrong[i], &why), CUVETTE_BAD_INPUT);
     assert_int_equal(cuvette_scene_add_triangles(s, "no name", &right, &why), CUVETTE_BAD_INPUT);
-    assert_int_equal(cuvette_scene_add_pixels(s, "picture", 0, 5, cube_vertices, &why), CUVETTE_BAD_INPUT);
+    assert_int_equal(cuvette_scene_add_pixels(s, "image", 0, 5, cube_vertices, &why), CUVETTE_BAD_INPUT);
     assert_int_equal((int)(cuvette_scene_count(s, CUVETTE_MESH) + cuvette_scene_count(s, CUVETTE_TEXTURE)), 0);
     cuvette_scene_destroy(s);
 }

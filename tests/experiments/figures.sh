@@ -51,7 +51,7 @@ rows_of() { # SET PROGRAM
     # Studies of which there are no reference rows.
     cp tests/data/figures/*.tsv "$work/$1/tables/"
     cp experiments/cluster/simulated/cluster.csv "$work/$1/"
-    pictures "$1"
+    images "$1"
 }
 
 # A set whose tables are those of another passed through an awk program, its other files the same.
@@ -59,7 +59,7 @@ tables_of() { # SET OF PROGRAM
     mkdir -p "$work/$1/tables"
     local file
     (cd "$work/$2" && cp -r --parents cluster.csv ./*/*.csv ./*/*.json "$work/$1/")
-    pictures "$1"
+    images "$1"
     for file in "$work/$2"/tables/*.tsv; do
         awk -F '\t' -v OFS='\t' 'NR == 1 { for (i = 1; i <= NF; i++) at[$i] = i } '"$3" "$file" \
             >"$work/$1/tables/$(basename "$file")"
@@ -72,7 +72,7 @@ render() {
 }
 render -o "$work/small.png" --timeline "$work/small.json" && render -o "$work/small.pfm"
 cells=({0000..0032})
-pictures() { # SET
+images() { # SET
     local figure pattern folder ending cell
     for figure in "${figures[@]}"; do
         while read -r pattern _; do
@@ -163,7 +163,7 @@ empty "one: every figure is drawn" "$(not_drawn)"
 if [[ -n ${CHECK:-} ]]; then
     cp -r "$reference/quick" "$work/quick"
     experiments/tables.sh "$work/quick" >"$work/said" 2>&1
-    pictures quick
+    images quick
     all quick "$formats"
 fi
 
@@ -204,7 +204,7 @@ equal "foreign: rows of another machine are not drawn as this one's" "$(head -n 
     "determinism: skipped, no row of tables/determinism.tsv has machine=this scene=all and a value of price_median"
 touch "$work/foreign.figures/determinism.png"
 plots/draw.sh --results "$work/foreign" --out "$work/foreign.figures" determinism >"$work/said" 2>"$work/errors"
-equal "foreign: a picture of earlier rows is named" "$(sed -n '1s/.*; //p' "$work/said")" \
+equal "foreign: an image of earlier rows is named" "$(sed -n '1s/.*; //p' "$work/said")" \
     "determinism.png is of earlier rows"
 mkdir "$work/none"
 all none "$formats"

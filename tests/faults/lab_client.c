@@ -135,10 +135,10 @@ static const request usual[] = {
     {"GET", "/api/scene", "", true},
     {"GET", "/api/params?find=lamp%20brightness", "", true},
     {"POST", "/api/set", "{\"set\": {\"liquid.ior\": 1.4}}", true},
-    {"GET", "/api/picture.png?wait=1", "", false},
-    {"POST", "/api/pin", "{}", false},
+    {"GET", "/api/image.png?wait=1", "", false},
+    {"POST", "/api/reference", "{}", false},
     {"POST", "/api/objects/rod/move", "{\"by\": [0.1, 0, 0]}", false},
-    {"GET", "/api/picture.jpg?wait=1", "", false},
+    {"GET", "/api/image.jpg?wait=1", "", false},
     {"GET", "/api/trace?x=4&y=3", "", true},
     {"GET", "/api/fan?from=-3,1.5,0&to=3,1.5,0&width=1.5&rays=5", "", true},
     {"GET", "/api/notes", "", true},
@@ -174,7 +174,7 @@ static const request edits[] = {
     {"POST", "/api/redo", "", false},
     {"GET", "/api/scene", "", true},
     {"GET", "/api/command", "", true},
-    {"GET", "/api/picture.png?wait=1&scene=1", "", false},
+    {"GET", "/api/image.png?wait=1&scene=1", "", false},
     {"GET", "/api/page.html", "", false},
     {"GET", "/api/beams", "", true},
     {"GET", "/api/trace.txt?x=4&y=3", "", true},
@@ -188,7 +188,7 @@ static const request edits[] = {
     {"GET", "/api/studies/done/compare?a=render.depth%3D0&b=render.depth%3D8", "", false},
 };
 
-/* What takes most time: drawings, and a picture of a scene that is not open. */
+/* What takes most time: drawings, and an image of a scene that is not open. */
 static const request drawings[] = {
     {"GET", "/api/trace.svg?x=4&y=3", "", true},
     {"GET", "/api/fan.svg?from=-3,1.5,0&to=3,1.5,0&width=1.5&rays=5", "", true},

@@ -223,7 +223,7 @@ static uint64_t film_with(const char *path)
 {
     char text[1024];
     snprintf(text, sizeof text,
-             "render: {width: 32, height: 24}\nbackground: {picture: %s}\ntextures: {t: {file: %s}, l: {file: %s, "
+             "render: {width: 32, height: 24}\nbackground: {image: %s}\ntextures: {t: {file: %s}, l: {file: %s, "
              "space: linear}}\n"
              "solids:\n  ball: {shape: sphere, ambient: 1, texture: t, reflectivity: 0.3, position: [-1, 1, 0]}\n"
              "  box: {shape: box, ambient: 1, texture: l, position: [1, 1, 0], rotation: [10, 20, 0]}\n",

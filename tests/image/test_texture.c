@@ -304,7 +304,7 @@ static void write_then_read(const image *img, const char *ending, int bits, text
                             texture **out)
 {
     char path[sizeof folder + 32];
-    snprintf(path, sizeof path, "%s/picture%s", folder, ending);
+    snprintf(path, sizeof path, "%s/image%s", folder, ending);
     assert_int_equal(image_write(img, path, bits, NULL), STATUS_OK);
     assert_int_equal(texture_read(path, space, TEXTURE_REPEAT, TEXTURE_REPEAT, filter, out, NULL), STATUS_OK);
     unlink(path);

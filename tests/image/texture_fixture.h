@@ -10,7 +10,7 @@ static inline status texture_read(const char *path, texture_space space, texture
 }
 
 /* The pyramid: number of levels (1 unless TEXTURE_TRILINEAR), size of one (level k has floor(w / 2^k) x floor(h / 2^k)
- * texels, at least 1 x 1), and one texel, x from the left, y from below. Each level's mean is the picture's. */
+ * texels, at least 1 x 1), and one texel, x from the left, y from below. Each level's mean is the image's. */
 static inline int texture_levels(const texture *t)
 {
     return t->levels;

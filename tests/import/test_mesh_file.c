@@ -63,7 +63,7 @@ static void assert_tetrahedron(const mesh_import *got, double x)
 static void an_obj_with_two_materials_is_read(void **state)
 {
     (void)state;
-    put_text("paint.png", "a picture");
+    put_text("paint.png", "an image");
     put_text("two.mtl",
              "newmtl red\nKa 0.125 0 0\nKd 1 0.25 0.5\nKs 0.75 0.75 0.75\nNs 40\nKe 3 0.5 0\nmap_Kd paint.png\n"
              "newmtl glass\nKd 0.5 0.5 0.5\nd 0.25\nNi 1.5\nnewmtl unused\nKd 0 0 0\n");
@@ -99,7 +99,7 @@ static void an_obj_with_two_materials_is_read(void **state)
 static void texture_paths_are_found_in_other_spellings(void **state)
 {
     (void)state;
-    put_text("my paint.png", "a picture");
+    put_text("my paint.png", "an image");
     char *img = in_folder("my paint.png");
     static const char *const spellings[] = {"my paint.png", ".\\my paint.png", "my%20paint.png"};
     for (size_t i = 0; i < sizeof spellings / sizeof *spellings; i++) {

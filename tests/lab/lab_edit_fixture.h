@@ -74,7 +74,7 @@ __attribute__((unused)) static int enter(void **state)
     r->above = strdup(mkdtemp(place));
     r->inside = text_format("%s/lab", r->above);
     make_folder(r->inside);
-    char *deep = text_format("%s/deep", r->inside), *image_path = text_format("%s/picture.png", r->inside),
+    char *deep = text_format("%s/deep", r->inside), *image_path = text_format("%s/image.png", r->inside),
          *outside = text_format("%s/outside.png", r->above);
     make_folder(deep);
     image *img = NULL;
@@ -89,7 +89,7 @@ __attribute__((unused)) static int enter(void **state)
     put(r, "lab/deep/Two sides.obj", tetrahedron);
     put(r, "outside.yaml", small);
     put(r, "outside.obj", tetrahedron);
-    put(r, "lab/climbs.yaml", "background: {picture: ../outside.png}\n");
+    put(r, "lab/climbs.yaml", "background: {image: ../outside.png}\n");
     put(r, "lab/climbs2.yaml", "meshes: {m: {file: ../outside.obj}}\nsolids: {s: {shape: mesh, mesh: m}}\n");
     put(r, "lab/wrong.yaml", "solids: {ball: {shape: sphere,\n  radios: 3}}\n");
     start(r);

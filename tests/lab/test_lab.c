@@ -160,7 +160,7 @@ static void wrong_values_are_refused_with_a_remedy(void **state)
     assert_refused("POST", "/api/view", "{\"do\": \"back\"}", 409, "no earlier view");
     assert_refused("POST", "/api/view", "{\"do\": \"keep\"}", 409, "already");
     assert_refused("POST", "/api/undo", "{}", 409, "nothing to undo");
-    assert_refused("GET", "/api/picture.png?bits=9", NULL, 400, "?bits=16");
+    assert_refused("GET", "/api/image.png?bits=9", NULL, 400, "?bits=16");
     assert_refused("GET", "/api/nothing", NULL, 404, "");
     assert_refused("GET", "/api/set", NULL, 405, "");
     json_t *after = room_get(&room, "/api/scene");
@@ -304,15 +304,14 @@ static void the_command_works_for_a_file_in_another_folder(void **state)
     (void)state;
     char *inner = room_path(&room, "inner");
     assert_int_equal(mkdir(inner, 0700), 0);
-    char *png = client_ask(room.server, "GET", "/api/picture.png?wait=1", "", NULL),
-         *path = room_path(&room, "sky.png");
+    char *png = client_ask(room.server, "GET", "/api/image.png?wait=1", "", NULL), *path = room_path(&room, "sky.png");
     const char *length = strstr(png, "Content-Length: ");
     FILE *out = fopen(path, "w");
     assert_non_null(out);
     assert_non_null(length);
     assert_int_equal(fwrite(reply_body(png), 1, strtoul(length + 16, NULL, 10), out), strtoul(length + 16, NULL, 10));
     assert_int_equal(fclose(out), 0);
-    room_post(&room, "/api/set", "{\"set\": {\"background.picture\": \"sky.png\"}}");
+    room_post(&room, "/api/set", "{\"set\": {\"background.image\": \"sky.png\"}}");
     free(room_film(&room));
     room_post(&room, "/api/save", "{\"file\": \"inner/moved.yaml\"}");
     room_post(&room, "/api/set", "{\"set\": {\"ball.ior\": 1.25}}");
@@ -374,14 +373,14 @@ static void images_are_labelled_with_their_generation(void **state)
     (void)state;
     const json_int_t generation = room_post(&room, "/api/set", "{\"set\": {\"ball.radius\": 0.8}}");
     char *line = text_format("X-Cuvette-Generation: %lld", (long long)generation);
-    char *png = client_ask(room.server, "GET", "/api/picture.png?wait=1&download=a%22b.png", "", NULL);
+    char *png = client_ask(room.server, "GET", "/api/image.png?wait=1&download=a%22b.png", "", NULL);
     assert_true(reply_has(png, "Content-Type: image/png"));
     assert_true(reply_has(png, line));
     assert_true(reply_has(png, "X-Cuvette-Final: 1"));
     assert_true(reply_has(png, "Content-Disposition: attachment; filename=\"a_b.png\""));
     assert_int_equal(memcmp(reply_body(png), "\x89PNG\r\n\x1a\n", 8), 0);
     free(png);
-    char *jpeg = client_ask(room.server, "GET", "/api/picture.jpg", "", NULL);
+    char *jpeg = client_ask(room.server, "GET", "/api/image.jpg", "", NULL);
     assert_true(reply_has(jpeg, "Content-Type: image/jpeg"));
     assert_int_equal(memcmp(reply_body(jpeg), "\xff\xd8\xff", 3), 0);
     free(jpeg);
@@ -391,7 +390,7 @@ static void images_are_labelled_with_their_generation(void **state)
 static void clients_without_token_or_with_foreign_origin_are_refused(void **state)
 {
     (void)state;
-    static const char *const targets[] = {"/",           "/api/state", "/api/scene",   "/api/picture.png",
+    static const char *const targets[] = {"/",           "/api/state", "/api/scene",   "/api/image.png",
                                           "/api/events", "/api/files", "/api/studies", "/api/machine"};
     const int port = http_port(room.server);
     char *host = text_format("Host: 127.0.0.1:%d\r\n", port),

@@ -35,8 +35,8 @@ static void change(const lab_room *room, const char *values)
 
 static void pin(const lab_room *room)
 {
-    json_t *json = room_ask(room, "POST", "/api/pin?wait=1", "{}", 200);
-    assert_true(json_is_object(json_object_get(json, "pin")));
+    json_t *json = room_ask(room, "POST", "/api/reference?wait=1", "{}", 200);
+    assert_true(json_is_object(json_object_get(json, "reference")));
     json_decref(json);
 }
 
@@ -88,13 +88,13 @@ static void comparing_requires_a_reference_image(void **state)
 {
     free(room_film(*state));
     refused(*state, "GET", "/api/compare", 409, "no reference image is pinned");
-    refused(*state, "GET", "/api/compare?wait=1", 409, "POST /api/pin");
+    refused(*state, "GET", "/api/compare?wait=1", 409, "POST /api/reference");
     refused(*state, "GET", "/api/compare.png", 409, "no reference image is pinned");
-    refused(*state, "GET", "/api/pin.png", 404, "no reference image is pinned");
+    refused(*state, "GET", "/api/reference.png", 404, "no reference image is pinned");
     json_t *json = room_get(*state, "/api/state");
-    assert_true(json_is_null(json_object_get(json, "pin")));
+    assert_true(json_is_null(json_object_get(json, "reference")));
     json_decref(json);
-    json_decref(room_ask(*state, "DELETE", "/api/pin", "{}", 200));
+    json_decref(room_ask(*state, "DELETE", "/api/reference", "{}", 200));
 }
 
 static void equal_images_have_no_difference(void **state)
@@ -172,7 +172,7 @@ typedef enum shown { SHOWN_OTHER, SHOWN_COARSE, SHOWN_FINAL } shown;
 /* Waits for an image of that generation and returns its state. */
 static shown shown_of(const lab_room *room, json_int_t generation)
 {
-    json_t *json = room_get(room, "/api/state"), *newest = json_object_get(json, "picture");
+    json_t *json = room_get(room, "/api/state"), *newest = json_object_get(json, "image");
     const bool its = json_integer_value(json_object_get(newest, "generation")) == generation,
                final = json_is_true(json_object_get(newest, "final"));
     json_decref(json);
@@ -187,7 +187,7 @@ static void an_unfinished_image_is_not_compared(void **state)
     while (shown_of(*state, heavy) == SHOWN_OTHER)
         usleep(1000);
     refused(*state, "GET", "/api/compare", 409, "not finished yet");
-    refused(*state, "POST", "/api/pin", 409, "?wait=1");
+    refused(*state, "POST", "/api/reference", 409, "?wait=1");
     assert_int_equal(shown_of(*state, heavy), SHOWN_COARSE);
     room_post(*state, "/api/undo", "{}");
     json_t *json = room_get(*state, "/api/compare?wait=1");
@@ -200,7 +200,8 @@ static void the_reference_image_is_kept_across_changes(void **state)
     pin(*state);
     change(*state, "\"render.width\": 32");
     free(room_film(*state));
-    image *a = image_of(""), *fine = decoded(*state, "/api/pin.png?bits=16"), *plain = decoded(*state, "/api/pin.png");
+    image *a = image_of(""), *fine = decoded(*state, "/api/reference.png?bits=16"),
+          *plain = decoded(*state, "/api/reference.png");
     image_comparison found;
     assert_int_equal(fine->coded_bits, 16);
     assert_int_equal(plain->coded_bits, 8);
@@ -208,7 +209,7 @@ static void the_reference_image_is_kept_across_changes(void **state)
     assert_true(found.largest <= 0.51 / 65535);
     assert_int_equal(image_compare(a, plain, &found, NULL), STATUS_OK);
     assert_true(found.largest <= 0.51 / 255 && found.largest > 0.51 / 65535);
-    refused(*state, "GET", "/api/pin.png?bits=9", 400, "?bits=16");
+    refused(*state, "GET", "/api/reference.png?bits=9", 400, "?bits=16");
     image_destroy(a);
     image_destroy(fine);
     image_destroy(plain);
@@ -296,14 +297,14 @@ static void a_cleared_reference_image_is_removed(void **state)
 {
     pin(*state);
     json_t *json = room_get(*state, "/api/state");
-    assert_true(number(json_object_get(json, "pin"), "width") == 64);
+    assert_true(number(json_object_get(json, "reference"), "width") == 64);
     json_decref(json);
-    json = room_ask(*state, "DELETE", "/api/pin", "{}", 200);
-    assert_true(json_is_null(json_object_get(json, "pin")));
+    json = room_ask(*state, "DELETE", "/api/reference", "{}", 200);
+    assert_true(json_is_null(json_object_get(json, "reference")));
     json_decref(json);
     refused(*state, "GET", "/api/compare", 409, "no reference image is pinned");
     json = room_get(*state, "/api/state");
-    assert_true(json_is_null(json_object_get(json, "pin")));
+    assert_true(json_is_null(json_object_get(json, "reference")));
     json_decref(json);
 }
 
@@ -346,8 +347,8 @@ static void concurrent_comparisons_return_the_same_result(void **state)
 
 static void *ask_often(void *context)
 {
-    static const char *const targets[] = {"/api/compare", "/api/compare.png", "/api/pin.png", "/api/compare?wait=1",
-                                          "/api/trace?x=30&y=20"};
+    static const char *const targets[] = {"/api/compare", "/api/compare.png", "/api/reference.png",
+                                          "/api/compare?wait=1", "/api/trace?x=30&y=20"};
     client *a = context;
     for (int k = 0; k < a->rounds; k++) {
         char *reply = client_ask(a->room->server, "GET", targets[k % 5], "", NULL);
@@ -373,7 +374,7 @@ static void reference_images_may_change_during_comparisons(void **state)
         change(*state, values);
         free(values);
         if (k % 3 == 2)
-            json_decref(room_ask(*state, "DELETE", "/api/pin", "{}", 200));
+            json_decref(room_ask(*state, "DELETE", "/api/reference", "{}", 200));
     }
     for (size_t i = 0; i < 6; i++)
         pthread_join(clients[i].thread, NULL);

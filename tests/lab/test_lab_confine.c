@@ -157,7 +157,7 @@ static void open_scene(const room *r, const char *yaml)
 /* The error of the current scene in the state: "" if it was rendered. */
 static char *trouble(const room *r)
 {
-    char *reply = client_ask(r->lab.server, "GET", "/api/picture.png?wait=1", "", NULL);
+    char *reply = client_ask(r->lab.server, "GET", "/api/image.png?wait=1", "", NULL);
     const int code = reply_code(reply);
     free(reply);
     json_t *state = room_get(&r->lab, "/api/state");
@@ -366,7 +366,7 @@ static void files_replaced_by_links_after_the_check_are_refused(void **state)
         const char *file, *scene;
     } cases[] = {
         {"p.png", SCENE("textures: {cloth: {file: p.png}}\nsolids: {it: {shape: sphere, texture: cloth}}\n")},
-        {"p.png", SCENE("background: {kind: picture, picture: p.png}\n")},
+        {"p.png", SCENE("background: {kind: image, image: p.png}\n")},
         {"plain.obj", BODY("plain.obj")},
         {"pull.yaml", SCENE("meshes: {body: {generate: slime, level: 2, time_s: 0.05, script: pull.yaml}}\nsolids: "
                             "{it: {shape: mesh, mesh: body}}\n")},
@@ -394,7 +394,7 @@ static void new_scenes_are_confined_to_the_folder(void **state)
 {
     const room *r = *state;
     char *change =
-        text_format("{\"set\": {\"background.kind\": \"picture\", \"background.picture\": \"%s/p.png\"}}", r->inside);
+        text_format("{\"set\": {\"background.kind\": \"image\", \"background.image\": \"%s/p.png\"}}", r->inside);
     for (int opened = 0; opened < 2; opened++) { /* the first scene, then an opened one */
         if (opened)
             room_post(&r->lab, "/api/open", "{\"new\": true}");
@@ -404,7 +404,7 @@ static void new_scenes_are_confined_to_the_folder(void **state)
         room_post(&r->lab, "/api/set", change);
         put_link(r, "p.png", "../p.png");
         render_worker_suspend(r->lab.lab->render_worker, NULL);
-        is_refused(r, "a sky", "background.picture");
+        is_refused(r, "a sky", "background.image");
     }
     free(change);
 }

@@ -70,7 +70,7 @@ static void lights_materials_models_and_slimes_are_added(void **state)
                                       "{\"kind\": \"light\", \"name\": \"camera\"}",
                                       "{\"kind\": \"model\"}",
                                       "{\"kind\": \"model\", \"file\": \"../outside.obj\"}",
-                                      "{\"kind\": \"model\", \"file\": \"picture.png\"}",
+                                      "{\"kind\": \"model\", \"file\": \"image.png\"}",
                                       "{\"kind\": \"texture\", \"file\": \"../outside.png\"}",
                                       "{\"kind\": \"texture\", \"file\": \"deep/ball.yaml\"}",
                                       "{\"kind\": \"model\", \"file\": \"none.obj\"}"};
@@ -240,7 +240,7 @@ static void meshes_and_textures_are_copied_and_removed(void **state)
     char hash[64], next[64];
     expect(r, 200, "POST", "/api/objects",
            "{\"kind\": \"model\", \"file\": \"deep/Two sides.obj\", \"name\": \"body\"}");
-    expect(r, 200, "POST", "/api/objects", "{\"kind\": \"texture\", \"file\": \"picture.png\", \"name\": \"cloth\"}");
+    expect(r, 200, "POST", "/api/objects", "{\"kind\": \"texture\", \"file\": \"image.png\", \"name\": \"cloth\"}");
     film(r, hash);
     expect(r, 200, "POST", "/api/objects/body-mesh/copy", "{}");
     expect(r, 200, "POST", "/api/objects/cloth/copy", "{}");
@@ -373,7 +373,7 @@ static void *visit(void *of)
         expect(v->r, 200, "POST", move, "{\"by\": [0.1, 0, 0], \"gesture\": \"drag\"}");
         expect(v->r, 200, "POST", "/api/save", save);
         expect(v->r, 200, "GET", "/api/files", NULL);
-        expect(v->r, 200, "POST", "/api/objects", "{\"kind\": \"texture\", \"file\": \"picture.png\"}");
+        expect(v->r, 200, "POST", "/api/objects", "{\"kind\": \"texture\", \"file\": \"image.png\"}");
         expect(v->r, 200, "DELETE", target, "{}");
     }
     free(save);
@@ -396,7 +396,7 @@ static void concurrent_edits_are_all_applied(void **state)
     for (int i = 0; i < VISITORS; i++)
         pthread_join(all[i].thread, NULL);
     assert_int_equal(generation(r), before + VISITORS * 5 * 4); /* no change was lost */
-    assert_true(has_object(r, "picture20") && !has_object(r, "mine0"));
+    assert_true(has_object(r, "image20") && !has_object(r, "mine0"));
     char hash[64];
     film(r, hash);
 }

@@ -12,7 +12,7 @@ static void files_of_the_folder_are_listed(void **state)
     assert_string_equal(json_string_value(json_object_get(files, "prefix")), "../");
     json_decref(files);
     /* `prefix` + name is a path relative to the scene's file. */
-    expect(r, 200, "POST", "/api/set", "{\"set\": {\"background.picture\": \"../picture.png\"}}");
+    expect(r, 200, "POST", "/api/set", "{\"set\": {\"background.image\": \"../image.png\"}}");
     char hash[64];
     film(r, hash);
     json_t *media = ask(r, 200, "GET", "/api/media", NULL);
@@ -37,7 +37,7 @@ static void opening_refuses_invalid_requests_and_files(void **state)
         "{\"file\": \"climbs2.yaml\"}",
         "{\"new\": true, \"file\": \"deep/ball.yaml\"}",
         "{\"new\": 1}",
-        "{\"file\": \"picture.png\"}",
+        "{\"file\": \"image.png\"}",
         "{\"file\"",
     };
     for (size_t i = 0; i < sizeof bad / sizeof *bad; i++)
@@ -89,7 +89,7 @@ static void a_saved_scene_reopens_with_the_same_film_and_invalid_names_are_refus
     assert_false(is_there(r, "new.yaml"));
     char before[64], after[64], text[256];
     expect(r, 200, "POST", "/api/objects", "{\"kind\": \"model\", \"file\": \"deep/Two sides.obj\"}");
-    expect(r, 200, "POST", "/api/set", "{\"set\": {\"background.picture\": \"../picture.png\"}}");
+    expect(r, 200, "POST", "/api/set", "{\"set\": {\"background.image\": \"../image.png\"}}");
     film(r, before);
     expect(r, 409, "POST", "/api/save", "{\"file\": \"wrong.yaml\"}");
     expect(r, 409, "POST", "/api/save", "{\"file\": \"wrong.yaml\", \"replace\": false}");
@@ -132,11 +132,11 @@ static void saving_does_not_follow_links_out_of_the_folder(void **state)
 static void path_parameters_are_confined_to_the_folder(void **state)
 {
     const room *r = *state;
-    expect(r, 200, "POST", "/api/objects", "{\"kind\": \"texture\", \"file\": \"picture.png\", \"name\": \"cloth\"}");
+    expect(r, 200, "POST", "/api/objects", "{\"kind\": \"texture\", \"file\": \"image.png\", \"name\": \"cloth\"}");
     expect(r, 200, "POST", "/api/objects",
            "{\"kind\": \"model\", \"file\": \"deep/Two sides.obj\", \"name\": \"body\"}");
     const json_int_t before = generation(r);
-    expect(r, 400, "POST", "/api/set", "{\"set\": {\"background.picture\": \"../../outside.png\"}}");
+    expect(r, 400, "POST", "/api/set", "{\"set\": {\"background.image\": \"../../outside.png\"}}");
     expect(r, 400, "POST", "/api/set", "{\"set\": {\"cloth.file\": \"../../outside.png\"}}");
     expect(r, 400, "POST", "/api/set", "{\"set\": {\"body-mesh.file\": \"../../outside.obj\"}}");
     expect(r, 400, "POST", "/api/set", "{\"set\": {\"body-mesh.script\": \"/etc/passwd\"}}");

@@ -253,7 +253,7 @@ static status check_naming(const room *r, const char *row, const char *path)
 static void files_that_a_scene_refers_to_must_be_inside(void **state)
 {
     const room *r = *state;
-    static const char *const rows[] = {"background.picture", "body.file", "body.script", "cloth.file"};
+    static const char *const rows[] = {"background.image", "body.file", "body.script", "cloth.file"};
     for (size_t i = 0; i < sizeof rows / sizeof *rows; i++) {
         assert_int_equal(check_naming(r, rows[i], "pull.yaml"), STATUS_OK);
         assert_int_equal(check_naming(r, rows[i], "../a scene.yaml"), STATUS_OK);
@@ -297,11 +297,11 @@ static void visible_files_inside_are_listed_by_use(void **state)
                 lists(all, "scenes", "broken.yaml"));
     assert_true(lists(all, "scenes", "in.yaml") && lists(all, "scripts", "sub/pull.yaml") &&
                 lists(all, "models", "sub/two/three/deep.OBJ"));
-    assert_true(lists(all, "pictures", "p.jpeg") && lists(all, "studies", "q.study"));
+    assert_true(lists(all, "images", "p.jpeg") && lists(all, "studies", "q.study"));
     assert_int_equal(json_array_size(json_object_get(all, "scenes")), 4);
     assert_int_equal(json_array_size(json_object_get(all, "scripts")), 1);
     assert_int_equal(json_array_size(json_object_get(all, "models")), 1);
-    assert_int_equal(json_array_size(json_object_get(all, "pictures")), 1);
+    assert_int_equal(json_array_size(json_object_get(all, "images")), 1);
     assert_string_equal(json_string_value(json_array_get(json_object_get(all, "scenes"), 0)), "a scene.yaml");
     assert_string_equal(json_string_value(json_array_get(json_object_get(all, "scenes"), 3)), "sub/Kuh-\xc3\xbc.yml");
     json_decref(all);
@@ -320,7 +320,7 @@ static void the_list_of_files_is_limited(void **state)
     json_t *all = NULL;
     assert_int_equal(folder_json(r->f, &all, NULL), STATUS_OK);
     size_t count = 0;
-    static const char *const uses[] = {"scenes", "models", "pictures", "scripts", "studies"};
+    static const char *const uses[] = {"scenes", "models", "images", "scripts", "studies"};
     for (size_t i = 0; i < sizeof uses / sizeof *uses; i++)
         count += json_array_size(json_object_get(all, uses[i]));
     assert_int_equal(count, FOLDER_FILES_MAX);

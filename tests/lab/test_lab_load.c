@@ -58,7 +58,7 @@ static void take_event(tab *t, const char *line)
         t->serial = serial;
         if (json_is_true(json_object_get(json, "final")))
             t->seen = json_integer_value(json_object_get(json, "generation"));
-        free(client_ask(room.server, "GET", "/api/picture.png", "", NULL));
+        free(client_ask(room.server, "GET", "/api/image.png", "", NULL));
     } else if (json_object_get(json, "undo")) {
         const json_int_t generation = json_integer_value(json_object_get(json, "generation"));
         t->disorder |= generation < t->json;
@@ -182,13 +182,13 @@ static const char *const targets[][3] = {
     {"GET", "/api/scene", NULL},
     {"GET", "/api/scene.yaml", NULL},
     {"GET", "/api/command", NULL},
-    {"GET", "/api/picture.png", NULL},
-    {"GET", "/api/picture.jpg?bits=%n", NULL},
+    {"GET", "/api/image.png", NULL},
+    {"GET", "/api/image.jpg?bits=%n", NULL},
     {"GET", "/api/trace?x=%n&y=%n", NULL},
     {"GET", "/api/trace.svg?x=%r&y=%w", NULL},
     {"GET", "/api/compare", NULL},
     {"GET", "/api/compare.png", NULL},
-    {"GET", "/api/pin.png", NULL},
+    {"GET", "/api/reference.png", NULL},
     {"GET", "/api/files", NULL},
     {"GET", "/api/studies", NULL},
     {"GET", "/api/studies/%w", NULL},
@@ -199,7 +199,7 @@ static const char *const targets[][3] = {
     {"POST", "/api/set", "{\"set\": {\"ball.ior\": %r}}"},
     {"POST", "/api/set", "{\"set\": {\"%w.%w\": %r, \"ball.radius\": %r}}"},
     {"POST", "/api/set", "{\"set\": {\"render.depth\": %n, \"lamp.position\": [%r, %r, %r]}, \"gesture\": \"%w\"}"},
-    {"POST", "/api/set", "{\"set\": {\"background.picture\": \"%w\"}}"},
+    {"POST", "/api/set", "{\"set\": {\"background.image\": \"%w\"}}"},
     {"POST", "/api/reset", "{\"paths\": [\"ball.ior\", \"%w.ior\"]}"},
     {"POST", "/api/reset", "{}"},
     {"POST", "/api/undo", "{}"},
@@ -210,8 +210,8 @@ static const char *const targets[][3] = {
     {"POST", "/api/view", "{\"do\": \"back\"}"},
     {"POST", "/api/view", "{\"do\": \"keep\"}"},
     {"POST", "/api/view", "{\"do\": \"%w\"}"},
-    {"POST", "/api/pin", "{}"},
-    {"DELETE", "/api/pin", NULL},
+    {"POST", "/api/reference", "{}"},
+    {"DELETE", "/api/reference", NULL},
     {"POST", "/api/open", "{\"file\": \"%w\"}"},
     {"POST", "/api/save", "{\"file\": \"%w.yaml\", \"replace\": true}"},
     {"POST", "/api/objects", "{\"kind\": \"solid\", \"shape\": \"box\", \"name\": \"%w\"}"},

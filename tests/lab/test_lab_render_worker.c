@@ -182,12 +182,12 @@ static void errors_are_reported_and_cleared(void **state)
     studio s;
     open_studio(&s, scene_from(BALL_SCENE));
     final_film(&s);
-    apply(&s, "background.picture=/nowhere/sky.png");
+    apply(&s, "background.image=/nowhere/sky.png");
     const shared_image *shown;
     diagnostic why = {0};
     assert_int_equal(render_worker_wait_for_final(s.p, 600.0, &shown, &why), STATUS_BAD_INPUT);
     assert_null(shown);
-    assert_non_null(strstr(why.what, "background.picture"));
+    assert_non_null(strstr(why.what, "background.image"));
     json_t *json = json_object();
     assert_true(render_worker_json(s.p, json));
     assert_true(json_is_object(json_object_get(json, "trouble")));
@@ -212,7 +212,7 @@ static void a_lack_of_the_machine_is_forgotten(void **state)
     final_film(&s);
     const struct rlimit few = {3, usual.rlim_max};
     assert_int_equal(setrlimit(RLIMIT_NOFILE, &few), 0);
-    apply(&s, "background.picture=experiments/scenes/chequer.png");
+    apply(&s, "background.image=experiments/scenes/chequer.png");
     const shared_image *shown;
     diagnostic why = {0}, later = {0};
     const status refused = render_worker_wait_for_final(s.p, 600.0, &shown, &why),
@@ -349,7 +349,7 @@ static void an_unrenderable_scene_leaves_the_worker_idle(void **state)
     studio s;
     open_studio(&s, scene_from(SLIME_SCENE("0")));
     final_film(&s);
-    apply(&s, "background.picture=/nowhere/sky.png");
+    apply(&s, "background.image=/nowhere/sky.png");
     const shared_image *shown;
     diagnostic why = {0};
     assert_int_equal(render_worker_wait_for_final(s.p, 600.0, &shown, &why), STATUS_BAD_INPUT);
@@ -425,7 +425,7 @@ static void readers_get_only_loaded_scenes(void **state)
         const shared_image *shown;
         diagnostic why;
         char text[48];
-        apply(&s, "background.picture=/nowhere/sky.png");
+        apply(&s, "background.image=/nowhere/sky.png");
         snprintf(text, sizeof text, "ring.major=%d", 2 + i % 7);
         apply(&s, text);
         assert_int_equal(render_worker_wait_for_final(s.p, 600.0, &shown, &why), STATUS_BAD_INPUT);

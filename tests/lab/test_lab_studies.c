@@ -194,7 +194,7 @@ static void a_study_is_stopped_and_continued(void **state)
     assert_int_equal(number_at(one, "rows"), count);
     json_decref(list);
     room_post(room, "/api/set", "{\"set\": {\"ball.ior\": 1.3}}");
-    char *img = client_ask(room->server, "GET", "/api/picture.png?wait=1", "", NULL);
+    char *img = client_ask(room->server, "GET", "/api/image.png?wait=1", "", NULL);
     assert_int_equal(reply_code(img), 200); /* rendering is resumed */
     free(img);
     free(rows);
@@ -264,7 +264,7 @@ static void files_outside_the_folder_are_not_read(void **state)
     room_write(room, "inside/scene.yaml", BALL_SCENE);
     room_write(room, "inside/far.study", "study: far\nscene: ../scene.yaml\n");
     room_write(room, "inside/sky.study",
-               "study: sky\nscene: scene.yaml\ngrid: [{background.picture: [near.png, ../../far.png]}]\n");
+               "study: sky\nscene: scene.yaml\ngrid: [{background.image: [near.png, ../../far.png]}]\n");
     room_write(room, "inside/away.study", "study: away\nscene: scene.yaml\nrepetitions: 1\n");
     assert_int_equal(symlink(away, link), 0);
     lab_room inner = {.lab = NULL};

@@ -278,7 +278,7 @@ static const struct {
 } homes[] = {
     {"rod", "render.photons=2000"},
     {"rod", SIZED},
-    {"rod", "render.samples=4 background.picture=models.jpg background.kind=rain"},
+    {"rod", "render.samples=4 background.image=models.jpg background.kind=rain"},
     {"rod", "render.polarisation=on lamp.polarised=1 render.caustics=photons render.photons=2000"},
     {"shapes", "render.integrator=path render.paths=4"},
     {"magnifier", "render.caustics=photons render.photons=2000 sun.lights=on"},
@@ -503,7 +503,7 @@ static const struct {
     {"rod", "lamp.intensity=0 background.ambient=0,0,0 clear.color=0.9,0.8,0.7"},
     {"solids", "render.integrator=zbuffer key.kind=cone"},
     {"solids", "render.integrator=path render.paths=1 render.roulette=on glass.diffuse=0.2"},
-    {"solids", "background.picture=models.jpg clay.transparency=0.3"},
+    {"solids", "background.image=models.jpg clay.transparency=0.3"},
     {"models", "render.integrator=zbuffer render.texturing=affine"},
     {"models", "render.integrator=path render.paths=1 silver.texture=tiles"},
     {"models", "bowl.visible=off lamp.intensity=0 render.shadows=opaque"},

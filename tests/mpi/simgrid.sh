@@ -40,7 +40,7 @@ verdict $? 'the sums over tiles, the work and the bytes are the same' "${check[4
 
 # --- times that follow by hand: work without messages' cost, a half-speed host, and the cable of rank 0
 printf 'P2\n# unit 1000\n# paths 1\n1 1\n1\n1\n' >"$work/even.pgm" # 1 us a pixel
-even=(map="$work/even.pgm" width=1024 height=1024 tile=32 pieces=0)
+even=(map="$work/even.pgm" width=1024 height=1024 tile=32 tiles=0)
 simulate switch-100g 4 "${even[@]}" pixel_bytes=0
 holds '4 ranks share 1.048576 s of work' "${cell[11]} > 0.262144 && ${cell[11]} < 0.262144 * 1.01"
 simulate stragglers-100g 64 "${even[@]}" pixel_bytes=0 paths=1000
@@ -48,6 +48,6 @@ holds 'one of 64 hosts at half the speed: all together have 63.5' "${cell[10]} /
     ${cell[10]} / (${cell[8]} / 63.5) < 1.000001 && ${cell[12]} > 0.8"
 simulate ethernet-10g 64 "${even[@]}" pixel_bytes=2400
 link_s=$(awk 'BEGIN { print 63 / 64 * 1024 * 1024 * 2400 / (0.95 * 1.25e9) }') # 95% of the cable is payload
-holds "the cable of rank 0 needs at least $link_s s for the others' pieces" \
+holds "the cable of rank 0 needs at least $link_s s for the others' tiles" \
     "${cell[11]} > 0.95 * $link_s && ${cell[11]} < 1.2 * $link_s"
 conclude

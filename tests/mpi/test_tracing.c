@@ -1,5 +1,5 @@
-/* Tests of the queues between a rank's messenger and its tracing threads: tiles and pieces pass in order, and a rank
- * that lacks memory for a piece gives the frame up and says why. */
+/* Tests of the queues between a rank's messenger and its tracing threads: tiles and tiles pass in order, and a rank
+ * that lacks memory for a tile gives the frame up and says why. */
 #include <setjmp.h>
 #include <stdarg.h>
 #include <stddef.h>
@@ -41,7 +41,7 @@ static void tiles_come_out_as_spans_in_order(void **state)
     team_destroy(t);
 }
 
-static void a_piece_arrives_with_its_sums_and_variances(void **state)
+static void a_tile_arrives_with_its_sums_and_variances(void **state)
 {
     (void)state;
     team *t = begin();
@@ -52,22 +52,22 @@ static void a_piece_arrives_with_its_sums_and_variances(void **state)
     const film traced = {.sum = sums};
     assert_null(messenger->take(messenger->of));
     source->done(source->context, &(image_tile){.x0 = 32, .x1 = 34, .y0 = 16, .y1 = 17}, &traced, variance);
-    piece_message *piece = messenger->take(messenger->of);
-    assert_non_null(piece);
-    assert_int_equal(piece->head.value, 6);
-    assert_int_equal(piece->bytes, sizeof piece->head + sizeof sums + sizeof variance);
-    assert_memory_equal(piece->values, sums, sizeof sums);
-    assert_memory_equal(piece->values + 6, variance, sizeof variance);
+    tile_message *tile = messenger->take(messenger->of);
+    assert_non_null(tile);
+    assert_int_equal(tile->head.value, 6);
+    assert_int_equal(tile->bytes, sizeof tile->head + sizeof sums + sizeof variance);
+    assert_memory_equal(tile->values, sums, sizeof sums);
+    assert_memory_equal(tile->values + 6, variance, sizeof variance);
     assert_null(messenger->take(messenger->of));
     assert_false(messenger->over(messenger->of)); /* the renderer may go on */
     team_left(t);
     assert_true(messenger->over(messenger->of));
-    free(piece);
+    free(tile);
     team_destroy(t);
 }
 
 /* More bytes than any machine has: malloc itself refuses. */
-static void a_piece_without_memory_gives_the_frame_up(void **state)
+static void a_tile_without_memory_gives_the_frame_up(void **state)
 {
     (void)state;
     team *t = begin();
@@ -107,8 +107,8 @@ int main(void)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(tiles_come_out_as_spans_in_order),
-        cmocka_unit_test(a_piece_arrives_with_its_sums_and_variances),
-        cmocka_unit_test(a_piece_without_memory_gives_the_frame_up),
+        cmocka_unit_test(a_tile_arrives_with_its_sums_and_variances),
+        cmocka_unit_test(a_tile_without_memory_gives_the_frame_up),
         cmocka_unit_test(a_frame_that_is_given_up_hands_out_no_tiles),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);

@@ -1,4 +1,4 @@
-"""The notebooks run from their first cell to their last, and show pictures and tables."""
+"""The notebooks run from their first cell to their last, and show images and tables."""
 
 import pathlib
 

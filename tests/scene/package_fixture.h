@@ -49,7 +49,7 @@ static inline void put_image(const char *name, float scale)
 static const char everything[] =
     "title: \"Ünusual: # title\"\n"
     "render: {width: 12, height: 9}\n"
-    "background: {picture: sky.pfm}\n"
+    "background: {image: sky.pfm}\n"
     "textures: {a: {file: a.png, filter: trilinear}, b: {file: b.png, wrap_u: mirror, filter: nearest}}\n"
     "meshes: {model: {file: model.obj}, ball: {generate: icosphere, level: 1},\n"
     "  toy: {generate: slime, level: 1, time_s: 0.1}, ground: {generate: terrain, depth: 0, around: 4, tube: 4}}\n"

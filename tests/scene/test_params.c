@@ -104,7 +104,7 @@ static void ranges_have_readable_texts(void **state)
         {PARAM_RENDER, "min_weight", "number 0..1"},
         {PARAM_CAMERA, "fov_deg", "number > 0, at most 179"},
         {PARAM_MATERIAL, "color", "3 numbers, each 0..1"},
-        {PARAM_BACKGROUND, "picture", "path of a file"},
+        {PARAM_BACKGROUND, "image", "path of a file"},
     };
     for (size_t i = 0; i < sizeof cases / sizeof *cases; i++) {
         char text[200];
@@ -249,8 +249,8 @@ static void values_of_every_type_are_set_and_read(void **state)
         {"camera.position", "0,2.75,-6", "0,2.75,-6"},
         {"camera.position", "[0, 1e2, -.5]", "0,100,-0.5"},
         {"camera.position.y", "3", "3"},
-        {"background.picture", "sky 1.png", "sky 1.png"},
-        {"background.picture", "", ""},
+        {"background.image", "sky 1.png", "sky 1.png"},
+        {"background.image", "", ""},
         {"lamp.color", "1,0.5,0.25", "1,0.5,0.25"},
         {"lamp.color.g", "0.75", "0.75"},
         {"vessel.ior", "1.3", "1.3"},
@@ -326,13 +326,13 @@ static void setting_an_image_selects_the_image_background(void **state)
 {
     (void)state;
     scene *s = make();
-    set(s, "background.picture", "");
+    set(s, "background.image", "");
     assert_value(s, "background.kind", "uniform");
-    set(s, "background.picture", "sky.png");
-    assert_value(s, "background.kind", "picture");
+    set(s, "background.image", "sky.png");
+    assert_value(s, "background.kind", "image");
     set(s, "background.kind", "gradient"); /* the last one wins */
     assert_value(s, "background.kind", "gradient");
-    assert_value(s, "background.picture", "sky.png");
+    assert_value(s, "background.image", "sky.png");
     scene_destroy(s);
 }
 
@@ -377,7 +377,7 @@ static void printed_parameters_give_the_same_scene(void **state)
     set(s, "vessel.reflectivity", "0.1");
     set(s, "glass.reflectivity", "0.3");
     set(s, "render.shadows", "opaque");
-    set(s, "background.picture", "a b.png");
+    set(s, "background.image", "a b.png");
     set(s, "camera.target", "0.1,0.2,0.30000000000000004");
     expect_reproduced(s);
     set(s, "background.kind", "gradient"); /* while an image that is not shown is set */
@@ -467,7 +467,7 @@ static void errors_of_paths_and_values_name_the_valid_ones(void **state)
         {"lamp.color=0,-1,0", "lamp.color.g: -1 is out of range; give a number 0..10000"},
         {"block.size.x=0", "block.size.x: 0 is out of range; give a number > 0, at most 1000000"},
         {"vessel.ior=0x1p3", "vessel.ior: '0x1p3' is not a finite number; give a number > 0, at most 1000000000"},
-        {"background.picture=a\nb", "background.picture: the path contains a control character; give a path of a file"},
+        {"background.image=a\nb", "background.image: the path contains a control character; give a path of a file"},
     };
     scene *s = make(), *untouched = make();
     for (size_t i = 0; i < sizeof cases / sizeof *cases; i++) {
@@ -515,7 +515,7 @@ static void malformed_paths_are_refused(void **state)
     huge[sizeof huge - 1] = 0;
     assert_int_equal(scene_set(s, huge, "1", NULL), STATUS_BAD_INPUT);
     assert_int_equal(scene_set(s, "render.depth", huge, NULL), STATUS_BAD_INPUT);
-    assert_int_equal(scene_set(s, "background.picture", huge, NULL), STATUS_BAD_INPUT);
+    assert_int_equal(scene_set(s, "background.image", huge, NULL), STATUS_BAD_INPUT);
     scene_destroy(s);
 }
 
@@ -523,8 +523,8 @@ static void an_assignment_splits_at_its_first_equals_sign(void **state)
 {
     (void)state;
     scene *s = make();
-    assert_int_equal(scene_set_assignment(s, "background.picture=a=b.png", NULL), STATUS_OK);
-    assert_value(s, "background.picture", "a=b.png");
+    assert_int_equal(scene_set_assignment(s, "background.image=a=b.png", NULL), STATUS_OK);
+    assert_value(s, "background.image", "a=b.png");
     scene_destroy(s);
 }
 

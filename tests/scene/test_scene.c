@@ -266,7 +266,7 @@ static void scene_check_finds_invalid_combinations(void **state)
     assert_check_finds(s, "vessel.inner_radius=1", "inner_radius");
     assert_check_finds(s, "vessel.floor=5", "floor");
     assert_check_finds(s, "camera.target=0,2.75,-6", "target");
-    assert_check_finds(s, "background.kind=picture", "image");
+    assert_check_finds(s, "background.kind=image", "image");
     assert_int_equal(scene_set(s, "render.width", "65536", NULL), STATUS_OK);
     assert_check_finds(s, "render.height=4097", "too large");
     assert_int_equal(scene_set(s, "render.width", "8", NULL), STATUS_OK);
@@ -286,7 +286,7 @@ static void negative_and_infinite_skies_are_refused(void **state)
     int file = mkstemps(path, 4);
     assert_true(file >= 0);
     close(file);
-    snprintf(text, sizeof text, "background: {picture: %s}\n", path);
+    snprintf(text, sizeof text, "background: {image: %s}\n", path);
     for (size_t i = 0; i < sizeof bad / sizeof *bad + sizeof good / sizeof *good; i++) {
         bool is_bad = i < sizeof bad / sizeof *bad;
         image *sky;
@@ -301,7 +301,7 @@ static void negative_and_infinite_skies_are_refused(void **state)
         assert_true(is_bad == !s->background.img);
         if (is_bad) {
             diagnostic_text(&why, message, sizeof message);
-            assert_memory_equal(message, "s.yaml:1:23: background.picture: ", 33);
+            assert_memory_equal(message, "s.yaml:1:21: background.image: ", 31);
             assert_non_null(strstr(message, "pixel 2,1 is "));
         }
         scene_destroy(s);
@@ -323,7 +323,7 @@ static void the_path_of_a_sky_image_is_relative_to_the_scene(void **state)
     image_destroy(sky);
     FILE *file = fopen(scene_path, "w");
     assert_non_null(file);
-    fputs("background: {picture: sky.pfm}\n", file);
+    fputs("background: {image: sky.pfm}\n", file);
     fclose(file);
     scene *s = read_file(scene_path);
     assert_int_equal(s->background.kind, BACKGROUND_IMAGE);
@@ -333,15 +333,15 @@ static void the_path_of_a_sky_image_is_relative_to_the_scene(void **state)
     assert_true(loaded && loaded->width == 4 && loaded->height == 2 && loaded->pixel[3] == 0.5f);
     assert_int_equal(scene_load(s, NULL), STATUS_OK);
     assert_ptr_equal(s->background.img, loaded); /* once */
-    assert_int_equal(scene_set(s, "background.picture", "other.pfm", NULL), STATUS_OK);
+    assert_int_equal(scene_set(s, "background.image", "other.pfm", NULL), STATUS_OK);
     assert_null(s->background.img); /* another path, another image */
     diagnostic why = {.what = ""};
     assert_int_equal(scene_load(s, &why), STATUS_BAD_INPUT);
     assert_non_null(strstr(why.file, "other.pfm"));
-    assert_int_equal(scene_set(s, "background.picture", image_path, NULL), STATUS_OK); /* absolute */
+    assert_int_equal(scene_set(s, "background.image", image_path, NULL), STATUS_OK); /* absolute */
     assert_int_equal(scene_load(s, NULL), STATUS_OK);
     assert_non_null(s->background.img);
-    assert_int_equal(scene_set(s, "background.picture", "none.png", NULL), STATUS_OK);
+    assert_int_equal(scene_set(s, "background.image", "none.png", NULL), STATUS_OK);
     assert_int_equal(scene_set(s, "background.kind", "uniform", NULL), STATUS_OK);
     assert_int_equal(scene_load(s, NULL), STATUS_OK); /* unused, not read */
     scene_destroy(s);
@@ -349,7 +349,7 @@ static void the_path_of_a_sky_image_is_relative_to_the_scene(void **state)
     s = read_file(scene_path); /* refers to a missing image */
     scene *c = scene_clone(s);
     char where[200], text[DIAGNOSTIC_TEXT_MAX];
-    snprintf(where, sizeof where, "%s:1:23: background.picture: %s: ", scene_path, image_path);
+    snprintf(where, sizeof where, "%s:1:21: background.image: %s: ", scene_path, image_path);
     assert_int_equal(scene_load(c, &why), STATUS_BAD_INPUT);
     assert_int_equal(strncmp(diagnostic_text(&why, text, sizeof text), where, strlen(where)), 0);
     scene_destroy(c);

@@ -152,8 +152,8 @@ static void a_mesh_or_texture_in_use_is_not_removed(void **state)
 static void removing_a_fixed_group_restores_its_defaults(void **state)
 {
     (void)state;
-    scene *s = scene_from(
-        "render: {depth: 9}\ncamera: {yaw_deg: 5, fov_deg: 20}\nbackground: {picture: sky.png, ior: 1.25}\n");
+    scene *s =
+        scene_from("render: {depth: 9}\ncamera: {yaw_deg: 5, fov_deg: 20}\nbackground: {image: sky.png, ior: 1.25}\n");
     scene *empty = scene_create();
     assert_int_equal(scene_remove(s, "camera", NULL), STATUS_OK);
     assert_int_equal(scene_remove(s, "background", NULL), STATUS_OK);

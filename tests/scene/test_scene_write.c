@@ -160,7 +160,7 @@ static size_t candidates(const param *row, char text[][100], size_t room)
         snprintf(text[1], 100, "2,3,1"); /* where only certain integers are valid */
         return 2;
     case PARAM_LIST: snprintf(text[0], 100, "[400,0.1,500,%.17g]", 1.0 / 3.0); return 1;
-    case PARAM_PATH: snprintf(text[0], 100, "pictures/it's: a sky #1.png"); return 1;
+    case PARAM_PATH: snprintf(text[0], 100, "images/it's: a sky #1.png"); return 1;
     case PARAM_WORD: snprintf(text[0], 100, row->group == PARAM_MATERIAL ? "bark" : "body"); return 1;
     case PARAM_CHOICE: break;
     }
@@ -352,8 +352,8 @@ static void a_mesh_is_written_with_one_source(void **state)
 static void an_unused_sky_is_not_written(void **state)
 {
     (void)state;
-    scene *s = scene_from("background: {picture: sky.png}\n");
-    assert_written(s, "background:\n  kind: picture\n  picture: sky.png\n");
+    scene *s = scene_from("background: {image: sky.png}\n");
+    assert_written(s, "background:\n  kind: image\n  image: sky.png\n");
     set(s, "background.kind=uniform");
     assert_written(s, "solids: {}\n");
     scene_destroy(s);
@@ -426,18 +426,18 @@ static void invalid_utf8_is_refused(void **state)
     }
 }
 
-/* The text of the path picture when a scene with the path from is written to the path to. */
+/* The text of the path image when a scene with the path from is written to the path to. */
 static void assert_moved(const char *from, const char *img, const char *to, const char *expected)
 {
     scene *s = NULL;
     char text[700], *there, *value = NULL;
     diagnostic why = {0};
-    snprintf(text, sizeof text, "background: {picture: \"%s\"}\n", img);
+    snprintf(text, sizeof text, "background: {image: \"%s\"}\n", img);
     worked(scene_read_text(from, text, strlen(text), &s, &why), &why);
     there = written(s, to, false);
     scene_destroy(s);
     worked(scene_read_text(to, there, strlen(there), &s, &why), &why);
-    worked(scene_get(s, "background.picture", &value, &why), &why);
+    worked(scene_get(s, "background.image", &value, &why), &why);
     assert_string_equal(value, expected);
     char *again = written(s, to, false);
     assert_string_equal(there, again);

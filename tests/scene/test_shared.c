@@ -118,7 +118,7 @@ static void refused(const char *assignment, const char *expected)
 static void strangers_name_no_files_and_are_bounded(void **state)
 {
     (void)state;
-    refused("background.picture=sky.png", "the background reads sky.png");
+    refused("background.image=sky.png", "the background reads sky.png");
     refused("render.width=65536", "pixels");
     refused("render.depth=64", "rays");
     scene *s = NULL;

@@ -70,14 +70,14 @@ static void values_may_have_any_character(void **state)
     (void)state;
     char *path = "cell \"a\", \\b: 1", *written = NULL;
     char *values[] = {path, "plain"};
-    const new_axis axis = {.path = "background.picture", .values = values, .count = 2};
+    const new_axis axis = {.path = "background.image", .values = values, .count = 2};
     scene *s = rod();
     const new_study made = {.name = "t", .scene_path = "t.yaml", .of = s, .axes = &axis, .axis_count = 1};
     size_t size = 0;
     FILE *out = open_memstream(&written, &size);
     new_study_write(&made, out);
     assert_int_equal(fclose(out), 0);
-    assert_non_null(strstr(written, "  - {background.picture: [\"cell \\\"a\\\", \\\\b: 1\", plain]}\n"));
+    assert_non_null(strstr(written, "  - {background.image: [\"cell \\\"a\\\", \\\\b: 1\", plain]}\n"));
     free(written);
     scene_destroy(s);
 }

@@ -350,7 +350,7 @@ static status note_load(void *context, const scene *setting, diagnostic *why)
 static void the_guard_is_called_before_any_file_is_read(void **state)
 {
     const fixture *f = *state;
-    const char *text = "study: test\nscene: scene.yaml\ngrid: [{background.picture: [near.png, far.png]}]\nreference: "
+    const char *text = "study: test\nscene: scene.yaml\ngrid: [{background.image: [near.png, far.png]}]\nreference: "
                        "{render.depth: 3}\n";
     char path[400];
     fixture_write(f, "test.study", text);

@@ -238,7 +238,7 @@ static void torn_lines_are_no_fault(void **state)
     study_destroy(s);
 }
 
-/* Closed form: a column's order, and columns without a value, do not change the checksum of a row; anything else does. */
+/* The order of columns, and columns without a value, do not change the checksum of a row; anything else does. */
 static void checks_depend_on_names_and_values_only(void **state)
 {
     (void)state;

@@ -1,4 +1,4 @@
-/* The JavaScript API: errors as the command's, cancellation, pieces, rays, slimes, a worker, memory. */
+/* The JavaScript API: errors as the command's, cancellation, tiles, rays, slimes, a worker, memory. */
 
 import assert from 'node:assert/strict';
 import { execFileSync } from 'node:child_process';
@@ -94,12 +94,12 @@ for (const isa of ISAS)
       assert.throws(() => scene.get('render.depth'), /destroyed/);
     });
 
-    test('pieces cover the image; the image is that of the film', async () => {
+    test('tiles cover the image; the image is that of the film', async () => {
       const scene = readScene(cuvette, 'rod', { 'render.width': 100, 'render.height': 70 });
       const filled = new Uint8ClampedArray(4 * 100 * 70);
       const shares = [];
       let coarse = 0;
-      const piece = (one) => {
+      const tile = (one) => {
         if (one.coarse > 1) {
           coarse = one.coarse;
           assert.deepEqual([one.width, one.height, one.x1, one.y1], [25, 18, 100, 70]);
@@ -109,7 +109,7 @@ for (const isa of ISAS)
         for (let y = 0; y < one.height; y++)
           filled.set(one.srgb.subarray(y * row, (y + 1) * row), 4 * ((one.y0 + y) * 100 + one.x0));
       };
-      const done = await cuvette.engine().render(scene, { piece, preview: 4, progress: (share) => shares.push(share) });
+      const done = await cuvette.engine().render(scene, { tile, preview: 4, progress: (share) => shares.push(share) });
       assert.equal(coarse, 4);
       assert.deepEqual(done.srgb, filled);
       assert.equal(done.rgb.length, 3 * 100 * 70);
@@ -184,7 +184,7 @@ for (const isa of ISAS)
       const engine = cuvette.engine();
       const once = async () => {
         const scene = readScene(cuvette, 'rod', { 'render.width': 24, 'render.height': 18 });
-        await engine.render(scene, { piece() {} });
+        await engine.render(scene, { tile() {} });
         scene.trace({ pixel: [12, 9] });
         scene.destroy();
       };
@@ -237,13 +237,13 @@ describe('in a worker', () => {
     const scene = await cuvette.Scene.read(textOf('rod'), { name: 'rod.yaml' });
     const engine = await cuvette.engine();
     const shares = [];
-    let pieces = 0;
-    const options = { progress: (share) => shares.push(share), piece: () => pieces++ };
+    let tiles = 0;
+    const options = { progress: (share) => shares.push(share), tile: () => tiles++ };
     const { hash, srgb } = await engine.render(scene, options);
     assert.equal(hash, native('rod').hash);
     assert.equal(srgb.length, 4 * 800 * 600);
     assert.equal(shares.at(-1), 1);
-    assert.ok(pieces > 100);
+    assert.ok(tiles > 100);
     assert.equal(await scene.get('render.depth'), '4');
     const copy = await scene.clone();
     await copy.set('render.depth', 2);

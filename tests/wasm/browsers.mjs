@@ -49,13 +49,13 @@ async function work() {
   for (const run of job.runs) {
     const worker = new Worker(`/wasm/${run.isa}/worker.js`);
     const replies = new Map();
-    let picture = null;
+    let image = null;
     let state = null;
     let wake = () => {};
     let last = 0;
     worker.onmessage = ({ data }) => {
       if (data.failed) throw new Error(data.failed);
-      if (data.event === 'picture') picture = JSON.parse(data.value);
+      if (data.event === 'image') image = JSON.parse(data.value);
       if (data.event === 'state') state = JSON.parse(data.value);
       if (data.id) replies.get(data.id)(data);
       wake();
@@ -78,11 +78,11 @@ async function work() {
       const changed = opened.status < 400 ? await ask('POST', '/api/set', { set }) : opened;
       if (changed.status < 400) {
         const done = () =>
-          (picture?.final && picture.generation >= changed.value.generation) ||
+          (image?.final && image.generation >= changed.value.generation) ||
           (state?.trouble && state.generation >= changed.value.generation);
         while (!done()) await new Promise((resolve) => (wake = resolve));
-        if (picture?.final && picture.generation >= changed.value.generation)
-          Object.assign(answer, { film: picture.film_hash, rays: picture.rays });
+        if (image?.final && image.generation >= changed.value.generation)
+          Object.assign(answer, { film: image.film_hash, rays: image.rays });
         else answer.error = state.trouble.error;
       } else answer.error = changed.value.error;
       answer.ms = performance.now() - began;
@@ -102,7 +102,7 @@ function serve({ wasm }, job, take) {
     const path = decodeURIComponent(new URL(request.url, 'http://localhost').pathname);
     if (request.method === 'POST') {
       let text = '';
-      request.on('data', (piece) => (text += piece));
+      request.on('data', (tile) => (text += tile));
       request.on('end', () => {
         reply.end();
         take(JSON.parse(text));

@@ -100,8 +100,8 @@ class Laboratory {
     const until = Date.now() + 120000;
     for (;;) {
       for (let i = 0; i < 20; i++) this.turn();
-      const { picture } = this.ask('GET', '/api/state');
-      if (picture?.film_hash) return picture.film_hash;
+      const { image } = this.ask('GET', '/api/state');
+      if (image?.film_hash) return image.film_hash;
       assert.ok(Date.now() < until, 'no final image');
     }
   }

@@ -44,7 +44,7 @@ export const cases = {
       const { x, width } = await head.boundingBox();
       t.check(x + width <= 1350, `${name} is off the screen: ${x + width}`);
     }
-    await t.picture(screen, 'bench-light');
+    await t.image(screen, 'bench-light');
     await t.axe(screen, 'bench');
   },
 
@@ -74,7 +74,7 @@ export const cases = {
     const along = way.reduce((sum, x, axis) => sum + x * camera.forward[axis], 0);
     t.near(along, Math.hypot(...way), 1e-3, 'farther along the line of sight');
     t.more(along, 0.01, 'farther');
-    await t.picture(screen, 'beam-handles');
+    await t.image(screen, 'beam-handles');
   },
 
   'orbiting draws the beams anew and traces nothing': async (t) => {
@@ -101,7 +101,7 @@ export const cases = {
     await screen.settled(generation);
     await screen.button('Trace again').waitFor();
     t.equal(traces(asked), 0, 'traces while orbiting');
-    await t.picture(screen, 'pixel-from-the-side');
+    await t.image(screen, 'pixel-from-the-side');
     for (const name of ['Angles', 'R', 'T']) {
       const { x, width } = await screen.page.getByRole('columnheader', { name, exact: true }).boundingBox();
       t.check(x + width <= 1350, `${name} is off the screen: ${x + width}`);
@@ -140,6 +140,6 @@ export const cases = {
     }
     await screen.button('Expose').click();
     await screen.page.getByText('N = 1 traced, 1 crossings').waitFor();
-    await t.picture(screen, 'bench-screen');
+    await t.image(screen, 'bench-screen');
   },
 };

@@ -40,12 +40,12 @@ const change = (page, ior) =>
     let first = null,
       full = null;
     const done = new Promise((resolve) => {
-      const end = lab.on('picture', () => {
-        if (!lab.picture || lab.picture.generation <= before) return;
+      const end = lab.on('image', () => {
+        if (!lab.image || lab.image.generation <= before) return;
         const now = performance.now() - began;
         first ??= now;
-        if (lab.picture.width === width) full ??= now;
-        if (!lab.picture.final) return;
+        if (lab.image.width === width) full ??= now;
+        if (!lab.image.final) return;
         end();
         resolve();
       });
@@ -73,13 +73,13 @@ async function measure(screen, what, settings) {
 async function drag(screen, scene, moves) {
   const { page } = screen;
   let fetched = 0;
-  const count = (request) => (fetched += new URL(request.url()).pathname.startsWith('/api/picture.') ? 1 : 0);
+  const count = (request) => (fetched += new URL(request.url()).pathname.startsWith('/api/image.') ? 1 : 0);
   page.on('request', count);
   await page.evaluate(() => {
     window.times = [];
     window.pixels = [];
     let last = 0;
-    window.lab.on('picture', ({ serial, width, height }) => {
+    window.lab.on('image', ({ serial, width, height }) => {
       if (serial !== last) {
         window.times.push(performance.now());
         window.pixels.push(width * height);
@@ -117,7 +117,7 @@ async function slow(lab) {
   const browser = await launch(`--host-resolver-rules=MAP 127.0.0.1:${lab.port} 127.0.0.1:${link.port}`);
   const page = await browser.newPage();
   await page.goto(lab.address);
-  await page.waitForFunction(() => window.lab?.picture?.final, null, { polling: 50 });
+  await page.waitForFunction(() => window.lab?.image?.final, null, { polling: 50 });
   const loaded = link.down.bytes;
   const full = [],
     exact = [];
@@ -143,7 +143,7 @@ try {
     const lab = await Lab.start(options.program, 'scenes/rod.yaml');
     const page = await browser.newPage();
     await page.goto(lab.address);
-    await page.waitForFunction(() => window.lab?.picture, null, { polling: 10 });
+    await page.waitForFunction(() => window.lab?.image, null, { polling: 10 });
     starts.push(performance.now() - began);
     await page.close();
     await lab.end();

@@ -7,7 +7,7 @@ export const engine = 'browser';
 
 const PHONE = { width: 390, height: 844, touch: true };
 const linkOf = (text) => `#scene=${deflateSync(text).toString('base64url')}`;
-const film = (screen) => screen.page.evaluate(() => window.lab.picture.film_hash);
+const film = (screen) => screen.page.evaluate(() => window.lab.image.film_hash);
 const rod = (lab, from, to) => readFile(`${lab.folder}/scenes/rod.yaml`, 'utf8').then((text) => text.replace(from, to));
 
 /** The downloaded file of an act: [name, text]. */
@@ -76,7 +76,7 @@ export const cases = {
 
     await screen.page.goto('about:blank');
     await screen.page.goto(`${lab.home}${link}`);
-    await screen.until(() => window.lab?.state?.undo && window.lab.picture);
+    await screen.until(() => window.lab?.state?.undo && window.lab.image);
     await screen.settled();
     t.equal(await film(screen), own, 'the film of the link in a new page');
     t.check(await screen.stage.isVisible(), 'the gallery covers the image of a new page');
@@ -128,7 +128,7 @@ export const cases = {
       const panel = page.getByRole('tabpanel', { name });
       await panel.getByText(command, { exact: true }).waitFor();
       await t.axe(screen, name);
-      await t.picture(screen, `browser-${name.toLowerCase()}`);
+      await t.image(screen, `browser-${name.toLowerCase()}`);
     }
     await screen.showPanel('Parameters');
     await screen.button('Save film').click();
@@ -180,11 +180,11 @@ export const cases = {
     t.match(await banner.innerText(), /Reload the page/, 'the remedy');
     t.check(!/server|terminal/.test(await screen.page.locator('body').innerText()), 'words about a server');
     await screen.page.reload();
-    await screen.until(() => window.lab?.picture?.final);
+    await screen.until(() => window.lab?.image?.final);
     t.check((await film(screen)) !== changed, 'the scene of the file after a reload');
     await t.axe(screen, 'the offer of the unsaved scene');
     await screen.page.locator('#rescue').getByRole('button', { name: 'Open' }).click();
-    await screen.until((hash) => window.lab.picture.film_hash === hash, changed);
+    await screen.until((hash) => window.lab.image.film_hash === hash, changed);
     t.equal(await screen.page.locator('#rescue').isVisible(), false, 'the offer after it was accepted');
   },
 
@@ -196,20 +196,20 @@ export const cases = {
     await screen.page.locator('.lesson-value').waitFor();
     await screen.settled();
     t.check(await screen.stage.isVisible(), 'the image next to the lesson');
-    await t.picture(screen, 'browser-phone-lesson');
+    await t.image(screen, 'browser-phone-lesson');
   },
 
   'a pixel and a shared link on a phone': async (t) => {
     const lab = await t.lab();
     const screen = await t.open(lab, PHONE);
     await follow(screen, linkOf(await rod(lab, /ior: [\d.]+/, 'ior: 1.45')));
-    await t.picture(screen, 'browser-phone-link');
+    await t.image(screen, 'browser-phone-link');
     await screen.chooseTool('Inspect');
     const at = await screen.place(400, 300);
     await screen.page.touchscreen.tap(at.x, at.y);
     await screen.page.getByRole('treegrid', { name: 'Rays of the pixel' }).waitFor();
     t.match(await screen.page.getByRole('tabpanel', { name: 'Pixel' }).innerText(), /Radiance/, 'the panel Pixel');
-    await t.picture(screen, 'browser-phone-pixel');
+    await t.image(screen, 'browser-phone-pixel');
   },
 
   'the slime on a phone': async (t) => {
@@ -222,7 +222,7 @@ export const cases = {
     await screen.chooseTool('Grab');
     await touchDrag(screen, [400, 330], [330, 250], async () => {
       await screen.until(() => window.lab.slime.held > 0);
-      await t.picture(screen, 'browser-phone-slime');
+      await t.image(screen, 'browser-phone-slime');
     });
     await screen.until(() => window.lab.slime.held === 0);
     t.equal((await lab.get('/api/state')).slime.trouble, null, 'the error of the slime');

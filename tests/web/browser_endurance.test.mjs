@@ -21,7 +21,7 @@ export const cases = {
         async ([from, to]) => {
           for (let i = from; i < to; i++) {
             await window.lab.post('/api/set', { set: { 'liquid.ior': 1.3 + (i % 250) / 1000 } });
-            await window.lab.engine.fetch('/api/picture.jpg?wait=1&quick=1');
+            await window.lab.engine.fetch('/api/image.jpg?wait=1&quick=1');
           }
         },
         [first, end],
@@ -38,7 +38,7 @@ export const cases = {
   'a hundred grabs of the slime': async (t) => {
     const lab = await t.lab('scenes/slime.yaml');
     const screen = await t.open(lab);
-    const { full_width: width, full_height: height } = (await lab.get('/api/state')).picture;
+    const { full_width: width, full_height: height } = (await lab.get('/api/state')).image;
     const grab = async (count) => {
       for (let i = 0; i < count; i++) {
         await lab.post('/api/slime', { do: 'restart' }); /* pulled about, it would leave the image */

@@ -12,13 +12,13 @@ async function pinAndChange(t) {
   await screen.actualSize();
   await screen.showPanel('Compare');
   await screen.button('Pin as A').click();
-  await screen.until(() => window.lab.state.pin);
+  await screen.until(() => window.lab.state.reference);
   const { generation } = await lab.post('/api/set', {
     set: { 'plastic.color': [0.1, 0.7, 0.2], 'tiles.color': [0.9, 0.8, 0.3] },
   });
   await screen.settled(generation);
   await screen.quiet();
-  return { lab, screen, a: readPng((await lab.ask('GET', '/api/pin.png')).bytes), b: await screen.served() };
+  return { lab, screen, a: readPng((await lab.ask('GET', '/api/reference.png')).bytes), b: await screen.served() };
 }
 
 export const cases = {
@@ -73,7 +73,7 @@ export const cases = {
     const { lab, screen, b } = await pinAndChange(t);
     const map = readPng((await lab.ask('GET', '/api/compare.png')).bytes);
     await screen.page.getByRole('radio', { name: 'Difference' }).locator('xpath=ancestor::label').click();
-    await screen.page.locator('#picture').getByText('Difference from A', { exact: true }).waitFor();
+    await screen.page.locator('#image').getByText('Difference from A', { exact: true }).waitFor();
     await screen.page.mouse.move(1, 1);
     await screen.quiet();
     t.near(
@@ -106,7 +106,7 @@ export const cases = {
     const psnr = Number(text.match(/PSNR\s+([\d.]+)/)?.[1]);
     t.near(psnr, comparison.psnr_db, 0.01, 'PSNR, dB');
     await screen.button('Clear A').click();
-    await screen.until(() => !window.lab.state.pin);
+    await screen.until(() => !window.lab.state.reference);
     await screen.quiet();
     t.equal(
       difference(await screen.displayed(), await screen.served(), (x, y) => y > 40),

@@ -22,7 +22,7 @@ export const cases = {
     t.equal(await set(), { theme: 'dark', text: 'large', projector: '' }, 'set by the dialog');
     t.more((await height()) / usual, 1.35, 'enlargement of a tab');
     await page.reload();
-    await screen.until(() => window.lab?.picture);
+    await screen.until(() => window.lab?.image);
     t.equal(await set(), { theme: 'dark', text: 'large', projector: '' }, 'after a reload');
     await page.keyboard.press('p');
     await page.keyboard.press('t');
@@ -156,7 +156,7 @@ export const cases = {
       const { readPng } = await import('./png.mjs');
       const { data } = readPng(await drawing.screenshot());
       t.check(dark ? data[12] < 80 : data[12] > 200, `the ground has ${data[12]} ${dark ? 'in dark' : 'in light'}`);
-      await t.picture(screen, `drawing-${dark ? 'dark' : 'light'}`);
+      await t.image(screen, `drawing-${dark ? 'dark' : 'light'}`);
     }
   },
 
@@ -166,7 +166,7 @@ export const cases = {
     const { page } = screen;
     await screen.showPanel('Compare');
     await screen.button('Pin as A').click();
-    await screen.until(() => window.lab.state.pin);
+    await screen.until(() => window.lab.state.reference);
     await page.getByText('Difference', { exact: true }).click();
     const map = () =>
       page.evaluate(() => document.querySelector('.layer-compare > image:nth-of-type(2)').style.display);
@@ -174,9 +174,9 @@ export const cases = {
     await screen.until(() => document.querySelector('.layer-compare > image:nth-of-type(2)').style.display === '');
     await page.evaluate(() => {
       window.hidden = [];
-      window.lab.on('picture', (picture) => {
+      window.lab.on('image', (image) => {
         const shown = document.querySelector('.layer-compare > image:nth-of-type(2)').style.display === '';
-        if (shown && !picture.final) window.hidden.push(picture.serial);
+        if (shown && !image.final) window.hidden.push(image.serial);
       });
     });
     for (let i = 0; i < 20; i++)

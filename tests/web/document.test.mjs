@@ -5,7 +5,7 @@ import { readPng } from './png.mjs';
 import { difference } from './screen.mjs';
 
 const filmOf = async (lab, ...words) => JSON.parse(await lab.run('render', ...words, '--json')).film_hash;
-const shownFilm = (screen) => screen.page.evaluate(() => window.lab.picture.film_hash);
+const shownFilm = (screen) => screen.page.evaluate(() => window.lab.image.film_hash);
 
 /** Calls a function that changes the scene and waits for the final image. */
 async function change(screen, act) {

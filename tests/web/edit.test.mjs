@@ -104,7 +104,7 @@ export const cases = {
     await change(screen, () => screen.button('Move all: minus y').click());
     t.equal((await values())[0], stays, 'moving only the lights does not move the ball');
     await t.axe(screen, 'steps of the whole scene');
-    await t.picture(screen, 'whole-scene');
+    await t.image(screen, 'whole-scene');
   },
 
   'dragging with a rolled camera': async (t) => {

@@ -56,7 +56,7 @@ function ask(lab, agent, { method = 'GET', path, body, token = lab.token }) {
 const QUESTIONS = [
   [200, { path: '/api/state' }],
   [200, { path: '/api/scene' }],
-  [200, { path: '/api/picture.jpg?quick=1' }],
+  [200, { path: '/api/image.jpg?quick=1' }],
   [200, { path: '/api/trace?x=330&y=420' }],
   [200, { path: '/' }],
   [200, { path: '/api/studies' }],
@@ -119,7 +119,7 @@ async function streams(lab, count) {
 }
 
 /** Waits until nothing is rendered, so that memory is compared in the same state. */
-const idle = (lab) => lab.ask('GET', '/api/picture.png?wait=1');
+const idle = (lab) => lab.ask('GET', '/api/image.png?wait=1');
 
 export const cases = {
   [`${REQUESTS} requests and ${STREAMS} streams leave nothing behind`]: async (t) => {
@@ -161,7 +161,7 @@ export const cases = {
       const { context } = screens[tabs.length % 2];
       const page = await context.newPage();
       await page.goto(lab.address);
-      await page.waitForFunction(() => window.lab?.picture?.final);
+      await page.waitForFunction(() => window.lab?.image?.final);
       tabs.push(page);
     }
     const held = [];
@@ -185,9 +185,7 @@ export const cases = {
     for (const page of tabs)
       await page.waitForFunction(
         (old) =>
-          window.lab.picture.final &&
-          window.lab.picture.generation > old &&
-          window.lab.param('liquid.ior').value === 1.47,
+          window.lab.image.final && window.lab.image.generation > old && window.lab.param('liquid.ior').value === 1.47,
         generation,
       );
     t.check(true, 'ten tabs follow');

@@ -140,7 +140,7 @@ export const cases = {
     t.match(await fan.locator('img').getAttribute('data-path'), /spread=20/, 'the drawing is that of the form');
     await fan.scrollIntoViewIfNeeded();
     await t.axe(screen, 'the fan');
-    await t.picture(screen, 'bench-fan');
+    await t.image(screen, 'bench-fan');
     const [saved] = await Promise.all([
       screen.page.waitForEvent('download'),
       fan.getByRole('button', { name: 'Save table' }).click(),
@@ -164,7 +164,7 @@ export const cases = {
       await screen.quiet();
       await theory.scrollIntoViewIfNeeded();
       await t.axe(screen, 'optics and theory');
-      await t.picture(screen, `bench-theory-${dark ? 'dark' : 'light'}`);
+      await t.image(screen, `bench-theory-${dark ? 'dark' : 'light'}`);
       const { generation } = await lab.post('/api/set', { set: { 'liquid.ior': 1.4 } });
       await screen.settled(generation);
       await theory.getByText('Of an earlier state of the scene').waitFor();

@@ -7,15 +7,15 @@ import { difference } from './screen.mjs';
 async function record(screen) {
   await screen.page.evaluate(() => {
     window.drawn = [];
-    let { serial: last, exact: lastExact } = window.lab.picture;
-    window.lab.on('picture', ({ serial, generation, pass, final, exact }) => {
+    let { serial: last, exact: lastExact } = window.lab.image;
+    window.lab.on('image', ({ serial, generation, pass, final, exact }) => {
       if (serial !== last || exact !== lastExact)
         window.drawn.push({ serial, generation, pass, final, exact, during: window.lab.dragging() });
       [last, lastExact] = [serial, exact];
     });
   });
   const asked = await screen.asked();
-  return () => asked.filter((path) => path.startsWith('/api/picture.'));
+  return () => asked.filter((path) => path.startsWith('/api/image.'));
 }
 
 function checkOrder(t, drawn, what) {
@@ -31,9 +31,9 @@ function checkOrder(t, drawn, what) {
 async function checkLast(t, screen, scene, what) {
   const { lab } = screen;
   const ior = await lab.value('liquid.ior');
-  const { picture } = await lab.get('/api/state');
+  const { image } = await lab.get('/api/state');
   const account = JSON.parse(await lab.run('render', scene, '--json', '--set', `liquid.ior=${ior}`));
-  t.equal(picture.film_hash, account.film_hash, `${what}: the film of cuvette render for index ${ior}`);
+  t.equal(image.film_hash, account.film_hash, `${what}: the film of cuvette render for index ${ior}`);
   t.equal(
     difference(await screen.pixels(), await screen.served()),
     0,
@@ -62,10 +62,10 @@ export const cases = {
     t.more(drawn.filter((frame) => frame.during).length, 4, 'keys: frames were drawn while the slider moved');
     t.more(drawn.length, 0.9 * fetched.length - 1, 'keys: nearly every fetched image was drawn');
     t.check(
-      fetched.some((url) => url.includes('picture.jpg')),
+      fetched.some((url) => url.includes('image.jpg')),
       'keys: images of the drag are JPEG',
     );
-    t.equal(fetched.at(-1), '/api/picture.png', 'keys: the last image is a PNG');
+    t.equal(fetched.at(-1), '/api/image.png', 'keys: the last image is a PNG');
     await checkLast(t, screen, 'scenes/rod.yaml', 'keys');
   },
 
@@ -115,7 +115,7 @@ export const cases = {
       tabs.push(page);
     }
     const follows = async (page, generation) =>
-      page.waitForFunction((g) => window.lab?.picture?.final && window.lab.picture.generation >= g, generation, {
+      page.waitForFunction((g) => window.lab?.image?.final && window.lab.image.generation >= g, generation, {
         polling: 100, // a tab in the background may draw no frames
       });
     const { generation } = await lab.post('/api/set', { set: { 'liquid.ior': 1.4 } });
@@ -146,7 +146,7 @@ export const cases = {
     const { generation } = await lab.post('/api/set', { set: { 'liquid.ior': 1.45 } });
     await screen.settled(generation);
     release();
-    await page.waitForFunction((g) => window.lab.picture?.final && window.lab.picture.generation >= g, generation, {
+    await page.waitForFunction((g) => window.lab.image?.final && window.lab.image.generation >= g, generation, {
       polling: 100,
     });
     t.equal(
@@ -165,14 +165,14 @@ export const cases = {
     await lab.stop();
     await banner.waitFor({ state: 'visible' });
     t.match(await banner.innerText(), /server/i, 'the banner names the server');
-    await t.picture(screen, 'lost');
+    await t.image(screen, 'lost');
     await lab.serve('scenes/rod.yaml');
     await screen.until(() => /address/i.test(document.querySelector('#banner').innerText));
     t.match(await banner.innerText(), /address/i, 'the banner names the newly printed address');
     await screen.load();
     t.equal(await banner.isVisible(), false, 'the banner is visible at the new address');
     t.check(
-      await screen.page.evaluate(() => window.lab.picture.final),
+      await screen.page.evaluate(() => window.lab.image.final),
       'the final image is displayed at the new address',
     );
   },

@@ -70,7 +70,7 @@ export const cases = {
     await change(screen, () => screen.button('Undo').click());
     t.equal(await lab.value('ball.position'), after, 'one drag is one undo step');
     await t.axe(screen, 'handles');
-    await t.picture(screen, 'gizmo-move');
+    await t.image(screen, 'gizmo-move');
   },
 
   'handles turn by 15 degrees and scale by tenths': async (t) => {
@@ -85,7 +85,7 @@ export const cases = {
     const [x, y, z] = await lab.value('rod.rotation');
     t.equal([x, y], [0, 0], 'the other angles');
     t.check(z !== 0 && Math.abs(z / 15 - Math.round(z / 15)) < 1e-9, `a multiple of 15 degrees: ${z}`);
-    await t.picture(screen, 'gizmo-turn');
+    await t.image(screen, 'gizmo-turn');
     await change(screen, () => screen.button('Undo').click());
     await screen.page.getByRole('radio', { name: 'Scale' }).check({ force: true });
     await screen.page.keyboard.down('Shift');
@@ -108,7 +108,7 @@ export const cases = {
     let now = await values();
     t.more(now[0][0], 0.2, 'the vessel has moved');
     for (const k of [1, 2]) t.near(far(now[k], first[k]), far(now[0], first[0]), 1e-9, `${paths[k]} moves with it`);
-    await t.picture(screen, 'gizmo-vessel');
+    await t.image(screen, 'gizmo-vessel');
     await change(screen, () => screen.button('Undo').click());
     t.equal(await values(), first, 'one undo restores all three');
     await screen.page.getByRole('checkbox', { name: 'With contents' }).uncheck();
@@ -163,7 +163,7 @@ export const cases = {
     t.equal(await lab.value('sphere.medium'), 'water', 'the medium of the new sphere');
     t.equal(await lab.value('sphere.transparency'), 1, 'its transparency');
     t.equal((await lab.get('/api/state')).trouble, null, 'the error of the scene');
-    await t.picture(screen, 'sphere-of-water');
+    await t.image(screen, 'sphere-of-water');
     await change(screen, () => screen.button('Undo').click());
     t.check(!(await lab.get('/api/scene')).objects.some(({ name }) => name === 'sphere'), 'one undo removes it');
     await of.selectOption('Material plastic');

@@ -17,7 +17,7 @@ async function look(t, shown, name) {
   );
   t.none(errors, `${name}: console`);
   await t.axe(shown, name);
-  await t.picture(shown, `html-file-${name}`);
+  await t.image(shown, `html-file-${name}`);
 }
 
 export const cases = {

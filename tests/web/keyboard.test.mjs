@@ -55,7 +55,7 @@ export const cases = {
   'the image': async (t) => {
     const lab = await t.lab('scenes/rod.yaml');
     const screen = await t.open(lab);
-    await tabTo(t, screen, '#picture');
+    await tabTo(t, screen, '#image');
     await checkFocusShows(t, screen, 'the image');
     const eye = async () => (await lab.get('/api/state')).camera.eye;
     for (const key of ['ArrowLeft', 'ArrowUp', 'w', 'd', 'PageUp']) {
@@ -151,7 +151,7 @@ export const cases = {
     const dialog = screen.page.getByRole('dialog', { name: 'Keyboard shortcuts' });
     await dialog.waitFor();
     await t.axe(screen, 'the dialog of keys');
-    await t.picture(screen, 'keys');
+    await t.image(screen, 'keys');
     await screen.page.keyboard.press('Escape');
     await dialog.waitFor({ state: 'hidden' });
     t.equal(await dialog.count(), 0, 'Escape closes the dialog');

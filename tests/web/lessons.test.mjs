@@ -18,7 +18,7 @@ export const cases = {
     const screen = await t.open(lab, { width: 1366, height: 768 });
     await panel(screen).locator('.lesson-card').nth(7).waitFor();
     await screen.until(() => [...document.querySelectorAll('.lesson-card img')].some((img) => img.naturalWidth > 100));
-    await t.picture(screen, 'gallery-light');
+    await t.image(screen, 'gallery-light');
     await t.axe(screen, 'gallery');
     await screen.page.getByRole('button', { name: /When water becomes a mirror/ }).click();
     await screen.button('Show the measurement').click();
@@ -27,7 +27,7 @@ export const cases = {
     const box = await panel(screen).locator('.lesson-value').boundingBox();
     t.check(box.y + box.height < 768, 'the reading is visible without scrolling');
     await screen.settled();
-    await t.picture(screen, 'lesson-light');
+    await t.image(screen, 'lesson-light');
     await t.axe(screen, 'lesson');
   },
 
@@ -91,7 +91,7 @@ export const cases = {
       'command',
     );
     await screen.settled();
-    await t.picture(screen, 'lesson-dark');
+    await t.image(screen, 'lesson-dark');
     await t.axe(screen, 'lesson, dark');
   },
 
@@ -115,7 +115,7 @@ export const cases = {
     const { [`now: 1.333`]: before } = await lines();
     t.equal(`M${await ring.getAttribute('cx')}`, before.split(' ')[0], 'the ring is at the present value');
     await screen.settled();
-    await t.picture(screen, 'lens-light');
+    await t.image(screen, 'lens-light');
     await t.axe(screen, 'lens');
     const field = panel(screen).getByRole('spinbutton', { name: 'Refractive index of the liquid, number' });
     await field.fill('1.5');
@@ -225,6 +225,6 @@ export const cases = {
     await screen.showPanel('Objects');
     await screen.button('Open').first().click();
     await screen.until(() => document.querySelector('.file-list img')?.naturalWidth > 100);
-    await t.picture(screen, 'open-light');
+    await t.image(screen, 'open-light');
   },
 };

@@ -16,19 +16,19 @@ export const cases = {
   'the maps and their numbers': async (t) => {
     const lab = await t.lab(SCENE);
     const maps = await lab.get('/api/maps');
-    const { picture } = await lab.get('/api/state');
-    t.equal([maps.serial, maps.width, maps.height], [picture.serial, picture.full_width, picture.full_height], 'image');
-    t.equal(maps.rays.total, picture.rays, 'sum of the rays of all pixels');
+    const { image } = await lab.get('/api/state');
+    t.equal([maps.serial, maps.width, maps.height], [image.serial, image.full_width, image.full_height], 'image');
+    t.equal(maps.rays.total, image.rays, 'sum of the rays of all pixels');
     t.equal([maps.rays.unit, maps.time.unit, maps.cut.unit], ['rays', 'ns', ''], 'units');
     const share = maps.cut.total / (maps.width * maps.height);
-    t.near(share, picture.cut, 1e-9, 'the mean of the map, and the share of the image');
+    t.near(share, image.cut, 1e-9, 'the mean of the map, and the share of the image');
     t.more(maps.time.total, 0, 'sum of the times of all pixels');
     t.less(maps.time.total, 1.05e9 * maps.wall_s * maps.threads, 'ns of all pixels, of the time of all threads');
 
     await lab.run('render', SCENE, '--rays', 'rays.png', '--time', 'time.png', '-o', 'image.png');
     const rays = await mapOf(lab, 'rays');
     const written = readPng(await readFile(join(lab.folder, 'rays.png')));
-    t.equal([rays.width, rays.height], [maps.picture.width, maps.picture.height], 'size of the map');
+    t.equal([rays.width, rays.height], [maps.image.width, maps.image.height], 'size of the map');
     t.equal(difference(rays, written), 0, 'share of pixels that differ from the file of the program');
     const time = await mapOf(lab, 'time');
     const { width, height } = readPng(await readFile(join(lab.folder, 'time.png')));
@@ -41,7 +41,7 @@ export const cases = {
     const { generation } = await lab.post('/api/set', { set: { 'render.depth': 1 } });
     const less = await lab.get('/api/maps');
     t.check(less.rays.total < maps.rays.total, `fewer rays at depth 1: ${less.rays.total} of ${maps.rays.total}`);
-    t.equal((await lab.get('/api/state')).picture.generation, generation, 'the maps are those of the changed scene');
+    t.equal((await lab.get('/api/state')).image.generation, generation, 'the maps are those of the changed scene');
   },
 
   'the page draws a map with a legend': async (t) => {
@@ -70,7 +70,7 @@ export const cases = {
       };
       t.less(await seen(), 0.001, 'share of pixels that differ from the map');
       await t.axe(screen, 'the map of the rays');
-      await t.picture(screen, `map-rays-${dark ? 'dark' : 'light'}`);
+      await t.image(screen, `map-rays-${dark ? 'dark' : 'light'}`);
 
       const [saved] = await Promise.all([
         screen.page.waitForEvent('download'),
@@ -100,7 +100,7 @@ export const cases = {
       );
       await screen.quiet();
       await t.axe(screen, 'the map of the times');
-      await t.picture(screen, `map-time-${dark ? 'dark' : 'light'}`);
+      await t.image(screen, `map-time-${dark ? 'dark' : 'light'}`);
       await screen.button('Close: Time per pixel').click();
       t.equal(difference(await screen.pixels(), await screen.served()), 0, 'the image again');
       t.equal(await screen.page.locator('.layer-cost').isVisible(), false, 'the map is removed');

@@ -64,7 +64,7 @@ export const cases = {
     t.equal(await part.locator('tbody tr').count(), 19, 'rows');
     await part.scrollIntoViewIfNeeded();
     await t.axe(screen, 'motion and theory');
-    await t.picture(screen, 'slime-motion');
+    await t.image(screen, 'slime-motion');
     const [saved] = await Promise.all([
       screen.page.waitForEvent('download'),
       part.getByRole('button', { name: 'Save table' }).click(),

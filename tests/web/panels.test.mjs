@@ -6,7 +6,7 @@ async function show(t, screen, name) {
   await screen.settled();
   await screen.quiet();
   await t.axe(screen, name);
-  await t.picture(screen, name);
+  await t.image(screen, name);
 }
 
 async function optics(t, dark) {
@@ -45,14 +45,14 @@ async function optics(t, dark) {
   await screen.chooseTool('Orbit');
   await screen.showPanel('Compare');
   await screen.button('Pin as A').click();
-  await screen.until(() => window.lab.state.pin);
+  await screen.until(() => window.lab.state.reference);
   const { generation } = await lab.post('/api/set', {
     set: { 'liquid.medium': 'water', 'liquid.absorb_per_m': [1.5, 0.4, 0.1] },
   });
   await screen.settled(generation);
   await page
     .getByRole('tabpanel', { name: 'Compare' })
-    .getByText(await page.evaluate(() => window.lab.picture.film_hash))
+    .getByText(await page.evaluate(() => window.lab.image.film_hash))
     .waitFor();
   await show(t, screen, `compare-${theme}`);
   await page.getByText('Difference', { exact: true }).click();
@@ -70,7 +70,7 @@ async function toy(t, dark) {
   await screen.button('Play').click();
   await screen.until(() => window.lab.slime.time_s > 1.5);
   await screen.button('Pause').click();
-  await screen.until(() => !window.lab.slime.playing && window.lab.picture.final);
+  await screen.until(() => !window.lab.slime.playing && window.lab.image.final);
   await show(t, screen, `toy-${dark ? 'dark' : 'light'}`);
 }
 

@@ -19,13 +19,13 @@ function silhouette({ width, height, data }) {
 }
 
 const atRest = (screen) =>
-  screen.until(() => window.lab.slime?.resting && window.lab.slime.held === 0 && window.lab.picture.final);
+  screen.until(() => window.lab.slime?.resting && window.lab.slime.held === 0 && window.lab.image.final);
 const held = (screen, yes) => screen.until((wanted) => window.lab.slime.held > 0 === wanted, yes);
-const nextPicture = (screen) =>
+const nextImage = (screen) =>
   screen.page.evaluate(
     () =>
       new Promise((drawn) => {
-        const end = window.lab.on('picture', () => {
+        const end = window.lab.on('image', () => {
           end();
           drawn();
         });
@@ -48,7 +48,7 @@ async function untilStill(screen) {
   const [STILL, FRAMES] = [4, 8];
   let [reference, unchanged] = [silhouette(await screen.pixels()), 0];
   while (unchanged < FRAMES) {
-    await nextPicture(screen);
+    await nextImage(screen);
     const now = silhouette(await screen.pixels());
     const moved = Math.max(Math.abs(now.top - reference.top), Math.abs(now.high - reference.high)) > STILL;
     [reference, unchanged] = moved ? [now, 0] : [reference, unchanged + 1];
@@ -129,13 +129,13 @@ export const cases = {
     await screen.button('Play').click();
     await screen.until(() => window.lab.slime.time_s > 0.2);
     await screen.button('Pause').click();
-    await screen.until(() => !window.lab.slime.playing && window.lab.picture.final);
-    const { slime, picture } = await lab.get('/api/state');
+    await screen.until(() => !window.lab.slime.playing && window.lab.image.final);
+    const { slime, image } = await lab.get('/api/state');
     const own = JSON.parse(await lab.run('render', 'tests/slime.yaml', '--json')).film_hash;
-    t.check(picture.film_hash !== own, 'the image shows the simulated slime, not that of the scene');
+    t.check(image.film_hash !== own, 'the image shows the simulated slime, not that of the scene');
     t.equal((await lab.get('/api/state')).slime.time_s, slime.time_s, 'its time while paused');
     await screen.button('Off').click();
-    await screen.until((hash) => window.lab.picture.film_hash === hash, own);
+    await screen.until((hash) => window.lab.image.film_hash === hash, own);
     t.equal((await lab.get('/api/state')).slime.on, false, 'the slime is on after Off');
   },
 

@@ -130,7 +130,7 @@ async function compareViews(t, lab, screen, selector, rays, what) {
     await screen.settled(generation);
     await screen.quiet();
     edges += await compare(t, screen, selector, rays, `${what}, ${name}`);
-    await t.picture(screen, `ray-lines-${what}-${name.replaceAll(' ', '-')}`.replaceAll(' ', '-'));
+    await t.image(screen, `ray-lines-${what}-${name.replaceAll(' ', '-')}`.replaceAll(' ', '-'));
     for (const factor of [4, 0.1]) {
       await magnify(screen, factor);
       edges += await compare(t, screen, selector, rays, `${what}, ${name}, magnified by ${factor}`);
@@ -203,7 +203,7 @@ export const cases = {
     await screen.settled(generation);
     await screen.quiet();
     await compare(t, screen, '.layer-pixel line.ray:not(.ray-cut)', rays, 'pixel');
-    await t.picture(screen, 'ray-lines-pixel');
+    await t.image(screen, 'ray-lines-pixel');
     const plots = await screen.page.locator('.ray-plot').evaluateAll((all) =>
       all.map((plot) => {
         const value = (node, names) => names.map((name) => Number(node.getAttribute(name)));

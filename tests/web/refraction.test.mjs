@@ -1,7 +1,7 @@
 // Changing the liquid's index with the page's slider moves the bar's edges in the image as predicted by Snell's law.
 import { columnOfSlope, slopeOfEdge } from './optics.mjs';
 
-const picture = { width: 801, height: 301, fovDeg: 6 };
+const image = { width: 801, height: 301, fovDeg: 6 };
 const bar = [-0.15, 0.25];
 const disc = { distance: 9, radius: 1, depth: 0.5 };
 
@@ -14,7 +14,7 @@ function edges(shown) {
   return found;
 }
 
-const predicted = (index) => bar.map((x) => columnOfSlope(slopeOfEdge(x, { ...disc, index }), picture));
+const predicted = (index) => bar.map((x) => columnOfSlope(slopeOfEdge(x, { ...disc, index }), image));
 
 async function compare(t, screen, what) {
   await screen.settled();

@@ -2,7 +2,7 @@
 import { existsSync, readdirSync, rmSync, writeFileSync, mkdirSync } from 'node:fs';
 import { join } from 'node:path';
 
-const film = (screen) => screen.page.evaluate(() => window.lab.picture.film_hash);
+const film = (screen) => screen.page.evaluate(() => window.lab.image.film_hash);
 const bar = (screen) => screen.page.locator('#rescue');
 
 /** The files of unsaved scenes. */
@@ -44,10 +44,10 @@ export const cases = {
     t.check(/An unsaved scene of .*\d:\d\d.* was rescued: .*scenes\/rod\.yaml/.test(words), `the bar: ${words}`);
     t.equal((await film(screen)) === changed, false, 'the scene of the file is shown until then');
     await t.axe(screen, 'with the bar');
-    await t.picture(screen, 'rescue-light');
+    await t.image(screen, 'rescue-light');
     await page.emulateMedia({ colorScheme: 'dark' });
     await t.axe(screen, 'with the bar, dark');
-    await t.picture(screen, 'rescue-dark');
+    await t.image(screen, 'rescue-dark');
     await page.emulateMedia({ colorScheme: 'light' });
 
     const { generation } = await lab.get('/api/state');
@@ -80,7 +80,7 @@ export const cases = {
     const screen = await t.open(lab, { width: 390, height: 844 });
     const { page } = screen;
     await bar(screen).getByText('(and 1 more)').waitFor();
-    await t.picture(screen, 'rescue-phone');
+    await t.image(screen, 'rescue-phone');
     await t.axe(screen, 'two scenes on a telephone');
     const dialog = page.getByRole('dialog');
     await page.locator('#rescue').getByRole('button', { name: 'Discard' }).click();
@@ -109,7 +109,7 @@ export const cases = {
     await screen.setNumber('liquid.ior', 1.6);
     await bar(screen).getByText('Unsaved changes would be lost in a crash').waitFor();
     await t.axe(screen, 'with the report');
-    await t.picture(screen, 'rescue-unkept');
+    await t.image(screen, 'rescue-unkept');
     await bar(screen).getByRole('button', { name: 'Close' }).click();
     await screen.setNumber('liquid.ior', 1.7);
     t.equal(await bar(screen).isVisible(), false, 'a second report');

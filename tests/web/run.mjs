@@ -78,7 +78,7 @@ class Case extends Checks {
   }
 
   /** With --screenshots, saves an image of the whole page. */
-  async picture(screen, name) {
+  async image(screen, name) {
     if (!options.screenshots) return;
     await mkdir(options.screenshots, { recursive: true });
     await screen.page.screenshot({ path: join(options.screenshots, `${name}.png`) });

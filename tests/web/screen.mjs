@@ -88,7 +88,7 @@ export class Screen {
   async load() {
     const broken = new Promise((_, reject) => this.page.once('pageerror', reject)); // sooner than by a time limit
     await this.page.goto(this.lab.address);
-    await Promise.race([this.page.waitForFunction(() => window.lab?.picture), broken]);
+    await Promise.race([this.page.waitForFunction(() => window.lab?.image), broken]);
     broken.catch(() => {}); // later errors are found by watch
     await this.settled();
   }
@@ -102,8 +102,8 @@ export class Screen {
   async settled(generation = 0) {
     const least = Math.max(generation, (await this.lab.get('/api/state')).generation);
     await this.page.waitForFunction((g) => {
-      const { picture, newestGeneration, scene, change } = window.lab;
-      const newest = picture?.final && picture.generation >= Math.max(g, newestGeneration);
+      const { image, newestGeneration, scene, change } = window.lab;
+      const newest = image?.final && image.generation >= Math.max(g, newestGeneration);
       return change.idle() && newest && scene?.generation >= g;
     }, least);
   }
@@ -161,7 +161,7 @@ export class Screen {
   }
 
   /** The same image from the server. */
-  async served(path = '/api/picture.png?wait=1') {
+  async served(path = '/api/image.png?wait=1') {
     return readPng((await this.lab.ask('GET', path)).bytes);
   }
 
@@ -193,7 +193,7 @@ export class Screen {
   }
 
   get stage() {
-    return this.page.locator('#picture');
+    return this.page.locator('#image');
   }
 
   /** Chooses a pointer tool in the toolbar over the image. The radio buttons are small, so the click is on their

@@ -9,7 +9,7 @@ export const cases = {
   'a link reproduces the film': async (t) => {
     const lab = await t.lab('scenes/rod.yaml');
     const screen = await t.open(lab);
-    const film = () => screen.page.evaluate(() => window.lab.picture.film_hash);
+    const film = () => screen.page.evaluate(() => window.lab.image.film_hash);
     const first = await film();
     await screen.setNumber('liquid.ior', 1.6);
     const changed = await film();
@@ -21,7 +21,7 @@ export const cases = {
     t.equal(await film(), first, 'the film after undo');
     await screen.page.goto('about:blank'); // from there the address is loaded, not only its fragment changed
     await screen.page.goto(`${lab.home}${fragment}${code}`);
-    await screen.until(() => window.lab?.state?.undo && window.lab.picture);
+    await screen.until(() => window.lab?.state?.undo && window.lab.image);
     await screen.settled();
     t.equal(await film(), changed, 'the film of the link');
     t.equal(await screen.page.evaluate(() => location.hash), '', 'the address no longer has the scene');
@@ -32,7 +32,7 @@ export const cases = {
     const lab = await t.lab('scenes/rod.yaml');
     const screen = await t.open(lab);
     const { page } = screen;
-    const film = () => page.evaluate(() => window.lab.picture.film_hash);
+    const film = () => page.evaluate(() => window.lab.image.film_hash);
     const first = await film();
     await page.context().grantPermissions(['clipboard-read', 'clipboard-write']);
     await screen.setNumber('liquid.ior', 1.45);
@@ -42,7 +42,7 @@ export const cases = {
     const open = () => screen.button('Share …').click();
     await open();
     await t.axe(screen, 'the dialog');
-    await t.picture(screen, 'share');
+    await t.image(screen, 'share');
 
     await screen.button('Copy link').click();
     await page.waitForFunction(() => document.body.textContent.includes('Link copied'));
@@ -98,13 +98,13 @@ export const cases = {
         await dialog.getByText(/Files are saved without the scene: .* reads .*chequer\.png/).waitFor();
         t.check(await screen.button('Copy link').isDisabled(), 'no link of such a scene');
         await t.axe(screen, 'the dialog of a scene that names files');
-        await t.picture(screen, 'share-without');
+        await t.image(screen, 'share-without');
         const [download] = await Promise.all([page.waitForEvent('download'), screen.button(label).click()]);
         await page
           .getByText(new RegExp(`${name} saved without the scene: .*chequer\\.png`))
           .first()
           .waitFor();
-        await t.picture(screen, 'share-without-saved');
+        await t.image(screen, 'share-without-saved');
         const file = join(folder, name);
         await download.saveAs(file);
         let refused = '';

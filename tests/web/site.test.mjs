@@ -14,13 +14,13 @@ const oneFile = join(site, 'laboratory.html');
 /** The final image of the page or frame: its film and the file that is open. */
 async function drawn(page, undone) {
   await page.waitForFunction(
-    (changed) => window.lab?.picture?.final && Boolean(window.lab.state.undo) === changed,
+    (changed) => window.lab?.image?.final && Boolean(window.lab.state.undo) === changed,
     Boolean(undone),
     { timeout: DRAWN_MS },
   );
   return page.evaluate(async () => {
-    const { picture, file } = await window.lab.get('/api/state');
-    return { film: picture.film_hash, file, engine: window.lab.engine.kind };
+    const { image, file } = await window.lab.get('/api/state');
+    return { film: image.film_hash, file, engine: window.lab.engine.kind };
   });
 }
 
@@ -142,7 +142,7 @@ const all = {
       };
       const shown = await openFile(t, file, false);
       const frame = await turn(shown);
-      await t.picture(shown, 'live-page');
+      await t.image(shown, 'live-page');
       const again = join(folder, 'again.html');
       await savePage(shown.page, frame, again);
       await shown.close();

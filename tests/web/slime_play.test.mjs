@@ -29,7 +29,7 @@ export const cases = {
     await screen.page.mouse.wheel(0, -60);
     await until(screen, () => window.lab.slime.speed > 1);
     t.more(await screen.page.locator('.layer-grab circle').count(), 1, 'markers of the hand');
-    await t.picture(screen, 'slime-drawn');
+    await t.image(screen, 'slime-drawn');
     await screen.page.mouse.up();
     await until(screen, () => window.lab.slime.held === 0);
     t.equal(await screen.page.locator('.layer-grab circle').count(), 0, 'markers after the release');
@@ -86,7 +86,7 @@ export const cases = {
       await screen.button('Pause').click();
       await until(screen, () => !window.lab.slime.playing);
       await t.axe(screen, dark ? 'slime, dark' : 'slime, light');
-      await t.picture(screen, `slime-${dark ? 'dark' : 'light'}`);
+      await t.image(screen, `slime-${dark ? 'dark' : 'light'}`);
     }
   },
 

@@ -36,7 +36,7 @@ const tabRows = () => {
 
 /** How much of the image is visible, and whether the page itself scrolls. */
 const imageShown = () => {
-  const stage = document.getElementById('picture').getBoundingClientRect();
+  const stage = document.getElementById('image').getBoundingClientRect();
   const { view } = window.lab;
   const [a, b] = [view.toScreen(0, 0), view.toScreen(view.width, view.height)];
   const across = Math.min(b.x, stage.width, innerWidth - stage.left) - Math.max(a.x, 0);
@@ -45,7 +45,7 @@ const imageShown = () => {
   return {
     share: (across * down) / ((b.x - a.x) * (b.y - a.y)),
     width: b.x - a.x,
-    covered: !document.getElementById('picture').contains(middle),
+    covered: !document.getElementById('image').contains(middle),
     scrolls: document.scrollingElement.scrollHeight > innerHeight || scrollY !== 0,
   };
 };
@@ -55,7 +55,7 @@ async function fill(screen) {
   const { page, lab } = screen;
   await lab.post('/api/objects', { kind: 'beam', name: 'laser' });
   await screen.settled((await lab.get('/api/state')).generation);
-  await lab.post('/api/pin', {});
+  await lab.post('/api/reference', {});
   await screen.showPanel('Pixel');
   await page.getByRole('spinbutton', { name: 'Pixel x' }).fill('330');
   await page.getByRole('spinbutton', { name: 'y', exact: true }).fill('420');
@@ -70,7 +70,7 @@ async function eachPanel(t, screen, name, check) {
     await screen.showPanel(panel);
     await screen.quiet();
     await check(panel);
-    await t.picture(screen, `${name}-${panel}`);
+    await t.image(screen, `${name}-${panel}`);
   }
 }
 
@@ -112,7 +112,7 @@ export const cases = {
   'large text': async (t) => {
     const screen = await layout(t, 'large', { width: 1366, height: 768 }, 't');
     await screen.page.reload();
-    await screen.until(() => window.lab?.picture);
+    await screen.until(() => window.lab?.image);
     t.equal(await screen.page.evaluate(() => document.documentElement.dataset.text), 'large', 'remembered');
   },
   'the projector mode': (t) => layout(t, 'projector', { width: 1366, height: 768 }, 'p'),
@@ -129,7 +129,7 @@ export const cases = {
     const { share, covered, scrolls } = await screen.page.evaluate(imageShown);
     t.check(share > 0.99 && !covered && !scrolls, `the image is visible next to the lesson: ${share}`);
     await t.axe(screen, 'a lesson on a phone');
-    await t.picture(screen, 'phone-lesson');
+    await t.image(screen, 'phone-lesson');
   },
 
   'on a phone a note is shown whole, and a view is undone by a touch': async (t) => {
@@ -159,7 +159,7 @@ export const cases = {
       right: innerWidth - node.getBoundingClientRect().right,
     }));
     t.check(cut.across <= 0 && cut.down <= 0 && cut.left >= 0 && cut.right >= 0, JSON.stringify(cut));
-    await t.picture(screen, 'phone-note');
+    await t.image(screen, 'phone-note');
     await raise.tap();
     await screen.until(() => window.lab.param('render.depth').value > 2);
   },
@@ -180,7 +180,7 @@ export const cases = {
     await screen.until(() => document.documentElement.hasAttribute('data-projector'));
     t.more(await size(), 1.3 * usual, 'size of the names of lights');
     t.more(await size(), 17.9, 'in CSS pixels');
-    await t.picture(screen, 'projector-labels');
+    await t.image(screen, 'projector-labels');
   },
 
   'the bottom sheet is moved by keys and by its handle': async (t) => {

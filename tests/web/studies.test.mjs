@@ -136,7 +136,7 @@ export const cases = {
       t.equal(file.suggestedFilename(), name, `name of the saved ${label}`);
       t.check((await readFile(await file.path(), 'utf8')) === bytes, `the saved ${label} are the program's bytes`);
     }
-    await t.picture(screen, 'study-complete');
+    await t.image(screen, 'study-complete');
 
     const compare = study.getByRole('group').filter({ has: screen.page.getByText('Compare', { exact: true }) });
     for (const [what, a, b, sides] of [
@@ -157,7 +157,7 @@ export const cases = {
       t.equal(await compare.locator('tbody tr').last().isVisible(), true, `a table of ${sides}`);
       await words.scrollIntoViewIfNeeded();
       await t.axe(screen, what);
-      await t.picture(screen, `study-compare-${a}`);
+      await t.image(screen, `study-compare-${a}`);
     }
     const outside = await lab.ask('GET', '/api/studies/brief/compare?a=/etc,cell=0&b=cell=1');
     t.equal(outside.status, 400, 'a side in another folder');
@@ -176,7 +176,7 @@ export const cases = {
 
     await screen.showPanel('Parameters');
     await screen.settled();
-    t.check(await screen.page.evaluate(() => window.lab.picture.final), 'the image is rendered after the study');
+    t.check(await screen.page.evaluate(() => window.lab.image.final), 'the image is rendered after the study');
   },
 
   'a change during a study is rendered afterwards': async (t) => {
@@ -186,7 +186,7 @@ export const cases = {
     const { generation } = await lab.post('/api/set', { set: { 'liquid.ior': 1.6 } });
     t.more(
       generation,
-      (await lab.get('/api/state')).picture.generation,
+      (await lab.get('/api/state')).image.generation,
       'the generation of the change is newer than that of the image',
     );
     await study.getByRole('button', { name: 'Stop', exact: true }).click();
@@ -194,7 +194,7 @@ export const cases = {
     await screen.showPanel('Parameters');
     await screen.settled(generation);
     const film = JSON.parse(await lab.run('render', 'scenes/rod.yaml', '--set', 'liquid.ior=1.6', '--json')).film_hash;
-    t.equal(await screen.page.evaluate(() => window.lab.picture.film_hash), film, 'the film of the changed scene');
+    t.equal(await screen.page.evaluate(() => window.lab.image.film_hash), film, 'the film of the changed scene');
   },
 
   'a new study is estimated, saved and accepted by the program': async (t) => {
@@ -218,7 +218,7 @@ export const cases = {
       [{ axes: [] }, 400, undefined, 'a study has 1 to 16 axes'],
       [{ repetitions: 0.5 }, 400, 'repetitions', 'invalid number of repetitions'],
       [{ file: '../form.study' }, 400, 'file', 'not a valid study name'],
-      [{ axes: ['background.picture=/etc/passwd'] }, 400, undefined, 'outside of the folder'],
+      [{ axes: ['background.image=/etc/passwd'] }, 400, undefined, 'outside of the folder'],
       [{ warmups: -1 }, 400, 'warmups', 'invalid number of warmups'],
       [{ save: true }, 409, 'file', 'already exists'],
     ]) {
@@ -319,7 +319,7 @@ export const cases = {
       const dialog = await openForm(screen);
       await dialog.getByRole('combobox', { name: 'Parameter' }).fill('depth');
       await t.axe(screen, `${name}: the list of parameters`);
-      await t.picture(screen, `study-form-found-${name}`);
+      await t.image(screen, `study-form-found-${name}`);
       if (options.touch) t.none(await small(dialog), 'targets below 44 px in the list');
       await dialog.getByRole('option').first().click();
       await dialog.getByLabel('Values').fill('1, 2, 4');
@@ -328,7 +328,7 @@ export const cases = {
       await dialog.getByRole('button', { name: 'Estimate' }).click();
       await dialog.locator('.study-estimate .facts').waitFor();
       await t.axe(screen, `${name}: the estimate`);
-      await t.picture(screen, `study-form-${name}`);
+      await t.image(screen, `study-form-${name}`);
       if (options.touch) t.none(await small(dialog), 'targets below 44 px');
       const over = await dialog.evaluate((node) => node.scrollWidth - node.clientWidth);
       t.check(over <= 0, `${name}: the dialog is ${over} pixels too narrow`);

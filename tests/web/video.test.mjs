@@ -146,7 +146,7 @@ export const cases = {
       await screen.quiet();
       await screen.until(() => document.querySelector('.video-film').naturalWidth === 800);
       await t.axe(screen, 'the dialog Save film');
-      await t.picture(screen, `film-${dark ? 'dark' : 'light'}`);
+      await t.image(screen, `film-${dark ? 'dark' : 'light'}`);
       const [saved] = await Promise.all([
         screen.page.waitForEvent('download'),
         box.getByRole('button', { name: 'Save file' }).click(),

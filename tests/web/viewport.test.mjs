@@ -176,7 +176,7 @@ export const cases = {
     state = await lab.get('/api/state');
     t.check(!state.saved, 'the scene with another camera is not saved');
     await t.axe(screen, 'views');
-    await t.picture(screen, 'viewport-views');
+    await t.image(screen, 'viewport-views');
   },
 
   'undo of the scene leaves the view, and a saved scene keeps its own camera': async (t) => {

@@ -2,8 +2,8 @@
  * they are, under SimGrid's smpirun. Rank 0 serves; every other rank stands for a rank of a cluster with one tracing
  * thread, the first of them on rank 0's host (see simulate.sh, which writes the host file). Prints a row of CSV.
  *
- * Arguments are NAME=VALUE: map, width, height, paths, tile, pieces, pixel_bytes, message_ns, byte_ns, scene_bytes,
- * speed (sum of all hosts' speeds, processors of 1 Gf), label (the first cells of the row). */
+ * Arguments are NAME=VALUE: map, width, height, paths, tile, tiles_per_worker, pixel_bytes, message_ns, byte_ns,
+ * scene_bytes, speed (sum of all hosts' speeds, processors of 1 Gf), label (the first cells of the row). */
 #include "simulated_rank.h"
 #include <math.h>
 #include <mpi.h>
@@ -15,15 +15,15 @@
 
 typedef struct arguments {
     const char *map, *label;
-    double width, height, paths, tile, pieces, pixel_bytes, message_ns, byte_ns, scene_bytes, speed;
+    double width, height, paths, tile, tiles_per_worker, pixel_bytes, message_ns, byte_ns, scene_bytes, speed;
 } arguments;
 
 /* What rank 0 gathers; sums do not depend on the order of arrival. */
 typedef struct gathered {
     const arguments *with;
     const frame_costs *frame;
-    unsigned char *seen; /* by tile: how often its piece has arrived */
-    char *film;          /* under mpirun: where pieces are copied to */
+    unsigned char *seen; /* by tile: how often it has arrived */
+    char *film;          /* under mpirun: where tiles are copied to */
     double begun_s, begun_busy_s, complete_s, serving_s, idle_s;
     uint64_t check;
     int64_t arrived;
@@ -37,15 +37,21 @@ static const char *value_of(const char *argument, const char *name)
 
 static status read_arguments(int argc, char **argv, arguments *a, diagnostic *why)
 {
-    *a = (arguments){.map = "", .label = "", .paths = 1, .tile = 32, .pieces = 4, .pixel_bytes = 24, .speed = 1};
+    *a = (arguments){
+        .map = "", .label = "", .paths = 1, .tile = 32, .tiles_per_worker = 4, .pixel_bytes = 24, .speed = 1};
     const struct {
         const char *name;
         double *value;
-    } numbers[] = {{"width", &a->width},           {"height", &a->height},
-                   {"paths", &a->paths},           {"tile", &a->tile},
-                   {"pieces", &a->pieces},         {"pixel_bytes", &a->pixel_bytes},
-                   {"message_ns", &a->message_ns}, {"byte_ns", &a->byte_ns},
-                   {"speed", &a->speed},           {"scene_bytes", &a->scene_bytes}};
+    } numbers[] = {{"width", &a->width},
+                   {"height", &a->height},
+                   {"paths", &a->paths},
+                   {"tile", &a->tile},
+                   {"tiles_per_worker", &a->tiles_per_worker},
+                   {"pixel_bytes", &a->pixel_bytes},
+                   {"message_ns", &a->message_ns},
+                   {"byte_ns", &a->byte_ns},
+                   {"speed", &a->speed},
+                   {"scene_bytes", &a->scene_bytes}};
     for (int i = 1; i < argc; i++) {
         const char *text = value_of(argv[i], "map");
         bool known = text || value_of(argv[i], "label");
@@ -73,7 +79,7 @@ static uint64_t mix(uint64_t v) /* SplitMix64 */
     return v ^ v >> 31;
 }
 
-/* A clock of rank 0's processor: of the cluster's while a piece is put, or of the process under mpirun. */
+/* A clock of rank 0's processor: of the cluster's while a tile is put, or of the process under mpirun. */
 static double busy_s(void)
 {
 #ifdef SIMULATED
@@ -85,21 +91,21 @@ static double busy_s(void)
 #endif
 }
 
-static void put_piece(void *of, piece_message *piece)
+static void put_tile(void *of, tile_message *tile)
 {
     gathered *g = of;
-    const int64_t tile = piece->head.value;
-    const size_t bytes = piece->bytes - sizeof piece->head;
+    const int64_t number = tile->head.value;
+    const size_t bytes = tile->bytes - sizeof tile->head;
     const double begun_s = busy_s();
     spend_ns(g->with->message_ns + g->with->byte_ns * (double)bytes);
     if (g->film)
-        memcpy(g->film + (size_t)tile * frame_tile_bytes(g->frame, 0), piece->values, bytes);
+        memcpy(g->film + (size_t)number * frame_tile_bytes(g->frame, 0), tile->values, bytes);
     g->serving_s += busy_s() - begun_s;
-    g->seen[tile]++;
-    g->check += mix((uint64_t)tile + 1);
-    if (bytes != frame_tile_bytes(g->frame, tile))
+    g->seen[number]++;
+    g->check += mix((uint64_t)number + 1);
+    if (bytes != frame_tile_bytes(g->frame, number))
         MPI_Abort(MPI_COMM_WORLD, STATUS_FAILURE);
-    free(piece);
+    free(tile);
     if (++g->arrived < g->frame->tiles->tile_count)
         return;
     g->complete_s = MPI_Wtime() - g->begun_s;
@@ -137,7 +143,7 @@ static void print_row(const gathered *g, int ranks, const traffic *moved)
            ranks - 1, g->with->width, g->with->height, g->with->paths, g->frame->tiles->tile,
            (long long)g->frame->tiles->tile_count, (long long)wrong, (unsigned long long)g->check, work_ns / 1e9,
            most_ns / 1e9, ideal_s, g->complete_s, ideal_s / g->complete_s, (unsigned long long)moved->messages,
-           (unsigned long long)moved->piece_bytes, g->serving_s, g->idle_s);
+           (unsigned long long)moved->tile_bytes, g->serving_s, g->idle_s);
 }
 
 /* As mpi/scene_wire.c: the length of the one part, the part, and a length of 0. */
@@ -158,7 +164,7 @@ static void broadcast_scene(const arguments *with)
 static void lead(const arguments *with, const frame_costs *frame, int ranks)
 {
     gathered g = {.with = with, .frame = frame};
-    const frame_sink sink = {&g, put_piece, take_report, progress};
+    const frame_sink sink = {&g, put_tile, take_report, progress};
     const frame_order order = {.head.frame = 1};
     const size_t tile_bytes = frame_tile_bytes(frame, 0);
     handout *tiles = NULL;
@@ -216,7 +222,7 @@ static status run(int argc, char **argv, int rank, int ranks, diagnostic *why)
                                       .height = (int64_t)with.height,
                                       .schedule = SCHEDULE_DYNAMIC,
                                       .tile = (int64_t)with.tile,
-                                      .pieces = (int64_t)with.pieces,
+                                      .tiles_per_worker = (int64_t)with.tiles_per_worker,
                                       .threads = ranks - 1};
     schedule_start(&tiles, &settings);
     const frame_costs frame = {&map, &tiles, with.paths / map.paths, (size_t)with.pixel_bytes};

@@ -44,12 +44,12 @@ static void give(void *of, const int32_t *tiles, int count)
     }
 }
 
-static piece_message *take(void *of)
+static tile_message *take(void *of)
 {
     simulated_rank *r = of;
-    piece_message *piece = r->finished;
+    tile_message *tile = r->finished;
     r->finished = NULL;
-    return piece;
+    return tile;
 }
 
 static void end(void *of)

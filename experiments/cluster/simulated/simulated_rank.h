@@ -12,17 +12,17 @@ typedef struct frame_costs {
     const cost_map *map;
     const schedule *tiles;
     double scale;       /* a pixel's cost as a multiple of the map's */
-    size_t pixel_bytes; /* of a piece */
+    size_t pixel_bytes; /* of a tile */
 } frame_costs;
 
 double frame_tile_ns(const frame_costs *f, int64_t tile);
-size_t frame_tile_bytes(const frame_costs *f, int64_t tile); /* of its piece, without the head */
+size_t frame_tile_bytes(const frame_costs *f, int64_t tile); /* of its result, without the head */
 
 typedef struct simulated_rank {
     const frame_costs *frame;
     int32_t queue[4 * HANDOUT_MOST]; /* a ring */
     int first, count;
-    piece_message *finished;
+    tile_message *finished;
     bool ended;
     double busy_s;
 } simulated_rank;

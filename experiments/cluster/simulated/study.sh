@@ -9,10 +9,10 @@ export LC_ALL=C.UTF-8
 here=$(cd "$(dirname "$0")" && pwd)
 table=${TABLE:-$here/../../../results/cluster.csv} jobs=${JOBS:-1} most=${RANKS_MOST:-4096}
 columns=study,platform,variant,ranks,width,height,paths,tile,tiles,wrong,check,work_s,tile_most_s,ideal_s,time_s
-columns=$columns,efficiency,messages,piece_bytes,serving_s,idle_s
+columns=$columns,efficiency,messages,tile_bytes,serving_s,idle_s
 counts=(1 4 16 64 256 1024 4096)
 
-# Processor time of rank 0 for a piece, measured with build/cluster/messages on 16 processors (README.md).
+# Processor time of rank 0 for a tile, measured with build/cluster/messages on 16 processors (README.md).
 serving=(message_ns=2400 byte_ns=0.30)
 frame=(width=7680 height=4320 scene_bytes=3500)
 path=("map=$here/maps/path.pgm" paths=1024 pixel_bytes=48)
@@ -45,7 +45,7 @@ strong_whitted() { # its limits are reached with 16 to 64 ranks
         done
         row strong-whitted switch-100g link-only "$n" "${whitted[@]}" "${frame[@]}" message_ns=1000 byte_ns=0.01
     done
-    for n in 1 4 16 64 256 1024; do # OpenMPI's own limit for TCP, with which a piece leaves without waiting for rank 0
+    for n in 1 4 16 64 256 1024; do # OpenMPI's own limit for TCP, with which a tile leaves without waiting for rank 0
         row strong-whitted ethernet-10g eager-64k "$n" "${whitted[@]}" "${frame[@]}" "${serving[@]}" eager=65536
     done
 }
@@ -60,7 +60,8 @@ weak_path() { # 120 x 68 pixels for each rank
 tile() {
     for n in 1024 4096; do
         for side in 64 32 16 8; do
-            row tile switch-100g "tile-$side" "$n" "${path[@]}" "${frame[@]}" "${serving[@]}" "tile=$side" pieces=0
+            row tile switch-100g "tile-$side" "$n" "${path[@]}" "${frame[@]}" "${serving[@]}" "tile=$side" \
+                tiles_per_worker=0
         done
     done
 }

@@ -5,7 +5,7 @@
 #   validate.sh [RANKS...]       1 2 8. REPEAT (7): rounds. CORES (2): of this machine; SIZE (480x270), PATHS (64)
 # MEASURED: a table of another machine's times instead, as measured-16.csv (what,method,count,wall_s,film_hash: threads
 # or ranks; path or whitted), of its METHOD (path); SIZE, PATHS (1 for whitted) and CORES are then that table's.
-# MESSAGE_NS (2400), BYTE_NS (0.30): what a piece costs rank 0.
+# MESSAGE_NS (2400), BYTE_NS (0.30): what a tile costs rank 0.
 # The costs are measured by a render of the same frame on one thread in each round, so that only the ranks' sharing is
 # judged, not this machine's speed from one hour to the next. With other programs on the machine, compare the least.
 set -euo pipefail

@@ -134,7 +134,7 @@ render_settings tiles_settings(const render_settings *r, int side)
     render_settings settings = *r;
     settings.schedule = SCHEDULE_DYNAMIC;
     settings.tile = side;
-    settings.pieces = 0;
+    settings.tiles_per_worker = 0;
     settings.threads = 1;
     return settings;
 }

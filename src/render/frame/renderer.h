@@ -85,9 +85,9 @@ typedef struct render_options {
 
 /* One of the processes that render a frame; its workers are those with its number. */
 typedef struct rank_usage {
-    double wall_s, cpu_s;         /* as those of the result, of its own part */
-    uint64_t peak_rss_bytes;      /* of the process so far */
-    uint64_t pieces, piece_bytes; /* that it sent to rank 0 */
+    double wall_s, cpu_s;                 /* as those of the result, of its own part */
+    uint64_t peak_rss_bytes;              /* of the process so far */
+    uint64_t tiles_sent, tile_bytes_sent; /* that it sent to rank 0 */
 } rank_usage;
 
 typedef struct render_result {

@@ -155,8 +155,8 @@ typedef struct photon_place {
     double x, y, variance_x, variance_y, radius;
 } photon_place;
 
-/* The half width in cells of the density of a group of that radius, whose photons have discs of radius `disc`, each with
- * half widths of at least `blur`: variances add up. */
+/* The half width in cells of the density of a group of that radius. Its photons have discs of radius `disc`, whose half
+ * widths are at least `blur`; variances add up. */
 static double half_width(double radius, double disc, double cell, double blur)
 {
     const double plain = HALF_WIDTH * radius / cell, own = HALF_WIDTH * disc / cell;

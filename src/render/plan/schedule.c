@@ -11,7 +11,7 @@ static void cut_into_tiles(schedule *s, int tile)
 /* Halves the tiles until each worker can have the requested number of tiles, or a tile is a pixel. */
 static void set_tiles(schedule *s, const render_settings *settings)
 {
-    const int64_t least = settings->pieces * settings->threads;
+    const int64_t least = settings->tiles_per_worker * settings->threads;
     cut_into_tiles(s, (int)settings->tile);
     while (s->tile_count < least && s->tile > 1)
         cut_into_tiles(s, s->tile / 2);

@@ -251,7 +251,7 @@ static status load_sky(scene *s, diagnostic *why)
     free(path);
     return code == STATUS_OK
                ? code
-               : scene_file_error(s, "background.picture", sky->image_line, sky->image_column, &bad, code, why);
+               : scene_file_error(s, "background.image", sky->image_line, sky->image_column, &bad, code, why);
 }
 
 static status load_texture(const scene *s, texture_entry *t, diagnostic *why)

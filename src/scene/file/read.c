@@ -11,7 +11,7 @@
  *   beams: {NAME: {PARAMETER: VALUE, ...}, ...}
  *   solids: {NAME: {shape: SHAPE, material: NAME, PARAMETER: VALUE, ...}, ...}
  *
- * Giving a picture sets the kind of the background to picture. Switches are on or off, also written
+ * Giving an image sets the kind of the background to image. Switches are on or off, also written
  * yes or no, true or false. SHAPE is the word of a rule in geometry/shapes/. The parameters are the rows of the table
  * (scene/model/params.h); a solid also takes those of a material, for itself alone. Vectors and colours are lists:
  * [0, 1, 2]. The file's order is kept. Sections and objects may be empty. */
@@ -237,15 +237,15 @@ static status read_objects(const scene_reader *r, const char *name, param_group 
 /* Whether an image is given for a background of another kind. */
 static status check_sky(const scene_reader *r, const node *map)
 {
-    const node *kind = node_get(map, "kind"), *img = node_get(map, "picture");
+    const node *kind = node_get(map, "kind"), *img = node_get(map, "image");
     bool shown = img && img->kind == NODE_SCALAR && img->text[0];
     status code = read_one_medium(r, map);
     if (code == STATUS_OK && shown) {
         r->scene->background.image_line = img->line;
         r->scene->background.image_column = img->column;
     }
-    if (code == STATUS_OK && shown && kind && strcmp(kind->text, "picture") != 0)
-        return node_error(r->file, kind, r->why, "set it to picture, or remove the image file",
+    if (code == STATUS_OK && shown && kind && strcmp(kind->text, "image") != 0)
+        return node_error(r->file, kind, r->why, "set it to image, or remove the image file",
                           "background.kind is %s, but an image file is set", kind->text);
     return code;
 }

@@ -162,7 +162,7 @@ status sky_check(const image *sky, const char *path, diagnostic *bad)
 static status check_background(const scene *s, diagnostic *why)
 {
     if (s->background.kind == BACKGROUND_IMAGE && !s->background.image_path[0])
-        return diagnose(why, STATUS_BAD_INPUT, "set background.picture to a PNG, JPEG, PFM or 24-bit BMP file",
+        return diagnose(why, STATUS_BAD_INPUT, "set background.image to a PNG, JPEG, PFM or 24-bit BMP file",
                         "the background is an image, but no file is given");
     return STATUS_OK;
 }

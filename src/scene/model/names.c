@@ -139,9 +139,21 @@ static const char *word_in(const char *word, const char *const *words, size_t co
 static const char *by_alias(const char *wrong, const char *const *words, size_t count)
 {
     static const char *const aliases[][2] = {
-        {"n", "ior"},        {"index", "ior"},      {"refractive_index", "ior"}, {"opacity", "transparency"},
-        {"type", "shape"},   {"kind", "shape"},     {"alpha", "transparency"},   {"colour", "color"},
-        {"light", "lights"}, {"objects", "solids"}, {"shapes", "solids"},        {"spheres", "solids"},
+        {"n", "ior"},
+        {"index", "ior"},
+        {"refractive_index", "ior"},
+        {"opacity", "transparency"},
+        {"type", "shape"},
+        {"kind", "shape"},
+        {"alpha", "transparency"},
+        {"colour", "color"},
+        {"light", "lights"},
+        {"objects", "solids"},
+        {"shapes", "solids"},
+        {"spheres", "solids"},
+        {"picture", "image"},
+        {"pieces", "tiles_per_worker"},
+        {"min_share", "min_fraction"},
     };
     for (size_t i = 0; i < sizeof aliases / sizeof *aliases; i++)
         if (strcasecmp(aliases[i][0], wrong) == 0)

@@ -92,7 +92,7 @@ char *param_range_text(const param *row, char *text, size_t size);
 /* A camera is aimed at its target or along its angles, whichever was set last. When that changes, and in scene_get, the
  * other representation is derived, so that setting one angle of an aimed camera keeps the other.
  *
- * Setting background.picture to a file sets background.kind to picture; a kind that is set later wins.
+ * Setting background.image to a file sets background.kind to image; a kind that is set later wins.
  *
  * Setting a mesh's file selects it as the source; a generator that is set later wins.
  *

@@ -42,7 +42,7 @@ static const char *const light_words[] = {"point", "cone", "soft_cone", "disc", 
 static const char *const lamp_words[] = {"color", "black_body", "sodium", "mercury", "hydrogen", "line", NULL};
 static const char *const profile_words[] = {"uniform", "gaussian", NULL};
 static const char *const beam_words[] = {"pencil", "fan", "sheet", "bundle", NULL};
-static const char *const background_words[] = {"uniform", "gradient", "picture", "rain", "cie", NULL};
+static const char *const background_words[] = {"uniform", "gradient", "image", "rain", "cie", NULL};
 
 enum { ON_SLIME = 1 << MESH_SLIME, ON_ALL = 0 };
 
@@ -218,7 +218,7 @@ static const param table[] = {
         "distribution of the image over the workers: fixed blocks of columns, of rows, fixed tiles, or tiles "
         "on demand"),
     PERFORMANCE_INTEGER(tile, "px", 1, 65536, "32", "edge of a tile"),
-    PERFORMANCE_INTEGER(pieces, "", 0, 1024, "4",
+    PERFORMANCE_INTEGER(tiles_per_worker, "", 0, 1024, "4",
                         "tiles per worker, at least: the edge is halved until there are that many; 0: always "
                         "render.tile"),
     PERFORMANCE_CHOICE(pin, pin_words, "none",
@@ -278,8 +278,8 @@ static const param table[] = {
           "linear colour; of a gradient or a CIE sky: at the zenith"),
     COLOR(PARAM_BACKGROUND, background, horizon, BRIGHT, "1,1,1",
           "linear colour of a gradient at the horizon and below, and of a CIE sky below the horizon"),
-    {PARAM_BACKGROUND, "picture", PARAM_PATH, "", 0, 0, false, "",
-     "PNG, JPEG, PFM or 24-bit BMP file, relative to the scene file; sets kind to picture", NULL,
+    {PARAM_BACKGROUND, "image", PARAM_PATH, "", 0, 0, false, "",
+     "PNG, JPEG, PFM or 24-bit BMP file, relative to the scene file; sets kind to image", NULL,
      OF(background, image_path)},
     REAL(PARAM_BACKGROUND, background, rain, "", 0, BRIGHT, "0.3",
          "brightness of the rain: its radiance if drops scattered sunlight evenly in all directions"),

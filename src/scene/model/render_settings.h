@@ -58,11 +58,11 @@ typedef struct render_settings {
     int64_t pool;           /* 1: persistent threads; 0: new threads for every frame */
     int64_t schedule;       /* schedule_rule */
     int64_t tile;           /* tile size, pixels */
-    int64_t pieces;         /* least number of tiles per worker, for which tiles are halved; 0: no least number */
-    int64_t pin;            /* pin_rule */
-    int64_t accel;          /* hierarchy_kind */
-    int64_t build_threads;  /* threads that build hierarchies; 0: one per processing unit */
-    int64_t keep;           /* 1: a mesh keeps its hierarchy; 0: every frame builds it again */
+    int64_t tiles_per_worker; /* least number of tiles per worker, for which tiles are halved; 0: no least number */
+    int64_t pin;              /* pin_rule */
+    int64_t accel;            /* hierarchy_kind */
+    int64_t build_threads;    /* threads that build hierarchies; 0: one per processing unit */
+    int64_t keep;             /* 1: a mesh keeps its hierarchy; 0: every frame builds it again */
     /* a refitted hierarchy of a moving mesh is rebuilt when its expected cost exceeds this factor */
     double rebuild;
     int64_t count_tests; /* 1: count the tests of hierarchies */

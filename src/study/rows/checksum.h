@@ -9,7 +9,7 @@
 
 enum { CHECKSUM_TEXT = 17 };
 
-/* Hashes of the names of a header's columns; checksum_columns_free releases. The column `checksum` itself is ignored. */
+/* Hashes of the names of a header's columns, without the column `checksum`; checksum_columns_free releases. */
 typedef struct checksum_columns {
     uint64_t *name; /* 0: the column checksum */
     size_t count;

@@ -6,7 +6,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-/* A line of any file. Lines of cells that the study no longer has, and lines that have a wrong checksum, are merged as well. */
+/* A line of any file. Lines of cells that the study no longer has, and lines with a wrong checksum, are merged, too. */
 typedef struct merged_line {
     const csv *of;
     size_t row, position;

@@ -4,7 +4,7 @@
  *   worker: new Worker('api/worker.js', {type: 'module'}), or one of node:worker_threads, for this alone
  *   options: as for load; module must be an address
  * Every method returns a promise, of the same result; destroy() does not, and version, isa are values. A render and an
- * advance take progress, piece and signal. */
+ * advance take progress, tile and signal. */
 
 import { CALLS } from './calls.js';
 import { CuvetteError, cancelled } from './errors.js';

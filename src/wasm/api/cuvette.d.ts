@@ -29,7 +29,7 @@ export interface Pixel {
   pixel: [number, number];
 }
 
-export interface Piece {
+export interface Tile {
   x0: number;
   y0: number;
   x1: number;
@@ -41,7 +41,7 @@ export interface Piece {
 }
 export interface RenderOptions {
   progress?: (share: number) => void;
-  piece?: (piece: Piece) => void;
+  tile?: (tile: Tile) => void;
   signal?: AbortSignal;
   preview?: number; // 2..64
 }

@@ -1,13 +1,13 @@
 /* Rendering in turns. See "rendering" in cuvette.h.
  *
  * exports: Engine
- *   engine.render(scene, {progress, piece, signal, preview}) -> Promise of
+ *   engine.render(scene, {progress, tile, signal, preview}) -> Promise of
  *     {width, height, srgb, rgb, hash, counters, wall_s}
  *   progress(share)  0..1
- *   piece({x0, y0, x1, y1, coarse, width, height, srgb})   finished pixels; of a preview (coarse > 1) width x height
+ *   tile({x0, y0, x1, y1, coarse, width, height, srgb})   finished pixels; of a preview (coarse > 1) width x height
  *                    values, one for each coarse x coarse pixels
  *   signal           an AbortSignal
- *   preview          2..64: first an image of 1/preview of the width and height, as a piece
+ *   preview          2..64: first an image of 1/preview of the width and height, as a tile
  *   srgb: Uint8ClampedArray, RGBA as ImageData takes it; rgb: Float32Array, linear, 3 for each pixel; hash: 16 hex
  *   digits; wall_s: the seconds of its turns */
 
@@ -50,10 +50,10 @@ class Render extends Handle {
     return this.memory.call('wasm_render_share', this.at);
   }
 
-  /* Passes what is new to piece(). */
-  show(piece) {
-    for (const [x0, y0, x1, y1] of this.memory.json('wasm_render_pieces', this.at))
-      piece({ x0, y0, x1, y1, coarse: 1, width: x1 - x0, height: y1 - y0, srgb: this.srgb(x0, y0, x1, y1) });
+  /* Passes what is new to tile(). */
+  show(tile) {
+    for (const [x0, y0, x1, y1] of this.memory.json('wasm_render_tiles', this.at))
+      tile({ x0, y0, x1, y1, coarse: 1, width: x1 - x0, height: y1 - y0, srgb: this.srgb(x0, y0, x1, y1) });
   }
 
   result() {
@@ -66,7 +66,7 @@ export class Engine {
   #busy = false;
   #stop = null;
 
-  async render(scene, { progress, signal, piece, preview = 0 } = {}) {
+  async render(scene, { progress, signal, tile, preview = 0 } = {}) {
     if (this.#busy)
       throw new CuvetteError(BUSY, { what: 'the engine is rendering', remedy: 'wait for the render to end' });
     if (preview && !(preview >= 2 && preview <= 64))
@@ -75,8 +75,8 @@ export class Engine {
     this.#stop = new AbortController();
     try {
       const signals = [signal, this.#stop.signal].filter(Boolean);
-      if (preview) await this.#preview(scene, preview, signals, piece);
-      return await this.#whole(scene, signals, progress, piece);
+      if (preview) await this.#preview(scene, preview, signals, tile);
+      return await this.#whole(scene, signals, progress, tile);
     } finally {
       this.#busy = false;
     }
@@ -101,23 +101,23 @@ export class Engine {
     }
   }
 
-  async #preview(scene, coarse, signals, piece) {
+  async #preview(scene, coarse, signals, tile) {
     const render = new Render(scene, coarse);
     try {
       await this.#run(render, signals);
       const { width, height } = render.result();
       const [x1, y1] = ['render.width', 'render.height'].map((path) => Number(scene.get(path)));
-      piece?.({ x0: 0, y0: 0, x1, y1, coarse, width, height, srgb: render.srgb(0, 0, width, height) });
+      tile?.({ x0: 0, y0: 0, x1, y1, coarse, width, height, srgb: render.srgb(0, 0, width, height) });
     } finally {
       render.destroy();
     }
   }
 
-  async #whole(scene, signals, progress, piece) {
+  async #whole(scene, signals, progress, tile) {
     const render = new Render(scene, 1);
     try {
       await this.#run(render, signals, (share) => {
-        if (piece) render.show(piece);
+        if (tile) render.show(tile);
         progress?.(share);
       });
       const result = render.result();

@@ -32,7 +32,7 @@ struct wasm_render {
     job *worker;
     bool at_once; /* it cannot be divided */
     shared_frame sum;
-    int64_t next, told; /* tiles: the next one to trace, the next one for wasm_render_pieces */
+    int64_t next, told; /* tiles: the next one to trace, the next one for wasm_render_tiles */
     ray_counters counters;
     bool has_photons; /* their counts are in the counters */
     double until_s, budget_s, wall_s;
@@ -132,11 +132,11 @@ static bool next(void *context, int worker, image_tile *out)
     return r->next < r->sum.places.tile_count && schedule_tile(&r->sum.places, r->next, out) && ++r->next;
 }
 
-static void done(void *context, const image_tile *piece, const film *traced, const double *variance)
+static void done(void *context, const image_tile *rect, const film *traced, const double *variance)
 {
     wasm_render *r = context;
     (void)variance;
-    film_put_tile(r->sum.img, piece->x0, piece->y0, piece->x1, piece->y1, traced->sum);
+    film_put_tile(r->sum.img, rect->x0, rect->y0, rect->x1, rect->y1, traced->sum);
 }
 
 /* Every turn counts the same photons. */
@@ -189,7 +189,7 @@ double wasm_render_share(const wasm_render *r)
 
 /* --- results --- */
 
-char *wasm_render_pieces(wasm_render *r)
+char *wasm_render_tiles(wasm_render *r)
 {
     json_t *list = json_array();
     image_tile at;

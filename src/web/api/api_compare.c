@@ -32,7 +32,7 @@ static status set_reference(call *c, const shared_image *a)
     reference_image_set(c->l->reference_image, a);
     shared_image_release(a);
     lab_publish_state(c->l);
-    return api_reply_json(c, json_pack("{s:o}", "pin", reference_image_json(c->l->reference_image)));
+    return api_reply_json(c, json_pack("{s:o}", "reference", reference_image_json(c->l->reference_image)));
 }
 
 status api_set_reference(call *c)
@@ -50,7 +50,7 @@ status api_clear_reference(call *c)
 
 static status refuse_without_reference(call *c, int code)
 {
-    return api_refuse(c, code, "no reference image is pinned", "pin one with POST /api/pin");
+    return api_refuse(c, code, "no reference image is pinned", "pin one with POST /api/reference");
 }
 
 /* The bytes belong to the shared image, so the reply gets a copy. */
@@ -213,8 +213,8 @@ status api_maps(call *c)
     pixel_map_set set;
     TRY(get_maps(c, &set, 0, NULL, NULL));
     json_t *json = json_pack("{s:I, s:i, s:i, s:{s:i, s:i, s:i}, s:o, s:i, s:o}", "serial", (json_int_t)set.serial,
-                             "width", set.width, "height", set.height, "picture", "width", set.picture_width, "height",
-                             set.picture_height, "left", set.left, "wall_s", json_of_real(set.wall_s), "threads",
+                             "width", set.width, "height", set.height, "image", "width", set.image_width, "height",
+                             set.image_height, "left", set.left, "wall_s", json_of_real(set.wall_s), "threads",
                              set.threads, "colors", colors_json());
     for (int i = 0; json && i < PIXEL_MAPS; i++)
         json_add_as(&json, names[i], map_json(&set.map[i], units[i]));

@@ -288,8 +288,8 @@ static status load_file(lab *l, const char *file, bool is_model, scene **out, di
         code = out_of_memory(why);
     if (code == STATUS_OK)
         code =
-            is_model ? scene_add(s, PARAM_MESH, "model", NULL, why) : scene_add(s, PARAM_TEXTURE, "picture", NULL, why);
-    THEN(code, scene_set(s, is_model ? "model.file" : "picture.file", path, why));
+            is_model ? scene_add(s, PARAM_MESH, "model", NULL, why) : scene_add(s, PARAM_TEXTURE, "image", NULL, why);
+    THEN(code, scene_set(s, is_model ? "model.file" : "image.file", path, why));
     THEN(code, scene_document_limit(s, l->files, why));
     THEN(code, scene_load(s, why));
     free(path);

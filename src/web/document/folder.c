@@ -227,7 +227,7 @@ static status check_named(const folder *f, const scene *s, const char *what, con
 
 status folder_check_scene(const folder *f, const scene *s, diagnostic *why)
 {
-    status code = check_named(f, s, "background.picture", s->background.image_path, why);
+    status code = check_named(f, s, "background.image", s->background.image_path, why);
     for (size_t i = 0; i < s->mesh_count && code == STATUS_OK; i++) {
         code = check_named(f, s, s->meshes[i].name, s->meshes[i].path, why);
         THEN(code, check_named(f, s, s->meshes[i].name, s->meshes[i].script_path, why));

@@ -18,7 +18,7 @@
 enum { DEPTH_MAX = 3, ENTRIES_MAX = 50000, DOCUMENT_MAX = 1 << 20 };
 
 typedef enum file_use { USE_SCENE, USE_MODEL, USE_IMAGE, USE_SCRIPT, USE_STUDY, USE_LESSON, USE_COUNT } file_use;
-static const char *const use_names[USE_COUNT] = {"scenes", "models", "pictures", "scripts", "studies", "lessons"};
+static const char *const use_names[USE_COUNT] = {"scenes", "models", "images", "scripts", "studies", "lessons"};
 
 static const struct ending {
     const char *text;

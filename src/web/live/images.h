@@ -87,8 +87,8 @@ typedef struct pixel_map_set {
     uint64_t serial; /* of the image */
     double wall_s;   /* of the frame that made the maps */
     int threads;
-    int width, height;                       /* of the film */
-    int picture_width, picture_height, left; /* of the maps, and where their pixels begin */
+    int width, height;                   /* of the film */
+    int image_width, image_height, left; /* of the maps, and where their pixels begin */
     pixel_map map[PIXEL_MAPS];
 } pixel_map_set;
 

@@ -58,8 +58,8 @@ static status draw(pixel_maps *m, const render_result *result, int which, diagno
     THEN(code, heatmap_create(values, set->width, set->height, titles[which], &img, why));
     THEN(code, image_encode(img, IMAGE_PNG, 8, true, &m->png[which], &m->size[which], why));
     if (code == STATUS_OK) {
-        set->picture_width = img->width;
-        set->picture_height = img->height;
+        set->image_width = img->width;
+        set->image_height = img->height;
         set->left = (img->width - set->width) / 2;
     }
     for (size_t i = 0; i < count && code == STATUS_OK; i++) {

@@ -251,7 +251,7 @@ bool render_worker_json(render_worker *p, json_t *state)
     pthread_mutex_lock(&p->lock);
     json_t *json = json_pack(
         "{s:o, s:o, s:o, s:o}", "trouble", p->trouble_code != STATUS_OK ? json_of_diagnostic(&p->trouble) : json_null(),
-        "waiting", p->waiting ? json_of_text(p->waiting) : json_null(), "picture",
+        "waiting", p->waiting ? json_of_text(p->waiting) : json_null(), "image",
         p->newest ? shared_image_json(p->newest) : json_null(), "camera", current ? camera_json(current) : NULL);
     pthread_mutex_unlock(&p->lock);
     scene_destroy(current);

@@ -41,7 +41,7 @@ const shared_image *render_worker_newest(render_worker *p);
  * scene cannot be rendered (STATUS_BAD_INPUT), after the time limit, or while the worker is suspended
  * (STATUS_INTERRUPTED). */
 status render_worker_wait_for_final(render_worker *p, double limit_s, const shared_image **out, diagnostic *why);
-/* Adds trouble, waiting, picture and camera; false when out of memory. */
+/* Adds trouble, waiting, image and camera; false when out of memory. */
 bool render_worker_json(render_worker *p, json_t *state);
 
 /* The live slime of the render worker, for web/api/api_slime.c. */

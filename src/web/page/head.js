@@ -34,13 +34,13 @@ export function createHead(root, lab) {
     element(
       'div',
       { class: 'head-group', role: 'group', 'aria-label': 'Save and copy' },
-      button('PNG', () => saveFile(lab, '/api/picture.png?wait=1&scene=1', 'png'), {
+      button('PNG', () => saveFile(lab, '/api/image.png?wait=1&scene=1', 'png'), {
         icon: 'image',
         kind: 'quiet',
         title: 'Save the final image as PNG',
         'aria-label': 'Save PNG',
       }),
-      button('JPEG', () => saveFile(lab, '/api/picture.jpg?wait=1', 'jpg'), {
+      button('JPEG', () => saveFile(lab, '/api/image.jpg?wait=1', 'jpg'), {
         icon: 'image',
         kind: 'quiet',
         title: 'Save the final image as JPEG',

@@ -67,7 +67,7 @@ export function createRescue(root, lab) {
     shown = key;
     root.hidden = !key;
     replace(root, ...parts);
-    if (focused) (root.querySelector('button') || document.getElementById('picture'))?.focus();
+    if (focused) (root.querySelector('button') || document.getElementById('image'))?.focus();
   }
 
   async function act(action, id) {

@@ -107,11 +107,11 @@ export function createStatus(root, live, lab) {
     replace(facts, items(lab));
   };
   const soon = () => {
-    const wait = lab.picture?.final ? 0 : Math.max(0, drawnAt + PACE_MS - performance.now());
+    const wait = lab.image?.final ? 0 : Math.max(0, drawnAt + PACE_MS - performance.now());
     if (!wait) clearTimeout(due);
     if (!wait || !due) due = setTimeout(draw, wait);
   };
-  for (const name of ['picture', 'state', 'connection', 'pass', 'notes']) lab.on(name, soon);
+  for (const name of ['image', 'state', 'connection', 'pass', 'notes']) lab.on(name, soon);
   draw();
 }
 
@@ -125,11 +125,11 @@ const fact = (name, value, title) =>
 
 function items(lab) {
   const noted = lab.notes?.count() || 0;
-  const { picture, state } = lab;
-  if (!picture)
+  const { image, state } = lab;
+  if (!image)
     return [element('span', { class: 'fact', text: lab.connected === 'open' ? 'No image yet' : waiting(lab.engine) })];
-  const { rays, wall_s: wall } = picture;
-  const behind = lab.newestGeneration > picture.generation || !picture.final;
+  const { rays, wall_s: wall } = image;
+  const behind = lab.newestGeneration > image.generation || !image.final;
   return [
     element('span', {
       class: behind ? 'lamp busy' : 'lamp',
@@ -138,27 +138,27 @@ function items(lab) {
       title: behind ? 'rendering' : 'final image',
     }),
     noted ? notesButton(noted, lab) : null,
-    fact('pass', picture.passes ? `${picture.pass} of ${picture.passes}` : String(picture.pass)),
+    fact('pass', image.passes ? `${image.pass} of ${image.passes}` : String(image.pass)),
     fact(
       'size',
-      picture.width === picture.full_width
-        ? `${picture.full_width} × ${picture.full_height}`
-        : `${picture.width} × ${picture.height} of ${picture.full_width} × ${picture.full_height}`,
+      image.width === image.full_width
+        ? `${image.full_width} × ${image.full_height}`
+        : `${image.width} × ${image.height} of ${image.full_width} × ${image.full_height}`,
     ),
     time(lab.engine, wall),
     fact('rays', count(rays)),
     rays && wall ? fact('rays/s', count(rays / wall)) : null,
-    picture.cut >= CUT_SHOWN
-      ? fact('cut light', `${digits(100 * picture.cut, 2)} %`, 'by weight: rays that render.depth or min_weight cut')
+    image.cut >= CUT_SHOWN
+      ? fact('cut light', `${digits(100 * image.cut, 2)} %`, 'by weight: rays that render.depth or min_weight cut')
       : null,
-    Number.isFinite(picture.noise)
-      ? fact('noise', digits(picture.noise, 3), 'standard error of the path-traced image')
+    Number.isFinite(image.noise)
+      ? fact('noise', digits(image.noise, 3), 'standard error of the path-traced image')
       : null,
-    picture.film_hash ? fact('film', hash(picture.film_hash, lab), 'hash of the film; click to copy') : null,
+    image.film_hash ? fact('film', hash(image.film_hash, lab), 'hash of the film; click to copy') : null,
     fact(
       'generation',
-      String(picture.generation),
-      state && state.generation > picture.generation ? `the scene is at generation ${state.generation}` : null,
+      String(image.generation),
+      state && state.generation > image.generation ? `the scene is at generation ${state.generation}` : null,
     ),
   ];
 }

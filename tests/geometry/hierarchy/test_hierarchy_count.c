@@ -252,9 +252,9 @@ static void counts_depend_on_scene_and_hierarchy_alone(void **state)
 {
     (void)state;
     need_counters();
-    static const char *const variants[] = {"render.threads=3", "render.tile=7 render.threads=2 render.pieces=0",
-                                           "render.schedule=rows render.threads=4",
-                                           "render.pool=off render.build_threads=3"};
+    static const char *const variants[] = {
+        "render.threads=3", "render.tile=7 render.threads=2 render.tiles_per_worker=0",
+        "render.schedule=rows render.threads=4", "render.pool=off render.build_threads=3"};
     static const char *const kinds[] = {"none", "sphere", "octant", "bvh"};
     uint64_t hash, plain_hash;
     const query_counts off = frame_counts("render.count_tests=off", isa_best(), &plain_hash);

@@ -249,7 +249,7 @@ typedef struct stage {
     film *img;
     tracer_pool *set;
     tracer_target target;
-    schedule pieces;
+    schedule tiles;
     atomic_int started; /* workers */
 } stage;
 
@@ -260,7 +260,7 @@ static void open_stage(stage *st)
     assert_int_equal(film_create(64, 48, 1, FILM_RGB, &st->img, NULL), STATUS_OK);
     assert_non_null(st->set = tracer_pool_create(ISA_BASE));
     st->target = (tracer_target){.frame_plan = st->p, .img = st->img};
-    schedule_start(&st->pieces, &st->s->render);
+    schedule_start(&st->tiles, &st->s->render);
 }
 
 static void close_stage(stage *st)
@@ -294,9 +294,9 @@ static void the_tracer_returned_last_is_reused_first(void **state)
 /* One pixel. */
 static void trace_a_pixel(tracer *t)
 {
-    const image_tile piece = {32, 24, 33, 25};
+    const image_tile tile = {32, 24, 33, 25};
     atomic_uint_fast64_t begun = 0;
-    tracer_render_tile(t, &piece, &begun);
+    tracer_render_tile(t, &tile, &begun);
     tracer_finish(t);
     assert_int_equal(begun, 1);
 }
@@ -332,11 +332,11 @@ static void *work(void *context)
 {
     stage *st = context;
     atomic_uint_fast64_t begun = 0;
-    image_tile piece;
+    image_tile tile;
     const int worker = atomic_fetch_add(&st->started, 1);
-    for (uint64_t taken = 0; schedule_next(&st->pieces, worker, taken, &piece); taken++) {
+    for (uint64_t taken = 0; schedule_next(&st->tiles, worker, taken, &tile); taken++) {
         tracer *t = tracer_pool_acquire(st->set);
-        tracer_render_tile(t, &piece, &begun);
+        tracer_render_tile(t, &tile, &begun);
         tracer_finish(t);
         tracer_pool_release(st->set, t);
     }

@@ -17,7 +17,7 @@ static render_settings settings_of(schedule_rule rule, int width, int height, in
     return (render_settings){.width = width, .height = height, .schedule = rule, .tile = tile, .threads = workers};
 }
 
-/* Marks a piece, which must be inside the image and not marked yet. */
+/* Marks a rect, which must be inside the image and not marked yet. */
 static void mark(unsigned char *seen, int width, int height, const image_tile *s)
 {
     assert_true(s->x0 >= 0 && s->x0 < s->x1 && s->x1 <= width);
@@ -38,15 +38,15 @@ static void every_pixel_goes_to_exactly_one_worker(void **state)
                 for (int rule = SCHEDULE_COLUMNS; rule <= SCHEDULE_DYNAMIC; rule++) {
                     const int width = sizes[i][0], height = sizes[i][1];
                     render_settings settings = settings_of((schedule_rule)rule, width, height, tiles[k], workers[n]);
-                    settings.pieces = 4 * (int64_t)(k % 2);
+                    settings.tiles_per_worker = 4 * (int64_t)(k % 2);
                     unsigned char *seen = calloc((size_t)(width * height), 1);
                     schedule s;
-                    image_tile piece;
+                    image_tile rect;
                     assert_non_null(seen);
                     schedule_start(&s, &settings);
                     for (int w = 0; w < workers[n]; w++)
-                        for (uint64_t taken = 0; schedule_next(&s, w, taken, &piece); taken++)
-                            mark(seen, width, height, &piece);
+                        for (uint64_t taken = 0; schedule_next(&s, w, taken, &rect); taken++)
+                            mark(seen, width, height, &rect);
                     for (int p = 0; p < width * height; p++)
                         assert_int_equal(seen[p], 1);
                     free(seen);
@@ -60,32 +60,32 @@ static void columns_and_rows_are_one_block_per_worker(void **state)
     const render_settings columns = settings_of(SCHEDULE_COLUMNS, 800, 600, 32, 7),
                           rows = settings_of(SCHEDULE_ROWS, 800, 600, 32, 7);
     schedule s;
-    image_tile piece;
+    image_tile rect;
     for (int w = 0; w < 7; w++) {
         schedule_start(&s, &columns);
-        assert_true(schedule_next(&s, w, 0, &piece));
-        assert_int_equal(piece.x0, 115 * w);
-        assert_int_equal(piece.x1, w < 6 ? 115 * (w + 1) : 800);
-        assert_true(piece.y0 == 0 && piece.y1 == 600);
-        assert_false(schedule_next(&s, w, 1, &piece));
+        assert_true(schedule_next(&s, w, 0, &rect));
+        assert_int_equal(rect.x0, 115 * w);
+        assert_int_equal(rect.x1, w < 6 ? 115 * (w + 1) : 800);
+        assert_true(rect.y0 == 0 && rect.y1 == 600);
+        assert_false(schedule_next(&s, w, 1, &rect));
         schedule_start(&s, &rows);
-        assert_true(schedule_next(&s, w, 0, &piece));
-        assert_int_equal(piece.y0, 86 * w);
-        assert_int_equal(piece.y1, w < 6 ? 86 * (w + 1) : 600);
-        assert_true(piece.x0 == 0 && piece.x1 == 800);
-        assert_false(schedule_next(&s, w, 1, &piece));
+        assert_true(schedule_next(&s, w, 0, &rect));
+        assert_int_equal(rect.y0, 86 * w);
+        assert_int_equal(rect.y1, w < 6 ? 86 * (w + 1) : 600);
+        assert_true(rect.x0 == 0 && rect.x1 == 800);
+        assert_false(schedule_next(&s, w, 1, &rect));
     }
 }
 
-static void workers_without_pixels_get_no_piece(void **state)
+static void workers_without_pixels_get_no_tile(void **state)
 {
     (void)state;
     const render_settings settings = settings_of(SCHEDULE_COLUMNS, 10, 10, 8, 1024);
     schedule s;
-    image_tile piece;
+    image_tile rect;
     schedule_start(&s, &settings);
     for (int w = 0; w < 1024; w++)
-        assert_true(schedule_next(&s, w, 0, &piece) == (w < 10));
+        assert_true(schedule_next(&s, w, 0, &rect) == (w < 10));
 }
 
 /* Tiles are assigned in turn, in reading order. */
@@ -94,28 +94,28 @@ static void static_tiles_are_assigned_round_robin(void **state)
     (void)state;
     const render_settings settings = settings_of(SCHEDULE_TILES, 100, 50, 32, 3);
     schedule s;
-    image_tile piece;
+    image_tile rect;
     schedule_start(&s, &settings);
-    assert_true(schedule_next(&s, 1, 0, &piece)); /* tile 1 of 4 across */
-    assert_true(piece.x0 == 32 && piece.x1 == 64 && piece.y0 == 0 && piece.y1 == 32);
-    assert_true(schedule_next(&s, 1, 1, &piece)); /* tile 4 */
-    assert_true(piece.x0 == 0 && piece.x1 == 32 && piece.y0 == 32 && piece.y1 == 50);
-    assert_true(schedule_next(&s, 1, 2, &piece)); /* tile 7 */
-    assert_true(piece.x0 == 96 && piece.x1 == 100 && piece.y0 == 32 && piece.y1 == 50);
-    assert_false(schedule_next(&s, 1, 3, &piece));
+    assert_true(schedule_next(&s, 1, 0, &rect)); /* tile 1 of 4 across */
+    assert_true(rect.x0 == 32 && rect.x1 == 64 && rect.y0 == 0 && rect.y1 == 32);
+    assert_true(schedule_next(&s, 1, 1, &rect)); /* tile 4 */
+    assert_true(rect.x0 == 0 && rect.x1 == 32 && rect.y0 == 32 && rect.y1 == 50);
+    assert_true(schedule_next(&s, 1, 2, &rect)); /* tile 7 */
+    assert_true(rect.x0 == 96 && rect.x1 == 100 && rect.y0 == 32 && rect.y1 == 50);
+    assert_false(schedule_next(&s, 1, 3, &rect));
 }
 
-static int64_t tiles_of(int width, int height, int tile, int workers, int pieces)
+static int64_t tiles_of(int width, int height, int tile, int workers, int least)
 {
     render_settings settings = settings_of(SCHEDULE_DYNAMIC, width, height, tile, workers);
     schedule s;
-    settings.pieces = pieces;
+    settings.tiles_per_worker = least;
     schedule_start(&s, &settings);
     assert_int_equal(s.tile_count, (int64_t)((width + s.tile - 1) / s.tile) * ((height + s.tile - 1) / s.tile));
     return s.tile_count;
 }
 
-/* Tiles of 32, 16 and 8 pixels cut 800 x 600 into 475, 1900 and 7500 pieces. */
+/* Tiles of 32, 16 and 8 pixels cut 800 x 600 into 475, 1900 and 7500 tiles. */
 static void tiles_are_halved_for_many_workers(void **state)
 {
     (void)state;
@@ -128,7 +128,7 @@ static void tiles_are_halved_for_many_workers(void **state)
     assert_int_equal(tiles_of(800, 600, 32, 1024, 0), 475); /* 0: as render.tile says */
     assert_int_equal(tiles_of(800, 600, 65536, 1, 1), 1);
     assert_int_equal(tiles_of(800, 600, 65536, 1, 2), 4); /* 512 pixels */
-    assert_int_equal(tiles_of(7, 5, 32, 1024, 4), 35);    /* no more pieces than pixels */
+    assert_int_equal(tiles_of(7, 5, 32, 1024, 4), 35);    /* no more tiles than pixels */
 }
 
 /* However late a worker starts, its first tile is waiting for it. */
@@ -136,25 +136,25 @@ static void every_worker_has_a_tile_reserved(void **state)
 {
     (void)state;
     render_settings settings = settings_of(SCHEDULE_DYNAMIC, 800, 600, 32, 1024);
-    settings.pieces = 4;
+    settings.tiles_per_worker = 4;
     schedule s;
-    image_tile piece;
+    image_tile rect;
     schedule_start(&s, &settings);
     uint64_t taken = 0;
-    while (schedule_next(&s, 0, taken, &piece))
+    while (schedule_next(&s, 0, taken, &rect))
         taken++;
     assert_int_equal(taken, 7500 - 1023);
     for (int w = 1; w < 1024; w++) {
-        assert_true(schedule_next(&s, w, 0, &piece));
-        assert_true(piece.x0 == w % 100 * 8 && piece.y0 == w / 100 * 8);
-        assert_false(schedule_next(&s, w, 1, &piece));
+        assert_true(schedule_next(&s, w, 0, &rect));
+        assert_true(rect.x0 == w % 100 * 8 && rect.y0 == w / 100 * 8);
+        assert_false(schedule_next(&s, w, 1, &rect));
     }
 }
 
 enum { WIDTH = 301, HEIGHT = 203, ASKERS = 8 };
 
 typedef struct asker {
-    schedule *pieces;
+    schedule *tiles;
     int worker;
     unsigned char *seen;
 } asker;
@@ -163,10 +163,10 @@ typedef struct asker {
 static void *ask(void *argument)
 {
     const asker *a = argument;
-    image_tile piece;
-    for (uint64_t taken = 0; schedule_next(a->pieces, a->worker, taken, &piece); taken++)
-        for (int y = piece.y0; y < piece.y1; y++)
-            for (int x = piece.x0; x < piece.x1; x++)
+    image_tile rect;
+    for (uint64_t taken = 0; schedule_next(a->tiles, a->worker, taken, &rect); taken++)
+        for (int y = rect.y0; y < rect.y1; y++)
+            for (int x = rect.x0; x < rect.x1; x++)
                 a->seen[y * WIDTH + x]++;
     return NULL;
 }
@@ -195,7 +195,7 @@ int main(void)
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(every_pixel_goes_to_exactly_one_worker),
         cmocka_unit_test(columns_and_rows_are_one_block_per_worker),
-        cmocka_unit_test(workers_without_pixels_get_no_piece),
+        cmocka_unit_test(workers_without_pixels_get_no_tile),
         cmocka_unit_test(static_tiles_are_assigned_round_robin),
         cmocka_unit_test(tiles_are_halved_for_many_workers),
         cmocka_unit_test(every_worker_has_a_tile_reserved),

@@ -271,7 +271,7 @@ static void base_of_path(const char *path, const char *otherwise, object_name ba
 status new_texture(scene *s, const char *path, const char *wanted, object_name name, diagnostic *why)
 {
     object_name base;
-    base_of_path(path, "picture", base);
+    base_of_path(path, "image", base);
     status code = name_for(s, wanted, base, name, why);
     THEN(code, scene_add(s, PARAM_TEXTURE, name, NULL, why));
     char *row = text_format("%s.file", name);

@@ -29,13 +29,13 @@ export function createQuestion(lab) {
     },
     on: (listener) => listeners.add(listener),
   };
-  lab.on('picture', (picture) => {
+  lab.on('image', (image) => {
     if (!question.pixel || !traced) return;
-    if (question.pixel.x >= picture.full_width || question.pixel.y >= picture.full_height) {
+    if (question.pixel.x >= image.full_width || question.pixel.y >= image.full_height) {
       clear(); /* the image has become smaller */
       return;
     }
-    if (!picture.final || !lab.scene || lab.scene.generation < picture.generation) return;
+    if (!image.final || !lab.scene || lab.scene.generation < image.generation) return;
     const now = dependence();
     const moved = now.camera !== traced.camera;
     const changed = now.rest !== traced.rest;

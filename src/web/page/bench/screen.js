@@ -117,7 +117,7 @@ export function createBenchScreen(lab, bench, changed) {
         ['Rays', `N = ${count(rays)} traced, ${count(hits)} crossings`],
         ['Power received', `${digits(received, 6)} of ${digits(power, 6)}`],
       ]),
-      picture(answer),
+      image(answer),
       plot({
         title: 'Power by column of the screen',
         x: { label: 'position across the screen, scene units' },
@@ -129,9 +129,9 @@ export function createBenchScreen(lab, bench, changed) {
 }
 
 /* Scaled so that the brightest channel is white. */
-function picture({ columns, rows, color }) {
+function image({ columns, rows, color }) {
   const canvas = element('canvas', {
-    class: 'bench-picture',
+    class: 'bench-image',
     width: columns,
     height: rows,
     role: 'img',

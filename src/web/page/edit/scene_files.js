@@ -26,7 +26,7 @@ export function createFiles(lab, choice) {
     }
   }
 
-  function chooser(title, names, folder, nothing, actions, pictured) {
+  function chooser(title, names, folder, nothing, actions, shown) {
     const list = element('ul', { class: 'file-list' });
     const search = element('input', {
       type: 'search',
@@ -63,7 +63,7 @@ export function createFiles(lab, choice) {
                     'aria-current': name === lab.state?.file ? 'true' : null,
                     onclick: () => made.close(name),
                   },
-                  pictured ? thumbnail(lab, `/api/thumbnail.jpg?file=${encodeURIComponent(name)}`) : null,
+                  shown ? thumbnail(lab, `/api/thumbnail.jpg?file=${encodeURIComponent(name)}`) : null,
                   ...named(name),
                 ),
               ),
@@ -226,10 +226,10 @@ export function createFiles(lab, choice) {
 
   function pickSky() {
     const kind = lab.param('background.kind');
-    const away = kind?.value === 'picture' ? [['No image', '']] : [];
-    return setFile('background.picture', 'Sky image', 'pictures', 'The folder contains no images.', away, () => {
+    const away = kind?.value === 'image' ? [['No image', '']] : [];
+    return setFile('background.image', 'Sky image', 'images', 'The folder contains no images.', away, () => {
       const plain =
-        kind.initial && kind.initial !== 'picture' ? kind.initial : kind.choices.find((word) => word !== 'picture');
+        kind.initial && kind.initial !== 'image' ? kind.initial : kind.choices.find((word) => word !== 'image');
       return { 'background.kind': plain };
     });
   }
@@ -237,7 +237,7 @@ export function createFiles(lab, choice) {
   async function addFile(kind, title) {
     const file = await pick(
       title,
-      kind === 'model' ? 'models' : 'pictures',
+      kind === 'model' ? 'models' : 'images',
       kind === 'model' ? 'The folder contains no models.' : 'The folder contains no images.',
     );
     if (file) await choice.add({ kind, file });
@@ -250,7 +250,7 @@ export function createFiles(lab, choice) {
     if (object.kind === 'texture')
       parts.push([
         'Choose an image …',
-        () => setFile(`${object.name}.file`, 'Image', 'pictures', 'The folder contains no images.'),
+        () => setFile(`${object.name}.file`, 'Image', 'images', 'The folder contains no images.'),
       ]);
     if (object.kind === 'mesh' && of('file'))
       parts.push([

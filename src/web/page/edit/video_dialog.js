@@ -92,7 +92,7 @@ function createForm(lab) {
       result,
     ),
   });
-  const ends = [lab.on('video', progress), lab.on('state', () => progress(lab.state.video)), lab.on('picture', show)];
+  const ends = [lab.on('video', progress), lab.on('state', () => progress(lab.state.video)), lab.on('image', show)];
   made.closed.then(() => {
     for (const end of ends) end();
     keep();
@@ -123,8 +123,8 @@ function createForm(lab) {
     sweep.hidden = what.value !== 'sweep';
     motion.hidden = what.value === 'sweep';
     const n = Math.max(1, Math.round(frames()));
-    const one = lab.picture?.final ? lab.picture.wall_s : NaN;
-    const { full_width: width, full_height: height } = lab.picture || {};
+    const one = lab.image?.final ? lab.image.wall_s : NaN;
+    const { full_width: width, full_height: height } = lab.image || {};
     const parts = [
       Number.isFinite(n) && `${count(n)} frames, ${seconds(n / numberOf(numbers.fps))} long`,
       Number.isFinite(n * one) && `about ${seconds(n * one)} if each takes as long as the current image`,

@@ -48,11 +48,11 @@ export function createNotes(lab) {
       : element('p', { text: 'No notes.' });
 
   async function ask() {
-    const generation = lab.picture?.final ? lab.picture.generation : 0;
+    const generation = lab.image?.final ? lab.image.generation : 0;
     if (!generation || generation === checkedGeneration) return;
     checkedGeneration = generation;
     const known = new Set(notes.map(line));
-    const onImage = lab.picture.notes ?? [];
+    const onImage = lab.image.notes ?? [];
     try {
       notes = [...(await lab.get('/api/notes')).notes, ...onImage];
     } catch (error) {
@@ -74,7 +74,7 @@ export function createNotes(lab) {
     lab.emit('notes', notes);
   }
 
-  lab.on('picture', ask);
+  lab.on('image', ask);
   lab.on('restarted', () => {
     checkedGeneration = 0;
   });

@@ -149,7 +149,7 @@ export function share(lab) {
     'PNG with the scene',
     'image',
     'The image; Cuvette opens it again as a scene.',
-    save((more) => saveFile(lab, '/api/picture.png?wait=1&scene=1', 'png', more)),
+    save((more) => saveFile(lab, '/api/image.png?wait=1&scene=1', 'png', more)),
   );
   const html = form(
     'HTML file',

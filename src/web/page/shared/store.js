@@ -3,12 +3,12 @@
  * exports: createLab() -> lab
  *   lab.engine                          see engine.js
  *   lab.get, lab.post, lab.del, lab.blob   see api.js; for requests that do not change the scene or need no order
- *   lab.state, lab.scene, lab.picture, lab.slime, lab.study    the latest values; null before the first
+ *   lab.state, lab.scene, lab.image, lab.slime, lab.study    the latest values; null before the first
  *   lab.newestGeneration                the newest known generation; older images are shown until one of it exists
  *   lab.dragging()                      whether changes follow each other
  *   lab.newestPass                      the newest known pass, displayed or not
  *   lab.connected                       'opening', 'open', 'lost' or 'refused'
- *   lab.on(name, f) -> end()            names: state, scene, picture (a pass is displayed), pass (a pass is available),
+ *   lab.on(name, f) -> end()            names: state, scene, image (a pass is displayed), pass (a pass is available),
  *                                       slime, study, video, connection, restarted (a new server: all earlier data is
  *                                       void), view (the image's placement changed), tool, panel (one was selected)
  *   lab.emit(name, value)
@@ -33,7 +33,7 @@ const PULSE_MS = 10000;
 const SCENE_MS = 150; /* minimum time between two fetches of the scene */
 const DRAG_MS = 250; /* changes that follow each other within this time are a drag */
 const REST_MS = 150; /* a drag without a change for this time rests */
-const EVENTS = ['state', 'picture', 'slime', 'study', 'video'];
+const EVENTS = ['state', 'image', 'slime', 'study', 'video'];
 
 function createEmitter() {
   const listeners = new Map();
@@ -77,7 +77,7 @@ export function createLab() {
   const lab = {
     state: null,
     scene: null,
-    picture: null,
+    image: null,
     newestPass: null,
     slime: null,
     study: null,
@@ -199,10 +199,10 @@ export function createLab() {
       lab.state = value;
       lab.slime = value.slime;
       lab.study = value.study;
-      if (value.picture && !(lab.newestPass?.serial > value.picture.serial)) lab.newestPass = value.picture;
+      if (value.image && !(lab.newestPass?.serial > value.image.serial)) lab.newestPass = value.image;
       emit('state', value);
       if (stale || !lab.scene || lab.scene.generation < value.generation) fetchScene();
-    } else if (name === 'picture') {
+    } else if (name === 'image') {
       lab.newestPass = value;
       emit('pass', value);
     } else {

@@ -18,7 +18,7 @@ const STARTS = {
   files: ['Make the missing files', 'all rows are measured; makes the missing images, maps and comparisons'],
   complete: ['Complete', 'all rows are measured'],
 };
-const stages = { measuring: 'measuring', moving: 'simulating the slime', pictures: 'rendering images' };
+const stages = { measuring: 'measuring', moving: 'simulating the slime', images: 'rendering images' };
 
 function axisWords({ name, paths, units, count: points }) {
   const own = paths.map((path, i) => (units[i] ? `${path} / ${units[i]}` : path)).join(', ');
@@ -72,18 +72,18 @@ function createProgress() {
       node.hidden = !now?.running;
       if (node.hidden) return;
       const done =
-        now.stage === 'pictures'
-          ? (now.picture - 1 + now.share) / now.pictures
+        now.stage === 'images'
+          ? (now.image - 1 + now.share) / now.images
           : now.frames_all
             ? (now.frames_done + now.share) / now.frames_all
             : 0;
       bar.value = done;
       words.textContent = [
-        now.pictures
-          ? `image ${now.picture} of ${now.pictures}`
+        now.images
+          ? `image ${now.image} of ${now.images}`
           : `${count(now.frames_done)} of ${count(now.frames_all)} frames`,
         `${Math.floor(100 * done)} %`,
-        now.pictures || now.left_s === null ? null : `about ${seconds(Math.max(1, Math.round(now.left_s)))} left`,
+        now.images || now.left_s === null ? null : `about ${seconds(Math.max(1, Math.round(now.left_s)))} left`,
         `cell ${now.cell}: ${stages[now.stage] || now.stage}`,
       ]
         .filter(Boolean)

@@ -57,8 +57,8 @@ function legend(answer, which, place) {
 
 export function createCostMaps(lab) {
   const { view } = lab;
-  const picture = svg('image', { preserveAspectRatio: 'none' });
-  const window = svg('svg', { preserveAspectRatio: 'none' }, picture); /* without the key below the map */
+  const image = svg('image', { preserveAspectRatio: 'none' });
+  const window = svg('svg', { preserveAspectRatio: 'none' }, image); /* without the key below the map */
   const below = element('div', { class: 'cost-legend', 'aria-live': 'polite' });
   const how = choice({
     label: 'Show',
@@ -85,7 +85,7 @@ export function createCostMaps(lab) {
   layer.append(window);
   layer.parentNode.prepend(layer);
   lab.on('view', draw);
-  lab.on('picture', update);
+  lab.on('image', update);
   lab.on('restarted', () => {
     answer = null;
     draw();
@@ -93,14 +93,14 @@ export function createCostMaps(lab) {
   return { node };
 
   function isCurrent() {
-    return Boolean(answer) && Boolean(lab.picture?.final) && answer.serial === lab.picture.serial;
+    return Boolean(answer) && Boolean(lab.image?.final) && answer.serial === lab.image.serial;
   }
 
   function update() {
     draw();
     if (how.value === 'none') replace(below);
     else if (isCurrent()) show();
-    else if (lab.picture?.final) ask();
+    else if (lab.image?.final) ask();
   }
 
   async function ask() {
@@ -113,7 +113,7 @@ export function createCostMaps(lab) {
       update();
     } catch (error) {
       /* After a change the next final image asks again. */
-      if (error.status !== 409 || lab.picture?.final)
+      if (error.status !== 409 || lab.image?.final)
         replace(below, notice(error.message, { kind: 'error', remedy: error.remedy }));
     }
     asking = false;
@@ -141,11 +141,11 @@ export function createCostMaps(lab) {
       view.stage.focus();
     });
     if (!on) return;
-    const { width, height, picture: place } = answer;
-    showImage(lab, picture, `/api/maps/${how.value}.png?of=${answer.serial}`);
-    picture.setAttribute('width', place.width);
-    picture.setAttribute('height', place.height);
-    picture.style.imageRendering = view.scale * devicePixelRatio < 2 ? 'auto' : 'pixelated';
+    const { width, height, image: place } = answer;
+    showImage(lab, image, `/api/maps/${how.value}.png?of=${answer.serial}`);
+    image.setAttribute('width', place.width);
+    image.setAttribute('height', place.height);
+    image.style.imageRendering = view.scale * devicePixelRatio < 2 ? 'auto' : 'pixelated';
     window.setAttribute('viewBox', `${place.left} 0 ${width} ${height}`);
     window.setAttribute('width', view.width);
     window.setAttribute('height', view.height);

@@ -1,6 +1,6 @@
 /* Fetches the newest pass and draws it: every image that is newer than the displayed one, also while the scene changes
  * faster than images come. Serials order the images, also while a slime moves within one generation. A final image that
- * was drawn from a JPEG is replaced by the exact one when the scene rests; only then lab.picture.final is true.
+ * was drawn from a JPEG is replaced by the exact one when the scene rests; only then lab.image.final is true.
  * exports: createPainting(canvas, view, place, lab) -> {paint, pixel, show} */
 
 /* --- which encoding to fetch ---
@@ -24,7 +24,7 @@ function createImageSource(lab) {
   };
 
   async function fetch(quick) {
-    const { blob, headers, seconds } = await lab.blob(quick ? '/api/picture.jpg?quick=1' : '/api/picture.png');
+    const { blob, headers, seconds } = await lab.blob(quick ? '/api/image.jpg?quick=1' : '/api/image.png');
     if (!quick) pngBytes = blob.size;
     if (blob.size >= MEASURED_BYTES) bytesPerS = blob.size / Math.max(seconds, 1e-3);
     const number = (name) => Number(headers.get(`X-Cuvette-${name}`));
@@ -65,7 +65,7 @@ export function createPainting(canvas, view, place, lab) {
   });
   lab.on('pass', onPass);
   lab.on('state', (state) => {
-    if (state.picture) onPass(state.picture);
+    if (state.image) onPass(state.image);
   });
   return { paint: schedule, pixel, show };
 
@@ -84,7 +84,7 @@ export function createPainting(canvas, view, place, lab) {
     if (passes.size > 12) passes.delete(passes.keys().next().value);
     if (shown?.serial !== pass.serial) load();
     else if (!before) publish();
-    else if (lab.picture?.serial === pass.serial) Object.assign(lab.picture, facts());
+    else if (lab.image?.serial === pass.serial) Object.assign(lab.image, facts());
     complete();
   }
 
@@ -135,7 +135,7 @@ export function createPainting(canvas, view, place, lab) {
     const resized = width !== view.width || height !== view.height;
     view.width = width;
     view.height = height;
-    lab.picture = {
+    lab.image = {
       ...facts(),
       width: bitmap.width,
       height: bitmap.height,
@@ -144,7 +144,7 @@ export function createPainting(canvas, view, place, lab) {
     };
     if (resized) place.fit();
     else schedule();
-    lab.emit('picture', lab.picture);
+    lab.emit('image', lab.image);
   }
 
   async function show(blob) {

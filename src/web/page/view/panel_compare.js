@@ -30,22 +30,28 @@ let model = null;
 /* Requests a comparison whenever there is a reference image and a final image that is not compared yet. */
 function createModel(lab) {
   const listeners = new Set();
-  const mine = { answer: null, error: null, pin: null, current: false, on: (listener) => listeners.add(listener) };
+  const mine = {
+    answer: null,
+    error: null,
+    reference: null,
+    current: false,
+    on: (listener) => listeners.add(listener),
+  };
   let asking = false;
   let again = false;
-  const key = (pin) => (pin ? pin.serial : 0);
-  lab.on('state', ({ pin }) => {
-    if (key(pin) === key(mine.pin)) return;
-    Object.assign(mine, { pin: pin || null, answer: null, error: null });
+  const key = (reference) => (reference ? reference.serial : 0);
+  lab.on('state', ({ reference }) => {
+    if (key(reference) === key(mine.reference)) return;
+    Object.assign(mine, { reference: reference || null, answer: null, error: null });
     ask();
   });
-  lab.on('picture', (picture) => {
-    mine.current = Boolean(mine.answer) && picture.final && mine.answer.b.serial === picture.serial;
-    if (picture.final && !mine.current) ask();
+  lab.on('image', (image) => {
+    mine.current = Boolean(mine.answer) && image.final && mine.answer.b.serial === image.serial;
+    if (image.final && !mine.current) ask();
     else tell();
   });
   lab.on('restarted', () => {
-    Object.assign(mine, { pin: null, answer: null, error: null });
+    Object.assign(mine, { reference: null, answer: null, error: null });
     tell();
   });
   return mine;
@@ -61,7 +67,7 @@ function createModel(lab) {
     asking = true;
     while (again) {
       again = false;
-      if (mine.pin && lab.picture?.final) await fetchAnswer(key(mine.pin));
+      if (mine.reference && lab.image?.final) await fetchAnswer(key(mine.reference));
     }
     asking = false;
   }
@@ -69,8 +75,8 @@ function createModel(lab) {
   async function fetchAnswer(of) {
     try {
       const answer = await lab.get('/api/compare');
-      if (key(answer.a) === of && of === key(mine.pin))
-        Object.assign(mine, { answer, error: null, current: answer.b.serial === lab.picture?.serial });
+      if (key(answer.a) === of && of === key(mine.reference))
+        Object.assign(mine, { answer, error: null, current: answer.b.serial === lab.image?.serial });
     } catch (error) {
       if (error.status === 409)
         mine.current = false; /* B is being rendered again, or A was cleared: an event will follow */
@@ -190,22 +196,24 @@ function pinButtons(lab) {
     work()
       .then(() => lab.say(done))
       .catch(lab.fail);
-  const pin = button(
+  const reference = button(
     'Pin as A',
-    ask(() => lab.post('/api/pin', {}), 'Image pinned as A'),
+    ask(() => lab.post('/api/reference', {}), 'Image pinned as A'),
     { icon: 'pin', kind: 'primary' },
   );
   const drop = button(
     'Clear A',
-    ask(() => lab.del('/api/pin'), 'A cleared'),
+    ask(() => lab.del('/api/reference'), 'A cleared'),
     { icon: 'close', kind: 'quiet' },
   );
   return {
-    node: element('div', { class: 'compare-buttons' }, pin, drop),
+    node: element('div', { class: 'compare-buttons' }, reference, drop),
     show() {
-      pin.disabled = !lab.picture?.final;
-      pin.title = pin.disabled ? 'available when the image is finished' : 'make the current image the reference A';
-      drop.disabled = !model.pin;
+      reference.disabled = !lab.image?.final;
+      reference.title = reference.disabled
+        ? 'available when the image is finished'
+        : 'make the current image the reference A';
+      drop.disabled = !model.reference;
     },
   };
 }
@@ -223,10 +231,10 @@ function numbers({ a, b, comparison, changed }, goto) {
 }
 
 /* The map of an earlier image would hide the newest one while the scene changes or a slime plays. */
-function addressesOf({ pin, answer, current }) {
-  if (!pin || (answer && !same(answer))) return { a: null, map: null };
-  const map = current && answer?.comparison ? `/api/compare.png?a=${pin.serial}&b=${answer.b.serial}` : null;
-  return { a: `/api/pin.png?a=${pin.serial}`, map };
+function addressesOf({ reference, answer, current }) {
+  if (!reference || (answer && !same(answer))) return { a: null, map: null };
+  const map = current && answer?.comparison ? `/api/compare.png?a=${reference.serial}&b=${answer.b.serial}` : null;
+  return { a: `/api/reference.png?a=${reference.serial}`, map };
 }
 
 function create(root, lab) {
@@ -258,7 +266,7 @@ function create(root, lab) {
       replace(
         below,
         empty(
-          model.pin
+          model.reference
             ? 'A is pinned. The comparison appears when the image is finished.'
             : 'Pin the finished image as A, then change the scene to compare.',
         ),

@@ -20,7 +20,7 @@ export function createPointHandles(lab, { list, symbol, what }) {
   const handles = new Map();
   let active = false;
 
-  for (const name of ['view', 'scene', 'state', 'picture']) lab.on(name, draw);
+  for (const name of ['view', 'scene', 'state', 'image']) lab.on(name, draw);
   return {
     show() {
       active = true;

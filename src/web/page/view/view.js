@@ -49,7 +49,7 @@ export function createView(root, lab) {
     'div',
     {
       class: 'stage',
-      id: 'picture',
+      id: 'image',
       tabindex: '0',
       role: 'application',
       'aria-label':
@@ -98,12 +98,12 @@ export function createView(root, lab) {
     if (!state) return;
     const why = state.trouble
       ? [state.trouble.error, state.trouble.remedy].filter(Boolean).join(' – ')
-      : state.waiting || (lab.picture ? '' : 'Loading the scene …');
+      : state.waiting || (lab.image ? '' : 'Loading the scene …');
     write(waiting, { textContent: why || '', hidden: !why });
     waiting.classList.toggle('trouble', Boolean(state.trouble));
   };
   lab.on('state', explain);
-  lab.on('picture', explain);
+  lab.on('image', explain);
   return view;
 
   function redraw() {

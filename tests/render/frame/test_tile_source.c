@@ -1,5 +1,5 @@
-/* Tests of frames whose pieces come from a source: put together, they are the film, the variance and the counts of the
- * whole frame, whatever the order, the size of the pieces and the worker that gets them. */
+/* Tests of frames whose tiles come from a source: put together, they are the film, the variance and the counts of the
+ * whole frame, whatever the order, the size of the tiles and the worker that gets them. */
 #include <math.h>
 #include <pthread.h>
 #include <setjmp.h>
@@ -17,7 +17,7 @@
 typedef struct hand_out {
     pthread_mutex_t lock;
     shared_frame whole;
-    int64_t *order, given, taken, limit; /* limit: the number of pieces after which done refuses */
+    int64_t *order, given, taken, limit; /* limit: the number of tiles after which done refuses */
 } hand_out;
 
 static bool next(void *context, int worker, image_tile *out)
@@ -32,14 +32,14 @@ static bool next(void *context, int worker, image_tile *out)
     return more;
 }
 
-static void done(void *context, const image_tile *piece, const film *traced, const double *variance)
+static void done(void *context, const image_tile *rect, const film *traced, const double *variance)
 {
     hand_out *h = context;
     pthread_mutex_lock(&h->lock);
     assert_int_equal(traced->replicates, 1);
     const schedule *places = &h->whole.places;
-    const int64_t tile = piece->y0 / places->tile * places->tiles_across + piece->x0 / places->tile;
-    const size_t sums = 3 * (size_t)(piece->x1 - piece->x0) * (size_t)(piece->y1 - piece->y0);
+    const int64_t tile = rect->y0 / places->tile * places->tiles_across + rect->x0 / places->tile;
+    const size_t sums = 3 * (size_t)(rect->x1 - rect->x0) * (size_t)(rect->y1 - rect->y0);
     assert_int_equal(shared_frame_values(&h->whole, tile), variance ? 2 * sums : sums);
     int64_t *message = malloc(2 * sums * sizeof *message);
     assert_non_null(message);
@@ -89,9 +89,9 @@ static void expect_the_whole_frame(const char *path, const char *assignments, in
     assert_null(result->img);
     assert_int_equal(h.taken, h.whole.places.tile_count);
     if (film_hash(h.whole.img) != film_hash(expected->img))
-        fail_msg("%s %s: the film of pieces of %d x %d pixels differs", path, assignments, tile, tile);
+        fail_msg("%s %s: the film of tiles of %d x %d pixels differs", path, assignments, tile, tile);
     if (memcmp(&result->counters, &expected->counters, sizeof result->counters) != 0)
-        fail_msg("%s %s: the counts of pieces of %d x %d pixels differ", path, assignments, tile, tile);
+        fail_msg("%s %s: the counts of tiles of %d x %d pixels differ", path, assignments, tile, tile);
     if (expected->variance)
         assert_memory_equal(h.whole.variance, expected->variance,
                             3 * (size_t)(s->render.width * s->render.height) * sizeof(double));
@@ -103,7 +103,7 @@ static void expect_the_whole_frame(const char *path, const char *assignments, in
 
 #define SMALL "render.width=83 render.height=61 render.threads=3 "
 
-static void pieces_of_all_integrators_are_the_whole_frame(void **state)
+static void tiles_of_all_integrators_are_the_whole_frame(void **state)
 {
     (void)state;
     static const struct {
@@ -130,24 +130,24 @@ static void pieces_of_all_integrators_are_the_whole_frame(void **state)
     }
 }
 
-/* A row of the widest image is a piece, so is a column of the highest one. */
-static void places_in_a_piece_are_exact_in_the_largest_images(void **state)
+/* A row of the widest image is a tile, so is a column of the highest one. */
+static void places_in_a_tile_are_exact_in_the_largest_images(void **state)
 {
     (void)state;
     static const struct {
         int width, x0, y0, x1, y1;
-    } pieces[] = {{65536, 65472, 4032, 65536, 4096}, {65536, 0, 0, 65536, 1}, {1, 0, 0, 1, 65536},
-                  {7680, 7664, 4304, 7680, 4320},    {3, 1, 100, 3, 30000},   {65535, 65534, 0, 65535, 4096}};
-    for (size_t i = 0; i < sizeof pieces / sizeof pieces[0]; i++) {
-        const int x0 = pieces[i].x0, y0 = pieces[i].y0, x1 = pieces[i].x1, y1 = pieces[i].y1;
+    } tiles[] = {{65536, 65472, 4032, 65536, 4096}, {65536, 0, 0, 65536, 1}, {1, 0, 0, 1, 65536},
+                 {7680, 7664, 4304, 7680, 4320},    {3, 1, 100, 3, 30000},   {65535, 65534, 0, 65535, 4096}};
+    for (size_t i = 0; i < sizeof tiles / sizeof tiles[0]; i++) {
+        const int x0 = tiles[i].x0, y0 = tiles[i].y0, x1 = tiles[i].x1, y1 = tiles[i].y1;
         film *f = NULL;
         diagnostic why = {0};
         worked(film_create(x1 - x0, y1 - y0, 1, FILM_RGB, &f, &why), &why);
-        film_begin_tile(f, pieces[i].width, x0, y0, x1, y1, 1);
+        film_begin_tile(f, tiles[i].width, x0, y0, x1, y1, 1);
         int64_t place = 0;
         for (int y = y0; y < y1; y++)
             for (int x = x0; x < x1; x++)
-                assert_int_equal(film_place(f, (int64_t)y * pieces[i].width + x), place++);
+                assert_int_equal(film_place(f, (int64_t)y * tiles[i].width + x), place++);
         film_destroy(f);
     }
 }
@@ -168,8 +168,8 @@ static void a_frame_ends_when_the_source_has_no_more(void **state)
     scene_destroy(s);
 }
 
-/* Memory is that of the pieces, not of the image. */
-static void the_film_of_a_source_is_as_small_as_its_pieces(void **state)
+/* Memory is that of the tiles, not of the image. */
+static void the_film_of_a_source_is_as_small_as_its_tiles(void **state)
 {
     (void)state;
     scene *s = rod_scene("render.width=16384 render.height=16384 render.threads=2");
@@ -184,10 +184,10 @@ static void the_film_of_a_source_is_as_small_as_its_pieces(void **state)
 int main(void)
 {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(pieces_of_all_integrators_are_the_whole_frame),
-        cmocka_unit_test(places_in_a_piece_are_exact_in_the_largest_images),
+        cmocka_unit_test(tiles_of_all_integrators_are_the_whole_frame),
+        cmocka_unit_test(places_in_a_tile_are_exact_in_the_largest_images),
         cmocka_unit_test(a_frame_ends_when_the_source_has_no_more),
-        cmocka_unit_test(the_film_of_a_source_is_as_small_as_its_pieces),
+        cmocka_unit_test(the_film_of_a_source_is_as_small_as_its_tiles),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }
