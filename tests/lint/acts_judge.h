@@ -187,11 +187,21 @@ static void judge_act(visitor *x, const char *path, const acts_values *v)
                  o.legal == 0 ? diagnostic_text(&o.why, text, sizeof text) : NULL);
 }
 
+/* Whether ACTS_PATH, if it is set, has the path's last name: objects may have other ones. */
+static bool is_selected(const char *path)
+{
+    const char *wanted = getenv("ACTS_PATH");
+    const char *end = strrchr(path, '.'), *wanted_end = wanted ? strrchr(wanted, '.') : NULL;
+    return !wanted || strcmp(wanted_end ? wanted_end + 1 : wanted, end ? end + 1 : path) == 0;
+}
+
 static status try_parameter(void *context, const char *path, const param *row, const char *value)
 {
     visitor *x = context;
     acts_values v;
     inert_answer answer;
+    if (!is_selected(path))
+        return STATUS_OK;
     acts_values_of(x->a->s, row, value, &v);
     x->out->tried++;
     if (!scene_film_depends_on(x->a->s, path))

@@ -4,7 +4,8 @@
  * changes the film. New parameters of the table are covered automatically. ACTS_SCENE=rod.yaml tests that scene alone.
  * ACTS_SLICE=2/12 tests every twelfth scene, mode, condition and setting from the third on, and writes the notes that
  * it saw to the file ACTS_NOTES; ACTS_SLICE=notes tests that the slices of that file have proved each of them.
- * ACTS_VERBOSE=1 lists parameters of which only one value has an effect, and remedies that do not help. */
+ * ACTS_VERBOSE=1 lists parameters of which only one value has an effect, and remedies that do not help.
+ * ACTS_PATH=lamp.radius tests parameters of that name alone. */
 #include <setjmp.h>
 #include <stdarg.h>
 #include <stddef.h>
@@ -150,6 +151,8 @@ static const param *values_at(const acts *a, const char *path, acts_values *v)
 static void try_condition(int number, tally *out)
 {
     const condition *k = &conditions[number];
+    if (!is_selected(k->path))
+        return;
     acts a;
     diagnostic why = {.what = ""};
     acts_values v;
@@ -181,6 +184,8 @@ static void try_condition(int number, tally *out)
 static void try_counterpart(int number, tally *out)
 {
     const counterpart *k = &counterparts[number];
+    if (!is_selected(k->path))
+        return;
     acts a;
     diagnostic why = {.what = ""};
     acts_values v;
@@ -250,6 +255,8 @@ static void every_parameter_changes_the_film_or_has_a_note_in_every_render_mode(
     run(try_mode, count);
     for (int i = 0; i < count; i++) {
         const tally *x = &tallies[i];
+        if (x->tried == 0 && x->bad == 0) /* not in this slice */
+            continue;
         printf("# rod, %s: tried %d, acting %d (%d by one value alone), noted %d, unexplained: %d\n%s", x->path,
                x->tried, x->acting, x->by_one, x->noted, x->bad, x->text);
         add_rules(x);
@@ -403,7 +410,8 @@ static void try_row(int number, tally *out)
     out->path = param_group_name(r->group);
     snprintf(names, sizeof names, "%s", r->names[0] == '*' ? "position" : r->names);
     for (char *name; (name = strtok_r(rest, " ", &rest));)
-        try_need(r, name, out);
+        if (is_selected(name))
+            try_need(r, name, out);
 }
 
 static void every_condition_of_the_table_decides(void **state)
@@ -463,7 +471,7 @@ static void the_remedy_of_each_note_was_seen_to_make_a_parameter_effective(void 
         visit_notes("w", write_notes);
     else if (slice.of == 0)
         visit_notes("r", add_notes);
-    if (getenv("ACTS_SCENE") || slice.of > 1)
+    if (getenv("ACTS_SCENE") || getenv("ACTS_PATH") || slice.of > 1)
         skip();
     int unproved = 0;
     for (int i = 0; i < all.rule_count; i++) {
@@ -523,7 +531,7 @@ static status try_note(void *context, const char *path, const param *row, const 
     acts_values v;
     inert_answer answer;
     char line[NOTE_LINE_MAX];
-    if (!inert_ask(x->a->s, path, NULL, &answer))
+    if (!is_selected(path) || !inert_ask(x->a->s, path, NULL, &answer))
         return STATUS_OK;
     acts_values_of(x->a->s, row, value, &v);
     drop_special_indices(&answer, row, &v);

@@ -597,7 +597,8 @@ static void notes_on_random_scenes_are_true(void **state)
         t.scenes, t.skipped, t.silent, t.notes, t.overlaps, t.gaps, t.covers, t.cameras, t.indices, t.depths, t.others,
         t.untrue, t.pairs, t.unseen);
     assert_int_equal(t.untrue, 0);
-    assert_true(t.overlaps > 0 && t.gaps > 0 && t.covers > 0 && t.cameras > 0 && t.depths > 0);
+    if (!(t.overlaps > 0 && t.gaps > 0 && t.covers > 0 && t.cameras > 0 && t.depths > 0))
+        fail_msg("a kind of note is missing above (0): the scenes are too few, or it is never said");
     assert_true(50 * t.unseen <= t.pairs);
 }
 
