@@ -10,6 +10,7 @@
 #include "render_fixture.h"
 #include "scene/model/edit/edit.h"
 #include "scene/file/write.h"
+#include "scene/model/objects.h"
 #include "scene/model/scene.h"
 #include <math.h>
 #include <stdlib.h>
@@ -420,6 +421,53 @@ static void the_rod_scene_is_built_by_edits_alone(void **state)
     scene_destroy(read);
 }
 
+/* By a search through all of them. */
+static int found_by_search(const scene *s, param_group group, const char *name)
+{
+    for (size_t i = param_place_group_size(s, group); i-- > 0;)
+        if (strcmp(param_place_group_name(s, group, i), name) == 0)
+            return (int)i;
+    return -1;
+}
+
+/* Objects come, go, get other names, and are copied: each of 40 names leads to the object that has it. */
+static void objects_are_found_by_name_after_any_edits(void **state)
+{
+    (void)state;
+    static const param_group groups[] = {PARAM_LIGHT, PARAM_MATERIAL, PARAM_TEXTURE};
+    uint64_t seed = 50;
+    scene *s = scene_create();
+    int objects = 0;
+    for (int i = 0; i < 4000; i++) {
+        char name[20], other[20];
+        size_t index;
+        snprintf(name, sizeof name, "o%d", random_below(&seed, 40));
+        snprintf(other, sizeof other, "o%d", random_below(&seed, 40));
+        const int what = random_below(&seed, 16);
+        if (what == 0) {
+            scene *copy = scene_clone(s);
+            scene_destroy(s);
+            s = copy;
+        } else if (what < 8) {
+            objects += scene_add(s, groups[random_below(&seed, 3)], name, &index, NULL) == STATUS_OK;
+        } else if (what < 12) {
+            objects -= scene_remove(s, name, NULL) == STATUS_OK;
+        } else {
+            scene_rename(s, name, other, NULL);
+        }
+        int found = 0;
+        for (int g = 0; g < 3; g++)
+            for (int k = 0; k < 40; k++) {
+                snprintf(name, sizeof name, "o%d", k);
+                const int at = object_find(s, groups[g], name);
+                assert_int_equal(at, found_by_search(s, groups[g], name));
+                found += at >= 0;
+            }
+        assert_int_equal(found, objects);
+    }
+    scene_destroy(s);
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
@@ -438,6 +486,7 @@ int main(void)
         cmocka_unit_test(moving_and_rotating_a_spotlight_transforms_its_target),
         cmocka_unit_test(the_camera_rotates_in_place),
         cmocka_unit_test(the_rod_scene_is_built_by_edits_alone),
+        cmocka_unit_test(objects_are_found_by_name_after_any_edits),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

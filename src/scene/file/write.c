@@ -179,28 +179,25 @@ static status put_path(scene_writer *w, const char *label, const param *row, con
     return code;
 }
 
-static status visit(void *context, const char *path, const param *row, const char *value)
+static status visit(void *context, const param_place *at, const char *value)
 {
     scene_writer *w = context;
-    if (row->group != w->group && !(w->group == PARAM_SOLID && row->group == PARAM_MATERIAL))
-        return STATUS_OK;
-    param_place at;
-    TRY(param_place_find(w->s, path, &at, w->why));
-    if (at.object_group != w->group)
-        return STATUS_OK;
-    if (is_section_of_objects(at.object_group) &&
-        strcmp(w->object, param_place_group_name(w->s, at.object_group, at.index)) != 0)
-        begin_object(w, &at);
+    const char *name = param_place_group_name(w->s, at->object_group, at->index);
+    if (is_section_of_objects(at->object_group) && strcmp(w->object, name) != 0)
+        begin_object(w, at);
     bool wanted = false;
-    status code = is_line_wanted(w->s, &at, value, w->all, &wanted, w->why);
+    status code = is_line_wanted(w->s, at, value, w->all, &wanted, w->why);
     if (code != STATUS_OK || !wanted)
         return code;
     put_section(w);
-    begin_line(w, row->name);
-    if (row->type == PARAM_PATH)
-        return put_path(w, path, row, value);
-    put_value(w, row, value);
-    return STATUS_OK;
+    begin_line(w, at->row->name);
+    if (at->row->type != PARAM_PATH) {
+        put_value(w, at->row, value);
+        return STATUS_OK;
+    }
+    char label[2 * SCENE_NAME_MAX];
+    snprintf(label, sizeof label, "%s.%s", name, at->row->name);
+    return put_path(w, label, at->row, value);
 }
 
 /* Arrays given by a program cannot be written to a file. */
@@ -238,7 +235,7 @@ static status put_scene(scene_writer *w)
     for (size_t i = 0; i < PARAM_GROUP_COUNT && code == STATUS_OK; i++) {
         w->group = order[i];
         w->in_section = false;
-        code = scene_each_param(w->s, visit, w);
+        code = param_place_each(w->s, w->group, visit, w);
         end_object(w);
     }
     if (!w->begun)

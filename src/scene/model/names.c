@@ -65,8 +65,11 @@ static size_t place_of(const name_tally *t, uint64_t hash)
 static bool grow(name_tally *t)
 {
     const size_t size = t->size ? 2 * t->size : 64;
-    name_tally larger = {.hash = calloc(size, sizeof *t->hash), .count = calloc(size, sizeof *t->count), .size = size};
-    if (!larger.hash || !larger.count) {
+    name_tally larger = {.hash = calloc(size, sizeof *t->hash),
+                         .count = calloc(size, sizeof *t->count),
+                         .newest = calloc(size, sizeof *t->newest),
+                         .size = size};
+    if (!larger.hash || !larger.count || !larger.newest) {
         name_tally_clear(&larger);
         return false;
     }
@@ -76,6 +79,7 @@ static bool grow(name_tally *t)
         const size_t at = place_of(&larger, t->hash[i]);
         larger.hash[at] = t->hash[i];
         larger.count[at] = t->count[i];
+        larger.newest[at] = t->newest[i];
         larger.used++;
     }
     name_tally_clear(t);
@@ -83,7 +87,7 @@ static bool grow(name_tally *t)
     return true;
 }
 
-void name_tally_add(name_tally *t, const char *name)
+void name_tally_add(name_tally *t, const char *name, name_place place)
 {
     if (t->lost || (2 * (t->used + 1) > t->size && !grow(t))) {
         t->lost = true;
@@ -94,6 +98,7 @@ void name_tally_add(name_tally *t, const char *name)
     t->used += t->hash[at] == 0;
     t->hash[at] = hash;
     t->count[at]++;
+    t->newest[at] = place;
 }
 
 void name_tally_remove(name_tally *t, const char *name)
@@ -112,10 +117,23 @@ size_t name_tally_most(const name_tally *t, const char *name)
     return t->size ? t->count[place_of(t, hash_of(name))] : 0;
 }
 
+const name_place *name_tally_newest(const name_tally *t, const char *name)
+{
+    const size_t at = t->lost || t->size == 0 ? 0 : place_of(t, hash_of(name));
+    return t->lost || t->size == 0 || t->count[at] == 0 ? NULL : &t->newest[at];
+}
+
+void name_tally_move(name_tally *t, const char *name, name_place to)
+{
+    if (!t->lost && t->size > 0)
+        t->newest[place_of(t, hash_of(name))] = to;
+}
+
 void name_tally_clear(name_tally *t)
 {
     free(t->hash);
     free(t->count);
+    free(t->newest);
     *t = (name_tally){.lost = t->lost};
 }
 

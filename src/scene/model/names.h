@@ -11,21 +11,29 @@
  * paths or scene files. */
 status check_name(const char *name, diagnostic *why);
 
-/* How many objects of a scene may have a name: an upper bound by the names' hashes, which is nearly always exact. It
- * makes the usual question, whether a name is in use, independent of the number of objects.
+/* How many objects of a scene may have a name: an upper bound by the names' hashes, which is nearly always exact; and
+ * where the newest of them is. So the time to find a name does not depend on the number of objects.
  *
  * Ownership: zero-initialised; name_tally_clear frees. Without memory it is `lost`, and gives the largest bound. */
+typedef struct name_place {
+    uint32_t group, index; /* in a scene's lists */
+} name_place;
 typedef struct name_tally {
-    uint64_t *hash;  /* open addressing; a place with count 0 and hash 0 is free */
-    uint32_t *count; /* of names with that hash */
+    uint64_t *hash;     /* open addressing; a place with count 0 and hash 0 is free */
+    uint32_t *count;    /* of names with that hash */
+    name_place *newest; /* of them */
     size_t size, used;
     bool lost;
 } name_tally;
 
-void name_tally_add(name_tally *t, const char *name);
+void name_tally_add(name_tally *t, const char *name, name_place at);
 void name_tally_remove(name_tally *t, const char *name);
 /* At least the number of objects with that name. */
 size_t name_tally_most(const name_tally *t, const char *name);
+/* The place of the newest object with that name, or with another name of equal hash; NULL if there is none, or if it is
+ * not known. An object that has moved needs name_tally_move. */
+const name_place *name_tally_newest(const name_tally *t, const char *name);
+void name_tally_move(name_tally *t, const char *name, name_place to);
 void name_tally_clear(name_tally *t);
 
 /* The word of words[0..count-1] that was probably meant: a synonym (n and index for ior, opacity for transparency), the

@@ -72,10 +72,26 @@ const char *param_place_group_name(const scene *s, param_group group, size_t ind
     return group_has_names(group) ? *(char **)object_at(s, group, index) : param_group_name(group);
 }
 
+static name_place place_in(param_group group, size_t index)
+{
+    return (name_place){(uint32_t)group, (uint32_t)index};
+}
+
+static bool has_name(const scene *s, const name_place *at, const char *name)
+{
+    const param_group group = (param_group)at->group;
+    return at->index < param_place_group_size(s, group) &&
+           strcmp(param_place_group_name(s, group, at->index), name) == 0;
+}
+
 int object_find(const scene *s, param_group group, const char *name)
 {
-    if (group_has_names(group) && name_tally_most(&s->names, name) == 0)
+    const size_t most = group_has_names(group) ? name_tally_most(&s->names, name) : 1;
+    const name_place *newest = group_has_names(group) && most > 0 ? name_tally_newest(&s->names, name) : NULL;
+    if (most == 0 || (most == 1 && newest && newest->group != (uint32_t)group && has_name(s, newest, name)))
         return -1;
+    if (newest && newest->group == (uint32_t)group && has_name(s, newest, name))
+        return (int)newest->index;
     for (size_t i = param_place_group_size(s, group); i-- > 0;) /* new objects are at the end */
         if (strcmp(param_place_group_name(s, group, i), name) == 0)
             return (int)i;
@@ -127,7 +143,7 @@ void *object_append(scene *s, param_group group, const char *name)
     }
     char *added = memset(grown + count * size, 0, size);
     *(char **)added = copy;
-    name_tally_add(&s->names, copy);
+    name_tally_add(&s->names, copy, place_in(group, count));
     ++*count_of(s, group);
     return added;
 }
@@ -139,6 +155,8 @@ void object_remove(scene *s, param_group group, size_t index)
     name_tally_remove(&s->names, *(char **)gap);
     release(group, gap);
     memmove(gap, gap + size, (left - index) * size);
+    for (size_t i = index; i < left; i++)
+        name_tally_move(&s->names, param_place_group_name(s, group, i), place_in(group, i));
 }
 
 /* Makes a bitwise copy independent: copies owned memory, and adds a reference to loaded data. */
@@ -176,9 +194,10 @@ static bool clone_list(scene *s, const scene *original, param_group group)
     set_array(s, group, array);
     *count_of(s, group) = count;
     bool complete = true;
-    for (char *object = array; object < array + count * size; object += size) {
+    for (size_t i = 0; i < count; i++) {
+        char *object = array + i * size;
         complete &= copy_owned(group, object);
-        name_tally_add(&s->names, *(char **)object ? *(char **)object : "");
+        name_tally_add(&s->names, *(char **)object ? *(char **)object : "", place_in(group, i));
     }
     return complete;
 }
@@ -205,7 +224,7 @@ void object_rename(scene *s, param_group group, size_t index, char *name)
 {
     char **field = object_at(s, group, index);
     name_tally_remove(&s->names, *field);
-    name_tally_add(&s->names, name);
+    name_tally_add(&s->names, name, place_in(group, index));
     free(*field);
     *field = name;
 }

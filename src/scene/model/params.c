@@ -350,9 +350,10 @@ status scene_set_assignment(scene *s, const char *assignment, diagnostic *why)
 /* The value of a place in s, whose camera has both directions. */
 static char *place_text(const scene *s, const param_place *at)
 {
-    camera both = camera_with_both(s->camera);
-    const char *base = at->object_group == PARAM_CAMERA ? (const char *)&both : place_base(s, at);
-    return param_value_text(at->row, at->element, base + at->row->offset);
+    if (at->object_group != PARAM_CAMERA)
+        return param_value_text(at->row, at->element, (const char *)place_base(s, at) + at->row->offset);
+    const camera both = camera_with_both(s->camera);
+    return param_value_text(at->row, at->element, (const char *)&both + at->row->offset);
 }
 
 status scene_get(const scene *s, const char *path, char **value, diagnostic *why)
@@ -364,12 +365,10 @@ status scene_get(const scene *s, const char *path, char **value, diagnostic *why
     return *value ? STATUS_OK : out_of_memory(why);
 }
 
-static status visit_one(const scene *s, const param_place *at, param_visit *visit, void *context)
+static status visit_one(const scene *s, const param_place *at, param_place_visit *visit, void *context)
 {
-    char *path = text_format("%s.%s", param_place_group_name(s, at->object_group, at->index), at->row->name);
     char *value = place_text(s, at);
-    status code = path && value ? visit(context, path, at->row, value) : STATUS_FAILURE;
-    free(path);
+    const status code = value ? visit(context, at, value) : STATUS_FAILURE;
     free(value);
     return code;
 }
@@ -389,7 +388,7 @@ static bool is_in_use(const scene *s, const param_place *at)
 }
 
 /* The rows of one object in one group of the table. */
-static status visit_rows(const scene *s, param_place at, param_group rows, param_visit *visit, void *context)
+static status visit_rows(const scene *s, param_place at, param_group rows, param_place_visit *visit, void *context)
 {
     status code = STATUS_OK;
     for (size_t i = 0; i < param_count() && code == STATUS_OK; i++) {
@@ -401,16 +400,38 @@ static status visit_rows(const scene *s, param_place at, param_group rows, param
     return code;
 }
 
-status scene_each_param(const scene *s, param_visit *visit, void *context)
+status param_place_each(const scene *s, param_group group, param_place_visit *visit, void *context)
 {
     status code = STATUS_OK;
-    for (int g = 0; g < PARAM_GROUP_COUNT; g++) {
-        param_place at = {.row = NULL, .object_group = (param_group)g, .index = 0, .element = -1};
-        for (; at.index < param_place_group_size(s, at.object_group) && code == STATUS_OK; at.index++) {
-            code = visit_rows(s, at, at.object_group, visit, context);
-            if (code == STATUS_OK && at.object_group == PARAM_SOLID)
-                code = visit_rows(s, at, PARAM_MATERIAL, visit, context);
-        }
+    param_place at = {.row = NULL, .object_group = group, .index = 0, .element = -1};
+    for (; at.index < param_place_group_size(s, group) && code == STATUS_OK; at.index++) {
+        code = visit_rows(s, at, group, visit, context);
+        if (code == STATUS_OK && group == PARAM_SOLID)
+            code = visit_rows(s, at, PARAM_MATERIAL, visit, context);
     }
+    return code;
+}
+
+typedef struct path_visitor {
+    const scene *s;
+    param_visit *visit;
+    void *context;
+} path_visitor;
+
+static status visit_path(void *context, const param_place *at, const char *value)
+{
+    const path_visitor *v = context;
+    char *path = text_format("%s.%s", param_place_group_name(v->s, at->object_group, at->index), at->row->name);
+    const status code = path ? v->visit(v->context, path, at->row, value) : STATUS_FAILURE;
+    free(path);
+    return code;
+}
+
+status scene_each_param(const scene *s, param_visit *visit, void *context)
+{
+    path_visitor v = {s, visit, context};
+    status code = STATUS_OK;
+    for (int g = 0; g < PARAM_GROUP_COUNT && code == STATUS_OK; g++)
+        code = param_place_each(s, (param_group)g, visit_path, &v);
     return code;
 }

@@ -125,6 +125,10 @@ typedef struct param_place {
     int element;              /* 0..2, or -1 for the whole value */
 } param_place;
 
+/* Visits the parameters of the objects of one group as scene_each_param does, by place. */
+typedef status param_place_visit(void *context, const param_place *at, const char *value);
+status param_place_each(const scene *s, param_group group, param_place_visit *visit, void *context);
+
 /* STATUS_BAD_INPUT, with the nearest valid path as remedy, for an invalid path. */
 status param_place_find(const scene *s, const char *path, param_place *out, diagnostic *why);
 
