@@ -10,7 +10,7 @@
 void *large_pages(void *memory, size_t bytes)
 {
     if (memory && bytes >= LARGE_PAGES_MIN) {
-        /* full pages, from the one with malloc's header: a mapping of two kinds could not be moved by realloc */
+        /* from the page with malloc's header on: realloc could not move a mapping with two kinds of pages */
         const uintptr_t page = (uintptr_t)sysconf(_SC_PAGESIZE), first = (uintptr_t)memory / page * page,
                         end = ((uintptr_t)memory + bytes + page - 1) / page * page;
         madvise((char *)memory - ((uintptr_t)memory - first), end - first, MADV_HUGEPAGE);
@@ -25,12 +25,12 @@ void *large_calloc(size_t count, size_t size)
 
 static bool resize(void *array, size_t count, size_t size)
 {
-    void *now;
-    memcpy(&now, array, sizeof now);
-    now = count <= SIZE_MAX / size ? large_pages(realloc(now, count * size), count * size) : NULL;
-    if (now)
-        memcpy(array, &now, sizeof now);
-    return now;
+    void *elements;
+    memcpy(&elements, array, sizeof elements);
+    elements = count <= SIZE_MAX / size ? large_pages(realloc(elements, count * size), count * size) : NULL;
+    if (elements)
+        memcpy(array, &elements, sizeof elements);
+    return elements;
 }
 
 bool grow_room(void *array, size_t *room, size_t wanted, size_t size)

@@ -12,18 +12,18 @@
 enum { FLAGS = O_RDONLY | O_CLOEXEC | O_NONBLOCK | O_NOCTTY };
 
 /* The path /proc/self/fd/N of an open file; opening that path opens the same file. */
-typedef struct shown {
+typedef struct fd_path {
     char name[32];
-} shown;
+} fd_path;
 
-static shown show(int fd)
+static fd_path fd_path_of(int fd)
 {
-    shown s;
+    fd_path s;
     snprintf(s.name, sizeof s.name, "/proc/self/fd/%d", fd);
     return s;
 }
 
-static bool lies_below(const char *name, const char *root)
+static bool is_below(const char *name, const char *root)
 {
     char real[PATH_MAX];
     const size_t length = strlen(root);
@@ -40,9 +40,9 @@ int below_open(const char *path, const char *root)
     const int place = open(path, O_PATH | O_CLOEXEC); /* O_PATH has no side effects, even on devices */
     if (place < 0)
         return -1;
-    const shown file = show(place);
+    const fd_path file = fd_path_of(place);
     int fd = -1, error = EXDEV;
-    if (lies_below(file.name, root)) {
+    if (is_below(file.name, root)) {
         fd = open(file.name, FLAGS);
         error = errno;
     }

@@ -32,8 +32,8 @@ uint64_t memory_budget_limit(void)
 
 /* ---- free memory ---- */
 
-/* The number after `name` at the beginning of a line of a file; without a name, the file's first number. False if there
- * is none ("max"). */
+/* Reads the number after `name` at the beginning of a line of a file; with an empty name, the file's first number.
+ * False if there is none ("max"). */
 static bool read_number(const char *root, const char *path, const char *name, uint64_t *value)
 {
     char place[1600], line[512];
@@ -59,7 +59,7 @@ static uint64_t least(uint64_t a, uint64_t b)
 
 /* The names of the files of one group: cgroup 2 (Documentation/admin-guide/cgroup-v2.rst), and 1 (cgroup-v1). */
 static const struct group_files {
-    const char *limit, *used, *dropped; /* dropped: in memory.stat, what can be dropped */
+    const char *limit, *used, *dropped; /* dropped: the key in memory.stat for pages that can be dropped */
 } version[2] = {{"memory.max", "memory.current", "inactive_file "},
                 {"memory.limit_in_bytes", "memory.usage_in_bytes", "total_inactive_file "}};
 
@@ -106,8 +106,8 @@ uint64_t memory_budget_free(const char *root, uint64_t address_space)
     return left;
 }
 
-/* Pages of the process, in bytes: all (0), or those in memory (1). */
-static uint64_t own_bytes(int which)
+/* Memory of the process in bytes: all pages (0), or the resident ones (1). */
+static uint64_t process_bytes(int which)
 {
     unsigned long long pages[2] = {0, 0};
     FILE *file = fopen("/proc/self/statm", "re");
@@ -124,7 +124,7 @@ static uint64_t address_space_left(void)
     if (getrlimit(RLIMIT_AS, &space) != 0 || space.rlim_cur == RLIM_INFINITY)
         return UINT64_MAX;
     const uint64_t most = (uint64_t)space.rlim_cur;
-    return most - least(most, own_bytes(0));
+    return most - least(most, process_bytes(0));
 }
 
 memory_room memory_budget_snapshot(void)
@@ -145,10 +145,10 @@ uint64_t memory_budget_left(bool *chosen)
         *chosen = assumed.chosen;
         return assumed.left;
     }
-    const uint64_t given = atomic_load(&limit);
-    *chosen = given > 0;
-    if (given > 0)
-        return given - least(given, own_bytes(1));
+    const uint64_t budget = atomic_load(&limit);
+    *chosen = budget > 0;
+    if (budget > 0)
+        return budget - least(budget, process_bytes(1));
     const uint64_t left = memory_budget_free("", address_space_left());
     return left == UINT64_MAX ? left : left / 4 * 3;
 }
@@ -169,7 +169,7 @@ status memory_budget_check(uint64_t bytes, const char *remedy, diagnostic *why, 
     va_end(list);
     memory_text(bytes, needed);
     memory_text(left, room);
-    snprintf(advice, sizeof advice, "%s, or %s", remedy, chosen ? "raise --memory-limit" : "give a --memory-limit");
+    snprintf(advice, sizeof advice, "%s, or %s", remedy, chosen ? "raise --memory-limit" : "set --memory-limit");
     return diagnose(why, STATUS_BAD_INPUT, advice, "%s needs about %s of memory, more than the %s that %s", name,
                     needed, room, chosen ? "--memory-limit leaves" : "are three quarters of what is free");
 }
@@ -226,7 +226,7 @@ void disk_room_add(disk_room *to, double count, double least_bytes, double most_
     to->most_bytes += count * (ceil(most_bytes / BLOCK_BYTES) * BLOCK_BYTES);
 }
 
-/* The folder above; false at the end. */
+/* Shortens the path to its parent folder; false if there is none. */
 static bool shorten(char *path)
 {
     char *slash = strrchr(path, '/');

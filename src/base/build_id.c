@@ -1,3 +1,4 @@
+/* The identity of this build, from macros that the Makefile defines. */
 #include "base/build_id.h"
 
 #ifndef CUVETTE_BUILD_ID

@@ -5,7 +5,7 @@
 #include <time.h>
 
 static _Thread_local cancel_token *current;
-static _Thread_local char self; /* its address names the thread */
+static _Thread_local char self; /* its address identifies the thread */
 
 void cancel_begin(cancel_token *t)
 {

@@ -21,7 +21,7 @@
 
 extern char **environ;
 
-static int set_attributes(posix_spawnattr_t *attributes, bool own_group)
+static int set_attributes(posix_spawnattr_t *attributes, bool new_group)
 {
     sigset_t none, all;
     sigemptyset(&none);
@@ -30,11 +30,11 @@ static int set_attributes(posix_spawnattr_t *attributes, bool own_group)
     posix_spawnattr_setsigdefault(attributes, &all);
     posix_spawnattr_setpgroup(attributes, 0);
     return posix_spawnattr_setflags(
-        attributes, (short)(POSIX_SPAWN_SETSIGMASK | POSIX_SPAWN_SETSIGDEF | (own_group ? POSIX_SPAWN_SETPGROUP : 0)));
+        attributes, (short)(POSIX_SPAWN_SETSIGMASK | POSIX_SPAWN_SETSIGDEF | (new_group ? POSIX_SPAWN_SETPGROUP : 0)));
 }
 
 static int spawn(pid_t *pid, const char *program, char *const *arguments, char *const *environment, int out, int err,
-                 bool own_group)
+                 bool new_group)
 {
     posix_spawn_file_actions_t actions;
     posix_spawnattr_t attributes;
@@ -43,7 +43,7 @@ static int spawn(pid_t *pid, const char *program, char *const *arguments, char *
         return error;
     error = posix_spawnattr_init(&attributes);
     if (!error) {
-        error = set_attributes(&attributes, own_group);
+        error = set_attributes(&attributes, new_group);
         error = error ? error : posix_spawn_file_actions_addopen(&actions, 0, "/dev/null", O_RDONLY, 0);
         error = error ? error : posix_spawn_file_actions_adddup2(&actions, out, 1);
         error = error ? error : posix_spawn_file_actions_adddup2(&actions, err, 2);
@@ -55,28 +55,28 @@ static int spawn(pid_t *pid, const char *program, char *const *arguments, char *
     return error;
 }
 
-int spawn_program(pid_t *pid, const char *program, char *const *arguments, int out, int err, bool own_group)
+int spawn_program(pid_t *pid, const char *program, char *const *arguments, int out, int err, bool new_group)
 {
-    return spawn(pid, program, arguments, environ, out, err, own_group);
+    return spawn(pid, program, arguments, environ, out, err, new_group);
 }
 
-/* The environment variable with the process that started this one, which ends with it. */
+/* The environment variable with the id of the parent process, with which this process ends. */
 #define PARENT "CUVETTE_PARENT"
 
 int spawn_bound(pid_t *pid, const char *program, char *const *arguments, int out, int err)
 {
-    char own[64];
+    char variable[64];
     size_t count = 0;
-    snprintf(own, sizeof own, PARENT "=%ld", (long)getpid());
+    snprintf(variable, sizeof variable, PARENT "=%ld", (long)getpid());
     while (environ && environ[count])
         count++;
-    char **with_own = calloc(count + 2, sizeof *with_own); /* not setenv, which is not thread-safe */
-    if (!with_own)
+    char **extended = calloc(count + 2, sizeof *extended); /* not setenv, which is not thread-safe */
+    if (!extended)
         return ENOMEM;
-    memcpy(with_own, environ, count * sizeof *with_own);
-    with_own[count] = own;
-    const int error = spawn(pid, program, arguments, with_own, out, err, false);
-    free(with_own);
+    memcpy(extended, environ, count * sizeof *extended);
+    extended[count] = variable;
+    const int error = spawn(pid, program, arguments, extended, out, err, false);
+    free(extended);
     return error;
 }
 
@@ -97,7 +97,7 @@ enum { OUTPUT_MAX = 16384, POLL_MS = 100 /* how often the token is read */ };
 
 typedef struct child {
     pid_t pid;
-    int pidfd; /* of the process */
+    int pidfd; /* -1 if the kernel provides none */
     int out;   /* our end of the output pipe; non-blocking */
     char *output;
     size_t length;
@@ -149,9 +149,9 @@ static bool wait_child(child *c, double limit_s)
     const double deadline_s = now_s() + limit_s;
     bool open = true;
     while (now_s() < deadline_s && !cancel_asked()) {
-        struct pollfd both[] = {{.fd = open ? c->out : -1, .events = POLLIN}, {.fd = c->pidfd, .events = POLLIN}};
-        poll(both, 2, POLL_MS);
-        if (both[0].revents)
+        struct pollfd watched[] = {{.fd = open ? c->out : -1, .events = POLLIN}, {.fd = c->pidfd, .events = POLLIN}};
+        poll(watched, 2, POLL_MS);
+        if (watched[0].revents)
             open = read_output(c);
         siginfo_t ended = {.si_pid = 0};
         if (waitid(P_PID, (id_t)c->pid, &ended, WEXITED | WNOHANG | WNOWAIT) != 0 || ended.si_pid == c->pid)

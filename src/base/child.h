@@ -7,16 +7,17 @@
 #include <sys/types.h>
 
 /* Starts a program whose output and errors go to the given descriptors; the caller waits for it. program: its path.
- * arguments: from its name on; NULL-terminated. own_group: it leads its own process group. Returns 0 or an errno. */
-int spawn_program(pid_t *pid, const char *program, char *const *arguments, int out, int err, bool own_group);
+ * arguments: from its name on; NULL-terminated. new_group: the program leads a new process group. Returns 0 or an
+ * errno. */
+int spawn_program(pid_t *pid, const char *program, char *const *arguments, int out, int err, bool new_group);
 
-/* The same for another `cuvette`, which the kernel ends when this thread has ended, however it did: it must stop
- * measuring when its caller has gone, and not run together with its successor. One thread at a time calls it. */
+/* The same for another `cuvette`, which the kernel kills when this thread ends for any reason: a study must not
+ * continue without its caller, nor at the same time as its successor. Only one thread at a time may call it. */
 int spawn_bound(pid_t *pid, const char *program, char *const *arguments, int out, int err);
-/* The other end: the program calls it first, and ends at once if it returns false: the parent has ended already. */
+/* The child calls this first, and exits at once if it returns false: the parent has already ended. */
 bool spawn_follow_parent(void);
 
-/* Runs a program to its end, in a process group of its own that is killed with it. arguments[0] is its path; the last
+/* Runs a program to its end, in a new process group, which is killed at its end. arguments[0] is its path; the last
  * element is NULL. *output: the first 16 KiB of its standard output and error, also after an error; the caller's, freed
  * with free; NULL when out of memory. *exit_code: -1 if a signal ended it. STATUS_FAILURE if the program cannot be
  * started, STATUS_INTERRUPTED after the time limit or a cancellation. */

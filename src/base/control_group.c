@@ -8,8 +8,8 @@
 
 enum { PATH_SIZE = 1200 };
 
-/* An error that may be temporary, unlike that of a file that does not exist or may not be read. */
-static int passing(int error)
+/* Returns an error that may be temporary; 0 for others, such as a missing or unreadable file. */
+static int temporary_error(int error)
 {
     return error == EMFILE || error == ENFILE || error == ENOMEM || error == EIO || error == EINTR ? error : 0;
 }
@@ -24,9 +24,9 @@ static bool has_word(const char *list, const char *word)
     return false;
 }
 
-/* The group and those that contain it, up to the root of the tree; group is cut at its slashes. In a container the tree
- * begins at the container's group, and the outer part of the path does not exist. */
-static void each_above(const char *tree, char *group, int version, control_group_visit *visit, void *context)
+/* Visits the group and the groups that contain it, up to the root of the tree; cuts `group` at its slashes. In a
+ * container the tree begins at the container's group, and the outer folders do not exist. */
+static void visit_with_ancestors(const char *tree, char *group, int version, control_group_visit *visit, void *context)
 {
     for (;;) {
         char folder[PATH_SIZE];
@@ -48,13 +48,13 @@ int control_group_each(const char *root, const char *controller, control_group_v
     snprintf(path, sizeof path, "%.200s/proc/self/cgroup", root);
     FILE *file = fopen(path, "re");
     if (!file) {
-        const int error = passing(errno);
+        const int error = temporary_error(errno);
         snprintf(tree, sizeof tree, "/sys/fs/cgroup/%s", controller);
         visit(context, "/sys/fs/cgroup", 2);
         visit(context, tree, 1);
         return error;
     }
-    /* "0::/path" of version 2, "5:cpu,cpuacct:/path" of version 1 */
+    /* version 2 writes "0::/path", version 1 "5:cpu,cpuacct:/path" */
     while (fgets(line, sizeof line, file)) {
         char *controllers = strchr(line, ':'), *group = controllers ? strchr(controllers + 1, ':') : NULL;
         if (!group)
@@ -62,13 +62,13 @@ int control_group_each(const char *root, const char *controller, control_group_v
         *group++ = 0;
         group[strcspn(group, "\n")] = 0;
         if (controllers[1] == 0) {
-            each_above("/sys/fs/cgroup", group, 2, visit, context);
+            visit_with_ancestors("/sys/fs/cgroup", group, 2, visit, context);
         } else if (has_word(controllers + 1, controller)) {
             snprintf(tree, sizeof tree, "/sys/fs/cgroup/%s", controller);
-            each_above(tree, group, 1, visit, context);
+            visit_with_ancestors(tree, group, 1, visit, context);
         }
     }
-    const int error = ferror(file) ? passing(errno) : 0;
+    const int error = ferror(file) ? temporary_error(errno) : 0;
     fclose(file);
     return error;
 }
@@ -85,12 +85,12 @@ static bool read_text(reader *r, const char *folder, const char *name, char *tex
     snprintf(path, sizeof path, "%.200s%s/%s", r->root, folder, name);
     FILE *file = fopen(path, "re");
     if (!file) {
-        r->error = r->error ? r->error : passing(errno);
+        r->error = r->error ? r->error : temporary_error(errno);
         return false;
     }
     const bool found = fgets(text, (int)size, file) != NULL;
     if (ferror(file) && !r->error)
-        r->error = passing(errno);
+        r->error = temporary_error(errno);
     fclose(file);
     return found;
 }
@@ -109,9 +109,10 @@ static void add_cpu(void *context, const char *folder, int version)
         quota = strtoll(text, NULL, 10); /* -1: none */
         period = strtoll(period_text, NULL, 10);
     }
-    const control_group_limits *now = r->limits;
+    const control_group_limits *tightest = r->limits;
     if (quota > 0 && period > 0 &&
-        (!now->quota_us || (double)quota / (double)period < (double)now->quota_us / (double)now->period_us)) {
+        (!tightest->quota_us ||
+         (double)quota / (double)period < (double)tightest->quota_us / (double)tightest->period_us)) {
         r->limits->quota_us = quota;
         r->limits->period_us = period;
     }
@@ -119,7 +120,7 @@ static void add_cpu(void *context, const char *folder, int version)
 
 static void add_memory(void *context, const char *folder, int version)
 {
-    /* version 1 has the largest multiple of a page that fits into a signed number where there is no limit */
+    /* without a limit, version 1 shows the largest multiple of a page that fits into a signed number */
     const uint64_t none = (uint64_t)1 << 62;
     reader *r = context;
     char text[64];

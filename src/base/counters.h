@@ -16,13 +16,14 @@
 enum {
     COUNTERS_DEPTH_MAX = 64, /* deeper rays are counted with those of this depth */
     COUNTERS_SOLID_MAX = 64, /* the first solids of a scene: only these are counted one by one */
-    COUNTERS_FACTORS = 9     /* of undersampled light */
+    COUNTERS_FACTORS = 9     /* entries of `undersampled` */
 };
 
-/* Throughput is summed in fixed point, CUT_ONE = 1.0, so that the order of summation does not matter. */
+/* The throughput of cut rays is summed in fixed point, COUNTERS_CUT_ONE for 1.0, so that the order of summation does
+ * not matter. */
 #define COUNTERS_CUT_ONE 68719476736.0 /* 2^36 */
 
-/* The tests of queries of meshes' hierarchies, each ray counted as if it were the only one of its packet: see
+/* Intersection tests in the hierarchies of meshes. Each ray counts as if it were alone in its packet: see
  * hierarchy_count in geometry/hierarchy/hierarchy.h. */
 typedef struct query_counts {
     uint64_t rays;      /* queries of one ray each */
@@ -37,22 +38,22 @@ typedef struct ray_counters {
     uint64_t by_depth[COUNTERS_DEPTH_MAX + 1]; /* camera, reflected and refracted rays by depth; the last: and deeper */
     uint64_t total_internal;                   /* total internal reflections */
     uint64_t cut_depth, cut_weight;            /* rays not traced: beyond the last depth; under min_weight */
-    int64_t cut_depth_throughput[3];           /* their throughput, RGB, in units of 1/COUNTERS_CUT_ONE */
+    int64_t cut_depth_throughput[3];           /* RGB throughput of cut_depth, in units of 1/COUNTERS_CUT_ONE */
     int64_t cut_weight_throughput[3];
-    /* the photons' light in the film that is narrower than its samples may see, summed over pixels and channels, in the
-     * same units: by the factor along a side by which samples would have to be closer; [0]: more than the others */
+    /* light of photons that is too narrow for the distance of the film's samples, summed over pixels and channels, in
+     * the same units: by the factor along a side by which samples would have to be closer; [0]: a larger factor */
     int64_t undersampled[COUNTERS_FACTORS];
-    /* rays tested against the solid; 0 for one that a hierarchy finds (geometry/regions/solid_tree.h). Shadow rays
-     * count only for solids that can reduce light by themselves, and only once, without the second test of the few
-     * undecided ones */
+    /* rays tested against the solid; 0 for a solid in a hierarchy (geometry/regions/solid_tree.h). Shadow rays count
+     * only for solids that can attenuate light without another solid, and once each: the second test of an undecided
+     * ray does not count */
     uint64_t tests[COUNTERS_SOLID_MAX];
     uint64_t hits[COUNTERS_SOLID_MAX];       /* hits on the solid's interfaces, without shadow rays and photons */
     uint64_t first_hits[COUNTERS_SOLID_MAX]; /* camera rays whose first interface is on the solid */
     query_counts queries;                    /* 0 without render.count_tests */
 } ray_counters;
 
-/* Throughput (0 .. 1) in those units, to the nearest; by the bits of 1.5 2^52 + v, a conversion that every instruction
- * set has. */
+/* Throughput (0 .. 1) rounded to units of 1/COUNTERS_CUT_ONE, by the bits of 1.5 2^52 + v: a conversion that every
+ * instruction set supports. */
 static inline int64_t counters_cut_units(double throughput)
 {
     return lanes_bits(throughput * COUNTERS_CUT_ONE + 6755399441055744.0) - lanes_bits(6755399441055744.0);

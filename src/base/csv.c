@@ -87,7 +87,7 @@ void csv_line_free(csv_line *line)
     *line = (csv_line){0};
 }
 
-/* Stores the first `most` fields only. */
+/* csv_split that stores at most `most` fields. */
 static size_t split_first(char *text, char **fields, size_t most)
 {
     size_t count = 0;
@@ -155,8 +155,8 @@ static bool split_row(csv *table, size_t row)
 {
     static char missing[] = "NA";
     char **fields = table->fields + row * table->column_count;
-    const bool whole = !memchr(table->raw + table->start[row], 0, table->start[row + 1] - table->start[row]);
-    if (whole && split_first(table->split + table->start[row], fields, table->column_count) == table->column_count)
+    const bool complete = !memchr(table->raw + table->start[row], 0, table->start[row + 1] - table->start[row]);
+    if (complete && split_first(table->split + table->start[row], fields, table->column_count) == table->column_count)
         return true;
     for (size_t i = 0; i < table->column_count; i++)
         fields[i] = missing;

@@ -1,6 +1,6 @@
 /* Comma-separated values (RFC 4180), restricted to fields without line breaks. In a file of this program a line is
- * complete if and only if its newline is present; other programs and people leave out the last one, end lines with CR
- * LF, and begin with a byte order mark, which csv_read_any accepts. Ownership: csv_read allocates, csv_destroy
+ * complete if and only if its newline is present; other programs and people leave out the last newline, end lines with
+ * CR LF, and begin with a byte order mark, which csv_read_any accepts. Ownership: csv_read allocates, csv_destroy
  * releases; a csv_line is released with csv_line_free. */
 #pragma once
 
@@ -8,7 +8,7 @@
 #include <stdbool.h>
 #include <stdint.h>
 
-/* A line under construction. Running out of memory sets failed, and later calls do nothing. */
+/* The text of one or more lines under construction. Running out of memory sets failed, and later calls do nothing. */
 typedef struct csv_line {
     char *text;
     size_t size, capacity;
@@ -32,17 +32,17 @@ size_t csv_complete_size(const char *text, size_t size);
 /* The complete lines of a file. */
 typedef struct csv {
     char *raw;
-    size_t size; /* the file's bytes; whole is csv_complete_size of them */
-    size_t whole;
-    char *split; /* the same bytes split into fields; owned */
+    size_t size;  /* bytes of the file */
+    size_t whole; /* csv_complete_size of raw */
+    char *split;  /* the same bytes split into fields; owned */
     size_t column_count;
     char **header; /* column_count names */
     size_t row_count;
     char **fields; /* row_count * column_count fields, after the header */
     size_t *start; /* offset of row i in raw; start[row_count] = whole */
-    bool mended;   /* csv_read_any: raw is not what the file has, but the same in the form of this program */
-    bool torn; /* there is a last line without its newline, or, of csv_read_any, without its fields; it is left out */
-    bool *broken; /* csv_read_rows: row i has another number of fields or invalid quotes; its fields are NA */
+    bool mended;   /* csv_read_any: raw differs from the file, because it was converted to the form of this program */
+    bool torn;     /* the last line is incomplete and left out: no newline or, with csv_read_any, too few fields */
+    bool *broken;  /* csv_read_rows: row i has another number of fields or invalid quotes; its fields are NA */
 } csv;
 
 /* STATUS_OK and *out = NULL if the file does not exist. STATUS_BAD_INPUT if a row does not have as many fields as the
@@ -50,8 +50,8 @@ typedef struct csv {
 status csv_read(const char *path, csv **out, diagnostic *why);
 /* The same for a file below root (base/file.h) that people and other programs write. */
 status csv_read_any(const char *path, const char *root, csv **out, diagnostic *why);
-/* As csv_read, for a file below root, but rows with another number of fields are no error. A byte order mark and CR LF
- * are: they are not what the program wrote. */
+/* As csv_read, for a file below root, but rows with another number of fields are no error. A byte order mark or CR LF
+ * is an error: another program has rewritten the file. */
 status csv_read_rows(const char *path, const char *root, csv **out, diagnostic *why);
 void csv_destroy(csv *table);
 

@@ -63,7 +63,8 @@ static status read_descriptor(int fd, const char *path, size_t limit, size_t exp
         used += (size_t)got;
         if (used > limit) {
             free(buffer);
-            return diagnose_at(why, path, STATUS_BAD_INPUT, NULL, "the file is larger than %zu bytes", limit);
+            return diagnose_at(why, path, STATUS_BAD_INPUT, "use a smaller file", "the file is larger than %zu bytes",
+                               limit);
         }
         if (used == capacity) {
             capacity = capacity > limit / 2 ? limit + 1 : capacity * 2 + 4096;
@@ -115,17 +116,17 @@ status file_read_below(const char *path, const char *root, size_t limit, char **
 
 enum { NAMES_MAX = 10000 };
 
-/* Short, because the name of the target may be as long as the file system allows. */
+/* Returns a short name, because the name of the target may be as long as the file system allows. */
 static char *name_at(const char *path, const char *ending, unsigned n)
 {
     char host[256] = "", name[64];
     gethostname(host, sizeof host - 1);
     const uint64_t hash = hash_finish(hash_bytes(HASH_START, host, strlen(host)));
     snprintf(name, sizeof name, ".cuvette-%08x-%u.part%.16s", (unsigned)(hash >> 32), n, ending);
-    char *whole = file_next_to(path, name);
-    if (!whole)
+    char *full = file_next_to(path, name);
+    if (!full)
         errno = ENOMEM;
-    return whole;
+    return full;
 }
 
 static bool is_named(int fd, const char *name)
@@ -159,8 +160,8 @@ static void remove_all_left(const char *path, const char *ending, unsigned n)
     }
 }
 
-/* A file of that name and its lock. Some file systems have no locks: only O_EXCL then protects the name, and nobody
- * removes the file. */
+/* Creates and locks a file of this name. Some file systems have no locks: then only O_EXCL protects the name, and
+ * nobody removes the file. */
 static int create(const char *name)
 {
     const int fd = open(name, O_WRONLY | O_CREAT | O_EXCL | O_CLOEXEC, 0666);
@@ -174,31 +175,31 @@ static int create(const char *name)
     return -1;
 }
 
-/* Through /proc, because AT_EMPTY_PATH needs a capability. */
+/* Links through /proc, because AT_EMPTY_PATH needs a capability. */
 static int link_name(int fd, const char *name)
 {
-    char own[64];
-    snprintf(own, sizeof own, "/proc/self/fd/%d", fd);
-    return linkat(AT_FDCWD, own, AT_FDCWD, name, AT_SYMLINK_FOLLOW);
+    char fd_path[64];
+    snprintf(fd_path, sizeof fd_path, "/proc/self/fd/%d", fd);
+    return linkat(AT_FDCWD, fd_path, AT_FDCWD, name, AT_SYMLINK_FOLLOW);
 }
 
-/* The first free name: for a new file (fd < 0), or for the open one. Returns the descriptor. */
+/* Finds the first free name, and creates a file there (fd < 0) or links the open one. Returns the descriptor. */
 static int reserve_name(const char *path, const char *ending, int fd, char **name)
 {
     for (unsigned n = 0; n < NAMES_MAX; n++) {
         *name = name_at(path, ending, n);
         if (!*name)
             return -1;
-        int taken;
+        int opened_fd;
         bool exists;
         do {
-            taken = fd < 0 ? create(*name) : link_name(fd, *name) == 0 ? fd : -1;
-            exists = taken < 0 && errno == EEXIST;
+            opened_fd = fd < 0 ? create(*name) : link_name(fd, *name) == 0 ? fd : -1;
+            exists = opened_fd < 0 && errno == EEXIST;
         } while (exists && remove_left(*name));
-        if (taken >= 0)
+        if (opened_fd >= 0)
             remove_all_left(path, ending, n + 1);
         if (!exists)
-            return taken;
+            return opened_fd;
         free(*name);
         *name = NULL;
     }
@@ -213,7 +214,7 @@ static int open_unnamed(const char *path)
     const int fd = folder ? open(folder, O_WRONLY | O_TMPFILE | O_CLOEXEC, 0666) : -1;
     free(folder);
     if (fd >= 0)
-        flock(fd, LOCK_EX | LOCK_NB); /* for the time when it has a temporary name */
+        flock(fd, LOCK_EX | LOCK_NB); /* protects the temporary name that it may get */
     return fd;
 }
 
@@ -240,7 +241,7 @@ int temporary_move(int fd, char **name, const char *path)
 
 /* ---- writing ---- */
 
-/* The file that path refers to after its symbolic links, which need not exist yet; NULL with errno. */
+/* The file that path refers to after symbolic links are followed; it need not exist. NULL with errno. */
 static char *resolve(const char *path)
 {
     char *current = strdup(path);
@@ -284,7 +285,7 @@ static int open_target(file_writer *writer)
         return open(resolved, O_WRONLY | O_CLOEXEC | O_NOCTTY); /* a device or pipe is written directly */
     if (exists && euidaccess(resolved, W_OK) != 0)
         return -1;
-    writer->whole = true;
+    writer->atomic = true;
     int fd = temporary_open(resolved, &writer->temporary);
     if (fd >= 0 && exists && fchmod(fd, about.st_mode & 0777) != 0 && errno != EPERM && errno != EOPNOTSUPP) {
         int error = errno;
@@ -337,14 +338,13 @@ void file_flush_folder(const char *path)
     free(folder);
 }
 
-/* The reason of a write that failed before, which the stream has lost: another write fails in the same way. The file is
- * discarded. */
+/* The errno of an earlier failed write, which the stream has lost: another write fails in the same way. */
 static int lost_reason(const file_writer *writer)
 {
-    return writer->whole && write(fileno(writer->stream), "", 1) < 0 ? errno : 0;
+    return writer->atomic && write(fileno(writer->stream), "", 1) < 0 ? errno : 0;
 }
 
-/* A temporary file gets its name while it is open, and so locked; after fsync, closing has no errors to report. */
+/* Renames a temporary file while it is open, and so locked; after fsync, closing reports no errors. */
 static int finish(file_writer *writer)
 {
     const int fd = fileno(writer->stream);
@@ -352,7 +352,7 @@ static int finish(file_writer *writer)
         return lost_reason(writer);
     if (fflush(writer->stream) != 0)
         return errno;
-    if (writer->whole && (fsync(fd) != 0 || temporary_move(fd, &writer->temporary, writer->path) != 0))
+    if (writer->atomic && (fsync(fd) != 0 || temporary_move(fd, &writer->temporary, writer->path) != 0))
         return errno;
     return 0;
 }
@@ -368,7 +368,7 @@ status file_writer_commit(file_writer *writer, diagnostic *why)
     bool failed = error != 0 || ferror(writer->stream) != 0;
     if (failed)
         remove_temporary(writer);
-    if (fclose(writer->stream) != 0 && !failed && !writer->whole) {
+    if (fclose(writer->stream) != 0 && !failed && !writer->atomic) {
         failed = true;
         error = errno;
     }
@@ -378,7 +378,7 @@ status file_writer_commit(file_writer *writer, diagnostic *why)
     else if (failed)
         code = diagnose_at(why, writer->path, STATUS_FAILURE, "check the free space on the disk",
                            "cannot write: a write failed");
-    else if (writer->whole)
+    else if (writer->atomic)
         file_flush_folder(writer->path);
     release(writer);
     return code;

@@ -7,7 +7,7 @@
 #include <stdbool.h>
 #include <stdio.h>
 
-/* Reads a regular file of at most limit bytes; *text is its bytes and a final 0, which *size does not count. */
+/* Reads a regular file of at most limit bytes; *text holds its bytes and a final 0, which *size does not count. */
 status file_read(const char *path, size_t limit, char **text, size_t *size, diagnostic *why);
 /* The same for a file below root (below_open); STATUS_BAD_INPUT for a file outside. */
 status file_read_below(const char *path, const char *root, size_t limit, char **text, size_t *size, diagnostic *why);
@@ -30,7 +30,7 @@ int below_open(const char *path, const char *root);
 typedef struct file_writer {
     FILE *stream;
     char *path, *temporary; /* temporary: NULL without a name */
-    bool whole;             /* false: a device, a pipe or standard output, which is written directly */
+    bool atomic;            /* false: a device, a pipe or standard output, which is written directly */
 } file_writer;
 
 status file_writer_open(file_writer *writer, const char *path, diagnostic *why);
@@ -44,22 +44,22 @@ status file_write(const char *path, const char *text, diagnostic *why);
 
 /* ---- temporary files ---- */
 
-/* A file that is written before it gets its name. Where the file system supports it (O_TMPFILE) the file has no name
- * until then, so that a process that is killed leaves nothing. Otherwise, and for the instant of a replacement, it is
- * .cuvette-HOST-N.part, perhaps with an ending, in the folder of its later name, and locked (flock) as long as its
- * writer lives: whoever needs such a name with that ending next in that folder removes the files without a writer. HOST
- * is a hash of the host's name, because the lock of a network file system may not reach other machines. Ownership:
- * *name is the caller's, freed with free. Errors: -1, with errno. */
+/* A file that is written before it gets its name. If the file system supports it (O_TMPFILE), the file has no name
+ * until then, so that a killed process leaves nothing. Otherwise, and for the instant of a replacement, its name is
+ * .cuvette-HOST-N.part, perhaps with an ending, in the folder of its later name, and its writer holds a lock (flock).
+ * The next writer of such a file in that folder removes those that nobody has locked. HOST is a hash of the host's
+ * name, because the lock of a network file system may not reach other machines. Ownership: *name is the caller's, freed
+ * with free. Errors: -1, with errno. */
 
 /* Opens an empty file for writing, to be moved to path. *name: NULL if it has no name. */
 int temporary_open(const char *path, char **name);
 
-/* For another program that writes it: always has a name, with an ending of at most 16 bytes after the others (".png").
- * The descriptor holds the lock; that program may truncate the file, but not replace it. */
+/* The same for a file that another program writes: it always has a name, which ends in `ending` (".png", at most 16
+ * bytes). The descriptor holds the lock; the program may truncate the file, but not replace it. */
 int temporary_open_named(const char *path, const char *ending, char **name);
 
-/* Moves the open file to path; a file there is replaced. The descriptor stays open. After an error *name is the name to
- * remove. */
+/* Moves the open file to path; a file there is replaced. The descriptor stays open. After an error the caller removes
+ * *name, unless it is NULL. */
 int temporary_move(int fd, char **name, const char *path);
 
 /* ---- names and folders ---- */

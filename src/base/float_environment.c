@@ -20,7 +20,7 @@ static unsigned control_now(void)
     return _mm_getcsr();
 }
 
-static void control_put_back(unsigned control)
+static void restore_control(unsigned control)
 {
     if (_mm_getcsr() != control)
         _mm_setcsr(control);
@@ -38,7 +38,7 @@ static unsigned control_now(void)
     return 0;
 }
 
-static void control_put_back(unsigned control)
+static void restore_control(unsigned control)
 {
     (void)control;
 }
@@ -63,7 +63,7 @@ void float_environment_enter(float_environment *outer)
 void float_environment_leave(const float_environment *outer)
 {
     if (outer->was_default)
-        control_put_back(outer->control);
+        restore_control(outer->control);
     else
         fesetenv(&outer->saved);
 }

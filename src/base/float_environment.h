@@ -20,6 +20,6 @@ typedef struct float_environment {
 /* Sets the calling thread's environment to the default: for the start of a thread or program. */
 void float_environment_set(void);
 
-/* The same, until `leave` restores the saved environment, without the exceptions raised in between. */
+/* enter sets the default until leave restores the saved environment; exceptions raised in between are dropped. */
 void float_environment_enter(float_environment *outer);
 void float_environment_leave(const float_environment *outer);

@@ -12,7 +12,7 @@
 #include <string.h>
 #include <unistd.h>
 
-static const char here;
+static const char here; /* its address identifies the file with this code */
 
 static char *find_near(const char *file, const char *const *places, size_t count, const char *name)
 {
@@ -65,7 +65,7 @@ static char *with_ending(const char *folder, const char *path, const char *endin
 }
 
 /* Examples are printed as experiments/..., the folder that an installation keeps in share/cuvette. A copy is not
- * offered where it would write over one that the user may have changed. */
+ * suggested if it would overwrite files that the user may have changed. */
 static void suggest_installed(const char *file, diagnostic *why)
 {
     char *all = exists("experiments") ? NULL : installed_folder("experiments");

@@ -42,7 +42,7 @@ status isa_choose(isa *out, diagnostic *why)
     const isa best = isa_best();
     const isa level = wanted && *wanted ? find(wanted) : best;
     if (level == ISA_COUNT)
-        return diagnose(why, STATUS_BAD_INPUT, "unset it, or use one of this machine's",
+        return diagnose(why, STATUS_BAD_INPUT, "unset it, or use one of these",
                         "CUVETTE_ISA=%s is not an instruction set; this architecture has%s", wanted, listed);
     if (level > best)
         return diagnose(why, STATUS_BAD_INPUT, "unset it, or choose a lower level",
@@ -55,7 +55,7 @@ status isa_named(const char *name, isa *out, diagnostic *why)
 {
     const isa level = find(name);
     if (level == ISA_COUNT)
-        return diagnose(why, STATUS_BAD_INPUT, "pass NULL for the best one, or one of this machine's",
+        return diagnose(why, STATUS_BAD_INPUT, "pass NULL for the best one, or use one of these",
                         "unknown instruction set '%.64s'; this architecture has%s", name, listed);
     if (level > isa_best())
         return diagnose(why, STATUS_BAD_INPUT, "pass NULL for the best supported one",

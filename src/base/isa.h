@@ -6,7 +6,8 @@
 #include "base/status.h"
 
 /* The instruction sets of this architecture, from the one that all its processors have to the best: X(set, ...) for
- * each. The Makefile compiles the kernels for the same list. Another architecture has one set, the compiler's own. */
+ * each. The Makefile compiles the kernels for the same list. Another architecture has one set, the compiler's
+ * default. */
 #if defined __x86_64__
 #define ISA_BASELINE sse2
 #define ISA_EACH(X, ...) X(sse2, __VA_ARGS__) X(avx2, __VA_ARGS__) X(avx512, __VA_ARGS__)
@@ -24,8 +25,8 @@
 #define ISA_MEMBER(set, ...) ISA_##set,
 typedef enum isa { ISA_EACH(ISA_MEMBER, ) ISA_COUNT, ISA_BASE = 0 } isa;
 
-/* What *_kernel.c defines as KERNEL(name), for each set: declared, as the members of an array, and for the baseline.
- * A function's type needs no `extern`. */
+/* The functions that *_kernel.c defines as KERNEL(name): ISA_DECLARE declares one per set, ISA_ARRAY lists them, and
+ * ISA_BASE_OF names the baseline's. A function's type needs no `extern`. */
 #define ISA_DECLARED(set, type, name) extern type name##_##set;
 #define ISA_DECLARE(type, name) ISA_EACH(ISA_DECLARED, type, name)
 #define ISA_ADDRESS(set, name) &name##_##set,
@@ -64,7 +65,7 @@ isa isa_best(void);
 /* The set to use: CUVETTE_ISA if set, otherwise the best one. STATUS_BAD_INPUT for an unknown set or one that this
  * processor does not support. */
 status isa_choose(isa *out, diagnostic *why);
-/* The same for a name that the caller of an engine gives. */
+/* The same for a name that the caller of the engine passes. */
 status isa_named(const char *name, isa *out, diagnostic *why);
 
 /* Such as "avx2". */

@@ -24,8 +24,8 @@ static const char *skip_digits(const char *c)
 /* sign? (digits ('.' digits?)? | '.' digits) ([eE] sign? digits)?, and nothing after it. */
 static bool is_decimal(const char *text)
 {
-    const char *whole = skip_sign(text), *c = skip_digits(whole);
-    bool has_digits = c > whole;
+    const char *integer = skip_sign(text), *c = skip_digits(integer);
+    bool has_digits = c > integer;
     if (*c == '.') {
         const char *fraction = c + 1;
         c = skip_digits(fraction);

@@ -7,11 +7,11 @@
 
 enum { NUMBER_TEXT_MAX = 32 };
 
-/* Parses a text, all of it, as a decimal number (no hex, no NaN, no infinity, no surrounding blanks), with '.' as the
+/* Parses a complete text as a decimal number (no hex, no NaN, no infinity, no surrounding blanks), with '.' as the
  * decimal point whatever LC_NUMERIC is. False if it is not a number or overflows. */
 bool number_parse_real(const char *text, double *value);
 
-/* Parses a text, all of it, as a decimal integer; false if it is not one or does not fit. "4.0" is not an integer. */
+/* Parses a complete text as a decimal integer; false if it is not one or does not fit. "4.0" is not an integer. */
 bool number_parse_int(const char *text, int64_t *value);
 
 /* The shortest of printf's %.15g, %.16g, %.17g that reads back as the same double ("0.1", "1e-09", "inf", "nan");

@@ -27,7 +27,7 @@ bool os_confine_is_off(void)
 
 /* ---- files: Landlock ---- */
 
-/* Of later versions than the headers of Debian 12. */
+/* Rights of versions that are newer than the headers of Debian 12. */
 #define ACCESS_TRUNCATE (UINT64_C(1) << 14) /* version 3 */
 #define NET_CONNECT_TCP (UINT64_C(1) << 1)  /* version 4 */
 typedef struct ruleset {
@@ -60,7 +60,7 @@ static ruleset known_rights(long version)
     return all;
 }
 
-/* Whether the error is a shortage, and not of a place that does not exist or may not be entered. */
+/* Whether the error is a shortage of resources, not a missing or forbidden path. */
 static bool is_shortage(int error)
 {
     return error == EMFILE || error == ENFILE || error == ENOMEM || error == EIO;
@@ -142,7 +142,7 @@ enum { SANITIZED = 1 };
 enum { SANITIZED = 0 };
 #endif
 
-/* The calls of memory, locks, signals to itself, clocks and the end of a thread. */
+/* The calls for memory, locks, signals to the process itself, clocks and the end of a thread. */
 static const long computing[] = {
     SYS_brk,           SYS_munmap,          SYS_mremap,       SYS_madvise,     SYS_futex,           SYS_sched_yield,
     SYS_rt_sigaction,  SYS_rt_sigprocmask,  SYS_rt_sigreturn, SYS_sigaltstack, SYS_gettid,          SYS_getpid,
@@ -153,7 +153,7 @@ static const long computing[] = {
 #endif
 };
 
-/* What reading adds: looking at files and descriptors, and the number of processing units. */
+/* The calls that CONFINE_READING adds: for files, descriptors and the number of processing units. */
 static const long reading[] = {
     SYS_read,       SYS_readv,     SYS_pread64, SYS_write,      SYS_writev,    SYS_close,
     SYS_fstat,      SYS_lseek,     SYS_statx,   SYS_newfstatat, SYS_fadvise64, SYS_getcwd,
@@ -238,7 +238,7 @@ static void put_head(program *p)
     put_return(p, SECCOMP_RET_ERRNO | EPERM);
 }
 
-/* No memory becomes code. */
+/* Memory cannot become executable. */
 static void put_memory(program *p)
 {
     put_flags(p, SYS_mprotect, 2, PROT_EXEC, false);
@@ -260,7 +260,7 @@ static void put_reading(program *p)
     put_value(p, SYS_fcntl, 1, F_GETFL);
     put_flags(p, SYS_clone, CLONE_FLAGS_AT, CLONE_THREAD, true);
 #ifdef SYS_clone3
-    /* Its flags are in memory, which a filter cannot read; the C library then uses clone. */
+    /* The flags of clone3 are in memory, which a filter cannot read; after ENOSYS the C library uses clone. */
     put(p, BPF_JMP | BPF_JEQ | BPF_K, SYS_clone3, 0, 1);
     put_return(p, SECCOMP_RET_ERRNO | ENOSYS);
 #endif

@@ -2,8 +2,9 @@
  * Landlock for files and outgoing TCP connections (Linux 5.13), seccomp for system calls. They hold for the calling
  * thread, and for the threads and processes that it starts later; other threads of the process keep theirs. Where the
  * kernel or a container refuses, the functions return false and nothing has changed: the caller continues unconfined.
- * Both also rule out new privileges by set-user-ID programs (no_new_privs). CUVETTE_SANDBOX=off in the environment,
- * valgrind, and for system calls a build with sanitizers, which need more, switch them off. */
+ * Both also rule out new privileges by set-user-ID programs (no_new_privs). They are off with CUVETTE_SANDBOX=off in
+ * the environment and under valgrind; the filter of system calls also in builds with sanitizers, which need more
+ * calls. */
 #pragma once
 
 #include <stdbool.h>
@@ -17,8 +18,8 @@ typedef struct confine_place {
     unsigned rights;
 } confine_place;
 
-/* From now on only these places; those that do not exist are skipped. Files that are open stay open. If it returns
- * false, errno is 0, or that of a shortage: memory, open files. */
+/* Restricts access to these places; places that do not exist are skipped. Open files stay open. If it returns false,
+ * errno is 0, or reports a shortage (memory, open files). */
 bool os_confine_files(const confine_place *places, size_t count);
 
 /* CONFINE_COMPUTING: memory, locks, clocks and the end of the thread; no files, no descriptors. CONFINE_READING: also
@@ -26,5 +27,5 @@ bool os_confine_files(const confine_place *places, size_t count);
 typedef enum confine_calls { CONFINE_COMPUTING, CONFINE_READING } confine_calls;
 bool os_confine_calls(confine_calls what);
 
-/* Whether it was switched off from outside. */
+/* Whether confinement is off, by the environment or valgrind. */
 bool os_confine_is_off(void);

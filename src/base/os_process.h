@@ -10,13 +10,12 @@ bool os_program_path(char path[PATH_MAX]);
 /* The number of processing units that the process may use now (its CPU affinity); 0 if it cannot be known. */
 int os_usable_units(void);
 
-/* A write to a pipe without a reader, or beyond the limit of file size, is an error of the write (EPIPE, EFBIG) instead
- * of the end of the process by SIGPIPE or SIGXFSZ. For programs: the library leaves signals to its host. */
+/* Makes a write to a pipe without a reader, or beyond the limit of file size, fail (EPIPE, EFBIG) instead of ending the
+ * process by SIGPIPE or SIGXFSZ. For programs: the library leaves signals to its host. */
 void os_signals_as_errors(void);
 
-/* Calls task(context) and returns its value. Where the limit of the stack is small (ulimit -s), the task gets a thread
- * with a stack of the usual size, and so do the threads that are created later. Cancelling the caller cancels it
- * (base/cancel.h). */
+/* Calls task(context) and returns its value. If the limit of the stack is small (ulimit -s), the task runs on a thread
+ * with a stack of the usual size, which later threads get, too. Cancelling the caller cancels it (base/cancel.h). */
 int os_call_with_stack(int (*task)(void *context), void *context);
 
 /* The kernel kills this process when the thread that started it ends. */

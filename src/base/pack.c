@@ -1,20 +1,22 @@
+/* Packing of values and arrays, padded to words and hashed. */
 #include "base/pack.h"
 
 #include "base/hash.h"
 #include <stdlib.h>
 #include <string.h>
 
-/* Words of the buffer through which bytes are hashed: they need not be aligned, nor be a multiple of words. */
+/* Size in words of the buffer through which bytes are hashed, because they may be unaligned or not a multiple of
+ * words. */
 enum { HASHED = 512 };
 
 static uint64_t hash_of(uint64_t hash, const void *bytes, size_t size)
 {
     int64_t words[HASHED];
     for (size_t done = 0; done < size; done += sizeof words) {
-        const size_t some = size - done < sizeof words ? size - done : sizeof words;
-        const size_t count = (some + PACK_WORD - 1) / PACK_WORD;
+        const size_t part = size - done < sizeof words ? size - done : sizeof words;
+        const size_t count = (part + PACK_WORD - 1) / PACK_WORD;
         words[count - 1] = 0;
-        memcpy(words, (const char *)bytes + done, some);
+        memcpy(words, (const char *)bytes + done, part);
         hash = hash_words(hash, words, count);
     }
     return hash;
@@ -55,7 +57,8 @@ status pack_get(pack_reader *r, void *bytes, size_t size, diagnostic *why)
     r->hash = hash_of(r->hash, bytes, size);
     if (padding)
         TRY(r->read(r->context, zeros, padding, why));
-    return memcmp(zeros, (char[PACK_WORD]){0}, PACK_WORD) == 0 ? STATUS_OK : pack_damaged(why, "its padding");
+    return memcmp(zeros, (char[PACK_WORD]){0}, PACK_WORD) == 0 ? STATUS_OK
+                                                               : pack_damaged(why, "the padding is not zero");
 }
 
 bool pack_holds(const pack_reader *r, uint64_t count, size_t size)
@@ -63,7 +66,7 @@ bool pack_holds(const pack_reader *r, uint64_t count, size_t size)
     return size == 0 || count <= r->left / size;
 }
 
-/* The length plus one; 0 for NULL. */
+/* Writes the length plus one, or 0 for NULL, before the text. */
 status pack_put_text(pack_writer *w, const char *text, diagnostic *why)
 {
     const uint64_t length = text ? strlen(text) + 1 : 0;

@@ -3,8 +3,8 @@
  * reads: it reads no more than the size of the sequence, so that callers can check a count before they allocate.
  *
  * A writer without a function only counts. The reader requests the same sizes in the same order as the writer wrote.
- * Ownership: both borrow the context; texts that are read are the caller's, released with free. Errors: those of the
- * functions; STATUS_BAD_INPUT for a sequence that is damaged or ends early. */
+ * Ownership: both borrow the context; texts that are read are the caller's, released with free. Errors: those of
+ * `write` and `read`; STATUS_BAD_INPUT for a sequence that is damaged or ends early. */
 #pragma once
 
 #include "base/status.h"
@@ -16,7 +16,7 @@ enum { PACK_WORD = 8 };
 typedef status pack_write(void *context, const void *bytes, size_t size, diagnostic *why);
 typedef status pack_read(void *context, void *bytes, size_t size, diagnostic *why);
 
-/* Begins with zeros, and the hash with HASH_START (base/hash.h). */
+/* Initialise to zeros, and the hash to HASH_START (base/hash.h). */
 typedef struct pack_writer {
     pack_write *write; /* NULL: only counts */
     void *context;
@@ -38,7 +38,7 @@ status pack_get(pack_reader *r, void *bytes, size_t size, diagnostic *why);
 status pack_put_text(pack_writer *w, const char *text, diagnostic *why);
 status pack_get_text(pack_reader *r, char **text, diagnostic *why);
 
-/* Whether that many elements of that size can still follow. */
+/* Whether `count` more elements of `size` bytes fit into the rest of the sequence. */
 bool pack_holds(const pack_reader *r, uint64_t count, size_t size);
 
 /* STATUS_BAD_INPUT, with the reason. */

@@ -35,7 +35,7 @@ typedef struct sobol_point {
     uint32_t x, y;
 } sobol_point;
 
-/* The order of the 32 bits reversed. */
+/* Reverses the order of the 32 bits. */
 static inline uint32_t sobol_reverse(uint32_t x)
 {
     x = (x & 0x55555555) << 1 | (x >> 1 & 0x55555555);
@@ -76,7 +76,8 @@ static inline uint64_t sobol_mix(uint64_t x)
     return x ^ x >> 31;
 }
 
-/* What a key determines: the order of its points, and the scrambling of each coordinate. Keys need not look random. */
+/* The seeds that a key determines: for the order of its points, and for the scrambling of each coordinate. Keys need
+ * not look random. */
 typedef struct sobol_seeds {
     uint32_t order, x, y;
 } sobol_seeds;

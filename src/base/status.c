@@ -133,7 +133,7 @@ const char *system_remedy(int error)
     }
 }
 
-static bool is_the_machines(int error)
+static bool is_fault_of_machine(int error)
 {
     return error == ENOSPC || error == EDQUOT || error == EFBIG || error == EMFILE || error == ENFILE || error == EIO ||
            error == EAGAIN;
@@ -148,6 +148,6 @@ status system_error(diagnostic *why, status otherwise, const char *path, const c
         diagnostic_locate(why, path, 0, 0);
     if (error == ENOMEM)
         return out_of_memory(why);
-    return diagnose(why, is_the_machines(error) ? STATUS_FAILURE : otherwise, remedy ? remedy : advice, "%s: %s", doing,
-                    reason ? reason : "unknown error");
+    return diagnose(why, is_fault_of_machine(error) ? STATUS_FAILURE : otherwise, remedy ? remedy : advice, "%s: %s",
+                    doing, reason ? reason : "unknown error");
 }

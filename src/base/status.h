@@ -40,7 +40,8 @@ status diagnose(diagnostic *why, status code, const char *remedy, const char *wh
 /* For steps with clean-up: makes the call if all succeeded so far, and stores its status. */
 #define THEN(code, call) ((void)((code) == STATUS_OK ? ((code) = (call)) : STATUS_OK))
 
-/* STATUS_FAILURE with the common text for out of memory; and the remedy, for texts that name what needs it. */
+/* STATUS_FAILURE with the common text for out of memory. MEMORY_REMEDY: for messages that name what needs the
+ * memory. */
 status out_of_memory(diagnostic *why);
 #define MEMORY_REMEDY "close other programs, or use a smaller scene or image"
 
@@ -63,7 +64,7 @@ char *diagnostic_text(const diagnostic *why, char *text, size_t size);
 const char *system_remedy(int error);
 
 /* Fills *why with "doing: reason" and a remedy. error: an errno. path: the place, or NULL to leave it unchanged.
- * Returns STATUS_FAILURE for what only the machine can lack (memory, room, open files, a sound disk), otherwise
- * `otherwise`, with the remedy `advice` if system_remedy has none. */
+ * Returns STATUS_FAILURE for faults of the machine (memory, disk space, open files, a damaged disk), otherwise
+ * `otherwise`. The remedy is `advice` if system_remedy has none. */
 status system_error(diagnostic *why, status otherwise, const char *path, const char *doing, int error,
                     const char *advice);

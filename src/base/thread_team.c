@@ -9,8 +9,8 @@
 
 struct thread_team {
     int size;
-    pid_t process; /* a child of fork has one thread: the others are its parent's */
-    worker_pool *others;
+    pid_t process; /* after fork, the child has only one thread */
+    worker_pool *pool;
     thread_team_task *task;
     void *context;
     size_t count;
@@ -27,7 +27,7 @@ static void work(thread_team *t, int member)
     }
 }
 
-static void join_in(void *team, int worker)
+static void work_as_worker(void *team, int worker)
 {
     work(team, worker + 1);
 }
@@ -37,8 +37,8 @@ thread_team *thread_team_create(int threads)
     thread_team *t = malloc(sizeof *t);
     if (!t)
         return NULL;
-    *t = (thread_team){.size = 1, .process = getpid(), .others = threads > 1 ? worker_pool_create(0) : NULL};
-    while (t->others && t->size < threads && worker_pool_reserve(t->others, t->size, NULL) == STATUS_OK)
+    *t = (thread_team){.size = 1, .process = getpid(), .pool = threads > 1 ? worker_pool_create(0) : NULL};
+    while (t->pool && t->size < threads && worker_pool_reserve(t->pool, t->size, NULL) == STATUS_OK)
         t->size++;
     return t;
 }
@@ -47,7 +47,7 @@ void thread_team_destroy(thread_team *t)
 {
     if (!t)
         return;
-    worker_pool_destroy(t->others);
+    worker_pool_destroy(t->pool);
     free(t);
 }
 
@@ -65,10 +65,10 @@ void thread_team_run(thread_team *t, thread_team_task *task, void *context, size
     t->count = count;
     atomic_store_explicit(&t->next, 0, memory_order_relaxed);
     if (t->size > 1)
-        worker_pool_begin(t->others, t->size - 1, join_in, t);
+        worker_pool_begin(t->pool, t->size - 1, work_as_worker, t);
     work(t, 0);
     if (t->size > 1)
-        worker_pool_end(t->others);
+        worker_pool_end(t->pool);
 }
 
 int thread_team_units(void)

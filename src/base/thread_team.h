@@ -1,7 +1,7 @@
-/* A parallel loop of one caller, who works too, on the threads of a worker pool (base/worker_pool.h). A team of one
- * starts no thread. If the system provides fewer threads than requested, the team is smaller; results must not depend
- * on its size. thread_team_create allocates, thread_team_destroy frees; for one caller at a time. Members work under
- * the cancellation of their caller (base/cancel.h). */
+/* A parallel loop on the threads of a worker pool (base/worker_pool.h) and on the calling thread. A team of one starts
+ * no thread. If the system provides fewer threads than requested, the team is smaller; results must not depend on its
+ * size. thread_team_create allocates, thread_team_destroy frees; for one caller at a time. Members work under the
+ * cancellation of their caller (base/cancel.h). */
 #pragma once
 
 #include <stddef.h>

@@ -54,7 +54,7 @@ static inline bool vec3_is_finite(vec3 v)
     return isfinite(v.x) && isfinite(v.y) && isfinite(v.z);
 }
 
-/* m v, and its transpose times v (the inverse, for a rotation). */
+/* m v, and the transpose of m times v (the inverse, for a rotation). */
 static inline vec3 mat3_apply(mat3 m, vec3 v)
 {
     return vec3_make(vec3_dot(m.row[0], v), vec3_dot(m.row[1], v), vec3_dot(m.row[2], v));

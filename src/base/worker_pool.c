@@ -45,7 +45,7 @@ worker_pool *worker_pool_create(size_t stack_bytes)
     return p;
 }
 
-/* In a child of fork: frees what belonged to threads that exist only in the parent, so that new ones are started. */
+/* In a child of fork: frees the workers, whose threads exist only in the parent, so that new ones are started. */
 static void forget_threads_of_parent(worker_pool *p)
 {
     if (p->process == getpid())

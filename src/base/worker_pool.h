@@ -1,9 +1,9 @@
 /* The worker pool: the threads of all parallel work. A persistent pool starts its threads once and wakes them for each
  * run in a tree (worker i wakes 2i+1 and 2i+2), so that a thousand of them do not queue up behind one waker. Otherwise
- * threads are created and joined for each run, as in the report. Workers follow the caller's cancellation
+ * threads are created and joined for each run, as in the published rod report. Workers follow the caller's cancellation
  * (base/cancel.h). base/thread_team.h is a loop on such a pool. Ownership: worker_pool_create allocates,
- * worker_pool_destroy joins and releases. One run at a time. In a child of fork, a pool that was not running starts
- * new threads.
+ * worker_pool_destroy joins and releases. One run at a time. In a child of fork, a pool that was not running starts new
+ * threads.
  *
  * All other threads run one function each, for a reason:
  *     image/codec.c                      the call is confined, and a confined thread cannot be used again
@@ -35,7 +35,7 @@ status worker_pool_reserve(worker_pool *p, int count, diagnostic *why);
 status worker_pool_run(worker_pool *p, int count, bool keep, worker_pool_task *task, void (*watch)(void *),
                        double every_s, void *context, diagnostic *why);
 
-/* The same for count > 0 threads that are waiting, while the calling thread works too: between begin and end. */
+/* The same on count > 0 waiting threads, while the calling thread works between begin and end. */
 void worker_pool_begin(worker_pool *p, int count, worker_pool_task *task, void *context);
 void worker_pool_end(worker_pool *p);
 

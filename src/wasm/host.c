@@ -27,9 +27,9 @@ status child_run(char *const *arguments, double limit_s, char **output, int *exi
                     arguments[0]);
 }
 
-int spawn_program(pid_t *pid, const char *program, char *const *arguments, int out, int err, bool own_group)
+int spawn_program(pid_t *pid, const char *program, char *const *arguments, int out, int err, bool new_group)
 {
-    (void)pid, (void)program, (void)arguments, (void)out, (void)err, (void)own_group;
+    (void)pid, (void)program, (void)arguments, (void)out, (void)err, (void)new_group;
     return ENOSYS;
 }
 

@@ -92,7 +92,7 @@ static void too_large_a_request_is_refused_with_its_estimate(void **state)
         assert_int_equal(memory_budget_check(2 * left, "use less", &why, "%d things", 3), STATUS_BAD_INPUT);
         assert_non_null(strstr(why.what, "3 things needs about "));
         assert_non_null(strstr(why.what, "three quarters of what is free"));
-        assert_string_equal(why.remedy, "use less, or give a --memory-limit");
+        assert_string_equal(why.remedy, "use less, or set --memory-limit");
     }
     assert_int_equal(memory_budget_check(MIB, "", &why, "little"), STATUS_OK);
     memory_budget_set(1);
