@@ -16,7 +16,7 @@ status codec_check_size(long long width, long long height, size_t file_bytes, di
     if (!sides || width * height > CODEC_PIXELS_MAX)
         return diagnose(why, STATUS_BAD_INPUT, "use sides of 1 to 65536 and at most 2^28 pixels in total",
                         "the image has %lld x %lld pixels", width, height);
-    if (width * height > CODEC_PIXELS_FREE && width * height / CODEC_PIXELS_A_BYTE > (long long)file_bytes)
+    if (width * height > CODEC_PIXELS_FREE && width * height / CODEC_PIXELS_PER_BYTE > (long long)file_bytes)
         return diagnose(why, STATUS_BAD_INPUT, "save a smaller image: its size does not match its contents",
                         "the image has %lld x %lld pixels in only %zu bytes", width, height, file_bytes);
     return STATUS_OK;

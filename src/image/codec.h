@@ -20,9 +20,9 @@
  * to 1, RFC 1951, eight pixels per byte), which expands a file of kilobytes to gigabytes; photographs and renderings
  * stay far below 64. */
 #define CODEC_PIXELS_FREE 16777216LL
-#define CODEC_PIXELS_A_BYTE 64LL
+#define CODEC_PIXELS_PER_BYTE 64LL
 
-/* STATUS_BAD_INPUT unless a file with that many bytes may have this size. */
+/* STATUS_BAD_INPUT unless a file of file_bytes may hold an image of this size. */
 status codec_check_size(long long width, long long height, size_t file_bytes, diagnostic *why);
 
 /* Creates an image of the size in the file, and the decoding table of its values 0..maximum. Both are the caller's,
@@ -33,7 +33,7 @@ status codec_begin(long long width, long long height, size_t file_bytes, unsigne
 /* Runs a function in a new thread that can only compute: it opens nothing, sends nothing and starts nothing
  * (base/os_confine.h), whatever a damaged file makes it do. It has access to the memory of the process, so this is a
  * second line of defence, weaker than the separate process of the importer; it costs 0.1 ms. If the thread cannot be
- * created or confined, the function runs without. Cancelling the caller cancels it (base/cancel.h), and it has the
+ * created or confined, the function runs unconfined. Cancelling the caller cancels it (base/cancel.h), and it has the
  * caller's memory budget. Signals are left to other threads. */
 void codec_run_confined(void (*work)(void *context), void *context);
 
@@ -42,10 +42,10 @@ void codec_run_confined(void (*work)(void *context), void *context);
 /* The sRGB-encoded value, correctly rounded to 0..maximum; 0 for NaN. */
 unsigned codec_quantize(float linear, unsigned maximum);
 
-/* The same for 0..255, faster: least[b] is the least linear value that is encoded as the byte b or a greater one
- * (least[256] is infinity). The floats from 2^-13 (less than least[1]) to 1 are cut into cells of equal sign, exponent
- * and first 7 bits of the mantissa; first[cell] is the byte of a cell's least value, and no cell has more than two
- * bytes. */
+/* codec_quantize for 0..255, faster: least[b] is the least linear value that is encoded as the byte b or a greater one
+ * (least[256] is infinity). The floats from 2^-13 (less than least[1]) to 1 are divided into cells of equal sign,
+ * exponent and first 7 bits of the mantissa; first[cell] is the byte of a cell's least value, and no cell has more than
+ * two bytes. */
 enum { CODEC_CELL_SHIFT = 16, CODEC_CELLS_FROM = 0x3900, CODEC_CELLS = 13 * 128 };
 typedef struct codec_bytes {
     float least[257];

@@ -89,7 +89,7 @@ status image_compare(const image *a, const image *b, image_comparison *out, diag
     TRY(compare_check(a, b, why));
     status code = STATUS_OK;
     size_t count = pixels_of(a);
-    enum { PLANES = 2 + 14 }; /* of this function, and of compare_flip, the larger of the others */
+    enum { PLANES = 2 + 14 }; /* of this function, and of compare_flip, which needs more than compare_ssim */
     TRY(memory_budget_check(count * PLANES * sizeof(double), "compare smaller ones", why,
                             "a comparison of images of %d x %d pixels", a->width, a->height));
     double *first = malloc(count * sizeof *first), *second = malloc(count * sizeof *second);

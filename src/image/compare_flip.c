@@ -12,8 +12,8 @@
 
 /* ---- the colour space: section 4.1 ---- */
 
-/* Linear sRGB to XYZ relative to its own white (D65). Each row is divided by the sum of its numerators and so sums to
- * 1. The fractions follow from the primaries of IEC 61966-2-1; the authors' implementation uses the same. */
+/* Linear sRGB to XYZ relative to the white of sRGB (D65). Each row is divided by the sum of its numerators and so sums
+ * to 1. The fractions follow from the primaries of IEC 61966-2-1; the authors' implementation uses the same. */
 static const double XYZ_OF_RGB[3][3] = {
     {10135552.0 / 23359437, 8788810.0 / 23359437, 4435075.0 / 23359437},
     {2613072.0 / 12288897, 8788810.0 / 12288897, 887015.0 / 12288897},
@@ -56,7 +56,7 @@ static double lab_root(double t)
     return t > delta * delta * delta ? elementary_pow(t, 1.0 / 3.0) : t / (3.0 * delta * delta) + 4.0 / 29.0;
 }
 
-/* Back to linear RGB, clamped to 0..1, and from there to CIELAB with Hunt's adjustment. */
+/* Converts opponent colours to linear RGB, clamps it to 0..1, and converts it to CIELAB with Hunt's adjustment. */
 static void flip_hunt_lab(const double opponent[3], double lab[3])
 {
     double xyz[3] = {opponent[0] + opponent[1], opponent[0], opponent[0] - opponent[2]}, rgb[3];
@@ -105,30 +105,30 @@ static double flip_color_error(const double a[3], const double b[3], double fart
 #define PIXELS_PER_DEGREE (3840.0 * PI / 180.0)
 
 /* The perceived features of an image, one plane each: filtered opponent colours, strength of edges and points. */
-enum { LUMINANCE, RED_GREEN, YELLOW_BLUE, EDGES, POINTS, SEEN };
-typedef struct sight {
-    double *plane[SEEN];
-} sight;
+enum { LUMINANCE, RED_GREEN, YELLOW_BLUE, EDGES, POINTS, FEATURE_COUNT };
+typedef struct features {
+    double *plane[FEATURE_COUNT];
+} features;
 
 /* Scratch planes of one size. */
 typedef struct work_planes {
     int width, height;
     size_t count;
     double *opponent[3], *scratch;
-    sight a, b;
+    features a, b;
     double *memory;
 } work_planes;
 
 static status lay_out_planes(work_planes *d, const image *img, diagnostic *why)
 {
-    enum { PLANES = 2 * SEEN + 4 };
+    enum { PLANES = 2 * FEATURE_COUNT + 4 };
     *d = (work_planes){.width = img->width, .height = img->height};
     d->count = (size_t)d->width * (size_t)d->height;
     d->memory = calloc(d->count, PLANES * sizeof *d->memory);
     if (!d->memory)
         return diagnose(why, STATUS_FAILURE, MEMORY_REMEDY, "out of memory for the FLIP error");
     double *next = d->memory;
-    for (int i = 0; i < SEEN; i++, next += 2 * d->count) {
+    for (int i = 0; i < FEATURE_COUNT; i++, next += 2 * d->count) {
         d->a.plane[i] = next;
         d->b.plane[i] = next + d->count;
     }
@@ -139,7 +139,7 @@ static status lay_out_planes(work_planes *d, const image *img, diagnostic *why)
 }
 
 /* Contrast sensitivity as Gaussians, section 4.1.1 with table 1: exp(-pi^2 x^2 / b) at x degrees has sigma sqrt(b / 2)
- * / pi, here in pixels. All extend to three sigmas of the widest. */
+ * / pi, here in pixels. All filters extend to three sigmas of the widest. */
 static convolve_taps sensitivity(double b)
 {
     const double widest = 0.04;
@@ -147,15 +147,15 @@ static convolve_taps sensitivity(double b)
     return convolve_gaussian(2 * radius + 1, sqrt(b / 2.0) / PI * PIXELS_PER_DEGREE);
 }
 
-/* The central value of a Gaussian normalised to sum 1 is the inverse of its sum before: the weight of its peak in the
- * plane. */
+/* The weight of a two-dimensional Gaussian with peak 1: the square of its sum along an axis, which is the inverse of
+ * the central value once the sum is normalised to 1. */
 static double weight_of_peak(const convolve_taps *gaussian)
 {
     double middle = gaussian->weight[gaussian->before];
     return 1.0 / (middle * middle);
 }
 
-static void filter_colors(const work_planes *d, const sight *s)
+static void filter_colors(const work_planes *d, const features *s)
 {
     convolve_taps luminance = sensitivity(0.0047), red_green = sensitivity(0.0053);
     convolve_taps wide = sensitivity(0.04), narrow = sensitivity(0.025);
@@ -210,7 +210,7 @@ static void detect(const work_planes *d, const convolve_taps *detector, const co
         strength[i] = sqrt(across[i] * across[i] + down[i] * down[i]);
 }
 
-static void perceive(const work_planes *d, const image *img, const sight *s)
+static void perceive(const work_planes *d, const image *img, const features *s)
 {
     for (size_t i = 0; i < d->count && !cancel_asked_at(i); i++) {
         double opponent[3];
@@ -225,14 +225,14 @@ static void perceive(const work_planes *d, const image *img, const sight *s)
     detect(d, &point, &smooth, d->opponent[1], d->opponent[2], s->plane[POINTS]);
 }
 
-static void lab_at(const sight *s, size_t at, double lab[3])
+static void lab_at(const features *s, size_t at, double lab[3])
 {
     double opponent[3] = {s->plane[LUMINANCE][at], s->plane[RED_GREEN][at], s->plane[YELLOW_BLUE][at]};
     flip_hunt_lab(opponent, lab);
 }
 
 /* Section 4.3: a difference of features amplifies that of colours. */
-static double error_at(const sight *a, const sight *b, size_t at, double farthest)
+static double error_at(const features *a, const features *b, size_t at, double farthest)
 {
     double lab_a[3], lab_b[3];
     lab_at(a, at, lab_a);

@@ -9,7 +9,7 @@
 
 enum { WINDOW = 11, MEAN_A = 0, MEAN_B, SQUARE_A, SQUARE_B, PRODUCT, SUMS };
 
-/* Index of the plane of each sum, and of a scratch plane. */
+/* A plane per windowed sum, and two scratch planes. */
 typedef struct statistics {
     int width, height;
     size_t count;

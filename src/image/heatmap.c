@@ -107,17 +107,17 @@ bool font_dot(char character, int column, int row)
 
 /* ---- the scale ---- */
 
-/* Checks every value; on success *largest is the maximum, and *whole is true if all are integers. */
-static status inspect(const double *values, size_t count, double *largest, bool *whole, diagnostic *why)
+/* Checks every value; on success *largest is the maximum, and *integers is true if all are integers. */
+static status inspect(const double *values, size_t count, double *largest, bool *integers, diagnostic *why)
 {
     *largest = 0.0;
-    *whole = true;
+    *integers = true;
     for (size_t i = 0; i < count; i++) {
         if (!(values[i] >= 0.0) || isinf(values[i]))
             return diagnose(why, STATUS_BAD_INPUT, "use finite values of at least 0",
                             "value %zu of the heat map is negative or not finite", i);
         *largest = values[i] > *largest ? values[i] : *largest;
-        *whole = *whole && values[i] == floor(values[i]);
+        *integers = *integers && values[i] == floor(values[i]);
     }
     return STATUS_OK;
 }
@@ -149,7 +149,7 @@ static double nth_smallest(const double *values, size_t count, size_t rank)
 status heatmap_scale_of(const double *values, size_t count, heatmap_scale *out, diagnostic *why)
 {
     double largest;
-    TRY(inspect(values, count, &largest, &out->whole, why));
+    TRY(inspect(values, count, &largest, &out->integers, why));
     /* the 99.5th percentile, by nearest rank; meaningless with very few values that are not 0 */
     const double percentile = nth_smallest(values, count, count - 1 - count / 200);
     out->cut = percentile > 0 && largest > 2 * percentile;
@@ -168,7 +168,7 @@ typedef struct key_layout {
     int scale, margin, bar_x, bar_width, bar_y, bar_height, tick, numbers_y, title_y, height;
 } key_layout;
 
-/* An image and the linear values of the 256 encoded ones. */
+/* An image, and the table that decodes 8-bit sRGB values to linear ones. */
 typedef struct canvas {
     image *img;
     const float *decoded;
@@ -236,7 +236,7 @@ static key_layout lay_out_key(int width)
     return key;
 }
 
-/* As many characters as fit; a title that is too long ends in three dots. */
+/* Draws as many characters of the title as fit; a title that is too long ends in three dots. */
 static void draw_title(const canvas *on, const key_layout *key, int top, const char *title)
 {
     char shown[256];
@@ -283,7 +283,7 @@ static void draw_key(const canvas *on, const key_layout *key, int top, const hea
     double before = -1.0;
     for (int quarter = 0; quarter <= (scale->end > 0 ? 4 : 0); quarter++) {
         double value = scale->end * quarter / 4.0;
-        value = scale->whole ? floor(value + 0.5) : value;
+        value = scale->integers ? floor(value + 0.5) : value;
         if (value > before)
             draw_tick(on, key, top, value, scale);
         before = value;

@@ -7,9 +7,9 @@
 
 /* The scale of the colours. */
 typedef struct heatmap_scale {
-    double end; /* value of the last colour; the first is 0 */
-    bool cut;   /* values above end have the last colour */
-    bool whole; /* all values are integers */
+    double end;    /* value of the last colour; the first is 0 */
+    bool cut;      /* values above end have the last colour */
+    bool integers; /* all values are integers */
 } heatmap_scale;
 
 /* The scale for count values, which must be as for heatmap_create. */

@@ -11,7 +11,8 @@
 #include <stdint.h>
 
 /* RGB, linear, rows from the top, pixel[(y * width + x) * 3 + channel]; 1.0 is white. coded_bits is 8 or 16 if
- * image_read decoded the pixels from sRGB values with that many bits, otherwise 0. tone: how 8 bits show it. */
+ * image_read decoded the pixels from sRGB values with that many bits, otherwise 0. tone: exposure and curve for files
+ * with 8 bits. */
 typedef struct image {
     int width, height;
     float *pixel;
@@ -28,11 +29,11 @@ void image_destroy(image *img);
 /* Adds a reference to an image that is constant from now on: the last image_destroy releases it. Thread safe. */
 image *image_retain(const image *img);
 
-/* An image as bytes (base/pack.h); its values are not checked. What is unpacked is the caller's. STATUS_BAD_INPUT for
- * damaged bytes, STATUS_FAILURE without memory. */
+/* Packs an image as bytes (base/pack.h), and unpacks it; pixel values are not checked. The caller owns the unpacked
+ * image. STATUS_BAD_INPUT for damaged bytes, STATUS_FAILURE without memory. */
 status image_pack(const image *img, pack_writer *to, diagnostic *why);
 status image_unpack(pack_reader *from, image **out, diagnostic *why);
-/* Whether pixels of that size, with sides that are allowed, can still follow. */
+/* Whether both sides are allowed, and the rest of the package can hold that many pixels of `pixel` bytes. */
 bool image_pack_holds(const pack_reader *from, int64_t width, int64_t height, size_t pixel);
 
 /* The sRGB transfer function, IEC 61966-2-1, and its inverse. The encoder clamps to 0..1. */
@@ -69,7 +70,7 @@ typedef struct image_rows {
 } image_rows;
 image_rows image_rows_of(const image *img);
 
-/* PNG with 8 bits and JPEG are shown with the image's tone; the others hold its values. PNG with 8 or 16 bits and JPEG
+/* PNG with 8 bits and JPEG are written with the image's tone, the other formats without. PNG with 8 or 16 bits and JPEG
  * (quality 92, 4:4:4) are sRGB-encoded, with a PNG sRGB chunk, correctly rounded, NaN as 0; PFM has linear,
  * little-endian floats. bits applies to PNG only. PNG is compressed with a thread per processing unit, at most 16; the
  * file does not depend on their number. After a cancellation (cancel_hurries) it is compressed less. */
@@ -83,15 +84,15 @@ status image_encode(const image *img, image_format format, int bits, bool fast, 
 status image_encode_rows(const image_rows *rows, image_format format, int bits, bool fast, unsigned char **bytes,
                          size_t *size, diagnostic *why);
 
-/* Adds what count image files with 8 bits may occupy on a disk. PFM has an exact size; of the others the least is that
- * of the best possible compression. */
+/* Adds the disk space of `count` image files with 8 bits. The size of PFM is exact; the least size of other formats
+ * assumes the best possible compression. */
 void image_room(image_format format, double width, double height, double count, disk_room *to);
 
 /* Whether the bytes begin as a PNG file does. */
 bool image_is_png(const void *bytes, size_t size);
 
-/* The text with that keyword before the pixels of a PNG file; nothing after it is read. STATUS_BAD_INPUT for a damaged
- * file; *text is NULL if there is none, or if it is longer than limit. Fresh memory. */
+/* Reads the text with that keyword before the pixels of a PNG file, into new memory; *text is NULL if there is none.
+ * STATUS_BAD_INPUT if the file is damaged before the pixels, or the text is damaged or longer than limit. */
 status image_png_text(const void *bytes, size_t size, const char *keyword, size_t limit, char **text, diagnostic *why);
 
 /* Reads PNG (any depth and kind; alpha is dropped after blending over black), JPEG (grey or RGB), PFM (colour or grey,

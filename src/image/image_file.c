@@ -94,7 +94,8 @@ status image_write_rows(const image_rows *rows, const char *path, int bits, diag
         return diagnose_at(why, path, STATUS_BAD_INPUT, "end the name in .png, .jpg, .jpeg or .pfm",
                            "unknown image format");
     if (format == IMAGE_PNG && bits != 8 && bits != 16)
-        return diagnose_at(why, path, STATUS_BAD_INPUT, "8 or 16", "a PNG image cannot have %d bits per channel", bits);
+        return diagnose_at(why, path, STATUS_BAD_INPUT, "use 8 or 16", "a PNG image cannot have %d bits per channel",
+                           bits);
     file_writer writer;
     TRY(file_writer_open(&writer, path, why));
     status code = write_as(rows, format, writer.stream, bits, false, why);
@@ -150,7 +151,7 @@ static status decode(const unsigned char *bytes, size_t size, image **out, int *
     case IMAGE_BMP: *bits = 8; return codec_bmp_read(bytes, size, out, why);
     case IMAGE_UNKNOWN: break;
     }
-    return diagnose(why, STATUS_BAD_INPUT, "give a PNG, JPEG, PFM or 24-bit BMP file", "%s",
+    return diagnose(why, STATUS_BAD_INPUT, "use a PNG, JPEG, PFM or 24-bit BMP file", "%s",
                     size == 0 ? "the file is empty" : "unknown image format");
 }
 
@@ -168,7 +169,7 @@ typedef struct decoding {
     status code;
 } decoding;
 
-static void decode_apart(void *of)
+static void decode_confined(void *of)
 {
     decoding *d = of;
     d->code = decode((const unsigned char *)d->bytes, d->size, d->out, &d->bits, d->why);
@@ -181,7 +182,7 @@ status image_read_below(const char *path, const char *root, image **out, int *fi
     *out = NULL;
     TRY(file_read_below(path, root, FILE_BYTES_MAX, &bytes, &size, why));
     decoding d = {.bytes = bytes, .size = size, .out = out, .why = why};
-    codec_run_confined(decode_apart, &d);
+    codec_run_confined(decode_confined, &d);
     free(bytes);
     const status code = d.code;
     const int bits = d.bits;

@@ -1,6 +1,6 @@
-/* PFM, Paul Debevec's portable float map: "PF" (colour) or "Pf" (grey), width height, a scale whose sign gives the byte
- * order (negative: little-endian), one blank, then floats, rows from the bottom. The absolute value of the scale is a
- * unit and is not applied, as in other readers. */
+/* PFM, Paul Debevec's portable float map: "PF" (colour) or "Pf" (grey), width height, a scale whose sign determines the
+ * byte order (negative: little-endian), one blank, then floats, rows from the bottom. The absolute value of the scale
+ * is a unit and is not applied, as in other readers. */
 #include "image/codec.h"
 
 #include "base/cancel.h"
@@ -77,7 +77,7 @@ static status read_pixels(const unsigned char *bytes, int channels, bool little,
             for (int channel = 0; channel < 3; channel++) {
                 pixel[channel] = read_float(bytes + (channels == 3 ? 4 * channel : 0), little);
                 if (!isfinite(pixel[channel]))
-                    return diagnose(why, STATUS_BAD_INPUT, NULL,
+                    return diagnose(why, STATUS_BAD_INPUT, "use an image with finite values",
                                     "the pixel in column %d, row %d from the top is not a finite number", x, y);
             }
             bytes += 4 * channels;
@@ -97,14 +97,15 @@ status codec_pfm_read(const unsigned char *bytes, size_t size, image **out, diag
     if (!read_word(&c, width_text) || !read_word(&c, height_text) || !read_word(&c, scale_text) ||
         !number_parse_int(width_text, &width) || !number_parse_int(height_text, &height) ||
         !number_parse_real(scale_text, &scale) || !(fabs(scale) > 0)) {
-        return diagnose(why, STATUS_BAD_INPUT, "the header has width, height and a non-zero scale",
+        return diagnose(why, STATUS_BAD_INPUT, "write width, height and a scale other than 0 into the header",
                         "the header of the PFM file is damaged");
     }
     c.at++;
     TRY(codec_check_size(width, height, size, why));
     size_t expected = (size_t)width * (size_t)height * (size_t)channels * 4, got = (size_t)(c.end - c.at);
     if (got != expected)
-        return diagnose(why, STATUS_BAD_INPUT, NULL, "the PFM file is %s: %zu bytes of pixels instead of %zu",
+        return diagnose(why, STATUS_BAD_INPUT, "copy the file again",
+                        "the PFM file is %s: %zu bytes of pixels instead of %zu",
                         got < expected ? "truncated" : "too long", got, expected);
     image *img;
     TRY(image_create((int)width, (int)height, &img, why));

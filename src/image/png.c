@@ -15,13 +15,13 @@
 
 /* ---- for reading and writing ---- */
 
-/* An error of libpng jumps back with its message kept, warnings are ignored, and the bytes come from memory. A job
- * starts with a png_library, which is the pointer that libpng hands back. */
+/* The state of libpng's callbacks: an error is stored and jumps back, warnings are ignored, and bytes are read from
+ * memory. It is the first member of each job, because libpng passes its address to the callbacks. */
 typedef struct png_library {
     png_structp png;
     png_infop info;
-    char message[256];          /* of libpng's error */
-    const unsigned char *bytes; /* of a file that is read */
+    char message[256];          /* libpng's error */
+    const unsigned char *bytes; /* the file to read */
     size_t size, used;
     int error;      /* errno when libpng ended */
     bool no_memory; /* an allocation of libpng or zlib failed, which is reported like damage */
@@ -29,9 +29,9 @@ typedef struct png_library {
 
 static __attribute__((noreturn)) void png_library_error(png_structp png, png_const_charp message)
 {
-    png_library *of = png_get_error_ptr(png);
-    of->error = errno;
-    snprintf(of->message, sizeof of->message, "%s", message);
+    png_library *library = png_get_error_ptr(png);
+    library->error = errno;
+    snprintf(library->message, sizeof library->message, "%s", message);
     png_longjmp(png, 1);
 }
 
@@ -43,9 +43,9 @@ static void png_library_warning(png_structp png, png_const_charp message)
 
 static png_voidp allocate_memory(png_structp png, png_alloc_size_t size)
 {
-    png_library *of = png_get_mem_ptr(png);
+    png_library *library = png_get_mem_ptr(png);
     void *memory = malloc(size);
-    of->no_memory |= !memory;
+    library->no_memory |= !memory;
     return memory;
 }
 
@@ -56,41 +56,41 @@ static void free_memory(png_structp png, png_voidp memory)
 }
 
 /* Creates png and info of a job for reading, or for writing; false: out of memory. */
-static bool png_library_read(png_library *of)
+static bool png_library_begin_read(png_library *library)
 {
-    of->png = png_create_read_struct_2(PNG_LIBPNG_VER_STRING, of, png_library_error, png_library_warning, of,
-                                       allocate_memory, free_memory);
-    of->info = of->png ? png_create_info_struct(of->png) : NULL;
-    return of->info;
+    library->png = png_create_read_struct_2(PNG_LIBPNG_VER_STRING, library, png_library_error, png_library_warning,
+                                            library, allocate_memory, free_memory);
+    library->info = library->png ? png_create_info_struct(library->png) : NULL;
+    return library->info;
 }
 
-static bool png_library_write(png_library *of)
+static bool png_library_begin_write(png_library *library)
 {
-    of->png = png_create_write_struct_2(PNG_LIBPNG_VER_STRING, of, png_library_error, png_library_warning, of,
-                                        allocate_memory, free_memory);
-    of->info = of->png ? png_create_info_struct(of->png) : NULL;
-    return of->info;
+    library->png = png_create_write_struct_2(PNG_LIBPNG_VER_STRING, library, png_library_error, png_library_warning,
+                                             library, allocate_memory, free_memory);
+    library->info = library->png ? png_create_info_struct(library->png) : NULL;
+    return library->info;
 }
 
 /* The status of a write, and of a read, that ended with an error of libpng. */
-static status png_library_unwritten(const png_library *of, diagnostic *why)
+static status png_library_write_error(const png_library *library, diagnostic *why)
 {
-    return of->no_memory ? out_of_memory(why)
-                         : system_error(why, STATUS_FAILURE, NULL, "cannot write the PNG file", of->error,
-                                        "write a PFM file instead");
+    return library->no_memory ? out_of_memory(why)
+                              : system_error(why, STATUS_FAILURE, NULL, "cannot write the PNG file", library->error,
+                                             "write a PFM file instead");
 }
 
-static status png_library_failed(const png_library *of, diagnostic *why)
+static status png_library_read_error(const png_library *library, diagnostic *why)
 {
-    return of->no_memory ? out_of_memory(why)
-                         : diagnose(why, STATUS_BAD_INPUT, "copy the file again, or save it again as PNG",
-                                    "the PNG file is damaged: %s", of->message);
+    return library->no_memory ? out_of_memory(why)
+                              : diagnose(why, STATUS_BAD_INPUT, "copy the file again, or save it again as PNG",
+                                         "the PNG file is damaged: %s", library->message);
 }
 
 /* ---- writing: libpng writes the chunks, png_bands.c compresses the pixels ---- */
 
 typedef struct png_writing {
-    png_library of; /* first: libpng hands it back */
+    png_library library; /* first: libpng hands it back */
     const image_rows *rows;
     png_bands *bands;
     int bits;
@@ -105,33 +105,34 @@ static void set_texts(png_writing *job)
                                    .key = (png_charp)(uintptr_t)from->keyword,
                                    .text = (png_charp)(uintptr_t)from->text,
                                    .itxt_length = strlen(from->text)};
-        png_set_text(job->of.png, job->of.info, &job->texts[i], 1);
+        png_set_text(job->library.png, job->library.info, &job->texts[i], 1);
     }
 }
 
 static void write_chunks(png_writing *job, FILE *stream)
 {
-    png_init_io(job->of.png, stream);
-    png_set_IHDR(job->of.png, job->of.info, (png_uint_32)job->rows->width, (png_uint_32)job->rows->height, job->bits,
-                 PNG_COLOR_TYPE_RGB, PNG_INTERLACE_NONE, PNG_COMPRESSION_TYPE_DEFAULT, PNG_FILTER_TYPE_DEFAULT);
-    png_set_sRGB(job->of.png, job->of.info, PNG_sRGB_INTENT_PERCEPTUAL);
+    png_init_io(job->library.png, stream);
+    png_set_IHDR(job->library.png, job->library.info, (png_uint_32)job->rows->width, (png_uint_32)job->rows->height,
+                 job->bits, PNG_COLOR_TYPE_RGB, PNG_INTERLACE_NONE, PNG_COMPRESSION_TYPE_DEFAULT,
+                 PNG_FILTER_TYPE_DEFAULT);
+    png_set_sRGB(job->library.png, job->library.info, PNG_sRGB_INTENT_PERCEPTUAL);
     set_texts(job);
-    png_write_info(job->of.png, job->of.info);
+    png_write_info(job->library.png, job->library.info);
     for (size_t count; (count = png_bands_compress(job->bands)) > 0;)
         for (size_t i = 0; i < count; i++) {
             const unsigned char *bytes;
             size_t size;
             if (!png_bands_get(job->bands, i, &bytes, &size))
-                png_error(job->of.png, "zlib failed");
-            png_write_chunk(job->of.png, (png_const_bytep) "IDAT", bytes, size);
+                png_error(job->library.png, "zlib failed");
+            png_write_chunk(job->library.png, (png_const_bytep) "IDAT", bytes, size);
         }
     /* not png_write_end, which requires IDAT chunks written by libpng */
-    png_write_chunk(job->of.png, (png_const_bytep) "IEND", NULL, 0);
+    png_write_chunk(job->library.png, (png_const_bytep) "IEND", NULL, 0);
 }
 
 static bool write_guarded(png_writing *job, FILE *stream)
 {
-    if (setjmp(png_jmpbuf(job->of.png)))
+    if (setjmp(png_jmpbuf(job->library.png)))
         return false;
     write_chunks(job, stream);
     return true;
@@ -143,11 +144,11 @@ status codec_png_write(const image_rows *rows, FILE *stream, int bits, bool fast
     status code = png_bands_create(rows, bits, fast, &job.bands, why);
     if (code != STATUS_OK)
         return code;
-    if (!png_library_write(&job.of))
+    if (!png_library_begin_write(&job.library))
         code = out_of_memory(why);
     else if (!write_guarded(&job, stream))
-        code = cancel_asked() ? cancel_check(why) : png_library_unwritten(&job.of, why);
-    png_destroy_write_struct(&job.of.png, &job.of.info);
+        code = cancel_asked() ? cancel_check(why) : png_library_write_error(&job.library, why);
+    png_destroy_write_struct(&job.library.png, &job.library.info);
     png_bands_destroy(job.bands);
     return code;
 }
@@ -163,34 +164,35 @@ static void read_bytes(png_structp png, png_bytep to, size_t count)
     from->used += count;
 }
 
-/* libpng allocates memory for a chunk of any length, up to 2 GiB, before it reads it: its limit is only a warning. */
-static void check_lengths(const png_library *of)
+/* libpng allocates memory for a chunk of any length, up to 2 GiB, before it reads the chunk; its limit is only a
+ * warning. */
+static void check_lengths(const png_library *library)
 {
-    for (size_t at = 8; of->size > at && of->size - at >= 8;) {
-        const size_t length = png_get_uint_32(of->bytes + at), left = of->size - at - 8;
+    for (size_t at = 8; library->size > at && library->size - at >= 8;) {
+        const size_t length = png_get_uint_32(library->bytes + at), left = library->size - at - 8;
         if (length > left)
-            png_error(of->png, "the file is truncated");
-        if (memcmp(of->bytes + at + 4, "IEND", 4) == 0)
+            png_error(library->png, "the file is truncated");
+        if (memcmp(library->bytes + at + 4, "IEND", 4) == 0)
             return;
         at += 12 + length;
     }
 }
 
-/* Before the first byte of a file that anyone may have made, and after setjmp: it is read from memory, no chunk has
- * more bytes than the file has or than chunk_max when it is expanded, and a wrong checksum is an error. */
-static void png_library_guard(png_library *of, size_t chunk_max)
+/* Protects against files of unknown origin; call it after setjmp, before the first byte is read. No chunk may be longer
+ * than the file, nor larger than chunk_max when it is expanded, and a wrong checksum is an error. */
+static void png_library_guard(png_library *library, size_t chunk_max)
 {
-    png_set_read_fn(of->png, of, read_bytes);
-    png_set_user_limits(of->png, IMAGE_SIDE_MAX, IMAGE_SIDE_MAX);
-    png_set_chunk_malloc_max(of->png, chunk_max);
-    png_set_chunk_cache_max(of->png, 128);
-    png_set_crc_action(of->png, PNG_CRC_ERROR_QUIT, PNG_CRC_ERROR_QUIT);
-    check_lengths(of);
+    png_set_read_fn(library->png, library, read_bytes);
+    png_set_user_limits(library->png, IMAGE_SIDE_MAX, IMAGE_SIDE_MAX);
+    png_set_chunk_malloc_max(library->png, chunk_max);
+    png_set_chunk_cache_max(library->png, 128);
+    png_set_crc_action(library->png, PNG_CRC_ERROR_QUIT, PNG_CRC_ERROR_QUIT);
+    check_lengths(library);
 }
 
 typedef struct png_reading {
-    png_library of;     /* first: libpng hands it back */
-    unsigned char *raw; /* one row, or the image if it is interlaced */
+    png_library library; /* first: libpng hands it back */
+    unsigned char *raw;  /* one row, or the image if it is interlaced */
     image *img;
     float *linear; /* sRGB decoding table */
     int bits;
@@ -201,9 +203,9 @@ typedef struct png_reading {
 /* Requests RGB or RGBA with 8 or 16 bits from libpng, for any kind of file. */
 static void normalize(png_reading *job)
 {
-    job->bits = png_get_bit_depth(job->of.png, job->of.info) == 16 ? 16 : 8;
-    png_set_expand(job->of.png); /* palettes, depths below 8 and transparent colours */
-    png_set_gray_to_rgb(job->of.png);
+    job->bits = png_get_bit_depth(job->library.png, job->library.info) == 16 ? 16 : 8;
+    png_set_expand(job->library.png); /* palettes, depths below 8 and transparent colours */
+    png_set_gray_to_rgb(job->library.png);
 }
 
 static unsigned sample(const png_reading *job, const unsigned char *row, size_t index)
@@ -229,16 +231,16 @@ static void store_row(png_reading *job, const unsigned char *row, int y, size_t 
 static bool allocate(png_reading *job, long long width, long long height, bool interlaced)
 {
     job->code =
-        codec_begin(width, height, job->of.size, job->bits == 8 ? 255 : 65535, &job->img, &job->linear, job->why);
+        codec_begin(width, height, job->library.size, job->bits == 8 ? 255 : 65535, &job->img, &job->linear, job->why);
     if (job->code != STATUS_OK)
         return false;
     if (interlaced)
-        job->code = memory_budget_check((uint64_t)height * png_get_rowbytes(job->of.png, job->of.info),
+        job->code = memory_budget_check((uint64_t)height * png_get_rowbytes(job->library.png, job->library.info),
                                         "save it without interlacing", job->why, "the interlaced image");
     if (job->code != STATUS_OK)
         return false;
     /* Zeroed, because an interlaced image is read by combining with the previous contents. */
-    job->raw = calloc(interlaced ? (size_t)height : 1, png_get_rowbytes(job->of.png, job->of.info));
+    job->raw = calloc(interlaced ? (size_t)height : 1, png_get_rowbytes(job->library.png, job->library.info));
     if (!job->raw)
         job->code = out_of_memory(job->why);
     return job->raw;
@@ -246,18 +248,18 @@ static bool allocate(png_reading *job, long long width, long long height, bool i
 
 static bool read_rows(png_reading *job)
 {
-    png_library_guard(&job->of, 8000000);
-    png_set_keep_unknown_chunks(job->of.png, PNG_HANDLE_CHUNK_NEVER, NULL, -1);
-    png_read_info(job->of.png, job->of.info);
+    png_library_guard(&job->library, 8000000);
+    png_set_keep_unknown_chunks(job->library.png, PNG_HANDLE_CHUNK_NEVER, NULL, -1);
+    png_read_info(job->library.png, job->library.info);
     normalize(job);
-    int passes = png_set_interlace_handling(job->of.png);
-    png_read_update_info(job->of.png, job->of.info);
-    png_uint_32 width = png_get_image_width(job->of.png, job->of.info),
-                height = png_get_image_height(job->of.png, job->of.info);
+    int passes = png_set_interlace_handling(job->library.png);
+    png_read_update_info(job->library.png, job->library.info);
+    png_uint_32 width = png_get_image_width(job->library.png, job->library.info),
+                height = png_get_image_height(job->library.png, job->library.info);
     if (!allocate(job, width, height, passes > 1))
         return false;
-    size_t channels = png_get_channels(job->of.png, job->of.info),
-           row_bytes = png_get_rowbytes(job->of.png, job->of.info);
+    size_t channels = png_get_channels(job->library.png, job->library.info),
+           row_bytes = png_get_rowbytes(job->library.png, job->library.info);
     for (int pass = 0; pass < passes; pass++) {
         for (int y = 0; y < job->img->height; y++) {
             unsigned char *row = job->raw + (passes > 1 ? (size_t)y * row_bytes : 0);
@@ -265,19 +267,19 @@ static bool read_rows(png_reading *job)
                 job->code = cancel_check(job->why);
                 return false;
             }
-            png_read_row(job->of.png, row, NULL);
+            png_read_row(job->library.png, row, NULL);
             if (pass == passes - 1)
                 store_row(job, row, y, channels);
         }
     }
-    png_read_end(job->of.png, NULL); /* the remaining chunks must be valid as well */
+    png_read_end(job->library.png, NULL); /* the remaining chunks must be valid as well */
     return true;
 }
 
 static void read_guarded(png_reading *job)
 {
-    if (setjmp(png_jmpbuf(job->of.png))) {
-        job->code = png_library_failed(&job->of, job->why);
+    if (setjmp(png_jmpbuf(job->library.png))) {
+        job->code = png_library_read_error(&job->library, job->why);
         return;
     }
     if (read_rows(job))
@@ -286,13 +288,13 @@ static void read_guarded(png_reading *job)
 
 status codec_png_read(const unsigned char *bytes, size_t size, image **out, int *bits, diagnostic *why)
 {
-    png_reading job = {.of = {.bytes = bytes, .size = size}, .why = why, .code = STATUS_FAILURE};
+    png_reading job = {.library = {.bytes = bytes, .size = size}, .why = why, .code = STATUS_FAILURE};
     *out = NULL;
-    if (!png_library_read(&job.of))
+    if (!png_library_begin_read(&job.library))
         out_of_memory(why);
     else
         read_guarded(&job);
-    png_destroy_read_struct(&job.of.png, &job.of.info, NULL);
+    png_destroy_read_struct(&job.library.png, &job.library.info, NULL);
     free(job.raw);
     free(job.linear);
     if (job.code != STATUS_OK) {
@@ -326,8 +328,7 @@ static char *find_text(const png_library *job, const char *keyword, size_t limit
     return NULL;
 }
 
-/* Whether a chunk of text (tEXt, zTXt, iTXt) has that keyword: libpng drops one that it cannot expand, and does not
- * report it. */
+/* Whether a text chunk (tEXt, zTXt, iTXt) has this keyword: libpng silently drops a text that it cannot expand. */
 static bool has_keyword(const unsigned char *bytes, size_t size, const char *keyword)
 {
     const size_t name_size = strlen(keyword) + 1;
@@ -348,16 +349,16 @@ static status read_text(const void *bytes, size_t size, const char *keyword, siz
     png_library job = {.bytes = bytes, .size = size};
     status code = STATUS_OK;
     *text = NULL;
-    if (!png_library_read(&job)) {
+    if (!png_library_begin_read(&job)) {
         code = out_of_memory(why);
     } else if (!read_text_guarded(&job, limit)) {
-        code = png_library_failed(&job, why);
+        code = png_library_read_error(&job, why);
     } else {
         const char *found = find_text(&job, keyword, limit);
         if (found && !(*text = strdup(found)))
             code = out_of_memory(why);
         else if (!found && has_keyword(bytes, size, keyword))
-            code = diagnose(why, STATUS_BAD_INPUT, "copy the file again from where it is whole",
+            code = diagnose(why, STATUS_BAD_INPUT, "copy the file again from an undamaged one",
                             "the text '%s' in this PNG file is damaged, or longer than %zu bytes", keyword, limit);
     }
     png_destroy_read_struct(&job.png, &job.info, NULL);
@@ -374,7 +375,7 @@ typedef struct text_job {
     status code;
 } text_job;
 
-static void read_text_apart(void *of)
+static void read_text_confined(void *of)
 {
     text_job *w = of;
     w->code = read_text(w->bytes, w->size, w->keyword, w->limit, w->text, w->why);
@@ -383,6 +384,6 @@ static void read_text_apart(void *of)
 status image_png_text(const void *bytes, size_t size, const char *keyword, size_t limit, char **text, diagnostic *why)
 {
     text_job w = {bytes, size, keyword, limit, text, why, STATUS_OK};
-    codec_run_confined(read_text_apart, &w);
+    codec_run_confined(read_text_confined, &w);
     return w.code;
 }

@@ -70,7 +70,7 @@ static void png_filter_row(png_filter_choice choice, const unsigned char *row, c
 /* ---- bands ---- */
 
 /* A band has at least BAND_BYTES of pixels. Measured on all shipped scenes: smaller bands cost more than 3 % of the
- * file, larger ones divide the work badly. WAVE bands are in memory at a time. */
+ * file, larger ones balance the threads badly. WAVE bands are in memory at a time. */
 enum { BAND_BYTES = 131072, WAVE = 64, THREADS_MAX = 16 };
 enum { HEADER_BYTES = 2, TRAILER_BYTES = 4, FLUSH_BYTES = 16, MEMORY_LEVEL = 8, RAW_WINDOW = -15 };
 
@@ -81,7 +81,7 @@ typedef struct effort {
     png_filter_choice filter;
 } effort;
 
-/* What one thread needs. */
+/* The deflater and the buffers of one thread. */
 typedef struct workspace {
     z_stream deflater;
     bool ready;               /* the deflater is initialised */
@@ -93,7 +93,7 @@ typedef struct workspace {
 
 typedef struct band {
     unsigned char *bytes;
-    size_t size, rows_size; /* compressed and before */
+    size_t size, rows_size; /* after and before compression */
     uLong adler;
     bool failed;
 } band;
@@ -101,7 +101,7 @@ typedef struct band {
 struct png_bands {
     const image_rows *rows;
     int bits;
-    effort with;
+    effort effort;
     size_t pixel_bytes, row_bytes, band_rows, band_count, begun; /* begun: bands of this and earlier waves */
     size_t capacity;                                             /* of a compressed band */
     uLong adler;
@@ -122,8 +122,9 @@ static effort choose_effort(int bits, bool fast)
 }
 
 /* Level 4 with two differences: only the longest match ends the search (rendered images have long runs), and matches
- * below 8 bytes may be replaced by a longer one that begins at the next byte. On 8-bit images as small as level 5 in
- * four fifths of its time; longer searches gain little. Resetting a deflater sets the numbers of its level again. */
+ * below 8 bytes may be replaced by a longer one that begins at the next byte. 8-bit images become as small as with
+ * level 5 in four fifths of the time; longer searches gain little. Resetting a deflater sets the numbers of its level
+ * again. */
 static bool reset_deflater(z_stream *z, bool tuned)
 {
     enum { GOOD_LENGTH = 4, LAZY_BELOW = 8, NICE_LENGTH = 258, CHAIN = 16 };
@@ -139,7 +140,7 @@ static bool create_workspace(png_bands *b, workspace *w)
     w->filtered = malloc(filtered_row * b->band_rows);
     w->spare_row = malloc(filtered_row);
     w->ready =
-        deflateInit2(&w->deflater, b->with.level, Z_DEFLATED, RAW_WINDOW, MEMORY_LEVEL, b->with.strategy) == Z_OK;
+        deflateInit2(&w->deflater, b->effort.level, Z_DEFLATED, RAW_WINDOW, MEMORY_LEVEL, b->effort.strategy) == Z_OK;
     return w->rgb && w->row[0] && w->row[1] && w->filtered && w->spare_row && w->ready;
 }
 
@@ -184,7 +185,7 @@ status png_bands_create(const image_rows *rows, int bits, bool fast, png_bands *
         return out_of_memory(why);
     b->rows = rows;
     b->bits = bits;
-    b->with = choose_effort(bits, fast);
+    b->effort = choose_effort(bits, fast);
     b->pixel_bytes = 3 * (size_t)(bits / 8);
     b->row_bytes = (size_t)rows->width * b->pixel_bytes;
     b->band_rows = (BAND_BYTES + b->row_bytes - 1) / b->row_bytes;
@@ -233,7 +234,7 @@ static void filter_rows(const png_bands *b, workspace *w, size_t first, size_t e
         memset(above, 0, b->row_bytes);
     for (size_t y = first; y < end; y++, to += b->row_bytes + 1) {
         encode_row(b, w, y, row);
-        png_filter_row(b->with.filter, row, above, b->row_bytes, b->pixel_bytes, to, w->spare_row);
+        png_filter_row(b->effort.filter, row, above, b->row_bytes, b->pixel_bytes, to, w->spare_row);
         unsigned char *swapped = row;
         row = above;
         above = swapped;
@@ -260,7 +261,7 @@ static void compress_band(void *context, size_t index, int member)
     to->rows_size = (end - first) * (b->row_bytes + 1);
     to->adler = adler32(adler32(0, NULL, 0), w->filtered, (uInt)to->rows_size);
     z_stream *z = &w->deflater;
-    to->failed = !reset_deflater(z, b->with.tuned);
+    to->failed = !reset_deflater(z, b->effort.tuned);
     z->next_in = w->filtered;
     z->avail_in = (uInt)to->rows_size;
     z->next_out = to->bytes + start;

@@ -41,7 +41,8 @@ static uint32_t word_of(float value)
     return word;
 }
 
-/* Positive floats are ordered as their bits; the inverse curve is a few of them from the threshold. */
+/* The least float that is encoded as `byte` or more. Positive floats are ordered as their bits, and the inverse curve
+ * is only a few floats off. */
 static float least_value(unsigned byte)
 {
     uint32_t word = word_of((float)srgb_decode((byte - 0.5) / 255.0));

@@ -122,7 +122,7 @@ static status check(const image *img, diagnostic *why)
         if (cancel_asked_at(i))
             return cancel_check(why);
         if (!isfinite(img->pixel[i]))
-            return diagnose(why, STATUS_BAD_INPUT, NULL,
+            return diagnose(why, STATUS_BAD_INPUT, "use an image with finite values",
                             "the pixel in column %zu, row %zu from the top is not a finite number", i / 3 % width,
                             i / 3 / width);
     }

@@ -58,8 +58,8 @@ ISA_DECLARE(texture_tinter, texture_tint)
 /* Adds size and texels of the image itself to a hash (base/hash.h). */
 uint64_t texture_hash(const texture *t, uint64_t hash);
 
-/* A texture as bytes (base/pack.h): the image itself travels, and the receiver computes the smaller levels again. What
- * is read is checked: sizes, and that texels are finite. What is unpacked is the caller's. STATUS_BAD_INPUT for damaged
+/* A texture as bytes (base/pack.h): the image itself travels, and the receiver computes the smaller levels again.
+ * Unpacking checks the sizes, and that texels are finite; the caller owns the result. STATUS_BAD_INPUT for damaged
  * bytes, STATUS_FAILURE without memory. */
 status texture_pack(const texture *t, pack_writer *to, diagnostic *why);
 status texture_unpack(pack_reader *from, const texture **out, diagnostic *why);

@@ -26,7 +26,7 @@ ALWAYS_INLINE color4 color_mix(color4 from, color4 to, double part)
 
 /* ---- positions ---- */
 
-/* Positions in the image, 0 to 1, of coordinates; the comparisons map NaN to 0. */
+/* Maps coordinates to positions in the image, 0 to 1; the comparisons map NaN to 0. */
 static void repeat(int count, const double *restrict c, double *restrict place)
 {
     /* VECTORISE */
@@ -102,8 +102,8 @@ ALWAYS_INLINE color4 bilinear(const texture *t, int level, double u, double v)
                      color_mix(color_of_texel(above + x.low), color_of_texel(above + x.high), x.part), y.part);
 }
 
-/* A trilinear sample's level, as a real number: that at which a texel is as large as the pixel (Williams 1983).
- * Negative for a pixel that covers at most a texel; beyond the last level's number for one that covers the image. */
+/* The mipmap level of each sample, as a real number: the level at which a texel is as large as the pixel (Williams
+ * 1983). Negative for a pixel that covers at most a texel; beyond the last level for a pixel that covers the image. */
 static void find_heights(const texture *t, int count, const double *restrict footprint, double *restrict height)
 {
     const double side = t->level[0].width > t->level[0].height ? t->level[0].width : t->level[0].height;

@@ -12,12 +12,12 @@ bool image_tone_is_plain(const image_tone *t)
 /* 2^stops, exact for integers. */
 static double factor_of(double stops)
 {
-    const double whole = floor(stops), part = stops - whole;
-    return ldexp(part > 0.0 ? elementary_pow(2.0, part) : 1.0, (int)whole);
+    const double integer = floor(stops), part = stops - integer;
+    return ldexp(part > 0.0 ? elementary_pow(2.0, part) : 1.0, (int)integer);
 }
 
 /* Reinhard, Stark, Shirley and Ferwerda, "Photographic Tone Reproduction for Digital Images", SIGGRAPH 2002, equation
- * 4: L_d = L (1 + L / L_white^2) / (1 + L), of the luminance (ITU-R BT.709), so that hues stay. */
+ * 4: L_d = L (1 + L / L_white^2) / (1 + L), of the luminance (ITU-R BT.709), so that hues do not change. */
 static void reinhard(double white, double rgb[3])
 {
     const double luminance = 0.2126 * rgb[0] + 0.7152 * rgb[1] + 0.0722 * rgb[2];

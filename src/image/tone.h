@@ -15,8 +15,8 @@ typedef struct image_tone {
     double white;    /* Reinhard's: the least luminance, after the exposure, that is shown as white */
 } image_tone;
 
-/* Whether it leaves every value as it is. */
+/* Whether the tone changes no value. */
 bool image_tone_is_plain(const image_tone *t);
 
-/* Applies it to linear RGB values in place. Values that are not positive, and NaN, stay so. */
+/* Applies the tone to linear RGB values in place. Values that are not positive, and NaN, stay so. */
 void image_tone_apply(const image_tone *t, float *rgb, size_t pixels);
