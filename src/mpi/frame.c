@@ -1,5 +1,6 @@
-/* A frame on the ranks of an MPI job. Rank 0 leads: the order to the others, the messenger's thread, and the sum of all
- * parts. The others follow: their main thread is the messenger; a second one runs the job, whose pool traces. */
+/* A frame on the ranks of an MPI job. Rank 0 leads: it sends the order, runs the messenger on a thread, and sums all
+ * tiles. The other ranks follow: their main thread is the messenger, and a second thread runs the job, whose pool
+ * renders. */
 #include "base/cancel.h"
 #include "job/job.h"
 #include "measure/clock.h"
@@ -23,31 +24,31 @@
 
 #define WATCH_S 0.1
 
-/* What the other ranks report, all of their workers one after another. */
-typedef struct others {
+/* The reports of the other ranks, with the workers of all ranks in one list. */
+typedef struct other_ranks {
     ray_counters counters;
-    rank_usage *ranks; /* by rank, all of the frame */
+    rank_usage *ranks; /* indexed by rank */
     worker_report *workers;
     int count;
     status code; /* the first that is not STATUS_OK */
     diagnostic why;
-} others;
+} other_ranks;
 
 struct lead {
     int ranks;
     int64_t frame;
-    job_sharing facing_job;
+    job_sharing job_interface;
     /* of the current frame */
     pthread_t thread;
     handout *tiles;
     shared_frame sum;
-    team *own;
+    tile_queues *queues;
     frame_sink sink;
-    void (*progress)(void *context, double share_done); /* or NULL */
+    void (*progress)(void *context, double fraction); /* or NULL */
     void *context;
     cancel_token *token; /* of the thread that renders */
     double begun_s, complete_s, watched_s;
-    others rest;
+    other_ranks others;
     uint64_t scene_bytes;
 };
 
@@ -62,8 +63,8 @@ static void put_tile(void *of, tile_message *tile)
         l->complete_s = clock_wall_s();
 }
 
-/* The times of a rank's workers start at its own beginning of the frame. */
-static bool append_workers(others *o, int rank, const worker_report *workers, int count)
+/* Appends a rank's workers, whose times count from the rank's start of the frame. */
+static bool append_workers(other_ranks *o, int rank, const worker_report *workers, int count)
 {
     worker_report *grown = realloc(o->workers, (size_t)(o->count + count) * sizeof *grown);
     if (!grown)
@@ -79,7 +80,7 @@ static bool append_workers(others *o, int rank, const worker_report *workers, in
 static void add_report(void *of, int rank, const rank_report *report, const worker_report *workers)
 {
     lead *l = of;
-    others *o = &l->rest;
+    other_ranks *o = &l->others;
     ray_counters_add(&o->counters, &report->counters);
     o->ranks[rank] = report->account;
     status code = (status)report->code;
@@ -87,31 +88,31 @@ static void add_report(void *of, int rank, const rank_report *report, const work
     if (!append_workers(o, rank, workers, (int)report->workers))
         code = out_of_memory(&why);
     if (code == STATUS_OK && handout_held(l->tiles, rank) > 0)
-        code = diagnose(&why, STATUS_FAILURE, "report this as a bug, with the scene", "tiles are not traced");
+        code = diagnose(&why, STATUS_FAILURE, "report this as a bug, with the scene", "tiles are missing");
     if (o->code == STATUS_OK && code != STATUS_OK && code != STATUS_INTERRUPTED) {
         o->code = code;
         o->why = why;
         diagnose(&o->why, code, why.remedy, "rank %d: %.400s", rank, why.what);
-        cancel_set(team_token(l->own));
+        cancel_set(tile_queues_token(l->queues));
     }
 }
 
-static void show_progress(void *of, double share_done)
+static void show_progress(void *of, double fraction)
 {
     lead *l = of;
     const double now_s = clock_wall_s();
     if (!l->progress || now_s - l->watched_s < WATCH_S)
         return;
     l->watched_s = now_s;
-    l->progress(l->context, share_done);
+    l->progress(l->context, fraction);
 }
 
 static void *serve(void *of)
 {
     lead *l = of;
-    traffic moved = {0}; /* the ranks report their own */
+    traffic moved = {0}; /* not used: each rank reports its traffic */
     cancel_follow(l->token);
-    messenger_serve(l->frame, l->ranks, l->tiles, team_tracing(l->own), &l->sink, &moved);
+    messenger_serve(l->frame, l->ranks, l->tiles, tile_queues_tracing(l->queues), &l->sink, &moved);
     return NULL;
 }
 
@@ -131,21 +132,20 @@ static status refuse(const scene *s, const render_options *o, diagnostic *why)
 static void release_frame(lead *l)
 {
     shared_frame_release(&l->sum);
-    free(l->rest.workers);
-    free(l->rest.ranks);
+    free(l->others.workers);
+    free(l->others.ranks);
     handout_destroy(l->tiles);
-    team_destroy(l->own);
-    l->rest = (others){.code = STATUS_OK};
+    tile_queues_destroy(l->queues);
+    l->others = (other_ranks){.code = STATUS_OK};
     l->tiles = NULL;
-    l->own = NULL;
+    l->queues = NULL;
 }
 
-/* SIDE_MOST: a message of a tile has fewer bytes than MPI can count. */
+/* SIDE_MOST: MPI counts the bytes of a tile's message in an int. */
 enum { SIDE_MOST = 4096, SIDE_GROWN = 128, TILES_ENOUGH = 64 };
 
-/* The tile's side of a single process with the workers of all ranks. Where each worker would still have TILES_ENOUGH
- * tiles, they are larger: the last rays of a tile do not fill batches (renderer.h, tile_source), which costs less in
- * larger tiles. */
+/* The side of the tiles: as for a single process with the workers of all ranks, but larger while each worker still has
+ * TILES_ENOUGH tiles, because the last rays of a tile do not fill batches (renderer.h, tile_source). */
 static int tile_side(const scene *s, int ranks)
 {
     render_settings all = s->render;
@@ -163,11 +163,11 @@ static status prepare(lead *l, const scene *s, diagnostic *why)
 {
     TRY(shared_frame_begin(s, tile_side(s, l->ranks), &l->sum, why));
     TRY(handout_create(l->sum.places.tile_count, l->ranks, &l->tiles, why));
-    TRY(team_create(&l->sum.places, scene_threads(&s->render), &l->own, why));
-    return (l->rest.ranks = calloc((size_t)l->ranks, sizeof *l->rest.ranks)) ? STATUS_OK : out_of_memory(why);
+    TRY(tile_queues_create(&l->sum.places, scene_threads(&s->render), &l->queues, why));
+    return (l->others.ranks = calloc((size_t)l->ranks, sizeof *l->others.ranks)) ? STATUS_OK : out_of_memory(why);
 }
 
-/* Sends the scene to the others, which answer when they are ready. */
+/* Sends the order and the scene to the other ranks, which answer when they are ready. */
 static status send_orders(lead *l, const scene *s, bool measured, diagnostic *why)
 {
     const frame_order order = {.head.frame = ++l->frame, .tile = l->sum.places.tile, .usage = measured};
@@ -177,12 +177,13 @@ static status send_orders(lead *l, const scene *s, bool measured, diagnostic *wh
     return l->ranks > 1 ? scene_wire_send(s, &l->scene_bytes, why) : STATUS_OK;
 }
 
-static status begin(void *of, const scene *s, const render_options *requested, const tile_source **own, diagnostic *why)
+static status begin(void *of, const scene *s, const render_options *requested, const tile_source **source,
+                    diagnostic *why)
 {
     lead *l = of;
     TRY(refuse(s, requested, why));
     status code = prepare(l, s, why);
-    THEN(code, scene_build_hierarchies(s, why)); /* before the others wait for the scene */
+    THEN(code, scene_build_hierarchies(s, why)); /* before the other ranks wait for the scene */
     THEN(code, send_orders(l, s, requested->usage, why));
     if (code != STATUS_OK) {
         release_frame(l);
@@ -191,20 +192,20 @@ static status begin(void *of, const scene *s, const render_options *requested, c
     l->sink = (frame_sink){l, put_tile, add_report, show_progress};
     l->progress = requested->progress;
     l->context = requested->context;
-    cancel_begin(team_token(l->own));
+    cancel_begin(tile_queues_token(l->queues));
     l->token = cancel_current();
     l->begun_s = l->watched_s = clock_wall_s();
     l->complete_s = NAN;
-    *own = team_source(l->own);
+    *source = tile_queues_source(l->queues);
     if (pthread_create(&l->thread, NULL, serve, l) != 0)
-        MPI_Abort(MPI_COMM_WORLD, STATUS_FAILURE); /* the others are under way */
+        MPI_Abort(MPI_COMM_WORLD, STATUS_FAILURE); /* the other ranks have started the frame */
     return STATUS_OK;
 }
 
-/* The account of each rank; this one's is the first. */
+/* Sets the usage of each rank; this one is the first. */
 static void add_ranks(lead *l, render_result *result)
 {
-    rank_usage *ranks = l->rest.ranks;
+    rank_usage *ranks = l->others.ranks;
     ranks[0] = (rank_usage){
         .wall_s = result->wall_s, .cpu_s = result->cpu_s, .peak_rss_bytes = (uint64_t)usage_now().peak_rss_bytes};
     for (int rank = 1; rank < l->ranks; rank++)
@@ -213,13 +214,13 @@ static void add_ranks(lead *l, render_result *result)
     result->rank_count = l->ranks;
     result->tile = l->sum.places.tile;
     result->scene_bytes = l->scene_bytes;
-    l->rest.ranks = NULL;
+    l->others.ranks = NULL;
 }
 
-/* Adds the workers of all ranks; a worker waits for the rest of the frame's time. */
+/* Adds the workers of all ranks; a worker that is not busy waits. */
 static status add_workers(const lead *l, render_result *result, double wall_s, diagnostic *why)
 {
-    const others *o = &l->rest;
+    const other_ranks *o = &l->others;
     worker_report *all = realloc(result->workers, (size_t)(result->worker_count + o->count) * sizeof *all);
     if (!all)
         return out_of_memory(why);
@@ -232,11 +233,11 @@ static status add_workers(const lead *l, render_result *result, double wall_s, d
     return STATUS_OK;
 }
 
-/* Adds the others' parts to this rank's. */
+/* Adds the results of the other ranks to this rank's. */
 static status add_others(lead *l, render_result *result, diagnostic *why)
 {
     const double wall_s = (isfinite(l->complete_s) ? l->complete_s : clock_wall_s()) - l->begun_s;
-    ray_counters_add(&result->counters, &l->rest.counters);
+    ray_counters_add(&result->counters, &l->others.counters);
     add_ranks(l, result);
     result->wall_s = wall_s;
     result->img = l->sum.img;
@@ -246,19 +247,19 @@ static status add_others(lead *l, render_result *result, diagnostic *why)
     return add_workers(l, result, wall_s, why);
 }
 
-static status end(void *of, status traced, render_result *result, diagnostic *why)
+static status end(void *of, status rendered, render_result *result, diagnostic *why)
 {
     lead *l = of;
-    traced = team_status(l->own, traced, why);
-    if (traced != STATUS_OK)
-        cancel_set(team_token(l->own));
-    team_left(l->own);
+    rendered = tile_queues_status(l->queues, rendered, why);
+    if (rendered != STATUS_OK)
+        cancel_set(tile_queues_token(l->queues));
+    tile_queues_close(l->queues);
     cancel_join(l->thread);
-    status code = traced == STATUS_OK && cancel_asked() ? STATUS_INTERRUPTED : traced;
-    cancel_end(team_token(l->own));
-    if (l->rest.code != STATUS_OK) {
-        code = l->rest.code;
-        *why = l->rest.why;
+    status code = rendered == STATUS_OK && cancel_asked() ? STATUS_INTERRUPTED : rendered;
+    cancel_end(tile_queues_token(l->queues));
+    if (l->others.code != STATUS_OK) {
+        code = l->others.code;
+        *why = l->others.why;
     }
     if (result) {
         const status added = add_others(l, result, why);
@@ -277,7 +278,7 @@ status lead_create(int ranks, lead **out, diagnostic *why)
         return out_of_memory(why);
     memset(l, 0, sizeof *l);
     l->ranks = ranks;
-    l->facing_job = (job_sharing){begin, end, l};
+    l->job_interface = (job_sharing){begin, end, l};
     *out = l;
     return STATUS_OK;
 }
@@ -294,29 +295,29 @@ void lead_destroy(lead *l)
 
 const job_sharing *lead_sharing(const lead *l)
 {
-    return &l->facing_job;
+    return &l->job_interface;
 }
 
 /* --- the other ranks --- */
 
 typedef struct follower {
-    job *with;
+    job *frame_job;
     frame_order order;
     scene *s;
-    team *own;
+    tile_queues *queues;
     job_account account;
     rank_report report;
     const render_options *options;
 } follower;
 
-static void *trace(void *context)
+static void *render(void *context)
 {
     follower *f = context;
-    cancel_begin(team_token(f->own));
-    const status traced = job_render(f->with, f->s, f->options, &f->account, &f->report.why);
-    cancel_end(team_token(f->own));
-    f->report.code = team_status(f->own, traced, &f->report.why);
-    team_left(f->own);
+    cancel_begin(tile_queues_token(f->queues));
+    const status rendered = job_render(f->frame_job, f->s, f->options, &f->account, &f->report.why);
+    cancel_end(tile_queues_token(f->queues));
+    f->report.code = tile_queues_status(f->queues, rendered, &f->report.why);
+    tile_queues_close(f->queues);
     return NULL;
 }
 
@@ -342,43 +343,43 @@ static void send_report(follower *f)
     free(message);
 }
 
-/* Traces this rank's part of the frame. */
-static status trace_part(follower *f, diagnostic *why)
+/* Renders this rank's part of the frame. */
+static status render_part(follower *f, diagnostic *why)
 {
     const render_settings settings = tiles_settings(&f->s->render, f->order.tile);
     schedule tiles;
     schedule_start(&tiles, &settings);
-    TRY(team_create(&tiles, scene_threads(&f->s->render), &f->own, why));
-    const render_options options = {.usage = f->order.usage, .source = team_source(f->own)};
+    TRY(tile_queues_create(&tiles, scene_threads(&f->s->render), &f->queues, why));
+    const render_options options = {.usage = f->order.usage, .source = tile_queues_source(f->queues)};
     f->options = &options;
     pthread_t thread;
     traffic moved = {0};
-    if (pthread_create(&thread, NULL, trace, f) != 0)
+    if (pthread_create(&thread, NULL, render, f) != 0)
         return diagnose(why, STATUS_FAILURE, "use fewer threads", "a thread cannot be started");
-    messenger_work(f->order.head.frame, team_tracing(f->own), &moved);
+    messenger_work(f->order.head.frame, tile_queues_tracing(f->queues), &moved);
     pthread_join(thread, NULL);
     f->report.account.tiles_sent = moved.tiles;
     f->report.account.tile_bytes_sent = moved.tile_bytes;
     return STATUS_OK;
 }
 
-static void run_frame(job *with, const frame_order *order)
+static void run_frame(job *frame_job, const frame_order *order)
 {
-    follower f = {.with = with, .order = *order};
-    bool given_up = false;
-    status code = scene_wire_receive(&f.s, &given_up, &f.report.why);
-    if (given_up)
+    follower f = {.frame_job = frame_job, .order = *order};
+    bool failed = false;
+    status code = scene_wire_receive(&f.s, &failed, &f.report.why);
+    if (failed)
         return;
-    THEN(code, trace_part(&f, &f.report.why));
+    THEN(code, render_part(&f, &f.report.why));
     if (code != STATUS_OK)
         f.report.code = code;
     send_report(&f);
     job_account_release(&f.account);
-    team_destroy(f.own);
+    tile_queues_destroy(f.queues);
     scene_destroy(f.s);
 }
 
-/* Waits for the next order; MPI would wait without sleeping. Messages of earlier frames are dropped. */
+/* Waits for the next order; MPI's wait would keep a processor busy. Messages of earlier frames are dropped. */
 static int next_order(frame_order *order)
 {
     for (;;) {
@@ -400,11 +401,11 @@ static int next_order(frame_order *order)
 
 status follow(diagnostic *why)
 {
-    job *with = NULL;
+    job *frame_job = NULL;
     frame_order order;
-    TRY(job_create(&(job_settings){.level = NULL}, &with, why));
+    TRY(job_create(&(job_settings){.level = NULL}, &frame_job, why));
     while (next_order(&order) == TAG_FRAME)
-        run_frame(with, &order);
-    job_destroy(with);
+        run_frame(frame_job, &order);
+    job_destroy(frame_job);
     return STATUS_OK;
 }

@@ -1,4 +1,4 @@
-/* How many tiles a rank may hold, and which ones it holds. */
+/* Decides how many tiles a rank may hold, and records which. */
 #include "mpi/handout.h"
 
 #include <math.h>
@@ -7,9 +7,9 @@
 enum { HOLDER_NONE = -1, HOLDER_RETURNED = -2 };
 
 typedef struct rank_state {
-    int threads; /* 0: it has not joined */
+    int threads; /* 0: the rank has not joined */
     int64_t held, returned;
-    double joined_s, last_s; /* times of its joining and of the last tile that it returned */
+    double joined_s, last_s; /* when it joined, and when it last returned a tile */
 } rank_state;
 
 struct handout {
@@ -77,7 +77,7 @@ int handout_assign(handout *h, int rank, int32_t *tiles)
     if (r->threads == 0)
         return 0;
     const int64_t limit = limit_of(h, r), ahead = limit - r->threads;
-    if (r->held > r->threads + ahead / 2) /* few messages with several tiles each */
+    if (r->held > r->threads + ahead / 2) /* for few messages with several tiles each */
         return 0;
     int count = 0;
     while (r->held < limit && h->next < h->tiles && count < HANDOUT_MOST) {

@@ -25,18 +25,18 @@
 
 /* --- studies --- */
 
-/* One shard a rank, by the program `cuvette` next to this one, then the merge. It is another process because the rows
- * of a study with fresh processes are measured by programs that this one must not be: they are not ranks. */
+/* Each rank runs a shard with the program `cuvette` next to this one; then rank 0 merges. It is another program because
+ * a study with fresh processes starts processes, which must not be MPI ranks. */
 
 static void pause_s(double s)
 {
     nanosleep(&(struct timespec){.tv_nsec = (long)(s * 1e9)}, NULL);
 }
 
-/* The highest status of all ranks. MPI would wait without sleeping, and disturb those that still measure. */
-static status agree(status own)
+/* The highest status of all ranks. MPI's wait would keep a processor busy, and disturb ranks that still measure. */
+static status agree(status code)
 {
-    int mine = (int)own, highest = 0, there = 0;
+    int mine = (int)code, highest = 0, there = 0;
     MPI_Request request;
     MPI_Iallreduce(&mine, &highest, 1, MPI_INT, MPI_MAX, MPI_COMM_WORLD, &request);
     for (; !there; pause_s(0.002))
@@ -46,31 +46,31 @@ static status agree(status own)
 
 static char *program_path(void)
 {
-    char own[4096];
-    const ssize_t length = readlink("/proc/self/exe", own, sizeof own - 1);
+    char path[4096];
+    const ssize_t length = readlink("/proc/self/exe", path, sizeof path - 1);
     if (length <= 0)
         return NULL;
-    own[length] = '\0';
-    char *slash = strrchr(own, '/');
+    path[length] = '\\0';
+    char *slash = strrchr(path, '/');
     *slash = '\0';
-    return text_format("%s/cuvette", own);
+    return text_format("%s/cuvette", path);
 }
 
-/* A stop request is passed on once. */
+/* Waits for the process to end; forwards a cancellation once. */
 static int wait_for_end(pid_t pid)
 {
-    bool told = false;
+    bool forwarded = false;
     for (int ended = 0;; pause_s(0.01)) {
         if (waitpid(pid, &ended, WNOHANG) == pid)
             return WIFEXITED(ended) ? WEXITSTATUS(ended) : STATUS_FAILURE;
-        if (!told && cancel_asked()) {
+        if (!forwarded && cancel_asked()) {
             kill(pid, SIGTERM);
-            told = true;
+            forwarded = true;
         }
     }
 }
 
-/* Runs cuvette with the arguments, which end with NULL. It prints its own error. loud: standard output is kept. */
+/* Runs cuvette with the arguments, which end with NULL. The program prints its errors. loud: keeps standard output. */
 static status run_cuvette(char **arguments, bool loud, diagnostic *why)
 {
     char *program = program_path();
@@ -81,12 +81,12 @@ static status run_cuvette(char **arguments, bool loud, diagnostic *why)
         close(out);
     if (error)
         diagnose_at(why, program ? program : "cuvette", STATUS_FAILURE, "install cuvette next to cuvette-mpi",
-                    "cannot start it: %s", strerrordesc_np(error));
+                    "cannot start cuvette: %s", strerrordesc_np(error));
     free(program);
     return error ? STATUS_FAILURE : (status)wait_for_end(pid);
 }
 
-/* "cuvette study run" with the caller's arguments, after those of the shard. */
+/* Runs "cuvette study run" with the arguments of the shard, then the caller's. */
 static status run_shard(int argc, char **argv, int rank, int ranks, diagnostic *why)
 {
     char **all = calloc((size_t)argc + 3, sizeof *all), *part = text_format("--shard=%d/%d", rank, ranks);
@@ -126,7 +126,7 @@ static status merge(int argc, char **argv, diagnostic *why)
     return code;
 }
 
-/* Help and plans are printed once. */
+/* Whether the command only prints help or a plan, which one rank does. */
 static bool measures_nothing(int argc, char **argv)
 {
     static const char *const words[] = {"--help", "-?", "--usage", "--version", "-V", "--dry-run", "-n"};
@@ -137,14 +137,14 @@ static bool measures_nothing(int argc, char **argv)
     return false;
 }
 
-/* Runs "study run" with those arguments (argv[0] is the program, then the command) on this rank; all ranks call it. The
- * status is that of the study: on all ranks the same, and the reason on those that have one. What a rank has measured
- * stays if another one fails; the same command goes on from there, also with another number of ranks. */
+/* Runs "study run" with those arguments (argv[0] is the program, then the command) on this rank; all ranks call it.
+ * Returns the highest status of all ranks, with the reason on ranks that have one. If a rank fails, the rows of the
+ * others stay, and the same command continues from there, even with another number of ranks. */
 static status shards_run(int argc, char **argv, int rank, int ranks, diagnostic *why)
 {
     if (measures_nothing(argc, argv))
         return rank == 0 ? run_shard(argc, argv, 0, 1, why) : STATUS_OK;
-    const status own = run_shard(argc, argv, rank, ranks, why), all = agree(own);
+    const status mine = run_shard(argc, argv, rank, ranks, why), all = agree(mine);
     return all == STATUS_OK && rank == 0 && ranks > 1 ? merge(argc, argv, why) : all;
 }
 
@@ -154,7 +154,7 @@ static status shards_run(int argc, char **argv, int rank, int ranks, diagnostic 
 static status command_shards(int argc, char **argv, diagnostic *why)
 {
     (void)argc, (void)argv;
-    return diagnose_at(why, "cuvette-mpi study", STATUS_BAD_INPUT, "use 'cuvette study' for the others",
+    return diagnose_at(why, "cuvette-mpi study", STATUS_BAD_INPUT, "use 'cuvette study' for other commands",
                        "the only command of studies here is 'study run'");
 }
 
@@ -166,11 +166,11 @@ static const command commands[] = {
 
 static const char about[] = "Cuvette on many machines: the ranks of an MPI job share each frame. For example:\n"
                             "  mpirun -n 4 cuvette-mpi render rod.yaml -o rod.png\n"
-                            "The film is the same for any number of ranks. cuvette-mpi(1) tells more.";
+                            "The film is the same for any number of ranks. See cuvette-mpi(1).";
 
-static lead *leader; /* of rank 0, for the exit handler */
+static lead *leader; /* rank 0's, for the exit handler */
 
-/* exit() is called by --help and after errors of the command line too. */
+/* Runs at exit(), which --help and errors of the command line call, too. */
 static void leave(void)
 {
     int finalized = 0;
@@ -193,15 +193,16 @@ static status begin(int *argc, char ***argv, int *rank, int *ranks, diagnostic *
     return STATUS_OK;
 }
 
-/* Structures travel as their bytes, and films of different builds may differ. All ranks call it. */
+/* Ranks must run one build: structures are sent as their bytes, and films of different builds may differ. All ranks
+ * call this. */
 static status check_builds(int rank, int ranks, diagnostic *why)
 {
     enum { LENGTH = 64 };
-    char own[LENGTH] = "", first[LENGTH];
-    strncpy(own, build_id(), LENGTH - 1);
-    memcpy(first, own, LENGTH);
+    char mine[LENGTH] = "", first[LENGTH];
+    strncpy(mine, build_id(), LENGTH - 1);
+    memcpy(first, mine, LENGTH);
     MPI_Bcast(first, LENGTH, MPI_CHAR, 0, MPI_COMM_WORLD);
-    const int other = memcmp(own, first, LENGTH) == 0 ? ranks : rank;
+    const int other = memcmp(mine, first, LENGTH) == 0 ? ranks : rank;
     int lowest = ranks;
     MPI_Allreduce(&other, &lowest, 1, MPI_INT, MPI_MIN, MPI_COMM_WORLD);
     if (lowest == ranks)

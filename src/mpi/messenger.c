@@ -20,42 +20,42 @@ typedef struct serving {
     int64_t frame;
     int ranks, reports, idle;
     handout *tiles;
-    const tracing *own;
+    const tracing *renderer;
     const frame_sink *sink;
     traffic *moved;
-    bool *ended; /* by rank: it was told that no tile is left */
-    bool all_told, given_up;
+    bool *ended; /* by rank: whether TAG_END was sent */
+    bool all_ended, cancelled;
 } serving;
 
-static void tell(serving *s, int rank, int tag)
+static void send_head(serving *s, int rank, int tag)
 {
     const wire_head head = {.frame = s->frame};
     MPI_Send(&head, sizeof head, MPI_BYTE, rank, tag, MPI_COMM_WORLD);
     s->moved->messages++;
 }
 
-static void give_up(serving *s)
+static void cancel_frame(serving *s)
 {
-    if (s->given_up)
+    if (s->cancelled)
         return;
-    s->given_up = true;
-    s->own->stop(s->own->of);
+    s->cancelled = true;
+    s->renderer->stop(s->renderer->of);
     for (int rank = 1; rank < s->ranks; rank++)
-        tell(s, rank, TAG_STOP);
+        send_head(s, rank, TAG_STOP);
 }
 
 /* Sends the rank the tiles that it should hold, and once the message that none is left. */
-static void give(serving *s, int rank)
+static void assign_tiles(serving *s, int rank)
 {
     struct {
         wire_head head;
         int32_t tiles[HANDOUT_MOST];
     } message = {.head.frame = s->frame};
-    if (s->given_up)
+    if (s->cancelled)
         return;
     const int count = handout_assign(s->tiles, rank, message.tiles);
     if (count > 0 && rank == 0)
-        s->own->give(s->own->of, message.tiles, count);
+        s->renderer->assign(s->renderer->of, message.tiles, count);
     if (count > 0 && rank != 0) {
         const size_t bytes = sizeof message.head + (size_t)count * sizeof message.tiles[0];
         MPI_Send(&message, (int)bytes, MPI_BYTE, rank, TAG_TILES, MPI_COMM_WORLD);
@@ -64,33 +64,33 @@ static void give(serving *s, int rank)
     if (handout_is_empty(s->tiles) && !s->ended[rank]) {
         s->ended[rank] = true;
         if (rank == 0)
-            s->own->end(s->own->of);
+            s->renderer->end(s->renderer->of);
         else
-            tell(s, rank, TAG_END);
+            send_head(s, rank, TAG_END);
     }
 }
 
-/* The end goes to every rank that waits, not only to the one that took the last tile. */
-static void tell_end(serving *s)
+/* Sends the end to every rank, not only to the one that received the last tile. */
+static void send_end(serving *s)
 {
-    if (s->all_told || !handout_is_empty(s->tiles))
+    if (s->all_ended || !handout_is_empty(s->tiles))
         return;
-    s->all_told = true;
+    s->all_ended = true;
     for (int rank = 0; rank < s->ranks; rank++)
-        give(s, rank);
+        assign_tiles(s, rank);
 }
 
-static void take_tile(serving *s, int rank, tile_message *tile)
+static void accept_tile(serving *s, int rank, tile_message *tile)
 {
     if (!handout_return(s->tiles, rank, tile->head.value, MPI_Wtime()))
         MPI_Abort(MPI_COMM_WORLD, STATUS_FAILURE);
     s->moved->tiles += rank != 0;
     s->moved->tile_bytes += rank != 0 ? tile->bytes : 0;
     s->sink->tile(s->sink->of, tile);
-    give(s, rank);
+    assign_tiles(s, rank);
 }
 
-static void take_report(serving *s, int rank, const void *bytes)
+static void accept_report(serving *s, int rank, const void *bytes)
 {
     const rank_report *report = bytes;
     const worker_report *workers = (const worker_report *)(report + 1);
@@ -110,20 +110,20 @@ static void receive(serving *s, const MPI_Status *arrived)
     MPI_Recv(&tile->head, bytes, MPI_BYTE, arrived->MPI_SOURCE, arrived->MPI_TAG, MPI_COMM_WORLD, MPI_STATUS_IGNORE);
     s->moved->messages++;
     if (tile->head.frame == s->frame && arrived->MPI_TAG == TAG_RESULT) {
-        take_tile(s, arrived->MPI_SOURCE, tile);
+        accept_tile(s, arrived->MPI_SOURCE, tile);
         return;
     }
     if (tile->head.frame == s->frame && arrived->MPI_TAG == TAG_READY) {
         handout_join(s->tiles, arrived->MPI_SOURCE, (int)((const ready_note *)(const void *)&tile->head)->threads,
                      MPI_Wtime());
-        give(s, arrived->MPI_SOURCE);
+        assign_tiles(s, arrived->MPI_SOURCE);
     } else if (tile->head.frame == s->frame && arrived->MPI_TAG == TAG_REPORT) {
-        take_report(s, arrived->MPI_SOURCE, &tile->head);
+        accept_report(s, arrived->MPI_SOURCE, &tile->head);
     }
     free(tile);
 }
 
-/* Takes everything that has arrived or is finished; false if there was nothing. */
+/* Handles all messages that have arrived, and all finished tiles; false if there were none. */
 static bool serve_once(serving *s)
 {
     bool any = false;
@@ -136,57 +136,58 @@ static bool serve_once(serving *s)
         receive(s, &arrived);
         any = true;
     }
-    for (tile_message *tile; (tile = s->own->take(s->own->of)); any = true)
-        take_tile(s, 0, tile);
+    for (tile_message *tile; (tile = s->renderer->pop(s->renderer->of)); any = true)
+        accept_tile(s, 0, tile);
     return any;
 }
 
 static bool is_complete(const serving *s)
 {
-    return s->reports == s->ranks - 1 && s->own->over(s->own->of) && (s->given_up || handout_is_complete(s->tiles));
+    return s->reports == s->ranks - 1 && s->renderer->is_done(s->renderer->of) &&
+           (s->cancelled || handout_is_complete(s->tiles));
 }
 
-void messenger_serve(int64_t frame, int ranks, handout *tiles, const tracing *own, const frame_sink *sink,
+void messenger_serve(int64_t frame, int ranks, handout *tiles, const tracing *renderer, const frame_sink *sink,
                      traffic *moved)
 {
-    serving s = {.frame = frame, .ranks = ranks, .tiles = tiles, .own = own, .sink = sink, .moved = moved};
+    serving s = {.frame = frame, .ranks = ranks, .tiles = tiles, .renderer = renderer, .sink = sink, .moved = moved};
     s.ended = message_memory((size_t)ranks * sizeof *s.ended);
     for (int rank = 0; rank < ranks; rank++)
         s.ended[rank] = false;
-    if (own->threads > 0) {
-        handout_join(tiles, 0, own->threads, MPI_Wtime());
-        give(&s, 0);
+    if (renderer->threads > 0) {
+        handout_join(tiles, 0, renderer->threads, MPI_Wtime());
+        assign_tiles(&s, 0);
     }
     while (!is_complete(&s)) {
         if (serve_once(&s)) {
             s.idle = 0;
-            tell_end(&s);
+            send_end(&s);
         } else {
-            own->wait(own->of, s.idle++);
+            renderer->wait(renderer->of, s.idle++);
         }
         sink->progress(sink->of, handout_fraction(tiles));
         if (cancel_asked())
-            give_up(&s);
+            cancel_frame(&s);
     }
     free(s.ended);
 }
 
 /* --- the other ranks --- */
 
-/* Tiles on their way, a ring. */
+/* A ring of tiles that are being sent. */
 enum { SENDING_MOST = 64 };
 
 typedef struct working {
     int64_t frame;
-    const tracing *own;
+    const tracing *renderer;
     traffic *moved;
     tile_message *sending[SENDING_MOST];
     MPI_Request request[SENDING_MOST];
     int oldest, count;
-    bool given_up;
+    bool cancelled;
 } working;
 
-/* Releases the oldest tiles that have left; waits until at most `most` are on their way. */
+/* Frees the oldest tiles that have been sent; waits until at most `most` are still being sent. */
 static void finish_sending(working *w, int most)
 {
     while (w->count > 0) {
@@ -215,7 +216,7 @@ static void send_tile(working *w, tile_message *tile)
     w->moved->messages++;
 }
 
-static void obey(working *w, const MPI_Status *arrived)
+static void handle_message(working *w, const MPI_Status *arrived)
 {
     struct {
         wire_head head;
@@ -228,20 +229,20 @@ static void obey(working *w, const MPI_Status *arrived)
         return;
     const int count = (int)(((size_t)bytes - sizeof message.head) / sizeof message.tiles[0]);
     if (arrived->MPI_TAG == TAG_TILES)
-        w->own->give(w->own->of, message.tiles, count);
+        w->renderer->assign(w->renderer->of, message.tiles, count);
     if (arrived->MPI_TAG == TAG_END)
-        w->own->end(w->own->of);
+        w->renderer->end(w->renderer->of);
     if (arrived->MPI_TAG == TAG_STOP) {
-        w->own->stop(w->own->of);
-        w->given_up = true;
+        w->renderer->stop(w->renderer->of);
+        w->cancelled = true;
     }
 }
 
 static bool work_once(working *w)
 {
     bool any = false;
-    for (tile_message *tile; (tile = w->own->take(w->own->of)); any = true)
-        if (w->given_up)
+    for (tile_message *tile; (tile = w->renderer->pop(w->renderer->of)); any = true)
+        if (w->cancelled)
             free(tile);
         else
             send_tile(w, tile);
@@ -249,20 +250,20 @@ static bool work_once(working *w)
     int there = 0;
     MPI_Iprobe(0, MPI_ANY_TAG, MPI_COMM_WORLD, &there, &arrived);
     if (there)
-        obey(w, &arrived);
+        handle_message(w, &arrived);
     finish_sending(w, SENDING_MOST);
     return any || there;
 }
 
-void messenger_work(int64_t frame, const tracing *own, traffic *moved)
+void messenger_work(int64_t frame, const tracing *renderer, traffic *moved)
 {
-    working w = {.frame = frame, .own = own, .moved = moved};
-    const ready_note ready = {.head.frame = frame, .threads = own->threads};
+    working w = {.frame = frame, .renderer = renderer, .moved = moved};
+    const ready_note ready = {.head.frame = frame, .threads = renderer->threads};
     MPI_Send(&ready, sizeof ready, MPI_BYTE, 0, TAG_READY, MPI_COMM_WORLD);
-    for (int idle = 0; !own->over(own->of);)
+    for (int idle = 0; !renderer->is_done(renderer->of);)
         if (work_once(&w))
             idle = 0;
         else
-            own->wait(own->of, idle++);
+            renderer->wait(renderer->of, idle++);
     finish_sending(&w, 0);
 }

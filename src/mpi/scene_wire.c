@@ -1,4 +1,4 @@
-/* Parts of a package, between ranks. */
+/* Broadcasts a package in parts. */
 #include "mpi/scene_wire.h"
 #include "scene/package/package.h"
 
@@ -6,13 +6,13 @@
 #include <stdlib.h>
 #include <string.h>
 
-enum { PART = 4 << 20, LENGTH_END = 0, LENGTH_GIVEN_UP = -1 };
+enum { PART = 4 << 20, LENGTH_END = 0, LENGTH_FAILED = -1 };
 
 typedef struct part {
     char *bytes;
-    int64_t length, at; /* filled or received; of that, read */
-    uint64_t all;
-    bool ended, given_up;
+    int64_t length, at; /* bytes filled or received; bytes of them that were read */
+    uint64_t sent_bytes;
+    bool ended, failed;
 } part;
 
 static void send_length(int64_t length)
@@ -26,7 +26,7 @@ static void send_part(part *p)
         return;
     send_length(p->length);
     MPI_Bcast(p->bytes, (int)p->length, MPI_BYTE, 0, MPI_COMM_WORLD);
-    p->all += (uint64_t)p->length;
+    p->sent_bytes += (uint64_t)p->length;
     p->length = 0;
 }
 
@@ -53,8 +53,8 @@ status scene_wire_send(const scene *s, uint64_t *sent, diagnostic *why)
     THEN(code, scene_pack_to(s, put, &p, why));
     if (code == STATUS_OK)
         send_part(&p);
-    send_length(code == STATUS_OK ? LENGTH_END : LENGTH_GIVEN_UP);
-    *sent = p.all;
+    send_length(code == STATUS_OK ? LENGTH_END : LENGTH_FAILED);
+    *sent = p.sent_bytes;
     free(p.bytes);
     return code;
 }
@@ -64,7 +64,7 @@ static void receive_part(part *p)
     MPI_Bcast(&p->length, 1, MPI_INT64_T, 0, MPI_COMM_WORLD);
     p->at = 0;
     p->ended = p->length <= 0;
-    p->given_up = p->length == LENGTH_GIVEN_UP;
+    p->failed = p->length == LENGTH_FAILED;
     if (p->ended)
         p->length = 0;
     else
@@ -88,17 +88,17 @@ static status get(void *context, void *bytes, size_t size, diagnostic *why)
     return STATUS_OK;
 }
 
-status scene_wire_receive(scene **out, bool *given_up, diagnostic *why)
+status scene_wire_receive(scene **out, bool *failed, diagnostic *why)
 {
     part p = {.bytes = malloc(PART)};
     if (!p.bytes)
-        MPI_Abort(MPI_COMM_WORLD, STATUS_FAILURE); /* the others are in the broadcast */
+        MPI_Abort(MPI_COMM_WORLD, STATUS_FAILURE); /* the other ranks wait in the broadcast */
     *out = NULL;
     status code = scene_unpack_from(get, &p, out, why);
     while (!p.ended)
         receive_part(&p);
-    *given_up = p.given_up;
-    if (code == STATUS_OK && p.given_up) {
+    *failed = p.failed;
+    if (code == STATUS_OK && p.failed) {
         scene_destroy(*out);
         *out = NULL;
     }

@@ -1,6 +1,6 @@
-/* A loaded scene on its way from rank 0 to all others, by one broadcast in parts (scene/package/package.h): they read
- * no file and build no hierarchy. Each part has its length first, so that the sender needs no copy of the whole, and an
- * error of either side leaves all ranks in step. Ownership: the receiver's scene is the caller's. */
+/* Sends a loaded scene from rank 0 to all other ranks, which read no file and build no hierarchy: its package is
+ * broadcast in parts (scene/package/package.h). Each part follows its length, so that the sender needs no complete
+ * copy, and an error on either side leaves all ranks synchronised. Ownership: the receiver's scene is the caller's. */
 #pragma once
 
 #include "base/status.h"
@@ -8,9 +8,9 @@
 
 #include <stdint.h>
 
-/* Rank 0, with the hierarchies built (scene_build_hierarchies). *sent: bytes that each rank got. After an error the
- * others have no scene. */
+/* Called by rank 0, with the hierarchies built (scene_build_hierarchies). *sent: bytes per rank. After an error the
+ * other ranks have no scene. */
 status scene_wire_send(const scene *s, uint64_t *sent, diagnostic *why);
 
-/* The others. *given_up: the sender failed; there is no frame. */
-status scene_wire_receive(scene **out, bool *given_up, diagnostic *why);
+/* Called by the other ranks. *failed: rank 0 failed; there is no frame. */
+status scene_wire_receive(scene **out, bool *failed, diagnostic *why);

@@ -1,4 +1,4 @@
-/* Queues between the messenger and the tracing threads of a rank. */
+/* Queues between the messenger and the rendering threads of a rank. */
 #include "base/array.h"
 #include "mpi/tracing.h"
 
@@ -8,25 +8,25 @@
 #include <string.h>
 #include <time.h>
 
-struct team {
+struct tile_queues {
     pthread_mutex_t lock;
     pthread_cond_t has_tile, has_result;
     schedule tiles;
-    int32_t *queue; /* waiting tiles, a list that starts at first */
+    int32_t *queue; /* waiting tiles: queue[first .. count - 1] */
     size_t first, count, capacity;
     tile_message *oldest, **newest;
-    bool ended, left;
+    bool ended, renderer_ended;
     cancel_token token;
     atomic_bool failed; /* out of memory: the frame cannot be completed */
-    tracing facing_messenger;
-    tile_source facing_renderer;
+    tracing messenger_interface;
+    tile_source renderer_interface;
 };
 
 /* --- the messenger's side --- */
 
-static void give(void *of, const int32_t *tiles, int count)
+static void assign(void *of, const int32_t *tiles, int count)
 {
-    team *t = of;
+    tile_queues *t = of;
     pthread_mutex_lock(&t->lock);
     if (t->first > 0 && t->first == t->count)
         t->first = t->count = 0;
@@ -41,9 +41,9 @@ static void give(void *of, const int32_t *tiles, int count)
     pthread_mutex_unlock(&t->lock);
 }
 
-static tile_message *take(void *of)
+static tile_message *pop(void *of)
 {
-    team *t = of;
+    tile_queues *t = of;
     pthread_mutex_lock(&t->lock);
     tile_message *tile = t->oldest;
     if (tile && !(t->oldest = tile->next))
@@ -54,7 +54,7 @@ static tile_message *take(void *of)
 
 static void end(void *of)
 {
-    team *t = of;
+    tile_queues *t = of;
     pthread_mutex_lock(&t->lock);
     t->ended = true;
     pthread_cond_broadcast(&t->has_tile);
@@ -63,34 +63,33 @@ static void end(void *of)
 
 static void stop(void *of)
 {
-    team *t = of;
+    tile_queues *t = of;
     pthread_mutex_lock(&t->lock);
     cancel_set(&t->token);
     pthread_cond_broadcast(&t->has_tile);
     pthread_mutex_unlock(&t->lock);
 }
 
-static bool over(void *of)
+static bool is_done(void *of)
 {
-    team *t = of;
+    tile_queues *t = of;
     pthread_mutex_lock(&t->lock);
-    const bool is_over = t->left && !t->oldest;
+    const bool is_over = t->renderer_ended && !t->oldest;
     pthread_mutex_unlock(&t->lock);
     return is_over;
 }
 
-/* MPI has to be polled for messages, which takes time from the threads that trace. These have tiles for
- * HANDOUT_AHEAD_S, so that one poll per millisecond is enough; only a rank that waits for tiles polls more often, at
- * first. */
+/* MPI has to be polled for messages, which costs the rendering threads time. They have tiles for HANDOUT_AHEAD_S, so
+ * that one poll per millisecond is enough; only a rank that waits for tiles polls more often, at first. */
 static void wait_for_event(void *of, int idle)
 {
     enum { SHORT_NS = 50000, LONG_NS = 1000000, SHORT_TIMES = 40 };
-    team *t = of;
+    tile_queues *t = of;
     struct timespec until;
     clock_gettime(CLOCK_MONOTONIC, &until);
     pthread_mutex_lock(&t->lock);
-    const bool hungry = t->first == t->count && !t->ended && idle < SHORT_TIMES;
-    until.tv_nsec += hungry ? SHORT_NS : LONG_NS;
+    const bool needs_tiles = t->first == t->count && !t->ended && idle < SHORT_TIMES;
+    until.tv_nsec += needs_tiles ? SHORT_NS : LONG_NS;
     if (until.tv_nsec >= 1000000000)
         until.tv_nsec -= 1000000000, until.tv_sec++;
     if (!t->oldest)
@@ -102,7 +101,7 @@ static void wait_for_event(void *of, int idle)
 
 static bool next(void *context, int worker, image_tile *out)
 {
-    team *t = context;
+    tile_queues *t = context;
     (void)worker;
     pthread_mutex_lock(&t->lock);
     while (t->first == t->count && !t->ended && !cancel_is_set(&t->token))
@@ -119,9 +118,9 @@ static int64_t number_of(const schedule *s, const image_tile *tile)
     return tile->y0 / s->tile * s->tiles_across + tile->x0 / s->tile;
 }
 
-static void done(void *context, const image_tile *tile, const film *traced, const double *variance)
+static void done(void *context, const image_tile *tile, const film *rendered, const double *variance)
 {
-    team *t = context;
+    tile_queues *t = context;
     const size_t values = 3 * (size_t)(tile->x1 - tile->x0) * (size_t)(tile->y1 - tile->y0);
     const size_t bytes = values * sizeof(int64_t) * (variance ? 2 : 1);
     tile_message *message = malloc(sizeof *message + bytes);
@@ -133,7 +132,7 @@ static void done(void *context, const image_tile *tile, const film *traced, cons
     message->next = NULL;
     message->bytes = sizeof message->head + bytes;
     message->head = (wire_head){.value = number_of(&t->tiles, tile)};
-    memcpy(message->values, traced->sum, values * sizeof(int64_t));
+    memcpy(message->values, rendered->sum, values * sizeof(int64_t));
     if (variance)
         memcpy(message->values + values, variance, values * sizeof *variance);
     pthread_mutex_lock(&t->lock);
@@ -145,9 +144,9 @@ static void done(void *context, const image_tile *tile, const film *traced, cons
 
 /* --- creation and status --- */
 
-status team_create(const schedule *tiles, int threads, team **out, diagnostic *why)
+status tile_queues_create(const schedule *tiles, int threads, tile_queues **out, diagnostic *why)
 {
-    team *t = aligned_alloc(64, (sizeof *t + 63) / 64 * 64); /* a schedule is aligned to cache lines */
+    tile_queues *t = aligned_alloc(64, (sizeof *t + 63) / 64 * 64); /* a schedule is aligned to cache lines */
     if (!t)
         return out_of_memory(why);
     memset(t, 0, sizeof *t);
@@ -160,13 +159,13 @@ status team_create(const schedule *tiles, int threads, team **out, diagnostic *w
     pthread_condattr_destroy(&monotonic);
     t->tiles = *tiles;
     t->newest = &t->oldest;
-    t->facing_messenger = (tracing){threads, t, give, take, end, stop, over, wait_for_event};
-    t->facing_renderer = (tile_source){.side = tiles->tile, .next = next, .done = done, .context = t};
+    t->messenger_interface = (tracing){threads, t, assign, pop, end, stop, is_done, wait_for_event};
+    t->renderer_interface = (tile_source){.side = tiles->tile, .next = next, .done = done, .context = t};
     *out = t;
     return STATUS_OK;
 }
 
-void team_destroy(team *t)
+void tile_queues_destroy(tile_queues *t)
 {
     if (!t)
         return;
@@ -181,30 +180,30 @@ void team_destroy(team *t)
     free(t);
 }
 
-const tracing *team_tracing(const team *t)
+const tracing *tile_queues_tracing(const tile_queues *t)
 {
-    return &t->facing_messenger;
+    return &t->messenger_interface;
 }
 
-const tile_source *team_source(const team *t)
+const tile_source *tile_queues_source(const tile_queues *t)
 {
-    return &t->facing_renderer;
+    return &t->renderer_interface;
 }
 
-void team_left(team *t)
+void tile_queues_close(tile_queues *t)
 {
     pthread_mutex_lock(&t->lock);
-    t->left = true;
+    t->renderer_ended = true;
     pthread_cond_signal(&t->has_result);
     pthread_mutex_unlock(&t->lock);
 }
 
-cancel_token *team_token(team *t)
+cancel_token *tile_queues_token(tile_queues *t)
 {
     return &t->token;
 }
 
-status team_status(const team *t, status traced, diagnostic *why)
+status tile_queues_status(const tile_queues *t, status rendered, diagnostic *why)
 {
-    return atomic_load(&t->failed) ? out_of_memory(why) : traced;
+    return atomic_load(&t->failed) ? out_of_memory(why) : rendered;
 }

@@ -1,26 +1,26 @@
-/* The threads that trace the tiles of one rank, behind the interface of its messenger (mpi/messenger.h): two queues, of
- * tiles to trace and of traced tiles. The renderer takes the tiles as its source (render/frame/renderer.h). Ownership:
- * team_create allocates, team_destroy releases, after the messenger and the renderer have ended. */
+/* The two queues between the messenger of a rank (mpi/messenger.h) and its rendering threads: tiles to render, and
+ * rendered tiles. For the renderer they are the source of tiles (render/frame/renderer.h). Ownership:
+ * tile_queues_create allocates, tile_queues_destroy releases, after the messenger and the renderer have ended. */
 #pragma once
 
 #include "base/cancel.h"
 #include "mpi/messenger.h"
 #include "render/plan/schedule.h"
 
-typedef struct team team;
+typedef struct tile_queues tile_queues;
 
 /* tiles: the frame's tiles, as schedule_start makes them; copied. */
-status team_create(const schedule *tiles, int threads, team **out, diagnostic *why);
-void team_destroy(team *t); /* NULL is allowed */
+status tile_queues_create(const schedule *tiles, int threads, tile_queues **out, diagnostic *why);
+void tile_queues_destroy(tile_queues *t); /* NULL is allowed */
 
-/* For the messenger, and for the renderer; borrowed from the team. */
-const tracing *team_tracing(const team *t);
-const tile_source *team_source(const team *t);
+/* The interfaces for the messenger and for the renderer; borrowed from the queues. */
+const tracing *tile_queues_tracing(const tile_queues *t);
+const tile_source *tile_queues_source(const tile_queues *t);
 
-/* The renderer has ended: its threads take no more tiles. */
-void team_left(team *t);
-/* Set when the frame is given up, or to give it up: for the thread that renders. */
-cancel_token *team_token(team *t);
-/* The renderer's status, or that the team ran out of memory for tiles: the renderer then only sees its
- * end. */
-status team_status(const team *t, status traced, diagnostic *why);
+/* Called when the renderer has ended: its threads request no more tiles. */
+void tile_queues_close(tile_queues *t);
+/* The token for the thread that renders: set when the frame is cancelled, or to cancel it. */
+cancel_token *tile_queues_token(tile_queues *t);
+/* The renderer's status, or out of memory if a queue could not grow, which the renderer sees as the end of the
+ * tiles. */
+status tile_queues_status(const tile_queues *t, status rendered, diagnostic *why);
