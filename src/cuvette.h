@@ -19,20 +19,20 @@
  * NULL where a handle, a name or a result is required is CUVETTE_BAD_INPUT like any wrong value. The library never
  * prints, never exits, raises no signal, and reads only CUVETTE_ISA (cuvette_engine_create), CUVETTE_IMPORT (the
  * program that reads mesh files), CUVETTE_MACHINE and CUVETTE_NODE_TYPE (cuvette-results(5)) from the environment. One
- * library that it uses does not keep to this: jansson, which the functions of studies parse lists of runs with, ends
- * the process if memory runs out just then. A host that must survive that gives jansson functions with a reserve
- * (json_set_alloc_funcs), as the program cuvette does.
+ * library that it uses breaks this rule: jansson, with which the functions of studies parse lists of runs, ends the
+ * process if memory runs out. A host that must survive this passes allocation functions with a reserve to
+ * json_set_alloc_funcs, as the program cuvette does.
  *
  * Threads. There is no global state: different threads may use different handles at the same time. Any number of
  * functions that take a scene as const may run on it at the same time, including renders by several engines, but not
  * while another function changes it; a change during a render is refused with CUVETTE_BUSY. A motion counts as its
  * scene here. An engine runs one render at a time (else CUVETTE_BUSY). A frame and a query are immutable: any number of
  * threads may use them. Any thread may call cuvette_engine_cancel and cuvette_query_cancel. Callbacks run on the
- * calling thread, never two at once. In a child of fork every handle is usable that no thread of the parent was using
- * at that moment: an engine starts threads of its own there.
+ * calling thread, never two at once. In a child of fork, handles that no thread of the parent was using remain usable;
+ * an engine starts new threads there.
  *
- * Geometry. Lengths are in scene units (render.unit_m is the length of one in metres), y is up, angles are in degrees.
- * Pixels are counted from 0, with 0 at the top left; pixel x, y covers the square from x, y to x + 1, y + 1.
+ * Geometry. Lengths are in scene units (render.unit_m is the length of a scene unit in metres), y is up, angles are in
+ * degrees. Pixels are counted from 0, with 0 at the top left; pixel x, y covers the square from x, y to x + 1, y + 1.
  * The world is left-handed: x to the right, y up, z away. Positive degrees turn x to y about z, y to z about x, z to x
  * about y: counter-clockwise for an eye that looks along the axis, here along z:
  *
@@ -107,7 +107,7 @@ typedef struct cuvette_scene cuvette_scene;
 CUVETTE_API cuvette_status cuvette_scene_create(cuvette_scene **out, cuvette_diagnostic *why);
 /* Reads a scene file: YAML, at most 1 MiB. The images that it names are read at their first use. */
 CUVETTE_API cuvette_status cuvette_scene_read(const char *path, cuvette_scene **out, cuvette_diagnostic *why);
-/* Reads a scene from size bytes of text; diagnostics give name as the file, and relative paths start in its folder. */
+/* Reads a scene from size bytes of text; diagnostics call the file `name`, and relative paths start in its folder. */
 CUVETTE_API cuvette_status cuvette_scene_read_text(const char *name, const char *text, size_t size, cuvette_scene **out,
                                                    cuvette_diagnostic *why);
 /* Creates a copy that is independent of the scene. */
@@ -128,15 +128,17 @@ CUVETTE_API cuvette_status cuvette_scene_write(const cuvette_scene *scene, const
 CUVETTE_API cuvette_status cuvette_scene_write_text(const cuvette_scene *scene, char *text, size_t size, size_t *length,
                                                     cuvette_diagnostic *why);
 /* Writes the scene as the code of a link, #scene=CODE, which the laboratory opens, with the same arguments. The scene
- * may name no files, and hold no arrays. */
+ * must not name files or contain arrays. */
 CUVETTE_API cuvette_status cuvette_scene_write_link(const cuvette_scene *scene, char *text, size_t size, size_t *length,
                                                     cuvette_diagnostic *why);
 
-/* Reads the files that the scene names, and simulates its slimes until their time_s, which otherwise its first render,
- * query or measurement does. progress, which may be NULL, is called about ten times a second, with the share of the
- * simulation, and returns false to stop, also while files are read and meshes generated: CUVETTE_CANCELLED. */
-CUVETTE_API cuvette_status cuvette_scene_load(const cuvette_scene *scene, bool (*progress)(void *context, double share),
-                                              void *context, cuvette_diagnostic *why);
+/* Reads the files that the scene names, and simulates its slimes until their time_s; otherwise the first render, query
+ * or measurement does so. progress, which may be NULL, is called about ten times per second, also while files are read
+ * and meshes are generated; it receives the finished fraction of the simulation, and returns false to cancel:
+ * CUVETTE_CANCELLED. */
+CUVETTE_API cuvette_status cuvette_scene_load(const cuvette_scene *scene,
+                                              bool (*progress)(void *context, double fraction), void *context,
+                                              cuvette_diagnostic *why);
 
 /* Calls note with one line of text, "PLACE: WHAT; REMEDY", for everything that is valid but looks like a mistake: a
  * black solid, no light, a setting without effect. The text is valid during the call. PLACE is a parameter's path or an
@@ -214,7 +216,8 @@ typedef enum cuvette_object {
 CUVETTE_API cuvette_status cuvette_scene_add_light(cuvette_scene *scene, const char *name, cuvette_diagnostic *why);
 CUVETTE_API cuvette_status cuvette_scene_add_material(cuvette_scene *scene, const char *name, cuvette_diagnostic *why);
 /* shape: "sphere" or another shape of cuvette-scene(5), which describes the position of each. material: the name of a
- * material, or NULL for a surface of the solid's own. All other parameters have their defaults; set them by path. */
+ * material; NULL: the solid has its own surface parameters. All other parameters have their defaults; set them by
+ * path. */
 CUVETTE_API cuvette_status cuvette_scene_add_solid(cuvette_scene *scene, const char *name, const char *shape,
                                                    const char *material, cuvette_diagnostic *why);
 
@@ -223,15 +226,15 @@ CUVETTE_API cuvette_status cuvette_scene_add_solid(cuvette_scene *scene, const c
  * `mesh` to this name. */
 CUVETTE_API cuvette_status cuvette_scene_add_mesh(cuvette_scene *scene, const char *name, cuvette_diagnostic *why);
 
-/* The caller's triangles, which are copied. Of each pair of double and float arrays at least one is NULL; both are NULL
- * if the mesh has no such data. The front of a triangle a, b, c is where (b - a) x (c - a) points; for an eye there the
- * corners run clockwise, because the world is left-handed. Coordinates are finite, at most 1e9. Set size before the
- * call; later versions add fields at the end. */
+/* The caller's triangles, which are copied. At most one array of each pair of double and float is set; neither if the
+ * mesh has no such data. (b - a) x (c - a) points to the front of a triangle a, b, c; seen from there, the corners run
+ * clockwise, because the world is left-handed. Coordinates are finite, at most 1e9. Set size before the call; later
+ * versions add fields at the end. */
 typedef struct cuvette_triangles {
     size_t size;            /* sizeof(cuvette_triangles) */
     size_t vertex_count;    /* at most 2^29 */
     size_t triangle_count;  /* at most 2^28 */
-    const double *vertices; /* x, y, z of each */
+    const double *vertices; /* x, y, z of each vertex */
     const float *vertices_float;
     const uint32_t *corners; /* three vertex indices of each triangle, from 0 */
     const double *normals;   /* x, y, z of each vertex, any length */
@@ -249,8 +252,8 @@ CUVETTE_API cuvette_status cuvette_scene_add_triangles(cuvette_scene *scene, con
 
 /* Adds a texture: from a PNG, JPEG, PFM or 24-bit BMP file (set NAME.file), or from the caller's linear RGB floats,
  * which are copied, row by row from the top (repeated, trilinear). A material or a solid uses it by its parameter
- * `texture`. Clones share a texture that was given as an array, but written files do not contain it; setting one of its
- * parameters discards the array. */
+ * `texture`. Clones share a texture from an array, but written files do not contain it; setting one of its parameters
+ * discards the array. */
 CUVETTE_API cuvette_status cuvette_scene_add_texture(cuvette_scene *scene, const char *name, cuvette_diagnostic *why);
 CUVETTE_API cuvette_status cuvette_scene_add_pixels(cuvette_scene *scene, const char *name, int width, int height,
                                                     const float *rgb, cuvette_diagnostic *why);
@@ -264,8 +267,8 @@ CUVETTE_API cuvette_status cuvette_scene_remove(cuvette_scene *scene, const char
 CUVETTE_API cuvette_status cuvette_scene_move(cuvette_scene *scene, const char *name, const double *by,
                                               cuvette_diagnostic *why);
 /* Rotates a solid in place, or the direction of a cone light or "camera", about the world's x axis, then y, then z
- * (three angles), after the rotation that it has: counter-clockwise for an eye that looks along the axis. Several
- * objects ("all") rotate about the origin, the camera including its roll. */
+ * (three angles), after its present rotation: counter-clockwise for an eye that looks along the axis. Several objects
+ * ("all") rotate about the origin, the camera including its roll. */
 CUVETTE_API cuvette_status cuvette_scene_turn(cuvette_scene *scene, const char *name, const double *degrees,
                                               cuvette_diagnostic *why);
 /* Multiplies all lengths of a solid or a light by a factor above 0, in place; or of several objects ("all+camera"),
@@ -279,7 +282,7 @@ CUVETTE_API cuvette_status cuvette_scene_look_at(cuvette_scene *scene, const dou
  * material. */
 CUVETTE_API cuvette_status cuvette_scene_give_material(cuvette_scene *scene, const char *solid, const char *material,
                                                        cuvette_diagnostic *why);
-/* Renames an object; references to it follow. */
+/* Renames an object, and updates the references to it. */
 CUVETTE_API cuvette_status cuvette_scene_rename(cuvette_scene *scene, const char *name, const char *new_name,
                                                 cuvette_diagnostic *why);
 
@@ -301,9 +304,8 @@ CUVETTE_API cuvette_status cuvette_engine_create(const char *instructions, cuvet
 /* Must not be called during a render. */
 CUVETTE_API void cuvette_engine_destroy(cuvette_engine *engine);
 
-/* Stops the current render within about a tenth of a second, also while it loads the scene and builds hierarchies; has
- * no effect when there is none. May be called from any
- * thread and from a signal handler. */
+/* Stops the current render within about a tenth of a second, also while it loads the scene and builds hierarchies;
+ * without a render it has no effect. May be called from any thread and from a signal handler. */
 CUVETTE_API void cuvette_engine_cancel(cuvette_engine *engine);
 
 /* A rectangle of the image, x0 <= x < x1, y0 <= y < y1, whose pixels in the caller's buffers are new. */
@@ -316,24 +318,24 @@ typedef struct cuvette_tile {
  * versions add fields at the end. */
 typedef struct cuvette_request {
     size_t size;       /* sizeof(cuvette_request) */
-    int width, height; /* of the buffers: must equal the scene's render.width and render.height; 0 without buffers */
+    int width, height; /* size of the buffers, equal to the scene's render.width and render.height; 0 without buffers */
     float *rgb;        /* linear RGB, 1.0 is white, row by row from the top; NULL: none. Not negative for an rgb film */
     size_t rgb_stride; /* floats from one row to the next, at least 3 * width; 0: 3 * width */
-    /* the same encoded as sRGB (IEC 61966-2-1), correctly rounded, one byte per channel; NULL: none */
+    /* the image encoded as sRGB (IEC 61966-2-1), correctly rounded, one byte per channel; NULL: none */
     unsigned char *srgb;
     size_t srgb_stride; /* bytes from one row to the next; 0: 3 * width */
     /* 2..64: render first an image of 1/preview of the width and height, shown with one square per pixel; 0: none.
      * Costs 1/preview^2 of the frame, which the frame's counts and times do not include */
     int preview;
-    /* finished share of the frame, 0..1, never decreasing, about ten times a second: 0 before the first ray and while
-     * slimes are simulated, 1 at the end; return false to cancel. May be NULL */
-    bool (*progress)(void *context, double share);
-    /* finished tiles of the buffers: one for a preview, then each tile of the image once (render.schedule,
-     * render.tile), about ten times a second. Without it the buffers are filled at the end. May be NULL */
+    /* called about ten times per second with the finished fraction of the frame, 0..1, never decreasing: 0 before the
+     * first ray and while slimes are simulated, 1 at the end; return false to cancel. May be NULL */
+    bool (*progress)(void *context, double fraction);
+    /* called about ten times per second with finished tiles of the buffers: one for a preview, then each tile of the
+     * image once (render.schedule, render.tile). Without it the buffers are filled at the end. May be NULL */
     void (*tile)(void *context, const cuvette_tile *tile);
     void *context; /* passed to both callbacks */
     /* keep further values of each pixel, which cost memory and time: the named layers of render.integrator aov; the
-     * number of its rays; the nanoseconds spent on it; the share of its light that was cut */
+     * number of its rays; the nanoseconds spent on it; the fraction of its light that was cut */
     bool layers, pixel_rays, pixel_time, pixel_cut;
 } cuvette_request;
 
@@ -349,9 +351,9 @@ typedef struct cuvette_request {
 
 /* Renders the scene with render.threads threads. request and out may be NULL. A cancelled render returns
  * CUVETTE_CANCELLED and still creates the frame, with the film and counts of the rays that were traced (NULL if it was
- * cancelled before the first ray); the buffers then hold the finished part, and with tiles, their previous content
- * elsewhere. Returns CUVETTE_BAD_INPUT also when the radiance exceeds the film's range (262144 in one contribution,
- * 524288 in a pixel). */
+ * cancelled before the first ray); the buffers then contain the finished part; with the callback `tile`, all other
+ * pixels are unchanged. Returns CUVETTE_BAD_INPUT also when the radiance exceeds the film's range (262144 in one
+ * contribution, 524288 in a pixel). */
 CUVETTE_API cuvette_status cuvette_engine_render(cuvette_engine *engine, const cuvette_scene *scene,
                                                  const cuvette_request *request, cuvette_frame **out,
                                                  cuvette_diagnostic *why);
@@ -384,8 +386,8 @@ CUVETTE_API cuvette_status cuvette_frame_layer(const cuvette_frame *frame, const
                                                int *channels, cuvette_diagnostic *why);
 /* Writes one number for each pixel, width * height in all: "rays", "time" (ns) or "cut", if the request had pixel_rays,
  * pixel_time or pixel_cut set; "noise", the standard error under random paths, root mean square over the channels.
- * "cut" is the share of the pixel's light, by weight, of rays that render.depth or render.min_weight cut: the error of
- * the pixel is at most that share of the brightest light that such a ray could have brought. */
+ * "cut" is the fraction of the pixel's light, by weight, in rays that render.depth or render.min_weight cut: the
+ * pixel's error is at most that fraction of the brightest light that such a ray could have added. */
 CUVETTE_API cuvette_status cuvette_frame_map(const cuvette_frame *frame, const char *name, double *values,
                                              cuvette_diagnostic *why);
 
@@ -396,7 +398,7 @@ typedef struct cuvette_counters {
     uint64_t camera, reflect, refract, shadow; /* rays by kind */
     uint64_t total_internal;                   /* total internal reflections */
     uint64_t cut_depth, cut_weight;            /* rays not traced: beyond render.depth; below render.min_weight */
-    double cut_depth_throughput[3];            /* the sum of their weights, linear RGB */
+    double cut_depth_throughput[3];            /* sum of the weights of these rays, linear RGB */
     double cut_weight_throughput[3];
     uint64_t by_depth[65]; /* camera (0), reflected and refracted rays by recursion depth */
     uint64_t photon;       /* rays of photons (render.caustics) */
@@ -405,7 +407,7 @@ typedef struct cuvette_counters {
 /* Counts of one solid; only the first 64 solids of a scene are counted. */
 typedef struct cuvette_solid_counters {
     size_t size;         /* sizeof(cuvette_solid_counters) */
-    uint64_t tests;      /* rays tested against it; 0 for a solid that a hierarchy finds */
+    uint64_t tests;      /* rays tested against it; 0 for a solid in a hierarchy */
     uint64_t hits;       /* hits on its interfaces, without shadow rays and photons */
     uint64_t first_hits; /* camera rays whose first interface is on it */
 } cuvette_solid_counters;
@@ -415,7 +417,7 @@ typedef struct cuvette_statistics {
     size_t size;      /* sizeof(cuvette_statistics) */
     double wall_s;    /* from the start of the workers to the end of the last one */
     double cpu_s;     /* CPU time of the process over the same interval */
-    double preview_s; /* wall time of the preview before that; 0 without one */
+    double preview_s; /* wall time of the preview; 0 without one */
     int threads;
     double noise_rms; /* standard error of a film value under random paths, root mean square; otherwise NaN */
 } cuvette_statistics;
@@ -436,8 +438,8 @@ typedef struct cuvette_query cuvette_query;
 /* Prepares a snapshot of the scene for ray queries. instructions as in cuvette_engine_create. */
 CUVETTE_API cuvette_status cuvette_query_create(const cuvette_scene *scene, const char *instructions,
                                                 cuvette_query **out, cuvette_diagnostic *why);
-/* The same at one wavelength, in nm, as `cuvette trace --lambda`: it replaces render.lambda_nm, and trees and fans have
- * the absorption of media at it in all channels. */
+/* The same at one wavelength in nm, like `cuvette trace --lambda`: it replaces render.lambda_nm, and trees and fans use
+ * the media's absorption at this wavelength in all channels. */
 CUVETTE_API cuvette_status cuvette_query_wavelength_create(const cuvette_scene *scene, double lambda_nm,
                                                            const char *instructions, cuvette_query **out,
                                                            cuvette_diagnostic *why);
@@ -445,14 +447,14 @@ CUVETTE_API void cuvette_query_destroy(cuvette_query *query);
 
 /* Stops every call of the query that is in progress, in all threads, within about a tenth of a second: rays, trees,
  * fans, beams, and the writing of trees and fans, whose files then do not appear. Each returns CUVETTE_CANCELLED and no
- * result; the arrays of hits and of blocked rays are undefined then. Later calls run as usual; it has no effect when
- * there is none in progress. May be called from any thread and from a signal handler, before cuvette_query_destroy. */
+ * result; the arrays of hits and of blocked rays are undefined then. Later calls run as usual; without calls in
+ * progress it has no effect. May be called from any thread and from a signal handler, before cuvette_query_destroy. */
 CUVETTE_API void cuvette_query_cancel(cuvette_query *query);
 
 enum { CUVETTE_OUTSIDE = -1 }; /* in place of a solid's index: no solid */
 
 /* The start of a ray. Zero: a free point, whose medium is looked up. A copy of a hit's start: the ray starts exactly on
- * that surface and does not hit it again at distance 0. The contents belong to the query that filled them in. */
+ * that surface and does not hit it again at distance 0. It is valid only for the query that returned the hit. */
 typedef struct cuvette_start {
     uint64_t word[4];
 } cuvette_start;
@@ -479,8 +481,8 @@ typedef struct cuvette_hit {
     /* part of the solid's surface: cylinder 0 side, 1 bottom, 2 top; cup the same, then 8 inner side, 9 floor; box 0
      * -x, 1 +x, 2 -y, 3 +y, 4 -z, 5 +z; lens 0 rim, 1 and 2 its sides; else 0 */
     int32_t face;
-    int64_t triangle;                     /* of a mesh, else -1 */
-    int32_t copy, slot;                   /* of a mesh: its instance, and the triangle's material slot; else 0 */
+    int64_t triangle;                     /* index of the mesh's triangle; else -1 */
+    int32_t copy, slot;                   /* the mesh's instance, and the triangle's material slot; else 0 */
     double u, v;                          /* weights of the triangle's second and third corner; else 0 */
     double n_before, n_after;             /* refractive indices at render.lambda_nm */
     cuvette_start reflected, transmitted; /* starts of rays from the point, on this side or behind it */
@@ -495,7 +497,7 @@ CUVETTE_API cuvette_status cuvette_query_nearest(const cuvette_query *query, con
 CUVETTE_API cuvette_status cuvette_query_occluded(const cuvette_query *query, const cuvette_ray *rays, size_t count,
                                                   unsigned char *blocked, cuvette_diagnostic *why);
 
-/* The camera ray through a point of the image, in pixels: 0.5, 0.5 is the centre of the first one. The point may be
+/* The camera ray through a point of the image, in pixels: 0.5, 0.5 is the centre of the first pixel. The point may be
  * outside the image. */
 CUVETTE_API cuvette_status cuvette_query_camera_ray(const cuvette_query *query, double x, double y, cuvette_ray *out,
                                                     cuvette_diagnostic *why);
@@ -506,11 +508,11 @@ CUVETTE_API cuvette_status cuvette_query_medium(const cuvette_query *query, cons
 
 /* --- ray trees and fans ---
  *
- * A tree is one ray with all rays that follow from it, as the renderer traces them: the radiance of a pixel's tree
- * is the film's value, bit for bit (of a scene with random paths, a spectral film or a depth buffer, the tree is
- * that of render.integrator whitted at render.lambda_nm). A fan is many rays in one plane, each followed along its
- * refracted path, with their caustic and focus. Both are immutable; arrays and texts that are read from them are
- * valid until they are destroyed, and they no longer need their query. Calls on one query take turns. */
+ * A tree is one ray with all rays that follow from it, as the renderer traces them: the radiance of a pixel's tree is
+ * the film's value, bit for bit (for a scene with random paths, a spectral film or a depth buffer, the tree is traced
+ * with render.integrator whitted at render.lambda_nm). A fan is many rays in one plane, each followed along its
+ * refracted path, with their caustic and focus. Both are immutable; arrays and texts that are read from them are valid
+ * until they are destroyed, and they no longer need their query. Calls on one query run one after another. */
 
 typedef struct cuvette_tree cuvette_tree;
 typedef struct cuvette_fan cuvette_fan;
@@ -522,8 +524,8 @@ typedef enum cuvette_ray_kind {
     CUVETTE_RAY_SHADOW
 } cuvette_ray_kind;
 
-/* How a ray ends: at an interface; in the background; not traced, because of render.depth or of render.min_weight; a
- * shadow ray: whether (part of) its light arrives. */
+/* How a ray ends: at an interface; in the background; not traced because of render.depth or render.min_weight; for a
+ * shadow ray, whether (part of) its light arrives. */
 typedef enum cuvette_ray_end {
     CUVETTE_END_HIT,
     CUVETTE_END_SKY,
@@ -535,19 +537,19 @@ typedef enum cuvette_ray_end {
 
 /* One ray of a tree. Fields from distance on describe its hit; they are 0 unless it ends with one. */
 typedef struct cuvette_node {
-    int32_t kind, end;                  /* cuvette_ray_kind, cuvette_ray_end */
-    int32_t depth;                      /* 0: the first ray; of a shadow ray, that of the ray at whose hit it starts */
+    int32_t kind, end; /* cuvette_ray_kind, cuvette_ray_end */
+    int32_t depth;     /* 0: the first ray; a shadow ray has the depth of the ray at whose hit it starts */
     int32_t parent, first_child, next;  /* indices in the tree, or -1; next: the parent's next child */
-    double origin[3], direction[3];     /* unit vector; of a shadow ray, towards the light */
-    double weight[3];                   /* at its start, RGB; of a shadow ray the radiance that it adds if unblocked */
+    double origin[3], direction[3];     /* unit vector; a shadow ray's is towards the light */
+    double weight[3];                   /* RGB, at its start; for a shadow ray the radiance that it adds if unblocked */
     double stokes[4];                   /* under render.polarisation: the analyser's Stokes vector; else 1, 0, 0, 0 */
     double added[3];                    /* radiance that this ray itself adds to the film, without its children */
     double n;                           /* refractive index of the medium in which it starts */
     const char *medium_name;            /* "water", or the solid's name */
     int32_t medium;                     /* the solid's index, or CUVETTE_OUTSIDE */
-    int32_t light;                      /* of a shadow ray: the light's index; else -1 */
-    double light_distance;              /* of a shadow ray: to its light, scene units; else 0 */
-    double light_transmittance;         /* of a shadow ray: of the surfaces in its path; else 1 */
+    int32_t light;                      /* index of a shadow ray's light; else -1 */
+    double light_distance;              /* distance of a shadow ray's light, scene units; else 0 */
+    double light_transmittance;         /* transmittance of the surfaces on a shadow ray's path; else 1 */
     double distance;                    /* scene units */
     double point[3], normal[3];         /* unit vector, towards the ray */
     double error;                       /* bound on the point's distance from the exact surface, scene units */
@@ -560,8 +562,8 @@ typedef struct cuvette_node {
     double T;                /* power transmittance of the surface, with coating and transparency */
     double gain_classic;     /* factor of the radiance from behind: T, for either value of render.radiance ... */
     double gain_basic;       /* ... and T (n_before / n_after)^2 */
-    double length_m;         /* of the ray, metres */
-    double transmittance[3]; /* of the medium over this length (Beer and Lambert), RGB */
+    double length_m;         /* length of the ray, metres */
+    double transmittance[3]; /* of the medium over length_m (Beer and Lambert), RGB */
     double angle_in_deg, angle_out_deg; /* of incidence and refraction; angle_out_deg is 0 if there is none */
 } cuvette_node;
 
@@ -575,7 +577,7 @@ CUVETTE_API void cuvette_tree_destroy(cuvette_tree *tree);
 
 /* The rays, the first one first; sets *count. NULL for no tree. */
 CUVETTE_API const cuvette_node *cuvette_tree_nodes(const cuvette_tree *tree, size_t *count);
-/* Writes the radiance that the whole tree brings to its pixel, three numbers. */
+/* Writes the radiance that the tree adds to its pixel, three numbers. */
 CUVETTE_API cuvette_status cuvette_tree_radiance(const cuvette_tree *tree, double *rgb, cuvette_diagnostic *why);
 /* Writes what `cuvette trace` writes, in the format of the path's ending: .txt, .json, .svg. */
 CUVETTE_API cuvette_status cuvette_tree_write(const cuvette_tree *tree, const char *path, cuvette_diagnostic *why);
@@ -584,7 +586,7 @@ CUVETTE_API cuvette_status cuvette_tree_write(const cuvette_tree *tree, const ch
 typedef struct cuvette_beam_ray {
     const char *beam_name;
     int32_t beam;         /* index of the beam in the scene */
-    int32_t number, rays; /* of this ray in its beam, from 0, and their count; for each wavelength the same */
+    int32_t number, rays; /* the ray's number in its beam, from 0, and how many there are at each wavelength */
     double lambda_nm;
     double power; /* at its start: the beam's power divided by its rays and wavelengths */
 } cuvette_beam_ray;
@@ -601,27 +603,28 @@ CUVETTE_API cuvette_status cuvette_query_each_beam_ray(const cuvette_query *quer
 typedef struct cuvette_fan_rule {
     size_t size;           /* sizeof(cuvette_fan_rule) */
     double from[3], to[3]; /* the axis; the rays start around `from` */
-    double normal[3];      /* of their plane; 0, 0, 0: up for a horizontal axis, else horizontal */
+    double normal[3];      /* normal of the rays' plane; 0, 0, 0: up for a horizontal axis, else horizontal */
     int rays;              /* 1..100000 */
-    double width;          /* of a parallel beam, scene units */
-    double spread_deg;     /* above 0: instead, all from one point, with this angle between the first and the last */
+    double width;          /* width of a parallel beam, scene units */
+    double
+        spread_deg; /* above 0: not parallel, but from one point, with this angle between the first and the last ray */
 } cuvette_fan_rule;
 
 typedef struct cuvette_fan_ray {
-    double offset;        /* from the axis: scene units, or degrees if the fan spreads */
+    double offset;        /* distance from the axis, scene units; degrees if the fan spreads */
     size_t first, count;  /* its nodes */
     int32_t leaves;       /* 1: it was followed to its end, in the background or at an opaque surface */
     int32_t crosses_axis; /* 1: its last segment crosses the axis, seen along the plane's normal */
     const char *end_name; /* "sky", "cut", or the opaque solid that it hit */
-    double exit_point[3], exit_direction[3]; /* of its last segment */
+    double exit_point[3], exit_direction[3]; /* start and direction of the last segment */
     double reach;                            /* length of the last segment; infinite into the background */
     double deviation_deg;                    /* between the first direction and the last */
-    double weight;                           /* of the last segment, mean of RGB */
-    double axis_at;                          /* of the crossing: distance from `from` along the axis */
+    double weight;                           /* weight of the last segment, mean of RGB */
+    double axis_at;                          /* distance of the crossing from `from`, along the axis */
     double axis_point[3];
 } cuvette_fan_ray;
 
-/* The crossing of the last segments of the rays number ray and ray + 1. All together are the caustic. */
+/* The crossing of the last segments of rays number ray and ray + 1. All crossings form the caustic. */
 typedef struct cuvette_crossing {
     int64_t ray;
     double at[3];
@@ -631,9 +634,9 @@ typedef struct cuvette_crossing {
 typedef struct cuvette_focus {
     size_t size;        /* sizeof(cuvette_focus) */
     int32_t exists;     /* 0: the deflected rays are parallel, or fewer than two */
-    int32_t is_virtual; /* 1: it is behind the rays */
+    int32_t is_virtual; /* 1: the focus is behind the rays */
     double point[3];
-    double rms; /* root mean square of the distances of the rays from it, scene units */
+    double rms; /* root mean square of the distances of the rays from the focus, scene units */
 } cuvette_focus;
 
 CUVETTE_API cuvette_status cuvette_query_fan(const cuvette_query *query, const cuvette_fan_rule *rule,
@@ -651,14 +654,14 @@ CUVETTE_API cuvette_status cuvette_fan_write(const cuvette_fan *fan, const char 
 /* A quantity measured with traced rays, and a textbook's closed form. The texts are valid during the call of visit. */
 typedef struct cuvette_metric {
     const char *name;    /* "lens.power" */
-    const char *meaning; /* one line; of an undefined one, why this scene has no such thing */
+    const char *meaning; /* one line; for an undefined metric, why this scene has none */
     const char *unit;    /* "" for ratios */
     const char *verdict; /* "pass", "FAIL", or "none": undefined, and the numbers are NaN */
     double measured, theory, error, tolerance;
 } cuvette_metric;
 
-/* Visits the metrics of `cuvette realism`, until visit returns false. CUVETTE_BAD_INPUT describes the solids that the
- * scene lacks for them. */
+/* Visits the metrics of `cuvette realism`, until visit returns false. CUVETTE_BAD_INPUT describes the solids that they
+ * need and the scene lacks. */
 CUVETTE_API cuvette_status cuvette_scene_each_metric(const cuvette_scene *scene,
                                                      bool (*visit)(void *context, const cuvette_metric *one),
                                                      void *context, cuvette_diagnostic *why);
@@ -710,10 +713,10 @@ CUVETTE_API cuvette_status cuvette_compare(int width, int height, const float *a
  * and queries use the current shapes of the bodies; so do clones, but a written file records only the time.
  *
  * The motion and its scene may be released in any order: the scene keeps the current shapes, and functions of a motion
- * without its scene return CUVETTE_BAD_INPUT. They do so as well after a slime's parameters were set, the scene lost a
- * mesh or got another motion, or an advance failed. Everything else in the scene may be changed. During an advance,
- * calls that use the motion or that change or render its scene return CUVETTE_BUSY, as does an advance during a render;
- * hands may act during an advance. */
+ * without its scene return CUVETTE_BAD_INPUT. They also do after a slime's parameters were set, a mesh was removed,
+ * another motion was created, or an advance failed. Everything else in the scene may be changed. During an advance,
+ * calls that use the motion or that change or render its scene return CUVETTE_BUSY, as does an advance during a render.
+ * */
 
 typedef struct cuvette_motion cuvette_motion;
 
@@ -726,11 +729,12 @@ CUVETTE_API void cuvette_motion_destroy(cuvette_motion *motion);
 /* Advances to time_s, 0 to 86400, rounded for each slime to the nearest whole number of its steps; not backwards.
  * CUVETTE_BAD_INPUT also when a slime becomes unstable, or a hand of its script grabs nothing. */
 CUVETTE_API cuvette_status cuvette_motion_advance(cuvette_motion *motion, double time_s, cuvette_diagnostic *why);
-/* The same with a progress function as that of cuvette_scene_load. After CUVETTE_CANCELLED the scene still shows the
- * time before, and a later advance, to a time not before that of the bodies (cuvette_motion_state), continues. */
+/* The same with a progress function like that of cuvette_scene_load. After CUVETTE_CANCELLED the scene still has the
+ * shapes of the previous time; a later advance continues, to a time not before that of the bodies
+ * (cuvette_motion_state). */
 CUVETTE_API cuvette_status cuvette_motion_advance_watched(cuvette_motion *motion, double time_s,
-                                                          bool (*progress)(void *context, double share), void *context,
-                                                          cuvette_diagnostic *why);
+                                                          bool (*progress)(void *context, double fraction),
+                                                          void *context, cuvette_diagnostic *why);
 
 /* The number of slimes, and the names of their meshes; a name is valid until the scene is changed. 0 and NULL for a
  * slime that does not exist. */
@@ -742,7 +746,7 @@ CUVETTE_API const char *cuvette_motion_name(const cuvette_motion *motion, size_t
 typedef struct cuvette_slime {
     size_t size; /* sizeof(cuvette_slime) */
     double time_s;
-    uint64_t steps, substeps;                      /* substeps exceed steps where `adaptive` has split them */
+    uint64_t steps, substeps;                      /* more substeps than steps if `adaptive` split some */
     uint64_t masses, held;                         /* held: masses in hands, including the script's */
     double kinetic, elastic, compression, gravity; /* energies: motion, springs, pressure, height above y = 0 */
     double center[3], momentum[3];                 /* centre of mass, momentum */
@@ -753,9 +757,9 @@ typedef struct cuvette_slime {
 CUVETTE_API cuvette_status cuvette_motion_state(const cuvette_motion *motion, const char *name, cuvette_slime *out,
                                                 cuvette_diagnostic *why);
 
-/* Hands. Rays are in world space (cuvette_query_camera_ray makes one for a pixel); their start is ignored. The name is
- * that of a solid that shows a slime, or of the slime's mesh: then the visible solid with that mesh that the ray hits
- * first. Instances are hit too; all instances of a mesh move alike. Other objects do not block the ray. */
+/* Hands. Rays are in world space (cuvette_query_camera_ray makes one for a pixel); their start is ignored. name is a
+ * solid that shows a slime, or the slime's mesh; the mesh stands for its first visible solid on the ray. Rays also hit
+ * instances; all instances of a mesh move alike. Other objects do not block the ray. */
 
 /* Finds where the ray hits the slime's surface from outside, and the distance from its origin; on a miss the distance
  * is infinite and *where is unchanged. where, three numbers, may be NULL. */
@@ -766,8 +770,8 @@ enum { CUVETTE_NO_HAND = -1 };
 
 /* Grabs the masses within reach (scene units, above 0; for a solid with unequal scale, relative to its largest scale)
  * of the point where the ray hits the surface, at least the nearest mass. *hand is set to the hand's number, from 0, or
- * to CUVETTE_NO_HAND on a miss. At most 16 hands, including the script's, can hold a slime at a time. where as
- * above. */
+ * to CUVETTE_NO_HAND on a miss. At most 16 hands, including the script's, can hold a slime at a time. where: as in
+ * cuvette_motion_pick. */
 CUVETTE_API cuvette_status cuvette_motion_grab(cuvette_motion *motion, const char *name, const cuvette_ray *ray,
                                                double reach, int *hand, double *where, cuvette_diagnostic *why);
 /* Moves the hand during the next advance, in a straight line, to the point where it grabbed plus `by`, three numbers in
@@ -804,13 +808,13 @@ CUVETTE_API cuvette_status cuvette_study_each_value(const cuvette_study *study, 
                                                     bool (*visit)(void *context, const char *path, const char *value),
                                                     void *context, cuvette_diagnostic *why);
 
-/* What exists on disk, of the present environment unless said otherwise. */
+/* The rows on disk, of the present environment unless stated otherwise. */
 typedef struct cuvette_study_progress {
     size_t size; /* sizeof(cuvette_study_progress) */
     size_t cells, cells_done;
     size_t rows, warmups, marked, disturbed; /* marked: another film than expected; disturbed: by the study's rule */
-    size_t rows_elsewhere;                   /* of other environments */
-    size_t rows_other_cells;                 /* of cells that the study does not have (any more) */
+    size_t rows_elsewhere;                   /* rows of other environments */
+    size_t rows_other_cells;                 /* rows of cells that the study does not have, or no longer has */
     size_t faults;                           /* rows that fail a check or are missing, and marked ones */
     char environment[16];                    /* key of the present environment, 8 hex digits */
     char fault[512];                         /* the first fault, "" for none */
@@ -823,34 +827,34 @@ typedef struct cuvette_run {
     size_t size;          /* sizeof(cuvette_run) */
     const char *results;  /* folder */
     bool any_environment; /* count rows of other environments too */
-    double wait_quiet_s;  /* before each repetition, wait that long at most until other programs are quiet; 0: never */
-    /* the number of a process of a study with several (`processes` in its file), from 1: measure only its part; 0: all,
-     * which such a study requires other processes for: run `cuvette study run`, or one program for each number */
+    double wait_quiet_s;  /* before each repetition, wait at most this long until other programs are quiet; 0: never */
+    /* for a study with several processes (`processes` in its file), the number of one, from 1: measures only its part,
+     * so that each number needs a program (`cuvette study run` starts them); 0: measures all repetitions */
     long process;
-    /* share of the frames, 0..1, and the seconds that are left (NaN: unknown), about ten times a second; return
-     * false to stop. May be NULL */
-    bool (*progress)(void *context, double share, double left_s);
+    /* called about ten times per second with the finished fraction of the frames, 0..1, and the seconds that are left
+     * (NaN: unknown); return false to stop. May be NULL */
+    bool (*progress)(void *context, double fraction, double left_s);
     void (*news)(void *context, const char *text); /* what disturbs the measurement. May be NULL */
     void *context;
 } cuvette_run;
 
-/* Measures what is missing and writes the kept files; sets *rows, which may be NULL, to the number of new rows.
+/* Measures the missing rows and writes the kept files; sets *rows, which may be NULL, to the number of new rows.
  * CUVETTE_CANCELLED after a stop: rows so far are kept, and the next run resumes. */
 CUVETTE_API cuvette_status cuvette_study_run(const cuvette_study *study, const cuvette_run *run, size_t *rows,
                                              cuvette_diagnostic *why);
-/* The number of processes that divide the repetitions; 1: no others. */
+/* The number of processes that divide the repetitions; 1: the repetitions are not divided. */
 CUVETTE_API long cuvette_study_processes(const cuvette_study *study);
 
-/* The rows, as CSV with two more columns: environment, the key of the row's, and left_out, why the summary does not
- * take the row: warm-up, marked, excluded; else empty. Damaged rows are not in it, nor those of cells that the study
- * does not have. study may be NULL: results is then the folder of the rows, RESULTS/NAME, and all its cells are taken.
- * environment: a key; "main": that with most rows; "all"; NULL: if there are several, CUVETTE_BAD_INPUT names them.
- * *fault as in the summary. */
+/* Returns the rows as CSV with two more columns: environment, the key of the row's environment, and left_out, why the
+ * summary omits the row (warm-up, marked, excluded; else empty). Damaged rows and rows of cells that the study does not
+ * have are omitted. study may be NULL: results is then the folder of the rows, RESULTS/NAME, and no cell is omitted.
+ * environment: a key; "main": the one with most rows; "all"; NULL: the only one, while CUVETTE_BAD_INPUT names several.
+ * *fault as in cuvette_study_summary. */
 CUVETTE_API cuvette_status cuvette_study_rows(const cuvette_study *study, const char *results, const char *environment,
                                               char **out, char **fault, cuvette_diagnostic *why);
 
 /* The summary of `cuvette study summary`, as a table with tabs: medians and 95 % intervals, a line for each cell and
- * environment. environment: a key; "main": that with most rows; NULL: all. *fault, which may be NULL, is set to the
+ * environment. environment: a key; "main": the one with most rows; NULL: all. *fault, which may be NULL, is set to the
  * first fault of the rows, or NULL. */
 CUVETTE_API cuvette_status cuvette_study_summary(const cuvette_study *study, const char *results,
                                                  const char *environment, char **out, char **fault,
@@ -861,8 +865,8 @@ CUVETTE_API cuvette_status cuvette_study_compare(const cuvette_study *study, con
                                                  const char *b, const char *column, char **out, char **fault,
                                                  cuvette_diagnostic *why);
 
-/* Options of a figure, as those of `cuvette study plot`; zeros are chosen from the grid. Set size; later versions add
- * fields at the end. */
+/* Options of a figure, like those of `cuvette study plot`; an option that is zero is chosen from the grid. Set size;
+ * later versions add fields at the end. */
 typedef struct cuvette_plot {
     size_t size; /* sizeof(cuvette_plot) */
     const char *results, *x, *y, *by;
@@ -870,13 +874,13 @@ typedef struct cuvette_plot {
     size_t where_count;
     const char *log;       /* "x", "y", "xy" or "none" */
     const char *published; /* a CSV file */
-    bool images;           /* the sheet of kept images instead */
+    bool images;           /* draw the sheet of kept images instead */
 } cuvette_plot;
 /* Draws a figure with gnuplot: its script BASE.gp, its data BASE.tsv, and BASE.format (png, svg or pdf). */
 CUVETTE_API cuvette_status cuvette_study_plot(const cuvette_study *study, const cuvette_plot *plot, const char *base,
                                               const char *format, cuvette_diagnostic *why);
 
-/* A column of rows.csv; a name with <axis> or <solid> stands for one column for each. */
+/* A column of rows.csv; a name with <axis> or <solid> stands for a column per axis or solid. */
 typedef struct cuvette_column {
     const char *name, *unit, *meaning;
 } cuvette_column;

@@ -11,7 +11,7 @@
 #include <pthread.h>
 
 typedef struct canvas {
-    const cuvette_request *request; /* checked; strides are not 0 */
+    const cuvette_request *request; /* validated; strides are not 0 */
     float_environment *host;        /* the caller's, for callbacks */
     codec_bytes *bytes;             /* NULL unless the request has srgb */
     pthread_mutex_t lock;           /* protects the fields below */
@@ -20,9 +20,9 @@ typedef struct canvas {
     bool out_of_memory;
 } canvas;
 
-/* Checks the caller's stride for height rows of width pixels, in elements of element_bytes; 0 becomes that of
- * contiguous rows. STATUS_BAD_INPUT: shorter than a row, or the last row lies beyond the largest object (PTRDIFF_MAX
- * bytes). */
+/* Checks the caller's stride for height rows of width pixels, in elements of element_bytes; 0 becomes the stride of
+ * contiguous rows. STATUS_BAD_INPUT if it is shorter than a row, or the last row would end beyond the largest object
+ * (PTRDIFF_MAX bytes). */
 status canvas_stride(size_t *stride, size_t element_bytes, int width, int height, diagnostic *why);
 
 status canvas_open(const cuvette_request *request, float_environment *host, canvas *c, diagnostic *why);

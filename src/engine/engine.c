@@ -49,31 +49,31 @@ void cuvette_engine_cancel(cuvette_engine *engine)
 }
 
 /* One render in progress. */
-typedef struct stage {
+typedef struct render_call {
     cuvette_engine *engine;
     const cuvette_request *request;
     host_progress progress;
     canvas buffers;
     bool is_preview;
-    status noted; /* of passing tiles to the callback */
-} stage;
+    status tile_status; /* from passing tiles to the callback */
+} render_call;
 
 static void watch(void *context, double fraction)
 {
-    stage *now = context;
-    if (now->request->tile && now->noted == STATUS_OK)
-        now->noted = canvas_hand_out(&now->buffers, NULL);
-    engine_tell(&now->progress, now->is_preview ? 0.0 : fraction);
+    render_call *call = context;
+    if (call->request->tile && call->tile_status == STATUS_OK)
+        call->tile_status = canvas_hand_out(&call->buffers, NULL);
+    engine_report_progress(&call->progress, call->is_preview ? 0.0 : fraction);
 }
 
-static void take_tile(void *context, const film *img, int x0, int y0, int x1, int y1)
+static void accept_tile(void *context, const film *img, int x0, int y0, int x1, int y1)
 {
-    stage *now = context;
-    canvas_fill(&now->buffers, img, x0, y0, x1, y1, 1);
-    canvas_note(&now->buffers, (cuvette_tile){x0, y0, x1, y1, 1});
+    render_call *call = context;
+    canvas_fill(&call->buffers, img, x0, y0, x1, y1, 1);
+    canvas_note(&call->buffers, (cuvette_tile){x0, y0, x1, y1, 1});
 }
 
-/* Copies a request into the library's current version of it: one of an earlier version has fewer fields. */
+/* Copies a request into the current version of the struct; earlier versions have fewer fields. */
 static status read_request(const cuvette_request *given, const scene *s, cuvette_request *out, diagnostic *why)
 {
     *out = CUVETTE_REQUEST;
@@ -84,7 +84,7 @@ static status read_request(const cuvette_request *given, const scene *s, cuvette
                         "the request's size is %zu, which is too small", given->size);
     memcpy(out, given, given->size < sizeof *out ? given->size : sizeof *out);
     if (out->preview != 0 && (out->preview < 2 || out->preview > PREVIEW_MAX))
-        return diagnose(why, STATUS_BAD_INPUT, "set it to 0, or from 2 to 64", "the request's preview is %d",
+        return diagnose(why, STATUS_BAD_INPUT, "set it to 0, or to a value from 2 to 64", "the request's preview is %d",
                         out->preview);
     if (!out->rgb && !out->srgb)
         return STATUS_OK;
@@ -97,100 +97,102 @@ static status read_request(const cuvette_request *given, const scene *s, cuvette
     return canvas_stride(&out->srgb_stride, sizeof *out->srgb, out->width, out->height, why);
 }
 
-/* Renders the whole image at reduced size. */
-static status render_preview(stage *now, const scene *s, diagnostic *why)
+/* Renders the complete image at reduced size. */
+static status render_preview(render_call *call, const scene *s, diagnostic *why)
 {
-    const int coarse = now->request->preview;
+    const int coarse = call->request->preview;
     scene small = *s; /* borrows what s owns */
     small.render.width = (s->render.width + coarse - 1) / coarse;
     small.render.height = (s->render.height + coarse - 1) / coarse;
-    const render_options options = {.progress = watch, .context = now};
-    job_account made;
-    now->is_preview = true;
-    const status code = job_render(now->engine->workers, &small, &options, &made, why);
-    now->is_preview = false;
+    const render_options options = {.progress = watch, .context = call};
+    job_account account;
+    call->is_preview = true;
+    const status code = job_render(call->engine->workers, &small, &options, &account, why);
+    call->is_preview = false;
     if (code == STATUS_OK) {
-        canvas_fill(&now->buffers, made.result->img, 0, 0, (int)small.render.width, (int)small.render.height, coarse);
-        if (now->request->tile)
-            canvas_hand_tile(&now->buffers, &(cuvette_tile){0, 0, (int)s->render.width, (int)s->render.height, coarse});
+        canvas_fill(&call->buffers, account.result->img, 0, 0, (int)small.render.width, (int)small.render.height,
+                    coarse);
+        if (call->request->tile)
+            canvas_hand_tile(&call->buffers,
+                             &(cuvette_tile){0, 0, (int)s->render.width, (int)s->render.height, coarse});
     }
-    job_account_release(&made);
+    job_account_release(&account);
     return code;
 }
 
-static status render_frame(stage *now, const scene *s, cuvette_frame *frame, diagnostic *why)
+static status render_frame(render_call *call, const scene *s, cuvette_frame *frame, diagnostic *why)
 {
-    const cuvette_request *r = now->request;
+    const cuvette_request *r = call->request;
     const render_options options = {.pixel_rays = r->pixel_rays,
                                     .pixel_time = r->pixel_time,
                                     .pixel_cut = r->pixel_cut,
                                     .layers = r->layers,
                                     .progress = watch,
-                                    .tile_done = r->tile ? take_tile : NULL,
-                                    .context = now};
-    status code = job_render(now->engine->workers, s, &options, &frame->account, why);
+                                    .tile_done = r->tile ? accept_tile : NULL,
+                                    .context = call};
+    status code = job_render(call->engine->workers, s, &options, &frame->account, why);
     const film *img = frame->account.result ? frame->account.result->img : NULL;
-    if (img && r->tile && now->noted == STATUS_OK)
-        now->noted = canvas_hand_out(&now->buffers, why);
+    if (img && r->tile && call->tile_status == STATUS_OK)
+        call->tile_status = canvas_hand_out(&call->buffers, why);
     else if (img && !r->tile)
-        canvas_fill(&now->buffers, img, 0, 0, img->width, img->height, 1);
-    if (code == STATUS_OK && now->noted != STATUS_OK)
-        code = diagnose(why, now->noted, MEMORY_REMEDY, "out of memory for the list of finished tiles");
+        canvas_fill(&call->buffers, img, 0, 0, img->width, img->height, 1);
+    if (code == STATUS_OK && call->tile_status != STATUS_OK)
+        code = diagnose(why, call->tile_status, MEMORY_REMEDY, "out of memory for the list of finished tiles");
     if (code == STATUS_OK)
-        engine_tell(&now->progress, 1.0);
+        engine_report_progress(&call->progress, 1.0);
     return code;
 }
 
-static status render(stage *now, const scene *s, cuvette_frame *frame, diagnostic *why)
+static status render(render_call *call, const scene *s, cuvette_frame *frame, diagnostic *why)
 {
-    engine_tell(&now->progress, 0.0);
+    engine_report_progress(&call->progress, 0.0);
     if (cancel_asked())
         return diagnose(why, STATUS_INTERRUPTED, "", "cancelled before the first ray");
     status code = STATUS_OK;
-    if (now->request->preview && (now->request->rgb || now->request->srgb)) {
+    if (call->request->preview && (call->request->rgb || call->request->srgb)) {
         const double began_s = clock_wall_s();
-        code = render_preview(now, s, why);
+        code = render_preview(call, s, why);
         frame->preview_s = clock_wall_s() - began_s;
     }
-    THEN(code, render_frame(now, s, frame, why));
+    THEN(code, render_frame(call, s, frame, why));
     if (code == STATUS_INTERRUPTED)
         diagnose(why, code, "", "cancelled");
     return code;
 }
 
-/* What an image file of the frame tells about its scene (scene/file/shared.h). The text has a few bytes of each solid
- * at least, so a scene with more is not copied. */
+/* Copies the scene that image files of the frame contain (scene/file/shared.h). Its text needs at least 16 bytes per
+ * solid, so a scene with too many solids is not copied. */
 static status keep_scene(const cuvette_scene *s, cuvette_frame *frame, diagnostic *why)
 {
     if (s->grabbed || s->model->solid_count > SHARED_TEXT_MAX / 16 || shared_scene_check(s->model, NULL) != STATUS_OK)
         return STATUS_OK;
-    frame->of = scene_clone(s->model);
-    return frame->of ? STATUS_OK : out_of_memory(why);
+    frame->scene = scene_clone(s->model);
+    return frame->scene ? STATUS_OK : out_of_memory(why);
 }
 
 /* The caller holds the engine and the scene; `given` is the caller's request. */
-static status render_held(cuvette_engine *engine, cuvette_scene *s, const cuvette_request *given,
-                          float_environment *host, cuvette_frame *frame, diagnostic *why)
+static status render_locked(cuvette_engine *engine, cuvette_scene *s, const cuvette_request *given,
+                            float_environment *host, cuvette_frame *frame, diagnostic *why)
 {
     cuvette_request request;
-    stage now = {.engine = engine, .request = &request};
+    render_call call = {.engine = engine, .request = &request};
     status code = engine_check(s, why);
     THEN(code, read_request(given, s->model, &request, why));
     if (code != STATUS_OK)
         return code;
-    now.progress = (host_progress){
-        .tell = request.progress, .context = request.context, .host = host, .next_s = clock_wall_s() + 0.1};
+    call.progress = (host_progress){
+        .callback = request.progress, .context = request.context, .host = host, .next_s = clock_wall_s() + 0.1};
     cancel_begin(&engine->token);
-    engine_begin_progress(&now.progress);
+    engine_begin_progress(&call.progress);
     code = engine_load(s, NULL, why);
     THEN(code, keep_scene(s, frame, why));
-    THEN(code, canvas_open(&request, host, &now.buffers, why));
+    THEN(code, canvas_open(&request, host, &call.buffers, why));
     if (code == STATUS_OK) {
         frame->solid_count = s->model->solid_count;
-        code = render(&now, s->model, frame, why);
-        canvas_close(&now.buffers);
+        code = render(&call, s->model, frame, why);
+        canvas_close(&call.buffers);
     }
-    engine_end_progress(&now.progress);
+    engine_end_progress(&call.progress);
     cancel_end(&engine->token);
     return code;
 }
@@ -216,7 +218,7 @@ cuvette_status cuvette_engine_render(cuvette_engine *engine, const cuvette_scene
     }
     cancel_clear(&engine->token);
     cuvette_frame *frame = calloc(1, sizeof *frame);
-    const status code = frame ? render_held(engine, held, request, &host, frame, &inner) : out_of_memory(&inner);
+    const status code = frame ? render_locked(engine, held, request, &host, frame, &inner) : out_of_memory(&inner);
     engine_end_render(held);
     atomic_store(&engine->busy, false);
     if (out && frame && frame->account.result)

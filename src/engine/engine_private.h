@@ -15,14 +15,15 @@
 
 struct cuvette_scene {
     scene *model;
-    pthread_mutex_t loading; /* held while images are loaded, which are read-only afterwards */
-    atomic_int renders;      /* in progress */
+    pthread_mutex_t loading; /* held while files are loaded; what was loaded is read-only afterwards */
+    atomic_int renders;      /* renders in progress */
     atomic_bool advancing;   /* a motion advances its slimes */
     /* the handle and the motions created from it: the last owner frees this struct; destroying the handle frees the
      * model */
     atomic_int owners;
-    uint64_t slimes_changed; /* number of changes that invalidate a motion: of its slimes, their number, their motion */
-    bool grabbed;            /* hands moved its slimes: its text does not give their shapes */
+    /* number of changes that invalidate a motion: to a slime, to the number of meshes, or by a newer motion */
+    uint64_t slimes_changed;
+    bool grabbed; /* hands moved its slimes, so that its text does not describe their shapes */
 };
 
 struct cuvette_engine {
@@ -35,7 +36,7 @@ struct cuvette_frame {
     job_account account;
     size_t solid_count;
     double preview_s;
-    scene *of; /* as it was rendered, for image files; NULL if it cannot be shared */
+    scene *scene; /* as it was rendered, for image files; NULL if it cannot be shared */
 };
 
 /* Converts the library's status and diagnostic to the caller's; why is written only when code is not STATUS_OK. */
@@ -61,7 +62,7 @@ cuvette_status engine_begin_advance(cuvette_scene *s, cuvette_diagnostic *why);
 void engine_end_advance(cuvette_scene *s);
 cuvette_status engine_is_advancing(cuvette_diagnostic *why); /* always CUVETTE_BUSY, with a diagnostic */
 
-/* A handle that owns the model, which is destroyed when out of memory. */
+/* Creates a handle that owns the model; destroys the model when out of memory. */
 cuvette_status engine_own_scene(scene *model, cuvette_scene **out, cuvette_diagnostic *why);
 
 /* Drops one reference; the last one frees the scene. */
@@ -76,19 +77,20 @@ status engine_load(cuvette_scene *s, const load_watch *watch, diagnostic *why);
 /* The caller's progress function, called about ten times a second with a fraction that never decreases. When it returns
  * false, the token is set: the only place where a callback's result ends work. */
 typedef struct host_progress {
-    bool (*tell)(void *context, double fraction); /* may be NULL */
+    bool (*callback)(void *context, double fraction); /* may be NULL */
     void *context;
     float_environment *host; /* the caller's, for the callback */
     double fraction, next_s;
     cancel_token token;
 } host_progress;
-/* Begins the token, which also calls the function where there is no progress. */
+/* Begins the token, whose ask calls the function even without progress. */
 void engine_begin_progress(host_progress *p);
 void engine_end_progress(host_progress *p);
 /* Calls the function now. */
-void engine_tell(host_progress *p, double fraction);
-/* Calls it if a tenth of a second has passed; context: a host_progress. As the progress of a load_watch. */
-void engine_show(void *context, double fraction);
+void engine_report_progress(host_progress *p, double fraction);
+/* Calls the function if a tenth of a second has passed. context: a host_progress; the type is that of load_watch's
+ * progress. */
+void engine_report_if_due(void *context, double fraction);
 
 /* Copies content, of `known` bytes, into the caller's struct of an older or a newer version, up to the caller's size;
  * the size field with which both begin is not changed. */

@@ -1,4 +1,4 @@
-/* Fans of rays, followed by the query's probe. */
+/* Fans of rays, traced by the query's probe. */
 #include "engine/query_private.h"
 #include "render/inspect/fan.h"
 #include "report/fan_writers.h"
@@ -9,9 +9,9 @@
 #include <string.h>
 
 struct cuvette_fan {
-    cuvette_query *of;
+    cuvette_query *query;
     fan_rule rule;
-    fan followed;
+    fan traced;
     cuvette_node *nodes;
     cuvette_fan_ray *rays;
     cuvette_crossing *crossings;
@@ -24,8 +24,8 @@ void cuvette_fan_destroy(cuvette_fan *f)
     free(f->nodes);
     free(f->rays);
     free(f->crossings);
-    fan_release(&f->followed);
-    cuvette_query_destroy(f->of);
+    fan_release(&f->traced);
+    cuvette_query_destroy(f->query);
     free(f);
 }
 
@@ -36,11 +36,11 @@ static status read_rule(const cuvette_fan_rule *given, fan_rule *out, diagnostic
         return diagnose(why, STATUS_BAD_INPUT, "set it to sizeof(cuvette_fan_rule)",
                         "the size of the fan's rule is %zu, which is too small", given->size);
     if (!engine_is_finite(given->from) || !engine_is_finite(given->to) || !engine_is_finite(n))
-        return diagnose(why, STATUS_BAD_INPUT, "give finite numbers", "the fan's axis is not finite");
+        return diagnose(why, STATUS_BAD_INPUT, "use finite numbers", "the fan's axis is not finite");
     if (given->rays < 1 || given->rays > FAN_RAYS_MAX)
-        return diagnose(why, STATUS_BAD_INPUT, "give 1 to 100000", "a fan of %d rays is out of range", given->rays);
+        return diagnose(why, STATUS_BAD_INPUT, "use 1 to 100000 rays", "a fan of %d rays is out of range", given->rays);
     if (!(given->width >= 0 && given->width <= 1e6) || !(given->spread_deg >= 0 && given->spread_deg <= 179))
-        return diagnose(why, STATUS_BAD_INPUT, "give a width of 0 to 1e6, or a spread of 0 to 179 degrees",
+        return diagnose(why, STATUS_BAD_INPUT, "use a width of 0 to 1e6, or a spread of 0 to 179 degrees",
                         "the fan's width or spread is out of range");
     *out = (fan_rule){.from = engine_vector(given->from),
                       .to = engine_vector(given->to),
@@ -55,14 +55,14 @@ static status read_rule(const cuvette_fan_rule *given, fan_rule *out, diagnostic
 
 static fanned content_of(const cuvette_fan *f)
 {
-    return (fanned){f->of->model, f->of->inspector, &f->rule, &f->followed, false, false};
+    return (fanned){f->query->model, f->query->inspector, &f->rule, &f->traced, false, false};
 }
 
 static status copy_out(cuvette_fan *f, diagnostic *why)
 {
-    const fan *from = &f->followed;
+    const fan *from = &f->traced;
     const fanned content = content_of(f);
-    f->nodes = tree_nodes_make(f->of, from->node, from->node_count);
+    f->nodes = tree_nodes_make(f->query, from->node, from->node_count);
     f->rays = calloc((size_t)from->count + 1, sizeof *f->rays);
     f->crossings = calloc((size_t)from->crossing_count + 1, sizeof *f->crossings);
     if (!f->nodes || !f->rays || !f->crossings)
@@ -104,8 +104,8 @@ cuvette_status cuvette_query_fan(const cuvette_query *query, const cuvette_fan_r
         return engine_report(code, &inner, why);
     cuvette_fan *f = calloc(1, sizeof *f);
     if (f)
-        f->of = query_retain(q), f->rule = read;
-    code = f ? fan_follow(q->inspector, &read, &f->followed, &inner) : out_of_memory(&inner);
+        f->query = query_retain(q), f->rule = read;
+    code = f ? fan_follow(q->inspector, &read, &f->traced, &inner) : out_of_memory(&inner);
     THEN(code, copy_out(f, &inner));
     query_end_trace(q);
     if (code == STATUS_OK)
@@ -123,19 +123,19 @@ static void set_count(size_t *count, size_t value)
 
 const cuvette_fan_ray *cuvette_fan_rays(const cuvette_fan *f, size_t *count)
 {
-    set_count(count, f ? (size_t)f->followed.count : 0);
+    set_count(count, f ? (size_t)f->traced.count : 0);
     return f ? f->rays : NULL;
 }
 
 const cuvette_node *cuvette_fan_nodes(const cuvette_fan *f, size_t *count)
 {
-    set_count(count, f ? f->followed.node_count : 0);
+    set_count(count, f ? f->traced.node_count : 0);
     return f ? f->nodes : NULL;
 }
 
 const cuvette_crossing *cuvette_fan_crossings(const cuvette_fan *f, size_t *count)
 {
-    set_count(count, f ? (size_t)f->followed.crossing_count : 0);
+    set_count(count, f ? (size_t)f->traced.crossing_count : 0);
     return f ? f->crossings : NULL;
 }
 
@@ -144,10 +144,10 @@ cuvette_status cuvette_fan_focus(const cuvette_fan *f, cuvette_focus *out, cuvet
     ENGINE_ENTER();
     ENGINE_NEED_NAMED(f, "fan");
     ENGINE_NEED(out);
-    cuvette_focus found = {.exists = f->followed.has_focus, .is_virtual = f->followed.is_virtual};
+    cuvette_focus found = {.exists = f->traced.has_focus, .is_virtual = f->traced.is_virtual};
     if (found.exists) {
-        engine_put_vector(found.point, f->followed.focus);
-        found.rms = f->followed.focus_rms;
+        engine_put_vector(found.point, f->traced.focus);
+        found.rms = f->traced.focus_rms;
     }
     return engine_copy_struct(&found, sizeof found, out, why);
 }
@@ -170,7 +170,7 @@ cuvette_status cuvette_fan_write(const cuvette_fan *f, const char *path, cuvette
     ENGINE_NEED_NAMED(f, "fan");
     ENGINE_NEED(path);
     cuvette_query *q = NULL;
-    status code = query_begin_trace(f->of, &q, &inner);
+    status code = query_begin_trace(f->query, &q, &inner);
     if (code != STATUS_OK)
         return engine_report(code, &inner, why);
     const fanned content = content_of(f);

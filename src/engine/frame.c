@@ -12,7 +12,7 @@ void cuvette_frame_destroy(cuvette_frame *frame)
     if (!frame)
         return;
     job_account_release(&frame->account);
-    scene_destroy(frame->of);
+    scene_destroy(frame->scene);
     free(frame);
 }
 
@@ -70,8 +70,8 @@ cuvette_status cuvette_frame_write(const cuvette_frame *frame, const char *path,
     ENGINE_CALL(frame, path);
     status code = bits == 8 || bits == 16
                       ? STATUS_OK
-                      : diagnose(&inner, STATUS_BAD_INPUT, "give 8 or 16", "unsupported bit depth %d", bits);
-    THEN(code, record_image(frame->account.result->img, frame->of, path, bits, &inner));
+                      : diagnose(&inner, STATUS_BAD_INPUT, "use 8 or 16", "unsupported bit depth %d", bits);
+    THEN(code, record_image(frame->account.result->img, frame->scene, path, bits, &inner));
     return engine_report(code, &inner, why);
 }
 
@@ -108,7 +108,8 @@ cuvette_status cuvette_frame_solid_counters(const cuvette_frame *frame, size_t i
                                       frame->solid_count),
                              &inner, why);
     if (index >= COUNTERS_SOLID_MAX)
-        return engine_report(diagnose(&inner, STATUS_BAD_INPUT, "only the first 64 solids are counted one by one",
+        return engine_report(diagnose(&inner, STATUS_BAD_INPUT,
+                                      "use an index from 0 to 63: later solids are not counted one by one",
                                       "solid %zu has no counters", index),
                              &inner, why);
     const ray_counters *c = &frame->account.result->counters;

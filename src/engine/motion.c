@@ -1,5 +1,5 @@
-/* Motions: advance the slimes of a scene in time, as long as the scene's slimes are those that the motion was created
- * for, and move the hands that hold them (scene/motion/motion_hands.h). */
+/* Motions advance the slimes of a scene in time, until a change of the scene's slimes invalidates them, and move the
+ * hands that hold slimes (scene/motion/motion_hands.h). */
 #include "engine/engine_private.h"
 #include "geometry/shapes/shape.h"
 #include "measure/clock.h"
@@ -18,7 +18,7 @@ struct cuvette_motion {
     uint64_t slimes_changed; /* the scene's value when this motion was created */
     bool failed;             /* an advance failed: the state of the bodies is invalid */
     double time_s;
-    motion_hand *hands; /* SOFTBODY_HANDS_MAX for each slime, indexed by the body's own numbers */
+    motion_hand *hands; /* SOFTBODY_HANDS_MAX per slime */
 };
 
 static const double time_max_s = 86400; /* the maximum of the parameter time_s, which an advance sets in the scene */
@@ -97,7 +97,7 @@ static cuvette_status motion_is_alive(const cuvette_motion *m, cuvette_diagnosti
 static status check_time(const cuvette_motion *m, double time_s, diagnostic *why)
 {
     if (!(time_s >= m->time_s && time_s <= time_max_s))
-        return diagnose(why, STATUS_BAD_INPUT, "give a time from the current one to 86400 s, or create another motion",
+        return diagnose(why, STATUS_BAD_INPUT, "use a time from the current one to 86400 s, or create another motion",
                         "the motion cannot advance from %g s to %g s", m->time_s, time_s);
     status code = STATUS_OK;
     for (size_t i = 0; i < scene_motion_count(m->bodies) && code == STATUS_OK; i++) {
@@ -131,17 +131,17 @@ static status advance(cuvette_motion *m, double time_s, const load_watch *watch,
 }
 
 cuvette_status cuvette_motion_advance_watched(cuvette_motion *motion, double time_s,
-                                              bool (*progress)(void *context, double share), void *context,
+                                              bool (*progress)(void *context, double fraction), void *context,
                                               cuvette_diagnostic *why)
 {
     ENGINE_CALL(motion);
-    host_progress asked = {.tell = progress, .context = context, .host = &host, .next_s = clock_wall_s() + 0.01};
+    host_progress report = {.callback = progress, .context = context, .host = &host, .next_s = clock_wall_s() + 0.01};
     ENGINE_TRY(engine_begin_advance(motion->of, why));
     status code = check_alive(motion, &inner);
     THEN(code, check_time(motion, time_s, &inner));
-    engine_begin_progress(&asked);
-    THEN(code, advance(motion, time_s, &(load_watch){engine_show, &asked}, &inner));
-    engine_end_progress(&asked);
+    engine_begin_progress(&report);
+    THEN(code, advance(motion, time_s, &(load_watch){engine_report_if_due, &report}, &inner));
+    engine_end_progress(&report);
     engine_end_advance(motion->of);
     return engine_report(code, &inner, why);
 }
@@ -260,7 +260,7 @@ cuvette_status cuvette_motion_grab(cuvette_motion *motion, const char *name, con
     int number = CUVETTE_NO_HAND;
     status code = STATUS_OK;
     if (!(reach > 0.0 && isfinite(reach)))
-        code = diagnose(&inner, STATUS_BAD_INPUT, "give a length above 0", "a hand's reach cannot be %g", reach);
+        code = diagnose(&inner, STATUS_BAD_INPUT, "use a length above 0", "a hand's reach cannot be %g", reach);
     THEN(code, pick(motion, name, ray, &body, &found, &inner));
     if (code == STATUS_OK && isfinite(found.distance))
         code = scene_motion_grab(motion->bodies, body, &found, reach, &motion->hands[body * SOFTBODY_HANDS_MAX],

@@ -1,5 +1,5 @@
-/* The objects of a scene: lights, materials and solids are added, removed, translated, rotated, scaled; meshes and
- * textures are read from a file, generated, or given as arrays. */
+/* The objects of a scene: adds, removes, translates, rotates and scales lights, materials and solids; adds meshes and
+ * textures, also from arrays. */
 #include "engine/engine_private.h"
 #include "scene/model/edit/edit.h"
 #include "scene/model/params.h"
@@ -164,10 +164,10 @@ static status check_arrays(const cuvette_triangles *t, diagnostic *why)
         return diagnose(why, STATUS_BAD_INPUT, "set it to sizeof(cuvette_triangles)",
                         "the triangles' size is %zu, which is too small", t->size);
     if ((!t->vertices == !t->vertices_float && t->vertex_count > 0) || (!t->corners && t->triangle_count > 0))
-        return diagnose(why, STATUS_BAD_INPUT, "give vertices, as doubles or floats, and corners",
+        return diagnose(why, STATUS_BAD_INPUT, "set vertices, as doubles or floats, and corners",
                         "the triangles lack vertices or corners, or have vertices twice");
     if ((t->normals && t->normals_float) || (t->uvs && t->uvs_float))
-        return diagnose(why, STATUS_BAD_INPUT, "give either doubles or floats",
+        return diagnose(why, STATUS_BAD_INPUT, "set either doubles or floats",
                         "normals or texture coordinates are given twice");
     return STATUS_OK;
 }

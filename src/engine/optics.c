@@ -70,7 +70,7 @@ static status curve_named(const char *name, realism_curve *out, diagnostic *why)
             *out = (realism_curve)i;
             return STATUS_OK;
         }
-    char remedy[256] = "give one of:";
+    char remedy[256] = "use one of:";
     for (int i = 0; i < REALISM_CURVE_COUNT; i++) {
         const size_t used = strlen(remedy);
         snprintf(remedy + used, sizeof remedy - used, "%s %s", i ? "," : "", realism_curve_name((realism_curve)i));

@@ -194,7 +194,7 @@ cuvette_status cuvette_query_camera_ray(const cuvette_query *query, double x, do
 {
     ENGINE_CALL(query, out);
     if (!isfinite(x) || !isfinite(y))
-        return engine_report(diagnose(&inner, STATUS_BAD_INPUT, "give finite numbers", "the image point is not finite"),
+        return engine_report(diagnose(&inner, STATUS_BAD_INPUT, "use finite numbers", "the image point is not finite"),
                              &inner, why);
     const camera_ray chief = camera_chief_ray(&query->ready->view, &query->ready->render, x, y);
     const vec3 eye = chief.origin, d = chief.direction;
@@ -210,7 +210,7 @@ cuvette_status cuvette_query_medium(const cuvette_query *query, const double *po
     ENGINE_CALL(query, point);
     ENGINE_NEED_NAMED(at, "solid");
     if (!engine_is_finite(point))
-        return engine_report(diagnose(&inner, STATUS_BAD_INPUT, "give finite numbers", "the point is not finite"),
+        return engine_report(diagnose(&inner, STATUS_BAD_INPUT, "use finite numbers", "the point is not finite"),
                              &inner, why);
     const scene_geometry *a = query->ready->geometry;
     *at = a->regions[scene_geometry_priority_index(a, scene_geometry_inside(a, engine_vector(point)))].solid;

@@ -34,7 +34,7 @@ typedef struct query_buffers {
 /* A call of the query that another thread can cancel, from query_call_begin to query_call_end on one thread. */
 typedef struct query_call {
     const cuvette_query *of;
-    unsigned cancels; /* of the query when the call began */
+    unsigned cancels; /* the query's value when the call began */
     cancel_token token;
 } query_call;
 
@@ -46,16 +46,16 @@ struct cuvette_query {
     query_buffers *free_buffers;
     isa level;
     pthread_mutex_t tracing; /* held while the probe traces */
-    query_call traced;       /* of who holds it */
-    probe *inspector;        /* made by the first tree */
-    atomic_uint cancels;     /* calls of cuvette_query_cancel: work that began before one of them ends */
-    bool one_wavelength;     /* absorption too is that at render.lambda_nm */
-    atomic_int owners;       /* the handle, and the trees and fans, whose names are the scene's */
+    query_call traced;       /* the call that holds it */
+    probe *inspector;        /* created by the first tree */
+    atomic_uint cancels;     /* number of calls of cuvette_query_cancel, which ends the work that began before */
+    bool one_wavelength;     /* absorption, too, is taken at render.lambda_nm */
+    atomic_int owners;       /* the handle, and the trees and fans, which use the scene's names */
 };
 
 void query_call_begin(query_call *call, const cuvette_query *query);
 void query_call_end(query_call *call);
-/* Without a token, for the loops over many rays. */
+/* For loops over many rays, which check this instead of a token. */
 static inline unsigned query_cancels(const cuvette_query *query)
 {
     return atomic_load_explicit(&query->cancels, memory_order_relaxed);

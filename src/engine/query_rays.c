@@ -42,9 +42,9 @@ status engine_check_ray(const plan *p, const cuvette_ray *ray, size_t i, diagnos
     if (!(fabs(o[0]) <= FAR_ORIGIN && fabs(o[1]) <= FAR_ORIGIN && fabs(o[2]) <= FAR_ORIGIN))
         what = "starts too far away", remedy = "start within 1e6 scene units of 0,0,0";
     else if (!engine_is_finite(d) || (d[0] == 0.0 && d[1] == 0.0 && d[2] == 0.0))
-        what = "has no direction", remedy = "give a finite direction that is not 0,0,0";
+        what = "has no direction", remedy = "use a finite direction that is not 0,0,0";
     else if (!(ray->reach >= 0.0))
-        what = "has a negative reach", remedy = "give a distance, or 0 for no limit";
+        what = "has a negative reach", remedy = "use a distance above 0, or 0 for no limit";
     else if (p && (ray->start.word[0] > 1 || (ray->start.word[0] == 1 && !(is_face(p->geometry, ray->start.word[1]) &&
                                                                            is_set(p->geometry, ray->start.word[2])))))
         what = "has an invalid start", remedy = "copy it from a hit of this query, or zero it";
@@ -117,7 +117,7 @@ static cuvette_hit hit_of(const cuvette_query *q, const query_buffers *b, int co
     return h;
 }
 
-/* Hits on one primitive: their points are computed together. */
+/* Reports the hits on one primitive, whose points are computed in one batch. */
 static void report_hits(const cuvette_query *q, query_buffers *b, int hit_primitive, int count, cuvette_hit *out)
 {
     for (int k = 0; k < count; k++) {
@@ -171,7 +171,7 @@ static void nearest_batch(const cuvette_query *q, query_buffers *b, const cuvett
     }
 }
 
-/* cancels: of the query when the call began. */
+/* cancels: the query's value when the call began. */
 static status begin(const cuvette_query *q, unsigned cancels, const cuvette_ray *rays, size_t count,
                     query_buffers **out, diagnostic *why)
 {
@@ -204,7 +204,8 @@ cuvette_status cuvette_query_nearest(const cuvette_query *query, const cuvette_r
     return engine_report(code, &inner, why);
 }
 
-/* A batch of rays of one kind: those with a reach end there, as shadow rays end at their light. */
+/* Tests a batch of rays that all have a reach (`ends`), at which they end as shadow rays do at their light, or all have
+ * none. */
 static void occluded_batch(const cuvette_query *q, query_buffers *b, int count, bool ends, unsigned char *blocked)
 {
     const ray_batch view = view_of(b, count);

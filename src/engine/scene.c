@@ -65,7 +65,7 @@ cuvette_status cuvette_scene_read_text(const char *name, const char *text, size_
 
 /* Locks the scene (its lock `loading`) against loading by another thread: renders of one scene may begin together, and
  * each checks what is loaded. */
-static cuvette_scene *hold(const cuvette_scene *s)
+static cuvette_scene *lock_scene(const cuvette_scene *s)
 {
     cuvette_scene *held = (cuvette_scene *)(uintptr_t)s; /* handles are never const objects */
     pthread_mutex_lock(&held->loading);
@@ -77,7 +77,7 @@ cuvette_status cuvette_scene_clone(const cuvette_scene *s, cuvette_scene **out, 
     ENGINE_CALL(out);
     *out = NULL;
     ENGINE_NEED(s);
-    cuvette_scene *source = hold(s);
+    cuvette_scene *source = lock_scene(s);
     scene *model = scene_clone(source->model);
     const bool grabbed = source->grabbed;
     pthread_mutex_unlock(&source->loading);
@@ -99,7 +99,7 @@ void cuvette_scene_destroy(cuvette_scene *s)
     if (!s)
         return;
     scene_destroy(s->model);
-    s->model = NULL; /* tells the scene's motions that it is destroyed */
+    s->model = NULL; /* shows the scene's motions that it is destroyed */
     engine_release_scene(s);
 }
 
@@ -167,41 +167,41 @@ status engine_load(cuvette_scene *s, const load_watch *watch, diagnostic *why)
     return code;
 }
 
-void engine_tell(host_progress *p, double fraction)
+void engine_report_progress(host_progress *p, double fraction)
 {
     static const double every_s = 0.1;
     if (fraction > p->fraction)
         p->fraction = fraction;
-    if (!p->tell || cancel_is_set(&p->token))
+    if (!p->callback || cancel_is_set(&p->token))
         return;
     p->next_s = clock_wall_s() + every_s;
     float_environment_leave(p->host);
-    const bool wants_more = p->tell(p->context, p->fraction);
+    const bool wants_more = p->callback(p->context, p->fraction);
     float_environment_enter(p->host);
     if (!wants_more)
         cancel_set(&p->token);
 }
 
-void engine_show(void *context, double fraction)
+void engine_report_if_due(void *context, double fraction)
 {
     host_progress *p = context;
-    if (p->tell && clock_wall_s() >= p->next_s)
-        engine_tell(p, fraction);
+    if (p->callback && clock_wall_s() >= p->next_s)
+        engine_report_progress(p, fraction);
     else if (fraction > p->fraction)
         p->fraction = fraction;
 }
 
-/* As the ask of a token. */
-static bool host_stops(void *context)
+/* The ask of the progress's token. */
+static bool host_cancels(void *context)
 {
     const host_progress *p = context;
-    engine_show(context, p->fraction);
+    engine_report_if_due(context, p->fraction);
     return cancel_is_set(&p->token);
 }
 
 void engine_begin_progress(host_progress *p)
 {
-    p->token = (cancel_token){.ask = host_stops, .context = p};
+    p->token = (cancel_token){.ask = host_cancels, .context = p};
     cancel_begin(&p->token);
 }
 
@@ -210,24 +210,24 @@ void engine_end_progress(host_progress *p)
     cancel_end(&p->token);
 }
 
-cuvette_status cuvette_scene_load(const cuvette_scene *s, bool (*progress)(void *context, double share), void *context,
-                                  cuvette_diagnostic *why)
+cuvette_status cuvette_scene_load(const cuvette_scene *s, bool (*progress)(void *context, double fraction),
+                                  void *context, cuvette_diagnostic *why)
 {
     ENGINE_CALL(s);
     cuvette_scene *held = (cuvette_scene *)(uintptr_t)s; /* handles are never const objects */
-    host_progress asked = {.tell = progress, .context = context, .host = &host};
+    host_progress report = {.callback = progress, .context = context, .host = &host};
     ENGINE_TRY(engine_begin_render(held, why)); /* the callback must not change the scene */
     status code = engine_check(held, &inner);
-    engine_begin_progress(&asked);
-    THEN(code, engine_load(held, &(load_watch){engine_show, &asked}, &inner));
-    engine_end_progress(&asked);
+    engine_begin_progress(&report);
+    THEN(code, engine_load(held, &(load_watch){engine_report_if_due, &report}, &inner));
+    engine_end_progress(&report);
     engine_end_render(held);
     return engine_report(code, &inner, why);
 }
 
 status engine_check(const cuvette_scene *s, diagnostic *why)
 {
-    cuvette_scene *held = hold(s);
+    cuvette_scene *held = lock_scene(s);
     const status code = scene_check(held->model, why);
     pthread_mutex_unlock(&held->loading);
     return code;
@@ -260,7 +260,7 @@ cuvette_status cuvette_scene_hints(const cuvette_scene *s, void (*note)(void *co
 {
     ENGINE_CALL(s);
     ENGINE_NEED_NAMED(note, "note");
-    cuvette_scene *held = hold(s);
+    cuvette_scene *held = lock_scene(s);
     scene *copy = scene_clone(held->model); /* the callback may use the scene */
     pthread_mutex_unlock(&held->loading);
     if (!copy)
@@ -292,7 +292,7 @@ cuvette_status engine_copy_text(char *content, char *text, size_t size, size_t *
 cuvette_status cuvette_scene_write(const cuvette_scene *s, const char *path, cuvette_diagnostic *why)
 {
     ENGINE_CALL(s, path);
-    cuvette_scene *held = hold(s);
+    cuvette_scene *held = lock_scene(s);
     const status code = scene_write(held->model, path, false, &inner);
     pthread_mutex_unlock(&held->loading);
     return engine_report(code, &inner, why);
@@ -312,14 +312,14 @@ static status make_link(const scene *s, char **code, diagnostic *why)
     return result;
 }
 
-/* Copies what make made of the scene; inner: the diagnostic of the calling function. */
-static cuvette_status copy_made(const cuvette_scene *s, status (*make)(const scene *s, char **text, diagnostic *why),
-                                char *text, size_t size, size_t *length, diagnostic *inner, cuvette_diagnostic *why)
+/* Copies the text that `make` creates from the scene; inner: the diagnostic of the calling function. */
+static cuvette_status copy_text_of(const cuvette_scene *s, status (*make)(const scene *s, char **text, diagnostic *why),
+                                   char *text, size_t size, size_t *length, diagnostic *inner, cuvette_diagnostic *why)
 {
     if (size > 0)
         ENGINE_NEED(text);
     char *content = NULL;
-    cuvette_scene *held = hold(s);
+    cuvette_scene *held = lock_scene(s);
     const status code = make(held->model, &content, inner);
     pthread_mutex_unlock(&held->loading);
     return code == STATUS_OK ? engine_copy_text(content, text, size, length, why) : engine_report(code, inner, why);
@@ -329,12 +329,12 @@ cuvette_status cuvette_scene_write_text(const cuvette_scene *s, char *text, size
                                         cuvette_diagnostic *why)
 {
     ENGINE_CALL(s);
-    return copy_made(s, make_text, text, size, length, &inner, why);
+    return copy_text_of(s, make_text, text, size, length, &inner, why);
 }
 
 cuvette_status cuvette_scene_write_link(const cuvette_scene *s, char *text, size_t size, size_t *length,
                                         cuvette_diagnostic *why)
 {
     ENGINE_CALL(s);
-    return copy_made(s, make_link, text, size, length, &inner, why);
+    return copy_text_of(s, make_link, text, size, length, &inner, why);
 }

@@ -1,4 +1,4 @@
-/* Studies: reading, cells, running, and what their rows say: summary, comparison, figure. */
+/* Studies: reading, cells, running, and the evaluation of their rows: summary, comparison, figure. */
 #include "base/text.h"
 #include "engine/engine_private.h"
 #include "report/json.h"
@@ -13,7 +13,7 @@
 #include <string.h>
 
 struct cuvette_study {
-    study *of;
+    study *study;
 };
 
 void cuvette_text_destroy(char *text)
@@ -27,7 +27,7 @@ cuvette_status cuvette_study_read(const char *path, cuvette_study **out, cuvette
     *out = NULL;
     ENGINE_NEED(path);
     cuvette_study *made = calloc(1, sizeof *made);
-    const status code = made ? study_read(path, &made->of, &inner) : out_of_memory(&inner);
+    const status code = made ? study_read(path, &made->study, &inner) : out_of_memory(&inner);
     if (code == STATUS_OK)
         *out = made;
     else
@@ -39,33 +39,33 @@ void cuvette_study_destroy(cuvette_study *s)
 {
     if (!s)
         return;
-    study_destroy(s->of);
+    study_destroy(s->study);
     free(s);
 }
 
 const char *cuvette_study_name(const cuvette_study *s)
 {
-    return s ? s->of->name : NULL;
+    return s ? s->study->name : NULL;
 }
 
 const char *cuvette_study_title(const cuvette_study *s)
 {
-    return !s ? NULL : s->of->title ? s->of->title : "";
+    return !s ? NULL : s->study->title ? s->study->title : "";
 }
 
 size_t cuvette_study_cells(const cuvette_study *s)
 {
-    return s ? study_cell_count(s->of) : 0;
+    return s ? study_cell_count(s->study) : 0;
 }
 
 long cuvette_study_processes(const cuvette_study *s)
 {
-    return s ? study_processes(s->of) : 0;
+    return s ? study_processes(s->study) : 0;
 }
 
 static status check_cell(const cuvette_study *s, size_t cell, diagnostic *why)
 {
-    const size_t count = study_cell_count(s->of);
+    const size_t count = study_cell_count(s->study);
     return cell < count ? STATUS_OK
                         : diagnose(why, STATUS_BAD_INPUT, "count cells from 0",
                                    "the study has %zu cells, but no cell %zu", count, cell);
@@ -78,7 +78,7 @@ cuvette_status cuvette_study_scene(const cuvette_study *s, size_t cell, cuvette_
     ENGINE_NEED_NAMED(s, "study");
     scene *made = NULL;
     status code = check_cell(s, cell, &inner);
-    THEN(code, study_cell_scene(s->of, cell, &made, &inner));
+    THEN(code, study_cell_scene(s->study, cell, &made, &inner));
     return code == STATUS_OK ? engine_own_scene(made, out, why) : engine_report(code, &inner, why);
 }
 
@@ -91,8 +91,8 @@ cuvette_status cuvette_study_each_value(const cuvette_study *s, size_t cell,
     ENGINE_NEED_NAMED(visit, "visit");
     const status code = check_cell(s, cell, &inner);
     bool wants_more = code == STATUS_OK;
-    for (size_t axis = 0; wants_more && axis < s->of->axis_count; axis++) {
-        const study_point *point = &s->of->axes[axis].points[study_cell_point(s->of, cell, axis)];
+    for (size_t axis = 0; wants_more && axis < s->study->axis_count; axis++) {
+        const study_point *point = &s->study->axes[axis].points[study_cell_point(s->study, cell, axis)];
         for (size_t i = 0; wants_more && i < point->count; i++) {
             float_environment_leave(&host);
             wants_more = visit(context, point->paths[i], point->values[i]);
@@ -115,7 +115,7 @@ cuvette_status cuvette_study_state(const cuvette_study *s, const char *results, 
     ENGINE_NEED_NAMED(s, "study");
     ENGINE_NEED(out);
     study_progress found;
-    const status code = study_status(s->of, results_folder(results), &found, &inner);
+    const status code = study_status(s->study, results_folder(results), &found, &inner);
     if (code != STATUS_OK)
         return engine_report(code, &inner, why);
     cuvette_study_progress result = {.cells = found.cells,
@@ -139,10 +139,10 @@ typedef struct run_call {
     double left_s;
 } run_call;
 
-static bool tell_caller(void *context, double share)
+static bool report_progress(void *context, double fraction)
 {
     const run_call *c = context;
-    return c->run->progress(c->run->context, share, c->left_s);
+    return c->run->progress(c->run->context, fraction, c->left_s);
 }
 
 static void note_moment(void *context, const study_moment *now)
@@ -150,8 +150,8 @@ static void note_moment(void *context, const study_moment *now)
     run_call *c = context;
     const double of_frame = now->stage == STUDY_MEASURING ? now->share : 0.0;
     c->left_s = now->left_s;
-    engine_show(&c->host,
-                now->frames_all ? fmin(1.0, ((double)now->frames_done + of_frame) / (double)now->frames_all) : 1.0);
+    engine_report_if_due(
+        &c->host, now->frames_all ? fmin(1.0, ((double)now->frames_done + of_frame) / (double)now->frames_all) : 1.0);
 }
 
 static void pass_news(void *context, const char *text)
@@ -164,12 +164,12 @@ static void pass_news(void *context, const char *text)
 
 static status check_run(const cuvette_study *s, const cuvette_run *run, diagnostic *why)
 {
-    const long processes = study_processes(s->of);
+    const long processes = study_processes(s->study);
     if (run->size < sizeof *run) /* there is no earlier version yet */
         return diagnose(why, STATUS_BAD_INPUT, "set it to sizeof(cuvette_run)",
                         "the run's size is %zu, which is too small", run->size);
     if (run->process < 0 || run->process > processes)
-        return diagnose(why, STATUS_BAD_INPUT, "see processes in the study file",
+        return diagnose(why, STATUS_BAD_INPUT, "use 0, or a number from 1 to `processes` of the study file",
                         "the study has %ld processes, but no process %ld", processes, run->process);
     return STATUS_OK;
 }
@@ -191,9 +191,9 @@ cuvette_status cuvette_study_run(const cuvette_study *s, const cuvette_run *run,
                                    .news = run->news ? pass_news : NULL,
                                    .wait_quiet_s = run->wait_quiet_s,
                                    .context = &call};
-    call.host.tell = run->progress ? tell_caller : NULL;
+    call.host.callback = run->progress ? report_progress : NULL;
     engine_begin_progress(&call.host);
-    code = study_run(s->of, &options, &made, &inner);
+    code = study_run(s->study, &options, &made, &inner);
     engine_end_progress(&call.host);
     if (rows)
         *rows = made;
@@ -227,7 +227,7 @@ cuvette_status cuvette_each_column(bool (*visit)(void *context, const cuvette_co
     return CUVETTE_OK;
 }
 
-/* --- what the rows say --- */
+/* --- evaluation of the rows --- */
 
 static const double draw_limit_s = 300;
 
@@ -254,7 +254,7 @@ cuvette_status cuvette_study_summary(const cuvette_study *s, const char *results
     status code = text_writer_open(&writer, &inner);
     if (code != STATUS_OK)
         return engine_report(code, &inner, why);
-    code = study_summary_of(s->of, results_folder(results), &options, writer.stream, &verdict, &inner);
+    code = study_summary_of(s->study, results_folder(results), &options, writer.stream, &verdict, &inner);
     code = text_writer_end(&writer, code, out, NULL, &inner);
     THEN(code, put_fault(&verdict, fault, &inner));
     return engine_report(code, &inner, why);
@@ -274,7 +274,7 @@ cuvette_status cuvette_study_rows(const cuvette_study *s, const char *results, c
     status code = text_writer_open(&writer, &inner);
     if (code != STATUS_OK)
         return engine_report(code, &inner, why);
-    code = row_list_write(s ? s->of : NULL, results_folder(results), environment, writer.stream, &verdict, &inner);
+    code = row_list_write(s ? s->study : NULL, results_folder(results), environment, writer.stream, &verdict, &inner);
     code = text_writer_end(&writer, code, out, NULL, &inner);
     THEN(code, put_fault(&verdict, fault, &inner));
     return engine_report(code, &inner, why);
@@ -300,10 +300,10 @@ cuvette_status cuvette_study_compare(const cuvette_study *s, const char *results
     study_side one = {.text = NULL}, other = {.text = NULL};
     contrast *found = NULL;
     diagnostic verdict = {.what = ""};
-    status code = side_read(s->of, a, results_folder(results), &one, &inner);
-    THEN(code, side_read(s->of, b, results_folder(results), &other, &inner));
-    THEN(code, contrast_make(s->of, &one, &other, &(contrast_options){.column = column}, &found, &verdict, &inner));
-    THEN(code, write_comparison(s->of, found, out, &inner));
+    status code = side_read(s->study, a, results_folder(results), &one, &inner);
+    THEN(code, side_read(s->study, b, results_folder(results), &other, &inner));
+    THEN(code, contrast_make(s->study, &one, &other, &(contrast_options){.column = column}, &found, &verdict, &inner));
+    THEN(code, write_comparison(s->study, found, out, &inner));
     THEN(code, put_fault(&verdict, fault, &inner));
     contrast_destroy(found);
     side_release(&one);
@@ -345,7 +345,7 @@ cuvette_status cuvette_study_plot(const cuvette_study *s, const cuvette_plot *pl
                       ? STATUS_OK
                       : diagnose(&inner, STATUS_BAD_INPUT, "use png, svg or pdf", "unknown format '%.64s'", format);
     THEN(code, read_plot(plot, &request, &inner));
-    THEN(code, study_plot_write(s->of, &request, base, &inner));
+    THEN(code, study_plot_write(s->study, &request, base, &inner));
     THEN(code, study_plot_draw(base, format, draw_limit_s, &inner));
     return engine_report(code, &inner, why);
 }

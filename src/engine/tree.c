@@ -12,7 +12,7 @@
 #include <strings.h>
 
 struct cuvette_tree {
-    cuvette_query *of;
+    cuvette_query *query;
     ray_tree traced;
     cuvette_node *nodes;
 };
@@ -78,7 +78,7 @@ void cuvette_tree_destroy(cuvette_tree *tree)
         return;
     free(tree->nodes);
     ray_tree_release(&tree->traced);
-    cuvette_query_destroy(tree->of);
+    cuvette_query_destroy(tree->query);
     free(tree);
 }
 
@@ -95,8 +95,8 @@ static status copy_tree(const ray_tree *from, ray_tree *out, diagnostic *why)
     return STATUS_OK;
 }
 
-/* Names come from the query's own probe: that of the beam does not outlive the visit. */
-static status give_nodes(cuvette_query *query, cuvette_tree *tree, diagnostic *why)
+/* Names come from the query's probe, because the beam's probe does not outlive the visit. */
+static status add_nodes(cuvette_query *query, cuvette_tree *tree, diagnostic *why)
 {
     cuvette_query *q = NULL;
     TRY(query_begin_trace(query, &q, why));
@@ -105,16 +105,16 @@ static status give_nodes(cuvette_query *query, cuvette_tree *tree, diagnostic *w
     return tree->nodes ? STATUS_OK : out_of_memory(why);
 }
 
-/* A tree that another probe of the query's scene traced, as the caller's own. */
+/* Copies a tree, which another probe of the query's scene traced, for the caller. */
 static status tree_copy(cuvette_query *query, const ray_tree *from, cuvette_tree **out, diagnostic *why)
 {
     *out = NULL;
     cuvette_tree *tree = calloc(1, sizeof *tree);
     if (!tree)
         return out_of_memory(why);
-    tree->of = query_retain(query);
+    tree->query = query_retain(query);
     status code = copy_tree(from, &tree->traced, why);
-    THEN(code, give_nodes(query, tree, why));
+    THEN(code, add_nodes(query, tree, why));
     if (code == STATUS_OK)
         *out = tree;
     else
@@ -122,13 +122,13 @@ static status tree_copy(cuvette_query *query, const ray_tree *from, cuvette_tree
     return code;
 }
 
-/* What a tree starts with: a pixel, or a ray. */
+/* The start of a tree: a pixel or a ray. */
 typedef struct tree_root {
     const cuvette_ray *ray; /* NULL: the pixel */
     int x, y;
 } tree_root;
 
-static status grow(cuvette_query *q, const tree_root *root, cuvette_tree *tree, diagnostic *why)
+static status trace_root(cuvette_query *q, const tree_root *root, cuvette_tree *tree, diagnostic *why)
 {
     const cuvette_ray *r = root->ray;
     const status code =
@@ -149,8 +149,8 @@ static cuvette_status trace(const cuvette_query *query, const tree_root *root, c
         return engine_report(code, inner, why);
     cuvette_tree *tree = calloc(1, sizeof *tree);
     if (tree)
-        tree->of = query_retain(q);
-    code = tree ? grow(q, root, tree, inner) : out_of_memory(inner);
+        tree->query = query_retain(q);
+    code = tree ? trace_root(q, root, tree, inner) : out_of_memory(inner);
     query_end_trace(q);
     if (code == STATUS_OK)
         *out = tree;
@@ -226,7 +226,7 @@ cuvette_status cuvette_tree_write(const cuvette_tree *tree, const char *path, cu
 {
     ENGINE_CALL(tree, path);
     cuvette_query *q = NULL;
-    status code = query_begin_trace(tree->of, &q, &inner);
+    status code = query_begin_trace(tree->query, &q, &inner);
     if (code != STATUS_OK)
         return engine_report(code, &inner, why);
     const traced content = {q->model, q->inspector, &tree->traced, q->model->path ? q->model->path : "", false};
@@ -239,20 +239,20 @@ cuvette_status cuvette_tree_write(const cuvette_tree *tree, const char *path, cu
 /* --- the rays of a scene's beams --- */
 
 typedef struct beam_call {
-    cuvette_query *of;
+    cuvette_query *query;
     bool (*visit)(void *context, const cuvette_beam_ray *ray, cuvette_tree *tree);
     void *context;
     float_environment *host; /* the caller's, for the callback */
     bool stopped;
 } beam_call;
 
-static status pass_ray(void *context, const beam_ray *ray, const ray_tree *grown, const probe *p, diagnostic *why)
+static status pass_ray(void *context, const beam_ray *ray, const ray_tree *from, const probe *p, diagnostic *why)
 {
     beam_call *c = context;
     cuvette_tree *tree;
     (void)p;
-    TRY(tree_copy(c->of, grown, &tree, why));
-    const cuvette_beam_ray one = {.beam_name = c->of->model->beams[ray->beam].name,
+    TRY(tree_copy(c->query, from, &tree, why));
+    const cuvette_beam_ray one = {.beam_name = c->query->model->beams[ray->beam].name,
                                   .beam = ray->beam,
                                   .number = ray->number,
                                   .rays = ray->rays,
