@@ -17,7 +17,7 @@ COMMENT = re.compile(r"/\*.*?\*/", re.S)
 
 
 def declarations(header: str) -> str:
-    """The header without comments, preprocessor lines and what is for C++ only: what cffi reads."""
+    """The header as cffi reads it: without comments, preprocessor lines and parts for C++ only."""
     text = re.sub(r"#ifdef __cplusplus\n(.*?)(#else\n(.*?))?#endif\n", r"\3", header, flags=re.S)
     numbers = re.findall(r"^#define (CUVETTE_[A-Z_]+) (\d+)$", text, re.M)
     text = re.sub(r"^[ \t]*#(?:[^\n]*\\\n)*[^\n]*$", "", COMMENT.sub("", text), flags=re.M)
@@ -32,7 +32,7 @@ def plain(comment: str) -> str:
 
 
 def comments(header: str) -> dict:
-    """The comment above each function, which declarations without a comment of their own share."""
+    """The comment above each function; functions without a comment have the previous one."""
     found, last = {}, ""
     for match in re.finditer(
         r"(/\*.*?\*/)|CUVETTE_API [^;]*?\b(cuvette_\w+)\(.*?;|(^typedef|^enum|\n\n)", header, re.S | re.M

@@ -132,7 +132,7 @@ def test_a_hand(scene):
     assert motion.state(solid).held == 0
     assert motion.grab(solid, origin=(x, y + 50, z), direction=(0, 1, 0)) is None
     assert motion.pick(solid, pixel=(20, 15)) is None or len(motion.pick(solid, pixel=(20, 15))) == 3
-    with pytest.raises(cuvette.InputError, match="give pixel, or origin"):
+    with pytest.raises(cuvette.InputError, match="pass pixel, or origin"):
         motion.grab(solid)
 
 

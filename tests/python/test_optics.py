@@ -36,7 +36,7 @@ def test_curves(program):
     root = numpy.sqrt(1.5**2 - 1 + cos_in**2)
     assert numpy.allclose(curve.measured, ((cos_in - root) / (cos_in + root)) ** 2, atol=1e-12)
     assert "angle" in curve.x_label and "rainbow" not in scene.curves
-    with pytest.raises(cuvette.InputError, match="no curve 'snell'; give one of: .*fresnel-s"):
+    with pytest.raises(cuvette.InputError, match="no curve 'snell'; use one of: .*fresnel-s"):
         scene.curve("snell")
     with pytest.raises(cuvette.InputError):
         scene.curve("rainbow")

@@ -16,7 +16,7 @@ ffi: Any = _declarations.ffi
 
 
 def _find() -> str:
-    """CUVETTE_LIBRARY; else the library of the same build or installation; else the system's."""
+    """The path of the library: CUVETTE_LIBRARY, else that of the same build or installation, else the system's."""
     asked = os.environ.get("CUVETTE_LIBRARY")
     if asked:
         return asked
@@ -41,8 +41,8 @@ NULL = ffi.NULL
 Kind = TypeVar("Kind", bound=Callable[..., Any])
 
 
-def needed(module: str) -> Any:
-    """A module that only some functions need."""
+def import_module(module: str) -> Any:
+    """Imports a module that only some functions need."""
     try:
         return importlib.import_module(module)
     except ModuleNotFoundError as error:
@@ -72,7 +72,7 @@ class BusyError(Error, RuntimeError):
 
 
 class Cancelled(Error):
-    """Stopped on request. Of a render, `image` has the finished part; None before the first ray."""
+    """Stopped on request. After a render, `image` is the finished part; None before the first ray."""
 
     image: Any = None
 
@@ -110,8 +110,8 @@ def call(function: Callable[..., Any], *arguments: Any) -> None:
         raise error_of(status, why)
 
 
-def made(kind: str, function: Callable[..., Any], destroy: Callable[..., Any], *arguments: Any) -> Any:
-    """The handle that a function creates; it is released with the Python object."""
+def new_handle(kind: str, function: Callable[..., Any], destroy: Callable[..., Any], *arguments: Any) -> Any:
+    """Returns the handle that a function creates; it is released with the Python object."""
     out = ffi.new(f"cuvette_{kind} **")
     call(function, *arguments, out)
     return ffi.gc(out[0], destroy)
@@ -156,18 +156,18 @@ class Visit:
 
 
 def _keep_error(kind: Any, error: BaseException, traceback: Any) -> None:
-    """Of a callback itself: a KeyboardInterrupt can arrive before the first statement of its Visit."""
+    """Stores an error outside the Visit: a KeyboardInterrupt can arrive before its first statement."""
     ffi.from_handle(traceback.tb_frame.f_locals["context"]).error = error
 
 
 def callback(result: str, *arguments: str) -> Any:
     """A C callback with a context that passes its arguments to the Visit; it returns false after an exception."""
 
-    def pass_on(context: Any, *values: Any) -> Any:
-        goes_on = ffi.from_handle(context)(*values)
-        return goes_on if result == "bool" else None
+    def forward(context: Any, *values: Any) -> Any:
+        wants_more = ffi.from_handle(context)(*values)
+        return wants_more if result == "bool" else None
 
-    return ffi.callback(f"{result}(void *, {', '.join(arguments)})", pass_on, onerror=_keep_error)
+    return ffi.callback(f"{result}(void *, {', '.join(arguments)})", forward, onerror=_keep_error)
 
 
 on_progress = callback("bool", "double")
@@ -189,7 +189,7 @@ def _pass_news(context: Any, text: Any) -> None:
 on_news = ffi.callback("void(void *, const char *)", _pass_news, onerror=_keep_error)
 
 
-def visited(function: Callable[..., Any], callback: Any, act: Callable[..., Any], *arguments: Any) -> None:
+def visit_each(function: Callable[..., Any], callback: Any, act: Callable[..., Any], *arguments: Any) -> None:
     """Calls a function of the kind f(arguments, callback, context, why)."""
     visit = Visit(act)
     call(function, *arguments, callback, visit.context)
@@ -209,7 +209,7 @@ def described(name: str) -> Callable[[Kind], Kind]:
 
 
 class Engines:
-    """Engines with their threads, kept for the next render: one for each render at the same time."""
+    """Engines with their threads, kept for the next render: one per concurrent render."""
 
     def __init__(self) -> None:
         self.free: List[Any] = []
@@ -224,7 +224,7 @@ class Engines:
         with self.lock:
             if self.free:
                 return self.free.pop()
-        return made("engine", lib.cuvette_engine_create, lib.cuvette_engine_destroy, NULL)
+        return new_handle("engine", lib.cuvette_engine_create, lib.cuvette_engine_destroy, NULL)
 
     def release(self, engine: Any) -> None:
         with self.lock:

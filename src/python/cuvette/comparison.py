@@ -7,7 +7,7 @@ from typing import Any, Optional, Tuple, Union
 import numpy
 from numpy.typing import NDArray
 
-from ._library import InputError, borrowed, call, described, encoded, ffi, lib, made, sized
+from ._library import InputError, borrowed, call, described, encoded, ffi, lib, new_handle, sized
 from .image import Image, Path
 from .records import html_table
 
@@ -17,7 +17,7 @@ Pixels = Union[Image, Path, NDArray[Any]]
 @described("cuvette_image_read")
 def read_image(path: Path) -> NDArray[numpy.float32]:
     """Linear RGB: float32 of height x width x 3, a view of the library's own memory."""
-    handle = made("image", lib.cuvette_image_read, lib.cuvette_image_destroy, encoded(path))
+    handle = new_handle("image", lib.cuvette_image_read, lib.cuvette_image_destroy, encoded(path))
     size = ffi.new("int[2]")
     pointer = lib.cuvette_image_rgb(handle, size, size + 1)
     memory = ffi.buffer(borrowed(pointer, handle), 3 * size[0] * size[1] * ffi.sizeof("float"))
@@ -49,13 +49,13 @@ def _pixels(image: Pixels) -> NDArray[numpy.float32]:
         return read_image(image)
     array = numpy.ascontiguousarray(image.array if isinstance(image, Image) else image, numpy.float32)
     if array.ndim != 3 or array.shape[2] != 3:
-        raise InputError(f"the image has the shape {array.shape}", "give an array of height x width x 3, linear RGB")
+        raise InputError(f"the image has the shape {array.shape}", "pass an array of height x width x 3, linear RGB")
     return array
 
 
 @described("cuvette_compare")
 def compare(a: Pixels, b: Pixels, map: bool = False) -> Comparison:
-    """Images, files, or arrays of linear RGB."""
+    """Compares images, files, or arrays of linear RGB."""
     one, other = _pixels(a), _pixels(b)
     if one.shape != other.shape:
         sizes = [f"{shape[1]} x {shape[0]}" for shape in (one.shape, other.shape)]

@@ -38,7 +38,7 @@ class Counts:
 class SolidCounts:
     """Counts of one solid."""
 
-    tests: int  #: rays tested against it; 0 for a solid that a hierarchy finds
+    tests: int  #: rays tested against it; 0 for a solid in a hierarchy
     hits: int  #: hits on its interfaces, without shadow rays and photons
     first_hits: int  #: camera rays whose first interface is on it
 

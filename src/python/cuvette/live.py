@@ -29,8 +29,8 @@ class Live:
     def __init__(self, scene: Any, width: int = 960, height: int = 640) -> None:
         code = read_text(lib.cuvette_scene_write_link, scene)
         page = _find().read_text(encoding="utf-8")
-        held = f'<head><script type="text/plain" id="cuvette-scene">{code}</script>'
-        self.html, self.width, self.height = page.replace("<head>", held, 1), width, height
+        head = f'<head><script type="text/plain" id="cuvette-scene">{code}</script>'
+        self.html, self.width, self.height = page.replace("<head>", head, 1), width, height
 
     def save(self, path: Path) -> None:
         """Writes the document to a file, for slides: a browser opens it, and an iframe shows it."""

@@ -4,7 +4,7 @@ from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any, List, Optional, Sequence, Tuple
 
 from . import progress as bars
-from ._library import InputError, call, described, encoded, ffi, lib, made, names_of, on_progress, sized
+from ._library import InputError, call, described, encoded, ffi, lib, new_handle, names_of, on_progress, sized
 
 if TYPE_CHECKING:
     from .scene import Scene
@@ -59,12 +59,12 @@ class Motion:
     @described("cuvette_motion_create")
     def __init__(self, scene: "Scene") -> None:
         self.scene = scene
-        self._motion: Any = made("motion", lib.cuvette_motion_create, lib.cuvette_motion_destroy, scene._scene)
+        self._motion: Any = new_handle("motion", lib.cuvette_motion_create, lib.cuvette_motion_destroy, scene._scene)
 
     @described("cuvette_motion_advance_watched")
     @described("cuvette_motion_advance")
     def advance(self, time_s: float, progress: bars.Progress = None) -> None:
-        """progress as of Scene.render. Ctrl-C stops."""
+        """progress: as in Scene.render. Ctrl-C stops the motion."""
         with bars.watched(progress, "motion") as visit:
             call(lib.cuvette_motion_advance_watched, self._motion, time_s, on_progress, visit.context)
 
@@ -92,7 +92,7 @@ class Motion:
         if pixel is not None:
             origin, direction = self.scene.query().camera_ray(*pixel)
         if origin is None or direction is None:
-            raise InputError("a hand needs a ray", "give pixel, or origin and direction")
+            raise InputError("a hand needs a ray", "pass pixel, or origin and direction")
         return ffi.new("cuvette_ray *", {"origin": list(origin), "direction": list(direction)})
 
     @described("cuvette_motion_pick")

@@ -6,7 +6,7 @@ from typing import Any
 import numpy
 from numpy.typing import NDArray
 
-from ._library import needed
+from ._library import import_module
 from .records import Records
 
 
@@ -15,7 +15,7 @@ class Metric:
     """A measured quantity and its closed form."""
 
     name: str
-    verdict: str  #: "pass", "FAIL", or "none": the scene has no such thing
+    verdict: str  #: "pass", "FAIL", or "none": the scene has nothing to measure it on
     measured: float
     theory: float
     error: float
@@ -46,7 +46,7 @@ class Curve:
     def plot(self, axes: Any = None) -> Any:
         """Draws the curve with matplotlib; returns the axes."""
         if axes is None:
-            axes = needed("matplotlib.pyplot").figure().add_subplot()
+            axes = import_module("matplotlib.pyplot").figure().add_subplot()
         axes.plot(self.x, self.theory, "-", color="0.6", label="theory")
         axes.plot(self.x, self.measured, ".", markersize=4, label="traced")
         axes.set(xlabel=self.x_label, ylabel=self.y_label, title=self.name)

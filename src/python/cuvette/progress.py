@@ -1,4 +1,4 @@
-"""The progress bar of a render or a study: on a terminal or in a notebook only, and only for what takes a while."""
+"""The progress bar of a render or a study: on a terminal or in a notebook only, and only if the call takes a while."""
 
 import contextlib
 import html
@@ -65,7 +65,8 @@ class NotebookBar(Bar):
 
 
 def bar_of(progress: Progress, what: str) -> Optional[Callable[..., object]]:
-    """None: a bar if someone sees it; True, False: always, never; a function: it receives the fraction done, 0 to 1."""
+    """The function that receives the finished fraction, 0 to 1. progress: None, a bar on a terminal or in a notebook;
+    True, always a bar; False, none; or a function."""
     if callable(progress):
         return progress
     show = _is_notebook() or sys.stderr.isatty() if progress is None else progress

@@ -16,11 +16,11 @@ from ._library import (
     encoded,
     ffi,
     lib,
-    made,
+    new_handle,
     on_beam_ray,
     sized,
     text_of,
-    visited,
+    visit_each,
 )
 from .image import Path
 from .records import html_table, svg_of
@@ -349,7 +349,7 @@ class BeamRay:
 
 
 class Tracer:
-    """What traces trees and fans: a scene, as it is at the call, or a query."""
+    """Base of the classes that trace trees and fans: a scene, as it is at the call, and a query."""
 
     def query(self, wavelength_nm: Optional[float] = None, **short: Any) -> "Query":
         raise NotImplementedError
@@ -366,11 +366,11 @@ class Tracer:
         one wavelength, as `cuvette trace --lambda`, with wavelength_nm=580."""
         query = self.query(wavelength_nm, **short)._query
         if pixel is not None and origin is None and direction is None:
-            return Tree(made("tree", lib.cuvette_query_trace_pixel, lib.cuvette_tree_destroy, query, *pixel))
+            return Tree(new_handle("tree", lib.cuvette_query_trace_pixel, lib.cuvette_tree_destroy, query, *pixel))
         if pixel is None and origin is not None and direction is not None:
             ray = ffi.new("cuvette_ray *", {"origin": list(origin), "direction": list(direction)})
-            return Tree(made("tree", lib.cuvette_query_trace, lib.cuvette_tree_destroy, query, ray))
-        raise InputError("a tree starts with a pixel or a ray", "give pixel, or origin and direction")
+            return Tree(new_handle("tree", lib.cuvette_query_trace, lib.cuvette_tree_destroy, query, ray))
+        raise InputError("a tree starts with a pixel or a ray", "pass pixel, or origin and direction")
 
     @described("cuvette_query_fan")
     def fan(
@@ -390,7 +390,7 @@ class Tracer:
         rule.to, rule.normal, rule.rays, rule.width, rule.spread_deg = list(to), list(plane), rays, width, spread_deg
         setattr(rule, "from", list(start))
         query = self.query(wavelength_nm, **short)._query
-        return Fan(made("fan", lib.cuvette_query_fan, lib.cuvette_fan_destroy, query, rule))
+        return Fan(new_handle("fan", lib.cuvette_query_fan, lib.cuvette_fan_destroy, query, rule))
 
     @described("cuvette_query_each_beam_ray")
     def beams(self, **short: Any) -> List[BeamRay]:
@@ -400,7 +400,7 @@ class Tracer:
         def add(ray: Any, tree: Any) -> None:
             found.append(BeamRay(ray, Tree(ffi.gc(tree, lib.cuvette_tree_destroy))))
 
-        visited(lib.cuvette_query_each_beam_ray, on_beam_ray, add, self.query(**short)._query)
+        visit_each(lib.cuvette_query_each_beam_ray, on_beam_ray, add, self.query(**short)._query)
         return found
 
 
@@ -411,9 +411,9 @@ class Query(Tracer):
         self._query, self.lights, self.solids = handle, lights, solids
 
     def query(self, wavelength_nm: Optional[float] = None, **short: Any) -> "Query":
-        """Itself: its settings are those of the scene when it was made."""
+        """Returns the query itself: its settings are those that the scene had when it was created."""
         if wavelength_nm is not None or short:
-            raise InputError("a query cannot be changed", "give the settings to scene.query")
+            raise InputError("a query cannot be changed", "pass the settings to scene.query")
         return self
 
     @described("cuvette_query_cancel")
@@ -432,16 +432,16 @@ class Query(Tracer):
         try:
             starts, headings = numpy.broadcast_arrays(starts, headings)
         except ValueError:
-            raise InputError(f"{len(starts)} origins for {len(headings)} directions", "give as many, or one") from None
+            raise InputError(f"{len(starts)} origins for {len(headings)} directions", "pass as many, or one") from None
         if starts.ndim != 2 or starts.shape[1] != 3:
-            raise InputError(f"the rays have the shape {starts.shape}", "give arrays of n x 3")
+            raise InputError(f"the rays have the shape {starts.shape}", "pass arrays of n x 3")
         rays = numpy.zeros(len(starts), dtype_of("cuvette_ray"))
         rays["origin"], rays["direction"], rays["reach"] = starts, headings, reach
         return rays
 
     @described("cuvette_query_nearest")
     def nearest(self, origins: Any, directions: Any, reach: Any = 0.0) -> NDArray[Any]:
-        """Of n rays, origins and directions n x 3 (or one for all): a structured array, `hits["distance"]`."""
+        """Hits as a structured array, `hits["distance"]`; origins and directions are n x 3, or one for all rays."""
         rays = self._rays(origins, directions, reach)
         hits = numpy.empty(len(rays), dtype_of("cuvette_hit"))
         call(
@@ -455,7 +455,7 @@ class Query(Tracer):
 
     @described("cuvette_query_occluded")
     def occluded(self, origins: Any, directions: Any, reach: Any = 0.0) -> NDArray[Any]:
-        """An array of bool."""
+        """Whether each ray is blocked, as an array of bool."""
         rays = self._rays(origins, directions, reach)
         blocked = numpy.empty(len(rays), numpy.uint8)
         call(

@@ -1,11 +1,11 @@
-"""Lists of results as tables: in a notebook, and of pandas."""
+"""Lists of results as tables, in notebooks and for pandas."""
 
 import dataclasses
 import difflib
 import html
 from typing import Any, List, Sequence, TypeVar
 
-from ._library import needed
+from ._library import import_module
 
 Item = TypeVar("Item")
 
@@ -49,6 +49,6 @@ class Records(List[Item]):
 
     def table(self) -> Any:
         """A pandas DataFrame."""
-        pandas = needed("pandas")
+        pandas = import_module("pandas")
 
         return pandas.DataFrame(self._rows(), columns=self._titles())

@@ -21,7 +21,7 @@ from ._library import (
     error_of,
     ffi,
     lib,
-    made,
+    new_handle,
     names_of,
     on_curve,
     on_metric,
@@ -31,7 +31,7 @@ from ._library import (
     read_text,
     sized,
     text_of,
-    visited,
+    visit_each,
 )
 from .image import Image, Path
 from .live import Live
@@ -69,7 +69,7 @@ def _text_of_value(value: Any) -> str:
     if isinstance(value, (Sequence, numpy.ndarray)):
         return ",".join(_text_of_value(one) for one in value)
     raise InputError(
-        f"a {type(value).__name__} is no value of a parameter", "give a number, a text or a list of numbers"
+        f"a {type(value).__name__} is no value of a parameter", "pass a number, a text or a list of numbers"
     )
 
 
@@ -83,7 +83,7 @@ class Scene(Tracer):
     lists all. Objects are added by name: `scene.add_solid("ball", "sphere")`."""
 
     def __init__(self, handle: Any = None) -> None:
-        self._scene = handle or made("scene", lib.cuvette_scene_create, lib.cuvette_scene_destroy)
+        self._scene = handle or new_handle("scene", lib.cuvette_scene_create, lib.cuvette_scene_destroy)
 
     # --- parameters
 
@@ -135,7 +135,7 @@ class Scene(Tracer):
         def add(one: Any) -> None:
             found.append(Parameter(*(text_of(getattr(one, name)) for name in fields)))
 
-        visited(lib.cuvette_scene_each_parameter, on_parameter, add, self._scene)
+        visit_each(lib.cuvette_scene_each_parameter, on_parameter, add, self._scene)
         return found
 
     @property
@@ -160,7 +160,7 @@ class Scene(Tracer):
         return list(self.keys())
 
     def __reduce__(self) -> Tuple[Any, ...]:
-        """For other processes, as the text of its file: without meshes and textures that were given as arrays."""
+        """Pickles the scene as the text of its file: without meshes and textures from arrays."""
         return read_text_scene, (str(self), "scene of another process")
 
     # --- objects
@@ -186,7 +186,7 @@ class Scene(Tracer):
         self._set_new(name, values)
 
     def _set_new(self, name: str, values: Mapping[str, Any]) -> None:
-        """Of an object that was just added: it is removed again if a value is wrong."""
+        """Sets the values of an object that was just added; removes the object if one is wrong."""
         try:
             for key, value in values.items():
                 self[f"{name}.{key}"] = value
@@ -210,12 +210,12 @@ class Scene(Tracer):
                 continue
             array = arrays[key] = numpy.ascontiguousarray(values, dtype)
             if array.ndim != 2 or array.shape[1] != columns:
-                raise InputError(f"{key} have the shape {array.shape}", f"give an array of n x {columns}")
+                raise InputError(f"{key} have the shape {array.shape}", f"pass an array of n x {columns}")
             setattr(given, key, ffi.from_buffer(f"{'uint32_t' if dtype is numpy.uint32 else 'double'}[]", array))
         for key in ("normals", "uvs"):
             if key in arrays and len(arrays[key]) != len(arrays["vertices"]):
                 raise InputError(
-                    f"{len(arrays[key])} {key} for {len(arrays['vertices'])} vertices", "give one per vertex"
+                    f"{len(arrays[key])} {key} for {len(arrays['vertices'])} vertices", "pass one per vertex"
                 )
         given.vertex_count, given.triangle_count = len(arrays["vertices"]), len(arrays["corners"])
         call(lib.cuvette_scene_add_triangles, self._scene, encoded(name), given)
@@ -225,7 +225,7 @@ class Scene(Tracer):
         """A texture from an array of height x width x 3 linear values, row by row from the top."""
         array = numpy.ascontiguousarray(rgb, numpy.float32)
         if array.ndim != 3 or array.shape[2] != 3:
-            raise InputError(f"the pixels have the shape {array.shape}", "give an array of height x width x 3")
+            raise InputError(f"the pixels have the shape {array.shape}", "pass an array of height x width x 3")
         memory = ffi.from_buffer("float[]", array)
         call(lib.cuvette_scene_add_pixels, self._scene, encoded(name), array.shape[1], array.shape[0], memory)
 
@@ -238,7 +238,7 @@ class Scene(Tracer):
         call(lib.cuvette_scene_rename, self._scene, encoded(name), encoded(new_name))
 
     @described("cuvette_scene_give_material")
-    def give_material(self, solid: str, material: Optional[str]) -> None:
+    def set_material(self, solid: str, material: Optional[str]) -> None:
         given = NULL if material is None else encoded(material)
         call(lib.cuvette_scene_give_material, self._scene, encoded(solid), given)
 
@@ -286,7 +286,7 @@ class Scene(Tracer):
 
     @described("cuvette_scene_clone")
     def copy(self) -> "Scene":
-        return Scene(made("scene", lib.cuvette_scene_clone, lib.cuvette_scene_destroy, self._scene))
+        return Scene(new_handle("scene", lib.cuvette_scene_clone, lib.cuvette_scene_destroy, self._scene))
 
     __copy__ = copy
 
@@ -301,7 +301,7 @@ class Scene(Tracer):
     def hints(self) -> List[str]:
         """One line for everything that is valid but looks like a mistake."""
         found: List[str] = []
-        visited(lib.cuvette_scene_hints, on_text, lambda text: found.append(text_of(text)), self._scene)
+        visit_each(lib.cuvette_scene_hints, on_text, lambda text: found.append(text_of(text)), self._scene)
         return found
 
     @described("cuvette_scene_write")
@@ -329,7 +329,7 @@ class Scene(Tracer):
 
     @described("cuvette_scene_load")
     def load(self, progress: bars.Progress = None) -> "Scene":
-        """Ctrl-C stops. Whatever needs the files and slimes loads them by itself. Returns the scene."""
+        """Ctrl-C stops. Calls that need the files and slimes load them, too. Returns the scene."""
         with bars.watched(progress, "slimes") as visit:
             call(lib.cuvette_scene_load, self._scene, on_progress, visit.context)
         return self
@@ -340,10 +340,10 @@ class Scene(Tracer):
         """The scene as it is now, with these settings, for rays of your own."""
         scene = (self.copy().set(**short) if short else self).load()
         if wavelength_nm is None:
-            handle = made("query", lib.cuvette_query_create, lib.cuvette_query_destroy, scene._scene, NULL)
+            handle = new_handle("query", lib.cuvette_query_create, lib.cuvette_query_destroy, scene._scene, NULL)
         else:
             create = lib.cuvette_query_wavelength_create
-            handle = made("query", create, lib.cuvette_query_destroy, scene._scene, wavelength_nm, NULL)
+            handle = new_handle("query", create, lib.cuvette_query_destroy, scene._scene, wavelength_nm, NULL)
         return Query(handle, scene.lights, scene.solids)
 
     @described("cuvette_scene_each_metric")
@@ -357,7 +357,7 @@ class Scene(Tracer):
                 Metric(text_of(one.name), text_of(one.verdict), *numbers, text_of(one.unit), text_of(one.meaning))
             )
 
-        visited(lib.cuvette_scene_each_metric, on_metric, add, self.load()._scene)
+        visit_each(lib.cuvette_scene_each_metric, on_metric, add, self.load()._scene)
         return found
 
     @property
@@ -371,7 +371,7 @@ class Scene(Tracer):
         def add(one: Any) -> None:
             found[text_of(one.name)] = text_of(one.x), text_of(one.y)
 
-        visited(lib.cuvette_scene_each_curve, on_curve, add, self._scene)
+        visit_each(lib.cuvette_scene_each_curve, on_curve, add, self._scene)
         return found
 
     @described("cuvette_scene_curve")
@@ -433,7 +433,7 @@ class Scene(Tracer):
 
 def _three(values: Sequence[float]) -> Any:
     if len(values) != 3:
-        raise InputError(f"{len(values)} numbers instead of 3", "give x, y, z")
+        raise InputError(f"{len(values)} numbers instead of 3", "pass x, y, z")
     return ffi.new("double[3]", [float(v) for v in values])
 
 
@@ -443,11 +443,13 @@ Scene.set.__doc__ = f"{Scene.set.__doc__}\n\nParameters (`cuvette params`):\n\n{
 @described("cuvette_scene_read")
 def read(path: Path) -> Scene:
     """The scene of a file."""
-    return Scene(made("scene", lib.cuvette_scene_read, lib.cuvette_scene_destroy, encoded(path)))
+    return Scene(new_handle("scene", lib.cuvette_scene_read, lib.cuvette_scene_destroy, encoded(path)))
 
 
 @described("cuvette_scene_read_text")
 def read_text_scene(text: str, name: str = "text") -> Scene:
     """The scene of a text, such as a scene file's."""
     data = text.encode()
-    return Scene(made("scene", lib.cuvette_scene_read_text, lib.cuvette_scene_destroy, encoded(name), data, len(data)))
+    return Scene(
+        new_handle("scene", lib.cuvette_scene_read_text, lib.cuvette_scene_destroy, encoded(name), data, len(data))
+    )

@@ -21,8 +21,8 @@ from ._library import (
     encoded,
     ffi,
     lib,
-    made,
-    needed,
+    new_handle,
+    import_module,
     on_column,
     on_news,
     on_run,
@@ -30,7 +30,7 @@ from ._library import (
     owned_text,
     sized,
     text_of,
-    visited,
+    visit_each,
 )
 from .image import Path
 from .records import html_table, svg_of
@@ -55,13 +55,13 @@ REASONS = {"warm-up": "warm-ups", "marked": "marked", "excluded": "excluded"}
 
 
 def columns() -> Dict[str, Tuple[str, str]]:
-    """Unit and meaning of every column of rows.csv; a name with <axis> or <solid> stands for one column for each."""
+    """Unit and meaning of every column of rows.csv; <axis> or <solid> in a name stands for a column each."""
     found: Dict[str, Tuple[str, str]] = {}
 
     def add(one: Any) -> None:
         found[text_of(one.name)] = text_of(one.unit), text_of(one.meaning)
 
-    visited(lib.cuvette_each_column, on_column, add)
+    visit_each(lib.cuvette_each_column, on_column, add)
     return found
 
 
@@ -74,7 +74,7 @@ def _described(name: str, known: Dict[str, Tuple[str, str]], units: Dict[str, st
 
 
 def _facts(folder: str) -> Dict[str, Dict[str, str]]:
-    """The facts of each environment, by its key, from runs.json and those of shards."""
+    """The facts of each environment, by its key, from runs.json and the runs files of shards."""
     facts: Dict[str, Dict[str, str]] = {}
     for path in sorted(pathlib.Path(folder).glob("runs.*json")):
         for run in json.loads(path.read_text(encoding="utf-8"))["runs"]:
@@ -84,7 +84,7 @@ def _facts(folder: str) -> Dict[str, Dict[str, str]]:
 
 
 def _table(text: Optional[str], separator: str = ",") -> "pandas.DataFrame":
-    pandas = needed("pandas")
+    pandas = import_module("pandas")
     kinds = {name: str for name in (*TEXTS, "environment", "left_out")}
     return pandas.read_csv(io.StringIO(text or ""), sep=separator, dtype=kinds, na_values=["NA"], keep_default_na=False)
 
@@ -155,7 +155,7 @@ class Study:
 
     def __init__(self, path: Path) -> None:
         self.path = os.fspath(path)
-        self._study = made("study", lib.cuvette_study_read, lib.cuvette_study_destroy, encoded(path))
+        self._study = new_handle("study", lib.cuvette_study_read, lib.cuvette_study_destroy, encoded(path))
 
     @property
     def name(self) -> str:
@@ -171,7 +171,7 @@ class Study:
 
     @described("cuvette_study_scene")
     def scene(self, cell: int = 0) -> Scene:
-        return Scene(made("scene", lib.cuvette_study_scene, lib.cuvette_scene_destroy, self._study, cell))
+        return Scene(new_handle("scene", lib.cuvette_study_scene, lib.cuvette_scene_destroy, self._study, cell))
 
     @described("cuvette_study_each_value")
     def values(self, cell: int) -> Dict[str, str]:
@@ -180,7 +180,7 @@ class Study:
         def add(path: Any, value: Any) -> None:
             found[text_of(path)] = text_of(value)
 
-        visited(lib.cuvette_study_each_value, on_value, add, self._study, cell)
+        visit_each(lib.cuvette_study_each_value, on_value, add, self._study, cell)
         return found
 
     def state(self, results: Path = "results") -> Dict[str, Any]:
@@ -248,7 +248,9 @@ class Study:
             raise
         if child.returncode:
             last = errors.strip().splitlines()[-1:] or [f"status {child.returncode}"]
-            raise InputError(f"process {process} failed: {last[0]}", "rows so far are kept", self.path)
+            raise InputError(
+                f"process {process} failed: {last[0]}", "run the study again; the rows so far are kept", self.path
+            )
 
     def _folder(self, results: Path) -> str:
         return os.path.join(os.fspath(results), self.name)
@@ -256,7 +258,7 @@ class Study:
     def rows(
         self, results: Path = "results", environment: Optional[str] = None, raw: bool = False
     ) -> "pandas.DataFrame":
-        """The rows of the study, as of cuvette.rows, with the units of the grid's parameters; warns of rows that have
+        """The rows of the study, like those of cuvette.rows, with the units of the grid's parameters; warns of rows that have
         a wrong checksum."""
         units = {p.path: p.unit for p in self.scene(0).parameters}
         return _rows(self._study, self._folder(results), os.fspath(results), environment, raw, units)
@@ -272,8 +274,8 @@ class Study:
 
     @described("cuvette_study_compare")
     def compare(self, a: str, b: str, column: Optional[str] = None, results: Path = "results") -> "pandas.DataFrame":
-        """One line per pair of cells, and one over all (cell is NA); attrs has the environments of both sides."""
-        pandas = needed("pandas")
+        """One line per pair of cells, and one for all cells (cell is NA); attrs has the environments of both sides."""
+        pandas = import_module("pandas")
 
         out, fault = ffi.new("char **"), ffi.new("char **")
         call(
@@ -354,5 +356,5 @@ class Study:
 
 @described("cuvette_study_read")
 def study(path: Path) -> Study:
-    """`cuvette.study("experiments/depth.study").run()`"""
+    """Reads a study file: `cuvette.study("experiments/depth.study").run()`"""
     return Study(path)
