@@ -31,8 +31,8 @@
 /* The account of an animation. */
 typedef struct animate_totals {
     int64_t rendered, kept;
-    double wall_s;         /* seconds of the renders */
-    double step_s, skin_s; /* seconds spent on all motion, including that of kept frames */
+    double wall_s;         /* render time */
+    double step_s, skin_s; /* seconds spent on steps and surfaces, also for kept frames */
     double simulated_s;
     uint64_t steps;
 } animate_totals;
@@ -44,28 +44,28 @@ typedef struct animation_job {
     uint64_t definition;
     scene *s;
     scene_motion *motion;
-    job *with;
+    job *frame_job;
     file_writer stream;
     video video;
     animate_rows *rows; /* NULL: no table */
     int64_t frame, count;
     progress_line line;
     char label[64];
-    scene_motion_report last_motion; /* motion up to this frame */
-    animate_totals *account;
+    scene_motion_report last_motion; /* motion since the previous frame */
+    animate_totals *totals;
 } animation_job;
 
-static void show_progress(void *context, double share_done)
+static void show_progress(void *context, double fraction)
 {
     animation_job *f = context;
-    progress_draw(&f->line, ((double)f->frame + share_done) / (double)f->count);
+    progress_draw(&f->line, ((double)f->frame + fraction) / (double)f->count);
 }
 
 static status report_interrupted(const animation_job *f, diagnostic *why)
 {
     const char *remedy = f->names ? "run the same command again to resume" : "";
     return diagnose_at(why, f->request->output, STATUS_INTERRUPTED, remedy, "interrupted at %s%s", f->label,
-                       f->stream.whole ? "; nothing is written" : "");
+                       f->stream.atomic ? "; nothing is written" : "");
 }
 
 /* Returns whether the frame's image exists, and its row where a table is written. */
@@ -74,35 +74,35 @@ static bool is_done(const animation_job *f, const char *path)
     return path && access(path, F_OK) == 0 && (!f->rows || animate_rows_have(f->rows, f->frame));
 }
 
-/* Frames take equal time, except the motion up to the first one, which has a progress line of its own. */
-static void show_motion(void *context, double share_done)
+/* All frames count as equally long; the motion up to the first one has its own progress line. */
+static void show_motion(void *context, double fraction)
 {
     animation_job *f = context;
     if (f->frame > 0)
         show_progress(f, 0);
     else
-        progress_draw(&f->line, share_done);
+        progress_draw(&f->line, fraction);
 }
 
 static status advance(animation_job *f, double to_s, bool surfaces, diagnostic *why)
 {
     const load_watch watch = {show_motion, f};
-    const bool own_line = f->frame == 0 && to_s > 0;
-    if (own_line)
+    const bool is_initial = f->frame == 0 && to_s > 0;
+    if (is_initial)
         progress_start(&f->line, "simulating up to the first frame");
     status result = scene_motion_advance_until(f->motion, to_s, surfaces, &watch, why);
-    if (own_line) {
+    if (is_initial) {
         progress_erase(&f->line);
         progress_start(&f->line, f->label);
     }
     if (result != STATUS_OK)
         return result;
     f->last_motion = scene_motion_last(f->motion);
-    animate_totals *account = f->account;
-    account->steps += f->last_motion.steps;
-    account->step_s += f->last_motion.step_s;
-    account->skin_s += f->last_motion.skin_s;
-    account->simulated_s = to_s;
+    animate_totals *totals = f->totals;
+    totals->steps += f->last_motion.steps;
+    totals->step_s += f->last_motion.step_s;
+    totals->skin_s += f->last_motion.skin_s;
+    totals->simulated_s = to_s;
     return STATUS_OK;
 }
 
@@ -136,7 +136,7 @@ static status render_frame(animation_job *f, const char *path, diagnostic *why)
 {
     const render_options options = {.progress = show_progress, .context = f};
     job_account rendered;
-    status ended = job_render(f->with, f->s, &options, &rendered, why);
+    status ended = job_render(f->frame_job, f->s, &options, &rendered, why);
     THEN(ended, write_image(f, path, rendered.result->img, why));
     if (ended == STATUS_OK && f->rows) {
         const animate_row row = {.definition = f->definition,
@@ -148,8 +148,8 @@ static status render_frame(animation_job *f, const char *path, diagnostic *why)
         ended = animate_rows_add(f->rows, &row, why);
     }
     if (ended == STATUS_OK) {
-        f->account->rendered++;
-        f->account->wall_s += rendered.result->wall_s;
+        f->totals->rendered++;
+        f->totals->wall_s += rendered.result->wall_s;
     }
     job_account_release(&rendered);
     return ended;
@@ -166,11 +166,12 @@ static status make_frame(animation_job *f, diagnostic *why)
     status result = cancel_check(why);
     THEN(result, advance(f, frame_times_at(&f->request->times, f->frame), !exists, why));
     if (result == STATUS_OK && exists)
-        f->account->kept++;
+        f->totals->kept++;
     else if (result == STATUS_OK)
         result = render_frame(f, path, why);
     free(path);
-    return result == STATUS_INTERRUPTED ? report_interrupted(f, why) : result; /* in motion, tracing, or encoding */
+    return result == STATUS_INTERRUPTED ? report_interrupted(f, why)
+                                        : result; /* during motion, rendering or encoding */
 }
 
 static status make_frames(animation_job *f, diagnostic *why)
@@ -208,17 +209,17 @@ static status make_animation(animation_job *f, diagnostic *why)
 /* Renders the animation frame by frame. names is NULL for a stream. STATUS_INTERRUPTED after a signal: the existing
  * frames are complete. */
 static status animate_film(const animate_request *request, const animate_names *names, const animate_definition *d,
-                           job *with, scene *s, scene_motion *motion, animate_totals *account, diagnostic *why)
+                           job *frame_job, scene *s, scene_motion *motion, animate_totals *totals, diagnostic *why)
 {
     animation_job f = {.request = request,
                        .names = names,
                        .definition = d->hash,
                        .s = s,
                        .motion = motion,
-                       .with = with,
+                       .frame_job = frame_job,
                        .count = frame_times_count(&request->times),
-                       .account = account};
-    *account = (animate_totals){0};
+                       .totals = totals};
+    *totals = (animate_totals){0};
     status result =
         request->rows ? animate_rows_open(request->rows, d->hash, request->restart || !names, &f.rows, why) : STATUS_OK;
     if (result == STATUS_OK && names)
@@ -301,21 +302,22 @@ static status print_account(const animate_request *request, const scene *s, cons
     return o ? json_print(o, why) : out_of_memory(why);
 }
 
-static status make(const animate_request *request, const animate_names *names, job *with, scene *s, diagnostic *why)
+static status make(const animate_request *request, const animate_names *names, job *frame_job, scene *s,
+                   diagnostic *why)
 {
     scene_motion *motion = NULL;
     animate_definition d = {0};
-    animate_totals account = {0};
+    animate_totals totals = {0};
     status result = scene_motion_create(s, &motion, why);
     THEN(result, animate_define(request, s, &d, why));
     if (result == STATUS_OK && names)
         result = animate_index_check(names, &d, frame_times_count(&request->times), request->restart, why);
     THEN(result, animate_check_room(request, names, s, why));
-    THEN(result, animate_film(request, names, &d, with, s, motion, &account, why));
+    THEN(result, animate_film(request, names, &d, frame_job, s, motion, &totals, why));
     if (result == STATUS_OK && request->json)
-        result = print_account(request, s, &d, job_isa(with), &account, why);
+        result = print_account(request, s, &d, job_isa(frame_job), &totals, why);
     else if (result == STATUS_OK && strcmp(request->output, "-") != 0)
-        print_summary(request, s, &account);
+        print_summary(request, s, &totals);
     animate_definition_release(&d);
     scene_motion_destroy(motion);
     return result;
@@ -326,19 +328,19 @@ status command_animate(int argc, char **argv, diagnostic *why)
     animate_request request;
     animate_names names = {0};
     scene *s = NULL;
-    job *with = NULL;
+    job *frame_job = NULL;
     status result = animate_request_parse(argc, argv, &request, why);
     const bool in_files = result == STATUS_OK && !animate_is_stream(&request);
     if (in_files)
         result = animate_names_parse(request.output, &names, why);
-    THEN(result, scene_input_job(false, &with, why));
+    THEN(result, scene_input_job(false, &frame_job, why));
     THEN(result, read_scene(&request, in_files ? &names : NULL, &s, why));
     if (result == STATUS_OK && !request.json)
-        result = scene_input_lint(s, job_isa(with), why);
+        result = scene_input_lint(s, job_isa(frame_job), why);
     if (result == STATUS_OK && !request.json)
-        inert_note_changes(s, &request.input);
-    THEN(result, make(&request, in_files ? &names : NULL, with, s, why));
-    job_destroy(with);
+        scene_input_note_inert(s, &request.input);
+    THEN(result, make(&request, in_files ? &names : NULL, frame_job, s, why));
+    job_destroy(frame_job);
     scene_destroy(s);
     animate_names_release(&names);
     animate_request_release(&request);

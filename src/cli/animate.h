@@ -1,9 +1,8 @@
 /* The parts of `cuvette animate`: the request, the names of the frames, the definition of an animation, its progress
- * index, and its table of rows. Frames are written atomically, one file each. An interrupted animation
- * can be resumed: existing frames are not rendered again, but the motion is simulated again from the start, so that the
- * frames are bit-identical with those of an uninterrupted run. A video file always starts again.
- * Ownership: arguments of the command line are borrowed; *_create and *_parse allocate, *_release frees. Errors are
- * located. */
+ * index, and its table of rows. Frames are written atomically, one file each. An interrupted animation can be resumed:
+ * existing frames are not rendered again, but the motion is simulated again from the start, so that the frames are
+ * bit-identical with those of an uninterrupted run. A video file always starts again. Ownership: arguments of the
+ * command line are borrowed; *_create and *_parse allocate, *_release frees. Diagnostics have a position. */
 #pragma once
 
 #include "cli/scene_input.h"
@@ -40,7 +39,7 @@ typedef struct animate_names {
 
 status animate_names_parse(const char *pattern, animate_names *out, diagnostic *why);
 void animate_names_release(animate_names *names);
-/* The path of a frame, allocated; NULL when memory is out. */
+/* The path of a frame, allocated; NULL when out of memory. */
 char *animate_name(const animate_names *names, int64_t frame);
 
 /* The definition of an animation: everything that changes its frames. parameters holds all parameters except those that
@@ -56,21 +55,21 @@ status animate_define(const animate_request *request, const scene *s, animate_de
 void animate_definition_release(animate_definition *d);
 
 /* Checks the progress index, PATTERN.json, which records the definition of the frames next to it and their number.
- * STATUS_BAD_INPUT where the existing frames belong to another or an unknown animation; with restart, only where no
- * index lists them. count: number of frames of this animation. */
+ * STATUS_BAD_INPUT if the existing frames belong to another or an unknown animation; with restart, only if no index
+ * lists them. count: number of frames of this animation. */
 status animate_index_check(const animate_names *names, const animate_definition *d, int64_t count, bool restart,
                            diagnostic *why);
-/* Creates the folder and the index where they are missing, and raises the number of frames in the index for a longer
+/* Creates the folder and the index if they are missing, and raises the number of frames in the index for a longer
  * animation. restart: removes the existing frames first. */
 status animate_index_begin(const animate_names *names, const animate_definition *d, int64_t count, bool restart,
                            diagnostic *why);
 /* The number of frames that a progress index records; -1 for a file that is not a progress index. */
 int64_t animate_index_count(const char *path);
 
-/* STATUS_BAD_INPUT where a file that the scene reads has the name of a frame or of the index. */
+/* STATUS_BAD_INPUT if a file that the scene reads has the name of a frame or of the index. */
 status animate_names_check(const animate_names *names, const scene *s, diagnostic *why);
 
-/* STATUS_FAILURE where the missing frames cannot fit on the file system; a note where they may not. */
+/* STATUS_FAILURE if the missing frames cannot fit on the file system; prints a note if they may not fit. */
 status animate_check_room(const animate_request *request, const animate_names *names, const scene *s, diagnostic *why);
 
 /* The CSV table of an animation: one row per rendered frame, appended and flushed once the image is written.

@@ -24,7 +24,7 @@
 
 enum { DIGITS_MAX = 18 }; /* such a number fits into 64 bits */
 
-static status wrong(const char *pattern, const char *remedy, const char *what, diagnostic *why)
+static status refuse_name(const char *pattern, const char *remedy, const char *what, diagnostic *why)
 {
     return options_wrong("-o", pattern, why, remedy, "%s", what);
 }
@@ -56,14 +56,14 @@ static status split(const char *pattern, const char *name, animate_names *out, d
         int digits;
         size_t length = conversion_length(at, &digits);
         if (length == 0)
-            return wrong(pattern, number_form, "invalid frame number after '%'", why);
+            return refuse_name(pattern, number_form, "invalid frame number after '%'", why);
         if (out->digits >= 0)
-            return wrong(pattern, number_form, "the name has more than one frame number", why);
+            return refuse_name(pattern, number_form, "the name has more than one frame number", why);
         out->digits = digits;
         part = out->after;
         at += length;
     }
-    return out->digits >= 0 ? STATUS_OK : wrong(pattern, number_form, "the name has no frame number", why);
+    return out->digits >= 0 ? STATUS_OK : refuse_name(pattern, number_form, "the name has no frame number", why);
 }
 
 status animate_names_parse(const char *pattern, animate_names *out, diagnostic *why)
@@ -71,10 +71,10 @@ status animate_names_parse(const char *pattern, animate_names *out, diagnostic *
     const char *name = file_name_of(pattern);
     *out = (animate_names){.pattern = pattern, .digits = -1};
     if (image_format_of(name) == IMAGE_UNKNOWN)
-        return wrong(pattern, "use .png, .jpg or .pfm for frames, .y4m or .apng for one video file",
-                     "unknown file name ending", why);
+        return refuse_name(pattern, "use .png, .jpg or .pfm for frames, .y4m or .apng for one video file",
+                           "unknown file name ending", why);
     if (memchr(pattern, '%', (size_t)(name - pattern)))
-        return wrong(pattern, "number the files, not their folder", "the folder's name has a %", why);
+        return refuse_name(pattern, "number the files, not their folder", "the folder's name has a %", why);
     out->folder = outputs_folder_of(pattern);
     out->before = calloc(1, strlen(name) + 1);
     out->after = calloc(1, strlen(name) + 1);
@@ -126,14 +126,13 @@ static status refuse(const animate_names *names, const char *name, const char *r
     return diagnose(why, STATUS_BAD_INPUT, remedy, "%s", what);
 }
 
-/* *out is NULL where the folder does not exist yet. */
+/* *out is NULL if the folder does not exist yet. */
 static status open_folder(const animate_names *names, DIR **out, diagnostic *why)
 {
     *out = opendir(names->folder);
     if (*out || errno == ENOENT)
         return STATUS_OK;
-    return system_error(why, STATUS_FAILURE, names->folder, "cannot be listed", errno,
-                        "give a folder that can be read");
+    return system_error(why, STATUS_FAILURE, names->folder, "cannot be listed", errno, "use a folder that can be read");
 }
 
 static bool is_folder(DIR *in, const char *name)
@@ -187,9 +186,9 @@ static bool overlaps(const animate_names *names, const char *progress_index, int
     return same;
 }
 
-/* STATUS_BAD_INPUT for files that have a frame's name but are not among the first `known` frames (known < 0: there is
- * no index, so no frame is known), and where the index of another animation covers frame names of this animation, of
- * which the larger of known and wanted frames are checked. */
+/* STATUS_BAD_INPUT if a file has a frame's name but is not one of the first `known` frames (known < 0: there is no
+ * index, so no frame is known), or if the index of another animation covers one of the first max(known, wanted) frame
+ * names. */
 static status check_folder(const animate_names *names, int64_t known, int64_t wanted, diagnostic *why)
 {
     DIR *folder;
@@ -233,7 +232,7 @@ typedef struct read_search {
     char found[256]; /* path of the file, for the message */
 } read_search;
 
-static bool is_in_place(const animate_names *names, const char *path)
+static bool is_frame_or_index(const animate_names *names, const char *path)
 {
     const char *name = file_name_of(path);
     if (frame_of_name(names, name) < 0 && !is_own_index(names, name))
@@ -249,7 +248,7 @@ static bool is_frame(void *context, const char *path)
 {
     read_search *x = context;
     char *target = realpath(path, NULL);
-    const bool same = is_in_place(x->names, path) || (target && is_in_place(x->names, target));
+    const bool same = is_frame_or_index(x->names, path) || (target && is_frame_or_index(x->names, target));
     free(target);
     if (same)
         snprintf(x->found, sizeof x->found, "%.200s", path);

@@ -34,7 +34,7 @@ static status parse_seconds(const command_option *o, void *request, const char *
     const bool is_time = number_parse_real(value, seconds) && *seconds >= 0 && *seconds <= SECONDS_MAX;
     char name[32];
     snprintf(name, sizeof name, "--%s", o->name);
-    return is_time ? STATUS_OK : options_wrong(name, value, why, "give seconds from 0 to 86400", "invalid time");
+    return is_time ? STATUS_OK : options_wrong(name, value, why, "use 0 to 86400 seconds", "invalid time");
 }
 
 static int64_t common_divisor(int64_t a, int64_t b)
@@ -61,7 +61,7 @@ static status parse_rate(const command_option *o, void *context, const char *val
     }
     if (!right || num < 1 || den < 1 || num > RATE_PART_MAX || den > RATE_PART_MAX)
         return options_wrong("--fps", value, why,
-                             "give an integer or a fraction of integers up to 1000000, such as 25 or 30000/1001",
+                             "use an integer or a fraction of integers up to 1000000, such as 25 or 30000/1001",
                              "invalid frame rate");
     const int64_t divisor = common_divisor(num, den);
     request->times.fps_num = num / divisor;
@@ -79,7 +79,7 @@ static const command_option options[] = {
      OPTION_FILLS(option_text, animate_request, script)},
     {"duration", 0, "S", "length in seconds (default: that of the script plus 2, or 4 without a script)",
      OPTION_FILLS(parse_seconds, animate_request, times.duration_s)},
-    {"fps", 0, "N", "frames per second, such as 25 (the default) or 30000/1001", .take = parse_rate},
+    {"fps", 0, "N", "frames per second, such as 25 (the default) or 30000/1001", .store = parse_rate},
     {"start", 0, "S", "time of the first frame, in seconds since the start of the motion (default: 0)",
      OPTION_FILLS(parse_seconds, animate_request, times.start_s)},
     OPTION_SET("'toy.stiffness=80'"),
@@ -100,7 +100,7 @@ static status check_output(const animate_request *request, diagnostic *why)
                              "no output is given");
     const bool to_stdout = strcmp(request->output, "-") == 0;
     if (to_stdout && request->json)
-        return options_wrong("--json", "", why, "give a file with -o",
+        return options_wrong("--json", "", why, "name a file with -o",
                              "standard output cannot carry both the video and the account");
     if (to_stdout && isatty(STDOUT_FILENO))
         return options_wrong("-o", "-", why, "redirect it into a file or a pipe", "a terminal cannot show a video");
@@ -127,7 +127,7 @@ static status find_script(animate_request *request, diagnostic *why)
     struct stat about;
     if (stat(request->script, &about) == 0 && !S_ISREG(about.st_mode))
         return options_wrong("--script", request->script, why,
-                             "give a regular file, since a script is read more than once", "not a regular file");
+                             "use a regular file, since a script is read more than once", "not a regular file");
     request->script_path = realpath(request->script, NULL);
     if (request->script_path)
         return STATUS_OK;
@@ -181,7 +181,7 @@ status animate_check_length(const animate_request *request, diagnostic *why)
     const double frames = request->times.duration_s * (double)request->times.fps_num / (double)request->times.fps_den;
     if (frames <= FRAMES_MAX && request->times.start_s + request->times.duration_s <= SECONDS_MAX)
         return STATUS_OK;
-    return options_wrong("animate", NULL, why, "give a --duration of at most 10000000 frames that ends within 86400 s",
+    return options_wrong("animate", NULL, why, "use a --duration of at most 10000000 frames that ends within 86400 s",
                          "the animation is too long");
 }
 
@@ -197,8 +197,8 @@ typedef struct visit_state {
     json_t *into;
 } visit_state;
 
-/* Skips what no film depends on, but not how the film is shown; beams that light nothing; time_s of slimes, which the
- * frame sets; and file names: only contents count, so that a folder may be moved. */
+/* Skips parameters that change no film (but not the camera's, which also determine how it is shown), beams without
+ * light, time_s of slimes, which the frame sets, and file names: only contents count, so that a folder may be moved. */
 static status add_param(void *context, const char *path, const param *row, const char *value)
 {
     const visit_state *state = context;
@@ -261,7 +261,7 @@ void animate_definition_release(animate_definition *d)
 
 /* --- room on the file system --- */
 
-/* Frames that do not exist yet; those that --restart removes make room for the new ones. */
+/* Counts the frames that do not exist yet; frames that --restart removes make room for new ones. */
 static double count_missing(const animate_names *names, int64_t count)
 {
     double missing = 0;

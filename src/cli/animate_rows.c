@@ -27,7 +27,7 @@ static void put(csv_line *line, const animate_row *r, const char *name)
 }
 
 /* Name and writer of each column, in one list so that header and rows agree. r: the row; m: the motion's report; b: the
- * first slime's account. */
+ * first slime's quantities. */
 #define COLUMNS(X)                                         \
     X("definition", csv_hash(line, r->definition))         \
     X("frame", csv_count(line, r->frame))                  \
@@ -80,7 +80,7 @@ static void put_row(csv_line *line, const animate_row *r)
 
 static status refuse(const char *path, const char *what, diagnostic *why)
 {
-    return diagnose_at(why, path, STATUS_BAD_INPUT, "give another file with --rows, or move this one away", "%s", what);
+    return diagnose_at(why, path, STATUS_BAD_INPUT, "use another file with --rows, or move this one away", "%s", what);
 }
 
 static bool has_header(const csv *there, const char *header)
@@ -108,10 +108,10 @@ static status read_rows(animate_rows *rows, const char *path, const csv *there, 
     rows->existing = calloc(there->row_count + 1, sizeof *rows->existing);
     if (!rows->existing)
         return out_of_memory(why);
-    const int frame = csv_column(there, "frame"), of = csv_column(there, "definition"),
+    const int frame = csv_column(there, "frame"), of_animation = csv_column(there, "definition"),
               img = csv_column(there, "film_hash");
     for (size_t i = 0; i < there->row_count; i++) {
-        if (strcmp(csv_field(there, i, of), hash) != 0)
+        if (strcmp(csv_field(there, i, of_animation), hash) != 0)
             return refuse(path, "has rows of another animation", why);
         if (!number_parse_int(csv_field(there, i, frame), &rows->existing[i].frame))
             return refuse(path, "has a row without a frame number", why);
@@ -122,11 +122,11 @@ static status read_rows(animate_rows *rows, const char *path, const csv *there, 
     return STATUS_OK;
 }
 
-/* Replaces the remedy of table_open, which is that of a study. */
+/* table_open with a remedy for animations; its own is for studies. */
 static status open_table(const char *path, const char *header, table **out, diagnostic *why)
 {
     const status result = table_open(path, header, out, why);
-    return result == STATUS_BAD_INPUT ? diagnose(why, result, "wait for it to end, or give another file with --rows",
+    return result == STATUS_BAD_INPUT ? diagnose(why, result, "wait for it to end, or use another file with --rows",
                                                  "another process is writing this table")
                                       : result;
 }

@@ -43,16 +43,16 @@ static status unknown_command(const command *table, size_t count, const char *pr
 static status run_command(const command *chosen, int argc, char **argv, diagnostic *why)
 {
     char *program = text_format("%s %s", argv[0], chosen->name);
-    char **own = calloc((size_t)argc + 1, sizeof *own);
+    char **arguments = calloc((size_t)argc + 1, sizeof *arguments);
     status result;
-    if (!program || !own) {
+    if (!program || !arguments) {
         result = out_of_memory(why);
     } else {
-        own[0] = program;
-        memcpy(own + 1, argv + 2, (size_t)(argc - 2) * sizeof *own);
-        result = chosen->run(argc - 1, own, why);
+        arguments[0] = program;
+        memcpy(arguments + 1, argv + 2, (size_t)(argc - 2) * sizeof *arguments);
+        result = chosen->run(argc - 1, arguments, why);
     }
-    free(own);
+    free(arguments);
     free(program);
     return result;
 }

@@ -27,12 +27,13 @@ static const command_form form = {
     .synopsis = "A B",
     .arguments_at = offsetof(compare_request, paths),
     .argument_limit = 2,
-    .excess_remedy = "compare takes two images",
+    .excess_remedy = "use exactly two images",
     .excess = "unexpected argument '%.128s'",
-    .about = "Compare the images A and B as a display shows them: mean squared error, peak signal-to-noise ratio, "
-             "structural similarity, FLIP, the largest difference and the share of differing pixels. Both images must "
-             "have the same size; PNG, JPEG, PFM and 24-bit BMP can be mixed.\vFor example:\n"
-             "  cuvette compare depth4.png depth8.png --diff where.png",
+    .about =
+        "Compare the images A and B as a display shows them: mean squared error, peak signal-to-noise ratio, "
+        "structural similarity, FLIP, the largest difference and the fraction of differing pixels. Both images must "
+        "have the same size; PNG, JPEG, PFM and 24-bit BMP can be mixed.\vFor example:\n"
+        "  cuvette compare depth4.png depth8.png --diff where.png",
 };
 
 typedef struct pair {
@@ -44,7 +45,7 @@ typedef struct pair {
 static status check_request(const compare_request *request, diagnostic *why)
 {
     if (!request->paths[1])
-        return options_wrong("compare", NULL, why, "give two PNG, JPEG, PFM or 24-bit BMP files",
+        return options_wrong("compare", NULL, why, "name two PNG, JPEG, PFM or 24-bit BMP files",
                              request->paths[0] ? "only one image is given" : "no images are given");
     return request->map ? outputs_check_image("--diff", request->map, request->paths, 2, why) : STATUS_OK;
 }

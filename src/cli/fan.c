@@ -1,4 +1,4 @@
-/* `cuvette fan`: follows a fan of rays and writes its caustic and focus as a drawing or CSV. */
+/* `cuvette fan`: traces a fan of rays and writes its caustic and focus as a drawing or CSV. */
 #include "cli/cli.h"
 #include "cli/options.h"
 #include "cli/outputs.h"
@@ -15,7 +15,7 @@ typedef struct fan_request {
     size_t format; /* FAN_SVG or FAN_CSV */
     fan_rule rule;
     int64_t rays, depth; /* depth: -1: render.depth */
-    bool has_width, whole_trees;
+    bool has_width, full_trees;
 } fan_request;
 
 enum { FAN_SVG, FAN_CSV };
@@ -45,7 +45,7 @@ static status parse_size(const command_option *o, void *context, const char *val
     if (request->has_width)
         return options_wrong(name, value, why, "use only one of them", "--width and --spread exclude each other");
     if (!(size >= 0.0 && size <= most))
-        return options_wrong(name, value, why, spreads ? "give 0 to 179 degrees" : "give 0 to 1e6", "out of range");
+        return options_wrong(name, value, why, spreads ? "use 0 to 179 degrees" : "use 0 to 1e6", "out of range");
     request->has_width = true;
     request->rule.spreads = spreads;
     return STATUS_OK;
@@ -56,8 +56,8 @@ static const command_option options[] = {
     {"to", 0, "X,Y,Z", "point on the central ray", OPTION_FILLS(parse_vector, fan_request, rule.to)},
     {"rays", 0, "N", "number of rays (default: 21)", OPTION_FILLS(option_integer, fan_request, rays), .lowest = 1,
      .highest = FAN_RAYS_MAX},
-    {"width", 0, "W", "width of a parallel beam (default: 1, without --spread)", .take = parse_size},
-    {"spread", 0, "DEG", "full angle of a fan from one point, in degrees", .take = parse_size},
+    {"width", 0, "W", "width of a parallel beam (default: 1, without --spread)", .store = parse_size},
+    {"spread", 0, "DEG", "full angle of a fan from one point, in degrees", .store = parse_size},
     {"plane", 0, "NX,NY,NZ", "normal of the plane of the rays", OPTION_FILLS(parse_vector, fan_request, rule.normal)},
     {"depth", 0, "N", "number of surfaces at which a ray is followed (default: render.depth)",
      OPTION_FILLS(option_integer, fan_request, depth), .lowest = 0, .highest = BEAM_DEPTH_MAX},
@@ -65,7 +65,7 @@ static const command_option options[] = {
     OPTION_SET("'rod.visible=off'"),
     OPTION_MEMORY,
     {"tree", 0, NULL, "draw the whole ray tree of each ray, not only its refracted path",
-     OPTION_FILLS(option_flag, fan_request, whole_trees)},
+     OPTION_FILLS(option_flag, fan_request, full_trees)},
     OPTION_OUTPUT("write a drawing (.svg) or one row per ray (.csv)"),
     {0},
 };
@@ -75,11 +75,11 @@ static status check_request(void *context, diagnostic *why)
     static const char *const endings[] = {".svg", ".csv"};
     fan_request *request = context;
     request->rule.rays = (int)request->rays;
-    if (request->whole_trees && request->depth > DEPTH_TREE_MAX)
-        return options_wrong("--depth", NULL, why, "give 0 to 64, or omit --tree", "trees of rays end at depth %d",
+    if (request->full_trees && request->depth > DEPTH_TREE_MAX)
+        return options_wrong("--depth", NULL, why, "use 0 to 64, or omit --tree", "trees of rays end at depth %d",
                              (int)DEPTH_TREE_MAX);
     if (isnan(request->rule.from.x) || isnan(request->rule.to.x))
-        return options_wrong("fan", NULL, why, "give --from X,Y,Z and --to X,Y,Z", "the axis of the fan is not given");
+        return options_wrong("fan", NULL, why, "add --from X,Y,Z and --to X,Y,Z", "the axis of the fan is not given");
     if (!request->input.output)
         return options_wrong("fan", NULL, why, "add -o FILE.svg for a drawing or -o FILE.csv for one row per ray",
                              "no output is given");
@@ -106,14 +106,14 @@ static void print_summary(const fan_request *request, const fan *f)
     printf(" -> %s\n", request->input.output);
 }
 
-static status follow(const fan_request *request, const scene *s, probe *p, diagnostic *why)
+static status trace_fan(const fan_request *request, const scene *s, probe *p, diagnostic *why)
 {
     fan f = {0};
     status result = fan_follow(p, &request->rule, &f, why);
     if (result == STATUS_BAD_INPUT)
         diagnostic_locate(why, "fan", 0, 0);
     if (result == STATUS_OK) {
-        const fanned t = {s, p, &request->rule, &f, request->whole_trees, request->format == FAN_CSV};
+        const fanned t = {s, p, &request->rule, &f, request->full_trees, request->format == FAN_CSV};
         result = outputs_write_text(request->input.output, write_fan, &t, why);
     }
     if (result == STATUS_OK)
@@ -131,7 +131,7 @@ static status run(void *context, scene *s, isa level, diagnostic *why)
         scene_input_note_tree(&request->input, s);
         if (request->depth >= 0)
             probe_limit_depth(p, (int)request->depth);
-        result = follow(request, s, p, why);
+        result = trace_fan(request, s, p, why);
     }
     probe_destroy(p);
     return result;

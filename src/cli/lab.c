@@ -28,7 +28,7 @@
 
 static const char ending[] = ".html";
 
-/* In its own process without output, and in its own session, so that the Ctrl-C that ends the laboratory does not reach
+/* Starts the browser without output, in a new session, so that the Ctrl-C that ends the laboratory does not reach
  * it. */
 static void start(const char *file)
 {
@@ -48,8 +48,8 @@ static void start(const char *file)
         waitpid(child, NULL, 0);
 }
 
-/* In the first folder that can be written: under sudo, $XDG_RUNTIME_DIR may be somebody else's. mkstemps creates the
- * file with mode 0600. */
+/* Creates the file in the first writable folder: under sudo, $XDG_RUNTIME_DIR may be somebody else's. mkstemps creates
+ * the file with mode 0600. */
 static int create(char **file)
 {
     const char *const folders[] = {getenv("XDG_RUNTIME_DIR"), getenv("TMPDIR"), "/tmp"};
@@ -81,8 +81,8 @@ static bool write_page(int fd, const char *address)
     return (fclose(out) == 0) && written;
 }
 
-/* Writes the file, to $XDG_RUNTIME_DIR or the folder for temporary files, and starts xdg-open with it in a session of
- * its own. *file is its path, allocated; NULL after an error: STATUS_FAILURE where the file cannot be written. */
+/* Writes the file, to $XDG_RUNTIME_DIR or the folder for temporary files, and starts xdg-open with it. *file is its
+ * path, allocated; NULL after an error. STATUS_FAILURE if the file cannot be written. */
 static status browser_open(const char *address, char **file, diagnostic *why)
 {
     const int fd = create(file);
@@ -101,7 +101,7 @@ static status browser_open(const char *address, char **file, diagnostic *why)
 }
 
 /* Removes the file and frees its path; NULL is allowed. */
-static void browser_forget(char *file)
+static void browser_remove_file(char *file)
 {
     if (file)
         unlink(file);
@@ -163,7 +163,7 @@ static char *choose_folder(const lab_request *request)
     return strdup(there);
 }
 
-/* The XDG Base Directory Specification: state that should survive; a relative path is ignored. Allocated; "" if no
+/* The folder for state by the XDG Base Directory Specification, which ignores relative paths. Allocated; "" if no
  * folder is known. */
 static char *state_folder(void)
 {
@@ -179,7 +179,7 @@ static void wait_for_stop(void)
         usleep(50000);
 }
 
-/* The printed address remains where the browser cannot be started. */
+/* If the browser cannot be started, the printed address remains. */
 static void open_browser(const char *address, char **file)
 {
     diagnostic reason = {.line = 0};
@@ -215,7 +215,7 @@ static status run_lab(const lab_request *request, const char *folder, const char
         open_browser(lab_address(l), &file);
     if (code == STATUS_OK)
         wait_for_stop();
-    browser_forget(file);
+    browser_remove_file(file);
     if (code == STATUS_OK && !terminal_stopped_by_user())
         lab_leave_unsaved(l);
     lab_stop(l);
@@ -229,7 +229,8 @@ status command_lab(int argc, char **argv, diagnostic *why)
     status code = command_form_read(&form, argc, argv, &request, why);
     char *chosen = NULL, *results = NULL;
     if (code == STATUS_OK && !request.folder && !(chosen = choose_folder(&request)))
-        code = system_error(why, STATUS_FAILURE, NULL, "cannot find the working folder", errno, "give --folder");
+        code =
+            system_error(why, STATUS_FAILURE, NULL, "cannot find the working folder", errno, "name it with --folder");
     const char *folder = request.folder ? request.folder : chosen;
     if (code == STATUS_OK && !request.results) {
         results = strcmp(folder, ".") == 0 ? strdup("results") : text_format("%s/results", folder);

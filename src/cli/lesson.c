@@ -19,30 +19,30 @@ typedef struct lesson_request {
     const char *files[FILES_MAX];
 } lesson_request;
 
-/* Calls act for the given files, or for those that belong to the program. */
+/* Calls `act` for the lessons on the command line; without any, for the lessons that come with the program. */
 static status each_lesson(const lesson_request *request, status (*act)(const lesson *l, isa level, diagnostic *why),
                           diagnostic *why)
 {
-    lesson_list own = {.path = NULL};
+    lesson_list installed = {.path = NULL};
     isa level;
     TRY(scene_input_isa(&level, why));
     if (!request->files[0]) {
         char *folder = lesson_folder();
-        const status code = folder ? lesson_list_find(folder, &own, why)
-                                   : options_wrong("lesson", NULL, why, "give the files of lessons",
-                                                   "the program's own lessons are not installed");
+        const status code = folder ? lesson_list_find(folder, &installed, why)
+                                   : options_wrong("lesson", NULL, why, "name the files of lessons",
+                                                   "the lessons that come with the program are not installed");
         free(folder);
         TRY(code);
     }
-    const char *const *files = own.path ? (const char *const *)own.path : request->files;
+    const char *const *files = installed.path ? (const char *const *)installed.path : request->files;
     status code = STATUS_OK;
-    for (size_t i = 0; code == STATUS_OK && (own.path ? i < own.count : i < FILES_MAX && files[i]); i++) {
+    for (size_t i = 0; code == STATUS_OK && (installed.path ? i < installed.count : i < FILES_MAX && files[i]); i++) {
         lesson *l = NULL;
         code = lesson_read(files[i], &l, why);
         THEN(code, act(l, level, why));
         lesson_destroy(l);
     }
-    lesson_list_release(&own);
+    lesson_list_release(&installed);
     return code;
 }
 
@@ -90,12 +90,13 @@ static status print_lesson(const lesson *l, isa level, diagnostic *why)
 static const command_form list_form = {
     .synopsis = "[FILE...]",
     FILES,
-    .about = "List lessons: name, title, file. Without FILE, those that belong to the program."};
+    .about = "List lessons: name, title, file. Without FILE, list those that come with the program."};
 static const command_form check_form = {
     .synopsis = "[FILE...]",
     FILES,
-    .about = "Read lessons, trace the curve of each and compare it with theory. Without FILE, those that belong to the "
-             "program. The exit status is 2 at the first invalid lesson, or the first curve beyond its tolerance."};
+    .about =
+        "Read lessons, trace the curve of each and compare it with theory. Without FILE, check those that come with "
+        "the program. The exit status is 2 at the first invalid lesson, or the first curve beyond its tolerance."};
 static const command_form show_form = {
     .synopsis = "FILE...",
     FILES,

@@ -12,7 +12,7 @@
 #include <unistd.h>
 
 static const command_option options[] = {
-    {"json", 0, NULL, "print JSON", .take = option_flag},
+    {"json", 0, NULL, "print JSON", .store = option_flag},
     {0},
 };
 

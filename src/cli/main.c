@@ -68,12 +68,12 @@ static void print_version(FILE *stream, struct argp_state *state)
 
 /* Notes that under mpirun every process of `cuvette` does all the work: most likely cuvette-mpi was meant. The
  * variables are OpenMPI's. */
-static void note_whole_work(int argc, char **argv)
+static void note_repeated_work(int argc, char **argv)
 {
     const char *rank = getenv("OMPI_COMM_WORLD_RANK"), *ranks = getenv("OMPI_COMM_WORLD_SIZE");
     const bool is_frame = argc > 1 && (strcmp(argv[1], "render") == 0 || strcmp(argv[1], "animate") == 0);
     if (is_frame && rank && ranks && strcmp(rank, "0") == 0 && strcmp(ranks, "1") != 0)
-        terminal_note("each process of this MPI job does the whole work; cuvette-mpi shares it among them");
+        terminal_note("each process of this MPI job does all the work; cuvette-mpi divides it among them");
 }
 
 typedef struct command_line {
@@ -107,10 +107,10 @@ int main(int argc, char **argv)
     argp_err_exit_status = STATUS_BAD_INPUT;
     argp_program_version_hook = print_version;
     char program[] = "cuvette";
-    char *alone[] = {program, NULL};
+    char *program_only[] = {program, NULL};
     if (argc < 1)
-        argc = 1, argv = alone;
+        argc = 1, argv = program_only;
     argv[0] = program;
-    note_whole_work(argc, argv);
+    note_repeated_work(argc, argv);
     return os_call_with_stack(run, &(command_line){argc, argv});
 }

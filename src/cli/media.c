@@ -27,7 +27,7 @@ static status parse_wavelength(const command_option *o, void *context, const cha
 }
 
 static const command_option options[] = {
-    {"at", 0, "NM", "also print the index at this wavelength", .take = parse_wavelength},
+    {"at", 0, "NM", "also print the index at this wavelength", .store = parse_wavelength},
     {"json", 0, NULL, "print JSON", OPTION_FILLS(option_flag, media_request, json)},
     {0},
 };
@@ -49,7 +49,7 @@ static const command_form form = {
              "its width; output to a pipe or file is not wrapped.",
 };
 
-/* One of both catalogues; the other is NULL. */
+/* An entry of one of both catalogues; the other pointer is NULL. */
 typedef struct media_choice {
     const medium *clear;
     const metal *opaque;
@@ -102,15 +102,15 @@ static void print_all(double at_nm, int columns)
     metal_rows_table(stdout, at_nm, columns);
 }
 
-static status print(const media_request *request, media_choice only, diagnostic *why)
+static status print(const media_request *request, media_choice chosen, diagnostic *why)
 {
     if (request->json)
-        return json_print(media_rows_json(only.clear, only.opaque, request->at_nm), why);
+        return json_print(media_rows_json(chosen.clear, chosen.opaque, request->at_nm), why);
     const int columns = terminal_columns(STDOUT_FILENO);
-    if (only.clear)
-        media_rows_details(stdout, only.clear, request->at_nm, columns);
-    else if (only.opaque)
-        metal_rows_details(stdout, only.opaque, request->at_nm, columns);
+    if (chosen.clear)
+        media_rows_details(stdout, chosen.clear, request->at_nm, columns);
+    else if (chosen.opaque)
+        metal_rows_details(stdout, chosen.opaque, request->at_nm, columns);
     else
         print_all(request->at_nm, columns);
     return STATUS_OK;
@@ -119,13 +119,13 @@ static status print(const media_request *request, media_choice only, diagnostic 
 status command_media(int argc, char **argv, diagnostic *why)
 {
     media_request request = {0};
-    media_choice only = {NULL, NULL};
+    media_choice chosen = {NULL, NULL};
     TRY(command_form_read(&form, argc, argv, &request, why));
     if (request.name)
-        TRY(find(&request, &only, why));
-    if (only.clear)
-        TRY(check_range(only.clear, request.at_nm, why));
-    if (only.opaque)
-        TRY(check_metal_range(only.opaque, request.at_nm, why));
-    return print(&request, only, why);
+        TRY(find(&request, &chosen, why));
+    if (chosen.clear)
+        TRY(check_range(chosen.clear, request.at_nm, why));
+    if (chosen.opaque)
+        TRY(check_metal_range(chosen.opaque, request.at_nm, why));
+    return print(&request, chosen, why);
 }

@@ -15,7 +15,7 @@
 #include <string.h>
 
 typedef struct mesh_request {
-    scene *around; /* the scene with the one mesh */
+    scene *scene; /* the scene with the one mesh */
     const char *file;
     bool generate;
     int format;         /* mesh_format; MESH_FORMAT_COUNT: describe it */
@@ -40,30 +40,30 @@ static status parse_parameter(const command_option *o, void *context, const char
     snprintf(path, sizeof path, "body.%s", o->parameter ? o->parameter : o->name);
     snprintf(name, sizeof name, "--%s", o->name);
     request->generate |= strcmp(o->name, "generate") == 0;
-    return locate_failure(why, name, scene_set(request->around, path, value, why));
+    return locate_failure(why, name, scene_set(request->scene, path, value, why));
 }
 
 static const command_option options[] = {
     {"generate", 0, "KIND", "generate sparse, dense, sphere, icosphere, torus, lathe, terrain or box",
-     .take = parse_parameter},
+     .store = parse_parameter},
     {"count", 0, "N", "number of triangles of sparse and dense, approximate for sphere; default 10000",
-     .take = parse_parameter},
-    {"level", 0, "N", "icosphere: number of subdivisions, 0 to 11; default 4", .take = parse_parameter},
-    {"major", 0, "R", "torus: radius of the centre line of the tube; default 1", .take = parse_parameter},
-    {"minor", 0, "R", "torus: radius of the tube; default 0.4", .take = parse_parameter},
+     .store = parse_parameter},
+    {"level", 0, "N", "icosphere: number of subdivisions, 0 to 11; default 4", .store = parse_parameter},
+    {"major", 0, "R", "torus: radius of the centre line of the tube; default 1", .store = parse_parameter},
+    {"minor", 0, "R", "torus: radius of the tube; default 0.4", .store = parse_parameter},
     {"around", 0, "N", "torus, lathe: segments around the axis; terrain: cells along x; default 64",
-     .take = parse_parameter},
-    {"tube", 0, "N", "torus: segments around the tube; terrain: cells along z; default 32", .take = parse_parameter},
+     .store = parse_parameter},
+    {"tube", 0, "N", "torus: segments around the tube; terrain: cells along z; default 32", .store = parse_parameter},
     {"profile", 0, "R,Y,R,Y,...", "lathe: radius and height of each point of the profile; default a cylinder",
-     .take = parse_parameter},
+     .store = parse_parameter},
     {"crease", 0, "DEG", "lathe: angle of the profile above which an edge stays sharp; default 30",
-     .take = parse_parameter, .parameter = "crease_deg"},
+     .store = parse_parameter, .parameter = "crease_deg"},
     {"size", 0, "X,Y,Z", "box: edge lengths; terrain: size, with the height of the hills as Y; default 1,1,1",
-     .take = parse_parameter},
-    {"depth", 0, "D", "terrain: depth of its flat bottom, 0 leaves the mesh open; default 0", .take = parse_parameter},
-    {"seed", 0, "N", "terrain: seed of the random hills; default 1", .take = parse_parameter},
+     .store = parse_parameter},
+    {"depth", 0, "D", "terrain: depth of its flat bottom, 0 leaves the mesh open; default 0", .store = parse_parameter},
+    {"seed", 0, "N", "terrain: seed of the random hills; default 1", .store = parse_parameter},
     {"format", 'f', "FORMAT", "write the triangles as obj, bin or ply (default: by the ending of -o FILE)",
-     .take = parse_format},
+     .store = parse_format},
     {"output", 'o', "FILE", "write to FILE instead of standard output",
      OPTION_FILLS(option_text, mesh_request, output)},
     OPTION_MEMORY,
@@ -116,11 +116,11 @@ static status choose_format(mesh_request *request, diagnostic *why)
 }
 
 /* Loads or generates the mesh, which the scene owns. */
-static status obtain(const mesh_request *request, diagnostic *why)
+static status load_mesh(const mesh_request *request, diagnostic *why)
 {
-    status result = request->file ? scene_set(request->around, "body.file", request->file, why) : STATUS_OK;
-    THEN(result, scene_check(request->around, why));
-    THEN(result, scene_input_load(request->around, why));
+    status result = request->file ? scene_set(request->scene, "body.file", request->file, why) : STATUS_OK;
+    THEN(result, scene_check(request->scene, why));
+    THEN(result, scene_input_load(request->scene, why));
     if (result == STATUS_BAD_INPUT && request->generate)
         diagnostic_locate(why, "--generate", 0, 0);
     return result;
@@ -129,7 +129,7 @@ static status obtain(const mesh_request *request, diagnostic *why)
 static status write_to(const void *content, FILE *stream, diagnostic *why)
 {
     const mesh_request *request = content;
-    const mesh *m = request->around->meshes[0].data;
+    const mesh *m = request->scene->meshes[0].data;
     if (request->format != MESH_FORMAT_COUNT)
         mesh_write(m, (mesh_format)request->format, stream);
     else if (request->json)
@@ -141,13 +141,13 @@ static status write_to(const void *content, FILE *stream, diagnostic *why)
 
 status command_mesh(int argc, char **argv, diagnostic *why)
 {
-    mesh_request request = {.around = scene_create(), .format = MESH_FORMAT_COUNT};
-    status result = request.around ? scene_add(request.around, PARAM_MESH, "body", NULL, why) : out_of_memory(why);
+    mesh_request request = {.scene = scene_create(), .format = MESH_FORMAT_COUNT};
+    status result = request.scene ? scene_add(request.scene, PARAM_MESH, "body", NULL, why) : out_of_memory(why);
     THEN(result, command_form_read(&form, argc, argv, &request, why));
     THEN(result, check_request(&request, why));
     THEN(result, choose_format(&request, why));
-    THEN(result, obtain(&request, why));
+    THEN(result, load_mesh(&request, why));
     THEN(result, outputs_write_text(request.output, write_to, &request, why));
-    scene_destroy(request.around);
+    scene_destroy(request.scene);
     return result;
 }

@@ -57,7 +57,7 @@ typedef struct trial_cells {
     const char *name, *measured, *theory, *error, *unit, *what;
 } trial_cells;
 
-/* Width of the columns before `what`. A terminal without room for more gets the unit in the last column. */
+/* Width of the columns before `what`. On a narrower terminal the unit is in the last column. */
 enum { TABLE_WIDTH = 88, CELLS_MAX = 256 };
 
 static void print_cells(const trial_cells *c, int columns)

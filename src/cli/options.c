@@ -17,7 +17,7 @@ enum { OPTIONS_MAX = 32, KEY_USAGE = 0x10000, KEY_HELP, KEY_OF_ARGP };
 typedef struct getopt_table {
     struct option options[OPTIONS_MAX + 6];
     const char *names[OPTIONS_MAX + 6];
-    size_t count, documented; /* those first */
+    size_t count, documented; /* documented: the first ones, which the help lists */
     char short_options[2 * OPTIONS_MAX + 8];
 } getopt_table;
 
@@ -174,9 +174,9 @@ static error_t handle_key(int key, char *value, struct argp_state *state)
         return parse_word(reading, value, state);
     for (const command_option *o = reading->form->options; o && o->name; o++)
         if (key == o->letter || key == KEY_FIRST + (int)(o - reading->form->options)) {
-            const status taken = o->take(o, reading->request, value, reading->why);
-            reading->wrong = taken == STATUS_OK ? reading->wrong : taken;
-            return taken == STATUS_OK ? 0 : EINVAL;
+            const status stored = o->store(o, reading->request, value, reading->why);
+            reading->wrong = stored == STATUS_OK ? reading->wrong : stored;
+            return stored == STATUS_OK ? 0 : EINVAL;
         }
     return ARGP_ERR_UNKNOWN;
 }

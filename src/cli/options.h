@@ -16,15 +16,15 @@ typedef struct command_option {
     const char *form; /* placeholder of the value in the help ("FILE"); NULL for a flag */
     const char *purpose;
     /* Stores the value in the request, at the byte offset `at`. value is NULL for a flag. */
-    status (*take)(const struct command_option *o, void *request, const char *value, diagnostic *why);
+    status (*store)(const struct command_option *o, void *request, const char *value, diagnostic *why);
     size_t at;
     int64_t lowest, highest; /* range of an option_integer */
     const char *parameter;   /* scene parameter that the option sets, or NULL */
-    bool optional;           /* the value may be missing (--name or --name=VALUE); take gets NULL then */
+    bool optional;           /* the value may be missing (--name or --name=VALUE); store receives NULL then */
 } command_option;
 
-/* Initialisers of take and at for one field of the request, and the usual functions with the field's type. */
-#define OPTION_FILLS(function, type, field) .take = function, .at = offsetof(type, field)
+/* Initialisers of store and at for one field of the request, and the usual functions with the field's type. */
+#define OPTION_FILLS(function, type, field) .store = function, .at = offsetof(type, field)
 status option_text(const command_option *o, void *request, const char *value, diagnostic *why);    /* const char * */
 status option_flag(const command_option *o, void *request, const char *value, diagnostic *why);    /* bool */
 status option_integer(const command_option *o, void *request, const char *value, diagnostic *why); /* int64_t */
@@ -41,7 +41,7 @@ typedef struct command_form {
     const char *synopsis, *about;
     size_t arguments_at, argument_limit; /* offset of the array in the request, and its length */
     const char *excess, *excess_remedy;  /* error for a surplus argument, with one %s; NULL: a general one */
-    void (*store_argument)(void *request, const char *argument); /* takes each argument, without a limit; or NULL */
+    void (*store_argument)(void *request, const char *argument); /* stores each of any number of arguments; or NULL */
     bool ends_at_argument;                                       /* parsing stops after the first argument */
 } command_form;
 
@@ -69,6 +69,6 @@ status options_reals(const char *option, const char *value, const char *form, si
 status options_choice(const char *where, const char *what, const char *value, const char *const *words, size_t count,
                       int *which, diagnostic *why);
 
-/* Reports "unknown WHAT 'wrong'". The remedy is the nearest of the words, or all of them where none is near. */
+/* Reports "unknown WHAT 'wrong'". The remedy is the nearest of the words, or all of them if none is near. */
 status options_unknown_word(const char *what, const char *wrong, const char *const *words, size_t count,
                             diagnostic *why);

@@ -16,7 +16,7 @@ typedef struct named_file {
     const char *option, *path;
 } named_file;
 
-static status wrong(const named_file *file, diagnostic *why, const char *remedy, const char *what)
+static status refuse(const named_file *file, diagnostic *why, const char *remedy, const char *what)
 {
     return options_wrong(file->option, file->path, why, remedy, "%s", what);
 }
@@ -59,7 +59,7 @@ static bool same_file(const char *a, const char *b)
     return same;
 }
 
-/* A device, a pipe or a link: the folder of its name need not be writable. */
+/* Whether the path is a device, a pipe or a link: then its folder need not be writable. */
 static bool is_special(const char *path)
 {
     struct stat about;
@@ -70,7 +70,7 @@ static status check_folder(const named_file *file, diagnostic *why)
 {
     struct stat about;
     if (stat(file->path, &about) == 0 && S_ISDIR(about.st_mode))
-        return wrong(file, why, "give a file inside that folder", "is a folder");
+        return refuse(file, why, "give a file inside that folder", "is a folder");
     char *folder = outputs_folder_of(file->path);
     if (!folder)
         return out_of_memory(why);
@@ -78,9 +78,9 @@ static status check_folder(const named_file *file, diagnostic *why)
     const bool open = there && (is_special(file->path) || euidaccess(folder, W_OK) == 0);
     free(folder);
     if (!there)
-        return wrong(file, why, "create it first, or give another", "the folder does not exist");
+        return refuse(file, why, "create it first, or give another", "the folder does not exist");
     return open ? STATUS_OK
-                : wrong(file, why, "give a file in a folder of your own", "you may not write in the folder");
+                : refuse(file, why, "give a file in a folder of your own", "you may not write in the folder");
 }
 
 typedef struct search {
@@ -134,14 +134,14 @@ static status check_image(const outputs *o, const named_file *file, bool is_map,
 {
     image_format format = image_format_of(file->path);
     if (strcmp(file->path, "-") == 0)
-        return wrong(file, why, "give a file that ends in .png, .jpg or .pfm", "standard output has no image format");
+        return refuse(file, why, "give a file that ends in .png, .jpg or .pfm", "standard output has no image format");
     if (is_map && format != IMAGE_PNG && format != IMAGE_PFM)
-        return wrong(file, why, "use .png for an image with a colour scale, .pfm for the numbers",
-                     "unsupported format of a map");
+        return refuse(file, why, "use .png for an image with a colour scale, .pfm for the numbers",
+                      "unsupported format of a map");
     if (format == IMAGE_UNKNOWN)
-        return wrong(file, why, "use .png, .jpg or .pfm", "unknown image format");
+        return refuse(file, why, "use .png, .jpg or .pfm", "unknown image format");
     if (!is_map && o->bits == 16 && format != IMAGE_PNG)
-        return wrong(file, why, "remove --bits, or use .png", "only PNG supports 16 bits");
+        return refuse(file, why, "remove --bits, or use .png", "only PNG supports 16 bits");
     return STATUS_OK;
 }
 
@@ -153,7 +153,7 @@ static bool is_same(void *context, const char *path)
 static status check_not_read(const named_file *file, const scene *s, diagnostic *why)
 {
     if (scene_files_any(s, is_same, (void *)(uintptr_t)file->path))
-        return wrong(file, why, "give another file", "the scene reads this file");
+        return refuse(file, why, "give another file", "the scene reads this file");
     return STATUS_OK;
 }
 
@@ -164,12 +164,12 @@ static status check_file(const outputs *o, const named_file *files, size_t at, c
     if (at < TIMELINE && !(at == 0 && outputs_is_page(file->path)))
         TRY(check_image(o, file, at > 0, why));
     else if (at >= TIMELINE && !outputs_ends_with(file->path, ".json"))
-        return wrong(file, why, "use .json", "a timeline must be a JSON file");
+        return refuse(file, why, "use .json", "a timeline must be a JSON file");
     TRY(check_folder(file, why));
     TRY(check_not_read(file, s, why));
     for (size_t i = 0; i < at; i++)
         if (files[i].path && same_file(file->path, files[i].path))
-            return wrong(file, why, "give another file", "two outputs have the same file");
+            return refuse(file, why, "give another file", "two outputs have the same file");
     return STATUS_OK;
 }
 
@@ -181,7 +181,7 @@ static status check_layers(const outputs *o, const named_file *files, size_t cou
     if (!integrator_traits_of(&s->render)->layers) {
         char remedy[64];
         snprintf(remedy, sizeof remedy, "set render.integrator to %s", word ? word : "one with layers");
-        return wrong(&prefix, why, remedy, "this render.integrator has no layers");
+        return refuse(&prefix, why, remedy, "this render.integrator has no layers");
     }
     status result = STATUS_OK;
     for (int i = 0; i < LAYER_COUNT && result == STATUS_OK; i++) {
@@ -191,7 +191,7 @@ static status check_layers(const outputs *o, const named_file *files, size_t cou
         THEN(result, check_not_read(&file, s, why));
         for (size_t k = 0; k < count && result == STATUS_OK; k++)
             if (files[k].path && same_file(path, files[k].path))
-                result = wrong(&file, why, "give another prefix", "two outputs have the same file");
+                result = refuse(&file, why, "give another prefix", "two outputs have the same file");
         free(path);
     }
     return result;
@@ -202,8 +202,8 @@ status outputs_check(const outputs *o, const scene *s, diagnostic *why)
     const named_file files[] = {{"-o", o->img},    {"--rays", o->rays},   {"--time", o->time},
                                 {"--cut", o->cut}, {"--noise", o->noise}, {"--timeline", o->timeline}};
     if (o->noise && (!integrator_traits_of(&s->render)->by_chance || s->render.paths < 2))
-        return wrong(&files[4], why, "set render.integrator to path and render.paths to 16 or more",
-                     "this scene is rendered without random samples");
+        return refuse(&files[4], why, "set render.integrator to path and render.paths to 16 or more",
+                      "this scene is rendered without random samples");
     for (size_t i = 0; i < sizeof files / sizeof files[0]; i++)
         if (files[i].path)
             TRY(check_file(o, files, i, s, why));
@@ -217,7 +217,7 @@ status outputs_check_image(const char *option, const char *path, const char *con
     TRY(check_folder(&file, why));
     for (size_t i = 0; i < count; i++)
         if (same_file(path, read[i]))
-            return wrong(&file, why, "give another file", "one of the images is read from this file");
+            return refuse(&file, why, "give another file", "one of the images is read from this file");
     return STATUS_OK;
 }
 
@@ -230,7 +230,7 @@ status outputs_ending(const char *option, const char *path, const char *const *e
             *which = i;
             return STATUS_OK;
         }
-    return wrong(&file, why, remedy, "unknown file name ending");
+    return refuse(&file, why, remedy, "unknown file name ending");
 }
 
 status outputs_check_folder(const char *option, const char *path, diagnostic *why)
@@ -251,7 +251,7 @@ status outputs_check_script(const char *option, const char *path, const scene *s
 {
     const named_file file = {option, path};
     const bool is_read = strcmp(path, "-") != 0 && is_script_of(path, s);
-    return is_read ? wrong(&file, why, "give another file", "this file is a script that the scene uses") : STATUS_OK;
+    return is_read ? refuse(&file, why, "give another file", "this file is a script that the scene uses") : STATUS_OK;
 }
 
 status outputs_write_text(const char *path, status (*write)(const void *content, FILE *out, diagnostic *why),
@@ -273,7 +273,7 @@ status outputs_write(const outputs *o, const scene *s, const render_result *resu
     if (o->time && result->pixel_ns)
         TRY(record_map(result->pixel_ns, result->img, "nanoseconds per pixel", o->time, why));
     if (o->cut && result->pixel_cut)
-        TRY(record_map(result->pixel_cut, result->img, "share of cut light per pixel", o->cut, why));
+        TRY(record_map(result->pixel_cut, result->img, "fraction of cut light per pixel", o->cut, why));
     if (o->noise && result->variance)
         TRY(record_noise(result, o->noise, why));
     if (o->timeline && result->events)

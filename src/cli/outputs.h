@@ -26,8 +26,8 @@ bool scene_files_any(const scene *s, bool (*matches)(void *context, const char *
 /* Checks endings and folders, and that no output equals another one or a file that the scene reads. */
 status outputs_check(const outputs *o, const scene *s, diagnostic *why);
 
-/* The same for one image without a scene; read: the count files that the command reads; option: the option with the
- * name. */
+/* The same for one image without a scene. option: the option that names the image. read: the `count` files that the
+ * command reads. */
 status outputs_check_image(const char *option, const char *path, const char *const *read, size_t count,
                            diagnostic *why);
 
@@ -46,6 +46,6 @@ status outputs_check_script(const char *option, const char *path, const scene *s
 status outputs_write_text(const char *path, status (*write)(const void *content, FILE *out, diagnostic *why),
                           const void *content, diagnostic *why);
 
-/* Writes all outputs for which result has data, but no page; an interrupted render has a part of them. s: the scene,
- * for the metadata of a PNG. */
+/* Writes all outputs for which result has data, except a page; an interrupted render may lack some. s: the scene, for
+ * the metadata of a PNG. */
 status outputs_write(const outputs *o, const scene *s, const render_result *result, diagnostic *why);

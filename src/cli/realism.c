@@ -35,7 +35,7 @@ static const command_option options[] = {
     {"curve", 0, "NAME",
      "print one curve (x, measured, theory) as CSV: fresnel-s, fresnel-p, fresnel, deviation, depth, absorption, "
      "edges, mirror, apparent-depth, prism, rainbow, plates, malus, coin, arrow or soap",
-     .take = parse_curve},
+     .store = parse_curve},
     {0},
 };
 
@@ -52,7 +52,7 @@ typedef struct metric_cells {
     const char *verdict, *metric, *measured, *theory, *error, *tolerance, *unit, *what;
 } metric_cells;
 
-/* Width of the columns before `what`. A terminal without room for more gets tolerance and unit in the last column. */
+/* Width of the columns before `what`. On a narrower terminal tolerance and unit are in the last column. */
 enum { TABLE_WIDTH = 103, CELLS_MAX = 256 };
 
 static void print_cells(const metric_cells *c, int columns)

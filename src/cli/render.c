@@ -50,7 +50,7 @@ static status write_page(const void *content, FILE *out, diagnostic *why)
     return report_page_write(content, out, why);
 }
 
-/* Written completely or not at all. live: with the laboratory (report/page.h), NULL for none. */
+/* Writes the page completely or not at all. live: the laboratory's code (report/page.h); NULL: none. */
 static status render_page_write(const scene_input *input, const job_account *f, isa level, const char *path, int bits,
                                 const char *live, diagnostic *why)
 {
@@ -81,7 +81,7 @@ typedef struct render_request {
     scene_input input;
     outputs files;
     bool json, beams, live;
-    char *laboratory; /* for the page, owned; NULL: none */
+    char *laboratory; /* the laboratory's code for the page; owned; NULL: none */
     int64_t repeat;   /* 0: not given */
 } render_request;
 
@@ -108,12 +108,12 @@ static const command_option options[] = {
      OPTION_FILLS(option_flag, render_request, beams)},
     {"live", 0, NULL, "put the laboratory into the page of -o: its scene can be turned and changed there",
      OPTION_FILLS(option_flag, render_request, live)},
-    {"bits", 0, "N", "bits per channel of a PNG: 8 (the default) or 16", .take = parse_bits},
+    {"bits", 0, "N", "bits per channel of a PNG: 8 (the default) or 16", .store = parse_bits},
     {"rays", 0, "FILE", "write the ray count of each pixel: .png with a colour scale, or .pfm",
      OPTION_FILLS(option_text, render_request, files.rays)},
     {"time", 0, "FILE", "write the render time of each pixel in ns: .png with a colour scale, or .pfm",
      OPTION_FILLS(option_text, render_request, files.time)},
-    {"cut", 0, "FILE", "write the share of each pixel's light that is cut: .png with a colour scale, or .pfm",
+    {"cut", 0, "FILE", "write the fraction of each pixel's light that is cut: .png with a colour scale, or .pfm",
      OPTION_FILLS(option_text, render_request, files.cut)},
     {"noise", 0, "FILE", "write the standard error of each pixel (path tracing): .png with a colour scale, or .pfm",
      OPTION_FILLS(option_text, render_request, files.noise)},
@@ -126,7 +126,7 @@ static const command_option options[] = {
     {0},
 };
 
-/* Read before anything is rendered, so that a missing file costs no time. */
+/* Reads the laboratory's code before anything is rendered, so that a missing file costs no time. */
 static status load_laboratory(render_request *request, diagnostic *why)
 {
     if (!request->files.img || !outputs_is_page(request->files.img))
@@ -163,7 +163,7 @@ static status check_scene(void *context, const scene *s, diagnostic *why)
     return outputs_check(&request->files, s, why);
 }
 
-/* One process: the interval says nothing about others (cuvette-statistics(7)). */
+/* Prints the statistics of one process; the interval is not valid for other processes (cuvette-statistics(7)). */
 static void print_time(const char *name, const double *values, size_t count)
 {
     double copy[1000];
@@ -226,16 +226,16 @@ static void print_summary(const job_account *f, const outputs *files)
 }
 
 /* Writes the image again, with the beams over it. */
-static status draw_beams(const render_request *request, const job_account *f, job *with, diagnostic *why)
+static status draw_beams(const render_request *request, const job_account *f, job *frame_job, diagnostic *why)
 {
     scene *hiding = NULL;
     image *img = NULL;
     job_account distances = {.result = NULL};
     const render_options frame_options = {.layers = true};
     status result = beams_hiding_scene(f->of, &hiding, why);
-    THEN(result, job_render(with, hiding, &frame_options, &distances, why));
+    THEN(result, job_render(frame_job, hiding, &frame_options, &distances, why));
     THEN(result, film_image(f->result->img, &img, why));
-    THEN(result, beams_draw(f->of, job_isa(with), distances.result->layers->values[LAYER_DEPTH], img, why));
+    THEN(result, beams_draw(f->of, job_isa(frame_job), distances.result->layers->values[LAYER_DEPTH], img, why));
     THEN(result, record_drawing(img, f->of, request->files.img, request->files.bits == 16 ? 16 : 8, why));
     image_destroy(img);
     job_account_release(&distances);
@@ -243,31 +243,31 @@ static status draw_beams(const render_request *request, const job_account *f, jo
     return result;
 }
 
-static status write_files(const render_request *request, const job_account *f, job *with, diagnostic *why)
+static status write_files(const render_request *request, const job_account *f, job *frame_job, diagnostic *why)
 {
     const outputs *files = &request->files;
     TRY(outputs_write(files, f->of, f->result, why));
     if (files->img && outputs_is_page(files->img))
-        TRY(render_page_write(&request->input, f, job_isa(with), files->img, files->bits == 16 ? 16 : 8,
+        TRY(render_page_write(&request->input, f, job_isa(frame_job), files->img, files->bits == 16 ? 16 : 8,
                               request->laboratory, why));
     if (request->beams && f->count > 0)
-        TRY(draw_beams(request, f, with, why));
+        TRY(draw_beams(request, f, frame_job, why));
     return STATUS_OK;
 }
 
-/* Writes the results. After Ctrl-C, before or while files are written, what was rendered is still written, or written
- * again, with less effort, but no page, beams and layers, which take long; STATUS_INTERRUPTED then. */
-static status write_results(const render_request *request, const job_account *f, job *with, diagnostic *why)
+/* Writes the results. After a Ctrl-C, before or while files are written, the files are still written (again), with less
+ * compression and without page, beams and layers, which take long; the status is then STATUS_INTERRUPTED. */
+static status write_results(const render_request *request, const job_account *f, job *frame_job, diagnostic *why)
 {
     status first = cancel_check(why);
-    THEN(first, write_files(request, f, with, why));
+    THEN(first, write_files(request, f, frame_job, why));
     status code = first;
     cancel_token shield;
     cancel_shield(&shield);
     if (first == STATUS_INTERRUPTED) {
-        outputs soon = request->files;
-        soon.layers = NULL;
-        code = outputs_write(&soon, f->of, f->result, why);
+        outputs quick_files = request->files;
+        quick_files.layers = NULL;
+        code = outputs_write(&quick_files, f->of, f->result, why);
     }
     if (code == STATUS_OK && request->json)
         code = json_print(report_create(f, request->repeat > 0), why);
@@ -288,12 +288,12 @@ static status report_interrupted(const render_request *request, const job_accoun
     return STATUS_INTERRUPTED;
 }
 
-static void show_progress(void *context, double share_done)
+static void show_progress(void *context, double fraction)
 {
-    progress_draw(context, share_done);
+    progress_draw(context, fraction);
 }
 
-static status render_and_write(const render_request *request, const scene *s, job *with, diagnostic *why)
+static status render_and_write(const render_request *request, const scene *s, job *frame_job, diagnostic *why)
 {
     const outputs *files = &request->files;
     progress_line line;
@@ -308,14 +308,14 @@ static status render_and_write(const render_request *request, const scene *s, jo
     job_account measured;
     progress_start(&line, "rendering");
     status result =
-        job_repeat(with, s, request->repeat > 0 ? (size_t)request->repeat : 1, &frame_options, &measured, why);
+        job_repeat(frame_job, s, request->repeat > 0 ? (size_t)request->repeat : 1, &frame_options, &measured, why);
     progress_erase(&line);
     if ((result == STATUS_OK || result == STATUS_INTERRUPTED) && measured.result) {
-        status written = write_results(request, &measured, with, why);
+        status written = write_results(request, &measured, frame_job, why);
         result = written == STATUS_OK ? result : written;
     }
     if (result == STATUS_OK && !request->json) {
-        inert_note_frame(&request->input, with, &measured);
+        scene_input_note_inert_frame(&request->input, frame_job, &measured);
         scene_input_note_frame(&measured);
     }
     if (result == STATUS_INTERRUPTED)
@@ -327,16 +327,16 @@ static status render_and_write(const render_request *request, const scene *s, jo
 static status run(void *context, scene *s, isa level, diagnostic *why)
 {
     const render_request *request = context;
-    job *with = NULL;
-    status result = scene_input_job(true, &with, why);
+    job *frame_job = NULL;
+    status result = scene_input_job(true, &frame_job, why);
     if (result == STATUS_OK && !request->json) {
         result = scene_input_lint(s, level, why);
         if (request->beams || (request->files.img && outputs_is_page(request->files.img)))
             scene_input_note_beams(s);
-        inert_note_changes(s, &request->input);
+        scene_input_note_inert(s, &request->input);
     }
-    THEN(result, render_and_write(request, s, with, why));
-    job_destroy(with);
+    THEN(result, render_and_write(request, s, frame_job, why));
+    job_destroy(frame_job);
     return result;
 }
 

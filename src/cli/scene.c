@@ -27,7 +27,7 @@ struct scene_edit {
     bool is_named;      /* the value is NAME=TEXT */
     const char *form;   /* "NAME=DX,DY,DZ" */
     const char *purpose;
-    /* Without is_named, name is NULL and text is the whole value. */
+    /* Without is_named, name is NULL and text is the complete value. */
     status (*apply)(scene *s, const scene_edit *edit, const char *name, const char *text, diagnostic *why);
 };
 
@@ -97,7 +97,8 @@ static char *cut_parameter(char *text)
     return NULL;
 }
 
-/* Sets "size=1,2,3" of the new object. The material is set in a first pass (wants_material), the others after it. */
+/* Sets a parameter such as "size=1,2,3" of the new object. A first pass sets the material (wants_material), a second
+ * one all other parameters. */
 static status put_parameter(scene *s, const char *name, char *parameter, bool wants_material, diagnostic *why)
 {
     char *equals = strchr(parameter, '='), path[2 * SCENE_NAME_MAX];
@@ -209,7 +210,7 @@ static status apply_named(scene *s, const scene_edit *edit, const char *text, di
     return result;
 }
 
-/* Applies one edit; errors are located at its option. */
+/* Applies one edit; diagnostics name its option. */
 static status scene_edit_apply(scene *s, const scene_edit *edit, const char *text, diagnostic *why)
 {
     char where[512];
@@ -268,7 +269,7 @@ static void make_options(command_option options[OPTIONS_MOST])
                                       .letter = scene_edits[i].letter,
                                       .form = scene_edits[i].form,
                                       .purpose = scene_edits[i].purpose,
-                                      .take = parse_edit,
+                                      .store = parse_edit,
                                       .at = i};
     memcpy(&options[EDITS], plain_options, sizeof plain_options);
 }
@@ -305,13 +306,13 @@ static status make_scene(const scene_request *request, scene **out, diagnostic *
     for (size_t i = 0; i < request->edit_count && result == STATUS_OK; i++)
         result = scene_edit_apply(*out, request->edits[i].edit, request->edits[i].text, why);
     if (result == STATUS_OK && (request->edit_count > 0 || !request->path)) {
-        /* The place of errors that have no line. */
+        /* The position of errors without a line. */
         diagnostic_locate(why, request->path ? request->path : "--new", 0, 0);
         result = scene_check(*out, why);
     }
     for (size_t i = 0; i < request->edit_count && result == STATUS_OK; i++)
         if (strcmp(request->edits[i].edit->option, "--set") == 0)
-            inert_note_assignment(*out, request->edits[i].text);
+            scene_input_note_inert_assignment(*out, request->edits[i].text);
     return result;
 }
 
@@ -338,7 +339,7 @@ static status check_files(const scene_request *request, scene *s, diagnostic *wh
     if (result == STATUS_OK)
         result = scene_check(s, why); /* again, now with the triangles of the meshes */
     if (result != STATUS_OK) {
-        if (why->line == 0) /* keep the place of an error that has a line */
+        if (why->line == 0) /* keep the position of an error that has a line */
             diagnostic_locate(why, request->path ? request->path : "--new", 0, 0);
         return result;
     }

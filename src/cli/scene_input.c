@@ -100,15 +100,15 @@ status scene_input_read(const scene_input *input, scene **out, diagnostic *why)
     for (size_t i = 0; result == STATUS_OK && input->from_beginning && i < (*out)->mesh_count; i++)
         (*out)->meshes[i].time_s = 0;
     if (result == STATUS_OK && input->count > 0) {
-        diagnostic_locate(why, input->path, 0, 0); /* the place of errors that have no line */
+        diagnostic_locate(why, input->path, 0, 0); /* the position of errors without a line */
         result = scene_check(*out, why);
     }
     return result;
 }
 
-static void show_motion(void *context, double share_done)
+static void show_motion(void *context, double fraction)
 {
-    progress_draw(context, share_done);
+    progress_draw(context, fraction);
 }
 
 status scene_input_load(scene *s, diagnostic *why)
@@ -126,17 +126,17 @@ status scene_input_isa(isa *level, diagnostic *why)
     return locate_failure(why, "environment", isa_choose(level, why));
 }
 
-static const job_sharing *shared_with; /* of the program; NULL: it does not share frames */
+static const job_sharing *frame_sharing; /* how the program distributes frames; NULL: it does not */
 
 void scene_input_share(const job_sharing *sharing)
 {
-    shared_with = sharing;
+    frame_sharing = sharing;
 }
 
 status scene_input_job(bool measured, job **out, diagnostic *why)
 {
     isa level = ISA_BASE;
-    const job_settings settings = {.level = &level, .measured = measured, .sharing = shared_with};
+    const job_settings settings = {.level = &level, .measured = measured, .sharing = frame_sharing};
     TRY(scene_input_isa(&level, why));
     return job_create(&settings, out, why);
 }
@@ -228,7 +228,7 @@ static void print_inert_note(const inert_answer *answer)
     terminal_note(note_line(&answer->note, line, sizeof line));
 }
 
-void inert_note_assignment(const scene *s, const char *assignment)
+void scene_input_note_inert_assignment(const scene *s, const char *assignment)
 {
     char path[PATH_MAX_HERE];
     inert_answer answer;
@@ -246,7 +246,8 @@ static bool is_set_again(const scene_input *input, size_t at, const char *path)
     return false;
 }
 
-/* An animation sets time_s of its slimes, so that its value on the command line has no effect. */
+/* Copies the scene and sets time_s of its slimes, as an animation does: so the value on the command line has no
+ * effect. */
 static scene *in_motion(const scene *s)
 {
     scene *moved = scene_clone(s);
@@ -256,8 +257,8 @@ static scene *in_motion(const scene *s)
     return moved;
 }
 
-/* Notes the changes of the command line that have no effect; with a witness (a rendered frame), only the changes that
- * are checked by it. */
+/* Notes the changes of the command line that have no effect; with a witness (a rendered frame), only those that need
+ * the witness. */
 static void note_changes(const scene *s, const scene_input *input, const inert_witness *witness)
 {
     for (size_t i = 0; i < input->count; i++) {
@@ -271,7 +272,7 @@ static void note_changes(const scene *s, const scene_input *input, const inert_w
     }
 }
 
-void inert_note_changes(const scene *s, const scene_input *input)
+void scene_input_note_inert(const scene *s, const scene_input *input)
 {
     scene *moved = input->from_beginning ? in_motion(s) : NULL;
     note_changes(moved ? moved : s, input, NULL);
@@ -280,28 +281,28 @@ void inert_note_changes(const scene *s, const scene_input *input)
 
 /* --- notes that need a rendered frame --- */
 
-typedef struct frame_of {
+typedef struct witness_frame {
     const job_account *frame;
-    job *with;
-} frame_of;
+    job *frame_job;
+} witness_frame;
 
 static bool is_same(void *context, const char *assignment)
 {
-    const double moment_s = 1.0;
-    const frame_of *f = context;
-    scene *s = f->frame->result->wall_s < moment_s ? scene_clone(f->frame->of) : NULL;
+    const double limit_s = 1.0;
+    const witness_frame *f = context;
+    scene *s = f->frame->result->wall_s < limit_s ? scene_clone(f->frame->of) : NULL;
     job_account other = {.result = NULL};
     const bool rendered = s && scene_set_assignment(s, assignment, NULL) == STATUS_OK &&
-                          scene_check(s, NULL) == STATUS_OK && job_load(f->with, s, NULL, NULL) == STATUS_OK &&
-                          job_render(f->with, s, NULL, &other, NULL) == STATUS_OK;
+                          scene_check(s, NULL) == STATUS_OK && job_load(f->frame_job, s, NULL, NULL) == STATUS_OK &&
+                          job_render(f->frame_job, s, NULL, &other, NULL) == STATUS_OK;
     const bool same = rendered && job_account_hash(&other) == job_account_hash(f->frame);
     job_account_release(&other);
     scene_destroy(s);
     return same;
 }
 
-void inert_note_frame(const scene_input *input, job *with, const job_account *frame)
+void scene_input_note_inert_frame(const scene_input *input, job *frame_job, const job_account *frame)
 {
-    frame_of f = {frame, with};
+    witness_frame f = {frame, frame_job};
     note_changes(frame->of, input, &(inert_witness){&frame->result->counters, is_same, &f});
 }

@@ -1,6 +1,6 @@
-/* The common part of all commands on a scene: SCENE, --set and its short forms, the instruction set. Errors are located
- * at their option. Ownership: reading the command line allocates, scene_input_release frees; arguments of the command
- * line are borrowed. */
+/* The common part of all commands on a scene: SCENE, --set and its short forms, the instruction set. Diagnostics name
+ * the option. Ownership: reading the command line allocates, scene_input_release frees; arguments of the command line
+ * are borrowed. */
 #pragma once
 
 #include "cli/options.h"
@@ -11,7 +11,7 @@
 
 typedef struct scene_change {
     const char *option; /* "set" */
-    const char *path;   /* "render.depth"; NULL where the text is PATH=VALUE */
+    const char *path;   /* "render.depth"; NULL if the text is PATH=VALUE */
     const char *text;
 } scene_change;
 
@@ -24,27 +24,28 @@ typedef struct scene_input {
 } scene_input;
 
 /* Options of these commands, whose request must start with the scene_input. */
-#define OPTION_SET(example)                                                                                      \
-    {                                                                                                            \
-        "set", 's', "PATH=VALUE", "set a parameter, such as " example "; may be repeated", .take = option_change \
+#define OPTION_SET(example)                                                                                       \
+    {                                                                                                             \
+        "set", 's', "PATH=VALUE", "set a parameter, such as " example "; may be repeated", .store = option_change \
     }
 #define OPTION_OUTPUT(purpose)                                                         \
     {                                                                                  \
         "output", 'o', "FILE", purpose, OPTION_FILLS(option_text, scene_input, output) \
     }
-#define OPTION_DEPTH                                                                                          \
-    {                                                                                                         \
-        "depth", 0, "N", "short for --set render.depth=N", .take = option_change, .parameter = "render.depth" \
+#define OPTION_DEPTH                                                                                           \
+    {                                                                                                          \
+        "depth", 0, "N", "short for --set render.depth=N", .store = option_change, .parameter = "render.depth" \
     }
 #define OPTION_LAMBDA                                                                                         \
     {                                                                                                         \
         "lambda", 0, "NM", "wavelength of refractive indices and spectral absorption; sets render.lambda_nm", \
-            .take = option_change, .parameter = "render.lambda_nm"                                            \
+            .store = option_change, .parameter = "render.lambda_nm"                                           \
     }
-/* The size that the process may use, for all commands that load or render; it belongs to no request. */
-#define OPTION_MEMORY                                                                                              \
-    {                                                                                                              \
-        "memory-limit", 0, "SIZE", "refuse what would need more memory, such as 500M or 4G", .take = option_memory \
+/* The memory that the process may use, for all commands that load or render; it is not stored in a request. */
+#define OPTION_MEMORY                                                                                  \
+    {                                                                                                  \
+        "memory-limit", 0, "SIZE", "refuse work that needs more memory than SIZE, such as 500M or 4G", \
+            .store = option_memory                                                                     \
     }
 status option_memory(const command_option *o, void *request, const char *value, diagnostic *why);
 status option_change(const command_option *o, void *request, const char *value, diagnostic *why);
@@ -81,14 +82,14 @@ void scene_input_release(scene_input *input);
 /* Reads the scene, applies the changes of the command line and checks it; does not load its files. */
 status scene_input_read(const scene_input *input, scene **out, diagnostic *why);
 
-/* scene_load with a progress line while slimes are simulated; ends at a stop request. */
+/* scene_load with a progress line while slimes are simulated; ends after a Ctrl-C. */
 status scene_input_load(scene *s, diagnostic *why);
 
 /* Notes for commands that trace ray trees, which have all branches and one wavelength: the scene is rendered with
  * another integrator or spectrally, or a medium was not measured at the wavelength. */
 void scene_input_note_tree(const scene_input *input, const scene *s);
 
-/* Notes for what shows the beams: a medium was not measured at the wavelength of one. */
+/* Prints notes for commands that show beams: a medium was not measured at a beam's wavelength. */
 void scene_input_note_beams(const scene *s);
 
 /* Prints the hints on likely mistakes in the scene (lint/lint.h) on standard error. */
@@ -100,11 +101,11 @@ status scene_input_lint(const scene *s, isa level, diagnostic *why);
 /* Prints the notes on a rendered frame (job/frame_notes.h). */
 void scene_input_note_frame(const job_account *frame);
 
-/* isa_choose, with located errors. */
+/* isa_choose; diagnostics name the environment. */
 status scene_input_isa(isa *level, diagnostic *why);
 
-/* Creates a job that ends at SIGINT and SIGTERM. measured: as in job_settings. Its frames are shared with other
- * processes after scene_input_share, which a program calls once, first. */
+/* Creates a job that ends at SIGINT and SIGTERM. measured: as in job_settings. After scene_input_share, which a program
+ * calls once at its start, the job distributes its frames over processes. */
 void scene_input_share(const job_sharing *sharing);
 status scene_input_job(bool measured, job **out, diagnostic *why);
 
@@ -113,11 +114,11 @@ status scene_input_job(bool measured, job **out, diagnostic *why);
 /* A place that already has a note of the linter gets no second one. Everything is borrowed. */
 
 /* Notes on the changes of the command line. s: the changed scene. */
-void inert_note_changes(const scene *s, const scene_input *input);
+void scene_input_note_inert(const scene *s, const scene_input *input);
 
-/* Further notes on the command line that need the rendered frame. Where a note needs a second frame for comparison, the
- * job renders it, if the first one took less than a second. */
-void inert_note_frame(const scene_input *input, job *with, const job_account *frame);
+/* Further notes on the command line that need the rendered frame. If a note needs a second frame for comparison, the
+ * job renders it, unless the first one took a second or more. */
+void scene_input_note_inert_frame(const scene_input *input, job *frame_job, const job_account *frame);
 
-/* A note on one PATH=VALUE. */
-void inert_note_assignment(const scene *s, const char *assignment);
+/* Prints a note if one PATH=VALUE has no effect. */
+void scene_input_note_inert_assignment(const scene *s, const char *assignment);

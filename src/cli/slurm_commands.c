@@ -1,3 +1,4 @@
+/* Calls of squeue and sbatch, and their answers. */
 #include "base/cancel.h"
 #include "base/child.h"
 #include "base/text.h"
@@ -9,11 +10,11 @@
 #include <stdlib.h>
 #include <string.h>
 
-enum { NOT_FOUND = 127 /* of env(1) */, FURTHER = 8 /* arguments that are no options of the user */ };
+enum { NOT_FOUND = 127 /* of env(1) */, FURTHER = 8 /* arguments besides the user's options */ };
 
 static const double answer_limit_s = 300; /* a busy controller answers late */
 
-/* The message that ended a program, otherwise its first error: TEXT of "sbatch: error: TEXT". */
+/* Returns the message that ended a program, otherwise its first error: TEXT of "sbatch: error: TEXT". */
 static char *reason_of(char *output)
 {
     char *fatal = strstr(output, "fatal: "), *error = strstr(output, "error: ");
@@ -49,7 +50,7 @@ status slurm_check_queue(const char *script, diagnostic *why)
     rest = code == STATUS_OK && realpath(script, path) ? output : NULL;
     while (code == STATUS_OK && (line = strsep(&rest, "\n"))) {
         char *id = strsep(&line, " ");
-        id[strcspn(id, "_")] = 0; /* of the whole array */
+        id[strcspn(id, "_")] = 0; /* the number of the array job */
         if (line && strcmp(line, path) == 0)
             code = diagnose_at(why, script, STATUS_BAD_INPUT, "wait for its end, or end it with scancel",
                                "job %.60s of this study is still in the queue", id);
@@ -64,7 +65,7 @@ status slurm_check_queue(const char *script, diagnostic *why)
 typedef struct command_line {
     const char **arguments;
     size_t count;
-    char *own; /* the option of this job */
+    char *job_option; /* the option of this job */
 } command_line;
 
 static void add(command_line *c, const char *argument)
@@ -73,18 +74,18 @@ static void add(command_line *c, const char *argument)
         c->arguments[c->count++] = argument;
 }
 
-/* own: an allocated option, which the line takes. argument: of the script, or NULL. */
-static bool open_line(command_line *c, const slurm_submission *s, char *own, const char *argument)
+/* job_option: allocated; the line owns it. argument: the script's argument, or NULL. */
+static bool open_line(command_line *c, const slurm_submission *s, char *job_option, const char *argument)
 {
-    *c = (command_line){.arguments = calloc(s->option_count + FURTHER, sizeof *c->arguments), .own = own};
-    if (!c->arguments || !own)
+    *c = (command_line){.arguments = calloc(s->option_count + FURTHER, sizeof *c->arguments), .job_option = job_option};
+    if (!c->arguments || !job_option)
         return false;
     add(c, "/usr/bin/env");
     add(c, "sbatch");
     for (size_t i = 0; i < s->option_count; i++)
         add(c, s->options[i]);
     add(c, "--parsable");
-    add(c, own);
+    add(c, job_option);
     add(c, argument ? "--output=merge.log" : NULL);
     add(c, s->script);
     add(c, argument);
@@ -94,7 +95,7 @@ static bool open_line(command_line *c, const slurm_submission *s, char *own, con
 static void close_line(command_line *c)
 {
     free(c->arguments);
-    free(c->own);
+    free(c->job_option);
 }
 
 static bool parts_line(command_line *c, const slurm_submission *s)
@@ -125,7 +126,8 @@ static status submit(const command_line *c, const char *remedy, slurm_job *out, 
     char *output = NULL;
     status code = ask(c->arguments, remedy, &output, why);
     if (code == STATUS_OK && !read_id(output, out))
-        code = diagnose_at(why, "sbatch", STATUS_FAILURE, "see squeue", "it names no job: %.200s", reason_of(output));
+        code = diagnose_at(why, "sbatch", STATUS_FAILURE, "see squeue", "its answer has no job number: %.200s",
+                           reason_of(output));
     free(output);
     return code;
 }

@@ -1,5 +1,5 @@
-/* Slurm's own programs: squeue and sbatch, found in PATH. Ownership: everything is borrowed. STATUS_FAILURE if one is
- * missing, or fails: the reason is then its own first error message. */
+/* Calls Slurm's programs squeue and sbatch, found in PATH. Ownership: everything is borrowed. STATUS_FAILURE if one is
+ * missing or fails; the reason is then its first error message. */
 #pragma once
 
 #include "base/status.h"
@@ -10,7 +10,7 @@
 typedef struct slurm_submission {
     const char *script;         /* its path */
     const char *array;          /* the missing parts, for --array */
-    const char *const *options; /* further ones of sbatch */
+    const char *const *options; /* further options of sbatch */
     size_t option_count;
 } slurm_submission;
 
@@ -21,7 +21,7 @@ typedef struct slurm_job {
 /* STATUS_BAD_INPUT if a job with this script is still in the queue. */
 status slurm_check_queue(const char *script, diagnostic *why);
 
-/* The array job of the parts, and the job after it that merges their rows. */
+/* Submits the array job of the parts, and the job after it that merges their rows. */
 status slurm_submit_parts(const slurm_submission *s, slurm_job *out, diagnostic *why);
 status slurm_submit_merge(const slurm_submission *s, const slurm_job *parts, slurm_job *out, diagnostic *why);
 

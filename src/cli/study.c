@@ -21,16 +21,16 @@
 /* The action of a subcommand on each given study. */
 typedef status study_action(const study *s, const study_request *request, diagnostic *why);
 
-/* With as many repetitions in each process as before. */
+/* Divides the study among the processes of --processes, with as many repetitions in each as before. */
 static status divide(study *s, const study_request *request, diagnostic *why)
 {
-    const long asked = (long)request->processes, before = s->processes;
-    const long least = (s->repetitions_min + before - 1) / before * asked;
-    const long most = (s->repetitions_max + before - 1) / before * asked;
+    const long wanted = (long)request->processes, before = s->processes;
+    const long least = (s->repetitions_min + before - 1) / before * wanted;
+    const long most = (s->repetitions_max + before - 1) / before * wanted;
     if (most > STUDY_REPETITIONS_MAX)
         return options_wrong("--processes", NULL, why, "use fewer processes", "%ld repetitions are more than %d", most,
                              STUDY_REPETITIONS_MAX);
-    s->processes = asked;
+    s->processes = wanted;
     s->repetitions_min = least;
     s->repetitions_max = most;
     return STATUS_OK;
@@ -116,7 +116,7 @@ static void note_machine(void)
     noted = true;
 }
 
-/* Prints notes before anything is measured, unless nothing will be. */
+/* Prints notes before anything is measured, unless no row is missing. */
 static status print_notes(const study *s, const study_request *request, diagnostic *why)
 {
     study_progress progress;
@@ -144,7 +144,7 @@ static void print_news(void *context, const char *text)
     terminal_note(text);
 }
 
-/* Before the first of several processes; each checks its own again. */
+/* Checks the disk space before the first of several processes; each process checks again for its part. */
 static status check_room(const study *s, const study_request *request, const study_options *options, diagnostic *why)
 {
     study_options all = *options;
@@ -156,7 +156,8 @@ static status check_room(const study *s, const study_request *request, const stu
     return study_check_room(s, request, &e, why);
 }
 
-/* Measures what is missing, in fresh processes for a study that has some, or with --against. *rows: the new ones. */
+/* Measures the missing rows: in fresh processes if the study has several, or with --against. *rows: number of new
+ * rows. */
 static status measure(const study *s, const study_request *request, size_t *rows, diagnostic *why)
 {
     const bool shows = !request->quiet || request->progress;
@@ -179,13 +180,13 @@ static status measure(const study *s, const study_request *request, size_t *rows
     status result = study_run_processes(s, request, why);
     const status counted = count_rows(s, request, &after, result == STATUS_OK ? why : NULL);
     result = result == STATUS_OK ? counted : result;
-    if (!request->instructions) /* this process does not count, and keeps no image of what was counted */
+    if (!request->instructions) /* this process counts no instructions, and keeps no image of counted frames */
         THEN(result, study_run(s, &options, &further, why));
     *rows = after - before + further;
     return result;
 }
 
-static status say_interrupted(const study *s, size_t rows, diagnostic *why)
+static status report_interrupted(const study *s, size_t rows, diagnostic *why)
 {
     diagnose(why, STATUS_INTERRUPTED,
              study_keeps_files(s) ? "run it again to resume; images are written at the end" : "run it again to resume",
@@ -194,14 +195,14 @@ static status say_interrupted(const study *s, size_t rows, diagnostic *why)
     return STATUS_INTERRUPTED;
 }
 
-/* One of several processes; the one that started it prints for all. */
+/* Runs one of several processes; the process that started it prints for all. */
 static status run_part(const study *s, const study_request *request, diagnostic *why)
 {
     size_t rows = 0;
     if (request->process > study_processes(s))
-        return options_wrong("--process", NULL, why, "see processes in the study file", "%s has %ld processes", s->path,
-                             study_processes(s));
-    os_die_with_parent(); /* rows survive that, and the next run needs their files */
+        return options_wrong("--process", NULL, why, "use a number from 1 to `processes` of the study file",
+                             "%s has %ld processes", s->path, study_processes(s));
+    os_die_with_parent(); /* its rows survive, and the next run needs their files */
     const status result = measure(s, request, &rows, why);
     if (result == STATUS_INTERRUPTED)
         *why = (diagnostic){.what = ""};
@@ -218,7 +219,7 @@ static status run_one(const study *s, const study_request *request, diagnostic *
         return study_dry_run(s, request, why);
     THEN(result, measure(s, request, &rows, why));
     if (result == STATUS_INTERRUPTED)
-        return say_interrupted(s, rows, why);
+        return report_interrupted(s, rows, why);
     if (result != STATUS_OK || request->quiet)
         return result;
     if (rows)
@@ -229,7 +230,7 @@ static status run_one(const study *s, const study_request *request, diagnostic *
     return terminal_flush(why); /* the next study may take an hour */
 }
 
-/* With --instructions under valgrind. */
+/* Runs the study; with --instructions, under valgrind. */
 static status run_counted(const study *s, const study_request *given, diagnostic *why)
 {
     study_request request = *given;
@@ -358,7 +359,7 @@ static const command commands[] = {
     {"exclude", "exclude a row from summaries, with the reason", study_exclude},
     {"compare", "compare two runs, environments, cells or values: ratio, interval, verdict", study_compare},
     {"films", "compare the films and ray counts of two results folders, cell by cell", study_films_command},
-    {"power", "how often studies with fewer repetitions would mislead", study_power},
+    {"power", "estimate how often studies with fewer repetitions would mislead", study_power},
     {"plot", "draw a figure of studies with gnuplot", command_study_plot},
 };
 

@@ -1,6 +1,6 @@
 /* The parts of `cuvette study`: its command lines, its subcommands, the notes before a run, and tables for a terminal.
  * Ownership: study_request_release frees a request, also after a parsing error; strings are borrowed from argv;
- * everything else is borrowed. Errors are located at the command line or in the study file. */
+ * everything else is borrowed. Diagnostics name the command line, or a position in the study file. */
 #pragma once
 
 #include "base/status.h"
@@ -29,11 +29,11 @@ typedef struct study_request {
     const char **files; /* study files; for STUDY_LIST the folder */
     size_t file_count;
     const char *results;
-    const char *environment;    /* of the summary: a key, "main", or NULL for all */
-    const char *columns;        /* of --interval, or NULL */
-    const char *against;        /* of a run: the program to alternate with, or NULL */
-    double wait_quiet_s;        /* of a run; 0: do not wait */
-    int64_t process, processes; /* of a run: see study_options; processes: 0: those of the study file */
+    const char *environment;    /* summary: a key, "main", or NULL for all */
+    const char *columns;        /* summary: columns of --interval, or NULL */
+    const char *against;        /* run: the program to alternate with, or NULL */
+    double wait_quiet_s;        /* run; 0: do not wait */
+    int64_t process, processes; /* run: see study_options; processes 0: as in the study file */
     long shard, shards;
     bool by_repetition, any_environment, quick, quiet, progress, dry_run, instructions;
 } study_request;
@@ -63,40 +63,40 @@ status command_study_plot(int argc, char **argv, diagnostic *why);
 
 /* --- `study run` (study_run.c) --- */
 
-/* STATUS_FAILURE where what the run writes cannot fit; a note where it may not. */
+/* STATUS_FAILURE if the files of the run cannot fit on the disk; prints a note if they may not. */
 status study_check_room(const study *s, const study_request *request, const study_estimate *e, diagnostic *why);
 
 /* `study run --dry-run`: prints what a run would measure and keep, and about how long it would take. */
 status study_dry_run(const study *s, const study_request *request, diagnostic *why);
 
-/* The repetitions of a study that divides them among processes, each a program of its own, one after the other; with
- * --against=PROGRAM each followed or preceded, at random, by the same process of the other program, whose rows go to
- * the results folder with -against: two builds that alternate can be compared. */
+/* Runs a study that divides its repetitions among fresh processes, one after the other. With --against=PROGRAM the same
+ * process of the other program precedes or follows each one, at random; its rows go to the results folder with
+ * -against. Two builds that alternate in this way can be compared. */
 status study_run_processes(const study *s, const study_request *request, diagnostic *why);
 
 /* `study run --instructions`: the study runs under valgrind, which counts the instructions of each frame
- * (measure/instruction_dumps.h). counted_run is a value, which study_instructions_end ends, whatever begin returned; a
- * request that it has changed borrows from it. */
+ * (measure/instruction_dumps.h). Call study_instructions_end whatever study_instructions_begin returned; until then the
+ * request borrows from the counted_run. */
 typedef struct counted_run {
-    char folder[200];   /* of the counts; "" without one */
+    char folder[200];   /* folder of the counts; "": none */
     char results[4096]; /* DIR-instructions */
 } counted_run;
 
-/* Does nothing without --instructions. Otherwise the rows go to a folder of their own, and the environment of this
- * process and of those that it starts is that of counted rows: the instruction set is one that valgrind knows. */
+/* Does nothing without --instructions. Otherwise sends the rows to a separate folder, and sets the environment of this
+ * process and its children: where counts are written, and an instruction set that valgrind supports. */
 status study_instructions_begin(study_request *request, counted_run *out, diagnostic *why);
 void study_instructions_end(const counted_run *run);
 
 /* --- notes on a study before it runs, one line each on standard error --- */
 
-/* Those of the linter, of hints and of parameters without effect (lint/lint.h), in all cells or in some, and those of
- * the study file. */
+/* Notes of the linter, hints, and parameters without effect (lint/lint.h) in all or some cells; and notes of the study
+ * file. */
 
-/* Notes on the study file, located in it. */
+/* Prints the notes on the study file, with their positions. */
 void study_notes_print_file(const study *s);
 
-/* Notes on the scenes of the cells, each once with the number of its cells. Overlaps, gaps, the camera and the depth
- * limit need traced rays: cells are examined for at most a second, and slimes are not simulated. */
+/* Prints the notes on the scenes of the cells, each once with the number of its cells. Overlaps, gaps, the camera and
+ * the depth limit need traced rays: cells are examined for at most a second, and slimes are not simulated. */
 status study_notes_print_cells(const study *s, diagnostic *why);
 
 /* --- tables with aligned columns, for a terminal or a reader --- */

@@ -109,7 +109,7 @@ static char *verdict_text(const contrast_line *line)
 
 enum { OWN_COLUMNS = 6 };
 
-/* The texts of a line; NULL: the header; of_cell false: of all cells. */
+/* Sets the texts of a line. line NULL: the header; of_cell false: the line over all cells. */
 static void put_line(const study *s, const study_side *a, const contrast_line *line, bool of_cell, const char *column,
                      size_t shared, char **text)
 {
@@ -117,13 +117,13 @@ static void put_line(const study *s, const study_side *a, const contrast_line *l
         put_shared(s, a, line, text);
     for (size_t i = 0; !of_cell && i < shared; i++)
         text[i] = strdup(i ? "" : "all");
-    char **own = text + shared;
-    own[0] = !line ? strdup("n") : text_format("%zu, %zu", line->a.count, line->b.count);
-    own[1] = !line ? strdup("processes") : text_format("%zu, %zu", line->a.processes, line->b.processes);
-    own[2] = !line ? text_format("A %s", column) : of_cell ? median_text(&line->a) : strdup("");
-    own[3] = !line ? text_format("B %s", column) : of_cell ? median_text(&line->b) : strdup("");
-    own[4] = !line ? strdup("B/A [95% interval]") : ratio_text(&line->ratio);
-    own[5] = !line ? strdup("verdict") : verdict_text(line);
+    char **fields = text + shared;
+    fields[0] = !line ? strdup("n") : text_format("%zu, %zu", line->a.count, line->b.count);
+    fields[1] = !line ? strdup("processes") : text_format("%zu, %zu", line->a.processes, line->b.processes);
+    fields[2] = !line ? text_format("A %s", column) : of_cell ? median_text(&line->a) : strdup("");
+    fields[3] = !line ? text_format("B %s", column) : of_cell ? median_text(&line->b) : strdup("");
+    fields[4] = !line ? strdup("B/A [95% interval]") : ratio_text(&line->ratio);
+    fields[5] = !line ? strdup("verdict") : verdict_text(line);
 }
 
 static status print_table(const study *s, const study_side *a, const contrast *c, const char *column, diagnostic *why)
@@ -190,7 +190,7 @@ static void print_advice(const study_side *a, const study_side *b, const contras
         printf("The number of processes that find a difference of %g%% is unknown, or above 10000.\n", detect * 100);
 }
 
-/* Times of unlike work are no comparison of speed. */
+/* Prints whether both sides did the same work: times of unlike work do not compare speed. */
 static void print_work(const contrast *c)
 {
     if (c->compared == 0)

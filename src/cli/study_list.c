@@ -14,7 +14,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-/* A kind of file in the list; print writes its line, after its path. */
+/* A kind of file in the list; print writes its line. */
 typedef struct listed_kind {
     const char *ending;
     status (*print)(const char *path, diagnostic *why);
@@ -62,7 +62,7 @@ static status print_all(const char *folder, const listed_kind *kind, struct dire
             terminal_error(why);
         result = listed;
         *why = error;
-        if (listed == STATUS_FAILURE) /* of the machine, not of this file */
+        if (listed == STATUS_FAILURE) /* a fault of the machine, not of this file */
             break;
     }
     return result;

@@ -43,8 +43,8 @@ static status parse_set(const command_option *o, void *context, const char *valu
 
 static const command_option options[] = {
     {"axis", 'a', "PATH=VALUES", "vary a parameter: PATH=1,2,3 or PATH=FROM..TO:STEPS; may be repeated",
-     .take = parse_axis},
-    {"set", 's', "PATH=VALUE", "set a parameter in all cells; may be repeated", .take = parse_set},
+     .store = parse_axis},
+    {"set", 's', "PATH=VALUE", "set a parameter in all cells; may be repeated", .store = parse_set},
     {"name", 0, "NAME", "name of the study (default: from -o, or from the scene and the first axis)",
      OPTION_FILLS(option_text, new_request, name)},
     {"repetitions", 0, "N", "measured frames of each cell (default: 6)",
@@ -93,22 +93,22 @@ static status check_request(const new_request *r, diagnostic *why)
     return STATUS_OK;
 }
 
-static void print_notes(const new_request *r, const study *made)
+static void print_notes(const new_request *r, const study *written)
 {
     if (is_written(r)) {
-        study_notes_print_file(made);
+        study_notes_print_file(written);
         return;
     }
-    for (size_t i = 0; i < made->note_count; i++) {
+    for (size_t i = 0; i < written->note_count; i++) {
         char line[NOTE_LINE_MAX];
-        terminal_note(note_line(&made->notes[i].note, line, sizeof line));
+        terminal_note(note_line(&written->notes[i].note, line, sizeof line));
     }
 }
 
 static status make_study(const new_request *r, scene *s, diagnostic *why)
 {
     char *text = NULL;
-    study *made = NULL;
+    study *written = NULL;
     const new_study_order order = {.scene = r->scene,
                                    .target = is_written(r) ? r->output : NULL,
                                    .name = r->name,
@@ -118,19 +118,19 @@ static status make_study(const new_request *r, scene *s, diagnostic *why)
                                    .set_count = r->set_count,
                                    .repetitions = r->repetitions,
                                    .warmups = r->warmups};
-    status code = new_study_compose(&order, s, &text, &made, why);
+    status code = new_study_compose(&order, s, &text, &written, why);
     if (code == STATUS_OK && is_written(r))
         code = outputs_check_place("-o", r->output, s, why);
     if (code == STATUS_OK)
-        print_notes(r, made);
+        print_notes(r, written);
     if (code == STATUS_OK && is_written(r))
         code = file_write(r->output, text, why);
     else if (code == STATUS_OK)
         fputs(text, stdout);
     if (code == STATUS_OK && is_written(r))
-        printf("%s: %zu cells of %ld repetitions; cuvette study run %s\n", r->output, study_cell_count(made),
-               made->repetitions_max, r->output);
-    study_destroy(made);
+        printf("%s: %zu cells of %ld repetitions; cuvette study run %s\n", r->output, study_cell_count(written),
+               written->repetitions_max, r->output);
+    study_destroy(written);
     free(text);
     return code;
 }

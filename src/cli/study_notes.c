@@ -1,3 +1,4 @@
+/* Notes on a study before it runs: collected over all cells, and printed once each with their cells. */
 #include "base/array.h"
 #include "cli/scene_input.h"
 #include "cli/study.h"
@@ -18,7 +19,7 @@ typedef struct found_note {
     scene_note note; /* of the first cell */
     size_t first, last, cells;
     bool traced, differs; /* differs: in the numbers */
-    bool needs_all_cells; /* of interest only if all cells have it */
+    bool needs_all_cells; /* printed only if all cells have it */
     bool dropped;         /* not printed */
 } found_note;
 
@@ -28,7 +29,7 @@ typedef struct collector {
     size_t count;
     size_t cell, weight; /* the current cell, and the number of cells that it stands for */
     bool traced, needs_all_cells, out_of_memory;
-    bool keeps_intended; /* also notes on what the study varies */
+    bool keeps_intended; /* keeps notes on what the study varies, too */
 } collector;
 
 /* --- what the study varies --- */
@@ -99,8 +100,8 @@ static bool is_intended(const collector *c, const char *place)
     return c->traced ? strcmp(place, "render.depth") == 0 && varies(c->s, place) : varies(c->s, place);
 }
 
-/* Dropped notes are collected too, so that the linter, which repeats the hints, does not bring them back. */
-static void take(void *context, const scene_note *note)
+/* Adds a note, even a dropped one, so that the linter, which repeats the hints, does not print it. */
+static void add_note(void *context, const scene_note *note)
 {
     collector *c = context;
     for (size_t i = 0; i < c->count; i++) {
@@ -141,11 +142,11 @@ static void ask_inert(collector *c, const scene *setting, const char *path)
 {
     inert_answer answer;
     if (!has_note_at(c, path) && inert_ask(setting, path, NULL, &answer))
-        take(c, &answer.note);
+        add_note(c, &answer.note);
 }
 
-/* A parameter that is fixed, or set with others at a point, may be meant for some cells only. Values of an axis of its
- * own are meant to differ: where they have no effect, cells repeat one another. */
+/* A parameter that is fixed, or set with others at a point, may be meant for some cells only. The values of an axis
+ * with one parameter are meant to differ: if they have no effect, cells repeat one another. */
 static void ask_all_inert(collector *c, const scene *setting)
 {
     const study *s = c->s;
@@ -163,7 +164,7 @@ static void ask_all_inert(collector *c, const scene *setting)
 
 static status note_settings(collector *c, diagnostic *why)
 {
-    const note_taker taker = {take, c};
+    const note_taker taker = {add_note, c};
     c->weight = 1;
     for (c->cell = 0; c->cell < study_cell_count(c->s); c->cell++) {
         scene *setting;
@@ -188,7 +189,7 @@ static status trace_cell(collector *c, isa level, diagnostic *why)
     for (size_t i = 0; i < setting->mesh_count; i++)
         moves |= setting->meshes[i].source == MESH_SLIME;
     status code = moves ? scene_load_files(setting, why) : scene_load(setting, why);
-    THEN(code, lint_scene(setting, level, &(note_taker){take, c}, why));
+    THEN(code, lint_scene(setting, level, &(note_taker){add_note, c}, why));
     scene_destroy(setting);
     return code;
 }
@@ -244,7 +245,7 @@ static bool same_but_object(const found_note *a, const found_note *b)
            a->traced == b->traced && a->needs_all_cells == b->needs_all_cells && !a->dropped && !b->dropped;
 }
 
-/* Keeps the first of such notes, and adds the number of the others to its place. */
+/* Keeps the first of notes that differ only in the object, and adds the number of the others to its place. */
 static void merge_objects(collector *c)
 {
     for (size_t i = 0; i < c->count; i++) {

@@ -1,4 +1,4 @@
-/* The command `cuvette study plot`. */
+/* `cuvette study plot`: draws a figure of each study. */
 #include "base/file.h"
 #include "base/text.h"
 #include "cli/options.h"
@@ -73,12 +73,12 @@ static void store_file(void *context, const char *file)
 static const command_option plot_options[] = {
     {"output", 'o', "FIGURE", "figure to write, or a folder (default: results/STUDY/figure.png)",
      OPTION_FILLS(option_text, request, output)},
-    {"format", 'f', "LIST", "formats of the figure, separated by commas: png, svg, pdf", .take = parse_formats},
+    {"format", 'f', "LIST", "formats of the figure, separated by commas: png, svg, pdf", .store = parse_formats},
     PLOT_OPTION("x", "PATH", "parameter or column of the x axis", x),
     PLOT_OPTION("y", "COLUMN", "quantity to show: a column of the summary (default: wall_s)", y),
     PLOT_OPTION("by", "PATH", "parameter whose values become lines", by),
-    {"log", 0, "AXES", "logarithmic axes: x, y, xy or none (default: by the values)", .take = parse_log},
-    {"where", 'w', "PATH=VALUE", "show only cells with this value; can be repeated", .take = parse_where},
+    {"log", 0, "AXES", "logarithmic axes: x, y, xy or none (default: by the values)", .store = parse_log},
+    {"where", 'w', "PATH=VALUE", "show only cells with this value; can be repeated", .store = parse_where},
     {"images", 0, NULL, "draw the kept images with captions instead", OPTION_FILLS(option_flag, request, plot.images)},
     PLOT_OPTION("published", "CSV", "add numbers from a file with columns of the same names", published),
     {"results", 'r', "DIR", "folder of the results (default: results)",
@@ -133,7 +133,7 @@ static char *base_of(const request *r, const study *s)
     return text_format("%.*s", (int)stem_length(r->output, &which), r->output);
 }
 
-/* The ending of another kind of image, or NULL; fig.1 and fig.v2 are names. */
+/* The ending if it is of an unsupported format, or NULL; fig.1 and fig.v2 are names. */
 static const char *other_format(const char *path)
 {
     static const char *const others[] = {".jpg", ".jpeg", ".gif", ".bmp", ".tif", ".tiff", ".webp",
@@ -172,7 +172,7 @@ static status check(request *r, const char *program, diagnostic *why)
                         "several studies cannot be drawn into one file");
     if (r->plot.images && (r->plot.x || r->plot.y || r->plot.by || r->plot.published || r->plot.log))
         return diagnose(why, STATUS_BAD_INPUT, "leave one of them out",
-                        "--images has no axes: --x, --y, --by, --log and --published are of the other figure");
+                        "--images has no axes: --x, --y, --by, --log and --published are for the other figure");
     *why = (diagnostic){0};
     return STATUS_OK;
 }

@@ -57,7 +57,7 @@ static status parse_truth(const command_option *o, void *context, const char *va
                           why);
 }
 
-/* "10": in one process; "3x10": in each of 3. */
+/* Reads "10", the repetitions in one process, or "3x10", 10 repetitions in each of 3 processes. */
 static bool read_design(const char *text, design *out)
 {
     char copy[32];
@@ -92,17 +92,17 @@ static status parse_designs(const command_option *o, void *context, const char *
 
 static const command_option options[] = {
     {"column", 'c', "COLUMN", "measured column (default: wall_s)", OPTION_FILLS(option_text, request, column)},
-    {"cells", 0, "A,B", "two cells with a difference, instead of each cell with itself", .take = parse_cells},
+    {"cells", 0, "A,B", "two cells with a difference, instead of each cell with itself", .store = parse_cells},
     {"truth", 0, "WORD", "what B is known to be: same, larger or smaller than A (default: as in all rows)",
-     .take = parse_truth},
+     .store = parse_truth},
     {"designs", 0, "LIST",
      "studies to draw: R repetitions, or PxR, R in each of P processes (default: 1,3,10,3x1,10x1,3x10)",
-     .take = parse_designs},
-    {"effect", 'e', "PERCENT", "difference of the medians that the rule 'effect' takes for one (default: 5)",
-     .take = parse_effect},
+     .store = parse_designs},
+    {"effect", 'e', "PERCENT", "difference of the medians that the rule 'effect' counts as a difference (default: 5)",
+     .store = parse_effect},
     {"draws", 0, "N", "studies to draw for each rate, 10 to 100000 (default: 400)",
      OPTION_FILLS(option_integer, request, draws), 10, 100000},
-    {"seed", 0, "N", "of the draws (default: 1)", OPTION_FILLS(option_integer, request, seed), 0, INT64_MAX},
+    {"seed", 0, "N", "seed of the draws (default: 1)", OPTION_FILLS(option_integer, request, seed), 0, INT64_MAX},
     {"tsv", 0, NULL, "print every rate with all digits, separated by tabs", OPTION_FILLS(option_flag, request, tsv)},
     {0},
 };
@@ -165,7 +165,7 @@ static void print_tsv(const power_rates *r)
         }
 }
 
-/* "12 [4, 27]": per cent; of a pair also the fraction without a claim. */
+/* The percentage of wrong claims, "12 [4, 27]"; for two different cells that of wrong claims and of none, "12 / 30". */
 static char *rate_text(const power_rate *r, design_rule rule)
 {
     const share_interval wrong = power_wrong(r, rule), silent = power_silent(r, rule);
@@ -187,7 +187,7 @@ static void put_line(const power_rate *r, char **text)
         text[OWN_COLUMNS + rule] = rate_text(r, (design_rule)rule);
 }
 
-/* The lines of all pairs, or of the pair. */
+/* Prints the lines over all pairs, or those of the only pair. */
 static status print_table(const power_rates *r, diagnostic *why)
 {
     static const char *const names[OWN_COLUMNS] = {"order", "processes", "repetitions", "independent"};
@@ -256,7 +256,7 @@ status study_power(int argc, char **argv, diagnostic *why)
         return options_wrong("study power", NULL, why, "give a CSV file, such as results/STUDY/rows.csv",
                              "no rows are given");
     if (q.truth != POWER_OF_ALL_ROWS && !q.cells[0][0])
-        return options_wrong("--truth", NULL, why, "add --cells=A,B", "the truth is about two cells");
+        return options_wrong("--truth", NULL, why, "add --cells=A,B", "--truth compares two cells");
     TRY(value_table_read(q.files[0], q.column, &first, why));
     status code = q.files[1] ? value_table_read(q.files[1], q.column, &second, why) : STATUS_OK;
     THEN(code, make_and_print(&q, &first, q.files[1] ? &second : &first, why));

@@ -17,7 +17,7 @@ typedef struct exclude_request {
 } exclude_request;
 
 static const command_option exclude_options[] = {
-    {"row", 0, "REF", "the row: CELL:REPETITION, as in these columns of rows.csv, or its value in the column check",
+    {"row", 0, "REF", "the row: CELL:REPETITION, as in these columns of rows.csv, or its value in the column checksum",
      OPTION_FILLS(option_text, exclude_request, row)},
     {"reason", 0, "TEXT", "why; written next to the row", OPTION_FILLS(option_text, exclude_request, reason)},
     {"results", 'r', "DIR", "folder of the results (default: results)",

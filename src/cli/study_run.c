@@ -1,5 +1,5 @@
-/* How `cuvette study run` runs: the plan of --dry-run, counted instructions, and the fresh processes: this program, or
- * another build of it in turn, with --process=K. */
+/* Parts of `cuvette study run`: the plan of --dry-run, counted instructions, and the fresh processes, which run this
+ * program with --process=K, or alternate with another build. */
 #include "base/cancel.h"
 #include "base/isa.h"
 #include "base/budget.h"
@@ -75,7 +75,8 @@ status study_instructions_begin(study_request *request, counted_run *out, diagno
     if (!request->instructions)
         return STATUS_OK;
     if (!has_valgrind())
-        return options_wrong("--instructions", NULL, why, "apt-get install --no-install-recommends valgrind",
+        return options_wrong("--instructions", NULL, why,
+                             "install it: apt-get install --no-install-recommends valgrind",
                              "valgrind is not installed");
     const char *below = getenv("TMPDIR");
     char path[256];
@@ -84,7 +85,7 @@ status study_instructions_begin(study_request *request, counted_run *out, diagno
         const int error = errno;
         snprintf(path, sizeof path, "%s", out->folder);
         out->folder[0] = 0;
-        return system_error(why, STATUS_FAILURE, path, "cannot be made", error, "set TMPDIR to another folder");
+        return system_error(why, STATUS_FAILURE, path, "cannot be created", error, "set TMPDIR to another folder");
     }
     size_t length = strlen(request->results);
     while (length > 1 && request->results[length - 1] == '/')
@@ -108,7 +109,7 @@ void study_instructions_end(const counted_run *run)
     if (!run->folder[0])
         return;
     snprintf(name, sizeof name, "%s/frame", run->folder);
-    unlink(name);                     /* what followed the last frame */
+    unlink(name);                     /* the counts after the last frame */
     for (long i = 1; i < 4096; i++) { /* frames that were not read: the program was interrupted */
         snprintf(name, sizeof name, "%s/frame.%ld", run->folder, i);
         unlink(name);
@@ -116,8 +117,8 @@ void study_instructions_end(const counted_run *run)
     rmdir(run->folder);
 }
 
-/* The words that begin the command line of a counted process, before the program; returns their number, at most
- * STUDY_INSTRUCTIONS_WORDS. option: room for one of them. The program to start is /usr/bin/env. */
+/* Sets the words of a counted process's command line that precede the program, for /usr/bin/env; returns their number,
+ * at most STUDY_INSTRUCTIONS_WORDS. option: memory for one of them. */
 enum { STUDY_INSTRUCTIONS_WORDS = 8, STUDY_INSTRUCTIONS_OPTION = 300 };
 static size_t study_instructions_words(const char **words, char option[STUDY_INSTRUCTIONS_OPTION])
 {
@@ -136,25 +137,25 @@ static char *study_against_folder(const study_request *request)
     return text_format("%s-against", request->results);
 }
 
-/* Waits for the program's end; a request to stop is passed on once. */
+/* Waits for the program's end; forwards a cancellation once. */
 static int wait_for_end(pid_t pid)
 {
     int ended = 0;
-    bool told = false;
+    bool forwarded = false;
     for (;;) {
         const pid_t found = waitpid(pid, &ended, 0);
         if (found == pid)
             return WIFEXITED(ended) ? WEXITSTATUS(ended) : 128 + WTERMSIG(ended);
         if (found < 0 && errno != EINTR)
             return -1;
-        if (!told && cancel_asked()) {
+        if (!forwarded && cancel_asked()) {
             kill(pid, SIGTERM);
-            told = true;
+            forwarded = true;
         }
     }
 }
 
-static const char own_program[] = "/proc/self/exe";
+static const char this_program[] = "/proc/self/exe";
 
 static status ended(const study *s, const char *program, long process, int code, diagnostic *why)
 {
@@ -167,18 +168,18 @@ static status ended(const study *s, const char *program, long process, int code,
                     "process %ld of %s ended with status %d", process, program, code);
 }
 
-/* One process of the study to its end. */
+/* Runs one process of the study to its end. */
 static status run_process(const study *s, const study_request *request, const char *program, const char *results,
                           long process, diagnostic *why)
 {
     char number[32], processes[32], shard[64], wait[64], memory[48];
-    const char *const own[] = {"study", "run", "--results", results, "--process", number, "--processes", processes};
+    const char *const fixed[] = {"study", "run", "--results", results, "--process", number, "--processes", processes};
     const char *arguments[ARGUMENTS_MAX] = {NULL};
     char option[STUDY_INSTRUCTIONS_OPTION];
     size_t count = request->instructions ? study_instructions_words(arguments, option) : 0;
     arguments[count++] = request->instructions ? program : "cuvette";
-    memcpy(arguments + count, own, sizeof own);
-    count += sizeof own / sizeof *own;
+    memcpy(arguments + count, fixed, sizeof fixed);
+    count += sizeof fixed / sizeof *fixed;
     snprintf(number, sizeof number, "%ld", process);
     snprintf(processes, sizeof processes, "%ld", s->processes);
     snprintf(shard, sizeof shard, "--shard=%ld/%ld", request->shard, request->shards);
@@ -216,7 +217,8 @@ static status run_process(const study *s, const study_request *request, const ch
                  why);
 }
 
-/* Each process would repeat the notes of the one before; instead, the rows of all are counted once per minute. */
+/* Each process would repeat the notes of the previous one; instead, the disturbed rows of all are counted once per
+ * minute. */
 typedef struct disturbed_rows {
     size_t rows;
     double next_s;
@@ -245,9 +247,9 @@ static status note_disturbed(const study *s, const study_request *request, distu
 
 status study_run_processes(const study *s, const study_request *request, diagnostic *why)
 {
-    char own[PATH_MAX];
-    if (!request->instructions || !os_program_path(own)) /* valgrind would take /proc/self for itself */
-        snprintf(own, sizeof own, "%s", own_program);
+    char program[PATH_MAX];
+    if (!request->instructions || !os_program_path(program)) /* under valgrind, /proc/self/exe is valgrind's */
+        snprintf(program, sizeof program, "%s", this_program);
     char *against = request->against ? study_against_folder(request) : NULL;
     if (request->against && !against)
         return out_of_memory(why);
@@ -259,7 +261,7 @@ status study_run_processes(const study *s, const study_request *request, diagnos
         for (int turn = 0; turn < (against ? 2 : 1) && code == STATUS_OK; turn++)
             code = against && (turn == 0) == other_first
                        ? run_process(s, request, request->against, against, process, why)
-                       : run_process(s, request, own, request->results, process, why);
+                       : run_process(s, request, program, request->results, process, why);
         THEN(code, note_disturbed(s, request, &disturbed, why));
     }
     free(against);

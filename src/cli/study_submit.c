@@ -57,10 +57,10 @@ static const command_option options[] = {
     TEXT("partition", 'p', "NAME", "partition of the cluster (default: Slurm's own)", partition),
     TEXT("constraint", 'C', "FEATURES", "features that nodes must have, so that all are of one type", constraint),
     TEXT("node-type", 0, "NAME", "name of the type of node (default: partition and constraint)", node_type),
-    {"tasks", 0, "N", "parts of the study, a task of the array each (default: 16, or one per cell)",
+    {"tasks", 0, "N", "parts of the study, one task of the array each (default: 16, or one per cell)",
      OPTION_FILLS(option_integer, submit_request, tasks), .lowest = 1, .highest = TASKS_MAX},
     {"by", 0, "WHAT", "what the tasks divide: cell (default), or repetition, so that cells do not differ by node",
-     .take = parse_by},
+     .store = parse_by},
     {"threads", 0, "N", "processing units of a task (default: the largest render.threads of a cell)",
      OPTION_FILLS(option_integer, submit_request, threads), .lowest = 1, .highest = 1024},
     TEXT("memory", 0, "SIZE", "memory of a task, such as 4G (default: 512M and 64 bytes per pixel, in whole G)",
@@ -69,7 +69,7 @@ static const command_option options[] = {
     {"factor", 0, "F", "time limit as a multiple of the estimate of the longest task (default: 3)",
      OPTION_FILLS(option_integer, submit_request, factor), .lowest = 1, .highest = 1000},
     {"sbatch", 0, "OPTION", "a further option of sbatch, such as --sbatch=--account=optics; can be repeated",
-     .take = parse_sbatch},
+     .store = parse_sbatch},
     TEXT("template", 0, "FILE", "script to fill in (default: experiments/cluster/study.slurm)", template),
     TEXT("results", 'r', "DIR", "folder of the results (default: results)", results),
     {"dry-run", 'n', NULL, "print the commands and the script; write and submit nothing",
@@ -106,13 +106,13 @@ static status check_request(const submit_request *r, diagnostic *why)
 
 /* --- the submission --- */
 
-/* A study on its way to a cluster. Texts are allocated. */
+/* A study that is being submitted. Texts are allocated. */
 typedef struct submission {
-    const submit_request *asked;
+    const submit_request *request;
     const study *s;
-    char *node_type, *array, *logs, *path, *script; /* logs: an absolute folder; path: of the script */
+    char *node_type, *array, *logs, *path, *script; /* logs: an absolute folder; path: the script's */
     study_estimate *parts;
-    size_t part_count, rows_apart; /* rows_apart: of other environments, while these nodes have none */
+    size_t part_count, rows_apart; /* rows_apart: rows of other environments, if these nodes have none */
     double longest_s;
     long threads;
     char memory[32], time[SLURM_TIME];
@@ -126,19 +126,19 @@ static size_t missing_parts(const submission *job)
     return missing;
 }
 
-static char *node_type_of(const submit_request *asked)
+static char *node_type_of(const submit_request *request)
 {
-    if (asked->node_type)
-        return strdup(asked->node_type);
-    return text_format("%s%s%s", asked->partition ? asked->partition : "default", asked->constraint ? " " : "",
-                       asked->constraint ? asked->constraint : "");
+    if (request->node_type)
+        return strdup(request->node_type);
+    return text_format("%s%s%s", request->partition ? request->partition : "default", request->constraint ? " " : "",
+                       request->constraint ? request->constraint : "");
 }
 
 static status find_environment(submission *job, char key[ENVIRONMENT_KEY], diagnostic *why)
 {
     char unlike[300], text[700];
     size_t others;
-    TRY(slurm_environment(job->s, job->asked->results, job->node_type, key, unlike, sizeof unlike, &others, why));
+    TRY(slurm_environment(job->s, job->request->results, job->node_type, key, unlike, sizeof unlike, &others, why));
     snprintf(
         text, sizeof text,
         "%s: nodes of type '%.100s' are unlike: %s; rows of unlike nodes are not pooled: choose with --constraint, and "
@@ -150,23 +150,23 @@ static status find_environment(submission *job, char key[ENVIRONMENT_KEY], diagn
     return STATUS_OK;
 }
 
-/* Which parts lack something, in the environment of the nodes that have measured most. */
+/* Finds the parts that lack rows or files, in the environment of the nodes that have measured most. */
 static status find_parts(submission *job, diagnostic *why)
 {
-    const submit_request *asked = job->asked;
+    const submit_request *request = job->request;
     char key[ENVIRONMENT_KEY];
-    const size_t most = asked->by_repetition ? (size_t)job->s->repetitions_min : study_cell_count(job->s);
-    job->part_count = asked->tasks ? (size_t)asked->tasks : TASKS < most ? TASKS : most;
-    job->node_type = node_type_of(asked);
+    const size_t most = request->by_repetition ? (size_t)job->s->repetitions_min : study_cell_count(job->s);
+    job->part_count = request->tasks ? (size_t)request->tasks : TASKS < most ? TASKS : most;
+    job->node_type = node_type_of(request);
     job->parts = calloc(job->part_count, sizeof *job->parts);
     if (!job->node_type || !job->parts)
         return out_of_memory(why);
     TRY(find_environment(job, key, why));
-    const study_options as = {.results = asked->results,
+    const study_options as = {.results = request->results,
                               .shards = (long)job->part_count,
-                              .by_repetition = asked->by_repetition,
+                              .by_repetition = request->by_repetition,
                               .environment = key};
-    TRY(study_estimate_parts(job->s, &as, !asked->time, job->parts, why));
+    TRY(study_estimate_parts(job->s, &as, !request->time, job->parts, why));
     job->array = slurm_array(job->parts, job->part_count);
     job->longest_s = slurm_longest_s(job->parts, job->part_count);
     return job->array ? STATUS_OK : out_of_memory(why);
@@ -174,10 +174,10 @@ static status find_parts(submission *job, diagnostic *why)
 
 static status find_limits(submission *job, diagnostic *why)
 {
-    const submit_request *asked = job->asked;
+    const submit_request *request = job->request;
     slurm_needs needs;
     TRY(slurm_needs_of(job->s, &needs, why));
-    job->threads = asked->threads ? (long)asked->threads : needs.threads;
+    job->threads = request->threads ? (long)request->threads : needs.threads;
     if (job->threads < needs.threads) {
         char text[200];
         snprintf(text, sizeof text, "%s: cells with up to %ld threads share %ld processing units of a task",
@@ -185,13 +185,13 @@ static status find_limits(submission *job, diagnostic *why)
         terminal_note(text);
     }
     snprintf(job->memory, sizeof job->memory, "%ldG", needs.memory_gib);
-    if (asked->time)
+    if (request->time)
         return STATUS_OK;
     if (isnan(job->longest_s))
         return diagnose_at(why, job->s->path, STATUS_BAD_INPUT, "give a time limit with --time",
                            "the time of a part is unknown: a trial frame with few pixels takes more than %g s",
                            STUDY_ESTIMATE_TRIALS_S);
-    slurm_time_limit(job->longest_s, (double)asked->factor, job->time);
+    slurm_time_limit(job->longest_s, (double)request->factor, job->time);
     return STATUS_OK;
 }
 
@@ -199,7 +199,7 @@ static status find_limits(submission *job, diagnostic *why)
 
 static status find_places(submission *job, char here[PATH_MAX], diagnostic *why)
 {
-    const char *results = job->asked->results;
+    const char *results = job->request->results;
     if (!getcwd(here, PATH_MAX))
         return diagnose(why, STATUS_FAILURE, "change to a folder that exists", "the present folder is unknown");
     job->logs = results[0] == '/' ? text_format("%s/%s/slurm", results, job->s->name)
@@ -210,7 +210,7 @@ static status find_places(submission *job, char here[PATH_MAX], diagnostic *why)
 
 static status write_script(submission *job, diagnostic *why)
 {
-    const submit_request *asked = job->asked;
+    const submit_request *request = job->request;
     char here[PATH_MAX], program[PATH_MAX], threads[24], parts[24], name[80];
     TRY(find_places(job, here, why));
     if (!os_program_path(program))
@@ -220,27 +220,28 @@ static status write_script(submission *job, diagnostic *why)
     snprintf(name, sizeof name, "cuvette-%s", job->s->name);
     const slurm_word words[] = {
         {"name", name},
-        {"partition", asked->partition},
-        {"constraint", asked->constraint},
+        {"partition", request->partition},
+        {"constraint", request->constraint},
         {"threads", threads},
-        {"memory", asked->memory ? asked->memory : job->memory},
-        {"time", asked->time ? asked->time : job->time},
+        {"memory", request->memory ? request->memory : job->memory},
+        {"time", request->time ? request->time : job->time},
         {"logs", job->logs},
         {"program", program},
         {"folder", here},
         {"study", job->s->path},
-        {"results", asked->results},
+        {"results", request->results},
         {"parts", parts},
-        {"by", asked->by_repetition ? "repetition" : "cell"},
+        {"by", request->by_repetition ? "repetition" : "cell"},
         {"node_type", job->node_type},
     };
-    char *own = NULL;
+    char *filled_template = NULL;
     size_t size;
-    if (asked->template)
-        TRY(file_read(asked->template, TEMPLATE_MAX, &own, &size, why));
-    const status code = slurm_fill(asked->template ? asked->template : "study.slurm", own ? own : slurm_template, words,
+    if (request->template)
+        TRY(file_read(request->template, TEMPLATE_MAX, &filled_template, &size, why));
+    const status code = slurm_fill(request->template ? request->template : "study.slurm",
+                                   filled_template ? filled_template : slurm_template, words,
                                    sizeof words / sizeof *words, &job->script, why);
-    free(own);
+    free(filled_template);
     return code;
 }
 
@@ -254,7 +255,7 @@ static void note_rows_apart(const submission *job)
     snprintf(
         text, sizeof text,
         "%s: %zu rows of other machines or builds do not count for nodes of type '%.100s', which measure all anew; "
-        "to complete those rows give their --partition, --constraint or --node-type, and the same build",
+        "to complete those rows, use their --partition, --constraint or --node-type, and the same build",
         job->s->name, job->rows_apart, job->node_type);
     terminal_note(text);
 }
@@ -267,14 +268,14 @@ static void say_parts(const submission *job)
         rows += job->parts[i].rows_most;
     printf("%s: %zu of %zu parts to run, %zu rows to measure\n", job->s->name, missing_parts(job), job->part_count,
            rows);
-    if (!job->asked->time)
+    if (!job->request->time)
         printf("%s: time limit %s for each: %ld times the estimate of the longest, %.2g s, at least %d minutes\n",
-               job->s->name, job->time, (long)job->asked->factor, job->longest_s, SLURM_LEAST_MIN);
+               job->s->name, job->time, (long)job->request->factor, job->longest_s, SLURM_LEAST_MIN);
 }
 
 static status say_complete(const submission *job, diagnostic *why)
 {
-    const char *results = job->asked->results, *path = job->s->path;
+    const char *results = job->request->results, *path = job->s->path;
     printf(
         "%s: complete, nothing to submit; if the job that merges the rows did not: cuvette study merge --results %s %s "
         "&& cuvette study verify --results %s %s\n",
@@ -285,22 +286,22 @@ static status say_complete(const submission *job, diagnostic *why)
 static status say_submitted(const submission *job, const char *array, const char *merge, diagnostic *why)
 {
     printf("%s: job %s measures, then job %s merges and verifies the rows; script and logs are in %s/%s/slurm\n"
-           "%s: give the same command again when they have ended: it submits what is then missing\n",
-           job->s->name, array, merge, job->asked->results, job->s->name, job->s->name);
+           "%s: run the same command again when they have ended: it submits the parts that are then missing\n",
+           job->s->name, array, merge, job->request->results, job->s->name, job->s->name);
     return terminal_flush(why);
 }
 
 /* --- submitting --- */
 
-static slurm_submission sent(const submission *job)
+static slurm_submission submission_of(const submission *job)
 {
-    return (slurm_submission){job->path, job->array, job->asked->options, job->asked->option_count};
+    return (slurm_submission){job->path, job->array, job->request->options, job->request->option_count};
 }
 
 static status submit(const submission *job, diagnostic *why)
 {
     slurm_job array, merge;
-    const slurm_submission to_send = sent(job);
+    const slurm_submission to_send = submission_of(job);
     TRY(file_make_directory(job->logs, why));
     TRY(slurm_check_queue(job->path, why));
     TRY(file_write(job->path, job->script, why));
@@ -312,7 +313,7 @@ static status submit(const submission *job, diagnostic *why)
 
 static status show(const submission *job, diagnostic *why)
 {
-    const slurm_submission to_send = sent(job);
+    const slurm_submission to_send = submission_of(job);
     say_parts(job);
     TRY(slurm_print_commands(&to_send, stdout, why));
     printf("\n%s", job->script);
@@ -326,7 +327,7 @@ static status run(submission *job, diagnostic *why)
         return say_complete(job, why);
     TRY(find_limits(job, why));
     TRY(write_script(job, why));
-    return job->asked->dry_run ? show(job, why) : submit(job, why);
+    return job->request->dry_run ? show(job, why) : submit(job, why);
 }
 
 status study_submit(int argc, char **argv, diagnostic *why)
@@ -337,7 +338,7 @@ status study_submit(int argc, char **argv, diagnostic *why)
     status code = request.options ? command_form_read(&form, argc, argv, &request, why) : out_of_memory(why);
     THEN(code, check_request(&request, why));
     THEN(code, study_read(request.file, &s, why));
-    submission job = {.asked = &request, .s = s};
+    submission job = {.request = &request, .s = s};
     THEN(code, run(&job, why));
     free(job.script);
     free(job.path);

@@ -66,14 +66,16 @@ static double real_of(const fields *f, size_t row, const char *name)
     return number_parse_real(f->field[row * f->columns + column_of(f, name)], &value) ? value : NAN;
 }
 
-/* A number of the summary with the digits that the interval of the column NAME_low, NAME_high allows, if it has one. */
-static const char *rounded(const fields *f, size_t row, const char *name, const char *of, char text[NUMBER_TEXT_MAX])
+/* Returns a number of the summary with the digits that the interval INTERVAL_low, INTERVAL_high allows. interval "":
+ * none. */
+static const char *rounded(const fields *f, size_t row, const char *name, const char *interval,
+                           char text[NUMBER_TEXT_MAX])
 {
     char low[64], high[64];
     const double value = real_of(f, row, name);
-    snprintf(low, sizeof low, "%s_low", of);
-    snprintf(high, sizeof high, "%s_high", of);
-    const double half = *of ? 0.5 * (real_of(f, row, high) - real_of(f, row, low)) : NAN;
+    snprintf(low, sizeof low, "%s_low", interval);
+    snprintf(high, sizeof high, "%s_high", interval);
+    const double half = *interval ? 0.5 * (real_of(f, row, high) - real_of(f, row, low)) : NAN;
     return isnan(value) ? f->field[row * f->columns + column_of(f, name)] : number_format_within(value, half, text);
 }
 

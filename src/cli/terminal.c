@@ -23,8 +23,8 @@ static atomic_int stop_requested; /* the signal */
 static _Atomic int64_t stop_ns;
 static cancel_token token; /* of the main thread's work */
 
-/* A second signal kills, but not one within a fifth of a second, in which no person decides that the first was not
- * enough: timeout(1) sends its signal to the process and to its group, and mpirun does likewise. */
+/* A second signal kills the process, unless it arrives within a fifth of a second, too soon for a second Ctrl-C:
+ * timeout(1) and mpirun send their signal to the process and to its group. */
 static void request_stop(int signal_number)
 {
     const int64_t patience_ns = 200000000, now_ns = clock_wall_ns();
@@ -43,9 +43,10 @@ bool terminal_stopped_by_user(void)
     return stop_requested == SIGINT;
 }
 
-/* --- standard output with writes of our own --- */
+/* --- standard output through write_all --- */
 
-/* An interrupted or short write goes on, and the reason of the first write that failed is kept, which stdio forgets. */
+/* An interrupted or short write is continued, and the errno of the first failed write is stored, which stdio
+ * forgets. */
 
 static int first_error; /* the errno of the first write that failed; 0: none */
 
@@ -65,14 +66,14 @@ static ssize_t write_all(void *unused, const char *bytes, size_t size)
     return (ssize_t)size;
 }
 
-/* Out of memory, standard output stays that of stdio. */
+/* Replaces stdout by a stream that uses write_all; when out of memory, stdio's remains. */
 static void prepare_output(void)
 {
-    FILE *own = fopencookie(NULL, "w", (cookie_io_functions_t){.write = write_all});
-    if (!own)
+    FILE *stream = fopencookie(NULL, "w", (cookie_io_functions_t){.write = write_all});
+    if (!stream)
         return;
-    setvbuf(own, NULL, isatty(STDOUT_FILENO) ? _IOLBF : _IOFBF, BUFSIZ);
-    stdout = own;
+    setvbuf(stream, NULL, isatty(STDOUT_FILENO) ? _IOLBF : _IOFBF, BUFSIZ);
+    stdout = stream;
 }
 
 /* An image file must never get descriptor 1 because the caller has closed it: a closed descriptor is opened on
@@ -97,9 +98,7 @@ status terminal_flush(diagnostic *why)
     errno = 0;
     if (fflush(stdout) == 0 && !failed_before)
         return STATUS_OK;
-    int error = first_error ? first_error
-                : errno     ? errno
-                            : ENOMEM; /* without a write that failed, printf had no memory */
+    int error = first_error ? first_error : errno ? errno : ENOMEM; /* no write failed, so printf ran out of memory */
     __fpurge(stdout);
     clearerr(stdout); /* report the error once */
     if (error == EPIPE || reader_left())
@@ -107,7 +106,7 @@ status terminal_flush(diagnostic *why)
     return system_error(why, STATUS_FAILURE, NULL, "cannot write to standard output", error, "write to a file with -o");
 }
 
-/* For exits through exit(), such as argp's --help. */
+/* Flushes standard output when exit() ends the program, as argp's --help does. */
 static void check_stdout_at_exit(void)
 {
     if (__fpending(stdout) == 0 && !ferror(stdout))
@@ -196,18 +195,18 @@ static void write_duration(double seconds, char *text, size_t size)
         snprintf(text, size, "%ld s", s);
 }
 
-void progress_draw(progress_line *line, double share_done)
+void progress_draw(progress_line *line, double fraction)
 {
     double elapsed_s = clock_wall_s() - line->started_s;
     if (!line->enabled || elapsed_s < 0.5)
         return;
     static const char full[] = "####################";
-    const int width = (int)sizeof full - 1, done = (int)(share_done * width);
+    const int width = (int)sizeof full - 1, done = (int)(fraction * width);
     char text[160], left[48] = "?";
-    if (share_done > 0)
-        write_duration(elapsed_s * (1 - share_done) / share_done, left, sizeof left);
-    snprintf(text, sizeof text, "%.64s: [%-*.*s] %3d%%, %s left", line->label, width, done, full,
-             (int)(share_done * 100), left);
+    if (fraction > 0)
+        write_duration(elapsed_s * (1 - fraction) / fraction, left, sizeof left);
+    snprintf(text, sizeof text, "%.64s: [%-*.*s] %3d%%, %s left", line->label, width, done, full, (int)(fraction * 100),
+             left);
     int wide = terminal_columns(STDERR_FILENO) - 1;
     int length = (int)strlen(text) < wide ? (int)strlen(text) : wide;
     int blanks = line->shown > length ? line->shown - length : 0;

@@ -6,16 +6,16 @@
 
 #include <stdbool.h>
 
-/* The place of all signals. Opens closed descriptors among 0 to 2, turns SIGPIPE and SIGXFSZ into errors of the write,
- * SIGINT, SIGTERM and SIGHUP (unless ignored, by nohup) into a stop request, which also cancels the work of the
- * calling thread (base/cancel.h; a second signal, at least a fifth of a second later, kills), and makes exit() check
- * that standard output was written. Must be called first. */
+/* Sets up signals and standard output. Opens closed descriptors among 0 to 2, turns SIGPIPE and SIGXFSZ into errors of
+ * the write, SIGINT, SIGTERM and SIGHUP (unless ignored, by nohup) into a stop request, which also cancels the work of
+ * the calling thread (base/cancel.h; a second signal, at least a fifth of a second later, kills), and makes exit()
+ * check that standard output was written. Must be called first. */
 void terminal_prepare(void);
 
 /* Whether SIGINT has arrived, also under a shield: Ctrl-C, not the end of the session or the machine. */
 bool terminal_stopped_by_user(void);
 
-/* Flushes standard output. STATUS_FAILURE where data could not be written; if the reader of a pipe has closed it, *why
+/* Flushes standard output. STATUS_FAILURE if data could not be written; if the reader of a pipe has closed it, *why
  * stays empty, so that nothing is printed. */
 status terminal_flush(diagnostic *why);
 
@@ -32,8 +32,8 @@ void terminal_error(const diagnostic *why);
 /* Prints "cuvette: note: ..." as one line on standard error. */
 void terminal_note(const char *text);
 
-/* A progress line with the time left, on standard error where that is a terminal. Work of less than half a second shows
- * no line. Ownership: the label is borrowed. */
+/* A progress line with the time left, on standard error if that is a terminal. Work of less than half a second shows
+ * none. Ownership: the label is borrowed. */
 typedef struct progress_line {
     const char *label;
     double started_s;
@@ -42,7 +42,7 @@ typedef struct progress_line {
 } progress_line;
 
 void progress_start(progress_line *line, const char *label);
-/* share_done: 0..1 */
-void progress_draw(progress_line *line, double share_done);
+/* fraction: 0..1 */
+void progress_draw(progress_line *line, double fraction);
 /* Erases the line; does nothing when no line is shown. */
 void progress_erase(progress_line *line);

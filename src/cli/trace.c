@@ -53,17 +53,17 @@ static status parse_ray(const command_option *o, void *context, const char *valu
 }
 
 static const command_option options[] = {
-    {"pixel", 0, "X,Y", "trace the camera rays of a pixel; 0,0 is at the top left", .take = parse_pixel},
-    {"ray", 0, "OX,OY,OZ,DX,DY,DZ", "trace the ray from a point in a direction of any length", .take = parse_ray},
+    {"pixel", 0, "X,Y", "trace the camera rays of a pixel; 0,0 is at the top left", .store = parse_pixel},
+    {"ray", 0, "OX,OY,OZ,DX,DY,DZ", "trace the ray from a point in a direction of any length", .store = parse_ray},
     {"beams", 0, NULL, "trace the rays of the scene's beams, each with its own depth and wavelengths",
      OPTION_FILLS(option_flag, trace_request, beams)},
     OPTION_DEPTH,
     OPTION_LAMBDA,
     OPTION_SET("'liquid.ior=1.4'"),
     OPTION_MEMORY,
-    {"text", 0, NULL, "print an indented tree, one line per ray (the default)", .take = parse_format},
-    {"json", 0, NULL, "print one JSON object", .take = parse_format},
-    {"svg", 0, NULL, "draw the tree in the plane of incidence and from above", .take = parse_format},
+    {"text", 0, NULL, "print an indented tree, one line per ray (the default)", .store = parse_format},
+    {"json", 0, NULL, "print one JSON object", .store = parse_format},
+    {"svg", 0, NULL, "draw the tree in the plane of incidence and from above", .store = parse_format},
     OPTION_OUTPUT("write to FILE; its ending selects the format: .txt, .json, .svg"),
     {0},
 };
@@ -89,7 +89,7 @@ static status check_request(void *context, diagnostic *why)
     return result;
 }
 
-static status grow(const trace_request *request, probe *p, ray_tree *tree, diagnostic *why)
+static status trace_tree(const trace_request *request, probe *p, ray_tree *tree, diagnostic *why)
 {
     const double *r = request->ray;
     status result = request->by_pixel
@@ -146,7 +146,7 @@ static status run(void *context, scene *s, isa level, diagnostic *why)
     probe *p = NULL;
     ray_tree tree = {0};
     status result = scene_input_probe(&request->input, s, level, &p, why);
-    THEN(result, grow(request, p, &tree, why));
+    THEN(result, trace_tree(request, p, &tree, why));
     if (result == STATUS_OK) {
         const formatted f = {{s, p, &tree, request->input.path, false}, request->format};
         scene_input_note_tree(&request->input, s);

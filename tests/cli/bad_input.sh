@@ -183,7 +183,7 @@ refused "study power of too few processes" "too few processes or repetitions" st
 refused "study power of an unknown cell" "no cell '7'" study power values.csv --cells=0,7
 refused "study power of one cell" "two cells are necessary" study power values.csv --cells=0
 refused "study power with an unknown truth" "unknown truth 'slow'" study power values.csv --cells=0,0 --truth=slow
-refused "study power with a truth of each cell" "the truth is about two cells" study power values.csv --truth=same
+refused "study power with a truth of each cell" "compares two cells" study power values.csv --truth=same
 refused "study power with a wrong design" "invalid designs" study power values.csv --designs=1,3y1
 refused "study power of three files" "too many arguments" study power values.csv values.csv values.csv
 refused "study exclude without a file" "no study" study exclude

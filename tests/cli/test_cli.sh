@@ -280,7 +280,7 @@ check "compare prints a table" is "$(cut -c1-12 out | tr -d ' ' | tr '\n' ' ')" 
 check "one channel of six: mse 1/6, psnr 10 log10 6" is "$(sed -n 's/^\(mse\|psnr\) *//p' out)" \
     "$(lines 0.166667 "7.78 dB")"
 check "compare prints the largest difference and its pixel" grep -q '^largest     1 at 1,0$' out
-check "compare prints the share of differing pixels" grep -q '^differing   50% of the pixels' out
+check "compare prints the fraction of differing pixels" grep -q '^differing   50% of the pixels' out
 run compare left.pfm right.pfm --json
 check "compare --json" is "$(json schema width height mse 'largest_at[]' differing_fraction 'bits[]')" \
     "$(lines 1 2 1 0.16666666666666666 1 0 0.5 32 32)"

@@ -258,8 +258,8 @@ class Study:
     def rows(
         self, results: Path = "results", environment: Optional[str] = None, raw: bool = False
     ) -> "pandas.DataFrame":
-        """The rows of the study, like those of cuvette.rows, with the units of the grid's parameters; warns of rows that have
-        a wrong checksum."""
+        """The rows of the study, like those of cuvette.rows, with the units of the grid's parameters; warns of rows
+        with a wrong checksum."""
         units = {p.path: p.unit for p in self.scene(0).parameters}
         return _rows(self._study, self._folder(results), os.fspath(results), environment, raw, units)
 
