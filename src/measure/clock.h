@@ -10,7 +10,7 @@ int64_t clock_wall_ns(void);
 double clock_thread_cpu_s(void);
 double clock_process_cpu_s(void);
 
-/* The CLOCK_MONOTONIC time that many seconds from now, as pthread_cond_clockwait requires. */
+/* The CLOCK_MONOTONIC time in `seconds` from now, for pthread_cond_clockwait. */
 struct timespec clock_after(double seconds);
 
 /* The resolution of a clock, measured now: the smallest step seen, and the cost of one reading, in seconds. */

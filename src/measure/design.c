@@ -1,3 +1,4 @@
+/* Draws small studies from measured values, without replacement, and counts what each rule claims about them. */
 #include "measure/design.h"
 
 #include "base/random.h"
@@ -6,7 +7,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-enum { INTERVAL_VALUES = 6, RATIO_PROCESSES = 3 }; /* as study/summary/contrast.h */
+enum { INTERVAL_VALUES = 6, RATIO_PROCESSES = 3 }; /* the same as in study/summary/contrast.h */
 
 const char *design_rule_text(design_rule rule)
 {
@@ -44,7 +45,7 @@ static status summarize_all(const level_sample *s, summary *out, diagnostic *why
     return STATUS_OK;
 }
 
-/* With the pooled variance; Student, Biometrika 6, 1908. */
+/* The two-sample t test with the pooled variance (Student, Biometrika 6, 1908). */
 static int t_claim(const summary *a, const summary *b)
 {
     if (a->count < 2 || b->count < 2)
@@ -108,8 +109,8 @@ status design_claim(design_rule rule, const level_sample *a, const level_sample 
 
 /* One side of the studies: the processes that have enough repetitions, and the values of the study drawn last. */
 typedef struct side {
-    const level_sample *of;
-    size_t *able, count;
+    const level_sample *population;
+    size_t *eligible, count;
     double *values;
     size_t *start;
     level_sample drawn;
@@ -122,23 +123,23 @@ static size_t count_of(const level_sample *s, size_t process)
 
 static void side_free(side *s)
 {
-    free(s->able);
+    free(s->eligible);
     free(s->values);
     free(s->start);
 }
 
-/* other: the sample that must have the repetitions too, or NULL. */
-static bool side_create(const level_sample *of, const level_sample *other, const design *d, side *out)
+/* other: a sample that must also have enough repetitions in the same process, or NULL. */
+static bool side_create(const level_sample *population, const level_sample *other, const design *d, side *out)
 {
-    *out = (side){.of = of,
-                  .able = calloc(of->processes + 1, sizeof *out->able),
+    *out = (side){.population = population,
+                  .eligible = calloc(population->processes + 1, sizeof *out->eligible),
                   .values = calloc(d->processes * d->repetitions + 1, sizeof *out->values),
                   .start = calloc(d->processes + 1, sizeof *out->start)};
-    if (!out->able || !out->values || !out->start)
+    if (!out->eligible || !out->values || !out->start)
         return false;
-    for (size_t p = 0; p < of->processes; p++)
-        if (count_of(of, p) >= d->repetitions && (!other || count_of(other, p) >= d->repetitions))
-            out->able[out->count++] = p;
+    for (size_t p = 0; p < population->processes; p++)
+        if (count_of(population, p) >= d->repetitions && (!other || count_of(other, p) >= d->repetitions))
+            out->eligible[out->count++] = p;
     for (size_t p = 0; p <= d->processes; p++)
         out->start[p] = p * d->repetitions;
     out->drawn = (level_sample){out->values, out->start, d->processes};
@@ -151,43 +152,43 @@ typedef struct stream {
     uint32_t draw, purpose;
 } stream;
 
-static size_t below(stream *of, uint32_t index, size_t count)
+static size_t below(const stream *s, uint32_t index, size_t count)
 {
-    const double unit = random_unit(random_at(of->seed, of->draw, of->purpose, index, 0).word[0]);
+    const double unit = random_unit(random_at(s->seed, s->draw, s->purpose, index, 0).word[0]);
     return (size_t)(unit * (double)count);
 }
 
 /* The first wanted elements become a random choice: Durstenfeld, Algorithm 235, 1964. */
-static void choose(stream *of, size_t *list, size_t count, size_t wanted)
+static void choose(const stream *s, size_t *list, size_t count, size_t wanted)
 {
     for (size_t i = 0; i < wanted; i++) {
-        const size_t other = i + below(of, (uint32_t)i, count - i), kept = list[i];
+        const size_t other = i + below(s, (uint32_t)i, count - i), kept = list[i];
         list[i] = list[other];
         list[other] = kept;
     }
 }
 
-/* Successive repetitions, from a random one on. */
-static void draw_block(stream *of, side *s, const design *d, size_t k, size_t process)
+/* Copies successive repetitions of a process, from a random one on. */
+static void draw_block(const stream *first, side *s, const design *d, size_t k, size_t process)
 {
-    const size_t spare = count_of(s->of, process) - d->repetitions;
-    const size_t from = s->of->start[process] + below(of, (uint32_t)k, spare + 1);
-    memcpy(s->values + s->start[k], s->of->values + from, d->repetitions * sizeof *s->values);
+    const size_t spare = count_of(s->population, process) - d->repetitions;
+    const size_t from = s->population->start[process] + below(first, (uint32_t)k, spare + 1);
+    memcpy(s->values + s->start[k], s->population->values + from, d->repetitions * sizeof *s->values);
 }
 
 enum { CHOICE_A, CHOICE_B, BLOCK_A, BLOCK_B, SWAP };
 
 static void draw_apart(const design *d, bool shared, uint64_t seed, uint32_t draw, side *a, side *b, size_t *list)
 {
-    stream of = {seed, draw, CHOICE_A}, block_a = {seed, draw, BLOCK_A}, block_b = {seed, draw, BLOCK_B};
-    memcpy(list, a->able, a->count * sizeof *list);
-    choose(&of, list, a->count, shared ? 2 * d->processes : d->processes);
+    stream choice = {seed, draw, CHOICE_A}, block_a = {seed, draw, BLOCK_A}, block_b = {seed, draw, BLOCK_B};
+    memcpy(list, a->eligible, a->count * sizeof *list);
+    choose(&choice, list, a->count, shared ? 2 * d->processes : d->processes);
     for (size_t k = 0; k < d->processes; k++)
         draw_block(&block_a, a, d, k, list[k]);
     if (!shared) {
-        of.purpose = CHOICE_B;
-        memcpy(list, b->able, b->count * sizeof *list);
-        choose(&of, list, b->count, d->processes);
+        choice.purpose = CHOICE_B;
+        memcpy(list, b->eligible, b->count * sizeof *list);
+        choose(&choice, list, b->count, d->processes);
     }
     for (size_t k = 0; k < d->processes; k++)
         draw_block(&block_b, b, d, k, list[shared ? d->processes + k : k]);
@@ -195,27 +196,27 @@ static void draw_apart(const design *d, bool shared, uint64_t seed, uint32_t dra
 
 static void draw_in_turn(const design *d, uint64_t seed, uint32_t draw, side *a, side *b, size_t *list)
 {
-    stream of = {seed, draw, CHOICE_A}, swap = {seed, draw, SWAP};
+    stream choice = {seed, draw, CHOICE_A}, swap = {seed, draw, SWAP};
     stream block_a = {seed, draw, BLOCK_A}, block_b = {seed, draw, BLOCK_B};
     const bool together = d->order == DESIGN_TOGETHER;
     const size_t groups = together ? a->count : a->count / 2;
     for (size_t i = 0; i < groups; i++)
         list[i] = i;
-    choose(&of, list, groups, d->processes);
+    choose(&choice, list, groups, d->processes);
     for (size_t k = 0; k < d->processes; k++) {
         const size_t first = together ? 0 : below(&swap, (uint32_t)k, 2);
-        draw_block(&block_a, a, d, k, a->able[together ? list[k] : 2 * list[k] + first]);
-        draw_block(together ? &block_a : &block_b, b, d, k, a->able[together ? list[k] : 2 * list[k] + 1 - first]);
+        draw_block(&block_a, a, d, k, a->eligible[together ? list[k] : 2 * list[k] + first]);
+        draw_block(together ? &block_a : &block_b, b, d, k, a->eligible[together ? list[k] : 2 * list[k] + 1 - first]);
     }
 }
 
-static size_t independent_studies(const design_population *of, const design *d, const side *a, const side *b)
+static size_t independent_studies(const design_population *population, const design *d, const side *a, const side *b)
 {
     const size_t fewer = a->count < b->count ? a->count : b->count;
-    if (!of->shared)
+    if (!population->shared)
         return d->order == DESIGN_APART ? fewer / d->processes : 0;
     if (d->order == DESIGN_TOGETHER)
-        return of->a == of->b ? 0 : a->count / d->processes;
+        return population->a == population->b ? 0 : a->count / d->processes;
     return a->count / 2 / d->processes;
 }
 
@@ -233,20 +234,20 @@ static status judge(const design *d, unsigned rules, double effect, uint64_t see
     return STATUS_OK;
 }
 
-status design_try(const design_population *of, const design *d, unsigned rules, size_t draws, double effect,
+status design_try(const design_population *population, const design *d, unsigned rules, size_t draws, double effect,
                   uint64_t seed, design_tally *out, diagnostic *why)
 {
     *out = (design_tally){.draws = 0};
-    side a = {.of = NULL}, b = {.of = NULL};
-    size_t *list = calloc(of->a->processes + of->b->processes + 1, sizeof *list);
-    const bool has_a = side_create(of->a, of->shared ? of->b : NULL, d, &a);
-    const bool has_b = side_create(of->b, of->shared ? of->a : NULL, d, &b);
+    side a = {.population = NULL}, b = {.population = NULL};
+    size_t *list = calloc(population->a->processes + population->b->processes + 1, sizeof *list);
+    const bool has_a = side_create(population->a, population->shared ? population->b : NULL, d, &a);
+    const bool has_b = side_create(population->b, population->shared ? population->a : NULL, d, &b);
     status code = list && has_a && has_b ? STATUS_OK : out_of_memory(why);
     if (code == STATUS_OK)
-        out->independent = independent_studies(of, d, &a, &b);
+        out->independent = independent_studies(population, d, &a, &b);
     for (uint32_t draw = 0; code == STATUS_OK && out->independent > 0 && draw < draws; draw++) {
         if (d->order == DESIGN_APART)
-            draw_apart(d, of->shared, seed, draw, &a, &b, list);
+            draw_apart(d, population->shared, seed, draw, &a, &b, list);
         else
             draw_in_turn(d, seed, draw, &a, &b, list);
         code = judge(d, rules, effect, seed + draw, &a, &b, out, why);

@@ -6,11 +6,11 @@
 #include "measure/levels.h"
 
 typedef enum design_rule {
-    DESIGN_SIGN,      /* the larger median is larger */
+    DESIGN_SIGN,      /* the sign of the difference of the medians, however small */
     DESIGN_EFFECT,    /* the medians differ by more than a given fraction, such as 5% */
     DESIGN_T,         /* Student's two-sample t test at 5%, over all values as if independent */
     DESIGN_MEDIANS,   /* the 95% intervals of the medians by order statistics are disjoint, as if independent */
-    DESIGN_PROCESSES, /* the same with the intervals of level_median: the rule of `make claims` */
+    DESIGN_PROCESSES, /* the intervals of level_median are disjoint: the rule of `make claims` */
     DESIGN_RATIO,     /* the interval of the ratio excludes 1, as in `cuvette study compare`; from 3 processes on */
     DESIGN_RULES
 } design_rule;
@@ -24,7 +24,7 @@ typedef enum design_order {
 } design_order;
 
 typedef struct design {
-    size_t processes, repetitions; /* of each side; repetitions: in each process, successive ones */
+    size_t processes, repetitions; /* processes per side, successive repetitions per process */
     design_order order;
 } design;
 
@@ -48,12 +48,12 @@ typedef struct design_population {
 typedef struct design_tally {
     size_t draws;                                       /* 0: the population is too small */
     size_t larger[DESIGN_RULES], smaller[DESIGN_RULES]; /* claims */
-    /* The number of studies without a common process into which the population can be divided: a rate is as precise as
-     * that many independent studies, however many draws there are. The mean over draws is at least as precise as they
-     * are (it is a U-statistic: Hoeffding, Annals of Mathematical Statistics 19, 1948). */
+    /* The number of studies without a common process into which the population can be divided: a rate is at least as
+     * precise as the rate of that many independent studies, because the mean over draws is a U-statistic (Hoeffding,
+     * Annals of Mathematical Statistics 19, 1948); more draws add nothing. */
     size_t independent;
 } design_tally;
 
 /* Draws studies without replacement. rules: bit k is rule k; others stay 0. */
-status design_try(const design_population *of, const design *d, unsigned rules, size_t draws, double effect,
+status design_try(const design_population *population, const design *d, unsigned rules, size_t draws, double effect,
                   uint64_t seed, design_tally *out, diagnostic *why);

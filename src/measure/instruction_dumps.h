@@ -1,7 +1,7 @@
-/* Instructions of frames as callgrind counts them (valgrind), where no clock can decide and no hardware counter is: the
- * same number within 0.03 % however busy the machine is. valgrind writes a dump whenever renderer_render returns, with
- * the counts since it was entered (INSTRUCTION_DUMPS_OPTIONS); this reads and removes them. `cuvette study run
- * --instructions` sets the variable. Plain values; nothing to release. */
+/* Instructions of frames, counted by callgrind (valgrind), for machines with noisy clocks and no hardware counters: the
+ * counts repeat within 0.03 % however busy the machine is. valgrind writes a dump whenever renderer_render returns,
+ * with the counts since it was entered (INSTRUCTION_DUMPS_OPTIONS); these functions read and remove the dumps. `cuvette
+ * study run --instructions` sets the variable. Plain values; nothing to release. */
 #pragma once
 
 #include <stdbool.h>
@@ -9,7 +9,7 @@
 
 /* The variable that has the path of the dumps, without their numbers. */
 #define INSTRUCTION_DUMPS_VARIABLE "CUVETTE_CALLGRIND"
-/* The options of valgrind that make the dumps, besides --callgrind-out-file with that path. */
+/* valgrind's options for the dumps, in addition to --callgrind-out-file=PATH. */
 #define INSTRUCTION_DUMPS_OPTIONS "--tool=callgrind", "--zero-before=renderer_render", "--dump-after=renderer_render"
 
 typedef struct instruction_dumps {

@@ -1,3 +1,4 @@
+/* The hierarchical bootstrap of repetitions within processes, and intervals of medians; levels.h names the sources. */
 #include "measure/levels.h"
 
 #include "base/random.h"
@@ -52,9 +53,9 @@ double level_difference(const level_sample *a, const level_sample *b, void *unus
 /* 2000 resamples place the ends of a 95% interval within about half a percent of probability. */
 enum { RESAMPLES = LEVEL_RESAMPLES, PERCENTILES_LEAST = 10 };
 
-/* A resampled sample; its arrays have the size of the original, and may hold larger processes than were drawn. */
+/* A resample; its array of values is large enough even if the longest process is drawn every time. */
 typedef struct resample {
-    const level_sample *of;
+    const level_sample *original;
     double *values;
     size_t *start;
     level_sample drawn;
@@ -68,18 +69,18 @@ static size_t longest(const level_sample *s)
     return most;
 }
 
-static bool resample_create(const level_sample *of, resample *out)
+static bool resample_create(const level_sample *original, resample *out)
 {
-    *out = (resample){.of = of};
-    if (!of)
+    *out = (resample){.original = original};
+    if (!original)
         return true;
-    out->values = malloc((longest(of) * of->processes + 1) * sizeof *out->values);
-    out->start = calloc(of->processes + 1, sizeof *out->start);
-    out->drawn = (level_sample){out->values, out->start, of->processes};
+    out->values = malloc((longest(original) * original->processes + 1) * sizeof *out->values);
+    out->start = calloc(original->processes + 1, sizeof *out->start);
+    out->drawn = (level_sample){out->values, out->start, original->processes};
     return out->values && out->start;
 }
 
-/* An index below count, for the draw of a counter. */
+/* A random index below count; the other arguments are the key and the counter. */
 static size_t draw(uint64_t seed, uint32_t round, uint32_t which, uint32_t process, uint32_t index, size_t count)
 {
     const double unit = random_unit(random_at(seed, round, which, process, index).word[0]);
@@ -88,17 +89,17 @@ static size_t draw(uint64_t seed, uint32_t round, uint32_t which, uint32_t proce
 
 static void draw_repetitions(resample *r, uint64_t seed, uint32_t round, uint32_t stream)
 {
-    const size_t count = count_of(r->of, 0);
+    const size_t count = count_of(r->original, 0);
     for (size_t i = 0; i < count; i++)
-        r->values[i] = r->of->values[r->of->start[0] + draw(seed, round, stream, 0, (uint32_t)i, count)];
+        r->values[i] = r->original->values[r->original->start[0] + draw(seed, round, stream, 0, (uint32_t)i, count)];
     r->start[1] = count;
 }
 
-/* Draws processes with all of their repetitions; of a single process its repetitions. stream: equal for paired
+/* Draws processes with all of their repetitions, or the repetitions of a single process. stream: equal for paired
  * samples. */
 static void resample_draw(resample *r, uint64_t seed, uint32_t round, uint32_t stream)
 {
-    const level_sample *s = r->of;
+    const level_sample *s = r->original;
     if (s->processes == 1) {
         draw_repetitions(r, seed, round, stream);
         return;
@@ -113,7 +114,7 @@ static void resample_draw(resample *r, uint64_t seed, uint32_t round, uint32_t s
     r->start[s->processes] = at;
 }
 
-/* The value at a fraction of the sorted values, between neighbours. */
+/* The quantile by linear interpolation between sorted values. */
 static double quantile(const double *sorted, size_t count, double fraction)
 {
     const double at = fmin(fmax(fraction, 0.0), 1.0) * (double)(count - 1);
@@ -126,7 +127,7 @@ static size_t smaller(size_t a, size_t b)
     return a < b ? a : b;
 }
 
-/* The number of independent draws of the sample with fewer. */
+/* The number of independent draws of the smaller sample. */
 static size_t draws_of(const level_sample *a, const level_sample *b)
 {
     const size_t first = a->processes > 1 ? a->processes : count_of(a, 0);
@@ -140,8 +141,8 @@ static bool has_interval(const level_sample *a, const level_sample *b)
     return values >= 6 && processes != 2;
 }
 
-/* Resamples of a few processes are never outside their range, which is too narrow (three of one sign are no evidence),
- * so that percentiles do not suffice: Student's t with the bootstrap's standard error. */
+/* Resamples of few processes never leave the range of their values, which is too narrow an interval: three values of
+ * one sign are no evidence. So the interval is Student's t with the bootstrap's standard error. */
 static void set_symmetric(const double *values, double t, level_interval *out)
 {
     double sum = 0, squares = 0;
@@ -212,7 +213,7 @@ static int by_labelled_value(const void *a, const void *b)
     return (x->value > y->value) - (x->value < y->value);
 }
 
-/* The median of sorted values, each as often as its process was drawn, `total` in all. */
+/* The median of sorted values, each repeated as often as its process was drawn; total: the number with repeats. */
 static double weighted_median(const labelled *sorted, const size_t *drawn, size_t total)
 {
     size_t seen = 0, i = 0;
@@ -241,7 +242,7 @@ static void resample_medians(const level_sample *s, const labelled *sorted, uint
     }
 }
 
-static status median_of_few(const level_sample *s, size_t count, level_interval *out, diagnostic *why)
+static status median_of_all(const level_sample *s, size_t count, level_interval *out, diagnostic *why)
 {
     double *copy = malloc((count + 1) * sizeof *copy);
     if (!copy)
@@ -253,7 +254,7 @@ static status median_of_few(const level_sample *s, size_t count, level_interval 
     return STATUS_OK;
 }
 
-/* The range itself, or a wider one where a value lies outside it. */
+/* The claimed range, or a wider one if a value is outside it. */
 static level_range range_of(const level_sample *s, level_range claimed)
 {
     double least = INFINITY, largest = -INFINITY;
@@ -292,7 +293,7 @@ status level_median(const level_sample *s, level_range range, uint64_t seed, lev
     *out = (level_interval){NAN, NAN, NAN};
     if (count == 0)
         return STATUS_OK;
-    TRY(median_of_few(s, count, out, why));
+    TRY(median_of_all(s, count, out, why));
     if (s->processes < 3 || count < 6)
         return STATUS_OK;
     labelled *sorted = malloc(count * sizeof *sorted);

@@ -54,7 +54,7 @@ noise_reading noise_read(const char *root)
     }
     const double hz = frequency_of_sysfs(root);
     r.frequency_hz = isnan(hz) ? frequency_of_cpuinfo(root) : hz;
-    r.own_s = clock_process_cpu_s();
+    r.process_s = clock_process_cpu_s();
     r.wall_s = clock_wall_s();
     return r;
 }
@@ -73,7 +73,7 @@ static double fraction(double part_s, double capacity_s)
 machine_noise noise_between(const noise_reading *before, const noise_reading *after)
 {
     const double capacity_s = (after->wall_s - before->wall_s) * after->units;
-    const double others_s = (after->busy_s - before->busy_s) - (after->own_s - before->own_s);
+    const double others_s = (after->busy_s - before->busy_s) - (after->process_s - before->process_s);
     const double steal_s = after->steal_s - before->steal_s;
     return (machine_noise){fraction(others_s, capacity_s), fraction(steal_s, capacity_s), after->frequency_hz, NAN,
                            NAN};
@@ -85,7 +85,7 @@ void noise_window_add(noise_window *w, const noise_reading *now)
 {
     const double apart_s = 2 * NOISE_WINDOW_S / NOISE_READINGS;
     if (w->count > 1 && now->wall_s - w->reading[w->count - 2].wall_s < apart_s)
-        w->count--; /* the last one is replaced */
+        w->count--; /* *now replaces the last reading */
     if (w->count == NOISE_READINGS) {
         memmove(w->reading, w->reading + 1, (NOISE_READINGS - 1) * sizeof *w->reading);
         w->count--;
@@ -121,7 +121,7 @@ noise_rule noise_rule_default(void)
     return (noise_rule){.others_fraction = 0.05, .steal_fraction = NAN, .frequency_drop = NAN, .stalled_fraction = 0.1};
 }
 
-noise_verdict noise_judge(const noise_rule *rule, const machine_noise *noise, bool broken[NOISE_KINDS])
+noise_verdict noise_judge(const noise_rule *rule, const machine_noise *noise, bool exceeded[NOISE_KINDS])
 {
     const double bound[NOISE_KINDS] = {rule->others_fraction, rule->steal_fraction, rule->frequency_drop,
                                        rule->stalled_fraction};
@@ -129,10 +129,10 @@ noise_verdict noise_judge(const noise_rule *rule, const machine_noise *noise, bo
                                        noise->stalled_fraction};
     noise_verdict verdict = NOISE_NOT_KNOWN;
     for (noise_kind kind = 0; kind < NOISE_KINDS; kind++) {
-        const bool breaks = value[kind] > bound[kind];
-        if (broken)
-            broken[kind] = breaks;
-        if (breaks)
+        const bool exceeds = value[kind] > bound[kind];
+        if (exceeded)
+            exceeded[kind] = exceeds;
+        if (exceeds)
             verdict = NOISE_DISTURBED;
         else if (verdict == NOISE_NOT_KNOWN && !isnan(bound[kind]) && !isnan(value[kind]))
             verdict = NOISE_UNDISTURBED;

@@ -16,11 +16,10 @@ int64_t proc_file_field(const char *text, const char *key);
 typedef struct proc_stat {
     double busy_s;  /* user, nice, system, irq, softirq and steal, sum over all units, since boot */
     double idle_s;  /* idle and iowait */
-    double steal_s; /* in which the hypervisor ran others; part of busy_s */
+    double steal_s; /* withheld by the hypervisor; part of busy_s */
     int units;      /* lines cpu0, cpu1, ...: processing units online */
 } proc_stat;
 
-/* Parses the content of the file; tests have that of several machines. ticks_per_s is sysconf(_SC_CLK_TCK). False when
- * it has no line "cpu " with at least four counts, or when all counts are zero, as in sandboxes that hide the
- * machine. */
+/* Parses the text of /proc/stat. ticks_per_s is sysconf(_SC_CLK_TCK). False when it has no line "cpu " with at least
+ * four counts, or when all counts are zero, as in sandboxes that hide the machine. */
 bool proc_stat_parse(const char *text, double ticks_per_s, proc_stat *out);

@@ -22,7 +22,7 @@ summary summarize(double *values, size_t count);
 double summary_relative_width(const summary *s);
 
 /* The 95% interval of a probability, from hits in count independent trials; it covers at least 95% (Clopper and
- * Pearson, Biometrika 26, 1934). hits may be a fraction: a mean over trials that overlap. NaN without a trial. */
+ * Pearson, Biometrika 26, 1934). hits need not be an integer: it may be a mean over draws. NaN without a trial. */
 typedef struct share_interval {
     double share, low, high;
 } share_interval;
@@ -52,6 +52,6 @@ double beta_quantile(double p, double a, double b);
  * instead of operating curves). At least 3; 0 if it is more than 10000 or unknown. */
 size_t power_pairs(double deviation, double difference, double power);
 
-/* An upper limit of a standard deviation that was estimated from count values: it is below it with the given
- * probability. A pilot's own estimate is too small in half of all cases. */
+/* The upper confidence limit of a standard deviation that was estimated from `count` values. The estimate of a pilot
+ * study is itself too small in half of all cases. */
 double power_upper_deviation(double deviation, size_t count, double probability);

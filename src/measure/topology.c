@@ -14,7 +14,6 @@
 
 /* ---- the tree ---- */
 
-/* Appends a node. */
 static bool add_node(topology *machine, int depth, char kind, int unit)
 {
     if (!room_for_one(&machine->nodes, (size_t)machine->count, sizeof *machine->nodes))
@@ -56,7 +55,7 @@ static bool is_unit(const topology_node *node, int round)
     return node->kind == 'u' && (round == ANY_ROUND || node->round == round);
 }
 
-/* The units of a round below a node. */
+/* The number of units of a round below a node. */
 static int weight(const topology *machine, int node, int round)
 {
     int units = 0;
@@ -146,13 +145,13 @@ static status no_room(diagnostic *why)
 static status assume(topology *machine, diagnostic *why)
 {
     const size_t size = CPU_ALLOC_SIZE(UNITS_MAX);
-    cpu_set_t *own = CPU_ALLOC(UNITS_MAX);
-    const bool known = own && sched_getaffinity(0, size, own) == 0;
+    cpu_set_t *usable = CPU_ALLOC(UNITS_MAX);
+    const bool known = usable && sched_getaffinity(0, size, usable) == 0;
     bool good = add_node(machine, 0, 'p', -1);
     for (int i = 0; good && i < UNITS_MAX; i++)
-        if (known ? CPU_ISSET_S((size_t)i, size, own) : i == 0)
+        if (known ? CPU_ISSET_S((size_t)i, size, usable) : i == 0)
             good = add_node(machine, 1, 'c', -1) && add_node(machine, 2, 'u', i);
-    CPU_FREE(own);
+    CPU_FREE(usable);
     const long installed = sysconf(_SC_NPROCESSORS_CONF);
     machine->installed = installed > 0 && installed < UNITS_MAX ? (int)installed : 1;
     machine->assumed = true;
@@ -281,9 +280,9 @@ static int distribute(const topology *machine, int round, int worker, int count)
         const int total = weight(machine, node, round), end = machine->nodes[node].end;
         int before = 0, chosen = -1, chunk = 0;
         for (int child = node + 1; child < end && chosen < 0; child = machine->nodes[child].end) {
-            const int own = weight(machine, child, round);
-            chunk = ((before + own) * count + total - 1) / total - (before * count + total - 1) / total;
-            before += own;
+            const int units = weight(machine, child, round);
+            chunk = ((before + units) * count + total - 1) / total - (before * count + total - 1) / total;
+            before += units;
             if (worker < chunk)
                 chosen = child;
             else
@@ -309,7 +308,7 @@ int topology_place(const topology *machine, pin_policy policy, int worker, int c
         return unit_below(machine, 0, ANY_ROUND, worker);
 
     /* Weights are numbers of units, so that a package with two units per core could be filled before every core of a
-     * package with one unit per core is used. Therefore one unit of each core first, then the second units. */
+     * package with one unit per core is used. Therefore the first units of all cores come first. */
     for (int r = 0, room; (room = weight(machine, 0, r)) > 0; r++) {
         if (worker < room)
             return distribute(machine, r, worker, count < room ? (count > worker ? count : worker + 1) : room);
@@ -321,7 +320,7 @@ int topology_place(const topology *machine, pin_policy policy, int worker, int c
 
 /* ---- binding ---- */
 
-/* Adds the unit, or all with unit -1, if this process may use it. */
+/* Adds a unit of the topology, or all of them for -1, to the set; false if there is none. */
 static bool add_units(const topology *machine, int unit, cpu_set_t *set, size_t size)
 {
     bool found = false;
@@ -337,16 +336,16 @@ static bool add_units(const topology *machine, int unit, cpu_set_t *set, size_t 
 
 status topology_bind_thread(const topology *machine, int pu, diagnostic *why)
 {
-    cpu_set_t set[UNITS_MAX / CPU_SETSIZE]; /* 8 KiB on the stack: a worker cannot report a lack of memory */
+    cpu_set_t set[UNITS_MAX / CPU_SETSIZE]; /* 8 KiB on the stack, because a worker cannot report that memory ran out */
     memset(set, 0, sizeof set);
     const bool found = add_units(machine, pu, set, sizeof set);
     const int failed = found && !machine->described ? sched_setaffinity(0, sizeof set, set) : 0, reason = errno;
     if (!found)
-        return diagnose(why, STATUS_BAD_INPUT, "`cuvette machine` lists the available units",
+        return diagnose(why, STATUS_BAD_INPUT, "use one of the units that `cuvette machine` lists",
                         "this process may not use processing unit %d", pu);
     if (failed)
-        return diagnose(why, STATUS_FAILURE, "render with render.pin none",
-                        "cannot bind a thread to processing unit %d: %s", pu, strerrordesc_np(reason));
+        return diagnose(why, STATUS_FAILURE, "set render.pin=none", "cannot bind a thread to processing unit %d: %s",
+                        pu, strerrordesc_np(reason));
     return STATUS_OK;
 }
 

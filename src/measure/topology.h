@@ -1,7 +1,7 @@
-/* The topology of the machine: its processors and the placement of threads on them. hwloc finds it, in a child process
- * (fork), so that its failures are not ours: if it fails, each processing unit counts as a core, and the summary
- * reports it. The creator owns a topology; several threads may read it. The process's own CPU binding (taskset, cgroup)
- * at the time of creation is respected: only those units are used. */
+/* The topology of the machine: its processors and the placement of threads on them. hwloc finds it, in a child process,
+ * so that a crash of hwloc does no harm: then each processing unit counts as a core, and the summary says so. The
+ * creator owns a topology; several threads may read it. The process's own CPU binding (taskset, cgroup) at the time of
+ * creation is respected: only those units are used. */
 #pragma once
 
 #include "base/status.h"

@@ -1,6 +1,6 @@
-/* The topology of a machine as text, by hwloc, in a child process. Lines: "node DEPTH KIND UNIT" for each object of the
- * tree, in preorder; "installed N"; "cache LEVEL BYTES"; "memory BYTES"; "model TEXT"; and "xml", followed by hwloc's
- * XML to the end. */
+/* Writes the topology of a machine as text; hwloc finds it in a child process. Lines: "node DEPTH KIND UNIT" for each
+ * object of the tree, in preorder; "installed N"; "cache LEVEL BYTES"; "memory BYTES"; "model TEXT"; and "xml",
+ * followed by hwloc's XML to the end. */
 #include "measure/topology_private.h"
 
 #include <errno.h>
@@ -30,12 +30,12 @@ static void forget_owner(hwloc_topology_t tree)
 /* If the system does not report the process's binding, all units of the tree are used. */
 static bool respect_binding(hwloc_topology_t tree)
 {
-    hwloc_bitmap_t own = hwloc_bitmap_alloc();
-    bool good = own != NULL;
-    if (own && hwloc_get_cpubind(tree, own, HWLOC_CPUBIND_PROCESS) == 0 &&
-        hwloc_bitmap_intersects(own, hwloc_topology_get_topology_cpuset(tree)))
-        good = hwloc_topology_restrict(tree, own, 0) == 0;
-    hwloc_bitmap_free(own);
+    hwloc_bitmap_t binding = hwloc_bitmap_alloc();
+    bool good = binding != NULL;
+    if (binding && hwloc_get_cpubind(tree, binding, HWLOC_CPUBIND_PROCESS) == 0 &&
+        hwloc_bitmap_intersects(binding, hwloc_topology_get_topology_cpuset(tree)))
+        good = hwloc_topology_restrict(tree, binding, 0) == 0;
+    hwloc_bitmap_free(binding);
     return good;
 }
 
@@ -105,8 +105,8 @@ int topology_discover(const char *synthetic, FILE *out)
     return code;
 }
 
-/* A crash leaves no message and no file, and an endless loop ends. */
-static void answer(const char *synthetic, int pipe_end)
+/* Without messages and core files if hwloc crashes; an alarm ends an endless loop. */
+static void run_child(const char *synthetic, int pipe_end)
 {
     enum { LIMIT_S = 20 };
     const int nothing = open("/dev/null", O_WRONLY | O_CLOEXEC);
@@ -125,7 +125,7 @@ static void answer(const char *synthetic, int pipe_end)
 
 /* ---- the parent ---- */
 
-/* NULL: out of memory, or the pipe failed. */
+/* All text of the pipe; NULL: out of memory, or the pipe failed. */
 static char *read_all(int fd, bool *no_memory)
 {
     size_t room = 4096, used = 0;
@@ -173,16 +173,16 @@ char *topology_discover_in_child(const char *synthetic, status *code, bool *no_m
         return NULL;
     const pid_t child = fork();
     if (child == 0)
-        answer(synthetic, ends[1]);
+        run_child(synthetic, ends[1]);
     close(ends[1]);
     char *text = child > 0 ? read_all(ends[0], no_memory) : NULL;
     close(ends[0]);
-    const int left = child > 0 ? reap(child) : STATUS_FAILURE;
-    if (text && left == STATUS_OK) {
+    const int exit_code = child > 0 ? reap(child) : STATUS_FAILURE;
+    if (text && exit_code == STATUS_OK) {
         *code = STATUS_OK;
         return text;
     }
-    *code = left == STATUS_BAD_INPUT ? STATUS_BAD_INPUT : STATUS_FAILURE;
+    *code = exit_code == STATUS_BAD_INPUT ? STATUS_BAD_INPUT : STATUS_FAILURE;
     free(text);
     return NULL;
 }

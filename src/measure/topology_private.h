@@ -1,5 +1,5 @@
-/* The content of a topology. Private to src/measure. hwloc itself runs in a child process, which sends this content as
- * text (topology_discover.c): out of memory, hwloc 2.9 ends the program at some of its allocations. */
+/* The content of a topology. Private to src/measure. hwloc runs in a child process, which sends this content as text
+ * (topology_discover.c), because hwloc 2.9 aborts at some failed allocations. */
 #pragma once
 
 #include "measure/topology.h"
@@ -19,10 +19,10 @@ typedef struct topology_node {
 enum { TOPOLOGY_CACHES = 3 };
 
 struct topology {
-    topology_node *nodes; /* with at least one processing unit each; only units that this process may use */
+    topology_node *nodes; /* each with at least one processing unit; only units that this process may use */
     int count;
     int installed;                  /* units of the machine, usable or not */
-    bool described;                 /* by a text: threads cannot be bound */
+    bool described;                 /* by a synthetic description: binding a thread has no effect */
     bool assumed;                   /* hwloc failed: every unit counts as a core */
     int64_t cache[TOPOLOGY_CACHES]; /* bytes of the first L1d, L2 and L3; 0: unknown */
     int64_t memory;                 /* bytes; 0: unknown */
@@ -31,8 +31,8 @@ struct topology {
 };
 
 /* hwloc's description of this machine, or of a synthetic one, restricted to the units that this process may use, as
- * text. Returns the exit status of the child process: 0, or STATUS_BAD_INPUT for a synthetic description that is none;
- * writes a part of the text in case of a failure. Calls no function of hwloc's outside the child. */
+ * text. Returns the exit status of the child process: 0, or STATUS_BAD_INPUT for an invalid synthetic description.
+ * After a failure the text may be incomplete. Only the child calls hwloc. */
 int topology_discover(const char *synthetic, FILE *out);
 
 /* The output of topology_discover in a child process; NULL, with a status, if that failed. *no_memory: memory ran out

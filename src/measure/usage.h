@@ -1,6 +1,6 @@
-/* Resources that a piece of work uses, read before and after it and subtracted: of the process and the machine, of a
- * thread, of the processor; and what could disturb a measurement. Unknown values are NaN (reals) or -1 (integers), and
- * are written as NA. */
+/* Resources used by the process, the machine, a thread and the processor, as differences between readings before and
+ * after the work; and what could disturb a measurement. Unknown values are NaN (reals) or -1 (integers), and are
+ * written as NA. */
 #pragma once
 
 #include <stdbool.h>
@@ -28,8 +28,8 @@ double usage_others_fraction(const usage *difference);
 /* ---- a thread ---- */
 
 /* What the calling thread did in an interval: it ran, it waited for a processing unit although it could run, or it was
- * blocked (by a lock, a semaphore, a page from the disk). On more threads than units, the second is the price of their
- * number. Read at the start and at the end by the thread itself; a reading takes some 10 microseconds, because it opens
+ * blocked (by a lock, a semaphore, a page from the disk). With more threads than units, waiting is the price of the
+ * surplus. The thread itself reads at the start and at the end; a reading takes some 10 microseconds, because it opens
  * a file of /proc. */
 typedef struct thread_usage {
     double wall_s;     /* monotonic clock; the length of the interval after thread_usage_since */
@@ -45,8 +45,8 @@ thread_usage thread_usage_now(void);
 thread_usage thread_usage_since(const thread_usage *before);
 
 /* Reads a file schedstat: nanoseconds of running and of waiting while runnable, and the number of time slices (Linux,
- * Documentation/scheduler/sched-stats.rst). False if it is something else, or three zeros: a kernel that does not
- * measure it writes these. */
+ * Documentation/scheduler/sched-stats.rst). False for other text, and for the three zeros of a kernel that does not
+ * measure this. */
 bool thread_usage_parse(const char *schedstat, double *runnable_s);
 
 /* ---- hardware counters: hardware_counter.c ---- */
@@ -69,7 +69,7 @@ void hardware_counter_destroy(hardware_counter *counter);
 /* ---- disturbances: disturbances.c ---- */
 
 /* Reports what could disturb a measurement now: calls line with one short text for each ("governor powersave", "turbo
- * on", "load 3.2", "others use 40% of the machine"), never if nothing is found. The load is observed for sample_s
+ * on", "load 3.2", "others use 40% of the machine"), not at all if nothing is found. The load is observed for sample_s
  * seconds (0: not at all, and nothing is reported about other processes). */
 void usage_disturbances(double sample_s, void (*line)(void *context, const char *text), void *context);
 
@@ -79,5 +79,5 @@ const char *usage_advice(const char *disturbance);
 typedef void (*disturbance_line)(void *context, const char *text);
 
 /* The settings (governor, turbo, threads per core, hypervisor, quota), load and swap by the files of /proc and /sys
- * below root, "" for this machine: so that it can be tested with copies of any machine's files. */
+ * below root: "" for this machine; tests have copies of other machines' files. */
 void disturbances_of_machine(const char *root, disturbance_line line, void *context);

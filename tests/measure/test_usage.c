@@ -43,14 +43,14 @@ static void proc_stat_is_read(void **state)
 static void noise_is_the_rest_of_the_machine(void **state)
 {
     (void)state;
-    const noise_reading before = {.wall_s = 10, .busy_s = 100, .steal_s = 5, .own_s = 1, .units = 2};
+    const noise_reading before = {.wall_s = 10, .busy_s = 100, .steal_s = 5, .process_s = 1, .units = 2};
     const noise_reading after = {
-        .wall_s = 11, .busy_s = 100.8, .steal_s = 5.2, .own_s = 1.3, .units = 2, .frequency_hz = 2e9};
+        .wall_s = 11, .busy_s = 100.8, .steal_s = 5.2, .process_s = 1.3, .units = 2, .frequency_hz = 2e9};
     const machine_noise noise = noise_between(&before, &after);
     assert_true(fabs(noise.others_fraction - 0.25) < 1e-12);
     assert_true(fabs(noise.steal_fraction - 0.1) < 1e-12);
     assert_true(noise.frequency_hz == 2e9);
-    const noise_reading unknown = {.wall_s = 11, .busy_s = NAN, .steal_s = NAN, .own_s = 1.3, .units = NAN};
+    const noise_reading unknown = {.wall_s = 11, .busy_s = NAN, .steal_s = NAN, .process_s = 1.3, .units = NAN};
     assert_true(isnan(noise_between(&before, &unknown).others_fraction));
     assert_true(isnan(noise_between(&before, &unknown).steal_fraction));
 }
@@ -61,7 +61,7 @@ static void the_window_looks_back_half_a_second(void **state)
     (void)state;
     noise_window w = {.count = 0};
     assert_true(isnan(noise_window_since(&w, 0, &(noise_reading){.wall_s = 1}).others_fraction));
-    noise_reading at = {.units = 1, .own_s = 0};
+    noise_reading at = {.units = 1, .process_s = 0};
     for (int i = 0; i <= 3000; i++) { /* others are busy in every second from 1 s to 1.5 s after its start */
         at.wall_s = 0.001 * i;
         at.busy_s = floor(at.wall_s) * 0.5 + fmin(at.wall_s - floor(at.wall_s), 0.5);
@@ -420,7 +420,7 @@ static void disturbances_of_the_machine_are_reported(void **state)
     assert_string_equal(message, "governor powersave\n"
                                  "turbo on\n"
                                  "threads share cores (SMT on)\n"
-                                 "virtual machine: its hypervisor may run others on the same cores\n"
+                                 "virtual machine: its hypervisor may run other guests on the same cores\n"
                                  "control group limits the process to 1.5 units\n"
                                  "load 3.2\n"
                                  "swap in use, 3000 MiB\n");
