@@ -31,7 +31,7 @@ uint64_t job_account_hash(const job_account *a)
     return a->film_hash ? a->film_hash : film_hash(a->result->img);
 }
 
-/* NaN when out of memory. */
+/* The median; `otherwise` without values, NaN when out of memory. */
 static double median(const double *values, size_t count, double otherwise)
 {
     if (count <= 1)

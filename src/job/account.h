@@ -10,14 +10,14 @@
 #include "render/frame/renderer.h"
 
 typedef struct job_account {
-    const scene *of;
+    const scene *of; /* the rendered scene */
     isa level;
-    render_result *result;    /* of the last complete frame; a partial one if none is complete */
+    render_result *result;    /* the last complete frame; a partial one if none is complete */
     bool whole;               /* all requested frames are finished */
     size_t count;             /* number of finished frames */
-    double *wall_s, *cpu_s;   /* of each finished frame, in order */
+    double *wall_s, *cpu_s;   /* a time for each finished frame, in order */
     usage spent;              /* over all frames, if the job measures it */
-    machine_noise noise;      /* over all frames, or NOISE_WINDOW_S before their end, if the job measures it */
+    machine_noise noise;      /* over all frames, at least over the last NOISE_WINDOW_S, if the job measures it */
     hardware_counts hardware; /* over all frames, including pool threads, if the job measures it */
     int64_t ended_ms;         /* end of the last frame, milliseconds since 1970 UTC */
     uint64_t film_hash;       /* 0: not computed yet; use job_account_hash */

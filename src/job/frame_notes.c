@@ -9,10 +9,10 @@
 
 /* --- light narrower than a pixel --- */
 
-/* Where the footprints of samples are known, such light keeps its power at any number of samples
- * (render/photons/photon_map.c); behind crystals and surfaces with interpolated normals they are guessed. */
+/* If the footprints of samples are known, light narrower than a pixel keeps its power at any number of samples
+ * (render/photons/photon_map.c). Behind crystals and surfaces with interpolated normals, footprints are guessed. */
 
-/* Of all light in the image, the part that may be missing. */
+/* A note is reported if a larger fraction of the image's light may be missing. */
 #define NOTED 0.01
 
 /* The sum over all pixels and channels. */
@@ -40,7 +40,7 @@ static void note_narrow_light(const job_account *a, const note_taker *taker)
     const int64_t samples = factor * factor * a->of->render.samples;
     char remedy[NOTE_TEXT_MAX] = "set render.integrator=path, whose random points find all light on average";
     if (factor < COUNTERS_FACTORS && samples <= SCENE_SAMPLES_MAX)
-        snprintf(remedy, sizeof remedy, "render.samples=%d suffice", (int)samples);
+        snprintf(remedy, sizeof remedy, "set render.samples=%d", (int)samples);
     note_report(taker, "render", "samples", remedy,
                 "%.0f %% of the image's light is narrower than a pixel, behind surfaces where it may be missed",
                 fmax(100.0 * NOTED * all / one_percent, 1.0));
@@ -48,7 +48,7 @@ static void note_narrow_light(const job_account *a, const note_taker *taker)
 
 /* --- light of few photons --- */
 
-/* To two significant digits, which are a safer reading of a random number than all of them. */
+/* Rounds up to two significant digits: the number of photons that suffice is a random estimate. */
 static int64_t rounded_up(int64_t number)
 {
     int64_t digit = 1;

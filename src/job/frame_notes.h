@@ -4,5 +4,5 @@
 #include "job/account.h"
 #include "lint/lint.h"
 
-/* Passes the notes on the account's frame to the callback, none before a frame is complete. */
+/* Reports the notes on the account's frame; none if no frame is complete. */
 void frame_notes(const job_account *a, const note_taker *taker);

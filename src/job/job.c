@@ -13,10 +13,10 @@
 
 /* --- the mesh cache --- */
 
-void mesh_cache_clear(mesh_cache *s)
+void mesh_cache_clear(mesh_cache *cache)
 {
-    while (s->count > 0)
-        scene_destroy(s->scenes[--s->count]);
+    while (cache->count > 0)
+        scene_destroy(cache->scenes[--cache->count]);
 }
 
 static size_t triangles_of(const scene *s)
@@ -37,26 +37,26 @@ static bool has_all_meshes(const scene *s)
 }
 
 /* A full cache is cleared: the cells of a study repeat in cycles, for which no replacement order is better. */
-static void add_to_cache(mesh_cache *s, const scene *setting)
+static void add_to_cache(mesh_cache *cache, const scene *s)
 {
-    size_t triangles = triangles_of(setting);
-    for (size_t i = 0; i < s->count; i++)
-        triangles += triangles_of(s->scenes[i]);
-    if (s->count == MESH_CACHE_SCENES || triangles > MESH_CACHE_TRIANGLES)
-        mesh_cache_clear(s);
-    scene *copy = scene_clone(setting); /* if this fails, the mesh is merely built again */
+    size_t triangles = triangles_of(s);
+    for (size_t i = 0; i < cache->count; i++)
+        triangles += triangles_of(cache->scenes[i]);
+    if (cache->count == MESH_CACHE_SCENES || triangles > MESH_CACHE_TRIANGLES)
+        mesh_cache_clear(cache);
+    scene *copy = scene_clone(s); /* if this fails, the meshes are merely built again */
     if (copy)
-        s->scenes[s->count++] = copy;
+        cache->scenes[cache->count++] = copy;
 }
 
-status mesh_cache_load(mesh_cache *s, scene *setting, const load_watch *watch, diagnostic *why)
+status mesh_cache_load(mesh_cache *cache, scene *s, const load_watch *watch, diagnostic *why)
 {
-    for (size_t i = 0; i < s->count; i++)
-        scene_borrow_meshes(setting, s->scenes[i]);
-    const bool new_ones = !has_all_meshes(setting);
-    const status code = scene_load_until(setting, watch, why);
+    for (size_t i = 0; i < cache->count; i++)
+        scene_borrow_meshes(s, cache->scenes[i]);
+    const bool new_ones = !has_all_meshes(s);
+    const status code = scene_load_until(s, watch, why);
     if (code == STATUS_OK && new_ones)
-        add_to_cache(s, setting);
+        add_to_cache(cache, s);
     return code;
 }
 
@@ -134,26 +134,26 @@ status job_load(job *j, scene *s, const load_watch *watch, diagnostic *why)
 
 /* The frames that are being rendered. */
 typedef struct work {
-    job *of;
+    job *job;
     const render_options *requested;
     size_t frame, frames; /* current frame, total number */
     double begun_s;       /* start of this frame */
-    cancel_token limit;   /* of its time */
+    cancel_token late;    /* set when this frame exceeds job_settings.time_s */
 } work;
 
-static void show(void *of, double fraction)
+static void report_progress(void *context, double fraction)
 {
-    work *w = of;
-    const double limit_s = w->of->settings.time_s;
+    work *w = context;
+    const double limit_s = w->job->settings.time_s;
     if (limit_s > 0.0 && clock_wall_s() - w->begun_s > limit_s)
-        cancel_set(&w->limit);
+        cancel_set(&w->late);
     else if (w->requested->progress)
         w->requested->progress(w->requested->context, ((double)w->frame + fraction) / (double)w->frames);
 }
 
-static void pass_on_tile(void *of, const film *img, int x0, int y0, int x1, int y1)
+static void report_tile(void *context, const film *img, int x0, int y0, int x1, int y1)
 {
-    const work *w = of;
+    const work *w = context;
     w->requested->tile_done(w->requested->context, img, x0, y0, x1, y1);
 }
 
@@ -184,27 +184,27 @@ static status prepare(job *j, const scene *s, const render_options *requested, d
     return renderer_prepare(j->renderer, s, why);
 }
 
-/* The part of this process; then the others' parts are added. */
+/* Renders the tiles of this process, then adds those of the other processes. */
 static status render_shared(work *w, const scene *s, render_options *options, render_result **out, diagnostic *why)
 {
-    const job_sharing *sharing = w->of->settings.sharing;
-    TRY(sharing->begin(sharing->of, s, options, &options->source, why));
+    const job_sharing *sharing = w->job->settings.sharing;
+    TRY(sharing->begin(sharing->context, s, options, &options->source, why));
     options->progress = NULL;
-    const status traced = renderer_render(w->of->renderer, s, options, out, why);
-    return sharing->end(sharing->of, traced, *out, why);
+    const status rendered = renderer_render(w->job->renderer, s, options, out, why);
+    return sharing->end(sharing->context, rendered, *out, why);
 }
 
 /* Renders one frame, with or without the maps. */
-static status trace(work *w, const scene *s, bool maps, render_result **out, diagnostic *why)
+static status render_frame(work *w, const scene *s, bool maps, render_result **out, diagnostic *why)
 {
     render_options options = {.usage = w->requested->usage,
-                              .progress = show,
+                              .progress = report_progress,
                               .progress_s = w->requested->progress_s,
                               .watch_s = instruction_dumps_exist() ? 0.9 : 0,
                               .context = w,
                               .source = w->requested->source};
     if (w->requested->tile_done)
-        options.tile_done = pass_on_tile;
+        options.tile_done = report_tile;
     if (maps) {
         options.pixel_rays = w->requested->pixel_rays;
         options.pixel_time = w->requested->pixel_time;
@@ -214,23 +214,23 @@ static status trace(work *w, const scene *s, bool maps, render_result **out, dia
     }
     w->begun_s = clock_wall_s();
     *out = NULL;
-    cancel_clear(&w->limit);
-    cancel_begin(&w->limit);
-    const status code = w->of->settings.sharing ? render_shared(w, s, &options, out, why)
-                                                : renderer_render(w->of->renderer, s, &options, out, why);
-    cancel_end(&w->limit);
+    cancel_clear(&w->late);
+    cancel_begin(&w->late);
+    const status code = w->job->settings.sharing ? render_shared(w, s, &options, out, why)
+                                                 : renderer_render(w->job->renderer, s, &options, out, why);
+    cancel_end(&w->late);
     if (code != STATUS_INTERRUPTED)
         return code;
-    if (!cancel_is_set(&w->limit))
+    if (!cancel_is_set(&w->late))
         return diagnose(why, code, "", "interrupted");
     render_result_destroy(*out);
     *out = NULL;
     return diagnose(why, STATUS_FAILURE, "render less, or allow more time", "the frame is not finished after %.3g s",
-                    w->of->settings.time_s);
+                    w->job->settings.time_s);
 }
 
 /* Replaces the account's result by the new one. An interrupted frame does not replace a complete one. */
-static status keep(job_account *a, render_result *result, status ended, diagnostic *why)
+static status keep_result(job_account *a, render_result *result, status ended, diagnostic *why)
 {
     if (ended == STATUS_INTERRUPTED && a->result) {
         render_result_destroy(result);
@@ -251,11 +251,11 @@ static status keep(job_account *a, render_result *result, status ended, diagnost
 static status render_one(work *w, const scene *s, bool maps, job_account *a, diagnostic *why)
 {
     render_result *result = NULL;
-    status code = trace(w, s, maps, &result, why);
+    status code = render_frame(w, s, maps, &result, why);
     if (!result)
         return code;
     const double wall_s = result->wall_s, cpu_s = result->cpu_s;
-    code = keep(a, result, code, why);
+    code = keep_result(a, result, code, why);
     if (code == STATUS_OK) {
         a->wall_s[a->count] = wall_s;
         a->cpu_s[a->count++] = cpu_s;
@@ -267,7 +267,7 @@ static status render_one(work *w, const scene *s, bool maps, job_account *a, dia
 static status add_maps(work *w, const scene *s, job_account *a, diagnostic *why)
 {
     render_result *result = NULL, *measured = a->result;
-    const status code = trace(w, s, true, &result, why);
+    const status code = render_frame(w, s, true, &result, why);
     if (code == STATUS_OK) {
         const render_result bare = *measured;
         measured->pixel_rays = result->pixel_rays, result->pixel_rays = bare.pixel_rays;
@@ -288,7 +288,7 @@ static int64_t now_ms(void)
     return (int64_t)now.tv_sec * 1000 + now.tv_nsec / 1000000;
 }
 
-/* The noise since a time; the window gets a reading. */
+/* Returns the noise since a time, and adds a reading to the window. */
 static machine_noise noise_since(job *j, double since_s)
 {
     const noise_reading now = noise_read("");
@@ -297,7 +297,7 @@ static machine_noise noise_since(job *j, double since_s)
     return noise;
 }
 
-/* Idle units are slow, so that the frequency between frames says nothing. */
+/* Idle units run slowly, so the frequency between frames says nothing about frames. */
 machine_noise job_noise(job *j)
 {
     machine_noise noise = noise_since(j, INFINITY);
@@ -316,10 +316,10 @@ static double stalled_fraction(const render_result *r)
     return r ? noise_stalled(r->worker_count, os_usable_units(), wall_s, longest_s, cpu_s) : NAN;
 }
 
-/* The counters are read first and last, so that they cover only the frames. */
+/* The counters are read last before the frames and first after them, so that they cover little else. */
 static status measure_all(work *w, const scene *s, size_t count, bool maps, job_account *a, diagnostic *why)
 {
-    job *j = w->of;
+    job *j = w->job;
     const bool measured = j->settings.measured;
     hardware_counts counted = a->hardware;
     usage used = a->spent;
@@ -341,7 +341,7 @@ static status measure_all(work *w, const scene *s, size_t count, bool maps, job_
         a->spent = usage_since(&used);
         a->noise = noise_since(j, began_s);
         a->noise.stalled_fraction = stalled_fraction(a->result);
-        if (instruction_dumps_exist()) { /* nothing disturbs a count; the threads take turns, which is no stalling */
+        if (instruction_dumps_exist()) { /* counts cannot be disturbed, and under callgrind threads run one at a time */
             a->hardware.instructions = instruction_dumps_next(&j->dumps);
             a->noise = noise_unknown();
         }
@@ -359,7 +359,7 @@ status job_repeat(job *j, const scene *s, size_t frames, const render_options *o
     const bool maps = requested->pixel_rays || requested->pixel_time || requested->pixel_cut || requested->timeline ||
                       requested->layers;
     const bool extra = frames > 1 && maps;
-    work w = {.of = j, .requested = requested, .frames = frames + extra};
+    work w = {.job = j, .requested = requested, .frames = frames + extra};
     status code = job_account_begin(s, j->level, frames, out, why);
     THEN(code, prepare(j, s, requested, why));
     THEN(code, measure_all(&w, s, frames, maps && !extra, out, why));

@@ -17,24 +17,22 @@
 
 /* --- sharing ---
  *
- * The interface by which a job shares its frames with other processes (src/mpi): each traces a part of the tiles of
- * every frame. The job calls begin before and end after it traces its own part; all else is as without sharing, since
- * the result that end completes is that of the complete frame. Ownership: the job borrows the interface for its life.
+ * The interface by which a job shares its frames with other processes (src/mpi): each renders a part of the tiles of
+ * every frame. The job calls begin before and end after it renders its part. The rest is as without sharing, because
+ * end completes the result of the frame. Ownership: the job borrows the interface for its life.
  * Errors: STATUS_BAD_INPUT for outputs that cannot be shared, STATUS_INTERRUPTED when cancelled, and what the other
  * processes report. */
 
 typedef struct job_sharing {
-    /* Sends the loaded scene to the others, and begins to hand out its tiles; *own: those of this process. progress
-     * of the options is called about every 0.1 s until end returns, by one thread at a time, with the fraction of the
-     * frame that all have finished. Between begin and end the thread may have a further token, which gives up the
-     * frame. */
-    status (*begin)(void *of, const scene *s, const render_options *requested, const tile_source **own,
+    /* Sends the loaded scene to the others, and begins to hand out its tiles; *tiles: those of this process. Until end
+     * returns, one thread at a time calls requested->progress about every 0.1 s with the fraction of the frame that all
+     * have finished. Between begin and end another cancel token of the thread may cancel the frame. */
+    status (*begin)(void *context, const scene *s, const render_options *requested, const tile_source **tiles,
                     diagnostic *why);
-    /* traced, result: what the renderer returned for this process's part; result may be NULL after an error. Waits for
-     * the others, and adds the film, the variance, counts, times and workers of all. Returns the status of the
-     * frame. */
-    status (*end)(void *of, status traced, render_result *result, diagnostic *why);
-    void *of;
+    /* rendered, result: what the renderer returned for this process; result may be NULL after an error. Waits for the
+     * others, and adds the film, the variance, counts, times and workers of all. Returns the status of the frame. */
+    status (*end)(void *context, status rendered, render_result *result, diagnostic *why);
+    void *context; /* passed to begin and end */
 } job_sharing;
 
 /* --- jobs --- */
@@ -48,7 +46,7 @@ typedef struct job_settings {
     bool measured;
     bool fresh_peak;            /* reset the peak of memory at the beginning of each frame, if the system allows it */
     bool keeps_meshes;          /* keep meshes of loaded scenes for scenes that are loaded later (mesh_cache_load) */
-    const job_sharing *sharing; /* with other processes; NULL: none */
+    const job_sharing *sharing; /* NULL: frames are not shared */
     double time_s;              /* time limit of a frame; 0: none */
     uint64_t memory_bytes;      /* limit for a frame's film and maps; 0: none */
 } job_settings;
@@ -60,11 +58,11 @@ isa job_isa(const job *j);
 /* The machine's topology, read at the first call; the job owns it. */
 status job_machine(job *j, const topology **out, diagnostic *why);
 
-/* What the rest of the machine did in the last NOISE_WINDOW_S, without frequency_drop; unknown without measured. */
+/* The machine's noise in the last NOISE_WINDOW_S, without frequency_drop; unknown unless `measured` is set. */
 machine_noise job_noise(job *j);
 
-/* Loads the files that the scene names, which was checked when it was read or changed. watch: as for scene_load_until,
- * or NULL. */
+/* Loads the files that a scene names; the scene was validated when it was read or changed. watch: as for
+ * scene_load_until, or NULL. */
 status job_load(job *j, scene *s, const load_watch *watch, diagnostic *why);
 
 /* Renders one frame of a loaded scene. options: as for renderer_render, or NULL. Release *out whatever the return
@@ -73,7 +71,7 @@ status job_render(job *j, const scene *s, const render_options *options, job_acc
 
 /* Renders `frames` frames, whose films must have equal hashes: otherwise their times would measure different work,
  * which is a failure. Outputs that options requests in addition to the film disturb the times: with more than one frame
- * they are taken from one additional frame, which is not measured. progress receives the fraction of all frames. */
+ * they come from one additional frame, which is not measured. progress receives the fraction of all frames. */
 status job_repeat(job *j, const scene *s, size_t frames, const render_options *options, job_account *out,
                   diagnostic *why);
 
@@ -83,7 +81,7 @@ status job_repeat(job *j, const scene *s, size_t frames, const render_options *o
  * hierarchies. Ownership: the cache owns copies of scenes, which share their meshes; mesh_cache_clear releases them. */
 
 enum { MESH_CACHE_SCENES = 64 };
-/* Over all meshes; a mesh takes about 200 bytes per triangle with its hierarchies. */
+/* In all meshes of the cache; a mesh with its hierarchies uses about 200 bytes per triangle. */
 #define MESH_CACHE_TRIANGLES 16000000u
 
 typedef struct mesh_cache {
@@ -91,6 +89,6 @@ typedef struct mesh_cache {
     size_t count;
 } mesh_cache;
 
-/* scene_load_until that uses the meshes of the cache and adds newly built ones to it. */
-status mesh_cache_load(mesh_cache *s, scene *setting, const load_watch *watch, diagnostic *why);
-void mesh_cache_clear(mesh_cache *s);
+/* Loads a scene like scene_load_until, but uses meshes of the cache and adds newly built ones to it. */
+status mesh_cache_load(mesh_cache *cache, scene *s, const load_watch *watch, diagnostic *why);
+void mesh_cache_clear(mesh_cache *cache);

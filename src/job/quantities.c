@@ -38,14 +38,14 @@ static workers_sum sum_workers(const job_account *a)
     return sum;
 }
 
-/* In units of the throughput of one camera ray. */
+/* Converts throughput from the counters' unit to that of one camera ray. */
 static void set_cut(quantity_value *v, const int64_t throughput[3])
 {
     for (int channel = 0; channel < 3; channel++)
         v->real[channel] = (double)throughput[channel] / COUNTERS_CUT_ONE;
 }
 
-/* Mean of the channels, of rays cut for one reason or for both. */
+/* The throughput of rays cut for one reason or for both, mean of the channels. */
 static double mean_cut(const int64_t one[3], const int64_t other[3])
 {
     double sum = 0;
@@ -54,16 +54,16 @@ static double mean_cut(const int64_t one[3], const int64_t other[3])
     return sum / (3 * COUNTERS_CUT_ONE);
 }
 
-/* Mean over the pixels of the throughput that was cut. The camera rays of a pixel have 1 in all, half of it behind an
- * analyser; those of a pilot (render.error) have as much again. */
+/* The throughput that was cut, mean over the pixels. The camera rays of a pixel have throughput 1 in all, 0.5 behind an
+ * analyser; the pilot of render.error traces them once more. */
 static double cut_fraction(const job_account *a)
 {
     const render_settings *r = &a->of->render;
     const ray_counters *c = &a->result->counters;
-    const double begins = r->polarisation && a->of->camera.analyser != ANALYSER_NONE ? 0.5 : 1.0,
+    const double initial = r->polarisation && a->of->camera.analyser != ANALYSER_NONE ? 0.5 : 1.0,
                  passes = path_counts_apply(r) ? 2.0 : 1.0;
     return mean_cut(c->cut_depth_throughput, c->cut_weight_throughput) /
-           ((double)r->width * (double)r->height * begins * passes);
+           ((double)r->width * (double)r->height * initial * passes);
 }
 
 static double largest_cut(const render_result *r)
@@ -101,7 +101,7 @@ static size_t solids_of(const job_account *a)
     return a->of->solid_count < COUNTERS_SOLID_MAX ? a->of->solid_count : COUNTERS_SOLID_MAX;
 }
 
-/* Unknown unless the frame counted its tests. */
+/* -1, unknown, unless the frame counted its tests. */
 static int64_t counted(const job_account *a, uint64_t count)
 {
     return CUVETTE_COUNTERS && a->of->render.count_tests ? (int64_t)count : -1;
@@ -109,181 +109,185 @@ static int64_t counted(const job_account *a, uint64_t count)
 
 /* --- the list --- */
 
-#define ROW true
-#define OUT false
+#define IN_ROWS true
+#define JSON_ONLY false
 
 /* Q(name, unit, type, merge, row, json, page, meaning, value): value in the form that the type requires (the SET_
  * macros below); a: the account, r: its result, c: its counters. */
 // clang-format off
 #define FRAME_QUANTITIES(Q) \
- Q(film_hash, "", HASH, SAME, ROW, "film_hash", NULL, "hash of the film, 16 hex digits", \
+ Q(film_hash, "", HASH, SAME, IN_ROWS, "film_hash", NULL, "hash of the film, 16 hex digits", \
    job_account_hash(a)) \
- Q(whole, "", TRUTH, OVER, OUT, "whole", NULL, \
-   "false: the render was interrupted, and the numbers are those of its finished part", \
+ Q(whole, "", TRUTH, OVER, JSON_ONLY, "whole", NULL, \
+   "false: the render was interrupted, and the numbers cover only its finished part", \
    a->whole) \
- Q(wall_s, "s", REAL, MEDIAN, ROW, "wall_s", "wall_s", \
+ Q(wall_s, "s", REAL, MEDIAN, IN_ROWS, "wall_s", "wall_s", \
    "wall time of the frame; with render.pool off, including creating and joining threads", job_account_wall_s(a)) \
- Q(cpu_s, "s", REAL, MEDIAN, ROW, "cpu_s", "cpu_s", "CPU time of the process over the same interval", \
+ Q(cpu_s, "s", REAL, MEDIAN, IN_ROWS, "cpu_s", "cpu_s", "CPU time of the process over the same interval", \
    job_account_cpu_s(a)) \
- Q(rays_camera, "rays", COUNT, SAME, ROW, "rays.camera", NULL, "camera rays traced", c->camera) \
- Q(rays_reflect, "rays", COUNT, SAME, ROW, "rays.reflect", NULL, "reflected rays traced", c->reflect) \
- Q(rays_refract, "rays", COUNT, SAME, ROW, "rays.refract", NULL, "refracted rays traced", c->refract) \
- Q(rays_shadow, "rays", COUNT, SAME, ROW, "rays.shadow", NULL, "shadow rays traced", c->shadow) \
- Q(rays_photon, "rays", COUNT, SAME, ROW, "rays.photon", NULL, \
+ Q(rays_camera, "rays", COUNT, SAME, IN_ROWS, "rays.camera", NULL, "camera rays traced", c->camera) \
+ Q(rays_reflect, "rays", COUNT, SAME, IN_ROWS, "rays.reflect", NULL, "reflected rays traced", c->reflect) \
+ Q(rays_refract, "rays", COUNT, SAME, IN_ROWS, "rays.refract", NULL, "refracted rays traced", c->refract) \
+ Q(rays_shadow, "rays", COUNT, SAME, IN_ROWS, "rays.shadow", NULL, "shadow rays traced", c->shadow) \
+ Q(rays_photon, "rays", COUNT, SAME, IN_ROWS, "rays.photon", NULL, \
    "rays of photons, traced from the lamps for caustics", c->photon) \
- Q(rays_total, "rays", COUNT, SAME, ROW, "rays.total", "rays", "sum of the five kinds", ray_counters_total(c)) \
- Q(rays_by_depth, "rays", DEPTHS, SAME, ROW, "rays_by_depth", NULL, \
+ Q(rays_total, "rays", COUNT, SAME, IN_ROWS, "rays.total", "rays", "sum of the five kinds", ray_counters_total(c)) \
+ Q(rays_by_depth, "rays", DEPTHS, SAME, IN_ROWS, "rays_by_depth", NULL, \
    "camera, reflected and refracted rays at depth 0;1;2;...", c->by_depth) \
- Q(total_internal, "", COUNT, SAME, ROW, "total_internal", NULL, "total internal reflections", c->total_internal) \
- Q(cut_depth, "rays", COUNT, SAME, ROW, "cut.depth.rays", NULL, \
+ Q(total_internal, "", COUNT, SAME, IN_ROWS, "total_internal", NULL, "total internal reflections", c->total_internal) \
+ Q(cut_depth, "rays", COUNT, SAME, IN_ROWS, "cut.depth.rays", NULL, \
    "rays not traced because of the depth limit, render.depth", c->cut_depth) \
- Q(cut_depth_color, "rays", COLOR, SAME, OUT, "cut.depth.throughput", NULL, \
+ Q(cut_depth_color, "rays", COLOR, SAME, JSON_ONLY, "cut.depth.throughput", NULL, \
    "summed throughput of the rays that the depth limit cut, in red, green and blue", \
    set_cut(&v, c->cut_depth_throughput)) \
- Q(cut_depth_throughput, "rays", REAL, SAME, ROW, "cut.depth.throughput_mean", NULL, \
+ Q(cut_depth_throughput, "rays", REAL, SAME, IN_ROWS, "cut.depth.throughput_mean", NULL, \
    "summed throughput of the rays that the depth limit cut, mean of RGB", mean_cut(c->cut_depth_throughput, NULL)) \
- Q(cut_weight, "rays", COUNT, SAME, ROW, "cut.weight.rays", NULL, \
+ Q(cut_weight, "rays", COUNT, SAME, IN_ROWS, "cut.weight.rays", NULL, \
    "rays not traced because their weight is below render.min_weight", c->cut_weight) \
- Q(cut_weight_color, "rays", COLOR, SAME, OUT, "cut.weight.throughput", NULL, \
+ Q(cut_weight_color, "rays", COLOR, SAME, JSON_ONLY, "cut.weight.throughput", NULL, \
    "summed throughput of the rays that render.min_weight cut, in red, green and blue", \
    set_cut(&v, c->cut_weight_throughput)) \
- Q(cut_weight_throughput, "rays", REAL, SAME, ROW, "cut.weight.throughput_mean", NULL, \
+ Q(cut_weight_throughput, "rays", REAL, SAME, IN_ROWS, "cut.weight.throughput_mean", NULL, \
    "summed throughput of the rays that render.min_weight cut, mean of RGB", mean_cut(c->cut_weight_throughput, NULL)) \
- Q(cut_throughput, "rays", REAL, SAME, OUT, "cut_throughput", NULL, \
+ Q(cut_throughput, "rays", REAL, SAME, JSON_ONLY, "cut_throughput", NULL, \
    "summed throughput of all rays not traced, mean of RGB", \
    mean_cut(c->cut_depth_throughput, c->cut_weight_throughput)) \
- Q(cut_fraction, "", REAL, SAME, ROW, "cut.share", "cut", \
-   "share of the light of a mean pixel, by weight, that rays not traced would have brought: their throughput by that " \
-   "of the camera rays; 0 .. 1", \
+ Q(cut_fraction, "", REAL, SAME, IN_ROWS, "cut.share", "cut", \
+   "fraction of a pixel's light that is missing because rays were cut: their throughput divided by the throughput " \
+   "of the camera rays, mean over all pixels, 0..1", \
    cut_fraction(a)) \
- Q(cut_fraction_largest, "", REAL, LAST, OUT, "cut.share_largest", NULL, \
-   "the same of the pixel that lacks most; NA without the map of cut light", largest_cut(r)) \
- Q(first_hits, "rays", SOLIDS, SAME, ROW, "first_hits", NULL, \
+ Q(cut_fraction_largest, "", REAL, LAST, JSON_ONLY, "cut.share_largest", NULL, \
+   "cut.share of the pixel that lacks most light; NA without the map of cut light", largest_cut(r)) \
+ Q(first_hits, "rays", SOLIDS, SAME, IN_ROWS, "first_hits", NULL, \
    "camera rays whose first interface is on the solid", c->first_hits) \
- Q(hits, "rays", SOLIDS, SAME, ROW, "hits", NULL, \
+ Q(hits, "rays", SOLIDS, SAME, IN_ROWS, "hits", NULL, \
    "hits on interfaces of the solid by camera, reflected and refracted rays", c->hits) \
- Q(tests, "rays", SOLIDS, SAME, OUT, "tests", NULL, "rays tested against the solid", c->tests) \
- Q(query_rays, "rays", COUNT, SAME, ROW, "queries.rays", NULL, \
-   "queries of a mesh's hierarchy by one ray each; this and the next three NA without render.count_tests", \
+ Q(tests, "rays", SOLIDS, SAME, JSON_ONLY, "tests", NULL, "rays tested against the solid", c->tests) \
+ Q(query_rays, "rays", COUNT, SAME, IN_ROWS, "queries.rays", NULL, \
+   "queries of a mesh's hierarchy by one ray each; NA without render.count_tests, as are the next three", \
    counted(a, c->queries.rays)) \
- Q(query_nodes, "", COUNT, SAME, ROW, "queries.nodes", NULL, \
+ Q(query_nodes, "", COUNT, SAME, IN_ROWS, "queries.nodes", NULL, \
    "nodes that these rays enter: inner nodes of a BVH, spheres of a tree of spheres", counted(a, c->queries.nodes)) \
- Q(query_boxes, "", COUNT, SAME, ROW, "queries.boxes", NULL, \
+ Q(query_boxes, "", COUNT, SAME, IN_ROWS, "queries.boxes", NULL, \
    "boxes, or spheres, that these rays test, each ray as if it were traversed alone", counted(a, c->queries.boxes)) \
- Q(query_triangles, "", COUNT, SAME, ROW, "queries.triangles", NULL, \
+ Q(query_triangles, "", COUNT, SAME, IN_ROWS, "queries.triangles", NULL, \
    "triangles that these rays test, each ray as if it were traversed alone", counted(a, c->queries.triangles)) \
- Q(noise_rms, "radiance", REAL, SAME, ROW, "noise.rms", "noise", \
+ Q(noise_rms, "radiance", REAL, SAME, IN_ROWS, "noise.rms", "noise", \
    "standard error of the film's values, root mean square, 1 is white; NA without random paths", \
    render_noise_rms(r)) \
- Q(noise_variance, "radiance^2", COLOR, SAME, OUT, "noise.variance", NULL, \
+ Q(noise_variance, "radiance^2", COLOR, SAME, JSON_ONLY, "noise.variance", NULL, \
    "mean variance of the film's values by channel; NA without random paths", set_variance(&v, r)) \
- Q(triangles, "", COUNT, SAME, ROW, "meshes.triangles", NULL, \
+ Q(triangles, "", COUNT, SAME, IN_ROWS, "meshes.triangles", NULL, \
    "triangles in all instances of all meshes; 0 without meshes", r->meshes.triangles) \
- Q(instances, "", COUNT, SAME, ROW, "meshes.instances", NULL, "instances of meshes", r->meshes.instances) \
- Q(accel_bytes, "B", COUNT, SAME, ROW, "meshes.accel_bytes", NULL, \
+ Q(instances, "", COUNT, SAME, IN_ROWS, "meshes.instances", NULL, "instances of meshes", r->meshes.instances) \
+ Q(accel_bytes, "B", COUNT, SAME, IN_ROWS, "meshes.accel_bytes", NULL, \
    "memory of the meshes' hierarchies, each mesh counted once", r->meshes.bytes) \
- Q(bytes_per_triangle, "B", REAL, SAME, OUT, "meshes.bytes_per_triangle", NULL, \
+ Q(bytes_per_triangle, "B", REAL, SAME, JSON_ONLY, "meshes.bytes_per_triangle", NULL, \
    "accel_bytes / triangles", bytes_per_triangle(&r->meshes)) \
- Q(build_s, "s", REAL, LAST, ROW, "meshes.build_s", NULL, \
+ Q(build_s, "s", REAL, LAST, IN_ROWS, "meshes.build_s", NULL, \
    "wall time of building the hierarchies, for this frame (render.keep off) or before it; not part of wall_s", \
    r->meshes.build_s) \
- Q(motion_steps, "", COUNT, SAME, ROW, "meshes.motion_steps", NULL, \
+ Q(motion_steps, "", COUNT, SAME, IN_ROWS, "meshes.motion_steps", NULL, \
    "simulation steps and substeps of slimes from their initial states to the rendered times; 0 without slimes", \
    r->meshes.motion_steps) \
- Q(motion_s, "s", REAL, LAST, ROW, "meshes.motion_s", NULL, \
+ Q(motion_s, "s", REAL, LAST, IN_ROWS, "meshes.motion_s", NULL, \
    "wall time of the slimes' steps, for this frame (render.keep off) or before it; not part of wall_s", \
    r->meshes.motion_s) \
- Q(drawn, "", COUNT, SAME, ROW, "meshes.drawn", NULL, \
+ Q(drawn, "", COUNT, SAME, IN_ROWS, "meshes.drawn", NULL, \
    "triangles rasterised into the depth buffer, including those of analytic solids; 0 without a depth buffer", \
    r->meshes.drawn) \
- Q(drawn_bytes, "B", COUNT, SAME, ROW, "meshes.drawn_bytes", NULL, \
+ Q(drawn_bytes, "B", COUNT, SAME, IN_ROWS, "meshes.drawn_bytes", NULL, \
    "memory of the depth buffer and of the rasterised triangles", r->meshes.raster_bytes) \
- Q(workers, "", COUNT, SAME, ROW, "workers", "threads", "worker threads of the frame", r->worker_count) \
- Q(workers_with_tiles, "", COUNT, LAST, ROW, "workers_with_tiles", NULL, \
+ Q(workers, "", COUNT, SAME, IN_ROWS, "workers", "threads", "worker threads of the frame", r->worker_count) \
+ Q(workers_with_tiles, "", COUNT, LAST, IN_ROWS, "workers_with_tiles", NULL, \
    "workers that rendered at least one tile", \
    sum_workers(a).with_tiles) \
- Q(busy_s_mean, "s", REAL, LAST, ROW, "busy_s_mean", NULL, \
+ Q(busy_s_mean, "s", REAL, LAST, IN_ROWS, "busy_s_mean", NULL, \
    "time from a worker's first tile to its last ray, 0 without a tile; mean over all workers", \
    sum_workers(a).busy_mean) \
- Q(busy_s_max, "s", REAL, LAST, ROW, "busy_s_max", NULL, "largest busy time of a worker", sum_workers(a).busy_max) \
- Q(waiting_s_mean, "s", REAL, LAST, ROW, "waiting_s_mean", NULL, \
+ Q(busy_s_max, "s", REAL, LAST, IN_ROWS, "busy_s_max", NULL, "largest busy time of a worker", sum_workers(a).busy_max) \
+ Q(waiting_s_mean, "s", REAL, LAST, IN_ROWS, "waiting_s_mean", NULL, \
    "wall_s minus busy time, mean over all workers", sum_workers(a).waiting_mean) \
- Q(visibility_s_sum, "s", REAL, LAST, ROW, "visibility_s_sum", NULL, \
+ Q(visibility_s_sum, "s", REAL, LAST, IN_ROWS, "visibility_s_sum", NULL, \
    "time in visibility queries (nearest hits and shadows), sum over all workers; NA for scenes without meshes", \
    sum_workers(a).visibility_sum) \
- Q(worker_cpu_s_sum, "s", REAL, LAST, ROW, "worker_cpu_s_sum", NULL, "CPU time of the workers, sum over all workers", \
-   sum_workers(a).cpu_sum) \
- Q(imbalance, "", REAL, LAST, ROW, "imbalance", NULL, "busy_s_max / busy_s_mean - 1", sum_workers(a).imbalance) \
- Q(peak_rss_bytes, "B", COUNT, OVER, ROW, "peak_rss_bytes", NULL, \
+ Q(worker_cpu_s_sum, "s", REAL, LAST, IN_ROWS, "worker_cpu_s_sum", NULL, \
+   "CPU time of the workers, sum over all workers", sum_workers(a).cpu_sum) \
+ Q(imbalance, "", REAL, LAST, IN_ROWS, "imbalance", NULL, "busy_s_max / busy_s_mean - 1", sum_workers(a).imbalance) \
+ Q(peak_rss_bytes, "B", COUNT, OVER, IN_ROWS, "peak_rss_bytes", NULL, \
    "peak resident memory of the process so far; in a study, since the start of the frame if Linux allows a reset", \
    a->spent.peak_rss_bytes) \
- Q(voluntary_switches, "", COUNT, OVER, ROW, "voluntary_switches", NULL, \
+ Q(voluntary_switches, "", COUNT, OVER, IN_ROWS, "voluntary_switches", NULL, \
    "voluntary context switches of the process during the frame", a->spent.voluntary_switches) \
- Q(involuntary_switches, "", COUNT, OVER, ROW, "involuntary_switches", NULL, \
+ Q(involuntary_switches, "", COUNT, OVER, IN_ROWS, "involuntary_switches", NULL, \
    "involuntary context switches of the process during the frame", a->spent.involuntary_switches) \
- Q(others_fraction, "", REAL, OVER, ROW, "others_fraction", NULL, \
-   "share of the machine used by other processes, 0..1: during the frame, or the last 0.5 s before its end if it is " \
-   "shorter; includes steal_fraction", \
+ Q(others_fraction, "", REAL, OVER, IN_ROWS, "others_fraction", NULL, \
+   "fraction of the machine used by other processes, 0..1, during the frame, at least during the 0.5 s before its " \
+   "end; includes steal_fraction", \
    a->noise.others_fraction) \
- Q(steal_fraction, "", REAL, OVER, ROW, "steal_fraction", NULL, \
-   "share of the machine that a hypervisor withheld, 0..1, in the same time", a->noise.steal_fraction) \
- Q(frequency_hz, "Hz", REAL, OVER, ROW, "frequency_hz", NULL, \
+ Q(steal_fraction, "", REAL, OVER, IN_ROWS, "steal_fraction", NULL, \
+   "fraction of the machine that a hypervisor withheld, 0..1, in the same time", a->noise.steal_fraction) \
+ Q(frequency_hz, "Hz", REAL, OVER, IN_ROWS, "frequency_hz", NULL, \
    "clock frequency at the end of the frame, the highest of 16 units; NA if the system does not report it", \
    a->noise.frequency_hz) \
- Q(frequency_drop, "", REAL, OVER, ROW, "frequency_drop", NULL, \
-   "share by which frequency_hz is below the highest one so far in the process, 0..1", a->noise.frequency_drop) \
- Q(stalled_fraction, "", REAL, LAST, ROW, "stalled_fraction", NULL, \
-   "share of the workers' time in which they did not run although they could: stopped (Ctrl-Z), frozen or throttled " \
-   "by a control group, or without a processing unit; a lower bound for more workers than units", \
+ Q(frequency_drop, "", REAL, OVER, IN_ROWS, "frequency_drop", NULL, \
+   "fraction by which frequency_hz is below the highest frequency so far in the process, 0..1", \
+   a->noise.frequency_drop) \
+ Q(stalled_fraction, "", REAL, LAST, IN_ROWS, "stalled_fraction", NULL, \
+   "fraction of the workers' time in which they did not run although they had work: stopped (Ctrl-Z), frozen or " \
+   "throttled by a control group, or without a processing unit; a lower bound if there are more workers than units", \
    a->noise.stalled_fraction) \
- Q(cycles, "", COUNT, OVER, ROW, "hardware.cycles", NULL, \
+ Q(cycles, "", COUNT, OVER, IN_ROWS, "hardware.cycles", NULL, \
    "processor cycles of the process during the frame, user mode (hardware counter)", a->hardware.cycles) \
- Q(instructions, "", COUNT, OVER, ROW, "hardware.instructions", NULL, \
+ Q(instructions, "", COUNT, OVER, IN_ROWS, "hardware.instructions", NULL, \
    "instructions of the process during the frame, user mode (hardware counter)", \
    a->hardware.instructions) \
- Q(branch_misses, "", COUNT, OVER, ROW, "hardware.branch_misses", NULL, \
+ Q(branch_misses, "", COUNT, OVER, IN_ROWS, "hardware.branch_misses", NULL, \
    "mispredicted branches, user mode (hardware counter)", \
    a->hardware.branch_misses) \
- Q(cache_misses, "", COUNT, OVER, ROW, "hardware.cache_misses", NULL, "cache misses, user mode (hardware counter)", \
-   a->hardware.cache_misses) \
- Q(isa, "", WORD, SAME, ROW, "isa", NULL, "instruction set of the kernels: sse2, avx2, avx512", isa_name(a->level)) \
- Q(config, "", WORD, SAME, ROW, "config", NULL, "build configuration: release, debug, sanitize, tsan, nocounters", \
+ Q(cache_misses, "", COUNT, OVER, IN_ROWS, "hardware.cache_misses", NULL, \
+   "cache misses, user mode (hardware counter)", a->hardware.cache_misses) \
+ Q(isa, "", WORD, SAME, IN_ROWS, "isa", NULL, "instruction set of the kernels: sse2, avx2, avx512", \
+   isa_name(a->level)) \
+ Q(config, "", WORD, SAME, IN_ROWS, "config", NULL, "build configuration: release, debug, sanitize, tsan, nocounters", \
    CUVETTE_COMPILER_FLAGS)
 
 /* k: the worker's report. */
 #define WORKER_QUANTITIES(Q) \
- Q(worker, "", COUNT, SAME, ROW, "worker", NULL, "number of the worker, counted from 0", worker) \
- Q(rank, "", COUNT, LAST, OUT, "rank", NULL, \
-   "rank of the worker's process, of those that share the frame (cuvette-mpi)", k->rank) \
- Q(pu, "", NUMBER, LAST, ROW, "pu", NULL, "processing unit at the end of the frame (OS index)", k->pu) \
- Q(tiles, "", COUNT, LAST, ROW, "tiles", NULL, "tiles rendered", k->tiles) \
- Q(rays_total, "rays", COUNT, LAST, ROW, "rays.total", NULL, "rays of all kinds traced by this worker", \
+ Q(worker, "", COUNT, SAME, IN_ROWS, "worker", NULL, "number of the worker, counted from 0", worker) \
+ Q(rank, "", COUNT, LAST, JSON_ONLY, "rank", NULL, \
+   "rank of the worker's process among those that render the frame (cuvette-mpi)", k->rank) \
+ Q(pu, "", NUMBER, LAST, IN_ROWS, "pu", NULL, "processing unit at the end of the frame (OS index)", k->pu) \
+ Q(tiles, "", COUNT, LAST, IN_ROWS, "tiles", NULL, "tiles rendered", k->tiles) \
+ Q(rays_total, "rays", COUNT, LAST, IN_ROWS, "rays.total", NULL, "rays of all kinds traced by this worker", \
    k->camera + k->reflect + k->refract + k->shadow) \
- Q(rays_camera, "rays", COUNT, LAST, ROW, "rays.camera", NULL, "camera rays traced by this worker", k->camera) \
- Q(rays_reflect, "rays", COUNT, LAST, ROW, "rays.reflect", NULL, "reflected rays traced by this worker", k->reflect) \
- Q(rays_refract, "rays", COUNT, LAST, ROW, "rays.refract", NULL, "refracted rays traced by this worker", k->refract) \
- Q(rays_shadow, "rays", COUNT, LAST, ROW, "rays.shadow", NULL, "shadow rays traced by this worker", k->shadow) \
- Q(start_s, "s", REAL, LAST, ROW, "start_s", NULL, "start of its work, relative to the frame's start", k->start_s) \
- Q(wall_s, "s", REAL, LAST, ROW, "wall_s", NULL, "wall time from its first to its last instruction in the frame", \
+ Q(rays_camera, "rays", COUNT, LAST, IN_ROWS, "rays.camera", NULL, "camera rays traced by this worker", k->camera) \
+ Q(rays_reflect, "rays", COUNT, LAST, IN_ROWS, "rays.reflect", NULL, \
+   "reflected rays traced by this worker", k->reflect) \
+ Q(rays_refract, "rays", COUNT, LAST, IN_ROWS, "rays.refract", NULL, \
+   "refracted rays traced by this worker", k->refract) \
+ Q(rays_shadow, "rays", COUNT, LAST, IN_ROWS, "rays.shadow", NULL, "shadow rays traced by this worker", k->shadow) \
+ Q(start_s, "s", REAL, LAST, IN_ROWS, "start_s", NULL, "start of its work, relative to the frame's start", k->start_s) \
+ Q(wall_s, "s", REAL, LAST, IN_ROWS, "wall_s", NULL, "wall time from its first to its last instruction in the frame", \
    k->wall_s) \
- Q(cpu_s, "s", REAL, LAST, ROW, "cpu_s", NULL, "CPU time of the thread over the same interval", k->cpu_s) \
- Q(busy_s, "s", REAL, LAST, ROW, "busy_s", NULL, \
+ Q(cpu_s, "s", REAL, LAST, IN_ROWS, "cpu_s", NULL, "CPU time of the thread over the same interval", k->cpu_s) \
+ Q(busy_s, "s", REAL, LAST, IN_ROWS, "busy_s", NULL, \
    "time from its first tile to its last ray; 0 without a tile", k->busy_s) \
- Q(visibility_s, "s", REAL, LAST, ROW, "visibility_s", NULL, \
+ Q(visibility_s, "s", REAL, LAST, IN_ROWS, "visibility_s", NULL, \
    "part of busy_s spent in visibility queries (nearest hits and shadows); NA for scenes without meshes", \
    k->visibility_s) \
- Q(waiting_s, "s", REAL, LAST, ROW, "waiting_s", NULL, "wall time of the frame minus busy_s", k->waiting_s) \
- Q(running_s, "s", REAL, LAST, ROW, "running_s", NULL, \
+ Q(waiting_s, "s", REAL, LAST, IN_ROWS, "waiting_s", NULL, "wall time of the frame minus busy_s", k->waiting_s) \
+ Q(running_s, "s", REAL, LAST, IN_ROWS, "running_s", NULL, \
    "part of wall_s in which the thread ran: its CPU time, read together with the next four columns", \
    k->usage.running_s) \
- Q(runnable_s, "s", REAL, LAST, ROW, "runnable_s", NULL, \
+ Q(runnable_s, "s", REAL, LAST, IN_ROWS, "runnable_s", NULL, \
    "part of wall_s in which the thread could run, and waited for a processing unit (Linux, schedstat)", \
    k->usage.runnable_s) \
- Q(blocked_s, "s", REAL, LAST, ROW, "blocked_s", NULL, \
+ Q(blocked_s, "s", REAL, LAST, IN_ROWS, "blocked_s", NULL, \
    "the rest of wall_s: the thread waited for something other than a processing unit", k->usage.blocked_s) \
- Q(voluntary_switches, "", COUNT, LAST, ROW, "voluntary_switches", NULL, \
+ Q(voluntary_switches, "", COUNT, LAST, IN_ROWS, "voluntary_switches", NULL, \
    "times that the thread gave up its processing unit because it was blocked", k->usage.voluntary_switches) \
- Q(involuntary_switches, "", COUNT, LAST, ROW, "involuntary_switches", NULL, \
+ Q(involuntary_switches, "", COUNT, LAST, IN_ROWS, "involuntary_switches", NULL, \
    "times that the kernel took the processing unit from the running thread", k->usage.involuntary_switches)
 // clang-format on
 
@@ -295,7 +299,7 @@ static int64_t counted(const job_account *a, uint64_t count)
 #define SET_REAL(value) v.real[0] = (value)
 #define SET_COLOR(value) value
 #define SET_HASH(value) v.hash = (value)
-/* Up to a colon: "release" from "release: -O3 ...". */
+/* The text before a colon: "release" of "release: -O3 ...". */
 #define SET_WORD(value) snprintf(v.word, sizeof v.word, "%.*s", (int)strcspn(value, ":"), value)
 #define SET_DEPTHS(value) v.list = (value), v.size = depths_of(a)
 #define SET_SOLIDS(value) v.list = (value), v.size = solids_of(a)

@@ -11,7 +11,7 @@
 
 typedef enum quantity_type {
     QUANTITY_COUNT,  /* value.count; below 0: unknown */
-    QUANTITY_NUMBER, /* the same, but JSON has -1 for an unknown value */
+    QUANTITY_NUMBER, /* value.count; unknown values are -1 in JSON */
     QUANTITY_TRUTH,  /* value.count, 0 or 1 */
     QUANTITY_REAL,   /* value.real[0]; NaN: unknown */
     QUANTITY_COLOR,  /* value.real */
@@ -24,9 +24,9 @@ typedef enum quantity_type {
 /* How the values of several frames of one scene are combined. */
 typedef enum quantity_merge {
     QUANTITY_SAME,   /* equal in all frames */
-    QUANTITY_MEDIAN, /* of all frames */
-    QUANTITY_OVER,   /* from the start of the first frame to the end of the last */
-    QUANTITY_LAST    /* of the last frame */
+    QUANTITY_MEDIAN, /* the median over all frames */
+    QUANTITY_OVER,   /* measured from the start of the first frame to the end of the last */
+    QUANTITY_LAST    /* the value of the last frame */
 } quantity_merge;
 
 typedef struct quantity_value {
@@ -51,7 +51,7 @@ typedef struct quantity {
 /* Quantities of a frame; their read function ignores worker. In the order of the columns, the film's hash first. */
 extern const quantity frame_quantities[];
 extern const size_t frame_quantity_count;
-/* Quantities of one worker; read takes the worker's number. In JSON, members of the objects in the list `threads`. */
+/* Quantities of one worker; read receives the worker's number. In JSON they are members of the objects in `threads`. */
 extern const quantity worker_quantities[];
 extern const size_t worker_quantity_count;
 

@@ -58,7 +58,7 @@ change src/scene/model/params_table.c "$row" \
 $row"
 quantity=' Q(cpu_s, "s", REAL,'
 change src/job/quantities.c "$quantity" \
-    " Q(later, \"\", COUNT, MEDIAN, ROW, \"later\", NULL, \"of a later version\", a->of->render.later) \\
+    " Q(later, \"\", COUNT, MEDIAN, IN_ROWS, \"later\", NULL, \"of a later version\", a->of->render.later) \\
 $quantity"
 make -s -j"$(nproc)" warnings= build/cuvette build/cuvette-import >"$work/build.log" 2>&1 || {
     sed 's/^/# /' "$work/build.log" | tail -n 5
