@@ -1,4 +1,4 @@
-/* A diagram: window, media, axes, rays and marks. */
+/* Draws a diagram: window, media, axes, rays and marks. */
 #include "base/number.h"
 #include "geometry/shapes/shape.h"
 #include "image/image.h"
@@ -48,8 +48,8 @@ section_plane diagram_plane(vec3 point, vec3 e_u, vec3 e_v)
 /* Sets the window: the box with a margin of 4 %, widened to the aspect ratio of the frame. */
 static void fit(diagram *d, const diagram_box *box)
 {
-    const double room = 0.04 * fmax(box->u1 - box->u0, box->v1 - box->v0) + 1e-9;
-    const double width = box->u1 - box->u0 + 2.0 * room, height = box->v1 - box->v0 + 2.0 * room;
+    const double margin = 0.04 * fmax(box->u1 - box->u0, box->v1 - box->v0) + 1e-9;
+    const double width = box->u1 - box->u0 + 2.0 * margin, height = box->v1 - box->v0 + 2.0 * margin;
     d->scale = fmin(d->frame.width / width, d->frame.height / height);
     const double u = 0.5 * (box->u0 + box->u1), v = 0.5 * (box->v0 + box->v1);
     d->plane.u0 = u - 0.5 * d->frame.width / d->scale, d->plane.u1 = u + 0.5 * d->frame.width / d->scale;
@@ -68,7 +68,7 @@ static double y_of(const diagram *d, double v)
 
 /* --- media --- */
 
-/* Refractive index at render.lambda_nm; 1 where it is unknown. */
+/* Refractive index at render.lambda_nm; 1 if it is unknown. */
 static double index_of(const scene *s, int i)
 {
     index_law law;
@@ -98,15 +98,15 @@ static void write_fill(FILE *out, const scene *s, int i)
     fprintf(out, "fill=\"#56b4e9\" fill-opacity=\"%.3f\"", power < 0.8 ? 0.06 + 0.5 * power : 0.46);
 }
 
-static status write_area(const diagram *d, int of, section_step *steps, diagnostic *why)
+static status write_area(const diagram *d, int solid_index, section_step *steps, diagnostic *why)
 {
     const section *cut = &d->cut;
     size_t count;
-    const status code = section_area(cut, of, steps, &count, why);
+    const status code = section_area(cut, solid_index, steps, &count, why);
     if (code != STATUS_OK || count == 0)
         return code;
     fprintf(d->out, "<path ");
-    write_fill(d->out, d->s, of);
+    write_fill(d->out, d->s, solid_index);
     fputs(" fill-rule=\"evenodd\" d=\"", d->out);
     for (size_t i = 0; i < count; i++) {
         const section_line *line = &cut->line[steps[i].line];
@@ -161,7 +161,7 @@ static void mark_needed(diagram *d, size_t first, size_t last)
     mark_needed(d, farthest, last);
 }
 
-/* The areas of the media, filled, and the boundaries between them. */
+/* Fills the areas of the media and draws the boundaries between them. */
 static status draw_media(diagram *d, diagnostic *why)
 {
     section_step *steps = calloc(d->cut.line_count + 1, sizeof *steps);
@@ -295,7 +295,7 @@ ray_line diagram_line_of(const diagram *d, const ray_node *node)
     return line;
 }
 
-/* Where the line is in the drawing, CSS pixels; false where nothing of it can be seen. */
+/* The ends of the line in CSS pixels; false if nothing of it is visible. */
 static bool line_ends(const diagram *d, const ray_line *line, double *length_px, section_point ends[2])
 {
     if (!ray_line_projected(line, &d->plane, ends))
@@ -359,7 +359,7 @@ void diagram_cross(const diagram *d, vec3 at, double radius_px, const char *stro
 
 /* --- legend of the media --- */
 
-static void key_words(const probe *p, const scene *s, int i, char *text, size_t size)
+static void media_key_text(const probe *p, const scene *s, int i, char *text, size_t size)
 {
     const char *name = s->solids[i].name, *substance = probe_medium_name(p, i);
     if (is_opaque(s, i))
@@ -378,7 +378,7 @@ double diagram_media_key(FILE *out, const probe *p, const scene *s, double left,
         int letters = 0;
         if (!s->solids[i].visible)
             continue;
-        key_words(p, s, i, text, sizeof text);
+        media_key_text(p, s, i, text, sizeof text);
         for (const char *c = text; *c; c++)
             letters += ((unsigned char)*c & 0xc0) != 0x80;
         const double width = 39.0 + 6.9 * letters; /* estimated: 6.9 px per letter at font size 11 */

@@ -46,13 +46,13 @@ status diagram_begin(diagram *d, FILE *out, const probe *p, const scene *s, cons
                      const diagram_box *box, const diagram_frame *frame, const char *caption, diagnostic *why);
 void diagram_end(diagram *d);
 
-/* The line of a ray; of a ray that was cut, a short stub. */
+/* The line of a ray; a short stub if the ray was cut. */
 ray_line diagram_line_of(const diagram *d, const ray_node *node);
 /* A smaller weight (0..1) makes a line thinner and paler. dashes: an SVG stroke-dasharray, or NULL. */
 void diagram_ray(const diagram *d, const ray_line *line, const char *color, double weight, const char *dashes);
-/* An arrow head whose tip is the end of such a line, at the edge of the window if the ray leaves it. */
+/* An arrow head at the end of a ray's line, or at the edge of the window if the ray leaves it. */
 void diagram_arrow(const diagram *d, const ray_line *line, const char *color, double weight);
-/* A circle; fill or stroke may be "none". Nothing outside the window. */
+/* A circle, unless its centre is outside the window. fill or stroke may be "none". */
 void diagram_dot(const diagram *d, vec3 at, double radius_px, const char *fill, const char *stroke);
 void diagram_cross(const diagram *d, vec3 at, double radius_px, const char *stroke);
 bool diagram_shows(const diagram *d, vec3 at);

@@ -1,5 +1,5 @@
-/* A fan of rays as CSV, one row per ray; as JSON; and drawn in its plane: the section of the solids, the ray paths, the
- * caustic and the mean focus. */
+/* Writes a fan of rays as CSV, one row per ray; as JSON; and as a drawing in its plane: the section of the solids, the
+ * ray paths, the caustic and the mean focus. */
 #include "base/cancel.h"
 #include "base/csv.h"
 #include "render/inspect/ray_line.h"
@@ -12,11 +12,11 @@
 
 /* --- CSV --- */
 
-static void add_vector(csv_line *line, bool there, vec3 v)
+static void add_vector(csv_line *line, bool known, vec3 v)
 {
-    csv_real(line, there ? v.x : (double)NAN);
-    csv_real(line, there ? v.y : (double)NAN);
-    csv_real(line, there ? v.z : (double)NAN);
+    csv_real(line, known ? v.x : (double)NAN);
+    csv_real(line, known ? v.y : (double)NAN);
+    csv_real(line, known ? v.z : (double)NAN);
 }
 
 const char *fan_end_words(const fanned *t, const fan_ray *ray)
@@ -108,23 +108,23 @@ json_t *fan_json(const fanned *t)
 {
     const fan *f = t->f;
     json_t *rays = json_array(), *crossings = json_array();
-    int bad = 0, left = 0;
+    int bad = 0, leaving = 0;
     for (int i = 0; i < f->count; i++) {
-        left += f->ray[i].leaves;
+        leaving += f->ray[i].leaves;
         bad |= json_array_append_new(rays, ray_json(t, &f->ray[i]));
     }
     for (int i = 0; i < f->crossing_count; i++)
         bad |= json_array_append_new(crossings,
                                      json_pack("{s:i,s:o}", "ray", f->crossing[i].ray, "at", point(f->crossing[i].at)));
-    json_t *o = json_pack("{s:i,s:i,s:o,s:o,s:o,s:o}", "count", f->count, "followed", left, "axis", point(f->axis),
+    json_t *o = json_pack("{s:i,s:i,s:o,s:o,s:o,s:o}", "count", f->count, "followed", leaving, "axis", point(f->axis),
                           "focus", focus_json(f), "crossings", crossings, "rays", rays);
     return json_if(o, bad == 0);
 }
 
 /* --- drawing --- */
 
-/* LIGHTEST: with whole trees, branches with a smaller weight are not drawn. FAR_OFF: points farther outside the window
- * than this fraction of its diagonal do not enlarge it. */
+/* LIGHTEST: in complete ray trees, branches with a smaller weight are not drawn. FAR_OFF: points farther outside the
+ * window than this fraction of its diagonal do not enlarge it. */
 #define LIGHTEST 0.004
 #define FAR_OFF 0.6
 
@@ -182,7 +182,7 @@ static double crowding(const fan *f)
     return f->count > 20 ? sqrt(20.0 / f->count) : 1.0;
 }
 
-static void draw_piece(const diagram *d, const fan *f, const ray_node *node)
+static void draw_segment(const diagram *d, const fan *f, const ray_node *node)
 {
     static const char *const colors[] = {
         [RAY_CAMERA] = SVG_INK, [RAY_REFLECT] = SVG_VERMILLION, [RAY_REFRACT] = SVG_BLUE, [RAY_SHADOW] = SVG_GREY};
@@ -198,7 +198,7 @@ static status draw_tree(const diagram *d, const fanned *t, const fan_ray *ray, d
     status result = probe_ray(t->p, first->origin, first->direction, &tree, why);
     for (size_t i = 0; i < tree.count && result == STATUS_OK; i++)
         if (tree.node[i].kind != RAY_SHADOW && diagram_weight(&tree.node[i]) >= LIGHTEST)
-            draw_piece(d, t->f, &tree.node[i]);
+            draw_segment(d, t->f, &tree.node[i]);
     ray_tree_release(&tree);
     return result;
 }
@@ -211,7 +211,7 @@ static status draw_rays(const diagram *d, const fanned *t, diagnostic *why)
         if (t->whole_trees)
             result = draw_tree(d, t, ray, why);
         for (size_t k = 0; k < ray->count && !t->whole_trees; k++)
-            draw_piece(d, t->f, &t->f->node[ray->first + k]);
+            draw_segment(d, t->f, &t->f->node[ray->first + k]);
         THEN(result, cancel_check(why));
     }
     for (int i = 0; i < t->f->count && result == STATUS_OK; i++) {

@@ -12,7 +12,7 @@ typedef struct fanned {
     probe *p;
     const fan_rule *rule;
     const fan *f;
-    bool whole_trees; /* draw whole ray trees, not only the refracted paths */
+    bool whole_trees; /* draw complete ray trees, not only the refracted paths */
     bool as_csv;
 } fanned;
 
@@ -27,5 +27,5 @@ static inline double fan_shown(double value)
 
 status fan_write_csv(const fanned *t, FILE *out, diagnostic *why);
 status fan_write_drawing(const fanned *t, FILE *out, diagnostic *why);
-/* web/README.md documents it; NULL when out of memory. */
+/* In the format of GET /api/fan (src/web/README.md); NULL when out of memory. */
 json_t *fan_json(const fanned *t);

@@ -15,7 +15,7 @@ json_t *json_of_count(int64_t value);
 /* In text that is not UTF-8, such as a file name, every byte above 127 becomes '?'. */
 json_t *json_of_text(const char *text);
 
-/* An object with "error" and "remedy", and "file", "line", "column" where known; NULL when memory is out. */
+/* An object with "error" and "remedy", and "file", "line", "column" where known; NULL when out of memory. */
 json_t *json_of_diagnostic(const diagnostic *why);
 
 /* Returns value if good is true; otherwise frees it and returns NULL. */
@@ -28,6 +28,6 @@ void json_write_real(FILE *stream, double value);
 
 /* Writes the value and a newline. Errors of the stream stay in the stream, where the caller checks them. */
 status json_write(FILE *stream, const json_t *value, diagnostic *why);
-/* The same, and frees the value; json_print writes to standard output. */
+/* json_put also frees the value; json_print does so and writes to standard output. */
 status json_put(FILE *stream, json_t *value, diagnostic *why);
 status json_print(json_t *value, diagnostic *why);

@@ -41,8 +41,8 @@ static json_t *prediction(const lesson *l)
 /* The parameter on the curve's x axis, or null. */
 static json_t *x_parameter(const lesson *l)
 {
-    const char *of_curve = l->over < 0 ? realism_curve_parameter(l->curve) : l->control[l->over].parameter;
-    return of_curve ? json_of_text(of_curve) : json_null();
+    const char *parameter = l->over < 0 ? realism_curve_parameter(l->curve) : l->control[l->over].parameter;
+    return parameter ? json_of_text(parameter) : json_null();
 }
 
 static json_t *measure(const lesson *l)

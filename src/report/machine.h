@@ -24,5 +24,5 @@ typedef struct machine_report {
 status machine_measure(machine_report *a, diagnostic *why);
 void machine_release(machine_report *a);
 
-/* The output of `cuvette machine --json`; NULL when memory is out. */
+/* The output of `cuvette machine --json`; NULL when out of memory. */
 json_t *machine_json(const machine_report *a);

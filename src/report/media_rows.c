@@ -1,4 +1,4 @@
-/* The catalogues of media and metals as tables, one entry in detail, or JSON. */
+/* Prints the catalogues of media and metals as tables, one entry in detail, or all as JSON. */
 #include "base/json_build.h"
 #include "base/number.h"
 #include "report/json.h"
@@ -231,7 +231,7 @@ static json_t *medium_json(const medium *m, double at_nm)
 /* --- metals --- */
 
 typedef struct metal_line {
-    const char *name; /* of the line */
+    const char *name; /* of the spectral line */
     const char *n, *k, *R;
     double lambda_nm;
 } metal_line;
@@ -254,7 +254,7 @@ char *metal_range_text(const metal *m, char text[METAL_RANGE_MAX])
     return text;
 }
 
-/* The range and source of a row: aligned, or on a narrow terminal in words. */
+/* Ends a row with its range and source: in columns, or in running text if the terminal is narrow. */
 static void finish_row(FILE *stream, int columns, char cells[CELLS_MAX], const char *range, const char *source)
 {
     enum { RANGE_WIDTH = 16, SOURCE_LEAST = 24 };

@@ -1,6 +1,5 @@
-/* The catalogues of media and metals as tables, one entry in detail, or JSON. at_nm is a further wavelength, 0 for
- * none. Ownership: the JSON is a new reference. Errors of the stream stay in the stream, where the caller checks them.
- */
+/* The catalogues of media and metals as tables, one entry in detail, or JSON. at_nm is a further wavelength; 0: none.
+ * Ownership: the JSON is a new reference. Errors of the stream stay in the stream, where the caller checks them. */
 #pragma once
 
 #include "optics/media.h"
@@ -25,5 +24,5 @@ char *metal_range_text(const metal *m, char text[METAL_RANGE_MAX]);
 void metal_rows_table(FILE *stream, double at_nm, int columns);
 void metal_rows_details(FILE *stream, const metal *m, double at_nm, int columns);
 
-/* All media and metals; or one of them, unless both are NULL. NULL when memory is out. */
+/* The given medium or metal, or all of both if both are NULL. Returns NULL when out of memory. */
 json_t *media_rows_json(const medium *only, const metal *only_metal, double at_nm);

@@ -1,4 +1,4 @@
-/* A mesh described: counts, bounds, area, volume or first hole, memory; and written as Wavefront OBJ, raw floats or
+/* Describes a mesh (counts, bounds, area, volume or first hole, memory), and writes it as Wavefront OBJ, raw floats or
  * binary PLY. */
 #include "base/cancel.h"
 #include "base/number.h"

@@ -1,5 +1,5 @@
-/* Writers of meshes: a description as text and as JSON, and formats for other renderers, so that all of them trace the
- * same triangles. Ownership: the JSON is a new reference, NULL when memory is out. Errors of the stream stay in the
+/* Writers of meshes: a description as text and as JSON, and formats for other renderers, so that all of them render the
+ * same triangles. Ownership: the JSON is a new reference, NULL when out of memory. Errors of the stream stay in the
  * stream, where the caller checks them. */
 #pragma once
 

@@ -1,4 +1,4 @@
-/* A page: its style, the laboratory that it may hold, and the document. Every text of the scene is escaped. */
+/* Writes a page: its style, the laboratory that it may contain, and the document. Texts of the scene are escaped. */
 #include "base/text.h"
 #include "base/file.h"
 #include "base/installed.h"
@@ -16,7 +16,7 @@
 #include <unistd.h>
 #include <zlib.h>
 
-/* The style of a page. A ray's numbers are visible while its line is pointed at, focused or the address's fragment. */
+/* A ray's numbers are visible while its line is under the pointer, focused, or the fragment of the address. */
 #define PAGE_STYLE                                                                                            \
     ":root{color-scheme:light dark;--paper:#ffffff;--ink:#1c1c1c;--soft:#f1f1f1;--edge:#c4c4c4;"              \
     "--link:#0b57a4;--mark:#fff0b8}\n"                                                                        \
@@ -48,12 +48,12 @@
 
 /* --- the laboratory ---
  *
- * Finds, packs and writes the laboratory of a page. Its script decompresses it into a frame of the page's own, with the
- * scene that the page holds; the page's policy allows this, but no request. */
+ * Finds, packs and writes the laboratory of a page. A script decompresses it into a frame of the page, with the scene
+ * that the page contains; the page's policy allows this, but no requests. */
 
 enum { LIVE_MAX = 1 << 26 }; /* bytes */
 
-static const char *asked_path(void)
+static const char *live_file(void)
 {
     const char *asked = getenv("CUVETTE_LIVE");
     return asked && *asked ? asked : PAGE_LIVE_FILE;
@@ -61,9 +61,9 @@ static const char *asked_path(void)
 
 char *page_live_path(void)
 {
-    /* Next to a build; from bin or lib to where `make install` puts it. */
+    /* Relative to the program: a build has it in the same folder, an installation in share. */
     static const char *const places[] = {"", "/../share/cuvette", "/../../share/cuvette"};
-    const char *asked = asked_path();
+    const char *asked = live_file();
     if (strcmp(asked, PAGE_LIVE_FILE) == 0)
         return installed_find(places, sizeof places / sizeof *places, PAGE_LIVE_FILE);
     return access(asked, F_OK) == 0 ? strdup(asked) : NULL;
@@ -89,8 +89,8 @@ status page_live_code(char **code, diagnostic *why)
         return out_of_memory(why);
     if (!path)
         return diagnose(why, STATUS_BAD_INPUT,
-                        "make it with: make setup-wasm setup-site site; or set CUVETTE_LIVE to it",
-                        "there is no %s, the laboratory in one file", asked_path());
+                        "build it with 'make setup-wasm setup-site site', or set CUVETTE_LIVE to its path",
+                        "there is no %s, the laboratory in one file", live_file());
     status result = file_read(path, LIVE_MAX, &text, &size, why);
     THEN(result, pack(text, size, code, why));
     free(text);
@@ -119,7 +119,7 @@ static const char script[] =
     "})();\n"
     "</script>\n";
 
-/* The button, the code and the script. code "": something else fills it in later. */
+/* Writes the button, the code and the script. code "": the code is inserted later. */
 static void write_live(const char *code, FILE *out)
 {
     fprintf(out,
@@ -134,7 +134,7 @@ static void write_live(const char *code, FILE *out)
 
 /* Nothing can be requested or run, whatever the texts contain. */
 #define POLICY "default-src 'none'; img-src data:; style-src 'unsafe-inline'; base-uri 'none'; form-action 'none'"
-/* Nothing may be requested; the laboratory of the page runs from the page. */
+/* Nothing can be requested; the laboratory is part of the page. */
 #define LIVE_POLICY                                                                                                \
     "default-src 'none'; img-src data: blob:; style-src 'unsafe-inline'; base-uri 'none'; "                        \
     "script-src 'unsafe-inline' 'wasm-unsafe-eval' blob:; worker-src blob:; connect-src data: blob:; form-action " \
@@ -161,7 +161,7 @@ static void write_heading(const report_page_content *page, const char *code, FIL
     fputs("</h1>\n", out);
 }
 
-/* The image carries the scene too, so that it can be saved from the page and opened. */
+/* The image also contains the scene, so that it can be saved from the page and opened as a scene. */
 static status write_image(const report_page_content *page, const shared_texts *texts, FILE *out, diagnostic *why)
 {
     image_rows rows = page->rows;

@@ -1,5 +1,5 @@
 /* A self-contained page (HTML): the image, its rays with their numbers, the scene and the command, in one file that
- * opens without a server or network and runs no scripts, but those of the laboratory if it holds that. `cuvette
+ * opens without a server or network and runs no scripts except those of a laboratory that it may contain. `cuvette
  * render` and the laboratory open its scene again (scene/file/shared.h), unless the scene reads files. Errors of the
  * stream stay in the stream. Ownership: everything is borrowed. */
 #pragma once
@@ -14,10 +14,10 @@ typedef struct report_page_content {
     const scene *s; /* loaded */
     isa level;
     image_rows rows; /* the image, without texts */
-    int bits;        /* of its PNG */
+    int bits;        /* per channel of the PNG */
     uint64_t film_hash;
-    const char *command; /* that rendered it */
-    const char *live;    /* page_live_code; NULL: without the laboratory. A scene that reads files is always without */
+    const char *command; /* the command that renders the image */
+    const char *live;    /* from page_live_code, not used if the scene reads files; NULL: no laboratory */
 } report_page_content;
 
 /* The rays are those of the visible beams, or the ray tree of the middle pixel if there are none. STATUS_BAD_INPUT for
@@ -25,12 +25,13 @@ typedef struct report_page_content {
 status report_page_write(const report_page_content *page, FILE *out, diagnostic *why);
 
 /* The laboratory within a page: live.html, which `make site` makes, compressed (zlib) as base64, and the script that
- * starts it with the page's scene. Results are the caller's, freed with free. */
+ * starts it with the page's scene. The caller frees results with free. */
 #define PAGE_LIVE_FILE "live.html"
 
 /* The path of live.html, the first that exists: $CUVETTE_LIVE (only this one if it is set); the folder of the running
- * program; ../share/cuvette relative to it, where `make install` puts it. NULL: there is none, or with ENOMEM. */
+ * program; ../share/cuvette relative to it, where `make install` puts it. NULL if there is none, or, with errno ENOMEM,
+ * when out of memory. */
 char *page_live_path(void);
 
-/* STATUS_BAD_INPUT with the remedy where there is no live.html. */
+/* The laboratory as base64. STATUS_BAD_INPUT if there is no live.html; the remedy says how to build it. */
 status page_live_code(char **code, diagnostic *why);

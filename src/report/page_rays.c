@@ -1,4 +1,4 @@
-/* The rays of a page: the heaviest are collected, then written as SVG and as an HTML table. */
+/* Collects the heaviest rays of a page, and writes them as SVG and as an HTML table. */
 #include "base/array.h"
 #include "image/image.h"
 #include "render/inspect/ray_line.h"
@@ -14,15 +14,15 @@
 
 /* Rays with less than this fraction of the light are left out, as in the laboratory's drawing. */
 #define LIGHTEST 0.002
-/* When that many rays are held, only the heaviest are kept. */
-enum { HELD = 8 * PAGE_RAYS_MAX };
+/* At this number of collected rays, all but the heaviest are dropped. */
+enum { COLLECTED_MAX = 8 * PAGE_RAYS_MAX };
 
-typedef struct collecting {
+typedef struct collector {
     page_rays *r;
     const scene *s;
     camera_frame view;
     image_frame frame;
-} collecting;
+} collector;
 
 static int by_weight(const void *a, const void *b)
 {
@@ -46,7 +46,7 @@ static void keep_heaviest(page_rays *r)
     r->count = PAGE_RAYS_MAX;
 }
 
-static void name_hit(const collecting *c, page_ray *ray, const probe *p)
+static void name_hit(const collector *c, page_ray *ray, const probe *p)
 {
     const ray_hit *h = &ray->node.hit;
     snprintf(ray->from, sizeof ray->from, "%s", probe_medium_name(p, h->from));
@@ -54,10 +54,10 @@ static void name_hit(const collecting *c, page_ray *ray, const probe *p)
     snprintf(ray->surface, sizeof ray->surface, "%s: %s", scene_solid_name(c->s, h->solid), probe_face_name(p, h));
 }
 
-static page_ray *add(const collecting *c, const ray_node *node, double weight, const probe *p)
+static page_ray *add(const collector *c, const ray_node *node, double weight, const probe *p)
 {
     page_rays *r = c->r;
-    if (r->count == HELD)
+    if (r->count == COLLECTED_MAX)
         keep_heaviest(r);
     if (!GROW(r->ray, r->capacity, r->count + 1))
         return NULL;
@@ -86,7 +86,7 @@ static double weight_of(const ray_tree *tree, const ray_node *node)
 
 static status add_beam_rays(void *context, const beam_ray *ray, const ray_tree *tree, const probe *p, diagnostic *why)
 {
-    const collecting *c = context;
+    const collector *c = context;
     const beam *b = &c->s->beams[ray->beam];
     for (size_t i = 0; i < tree->count; i++) {
         const ray_node *node = &tree->node[i];
@@ -102,12 +102,12 @@ static status add_beam_rays(void *context, const beam_ray *ray, const ray_tree *
         one->power = ray->power * beam_fraction(node);
         one->lambda_nm = ray->lambda_nm;
         beam_line_color(b, ray->lambda_nm, one->rgb);
-        snprintf(one->of, sizeof one->of, "%s %d", b->name, ray->number + 1);
+        snprintf(one->source, sizeof one->source, "%s %d", b->name, ray->number + 1);
     }
     return STATUS_OK;
 }
 
-static status add_tree(const collecting *c, const ray_tree *tree, const probe *p, diagnostic *why)
+static status add_tree(const collector *c, const ray_tree *tree, const probe *p, diagnostic *why)
 {
     for (size_t i = 0; i < tree->count; i++) {
         const ray_node *node = &tree->node[i];
@@ -119,12 +119,12 @@ static status add_tree(const collecting *c, const ray_tree *tree, const probe *p
         if (!one && weight >= LIGHTEST)
             return out_of_memory(why);
         if (one && node->kind == RAY_SHADOW)
-            snprintf(one->of, sizeof one->of, "%s", scene_light_name(c->s, node->light));
+            snprintf(one->source, sizeof one->source, "%s", scene_light_name(c->s, node->light));
     }
     return STATUS_OK;
 }
 
-static status collect_pixel(const collecting *c, isa level, diagnostic *why)
+static status collect_pixel(const collector *c, isa level, diagnostic *why)
 {
     probe *p = NULL;
     ray_tree tree = {0};
@@ -140,7 +140,7 @@ static status collect_pixel(const collecting *c, isa level, diagnostic *why)
 
 status page_rays_collect(page_rays *r, const scene *s, isa level, int width, int height, diagnostic *why)
 {
-    collecting c = {r, s, camera_frame_of(s), image_frame_of(width, height, 0.0)};
+    collector c = {r, s, camera_frame_of(s), image_frame_of(width, height, 0.0)};
     for (size_t i = 0; i < s->beam_count; i++)
         r->beams |= s->beams[i].visible != 0;
     TRY(r->beams ? beams_each_ray(s, level, 0, add_beam_rays, &c, why) : collect_pixel(&c, level, why));
@@ -158,7 +158,7 @@ void page_rays_release(page_rays *r)
 
 /* --- writing ---
  *
- * Line and row lead to each other by fragments; a line shows its numbers below the image while it is pointed at,
+ * A ray's line and row link to each other. A line shows its numbers below the image while it is under the pointer,
  * focused or chosen (PAGE_STYLE in report/page.c), so no script is needed. */
 
 static const char *const kind_words[] = {"camera ray", "reflected", "refracted", "to a light"};
@@ -187,12 +187,12 @@ static const char *line_class(const page_rays *r, const page_ray *ray)
 static void write_kind(const page_rays *r, const page_ray *ray, FILE *out)
 {
     if (r->beams) {
-        svg_escape(out, ray->of);
+        svg_escape(out, ray->source);
         fprintf(out, ", %.6g nm%s%s", ray->lambda_nm, ray->node.depth > 0 ? ", " : "",
                 ray->node.depth > 0 ? kind_words[ray->node.kind] : "");
     } else if (ray->node.kind == RAY_SHADOW) {
         fputs("to ", out);
-        svg_escape(out, ray->of);
+        svg_escape(out, ray->source);
     } else {
         fputs(kind_words[ray->node.kind], out);
     }

@@ -55,8 +55,8 @@ void param_lines_release(param_lines *all)
  * vector at that path. */
 static bool names(const char *word, const char *path)
 {
-    size_t length = strlen(word), whole = strlen(path);
-    if (strncasecmp(word, path, whole) == 0 && word[whole] == '.' && length == whole + 2)
+    size_t length = strlen(word), path_length = strlen(path);
+    if (strncasecmp(word, path, path_length) == 0 && word[path_length] == '.' && length == path_length + 2)
         return true;
     for (const char *at = path; at; at = strchr(at, '.') ? strchr(at, '.') + 1 : NULL)
         if (strncasecmp(at, word, length) == 0 && (at[length] == 0 || at[length] == '.'))

@@ -33,8 +33,8 @@ char *param_lines_path(const param *row, char *text, size_t size);
  * to which meanings are wrapped; 0: no wrapping. */
 status param_rows_print(FILE *stream, const scene *s, const char *filter, int columns, diagnostic *why);
 
-/* The same as JSON; the caller owns *out. opened: NULL, or for the page an earlier state of the scene: adds its values
- * as `initial` (null: it has no such parameter), and to indices `first_coefficients`, {LAW: numbers} to begin with. */
+/* The table as JSON; the caller owns *out. opened: NULL, or, for the page, an earlier state of the scene, whose values
+ * become `initial` (null: no such parameter). Rows of `ior` then have `first_coefficients`, {LAW: initial numbers}. */
 status param_rows_json(const scene *s, const scene *opened, const char *filter, json_t **out, diagnostic *why);
 
 /* Prints the generated part of cuvette-scene(5). */

@@ -12,8 +12,8 @@
 #include <stdlib.h>
 #include <string.h>
 
-/* Parses "0,2.75,-6", with or without brackets, into a list of numbers; false if the text is something else. *out: NULL
- * when out of memory. */
+/* Parses "0,2.75,-6", with or without brackets, into a list of numbers; returns false for other text. *out is NULL when
+ * out of memory. */
 static bool list_of_numbers(const char *text, json_t **out)
 {
     bool good = true;
@@ -139,8 +139,7 @@ static bool is_void(const job_account *a, const char *key)
            (strncmp(key, "meshes.", 7) == 0 && m->triangles == 0 && m->drawn == 0);
 }
 
-/* Stores value and owns it: "rays.camera" is camera in the object rays. value NULL sets the group to
- * null. */
+/* Stores and owns a value: "rays.camera" is camera in the object rays. NULL sets the group, here rays, to null. */
 static int put(json_t *o, const char *key, json_t *value)
 {
     char group[64];

@@ -1,6 +1,6 @@
 /* The JSON account of a render, built from the list of job/quantities.h: the output of `cuvette render --json`, and the
  * numbers of an image on the laboratory's page. cuvette-account(5) documents the keys. Ownership: new references, NULL
- * when memory is out. */
+ * when out of memory. */
 #pragma once
 
 #include "image/compare.h"
@@ -28,7 +28,7 @@ json_t *report_page(const job_account *a);
 /* Each parameter of the scene under its path, as a number, list or word. */
 json_t *report_params(const scene *s);
 
-/* Adds the difference of two images; false when memory is out. */
+/* Adds the difference of two images; false when out of memory. */
 bool report_comparison(json_t *o, const image_comparison *c);
 
 /* The JSON value of a parameter, parsed from its text. */

@@ -1,4 +1,4 @@
-/* What is measured, next to theory: metrics and curves of optics, and the motion of slimes. */
+/* Writes measured values next to theory: metrics and curves of optics, and the motion of slimes. */
 #include "report/json.h"
 #include "report/theory_rows.h"
 #include "scene/model/params.h"

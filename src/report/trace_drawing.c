@@ -12,7 +12,7 @@ typedef struct ray_style {
     const char *color, *words, *dashes;
 } ray_style;
 
-/* By kind; for shadow rays, those that reach the light. */
+/* The styles of all kinds of rays; shadow rays that do not reach the light are `blocked`. */
 static const ray_style styles[] = {
     [RAY_CAMERA] = {SVG_INK, "camera ray", NULL},
     [RAY_REFLECT] = {SVG_VERMILLION, "reflected", NULL},
@@ -24,8 +24,8 @@ static const ray_style blocked = {SVG_GREY, "blocked", "5,3"};
 /* The weight of a shadow ray is that of its parent, because its own throughput is a radiance. */
 static double weight_of(const ray_tree *tree, const ray_node *node)
 {
-    const ray_node *by = node->kind == RAY_SHADOW ? &tree->node[node->parent] : node;
-    const double weight = diagram_weight(by) / diagram_weight(&tree->node[0]);
+    const ray_node *weighted = node->kind == RAY_SHADOW ? &tree->node[node->parent] : node;
+    const double weight = diagram_weight(weighted) / diagram_weight(&tree->node[0]);
     return weight < 1.0 ? weight : 1.0;
 }
 
@@ -34,13 +34,13 @@ static vec3 along(const ray_node *node, double length)
     return vec3_add(node->origin, vec3_scale(node->direction, length));
 }
 
-/* Marks the solids that the rays of the tree hit or pass through. */
 static void include_solid(diagram_box *box, const section_plane *plane, const scene *s, int solid_index)
 {
     if (solid_index >= 0 && s->solids[solid_index].visible)
         diagram_include_solid(box, plane, &s->solids[solid_index]);
 }
 
+/* Includes the solids that rays of the tree hit or pass through. */
 static void include_hit_solids(diagram_box *box, const section_plane *plane, const traced *t)
 {
     for (size_t i = 0; i < t->tree->count; i++) {
@@ -152,7 +152,7 @@ static void draw_node(const diagram *d, const ray_tree *tree, const ray_node *no
         diagram_arrow(d, &line, style->color, weight);
 }
 
-/* In drawing order: shadow rays first, the camera ray on top. */
+/* Draws shadow rays first and the camera ray last, on top of the others. */
 static void draw_tree(const diagram *d, const ray_tree *tree)
 {
     const ray_kind order[] = {RAY_SHADOW, RAY_REFLECT, RAY_REFRACT, RAY_CAMERA};

@@ -1,4 +1,4 @@
-/* Ray trees, and the ray trees of beams, as text and JSON. */
+/* Writes ray trees, and the ray trees of beams, as text and JSON. */
 #include "base/cancel.h"
 #include "base/elementary.h"
 #include "image/codec.h"
@@ -127,7 +127,7 @@ static bool write_medium(const traced *t, FILE *out, const char *key, int medium
     return good;
 }
 
-/* The bytes with which the image shows a radiance. */
+/* The bytes of a radiance in the image. */
 static void write_bytes(FILE *out, const char *key, const scene *s, const double radiance[3])
 {
     const image_tone tone = camera_tone(s);
@@ -147,7 +147,7 @@ static void write_factors(FILE *out, const ray_hit *h)
     fputc('}', out);
 }
 
-/* Both sides of Snell's law, and the angles; null where no ray is refracted. */
+/* Both sides of Snell's law, and the angles; null if no ray is refracted. */
 static void write_snell(FILE *out, const ray_hit *h)
 {
     const bool passes = !h->opaque && !h->tir;
@@ -270,9 +270,9 @@ status trace_write_json(const traced *t, FILE *out, diagnostic *why)
 static const char *const beam_kind_words[] = {"pencil", "fan", "sheet", "bundle"};
 
 typedef struct beam_writer {
-    const beamed *of;
+    const beamed *beams;
     FILE *out;
-    int beam; /* that is open; -1: none */
+    int beam; /* the beam whose JSON object is open; -1: none */
     size_t segments;
     bool short_of_memory;
 } beam_writer;
@@ -280,27 +280,27 @@ typedef struct beam_writer {
 static status count_segments(beam_writer *w, const ray_tree *tree, diagnostic *why)
 {
     w->segments += tree->count;
-    if (w->of->segments_max == 0 || w->segments <= w->of->segments_max)
+    if (w->beams->segments_max == 0 || w->segments <= w->beams->segments_max)
         return STATUS_OK;
     return diagnose(why, STATUS_BAD_INPUT,
                     "lower 'rays', 'wavelengths' or 'depth' of a beam, or raise its 'min_fraction'",
-                    "the beams have more than %zu segments", w->of->segments_max);
+                    "the beams have more than %zu segments", w->beams->segments_max);
 }
 
 static status write_beam_text(void *context, const beam_ray *ray, const ray_tree *tree, const probe *p, diagnostic *why)
 {
     beam_writer *w = context;
-    const beam *b = &w->of->s->beams[ray->beam];
+    const beam *b = &w->beams->s->beams[ray->beam];
     TRY(count_segments(w, tree, why));
     fprintf(w->out, "%s: %s, ray %d of %d, %.6g nm, power %.6g\n", b->name, beam_kind_words[b->kind], ray->number + 1,
             ray->rays, ray->lambda_nm, ray->power);
-    write_text_rays(&(traced){w->of->s, p, tree, w->of->scene_path, false}, w->out);
+    write_text_rays(&(traced){w->beams->s, p, tree, w->beams->scene_path, false}, w->out);
     return STATUS_OK;
 }
 
 status beams_write_text(const beamed *b, FILE *out, diagnostic *why)
 {
-    beam_writer w = {.of = b, .out = out, .beam = -1};
+    beam_writer w = {.beams = b, .out = out, .beam = -1};
     return beams_each_ray(b->s, b->level, 0, write_beam_text, &w, why);
 }
 
@@ -312,7 +312,7 @@ static void close_beam(beam_writer *w)
 static status write_beam_json(void *context, const beam_ray *ray, const ray_tree *tree, const probe *p, diagnostic *why)
 {
     beam_writer *w = context;
-    const beam *b = &w->of->s->beams[ray->beam];
+    const beam *b = &w->beams->s->beams[ray->beam];
     TRY(count_segments(w, tree, why));
     if (w->beam != ray->beam) {
         close_beam(w);
@@ -331,18 +331,19 @@ static status write_beam_json(void *context, const beam_ray *ray, const ray_tree
     double rgb[3];
     beam_line_color(b, ray->lambda_nm, rgb);
     write_list(w->out, "color", rgb, 3);
-    if (w->of->for_page)
+    if (w->beams->for_page)
         fprintf(w->out, ",\"displayed\":[%u,%u,%u]", codec_quantize((float)rgb[0], 255),
                 codec_quantize((float)rgb[1], 255), codec_quantize((float)rgb[2], 255));
     fputs(",\"root\":", w->out);
-    w->short_of_memory |= !write_json_ray(&(traced){w->of->s, p, tree, w->of->scene_path, w->of->for_page}, w->out, 0);
+    w->short_of_memory |=
+        !write_json_ray(&(traced){w->beams->s, p, tree, w->beams->scene_path, w->beams->for_page}, w->out, 0);
     fputc('}', w->out);
     return STATUS_OK;
 }
 
 status beams_write_json(const beamed *b, FILE *out, diagnostic *why)
 {
-    beam_writer w = {.of = b, .out = out, .beam = -1};
+    beam_writer w = {.beams = b, .out = out, .beam = -1};
     fputs("{\"schema\":1,\"scene\":", out);
     w.short_of_memory = !json_write_text(out, b->scene_path);
     fputs(",\"beams\":[", out);

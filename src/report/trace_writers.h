@@ -1,6 +1,6 @@
-/* Writers of a ray tree, as text, JSON and a drawing; of the ray trees of a scene's beams; and of what a screen
- * receives of them. cuvette-trace(1) documents them. Errors of the stream stay in the stream, where the caller checks
- * them. Ownership: everything is borrowed. */
+/* Writers of a ray tree, as text, JSON and a drawing; of the ray trees of a scene's beams; and of the light that beams
+ * cast on a screen. cuvette-trace(1) documents the formats. Errors of the stream stay in the stream, where the caller
+ * checks them. Ownership: everything is borrowed. */
 #pragma once
 
 #include "render/inspect/beams.h"
@@ -12,10 +12,10 @@ typedef struct traced {
     const probe *p;
     const ray_tree *tree;
     const char *scene_path;
-    bool for_page; /* JSON for the laboratory's page: further keys, so that it computes no optics */
+    bool for_page; /* JSON for the laboratory's page, with more keys, so that the page computes no optics */
 } traced;
 
-/* The angle of a ray from the normal. */
+/* The angle between a ray and the normal, from its cosine. */
 double trace_angle_deg(double cosine);
 
 status trace_write_text(const traced *t, FILE *out, diagnostic *why);
@@ -27,8 +27,8 @@ typedef struct beamed {
     const scene *s;
     isa level;
     const char *scene_path;
-    size_t segments_max; /* more rays of the trees than this are STATUS_BAD_INPUT; 0: no limit */
-    bool for_page;       /* as of traced */
+    size_t segments_max; /* STATUS_BAD_INPUT if the trees have more rays; 0: no limit */
+    bool for_page;       /* as in traced */
 } beamed;
 
 status beams_write_text(const beamed *b, FILE *out, diagnostic *why);

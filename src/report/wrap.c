@@ -20,8 +20,8 @@ static int width_of(const char *text, size_t bytes)
     return width;
 }
 
-/* Bytes of the longest part of a word that fits into room: up to a comma or slash where there is one, otherwise up to
- * the last character that fits. */
+/* Bytes of the longest part of a word that fits into room: up to the last comma or slash, or else up to the last
+ * character that fits. */
 static size_t part_of_word(const char *word, size_t length, int room)
 {
     size_t fits = 0, good = 0;
