@@ -1,8 +1,7 @@
-/* A study: a scene, fixed parameters, a grid over any parameters, repetitions, and files to keep. Raw rows are never
- * changed (design, decision 7). results/<study>/ has rows.csv (one row per repetition, appended and flushed
- * immediately), runs.json, images/ (one per cell); with a reference also compare.csv (one row per cell) and
- * references/. Ownership: study_read gives, study_destroy releases. Errors in the file are located by file, line and
- * column. */
+/* A study: a scene, fixed parameters, a grid over any parameters, repetitions, and files to keep. Rows are never
+ * changed. results/<study>/ has rows.csv (one row per repetition, appended and flushed immediately), runs.json, images/
+ * (one per cell); with a reference also compare.csv (one row per cell) and references/. Ownership: study_destroy
+ * releases a study. Errors in the file name file, line and column. */
 #pragma once
 
 #include "base/status.h"
@@ -36,7 +35,7 @@ typedef struct study_axis {
     size_t count;
 } study_axis;
 
-/* A note on the study file, which is valid; at line and column. */
+/* A note on a line and column of a valid study file. */
 typedef struct study_note {
     long line, column;
     scene_note note;
@@ -54,10 +53,10 @@ typedef struct study {
     double relative_width; /* stop after min repetitions as soon as the 95% interval of the mean wall time is narrower
                               than this fraction of it; 0: always max */
     long undisturbed;      /* measure up to repetitions_max until that many rows are not disturbed; 0: no such rule */
-    noise_rule disturbed;  /* which rows are */
+    noise_rule disturbed;  /* the rule by which a row is disturbed */
     long processes;        /* fresh processes that divide the repetitions; 1: the program's own */
     long warmups;          /* unmeasured frames of a cell before its first measured one, in every process */
-    bool quick;            /* in its quick form (study_make_quick) */
+    bool quick;            /* the study is in its quick form (study_make_quick) */
     bool shuffle;
     uint64_t seed;
     bool keep_image, keep_pfm, keep_workers, keep_pixel_rays, keep_pixel_time, keep_pixel_cut, keep_timeline,
@@ -69,8 +68,10 @@ typedef struct study {
     size_t note_count;
 } study;
 
-/* Whether the study keeps files of its cells in addition to rows. */
+/* Whether the study keeps files of its cells in addition to rows (plan/keep.c). */
 bool study_keeps_files(const study *s);
+
+/* --- reading: plan/read.c --- */
 
 status study_read(const char *path, study **out, diagnostic *why);
 /* Access checks for callers that read a study on behalf of others. Both functions are called before anything is opened;
@@ -83,7 +84,7 @@ typedef struct study_guard {
     const char *root; /* files, including rows, are read only below this folder (base/file.h); NULL or "": anywhere */
 } study_guard;
 status study_read_guarded(const char *path, const study_guard *guard, study **out, diagnostic *why);
-/* The same from memory; name is used in diagnostics, and scene paths are relative to its folder. */
+/* Reads a study from memory; name is used in diagnostics, and scene paths are relative to its folder. */
 status study_read_text(const char *name, const char *text, size_t size, study **out, diagnostic *why);
 status study_read_text_guarded(const char *name, const char *text, size_t size, const study_guard *guard, study **out,
                                diagnostic *why);
@@ -91,11 +92,13 @@ void study_destroy(study *s);
 
 /* The quick form of a study, for a look at all results within seconds: every frame is divided to at most QUICK_PIXELS
  * pixels (study/plan/grid.h), and every cell is measured once, without warm-up, in one process. Its times mean nothing;
- * its films and counts are as exact as any. Its runs carry `quick` in runs.json, and a results folder of a study has
- * either quick runs or others. */
+ * its films and counts are exact. Its runs have `quick` in runs.json, and a results folder of a study has either quick
+ * runs or others. */
 status study_make_quick(study *s, diagnostic *why);
-/* Gives the study the form of its runs in the results folder. */
+/* Makes the study quick if its runs in the results folder are quick (rows/runs.c). */
 status study_follow_runs(study *s, const char *results, diagnostic *why);
+
+/* --- folder and cells: plan/grid.c --- */
 
 /* results/<name>, the folder of the study's rows; fresh memory, or NULL. */
 char *study_folder(const study *s, const char *results);
@@ -109,20 +112,22 @@ size_t study_cell_film(const study *s, size_t cell);
 /* The study's scene with the fixed parameters and those of the cell applied; image files are not loaded. */
 status study_cell_scene(const study *s, size_t cell, scene **out, diagnostic *why);
 
+/* --- running: run/run.c --- */
+
 typedef enum study_phase {
     STUDY_MEASURING,
-    STUDY_MOVING,
+    STUDY_MOVING, /* slimes move before a frame */
     STUDY_IMAGES
-} study_phase; /* moving: slimes, before a frame */
+} study_phase;
 
-/* The progress of a running study. */
+/* The progress of a running study, down to the current frame; study_progress is that of a study on disk. */
 typedef struct study_moment {
     study_phase stage;
     size_t cell;                    /* the cell of the current frame */
     double share;                   /* the completed fraction of that frame, or of the motion before it, 0..1 */
     size_t frames_done, frames_all; /* repetitions of this process' cells, without warm-ups */
     double left_s;                  /* estimated time of the remaining frames; NaN: unknown */
-    size_t img, images;             /* number of the current kept file, from 1; 0 of 0 while rows are measured */
+    size_t img, images; /* while files are kept: number of the current cell, from 1, of all such cells; else 0 */
 } study_moment;
 
 typedef struct study_options {
@@ -133,31 +138,35 @@ typedef struct study_options {
     long process; /* from 1: this is one of study_processes, and measures only its part of the repetitions; 0: this
                              process measures all */
     bool any_environment;    /* rows of every environment count, not only those of the present one */
-    const char *environment; /* of an estimate: the key of that whose rows count instead, or NULL */
+    const char *environment; /* for an estimate: key of the environment whose rows count; NULL: the present one */
     FILE *progress;          /* a terminal for the progress line with ETA, or NULL */
     int progress_columns;    /* its width, which the line does not exceed; 0: unknown */
     void (*progressed)(
         void *context,
         const study_moment *now); /* at most about ten times per second, from the thread that runs the study. May be
                                      NULL */
-    /* News for the user: other processes, steal or a frequency drop disturb the measurement, or stopped to; at most one
-     * of a kind per minute. The progress line is erased before. May be NULL. */
+    /* News for the user: what disturbs the measurement, each kind at most once per minute, and a possible lack of disk
+     * space. The progress line is erased before. May be NULL. */
     void (*news)(void *context, const char *text);
-    double wait_quiet_s; /* before each measured repetition, wait that long at most until nothing disturbs; 0: never */
-    void *context;       /* passed to all */
+    double wait_quiet_s; /* before each frame, wait at most this long until nothing disturbs; 0: do not wait */
+    void *context;       /* passed to all callbacks */
 } study_options;
 
-/* The number of processes that the study divides its repetitions among: its processes for the least number of
- * repetitions, and as many again for further ones. Each measures, cell by cell, until its part exists; fresh processes
- * differ in memory layout and placement, which repetitions within one do not show (Kalibera and Jones, ISMM 2013). */
+/* The number of processes among which the study divides its repetitions (plan/grid.c): its processes for the least
+ * number of repetitions, and as many again for further ones. Each measures, cell by cell, until its part exists; fresh
+ * processes differ in memory layout and placement, which repetitions within one do not show (Kalibera and Jones, ISMM
+ * 2013). */
 long study_processes(const study *s);
 
-/* Measures what is missing; for a complete study *ran = 0 rows are written. Cancelled, it ends with STATUS_INTERRUPTED
- * after it has written the rows and images of what is complete. */
+/* Measures what is missing; *ran: the number of written rows, 0 for a complete study. When cancelled, it returns
+ * STATUS_INTERRUPTED after it has written the rows and images of what is complete. */
 status study_run(const study *s, const study_options *options, size_t *ran, diagnostic *why);
 
-/* *lacks: whether a kept file or a comparison with a reference is missing for a cell; rows are not looked at. */
+/* *lacks: whether a kept file or a comparison with a reference is missing for a cell, whatever the rows are
+ * (run/run_keep.c). */
 status study_lacks_files(const study *s, const char *results, bool *lacks, diagnostic *why);
+
+/* --- what is on disk: run/progress.c, rows/merge.c --- */
 
 /* The progress of a study on disk, over rows.csv and the files of shards. Cells, rows and warm-up rows are those of the
  * present environment (study/rows/environment.h). */
@@ -174,5 +183,6 @@ status study_status(const study *s, const char *results, study_progress *out, di
 
 /* Merges the shards' rows (results/<name>/rows.shard-i-of-N.csv) into rows.csv, and their runs; no line is lost or
  * duplicated. rows.csv is written atomically; the files of shards stay. STATUS_BAD_INPUT, with nothing written, for a
- * line that is no row and for two rows of one repetition. verdict becomes the first of the other faults of the rows. */
+ * line that is not a row and for two rows of one repetition. verdict becomes the first of the other faults of the
+ * rows. */
 status study_merge(const study *s, const char *results, size_t *rows, diagnostic *verdict, diagnostic *why);

@@ -24,7 +24,7 @@ static plot_plan plan_of(const study *s, const plot_request *request, const hand
             fprintf(out, "\t%s", s->axes[a].points[0].paths[i]);
     fputs(
         "\tn\twall_s_median\twall_s_low\twall_s_high\twall_s_mean\twall_s_min\twall_s_max\trays_total\tmarked\tothers_"
-        "share\n",
+        "fraction\n",
         out);
     for (size_t i = 0; i < count; i++) {
         fprintf(out, "%d", lines[i].cell);

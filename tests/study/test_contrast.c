@@ -271,8 +271,8 @@ static void invalid_sides_are_refused(void **state)
     static const struct {
         const char *a, *b, *what, *remedy;
     } cases[] = {
-        {"render.depth=7", "render.depth=1", "no cell has render.depth=7", "its values are: 1, 2"},
-        {"render.width=7", "render.width=9", "no parameter 'render.width'", "are: render.depth, render.threads"},
+        {"render.depth=7", "render.depth=1", "no cell has render.depth=7", "choose from: 1, 2"},
+        {"render.width=7", "render.width=9", "no parameter 'render.width'", "parameters: render.depth, render.threads"},
         {"render.depth=1", "render.threads=1", "only one side has a value of", "both sides"},
         {"cell=4", "cell=0", "no cell '4'", "summary"},
         {"cell=x", "cell=0", "no cell 'x'", "summary"},

@@ -146,7 +146,7 @@ static void other_references_are_refused(void **state)
         {"", "reason", "there is no such row"},
         {"NA", "reason", "there is no such row"},
         {"00:1", "reason", "there is no such row"},
-        {"0:0", "reason", "this row is a warm-up, which summaries leave out anyway"},
+        {"0:0", "reason", "this row is a warm-up, which summaries never use"},
         {"0:1", "", "this is not a reason"},
         {"0:1", "  ", "this is not a reason"},
         {"0:1", "two\nlines", "this is not a reason"},

@@ -72,7 +72,7 @@ static void values_may_have_any_character(void **state)
     char *values[] = {path, "plain"};
     const new_axis axis = {.path = "background.image", .values = values, .count = 2};
     scene *s = rod();
-    const new_study made = {.name = "t", .scene_path = "t.yaml", .of = s, .axes = &axis, .axis_count = 1};
+    const new_study made = {.name = "t", .scene_path = "t.yaml", .base = s, .axes = &axis, .axis_count = 1};
     size_t size = 0;
     FILE *out = open_memstream(&written, &size);
     new_study_write(&made, out);
@@ -94,7 +94,7 @@ static void long_lists_are_wrapped(void **state)
     }
     const new_axis axis = {.path = "liquid.ior", .values = values, .count = VALUES};
     scene *s = rod();
-    const new_study made = {.name = "t", .scene_path = "t.yaml", .of = s, .axes = &axis, .axis_count = 1};
+    const new_study made = {.name = "t", .scene_path = "t.yaml", .base = s, .axes = &axis, .axis_count = 1};
     size_t size = 0, lines = 0;
     FILE *out = open_memstream(&written, &size);
     new_study_write(&made, out);

@@ -255,8 +255,8 @@ static void invalid_rules_are_refused(void **state)
     } cases[] = {
         {"3", "0.1", "disturbed is not a map"},
         {"3", "{others: 0.1}", "unknown key 'others'"},
-        {"3", "{others_fraction: 1.5}", "others_fraction is not a share"},
-        {"3", "{steal_fraction: much}", "steal_fraction is not a share"},
+        {"3", "{others_fraction: 1.5}", "others_fraction is not a fraction"},
+        {"3", "{steal_fraction: much}", "steal_fraction is not a fraction"},
         {"{undisturbed: 3}", never, "repetitions has no max"},
         {"{undisturbed: 5, max: 4}", never, "max 4 is less than undisturbed 5"},
         {"{undisturbed: 5, max: 8, min: 2}", never, "unknown key 'min'"},

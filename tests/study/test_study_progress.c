@@ -82,7 +82,7 @@ static void progress_is_shown_ten_times_a_second(void **state)
     study *s = fixture_study(f, fixture_study_text);
     size_t calls = 0;
     const study_options options = {.results = f->results, .progressed = count_calls, .context = &calls};
-    progress_line *line = progress_begin(s, &options);
+    progress_display *line = progress_begin(s, &options);
     const double began_s = clock_wall_s();
     for (int i = 0; i < 10; i++)
         progress_show(line, 0.1 * i);

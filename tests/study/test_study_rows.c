@@ -56,13 +56,13 @@ static char *write_row(const study *s, const scene *setting, bool workers)
                                         .machine_units = 2},
                               .noise = {NAN, 0.125, 2e9, 0.25},
                               .hardware = {-1, -1, 5, 0}};
-    study_row row = {.of = s,
+    study_row row = {.s = s,
                      .cell = 3,
                      .repetition = 2,
                      .order = 17,
                      .film_expected = 0xabd,
                      .disturbed = NOISE_DISTURBED,
-                     .made = &made};
+                     .account = &made};
     csv_line line = {0};
     row_columns_header(&line, s, workers ? worker_each_column : row_each_column);
     (workers ? worker_rows_write : row_write)(&line, &row);

@@ -211,7 +211,7 @@ static void rows_that_vanish_are_noticed_and_kept(void **state)
     } cases[] = {
         {"rm \"$f\"", "the file was removed while the study ran"},
         {"cp \"$f\" \"$f.new\"; mv \"$f.new\" \"$f\"", "the file was replaced by another file while the study ran"},
-        {"truncate -s -10 \"$f\"", "the file was cut while the study ran"},
+        {"truncate -s -10 \"$f\"", "the file was truncated while the study ran"},
         {"echo >>\"$f\"", "the file was changed while the study ran"}};
     for (size_t i = 0; i < sizeof cases / sizeof *cases; i++) {
         char line[1300];

@@ -189,7 +189,7 @@ static void columns_are_in_the_expected_order(void **state)
                  "film_hash\tmarked\texcluded\tbusy_s_mean\tbusy_s_max\twaiting_s_mean\tothers_fraction\tworker_cpu_s_"
                  "sum\t"
                  "peak_rss_bytes\tnoise_rms\ttriangles\tinstances\taccel_bytes\tdrawn\tdrawn_bytes\tmotion_steps\tcut_"
-                 "share\t"
+                 "fraction\t"
                  "first_hits.ground\tfirst_hits.ball\t" SIX("build_s") SIX("imbalance") SIX("visibility_s_sum") SIX(
                      "motion_s") SIX("query_rays") SIX("query_boxes") SIX("query_triangles") SIX("rays_total/cpu_s")
                      SIX("visibility_s_sum/wall_s") SIX("visibility_s_sum/rays_total") SIX("motion_s/motion_steps")

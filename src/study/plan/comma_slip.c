@@ -1,3 +1,4 @@
+/* Recognises decimal commas in the lists of a study: [1,5, 2,5], meant as 1.5 and 2.5, reads as four values. */
 #include "base/array.h"
 #include "base/number.h"
 #include "study/plan/read_grid.h"
@@ -31,7 +32,7 @@ static bool list_has_point(const node *list)
     return false;
 }
 
-/* Whether a single comma, and nothing else, separates item i from the next. */
+/* Whether only a comma, without a space, separates item i from the next. */
 static bool touches_next(const node *list, size_t i)
 {
     const node *a = list->items[i], *b = list->items[i + 1];
@@ -47,7 +48,7 @@ static bool is_spaced(const node *list)
     return false;
 }
 
-/* Whether the values increase or decrease steadily; with joined in place of items i and i + 1 unless that is NULL. */
+/* Whether the values increase or decrease steadily. joined, unless NULL, replaces the items at and at + 1. */
 static bool is_steady(const node *list, size_t at, const char *joined)
 {
     int direction = 0;

@@ -68,7 +68,7 @@ static int64_t divided(int64_t pixels, int64_t by)
     return pixels / by > 0 ? pixels / by : 1;
 }
 
-/* Divides width and height of the frame by the smallest whole number that leaves at most QUICK_PIXELS pixels. */
+/* Divides width and height of the frame by the smallest integer that leaves at most QUICK_PIXELS pixels. */
 static void quick_frame(scene *setting)
 {
     const int64_t width = setting->render.width, height = setting->render.height;
@@ -271,22 +271,22 @@ bool grid_same_value(const char *a, const char *b)
 
 /* --- orders, processes, folder --- */
 
-/* 64 random bits: attempt number `attempt` for position i. */
+/* 64 random bits for a place of the order; attempt: how many draws were rejected before. */
 static uint64_t random_bits(uint64_t seed, uint64_t stream, uint32_t place, uint32_t attempt)
 {
     random_words drawn = random_at(seed, place, attempt, (uint32_t)stream, (uint32_t)(stream >> 32));
     return (uint64_t)drawn.word[1] << 32 | drawn.word[0];
 }
 
-/* Uniform on 0..bound-1: values in the incomplete last range of length bound are rejected. */
+/* Uniform on 0..bound-1: the lowest 2^64 mod bound values are rejected, so that every remainder is equally likely. */
 static uint64_t random_below(uint64_t seed, uint64_t stream, uint32_t place, uint64_t bound)
 {
-    uint64_t incomplete = -bound % bound; /* 2^64 mod bound */
+    uint64_t rejected = -bound % bound; /* 2^64 mod bound */
     uint64_t bits;
     uint32_t attempt = 0;
     do
         bits = random_bits(seed, stream, place, attempt++);
-    while (bits < incomplete);
+    while (bits < rejected);
     return bits % bound;
 }
 

@@ -4,7 +4,7 @@
 
 #include "study/study.h"
 
-/* Frames of a study in its quick form have at most that many pixels. */
+/* The largest number of pixels of a frame in the quick form of a study. */
 enum { QUICK_PIXELS = 80 * 60 };
 
 /* Calls visit with the scene of every cell, until the first error. */
@@ -19,21 +19,21 @@ void grid_find_films(study_axis *axis, const scene *s);
 
 /* The scene of the cell's reference; image files are not loaded. */
 status reference_scene(const study *s, size_t cell, scene **out, diagnostic *why);
-/* Checks every cell's reference: a valid scene with the size of the cell's image. Errors are located in the study file.
- */
+/* Checks that every cell's reference is a valid scene with the size of the cell's image. Errors name the place in the
+ * study file. */
 status reference_check(const study *s, diagnostic *why);
 
 /* The paths of the grid, by index; NULL after the last. */
 const char *study_grid_path(const study *s, size_t index);
 
-/* Whether two texts are one value: equal texts, numbers or vectors, whose brackets and blanks may be left out: "0,
- * 3, 1" and "[0,3,1]". */
+/* Whether two texts are the same value: equal texts, numbers or vectors. Brackets and blanks of vectors are ignored:
+ * "0, 3, 1" equals "[0,3,1]". */
 bool grid_same_value(const char *a, const char *b);
 
 /* Writes all paths, or all values of the cell as written in the study file, each preceded by a tab. */
 void grid_put_paths(const study *s, FILE *out);
 void grid_put_values(const study *s, size_t cell, FILE *out);
-/* A tab and a number, with as many digits as read back the same; NA if it is not finite. */
+/* Writes a tab and a number, with as many digits as read back the same; NA if it is not finite. */
 void grid_put_number(FILE *out, double value);
 
 /* Independent streams of one seed: the rounds of repetitions are 0, 1, ... */

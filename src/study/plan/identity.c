@@ -1,5 +1,5 @@
-/* The meaning of a scene and the contents of its files, hashed: the identities of cells. Equal file names with other
- * contents are another scene. Hashes are the same on every machine. */
+/* Hashes the meaning of a scene and the contents of its files into the identities of cells. A file with the same name
+ * and other contents makes another scene. Hashes are the same on every machine. */
 #include "base/file.h"
 #include "base/array.h"
 #include "base/hash.h"
@@ -16,7 +16,7 @@
 
 /* --- meaning of a scene --- */
 
-/* Takes ownership of both texts. */
+/* Adds an item, which owns both texts. */
 static status add(meaning *m, char *name, char *value)
 {
     if (!name || !value || !room_for_one(&m->items, m->count, sizeof *m->items)) {
@@ -30,54 +30,53 @@ static status add(meaning *m, char *name, char *value)
 
 typedef struct visit_state {
     meaning *into;
-    const scene *of;
+    const scene *s;
     bool without_performance, by_chance;
 } visit_state;
 
 static status add_param(void *context, const char *path, const param *row, const char *value)
 {
     visit_state *state = context;
-    if (row->group == PARAM_BEAM && !scene_film_depends_on(state->of, path))
+    if (row->group == PARAM_BEAM && !scene_film_depends_on(state->s, path))
         return STATUS_OK;
     if ((state->without_performance && row->performance_only) || (row->by_chance && !state->by_chance))
         return STATUS_OK;
-    char *usual = param_first_default_text(row);
+    char *default_text = param_first_default_text(row);
     status code = STATUS_FAILURE;
-    if (usual)
-        code = strcmp(usual, value) == 0 ? STATUS_OK : add(state->into, strdup(path), strdup(value));
-    free(usual);
+    if (default_text)
+        code = strcmp(default_text, value) == 0 ? STATUS_OK : add(state->into, strdup(path), strdup(value));
+    free(default_text);
     return code;
 }
 
 /* Every object is listed, including those with all parameters at their defaults. */
-static status add_objects(meaning *m, const scene *of, param_group group)
+static status add_objects(meaning *m, const scene *s, param_group group)
 {
-    for (size_t i = 0; i < param_place_group_size(of, group); i++)
-        if (group != PARAM_BEAM || of->beams[i].lights) /* no film depends on the others */
-            TRY(add(m, text_format("%s %zu", param_group_name(group), i),
-                    strdup(param_place_group_name(of, group, i))));
+    for (size_t i = 0; i < param_place_group_size(s, group); i++)
+        if (group != PARAM_BEAM || s->beams[i].lights) /* no film depends on the others */
+            TRY(add(m, text_format("%s %zu", param_group_name(group), i), strdup(param_place_group_name(s, group, i))));
     return STATUS_OK;
 }
 
-static status add_solid(meaning *m, const scene *of, const solid *owner)
+static status add_solid(meaning *m, const scene *s, const solid *owner)
 {
     TRY(add(m, text_format("shape of %s", owner->name), strdup(shape_name(owner->shape.kind))));
     if (owner->material_index >= 0)
-        TRY(add(m, text_format("material of %s", owner->name), strdup(of->materials[owner->material_index].name)));
+        TRY(add(m, text_format("material of %s", owner->name), strdup(s->materials[owner->material_index].name)));
     return STATUS_OK;
 }
 
-status meaning_of_scene(meaning *m, const scene *of, bool without_performance)
+status meaning_of_scene(meaning *m, const scene *s, bool without_performance)
 {
     static const param_group groups[] = {PARAM_MESH, PARAM_TEXTURE,  PARAM_LIGHT,
                                          PARAM_BEAM, PARAM_MATERIAL, PARAM_SOLID};
-    visit_state state = {m, of, without_performance, integrator_traits_of(&of->render)->by_chance};
-    TRY(scene_each_param(of, add_param, &state));
-    TRY(add(m, strdup("the camera's direction"), strdup(of->camera.aimed ? "its target" : "its angles")));
+    visit_state state = {m, s, without_performance, integrator_traits_of(&s->render)->by_chance};
+    TRY(scene_each_param(s, add_param, &state));
+    TRY(add(m, strdup("the camera's direction"), strdup(s->camera.aimed ? "its target" : "its angles")));
     for (size_t i = 0; i < sizeof groups / sizeof *groups; i++)
-        TRY(add_objects(m, of, groups[i]));
-    for (size_t i = 0; i < of->solid_count; i++)
-        TRY(add_solid(m, of, &of->solids[i]));
+        TRY(add_objects(m, s, groups[i]));
+    for (size_t i = 0; i < s->solid_count; i++)
+        TRY(add_solid(m, s, &s->solids[i]));
     return STATUS_OK;
 }
 
@@ -143,13 +142,13 @@ static void hash_mesh(uint64_t *hash, const mesh *m)
 }
 
 /* The text of a slime's script. An unreadable script is skipped: loading it reports the error. */
-static status hash_script(uint64_t *hash, const scene *of, const mesh_entry *m, diagnostic *why)
+static status hash_script(uint64_t *hash, const scene *s, const mesh_entry *m, diagnostic *why)
 {
     enum { SCRIPT_BYTES_MAX = 1 << 20 };
-    char *path = scene_file_path(of, m->script_path), *text = NULL;
+    char *path = scene_file_path(s, m->script_path), *text = NULL;
     size_t size = 0;
     const status code =
-        path ? file_read_below(path, of->limits.root, SCRIPT_BYTES_MAX, &text, &size, why) : out_of_memory(why);
+        path ? file_read_below(path, s->limits.root, SCRIPT_BYTES_MAX, &text, &size, why) : out_of_memory(why);
     if (code == STATUS_OK)
         hash_array(hash, text, size, 1);
     free(text);
@@ -157,20 +156,20 @@ static status hash_script(uint64_t *hash, const scene *of, const mesh_entry *m, 
     return code == STATUS_BAD_INPUT ? STATUS_OK : code;
 }
 
-status identity_hash_files(uint64_t *hash, const scene *of, diagnostic *why)
+status identity_hash_files(uint64_t *hash, const scene *s, diagnostic *why)
 {
     status code = STATUS_OK;
-    const image *sky = of->background.img;
+    const image *sky = s->background.img;
     if (sky)
         hash_array(hash, sky->pixel, (size_t)sky->width * (size_t)sky->height * 3, sizeof *sky->pixel);
-    for (size_t i = 0; i < of->texture_count; i++)
-        hash_texture(hash, of->textures[i].data);
-    for (size_t i = 0; i < of->mesh_count; i++) {
-        const mesh_entry *m = &of->meshes[i];
+    for (size_t i = 0; i < s->texture_count; i++)
+        hash_texture(hash, s->textures[i].data);
+    for (size_t i = 0; i < s->mesh_count; i++) {
+        const mesh_entry *m = &s->meshes[i];
         if (m->source == MESH_FILE && m->data)
             hash_mesh(hash, m->data);
         if (m->source == MESH_SLIME && m->script_path[0])
-            THEN(code, hash_script(hash, of, m, why));
+            THEN(code, hash_script(hash, s, m, why));
         for (int slot = 0; slot < face_materials_count(m->shading_materials); slot++)
             hash_material(hash, face_materials_at(m->shading_materials, slot));
     }

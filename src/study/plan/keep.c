@@ -1,3 +1,4 @@
+/* The files that a study keeps for a cell: their names, the space that they need, and their contents. */
 #include "base/file.h"
 #include "base/number.h"
 #include "base/text.h"
@@ -71,7 +72,7 @@ size_t keep_missing_count(const study *s, const char *folder, size_t cell)
     for (size_t what = 0; what < KEPT_COUNT; what++) {
         if (!wanted(s, what))
             continue;
-        char path[PATH_MAX]; /* a longer one cannot exist */
+        char path[PATH_MAX]; /* a longer path cannot exist */
         const int length = snprintf(path, sizeof path, KEPT_PATH, folder, cell, files[what].ending);
         missing += length < 0 || length >= PATH_MAX || access(path, F_OK) != 0;
     }
@@ -97,9 +98,9 @@ status keep_room(const study *s, const char *folder, size_t cell, const scene *s
         if (access(path, F_OK) != 0) {
             const image_format format = image_format_of(path);
             const bool is_map = format == IMAGE_PNG && files[what].wish != offsetof(study, keep_image);
-            if (format != IMAGE_UNKNOWN) /* a map has a legend, and is at least as wide as that */
+            if (format != IMAGE_UNKNOWN) /* a map has a legend, and is at least as wide as the legend */
                 image_room(format, is_map ? fmax(width, KEY_SIDE) : width, is_map ? height + KEY_SIDE : height, 1, to);
-            else if (files[what].wish == offsetof(study, keep_timeline)) /* tiles are halved where there are few */
+            else if (files[what].wish == offsetof(study, keep_timeline)) /* few tiles are split, so there may be more */
                 disk_room_add(to, 1, 0, TABLE_MOST + EVENT_MOST * 4 * ceil(width / tile) * ceil(height / tile));
             else
                 disk_room_add(to, 1, 0, TABLE_MOST);
@@ -129,7 +130,7 @@ render_options keep_options(const study *s)
 
 typedef enum cell_table { CELL_METRICS, CELL_CURVES, CELL_MOTION } cell_table;
 
-/* A table of one cell: its measured data and its output file. */
+/* What a table of one cell is made of, and its output file. */
 typedef struct cell_lines {
     const study *s;
     size_t cell;
@@ -138,7 +139,7 @@ typedef struct cell_lines {
     FILE *out;
 } cell_lines;
 
-/* The start of a line, up to the last axis value. */
+/* Writes the start of a line, up to the last axis value. */
 static void begin(const cell_lines *l)
 {
     fprintf(l->out, "%s\t%zu", l->s->name, l->cell);
@@ -215,13 +216,13 @@ static const struct {
 
 static status write_table(cell_table which, const study *s, const kept_cell *c, const char *path, diagnostic *why)
 {
-    const job_account *made = c->made;
+    const job_account *account = c->account;
     file_writer file;
     TRY(file_writer_open(&file, path, why));
     fputs("study\tcell", file.stream);
     grid_put_paths(s, file.stream);
     fprintf(file.stream, "\t%s\n", tables[which].columns);
-    const cell_lines lines = {s, c->cell, made->of, made->level, file.stream};
+    const cell_lines lines = {s, c->cell, account->of, account->level, file.stream};
     return file_writer_end(&file, tables[which].put(&lines, why), why);
 }
 
@@ -257,7 +258,7 @@ status keep_check_tables(const study *s, diagnostic *why)
 
 static status write_kept(const study *s, const kept_cell *c, size_t what, const char *path, diagnostic *why)
 {
-    const render_result *frame = c->made->result;
+    const render_result *frame = c->account->result;
     const size_t wish = files[what].wish;
     if (wish == offsetof(study, keep_pixel_rays))
         return record_map(frame->pixel_rays, frame->img, "rays per pixel", path, why);
@@ -268,7 +269,7 @@ static status write_kept(const study *s, const kept_cell *c, size_t what, const 
     if (wish == offsetof(study, keep_timeline))
         return record_timeline(frame, path, why);
     if (wish == offsetof(study, keep_image) || wish == offsetof(study, keep_pfm))
-        return record_image(frame->img, c->made->of, path, 8, why);
+        return record_image(frame->img, c->account->of, path, 8, why);
     const cell_table which = wish == offsetof(study, keep_metrics)  ? CELL_METRICS
                              : wish == offsetof(study, keep_curves) ? CELL_CURVES
                                                                     : CELL_MOTION;

@@ -16,27 +16,27 @@ status keep_check_tables(const study *s, diagnostic *why);
 
 /* Whether a file that the study keeps is missing for the cell. */
 bool keep_missing(const study *s, const char *folder, size_t cell);
-/* The number of such files. */
+/* The number of kept files that are missing for the cell. */
 size_t keep_missing_count(const study *s, const char *folder, size_t cell);
-/* Adds the disk space that these files may need; setting: the scene of the cell. */
+/* Adds to *to the disk space that the missing files may need; setting: the scene of the cell. */
 status keep_room(const study *s, const char *folder, size_t cell, const scene *setting, disk_room *to, diagnostic *why);
 /* The ending of the study's kept file i, counted from 0: ".png" of images/0003.png; NULL after the last. */
 const char *keep_ending(const study *s, size_t i);
 
-/* Names the kept files by the numbers that their cells have now (study/plan/keep_numbers.c); create: makes the folder
- * for the first of them. *changed: files may have other names than before. */
+/* Names the kept files by the numbers that their cells have now (study/plan/keep_numbers.c); create: also makes the
+ * folder if it is missing. *changed: files may have been renamed. */
 status keep_renumber(const study *s, const char *folder, bool create, bool *changed, diagnostic *why);
 
 /* The path of a cell's image in the study's folder; fresh memory, or NULL. */
 char *keep_image_path(const char *folder, size_t cell);
 
-/* The options of the frame; progress and context stay NULL. */
+/* The options of the frame for the kept files; progress and context stay NULL. */
 render_options keep_options(const study *s);
 
-/* A cell, and its frame rendered with these options. Borrowed. */
+/* A cell, and its frame rendered with keep_options. Borrowed. */
 typedef struct kept_cell {
     size_t cell;
-    const job_account *made;
+    const job_account *account;
 } kept_cell;
 
 /* Writes the cell's files. */

@@ -1,4 +1,4 @@
-/* A new study file: its axes, its text, and what the program reads back from it. */
+/* Composes a new study file: parses its axes, writes its text, and reads it back as a study. */
 #include "base/file.h"
 #include "base/array.h"
 #include "base/number.h"
@@ -37,7 +37,7 @@ static status add_value(new_axis *axis, const char *text, size_t length, diagnos
     return STATUS_OK;
 }
 
-/* FROM..TO:STEPS. Two dots after anything but a number belong to a value: the path of a file. */
+/* Parses FROM..TO:STEPS. Two dots that do not follow a number are part of a value, such as a path. */
 static status parse_range(const char *text, new_axis *axis, bool *is_range, diagnostic *why)
 {
     const char *dots = strstr(text, ".."), *colon = dots ? strchr(dots, ':') : NULL;
@@ -106,7 +106,7 @@ static size_t new_axis_points(const new_axis *axis)
 
 /* --- the text --- */
 
-/* Quotes a value of a list where YAML would interpret its characters. */
+/* Writes a value, quoted if YAML would interpret its characters. */
 static void put_value(FILE *out, const char *text)
 {
     static const char plain[] = "abcdefghijklmnopqrstuvwxyzABCDEFGHIJKLMNOPQRSTUVWXYZ0123456789_.+-/";
@@ -122,7 +122,7 @@ static void put_value(FILE *out, const char *text)
     }
 }
 
-/* Comment lines of at most COLUMNS characters. */
+/* Writes comment lines of at most COLUMNS characters. */
 static void put_comment(FILE *out, const char *indent, const char *text)
 {
     const size_t room = COLUMNS - strlen(indent) - 2;
@@ -144,7 +144,7 @@ static void put_meaning(const new_study *s, FILE *out, const char *path)
 {
     param_place at;
     char range[300], text[900];
-    if (param_place_find(s->of, path, &at, NULL) != STATUS_OK)
+    if (param_place_find(s->base, path, &at, NULL) != STATUS_OK)
         return;
     param_range_text(at.row, range, sizeof range);
     snprintf(text, sizeof text, "%s (%s%s%s)", at.row->meaning, range, at.row->unit[0] ? ", " : "", at.row->unit);
@@ -234,20 +234,20 @@ static status try_settings(const new_study_order *r, scene *s, const new_axis *a
             return code;
         }
     }
-    scene *on = scene_clone(s);
-    status code = on ? STATUS_OK : out_of_memory(why);
+    scene *trial = scene_clone(s);
+    status code = trial ? STATUS_OK : out_of_memory(why);
     for (size_t a = 0; a < r->axis_count && code == STATUS_OK; a++)
         for (size_t i = 0; i < axes[a].count - (axes[a].range ? 1 : 0) && code == STATUS_OK; i++) {
-            code = scene_set(on, axes[a].path, axes[a].values[i], why);
+            code = scene_set(trial, axes[a].path, axes[a].values[i], why);
             snprintf(where, sizeof where, "--axis %.400s", r->axes[a]);
             if (code != STATUS_OK)
                 diagnostic_locate(why, where, 0, 0);
         }
-    scene_destroy(on);
+    scene_destroy(trial);
     return code;
 }
 
-/* The name of the file without its ending; or the names of scene and parameter, "rod-depth". */
+/* Chooses the file's name without its ending, or else the names of scene and parameter: "rod-depth". */
 static void choose_name(const new_study_order *r, const new_axis *first, char name[NAME_LENGTH + 1])
 {
     const char *file = file_name_of(r->target ? r->target : r->scene);
@@ -281,13 +281,13 @@ static void relocate(const new_study_order *r, const char *text, diagnostic *why
     diagnostic_locate(why, where, 0, 0);
 }
 
-static status write_and_read(const new_study_order *r, const new_study *made, const char *file, char **text,
+static status write_and_read(const new_study_order *r, const new_study *content, const char *file, char **text,
                              study **read, diagnostic *why)
 {
     text_writer writer;
     size_t size = 0;
     TRY(text_writer_open(&writer, why));
-    new_study_write(made, writer.stream);
+    new_study_write(content, writer.stream);
     TRY(text_writer_close(&writer, text, &size, why));
     const status code = study_read_text_guarded(file, *text, size, r->guard, read, why);
     if (code == STATUS_BAD_INPUT && why->line > 0)
@@ -311,16 +311,16 @@ static status compose(const new_study_order *r, scene *s, new_axis *axes, char *
     snprintf(file, sizeof file, "%s.study", name);
     const char *target = r->target ? r->target : file;
     TRY(write_moved_path(file_name_of(r->scene), r->scene, target, &path, why));
-    const new_study made = {.name = name,
-                            .scene_path = path,
-                            .of = s,
-                            .sets = r->sets,
-                            .set_count = r->set_count,
-                            .axes = axes,
-                            .axis_count = r->axis_count,
-                            .repetitions = r->repetitions,
-                            .warmups = r->warmups};
-    const status code = write_and_read(r, &made, target, text, read, why);
+    const new_study content = {.name = name,
+                               .scene_path = path,
+                               .base = s,
+                               .sets = r->sets,
+                               .set_count = r->set_count,
+                               .axes = axes,
+                               .axis_count = r->axis_count,
+                               .repetitions = r->repetitions,
+                               .warmups = r->warmups};
+    const status code = write_and_read(r, &content, target, text, read, why);
     free(path);
     return code;
 }

@@ -1,6 +1,6 @@
-/* A new study file, for `cuvette study new` and the laboratory: composed from a scene and axes, and read as
- * `cuvette study run` reads it. Ownership: new_axis_release frees an axis; new_study_compose gives text and study;
- * everything else is borrowed. */
+/* A new study file, for `cuvette study new` and the laboratory: composed from a scene and axes, and read as `cuvette
+ * study run` reads it. Ownership: new_axis_release frees an axis; the caller frees the text and the study of
+ * new_study_compose; everything else is borrowed. */
 #pragma once
 
 #include "base/status.h"
@@ -14,7 +14,7 @@
 /* PATH=1,2,3, or PATH=FROM..TO:STEPS. */
 typedef struct new_axis {
     char *path;
-    char **values; /* of a list; or from, to and steps */
+    char **values; /* the values of a list; or from, to and steps of a range */
     size_t count;
     bool range;
 } new_axis;
@@ -25,7 +25,7 @@ void new_axis_release(new_axis *axis);
 
 typedef struct new_study {
     const char *name, *scene_path; /* the path relative to the study file */
-    const scene *of;
+    const scene *base;
     const char *const *sets; /* PATH=VALUE */
     size_t set_count;
     const new_axis *axes;
@@ -40,11 +40,11 @@ void new_study_write(const new_study *s, FILE *out);
 typedef struct new_study_order {
     const char *scene;                     /* the path of the scene file */
     const char *target;                    /* the path of the study file; NULL: none is written */
-    const char *name;                      /* NULL: from target, or from the scene and the first axis */
+    const char *name;                      /* NULL: taken from target, or from the scene and the first axis */
     const char *const *axes, *const *sets; /* PATH=VALUES; PATH=VALUE for all cells */
     size_t axis_count, set_count;
     int64_t repetitions, warmups;
-    const study_guard *guard; /* of the files that the study reads; NULL: none */
+    const study_guard *guard; /* limits the files that the study may read; NULL: no limit */
 } new_study_order;
 
 /* s: the scene of the file; the settings are applied to it. An error is located at the option of `study new` that

@@ -118,7 +118,7 @@ static status read_interval_rule(study *s, const document *d, const node *n, dia
     if (code != STATUS_OK)
         return code;
     if (min && max && most < least)
-        return node_error(d, max, why, "let max be at least min", "max %lld is less than min %lld", (long long)most,
+        return node_error(d, max, why, "set max to at least min", "max %lld is less than min %lld", (long long)most,
                           (long long)least);
     for (size_t i = 0; i < COUNT(keys); i++)
         if (!node_get(n, keys[i]))
@@ -148,7 +148,7 @@ static status read_undisturbed(study *s, const document *d, const node *n, diagn
         return node_error(d, n, why, "write {undisturbed: 6, max: 20}", "repetitions has no max");
     TRY(read_integer(d, max, "max", 1, STUDY_REPETITIONS_MAX, &most, why));
     if (most < least)
-        return node_error(d, max, why, "let max be at least undisturbed", "max %lld is less than undisturbed %lld",
+        return node_error(d, max, why, "set max to at least undisturbed", "max %lld is less than undisturbed %lld",
                           (long long)most, (long long)least);
     s->repetitions_min = s->undisturbed = (long)least;
     s->repetitions_max = (long)most;
@@ -170,7 +170,7 @@ static status read_fraction(const document *d, const node *n, const char *name, 
     if (!n)
         return STATUS_OK;
     if (n->kind != NODE_SCALAR || !number_parse_real(n->text, out) || *out < 0 || *out > 1)
-        return node_error(d, n, why, "write a number from 0 to 1", "%s is not a share", name);
+        return node_error(d, n, why, "write a number from 0 to 1", "%s is not a fraction", name);
     return STATUS_OK;
 }
 
@@ -198,7 +198,7 @@ static status read_processes(study *s, const document *d, const node *n, diagnos
     int64_t value = 1;
     TRY(read_integer(d, n, "processes", 1, STUDY_PROCESSES_MAX, &value, why));
     if (value > s->repetitions_min)
-        return node_error(d, n, why, "let there be a repetition for each process",
+        return node_error(d, n, why, "use at most as many processes as repetitions",
                           "%lld processes are more than the %ld repetitions", (long long)value, s->repetitions_min);
     s->processes = (long)value;
     return STATUS_OK;
@@ -240,7 +240,7 @@ static status read_keep(study *s, const document *d, const node *n, diagnostic *
     return STATUS_OK;
 }
 
-/* The scene's file, its text for the manifest, and its model. Errors in it are located in the scene file. */
+/* Reads the scene file: its text, for the manifest, and its model. Errors in it name the scene file. */
 static status read_scene(study *s, const document *d, const node *root, const study_guard *guard, diagnostic *why)
 {
     const node *n = node_get(root, "scene");
@@ -319,7 +319,7 @@ static status read_root(study *s, const document *d, const study_guard *guard, d
         TRY(guard->may_load(guard->context, s->base, why));
         TRY(grid_each_cell(s, check_loads, (void *)(uintptr_t)guard, why));
     }
-    TRY(scene_load_files(s->base, why)); /* their contents are part of an identity */
+    TRY(scene_load_files(s->base, why)); /* the contents of its files are part of identities */
     return identities_find(s, &s->identity, why);
 }
 

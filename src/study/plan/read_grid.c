@@ -1,3 +1,4 @@
+/* Reads the fixed settings, the grid and the reference of a study file, and tries every value on a scene. */
 #include "study/plan/read_grid.h"
 #include "base/number.h"
 #include "scene/model/params.h"
@@ -21,13 +22,13 @@ static status locate(const document *d, const node *at, diagnostic *why, status 
     return code;
 }
 
-/* Sets one parameter of the scene, and returns the value as scene_get writes it: 1.0 and 1 are one value. */
-static status try_value(scene *on, const document *d, const node *key, const node *value, char **canonical,
+/* Sets one parameter of the scene, and returns the value as scene_get writes it, so that 1.0 and 1 are one value. */
+static status try_value(scene *target, const document *d, const node *key, const node *value, char **canonical,
                         diagnostic *why)
 {
     char *now = NULL;
     *canonical = NULL;
-    status code = scene_get(on, key->text, &now, why);
+    status code = scene_get(target, key->text, &now, why);
     free(now);
     if (code != STATUS_OK)
         return locate(d, key, why, code);
@@ -39,8 +40,8 @@ static status try_value(scene *on, const document *d, const node *key, const nod
                           key->text);
     if (!read_grid_plain(text))
         code = node_error(d, value, why, "write it on one line", "%s has control characters", key->text);
-    else if ((code = scene_set(on, key->text, text, why)) != STATUS_OK ||
-             (code = scene_get(on, key->text, canonical, why)) != STATUS_OK)
+    else if ((code = scene_set(target, key->text, text, why)) != STATUS_OK ||
+             (code = scene_get(target, key->text, canonical, why)) != STATUS_OK)
         locate(d, value, why, code);
     free(text);
     return code;
@@ -55,7 +56,7 @@ static status point_reserve(study_point *point, const node *at, size_t count, di
     return point->paths && point->values ? STATUS_OK : out_of_memory(why);
 }
 
-/* -0 is 0: otherwise [-0, 0] would be two cells of one scene. In vectors, too. */
+/* Replaces -0 by 0, also in vectors: otherwise [-0, 0] would be two cells of the same scene. */
 static void drop_signs_of_zeros(char *text)
 {
     for (char *at = text; *at; at++) {
@@ -65,11 +66,11 @@ static void drop_signs_of_zeros(char *text)
     }
 }
 
-static status point_add(study_point *point, scene *on, const document *d, const node *key, const node *value,
+static status point_add(study_point *point, scene *target, const document *d, const node *key, const node *value,
                         diagnostic *why)
 {
     char *canonical;
-    TRY(try_value(on, d, key, value, &canonical, why));
+    TRY(try_value(target, d, key, value, &canonical, why));
     drop_signs_of_zeros(canonical);
     point->values[point->count] = canonical;
     point->paths[point->count] = strdup(key->text);
@@ -77,13 +78,13 @@ static status point_add(study_point *point, scene *on, const document *d, const 
 }
 
 /* Reads each entry of a map {path: value}. */
-static status read_point(study_point *point, scene *on, const document *d, const node *map, diagnostic *why)
+static status read_point(study_point *point, scene *target, const document *d, const node *map, diagnostic *why)
 {
     if (map->kind != NODE_MAP || map->count == 0)
         return node_error(d, map, why, "write {path: value}", "this sets no parameter");
     TRY(point_reserve(point, map, map->count, why));
     for (size_t i = 0; i < map->count; i++)
-        TRY(point_add(point, on, d, map->keys[i], map->items[i], why));
+        TRY(point_add(point, target, d, map->keys[i], map->items[i], why));
     return STATUS_OK;
 }
 
@@ -118,8 +119,8 @@ static bool points_equal(const study_point *a, const study_point *b)
     return true;
 }
 
-/* One parameter with a list of values. */
-static status read_values(study_axis *axis, scene *on, const document *d, const node *key, const node *list,
+/* Reads an axis of one parameter with a list of values. */
+static status read_values(study_axis *axis, scene *target, const document *d, const node *key, const node *list,
                           diagnostic *why)
 {
     axis->name = strdup(key->text);
@@ -127,7 +128,7 @@ static status read_values(study_axis *axis, scene *on, const document *d, const 
     for (size_t i = 0; code == STATUS_OK && i < list->count; i++) {
         study_point *point = &axis->points[axis->count++];
         code = point_reserve(point, list->items[i], 1, why);
-        THEN(code, point_add(point, on, d, key, list->items[i], why));
+        THEN(code, point_add(point, target, d, key, list->items[i], why));
     }
     return code;
 }
@@ -142,9 +143,9 @@ static status read_step_count(const document *d, const node *n, int64_t *steps, 
     return STATUS_OK;
 }
 
-/* {from: 1.0, to: 2.0, steps: 5}: evenly spaced, both ends included. Values between are rounded to 15 digits, so that
- * 1.0 to 1.6 in 4 steps has 1.4, not 1.4000000000000001. */
-static status read_range(study_axis *axis, scene *on, const document *d, const node *key, const node *range,
+/* {from: 1.0, to: 2.0, steps: 5}: evenly spaced, both ends included. Inner values are rounded to 15 digits, so that 1.0
+ * to 1.6 in 4 steps has 1.4, not 1.4000000000000001. */
+static status read_range(study_axis *axis, scene *target, const document *d, const node *key, const node *range,
                          diagnostic *why)
 {
     static const char *const keys[] = {"from", "to", "steps"};
@@ -177,13 +178,13 @@ static status read_range(study_axis *axis, scene *on, const document *d, const n
             number_format(value, text);
         study_point *point = &axis->points[axis->count++];
         code = point_reserve(point, range, 1, why);
-        THEN(code, point_add(point, on, d, key, &at, why));
+        THEN(code, point_add(point, target, d, key, &at, why));
     }
     return code;
 }
 
-/* Several parameters that vary together: name and points. */
-static status read_points(study_axis *axis, scene *on, const document *d, const node *name, const node *list,
+/* Reads an axis of several parameters that vary together: a name and points. */
+static status read_points(study_axis *axis, scene *target, const document *d, const node *name, const node *list,
                           diagnostic *why)
 {
     if (!name || name->kind != NODE_SCALAR || !name->text[0] || !read_grid_plain(name->text))
@@ -192,13 +193,13 @@ static status read_points(study_axis *axis, scene *on, const document *d, const 
     status code = axis->name ? STATUS_OK : out_of_memory(why);
     for (size_t i = 0; code == STATUS_OK && i < list->count; i++) {
         study_point *point = &axis->points[axis->count++];
-        code = read_point(point, on, d, list->items[i], why);
+        code = read_point(point, target, d, list->items[i], why);
         THEN(code, align_point(point, &axis->points[0], d, list->items[i], why));
     }
     return code;
 }
 
-/* The remedy for equal values: in [1.1, 1,3, 1,4], 1 is there twice. */
+/* The remedy for equal values, which may come from decimal commas: [1.1, 1,3, 1,4] has two values 1. */
 static const char *distinct_remedy(const node *at, char text[COMMA_SLIP_TEXT_MAX + 24])
 {
     char joined[COMMA_SLIP_TEXT_MAX];
@@ -222,20 +223,20 @@ static status check_distinct(const study_axis *axis, const document *d, const no
     return STATUS_OK;
 }
 
-static status read_axis(study_axis *axis, scene *on, const document *d, const node *n, diagnostic *why)
+static status read_axis(study_axis *axis, scene *target, const document *d, const node *n, diagnostic *why)
 {
     static const char *const keys[] = {"name", "points"};
     const char *const form =
         "write {path: [values]}, {path: {from: 1, to: 2, steps: 5}} or {name: WORD, points: [{path: value}, ...]}";
     if (n->kind != NODE_MAP || n->count == 0 || (n->count > 1 && !node_get(n, "name") && !node_get(n, "points")))
         return node_error(d, n, why, form, "this is not an axis");
-    bool together = n->count > 1 || strcmp(n->keys[0]->text, "points") == 0;
-    if (together)
+    bool has_points = n->count > 1 || strcmp(n->keys[0]->text, "points") == 0;
+    if (has_points)
         TRY(node_check_keys(d, n, keys, 2, why));
     status code = STATUS_OK;
-    const node *list = together ? node_get(n, "points") : n->items[0];
-    if (!together && list->kind == NODE_MAP) {
-        code = read_range(axis, on, d, n->keys[0], list, why);
+    const node *list = has_points ? node_get(n, "points") : n->items[0];
+    if (!has_points && list->kind == NODE_MAP) {
+        code = read_range(axis, target, d, n->keys[0], list, why);
         return code == STATUS_OK ? check_distinct(axis, d, list, why) : code;
     }
     if (!list || list->kind != NODE_LIST || list->count == 0)
@@ -245,8 +246,8 @@ static status read_axis(study_axis *axis, scene *on, const document *d, const no
     axis->points = calloc(list->count, sizeof *axis->points);
     if (!axis->points)
         return out_of_memory(why);
-    code = together ? read_points(axis, on, d, node_get(n, "name"), list, why)
-                    : read_values(axis, on, d, n->keys[0], list, why);
+    code = has_points ? read_points(axis, target, d, node_get(n, "name"), list, why)
+                      : read_values(axis, target, d, n->keys[0], list, why);
     return code == STATUS_OK ? check_distinct(axis, d, list, why) : code;
 }
 
@@ -274,7 +275,7 @@ static bool is_real(const scene *s, const char *path)
     return param_place_find(s, path, &at, NULL) == STATUS_OK && at.row->type == PARAM_REAL;
 }
 
-static status read_axes(study *s, scene *on, const document *d, const node *grid, diagnostic *why)
+static status read_axes(study *s, scene *target, const document *d, const node *grid, diagnostic *why)
 {
     if (grid->kind != NODE_LIST || grid->count == 0)
         return node_error(d, grid, why, "write a list of axes, each - {path: [values]}", "grid is not a list of axes");
@@ -286,13 +287,13 @@ static status read_axes(study *s, scene *on, const document *d, const node *grid
     size_t cells = 1;
     for (size_t i = 0; i < grid->count; i++) {
         s->axis_count++;
-        status code = read_axis(&s->axes[i], on, d, grid->items[i], why);
+        status code = read_axis(&s->axes[i], target, d, grid->items[i], why);
         if (code == STATUS_OK) {
-            grid_find_films(&s->axes[i], on);
+            grid_find_films(&s->axes[i], target);
             code = check_once(s, i, d, grid->items[i], why);
             if (code == STATUS_OK && grid->items[i]->count == 1)
                 code = comma_slip_note(s, s->axes[i].name, grid->items[i]->items[0],
-                                       is_real(on, s->axes[i].points[0].paths[0]), why);
+                                       is_real(target, s->axes[i].points[0].paths[0]), why);
         }
         if (code != STATUS_OK)
             return code;
@@ -310,11 +311,11 @@ status read_grid(study *s, const document *d, const node *set, const node *grid,
         code = read_point(&s->fixed, s->base, d, set, why);
     if (code != STATUS_OK || !grid)
         return code;
-    scene *on = scene_clone(s->base);
-    if (!on)
+    scene *target = scene_clone(s->base);
+    if (!target)
         return out_of_memory(why);
-    code = read_axes(s, on, d, grid, why);
-    scene_destroy(on);
+    code = read_axes(s, target, d, grid, why);
+    scene_destroy(target);
     return code;
 }
 
@@ -322,10 +323,10 @@ status read_reference(study *s, const document *d, const node *reference, diagno
 {
     if (!reference)
         return STATUS_OK;
-    scene *on = scene_clone(s->base);
-    if (!on)
+    scene *target = scene_clone(s->base);
+    if (!target)
         return out_of_memory(why);
-    status code = read_point(&s->reference, on, d, reference, why);
-    scene_destroy(on);
+    status code = read_point(&s->reference, target, d, reference, why);
+    scene_destroy(target);
     return code;
 }

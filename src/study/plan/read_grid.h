@@ -18,12 +18,11 @@ bool read_grid_plain(const char *text);
  * two. Such a list is valid, so there is a note, not an error; the study owns it. */
 enum { COMMA_SLIP_TEXT_MAX = 64 };
 
-/* Whether items i and i + 1 of a list of values are probably one number, which is then written to joined ("1.4"). Both
- * are integers. Either the second begins with 0, as in [1,05, 2]; or they are the whole list of a real parameter, one
- * digit and several, as in [1,33]; or the list has decimal points, and the comma between them has no blank after it
- * although another one has, or the values increase or decrease steadily with the number but not with the two integers.
- * real: whether the parameter is a real number. */
+/* Whether items i and i + 1, two integers, are probably one number, which is then written to joined ("1.4"): if the
+ * second begins with 0, as in [1,05, 2]; if the list of a real parameter has only them, one digit and several, as in
+ * [1,33]; or if the list has decimal points, and either no blank follows their comma but one follows another comma, or
+ * the values increase or decrease steadily with the number but not with the integers. real: the parameter is real. */
 bool comma_slip_at(const node *list, size_t i, bool real, char joined[COMMA_SLIP_TEXT_MAX]);
 
-/* Adds a note for each such pair in the list of values of path. */
+/* Adds a note for each decimal comma in the list of values of path. */
 status comma_slip_note(study *s, const char *path, const node *list, bool real, diagnostic *why);

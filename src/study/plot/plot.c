@@ -61,7 +61,7 @@ status study_plot_write(const study *s, const plot_request *request, const char 
 
 /* --- gnuplot --- */
 
-/* A drawing, and when to end it. */
+/* A drawing and its time limit. */
 typedef struct drawing {
     const char *script, *scratch, *format; /* the figure appears at SCRATCH.FORMAT */
     double limit_s;
@@ -85,7 +85,7 @@ static char *settings_of(const char *scratch, const char *format)
     return NULL;
 }
 
-/* The first line of gnuplot's output that is an error message. */
+/* Fails with the first error message in gnuplot's output. */
 static status explain(const char *script, int code, char *output, diagnostic *why)
 {
     if (code == NOT_FOUND)
@@ -116,12 +116,12 @@ static status run_gnuplot(const drawing *d, diagnostic *why)
 }
 
 /* Moves the drawn figure to its name: complete or absent, even after a power cut. */
-static status move_figure(int fd, char **made, const char *target, diagnostic *why)
+static status move_figure(int fd, char **temporary, const char *target, diagnostic *why)
 {
     struct stat about;
     if (fstat(fd, &about) == 0 && about.st_size == 0)
         return diagnose_at(why, target, STATUS_FAILURE, "check that the gnuplot in PATH works", "gnuplot drew nothing");
-    if (fsync(fd) != 0 || temporary_move(fd, made, target) != 0)
+    if (fsync(fd) != 0 || temporary_move(fd, temporary, target) != 0)
         return system_error(why, STATUS_FAILURE, target, "cannot write", errno, "");
     file_flush_folder(target);
     return STATUS_OK;
@@ -130,9 +130,9 @@ static status move_figure(int fd, char **made, const char *target, diagnostic *w
 /* The temporary file has a name, because gnuplot opens it (base/file.h). */
 static status draw_figure(drawing *d, const char *target, diagnostic *why)
 {
-    char *made = NULL, *ending = text_format(".%s", d->format);
-    const int fd = ending ? temporary_open_named(target, ending, &made) : -1, reason = errno;
-    char *scratch = made ? strndup(made, strlen(made) - strlen(ending)) : NULL;
+    char *temporary = NULL, *ending = text_format(".%s", d->format);
+    const int fd = ending ? temporary_open_named(target, ending, &temporary) : -1, reason = errno;
+    char *scratch = temporary ? strndup(temporary, strlen(temporary) - strlen(ending)) : NULL;
     status code = STATUS_OK;
     if (ending && fd < 0)
         code = system_error(why, STATUS_FAILURE, target, "cannot write", reason, "");
@@ -140,14 +140,14 @@ static status draw_figure(drawing *d, const char *target, diagnostic *why)
         code = out_of_memory(why);
     d->scratch = scratch;
     THEN(code, run_gnuplot(d, why));
-    THEN(code, move_figure(fd, &made, target, why));
+    THEN(code, move_figure(fd, &temporary, target, why));
     if (code != STATUS_OK && fd >= 0)
-        unlink(made);
+        unlink(temporary);
     if (fd >= 0)
         close(fd);
     free(scratch);
     free(ending);
-    free(made);
+    free(temporary);
     return code;
 }
 

@@ -1,7 +1,7 @@
-/* A figure of a study's summary, chosen from its grid and drawn by gnuplot. One numeric parameter gives lines, two with
- * at least three values each a heat map, words dots; the other parameters become lines or panels. Cells of unlike
- * environments are never joined by a line, nor in one cell of a heat map. A second kind of figure, the sheet, shows the
- * kept images with captions.
+/* A figure of a study's summary, chosen from its grid and drawn by gnuplot. One numeric parameter makes lines, two with
+ * at least three values each make a heat map, and words make dots; the other parameters become lines or panels. Cells
+ * of unlike environments are never joined by a line, nor combined in one cell of a heat map. A second kind of figure,
+ * the sheet, shows the kept images with captions.
  *
  * A figure is a script, BASE.gp, which contains the style and can be edited, and its data, BASE.tsv. Ownership: nothing
  * is kept. STATUS_BAD_INPUT: no such column, value or file, or more lines than a figure can show; STATUS_FAILURE:
@@ -13,13 +13,14 @@
 typedef enum plot_log { PLOT_LOG_AUTO, PLOT_LOG_NONE, PLOT_LOG_X, PLOT_LOG_Y, PLOT_LOG_XY } plot_log;
 
 typedef struct plot_request {
-    const char *results;      /* results folder */
-    const char *x, *y, *by;   /* NULL: chosen; x: a parameter of the grid or a column; y: a column; by: a parameter */
+    const char *results; /* results folder */
+    const char *x, *y,
+        *by; /* NULL: chosen by the program; x: a parameter of the grid or a column; y: a column; by: a parameter */
     const char *const *where; /* PATH=VALUE: only cells with this value */
     size_t where_count;
     plot_log log;
     const char *published; /* CSV file with numbers to compare with, or NULL */
-    bool images;           /* the sheet instead of the figure */
+    bool images;           /* make a sheet instead of a figure */
 } plot_request;
 
 /* Writes BASE.gp and, for a figure, BASE.tsv. */

@@ -17,7 +17,7 @@ const plot_axis *plot_axis_named(const plot_plan *p, const char *name)
     return NULL;
 }
 
-/* "a, b, c" of names, cut where the text ends. */
+/* Joins names as "a, b, c", cut to the size of the text. */
 static const char *list_of(const char *const *names, size_t count, char *text, size_t size)
 {
     size_t length = 0;
@@ -90,7 +90,8 @@ static void find_values(const plot_plan *p, plot_axis *axis)
         if (has_value(p, axis, row) && find_value(axis, text) == PLOT_NONE)
             axis->texts[axis->count++] = text;
     }
-    axis->numeric = axis->count > 0 && axis->group != PLOT_NONE; /* digits of an environment are no number */
+    axis->numeric =
+        axis->count > 0 && axis->group != PLOT_NONE; /* an environment is not a number, even if it has only digits */
     for (size_t i = 0; i < axis->count; i++)
         axis->numeric = number_parse_real(axis->texts[i], &axis->reals[i]) && axis->numeric;
     if (axis->numeric)
@@ -102,10 +103,10 @@ static void find_values(const plot_plan *p, plot_axis *axis)
 
 /* --- linked parameters ---
  *
- * Parameters that one axis of a study sets together: if the kept ones determine another, it is the same axis of the
- * figure under another name, and counts once. */
+ * An axis of a study can set several parameters. A parameter that the kept ones determine would be the same axis of the
+ * figure under another name, so it is not kept. */
 
-/* The kept parameters of one axis of the study, and one to test against them. */
+/* The kept parameters of one axis of the study, and the shown rows, which are sorted to test another parameter. */
 typedef struct link {
     const plot_axis *kept[PLOT_AXES_MAX];
     size_t count;
@@ -139,8 +140,8 @@ static bool is_wanted(const plot_plan *p, const plot_axis *axis)
     return (r->x && strcmp(r->x, axis->name) == 0) || (r->by && strcmp(r->by, axis->name) == 0);
 }
 
-/* Whether a is tested before b: what the user names, then the parameter with more values; of equals first a number,
- * which becomes an axis with a scale, then words, which become names of lines. */
+/* Whether a is tested before b: first parameters that the user names, then those with more values. Among equals, a
+ * number is best as the first one, because it becomes a scale, and words later, because they name lines. */
 static bool is_better(const plot_plan *p, const plot_axis *a, const plot_axis *b, bool first)
 {
     if (is_wanted(p, a) != is_wanted(p, b))
@@ -150,8 +151,8 @@ static bool is_better(const plot_plan *p, const plot_axis *a, const plot_axis *b
     return a->numeric != b->numeric && a->numeric == first;
 }
 
-/* Keeps the first two parameters whose pairs of values are exactly the points: independent parameters say more than one
- * with a value for each point. */
+/* Keeps the first two parameters whose pairs of values are exactly the points: independent parameters show more than
+ * one parameter with a value for each point. */
 static bool keep_pair(plot_plan *p, size_t group, link *l)
 {
     size_t points = 0;
@@ -248,15 +249,15 @@ static status apply_where(plot_plan *p, const char *setting, diagnostic *why)
     const plot_axis *axis = plot_axis_named(p, name);
     if (!axis)
         return no_such_axis(p, "--where", name, why);
-    size_t left = 0;
+    size_t remaining = 0;
     for (size_t row = 0; row < p->table.rows; row++) {
         p->shown[row] &= grid_same_value(summary_table_text(&p->table, row, axis->column), equals + 1);
-        left += p->shown[row];
+        remaining += p->shown[row];
     }
-    if (left)
+    if (remaining)
         return STATUS_OK;
     char remedy[400];
-    snprintf(remedy, sizeof remedy, "its values are: %s", list_of(axis->texts, axis->count, list, sizeof list));
+    snprintf(remedy, sizeof remedy, "choose from: %s", list_of(axis->texts, axis->count, list, sizeof list));
     return diagnose_at(why, "--where", STATUS_BAD_INPUT, remedy, "no cell has %.100s", setting);
 }
 

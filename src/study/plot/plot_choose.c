@@ -1,4 +1,4 @@
-/* The kind of a figure: what runs along x, what becomes lines, what becomes panels. */
+/* Chooses the kind of a figure, and which parameters become the x axis, lines and panels. */
 #include "study/plot/plot_parts.h"
 #include <math.h>
 #include <stdlib.h>
@@ -11,7 +11,7 @@ static bool is_free(const plot_plan *p, const plot_axis *axis)
     return axis->kept && axis != p->along && axis != p->up && axis != p->by;
 }
 
-/* The free axis with the most values, at most `limit`; of equals the last, which varies fastest. */
+/* The free axis with the most values, at most `limit`; among equals the last, which varies fastest. */
 static const plot_axis *largest(const plot_plan *p, bool numeric, size_t least, size_t limit)
 {
     const plot_axis *found = NULL;
@@ -88,7 +88,7 @@ status plot_axes_choose(plot_plan *p, diagnostic *why)
     p->along = r->x ? plot_axis_named(p, r->x) : choose_along(p);
     if (r->x && !p->along) {
         TRY(plot_quantity_find(p, r->x, &p->x, why));
-        p->along = choose_along(p); /* lines follow it, in its order */
+        p->along = choose_along(p); /* lines join points in the order of this axis */
     }
     if (p->by && p->by == p->along)
         return diagnose_at(why, "--by", STATUS_BAD_INPUT, "choose another parameter, or another one for --x",

@@ -1,5 +1,5 @@
-/* The points of a figure, measured and published, and its data file: a block of lines for each line of the figure, in
- * the order of the script's `index`. */
+/* Collects the points of a figure, measured and published, and writes its data file: a block for each line of the
+ * figure, in the order of `index` in the script. */
 #include "base/csv.h"
 #include "base/file.h"
 #include "base/number.h"
@@ -41,7 +41,7 @@ static int compare_points(const void *a, const void *b)
     return 0;
 }
 
-/* Words of several lines stand next to each other, so that their bars do not overlap. */
+/* The shift of a point of a dot plot, so that bars of several series at the same word do not overlap. */
 static double dodge(const plot_plan *p, const plot_point *point)
 {
     const double step = 0.6 / (double)p->series_count;
@@ -83,13 +83,13 @@ status plot_points_collect(plot_plan *p, diagnostic *why)
                                         "none of the chosen cells has a value of %s", p->y.name);
 }
 
-/* --- numbers of others ---
+/* --- published numbers ---
  *
- * A CSV file with the columns of the figure's axes. */
+ * They come from a CSV file with the columns of the figure's axes. */
 
 enum { SERIES_MAX = 6 };
 
-/* The column of that name, or of an end of it after a dot: `depth` for render.depth. */
+/* The column with the name, or with the part of it after a dot: `depth` for render.depth. */
 static int column_named(const csv *table, const char *name)
 {
     for (; name; name = strchr(name, '.'), name = name ? name + 1 : NULL)
@@ -98,7 +98,7 @@ static int column_named(const csv *table, const char *name)
     return -1;
 }
 
-/* Times of all clocks have one unit; the caption says which it is. */
+/* A published time of any clock can be drawn, because all are in seconds; the caption names its column. */
 static int column_of_time(const csv *table, const char *name)
 {
     static const char *const times[] = {"wall_s", "time_s", "cpu_s"};
@@ -111,7 +111,7 @@ static int column_of_time(const csv *table, const char *name)
 
 static status no_column(const plot_plan *p, const csv *table, const char *name, diagnostic *why)
 {
-    char remedy[300] = "its columns are: ";
+    char remedy[300] = "choose from its columns: ";
     for (size_t i = 0; i < table->column_count && strlen(remedy) < 200; i++)
         snprintf(remedy + strlen(remedy), sizeof remedy - strlen(remedy), "%s%.40s", i ? ", " : "", table->header[i]);
     return diagnose_at(why, p->request->published, STATUS_BAD_INPUT, remedy, "no column for '%s'", name);
@@ -130,7 +130,7 @@ static size_t series_of(plot_published *out, const csv *table, size_t row)
     return out->series_count++;
 }
 
-/* The x of a published value: a number, or in a dot plot the place of its word on the axis. */
+/* The x of a published value: a number, or, in a dot plot, the place of its word on the axis. */
 static double x_of(const plot_plan *p, const csv *table, size_t row, int column)
 {
     if (p->kind == PLOT_LINES)
@@ -144,11 +144,11 @@ static double x_of(const plot_plan *p, const csv *table, size_t row, int column)
 static void describe(plot_published *out, const csv *table, int x, int y)
 {
     const int machine = csv_column(table, "machine"), where = csv_column(table, "where");
-    const char *place = csv_field(table, 0, where), *on = csv_field(table, 0, machine);
-    const char *line = strstr(place, ", line "); /* each row has its own */
+    const char *place = csv_field(table, 0, where), *computer = csv_field(table, 0, machine);
+    const char *line = strstr(place, ", line "); /* line numbers differ between rows */
     const int length = (int)(line ? line - place : (long)strlen(place));
     snprintf(out->caption, sizeof out->caption, "Published: %.40s by %.40s%s%.80s%s%.*s.", table->header[y],
-             table->header[x], machine < 0 ? "" : ", machine: ", machine < 0 ? "" : on, where < 0 ? "" : "; ",
+             table->header[x], machine < 0 ? "" : ", machine: ", machine < 0 ? "" : computer, where < 0 ? "" : "; ",
              where < 0     ? 0
              : length > 90 ? 90
                            : length,
@@ -172,7 +172,7 @@ static status read_published(plot_plan *p, const csv *table, int x, int y, diagn
         out->y[out->count] = value;
         out->series[out->count] = series_of(out, table, row);
         if (out->series[out->count] == PLOT_NONE)
-            return diagnose_at(why, p->request->published, STATUS_BAD_INPUT, "leave at most six in the file",
+            return diagnose_at(why, p->request->published, STATUS_BAD_INPUT, "keep at most six sources in the file",
                                "the column 'source' has more than %d values", SERIES_MAX);
         out->count++;
     }
@@ -218,7 +218,7 @@ static void put(FILE *out, double value)
     fprintf(out, "\t%s", isnan(value) ? "NA" : number_format_digits(value, 9, text));
 }
 
-/* The number in a cell of a heat map, white where viridis is dark. */
+/* Writes the number in a cell of a heat map and its colour: white on the dark colours of viridis. */
 static void put_text(FILE *out, const plot_plan *p, double value)
 {
     char text[NUMBER_TEXT_MAX];

@@ -1,5 +1,5 @@
-/* Sizes of a figure, in CSS pixels: panels in a grid, the title above, the key or the color bar on the right, captions
- * below. */
+/* Computes the sizes of a figure, in CSS pixels: panels in a grid, the title above, the key or the color bar on the
+ * right, captions below. */
 #include "base/text.h"
 #include "study/plot/plot_parts.h"
 #include <math.h>
@@ -131,7 +131,7 @@ static void find_margins(const plot_plan *p, grid *g)
 
 /* --- captions ---
  *
- * How many repetitions, which spread, what is missing, what disturbed. */
+ * They state the number of repetitions, the spread, missing values and disturbances. */
 
 static const double caption_letter = 5.6; /* mean width, CSS pixels */
 
@@ -167,11 +167,11 @@ status plot_caption_add(plot_plan *p, diagnostic *why, const char *format, ...)
     return STATUS_OK;
 }
 
-/* --- what the figure has --- */
+/* --- facts of the captions --- */
 
 typedef struct facts {
     double least_n, most_n, others;
-    size_t intervals, ranges; /* points with an interval; with a range only */
+    size_t intervals, ranges; /* points with an interval; with only a range */
     double widest;            /* half of the widest spread as a fraction of the value */
     double marked, disturbed;
 } facts;
@@ -256,7 +256,7 @@ static status add_missing(plot_plan *p, diagnostic *why)
                             environments > 1 ? ", counted by environment," : "", p->y.name);
 }
 
-/* Values of several environments are in separate lines. */
+/* Names the environments, whose values are in separate lines. */
 static status add_environments(plot_plan *p, diagnostic *why)
 {
     const plot_axis *axis = plot_axis_named(p, "environment");
@@ -296,7 +296,7 @@ static status add_conditions(plot_plan *p, diagnostic *why)
     return list[0] ? plot_caption_add(p, why, "Only cells with %s.", list) : STATUS_OK;
 }
 
-/* Rows that are not in the values, and how busy the machine was. */
+/* States how many rows are excluded, and how busy the machine was. */
 static status add_noise(plot_plan *p, const facts *f, diagnostic *why)
 {
     char disturbed[60] = "";

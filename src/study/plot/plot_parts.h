@@ -1,5 +1,5 @@
 /* The parts of a figure, private to study/plot. A plan is made in this order: the table, its shown rows and linked
- * parameters (plot_axes.c), the kind (plot_choose.c), points and numbers of others (plot_data.c), scales
+ * parameters (plot_axes.c), the kind (plot_choose.c), measured and published points (plot_data.c), scales
  * (plot_scale.c), layout with captions (plot_layout.c); then the data (plot_data.c) and the script (plot_script.c) are
  * written. Ownership: plot_plan_free releases a plan, also an unfinished one; the study and the request are borrowed.
  * Errors: as in plot.h. */
@@ -19,8 +19,8 @@ enum {
 
 #define PLOT_NONE SIZE_MAX
 
-/* A parameter of the grid, or the environment, and its distinct values: numbers ascending, words in the study's order.
- */
+/* A parameter of the grid, or the environment, and its distinct values: numbers in ascending order, words in the order
+ * of the study. */
 typedef struct plot_axis {
     const char *name;
     long column;
@@ -30,10 +30,10 @@ typedef struct plot_axis {
     size_t count;
     const char **texts;
     double *reals;
-    size_t *at; /* by row of the table: index of its value; PLOT_NONE for rows that are not shown */
+    size_t *at; /* for each row of the table, the index of its value; PLOT_NONE: not shown */
 } plot_axis;
 
-/* A measured column, with its interval and range where the summary has them. */
+/* A measured column, with its interval and range if the summary has them. */
 typedef struct plot_quantity {
     char name[64], label[96], unit[24]; /* label: without the unit */
     long value, low, high, least, most; /* columns, or -1 */
@@ -69,7 +69,7 @@ typedef struct plot_plan {
     const study *s;
     const plot_request *request;
     summary_table table;
-    bool *shown; /* by row of the table */
+    bool *shown; /* for each row of the table */
     plot_axis axes[PLOT_AXES_MAX];
     size_t axis_count;
     plot_kind kind;
@@ -81,7 +81,7 @@ typedef struct plot_plan {
     plot_point *points; /* ordered by panel, series, along, up */
     size_t point_count, series_count;
     plot_panel *panels;
-    size_t panel_count; /* of all combinations of values; those in use are drawn */
+    size_t panel_count; /* one for each combination of values; only used ones are drawn */
     plot_published published;
     int width, height; /* CSS pixels */
     double key_left, key_top;
@@ -89,23 +89,23 @@ typedef struct plot_plan {
     size_t caption_count;
 } plot_plan;
 
-/* All steps of a figure. */
+/* Runs all steps of a figure. */
 status plot_figure_write(plot_plan *p, const char *base, diagnostic *why);
 
 /* Reads the summary, unless the plan has a table, applies --where, and finds the axes. */
 status plot_axes_read(plot_plan *p, diagnostic *why);
-/* Finds the kind: what runs along x, what becomes lines and panels. */
+/* Chooses the kind, and which parameters become the x axis, lines and panels. */
 status plot_axes_choose(plot_plan *p, diagnostic *why);
 /* The axis of that name, or NULL. */
 const plot_axis *plot_axis_named(const plot_plan *p, const char *name);
 
-/* The points with a value. Then, with a scale, the data file. */
+/* plot_points_collect finds the points that have a value; plot_data_write writes them after plot_scale. */
 status plot_points_collect(plot_plan *p, diagnostic *why);
 status plot_data_write(const plot_plan *p, const char *path, diagnostic *why);
-/* The numbers of others. */
+/* Reads the published numbers. */
 status plot_published_read(plot_plan *p, diagnostic *why);
 
-/* Columns, label and unit of the quantity. */
+/* Finds the columns, label and unit of a quantity. */
 status plot_quantity_find(const plot_plan *p, const char *name, plot_quantity *out, diagnostic *why);
 status plot_scale(plot_plan *p, diagnostic *why);
 
@@ -113,7 +113,7 @@ status plot_layout(plot_plan *p, diagnostic *why);
 /* Wraps a caption to the width of the figure and adds its lines. */
 status plot_caption_add(plot_plan *p, diagnostic *why, const char *format, ...) __attribute__((format(printf, 3, 4)));
 
-/* Parts of a script: its head with the style, a text as a string of gnuplot. */
+/* Write parts of a script: its head with the style; a text as a string of gnuplot. */
 void plot_script_head(FILE *out, const plot_plan *p, const char *base, bool data);
 void plot_script_text(FILE *out, const char *text);
 status plot_script_write(const plot_plan *p, const char *base, diagnostic *why);

@@ -1,4 +1,4 @@
-/* Quantities of a figure: their columns, units and scales. */
+/* Finds the columns and units of a figure's quantities, and chooses their scales. */
 #include "base/text.h"
 #include "scene/model/params.h"
 #include "study/plot/plot_parts.h"
@@ -7,19 +7,19 @@
 #include <stdlib.h>
 #include <string.h>
 
-enum { QUANTITIES_MAX = 256 /* among which the nearest name is looked for */ };
+enum { QUANTITIES_MAX = 256 /* the most names that are compared to suggest the nearest */ };
 
 /* --- units --- */
 
-/* The unit of a parameter of the study, "" if it has none or its name ends with it. */
+/* The unit of a parameter of the study; "" if it has none or its name ends with the unit. */
 static void plot_unit_of(const study *s, const char *path, char unit[32])
 {
     param_place at;
-    const bool is_one = param_place_find(s->base, path, &at, NULL) == STATUS_OK;
-    snprintf(unit, 32, "%s", is_one ? at.row->unit : "");
+    const bool is_parameter = param_place_find(s->base, path, &at, NULL) == STATUS_OK;
+    snprintf(unit, 32, "%s", is_parameter ? at.row->unit : "");
     const size_t length = strlen(path), end = strlen(unit);
     if (length > end && path[length - end - 1] == '_' && strcmp(path + length - end, unit) == 0)
-        unit[0] = '\0'; /* the name has it, as lambda_nm */
+        unit[0] = '\0'; /* the name contains the unit, as in lambda_nm */
 }
 
 /* --- columns --- */
@@ -149,7 +149,7 @@ static extent extent_of(const plot_plan *p, bool vertical)
     return e;
 }
 
-/* Prefixes of a unit, from small to large; the largest that leaves the typical value at least 1. */
+/* Chooses the largest prefix with which the typical value is at least 1. */
 static void choose_prefix(plot_quantity *q, double typical)
 {
     static const struct {
@@ -176,7 +176,7 @@ static void choose_prefix(plot_quantity *q, double typical)
         }
 }
 
-/* The range shown: from 0, unless all values are far from it; a margin at the open ends. */
+/* Chooses the shown range: from 0 unless all values are far from 0, with a margin at the other ends. */
 static void choose_range(plot_quantity *q, const extent *e, bool from_zero)
 {
     if (q->log) {
@@ -195,7 +195,7 @@ static status check_log(const char *option, const char *name, const extent *e, d
 {
     return e->least > 0
                ? STATUS_OK
-               : diagnose_at(why, option, STATUS_BAD_INPUT, "leave out these values with --where, or the scale",
+               : diagnose_at(why, option, STATUS_BAD_INPUT, "exclude these values with --where, or use a linear scale",
                              "%s reaches %g; a logarithmic scale needs positive values", name, e->least);
 }
 
@@ -236,7 +236,7 @@ static status scale_x(plot_plan *p, diagnostic *why)
         p->x.from = -0.5;
         p->x.to = (p->along ? (double)p->along->count : 1) - 0.5;
         return wants ? diagnose_at(why, "--log", STATUS_BAD_INPUT, "use --log y, or name a numeric parameter with --x",
-                                   "the x axis of this figure is no scale")
+                                   "the x axis of this figure has no scale")
                      : STATUS_OK;
     }
     if (wants)

@@ -1,4 +1,4 @@
-/* The gnuplot script of a figure. */
+/* Writes the gnuplot script of a figure. */
 #include "base/file.h"
 #include "base/number.h"
 #include "study/plot/plot_parts.h"
@@ -6,7 +6,7 @@
 #include <stdio.h>
 #include <string.h>
 
-/* A string of gnuplot, where only the quote itself is special. */
+/* Writes a single-quoted string of gnuplot, in which only the quote is special. */
 void plot_script_text(FILE *out, const char *text)
 {
     fputc('\'', out);
@@ -88,14 +88,14 @@ static const char *with_unit(const plot_quantity *q, char text[160])
     return text;
 }
 
-/* Where a value of a numeric axis is, as a fraction of the panel. */
+/* The place of a value on a numeric axis, as a fraction of the panel. */
 static double place_of(const plot_quantity *x, double value)
 {
     return x->log ? log(value / x->from) / log(x->to / x->from) : (value - x->from) / (x->to - x->from);
 }
 
-/* A tic at each value; labels that would touch the one before are left out, or all without `labels`. x: the scale of
- * the values; NULL: they are at 0, 1, 2.. and have room. */
+/* Writes a tic for each value. A label that would touch the one before is omitted, or all are, without `labels`. x: the
+ * scale of the values; NULL: they are at 0, 1, 2, ... and all labels fit. */
 static void put_tics(FILE *out, const char *which, const plot_axis *axis, const plot_quantity *x, int pixels,
                      bool labels)
 {
@@ -132,7 +132,7 @@ static size_t longest_text(const plot_axis *axis)
     return most;
 }
 
-static bool is_whole(const plot_axis *axis)
+static bool has_only_integers(const plot_axis *axis)
 {
     for (size_t i = 0; i < axis->count; i++)
         if (axis->reals[i] != floor(axis->reals[i]))
@@ -152,7 +152,8 @@ static void put_xtics(FILE *out, const plot_plan *p, bool labels)
         put_tics(out, "xtics", along, NULL, pixels, labels);
     } else if (p->x.value < 0 && (p->x.log || along->count <= 3)) {
         put_tics(out, "xtics", along, &p->x, pixels, labels);
-    } else if (p->x.value < 0 && is_whole(along) && along->reals[along->count - 1] - along->reals[0] <= pixels / 24.0) {
+    } else if (p->x.value < 0 && has_only_integers(along) &&
+               along->reals[along->count - 1] - along->reals[0] <= pixels / 24.0) {
         fputs("set xtics 1\n", out);
     }
 }
@@ -171,7 +172,7 @@ static int round_values(const plot_quantity *q, double values[LOG_TICS_MAX])
     return count;
 }
 
-/* About five even steps of a round size. */
+/* The values of a scale at about five even steps of a round size; returns their number. */
 static int even_values(const plot_quantity *q, double values[LOG_TICS_MAX])
 {
     const double raw = (q->to - q->from) / 5, power = pow(10, floor(log10(raw))), digits = raw / power;
@@ -182,7 +183,7 @@ static int even_values(const plot_quantity *q, double values[LOG_TICS_MAX])
     return count;
 }
 
-/* Tics of a logarithmic scale of less than two decades, of which gnuplot labels one power of ten or none. */
+/* Writes the tics of a logarithmic scale of less than two decades, in which gnuplot labels at most one power of ten. */
 static void put_log_tics(FILE *out, const char *axis, const plot_quantity *q)
 {
     double values[LOG_TICS_MAX];
@@ -210,7 +211,7 @@ static void put_axes(FILE *out, const plot_plan *p)
     put_log_tics(out, "y", &p->y);
 }
 
-/* The color bar next to the first panel, at least 110 pixels long. */
+/* Writes the color bar next to the first panel, at least 110 pixels long. */
 static void put_color_bar(FILE *out, const plot_plan *p)
 {
     char label[160];
@@ -229,7 +230,7 @@ static void put_color_bar(FILE *out, const plot_plan *p)
 
 /* --- lines --- */
 
-/* The line type of a series: the style's six; for more, colors along viridis. */
+/* Writes the line type of a series: one of the style's six, or, for more series, a color of viridis. */
 static void put_type(FILE *out, const plot_plan *p, size_t series)
 {
     static const int points[] = {7, 5, 9, 13, 11, 3, 2, 1};

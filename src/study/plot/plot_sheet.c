@@ -1,4 +1,4 @@
-/* The contact sheet: a script that shows the kept image of each cell, with the values of its parameters. */
+/* Writes the contact sheet: a script that shows the kept image of each cell with the values of its parameters. */
 #include "base/file.h"
 #include "base/text.h"
 #include "study/plan/keep.h"
@@ -12,7 +12,7 @@
 
 enum { TITLE = 36, LETTER = 6, LINE = 13, GAP = 10, MARGIN = 12, SHEET_WIDTH = 1200, WIDTH_MAX = 360, WIDTH_MIN = 110 };
 
-/* One image. */
+/* An image of the sheet. */
 typedef struct frame {
     size_t row;
     char *path; /* absolute */
@@ -20,7 +20,7 @@ typedef struct frame {
 
 typedef struct sheet {
     frame frames[PLOT_SHEET_MAX];
-    size_t count, missing, columns, lines;                    /* lines of a caption */
+    size_t count, missing, columns, lines;                    /* lines: of a caption */
     int width, height;                                        /* of an image on the sheet */
     int image_width, image_height, least_width, least_height; /* in pixels */
 } sheet;
@@ -72,14 +72,15 @@ static bool size_of(const char *path, int *width, int *height)
     return is_png && *width > 0 && *height > 0;
 }
 
-/* The sizes of the smallest and the largest image. Places on the sheet have the aspect ratio of the largest. */
+/* Finds the sizes of the smallest and the largest image. Places on the sheet have the aspect ratio of the largest. */
 static status measure(sheet *out, diagnostic *why)
 {
     for (size_t i = 0; i < out->count; i++) {
         int width, height;
         if (!size_of(out->frames[i].path, &width, &height))
             return diagnose_at(why, out->frames[i].path, STATUS_BAD_INPUT,
-                               "remove it, and run the study again: it is rendered again", "not a whole PNG file");
+                               "remove it, and run the study again: it is rendered again",
+                               "the PNG file is incomplete");
         if (i == 0 || width > out->image_width)
             out->image_width = width, out->image_height = height;
         if (i == 0 || width < out->least_width)
@@ -106,7 +107,7 @@ static status find_frames(const plot_plan *p, sheet *out, diagnostic *why)
 
 /* --- layout --- */
 
-/* A row for each value of the slower axes, if the fastest one fits; otherwise a shape that fills the page. */
+/* Chooses a row for each value of the slower axes if the fastest axis fits; otherwise a shape that fills the page. */
 static void find_columns(const plot_plan *p, sheet *out)
 {
     size_t fastest = 1;
@@ -153,7 +154,7 @@ static status lay_out(plot_plan *p, sheet *out, diagnostic *why)
 
 /* --- the script --- */
 
-/* One line for each parameter; the names are shortened where they would not fit. */
+/* Writes a line for each parameter; names that do not fit are shortened. */
 static void put_captions(FILE *out, const plot_plan *p, const sheet *s, size_t row, double left, double top)
 {
     size_t line = 0;
@@ -173,7 +174,7 @@ static void put_captions(FILE *out, const plot_plan *p, const sheet *s, size_t r
     }
 }
 
-/* A path relative to the script where the images are below its folder, so that both can be moved together. */
+/* Writes a path, relative to the script if the image is below its folder, so that both can be moved together. */
 static void put_path(FILE *out, const char *folder, const char *path)
 {
     const size_t length = strlen(folder);

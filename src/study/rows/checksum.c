@@ -1,3 +1,4 @@
+/* Hashes the values of a row by column name, and chains the checksums of the rows of a run. */
 #include "study/rows/checksum.h"
 #include "base/hash.h"
 #include <inttypes.h>

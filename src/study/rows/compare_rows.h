@@ -2,8 +2,7 @@
  * applied. A reference that serves several cells is rendered once and stored as linear floats in
  * results/<study>/references/, named by the hash of its scene, with a JSON file that records its film. Images depend
  * only on their scenes, so compare.csv has one row per cell; results/README.md lists every column. Ownership:
- * reference_load or the renderer of a reference gives the image, reference_release releases it; a csv_line that ran out
- * of memory has failed set. */
+ * reference_release releases the image of a reference; a csv_line that ran out of memory has failed set. */
 #pragma once
 
 #include "image/compare.h"
@@ -13,39 +12,40 @@
 #include "study/study.h"
 
 typedef struct reference {
-    uint64_t scene_hash; /* of everything that determines its image; also its file name, 16 hex digits */
+    uint64_t scene_hash; /* hash of everything that determines its image; also its file name, 16 hex digits */
     uint64_t film_hash;
-    double noise_rms; /* of path tracing, as in rows.csv; otherwise NaN */
+    double noise_rms; /* as in rows.csv; NaN without random paths */
     image *img;       /* NULL: not loaded */
 } reference;
 
-/* The reference with that scene_hash from the study's folder, below root (base/file.h); out->img is NULL if it does
- * not exist. STATUS_BAD_INPUT if a file was changed. */
+/* Loads the reference with that scene_hash from the study's folder, below root (base/file.h); out->img is NULL if it
+ * does not exist. STATUS_BAD_INPUT if a file was changed. */
 status reference_load(const char *folder, const char *root, uint64_t scene_hash, reference *out, diagnostic *why);
-/* Stores it there, with the parameters of its scene; also as PNG if the study keeps images. */
-status reference_save(const study *s, const char *folder, const reference *of, const scene *setting, diagnostic *why);
-void reference_release(reference *of);
+/* Stores a reference in the study's folder, with the parameters of its scene; also as PNG if the study keeps images. */
+status reference_save(const study *s, const char *folder, const reference *stored, const scene *setting,
+                      diagnostic *why);
+void reference_release(reference *stored);
 
 row_columns compare_each_column;
 /* The columns that a summary shows in addition to a cell's times. */
-extern const char *const compare_shown[];
-extern const size_t compare_shown_count;
+extern const char *const compare_summary_columns[];
+extern const size_t compare_summary_column_count;
 
 /* One cell. Everything is borrowed. */
 typedef struct compare_row {
-    const study *of;
+    const study *s;
     size_t cell;
     const scene *setting; /* the cell's scene */
-    const reference *against;
+    const reference *cell_reference;
     uint64_t film_hash;
-    double noise_rms; /* the account of the cell's frame */
+    double noise_rms; /* of the cell's frame */
     image_comparison difference;
     double error_rms;
     const char *run; /* as in study/rows/rows.h */
     int process;
 } compare_row;
 
-/* Compares the frame's image with row->against: fills film_hash, noise_rms, error and error_rms. */
+/* Compares the frame's image with row->cell_reference: fills film_hash, noise_rms, difference and error_rms. */
 status compare_row_measure(compare_row *row, const render_result *frame, diagnostic *why);
 
 void compare_row_write(csv_line *line, const compare_row *r);

@@ -1,3 +1,4 @@
+/* Converts rows between headers of different versions of the program, and widens files by missing columns. */
 #include "study/rows/csv_layout.h"
 #include "base/file.h"
 #include <stdlib.h>
@@ -86,20 +87,20 @@ status csv_layout_place(const csv_layout *l, const char *lines, size_t size, csv
 
 char *csv_header_extend(const char *header, const char *more, size_t *added)
 {
-    names own = {0}, other = {0};
+    names first = {0}, second = {0};
     csv_line line = {0};
     *added = 0;
-    bool right = names_split(header, strlen(header), &own) && names_split(more, strlen(more), &other);
-    for (size_t i = 0; right && i < own.count; i++)
-        csv_text(&line, own.name[i]);
-    for (size_t i = 0; right && i < other.count; i++)
-        if (find(&own, other.name[i]) < 0) {
-            csv_text(&line, other.name[i]);
+    bool right = names_split(header, strlen(header), &first) && names_split(more, strlen(more), &second);
+    for (size_t i = 0; right && i < first.count; i++)
+        csv_text(&line, first.name[i]);
+    for (size_t i = 0; right && i < second.count; i++)
+        if (find(&first, second.name[i]) < 0) {
+            csv_text(&line, second.name[i]);
             ++*added;
         }
     csv_end(&line);
-    names_free(&own);
-    names_free(&other);
+    names_free(&first);
+    names_free(&second);
     if (right && !line.failed)
         return line.text;
     csv_line_free(&line);
@@ -125,13 +126,13 @@ static status widen(const char *path, const char *lines, const char *header, siz
     return file_writer_commit(&writer, why);
 }
 
-static status settle(const char *path, char *text, const char *header, csv_layout **layout, bool *replaced,
-                     diagnostic *why)
+static status add_columns(const char *path, char *text, const char *header, csv_layout **layout, bool *replaced,
+                          diagnostic *why)
 {
     char *end = strchr(text, '\n');
-    char *own = end ? strndup(text, (size_t)(end - text) + 1) : NULL;
+    char *old = end ? strndup(text, (size_t)(end - text) + 1) : NULL;
     size_t added = 0;
-    char *all = own ? csv_header_extend(own, header, &added) : NULL;
+    char *all = old ? csv_header_extend(old, header, &added) : NULL;
     status code = all ? STATUS_OK : out_of_memory(why);
     if (code == STATUS_OK && added > 0) {
         code = widen(path, end + 1, all, added, why);
@@ -139,7 +140,7 @@ static status settle(const char *path, char *text, const char *header, csv_layou
     }
     if (code == STATUS_OK && strcmp(all, header) != 0)
         code = csv_layout_create(header, all, layout, why);
-    free(own);
+    free(old);
     free(all);
     return code;
 }
@@ -153,7 +154,7 @@ status csv_layout_settle(const char *path, const char *header, csv_layout **layo
     TRY(file_read(path, TABLE_BYTES_MAX, &text, &size, why));
     status code = STATUS_OK;
     if (size < strlen(header) || memcmp(text, header, strlen(header)) != 0)
-        code = settle(path, text, header, layout, replaced, why);
+        code = add_columns(path, text, header, layout, replaced, why);
     free(text);
     return code;
 }

@@ -1,6 +1,6 @@
 /* Conversion of rows to another header: columns are identified by name, so files of other versions of the program, with
- * more, fewer or reordered columns, can be read, merged and continued. Ownership: csv_layout_create gives,
- * csv_layout_destroy releases. */
+ * more, fewer or reordered columns, can be read, merged and continued. Ownership: csv_layout_destroy releases a
+ * layout. */
 #pragma once
 
 #include "base/csv.h"
@@ -11,7 +11,7 @@ typedef struct csv_layout csv_layout;
 status csv_layout_create(const char *from, const char *to, csv_layout **out, diagnostic *why);
 void csv_layout_destroy(csv_layout *l);
 
-/* Converts complete lines, field by field; "NA" in columns that `from` does not have. */
+/* Appends complete lines to out, converted field by field; columns that `from` does not have are "NA". */
 status csv_layout_place(const csv_layout *l, const char *lines, size_t size, csv_line *out, diagnostic *why);
 
 /* The header line extended by the columns of `more` that it lacks, and their number; fresh memory, NULL if memory runs

@@ -1,3 +1,4 @@
+/* Reads the facts of a run's environment from the files of the system, and hashes them into its key. */
 #include "study/rows/environment.h"
 #include "base/build_id.h"
 #include "base/control_group.h"
@@ -14,12 +15,13 @@
 
 const char *const environment_names[ENVIRONMENT_FACTS] = {"machine",  "cpu_model", "microcode", "smt",
                                                           "governor", "limits",    "isa",       "build"};
+/* Indices of the facts in environment_names. */
 enum { MACHINE, CPU_MODEL, MICROCODE, SMT, GOVERNOR, LIMITS, ISA, BUILD };
 
-/* Files of the system below a root. */
+/* Where facts are read from: the files of the system below a root. */
 typedef struct source {
     const char *root;
-    int error; /* errno of the first file that exists and cannot be read now */
+    int error; /* errno of the first file that exists but could not be read */
 } source;
 
 static void note_error(source *from, int error)
@@ -29,8 +31,8 @@ static void note_error(source *from, int error)
     from->error = from->error || absent ? from->error : error;
 }
 
-/* The rest of the first line that starts with prefix, without blanks and colon; false and "unknown" if there is none.
- */
+/* The rest of the first line that starts with prefix, without blanks and colon; "unknown", and false, if there is none
+ * in the file. */
 static bool read_line(source *from, const char *name, const char *prefix, char *text, size_t size)
 {
     char path[512], line[1024];
@@ -98,8 +100,8 @@ const char *environment_node_type(void)
     return type && type[0] ? type : NULL;
 }
 
-/* The processing units that the process may use, as "0-3,8"; "" if these are all that there are. Nodes of a type are
- * declared alike, whichever units a scheduler assigns (CUVETTE_NODE_TYPE). */
+/* The processing units that the process may use, as "0-3,8"; "" if it may use all. Nodes of a declared type
+ * (CUVETTE_NODE_TYPE) are alike, whichever units a scheduler assigns. */
 static void read_mask(source *from, char *text, size_t size)
 {
     char allowed[1000], all[1000];
@@ -145,7 +147,7 @@ void environment_close(run_environment *e)
 
 status environment_read(const char *root, isa level, run_environment *out, diagnostic *why)
 {
-    source here = {.root = root}, *from = &here;
+    source system = {.root = root}, *from = &system;
     *out = (run_environment){.key = ""};
     if (environment_node_type())
         environment_of_node_type(environment_node_type(), out->fact[MACHINE], ENVIRONMENT_FACT_MAX);
@@ -163,18 +165,18 @@ status environment_read(const char *root, isa level, run_environment *out, diagn
              instruction_dumps_exist() ? ", counted by valgrind" : "");
     snprintf(out->fact[BUILD], ENVIRONMENT_FACT_MAX, "%s", build_id());
     environment_close(out);
-    return here.error ? system_error(why, STATUS_FAILURE, NULL, "the environment of the run cannot be read", here.error,
-                                     "run the command again")
-                      : STATUS_OK;
+    return system.error ? system_error(why, STATUS_FAILURE, NULL, "the environment of the run cannot be read",
+                                       system.error, "run the command again")
+                        : STATUS_OK;
 }
 
-bool environment_difference(const run_environment *here, const run_environment *there, char *text, size_t size)
+bool environment_difference(const run_environment *a, const run_environment *b, char *text, size_t size)
 {
     size_t used = 0;
     text[0] = 0;
     for (int i = 0; i < ENVIRONMENT_FACTS && used + 1 < size; i++)
-        if (strcmp(here->fact[i], there->fact[i]) != 0)
+        if (strcmp(a->fact[i], b->fact[i]) != 0)
             used += (size_t)snprintf(text + used, size - used, "%s%s %.40s instead of %.40s", used ? ", " : "",
-                                     environment_names[i], here->fact[i], there->fact[i]);
+                                     environment_names[i], a->fact[i], b->fact[i]);
     return text[0] != 0;
 }

@@ -1,7 +1,7 @@
-/* The environment of a run: what a time depends on besides the scene. Rows of unlike environments are never pooled. The
- * key is a hash of eight facts: the machine (a salted hash of its id), the processor's model and microcode, SMT, the
- * frequency governor, the limits of the control group and of the affinity mask, the instruction set, and the build
- * (base/build_id.h). Fixed-size values; nothing to release. Unknown facts are "unknown". */
+/* The environment of a run: everything except the scene that times depend on. Rows of unlike environments are never
+ * pooled. The key is a hash of eight facts: the machine (a salted hash of its id), the processor's model and microcode,
+ * SMT, the frequency governor, the limits of the control group and of the affinity mask, the instruction set, and the
+ * build (base/build_id.h). Fixed-size values; nothing to release. Unknown facts are "unknown". */
 #pragma once
 
 #include "base/isa.h"
@@ -20,13 +20,13 @@ typedef struct run_environment {
 extern const char *const environment_names[ENVIRONMENT_FACTS];
 
 /* Reads the files of the system below root, "" for this machine. CUVETTE_MACHINE, if set, is part of the machine's
- * identity: it distinguishes machines that were cloned with one id. CUVETTE_NODE_TYPE, if set, replaces the
- * machine: nodes of a cluster that are declared alike. The other facts still tell unlike ones apart. A fact that the
- * system does not report is "unknown"; STATUS_FAILURE if one cannot be read now (memory, open files, the disk): its row
- * would belong to an environment that does not exist. */
+ * identity: it distinguishes machines that were cloned with the same id. CUVETTE_NODE_TYPE, if set, names a type that
+ * replaces the machine, so that nodes of a cluster count as alike; the other facts still distinguish unlike nodes. A
+ * fact that the system does not report is "unknown". STATUS_FAILURE if a file cannot be read now (memory, open files,
+ * the disk): the key would be that of an environment that does not exist. */
 status environment_read(const char *root, isa level, run_environment *out, diagnostic *why);
-/* The fact machine of this machine itself, and of all nodes of a type; the type that is set, or NULL. Returns 0, or the
- * errno of a file that cannot be read now. */
+/* The fact `machine` of this machine, whatever CUVETTE_NODE_TYPE is; returns 0, or the errno of a file that cannot be
+ * read now. Then the fact of all nodes of a type, and CUVETTE_NODE_TYPE, or NULL. */
 int environment_read_machine(const char *root, char *text, size_t size);
 void environment_of_node_type(const char *type, char *text, size_t size);
 const char *environment_node_type(void);
@@ -34,5 +34,5 @@ const char *environment_node_type(void);
 void environment_read_units(char *text, size_t size);
 /* Computes the key from the facts. */
 void environment_close(run_environment *e);
-/* "build 1c…, there 2d…; isa …": the differing facts, at most size - 1 bytes. False if there are none. */
-bool environment_difference(const run_environment *here, const run_environment *there, char *text, size_t size);
+/* "build 1c… instead of 2d…, isa …": the differing facts, at most size - 1 bytes. False if there are none. */
+bool environment_difference(const run_environment *a, const run_environment *b, char *text, size_t size);

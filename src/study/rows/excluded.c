@@ -1,4 +1,4 @@
-/* The list of excluded rows: reading, comparing with rows, and adding to it. */
+/* Reads the list of excluded rows, looks up rows in it, and adds rows to it. */
 #include "base/file.h"
 #include "base/number.h"
 #include "base/text.h"
@@ -13,8 +13,8 @@
 
 enum { REASON_LENGTH = 500 };
 
-/* Columns that name a row, by name: a list that a person wrote may lack the first four. cell is that of the grid when
- * the row was excluded; identity is the same in every grid. */
+/* The columns that identify a row; a list that a person wrote may lack the first four. `cell` is a number in the grid
+ * at the time of the exclusion; `identity` is the same in every grid. */
 static const char *const keys[] = {"checksum", "identity", "run", "process", "cell", "repetition"};
 enum { CHECKSUM, IDENTITY, RUN, PROCESS, CELL, REPETITION, KEY_COUNT };
 
@@ -89,9 +89,9 @@ void excluded_destroy(excluded *list)
 /* Whether the line and the row agree in a column; a column that either lacks is ignored (*decided = false). */
 static bool agrees(const excluded *list, size_t line, const row_ref *row, int key, bool *decided)
 {
-    const char *here = field_of(list, line, key), *there = row_field(row, keys[key]);
-    *decided = is_known(here) && is_known(there);
-    return !*decided || strcmp(here, there) == 0;
+    const char *listed = field_of(list, line, key), *value = row_field(row, keys[key]);
+    *decided = is_known(listed) && is_known(value);
+    return !*decided || strcmp(listed, value) == 0;
 }
 
 static bool names(const excluded *list, size_t line, const row_ref *row)
@@ -137,9 +137,9 @@ static bool is_meant(const char *text, const row_ref *row)
     const char *checksum = row_field(row, keys[CHECKSUM]);
     if (is_known(checksum) && strcmp(checksum, text) == 0)
         return true;
-    char here[64];
-    snprintf(here, sizeof here, "%zu:%ld", row->cell, row->repetition);
-    return strcmp(here, text) == 0;
+    char number[64];
+    snprintf(number, sizeof number, "%zu:%ld", row->cell, row->repetition);
+    return strcmp(number, text) == 0;
 }
 
 static status wrong_row(const char *text, diagnostic *why, const char *remedy, const char *what)
@@ -166,7 +166,7 @@ static status find_row(const row_files *files, const excluded *list, const char 
         return wrong_row(text, why, "give CELL:REPETITION as in the columns of rows.csv, such as 3:2",
                          "there is no such row");
     if ((*out)->warmup)
-        return wrong_row(text, why, "", "this row is a warm-up, which summaries leave out anyway");
+        return wrong_row(text, why, "", "this row is a warm-up, which summaries never use");
     if (excluded_has(list, *out))
         return wrong_row(text, why, "", "this row is excluded already");
     return STATUS_OK;

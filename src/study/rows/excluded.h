@@ -1,7 +1,7 @@
-/* Which rows summaries use: no warm-ups, no marked rows, and none that a person excluded, with the reason:
- * results/<study>/excluded.csv, one line per row, only ever appended to. The rows themselves stay as they are, and
- * count as measured, so that a value that displeases cannot be measured again. Ownership: excluded_read gives,
- * excluded_destroy releases. */
+/* Which rows summaries use: no warm-ups, no marked rows, and none that a person excluded. results/<study>/excluded.csv
+ * has a line with the reason for each excluded row, and is only ever appended to. Excluded rows stay in rows.csv and
+ * count as measured, so that an unwelcome value cannot be measured again. Ownership: excluded_destroy releases what
+ * excluded_read allocates. */
 #pragma once
 
 #include "study/rows/row_files.h"
@@ -12,7 +12,7 @@ typedef struct excluded excluded;
 status excluded_read(const study *s, const char *results, excluded **out, diagnostic *why);
 void excluded_destroy(excluded *list);
 
-/* Whether the row is excluded. A line names its row by its checksum, or by cell (its identity where rows have one),
+/* Whether the row is excluded. A line names its row by its checksum, or by cell (by identity if the rows have one),
  * run, process and repetition; a list that a person wrote may have only cell and repetition. */
 bool excluded_has(const excluded *list, const row_ref *row);
 

@@ -1,4 +1,4 @@
-/* Facts of the machine, the program, the study and a run, and their files. */
+/* Collects facts of the machine, the program, the study and a run as JSON, and reads and writes files of facts. */
 #include "base/build_id.h"
 #include "base/file.h"
 #include "base/json_build.h"
@@ -35,9 +35,9 @@ json_t *facts_hash(uint64_t value)
 bool facts_get_hash(const json_t *facts, const char *key, uint64_t *out)
 {
     const char *text = json_string_value(json_object_get(facts, key));
-    const bool is_one = text && strlen(text) == 16 && strspn(text, "0123456789abcdef") == 16;
-    *out = is_one ? strtoull(text, NULL, 16) : 0;
-    return is_one;
+    const bool is_hash = text && strlen(text) == 16 && strspn(text, "0123456789abcdef") == 16;
+    *out = is_hash ? strtoull(text, NULL, 16) : 0;
+    return is_hash;
 }
 
 status facts_read(const char *path, const char *root, json_t **out, diagnostic *why)
@@ -156,8 +156,9 @@ static bool run_git(const char *folder, const char *const *arguments, char *text
                 text[used++] = rest[i];
     text[used] = 0;
     close(pipes[0]);
-    int ended = -1;
-    return !failed && waitpid(child, &ended, 0) == child && WIFEXITED(ended) && WEXITSTATUS(ended) == 0;
+    int exit_status = -1;
+    return !failed && waitpid(child, &exit_status, 0) == child && WIFEXITED(exit_status) &&
+           WEXITSTATUS(exit_status) == 0;
 }
 
 char *provenance_git_commit(const char *folder, bool *dirty)
@@ -177,8 +178,8 @@ char *provenance_git_commit(const char *folder, bool *dirty)
 
 void provenance_anonymize(char *xml)
 {
-    static const char *const telling[] = {"HostName", "Serial", "UUID",   "Address",
-                                          "AssetTag", "Cgroup", "CGroup", "ProcessName"};
+    static const char *const identifying[] = {"HostName", "Serial", "UUID",   "Address",
+                                              "AssetTag", "Cgroup", "CGroup", "ProcessName"};
     if (!xml)
         return;
     char *write = xml;
@@ -190,8 +191,8 @@ void provenance_anonymize(char *xml)
         if (name && name < read + line) {
             name += strlen("<info name=\"");
             size_t length = strcspn(name, "\"");
-            for (size_t i = 0; i < sizeof telling / sizeof telling[0]; i++)
-                drop |= memmem(name, length, telling[i], strlen(telling[i])) != NULL;
+            for (size_t i = 0; i < sizeof identifying / sizeof identifying[0]; i++)
+                drop |= memmem(name, length, identifying[i], strlen(identifying[i])) != NULL;
         }
         if (!drop) {
             memmove(write, read, line);
@@ -221,18 +222,18 @@ void provenance_anonymize(char *xml)
 
 static const double load_sample_s = 0.2;
 
-/* Takes ownership of text; null if it is NULL or not UTF-8. */
-static json_t *taken(char *text)
+/* Frees text after its conversion; JSON null if it is NULL or not UTF-8. */
+static json_t *owned_text(char *text)
 {
     json_t *value = json_text_or_null(text);
     free(text);
     return value;
 }
 
-/* The same of a text that is always known: NULL means out of memory. */
-static json_t *certain(char *text)
+/* Like owned_text, for a text that is always known: NULL means out of memory, and returns NULL. */
+static json_t *required_text(char *text)
 {
-    return text ? taken(text) : NULL;
+    return text ? owned_text(text) : NULL;
 }
 
 /* The current time, or that of SOURCE_DATE_EPOCH (reproducible-builds.org/specs/source-date-epoch). */
@@ -266,10 +267,10 @@ json_t *run_machine_facts(const topology *machine)
 {
     char *xml = topology_xml(machine);
     provenance_anonymize(xml);
-    return json_pack("{s:o, s:o, s:i, s:i, s:i, s:o, s:o}", "cpu_model", taken(cpu_model()), "topology",
-                     certain(topology_summary(machine)), "packages", topology_package_count(machine), "cores",
+    return json_pack("{s:o, s:o, s:i, s:i, s:i, s:o, s:o}", "cpu_model", owned_text(cpu_model()), "topology",
+                     required_text(topology_summary(machine)), "packages", topology_package_count(machine), "cores",
                      topology_core_count(machine), "processing_units", topology_pu_count(machine), "clocks", clocks(),
-                     "hwloc_xml", certain(xml));
+                     "hwloc_xml", required_text(xml));
 }
 
 json_t *run_study_facts(const study *s)
@@ -285,7 +286,7 @@ static void add_disturbance(void *list, const char *text)
     json_add(list, json_text_or_null(text));
 }
 
-/* The fraction of time since boot that the hypervisor spent on others; null if unknown: proc(5), /proc/stat. */
+/* The fraction of time since boot that the hypervisor spent on other guests; null if unknown: proc(5), /proc/stat. */
 static json_t *steal_fraction(void)
 {
     unsigned long long t[8] = {0}, sum = 0;
@@ -309,9 +310,9 @@ static json_t *load_average(void)
 /* Facts of the processor that are not part of the environment's key. */
 static json_t *processor_facts(void)
 {
-    return json_pack("{s:o, s:o, s:o, s:o, s:o}", "vendor", taken(cpu_field("vendor_id")), "family",
-                     taken(cpu_field("cpu family")), "model", taken(cpu_field("model\t")), "stepping",
-                     taken(cpu_field("stepping")), "mhz", taken(cpu_field("cpu MHz")));
+    return json_pack("{s:o, s:o, s:o, s:o, s:o}", "vendor", owned_text(cpu_field("vendor_id")), "family",
+                     owned_text(cpu_field("cpu family")), "model", owned_text(cpu_field("model\t")), "stepping",
+                     owned_text(cpu_field("stepping")), "mhz", owned_text(cpu_field("cpu MHz")));
 }
 
 static json_t *environment_facts(const run_environment *e)
@@ -332,8 +333,8 @@ static json_t *node(void)
     return json_text_or_null(machine);
 }
 
-json_t *run_facts(const study *s, const topology *machine, const run_environment *here, const char *id, long shard,
-                  long shards)
+json_t *run_facts(const study *s, const topology *machine, const run_environment *environment, const char *id,
+                  long shard, long shards)
 {
     char *folder = strdup(s->path);
     bool dirty = false;
@@ -344,15 +345,15 @@ json_t *run_facts(const study *s, const topology *machine, const run_environment
     json_t *is_dirty = commit ? json_boolean(dirty) : json_null();
     json_t *run =
         json_pack("{s:s, s:o, s:o, s:o, s:n, s:i, s:i, s:o, s:o, s:o, s:o}", "id", id, "environment",
-                  environment_facts(here), "node", node(), "started_utc", run_time(), "ended_utc", "shard", (int)shard,
-                  "shards", (int)(shards > 1 ? shards : 1), "processor", processor_facts(), "topology",
-                  certain(topology_summary(machine)), "load", load_average(), "steal_fraction", steal_fraction());
+                  environment_facts(environment), "node", node(), "started_utc", run_time(), "ended_utc", "shard",
+                  (int)shard, "shards", (int)(shards > 1 ? shards : 1), "processor", processor_facts(), "topology",
+                  required_text(topology_summary(machine)), "load", load_average(), "steal_fraction", steal_fraction());
     json_t *program =
         json_pack("{s:s, s:o, s:s, s:s, s:s#, s:o, s:o, s:o, s:o}", "version", CUVETTE_VERSION, "build_commit",
                   json_text_or_null(build_commit()), "compiler", COMPILER, "flags", CUVETTE_COMPILER_FLAGS, "config",
-                  CUVETTE_COMPILER_FLAGS, (int)strcspn(CUVETTE_COMPILER_FLAGS, ":"), "kernel", taken(kernel()),
-                  "binding", taken(binding()), "libraries", libraries(), "disturbances", disturbances);
-    json_t *texts = json_pack("{s:o, s:o, s:o, s:o}", "study_commit", taken(commit), "study_dirty", is_dirty,
+                  CUVETTE_COMPILER_FLAGS, (int)strcspn(CUVETTE_COMPILER_FLAGS, ":"), "kernel", owned_text(kernel()),
+                  "binding", owned_text(binding()), "libraries", libraries(), "disturbances", disturbances);
+    json_t *texts = json_pack("{s:o, s:o, s:o, s:o}", "study_commit", owned_text(commit), "study_dirty", is_dirty,
                               "study_text", json_text_or_null(s->text), "scene_text", json_text_or_null(s->scene_text));
     if (s->quick)
         json_add_as(&run, "quick", json_true());

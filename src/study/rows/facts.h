@@ -14,15 +14,15 @@
 /* A hash is 16 hex digits; reading it returns false and 0 if it is missing. */
 json_t *facts_hash(uint64_t value);
 bool facts_get_hash(const json_t *facts, const char *key, uint64_t *out);
-/* Reads a file below root (base/file.h), NULL with STATUS_OK if it is not JSON; writes a whole file. flags: jansson's.
- */
+/* facts_read: *out is NULL with STATUS_OK if the file below root (base/file.h) is not JSON. facts_write replaces the
+ * file; flags: jansson's. */
 status facts_read(const char *path, const char *root, json_t **out, diagnostic *why);
 status facts_write(const json_t *facts, size_t flags, const char *path, diagnostic *why);
 
 json_t *run_study_facts(const study *s);
 json_t *run_machine_facts(const topology *machine);
-json_t *run_facts(const study *s, const topology *machine, const run_environment *here, const char *id, long shard,
-                  long shards);
+json_t *run_facts(const study *s, const topology *machine, const run_environment *environment, const char *id,
+                  long shard, long shards);
 /* The current time as text, or that of SOURCE_DATE_EPOCH (reproducible-builds.org/specs/source-date-epoch). */
 json_t *run_time(void);
 

@@ -1,3 +1,4 @@
+/* Merges the row files of all shards into one: every line of every file once, in the order of runs. */
 #include "base/file.h"
 #include "study/rows/checksum.h"
 #include "study/rows/csv_layout.h"
@@ -8,7 +9,7 @@
 
 /* A line of any file. Lines of cells that the study no longer has, and lines with a wrong checksum, are merged, too. */
 typedef struct merged_line {
-    const csv *of;
+    const csv *source;
     size_t row, position;
     long run;
     uint64_t values; /* a hash of its values, in any order of columns */
@@ -31,15 +32,17 @@ static int compare_runs(const void *a, const void *b)
     return (x->position > y->position) - (x->position < y->position);
 }
 
-static void list_table(const row_files *files, const csv *of, merged_line *lines, size_t *count)
+static void list_table(const row_files *files, const csv *source, merged_line *lines, size_t *count)
 {
-    const int run = csv_column(of, "run");
-    for (size_t row = 0; row < of->row_count; row++, ++*count)
-        lines[*count] = (merged_line){
-            .of = of, .row = row, .position = *count, .run = runs_find(files->runs, csv_field(of, row, run))};
+    const int run = csv_column(source, "run");
+    for (size_t row = 0; row < source->row_count; row++, ++*count)
+        lines[*count] = (merged_line){.source = source,
+                                      .row = row,
+                                      .position = *count,
+                                      .run = runs_find(files->runs, csv_field(source, row, run))};
 }
 
-/* Whether two files have lines of one run, so that lines may be duplicates. Unknown runs count as one. */
+/* Whether two files have lines of one run, so that lines may be duplicates. All unknown runs count as one run. */
 static status has_common_runs(const row_files *files, const merged_line *lines, size_t count, bool *common,
                               diagnostic *why)
 {
@@ -48,9 +51,9 @@ static status has_common_runs(const row_files *files, const merged_line *lines, 
     if (!first)
         return out_of_memory(why);
     for (size_t i = 0; i < count; i++) {
-        const csv **of = &first[lines[i].run + 1];
-        *common = *common || (*of && *of != lines[i].of);
-        *of = lines[i].of;
+        const csv **first_source = &first[lines[i].run + 1];
+        *common = *common || (*first_source && *first_source != lines[i].source);
+        *first_source = lines[i].source;
     }
     free(first);
     return STATUS_OK;
@@ -59,16 +62,16 @@ static status has_common_runs(const row_files *files, const merged_line *lines, 
 static status hash_lines(merged_line *lines, size_t count, diagnostic *why)
 {
     checksum_columns columns = {.count = 0};
-    const csv *of = NULL;
+    const csv *source = NULL;
     status code = STATUS_OK;
     for (size_t i = 0; i < count && code == STATUS_OK; i++) {
-        if (lines[i].of != of) {
+        if (lines[i].source != source) {
             checksum_columns_free(&columns);
-            of = lines[i].of;
-            code = checksum_columns_create(of->header, of->column_count, &columns, why);
+            source = lines[i].source;
+            code = checksum_columns_create(source->header, source->column_count, &columns, why);
         }
         if (code == STATUS_OK)
-            lines[i].values = checksum_values(&columns, of->fields + lines[i].row * of->column_count);
+            lines[i].values = checksum_values(&columns, source->fields + lines[i].row * source->column_count);
     }
     checksum_columns_free(&columns);
     return code;
@@ -81,13 +84,13 @@ static status drop_copies(merged_line *lines, size_t *count, diagnostic *why)
     TRY(hash_lines(lines, *count, why));
     qsort(lines, *count, sizeof *lines, compare_values);
     for (size_t i = 0; i < *count; i++)
-        if (kept == 0 || lines[kept - 1].values != lines[i].values || lines[kept - 1].of == lines[i].of)
+        if (kept == 0 || lines[kept - 1].values != lines[i].values || lines[kept - 1].source == lines[i].source)
             lines[kept++] = lines[i];
     *count = kept;
     return STATUS_OK;
 }
 
-/* All different lines of all files. */
+/* Lists all different lines of all files, in the order of runs. */
 static status list_lines(const row_files *files, merged_line **out, size_t *count, diagnostic *why)
 {
     size_t total = 0;
@@ -112,22 +115,22 @@ static status list_lines(const row_files *files, merged_line **out, size_t *coun
 /* Writes lines of one file, converted to the common columns. */
 static status write_lines(FILE *out, const merged_line *lines, size_t count, const char *header, diagnostic *why)
 {
-    const csv *of = lines[0].of;
-    char *from = strndup(of->raw, of->start[0]);
+    const csv *source = lines[0].source;
+    char *from = strndup(source->raw, source->start[0]);
     csv_layout *layout = NULL;
-    csv_line placed = {0};
+    csv_line converted = {0};
     status code = from ? csv_layout_create(from, header, &layout, why) : out_of_memory(why);
-    const bool as_it_is = from && strcmp(from, header) == 0;
+    const bool same_columns = from && strcmp(from, header) == 0;
     for (size_t i = 0; code == STATUS_OK && i < count; i++) {
-        const size_t start = of->start[lines[i].row], size = of->start[lines[i].row + 1] - start;
-        if (as_it_is) {
-            fwrite(of->raw + start, 1, size, out);
-        } else if ((code = csv_layout_place(layout, of->raw + start, size, &placed, why)) == STATUS_OK) {
-            fwrite(placed.text, 1, placed.size, out);
-            placed.size = 0;
+        const size_t start = source->start[lines[i].row], size = source->start[lines[i].row + 1] - start;
+        if (same_columns) {
+            fwrite(source->raw + start, 1, size, out);
+        } else if ((code = csv_layout_place(layout, source->raw + start, size, &converted, why)) == STATUS_OK) {
+            fwrite(converted.text, 1, converted.size, out);
+            converted.size = 0;
         }
     }
-    csv_line_free(&placed);
+    csv_line_free(&converted);
     csv_layout_destroy(layout);
     free(from);
     return code;
@@ -138,9 +141,9 @@ static char *joined_header(const row_files *files, const char *header)
 {
     char *all = strdup(header);
     for (size_t i = 0; all && i < files->count; i++) {
-        const csv *of = files->tables[i];
+        const csv *source = files->tables[i];
         size_t added;
-        char *columns = of->header ? strndup(of->raw, of->start[0]) : strdup(header);
+        char *columns = source->header ? strndup(source->raw, source->start[0]) : strdup(header);
         char *more = columns ? csv_header_extend(all, columns, &added) : NULL;
         free(columns);
         free(all);
@@ -160,7 +163,7 @@ static status write_joined(const row_files *files, const char *path, const char 
     if (code == STATUS_OK) {
         fputs(all, writer.stream);
         for (size_t from = 0, to; code == STATUS_OK && from < count; from = to) {
-            for (to = from + 1; to < count && lines[to].of == lines[from].of; to++) {
+            for (to = from + 1; to < count && lines[to].source == lines[from].source; to++) {
             }
             code = write_lines(writer.stream, lines + from, to - from, all, why);
         }
@@ -171,7 +174,7 @@ static status write_joined(const row_files *files, const char *path, const char 
     return code;
 }
 
-/* Fails for lines that are no rows and for two rows of one repetition: a person must decide which one is right. */
+/* Fails for lines that are not rows, and for two rows of one repetition, of which a person must choose one. */
 static status refuse(const row_files *files, diagnostic *why)
 {
     for (size_t i = 0; i < files->issue_count; i++) {

@@ -1,3 +1,4 @@
+/* Compares rows with each other: duplicates, orphans of killed processes, and quantities that must be equal. */
 #include "study/rows/row_check.h"
 #include "job/quantities.h"
 #include <stdlib.h>
@@ -45,7 +46,7 @@ static int compare_keys(const void *a, const void *b)
     return (x > y) - (x < y);
 }
 
-/* Pointers to the rows in the order of their keys, for free; NULL if memory runs out. */
+/* Pointers to the rows in the order of their keys, which the caller frees; NULL if memory runs out. */
 static row_ref **sort_rows(const row_files *files)
 {
     row_ref **sorted = malloc((files->row_count + 1) * sizeof(row_ref *));
@@ -95,7 +96,7 @@ static bool same_row(const row_ref *a, const row_ref *b)
     return has_values(a, b) && has_values(b, a);
 }
 
-/* The later row of two with one key. */
+/* Drops the later of two rows with the same key. */
 static status drop_twin(row_files *files, const row_ref *first, row_ref *second, diagnostic *why)
 {
     const char *path = path_of(files, second->table);
@@ -131,7 +132,7 @@ typedef struct equal_columns {
     int column[128];
     size_t count;
     int marked, film, expected;
-    bool usual; /* it has the header of the first table, so that columns have the same numbers */
+    bool has_first_header; /* the header of the first table, so that columns have the same numbers */
 } equal_columns;
 
 static equal_columns find_equal_columns(const csv *table)
@@ -159,34 +160,33 @@ static bool same_header(const csv *a, const csv *b)
 
 typedef struct equal_check {
     row_files *files;
-    equal_columns *of; /* of each table */
+    equal_columns *columns; /* of each table */
 } equal_check;
 
 static const equal_columns *columns_of(const equal_check *c, const csv *table)
 {
     size_t i = 0;
-    while (c->of[i].table != table)
+    while (c->columns[i].table != table)
         i++;
-    return &c->of[i];
+    return &c->columns[i];
 }
 
-/* The first column of a in which b has another value, or -1. Columns are looked up by name only if the headers differ.
- */
+/* The first column of a in which b has another value, or -1. Columns are looked up by name only if headers differ. */
 static int first_difference(const equal_check *c, const row_ref *a, const row_ref *b)
 {
-    const equal_columns *of = columns_of(c, a->table);
-    const bool alike = a->table == b->table || (of->usual && columns_of(c, b->table)->usual);
-    for (size_t i = 0; i < of->count; i++) {
-        const int here = of->column[i];
-        const int there = alike ? here : csv_column(b->table, a->table->header[here]);
-        const char *x = csv_field(a->table, a->row, here), *y = csv_field(b->table, b->row, there);
+    const equal_columns *columns = columns_of(c, a->table);
+    const bool alike = a->table == b->table || (columns->has_first_header && columns_of(c, b->table)->has_first_header);
+    for (size_t i = 0; i < columns->count; i++) {
+        const int column = columns->column[i];
+        const int other = alike ? column : csv_column(b->table, a->table->header[column]);
+        const char *x = csv_field(a->table, a->row, column), *y = csv_field(b->table, b->row, other);
         if (strcmp(x, y) != 0 && strcmp(x, "NA") != 0 && strcmp(y, "NA") != 0)
-            return here;
+            return column;
     }
     return -1;
 }
 
-/* The row that agrees with most (Boyer and Moore's majority vote, 1991). */
+/* The row with which most rows agree (Boyer and Moore's majority vote, 1991). */
 static const row_ref *vote(const equal_check *c, row_ref *const *rows, size_t count)
 {
     const row_ref *leader = NULL;
@@ -201,15 +201,15 @@ static const row_ref *vote(const equal_check *c, row_ref *const *rows, size_t co
 
 static status judge_group(const equal_check *c, row_ref **rows, size_t count, diagnostic *why)
 {
-    const row_ref *usual = count > 1 ? vote(c, rows, count) : NULL;
-    for (size_t i = 0; usual && i < count; i++) {
-        const int column = first_difference(c, usual, rows[i]);
+    const row_ref *majority = count > 1 ? vote(c, rows, count) : NULL;
+    for (size_t i = 0; majority && i < count; i++) {
+        const int column = first_difference(c, majority, rows[i]);
         if (column < 0)
             continue;
-        const char *name = usual->table->header[column];
+        const char *name = majority->table->header[column];
         if (row_files_add_issue(c->files, ROW_DIFFERS, path_of(c->files, rows[i]->table), (long)rows[i]->row + 2,
                                 "%s is %.40s, and %.40s in other rows of the cell", name, row_field(rows[i], name),
-                                row_field(usual, name)) != STATUS_OK)
+                                row_field(majority, name)) != STATUS_OK)
             return out_of_memory(why);
         rows[i]->table = NULL;
     }
@@ -235,10 +235,10 @@ static status skip_marked(const equal_check *c, row_ref **sorted, size_t *count,
 {
     for (size_t i = 0; i < c->files->row_count; i++) {
         row_ref *ref = &c->files->rows[i];
-        const equal_columns *of = columns_of(c, ref->table);
-        const char *hash = csv_field(ref->table, ref->row, of->film);
-        if (strcmp(csv_field(ref->table, ref->row, of->marked), "0") == 0 &&
-            strcmp(hash, csv_field(ref->table, ref->row, of->expected)) == 0)
+        const equal_columns *columns = columns_of(c, ref->table);
+        const char *hash = csv_field(ref->table, ref->row, columns->film);
+        if (strcmp(csv_field(ref->table, ref->row, columns->marked), "0") == 0 &&
+            strcmp(hash, csv_field(ref->table, ref->row, columns->expected)) == 0)
             sorted[(*count)++] = ref;
         else if (row_files_add_issue(c->files, ROW_MARKED, path_of(c->files, ref->table), (long)ref->row + 2,
                                      "the row is marked: its film is not the expected one") != STATUS_OK)
@@ -250,12 +250,12 @@ static status skip_marked(const equal_check *c, row_ref **sorted, size_t *count,
 status row_check_quantities(row_files *files, diagnostic *why)
 {
     row_ref **sorted = malloc((files->row_count + 1) * sizeof(row_ref *));
-    equal_check c = {files, malloc((files->count + 1) * sizeof *c.of)};
+    equal_check c = {files, malloc((files->count + 1) * sizeof *c.columns)};
     size_t count = 0;
-    status code = sorted && c.of ? STATUS_OK : out_of_memory(why);
+    status code = sorted && c.columns ? STATUS_OK : out_of_memory(why);
     for (size_t i = 0; code == STATUS_OK && i < files->count; i++) {
-        c.of[i] = find_equal_columns(files->tables[i]);
-        c.of[i].usual = same_header(files->tables[0], files->tables[i]);
+        c.columns[i] = find_equal_columns(files->tables[i]);
+        c.columns[i].has_first_header = same_header(files->tables[0], files->tables[i]);
     }
     THEN(code, skip_marked(&c, sorted, &count, why));
     if (code == STATUS_OK)
@@ -266,7 +266,7 @@ status row_check_quantities(row_files *files, diagnostic *why)
         code = judge_group(&c, sorted + from, to - from, why);
     }
     free(sorted);
-    free(c.of);
+    free(c.columns);
     compact(files);
     return code;
 }

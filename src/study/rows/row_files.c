@@ -1,4 +1,4 @@
-/* Names and lists of row files, fields, issues and environments of their rows. study/rows/row_read.c reads them. */
+/* Names and lists of row files; fields, issues and environments of rows. study/rows/row_read.c reads the files. */
 #include "base/file.h"
 #include "base/array.h"
 #include "base/status.h"
@@ -92,8 +92,8 @@ status row_files_list(const char *folder, row_kind kind, char ***paths, size_t *
     char **list = calloc(shard_count + 1, sizeof *list);
     status code = list ? STATUS_OK : out_of_memory(why);
     for (size_t i = 0; code == STATUS_OK && i <= shard_count; i++) {
-        const shard_name of = i > 0 ? shards[i - 1] : (shard_name){0, 1};
-        char *path = row_file_path(folder, kind, of.shard, of.shards);
+        const shard_name name = i > 0 ? shards[i - 1] : (shard_name){0, 1};
+        char *path = row_file_path(folder, kind, name.shard, name.shards);
         if (!path)
             code = out_of_memory(why);
         else if (access(path, F_OK) == 0)
@@ -145,7 +145,7 @@ status row_files_judge(const row_files *files, diagnostic *why)
         if (files->fault_count > 1)
             snprintf(more, sizeof more, "; and %zu more", files->fault_count - 1);
         diagnostic_locate(why, first->path, first->line, first->line ? 1 : 0);
-        return diagnose(why, STATUS_FAILURE, "`cuvette study verify` lists the rows", "%s%s", first->text, more);
+        return diagnose(why, STATUS_FAILURE, "list the rows with `cuvette study verify`", "%s%s", first->text, more);
     }
     return STATUS_OK;
 }

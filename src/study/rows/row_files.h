@@ -1,4 +1,4 @@
-/* All rows of a study on disk: rows.csv and the files of shards, or the same of workers.csv or compare.csv, read and
+/* All rows of a study on disk: rows.csv and the files of its shards, or likewise workers.csv or compare.csv, read and
  * verified. Equal rows in several files (after a merge) count once. Rows that cannot be trusted are left out and listed
  * as issues; rows of cells that the study does not have (any more) are left out and counted. Ownership: row_files_read
  * gives, row_files_destroy releases; results point into it. */
@@ -41,7 +41,7 @@ typedef enum row_fault {
 typedef struct row_issue {
     row_fault fault;
     const char *path;
-    long line; /* 0: of the file */
+    long line; /* 0: the issue is not about one line */
     char text[200];
 } row_issue;
 
@@ -79,15 +79,15 @@ __attribute__((format(printf, 5, 6))) status row_files_add_issue(row_files *file
 /* Reports the first faults: the summary line that commands print, and STATUS_FAILURE; STATUS_OK without faults. */
 status row_files_judge(const row_files *files, diagnostic *why);
 
-/* The environments of the rows: an array for free, in the order of the first row of each. */
+/* The environments of the rows, in the order of the first row of each; the caller frees the array. */
 typedef struct row_environment_count {
     char key[ENVIRONMENT_KEY];
     size_t rows;          /* without warm-ups */
     const run_entry *run; /* its last run in row_files.runs, or NULL */
 } row_environment_count;
 status row_environments_find(const row_files *files, row_environment_count **out, size_t *count, diagnostic *why);
-/* The key that an option chooses: "" for NULL; of "main", as row_environments_main; or the text. STATUS_BAD_INPUT if no
- * row is of that environment. */
+/* The key that an option chooses: "" for NULL, the key of row_environments_main for "main", otherwise the text.
+ * STATUS_BAD_INPUT if no row is of that environment. */
 status row_environments_choose(const row_files *files, const char *text, char key[ENVIRONMENT_KEY], diagnostic *why);
-/* The one with most rows, of equal ones the last; "" without rows. */
+/* The key of the environment with most rows, the last among equals; "" without rows. */
 status row_environments_main(const row_files *files, char key[ENVIRONMENT_KEY], diagnostic *why);

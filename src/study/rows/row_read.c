@@ -1,5 +1,5 @@
-/* Reads all row files of a study: lines become row_refs, rows and the chain of their checksums are checked, then rows
- * against each other (study/rows/row_check.c). */
+/* Reads all row files of a study: turns lines into row_refs, verifies them and the chain of their checksums, and then
+ * compares rows with each other (study/rows/row_check.c). */
 #include "base/number.h"
 #include "scene/model/open.h"
 #include "study/plan/identity.h"
@@ -10,8 +10,8 @@
 #include <stdlib.h>
 #include <string.h>
 
-/* From the identities of a study's cells to their numbers. Without a known grid (study.identity is NULL) every identity
- * is a cell, and its own number. */
+/* Maps identities of a study's cells to their numbers. If the grid is not known (study.identity is NULL), every
+ * identity is a cell, and its number. */
 typedef struct row_cell {
     uint64_t identity;
     size_t cell;
@@ -31,7 +31,7 @@ typedef struct row_chain {
 typedef struct row_reader {
     const study *s;
     row_kind kind;
-    row_files *into;
+    row_files *files;
     row_cells cells;
     row_chain *chain; /* of each run */
 } row_reader;
@@ -123,9 +123,9 @@ static bool read_numbers(const table_state *st, size_t row, row_ref *ref, int64_
 
 static bool parse_hash(const char *text, uint64_t *out)
 {
-    const bool is_one = strlen(text) == 16 && strspn(text, "0123456789abcdef") == 16;
-    *out = is_one ? strtoull(text, NULL, 16) : 0;
-    return is_one;
+    const bool is_hash = strlen(text) == 16 && strspn(text, "0123456789abcdef") == 16;
+    *out = is_hash ? strtoull(text, NULL, 16) : 0;
+    return is_hash;
 }
 
 static status noted(const table_state *st, status code)
@@ -135,18 +135,18 @@ static status noted(const table_state *st, status code)
 
 static status issue(table_state *st, row_fault fault, size_t row, const char *text)
 {
-    return noted(st, row_files_add_issue(st->r->into, fault, st->path, (long)row + 2, "%s", text));
+    return noted(st, row_files_add_issue(st->r->files, fault, st->path, (long)row + 2, "%s", text));
 }
 
-/* The place of a row in the chain of its run. */
+/* Verifies the place of a row in the chain of its run. */
 static status follow_chain(table_state *st, size_t row, const row_ref *ref, uint32_t content, uint32_t chain)
 {
     const char *text = csv_field(st->table, row, st->at.checksum);
-    row_chain *of = &st->r->chain[ref->run];
-    const char *previous = of->rows ? of->last : st->r->into->runs->entry[ref->run].id;
+    row_chain *run = &st->r->chain[ref->run];
+    const char *previous = run->rows ? run->last : st->r->files->runs->entry[ref->run].id;
     const bool continues = checksum_chain(previous, content) == chain, in_order = ref->run >= st->last_run;
-    snprintf(of->last, sizeof of->last, "%.16s", text);
-    of->rows++;
+    snprintf(run->last, sizeof run->last, "%.16s", text);
+    run->rows++;
     const bool excused = st->gap;
     st->gap = false;
     st->last_run = ref->run;
@@ -155,7 +155,7 @@ static status follow_chain(table_state *st, size_t row, const row_ref *ref, uint
     return issue(st, ROW_MISPLACED, row, "rows before this one were removed, inserted or moved");
 }
 
-/* *good: the row can be used. */
+/* Reads and verifies a row; *good: the row can be used. */
 static status read_values(table_state *st, size_t row, row_ref *ref, uint64_t *identity, bool *good)
 {
     char *const *fields = st->table->fields + row * st->table->column_count;
@@ -165,9 +165,9 @@ static status read_values(table_state *st, size_t row, row_ref *ref, uint64_t *i
     if (!checksum_parse(csv_field(st->table, row, st->at.checksum), &content, &chain))
         return issue(st, ROW_EDITED, row, "the checksum of the row is damaged");
     const bool intact = checksum_content(&st->hashes, fields) == content;
-    ref->run = runs_find(st->r->into->runs, csv_field(st->table, row, st->at.run));
+    ref->run = runs_find(st->r->files->runs, csv_field(st->table, row, st->at.run));
     if (ref->run >= 0) {
-        if (!intact) /* the next row follows the checksum that this one states */
+        if (!intact) /* the next row is chained to the checksum that this row states */
             snprintf(st->r->chain[ref->run].last, RUN_ID, "%.16s", csv_field(st->table, row, st->at.checksum));
         st->r->chain[ref->run].rows += !intact;
     }
@@ -177,9 +177,9 @@ static status read_values(table_state *st, size_t row, row_ref *ref, uint64_t *i
         return issue(st, ROW_DAMAGED, row, "the row is damaged");
     *good = true;
     if (ref->run < 0)
-        return noted(st, row_files_add_issue(st->r->into, ROW_UNKNOWN, st->path, (long)row + 2,
+        return noted(st, row_files_add_issue(st->r->files, ROW_UNKNOWN, st->path, (long)row + 2,
                                              "run %.16s is not in runs.json", csv_field(st->table, row, st->at.run)));
-    memcpy(ref->environment, st->r->into->runs->entry[ref->run].here.key, ENVIRONMENT_KEY);
+    memcpy(ref->environment, st->r->files->runs->entry[ref->run].environment.key, ENVIRONMENT_KEY);
     return follow_chain(st, row, ref, content, chain);
 }
 
@@ -207,26 +207,26 @@ static status read_row(table_state *st, size_t row)
     if (good && strcmp(csv_field(st->table, row, st->at.study), r->s->name) != 0)
         return another_study(st, row);
     if (good && !find_cell(&r->cells, identity, &ref.cell))
-        r->into->other_cells++;
+        r->files->other_cells++;
     else if (good)
-        r->into->rows[r->into->row_count++] = ref;
+        r->files->rows[r->files->row_count++] = ref;
     return STATUS_OK;
 }
 
-/* Keeps what is known of each run for the seals, which count a run's rows in one file. */
+/* Keeps each run's largest number of rows in a file, and the last checksum there, to compare with its seal. */
 static void finish_table(row_reader *r)
 {
-    for (size_t i = 0; i < r->into->runs->count; i++) {
-        row_chain *of = &r->chain[i];
-        if (of->rows > of->most) {
-            of->most = of->rows;
-            memcpy(of->end, of->last, sizeof of->end);
+    for (size_t i = 0; i < r->files->runs->count; i++) {
+        row_chain *run = &r->chain[i];
+        if (run->rows > run->most) {
+            run->most = run->rows;
+            memcpy(run->end, run->last, sizeof run->end);
         }
-        of->rows = 0;
+        run->rows = 0;
     }
 }
 
-/* Appends the usable rows of a table to into->rows, which has room, and issues about the others. */
+/* Appends the usable rows of a table to r->files, which has room, and issues about the others. */
 static status read_table(row_reader *r, const csv *table, const char *path, diagnostic *why)
 {
     table_state st = {.r = r, .table = table, .path = path, .at = find_columns(table), .why = why};
@@ -234,7 +234,7 @@ static status read_table(row_reader *r, const csv *table, const char *path, diag
     for (size_t row = 0; code == STATUS_OK && row < table->row_count; row++)
         code = read_row(&st, row);
     if (code == STATUS_OK && table->size > table->whole &&
-        row_files_add_issue(r->into, ROW_TORN, path, (long)table->row_count + 2,
+        row_files_add_issue(r->files, ROW_TORN, path, (long)table->row_count + 2,
                             "an incomplete line: the process was killed; the next run moves it away") != STATUS_OK)
         code = out_of_memory(why);
     finish_table(r);
@@ -245,20 +245,20 @@ static status read_table(row_reader *r, const csv *table, const char *path, diag
 /* Adds issues for rows missing at the end of runs, after all tables were read. */
 static status read_seals(row_reader *r, diagnostic *why)
 {
-    const run_list *all = r->into->runs;
+    const run_list *runs = r->files->runs;
     const char *stem = row_file_stem(r->kind);
-    for (size_t i = 0; i < all->count; i++) {
+    for (size_t i = 0; i < runs->count; i++) {
         run_seal seal;
-        const row_chain *of = &r->chain[i];
+        const row_chain *run = &r->chain[i];
         status code = STATUS_OK;
-        if (!all->entry[i].key_is_right)
-            code = row_files_add_issue(r->into, ROW_UNKNOWN, "runs.json", 0,
-                                       "the environment of run %.16s does not agree with its key", all->entry[i].id);
-        if (code == STATUS_OK && runs_seal(&all->entry[i], stem, &seal) && seal.rows > 0 &&
-            (of->most < seal.rows || strcmp(of->end, seal.checksum) != 0))
-            code = row_files_add_issue(r->into, ROW_MISSING, stem, 0, "run %.16s wrote %zu rows, %zu are there%s",
-                                       all->entry[i].id, seal.rows, of->most,
-                                       of->most < seal.rows ? "" : ", the last one is another");
+        if (!runs->entry[i].key_is_right)
+            code = row_files_add_issue(r->files, ROW_UNKNOWN, "runs.json", 0,
+                                       "the environment of run %.16s does not agree with its key", runs->entry[i].id);
+        if (code == STATUS_OK && runs_seal(&runs->entry[i], stem, &seal) && seal.rows > 0 &&
+            (run->most < seal.rows || strcmp(run->end, seal.checksum) != 0))
+            code = row_files_add_issue(r->files, ROW_MISSING, stem, 0, "run %.16s wrote %zu rows, %zu are there%s",
+                                       runs->entry[i].id, seal.rows, run->most,
+                                       run->most < seal.rows ? "" : ", but the last one is different");
         if (code != STATUS_OK)
             return out_of_memory(why);
     }
@@ -280,7 +280,7 @@ static status open_files(row_files *files, const study *s, const char *folder, r
 
 static status read_tables(row_reader *r, diagnostic *why)
 {
-    row_files *files = r->into;
+    row_files *files = r->files;
     size_t total = 0;
     for (size_t i = 0; i < files->count; i++)
         total += files->tables[i] ? files->tables[i]->row_count : 0;
@@ -300,7 +300,7 @@ static status read_tables(row_reader *r, diagnostic *why)
 
 static status read_rows(row_files *files, const study *s, const char *folder, row_kind kind, diagnostic *why)
 {
-    row_reader r = {.s = s, .kind = kind, .into = files};
+    row_reader r = {.s = s, .kind = kind, .files = files};
     status code = runs_read(folder, scene_root(s->base), &files->runs, why);
     THEN(code, cells_create(s, kind, &r.cells, why));
     THEN(code, read_tables(&r, why));

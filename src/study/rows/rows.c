@@ -1,3 +1,4 @@
+/* Writes rows.csv and workers.csv; name, unit, meaning and value of each column are defined in one place. */
 #include "study/rows/rows.h"
 #include "base/text.h"
 #include "scene/model/params.h"
@@ -42,9 +43,9 @@ static void put_by_depth(csv_line *line, const quantity_value *v)
     csv_text(line, text);
 }
 
-void row_put(csv_line *line, const quantity *q, const job_account *made, int worker)
+void row_put(csv_line *line, const quantity *q, const job_account *account, int worker)
 {
-    const quantity_value v = q->read(made, worker);
+    const quantity_value v = q->read(account, worker);
     switch (q->type) {
     case QUANTITY_COUNT:
     case QUANTITY_NUMBER:
@@ -55,7 +56,7 @@ void row_put(csv_line *line, const quantity *q, const job_account *made, int wor
     case QUANTITY_WORD: csv_text(line, v.word); break;
     case QUANTITY_DEPTHS: put_by_depth(line, &v); break;
     case QUANTITY_SOLIDS:
-        for (size_t i = 0; i < scene_solid_count(made->of); i++)
+        for (size_t i = 0; i < scene_solid_count(account->of); i++)
             csv_count(line, i < v.size ? (int64_t)v.list[i] : -1);
         break;
     }
@@ -64,7 +65,7 @@ void row_put(csv_line *line, const quantity *q, const job_account *made, int wor
 static void put_time(csv_line *line, const study_row *r)
 {
     char text[ROW_TIME_MAX];
-    csv_text(line, row_time(r->made->ended_ms, text));
+    csv_text(line, row_time(r->account->ended_ms, text));
 }
 
 static void put_verdict(csv_line *line, noise_verdict verdict)
@@ -75,41 +76,43 @@ static void put_verdict(csv_line *line, noise_verdict verdict)
         csv_count(line, verdict == NOISE_DISTURBED);
 }
 
-/* The study's own columns: name, unit, meaning and writer in one place, so that header, dictionary and row always
- * agree. The last macro argument uses line and r (the row). The other columns are those of job/quantities.h. */
-#define CELL_COLUMNS(X)                                                                                         \
-    X("study", "", "name of the study", csv_text(line, r->of->name))                                            \
-    X("identity", "", "hash of all that determines the cell's film and measurement, 16 hex digits",             \
-      csv_hash(line, r->of->identity[r->cell]))                                                                 \
-    X("cell", "", "number of the grid point when it was measured, the last axis fastest",                       \
-      csv_count(line, (int64_t)r->cell))                                                                        \
-    X("repetition", "", "running number in the cell, from 0, warm-ups counted; a continued run warms up again", \
-      csv_count(line, r->repetition))                                                                           \
-    X("warmup", "", "1: frame before the first measured one of the cell in its process; not for summaries",     \
+/* The columns that are not in job/quantities.h: name, unit, meaning and writer in one place, so that header, dictionary
+ * and row always agree. The last macro argument uses line and r (the row). */
+#define CELL_COLUMNS(X)                                                                                              \
+    X("study", "", "name of the study", csv_text(line, r->s->name))                                                  \
+    X("identity", "", "hash of everything that determines the cell's film and measurement, 16 hex digits",           \
+      csv_hash(line, r->s->identity[r->cell]))                                                                       \
+    X("cell", "", "number of the grid point when it was measured, the last axis fastest",                            \
+      csv_count(line, (int64_t)r->cell))                                                                             \
+    X("repetition", "", "number of the frame in the cell, from 0, including warm-ups; a resumed run warms up again", \
+      csv_count(line, r->repetition))                                                                                \
+    X("warmup", "", "1: warm-up, before the cell's first measured frame in its process; not in summaries",           \
       csv_count(line, r->warmup))
 
 #define ORDER_COLUMNS(X)                                                                 \
     X("order", "", "running number of the row in the file that it was first written to", \
       csv_count(line, (int64_t)r->order))                                                \
-    X("time_utc", "", "when the frame had ended, ISO 8601", put_time(line, r))
+    X("time_utc", "", "end of the frame, ISO 8601", put_time(line, r))
 
 #define AXIS_COLUMNS(X)                                                                  \
     X("<axis>", "of the parameter", "value of each parameter of the grid, in its order", \
-      row_put_axes(line, r->of, r->made->of))
+      row_put_axes(line, r->s, r->account->of))
 
 /* Columns after film_hash. */
 #define FILM_COLUMNS(X)                                                                                                \
     X("film_expected", "",                                                                                             \
-      "film_hash of the first row of all cells that must have one film: they differ only in how it is made (threads, " \
-      "pool, schedule, tile, pin, hierarchies)",                                                                       \
+      "film_hash of the first row of all cells that must have the same film, because they differ only in performance " \
+      "parameters (threads, pool, schedule, tile, pin, hierarchies)",                                                  \
       csv_hash(line, r->film_expected))                                                                                \
     X("marked", "", "1: film_hash differs from film_expected; do not use this row",                                    \
-      csv_count(line, job_account_hash(r->made) != r->film_expected))                                                  \
+      csv_count(line, job_account_hash(r->account) != r->film_expected))                                               \
     X("disturbed", "",                                                                                                 \
-      "1: others_fraction, steal_fraction, frequency_drop or stalled_fraction broke the study's rule (key disturbed) " \
-      "when the "                                                                                                      \
-      "row was measured; readers apply the present rule",                                                              \
+      "1: others_fraction, steal_fraction, frequency_drop or stalled_fraction exceeded its bound (key "                \
+      "disturbed of the study) when the row was measured; summaries apply the present bounds",                         \
       put_verdict(line, r->disturbed))
+
+/* The columns before film_hash. */
+#define LEADING_COLUMNS(X) CELL_COLUMNS(X) ORDER_COLUMNS(X) AXIS_COLUMNS(X)
 
 #define DESCRIBE(name, unit, meaning, put) visit(context, &(row_column){name, unit, meaning});
 #define PUT(name, unit, meaning, put) put;
@@ -120,6 +123,11 @@ static void visit_quantity(const quantity *q, row_column_visitor *visit, void *c
     snprintf(name, sizeof name, q->type == QUANTITY_SOLIDS ? "%s.<solid>" : "%s", q->name);
     if (q->column)
         visit(context, &(row_column){name, q->unit, q->meaning});
+}
+
+static void visit_leading_columns(row_column_visitor *visit, void *context)
+{
+    LEADING_COLUMNS(DESCRIBE)
 }
 
 static void visit_film_columns(row_column_visitor *visit, void *context)
@@ -134,9 +142,8 @@ static void visit_origin(row_column_visitor *visit, void *context)
 
 void row_each_column(row_column_visitor *visit, void *context)
 {
-    CELL_COLUMNS(DESCRIBE)
-    ORDER_COLUMNS(DESCRIBE) AXIS_COLUMNS(DESCRIBE) for (size_t i = 0; i < frame_quantity_count; i++)
-    {
+    visit_leading_columns(visit, context);
+    for (size_t i = 0; i < frame_quantity_count; i++) {
         visit_quantity(&frame_quantities[i], visit, context);
         if (i == 0)
             visit_film_columns(visit, context);
@@ -155,7 +162,7 @@ void worker_each_column(row_column_visitor *visit, void *context)
 
 typedef struct header {
     csv_line *line;
-    const study *of;
+    const study *s;
 } header;
 
 static void put_name(void *context, const row_column *column)
@@ -166,11 +173,11 @@ static void put_name(void *context, const row_column *column)
     if (!bracket) {
         csv_text(line, name);
     } else if (strcmp(bracket, "<axis>") == 0) {
-        for (size_t k = 0; (path = study_grid_path(h->of, k)); k++)
+        for (size_t k = 0; (path = study_grid_path(h->s, k)); k++)
             csv_text(line, path);
     } else {
-        for (size_t k = 0; k < scene_solid_count(h->of->base); k++) {
-            char *text = text_format("%.*s%s", (int)(bracket - name), name, scene_solid_name(h->of->base, (int)k));
+        for (size_t k = 0; k < scene_solid_count(h->s->base); k++) {
+            char *text = text_format("%.*s%s", (int)(bracket - name), name, scene_solid_name(h->s->base, (int)k));
             line->failed |= !text;
             csv_text(line, text);
             free(text);
@@ -182,6 +189,11 @@ void row_columns_header(csv_line *line, const study *s, row_columns *each)
 {
     each(put_name, &(header){line, s});
     csv_end(line);
+}
+
+static void put_leading_columns(csv_line *line, const study_row *r)
+{
+    LEADING_COLUMNS(PUT)
 }
 
 static void put_film_columns(csv_line *line, const study_row *r)
@@ -196,10 +208,10 @@ static void put_origin(csv_line *line, const study_row *r)
 
 void row_write(csv_line *line, const study_row *r)
 {
-    CELL_COLUMNS(PUT) ORDER_COLUMNS(PUT) AXIS_COLUMNS(PUT) for (size_t i = 0; i < frame_quantity_count; i++)
-    {
+    put_leading_columns(line, r);
+    for (size_t i = 0; i < frame_quantity_count; i++) {
         if (frame_quantities[i].column)
-            row_put(line, &frame_quantities[i], r->made, -1);
+            row_put(line, &frame_quantities[i], r->account, -1);
         if (i == 0)
             put_film_columns(line, r);
     }
@@ -209,12 +221,12 @@ void row_write(csv_line *line, const study_row *r)
 
 void worker_rows_write(csv_line *line, const study_row *r)
 {
-    for (int worker = 0; worker < r->made->result->worker_count; worker++) {
+    for (int worker = 0; worker < r->account->result->worker_count; worker++) {
         CELL_COLUMNS(PUT)
         AXIS_COLUMNS(PUT)
         for (size_t i = 0; i < worker_quantity_count; i++)
             if (worker_quantities[i].column)
-                row_put(line, &worker_quantities[i], r->made, worker);
+                row_put(line, &worker_quantities[i], r->account, worker);
         put_origin(line, r);
         csv_end(line);
     }

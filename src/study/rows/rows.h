@@ -1,4 +1,4 @@
-/* The rows of a study, rows.csv and workers.csv, and the only code that writes them. Their columns are the study's own
+/* The rows of a study, rows.csv and workers.csv, and the only code that writes them. Their columns are those of rows.c
  * and the quantities of job/quantities.h; results/README.md is their dictionary. Pure except for memory; a csv_line
  * that ran out of memory has failed set. */
 #pragma once
@@ -21,31 +21,31 @@ row_columns row_each_column, worker_each_column;
 
 /* One repetition. Everything is borrowed. */
 typedef struct study_row {
-    const study *of;
+    const study *s;
     size_t cell;
-    long repetition; /* number in the cell, warm-ups included */
+    long repetition; /* number in the cell, including warm-ups */
     bool warmup;
     size_t order; /* number in the file */
     uint64_t film_expected;
-    noise_verdict disturbed; /* by the study's rule */
-    const char *run;         /* its id (study/rows/runs.h) */
-    int process;             /* number of the process within the run, from 0 */
-    const job_account *made;
+    noise_verdict disturbed;    /* by the study's rule */
+    const char *run;            /* id of the run (study/rows/runs.h) */
+    int process;                /* number of the process within the run, from 0 */
+    const job_account *account; /* of the frame */
 } study_row;
 
-/* The version of the row format: 2 has identities, runs and checksums; earlier rows have no such column. */
+/* The version of the row format: 2 has identities, runs and checksums; earlier rows lack them. */
 enum { ROW_SCHEMA = 2 };
 
-/* A line of rows.csv; the lines of workers.csv, one per worker. The last field, checksum, is NA: study/rows/checksum.h
- * fills it. */
+/* Append a line of rows.csv; the lines of workers.csv, one per worker. The last field, checksum, is NA; run_append in
+ * study/run/run_state.c fills in the checksums. */
 void row_write(csv_line *line, const study_row *r);
 void worker_rows_write(csv_line *line, const study_row *r);
 
-/* A header line of these columns; the values of the grid's parameters, one field each; a quantity of a frame or of a
- * worker. */
+/* Append a header line of these columns; the values of the grid's parameters, a field each; a quantity of a frame
+ * (worker: -1) or of a worker. */
 void row_columns_header(csv_line *line, const study *s, row_columns *each);
 void row_put_axes(csv_line *line, const study *s, const scene *setting);
-void row_put(csv_line *line, const quantity *q, const job_account *made, int worker);
+void row_put(csv_line *line, const quantity *q, const job_account *account, int worker);
 
 /* The names and meanings of the columns at the end of every table. */
 #define ROW_ORIGIN(X)                                                                                              \

@@ -1,4 +1,4 @@
-/* The lists of runs: reading, and changes under a lock. */
+/* Reads the lists of runs, and changes them under a lock. */
 #include "base/file.h"
 #include "base/hash.h"
 #include "base/json_build.h"
@@ -62,11 +62,11 @@ static void read_entry(const json_t *run, run_entry *out)
     *out = (run_entry){.id = json_string_value(json_object_get(run, "id")), .facts = run};
     for (int i = 0; i < ENVIRONMENT_FACTS; i++) {
         const char *text = json_string_value(json_object_get(facts, environment_names[i]));
-        snprintf(out->here.fact[i], ENVIRONMENT_FACT_MAX, "%s", text ? text : "unknown");
+        snprintf(out->environment.fact[i], ENVIRONMENT_FACT_MAX, "%s", text ? text : "unknown");
     }
-    environment_close(&out->here);
+    environment_close(&out->environment);
     const char *key = json_string_value(json_object_get(facts, "key"));
-    out->key_is_right = key && strcmp(key, out->here.key) == 0;
+    out->key_is_right = key && strcmp(key, out->environment.key) == 0;
 }
 
 static status add_entries(run_list *all, const json_t *list, diagnostic *why)
@@ -154,7 +154,7 @@ bool runs_seal(const run_entry *run, const char *table, run_seal *out)
 
 /* --- writing --- */
 
-/* Changes the list at path under a lock of its folder: shards and merges may do so at the same time. */
+/* Changes the list at path under a lock of its folder, because shards and merges may change it at the same time. */
 typedef status change_list(json_t *list, void *context, diagnostic *why);
 static status change(const char *folder, const char *root, char *path, const json_t *fresh, change_list *apply,
                      void *context, diagnostic *why)
@@ -181,7 +181,7 @@ static status change(const char *folder, const char *root, char *path, const jso
     return code;
 }
 
-void runs_make_id(const run_environment *here, char id[RUN_ID])
+void runs_make_id(const run_environment *environment, char id[RUN_ID])
 {
     uint64_t random = 0;
     struct timespec now;
@@ -189,7 +189,7 @@ void runs_make_id(const run_environment *here, char id[RUN_ID])
     if (getrandom(&random, sizeof random, GRND_NONBLOCK) != (ssize_t)sizeof random)
         random = 0; /* time and process id distinguish the runs of one machine */
     const int64_t words[] = {(int64_t)random, now.tv_sec, now.tv_nsec, getpid()};
-    const uint64_t hash = hash_bytes(hash_words(HASH_START, words, 4), here->fact, sizeof here->fact);
+    const uint64_t hash = hash_bytes(hash_words(HASH_START, words, 4), environment->fact, sizeof environment->fact);
     snprintf(id, RUN_ID, "%016" PRIx64, hash_finish(hash));
 }
 
@@ -198,10 +198,10 @@ static status add_run(json_t *list, void *context, diagnostic *why)
     return json_array_append(json_object_get(list, "runs"), context) == 0 ? STATUS_OK : out_of_memory(why);
 }
 
-status runs_begin(const study *s, const char *folder, const topology *machine, const run_environment *here, long shard,
-                  long shards, const char *id, diagnostic *why)
+status runs_begin(const study *s, const char *folder, const topology *machine, const run_environment *environment,
+                  long shard, long shards, const char *id, diagnostic *why)
 {
-    json_t *run = run_facts(s, machine, here, id, shard, shards);
+    json_t *run = run_facts(s, machine, environment, id, shard, shards);
     json_t *fresh = json_pack("{s:i, s:o, s:o, s:[]}", "schema", 2, "study", run_study_facts(s), "machine",
                               run_machine_facts(machine), "runs");
     status code = run && fresh
@@ -304,10 +304,10 @@ status quick_check_runs(const study *s, const char *folder, diagnostic *why)
     size_t quick, others;
     TRY(count_runs(s, folder, &quick, &others, why));
     if (s->quick && others > 0)
-        return diagnose_at(why, folder, STATUS_BAD_INPUT, "give --results another folder",
-                           "quick rows do not go to the rows of whole frames");
+        return diagnose_at(why, folder, STATUS_BAD_INPUT, "choose another folder with --results",
+                           "the folder has rows of full frames, to which quick rows must not be added");
     if (!s->quick && quick > 0)
-        return diagnose_at(why, folder, STATUS_BAD_INPUT, "give --results another folder, or add --quick",
-                           "the rows there are of a quick run");
+        return diagnose_at(why, folder, STATUS_BAD_INPUT, "choose another folder with --results, or add --quick",
+                           "the folder has rows of a quick run");
     return STATUS_OK;
 }

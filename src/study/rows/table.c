@@ -1,3 +1,4 @@
+/* Appends rows to a file, complete or not at all, under a lock and on disk before it returns. */
 #include "study/rows/table.h"
 #include "base/csv.h"
 #include "base/file.h"
@@ -17,7 +18,7 @@ struct table {
     char *path, *header;
     int fd;
     off_t end;          /* the file's size after the last line that was appended; 0: none yet */
-    bool settled;       /* the file has all columns of header, and layout is known */
+    bool has_layout;    /* the file has all columns of header, and layout is known */
     csv_layout *layout; /* converts header's columns to the file's; NULL if they are equal */
 };
 
@@ -180,18 +181,18 @@ static const char *foreign_change(const table *t)
         return "was removed";
     if (named.st_ino != opened.st_ino || named.st_dev != opened.st_dev)
         return "was replaced by another file";
-    return opened.st_size < t->end ? "was cut" : opened.st_size > t->end ? "was changed" : NULL;
+    return opened.st_size < t->end ? "was truncated" : opened.st_size > t->end ? "was changed" : NULL;
 }
 
-/* rows.csv -> rows.rescued.csv: the rows that this process can still read, of which there may be no other copy. */
-static status rescue(const table *t, const char *done, const char *lines, size_t size, diagnostic *why)
+/* Writes rows.rescued.csv: the rows that this process can still read, perhaps their only copy, and the new ones. */
+static status rescue(const table *t, const char *change, const char *lines, size_t size, diagnostic *why)
 {
     const size_t length = strlen(t->path);
     struct stat now;
     char *path = text_format("%.*s.rescued.csv", (int)(length > 4 ? length - 4 : length), t->path), *bytes = NULL;
     status code = path ? STATUS_OK : out_of_memory(why);
     char *folder = code == STATUS_OK ? file_next_to(t->path, ".") : NULL;
-    if (code == STATUS_OK) /* which may be gone, too */
+    if (code == STATUS_OK) /* the folder may be gone, too */
         code = folder ? file_make_directory(folder, why) : out_of_memory(why);
     free(folder);
     int fd = -1;
@@ -205,8 +206,8 @@ static status rescue(const table *t, const char *done, const char *lines, size_t
         code = failed(path, "writing", errno, why);
     if (code == STATUS_OK) {
         char remedy[400];
-        snprintf(remedy, sizeof remedy, "its rows are in %.300s: put them back, and run the command again", path);
-        code = diagnose_at(why, t->path, STATUS_FAILURE, remedy, "the file %s while the study ran", done);
+        snprintf(remedy, sizeof remedy, "put back its rows from %.300s, and run the command again", path);
+        code = diagnose_at(why, t->path, STATUS_FAILURE, remedy, "the file %s while the study ran", change);
     }
     if (fd >= 0)
         close(fd);
@@ -218,9 +219,9 @@ static status rescue(const table *t, const char *done, const char *lines, size_t
 static status append(table *t, const char *lines, size_t size, diagnostic *why)
 {
     struct stat now;
-    const char *done = foreign_change(t);
-    if (done)
-        return rescue(t, done, lines, size, why);
+    const char *change = foreign_change(t);
+    if (change)
+        return rescue(t, change, lines, size, why);
     if (append_all(t->fd, lines, size) != 0)
         return failed(t->path, "writing a row", errno, why);
     t->end = fstat(t->fd, &now) == 0 ? now.st_size : 0;
@@ -243,11 +244,11 @@ status table_open(const char *path, const char *header, table **out, diagnostic 
     THEN(code, table_set_aside(t, end, why));
     if (code == STATUS_OK && end == 0) {
         code = append(t, header, strlen(header), why);
-        t->settled = true;
+        t->has_layout = true;
     }
     struct stat now;
     t->end = code == STATUS_OK && fstat(t->fd, &now) == 0 ? now.st_size : 0;
-    file_flush_folder(path); /* also of an old file: the process that made it may have been killed before that */
+    file_flush_folder(path); /* also for an old file, whose creator may have been killed before it flushed the folder */
     if (code != STATUS_OK) {
         table_close(t);
         return code;
@@ -256,8 +257,8 @@ status table_open(const char *path, const char *header, table **out, diagnostic 
     return STATUS_OK;
 }
 
-/* Only before the first row, so that a process without new rows does not change the file. */
-static status settle(table *t, diagnostic *why)
+/* Adds missing columns to the file; called before the first row, so that a process without rows changes nothing. */
+static status find_layout(table *t, diagnostic *why)
 {
     bool replaced = false;
     status code = csv_layout_settle(t->path, t->header, &t->layout, &replaced, why);
@@ -267,19 +268,19 @@ static status settle(table *t, diagnostic *why)
         t->end = 0;
         code = lock(t, why);
     }
-    t->settled = code == STATUS_OK;
+    t->has_layout = code == STATUS_OK;
     return code;
 }
 
 status table_append(table *t, const char *lines, size_t size, diagnostic *why)
 {
-    csv_line placed = {0};
-    status code = t->settled ? STATUS_OK : settle(t, why);
+    csv_line converted = {0};
+    status code = t->has_layout ? STATUS_OK : find_layout(t, why);
     if (code != STATUS_OK || !t->layout)
         return code == STATUS_OK ? append(t, lines, size, why) : code;
-    code = csv_layout_place(t->layout, lines, size, &placed, why);
-    THEN(code, append(t, placed.text, placed.size, why));
-    csv_line_free(&placed);
+    code = csv_layout_place(t->layout, lines, size, &converted, why);
+    THEN(code, append(t, converted.text, converted.size, why));
+    csv_line_free(&converted);
     return code;
 }
 

@@ -1,4 +1,4 @@
-/* What a run would measure: counts of what is missing, times from rows or trial frames; and the text of an estimate. */
+/* Estimates a run: counts what is missing, finds times from rows or trial frames, and writes the estimate as text. */
 #include "base/cancel.h"
 #include "measure/clock.h"
 #include "scene/model/scene.h"
@@ -19,13 +19,13 @@ typedef struct trials {
     run *r;
     double deadline_s;
     double *tried_s;              /* by cell, the time of one frame by its trial; NaN: not tried */
-    double *cell_s;               /* by cell, that of its rows, or of its trial; NaN: unknown */
-    double *once_s;               /* by cell, the further time of loading it for the first time: a slime is simulated */
+    double *cell_s;               /* by cell, the time of one frame by its rows or its trial; NaN: unknown */
+    double *once_s;               /* by cell, the additional time of its first loading, which simulates slimes */
     double other_s, other_once_s; /* the means of the trials, for the cells that were not tried; NaN: none was */
     bool cut;
 } trials;
 
-/* Asked by a token: whether the deadline has passed. */
+/* Whether the deadline has passed; a cancel token calls it. */
 static bool is_late(void *context)
 {
     const trials *t = context;
@@ -55,11 +55,11 @@ static void shrink(scene *s, double width, double height, double most)
 
 static status render(const trials *t, const scene *setting, double *wall_s, diagnostic *why)
 {
-    job_account made = {.result = NULL};
-    const status code = job_render(t->r->with, setting, NULL, &made, why);
+    job_account account = {.result = NULL};
+    const status code = job_render(t->r->frame_job, setting, NULL, &account, why);
     if (code == STATUS_OK)
-        *wall_s = made.result->wall_s;
-    job_account_release(&made);
+        *wall_s = account.result->wall_s;
+    job_account_release(&account);
     return code;
 }
 
@@ -68,7 +68,7 @@ static status load(const trials *t, size_t cell, scene **out, double *took_s, di
 {
     const double began_s = clock_wall_s();
     TRY(study_cell_scene(t->r->s, cell, out, why));
-    const status code = job_load(t->r->with, *out, NULL, why);
+    const status code = job_load(t->r->frame_job, *out, NULL, why);
     *took_s = clock_wall_s() - began_s;
     return code;
 }
@@ -114,7 +114,7 @@ static bool lacks_files(const run *r, size_t cell)
     return keep_missing(r->s, r->folder, cell) || (r->s->reference.count && !r->compared[cell]);
 }
 
-/* A part without rows of a cell uses the times of rows of other parts. */
+/* In study_estimate_parts, a part without rows of a cell uses the times of rows of other parts. */
 static void use_rows_as_trials(const trials *t)
 {
     const run *r = t->r;
@@ -218,7 +218,7 @@ static void add_times(const trials *t, study_estimate *out)
     }
 }
 
-/* Reads the existing rows, and tries the cells whose time they do not tell. */
+/* Reads the existing rows, and tries the cells that have none. */
 static status survey(trials *t, diagnostic *why)
 {
     run *r = t->r;
@@ -256,10 +256,10 @@ static status open(trials *t, const study_options *options, diagnostic *why)
         return out_of_memory(why);
     for (size_t i = 0; i < total; i++)
         t->tried_s[i] = NAN;
-    TRY(job_create(&settings, &r->with, why));
-    TRY(environment_read("", job_isa(r->with), &r->here, why));
+    TRY(job_create(&settings, &r->frame_job, why));
+    TRY(environment_read("", job_isa(r->frame_job), &r->environment, why));
     if (options->environment)
-        snprintf(r->here.key, sizeof r->here.key, "%s", options->environment);
+        snprintf(r->environment.key, sizeof r->environment.key, "%s", options->environment);
     return STATUS_OK;
 }
 
@@ -286,22 +286,22 @@ status study_estimate_run(const study *s, const study_options *options, study_es
 status study_estimate_parts(const study *s, const study_options *options, bool tries, study_estimate *parts,
                             diagnostic *why)
 {
-    study_options of = *options;
-    of.shard = 0;
-    of.shards = 1;
-    run r = {.s = s, .options = &of};
+    study_options part = *options;
+    part.shard = 0;
+    part.shards = 1;
+    run r = {.s = s, .options = &part};
     trials t = {.r = &r, .deadline_s = tries ? clock_wall_s() + STUDY_ESTIMATE_TRIALS_S : INFINITY};
     status code = open(&t, options, why);
     THEN(code, survey(&t, why));
     if (code == STATUS_OK)
         use_rows_as_trials(&t);
-    of.shards = options->shards;
-    for (of.shard = 0; code == STATUS_OK && of.shard < of.shards; of.shard++) {
-        if (of.by_repetition)
+    part.shards = options->shards;
+    for (part.shard = 0; code == STATUS_OK && part.shard < part.shards; part.shard++) {
+        if (part.by_repetition)
             code = run_read_rows(&r, why);
         r.cell_count = 0;
         run_choose_cells(&r);
-        THEN(code, sum_up(&t, &parts[of.shard], why));
+        THEN(code, sum_up(&t, &parts[part.shard], why));
     }
     release(&t);
     return code;
@@ -380,12 +380,12 @@ static void write_files(FILE *out, const study *s, const char *results, const st
 
 static void write_room(FILE *out, const study *s, const char *results, const study_estimate *e)
 {
-    char needed[80], left[32];
+    char needed[80], available[32];
     disk_room_text(&e->needed, needed, sizeof needed);
-    disk_room_bytes_text(e->free_bytes, left, sizeof left);
+    disk_room_bytes_text(e->free_bytes, available, sizeof available);
     fprintf(out, "%s: %s to write", s->name, needed);
     if (!isnan(e->free_bytes))
-        fprintf(out, ", %s free in %s", left, results);
+        fprintf(out, ", %s free in %s", available, results);
     fputc('\n', out);
 }
 

@@ -1,4 +1,4 @@
-/* The measured repetitions by cell, and their display. */
+/* Indexes the measured repetitions of a study by cell, and displays its progress. */
 #include "base/build_id.h"
 #include "base/array.h"
 #include "base/hash.h"
@@ -31,15 +31,15 @@ static const uint64_t *find_film(const progress_index_cell *film, uint64_t build
     return NULL;
 }
 
-uint64_t progress_index_film(const progress_index *l, size_t cell, uint64_t build, uint64_t film_hash)
+uint64_t progress_index_film(const progress_index *index, size_t cell, uint64_t build, uint64_t film_hash)
 {
-    const uint64_t *known = find_film(&l->cells[study_cell_film(l->s, cell)], build);
+    const uint64_t *known = find_film(&index->cells[study_cell_film(index->s, cell)], build);
     return known ? *known : film_hash;
 }
 
-static status expect_film(progress_index *l, const progress_index_entry *entry, diagnostic *why)
+static status expect_film(progress_index *index, const progress_index_entry *entry, diagnostic *why)
 {
-    progress_index_cell *film = &l->cells[study_cell_film(l->s, entry->cell)];
+    progress_index_cell *film = &index->cells[study_cell_film(index->s, entry->cell)];
     if (find_film(film, entry->build))
         return STATUS_OK;
     if (!room_for_one(&film->film, film->film_count, sizeof *film->film))
@@ -48,31 +48,31 @@ static status expect_film(progress_index *l, const progress_index_entry *entry, 
     return STATUS_OK;
 }
 
-status progress_index_add(progress_index *l, const progress_index_entry *entry, diagnostic *why)
+status progress_index_add(progress_index *index, const progress_index_entry *entry, diagnostic *why)
 {
-    progress_index_cell *cell = &l->cells[entry->cell];
-    const bool here = !l->environment[0] || strcmp(l->environment, entry->environment) == 0;
-    const bool counts = here && !entry->of_other_shard;
+    progress_index_cell *cell = &index->cells[entry->cell];
+    const bool same_environment = !index->environment[0] || strcmp(index->environment, entry->environment) == 0;
+    const bool counts = same_environment && !entry->of_other_shard;
     if (counts && !entry->warmup) {
         if (!room_for_one(&cell->wall_s, cell->counted, sizeof *cell->wall_s))
             return out_of_memory(why);
         cell->wall_s[cell->counted++] = entry->wall_s;
         cell->disturbed += entry->disturbed == NOISE_DISTURBED;
         cell->undisturbed += entry->disturbed == NOISE_UNDISTURBED;
-        l->disturbed += entry->disturbed == NOISE_DISTURBED;
+        index->disturbed += entry->disturbed == NOISE_DISTURBED;
     }
-    TRY(expect_film(l, entry, why));
+    TRY(expect_film(index, entry, why));
     cell->rows++;
     if (entry->repetition >= cell->next_repetition)
         cell->next_repetition = entry->repetition + 1;
-    const bool marked = entry->film_hash != progress_index_film(l, entry->cell, entry->build, entry->film_hash);
+    const bool marked = entry->film_hash != progress_index_film(index, entry->cell, entry->build, entry->film_hash);
     cell->marked += marked;
-    l->marked += marked;
-    l->warmups += counts && entry->warmup;
-    l->elsewhere += !here;
-    if (!here)
-        snprintf(l->last_environment, sizeof l->last_environment, "%s", entry->environment);
-    l->rows++;
+    index->marked += marked;
+    index->warmups += counts && entry->warmup;
+    index->elsewhere += !same_environment;
+    if (!same_environment)
+        snprintf(index->last_environment, sizeof index->last_environment, "%s", entry->environment);
+    index->rows++;
     return STATUS_OK;
 }
 
@@ -82,17 +82,17 @@ typedef struct index_columns {
     int film_hash, wall_s;
 } index_columns;
 
-/* Whether only the rows of one shard count, and this one is of another: after a merge rows.csv has those of all. */
-static bool is_of_other_shard(const progress_index *l, const row_files *files, const row_ref *ref)
+/* Whether only rows of one shard count and this row is of another: a merged rows.csv has rows of all shards. */
+static bool is_of_other_shard(const progress_index *index, const row_files *files, const row_ref *ref)
 {
-    if (l->shards <= 1)
+    if (index->shards <= 1)
         return false;
     const json_t *facts = ref->run >= 0 ? files->runs->entry[ref->run].facts : NULL;
-    return json_integer_value(json_object_get(facts, "shard")) != l->shard ||
-           json_integer_value(json_object_get(facts, "shards")) != l->shards;
+    return json_integer_value(json_object_get(facts, "shard")) != index->shard ||
+           json_integer_value(json_object_get(facts, "shards")) != index->shards;
 }
 
-static status add_rows(progress_index *l, const row_files *files, diagnostic *why)
+static status add_rows(progress_index *index, const row_files *files, diagnostic *why)
 {
     index_columns at = {.table = NULL};
     row_noise_columns noise = {.table = NULL};
@@ -105,19 +105,19 @@ static status add_rows(progress_index *l, const row_files *files, diagnostic *wh
         if (ref->run < 0)
             build = hash_text(ref->environment);
         else if (ref->run != last_run)
-            build = hash_text(files->runs->entry[ref->run].here.fact[ENVIRONMENT_FACTS - 1]);
+            build = hash_text(files->runs->entry[ref->run].environment.fact[ENVIRONMENT_FACTS - 1]);
         last_run = ref->run;
         TRY(progress_index_add(
-            l,
+            index,
             &(progress_index_entry){.cell = ref->cell,
                                     .repetition = ref->repetition,
                                     .warmup = ref->warmup,
-                                    .disturbed = row_noise_judge(&l->s->disturbed, &noise, ref),
+                                    .disturbed = row_noise_judge(&index->s->disturbed, &noise, ref),
                                     .film_hash = strtoull(csv_field(ref->table, ref->row, at.film_hash), NULL, 16),
                                     .build = build,
                                     .wall_s = csv_field_real(ref->table, ref->row, at.wall_s),
                                     .environment = ref->environment,
-                                    .of_other_shard = is_of_other_shard(l, files, ref)},
+                                    .of_other_shard = is_of_other_shard(index, files, ref)},
             why));
     }
     return STATUS_OK;
@@ -129,64 +129,64 @@ status progress_index_read(const study *s, const char *results, const progress_i
     *out = NULL;
     row_files *files;
     TRY(row_files_read(s, results, ROWS, &files, why));
-    progress_index *l = calloc(1, sizeof *l);
-    if (l) {
-        l->s = s;
-        l->cells = calloc(l->cell_count = study_cell_count(s), sizeof *l->cells);
-        l->other_cells = files->other_cells;
-        l->fault_count = files->fault_count;
-        row_files_judge(files, &l->fault);
-        snprintf(l->environment, sizeof l->environment, "%s", filter->environment);
-        l->shard = filter->shard;
-        l->shards = filter->shards;
+    progress_index *index = calloc(1, sizeof *index);
+    if (index) {
+        index->s = s;
+        index->cells = calloc(index->cell_count = study_cell_count(s), sizeof *index->cells);
+        index->other_cells = files->other_cells;
+        index->fault_count = files->fault_count;
+        row_files_judge(files, &index->fault);
+        snprintf(index->environment, sizeof index->environment, "%s", filter->environment);
+        index->shard = filter->shard;
+        index->shards = filter->shards;
     }
-    const status code = l && l->cells ? add_rows(l, files, why) : out_of_memory(why);
+    const status code = index && index->cells ? add_rows(index, files, why) : out_of_memory(why);
     row_files_destroy(files);
     if (code != STATUS_OK) {
-        progress_index_destroy(l);
+        progress_index_destroy(index);
         return code;
     }
-    *out = l;
+    *out = index;
     return STATUS_OK;
 }
 
-void progress_index_destroy(progress_index *l)
+void progress_index_destroy(progress_index *index)
 {
-    if (!l)
+    if (!index)
         return;
-    for (size_t i = 0; l->cells && i < l->cell_count; i++) {
-        free(l->cells[i].wall_s);
-        free(l->cells[i].film);
+    for (size_t i = 0; index->cells && i < index->cell_count; i++) {
+        free(index->cells[i].wall_s);
+        free(index->cells[i].film);
     }
-    free(l->cells);
-    free(l);
+    free(index->cells);
+    free(index);
 }
 
-/* The part of the shard: repetitions shard, shard + shards, ... */
-static long part_of(const progress_index *l, long repetitions)
+/* How many of the repetitions the shard measures: those with the numbers shard, shard + shards, ... */
+static long part_of(const progress_index *index, long repetitions)
 {
-    return l->shards > 1 ? (repetitions - l->shard + l->shards - 1) / l->shards : repetitions;
+    return index->shards > 1 ? (repetitions - index->shard + index->shards - 1) / index->shards : repetitions;
 }
 
-long progress_index_least(const progress_index *l)
+long progress_index_least(const progress_index *index)
 {
-    return part_of(l, l->s->repetitions_min);
+    return part_of(index, index->s->repetitions_min);
 }
 
-long progress_index_most(const progress_index *l)
+long progress_index_most(const progress_index *index)
 {
-    return part_of(l, l->s->repetitions_max);
+    return part_of(index, index->s->repetitions_max);
 }
 
-bool progress_index_cell_done(const progress_index *l, size_t cell)
+bool progress_index_cell_done(const progress_index *index, size_t cell)
 {
-    const study *s = l->s;
-    const progress_index_cell *at = &l->cells[cell];
-    if (at->counted >= (size_t)progress_index_most(l))
+    const study *s = index->s;
+    const progress_index_cell *at = &index->cells[cell];
+    if (at->counted >= (size_t)progress_index_most(index))
         return true;
     if (s->undisturbed > 0)
-        return at->undisturbed >= (size_t)progress_index_least(l);
-    if (at->counted < (size_t)progress_index_least(l) || s->relative_width <= 0)
+        return at->undisturbed >= (size_t)progress_index_least(index);
+    if (at->counted < (size_t)progress_index_least(index) || s->relative_width <= 0)
         return false;
     summary walls = summarize(at->wall_s, at->counted); /* safe to sort in place */
     double width = summary_relative_width(&walls);
@@ -195,25 +195,25 @@ bool progress_index_cell_done(const progress_index *l, size_t cell)
 
 status study_status(const study *s, const char *results, study_progress *out, diagnostic *why)
 {
-    progress_index *l;
-    run_environment here;
+    progress_index *index;
+    run_environment present;
     isa level;
     TRY(isa_choose(&level, why));
-    TRY(environment_read("", level, &here, why));
-    TRY(progress_index_read(s, results, &(progress_index_filter){.environment = here.key}, &l, why));
-    *out = (study_progress){.cells = l->cell_count,
-                            .rows = l->rows - l->elsewhere,
-                            .warmups = l->warmups,
-                            .rows_marked = l->marked,
-                            .rows_disturbed = l->disturbed,
-                            .rows_elsewhere = l->elsewhere,
-                            .rows_other_cells = l->other_cells,
-                            .faults = l->fault_count,
-                            .fault = l->fault};
-    snprintf(out->environment, sizeof out->environment, "%s", here.key);
-    for (size_t cell = 0; cell < l->cell_count; cell++)
-        out->cells_done += progress_index_cell_done(l, cell);
-    progress_index_destroy(l);
+    TRY(environment_read("", level, &present, why));
+    TRY(progress_index_read(s, results, &(progress_index_filter){.environment = present.key}, &index, why));
+    *out = (study_progress){.cells = index->cell_count,
+                            .rows = index->rows - index->elsewhere,
+                            .warmups = index->warmups,
+                            .rows_marked = index->marked,
+                            .rows_disturbed = index->disturbed,
+                            .rows_elsewhere = index->elsewhere,
+                            .rows_other_cells = index->other_cells,
+                            .faults = index->fault_count,
+                            .fault = index->fault};
+    snprintf(out->environment, sizeof out->environment, "%s", present.key);
+    for (size_t cell = 0; cell < index->cell_count; cell++)
+        out->cells_done += progress_index_cell_done(index, cell);
+    progress_index_destroy(index);
     return STATUS_OK;
 }
 
@@ -221,7 +221,7 @@ status study_status(const study *s, const char *results, study_progress *out, di
 
 static const double refresh_s = 0.1;
 
-struct progress_line {
+struct progress_display {
     const study *s;
     const study_options *options;
     study_moment now; /* left_s: at the last call of progress_count */
@@ -229,15 +229,15 @@ struct progress_line {
     double shown_s; /* 0: show the next update immediately */
 };
 
-progress_line *progress_begin(const study *s, const study_options *options)
+progress_display *progress_begin(const study *s, const study_options *options)
 {
-    progress_line *line = calloc(1, sizeof *line);
+    progress_display *line = calloc(1, sizeof *line);
     if (line)
-        *line = (progress_line){.s = s, .options = options, .now.left_s = NAN};
+        *line = (progress_display){.s = s, .options = options, .now.left_s = NAN};
     return line;
 }
 
-static bool is_watched(const progress_line *line)
+static bool is_watched(const progress_display *line)
 {
     return line->options->progress || line->options->progressed;
 }
@@ -250,7 +250,7 @@ static double sum(const double *values, size_t count)
     return total;
 }
 
-static void count_frames(progress_line *line, const progress_index *done, const size_t *cells, size_t cell_count)
+static void count_frames(progress_display *line, const progress_index *done, const size_t *cells, size_t cell_count)
 {
     study_moment *now = &line->now;
     double known_s = 0;
@@ -273,7 +273,7 @@ static void count_frames(progress_line *line, const progress_index *done, const 
 }
 
 /* On a narrow terminal the name of the study is cut first, then the end of the line. */
-static void write_line(const progress_line *line, const char *more)
+static void write_line(const progress_display *line, const char *more)
 {
     const study_moment *now = &line->now;
     char text[160];
@@ -295,7 +295,7 @@ static void write_line(const progress_line *line, const char *more)
     fprintf(line->options->progress, "\r%.*s%.*s", name, line->s->name, room, text);
 }
 
-static void show(progress_line *line, study_phase stage, double share_done, const char *more)
+static void show(progress_display *line, study_phase stage, double fraction_done, const char *more)
 {
     const double now_s = clock_wall_s();
     if (!is_watched(line) || (line->shown_s > 0 && now_s - line->shown_s < refresh_s))
@@ -303,7 +303,7 @@ static void show(progress_line *line, study_phase stage, double share_done, cons
     line->shown = true;
     line->shown_s = now_s;
     line->now.stage = stage;
-    line->now.share = share_done;
+    line->now.share = fraction_done;
     if (line->options->progress) {
         write_line(line, more);
         fputs("\033[K", line->options->progress);
@@ -313,7 +313,7 @@ static void show(progress_line *line, study_phase stage, double share_done, cons
         line->options->progressed(line->options->context, &line->now);
 }
 
-void progress_count(progress_line *line, size_t cell, const progress_index *done, const size_t *cells,
+void progress_count(progress_display *line, size_t cell, const progress_index *done, const size_t *cells,
                     size_t cell_count)
 {
     line->now.cell = cell;
@@ -323,7 +323,7 @@ void progress_count(progress_line *line, size_t cell, const progress_index *done
     progress_show(line, 0); /* frames shorter than a tenth of a second do not report their progress */
 }
 
-void progress_measured(progress_line *line, const progress_index *done, const size_t *cells, size_t cell_count)
+void progress_measured(progress_display *line, const progress_index *done, const size_t *cells, size_t cell_count)
 {
     if (!is_watched(line))
         return;
@@ -332,7 +332,7 @@ void progress_measured(progress_line *line, const progress_index *done, const si
     progress_show(line, 0);
 }
 
-void progress_images(progress_line *line, size_t cell, size_t img, size_t images)
+void progress_images(progress_display *line, size_t cell, size_t img, size_t images)
 {
     line->now.cell = cell;
     line->now.img = img;
@@ -342,19 +342,19 @@ void progress_images(progress_line *line, size_t cell, size_t img, size_t images
     progress_show(line, 0);
 }
 
-void progress_show(progress_line *line, double share_done)
+void progress_show(progress_display *line, double fraction_done)
 {
-    show(line, line->now.images ? STUDY_IMAGES : STUDY_MEASURING, share_done, "");
+    show(line, line->now.images ? STUDY_IMAGES : STUDY_MEASURING, fraction_done, "");
 }
 
-void progress_moving(progress_line *line, double share_done)
+void progress_moving(progress_display *line, double fraction_done)
 {
     char text[32];
-    snprintf(text, sizeof text, ", moving: %d%%", (int)(100 * share_done));
-    show(line, STUDY_MOVING, share_done, text);
+    snprintf(text, sizeof text, ", moving: %d%%", (int)(100 * fraction_done));
+    show(line, STUDY_MOVING, fraction_done, text);
 }
 
-void progress_erase_line(const progress_line *line)
+void progress_erase_line(const progress_display *line)
 {
     if (line && line->options->progress && line->shown) {
         fputs("\r\033[K", line->options->progress);
@@ -362,7 +362,7 @@ void progress_erase_line(const progress_line *line)
     }
 }
 
-void progress_end(progress_line *line)
+void progress_end(progress_display *line)
 {
     progress_erase_line(line);
     free(line);

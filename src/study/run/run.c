@@ -26,10 +26,10 @@ static status append_row(run *r, const study_row *row, diagnostic *why)
                                         .repetition = row->repetition,
                                         .warmup = row->warmup,
                                         .disturbed = row->disturbed,
-                                        .film_hash = row->made->film_hash,
+                                        .film_hash = row->account->film_hash,
                                         .build = r->build,
-                                        .wall_s = row->made->result->wall_s,
-                                        .environment = r->here.key};
+                                        .wall_s = row->account->result->wall_s,
+                                        .environment = r->environment.key};
     return progress_index_add(r->done, &entry, why);
 }
 
@@ -44,30 +44,30 @@ static status check_units(const run *r, diagnostic *why)
                     "the processing units of the program changed during the run, from %s to %s", r->units, now);
 }
 
-/* One frame and its row. */
+/* Measures a frame, and writes its row. */
 static status measure(run *r, size_t cell, bool warmup, diagnostic *why)
 {
     scene *setting = NULL;
-    job_account made = {.result = NULL};
+    job_account account = {.result = NULL};
     status code = study_cell_scene(r->s, cell, &setting, why);
     THEN(code, run_load(r, setting, why));
     THEN(code, run_noise_wait(r, why));
-    THEN(code, run_render(r, setting, &(render_options){.usage = r->s->keep_workers}, &made, why));
+    THEN(code, run_render(r, setting, &(render_options){.usage = r->s->keep_workers}, &account, why));
     THEN(code, check_units(r, why));
     if (code == STATUS_OK) {
-        const study_row row = {.of = r->s,
+        const study_row row = {.s = r->s,
                                .cell = cell,
                                .repetition = r->done->cells[cell].next_repetition,
                                .warmup = warmup,
                                .order = r->row_number,
-                               .film_expected = progress_index_film(r->done, cell, r->build, made.film_hash),
-                               .disturbed = run_noise_judge(r, &made.noise),
+                               .film_expected = progress_index_film(r->done, cell, r->build, account.film_hash),
+                               .disturbed = run_noise_judge(r, &account.noise),
                                .run = r->id,
                                .process = r->process,
-                               .made = &made};
+                               .account = &account};
         code = append_row(r, &row, why);
     }
-    job_account_release(&made);
+    job_account_release(&account);
     scene_destroy(setting);
     return code;
 }
@@ -80,7 +80,7 @@ static status measure_warm(run *r, size_t cell, diagnostic *why)
     return measure(r, cell, false, why);
 }
 
-/* The repetitions of a cell that exist when this process is done. */
+/* How many repetitions of a cell exist when this process has finished. */
 static long rounds_of(const run *r)
 {
     const long least = progress_index_least(r->done), most = progress_index_most(r->done);
@@ -142,10 +142,10 @@ status study_run(const study *s, const study_options *options, size_t *ran, diag
     cancel_shield(&shield);
     bool has_memory = r.folder && r.cells && r.warm && r.order && r.compared && r.line;
     status code = has_memory ? job_create(&(job_settings){.measured = true, .fresh_peak = true, .keeps_meshes = true},
-                                          &r.with, why)
+                                          &r.frame_job, why)
                              : out_of_memory(why);
     if (code == STATUS_OK) {
-        code = environment_read("", job_isa(r.with), &r.here, why);
+        code = environment_read("", job_isa(r.frame_job), &r.environment, why);
         environment_read_units(r.units, sizeof r.units);
         r.build = progress_index_build();
     }

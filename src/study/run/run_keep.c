@@ -60,21 +60,21 @@ static status render_reference(run *r, const scene *setting, reference *out, dia
     return code;
 }
 
-/* Loads the cell's reference into r->held: the current one, one from disk, or a new frame. */
-static status hold_reference(run *r, size_t cell, diagnostic *why)
+/* Sets r->last_reference to the cell's reference: the current one, one from disk, or a new frame. */
+static status provide_reference(run *r, size_t cell, diagnostic *why)
 {
     scene *setting = NULL;
     uint64_t hash = 0;
     status code = reference_scene(r->s, cell, &setting, why);
     THEN(code, run_load(r, setting, why));
     THEN(code, reference_scene_hash(setting, &hash));
-    if (code == STATUS_OK && (!r->held.img || r->held.scene_hash != hash)) {
-        reference_release(&r->held);
-        code = reference_load(r->folder, scene_root(r->s->base), hash, &r->held, why);
-        if (code == STATUS_OK && !r->held.img)
-            code = render_reference(r, setting, &r->held, why);
+    if (code == STATUS_OK && (!r->last_reference.img || r->last_reference.scene_hash != hash)) {
+        reference_release(&r->last_reference);
+        code = reference_load(r->folder, scene_root(r->s->base), hash, &r->last_reference, why);
+        if (code == STATUS_OK && !r->last_reference.img)
+            code = render_reference(r, setting, &r->last_reference, why);
         if (code != STATUS_OK)
-            reference_release(&r->held);
+            reference_release(&r->last_reference);
     }
     scene_destroy(setting);
     return code;
@@ -83,8 +83,12 @@ static status hold_reference(run *r, size_t cell, diagnostic *why)
 static status compare_cell(run *r, size_t cell, const scene *setting, const render_result *frame, diagnostic *why)
 {
     csv_line line = {0};
-    compare_row row = {
-        .of = r->s, .cell = cell, .setting = setting, .against = &r->held, .run = r->id, .process = r->process};
+    compare_row row = {.s = r->s,
+                       .cell = cell,
+                       .setting = setting,
+                       .cell_reference = &r->last_reference,
+                       .run = r->id,
+                       .process = r->process};
     TRY(compare_row_measure(&row, frame, why));
     compare_row_write(&line, &row);
     status code = run_append(&r->compares, &line, why);
@@ -98,7 +102,7 @@ static status keep_cell(run *r, size_t cell, diagnostic *why)
     job_account frame = {.result = NULL};
     const render_options wanted = keep_options(r->s);
     bool keeps = keep_missing(r->s, r->folder, cell), compares = lacks_comparison(r, cell);
-    status code = compares ? hold_reference(r, cell, why) : STATUS_OK;
+    status code = compares ? provide_reference(r, cell, why) : STATUS_OK;
     THEN(code, study_cell_scene(r->s, cell, &setting, why));
     THEN(code, run_load(r, setting, why));
     THEN(code, run_render(r, setting, keeps ? &wanted : NULL, &frame, why));

@@ -1,5 +1,5 @@
-/* What disturbs a running study: the judgement of its rows by the study's rule, news for the user, and waiting for a
- * quiet machine. The measured times are never looked at. */
+/* Judges the noise of a running study: rows by the study's rule, with news for the user, and the machine while it waits
+ * for quiet. Measured times play no role. */
 #include "base/cancel.h"
 #include "measure/clock.h"
 #include "study/run/run_state.h"
@@ -10,7 +10,7 @@
 /* The least time between news of one kind. */
 static const double NEWS_APART_S = 60;
 
-/* The rule for news: that of the study, with defaults for limits that it lacks. */
+/* The rule for news: the study's rule, with defaults for bounds that it lacks. */
 static noise_rule rule_of_news(const noise_rule *rule)
 {
     return (noise_rule){.others_fraction = isnan(rule->others_fraction) ? 0.05 : rule->others_fraction,
@@ -56,13 +56,13 @@ static void report_news(run *r, const char *text)
 
 noise_verdict run_noise_judge(run *r, const machine_noise *noise)
 {
-    bool broken[NOISE_KINDS];
+    bool exceeded[NOISE_KINDS];
     const noise_rule news = rule_of_news(&r->s->disturbed);
     const double now_s = clock_wall_s();
-    (void)noise_judge(&news, noise, broken);
+    (void)noise_judge(&news, noise, exceeded);
     for (noise_kind kind = 0; kind < NOISE_KINDS; kind++) {
         char text[200];
-        if (!broken[kind] || now_s < r->next_news_s[kind])
+        if (!exceeded[kind] || now_s < r->next_news_s[kind])
             continue;
         r->next_news_s[kind] = now_s + NEWS_APART_S;
         describe(kind, noise, text, sizeof text);
@@ -76,18 +76,18 @@ status run_noise_wait(run *r, diagnostic *why)
     const double most_s = r->options->wait_quiet_s, began_s = clock_wall_s();
     const noise_rule rule = rule_of_news(&r->s->disturbed);
     while (most_s > 0) {
-        const machine_noise noise = job_noise(r->with);
+        const machine_noise noise = job_noise(r->frame_job);
         if (noise_judge(&rule, &noise, NULL) != NOISE_DISTURBED)
             return STATUS_OK;
         if (clock_wall_s() - began_s >= most_s) {
             char text[120];
-            snprintf(text, sizeof text, "the machine is not quiet after %g s; measuring all the same", most_s);
-            if (!r->said_waiting)
+            snprintf(text, sizeof text, "the machine is not quiet after %g s; measuring anyway", most_s);
+            if (!r->reported_waiting)
                 report_news(r, text);
-            r->said_waiting = true;
+            r->reported_waiting = true;
             return STATUS_OK;
         }
-        if (cancel_hurries()) /* the run has a shield */
+        if (cancel_hurries()) /* the run is shielded, so that it does not see the cancellation itself */
             return diagnose(why, STATUS_INTERRUPTED, "run the command again to resume",
                             "interrupted; all completed rows are kept");
         nanosleep(&(struct timespec){.tv_nsec = 100000000}, NULL);

@@ -1,4 +1,4 @@
-/* A running study: its files, what exists already, the room that it needs, loading and rendering. */
+/* A running study: its files, what exists already, the disk space that it needs, loading and rendering. */
 #include "base/cancel.h"
 #include "base/file.h"
 #include "base/thread_team.h"
@@ -32,7 +32,7 @@ status run_read_rows(run *r, diagnostic *why)
 {
     progress_index_destroy(r->done);
     r->done = NULL;
-    const progress_index_filter filter = {.environment = r->options->any_environment ? "" : r->here.key,
+    const progress_index_filter filter = {.environment = r->options->any_environment ? "" : r->environment.key,
                                           .shard = r->options->by_repetition ? r->options->shard : 0,
                                           .shards = r->options->by_repetition ? r->options->shards : 1};
     return progress_index_read(r->s, r->options->results, &filter, &r->done, why);
@@ -52,7 +52,8 @@ status run_find_compared(run *r, diagnostic *why)
 
 /* --- files of rows --- */
 
-/* Worker rows are written before their row; worker rows at the end without a row are from a killed process. */
+/* Worker rows are written before the row of their frame; those at the end without such a row are from a killed
+ * process. */
 static status set_orphans_aside(run *r, const csv *rows, const char *path, diagnostic *why)
 {
     csv *workers = NULL;
@@ -115,18 +116,18 @@ static status open_tables(run *r, diagnostic *why)
     return code;
 }
 
-/* The id comes first: the tables' chains begin with it. */
+/* The id comes first, because the chains of checksums begin with it. */
 status run_prepare(run *r, diagnostic *why)
 {
     const topology *machine = NULL;
     TRY(quick_check_runs(r->s, r->folder, why));
     TRY(file_make_directory(r->folder, why));
-    TRY(job_machine(r->with, &machine, why));
-    runs_make_id(&r->here, r->id);
+    TRY(job_machine(r->frame_job, &machine, why));
+    runs_make_id(&r->environment, r->id);
     TRY(open_tables(r, why));
     TRY(run_read_rows(r, why));
     TRY(run_find_compared(r, why));
-    return runs_begin(r->s, r->folder, machine, &r->here, r->options->shard, r->options->shards, r->id, why);
+    return runs_begin(r->s, r->folder, machine, &r->environment, r->options->shard, r->options->shards, r->id, why);
 }
 
 status run_append(row_table *to, csv_line *lines, diagnostic *why)
@@ -167,8 +168,8 @@ static void close_table(row_table *t)
 void run_release(run *r)
 {
     progress_end(r->line);
-    job_destroy(r->with);
-    reference_release(&r->held);
+    job_destroy(r->frame_job);
+    reference_release(&r->last_reference);
     close_table(&r->compares);
     close_table(&r->workers);
     close_table(&r->rows);
@@ -182,24 +183,24 @@ void run_release(run *r)
 
 /* --- frames --- */
 
-static void show_motion(void *of, double share_done)
+static void show_motion(void *context, double fraction_done)
 {
-    progress_moving(((run *)of)->line, share_done);
+    progress_moving(((run *)context)->line, fraction_done);
 }
 
-static void show_frame(void *of, double share_done)
+static void show_frame(void *context, double fraction_done)
 {
-    progress_show(((run *)of)->line, share_done);
+    progress_show(((run *)context)->line, fraction_done);
 }
 
-/* Asked by a token: whether the work outside the shield of the run is cancelled. */
+/* Whether the work outside the run's shield is cancelled; a cancel token calls it. */
 static bool is_outside_cancelled(void *unused)
 {
     (void)unused;
     return cancel_hurries();
 }
 
-static status say_interrupted(status code, diagnostic *why)
+static status diagnose_interruption(status code, diagnostic *why)
 {
     return code != STATUS_INTERRUPTED
                ? code
@@ -210,9 +211,9 @@ status run_load(run *r, scene *setting, diagnostic *why)
 {
     cancel_token token = {.ask = is_outside_cancelled};
     cancel_begin(&token);
-    const status code = job_load(r->with, setting, &(load_watch){show_motion, r}, why);
+    const status code = job_load(r->frame_job, setting, &(load_watch){show_motion, r}, why);
     cancel_end(&token);
-    return say_interrupted(code, why);
+    return diagnose_interruption(code, why);
 }
 
 status run_render(run *r, const scene *setting, const render_options *wanted, job_account *out, diagnostic *why)
@@ -222,14 +223,14 @@ status run_render(run *r, const scene *setting, const render_options *wanted, jo
     options.context = r;
     cancel_token token = {.ask = is_outside_cancelled};
     cancel_begin(&token);
-    const status code = job_render(r->with, setting, &options, out, why);
+    const status code = job_render(r->frame_job, setting, &options, out, why);
     cancel_end(&token);
-    return say_interrupted(code, why);
+    return diagnose_interruption(code, why);
 }
 
-/* --- room --- */
+/* --- disk space --- */
 
-/* Bytes of a value with its comma; of a run in runs.json, which is rewritten next to the old one. */
+/* Bytes of a value with its comma, and of a run in runs.json, whose new file exists next to the old one. */
 enum { VALUE_LEAST = 2, VALUE_MOST = 18, RUN_LEAST = 4000, RUNS_MOST = 100000 };
 
 /* The number of columns of a table. */
@@ -249,11 +250,11 @@ static void add_rows(disk_room *to, double columns, double least, double most)
     to->most_bytes += most * columns * VALUE_MOST;
 }
 
-typedef struct widths {
+typedef struct column_counts {
     double rows, workers, compares;
-} widths;
+} column_counts;
 
-static status add_cell(const run *r, size_t cell, const widths *columns, disk_room *out, diagnostic *why)
+static status add_cell(const run *r, size_t cell, const column_counts *columns, disk_room *out, diagnostic *why)
 {
     const progress_index_cell *at = &r->done->cells[cell];
     const size_t least = (size_t)progress_index_least(r->done), most = (size_t)progress_index_most(r->done);
@@ -283,7 +284,7 @@ static status add_cell(const run *r, size_t cell, const widths *columns, disk_ro
 
 status run_room(const run *r, disk_room *out, diagnostic *why)
 {
-    widths columns;
+    column_counts columns;
     *out = (disk_room){.least_bytes = RUN_LEAST, .most_bytes = RUNS_MOST};
     TRY(count_columns(r->s, ROWS, &columns.rows, why));
     TRY(count_columns(r->s, WORKER_ROWS, &columns.workers, why));

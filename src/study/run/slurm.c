@@ -1,4 +1,4 @@
-/* An array job of Slurm: what its parts need, and its script. */
+/* Plans a study as an array job of Slurm: what its parts need, and its script. */
 #include "base/build_id.h"
 #include "base/text.h"
 #include "scene/model/scene.h"
@@ -73,10 +73,10 @@ status slurm_needs_of(const study *s, slurm_needs *out, diagnostic *why)
     return STATUS_OK;
 }
 
-static bool is_of(const row_environment_count *e, const char *machine)
+static bool was_measured_on(const row_environment_count *e, const char *machine)
 {
-    return e->run && strcmp(e->run->here.fact[0], machine) == 0 &&
-           strcmp(e->run->here.fact[ENVIRONMENT_FACTS - 1], build_id()) == 0;
+    return e->run && strcmp(e->run->environment.fact[0], machine) == 0 &&
+           strcmp(e->run->environment.fact[ENVIRONMENT_FACTS - 1], build_id()) == 0;
 }
 
 status slurm_environment(const study *s, const char *results, const char *node_type, char key[ENVIRONMENT_KEY],
@@ -93,13 +93,13 @@ status slurm_environment(const study *s, const char *results, const char *node_t
     TRY(row_files_read(s, results, ROWS, &files, why));
     const status code = row_environments_find(files, &all, &count, why);
     for (size_t i = 0; i < count; i++)
-        if (!is_of(&all[i], machine))
+        if (!was_measured_on(&all[i], machine))
             *others += all[i].rows;
         else if (!most || all[i].rows > most->rows)
             most = &all[i];
     for (size_t i = 0; most && i < count && !unlike[0]; i++)
-        if (&all[i] != most && is_of(&all[i], machine))
-            environment_difference(&all[i].run->here, &most->run->here, unlike, size);
+        if (&all[i] != most && was_measured_on(&all[i], machine))
+            environment_difference(&all[i].run->environment, &most->run->environment, unlike, size);
     if (most)
         memcpy(key, most->key, ENVIRONMENT_KEY);
     free(all);
@@ -109,7 +109,7 @@ status slurm_environment(const study *s, const char *results, const char *node_t
 
 /* --- the script --- */
 
-/* Embedded by the assembler. */
+/* The template, embedded by the assembler. */
 __asm__(".pushsection .rodata\n.globl slurm_template\n.hidden slurm_template\nslurm_template: "
         ".incbin \"experiments/cluster/study.slurm\"\n.byte 0\n.popsection");
 

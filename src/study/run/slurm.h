@@ -1,5 +1,5 @@
 /* A study as an array job of Slurm: what `cuvette study submit --slurm` requests, and its script. Pure, except for the
- * functions that read rows. Ownership: texts are allocated, for free; other values are borrowed. */
+ * functions that read rows. Ownership: the caller frees texts; other values are borrowed. */
 #pragma once
 
 #include "study/rows/environment.h"
@@ -8,23 +8,23 @@
 /* The script's template, experiments/cluster/study.slurm. */
 extern const char slurm_template[];
 
-/* A word of the template, between @ signs there. A line with a word whose value is NULL is left out. */
+/* A word of the template, where it is between @ signs. A line with a word whose value is NULL is left out. */
 typedef struct slurm_word {
     const char *name, *value;
 } slurm_word;
 
-/* Replaces each word by its value, quoted for the shell where necessary (sbatch reads the quotes of its lines alike).
- * STATUS_BAD_INPUT for an unknown word, located in the file. */
+/* Replaces each word by its value, quoted for the shell where necessary (sbatch interprets quotes in its lines like the
+ * shell). STATUS_BAD_INPUT for an unknown word, located in the file. */
 status slurm_fill(const char *file, const char *text, const slurm_word *words, size_t count, char **out,
                   diagnostic *why);
 
-/* The parts that lack something, as the option --array takes them ("0-3,7"); "" if none does. NULL without memory. */
+/* The parts that lack something, in the format of --array ("0-3,7"); "" if none does, NULL when out of memory. */
 char *slurm_array(const study_estimate *parts, size_t count);
 
-/* The longest part, s; NaN if it is unknown, or longer than known. */
+/* The time of the longest part, s; NaN if it is unknown, or only a lower bound is known. */
 double slurm_longest_s(const study_estimate *parts, size_t count);
 
-/* The time limit of a part, in whole minutes: factor times the longest, and at least SLURM_LEAST_MIN. */
+/* The time limit of a part, in whole minutes: factor times the longest part, and at least SLURM_LEAST_MIN. */
 enum { SLURM_LEAST_MIN = 10, SLURM_TIME = 32 };
 void slurm_time_limit(double longest_s, double factor, char text[SLURM_TIME]);
 

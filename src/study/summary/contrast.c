@@ -1,4 +1,4 @@
-/* Ratios and verdicts of a comparison. */
+/* Computes the ratios and verdicts of a comparison, and writes them as JSON. */
 #include "base/json_build.h"
 #include "measure/statistics.h"
 #include "study/plan/grid.h"
@@ -31,9 +31,9 @@ static size_t lesser(size_t a, size_t b)
     return a < b ? a : b;
 }
 
-static level_interval exponential(level_interval of)
+static level_interval exponential(level_interval x)
 {
-    return (level_interval){exp(of.value), exp(of.low), exp(of.high)};
+    return (level_interval){exp(x.value), exp(x.low), exp(x.high)};
 }
 
 /* Standard deviation of the centres of the processes, or of the differences of pairs. */
@@ -54,13 +54,13 @@ static double deviation_of(const level_sample *a, const level_sample *b)
     return a->processes > 1 ? sqrt(fmax(0.0, (squares - sum * sum / n) / (n - 1))) : NAN;
 }
 
-/* detect: 0 for the default. */
+/* The number of pairs that finds a relative difference `detect`; 0: the default difference. */
 static size_t pairs_for(double deviation, size_t processes, double detect)
 {
     return power_pairs(power_upper_deviation(deviation, processes, UPPER), log1p(detect > 0 ? detect : DETECT), POWER);
 }
 
-/* values, processes: the fewest of a side. */
+/* Sets verdict and reason; values, processes: of the side with fewer. */
 static void decide(contrast_line *line, size_t values, size_t processes)
 {
     line->verdict = CONTRAST_CANNOT_TELL;
@@ -76,7 +76,7 @@ static void decide(contrast_line *line, size_t values, size_t processes)
     }
 }
 
-/* The line of two samples; seed: of its bootstrap. */
+/* Compares two samples; seed: of the bootstrap. */
 static status judge(const contrast_rows *ra, const contrast_sample *a, const contrast_rows *rb,
                     const contrast_sample *b, const contrast_options *options, uint64_t seed, contrast_line *line,
                     diagnostic *why)
@@ -189,8 +189,8 @@ static status make_lines(const study *s, const study_side *a, const study_side *
     return code;
 }
 
-/* The comparison keeps the files, into which it points. */
-static void keep(contrast *c, contrast_rows rows[2], diagnostic *verdict)
+/* Moves the row files into the comparison, which points into them. */
+static void keep_files(contrast *c, contrast_rows rows[2], diagnostic *verdict)
 {
     for (int i = 0; i < 2; i++) {
         memcpy(c->environment[i], rows[i].environment, sizeof c->environment[i]);
@@ -212,7 +212,7 @@ status contrast_make(const study *s, const study_side *a, const study_side *b, c
     THEN(code, contrast_rows_read(s, b, column, &rows[1], why));
     THEN(code, make_lines(s, a, b, options, rows, c, why));
     if (code == STATUS_OK)
-        keep(c, rows, verdict);
+        keep_files(c, rows, verdict);
     contrast_rows_release(&rows[0]);
     contrast_rows_release(&rows[1]);
     if (code != STATUS_OK) {

@@ -1,4 +1,4 @@
-/* The ratio over all cells of a comparison: centres by cell and process, strata, and resamples. */
+/* Computes the ratio over all cells of a comparison: centres by cell and process, strata of processes, resamples. */
 #include "study/summary/contrast_parts.h"
 #include <math.h>
 #include <stdlib.h>
@@ -11,9 +11,9 @@ typedef struct side {
     const contrast_rows *rows;
     size_t lines, processes, strata;
     size_t *process; /* index in rows->processes */
-    size_t *stratum; /* stratum[k]: its first process; of strata + 1 */
+    size_t *stratum; /* stratum[k]: the first process of stratum k; strata + 1 elements */
     bool *left_out;  /* by index in rows->processes */
-    double *centre;  /* [process * lines + line]: the median of its logarithms; NaN: it has no row of the cell */
+    double *centre;  /* [process * lines + line]: median logarithm of the process; NaN: no row of the cell */
 } side;
 
 static void side_free(side *s)
@@ -76,7 +76,7 @@ static bool has_a_cell(const side *s, size_t process)
     return false;
 }
 
-/* Insertion keeps the order of starts; there are few processes. */
+/* Insertion sort keeps the order of starts, and is fast enough for few processes. */
 static void sort_by_cells(side *s)
 {
     s->processes = s->strata = 0;
@@ -234,7 +234,7 @@ static status estimate(const side *a, const side *b, contrast_all *out, diagnost
     return code;
 }
 
-/* Standard deviation of the means of processes over the cells; of those of b less those of a, if it is given. */
+/* The standard deviation of each process's mean over the cells, or, if b is given, of the differences of pairs. */
 static double deviation_of(const side *a, const side *b)
 {
     double sum = 0, squares = 0;

@@ -1,11 +1,11 @@
 /* The parts of a comparison, private to study/summary/contrast*.c: the rows of each side by cell and process, and the
- * line over all cells. Ownership: contrast_rows_read gives, contrast_rows_release releases; samples belong to the
- * caller (contrast_sample_free) and point to processes of the rows. */
+ * line over all cells. Ownership: contrast_rows_release releases rows; contrast_sample_free releases samples, which
+ * refer to processes of the rows. */
 #pragma once
 
 #include "study/summary/contrast.h"
 
-/* A process of the program: a run. first, last: the times of its rows, as text that sorts like them. */
+/* A process of the program: a run. first, last: the times of its first and last row, as text that sorts by time. */
 typedef struct contrast_process {
     const char *id, *first, *last;
 } contrast_process;
@@ -23,12 +23,12 @@ typedef struct contrast_rows {
     char environment[ENVIRONMENT_KEY];
     size_t left_out;             /* rows of other environments */
     contrast_row *rows;          /* by cell, process, repetition */
-    size_t *first_of;            /* index of a cell's first row; of cells + 1 */
+    size_t *first_of;            /* index of each cell's first row; cells + 1 elements */
     contrast_process *processes; /* in the order of their starts */
     size_t process_count;
 } contrast_rows;
 
-/* Rows of the side with a positive value of the column, without warm-ups and marked ones. */
+/* Reads the side's rows with a positive value of the column, without warm-ups, marked and excluded rows. */
 status contrast_rows_read(const study *s, const study_side *side, const char *column, contrast_rows *out,
                           diagnostic *why);
 void contrast_rows_release(contrast_rows *r);
@@ -53,8 +53,8 @@ bool contrast_alternate(const contrast_rows *ra, const contrast_sample *a, const
  * with the same cells are a stratum, and resamples draw within each, so that every resample has every cell (Davison
  * and Hinkley, Bootstrap Methods and their Application, 1997, 3.2). */
 typedef struct contrast_all {
-    level_interval ratio; /* logarithm of b over a, mean over the cells; no interval if a stratum has 2 or less */
-    size_t values[2], processes[2]; /* of each side, over all its cells */
+    level_interval ratio; /* logarithm of b over a, mean over the cells; no interval if a stratum has fewer than 3 */
+    size_t values[2], processes[2]; /* their numbers on each side, over all cells */
     size_t fewest;                  /* processes in the smallest stratum of a side */
     size_t fewest_values;           /* of a cell, on the side with fewer */
     bool alternate;                 /* in each stratum; then the sides have the same strata, and are drawn together */

@@ -1,11 +1,11 @@
-/* Reading and sorting the rows of one side of a comparison. */
+/* Reads and sorts the rows of one side of a comparison. */
 #include "study/rows/excluded.h"
 #include "study/summary/contrast_parts.h"
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
 
-/* Rows of runs that are not in runs.json are of one process, as far as is known. */
+/* Rows of runs that are not in runs.json count as one process. */
 static const char unknown_run[] = "unknown";
 
 static bool is_wanted(const study_side *side, const contrast_rows *r, const row_ref *ref)
@@ -14,7 +14,7 @@ static bool is_wanted(const study_side *side, const contrast_rows *r, const row_
            (!side->run || strcmp(row_field(ref, "run"), side->run) == 0);
 }
 
-/* The run's index; a new one is added. Rows of one run are usually neighbours. */
+/* The index of the row's process, which is added if it is new. `last` is tried first: rows of a run are neighbours. */
 static size_t process_of(contrast_rows *r, const row_ref *ref, size_t last)
 {
     const char *id = ref->run >= 0 ? r->files->runs->entry[ref->run].id : unknown_run;

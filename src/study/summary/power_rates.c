@@ -1,4 +1,4 @@
-/* Measured columns by cell and process, and the rates of smaller studies drawn from them. */
+/* Reads measured columns by cell and process, and computes the rates of smaller studies drawn from them. */
 #include "base/number.h"
 #include "study/summary/power_rates.h"
 #include <math.h>
@@ -13,7 +13,7 @@ typedef struct value_row {
     double value;
 } value_row;
 
-/* Numbers by value. */
+/* Compares numbers by value, and other names as text. */
 static int by_name(const char *a, const char *b)
 {
     double x, y;
@@ -33,7 +33,8 @@ static int by_place(const void *a, const void *b)
     return x->line < y->line ? -1 : x->line > y->line;
 }
 
-/* The number of a process: the place of its first row among those of other processes. Rows of one are neighbours. */
+/* The number of a process, in the order of first rows. The search begins with the latest: rows of one are
+ * neighbours. */
 static size_t process_of(const char *id, const char **ids, size_t *count)
 {
     for (size_t i = *count; i-- > 0;)
@@ -91,7 +92,7 @@ static status find_columns(const char *path, const char *column, const csv *tabl
     for (int i = 0; i < 3; i++)
         if ((found[i] = csv_column(table, names[i])) < 0)
             return diagnose_at(why, path, STATUS_BAD_INPUT,
-                               "columns cell, run (or process) and the measured one are needed",
+                               "use a file with the columns cell, run (or process) and the measured one",
                                "there is no column '%.64s'", names[i]);
     return STATUS_OK;
 }
@@ -175,7 +176,7 @@ static status find(const value_table *t, const char *name, const value_cell **ou
 {
     *out = find_cell(t, name);
     return *out ? STATUS_OK
-                : diagnose(why, STATUS_BAD_INPUT, "give names in its column cell, such as 0,1",
+                : diagnose(why, STATUS_BAD_INPUT, "give names from the column cell, such as 0,1",
                            "the rows have no cell '%.64s'", name);
 }
 
@@ -202,13 +203,13 @@ static status try_pair(const pair *p, const power_options *o, power_rates *out, 
     level_interval ratio = {1, 1, 1};
     if (p->a != p->b)
         TRY(ratio_of(p, o->seed, &ratio, why));
-    const design_population of = {&p->a->sample, &p->b->sample, p->shared};
+    const design_population population = {&p->a->sample, &p->b->sample, p->shared};
     for (int order = 0; order < DESIGN_ORDERS; order++)
         for (size_t i = 0; i < o->design_count; i++) {
             power_rate rate = {.a = p->a->name, .b = p->b->name, .of = o->designs[i], .ratio = ratio};
             rate.of.order = (design_order)order;
             rate.truth = truth_of(o, &ratio);
-            TRY(design_try(&of, &rate.of, ~0u, o->draws, o->effect, o->seed, &rate.tally, why));
+            TRY(design_try(&population, &rate.of, ~0u, o->draws, o->effect, o->seed, &rate.tally, why));
             if (rate.tally.draws)
                 out->rates[out->count++] = rate;
         }

@@ -1,7 +1,7 @@
 /* How often smaller studies, drawn from measured rows, would have concluded something else: a rate for each pair of
- * cells, order, design and rule. Cells of one name do the same work, so that each claim of a difference is false; of
- * other pairs a claim is wrong if it has the other sign than the truth. Ownership: value_table_read and
- * power_rates_make give, value_table_release and power_rates_free release; samples and names are borrowed from the
+ * cells, order, design and rule. Cells with the same name do the same work, so every claim of a difference is wrong;
+ * for other pairs a claim is wrong if its sign is not that of the truth. Ownership: value_table_release and
+ * power_rates_free release what value_table_read and power_rates_make allocate; samples and names are borrowed from the
  * tables. */
 #pragma once
 
@@ -11,8 +11,8 @@
 #include "measure/statistics.h"
 
 /* One measured column of a CSV file by cell and process: of rows.csv, or of any table with a column `cell`, a column
- * `run` or `process`, and the measured one. So the rows of other programs can be judged too. Warm-ups, marked rows and
- * those without a positive value are left out. Rows are not checked: see `cuvette study verify`. */
+ * `run` or `process`, and the measured one. So the rows of other programs can be judged, too. Warm-ups, marked rows and
+ * rows without a positive value are left out. Rows are not verified: see `cuvette study verify`. */
 typedef struct value_cell {
     const char *name;
     double *values; /* logarithms */
@@ -35,7 +35,7 @@ void value_table_release(value_table *t);
 typedef enum power_truth { POWER_SAME, POWER_LARGER, POWER_SMALLER, POWER_OF_ALL_ROWS } power_truth;
 
 typedef struct power_options {
-    const char *a, *b; /* cells of the first and the last table; NULL: each cell, and the one of that name */
+    const char *a, *b; /* a cell of the first and of the other table; NULL: all pairs of cells with the same name */
     power_truth truth; /* of a and b; POWER_OF_ALL_ROWS: the sign of the ratio of all rows */
     const design *designs;
     size_t design_count, draws;
@@ -45,14 +45,14 @@ typedef struct power_options {
 
 typedef struct power_rate {
     const char *a, *b; /* NULL: the sum over all pairs */
-    design of;
+    design of;         /* the design of the smaller studies */
     design_tally tally;
     level_interval ratio; /* b over a, of all rows */
     int truth;            /* 1: b is larger; -1: smaller; 0: the same */
 } power_rate;
 
 typedef struct power_rates {
-    power_rate *rates; /* by pair, order and design; without those that the rows do not suffice for */
+    power_rate *rates; /* by pair, order and design, for which there are enough rows */
     size_t count;
 } power_rates;
 

@@ -1,3 +1,4 @@
+/* Writes all rows of a study as one CSV table, each with its environment and whether summaries leave it out. */
 #include "base/file.h"
 #include "base/text.h"
 #include "study/rows/excluded.h"
@@ -21,9 +22,10 @@ static status choose(const row_environment_count *all, size_t count, const char 
     char listed[256];
     list_environments(all, count, listed, sizeof listed);
     if (!wanted && count > 1)
-        return diagnose_at(why, folder, STATUS_BAD_INPUT,
-                           "choose one by its key or as main, or take all and group them by the column environment",
-                           "the rows are of %zu environments (%s), whose times must not be pooled", count, listed);
+        return diagnose_at(
+            why, folder, STATUS_BAD_INPUT,
+            "choose one by its key or as main, or choose all and group the rows by the column environment",
+            "the rows are of %zu environments (%s), whose times must not be pooled", count, listed);
     bool found = !wanted;
     for (size_t i = 0; i < count; i++)
         found |= wanted && strcmp(all[i].key, wanted) == 0;
@@ -34,7 +36,7 @@ static status choose(const row_environment_count *all, size_t count, const char 
                                wanted);
 }
 
-/* *key: "" for all. */
+/* Finds the environment whose rows are written; *key: "" for all. */
 static status find_environment(const row_files *files, const char *wanted, const char *folder,
                                char key[ENVIRONMENT_KEY], diagnostic *why)
 {
@@ -140,7 +142,7 @@ static status write_rows(const study *s, const char *results, const char *enviro
     return code;
 }
 
-/* A study of which only the name is known. */
+/* Writes the rows of a study of which only the name is known, from its folder. */
 static status write_folder(const char *folder, const char *environment, FILE *out, diagnostic *verdict, diagnostic *why)
 {
     size_t length = strlen(folder);

@@ -1,11 +1,11 @@
-/* Parsing a side of a comparison, and the cells that two sides compare. */
+/* Parses a side of a comparison, and finds the cells that two sides compare. */
 #include "base/number.h"
 #include "study/plan/grid.h"
 #include "study/summary/contrast.h"
 #include <stdlib.h>
 #include <string.h>
 
-/* Whether a number follows, which is an element of a vector: folders and settings do not begin as one. */
+/* Whether the item is a number, and so an element of a vector: folders and settings are not numbers. */
 static bool is_element(const char *text)
 {
     char number[64];
@@ -48,7 +48,7 @@ static void list_add(char *list, size_t size, const char *text)
 
 static status no_such_parameter(const study *s, const char *path, diagnostic *why)
 {
-    char list[400] = "the parameters are: ";
+    char list[400] = "choose from the parameters: ";
     for (size_t axis = 0; axis < s->axis_count; axis++)
         for (size_t i = 0; i < s->axes[axis].points[0].count; i++)
             list_add(list, sizeof list, s->axes[axis].points[0].paths[i]);
@@ -59,18 +59,18 @@ static status no_such_parameter(const study *s, const char *path, diagnostic *wh
 /* Linked parameters are one axis: the value must be that of one point. */
 static status set_value(const study *s, study_side *side, const char *path, const char *value, diagnostic *why)
 {
-    char list[400] = "its values are: ";
+    char list[400] = "choose from: ";
     for (size_t axis = 0; axis < s->axis_count; axis++) {
-        const study_axis *of = &s->axes[axis];
-        for (size_t i = 0; i < of->points[0].count; i++) {
-            if (strcmp(of->points[0].paths[i], path) != 0)
+        const study_axis *candidate = &s->axes[axis];
+        for (size_t i = 0; i < candidate->points[0].count; i++) {
+            if (strcmp(candidate->points[0].paths[i], path) != 0)
                 continue;
-            for (size_t point = 0; point < of->count; point++) {
-                if (grid_same_value(of->points[point].values[i], value)) {
+            for (size_t point = 0; point < candidate->count; point++) {
+                if (grid_same_value(candidate->points[point].values[i], value)) {
                     side->point[axis] = point;
                     return STATUS_OK;
                 }
-                list_add(list, sizeof list, of->points[point].values[i]);
+                list_add(list, sizeof list, candidate->points[point].values[i]);
             }
             return diagnose_at(why, s->path, STATUS_BAD_INPUT, list, "no cell has %.64s=%.64s", path, value);
         }

@@ -1,3 +1,4 @@
+/* Writes medians and intervals of columns of rows.csv, or of quotients of two columns, by cell and environment. */
 #include "study/plan/grid.h"
 #include "study/rows/excluded.h"
 #include "study/rows/row_quantity.h"
@@ -49,9 +50,9 @@ static status check_names(const row_files *files, const column_list *list, diagn
 {
     for (size_t i = 0; i < list->count; i++) {
         const row_quantity *c = &list->columns[i];
-        const char *unknown = !is_known(files, c->name)                ? c->name
-                              : c->below && !is_known(files, c->below) ? c->below
-                                                                       : NULL;
+        const char *unknown = !is_known(files, c->name)                    ? c->name
+                              : c->divisor && !is_known(files, c->divisor) ? c->divisor
+                                                                           : NULL;
         if (unknown)
             return diagnose(why, STATUS_BAD_INPUT, "see `man cuvette-results` for the columns of rows.csv",
                             "the rows have no column '%.64s'", unknown);
@@ -67,17 +68,18 @@ static int by_cell_and_environment(const void *a, const void *b)
     return strcmp(row_environment(x), row_environment(y));
 }
 
-/* The line of one column over the rows of one cell and environment. values: room for as many numbers. */
+/* Writes the line of a column over the rows of a cell and environment. values: scratch memory for count numbers. */
 static status put_line(const study *s, const row_ref **rows, size_t count, const row_quantity *c, double *values,
                        FILE *out, diagnostic *why)
 {
-    row_spread of;
-    TRY(row_quantity_spread(rows, count, *c, values, &of, why));
-    const double numbers[] = {of.median.value, of.median.low, of.median.high, of.minimum, of.maximum};
+    row_spread spread;
+    TRY(row_quantity_spread(rows, count, *c, values, &spread, why));
+    const double numbers[] = {spread.median.value, spread.median.low, spread.median.high, spread.minimum,
+                              spread.maximum};
     fprintf(out, "%zu", rows[0]->cell);
     grid_put_values(s, rows[0]->cell, out);
-    fprintf(out, "\t%s\t%s%s%s\t%zu", row_environment(rows[0]), c->name, c->below ? "/" : "", c->below ? c->below : "",
-            of.known);
+    fprintf(out, "\t%s\t%s%s%s\t%zu", row_environment(rows[0]), c->name, c->divisor ? "/" : "",
+            c->divisor ? c->divisor : "", spread.known);
     for (size_t i = 0; i < sizeof numbers / sizeof numbers[0]; i++)
         grid_put_number(out, numbers[i]);
     fputc('\n', out);

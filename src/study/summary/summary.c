@@ -1,4 +1,4 @@
-/* The summary of a study: lines of cells and environments; and a summary read back as a table. */
+/* Writes the summary of a study, a line per cell and environment, and reads it back as a table. */
 #include "base/number.h"
 #include "base/text.h"
 #include "measure/statistics.h"
@@ -13,15 +13,16 @@
 #include <stdlib.h>
 #include <string.h>
 
-/* Columns, and quotients formed row by row, whose median has an interval. */
-static const row_quantity timed[] = {{"wall_s", NULL}, {"cpu_s", NULL}};
-static const char *const before_hash[] = {"rays_total",  "rays_camera",          "rays_reflect",  "rays_refract",
+/* The columns of a summary; summary.h describes their order. Spreads are medians with intervals, of columns and of
+ * quotients formed row by row. */
+static const row_quantity time_spreads[] = {{"wall_s", NULL}, {"cpu_s", NULL}};
+static const char *const ray_medians[] = {"rays_total",  "rays_camera",          "rays_reflect",  "rays_refract",
                                           "rays_shadow", "cut_depth_throughput", "total_internal"};
-static const char *const after_marked[] = {"busy_s_mean",      "busy_s_max",     "waiting_s_mean", "others_fraction",
-                                           "worker_cpu_s_sum", "peak_rss_bytes", "noise_rms",      "triangles",
-                                           "instances",        "accel_bytes",    "drawn",          "drawn_bytes",
-                                           "motion_steps",     "cut_fraction"};
-static const row_quantity after_solids[] = {
+static const char *const machine_medians[] = {"busy_s_mean",      "busy_s_max",     "waiting_s_mean", "others_fraction",
+                                              "worker_cpu_s_sum", "peak_rss_bytes", "noise_rms",      "triangles",
+                                              "instances",        "accel_bytes",    "drawn",          "drawn_bytes",
+                                              "motion_steps",     "cut_fraction"};
+static const row_quantity quotient_spreads[] = {
     {"build_s", NULL},
     {"imbalance", NULL},
     {"visibility_s_sum", NULL},
@@ -43,7 +44,7 @@ static const row_quantity after_solids[] = {
 typedef struct cell_rows {
     bool header;
     size_t number;
-    const char *environment;   /* whose rows these are; "NA" without a row */
+    const char *environment;   /* of the rows; "NA" without a row */
     const char *film_expected; /* NULL without a row */
     const row_ref **rows;
     size_t count, marked, excluded, disturbed,
@@ -58,14 +59,15 @@ typedef struct cell_rows {
 static status put_spread(const cell_rows *cell, row_quantity column, diagnostic *why)
 {
     static const char *const parts[] = {"median", "low", "high", "mean", "min", "max"};
-    row_spread of = {.known = 0};
+    row_spread spread = {.known = 0};
     if (!cell->header)
-        TRY(row_quantity_spread(cell->rows, cell->count, column, cell->values, &of, why));
-    const double values[] = {of.median.value, of.median.low, of.median.high, of.mean, of.minimum, of.maximum};
+        TRY(row_quantity_spread(cell->rows, cell->count, column, cell->values, &spread, why));
+    const double values[] = {spread.median.value, spread.median.low, spread.median.high,
+                             spread.mean,         spread.minimum,    spread.maximum};
     for (size_t part = 0; part < COUNT(parts); part++)
         if (cell->header)
-            fprintf(cell->out, "\t%s%s%s_%s", column.name, column.below ? "/" : "", column.below ? column.below : "",
-                    parts[part]);
+            fprintf(cell->out, "\t%s%s%s_%s", column.name, column.divisor ? "/" : "",
+                    column.divisor ? column.divisor : "", parts[part]);
         else
             grid_put_number(cell->out, values[part]);
     return STATUS_OK;
@@ -78,7 +80,7 @@ static status put_spreads(const cell_rows *cell, const row_quantity *columns, si
     return STATUS_OK;
 }
 
-/* The rows that nothing disturbed, by the study's present rule. */
+/* Writes the columns of undisturbed rows, by the study's present rule. */
 static status put_undisturbed(const cell_rows *cell, diagnostic *why)
 {
     if (cell->header) {
@@ -92,11 +94,11 @@ static status put_undisturbed(const cell_rows *cell, diagnostic *why)
     }
     level_interval median = {NAN, NAN, NAN};
     row_noise_columns at = {.table = NULL};
-    row_quantity_values(cell->rows, cell->count, timed[0], cell->values);
+    row_quantity_values(cell->rows, cell->count, time_spreads[0], cell->values);
     for (size_t i = 0; i < cell->count; i++)
         if (row_noise_judge(cell->rule, &at, cell->rows[i]) != NOISE_UNDISTURBED)
             cell->values[i] = NAN;
-    TRY(row_quantity_median(cell->rows, cell->values, cell->count, row_quantity_range(timed[0]), &median, why));
+    TRY(row_quantity_median(cell->rows, cell->values, cell->count, row_quantity_range(time_spreads[0]), &median, why));
     fprintf(cell->out, "\t%zu\t%zu", cell->disturbed, cell->judged - cell->disturbed);
     grid_put_number(cell->out, median.value);
     grid_put_number(cell->out, median.low);
@@ -129,10 +131,10 @@ static status put_solids(const study *s, const cell_rows *cell, diagnostic *why)
 /* An image has one comparison, so its values are shown unchanged. */
 static void put_compared(const study *s, const cell_rows *cell)
 {
-    for (size_t i = 0; s->reference.count && i < compare_shown_count; i++)
+    for (size_t i = 0; s->reference.count && i < compare_summary_column_count; i++)
         fprintf(cell->out, "\t%s",
-                cell->header     ? compare_shown[i]
-                : cell->compared ? row_field(cell->compared, compare_shown[i])
+                cell->header     ? compare_summary_columns[i]
+                : cell->compared ? row_field(cell->compared, compare_summary_columns[i])
                                  : "NA");
 }
 
@@ -147,18 +149,18 @@ static status put_line(const study *s, const cell_rows *cell, diagnostic *why)
         grid_put_values(s, cell->number, cell->out);
         fprintf(cell->out, "\t%zu", cell->count);
     }
-    TRY(put_spreads(cell, timed, COUNT(timed), why));
-    for (size_t i = 0; i < COUNT(before_hash); i++)
-        put_median(cell, before_hash[i]);
+    TRY(put_spreads(cell, time_spreads, COUNT(time_spreads), why));
+    for (size_t i = 0; i < COUNT(ray_medians); i++)
+        put_median(cell, ray_medians[i]);
     if (cell->header)
         fputs("\tfilm_hash\tmarked\texcluded", cell->out);
     else
         fprintf(cell->out, "\t%s\t%zu\t%zu", cell->film_expected ? cell->film_expected : "NA", cell->marked,
                 cell->excluded);
-    for (size_t i = 0; i < COUNT(after_marked); i++)
-        put_median(cell, after_marked[i]);
+    for (size_t i = 0; i < COUNT(machine_medians); i++)
+        put_median(cell, machine_medians[i]);
     status code = put_solids(s, cell, why);
-    THEN(code, put_spreads(cell, after_solids, COUNT(after_solids), why));
+    THEN(code, put_spreads(cell, quotient_spreads, COUNT(quotient_spreads), why));
     put_compared(s, cell);
     THEN(code, put_undisturbed(cell, why));
     if (s->quick)
@@ -167,7 +169,7 @@ static status put_line(const study *s, const cell_rows *cell, diagnostic *why)
     return code;
 }
 
-/* The rows of a line: of one cell in one environment. */
+/* Collects the rows of a line: those of a cell in one environment. */
 static void collect(cell_rows *cell, row_ref *const *rows, size_t count)
 {
     cell->film_expected = NULL;

@@ -1,4 +1,4 @@
-/* Faults of rows and their environments as text, and the films of two results folders. */
+/* Writes faults of rows and their environments as text, and compares the films of two results folders. */
 #include "study/rows/row_files.h"
 #include "study/summary/verify.h"
 #include <stdlib.h>
@@ -29,7 +29,7 @@ static status put_environments(const row_files *files, FILE *out, diagnostic *wh
     for (size_t i = 0; i < count; i++) {
         fprintf(out, "environment %s: %zu rows", all[i].key, all[i].rows);
         for (int fact = 0; all[i].run && fact < ENVIRONMENT_FACTS; fact++)
-            fprintf(out, "%s %s %s", fact ? "," : ":", environment_names[fact], all[i].run->here.fact[fact]);
+            fprintf(out, "%s %s %s", fact ? "," : ":", environment_names[fact], all[i].run->environment.fact[fact]);
         fputc('\n', out);
     }
     free(all);
@@ -64,18 +64,18 @@ status study_verify(const study *s, const char *results, FILE *out, study_verdic
 void study_environment_difference(const study *s, const char *results, char *text, size_t size)
 {
     row_files *files = NULL;
-    run_environment here;
+    run_environment present;
     isa level;
     text[0] = 0;
     if (isa_choose(&level, NULL) != STATUS_OK || row_files_read(s, results, ROWS, &files, NULL) != STATUS_OK)
         return;
-    if (environment_read("", level, &here, NULL) != STATUS_OK) {
+    if (environment_read("", level, &present, NULL) != STATUS_OK) {
         row_files_destroy(files);
         return;
     }
     for (size_t i = files->row_count; i > 0 && !text[0]; i--)
         if (files->rows[i - 1].run >= 0)
-            environment_difference(&here, &files->runs->entry[files->rows[i - 1].run].here, text, size);
+            environment_difference(&present, &files->runs->entry[files->rows[i - 1].run].environment, text, size);
     row_files_destroy(files);
 }
 
@@ -118,10 +118,10 @@ static status find_films(const study *s, const row_files *files, cell_films *out
     return STATUS_OK;
 }
 
-static void free_films(cell_films *of)
+static void free_films(cell_films *films)
 {
-    free(of->first);
-    free(of->agrees);
+    free(films->first);
+    free(films->agrees);
 }
 
 static int compare_texts(const void *a, const void *b)
@@ -129,7 +129,7 @@ static int compare_texts(const void *a, const void *b)
     return strcmp(*(const char *const *)a, *(const char *const *)b);
 }
 
-static status compare_cells(const study *s, const cell_films *here, const cell_films *there, study_films *out,
+static status compare_cells(const study *s, const cell_films *ours, const cell_films *theirs, study_films *out,
                             diagnostic *why)
 {
     const size_t count = study_cell_count(s);
@@ -140,10 +140,10 @@ static status compare_cells(const study *s, const cell_films *here, const cell_f
         return out_of_memory(why);
     }
     for (size_t cell = 0; cell < count; cell++) {
-        if (!here->first[cell] || !there->first[cell])
+        if (!ours->first[cell] || !theirs->first[cell])
             continue;
-        film[out->compared++] = row_field(here->first[cell], "film_hash");
-        if (here->agrees[cell] && there->agrees[cell] && has_same(here->first[cell], there->first[cell]))
+        film[out->compared++] = row_field(ours->first[cell], "film_hash");
+        if (ours->agrees[cell] && theirs->agrees[cell] && has_same(ours->first[cell], theirs->first[cell]))
             out->same++;
         else
             out->different[out->different_count++] = cell;
@@ -157,25 +157,25 @@ static status compare_cells(const study *s, const cell_films *here, const cell_f
 
 static const char *processor_of(const row_files *files)
 {
-    return files->runs->count > 0 ? files->runs->entry[0].here.fact[ENVIRONMENT_CPU_MODEL] : "unknown";
+    return files->runs->count > 0 ? files->runs->entry[0].environment.fact[ENVIRONMENT_CPU_MODEL] : "unknown";
 }
 
 status study_films_compare(const study *s, const char *results, const char *against, study_films *out, diagnostic *why)
 {
     row_files *ours = NULL, *theirs = NULL;
-    cell_films here = {NULL, NULL}, there = {NULL, NULL};
+    cell_films our_films = {NULL, NULL}, their_films = {NULL, NULL};
     *out = (study_films){.compared = 0};
     status code = row_files_read(s, results, ROWS, &ours, why);
     THEN(code, row_files_read(s, against, ROWS, &theirs, why));
-    THEN(code, find_films(s, ours, &here, why));
-    THEN(code, find_films(s, theirs, &there, why));
-    THEN(code, compare_cells(s, &here, &there, out, why));
+    THEN(code, find_films(s, ours, &our_films, why));
+    THEN(code, find_films(s, theirs, &their_films, why));
+    THEN(code, compare_cells(s, &our_films, &their_films, out, why));
     if (code == STATUS_OK) {
         snprintf(out->processor, sizeof out->processor, "%s", processor_of(theirs));
         out->other_processor = strcmp(processor_of(ours), out->processor) != 0;
     }
-    free_films(&here);
-    free_films(&there);
+    free_films(&our_films);
+    free_films(&their_films);
     row_files_destroy(ours);
     row_files_destroy(theirs);
     return code;

@@ -1,6 +1,6 @@
-/* Whether the rows of a study hold: `study verify` checks every row in rows.csv, workers.csv and compare.csv, and
- * `study films` compares films and ray counts with those of another results folder, cell by cell: whether another
- * machine, build or time made the same. Ownership: study_films_release frees the list. */
+/* Verification of rows: `study verify` verifies every row in rows.csv, workers.csv and compare.csv, and `study films`
+ * compares films and ray counts with those of another results folder, cell by cell, to see whether another machine or
+ * build computes the same. Ownership: study_films_release frees the list. */
 #pragma once
 
 #include "study/study.h"
@@ -14,16 +14,16 @@ typedef struct study_verdict {
  * number of rows. */
 status study_verify(const study *s, const char *results, FILE *out, study_verdict *verdict, diagnostic *why);
 
-/* What distinguishes the present environment from that of the last rows of another one; "" if unknown. */
+/* How the present environment differs from that of the latest rows of another one; "" if unknown. */
 void study_environment_difference(const study *s, const char *results, char *text, size_t size);
 
 typedef struct study_films {
     size_t compared, same; /* cells with rows in both folders, and those with one film and equal counts in all rows */
-    size_t distinct;       /* films of the compared cells */
+    size_t distinct;       /* number of different films of the compared cells */
     size_t *different;     /* cells, in order */
     size_t different_count;
     bool other_processor; /* the rows of the two folders are of unlike processors */
-    char processor[160];  /* of the folder that is compared with; "unknown" without one */
+    char processor[160];  /* of the folder `against`; "unknown" if it has no run */
 } study_films;
 
 /* Rows that cannot be trusted (study/rows/row_files.h) are left out; marked ones are not. */
