@@ -54,7 +54,7 @@ typedef struct study {
                               than this fraction of it; 0: always max */
     long undisturbed;      /* measure up to repetitions_max until that many rows are not disturbed; 0: no such rule */
     noise_rule disturbed;  /* the rule by which a row is disturbed */
-    long processes;        /* fresh processes that divide the repetitions; 1: the program's own */
+    long processes;        /* fresh processes that divide the repetitions; 1: only the process of the program */
     long warmups;          /* unmeasured frames of a cell before its first measured one, in every process */
     bool quick;            /* the study is in its quick form (study_make_quick) */
     bool shuffle;
@@ -141,10 +141,8 @@ typedef struct study_options {
     const char *environment; /* for an estimate: key of the environment whose rows count; NULL: the present one */
     FILE *progress;          /* a terminal for the progress line with ETA, or NULL */
     int progress_columns;    /* its width, which the line does not exceed; 0: unknown */
-    void (*progressed)(
-        void *context,
-        const study_moment *now); /* at most about ten times per second, from the thread that runs the study. May be
-                                     NULL */
+    /* Called at most about ten times per second, by the thread that runs the study. May be NULL. */
+    void (*progressed)(void *context, const study_moment *now);
     /* News for the user: what disturbs the measurement, each kind at most once per minute, and a possible lack of disk
      * space. The progress line is erased before. May be NULL. */
     void (*news)(void *context, const char *text);

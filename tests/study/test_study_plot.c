@@ -257,7 +257,7 @@ static void captions_say_interval_or_range(void **state)
         {{{0, 3, 0, "", "1", "NA", "NA"}, {1, 3, 0, "", "1", "NA", "NA"}, {2, 3, 0, "", "1", "NA", "NA"}},
          "Medians, n = 3; bars: range of the repetitions; fewer than 6 give no interval."},
         {{{0, 3, 0, "", "1", "NA", "NA"}, {1, 8, 0, "", "1", "0.9", "1.1"}, {2, 3, 0, "", "1", "NA", "NA"}},
-         "95 % interval of the median where n ≥ 6, elsewhere the range."},
+         "95 % interval of the median if n ≥ 6, otherwise the range."},
         {{{0, 1, 0, "", "1", "NA", "NA"}, {1, 1, 0, "", "1", "NA", "NA"}, {2, 1, 0, "", "1", "NA", "NA"}},
          "n = 1: single measurements"},
         {{{0, 9, 2, "", "1", "1", "1"}, {1, 9, 1, "", "1", "1", "1"}, {2, 9, 0, "", "1", "1", "1"}},

@@ -130,7 +130,7 @@ render_options keep_options(const study *s)
 
 typedef enum cell_table { CELL_METRICS, CELL_CURVES, CELL_MOTION } cell_table;
 
-/* What a table of one cell is made of, and its output file. */
+/* The sources of a cell's table, and its output file. */
 typedef struct cell_lines {
     const study *s;
     size_t cell;

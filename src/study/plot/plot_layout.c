@@ -219,8 +219,8 @@ static status add_spread(plot_plan *p, const facts *f, diagnostic *why)
     if (f->most_n < 2)
         return plot_caption_add(p, why, "%s: single measurements, without any spread.", n);
     if (f->intervals && f->ranges)
-        return plot_caption_add(
-            p, why, "Medians, %s; %s95 %% interval of the median where n ≥ 6, elsewhere the range%s.", n, bars, wide);
+        return plot_caption_add(p, why, "Medians, %s; %s95 %% interval of the median if n ≥ 6, otherwise the range%s.",
+                                n, bars, wide);
     if (f->intervals)
         return plot_caption_add(p, why, "Medians, %s; %s95 %% interval of the median%s.", n, bars, wide);
     if (f->ranges)

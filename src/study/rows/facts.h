@@ -26,7 +26,8 @@ json_t *run_facts(const study *s, const topology *machine, const run_environment
 /* The current time as text, or that of SOURCE_DATE_EPOCH (reproducible-builds.org/specs/source-date-epoch). */
 json_t *run_time(void);
 
-/* The commit checked out in folder, 40 hex digits, for free; *dirty: tracked files differ from it. NULL without git. */
+/* The commit checked out in folder, 40 hex digits, which the caller frees; *dirty: tracked files differ from it. NULL
+ * without git. */
 char *provenance_git_commit(const char *folder, bool *dirty);
 /* Removes from hwloc's XML everything that distinguishes machines of the same kind: host name, serial numbers,
  * addresses, control groups. Changes xml in place; NULL is allowed. */

@@ -1,7 +1,7 @@
 /* All rows of a study on disk: rows.csv and the files of its shards, or likewise workers.csv or compare.csv, read and
  * verified. Equal rows in several files (after a merge) count once. Rows that cannot be trusted are left out and listed
- * as issues; rows of cells that the study does not have (any more) are left out and counted. Ownership: row_files_read
- * gives, row_files_destroy releases; results point into it. */
+ * as issues; rows of cells that the study does not have (any more) are left out and counted. Ownership:
+ * row_files_destroy releases what row_files_read returns; other results point into it. */
 #pragma once
 
 #include "base/csv.h"

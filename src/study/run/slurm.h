@@ -8,12 +8,12 @@
 /* The script's template, experiments/cluster/study.slurm. */
 extern const char slurm_template[];
 
-/* A word of the template, where it is between @ signs. A line with a word whose value is NULL is left out. */
+/* A word that the template has between @ signs. A line with a word whose value is NULL is left out. */
 typedef struct slurm_word {
     const char *name, *value;
 } slurm_word;
 
-/* Replaces each word by its value, quoted for the shell where necessary (sbatch interprets quotes in its lines like the
+/* Replaces each word by its value, quoted for the shell if necessary (sbatch interprets quotes in its lines like the
  * shell). STATUS_BAD_INPUT for an unknown word, located in the file. */
 status slurm_fill(const char *file, const char *text, const slurm_word *words, size_t count, char **out,
                   diagnostic *why);
