@@ -305,7 +305,7 @@ static void a_note_tells_how_many_samples_suffice(void **state)
                         "ior: 1.6584, extraordinary_ior: 1.4864}\n");
     aim(s, vec3_make(0.01, 0.0, 0.02));
     assert_note(s, "render.samples: ");
-    assert_note(s, "render.samples=36 suffice");
+    assert_note(s, "set render.samples=36");
     set(s, "render.samples=36");
     assert_note(s, NULL);
     set_all(s, "render.samples=1 plate.extraordinary_ior=0");
