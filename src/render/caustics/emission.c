@@ -1,4 +1,4 @@
-/* The rays that photons begin with, from lamps and from beams: their densities and their power. */
+/* The first rays of photons, from lamps and beams: their densities and their power. */
 #include "render/caustics/emission_private.h"
 
 #include "base/elementary.h"
@@ -42,27 +42,27 @@ static vec3 lamp_at(const emission *e, int lamp)
     return e->p->lights[lamp].position;
 }
 
-/* Whether the rays of a lamp's cone pass the ball's disc, not the lamp's. */
-static bool by_ball(const emission *e, int lamp, int k)
+/* Whether the rays of a lamp's cone are drawn through the ball's disc, not the lamp's. */
+static bool through_ball(const emission *e, int lamp, int k)
 {
     return e->balls[k].radius < sphere_radius(e, lamp);
 }
 
-/* A point of a disc of that radius across a direction. */
+/* A point on a disc of that radius, perpendicular to a direction. */
 static vec3 on_disc(vec3 centre, double radius, vec3 direction, unit_pair s)
 {
     return vec3_add(centre, along(direction, 0.0, radius * sqrt(s.u), s.v));
 }
 
-/* The squared distance of a point from the line. */
+/* The squared distance of a point from a line. */
 static double off_line(vec3 point, vec3 direction, vec3 from)
 {
     const vec3 off = vec3_cross(vec3_sub(from, point), direction);
     return vec3_dot(off, off);
 }
 
-/* The density of rays along a direction through a point, which cone `drawn` gave, per solid angle and area across; per
- * solid angle for a point lamp. */
+/* The density of rays along a direction through a point, drawn from cone `drawn`, per solid angle and perpendicular
+ * area; per solid angle for a point lamp. */
 static double density_of(const emission *e, int lamp, int drawn, vec3 direction, vec3 point)
 {
     const lamp_emission *l = &e->lamps[lamp];
@@ -70,7 +70,7 @@ static double density_of(const emission *e, int lamp, int drawn, vec3 direction,
     double density = 0.0;
     for (int k = 0; k < e->ball_count; k++) {
         const ball *b = &e->balls[k];
-        const bool from_ball = by_ball(e, lamp, k);
+        const bool from_ball = through_ball(e, lamp, k);
         if (l->cones[k].fraction == 0.0)
             continue;
         const bool meets =
@@ -95,7 +95,7 @@ static bool to_lamp(const emission *e, int lamp, vec3 direction, vec3 *point)
     return true;
 }
 
-/* The density of a sun's rays along a direction through a point, per area across, which solid `drawn` gave. */
+/* The density of a sun's rays along a direction through a point, per perpendicular area, drawn for solid `drawn`. */
 static double sun_density(const emission *e, int lamp, int drawn, vec3 direction, vec3 point)
 {
     double density = 0.0;
@@ -108,7 +108,7 @@ static double sun_density(const emission *e, int lamp, int drawn, vec3 direction
     return density;
 }
 
-/* The start of a ray through the point, far before all bounded solids; false within an opaque one without bounds. */
+/* Moves the origin back along the ray, far in front of all bounded solids; false within an opaque unbounded solid. */
 static bool before_all(const emission *e, vec3 direction, emitted_ray *out)
 {
     const scene_geometry *g = e->p->geometry;
@@ -117,9 +117,9 @@ static bool before_all(const emission *e, vec3 direction, emitted_ray *out)
     return !g->regions[scene_geometry_priority_index(g, out->inside)].opaque;
 }
 
-/* A ray of a sun, whose direction is drawn, through the area of solid k; returns the inverse of its density per area,
- * times pi L dw over the density of directions and over that of parallel light: 2 (1 - cos a) / sin^2 a = 2 / (1 + cos
- * a). */
+/* Draws a sun's ray, whose direction is drawn already, through the area of solid k. Returns the inverse of its density
+ * per area, times pi L dw over the density of directions, relative to parallel light: 2 (1 - cos a) / sin^2 a = 2 / (1
+ * + cos a). */
 static double draw_sun_ray(const emission *e, int lamp, int k, unit_pair place, emitted_ray *out)
 {
     const sunlit_area a = sunlit_area_of(e, k, out->direction);
@@ -129,7 +129,7 @@ static double draw_sun_ray(const emission *e, int lamp, int k, unit_pair place, 
     return before_all(e, out->direction, out) ? 2.0 / ((2.0 - e->lamps[lamp].cones[k].cap) * density) : 0.0;
 }
 
-/* The cone that a number in (0, 1) chooses; it then chooses within the cone. */
+/* Chooses a cone by *u in (0, 1), which then becomes the position within the cone's fraction. */
 static int choose_cone(const emission *e, int lamp, double *u)
 {
     const cone *cones = e->lamps[lamp].cones;
@@ -141,8 +141,8 @@ static int choose_cone(const emission *e, int lamp, double *u)
     return k;
 }
 
-/* A ray, and the inverse of its density times the lamp's disc: 0 if it does not leave the lamp. The first number
- * chooses the cone too. */
+/* Draws a ray. Returns the inverse of its density times the area of the lamp's disc; 0 if it does not leave the lamp.
+ * s.u also chooses the cone. */
 static double draw_ray(const emission *e, int lamp, unit_pair s, unit_pair place, emitted_ray *out)
 {
     const lamp_emission *l = &e->lamps[lamp];
@@ -160,15 +160,15 @@ static double draw_ray(const emission *e, int lamp, unit_pair s, unit_pair place
         out->origin = lamp_shape_point(&e->p->shapes[lamp], out->origin, place.u, place.v);
     if (radius == 0.0)
         return 1.0 / density_of(e, lamp, k, out->direction, out->origin);
-    const bool from_ball = by_ball(e, lamp, k);
+    const bool from_ball = through_ball(e, lamp, k);
     out->origin = on_disc(from_ball ? e->balls[k].centre : lamp_at(e, lamp), from_ball ? e->balls[k].radius : radius,
                           out->direction, place);
     const double density = density_of(e, lamp, k, out->direction, out->origin);
     return to_lamp(e, lamp, out->direction, &out->origin) ? 1.0 / (density * PI * radius * radius) : 0.0;
 }
 
-/* The radiance at a random wavelength of the lamp, over the density of the choice over that of an even one. Lines are
- * chosen by their brightness. */
+/* The radiance at a random wavelength of the lamp, divided by the density of the choice relative to a uniform one.
+ * Lines are chosen by their brightness. */
 static double draw_wavelength(const emission *e, int lamp, double u, emitted_ray *out)
 {
     lamp_line lines[LAMP_LINES_MAX];
@@ -188,22 +188,22 @@ static double draw_wavelength(const emission *e, int lamp, double u, emitted_ray
     return all > 0.0 ? lines[k].radiance / SPECTRA_COUNT * (all / lines[k].bright) : 0.0;
 }
 
-/* --- beams as lamps: photons start as the beam's rays do, with its power over their number --- */
+/* --- beams as lamps: photons start as the beam's rays do, with the beam's power divided by their number --- */
 
 static double log_of(double u)
 {
     return 0.69314718055994530942 * elementary_log2_inline(u);
 }
 
-/* Of a disc of radius 1: 1 - exp(-2 r^2 / w^2) of a Gaussian beam's power is within r (Siegman, Lasers, 1986, 17.1);
- * with r^2 / w^2 = -log(u) / 2, u is the fraction outside. */
+/* The radius of a sample in a disc of radius 1: 1 - exp(-2 r^2 / w^2) of a Gaussian beam's power is within r (Siegman,
+ * Lasers, 1986, 17.1); with r^2 / w^2 = -log(u) / 2, u is the fraction outside. */
 static double radius_of(const beam *b, double u)
 {
     return b->profile == BEAM_GAUSSIAN ? sqrt(-0.5 * log_of(u)) : sqrt(u);
 }
 
-/* Of a line from -1 to 1: exp(-2 x^2 / w^2) is a normal distribution of variance w^2 / 4 (Box and Muller, Ann. Math.
- * Stat. 29, 1958). */
+/* The offset of a sample on a line from -1 to 1: exp(-2 x^2 / w^2) is a normal distribution of variance w^2 / 4 (Box
+ * and Muller, Ann. Math. Stat. 29, 1958). */
 static double offset_of(const beam *b, unit_pair s)
 {
     double sine, cosine;
@@ -213,13 +213,13 @@ static double offset_of(const beam *b, unit_pair s)
     return 0.5 * sqrt(-2.0 * log_of(s.u)) * cosine;
 }
 
-/* A direction at an angle whose tangent is given, towards `side`. */
+/* The direction at an angle to the axis, given by its tangent, towards `side`. */
 static vec3 inclined(const ray_axes *a, vec3 side, double tangent)
 {
     return vec3_normalize(vec3_add(a->axis, vec3_scale(side, tangent)));
 }
 
-/* Over a disc, or within a cone: even in solid angle, or Gaussian in every plane across the axis. */
+/* Samples the disc of a bundle, or a cone: uniform in solid angle, or Gaussian in every plane across the axis. */
 static void start_round(const beam *b, const ray_axes *a, unit_pair s, emitted_ray *out)
 {
     double sine, cosine, half_sine, half_cosine;
@@ -239,7 +239,7 @@ static void start_round(const beam *b, const ray_axes *a, unit_pair s, emitted_r
     out->direction = vec3_add(vec3_scale(a->axis, 1.0 - versine), vec3_scale(radial, sqrt(versine * (2.0 - versine))));
 }
 
-/* In a plane: even in offset or angle, or Gaussian in every line across the axis. */
+/* Samples a plane: uniform in offset or angle, or Gaussian in every line across the axis. */
 static void start_in_plane(const beam *b, const ray_axes *a, unit_pair s, emitted_ray *out)
 {
     double sine, cosine;
@@ -252,8 +252,8 @@ static void start_in_plane(const beam *b, const ray_axes *a, unit_pair s, emitte
     out->direction = inclined(a, a->across, sine / cosine * (b->profile == BEAM_GAUSSIAN ? offset : 1.0));
 }
 
-/* In a spectral film: of white, of a random wavelength; else of the line, as of a lamp of that line. Radiance there for
- * a power of 1. */
+/* Sets the wavelength in a spectral film: random for white light, else the line's. Returns the radiance there for a
+ * power of 1. */
 static double beam_wavelength(const emission *e, const beam *b, double u, emitted_ray *out)
 {
     const light lamp = {.spectrum = LAMP_LINE, .line_nm = b->lambda_nm, .intensity = 1.0};
@@ -309,7 +309,7 @@ bool emission_ray(const emission *e, int64_t i, emitted_ray *out)
     const int lamp = lamp_of(e, i);
     const light *l = &p->lights[lamp];
     const lamp_emission *from = &e->lamps[lamp];
-    const bool sun = is_sun(e, lamp); /* with the flux of a beam */
+    const bool sun = is_sun(e, lamp); /* parallel light, whose flux does not fall off */
     const int64_t number = i - from->first;
     const double angle = draw_ray(e, lamp, emission_pair(e, number, (uint64_t)lamp << 8),
                                   emission_pair(e, number, (uint64_t)lamp << 8 | 1), out);

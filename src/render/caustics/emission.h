@@ -1,16 +1,15 @@
-/* Emission of photons: which ray from a lamp each photon begins with, and which power it carries. Photons start only
- * towards what can deflect them, mirrors and clear solids: their directions are uniform over the cones, seen from the
- * lamp, around the bounding balls of these solids, with a density that is the sum over the cones. Where one has no
- * bounds, the cone is the whole sphere of directions; a lamp's own cone takes the place of one that is wider. A lamp
- * and the ball of a solid that it can light are a target. A lamp's flux into a small solid angle dw is pi I reach^2 dw,
- * for a point as for a sphere, whose every direction leaves from a disc across it; I is its intensity (path.c). A ray
- * of a direction passes a random point of the lamp's disc, or, of a lamp that is larger than the ball, as the sun is,
- * of the ball's disc. A sun's directions are uniform over its disc, or one; its rays pass rectangles around the solids
- * across them, and begin far before all solids. Where a ball has no bounds, they are followed within twice the extent
- * of the scene.
+/* Emission of photons: the first ray of each photon, and its power. Photons start only towards solids that can deflect
+ * them, mirrors and clear solids: their directions are uniform over the cones, seen from the lamp, around the bounding
+ * balls of these solids, with a density that is the sum over the cones. For an unbounded solid, the cone is the full
+ * sphere of directions; a spotlight's cone replaces a wider one. A lamp and the ball of a solid that it can light are a
+ * target. A lamp's flux into a small solid angle dw is pi I reach^2 dw, for a point as for a sphere, which emits each
+ * direction from a disc perpendicular to it; I is its intensity (path.c). A ray passes a random point of the lamp's
+ * disc, or, if the lamp is larger than the ball, as the sun is, of the ball's disc. A sun's directions are uniform over
+ * its disc, or equal; its rays pass through rectangles around the solids, perpendicular to them, and begin far in front
+ * of all solids. For an unbounded ball, the rectangle covers twice the extent of the scene.
  *
- * A beam that lights the scene is one more lamp: its photons start as its rays do, whatever they meet, and bring its
- * light to the first matte surface too, which no shadow ray does.
+ * A beam that lights the scene is one more lamp: its photons start like its rays, towards any solid, and also light the
+ * first matte surface, since beams have no shadow rays.
  *
  * Photons are points of a scrambled Sobol sequence for each lamp, a function of the seed and the photon's number.
  * Ownership: emission_create allocates, emission_destroy releases; the plan is borrowed. */
@@ -21,40 +20,41 @@
 
 typedef struct emission emission;
 
-/* Of `photons` photons in all. With C the flux towards a target, n its photons of which the fraction h arrives, the
- * squared error of the light that arrives, C h, is C^2 h / n: n in proportion to sqrt(C) makes the sum of the squared
- * errors, each over its light, the least (the Lagrange function of sum C / n). sizes: lights with a size have it,
- * otherwise they are points. */
+/* Divides `photons` photons among the targets. With C the flux towards a target, and n its photons, of which the
+ * fraction h arrives, the squared error of the arriving light C h is C^2 h / n: n in proportion to sqrt(C) minimises
+ * the sum of the squared errors, each divided by its light (the Lagrange function of sum C / n). sizes: whether lights
+ * keep their size; otherwise they are points. */
 status emission_create(const plan *p, int64_t photons, bool sizes, emission **out, diagnostic *why);
 void emission_destroy(emission *e);
 
-/* Targets: the pairs of a lamp and a solid that deflects its light, then the beams. The solid's number in the scene, or
- * -1: a beam, or several solids. */
+/* Targets: the pairs of a lamp and a solid that deflects its light, then the beams. emission_target_solid: the solid's
+ * number in the scene, or -1 for a beam or several solids. */
 int emission_target_count(const emission *e);
 int emission_target_solid(const emission *e, int target);
-/* The light that arrives from a target, relative to others, when that number of its photons does. */
+/* The light that arrives from a target, relative to other targets, if `arrived` of its photons arrive. */
 double emission_light(const emission *e, int target, int64_t arrived);
-/* A pilot tells from which targets light arrives. While it goes on there are few photons, as many for each target, and
- * other ones than later. emission_end_pilot: delivers[target] is whether any did; the others get a small fraction. */
+/* A pilot finds the targets from which light arrives. It has few photons, equally many per target, and different from
+ * the later ones. emission_begin_pilot: false if a pilot is not worthwhile. emission_end_pilot: delivers[target]:
+ * whether any of its photons arrived; the other targets get a small fraction. */
 bool emission_begin_pilot(emission *e);
 void emission_end_pilot(emission *e, const bool *delivers);
 
-/* The number of photons that are really emitted: 0 if no lamp shines or nothing can deflect them, and no beam does. */
+/* The number of photons to emit: 0 if there is no beam, and no lamp shines or nothing can deflect its light. */
 int64_t emission_count(const emission *e);
-/* The radius of the largest bounding ball; of scenes without bounds, that of the scene; at least that of beams. */
+/* The radius of the largest bounding ball, or of the scene for an unbounded solid; at least that of the beams. */
 double emission_extent(const emission *e);
 
 typedef struct emitted_ray {
     vec3 origin, direction;
-    vec3 power; /* over pi, by channel; in a spectral film that at the photon's wavelength, in each channel */
+    vec3 power; /* over pi, by channel; in a spectral film, at the photon's wavelength, equal in all channels */
     double lamp_radius;
-    double q, u; /* with polarisation: its Stokes vector relative to its first element, in its canonical frame */
+    double q, u; /* with polarisation: the Stokes vector relative to its first element, in the ray's canonical frame */
     uint64_t inside;
     int target;
     int wavelength; /* its number, or -1 */
-    bool of_line;   /* one of a spectral line, of which all photons count for that wavelength alone */
+    bool of_line;   /* the photon is of a spectral line, and contributes only to its wavelength */
     bool of_beam;
-    bool falls; /* false: its light does not fall off with distance, and its power applies at distance 1 */
+    bool falls; /* false: the light has no falloff with distance, and its power applies at distance 1 */
 } emitted_ray;
 
 /* The ray of photon i; false if it has none (outside a spotlight's cone). */
@@ -62,8 +62,8 @@ bool emission_ray(const emission *e, int64_t i, emitted_ray *out);
 
 /* A random number in (0, 1) for a decision of photon i at a depth. */
 double emission_chance(const emission *e, int64_t i, int depth, int which);
-/* Two, for the end of a deep photon and its branch; two, for the facet of a rough surface. */
+/* Two random numbers for the end of a deep photon and its branch, or for the facet of a rough surface. */
 unit_pair emission_roulette(const emission *e, int64_t i, int depth);
 unit_pair emission_facet(const emission *e, int64_t i, int depth);
-/* Two, and another one, for light of further facets. */
+/* Two random numbers, and a third in *chance, for light of further facets. */
 unit_pair emission_further(const emission *e, int64_t i, int depth, double *chance);

@@ -1,5 +1,5 @@
-/* Where photons start towards: balls around what deflects light, the cones of each lamp around these, and the fractions
- * of the photons. */
+/* The targets of photons: bounding balls of solids that deflect light, each lamp's cones around the balls, and the
+ * division of the photons. */
 #include "render/caustics/emission_private.h"
 
 #include "geometry/shapes/shape.h"
@@ -32,7 +32,7 @@ static ball ball_of(const plan *p, int priority_index)
                   bounded ? vec3_length(half) : (double)INFINITY, p->geometry->regions[priority_index].solid};
 }
 
-/* One that holds two. */
+/* A ball that holds two. */
 static ball joined(ball a, ball b)
 {
     if (isinf(a.radius) || isinf(b.radius))
@@ -54,7 +54,7 @@ static void find_balls(emission *e)
             continue;
         const ball one = ball_of(p, r);
         many |= e->ball_count == CONES_MAX;
-        if (many) /* from now on all are in the first */
+        if (many) /* from now on the first ball holds all */
             for (; e->ball_count > 1; e->ball_count--)
                 e->balls[0] = joined(e->balls[0], e->balls[e->ball_count - 1]);
         if (many)
@@ -68,7 +68,7 @@ static void find_balls(emission *e)
 
 /* --- lamps --- */
 
-/* Around all directions from the lamp's points to the ball's. */
+/* The cone of all directions from points of the lamp to points of the ball. */
 static cone cone_to(vec3 from, double lamp_radius, const ball *b)
 {
     const vec3 to = vec3_sub(b->centre, from);
@@ -79,7 +79,7 @@ static cone cone_to(vec3 from, double lamp_radius, const ball *b)
     return (cone){.axis = vec3_scale(to, 1.0 / d), .cap = (1.0 + 1e-9) * sine * sine / (1.0 + sqrt(1.0 - sine * sine))};
 }
 
-/* Do two cones have a direction in common? With half angles a and b and c between the axes: c <= a + b. */
+/* Whether two cones have a common direction: c <= a + b, with half angles a and b, and c between the axes. */
 static bool overlap(const cone *a, const light_cone *b)
 {
     const double cos_a = 1.0 - a->cap, cos_b = 1.0 - b->opening;
@@ -128,8 +128,8 @@ static double brightness(const light *l)
     return l->intensity * fmax(l->color.x, fmax(l->color.y, l->color.z));
 }
 
-/* The flux of a sun through the areas, over that of a lamp of intensity 1 and reach 1 into a unit of solid angle. As
- * aim below. */
+/* Sets the cones of a sun, and the flux through its areas, relative to the flux of a lamp of intensity 1 and reach 1
+ * into a unit of solid angle, as in aim. */
 static void aim_sun(emission *e, int lamp)
 {
     const light_cone *c = &e->p->cones[lamp];
@@ -141,7 +141,7 @@ static void aim_sun(emission *e, int lamp)
     }
 }
 
-/* The lamp's cones and the flux in each: the brightness times the solid angle over 2 pi. */
+/* Sets the lamp's cones and the flux in each: the brightness times the solid angle over 2 pi. */
 static void aim(emission *e, int lamp)
 {
     const light *l = &e->p->lights[lamp];
@@ -175,7 +175,8 @@ static vec3 color_of(const beam *b)
     return vec3_make(rgb[0], rgb[1], rgb[2]);
 }
 
-/* A photon's flux is its power over pi; that of a lamp of intensity and reach 1 into 2 pi is 2 pi (aim above). */
+/* Sets the axes, colours and fluxes of beams. A photon's flux is its power over pi; the flux of a lamp of intensity 1
+ * and reach 1 into the solid angle 2 pi is 2 pi (see aim). */
 static status prepare_beams(emission *e, diagnostic *why)
 {
     for (int k = 0; k < e->p->beam_count; k++) {
@@ -192,7 +193,7 @@ static status prepare_beams(emission *e, diagnostic *why)
 
 /* --- fractions --- */
 
-/* Gives every target its wanted part of the photons: a lamp's cones in turn, then the beams. */
+/* Divides the photons among the targets in proportion to `wanted`: each lamp's cones, then the beams. */
 static void divide(emission *e, int64_t photons)
 {
     const double *wanted = e->wanted;
@@ -205,13 +206,13 @@ static void divide(emission *e, int64_t photons)
         int64_t *first = k < lamps ? &e->lamps[k].first : &e->beams[k - lamps].first,
                 *count = k < lamps ? &e->lamps[k].count : &e->beams[k - lamps].count;
         const int targets = k < lamps ? e->ball_count : 1;
-        double own = 0.0;
+        double source_wanted = 0.0;
         for (int i = 0; i < targets; i++)
-            own += wanted[at + i];
+            source_wanted += wanted[at + i];
         for (int i = 0; k < lamps && i < targets; i++)
-            e->lamps[k].cones[i].fraction = own > 0.0 ? wanted[at + i] / own : 0.0;
+            e->lamps[k].cones[i].fraction = source_wanted > 0.0 ? wanted[at + i] / source_wanted : 0.0;
         at += targets;
-        so_far += own;
+        so_far += source_wanted;
         *first = e->count;
         e->count = all > 0.0 ? (int64_t)(so_far / all * (double)photons + 0.5) : 0;
         *count = e->count - *first;
@@ -244,7 +245,7 @@ double emission_light(const emission *e, int target, int64_t arrived)
     return arrived > 0 && emitted > 0.0 ? flux_of(e, target) * (double)arrived / emitted : 0.0;
 }
 
-/* What a target from which nothing arrived gets, of what it would get otherwise. */
+/* The fraction of its photons that a target keeps if nothing arrived from it. */
 #define SILENT_FRACTION 0.02
 
 void emission_end_pilot(emission *e, const bool *delivers)
@@ -255,20 +256,20 @@ void emission_end_pilot(emission *e, const bool *delivers)
     e->is_pilot = false;
 }
 
-/* Of all photons a pilot is at most one of PILOT_PART. */
+/* Photons per target of a pilot, which in all has at most 1 / PILOT_PART of the photons. */
 enum { PILOT_EACH_MOST = 256, PILOT_EACH_LEAST = 32, PILOT_PART = 16 };
 
 bool emission_begin_pilot(emission *e)
 {
-    int some = 0;
+    int shining = 0;
     for (int k = 0; k < emission_target_count(e); k++) {
         e->wanted[k] = flux_of(e, k) > 0.0 ? 1.0 : 0.0;
-        some += flux_of(e, k) > 0.0;
+        shining += flux_of(e, k) > 0.0;
     }
-    const int64_t each = e->photons / (PILOT_PART * (some > 0 ? some : 1));
-    if (some < 2 || each < PILOT_EACH_LEAST)
+    const int64_t per_target = e->photons / (PILOT_PART * (shining > 0 ? shining : 1));
+    if (shining < 2 || per_target < PILOT_EACH_LEAST)
         return false;
-    divide(e, some * (each < PILOT_EACH_MOST ? each : PILOT_EACH_MOST));
+    divide(e, shining * (per_target < PILOT_EACH_MOST ? per_target : PILOT_EACH_MOST));
     e->is_pilot = true;
     return true;
 }
@@ -278,7 +279,7 @@ status emission_create(const plan *p, int64_t photons, bool sizes, emission **ou
     emission *e = calloc(1, sizeof *e);
     *out = e;
     if (e) {
-        e->p = p; /* which emission_destroy needs */
+        e->p = p; /* emission_destroy needs it */
         e->lamps = calloc((size_t)p->light_count + 1, sizeof *e->lamps);
         e->beams = calloc((size_t)p->beam_count + 1, sizeof *e->beams);
     }

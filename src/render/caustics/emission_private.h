@@ -1,4 +1,4 @@
-/* The parts of an emission of photons, for emission.c and emission_aim.c alone. */
+/* Internals of the emission of photons, used only by emission.c and emission_aim.c. */
 #pragma once
 
 #include "render/caustics/emission.h"
@@ -7,17 +7,17 @@
 
 #include <math.h>
 
-enum { CONES_MAX = 64 }; /* of a scene with more solids that deflect light, one ball holds them all */
+enum { CONES_MAX = 64 }; /* if more solids deflect light, one ball holds them all */
 
 typedef struct ball {
-    vec3 centre, half; /* half: of the box around the solid, along the axes */
+    vec3 centre, half; /* half: half extents of the solid's axis-aligned box */
     double radius;     /* infinite: no bounds */
     int solid;         /* -1: several */
 } ball;
 
 typedef struct cone {
     vec3 axis;
-    double cap;      /* 1 - the cosine of its half angle; 2: all directions; of a sun, 0: one direction */
+    double cap;      /* 1 - the cosine of its half angle; 2: all directions; for a sun, 0: one direction */
     double flux;     /* relative to that of the other cones and beams; 0: the lamp does not shine there */
     double fraction; /* of the lamp's photons */
 } cone;
@@ -45,18 +45,18 @@ struct emission {
     lamp_emission *lamps;
     beam_emission *beams;
     int64_t count;
-    double *wanted; /* photons, relative, by target */
+    double *wanted; /* relative numbers of photons by target */
 };
 
 static inline unit_pair emission_pair(const emission *e, int64_t i, uint64_t purpose)
 {
     enum { PILOT = 0x80 };
-    const uint64_t own = e->is_pilot ? purpose | PILOT : purpose;
-    const sobol_point s = sobol_at((uint32_t)i, (own << 32 | DRAW_PHOTON) ^ e->p->draws.seed_hash);
+    const uint64_t source = e->is_pilot ? purpose | PILOT : purpose;
+    const sobol_point s = sobol_at((uint32_t)i, (source << 32 | DRAW_PHOTON) ^ e->p->draws.seed_hash);
     return (unit_pair){random_unit(s.x), random_unit(s.y)};
 }
 
-/* Of a lamp that is a sphere, else 0. */
+/* The radius of a lamp that is a sphere, else 0. */
 static inline double sphere_radius(const emission *e, int lamp)
 {
     return e->sizes && !light_is_flat(&e->p->lights[lamp]) ? e->p->lights[lamp].radius : 0.0;
@@ -72,8 +72,8 @@ static inline bool is_sun(const emission *e, int lamp)
     return e->p->lights[lamp].kind == LIGHT_SUN;
 }
 
-/* The rectangle across a direction that a sun's rays along it pass: around the solid's box, along the longest of the
- * box's edges as seen along the direction. */
+/* The rectangle, perpendicular to a direction, through which a sun's rays in that direction pass: around the solid's
+ * box, aligned with the box's edge that is longest in projection. */
 typedef struct sunlit_area {
     vec3 centre, u, v; /* u and v: unit vectors across the direction */
     double across, up; /* half its size along u and v */
@@ -81,7 +81,7 @@ typedef struct sunlit_area {
 
 sunlit_area sunlit_area_of(const emission *e, int k, vec3 direction);
 
-/* From where a sun's rays begin to the middle of the scene. */
+/* The distance from the start of a sun's rays to the middle of the scene. */
 static inline double sun_path(const emission *e)
 {
     return 0x1p10 * fmax(e->p->geometry->extent, vec3_length(e->p->view.eye));

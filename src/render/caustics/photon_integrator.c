@@ -1,7 +1,7 @@
-/* Tracing of photons. A ray's sample key is the photon's number, with its wavelength; its throughput is its fraction of
- * the power with which the photon began. With polarisation its Stokes vector is that of an analyser that went the same
- * way backwards: what light keeps between two ends does not depend on the direction, and a linearly polarised lamp is
- * the analyser that passes its field (Stokes and Helmholtz reversion; Chandrasekhar, Radiative Transfer, 1950, section
+/* Tracing of photons. A ray's sample key is the photon's number, with its wavelength; its throughput is the remaining
+ * fraction of the photon's initial power. With polarisation its Stokes vector is that of an analyser on the reversed
+ * path: the transmittance between two ends does not depend on the direction, and a linearly polarised lamp acts as the
+ * analyser that transmits its field (Stokes and Helmholtz reversion; Chandrasekhar, Radiative Transfer, 1950, section
  * 13). */
 #include "render/caustics/photon_integrator.h"
 
@@ -10,16 +10,16 @@
 #include "render/shade/shading.h"
 #include <stdlib.h>
 
-/* Branches with less of the photon's power are followed at random. */
+/* Branches with a smaller fraction of the photon's power are followed at random. */
 #define LEAST_PHOTON 0.02
-/* The radius of a disc as a fraction of that of the lamp's blur, as if light went on straight: a lens may make the
- * lamp's image smaller. */
+/* The radius of a disc as a fraction of the lamp's blur in undeflected light, since a lens may make the lamp's image
+ * smaller. */
 #define BLUR_FRACTION 0.1
 
 typedef struct photon_work {
     photon_list *found;
     double passed[ROW], bent[ROW]; /* as in the queue, up to the hits, by ray of the batch */
-    const int *list;               /* the gathered rays in the batch */
+    const int *list;               /* numbers of the gathered rays in the batch */
 } photon_work;
 
 static photon_work *work_of(tracer *t)
@@ -34,9 +34,9 @@ static bool begin(tracer *t)
     return t->worker_data != NULL;
 }
 
-static void end(void *own)
+static void end(void *work)
 {
-    free(own);
+    free(work);
 }
 
 static camera_sampling sampling(const render_settings *r)
@@ -90,8 +90,8 @@ static void place(tracer *t, const int *list)
     work_of(t)->list = list;
 }
 
-/* The photons of the gathered group arrive: those of lamps only after a mirror or a clear solid, shadow rays bring the
- * others' light; those of beams at once. */
+/* Stores the photons of the gathered group: those of lamps only after a mirror or a clear solid, because shadow rays
+ * supply direct light; those of beams always. */
 static void arrive(tracer *t, int depth)
 {
     photon_frame *f = t->target.state;
@@ -119,8 +119,8 @@ static void arrive(tracer *t, int depth)
 }
 
 typedef struct photon_branch {
-    bool refracted, polarised; /* polarised: its Stokes vector is the surface's */
-    vec3 direction, left;      /* its fraction of the photon's power, by channel */
+    bool refracted, polarised; /* polarised: it has the Stokes vector of the surface's branch */
+    vec3 direction, left;      /* left: its fraction of the photon's power, by channel */
 } photon_branch;
 
 static double power_of(const photon_branch *b)
@@ -145,7 +145,7 @@ static bool has_branch(const tracer *t, int k, bool refracted)
     return (refracted ? t->surface.branches.refract[k] : t->surface.branches.reflect[k]) > 0.0;
 }
 
-/* A branch of record k, of a surface that lets pass this fraction of it. */
+/* A branch of record k, of which the surface transmits the fraction `passing`. */
 static photon_branch branch_of(const tracer *t, int k, bool refracted, double passing)
 {
     photon_branch one = {.refracted = refracted, .polarised = true};
@@ -156,7 +156,7 @@ static photon_branch branch_of(const tracer *t, int k, bool refracted, double pa
     return one;
 }
 
-/* The fraction of a branch that its facet does not stop. */
+/* The fraction of a branch that other facets do not mask. */
 static double passing_of(tracer *t, int k, bool refracted, const rough_surface *r)
 {
     return has_branch(t, k, refracted)
@@ -164,29 +164,29 @@ static double passing_of(tracer *t, int k, bool refracted, const rough_surface *
                : 0.0;
 }
 
-/* Both branches of record k at a facet; or, with the chance that the facet's light is stopped, one of further facets.
- * */
+/* Both branches of record k at a facet; or, with the probability that other facets mask the light, one branch of light
+ * of further facets. */
 static void meet_facet(tracer *t, int k, int depth, const rough_surface *r, photon_branch both[2])
 {
     const photon_frame *f = t->target.state;
     const branch_group *b = &t->surface.branches;
     const double back = passing_of(t, k, false, r), on = passing_of(t, k, true, r);
-    double stopped = 0.0;
+    double masked = 0.0;
     if (r->finish) {
         const double clear = t->surface.mat->surface.transparency;
-        stopped = r->opaque ? 1.0 - back : b->reflect[k] * (1.0 - back) + b->refract[k] / clear * (1.0 - on);
+        masked = r->opaque ? 1.0 - back : b->reflect[k] * (1.0 - back) + b->refract[k] / clear * (1.0 - on);
         double chance;
         const unit_pair place = emission_further(f->from, number_of(t->surface.gathered.sample_key[k]), depth, &chance);
-        if (chance < stopped) {
-            const further_light l = rough_draw_further(t, r, k, chance / stopped, place);
+        if (chance < masked) {
+            const further_light l = rough_draw_further(t, r, k, chance / masked, place);
             both[0] =
                 (photon_branch){.refracted = l.refracted, .direction = l.direction, .left = power_left(t, k, l.factor)};
             both[1] = (photon_branch){.refracted = !l.refracted};
             return;
         }
     }
-    both[0] = branch_of(t, k, false, back / (1.0 - stopped));
-    both[1] = branch_of(t, k, true, on / (1.0 - stopped));
+    both[0] = branch_of(t, k, false, back / (1.0 - masked));
+    both[1] = branch_of(t, k, true, on / (1.0 - masked));
 }
 
 static void enqueue_branch(tracer *t, int k, int depth, const photon_branch *b)
@@ -213,7 +213,7 @@ static void enqueue_branch(tracer *t, int k, int depth, const photon_branch *b)
     COUNT(refracted ? t->account.counters.refract++ : t->account.counters.reflect++);
 }
 
-/* A branch is enqueued with its fraction of the power, or ended. */
+/* Enqueues a branch with its fraction of the power; a faint one ends at random. */
 static void follow(tracer *t, int k, int depth, photon_branch *b)
 {
     const photon_frame *f = t->target.state;
@@ -229,7 +229,8 @@ static void follow(tracer *t, int k, int depth, photon_branch *b)
     enqueue_branch(t, k, depth, b);
 }
 
-/* Of a deep photon one branch goes on, chosen by its power, with the power of both; a faint one ends at random. */
+/* Enqueues one branch of a deep photon, chosen in proportion to power, with the power of both; a faint photon ends at
+ * random. */
 static void follow_one(tracer *t, int k, int depth, photon_branch both[2])
 {
     const photon_frame *f = t->target.state;
@@ -245,7 +246,7 @@ static void follow_one(tracer *t, int k, int depth, photon_branch both[2])
     enqueue_branch(t, k, depth, chosen);
 }
 
-/* The branches of photons at facets of a rough surface, one for each photon. */
+/* Computes the branches of photons at facets of a rough surface, one facet per photon. */
 static void meet_facets(tracer *t, double alpha, bool opaque, int depth, rough_surface *r)
 {
     const photon_frame *f = t->target.state;
@@ -290,7 +291,7 @@ static void shade(tracer *t, int depth, int priority_index)
 }
 
 const integrator integrator_of_photons = {.traced = true,
-                                          .by_sample = true,
+                                          .needs_sample_number = true,
                                           .sampling = sampling,
                                           .begin = begin,
                                           .end = end,

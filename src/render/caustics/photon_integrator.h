@@ -1,4 +1,4 @@
-/* The rule by which photons are traced, as an integrator of its own frame (render/tracer/integrator.h). */
+/* The integrator that traces photons, as a separate frame (render/tracer/integrator.h). */
 #pragma once
 
 #include "render/caustics/emission.h"
@@ -9,12 +9,12 @@
 typedef struct photon_frame {
     const emission *from;
     atomic_int_fast64_t *arrived; /* photons at matte surfaces, by target */
-    bool is_pilot;                /* which counts only */
+    bool is_pilot;                /* a pilot only counts photons */
     atomic_bool out_of_memory;
 } photon_frame;
 
 extern const integrator integrator_of_photons;
 
-/* Enqueues photons first .. end - 1 in the tracer's first queue, which must have room; found: where those that arrive
- * are added from now on. */
+/* Enqueues photons first .. end - 1 in the tracer's first queue, which must have room; found: the list to which
+ * arriving photons are added from now on. */
 void photon_integrator_emit(tracer *t, int64_t first, int64_t end, photon_list *found);

@@ -1,4 +1,4 @@
-/* The batch loop of a tracer: which queue is traced next, sorting of hits, shadow rays. */
+/* The batch loop of a tracer: choice of the next queue, grouping of hits, shadow rays. */
 #include "render/frame/tracers.h"
 
 #include "base/cancel.h"
@@ -9,10 +9,10 @@
 #include "render/shade/radiance.h"
 #include "render/shade/shading.h"
 
-/* The continuation of a depth buffer's view behind a layer does not count as another ray. */
+/* In a depth buffer, the view's continuation behind a layer is not counted as another ray. */
 static bool is_counted(const tracer *t, int depth)
 {
-    return depth == 0 || t->rule->traced;
+    return depth == 0 || t->frame_integrator->traced;
 }
 
 static int64_t visibility_begins(const tracer *t)
@@ -41,22 +41,24 @@ static void run_rays(tracer *t, int depth)
     if (t->batch.scratch.segments)
         absorption_announce(t, q, first, rays.count);
     const int64_t began_ns = visibility_begins(t);
-    t->rule->intersect(t, q, first, depth, &rays);
+    t->frame_integrator->intersect(t, q, first, depth, &rays);
     visibility_ends(t, began_ns);
     if (t->batch.scratch.segments) {
         absorption_exempt_sky(t);
         absorption_dim(t, q, first, rays.count);
     }
     hit_groups *groups = &t->batch.groups;
-    hit_groups_make(&t->batch.hits, rays.count, p->alike, t->marks, t->marks + p->geometry->primitive_count, groups);
+    hit_groups_make(&t->batch.hits, rays.count, p->shading_class, t->marks, t->marks + p->geometry->primitive_count,
+                    groups);
     if (groups->missed > 0)
-        t->rule->background(t, q, first, groups->miss, groups->missed);
-    for (int g = 0, alike; g < groups->count; g += alike) {
-        const int kind = p->alike[groups->group[g].priority_index];
-        for (alike = 1; g + alike < groups->count; alike++)
-            if (p->alike[groups->group[g + alike].priority_index] != kind)
+        t->frame_integrator->background(t, q, first, groups->miss, groups->missed);
+    /* Runs of one class, in which shading_groups decides which groups can be combined. */
+    for (int g = 0, run; g < groups->count; g += run) {
+        const int shading_class = p->shading_class[groups->group[g].priority_index];
+        for (run = 1; g + run < groups->count; run++)
+            if (p->shading_class[groups->group[g + run].priority_index] != shading_class)
                 break;
-        shading_groups(t, depth, first, &groups->group[g], alike);
+        shading_groups(t, depth, first, &groups->group[g], run);
     }
 }
 
@@ -116,7 +118,7 @@ static void run_deep(tracer *t)
         }
 }
 
-/* The deepest depth whose rays wait for a full batch only. */
+/* The largest depth whose rays wait only for a full batch. */
 static int deepest(const tracer *t)
 {
     return goes_deep(t->queues.depth_limit) ? DEPTH_DEEP - 1 : t->queues.depth_limit;
@@ -148,16 +150,16 @@ void tracer_run_full(tracer *t)
         ;
 }
 
-/* The number of rays made at once: those of as many whole pixels as fit into a batch, or a full batch if a pixel has
- * more rays than that. */
-static int rays_at_once(int64_t each)
+/* The number of camera rays made at once: those of as many pixels as fit into a batch, or a full batch if a pixel has
+ * more rays. */
+static int rays_at_once(int64_t rays_per_pixel)
 {
-    return each >= BATCH ? BATCH : (int)(BATCH / each * each);
+    return rays_per_pixel >= BATCH ? BATCH : (int)(BATCH / rays_per_pixel * rays_per_pixel);
 }
 
 int tracer_camera_rays(tracer *t, int x, int y)
 {
-    const int count = (int)t->rule->sampling(&t->target.frame_plan->render).rays;
+    const int count = (int)t->frame_integrator->sampling(&t->target.frame_plan->render).rays;
     camera_rays_enqueue(t, y, x, 0, count);
     return count;
 }
@@ -166,7 +168,7 @@ int tracer_camera_rays(tracer *t, int x, int y)
 static void begin_tile(tracer *t, const image_tile *tile)
 {
     const int64_t began = t->target.pixel_ns ? clock_wall_ns() : 0;
-    t->rule->tile(t, tile);
+    t->frame_integrator->tile(t, tile);
     if (!t->target.pixel_ns)
         return;
     const double pixels = (double)(tile->x1 - tile->x0) * (double)(tile->y1 - tile->y0),
@@ -176,26 +178,26 @@ static void begin_tile(tracer *t, const image_tile *tile)
             t->target.pixel_ns[(int64_t)y * t->target.frame_plan->render.width + x] += fraction;
 }
 
-/* The size of the blocks of pixels whose rays fill a batch: square blocks for meshes, because nearby rays take the same
- * path through their hierarchies; otherwise a row. */
+/* The size of the blocks of pixels whose rays fill a batch: square blocks for meshes, because nearby rays traverse the
+ * same parts of their hierarchies; otherwise a row. */
 typedef struct pixel_block {
     int width, height;
 } pixel_block;
-static pixel_block block_of(const plan *p, const image_tile *tile, int64_t each)
+static pixel_block block_of(const plan *p, const image_tile *tile, int64_t rays_per_pixel)
 {
     const bool by_hierarchy = p->geometry->meshes || p->geometry->tree;
-    if (by_hierarchy && each == 1)
+    if (by_hierarchy && rays_per_pixel == 1)
         return (pixel_block){16, BATCH / 16};
-    if (by_hierarchy && each == 4)
+    if (by_hierarchy && rays_per_pixel == 4)
         return (pixel_block){8, BATCH / 32};
     return (pixel_block){tile->x1 - tile->x0, 1};
 }
 
-/* Traces pixels of a row with an equal number of rays; false when cancelled. */
-static bool render_pixels(tracer *t, int y, int x0, int x1, int64_t each)
+/* Renders pixels of a row with an equal number of rays; false when cancelled. */
+static bool render_pixels(tracer *t, int y, int x0, int x1, int64_t rays_per_pixel)
 {
-    const int64_t all = each * (x1 - x0);
-    const int at_once = rays_at_once(each);
+    const int64_t all = rays_per_pixel * (x1 - x0);
+    const int at_once = rays_at_once(rays_per_pixel);
     for (int64_t ray = 0; ray < all; ray += at_once) {
         camera_rays_enqueue(t, y, x0, ray, all - ray < at_once ? (int)(all - ray) : at_once);
         while (run_full(t))
@@ -205,12 +207,12 @@ static bool render_pixels(tracer *t, int y, int x0, int x1, int64_t each)
     return true;
 }
 
-/* Traces a row of a block; false when cancelled. */
-static bool render_row(tracer *t, int y, int x0, int x1, int64_t each)
+/* Renders a row of a block; false when cancelled. */
+static bool render_row(tracer *t, int y, int x0, int x1, int64_t rays_per_pixel)
 {
     const plan *p = t->target.frame_plan;
     if (!p->draws.by_pixel)
-        return render_pixels(t, y, x0, x1, each);
+        return render_pixels(t, y, x0, x1, rays_per_pixel);
     for (int x = x0; x < x1; x++)
         if (!render_pixels(t, y, x, x + 1, path_count(&p->draws, (int64_t)y * p->render.width + x)))
             return false;
@@ -219,16 +221,16 @@ static bool render_row(tracer *t, int y, int x0, int x1, int64_t each)
 
 void tracer_render_tile(tracer *t, const image_tile *tile, atomic_uint_fast64_t *begun)
 {
-    if (t->rule->tile)
+    if (t->frame_integrator->tile)
         begin_tile(t, tile);
-    const int64_t each = t->rule->sampling(&t->target.frame_plan->render).rays;
-    const pixel_block block = block_of(t->target.frame_plan, tile, each);
+    const int64_t rays_per_pixel = t->frame_integrator->sampling(&t->target.frame_plan->render).rays;
+    const pixel_block block = block_of(t->target.frame_plan, tile, rays_per_pixel);
     for (int top = tile->y0; top < tile->y1; top += block.height) {
         const int bottom = top + block.height < tile->y1 ? top + block.height : tile->y1;
         for (int left = tile->x0; left < tile->x1; left += block.width) {
             const int right = left + block.width < tile->x1 ? left + block.width : tile->x1;
             for (int y = top; y < bottom; y++)
-                if (!render_row(t, y, left, right, each))
+                if (!render_row(t, y, left, right, rays_per_pixel))
                     return;
         }
         atomic_fetch_add_explicit(begun, (uint64_t)(tile->x1 - tile->x0) * (uint64_t)(bottom - top),
@@ -236,7 +238,7 @@ void tracer_render_tile(tracer *t, const image_tile *tile, atomic_uint_fast64_t 
     }
 }
 
-/* When no full batch is left, the shallowest rays go first: their children refill the deeper queues. */
+/* When no full batch is left, the shallowest rays are traced first, because their children refill the deeper queues. */
 void tracer_finish(tracer *t)
 {
     for (int d = 0; d <= deepest(t) && !cancel_asked(); d++) {

@@ -1,4 +1,4 @@
-/* Photons before a frame: tracing them, and the map of those that arrived. */
+/* Traces photons before a frame, and builds the map of those that arrive on matte surfaces. */
 #include "render/frame/caustics.h"
 
 #include "base/cancel.h"
@@ -8,22 +8,23 @@
 #include <stdlib.h>
 #include <string.h>
 
-/* Photons that a worker traces at once, and the widest disc as a fraction of what makes the caustic. */
+/* Photons that a worker traces at once, and the radius of the widest disc as a fraction of the extent of the solids
+ * that make caustics. */
 enum { CHUNK = 4096 };
 #define WIDEST 0.1
-/* The narrowest disc's radius in pixels, as the camera sees it without deflection. */
+/* Radius of the narrowest disc in pixels, as seen without deflection. */
 #define LEAST_PIXELS 0.5
 
 struct caustics {
-    plan *of;      /* refers to the map */
-    plan settings; /* of the photons' frame: a copy of the plan, which owns what it refers to */
+    plan *frame_plan; /* the frame's plan, which refers to the map */
+    plan settings;    /* the photons' plan: a shallow copy of frame_plan */
     emission *from;
     photon_frame frame;
     tracer_pool *tracers;
     photon_list *found; /* by worker */
     int workers;
     photon_map *map;
-    atomic_int_fast64_t next; /* the first photon, then the first block of the map, that no worker has taken */
+    atomic_int_fast64_t next; /* the next photon to trace, then the next photon of the map to spread */
 };
 
 static bool stopped(const caustics *c)
@@ -42,7 +43,8 @@ static status prepare(caustics *c, plan *p, diagnostic *why)
         return STATUS_OK;
     c->frame.from = c->from;
     c->frame.arrived = calloc((size_t)emission_target_count(c->from) + 1, sizeof *c->frame.arrived);
-    const tracer_target target = {.frame_plan = &c->settings, .state = &c->frame, .rule = &integrator_of_photons};
+    const tracer_target target = {
+        .frame_plan = &c->settings, .state = &c->frame, .integrator_override = &integrator_of_photons};
     if (!c->frame.arrived || !tracer_pool_begin(c->tracers, c->workers, &target))
         return out_of_memory(why);
     c->frame.is_pilot = emission_begin_pilot(c->from);
@@ -55,7 +57,7 @@ status caustics_create(plan *p, isa level, int workers, caustics **out, diagnost
     caustics *c = calloc(1, sizeof *c);
     if (!c)
         return out_of_memory(why);
-    c->of = p;
+    c->frame_plan = p;
     c->settings = *p;
     c->settings.render.depth = DEPTH_UNLIMITED;
     c->settings.render.min_weight = 0.0;
@@ -75,8 +77,8 @@ void caustics_destroy(caustics *c)
 {
     if (!c)
         return;
-    if (c->of->photons == c->map)
-        c->of->photons = NULL;
+    if (c->frame_plan->photons == c->map)
+        c->frame_plan->photons = NULL;
     for (int i = 0; c->found && i < c->workers; i++)
         free(c->found[i].list);
     free(c->found);
@@ -175,7 +177,7 @@ static status finish_map(caustics *c, diagnostic *why)
 {
     (void)why;
     if (c->map && !stopped(c) && photon_map_finish(c->map))
-        c->of->photons = c->map;
+        c->frame_plan->photons = c->map;
     return STATUS_OK;
 }
 
@@ -191,21 +193,21 @@ void caustics_count(const caustics *c, ray_counters *counters)
         counters->photon += sum.by_depth[d];
 }
 
-/* A caustic that rests on fewer photons is mostly noise; one with less of all light that arrives is not missed. */
+/* A caustic of fewer photons is mostly noise; a caustic with a smaller fraction of the photons' light is negligible. */
 enum { PHOTONS_ENOUGH = 1000 };
 #define LIGHT_SEEN 1e-3
 
-/* The light that a solid deflects to matte surfaces, and its photons. */
+/* The light that a solid deflects to matte surfaces, and the number of its photons. */
 static double light_by(const caustics *c, int number, int64_t *arrived)
 {
     double sum = 0.0;
     *arrived = 0;
     for (int k = 0; k < emission_target_count(c->from); k++) {
-        const int64_t some = atomic_load(&c->frame.arrived[k]);
+        const int64_t count = atomic_load(&c->frame.arrived[k]);
         if (emission_target_solid(c->from, k) != number)
             continue;
-        sum += emission_light(c->from, k, some);
-        *arrived += some;
+        sum += emission_light(c->from, k, count);
+        *arrived += count;
     }
     return sum;
 }

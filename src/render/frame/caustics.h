@@ -1,8 +1,8 @@
 /* Caustics by photons (render.caustics: photons): before a frame, photons from the lamps are traced through mirrors and
  * clear solids to matte surfaces, by the same tracer that traces camera rays; then each matte surface that a camera ray
- * or path meets receives the irradiance of this photon map, besides direct light. Shadow rays stop at every solid: what
- * passes clear ones is the photons' light. Both branches of a photon at an interface are followed; a branch below
- * LEAST_PHOTON of the photon's power survives at random, with more power.
+ * or path meets receives the irradiance of this photon map, in addition to direct light. Every solid blocks shadow
+ * rays, because the photons supply the light through clear solids. Both branches of a photon at an interface are
+ * followed; a branch below LEAST_PHOTON of the photon's power survives at random, with more power.
  *
  * The map is the same for any number of workers. Its only error besides noise is the width of the photons' discs.
  * Ownership: caustics_create allocates, caustics_destroy releases; the plan is borrowed, and refers to the map from
@@ -16,7 +16,8 @@
 
 typedef struct caustics caustics;
 
-/* For a plan with render.caustics set; *out is NULL if nothing can make a caustic. level: of the kernels. */
+/* For a plan with render.caustics set; *out is NULL if nothing can make a caustic. level: the kernels' instruction
+ * set. */
 status caustics_create(plan *p, isa level, int workers, caustics **out, diagnostic *why);
 void caustics_destroy(caustics *c);
 
@@ -29,10 +30,10 @@ typedef struct caustics_step {
 enum { CAUSTICS_STEPS = 3 };
 extern const caustics_step caustics_steps[CAUSTICS_STEPS];
 
-/* After the steps: the photons' rays, in counters->photon. */
+/* Adds the number of the photons' rays to counters->photon; call it after the steps. */
 void caustics_count(const caustics *c, ray_counters *counters);
 
-/* After the steps. */
+/* The solid with too few photons, if there is one; call it after the steps. */
 caustics_few caustics_count_few(const caustics *c);
 
 /* Memory for a frame, bytes. */

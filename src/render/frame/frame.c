@@ -1,5 +1,5 @@
-/* A frame: after the photons and the steps of the integrator, workers render tiles; what they counted and timed is
- * collected into a result. */
+/* A frame: first photons and the integrator's steps, then workers render tiles; their counts and times are collected
+ * into a result. */
 #include "render/frame/frame.h"
 
 #include "base/cancel.h"
@@ -22,9 +22,9 @@ typedef struct event_list {
 typedef struct worker_state {
     _Alignas(64) worker_report report;
     event_list events;
-    atomic_uint_fast64_t pixels; /* begun; read by watch */
+    atomic_uint_fast64_t pixels; /* pixels begun; read by watch */
     bool out_of_memory, misplaced, out_of_range;
-    film *tile;       /* of the tile that a source gave it, or NULL */
+    film *tile;       /* film of the tile from a tile source, or NULL */
     double *variance; /* of that tile, or NULL */
 } worker_state;
 
@@ -34,7 +34,7 @@ typedef struct frame {
     const render_options *options;
     const plan *frame_plan;
     const film *img;
-    const integrator *rule;
+    const integrator *frame_integrator;
     int replicates;            /* of the film */
     void *state;               /* the integrator's state for the frame */
     void (*step)(void *state); /* the current step of its pre-pass */
@@ -95,7 +95,7 @@ static bool next_tile(frame *f, int worker, uint64_t taken, image_tile *out)
            (source ? source->next(source->context, worker, out) : schedule_next(&f->tiles, worker, taken, out));
 }
 
-/* Renders a tile of a source to its last ray, and hands it over. */
+/* Renders a tile from a tile source completely, and returns it to the source. */
 static void render_for_source(frame *f, tracer *t, worker_state *d, const image_tile *tile)
 {
     const tile_source *source = f->options->source;
@@ -172,7 +172,7 @@ static void work(void *context, int worker)
     d->report.wall_s = since(f) - began_s;
 }
 
-/* Called every watch_s: whoever cancels need not wait for the next progress. */
+/* Called every watch_s, so that a cancellation does not wait for the next progress report. */
 static void watch(void *context)
 {
     frame *f = context;
@@ -231,17 +231,17 @@ static void count_tests(const plan *p, ray_counters *c)
     }
 }
 
-/* From the tracer's units (render/tracer/tracer.h) to the mean of RGB, relative to the pixel's camera rays, which have
- * half the weight behind an analyser. */
+/* Converts pixel_cut from the tracer's units (render/tracer/tracer.h) to the mean of RGB, relative to the pixel's
+ * camera rays, which an analyser halves. */
 static void scale_cut(const plan *p, render_result *result)
 {
     const size_t pixels = (size_t)result->img->width * (size_t)result->img->height;
-    const double begins = p->analyser == ANALYSER_NONE ? 1.0 : 0.5;
+    const double camera_weight = p->analyser == ANALYSER_NONE ? 1.0 : 0.5;
     for (size_t i = 0; i < pixels; i++)
-        result->pixel_cut[i] /= 3.0 * COUNTERS_CUT_ONE * begins;
+        result->pixel_cut[i] /= 3.0 * COUNTERS_CUT_ONE * camera_weight;
 }
 
-/* Collects the results of the workers' workers. */
+/* Collects the results of the workers. */
 static status collect(frame *f, bool in_range, render_result *result, diagnostic *why)
 {
     const int count = (int)f->s->render.threads;
@@ -256,12 +256,12 @@ static status collect(frame *f, bool in_range, render_result *result, diagnostic
         in_range &= !d->out_of_range;
     }
     const bool overflow = tracer_pool_collect(f->owner->tracers, &result->counters) || !in_range;
-    if (f->rule->traced)
+    if (f->frame_integrator->traced)
         count_tests(f->frame_plan, &result->counters);
     if (f->options && f->options->timeline)
         out_of_memory |= !join_events(f->workers, count, result);
     if (out_of_memory)
-        return diagnose(why, STATUS_FAILURE, "use fewer threads or less depth", "out of memory while tracing");
+        return diagnose(why, STATUS_FAILURE, "use fewer threads or less depth", "out of memory while rendering");
     if (misplaced)
         return diagnose(why, STATUS_FAILURE, "set render.pin to none",
                         "a worker cannot be bound to its processing unit");
@@ -286,7 +286,7 @@ static worker_state *make_worker_states(int count)
     return workers;
 }
 
-/* Films of one tile for each worker of a frame whose tiles come from a source. */
+/* Creates a film of one tile for each worker of a frame whose tiles come from a source. */
 static status make_tile_films(const scene *s, int side, worker_state *workers, diagnostic *why)
 {
     const int replicates = renderer_replicates(s);
@@ -343,7 +343,8 @@ static status trace_photons(frame *f, int count, plan *p, isa level, render_resu
 static status run_steps(frame *f, int count, diagnostic *why)
 {
     status code = STATUS_OK;
-    for (const integrator_step *step = f->rule->steps; step && step->parallel && code == STATUS_OK; step++) {
+    for (const integrator_step *step = f->frame_integrator->steps; step && step->parallel && code == STATUS_OK;
+         step++) {
         f->step = step->parallel;
         code = worker_pool_run(f->owner->threads, count, f->s->render.pool, run_step, NULL, 0.0, f, why);
         if (code == STATUS_OK && step->serial)
@@ -378,7 +379,7 @@ status frame_run(renderer *r, const scene *s, const render_options *options, pla
         f->frame_plan = p;
         f->img = result->img;
         f->replicates = renderer_replicates(s);
-        f->rule = integrator_for(&s->render);
+        f->frame_integrator = integrator_for(&s->render);
         f->state = state;
         f->workers = workers;
         schedule_start(&f->tiles, &s->render);
@@ -394,8 +395,8 @@ status frame_run(renderer *r, const scene *s, const render_options *options, pla
         if (code == STATUS_OK) {
             const bool in_range = !result->img || film_merge_replicates(result->img, result->variance);
             code = collect(f, in_range, result, why);
-            if (code == STATUS_OK && f->rule->finish)
-                code = f->rule->finish(state, &result->meshes, why);
+            if (code == STATUS_OK && f->frame_integrator->finish)
+                code = f->frame_integrator->finish(state, &result->meshes, why);
         }
     }
     destroy_worker_states(workers, count);

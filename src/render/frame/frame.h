@@ -1,4 +1,4 @@
-/* The parts of the renderer, for this folder alone. */
+/* Internals of the renderer, used only in this folder. */
 #pragma once
 
 #include "base/worker_pool.h"
@@ -12,12 +12,12 @@ struct renderer {
     tracer_pool *tracers;
 };
 
-/* frame.c: renders into a result that is prepared; state: the integrator's for the frame. */
+/* frame.c: renders into a result of render_result_create; state: the integrator's state for the frame. */
 status frame_run(renderer *r, const scene *s, const render_options *options, plan *p, void *state,
                  render_result *result, diagnostic *why);
 
-/* render_result.c: the memory of a result; NULL or an error when out of memory. A map is of zeros that are really
- * written. */
+/* render_result.c: allocates a result. render_map_create returns a map of zeros whose pages exist, or NULL when out of
+ * memory. */
 status render_result_create(const scene *s, const render_options *options, render_result **out, diagnostic *why);
 double *render_map_create(size_t pixels);
 film_space render_film_space(const scene *s);

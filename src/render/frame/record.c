@@ -11,19 +11,19 @@
 #include <stdlib.h>
 #include <string.h>
 
-static void read_row(const void *of, int y, float *rgb)
+static void read_row(const void *context, int y, float *rgb)
 {
-    const film *f = of;
+    const film *f = context;
     film_read(f, 0, y, f->width, y + 1, rgb, 0);
 }
 
-static status write_with_scene(image_rows rows, const scene *of, const char *path, int bits, diagnostic *why)
+static status write_with_scene(image_rows rows, const scene *s, const char *path, int bits, diagnostic *why)
 {
     shared_texts texts = {.count = 0};
-    if (of && image_format_of(path) == IMAGE_PNG)
-        TRY(shared_texts_make(of, &texts, why));
-    if (of)
-        rows.tone = camera_tone(of);
+    if (s && image_format_of(path) == IMAGE_PNG)
+        TRY(shared_texts_make(s, &texts, why));
+    if (s)
+        rows.tone = camera_tone(s);
     rows.texts = texts.item;
     rows.text_count = texts.count;
     const status code = image_write_rows(&rows, path, bits, why);
@@ -31,15 +31,15 @@ static status write_with_scene(image_rows rows, const scene *of, const char *pat
     return code;
 }
 
-status record_image(const film *f, const scene *of, const char *path, int bits, diagnostic *why)
+status record_image(const film *f, const scene *s, const char *path, int bits, diagnostic *why)
 {
-    return write_with_scene((image_rows){.width = f->width, .height = f->height, .read = read_row, .of = f}, of, path,
+    return write_with_scene((image_rows){.width = f->width, .height = f->height, .read = read_row, .of = f}, s, path,
                             bits, why);
 }
 
-status record_drawing(const image *img, const scene *of, const char *path, int bits, diagnostic *why)
+status record_drawing(const image *img, const scene *s, const char *path, int bits, diagnostic *why)
 {
-    return write_with_scene(image_rows_of(img), of, path, bits, why);
+    return write_with_scene(image_rows_of(img), s, path, bits, why);
 }
 
 static status image_of_values(const double *values, const film *f, image **out, diagnostic *why)

@@ -1,4 +1,4 @@
-/* The result of a frame: its memory, its noise, and the sum of tiles that several processes trace. */
+/* The result of a frame: its memory and noise; and frames whose tiles several processes render. */
 #include "render/frame/renderer.h"
 
 #include "render/frame/caustics.h"
@@ -9,8 +9,8 @@
 #include <stdlib.h>
 #include <string.h>
 
-/* A map of zeros that are really written, so that no pixel's time includes the allocation of a page; compilers turn
- * malloc and memset into calloc, which writes nothing. */
+/* A map of zeros, written explicitly, so that no pixel's time includes a page fault; compilers turn malloc and memset
+ * into calloc, which writes nothing. */
 double *render_map_create(size_t pixels)
 {
     double *map = malloc(pixels * sizeof *map);
@@ -21,8 +21,8 @@ double *render_map_create(size_t pixels)
 
 int renderer_replicates(const scene *s)
 {
-    const integrator *rule = integrator_for(&s->render);
-    return rule->replicates ? rule->replicates(&s->render) : 1;
+    const integrator *method = integrator_for(&s->render);
+    return method->replicates ? method->replicates(&s->render) : 1;
 }
 
 uint64_t renderer_result_bytes(const scene *s, const render_options *options)
@@ -127,7 +127,7 @@ void render_result_destroy(render_result *result)
     free(result);
 }
 
-/* --- a frame whose tiles are traced in several places --- */
+/* --- a frame whose tiles several processes render --- */
 
 render_settings tiles_settings(const render_settings *r, int side)
 {

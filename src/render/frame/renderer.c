@@ -1,4 +1,4 @@
-/* The renderer: its threads and tracers, and the renders of a frame, one or with a pilot before it. */
+/* The renderer: its threads and tracers; a frame's render, and the pilot render before it under render.error. */
 #include "render/frame/renderer.h"
 
 #include "base/elementary.h"
@@ -49,8 +49,8 @@ render_settings path_counts_pilot(const render_settings *r)
     return pilot;
 }
 
-/* The pilot's variance of a pixel, mean of the channels over the 3 x 3 pixels around it: that of one pixel alone is
- * known too little, and is often 0 where light is rare. */
+/* The pilot's variance at a pixel: the mean over channels and the 3 x 3 pixels around it, because a single pixel's
+ * estimate is too noisy, and is often 0 where light is rare. */
 static double variance_around(const render_result *pilot, int x, int y)
 {
     const int width = pilot->img->width, height = pilot->img->height;
@@ -58,15 +58,16 @@ static double variance_around(const render_result *pilot, int x, int y)
     int count = 0;
     for (int v = y > 0 ? y - 1 : 0; v <= y + 1 && v < height; v++)
         for (int u = x > 0 ? x - 1 : 0; u <= x + 1 && u < width; u++) {
-            const double *of = &pilot->variance[3 * ((size_t)v * (size_t)width + (size_t)u)];
-            sum += of[0] + of[1] + of[2];
+            const double *value = &pilot->variance[3 * ((size_t)v * (size_t)width + (size_t)u)];
+            sum += value[0] + value[1] + value[2];
             count += 3;
         }
     return sum / count;
 }
 
-/* Independent variance falls like n^-1, that of sobol at least like n^-1.25 where it is measured. Doubled as often as
- * needed: sobol is best with powers of two. */
+/* The number of paths for the requested error. The variance of independent paths falls like n^-1, that of sobol at
+ * least like n^-1.25 in measurements. The number is doubled until it suffices, because sobol is best with powers of
+ * two. */
 static int64_t paths_for(double variance, const render_settings *r, int64_t replicates)
 {
     const double excess = variance / (r->error * r->error),
@@ -108,16 +109,16 @@ static status render_with_threads(renderer *r, const scene *s, const render_opti
     THEN(code, plan_build(s, &p, why));
     if (code == STATUS_OK)
         p->draws.by_pixel = counts;
-    const integrator *rule = code == STATUS_OK ? integrator_for(&s->render) : NULL;
-    if (rule && rule->prepare)
-        code = rule->prepare(p, &state, why);
+    const integrator *method = code == STATUS_OK ? integrator_for(&s->render) : NULL;
+    if (method && method->prepare)
+        code = method->prepare(p, &state, why);
     THEN(code, render_result_create(s, options, &result, why));
     if (code == STATUS_OK) {
         result->meshes = p->meshes;
         code = frame_run(r, s, options, p, state, result, why);
     }
-    if (rule && rule->release)
-        rule->release(state);
+    if (method && method->release)
+        method->release(state);
     plan_destroy(p);
     if (code != STATUS_OK && code != STATUS_INTERRUPTED) {
         render_result_destroy(result);
@@ -127,11 +128,11 @@ static status render_with_threads(renderer *r, const scene *s, const render_opti
     return code;
 }
 
-/* A pilot has no progress of its own. */
-static void watch_pilot(void *context, double share_done)
+/* A pilot's progress is reported as 0. */
+static void watch_pilot(void *context, double fraction_done)
 {
     render_options *const *options = context;
-    (void)share_done;
+    (void)fraction_done;
     (*options)->progress((*options)->context, 0.0);
 }
 
@@ -150,7 +151,7 @@ static void add_pilot(render_result *result, const render_result *pilot)
     }
 }
 
-/* A pilot, then the frame with the number of paths that it gives each pixel. */
+/* Renders a pilot, then the frame with the numbers of paths per pixel that follow from it. */
 static status render_by_error(renderer *r, const scene *s, const render_options *options, render_result **out,
                               diagnostic *why)
 {

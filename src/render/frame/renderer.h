@@ -1,7 +1,7 @@
-/* The renderer: renders the frames of a scene on a pool of workers. The film depends only on the scene and its
- * parameters, and not on threads, schedule, tile, pinning, batch or instruction set. Ownership: a renderer owns its
- * pool, and may serve many frames and scenes, one at a time; the caller owns a result and releases it with
- * render_result_destroy. No global state: several renderers may run in one process. */
+/* The renderer: renders frames of a scene on a pool of workers. The film depends only on the scene and its parameters,
+ * and not on threads, schedule, tile, pinning, batch or instruction set. Ownership: a renderer owns its pool, and may
+ * serve many frames and scenes, one at a time; the caller owns a result and releases it with render_result_destroy. No
+ * global state: several renderers may run in one process. */
 #pragma once
 
 #include "base/counters.h"
@@ -33,8 +33,8 @@ typedef struct worker_report {
     double busy_s;  /* from its first tile to its last ray; 0 without a tile */
     /* part of busy_s spent in visibility queries (nearest hits and shadows); NaN for scenes without meshes */
     double visibility_s;
-    double waiting_s;                          /* the frame's wall time less busy_s */
-    int rank;                                  /* of the processes that render the frame; 0: the only one */
+    double waiting_s;                          /* the frame's wall time minus busy_s */
+    int rank;                                  /* number of its process, if several render the frame; else 0 */
     uint64_t tiles;                            /* tiles that it rendered */
     uint64_t camera, reflect, refract, shadow; /* rays that it traced */
     int pu;                                    /* processing unit at the end; -1: unknown */
@@ -47,9 +47,8 @@ typedef struct tile_event {
     double begin_s, end_s;
 } tile_event;
 
-/* Tiles from elsewhere, for a frame that several processes render: this one renders those that it is given,
- * each into a film of that tile alone, and the result has no film. Both functions are called by all workers at the
- * same time. */
+/* A source of tiles, for a frame that several processes render: this process renders the tiles of its source, each into
+ * a film of one tile, and the result has no film. All workers call both functions, possibly at the same time. */
 typedef struct tile_source {
     int side; /* the largest width and height of a tile */
     /* Waits for the worker's next tile; false ends its part of the frame. */
@@ -67,27 +66,27 @@ typedef struct render_options {
     bool pixel_cut;  /* throughput of the rays that are not traced, by pixel: see render_result */
     bool layers;     /* named layers, if the integrator supports them */
     bool timeline;   /* the worker and times of each tile */
-    bool usage;      /* how long each worker ran, could have run, and was blocked; costs it about 20 microseconds */
+    bool usage; /* times for which each worker ran, was ready to run, and was blocked; costs about 20 us per worker */
     /* Called every progress_s seconds (0: 0.1) on the thread that called renderer_render. May be NULL. */
-    void (*progress)(void *context, double share_done);
+    void (*progress)(void *context, double fraction_done);
     double progress_s;
-    /* How often the calling thread looks whether it is cancelled or to report, below 1; 0: 100 times a second. Looking
-     * costs instructions, more of them the longer others have the processor: where they are counted it is rare. */
+    /* Seconds, below 1, between two polls of the calling thread for cancellation and progress; 0: 0.02. A poll costs
+     * instructions, and their number varies with the load: where instructions are counted, polls are rare. */
     double watch_s;
     /* Called by the worker that traced the last ray of a tile (x0 <= x < x1, y0 <= y < y1), so possibly
      * by several threads at the same time; the callback may read the film in the tile. Batches are then not filled
      * across tiles, which costs time but leaves the film bit-identical. May be NULL. */
     void (*tile_done)(void *context, const film *img, int x0, int y0, int x1, int y1);
     void *context;
-    /* NULL: all tiles. Not with maps, layers, tile_done, or render.error. */
+    /* NULL: all tiles. It cannot be combined with maps, layers, tile_done, or render.error. */
     const tile_source *source;
 } render_options;
 
-/* One of the processes that render a frame; its workers are those with its number. */
+/* One of the processes that render a frame; its workers have its number as `rank`. */
 typedef struct rank_usage {
-    double wall_s, cpu_s;                 /* as those of the result, of its own part */
+    double wall_s, cpu_s;                 /* as in render_result, for this process */
     uint64_t peak_rss_bytes;              /* of the process so far */
-    uint64_t tiles_sent, tile_bytes_sent; /* that it sent to rank 0 */
+    uint64_t tiles_sent, tile_bytes_sent; /* sent to rank 0 */
 } rank_usage;
 
 typedef struct render_result {
@@ -101,26 +100,28 @@ typedef struct render_result {
     worker_report *workers;
     double *pixel_rays; /* NULL unless requested; width * height */
     double *pixel_ns;
-    /* the fraction of each pixel's light, by weight, that is unknown: the throughput of its rays that render.depth or
-     * render.min_weight cut, mean of RGB, where its camera rays have 1 in all */
+    /* the fraction of each pixel's weight whose light is unknown: the throughput, mean of RGB, of its rays that
+     * render.depth or render.min_weight cut off, relative to that of its camera rays */
     double *pixel_cut;
     /* For random paths: square of the standard error of each film value, [(y * width + x) * 3 + channel] in the film's
-     * own space, from the differences between the replicates (render/plan/sampling.h). NULL if unknown. For a
+     * colour space, from the differences between the replicates (render/plan/sampling.h). NULL if unknown. For a
      * spectral film under render.sampler=philox it is an overestimate: each replicate has its own wavelengths, so that
      * they differ by more than random noise. */
     double *variance;
-    /* Under render.error, rays and times include those of the pilot, the maps do not. */
+    /* Under render.error, numbers of rays and times include the pilot; the maps do not. */
     int replicates;     /* of the paths of a pixel, 1 if the variance is unknown */
     tile_event *events; /* in order of begin_s; NULL unless requested */
     size_t event_count;
     mesh_report meshes;
     layer_set *layers; /* NULL unless requested and supported */
     caustics_few few;  /* of render.caustics */
-    /* of a frame that several processes render: by rank; NULL: of one process */
+    /* by rank, if several processes render the frame; else NULL */
     rank_usage *ranks;
-    int rank_count, tile; /* tile: the side of their tiles */
+    int rank_count, tile; /* tile: the side of the ranks' tiles */
     uint64_t scene_bytes; /* sent to each rank */
 } render_result;
+
+/* --- render_result.c: results --- */
 
 /* Root of the mean variance over pixels and channels: the typical random error of a film value. NaN without random
  * paths, or with too few paths for an estimate. */
@@ -131,23 +132,23 @@ status renderer_render(renderer *r, const scene *s, const render_options *option
                        diagnostic *why);
 void render_result_destroy(render_result *result);
 
-/* The film, with one replicate, and the variance (NULL if it is unknown) of a whole frame whose tiles come from
+/* Creates the film, with one replicate, and the variance (NULL if it is unknown) of a frame whose tiles come from tile
  * sources. The caller owns both. */
 status renderer_film(const scene *s, film **img, double **variance, diagnostic *why);
 /* The replicates of the paths of a pixel, as in a result. */
 int renderer_replicates(const scene *s);
 
-/* Memory of the film and the maps of such a frame, bytes. */
+/* Memory of the film and the maps of a frame with these options, bytes. */
 uint64_t renderer_result_bytes(const scene *s, const render_options *options);
 
-/* Memory of the rays that wait, for all threads, bytes. */
+/* Memory of all threads' tracers, and of photons, bytes. */
 uint64_t renderer_tracing_bytes(const scene *s);
 
 /* Starts the threads that s requires in advance (render.pool on), so that the first frame's time does not include
  * it. */
 status renderer_prepare(renderer *r, const scene *s, diagnostic *why);
 
-/* --- adaptive numbers of random paths --- */
+/* --- renderer.c: adaptive numbers of random paths --- */
 
 /* With render.error a pilot render of PILOT_PATHS paths per pixel gives the variance of each pixel, from which the
  * number of paths for the requested standard error follows. The pilot's paths do not enter the film: a mean that stops
@@ -167,17 +168,17 @@ render_settings path_counts_pilot(const render_settings *r);
 /* The number of paths of each pixel: a multiple of the replicates of r, at most r->paths. */
 status path_counts_create(const render_settings *r, const render_result *pilot, uint32_t **out, diagnostic *why);
 
-/* --- a frame whose tiles are traced in several places --- */
+/* --- render_result.c: a frame whose tiles several processes render --- */
 
-/* Such as the ranks of an MPI job or the workers of a browser, each by a tile_source: the tiles, and their sum, which
- * is the film of the whole frame bit for bit. Ownership: shared_frame_begin allocates film and variance;
- * shared_frame_release frees them, unless the owner took them and set them to NULL. One thread at a time. */
+/* The processes are, for example, the ranks of an MPI job or the workers of a browser, each with a tile_source. The
+ * film is bit-identical to that of one process. Ownership: shared_frame_begin allocates film and variance;
+ * shared_frame_release frees them, unless the owner keeps them and sets them to NULL. For one thread at a time. */
 
-/* The settings with which all places have the same tiles: of that side, whatever their threads. */
+/* The settings with which all processes have the same tiles, of that side, whatever their numbers of threads. */
 render_settings tiles_settings(const render_settings *r, int side);
 
 typedef struct shared_frame {
-    schedule places; /* of the tiles */
+    schedule places; /* positions of the tiles */
     film *img;
     double *variance; /* NULL: unknown */
 } shared_frame;
@@ -185,8 +186,7 @@ typedef struct shared_frame {
 status shared_frame_begin(const scene *s, int side, shared_frame *out, diagnostic *why);
 void shared_frame_release(shared_frame *f);
 
-/* The number of values of a traced tile: its sums, 3 for each pixel, then as many variances (doubles) if there are
- * any. */
+/* The number of values of a rendered tile: its sums, 3 per pixel, then as many variances (doubles) if there are any. */
 size_t shared_frame_values(const shared_frame *f, int64_t tile);
-/* Adds a traced tile. */
+/* Copies a rendered tile into the film. */
 void shared_frame_put(shared_frame *f, int64_t tile, const int64_t *values);

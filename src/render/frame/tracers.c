@@ -1,4 +1,4 @@
-/* The memory of tracers, and their lending to workers. */
+/* The memory of tracers, and the pool that lends them to workers. */
 #include "render/frame/tracers.h"
 
 #include "render/shade/crystals.h"
@@ -29,8 +29,8 @@ tracer *tracer_create(isa level)
 
 static void forget_integrator(tracer *t)
 {
-    if (t->rule && t->rule->end)
-        t->rule->end(t->worker_data);
+    if (t->frame_integrator && t->frame_integrator->end)
+        t->frame_integrator->end(t->worker_data);
     t->worker_data = NULL;
 }
 
@@ -38,7 +38,7 @@ void tracer_destroy(tracer *t)
 {
     if (!t)
         return;
-    for (int d = 0; d < t->queues.made; d++)
+    for (int d = 0; d < t->queues.created; d++)
         queue_destroy(&t->queues.waiting[d]);
     free(t->queues.waiting);
     free(t->marks);
@@ -53,8 +53,9 @@ void tracer_destroy(tracer *t)
     free(t);
 }
 
-/* A queue must hold less than one waiting batch plus two children for every ray of a batch; where crystals are, four,
- * and a batch more: the two branches that they replace are appended with weight 0 and removed. */
+/* A queue holds less than one waiting batch plus two children for every ray of a batch. With crystals there are four
+ * children, and room for one more batch, because the two branches that they replace are appended with weight 0 and then
+ * removed. */
 enum { WAITING = 3 * BATCH + LANES_MAX, WAITING_CRYSTALS = (CRYSTAL_RAYS_MAX + 2) * BATCH + LANES_MAX };
 
 static int waiting_of(bool crystals)
@@ -87,12 +88,12 @@ static bool make_queues(tracer *t, int depth_limit, bool crystals)
 {
     const int count = queue_count(depth_limit);
     ray_queue *grown =
-        count > t->queues.made ? realloc(t->queues.waiting, (size_t)count * sizeof *grown) : t->queues.waiting;
+        count > t->queues.created ? realloc(t->queues.waiting, (size_t)count * sizeof *grown) : t->queues.waiting;
     if (!grown)
         return false;
     t->queues.waiting = grown;
-    for (; t->queues.made < count; t->queues.made++)
-        memset(&grown[t->queues.made], 0, sizeof *grown);
+    for (; t->queues.created < count; t->queues.created++)
+        memset(&grown[t->queues.created], 0, sizeof *grown);
     for (int i = 0; i < count; i++) {
         const int capacity = capacity_of(i, depth_limit, crystals);
         if (grown[i].capacity >= capacity)
@@ -106,24 +107,25 @@ static bool make_queues(tracer *t, int depth_limit, bool crystals)
 
 void tracer_discard(tracer *t)
 {
-    for (int d = 0; d < t->queues.made; d++)
+    for (int d = 0; d < t->queues.created; d++)
         t->queues.waiting[d].count = 0;
     t->queues.shadows.count = 0;
 }
 
 static bool begin_integrator(tracer *t)
 {
-    const integrator *rule = t->target.rule ? t->target.rule : integrator_for(&t->target.frame_plan->render);
-    if (rule != t->rule)
+    const integrator *wanted =
+        t->target.integrator_override ? t->target.integrator_override : integrator_for(&t->target.frame_plan->render);
+    if (wanted != t->frame_integrator)
         forget_integrator(t);
-    t->rule = rule;
-    return !rule->begin || rule->begin(t);
+    t->frame_integrator = wanted;
+    return !wanted->begin || wanted->begin(t);
 }
 
-/* One mark for each primitive and each priority index: see hit_groups_make. */
-static bool make_marks(tracer *t, const scene_geometry *a)
+/* Allocates a mark for each primitive and each priority index: see hit_groups_make. */
+static bool make_marks(tracer *t, const scene_geometry *g)
 {
-    const size_t count = (size_t)a->primitive_count + (size_t)a->region_count + 1;
+    const size_t count = (size_t)g->primitive_count + (size_t)g->region_count + 1;
     int16_t *grown = count > t->mark_count ? realloc(t->marks, count * sizeof *grown) : t->marks;
     if (!grown)
         return false;
@@ -141,7 +143,8 @@ bool tracer_begin(tracer *t, const tracer_target *target)
     t->queues.depth_limit = (int)r->depth;
     /* In a spectral film each wavelength has its own camera ray, with its fraction of the weight. */
     t->least_weight = r->spectrum == SPECTRUM_SPECTRAL ? r->min_weight / (double)r->wavelengths : r->min_weight;
-    /* A batch waits; a rough surface samples each light up to three times (path_rough.c), a medium twice more. */
+    /* A batch waits; a rough surface samples each light up to three times, with energy compensation four times
+     * (path_rough.c), a medium twice more. */
     const int shadows_at_once = BATCH * (1 + ((p->energy  ? 4
                                                : p->rough ? 3
                                                           : 1) +
@@ -154,9 +157,10 @@ bool tracer_begin(tracer *t, const tracer_target *target)
     }
     if (!make_queues(t, t->queues.depth_limit, p->crystals != NULL) || !make_marks(t, p->geometry) || !mesh_begin(t) ||
         !radiance_begin(t) || !layered_begin(t) || !crystals_begin(t) || !footprints_begin(t) || !begin_integrator(t) ||
-        !absorption_begin(t, p->geometry->attenuates && t->rule->traced))
+        !absorption_begin(t, p->geometry->attenuates && t->frame_integrator->traced))
         return false;
-    t->by_sample_key = t->rule->by_sample || r->spectrum == SPECTRUM_SPECTRAL || p->basic || scene_has_soft_shadows(r);
+    t->by_sample_key = t->frame_integrator->needs_sample_number || r->spectrum == SPECTRUM_SPECTRAL || p->basic ||
+                       scene_has_soft_shadows(r);
     tracer_discard(t);
     memset(&t->account.counters, 0, sizeof t->account.counters);
     t->account.visibility_ns = 0;
@@ -189,7 +193,7 @@ bool tracer_overflowed(const tracer *t)
 struct tracer_pool {
     isa level;
     pthread_mutex_t lock;
-    tracer **all, **idle; /* idle: a stack of those that no worker holds */
+    tracer **all, **idle; /* idle: a stack of the tracers that no worker has */
     int capacity, count, idle_count;
     tracer_target target;
     uint64_t frame; /* serial number; a tracer stores the one in which it last began */
@@ -197,29 +201,29 @@ struct tracer_pool {
 
 tracer_pool *tracer_pool_create(isa level)
 {
-    tracer_pool *set = calloc(1, sizeof *set);
-    if (!set)
+    tracer_pool *pool = calloc(1, sizeof *pool);
+    if (!pool)
         return NULL;
-    set->level = level;
-    pthread_mutex_init(&set->lock, NULL);
-    return set;
+    pool->level = level;
+    pthread_mutex_init(&pool->lock, NULL);
+    return pool;
 }
 
-void tracer_pool_destroy(tracer_pool *set)
+void tracer_pool_destroy(tracer_pool *pool)
 {
-    if (!set)
+    if (!pool)
         return;
-    for (int i = 0; i < set->count; i++)
-        tracer_destroy(set->all[i]);
-    free(set->all);
-    free(set->idle);
-    pthread_mutex_destroy(&set->lock);
-    free(set);
+    for (int i = 0; i < pool->count; i++)
+        tracer_destroy(pool->all[i]);
+    free(pool->all);
+    free(pool->idle);
+    pthread_mutex_destroy(&pool->lock);
+    free(pool);
 }
 
-isa tracer_pool_level(const tracer_pool *set)
+isa tracer_pool_level(const tracer_pool *pool)
 {
-    return set->level;
+    return pool->level;
 }
 
 static bool reserve(tracer ***list, int count)
@@ -230,50 +234,50 @@ static bool reserve(tracer ***list, int count)
     return grown != NULL;
 }
 
-bool tracer_pool_begin(tracer_pool *set, int workers, const tracer_target *target)
+bool tracer_pool_begin(tracer_pool *pool, int workers, const tracer_target *target)
 {
-    if (workers > set->capacity) {
-        if (!reserve(&set->all, workers) || !reserve(&set->idle, workers))
+    if (workers > pool->capacity) {
+        if (!reserve(&pool->all, workers) || !reserve(&pool->idle, workers))
             return false;
-        set->capacity = workers;
+        pool->capacity = workers;
     }
-    set->target = *target;
-    set->frame++;
+    pool->target = *target;
+    pool->frame++;
     return true;
 }
 
-tracer *tracer_pool_acquire(tracer_pool *set)
+tracer *tracer_pool_acquire(tracer_pool *pool)
 {
-    pthread_mutex_lock(&set->lock);
-    tracer *t = set->idle_count > 0 ? set->idle[--set->idle_count] : NULL;
-    if (!t && (t = tracer_create(set->level)))
-        set->all[set->count++] = t;
-    pthread_mutex_unlock(&set->lock);
-    if (!t || t->account.frame == set->frame)
+    pthread_mutex_lock(&pool->lock);
+    tracer *t = pool->idle_count > 0 ? pool->idle[--pool->idle_count] : NULL;
+    if (!t && (t = tracer_create(pool->level)))
+        pool->all[pool->count++] = t;
+    pthread_mutex_unlock(&pool->lock);
+    if (!t || t->account.frame == pool->frame)
         return t;
-    if (!tracer_begin(t, &set->target)) {
-        tracer_pool_release(set, t);
+    if (!tracer_begin(t, &pool->target)) {
+        tracer_pool_release(pool, t);
         return NULL;
     }
-    t->account.frame = set->frame;
+    t->account.frame = pool->frame;
     return t;
 }
 
-void tracer_pool_release(tracer_pool *set, tracer *t)
+void tracer_pool_release(tracer_pool *pool, tracer *t)
 {
-    pthread_mutex_lock(&set->lock);
-    set->idle[set->idle_count++] = t;
-    pthread_mutex_unlock(&set->lock);
+    pthread_mutex_lock(&pool->lock);
+    pool->idle[pool->idle_count++] = t;
+    pthread_mutex_unlock(&pool->lock);
 }
 
-bool tracer_pool_collect(const tracer_pool *set, ray_counters *sum)
+bool tracer_pool_collect(const tracer_pool *pool, ray_counters *sum)
 {
     bool overflow = false;
-    for (int i = 0; i < set->count; i++) {
-        if (set->all[i]->account.frame != set->frame)
+    for (int i = 0; i < pool->count; i++) {
+        if (pool->all[i]->account.frame != pool->frame)
             continue;
-        ray_counters_add(sum, tracer_counters(set->all[i]));
-        overflow |= tracer_overflowed(set->all[i]);
+        ray_counters_add(sum, tracer_counters(pool->all[i]));
+        overflow |= tracer_overflowed(pool->all[i]);
     }
     return overflow;
 }

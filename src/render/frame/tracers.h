@@ -6,7 +6,8 @@
  *
  * Each tracer of a pool is lent to one worker at a time, the last returned first: its data is then still in the
  * processor's cache, and a thousand workers on few processors need no more tracers than run at once. Ownership:
- * tracer_pool_create allocates, tracer_pool_destroy releases; take and return may be called from any thread. */
+ * tracer_pool_create allocates, tracer_pool_destroy releases; tracer_pool_acquire and tracer_pool_release may be called
+ * from any thread. */
 #pragma once
 
 #include "base/counters.h"
@@ -14,7 +15,7 @@
 #include "render/tracer/integrator.h"
 #include <stdatomic.h>
 
-/* Memory of a tracer at that depth, bytes; larger where crystals are, and where rays have footprints
+/* Memory of a tracer with that depth limit, bytes; larger with crystals, and with footprints
  * (render/shade/footprints.h). */
 uint64_t tracer_bytes(int64_t depth, bool crystals, bool footprints);
 tracer *tracer_create(isa level);
@@ -23,7 +24,7 @@ void tracer_destroy(tracer *t);
 /* Begins a frame: resets the counters and creates queues for the frame's depth. False when out of memory. */
 bool tracer_begin(tracer *t, const tracer_target *target);
 
-/* Lets the tracer, whose queues are empty, write another film from now on, until the frame ends. */
+/* Makes the tracer, whose queues must be empty, write to another film until the frame ends. */
 void tracer_expose_to(tracer *t, film *img);
 
 /* Discards all rays that wait. */
@@ -31,8 +32,8 @@ void tracer_discard(tracer *t);
 
 /* --- batches.c --- */
 
-/* Enqueues the camera rays of a tile and traces until every queue holds less than a batch. Adds the
- * pixels of each row to *begun when they are enqueued. */
+/* Enqueues the camera rays of a tile and traces until every queue holds less than a batch. Adds the number of pixels to
+ * *begun, row by row of blocks. */
 void tracer_render_tile(tracer *t, const image_tile *tile, atomic_uint_fast64_t *begun);
 
 /* Traces until every queue holds less than a batch, unless cancelled. */
@@ -61,16 +62,16 @@ bool tracer_overflowed(const tracer *t);
 typedef struct tracer_pool tracer_pool;
 
 tracer_pool *tracer_pool_create(isa level);
-void tracer_pool_destroy(tracer_pool *set);
+void tracer_pool_destroy(tracer_pool *pool);
 
-isa tracer_pool_level(const tracer_pool *set);
+isa tracer_pool_level(const tracer_pool *pool);
 
 /* Begins a frame with `workers` workers, none of which holds a tracer. False when out of memory. */
-bool tracer_pool_begin(tracer_pool *set, int workers, const tracer_target *target);
+bool tracer_pool_begin(tracer_pool *pool, int workers, const tracer_target *target);
 
 /* Returns a tracer with empty queues, whose counters are those of the frame so far; NULL when out of memory. */
-tracer *tracer_pool_acquire(tracer_pool *set);
-void tracer_pool_release(tracer_pool *set, tracer *t);
+tracer *tracer_pool_acquire(tracer_pool *pool);
+void tracer_pool_release(tracer_pool *pool, tracer *t);
 
 /* Sums the counters of the frame's tracers; call it after the frame. Returns true if one of them overflowed. */
-bool tracer_pool_collect(const tracer_pool *set, ray_counters *sum);
+bool tracer_pool_collect(const tracer_pool *pool, ray_counters *sum);

@@ -1,5 +1,5 @@
-/* The rays of beams: each wavelength has a probe, since a probe has one wavelength. Crossings of their segments with
- * a rectangle; lines with soft edges, tested by pixel against the distance of opaque surfaces. */
+/* The rays of beams, with a probe per wavelength; their crossings of a screen; and their drawing as lines with soft
+ * edges, with a depth test per pixel against opaque surfaces. */
 #include "render/inspect/beams.h"
 
 #include "optics/spectrum.h"
@@ -13,7 +13,7 @@
 #include <math.h>
 #include <stdlib.h>
 
-/* A probe without lights, whose shadow rays would be traced for nothing. */
+/* Creates a probe without lights, so that no shadow rays are traced. */
 static status probe_of_beam(const scene *s, const beam *b, double lambda_nm, isa level, probe **out, diagnostic *why)
 {
     scene *unlit = scene_clone(s);
@@ -121,7 +121,7 @@ double beam_fraction(const ray_node *node)
     return (node->throughput[0] + node->throughput[1] + node->throughput[2]) / 3.0;
 }
 
-/* Beer and Lambert: the transmittance over a part of the length is a power of that over the whole. */
+/* Beer and Lambert: the transmittance over a fraction of the segment is that power of the segment's transmittance. */
 double beam_fraction_at(const ray_node *node, double t)
 {
     double sum = 0.0;
@@ -233,9 +233,9 @@ status beam_screen_expose(const scene *s, isa level, beam_screen *screen, diagno
 
 /* --- drawing --- */
 
-/* Share of a line's colour where it is hidden. */
+/* Fraction of a line's colour that shows where it is hidden. */
 #define HIDDEN 0.15
-/* A segment starts or ends on the surface that would hide it. */
+/* Tolerance of the depth test, relative: a segment starts or ends on a surface that must not hide it. */
 #define ON_SURFACE 1e-3
 
 typedef struct beam_canvas {
@@ -249,17 +249,18 @@ typedef struct beam_canvas {
 
 status beams_hiding_scene(const scene *s, scene **out, diagnostic *why)
 {
-    scene *only = scene_clone(s);
-    if (!only)
+    scene *opaque_scene = scene_clone(s);
+    if (!opaque_scene)
         return out_of_memory(why);
-    render_settings *r = &only->render;
-    for (size_t i = 0; i < only->solid_count; i++)
-        only->solids[i].visible = only->solids[i].visible && material_is_opaque(&only->solids[i].surface);
+    render_settings *r = &opaque_scene->render;
+    for (size_t i = 0; i < opaque_scene->solid_count; i++)
+        opaque_scene->solids[i].visible =
+            opaque_scene->solids[i].visible && material_is_opaque(&opaque_scene->solids[i].surface);
     r->polarisation = 0;
     r->spectrum = SPECTRUM_RGB;
     r->samples = 1;
-    *out = only;
-    return scene_set(only, "render.integrator", integrator_with_layers(), why);
+    *out = opaque_scene;
+    return scene_set(opaque_scene, "render.integrator", integrator_with_layers(), why);
 }
 
 static void blend_pixel(beam_canvas *c, int x, int y, double distance, double cover, const double rgb[3])
@@ -272,8 +273,8 @@ static void blend_pixel(beam_canvas *c, int x, int y, double distance, double co
         at[k] = (float)(at[k] * (1.0 - fraction) + rgb[k] * fraction);
 }
 
-/* The distance from the camera in a pixel at a fraction of the line a .. b in the image, whose z are depths: along it
- * 1 / z is linear in perspective, and z under parallel rays. */
+/* The distance from the camera, in a pixel, of the point at the fraction t of the image's line a .. b. The ends' z are
+ * depths; along the line 1 / z is linear in perspective, and z with parallel rays. */
 static double distance_at(const beam_canvas *c, int x, int y, vec3 a, vec3 b, double t)
 {
     if (c->view.parallel)
@@ -283,7 +284,7 @@ static double distance_at(const beam_canvas *c, int x, int y, vec3 a, vec3 b, do
     return sqrt(1.0 + u * u + v * v) / ((1.0 - t) / a.z + t / b.z);
 }
 
-/* The pixels near a line a .. b. */
+/* Draws the pixels near a line a .. b. */
 static void draw_line(beam_canvas *c, vec3 a, vec3 b, double strength, const double rgb[3])
 {
     const double dx = b.x - a.x, dy = b.y - a.y, size = dx * dx + dy * dy, reach = c->half_width + 1.0;

@@ -9,8 +9,8 @@
 #include <stdlib.h>
 #include <string.h>
 
-/* Directions are rounded to 2^-53, at each surface and enlarged by its curvature: rays that differ less are parallel. A
- * focus is found up to 1e11 times as far away as the fan is wide. */
+/* Directions are rounded to 2^-53 at each surface, and its curvature magnifies the error: rays that differ by less than
+ * PARALLEL_RAD count as parallel. A focus is found up to 1e11 widths of the fan away. */
 #define PARALLEL_RAD 1e-12
 
 void fan_release(fan *f)
@@ -76,7 +76,7 @@ static void read_exit(const fan *f, fan_ray *ray)
 }
 
 /* True if two rays hit the same surfaces in the same order. */
-static bool same_direction(const fan *f, const fan_ray *a, const fan_ray *b)
+static bool same_surfaces(const fan *f, const fan_ray *a, const fan_ray *b)
 {
     if (a->count != b->count || !a->leaves || !b->leaves)
         return false;
@@ -109,7 +109,7 @@ static void find_crossings(fan *f)
 {
     for (int i = 0; i + 1 < f->count && !cancel_asked(); i++) {
         vec3 at;
-        if (same_direction(f, &f->ray[i], &f->ray[i + 1]) && f->ray[i].count > 1 &&
+        if (same_surfaces(f, &f->ray[i], &f->ray[i + 1]) && f->ray[i].count > 1 &&
             cross(f, &f->ray[i], &f->ray[i + 1], &at))
             f->crossing[f->crossing_count++] = (fan_crossing){i, at};
     }
@@ -120,8 +120,8 @@ static bool is_bent(const fan_ray *ray)
     return ray->leaves && ray->count > 1;
 }
 
-/* The sum of the directions of the deflected rays, each in the sense of the first one: two opposite rays are parallel.
- * Returns their number. */
+/* The sum of the directions of the deflected rays, with the signs that make them point like the first one, since
+ * opposite rays are parallel. Returns their number. */
 static int sum_directions(const fan *f, const fan_ray **first, vec3 *sum)
 {
     int count = 0;
@@ -136,7 +136,7 @@ static int sum_directions(const fan *f, const fan_ray **first, vec3 *sum)
     return count;
 }
 
-/* The rows of a frame with u along an axis. */
+/* The rows of an orthonormal frame whose first axis is u. */
 static mat3 frame_along(vec3 u)
 {
     const vec3 other = fabs(u.x) < 0.6 ? vec3_make(1, 0, 0) : vec3_make(0, 1, 0);
@@ -150,8 +150,8 @@ typedef struct normal_equations {
     vec3 right;
 } normal_equations;
 
-/* With x along the rays' mean direction xx is the sum of the squared angles from it, and nothing cancels: 1 - x^2 would
- * leave only the rounding of 1 of angles below 1e-8. */
+/* With x along the rays' mean direction, xx is the sum of the squared angles from it, without cancellation: 1 - x^2
+ * would lose angles below 1e-8 in rounding. */
 static void add_line(normal_equations *e, vec3 d, vec3 p)
 {
     const double xx = d.y * d.y + d.z * d.z, yy = d.x * d.x + d.z * d.z, zz = d.x * d.x + d.y * d.y;
@@ -162,8 +162,8 @@ static void add_line(normal_equations *e, vec3 d, vec3 p)
                                      zz * p.z - d.z * (d.x * p.x + d.y * p.y)));
 }
 
-/* By elimination of y and z. False if what is left of xx, the sum of the squared angles of `count` lines, is not above
- * their rounding: the lines are parallel. */
+/* Eliminates y and z. Returns false if the rest of xx, a sum of squared angles of `count` lines, is within their
+ * rounding: the lines are parallel. */
 static bool solve(const normal_equations *e, int count, vec3 *out)
 {
     const double det = e->yy * e->zz - e->yz * e->yz, of_y = (e->zz * e->xy - e->yz * e->xz) / det,

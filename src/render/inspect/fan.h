@@ -1,5 +1,5 @@
-/* A fan or pencil of rays, each followed along its refracted path (probe_path), and what follows from them together:
- * the points where neighbours cross, which form the caustic, and the point nearest to all exit rays, the mean focus.
+/* A fan or pencil of rays, each followed along its refracted path (probe_path), and the results: the points where
+ * neighbours cross, which form the caustic, and the point nearest to all exit rays, the mean focus.
  *
  * Ownership: the caller owns a fan; zero it before its first use, release it with fan_release. */
 #pragma once
@@ -24,7 +24,7 @@ typedef struct fan_ray {
     double offset;                   /* from the axis: scene units, or degrees if the fan spreads */
     size_t first, count;             /* its nodes */
     bool leaves;                     /* its path was followed to its end: into the sky, or to an opaque surface */
-    vec3 exit_point, exit_direction; /* of its last segment */
+    vec3 exit_point, exit_direction; /* start and direction of the last segment */
     double reach;                    /* length of the last segment; infinite into the sky */
     double deviation_deg;            /* between the first direction and the last */
     double weight;                   /* throughput of the last segment, mean of the channels */

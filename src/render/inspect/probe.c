@@ -37,7 +37,7 @@ status probe_create(const scene *s, isa level, probe **out, diagnostic *why)
     return STATUS_OK;
 }
 
-/* By channel, or for a spectral film at the tree's wavelength. */
+/* The tint's absorption by channel, or at the tree's wavelength for a spectral film. */
 static vec3 tint_of(const probe *p, const material *m)
 {
     vec3 fraction = m->color;
@@ -178,10 +178,10 @@ const char *probe_medium_name(const probe *p, int at)
 int probe_medium_at(const probe *p, vec3 point)
 {
     const scene *s = p->setting;
-    const scene_geometry *a = p->frame_plan->geometry;
+    const scene_geometry *g = p->frame_plan->geometry;
     int best = RAY_OUTSIDE;
-    if (a->meshes) /* only the scene geometry can test points against meshes */
-        return a->regions[scene_geometry_priority_index(a, scene_geometry_inside(a, point))].solid;
+    if (g->meshes) /* only the scene geometry can test points against meshes */
+        return g->regions[scene_geometry_priority_index(g, scene_geometry_inside(g, point))].solid;
     for (int i = 0; i < (int)s->solid_count; i++) {
         const solid *one = &s->solids[i];
         if (one->visible && solid_shape_contains(&one->shape, point) &&

@@ -17,7 +17,7 @@
 typedef enum ray_kind { RAY_CAMERA, RAY_REFLECT, RAY_REFRACT, RAY_SHADOW } ray_kind;
 
 /* The end of a ray: at an interface; in the background; not traced because of the depth limit, or of render.min_weight;
- * for a shadow ray, whether (part of) its light passed. */
+ * for a shadow ray, whether some of its light arrives. */
 typedef enum ray_end {
     RAY_END_HIT,
     RAY_END_SKY,
@@ -31,17 +31,17 @@ typedef enum ray_end {
 enum { RAY_OUTSIDE = -1, RAY_NONE = -1 };
 
 typedef struct ray_hit {
-    int solid; /* index in scene.solids of the solid whose surface it is */
-    /* the geometric surface that was hit: the solid that it bounds, and the number that probe_face_name takes */
+    int solid; /* index in scene.solids of the solid whose surface is hit */
+    /* the geometric surface that was hit: the solid that it bounds, and the face's number for probe_face_name */
     int face_solid, face;
     bool opaque;        /* no ray continues behind it */
     double t;           /* distance from the ray's origin, scene units */
     vec3 point, normal; /* normal: unit vector towards the ray */
-    int from, to;       /* media before and behind it */
+    int from, to;       /* media before and behind the surface */
     double n_from, n_to;
     double cos_i, cos_t; /* cos_t is 0 under total internal reflection */
     /* power reflectances of the interface with its coating; for an opaque surface or simple transmission, its
-     * reflectivity; of a metal or a film at the tree's wavelength */
+     * reflectivity; for a metal or a thin film, at the tree's wavelength */
     double R_s, R_p, R;
     bool tir;
     double T; /* power transmittance of the surface, with coating and transparency; 0 for an opaque one */
@@ -63,13 +63,13 @@ typedef struct ray_node {
     double stokes[4]; /* with render.polarisation: the analyser's Stokes vector relative to its first element, in the
                        * ray's canonical frame (optics/mueller.h); else 1 0 0 0; in a crystal 1 1 0 0 for an ordinary
                        * and 1 -1 0 0 for an extraordinary ray, always */
-    int medium;       /* in which it starts */
+    int medium;       /* medium in which it starts */
     double n;
     int light;             /* for a shadow ray: index in scene.lights, else RAY_NONE */
     double let_through;    /* for a shadow ray: transmittance of the surfaces in its path; else 1 */
     double light_distance; /* for a shadow ray: from its origin to the light */
-    double brought[3];     /* radiance that this ray itself adds to the film, without its children */
-    ray_hit hit;           /* when end is RAY_END_HIT */
+    double brought[3];     /* radiance that this ray adds to the film, excluding its children */
+    ray_hit hit;           /* valid if end is RAY_END_HIT */
 } ray_node;
 
 typedef struct ray_tree {
@@ -85,7 +85,7 @@ void ray_tree_release(ray_tree *tree);
 typedef struct probe probe;
 
 status probe_create(const scene *s, isa level, probe **out, diagnostic *why);
-/* Instead of render.depth; more than DEPTH_TREE_MAX for paths alone. */
+/* Replaces render.depth; values above DEPTH_TREE_MAX are only for paths. */
 void probe_limit_depth(probe *p, int depth);
 void probe_destroy(probe *p);
 
@@ -94,7 +94,7 @@ void probe_destroy(probe *p);
 void probe_one_wavelength(probe *p);
 
 /* The tree of a pixel; with several samples per pixel it has as many roots, linked by next. STATUS_BAD_INPUT outside
- * the image, and for a tree of more than PROBE_NODES_MAX rays. Every ray of a tree asks base/cancel.h. */
+ * the image, and for a tree of more than PROBE_NODES_MAX rays. It can be cancelled at every ray (base/cancel.h). */
 enum { PROBE_NODES_MAX = 2000000 };
 status probe_pixel(probe *p, int x, int y, ray_tree *tree, diagnostic *why);
 
@@ -106,7 +106,7 @@ status probe_ray(probe *p, vec3 origin, vec3 direction, ray_tree *tree, diagnost
  * interface of that number (counted from 0). No shadow rays. */
 status probe_path(probe *p, vec3 origin, vec3 direction, int reflect_at, ray_tree *tree, diagnostic *why);
 
-/* The solid's name, such as "vessel", or the catalogue name of its medium; "air" for the surrounding medium if its
+/* The catalogue name of a medium, or else its solid's name, such as "vessel"; "air" for the surrounding medium if its
  * index is 1. */
 const char *probe_medium_name(const probe *p, int at);
 

@@ -1,5 +1,5 @@
-/* Building a ray tree: each ray is traced alone, and the tracer's hits, gathered group, branches and queues are read
- * back. */
+/* Building a ray tree: each ray is traced as a batch of one, and the tracer's hits, gathered group, branches and queues
+ * are read back. */
 #include "render/inspect/probe_private.h"
 
 #include "base/cancel.h"
@@ -36,7 +36,7 @@ ray_record probe_free_ray(const probe *p, vec3 origin, vec3 direction)
     const vec3 scaled = vec3_make(direction.x / largest, direction.y / largest, direction.z / largest);
     const double length2 = vec3_dot(scaled, scaled);
     ray_record r = {.origin = origin, .weight = {1.0, 1.0, 1.0}, .start = FACE_NONE, .depth = 0};
-    /* A vector that is a unit vector up to rounding is kept to the bit, so that a ray of a tree can be traced again. */
+    /* A unit vector up to rounding stays bit-identical, so that a ray of a tree can be traced again. */
     const bool is_unit = fabs(vec3_dot(direction, direction) - 1.0) <= 0x1p-50;
     r.direction = is_unit ? direction : direction_tidy(vec3_scale(scaled, 1.0 / sqrt(length2)));
     r.inside = scene_geometry_inside(p->frame_plan->geometry, origin);
@@ -64,7 +64,7 @@ void probe_read_ray(const probe *p, int depth, int i, ray_record *out)
         memset(out->stokes, 0, sizeof out->stokes);
 }
 
-static void put(ray_queue *q, const ray_record *r)
+static void enqueue_only(ray_queue *q, const ray_record *r)
 {
     q->count = 1;
     q->ox[0] = r->origin.x, q->oy[0] = r->origin.y, q->oz[0] = r->origin.z;
@@ -114,7 +114,7 @@ static status add_node(probe *p, ray_tree *tree, const ray_record *r, ray_kind k
 }
 
 /* Appends a node to its parent's children. */
-static void hang(ray_tree *tree, int parent, size_t child)
+static void append_child(ray_tree *tree, int parent, size_t child)
 {
     int *link = &tree->node[parent].first_child;
     while (*link != RAY_NONE)
@@ -136,7 +136,7 @@ static void read_gain(const probe *p, ray_hit *h)
     h->gain_basic = ratio * ratio * h->T;
 }
 
-/* The reflectances of a metal or a film, at render.lambda_nm. */
+/* The reflectances of a metal or a thin film, at render.lambda_nm. */
 static void read_layers(const probe *p, ray_hit *h)
 {
     const sp_amplitudes a =
@@ -147,7 +147,7 @@ static void read_layers(const probe *p, ray_hit *h)
     h->R = 0.5 * (h->R_s + h->R_p);
 }
 
-/* What a crystal's surface reflects of this ray's light. cos_t stays that of the ordinary ray. */
+/* The fraction of this ray's light that a crystal's surface reflects. cos_t remains the ordinary ray's. */
 static void read_crystal(const tracer *t, ray_hit *h)
 {
     const crystal_children *c = &t->crystals->children[0];
@@ -164,14 +164,14 @@ static void read_crystal(const tracer *t, ray_hit *h)
 static bool read_hit(const probe *p, ray_node *node)
 {
     const tracer *t = p->rays;
-    const scene_geometry *a = p->frame_plan->geometry;
+    const scene_geometry *geometry = p->frame_plan->geometry;
     if (t->batch.hits.hit_primitive[0] < 0)
         return false;
     const group *g = &t->surface.gathered;
     const surface_batch *s = &g->points;
     const int hit_primitive = (int)t->batch.hits.hit_primitive[0], priority_index = (int)t->batch.hits.surface[0];
-    const region *owner = &a->regions[priority_index],
-                 *bounded = &a->regions[a->primitives[hit_primitive].priority_index];
+    const region *owner = &geometry->regions[priority_index],
+                 *bounded = &geometry->regions[geometry->primitives[hit_primitive].priority_index];
     const fresnel f = fresnel_dielectric(s->cos_i[0], g->n_from[0], g->n_to[0]);
     const bool opaque = surface_is_opaque(t, priority_index);
     ray_hit *h = &node->hit;
@@ -181,8 +181,8 @@ static bool read_hit(const probe *p, ray_node *node)
                    .t = t->batch.hits.t[0],
                    .point = vec3_make(s->px[0], s->py[0], s->pz[0]),
                    .normal = vec3_make(s->nx[0], s->ny[0], s->nz[0]),
-                   .from = a->regions[t->batch.hits.before[0]].solid,
-                   .to = a->regions[t->batch.hits.after[0]].solid,
+                   .from = geometry->regions[t->batch.hits.before[0]].solid,
+                   .to = geometry->regions[t->batch.hits.after[0]].solid,
                    .n_from = g->n_from[0],
                    .n_to = g->n_to[0],
                    .cos_i = s->cos_i[0],
@@ -215,12 +215,12 @@ static bool read_hit(const probe *p, ray_node *node)
     read_gain(p, h);
     h->path_length_m = h->t * p->frame_plan->render.unit_m;
     for (int c = 0; c < 3; c++)
-        h->transmittance[c] = a->attenuates ? t->media->transmittance[c][0] : 1.0;
+        h->transmittance[c] = geometry->attenuates ? t->media->transmittance[c][0] : 1.0;
     node->end = RAY_END_HIT;
     return true;
 }
 
-/* The branches of the ray just traced: their records, kinds, and for those that were not enqueued how they ended. */
+/* The branches of the ray just traced: their records, kinds, and the ends of those that were not enqueued. */
 typedef struct branches {
     int count;
     ray_record record[CRYSTAL_RAYS_MAX];
@@ -233,7 +233,7 @@ static bool is_below_least_weight(const double weight[3], double least)
     return least > 0.0 && weight[0] < least && weight[1] < least && weight[2] < least;
 }
 
-/* A branch of the hit along a direction, with its weight by channel; the next in the queue unless it was cut. */
+/* Adds a branch of the hit, with its weight by channel; unless it was cut, it is the next record of the queue. */
 static void add_branch(const probe *p, int depth, bool reflected, vec3 direction, vec3 weight, const double polar[3],
                        int *queued, branches *out)
 {
@@ -261,7 +261,7 @@ static void add_branch(const probe *p, int depth, bool reflected, vec3 direction
     probe_read_ray(p, depth + 1, (*queued)++, r);
 }
 
-/* A reflected or a refracted branch, if there is one. */
+/* Adds the reflected or the refracted branch, if there is one. */
 static void add_ordinary(const probe *p, int depth, bool reflected, int *queued, branches *out)
 {
     const branch_group *b = &p->rays->surface.branches;
@@ -276,7 +276,7 @@ static void add_ordinary(const probe *p, int depth, bool reflected, int *queued,
         add_branch(p, depth, reflected, direction, layered_weight(p->rays, 0, reflected), polar, queued, out);
 }
 
-/* The rays at a crystal's surface. */
+/* Adds the branches at a crystal's surface. */
 static void add_crystal_rays(const probe *p, int depth, int *queued, branches *out)
 {
     const crystal_children *c = &p->rays->crystals->children[0];
@@ -304,11 +304,11 @@ static void read_branches(const probe *p, int depth, branches *out)
 
 /* The light of a shadow ray: the first light from index `from` that is exactly at its end and emits in its
  * direction. */
-static int light_of(const plan *of, const ray_record *r, int from)
+static int light_of(const plan *p, const ray_record *r, int from)
 {
-    for (int k = from; k < of->light_count; k++) {
-        const vec3 to_light = light_towards(&of->lights[k], r->origin);
-        if (light_fraction(&of->lights[k], &of->cones[k], vec3_scale(to_light, -1.0 / vec3_length(to_light))) == 0.0)
+    for (int k = from; k < p->light_count; k++) {
+        const vec3 to_light = light_towards(&p->lights[k], r->origin);
+        if (light_fraction(&p->lights[k], &p->cones[k], vec3_scale(to_light, -1.0 / vec3_length(to_light))) == 0.0)
             continue;
         if (to_light.x == r->direction.x && to_light.y == r->direction.y && to_light.z == r->direction.z)
             return k;
@@ -336,7 +336,7 @@ static status build_shadows(probe *p, ray_tree *tree, int parent, diagnostic *wh
         code = add_node(p, tree, r, RAY_SHADOW, parent, &at, why);
         if (code != STATUS_OK)
             break;
-        put(&t->queues.shadows, r);
+        enqueue_only(&t->queues.shadows, r);
         ray_node *node = &tree->node[at];
         node->light = light_of(p->frame_plan, r, lamp);
         if (p->frame_plan->polarised_shadows && node->light != RAY_NONE)
@@ -347,7 +347,7 @@ static status build_shadows(probe *p, ray_tree *tree, int parent, diagnostic *wh
         node->light_distance = vec3_length(r->direction);
         node->direction = vec3_scale(r->direction, 1.0 / node->light_distance);
         lamp = node->light + 1;
-        hang(tree, parent, at);
+        append_child(tree, parent, at);
     }
     return code;
 }
@@ -357,7 +357,7 @@ static void trace_node(probe *p, ray_tree *tree, size_t at, const ray_record *ra
 {
     tracer *t = p->rays;
     ray_node *node = &tree->node[at];
-    put(tracer_queue_at(t, ray->depth), ray);
+    enqueue_only(tracer_queue_at(t, ray->depth), ray);
     run_one(p, ray->depth, node->brought);
     out->count = 0;
     if (read_hit(p, node))
@@ -371,7 +371,7 @@ static status add_cut(probe *p, ray_tree *tree, int parent, const branches *b, i
     size_t at = 0;
     TRY(add_node(p, tree, &b->record[i], b->kind[i], parent, &at, why));
     tree->node[at].end = b->end[i];
-    hang(tree, parent, at);
+    append_child(tree, parent, at);
     return STATUS_OK;
 }
 
@@ -390,7 +390,7 @@ status probe_build(probe *p, ray_tree *tree, const ray_record *ray, ray_kind kin
         size_t child = 0;
         code = probe_build(p, tree, &next.record[i], next.kind[i], (int)*at, &child, why);
         if (code == STATUS_OK)
-            hang(tree, (int)*at, child);
+            append_child(tree, (int)*at, child);
     }
     return code;
 }
@@ -403,7 +403,7 @@ status probe_follow(probe *p, ray_tree *tree, const ray_record *ray, int reflect
         size_t at = 0;
         TRY(add_node(p, tree, &now, kind, parent, &at, why));
         if (parent != RAY_NONE)
-            hang(tree, parent, at);
+            append_child(tree, parent, at);
         branches next;
         trace_node(p, tree, at, &now, &next);
         p->rays->queues.shadows.count = 0;

@@ -6,7 +6,7 @@
 #include "render/tracer/tracer.h"
 
 struct probe {
-    scene *setting; /* its own copy */
+    scene *setting; /* a copy of the caller's scene */
     plan *frame_plan;
     tracer *rays;
     film *img;     /* one pixel */

@@ -1,16 +1,16 @@
-/* Lines cut to a frame. Each edge of a frame is a plane through the eye, or parallel to the view; so the part of a line
- * in the frame is where several linear functions of s are not negative (Liang and Barsky, "A new concept and method
- * for line clipping", ACM Transactions on Graphics 3(1), 1984, here with the edges of the frustum in the scene: a line
- * needs no end, and what is behind the eye is cut off before it is projected). */
+/* Clips lines to a frame. Each edge of a frame is a plane through the eye, or parallel to the view, so that a line is
+ * in the frame where several linear functions of s are not negative (Liang and Barsky, "A new concept and method for
+ * line clipping", ACM Transactions on Graphics 3(1), 1984, here with the frustum's planes in the scene: lines may be
+ * infinite, and points behind the eye are clipped before projection). */
 #include "render/inspect/ray_line.h"
 
 #include <math.h>
 
-/* The near plane, relative to the distance of the line's start from the eye, and to the coordinates of the eye, whose
- * rounding would else decide where a camera ray begins. */
+/* Distance of the near plane, relative to the distance of the line's start from the eye, and to the eye's coordinates,
+ * whose rounding would otherwise decide where a camera ray begins. */
 #define NEAR 1e-6
 #define NEAR_OF_EYE 1e-9
-/* A tangent: what a parallel view shows of a direction that is nearer to the view's than this is rounding noise. */
+/* Tangent of the angle to the view below which the image of a direction in a parallel view is rounding noise. */
 #define ALONG_THE_VIEW 1e-12
 
 ray_line ray_line_between(vec3 from, vec3 to)
@@ -49,11 +49,11 @@ image_frame image_frame_of(int width, int height, double margin_px)
 }
 
 typedef struct part {
-    double first, last; /* of s; empty if first > last */
+    double first, last; /* range of s; empty if first > last */
 } part;
 
-/* Keeps where start + s slope >= 0. */
-static void keep(part *p, double start, double slope)
+/* Clips to start + s slope >= 0. */
+static void clip(part *p, double start, double slope)
 {
     if (slope == 0.0 && start < 0.0)
         *p = (part){1.0, 0.0};
@@ -68,22 +68,22 @@ static vec3 in_axes(vec3 v, vec3 x, vec3 y, vec3 z)
     return vec3_make(vec3_dot(v, x), vec3_dot(v, y), vec3_dot(v, z));
 }
 
-/* In the axes of a parallel view: a line along the view is a point. */
+/* A direction in the axes of a parallel view; a line along the view becomes a point. */
 static vec3 flattened(vec3 along)
 {
     const bool is_point = hypot(along.x, along.y) <= ALONG_THE_VIEW * fabs(along.z);
     return is_point ? vec3_make(0.0, 0.0, along.z) : along;
 }
 
-/* In the camera's axes, x and y in half widths and half heights of the image. */
+/* Scales a vector in the camera's axes, x and y in half widths and half heights of the image. */
 static vec3 in_image(const camera_frame *view, vec3 v)
 {
     return vec3_make(v.x / view->half_width, v.y / view->half_height, v.z);
 }
 
-/* The image of a point of the line. In perspective the direction decides where the point is infinitely far away, its
- * vanishing point, and where it is the eye. */
-static vec3 seen(const ray_line *line, bool parallel, const image_frame *frame, double s)
+/* The image of a point of the line. In perspective it is the direction's image if the point is infinitely far away (its
+ * vanishing point), or is the eye. */
+static vec3 project(const ray_line *line, bool parallel, const image_frame *frame, double s)
 {
     const bool far = isinf(s);
     vec3 p = far ? line->from : at(line, s);
@@ -105,15 +105,15 @@ bool ray_line_seen(const ray_line *line, const camera_frame *view, const image_f
     const double left = 2.0 * frame->left / frame->width - 1.0, right = 2.0 * frame->right / frame->width - 1.0;
     const double top = 1.0 - 2.0 * frame->top / frame->height, bottom = 1.0 - 2.0 * frame->bottom / frame->height;
     part p = {0.0, l.end};
-    keep(&p, l.from.z - near, l.along.z);
-    keep(&p, l.from.x - left * spread, l.along.x - left * widening);
-    keep(&p, right * spread - l.from.x, right * widening - l.along.x);
-    keep(&p, l.from.y - bottom * spread, l.along.y - bottom * widening);
-    keep(&p, top * spread - l.from.y, top * widening - l.along.y);
+    clip(&p, l.from.z - near, l.along.z);
+    clip(&p, l.from.x - left * spread, l.along.x - left * widening);
+    clip(&p, right * spread - l.from.x, right * widening - l.along.x);
+    clip(&p, l.from.y - bottom * spread, l.along.y - bottom * widening);
+    clip(&p, top * spread - l.from.y, top * widening - l.along.y);
     if (!(p.first < p.last))
         return false;
-    ends[0] = seen(&l, view->parallel, frame, p.first);
-    ends[1] = seen(&l, view->parallel, frame, p.last);
+    ends[0] = project(&l, view->parallel, frame, p.first);
+    ends[1] = project(&l, view->parallel, frame, p.last);
     return true;
 }
 
@@ -123,13 +123,13 @@ bool ray_line_projected(const ray_line *line, const section_plane *window, secti
     const vec3 normal = vec3_cross(window->e_u, window->e_v);
     const vec3 along = flattened(in_axes(line->along, window->e_u, window->e_v, normal));
     part p = {0.0, line->end};
-    keep(&p, from.u - window->u0, along.x);
-    keep(&p, window->u1 - from.u, -along.x);
-    keep(&p, from.v - window->v0, along.y);
-    keep(&p, window->v1 - from.v, -along.y);
+    clip(&p, from.u - window->u0, along.x);
+    clip(&p, window->u1 - from.u, -along.x);
+    clip(&p, from.v - window->v0, along.y);
+    clip(&p, window->v1 - from.v, -along.y);
     if (!(p.first < p.last))
         return false;
-    const double last = isinf(p.last) ? 0.0 : p.last; /* across the plane: a point */
+    const double last = isinf(p.last) ? 0.0 : p.last; /* perpendicular to the plane: a point */
     ends[0] = (section_point){from.u + p.first * along.x, from.v + p.first * along.y};
     ends[1] = (section_point){from.u + last * along.x, from.v + last * along.y};
     return true;

@@ -1,7 +1,7 @@
 /* The lines of rays in drawings: one rule for images (beams.h), pages (report/page_rays.h), sections
  * (report/diagram.h) and the laboratory (`far_end` of the JSON of a ray). A ray that meets a surface or a light ends
- * there. A ray that leaves the scene has no end: its line runs to the edge of the frame, or to its vanishing point
- * where that is in the frame. A ray that was cut has no line, for nothing is known of it. Pure; cannot fail. */
+ * there. A ray that leaves the scene has no end: its line runs to the edge of the frame, or to its vanishing point if
+ * that is in the frame. A ray that was cut has no line, since its end is unknown. Pure; cannot fail. */
 #pragma once
 
 #include "render/inspect/probe.h"
@@ -32,7 +32,7 @@ image_frame image_frame_of(int width, int height, double margin_px);
 
 /* The part of a line that a camera sees in the frame: x and y in pixels, z the depth in front of the eye or of the
  * plane of an orthographic camera, HUGE_VAL at a vanishing point. A line that comes from behind begins where it enters
- * the frame, in front of the eye. False if nothing of it is in the frame. */
+ * the frame, in front of the eye. Returns false if no part of it is in the frame. */
 bool ray_line_seen(const ray_line *line, const camera_frame *view, const image_frame *frame, vec3 ends[2]);
 
 /* The part of a line, projected orthogonally onto the plane, that is in its window. */

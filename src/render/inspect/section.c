@@ -45,7 +45,7 @@ typedef struct cutter {
     int edges;               /* number of edges; horizontal ones first */
     section_point *crossing; /* by edge, then by junction */
     int junctions, junction_capacity;
-    int (*at)[2]; /* by edge: the pieces that end on it, -1 for none */
+    int (*ends)[2]; /* by edge: the pieces that end on it, -1 for none */
     piece *pieces;
     size_t piece_count, piece_capacity;
     bool failed; /* out of memory */
@@ -91,13 +91,13 @@ static void add_point(cutter *c, section_point at)
         s->point[s->point_count++] = at;
 }
 
-/* The end of medium `own` between a, which is in it, and b, which is not. */
-static section_point bisect(const cutter *c, section_point a, section_point b, int own)
+/* The end of a medium between a, which is in it, and b, which is not. */
+static section_point bisect(const cutter *c, section_point a, section_point b, int medium)
 {
     double low = 0.0, high = 1.0;
     for (int i = 0; i < BISECTIONS; i++) {
         const double middle = 0.5 * (low + high);
-        if (medium_at(c, between(a, b, middle)) == own)
+        if (medium_at(c, between(a, b, middle)) == medium)
             low = middle;
         else
             high = middle;
@@ -105,8 +105,8 @@ static section_point bisect(const cutter *c, section_point a, section_point b, i
     return between(a, b, 0.5 * (low + high));
 }
 
-/* Computes the crossing on an edge; on an edge that leaves the window it is the window's own point. Bisection always
- * starts from the lower medium, so that all edges across one thin layer find the same side of it. */
+/* Computes the crossing on an edge; on an edge that leaves the window it is the grid point on the window's frame.
+ * Bisection always starts from the lower medium, so that all edges across one thin layer find the same side of it. */
 static void cross(cutter *c, int edge, int i, int j, int i2, int j2)
 {
     const int a = label(c, i, j), b = label(c, i2, j2);
@@ -131,10 +131,10 @@ static bool prepare(cutter *c, int cells)
     c->junction_capacity = 64;
     c->label = malloc((size_t)c->nu * (size_t)c->nv * sizeof *c->label);
     c->crossing = calloc((size_t)(c->edges + c->junction_capacity), sizeof *c->crossing);
-    c->at = malloc((size_t)c->edges * sizeof *c->at);
-    if (!c->label || !c->crossing || !c->at)
+    c->ends = malloc((size_t)c->edges * sizeof *c->ends);
+    if (!c->label || !c->crossing || !c->ends)
         return false;
-    memset(c->at, 0xff, (size_t)c->edges * sizeof *c->at);
+    memset(c->ends, 0xff, (size_t)c->edges * sizeof *c->ends);
     return true;
 }
 
@@ -198,7 +198,7 @@ static void add_piece(cutter *c, int from, int to, int a, int b)
     one->count = c->out->point_count - one->first;
     for (int k = 0; k < 2; k++)
         if (one->end[k] < c->edges)
-            c->at[one->end[k]][c->at[one->end[k]][0] >= 0] = index;
+            c->ends[one->end[k]][c->ends[one->end[k]][0] >= 0] = index;
 }
 
 static int add_junction(cutter *c, section_point at)
@@ -228,7 +228,8 @@ static int distinct(const int *media)
     return count;
 }
 
-/* The point where three media meet: repeatedly takes the quarter of the cell whose corners are in the most media. */
+/* The point where three media meet: repeatedly selects the quarter of the cell whose corners are in the largest number
+ * of media. */
 static section_point meeting_point(const cutter *c, int i, int j)
 {
     section_point low = grid_point(c, i, j);
@@ -335,7 +336,7 @@ static void chain(cutter *c, size_t start, int from)
             line->end[1] = at - c->edges;
             break;
         }
-        const int next = c->at[at][0] == i ? c->at[at][1] : c->at[at][0];
+        const int next = c->ends[at][0] == i ? c->ends[at][1] : c->ends[at][0];
         i = next >= 0 && !c->pieces[next].used ? next : -1;
     }
     line->count = s->point_count - line->first;
@@ -394,8 +395,8 @@ status section_cut(const probe *p, const section_plane *plane, int cells, sectio
 {
     const double width = plane->u1 - plane->u0, height = plane->v1 - plane->v0;
     if (!(width > 0.0 && height > 0.0 && isfinite(width) && isfinite(height)) || cells < 2 || cells > SECTION_CELLS_MAX)
-        return diagnose(why, STATUS_BAD_INPUT, "", "a section needs an extent, and 2 to %d cells",
-                        (int)SECTION_CELLS_MAX);
+        return diagnose(why, STATUS_BAD_INPUT, "set an extent above 0, and 2 to 4096 cells",
+                        "the section's extent or its number of cells (%d) is out of range", cells);
     out->point_count = out->line_count = 0;
     cutter c = {.p = p, .plane = plane, .out = out};
     c.failed = !prepare(&c, cells);
@@ -409,7 +410,7 @@ status section_cut(const probe *p, const section_plane *plane, int cells, sectio
     chain_all(&c);
     free(c.label);
     free(c.crossing);
-    free(c.at);
+    free(c.ends);
     free(c.pieces);
     return c.failed ? cancelled_or_out_of_memory(why) : STATUS_OK;
 }

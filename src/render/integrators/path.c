@@ -1,23 +1,23 @@
 /* Path tracing (Kajiya, "The Rendering Equation", SIGGRAPH 1986): at each surface one continuation is sampled at
- * random, weighted so that the mean over all paths is that of the whole tree. Sampling by surface:
+ * random, weighted so that the mean over all paths equals the light of the full ray tree. Sampling by surface:
  *   a clear surface  reflects or refracts with Fresnel's weights as probabilities, so the throughput stays the same;
  *   a matte surface  is lit by every light, at a random point of those with a size (render/shade/light_sampling.h), and
  *                    continues the path by the cosine law, or like a mirror with its reflectivity;
- *   a rough one      does as a smooth one of the normal of one of its facets, and samples the lamps (path_rough.c);
+ *   a rough surface  acts as a smooth one with the normal of one of its facets, and samples the lamps (path_rough.c);
  *   a medium that scatters ends a ray's flight, lights the point by every lamp, and continues the path by its phase
  *                    function (path_scatter.c).
- * Only rays from the camera and from specular surfaces hit lights: matte surfaces have sampled them directly.
- * This is how light through a vessel makes caustics; with render.caustics photons bring that light instead, and rays
- * hit lights only along specular surfaces from the camera on. In a scene with lights of a size, clear solids block
- * point lights too. A light's radiance is such that a matte surface at its reach is as bright as in Phong's model.
- * There is no ambient term: light from the sky and from other surfaces replaces it.
+ * Only rays from the camera and from specular surfaces hit lights: matte surfaces have sampled them directly. These
+ * rays form caustics, light through clear solids; with render.caustics photons supply it instead, and rays hit lights
+ * only if all surfaces from the camera on are specular. In a scene with lights of a size, clear solids block point
+ * lights too. A light's radiance is such that a matte surface at its reach is as bright as in Phong's model. There is
+ * no ambient term: light from the sky and from other surfaces replaces it.
  *
  * With polarisation a path carries the analyser's row (optics/mueller.h) backwards from the eye, as a ray of a tree
- * does: the eye sees s_out = M_1 M_2 .. s, of whose product of Mueller matrices the first row is enough, the adjoint of
- * a Stokes vector (Mojzik and others, "Bi-directional Polarised Light Transport", EGSR 2016; Jarabo and Arellano,
- * "Bidirectional Rendering of Vector Light Transport", 2018). Its first element is part of the throughput, and the
- * weights of branches, by which they are chosen, are those of the row. Matte surfaces and media that scatter see the
- * intensity alone. */
+ * does: the eye sees s_out = M_1 M_2 .. s, and only the first row of the product of Mueller matrices is needed, the
+ * adjoint of a Stokes vector (Mojzik and others, "Bi-directional Polarised Light Transport", EGSR 2016; Jarabo and
+ * Arellano, "Bidirectional Rendering of Vector Light Transport", 2018). Its first element is part of the throughput,
+ * and the weights of branches, by which they are chosen, are computed with the row. Matte surfaces and media that
+ * scatter see only the intensity. */
 #include "render/integrators/path.h"
 
 #include "geometry/rays.h"
@@ -30,11 +30,11 @@
 #include "render/shade/shading.h"
 
 /* Clips the medium segments of a ray at the light. */
-static void clip_segments(medium_segments *w, int ray, double end)
+static void clip_segments(medium_segments *segments, int ray, double end)
 {
     double start = 0.0;
-    for (int k = 0; w && k < w->count; k++) {
-        medium_segment *one = &w->segment[k];
+    for (int k = 0; segments && k < segments->count; k++) {
+        medium_segment *one = &segments->segment[k];
         if (one->ray != ray)
             continue;
         const double length = one->length;
@@ -43,7 +43,7 @@ static void clip_segments(medium_segments *w, int ray, double end)
     }
 }
 
-/* Rays that end at a light's sphere have its number encoded in hits.hit_primitive. */
+/* Rays that end at a light have its number encoded in hits.hit_primitive. */
 static int64_t mark_of(int lamp)
 {
     return -2 - lamp;
@@ -54,7 +54,8 @@ static int lamp_of(int64_t hit_primitive)
     return (int)(-2 - hit_primitive);
 }
 
-/* The nearest sphere light before each ray's surface. Light by light, since few rays of a batch pass near one. */
+/* Finds the nearest light with a size in front of each ray's surface, light by light, since few rays of a batch pass
+ * near one. */
 static void intersect_lights(tracer *t, const ray_queue *q, int first, const ray_batch *rays)
 {
     const plan *p = t->target.frame_plan;
@@ -105,16 +106,16 @@ static void expose_light(tracer *t, const ray_queue *q, int at, int lamp, int pr
 {
     const plan *p = t->target.frame_plan;
     const int64_t sample_key = q->sample_key[at];
-    const vec3 way = vec3_make(q->dx[at], q->dy[at], q->dz[at]);
+    const vec3 direction = vec3_make(q->dx[at], q->dy[at], q->dz[at]);
     double radiance =
-        area_light_radiance(p, lamp, way) * (p->basic ? radiance_scale(p, sample_key, priority_index) : 1.0);
+        area_light_radiance(p, lamp, direction) * (p->basic ? radiance_scale(p, sample_key, priority_index) : 1.0);
     if (p->render.polarisation && p->lights[lamp].polarised > 0.0)
-        radiance *= lamp_seen(p, lamp, (stokes){1.0, q->sq[at], q->su[at], q->sv[at]}, way);
+        radiance *= lamp_seen(p, lamp, (stokes){1.0, q->sq[at], q->su[at], q->sv[at]}, direction);
     const vec3 l = vec3_scale(light_color_of(t, lamp, sample_key), radiance);
     shading_expose(t, sample_key, q->wr[at] * l.x, q->wg[at] * l.y, q->wb[at] * l.z);
 }
 
-/* The sky, and the suns in it. */
+/* Adds the sky, and the suns in it. */
 static void expose_sky(tracer *t, const ray_queue *q, int first, int i)
 {
     const plan *p = t->target.frame_plan;
@@ -131,22 +132,22 @@ static void expose_sky(tracer *t, const ray_queue *q, int first, int i)
 
 static void expose_background(tracer *t, const ray_queue *q, int first, const int *list, int count)
 {
-    int scattered[ROW], some = 0;
+    int scattered[ROW], scattered_count = 0;
     for (int k = 0; k < count; k++) {
         const int i = list[k];
         const int64_t hit = t->batch.hits.hit_primitive[i];
         if (hit == -1)
             expose_sky(t, q, first, i);
         else if (hit == PATH_SCATTERED)
-            scattered[some++] = i;
+            scattered[scattered_count++] = i;
         else
             expose_light(t, q, first + i, lamp_of(hit), (int)t->batch.hits.before[i]);
     }
-    if (some > 0)
-        path_scatter(t, q, first, scattered, some);
+    if (scattered_count > 0)
+        path_scatter(t, q, first, scattered, scattered_count);
 }
 
-/* Of a branch the surface keeps or changes the analyser's Stokes vector; a matte surface sees the intensity alone. */
+/* Copies a branch's Stokes vector to the continuation; a matte surface sees only the intensity. */
 static void keep_polarisation(const tracer *t, int k, continuation *c)
 {
     const polar_group *p = &t->surface.polar;
@@ -167,7 +168,7 @@ static bool draw_clear(const tracer *t, int k, double chance, continuation *c)
     c->direction = c->refracted ? vec3_make(b->tx[k], b->ty[k], b->tz[k]) : vec3_make(b->rx[k], b->ry[k], b->rz[k]);
     c->inside = c->refracted ? t->surface.gathered.inside_after[k] : t->surface.gathered.inside_before[k];
     c->factor = vec3_make(both, both, both);
-    if (surface_is_layered(t)) /* of its mean over the channels the branch was chosen by */
+    if (surface_is_layered(t)) /* relative to the mean over channels, by which the branch was chosen */
         c->factor =
             vec3_scale(layered_weight(t, k, !c->refracted), both / (c->refracted ? b->refract[k] : b->reflect[k]));
     c->specular_bounce = true;
@@ -201,7 +202,7 @@ static bool draw_matte(const tracer *t, const material *m, int k, const path_cho
                  mirror = surface_is_layered(t) ? t->surface.branches.reflect[k] : m->reflectivity;
     if (!(matte + mirror > 0.0))
         return false;
-    /* of a subnormal fraction the product is rounded to the fraction itself */
+    /* with a subnormal fraction the product may be rounded to the fraction itself */
     const bool mirrored = mirror > 0.0 && (!(matte > 0.0) || chosen->branch[k] * (matte + mirror) < mirror);
     const double odds = (mirrored ? mirror : matte) / (matte + mirror);
     c->inside = g->inside_before[k];
@@ -220,7 +221,7 @@ static bool draw_matte(const tracer *t, const material *m, int k, const path_cho
     return mesh_lets_out(t, k, c->direction);
 }
 
-/* rough: NULL for a smooth surface. */
+/* Draws and enqueues the continuation of ray k. rough: NULL for a smooth surface. */
 static void continue_one(tracer *t, const material *m, bool opaque, int k, int depth, const path_choices *chosen,
                          const rough_surface *rough)
 {
@@ -249,8 +250,8 @@ static void shade(tracer *t, int depth, int priority_index)
         continue_one(t, m, opaque, k, depth, &chosen, alpha > 0.0 ? &rough : NULL);
 }
 
-/* Through the centres of cells: with fewer paths than samples there are fewer cells, because with only the first rows
- * of the grid the image would shift. */
+/* Camera rays through the centres of cells: with fewer paths than samples there are fewer cells, because with only the
+ * first rows of the grid the image would shift. */
 static camera_sampling paths_of(const render_settings *r)
 {
     const int64_t points = r->paths < r->samples ? r->paths : r->samples;
@@ -267,7 +268,7 @@ static int replicates(const render_settings *r)
 }
 
 const integrator integrator_of_path = {.traced = true,
-                                       .by_sample = true,
+                                       .needs_sample_number = true,
                                        .sampling = paths_of,
                                        .replicates = replicates,
                                        .intersect = intersect,

@@ -5,7 +5,7 @@
 #include "render/shade/rough.h"
 #include "render/tracer/tracer.h"
 
-/* --- path_rays.c: how a random path goes on, from a surface or from a point where a medium scatters it --- */
+/* --- path_rays.c: continuations of random paths, from surfaces and from points of scattering --- */
 
 /* The continuation of a path: direction, throughput factor by channel, and media. */
 typedef struct continuation {
@@ -26,35 +26,35 @@ void path_continue(tracer *t, int k, int depth, continuation *c);
 /* Adds the emission of the gathered group's surface, and enqueues shadow rays to lights. */
 void path_sample_lights(tracer *t, int priority_index, int depth);
 
-/* --- lamps that a path's own direction is weighed against: of rough surfaces, and of media that scatter --- */
+/* --- sampling of lamps that is weighted against the path's direction, for rough surfaces and media that scatter --- */
 
-/* The light of the lamp of record k: of colour 1, at its chosen point. */
+/* The light of record k's lamp, for a colour of 1, from its sample point. */
 typedef struct lamp_aim {
     vec3 to; /* a unit vector */
     double distance;
-    double light, density; /* radiance, and density per solid angle; of a point its irradiance, and 0 */
+    double light, density; /* radiance, and density per solid angle; for a point lamp, irradiance and 0 */
 } lamp_aim;
 
-/* That lamp for all records, at random points of it if it has a size. */
+/* Sets `lamp` for all records, with random points on it if it has a size. */
 void path_lamp_samples(tracer *t, int lamp, int depth, lamp_samples *s);
-/* Whether record k has a lamp, and is not within its sphere; its spheres must be aimed at. */
+/* Whether record k has a lamp, and is not within its sphere; call area_lights_aim_at_spheres first. */
 bool path_lamp_is_outside(const plan *p, const lamp_samples *s, int k);
 lamp_aim path_lamp_aim(const tracer *t, const lamp_samples *s, int k);
-/* The radiance of a lamp with a size that a ray along a unit vector hits, and its distance; 0 if it does not. */
+/* The radiance of a lamp with a size that a ray along a unit vector hits, and its distance; 0 if the ray misses. */
 double path_lamp_ahead(const plan *p, int lamp, vec3 origin, vec3 direction, double *distance);
 
-/* Enqueues a shadow ray from record k, in a medium of that index, to a lamp, which brings that factor of light of
- * colour 1; or adds its light at once, from a point without shadows. */
+/* Enqueues a shadow ray from record k, in a medium of that index, to a lamp, with `factor` times the lamp's light; for
+ * a point lamp without shadows, adds the light at once. */
 void path_enqueue_lamp(tracer *t, int k, int lamp, vec3 to_lamp, double index, uint64_t inside, vec3 factor);
 
 /* --- path_rough.c: rough surfaces --- */
 
-/* Which facet a path meets, and the lamps' direct light. Each lamp is sampled twice: a point of its sphere, and the
- * path's own direction, where that meets the sphere; the two are weighted by the balance heuristic, so that lamps of
- * any size have little noise on surfaces of any roughness (Veach and Guibas, "Optimally Combining Sampling Techniques
- * for Monte Carlo Rendering", SIGGRAPH 1995, (15)). Both send shadow rays; the path itself then does not hit a lamp. */
+/* The facet that a path meets, and the lamps' direct light. Each lamp is sampled twice, by a point on it and by the
+ * path's direction if that hits the lamp; the two are weighted by the balance heuristic, so that lamps of any size have
+ * little noise on surfaces of any roughness (Veach and Guibas, "Optimally Combining Sampling Techniques for Monte Carlo
+ * Rendering", SIGGRAPH 1995, (15)). Both enqueue shadow rays; the continued path then ignores lamps. */
 
-/* Weight of the matte branch at an opaque surface, next to that of its mirror. */
+/* Weight of the matte branch at an opaque surface, relative to the mirror's, its reflectance. */
 double path_matte_weight(const group *g, const material *m, int k);
 
 /* Enqueues shadow rays to lamps, draws the paths' facets, and computes the branches there. */
@@ -65,11 +65,10 @@ bool path_rough_scatter(tracer *t, const rough_surface *r, int k, continuation *
 
 /* --- path_scatter.c: media that scatter --- */
 
-/* Where a flight ends (render/shade/media.h), the path goes on by the phase function, and each lamp, or one that is
- * chosen, is sampled: a lamp with a size by a point of it and by the path's own direction, weighted as for rough
- * surfaces; a point by its direction. A point's light is also sampled along the ray (airlight), with the same weights.
- * Shadow rays go straight through clear solids, as those of surfaces do, and lose what is absorbed and scattered on
- * their way. */
+/* Where a flight ends (render/shade/media.h), the path continues by the phase function, and each lamp, or a chosen one,
+ * is sampled: a lamp with a size by a point on it and by the path's direction, weighted as for rough surfaces; a point
+ * lamp by its direction, and also along the ray (airlight), with the same weights. Shadow rays are not deflected by
+ * clear solids, as those of surfaces, and lose the light that is absorbed and scattered. */
 
 /* hits.hit_primitive of a ray that scatters. */
 enum { PATH_SCATTERED = -2 - SCENE_LIGHTS_MAX };

@@ -101,7 +101,7 @@ void path_enqueue_lamp(tracer *t, int k, int lamp, vec3 to_lamp, double index, u
 
 /* --- direct light --- */
 
-/* The same to a light that is a point; without shadows its light is added at once. */
+/* Enqueues a shadow ray from record k to a point light; without shadows, its light is added at once. */
 static void sample_point(tracer *t, int k, const material *m, int lamp, double weight)
 {
     const plan *p = t->target.frame_plan;
@@ -124,7 +124,7 @@ static void sample_point(tracer *t, int k, const material *m, int lamp, double w
     shading_expose(t, q->sample_key[at], q->wr[at], q->wg[at], q->wb[at]);
 }
 
-/* All lights of every record; points first, which are not random. */
+/* Samples all lights from every record; point lights first, which need no random numbers. */
 static void sample_all(tracer *t, const material *m, bool opaque, int priority_index, int depth)
 {
     const bool lit = m->diffuse > 0.0 || (opaque && m->specular > 0.0);
@@ -153,7 +153,7 @@ static void sample_one(tracer *t, const material *m, bool opaque, int priority_i
     radiance_weigh_back(t);
 }
 
-/* Light that is interpolated between the corners of triangles is that of all lights. */
+/* Light that is interpolated between the corners of triangles always comes from all lights. */
 void path_sample_lights(tracer *t, int priority_index, int depth)
 {
     const material *m = &t->surface.mat->surface;
@@ -170,7 +170,7 @@ void path_sample_lights(tracer *t, int priority_index, int depth)
 enum { ROULETTE_DEPTH = 3 };
 
 /* Russian roulette (Arvo and Kirk, "Particle Transport and Image Synthesis", SIGGRAPH 1990): ends a faint path at
- * random; the survivors take over its weight. Deep paths take part whatever render.roulette is. */
+ * random; the survivors carry its weight. Deep paths are included whatever render.roulette is. */
 static bool survives(const tracer *t, int k, int depth, vec3 *factor)
 {
     const render_settings *r = &t->target.frame_plan->render;
@@ -178,10 +178,10 @@ static bool survives(const tracer *t, int k, int depth, vec3 *factor)
     if (depth < (r->roulette ? ROULETTE_DEPTH : DEPTH_DEEP))
         return true;
     const int64_t paths = path_count(&t->target.frame_plan->draws, sample_key_pixel(g->sample_key[k]));
-    /* of the weight with which paths begin, which an analyser halves */
-    const double begins = t->target.frame_plan->analyser == ANALYSER_NONE ? 1.0 : 0.5;
+    /* relative to the weight of a camera ray, which an analyser halves */
+    const double camera_weight = t->target.frame_plan->analyser == ANALYSER_NONE ? 1.0 : 0.5;
     const double weight =
-        fmax(g->wr[k] * factor->x, fmax(g->wg[k] * factor->y, g->wb[k] * factor->z)) * ((double)paths / begins);
+        fmax(g->wr[k] * factor->x, fmax(g->wg[k] * factor->y, g->wb[k] * factor->z)) * ((double)paths / camera_weight);
     const double odds = fmin(weight, roulette_odds_most(depth));
     if (odds >= 1.0)
         return true;

@@ -1,4 +1,5 @@
-/* Rough surfaces on random paths. */
+/* Rough surfaces on random paths: random facets, and direct light by multiple importance sampling (Veach and Guibas
+ * 1995). */
 #include "render/integrators/path.h"
 
 #include "render/shade/layered.h"
@@ -13,19 +14,19 @@ double path_matte_weight(const group *g, const material *m, int k)
     return m->diffuse * fmax(g->cr[k], fmax(g->cg[k], g->cb[k]));
 }
 
-/* The random choice of a lamp on one side: facets turn towards any lamp there. */
+/* The estimate for choosing a lamp on one side, without a cosine, since some facets face any lamp there. */
 static light_estimate estimate_on(double side)
 {
     return (light_estimate){0.0f, 1.0f, side, side > 0.0 ? DRAW_FACET_LIGHT : DRAW_FACET_LIGHT + 1};
 }
 
-/* The photons bring the lamps' light that has been on a matte surface. */
-static bool takes_lamps(const tracer *t, int k)
+/* Whether record k samples lamps: after a matte surface, photons supply their light. */
+static bool samples_lamps(const tracer *t, int k)
 {
     return !t->target.frame_plan->photons || !(t->surface.gathered.sample_key[k] & SAMPLE_KEY_PHOTONS);
 }
 
-/* Enqueues a shadow ray from record k to a lamp, which brings that light of colour 1, or adds it at once. */
+/* path_enqueue_lamp with the polarisation of a branch of record k. */
 static void enqueue(tracer *t, int k, int lamp, vec3 to_lamp, bool refracted, vec3 factor)
 {
     const group *g = &t->surface.gathered;
@@ -48,10 +49,11 @@ static void enqueue(tracer *t, int k, int lamp, vec3 to_lamp, bool refracted, ve
 
 /* --- points of lamps --- */
 
-/* Of the group's records: the direction to the lamp in the frame, of z = 0 if there is none, and its light. */
+/* The lamps of the group's records: directions in the world, directions o in the record's frame (o.z = 0: no lamp), and
+ * light. */
 typedef struct lamp_aims {
     vec3 to[ROW], o[ROW];
-    double distance[ROW], light[ROW], density[ROW]; /* a sphere's radiance and density; a point's irradiance, and 0 */
+    double distance[ROW], light[ROW], density[ROW]; /* as in lamp_aim */
 } lamp_aims;
 
 static void aim(const tracer *t, const rough_surface *r, const lamp_samples *s, int k, lamp_aims *a)
@@ -61,12 +63,12 @@ static void aim(const tracer *t, const rough_surface *r, const lamp_samples *s, 
     a->o[k] = rough_in_frame(r, k, a->to[k]);
 }
 
-/* The directions of records whose lamp is on that side (0: either). */
+/* Sets the directions of records whose lamp is on that side (0: either). */
 static void aim_all(const tracer *t, const rough_surface *r, const lamp_samples *s, double side, lamp_aims *a)
 {
     const plan *p = t->target.frame_plan;
     for (int k = 0; k < t->surface.gathered.count; k++) {
-        const bool any = takes_lamps(t, k) && path_lamp_is_outside(p, s, k);
+        const bool any = samples_lamps(t, k) && path_lamp_is_outside(p, s, k);
         if (any)
             aim(t, r, s, k, a);
         if (!any || side * a->o[k].z < 0.0 || (r->opaque && a->o[k].z < 0.0) || a->light[k] == 0.0 ||
@@ -75,7 +77,7 @@ static void aim_all(const tracer *t, const rough_surface *r, const lamp_samples 
     }
 }
 
-/* The chance of a branch at r->m, as path.c draws it. */
+/* The probability of a branch at r->m, as in path.c. */
 static double chance_of(const tracer *t, const rough_surface *r, int k, bool reflected)
 {
     const branch_group *b = &t->surface.branches;
@@ -85,13 +87,13 @@ static double chance_of(const tracer *t, const rough_surface *r, int k, bool ref
     return both > 0.0 ? (reflected ? b->reflect[k] : other) / both : 0.0;
 }
 
-/* The chance that a path which a facet sends to o goes on there, not as light of further facets. */
+/* The probability that a path leaves a facet in direction o, and not as light of further facets. */
 static double chance_to_leave(const rough_surface *r, vec3 o)
 {
     return r->finish ? ggx_masking(r->alpha, o) : 1.0;
 }
 
-/* What further facets send to the lamps that were aimed at: these alone sample it, as that of a matte surface. */
+/* Adds light of further facets, which is sampled only by points on lamps, as for a matte surface. */
 static void light_further(tracer *t, const rough_surface *r, const lamp_samples *s, const lamp_aims *a)
 {
     const group *g = &t->surface.gathered;
@@ -99,8 +101,8 @@ static void light_further(tracer *t, const rough_surface *r, const lamp_samples 
         if (a->o[k].z == 0.0)
             continue;
         const bool refracted = a->o[k].z < 0.0;
-        const double brought = a->density[k] > 0.0 ? a->light[k] / a->density[k] : a->light[k];
-        const vec3 factor = vec3_scale(rough_further(t, r, k, a->o[k]), brought);
+        const double lamp_light = a->density[k] > 0.0 ? a->light[k] / a->density[k] : a->light[k];
+        const vec3 factor = vec3_scale(rough_further(t, r, k, a->o[k]), lamp_light);
         if (factor.x > 0.0 || factor.y > 0.0 || factor.z > 0.0)
             path_enqueue_lamp(t, k, s->lamp[k], vec3_scale(a->to[k], a->distance[k]),
                               refracted ? g->n_to[k] : g->n_from[k],
@@ -108,7 +110,7 @@ static void light_further(tracer *t, const rough_surface *r, const lamp_samples 
     }
 }
 
-/* A point of each record's lamp, weighted against the path's own direction. */
+/* Adds light from a point on each record's lamp, weighted against the path's direction. */
 static void light_by_lamps(tracer *t, rough_surface *r, const lamp_samples *s, double side)
 {
     lamp_aims a;
@@ -126,8 +128,8 @@ static void light_by_lamps(tracer *t, rough_surface *r, const lamp_samples *s, d
         if (!(f[k].density > 0.0))
             continue;
         const bool reflected = a.o[k].z > 0.0;
-        const double own = chance_of(t, r, k, reflected) * f[k].density * chance_to_leave(r, a.o[k]),
-                     weight = a.density[k] > 0.0 ? 1.0 / (a.density[k] + own) : 1.0;
+        const double path_density = chance_of(t, r, k, reflected) * f[k].density * chance_to_leave(r, a.o[k]),
+                     weight = a.density[k] > 0.0 ? 1.0 / (a.density[k] + path_density) : 1.0;
         const vec3 factor = vec3_scale(layered_weight(t, k, reflected),
                                        ggx_masking(r->alpha, a.o[k]) * f[k].density * a.light[k] * weight);
         if (factor.x > 0.0 || factor.y > 0.0 || factor.z > 0.0)
@@ -165,15 +167,16 @@ static void draw_further(tracer *t, int depth, rough_surface *r)
     t->sampling->draw(&p->draws, g->count, g->sample_key, depth, DRAW_FURTHER + 1, r->u, r->v);
 }
 
-/* The path goes on as light of further facets, which is unpolarised; chance: even in (0, 1). What an opaque surface
- * absorbs at the facet is in r->kept. */
+/* Continues the path as light of further facets, which is unpolarised; chance: uniform in (0, 1). r->kept includes the
+ * absorption of an opaque surface. */
 static bool follow_further(const tracer *t, const rough_surface *r, int k, double chance, continuation *c)
 {
     const group *g = &t->surface.gathered;
     const further_light f = rough_draw_further(t, r, k, chance, (unit_pair){r->u[k], r->v[k]});
     const double clear = t->surface.mat->surface.transparency, chosen = r->opaque ? chance_of(t, r, k, true) : 1.0;
     const vec3 one = vec3_make(1.0, 1.0, 1.0),
-               all = r->opaque ? one : vec3_scale(c->factor, c->refracted ? 1.0 / clear : 1.0); /* a film's colours */
+               all = r->opaque ? one
+                               : vec3_scale(c->factor, c->refracted ? 1.0 / clear : 1.0); /* a thin film's colours */
     c->direction = f.direction;
     c->factor = vec3_make(f.factor.x * all.x / chosen, f.factor.y * all.y / chosen, f.factor.z * all.z / chosen);
     c->refracted = f.refracted;
@@ -204,7 +207,7 @@ void path_rough_begin(tracer *t, double alpha, bool opaque, int depth, rough_sur
         COUNT(t->account.counters.total_internal += (uint64_t)t->surface.branches.total);
 }
 
-/* The light of lamps that the path's own direction meets, weighted against points of these lamps. */
+/* Adds the light of lamps that the path's direction hits, weighted against points on these lamps. */
 static void light_by_direction(tracer *t, const rough_surface *r, int k, vec3 o, const continuation *c)
 {
     const plan *p = t->target.frame_plan;
@@ -218,10 +221,11 @@ static void light_by_direction(tracer *t, const rough_surface *r, int k, vec3 o,
         const light_estimate by = estimate_on(o.z);
         const double chance = light_choice_applies(p) ? light_choice_chance(t, &by, k, lamp) : 1.0;
         const double density = chance * area_light_density(p, lamp, origin, c->direction, distance),
-                     own = chance_of(t, r, k, !c->refracted) * rough_facet(t, r, k, o).density * chance_to_leave(r, o);
-        if (own > 0.0)
+                     path_density =
+                         chance_of(t, r, k, !c->refracted) * rough_facet(t, r, k, o).density * chance_to_leave(r, o);
+        if (path_density > 0.0)
             enqueue(t, k, lamp, vec3_scale(c->direction, distance), c->refracted,
-                    vec3_scale(c->factor, radiance * own / (density + own)));
+                    vec3_scale(c->factor, radiance * path_density / (density + path_density)));
     }
 }
 
@@ -235,8 +239,8 @@ bool path_rough_scatter(tracer *t, const rough_surface *r, int k, continuation *
     if (!(fraction > 0.0))
         return false;
     c->factor = r->finish ? c->factor : vec3_scale(c->factor, fraction);
-    c->specular_bounce = c->refracted && g->n_from[k] == g->n_to[k]; /* straight on: no other direction has density */
-    if (!c->specular_bounce && takes_lamps(t, k))
+    c->specular_bounce = c->refracted && g->n_from[k] == g->n_to[k]; /* undeflected: no other direction has density */
+    if (!c->specular_bounce && samples_lamps(t, k))
         light_by_direction(t, r, k, o, c);
     return true;
 }

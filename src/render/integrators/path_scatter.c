@@ -1,4 +1,4 @@
-/* Scattering by media on random paths. */
+/* Scattering by media on random paths: airlight along rays, and direct light and continuation where a flight ends. */
 #include "render/integrators/path.h"
 
 #include "base/elementary.h"
@@ -10,7 +10,7 @@
 #include "render/shade/radiance.h"
 #include "render/shade/shading.h"
 
-/* The lamps' light from everywhere. */
+/* The estimate for choosing a lamp: light from all directions. */
 static light_estimate estimate(void)
 {
     return (light_estimate){0.0f, 1.0f, 0.0, DRAW_LIGHT};
@@ -28,7 +28,7 @@ static vec3 point_of(const group *g, int k)
     return vec3_make(g->points.px[k], g->points.py[k], g->points.pz[k]);
 }
 
-/* Rays list[0 .. count - 1] of the batch, scattered at these distances in these media. */
+/* Gathers rays list[0 .. count - 1] of the batch, which scatter at these distances in these media. */
 static void gather(tracer *t, const ray_queue *q, int first, const int *list, int count, const double *at,
                    const int *media)
 {
@@ -63,19 +63,19 @@ static void enqueue(tracer *t, int k, int lamp, vec3 to_lamp, double fraction)
 
 /* --- along rays --- */
 
-/* For the rays that have reached their point for that lamp: what is left there of their throughput scatters. */
+/* Adds a lamp's airlight: rays scatter their remaining throughput at their point for this lamp. */
 static void light_along(tracer *t, int number, const ray_queue *q, int first, int count)
 {
     const plan *p = t->target.frame_plan;
     const airlight *l = &t->media->flights.lamps[number];
     group *g = &t->surface.gathered;
     lamp_samples s;
-    int list[ROW] = {0}, some = 0;
+    int list[ROW] = {0}, reached = 0;
     for (int i = 0; i < count; i++)
         if (l->region[i] > 0)
-            list[some++] = i;
-    gather(t, q, first, list, some, l->at, l->region);
-    for (int k = 0; k < some; k++) {
+            list[reached++] = i;
+    gather(t, q, first, list, reached, l->at, l->region);
+    for (int k = 0; k < reached; k++) {
         const int i = list[k];
         const region_scatter *here = &p->scatter->region[l->region[i]];
         s.lamp[k] = p->scatter->lamps[number], s.weight[k] = 1.0;
@@ -103,14 +103,14 @@ void path_scatter_mark(tracer *t, const ray_queue *q, int first, int count)
 
 /* --- where flights end --- */
 
-/* What the points of the group have of the medium, by record. */
+/* The medium's properties at the group's points, by record. */
 typedef struct scattering {
     double asymmetry[ROW];
     double flights[ROW]; /* density of the flight's end, per length */
 } scattering;
 
-/* A point of each record's lamp. */
-static void light_by_lamps(tracer *t, const lamp_samples *s, const scattering *of)
+/* Adds light from a point on each record's lamp. */
+static void light_by_lamps(tracer *t, const lamp_samples *s, const scattering *media_at_points)
 {
     const plan *p = t->target.frame_plan;
     const group *g = &t->surface.gathered;
@@ -118,19 +118,20 @@ static void light_by_lamps(tracer *t, const lamp_samples *s, const scattering *o
         if (!path_lamp_is_outside(p, s, k))
             continue;
         const lamp_aim a = path_lamp_aim(t, s, k);
-        const double phase = henyey_greenstein(vec3_dot(direction_of(g, k), a.to), of->asymmetry[k]);
+        const double phase = henyey_greenstein(vec3_dot(direction_of(g, k), a.to), media_at_points->asymmetry[k]);
         double fraction = 0.0;
         if (a.light > 0.0 && a.density > 0.0)
             fraction = a.light * phase / (a.density + phase);
         else if (a.light > 0.0)
-            fraction = a.light * phase * of->flights[k] /
-                       (of->flights[k] + airlight_density(p, s->lamp[k], vec3_make(g->ox[k], g->oy[k], g->oz[k]),
-                                                          direction_of(g, k), g->t[k]));
+            fraction =
+                a.light * phase * media_at_points->flights[k] /
+                (media_at_points->flights[k] +
+                 airlight_density(p, s->lamp[k], vec3_make(g->ox[k], g->oy[k], g->oz[k]), direction_of(g, k), g->t[k]));
         enqueue(t, k, s->lamp[k], vec3_scale(a.to, a.distance), fraction);
     }
 }
 
-static void sample_lamps(tracer *t, int depth, const scattering *of)
+static void sample_lamps(tracer *t, int depth, const scattering *media_at_points)
 {
     const plan *p = t->target.frame_plan;
     const light_estimate by = estimate();
@@ -138,16 +139,16 @@ static void sample_lamps(tracer *t, int depth, const scattering *of)
     if (light_choice_applies(p)) {
         light_choice_make(t, &by, depth, s.lamp, s.weight, s.spheres.u, s.spheres.v);
         area_lights_aim_at_spheres(t, &s);
-        light_by_lamps(t, &s, of);
+        light_by_lamps(t, &s, media_at_points);
         return;
     }
     for (int lamp = 0; lamp < p->light_count; lamp++) {
         path_lamp_samples(t, lamp, depth, &s);
-        light_by_lamps(t, &s, of);
+        light_by_lamps(t, &s, media_at_points);
     }
 }
 
-/* The lamps that the path's own direction meets. */
+/* Adds the light of lamps that the path's direction hits. */
 static void light_by_direction(tracer *t, int k, vec3 direction, double phase)
 {
     const plan *p = t->target.frame_plan;
@@ -182,22 +183,22 @@ void path_scatter(tracer *t, const ray_queue *q, int first, const int *list, int
     const flight_work *w = &t->media->flights;
     const group *g = &t->surface.gathered;
     const int depth = t->queues.depth;
-    scattering of;
+    scattering media_at_points;
     double u[ROW], v[ROW];
     gather(t, q, first, list, count, w->end, w->region);
     for (int k = 0; k < count; k++) {
         const region_scatter *here = &p->scatter->region[w->region[list[k]]];
-        of.asymmetry[k] = here->asymmetry;
-        of.flights[k] = here->per_unit * w->u[list[k]];
+        media_at_points.asymmetry[k] = here->asymmetry;
+        media_at_points.flights[k] = here->per_unit * w->u[list[k]];
     }
-    sample_lamps(t, depth, &of);
+    sample_lamps(t, depth, &media_at_points);
     t->sampling->draw(&p->draws, count, g->sample_key, depth, DRAW_PHASE, u, v);
     for (int k = 0; k < count; k++) {
-        const double cosine = henyey_greenstein_cosine(u[k], of.asymmetry[k]);
+        const double cosine = henyey_greenstein_cosine(u[k], media_at_points.asymmetry[k]);
         continuation c = {.direction = turned(direction_of(g, k), cosine, v[k]),
                           .factor = vec3_make(1.0, 1.0, 1.0),
                           .inside = g->inside_before[k]};
-        light_by_direction(t, k, c.direction, henyey_greenstein(cosine, of.asymmetry[k]));
+        light_by_direction(t, k, c.direction, henyey_greenstein(cosine, media_at_points.asymmetry[k]));
         path_continue(t, k, depth, &c);
     }
 }

@@ -19,7 +19,7 @@ typedef struct raster_work {
     uint32_t number[ROW];
     bool straight[ROW];               /* it hits a curved surface along the undeflected view */
     double vx[ROW], vy[ROW], vz[ROW]; /* direction of the undeflected view, in a frame with layers */
-    double ex[ROW], ey[ROW], ez[ROW]; /* and its origin, with parallel rays */
+    double ex[ROW], ey[ROW], ez[ROW]; /* origin of the undeflected view, with parallel rays */
     vec3 at[ROW];                     /* of the gathered group: points of affine texture lookup */
 } raster_work;
 
@@ -31,11 +31,11 @@ static bool begin(tracer *t)
     return true;
 }
 
-static void end(void *own)
+static void end(void *work)
 {
-    if (own)
-        zbuffer_square_release(&((raster_work *)own)->square);
-    free(own);
+    if (work)
+        zbuffer_square_release(&((raster_work *)work)->square);
+    free(work);
 }
 
 static void draw_tile(tracer *t, const image_tile *tile)
@@ -69,7 +69,7 @@ static raster_hit hit_plane(const primitive *p, vec3 eye, vec3 d)
 
 /* Barycentric weights of the ray's hit: equal to interpolating u / w, v / w and 1 / w over the image (Heckbert and
  * Moreton, "Interpolation for polygon texture mapping and shading", 1991), but computed from the ray because corners
- * may be behind the camera (Moller and Trumbore, JGT 2(1), 1997). A ray that misses because corners were rounded takes
+ * may be behind the camera (Moller and Trumbore, JGT 2(1), 1997). A ray that misses because corners were rounded hits
  * the nearest edge. */
 static raster_hit hit_triangle(const rasterised_part *p, const screen_triangle *s, vec3 eye, vec3 d)
 {
@@ -81,7 +81,7 @@ static raster_hit hit_triangle(const rasterised_part *p, const screen_triangle *
     const vec3 h = vec3_cross(d, ac), q = vec3_cross(ab, a);
     const double size = vec3_dot(ab, h);
     double u = -vec3_dot(a, h) / size, v = vec3_dot(d, q) / size;
-    if (!(fabs(u) < 1e6 && fabs(v) < 1e6)) /* seen edge-on: the weights are rounding noise, so take the centre */
+    if (!(fabs(u) < 1e6 && fabs(v) < 1e6)) /* seen edge-on: the weights are rounding noise, so use the centre */
         u = v = 1.0 / 3.0;
     if (u < 0.0 || v < 0.0 || u + v > 1.0) {
         const double w = greater(1.0 - u - v, 0.0);
@@ -101,7 +101,7 @@ static vec3 eye_of(const tracer *t, int i)
     return z->frame_plan->view.parallel ? vec3_make(w->ex[i], w->ey[i], w->ez[i]) : z->frame_plan->view.eye;
 }
 
-/* The distance from the plane of nearness, if neither weights nor sides are needed. */
+/* The hit's distance from the triangle's plane of nearness, for hits that need neither weights nor sides. */
 static raster_hit hit_depth(const zbuffer *z, const screen_triangle *s, int x, int y, vec3 d)
 {
     const double near = lesser(greater(s->a * (x + 0.5) + (s->b * (y + 0.5) + s->c), s->least), s->most);
@@ -157,7 +157,7 @@ static void undeflected_views(tracer *t, int count)
         t->sampling->camera_directions(view, count, u, v, w->vx, w->vy, w->vz);
 }
 
-/* The views of camera rays are their own. */
+/* The undeflected views of camera rays are the rays themselves. */
 static void first_views(tracer *t, const ray_batch *rays)
 {
     const size_t bytes = (size_t)rays->count * sizeof(double);
@@ -187,15 +187,15 @@ static inline raster_hit hit_layer(const tracer *t, int i, const rasterised_laye
     const raster_work *w = t->worker_data;
     const screen_triangle *s = &z->triangles[l->number - 1];
     const vec3 view = vec3_make(w->vx[i], w->vy[i], w->vz[i]);
-    raster_hit m = l->ends || !z->parts[s->part].own ? hit_part(z, s, eye_of(t, i), view)
-                                                     : hit_depth(z, s, w->x[i], w->y[i], view);
+    raster_hit m = l->ends || !z->parts[s->part].tessellation ? hit_part(z, s, eye_of(t, i), view)
+                                                              : hit_depth(z, s, w->x[i], w->y[i], view);
     m.leaving = l->ends ? m.leaving : l->leaving;
     return m;
 }
 
 /* Records the hit of ray `at` on the next interface of its point's list, at `place` or behind layers that are no
- * interface: at the point of the undeflected view, but along the ray's own direction, as if it had started towards that
- * point. The position in the list is stored as its set of primitives. */
+ * interface. The point is on the undeflected view; the ray keeps its direction, and its origin is moved to match. The
+ * position in the list is stored in place of the ray's set of primitives. */
 static void record_layer(tracer *t, ray_queue *q, int at, int i, uint32_t place)
 {
     const zbuffer *z = t->target.state;
@@ -318,11 +318,11 @@ static void straight_weights(const zbuffer *z, const screen_triangle *s, double 
         const int b = (k + 1) % 3, c = (k + 2) % 3;
         area[k] = (cx[b] - x) * (cy[c] - y) - (cy[b] - y) * (cx[c] - x);
     }
-    const double whole = area[0] + area[1] + area[2];
+    const double total = area[0] + area[1] + area[2];
     for (int j = 0; j < 3; j++) {
         weight[j] = 0.0;
         for (int k = 0; k < 3; k++)
-            weight[j] += (whole != 0.0 ? area[k] / whole : 1.0 / 3.0) * corner[k]->weight[j];
+            weight[j] += (total != 0.0 ? area[k] / total : 1.0 / 3.0) * corner[k]->weight[j];
     }
 }
 
@@ -336,7 +336,8 @@ static void straighten_uv(tracer *t, const rasterised_part *p, const screen_tria
     t->meshes->mapping[k].u = u, t->meshes->mapping[k].v = v;
 }
 
-/* An infinite plane has no affine interpolation: its corners are at infinity. */
+/* Sets the points of affine texture lookup. An infinite plane has no affine interpolation, because its corners are at
+ * infinity. */
 static void straighten(tracer *t, const int *list)
 {
     const zbuffer *z = t->target.state;
@@ -434,7 +435,7 @@ static void release(void *frame)
 static const integrator_step steps[] = {{project, sort}, {NULL, NULL}};
 
 const integrator integrator_of_zbuffer = {.by_solid = true,
-                                          .by_sample = true,
+                                          .needs_sample_number = true,
                                           .sampling = camera_samples,
                                           .prepare = prepare,
                                           .steps = steps,

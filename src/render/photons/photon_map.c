@@ -67,7 +67,7 @@ const photon *photon_map_at(const photon_map *m, size_t i)
     return &m->photons[i];
 }
 
-/* A photon in a list, then in the map, with its key and its part of the tree. */
+/* Bytes per photon: in a list, as a sort key, in the map, and its part of the tree. */
 size_t photon_map_bytes(void)
 {
     return 3 * sizeof(photon) + 2 * sizeof(void *) +
@@ -76,27 +76,26 @@ size_t photon_map_bytes(void)
 
 /* --- footprints --- */
 
-/* What a sample of the image sees of a photon whose disc is not much wider than its cell.
+/* The light of a photon in a sample of the image, if the photon's disc is not much wider than the sample's cell.
  *
- * A disc that is looked up at points keeps its power on average only: the sum over a lattice of points with spacing 1
- * of a density of integral 1 is the sum of its Fourier transform over the whole frequencies (Poisson), 1 only if all
- * others vanish. So such a photon's light is a product of two densities in the image's directions, x and y, and a
- * sample sees their mean over its cell, whose width is 1. A mean over the cell multiplies the transform by sin(pi f) /
- * (pi f), which is 0 at all whole frequencies: whatever the width and the place of the density, the sum over all
- * samples is 1. It is also the value that many samples in the cell would give.
+ * A disc that is evaluated at points keeps its power only on average: the sum over a lattice of points with spacing 1
+ * of a density of integral 1 is the sum of its Fourier transform over the integer frequencies (Poisson), which is 1
+ * only if all but the transform at 0 vanish. So such a photon's light is a product of two densities in the image's
+ * directions, x and y, and a sample sees their mean over its cell, whose width is 1. A mean over the cell multiplies
+ * the transform by sin(pi f) / (pi f), which is 0 at all other integers: whatever the width and the position of the
+ * density, the sum over all samples is 1. It is also the value that many samples in the cell would give.
  *
- * In each direction the density is the biweight (15 / 16) (1 - x^2)^2, whose variance is 1/7 of its half width squared,
- * that of a disc 1/8 of its radius squared; with a half width of sqrt(7/8) radii both blur alike, and are equally
- * noisy.
+ * In each direction the density is the biweight (15 / 16) (1 - x^2)^2, whose variance is 1/7 of its half width squared;
+ * a disc's is 1/8 of its radius squared. With a half width of sqrt(7/8) radii both blur equally, and are equally noisy.
  *
- * A photon's place in the image is that of the ray among the neighbours of the given one that passes the photon: exact
- * for rays through one point and for parallel ones, also after flat mirrors, else to first order. */
+ * A photon's position in the image is that of the neighbouring ray that passes through the photon: exact for rays
+ * through one point and for parallel rays, also after flat mirrors; else to first order. */
 
 /* Half widths of the densities, in radii. */
 #define HALF_WIDTH 0.93541434669348533
-/* Of a footprint on the surface, length over width: beyond, surfaces are seen edge on. */
+/* The greatest ratio of length to width of a footprint on the surface; beyond it, the surface is seen edge-on. */
 #define LONGEST 64.0
-/* Bounds of footprints at other points of the surface than the hit. */
+/* Safety factor of bounds, for footprints at other points of the surface than the hit. */
 #define MARGIN 1.1
 
 /* The integral of the biweight from its middle to x. */
@@ -118,14 +117,14 @@ static vec3 on_surface(vec3 v, vec3 d, vec3 n, double cosine)
     return vec3_add(v, vec3_scale(d, vec3_dot(v, n) / cosine));
 }
 
-/* The length of that. */
+/* The length of on_surface. */
 static double length_on_surface(vec3 v, vec3 d, vec3 n, double cosine)
 {
     const double times = vec3_dot(v, n) / cosine;
     return sqrt(vec3_dot(v, v) + times * (2.0 * vec3_dot(v, d) + times * vec3_dot(d, d)));
 }
 
-/* Where photons can be seen from the ray's hit, on a surface with that normal. */
+/* The region in which photons contribute to the ray's sample, on a surface with that normal. */
 static photon_reach footprint_reach(const photon_footprint *f, vec3 normal)
 {
     const double cosine = -vec3_dot(f->toward, normal);
@@ -149,8 +148,8 @@ static photon_reach footprint_reach(const photon_footprint *f, vec3 normal)
     return r;
 }
 
-/* A photon as the ray's samples see it, in cells: its place from the ray's sample, the variance that its light has
- * there in each direction, and the radius of its disc in the direction in which cells are widest. */
+/* A photon in the image, in cells: its position relative to the ray's sample, the variance of its light in each
+ * direction, and the radius of its disc in the direction in which cells are widest. */
 typedef struct photon_place {
     double x, y, variance_x, variance_y, radius;
 } photon_place;
@@ -159,12 +158,12 @@ typedef struct photon_place {
  * widths are at least `blur`; variances add up. */
 static double half_width(double radius, double disc, double cell, double blur)
 {
-    const double plain = HALF_WIDTH * radius / cell, own = HALF_WIDTH * disc / cell;
-    return own >= blur ? plain : sqrt(blur * blur + (plain - own) * (plain + own));
+    const double plain = HALF_WIDTH * radius / cell, disc_half_width = HALF_WIDTH * disc / cell;
+    return disc_half_width >= blur ? plain : sqrt(blur * blur + (plain - disc_half_width) * (plain + disc_half_width));
 }
 
 /* The density per area with which a photon at point + off counts for the ray, of integral 1 over the photon's surface;
- * negative if it is wide enough to be looked up at the point alone. A group's photons have discs of radius `disc`. */
+ * negative if it is wide enough to be evaluated only at the point. A group's photons have discs of radius `disc`. */
 static double footprint_density(const photon_footprint *f, const photon *one, double disc, vec3 off,
                                 photon_place *place)
 {
@@ -194,9 +193,9 @@ static double footprint_density(const photon_footprint *f, const photon *one, do
 
 /* --- irradiance --- */
 
-/* Photons of a spectral map count for wavelengths up to this far from their own, 0.1 nm each. */
+/* Photons of a spectral map contribute to wavelengths up to this distance from their own, in steps of 0.1 nm. */
 #define BAND 250.0
-#define RANGE 4000.0 /* of wavelengths, over which the photons are spread evenly */
+#define RANGE 4000.0 /* number of wavelengths, over which photons are distributed uniformly */
 
 typedef struct irradiance_sum {
     vec3 point, normal, sum;
@@ -204,11 +203,12 @@ typedef struct irradiance_sum {
     const photon_footprint *footprint; /* or NULL */
     photon_reach reach;                /* of the footprint */
     double *narrow;                    /* or NULL */
-    double all, x, y, xx, yy, xy;      /* light, and its moments over the photons' places in deviations of one */
+    /* light, and its moments over the photons' positions in units of their standard deviations */
+    double all, x, y, xx, yy, xy;
 } irradiance_sum;
 
 /* The weight of a photon's disc at the offset from it, (3 / (pi r^2)) (1 - d^2 / r^2)^2, of integral 1 (biweight
- * kernel, Silverman, 4.2.1). What is in front or behind is another surface. */
+ * kernel, Silverman, 4.2.1). Points in front or behind are on another surface. */
 static double disc_density(const photon *one, vec3 off)
 {
     const vec3 n = vec3_make((double)one->normal[0], (double)one->normal[1], (double)one->normal[2]);
@@ -220,7 +220,7 @@ static double disc_density(const photon *one, vec3 off)
     return fraction * fraction * (3.0 / (PHOTON_PI * r2));
 }
 
-/* By which a photon's light counts at a wavelength. */
+/* The weight of a photon's light at a wavelength. */
 static double wavelength_weight(const photon *one, int wavelength)
 {
     if (wavelength < 0)
@@ -231,11 +231,11 @@ static double wavelength_weight(const photon *one, int wavelength)
     return away < 1.0 ? (1.0 - away) * (RANGE / BAND) : 0.0;
 }
 
-/* Of a disc with that radius in cells of samples the sum over samples varies by less than 1 %, as PHOTON_RESOLVED is
- * for a tenth of that. */
+/* The radius of a disc, in cells of samples, from which the sum over samples varies by less than 1 %; at
+ * PHOTON_RESOLVED it is less than 0.1 %. */
 #define SAMPLED 2.5
 
-/* The smallest whole number by which `cells` has to be multiplied to be SAMPLED; 0 if it is too large. */
+/* The smallest integer factor below PHOTON_FACTORS that makes `cells` at least SAMPLED; 0 if there is none. */
 static int factor_of(double cells)
 {
     for (int k = 1; k < PHOTON_FACTORS; k++)
@@ -252,9 +252,9 @@ static void add_narrow(irradiance_sum *s, const photon_place *p, double light)
     s->xx += light * x * x, s->yy += light * y * y, s->xy += light * x * y;
 }
 
-/* Whether a disc of that radius can be seen from that offset. At a point, it counts up to half its radius in front of
- * its plane and behind. */
-static bool can_be_seen(const irradiance_sum *s, vec3 off, double radius)
+/* Whether a disc of that radius can contribute at that offset. At a point, a disc contributes up to half its radius in
+ * front of its plane and behind. */
+static bool can_contribute(const irradiance_sum *s, vec3 off, double radius)
 {
     if (!s->footprint)
         return vec3_dot(off, off) < 1.5 * radius * radius;
@@ -265,13 +265,13 @@ static bool can_be_seen(const irradiance_sum *s, vec3 off, double radius)
     return true;
 }
 
-/* Adds a photon's fraction at the point. Surfaces that turn away are other surfaces. */
+/* Adds a photon's light at the point, unless the normals differ: then the photon is on another surface. */
 static void add(const photon *one, double disc, void *context)
 {
     irradiance_sum *s = context;
     const vec3 off = vec3_sub(s->point, one->position);
     const double r = (double)one->radius;
-    if (!can_be_seen(s, off, r))
+    if (!can_contribute(s, off, r))
         return;
     const vec3 n = vec3_make((double)one->normal[0], (double)one->normal[1], (double)one->normal[2]);
     if (vec3_dot(n, s->normal) < PHOTON_FACING)
@@ -290,16 +290,17 @@ static void add(const photon *one, double disc, void *context)
         add_narrow(s, &place, light.x + light.y + light.z);
 }
 
-/* Light is not narrow, however narrow the photons' discs are, where it is spread over a good part of the window through
- * which the sample sees it: even light has a variance of 1 in each direction, the half of a window about 1/3, its rim,
- * a fifth as wide, as much as SPREAD. */
+/* Light is not narrow, however narrow the photons' discs are, if it fills a good part of the window through which the
+ * sample sees it: uniform light has a variance of 1 in each direction, half a window about 1/3, and a rim a fifth as
+ * wide about SPREAD. */
 #define SPREAD 0.05
 
 static bool is_spread(const irradiance_sum *s)
 {
     const double x = s->x / s->all, y = s->y / s->all, a = s->xx / s->all - x * x, b = s->yy / s->all - y * y,
                  c = s->xy / s->all - x * y;
-    const double least = 0.5 * (a + b - sqrt((a - b) * (a - b) + 4.0 * c * c)); /* in any direction */
+    const double least =
+        0.5 * (a + b - sqrt((a - b) * (a - b) + 4.0 * c * c)); /* the least variance of any direction */
     return least >= SPREAD;
 }
 

@@ -2,14 +2,14 @@
  * Illumination using Photon Maps", Eurographics Workshop on Rendering 1996). Each photon spreads its power over a disc
  * in its surface's plane, whose radius is the distance to its PHOTON_NEIGHBOURS-th neighbour: narrow where light is
  * dense, so that sharp caustics stay sharp (the sample-point estimator of Silverman, Density Estimation, 1986, 5.3).
- * Where light is even all around, and where the lamp's width blurs the caustic anyway, the disc is wider, and nowhere
- * much narrower than a pixel (photon_radius.c). The discs overlap; irradiance at a point is the sum over the discs
- * around it. Discs that are narrow in the image are averaged over the cell of the sample that sees them
+ * The disc is wider where light is uniform all around, and where the lamp's size blurs the caustic anyway; it is
+ * nowhere much narrower than a pixel (photon_radius.c). The discs overlap; irradiance at a point is the sum over the
+ * discs around it. Discs that are narrow in the image are averaged over the cell of the sample that sees them
  * (photon_map.c), so that light narrower than a pixel keeps its power.
  *
- * The map is a function of the set of photons: they are sorted, so that sums have one order whichever worker added them
- * when. Ownership: photon_map_create allocates, photon_map_destroy releases; once built, any number of threads may
- * read. */
+ * The map is a function of the set of photons: they are sorted, so that sums have one order, whatever the order in
+ * which workers added the photons. Ownership: photon_map_create allocates, photon_map_destroy releases; once built, any
+ * number of threads may read. */
 #pragma once
 
 #include "base/status.h"
@@ -22,9 +22,9 @@ typedef struct photon {
     vec3 position;
     float normal[3]; /* of the surface, on the side where it arrived */
     float flux[3];   /* its power over pi, by channel: a matte surface's radiance is its albedo times irradiance / pi */
-    float radius;    /* of its disc: at first, that of the blur by the lamp's width; photon_map_spread computes it */
-    int32_t
-        wavelength; /* its number in a spectral film, else the same for all; of a spectral line, photon_of_line of it */
+    float radius;    /* of its disc, set by photon_map_spread; before, the radius of the blur by the lamp's size */
+    /* its number in a spectral film, for a spectral line photon_of_line of it; in an rgb film, equal for all */
+    int32_t wavelength;
 } photon;
 
 static inline int32_t photon_of_line(int32_t wavelength)
@@ -54,36 +54,37 @@ typedef struct photon_limits {
     vec3 eye;
 } photon_limits;
 
-/* Computes the radii of photons first .. first + PHOTON_BLOCK - 1; threads share the blocks. */
+/* Computes the radii of photons first .. first + PHOTON_BLOCK - 1; threads may process different blocks at the same
+ * time. */
 enum { PHOTON_BLOCK = 512, PHOTON_NEIGHBOURS = 48, PHOTON_WIDER = 2 };
 void photon_map_spread(photon_map *m, size_t first, const photon_limits *limits);
-/* Call after the last photon_map_spread: the map is then complete, unless it is cancelled: then false. Photons much
- * closer together than their discs are wide become one. */
+/* Completes the map after the last photon_map_spread; false when cancelled. Merges photons that are much closer
+ * together than their discs are wide. */
 bool photon_map_finish(photon_map *m);
 
-/* How many there are, after photon_map_finish perhaps fewer. */
+/* The number of photons, which photon_map_finish may reduce. */
 size_t photon_map_count(const photon_map *m);
 /* Photon i in the map's order. */
 const photon *photon_map_at(const photon_map *m, size_t i);
 
-/* Irradiance over pi at a point of a surface with that normal, by channel. In a spectral map, per wavelength number
- * (a photon counts for wavelengths near its own; that of a line for its own alone): wavelength is the ray's, or -1 in
- * an rgb map. */
+/* Irradiance over pi at a point of a surface with that normal, by channel. In a spectral map it is per wavelength
+ * number; a photon contributes to wavelengths near its own, a line's photon only to its own. wavelength: the ray's, or
+ * -1 in an rgb map. */
 vec3 photon_map_irradiance(const photon_map *m, vec3 point, vec3 normal, int wavelength);
 
 /* A ray at the point that it hits, and its neighbours one sample of the image away in x and y: the one at (x, y) passes
  * point + x across[0] + y across[1], towards toward + x turn[0] + y turn[1] (ray_footprint, render/tracer/queue.h). */
 typedef struct photon_footprint {
     vec3 toward, across[2], turn[2];
-    vec3 along;   /* the ray is at point + t toward where t is the offset times this */
-    double reach; /* scene units: if photons farther away count too, those close together are seen as one */
-    double blur;  /* samples: densities are at least that wide to each side; where neighbours disagree about places */
+    vec3 along;   /* for a photon at an offset from point, t = offset . along is its parameter on point + t toward */
+    double reach; /* scene units: if photons farther away contribute, photons close together are evaluated as one */
+    double blur;  /* samples: least half width of densities; above 0 if neighbouring rays disagree about positions */
 } photon_footprint;
 
-/* The same for what the ray sees there, the mean over its sample's cell of the image (photon_map.c): the sum over
- * all samples does not depend on where between them a photon is. Sets narrow[k], unless NULL, to the part of the light,
- * summed over channels, that samples k times as close along each side would see even if the footprint were wrong:
- * k = 1 as it is, and 0 for what needs more than PHOTON_FACTORS - 1. */
+/* photon_map_irradiance averaged over the cell of the ray's sample in the image (photon_map.c), so that the sum over
+ * all samples does not depend on a photon's position between them. Sets narrow[k], unless NULL, to the part of the
+ * light, summed over channels, for which samples k times as dense along each side would suffice even if the footprint
+ * were wrong: k = 1 for the present samples, and 0 for light that needs a factor of PHOTON_FACTORS or more. */
 enum { PHOTON_FACTORS = 9 };
 vec3 photon_map_seen(const photon_map *m, vec3 point, vec3 normal, int wavelength, const photon_footprint *f,
                      double *narrow);

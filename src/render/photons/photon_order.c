@@ -8,7 +8,7 @@
 
 typedef struct photon_key {
     uint64_t code;
-    const photon *of;
+    const photon *source;
 } photon_key;
 
 /* The 21 bits of x at every third place (Morton, "A computer oriented geodetic data base", IBM, 1966). */
@@ -21,7 +21,7 @@ static uint64_t apart(uint64_t x)
     return (x | x << 2) & 0x1249249249249249;
 }
 
-/* Where most photons are: few of them may be very far away. The numbers do not depend on the photons' order. */
+/* The region of most photons, since a few may be very far away. It does not depend on the photons' order. */
 typedef struct middle {
     double centre[3], spread;
 } middle;
@@ -51,7 +51,7 @@ static double find(double *value, size_t n, size_t k)
     return value[k];
 }
 
-static double part(vec3 v, int axis)
+static double component(vec3 v, int axis)
 {
     return axis == 0 ? v.x : axis == 1 ? v.y : v.z;
 }
@@ -64,7 +64,7 @@ static middle middle_of(const photon_list *lists, size_t count, double *values, 
         size_t at = 0;
         for (size_t i = 0; i < count; i++)
             for (size_t k = 0; k < lists[i].count; k++)
-                values[at++] = part(lists[i].list[k].position, axis);
+                values[at++] = component(lists[i].list[k].position, axis);
         m.centre[axis] = find(values, n, n / 2);
     }
     size_t at = 0;
@@ -72,7 +72,7 @@ static middle middle_of(const photon_list *lists, size_t count, double *values, 
         for (size_t k = 0; k < lists[i].count; k++, at++) {
             values[at] = 0.0;
             for (int axis = 0; axis < 3; axis++)
-                values[at] = fmax(values[at], fabs(part(lists[i].list[k].position, axis) - m.centre[axis]));
+                values[at] = fmax(values[at], fabs(component(lists[i].list[k].position, axis) - m.centre[axis]));
         }
     const double spread = find(values, n, n / 2);
     m.spread = spread > 0.0 ? spread : 1.0;
@@ -97,7 +97,7 @@ static int sign(double a, double b)
     return (a > b) - (a < b);
 }
 
-/* A total order, by numbers, whatever the order of their bytes: photons that compare equal are the same. */
+/* A total order by values, not by bytes in memory: photons that compare equal are identical. */
 static int compare(const void *a, const void *b)
 {
     const photon_key *x = a, *y = b;
@@ -105,13 +105,13 @@ static int compare(const void *a, const void *b)
         return x->code < y->code ? -1 : 1;
     int order = 0;
     for (int i = 0; i < 3 && order == 0; i++)
-        order = sign(part(x->of->position, i), part(y->of->position, i));
+        order = sign(component(x->source->position, i), component(y->source->position, i));
     for (int i = 0; i < 3 && order == 0; i++)
-        order = sign((double)x->of->flux[i], (double)y->of->flux[i]);
+        order = sign((double)x->source->flux[i], (double)y->source->flux[i]);
     for (int i = 0; i < 3 && order == 0; i++)
-        order = sign((double)x->of->normal[i], (double)y->of->normal[i]);
-    order = order ? order : sign((double)x->of->radius, (double)y->of->radius);
-    return order ? order : sign(x->of->wavelength, y->of->wavelength);
+        order = sign((double)x->source->normal[i], (double)y->source->normal[i]);
+    order = order ? order : sign((double)x->source->radius, (double)y->source->radius);
+    return order ? order : sign(x->source->wavelength, y->source->wavelength);
 }
 
 size_t photon_lists_total(const photon_list *lists, size_t count)
@@ -136,7 +136,7 @@ static bool divide(const photon_list *lists, size_t count, const middle *m, phot
                 return false;
             end[code_of(lists[i].list[k].position, m) >> PART_SHIFT]++;
         }
-    for (size_t i = 0, sum = 0; i < PARTS; i++) { /* first where each begins */
+    for (size_t i = 0, sum = 0; i < PARTS; i++) { /* first the beginning of each part */
         const size_t begin = sum;
         sum += end[i];
         end[i] = begin;
@@ -168,7 +168,7 @@ bool photon_order(const photon_list *lists, size_t count, photon *out)
         done = !cancel_asked();
     }
     for (size_t i = 0; done && i < n; i++) {
-        out[i] = *keys[i].of;
+        out[i] = *keys[i].source;
         done = !cancel_asked_at(i);
     }
     free(end);

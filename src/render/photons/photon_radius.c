@@ -1,28 +1,29 @@
-/* The radii of a photon map's discs, and photons that become one.
+/* The radii of a photon map's discs, and the merging of photons.
  *
- * A radius begins as the distance to the PHOTON_NEIGHBOURS-th neighbour. It is doubled as long as light within the
- * wider disc is even as far as its noise lets see, after Lepski's rule for the width of kernels (Theory of Probability
- * and its Applications 35, 1990): the largest whose result agrees with those of the narrower ones. */
+ * A radius begins as the distance to the PHOTON_NEIGHBOURS-th neighbour. It is doubled while light within the wider
+ * disc is uniform within its noise, after Lepski's rule for the width of kernels (Theory of Probability and its
+ * Applications 35, 1990): the largest width whose estimate agrees with those of the narrower ones. */
 #include "render/photons/photon_tree.h"
 
 #include "base/cancel.h"
 #include <stdlib.h>
 
-/* --- is light even in a disc? --- */
+/* --- whether light is uniform in a disc --- */
 
-/* Where n photons are spread evenly over a disc of radius R, their mean offset from its centre has a standard deviation
- * of R / (2 sqrt n) in each direction, and the squared distance over R^2 has the mean 1/2, with a standard deviation of
- * 1 / sqrt(12 n). Edges, lines and peaks of light differ by more. */
+/* If n photons are distributed uniformly over a disc of radius R, their mean offset from its centre has a standard
+ * deviation of R / (2 sqrt n) in each direction, and the squared distance over R^2 has the mean 1/2, with a standard
+ * deviation of 1 / sqrt(12 n). Edges, lines and peaks of light differ by more. */
 
-/* How many standard deviations off is still even. */
+/* The number of standard deviations within which light counts as uniform. */
 #define AGREES 4.0
-/* The least cosine of normals in a box that is summed up whole. */
+/* The least cosine between normals of a box whose sums are used. */
 #define FLAT 0.9999
 
-/* Sums over photons by channel: of power, its square, its offsets from a point, and its squared distances. */
+/* Sums over photons by channel: power, its square, and power times the offset from a point and times the squared
+ * distance. */
 typedef struct moments {
     float power[3], power2[3], offset[3][3], distance2[3];
-    bool flat; /* all photons of the box face as the first one, and the sums hold, with offsets from that one */
+    bool flat; /* all photons of the box face like the first one, and the sums are valid, with offsets from it */
 } moments;
 
 struct photon_sums {
@@ -45,7 +46,7 @@ static void add_photon(moment_sum *s, const photon *one, vec3 from)
     }
 }
 
-/* Moments about `origin`, moved to `from`. */
+/* Adds moments about `origin`, converted to moments about `from`. */
 static void add_moments(moment_sum *s, const moments *b, vec3 origin, vec3 from)
 {
     const vec3 move = vec3_sub(origin, from);
@@ -142,14 +143,14 @@ static void sum_box(search *s, int level, size_t box)
 {
     const photon_map *m = s->map;
     const photon_box *b = &m->level[level][box];
-    const moments *whole = &s->sums->level[level][box];
+    const moments *box_sums = &s->sums->level[level][box];
     const vec3 from = s->from->position;
     if (!(photon_box_distance2(b, from) < s->radius2))
         return;
-    if (whole->flat && farthest2(b, from) < s->radius2) {
+    if (box_sums->flat && farthest2(b, from) < s->radius2) {
         const photon *first = first_of(m, level, box);
         if (photon_cosine(first, s->from) >= PHOTON_FACING)
-            add_moments(&s->sum, whole, first->position, from);
+            add_moments(&s->sum, box_sums, first->position, from);
         return;
     }
     const size_t end = photon_box_end(m, level, box);
@@ -164,8 +165,8 @@ static void sum_box(search *s, int level, size_t box)
     }
 }
 
-/* Light within that distance of photon i, on the same surface, is even as far as its noise lets see. */
-static bool photon_sums_even(const photon_sums *sums, const photon_map *m, size_t i, double radius)
+/* Whether light within that distance of photon i, on the same surface, is uniform within its noise. */
+static bool light_is_uniform(const photon_sums *sums, const photon_map *m, size_t i, double radius)
 {
     search s = {sums, m, &m->photons[i], radius * radius, {{0.0}, {0.0}, {0.0}, {{0.0, 0.0, 0.0}}}};
     sum_box(&s, m->levels - 1, 0);
@@ -187,11 +188,12 @@ static bool photon_sums_even(const photon_sums *sums, const photon_map *m, size_
 
 enum { DOUBLINGS = 2 };
 
-/* Photons of one wavelength are few among many, and their light may be uneven where the sum is even. */
+/* The radius before blur and limits. It is not doubled for photons of several wavelengths (sums is NULL): those of one
+ * wavelength are few, and their light may vary where the sum is uniform. */
 static double reach(const photon_map *m, size_t i, double widest)
 {
     double r = photon_tree_reach(m, i, PHOTON_NEIGHBOURS, widest);
-    for (int k = 0; k < DOUBLINGS && m->sums && 2.0 * r < widest && photon_sums_even(m->sums, m, i, 2.0 * r); k++)
+    for (int k = 0; k < DOUBLINGS && m->sums && 2.0 * r < widest && light_is_uniform(m->sums, m, i, 2.0 * r); k++)
         r *= 2.0;
     return r;
 }
@@ -201,7 +203,7 @@ static double least_at(const photon_limits *limits, vec3 point)
     return limits->least + limits->least_at_1 * vec3_length(vec3_sub(point, limits->eye));
 }
 
-/* Photons of a leaf that are close to its middle one have the radius of that one. */
+/* Photons of a leaf that are close to its middle photon have that photon's radius. */
 static void spread_leaf(photon_map *m, size_t first, size_t end, const photon_limits *limits)
 {
     const size_t half = (first + end) / 2;
@@ -211,8 +213,8 @@ static void spread_leaf(photon_map *m, size_t first, size_t end, const photon_li
         photon *one = &m->photons[i];
         const vec3 off = vec3_sub(one->position, leader->position);
         const bool close = vec3_dot(off, off) < 0.5 * r * r && photon_cosine(one, leader) >= PHOTON_FACING;
-        const double own = close ? r : reach(m, i, limits->widest),
-                     blurred = fmin(fmax(own, (double)one->radius), PHOTON_WIDER * own);
+        const double reach_here = close ? r : reach(m, i, limits->widest),
+                     blurred = fmin(fmax(reach_here, (double)one->radius), PHOTON_WIDER * reach_here);
         one->radius = (float)fmax(blurred, least_at(limits, one->position));
     }
 }
@@ -224,9 +226,9 @@ void photon_map_spread(photon_map *m, size_t first, const photon_limits *limits)
         spread_leaf(m, i, i + PHOTON_WIDE < end ? i + PHOTON_WIDE : end, limits);
 }
 
-/* --- photons that become one --- */
+/* --- merging photons --- */
 
-/* The largest extent of photons that become one, as a fraction of their discs' radius, and that of their radii. */
+/* Limits of merging: the photons' extent as a fraction of their discs' radius, and the ratio of their radii. */
 #define MERGED_EXTENT 0.3
 #define MERGED_RADII 1.1
 
@@ -246,7 +248,7 @@ static bool can_merge(const photon *list, int count)
     return most <= MERGED_RADII * least && extent2 <= MERGED_EXTENT * MERGED_EXTENT * least * least;
 }
 
-/* Their sum, at their centre of power. */
+/* The sum of photons, at their centre of power. */
 static photon merged(const photon *list, int count)
 {
     photon sum = *list;
@@ -267,7 +269,7 @@ static photon merged(const photon *list, int count)
     return sum;
 }
 
-/* Groups of eight, four or two neighbours in the map's order. False when cancelled. */
+/* Merges groups of eight, four or two neighbours in the map's order. False when cancelled. */
 static bool merge(photon_map *m)
 {
     size_t kept = 0;

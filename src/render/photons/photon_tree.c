@@ -72,10 +72,10 @@ double photon_box_distance2(const photon_box *b, vec3 at)
 
 /* --- groups --- */
 
-/* Photons that are close together in a sample's cell of the image are seen as one, so that a cell with thousands costs
- * much less (lightcuts do so for lamps: Walter and others, SIGGRAPH 2005). A group has the flux, centre and variance of
- * its photons. A disc of radius r has the variance r^2 / 8 in each direction, and a photon a distance d from the centre
- * adds d^2 / 2. */
+/* Photons that are close together in a sample's cell of the image are evaluated as one, so that a cell with thousands
+ * costs much less (lightcuts do so for lamps: Walter and others, SIGGRAPH 2005). A group has the flux, centre and
+ * variance of its photons. A disc of radius r has the variance r^2 / 8 in each direction, and a photon at a distance d
+ * from the centre adds d^2 / 2. */
 
 /* The least cosine between normals of a group. */
 #define FLAT 0.98
@@ -151,7 +151,7 @@ bool photon_groups_make(photon_map *m)
 /* --- the nearest neighbours --- */
 
 enum { NEIGHBOURS_MAX = 128 };
-/* Of the widest disc: many photons may meet in one point. */
+/* The least radius as a fraction of the widest, since many photons may meet in one point. */
 #define LEAST_DISC 1e-4
 
 /* The k least squared distances so far, as a heap with the largest first. */
@@ -211,7 +211,7 @@ static void search(nearest *s, int level, size_t box)
             search(s, level - 1, i);
 }
 
-/* The search starts with the smallest box, and in each larger one looks at those not yet searched. */
+/* The search starts with the photon's leaf, and continues in each larger box with the boxes not yet searched. */
 double photon_tree_reach(const photon_map *m, size_t i, int k, double widest)
 {
     nearest s = {m, &m->photons[i], k + 1, 0, widest * widest, {0.0}}; /* the photon itself is the first */
@@ -250,7 +250,7 @@ static bool is_near(const photon_box *b, const visit_around *v)
            (int)(v->low.y <= b->high[1]) & (int)(v->high.z >= b->low[2]) & (int)(v->low.z <= b->high[2]);
 }
 
-/* A disc is in its box as a whole. */
+/* Whether the box, which holds its discs entirely, meets the reach. */
 static bool is_in_cell(const photon_box *b, const visit_around *v)
 {
     const photon_reach *reach = v->reach;
@@ -262,8 +262,8 @@ static bool is_in_cell(const photon_box *b, const visit_around *v)
     return true;
 }
 
-/* In the cells of the sample. */
-static bool is_seen_as_one(const visit_around *v, int level, size_t box)
+/* Whether the photons of a box are close enough, in cells of the sample, to be evaluated as one. */
+static bool is_one_group(const visit_around *v, int level, size_t box)
 {
     const photon_group *g = &v->map->group[level][box];
     if (!(g->one.radius > 0.0F))
@@ -282,7 +282,7 @@ static void visit_box(const visit_around *v, int level, size_t box)
     const photon_box *b = &m->level[level][box];
     if (!is_near(b, v) || (v->reach && !is_in_cell(b, v)))
         return;
-    if (v->reach && v->reach->groups && is_seen_as_one(v, level, box)) {
+    if (v->reach && v->reach->groups && is_one_group(v, level, box)) {
         v->visit(&m->group[level][box].one, sqrt((double)m->group[level][box].disc2), v->context);
         return;
     }

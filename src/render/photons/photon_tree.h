@@ -1,14 +1,15 @@
-/* The tree of a photon map, for this folder alone: boxes around every eight photons in order, around every eight of
- * these boxes, and so on; a box is found by its number, without pointers. */
+/* The tree of a photon map, used only in this folder: boxes around every eight consecutive photons, around every eight
+ * of these boxes, and so on. A box is found by its number, without pointers. */
 #pragma once
 
 #include "render/photons/photon_map.h"
 #include <math.h>
 
 #define PHOTON_PI 3.14159265358979323846
-/* The least cosine between the normals of neighbours, about 37 degrees: round surfaces are one, edges part two. */
+/* The least cosine between the normals of neighbours, about 37 degrees: it connects photons on round surfaces, and
+ * separates those across edges. */
 #define PHOTON_FACING 0.8
-/* The radius in cells of samples from which on a disc is looked up at points: along a line of light across the samples
+/* The radius, in cells of samples, from which a disc is evaluated at points: along a line of light across the samples
  * the sum then varies by 96 J_3(q) / q^3, q = 2 pi radius, below 1e-3 (see photon_map.c). */
 #define PHOTON_RESOLVED 4.0
 
@@ -25,10 +26,12 @@ typedef struct photon_box {
         }                                                           \
     }
 
-/* Photons of a box as one: their flux at its centre, with a disc that has the variance of their places and discs. */
+/* The photons of a box as one: their flux at their centre, with a disc that has the variance of their positions and
+ * discs. */
 typedef struct photon_group {
-    photon one;           /* radius 0: they are no group, since they are of several wavelengths or surfaces */
-    float disc2, spread2; /* means by power: square of their discs' radius; variance of places in both directions */
+    photon one;    /* radius 0: not a group, because the photons are of several wavelengths or surfaces */
+    float disc2;   /* mean square of the discs' radii, weighted by power */
+    float spread2; /* variance of positions, weighted by power and summed over both directions */
 } photon_group;
 
 struct photon_map {
@@ -62,8 +65,8 @@ static inline size_t photon_box_end(const photon_map *m, int level, size_t box)
     return end < below ? end : below;
 }
 
-/* photon_order.c: the number of photons in the lists; these photons in the map's order, to as many places; false when
- * out of memory or cancelled. */
+/* photon_order.c. photon_lists_total: the number of photons in the lists. photon_order: copies them to out in the map's
+ * order; false when out of memory or cancelled. */
 size_t photon_lists_total(const photon_list *lists, size_t count);
 bool photon_order(const photon_list *lists, size_t count, photon *out);
 
@@ -73,34 +76,35 @@ void photon_tree_count(photon_map *m);
 bool photon_tree_make(photon_map *m);
 /* Fits the boxes to the photons' discs, or to their positions; false when cancelled. */
 bool photon_tree_fit(photon_map *m, bool discs);
-/* The distance from photon i to its k-th nearest neighbour on the same surface, at most `widest`. Boxes must be those
- * of the positions, or larger. */
+/* The distance from photon i to its k-th nearest neighbour on the same surface, at most `widest`. Boxes must contain at
+ * least the positions. */
 double photon_tree_reach(const photon_map *m, size_t i, int k, double widest);
 /* Makes the groups of all boxes from the photons; false when out of memory or cancelled. */
 bool photon_groups_make(photon_map *m);
 
-/* Where photons can be seen from the ray's hit, on a surface with that normal: within three slabs
- * around it, the sample's cell in x, in y, and the surface's thickness. */
+/* The region around a ray's hit in which photons contribute: three slabs, the sample's cell in x, in y, and the
+ * surface's thickness. */
 enum { REACH_X, REACH_Y, REACH_HEIGHT, REACH_SLABS };
 typedef struct photon_reach {
-    bool known; /* false: the surface is seen edge on or from behind, and discs are looked up at the point */
-    vec3 slab[REACH_SLABS]; /* across the slab, 1 / cells or 1: a photon's offset times this is at most */
+    bool known; /* false: the surface is seen edge on or from behind, and discs are evaluated at the point */
+    vec3 slab[REACH_SLABS]; /* across the slab, 1 / cells or 1: its product with a photon's offset is at most */
     double within[REACH_SLABS], length[REACH_SLABS]; /* within + length times its radius; both with a margin */
-    double beyond;                                   /* distance to the farthest disc that can be seen, scene units */
-    bool groups;                                     /* photons close together are seen as one */
+    double beyond; /* distance to the farthest disc that can contribute, scene units */
+    bool groups;   /* photons close together are evaluated as one */
 } photon_reach;
-/* Photons are seen as one if the variance of their places, over both directions, is at most this times 1 + r^2, where
- * r is the radius of their discs, all in cells. A square of side e has the variance e^2 / 6. */
+/* Photons are evaluated as one if the variance of their positions, over both directions, is at most this times 1 + r^2,
+ * where r is the radius of their discs, all in cells. A square of side e has the variance e^2 / 6. */
 #define PHOTON_ONE (2.0 / 6.0)
 
-/* Called with each photon that a search finds, or with a group as one; disc: the mean radius of its own discs. */
+/* Called with each photon that a search finds, or with a group as one; disc: the mean radius of its photons' discs. */
 typedef void photon_visit(const photon *one, double disc, void *context);
-/* Calls visit for the photons near the point, in order: at least those in whose disc it is, or that the reach holds. */
+/* Calls visit for photons near the point, in order: at least for those whose discs contain it, or that are within
+ * reach. */
 void photon_tree_around(const photon_map *m, vec3 point, const photon_reach *reach, photon_visit *visit, void *context);
 
-/* photon_radius.c: sums over the photons of each box of the tree, for the test whether light is even in a disc.
+/* photon_radius.c: sums over the photons of each box of the tree, for the test whether light is uniform in a disc.
  * photon_sums_make: NULL when out of memory or cancelled; photon_sums_free releases. */
 typedef struct photon_sums photon_sums;
 photon_sums *photon_sums_make(const photon_map *m);
 void photon_sums_free(photon_sums *s);
-size_t photon_sums_bytes(void); /* for each box */
+size_t photon_sums_bytes(void); /* per box */

@@ -8,9 +8,9 @@
 #include <stdlib.h>
 #include <string.h>
 
-/* Two cache lines, which processors fetch together: if the widths of the image and the tiles are multiples of 16, tiles
- * share no line, and workers do not contend for lines. A film of several large pages consists of whole ones: a last
- * part in small pages would take longer than all others together. */
+/* Two cache lines, which processors fetch together: if the widths of the image and of the tiles are multiples of 16, no
+ * two tiles share a line, so workers do not contend for it. A film of several large pages is rounded up to large pages:
+ * a remainder in small pages would take longer to create than all the rest. */
 enum { ALIGNMENT = 128, PAGE = 4096 };
 
 static size_t values_of(const film *f)
@@ -18,17 +18,19 @@ static size_t values_of(const film *f)
     return (size_t)f->width * (size_t)f->height * 3;
 }
 
-/* Zeroed memory for the sums, whose pages exist already, so that no worker waits for them while the clock runs. Large
- * pages, if the system has them, are created in a third of the time. calloc does not write what is zero already. */
+/* Allocates zeroed sums and touches every page, so that no worker waits for a page fault while the clock runs. Large
+ * pages, if the system has them, are created in a third of the time. calloc does not write memory that is zero
+ * already. */
 static bool allocate_sums(film *f, size_t bytes)
 {
     const size_t alignment = bytes >= LARGE_PAGES_MIN ? LARGE_PAGE : ALIGNMENT,
-                 whole = (bytes + alignment - 1) / alignment * alignment;
-    f->memory = calloc(1, whole + alignment); /* aligned_alloc would leave gaps that are too small for the next film */
+                 rounded = (bytes + alignment - 1) / alignment * alignment;
+    f->memory =
+        calloc(1, rounded + alignment); /* aligned_alloc would leave gaps that are too small for the next film */
     if (!f->memory)
         return false;
     f->sum = (film_sum *)(((uintptr_t)f->memory + alignment - 1) / alignment * alignment);
-    large_pages(f->sum, whole);
+    large_pages(f->sum, rounded);
     for (size_t i = 0; i < bytes; i += PAGE)
         ((volatile film_sum *)f->sum)[i / sizeof *f->sum] = 0;
     return true;
@@ -96,7 +98,7 @@ bool film_merge_replicates(film *f, double *variance)
             const double from_mean = film_radiance(f->sum[k * count + i]) - total / (double)replicates;
             squares += from_mean * from_mean;
         }
-        if (variance) /* of a sum of n values, each with variance squares / (n - 1) */
+        if (variance) /* the variance of a sum of n values, each with variance squares / (n - 1) */
             variance[i] = squares * (double)replicates / (double)(replicates - 1);
         f->sum[i] = sum;
     }
@@ -132,7 +134,7 @@ void film_read(const film *f, int x0, int y0, int x1, int y1, float *rgb, size_t
 {
     for (int y = y0; y < y1; y++) {
         float *row = rgb + (size_t)(y - y0) * stride;
-        if (f->space == FILM_RGB && f->replicates == 1) { /* the same, faster */
+        if (f->space == FILM_RGB && f->replicates == 1) { /* a faster path with equal results */
             const film_sum *sum = f->sum + 3 * ((size_t)y * (size_t)f->width + (size_t)x0);
             for (size_t i = 0; i < 3 * (size_t)(x1 - x0); i++)
                 row[i] = (float)film_radiance(sum[i]);
@@ -151,11 +153,11 @@ uint64_t film_hash(const film *f)
 {
     const int64_t size[2] = {f->width, f->height};
     uint64_t hash = hash_words(HASH_START, size, 2);
-    int64_t words[512]; /* the sums as they are, whatever their type */
-    for (size_t at = 0, some; at < values_of(f); at += some) {
-        some = values_of(f) - at < 512 ? values_of(f) - at : 512;
-        memcpy(words, f->sum + at, some * sizeof words[0]);
-        hash = hash_words(hash, words, some);
+    int64_t words[512]; /* the bits of the sums, whatever their type */
+    for (size_t at = 0, length; at < values_of(f); at += length) {
+        length = values_of(f) - at < 512 ? values_of(f) - at : 512;
+        memcpy(words, f->sum + at, length * sizeof words[0]);
+        hash = hash_words(hash, words, length);
     }
     return hash_finish(hash);
 }

@@ -2,8 +2,8 @@
  * (5.7e-14); a channel holds up to 524288, and one contribution is from 0 to 262144. A value out of range, or not a
  * number, raises the overflow flag, which makes the render an error. Linear light; row 0 is the top. The channels are
  * linear sRGB, or CIE XYZ in a spectral film, whose sums are never negative. A film of random paths consists of
- * replicates, films of an equal number of paths, one after another: their differences give the standard error.
- * add_units (render/shade/exposure.c) writes the film. A film may also hold one tile of an image at a time, for frames
+ * replicates, films of equal numbers of paths stored one after another, whose differences give the standard error.
+ * add_units (render/shade/exposure.h) writes the film. A film may also hold one tile of an image at a time, for frames
  * that several processes render. Ownership: film_create allocates, film_destroy releases. Different threads may write
  * different pixels, of the film and of its layers. */
 #pragma once
@@ -18,8 +18,8 @@
 
 #define FILM_ONE 17592186044416.0 /* 2^44 */
 
-/* Builds float-... of make variants: sums of doubles, which depend on the order and have no range to check. Only to
- * measure what fixed point costs (experiments/determinism.sh). */
+/* Set in the float builds of `make variants`: sums are doubles, which depend on the order of summation and have no
+ * limited range. Only for measuring the cost of fixed point (experiments/determinism.sh). */
 #ifndef CUVETTE_FILM_FLOAT
 #define CUVETTE_FILM_FLOAT 0
 #endif
@@ -51,7 +51,7 @@ static inline int64_t film_overflow(film_sum sum)
 }
 #else
 typedef int64_t film_sum;
-/* Is it in the range of a contribution? False for NaN. */
+/* Whether a contribution is in range; false for NaN. */
 static inline bool film_accepts(double radiance)
 {
     const double limit = 262144.0; /* half of a channel's range */
@@ -85,7 +85,7 @@ typedef struct film {
     int replicates; /* 1, or the number of films of this size stored one after another: see film_merge_replicates */
     film_sum *sum;  /* [(y*width + x)*3 + channel], a pointer into memory */
     void *memory;
-    /* of a tile: the number of its first pixel in the image, and the width of the image, 0 for a whole film */
+    /* for a film of one tile: the number of its first pixel in the image, and the image's width; otherwise 0 */
     int64_t first_pixel;
     int image_width;
     double row_per_pixel; /* 1 / image_width */
@@ -95,16 +95,16 @@ status film_create(int width, int height, int replicates, film_space space, film
 
 /* Adds all replicates into the first, after which the film can be read; writes the square of the standard error of each
  * value to variance unless that is NULL. Has no effect with one replicate. variance: [(y*width + x)*3 + channel], in
- * the film's own space. Returns false when a sum leaves the film's range. */
+ * the film's colour space. Returns false when a sum leaves the film's range. */
 bool film_merge_replicates(film *f, double *variance);
 void film_destroy(film *f);
 
-/* Makes f the empty film of the pixels x0 <= x < x1, y0 <= y < y1 of an image: at most as many as f was created with.
- * replicates: as f was created, since film_merge_replicates forgets them. */
+/* Clears f and makes it the film of the tile x0 <= x < x1, y0 <= y < y1 of an image, of at most the size that f was
+ * created with. replicates: the number that f was created with, since film_merge_replicates sets it to 1. */
 void film_begin_tile(film *f, int image_width, int x0, int y0, int x1, int y1, int replicates);
 
-/* Copies the sums (film_sum) of the tile x0 <= x < x1, y0 <= y < y1, row by row, into a whole film with one
- * replicate. */
+/* Copies the sums (film_sum) of the tile x0 <= x < x1, y0 <= y < y1, row by row, into the film of the image, which has
+ * one replicate. */
 void film_put_tile(film *f, int x0, int y0, int x1, int y1, const void *sums);
 
 /* The pixel's place in sum, in pixels; pixel: its number in the image, y*image_width + x. Truncation finds the row
@@ -118,7 +118,7 @@ static inline int64_t film_place(const film *f, int64_t pixel)
     return from - row * (f->image_width - f->width);
 }
 
-/* Radiance of one channel, linear sRGB; in a spectral film negative where a colour is outside the sRGB gamut. */
+/* Radiance of one channel, linear sRGB; in a spectral film, negative if the colour is outside the sRGB gamut. */
 double film_value(const film *f, int x, int y, int channel);
 
 /* Reads linear RGB of the rectangle x0 <= x < x1, y0 <= y < y1 as floats, the sum of all replicates; stride: floats
@@ -143,7 +143,7 @@ layer_set *layers_create(int width, int height);
 uint64_t layers_bytes(void);       /* per pixel */
 void layers_destroy(layer_set *l); /* NULL is allowed */
 
-/* A layer of one channel takes value.x. */
+/* Stores a pixel's value; a layer of one channel stores value.x. */
 static inline void layers_put(layer_set *l, layer_rule which, int64_t pixel, vec3 value)
 {
     float *at = l->values[which] + pixel * layer_channels[which];

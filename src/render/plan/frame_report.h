@@ -1,4 +1,4 @@
-/* Plain values that a frame reports: its meshes, and a caustic that rests on too few photons. */
+/* Plain values that a frame reports: its meshes, and a caustic with too few photons. */
 #pragma once
 
 #include <stdint.h>
@@ -8,17 +8,17 @@
 typedef struct mesh_report {
     uint64_t triangles, instances; /* instances: copies of meshes; triangles: in all instances */
     uint64_t bytes;                /* of hierarchies */
-    double build_s;                /* wall time of their builds, for this frame or before it */
-    uint64_t motion_steps;         /* of slimes, from their initial states to the rendered times, substeps included */
+    double build_s;                /* wall time of building them, for this frame or earlier */
+    uint64_t motion_steps;         /* simulation steps of slimes up to the rendered times, including substeps */
     double motion_s;               /* wall time of these steps, when the scene was loaded */
-    /* of a rasterised frame: triangles in the image, including those of analytic solids, and memory of the depth
+    /* only in a rasterised frame: triangles in the image, including those of analytic solids, and memory of the depth
      * buffer */
     uint64_t drawn, raster_bytes;
 } mesh_report;
 
-/* The solid whose light rests on the fewest photons, if these are too few for a caustic. */
+/* The solid with the fewest photons, if they are too few for its caustic. */
 typedef struct caustics_few {
-    int solid;       /* its number in the scene, -1: there is none */
-    int64_t arrived; /* its photons */
-    int64_t enough;  /* the render.photons that would do */
+    int solid;       /* its number in the scene; -1: every solid has enough */
+    int64_t arrived; /* photons that it deflected to matte surfaces */
+    int64_t enough;  /* the value of render.photons that suffices */
 } caustics_few;

@@ -1,11 +1,11 @@
-/* Tables of the colours of metals and films by angle. */
+/* Tables, by angle, of the colours that metals and thin films reflect. */
 #include "render/plan/layered_table.h"
 
 #include "optics/spectrum.h"
 #include <stdlib.h>
 
-/* Three-point Gauss quadrature on every 5 nm interval of the observer's tables: fringes of films up to 20 um are
- * resolved by its steps of 1.7 nm. */
+/* Three-point Gauss quadrature on every 5 nm interval of the observer's tables: its steps of 1.7 nm resolve the fringes
+ * of thin films up to 20 um. */
 enum { STEP_NM = 5, INTERVALS = (OBSERVER_HIGH_NM - OBSERVER_LOW_NM) / STEP_NM, SAMPLES = 3 * INTERVALS };
 
 typedef struct daylight_spectrum {
@@ -104,8 +104,8 @@ const layered_curve *layered_curve_of(layered_plan *p, int priority_index, int m
     pthread_mutex_lock(&p->filling);
     if (!atomic_load_explicit(&c->ready, memory_order_relaxed)) {
         const layered_surface *s = p->surface[priority_index];
-        const double other = p->index[medium_number], own = s->opaque ? other : p->index[p->medium[priority_index]];
-        layered_curve_make(s, lesser(own, other), greater(own, other), c);
+        const double outer = p->index[medium_number], inner = s->opaque ? outer : p->index[p->medium[priority_index]];
+        layered_curve_make(s, lesser(inner, outer), greater(inner, outer), c);
         atomic_store_explicit(&c->ready, true, memory_order_release);
     }
     pthread_mutex_unlock(&p->filling);
@@ -126,7 +126,7 @@ vec3 layered_curve_at(const layered_curve *c, double cosine)
     return clamped(sum);
 }
 
-/* Numbers the distinct indices. */
+/* Numbers the distinct refractive indices. */
 static void number_media(layered_plan *p, const double *ior)
 {
     for (size_t r = 0; r < p->priority_indices; r++) {
@@ -139,8 +139,8 @@ static void number_media(layered_plan *p, const double *ior)
     }
 }
 
-/* Room for the tables; equal surfaces share theirs. */
-static bool make_curves(layered_plan *p, const int *alike)
+/* Allocates the tables; equal surfaces share one. */
+static bool make_curves(layered_plan *p, const int *shading_class)
 {
     p->curves = calloc(p->priority_indices, sizeof *p->curves);
     p->owns_curves = calloc(p->priority_indices, sizeof *p->owns_curves);
@@ -149,7 +149,7 @@ static bool make_curves(layered_plan *p, const int *alike)
     for (size_t r = 1; r < p->priority_indices; r++) {
         if (!p->surface[r])
             continue;
-        const size_t first = (size_t)alike[r];
+        const size_t first = (size_t)shading_class[r];
         p->owns_curves[r] = !(first < r && p->curves[first]);
         p->curves[r] = p->owns_curves[r] ? calloc((size_t)p->medium_count, sizeof **p->curves) : p->curves[first];
         if (!p->curves[r])
@@ -159,7 +159,7 @@ static bool make_curves(layered_plan *p, const int *alike)
 }
 
 static bool fill(const render_settings *r, const material *const *materials, const index_law *laws, const double *ior,
-                 const int *alike, layered_plan *p)
+                 const int *shading_class, layered_plan *p)
 {
     p->surface = calloc(p->priority_indices, sizeof *p->surface);
     p->surfaces = calloc(p->priority_indices, sizeof *p->surfaces);
@@ -178,11 +178,11 @@ static bool fill(const render_settings *r, const material *const *materials, con
         p->surface[i] = &p->surfaces[i];
     }
     number_media(p, ior);
-    return r->spectrum == SPECTRUM_SPECTRAL || make_curves(p, alike);
+    return r->spectrum == SPECTRUM_SPECTRAL || make_curves(p, shading_class);
 }
 
 bool layered_plan_create(const render_settings *r, const material *const *materials, const index_law *laws,
-                         const double *ior, const int *alike, size_t priority_indices, layered_plan **out)
+                         const double *ior, const int *shading_class, size_t priority_indices, layered_plan **out)
 {
     bool any = false;
     *out = NULL;
@@ -198,7 +198,7 @@ bool layered_plan_create(const render_settings *r, const material *const *materi
     if (p)
         p->priority_indices = priority_indices;
     *out = p;
-    return p && fill(r, materials, laws, ior, alike, p);
+    return p && fill(r, materials, laws, ior, shading_class, p);
 }
 
 void layered_plan_destroy(layered_plan *p)

@@ -2,12 +2,12 @@
  *
  * Cones: a `cone` emits all its light within the half-angle a from the axis, a `soft_cone` a fraction that falls from 1
  * on the axis to 0 at the half-angle, linear in the cosine: (cos t - cos a) / (1 - cos a). A flat lamp as a point is a
- * soft cone of 90 degrees: Lambert's law. A sun's is the cone of its light's directions at any point.
+ * soft cone of 90 degrees: Lambert's law. The cone of a sun contains the directions of its light at any point.
  *
- * Flat lamps: discs and rectangles that emit by Lambert's law on the side of their target, nothing on the other, and
- * block no light. Their radiance is such that a surface at the light's reach, on the axis and facing the lamp from
- * afar, is as bright as in Phong's model with a light of that intensity: with a sphere's radiance I (reach / r)^2, pi
- * r^2 of it is pi I reach^2, which over the area is the radiance of any flat lamp. Pure; plain values. */
+ * Flat lamps: discs and rectangles that emit by Lambert's law, only on the side of their target, and block no light. A
+ * distant surface that faces the lamp on its axis, at the light's reach, is as bright as in Phong's model with the same
+ * intensity I: a sphere of radius r has radiance I (reach / r)^2, which times its cross-section pi r^2 is pi I reach^2,
+ * and this divided by the lamp's area is the lamp's radiance. Pure; plain values. */
 #pragma once
 
 #include "base/elementary.h"
@@ -53,27 +53,27 @@ static inline double light_cone_fraction(const light_cone *c, bool soft, vec3 di
     return soft ? linear : hard;
 }
 
-/* Whether its light depends on the direction. */
+/* Whether the light's intensity depends on the direction. */
 static inline bool light_has_cone(const light *l)
 {
     return l->kind != LIGHT_POINT && l->kind != LIGHT_SUN;
 }
 
-/* The same for any light. */
+/* The fraction of any light's intensity that is emitted in a direction, 0..1. */
 static inline double light_fraction(const light *l, const light_cone *c, vec3 direction)
 {
     return light_has_cone(l) ? light_cone_fraction(c, l->kind != LIGHT_CONE, direction) : 1.0;
 }
 
-/* --- of a frame's lights, see plan.h --- */
+/* --- a frame's lights, see plan.h --- */
 
-/* Sine of a sun's angular radius, squared: 1 - cos^2, of 1 - cos. */
+/* Squared sine of a sun's angular radius a: 1 - cos^2 a, computed from 1 - cos a. */
 static inline double light_sun_sine2(const light_cone *c)
 {
     return c->opening * (2.0 - c->opening);
 }
 
-/* The vector from a point to the light's position; to a sun, as far away from any point. */
+/* The vector from a point to the light; to a sun, it is the same at every point. */
 static inline vec3 light_towards(const light *l, vec3 point)
 {
     return l->kind == LIGHT_SUN ? l->position : vec3_sub(l->position, point);
@@ -97,8 +97,8 @@ static inline vec3 lamp_right(vec3 axis)
     return vertical ? vec3_make(1.0, 0.0, 0.0) : vec3_normalize(vec3_make(axis.z, 0.0, -axis.x));
 }
 
-/* Of a light of kind disc or rectangle, which must not be at its own target. Its width is horizontal, unless it emits
- * straight up or down: then along x; roll_deg turns it about the axis, from right to up. */
+/* The shape of a disc or rectangle light, which must not be at its own target. Its width is horizontal, or along x if
+ * it emits straight up or down; roll_deg turns it about the axis, from right to up. */
 static inline lamp_shape lamp_shape_of(const light *l)
 {
     const vec3 axis = vec3_normalize(vec3_sub(l->target, l->position));
@@ -141,7 +141,7 @@ static inline double lamp_shape_hit(const lamp_shape *s, vec3 centre, vec3 origi
     return inside ? t : (double)HUGE_VAL;
 }
 
-/* Its radiance for a colour of 1. */
+/* The lamp's radiance for a colour of 1. */
 static inline double lamp_shape_radiance(const lamp_shape *s, double reach)
 {
     return LAMP_PI * reach * reach / s->area;

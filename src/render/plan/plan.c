@@ -8,16 +8,13 @@
 #include "scene/model/scene.h"
 #include <stdlib.h>
 
-/* Under Fresnel weights equal refractive indices are one medium, and a boundary between them is no interface unless it
- * is coated, has a film, or emits light; a crystal is one medium only with one of equal indices and axis. With constant
- * weights, as in the report, every surface reflects whatever its index. laws: dispersion laws by solid; [solid_count]
- * is that of the surrounding medium. */
+/* Whether the surface is visible even between equal media. */
 static bool shows_itself(const scene *s, const material *m)
 {
     return m->emission > 0.0 || material_coating(m, &s->render) > 0.0 || material_is_layered(m, &s->render);
 }
 
-/* Both crystals with one extraordinary index and one axis in the world, or neither a crystal. */
+/* Whether both are crystals with equal extraordinary index and axis in the world, or neither is a crystal. */
 static bool are_alike_crystals(const scene *s, const solid *a, const solid *b)
 {
     const bool first = material_is_crystal(&a->surface, &s->render),
@@ -30,6 +27,10 @@ static bool are_alike_crystals(const scene *s, const solid *a, const solid *b)
            one.z == other.z;
 }
 
+/* The medium of a solid. Under Fresnel weights, solids of equal refractive index are one medium, and a boundary between
+ * them is no interface unless it is coated, has a thin film, or emits light; crystals also need an equal axis. With
+ * constant weights, as in the published rod report, every surface reflects whatever its index. laws: dispersion laws by
+ * solid; [solid_count] is the surrounding medium's. */
 static int64_t medium_of(const scene *s, const index_law *laws, int solid_index)
 {
     const material *m = &s->solids[solid_index].surface;
@@ -47,8 +48,8 @@ static int64_t medium_of(const scene *s, const index_law *laws, int solid_index)
     return solid_index + 1;
 }
 
-/* The hierarchy of the solid's mesh: the mesh's own, or one built for this frame, which the first of the solids with
- * that mesh owns and the others share. */
+/* Sets *out to the hierarchy of the solid's mesh: the one that the mesh keeps, or one built for this frame, which the
+ * plan stores for the first solid with this mesh and the others use. */
 static status tree_of(const scene *s, size_t i, plan *p, const mesh *m, const hierarchy **out, diagnostic *why)
 {
     const hierarchy_kind kind = (hierarchy_kind)s->render.accel;
@@ -84,7 +85,7 @@ static void report_mesh(plan *p, const mesh_entry *m, const solid_shape *shape, 
     }
 }
 
-/* The shape of a mesh solid with its triangles, and the hierarchy over them. */
+/* Sets a mesh solid's shape with its triangles, and their hierarchy. */
 static status fetch_mesh(const scene *s, size_t i, plan *p, solid_shape *shape, region_source *source, diagnostic *why)
 {
     const solid *one = &s->solids[i];
@@ -103,7 +104,7 @@ static status fetch_mesh(const scene *s, size_t i, plan *p, solid_shape *shape, 
     return code;
 }
 
-static status arrange(const scene *s, const index_law *laws, plan *p, diagnostic *why)
+static status build_geometry(const scene *s, const index_law *laws, plan *p, diagnostic *why)
 {
     region_source *sources = calloc(s->solid_count + 1, sizeof *sources);
     solid_shape *shapes = calloc(s->solid_count + 1, sizeof *shapes);
@@ -124,7 +125,7 @@ static status arrange(const scene *s, const index_law *laws, plan *p, diagnostic
         double shadow_transmittance;
         if (!region_shadow_transmittance(s, one, &shadow_transmittance, &p->shadow_transmittance[i]))
             code = out_of_memory(why);
-        if (material_roughness(&one->surface, &s->render) > 0.0) /* random paths find what it transmits */
+        if (material_roughness(&one->surface, &s->render) > 0.0) /* random paths find the light that it transmits */
             shadow_transmittance = 0.0;
         sources[count] = (region_source){.shape = &one->shape,
                                          .priority = one->priority,
@@ -154,7 +155,7 @@ static status arrange(const scene *s, const index_law *laws, plan *p, diagnostic
     return code;
 }
 
-/* What a lamp's spectrum looks like. */
+/* The colour of a lamp's spectrum, linear sRGB. */
 static vec3 seen_color(const light *l)
 {
     double rgb[3];
@@ -164,8 +165,9 @@ static vec3 seen_color(const light *l)
     return vec3_make(rgb[0], rgb[1], rgb[2]);
 }
 
-/* Shadow rays end at a sun's place, and what is beyond does not block them: half-spaces that a ray meets at an angle
- * below 2^-16. A power of two, so that directions are scaled exactly, and a solid far away changes nothing. */
+/* Sets the positions of suns, at which their shadow rays end: a half-space that a ray meets at an angle below 2^-16 is
+ * beyond and does not block it. The distance is a power of two, so that directions are scaled exactly, and a far solid
+ * changes nothing. */
 static void place_suns(plan *p)
 {
     double extent = p->geometry->extent;
@@ -221,8 +223,8 @@ static status add_rain(const scene *s, plan *p, diagnostic *why)
     return p->rain ? STATUS_OK : out_of_memory(why);
 }
 
-/* A gradient between equal colours is uniform to the last bit, and so is a uniform CIE sky over ground of its
- * colour. */
+/* The sky to render. A gradient between equal colours, or a uniform CIE sky over ground of its colour, is replaced by a
+ * uniform sky, which is bit-identical. */
 static const background *sky_of(const scene *s, plan *p)
 {
     const background *b = &s->background;
@@ -241,7 +243,7 @@ static const background *sky_of(const scene *s, plan *p)
     return &p->own_sky;
 }
 
-/* By solid; the last one is that of the surrounding medium. */
+/* Dispersion laws by solid; the last one is the surrounding medium's. */
 static status laws_of(const scene *s, index_law *laws, diagnostic *why)
 {
     status code = STATUS_OK;
@@ -251,7 +253,7 @@ static status laws_of(const scene *s, index_law *laws, diagnostic *why)
     return code;
 }
 
-/* The material with which a solid is traced. */
+/* The material that a solid is rendered with; for a mirror, an opaque substitute. */
 static const material *material_of(const scene *s, plan *p, int solid_index)
 {
     const material *m = &s->solids[solid_index].surface;
@@ -300,7 +302,7 @@ static status fill_priority_indices(const scene *s, const index_law *laws, plan 
                 return out_of_memory(why);
         p->absorption[r] = material_extinction(p->materials[r], s->render.unit_m);
     }
-    if (!plan_find_alike(p))
+    if (!plan_find_shading_classes(p))
         return out_of_memory(why);
     p->absorption[0] = vec3_scale(s->background.absorb_per_m, s->render.unit_m);
     if (s->render.spectrum == SPECTRUM_SPECTRAL &&
@@ -312,12 +314,14 @@ static status fill_priority_indices(const scene *s, const index_law *laws, plan 
         return out_of_memory(why);
     if (!scatter_plan_create(s, p->geometry, &p->scatter))
         return out_of_memory(why);
-    return layered_plan_create(&s->render, p->materials, p->laws, p->ior, p->alike, priority_indices, &p->layered)
+    return layered_plan_create(&s->render, p->materials, p->laws, p->ior, p->shading_class, priority_indices,
+                               &p->layered)
                ? STATUS_OK
                : out_of_memory(why);
 }
 
-/* Basic radiance has one index at the camera, and the depth buffer one list of media. */
+/* Refuses a solid in which only some camera rays start: basic radiance has one index at the camera, and the depth
+ * buffer one list of media. */
 static status needs_one_medium(const scene *s, const plan *p, const solid *cut, diagnostic *why)
 {
     if (solid_is_opaque(s, cut) || !(p->basic || integrator_traits_of(&s->render)->drawn))
@@ -339,14 +343,14 @@ static void add_analyser(const scene *s, plan *p)
     p->analyser_axis = vec3_add(vec3_scale(p->view.right, cosine), vec3_scale(p->view.up, sine));
 }
 
-/* Light in a crystal is of one of two modes, which no camera ray has. */
+/* A ray in a crystal has one of two modes; a camera ray has none. */
 static status refuse_crystal(const solid *crystal, diagnostic *why)
 {
     return diagnose(why, STATUS_BAD_INPUT, "move camera.position out of it, or set its extraordinary_ior to 0",
                     "the camera is in the crystal %.80s", crystal->name);
 }
 
-/* The camera's view, and the solids that its rays start in. */
+/* Sets the camera's view, and finds the solids in which its rays start. */
 static status place_camera(const scene *s, plan *p, diagnostic *why)
 {
     const bool spread = (p->view = camera_frame_of(s)).parallel || p->view.lens_radius > 0.0;
@@ -375,7 +379,7 @@ status plan_build(const scene *s, plan **out, diagnostic *why)
     status code = p && laws ? laws_of(s, laws, why) : out_of_memory(why);
     if (code == STATUS_OK)
         p->basic = scene_has_basic_radiance(&s->render);
-    THEN(code, arrange(s, laws, p, why));
+    THEN(code, build_geometry(s, laws, p, why));
     THEN(code, fill_priority_indices(s, laws, p, why));
     THEN(code, prepare_lights(s, p, why));
     THEN(code, prepare_beams(s, p, why));
@@ -398,7 +402,7 @@ status plan_build(const scene *s, plan **out, diagnostic *why)
     if (s->render.beyond == DEPTH_LIMIT_MEAN)
         p->sky_mean = p->rain && !p->spectral ? vec3_add(sky_mean(p->sky), rain_color_mean(p->rain)) : sky_mean(p->sky);
     if (scene_has_caustics(&s->render))
-        p->render.shadows = SHADOWS_OPAQUE; /* the photons bring the rest */
+        p->render.shadows = SHADOWS_OPAQUE; /* photons supply the light through clear solids */
     p->solid_shadows = p->render.shadows == SHADOWS_OPAQUE;
     for (size_t i = 0; i < s->light_count && integrator_traits_of(&s->render)->by_chance; i++)
         p->solid_shadows |= light_has_size(&s->lights[i]);
@@ -415,7 +419,7 @@ void plan_destroy(plan *p)
     for (int r = 0; p->shading_materials && r <= p->geometry->region_count; r++)
         free(p->shading_materials[r].mat);
     free(p->shading_materials);
-    free(p->alike);
+    free(p->shading_class);
     scene_geometry_destroy(p->geometry);
     for (size_t i = 0; p->own_trees && i < p->own_tree_count; i++)
         hierarchy_destroy(p->own_trees[i]);

@@ -37,10 +37,11 @@ typedef struct region_scatter {
     double asymmetry; /* of the phase function, optics/phase_function.h */
 } region_scatter;
 
-/* The most lamps whose beams are sampled along each ray (render/shade/media.h). */
+/* The maximum number of lamps whose beams are sampled along each ray (render/shade/media.h). */
 enum { AIRLIGHTS_MAX = 8 };
 
-/* A box around a solid whose medium scatters; of more solids than that, one box holds all. */
+/* The maximum number of boxes, one per solid whose medium scatters; if there are more such solids, one box holds
+ * all. */
 enum { SCATTER_BOXES_MAX = 8 };
 
 typedef struct scatter_plan {
@@ -60,40 +61,40 @@ typedef struct plan {
     scene_geometry *geometry;
     const material **materials;          /* by priority index; [0] is NULL */
     region_materials *shading_materials; /* by priority index; [0] is empty */
-    int *alike;            /* by priority index: equal numbers for regions whose hits may be shaded together */
+    int *shading_class;    /* by priority index: the first region of its class; a class may be shaded as one group */
     hierarchy **own_trees; /* by solid; hierarchies that the plan owns because the meshes do not keep them */
     size_t own_tree_count;
-    double **shadow_transmittance; /* by solid: that of its faces by slot, or NULL; own_tree_count entries */
+    double **shadow_transmittance; /* by solid: of its faces by slot, or NULL; own_tree_count entries */
     mesh_report meshes;
     material *mirrors; /* by solid: opaque substitutes of clear materials whose refractive index makes them mirrors */
-    double *ior;       /* by priority index; [0] is the surrounding medium's; at render.lambda_nm */
+    double *ior;       /* refractive indices at render.lambda_nm, by priority index; [0]: the surrounding medium */
     index_law *laws;   /* by priority index: the source of ior */
     vec3 *absorption;  /* by priority index: Beer-Lambert coefficients and tints, by channel, in 1 / scene unit */
     spectra *spectral; /* for a spectral film, else NULL */
-    layered_plan *layered;    /* metals and films; NULL if there are none */
-    bool polarised_shadows;   /* some lamp is polarised, and sheets in shadow rays can tell */
+    layered_plan *layered;    /* metals and thin films; NULL if there are none */
+    bool polarised_shadows;   /* some lamp is polarised, which matters to sheets in shadow rays */
     region_sheet *sheets;     /* by priority index: polarisers and wave plates; NULL if there are none */
     optical_medium *crystals; /* by priority index; NULL if there are none */
     scatter_plan *scatter;    /* media that scatter; NULL if there are none */
     bool rough;               /* some surfaces are rough: see render/shade/rough.h */
-    rough_energy *energy;     /* of their further facets, with render.energy_compensation; else NULL */
+    rough_energy *energy;     /* light between their facets, with render.energy_compensation; else NULL */
     camera_frame view;
-    uint64_t eye_inside;       /* the set of primitives that contain the camera */
-    analyser_kind analyser;    /* of camera rays; ANALYSER_NONE without polarisation */
-    vec3 analyser_axis;        /* a linear one's */
-    bool starts_vary;          /* other primitives may contain other origins of camera rays: they fill an area */
-    int camera_priority_index; /* and of the medium there */
+    uint64_t eye_inside;    /* the set of primitives that contain the camera */
+    analyser_kind analyser; /* of camera rays; ANALYSER_NONE without polarisation */
+    vec3 analyser_axis;     /* of a linear analyser */
+    bool starts_vary;       /* camera rays start on an area, so that different primitives may contain their origins */
+    int camera_priority_index; /* of the medium at the camera */
     bool basic;                /* rays carry basic radiance (L / n^2): see radiance.c */
     render_settings render;
     path_sampling draws; /* of random paths */
     /* every solid blocks light: either render settings require it, or random paths find the transmitted light */
     bool solid_shadows;
-    const struct photon_map *photons; /* borrowed: light that arrives through clear solids and mirrors; NULL: none */
+    const struct photon_map *photons; /* borrowed: light that arrives by way of clear solids and mirrors; NULL: none */
     const background *sky;            /* the scene's, or own_sky */
     background own_sky;
     struct rain *rain;  /* what rain adds to the sky, or NULL */
     vec3 sky_mean;      /* over all directions; computed if render.beyond is mean */
-    light *lights;      /* the scene's; their colour is what their spectrum looks like; names are borrowed */
+    light *lights;      /* the scene's, with the colours of their spectra; names are borrowed */
     light_cone *cones;  /* by light; undefined for a point light */
     lamp_shape *shapes; /* by light; defined for discs and rectangles */
     int light_count;
@@ -107,22 +108,21 @@ typedef struct plan {
 status plan_build(const scene *s, plan **out, diagnostic *why);
 void plan_destroy(plan *p);
 
-/* Whether the region has one material whose values do not depend on the place, as those of a texture or a checker
- * do. */
+/* Whether the region has one material of equal values everywhere: no texture, no checker, and no spectral film. */
 bool plan_is_plain(const plan *p, int priority_index);
 
 /* --- plan_materials.c, for plan.c; each returns false when out of memory --- */
 
-/* Fills p->alike from the shading materials. */
-bool plan_find_alike(plan *p);
+/* Fills p->shading_class from the shading materials. */
+bool plan_find_shading_classes(plan *p);
 
 /* Fills *out with the shading materials of a region of the solid `owner`, with `surface` as the solid's own surface. */
 bool region_materials_make(const scene *s, const solid *owner, const material *surface, region_materials *out);
-/* The fraction of a shadow ray that a solid's surface transmits: sets the least over its faces, and *by_slot to the
- * fraction for each slot where faces differ, else NULL; the caller frees *by_slot. */
+/* The fraction of a shadow ray that a solid's surface transmits: sets *least to the minimum over its faces, and
+ * *by_slot to the fraction per slot if faces differ, else to NULL; the caller frees *by_slot. */
 bool region_shadow_transmittance(const scene *s, const solid *owner, double *least, double **by_slot);
-/* Lists by priority index of what media do to light; *out is NULL if no medium of the frame does, free releases it.
- * n_o of a crystal is not set. */
+/* Tables by priority index of sheets, of crystals (n_o is not set) and of scattering media. They set *out to NULL if
+ * the frame has none; the caller frees *out. */
 bool sheet_list_create(const scene *s, const scene_geometry *geometry, region_sheet **out);
 bool crystal_list_create(const scene *s, const scene_geometry *geometry, optical_medium **out);
 bool scatter_plan_create(const scene *s, const scene_geometry *geometry, scatter_plan **out);

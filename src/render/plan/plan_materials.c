@@ -1,6 +1,5 @@
-/* The materials of a plan's regions: the shading materials of each region's surface, the solid's own or those that
- * the mesh file assigns to its faces; the regions that look alike; and what media do to light: sheets, crystals,
- * scattering. */
+/* The materials of a plan's regions: the shading materials of each region's surface, the solid's own or those that the
+ * mesh file assigns to its faces; shading classes; and the tables of sheets, crystals and scattering media. */
 #include "render/plan/plan.h"
 
 #include "geometry/shapes/shape.h"
@@ -56,24 +55,25 @@ bool region_shadow_transmittance(const scene *s, const solid *owner, double *lea
     return true;
 }
 
-/* --- regions whose hits may be shaded together --- */
+/* --- shading classes --- */
 
-/* They have one material of equal parameters, without a texture or a checker, which lie in each solid's own frame. */
-typedef struct looks {
+/* A region that may be shaded in one group with others of equal material. Textures and checkers are excluded, because
+ * their coordinates depend on the solid. */
+typedef struct plain_region {
     const shading_material *mat;
     int priority_index;
     bool opaque;
-} looks;
+} plain_region;
 
-static int compare_materials(const looks *a, const looks *b)
+static int compare_materials(const plain_region *a, const plain_region *b)
 {
     const int order = memcmp(&a->mat->surface, &b->mat->surface, sizeof a->mat->surface);
     return order ? order : (int)a->opaque - (int)b->opaque;
 }
 
-static int compare_looks(const void *one, const void *other)
+static int compare_regions(const void *one, const void *other)
 {
-    const looks *a = one, *b = other;
+    const plain_region *a = one, *b = other;
     const int order = compare_materials(a, b);
     return order ? order : a->priority_index - b->priority_index;
 }
@@ -84,25 +84,25 @@ bool plan_is_plain(const plan *p, int priority_index)
     return m->count == 1 && !m->mat->img && !(m->mat->surface.checker > 0.0) && !p->spectral;
 }
 
-bool plan_find_alike(plan *p)
+bool plan_find_shading_classes(plan *p)
 {
     const int regions = p->geometry->region_count;
-    looks *all = calloc((size_t)regions + 1, sizeof *all);
-    p->alike = calloc((size_t)regions + 1, sizeof *p->alike);
-    if (!all || !p->alike) {
+    plain_region *all = calloc((size_t)regions + 1, sizeof *all);
+    p->shading_class = calloc((size_t)regions + 1, sizeof *p->shading_class);
+    if (!all || !p->shading_class) {
         free(all);
         return false;
     }
     int count = 0;
     for (int r = 1; r <= regions; r++) {
-        p->alike[r] = r;
+        p->shading_class[r] = r;
         if (plan_is_plain(p, r))
-            all[count++] = (looks){p->shading_materials[r].mat, r, p->geometry->regions[r].opaque};
+            all[count++] = (plain_region){p->shading_materials[r].mat, r, p->geometry->regions[r].opaque};
     }
-    qsort(all, (size_t)count, sizeof *all, compare_looks);
+    qsort(all, (size_t)count, sizeof *all, compare_regions);
     for (int k = 1; k < count; k++)
         if (compare_materials(&all[k - 1], &all[k]) == 0)
-            p->alike[all[k].priority_index] = p->alike[all[k - 1].priority_index];
+            p->shading_class[all[k].priority_index] = p->shading_class[all[k - 1].priority_index];
     free(all);
     return true;
 }
@@ -151,13 +151,13 @@ bool crystal_list_create(const scene *s, const scene_geometry *geometry, optical
     return true;
 }
 
-static void find_lamps(const scene *s, scatter_plan *of)
+static void find_lamps(const scene *s, scatter_plan *scatter)
 {
     if (s->render.light_sampling == LIGHT_SAMPLING_ONE && s->light_count > 1)
         return;
-    for (size_t i = 0; i < s->light_count && of->lamp_count < AIRLIGHTS_MAX; i++)
+    for (size_t i = 0; i < s->light_count && scatter->lamp_count < AIRLIGHTS_MAX; i++)
         if (light_extent(&s->lights[i]) == 0.0 && s->lights[i].kind != LIGHT_SUN && s->lights[i].intensity > 0.0)
-            of->lamps[of->lamp_count++] = (int)i;
+            scatter->lamps[scatter->lamp_count++] = (int)i;
 }
 
 static void join(bounds3 *a, bounds3 b)
@@ -166,12 +166,12 @@ static void join(bounds3 *a, bounds3 b)
     a->high = vec3_make(fmax(a->high.x, b.high.x), fmax(a->high.y, b.high.y), fmax(a->high.z, b.high.z));
 }
 
-static void add_box(scatter_plan *of, bounds3 around, bool many)
+static void add_box(scatter_plan *scatter, bounds3 around, bool many)
 {
-    if (of->box_count == 0 || !many)
-        of->boxes[of->box_count++] = around;
+    if (scatter->box_count == 0 || !many)
+        scatter->boxes[scatter->box_count++] = around;
     else
-        join(&of->boxes[0], around);
+        join(&scatter->boxes[0], around);
 }
 
 static int media_that_scatter(const scene *s, const scene_geometry *geometry)
@@ -189,18 +189,19 @@ bool scatter_plan_create(const scene *s, const scene_geometry *geometry, scatter
     *out = NULL;
     if (count == 0)
         return true;
-    scatter_plan *of = calloc(1, sizeof *of + ((size_t)geometry->region_count + 1) * sizeof of->region[0]);
-    if (!of)
+    scatter_plan *scatter =
+        calloc(1, sizeof *scatter + ((size_t)geometry->region_count + 1) * sizeof scatter->region[0]);
+    if (!scatter)
         return false;
     for (int r = 1; r <= geometry->region_count; r++) {
         const material *m = &s->solids[geometry->regions[r].solid].surface;
         const double per_m = geometry->regions[r].opaque ? 0.0 : material_scattering(m, &s->render);
         if (per_m == 0.0)
             continue;
-        of->region[r] = (region_scatter){.per_unit = per_m * s->render.unit_m, .asymmetry = m->asymmetry};
-        add_box(of, shape_world_box(&geometry->shapes[r]), count > SCATTER_BOXES_MAX);
+        scatter->region[r] = (region_scatter){.per_unit = per_m * s->render.unit_m, .asymmetry = m->asymmetry};
+        add_box(scatter, shape_world_box(&geometry->shapes[r]), count > SCATTER_BOXES_MAX);
     }
-    find_lamps(s, of);
-    *out = of;
+    find_lamps(s, scatter);
+    *out = scatter;
     return true;
 }

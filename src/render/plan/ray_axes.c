@@ -1,3 +1,4 @@
+/* The axes of a fan or beam, and its rays: in a plane, or along Vogel's spiral over a disc or cone. */
 #include "render/plan/ray_axes.h"
 
 #include "base/elementary.h"
@@ -54,7 +55,7 @@ void ray_axes_round(const ray_axes *a, bool spreads, double size, int i, int n, 
     }
     double half_sine, half_cosine;
     elementary_sincos_deg(0.25 * size, &half_sine, &half_cosine);
-    /* 1 - cos t is even in solid angle; written with the half angle, since the cone may be narrow */
+    /* 1 - cos t is uniform in solid angle; the half angle avoids cancellation in a narrow cone */
     const double versine = 2.0 * half_sine * half_sine * fraction;
     *direction = vec3_add(vec3_scale(a->axis, 1.0 - versine), vec3_scale(radial, sqrt(versine * (2.0 - versine))));
 }

@@ -1,4 +1,4 @@
-/* What one facet of a rough surface loses, and where it goes. */
+/* The light that a single scattering by facets of a rough surface loses, in tables, and its redistribution. */
 #include "render/plan/rough_energy.h"
 
 #include "base/lanes.h"
@@ -7,15 +7,16 @@
 #include "optics/microfacet.h"
 #include <stdlib.h>
 
-/* Facets for each direction, by two numbers; the scattered light is symmetric about the plane of incidence. */
+/* Facets per direction, a grid over both sample coordinates; half a turn suffices, since the scattered light is
+ * symmetric about the plane of incidence. */
 enum { ACROSS = 64, AROUND = 64 };
 #define LEAST_COSINE 1e-9
-/* The lowest ratio of indices, for that of 1: light that goes straight on has no density. */
+/* Stands for a ratio of indices of 1, at which light is not deflected and has no density. */
 #define LEAST_RATIO 1.0005
 
 /* --- tables --- */
 
-/* Of all light from i that meets the facet m, what leaves the surface at once. */
+/* The fraction of the light from i on the facet m that leaves the surface at once. */
 static double sent_by_facet(const rough_finish *finish, const double index[2], int side, vec3 i, vec3 m)
 {
     const double i_m = vec3_dot(i, m);
@@ -31,8 +32,8 @@ static double sent_by_facet(const rough_finish *finish, const double index[2], i
     return sent;
 }
 
-/* What one facet loses of light at a cosine, by the rule of midpoints over s and v; u = 3 s^2 - 2 s^3, du = 6 s (1 - s)
- * ds, which has more steep facets, of which few are drawn. */
+/* The fraction of light at a cosine that one facet loses, by the midpoint rule over s and v. u = 3 s^2 - 2 s^3, du = 6
+ * s (1 - s) ds, puts more points on steep facets, which are rarely drawn. */
 static double lost_at(const rough_finish *finish, const double index[2], int side, double cosine)
 {
     const vec3 i = vec3_make(sqrt(1.0 - cosine * cosine), 0.0, cosine);
@@ -47,7 +48,8 @@ static double lost_at(const rough_finish *finish, const double index[2], int sid
     return lesser(greater(1.0 - sum / (ACROSS * AROUND), 0.0), 1.0);
 }
 
-/* Twice the integral over cosines of a value times cosine: Simpson's rule over their roots x, 4 x^3 dx. */
+/* A node's weight in twice the integral over cosines of a value times cosine: Simpson's rule over x = sqrt(cosine), 4
+ * x^3 dx. */
 static double weight_of(int step)
 {
     const double x = (double)step / ENERGY_STEPS, simpson = step == 0 || step == ENERGY_STEPS ? 1.0
@@ -168,8 +170,9 @@ static double mean_of(const facet_energy *e, int side)
 
 static facet_energy of_opaque(rough_energy *all, const rough_finish *finish, double cosine)
 {
-    const energy_table *only = table(all, finish, 0);
-    facet_energy e = {.below = only, .above = only, .share = {1.0, 0.0}, .mean = 1.0 - only->mean[0]};
+    const energy_table *table_used = table(all, finish, 0);
+    facet_energy e = {
+        .below = table_used, .above = table_used, .fraction = {1.0, 0.0}, .mean = 1.0 - table_used->mean[0]};
     e.lost = lost_towards(&e, 0, cosine);
     return e;
 }
@@ -187,11 +190,11 @@ facet_energy facet_energy_at(rough_energy *all, const rough_finish *finish, doub
                       .mix = at - number,
                       .from = dense,
                       .to = !dense};
-    const double own = mean_of(&e, e.from), other = mean_of(&e, e.to),
+    const double mean_from = mean_of(&e, e.from), mean_to = mean_of(&e, e.to),
                  passed = mixed(&e, e.below->passed, e.above->passed) / (dense ? ratio * ratio : 1.0);
     e.lost = lost_towards(&e, e.from, cosine);
-    e.share[1] = own > 0.0 ? passed * lesser(1.0, other / own) : 0.0;
-    e.share[0] = 1.0 - e.share[1];
+    e.fraction[1] = mean_from > 0.0 ? passed * lesser(1.0, mean_to / mean_from) : 0.0;
+    e.fraction[0] = 1.0 - e.fraction[1];
     return e;
 }
 

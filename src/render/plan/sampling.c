@@ -6,7 +6,7 @@
 /* Replicates under sobol. */
 enum { SOBOL_REPLICATES = 4, SPECTRAL_REPLICATE_MIN = 8 };
 
-/* Under philox as many as possible: all are parts of the same random paths. */
+/* Under philox, as many replicates as possible: the paths are independent, so that their number costs no accuracy. */
 static int64_t philox_replicates(int64_t rounds)
 {
     int64_t count = FILM_REPLICATES_MAX;
@@ -15,8 +15,9 @@ static int64_t philox_replicates(int64_t rounds)
     return count;
 }
 
-/* Under sobol few: n paths in R replicates have R^0.25 to R times the error of one set of n points (errors that fall
- * like n^-0.75 to n^-1.5). Where four do not divide the paths, the least number that does. least: paths of one. */
+/* Under sobol, few replicates: n paths in R replicates have R^0.25 to R times the error of one set of n points (errors
+ * that fall like n^-0.75 to n^-1.5). If four do not divide the paths, the smallest number that does. least: minimum of
+ * paths per replicate. */
 static int64_t sobol_replicates(int64_t rounds, int64_t least)
 {
     if (rounds % SOBOL_REPLICATES == 0 && rounds >= SOBOL_REPLICATES * least)
@@ -31,7 +32,7 @@ path_sampling path_sampling_of(const render_settings *r)
 {
     const int64_t turns = r->filter == PIXEL_FILTER_CENTRE ? r->samples : 1;
     int64_t count = 1;
-    /* Each replicate has wavelengths of its own under sobol, whose sum is to be white. */
+    /* under sobol each replicate has its own wavelengths, and needs enough for a white sum */
     const int64_t least = r->spectrum == SPECTRUM_SPECTRAL ? SPECTRAL_REPLICATE_MIN : 1;
     if (r->paths % turns == 0) /* each replicate covers the whole grid */
         count = r->sampler == SAMPLER_SOBOL ? sobol_replicates(r->paths / turns, least)
@@ -40,7 +41,7 @@ path_sampling path_sampling_of(const render_settings *r)
                            .sampler = r->sampler,
                            .seed_hash = sobol_mix((uint64_t)r->seed + 1),
                            .replicates = count,
-                           .each = r->paths / count,
+                           .per_replicate = r->paths / count,
                            .paths = r->paths,
                            .turns = turns};
 }
@@ -51,7 +52,7 @@ path_sampling path_sampling_of_grid(const render_settings *r, int64_t rays)
                            .sampler = SAMPLER_SOBOL,
                            .seed_hash = sobol_mix((uint64_t)r->seed + 1),
                            .replicates = 1,
-                           .each = rays,
+                           .per_replicate = rays,
                            .paths = rays,
                            .turns = 1};
 }

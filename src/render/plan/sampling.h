@@ -3,11 +3,11 @@
  *
  * The sample points of random paths: which point of which replicate a path has, and its coordinates for each random
  * choice. A pixel's paths are divided into equal replicates, whose means are independent estimates: their differences
- * give the standard error. Under render.sampler=philox all paths are independent, and consecutive ones take turns;
- * under sobol the points of one replicate are a low-discrepancy set, and each replicate has its own scrambling (Owen,
- * "Randomly permuted (t,m,s)-nets and (t,s)-sequences", 1995): the differences between parts of one such set would
- * overestimate its error. Every pair of dimensions has its own scrambling and order (padding, as in pbrt-v4's
- * PaddedSobolSampler). Plain values. */
+ * give the standard error. Under render.sampler=philox all paths are independent, and consecutive ones belong to the
+ * replicates in turn; under sobol the points of one replicate are a low-discrepancy set, and each replicate has its own
+ * scrambling (Owen, "Randomly permuted (t,m,s)-nets and (t,s)-sequences", 1995): the differences between parts of one
+ * such set would overestimate its error. Every pair of dimensions has its own scrambling and order (padding, as in
+ * pbrt-v4's PaddedSobolSampler). Plain values. */
 #pragma once
 
 #include "base/random.h"
@@ -29,7 +29,7 @@
 
 /* The ray may hit a light source and collect its emission: it starts at the camera or at a specular surface. */
 #define SAMPLE_KEY_SPECULAR_BOUNCE ((int64_t)1 << 62)
-/* The path has left a matte surface, whose photons bring the light that mirrors and clear solids throw on it. */
+/* The path has left a matte surface, where photons supply the light from mirrors and clear solids. */
 #define SAMPLE_KEY_PHOTONS INT64_MIN
 
 static inline int64_t sample_key_make(int64_t pixel, int64_t sample)
@@ -71,12 +71,12 @@ enum {
     DRAW_PHOTON = 0x1001, /* and the next one */
     DRAW_LENS = 0x1003,
     DRAW_FACET = 0x1004,       /* of a rough surface */
-    DRAW_FACET_LIGHT = 0x1005, /* on its side; the next one: on the other */
-    DRAW_FLIGHT = 0x1007,      /* of a ray in a medium that scatters */
-    DRAW_PHASE = 0x1008,       /* its direction afterwards */
-    DRAW_AIRLIGHT = 0x1009,    /* from there on, each light has its own number */
+    DRAW_FACET_LIGHT = 0x1005, /* a lamp for facets on the ray's side; the next one: for those on the other side */
+    DRAW_FLIGHT = 0x1007,      /* the free flight of a ray in a medium that scatters */
+    DRAW_PHASE = 0x1008,       /* the direction after scattering */
+    DRAW_AIRLIGHT = 0x1009,    /* from here on, each light has its own number */
     DRAW_FURTHER =
-        DRAW_AIRLIGHT + SCENE_LIGHTS_MAX, /* whether light meets further facets; the next one: its direction */
+        DRAW_AIRLIGHT + SCENE_LIGHTS_MAX, /* whether light meets further facets; the next one: its new direction */
     DRAW_PHOTON_END = DRAW_FURTHER + 2,   /* Russian roulette of deep photons, and their branch */
     DRAW_NEXT
 };
@@ -94,16 +94,16 @@ static inline random_words draw(int64_t seed, int64_t sample_key, int depth, int
 typedef struct path_sampling {
     int64_t seed, sampler;
     uint64_t seed_hash;
-    int64_t replicates, each; /* paths in each */
-    int64_t paths;            /* per pixel */
-    const uint32_t *by_pixel; /* borrowed: the number of paths of each pixel instead; NULL: none */
-    int64_t turns;            /* consecutive paths of one replicate under philox */
+    int64_t replicates, per_replicate; /* per_replicate: paths in each replicate */
+    int64_t paths;                     /* per pixel */
+    const uint32_t *by_pixel;          /* borrowed: numbers of paths by pixel, which replace `paths`; NULL: none */
+    int64_t turns;                     /* consecutive paths of one replicate under philox */
 } path_sampling;
 
 path_sampling path_sampling_of(const render_settings *r);
 
-/* For the points on the lens of a film with that many camera rays per pixel in a regular grid, as of Whitted's
- * integrator: one scrambled Sobol set. */
+/* Sample points on the lens for `rays` camera rays per pixel in a regular grid, as in Whitted's integrator: one
+ * scrambled Sobol set. */
 path_sampling path_sampling_of_grid(const render_settings *r, int64_t rays);
 
 /* The pixel's number of paths. */
@@ -112,10 +112,10 @@ static inline int64_t path_count(const path_sampling *p, int64_t pixel)
     return p->by_pixel ? p->by_pixel[pixel] : p->paths;
 }
 
-/* The pixel's number of paths in each replicate. 32 bits, of which there are enough, are divided faster. */
+/* The pixel's number of paths in each replicate. A division of 32 bits suffices, and is faster. */
 static inline uint32_t path_replicate_count(const path_sampling *p, int64_t pixel)
 {
-    return p->by_pixel ? p->by_pixel[pixel] / (uint32_t)p->replicates : (uint32_t)p->each;
+    return p->by_pixel ? p->by_pixel[pixel] / (uint32_t)p->replicates : (uint32_t)p->per_replicate;
 }
 
 /* The replicate of a path. */
@@ -133,21 +133,21 @@ typedef struct unit_pair {
     double u, v; /* uniform in (0, 1) */
 } unit_pair;
 
-/* The key of a replicate's points for one random choice. Of a depth, 8 bits have their own place; those above are
- * spread by an odd number (that of a golden section of 2^64). */
+/* The key of a replicate's points for one random choice. The low 8 bits of the depth have their own field; the others
+ * are spread by an odd factor, 2^64 over the golden ratio. */
 static inline uint64_t path_draw_key(const path_sampling *p, int64_t pixel, uint64_t replicate, int depth, int purpose)
 {
     const uint64_t near = (uint64_t)depth & 0xff, far = ((uint64_t)depth >> 8) * 0x9e3779b97f4a7c15;
     return ((uint64_t)pixel << 32 | replicate << 24 | near << 16 | (uint64_t)purpose) ^ far ^ p->seed_hash;
 }
 
-/* For one random choice of a path: purpose is one of those above. */
+/* The sample point for one random choice of a path; purpose: a number of the enum above. */
 static inline unit_pair path_draw(const path_sampling *p, int64_t sample_key, int depth, int purpose)
 {
     if (p->sampler == SAMPLER_SOBOL) {
         const uint32_t sample = (uint32_t)sample_key_sample(sample_key),
-                       each = path_replicate_count(p, sample_key_pixel(sample_key)), replicate = sample / each,
-                       index = sample - replicate * each;
+                       per_replicate = path_replicate_count(p, sample_key_pixel(sample_key)),
+                       replicate = sample / per_replicate, index = sample - replicate * per_replicate;
         const sobol_point s =
             sobol_at(index, path_draw_key(p, sample_key_pixel(sample_key), replicate, depth, purpose));
         return (unit_pair){random_unit(s.x), random_unit(s.y)};

@@ -32,7 +32,7 @@ static int clamp(int64_t v, int most)
     return v < most ? (int)v : most;
 }
 
-/* The worker's block of `length` units, ceil(length / workers) each, as in the report. */
+/* The worker's block of `length` units, ceil(length / workers) each, as in the published rod report. */
 static bool block(int length, int workers, int worker, int *from, int *to)
 {
     int64_t each = (length + workers - 1) / workers;
@@ -50,7 +50,7 @@ bool schedule_tile(const schedule *s, int64_t index, image_tile *out)
     return true;
 }
 
-/* The worker's reserved tile, then the next one that no worker has. */
+/* The worker's reserved tile, then the next unassigned one. */
 static bool tile_on_demand(schedule *s, int worker, uint64_t taken, image_tile *out)
 {
     return schedule_tile(s, taken == 0 ? worker : atomic_fetch_add_explicit(&s->next, 1, memory_order_relaxed), out);

@@ -1,8 +1,8 @@
-/* The schedule: which worker renders which tile. columns and rows: one block per worker, as in the
+/* The schedule: which worker renders which tile. columns and rows: one block per worker, as in the published rod
  * report; tiles: square tiles assigned in turn; dynamic: the next tile to the next free worker, except that the first
- * tile of each worker is reserved for it. Without that, of a thousand threads on a few processing units most start when
- * all tiles are taken, and the frame is in fact rendered by a few. Ownership: a plain value; next is the only field
- * that workers share. Errors: none. */
+ * tile of each worker is reserved for it. Otherwise, with a thousand threads on a few processing units, most would
+ * start after the last tile was assigned, and a few would render the frame. Ownership: a plain value; next is the only
+ * field that workers modify. Errors: none. */
 #pragma once
 
 #include "scene/model/render_settings.h"

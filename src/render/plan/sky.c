@@ -107,8 +107,8 @@ enum { STEP_NM = 5, NODES = (OBSERVER_HIGH_NM - OBSERVER_LOW_NM) / STEP_NM };
 struct rain {
     vec3 from_sun; /* the antisolar direction */
     bool spectral;
-    double (*at)[DROP_BINS]; /* by wavelength; one row of working space for a film of three channels */
-    double fraction[NODES];  /* mean over the sphere by wavelength */
+    double (*radiance)[DROP_BINS]; /* by wavelength; for a film of three channels, one row of working memory */
+    double mean[NODES];            /* over the sphere, by wavelength */
     vec3 color[DROP_BINS], color_mean;
 };
 
@@ -117,7 +117,7 @@ static double node_lambda(int node)
     return OBSERVER_LOW_NM + STEP_NM * (node + 0.5);
 }
 
-/* The observer's fraction of a wavelength in the colour of white light. */
+/* The contribution of a wavelength to the colour of white light. */
 static void node_color(int node, double rgb[3])
 {
     double xyz[3];
@@ -142,7 +142,7 @@ static void add_color(rain *r, int node, const double *p)
     const vec3 color = vec3_make(rgb[0], rgb[1], rgb[2]);
     for (int b = 0; b < DROP_BINS; b++)
         r->color[b] = vec3_add(r->color[b], vec3_scale(color, p[b]));
-    r->color_mean = vec3_add(r->color_mean, vec3_scale(color, r->fraction[node]));
+    r->color_mean = vec3_add(r->color_mean, vec3_scale(color, r->mean[node]));
 }
 
 static void fill(rain *r, const background *sky, drop_angles *a)
@@ -150,12 +150,12 @@ static void fill(rain *r, const background *sky, drop_angles *a)
     const medium *drops = media_at((size_t)(DROPS_FIRST + sky->drops)), *air = media_find("air");
     drop_angles_make(SUN_RADIUS_DEG, a);
     for (int node = 0; node < NODES; node++) {
-        double *p = r->at[r->spectral ? node : 0];
+        double *p = r->radiance[r->spectral ? node : 0];
         const double lambda_nm = node_lambda(node);
         drop_scattering(a, medium_index(drops, lambda_nm) / medium_index(air, lambda_nm), p);
         for (int b = 0; b < DROP_BINS; b++)
             p[b] *= sky->rain;
-        r->fraction[node] = mean_of(a, p);
+        r->mean[node] = mean_of(a, p);
         if (!r->spectral)
             add_color(r, node, p);
     }
@@ -165,7 +165,7 @@ rain *rain_create(const background *sky, vec3 to_sun, bool spectral)
 {
     rain *r = calloc(1, sizeof *r);
     drop_angles *angles = calloc(1, sizeof *angles);
-    if (r && angles && (r->at = calloc(spectral ? NODES : 1, sizeof *r->at))) {
+    if (r && angles && (r->radiance = calloc(spectral ? NODES : 1, sizeof *r->radiance))) {
         r->spectral = spectral;
         r->from_sun = vec3_scale(to_sun, -1.0);
         fill(r, sky, angles);
@@ -180,17 +180,17 @@ rain *rain_create(const background *sky, vec3 to_sun, bool spectral)
 void rain_destroy(rain *r)
 {
     if (r)
-        free(r->at);
+        free(r->radiance);
     free(r);
 }
 
-/* A place between two entries of a table. */
+/* A position between two entries of a table. */
 typedef struct place {
     int low;
     double part;
 } place;
 
-/* Entries stand at 0.5, 1.5, ... ; constant beyond the ends. */
+/* Entries are at 0.5, 1.5, ...; values are constant beyond the ends. */
 static place place_of(double position, int count)
 {
     const double at = position - 0.5;
@@ -229,11 +229,11 @@ static place node_of(double lambda_nm)
 double rain_radiance(const rain *r, double lambda_nm, vec3 direction)
 {
     const place angle = angle_of(r, direction), node = node_of(lambda_nm);
-    return between((const double[2]){between(r->at[node.low], angle), between(r->at[node.low + 1], angle)},
+    return between((const double[2]){between(r->radiance[node.low], angle), between(r->radiance[node.low + 1], angle)},
                    (place){0, node.part});
 }
 
 double rain_radiance_mean(const rain *r, double lambda_nm)
 {
-    return between(r->fraction, node_of(lambda_nm));
+    return between(r->mean, node_of(lambda_nm));
 }

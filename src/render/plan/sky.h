@@ -1,7 +1,7 @@
 /* The sky: radiance of the background, which is uniform, a vertical gradient, or an equirectangular image whose middle
  * column faces +z, whose right half covers x > 0, and whose top row is straight up. A background of rain is a gradient
- * here, to which rain_color adds the rain's own light. A CIE sky must be that of a plan (plan.c). Lookups are pure and
- * cannot fail.
+ * here, to which rain_color adds the rain's own light. A CIE sky must come from a plan, which computes its constants
+ * (plan.c). Lookups are pure and cannot fail.
  *
  * Sunlit rain: what a thin sheet of falling drops adds to the sky, with rainbows around the antisolar point. The
  * sun's light is white (D65) and comes from a disc. Radiance = background.rain times the drops' scattering function
@@ -16,15 +16,15 @@
 vec3 sky_radiance(const background *sky, vec3 direction);
 
 /* The mean radiance over all directions, by solid angle: for a gradient (3 horizon + zenith) / 4, since the mean of
- * max(0, sin(elevation)) over the sphere is 1/4; for an image, that of its interpolated texels. */
+ * max(0, sin(elevation)) over the sphere is 1/4; for an image, the mean of its interpolated texels. */
 vec3 sky_mean(const background *sky);
 
 /* --- rain --- */
 
 typedef struct rain rain;
 
-/* to_sun: unit vector. spectral: for a film that is traced by wavelength; else for three channels. NULL when out of
- * memory. */
+/* to_sun: unit vector. spectral: tables by wavelength, for a spectral film; else one table by channel. Returns NULL
+ * when out of memory. */
 rain *rain_create(const background *sky, vec3 to_sun, bool spectral);
 void rain_destroy(rain *r);
 

@@ -22,7 +22,7 @@ int spectral_lines_of(const light *l, lamp_line lines[LAMP_LINES_MAX])
     return count;
 }
 
-/* A beam's line, as that of a lamp. */
+/* The line of a beam, computed as for a lamp. */
 static int lines_of_beam(const scene *s, const beam *b, lamp_line lines[LAMP_LINES_MAX])
 {
     const light lamp = {.spectrum = LAMP_LINE, .line_nm = b->lambda_nm, .intensity = b->power};
@@ -34,7 +34,7 @@ static bool is_black(vec3 color)
     return color.x == 0.0 && color.y == 0.0 && color.z == 0.0;
 }
 
-/* Each kind of sky has its own colours; render/plan/sky.h. */
+/* Whether the sky emits light; each kind uses different colours (render/plan/sky.h). */
 static bool sky_shines(const background *b)
 {
     switch ((background_kind)b->kind) {
@@ -47,7 +47,7 @@ static bool sky_shines(const background *b)
     return !is_black(b->color);
 }
 
-/* Random paths have no ambient light. */
+/* Whether a surface emits light, or reflects ambient light, which random paths do not have. */
 static bool surface_shines(const scene *s, const material *m)
 {
     const bool ambient =
@@ -72,7 +72,7 @@ static bool lamp_has_continuum(const light *l)
            (l->spectrum == LAMP_BLACK_BODY || (l->spectrum == LAMP_OF_COLOR && !is_black(l->color)));
 }
 
-/* Whether anything that the film shows emits light of other wavelengths. */
+/* Whether anything in the scene emits light other than lines. */
 static bool emits_a_continuum(const scene *s)
 {
     bool any = sky_shines(&s->background);
@@ -85,7 +85,7 @@ static bool emits_a_continuum(const scene *s)
     return any;
 }
 
-/* By wavelength. */
+/* Adds the brightness of the lines by wavelength, and returns their sum. */
 static double add_lines(const scene *s, double *bright)
 {
     double all = 0.0;
@@ -99,7 +99,7 @@ static double add_lines(const scene *s, double *bright)
     return all;
 }
 
-/* Each line has at least one slot; the others are shared in proportion, so that the sum so far is nearest. */
+/* Each line has one slot; the spare slots are distributed by brightness, with rounded cumulative numbers. */
 static void fill_slots(line_table *t, const double *bright, double all)
 {
     const int spare = LINE_SLOTS - t->count;
@@ -222,14 +222,14 @@ static region_spectrum region_at(const upsampled_scene *l, size_t priority_index
 
 /* Number of wavelengths that share one offset: of a camera ray, of all of a pixel's random paths, or of one replicate
  * of the paths under sobol. */
-static int64_t wavelengths_together(const render_settings *render)
+static int64_t wavelengths_per_offset(const render_settings *render)
 {
     if (!integrator_traits_of(render)->by_chance)
         return render->wavelengths;
     return render->sampler == SAMPLER_SOBOL ? render->paths / path_sampling_of(render).replicates : render->paths;
 }
 
-/* Number `i` of `count` wavelengths. */
+/* The i-th of `count` wavelengths; *of_line: whether it is drawn from the lines. */
 static int64_t wavelength_of(const spectra *p, int64_t i, int64_t count, int offset, bool *of_line)
 {
     *of_line = false;
@@ -242,7 +242,7 @@ static void whiten(spectra *p, int offset)
 {
     const int64_t count = p->per_offset;
     double white[3], sum[3] = {0.0, 0.0, 0.0};
-    int64_t even = 0; /* wavelengths that are not drawn from lines, whose fraction of white is subtracted */
+    int64_t even = 0; /* wavelengths not drawn from lines; the others' part of white is subtracted from the target */
     linear_srgb_to_xyz((const double[3]){1.0, 1.0, 1.0}, white);
     for (int64_t i = 0; i < count; i++) {
         bool of_line;
@@ -291,7 +291,7 @@ static bool fill_tables(const upsampled_scene *l, spectra *p)
     }
     for (size_t k = 0; k < p->light_count; k++)
         fill_light(l, p, k);
-    p->per_offset = wavelengths_together(&l->s->render);
+    p->per_offset = wavelengths_per_offset(&l->s->render);
     for (int i = 0; i < SPECTRA_OFFSETS; i++)
         whiten(p, i);
     return true;

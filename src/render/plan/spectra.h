@@ -1,13 +1,13 @@
-/* The spectra of a scene, for films that are traced by wavelength. There are SPECTRA_COUNT wavelengths, 0.1 nm apart;
- * the scene's properties at each of them (colours upsampled by optics/upsample.h, refractive indices, absorption, and
- * the observer's response) are computed once per frame, in tables.
+/* The spectra of a scene, for spectral films. There are SPECTRA_COUNT wavelengths, 0.1 nm apart; the scene's properties
+ * at each of them (colours upsampled by optics/upsample.h, refractive indices, absorption, and the observer's response)
+ * are computed once per frame, in tables.
  *
- * Lamps that emit lines: a line falls on one of the film's wavelengths, which evenly spaced ones would meet once in
- * thousands. Where there are such lamps, half of a pixel's wavelengths are drawn from the lines, by the brightness of
- * each, or all if nothing in the scene emits other light. The observer's weights are divided by the density, so that
- * the mean stays the same (importance sampling with one sample from a mixture, Veach, Robust Monte Carlo Methods for
- * Light Transport Simulation, 1997, section 9.2.4). The density is exact, not only on average: each line has a whole
- * number of LINE_SLOTS, which divides the number of offsets.
+ * Lamps that emit lines: a line is at one of the film's wavelengths, which evenly spaced samples would hit once in
+ * thousands. If there are such lamps, half of a pixel's wavelengths are drawn from the lines in proportion to their
+ * brightness, or all if nothing in the scene emits other light. The observer's weights are divided by the density, so
+ * that the mean stays the same (importance sampling with one sample from a mixture, Veach, Robust Monte Carlo Methods
+ * for Light Transport Simulation, 1997, section 9.2.4). The density is exact, not only on average: each line has a
+ * whole number of LINE_SLOTS, which divides the number of offsets.
  *
  * Ownership: spectra_create allocates, spectra_destroy releases; the scene is borrowed during the call only. Lookups
  * are pure. */
@@ -24,29 +24,29 @@
 
 /* --- lines --- */
 
-/* At most as many different lines, which check.c ensures. */
+/* The number of slots, and the maximum number of different lines, which check.c ensures. */
 enum { LINE_SLOTS = 128 };
 
 typedef struct line_table {
-    int count;                /* of different lines; 0: no lamp emits lines */
+    int count;                /* number of different lines; 0: no lamp emits lines */
     bool lines_only;          /* nothing emits other light */
     int16_t slot[LINE_SLOTS]; /* wavelength numbers, in order */
 } line_table;
 
-/* The lines of a lamp. bright: how much the line adds to a film, X + Y + Z, by which lines are chosen. */
+/* A line of a lamp. bright: its contribution to a film, X + Y + Z, in proportion to which lines are chosen. */
 typedef struct lamp_line {
     int wavelength;  /* its number */
-    double radiance; /* there; the mean over all SPECTRA_COUNT wavelengths is their fraction of it */
+    double radiance; /* at this wavelength; its mean over all SPECTRA_COUNT wavelengths is the line's power */
     double bright;
 } lamp_line;
 int spectral_lines_of(const light *l, lamp_line lines[LAMP_LINES_MAX]);
 
 line_table line_table_of(const scene *s);
 
-/* The wavelength number for a number u in [0, 1), in a scene with lines; *of_line: whether it is drawn from these. */
+/* The wavelength number for u in [0, 1), in a scene with lines; *of_line: whether it is drawn from the lines. */
 int64_t line_table_choose(const line_table *t, double u, bool *of_line);
 
-/* The density of that choice at a wavelength over that of an even one; 1 without lines. */
+/* The density of line_table_choose at a wavelength relative to a uniform density; 1 without lines. */
 double line_table_density(const line_table *t, int64_t wavelength);
 
 /* --- tables --- */
@@ -62,7 +62,7 @@ enum { SPECTRA_OFFSETS = 256, SPECTRA_WHITE_FROM = 8 };
 typedef struct spectral_row {
     double eye[3]; /* observer_weights over the density of the choice (line_table_density) */
     double sky, horizon, ambient;
-    double basis[SKY_BASIS_COUNT]; /* white, cyan, magenta, yellow, red, green, blue: of a sky image's texels */
+    double basis[SKY_BASIS_COUNT]; /* of a sky image's texels: white, cyan, magenta, yellow, red, green, blue */
 } spectral_row;
 
 /* A region at one wavelength; absorption: including tint, in 1 / scene unit. */
@@ -86,8 +86,8 @@ spectra *spectra_create(const scene *s, const material *const *materials, const 
                         size_t priority_indices);
 void spectra_destroy(spectra *p);
 
-/* The wavelength of that number, at the middle of its 0.1 nm, and the number of a wavelength from OBSERVER_LOW_NM to
- * OBSERVER_HIGH_NM. */
+/* The wavelength with a number, at the middle of its 0.1 nm interval, and the number of a wavelength from
+ * OBSERVER_LOW_NM to OBSERVER_HIGH_NM. */
 double spectra_lambda(int64_t number);
 int spectra_number(double lambda_nm);
 
@@ -95,8 +95,8 @@ int spectra_number(double lambda_nm);
  * 380..780 nm, from an offset that is hashed from seed, pixel and point (Cranley and Patterson, "Randomization of
  * Number Theoretic Methods for Multiple Integration", SIAM J. Numer. Anal. 13(6), 1976): the observer's curves are
  * smooth and end at 0, where such sums have the smallest error. The remaining error for white is removed by weights for
- * X, Y and Z (*white), so that a white furnace is white whatever the offset; below SPECTRA_WHITE_FROM wavelengths,
- * where that would be a large correction, and for spectral lines they are 1. */
+ * X, Y and Z (*white), so that a white furnace is white whatever the offset. The weights are 1 for spectral lines, and
+ * below SPECTRA_WHITE_FROM wavelengths, where the correction would be large. */
 int64_t spectra_choose(const spectra *p, const render_settings *render, int64_t sample_key, const double **white);
 
 static inline const spectral_row *spectra_row(const spectra *p, int64_t sample_key)
@@ -114,6 +114,6 @@ static inline double spectra_light(const spectra *p, int64_t sample_key, int lam
     return p->lights[(size_t)sample_key_wavelength(sample_key) * p->light_count + (size_t)lamp];
 }
 
-/* Radiance of the sky, and its mean over all directions, whose colour is sky_mean. */
+/* Radiance of the sky in a direction, and its mean over all directions; `mean` is the colour from sky_mean. */
 double spectra_sky(const spectral_row *row, const background *sky, vec3 direction);
 double spectra_sky_mean(const spectral_row *row, const background *sky, vec3 mean);

@@ -9,8 +9,8 @@
 
 bool crystals_begin(tracer *t)
 {
-    const bool some = t->target.frame_plan->crystals != NULL;
-    if (some && !t->crystals && !(t->crystals = malloc(sizeof *t->crystals)))
+    const bool has_crystals = t->target.frame_plan->crystals != NULL;
+    if (has_crystals && !t->crystals && !(t->crystals = malloc(sizeof *t->crystals)))
         return false;
     if (t->crystals)
         t->crystals->any = false;
@@ -44,12 +44,12 @@ bool crystals_meet(const tracer *t, int k)
     return t->crystals && t->crystals->any && t->crystals->meets[k];
 }
 
-/* The fractions of ray k's children of the light: what an opaque surface in a crystal reflects, as a perfect mirror
- * that loses the rest, and what the solid transmits. Along the crystal's symmetries one mode gets nothing but what
- * rounding makes, 1e-32, which would double the tree at each surface. */
+/* Scales ray k's children by the fraction that the surface reflects or transmits; an opaque surface in a crystal is a
+ * mirror that loses the rest. Along the crystal's symmetries one mode has only a rounding error, 1e-32, and is dropped,
+ * because it would double the tree at each surface. */
 static void weigh_children(tracer *t, int k, bool opaque)
 {
-    const double of_rounding = 1e-24;
+    const double rounding_error = 1e-24;
     const material *m = &t->surface.mat->surface;
     crystal_children *c = &t->crystals->children[k];
     int kept = 0;
@@ -57,7 +57,7 @@ static void weigh_children(tracer *t, int k, bool opaque)
         const double fraction = opaque ? t->surface.branches.reflect[k] : c->ray[i].reflected ? 1.0 : m->transparency;
         stokes *row = &c->ray[i].row;
         row->i *= fraction, row->q *= fraction, row->u *= fraction, row->v *= fraction;
-        if (row->i > of_rounding)
+        if (row->i > rounding_error)
             c->ray[kept++] = c->ray[i];
     }
     c->count = kept;
@@ -80,7 +80,7 @@ void crystals_branches(tracer *t, bool opaque)
     branch_group *b = &t->surface.branches;
     crystal_work *w = t->crystals;
     for (int k = 0; k < g->count; k++) {
-        const bool inside = !opaque || w->from[k].uniaxial; /* a mirror outside is an ordinary one */
+        const bool inside = !opaque || w->from[k].uniaxial; /* a mirror outside crystals reflects as usual */
         w->meets[k] = w->meets[k] && inside;
         if (!w->meets[k])
             continue;

@@ -31,7 +31,7 @@ void expose_all(tracer *t, const film_light *sent, int count, const int64_t *pix
     t->account.overflow |= overflow;
 }
 
-/* Colours of a rainbow are outside the gamut, those of the sky behind it are not. */
+/* A rainbow's colours are outside the gamut; their sum with the sky's is clamped at 0. */
 static vec3 sky_and_rain(const plan *p, vec3 direction)
 {
     const vec3 l = sky_radiance(p->sky, direction);
@@ -135,7 +135,7 @@ void background_sky(tracer *t, const ray_queue *q, int first, const int *list, i
 
 /* --- branches that the depth limit cuts off --- */
 
-/* A branch whose weight differs by channel. */
+/* Cuts off a branch whose weight differs by channel. */
 static void cut_colored(tracer *t, int k, bool reflected)
 {
     const group *g = &t->surface.gathered;
@@ -151,7 +151,7 @@ static void cut_colored(tracer *t, int k, bool reflected)
         expose_at_depth_limit(t, g->sample_key[k], direction, wr, wg, wb);
 }
 
-/* The group's branches in the map, as the kernel below adds them to the counters. */
+/* Adds the group's branches to the map of cut rays, as the kernel adds them to the counters. */
 static void map_cut_branches(tracer *t)
 {
     const group *g = &t->surface.gathered;

@@ -6,7 +6,7 @@
 #include "render/shade/kernels.h"
 #include "render/tracer/tracer.h"
 
-/* Negative if a sum left the film's range. */
+/* Adds to the sums of one pixel; negative if a sum leaves the film's range. */
 static inline int64_t add_units(film_sum *sum, film_sum r, film_sum g, film_sum b)
 {
     const film_sum red = film_add(sum[0], r), green = film_add(sum[1], g), blue = film_add(sum[2], b);
@@ -39,10 +39,11 @@ static inline void shading_expose(tracer *t, int64_t sample_key, double r, doubl
 /* Adds the light of many rays, whose sample keys are pixels. */
 void expose_all(tracer *t, const film_light *sent, int count, const int64_t *pixel);
 
-/* Adds the radiance of rays first .. first + count - 1 of a queue, with the fractions of it that arrive. */
+/* Adds the radiance of rays first .. first + count - 1 of a queue; fraction: the fraction of each that arrives. */
 void shading_expose_shadow_rays(tracer *t, const ray_queue *q, int first, int count, const double *fraction);
 
-/* Adds the weighted sky radiance of a direction, or that of a branch that the depth limit cuts off (render.beyond). */
+/* Adds the weighted sky radiance of a direction, or the fallback radiance (render.beyond) of a branch that the depth
+ * limit cuts off. */
 void shading_expose_sky(tracer *t, int64_t sample_key, vec3 direction, double wr, double wg, double wb);
 void shading_expose_at_depth_limit(tracer *t, int64_t sample_key, vec3 direction, double wr, double wg, double wb);
 

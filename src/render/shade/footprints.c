@@ -7,14 +7,15 @@
 #include <stdlib.h>
 #include <string.h>
 
-/* Curved surfaces make some views so small that a sample would have to look at thousands of photons. Beyond this reach,
- * in cells as the camera sees the point without deflection, those close together are seen as one. */
+/* Curved surfaces can shrink the view so much that a sample would sum thousands of photons. Beyond this reach, in
+ * samples' cells as the camera sees the point without deflection, photons close together are merged. */
 #define REACH_BENT 4.0
-/* Behind curved surfaces two neighbours find other places for a photon between them, each to first order: too far away
- * or too close, by e. Of a narrow disc in the middle, both or neither would have all the light. Of a density with this
- * half width, in samples, each has 1/2 +- 15 e / 8 at most, the biweight's value in its middle. */
+/* Behind curved surfaces two neighbouring samples place a photon between them differently, since each is exact only to
+ * first order: too far away or too close, by e. Both or neither would receive all the light of a narrow disc in the
+ * middle. With a density of this half width, in samples, each receives at most 1/2 +- 15 e / 8, where 15 / 8 is the
+ * biweight's value at its middle. */
 #define BLUR_BENT 0.5
-/* Normals are compared at this fraction of the way to the neighbour's hit. */
+/* Normals are compared at this fraction of the distance to the neighbour's hit. */
 #define NEAR 0x1p-10
 
 bool footprints_are_followed(const render_settings *r)
@@ -24,7 +25,7 @@ bool footprints_are_followed(const render_settings *r)
 
 bool footprints_begin(tracer *t)
 {
-    const bool follows = footprints_are_followed(&t->target.frame_plan->render) && !t->target.rule;
+    const bool follows = footprints_are_followed(&t->target.frame_plan->render) && !t->target.integrator_override;
     if (!follows) {
         footprints_end(t);
         return true;
@@ -43,7 +44,8 @@ void footprints_end(tracer *t)
     t->footprints = NULL;
 }
 
-/* The image point's direction is d times its depth; d moves by the plane's vectors over that length. */
+/* The vector to the image plane at distance 1 is d / depth, so that one sample changes d by depth times the plane's
+ * vectors. */
 void footprints_of_camera(tracer *t, ray_queue *q, int first, int count)
 {
     const plan *p = t->target.frame_plan;
@@ -85,8 +87,8 @@ static vec3 normal_of(const surface_batch *s, int k)
     return vec3_make(s->nx[k], s->ny[k], s->nz[k]);
 }
 
-/* The change of the normal from each hit to that of its neighbour, `step` away: by the normals at points close to it,
- * projected onto the primitive; 0 across edges. Rays from .. to - 1 hit the same one. */
+/* The change of the normal from each hit to the neighbour's hit, which is `step` away, extrapolated from the normal at
+ * a close point, projected onto the primitive; 0 across edges. Rays from .. to - 1 hit one primitive. */
 static void curve(const tracer *t, int from, int to, const vec3 *step, vec3 *change)
 {
     const group *g = &t->surface.gathered;
@@ -110,7 +112,8 @@ static void curve(const tracer *t, int from, int to, const vec3 *step, vec3 *cha
     }
 }
 
-/* Triangles are flat; interpolated normals count as if they did not turn. */
+/* Applies curve to the gathered group. Triangles are flat; the curvature of interpolated normals is ignored, and noted as
+ * rough_guess. */
 static void curve_all(tracer *t, vec3 step[2][ROW], vec3 change[2][ROW])
 {
     const group *g = &t->surface.gathered;
@@ -133,15 +136,16 @@ static void curve_all(tracer *t, vec3 step[2][ROW], vec3 change[2][ROW])
 
 /* --- branches --- */
 
-/* d - 2 (d.n) n, whose change is linear in that of d. */
+/* The change of the reflected direction d - 2 (d.n) n, if d changes by `turn` and n by `bend`. */
 static vec3 turn_reflected(vec3 turn, vec3 d, vec3 n, vec3 bend)
 {
     const double change = vec3_dot(turn, n) + vec3_dot(d, bend);
     return vec3_sub(turn, vec3_scale(vec3_add(vec3_scale(n, change), vec3_scale(bend, vec3_dot(d, n))), 2.0));
 }
 
-/* Of Snell's law in vector form, out = eta d + (eta cos_i - cos_t) n, for d a unit vector. The neighbour's direction
- * keeps its length, which is that of a vector to the image plane: cells are even in it, not in angle. */
+/* The change of the refracted direction, from Snell's law in vector form, out = eta d + (eta cos_i - cos_t) n for a
+ * unit vector d. The neighbour's direction keeps the length of its vector to the image plane, since samples are evenly
+ * spaced in the plane, not in angle. */
 static vec3 turn_refracted(vec3 turn, vec3 d, vec3 n, vec3 bend, double eta, vec3 out)
 {
     const double longer = vec3_dot(d, turn), cos_i = -vec3_dot(d, n),
@@ -154,8 +158,8 @@ static vec3 turn_refracted(vec3 turn, vec3 d, vec3 n, vec3 bend, double eta, vec
     return vec3_add(unit, vec3_scale(out, longer));
 }
 
-/* The shift by a multiple of the direction d that makes it as parallel to the turn as it can be: rays through one point
- * then stay such. */
+/* Moves the shift along the direction d until it is as parallel to the turn as possible, so that rays through one point
+ * remain so. */
 static vec3 shift_along_turn(vec3 shift, vec3 turn, vec3 d)
 {
     const double longer = vec3_dot(turn, d);

@@ -21,23 +21,23 @@ typedef struct shade_kernels {
     void (*color)(const material *m, const primitive *p, group *g);
     /* Phong's direct light of one light at every point, weighted by the throughput. */
     void (*direct)(const material *m, const light *lamp, const group *g, lit_group *lit);
-    /* Multiplies this light by the fraction that the cone emits towards the point. */
+    /* Multiplies the light in lit by the fraction that the cone emits towards each point. */
     void (*spot)(const light_cone *c, bool soft, const group *g, lit_group *lit);
     /* Reflected and refracted directions with Fresnel weights at a clear surface, including its coating, which reflects
      * a fraction of what would be transmitted: R' = R + (1 - R) reflectivity. */
     void (*fresnel_branches)(const material *m, const group *g, branch_group *b);
-    /* The same with the material's constant weights; opaque surfaces too. */
+    /* fresnel_branches with the material's constant weights, also for opaque surfaces. */
     void (*constant_branches)(const material *m, bool opaque, const group *g, branch_group *b);
     /* Undeflected transmission at a clear surface, with the material's constant weights. */
     void (*straight_branches)(const material *m, const group *g, branch_group *b);
     /* Adds branches that the depth limit cuts off to *sum: their number, and their throughput in units of
      * 1/COUNTERS_CUT_ONE. */
     void (*cut)(const group *g, const branch_group *b, cut_sum *sum);
-    /* The light of a group in film units: a surface's own, of that radiance in its colour; and that of the branches
-     * that the depth limit cuts off, the same for all directions. */
+    /* Light of a group in film units. own_light: radiance times the surface's colour. cut_light: radiance, equal in all
+     * directions, weighted by the branches that the depth limit cuts off. */
     void (*own_light)(const group *g, vec3 radiance, film_light *out);
     void (*cut_light)(const group *g, const branch_group *b, vec3 radiance, film_light *out);
-    /* The fractions of the rays' radiance in film units. */
+    /* Fractions of the rays' radiance, in film units. */
     void (*arrived)(int count, const double *fraction, const double *r, const double *g, const double *b,
                     film_light *out);
     /* Appends all of g to q as rays along (dx, dy, dz) with throughput times weight; the caller then removes rays of
@@ -53,7 +53,8 @@ ISA_DECLARE(const shade_kernels, shade_kernels)
 
 /* --- sampling --- */
 
-/* Points on the lens, as uniform random numbers: the fraction of its area nearer to the centre, and of a turn. */
+/* Points on the lens as uniform random numbers: the fraction of the lens's area within the point's radius, and its
+ * angle as a fraction of a turn. */
 typedef struct lens_points {
     const double *area, *turn;
 } lens_points;
@@ -64,18 +65,18 @@ typedef struct camera_rays_out {
 
 /* Points of spheres, as seen from the points of a group. */
 typedef struct sphere_samples {
-    double x[ROW], y[ROW], z[ROW], radius[ROW]; /* the sphere; its centre from the point */
+    double x[ROW], y[ROW], z[ROW], radius[ROW]; /* the sphere; its centre relative to the point */
     double u[ROW], v[ROW];                      /* random numbers */
     /* Results: the unit direction, uniform over the cone that the sphere fills; 1 - the cosine of the cone's half
      * angle; the distance to the sphere; the cosine to the normal, 0 from within the sphere. */
     double dx[ROW], dy[ROW], dz[ROW], cap[ROW], reach[ROW], n_l[ROW];
 } sphere_samples;
 
-/* The lights' parameters as arrays, of whole blocks, padded with lights of strength 0. */
+/* The lights' parameters as arrays, padded to full blocks with lights of strength 0. */
 enum { LAMP_BLOCK = 8, LAMPS_MAX = (SCENE_LIGHTS_MAX + LAMP_BLOCK - 1) / LAMP_BLOCK * LAMP_BLOCK };
 typedef struct lamp_table {
     int blocks;
-    bool cones; /* some are cone lights that are points */
+    bool cones; /* some cone lights are points */
     bool suns;  /* some are suns, whose strength here is 0: light_sampling.c weighs them */
     double x[LAMPS_MAX], y[LAMPS_MAX], z[LAMPS_MAX];
     float radius[LAMPS_MAX], strength[LAMPS_MAX]; /* intensity; with falloff, times the square of the reach */
@@ -97,11 +98,11 @@ typedef struct sampling_kernels {
     /* Unit directions about the normals of g's points by the cosine law. */
     void (*cosine)(const group *g, const double *u, const double *v, double *dx, double *dy, double *dz);
     void (*spheres)(const group *g, sphere_samples *s);
-    /* The rays, -1 each, whose lines ahead pass within the radius of a centre, and some that just miss; returns whether
-     * there are any. */
+    /* Sets near[i] to -1 if ray i passes within the radius of a centre, or just misses, else to 0; returns whether any
+     * is -1. */
     bool (*near_sphere)(const ray_batch *rays, vec3 centre, double radius, int64_t *near);
-    /* An estimate of each light's radiance at a point with normal n, for the choice of one:
-     * weight[blocks * LAMP_BLOCK]. Lights below the horizon have none, unless n is 0 and `least` below 0. */
+    /* An estimate of each light's radiance at a point with normal n, for the choice of one: weight[blocks *
+     * LAMP_BLOCK]. Lights below the horizon have weight 0, unless n is 0 and `least` is below 0. */
     void (*light_weights)(const lamp_table *lamps, vec3 point, vec3 n, float k_d, float k_s, float least,
                           float *weight);
 } sampling_kernels;

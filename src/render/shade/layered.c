@@ -1,4 +1,5 @@
-/* Metals and films in the tracer: exact at each ray's wavelength, or by the colours of a table in an rgb film. */
+/* Metals and thin films in the tracer: exact at each ray's wavelength, or with the colours of a table in an rgb
+ * film. */
 #include "render/shade/layered.h"
 
 #include "render/shade/polarisation.h"
@@ -22,16 +23,17 @@ void layered_end(tracer *t)
 void layered_gather(tracer *t, const int *list, int priority_index)
 {
     const plan *p = t->target.frame_plan;
-    layered_plan *of = p->layered;
+    layered_plan *layered = p->layered;
     layered_work *w = t->layered;
-    w->surface = of ? of->surface[priority_index] : NULL;
+    w->surface = layered ? layered->surface[priority_index] : NULL;
     if (!w->surface)
         return;
-    w->colored = of->curves && !of->one_wavelength;
-    const int own = of->medium[priority_index];
+    w->colored = layered->curves && !layered->one_wavelength;
+    const int inner = layered->medium[priority_index];
     for (int k = 0; w->colored && k < t->surface.gathered.count; k++) {
-        const int before = of->medium[t->batch.hits.before[list[k]]], after = of->medium[t->batch.hits.after[list[k]]];
-        w->curve[k] = layered_curve_of(of, priority_index, w->surface->opaque || before != own ? before : after);
+        const int before = layered->medium[t->batch.hits.before[list[k]]],
+                  after = layered->medium[t->batch.hits.after[list[k]]];
+        w->curve[k] = layered_curve_of(layered, priority_index, w->surface->opaque || before != inner ? before : after);
     }
 }
 
@@ -41,7 +43,7 @@ static double wavelength_of(const tracer *t, int k)
     return p->spectral ? spectra_lambda(sample_key_wavelength(t->surface.gathered.sample_key[k])) : p->render.lambda_nm;
 }
 
-/* The film's colour, or all of the light under total reflection. */
+/* Weights from the surface's table of colours; under total reflection, all light is reflected. */
 static void branch_by_color(tracer *t, const material *m, double coating, int k)
 {
     const group *g = &t->surface.gathered;
@@ -117,7 +119,7 @@ vec3 layered_mean(const tracer *t, int k)
     const layered_surface *s = w->surface;
     const double n_from = g->n_from[k], n_to = g->n_to[k];
     vec3 sum = vec3_make(0.0, 0.0, 0.0);
-    for (int i = 0; i < SQUARES; i++) { /* even steps of the squared cosine */
+    for (int i = 0; i < SQUARES; i++) { /* uniform steps of the squared cosine */
         const double cosine = sqrt((i + 0.5) / SQUARES);
         vec3 R;
         if (w->colored)

@@ -4,19 +4,19 @@
 
 #include "render/tracer/tracer.h"
 
-/* Of the gathered group. */
+/* The layered surface of the gathered group, and its branches' weights. */
 typedef struct layered_work {
     const layered_surface *surface; /* NULL: an ordinary surface */
-    bool colored;                   /* the branches have a weight for each channel; otherwise only the group's */
+    bool colored;                   /* the branches have weights by channel; otherwise only those of branch_group */
     const layered_curve *curve[ROW];
-    /* By channel; their means are the weights of branch_group. */
+    /* Weights of reflection and refraction by channel; their means are the weights of branch_group. */
     double rr[ROW], rg[ROW], rb[ROW], tr[ROW], tg[ROW], tb[ROW];
 } layered_work;
 
 bool layered_begin(tracer *t); /* begins a frame; false when out of memory */
 void layered_end(tracer *t);
 
-/* Notes the surface of the gathered group, whose rays are list[0 ..] of the batch. */
+/* Records the surface of the gathered group, rays list[0 ..] of the batch. */
 void layered_gather(tracer *t, const int *list, int priority_index);
 
 /* Replaces the weights of the branches, whose directions are computed, and with polarisation their Stokes vectors. */
@@ -31,5 +31,5 @@ vec3 layered_weight(const tracer *t, int k, bool reflected);
 /* The mean reflectance of the surface of ray k by channel: twice the integral over cosines of R times cosine. */
 vec3 layered_mean(const tracer *t, int k);
 
-/* Gives children first .. of the queue, which were appended with the mean weights, the colours of theirs. */
+/* Sets the throughputs by channel of children first .. of the queue, which were appended with mean weights. */
 void layered_color_children(tracer *t, ray_queue *q, int first, bool reflected);

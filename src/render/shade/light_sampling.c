@@ -10,7 +10,7 @@
 double area_light_radiance(const plan *p, int lamp, vec3 direction)
 {
     const light *l = &p->lights[lamp];
-    if (l->kind == LIGHT_SUN) /* pi I of irradiance from within the projected solid angle pi sin^2 */
+    if (l->kind == LIGHT_SUN) /* irradiance pi I from the projected solid angle pi sin^2 */
         return 1.0 / light_sun_sine2(&p->cones[lamp]);
     if (light_is_flat(l))
         return vec3_dot(direction, p->shapes[lamp].axis) < 0.0 ? lamp_shape_radiance(&p->shapes[lamp], l->reach) : 0.0;
@@ -58,7 +58,6 @@ vec3 light_color_of(const tracer *t, int lamp, int64_t sample_key)
     return vec3_make(radiance, radiance, radiance);
 }
 
-/* Phong's highlight k_s (R.V)^n of the light along the unit vector `to`, whose cosine is n_l. */
 double highlight_of(const group *g, int k, const material *m, vec3 to, double n_l)
 {
     const vec3 d = vec3_make(g->dx[k], g->dy[k], g->dz[k]);
@@ -66,7 +65,6 @@ double highlight_of(const group *g, int k, const material *m, vec3 to, double n_
     return m->specular > 0.0 && r_v > 0.0 ? m->specular * elementary_pow(r_v < 1.0 ? r_v : 1.0, m->shininess) : 0.0;
 }
 
-/* Enqueues a shadow ray from record k that brings light of that colour, as Phong's model reflects it. */
 void shadow_ray_enqueue(tracer *t, int k, int lamp, vec3 to_light, vec3 color, double diffuse, double shine)
 {
     const group *g = &t->surface.gathered;
@@ -82,7 +80,7 @@ void shadow_ray_enqueue(tracer *t, int k, int lamp, vec3 to_light, vec3 color, d
         sheets_shadow_ray(t, lamp, at);
 }
 
-/* Enqueues a shadow ray from record k to its point of a light's sphere. */
+/* Enqueues a shadow ray from record k to its sample point on a light's sphere. */
 static void enqueue_sphere(tracer *t, int k, const material *m, bool opaque, const lamp_samples *l)
 {
     const sphere_samples *s = &l->spheres;
@@ -107,14 +105,14 @@ bool light_has_area(const plan *p, int lamp)
     return lamp >= 0 && light_has_size(&p->lights[lamp]);
 }
 
-/* A sun too. */
+/* Whether the light is sampled as a sphere, as suns are, too. */
 static bool is_sphere(const plan *p, int lamp)
 {
     return light_has_area(p, lamp) && !light_is_flat(&p->lights[lamp]);
 }
 
-/* Enqueues a shadow ray from record k to its point of a flat lamp: (k_d C / pi) L (N.L) cos_l A / d^2 for points that
- * are uniform over the area A, plus Phong's highlight. */
+/* Enqueues a shadow ray from record k to its sample point on a flat lamp: (k_d C / pi) L (N.L) cos_l A / d^2 for points
+ * that are uniform over the area A, plus Phong's highlight. */
 static void enqueue_flat(tracer *t, int k, const material *m, bool opaque, const lamp_samples *l)
 {
     const plan *p = t->target.frame_plan;
@@ -142,7 +140,7 @@ void area_lights_aim_at_spheres(const tracer *t, lamp_samples *l)
     for (int k = 0; k < g->count; k++) {
         const int lamp = l->lamp[k] < 0 ? 0 : l->lamp[k];
         const light *one = &p->lights[lamp];
-        const bool sun = one->kind == LIGHT_SUN; /* one of radius sin a at distance 1 */
+        const bool sun = one->kind == LIGHT_SUN; /* sampled as a sphere of radius sin a at distance 1 */
         const vec3 to = sun ? vec3_scale(p->cones[lamp].axis, -1.0)
                             : vec3_sub(one->position, vec3_make(g->points.px[k], g->points.py[k], g->points.pz[k]));
         l->spheres.x[k] = to.x, l->spheres.y[k] = to.y, l->spheres.z[k] = to.z;
@@ -222,7 +220,7 @@ static void fill_table(const plan *p, lamp_table *lamps)
     }
 }
 
-/* The fraction of a cone light that is a point is exact. */
+/* Applies the exact fraction of cone lights that are points. */
 static void apply_cones(const plan *p, vec3 point, float *weight)
 {
     for (int k = 0; k < p->light_count; k++) {
@@ -232,8 +230,8 @@ static void apply_cones(const plan *p, vec3 point, float *weight)
     }
 }
 
-/* As light_weights of a sphere of radius sin a at distance 1: a sun's weight is the same at all points, however far the
- * place where its shadow rays end. */
+/* Weights a sun as light_weights does a sphere of radius sin a at distance 1, so that the weight does not depend on the
+ * distance at which its shadow rays end. */
 static void apply_suns(const plan *p, const light_estimate *by, vec3 n, float least, float *weight)
 {
     for (int k = 0; k < p->light_count; k++) {
@@ -245,7 +243,7 @@ static void apply_suns(const plan *p, const light_estimate *by, vec3 n, float le
     }
 }
 
-/* Sums of the blocks, and of all. */
+/* Sums the weights of each block; returns the sum of all. */
 static float add_up(const float *weight, int blocks, float *sum)
 {
     float total = 0.0f;
@@ -263,8 +261,8 @@ static double within_unit(double u)
     return u < least ? least : u > most ? most : u;
 }
 
-/* The light in whose part of the total the number u falls, and where in the part. What rounding leaves over goes to the
- * last light with a weight. */
+/* Inverts the cumulative weights: the light whose interval of the total contains u, and the position within the
+ * interval in *rest. If rounding leaves u beyond all intervals, it is the last light with a weight. */
 static int pick(const float *weight, const float *sum, int blocks, float total, double u, double *rest)
 {
     double target = u * (double)total;
@@ -286,26 +284,26 @@ static int pick(const float *weight, const float *sum, int blocks, float total, 
     return last;
 }
 
-/* A highlight can be bright where the diffuse fraction is faint, so that it has a part that does not depend on the
- * angle. */
+/* A highlight can be bright where diffuse light is faint, so that k_s has no cosine. */
 light_estimate light_estimate_of(const material *m)
 {
     return (light_estimate){(float)m->diffuse, 0.25f * (float)m->specular, 1.0, DRAW_LIGHT};
 }
 
 /* The lights' weights for ray i of the group, and their sums. */
-static float weigh(const tracer *t, const light_estimate *by, const lamp_table *lamps, int i, float *each, float *sum)
+static float weigh(const tracer *t, const light_estimate *by, const lamp_table *lamps, int i, float *weights,
+                   float *sum)
 {
     const surface_batch *at = &t->surface.gathered.points;
     const vec3 point = vec3_make(at->px[i], at->py[i], at->pz[i]);
     const vec3 n = vec3_scale(vec3_make(at->nx[i], at->ny[i], at->nz[i]), by->side);
     const float least = by->side == 0.0 ? -1.0f : 0.0f;
-    t->sampling->light_weights(lamps, point, n, by->k_d, by->k_s, least, each);
+    t->sampling->light_weights(lamps, point, n, by->k_d, by->k_s, least, weights);
     if (lamps->suns)
-        apply_suns(t->target.frame_plan, by, n, least, each);
+        apply_suns(t->target.frame_plan, by, n, least, weights);
     if (lamps->cones)
-        apply_cones(t->target.frame_plan, point, each);
-    return add_up(each, lamps->blocks, sum);
+        apply_cones(t->target.frame_plan, point, weights);
+    return add_up(weights, lamps->blocks, sum);
 }
 
 static bool is_usable(float total)
@@ -322,21 +320,21 @@ void light_choice_make(const tracer *t, const light_estimate *by, int depth, int
     fill_table(p, &lamps);
     t->sampling->draw(&p->draws, g->count, g->sample_key, depth, by->purpose, u, v);
     for (int i = 0; i < g->count; i++) {
-        float each[LAMPS_MAX], sum[BLOCKS_MAX];
-        const float total = weigh(t, by, &lamps, i, each, sum);
+        float weights[LAMPS_MAX], sum[BLOCKS_MAX];
+        const float total = weigh(t, by, &lamps, i, weights, sum);
         lamp[i] = -1;
         if (!is_usable(total))
             continue;
-        lamp[i] = pick(each, sum, lamps.blocks, total, u[i], &u[i]);
-        weight[i] = (double)total / (double)each[lamp[i]];
+        lamp[i] = pick(weights, sum, lamps.blocks, total, u[i], &u[i]);
+        weight[i] = (double)total / (double)weights[lamp[i]];
     }
 }
 
 double light_choice_chance(const tracer *t, const light_estimate *by, int i, int lamp)
 {
     lamp_table lamps;
-    float each[LAMPS_MAX], sum[BLOCKS_MAX];
+    float weights[LAMPS_MAX], sum[BLOCKS_MAX];
     fill_table(t->target.frame_plan, &lamps);
-    const float total = weigh(t, by, &lamps, i, each, sum);
-    return is_usable(total) ? (double)each[lamp] / (double)total : 0.0;
+    const float total = weigh(t, by, &lamps, i, weights, sum);
+    return is_usable(total) ? (double)weights[lamp] / (double)total : 0.0;
 }

@@ -3,9 +3,10 @@
  * (Shirley, Wang and Zimmerman, "Monte Carlo Techniques for Direct Lighting Calculations", TOG 15(1), 1996).
  *
  * The choice of one light for each ray, for random paths in a scene of several lights (render.light_sampling=one):
- * light k is chosen with a probability p_k that is proportional to an estimate of its light at the point, and what it
- * contributes is divided by p_k, so that the mean stays the same (the same, section 3). The estimate is Lambert's law
- * without shadows, and above 0 wherever the light can contribute. Functions of the gathered group; nothing fails. */
+ * light k is chosen with a probability p_k that is proportional to an estimate of its light at the point, and its
+ * contribution is divided by p_k, so that the mean stays the same (same paper, section 3). The estimate is Lambert's
+ * law without shadows, and above 0 wherever the light can contribute. Functions of the gathered group; nothing
+ * fails. */
 #pragma once
 
 #include "render/shade/kernels.h"
@@ -13,44 +14,46 @@
 
 bool light_has_area(const plan *p, int lamp);
 
-/* Radiance of a light with a size towards a ray along a unit vector, for a colour of 1. For a cone light each point of
- * the sphere emits only into the cone, so that from far away it is the cone of a point. */
+/* Radiance of a light with a size towards a ray along a unit vector, for a colour of 1. Each point of a cone light's
+ * sphere emits only into the cone, so that from far away it resembles a point light. */
 double area_light_radiance(const plan *p, int lamp, vec3 direction);
 
-/* Distance at which a ray along a unit vector that passes near a light with a size hits it, a sphere from outside, a
- * flat lamp on the side that emits; or HUGE_VAL. */
+/* Distance at which a ray along a unit vector hits a light with a size, a sphere from outside or a flat lamp on the
+ * side that emits; HUGE_VAL if it misses. */
 double area_light_distance(const plan *p, int lamp, vec3 origin, vec3 direction);
 
-/* The density, per solid angle, with which area_lights_sample would choose the direction to that point of the light. */
+/* The density, per solid angle, with which area_lights_sample chooses this direction, in which the light is at
+ * `distance`. */
 double area_light_density(const plan *p, int lamp, vec3 origin, vec3 direction, double distance);
 
 /* The light's colour times its intensity; in a spectral film at the sample key's wavelength. */
 vec3 light_color_of(const tracer *t, int lamp, int64_t sample_key);
 
-/* Phong's highlight k_s (R.V)^n of the light along the unit vector `to`, whose cosine is n_l. */
+/* Phong's highlight k_s (R.V)^n of the light along the unit vector `to`, at the cosine n_l to the normal. */
 double highlight_of(const group *g, int k, const material *m, vec3 to, double n_l);
 
-/* Enqueues a shadow ray from record k to a lamp, which brings light of that colour as Phong's model reflects it:
- * diffuse times the surface's colour, and shine. */
+/* Enqueues a shadow ray from record k to a lamp with light of `color`, of which the surface reflects diffuse times its
+ * colour, plus shine. */
 void shadow_ray_enqueue(tracer *t, int k, int lamp, vec3 to_light, vec3 color, double diffuse, double shine);
 
-/* Lights of the group's records, and points of those with a size. */
+/* The light chosen for each record of the group, and a sample point on it if it has a size. */
 typedef struct lamp_samples {
     int lamp[ROW];          /* -1: none */
-    double weight[ROW];     /* of its light */
+    double weight[ROW];     /* factor of the light's contribution */
     sphere_samples spheres; /* u and v are set by the caller; the rest is filled for spheres */
 } lamp_samples;
 
-/* Points of spheres by the random numbers of l->spheres; undefined for a record whose light is none or no sphere. */
+/* Sets the sample points on spheres from the random numbers in l->spheres; undefined for records without a sphere. */
 void area_lights_aim_at_spheres(const tracer *t, lamp_samples *l);
 
-/* From every record whose light has a size. shines: with highlights. */
+/* Enqueues a shadow ray from every record whose light has a size. shines: with highlights. */
 void area_lights_sample(tracer *t, const material *m, bool shines, lamp_samples *l);
 
-/* From every record to each light with a size. */
+/* Enqueues shadow rays from every record to each light with a size. */
 void area_lights_sample_all(tracer *t, const material *m, bool shines, int depth);
 
-/* The same for ray trees and ray casting with soft shadows, whose local light leaves these lights out. */
+/* area_lights_sample_all for ray trees and ray casting with soft shadows, whose local_light omits lights with a
+ * size. */
 void area_lights_soften(tracer *t, int depth);
 
 /* --- the choice of one light --- */
@@ -61,19 +64,19 @@ static inline bool light_choice_applies(const plan *p)
     return p->render.light_sampling == LIGHT_SAMPLING_ONE && p->light_count > 1;
 }
 
-/* What the estimate assumes of a surface. */
+/* The reflection that the estimate assumes. */
 typedef struct light_estimate {
     float k_d, k_s; /* fractions of the light with and without Lambert's cosine */
-    double side;    /* 1: light of the ray's side; -1: of the other side; 0: from everywhere, without k_d */
-    int purpose;    /* of the random numbers, sampling.h */
+    double side;    /* 1: lights on the ray's side; -1: on the other side; 0: on both, without k_d */
+    int purpose;    /* of the random numbers: DRAW_... of sampling.h */
 } light_estimate;
 
-/* Of a matte surface with Phong's highlight. */
+/* The estimate for a matte surface with Phong's highlight. */
 light_estimate light_estimate_of(const material *m);
 
-/* For the gathered group: the light of each ray, -1 if none reaches the point; the weight 1 / p_k; and what the choice
- * left of the random numbers u and v: uniform, for a point of the light. */
+/* Chooses a light for each ray of the gathered group, -1 if none reaches the point; weight: 1 / p_k; u, v: random
+ * numbers that remain uniform after the choice, for a point on the light. */
 void light_choice_make(const tracer *t, const light_estimate *by, int depth, int *lamp, double *weight, double *u,
                        double *v);
-/* p_k of a light for ray i of the group. */
+/* The probability p_k of a light for ray i of the group. */
 double light_choice_chance(const tracer *t, const light_estimate *by, int i, int lamp);

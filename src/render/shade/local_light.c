@@ -1,4 +1,4 @@
-/* Local light of surfaces: ambient and emitted, that of photons, and the direct light of lamps, for which shadow rays
+/* Local light of surfaces: ambient and emitted light, photons' light, and direct light of lamps, for which shadow rays
  * are enqueued. */
 #include "render/shade/shading.h"
 
@@ -10,7 +10,7 @@
 #include "render/shade/polarisation.h"
 #include "render/shade/radiance.h"
 
-/* Ambient and emitted light; in a spectral film with the spectrum of white, daylight. */
+/* Adds ambient and emitted light; in a spectral film, emission has the spectrum of daylight. */
 static void expose_own_light(tracer *t, const material *m, bool ambient)
 {
     const group *g = &t->surface.gathered;
@@ -38,9 +38,8 @@ static void expose_own_light(tracer *t, const material *m, bool ambient)
                        g->wb[i] * a.z * g->cb[i]);
 }
 
-/* The fraction of light in the film, by its mean over channels, that ray i of the group brings from a white matte
- * surface.
- *  */
+/* The fraction of diffuse light at ray i's point that reaches the film, including the surface's colour, as a mean over
+ * channels. */
 static double fraction_in_film(const tracer *t, int i)
 {
     const group *g = &t->surface.gathered;
@@ -50,7 +49,7 @@ static double fraction_in_film(const tracer *t, int i)
                : (g->wr[i] * g->cr[i] + g->wg[i] * g->cg[i] + g->wb[i] * g->cb[i]) / 3.0;
 }
 
-/* Adds the photons' light, which matte surfaces reflect. */
+/* Adds the photons' light that a matte surface reflects. */
 static void caustic_light(tracer *t, const material *m)
 {
     const group *g = &t->surface.gathered;
@@ -68,19 +67,19 @@ static void caustic_light(tracer *t, const material *m)
     }
 }
 
-/* Enqueues shadow rays to lights that can change the film. */
+/* Enqueues shadow rays to a lamp from the points where its light can change the film. */
 static void enqueue_shadow_rays(tracer *t, int lamp)
 {
     const group *g = &t->surface.gathered;
     const lit_group *l = &t->surface.lit;
     ray_queue *q = &t->queues.shadows;
-    int worth[ROW], count = 0;
+    int chosen[ROW], count = 0;
     for (int i = 0; i < g->count; i++) {
-        worth[count] = i;
+        chosen[count] = i;
         count -= (int)l->contributes[i];
     }
     for (int k = 0; k < count; k++) {
-        const int i = worth[k], at = q->count++;
+        const int i = chosen[k], at = q->count++;
         q->ox[at] = g->points.px[i], q->oy[at] = g->points.py[i], q->oz[at] = g->points.pz[i];
         q->dx[at] = l->lx[i], q->dy[at] = l->ly[i], q->dz[at] = l->lz[i];
         q->wr[at] = l->r[i], q->wg[at] = l->g[i], q->wb[at] = l->b[i];
@@ -90,7 +89,7 @@ static void enqueue_shadow_rays(tracer *t, int lamp)
     }
 }
 
-/* On entry the group's light is that of a lamp of radiance 1. */
+/* Multiplies the group's light, computed for a lamp of radiance 1, by the lamp's spectrum. */
 static void spectral_light(tracer *t, int lamp)
 {
     const group *g = &t->surface.gathered;
@@ -103,7 +102,7 @@ static void spectral_light(tracer *t, int lamp)
     }
 }
 
-/* The light of one lamp on the gathered group, with its spectrum in a spectral film. */
+/* Computes the light of one lamp on the gathered group, with its spectrum in a spectral film. */
 static void direct_light(tracer *t, const material *m, int lamp, int priority_index)
 {
     const plan *p = t->target.frame_plan;

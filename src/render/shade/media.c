@@ -1,11 +1,11 @@
-/* Points along rays that are chosen by lamps, free flights, and absorption of the segments up to their ends. */
+/* Airlight points along rays, free flights, and absorption along medium segments. */
 #include "render/shade/media.h"
 
 #include "base/elementary.h"
 #include "render/shade/kernels.h"
 #include <stdlib.h>
 
-/* Coefficients of a priority index in 1 / scene unit, by channel; in a spectral film at the ray's wavelength. */
+/* Absorption coefficients of a medium in 1 / scene unit, by channel; in a spectral film at the ray's wavelength. */
 static vec3 absorption_coefficients(const plan *p, int priority_index, int64_t sample_key)
 {
     if (!p->spectral)
@@ -14,14 +14,14 @@ static vec3 absorption_coefficients(const plan *p, int priority_index, int64_t s
     return vec3_make(a, a, a);
 }
 
-/* --- airlight: points along rays, chosen by lamps --- */
+/* --- airlight: points along rays, chosen for each lamp --- */
 
-/* A part of a ray. */
-typedef struct stretch {
-    double low, high; /* none if high <= low */
-} stretch;
+/* An interval of distances along a ray. */
+typedef struct ray_interval {
+    double low, high; /* empty if high <= low */
+} ray_interval;
 
-static void clip_axis(double o, double d, double low, double high, stretch *s)
+static void clip_axis(double o, double d, double low, double high, ray_interval *s)
 {
     const double a = (low - o) / d, b = (high - o) / d;
     if (d != 0.0) {
@@ -32,25 +32,25 @@ static void clip_axis(double o, double d, double low, double high, stretch *s)
     }
 }
 
-/* From the first to the last point in one of the boxes around media that scatter. */
-static stretch within_boxes(const scatter_plan *of, vec3 o, vec3 d)
+/* The interval from a ray's first to its last point in any of the boxes around media that scatter. */
+static ray_interval within_boxes(const scatter_plan *scatter, vec3 o, vec3 d)
 {
-    stretch all = {(double)INFINITY, 0.0};
-    for (int k = 0; k < of->box_count; k++) {
-        const bounds3 *b = &of->boxes[k];
-        stretch s = {0.0, (double)INFINITY};
+    ray_interval all = {(double)INFINITY, 0.0};
+    for (int k = 0; k < scatter->box_count; k++) {
+        const bounds3 *b = &scatter->boxes[k];
+        ray_interval s = {0.0, (double)INFINITY};
         clip_axis(o.x, d.x, b->low.x, b->high.x, &s);
         clip_axis(o.y, d.y, b->low.y, b->high.y, &s);
         clip_axis(o.z, d.z, b->low.z, b->high.z, &s);
         if (s.high > s.low)
-            all = (stretch){fmin(all.low, s.low), fmax(all.high, s.high)};
+            all = (ray_interval){fmin(all.low, s.low), fmax(all.high, s.high)};
     }
     return all;
 }
 
-/* The part in a cone of a half angle below 90 degrees: where (x.a)^2 >= cos^2 |x|^2 and x.a > 0 of the vector x from
- * the lamp to the point, a quadratic in the distance. */
-static void clip_cone(const light_cone *c, vec3 from, vec3 d, stretch *s)
+/* Clips the interval to a cone of half angle below 90 degrees, in which (x.a)^2 >= cos^2 |x|^2 and x.a > 0 for the
+ * vector x from the lamp: a quadratic in the distance. */
+static void clip_cone(const light_cone *c, vec3 from, vec3 d, ray_interval *s)
 {
     const double cosine = 1.0 - c->opening, cos2 = cosine * cosine, along = vec3_dot(d, c->axis),
                  start = vec3_dot(from, c->axis);
@@ -64,7 +64,7 @@ static void clip_cone(const light_cone *c, vec3 from, vec3 d, stretch *s)
     }
     const double far = -(b + (b < 0.0 ? -sqrt(discriminant) : sqrt(discriminant))), one = far / a, other = e / far;
     const double low = fmin(one, other), high = fmax(one, other);
-    if (a > 0.0) { /* one root in the cone's mirror image */
+    if (a > 0.0) { /* one root is in the opposite cone */
         s->low = along > 0.0 ? fmax(s->low, high) : s->low;
         s->high = along > 0.0 ? s->high : fmin(s->high, low);
     } else {
@@ -73,12 +73,12 @@ static void clip_cone(const light_cone *c, vec3 from, vec3 d, stretch *s)
     }
 }
 
-/* The part of a ray that is sampled for a lamp, and how. */
+/* The interval of a ray that is sampled for a lamp, and how. */
 typedef struct line_sampling {
-    stretch part;
-    double nearest, across;  /* where the ray is nearest to the lamp, and its distance there */
-    double from_deg, by_deg; /* angles, seen from the lamp, from its nearest point */
-    bool even;               /* by length, of a part that is seen under a tiny angle */
+    ray_interval interval;
+    double nearest, across;    /* where the ray is nearest to the lamp, and its distance there */
+    double from_deg, size_deg; /* angles at the lamp, from the nearest point: the interval's start, and its size */
+    bool even;                 /* uniform in length, because the lamp sees the interval under a tiny angle */
 } line_sampling;
 
 static bool sampling_of(const plan *p, int lamp, vec3 origin, vec3 d, line_sampling *out)
@@ -86,7 +86,7 @@ static bool sampling_of(const plan *p, int lamp, vec3 origin, vec3 d, line_sampl
     const double tiny_deg = 1e-6;
     const light *l = &p->lights[lamp];
     const vec3 from = vec3_sub(origin, l->position);
-    stretch s = within_boxes(p->scatter, origin, d);
+    ray_interval s = within_boxes(p->scatter, origin, d);
     if (l->kind != LIGHT_POINT && s.high > s.low)
         clip_cone(&p->cones[lamp], from, d, &s);
     if (!(s.high > s.low))
@@ -94,30 +94,30 @@ static bool sampling_of(const plan *p, int lamp, vec3 origin, vec3 d, line_sampl
     const double nearest = -vec3_dot(from, d), across = vec3_length(vec3_cross(from, d));
     if (!(across > 0.0))
         return false;
-    *out = (line_sampling){.part = s, .nearest = nearest, .across = across};
+    *out = (line_sampling){.interval = s, .nearest = nearest, .across = across};
     out->from_deg = elementary_atan2_deg(s.low - nearest, across);
-    out->by_deg = (s.high < (double)INFINITY ? elementary_atan2_deg(s.high - nearest, across) : 90.0) - out->from_deg;
-    out->even = out->by_deg < tiny_deg;
+    out->size_deg = (s.high < (double)INFINITY ? elementary_atan2_deg(s.high - nearest, across) : 90.0) - out->from_deg;
+    out->even = out->size_deg < tiny_deg;
     return !out->even || s.high < (double)INFINITY;
 }
 
 static double density_at(const line_sampling *s, double distance)
 {
     const double deg_per_rad = 57.295779513082320877, off = distance - s->nearest;
-    if (!(distance >= s->part.low && distance <= s->part.high))
+    if (!(distance >= s->interval.low && distance <= s->interval.high))
         return 0.0;
     if (s->even)
-        return 1.0 / (s->part.high - s->part.low);
-    return deg_per_rad * s->across / (s->by_deg * (s->across * s->across + off * off));
+        return 1.0 / (s->interval.high - s->interval.low);
+    return deg_per_rad * s->across / (s->size_deg * (s->across * s->across + off * off));
 }
 
 static double distance_at(const line_sampling *s, double u)
 {
     double sine, cosine;
     if (s->even)
-        return s->part.low + u * (s->part.high - s->part.low);
-    elementary_sincos_deg(s->from_deg + u * s->by_deg, &sine, &cosine);
-    return fmin(fmax(s->nearest + s->across * sine / cosine, s->part.low), s->part.high);
+        return s->interval.low + u * (s->interval.high - s->interval.low);
+    elementary_sincos_deg(s->from_deg + u * s->size_deg, &sine, &cosine);
+    return fmin(fmax(s->nearest + s->across * sine / cosine, s->interval.low), s->interval.high);
 }
 
 double airlight_density(const plan *p, int lamp, vec3 origin, vec3 direction, double distance)
@@ -145,7 +145,7 @@ static void choose_for(tracer *t, int lamp, const ray_queue *q, int first, int c
     }
 }
 
-/* The points of a batch of rays, chosen before their interfaces are searched. */
+/* Chooses the points of a batch of rays, before the search for their interfaces. */
 static void airlight_choose(tracer *t, const ray_queue *q, int first, int depth, int count)
 {
     const plan *p = t->target.frame_plan;
@@ -157,7 +157,7 @@ static void airlight_choose(tracer *t, const ray_queue *q, int first, int depth,
     }
 }
 
-/* Follows a segment of a ray's media. */
+/* Adds a medium segment to the optical depths, and to the points within it. */
 static void airlight_follow(tracer *t, const medium_segment *s)
 {
     const plan *p = t->target.frame_plan;
@@ -165,7 +165,7 @@ static void airlight_follow(tracer *t, const medium_segment *s)
     const int i = s->ray;
     const double scatters = p->scatter->region[s->priority_index].per_unit;
     const vec3 a = absorption_coefficients(p, s->priority_index, t->media->sample_keys[i]);
-    const double each[4] = {a.x, a.y, a.z, scatters};
+    const double coefficient[4] = {a.x, a.y, a.z, scatters};
     for (int k = 0; k < p->scatter->lamp_count; k++) {
         airlight *l = &w->lamps[k];
         const double length = l->at[i] - w->passed[i];
@@ -173,14 +173,14 @@ static void airlight_follow(tracer *t, const medium_segment *s)
             continue;
         l->region[i] = s->priority_index;
         for (int c = 0; c < 4; c++)
-            l->depth[c][i] = w->depth[c][i] + each[c] * length;
+            l->depth[c][i] = w->depth[c][i] + coefficient[c] * length;
         if (p->sheets)
             l->passes[i] = sheets_fraction_within(t, &w->sheets, s, length);
     }
     if (p->sheets)
         sheets_segment(t, &w->sheets, s);
     for (int c = 0; c < 4; c++)
-        w->depth[c][i] += each[c] * s->length;
+        w->depth[c][i] += coefficient[c] * s->length;
 }
 
 /* --- free flights --- */
@@ -205,7 +205,7 @@ void scattering_begin(tracer *t, const ray_queue *q, int first, int depth, int c
     w->flies = w->flying = true;
 }
 
-/* A segment of a ray, up to where it scatters. */
+/* Shortens a segment to the point at which the ray scatters, if it is within. */
 static void fly(flight_work *w, double per_unit, medium_segment *s)
 {
     const int i = s->ray;
@@ -218,20 +218,21 @@ static void fly(flight_work *w, double per_unit, medium_segment *s)
     w->left[i] -= thickness;
 }
 
-/* Follows the recorded medium segments, and removes those beyond where a ray scatters; called before they are used. */
+/* Applies the recorded medium segments to flights and airlights, and removes the part beyond the point at which a ray
+ * scatters; called before absorption uses them. */
 static void follow_segments(tracer *t)
 {
-    const scatter_plan *of = t->target.frame_plan->scatter;
+    const scatter_plan *scatter = t->target.frame_plan->scatter;
     flight_work *w = &t->media->flights;
     medium_segments *list = &t->media->segments;
     int kept = 0;
     for (int k = 0; k < list->count; k++) {
         medium_segment s = list->segment[k];
         const double passed = w->passed[s.ray], length = s.length;
-        const bool over = w->end[s.ray] < (double)INFINITY;
+        const bool has_ended = w->end[s.ray] < (double)INFINITY;
         airlight_follow(t, &s);
-        if (!over) {
-            fly(w, of->region[s.priority_index].per_unit, &s);
+        if (!has_ended) {
+            fly(w, scatter->region[s.priority_index].per_unit, &s);
             list->segment[kept++] = s;
         }
         w->passed[s.ray] = passed + length;
@@ -247,18 +248,18 @@ void scattering_end(tracer *t)
 
 /* --- absorption --- */
 
-/* Extinction by scattering, of rays that do not scatter themselves. */
+/* Adds extinction by scattering, for rays without free flights. */
 static void add_scattering(tracer *t)
 {
-    const region_scatter *of = t->target.frame_plan->scatter->region;
+    const region_scatter *scatter = t->target.frame_plan->scatter->region;
     for (int k = 0; k < t->batch.scratch.segments->count; k++) {
         const medium_segment *s = &t->batch.scratch.segments->segment[k];
         for (int c = 0; c < 3; c++)
-            t->media->transmittance[c][s->ray] += of[s->priority_index].per_unit * s->length;
+            t->media->transmittance[c][s->ray] += scatter[s->priority_index].per_unit * s->length;
     }
 }
 
-/* Adds the optical depths of the segments to transmittance. */
+/* Adds the optical depths of the segments to `transmittance`, which holds optical depths until apply_transmittances. */
 static void add_depths(tracer *t)
 {
     const plan *p = t->target.frame_plan;
@@ -279,7 +280,7 @@ static void add_depths(tracer *t)
     t->batch.scratch.segments->count = 0;
 }
 
-/* Removes absorption by the surrounding medium from segments of more than that length. */
+/* Removes absorption by the surrounding medium from segments longer than `length`. */
 static void exempt(tracer *t, double length)
 {
     for (int k = 0; k < t->batch.scratch.segments->count; k++) {
@@ -289,13 +290,14 @@ static void exempt(tracer *t, double length)
     }
 }
 
-/* What only the last segment to a sun exceeds. */
+/* A length that only the last segment to a sun exceeds. */
 static double sun_leg(const tracer *t)
 {
     return 0.5 * t->target.frame_plan->sun_distance;
 }
 
-/* Called when the list is full. Paths to the sky are exempt here too; they are recognised by their length. */
+/* Empties the list of segments when it is full. Paths to the sky are exempt here too; they are recognised by their
+ * length. */
 static void make_room(void *context)
 {
     tracer *t = context;
@@ -340,7 +342,7 @@ static void apply_transmittances(tracer *t, int count)
         sheets_leave(t, count, t->media->transmittance);
 }
 
-/* A path to the sky has no finite length: its light is taken to arrive unattenuated at the surface where the path
+/* A path to the sky has no finite length: its light is assumed to arrive unattenuated at the surface where the path
  * starts. */
 void absorption_exempt_sky(tracer *t)
 {

@@ -1,5 +1,5 @@
-/* Shading of rays that hit meshes: hit points, normals, and the correction for light that an interpolated normal would
- * let through the triangle. */
+/* Shading of rays that hit meshes: hit points, normals, and the removal of light that an interpolated normal would
+ * transmit through the triangle. */
 #include "render/shade/mesh_shading.h"
 
 #include "render/shade/kernels.h"
@@ -97,7 +97,7 @@ bool mesh_has_corner_light(const tracer *t, int priority_index)
     return t->surface.on_mesh && t->target.frame_plan->shading_materials[priority_index].shading == SHADING_GOURAUD;
 }
 
-/* The group as if each ray hit one corner of its triangle. */
+/* Sets the corner group: the gathered group as if each ray hit one corner of its triangle. */
 static void move_to_corner(tracer *t, int corner, const instanced_mesh *part)
 {
     group *c = &t->meshes->corner;
@@ -122,7 +122,7 @@ static void move_to_corner(tracer *t, int corner, const instanced_mesh *part)
 }
 
 /* Gouraud, "Continuous shading of curved surfaces" (1971): light at a triangle's corners, interpolated by the weights
- * of the point. Shadows are those of the point itself. */
+ * of the point. Shadows are computed at the point itself. */
 void mesh_corner_light(tracer *t, const material *m, const light *lamp, int priority_index)
 {
     mesh_work *w = t->meshes;
@@ -168,14 +168,14 @@ static int slot_of(const tracer *t, int i)
  * number. */
 int mesh_next_material(const tracer *t, int *list, int count, int *slot)
 {
-    int others[BATCH], alike = 0, left = 0;
+    int others[BATCH], matching = 0, left = 0;
     *slot = slot_of(t, list[0]);
     for (int k = 0; k < count; k++)
         if (slot_of(t, list[k]) == *slot)
-            list[alike++] = list[k];
+            list[matching++] = list[k];
         else
             others[left++] = list[k];
     for (int k = 0; k < left; k++)
-        list[alike + k] = others[k];
-    return alike;
+        list[matching + k] = others[k];
+    return matching;
 }

@@ -8,7 +8,7 @@ typedef struct mesh_work {
     mesh_scratch scratch;
     instance_hit hits[ROW]; /* of the gathered group */
     mesh_points points;
-    surface_mapping mapping[ROW]; /* where the material has a texture */
+    surface_mapping mapping[ROW]; /* if the material has a texture */
     group corner; /* for Gouraud shading: the group with a corner of each triangle in place of the hit point */
     lit_group corner_light;
 } mesh_work;

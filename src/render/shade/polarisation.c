@@ -71,14 +71,15 @@ void polarised_branches(tracer *t, const material *m, bool opaque)
         if (coating > 0.0)
             r = stokes_add(r, analyser_coating(row, d, n, cos_i, g->n_from[k], g->n_to[k], reflected), coating);
         b->reflect[k] = split_stokes(r, &p->rq[k], &p->ru[k], &p->rv[k]);
-        if (b->refract[k] == 0.0) /* total reflection: there is no direction */
+        if (b->refract[k] == 0.0) /* total reflection: there is no refracted direction */
             continue;
         const stokes s = analyser_refract(row, d, n, cos_i, g->n_from[k], g->n_to[k], refracted);
         b->refract[k] = m->transparency * (1.0 - coating) * split_stokes(s, &p->tq[k], &p->tu[k], &p->tv[k]);
     }
 }
 
-/* The directions are the same up to rounding, but the frames may not be: they are discontinuous. */
+/* The directions are equal up to rounding, but their polarisation frames may differ, because frames are
+ * discontinuous. */
 void polarised_shadow(tracer *t, int k, bool refracted, int at)
 {
     const branch_group *b = &t->surface.branches;
@@ -97,7 +98,7 @@ void polarised_shadow(tracer *t, int k, bool refracted, int at)
 
 /* --- sheets --- */
 
-/* The retardance along a path. A weakly birefringent crystal has for a direction at an angle a to its axis the
+/* The retardance along a path. For a direction at an angle a to its axis, a weakly birefringent crystal has the
  * difference of indices (n_e - n_o) sin^2 a: Born and Wolf, Principles of Optics, 7th ed., 15.4.2. */
 static double retardance_deg(const region_sheet *sheet, vec3 d, double length_m, double lambda_nm)
 {
@@ -107,7 +108,7 @@ static double retardance_deg(const region_sheet *sheet, vec3 d, double length_m,
     return sheet->retardance_deg + 360.0 * (waves - floor(waves));
 }
 
-/* The row beyond a passage of that length, in metres, along d. */
+/* The row after a passage of length_m metres along d. */
 static stokes sheet_row(const region_sheet *sheet, stokes row, vec3 d, double length_m, double lambda_nm)
 {
     double sine, cosine;
@@ -123,7 +124,7 @@ static stokes sheet_row(const region_sheet *sheet, stokes row, vec3 d, double le
     return row;
 }
 
-/* Shadow rays have rows too: of a rough surface it is a facet's. */
+/* Shadow rays have rows, too: from a rough surface, the facet's. */
 void sheets_begin(const tracer *t, sheet_work *w, const ray_queue *q, int first, int count)
 {
     const bool polarised = t->target.frame_plan->render.polarisation, lights = q == &t->queues.shadows;
@@ -165,34 +166,34 @@ static double lambda_of(const tracer *t, int64_t sample_key)
     return p->spectral ? spectra_lambda(sample_key_wavelength(sample_key)) : p->render.lambda_nm;
 }
 
-/* Ends ray i's passage. A path that leaves the scene has no length, as for absorption. */
-static void leave(const tracer *t, vec3 direction, int i, sheet_passage *one)
+/* Ends ray i's passage. A path that leaves the scene is exempt, as for absorption. */
+static void leave(const tracer *t, vec3 direction, int i, sheet_passage *passage)
 {
     const double infinite_length = 1e100;
     const plan *p = t->target.frame_plan;
-    const region_sheet *sheet = one->region >= 0 ? &p->sheets[one->region] : NULL;
-    one->region = -1;
-    if (!sheet || !(one->length > 0.0) || one->length > infinite_length)
+    const region_sheet *sheet = passage->region >= 0 ? &p->sheets[passage->region] : NULL;
+    passage->region = -1;
+    if (!sheet || !(passage->length > 0.0) || passage->length > infinite_length)
         return;
-    if (!p->render.polarisation) /* polarisers alone */
-        one->row.i *= 0.5 * (sheet->pass + sheet->block);
+    if (!p->render.polarisation) /* only polarisers act */
+        passage->row.i *= 0.5 * (sheet->pass + sheet->block);
     else
-        one->row = sheet_row(sheet, one->row, direction, one->length * p->render.unit_m,
-                             lambda_of(t, t->media->sample_keys[i]));
+        passage->row = sheet_row(sheet, passage->row, direction, passage->length * p->render.unit_m,
+                                 lambda_of(t, t->media->sample_keys[i]));
 }
 
-/* The search of interfaces may divide a passage into several segments. */
-static void pass(const tracer *t, vec3 direction, int i, int priority_index, double length, sheet_passage *one)
+/* Adds a segment to ray i's passage, since the search for interfaces may divide a passage into several. */
+static void pass(const tracer *t, vec3 direction, int i, int priority_index, double length, sheet_passage *passage)
 {
-    if (one->region == priority_index) {
-        one->length += length;
+    if (passage->region == priority_index) {
+        passage->length += length;
         return;
     }
-    leave(t, direction, i, one);
+    leave(t, direction, i, passage);
     if (t->target.frame_plan->sheets[priority_index].kind == SHEET_NONE)
         return;
-    one->region = priority_index;
-    one->length = length;
+    passage->region = priority_index;
+    passage->length = length;
 }
 
 void sheets_segment(const tracer *t, sheet_work *w, const medium_segment *s)
@@ -202,10 +203,10 @@ void sheets_segment(const tracer *t, sheet_work *w, const medium_segment *s)
 
 double sheets_fraction_within(const tracer *t, const sheet_work *w, const medium_segment *s, double length)
 {
-    sheet_passage one = w->passage[s->ray];
-    pass(t, w->direction[s->ray], s->ray, s->priority_index, length, &one);
-    leave(t, w->direction[s->ray], s->ray, &one);
-    return greater(one.row.i, 0.0);
+    sheet_passage passage = w->passage[s->ray];
+    pass(t, w->direction[s->ray], s->ray, s->priority_index, length, &passage);
+    leave(t, w->direction[s->ray], s->ray, &passage);
+    return greater(passage.row.i, 0.0);
 }
 
 void sheets_leave(tracer *t, int count, double fraction[3][ROW])
@@ -215,7 +216,7 @@ void sheets_leave(tracer *t, int count, double fraction[3][ROW])
         leave(t, w->direction[i], i, &w->passage[i]);
         const stokes row = w->passage[i].row;
         const double seen = w->to_lamps ? analyser_sees(row, w->lamp[i]) : row.i;
-        const double left = greater(seen, 0.0); /* of two crossed polarisers, up to rounding 0 */
+        const double left = greater(seen, 0.0); /* 0 up to rounding behind two crossed polarisers */
         fraction[0][i] *= left, fraction[1][i] *= left, fraction[2][i] *= left;
     }
 }

@@ -2,14 +2,14 @@
  * angle narrows or widens: n^2 cos(theta) dA d(omega) is invariant, and so, except for reflection, is L / n^2
  * (Nicodemus, "Radiance", American Journal of Physics 31, 1963; Veach, Robust Monte Carlo Methods for Light Transport
  * Simulation, 1997, 5.2). A ray's throughput is its fraction of L / n^2, so that interfaces add no factor of the index.
- * The indices matter where light is emitted, in a medium of index n, and where the camera receives it, in one of index
- * n_eye: radiance L there counts (n_eye / n)^2 times. The camera's factor is applied at the emitting end too, so that
- * throughputs, which weight limits compare, are fractions of the camera ray whatever the camera's medium.
+ * The indices matter where light is emitted, in a medium of index n, and where the camera receives it, in a medium of
+ * index n_eye: emitted radiance L contributes (n_eye / n)^2 L. The camera's factor is applied at the emitting end too,
+ * so that throughputs, which weight limits compare, are fractions of the camera ray whatever the camera's medium.
  *
  * A shadow ray carries irradiance, in which the square of the index cancels against the solid angle: E = E_straight T,
- * with each interface's unpolarised transmittance. It is straight where light would be refracted. Its angle at an
- * interface is done on the side of the lower index: this is correct for a lamp far above water, and for both faces of
- * a pane in air; and no angle on that side exceeds the critical one. */
+ * with each interface's unpolarised transmittance. It is straight, although light would be refracted. Its angle at an
+ * interface is used as if on the side of the lower index: this is correct for a lamp far above water and for both faces
+ * of a pane in air, and there is no total reflection on that side. */
 #include "render/shade/radiance.h"
 
 #include "optics/interface.h"

@@ -88,7 +88,7 @@ double rough_masking(const tracer *t, const rough_surface *r, int k, vec3 o, boo
     return rough_lets_out(t, r, k, o, refracted) ? ggx_masking(r->alpha, o) : 0.0;
 }
 
-/* A(o) / a of light that further facets send to a side, times what they keep. */
+/* A(o) / a of light that further facets send to a side, times the fraction that they reflect or transmit. */
 static vec3 further_towards(const tracer *t, const rough_surface *r, int k, bool refracted, double cosine)
 {
     const double passed = refracted ? t->surface.mat->surface.transparency : 1.0;
@@ -100,13 +100,13 @@ vec3 rough_further(const tracer *t, const rough_surface *r, int k, vec3 o)
     const facet_energy *e = &r->energy[k];
     const bool refracted = o.z < 0.0;
     const double cosine = magnitude(o.z);
-    return vec3_scale(further_towards(t, r, k, refracted, cosine), e->lost * e->share[refracted] * cosine / PI);
+    return vec3_scale(further_towards(t, r, k, refracted, cosine), e->lost * e->fraction[refracted] * cosine / PI);
 }
 
 further_light rough_draw_further(const tracer *t, const rough_surface *r, int k, double chance, unit_pair place)
 {
     const facet_energy *e = &r->energy[k];
-    further_light out = {.refracted = chance >= e->share[0]};
+    further_light out = {.refracted = chance >= e->fraction[0]};
     double sine, cosine;
     elementary_sincos_turn_inline(place.v, &sine, &cosine);
     const double across = sqrt(place.u), z = sqrt(greater(1.0 - place.u, 0.0));

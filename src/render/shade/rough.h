@@ -1,13 +1,13 @@
 /* Rough surfaces (optics/microfacet.h) in the tracer: each ray of the gathered group meets one facet, at which it
- * reflects or refracts as at a smooth surface of that normal, metals and films included. A branch keeps the fraction of
- * light that other facets let pass; what they stop is lost, or leaves in all directions (rough_energy.h). Plain values;
- * nothing fails. */
+ * reflects or refracts as at a smooth surface of that normal, including metals and thin films. Other facets mask a
+ * fraction of each branch's light, which is lost, or leaves in all directions (rough_energy.h). Plain values; nothing
+ * fails. */
 #pragma once
 
 #include "optics/microfacet.h"
 #include "render/tracer/tracer.h"
 
-/* The gathered group's surface, with the points' normals n as z of a frame for each ray. */
+/* The gathered group's surface, with a frame for each ray, whose z axis is the point's normal n. */
 typedef struct rough_surface {
     double alpha;
     bool opaque;
@@ -16,8 +16,8 @@ typedef struct rough_surface {
     vec3 m[ROW];                /* the facets' normals, in the rays' frames; for rough_branches */
     const rough_finish *finish; /* NULL: light of further facets is lost */
     facet_energy energy[ROW];
-    vec3 kept[ROW];                     /* of light of further facets, by channel, at an opaque surface; else 1 */
-    double chance[ROW], u[ROW], v[ROW]; /* of the draw of light of further facets */
+    vec3 kept[ROW]; /* factor of light of further facets, by channel, at an opaque surface; else 1 */
+    double chance[ROW], u[ROW], v[ROW]; /* random numbers for light of further facets */
 } rough_surface;
 
 /* Alpha of the gathered group's surface; 0: it is smooth. */
@@ -41,7 +41,7 @@ void rough_branches(tracer *t, const rough_surface *r);
 /* Whether a direction in the frame of ray k leads away from the surface on the side of that branch. */
 bool rough_lets_out(const tracer *t, const rough_surface *r, int k, vec3 o, bool refracted);
 
-/* Masking: the fraction of a branch of ray k, whose direction is o in its frame, that other facets let pass; 0 if it
+/* Masking: the fraction of a branch of ray k, whose direction is o in its frame, that other facets do not mask; 0 if it
  * leads back to the surface. */
 double rough_masking(const tracer *t, const rough_surface *r, int k, vec3 o, bool refracted);
 
@@ -50,16 +50,15 @@ double rough_masking(const tracer *t, const rough_surface *r, int k, vec3 o, boo
 /* The fraction of light in a direction o of the frame of ray k, f |cos o|. */
 vec3 rough_further(const tracer *t, const rough_surface *r, int k, vec3 o);
 
-/* Light that a facet sends and others stop leaves in a direction drawn by the law of cosines, on a side drawn by two
- * numbers `chance` and `place`, with that factor. In the mean over all facets it is rough_further, whatever the error
- * of the table at i. */
+/* Light that other facets mask leaves on a side drawn by `chance`, in a direction drawn from `place` by the cosine law,
+ * with a factor of its throughput. Its mean over all facets is rough_further, whatever the error of the table at i. */
 typedef struct further_light {
-    vec3 direction, factor; /* in the world; 0: it does not leave the surface */
+    vec3 direction, factor; /* direction: in the world; factor 0: it does not leave the surface */
     bool refracted;
 } further_light;
 further_light rough_draw_further(const tracer *t, const rough_surface *r, int k, double chance, unit_pair place);
 
 /* --- */
 
-/* The facet of ray k that sends light from o in its frame, and the density of such directions. */
+/* The facet of ray k that scatters light from o in the ray's frame, and the density of such directions. */
 facet rough_facet(const tracer *t, const rough_surface *r, int k, vec3 o);

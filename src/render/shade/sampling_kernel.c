@@ -6,7 +6,8 @@
 #include "optics/mueller.h"
 #include <math.h>
 
-/* Between integers below 2^52 and doubles, by the bits of 2^52 + n, which every instruction set supports. */
+/* Conversions between integers below 2^52 and doubles by the bits of 2^52 + n, which work with every instruction
+ * set. */
 ALWAYS_INLINE double real_of(int64_t n)
 {
     return lanes_double(n | 0x4330000000000000) - 0x1p52;
@@ -27,18 +28,18 @@ ALWAYS_INLINE double divided(double n, double by)
 static void draw_sobol(const path_sampling *p, int count, const int64_t *sample_key, int depth, int purpose,
                        double *restrict u, double *restrict v)
 {
-    double each[ROW];
+    double per_replicate[ROW];
     uint32_t index[ROW];
     uint32_t order[ROW], seed_x[ROW], seed_y[ROW];
     for (int i = 0; i < count; i++)
-        each[i] = (double)path_replicate_count(p, sample_key_pixel(sample_key[i]));
-    const path_sampling of = *p;
+        per_replicate[i] = (double)path_replicate_count(p, sample_key_pixel(sample_key[i]));
+    const path_sampling sampling = *p;
     /* VECTORISE */
     for (int i = 0; i < count; i++) {
-        const double sample = real_of(sample_key_sample(sample_key[i])), replicate = divided(sample, each[i]);
+        const double sample = real_of(sample_key_sample(sample_key[i])), replicate = divided(sample, per_replicate[i]);
         const sobol_seeds seeds = sobol_seeds_of(
-            path_draw_key(&of, sample_key_pixel(sample_key[i]), (uint64_t)integer_of(replicate), depth, purpose));
-        index[i] = (uint32_t)integer_of(sample - replicate * each[i]);
+            path_draw_key(&sampling, sample_key_pixel(sample_key[i]), (uint64_t)integer_of(replicate), depth, purpose));
+        index[i] = (uint32_t)integer_of(sample - replicate * per_replicate[i]);
         order[i] = seeds.order, seed_x[i] = seeds.x, seed_y[i] = seeds.y;
     }
     /* VECTORISE */
@@ -171,9 +172,9 @@ static bool near_sphere(const ray_batch *rays, vec3 centre, double radius, int64
     return any != 0;
 }
 
-/* For each light k_d cos + k_s over the squared distance. Of a sphere that the horizon cuts, with n.v between -r and r
- * for the vector v to its centre, (n.v + r) / 2 takes the place of n.v, which continues it at r and ends at 0. Single
- * precision: weights need not be exact. */
+/* (k_d cos + k_s) / distance^2 for each light. If the horizon cuts a sphere, so that n.v is between -r and r for the
+ * vector v to its centre, (n.v + r) / 2 replaces n.v: it is continuous at r, and 0 at -r. Single precision, because
+ * weights need not be exact. */
 static void light_weights(const lamp_table *restrict lamps, vec3 point, vec3 n, float k_d, float k_s, float least,
                           float *restrict weight)
 {

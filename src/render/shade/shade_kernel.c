@@ -25,8 +25,8 @@ static void multiply(int count, double *product, const double *factor)
  * numbers. */
 static void raise_to(double exponent, int count, double *restrict base)
 {
-    const unsigned whole = exponent >= 1.0 && exponent <= SHININESS_SQUARED_MAX ? (unsigned)exponent : 0;
-    if ((double)whole != exponent) {
+    const unsigned integer = exponent >= 1.0 && exponent <= SHININESS_SQUARED_MAX ? (unsigned)exponent : 0;
+    if ((double)integer != exponent) {
         /* VECTORISE */
         for (int i = 0; i < count; i++)
             base[i] = elementary_pow_inline(base[i], exponent);
@@ -39,7 +39,7 @@ static void raise_to(double exponent, int count, double *restrict base)
         square[i] = blend(mask_less(base[i], least), 0.0, base[i]);
         base[i] = 1.0;
     }
-    for (unsigned bits = whole;;) {
+    for (unsigned bits = integer;;) {
         if (bits & 1)
             multiply(count, base, square);
         bits >>= 1;
@@ -49,9 +49,9 @@ static void raise_to(double exponent, int count, double *restrict base)
     }
 }
 
-/* For each flat face of a primitive: the coordinate that is constant there, and its replacement for looking up the
- * checker cell, half a cell inside; for a half-space the surface itself. Rounding across the face must not choose the
- * cell. */
+/* For each flat face of a primitive: the coordinate that is constant there, and the value that replaces it when the
+ * checker cell is looked up, half a cell inside, or on the surface of a half-space, so that rounding across the face
+ * does not choose the cell. */
 typedef struct flat_faces {
     int64_t face[FLATS_MAX];                                   /* FACE_NONE after the last */
     int64_t is_x[FLATS_MAX], is_y[FLATS_MAX], is_z[FLATS_MAX]; /* masks */
@@ -160,7 +160,7 @@ ALWAYS_INLINE void direct_from(const material *m, const light *lamp, bool sun, c
         fall_off(lamp->reach, count, lit);
 }
 
-/* Two branch-free loops. */
+/* Specialised for suns and other lights, so that the loops have no branches. */
 static void direct(const material *m, const light *lamp, const group *g, lit_group *restrict lit)
 {
     if (lamp->kind == LIGHT_SUN)
@@ -186,7 +186,7 @@ ALWAYS_INLINE void within_cone(const light_cone *cone, bool soft, const group *g
     }
 }
 
-/* Two branch-free loops. */
+/* Specialised for soft and hard cones, so that the loops have no branches. */
 static void spot(const light_cone *c, bool soft, const group *g, lit_group *restrict lit)
 {
     if (soft)
@@ -279,7 +279,7 @@ static void cut(const group *g, const branch_group *b, cut_sum *sum)
 }
 
 /* Stores light i; returns -1 if it is out of range, where C does not define the conversion. AVX2 cannot convert to
- * 64-bit integers: these loops carry no mark. */
+ * 64-bit integers, so that loops with this function have no mark VECTORISE. */
 ALWAYS_INLINE int64_t store_light(double r, double g, double b, int64_t counts, int i, film_light *out)
 {
     const int64_t fits = mask_of((int)film_accepts(r) & (int)film_accepts(g) & (int)film_accepts(b)),

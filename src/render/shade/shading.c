@@ -48,7 +48,7 @@ static void texture_colors(tracer *t, const primitive *surface)
     t->shade->tint(t->surface.mat->img, g->count, u, v, footprint, g->cr, g->cg, g->cb);
 }
 
-/* On entry the group's colours are (1, 0, 0) for the material's first colour, else (0, 1, 0). */
+/* Replaces the group's colours, (1, 0, 0) for the material's first colour, else (0, 1, 0), by spectral values. */
 static void spectral_colors(tracer *t, int priority_index)
 {
     group *g = &t->surface.gathered;
@@ -58,7 +58,7 @@ static void spectral_colors(tracer *t, int priority_index)
     }
 }
 
-/* A checker's cells are in the frame of the solid whose surface it is, even where another solid's face exposes it. */
+/* A checker's cells are in the frame of the solid whose surface it is, even if another solid's face exposes it. */
 static void color(tracer *t, int priority_index, const primitive *surface)
 {
     const plan *p = t->target.frame_plan;
@@ -94,7 +94,7 @@ static void spectral_indices(tracer *t, const int *list)
         g->n_from[k] = g->n_from[g->count - 1], g->n_to[k] = g->n_to[g->count - 1];
 }
 
-/* The points of the gathered rays where they hit a primitive: rays from .. to - 1 of the group. */
+/* Computes the points at which rays from .. to - 1 of the group hit a primitive. */
 static void surface_points(tracer *t, int hit_primitive, int from, int to, surface_batch *points)
 {
     const group *g = &t->surface.gathered;
@@ -112,7 +112,7 @@ static void copy_points(const surface_batch *from, int count, surface_batch *to,
     memcpy(to->face + at, from->face, bytes);
 }
 
-/* The points on several analytic primitives; the last group's include the padding. */
+/* Computes the points on several analytic primitives; those of the last group include the padding. */
 static void points_of_groups(tracer *t, const hit_group *groups, int count)
 {
     group *g = &t->surface.gathered;
@@ -135,7 +135,7 @@ static void count_hits(tracer *t, int depth, int priority_index, int count)
         COUNT(t->account.counters.first_hits[owner] += (uint64_t)count);
 }
 
-/* Shades rays on one material: list[0 .. count - 1], of these groups. */
+/* Shades list[0 .. count - 1], the rays of these groups, which hit one material. */
 static void shade_one_material(tracer *t, int depth, int first, const hit_group *groups, int group_count,
                                const int *list, int count)
 {
@@ -162,18 +162,18 @@ static void shade_one_material(tracer *t, int depth, int first, const hit_group 
     if (t->footprints)
         footprints_gather(t, tracer_queue_at(t, depth), first, list);
     t->surface.texture_at = NULL;
-    if (t->rule->place)
-        t->rule->place(t, list);
+    if (t->frame_integrator->place)
+        t->frame_integrator->place(t, list);
     if (group_count == 1)
         count_hits(t, depth, priority_index, count);
     for (int k = 0; group_count > 1 && k < group_count; k++)
         count_hits(t, depth, groups[k].priority_index, groups[k].count);
     color(t, priority_index, surface);
-    t->rule->shade(t, depth, priority_index);
+    t->frame_integrator->shade(t, depth, priority_index);
 }
 
-/* Shades groups whose hits may be shaded alike, as far as they fit. */
-static void shade_alike(tracer *t, int depth, int first, const hit_group *groups, int count)
+/* Shades groups that can be combined, or one group, divided by material slot. */
+static void shade_combined(tracer *t, int depth, int first, const hit_group *groups, int count)
 {
     const region_materials *materials = &t->target.frame_plan->shading_materials[groups->priority_index];
     const int *list = &t->batch.groups.list[groups->first];
@@ -189,30 +189,32 @@ static void shade_alike(tracer *t, int depth, int first, const hit_group *groups
     memcpy(left, list, (size_t)rays * sizeof left[0]);
     for (int begin = 0; begin < rays;) {
         int slot;
-        const int alike = mesh_next_material(t, left + begin, rays - begin, &slot);
+        const int matching = mesh_next_material(t, left + begin, rays - begin, &slot);
         t->surface.mat = &materials->mat[slot < materials->count ? slot : 0];
-        shade_one_material(t, depth, first, groups, 1, left + begin, alike);
-        begin += alike;
+        shade_one_material(t, depth, first, groups, 1, left + begin, matching);
+        begin += matching;
     }
 }
 
-/* Can these hits be shaded with others? Not on a mesh's surface, not where a material's values are found in the
- * frame of the primitive, and not by an integrator that distinguishes solids. */
-static bool can_be_shaded_alike(const tracer *t, const hit_group *g)
+/* Whether a group can be combined with others of its class: not on a mesh, not if the material's values depend on the
+ * primitive's frame, and not for an integrator that distinguishes solids. */
+static bool can_be_combined(const tracer *t, const hit_group *g)
 {
     const plan *p = t->target.frame_plan;
-    /* of the regions that look alike the materials of one, which the caches hold */
-    const int looks = p->alike[g->priority_index];
-    return !t->rule->by_solid && p->geometry->primitives[g->hit_primitive].rule && plan_is_plain(p, looks);
+    /* the first region of the class, whose materials are in the caches */
+    const int first_region = p->shading_class[g->priority_index];
+    return !t->frame_integrator->by_solid && p->geometry->primitives[g->hit_primitive].rule &&
+           plan_is_plain(p, first_region);
 }
 
+/* Combines consecutive groups, because in a scene of many solids small groups would leave most vector lanes empty. */
 void shading_groups(tracer *t, int depth, int first, const hit_group *groups, int count)
 {
-    for (int k = 0, alike; k < count; k += alike) {
-        alike = 1;
-        while (k + alike < count && can_be_shaded_alike(t, &groups[k]) && can_be_shaded_alike(t, &groups[k + alike]))
-            alike++;
-        shade_alike(t, depth, first, &groups[k], alike);
+    for (int k = 0, combined; k < count; k += combined) {
+        combined = 1;
+        while (k + combined < count && can_be_combined(t, &groups[k]) && can_be_combined(t, &groups[k + combined]))
+            combined++;
+        shade_combined(t, depth, first, &groups[k], combined);
     }
 }
 
@@ -226,7 +228,7 @@ static bool is_below_least_weight(tracer *t, const ray_queue *q, int i, double l
     return true;
 }
 
-/* The compaction below, including the Stokes vectors. */
+/* The compaction of enqueue_children, including the Stokes vectors. */
 static int keep_polarised(tracer *t, ray_queue *q, int first, bool reflected, const double *weight, double least)
 {
     const polar_group *p = &t->surface.polar;
@@ -240,7 +242,7 @@ static int keep_polarised(tracer *t, ray_queue *q, int first, bool reflected, co
     return q->count - first;
 }
 
-/* The same with the footprints, which go with the ray that fills the place. */
+/* The compaction of enqueue_children, including footprints, and Stokes vectors if there are any. */
 static int keep_footprints(tracer *t, ray_queue *q, int first, bool reflected, const double *weight, double least)
 {
     footprints_of_children(t, q, first, reflected);
@@ -259,8 +261,8 @@ static int keep_footprints(tracer *t, ray_queue *q, int first, bool reflected, c
     return q->count - first;
 }
 
-/* Enqueues children of one kind: appends all of them at once, then fills the place of each one that does not exist or
- * has too small a weight with the last one. Returns their number. */
+/* Enqueues children of one kind: appends all of them at once, then replaces each one that does not exist or has too
+ * small a weight by the last one. Returns their number. */
 int enqueue_children(tracer *t, int depth, const double *dx, const double *dy, const double *dz, const double *weight,
                      const uint64_t *inside)
 {

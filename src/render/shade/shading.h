@@ -18,8 +18,9 @@ static inline bool surface_is_opaque(const tracer *t, int priority_index)
 typedef struct light_terms {
     bool ambient, highlights;
     bool as_points;     /* lights with a size are treated as points at their centres */
-    bool emission_only; /* no light of the scene's lights */
+    bool emission_only; /* no direct light of lamps */
 } light_terms;
+/* Adds the gathered group's local light to the film, and enqueues its shadow rays. */
 void local_light(tracer *t, int priority_index, light_terms terms);
 /* The terms of Phong's model that render.lighting selects. */
 static inline light_terms light_terms_of(const render_settings *r)
@@ -30,10 +31,11 @@ static inline light_terms light_terms_of(const render_settings *r)
 
 /* Computes directions and weights of the gathered group's branches at a surface, and counts total reflections. */
 void shading_branches(tracer *t, bool opaque);
-/* The same by the points' normals alone, which may be those of facets (rough.h), and without counting. */
+/* shading_branches without the correction for meshes and without counting; the points' normals may be those of facets
+ * (rough.h). */
 void shading_branches_at_facets(tracer *t, bool opaque);
 
-/* Whether the gathered group's surface is a metal's or has a film (layered.h). */
+/* Whether the gathered group's surface is a metal or has a thin film (layered.h). */
 static inline bool surface_is_layered(const tracer *t)
 {
     return t->layered && t->layered->surface;
@@ -48,6 +50,6 @@ static inline bool surface_reflects(const tracer *t)
 int enqueue_children(tracer *t, int depth, const double *dx, const double *dy, const double *dz, const double *weight,
                      const uint64_t *inside);
 
-/* Gathers the rays of groups that look alike, of the batch at `first` in the queue of a depth, computes their
- * colours and passes them to the integrator, split by shading material. */
+/* Gathers the rays of groups of one shading class, of the batch at `first` in the queue of a depth, computes their
+ * colours, and calls the integrator for each shading material. */
 void shading_groups(tracer *t, int depth, int first, const hit_group *groups, int count);

@@ -1,4 +1,4 @@
-/* Groups of rays that are shaded together: listing them, gathering their rays. */
+/* Lists the groups of a batch's rays, and gathers the rays of groups. */
 #include "render/tracer/groups.h"
 
 #include <string.h>
@@ -55,14 +55,15 @@ static void write_group(const linked_groups *l, int g, hit_groups *out, int *wri
     *written = to;
 }
 
-/* Writes the groups so that those that look alike are neighbours: each group is linked to the next of its kind. */
-static void write_groups(const linked_groups *l, const int *alike, int16_t *alike_marks, hit_groups *out)
+/* Writes the groups so that those of one shading class are neighbours: each group is linked to the next of its
+ * class. */
+static void write_groups(const linked_groups *l, const int *shading_class, int16_t *class_marks, hit_groups *out)
 {
     int16_t next[BATCH], last[BATCH];
     int written = 0;
     out->count = 0;
     for (int g = 0; g < l->count; g++) {
-        int16_t *mark = &alike_marks[alike[l->priority_index[g]]];
+        int16_t *mark = &class_marks[shading_class[l->priority_index[g]]];
         next[g] = -1;
         if (*mark < 0)
             *mark = (int16_t)g;
@@ -71,7 +72,7 @@ static void write_groups(const linked_groups *l, const int *alike, int16_t *alik
         last[*mark] = (int16_t)g;
     }
     for (int g = 0; g < l->count; g++) {
-        int16_t *mark = &alike_marks[alike[l->priority_index[g]]];
+        int16_t *mark = &class_marks[shading_class[l->priority_index[g]]];
         if (*mark != g)
             continue;
         for (int k = g; k >= 0; k = next[k])
@@ -80,7 +81,7 @@ static void write_groups(const linked_groups *l, const int *alike, int16_t *alik
     }
 }
 
-void hit_groups_make(const hit_batch *hits, int count, const int *alike, int16_t *marks, int16_t *alike_marks,
+void hit_groups_make(const hit_batch *hits, int count, const int *shading_class, int16_t *marks, int16_t *class_marks,
                      hit_groups *out)
 {
     linked_groups l;
@@ -100,13 +101,13 @@ void hit_groups_make(const hit_batch *hits, int count, const int *alike, int16_t
     }
     for (int g = 0; g < l.count; g++)
         marks[l.hit_primitive[g]] = -1;
-    write_groups(&l, alike, alike_marks, out);
+    write_groups(&l, shading_class, class_marks, out);
 }
 
 /* --- gathering --- */
 
-/* A group that is contiguous in the batch, as when a whole batch hits the ground. */
-static void gather_segment(const ray_queue *q, int from, const hit_batch *hits, int i, group *g)
+/* Gathers a group that is contiguous in the batch, for example if all rays hit the ground. */
+static void gather_contiguous(const ray_queue *q, int from, const hit_batch *hits, int i, group *g)
 {
     const size_t bytes = (size_t)g->count * sizeof(double);
     memcpy(g->ox, q->ox + from, bytes), memcpy(g->oy, q->oy + from, bytes), memcpy(g->oz, q->oz + from, bytes);
@@ -134,10 +135,10 @@ void group_gather(const ray_queue *q, int first, const hit_batch *hits, const do
     const int last = list[count - 1], before = list[0];
     g->count = count;
     g->padded = (count + LANES_MAX - 1) / LANES_MAX * LANES_MAX;
-    const bool whole = ascending && last - before == count - 1;
-    if (whole)
-        gather_segment(q, first + before, hits, before, g);
-    for (int k = 0; k < count && !whole; k++)
+    const bool contiguous = ascending && last - before == count - 1;
+    if (contiguous)
+        gather_contiguous(q, first + before, hits, before, g);
+    for (int k = 0; k < count && !contiguous; k++)
         gather_one(q, first + list[k], hits, list[k], g, k);
     for (int k = count; k < g->padded; k++)
         gather_one(q, first + last, hits, last, g, k);

@@ -1,9 +1,9 @@
-/* Groups of rays that are shaded together, as structures of arrays.
+/* Groups of rays for shading, as structures of arrays.
  *
- * First those of a batch that hit one primitive on one region's surface are listed (hit_groups), then neighbours among
- * these groups that look alike: in a scene of many solids small groups would leave most lanes of a vector empty. The
- * rays of a group are gathered into contiguous arrays (group), in which the shading kernels compute light (lit_group)
- * and branches (branch_group).
+ * Rays of a batch that hit one primitive on one region's surface are a group (hit_groups). Groups of one shading class
+ * (plan.h) are neighbours in the list, so that they can be shaded as one: in a scene of many solids, small groups would
+ * leave most lanes of a vector empty. The rays are gathered into contiguous arrays (group), in which the shading
+ * kernels compute light (lit_group) and branches (branch_group).
  *
  * Ownership: values; the table of marks belongs to the tracer. Cannot fail. */
 #pragma once
@@ -21,15 +21,14 @@ typedef struct hit_group {
 
 typedef struct hit_groups {
     int count;
-    hit_group group[BATCH]; /* those that look alike are neighbours */
-    int list[ROW];          /* of the batch's rays */
+    hit_group group[BATCH]; /* groups of one shading class are neighbours */
+    int list[ROW];          /* numbers of the batch's rays */
     int missed, miss[ROW];  /* rays that hit nothing */
 } hit_groups;
 
-/* alike: by priority index, equal numbers (from 0, below the number of priority indices) for regions whose hits may be
- * shaded together. marks: for each primitive and, from alike_marks on, for each of these numbers; all -1 before and
- * after. Groups are in the order of their first rays. */
-void hit_groups_make(const hit_batch *hits, int count, const int *alike, int16_t *marks, int16_t *alike_marks,
+/* shading_class: by priority index (plan.h), below the number of priority indices. marks: by primitive; class_marks: by
+ * shading class; all are -1 before and after. Groups are in the order of their first rays. */
+void hit_groups_make(const hit_batch *hits, int count, const int *shading_class, int16_t *marks, int16_t *class_marks,
                      hit_groups *out);
 
 /* Rays that hit the same surface, gathered by index into contiguous arrays. */
@@ -50,7 +49,7 @@ typedef struct group {
 typedef struct lit_group {
     double lx[ROW], ly[ROW], lz[ROW]; /* from the point to the light, not normalised */
     double r[ROW], g[ROW], b[ROW];
-    int64_t contributes[ROW]; /* -1 where it can change the film: at least half a film unit in some channel */
+    int64_t contributes[ROW]; /* -1 if it can change the film: at least half a film unit in some channel */
 } lit_group;
 
 /* The two branches at an interface: directions and weights; a weight of 0 is a branch that does not exist. */
@@ -63,11 +62,11 @@ typedef struct branch_group {
 /* Contributions to the film, in its units. */
 typedef struct film_light {
     film_sum r[ROW], g[ROW], b[ROW];
-    int64_t out_of_range; /* negative if some are out of the film's range, which are left out; otherwise 0 */
+    int64_t out_of_range; /* negative if contributions out of the film's range were omitted; otherwise 0 */
 } film_light;
 
-/* Fills g from rays list[0..count-1] of a batch; ascending: the list is; first is the batch's start in the queue;
- * ior: by priority index. Not a kernel: scalar copies are faster than the gather instructions of the processors it
- * was measured on. */
+/* Fills g from rays list[0..count-1] of a batch; ascending: whether the list is in ascending order; first: the batch's
+ * start in the queue; ior: by priority index. Not a kernel: scalar copies are faster than the gather instructions of
+ * the processors it was measured on. */
 void group_gather(const ray_queue *q, int first, const hit_batch *hits, const double *ior, const int *list, int count,
                   bool ascending, group *g);

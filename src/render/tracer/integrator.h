@@ -26,25 +26,24 @@ typedef struct tracer tracer;
 
 /* The outputs of a frame. The maps may be NULL; pixel_cut receives the throughput of each pixel's rays that are not
  * traced, red + green + blue in units of 1/COUNTERS_CUT_ONE: integers, so that their order does not matter. state is
- * the integrator's state for the frame; layers receives named layers, NULL if they are not requested; rule: NULL for
- * the integrator of the plan's settings. */
+ * the integrator's state for the frame; layers receives named layers, NULL if they are not requested;
+ * integrator_override: NULL for the integrator of the plan's settings. */
 typedef struct tracer_target {
     const plan *frame_plan;
     film *img;
     double *pixel_rays, *pixel_ns, *pixel_cut;
     void *state;
     layer_set *layers;
-    const struct integrator *rule;
+    const struct integrator *integrator_override;
 } tracer_target;
 
 /* The numbers of camera rays of one pixel. camera_rays_enqueue (render/camera/camera_rays.c) makes the rays. */
 typedef struct camera_sampling {
     int64_t rays;
-    int64_t points; /* upper limit of sample points in a pixel: the largest k x k grid with at most that many */
-    int64_t
-        rays_per_point; /* number of consecutive rays through one point; the next ones use the next point, cyclically */
-    bool jittered;      /* instead, each ray has its own random point of the pixel */
-    int64_t marks;      /* further bits of their sample keys besides pixel and sample (render/plan/sampling.h) */
+    int64_t points;         /* upper limit of sample points in a pixel: the largest k x k grid with at most that many */
+    int64_t rays_per_point; /* consecutive rays through one point; the next rays use the next point, cyclically */
+    bool jittered;          /* instead, each ray has its own random point of the pixel */
+    int64_t marks; /* further bits of their sample keys, in addition to pixel and sample (render/plan/sampling.h) */
 } camera_sampling;
 
 /* A step of a pre-pass. A step starts when the previous one has ended. */
@@ -54,9 +53,9 @@ typedef struct integrator_step {
 } integrator_step;
 
 typedef struct integrator {
-    bool traced;    /* hits are found by ray tests of the solids: all rays count, and media absorb */
-    bool by_solid;  /* its values depend on which solid a ray hits, beyond the material */
-    bool by_sample; /* it needs the sample number of each ray within its pixel */
+    bool traced;   /* hits are found by ray tests of the solids, so that all rays are counted and media absorb */
+    bool by_solid; /* its values depend on the solid that a ray hits, not only on the material */
+    bool needs_sample_number; /* it needs the sample number of each ray within its pixel */
 
     /* --- a frame --- */
     camera_sampling (*sampling)(const render_settings *r);

@@ -12,7 +12,7 @@
 typedef struct ray_footprint {
     vec3 shift[2], turn[2];
     bool bent;        /* it met a curved surface */
-    bool rough_guess; /* it met a surface whose curvature is unknown, and which counted as flat */
+    bool rough_guess; /* it met a surface of unknown curvature, which was treated as flat */
 } ray_footprint;
 
 typedef struct ray_queue {
@@ -21,11 +21,13 @@ typedef struct ray_queue {
     double *wr, *wg, *wb;        /* throughput; for a shadow ray the radiance that it contributes if unblocked */
     int64_t *start, *sample_key; /* face it starts on; see render/plan/sampling.h */
     uint64_t *inside;
-    double *sq, *su, *sv;    /* with polarisation: the analyser's Stokes vector relative to its first element, of shadow
-                              rays in a scene with sheets; in a crystal sq is the mode (render/shade/crystals.h) */
-    double *passed, *bent;   /* of photons: the length of the path so far, and of its part after the first surface */
-    double *lamp_q, *lamp_u; /* of shadow rays to polarised lamps, which are linear: theirs; in the same memory */
-    ray_footprint *footprint; /* of camera rays in scenes with photons (render/shade/footprints.h); else NULL */
+    /* with polarisation: the analyser's Stokes vector relative to its first element, also for shadow rays in a scene
+     * with sheets; in a crystal sq is the mode (render/shade/crystals.h) */
+    double *sq, *su, *sv;
+    double *passed, *bent; /* for photons: lengths of the path so far, and of its part after the first surface */
+    /* for shadow rays to polarised lamps: the lamp's linear Stokes elements; in the memory of passed and bent */
+    double *lamp_q, *lamp_u;
+    ray_footprint *footprint; /* for camera rays in scenes with photons (render/shade/footprints.h); else NULL */
     void *memory;
 } ray_queue;
 

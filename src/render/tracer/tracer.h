@@ -1,7 +1,7 @@
-/* The tracer of one worker: queues of rays by depth, the batch of rays that is being traced, the group of its rays
- * that is being shaded, counters and scratch memory. There is no other tracer: a single ray is a batch of one. Shared
- * by the code that shades (render/shade), the integrators, and the loop that takes batches from the queues
- * (render/frame/batches.c), which also says who owns a tracer (render/frame/tracers.h). */
+/* The tracer of one worker: queues of rays by depth, the batch of rays that is being traced, the group of its rays that
+ * is being shaded, counters and scratch memory. There is no other tracer: a single ray is a batch of one. Used by the
+ * shading code (render/shade), the integrators, and the loop that pops batches from the queues
+ * (render/frame/batches.c); for ownership see render/frame/tracers.h. */
 #pragma once
 
 #include "base/counters.h"
@@ -12,11 +12,11 @@
 #include "render/tracer/integrator.h"
 #include "render/tracer/queue.h"
 
-/* Rays that wait for a full batch. From DEPTH_DEEP on, where rays do not branch, two queues take turns: whatever the
- * limit, memory is bounded. */
+/* From this depth on, where rays do not branch, two queues alternate, so that memory is bounded whatever the depth
+ * limit. */
 enum { DEPTH_DEEP = DEPTH_TREE_MAX };
 
-/* Deep rays wait until there are many: they are then traced to their ends, in batches that stay full for long. */
+/* Deep rays wait until there are this many, and are then traced to their ends, in batches that remain nearly full. */
 enum { DEEP_AT_ONCE = 16 * BATCH };
 
 static inline bool goes_deep(int depth_limit)
@@ -25,9 +25,9 @@ static inline bool goes_deep(int depth_limit)
 }
 
 typedef struct tracer_queues {
-    int depth_limit, made;
-    int depth;          /* of the batch that is being traced */
-    ray_queue *waiting; /* by depth, see tracer_queue_at */
+    int depth_limit, created; /* created: number of queues in waiting */
+    int depth;                /* of the batch that is being traced */
+    ray_queue *waiting;       /* by depth, see tracer_queue_at */
     ray_queue shadows;
 } tracer_queues;
 
@@ -35,7 +35,7 @@ typedef struct tracer_queues {
 typedef struct tracer_account {
     ray_counters counters;
     int64_t visibility_ns; /* in a scene with meshes: time in the geometry kernels */
-    uint64_t frame;        /* number of the tracer_pool's frame in which it last began; 0 before */
+    uint64_t frame;        /* number of the tracer_pool's frame that it last began; 0 before */
     int64_t overflow;      /* negative: a sum or a contribution left the film's range */
 } tracer_account;
 
@@ -45,7 +45,7 @@ typedef struct tracer_batch {
     /* hit_primitive is -1 for rays that hit nothing, and less than -1 for rays with an end that only the integrator
      * defines (path.c: a light's sphere) */
     _Alignas(64) hit_batch hits;
-    _Alignas(64) double transmitted[ROW]; /* of shadow rays */
+    _Alignas(64) double transmitted[ROW]; /* fraction of each shadow ray's light */
     hit_groups groups;
 } tracer_batch;
 
@@ -70,19 +70,19 @@ struct tracer {
     const struct shade_kernels *shade;
     const struct sampling_kernels *sampling;
     tracer_target target;
-    const integrator *rule; /* of the frame; NULL before the first one */
-    void *worker_data;      /* the integrator's data of this worker */
-    /* branches with a smaller weight are not traced: render.min_weight times the fraction of a camera ray */
+    const integrator *frame_integrator; /* NULL before the first frame */
+    void *worker_data;                  /* the integrator's data of this worker */
+    /* branches with a smaller weight are not traced: render.min_weight times the weight of a camera ray */
     double least_weight;
     bool by_sample_key; /* the film uses more of the sample key than its pixel */
     tracer_queues queues;
     tracer_account account;
     int16_t *marks; /* see hit_groups_make */
     size_t mark_count;
-    struct mesh_work *meshes;          /* NULL until a scene with meshes is traced; the next two likewise */
+    struct mesh_work *meshes;          /* NULL until a scene with meshes is rendered; the following likewise */
     struct media_work *media;          /* for a scene with absorption */
     struct radiance_work *basic;       /* for a scene with basic radiance */
-    struct layered_work *layered;      /* for a scene with metals or films */
+    struct layered_work *layered;      /* for a scene with metals or thin films */
     struct crystal_work *crystals;     /* for a scene with crystals */
     struct footprint_work *footprints; /* for a scene with photons, unless paths are random */
     _Alignas(64) tracer_batch batch;   /* aligned to cache lines, here and above */
@@ -94,8 +94,8 @@ static inline ray_queue *tracer_queue_at(const tracer *t, int depth)
     return &t->queues.waiting[depth < DEPTH_DEEP ? depth : DEPTH_DEEP + (depth - DEPTH_DEEP) % 2];
 }
 
-/* The largest fraction of rays that survives Russian roulette: without a limit of depth, a path that loses no light
- * might never end. One of 1024 ends at each surface from the 4096th on. */
+/* The maximum probability of surviving Russian roulette: without a depth limit, a path that loses no light might never
+ * end. From the 4096th surface on, one of 1024 paths ends at each. */
 static inline double roulette_odds_most(int depth)
 {
     return depth < 4096 ? 1.0 : 1.0 - 1.0 / 1024.0;
@@ -110,8 +110,7 @@ static inline void map_cut(tracer *t, int64_t sample_key, double r, double g, do
     t->target.pixel_cut[sample_key_pixel(sample_key)] += (double)units;
 }
 
-/* Counts a ray that is not traced, with its throughput: rays and sum are cut_depth and its sum, or cut_weight and
- * its. */
+/* Counts a ray that is cut off, and its throughput, in *rays and sum: the counters of cuts by depth or by weight. */
 static inline void count_cut(tracer *t, uint64_t *rays, int64_t sum[3], int64_t sample_key, double r, double g,
                              double b)
 {

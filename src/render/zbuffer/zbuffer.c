@@ -13,7 +13,7 @@ static status no_room(diagnostic *why)
 
 static uint64_t triangles_of(const rasterised_part *p)
 {
-    return (uint64_t)zbuffer_number(p) * p->at.copies[0] * p->at.copies[1] * p->at.copies[2];
+    return (uint64_t)zbuffer_part_triangles(p) * p->at.copies[0] * p->at.copies[1] * p->at.copies[2];
 }
 
 static bool make_chunks(zbuffer *z)
@@ -82,9 +82,9 @@ void zbuffer_destroy(zbuffer *z)
     if (!z)
         return;
     for (size_t k = 0; z->chunks && k < z->chunk_count; k++)
-        free(z->chunks[k].made);
+        free(z->chunks[k].screen);
     for (int k = 0; k < z->part_count; k++)
-        mesh_release(z->parts[k].own);
+        mesh_release(z->parts[k].tessellation);
     for (size_t k = 0; z->blocks && k < BLOCKS_MAX; k++)
         free(z->blocks[k]);
     free(z->blocks);
@@ -100,7 +100,7 @@ void zbuffer_destroy(zbuffer *z)
 static bool join_chunks(zbuffer *z)
 {
     for (size_t k = 0; k < z->chunk_count; k++)
-        z->triangle_count += z->chunks[k].made_count;
+        z->triangle_count += z->chunks[k].screen_count;
     z->triangles = malloc((z->triangle_count + 1) * sizeof *z->triangles);
     if (!z->triangles || z->triangle_count >= SEEN_LAYERS - 1)
         return false;
@@ -110,11 +110,11 @@ static bool join_chunks(zbuffer *z)
         chunk *c = &z->chunks[k];
         if (c->part == z->first_layered_part && at < z->first_layered)
             z->first_layered = at;
-        if (c->made_count)
-            memcpy(z->triangles + at, c->made, c->made_count * sizeof *c->made);
-        at += c->made_count;
-        free(c->made);
-        c->made = NULL;
+        if (c->screen_count)
+            memcpy(z->triangles + at, c->screen, c->screen_count * sizeof *c->screen);
+        at += c->screen_count;
+        free(c->screen);
+        c->screen = NULL;
     }
     return true;
 }
@@ -152,7 +152,7 @@ status zbuffer_sort(zbuffer *z, diagnostic *why)
                 z->first[(size_t)y * (size_t)z->across + (size_t)x]++;
     }
     size_t sum = 0;
-    for (size_t k = 0; k <= squares; k++) { /* the end of each square's list for now */
+    for (size_t k = 0; k <= squares; k++) { /* for now, the end of each square's list */
         sum += k < squares ? z->first[k] : 0;
         z->first[k] = sum;
     }

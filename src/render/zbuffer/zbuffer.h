@@ -1,11 +1,11 @@
 /* The z-buffer preview: every visible solid is rasterised as triangles into a depth buffer (Catmull, "A subdivision
- * algorithm for computer display of curved surfaces", 1974), the reports' alternative to tracing. It finds the triangle
- * that each camera ray of the tracer hits, and the tracer shades it: the same rays, the same light, but no shadows, and
- * no ray is traced. Through clear solids the view continues undeflected: each of their interfaces before the nearest
- * opaque surface, at most render.depth of them, adds its light and the sky radiance of the reflected direction,
- * weighted by Fresnel or the material; what is behind is attenuated by the weights and by absorption along the straight
- * path. For the weights the view direction is refracted as a ray is, so that total reflection shows the sky. Where
- * render.lighting follows no branches, a clear solid is drawn as its surface.
+ * algorithm for computer display of curved surfaces", 1974), the published reports' alternative to ray tracing. It
+ * finds the triangle that each camera ray of the tracer hits, and the tracer shades it: rays and light are the same,
+ * but there are no shadows, and no ray is tested against solids. Through clear solids the view continues undeflected:
+ * each of their interfaces before the nearest opaque surface, at most render.depth of them, adds its light and the sky
+ * radiance of the reflected direction, weighted by Fresnel or the material; what is behind is attenuated by the weights
+ * and by absorption along the straight path. For the weights the view direction is refracted like a ray, so that total
+ * reflection shows the sky. If render.lighting follows no branches, only the surface of a clear solid is drawn.
  *
  * A frame is made in steps: zbuffer_create cuts analytic solids into triangles; zbuffer_project, called by all workers
  * at once, projects the triangles into the image; zbuffer_sort assigns them to squares of the image; zbuffer_draw,

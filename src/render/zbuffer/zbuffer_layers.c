@@ -10,7 +10,7 @@
 
 /* Surfaces whose depths differ by less than this relative difference are in contact: the column enters or leaves their
  * regions in one step. */
-#define TOGETHER 1e-9
+#define IN_CONTACT 1e-9
 
 void zbuffer_square_begin(zbuffer_square *s)
 {
@@ -61,12 +61,13 @@ static bool is_opaque(const zbuffer *z, const rasterised_fragment *f)
     return z->frame_plan->geometry->regions[z->parts[f->part].at.priority_index].opaque;
 }
 
-/* True if the fragment is in front of the opaque surface that is drawn without layers. Of two opaque ones the nearer is
- * visible however close they are, and of two equally near the one of higher priority, as without clear solids. */
+/* True if the fragment is in front of the opaque surface that is drawn without layers. Of two opaque surfaces the
+ * nearer one is visible, however close they are; of two equally near, the one of higher priority, as without clear
+ * solids. */
 static bool is_in_front(const zbuffer *z, const rasterised_fragment *f, double nearness, uint32_t seen)
 {
     if (!is_opaque(z, f))
-        return f->nearness - nearness > TOGETHER * fabs(f->nearness);
+        return f->nearness - nearness > IN_CONTACT * fabs(f->nearness);
     if (f->nearness != nearness)
         return f->nearness > nearness;
     return z->parts[f->part].at.priority_index > z->parts[z->triangles[seen - 1].part].at.priority_index;
@@ -95,7 +96,7 @@ typedef struct layer_list {
     rasterised_layer layer[LAYERS_MAX];
 } layer_list;
 
-/* Sets of regions have bit r - 1 for priority index r: the medium is that of the highest bit. */
+/* The region's bit in sets of regions: bit r - 1 for priority index r. The highest bit determines the medium. */
 static uint64_t bit_of(const zbuffer *z, const rasterised_fragment *f)
 {
     return (uint64_t)1 << (z->parts[f->part].at.priority_index - 1);
@@ -106,10 +107,9 @@ static int highest(uint64_t inside)
     return inside ? 64 - __builtin_clzll(inside) : 0;
 }
 
-/* Crosses the surfaces that are together at the front of the column: each surface enters or leaves its region, whatever
- * the facing of its triangle, so that near an outline, where front and back are equally near, their order does not
- * matter. The drawn outside and hollow of a cup bound its material. At most one of them is opaque. Returns their
- * number. */
+/* Crosses the surfaces in contact at the front of the column: each surface enters or leaves its region, whatever the
+ * facing of its triangle, so that near an outline, where front and back are equally near, their order does not matter.
+ * The drawn outside and hollow of a cup bound its material. At most one of them is opaque. Returns their number. */
 static int cross(const zbuffer *z, const rasterised_fragment *f, int count, uint64_t *inside)
 {
     int n = 0;
@@ -121,7 +121,7 @@ static int cross(const zbuffer *z, const rasterised_fragment *f, int count, uint
         const uint64_t bit = bit_of(z, &f[n]);
         *inside = z->open_surfaces & bit ? *inside | bit : *inside ^ bit;
         n++;
-    } while (n < count && f[0].nearness - f[n].nearness <= TOGETHER * fabs(f[0].nearness));
+    } while (n < count && f[0].nearness - f[n].nearness <= IN_CONTACT * fabs(f[0].nearness));
     return n;
 }
 
@@ -142,7 +142,7 @@ static inline rasterised_layer layer_of(const zbuffer *z, const rasterised_fragm
                               .ends = z->frame_plan->geometry->regions[priority_index].opaque};
 }
 
-static bool absorb_alike(const plan *p, int before, int after)
+static bool absorb_equally(const plan *p, int before, int after)
 {
     const vec3 a = p->absorption[before], b = p->absorption[after];
     return a.x == b.x && a.y == b.y && a.z == b.z;
@@ -152,7 +152,7 @@ static bool absorb_alike(const plan *p, int before, int after)
  * or no interface; the last one ends the view. */
 static void list_layers(const zbuffer *z, const rasterised_fragment *f, int count, uint32_t base, layer_list *l)
 {
-    const scene_geometry *a = z->frame_plan->geometry;
+    const scene_geometry *g = z->frame_plan->geometry;
     const int most = (int)z->frame_plan->render.depth + 1;
     uint64_t inside = z->eye_inside;
     int before = highest(inside);
@@ -160,19 +160,19 @@ static void list_layers(const zbuffer *z, const rasterised_fragment *f, int coun
     l->count = 0;
     for (int k = 0; k < count && interfaces < most;) {
         uint64_t behind = inside;
-        const int together = cross(z, f + k, count - k, &behind), after = highest(behind);
-        if (a->regions[before].medium != a->regions[after].medium) {
-            l->layer[l->count++] = layer_of(z, f + k, together, inside, before, after);
+        const int crossed = cross(z, f + k, count - k, &behind), after = highest(behind);
+        if (g->regions[before].medium != g->regions[after].medium) {
+            l->layer[l->count++] = layer_of(z, f + k, crossed, inside, before, after);
             interfaces++;
             if (l->layer[l->count - 1].ends)
                 return;
-        } else if (l->count < LAYERS_MAX - most && !absorb_alike(z->frame_plan, before, after)) {
-            l->layer[l->count] = layer_of(z, f + k, together, inside, before, after);
+        } else if (l->count < LAYERS_MAX - most && !absorb_equally(z->frame_plan, before, after)) {
+            l->layer[l->count] = layer_of(z, f + k, crossed, inside, before, after);
             l->layer[l->count++].passed = true;
         }
         inside = behind & ~z->open_surfaces;
         before = highest(inside);
-        k += together;
+        k += crossed;
     }
     if (interfaces < most) {
         const int after = base ? z->parts[z->triangles[base - 1].part].at.priority_index : before;
@@ -184,7 +184,7 @@ static void list_layers(const zbuffer *z, const rasterised_fragment *f, int coun
     }
 }
 
-/* Space for a list in the worker's own block, or in a new one. NULL when out of memory. */
+/* Allocates a list in the worker's block, or in a new one. NULL when out of memory. */
 static rasterised_layer *room_for(zbuffer *z, zbuffer_square *s, int count, uint32_t *place)
 {
     if (!s->block || s->used + (uint32_t)count > BLOCK_LAYERS) {
@@ -202,7 +202,7 @@ static rasterised_layer *room_for(zbuffer *z, zbuffer_square *s, int count, uint
 
 /* True if a single surface is visible, through the surrounding medium only. Then it does not matter whether its solid
  * is drawn as layers. */
-static bool shows_alone(const zbuffer *z, const layer_list *l)
+static bool shows_one_surface(const zbuffer *z, const layer_list *l)
 {
     const rasterised_layer *f = &l->layer[0];
     if (l->count != 1 || !f->ends || f->before != 0)
@@ -216,7 +216,7 @@ static void resolve_point(zbuffer *z, zbuffer_square *s, int point, uint32_t *se
     layer_list l;
     const int count = collect(z, s, point, *seen);
     list_layers(z, s->column, count, *seen, &l);
-    if (shows_alone(z, &l)) {
+    if (shows_one_surface(z, &l)) {
         *seen = l.layer[0].number;
         return;
     }

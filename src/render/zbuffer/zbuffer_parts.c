@@ -20,26 +20,26 @@ static bool dips_into(const primitive *half, bounds3 b)
     return vec3_dot(n, vec3_sub(lowest, half->origin)) <= 0.0;
 }
 
-static bool may_touch(const scene_geometry *a, int priority_index, int other)
+static bool may_touch(const scene_geometry *g, int priority_index, int other)
 {
-    const solid_shape *s = &a->shapes[priority_index], *t = &a->shapes[other];
+    const solid_shape *s = &g->shapes[priority_index], *t = &g->shapes[other];
     const bool endless = shape_of(s)->unbounded, other_endless = shape_of(t)->unbounded;
     if (endless && other_endless)
         return true;
     if (endless || other_endless)
-        return dips_into(&a->primitives[a->regions[endless ? priority_index : other].outside],
+        return dips_into(&g->primitives[g->regions[endless ? priority_index : other].outside],
                          shape_world_box(endless ? t : s));
     const bounds3 b = shape_world_box(s), c = shape_world_box(t);
     return b.low.x <= c.high.x && c.low.x <= b.high.x && b.low.y <= c.high.y && c.low.y <= b.high.y &&
            b.low.z <= c.high.z && c.low.z <= b.high.z;
 }
 
-static bool is_layered(const scene_geometry *a, int priority_index)
+static bool is_layered(const scene_geometry *g, int priority_index)
 {
-    const region *b = &a->regions[priority_index];
+    const region *b = &g->regions[priority_index];
     bool layered = !b->opaque;
-    for (int r = priority_index + 1; r <= a->region_count && !layered; r++)
-        layered = !a->regions[r].opaque && may_touch(a, priority_index, r);
+    for (int r = priority_index + 1; r <= g->region_count && !layered; r++)
+        layered = !g->regions[r].opaque && may_touch(g, priority_index, r);
     return layered;
 }
 
@@ -69,32 +69,32 @@ static bool eye_in_mesh(const instanced_mesh *p, vec3 eye)
     return false;
 }
 
-static bool eye_in(const scene_geometry *a, const region *b, vec3 eye)
+static bool eye_in(const scene_geometry *g, const region *b, vec3 eye)
 {
-    const primitive *p = &a->primitives[b->outside];
+    const primitive *p = &g->primitives[b->outside];
     if (p->rule)
-        return primitive_contains(p, eye) && !(b->hollow >= 0 && primitive_contains(&a->primitives[b->hollow], eye));
-    const instanced_mesh *part = &a->meshes->parts[a->meshes->by_primitive[b->outside]];
+        return primitive_contains(p, eye) && !(b->hollow >= 0 && primitive_contains(&g->primitives[b->hollow], eye));
+    const instanced_mesh *part = &g->meshes->parts[g->meshes->by_primitive[b->outside]];
     return part->closed && eye_in_mesh(part, eye);
 }
 
 void zbuffer_find_layers(zbuffer *z)
 {
-    const scene_geometry *a = z->frame_plan->geometry;
+    const scene_geometry *g = z->frame_plan->geometry;
     bool clear = false;
-    for (int r = 1; r <= a->region_count; r++)
-        clear |= !a->regions[r].opaque;
+    for (int r = 1; r <= g->region_count; r++)
+        clear |= !g->regions[r].opaque;
     if (!clear || z->frame_plan->render.lighting != LIGHTING_WHITTED)
         return;
-    for (int r = 1; r <= a->region_count; r++) {
-        if (!is_layered(a, r))
+    for (int r = 1; r <= g->region_count; r++) {
+        if (!is_layered(g, r))
             continue;
         const uint64_t bit = (uint64_t)1 << (r - 1);
         z->layered |= bit;
         /* A camera in an opaque solid sees it from inside, whether it is a layer or not. */
-        if (!a->regions[r].opaque && eye_in(a, &a->regions[r], z->frame_plan->view.eye))
+        if (!g->regions[r].opaque && eye_in(g, &g->regions[r], z->frame_plan->view.eye))
             z->eye_inside |= bit;
-        const bool is_open = a->meshes && a->meshes->open_surfaces >> a->regions[r].outside & 1;
+        const bool is_open = g->meshes && g->meshes->open_surfaces >> g->regions[r].outside & 1;
         z->open_surfaces |= is_open ? bit : 0;
     }
     z->eye_index = z->frame_plan->ior[z->eye_inside ? 64 - __builtin_clzll(z->eye_inside) : 0];
@@ -118,11 +118,11 @@ static instanced_mesh part_of(const primitive *p, const mesh *triangles, vec3 sc
 /* The triangles of a primitive: its own, or those of another solid that differs only in scale. */
 static status cut(const zbuffer *z, const solid_shape *shape, int part, mesh **out, diagnostic *why)
 {
-    const scene_geometry *a = z->frame_plan->geometry;
+    const scene_geometry *g = z->frame_plan->geometry;
     const shape_rule *rule = shape_of(shape);
     for (int k = 0; rule->one_tessellation && k < z->part_count; k++) {
-        if (shape_of(&a->shapes[a->primitives[z->parts[k].primitive].priority_index]) == rule) {
-            *out = z->parts[k].own;
+        if (shape_of(&g->shapes[g->primitives[z->parts[k].primitive].priority_index]) == rule) {
+            *out = z->parts[k].tessellation;
             mesh_retain(*out);
             return STATUS_OK;
         }
@@ -138,22 +138,22 @@ static double nearest_depth(const primitive *p, vec3 eye)
 
 static status add(zbuffer *z, const region *b, int index, diagnostic *why)
 {
-    const scene_geometry *a = z->frame_plan->geometry;
-    const primitive *p = &a->primitives[index];
+    const scene_geometry *g = z->frame_plan->geometry;
+    const primitive *p = &g->primitives[index];
     rasterised_part *part = &z->parts[z->part_count];
-    const solid_shape *shape = &a->shapes[p->priority_index];
+    const solid_shape *shape = &g->shapes[p->priority_index];
     const shape_rule *rule = shape_of(shape);
     *part = (rasterised_part){
         .primitive = index, .hollow = index == b->hollow, .nearest = nearest_depth(p, z->frame_plan->view.eye)};
     if (rule->triangles) {
-        part->at = a->meshes->parts[a->meshes->by_primitive[index]];
+        part->at = g->meshes->parts[g->meshes->by_primitive[index]];
         z->part_count++;
         return STATUS_OK;
     }
     part->plane = rule->unbounded;
-    const status code = rule->tessellation ? cut(z, shape, part->hollow, &part->own, why) : STATUS_OK;
+    const status code = rule->tessellation ? cut(z, shape, part->hollow, &part->tessellation, why) : STATUS_OK;
     const vec3 scale = rule->tessellation_scale ? rule->tessellation_scale(shape) : vec3_make(1.0, 1.0, 1.0);
-    part->at = part_of(p, part->own, scale);
+    part->at = part_of(p, part->tessellation, scale);
     z->part_count += code == STATUS_OK;
     return code;
 }
@@ -161,10 +161,10 @@ static status add(zbuffer *z, const region *b, int index, diagnostic *why)
 /* Adds the regions whose priority index's bit is set. */
 static status add_regions(zbuffer *z, uint64_t priority_indices, diagnostic *why)
 {
-    const scene_geometry *a = z->frame_plan->geometry;
+    const scene_geometry *g = z->frame_plan->geometry;
     status code = STATUS_OK;
-    for (int priority_index = a->region_count; priority_index >= 1 && code == STATUS_OK; priority_index--) {
-        const region *b = &a->regions[priority_index];
+    for (int priority_index = g->region_count; priority_index >= 1 && code == STATUS_OK; priority_index--) {
+        const region *b = &g->regions[priority_index];
         if (!(priority_indices >> (priority_index - 1) & 1))
             continue;
         code = add(z, b, b->outside, why);

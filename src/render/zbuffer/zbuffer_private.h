@@ -37,17 +37,17 @@ typedef struct rasterised_layer {
 /* A homogeneous point in the camera frame: right, up, forward; h = 0 is a direction, a point at infinity. */
 typedef struct clip_corner {
     double x, y, z, h;
-    double weight[3]; /* of the triangle's own corners */
+    double weight[3]; /* of the triangle's corners, before clipping */
 } clip_corner;
 
 /* A part of the rasterised scene: a mesh's instances, or one primitive as triangles in its own frame. */
 typedef struct rasterised_part {
     instanced_mesh at;
-    int primitive;  /* primitive */
-    double nearest; /* near clip depth; from the part's own extent, so that no other solid affects the result */
-    bool hollow;    /* the inside of a cup */
-    bool plane;     /* four triangles from the camera's foot point on the plane to the horizon */
-    mesh *own;      /* an analytic solid's triangles; NULL for a mesh */
+    int primitive;      /* its index in the scene geometry */
+    double nearest;     /* near clip depth; from the part's own extent, so that no other solid affects the result */
+    bool hollow;        /* the inside of a cup */
+    bool plane;         /* four triangles from the camera's foot point on the plane to the horizon */
+    mesh *tessellation; /* an analytic solid's triangles; NULL for a mesh */
 } rasterised_part;
 
 typedef struct screen_triangle {
@@ -64,8 +64,8 @@ typedef struct screen_triangle {
 typedef struct chunk {
     int part, count;
     uint64_t first;
-    screen_triangle *made;
-    size_t made_count, capacity;
+    screen_triangle *screen;
+    size_t screen_count, capacity;
 } chunk;
 
 struct zbuffer {
@@ -101,7 +101,7 @@ struct zbuffer {
     uint32_t *seen; /* by grid point: number of its triangle, plus 1; 0 for none */
 };
 
-/* What a corner's x and y are divided by to get its place in the image: the depth, times h, or h alone. */
+/* The divisor of a corner's x and y for its position in the image: z in perspective, h with an orthographic camera. */
 static inline double zbuffer_divisor(const zbuffer *z, const clip_corner *c)
 {
     return z->frame_plan->view.parallel ? c->h : c->z;
@@ -114,10 +114,10 @@ static inline double zbuffer_nearness(const zbuffer *z, const clip_corner *c)
     return z->frame_plan->view.parallel ? -c->z / c->h : c->h / c->z;
 }
 
-/* zbuffer_parts.c: computes layered and eye_inside. */
+/* zbuffer_parts.c: computes layered, eye_inside, open_surfaces and eye_index. */
 void zbuffer_find_layers(zbuffer *z);
 
-/* The parts and their triangles. */
+/* Makes the parts and their triangles. */
 status zbuffer_cut(zbuffer *z, diagnostic *why);
 
 /* zbuffer_layers.c: adds a point of a layered triangle, and resolves all points of a window after its triangles are
@@ -132,7 +132,7 @@ void zbuffer_corners(const zbuffer *z, const rasterised_part *p, uint32_t copy, 
 int zbuffer_clip(const zbuffer *z, const rasterised_part *p, clip_corner polygon[POLYGON_MAX]);
 void zbuffer_place(const zbuffer *z, const clip_corner *c, double *x, double *y);
 
-static inline uint32_t zbuffer_number(const rasterised_part *p)
+static inline uint32_t zbuffer_part_triangles(const rasterised_part *p)
 {
     return p->plane ? 4 : (uint32_t)p->at.triangles->triangle_count;
 }

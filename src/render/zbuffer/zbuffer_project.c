@@ -78,7 +78,7 @@ static int clip_at(const zbuffer *z, double nearest, int plane, clip_corner *pol
 {
     clip_corner from[POLYGON_MAX];
     double side[POLYGON_MAX];
-    int outside = 0, made = 0;
+    int outside = 0, kept = 0;
     for (int k = 0; k < count; k++) {
         side[k] = side_of(z, nearest, &polygon[k], plane);
         outside += !(side[k] >= 0.0);
@@ -90,13 +90,13 @@ static int clip_at(const zbuffer *z, double nearest, int plane, clip_corner *pol
     for (int k = 0; k < count; k++) {
         const int next = (k + 1) % count;
         if (side[k] >= 0.0)
-            polygon[made++] = from[k];
+            polygon[kept++] = from[k];
         if (side[k] > 0.0 && side[next] < 0.0)
-            polygon[made++] = cut(&from[k], &from[next], side[k], side[next]);
+            polygon[kept++] = cut(&from[k], &from[next], side[k], side[next]);
         else if (side[k] < 0.0 && side[next] > 0.0)
-            polygon[made++] = cut(&from[next], &from[k], side[next], side[k]);
+            polygon[kept++] = cut(&from[next], &from[k], side[next], side[k]);
     }
-    return made;
+    return kept;
 }
 
 int zbuffer_clip(const zbuffer *z, const rasterised_part *p, clip_corner polygon[POLYGON_MAX])
@@ -124,7 +124,7 @@ void zbuffer_place(const zbuffer *z, const clip_corner *c, double *x, double *y)
 
 /* The plane of nearness: 1 / depth of a triangle's plane is linear in the image (Blinn, "Hyperbolic interpolation",
  * 1992): N.r / N.P along the ray r = (x/z, y/z, 1); with parallel rays so is the depth, (N.P - N.(x, y, 0)) / N.z.
- * False if the plane is seen edge-on. corners: the triangle's own. */
+ * False if the plane is seen edge-on. corners: the triangle's, before clipping. */
 static bool depth_plane(const zbuffer *z, const rasterised_part *p, const clip_corner *corners, screen_triangle *t)
 {
     const vec3 a = vec3_make(corners[0].x, corners[0].y, corners[0].z),
@@ -173,10 +173,10 @@ static void put_triangle(chunk *c, const zbuffer *z, screen_triangle *t)
         t->x[1] = t->x[2], t->y[1] = t->y[2];
         t->x[2] = x, t->y[2] = y;
     }
-    if (GROW(c->made, c->capacity, c->made_count + 1))
-        c->made[c->made_count++] = *t;
+    if (GROW(c->screen, c->capacity, c->screen_count + 1))
+        c->screen[c->screen_count++] = *t;
     else
-        c->made_count = SIZE_MAX;
+        c->screen_count = SIZE_MAX;
 }
 
 /* True if all corners are outside one edge of the image. */
@@ -198,7 +198,7 @@ static bool is_curved(const zbuffer *z, const rasterised_part *p, uint32_t trian
 {
     const mesh *m = p->at.triangles;
     if (p->plane || !m->normals ||
-        (!p->own && z->frame_plan->shading_materials[p->at.priority_index].shading == SHADING_FLAT))
+        (!p->tessellation && z->frame_plan->shading_materials[p->at.priority_index].shading == SHADING_FLAT))
         return false;
     const mesh_triangle tri = m->triangles[triangle];
     const vec3 n = m->normals[tri.corner[0]];
@@ -224,7 +224,7 @@ static void project_triangle(const zbuffer *z, chunk *c, const rasterised_part *
         const double near = zbuffer_nearness(z, &polygon[k]);
         t.least = lesser(t.least, near), t.most = greater(t.most, near);
     }
-    for (int k = 1; k + 1 < count && c->made_count != SIZE_MAX; k++) {
+    for (int k = 1; k + 1 < count && c->screen_count != SIZE_MAX; k++) {
         screen_triangle piece = t;
         const int at[3] = {0, k, k + 1};
         for (int j = 0; j < 3; j++)
@@ -239,13 +239,13 @@ void zbuffer_project(zbuffer *z)
     for (size_t k; (k = atomic_fetch_add_explicit(&z->next_chunk, 1, memory_order_relaxed)) < z->chunk_count;) {
         chunk *c = &z->chunks[k];
         const rasterised_part *p = &z->parts[c->part];
-        const uint32_t number = zbuffer_number(p);
-        for (int i = 0; i < c->count && c->made_count != SIZE_MAX; i++) {
+        const uint32_t number = zbuffer_part_triangles(p);
+        for (int i = 0; i < c->count && c->screen_count != SIZE_MAX; i++) {
             const uint64_t at = c->first + (uint64_t)i;
             project_triangle(z, c, p, (uint32_t)(at / number), (uint32_t)(at % number));
         }
-        if (c->made_count == SIZE_MAX) {
-            c->made_count = 0;
+        if (c->screen_count == SIZE_MAX) {
+            c->screen_count = 0;
             atomic_store(&z->out_of_memory, true);
         }
     }
