@@ -48,6 +48,7 @@ struct emission {
     double *wanted; /* relative numbers of photons by target */
 };
 
+/* Two numbers in (0, 1) for photon i of a source; purpose: source << 8 | choice. A pilot has other numbers. */
 static inline unit_pair emission_pair(const emission *e, int64_t i, uint64_t purpose)
 {
     enum { PILOT = 0x80 };

@@ -231,8 +231,8 @@ static double wavelength_weight(const photon *one, int wavelength)
     return away < 1.0 ? (1.0 - away) * (RANGE / BAND) : 0.0;
 }
 
-/* The radius of a disc, in cells of samples, from which the sum over samples varies by less than 1 %; at
- * PHOTON_RESOLVED it is less than 0.1 %. */
+/* The radius of a disc, in cells of samples, from which the sum over samples varies by less than 1 %; from
+ * PHOTON_RESOLVED on, by less than 0.1 %. */
 #define SAMPLED 2.5
 
 /* The smallest integer factor below PHOTON_FACTORS that makes `cells` at least SAMPLED; 0 if there is none. */

@@ -166,8 +166,8 @@ static vec3 seen_color(const light *l)
 }
 
 /* Sets the positions of suns, at which their shadow rays end: a half-space that a ray meets at an angle below 2^-16 is
- * beyond and does not block it. The distance is a power of two, so that directions are scaled exactly, and a far solid
- * changes nothing. */
+ * farther away, and does not block it. The distance is a power of two, so that directions are scaled exactly, and a far
+ * solid changes nothing. */
 static void place_suns(plan *p)
 {
     double extent = p->geometry->extent;

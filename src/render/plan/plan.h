@@ -89,7 +89,7 @@ typedef struct plan {
     path_sampling draws; /* of random paths */
     /* every solid blocks light: either render settings require it, or random paths find the transmitted light */
     bool solid_shadows;
-    const struct photon_map *photons; /* borrowed: light that arrives by way of clear solids and mirrors; NULL: none */
+    const struct photon_map *photons; /* borrowed: light that mirrors and clear solids deflect; NULL: none */
     const background *sky;            /* the scene's, or own_sky */
     background own_sky;
     struct rain *rain;  /* what rain adds to the sky, or NULL */

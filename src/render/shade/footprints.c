@@ -112,8 +112,8 @@ static void curve(const tracer *t, int from, int to, const vec3 *step, vec3 *cha
     }
 }
 
-/* Applies curve to the gathered group. Triangles are flat; the curvature of interpolated normals is ignored, and noted as
- * rough_guess. */
+/* Applies `curve` to the gathered group. Triangles are flat; the curvature of interpolated normals is ignored, and
+ * noted as rough_guess. */
 static void curve_all(tracer *t, vec3 step[2][ROW], vec3 change[2][ROW])
 {
     const group *g = &t->surface.gathered;
