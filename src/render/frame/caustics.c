@@ -212,7 +212,7 @@ static double light_by(const caustics *c, int number, int64_t *arrived)
     return sum;
 }
 
-caustics_few caustics_count_few(const caustics *c)
+caustics_few caustics_find_shortage(const caustics *c)
 {
     caustics_few few = {.solid = -1, .arrived = PHOTONS_ENOUGH};
     double all = 0.0;

@@ -334,7 +334,7 @@ static status trace_photons(frame *f, int count, plan *p, isa level, render_resu
     }
     if (f->photons) {
         caustics_count(f->photons, &result->counters);
-        result->few = caustics_count_few(f->photons);
+        result->few = caustics_find_shortage(f->photons);
     }
     return STATUS_OK;
 }

@@ -82,9 +82,9 @@ static void light_along(tracer *t, int number, const ray_queue *q, int first, in
         const lamp_aim a = path_lamp_aim(t, &s, k);
         const double flights = here->per_unit * absorption_left(l->depth[3][i]),
                      phase = henyey_greenstein(vec3_dot(direction_of(g, k), a.to), here->asymmetry);
-        g->wr[k] *= absorption_left(l->depth[0][i]) * l->passes[i];
-        g->wg[k] *= absorption_left(l->depth[1][i]) * l->passes[i];
-        g->wb[k] *= absorption_left(l->depth[2][i]) * l->passes[i];
+        g->wr[k] *= absorption_left(l->depth[0][i]) * l->sheet_transmittance[i];
+        g->wg[k] *= absorption_left(l->depth[1][i]) * l->sheet_transmittance[i];
+        g->wb[k] *= absorption_left(l->depth[2][i]) * l->sheet_transmittance[i];
         if (a.light > 0.0)
             enqueue(t, k, s.lamp[k], vec3_scale(a.to, a.distance),
                     a.light * phase * flights / (l->density[i] + flights));

@@ -136,7 +136,7 @@ static void choose_for(tracer *t, int lamp, const ray_queue *q, int first, int c
         line_sampling s;
         out->at[i] = (double)INFINITY;
         out->region[i] = 0;
-        out->passes[i] = 1.0;
+        out->sheet_transmittance[i] = 1.0;
         if (!sampling_of(t->target.frame_plan, lamp, vec3_make(q->ox[k], q->oy[k], q->oz[k]),
                          vec3_make(q->dx[k], q->dy[k], q->dz[k]), &s))
             continue;
@@ -175,7 +175,7 @@ static void airlight_follow(tracer *t, const medium_segment *s)
         for (int c = 0; c < 4; c++)
             l->depth[c][i] = w->depth[c][i] + coefficient[c] * length;
         if (p->sheets)
-            l->passes[i] = sheets_fraction_within(t, &w->sheets, s, length);
+            l->sheet_transmittance[i] = sheets_fraction_within(t, &w->sheets, s, length);
     }
     if (p->sheets)
         sheets_segment(t, &w->sheets, s);

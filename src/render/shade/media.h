@@ -24,7 +24,8 @@ typedef struct airlight {
     double at[ROW], density[ROW]; /* distance, infinite if there is none; density per length */
     int region[ROW];      /* priority index of the medium at the point, once the ray's segments reach it; 0 before */
     double depth[4][ROW]; /* optical depths up to the point: absorption by channel, scattering */
-    double passes[ROW];   /* the fraction of the point's unpolarised light that sheets in front of it transmit */
+    double sheet_transmittance
+        [ROW]; /* the fraction of the point's unpolarised light that sheets in front of it transmit */
 } airlight;
 
 /* The flights of a batch. */
