@@ -18,12 +18,16 @@
 
 typedef struct renderer renderer;
 
+/* --- renderer.c: threads --- */
+
 /* level: from isa_choose. machine is borrowed for pinning; if it is NULL, threads are not pinned. */
 status renderer_create(isa level, const topology *machine, renderer **out, diagnostic *why);
 void renderer_destroy(renderer *r);
 
 /* Sets the machine of a renderer that was created without it. */
 void renderer_set_machine(renderer *r, const topology *machine);
+
+/* --- options and results --- */
 
 /* One worker's report of a frame; times are seconds from the frame's start. */
 typedef struct worker_report {
@@ -126,11 +130,15 @@ typedef struct render_result {
 /* Root of the mean variance over pixels and channels: the typical random error of a film value. NaN without random
  * paths, or with too few paths for an estimate. */
 double render_noise_rms(const render_result *result);
+void render_result_destroy(render_result *result);
+
+/* --- renderer.c: renders --- */
 
 /* Checks the scene; call scene_load first. STATUS_INTERRUPTED when cancelled: *out then holds the finished part. */
 status renderer_render(renderer *r, const scene *s, const render_options *options, render_result **out,
                        diagnostic *why);
-void render_result_destroy(render_result *result);
+
+/* --- render_result.c: memory --- */
 
 /* Creates the film, with one replicate, and the variance (NULL if it is unknown) of a frame whose tiles come from tile
  * sources. The caller owns both. */
@@ -143,6 +151,8 @@ uint64_t renderer_result_bytes(const scene *s, const render_options *options);
 
 /* Memory of all threads' tracers, and of photons, bytes. */
 uint64_t renderer_tracing_bytes(const scene *s);
+
+/* --- frame.c --- */
 
 /* Starts the threads that s requires in advance (render.pool on), so that the first frame's time does not include
  * it. */

@@ -146,7 +146,7 @@ static status build_geometry(const scene *s, const index_law *laws, plan *p, dia
     const tree_use use = drawn || s->render.accel == HIERARCHY_NONE ? TREE_IF_TOO_MANY : TREE_IF_MANY;
     THEN(code, scene_geometry_build(sources, count, 0, use, &p->geometry, why));
     if (code == STATUS_OK && drawn && p->geometry->tree)
-        code = diagnose(why, STATUS_BAD_INPUT, "use another render.method, or fewer solids",
+        code = diagnose(why, STATUS_BAD_INPUT, "use another render.integrator, or fewer solids",
                         "the z-buffer draws at most 64 solids; a cup and a torus count as two, a lens as three");
     if (code == STATUS_OK && surroundings_absorb(&s->background))
         scene_geometry_surroundings_absorb(p->geometry);
