@@ -1,4 +1,4 @@
-/* The files of an import: which may be opened, and whether they are complete before assimp reads them. */
+/* Which files an import may open, and whether a file is complete before assimp reads it. */
 #include "base/file.h"
 #include "import/import.h"
 #include <ctype.h>
@@ -12,7 +12,7 @@
 
 status no_memory_for(const request *req, diagnostic *why)
 {
-    return diagnose_at(why, req->path, STATUS_BAD_INPUT, "use a mesh of less detail, if the file is complete",
+    return diagnose_at(why, req->path, STATUS_BAD_INPUT, "use a mesh of less detail, or export the file again if it is damaged",
                        "the file requires more memory than the limit of %llu MiB", (unsigned long long)req->memory_mib);
 }
 
@@ -149,15 +149,16 @@ void files_prepare(file_access *access, const request *req)
  *
  * A PLY or STL file must have the length that its header implies: assimp fills missing data with zeros or uninitialised
  * memory, reads headers without an end for minutes, and allocates memory by counts that no file can hold. OBJ has no
- * counts and no end; assimp checks the lengths of glTF itself, but assimp 5.4 reads text and binary glTF files under
- * either ending, which 5.2 refuses. PLY: Greg Turk, "The PLY Polygon File Format", 1994. STL: 80 bytes, a count, 50
- * bytes a facet; or a text from solid to endsolid. */
+ * counts and no end. assimp checks the lengths of glTF itself, but assimp 5.4 reads text and binary glTF files under
+ * either ending, which 5.2 refuses. PLY: Greg Turk, "The PLY Polygon File Format", 1994. STL: 80 bytes, a count, and
+ * 50 bytes per facet; or a text from 'solid' to 'endsolid'. */
 
 enum { PROPERTIES_MAX = 64, WORD_MAX = 63 };
 
 typedef struct property {
-    int count_bytes, bytes;
-} property; /* count_bytes: size of a list's length; 0: not a list */
+    int count_bytes; /* size of a list's length; 0: not a list */
+    int bytes;       /* size of a value */
+} property;
 
 typedef struct ply {
     const char *at, *end;
@@ -204,22 +205,22 @@ static status bad_header(ply *p, const char *what)
     return diagnose(p->why, STATUS_BAD_INPUT, "fix the header", "%s", what);
 }
 
-static status take_property(ply *p, char words[6][WORD_MAX + 1], int count)
+static status add_property(ply *p, char words[6][WORD_MAX + 1], int count)
 {
     if (p->element_count == 0)
         return bad_header(p, "a property without an element");
     struct element *e = &p->elements[p->element_count - 1];
     bool list = count >= 5 && strcmp(words[1], "list") == 0;
-    property got = {.count_bytes = list ? type_bytes(words[2]) : 0, .bytes = type_bytes(words[list ? 3 : 1])};
-    if (!got.bytes || (list && !got.count_bytes))
+    property parsed = {.count_bytes = list ? type_bytes(words[2]) : 0, .bytes = type_bytes(words[list ? 3 : 1])};
+    if (!parsed.bytes || (list && !parsed.count_bytes))
         return bad_header(p, "a property of unknown type");
     if (e->property_count == PROPERTIES_MAX)
         return bad_header(p, "more than 64 properties");
-    e->properties[e->property_count++] = got;
+    e->properties[e->property_count++] = parsed;
     return STATUS_OK;
 }
 
-static status take_element(ply *p, const char *name, const char *number)
+static status add_element(ply *p, const char *name, const char *number)
 {
     if (p->element_count == (int)(sizeof p->elements / sizeof *p->elements))
         return bad_header(p, "more than 16 PLY elements");
@@ -276,9 +277,9 @@ static status read_header(ply *p)
             code = format ? STATUS_OK
                           : bad_header(p, "the format is not ascii, binary_little_endian or binary_big_endian");
         } else if (strcmp(words[0], "element") == 0 && count >= 3) {
-            code = take_element(p, words[1], words[2]);
+            code = add_element(p, words[1], words[2]);
         } else if (strcmp(words[0], "property") == 0 && count >= 3) {
-            code = take_property(p, words, count);
+            code = add_property(p, words, count);
         }
         if (code != STATUS_OK)
             return code;
@@ -287,7 +288,7 @@ static status read_header(ply *p)
 
 /* ---- body ---- */
 
-/* Skips `count` words and stores the last one in number. False at the end of the file. */
+/* Skips `count` words and stores the last one in *number. False at the end of the file. */
 static bool skip_words(ply *p, uint64_t count, double *number)
 {
     for (; count > 0; count--) {
@@ -309,9 +310,9 @@ static bool skip_words(ply *p, uint64_t count, double *number)
 
 static bool skip_bytes(ply *p, uint64_t count)
 {
-    bool there = (uint64_t)(p->end - p->at) >= count;
-    p->at += there ? count : 0;
-    return there;
+    const bool complete = (uint64_t)(p->end - p->at) >= count;
+    p->at += complete ? count : 0;
+    return complete;
 }
 
 /* Reads the length of a list, an integer of at most eight bytes. A float or double makes no sense here; its bits are
@@ -329,17 +330,17 @@ static bool read_length(ply *p, int bytes, uint64_t *length)
     return *length < (uint64_t)1 << 40;
 }
 
-static bool skip_property(ply *p, const property *of)
+static bool skip_property(ply *p, const property *skipped)
 {
     uint64_t length = 1;
     if (p->ascii) {
         double number = 1;
-        if (of->count_bytes && (!skip_words(p, 1, &number) || !(number >= 0 && number < 1e12)))
+        if (skipped->count_bytes && (!skip_words(p, 1, &number) || !(number >= 0 && number < 1e12)))
             return false;
         return skip_words(p, (uint64_t)number, NULL);
     }
-    return (!of->count_bytes || read_length(p, of->count_bytes, &length)) &&
-           skip_bytes(p, length * (uint64_t)of->bytes);
+    return (!skipped->count_bytes || read_length(p, skipped->count_bytes, &length)) &&
+           skip_bytes(p, length * (uint64_t)skipped->bytes);
 }
 
 static status check_ply(ply *p)
@@ -381,7 +382,7 @@ static status check_gltf(const char *bytes, size_t size, bool binary, diagnostic
 {
     if ((size >= 4 && memcmp(bytes, "glTF", 4) == 0) == binary)
         return STATUS_OK;
-    return diagnose(why, STATUS_BAD_INPUT, "a .gltf file is JSON; binary glTF files end in .glb",
+    return diagnose(why, STATUS_BAD_INPUT, "name a JSON file .gltf and a binary glTF file .glb",
                     binary ? "a binary glTF file begins with 'glTF'" : "this is a binary glTF file");
 }
 

@@ -1,5 +1,5 @@
-/* What cuvette-import's readers make: one mesh whose equal vertices are joined. Without assimp, so that a module for
- * browsers can use it too (wasm/mesh). Ownership: the arrays are the caller's. */
+/* The result of cuvette-import's readers: one mesh whose equal vertices are joined. It does not need assimp, so that
+ * the module for browsers can use it, too (wasm/mesh). Ownership: the caller frees the arrays. */
 #pragma once
 
 #include "base/vec3.h"
@@ -14,8 +14,8 @@ typedef struct request {
     file_kind kind;               /* by the file's extension */
     uint64_t memory_mib, seconds; /* limits on this process */
     uint64_t triangles, vertices; /* limits on the mesh */
-    const char *root;             /* all files that are opened must be below it (base/file.h); "": anywhere */
-    enum { READER_ANY, READER_PLAIN, READER_ASSIMP } reader; /* of OBJ files; plain: obj.h */
+    const char *root;             /* folder of all files that may be opened (base/file.h); "": no restriction */
+    enum { READER_ANY, READER_PLAIN, READER_ASSIMP } reader; /* what reads OBJ files; READER_PLAIN: obj.h */
 } request;
 
 /* One mesh in world coordinates. Vertices that are equal in position, normal and texture coordinates are joined. */
@@ -31,8 +31,8 @@ typedef struct flat_mesh {
     unsigned material_count, materials[256]; /* by slot: index into the scene's materials */
 } flat_mesh;
 
-/* A hash table of the vertices of flat, by the bits of their position, normal and texture coordinates; 0 for what they
- * lack, and never -0. join_vertex finds the vertex with these numbers or adds it. */
+/* A hash table of the vertices of a flat_mesh. The key is the bits of 8 numbers: position, normal and texture
+ * coordinates. Missing ones are 0, and none may be -0. join_vertex finds the vertex with these numbers, or adds it. */
 typedef struct joiner {
     uint32_t *table;
     size_t size;

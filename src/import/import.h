@@ -21,11 +21,11 @@
 typedef struct file_access {
     struct aiFileIO io;
     const char *root;
-    const char *path, *text; /* the text that is read in place of this file, or NULL */
+    const char *path, *text; /* `text` is read in place of the file `path`; NULL: every file is read itself */
     size_t text_length;
     char missing[512];  /* the first file that could not be opened; "": none */
-    const char *reason; /* why it could not be opened */
-    bool outside;       /* it is not below the root */
+    const char *reason; /* why the missing file could not be opened */
+    bool outside;       /* the missing file is not below the root */
 } file_access;
 
 status no_memory_for(const request *req, diagnostic *why);
@@ -35,16 +35,18 @@ FILE *files_open(const request *req);
 /* Checks that the mesh file is a regular file and not empty. */
 status files_check(const request *req, diagnostic *why);
 
-/* Checks that a PLY or STL file has the length that its header implies, and a glTF file the form of its ending. */
+/* Checks that a PLY or STL file has the length that its header implies, and that a glTF file has the form (JSON or
+ * binary) that its ending names. */
 status files_check_complete(const request *req, diagnostic *why);
 
 /* ---- read.c ---- */
 
 /* Reads the file and triangulates it. Fails if a file that it names cannot be opened. */
 status read_scene(const request *req, const struct aiScene **out, diagnostic *why);
-/* The same for a text in place of the mesh file's; NULL: it cannot be read. */
+/* Like read_scene, with `text` in place of the mesh file's contents; NULL on failure. */
 const struct aiScene *read_scene_text(const request *req, const char *text, size_t length);
 
+/* Transforms all meshes to world coordinates and joins them in `flat`. */
 status flatten(const request *req, const struct aiScene *scene, flat_mesh *flat, diagnostic *why);
 
 /* ---- write.c ---- */

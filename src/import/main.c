@@ -37,7 +37,7 @@ static error_t parse_option(int key, char *value, struct argp_state *state)
     case 'r': req->root = value; return 0;
     case 'o':
         if (strcmp(value, "plain") != 0 && strcmp(value, "assimp") != 0)
-            argp_error(state, "'%s' is not plain or assimp", value);
+            argp_error(state, "unknown reader '%s'; use plain or assimp", value);
         req->reader = *value == 'p' ? READER_PLAIN : READER_ASSIMP;
         return 0;
     case 'm':
@@ -45,7 +45,7 @@ static error_t parse_option(int key, char *value, struct argp_state *state)
     case 't':
     case 'v':
         if (!number_parse_int(value, &got) || got < 1)
-            argp_error(state, "'%s' is not a number from 1", value);
+            argp_error(state, "'%s' is not an integer of at least 1", value);
         *number = (uint64_t)got;
         return 0;
     case ARGP_KEY_ARG:
@@ -85,9 +85,9 @@ static void limit(__rlimit_resource_t what, rlim_t value)
     }
 }
 
-/* After this the process cannot create or change a file, open one outside the root, start a program, reach a network,
- * dump its memory, open many files, or outlive its parent. The kernel may lack what os_confine.h needs; the limits then
- * remain. */
+/* Confines the process: it can no longer create or change a file, open one outside the root, start a program, reach a
+ * network, dump its memory, open many files, or outlive its parent. If the kernel lacks what os_confine.h needs, only
+ * the resource limits apply. */
 static void limit_all(const request *req)
 {
     const confine_place readable = {req->root[0] ? req->root : "/", CONFINE_READ};
@@ -143,5 +143,5 @@ int main(int count, char **arguments)
     argp_parse(&parser, count, arguments, 0, NULL, &req);
     req.kind = kind_of(req.path);
     limit_all(&req);
-    _exit(os_call_with_stack(work, &req)); /* without destructors: the scene may be damaged */
+    _exit(os_call_with_stack(work, &req)); /* no destructors run: the scene may be damaged */
 }

@@ -1,15 +1,15 @@
-/* The wire format that cuvette-import writes to standard output for the program that started it. Both are of the same
- * build on the same machine: numbers are in the machine's byte order, without padding. The reader checks everything
- * (scene/assets/mesh_stream.h). In this order:
+/* The wire format that cuvette-import writes to standard output for the program that started it. Both programs are of
+ * the same build and run on the same machine: numbers are in the machine's byte order, without padding. The reader
+ * checks everything (scene/assets/mesh_stream.h). In this order:
  *
  * - the header;
  * - positions: vertex_count x 3 doubles; no two vertices are equal in position, normal and texture coordinates. The
- *   reader relies on it: if there are equal ones, edges between them count as open;
- * - normals, with MESH_WIRE_NORMALS: the same, of any length;
- * - uvs, with MESH_WIRE_UVS: vertex_count x 2 doubles;
+ *   reader relies on this: edges between equal vertices would count as open;
+ * - normals, if MESH_WIRE_NORMALS is set: vertex_count x 3 doubles; they need not be unit vectors;
+ * - uvs, if MESH_WIRE_UVS is set: vertex_count x 2 doubles;
  * - triangles: triangle_count x 3 uint32;
  * - slots: triangle_count x 1 byte, the index of the material;
- * - materials: material_count times record, name, texture (texts without a final 0, of the lengths in the record);
+ * - materials: material_count times a record, a name and a texture path (not terminated; the record has the lengths);
  * - MESH_WIRE_END. */
 #pragma once
 
@@ -19,7 +19,8 @@
 #define MESH_WIRE_END "\nMESHEND"
 enum { MESH_WIRE_VERSION = 2, MESH_WIRE_TEXT_MAX = 1024 };
 enum { MESH_WIRE_NORMALS = 1, MESH_WIRE_UVS = 2 };          /* flags of the header */
-enum { MESH_WIRE_GIVEN = 1, MESH_WIRE_TEXTURE_INSIDE = 2 }; /* flags of a material */
+/* Flags of a material: the file defines it; its image is embedded in the mesh file. */
+enum { MESH_WIRE_GIVEN = 1, MESH_WIRE_TEXTURE_INSIDE = 2 };
 
 typedef struct mesh_wire_header {
     char magic[8];

@@ -11,7 +11,7 @@
 #include <sys/stat.h>
 #include <unistd.h>
 
-/* --- the parts of the file, parsed in parallel, with the vertices of all; the parts do not alter the result --- */
+/* --- parts of the file, parsed in parallel; the result does not depend on how the file is divided --- */
 
 enum {
     PART_BYTES_MIN = 1 << 20, /* a smaller part is not worth a thread */
@@ -31,7 +31,7 @@ static const char *map_file(const request *req, size_t *size)
     return bytes == MAP_FAILED ? NULL : bytes;
 }
 
-/* Divides the text into parts of whole lines. False: its last line is too long. */
+/* Divides the text into parts that end at line ends. False: the last line is too long. */
 static bool divide(obj_file *f, const char *text, size_t size)
 {
     const char *end = memrchr(text, '\n', size);
@@ -63,7 +63,7 @@ static void parse(void *parts, size_t index, int member)
     obj_parse((obj_part *)parts + index);
 }
 
-/* Parses all parts; false: they are not plain. */
+/* Parses all parts; false: a part is not plain. */
 static bool parse_all(obj_file *f)
 {
     thread_team *team = thread_team_create(f->part_count);
@@ -74,7 +74,7 @@ static bool parse_all(obj_file *f)
     bool plain = true;
     size_t uvs = 0;
     for (int i = 0; i < f->part_count; i++) {
-        /* assimp takes the texture coordinates of a face for normals as long as there are only normals. */
+        /* While a file has normals but no texture coordinates yet, assimp reads a face's texture indices as normals. */
         plain &= f->parts[i].plain && !(f->parts[i].early && uvs == 0);
         uvs += f->parts[i].uv_count;
         f->triangle_count += f->parts[i].triangle_count;
@@ -88,8 +88,8 @@ static void copy(void *to, const void *from, size_t bytes)
         memcpy(to, from, bytes);
 }
 
-/* Adds the vertices, texture coordinates and normals of all parts to those of the first one. */
-static bool gather(obj_file *f)
+/* Appends the vertices, texture coordinates and normals of all parts to the first part's. */
+static bool merge_parts(obj_file *f)
 {
     obj_part *all = &f->parts[0];
     for (int i = 1; i < f->part_count; i++) {
@@ -122,11 +122,11 @@ static bool indices_exist(const obj_file *f)
 
 static bool load_text(const request *req, obj_file *f, const char *text, size_t size)
 {
-    return divide(f, text, size) && parse_all(f) && f->triangle_count <= req->triangles && gather(f) &&
+    return divide(f, text, size) && parse_all(f) && f->triangle_count <= req->triangles && merge_parts(f) &&
            indices_exist(f);
 }
 
-/* Parses the file. False: it is not plain, or out of memory; what was allocated remains. */
+/* Parses the file. False: it is not plain, or memory ran out; the caller frees what was allocated. */
 static bool load(const request *req, obj_file *f)
 {
     size_t size;
@@ -140,12 +140,12 @@ static bool load(const request *req, obj_file *f)
 /* --- the triangles in the order of assimp, with joined vertices ---
  *
  * Puts the triangles of a plain OBJ file into the order in which assimp returns them, and joins their vertices. To find
- * the order, the materials and what the statements on groups mean, assimp reads a text with the same statements and one
- * triangle for each run of faces, whose vertex has the run's number as its x. */
+ * the order, the materials and the meaning of groups, assimp reads a text with the same statements but only one
+ * triangle per run of faces; the x of its vertex is the run's number. */
 
 enum {
-    RUNS_MAX = 1 << 24, /* a float holds their numbers */
-    AHEAD = 64          /* corners whose table entries are loaded together */
+    RUNS_MAX = 1 << 24, /* a float represents the number of each run exactly */
+    AHEAD = 64          /* corners whose table entries are prefetched together */
 };
 
 /* A run of faces in the whole file. */
@@ -154,7 +154,7 @@ typedef struct run {
     size_t count;
 } run;
 
-/* The vertex that a place had last; 0: none. */
+/* The last vertex that was joined at a position; index_plus_1 is 0 if there is none. */
 typedef struct last_vertex {
     uint32_t uv, normal, index_plus_1;
 } last_vertex;
@@ -221,8 +221,8 @@ static bool is_last(const last_vertex *v, obj_corner c)
     return v->index_plus_1 && v->uv == c.uv && v->normal == c.normal;
 }
 
-/* Sets the vertices of up to AHEAD corners. False: out of memory, or too many. */
-static bool take_corners(assembly *a, const obj_corner *corners, size_t count, uint32_t *indices)
+/* Sets the vertices of up to AHEAD corners. False: out of memory, or too many vertices. */
+static bool join_corners(assembly *a, const obj_corner *corners, size_t count, uint32_t *indices)
 {
     double numbers[AHEAD][8];
     uint64_t hashes[AHEAD];
@@ -238,7 +238,7 @@ static bool take_corners(assembly *a, const obj_corner *corners, size_t count, u
     for (size_t i = 0; i < count; i++) {
         last_vertex *last = &a->last[corners[i].place - 1];
         if (!is_last(last, corners[i])) {
-            if (!ready[i]) { /* it was the last one before this block */
+            if (!ready[i]) { /* an earlier corner of this block has replaced the last vertex */
                 numbers_of(a, corners[i], numbers[i]);
                 hashes[i] = join_hash(a->flat, numbers[i]);
             }
@@ -251,7 +251,7 @@ static bool take_corners(assembly *a, const obj_corner *corners, size_t count, u
     return true;
 }
 
-static bool take_run(assembly *a, const run *r, uint8_t slot)
+static bool append_run(assembly *a, const run *r, uint8_t slot)
 {
     const obj_corner *corners = r->triangles[0];
     uint32_t *indices = a->flat->triangles[a->flat->triangle_count];
@@ -259,13 +259,13 @@ static bool take_run(assembly *a, const run *r, uint8_t slot)
     a->flat->triangle_count += r->count;
     for (size_t i = 0; i < 3 * r->count; i += AHEAD) {
         const size_t left = 3 * r->count - i;
-        if (!take_corners(a, corners + i, left < AHEAD ? left : AHEAD, indices + i))
+        if (!join_corners(a, corners + i, left < AHEAD ? left : AHEAD, indices + i))
             return false;
     }
     return true;
 }
 
-/* Fills flat with the runs in the order of `order`, whose triangles stand for them. */
+/* Fills `flat` with the runs in the order of the triangles of `order`, one per run. */
 static bool assemble(const request *req, const obj_file *f, const flat_mesh *order, const run *runs, flat_mesh *flat)
 {
     const obj_part *all = &f->parts[0];
@@ -282,7 +282,7 @@ static bool assemble(const request *req, const obj_file *f, const flat_mesh *ord
                   {0}};
     bool good = flat->triangles && flat->slots && a.last && join_reserve(&a.join, flat, all->place_count);
     for (size_t t = 0; t < order->triangle_count && good; t++)
-        good = take_run(&a, &runs[(size_t)order->positions[order->triangles[t][0]].x], order->slots[t]);
+        good = append_run(&a, &runs[(size_t)order->positions[order->triangles[t][0]].x], order->slots[t]);
     free(a.last);
     free(a.join.table);
     return good;
@@ -305,7 +305,7 @@ bool obj_read(const request *req, flat_mesh *flat, const struct aiScene **scene)
 {
     obj_file *f = calloc(1, sizeof *f);
     const bool good = f && load(req, f) && read_all(req, f, flat, scene);
-    if (!good) { /* all memory is for assimp */
+    if (!good) { /* assimp needs the memory */
         free(flat->triangles), free(flat->slots), free(flat->positions), free(flat->normals), free(flat->uvs);
         *flat = (flat_mesh){0};
     }

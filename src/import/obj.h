@@ -1,7 +1,7 @@
 /* A fast reader of plain OBJ files: v, vt, vn, triangles (f), o, g, s, usemtl, mtllib and comments, in their common
  * forms. It accepts only files that assimp reads without an error, and the result equals assimp's bit for bit. All
  * other files (polygons, relative indices, any mistake) are left to assimp, which also explains what is wrong. Format:
- * Wavefront, Advanced Visualizer Manual, appendix B1, "Object Files". Ownership: obj_read frees what a failed reading
+ * Wavefront, Advanced Visualizer Manual, appendix B1, "Object Files". Ownership: if obj_read fails, it frees what it
  * has allocated. */
 #pragma once
 
@@ -10,7 +10,7 @@
 enum {
     OBJ_LINE_MAX = 1000, /* bytes; longer lines are left to assimp */
     OBJ_THREADS_MAX = 8,
-    OBJ_PARTS_MAX = OBJ_THREADS_MAX + 1 /* the last one: a last line without an end */
+    OBJ_PARTS_MAX = OBJ_THREADS_MAX + 1 /* one more for a last line that lacks its \n */
 };
 
 /* The indices of a triangle's corner, from 1; 0: none. */
@@ -18,17 +18,17 @@ typedef struct obj_corner {
     uint32_t place, uv, normal;
 } obj_corner;
 
-/* Faces between two statements other than v, vt, vn: assimp sees one of them, as text, so that it decides their mesh,
- * material and order. */
+/* Consecutive faces with at most v, vt and vn statements between them. assimp reads one triangle per run, and so
+ * decides the run's mesh, material and order. */
 typedef struct obj_run {
     size_t first, count; /* triangles of the part */
-    size_t text_end;     /* the statements before it are obj_part.text[.. text_end - 1] */
+    size_t text_end;     /* the statements before the run are obj_part.text[0 .. text_end - 1] */
 } obj_run;
 
-/* The statements of a part of the file, a range of whole lines. */
+/* The statements of a part of the file, which ends at a line end. */
 typedef struct obj_part {
     const char *begin, *end;
-    bool plain; /* false: something in it is left to assimp, or it is out of memory */
+    bool plain; /* false: assimp must read the file, or memory ran out */
     bool early; /* a face with texture coordinates comes before the part's first vt */
     float (*places)[3], (*uvs)[2], (*normals)[3];
     obj_corner (*triangles)[3];
@@ -39,7 +39,7 @@ typedef struct obj_part {
     size_t place_room, uv_room, normal_room, triangle_room, run_room, text_room;
 } obj_part;
 
-/* A file; the first part has the vertices, texture coordinates and normals of all. */
+/* A file; once parsed, its first part has the vertices, texture coordinates and normals of all parts. */
 typedef struct obj_file {
     obj_part parts[OBJ_PARTS_MAX];
     int part_count;
@@ -52,9 +52,9 @@ typedef struct obj_file {
 /* Parses the lines of the part; each must end in \n. */
 void obj_parse(obj_part *part);
 
-/* Reads a decimal number and moves *at past it. The float is that of assimp 5's fast_atoreal_move: the integer and the
- * fraction of at most 15 digits are rounded one after the other. For numbers below 1 in magnitude that is the nearest
- * float, up to double rounding; for others it may be the next one. False: another form. */
+/* Reads a decimal number and moves *at past it. It rounds like assimp 5's fast_atoreal_move: first the integer, then
+ * the fraction of at most 15 digits. The result is the nearest float (up to double rounding) for numbers below 1 in
+ * magnitude, and may be the next one for others. False: the text has another form. */
 bool obj_number(const char **at, float *number);
 /* Reads an index from 1 to 999999999. */
 bool obj_index(const char **at, uint32_t *index);
@@ -63,5 +63,5 @@ bool obj_index(const char **at, uint32_t *index);
 
 struct aiScene;
 
-/* Reads the file into flat, with the assimp scene of its materials. False: it is left to assimp; nothing changes. */
+/* Reads the file into `flat`; *scene has its materials. False: assimp must read the file; `flat` is empty. */
 bool obj_read(const request *req, flat_mesh *flat, const struct aiScene **scene);

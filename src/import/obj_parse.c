@@ -6,14 +6,14 @@
 
 /* --- numbers, as assimp rounds them, independent of the locale --- */
 
-enum { WHOLE_MAX = 18, PART_MAX = 15, EXPONENT_MAX = 3 }; /* digits */
+enum { INTEGER_MAX = 18, FRACTION_MAX = 15, EXPONENT_MAX = 3 }; /* number of digits */
 
 static bool is_digit(char c)
 {
     return c >= '0' && c <= '9';
 }
 
-/* Reads digits up to `most` of them; returns their number. */
+/* Reads up to `most` digits; returns how many there are. */
 static int digits(const char **at, int most, uint64_t *value)
 {
     const char *p = *at;
@@ -28,26 +28,26 @@ static int digits(const char **at, int most, uint64_t *value)
 
 bool obj_number(const char **at, float *number)
 {
-    static const double tenth[PART_MAX + 1] = {0.0,  1e-1, 1e-2,  1e-3,  1e-4,  1e-5,  1e-6,  1e-7,
+    static const double tenth[FRACTION_MAX + 1] = {0.0,  1e-1, 1e-2,  1e-3,  1e-4,  1e-5,  1e-6,  1e-7,
                                                1e-8, 1e-9, 1e-10, 1e-11, 1e-12, 1e-13, 1e-14, 1e-15};
     const char *p = *at;
     const bool minus = *p == '-';
-    uint64_t whole, part, exponent;
-    if (*p == '.') /* without a sign assimp refuses it */
+    uint64_t integer, fraction, exponent;
+    if (*p == '.') /* assimp refuses .5, but not +.5 */
         return false;
     p += minus || *p == '+';
-    const int before = digits(&p, WHOLE_MAX, &whole);
+    const int before = digits(&p, INTEGER_MAX, &integer);
     if (is_digit(*p))
         return false;
-    float value = (float)whole;
+    float value = (float)integer;
     int after = 0;
     if (*p == '.') {
         p++;
-        after = digits(&p, PART_MAX, &part);
+        after = digits(&p, FRACTION_MAX, &fraction);
         while (is_digit(*p))
             p++;
         if (after > 0)
-            value += (float)((double)part * tenth[after]);
+            value += (float)((double)fraction * tenth[after]);
     }
     if (before == 0 && after == 0)
         return false;
@@ -101,8 +101,8 @@ static bool end_line(const char **at)
     return *(*at)++ == '\n';
 }
 
-/* `count` numbers up to the end of the line. */
-static bool take_numbers(const char **at, int count, float *numbers)
+/* Reads `count` numbers and the end of the line. */
+static bool read_numbers(const char **at, int count, float *numbers)
 {
     for (int i = 0; i < count; i++)
         if (!skip_blanks(at) || !obj_number(at, &numbers[i]))
@@ -110,8 +110,8 @@ static bool take_numbers(const char **at, int count, float *numbers)
     return end_line(at);
 }
 
-/* A corner: place, place/uv, place//normal or place/uv/normal. */
-static bool take_corner(const char **at, obj_corner *corner)
+/* Reads a corner: place, place/uv, place//normal or place/uv/normal. */
+static bool read_corner(const char **at, obj_corner *corner)
 {
     *corner = (obj_corner){0, 0, 0};
     if (!obj_index(at, &corner->place))
@@ -127,11 +127,11 @@ static bool take_corner(const char **at, obj_corner *corner)
     return obj_index(at, &corner->normal);
 }
 
-/* Faces whose corners differ in form, and polygons, are left to assimp. */
-static bool take_face(const char **at, obj_corner triangle[3])
+/* Reads a triangle. Polygons, and faces whose corners differ in form, are left to assimp. */
+static bool read_face(const char **at, obj_corner triangle[3])
 {
     for (int k = 0; k < 3; k++) {
-        if (!skip_blanks(at) || !take_corner(at, &triangle[k]))
+        if (!skip_blanks(at) || !read_corner(at, &triangle[k]))
             return false;
         if (!triangle[k].uv != !triangle[0].uv || !triangle[k].normal != !triangle[0].normal)
             return false;
@@ -146,7 +146,7 @@ static uint32_t larger(uint32_t a, uint32_t b)
 
 static bool add_face(obj_part *o, const char **at)
 {
-    if (!ROOM_FOR_ONE(o, triangles, triangle_room, triangle_count) || !take_face(at, o->triangles[o->triangle_count]))
+    if (!ROOM_FOR_ONE(o, triangles, triangle_room, triangle_count) || !read_face(at, o->triangles[o->triangle_count]))
         return false;
     if (o->run_count == 0 || o->runs[o->run_count - 1].text_end != o->text_length) {
         if (!GROW(o->runs, o->run_room, o->run_count + 1))
@@ -168,10 +168,10 @@ static bool starts_with(const char *line, size_t length, const char *word)
     return length >= n && memcmp(line, word, n) == 0 && (length == n || is_blank(line[n]));
 }
 
-/* A comment is skipped; a statement on groups or materials is kept as text. */
-static bool take_text(obj_part *o, const char **at)
+/* Skips a comment; copies a statement on groups or materials to the part's text. False: any other statement. */
+static bool read_text(obj_part *o, const char **at)
 {
-    static const char *const kept[] = {"o", "g", "s", "usemtl", "mtllib"};
+    static const char *const keywords[] = {"o", "g", "s", "usemtl", "mtllib"};
     const char *line = *at, *end = memchr(line, '\n', (size_t)(o->end - line));
     size_t length = (size_t)(end - line);
     length -= length > 0 && line[length - 1] == '\r';
@@ -183,8 +183,8 @@ static bool take_text(obj_part *o, const char **at)
     if (line[0] == '#')
         return true;
     bool known = false;
-    for (size_t i = 0; i < sizeof kept / sizeof *kept; i++)
-        known |= starts_with(line, length, kept[i]);
+    for (size_t i = 0; i < sizeof keywords / sizeof *keywords; i++)
+        known |= starts_with(line, length, keywords[i]);
     if (!known || !GROW(o->text, o->text_room, o->text_length + length + 1))
         return false;
     memcpy(o->text + o->text_length, line, length);
@@ -193,12 +193,12 @@ static bool take_text(obj_part *o, const char **at)
     return true;
 }
 
-static bool take_line(obj_part *o, const char **at)
+static bool read_line(obj_part *o, const char **at)
 {
     const char *p = *at;
     if (p[0] == 'v' && is_blank(p[1])) {
         *at = p + 1;
-        return ROOM_FOR_ONE(o, places, place_room, place_count) && take_numbers(at, 3, o->places[o->place_count++]);
+        return ROOM_FOR_ONE(o, places, place_room, place_count) && read_numbers(at, 3, o->places[o->place_count++]);
     }
     if (p[0] == 'f' && is_blank(p[1])) {
         *at = p + 1;
@@ -206,14 +206,14 @@ static bool take_line(obj_part *o, const char **at)
     }
     if (p[0] == 'v' && p[1] == 't' && is_blank(p[2])) {
         *at = p + 2;
-        return ROOM_FOR_ONE(o, uvs, uv_room, uv_count) && take_numbers(at, 2, o->uvs[o->uv_count++]);
+        return ROOM_FOR_ONE(o, uvs, uv_room, uv_count) && read_numbers(at, 2, o->uvs[o->uv_count++]);
     }
     if (p[0] == 'v' && p[1] == 'n' && is_blank(p[2])) {
         *at = p + 2;
         return ROOM_FOR_ONE(o, normals, normal_room, normal_count) &&
-               take_numbers(at, 3, o->normals[o->normal_count++]);
+               read_numbers(at, 3, o->normals[o->normal_count++]);
     }
-    return take_text(o, at);
+    return read_text(o, at);
 }
 
 void obj_parse(obj_part *o)
@@ -221,6 +221,6 @@ void obj_parse(obj_part *o)
     o->plain = true;
     for (const char *at = o->begin; at < o->end && o->plain;) {
         const char *line = at;
-        o->plain = take_line(o, &at) && at - line <= OBJ_LINE_MAX;
+        o->plain = read_line(o, &at) && at - line <= OBJ_LINE_MAX;
     }
 }

@@ -1,4 +1,4 @@
-/* Reading of a mesh file with assimp, and its scene as one flat mesh. */
+/* Reads a mesh file with assimp, and flattens its scene to one mesh. */
 #include "base/file.h"
 #include "import/import.h"
 #include <assimp/cimport.h>
@@ -23,7 +23,7 @@ static bool locate_json(const request *req, diagnostic *why)
     fclose(stream);
     if (!root) {
         diagnostic_locate(why, req->path, error.line, error.column);
-        diagnose(why, STATUS_BAD_INPUT, "a .gltf file is JSON; binary glTF files end in .glb", "%s", error.text);
+        diagnose(why, STATUS_BAD_INPUT, "repair the JSON, or export the file again", "%s", error.text);
     }
     return !root;
 }
@@ -38,7 +38,7 @@ static status explain(const request *req, const file_access *access, const char 
                         access->reason);
     if (access->missing[0])
         return diagnose(
-            why, STATUS_BAD_INPUT, "put the image where the mesh file expects it, or remove the line that names it",
+            why, STATUS_BAD_INPUT, "put this file where the mesh file expects it, or remove the line that names it",
             "needs the file '%s': %s", access->missing, access->reason ? access->reason : "cannot be opened");
     if (strstr(message, "bad_alloc") || strstr(message, "length_error") || strstr(message, "bad_array_new_length") ||
         strstr(message, "_M_") || strstr(message, "max_size"))
@@ -187,8 +187,8 @@ static bool is_identity(const affine *a)
     return memcmp(a, &identity, sizeof identity) == 0;
 }
 
-/* The transform of normals: the inverse transpose, up to a positive factor. The inverse transpose is the matrix of
- * cofactors divided by the determinant, of which only the sign matters. */
+/* The transform of normals: the inverse transpose, up to a positive factor. It is the matrix of cofactors divided by
+ * the determinant, and only the determinant's sign matters. */
 static affine normal_transform(const affine *a, double *determinant)
 {
     affine c = {0};
@@ -211,23 +211,23 @@ static void apply(const affine *a, struct aiVector3D v, double to[3])
         to[row] = a->m[row][0] * (double)v.x + a->m[row][1] * (double)v.y + a->m[row][2] * (double)v.z + a->m[row][3];
 }
 
-typedef struct placed {
-    affine place, turn;
+typedef struct node_transform {
+    affine points, normals;
     bool identity, mirrored;
-} placed;
+} node_transform;
 
-static void gather(const walk *w, const struct aiMesh *mesh, const placed *at, unsigned i, double numbers[8])
+static void vertex_numbers(const walk *w, const struct aiMesh *mesh, const node_transform *at, unsigned i, double numbers[8])
 {
     memset(numbers, 0, 8 * sizeof *numbers);
     struct aiVector3D p = mesh->mVertices[i];
     memcpy(numbers, (double[3]){p.x, p.y, p.z}, 3 * sizeof *numbers);
     if (!at->identity)
-        apply(&at->place, p, numbers);
+        apply(&at->points, p, numbers);
     if (w->flat->with_normals && mesh->mNormals) {
         struct aiVector3D n = mesh->mNormals[i];
         memcpy(numbers + 3, (double[3]){n.x, n.y, n.z}, 3 * sizeof *numbers);
         if (!at->identity)
-            apply(&at->turn, n, numbers + 3);
+            apply(&at->normals, n, numbers + 3);
     }
     if (mesh->mTextureCoords[0]) {
         numbers[6] = (double)mesh->mTextureCoords[0][i].x;
@@ -237,8 +237,8 @@ static void gather(const walk *w, const struct aiMesh *mesh, const placed *at, u
         numbers[k] += 0.0; /* -0 becomes 0, so that vertices with either are joined */
 }
 
-/* Joins the vertices that a triangle uses; index[i] is set to the new index of vertex i. */
-static status take_vertices(walk *w, const struct aiMesh *mesh, const placed *at, uint32_t *index)
+/* Joins the vertices that the mesh's triangles use; index[i] is set to the new index of vertex i. */
+static status join_vertices(walk *w, const struct aiMesh *mesh, const node_transform *at, uint32_t *index)
 {
     enum { UNUSED = 0, USED = 1 };
     for (unsigned f = 0; f < mesh->mNumFaces; f++) {
@@ -254,7 +254,7 @@ static status take_vertices(walk *w, const struct aiMesh *mesh, const placed *at
         double numbers[8];
         if (index[i] == UNUSED)
             continue;
-        gather(w, mesh, at, i, numbers);
+        vertex_numbers(w, mesh, at, i, numbers);
         switch (join_vertex(&w->join, w->flat, w->req->vertices, numbers, join_hash(w->flat, numbers), &index[i])) {
         case JOINED: break;
         case JOIN_NO_MEMORY: return no_memory_for(w->req, w->why);
@@ -266,15 +266,16 @@ static status take_vertices(walk *w, const struct aiMesh *mesh, const placed *at
     return STATUS_OK;
 }
 
-static status take_mesh(walk *w, const struct aiMesh *mesh, const affine *place)
+static status append_mesh(walk *w, const struct aiMesh *mesh, const affine *place)
 {
     double determinant;
-    placed at = {.place = *place, .turn = normal_transform(place, &determinant), .identity = is_identity(place)};
+    node_transform at = {
+        .points = *place, .normals = normal_transform(place, &determinant), .identity = is_identity(place)};
     at.mirrored = determinant < 0;
     uint32_t *index = calloc((size_t)mesh->mNumVertices + 1, sizeof *index);
     if (!index)
         return no_memory_for(w->req, w->why);
-    status code = take_vertices(w, mesh, &at, index);
+    status code = join_vertices(w, mesh, &at, index);
     for (unsigned f = 0; f < mesh->mNumFaces && code == STATUS_OK; f++) {
         const unsigned *corner = mesh->mFaces[f].mIndices;
         if (mesh->mFaces[f].mNumIndices == 3) {
@@ -303,5 +304,5 @@ status flatten(const request *req, const struct aiScene *scene, flat_mesh *flat,
         return code;
     flat->triangles = malloc((size_t)w.triangles * sizeof *flat->triangles);
     flat->slots = malloc((size_t)w.triangles);
-    return flat->triangles && flat->slots ? visit_all(&w, take_mesh) : no_memory_for(req, why);
+    return flat->triangles && flat->slots ? visit_all(&w, append_mesh) : no_memory_for(req, why);
 }

@@ -21,8 +21,8 @@ static void get_number(const struct aiMaterial *material, const char *key, doubl
         *to = (double)value;
 }
 
-/* True if the material is one of the file's own. For triangles without a material assimp adds a default one: of the
- * name below; in a PLY file without a name; in a glTF file after all others. */
+/* Whether the file defines the material. For triangles without a material assimp adds a default one: with the name
+ * below; in a PLY file without a name; in a glTF file after all others. */
 static bool is_given(const request *req, const struct aiScene *scene, unsigned index, const struct aiString *name)
 {
     bool gltf = req->kind == FILE_GLTF || req->kind == FILE_GLB;

@@ -1,4 +1,4 @@
-/* Where lessons are. */
+/* Finds the lesson files of a folder, and the folder of the installed lessons. */
 #include "base/array.h"
 #include "base/installed.h"
 #include "base/status.h"

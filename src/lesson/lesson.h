@@ -1,11 +1,10 @@
 /* Lessons: guided experiments for the laboratory's gallery, as data files that a teacher writes and translates. A
- * lesson names a scene, a few of its parameters as controls, a prediction to make, and a curve with a value to read: of
- * `cuvette realism --curve` (realism/realism.h), or a metric at values of one of the controls; cuvette-lesson(5)
- * describes the format. Every word and parameter is tried
- * when a file is read; lesson_check traces it too.
+ * lesson names a scene, a few of its parameters as controls, a prediction to make, and a curve with a value to read.
+ * The curve is one of `cuvette realism --curve` (realism/realism.h), or a metric at values of one of the controls.
+ * cuvette-lesson(5) describes the format. lesson_read validates every word and parameter; lesson_check also measures.
  *
- * Ownership: lesson_read and lesson_list_find give, lesson_destroy and lesson_list_release release. Errors:
- * STATUS_BAD_INPUT with file, line, column and remedy. */
+ * Ownership: the caller releases lessons with lesson_destroy, lists with lesson_list_release. Errors: STATUS_BAD_INPUT
+ * with file, line, column and remedy. */
 #pragma once
 
 #include "realism/realism.h"
@@ -22,40 +21,40 @@ typedef struct lesson_control {
 } lesson_control;
 
 typedef struct lesson {
-    char *path; /* as given */
+    char *path; /* of the lesson file, as given */
     char *name, *title, *language, *question, *answer;
     char *scene_path; /* relative to the working folder */
-    char **setting;   /* "PATH=VALUE" */
+    char **setting;   /* parameters of the scene that the lesson sets, "PATH=VALUE" */
     size_t setting_count;
     lesson_control control[LESSON_CONTROLS_MAX];
     int control_count;
     char *ask;                         /* the prediction's question */
-    char *choices[LESSON_CHOICES_MAX]; /* of the prediction; none: a number, compared with the reading */
+    char *choices[LESSON_CHOICES_MAX]; /* of the prediction; none: it is a number, compared with the reading */
     int choice_count, right;           /* right: index of the correct choice */
     char predicts;                     /* 'x' or 'y': the axis of the curve with the predicted number; 0: none */
-    int over;                          /* the control whose values are the curve's x axis; -1: curve is used */
-    realism_curve curve;
+    int over;            /* index of the control on the curve's x axis; -1: `curve` is used */
+    realism_curve curve; /* if over is -1 */
     double tolerance; /* largest |measured - theory| of the curve; INFINITY for times */
-    char *metric;     /* of the value to read; NULL: the curve's point at `at` */
+    char *metric;     /* the metric to read; NULL: the curve is read at x = `at` */
     double at;
     char *reading, *unit; /* label of the value to read, and its unit; "deg" converts a metric in radians */
     double answer_within; /* a predicted number counts as right within this distance */
-    long line, column;    /* of the key measure */
+    long line, column;    /* of the key 'measure' */
     scene *start;         /* the scene with the lesson's parameters set, its files not loaded; its path is scene_path */
 } lesson;
 
 status lesson_read(const char *path, lesson **out, diagnostic *why);
-/* The same for a file below root (base/file.h), and a scene below it. */
+/* Like lesson_read; the lesson and its scene must be below root (base/file.h). */
 status lesson_read_below(const char *path, const char *root, lesson **out, diagnostic *why);
 void lesson_destroy(lesson *l); /* NULL is allowed */
 
-/* Whether its curve is made of times, which differ from one measurement to the next and have no tolerance. */
+/* Whether the lesson measures times, which differ from one measurement to the next and have no tolerance. */
 bool lesson_is_timed(const lesson *l);
-/* Labels of its axes, with units; fresh memory, NULL if that runs out. */
+/* Labels of the curve's axes, with units. Fresh memory; NULL if memory runs out. */
 char *lesson_x_label(const lesson *l);
 char *lesson_y_label(const lesson *l);
 
-/* What is measured in a scene, which may be the lesson's with other values of its controls. */
+/* What lesson_measure finds in a scene: the lesson's, perhaps with other values of its controls. */
 typedef struct lesson_result {
     realism_points points;
     double error; /* largest |measured - theory| of the curve */
@@ -64,11 +63,11 @@ typedef struct lesson_result {
 } lesson_result;
 status lesson_measure(const lesson *l, const scene *s, isa level, lesson_result *out, diagnostic *why);
 
-/* The same in the lesson's own scene; an error is located in the lesson. A curve beyond its tolerance is an error. */
+/* Measures the lesson's scene as the lesson sets it. A curve beyond its tolerance is an error, located in the lesson. */
 status lesson_check(const lesson *l, isa level, lesson_result *out, diagnostic *why);
 
-/* The command that prints the curve, and the one that prints the value; --set for the parameters that the lesson sets.
- * A metric over a control has only the latter. Fresh memory; NULL if memory runs out. */
+/* The command that prints the curve, or the value, with --set for the parameters that the lesson sets. No command
+ * prints the curve of a metric over a control. Fresh memory; NULL if memory runs out. */
 char *lesson_command(const lesson *l, bool curve);
 
 /* The folder of the lessons that belong to the program: experiments/lessons next to its source or where `make install`

@@ -1,4 +1,4 @@
-/* What a lesson measures, and the commands that give the same numbers. */
+/* Measures the curve and the value of a lesson, and names the commands that print the same numbers. */
 #include "base/number.h"
 #include "base/text.h"
 #include "job/job.h"
@@ -13,8 +13,8 @@
 #include <stdlib.h>
 #include <string.h>
 
-/* --- the metrics of lessons: those of `cuvette realism` and `cuvette motion`, and speedup, the time of a frame with
- * one thread over that with the scene's threads --- */
+/* --- the metrics of lessons: those of `cuvette realism` and `cuvette motion`, and speedup (the time of a frame with
+ * one thread, divided by the time with the scene's threads) --- */
 
 typedef struct lesson_meter {
     const lesson *l;
@@ -23,7 +23,7 @@ typedef struct lesson_meter {
     double one_thread_s; /* time of a frame with one thread; 0 before it is measured */
 } lesson_meter;
 
-/* In the lesson's unit; tolerance INFINITY for times. */
+/* A metric in the lesson's unit; the tolerance of times is INFINITY. */
 typedef struct lesson_value {
     double measured, theory, tolerance;
 } lesson_value;
@@ -45,7 +45,7 @@ static status read_realism(const lesson *l, const scene *s, isa level, lesson_va
     return STATUS_OK;
 }
 
-/* Of the scene's first slime. */
+/* Measures a motion metric of the scene's first slime. */
 static status read_motion(const lesson *l, const scene *s, isa level, lesson_value *out, diagnostic *why)
 {
     for (size_t i = 0; i < s->mesh_count; i++) {
@@ -60,7 +60,7 @@ static status read_motion(const lesson *l, const scene *s, isa level, lesson_val
     return diagnose(why, STATUS_BAD_INPUT, "add a mesh with 'generate: slime'", "nothing moves in this scene");
 }
 
-/* Median of FRAMES frames, after one that starts the threads. */
+/* The median time of FRAMES frames, after a frame that starts the threads. */
 static status time_frame(lesson_meter *m, const scene *s, double *wall_s, int *workers, diagnostic *why)
 {
     job_account first, timed = {.result = NULL};
@@ -77,11 +77,11 @@ static status time_frame(lesson_meter *m, const scene *s, double *wall_s, int *w
 
 static status time_one_thread(lesson_meter *m, const scene *s, diagnostic *why)
 {
-    int one;
+    int workers;
     scene *copy = scene_clone(s);
     status code = copy ? scene_set(copy, "render.threads", "1", why) : out_of_memory(why);
     THEN(code, job_load(m->frames, copy, NULL, why));
-    THEN(code, time_frame(m, copy, &m->one_thread_s, &one, why));
+    THEN(code, time_frame(m, copy, &m->one_thread_s, &workers, why));
     scene_destroy(copy);
     return code;
 }
@@ -125,9 +125,9 @@ static void lesson_meter_release(lesson_meter *m)
 
 /* --- curves --- */
 
-enum { STEPS = 25 }; /* of a control with a range */
+enum { STEPS = 25 }; /* points of a curve over a control with a range */
 
-/* The point of the curve that is nearest to `at`. */
+/* Reads the value from the curve's point nearest to x = `at`. */
 static void read_point(const lesson *l, lesson_result *out)
 {
     double nearest = INFINITY;
@@ -172,7 +172,7 @@ static status sweep_control(lesson_meter *m, const scene *s, realism_points *out
     return code;
 }
 
-/* A time is not measured again: it would be another one than the point of the curve. */
+/* The curve's point at the control's present value. A time is read from it: a second measurement would differ. */
 static const realism_point *point_of_now(const lesson *l, const scene *s, const realism_points *points)
 {
     char *text = NULL;
@@ -232,7 +232,7 @@ status lesson_check(const lesson *l, isa level, lesson_result *out, diagnostic *
     return code;
 }
 
-/* Without a curve, the command that measures the metric. */
+/* The command without --set: for the curve, or for the metric. */
 static char *command_of(const lesson *l, bool curve)
 {
     if (curve)

@@ -2,7 +2,7 @@
  *
  *   lesson: critical-angle           the name: letters, digits and -
  *   title: TEXT
- *   language: en                     * of the texts
+ *   language: en                     * language of the texts
  *   question: TEXT
  *   scene: ../scenes/rod.yaml        relative to this file
  *   set: {PARAMETER: VALUE, ..}      *
@@ -11,15 +11,15 @@
  *     - {parameter: liquid.medium, label: TEXT, choices: [water, ethanol]}
  *   prediction: {ask: TEXT, within: 3}                              a number, compared with the value to read
  *   prediction: {ask: TEXT, choices: [TEXT, ..], right: TEXT}       or a choice
- *     axis: x                        * of the curve, where the predicted number is; or y
+ *     axis: x                        * the curve's axis of the predicted number; or y
  *   measure:
- *     curve: mirror                  of `cuvette realism --curve`; or
+ *     curve: mirror                  a curve of `cuvette realism --curve`; or
  *     over: liquid.ior               the metric at the values of this control
  *     tolerance: 1e-9                not with the metric speedup
  *     reading: TEXT                  label of the value to read
  *     unit: deg                      *
- *     metric: critical.liquid        of `cuvette realism` or `cuvette motion`, or speedup; or
- *     at: 60                         the curve's point there
+ *     metric: critical.liquid        a metric of `cuvette realism` or `cuvette motion`, or speedup; or
+ *     at: 60                         the x at which the curve is read
  *   answer: TEXT */
 #include "base/file.h"
 #include "base/number.h"
@@ -76,8 +76,7 @@ static status expect_map(const reader *r, const node *parent, const char *key, c
                       n ? "'%s' has no keys" : "'%s' is missing", key);
 }
 
-/* What a part of the lesson, a value or its scene, says: if it is wrong, the error is located in the lesson; if the
- * machine failed, the lesson is not to blame. */
+/* Reports the error of a value or of the scene: bad input is located in the lesson, a failure of the machine is not. */
 static status relay(const reader *r, const node *at, status code, const char *remedy, const diagnostic *refused)
 {
     if (code == STATUS_BAD_INPUT)
@@ -87,19 +86,20 @@ static status relay(const reader *r, const node *at, status code, const char *re
     return code;
 }
 
-/* A value as text; expected and wrong: the remedy and the error if it is none. */
-static status read_value(const reader *r, const node *n, const char *expected, const char *wrong, char **out)
+/* Reads a value as text. If the node is not a value, `error` and `remedy` are reported. */
+static status read_value(const reader *r, const node *n, const char *remedy, const char *error, char **out)
 {
     if (!node_is_value(n))
-        return node_error(r->file, n, r->why, expected, "%s", wrong);
+        return node_error(r->file, n, r->why, remedy, "%s", error);
     return (*out = node_value_text(n)) ? STATUS_OK : out_of_memory(r->why);
 }
 
-/* A list of texts, at most LESSON_CHOICES_MAX. */
+/* Reads a list of 2 to LESSON_CHOICES_MAX texts. */
 static status read_choices(const reader *r, const node *n, char **out, int *count)
 {
     if (n->kind != NODE_LIST || n->count < 2 || n->count > LESSON_CHOICES_MAX)
-        return node_error(r->file, n, r->why, "write a list such as [water, ethanol]", "choices are not 2 to 6 texts");
+        return node_error(r->file, n, r->why, "write a list of 2 to 6 texts, such as [water, ethanol]",
+                          "invalid list of choices");
     for (size_t i = 0; i < n->count; i++) {
         TRY(read_value(r, n->items[i], "write a word or a number", "this is not a choice", &out[*count]));
         ++*count;
@@ -122,11 +122,11 @@ static status try_range(const reader *r, scene *s, const node *n, const lesson_c
     for (int i = 0; i < 2; i++)
         TRY(try_value(r, s, node_get(n, keys[i]), c->parameter, number_format(ends[i], text)));
     return c->from < c->to ? STATUS_OK
-                           : node_error(r->file, node_get(n, "to"), r->why, "let 'to' be greater than 'from'",
+                           : node_error(r->file, node_get(n, "to"), r->why, "make 'to' greater than 'from'",
                                         "the range of %s is empty", c->parameter);
 }
 
-static status read_control(const reader *r, const node *n, scene *tried)
+static status read_control(const reader *r, const node *n, scene *trial)
 {
     static const char *const keys[] = {"parameter", "label", "from", "to", "choices"};
     lesson_control *c = &r->l->control[r->l->control_count++];
@@ -140,11 +140,11 @@ static status read_control(const reader *r, const node *n, scene *tried)
     if (!choices) {
         TRY(read_number(r, n, "from", &c->from));
         TRY(read_number(r, n, "to", &c->to));
-        return try_range(r, tried, n, c);
+        return try_range(r, trial, n, c);
     }
     TRY(read_choices(r, choices, c->choices, &c->choice_count));
     for (int i = 0; i < c->choice_count; i++)
-        TRY(try_value(r, tried, choices->items[i], c->parameter, c->choices[i]));
+        TRY(try_value(r, trial, choices->items[i], c->parameter, c->choices[i]));
     return STATUS_OK;
 }
 
@@ -154,15 +154,15 @@ static status read_controls(const reader *r, const node *root)
     if (!list || list->kind != NODE_LIST || list->count < 1 || list->count > LESSON_CONTROLS_MAX)
         return node_error(r->file, list ? list : root, r->why, "add a list controls: with one to five parameters",
                           "a lesson needs one to five controls");
-    scene *tried = scene_clone(r->l->start);
-    status code = tried ? STATUS_OK : out_of_memory(r->why);
+    scene *trial = scene_clone(r->l->start);
+    status code = trial ? STATUS_OK : out_of_memory(r->why);
     for (size_t i = 0; i < list->count && code == STATUS_OK; i++)
-        code = read_control(r, list->items[i], tried);
-    scene_destroy(tried);
+        code = read_control(r, list->items[i], trial);
+    scene_destroy(trial);
     return code;
 }
 
-/* Without links and "..", and relative to the working folder if it is below; unchanged for a missing file. */
+/* The path without links and "..", relative to the working folder if the file is below it; unchanged if it is missing. */
 static char *short_path(const char *path)
 {
     char real[PATH_MAX], here[PATH_MAX];
@@ -186,7 +186,7 @@ static status read_scene(const reader *r, const node *root)
         return out_of_memory(r->why);
     diagnostic refused = {.what = ""};
     const status code = scene_read_below(l->scene_path, r->root, &l->start, &refused);
-    /* an error inside the scene is located there, and the machine's is not this file's */
+    /* an error inside the scene file keeps its position; a failure of the machine has none in this file */
     if (code == STATUS_OK || code == STATUS_FAILURE || refused.line > 0) {
         if (code != STATUS_OK && r->why)
             *r->why = refused;
@@ -270,7 +270,8 @@ static status read_curve(const reader *r, const node *n)
                       curve && curve->kind == NODE_SCALAR ? curve->text : "");
 }
 
-/* Each value must be a number of the parameter's type. */
+/* The values of a control on the x axis must be numbers; a range must not have an integer parameter, so a fraction of
+ * it is tried. */
 static status try_over(const reader *r, const node *at, const lesson_control *c)
 {
     double number;
@@ -281,11 +282,11 @@ static status try_over(const reader *r, const node *at, const lesson_control *c)
                               "'%.64s', a choice of %.128s, is not a number", c->choices[i], c->parameter);
     if (c->choice_count)
         return STATUS_OK;
-    scene *tried = scene_clone(r->l->start);
+    scene *trial = scene_clone(r->l->start);
     diagnostic refused = {.what = ""};
-    status code = tried ? STATUS_OK : out_of_memory(&refused);
-    THEN(code, scene_set(tried, c->parameter, number_format(c->from + (c->to - c->from) / M_PI, text), &refused));
-    scene_destroy(tried);
+    status code = trial ? STATUS_OK : out_of_memory(&refused);
+    THEN(code, scene_set(trial, c->parameter, number_format(c->from + (c->to - c->from) / M_PI, text), &refused));
+    scene_destroy(trial);
     return relay(r, at, code, "give the control's values as choices", &refused);
 }
 
@@ -302,14 +303,14 @@ static status read_over(const reader *r, const node *measure, const node *over)
                       "'over' is none of the controls");
 }
 
-/* A time has none. */
+/* Times have no tolerance. */
 static status read_tolerance(const reader *r, const node *n)
 {
     const node *tolerance = node_get(n, "tolerance");
     if (!lesson_is_timed(r->l))
         return read_number(r, n, "tolerance", &r->l->tolerance);
     r->l->tolerance = INFINITY;
-    return tolerance ? node_error(r->file, tolerance, r->why, "remove it", "times have no tolerance") : STATUS_OK;
+    return tolerance ? node_error(r->file, tolerance, r->why, "remove 'tolerance'", "times have no tolerance") : STATUS_OK;
 }
 
 static status read_measure(const reader *r, const node *root)

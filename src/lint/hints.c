@@ -1,3 +1,4 @@
+/* Hints: what a valid scene seems to lack, and settings that have no effect, found without rendering. */
 #include "lint/lint.h"
 #include "scene/model/camera.h"
 #include "scene/model/cover.h"
@@ -13,8 +14,7 @@ static bool is_lit(const material *m)
     return m->diffuse > 0.0 || m->specular > 0.0;
 }
 
-/* Whether the solid is inside another medium, so that with the index of air it is a bubble; decided by the position of
- * its centre or base. */
+/* Whether the solid is a bubble, with its centre or base inside another medium. */
 static bool is_inside_medium(const scene *s, const solid *bubble)
 {
     for (size_t i = 0; i < s->solid_count; i++) {
@@ -27,7 +27,7 @@ static bool is_inside_medium(const scene *s, const solid *bubble)
     return false;
 }
 
-/* Whether the solid displaces another one, so that with the index of the surroundings it appears as a cavity. */
+/* Whether the solid displaces a visible one, and so appears as a cavity even with the index of the surroundings. */
 static bool cuts_another(const scene *s, const solid *cutter)
 {
     for (size_t i = 0; i < s->solid_count; i++) {
@@ -39,7 +39,7 @@ static bool cuts_another(const scene *s, const solid *cutter)
     return false;
 }
 
-/* Properties that a transparent solid appears to lack. */
+/* Notes properties that a transparent solid seems to lack. */
 static void hint_at_clear(const scene *s, const solid *owner, const note_taker *taker)
 {
     const material *m = &owner->surface;
@@ -62,8 +62,8 @@ static void hint_at_clear(const scene *s, const solid *owner, const note_taker *
 /* The largest refractive index of transparent matter for visible light: germanium and silicon have 4 to 5. */
 #define INDEX_MOST 5.0
 
-/* A refractive index meant for a mirror, on a solid with reflectivity 0. Above MIRROR_IOR a transparent solid really is
- * a mirror. True if there is a note. */
+/* Notes a refractive index that seems meant to make a mirror, on a solid with reflectivity 0. Above MIRROR_IOR a
+ * transparent solid really is a mirror. True if there is a note. */
 static bool hint_at_index(const scene *s, const solid *owner, const note_taker *taker)
 {
     const material *m = &owner->surface;
@@ -84,7 +84,7 @@ static bool hint_at_index(const scene *s, const solid *owner, const note_taker *
     return true;
 }
 
-/* Properties that the solid appears to lack. */
+/* Notes properties that the solid seems to lack. */
 static void hint_at_solid(const scene *s, const solid *owner, const note_taker *taker)
 {
     const material *m = &owner->surface;
@@ -116,8 +116,7 @@ static void hint_at_cover(const scene *s, const solid *hidden, const note_taker 
     }
 }
 
-/* Parameters of what is expected to be seen. Their notes are those of a change on the command line: see
- * scene/model/inert. */
+/* Parameters that are set in order to see their effect. lint/inert.c says why one has none, as for a --set. */
 static const struct {
     const char *name;
     size_t offset;
@@ -132,7 +131,7 @@ static double expected_value(const material *m, size_t i)
     return value;
 }
 
-static void hint_at_vain(const scene *s, const char *owner, const material *m, const material *same_as,
+static void hint_at_unseen(const scene *s, const char *owner, const material *m, const material *same_as,
                          const note_taker *taker)
 {
     for (size_t i = 0; i < sizeof expected / sizeof *expected; i++) {
@@ -146,22 +145,22 @@ static void hint_at_vain(const scene *s, const char *owner, const material *m, c
     }
 }
 
-/* Materials first; then solids that have other values. Layers have no light. */
-static void hint_at_all_vain(const scene *s, const note_taker *taker)
+/* Materials first, then solids with other values than their material. Layers show no light, so there is no hint. */
+static void hint_at_all_unseen(const scene *s, const note_taker *taker)
 {
     if (integrator_traits_of(&s->render)->layers)
         return;
     for (size_t i = 0; i < s->material_count; i++)
-        hint_at_vain(s, s->materials[i].name, &s->materials[i].value, NULL, taker);
+        hint_at_unseen(s, s->materials[i].name, &s->materials[i].value, NULL, taker);
     for (size_t i = 0; i < s->solid_count; i++) {
         const solid *one = &s->solids[i];
         if (one->visible)
-            hint_at_vain(s, one->name, &one->surface,
+            hint_at_unseen(s, one->name, &one->surface,
                          one->material_index < 0 ? NULL : &s->materials[one->material_index].value, taker);
     }
 }
 
-/* Settings without effect. */
+/* Notes settings of a solid that have no effect. */
 static void hint_at_idle(const scene *s, const solid *owner, const note_taker *taker)
 {
     const material *m = &owner->surface;
@@ -188,7 +187,7 @@ static void hint_at_idle(const scene *s, const solid *owner, const note_taker *t
                     owner->name);
 }
 
-/* Below it, noise in soft shadows is plain. */
+/* With fewer samples per pixel, noise in soft shadows is obvious. */
 enum { SOFT_SAMPLES = 9 };
 
 static void hint_at_lights(const scene *s, const note_taker *taker)
@@ -203,11 +202,11 @@ static void hint_at_lights(const scene *s, const note_taker *taker)
     for (size_t i = 0; i < s->light_count; i++) {
         const light *lamp = &s->lights[i];
         if (lamp->spectrum >= LAMP_SODIUM && lamp->intensity > 0.0 && s->render.spectrum != SPECTRUM_SPECTRAL)
-            note_report(taker, lamp->name, "spectrum", "set render.spectrum=spectral, which traces each line",
+            note_report(taker, lamp->name, "spectrum", "set render.spectrum=spectral, which renders each line",
                         "%s emits spectral lines, and an rgb image shows only their colour", lamp->name);
         if (lamp->polarised > 0.0 && !s->render.polarisation)
             note_report(taker, lamp->name, "polarised", "set render.polarisation to on",
-                        "light is traced without its polarisation: that of %s has no effect", lamp->name);
+                        "light is traced without its polarisation: the polarisation of %s has no effect", lamp->name);
         const bool soft = scene_has_soft_shadows(&s->render);
         const char *size = lamp->kind == LIGHT_RECTANGLE ? "width"
                            : lamp->kind == LIGHT_SUN     ? "angular_diameter_deg"
@@ -219,7 +218,7 @@ static void hint_at_lights(const scene *s, const note_taker *taker)
                         lamp->name);
         else if (soft && light_has_size(lamp) && s->render.samples < SOFT_SAMPLES)
             note_report(taker, lamp->name, size, "set render.samples=16",
-                        "each pixel takes the light of %lld points of %s: its shadows are grainy",
+                        "each pixel samples %lld points of %s: its shadows are grainy",
                         (long long)s->render.samples, lamp->name);
         else if (light_has_size(lamp) && !path && !soft)
             note_report(taker, lamp->name, size, "set render.soft_shadows=on, or render.integrator=path",
@@ -240,10 +239,11 @@ static void hint_at_beams(const scene *s, const note_taker *taker)
         const beam *b = &s->beams[i];
         if (b->lights && b->visible && !scene_has_caustics(&s->render))
             note_report(taker, b->name, "lights", "set render.caustics=photons",
-                        "%s lights nothing: photons alone bring the light of beams", b->name);
+                        "%s lights nothing: only photons carry the light of beams", b->name);
         else if (!b->lights && b->profile != BEAM_UNIFORM)
             note_report(taker, b->name, "profile", "set its lights to on",
-                        "the rays of %s are shown evenly: its profile is that of its light", b->name);
+                        "the profile of %s has no effect: it is the profile of the light that the beam does not emit",
+                        b->name);
     }
 }
 
@@ -266,7 +266,7 @@ static void hint_at_analyser(const scene *s, const note_taker *taker)
                     "light is traced without its polarisation: the analyser has no effect");
 }
 
-/* A polariser or a wave plate that does less than its name says. */
+/* Notes a polariser or a retarder that does less than its name says. */
 static void hint_at_sheet(const scene *s, const solid *owner, const note_taker *taker)
 {
     const material *m = &owner->surface;
@@ -274,7 +274,7 @@ static void hint_at_sheet(const scene *s, const solid *owner, const note_taker *
     if (m->sheet == SHEET_NONE)
         return;
     if (solid_is_opaque(s, owner))
-        note_report(taker, owner->name, "sheet", "set its transparency", "%s is opaque: no light passes its sheet",
+        note_report(taker, owner->name, "sheet", "set its transparency", "%s is opaque: no light passes through its sheet",
                     owner->name);
     else if (integrator_traits_of(r)->drawn)
         note_report(taker, owner->name, "sheet", "set render.integrator to whitted and render.polarisation to on",
@@ -291,11 +291,11 @@ static void hint_at_sheet(const scene *s, const solid *owner, const note_taker *
     else if (sheet_disperses(m, r) && r->spectrum != SPECTRUM_SPECTRAL)
         note_report(
             taker, owner->name, "birefringence", "set render.spectrum to spectral",
-            "the retardance of %s is that of render.lambda_nm in every channel: there are no interference colours",
+            "every channel uses the retardance of %s at render.lambda_nm: there are no interference colours",
             owner->name);
 }
 
-/* Double refraction that is not traced, or not all of it. */
+/* Notes double refraction that is rendered only in part, or not at all. */
 static void hint_at_crystal(const scene *s, const solid *owner, const note_taker *taker)
 {
     const material *m = &owner->surface;
@@ -317,13 +317,13 @@ static void hint_at_crystal(const scene *s, const solid *owner, const note_taker
             "light is traced without its polarisation: each crystal divides light from another one into halves");
 }
 
-/* The film does not depend on them, so that scene/model/inert has no rules for them. */
+/* Exposure and tone do not change the film, so lint/needs.c has no rows for them. */
 static void hint_at_tone(const scene *s, const note_taker *taker)
 {
     const camera *c = &s->camera;
     if (integrator_traits_of(&s->render)->layers && (c->exposure != 0.0 || c->tone != TONE_NONE))
         note_report(taker, "camera", c->exposure != 0.0 ? "exposure" : "tone", "set render.integrator to whitted",
-                    "layers are no light: their images are shown as they are");
+                    "layers show no light: exposure and tone do not apply to them");
     else if (c->white != 4.0 && c->tone != TONE_REINHARD)
         note_report(taker, "camera", "white", "set camera.tone to reinhard", "this tone curve has no white point");
 }
@@ -359,6 +359,6 @@ void scene_hints(const scene *s, const note_taker *taker)
             hint_at_cover(s, &s->solids[i], taker);
         }
     }
-    hint_at_all_vain(s, taker);
+    hint_at_all_unseen(s, taker);
     scene_range_hints(s, taker);
 }

@@ -1,5 +1,5 @@
-/* Asks the table (needs.c) about a parameter: for all that has a surface, which are solids with a material, and faces
- * with materials from a mesh file (see shading_material_of_face); and what the first hits of an image show. */
+/* Whether a parameter has an effect: asks the table (needs.c), for a material on every solid that has it and on every
+ * face with a material from a mesh file (see shading_material_of_face); then compares images of first hits. */
 #include "lint/inert.h"
 #include "scene/model/face_materials.h"
 #include "scene/model/medium.h"
@@ -13,16 +13,16 @@
 
 /* --- surfaces --- */
 
-/* Of the surface of a transparent solid, and of each face of an opaque one. */
+/* Whether the parameter belongs to the surface of a transparent solid, but to each face of an opaque one. */
 static bool is_of_mirror(const inert_case *c)
 {
     return is_named(c, "reflectivity") || is_named(c, "roughness");
 }
 
-/* Parameters of the interior. */
+/* Whether the parameter describes the interior of a solid. */
 static bool is_of_region(const inert_case *c)
 {
-    static const char *const of_body[] = {"extraordinary_ior",
+    static const char *const interior[] = {"extraordinary_ior",
                                           "optic_axis",
                                           "ior",
                                           "medium",
@@ -42,7 +42,7 @@ static bool is_of_region(const inert_case *c)
                                           "retardance_deg",
                                           "birefringence",
                                           NULL};
-    return is_among(c, of_body);
+    return is_among(c, interior);
 }
 
 static bool is_straight(const inert_case *c)
@@ -50,8 +50,8 @@ static bool is_straight(const inert_case *c)
     return c->s->render.transmission == TRANSMISSION_SIMPLE;
 }
 
-/* Whether the solid's own surface determines it on faces whose other properties come from a material of the scene or
- * the file. */
+/* Whether the solid's own surface determines the parameter on faces whose other properties come from a material of the
+ * scene (`named`) or of the mesh file (`given`). */
 static bool is_from_solid(const inert_case *c, const material *named, const face_material *given)
 {
     static const char *const never_given[] = {"ambient", "reflectivity", "roughness", "checker", "checker_color", NULL};
@@ -66,7 +66,7 @@ static bool is_from_solid(const inert_case *c, const material *named, const face
            (is_named(c, "color") && clear);
 }
 
-/* The rules of a uniform surface, applied to one kind of face. */
+/* Applies the rules of a uniform surface to the faces of one slot. */
 static bool inert_on_slot(const inert_case *c, int slot)
 {
     const shading_material mat = shading_material_of_face(c->s, c->owner, &c->owner->surface, slot);
@@ -83,12 +83,12 @@ static bool say_by_face(const inert_case *c)
                      "the materials of the faces of %s come from the mesh file", c->owner->name);
 }
 
-/* Unknown until the mesh is loaded. */
+/* Before the mesh is loaded, its faces are unknown: false. */
 static bool inert_faces(const inert_case *c)
 {
     if (!has_face_materials(c->s, c->owner))
         return false;
-    if (is_of_region(c)) { /* transparent if any face is */
+    if (is_of_region(c)) { /* the solid is transparent if any face is */
         material clear = *c->m;
         clear.transparency = 1.0;
         inert_case region = *c;
@@ -109,8 +109,8 @@ static bool inert_faces(const inert_case *c)
     return some || say_by_face(c);
 }
 
-/* For the scene's material of c: whether it applies to a face with its name. */
-static bool is_named_ones(const inert_case *c)
+/* Whether the parameter of a material of the scene applies to faces whose material has the same name. */
+static bool applies_to_named_faces(const inert_case *c)
 {
     if (is_of_region(c))
         return false;
@@ -135,7 +135,7 @@ static bool inert_named_faces(const inert_case *c)
         face_material_source(c->s, c->owner, slot, &named, &given);
         if (named != &c->s->materials[c->at.index].value)
             continue;
-        if (is_named_ones(c) ? !inert_on_slot(c, slot) : !say_of_solid(c))
+        if (applies_to_named_faces(c) ? !inert_on_slot(c, slot) : !say_of_solid(c))
             return false;
     }
     return true; /* no result if no face has that name */
@@ -153,7 +153,7 @@ static bool unused(const inert_case *c, const solid *hidden)
     return inert_say(c, "unused-material", remedy.text, "no visible solid has this material");
 }
 
-/* For each visible solid with the material, and each face with its name; the result is the first one's. */
+/* Asks for each visible solid with the material, and each face with its name; the note is the first user's. */
 static bool inert_material(const inert_case *c)
 {
     const scene *s = c->s;
@@ -178,7 +178,7 @@ static bool inert_material(const inert_case *c)
 
 /* --- what the first hits show --- */
 
-/* Whether the film is unchanged with the parameter scaled by that factor. */
+/* Whether the film is unchanged if the parameter is scaled by this factor. */
 static bool unchanged_scaled(const inert_case *c, const char *path, double factor)
 {
     char *now = NULL;
@@ -186,13 +186,13 @@ static bool unchanged_scaled(const inert_case *c, const char *path, double facto
         return false;
     double value = strtod(now, NULL);
     free(now);
-    if (value == 0.0 && c->at.row->group == PARAM_SOLID) /* of contact_radius: the solid's radius */
+    if (value == 0.0 && c->at.row->group == PARAM_SOLID) /* a contact_radius of 0 is the solid's radius */
         value = c->s->solids[c->at.index].shape.radius;
     return inert_unchanged(c, "%s=%.6g", path, value * factor);
 }
 
-/* The background, and surface properties that only decide whether there is a surface, may matter for this image of a
- * layer: the witness decides. */
+/* In an image of a layer, some parameters matter only if they create, remove or move a first hit: the witness tries
+ * other values. */
 static bool is_unmet_by_camera(const inert_case *c, const char *path)
 {
     static const struct {
@@ -217,9 +217,9 @@ static bool is_unmet_by_camera(const inert_case *c, const char *path)
     for (size_t i = 0; i < sizeof rows / sizeof *rows; i++) {
         if (!is_named(c, rows[i].name))
             continue;
-        const bool part = strcmp(rows[i].name, "contact_radius") == 0;
-        bool same = (rows[i].values[0] && !part) ||
-                    (unchanged_scaled(c, path, 0.5) && unchanged_scaled(c, path, part ? 0.9 : 1.05));
+        const bool is_contact = strcmp(rows[i].name, "contact_radius") == 0;
+        bool same = (rows[i].values[0] && !is_contact) ||
+                    (unchanged_scaled(c, path, 0.5) && unchanged_scaled(c, path, is_contact ? 0.9 : 1.05));
         for (size_t k = 0; k < 3 && rows[i].values[k] && same; k++)
             same = inert_unchanged(c, "%s=%s", path, rows[i].values[k]);
         return same &&
@@ -246,8 +246,8 @@ static bool ask_group(const inert_case *c)
 
 bool inert_ask(const scene *s, const char *path, const inert_witness *witness, inert_answer *out)
 {
-    static const inert_witness nobody = {.frame = NULL};
-    inert_case c = {.s = s, .witness = witness ? witness : &nobody, .out = out};
+    static const inert_witness no_witness = {.frame = NULL};
+    inert_case c = {.s = s, .witness = witness ? witness : &no_witness, .out = out};
     c.frame = c.witness->frame && c.witness->frame->camera > 0 ? c.witness->frame : NULL;
     *out = (inert_answer){.rule = ""};
     if (param_place_find(s, path, &c.at, NULL) != STATUS_OK || !scene_film_depends_on(s, path))

@@ -1,6 +1,6 @@
-/* Facts of a scene that parameters need, and how a fact says its note. The renderer makes the same decisions: see
- * render/shade/shading.c, render/integrators/path.c and render/plan/plan.c. Private to src/lint. Ownership: values;
- * everything is borrowed for the call. */
+/* Rules on when a parameter of a scene has no effect, and the table that lists them. The renderer makes the same
+ * decisions: see render/shade/shading.c, render/integrators/path.c and render/plan/plan.c. Private to src/lint.
+ * Ownership: values; everything is borrowed for the call. */
 #pragma once
 
 #include "base/counters.h"
@@ -13,19 +13,19 @@ typedef struct inert_case {
     const scene *s;
     param_place at;
     const char *name;             /* name of the path's object: "render", "lamp", "glass" */
-    const ray_counters *frame;    /* or NULL */
+    const ray_counters *frame;    /* counters of a frame of the scene, or NULL */
     const inert_witness *witness; /* never NULL */
-    const solid *owner; /* for a surface: a visible solid that has it; for a solid's own parameter: the solid */
-    const material *m;  /* its surface */
+    const solid *owner;           /* the solid of the parameter, or a visible solid with the material */
+    const material *m;            /* the owner's surface */
     inert_answer *out;
 } inert_case;
 
 /* --- notes --- */
 
-/* A fact of the table (lint/needs.c): if it leaves the parameter without effect, says so and returns true. */
+/* A rule of the table (needs.c). True: the parameter has NO effect, and c->out has the note that says why. */
 typedef bool inert_rule(const inert_case *c);
 
-/* Fills the result and returns true. */
+/* Writes the note to c->out and returns true. */
 bool inert_say(const inert_case *c, const char *rule, const char *remedy, const char *text, ...)
     __attribute__((format(printf, 4, 5)));
 
@@ -37,18 +37,16 @@ typedef struct inert_remedy {
     char text[NOTE_TEXT_MAX];
 } inert_remedy;
 inert_remedy inert_set(const char *format, ...) __attribute__((format(printf, 1, 2)));
-/* A remedy that sets a parameter of a solid ("diffuse=0.7"), or makes it transparent; or adds a solid if there is none.
- * */
+/* Remedies that set a parameter of a solid ("diffuse=0.7"), or make it transparent; NULL: "add a solid". */
 inert_remedy inert_set_on(const solid *one, const char *assignment);
 inert_remedy inert_set_clear(const solid *one);
-/* An assignment that makes the surface's colour visible, with the object's name in place of the solid's; one that gives
- * a light an intensity. */
+/* Remedies that make the colour of the surface of object `name` visible, or make a light shine. */
 inert_remedy color_remedy(const scene *s, const material *m, const char *name);
 inert_remedy lamp_remedy(const scene *s);
 
 /* --- facts about the scene: inert_facts.c --- */
 
-/* Whether the parameter's name is this one, or in a list that ends with NULL. */
+/* Whether the parameter has this name, or one of a list that ends with NULL. */
 bool is_named(const inert_case *c, const char *name);
 bool is_among(const inert_case *c, const char *const *names);
 
@@ -64,7 +62,8 @@ bool draws_through(const scene *s);
 bool nothing_passes(const scene *s);
 /* Radiance beyond the depth limit is black. */
 bool is_dark_at_depth_limit(const scene *s);
-/* Whether any light has an intensity; whether all of those are spheres, which only the path integrator supports. */
+/* The number of lights that shine; whether random paths are used, and every shining light has a size that they can hit.
+ */
 size_t shining_lights(const scene *s);
 bool only_spheres_shine(const scene *s);
 /* Whether photons carry the light of a beam. */
@@ -74,7 +73,7 @@ bool beams_light(const scene *s);
 typedef bool solid_is(const scene *s, const solid *one);
 const solid *first_visible(const scene *s, solid_is *is);
 bool is_clear(const scene *s, const solid *one);
-/* It is lit by lights, or its faces may be. */
+/* Lights light the solid, or may light its faces. */
 bool shows_lamps(const scene *s, const solid *one);
 /* Faces may have materials from the mesh file instead of the solid's: unknown until the mesh is loaded. */
 bool may_have_face_materials(const scene *s, const solid *owner);
@@ -83,37 +82,40 @@ bool may_have_face_materials(const scene *s, const solid *owner);
 bool shows_ambient(const scene *s, const material *m);
 bool shows_specular(const scene *s, const material *m);
 bool shows_color(const scene *s, const material *m);
-/* It is lit by a light. */
+/* A light or a beam lights the surface. */
 bool is_lit_by_lamps(const scene *s, const material *m);
-/* A ray that hits it has secondary rays. */
+/* A ray that hits the solid has secondary rays. */
 bool sends_rays_on(const scene *s, const solid *owner);
 
-/* --- facts of several groups --- */
+/* --- rules of several groups --- */
 
-/* No light has an intensity; no visible surface is lit by one. No visible solid is transparent. No secondary rays: that
- * none are traced, and that no surface has any. Light is traced without its polarisation, or is nowhere polarised. */
-inert_rule no_lamp, nothing_lit, no_clear, say_no_tree, no_tree, unpolarised, inert_polarisation;
-/* No ray is bent. */
-inert_rule say_not_bent;
+inert_rule no_lamp,     /* no light shines */
+    nothing_lit,        /* no light shines, or no visible surface is lit by one */
+    no_clear,           /* no visible solid is transparent */
+    no_tree,            /* no secondary rays are traced, or no surface has any */
+    unpolarised,        /* light is traced without its polarisation */
+    inert_polarisation; /* nothing polarises light */
+/* Always true, with the note that no secondary ray is traced, or that no ray is bent. */
+inert_rule say_no_tree, say_not_bent;
 
-/* --- facts of the image: inert_render.c --- */
+/* --- rules of the image: inert_render.c --- */
 
 inert_rule path_samples, one_light, no_roughness, no_random_numbers, no_highlights, nothing_beyond, some_face_materials,
     same_when_drawn, lit_by_hits, no_size, no_photons, same_photons, polarisation_unseen, no_dispersion, no_absorption,
-    untextured, chief_rays;
+    untextured, lens_unsampled;
 /* Basic and classic radiance are equal. */
 inert_rule inert_radiance;
 
-/* --- facts of lights, beams and the sky: inert_objects.c --- */
+/* --- rules of lights, beams and the sky: inert_objects.c --- */
 
 inert_rule moves_sky, black_lamp, depolarised, size_unsampled, lights_nothing, unseen_beam, thin_beam, shows_no_light,
     flat_sky, no_own_sun, no_ambient, nothing_refracts, not_bent_outside;
 
-/* --- facts of solids, meshes and textures: inert_objects.c --- */
+/* --- rules of solids, meshes and textures: inert_objects.c --- */
 
 inert_rule overlaps_unseen, looks_the_same, unshaded, one_mesh, unused_mesh, at_rest, unused_texture, of_floats;
 
-/* --- facts of a surface, c->m on c->owner: inert_material.c --- */
+/* --- rules of a surface, c->m on c->owner: inert_material.c --- */
 
 inert_rule no_color_or_tint, is_black_surface, unlit, no_highlight, no_reflectivity, no_law, no_index, no_medium,
     nothing_reflected, opaque_rule, mirror_rule, constant_weights, film_unseen, sheet_unpassed, axis_unseen,
@@ -121,24 +123,24 @@ inert_rule no_color_or_tint, is_black_surface, unlit, no_highlight, no_reflectiv
 
 /* --- the table: needs.c ---
  *
- * What a parameter needs to have an effect: a table of conditions, each on another parameter or on a fact of the scene.
- * The note of the first condition that does not hold follows from its row: "no effect with lamp.kind=point; set
- * lamp.kind=sun". */
+ * What a parameter needs to have an effect: each row is a condition on another parameter, or a rule. The first row that
+ * leaves the parameter without effect makes the note: "no effect with lamp.kind=point; set lamp.kind=sun". */
 
 typedef struct needs_row {
-    param_group group; /* of the parameters; rows of PARAM_MATERIAL apply to a solid's surface, too */
-    const char *names; /* of the parameters, separated by spaces; "*": all of the group */
-    /* "spectrum=black_body", "kind=cone|soft_cone", "kind!=sun", "intensity>0": of the same object, or with a full
-     * path, of render, camera or background. A parameter does not need itself. NULL: the fact alone. */
+    param_group group; /* the parameters' group; rows of PARAM_MATERIAL apply to a solid's surface, too */
+    const char *names; /* the parameters, separated by spaces; "*": all of the group */
+    /* A condition on a parameter of the same object ("spectrum=black_body", "kind=cone|soft_cone", "kind!=sun",
+     * "intensity>0"), or of render, camera or background with a full path. It does not apply to the parameter that it
+     * names. NULL: the row has a rule. */
     const char *needs;
-    const char *remedy; /* what to set, % for the object's name; NULL: the first word after '=' */
-    inert_rule *fact;   /* a condition that is code, and says the note */
-    bool acts;          /* where the fact holds, the parameter has an effect: later rows do not count */
+    const char *remedy; /* the assignment that meets the condition, % for the object's name; NULL: the first value */
+    inert_rule *fact;   /* if needs is NULL: true if the parameter has no effect */
+    bool acts;          /* reversed: if the fact is true, the parameter has an effect, and later rows are skipped */
 } needs_row;
 
-/* Whether a row of the group says that c's parameter has no effect. */
+/* Whether a row of the group leaves c's parameter without effect. */
 bool needs_ask(const inert_case *c, param_group group);
-/* The same of what integrators with layers, which trace no light, do not use. */
+/* Whether the parameter needs light, and the integrator shows layers, which have none. */
 bool needs_light(const inert_case *c);
 /* The table, for its test. */
 const needs_row *needs_rows(size_t *count);

@@ -98,7 +98,7 @@ bool draws_through(const scene *s)
     return is_drawn(s) && s->render.lighting == LIGHTING_WHITTED && first_visible(s, is_clear);
 }
 
-/* Attenuated shadow rays pass through transparent solids. */
+/* Attenuated shadow rays cross transparent solids, too. */
 bool nothing_passes(const scene *s)
 {
     const bool lit_through =
@@ -275,7 +275,7 @@ bool no_tree(const inert_case *c)
                      "no visible surface reflects or refracts");
 }
 
-/* A plane is a poor example of a transparent solid. */
+/* Prefers a bounded solid: a transparent plane is a poor example. */
 static inert_remedy clear_remedy(const scene *s)
 {
     const solid *first = first_visible(s, NULL);

@@ -58,7 +58,7 @@ static bool not_bent(const inert_case *c)
 bool no_index(const inert_case *c)
 {
     if (c->m->transparency == 0.0 &&
-        material_is_layered(c->m, &c->s->render)) /* of what is behind a film, or a metal */
+        material_is_layered(c->m, &c->s->render)) /* the index of a metal, or of the matter behind a film */
         return nothing_reflected(c);
     return opaque_rule(c) || not_bent(c);
 }
@@ -66,7 +66,8 @@ bool no_index(const inert_case *c)
 /* An opaque solid may become a metal. */
 bool no_medium(const inert_case *c)
 {
-    const render_settings *r = &c->s->render; /* where metals are refused, see check.c */
+    const render_settings *r = &c->s->render;
+    /* check.c refuses metals then */
     const bool no_metal = has_face_materials(c->s, c->owner) || (r->polarisation && r->spectrum != SPECTRUM_SPECTRAL);
     return c->m->transparency == 0.0 && !no_metal ? nothing_reflected(c) : no_index(c);
 }
@@ -153,7 +154,7 @@ static bool nothing_at_depth_0(const inert_case *c)
                      "render.depth is 0, and the radiance beyond the depth limit is black");
 }
 
-/* No ray is traced to what the surface reflects. */
+/* No ray is traced to what the surface reflects, or all of it is black. */
 bool nothing_reflected(const inert_case *c)
 {
     const scene *s = c->s;
@@ -161,7 +162,7 @@ bool nothing_reflected(const inert_case *c)
         return say_no_tree(c);
     if (nothing_at_depth_0(c))
         return true;
-    /* A layered opaque surface does not use the reflectivity with which that is found out. */
+    /* mirrors_black varies the reflectivity, which a layered opaque surface does not use. */
     return !(c->m->transparency == 0.0 && material_is_layered(c->m, &s->render)) && mirrors_black(c);
 }
 
@@ -199,7 +200,7 @@ bool no_reflectivity(const inert_case *c)
 
 /* --- films, facets and sheets --- */
 
-/* They need the Fresnel equations. */
+/* Films and rough surfaces need the Fresnel equations. */
 bool constant_weights(const inert_case *c)
 {
     return !material_is_opaque(c->m) && scene_has_constant_weights(&c->s->render) &&
@@ -208,13 +209,13 @@ bool constant_weights(const inert_case *c)
                      is_named(c, "roughness") ? "rough surface" : "film");
 }
 
-/* A film on what has the index of the surroundings makes a surface of it. */
+/* A film makes a surface visible even if the solid has the index of the surroundings. */
 bool film_unseen(const inert_case *c)
 {
     return !(!material_is_opaque(c->m) && material_matches_surroundings(c->s, c->m)) && nothing_reflected(c);
 }
 
-/* Lamps that a smooth surface does not show, such as points, may appear on a rough one. */
+/* A rough surface may show lights that a smooth one does not, such as points. */
 bool nothing_rough(const inert_case *c)
 {
     const scene *s = c->s;
@@ -231,7 +232,7 @@ bool sheet_unpassed(const inert_case *c)
     return !material_matches_surroundings(c->s, c->m) && unpassed(c);
 }
 
-/* Of a polariser or a retarder. */
+/* The axis of a polariser or retarder that treats both directions alike. */
 bool axis_unseen(const inert_case *c)
 {
     if (c->m->sheet == SHEET_RETARDER)
@@ -288,23 +289,23 @@ static bool say_unseen(const inert_case *c)
                      "no ray of this image hits a surface of %s", c->owner->name);
 }
 
-/* Phong terms: all reflection of a transparent surface's own lighting. */
-static const char *const of_surface[] = {"ambient",      "diffuse", "specular",      "shininess", "texture",
+/* Parameters of the Phong terms, which opaque and transparent surfaces reflect. */
+static const char *const phong_parameters[] = {"ambient",      "diffuse", "specular",      "shininess", "texture",
                                          "texture_size", "checker", "checker_color", NULL};
 
-/* The reflection of a surface that no ray hits. Light that crosses a transparent surface to another one does not count.
- * */
+/* The parameter affects only reflected light, and no ray hits the surface. Parameters of transmitted light are left
+ * out: it may reach visible surfaces. */
 bool unseen(const inert_case *c)
 {
-    static const char *const of_opaque[] = {"color", "emission", NULL};
-    static const char *const of_mirror[] = {"reflectivity", "extinction", "medium", "film_thickness_nm",
+    static const char *const opaque_parameters[] = {"color", "emission", NULL};
+    static const char *const mirror_parameters[] = {"reflectivity", "extinction", "medium", "film_thickness_nm",
                                             "film_ior",     "roughness",  NULL};
-    const bool mirrors = is_among(c, of_mirror),
-               sent_back =
-                   is_among(c, of_surface) || (c->m->transparency == 0.0 && (is_among(c, of_opaque) || mirrors));
-    /* photons may reach it, and what it reflects may reach what is seen: not if a full mirror changes nothing */
+    const bool mirrors = is_among(c, mirror_parameters),
+               reflects_only =
+                   is_among(c, phong_parameters) || (c->m->transparency == 0.0 && (is_among(c, opaque_parameters) || mirrors));
+    /* photons that it reflects may reach a visible surface, unless even a full mirror changes nothing */
     const bool lights = mirrors && scene_has_caustics(&c->s->render);
-    return sent_back && !(lights && !inert_unchanged(c, "%s.reflectivity=1", c->name)) && c->frame &&
+    return reflects_only && !(lights && !inert_unchanged(c, "%s.reflectivity=1", c->name)) && c->frame &&
            c->frame->hits[c->owner - c->s->solids] == 0 && say_unseen(c);
 }
 
@@ -312,7 +313,7 @@ bool unseen(const inert_case *c)
 bool no_interface(const inert_case *c)
 {
     const scene *s = c->s;
-    if (scene_has_constant_weights(&s->render) || !(is_among(c, of_surface) || is_named(c, "roughness")))
+    if (scene_has_constant_weights(&s->render) || !(is_among(c, phong_parameters) || is_named(c, "roughness")))
         return false;
     for (size_t i = 0; i < s->solid_count; i++) {
         const solid *one = &s->solids[i];
@@ -327,7 +328,7 @@ bool no_interface(const inert_case *c)
                      "its refractive index equals that of the surrounding medium: it has no visible surface");
 }
 
-/* Entirely inside a solid that has precedence: no ray hits it. */
+/* The solid is entirely inside one that has precedence: no ray hits it. */
 bool covered(const inert_case *c)
 {
     const solid *cover = scene_cover(c->s, c->owner);

@@ -43,8 +43,8 @@ static bool shows_polarisation(const scene *s, const solid *one)
     return material_is_layered(&one->surface, &s->render) || is_clear(s, one);
 }
 
-/* Of light that matte surfaces receive through polarisers, or as photons from clear solids, metals or films, or that
- * random paths bring from these. */
+/* The polarisation of a light matters only if its light reaches matte surfaces through polarisers, or (as photons, or by
+ * random paths) from transparent solids, metals or films. */
 bool depolarised(const inert_case *c)
 {
     const scene *s = c->s;
@@ -64,10 +64,10 @@ bool depolarised(const inert_case *c)
                : inert_unchanged(c, "%s.polarisation_deg=%.17g", c->name, l->polarisation_deg / 2.0 + 45.0) &&
                      inert_unchanged(c, "%s.polarisation_deg=%.17g", c->name, l->polarisation_deg / 2.0 + 70.0);
     return same && inert_say(c, "depolarised-here", "move a polariser into the light",
-                             "all that the light passes treats every polarisation alike");
+                             "everything that the light passes through treats every polarisation alike");
 }
 
-/* The place, or the kind, of the light that the background's sun is, or would be. */
+/* The parameter moves the background's sun: it is the position or kind of a light that is the sun, or would be. */
 bool moves_sky(const inert_case *c)
 {
     const background *b = &c->s->background;
@@ -114,8 +114,8 @@ bool thin_beam(const inert_case *c)
                      "all its rays are on its axis");
 }
 
-/* The film is the same with the beam's light and without it. If the parameter in question makes the beam dark, light is
- * that of another value. A spot between the samples of the pixels is in no film, too. */
+/* The film is the same with and without the beam's light; a beam that is dark now is lit by another value. A spot that
+ * falls between the samples of the pixels is in no film, either. */
 bool shows_no_light(const inert_case *c)
 {
     const beam *b = &c->s->beams[c->at.index];
@@ -144,7 +144,7 @@ bool flat_sky(const inert_case *c)
                      "'horizon' equals 'color', so there is no gradient");
 }
 
-/* The sun of rain or of a CIE sky is a light, or has no effect. */
+/* The background's own sun has no effect: a light of kind sun replaces it, or the sky does not depend on it. */
 bool no_own_sun(const inert_case *c)
 {
     const background *b = &c->s->background;
@@ -227,7 +227,7 @@ bool overlaps_unseen(const inert_case *c)
     return inert_say(c, "apart", "move it into another solid", "no other visible solid overlaps %s", c->name);
 }
 
-/* Its surface is rotationally symmetric and uniform. */
+/* Whether the surface has the same colour everywhere. */
 static bool is_plain(const scene *s, const material *m)
 {
     const bool checkered = m->checker > 0.0 && memcmp(&m->color, &m->checker_color, sizeof m->color) != 0;
@@ -268,7 +268,7 @@ bool one_mesh(const inert_case *c)
 
 /* --- meshes and textures --- */
 
-/* Whether a visible solid uses it. If not, a solid that could: a hidden one that does, or a visible mesh. */
+/* No visible solid uses the mesh. The remedy names a hidden solid that uses it, or a visible solid that could. */
 bool unused_mesh(const inert_case *c)
 {
     const scene *s = c->s;

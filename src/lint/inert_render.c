@@ -20,7 +20,7 @@ static bool is_rough(const scene *s, const solid *one)
     return material_roughness(&one->surface, &s->render) > 0.0 || may_have_face_materials(s, one);
 }
 
-/* The first solid that would be rough with a roughness. */
+/* Whether the solid would be rough with a roughness of 1. */
 static bool could_be_rough(const scene *s, const solid *one)
 {
     material rough = one->surface;
@@ -52,8 +52,8 @@ bool nothing_beyond(const inert_case *c)
     sky.render.beyond = DEPTH_LIMIT_SKY;
     if (is_dark_at_depth_limit(&sky))
         return inert_say(c, "dark-sky", "set background.color=0.5,0.5,0.5", "the background is black as well");
-    /* With each word except black cut rays have some radiance, and weights are not negative: if the film is the same
-     * with both, no ray is cut. */
+    /* With every value but black, cut rays have some radiance, and weights are not negative: if the film is the same
+     * with black and another value, no ray is cut. */
     const bool nothing_cut = s->render.beyond != DEPTH_LIMIT_BLACK
                                  ? inert_unchanged(c, "render.beyond=black")
                                  : inert_unchanged(c, "render.beyond=sky") && inert_unchanged(c, "render.beyond=mean");
@@ -88,7 +88,7 @@ bool some_face_materials(const inert_case *c)
     return first_visible(c->s, may_have_face_materials) != NULL;
 }
 
-/* Of two words: the film with the other one decides. */
+/* Weights and transmission have two values each: the film with the other value decides. */
 bool same_when_drawn(const inert_case *c)
 {
     const scene *s = c->s;
@@ -99,7 +99,8 @@ bool same_when_drawn(const inert_case *c)
            say_no_tree(c);
 }
 
-/* The rays of a crystal are polarised with either setting; the settings differ for what they meet outside. */
+/* A crystal polarises its rays with either value of render.polarisation; the values differ only if the rays meet
+ * something outside. */
 static bool one_crystal(const inert_case *c)
 {
     int clear = 0;
@@ -126,14 +127,14 @@ static bool deflects_light(const scene *s, const solid *one)
 bool no_photons(const inert_case *c)
 {
     const scene *s = c->s;
-    if (beams_light(s) || s->beam_count > 0) /* the witness knows */
+    if (beams_light(s) || s->beam_count > 0) /* only the witness can decide */
         return false;
     return nothing_lit(c) ||
            (!first_visible(s, deflects_light) &&
             inert_say(c, "nothing-deflects", mirror_remedy(s).text, "no visible surface reflects or transmits light"));
 }
 
-/* Photons also make radiance basic and shadows opaque, which may act where they do not. */
+/* render.caustics=photons also makes radiance basic and shadows opaque, which may change a film without photons. */
 bool same_photons(const inert_case *c)
 {
     return no_photons(c) &&
@@ -146,7 +147,7 @@ bool lit_by_hits(const inert_case *c)
            inert_say(c, "spheres", WHITTED, "random paths hit lights that have a size");
 }
 
-/* After nothing_lit: some light has an intensity. */
+/* The table asks nothing_lit first, so some light has an intensity. */
 bool no_size(const inert_case *c)
 {
     const scene *s = c->s;
@@ -170,7 +171,7 @@ bool one_light(const inert_case *c)
     return shining_lights(c->s) < 2 && inert_say(c, "one-light", "add a second light", "the scene has one light");
 }
 
-/* Wavelengths of the spectral film are also random, render/plan/spectra.c, and so are points of a lens. */
+/* The wavelengths of a spectral film (render/plan/spectra.c) and the points of a lens are also random. */
 bool no_random_numbers(const inert_case *c)
 {
     const render_settings *r = &c->s->render;
@@ -219,7 +220,7 @@ bool no_absorption(const inert_case *c)
     const inert_remedy remedy = clear ? inert_set("%s.absorb_per_m=0.2,0.4,0.8", clear->name)
                                       : inert_set("background.absorb_per_m=0.01,0.02,0.04");
     return !surroundings_absorb(&s->background) && !first_visible(s, absorbs) && !first_visible(s, retards_by_path) &&
-           inert_say(c, "no-absorption", remedy.text, "no medium that light passes absorbs or scatters");
+           inert_say(c, "no-absorption", remedy.text, "no medium that light passes through absorbs or scatters");
 }
 
 static bool shows_texture(const scene *s, const solid *one)
@@ -237,8 +238,8 @@ bool untextured(const inert_case *c)
            inert_say(c, "untextured", remedy.text, "no visible surface has a texture");
 }
 
-/* The lens is not sampled. */
-bool chief_rays(const inert_case *c)
+/* With any aperture, all rays pass through the centre of the lens. */
+bool lens_unsampled(const inert_case *c)
 {
     scene wide = *c->s; /* borrows what c->s owns */
     wide.camera.aperture = 1.0;
@@ -246,12 +247,12 @@ bool chief_rays(const inert_case *c)
         return false;
     if (is_drawn(c->s) || has_layers(c->s))
         return inert_say(c, "chief-rays", "set render.integrator=whitted and render.samples=16",
-                         "this render.integrator sees along the rays through the centre of the lens");
+                         "this render.integrator uses only rays through the centre of the lens");
     return inert_say(c, "one-ray", is_path(c->s) ? "set render.paths=64" : "set render.samples=16",
                      "the only ray of a pixel passes through the centre of the lens");
 }
 
-/* --- basic and classic radiance are equal where all light paths begin and end in a vacuum, where n^2 is 1
+/* --- basic and classic radiance are equal if all light paths begin and end in a vacuum, because n^2 is 1 there
  * (render/shade/radiance.c) --- */
 
 static bool is_bare(const background *b)
@@ -259,7 +260,7 @@ static bool is_bare(const background *b)
     return b->medium == MEDIUM_IOR && b->ior == 1.0;
 }
 
-/* Radiance differs inside it. */
+/* Basic and classic radiance differ inside the solid. */
 static bool is_dense(const scene *s, const solid *one)
 {
     (void)s;
@@ -267,8 +268,8 @@ static bool is_dense(const scene *s, const solid *one)
     return one->visible && !material_is_opaque(m) && !(m->medium == MEDIUM_IOR && m->ior == 1.0);
 }
 
-/* An emitting solid, or one around the camera, may be inside a dense medium. */
-static bool may_lie_in_dense(const scene *s, const solid *one)
+/* The solid is dense, or may be inside a dense one. */
+static bool may_be_in_dense(const scene *s, const solid *one)
 {
     for (size_t i = 0; i < s->solid_count; i++) {
         const solid *other = &s->solids[i];
@@ -278,7 +279,7 @@ static bool may_lie_in_dense(const scene *s, const solid *one)
     return false;
 }
 
-static bool may_hold_eye(const scene *s, const solid *one)
+static bool may_contain_camera(const scene *s, const solid *one)
 {
     return is_dense(s, one) && !scene_apart_from_eye(s, one);
 }
@@ -287,7 +288,7 @@ static bool glows_in_dense(const scene *s, const solid *one)
 {
     const bool glows =
         one->surface.emission > 0.0 || shows_ambient(s, &one->surface) || may_have_face_materials(s, one);
-    return glows && may_lie_in_dense(s, one);
+    return glows && may_be_in_dense(s, one);
 }
 
 bool inert_radiance(const inert_case *c)
@@ -301,9 +302,10 @@ bool inert_radiance(const inert_case *c)
     if (!dense)
         return inert_say(c, "no-dense", inert_set_clear(last).text,
                          "no visible transparent solid has a different refractive index");
-    if (first_visible(s, may_hold_eye) || first_visible(s, glows_in_dense))
+    if (first_visible(s, may_contain_camera) || first_visible(s, glows_in_dense))
         return false;
-    /* paths reach light spheres by the surfaces between; where one is in a dense medium the film decides */
+    /* random paths reach lights with a size through the surfaces between; a light may be in a dense medium, so the film
+     * decides */
     const bool outside =
         shining_lights(s) == 0 ||
         (only_spheres_shine(s) &&

@@ -1,3 +1,4 @@
+/* The linter of a loaded scene: the hints, the camera's position, overlaps and gaps of solids, and light that is cut. */
 #include "geometry/shapes/shape.h"
 #include "lint/lint.h"
 #include "lint/parts.h"
@@ -7,9 +8,9 @@
 
 /* --- the camera --- */
 
-#define CAMERA_CLOSE 1e-9 /* fraction of the scene's extent: a camera so close to a surface does not count as inside */
+#define CAMERA_CLOSE 1e-9 /* fraction of the camera's coordinates: closer to a surface, it does not count as inside */
 
-/* The priority index of the medium at the camera and in a neighbourhood around it; -1 if it is not constant there. */
+/* The priority index of the medium around the camera; -1 if a surface is close. */
 static int medium_about(const plan *made)
 {
     const vec3 eye = made->view.eye;
@@ -25,12 +26,12 @@ static int medium_about(const plan *made)
     return priority_index;
 }
 
-/* An orthographic camera whose image cuts an opaque solid, on a lattice of its rays: often the ground, for a wide image
- * that is seen from little above. */
-static void lint_parallel(const lint_room *room)
+/* Notes an orthographic camera whose image plane cuts an opaque solid, found by a lattice of its rays. Often it is the
+ * ground, in a wide image from a low camera. */
+static void lint_parallel(const lint_input *input)
 {
     enum { ACROSS = 16 };
-    const plan *made = room->made;
+    const plan *made = input->probe;
     int inside = 0, found = 0;
     for (int i = 0; i < ACROSS * ACROSS; i++) {
         const double u = (2.0 * (i % ACROSS) + 1.0) / ACROSS - 1.0, v = (2.0 * (i / ACROSS) + 1.0) / ACROSS - 1.0;
@@ -41,33 +42,33 @@ static void lint_parallel(const lint_room *room)
             inside++, found = at;
     }
     if (inside > 0)
-        note_report(room->taker, "camera", "position", "move the camera away from it, or lower camera.view_height",
+        note_report(input->taker, "camera", "position", "move the camera away from it, or lower camera.view_height",
                     "%d%% of the orthographic camera's rays start inside %s, which is opaque",
-                    (100 * inside + ACROSS * ACROSS - 1) / (ACROSS * ACROSS), lint_solid(room, found)->name);
+                    (100 * inside + ACROSS * ACROSS - 1) / (ACROSS * ACROSS), lint_solid(input, found)->name);
 }
 
-/* A camera that sees nothing: in an opaque solid, under the ground, in the wall of a cup; a part of an orthographic one
- * likewise. Returns whether the image is of no use; what it lacks does not matter then. */
-static bool lint_camera(const lint_room *room)
+/* Notes a camera that sees nothing: in an opaque solid, under the ground, in the wall of a cup. True if the image is
+ * useless, so that the light that it lacks does not matter. */
+static bool lint_camera(const lint_input *input)
 {
-    if (room->made->view.parallel) {
-        lint_parallel(room);
+    if (input->probe->view.parallel) {
+        lint_parallel(input);
         return false;
     }
-    const int priority_index = medium_about(room->made);
+    const int priority_index = medium_about(input->probe);
     if (priority_index <= 0)
         return false;
-    const solid *around = lint_solid(room, priority_index);
-    const bool opaque = room->made->geometry->regions[priority_index].opaque,
+    const solid *around = lint_solid(input, priority_index);
+    const bool opaque = input->probe->geometry->regions[priority_index].opaque,
                in_wall = !opaque && shape_of(&around->shape)->hollow;
     if (opaque && shape_of(&around->shape)->unbounded)
-        note_report(room->taker, "camera", "position", "move the camera to the other side of the plane",
+        note_report(input->taker, "camera", "position", "move the camera to the other side of the plane",
                     "the camera is below the surface of %s, which is opaque", around->name);
     else if (opaque)
-        note_report(room->taker, "camera", "position", "move the camera out of it",
+        note_report(input->taker, "camera", "position", "move the camera out of it",
                     "the camera is inside %s, which is opaque", around->name);
     else if (in_wall)
-        note_report(room->taker, "camera", "position",
+        note_report(input->taker, "camera", "position",
                     "move the camera out of the wall, into the vessel or away from it",
                     "the camera is inside the wall of %s", around->name);
     return opaque || in_wall;
@@ -85,7 +86,7 @@ static bool has_meshes(const scene *s)
     return any;
 }
 
-/* The size of the small probe image, with the aspect ratio of the scene's. */
+/* Reduces the image to about `most` pixels, and keeps its aspect ratio. */
 static void shrink(render_settings *r, double most)
 {
     const double pixels = (double)r->width * (double)r->height;
@@ -107,10 +108,11 @@ static bool is_loaded(const scene *s)
     return s->background.kind != BACKGROUND_IMAGE || s->background.img;
 }
 
-/* Few suffice for the fraction of the paths that is cut. */
+/* Paths per pixel: few suffice to estimate the fraction that is cut. */
 enum { PROBE_PATHS = 2 };
 
-/* A persistent hierarchy is the one that a frame would build at its first use; otherwise the linter builds its own. */
+/* The scene with a small, cheap image. A hierarchy that frames use again (render.keep) is the one that the first frame
+ * would build; if render.accel is not bvh, the linter builds a hierarchy of its own. */
 static scene *small_copy(const scene *s, bool by_chance)
 {
     scene *copy = scene_clone(s);
@@ -133,36 +135,36 @@ static scene *small_copy(const scene *s, bool by_chance)
     return copy;
 }
 
-/* A scene whose paths cannot be planned is refused when it is rendered. */
+/* If the plan fails, there is no note: the frame will report the error. */
 static status lint_paths(const scene *s, isa level, const note_taker *taker, diagnostic *why)
 {
     scene *copy = small_copy(s, true);
-    lint_room room = {.of = s, .level = level, .taker = taker};
+    lint_input input = {.original = s, .level = level, .taker = taker};
     status code = copy ? STATUS_OK : out_of_memory(why);
-    if (copy && plan_build(copy, &room.made, NULL) == STATUS_OK)
-        code = lint_path_depth(&room, why);
-    plan_destroy(room.made);
+    if (copy && plan_build(copy, &input.probe, NULL) == STATUS_OK)
+        code = lint_path_depth(&input, why);
+    plan_destroy(input.probe);
     scene_destroy(copy);
     return code;
 }
 
-static status lint_cut_light(const lint_room *room, diagnostic *why)
+static status lint_cut_light(const lint_input *input, diagnostic *why)
 {
-    const render_settings *r = &room->of->render;
+    const render_settings *r = &input->original->render;
     if (integrator_traits_of(r)->by_chance)
-        return lint_paths(room->of, room->level, room->taker, why);
-    return follows_trees(r) ? lint_depth(room, why) : STATUS_OK;
+        return lint_paths(input->original, input->level, input->taker, why);
+    return follows_trees(r) ? lint_depth(input, why) : STATUS_OK;
 }
 
-static status lint_traced(const scene *s, isa level, const note_taker *taker, diagnostic *why)
+static status lint_planned(const scene *s, isa level, const note_taker *taker, diagnostic *why)
 {
     scene *copy = small_copy(s, false);
-    lint_room room = {.of = s, .level = level, .taker = taker};
-    status code = copy ? plan_build(copy, &room.made, why) : out_of_memory(why);
-    THEN(code, lint_neighbours(&room, why));
-    if (code == STATUS_OK && !lint_camera(&room))
-        code = lint_cut_light(&room, why);
-    plan_destroy(room.made);
+    lint_input input = {.original = s, .level = level, .taker = taker};
+    status code = copy ? plan_build(copy, &input.probe, why) : out_of_memory(why);
+    THEN(code, lint_neighbours(&input, why));
+    if (code == STATUS_OK && !lint_camera(&input))
+        code = lint_cut_light(&input, why);
+    plan_destroy(input.probe);
     scene_destroy(copy);
     return code;
 }
@@ -170,5 +172,5 @@ static status lint_traced(const scene *s, isa level, const note_taker *taker, di
 status lint_scene(const scene *s, isa level, const note_taker *taker, diagnostic *why)
 {
     scene_hints(s, taker);
-    return is_loaded(s) ? lint_traced(s, level, taker, why) : STATUS_OK;
+    return is_loaded(s) ? lint_planned(s, level, taker, why) : STATUS_OK;
 }

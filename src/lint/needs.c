@@ -1,3 +1,4 @@
+/* The table of what each parameter needs to have an effect (inert.h), and its interpreter. */
 #include "lint/inert.h"
 #include "scene/model/objects.h"
 #include "scene/model/params_value.h"
@@ -19,30 +20,30 @@
     {                                                  \
         .group = PARAM_##of, .names = on, .fact = rule \
     }
-#define ACTS(of, on, rule)                                           \
+#define ACTS_WHERE(of, on, rule)                                           \
     {                                                                \
         .group = PARAM_##of, .names = on, .fact = rule, .acts = true \
     }
-#define LIT(of, on) NEEDS_SET(of, on, "render.integrator!=aov", "render.integrator=whitted")
-#define RAYS(of, on) NEEDS_SET(of, on, "render.integrator!=zbuffer", "render.integrator=whitted")
-#define SHADOWS(of, on) NEEDS_SET(of, on, "render.shadows!=off", "render.shadows=opaque")
-#define PATHS(of, on) NEEDS(of, on, "render.integrator=path")
+#define NEEDS_LIGHT(of, on) NEEDS_SET(of, on, "render.integrator!=aov", "render.integrator=whitted")
+#define NEEDS_RAYS(of, on) NEEDS_SET(of, on, "render.integrator!=zbuffer", "render.integrator=whitted")
+#define NEEDS_SHADOWS(of, on) NEEDS_SET(of, on, "render.shadows!=off", "render.shadows=opaque")
+#define NEEDS_PATHS(of, on) NEEDS(of, on, "render.integrator=path")
 
 static const needs_row light_rows[] = {
-    LIT(RENDER, "caustics photons samples depth beyond lighting shadows soft_shadows min_weight seed radiance spectrum "
+    NEEDS_LIGHT(RENDER, "caustics photons samples depth beyond lighting shadows soft_shadows min_weight seed radiance spectrum "
                 "polarisation lambda_nm wavelengths unit_m weights"),
-    LIT(BACKGROUND, "kind color horizon image rain drops sun_elevation_deg sun_azimuth_deg sky_type ambient "
+    NEEDS_LIGHT(BACKGROUND, "kind color horizon image rain drops sun_elevation_deg sun_azimuth_deg sky_type ambient "
                     "absorb_per_m"),
-    LIT(LIGHT, "*"),
-    LIT(MATERIAL, "ambient diffuse specular shininess absorb_per_m absorb_spectrum tint_distance extinction "
+    NEEDS_LIGHT(LIGHT, "*"),
+    NEEDS_LIGHT(MATERIAL, "ambient diffuse specular shininess absorb_per_m absorb_spectrum tint_distance extinction "
                   "extraordinary_ior optic_axis film_ior sheet sheet_axis sheet_pass sheet_block retardance_deg "
                   "birefringence roughness scatter_per_m asymmetry"),
 };
 
 static const needs_row rows[] = {
-    PATHS(RENDER, "paths error sampler filter light_sampling roulette energy_compensation"),
+    NEEDS_PATHS(RENDER, "paths error sampler filter light_sampling roulette energy_compensation"),
     FACT(RENDER, "samples", path_samples),
-    NEEDS_SET(RENDER, "error", "render.paths>16", "render.paths=256"), /* a pilot's: render/frame/renderer.h */
+    NEEDS_SET(RENDER, "error", "render.paths>16", "render.paths=256"), /* the pilot renders 16: render/frame/renderer.h */
     FACT(RENDER, "light_sampling", nothing_lit),
     FACT(RENDER, "light_sampling", one_light),
     NEEDS_SET(RENDER, "roulette", "render.depth>3", "render.depth=8"), /* render/integrators/path.c */
@@ -55,15 +56,15 @@ static const needs_row rows[] = {
     NEEDS_SET(RENDER, "min_weight", "render.depth>0", "render.depth=4"),
     NEEDS_SET(RENDER, "beyond", "render.depth!=unlimited", "render.depth=8"),
     FACT(RENDER, "beyond", nothing_beyond),
-    ACTS(RENDER, "transmission", some_face_materials),
+    ACTS_WHERE(RENDER, "transmission", some_face_materials),
     FACT(RENDER, "transmission weights", no_clear),
     FACT(RENDER, "transmission weights", same_when_drawn),
     NEEDS(RENDER, "weights", "render.transmission=refract"),
-    RAYS(RENDER, "shadows caustics photons radiance"),
+    NEEDS_RAYS(RENDER, "shadows caustics photons radiance"),
     FACT(RENDER, "shadows", nothing_lit),
     FACT(RENDER, "shadows", lit_by_hits),
     NEEDS(RENDER, "soft_shadows", "render.integrator=whitted|raycast"),
-    SHADOWS(RENDER, "soft_shadows caustics photons"),
+    NEEDS_SHADOWS(RENDER, "soft_shadows caustics photons"),
     FACT(RENDER, "soft_shadows", nothing_lit),
     FACT(RENDER, "soft_shadows", no_size),
     NEEDS(RENDER, "photons", "render.caustics=photons"),
@@ -82,7 +83,7 @@ static const needs_row rows[] = {
 
     NEEDS(CAMERA, "fov_deg", "camera.projection=perspective"),
     NEEDS(CAMERA, "view_height", "camera.projection=orthographic"),
-    FACT(CAMERA, "aperture focus", chief_rays),
+    FACT(CAMERA, "aperture focus", lens_unsampled),
     NEEDS_SET(CAMERA, "focus", "camera.aperture>0", "camera.aperture=0.2"),
     FACT(CAMERA, "analyser analyser_angle_deg", unpolarised),
     NEEDS(CAMERA, "analyser_angle_deg", "camera.analyser=linear"),
@@ -102,7 +103,7 @@ static const needs_row rows[] = {
     FACT(BACKGROUND, "ior medium", nothing_refracts),
     NEEDS(BACKGROUND, "ior medium", "render.transmission=refract"),
     FACT(BACKGROUND, "ior medium", not_bent_outside),
-    RAYS(BACKGROUND, "absorb_per_m"),
+    NEEDS_RAYS(BACKGROUND, "absorb_per_m"),
 
     FACT(MESH, "*", unused_mesh),
     NEEDS(MESH, "count", "generate=sparse|dense|sphere"),
@@ -118,7 +119,7 @@ static const needs_row rows[] = {
     FACT(TEXTURE, "*", unused_texture),
     FACT(TEXTURE, "space", of_floats),
 
-    ACTS(LIGHT, "position target kind", moves_sky),
+    ACTS_WHERE(LIGHT, "position target kind", moves_sky),
     NEEDS(LIGHT, "color", "spectrum=color"),
     NEEDS(LIGHT, "temperature_k", "spectrum=black_body"),
     NEEDS(LIGHT, "line_nm", "spectrum=line"),
@@ -138,8 +139,8 @@ static const needs_row rows[] = {
     NEEDS_SET(LIGHT, "height roll_deg", "width>0", "%.width=1"),
     FACT(LIGHT, "*", lights_nothing),
 
-    RAYS(BEAM, "*"),
-    SHADOWS(BEAM, "*"),
+    NEEDS_RAYS(BEAM, "*"),
+    NEEDS_SHADOWS(BEAM, "*"),
     NEEDS(BEAM, "*", "render.caustics=photons"),
     NEEDS(BEAM, "*", "visible=on"),
     NEEDS_SET(BEAM, "*", "power>0", "%.power=1"),
@@ -183,14 +184,14 @@ static const needs_row rows[] = {
     FACT(MATERIAL, "film_thickness_nm film_ior roughness", constant_weights),
     FACT(MATERIAL, "film_thickness_nm film_ior", film_unseen),
     FACT(MATERIAL, "film_ior", nothing_reflected),
-    RAYS(MATERIAL, "sheet sheet_axis sheet_pass sheet_block retardance_deg birefringence"),
+    NEEDS_RAYS(MATERIAL, "sheet sheet_axis sheet_pass sheet_block retardance_deg birefringence"),
     FACT(MATERIAL, "sheet sheet_axis sheet_pass sheet_block retardance_deg birefringence", sheet_unpassed),
     NEEDS(MATERIAL, "sheet_axis", "sheet=polariser|retarder"),
     NEEDS(MATERIAL, "sheet_pass sheet_block", "sheet=polariser|circular_left|circular_right"),
     NEEDS(MATERIAL, "retardance_deg birefringence", "sheet=retarder"),
     FACT(MATERIAL, "sheet_axis retardance_deg birefringence", unpolarised),
     FACT(MATERIAL, "sheet_axis", axis_unseen),
-    PATHS(MATERIAL, "roughness scatter_per_m asymmetry"),
+    NEEDS_PATHS(MATERIAL, "roughness scatter_per_m asymmetry"),
     FACT(MATERIAL, "roughness", nothing_rough),
     FACT(MATERIAL, "absorb_per_m absorb_spectrum scatter_per_m asymmetry tint_distance", unpassed),
     NEEDS(MATERIAL, "absorb_per_m", "absorb_spectrum=[]"),
@@ -216,7 +217,7 @@ static const needs_row rows[] = {
     NEEDS_SET(SOLID, "capillary_length contact_radius", "contact_angle_deg!=90", "%.contact_angle_deg=20"),
 };
 
-/* Whether the word is one of a list's, separated by that character. */
+/* Whether the list, whose words are separated by `between`, has the word. */
 static bool has_word(const char *list, char between, const char *word, size_t length)
 {
     for (const char *at = list; at; at = strchr(at, between)) {
@@ -233,7 +234,7 @@ typedef struct need {
     char path[NOTE_PLACE_MAX];
     const param *row;
     const void *field;
-    const char *sign; /* of the comparison */
+    const char *sign; /* the comparison and its values: "=point", "!=sun", ">0" */
 } need;
 
 static const void *values_of(const inert_case *c, param_group group)
@@ -247,12 +248,12 @@ static need need_of(const inert_case *c, const needs_row *r)
 {
     char name[SCENE_NAME_MAX + 1];
     need n = {.sign = r->needs + strcspn(r->needs, "=!>")};
-    const char *dot = memchr(r->needs, '.', (size_t)(n.sign - r->needs)), *own = dot ? dot + 1 : r->needs;
+    const char *dot = memchr(r->needs, '.', (size_t)(n.sign - r->needs)), *field_name = dot ? dot + 1 : r->needs;
     param_group group = r->group;
     for (int g = PARAM_RENDER; dot && g <= PARAM_BACKGROUND; g++)
         if (strncmp(param_group_name((param_group)g), r->needs, (size_t)(dot - r->needs)) == 0)
             group = (param_group)g;
-    snprintf(name, sizeof name, "%.*s", (int)(n.sign - own), own);
+    snprintf(name, sizeof name, "%.*s", (int)(n.sign - field_name), field_name);
     snprintf(n.path, sizeof n.path, "%s.%s", dot ? param_group_name(group) : c->name, name);
     n.row = param_find(group, name);
     n.field = (const char *)values_of(c, group) + n.row->offset;
@@ -325,7 +326,8 @@ bool needs_light(const inert_case *c)
     return ask_rows(c, c->at.row->group, light_rows, sizeof light_rows / sizeof *light_rows);
 }
 
-/* A condition with " or " between the values, where a narrow table can break the line. */
+/* Writes the condition with " or " between the values, so that a narrow table can break the line; returns its length.
+ */
 static int add_condition(char *text, size_t size, const char *condition)
 {
     int used = 0;

@@ -1,6 +1,6 @@
-/* Pairs of solids, examined along a lattice of lines through the region of both. A finding is confirmed at nearby
- * points before it becomes a note: touching is not overlapping, and the closest point of two curved surfaces is not a
- * gap. */
+/* Notes pairs of solids that overlap with equal priority, or leave a narrow gap, found along a lattice of lines through
+ * both. A finding is confirmed at nearby points before it becomes a note: touching is not overlapping, and the closest
+ * point of two curved surfaces is not a gap. */
 #include "base/cancel.h"
 #include "geometry/regions/instance_set.h"
 #include "geometry/primitives/primitive.h"
@@ -15,12 +15,13 @@
 
 /* --- intersections of lines with solids --- */
 
+/* A line, infinite in both directions; the direction is a unit vector. */
 typedef struct line {
     vec3 origin, direction;
-} line; /* with a unit direction; infinite in both directions */
+} line;
 
 enum { SPANS_MAX = 32 };
-/* Sorted and disjoint. Ends may be infinite. */
+/* The segments of a line inside a solid: sorted and disjoint. Ends may be infinite. */
 typedef struct line_spans {
     int count;
     double in[SPANS_MAX], out[SPANS_MAX];
@@ -44,7 +45,7 @@ static void add_crossing(void *context, const mesh_hit *hit)
 {
     mesh_crossings *c = context;
     int i = c->count++;
-    if (i >= 2 * SPANS_MAX) /* too many: the count shows it */
+    if (i >= 2 * SPANS_MAX) /* too many: the caller sees it by the count */
         return;
     for (; i > 0 && c->t[i - 1] > hit->t; i--) {
         c->t[i] = c->t[i - 1];
@@ -54,7 +55,8 @@ static void add_crossing(void *context, const mesh_hit *hit)
     c->facing[i] = hit->facing;
 }
 
-/* One copy: alternating front and back faces. The line is traced from its origin, in front of the mesh. */
+/* Adds the segments inside one copy; false unless the line crosses front and back faces in turn. The line's origin must
+ * be in front of the mesh. */
 static bool through_copy(const instanced_mesh *p, uint32_t copy, const line *l, line_spans *out)
 {
     const vec3 o = mat3_apply_transposed(p->rotation, vec3_sub(l->origin, instance_set_origin(p, copy)));
@@ -76,7 +78,7 @@ static bool through_copy(const instanced_mesh *p, uint32_t copy, const line *l, 
     return true;
 }
 
-/* Copies do not overlap, but those on one line are not in the order of distance for every direction. */
+/* Sorts the segments: copies do not overlap, but a line may meet them in any order. */
 static void sort_spans(line_spans *s)
 {
     for (int i = 1; i < s->count; i++)
@@ -99,21 +101,21 @@ static bool through_mesh(const instanced_mesh *p, const line *l, line_spans *out
     return known;
 }
 
-/* False if undecidable: an open mesh, more than SPANS_MAX spans, or a line through an edge of a mesh that counts as no
- * or two crossings. */
+/* Intersects a line with a solid. False if undecidable: an open mesh, more than SPANS_MAX segments, or a line through an
+ * edge of a mesh, which counts as no crossing or two. */
 static bool line_through(const scene_geometry *a, const region *b, const line *l, line_spans *out)
 {
     out->count = 0;
     const primitive *p = &a->primitives[b->outside];
     if (!p->rule)
         return through_mesh(&a->meshes->parts[a->meshes->by_primitive[b->outside]], l, out);
-    interval whole[CHORDS_MAX], hollow[CHORDS_MAX] = {{HUGE_VAL, HUGE_VAL}};
-    const int count = primitive_chords(p, l->origin, l->direction, whole);
-    if (b->hollow >= 0 && primitive_chords(&a->primitives[b->hollow], l->origin, l->direction, hollow) == 0)
-        hollow[0] = (interval){HUGE_VAL, HUGE_VAL};
+    interval outer[CHORDS_MAX], inner[CHORDS_MAX] = {{HUGE_VAL, HUGE_VAL}};
+    const int count = primitive_chords(p, l->origin, l->direction, outer);
+    if (b->hollow >= 0 && primitive_chords(&a->primitives[b->hollow], l->origin, l->direction, inner) == 0)
+        inner[0] = (interval){HUGE_VAL, HUGE_VAL};
     for (int i = 0; i < count; i++) {
-        add_span(out, whole[i].in, fmin(whole[i].out, hollow[0].in));
-        add_span(out, fmax(whole[i].in, hollow[0].out), whole[i].out);
+        add_span(out, outer[i].in, fmin(outer[i].out, inner[0].in));
+        add_span(out, fmax(outer[i].in, inner[0].out), outer[i].out);
     }
     return true;
 }
@@ -121,10 +123,12 @@ static bool line_through(const scene_geometry *a, const region *b, const line *l
 /* --- pairs of solids --- */
 
 enum { LATTICE_LEAST = 8, LATTICE_MOST = 32, LINES_MAX = 200000 };
-#define GAP_FRACTION 1e-3      /* fraction of the thinner solid's thickness: a smaller gap is narrow */
-#define PATCH_FRACTION 0.25    /* fraction of the thinner solid's thickness: the minimum extent of a narrow gap */
-#define OVERLAP_FRACTION 1e-6  /* fraction of the thinner solid's thickness: a smaller overlap counts as touching */
-#define CONTACT_FRACTION 1e-12 /* fraction of the coordinates: closer surfaces are in contact */
+/* Fractions of the thinner solid's thickness: */
+#define GAP_FRACTION 1e-3     /* a smaller gap is narrow */
+#define PATCH_FRACTION 0.25   /* a narrow gap must extend over this */
+#define OVERLAP_FRACTION 1e-6 /* a smaller overlap counts as touching */
+/* Fraction of the coordinates: closer surfaces are in contact. */
+#define CONTACT_FRACTION 1e-12
 
 typedef struct neighbour {
     const region *of;
@@ -135,14 +139,14 @@ typedef struct neighbour {
 } neighbour;
 
 typedef struct pair {
-    const lint_room *room;
+    const lint_input *input;
     const neighbour *a, *b;
     vec3 low, high; /* the bounds common to both solids, enlarged by gaps */
     double thinner, extent;
     int lattice;         /* lines per edge of the lattice */
-    bool overlaps, gaps; /* thresholds */
+    bool overlaps, gaps; /* what to look for */
     float *gap;          /* width of the narrow gap on each line of one axis, 0 for none; lattice * lattice */
-    double *middle;      /* its position on the line */
+    double *middle;      /* distance of the gap's middle along the line */
 } pair;
 
 static double *component(vec3 *v, int axis)
@@ -161,10 +165,10 @@ static double deep_enough(const pair *p)
     return fmax(OVERLAP_FRACTION * p->thinner, CONTACT_FRACTION * p->extent);
 }
 
-/* Whether both contain the point and a neighbourhood around it. */
+/* Whether both solids contain the point and a neighbourhood around it. */
 static bool overlap_at(const pair *p, vec3 point)
 {
-    const scene_geometry *a = p->room->made->geometry;
+    const scene_geometry *a = p->input->probe->geometry;
     const double far = deep_enough(p);
     for (int i = 0; i < 6; i++) {
         vec3 at = point;
@@ -210,7 +214,7 @@ static bool spans_overlap(const pair *p, const line *l, const line_spans *a, con
     return false;
 }
 
-/* The narrowest gap between a span of one and a span of the other above the minimum; 0 for none. */
+/* The width of the narrowest gap between the segments of two solids that are not in contact; 0 for none. */
 static double spans_gap(const pair *p, const line_spans *a, const line_spans *b, double *middle)
 {
     double best = GAP_FRACTION * p->thinner;
@@ -231,7 +235,7 @@ static double spans_gap(const pair *p, const line_spans *a, const line_spans *b,
 /* Examines all lines of an axis; true if the solids overlap. */
 static bool examine_along(const pair *p, int axis)
 {
-    const scene_geometry *a = p->room->made->geometry;
+    const scene_geometry *a = p->input->probe->geometry;
     for (int i = 0; i < p->lattice && !cancel_asked(); i++)
         for (int j = 0; j < p->lattice; j++) {
             const line l = lattice_line(p, axis, i, j);
@@ -252,7 +256,7 @@ static bool examine_along(const pair *p, int axis)
 /* Whether the gap is narrow and empty on the line and on eight lines around it, over the minimum extent. */
 static bool is_patch(const pair *p, int axis, int i, int j, int step_u, int step_v)
 {
-    const scene_geometry *a = p->room->made->geometry;
+    const scene_geometry *a = p->input->probe->geometry;
     for (int di = -1; di <= 1; di++)
         for (int dj = -1; dj <= 1; dj++) {
             const int at_i = i + di * step_u, at_j = j + dj * step_v;
@@ -275,8 +279,8 @@ static bool is_patch(const pair *p, int axis, int i, int j, int step_u, int step
 static int patch_step(const pair *p, int axis)
 {
     vec3 size = vec3_sub(p->high, p->low);
-    const double apart = *component(&size, axis) / p->lattice;
-    return (int)fmin(p->lattice, fmax(1.0, ceil(0.5 * PATCH_FRACTION * p->thinner / apart)));
+    const double spacing = *component(&size, axis) / p->lattice;
+    return (int)fmin(p->lattice, fmax(1.0, ceil(0.5 * PATCH_FRACTION * p->thinner / spacing)));
 }
 
 /* The narrowest gap of an axis. */
@@ -303,10 +307,10 @@ static void note_overlap(const pair *p)
 {
     const solid *first = p->a->owner < p->b->owner ? p->a->owner : p->b->owner,
                 *second = first == p->a->owner ? p->b->owner : p->a->owner;
-    note_report(p->room->taker, second->name, "priority",
+    note_report(p->input->taker, second->name, "priority",
                 "give a higher priority to the solid that displaces the other",
-                "%s and %s overlap with equal priority and different media: the medium there is that of %s "
-                "only because it is listed first",
+                "%s and %s overlap with equal priority and different media: %s fills the overlap only because it is "
+                "listed first",
                 first->name, second->name, first->name);
 }
 
@@ -315,7 +319,7 @@ static void note_gap(const pair *p, double gap)
     const neighbour *thin = p->a->thickness <= p->b->thickness ? p->a : p->b;
     const solid *first = p->a->owner < p->b->owner ? p->a->owner : p->b->owner,
                 *second = first == p->a->owner ? p->b->owner : p->a->owner;
-    note_report(p->room->taker, second->name, NULL,
+    note_report(p->input->taker, second->name, NULL,
                 "make them touch exactly or overlap (the higher priority then decides), or move them apart",
                 "the gap between %s and %s is about %.2g, less than a thousandth of the thickness of %s "
                 "(%.3g): it acts as a thin film",
@@ -325,12 +329,12 @@ static void note_gap(const pair *p, double gap)
 /* Two half-spaces intersect unless they face away from each other. */
 static bool planes_overlap(const pair *p)
 {
-    const primitive *a = &p->room->made->geometry->primitives[p->a->of->outside],
-                    *b = &p->room->made->geometry->primitives[p->b->of->outside];
+    const primitive *a = &p->input->probe->geometry->primitives[p->a->of->outside],
+                    *b = &p->input->probe->geometry->primitives[p->b->of->outside];
     const vec3 up_a = vec3_make(a->rotation.row[0].y, a->rotation.row[1].y, a->rotation.row[2].y);
     const vec3 up_b = vec3_make(b->rotation.row[0].y, b->rotation.row[1].y, b->rotation.row[2].y);
-    const double apart = vec3_dot(vec3_sub(b->origin, a->origin), up_a);
-    return vec3_dot(up_a, up_b) > -1.0 + 1e-9 || apart < -OVERLAP_FRACTION * fmax(1.0, fmax(a->extent, b->extent));
+    const double distance = vec3_dot(vec3_sub(b->origin, a->origin), up_a);
+    return vec3_dot(up_a, up_b) > -1.0 + 1e-9 || distance < -OVERLAP_FRACTION * fmax(1.0, fmax(a->extent, b->extent));
 }
 
 static void examine_pair(pair *p)
@@ -367,17 +371,17 @@ static bool shows(const region *b)
     return b->opaque || b->medium != 0;
 }
 
-static bool is_covered(const lint_room *room, const neighbour *a, const neighbour *b)
+static bool is_covered(const lint_input *input, const neighbour *a, const neighbour *b)
 {
-    return scene_cover(room->of, a->owner) == b->owner || scene_cover(room->of, b->owner) == a->owner;
+    return scene_cover(input->original, a->owner) == b->owner || scene_cover(input->original, b->owner) == a->owner;
 }
 
 /* False: the pair needs no examination. */
-static bool prepare_pair(const lint_room *room, const neighbour *a, const neighbour *b, pair *p)
+static bool prepare_pair(const lint_input *input, const neighbour *a, const neighbour *b, pair *p)
 {
     if (a->of->opaque && b->of->opaque)
         return false; /* their interior is invisible */
-    *p = (pair){.room = room, .a = a, .b = b, .thinner = fmin(a->thickness, b->thickness)};
+    *p = (pair){.input = input, .a = a, .b = b, .thinner = fmin(a->thickness, b->thickness)};
     if (!isfinite(p->thinner))
         p->thinner = 1.0;
     const double pad = GAP_FRACTION * p->thinner;
@@ -387,28 +391,28 @@ static bool prepare_pair(const lint_room *room, const neighbour *a, const neighb
                         fmin(a->box.high.z, b->box.high.z) + pad);
     p->extent = fmax(fmax(fmax(fabs(p->low.x), fabs(p->low.y)), fmax(fabs(p->low.z), fabs(p->high.x))),
                      fmax(fabs(p->high.y), fabs(p->high.z)));
-    p->overlaps = a->owner->priority == b->owner->priority && media_differ(room->made, a, b);
+    p->overlaps = a->owner->priority == b->owner->priority && media_differ(input->probe, a, b);
     p->gaps = shows(a->of) && shows(b->of);
     return (p->overlaps || p->gaps) && p->low.x < p->high.x && p->low.y < p->high.y && p->low.z < p->high.z;
 }
 
-static size_t count_pairs(const lint_room *room, const neighbour *all, int count)
+static size_t count_pairs(const lint_input *input, const neighbour *all, int count)
 {
     size_t pairs = 0;
     pair p;
     for (int i = 0; i < count && !cancel_asked(); i++)
         for (int k = i + 1; k < count; k++)
-            pairs += prepare_pair(room, &all[i], &all[k], &p);
+            pairs += prepare_pair(input, &all[i], &all[k], &p);
     return pairs;
 }
 
-static void examine_all(const lint_room *room, const neighbour *all, int count, float *gap, double *middle)
+static void examine_all(const lint_input *input, const neighbour *all, int count, float *gap, double *middle)
 {
-    const size_t pairs = count_pairs(room, all, count);
+    const size_t pairs = count_pairs(input, all, count);
     for (int i = 0; i < count && !cancel_asked(); i++)
         for (int k = i + 1; k < count; k++) {
             pair p;
-            if (!prepare_pair(room, &all[i], &all[k], &p) || (p.overlaps && is_covered(room, &all[i], &all[k])))
+            if (!prepare_pair(input, &all[i], &all[k], &p) || (p.overlaps && is_covered(input, &all[i], &all[k])))
                 continue;
             p.lattice = (int)fmax(LATTICE_LEAST, fmin(LATTICE_MOST, sqrt(LINES_MAX / (3.0 * (double)pairs))));
             p.gap = gap;
@@ -417,29 +421,29 @@ static void examine_all(const lint_room *room, const neighbour *all, int count, 
         }
 }
 
-status lint_neighbours(const lint_room *room, diagnostic *why)
+status lint_neighbours(const lint_input *input, diagnostic *why)
 {
-    const scene_geometry *a = room->made->geometry;
+    const scene_geometry *a = input->probe->geometry;
     if (a->region_count > COVER_SOLIDS_MAX)
         return STATUS_OK;
     neighbour *all = calloc((size_t)a->region_count + 1, sizeof *all);
     float *gap = calloc(LATTICE_MOST * LATTICE_MOST, sizeof *gap);
     double *middle = calloc(LATTICE_MOST * LATTICE_MOST, sizeof *middle);
-    const bool there = all && gap && middle;
+    const bool allocated = all && gap && middle;
     int count = 0;
-    for (int priority_index = 1; there && priority_index <= a->region_count; priority_index++) {
+    for (int priority_index = 1; allocated && priority_index <= a->region_count; priority_index++) {
         const region *b = &a->regions[priority_index];
-        const solid *owner = lint_solid(room, priority_index);
-        const solid_shape shape = scene_loaded_shape(room->of, owner);
+        const solid *owner = lint_solid(input, priority_index);
+        const solid_shape shape = scene_loaded_shape(input->original, owner);
         if (shape.mesh && !shape.mesh->closed)
-            continue; /* it contains nothing */
+            continue; /* an open mesh contains nothing */
         all[count++] =
             (neighbour){b, owner, shape_world_box(&shape), shape_of(&shape)->thickness(&shape), priority_index};
     }
-    if (there)
-        examine_all(room, all, count, gap, middle);
+    if (allocated)
+        examine_all(input, all, count, gap, middle);
     free(all);
     free(gap);
     free(middle);
-    return there ? cancel_check(why) : out_of_memory(why);
+    return allocated ? cancel_check(why) : out_of_memory(why);
 }

@@ -1,3 +1,4 @@
+/* Notes: one is formatted, and passed to the callback or written as a line. */
 #include "lint/lint.h"
 
 #include <stdarg.h>

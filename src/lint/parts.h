@@ -1,28 +1,28 @@
-/* The parts of the linter; private to src/lint. Each examines a plan and passes its notes on. */
+/* The parts of the linter, each of which examines a plan and reports notes. Private to src/lint. */
 #pragma once
 
 #include "lint/lint.h"
 #include "render/plan/plan.h"
 #include "scene/model/scene.h"
 
-typedef struct lint_room {
-    const scene *of; /* the caller's scene */
-    plan *made;      /* plan of a copy with a small image, possibly with another depth */
+typedef struct lint_input {
+    const scene *original; /* the caller's scene */
+    plan *probe;           /* plan of a copy of the scene with a small image */
     isa level;
     const note_taker *taker;
-} lint_room;
+} lint_input;
 
-/* Overlapping solids of equal priority, and narrow gaps. */
-status lint_neighbours(const lint_room *room, diagnostic *why);
+/* Notes overlapping solids of equal priority, and narrow gaps. */
+status lint_neighbours(const lint_input *input, diagnostic *why);
 
-/* A depth limit of ray trees, or a least weight, with a visible effect, or with one that no image shows. */
-status lint_depth(const lint_room *room, diagnostic *why);
+/* Notes a depth limit or a minimum weight of ray trees that cuts much light, or may do so. */
+status lint_depth(const lint_input *input, diagnostic *why);
 
-/* The same of random paths; room->made is a plan of them. */
-status lint_path_depth(const lint_room *room, diagnostic *why);
+/* Notes a depth limit of random paths; the plan must be of the path integrator. */
+status lint_path_depth(const lint_input *input, diagnostic *why);
 
 /* The solid with the given priority index. */
-static inline const solid *lint_solid(const lint_room *room, int priority_index)
+static inline const solid *lint_solid(const lint_input *input, int priority_index)
 {
-    return &room->of->solids[room->made->geometry->regions[priority_index].solid];
+    return &input->original->solids[input->probe->geometry->regions[priority_index].solid];
 }

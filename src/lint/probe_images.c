@@ -1,3 +1,4 @@
+/* Renders small images of a plan in stripes, and estimates the light that they lack (probe_images.h). */
 #include "base/cancel.h"
 #include "lint/probe_images.h"
 #include "render/tracer/integrator.h"
@@ -8,8 +9,8 @@
 
 enum { STRIPES_PER_THREAD = 4 };
 
-/* Traces stripes, whichever is next, with one of the tracers. */
-static void trace_stripes(void *context, size_t index, int member)
+/* Renders stripes with one of the tracers until none is left. */
+static void render_stripes(void *context, size_t index, int member)
 {
     probe_images *p = context;
     const int width = (int)p->made->render.width, height = (int)p->made->render.height;
@@ -17,12 +18,12 @@ static void trace_stripes(void *context, size_t index, int member)
     (void)member;
     for (int i; (i = atomic_fetch_add(&p->next_stripe, 1)) < p->stripes;) {
         const image_tile stripe = {0, i * height / p->stripes, width, (i + 1) * height / p->stripes};
-        tracer_render_tile(p->rays[index], &stripe, &begun);
+        tracer_render_tile(p->tracers[index], &stripe, &begun);
     }
-    tracer_finish(p->rays[index]);
+    tracer_finish(p->tracers[index]);
 }
 
-static status trace_film(probe_images *p, film *f, diagnostic *why)
+static status render_film(probe_images *p, film *f, diagnostic *why)
 {
     const size_t pixels = probe_pixels(p), members = (size_t)thread_team_size(p->team);
     const tracer_target target = {
@@ -30,17 +31,17 @@ static status trace_film(probe_images *p, film *f, diagnostic *why)
     for (size_t i = 0; i < pixels; i++)
         p->pixel_rays[i] = p->pixel_cut[i] = 0.0;
     for (size_t i = 0; i < members; i++)
-        if (!tracer_begin(p->rays[i], &target))
+        if (!tracer_begin(p->tracers[i], &target))
             return out_of_memory(why);
     atomic_store(&p->next_stripe, 0);
-    thread_team_run(p->team, trace_stripes, p, members);
+    thread_team_run(p->team, render_stripes, p, members);
     TRY(cancel_check(why));
     for (size_t i = 0; i < pixels; i++)
         p->spent += p->pixel_rays[i];
     return STATUS_OK;
 }
 
-static bool make_room(probe_image *to, size_t pixels)
+static bool reserve(probe_image *to, size_t pixels)
 {
     if (!to->rgb)
         to->rgb = malloc(3 * pixels * sizeof *to->rgb);
@@ -56,7 +57,7 @@ static void store_cut(const probe_images *p, probe_image *to)
     double all = 0.0, by_weight = 0.0;
     for (int i = 0; i < thread_team_size(p->team); i++)
         for (int c = 0; c < 3; c++)
-            by_weight += (double)tracer_counters(p->rays[i])->cut_weight_throughput[c];
+            by_weight += (double)tracer_counters(p->tracers[i])->cut_weight_throughput[c];
     for (size_t i = 0; i < pixels; i++)
         all += p->pixel_cut[i];
     const double by_depth = all > 0.0 ? 1.0 - by_weight / all : 0.0;
@@ -68,21 +69,21 @@ static void store_cut(const probe_images *p, probe_image *to)
 static status store(const probe_images *p, const film *f, probe_image *to, diagnostic *why)
 {
     const size_t pixels = probe_pixels(p);
-    if (!make_room(to, pixels))
+    if (!reserve(to, pixels))
         return out_of_memory(why);
     film_read(f, 0, 0, f->width, f->height, to->rgb, 3 * (size_t)f->width);
     store_cut(p, to);
     return STATUS_OK;
 }
 
-status probe_images_trace(probe_images *p, int depth, probe_image *to, diagnostic *why)
+status probe_images_render(probe_images *p, int depth, probe_image *to, diagnostic *why)
 {
     const render_settings *r = &p->made->render;
     const integrator *rule = integrator_for(r);
     film *f;
     p->made->render.depth = depth;
     TRY(film_create((int)r->width, (int)r->height, rule->replicates ? rule->replicates(r) : 1, FILM_RGB, &f, why));
-    status code = trace_film(p, f, why);
+    status code = render_film(p, f, why);
     if (code == STATUS_OK) {
         film_merge_replicates(f, NULL);
         code = store(p, f, to, why);
@@ -111,7 +112,7 @@ bool probe_images_begin(probe_images *p, plan *made, isa level)
     const int members = thread_team_size(p->team), most = members == 1 ? 1 : members * STRIPES_PER_THREAD;
     p->stripes = height < most ? height : most;
     for (int i = 0; i < members; i++)
-        if (!(p->rays[i] = tracer_create(level)))
+        if (!(p->tracers[i] = tracer_create(level)))
             return false;
     return true;
 }
@@ -120,7 +121,7 @@ bool probe_images_overflowed(const probe_images *p)
 {
     bool any = false;
     for (int i = 0; i < thread_team_size(p->team); i++)
-        any |= tracer_overflowed(p->rays[i]);
+        any |= tracer_overflowed(p->tracers[i]);
     return any;
 }
 
@@ -128,7 +129,7 @@ void probe_images_end(probe_images *p)
 {
     p->made->render.depth = p->depth;
     for (int i = 0; i < PROBE_THREADS_MAX; i++)
-        tracer_destroy(p->rays[i]);
+        tracer_destroy(p->tracers[i]);
     thread_team_destroy(p->team);
     free(p->pixel_rays);
     free(p->pixel_cut);
@@ -142,7 +143,7 @@ static double mean_of_pixel(const probe_image *of, size_t pixel)
     return ((double)rgb[0] + (double)rgb[1] + (double)rgb[2]) / 3.0;
 }
 
-static double apart(const probe_image *one, const probe_image *two, size_t pixel)
+static double difference(const probe_image *one, const probe_image *two, size_t pixel)
 {
     double sum = 0.0;
     for (size_t c = 0; c < 3; c++)
@@ -158,7 +159,7 @@ lack lack_of(size_t pixels, const probe_image *at, const probe_image *deepest)
         radiance += mean_of_pixel(deepest, i) / n;
     radiance = fmax(radiance, (double)PROBE_DARK);
     for (size_t i = 0; i < pixels; i++) {
-        const double one = apart(at, deepest, i) / radiance + (double)deepest->cut[i];
+        const double one = difference(at, deepest, i) / radiance + (double)deepest->cut[i];
         sum += one, squares += one * one;
         largest = fmax(largest, (double)at->cut[i]);
     }

@@ -1,5 +1,5 @@
-/* Notes on refractive indices at wavelengths at which nobody measured them. A dispersion law is extrapolated there, a
- * table keeps the value of its end. */
+/* Notes on refractive indices outside the wavelengths at which they were measured. A dispersion law is extrapolated
+ * there; a table keeps the value of its end. */
 #include "lint/lint.h"
 #include "scene/model/medium.h"
 #include "scene/model/scene.h"
@@ -16,12 +16,12 @@ static const nm_range visible = {VISIBLE_LOW_NM, VISIBLE_HIGH_NM};
 typedef struct range_case {
     const scene *s;
     const note_taker *taker;
-    nm_range clear, layered; /* of surroundings and transparent solids; of metals and films on opaque ones */
-    bool beams;              /* instead: those of the visible beams */
+    nm_range clear, layered; /* for surroundings and transparent solids; for metals and films on opaque solids */
+    bool beams;              /* the visible beams' wavelengths are used instead */
 } range_case;
 
-/* All that a spectral film shows is in the visible range, lines too. An rgb film has one wavelength for transparent
- * matter; what metals and films reflect is integrated over daylight (render/plan/layered_table.h). */
+/* A spectral film needs the visible range, for spectral lines, too. An rgb film needs one wavelength for transparent
+ * matter; the reflection of metals and films is integrated over daylight (render/plan/layered_table.h). */
 static range_case of_film(const scene *s, const note_taker *taker)
 {
     const nm_range one = {s->render.lambda_nm, s->render.lambda_nm};
@@ -43,11 +43,11 @@ static const beam *beam_beyond(const scene *s, const dispersion *law, nm_range *
 
 static void say(const range_case *c, const char *where, const char *name, const dispersion *law, const char *who)
 {
-    const bool is_table = law->kind == DISPERSION_TABLE, is_own = is_table && !name;
+    const bool is_table = law->kind == DISPERSION_TABLE, is_of_scene = is_table && !name;
     const bool is_stated = law->low_nm != 0.0 || law->high_nm != 0.0;
     const double low_nm = is_stated ? law->low_nm : law->coefficient[0],
                  high_nm = is_stated ? law->high_nm : law->coefficient[law->count - 2];
-    if (is_own)
+    if (is_of_scene)
         note_report(c->taker, where, "coefficients",
                     "use wavelengths in this range, or coefficients with a wider range",
                     "its table of indices covers only %g to %g nm and is constant outside%s", low_nm, high_nm, who);
@@ -59,7 +59,7 @@ static void say(const range_case *c, const char *where, const char *name, const 
                     is_table ? "constant" : "extrapolated", who);
 }
 
-/* name: of the medium; NULL for a table of the scene's. */
+/* name: the medium's; NULL for a table in the scene file. */
 static void hint_at_law(const range_case *c, const char *where, const char *name, const dispersion *law, nm_range at)
 {
     char who[SCENE_NAME_MAX + 80] = "";
