@@ -200,11 +200,11 @@ static void ineffective_parameters_give_a_hint(void **state)
                  "");
     expect_hints("render: {integrator: path}\nlights: {lamp: {}}\nsolids: {ball: {shape: sphere, diffuse: 1}}", "");
     expect_hints("lights: {lamp: {polarised: 0.5}}\nsolids: {ball: {shape: sphere, diffuse: 1}}",
-                 "lamp.polarised: light is traced without its polarisation: that of lamp has no effect; set "
+                 "lamp.polarised: light is traced without its polarisation: the polarisation of lamp has no effect; set "
                  "render.polarisation to on\n");
     expect_hints("beams: {laser: {lights: on}}\nsolids: {ball: {shape: sphere, diffuse: 1}}",
                  "lights: no lights: opaque surfaces show only ambient and emitted light; add lights:\n"
-                 "laser.lights: laser lights nothing: photons alone bring the light of beams; set "
+                 "laser.lights: laser lights nothing: only photons carry the light of beams; set "
                  "render.caustics=photons\n");
     expect_hints(
         "render: {caustics: photons}\nbeams: {laser: {lights: on}}\nsolids: {ball: {shape: sphere, diffuse: 1}}", "");

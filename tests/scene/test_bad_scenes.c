@@ -66,7 +66,7 @@ static void the_first_light_too_many_is_located(void **state)
     assert_int_equal(why.line, LIGHTS + 1);
     assert_int_equal(why.column, 3);
     assert_string_equal(why.what, "more than 1024 lights");
-    assert_string_equal(why.remedy, "a scene can have 1024");
+    assert_string_equal(why.remedy, "use at most 1024 lights");
 }
 
 static void a_missing_file_is_named_in_the_error(void **state)

@@ -427,7 +427,7 @@ static void errors_of_paths_and_values_name_the_valid_ones(void **state)
         {"lens.material=glass",
          "lens has no parameter 'material'; shape and material are set in the scene file or by cuvette scene; "
          "for glass set lens.transparency=1 and lens.ior=1.5"},
-        {"lens.radius=75cm", "lens.radius: '75cm' is not a finite number; write the number alone, in scene units"},
+        {"lens.radius=75cm", "lens.radius: '75cm' is not a finite number; write only the number, in scene units"},
         {"lens.ior=1,5", "lens.ior: '1,5' is not a finite number; a decimal comma? write 1.5"},
         {"camera.fov=45", "camera has no parameter 'fov'; did you mean 'camera.fov_deg'?"},
         {"camera.5=1",

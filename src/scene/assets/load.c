@@ -1,4 +1,4 @@
-/* Loads the files of a scene, and makes its generated meshes: the background image, textures, meshes. */
+/* Loads the files of a scene (background image, textures, meshes), and makes its generated meshes. */
 #include "base/cancel.h"
 #include "base/file.h"
 #include "base/random.h"
@@ -86,7 +86,7 @@ static status generate(const mesh_entry *m, mesh **out, diagnostic *why)
     return diagnose(why, STATUS_BAD_INPUT, "set its triangles, or another source", "%.80s has no triangles", m->name);
 }
 
-/* As the generators count; 0 for those that are small anyway. A solid terrain has a few more. */
+/* The size of a generated mesh before it is made; 0 for shapes that are always small. A solid terrain has a few more. */
 static void size_of(const mesh_entry *m, size_t *vertices, size_t *triangles)
 {
     const size_t count = (size_t)m->count, around = (size_t)m->around, tube = (size_t)m->tube;
@@ -137,7 +137,7 @@ static double at_most_one(double value)
     return value < 1.0 ? value : 1.0;
 }
 
-/* Shared with an earlier slot that has the same image file. */
+/* Reads the image of a slot, or retains that of an earlier slot with the same file. */
 static status read_image(const mesh_import *imported, int slot, const char *root, face_material *list, diagnostic *why)
 {
     const char *path = imported->materials[slot].texture;
@@ -163,7 +163,7 @@ static double brightest(vec3 color)
 }
 
 /* Emission is the surface's colour times a scalar in this program: the scalar is the brightest channel of the file's
- * emission; an emitter with a black surface takes the colour of the emission. */
+ * emission; a black surface that emits gets the colour of the emission. */
 static void emit(face_material *mat, const imported_material *m)
 {
     const vec3 sent = vec3_make(m->emissive[0], m->emissive[1], m->emissive[2]);
@@ -317,8 +317,7 @@ static status load_mesh(const scene *s, mesh_entry *m, diagnostic *why)
     return code == STATUS_OK ? code : scene_file_error(s, m->name, m->path_line, m->path_column, &bad, code, why);
 }
 
-/* Whether all meshes together exceed the limit: before m is generated, with the triangles that it will have, or after
- * it was loaded. */
+/* Fails if the triangles of all meshes exceed the limit. `further`: the triangles of m if it is not generated yet. */
 static status check_triangles(const scene *s, mesh_entry *m, size_t further, diagnostic *why)
 {
     size_t all = further;
@@ -340,7 +339,7 @@ static status generate_mesh(const scene *s, mesh_entry *m, diagnostic *why)
     return make_mesh(m, why);
 }
 
-/* Background image and textures. */
+/* Loads the background image and the textures. */
 static status load_textures(scene *s, diagnostic *why)
 {
     TRY(load_sky(s, why));
@@ -350,10 +349,10 @@ static status load_textures(scene *s, diagnostic *why)
     return STATUS_OK;
 }
 
-/* Progress of one slime as a part of all slimes that must move. */
+/* Progress of one slime as a fraction of the motion of all slimes. */
 typedef struct motion_watch {
     const load_watch *watch;
-    double before, current, total; /* as slime_work */
+    double before, current, total; /* in units of slime_work */
 } motion_watch;
 
 static void show_total(void *context, double fraction)

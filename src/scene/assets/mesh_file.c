@@ -28,8 +28,8 @@ typedef struct mesh_child {
     char message[2048]; /* the beginning of its standard error */
     size_t message_length;
     bool late;      /* killed after the deadline */
-    bool cancelled; /* killed because the work was (base/cancel.h) */
-    int error;      /* errno of a failed read of its output */
+    bool cancelled; /* killed because the work was cancelled (base/cancel.h) */
+    int error;      /* errno of a failed read of its standard output */
 } mesh_child;
 
 static double now_s(void)
@@ -60,7 +60,7 @@ static char *importer_path(void)
     return path || errno == ENOMEM ? path : strdup(CUVETTE_LIBEXEC "/" PROGRAM);
 }
 
-/* Both ends above the standard descriptors, some of which the caller may have closed. */
+/* Opens a pipe whose ends are above the standard descriptors, some of which the caller may have closed. */
 static int open_pipe(int ends[2])
 {
     int low[2];
@@ -110,9 +110,9 @@ static status start(mesh_child *child, const char *path, const mesh_limits *limi
     *child = (mesh_child){.pid = -1, .handle = -1, .out = -1, .err = -1};
     char *program = importer_path();
     char memory[32], seconds[32], triangles[32], vertices[32];
-    uint64_t mib = limits->memory_bytes >> 20, whole = limits->wall_s < 1e6 ? (uint64_t)limits->wall_s + 1 : 1000000;
+    uint64_t mib = limits->memory_bytes >> 20, cpu_s = limits->wall_s < 1e6 ? (uint64_t)limits->wall_s + 1 : 1000000;
     snprintf(memory, sizeof memory, "--memory=%llu", (unsigned long long)(mib ? mib : 1));
-    snprintf(seconds, sizeof seconds, "--seconds=%llu", (unsigned long long)whole);
+    snprintf(seconds, sizeof seconds, "--seconds=%llu", (unsigned long long)cpu_s);
     snprintf(triangles, sizeof triangles, "--triangles=%zu", limits->triangles);
     snprintf(vertices, sizeof vertices, "--vertices=%zu", limits->vertices);
     char *name = strdup(path), *root = text_format("--root=%s", limits->root ? limits->root : ""),
@@ -151,8 +151,7 @@ static void close_end(int *fd)
     }
 }
 
-/* Reads its standard error; only the beginning is kept, but the pipe is always drained, so that the child never blocks.
- * */
+/* Reads the child's standard error. It keeps only the beginning, but drains the pipe, so that the child never blocks. */
 static void read_messages(mesh_child *child)
 {
     char buffer[4096];
@@ -168,7 +167,7 @@ static void read_messages(mesh_child *child)
     child->message_length += kept;
 }
 
-/* poll until the deadline, for at most 50 ms at a time; 0, with late or cancelled set, after it. */
+/* Polls for at most 50 ms. After the deadline or a cancellation it sets late or cancelled and returns 0. */
 static int wait_until_late(mesh_child *child, struct pollfd *files, nfds_t count)
 {
     const double left_s = child->deadline_s - now_s();
@@ -177,19 +176,19 @@ static int wait_until_late(mesh_child *child, struct pollfd *files, nfds_t count
     return child->late || child->cancelled ? 0 : poll(files, count, left_s < 0.05 ? (int)(left_s * 1000) + 1 : 50);
 }
 
-static bool is_passing(int error)
+static bool is_transient(int error)
 {
     return error == EINTR || error == EAGAIN;
 }
 
-/* Waits until standard output has data (true) or nothing more will come. */
+/* Waits until standard output has data (true), or can have no more (false). */
 static bool wait_for_bytes(mesh_child *child)
 {
     while (child->out >= 0) {
         struct pollfd both[] = {{.fd = child->out, .events = POLLIN},
                                 {.fd = child->err, .events = POLLIN}}; /* -1 is ignored */
         const int ready = wait_until_late(child, both, 2);
-        if (child->late || child->cancelled || (ready < 0 && !is_passing(errno)))
+        if (child->late || child->cancelled || (ready < 0 && !is_transient(errno)))
             return false;
         if (ready > 0 && both[1].revents)
             read_messages(child);
@@ -214,8 +213,7 @@ static size_t read_some(mesh_child *child, void *bytes, size_t size)
     return 0;
 }
 
-/* For a mesh_source whose context is the child, as read_end. At the end of the stream the diagnostic is left to
- * finish. */
+/* mesh_source.read, with the child as context. If the stream ends early, finish() explains why. */
 static status read_bytes(void *context, void *bytes, size_t size, diagnostic *why)
 {
     for (size_t done = 0; done < size;) {
@@ -249,7 +247,7 @@ static int reap(mesh_child *child, bool still_wanted)
         const int ready = wait_until_late(child, &one, 1);
         if (ready > 0)
             read_messages(child);
-        else if (ready < 0 && !is_passing(errno))
+        else if (ready < 0 && !is_transient(errno))
             break;
     }
     /* A child that is already exiting keeps its own exit status: it no longer receives signals. */
@@ -302,13 +300,13 @@ static bool parse_message(mesh_child *child, const char *path, diagnostic *why)
  * successfully; the child's own message, or its signal, takes precedence over the reader's. */
 static status finish(mesh_child *child, const char *path, const mesh_limits *limits, status code, diagnostic *why)
 {
-    /* A stream that was complete but refused: no further data is expected. */
+    /* If the reader refused the stream before its end, the child's messages do not matter. */
     int state = reap(child, code == STATUS_OK || child->out < 0);
     diagnostic_locate(why, path, 0, 0);
     if (child->cancelled)
         return diagnose(why, STATUS_INTERRUPTED, NULL, "reading the file was interrupted");
     if (child->late)
-        return diagnose(why, STATUS_BAD_INPUT, "use a mesh of less detail, if the file is complete",
+        return diagnose(why, STATUS_BAD_INPUT, "use a mesh of less detail, or export the file again if it is damaged",
                         "reading the file took longer than the limit of %g s", limits->wall_s);
     if (state == -1)
         return code != STATUS_OK && parse_message(child, path, why) ? STATUS_BAD_INPUT : code;
@@ -318,7 +316,8 @@ static status finish(mesh_child *child, const char *path, const mesh_limits *lim
         if (signal == SIGINT || signal == SIGTERM || signal == SIGHUP)
             return diagnose(why, STATUS_INTERRUPTED, NULL, "reading the file was interrupted");
         if (signal == SIGXCPU)
-            return diagnose(why, STATUS_BAD_INPUT, "use a mesh of less detail, if the file is complete",
+            return diagnose(why, STATUS_BAD_INPUT,
+                            "use a mesh of less detail, or export the file again if it is damaged",
                             "reading the file took more CPU time than the limit of %g s", limits->wall_s);
         if (signal == SIGKILL && code != STATUS_OK)
             return code;

@@ -9,6 +9,6 @@
 
 #include "scene/assets/mesh_stream.h"
 
-/* limits may be NULL. Textures are returned as paths that can be opened: absolute, or relative to the mesh file;
- * existence is checked, they are not opened. */
+/* Reads a mesh file; limits may be NULL. Images of textures are not opened, but must exist: their paths are absolute, or
+ * relative to the mesh file. */
 status mesh_read_file(const char *path, const mesh_limits *limits, mesh_import **out, diagnostic *why);

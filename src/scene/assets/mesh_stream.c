@@ -1,3 +1,4 @@
+/* Reads the wire format of cuvette-import (import/mesh_wire.h), and finds the images that materials name. */
 #include "base/cancel.h"
 #include "base/file.h"
 #include "import/mesh_wire.h"
@@ -9,9 +10,9 @@
 #include <sys/stat.h>
 
 _Static_assert(sizeof(mesh_wire_header) == 40 && sizeof(mesh_wire_material) == 15 * 8 + 16, "no padding");
-_Static_assert(sizeof(vec3) == 24 && sizeof(mesh_uv) == 16 && sizeof(mesh_triangle) == 12, "arrays travel as they lie");
+_Static_assert(sizeof(vec3) == 24 && sizeof(mesh_uv) == 16 && sizeof(mesh_triangle) == 12, "arrays without padding");
 
-#define COLOR_MAX 1e6 /* maximum of a colour component, an exponent or an index: larger values are errors in the file */
+#define COLOR_MAX 1e6 /* maximum of a colour component, an exponent or an index; larger values are errors in the file */
 
 mesh_limits mesh_limits_complete(const mesh_limits *limits)
 {
@@ -46,7 +47,7 @@ static status damaged(diagnostic *why, const char *what)
                     "the importer's answer is damaged: %s", what);
 }
 
-static status no_room(diagnostic *why)
+static status no_memory(diagnostic *why)
 {
     return diagnose(why, STATUS_FAILURE, MEMORY_REMEDY, "out of memory for the mesh");
 }
@@ -74,7 +75,7 @@ static status read_header(const mesh_source *source, const mesh_limits *limits, 
     return STATUS_OK;
 }
 
-/* Reads the arrays; mesh_finish checks their contents, except for the slots, which are checked here. */
+/* Reads the arrays, and checks texture coordinates and slots; mesh_finish checks the others. */
 static status read_arrays(const mesh_source *source, mesh *m, diagnostic *why)
 {
     struct {
@@ -103,7 +104,7 @@ static status read_arrays(const mesh_source *source, mesh *m, diagnostic *why)
     return STATUS_OK;
 }
 
-/* Fresh text of that length in *text, or NULL for none. NUL and other control characters are refused. */
+/* Reads a text of this length; *text is fresh, or NULL for length 0. NUL and other control characters are refused. */
 static status read_text(const mesh_source *source, uint32_t length, char **text, diagnostic *why)
 {
     *text = NULL;
@@ -113,7 +114,7 @@ static status read_text(const mesh_source *source, uint32_t length, char **text,
         return damaged(why, "a text is too long");
     char *fresh = malloc(length + 1);
     if (!fresh)
-        return no_room(why);
+        return no_memory(why);
     status code = source->read(source->context, fresh, length, why);
     fresh[length] = 0;
     for (uint32_t i = 0; i < length && code == STATUS_OK; i++) {
@@ -178,7 +179,7 @@ static status read_materials(const mesh_source *source, mesh_import *into, diagn
         imported_material *m = &into->materials[i];
         TRY(read_material(source, m, why));
         if (m->name && !(into->mesh->slot_names[i] = strdup(m->name)))
-            return no_room(why);
+            return no_memory(why);
     }
     char end[sizeof MESH_WIRE_END - 1];
     TRY(source->read(source->context, end, sizeof end, why));
@@ -195,7 +196,7 @@ static status read_all(const mesh_source *source, const mesh_limits *limits, mes
     into->mesh->slot_count = into->material_count = (int)header.material_count;
     into->materials = calloc(header.material_count, sizeof *into->materials);
     if (!into->materials)
-        return no_room(why);
+        return no_memory(why);
     TRY(read_arrays(source, into->mesh, why));
     TRY(read_materials(source, into, why));
     into->mesh->distinct = !into->mesh->normals && !into->mesh->uvs; /* equal vertices are joined: mesh_wire.h */
@@ -208,7 +209,7 @@ status mesh_stream_read(const mesh_source *source, const mesh_limits *limits, me
     *out = NULL;
     mesh_import *fresh = calloc(1, sizeof *fresh);
     if (!fresh)
-        return no_room(why);
+        return no_memory(why);
     status code = read_all(source, &all, fresh, why);
     if (code != STATUS_OK) {
         mesh_import_destroy(fresh);
@@ -245,7 +246,7 @@ static bool is_file(const char *path)
     return path && stat(path, &about) == 0 && S_ISREG(about.st_mode);
 }
 
-/* The original spelling is tried first. */
+/* Finds the image of a material; the original spelling is tried first. */
 static status resolve(const char *path, imported_material *m, diagnostic *why)
 {
     char *found = file_next_to(path, m->texture);

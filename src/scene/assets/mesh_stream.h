@@ -1,6 +1,6 @@
 /* Decodes the bytes of mesh_wire.h into a mesh and its materials, without trusting them: counts are compared with
  * limits before memory is allocated, indices, numbers and texts are checked, and a truncated or overlong stream is
- * refused. Ownership: an import is the caller's, mesh_import_destroy releases it; mesh_retain keeps its mesh. */
+ * refused. Ownership: the caller releases an import with mesh_import_destroy; mesh_retain keeps its mesh. */
 #pragma once
 
 #include "base/status.h"
@@ -9,13 +9,13 @@
 #include <stddef.h>
 #include <stdint.h>
 
-/* Limits for one file. A field of 0 means its default. */
+/* Limits for one file. 0 means the default. */
 typedef struct mesh_limits {
-    size_t triangles, vertices; /* 2^25 and 2^26 */
-    uint64_t memory_bytes;      /* memory of the importer process; 4 GiB */
-    double wall_s;              /* 60 */
-    const char *root; /* the file, and all files that it refers to, are read below this folder (base/file.h); NULL or
-                         "": anywhere. Borrowed */
+    size_t triangles, vertices; /* defaults 2^25 and 2^26 */
+    uint64_t memory_bytes;      /* memory of the importer process; default 4 GiB */
+    double wall_s;              /* default 60 */
+    const char *root; /* folder of the file and of all files that it refers to (base/file.h); NULL or "": no
+                         restriction. Borrowed */
 } mesh_limits;
 
 /* The limits with defaults filled in, at most MESH_TRIANGLES_MAX and MESH_VERTICES_MAX; limits may be NULL. */
@@ -44,18 +44,18 @@ typedef struct mesh_import {
     imported_material *materials;
 } mesh_import;
 
-/* The source of the bytes. read fills all of bytes or fails with a diagnostic; end is STATUS_OK if nothing follows. */
+/* The source of the bytes. read fills all `size` bytes or fails with a diagnostic; end fails if more bytes follow. */
 typedef struct mesh_source {
     status (*read)(void *context, void *bytes, size_t size, diagnostic *why);
     status (*end)(void *context, diagnostic *why);
     void *context;
 } mesh_source;
 
-/* STATUS_BAD_INPUT for an invalid stream, STATUS_FAILURE without memory, or the result of source->read. */
+/* STATUS_BAD_INPUT for an invalid stream, STATUS_FAILURE if memory runs out, or the error of source->read. */
 status mesh_stream_read(const mesh_source *source, const mesh_limits *limits, mesh_import **out, diagnostic *why);
 
 void mesh_import_destroy(mesh_import *imported); /* NULL is allowed */
 
-/* Turns the images that a mesh file names, at path, into paths that can be opened: absolute, or relative to the mesh
- * file. Their existence is checked; they are not opened. STATUS_BAD_INPUT for a missing one. */
+/* Turns the image names of materials into paths that can be opened: absolute, or relative to the mesh file at `path`.
+ * The images are not opened. STATUS_BAD_INPUT if one does not exist. */
 status mesh_textures_find(const char *path, mesh_import *imported, diagnostic *why);

@@ -1,6 +1,5 @@
-/* Reads script files through the tree of scene/file/document.h. The grammar is in the header; all keys are optional
- * except hands, time_s, one act per entry, and towards and reach of a grab. hand_script_add checks the sequence of
- * acts. */
+/* Reads script files through the tree of scene/file/document.h. The grammar is in the header. Required are hands, time_s
+ * and one act per entry, and towards and reach of a grab. hand_script_add checks the sequence of acts. */
 #include "base/number.h"
 #include "scene/assets/script.h"
 #include "scene/file/document.h"
@@ -9,8 +8,8 @@
 #include <stdio.h>
 #include <string.h>
 
-#define FAR 1e6          /* as of positions in scene files */
-#define TIME_S_MAX 86400 /* as of a slime's time_s */
+#define FAR 1e6          /* the limit of positions in scene files */
+#define TIME_S_MAX 86400 /* the limit of a slime's time_s */
 
 typedef struct script_reader {
     const document *file;
@@ -26,7 +25,7 @@ static const char *kind_name(const node *n)
     return n->kind == NODE_LIST ? "a list" : n->kind == NODE_MAP ? "a map" : "a word";
 }
 
-/* A finite number from low to high (label is used in messages), as in scene files without quotes. */
+/* Reads a finite number from low to high, without quotes; label is used in messages. */
 static status read_number(const script_reader *r, const char *label, const node *n, double low, double high,
                           double *out)
 {
@@ -46,7 +45,7 @@ static status read_number(const script_reader *r, const char *label, const node 
 
 static status read_vector(const script_reader *r, const char *label, const node *n, vec3 *out)
 {
-    static const char remedy[] = "give three numbers, as [0, 1, -6]";
+    static const char remedy[] = "give three numbers, such as [0, 1, -6]";
     if (n->kind != NODE_LIST)
         return node_error(r->file, n, r->why, remedy, "%s is %s", label, kind_name(n));
     if (n->count != 3)
@@ -92,7 +91,7 @@ static status read_release(const script_reader *r, const node *value)
                  : node_error(r->file, value, r->why, "write 'release: on'", "the only value of release is on");
 }
 
-/* The single act of an entry. */
+/* Finds the only act of an entry. */
 static status find_act(const script_reader *r, const node *entry, hand_act *out)
 {
     int found = -1;
@@ -106,11 +105,11 @@ static status find_act(const script_reader *r, const node *entry, hand_act *out)
     if (found < 0)
         return node_error(r->file, entry, r->why, "add one of grab, move and release",
                           "the entry has no grab, move or release");
-    static const char *const of_grabs[] = {"towards", "reach"};
+    static const char *const grab_keys[] = {"towards", "reach"};
     for (size_t i = 0; i < 2 && found != HAND_GRAB; i++) {
-        const node *stray = node_get(entry, of_grabs[i]);
+        const node *stray = node_get(entry, grab_keys[i]);
         if (stray)
-            return node_error(r->file, stray, r->why, "remove it", "%s is part of a grab, not of a %s", of_grabs[i],
+            return node_error(r->file, stray, r->why, "remove it", "%s is part of a grab, not of a %s", grab_keys[i],
                               acts[found]);
     }
     *out = (hand_act)found;

@@ -7,14 +7,14 @@
  *       - {time_s: 1.5, move: [-1.2, 0.8, 0]}                               # displacement from the grab by then
  *       - {time_s: 2.0, release: on}
  *
- * Points are in the frame of the slime's mesh, which is the world's where its solid is neither moved, turned nor
- * scaled. Ownership: the caller releases with hand_script_destroy. Errors: STATUS_BAD_INPUT, located: file, line,
+ * Points are in the frame of the slime's mesh, which is the world's if its solid is not moved, rotated or scaled.
+ * Ownership: the caller releases a script with hand_script_destroy. Errors: STATUS_BAD_INPUT with file, line and
  * column. */
 #pragma once
 
 #include "softbody/softbody.h"
 
-/* From a file below root (base/file.h; NULL: anywhere). */
+/* Reads a file below root (base/file.h; NULL: no restriction). */
 status script_read_below(const char *path, const char *root, hand_script **out, diagnostic *why);
-/* The same from memory; name is used in diagnostics. */
+/* Reads a script from memory; name is used in diagnostics. */
 status script_read_text(const char *name, const char *text, size_t size, hand_script **out, diagnostic *why);

@@ -1,3 +1,4 @@
+/* Simulates the slime of a mesh entry up to its time, and makes its surface mesh. */
 #include "measure/clock.h"
 #include "scene/assets/script.h"
 #include "scene/assets/slime.h"
@@ -5,7 +6,7 @@
 #include <math.h>
 #include <stdlib.h>
 
-/* Locates an error of the body, except one in its script, which is already located. */
+/* Locates an error of the body in the scene file, unless it is already located in the script. */
 static status body_error(const scene *s, const mesh_entry *m, const diagnostic *bad, status code, diagnostic *why)
 {
     if (bad->file[0] && bad->line > 0) {
@@ -26,7 +27,7 @@ status slime_read_script(const scene *s, const mesh_entry *m, hand_script **out,
     diagnostic bad = {.what = ""};
     const status code = script_read_below(path, scene_root(s), out, &bad);
     free(path);
-    if (code != STATUS_OK && bad.line == 0) /* no text in the scene file: the message has the name */
+    if (code != STATUS_OK && bad.line == 0) /* the script cannot be opened: the error is where the scene names it */
         return scene_file_error(s, m->name, m->script_line, m->script_column, &bad, code, why);
     return code == STATUS_OK ? code : body_error(s, m, &bad, code, why);
 }
@@ -70,7 +71,7 @@ static status interrupted(const slime *x, const scene *s, const mesh_entry *m, d
                        x->steps * m->slime.dt_s, time_s);
 }
 
-/* One step per call, so that progress is shown often, however long the motion is. */
+/* Advances one step per call, so that progress is reported often, however long the motion is. */
 static status advance_watched(slime *x, const scene *s, const mesh_entry *m, double time_s, const load_watch *watch,
                               diagnostic *bad)
 {

@@ -1,4 +1,4 @@
-/* The tree of a YAML file: from libyaml's events, with its errors as diagnostics; and queries on the nodes. */
+/* Builds the tree of a YAML file from libyaml's events, reports its errors as diagnostics, and answers queries. */
 #include "base/file.h"
 #include "base/array.h"
 #include "base/status.h"
@@ -32,7 +32,7 @@ static bool is_utf8_follower(char c)
     return ((unsigned char)c & 0xc0) == 0x80;
 }
 
-/* Line and column (in characters) of a byte: libyaml reports only the byte where decoding failed. */
+/* The line and column (in characters) of a byte: libyaml reports only the byte at which decoding failed. */
 static yaml_mark_t mark_of_byte(const event_reader *r, size_t offset)
 {
     yaml_mark_t mark = {.index = 0, .line = 0, .column = 0};
@@ -47,7 +47,7 @@ static yaml_mark_t mark_of_byte(const event_reader *r, size_t offset)
     return mark;
 }
 
-static bool tab_stands_at(const event_reader *r, yaml_mark_t mark)
+static bool is_tab_at(const event_reader *r, yaml_mark_t mark)
 {
     size_t line = 0, i = 0;
     while (i < r->size && line < mark.line)
@@ -72,14 +72,14 @@ static status syntax_error(event_reader *r)
     case YAML_WRITER_ERROR:
     case YAML_EMITTER_ERROR: break;
     }
-    const char *remedy = tab_stands_at(r, p->problem_mark) ? "indent with spaces instead of tabs"
+    const char *remedy = is_tab_at(r, p->problem_mark) ? "indent with spaces instead of tabs"
                                                            : "check the indentation, colons, brackets and quotes here";
     diagnostic_locate(r->why, r->name, (long)p->problem_mark.line + 1, (long)p->problem_mark.column + 1);
     return diagnose(r->why, STATUS_BAD_INPUT, remedy, "%s%s%s", p->context ? p->context : "", p->context ? ", " : "",
                     p->problem ? p->problem : "invalid YAML");
 }
 
-/* The next event; constructs that scene and study files exclude (aliases, anchors, tags) are refused here. */
+/* Reads the next event; refuses aliases, anchors and tags, which scene and study files exclude. */
 static status events_next(event_reader *r, yaml_event_t *event)
 {
     if (!yaml_parser_parse(&r->parser, event))
@@ -139,7 +139,7 @@ static status node_create(event_reader *r, node_kind kind, yaml_mark_t mark, nod
     return STATUS_OK;
 }
 
-/* Appends value, and key if the node is a map. On failure both remain the caller's. */
+/* Appends value, and key if the node is a map. On failure the caller still owns both. */
 static status node_append(event_reader *r, node *parent, node *key, node *value)
 {
     size_t count = parent->count;
@@ -212,7 +212,7 @@ static status read_key(event_reader *r, yaml_event_t *event, node **key)
     return read_scalar(r, event, key);
 }
 
-/* Reads entries up to the end of the list or map; those read are in *n even on failure. */
+/* Reads entries up to the end of the list or map. On failure *n has the entries read so far. */
 static status read_entries(event_reader *r, yaml_event_type_t end, int depth, node *n)
 {
     for (;;) {
@@ -242,7 +242,7 @@ static status read_entries(event_reader *r, yaml_event_type_t end, int depth, no
     }
 }
 
-/* Reads the node that starts with *event, which remains the caller's. *out is set only on success. */
+/* Reads the node that starts with *event, which the caller deletes. *out is set only on success. */
 static status read_node(event_reader *r, yaml_event_t *event, int depth, node **out)
 {
     if (event->type == YAML_SCALAR_EVENT)
@@ -261,7 +261,7 @@ static status read_node(event_reader *r, yaml_event_t *event, int depth, node **
     return STATUS_OK;
 }
 
-/* One document, from stream start to stream end. */
+/* Reads the only document, from stream start to stream end. */
 static status read_stream(event_reader *r, node **root)
 {
     for (;;) {
@@ -310,7 +310,7 @@ status document_parse(const char *name, const char *text, size_t size, document 
 {
     *out = NULL;
     static const char byte_order_mark[] = "\xef\xbb\xbf";
-    if (size >= 3 && memcmp(text, byte_order_mark, 3) == 0) { /* unknown */
+    if (size >= 3 && memcmp(text, byte_order_mark, 3) == 0) { /* libyaml does not skip it if the encoding is set */
         text += 3;
         size -= 3;
     }
@@ -320,7 +320,7 @@ status document_parse(const char *name, const char *text, size_t size, document 
         return diagnose(why, STATUS_BAD_INPUT, "make the file smaller", "the file is larger than 64 MiB");
     }
     if (is_image(text, size))
-        return events_error(&r, (yaml_mark_t){0}, "give the file that describes it",
+        return events_error(&r, (yaml_mark_t){0}, "give the scene file instead",
                             "this is an image file, not a scene");
     if (!yaml_parser_initialize(&r.parser))
         return out_of_memory(r.why);

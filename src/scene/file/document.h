@@ -14,15 +14,15 @@ typedef struct node {
     char *text;        /* NODE_SCALAR */
     bool quoted;
     struct node **items; /* NODE_LIST: items; NODE_MAP: values */
-    struct node **keys;  /* NODE_MAP: scalars, all different */
+    struct node **keys;  /* NODE_MAP: unique scalars */
     size_t count;
 } node;
 
 typedef struct document document;
 
-/* Limits: 1 MiB, depth 16, 65536 nodes. name is the file name in diagnostics. */
+/* Parses a text. Limits: 64 MiB, depth 16, 2^21 nodes. name is the file name in diagnostics. */
 status document_parse(const char *name, const char *text, size_t size, document **out, diagnostic *why);
-/* The same for a file below root (base/file.h; NULL: anywhere). */
+/* Parses a file below root (base/file.h; NULL: no restriction). */
 status document_read_below(const char *path, const char *root, document **out, diagnostic *why);
 void document_destroy(document *d);
 
@@ -34,10 +34,10 @@ const node *node_get(const node *map, const char *key);
 /* diagnose() located at a node. */
 status node_error(const document *d, const node *at, diagnostic *why, const char *remedy, const char *what, ...)
     __attribute__((format(printf, 5, 6)));
-/* Fails, with a suggestion (scene/model/names.h), if the map has a key that is not one of words[0..count-1]. */
+/* Fails, with a suggestion (scene/model/names.h), if a key of the map is not among words[0..count-1]. */
 status node_check_keys(const document *d, const node *map, const char *const *words, size_t count, diagnostic *why);
 
-/* Whether it is a scalar, or a list of scalars, that scene_set can accept. */
+/* Whether the node is a scalar, or a list of scalars, that scene_set can accept. */
 bool node_is_value(const node *n);
-/* Such a node as text ("8", "0,2.75,-6"); fresh memory, NULL for other nodes or if memory runs out. */
+/* A value as text ("8", "0,2.75,-6"); fresh memory, NULL for other nodes or if memory runs out. */
 char *node_value_text(const node *n);

@@ -11,10 +11,10 @@
  *   beams: {NAME: {PARAMETER: VALUE, ...}, ...}
  *   solids: {NAME: {shape: SHAPE, material: NAME, PARAMETER: VALUE, ...}, ...}
  *
- * Giving an image sets the kind of the background to image. Switches are on or off, also written
- * yes or no, true or false. SHAPE is the word of a rule in geometry/shapes/. The parameters are the rows of the table
- * (scene/model/params.h); a solid also takes those of a material, for itself alone. Vectors and colours are lists:
- * [0, 1, 2]. The file's order is kept. Sections and objects may be empty. */
+ * An image sets the background's kind to image. Switches are on or off, also written yes or no, true or false. SHAPE is
+ * the word of a rule in geometry/shapes/. The parameters are the rows of the table (scene/model/params.h); a solid may
+ * also have those of a material. Vectors and colours are lists: [0, 1, 2]. The file's order is kept. Sections and
+ * objects may be empty. scene_read (scene_read.c) opens the file. */
 #include "scene/file/document.h"
 #include "scene/model/check.h"
 #include "scene/model/edit/edit.h"
@@ -47,7 +47,7 @@ static bool is_empty(const node *n)
     return n->kind == NODE_SCALAR && !n->quoted && !n->text[0];
 }
 
-/* Requires a map, or nothing (an empty map). */
+/* Requires a map; nothing counts as an empty map. */
 static status read_expect_map(const scene_reader *r, const node *n, const char *name)
 {
     if (n->kind == NODE_MAP || is_empty(n))
@@ -92,8 +92,7 @@ static status read_value(const scene_reader *r, const char *path, const param *r
     return code;
 }
 
-/* Sets the entries of a map that are rows of the group; name is the path's first word. Other entries are left to the
- * caller. */
+/* Sets the entries of a map that are rows of the group, and skips others; name is the path's first word. */
 static status read_entries(const scene_reader *r, const char *name, param_group group, const node *map)
 {
     for (size_t i = 0; i < map->count; i++) {
@@ -153,7 +152,7 @@ static status read_shape(const scene_reader *r, const node *key, const node *map
     return read_located(r, shape, scene_shape_named(shape->text, out, r->why));
 }
 
-/* Assigns the material in the solid's entry, if any. */
+/* Assigns the material that the solid's entry names, if any. */
 static status read_material_name(const scene_reader *r, const node *key, const node *map)
 {
     const node *word = node_get(map, "material");
@@ -189,7 +188,7 @@ static status begin_object(const scene_reader *r, param_group group, const node 
     return code;
 }
 
-static void note_place(const node *file, long *line, long *column)
+static void store_location(const node *file, long *line, long *column)
 {
     if (file) {
         *line = file->line;
@@ -197,17 +196,17 @@ static void note_place(const node *file, long *line, long *column)
     }
 }
 
-/* Stores the locations of file names, for diagnostics when the files are read. */
-static void note_places(const scene_reader *r, param_group group, size_t index, const node *map)
+/* Stores where the scene names files, for diagnostics when the files are read. */
+static void store_locations(const scene_reader *r, param_group group, size_t index, const node *map)
 {
     const node *file = node_get(map, "file");
     if (group == PARAM_MESH) {
         mesh_entry *m = &r->scene->meshes[index];
-        note_place(file ? file : node_get(map, "generate"), &m->path_line, &m->path_column);
-        note_place(node_get(map, "script"), &m->script_line, &m->script_column);
+        store_location(file ? file : node_get(map, "generate"), &m->path_line, &m->path_column);
+        store_location(node_get(map, "script"), &m->script_line, &m->script_column);
     } else if (group == PARAM_TEXTURE) {
         texture_entry *t = &r->scene->textures[index];
-        note_place(file, &t->path_line, &t->path_column);
+        store_location(file, &t->path_line, &t->path_column);
     }
 }
 
@@ -216,7 +215,7 @@ static status read_object(const scene_reader *r, param_group group, const node *
     size_t index = 0;
     TRY(begin_object(r, group, key, map, &index));
     TRY(read_entries(r, key->text, group, map));
-    note_places(r, group, index, map);
+    store_locations(r, group, index, map);
     return read_located(r, key, check_object(r->scene, group, index, r->why));
 }
 
@@ -234,7 +233,7 @@ static status read_objects(const scene_reader *r, const char *name, param_group 
 
 /* --- sections --- */
 
-/* Whether an image is given for a background of another kind. */
+/* Stores where the scene names the background image; refuses an image for a background of another kind. */
 static status check_sky(const scene_reader *r, const node *map)
 {
     const node *kind = node_get(map, "kind"), *img = node_get(map, "image");
@@ -250,7 +249,7 @@ static status check_sky(const scene_reader *r, const node *map)
     return code;
 }
 
-/* A section that is a single object. */
+/* Reads a section that is a single object. */
 static status read_settings(const scene_reader *r, const char *name, param_group group, const node *map)
 {
     TRY(read_expect_map(r, map, name));
@@ -281,7 +280,7 @@ static status read_title(const scene_reader *r, const char *name, param_group gr
 
 static status read_sections(const scene_reader *r)
 {
-    /* Not in the order of the file: solids refer to materials, and are checked with the weights of render. */
+    /* In this order, not the file's: solids refer to materials, and are checked with render.weights. */
     static const struct section {
         const char *name;
         status (*read)(const scene_reader *, const char *, param_group, const node *);
@@ -303,7 +302,7 @@ static status read_sections(const scene_reader *r)
                           "begin with keys such as camera:, lights: and solids:", "this is not a scene");
     const node *name = node_get(root, "study");
     if (name)
-        return node_error(r->file, name, r->why, "this looks like a study; cuvette study run FILE",
+        return node_error(r->file, name, r->why, "this looks like a study; use 'cuvette study run FILE'",
                           "unknown key 'study'");
     status code = node_check_keys(r->file, root, names, COUNT, r->why);
     for (size_t i = 0; i < COUNT && code == STATUS_OK; i++) {

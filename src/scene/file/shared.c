@@ -1,4 +1,4 @@
-/* What may be shared, and its text, code and metadata. shared_read.c reads them. */
+/* Which scenes may be shared, and their forms: text, code of a link, metadata of an image. shared_read.c reads these. */
 #include "base/text.h"
 #include "scene/file/shared.h"
 #include "scene/file/write.h"
@@ -12,8 +12,8 @@
 
 static status refuse_file(const char *what, const char *path, diagnostic *why)
 {
-    return diagnose(why, STATUS_BAD_INPUT, "remove the object, or share the scene's files themselves",
-                    "a scene that is shared may name no files, but %.80s reads %.200s", what, path);
+    return diagnose(why, STATUS_BAD_INPUT, "remove the object, or send the scene file together with its files",
+                    "a shared scene cannot name files, but %.80s reads %.200s", what, path);
 }
 
 static status check_files(const scene *s, diagnostic *why)
@@ -34,8 +34,8 @@ static status check_files(const scene *s, diagnostic *why)
 
 static status too_much(const char *what, double value, double limit, diagnostic *why)
 {
-    return diagnose(why, STATUS_BAD_INPUT, "share a smaller scene, or its file",
-                    "a scene that is shared has at most %.4g %s, not %.4g", limit, what, value);
+    return diagnose(why, STATUS_BAD_INPUT, "make the scene smaller, or send the scene file instead",
+                    "a shared scene can have at most %.4g %s, not %.4g", limit, what, value);
 }
 
 static double motion_of(const scene *s)
@@ -65,13 +65,14 @@ status shared_scene_check(const scene *s, diagnostic *why)
     return STATUS_OK;
 }
 
-/* The acceleration structure stays: it decides the number of tests. Beams stay: they are no setting of the machine. */
-static status forget_machine(void *of, const char *path, const param *row, const char *value)
+/* Resets the settings of the machine to their defaults. render.accel stays, because it decides the number of
+ * intersection tests; beams are no setting of the machine. */
+static status forget_machine(void *bare, const char *path, const param *row, const char *value)
 {
     (void)value;
-    const bool here = row->performance_only && (row->group == PARAM_RENDER || row->group == PARAM_MESH) &&
+    const bool is_of_machine = row->performance_only && (row->group == PARAM_RENDER || row->group == PARAM_MESH) &&
                       strcmp(row->name, "accel") != 0;
-    return here ? scene_set(of, path, row->fallback, NULL) : STATUS_OK;
+    return is_of_machine ? scene_set(bare, path, row->fallback, NULL) : STATUS_OK;
 }
 
 status shared_scene_text(const scene *s, char **text, diagnostic *why)

@@ -1,8 +1,5 @@
-/* Reads a scene from a path: a scene file, or a shared scene in a link, the metadata of a PNG image, or a shared
- * page. */
+/* Reads a shared scene from a link, the metadata of a PNG image, or a shared page. */
 #include "base/text.h"
-#include "base/file.h"
-#include "base/installed.h"
 #include "scene/file/shared.h"
 #include "scene/model/scene.h"
 
@@ -25,7 +22,7 @@ status shared_read_text(const char *name, const char *text, size_t size, scene *
 {
     *out = NULL;
     if (size > SHARED_TEXT_MAX)
-        return diagnose_at(why, name, STATUS_BAD_INPUT, "share a smaller scene, or its file",
+        return diagnose_at(why, name, STATUS_BAD_INPUT, "make the scene smaller, or send the scene file instead",
                            "the shared scene is longer than %d bytes", SHARED_TEXT_MAX);
     TRY(scene_read_text(name, text, size, out, why));
     const status code = locate_failure(why, name, shared_scene_check(*out, why));
@@ -54,7 +51,7 @@ static status expand(const char *name, const unsigned char *packed, size_t size,
     *text = NULL;
     if (result == Z_MEM_ERROR)
         return out_of_memory(why);
-    return diagnose_at(why, name, STATUS_BAD_INPUT, "copy all of it", "the code of the shared scene is %s",
+    return diagnose_at(why, name, STATUS_BAD_INPUT, "copy the complete link or page", "the code of the shared scene is %s",
                        result == Z_BUF_ERROR ? "cut short or too long" : "damaged");
 }
 
@@ -65,14 +62,15 @@ static status read_code(const char *name, const char *code, size_t length, scene
     unsigned char *packed = length <= 2 * SHARED_TEXT_MAX ? base64_decode(code, length, &packed_size) : NULL;
     status result =
         packed ? expand(name, packed, packed_size, &text, &size, why)
-               : diagnose_at(why, name, STATUS_BAD_INPUT, "copy all of it", "the code of the shared scene is damaged");
+               : diagnose_at(why, name, STATUS_BAD_INPUT, "copy the complete link or page",
+                             "the code of the shared scene is damaged");
     THEN(result, shared_read_text(name, text, size, out, why));
     free(packed);
     free(text);
     return result;
 }
 
-/* The scene has no file. */
+/* A scene from a link has no file: its path is empty. */
 status shared_read_link(const char *link, scene **out, diagnostic *why)
 {
     *out = NULL;
@@ -85,8 +83,8 @@ status shared_read_link(const char *link, scene **out, diagnostic *why)
 static status no_scene(const char *name, const char *what, diagnostic *why)
 {
     return diagnose_at(why, name, STATUS_BAD_INPUT,
-                       "give the scene file: a scene that names files is not written into it", "this %s holds no scene",
-                       what);
+                       "give the scene file: a scene that names files cannot be stored in an image or page",
+                       "this %s holds no scene", what);
 }
 
 static status read_page(const char *name, const char *bytes, size_t size, scene **out, diagnostic *why)
@@ -97,7 +95,7 @@ static status read_page(const char *name, const char *bytes, size_t size, scene 
     begin += strlen(SHARED_PAGE_BEGIN);
     const char *end = memmem(begin, (size_t)(bytes + size - begin), SHARED_PAGE_END, strlen(SHARED_PAGE_END));
     if (!end)
-        return diagnose_at(why, name, STATUS_BAD_INPUT, "copy all of it", "the scene in this page is cut short");
+        return diagnose_at(why, name, STATUS_BAD_INPUT, "copy the complete page", "the scene in this page is cut short");
     return read_code(name, begin, (size_t)(end - begin), out, why);
 }
 
@@ -111,42 +109,4 @@ status shared_read_file(const char *name, const char *bytes, size_t size, scene 
     const status code = text ? shared_read_text(name, text, strlen(text), out, why) : no_scene(name, "PNG image", why);
     free(text);
     return code;
-}
-
-/* --- paths --- */
-
-/* A shared image may be larger than a scene's text, whose own limit document_parse checks. */
-enum { FILE_LIMIT = 1 << 28 };
-
-static status read_file(const char *path, const char *root, scene **out, diagnostic *why)
-{
-    char *text;
-    size_t size;
-    const status read = file_read_below(path, root, FILE_LIMIT, &text, &size, why);
-    if (read != STATUS_OK) {
-        if (!root)
-            installed_suggest(path, "experiments/scenes", ".yaml", why);
-        return read;
-    }
-    const status code = shared_is_file(text, size) ? shared_read_file(path, text, size, out, why)
-                                                   : scene_read_text(path, text, size, out, why);
-    free(text);
-    return code;
-}
-
-status scene_read_below(const char *path, const char *root, scene **out, diagnostic *why)
-{
-    *out = NULL;
-    TRY(shared_is_link(path) ? shared_read_link(path, out, why) : read_file(path, root, out, why));
-    const status code = scene_limit(*out, root, 0, why);
-    if (code != STATUS_OK) {
-        scene_destroy(*out);
-        *out = NULL;
-    }
-    return code;
-}
-
-status scene_read(const char *path, scene **out, diagnostic *why)
-{
-    return scene_read_below(path, NULL, out, why);
 }

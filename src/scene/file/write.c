@@ -1,5 +1,5 @@
-/* Writes the scene's parameters in the order of the table and of the scene, except those that a reader would infer.
- * Quoting and paths: write_parts.c. */
+/* Writes a scene's parameters in the order of the table and of the scene, without those that a reader infers. Quoting
+ * and paths: write_parts.c. */
 #include "base/file.h"
 #include "base/text.h"
 #include "scene/file/write.h"
@@ -23,7 +23,7 @@ static bool is_background_row(const param *row, size_t offset)
     return row->group == PARAM_BACKGROUND && row->offset == offset;
 }
 
-/* A mesh has either a file or a generator. */
+/* A mesh has either a file or a generator: whether the row is the one that it does not use. */
 static bool is_other_source(const mesh_entry *m, const param *row)
 {
     if (row->offset == offsetof(mesh_entry, script_path))
@@ -59,14 +59,14 @@ static char *implied_text(const scene *s, const param_place *at)
                                         : param_value_text(at->row, -1, (const char *)m + at->row->offset);
 }
 
-/* The presence of an angle selects aiming by angles. */
+/* yaw_deg is always written: its presence selects aiming by angles. */
 static bool is_needed(const param *row)
 {
     return row->group == PARAM_CAMERA && row->offset == offsetof(camera, yaw_deg);
 }
 
-/* Whether a reader would have another value without the line. all: or the same value, unless the line would replace a
- * setting in use. value is the row's, as text. */
+/* Whether the line is written: a reader would infer another value. all: every line, unless it would replace a setting in
+ * use. value: the row's, as text. */
 static status is_line_wanted(const scene *s, const param_place *at, const char *value, bool all, bool *wanted,
                              diagnostic *why)
 {
@@ -92,9 +92,9 @@ typedef struct scene_writer {
     FILE *out;
     bool begun;                      /* the file is not empty */
     param_group group;               /* the current group */
-    bool in_section;                 /* the heading of its section is written */
+    bool in_section;                 /* the heading of the group's section is written */
     char object[SCENE_NAME_MAX + 1]; /* the object whose heading was written last */
-    bool empty;                      /* it has no line yet */
+    bool empty;                      /* the object has no line yet */
     diagnostic *why;
 } scene_writer;
 
@@ -103,7 +103,7 @@ static bool is_section_of_objects(param_group group)
     return group > PARAM_BACKGROUND;
 }
 
-/* "materials" */
+/* Writes the heading of the section ("materials:") once. */
 static void put_section(scene_writer *w)
 {
     if (!w->in_section) {
@@ -130,7 +130,7 @@ static void begin_line(scene_writer *w, const char *key)
     fprintf(w->out, "%s%s: ", is_section_of_objects(w->group) ? "    " : "  ", key);
 }
 
-/* The heading of an object; for a solid also its shape and material, which are not rows of the table. */
+/* Writes the heading of an object; for a solid also its shape and material, which are not rows of the table. */
 static void begin_object(scene_writer *w, const param_place *at)
 {
     const char *name = param_place_group_name(w->s, at->object_group, at->index);
@@ -170,12 +170,12 @@ static void put_value(scene_writer *w, const param *row, const char *value)
 
 static status put_path(scene_writer *w, const char *label, const param *row, const char *value)
 {
-    char *there = NULL;
-    status code = write_moved_path(value, w->s->path, w->path, &there, w->why);
-    THEN(code, write_check_text(label, there, w->why));
+    char *moved = NULL;
+    status code = write_moved_path(value, w->s->path, w->path, &moved, w->why);
+    THEN(code, write_check_text(label, moved, w->why));
     if (code == STATUS_OK)
-        put_value(w, row, there);
-    free(there);
+        put_value(w, row, moved);
+    free(moved);
     return code;
 }
 

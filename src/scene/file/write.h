@@ -1,8 +1,8 @@
-/* Scenes as text, in the grammar of scene/file/read.c. Only values that differ from the defaults are written, and for a
- * solid with a material only those that differ from the material; sections and rows are in the order of the table,
- * objects in the order of the scene. Writing, reading and writing again gives the same bytes, and the scene that is
- * read gives the same film. Numbers have the fewest digits that round-trip. Comments in the original file are lost.
- * Ownership: text is the caller's, released with free. */
+/* Writes scenes as text, in the grammar of scene/file/read.c. Only values that differ from the defaults are written (for
+ * a solid with a material, from the material); sections and rows are in the order of the table, objects in the order of
+ * the scene. Writing, reading and writing again produces the same bytes, and the scene that is read has the same film.
+ * Numbers have the fewest digits that round-trip. Comments in the original file are lost. Ownership: the caller frees
+ * texts. */
 #pragma once
 
 #include "scene/model/open.h"
@@ -13,18 +13,18 @@
  * use, including defaults. STATUS_BAD_INPUT if a title or path is not valid UTF-8. */
 status scene_write_text(const scene *s, const char *path, bool all, char **text, diagnostic *why);
 
-/* The same to a file, written atomically; "-" is standard output. */
+/* Writes the text to a file, atomically; "-" is standard output. */
 status scene_write(const scene *s, const char *path, bool all, diagnostic *why);
 
-/* --- parts of such a text, for others that write YAML: write_parts.c --- */
+/* --- parts of YAML texts, also for other writers: write_parts.c --- */
 
 /* STATUS_BAD_INPUT if the text of the item called label is not UTF-8. */
 status write_check_text(const char *label, const char *text, diagnostic *why);
 
-/* A word or text, quoted if a YAML reader would interpret it otherwise. It must be UTF-8. */
+/* Writes a word or text, with quotes if a YAML reader would need them. It must be UTF-8. */
 void write_word(FILE *out, const char *text);
 
-/* "0,1,2" or "[0,1,2]" as [0, 1, 2]. */
+/* Writes "0,1,2" or "[0,1,2]" as [0, 1, 2]. */
 void write_list(FILE *out, const char *numbers);
 
 /* Converts path, relative to the folder of old_file, to a path relative to the folder of new_file. "" means a file in

@@ -1,4 +1,4 @@
-/* Scalars that YAML reads back, and relative paths. */
+/* Writes scalars so that YAML readers return the same text, and makes paths relative to a file. */
 #include "base/text.h"
 #include "scene/file/write.h"
 
@@ -25,9 +25,9 @@ static size_t decode(const char *text, uint32_t *out)
             return 0;
         c = c << 6 | (b[i] & 0x3fu);
     }
-    const bool right = length > 0 && c >= least[length] && c <= 0x10ffff && (c < 0xd800 || c > 0xdfff);
+    const bool valid = length > 0 && c >= least[length] && c <= 0x10ffff && (c < 0xd800 || c > 0xdfff);
     *out = c;
-    return right ? length : 0;
+    return valid ? length : 0;
 }
 
 status write_check_text(const char *label, const char *text, diagnostic *why)
@@ -125,7 +125,7 @@ static char *real_folder(const char *file)
     const char *slash = strrchr(file, '/');
     char *folder = slash ? strndup(file, (size_t)(slash - file) + 1) : strdup("."), here[PATH_MAX];
     char *real = folder ? realpath(folder, NULL) : NULL;
-    if (folder && !real && errno != ENOMEM) /* then the folder may exist, but elsewhere */
+    if (folder && !real && errno != ENOMEM) /* the folder does not exist, or not yet */
         real = folder[0] != '/' && getcwd(here, sizeof here) ? text_format("%s/%s", here, folder) : strdup(folder);
     free(folder);
     for (size_t length = real ? strlen(real) : 0; length > 1 && real[length - 1] == '/'; length--)
@@ -152,25 +152,25 @@ static char *join(const char *folder, const char *path)
     }
 }
 
-/* The absolute path relative to a folder; absolute if they have only the root in common. */
+/* Makes an absolute path relative to a folder; it stays absolute if they have only the root in common. */
 static char *relative(const char *path, const char *folder)
 {
-    size_t shared = 0; /* bytes, including the last slash */
+    size_t common = 0; /* bytes, including the last slash */
     size_t at = 0;
     for (; path[at] && path[at] == folder[at]; at++)
-        shared = path[at] == '/' ? at + 1 : shared;
+        common = path[at] == '/' ? at + 1 : common;
     if (!folder[at] && path[at] == '/') /* folder is a prefix of path */
         return text_format("%s%s", path[at + 1] == ' ' ? "./" : "", path + at + 1);
-    if (shared <= 1)
+    if (common <= 1)
         return strdup(path);
     char *steps = strdup("");
-    for (const char *rest = folder + shared; steps && rest; rest = strchr(rest, '/')) {
+    for (const char *rest = folder + common; steps && rest; rest = strchr(rest, '/')) {
         rest += *rest == '/';
         char *longer = text_format("%s../", steps);
         free(steps);
         steps = longer;
     }
-    char *text = steps ? text_format("%s%s", steps, path + shared) : NULL;
+    char *text = steps ? text_format("%s%s", steps, path + common) : NULL;
     free(steps);
     return text;
 }

@@ -1,3 +1,4 @@
+/* The camera's frame, from its target or its angles, and its lens and tone (camera.h). */
 #include "base/elementary.h"
 #include "scene/model/camera.h"
 #include "scene/model/view_settings.h"
@@ -45,7 +46,7 @@ camera_frame camera_frame_level(const scene *s)
     f.parallel = c->projection == PROJECTION_ORTHOGRAPHIC;
     f.half_height = f.parallel ? 0.5 * c->view_height : sine / cosine;
     f.lens_radius = 0.5 * c->aperture;
-    f.focus = c->focus > 0.0 ? c->focus : 1.0; /* of a camera that was never in a table: any, for a pinhole */
+    f.focus = c->focus > 0.0 ? c->focus : 1.0; /* 0 without defaults: any, for a pinhole */
     f.half_width = f.half_height * ((double)scene_settings(s)->width / (double)scene_settings(s)->height);
     return f;
 }

@@ -15,8 +15,8 @@
 #include "scene/model/render_settings.h"
 #include <stdbool.h>
 
-/* Image plane coordinates: u is in (-half_width, half_width), v likewise. In perspective they are slopes, lengths at
- * depth 1; of an orthographic camera they are lengths at any depth. */
+/* Image plane coordinates: u is in (-half_width, half_width), v in (-half_height, half_height). In perspective they are
+ * slopes (lengths at depth 1); for an orthographic camera they are lengths at any depth. */
 typedef struct camera_frame {
     vec3 eye, forward, right, up;
     double half_width, half_height;
@@ -27,14 +27,14 @@ typedef struct camera_frame {
 
 camera_frame camera_frame_of(const scene *s);
 
-/* The same without the camera's roll: right is horizontal. */
+/* The frame without the camera's roll: right is horizontal. */
 camera_frame camera_frame_level(const scene *s);
 
-/* How images of the scene are shown; the layers of integrator aov are no light, and are shown as they are. */
+/* The tone mapping of the scene's images; none for the layers of integrator aov, which show no light. */
 image_tone camera_tone(const scene *s);
 
-/* Whether rays pass through all of the lens: it has a size, and a pixel several rays. The depth buffer, layers of first
- * hits and single rays have chief rays only. */
+/* Whether rays are distributed over the lens: it has a size, and a pixel has several rays. The depth buffer, layers of
+ * first hits and single rays use chief rays only. */
 bool camera_lens_is_sampled(const scene *s);
 
 /* Conversion of pixels from the image's upper left corner to u and v: the size of one pixel. */
@@ -67,8 +67,8 @@ typedef struct camera_ray {
     vec3 origin, direction; /* a unit vector */
 } camera_ray;
 
-/* The ray of the image point (u, v) through the point (x, y) of the lens, scene units from its centre. The chief ray
- * meets the plane in focus at (focus u, focus v), or with parallel chief rays at (u, v); so does this one. */
+/* The ray of the image point (u, v) through the point (x, y) of the lens, scene units from its centre. Like the chief
+ * ray, it meets the plane in focus at (focus u, focus v), or at (u, v) if chief rays are parallel. */
 static inline camera_ray camera_ray_through(const camera_frame *f, double u, double v, double x, double y)
 {
     const double slope = f->parallel ? 0.0 : 1.0, shift = 1.0 - slope;

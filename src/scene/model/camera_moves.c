@@ -16,7 +16,7 @@
 
 static const double ground_up_y = 0.9;
 
-/* The ground's normal; false for another solid. One can dive into a transparent plane, such as a sea. */
+/* Whether the solid is a ground; its normal. A camera can dive into a transparent plane, such as a sea. */
 static bool is_ground(const solid *one, vec3 *up)
 {
     if (!one->visible || !shape_of(&one->shape)->unbounded || one->surface.transparency > 0.0)
@@ -25,31 +25,31 @@ static bool is_ground(const solid *one, vec3 *up)
     return up->y >= ground_up_y;
 }
 
-/* How much a point is too low for a camera that comes from above; 0 or less: it is not. */
-static double missing(const solid *one, vec3 up, vec3 from, vec3 to, double gap)
+/* How far `to` is below the height that a camera from above the ground must keep; 0 or less: it is high enough. */
+static double height_lacking(const solid *one, vec3 up, vec3 from, vec3 to, double gap)
 {
     const double before = vec3_dot(up, vec3_sub(from, one->shape.position)),
                  after = vec3_dot(up, vec3_sub(to, one->shape.position));
     return before > 0.0 ? fmin(before, gap) - after : 0.0;
 }
 
-/* Whether a camera that moves from one point to another keeps its distance from every ground below the first. */
+/* Whether a camera that moves from one point to another stays above every ground below the first point. */
 static bool is_clear(const scene *s, vec3 from, vec3 to, double gap)
 {
     vec3 up;
     for (size_t i = 0; i < s->solid_count; i++)
-        if (is_ground(&s->solids[i], &up) && missing(&s->solids[i], up, from, to, gap) > 0.0)
+        if (is_ground(&s->solids[i], &up) && height_lacking(&s->solids[i], up, from, to, gap) > 0.0)
             return false;
     return true;
 }
 
-/* The nearest such point above `to`, for one ground; for several, one that is clear of each in turn. */
-static vec3 lifted(const scene *s, vec3 from, vec3 to, double gap)
+/* Lifts `to` above each ground in turn. */
+static vec3 lift_above_grounds(const scene *s, vec3 from, vec3 to, double gap)
 {
     vec3 up;
     for (size_t i = 0; i < s->solid_count; i++)
         if (is_ground(&s->solids[i], &up))
-            to = vec3_add(to, vec3_scale(up, fmax(0.0, missing(&s->solids[i], up, from, to, gap))));
+            to = vec3_add(to, vec3_scale(up, fmax(0.0, height_lacking(&s->solids[i], up, from, to, gap))));
     return to;
 }
 
@@ -64,7 +64,7 @@ static double extent_about(const scene *s, vec3 point)
     return extent;
 }
 
-/* A distance from the pivot within bounds: a thousandth of the scene's extent about the pivot, and twenty times it. A
+/* Limits a distance from the pivot to between a thousandth of the scene's extent about the pivot and twenty times it. A
  * camera that is already beyond a bound may stay there. */
 static double distance_within(const scene *s, vec3 pivot, double now, double wanted)
 {
@@ -72,7 +72,7 @@ static double distance_within(const scene *s, vec3 pivot, double now, double wan
     return fmin(fmax(wanted, fmin(nearest * scale, now)), fmax(farthest * scale, now));
 }
 
-/* A ball around all visible solids with bounds; false for none. */
+/* A ball around all visible bounded solids; false if there are none. */
 static bool scene_ball(const scene *s, vec3 *centre, double *radius)
 {
     vec3 low = vec3_make(INFINITY, INFINITY, INFINITY), high = vec3_scale(low, -1.0), at;
@@ -90,7 +90,7 @@ static bool scene_ball(const scene *s, vec3 *centre, double *radius)
 /* --- moves --- */
 
 static const double pitch_max_deg = 89.5;
-/* Distance that is kept from the ground, as a fraction of that from the pivot. */
+/* The minimum distance from a ground, as a fraction of the distance from the pivot. */
 static const double gap_fraction = 1e-3;
 
 static vec3 direction_of(double yaw_deg, double pitch_deg)
@@ -100,8 +100,8 @@ static vec3 direction_of(double yaw_deg, double pitch_deg)
     return vec3_make(cos(pitch) * sin(yaw), sin(pitch), cos(pitch) * cos(yaw));
 }
 
-/* The direction rotated by yaw and pitch. */
-static vec3 turned(vec3 direction, const double by_deg[2])
+/* Rotates a direction by yaw and pitch. */
+static vec3 rotate_direction(vec3 direction, const double by_deg[2])
 {
     const double yaw_deg = atan2(direction.x, direction.z) * 180.0 / M_PI,
                  pitch_deg = asin(fmin(fmax(direction.y, -1.0), 1.0)) * 180.0 / M_PI;
@@ -118,7 +118,7 @@ vec3 camera_pivot_of(const scene *s, camera_pivot known)
     return known.known && is_ahead ? known.at : placement_of(s).looked_at;
 }
 
-/* Aims the camera without moving it; the pivot of an aimed camera is its target. */
+/* Aims the camera without moving it: at its target, or along its angles. */
 static void aim(scene *s, vec3 direction, vec3 target)
 {
     s->camera.target = s->camera.aimed ? target : s->camera.target;
@@ -128,8 +128,8 @@ static void aim(scene *s, vec3 direction, vec3 target)
     }
 }
 
-/* Converts a turn to the image's right and up into yaw and pitch: a rolled camera's image has its own right. */
-static void unrolled(double roll_deg, double right_deg, double up_deg, double out[2])
+/* Converts a turn to the image's right and up into yaw and pitch, which differ if the camera is rolled. */
+static void image_turn_to_angles(double roll_deg, double right_deg, double up_deg, double out[2])
 {
     double sine, cosine;
     elementary_sincos_deg(roll_deg, &sine, &cosine);
@@ -137,27 +137,27 @@ static void unrolled(double roll_deg, double right_deg, double up_deg, double ou
     out[1] = cosine * up_deg - sine * right_deg;
 }
 
-static vec3 seen_from(vec3 pivot, vec3 direction, double distance)
+static vec3 eye_at_distance(vec3 pivot, vec3 direction, double distance)
 {
     return vec3_sub(pivot, vec3_scale(direction, distance));
 }
 
-/* The largest fraction of a pitch, after all of the yaw, that is clear of the ground. */
+/* The viewing direction after all of the yaw and the largest fraction of the pitch that stays above the ground. */
 static vec3 clear_direction(const scene *s, vec3 forward, vec3 pivot, double distance, const double by_deg[2])
 {
     enum { HALVINGS = 50 };
     double clear = 0.0, fraction = 1.0, step = 1.0;
     for (int i = 0; i < HALVINGS; i++) {
-        const vec3 direction = turned(forward, (double[2]){by_deg[0], fraction * by_deg[1]});
+        const vec3 direction = rotate_direction(forward, (double[2]){by_deg[0], fraction * by_deg[1]});
         const bool good =
-            is_clear(s, s->camera.position, seen_from(pivot, direction, distance), gap_fraction * distance);
+            is_clear(s, s->camera.position, eye_at_distance(pivot, direction, distance), gap_fraction * distance);
         if (good && fraction == 1.0)
             return direction;
         clear = good ? fraction : clear;
         step *= 0.5;
         fraction = good ? fraction + step : fraction - step;
     }
-    return turned(forward, (double[2]){by_deg[0], clear * by_deg[1]});
+    return rotate_direction(forward, (double[2]){by_deg[0], clear * by_deg[1]});
 }
 
 static void orbit(const camera_move *m, scene *s)
@@ -165,10 +165,10 @@ static void orbit(const camera_move *m, scene *s)
     double by[2];
     const vec3 pivot = m->pivot.at, forward = camera_frame_of(s).forward;
     const double distance = vec3_length(vec3_sub(pivot, s->camera.position));
-    unrolled(s->camera.roll_deg, m->orbit_deg[0], -m->orbit_deg[1], by);
-    const vec3 direction = clear_direction(s, forward, pivot, distance, by), to = seen_from(pivot, direction, distance);
+    image_turn_to_angles(s->camera.roll_deg, m->orbit_deg[0], -m->orbit_deg[1], by);
+    const vec3 direction = clear_direction(s, forward, pivot, distance, by), to = eye_at_distance(pivot, direction, distance);
     if (!is_clear(s, s->camera.position, to, gap_fraction * distance))
-        return; /* on a slope even the yaw may lead below it */
+        return; /* on a slope even the yaw may lead below the ground */
     s->camera.position = to;
     aim(s, direction, pivot);
 }
@@ -178,8 +178,8 @@ static void turn(camera_move *m, scene *s)
     double by[2];
     const vec3 forward = camera_frame_of(s).forward;
     const double distance = vec3_length(vec3_sub(m->pivot.at, s->camera.position));
-    unrolled(s->camera.roll_deg, m->turn_deg[0], m->turn_deg[1], by);
-    const vec3 direction = turned(forward, by);
+    image_turn_to_angles(s->camera.roll_deg, m->turn_deg[0], m->turn_deg[1], by);
+    const vec3 direction = rotate_direction(forward, by);
     m->pivot.at = vec3_add(s->camera.position, vec3_scale(direction, distance));
     aim(s, direction, m->pivot.at);
 }
@@ -191,7 +191,7 @@ static void zoom_parallel(const camera_move *m, scene *s)
     s->camera.view_height = distance_within(s, m->pivot.at, height, m->zoom * height);
 }
 
-/* Moves along the line to the pivot, whose height above a ground is linear in the distance. */
+/* Moves along the line to the pivot: bisection finds the last point above the ground. */
 static void zoom(const camera_move *m, scene *s)
 {
     const vec3 from = s->camera.position, offset = vec3_sub(from, m->pivot.at);
@@ -217,7 +217,7 @@ static status step(camera_move *m, scene *s, diagnostic *why)
     const vec3 by = vec3_add(vec3_scale(f.right, m->step[0]),
                              vec3_add(vec3_scale(f.up, m->step[1]), vec3_scale(f.forward, m->step[2])));
     const double gap = gap_fraction * vec3_length(vec3_sub(m->pivot.at, f.eye));
-    const vec3 slide = vec3_sub(lifted(s, f.eye, vec3_add(f.eye, by), gap), f.eye);
+    const vec3 slide = vec3_sub(lift_above_grounds(s, f.eye, vec3_add(f.eye, by), gap), f.eye);
     const bool blocked = !is_clear(s, f.eye, vec3_add(f.eye, by), gap);
     m->pivot.at = vec3_add(m->pivot.at, blocked ? slide : by);
     return scene_move(s, "camera", blocked ? slide : by, why);
@@ -225,11 +225,11 @@ static status step(camera_move *m, scene *s, diagnostic *why)
 
 /* --- from a side, and framed --- */
 
-/* Looks at the pivot along a direction; over a ground, from the nearest clear point. */
+/* Moves the camera so that it looks at the pivot along a direction, and lifts it above the grounds. */
 static void look_at_pivot(const camera_move *m, scene *s, vec3 direction, double distance)
 {
-    const vec3 pivot = m->pivot.at, to = seen_from(pivot, direction, distance);
-    s->camera.position = lifted(s, s->camera.position, to, gap_fraction * distance);
+    const vec3 pivot = m->pivot.at, to = eye_at_distance(pivot, direction, distance);
+    s->camera.position = lift_above_grounds(s, s->camera.position, to, gap_fraction * distance);
     aim(s, vec3_normalize(vec3_sub(pivot, s->camera.position)), pivot);
 }
 
@@ -248,14 +248,14 @@ static status look(const camera_move *m, scene *s, diagnostic *why)
     return diagnose(why, STATUS_BAD_INPUT, "use front, back, left, right or top", "unknown side '%.60s'", m->look);
 }
 
-/* A light without a size is shown with its surroundings. */
+/* The ball that an image of the object must show. A light without a size is shown with its surroundings. */
 static status ball_of(const scene *s, const char *name, double distance, vec3 *centre, double *radius, diagnostic *why)
 {
     const int index = scene_find_solid(s, name);
     if (index >= 0 && placement_bounding_sphere(s, &s->solids[index], centre, radius))
         return STATUS_OK;
     if (index >= 0)
-        return diagnose(why, STATUS_BAD_INPUT, "frame another solid, or all", "%.80s has no end to be framed", name);
+        return diagnose(why, STATUS_BAD_INPUT, "frame another solid, or all", "%.80s is unbounded and cannot be framed", name);
     for (size_t i = 0; i < s->light_count; i++)
         if (strcmp(s->lights[i].name, name) == 0) {
             *centre = s->lights[i].position;
@@ -266,11 +266,11 @@ static status ball_of(const scene *s, const char *name, double distance, vec3 *c
         return diagnose(why, STATUS_BAD_INPUT, "give a solid, a light or all", "no solid or light '%.80s'", name);
     return scene_ball(s, centre, radius)
                ? STATUS_OK
-               : diagnose(why, STATUS_BAD_INPUT, "add a solid with an end", "the scene has nothing to be framed");
+               : diagnose(why, STATUS_BAD_INPUT, "add a bounded solid", "the scene has no bounded solid to frame");
 }
 
-/* A ball fits into the narrower half angle a at the distance radius / sin a; tan a is half an image's edge. Of an
- * orthographic camera half the narrower edge is to be the ball's radius. */
+/* Frames an object. In perspective a ball fits into the narrower half angle a at the distance radius / sin a, where tan
+ * a is half the image's shorter edge. An orthographic image's shorter edge becomes the ball's diameter. */
 static status frame(camera_move *m, scene *s, diagnostic *why)
 {
     const camera_frame f = camera_frame_of(s);
@@ -279,7 +279,7 @@ static status frame(camera_move *m, scene *s, diagnostic *why)
     double radius;
     TRY(ball_of(s, m->frame, vec3_length(vec3_sub(m->pivot.at, f.eye)), &centre, &radius, why));
     m->pivot.at = centre;
-    if (f.parallel) { /* from where it was, unless that is too near */
+    if (f.parallel) { /* the distance stays, unless it is too small */
         s->camera.view_height = 2.0 * margin * radius * f.half_height / tangent;
         look_at_pivot(m, s, f.forward, fmax(vec3_length(vec3_sub(centre, f.eye)), 2.0 * margin * radius));
     } else {
@@ -288,7 +288,7 @@ static status frame(camera_move *m, scene *s, diagnostic *why)
     return STATUS_OK;
 }
 
-static bool is_any(const double *values, int count)
+static bool any_nonzero(const double *values, int count)
 {
     bool any = false;
     for (int i = 0; i < count; i++)
@@ -303,11 +303,11 @@ status camera_move_apply(camera_move *m, scene *s, diagnostic *why)
         TRY(frame(m, s, why));
     if (m->look)
         TRY(look(m, s, why));
-    if (is_any(m->orbit_deg, 2))
+    if (any_nonzero(m->orbit_deg, 2))
         orbit(m, s);
-    if (is_any(m->turn_deg, 2))
+    if (any_nonzero(m->turn_deg, 2))
         turn(m, s);
     if (m->zoom > 0.0)
         (s->camera.projection == PROJECTION_ORTHOGRAPHIC ? zoom_parallel : zoom)(m, s);
-    return is_any(m->step, 3) ? step(m, s, why) : STATUS_OK;
+    return any_nonzero(m->step, 3) ? step(m, s, why) : STATUS_OK;
 }

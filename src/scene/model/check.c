@@ -1,5 +1,5 @@
-/* Checks beyond single ranges: parameters that depend on each other, names that must exist, invalid combinations. The
- * range of one value is checked when it is set (params_value.c). */
+/* Checks parameters that depend on each other, names that must exist, and invalid combinations. The range of a single
+ * value is checked when it is set (params_value.c). */
 #include "base/cancel.h"
 #include "geometry/scene_geometry.h"
 #include "geometry/shapes/shape.h"
@@ -38,7 +38,7 @@ status check_name_is_free(const scene *s, const char *name, diagnostic *why)
     return count_name(s, name) == 0 ? STATUS_OK : name_taken(name, why);
 }
 
-static status check_own_name(const scene *s, const char *name, diagnostic *why)
+static status check_name_is_unique(const scene *s, const char *name, diagnostic *why)
 {
     status code = check_name(name, why);
     return code != STATUS_OK || count_name(s, name) == 1 ? code : name_taken(name, why);
@@ -49,7 +49,7 @@ static status check_depth(const render_settings *r, diagnostic *why)
     return r->depth < DEPTH_UNLIMITED || integrator_traits_of(r)->by_chance
                ? STATUS_OK
                : diagnose(why, STATUS_BAD_INPUT, "set render.integrator to path, or render.depth to 0..64",
-                          "render.depth: only random paths are unlimited, trees of rays grow with each level");
+                          "render.depth: only random paths can be unlimited, because ray trees grow with each level");
 }
 
 static status check_render(const scene *s, diagnostic *why)
@@ -65,7 +65,7 @@ static status check_render(const scene *s, diagnostic *why)
         return diagnose(why, STATUS_BAD_INPUT,
                         grid ? "set render.filter to box, or render.error to 0"
                              : "set render.spectrum to rgb, or render.error to 0",
-                        "a number of paths by render.error does not support %s",
+                        "render.error does not support %s",
                         grid ? "a grid of samples" : "a spectrum");
     if (integrator_traits_of(&s->render)->drawn && (s->render.polarisation || s->render.spectrum == SPECTRUM_SPECTRAL))
         return diagnose(why, STATUS_BAD_INPUT, "set render.integrator to raycast or whitted",
@@ -100,7 +100,7 @@ static status check_light(const scene *s, const light *lamp, diagnostic *why)
     return STATUS_OK;
 }
 
-/* As many as render/plan/spectra.h distinguishes, with those of all other lamps. */
+/* render/plan/spectra.h distinguishes this number of lines, in addition to the spectra of other lamps. */
 enum { LINE_LAMPS_MAX = 100 };
 
 static status check_lines(const scene *s, diagnostic *why)
@@ -187,7 +187,7 @@ static status check_texture(const texture_entry *t, diagnostic *why)
     return STATUS_OK;
 }
 
-/* A texture or a mesh, depending on group. */
+/* Reports that the texture or mesh to which the solid refers does not exist. */
 static status unknown(const scene *s, param_group group, const char *owner, const char *name, diagnostic *why)
 {
     char remedy[SCENE_NAME_MAX + 80];
@@ -196,7 +196,7 @@ static status unknown(const scene *s, param_group group, const char *owner, cons
                     name);
 }
 
-/* A transparent solid refracts at its inside, and an open mesh has no inside. */
+/* A transparent solid needs an inside, which an open mesh does not have. */
 static status check_closed(const scene *s, const solid *owner, const mesh_entry *m, diagnostic *why)
 {
     const mesh *data = m->data;
@@ -209,7 +209,7 @@ static status check_closed(const scene *s, const solid *owner, const mesh_entry 
                     owner->name, m->name, a.x, a.y, a.z, b.x, b.y, b.z, data->hole.triangle, data->hole.sharing);
 }
 
-/* In a spectral film each material's colour is a spectrum. */
+/* A spectral film needs one spectrum per material: textures and materials by face have none. */
 static status check_colors(const scene *s, const solid *owner, diagnostic *why)
 {
     const bool by_face = has_face_materials(s, owner);
@@ -221,7 +221,7 @@ static status check_colors(const scene *s, const solid *owner, diagnostic *why)
                     by_face ? "materials by face" : "textures");
 }
 
-/* The objects that the solid refers to must exist. */
+/* The objects to which the solid refers must exist. */
 static status check_references(const scene *s, const solid *owner, diagnostic *why)
 {
     const mesh_entry *m = scene_mesh_of(s, owner);
@@ -238,7 +238,7 @@ static status check_references(const scene *s, const solid *owner, diagnostic *w
     return check_closed(s, owner, m, why);
 }
 
-/* The same sum for each kind of face with its own coefficients. */
+/* reflectivity + transparency must not exceed 1 for any kind of face, either. */
 static status check_faces(const scene *s, const solid *owner, diagnostic *why)
 {
     const int slots = s->render.transmission == TRANSMISSION_SIMPLE ? face_material_slots(s, owner) : 0;
@@ -254,7 +254,7 @@ static status check_faces(const scene *s, const solid *owner, diagnostic *why)
     return STATUS_OK;
 }
 
-/* Metals and films: what is not traced is refused. */
+/* Refuses combinations with metals and films that the renderer does not support. */
 static status check_layers(const scene *s, const solid *owner, diagnostic *why)
 {
     const material *m = &owner->surface;
@@ -280,7 +280,7 @@ static status check_layers(const scene *s, const solid *owner, diagnostic *why)
     return STATUS_OK;
 }
 
-/* Materials of the scene that a mesh file assigns to faces by their name. */
+/* Refuses metals and films among the scene's materials that a mesh assigns to faces by name. */
 static status check_face_layers(const scene *s, const solid *owner, diagnostic *why)
 {
     for (int slot = 0; slot < face_material_slots(s, owner); slot++) {
@@ -294,7 +294,7 @@ static status check_face_layers(const scene *s, const solid *owner, diagnostic *
     return STATUS_OK;
 }
 
-/* Lamps' light that a clear surface refracts into a medium that scatters would be missing from the photons. */
+/* Photons do not scatter, so light that enters a scattering medium would be lost. */
 static status check_scattering(const scene *s, const solid *owner, diagnostic *why)
 {
     if (!owner->visible || !scene_has_caustics(&s->render) || material_scattering(&owner->surface, &s->render) == 0.0)
@@ -344,21 +344,21 @@ status check_limits(const scene *s, diagnostic *why)
     }
     if (primitives > SCENE_PRIMITIVES_MAX)
         return diagnose(why, STATUS_BAD_INPUT,
-                        "a scene can have 2097151; a cup and a torus count as two, a lens as three",
+                        "use at most 2097151; a cup and a torus count as two, a lens as three",
                         "more than 2097151 solids");
     if (unbounded > SCENE_UNBOUNDED_MAX)
-        return diagnose(why, STATUS_BAD_INPUT, "a scene can have 64 of them together, and any number of other solids",
+        return diagnose(why, STATUS_BAD_INPUT, "use at most 64 of them, and any number of other solids",
                         "more than 64 planes and solids of meshes");
     if (s->light_count > SCENE_LIGHTS_MAX)
-        return diagnose(why, STATUS_BAD_INPUT, "a scene can have 1024", "more than 1024 lights");
+        return diagnose(why, STATUS_BAD_INPUT, "use at most 1024 lights", "more than 1024 lights");
     TRY(check_lines(s, why));
     if (s->beam_count > SCENE_BEAMS_MAX)
-        return diagnose(why, STATUS_BAD_INPUT, "a scene can have 64", "more than 64 beams");
+        return diagnose(why, STATUS_BAD_INPUT, "use at most 64 beams", "more than 64 beams");
     if (s->mesh_count > SCENE_MESHES_MAX || s->texture_count > SCENE_TEXTURES_MAX)
-        return diagnose(why, STATUS_BAD_INPUT, "a scene can have 64 of each", "more than 64 %s",
+        return diagnose(why, STATUS_BAD_INPUT, "use at most 64 meshes and 64 textures", "more than 64 %s",
                         s->mesh_count > SCENE_MESHES_MAX ? "meshes" : "textures");
     if (s->material_count > SCENE_MATERIALS_MAX)
-        return diagnose(why, STATUS_BAD_INPUT, "a scene can have 256", "more than 256 materials");
+        return diagnose(why, STATUS_BAD_INPUT, "use at most 256 materials", "more than 256 materials");
     return STATUS_OK;
 }
 
@@ -367,7 +367,7 @@ static status check_names(const scene *s, diagnostic *why)
     status code = STATUS_OK;
     for (int g = PARAM_MESH; g < PARAM_GROUP_COUNT; g++)
         for (size_t i = 0; i < param_place_group_size(s, (param_group)g) && code == STATUS_OK; i++)
-            code = check_own_name(s, param_place_group_name(s, (param_group)g, i), why);
+            code = check_name_is_unique(s, param_place_group_name(s, (param_group)g, i), why);
     return code;
 }
 
@@ -382,7 +382,7 @@ status check_object(const scene *s, param_group group, size_t index, diagnostic 
     case PARAM_LIGHT: return check_light(s, &s->lights[index], why);
     case PARAM_BEAM: return check_beam(&s->beams[index], why);
     case PARAM_SOLID: return check_solid(s, &s->solids[index], why);
-    case PARAM_MATERIAL: /* if a solid uses it */
+    case PARAM_MATERIAL: /* checked with each solid that has it */
     case PARAM_GROUP_COUNT: break;
     }
     return STATUS_OK;

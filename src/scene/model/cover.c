@@ -1,3 +1,4 @@
+/* Containment and separating axes of solids, by the support functions of their shapes (cover.h). */
 #include "geometry/shapes/shape.h"
 #include "scene/model/camera.h"
 #include "scene/model/cover.h"
@@ -11,7 +12,7 @@ bool scene_wins(const solid *winner, const solid *loser)
            (winner->priority > loser->priority || (winner->priority == loser->priority && winner < loser));
 }
 
-static placed_shape placed(const scene *s, const solid *owner)
+static placed_shape place_shape(const scene *s, const solid *owner)
 {
     const solid_shape shape = scene_loaded_shape(s, owner);
     return shape_placed(&shape);
@@ -21,12 +22,12 @@ const solid *scene_cover(const scene *s, const solid *hidden)
 {
     if (s->solid_count > COVER_SOLIDS_MAX)
         return NULL;
-    const placed_shape h = placed(s, hidden);
+    const placed_shape h = place_shape(s, hidden);
     for (size_t i = 0; i < s->solid_count; i++) {
         const solid *cover = &s->solids[i];
         const shape_rule *rule = shape_of(&cover->shape);
         if (rule->covers && scene_wins(cover, hidden)) {
-            const placed_shape c = placed(s, cover);
+            const placed_shape c = place_shape(s, cover);
             if (rule->covers(&c, &h))
                 return cover;
         }
@@ -53,11 +54,11 @@ static bool are_apart(const placed_shape *a, const placed_shape *b)
 
 bool scene_apart(const scene *s, const solid *a, const solid *b)
 {
-    const placed_shape one = placed(s, a), two = placed(s, b);
+    const placed_shape one = place_shape(s, a), two = place_shape(s, b);
     return are_apart(&one, &two);
 }
 
-/* The maximum of direction . p over a rectangle about the origins of camera rays. */
+/* The maximum of direction . p over a rectangle that contains the origins of all camera rays. */
 static double starts_limit(const camera_frame *view, vec3 direction)
 {
     const double across = (view->parallel ? view->half_width : 0.0) + view->lens_radius,
@@ -86,7 +87,7 @@ static bool starts_are_apart(const placed_shape *a, const camera_frame *view)
 bool scene_apart_from_eye(const scene *s, const solid *owner)
 {
     const camera_frame view = camera_frame_of(s);
-    const placed_shape one = placed(s, owner);
+    const placed_shape one = place_shape(s, owner);
     if (view.parallel || view.lens_radius > 0.0)
         return starts_are_apart(&one, &view);
     const solid_shape point = shape_point(view.eye);
@@ -97,6 +98,6 @@ bool scene_apart_from_eye(const scene *s, const solid *owner)
 bool scene_is_behind_camera(const scene *s, const solid *owner)
 {
     const camera_frame view = camera_frame_of(s);
-    const placed_shape h = placed(s, owner);
+    const placed_shape h = place_shape(s, owner);
     return placed_limit(&h, view.forward) < vec3_dot(view.forward, view.eye);
 }

@@ -1,4 +1,4 @@
-/* Which material a face has. */
+/* Finds the material of a face: the scene's, the mesh file's or the solid's. */
 #include "scene/model/face_materials.h"
 #include "scene/model/medium.h"
 #include "scene/model/scene.h"
@@ -45,46 +45,46 @@ static const texture *image_of(const scene *s, const material *m)
     return t ? t->data : NULL;
 }
 
-static void apply_file_material(shading_material *l, const material *own, const face_material *given)
+static void apply_file_material(shading_material *mat, const material *base, const face_material *given)
 {
-    l->surface.color = given->color;
-    l->surface.diffuse = given->diffuse;
-    l->surface.ambient = own->ambient > 0.0 ? own->ambient : 0.1;
-    l->surface.specular = given->specular;
-    l->surface.emission = given->emission > 0.0 ? given->emission : own->emission;
-    l->surface.shininess = given->shininess;
-    l->img = given->img;
+    mat->surface.color = given->color;
+    mat->surface.diffuse = given->diffuse;
+    mat->surface.ambient = base->ambient > 0.0 ? base->ambient : 0.1;
+    mat->surface.specular = given->specular;
+    mat->surface.emission = given->emission > 0.0 ? given->emission : base->emission;
+    mat->surface.shininess = given->shininess;
+    mat->img = given->img;
 }
 
 /* With refraction, medium and transparency are properties of the solid, and a face's material affects only the
  * reflection of opaque surfaces. Without refraction, transparency and reflectivity are properties of each face. */
-shading_material shading_material_of_face(const scene *s, const solid *owner, const material *own, int slot)
+shading_material shading_material_of_face(const scene *s, const solid *owner, const material *base, int slot)
 {
     const material *named;
     const face_material *given;
     face_material_source(s, owner, slot, &named, &given);
-    shading_material l = {.surface = *own, .img = image_of(s, named ? named : own)};
+    shading_material mat = {.surface = *base, .img = image_of(s, named ? named : base)};
     if (named)
-        l.surface = *named;
+        mat.surface = *named;
     else if (given)
-        apply_file_material(&l, own, given);
+        apply_file_material(&mat, base, given);
     if (s->render.transmission == TRANSMISSION_SIMPLE) {
-        l.surface.transparency = named                           ? named->transparency
+        mat.surface.transparency = named                           ? named->transparency
                                  : given && given->opacity < 1.0 ? 1.0 - given->opacity
-                                                                 : own->transparency;
-        return l;
+                                                                 : base->transparency;
+        return mat;
     }
-    l.surface.transparency = own->transparency;
-    if (!material_is_opaque(own)) { /* both fractions are the solid's, so that their sum is at most 1 */
-        l.surface.reflectivity = own->reflectivity;
-        l.surface.roughness = own->roughness;
+    mat.surface.transparency = base->transparency;
+    if (!material_is_opaque(base)) { /* both fractions are the solid's, so that their sum is at most 1 */
+        mat.surface.reflectivity = base->reflectivity;
+        mat.surface.roughness = base->roughness;
     }
-    return l;
+    return mat;
 }
 
-shading_material shading_material_of_solid(const scene *s, const material *own)
+shading_material shading_material_of_solid(const scene *s, const material *base)
 {
-    return (shading_material){.surface = *own, .img = image_of(s, own)};
+    return (shading_material){.surface = *base, .img = image_of(s, base)};
 }
 
 int face_material_slots(const scene *s, const solid *owner)
@@ -113,16 +113,16 @@ int scene_crystals(const scene *s)
 
 bool ignores_face_transparency(const scene *s, const solid *owner)
 {
-    const material *own = &owner->surface;
+    const material *base = &owner->surface;
     const int slots = s->render.transmission == TRANSMISSION_SIMPLE ? 0 : face_material_slots(s, owner);
     for (int slot = 0; slot < slots; slot++) {
         const material *named;
         const face_material *given;
         face_material_source(s, owner, slot, &named, &given);
-        const bool clear = !material_is_opaque(own);
+        const bool clear = !material_is_opaque(base);
         if ((named &&
-             (named->transparency != own->transparency || (clear && named->reflectivity != own->reflectivity))) ||
-            (!named && given && given->opacity < 1.0 && 1.0 - given->opacity != own->transparency))
+             (named->transparency != base->transparency || (clear && named->reflectivity != base->reflectivity))) ||
+            (!named && given && given->opacity < 1.0 && 1.0 - given->opacity != base->transparency))
             return true;
     }
     return false;

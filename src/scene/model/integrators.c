@@ -1,3 +1,4 @@
+/* The tables of integrators and layers (integrators.h). */
 #include "scene/model/integrators.h"
 
 #include <stddef.h>

@@ -4,7 +4,7 @@
 
 #include <stdbool.h>
 
-/* Name, word, traits. */
+/* Columns: name, word, traits. */
 #define INTEGRATORS(X)                 \
     X(RAYCAST, raycast, .tree = false) \
     X(WHITTED, whitted, .tree = true)  \
@@ -29,9 +29,8 @@ extern const integrator_traits integrator_table[];
 /* The word of the first integrator that writes layers; NULL if there is none. */
 const char *integrator_with_layers(void);
 
-/* Named layers: additional values per pixel that an integrator may write besides the film, and the words of
- * render.layer. */
-/* Name, word, values per pixel. */
+/* Named layers, the words of render.layer: values per pixel that an integrator with layers writes. Columns: name, word,
+ * number of values. */
 #define LAYERS(X)            \
     X(NORMAL, normal, 3)     \
     X(ALBEDO, albedo, 3)     \

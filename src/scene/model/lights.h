@@ -1,5 +1,5 @@
-/* The lights and the beams of a scene. A beam of the optical bench consists of rays that are shown; with `lights`
- * it is also a lamp, whose light photons carry. Plain values; each owns its name. */
+/* The lights and the beams of a scene. The rays of a beam are drawn; with `lights` it is also a lamp, whose light
+ * photons carry. Plain values; each owns its name. */
 #pragma once
 
 #include "base/vec3.h"
@@ -52,7 +52,7 @@ static inline double light_extent(const light *l)
                                                : 0.0;
 }
 
-/* Whether it is seen under an angle, so that its shadows can be soft. */
+/* Whether the light has an angular size, so that its shadows can be soft. */
 static inline bool light_has_size(const light *l)
 {
     return l->kind == LIGHT_SUN ? l->angular_diameter_deg > 0.0 : light_extent(l) > 0.0;
@@ -62,11 +62,12 @@ static inline bool light_has_size(const light *l)
 
 enum { SCENE_BEAMS_MAX = 64, BEAM_RAYS_MAX = 10000, BEAM_DEPTH_MAX = 10000 };
 
-/* From one point: within a cone, or in a plane. Parallel: in a plane, or over a disc. */
+/* Rays from one point in a cone (pencil) or a plane (fan), or parallel rays in a plane (sheet) or over a disc (bundle).
+ */
 typedef enum beam_kind { BEAM_PENCIL, BEAM_FAN, BEAM_SHEET, BEAM_BUNDLE } beam_kind;
 
-/* Of the power of its photons: even within the angle or width; or exp(-2 r^2 / w^2), whose 2 w is the angle or width.
- */
+/* Distribution of the photons' power: even over the angle or width, or exp(-2 r^2 / w^2), with 2 w as the angle or
+ * width. */
 typedef enum beam_profile { BEAM_UNIFORM, BEAM_GAUSSIAN } beam_profile;
 
 typedef struct beam {
@@ -86,10 +87,10 @@ typedef struct beam {
     double min_fraction;
     vec3 color; /* of the drawn lines; black: the colour of the wavelength */
     int64_t visible;
-    int64_t lights, profile; /* 1: it lights the scene, with that beam_profile */
+    int64_t lights, profile; /* 1: the beam lights the scene; beam_profile of its light */
 } beam;
 
-/* White light: evenly spaced, of equal power. */
+/* Wavelengths of white light: evenly spaced, of equal power. */
 enum { BEAM_LOW_NM = 400, BEAM_HIGH_NM = 700 };
 
 static inline int beam_wavelengths(const beam *b)
@@ -106,13 +107,13 @@ static inline double beam_lambda(const beam *b, int number)
     return BEAM_LOW_NM + (double)(BEAM_HIGH_NM - BEAM_LOW_NM) * number / (double)(b->wavelengths - 1);
 }
 
-/* The direction of its axis, of any length. */
+/* The direction of the beam's axis, of any length. */
 static inline vec3 beam_axis(const beam *b)
 {
     return vec3_dot(b->direction, b->direction) > 0.0 ? b->direction : vec3_sub(b->target, b->position);
 }
 
-/* Whether photons carry its light. Light of a wavelength that the eye does not see is none. */
+/* Whether photons carry the beam's light; wavelengths that the eye does not see are no light. */
 static inline bool beam_lights_scene(const beam *b, const render_settings *r)
 {
     const bool seen = b->white || (b->lambda_nm >= OBSERVER_LOW_NM && b->lambda_nm <= OBSERVER_HIGH_NM);

@@ -24,7 +24,7 @@ typedef struct material {
     double emission;                              /* k_e: the surface emits k_e C in all directions */
     double reflectivity; /* for constant weights, simple transmission and opaque materials; under Fresnel weights the
                             coating of a transparent material */
-    double transparency; /* 0 = opaque; otherwise the fraction of the refracted light that passes an interface */
+    double transparency; /* 0 = opaque; otherwise the fraction of the refracted light that crosses an interface */
     double ior;          /* relative to vacuum, if medium is MEDIUM_IOR */
     double extraordinary_ior; /* of a uniaxial crystal, for the field along its optic axis; 0: isotropic */
     vec3 optic_axis;          /* in the solid's own frame, of any length */
@@ -38,9 +38,9 @@ typedef struct material {
     int64_t medium;                       /* see scene/model/medium.h */
     number_list coefficients;             /* coefficients of the medium's dispersion law */
     vec3 absorb_per_m;                    /* absorption coefficient of the Beer-Lambert law, by channel */
-    number_list absorb_spectrum; /* the same by wavelength: nm, 1/m, nm, 1/m ...; replaces absorb_per_m unless empty */
+    number_list absorb_spectrum; /* absorption by wavelength: nm, 1/m, nm, 1/m ...; replaces absorb_per_m unless empty */
     double scatter_per_m;        /* scattering coefficient of the medium, for random paths */
-    double asymmetry;            /* g, the mean cosine of its phase function, optics/phase_function.h */
+    double asymmetry;            /* g, the mean cosine of the scattering angle, optics/phase_function.h */
     double tint_distance;        /* scene units; tint and absorption are added */
     char texture[SCENE_NAME_MAX + 1]; /* its values are multiplied by color; "" for none */
     double texture_size;              /* scene units per repetition on solids without texture coordinates; 0: one per

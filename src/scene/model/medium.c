@@ -1,3 +1,4 @@
+/* The laws of refraction, absorption and polarising sheets of a material (medium.h). */
 #include "base/lanes.h"
 #include "base/number.h"
 #include "optics/media.h"
@@ -175,7 +176,7 @@ status material_ior_check(const material *m, const char *label, diagnostic *why)
         return STATUS_OK;
     return diagnose(why, STATUS_BAD_INPUT,
                     m->transparency > 0.0 ? "set it to 0.1 or more; only an opaque metal has less"
-                                          : "set it to 0.1 or more, or its extinction, as of a metal",
+                                          : "set it to 0.1 or more, or set its extinction, which makes it a metal",
                     "%.80s: ior %g is too small", label, m->ior);
 }
 
@@ -317,10 +318,10 @@ double material_coating(const material *m, const render_settings *r)
 status material_absorption_check(const material *m, const char *label, diagnostic *why)
 {
     const number_list *list = &m->absorb_spectrum;
-    bool right = list->count % 2 == 0;
-    for (int64_t i = 0; right && i < list->count; i += 2)
-        right = list->value[i] > 0.0 && list->value[i + 1] >= 0.0 && (i == 0 || list->value[i] > list->value[i - 2]);
-    return right ? STATUS_OK
+    bool valid = list->count % 2 == 0;
+    for (int64_t i = 0; valid && i < list->count; i += 2)
+        valid = list->value[i] > 0.0 && list->value[i + 1] >= 0.0 && (i == 0 || list->value[i] > list->value[i - 2]);
+    return valid ? STATUS_OK
                  : diagnose(why, STATUS_BAD_INPUT,
                             "write nm,1/m,nm,1/m.. with ascending wavelengths, as [400, 0.1, 700, 2]",
                             "%.80s: absorb_spectrum is not a list of pairs of wavelength and coefficient", label);

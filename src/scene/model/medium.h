@@ -1,7 +1,6 @@
-/* The medium of a material or of the surroundings: the law of its refractive index, and its absorption. The choice is
- * an index into medium_words: `ior` for a constant index, then the laws for which a scene gives coefficients, then the
- * names of the catalogue, then those of the metals (both optics/media.h). Pure; indices are relative to vacuum,
- * wavelengths are in vacuum. */
+/* The medium of a material or of the surroundings: the law of its refractive index, and its absorption. A medium is an
+ * index into medium_words: `ior` for a constant index, then the laws that need coefficients, then the catalogue, then
+ * the metals (both optics/media.h). Pure; indices are relative to vacuum, wavelengths are in vacuum. */
 #pragma once
 
 #include "optics/dispersion.h"
@@ -17,7 +16,7 @@ extern const char *const medium_words[];
 /* For the surroundings: `ior`, then the catalogue. */
 enum { SURROUNDING_CATALOGUE = 1 };
 extern const char *const surrounding_words[];
-/* Rain's drops: the catalogue from there on, all but air. */
+/* The first medium of the catalogue for drops of rain: all but air. */
 enum { DROPS_FIRST = 1 };
 
 /* A dispersion law, ready for evaluation. */
@@ -26,37 +25,38 @@ typedef struct index_law {
     bool relative_to_air;
 } index_law;
 
-/* STATUS_BAD_INPUT if the coefficients are invalid; label is the name of the material in the message. The law of a
- * metal is that of its n. */
+/* STATUS_BAD_INPUT if the coefficients are invalid; label is the name of the material in the message. For a metal it is
+ * the law of n, the real part of its index. */
 status material_index_law(const material *m, const char *label, index_law *out, diagnostic *why);
 index_law surrounding_index_law(const background *b);
-/* Coefficients from which a law can be edited: close to the constant index, with the dispersion of water and crown
- * glass; for sellmeier those of N-BK7. None for a medium without coefficients. */
+/* Coefficients to begin with when a law is edited: near the constant index, with the dispersion of water and crown
+ * glass; for sellmeier those of N-BK7. Empty for a medium without coefficients. */
 number_list medium_first_coefficients(int word, double ior);
 
 double index_law_at(const index_law *law, double lambda_nm);
-/* Whether two laws give equal indices: at the single wavelength of an RGB film, or at all wavelengths. */
+/* Whether two laws have equal indices: at the single wavelength of an RGB film, or at all wavelengths of a spectral one.
+ */
 bool index_laws_match(const render_settings *r, const index_law *a, const index_law *b);
-/* Whether the material's index is that of the scene's surroundings. */
+/* Whether the material's index equals that of the scene's surroundings. */
 bool material_matches_surroundings(const scene *s, const material *m);
 
 /* Above this index a transparent material is a perfect mirror: the limit of Fresnel's equations; with constant weights
  * it reflects both the reflected and the transmitted fraction. */
 #define MIRROR_IOR 1e4
 bool material_is_mirror(const material *m);
-/* Whether neither light nor a ray passes its surface. */
+/* Whether neither light nor rays cross the material's surface. */
 bool material_is_opaque(const material *m);
 
-/* The metal that is its medium, or NULL. */
+/* The metal of the material's medium, or NULL. */
 const struct metal *material_metal(const material *m);
 bool material_has_film(const material *m);
-/* Whether its surface reflects, and transmits, by optics/multilayer.h: a metal's, or one with a film. A film on a
+/* Whether the surface reflects and transmits by optics/multilayer.h: it is a metal, or has a film. A film on a
  * transparent surface needs Fresnel weights. */
 bool material_is_layered(const material *m, const render_settings *r);
-/* alpha of a surface whose facets reflect or refract random paths (optics/microfacet.h); 0: a smooth one. A transparent
- * surface needs Fresnel weights. */
+/* alpha of the microfacets that reflect or refract random paths (optics/microfacet.h); 0: smooth. A transparent surface
+ * needs Fresnel weights. */
 double material_roughness(const material *m, const render_settings *r);
-/* Whether light is doubly refracted in it: in the trees of rays of whitted, with Fresnel weights. */
+/* Whether the material refracts light doubly: only in ray trees of integrator whitted, with Fresnel weights. */
 bool material_is_crystal(const material *m, const render_settings *r);
 /* STATUS_BAD_INPUT if the constant index of a material that is not a metal is below 0.1. */
 status material_ior_check(const material *m, const char *label, diagnostic *why);
@@ -84,13 +84,13 @@ bool material_absorbs(const material *m);
  * tint_distance): the Beer-Lambert law with the coefficient -ln(color) / tint_distance. A channel of 0 transmits
  * nothing, white absorbs nothing. */
 bool material_tints(const material *m);
-/* That coefficient in 1 / scene unit, for a channel or wavelength at which the color has that value, 0..1. */
+/* The coefficient of the tint in 1 / scene unit, for a channel or wavelength at which color is `value`, 0..1. */
 double material_tint(const material *m, double value);
 /* Whether light is attenuated inside a transparent solid with this material. */
 bool material_attenuates(const material *m);
 /* Scattering coefficient in 1/m of a transparent solid's medium, for random paths; 0 for other integrators. */
 double material_scattering(const material *m, const render_settings *r);
-/* By channel in 1 / scene unit, absorption plus tint; not defined for opaque materials. */
+/* Absorption plus tint by channel, in 1 / scene unit; not defined for opaque materials. */
 vec3 material_extinction(const material *m, double unit_m);
 /* The fraction of the transmitted light that the coating of a transparent surface reflects; 0 with constant weights,
  * which are used unchanged. */
@@ -98,10 +98,10 @@ double material_coating(const material *m, const render_settings *r);
 double surrounding_absorption_at(const background *b, double lambda_nm);
 bool surroundings_absorb(const background *b);
 
-/* Pairs of wavelength and coefficient, wavelengths ascending, coefficients not negative. */
+/* Fails unless absorb_spectrum has pairs of ascending wavelength and coefficient, which is not negative. */
 status material_absorption_check(const material *m, const char *label, diagnostic *why);
 
-/* --- sheets: polarising filters and wave plates; what a passage through a transparent solid does to light --- */
+/* --- sheets: a transparent solid as a polarising filter or wave plate --- */
 
 typedef enum sheet_kind {
     SHEET_NONE,
@@ -112,15 +112,15 @@ typedef enum sheet_kind {
 } sheet_kind;
 
 bool sheet_is_polariser(const material *m);
-/* Whether it is a polariser or a wave plate with an axis, on which its light depends. */
+/* Whether the sheet has an axis: a linear polariser or a wave plate. */
 bool sheet_has_axis(const material *m);
 bool sheet_retards(const material *m);
 
-/* Whether light that passes the solid, if any does, changes: a polariser's without polarisation too, where it is a grey
- * filter. Not in the depth buffer. */
+/* Whether the sheet changes light that crosses the solid. Without polarisation a polariser is a grey filter. False in
+ * the depth buffer and in layers. */
 bool sheet_acts(const material *m, const render_settings *r);
-/* Whether it acts differently by wavelength. */
+/* Whether the sheet's effect depends on the wavelength. */
 bool sheet_disperses(const material *m, const render_settings *r);
 
-/* STATUS_BAD_INPUT if its axis has no direction. */
+/* STATUS_BAD_INPUT if the sheet's axis has no direction. */
 status sheet_check(const material *m, const char *label, diagnostic *why);

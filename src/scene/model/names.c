@@ -1,4 +1,4 @@
-/* Names of objects and other words of a scene file. */
+/* Names of objects: which are valid, which are in use; and suggestions for misspelt words (names.h). */
 #include "base/hash.h"
 #include "base/number.h"
 #include "base/text.h"
@@ -32,10 +32,10 @@ static bool is_letter(char c)
 status check_name(const char *name, diagnostic *why)
 {
     size_t length = strlen(name);
-    bool right = is_letter(name[0]) && length <= SCENE_NAME_MAX;
-    for (const char *c = name; right && *c; c++)
-        right = is_letter(*c) || (*c >= '0' && *c <= '9') || *c == '-';
-    if (!right)
+    bool valid = is_letter(name[0]) && length <= SCENE_NAME_MAX;
+    for (const char *c = name; valid && *c; c++)
+        valid = is_letter(*c) || (*c >= '0' && *c <= '9') || *c == '-';
+    if (!valid)
         return diagnose(why, STATUS_BAD_INPUT, "use at most 63 letters, digits, _ and -, beginning with a letter or _",
                         "'%.80s' is not a valid name", name);
     if (is_reserved(name))
@@ -53,8 +53,8 @@ static uint64_t hash_of(const char *name)
     return h ? h : 1;
 }
 
-/* The place of a hash, or the free place where it belongs. size: a power of two with a free place. */
-static size_t place_of(const name_tally *t, uint64_t hash)
+/* The entry of a hash, or the free entry for it. The size is a power of two, and an entry is free. */
+static size_t entry_of(const name_tally *t, uint64_t hash)
 {
     size_t at = (size_t)hash & (t->size - 1);
     while (t->hash[at] != 0 && t->hash[at] != hash)
@@ -76,7 +76,7 @@ static bool grow(name_tally *t)
     for (size_t i = 0; i < t->size; i++) {
         if (t->hash[i] == 0 || t->count[i] == 0)
             continue;
-        const size_t at = place_of(&larger, t->hash[i]);
+        const size_t at = entry_of(&larger, t->hash[i]);
         larger.hash[at] = t->hash[i];
         larger.count[at] = t->count[i];
         larger.newest[at] = t->newest[i];
@@ -94,7 +94,7 @@ void name_tally_add(name_tally *t, const char *name, name_place place)
         return;
     }
     const uint64_t hash = hash_of(name);
-    const size_t at = place_of(t, hash);
+    const size_t at = entry_of(t, hash);
     t->used += t->hash[at] == 0;
     t->hash[at] = hash;
     t->count[at]++;
@@ -105,7 +105,7 @@ void name_tally_remove(name_tally *t, const char *name)
 {
     if (t->lost || t->size == 0)
         return;
-    const size_t at = place_of(t, hash_of(name));
+    const size_t at = entry_of(t, hash_of(name));
     if (t->count[at] > 0)
         t->count[at]--;
 }
@@ -114,7 +114,7 @@ size_t name_tally_most(const name_tally *t, const char *name)
 {
     if (t->lost)
         return SIZE_MAX;
-    return t->size ? t->count[place_of(t, hash_of(name))] : 0;
+    return t->size ? t->count[entry_of(t, hash_of(name))] : 0;
 }
 
 const name_place *name_tally_newest(const name_tally *t, const char *name)
@@ -153,7 +153,7 @@ static const char *word_in(const char *word, const char *const *words, size_t co
     return NULL;
 }
 
-/* Names of our parameters in other programs. */
+/* Names that other programs or earlier versions use for our parameters. */
 static const char *by_alias(const char *wrong, const char *const *words, size_t count)
 {
     static const char *const aliases[][2] = {
@@ -194,20 +194,20 @@ static const char *by_beginning(const char *wrong, const char *const *words, siz
 
 const char *suggest_word(const char *wrong, const char *const *words, size_t count)
 {
-    enum { TELLING = 3 }; /* characters */
+    enum { LENGTH_MIN = 3 }; /* characters */
     const char *meant = by_alias(wrong, words, count);
-    if (meant || strlen(wrong) < TELLING || is_number(wrong))
+    if (meant || strlen(wrong) < LENGTH_MIN || is_number(wrong))
         return meant;
     meant = by_beginning(wrong, words, count);
     return meant ? meant : text_nearest(wrong, words, count);
 }
 
-/* A list that does not fit ends after a complete word, with dots. */
+/* A list that does not fit ends with dots after a complete word. */
 void suggest_list(const char *prefix, const char *const *words, size_t count, char *text, size_t size)
 {
     static const char more[] = ", ...";
     int used = snprintf(text, size, "%s", prefix);
-    size_t fits = 0; /* the length after the last word behind which the dots would fit */
+    size_t fits = 0; /* length of the longest text after which the dots fit */
     for (size_t i = 0; i < count && used >= 0 && (size_t)used < size; i++) {
         if ((size_t)used + sizeof more <= size)
             fits = (size_t)used;

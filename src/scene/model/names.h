@@ -11,24 +11,25 @@
  * paths or scene files. */
 status check_name(const char *name, diagnostic *why);
 
-/* How many objects of a scene may have a name: an upper bound by the names' hashes, which is nearly always exact; and
- * where the newest of them is. So the time to find a name does not depend on the number of objects.
+/* An upper bound of the number of objects with a name, by a table of the names' hashes, which is nearly always exact;
+ * and the place of the newest object with that name. The cost of finding a name then does not depend on the number of
+ * objects.
  *
- * Ownership: zero-initialised; name_tally_clear frees. Without memory it is `lost`, and gives the largest bound. */
+ * Ownership: zero-initialised; name_tally_clear frees. If memory runs out, it is `lost`, and the bound is SIZE_MAX. */
 typedef struct name_place {
-    uint32_t group, index; /* in a scene's lists */
+    uint32_t group, index; /* in the scene's lists of objects */
 } name_place;
 typedef struct name_tally {
-    uint64_t *hash;     /* open addressing; a place with count 0 and hash 0 is free */
-    uint32_t *count;    /* of names with that hash */
-    name_place *newest; /* of them */
+    uint64_t *hash;     /* open addressing; an entry with hash 0 is free */
+    uint32_t *count;    /* number of names with that hash */
+    name_place *newest; /* the newest object with that hash */
     size_t size, used;
     bool lost;
 } name_tally;
 
 void name_tally_add(name_tally *t, const char *name, name_place at);
 void name_tally_remove(name_tally *t, const char *name);
-/* At least the number of objects with that name. */
+/* The upper bound of the number of objects with that name. */
 size_t name_tally_most(const name_tally *t, const char *name);
 /* The place of the newest object with that name, or with another name of equal hash; NULL if there is none, or if it is
  * not known. An object that has moved needs name_tally_move. */
@@ -41,8 +42,8 @@ void name_tally_clear(name_tally *t);
  * words of one or two characters, to which every short word is near, match only synonyms. */
 const char *suggest_word(const char *wrong, const char *const *words, size_t count);
 
-/* The remedy for a wrong key if words[] are the valid ones; returns text. */
+/* Writes the remedy for a wrong key; words[] are the valid keys. Returns text. */
 char *suggest_key(const char *wrong, const char *const *words, size_t count, char *text, size_t size);
 
-/* "prefix" and "a, b, c"; what has no room in the buffer is left out: "a, b, ...". */
+/* Writes the prefix and the words: "a, b, c", or "a, b, ..." if the buffer is too small. */
 void suggest_list(const char *prefix, const char *const *words, size_t count, char *text, size_t size);

@@ -1,3 +1,4 @@
+/* Creates, copies, finds and removes the objects of every group, by a table of where the scene stores them. */
 #include "scene/model/face_materials.h"
 #include "scene/model/names.h"
 #include "scene/model/objects.h"
@@ -9,14 +10,14 @@
 #include <string.h>
 
 /* Where a scene stores the objects of a group. */
-typedef struct object_list {
-    size_t at;    /* offset of the array, or of the struct of a group without names */
+typedef struct group_storage {
+    size_t at;    /* offset of the pointer to the array, or of the struct of a group without names */
     size_t count; /* offset of the array's length */
-    size_t size;  /* of an element */
-    size_t value; /* offset in an element of the struct that the rows of the table refer to */
-} object_list;
+    size_t size;  /* size of an element */
+    size_t value; /* offset in an element of the struct to which the rows of the table refer */
+} group_storage;
 
-static const object_list lists[PARAM_GROUP_COUNT] = {
+static const group_storage lists[PARAM_GROUP_COUNT] = {
     [PARAM_RENDER] = {.at = offsetof(scene, render)},
     [PARAM_CAMERA] = {.at = offsetof(scene, camera)},
     [PARAM_BACKGROUND] = {.at = offsetof(scene, background)},
@@ -32,7 +33,7 @@ static const object_list lists[PARAM_GROUP_COUNT] = {
 _Static_assert(offsetof(mesh_entry, name) == 0 && offsetof(texture_entry, name) == 0 &&
                    offsetof(named_material, name) == 0 && offsetof(light, name) == 0 && offsetof(beam, name) == 0 &&
                    offsetof(solid, name) == 0,
-               "the name first");
+               "the name is the first field");
 
 static size_t *count_of(const scene *s, param_group group)
 {
@@ -53,7 +54,7 @@ static void set_array(scene *s, param_group group, void *array)
 
 static void *object_at(const scene *s, param_group group, size_t index)
 {
-    const object_list *l = &lists[group];
+    const group_storage *l = &lists[group];
     return group_has_names(group) ? array_of(s, group) + index * l->size : (char *)(uintptr_t)s + l->at;
 }
 
@@ -98,7 +99,7 @@ int object_find(const scene *s, param_group group, const char *name)
     return -1;
 }
 
-/* The strings that an object owns: its name, and the paths of its files. */
+/* Applies act to the strings that an object owns: its name, and the paths of its files. */
 static bool each_text(param_group group, void *object, bool (*act)(char **text))
 {
     bool good = act(object);

@@ -1,4 +1,4 @@
-/* Parameters by path: finding the place of a path, setting and getting its value, and visiting all. */
+/* Parameters by path: find the place of a path, set and get its value, visit all parameters. */
 #include "base/elementary.h"
 #include "base/text.h"
 #include "geometry/shapes/shape.h"
@@ -93,7 +93,7 @@ static size_t row_words(const scene *s, const param_place *at, param_group rows,
     return count;
 }
 
-/* For `depth` or `depht` alone, without a group: the nearest row of the groups without names, or NULL. */
+/* For a path without a group, such as `depth` or `depht`: the nearest row of render, camera or background, or NULL. */
 static const param *nearest_setting(const scene *s, const char *word)
 {
     for (int g = 0; g <= PARAM_BACKGROUND; g++) {
@@ -208,7 +208,7 @@ status param_place_find_object(const scene *s, const char *name, param_place *ou
     if (!words)
         return out_of_memory(why);
     const char *nearest = suggest_word(name, words, count);
-    char remedy[SCENE_NAME_MAX + 80] = "give the name of a light, material or solid";
+    char remedy[SCENE_NAME_MAX + 80] = "give the name of a mesh, texture, light, beam, material or solid";
     if (nearest)
         snprintf(remedy, sizeof remedy, "did you mean '%s'?", nearest);
     free(words);
@@ -247,7 +247,7 @@ static bool is_angle(const param *row)
     return is_camera_row(row, offsetof(camera, yaw_deg)) || is_camera_row(row, offsetof(camera, pitch_deg));
 }
 
-/* The camera with both of its directions valid: the unused one is derived from the other. */
+/* The camera with target and angles valid: the unused ones are derived from the others. */
 static camera camera_with_both(camera c)
 {
     if (c.aimed) {
@@ -280,10 +280,10 @@ static void forget_medium(scene *s, const param_place *at)
             s->solids[i].surface.medium = MEDIUM_IOR;
 }
 
-/* Releases the mesh or image that was loaded for the old value. Setting a file's path also selects the kind `file`. */
+/* Releases the mesh or image that was loaded for the old value. Setting a path also selects the file as the source. */
 static void forget_loaded(scene *s, const param_place *at, param_value value)
 {
-    const bool names_file = at->row->type == PARAM_PATH, some = names_file && value.path[0];
+    const bool names_file = at->row->type == PARAM_PATH, has_path = names_file && value.path[0];
     if (at->object_group == PARAM_MESH) {
         mesh_entry *m = &s->meshes[at->index];
         mesh_entry_unload(m);
@@ -291,7 +291,7 @@ static void forget_loaded(scene *s, const param_place *at, param_value value)
             m->script_line = m->script_column = 0;
             return;
         }
-        m->source = some ? MESH_FILE : m->source;
+        m->source = has_path ? MESH_FILE : m->source;
         m->path_line = names_file ? 0 : m->path_line;
     } else if (at->object_group == PARAM_TEXTURE) {
         texture_entry *t = &s->textures[at->index];
@@ -301,7 +301,7 @@ static void forget_loaded(scene *s, const param_place *at, param_value value)
         image_destroy(s->background.img);
         s->background.img = NULL;
         s->background.image_line = s->background.image_column = 0;
-        s->background.kind = some ? BACKGROUND_IMAGE : s->background.kind;
+        s->background.kind = has_path ? BACKGROUND_IMAGE : s->background.kind;
     }
 }
 
@@ -347,7 +347,7 @@ status scene_set_assignment(scene *s, const char *assignment, diagnostic *why)
     return code;
 }
 
-/* The value of a place in s, whose camera has both directions. */
+/* The value of a place as text; the unused direction of the camera is derived. */
 static char *place_text(const scene *s, const param_place *at)
 {
     if (at->object_group != PARAM_CAMERA)
@@ -373,8 +373,8 @@ static status visit_one(const scene *s, const param_place *at, param_place_visit
     return code;
 }
 
-/* Parameters that setting would put into use are skipped while they are not in use: the unused direction of the camera,
- * the background image, a mesh's file; and the parameters of slimes for other meshes. */
+/* Whether scene_each_param visits the row. It skips rows that are not in use, and that a setting would put into use: the
+ * unused direction of the camera, the background image, a mesh's file; and the parameters of slimes for other meshes. */
 static bool is_in_use(const scene *s, const param_place *at)
 {
     const param *row = at->row;
@@ -387,7 +387,7 @@ static bool is_in_use(const scene *s, const param_place *at)
     return s->camera.aimed ? !is_angle(row) : !is_target(row);
 }
 
-/* The rows of one object in one group of the table. */
+/* Visits the rows of one object in one group of the table. */
 static status visit_rows(const scene *s, param_place at, param_group rows, param_place_visit *visit, void *context)
 {
     status code = STATUS_OK;

@@ -1,5 +1,5 @@
-/* The parameter table: every user-settable quantity is declared once, in params_table.c; scene files, --set, sweep
- * axes, CSV headers and the manual are generated from it.
+/* The parameter table: every user-settable quantity is declared once, in params_table.c; scene files, --set, axes of
+ * studies, CSV headers and the manual are generated from it.
  *
  * A parameter's path is group.name: `render.depth`, `camera.position`, `background.color`; for a mesh, a texture, a
  * light, a beam, a solid or a material the group is its name in the scene: `soup.count`, `lamp.intensity`,
@@ -39,8 +39,8 @@ typedef enum param_type {
 /* The useful part of a range, for a slider. */
 typedef struct param_slider {
     double lowest, highest; /* lowest == highest: not declared */
-    double step;            /* 1 for integers; 0: any value, by the logarithm */
-    double log_from;        /* above 0: logarithmic from this value on, which is lowest, or follows a lowest of 0 */
+    double step;            /* 1 for integers; 0: continuous, by the logarithm */
+    double log_from;        /* above 0: logarithmic from this value on; below it, only a lowest of 0 */
 } param_slider;
 
 typedef struct param {
@@ -56,41 +56,42 @@ typedef struct param {
                                    yes, false and true are accepted. PARAM_INT: the only allowed numbers, or NULL */
     unsigned makers;            /* PARAM_MESH: bits 1 << mesh_maker, the generators that have the parameter; 0 = all */
     const char *automatic;      /* PARAM_INT: a word for a value outside lowest .. highest; NULL: none */
-    int64_t automatic_value;    /* that value */
+    int64_t automatic_value;    /* the value that `automatic` stands for */
     size_t offset;              /* in the group's struct */
-    param_slider slider;        /* where the one that follows from the range, the default and the value is no use */
+    param_slider slider;        /* declared only if the slider that param_slider_of derives is unsuitable */
     bool coefficient;           /* PARAM_COLOR: an absorption coefficient of each channel, not a colour */
     bool performance_only;      /* affects only performance: the film does not depend on it */
     bool by_shape;              /* PARAM_SOLID: only for solids whose shape rule lists it */
-    bool by_chance; /* affects only films of random paths: the meaning of a row with another integrator omits it */
-    const char *first_default; /* the default of the first version that had the parameter, if it is another one now:
-                                   rows omit it in the identity of a cell; NULL: fallback */
+    bool by_chance;             /* affects only films of random paths: a study's row does not identify its cell by it if
+                                   the integrator is another one */
+    const char *first_default;  /* the default of the first version that had the parameter, if it has changed: a study's
+                                   row with this value omits it in the identity of its cell; NULL: fallback */
 } param;
 
 size_t param_count(void);
 const param *param_at(size_t index);
 /* "render", "camera", "background", "mesh", "texture", "light", "beam", "material", "solid" */
 const char *param_group_name(param_group group);
-/* The row of a group with that name, or NULL. PARAM_SOLID also finds material rows, which apply to a solid's surface.
- * */
+/* The row of a group by its name, or NULL. PARAM_SOLID also finds material rows, which apply to a solid's surface. */
 const param *param_find(param_group group, const char *name);
 /* Whether a parameter has a slider: numbers, vectors and colours. */
 bool param_has_slider(const param *row);
 /* The slider of a value: the range, or a useful part of it that contains the default, the value and, unless NULL, the
- * initial value. The elements of a vector share it. Values are text as of scene_get. Pure. */
+ * initial value. The elements of a vector have the same slider. Values are texts in the form of scene_get. Pure. */
 param_slider param_slider_of(const param *row, const char *initial, const char *value);
 
-/* A search by words of the path, the meaning, the choices, or everyday language ("brightness" for intensity). How well
- * the row with that path matches all words of a text: parts of the path begin with them, the path has them or what they
- * mean, or only the rest has; PARAM_NO_MATCH: a word is missing. Pure. */
+/* How well a row matches all words of a search. Words may be in the path, the meaning, the choices, or in everyday
+ * language ("brightness" for intensity). PARAM_IN_NAME: parts of the path begin with the words; PARAM_IN_PATH: the path
+ * contains them or their synonyms; PARAM_IN_TEXT: a word is only in the meaning or the choices; PARAM_NO_MATCH: a word
+ * is missing. Pure. */
 typedef enum param_match { PARAM_IN_NAME, PARAM_IN_PATH, PARAM_IN_TEXT, PARAM_NO_MATCH } param_match;
 param_match param_matches(const param *row, const char *path, const char *words);
 
 /* "integer 1..65536", "number > 0, at most 179", "one of: sky, black", "3 numbers, each 0..1"; returns text. */
 char *param_range_text(const param *row, char *text, size_t size);
 
-/* A camera is aimed at its target or along its angles, whichever was set last. When that changes, and in scene_get, the
- * other representation is derived, so that setting one angle of an aimed camera keeps the other.
+/* A camera is aimed at its target or along its angles, whichever was set last. The unused ones are derived in scene_get,
+ * and when the aim changes, so that setting one angle of an aimed camera keeps the other angle.
  *
  * Setting background.image to a file sets background.kind to image; a kind that is set later wins.
  *
@@ -102,17 +103,16 @@ char *param_range_text(const param *row, char *text, size_t size);
  * STATUS_BAD_INPUT for an unknown path (remedy: the nearest valid one), a wrong type or a value out of range; the scene
  * is then unchanged. */
 status scene_set(scene *s, const char *path, const char *value, diagnostic *why);
-/* Splits "path=value" and sets it. */
+/* Sets a parameter from "path=value". */
 status scene_set_assignment(scene *s, const char *assignment, diagnostic *why);
 
 /* The value as text, in the form that scene_set accepts, numbers with the fewest digits that round-trip. Free it. */
 status scene_get(const scene *s, const char *path, char **value, diagnostic *why);
 
-/* Visits every parameter of the scene in a fixed order (table order in a group; lights, materials, solids in scene
- * order), with its full path and its value as text. Solid rows include those of its surface. Only the camera direction
- * in use is visited, and an unused background image is not, so that applying all visited values in order to a copy of
- * the scene as read from its file gives the same scene. Stops and returns the status when visit returns other than
- * STATUS_OK. */
+/* Visits every parameter of the scene in a fixed order (rows in table order, objects in scene order), with its full path
+ * and its value as text. The rows of a solid include those of its surface. The unused direction of the camera and an
+ * unused background image are skipped, so that setting all visited values in order turns a copy of the scene as read
+ * from its file into this scene. Stops at the first status other than STATUS_OK, and returns it. */
 typedef status param_visit(void *context, const char *path, const param *row, const char *value);
 status scene_each_param(const scene *s, param_visit *visit, void *context);
 
@@ -121,7 +121,7 @@ status scene_each_param(const scene *s, param_visit *visit, void *context);
 typedef struct param_place {
     const param *row;
     param_group object_group; /* from the path's first word: PARAM_SOLID for vessel.ior, whose row is a material's */
-    size_t index;             /* index of the light, material or solid */
+    size_t index;             /* index of the object in its group; 0 for render, camera and background */
     int element;              /* 0..2, or -1 for the whole value */
 } param_place;
 
@@ -129,25 +129,24 @@ typedef struct param_place {
 typedef status param_place_visit(void *context, const param_place *at, const char *value);
 status param_place_each(const scene *s, param_group group, param_place_visit *visit, void *context);
 
-/* STATUS_BAD_INPUT, with the nearest valid path as remedy, for an invalid path. */
+/* Finds the target of a path. STATUS_BAD_INPUT for an invalid path, with the nearest valid path as remedy. */
 status param_place_find(const scene *s, const char *path, param_place *out, diagnostic *why);
 
-/* The same for a path's first word alone: an object's name, camera, background or render. Row and element are not set.
- */
+/* Finds an object by name, or camera, background or render; out->row is NULL, out->element is -1. */
 status param_place_find_object(const scene *s, const char *name, param_place *out, diagnostic *why);
 
-/* Whether the film can depend on a parameter: not on those that affect only performance or what is shown with an image,
- * nor on those of a beam that does not light the scene, except for the one that makes it a lamp. */
+/* Whether the film can depend on a parameter: false for parameters that affect only performance or how an image is
+ * shown, and for those of a beam that does not light the scene, except NAME.lights. */
 bool scene_film_depends_on(const scene *s, const char *path);
 
 /* Whether the row applies to the solid (its shape has that dimension). */
 bool solid_has(const solid *owner, const param *row);
 
-/* The name of a light, material or solid; "camera" and so on for the other groups. */
+/* The name of an object; "render", "camera" or "background" for these groups. */
 const char *param_place_group_name(const scene *s, param_group group, size_t index);
 
-/* The number of objects in a group: 1, or the scene's lights, materials or solids. */
+/* The number of the scene's objects in a group; 1 for render, camera and background. */
 size_t param_place_group_size(const scene *s, param_group group);
 
-/* "sphere" */
+/* The word of a shape: "sphere". */
 const char *shape_name(shape_kind kind);

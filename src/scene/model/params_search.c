@@ -1,4 +1,4 @@
-/* The search for parameters. */
+/* The search for parameters by words and synonyms (params.h). */
 #include "scene/model/params.h"
 
 #include <ctype.h>
@@ -7,8 +7,8 @@
 
 enum { MEANINGS_MAX = 6 };
 
-/* Everyday words: a search for the first one also finds the rows whose path, meaning or choices contain one of the
- * others. Add a word if a search for it finds nothing, or misses what a newcomer means. */
+/* Everyday words: a search for `word` also finds the rows whose path, meaning or choices contain one of its meanings.
+ * Add a word if a search for it finds nothing, or misses what a newcomer means. */
 static const struct synonym {
     const char *word, *meanings[MEANINGS_MAX];
 } synonyms[] = {
@@ -89,7 +89,7 @@ static bool starts(const char *text, query_word w)
     return strncasecmp(text, w.text, w.length) == 0;
 }
 
-/* strcasestr for a word that is part of a text. */
+/* strcasestr for a word that is not terminated. */
 static bool contains(const char *text, query_word w)
 {
     for (; *text; text++)
@@ -98,17 +98,17 @@ static bool contains(const char *text, query_word w)
     return false;
 }
 
-/* The word itself, its plural, or its beginning: 'brigh' finds what 'brightness' does. */
+/* Whether the query is the synonym's word, its plural, or its beginning: 'brigh' finds what 'brightness' does. */
 static bool means(const struct synonym *s, query_word w)
 {
     enum { LEAST = 3 };
-    const size_t whole = strlen(s->word);
-    if (w.length == whole + 1 && tolower((unsigned char)w.text[whole]) == 's')
-        return strncasecmp(w.text, s->word, whole) == 0;
-    return (w.length == whole || w.length >= LEAST) && starts(s->word, w);
+    const size_t length = strlen(s->word);
+    if (w.length == length + 1 && tolower((unsigned char)w.text[length]) == 's')
+        return strncasecmp(w.text, s->word, length) == 0;
+    return (w.length == length || w.length >= LEAST) && starts(s->word, w);
 }
 
-/* What a word is looked for in: the path alone, or all texts of the row. */
+/* Whether the path contains the word; with everywhere, or the row's meaning or choices. */
 static bool row_has(const param *row, const char *path, bool everywhere, query_word w)
 {
     bool found = contains(path, w) || (everywhere && contains(row->meaning, w));

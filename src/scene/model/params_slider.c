@@ -1,4 +1,4 @@
-/* The sliders of the parameter table. */
+/* Derives the range and step of a parameter's slider from its range, default and value (params.h). */
 #include "base/number.h"
 #include "scene/model/params.h"
 
@@ -48,18 +48,18 @@ static double nice_above(double x)
 
 static double step_of(const param *row, double span)
 {
-    const double steps = 400; /* at least, but for integers */
+    const double steps = 400; /* minimum number of steps, except for integers */
     return row->type == PARAM_INT ? 1 : decade_below(span / steps);
 }
 
-/* From 0 over five decades: of values whose size is not known. */
+/* A slider from 0 over five decades, for values of unknown size. */
 static param_slider from_zero(const param *row, double highest)
 {
     const bool integer = row->type == PARAM_INT;
     return (param_slider){0, highest, integer ? 1 : 0, integer ? 1 : 1e-5 * highest};
 }
 
-/* The least value of a slider that begins at the lower bound: a step above one that is excluded. */
+/* The least value of a slider that begins at the lower bound, or one step above it if the bound is excluded. */
 static double lowest_of(const param *row, double step, extent all)
 {
     return row->above_lowest ? row->lowest + fmin(step, all.least - row->lowest) : row->lowest;

@@ -1,4 +1,4 @@
-/* The table itself: a new parameter is a row here, and a field in the struct of its group (render_settings.h,
+/* The parameter table: a new parameter is a row here, and a field in the struct of its group (render_settings.h,
  * material.h, lights.h, solids.h, view_settings.h). */
 #include "scene/model/lights.h"
 #include "scene/model/medium.h"
@@ -26,7 +26,7 @@ static const char *const pixel_filter_words[] = {"centre", "box", NULL};
 static const char *const light_sampling_words[] = {"all", "one", NULL};
 static const char *const texturing_words[] = {"perspective", "affine", NULL};
 static const char *const shading_words[] = {"flat", "smooth", "gouraud", NULL};
-/* arrays: meshes given by a program, which files cannot contain */
+/* arrays: triangles from a program that uses the library; a scene file cannot contain them */
 static const char *const source_words[] = {"file",  "sparse",  "dense", "sphere", "icosphere", "torus",
                                            "lathe", "terrain", "box",   "slime",  "arrays",    NULL};
 static const char *const motion_words[] = {"euler", "verlet", "implicit", NULL};
@@ -51,27 +51,27 @@ enum { ON_SLIME = 1 << MESH_SLIME, ON_ALL = 0 };
 /* Far below the film's limit of 524288, with room for many lights. */
 #define BRIGHT 1e4
 
-/* A row whose name is that of its field, or of the field's last part; further members follow the location. */
+/* Positional members up to `choices`; then OF(struct, field), which gives `makers` and `offset`; then designated
+ * members. */
 #define ROW(group, name, kind, unit, low, high, above, fallback, meaning, words, ...)    \
     {                                                                                    \
         group, name, kind, unit, low, high, above, fallback, meaning, words, __VA_ARGS__ \
     }
 #define OF(type, field) ON_ALL, .offset = offsetof(type, field)
-/* Performance only: see param.performance_only. */
 #define PERFORMANCE(field) OF(render_settings, field), .performance_only = true
-/* The film does not depend on how it is shown. */
+/* For the display of images, on which the film does not depend. */
 #define SHOWN(field) OF(camera, field), .performance_only = true
 /* For random paths only: see param.by_chance. */
-#define PATHS(field) OF(render_settings, field), .by_chance = true
+#define BY_CHANCE(field) OF(render_settings, field), .by_chance = true
 /* For slimes only. */
 #define SLIME(field) ON_SLIME, .offset = offsetof(mesh_entry, slime.field)
-/* Sliders: of positive numbers of any size, two decades on both sides of the default and the value; or from 0 to a
- * usual maximum, over five decades. */
+/* Sliders: two decades on both sides of the default and the value, for positive numbers of any size; or five decades
+ * from 0 to a usual maximum. */
 #define DECADES .slider = {.log_from = 1}
 #define UP_TO(most) .slider = {0, most, 0, 1e-5 * (most)}
 #define COEFFICIENT .coefficient = true, UP_TO(100)
-/* Of beams. The film depends on them only if they light the scene (scene_film_depends_on), on how they are followed and
- * drawn never. */
+/* Parameters of beams. If a beam does not light the scene, the film does not depend on it (scene_film_depends_on); it
+ * never depends on how beams are traced and drawn (BEAM_SHOWN). */
 #define BEAM(field) OF(beam, field)
 #define BEAM_SHOWN(field) OF(beam, field), .performance_only = true
 #define BEAM_REAL(field, unit, low, high, fallback, meaning) \
@@ -127,13 +127,13 @@ enum { ON_SLIME = 1 << MESH_SLIME, ON_ALL = 0 };
  *
  * A material's coefficients default to 0: an image shows only the terms of Phong's equation and the branches of the ray
  * tree that its scene enables, and clear glass needs no line that removes a diffuse coat. A colour is a factor, so it
- * defaults to white; shininess has no effect without a specular coefficient, and 80 is that of the reference scene. ior
- * is that of vacuum, so that nothing refracts by default. */
+ * defaults to white. shininess has no effect without a specular coefficient; 80 is the value of the published rod scene.
+ * ior defaults to vacuum, so that nothing refracts. */
 static const param table[] = {
     INTEGER(PARAM_RENDER, render_settings, width, "px", 1, 65536, "800", "width of the image"),
     INTEGER(PARAM_RENDER, render_settings, height, "px", 1, 65536, "600", "height of the image"),
     ROW(PARAM_RENDER, "depth", PARAM_INT, "", 0, DEPTH_TREE_MAX, false, "4",
-        "recursion depth; 0: camera rays only; unlimited: of random paths", NULL, OF(render_settings, depth),
+        "recursion depth; 0: camera rays only; unlimited: only for random paths", NULL, OF(render_settings, depth),
         .automatic = "unlimited", .automatic_value = DEPTH_UNLIMITED),
     {PARAM_RENDER, "samples", PARAM_INT, "", 1, SCENE_SAMPLES_MAX, false, "1",
      "camera rays per pixel, through the centres of a regular grid of cells; 1: no antialiasing", sample_counts,
@@ -164,8 +164,8 @@ static const param table[] = {
            "(no caustics)"),
     CHOICE(
         PARAM_RENDER, render_settings, soft_shadows, off_on, "off",
-        "on: for lights with a size each ray of whitted and raycast takes the light of one random point, so that with "
-        "many samples shadows have soft edges; off: from their centre"),
+        "on: each ray of whitted and raycast samples one random point of a light with a size, so that with many "
+        "samples shadows have soft edges; off: its centre"),
     CHOICE(PARAM_RENDER, render_settings, caustics, caustics_words, "off",
            "light that mirrors and transparent solids throw on matte surfaces: none, or by photons traced from the "
            "lamps; then shadows are opaque and radiance is basic"),
@@ -177,24 +177,24 @@ static const param table[] = {
     ROW(PARAM_RENDER, "paths", PARAM_INT, "", 1, 1048576, false, "16", "paths per pixel of integrator path", NULL,
         OF(render_settings, paths), DECADES),
     ROW(PARAM_RENDER, "error", PARAM_REAL, "", 0, 1e3, false, "0",
-        "standard error of a pixel that integrator path aims at, with at most render.paths paths, which a pilot render "
-        "chooses; 0: render.paths everywhere",
-        NULL, PATHS(error)),
+        "target standard error of a pixel for integrator path: a pilot render chooses the number of paths, at most "
+        "render.paths; 0: render.paths everywhere",
+        NULL, BY_CHANCE(error)),
     ROW(PARAM_RENDER, "sampler", PARAM_CHOICE, "", 0, 0, false, "sobol",
         "sample points of integrator path: independent random numbers (Philox), or a scrambled Sobol sequence, whose "
         "error falls faster",
-        sampler_words, PATHS(sampler), .first_default = "philox"),
+        sampler_words, BY_CHANCE(sampler), .first_default = "philox"),
     ROW(PARAM_RENDER, "filter", PARAM_CHOICE, "", 0, 0, false, "box",
         "pixel filter of integrator path: through the centres of the grid of render.samples only, or the mean over the "
         "pixel (random points)",
-        pixel_filter_words, PATHS(filter), .first_default = "centre"),
+        pixel_filter_words, BY_CHANCE(filter), .first_default = "centre"),
     ROW(PARAM_RENDER, "light_sampling", PARAM_CHOICE, "", 0, 0, false, "one",
         "lights that integrator path samples at a matte surface: all, or one, chosen at random by its brightness there",
-        light_sampling_words, PATHS(light_sampling), .first_default = "all"),
+        light_sampling_words, BY_CHANCE(light_sampling), .first_default = "all"),
     CHOICE(PARAM_RENDER, render_settings, roulette, off_on, "off",
-           "Russian roulette: faint paths end at random, and the surviving ones are weighted up; integrator path"),
+           "Russian roulette: faint paths end at random, and the survivors' weights are raised; integrator path"),
     CHOICE(PARAM_RENDER, render_settings, energy_compensation, off_on, "off",
-           "rough surfaces: light that a facet sends to another is lost, or sent on, so that no light is lost; "
+           "rough surfaces: off: light that one facet reflects to another is lost; on: it is added again; "
            "integrator path"),
     INTEGER(PARAM_RENDER, render_settings, seed, "", 0, 2147483647, "1", "seed of the random numbers"),
     CHOICE(PARAM_RENDER, render_settings, polarisation, off_on, "off",
@@ -219,13 +219,13 @@ static const param table[] = {
         "on demand"),
     PERFORMANCE_INTEGER(tile, "px", 1, 65536, "32", "edge of a tile"),
     PERFORMANCE_INTEGER(tiles_per_worker, "", 0, 1024, "4",
-                        "tiles per worker, at least: the edge is halved until there are that many; 0: always "
-                        "render.tile"),
+                        "minimum number of tiles per worker: the edge of a tile is halved until it is reached; 0: "
+                        "always render.tile"),
     PERFORMANCE_CHOICE(pin, pin_words, "none",
                        "thread pinning: none, on adjacent processing units, or on distant ones"),
     PERFORMANCE_CHOICE(accel, accel_words, "bvh",
-                       "acceleration structure of a mesh: none, one bounding sphere, the original report's octree of "
-                       "spheres, or a BVH"),
+                       "acceleration structure of a mesh: none, one bounding sphere, the published rod report's octree "
+                       "of spheres, or a BVH"),
     PERFORMANCE_INTEGER(build_threads, "", 0, 1024, "0", "threads that build hierarchies; 0: one per processing unit"),
     PERFORMANCE_CHOICE(keep, off_on, "on",
                        "keep the hierarchies of meshes between frames; off: rebuild them for every frame"),
@@ -234,8 +234,8 @@ static const param table[] = {
         "rebuild the BVH of a deforming mesh when its expected cost exceeds that of the last build by this "
         "factor"),
     PERFORMANCE_CHOICE(count_tests, off_on, "off",
-                       "count the boxes, spheres and triangles of meshes that each ray tests, in a traversal of its "
-                       "own that adds to the time"),
+                       "count the boxes, spheres and triangles of meshes that each ray tests, in a separate traversal "
+                       "that adds to the time"),
     CHOICE(PARAM_RENDER, render_settings, texturing, texturing_words, "perspective",
            "texture interpolation of the rasteriser: perspective-correct or affine"),
 
@@ -286,10 +286,9 @@ static const param table[] = {
     ROW(PARAM_BACKGROUND, "drops", PARAM_CHOICE, "", 0, 0, false, "water", "liquid of the rain's drops, in air",
         surrounding_words + SURROUNDING_CATALOGUE + DROPS_FIRST, OF(background, drops)),
     REAL(PARAM_BACKGROUND, background, sun_elevation_deg, "deg", -90, 90, "20",
-         "elevation of the sun that shines on the rain or stands in a CIE sky, unless a light is a sun; it is not "
-         "drawn"),
+         "elevation of the sun that shines on the rain or in a CIE sky, unless a light is a sun; it is not drawn"),
     REAL(PARAM_BACKGROUND, background, sun_azimuth_deg, "deg", -360, 360, "180",
-         "azimuth of that sun: 0 along +z, 90 along +x; 180 is behind a camera along +z"),
+         "azimuth of the background's sun: 0 along +z, 90 along +x; 180 is behind a camera along +z"),
     INTEGER(PARAM_BACKGROUND, background, sky_type, "", 1, CIE_SKY_TYPES, "12",
             "type of a CIE standard general sky (ISO 15469), from 1, overcast, to 15; 12: the standard clear sky"),
     COLOR(PARAM_BACKGROUND, background, ambient, BRIGHT, "1,1,1", "ambient light, I_a of the Phong model"),
@@ -389,8 +388,8 @@ static const param table[] = {
     REAL(PARAM_LIGHT, light, intensity, "", 0, BRIGHT, "1",
          "multiplies the light's colour: at all distances, or, if reach is set, at that distance"),
     CHOICE(PARAM_LIGHT, light, spectrum, lamp_words, "color",
-           "spectrum of the light: a smooth one of its colour (white: D65), that of a black body, the lines of sodium, "
-           "mercury or hydrogen, or one line; all but the first have the brightness of white and replace the colour"),
+           "spectrum of the light: smooth, from its colour (white: D65); of a black body; the lines of sodium, mercury "
+           "or hydrogen; or one line; all but the first have the brightness of white and replace the colour"),
     REAL(PARAM_LIGHT, light, temperature_k, "K", LAMP_COLDEST_K, LAMP_HOTTEST_K, "2856",
          "temperature of a black body; 2856: CIE illuminant A, an incandescent lamp"),
     REAL(PARAM_LIGHT, light, line_nm, "nm", OBSERVER_LOW_NM, OBSERVER_HIGH_NM, "632.8",
@@ -402,8 +401,8 @@ static const param table[] = {
     REAL(PARAM_LIGHT, light, height, "scene units", 0, FAR, "1", "height of a rectangle; 0: a point"),
     REAL(PARAM_LIGHT, light, roll_deg, "deg", -360, 360, "0", "rotation of a rectangle about its axis"),
     REAL(PARAM_LIGHT, light, angular_diameter_deg, "deg", 0, 90, "0.53",
-         "angle under which a sun is seen, sampled by integrator path and with render.soft_shadows; 0.53: that of "
-         "the sun; 0: parallel light"),
+         "angular diameter of a sun, sampled by integrator path and with render.soft_shadows; 0.53: the real sun; 0: "
+         "parallel light"),
     REAL(PARAM_LIGHT, light, reach, "scene units", 0, FAR, "0",
          "distance at which the intensity applies, with inverse-square falloff; 0: no falloff"),
     REAL(PARAM_LIGHT, light, polarised, "", 0, 1, "0",
@@ -424,27 +423,27 @@ static const param table[] = {
     BEAM_INTEGER(rays, 1, BEAM_RAYS_MAX, "1", "number of rays of each wavelength; 1: only the axis"),
     BEAM_REAL(angle_deg, "deg", 0, 179, "10", "pencil and fan: full angle between the outermost rays"),
     BEAM_REAL(width, "scene units", 0, FAR, "0.5", "sheet and bundle: distance between the outermost rays"),
-    BEAM_CHOICE(white, off_on, "off", "on: white light, as several wavelengths; off: the one of lambda_nm"),
+    BEAM_CHOICE(white, off_on, "off", "on: white light, as several wavelengths; off: only lambda_nm"),
     BEAM_REAL(lambda_nm, "nm", 200, 2000, "587.5618", "wavelength in vacuum; the default is the d line"),
     BEAM_INTEGER(wavelengths, 1, 64, "7", "wavelengths of white light, evenly from 400 to 700 nm, of equal power"),
-    BEAM_REAL(power, "", 0, 1e9, "1", "power of all rays together at their starts, in any unit"),
+    BEAM_REAL(power, "", 0, 1e9, "1", "total power of all rays at their starts, in any unit"),
     ROW(PARAM_BEAM, "branches", PARAM_CHOICE, "", 0, 0, false, "on",
-        "on: at each surface the reflected and the refracted ray; off: only the refracted one, or the "
-        "reflected one where there is no other",
+        "on: at each surface the reflected and the refracted ray; off: only the refracted ray, or the reflected one "
+        "if there is none",
         off_on, BEAM_SHOWN(branches)),
     BEAM_INTEGER(depth, 0, BEAM_DEPTH_MAX, "8",
                  "number of surfaces at which a ray is followed; with both branches at most 64"),
     ROW(PARAM_BEAM, "min_fraction", PARAM_REAL, "", 0, 1, false, "0.01",
-        "rays with a smaller share of the power are not followed", NULL, BEAM_SHOWN(min_fraction)),
+        "rays with a smaller fraction of the power are not followed", NULL, BEAM_SHOWN(min_fraction)),
     ROW(PARAM_BEAM, "color", PARAM_COLOR, "", 0, 1, false, "0,0,0",
         "linear colour of the drawn lines; black: the colour of the wavelength", NULL, BEAM_SHOWN(color)),
     BEAM_CHOICE(visible, off_on, "on", "off: the beam is left out"),
     BEAM_CHOICE(lights, off_on, "off",
-                "on: the beam is a lamp too, whose light render.caustics=photons brings to matte surfaces; its "
-                "irradiance is its power per area, whatever its wavelength and its number of rays"),
+                "on: the beam also lights matte surfaces, with render.caustics=photons; its irradiance is its power "
+                "per area, whatever its wavelength and its number of rays"),
     BEAM_CHOICE(profile, profile_words, "uniform",
-                "of a beam that lights: even over its angle or width, or gaussian, exp(-2 r^2 / w^2) with 2 w as its "
-                "angle or width"),
+                "profile of a beam that lights: even over its angle or width, or gaussian, exp(-2 r^2 / w^2) with 2 w "
+                "as its angle or width"),
 
     /* Solids have these rows as well, by their own names (liquid.ior): see param_find. */
     COLOR(PARAM_MATERIAL, material, color, 1, "1,1,1",
@@ -461,8 +460,8 @@ static const param table[] = {
          "reflectance of the surface; on a transparent surface with render.weights=fresnel a coating, "
          "whose total is R + (1 - R) reflectivity with the Fresnel reflectance R"),
     REAL(PARAM_MATERIAL, material, transparency, "", 0, 1, "0",
-         "fraction of the light that is not reflected which enters the solid (with constant weights or simple "
-         "transmission: of the incident light); 0: opaque"),
+         "fraction of the light not reflected (with constant weights or simple transmission: of the incident light) "
+         "that enters the solid; 0: opaque"),
     ROW(PARAM_MATERIAL, "ior", PARAM_REAL, "", 0, 1e9, true, "1",
         "refractive index, relative to vacuum: at least 0.1, of a metal (with extinction) any; above 10000 a "
         "transparent surface is treated as a perfect mirror",
@@ -478,7 +477,7 @@ static const param table[] = {
          "sellmeier: B1,C1,B2,C2,... (C in um^2); table: L,n,L,n,... in nm"),
     REAL(PARAM_MATERIAL, material, extraordinary_ior, "", 0, 5, "0",
          "extraordinary index of a uniaxial crystal, relative to vacuum, at every wavelength, for integrator whitted; "
-         "the other one is its index as above; 0: not a crystal"),
+         "its ordinary index is set by ior or medium; 0: not a crystal"),
     {PARAM_MATERIAL, "optic_axis", PARAM_VECTOR, "", -1000, 1000, false, "0,1,0",
      "optic axis of a crystal, in the solid's frame, of any length", NULL, OF(material, optic_axis)},
     REAL(PARAM_MATERIAL, material, film_thickness_nm, "nm", 0, 20000, "0",
@@ -489,13 +488,13 @@ static const param table[] = {
         "what each passage through the transparent solid does to the light's polarisation, with render.polarisation: "
         "a linear polariser, one for left- or right-handed light, or a retarder (wave plate)"),
     {PARAM_MATERIAL, "sheet_axis", PARAM_VECTOR, "", -1000, 1000, false, "1,0,0",
-     "axis of a polariser (of the field that it passes) or a retarder (the slow one), in the solid's frame; across a "
-     "ray its projection counts",
+     "axis of a polariser (of the transmitted field) or a retarder (the slow axis), in the solid's frame; its "
+     "projection across a ray counts",
      NULL, OF(material, sheet_axis)},
     REAL(PARAM_MATERIAL, material, sheet_pass, "", 0, 1, "1",
-         "transmittance of a polariser for light that it passes: along its axis, or of its hand"),
+         "transmittance of a polariser for light along its axis, or of its hand"),
     REAL(PARAM_MATERIAL, material, sheet_block, "", 0, 1, "0",
-         "transmittance of a polariser for light that it blocks: across its axis, or of the other hand"),
+         "transmittance of a polariser for light across its axis, or of the other hand"),
     REAL(PARAM_MATERIAL, material, retardance_deg, "deg", -36000, 36000, "0",
          "retardance of a retarder at each passage, at every wavelength; 90: a quarter-wave plate"),
     REAL(PARAM_MATERIAL, material, birefringence, "", -1, 1, "0",

@@ -89,9 +89,9 @@ static char *list_text(const number_list *list)
         free(text);
         text = longer;
     }
-    char *whole = text ? text_format("%s]", text) : NULL;
+    char *closed = text ? text_format("%s]", text) : NULL;
     free(text);
-    return whole;
+    return closed;
 }
 
 char *param_value_text(const param *row, int element, const void *field)
@@ -155,7 +155,7 @@ static bool in_range(const param *row, double value)
     return value <= row->highest && (row->above_lowest ? value > row->lowest : value >= row->lowest);
 }
 
-/* Whether a number is followed by other text: a decimal comma, or a unit. */
+/* Reports a text that is not a number; the remedy depends on a decimal comma or a unit after the digits. */
 static status not_a_number(const param *row, const char *label, const char *text, diagnostic *why)
 {
     const char *digits = text + strspn(text, "+-."), *rest = digits + strspn(digits, "0123456789.eE+-");
@@ -170,7 +170,7 @@ static status not_a_number(const param *row, const char *label, const char *text
     else if (comma)
         snprintf(remedy, sizeof remedy, "a decimal comma? write 1.5");
     else
-        snprintf(remedy, sizeof remedy, "write the number alone%s%s", row->unit[0] ? ", in " : "", row->unit);
+        snprintf(remedy, sizeof remedy, "write only the number%s%s", row->unit[0] ? ", in " : "", row->unit);
     return diagnose(why, STATUS_BAD_INPUT, remedy, "%s: '" SHOWN "' is not a finite number", label, text);
 }
 
@@ -190,7 +190,7 @@ static bool is_switch(const param *row)
     return count_words(row->choices) == 2 && strcmp(row->choices[0], "off") == 0 && strcmp(row->choices[1], "on") == 0;
 }
 
-/* YAML's other words for off and on, in any case. */
+/* Accepts YAML's words for off and on, in upper or lower case. */
 static bool choose_switch(const char *text, int64_t *index)
 {
     static const char *const words[] = {"off", "on", "no", "yes", "false", "true"};
@@ -312,7 +312,7 @@ static status parse_path(const param *row, const char *label, char *text, char *
     return *out ? STATUS_OK : out_of_memory(why);
 }
 
-/* The name of another object, or none. */
+/* Parses the name of another object, or "". */
 static status parse_word(const param *row, const char *label, const char *text, char word[SCENE_NAME_MAX + 1],
                          diagnostic *why)
 {

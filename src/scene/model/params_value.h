@@ -1,5 +1,5 @@
 /* The value of one row: from text, to text, and in the struct of its group. Basis of params.h. Ownership:
- * param_value_text gives fresh memory; a PARAM_PATH field owns its text. */
+ * param_value_text returns fresh memory; a PARAM_PATH field owns its text. */
 #pragma once
 
 #include "scene/model/material.h"
@@ -29,9 +29,9 @@ char *param_value_text(const param *row, int element, const void *field);
  * Returns text. */
 char *param_remedy(const param *row, bool one_element, char *text, size_t size);
 
-/* The row's default in the form of param_value_text; fresh memory, NULL if that runs out. */
+/* The row's default in the form of param_value_text. Fresh memory; NULL if memory runs out. */
 char *param_default_text(const param *row);
-/* The same for its first default (param.first_default). */
+/* Likewise, the row's first default (param.first_default). */
 char *param_first_default_text(const param *row);
 
 /* Sets every field of the group's rows in *base to its default. Path fields must be NULL or owned text. */

@@ -1,5 +1,5 @@
-/* The parameters render.*: how a scene is rendered. Integers, enums and switches (on/off) are int64_t: one type per
- * kind of parameter. Plain values. */
+/* The parameters render.*: how a scene is rendered. Integers, enums and switches (on/off) are int64_t, because the
+ * parameter table has one type per kind of parameter. Plain values. */
 #pragma once
 
 #include "scene/model/integrators.h"
@@ -22,13 +22,14 @@ typedef enum light_sampling_rule { LIGHT_SAMPLING_ALL, LIGHT_SAMPLING_ONE } ligh
 typedef enum texturing_rule { TEXTURING_PERSPECTIVE, TEXTURING_AFFINE } texturing_rule;
 
 enum { SCENE_SAMPLES_MAX = 64 };
-/* Trees of rays end at DEPTH_TREE_MAX; random paths and photons may be longer (render.depth=unlimited). */
+/* Ray trees end at DEPTH_TREE_MAX; random paths and photons may be longer (render.depth=unlimited). */
 enum { DEPTH_TREE_MAX = 64, DEPTH_UNLIMITED = 1 << 30 };
 #define SCENE_PIXELS_MAX 268435456 /* 2^28 */
 
 typedef struct render_settings {
     int64_t width, height;  /* pixels */
-    int64_t depth;          /* recursion depth; 0 = camera rays only; DEPTH_UNLIMITED, of random paths */
+    int64_t depth;          /* recursion depth, depth_limit of render/frame/tracers.c; 0: camera rays only;
+                               DEPTH_UNLIMITED: only for random paths */
     int64_t samples;        /* per pixel: a square number, at most SCENE_SAMPLES_MAX */
     int64_t integrator;     /* integrator_rule */
     int64_t layer;          /* layer_rule: the layer that the film shows, for integrators that write layers */
@@ -40,10 +41,11 @@ typedef struct render_settings {
     int64_t shadows;        /* shadow_rule */
     int64_t soft_shadows;   /* bool: rays of trees sample the lights that have a size */
     int64_t caustics;       /* caustics_rule */
-    int64_t photons;        /* from the lamps, for caustics */
-    double min_weight;      /* rays with a lower throughput in every channel are not traced; 0: all are */
+    int64_t photons;        /* number of photons that the lamps emit, for caustics */
+    double min_weight;      /* rays whose throughput (the product of the weights along their path) is lower in every
+                               channel are not traced; 0: all rays are */
     int64_t paths;          /* per pixel, for the path integrator */
-    double error;           /* standard error of a pixel that the path integrator aims at; 0: render.paths everywhere */
+    double error;           /* target standard error of a pixel, path integrator; 0: render.paths everywhere */
     int64_t sampler;        /* sampler_rule: of the path integrator */
     int64_t filter;         /* pixel_filter: of the path integrator */
     int64_t light_sampling; /* light_sampling_rule: of the path integrator */
@@ -58,16 +60,16 @@ typedef struct render_settings {
     int64_t pool;           /* 1: persistent threads; 0: new threads for every frame */
     int64_t schedule;       /* schedule_rule */
     int64_t tile;           /* tile size, pixels */
-    int64_t tiles_per_worker; /* least number of tiles per worker, for which tiles are halved; 0: no least number */
+    int64_t tiles_per_worker; /* minimum number of tiles per worker, for which tiles are halved; 0: no minimum */
     int64_t pin;              /* pin_rule */
     int64_t accel;            /* hierarchy_kind */
     int64_t build_threads;    /* threads that build hierarchies; 0: one per processing unit */
     int64_t keep;             /* 1: a mesh keeps its hierarchy; 0: every frame builds it again */
-    /* a refitted hierarchy of a moving mesh is rebuilt when its expected cost exceeds this factor */
+    /* a refitted hierarchy is rebuilt when its expected cost exceeds that of the last build by this factor */
     double rebuild;
     int64_t count_tests; /* 1: count the tests of hierarchies */
     int64_t texturing;   /* texturing_rule, for the rasteriser */
-    /* 1: light that facets of rough surfaces send to one another is not lost; path integrator */
+    /* 1: light that facets of rough surfaces reflect to one another is not lost; path integrator */
     int64_t energy_compensation;
 } render_settings;
 
@@ -82,7 +84,8 @@ static inline bool follows_trees(const render_settings *r)
     return integrator_traits_of(r)->tree && r->lighting == LIGHTING_WHITTED;
 }
 
-/* The integrators for inspecting a scene: all branches of each ray; and a preview of triangles. */
+/* Select the integrator to inspect a scene: whitted, with all branches of each ray; or zbuffer, a preview of triangles.
+ */
 static inline void trace_trees(render_settings *r)
 {
     r->integrator = INTEGRATOR_WHITTED;
@@ -104,13 +107,13 @@ int scene_threads(const render_settings *r);
 /* Threads that build hierarchies: render.build_threads, or one per processing unit. */
 int scene_build_threads(const render_settings *r);
 
-/* Whether the weights of a transparent surface are the material's constants, whatever its index. */
+/* Whether transparent surfaces use the material's constants as weights, not the Fresnel equations. */
 static inline bool scene_has_constant_weights(const render_settings *r)
 {
     return r->weights == WEIGHTS_CONSTANT || r->transmission == TRANSMISSION_SIMPLE;
 }
 
-/* Whether integrators that do not work by chance sample the lights that have a size. */
+/* Whether Whitted ray tracing or ray casting samples lights that have a size; random paths always do. */
 static inline bool scene_has_soft_shadows(const render_settings *r)
 {
     const integrator_traits *traits = integrator_traits_of(r);

@@ -1,3 +1,4 @@
+/* Creates, copies and destroys scenes; finds objects by name (open.h, scene.h). */
 #include "base/elementary.h"
 #include "base/file.h"
 #include "base/thread_team.h"

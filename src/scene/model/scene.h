@@ -1,6 +1,6 @@
 /* A scene: render settings, camera, background, lights, beams, materials, solids. Every user-settable field is a row of
  * the parameter table (scene/model/params.h), which is used by files, --set, studies and manuals. Code that only passes
- * scenes on includes scene/model/open.h. Ownership: see there; the renderer borrows a scene. */
+ * scenes to others includes scene/model/open.h, which states ownership; the renderer borrows a scene. */
 #pragma once
 
 #include "scene/model/lights.h"
@@ -11,7 +11,7 @@
 #include "scene/model/view_settings.h"
 
 struct scene {
-    char *path; /* the file it was read from, "" if none */
+    char *path; /* the file that was read; "" if none */
     char *title;
     render_settings render;
     struct camera camera;
@@ -35,7 +35,7 @@ struct scene {
 /* Index of the solid with that name, or -1. */
 int scene_find_solid(const scene *s, const char *name);
 
-/* The mesh or texture with that name; NULL if there is none. */
+/* The mesh, or texture, with that name; NULL if there is none. */
 const mesh_entry *scene_find_mesh(const scene *s, const char *name);
 /* The mesh of a solid; NULL for shapes without triangles, or if the mesh does not exist. */
 const mesh_entry *scene_mesh_of(const scene *s, const solid *owner);
@@ -46,6 +46,6 @@ const texture_entry *scene_find_texture(const scene *s, const char *name);
 /* The first light of kind sun, or NULL. */
 const light *scene_sun(const scene *s);
 
-/* The direction to the sun that the background shows, a unit vector: to that light, or by sun_elevation_deg and
- * sun_azimuth_deg of the background. */
+/* The unit vector towards the background's sun: the first light of kind sun, else by the background's sun_elevation_deg
+ * and sun_azimuth_deg. */
 vec3 scene_to_sun(const scene *s);

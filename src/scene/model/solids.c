@@ -1,4 +1,4 @@
-/* The solids, meshes and textures of a scene. */
+/* The reference-mutable_count materials of mesh files, loaded data of meshes and textures, and checks of slimes. */
 #include "geometry/shapes/shape.h"
 #include "scene/model/solids.h"
 
@@ -9,63 +9,63 @@
 /* --- materials in a mesh file --- */
 
 struct face_materials {
-    atomic_int owners;
+    atomic_int references;
     int count;
     face_material mat[];
 };
 
-/* Only the owner count changes; all other fields are constant. */
-static face_materials *counted(const face_materials *l)
+/* Only the reference count changes; all other fields are constant. */
+static face_materials *mutable_count(const face_materials *materials)
 {
-    return (face_materials *)(uintptr_t)l;
+    return (face_materials *)(uintptr_t)materials;
 }
 
 /* NULL: out of memory. */
 static face_materials *allocate(int count)
 {
-    face_materials *l = calloc(1, sizeof *l + (size_t)count * sizeof l->mat[0]);
-    if (!l)
+    face_materials *materials = calloc(1, sizeof *materials + (size_t)count * sizeof materials->mat[0]);
+    if (!materials)
         return NULL;
-    atomic_init(&l->owners, 1);
-    l->count = count;
-    return l;
+    atomic_init(&materials->references, 1);
+    materials->count = count;
+    return materials;
 }
 
 status face_materials_of(const face_material *list, int count, const face_materials **out, diagnostic *why)
 {
-    face_materials *l = allocate(count);
+    face_materials *materials = allocate(count);
     for (int i = 0; i < count; i++)
-        if (l)
-            l->mat[i] = list[i];
+        if (materials)
+            materials->mat[i] = list[i];
         else
             texture_release(list[i].img);
-    *out = l;
-    return l ? STATUS_OK : out_of_memory(why);
+    *out = materials;
+    return materials ? STATUS_OK : out_of_memory(why);
 }
 
-void face_materials_retain(const face_materials *l)
+void face_materials_retain(const face_materials *materials)
 {
-    if (l)
-        atomic_fetch_add(&counted(l)->owners, 1);
+    if (materials)
+        atomic_fetch_add(&mutable_count(materials)->references, 1);
 }
 
-void face_materials_release(const face_materials *l)
+void face_materials_release(const face_materials *materials)
 {
-    if (!l || atomic_fetch_sub(&counted(l)->owners, 1) > 1)
+    if (!materials || atomic_fetch_sub(&mutable_count(materials)->references, 1) > 1)
         return;
-    for (int i = 0; i < l->count; i++)
-        texture_release(l->mat[i].img);
-    free(counted(l));
+    for (int i = 0; i < materials->count; i++)
+        texture_release(materials->mat[i].img);
+    free(mutable_count(materials));
 }
 
-int face_materials_count(const face_materials *l)
+int face_materials_count(const face_materials *materials)
 {
-    return l ? l->count : 0;
+    return materials ? materials->count : 0;
 }
 
-const face_material *face_materials_at(const face_materials *l, int slot)
+const face_material *face_materials_at(const face_materials *materials, int slot)
 {
-    return &l->mat[slot];
+    return &materials->mat[slot];
 }
 
 /* --- loaded data --- */

@@ -15,22 +15,22 @@
 
 typedef enum shading_rule { SHADING_FLAT, SHADING_SMOOTH, SHADING_GOURAUD } shading_rule;
 
-/* Maximum numbers of all solids together (shape_places), and of those among them that have no bounds, or triangles. */
+/* The maximum number of primitives of all solids (shape_places), and of solids that are unbounded or have triangles. */
 enum { SCENE_PRIMITIVES_MAX = (1 << 21) - 1, SCENE_UNBOUNDED_MAX = 64 };
 
 typedef struct solid {
     char *name;
     solid_shape shape;
-    int64_t priority;              /* the higher one takes precedence where solids overlap; among equals the one listed
-                                      first */
+    int64_t priority;              /* the highest has precedence where solids overlap; among equals the first in the
+                                      scene */
     int64_t visible;               /* 0: omitted from the scene */
     char mesh[SCENE_NAME_MAX + 1]; /* name of the mesh, for shape mesh */
     int64_t shading;               /* shading_rule, for meshes */
     int material_index;            /* index in scene.materials; -1 for none */
-    material surface;              /* own copy of the material, with the solid's changes */
+    material surface;              /* a copy of the material, with the solid's changes */
 } solid;
 
-/* Whether its shape has triangles and it refers to that mesh. */
+/* Whether the solid's shape has triangles and it refers to this mesh. */
 bool solid_shows(const solid *owner, const char *mesh_name);
 
 enum { SCENE_MESHES_MAX = 64, SCENE_TEXTURES_MAX = 64 };
@@ -60,12 +60,13 @@ typedef struct face_material {
     const texture *img; /* one reference; NULL for none */
 } face_material;
 
-/* By slot. Reference counted like their mesh: face_materials_retain and face_materials_release are thread safe. */
+/* The materials of a mesh file, by slot. Reference counted like their mesh; retain and release are thread safe. */
 typedef struct face_materials face_materials;
 
-/* Of a list of materials; takes over its references to images, also after an error. STATUS_FAILURE without memory. */
+/* Copies a list of materials, and owns its references to images, even after an error. STATUS_FAILURE if memory runs out.
+ */
 status face_materials_of(const face_material *list, int count, const face_materials **out, diagnostic *why);
-/* NULL is allowed here and in the next two. */
+/* NULL is allowed in these three functions. */
 void face_materials_retain(const face_materials *l);
 void face_materials_release(const face_materials *l);
 int face_materials_count(const face_materials *l); /* 0 for NULL */
@@ -77,8 +78,7 @@ typedef struct mesh_entry {
     char *name;
     int64_t source;              /* mesh_maker */
     char *path;                  /* relative to the scene file; "" for none */
-    long path_line, path_column; /* location of the file or the generator in the scene file; 0 if it was set otherwise
-                                    */
+    long path_line, path_column; /* where the scene file names the file or the generator; 0 if it does not */
     int64_t count;               /* triangles, for sparse, dense and sphere */
     int64_t level;               /* for icosphere */
     double major, minor;         /* for torus */
@@ -86,15 +86,15 @@ typedef struct mesh_entry {
     number_list profile;         /* for lathe: radius, height, radius, height, ... */
     double crease_deg;
     vec3 size;                       /* for box; for terrain with the height of its hills */
-    double depth;                    /* for terrain: the height of its solid base below y = 0; 0: an open surface */
+    double depth;                    /* for terrain: depth of the solid base below y = 0; 0: an open surface */
     int64_t seed;                    /* for terrain */
     softbody_settings slime;         /* for slime; its level is the field `level` above */
     double time_s;                   /* for slime: the simulated time that is shown */
     char *script_path;               /* for slime: the script of its hands; "" for none; relative to the scene file */
-    long script_line, script_column; /* its location in the scene file; 0 if it was set otherwise */
-    softbody_quantities account;     /* for a loaded slime: the account of its motion */
+    long script_line, script_column; /* where the scene file names the script; 0 if it does not */
+    softbody_quantities account;     /* for a loaded slime: the quantities of its motion */
     double motion_s;                 /* for a loaded slime: the wall time of its steps */
-    const mesh *data;                /* a counted reference that the entry owns; NULL until scene_load */
+    const mesh *data;                /* a counted reference; NULL until scene_load */
     const face_materials *shading_materials; /* a counted reference; NULL for none */
 } mesh_entry;
 
@@ -103,13 +103,13 @@ typedef struct texture_entry {
     char *path; /* relative to the scene file */
     long path_line, path_column;
     int64_t filter, wrap_u, wrap_v, space; /* texture_filter, texture_wrap, texture_space */
-    const texture *data;                   /* one owner of it; NULL until scene_load */
+    const texture *data;                   /* a counted reference; NULL until scene_load */
 } texture_entry;
 
 /* Limits of loading, for scenes from others; copies of a scene have the same limits. */
 typedef struct load_limits {
-    char *root;       /* all files are read below this folder (base/file.h); NULL or "": anywhere */
-    size_t triangles; /* of all meshes together; 0: only the importer's limit */
+    char *root;       /* folder of all files that may be read (base/file.h); NULL or "": no restriction */
+    size_t triangles; /* total of all meshes; 0: only the importer's limit */
 } load_limits;
 
 /* Releases the loaded data of an entry whose parameters change. */
@@ -118,10 +118,10 @@ void texture_entry_unload(texture_entry *t);
 
 /* --- slimes --- */
 
-/* The settings of its body; the level is the entry's. */
+/* The settings of a slime's body, with the level of the mesh entry. */
 softbody_settings slime_settings(const mesh_entry *m);
 
-/* Checks that the settings are valid and need at most SLIME_STEPS_MAX steps to time_s. Not located. */
+/* Checks that the settings are valid and need at most SLIME_STEPS_MAX steps to time_s. The diagnostic has no position. */
 #define SLIME_STEPS_MAX 1e9
 status slime_check(const mesh_entry *m, diagnostic *why);
 /* Checks the number of steps to another time, such as the end of an animation. */

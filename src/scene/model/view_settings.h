@@ -20,7 +20,7 @@ typedef enum analyser_kind {
     ANALYSER_CIRCULAR_LEFT,
     ANALYSER_CIRCULAR_RIGHT
 } analyser_kind;
-/* Maximum value of a background image: below the film's limit, and the range of half floats. */
+/* Maximum value of a background image: below the film's limit and the largest half float. */
 #define SCENE_SKY_MAX 65536.0F
 
 /* y is up; yaw 0 looks along +z, positive yaw turns towards +x, positive pitch looks up; x is to the right at yaw 0. */
@@ -28,7 +28,7 @@ typedef struct camera {
     vec3 position;
     vec3 target;               /* used if aimed */
     double yaw_deg, pitch_deg; /* used if not aimed */
-    int64_t aimed;             /* 1: aimed at target; 0: along yaw and pitch. Set by the one that was written last */
+    int64_t aimed;             /* 1: at target; 0: along yaw and pitch; whichever was set last */
     double roll_deg;           /* about the viewing direction, right side down: the image turns counter-clockwise */
     int64_t projection;        /* projection_rule */
     double fov_deg;            /* vertical; perspective */
@@ -37,25 +37,25 @@ typedef struct camera {
     double focus;              /* distance of the plane in focus along the viewing direction, scene units */
     int64_t analyser;          /* analyser_kind: an ideal filter before the eye, with render.polarisation */
     double analyser_angle_deg; /* of a linear one's axis: from the image's right, towards up */
-    double exposure;           /* stops, of images with 8 bits */
-    int64_t tone;              /* tone_curve, likewise */
+    double exposure;           /* stops, for images with 8 bits */
+    int64_t tone;              /* tone_curve, for images with 8 bits */
     double white;              /* see image_tone */
 } camera;
 
 typedef struct background {
     int64_t kind;     /* background_kind */
     vec3 color;       /* linear RGB in x, y, z; uniform, or the zenith of a gradient or a CIE sky */
-    vec3 horizon;     /* gradient: colour at and below the horizon; rain adds to a gradient; CIE: below it */
+    vec3 horizon;     /* colour at and below the horizon of a gradient, also behind rain; below that of a CIE sky */
     char *image_path; /* equirectangular sky; "" for none; relative to the scene file */
-    long image_line, image_column; /* its location in the scene file; 0 if it was set otherwise */
+    long image_line, image_column; /* where the scene file names the image; 0 if it does not */
     image *img;                    /* owned; NULL until loaded by scene_load */
     vec3 ambient;                  /* I_a of Phong's equation, linear RGB */
-    double ior;                    /* of the surroundings of all solids, if medium is MEDIUM_IOR */
+    double ior;                    /* index of the surroundings of all solids, if medium is MEDIUM_IOR */
     int64_t medium;                /* see scene/model/medium.h */
     double rain;                   /* radiance of the rain if its drops scattered evenly in all directions */
     int64_t drops;                 /* the drops' medium, from DROPS_FIRST in scene/model/medium.h */
     double sun_elevation_deg, sun_azimuth_deg; /* without a light of kind sun; azimuth as the camera's yaw */
     int64_t sky_type;                          /* of a CIE sky: see optics/cie_sky.h */
-    cie_sky cie;                               /* of a plan's background */
-    vec3 absorb_per_m; /* of the surroundings of all solids, by channel, along rays that end at a surface or a light */
+    cie_sky cie;                               /* set only in the background of a plan */
+    vec3 absorb_per_m; /* absorption of the surroundings by channel, along rays that end at a surface or a light */
 } background;

@@ -1,18 +1,18 @@
-/* The work that a scene's parameters imply, before anything is loaded or rendered, for limits. Pure. */
+/* The work that a scene's parameters imply, for limits before anything is loaded or rendered. Pure. */
 #pragma once
 
 #include "scene/model/open.h"
 #include "scene/model/solids.h"
 
-/* Triangles of generated meshes; those of files are counted on loading. */
+/* The number of triangles of generated meshes; a mesh from a file counts as 12, because its size is unknown. */
 double scene_planned_triangles(const scene *s);
 
-/* Camera rays times wavelengths. */
+/* The number of camera rays, times wavelengths. */
 double scene_camera_rays(const struct render_settings *r);
 
-/* At most that many rays of its trees or paths, without shadow rays: a level has at most twice the rays of the one
- * before, and at most 1 / min_weight, because weights divide what arrives. */
+/* An upper bound of the number of rays, without shadow rays. A level of a tree has at most twice the rays of the level
+ * above it, and at most 1 / min_weight, because the weights of a level sum to at most 1. */
 double scene_most_rays(const struct render_settings *r);
 
-/* A slime: steps to its time_s, times masses. */
+/* The work of a slime: steps to its time_s, times masses. */
 double slime_work(const mesh_entry *m);

@@ -1,3 +1,4 @@
+/* The contents of a solid, and edits of several objects as one rigid body (edit.h). */
 #include "geometry/shapes/shape.h"
 #include "scene/model/edit/edit.h"
 #include "scene/model/edit/edit_place.h"
@@ -81,7 +82,7 @@ static status position_of(const scene *s, const char *name, vec3 *out, diagnosti
     param_place at;
     TRY(edit_find(s, name, &at, why));
     if (at.object_group != PARAM_SOLID && at.object_group != PARAM_LIGHT)
-        return diagnose(why, STATUS_BAD_INPUT, "name solids and lights", "%.80s is no part of a group", name);
+        return diagnose(why, STATUS_BAD_INPUT, "name solids and lights", "%.80s cannot be edited together with others", name);
     *out = at.object_group == PARAM_SOLID ? s->solids[at.index].shape.position : s->lights[at.index].position;
     return STATUS_OK;
 }
@@ -114,7 +115,7 @@ static status move_one(const group_edit *e, scene *s, const char *name, vec3 fro
     return scene_move(s, name, e->by, why);
 }
 
-/* A point light has no direction. */
+/* Rotates an object about the first one; a point light has no direction, and only moves. */
 static status turn_one(const group_edit *e, scene *s, const char *name, vec3 from_first, diagnostic *why)
 {
     param_place at;

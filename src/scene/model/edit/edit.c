@@ -1,4 +1,4 @@
-/* Adds, removes and renames objects; gives solids their material and shape. Placement is in edit_place.c. */
+/* Adds, removes and renames objects; assigns materials and shapes to solids. edit_place.c moves and rotates. */
 #include "base/text.h"
 #include "geometry/shapes/shape.h"
 #include "scene/model/check.h"
@@ -25,7 +25,7 @@ status scene_set_title(scene *s, const char *title, diagnostic *why)
 
 /* --- adding --- */
 
-/* shape is for solids. */
+/* shape: only for solids. */
 static status add(scene *s, param_group group, shape_kind shape, const char *name, size_t *index, diagnostic *why)
 {
     const size_t at = param_place_group_size(s, group);
@@ -40,7 +40,7 @@ static status add(scene *s, param_group group, shape_kind shape, const char *nam
         new->material_index = -1;
         code = param_set_defaults(PARAM_MATERIAL, &new->surface, why);
     }
-    /* A bounded solid is within the limits as long as there are few. */
+    /* Counting all solids for each new one is slow: few bounded solids cannot exceed the limits. */
     const shape_rule *rule = shape_of_kind(shape);
     if (group != PARAM_SOLID || rule->unbounded || rule->triangles || s->solid_count > SCENE_PRIMITIVES_MAX / 3)
         THEN(code, check_limits(s, why));
@@ -61,7 +61,7 @@ status scene_add_solid(scene *s, const char *name, shape_kind shape, size_t *ind
     return add(s, PARAM_SOLID, shape, name, index, why);
 }
 
-/* --- material and shape of a solid: its properties that are not rows of the table --- */
+/* --- material and shape of a solid, which are not rows of the table --- */
 
 status scene_assign_material(scene *s, const char *solid_name, const char *material_name, diagnostic *why)
 {
@@ -226,7 +226,7 @@ status scene_remove(scene *s, const char *name, diagnostic *why)
     return STATUS_FAILURE;
 }
 
-/* Solids and materials refer to meshes and textures by name. */
+/* Renames the references of solids and materials to a mesh or texture. */
 static void follow_name(scene *s, const param_place *at, const char *from, const char *to)
 {
     for (size_t i = 0; i < s->solid_count; i++) {

@@ -50,7 +50,7 @@ bool scene_parts_named(const scene *s, const char *name, scene_parts *out)
     }
 }
 
-/* The scene is edited in a clone, so that a failed edit leaves the original unchanged. */
+/* Undoes a failed edit: restores the values of the clone that was made before it. */
 static void restore(scene *s, const scene *before)
 {
     for (size_t i = 0; i < s->solid_count; i++) {
@@ -73,14 +73,14 @@ static void restore(scene *s, const scene *before)
     s->render.unit_m = before->render.unit_m;
 }
 
-/* An edit of many objects, done completely or not at all. */
+/* An edit of many objects, applied completely or not at all. */
 typedef struct parts_edit {
     scene *s;
     const scene *before;
     scene_parts parts;
-    const char *only; /* scales only that solid or light, in place; NULL: the parts */
-    vec3 by;          /* of a move or rotation */
-    double factor;    /* of a scale */
+    const char *only; /* the only solid or light that is scaled, in place; NULL: the parts */
+    vec3 by;          /* vector of a move, angles of a rotation */
+    double factor;    /* factor of a scaling */
     diagnostic *why;
     status (*act)(struct parts_edit *e);
 } parts_edit;
@@ -110,7 +110,7 @@ static status move_parts(parts_edit *e)
     return e->parts.camera && code == STATUS_OK ? edit_move(e->s, "camera", e->by, e->why) : code;
 }
 
-/* About the origin; points on the axis of rotation keep their zeros. */
+/* Rotates a vector parameter about the origin; + 0.0 turns -0 into 0. */
 static status turn_point(const parts_edit *e, const char *name, const char *row, vec3 point)
 {
     const vec3 to = mat3_apply(rotation_from_deg(e->by), point);
@@ -171,8 +171,8 @@ static status turn_parts(parts_edit *e)
     return e->parts.camera && code == STATUS_OK ? turn_camera(e) : code;
 }
 
-/* The power of a length that a row is, by its unit, so that new rows are scaled as well; 0: none. A mesh's own scale is
- * a length. */
+/* The power of length in a row's unit, so that new rows are scaled as well; 0: not a length. A mesh's scale counts as a
+ * length. */
 static int length_power(const param *row)
 {
     static const char inverse[] = "1/scene units^";
@@ -193,7 +193,7 @@ static double power_of(double factor, int power)
     return power < 0 ? 1.0 / product : product;
 }
 
-/* A beam that lights the scene keeps its irradiance. */
+/* Whether the row is the power of a beam that lights the scene: power grows with the area, so that irradiance stays. */
 static bool is_power(const parts_edit *e, const char *name, const param *row)
 {
     param_place at;
@@ -221,7 +221,7 @@ static bool is_scaled(const parts_edit *e, const char *name, const param *row)
                                            : at.object_group == PARAM_CAMERA && e->parts.camera;
 }
 
-/* Visits the clone, since setting a material changes its solids. */
+/* Scales one row. It visits the rows of the clone, because setting a material changes its solids. */
 static status scale_row(void *context, const char *path, const param *row, const char *value)
 {
     parts_edit *e = context;
@@ -244,7 +244,7 @@ static status scale_row(void *context, const char *path, const param *row, const
     return code;
 }
 
-/* For shapes without extent a texture size of 0 means 1, which is a length. */
+/* On unbounded shapes a texture size of 0 means 1 scene unit, which must be scaled, too. */
 static void scale_unbounded(parts_edit *e)
 {
     for (size_t i = 0; i < e->s->solid_count; i++) {

@@ -15,7 +15,7 @@ status edit_find(const scene *s, const char *name, param_place *at, diagnostic *
     const status code = param_place_find_object(s, name, at, why);
     if (code == STATUS_BAD_INPUT && why && strncmp(why->remedy, "did you mean", 12) != 0)
         snprintf(why->remedy, sizeof why->remedy,
-                 "give the name of a solid or light, or of camera, solids, lights, all, or a sum as all+camera");
+                 "name a solid, a light, a beam or camera, or a group: solids, lights, all, all+camera");
     return code;
 }
 
@@ -49,7 +49,7 @@ static status has_no(const char *name, param_group group, const char *what, cons
                     group <= PARAM_BACKGROUND ? "the" : "a", param_group_name(group), what);
 }
 
-/* A spotlight keeps its direction. */
+/* The target of a spotlight moves as well, so that its direction stays. */
 static status move_light(scene *s, size_t index, vec3 delta, diagnostic *why)
 {
     light *l = &s->lights[index];
@@ -62,7 +62,7 @@ static status move_light(scene *s, size_t index, vec3 delta, diagnostic *why)
     return code;
 }
 
-/* A beam keeps its direction. */
+/* The target of a beam moves as well, so that its direction stays. */
 static status move_beam(scene *s, size_t index, vec3 delta, diagnostic *why)
 {
     beam *b = &s->beams[index];
@@ -90,7 +90,7 @@ status edit_move(scene *s, const char *name, vec3 delta, diagnostic *why)
 }
 
 /* -180 < degrees <= 180 */
-static double wrap(double degrees)
+static double wrap_deg(double degrees)
 {
     if (degrees > -180.0 && degrees <= 180.0)
         return degrees;
@@ -132,24 +132,24 @@ static vec3 about(axis which, double degrees)
     return vec3_make(which == AXIS_X ? degrees : 0.0, which == AXIS_Y ? degrees : 0.0, which == AXIS_Z ? degrees : 0.0);
 }
 
-/* The angles after a further rotation about a world axis. z is applied last, so a rotation about z only adds to it; the
- * same holds for y or x if the angles after it are 0. Adding keeps round numbers round. */
-static vec3 turned(vec3 angles, axis which, double degrees)
+/* The angles after a further rotation about a world axis. z is applied last, so a rotation about z adds to z; so do
+ * rotations about y and x if the angles applied later are 0. Adding keeps round numbers round. */
+static vec3 rotate_angles(vec3 angles, axis which, double degrees)
 {
     if (degrees == 0.0)
         return angles;
     if (which == AXIS_Z)
-        return vec3_make(angles.x, angles.y, wrap(angles.z + degrees));
+        return vec3_make(angles.x, angles.y, wrap_deg(angles.z + degrees));
     if (which == AXIS_Y && angles.z == 0.0)
-        return vec3_make(angles.x, wrap(angles.y + degrees), 0.0);
+        return vec3_make(angles.x, wrap_deg(angles.y + degrees), 0.0);
     if (which == AXIS_X && angles.y == 0.0 && angles.z == 0.0)
-        return vec3_make(wrap(angles.x + degrees), 0.0, 0.0);
+        return vec3_make(wrap_deg(angles.x + degrees), 0.0, 0.0);
     return angles_of(product(rotation_from_deg(about(which, degrees)), rotation_from_deg(angles)));
 }
 
-static vec3 turned_by(vec3 angles, vec3 degrees)
+static vec3 rotate_angles_by(vec3 angles, vec3 degrees)
 {
-    return turned(turned(turned(angles, AXIS_X, degrees.x), AXIS_Y, degrees.y), AXIS_Z, degrees.z);
+    return rotate_angles(rotate_angles(rotate_angles(angles, AXIS_X, degrees.x), AXIS_Y, degrees.y), AXIS_Z, degrees.z);
 }
 
 static status turn_camera(scene *s, vec3 degrees, diagnostic *why)
@@ -159,8 +159,8 @@ static status turn_camera(scene *s, vec3 degrees, diagnostic *why)
     if (c->aimed)
         return edit_set_vector(s, "camera", "target",
                                vec3_add(c->position, mat3_apply(turn, vec3_sub(c->target, c->position))), why);
-    if (degrees.x == 0.0 && degrees.z == 0.0) { /* yaw rotates as y does, z towards x */
-        c->yaw_deg = wrap(c->yaw_deg + degrees.y);
+    if (degrees.x == 0.0 && degrees.z == 0.0) { /* yaw and y rotate in the same sense, z towards x */
+        c->yaw_deg = wrap_deg(c->yaw_deg + degrees.y);
         return STATUS_OK;
     }
     double sin_yaw, cos_yaw, sin_pitch, cos_pitch;
@@ -216,7 +216,7 @@ status edit_turn(scene *s, const char *name, vec3 degrees, diagnostic *why)
     if (at.object_group == PARAM_BEAM)
         return turn_beam(s, &s->beams[at.index], degrees, why);
     if (at.object_group == PARAM_SOLID)
-        return edit_set_vector(s, name, "rotation", turned_by(s->solids[at.index].shape.rotation_deg, degrees), why);
+        return edit_set_vector(s, name, "rotation", rotate_angles_by(s->solids[at.index].shape.rotation_deg, degrees), why);
     return has_no(name, at.object_group, "direction", "rotate a solid, a spotlight, a beam or the camera", why);
 }
 

@@ -1,3 +1,4 @@
+/* Adds objects with a suitable name, size, place and colour, and copies objects (new_objects.h). */
 #include "base/file.h"
 #include "base/text.h"
 #include "geometry/shapes/shape.h"
@@ -25,7 +26,7 @@ status new_name(const scene *s, const char *base, object_name name, diagnostic *
         if (check_name(name, NULL) == STATUS_OK && check_name_is_free(s, name, NULL) == STATUS_OK)
             return STATUS_OK;
     }
-    return diagnose(why, STATUS_BAD_INPUT, "choose a name", "all names like %.60s are in use", base);
+    return diagnose(why, STATUS_BAD_INPUT, "choose a name", "the names %.60s to %.60s9999 are in use", base, base);
 }
 
 static status name_for(const scene *s, const char *wanted, const char *base, object_name name, diagnostic *why)
@@ -42,7 +43,7 @@ static vec3 rounded(vec3 v, double size)
     return vec3_make(placement_round(v.x, size), placement_round(v.y, size), placement_round(v.z, size));
 }
 
-/* NAME.ROW as for scene_put; does nothing after an error. */
+/* Sets NAME.ROW by scene_put; does nothing after an error. */
 static void put(scene *s, status *code, diagnostic *why, const char *name, const char *row, const char *format, ...)
     __attribute__((format(printf, 6, 7)));
 static void put(scene *s, status *code, diagnostic *why, const char *name, const char *row, const char *format, ...)
@@ -67,7 +68,7 @@ static void put_vector(scene *s, status *code, diagnostic *why, const char *name
     put(s, code, why, name, row, "%.17g,%.17g,%.17g", v.x, v.y, v.z);
 }
 
-/* A colour different from the last one. */
+/* Sets a matte surface, with another colour than the last object's. */
 static void put_appearance(scene *s, status *code, diagnostic *why, const char *name, size_t count)
 {
     static const char *const colors[] = {"0.85,0.3,0.2", "0.2,0.5,0.85",  "0.3,0.7,0.3",
@@ -78,23 +79,23 @@ static void put_appearance(scene *s, status *code, diagnostic *why, const char *
     put(s, code, why, name, "specular", "0.3");
 }
 
-/* Without a free place, the point that the camera looks at. */
+/* If the solid overlaps others, because no place is free, sets its priority above theirs. */
 static void put_above_others(scene *s, status *code, diagnostic *why, const char *name)
 {
     const int index = scene_find_solid(s, name);
     vec3 centre, other;
-    double radius, its_radius;
+    double radius, other_radius;
     if (*code != STATUS_OK || index < 0 || !placement_bounding_sphere(s, &s->solids[index], &centre, &radius))
         return;
     int64_t priority = s->solids[index].priority;
     for (int i = 0; i < (int)s->solid_count; i++)
-        if (i != index && s->solids[i].visible && placement_bounding_sphere(s, &s->solids[i], &other, &its_radius) &&
-            vec3_length(vec3_sub(other, centre)) < radius + its_radius && s->solids[i].priority >= priority)
+        if (i != index && s->solids[i].visible && placement_bounding_sphere(s, &s->solids[i], &other, &other_radius) &&
+            vec3_length(vec3_sub(other, centre)) < radius + other_radius && s->solids[i].priority >= priority)
             priority = s->solids[i].priority + (s->solids[i].priority < 1000000);
     put(s, code, why, name, "priority", "%lld", (long long)priority);
 }
 
-/* A floor below the view's target; or, if there is one, a wall behind it. */
+/* Places a floor below the view's target; if the scene has a floor, a wall behind the target. */
 static void put_plane(scene *s, status *code, diagnostic *why, const char *name, const placement *where)
 {
     double y;
@@ -111,7 +112,7 @@ static void put_plane(scene *s, status *code, diagnostic *why, const char *name,
                          placement_round(at.z, where->size)));
 }
 
-/* A shape of a given size, with no more digits than necessary. */
+/* Sets the dimensions of a shape of the given size, with no more digits than necessary, and places it. */
 static void put_sizes(scene *s, status *code, diagnostic *why, const char *name, const placement *where)
 {
     solid fitted = s->solids[s->solid_count - 1];
@@ -132,7 +133,7 @@ static void put_sizes(scene *s, status *code, diagnostic *why, const char *name,
     put_vector(s, code, why, name, "position", vec3_sub(low, vec3_make(0, rule->extent(&fitted.shape).box.low.y, 0)));
 }
 
-/* A mesh and a solid that uses it. */
+/* Adds a mesh and a solid that uses it. */
 static status add_mesh_solid(scene *s, const char *solid_name, object_name mesh_name, diagnostic *why)
 {
     object_name base;
@@ -169,7 +170,7 @@ status new_solid(scene *s, shape_kind shape, const char *wanted, object_name nam
     if (rule->triangles) {
         code = new_mesh(s, name, &where, why);
     } else if ((code = scene_add_solid(s, name, shape, NULL, why)) == STATUS_OK) {
-        s->solids[s->solid_count - 1].visible = 0; /* it does not obstruct itself */
+        s->solids[s->solid_count - 1].visible = 0; /* so that it does not obstruct its own place */
         if (rule->unbounded)
             put_plane(s, &code, why, name, &where);
         else
@@ -188,7 +189,7 @@ status new_light(scene *s, const char *wanted, object_name name, diagnostic *why
     const placement where = placement_of(s);
     status code = name_for(s, wanted, "lamp", name, why);
     THEN(code, scene_add(s, PARAM_LIGHT, name, NULL, why));
-    /* To the left and in front of it, alternately to the right, so that two lights are not at one point. */
+    /* In front of the target, left and right in turn, so that two lights are not at one point. */
     const double side = s->light_count % 2 ? 0.5 : -0.5;
     vec3 at = vec3_add(where.looked_at, vec3_scale(where.right, side * where.distance));
     at = vec3_add(at, vec3_scale(where.away, -0.4 * where.distance));
@@ -235,8 +236,8 @@ status new_slime(scene *s, const char *wanted, object_name name, diagnostic *why
     TRY(name_for(s, wanted, "slime", name, why));
     TRY(add_mesh_solid(s, name, mesh_name, why));
     status code = STATUS_OK;
-    /* Its simulation has the default size, a ball of radius 1 on a floor at 0, whatever its size in the scene:
-     * stiffness and steps fit that size. */
+    /* The simulation always has the default size, a ball of radius 1 on a floor at 0, to which stiffness and time step
+     * are adapted; the solid is scaled instead. */
     put(s, &code, why, mesh_name, "generate", "slime");
     put_vector(s, &code, why, name, "scale", vec3_make(radius, radius, radius));
     put_vector(s, &code, why, name, "position", low);
@@ -252,16 +253,16 @@ status new_slime(scene *s, const char *wanted, object_name name, diagnostic *why
     return code;
 }
 
-/* "models/Stanford bunny.obj": Stanford-bunny */
+/* A name from a path: Stanford-bunny for "models/Stanford bunny.obj". */
 static void base_of_path(const char *path, const char *otherwise, object_name base)
 {
     const char *from = file_name_of(path), *dot = strrchr(from, '.');
     size_t length = 0;
     for (const char *c = from; *c && c != dot && length < 40; c++) {
-        const bool right = isalnum((unsigned char)*c) || *c == '_' || *c == '-';
+        const bool valid = isalnum((unsigned char)*c) || *c == '_' || *c == '-';
         if (length == 0 && !isalpha((unsigned char)*c))
             continue;
-        base[length++] = right ? *c : '-';
+        base[length++] = valid ? *c : '-';
     }
     base[length] = 0;
     if (length == 0)
@@ -280,7 +281,7 @@ status new_texture(scene *s, const char *path, const char *wanted, object_name n
     return code;
 }
 
-static void take_loaded(mesh_entry *m, const mesh_entry *from)
+static void retain_loaded(mesh_entry *m, const mesh_entry *from)
 {
     m->data = from->data;
     m->shading_materials = from->shading_materials;
@@ -304,7 +305,7 @@ status new_model(scene *s, const scene *loaded, const char *path, const char *wa
     char *row = code == STATUS_OK ? text_format("%s.file", mesh_name) : NULL;
     THEN(code, row ? scene_set(s, row, path, why) : out_of_memory(why));
     free(row);
-    /* Four digits, so that it is neither visibly below the ground nor above it. */
+    /* Four digits, so that the model is neither visibly below the ground nor above it. */
     const double scale = placement_round(where.size / longest, 0.01 * where.size / longest);
     put_vector(s, &code, why, name, "scale", vec3_make(scale, scale, scale));
     put_vector(s, &code, why, name, "position",
@@ -312,7 +313,7 @@ status new_model(scene *s, const scene *loaded, const char *path, const char *wa
                          low.z - 0.5 * scale * (b.low.z + b.high.z)));
     put_appearance(s, &code, why, name, count);
     if (code == STATUS_OK)
-        take_loaded(&s->meshes[s->mesh_count - 1], &loaded->meshes[0]);
+        retain_loaded(&s->meshes[s->mesh_count - 1], &loaded->meshes[0]);
     put_above_others(s, &code, why, name);
     return code;
 }
@@ -335,7 +336,8 @@ static double depth(const scene *s, const placement *where, const solid *a, vec3
     return fmax(0.0, least);
 }
 
-/* The copy may be inside everything that contains the original. */
+/* The total overlap after a step with solids that do not overlap the original: a copy may be inside a solid that
+ * contains the original. */
 static double overlap_after(const scene *s, const placement *where, const solid *of, vec3 step)
 {
     double sum = depth(s, where, of, step, of);
@@ -347,14 +349,14 @@ static double overlap_after(const scene *s, const placement *where, const solid 
     return sum;
 }
 
-/* Slightly more than its size in that direction, so that the copy is separate. */
+/* A step slightly longer than the solid's size in that direction, so that the copy is separate. */
 static double stride(const scene *s, const solid *of, vec3 along, double radius)
 {
     return 2.1 * fmax(placement_half_size(s, of, along), 0.01 * radius);
 }
 
 /* Offset from the original to a visible and preferably free place: to a side, behind or in front of it. */
-static vec3 step_beside(const scene *s, const placement *where, const solid *of, vec3 centre, double radius)
+static vec3 step_next_to(const scene *s, const placement *where, const solid *of, vec3 centre, double radius)
 {
     static const double offsets[][2] = {{1, 0}, {-1, 0}, {0, 1},  {0, -1},  {2, 0}, {-2, 0},
                                         {1, 1}, {-1, 1}, {1, -1}, {-1, -1}, {0, 2}};
@@ -386,7 +388,7 @@ static status copy_object(scene *s, param_group group, size_t of, const char *na
     return out_of_memory(why);
 }
 
-/* The copy of a plane is behind its surface, where it has no effect until it is moved. */
+/* Copies a solid next to itself. The copy of a plane is behind its surface, where it has no effect until it is moved. */
 static status copy_solid(scene *s, size_t of, const char *name, diagnostic *why)
 {
     const placement where = placement_of(s);
@@ -394,12 +396,12 @@ static status copy_solid(scene *s, size_t of, const char *name, diagnostic *why)
     vec3 centre, step = rounded(vec3_scale(normal, -where.size), where.size);
     double radius;
     if (placement_bounding_sphere(s, &s->solids[of], &centre, &radius))
-        step = step_beside(s, &where, &s->solids[of], centre, radius);
+        step = step_next_to(s, &where, &s->solids[of], centre, radius);
     TRY(copy_object(s, PARAM_SOLID, of, name, why));
     return scene_move(s, name, step, why);
 }
 
-static status copy_beside(scene *s, param_group group, size_t of, const char *name, diagnostic *why)
+static status copy_next_to(scene *s, param_group group, size_t of, const char *name, diagnostic *why)
 {
     TRY(copy_object(s, group, of, name, why));
     const placement where = placement_of(s);
@@ -420,7 +422,7 @@ status new_copy(scene *s, const char *of, object_name name, diagnostic *why)
     switch (at.object_group) {
     case PARAM_SOLID: return copy_solid(s, at.index, name, why);
     case PARAM_LIGHT:
-    case PARAM_BEAM: return copy_beside(s, at.object_group, at.index, name, why);
+    case PARAM_BEAM: return copy_next_to(s, at.object_group, at.index, name, why);
     case PARAM_MATERIAL:
     case PARAM_MESH:
     case PARAM_TEXTURE: return copy_object(s, at.object_group, at.index, name, why);

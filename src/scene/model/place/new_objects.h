@@ -1,7 +1,6 @@
-/* Objects that can be added with one command: each is placed where the camera looks (scene/model/place/placement.h),
- * has a suitable size, and is visible. Call it on a copy of the scene, which is discarded after an error. wanted: the
- * requested name; NULL: a new one; name returns it in both cases. Errors: STATUS_BAD_INPUT as in
- * scene/model/edit/edit.h. */
+/* Adds objects with one command: each is placed where the camera looks (scene/model/place/placement.h), has a suitable
+ * size, and is visible. Use a copy of the scene, and discard it after an error. wanted: the requested name; NULL: a new
+ * one; name returns it in both cases. Errors: STATUS_BAD_INPUT as in scene/model/edit/edit.h. */
 #pragma once
 
 #include "geometry/solid.h"
@@ -10,7 +9,7 @@
 
 typedef char object_name[SCENE_NAME_MAX + 1];
 
-/* base, or base2, base3 .. */
+/* The first free name of base, base2, base3 .. */
 status new_name(const scene *s, const char *base, object_name name, diagnostic *why);
 
 /* A mesh is a torus. A plane is a floor, or a wall if there is a floor. */
@@ -22,7 +21,8 @@ status new_material(scene *s, const char *wanted, object_name name, diagnostic *
 status new_slime(scene *s, const char *wanted, object_name name, diagnostic *why);
 /* path: as written in the scene. */
 status new_texture(scene *s, const char *path, const char *wanted, object_name name, diagnostic *why);
-/* loaded: a scene with one mesh, loaded from that path; path: as written in the scene. name is the solid's. */
+/* Adds a mesh and a solid. loaded: a scene with only this mesh, already loaded; path: as written in the scene; name: the
+ * solid's. */
 status new_model(scene *s, const scene *loaded, const char *path, const char *wanted, object_name name,
                  diagnostic *why);
 /* A copy next to the original. */

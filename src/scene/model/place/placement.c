@@ -1,3 +1,4 @@
+/* Finds a free place in view for a new object (placement.h). */
 #include "geometry/shapes/shape.h"
 #include "scene/model/camera.h"
 #include "scene/model/place/placement.h"
@@ -38,8 +39,8 @@ bool placement_ground(const scene *s, double x, double z, double *y)
     return found;
 }
 
-/* The solid's shape with a mesh that has bounds: for a mesh that is not loaded, those of a slime's ball, or of one
- * about the origin. */
+/* The solid's shape with a mesh that has bounds. A mesh that is not loaded is assumed to be a slime's ball, or a ball of
+ * radius 1 about the origin. */
 static solid_shape with_bounds(const scene *s, const solid *of, mesh *guess)
 {
     solid_shape shape = scene_loaded_shape(s, of);
@@ -76,7 +77,7 @@ double placement_half_size(const scene *s, const solid *of, vec3 along)
                                        : 0.5 * (shape_reach(&shape, d) + shape_reach(&shape, vec3_scale(d, -1.0)));
 }
 
-/* The assumed distance of the view's target for a camera without one. */
+/* The distance that is assumed between the camera and what it looks at, if it has no target. */
 static double distance_ahead(const scene *s, vec3 eye, vec3 forward)
 {
     double nearest = INFINITY, y;
@@ -112,15 +113,15 @@ placement placement_of(const scene *s)
     return where;
 }
 
-/* Total depth of a ball in the bounding balls of all visible solids; 0 if it is free. */
+/* The total depth of overlap between a ball and the bounding balls of all visible solids; 0 if the ball is free. */
 static double overlap(const scene *s, vec3 centre, double radius)
 {
     double sum = 0.0;
     for (size_t i = 0; i < s->solid_count; i++) {
         vec3 other;
-        double its_radius = 0.0;
-        if (s->solids[i].visible && placement_bounding_sphere(s, &s->solids[i], &other, &its_radius))
-            sum += fmax(0.0, radius + its_radius - vec3_length(vec3_sub(other, centre)));
+        double other_radius = 0.0;
+        if (s->solids[i].visible && placement_bounding_sphere(s, &s->solids[i], &other, &other_radius))
+            sum += fmax(0.0, radius + other_radius - vec3_length(vec3_sub(other, centre)));
     }
     return sum;
 }
