@@ -12,7 +12,8 @@
 
 status no_memory_for(const request *req, diagnostic *why)
 {
-    return diagnose_at(why, req->path, STATUS_BAD_INPUT, "use a mesh of less detail, or export the file again if it is damaged",
+    return diagnose_at(why, req->path, STATUS_BAD_INPUT,
+                       "use a mesh of less detail, or export the file again if it is damaged",
                        "the file requires more memory than the limit of %llu MiB", (unsigned long long)req->memory_mib);
 }
 

@@ -18,7 +18,7 @@
 #define MESH_WIRE_MAGIC "CUVMESH\n"
 #define MESH_WIRE_END "\nMESHEND"
 enum { MESH_WIRE_VERSION = 2, MESH_WIRE_TEXT_MAX = 1024 };
-enum { MESH_WIRE_NORMALS = 1, MESH_WIRE_UVS = 2 };          /* flags of the header */
+enum { MESH_WIRE_NORMALS = 1, MESH_WIRE_UVS = 2 }; /* flags of the header */
 /* Flags of a material: the file defines it; its image is embedded in the mesh file. */
 enum { MESH_WIRE_GIVEN = 1, MESH_WIRE_TEXTURE_INSIDE = 2 };
 

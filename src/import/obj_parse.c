@@ -29,7 +29,7 @@ static int digits(const char **at, int most, uint64_t *value)
 bool obj_number(const char **at, float *number)
 {
     static const double tenth[FRACTION_MAX + 1] = {0.0,  1e-1, 1e-2,  1e-3,  1e-4,  1e-5,  1e-6,  1e-7,
-                                               1e-8, 1e-9, 1e-10, 1e-11, 1e-12, 1e-13, 1e-14, 1e-15};
+                                                   1e-8, 1e-9, 1e-10, 1e-11, 1e-12, 1e-13, 1e-14, 1e-15};
     const char *p = *at;
     const bool minus = *p == '-';
     uint64_t integer, fraction, exponent;

@@ -216,7 +216,8 @@ typedef struct node_transform {
     bool identity, mirrored;
 } node_transform;
 
-static void vertex_numbers(const walk *w, const struct aiMesh *mesh, const node_transform *at, unsigned i, double numbers[8])
+static void vertex_numbers(const walk *w, const struct aiMesh *mesh, const node_transform *at, unsigned i,
+                           double numbers[8])
 {
     memset(numbers, 0, 8 * sizeof *numbers);
     struct aiVector3D p = mesh->mVertices[i];

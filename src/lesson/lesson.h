@@ -32,10 +32,10 @@ typedef struct lesson {
     char *choices[LESSON_CHOICES_MAX]; /* of the prediction; none: it is a number, compared with the reading */
     int choice_count, right;           /* right: index of the correct choice */
     char predicts;                     /* 'x' or 'y': the axis of the curve with the predicted number; 0: none */
-    int over;            /* index of the control on the curve's x axis; -1: `curve` is used */
-    realism_curve curve; /* if over is -1 */
-    double tolerance; /* largest |measured - theory| of the curve; INFINITY for times */
-    char *metric;     /* the metric to read; NULL: the curve is read at x = `at` */
+    int over;                          /* index of the control on the curve's x axis; -1: `curve` is used */
+    realism_curve curve;               /* if over is -1 */
+    double tolerance;                  /* largest |measured - theory| of the curve; INFINITY for times */
+    char *metric;                      /* the metric to read; NULL: the curve is read at x = `at` */
     double at;
     char *reading, *unit; /* label of the value to read, and its unit; "deg" converts a metric in radians */
     double answer_within; /* a predicted number counts as right within this distance */
@@ -63,7 +63,8 @@ typedef struct lesson_result {
 } lesson_result;
 status lesson_measure(const lesson *l, const scene *s, isa level, lesson_result *out, diagnostic *why);
 
-/* Measures the lesson's scene as the lesson sets it. A curve beyond its tolerance is an error, located in the lesson. */
+/* Measures the lesson's scene as the lesson sets it. A curve beyond its tolerance is an error, located in the
+ * lesson. */
 status lesson_check(const lesson *l, isa level, lesson_result *out, diagnostic *why);
 
 /* The command that prints the curve, or the value, with --set for the parameters that the lesson sets. No command

@@ -162,7 +162,8 @@ static status read_controls(const reader *r, const node *root)
     return code;
 }
 
-/* The path without links and "..", relative to the working folder if the file is below it; unchanged if it is missing. */
+/* The path without links and "..", relative to the working folder if the file is below it; unchanged if it is
+ * missing. */
 static char *short_path(const char *path)
 {
     char real[PATH_MAX], here[PATH_MAX];
@@ -310,7 +311,8 @@ static status read_tolerance(const reader *r, const node *n)
     if (!lesson_is_timed(r->l))
         return read_number(r, n, "tolerance", &r->l->tolerance);
     r->l->tolerance = INFINITY;
-    return tolerance ? node_error(r->file, tolerance, r->why, "remove 'tolerance'", "times have no tolerance") : STATUS_OK;
+    return tolerance ? node_error(r->file, tolerance, r->why, "remove 'tolerance'", "times have no tolerance")
+                     : STATUS_OK;
 }
 
 static status read_measure(const reader *r, const node *root)

@@ -132,7 +132,7 @@ static double expected_value(const material *m, size_t i)
 }
 
 static void hint_at_unseen(const scene *s, const char *owner, const material *m, const material *same_as,
-                         const note_taker *taker)
+                           const note_taker *taker)
 {
     for (size_t i = 0; i < sizeof expected / sizeof *expected; i++) {
         const double value = expected_value(m, i);
@@ -156,7 +156,7 @@ static void hint_at_all_unseen(const scene *s, const note_taker *taker)
         const solid *one = &s->solids[i];
         if (one->visible)
             hint_at_unseen(s, one->name, &one->surface,
-                         one->material_index < 0 ? NULL : &s->materials[one->material_index].value, taker);
+                           one->material_index < 0 ? NULL : &s->materials[one->material_index].value, taker);
     }
 }
 
@@ -218,8 +218,8 @@ static void hint_at_lights(const scene *s, const note_taker *taker)
                         lamp->name);
         else if (soft && light_has_size(lamp) && s->render.samples < SOFT_SAMPLES)
             note_report(taker, lamp->name, size, "set render.samples=16",
-                        "each pixel samples %lld points of %s: its shadows are grainy",
-                        (long long)s->render.samples, lamp->name);
+                        "each pixel samples %lld points of %s: its shadows are grainy", (long long)s->render.samples,
+                        lamp->name);
         else if (light_has_size(lamp) && !path && !soft)
             note_report(taker, lamp->name, size, "set render.soft_shadows=on, or render.integrator=path",
                         lamp->kind == LIGHT_SUN ? "all light of %s is parallel" : "%s acts as a point light",
@@ -274,8 +274,8 @@ static void hint_at_sheet(const scene *s, const solid *owner, const note_taker *
     if (m->sheet == SHEET_NONE)
         return;
     if (solid_is_opaque(s, owner))
-        note_report(taker, owner->name, "sheet", "set its transparency", "%s is opaque: no light passes through its sheet",
-                    owner->name);
+        note_report(taker, owner->name, "sheet", "set its transparency",
+                    "%s is opaque: no light passes through its sheet", owner->name);
     else if (integrator_traits_of(r)->drawn)
         note_report(taker, owner->name, "sheet", "set render.integrator to whitted and render.polarisation to on",
                     "the depth buffer does not show what the sheet of %s does", owner->name);
@@ -289,10 +289,9 @@ static void hint_at_sheet(const scene *s, const solid *owner, const note_taker *
         note_report(taker, owner->name, "retardance_deg", "set its retardance_deg, or its birefringence",
                     "the retarder %s has a retardance of 0: it has no effect", owner->name);
     else if (sheet_disperses(m, r) && r->spectrum != SPECTRUM_SPECTRAL)
-        note_report(
-            taker, owner->name, "birefringence", "set render.spectrum to spectral",
-            "every channel uses the retardance of %s at render.lambda_nm: there are no interference colours",
-            owner->name);
+        note_report(taker, owner->name, "birefringence", "set render.spectrum to spectral",
+                    "every channel uses the retardance of %s at render.lambda_nm: there are no interference colours",
+                    owner->name);
 }
 
 /* Notes double refraction that is rendered only in part, or not at all. */

@@ -23,25 +23,25 @@ static bool is_of_mirror(const inert_case *c)
 static bool is_of_region(const inert_case *c)
 {
     static const char *const interior[] = {"extraordinary_ior",
-                                          "optic_axis",
-                                          "ior",
-                                          "medium",
-                                          "coefficients",
-                                          "absorb_per_m",
-                                          "absorb_spectrum",
-                                          "scatter_per_m",
-                                          "asymmetry",
-                                          "tint_distance",
-                                          "extinction",
-                                          "film_thickness_nm",
-                                          "film_ior",
-                                          "sheet",
-                                          "sheet_axis",
-                                          "sheet_pass",
-                                          "sheet_block",
-                                          "retardance_deg",
-                                          "birefringence",
-                                          NULL};
+                                           "optic_axis",
+                                           "ior",
+                                           "medium",
+                                           "coefficients",
+                                           "absorb_per_m",
+                                           "absorb_spectrum",
+                                           "scatter_per_m",
+                                           "asymmetry",
+                                           "tint_distance",
+                                           "extinction",
+                                           "film_thickness_nm",
+                                           "film_ior",
+                                           "sheet",
+                                           "sheet_axis",
+                                           "sheet_pass",
+                                           "sheet_block",
+                                           "retardance_deg",
+                                           "birefringence",
+                                           NULL};
     return is_among(c, interior);
 }
 
@@ -153,7 +153,7 @@ static bool unused(const inert_case *c, const solid *hidden)
     return inert_say(c, "unused-material", remedy.text, "no visible solid has this material");
 }
 
-/* Asks for each visible solid with the material, and each face with its name; the note is the first user's. */
+/* Asks about each visible solid with the material, and each face with its name; the note is the first user's. */
 static bool inert_material(const inert_case *c)
 {
     const scene *s = c->s;

@@ -291,7 +291,7 @@ static bool say_unseen(const inert_case *c)
 
 /* Parameters of the Phong terms, which opaque and transparent surfaces reflect. */
 static const char *const phong_parameters[] = {"ambient",      "diffuse", "specular",      "shininess", "texture",
-                                         "texture_size", "checker", "checker_color", NULL};
+                                               "texture_size", "checker", "checker_color", NULL};
 
 /* The parameter affects only reflected light, and no ray hits the surface. Parameters of transmitted light are left
  * out: it may reach visible surfaces. */
@@ -299,10 +299,10 @@ bool unseen(const inert_case *c)
 {
     static const char *const opaque_parameters[] = {"color", "emission", NULL};
     static const char *const mirror_parameters[] = {"reflectivity", "extinction", "medium", "film_thickness_nm",
-                                            "film_ior",     "roughness",  NULL};
+                                                    "film_ior",     "roughness",  NULL};
     const bool mirrors = is_among(c, mirror_parameters),
-               reflects_only =
-                   is_among(c, phong_parameters) || (c->m->transparency == 0.0 && (is_among(c, opaque_parameters) || mirrors));
+               reflects_only = is_among(c, phong_parameters) ||
+                               (c->m->transparency == 0.0 && (is_among(c, opaque_parameters) || mirrors));
     /* photons that it reflects may reach a visible surface, unless even a full mirror changes nothing */
     const bool lights = mirrors && scene_has_caustics(&c->s->render);
     return reflects_only && !(lights && !inert_unchanged(c, "%s.reflectivity=1", c->name)) && c->frame &&

@@ -43,8 +43,8 @@ static bool shows_polarisation(const scene *s, const solid *one)
     return material_is_layered(&one->surface, &s->render) || is_clear(s, one);
 }
 
-/* The polarisation of a light matters only if its light reaches matte surfaces through polarisers, or (as photons, or by
- * random paths) from transparent solids, metals or films. */
+/* The polarisation of a light matters only if its light reaches matte surfaces through polarisers, or (as photons, or
+ * by random paths) from transparent solids, metals or films. */
 bool depolarised(const inert_case *c)
 {
     const scene *s = c->s;

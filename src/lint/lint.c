@@ -1,4 +1,5 @@
-/* The linter of a loaded scene: the hints, the camera's position, overlaps and gaps of solids, and light that is cut. */
+/* The linter of a loaded scene: the hints, the camera's position, overlaps and gaps of solids, and light that is
+ * cut. */
 #include "geometry/shapes/shape.h"
 #include "lint/lint.h"
 #include "lint/parts.h"

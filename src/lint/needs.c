@@ -20,7 +20,7 @@
     {                                                  \
         .group = PARAM_##of, .names = on, .fact = rule \
     }
-#define ACTS_WHERE(of, on, rule)                                           \
+#define ACTS_WHERE(of, on, rule)                                     \
     {                                                                \
         .group = PARAM_##of, .names = on, .fact = rule, .acts = true \
     }
@@ -30,20 +30,23 @@
 #define NEEDS_PATHS(of, on) NEEDS(of, on, "render.integrator=path")
 
 static const needs_row light_rows[] = {
-    NEEDS_LIGHT(RENDER, "caustics photons samples depth beyond lighting shadows soft_shadows min_weight seed radiance spectrum "
+    NEEDS_LIGHT(RENDER,
+                "caustics photons samples depth beyond lighting shadows soft_shadows min_weight seed radiance spectrum "
                 "polarisation lambda_nm wavelengths unit_m weights"),
     NEEDS_LIGHT(BACKGROUND, "kind color horizon image rain drops sun_elevation_deg sun_azimuth_deg sky_type ambient "
-                    "absorb_per_m"),
+                            "absorb_per_m"),
     NEEDS_LIGHT(LIGHT, "*"),
-    NEEDS_LIGHT(MATERIAL, "ambient diffuse specular shininess absorb_per_m absorb_spectrum tint_distance extinction "
-                  "extraordinary_ior optic_axis film_ior sheet sheet_axis sheet_pass sheet_block retardance_deg "
-                  "birefringence roughness scatter_per_m asymmetry"),
+    NEEDS_LIGHT(MATERIAL,
+                "ambient diffuse specular shininess absorb_per_m absorb_spectrum tint_distance extinction "
+                "extraordinary_ior optic_axis film_ior sheet sheet_axis sheet_pass sheet_block retardance_deg "
+                "birefringence roughness scatter_per_m asymmetry"),
 };
 
 static const needs_row rows[] = {
     NEEDS_PATHS(RENDER, "paths error sampler filter light_sampling roulette energy_compensation"),
     FACT(RENDER, "samples", path_samples),
-    NEEDS_SET(RENDER, "error", "render.paths>16", "render.paths=256"), /* the pilot renders 16: render/frame/renderer.h */
+    NEEDS_SET(RENDER, "error", "render.paths>16",
+              "render.paths=256"), /* the pilot renders 16: render/frame/renderer.h */
     FACT(RENDER, "light_sampling", nothing_lit),
     FACT(RENDER, "light_sampling", one_light),
     NEEDS_SET(RENDER, "roulette", "render.depth>3", "render.depth=8"), /* render/integrators/path.c */
@@ -326,8 +329,8 @@ bool needs_light(const inert_case *c)
     return ask_rows(c, c->at.row->group, light_rows, sizeof light_rows / sizeof *light_rows);
 }
 
-/* Writes the condition with " or " between the values, so that a narrow table can break the line; returns its length.
- */
+/* Writes the condition with " or " between the values, so that a narrow table can break the line; returns its
+ * length. */
 static int add_condition(char *text, size_t size, const char *condition)
 {
     int used = 0;

@@ -101,8 +101,8 @@ static bool through_mesh(const instanced_mesh *p, const line *l, line_spans *out
     return known;
 }
 
-/* Intersects a line with a solid. False if undecidable: an open mesh, more than SPANS_MAX segments, or a line through an
- * edge of a mesh, which counts as no crossing or two. */
+/* Intersects a line with a solid. False if undecidable: an open mesh, more than SPANS_MAX segments, or a line through
+ * an edge of a mesh, which counts as no crossing or two. */
 static bool line_through(const scene_geometry *a, const region *b, const line *l, line_spans *out)
 {
     out->count = 0;

@@ -53,10 +53,11 @@ static inline size_t probe_pixels(const probe_images *p)
 /* --- what an image may lack because rays were cut, and the remedy ---
  *
  * A pixel's radiance is the sum of throughput times radiance over its rays. If rays of total throughput T are cut, each
- * of a radiance between 0 and B, the pixel changes by at most T B, whatever render.beyond substitutes. Let T be the mean
- * over the pixels, and L the image's mean radiance. If the cut rays are as bright as the image, they carry the fraction
- * T of its light: this estimate decides about notes. If they are white, they carry T / L: this bound decides about the
- * depth of a remedy. With a deeper image the difference is known, and only the rays that it cuts are unknown. Pure. */
+ * of a radiance between 0 and B, the pixel changes by at most T B, whatever render.beyond substitutes. Let T be the
+ * mean over the pixels, and L the image's mean radiance. If the cut rays are as bright as the image, they carry the
+ * fraction T of its light: this estimate decides about notes. If they are white, they carry T / L: this bound decides
+ * about the depth of a remedy. With a deeper image the difference is known, and only the rays that it cuts are unknown.
+ * Pure. */
 
 /* An image may lack this fraction of its light without a note. */
 #define LACK_ACCEPTED 0.01

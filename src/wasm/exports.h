@@ -1,8 +1,8 @@
-/* What a WebAssembly module offers the scripts of src/wasm, and what it calls of them (imports.js). A module is
- * either a laboratory or a tile worker; each runs in a worker of the browser, on one thread. Pointers are addresses
- * in the module's memory; texts end in 0. Ownership: arguments are borrowed for the call; a script frees what it
- * allocated for one (malloc, free). Errors: functions return a status of base/status.h as a number; wasm_why has
- * the text. */
+/* The functions that a WebAssembly module exports to the scripts of src/wasm, and those that it imports from them
+ * (imports.js). A module is either a laboratory or a tile worker; each runs in a worker of the browser, on one thread.
+ * Pointers are addresses in the module's memory; texts end in 0. Ownership: arguments are borrowed for the call; a
+ * script frees what it allocated for a call (malloc, free). Errors: functions return a status of base/status.h as a
+ * number; wasm_why has the text. */
 #pragma once
 
 #include <stddef.h>
@@ -20,37 +20,37 @@ const char *wasm_isa(void);
 
 /* --- a laboratory (web/lab.h) --- */
 
-/* Starts it on a folder of the module's files. scene: a path in the folder, or "" for an empty room. workers: the
- * number of tile workers, 0 for none. Once. */
+/* Starts the laboratory on a folder of the module's files; call it once. scene: a path in the folder, or "" for an
+ * empty room. workers: the number of tile workers, which may be 0. */
 int wasm_lab_start(const char *folder, const char *scene, int workers);
 
-/* Handles a request; body: size bytes of JSON. The reply comes by host_reply, now or, if the request has to wait
- * for an image, in one of the next turns. target: path and query, as in a request line. */
+/* Handles a request; target: path and query, as in a request line; body: size bytes of JSON. The reply is passed to
+ * host_reply now or, if the request must wait for an image, in one of the next turns. */
 void wasm_lab_request(int id, const char *method, const char *target, const char *body, size_t size);
 
-/* Does what is due: a pass of the image, a step of the slime, a request that waits. Returns the milliseconds until
- * the next turn is due: 0 for at once, negative for none until something arrives. */
+/* Does the work that is due: a pass of the image, a step of the slime, a waiting request. Returns the milliseconds
+ * until the next turn: 0: at once; negative: not before a message arrives. */
 double wasm_lab_turn(void);
 
 /* A tile worker cannot start: the laboratory continues without it. */
 void wasm_lab_lost(int worker);
-/* Takes what a tile worker sent (wasm_tiles_trace). */
+/* Merges the answer of a tile worker (wasm_tiles_trace). */
 void wasm_lab_traced(int worker, const void *bytes, size_t size);
 
 /* --- a tile worker --- */
 
-/* Takes a scene that the laboratory sent. */
+/* Unpacks a scene that the laboratory sent. */
 int wasm_tiles_scene(const void *bytes, size_t size);
-/* Traces the tiles of an order. Returns the address of the answer, and its size in *size; valid until the next
+/* Renders the tiles of an order. Returns the address of the answer, and its size in *answer_size; valid until the next
  * call. */
 const void *wasm_tiles_trace(const void *bytes, size_t size, size_t *answer_size);
 
 /* --- the JavaScript API (api/cuvette.js), next to the functions of cuvette.h ---
  *
- * A function that returns a text gives JSON, or a plain text where that is said, which the script frees; NULL after an
- * error. A ray is 7 numbers: origin, direction, reach. */
+ * A function that returns char * returns JSON (wasm_scene_text and wasm_scene_get: plain text), which the script frees;
+ * NULL after an error. A ray is 7 numbers: origin, direction, reach. */
 
-struct cuvette_diagnostic *wasm_error(void); /* the place of the last error, for `why` of cuvette.h */
+struct cuvette_diagnostic *wasm_error(void); /* the last error, for the parameter `why` of cuvette.h */
 char *wasm_error_json(void);                 /* {status, text, what, remedy, file, line, column} */
 
 char *wasm_scene_text(const struct cuvette_scene *scene);                    /* the scene file */
@@ -61,16 +61,16 @@ char *wasm_scene_names(const struct cuvette_scene *scene);                   /* 
 char *wasm_scene_realism(const struct cuvette_scene *scene);                 /* {metrics: [..], curves: [..]} */
 char *wasm_scene_curve(const struct cuvette_scene *scene, const char *name); /* [[x, measured, theory]] */
 
-/* A render in turns. coarse: 1, or the width and height divided by that number. Until its last turn, or its end, the
- * scene refuses changes. A turn returns a status; it ends after budget_s or somewhat later. */
+/* A render in turns. coarse: the divisor of width and height, 1 for the full image. Until the last turn, or until
+ * wasm_render_destroy, the scene refuses changes. A turn returns a status; it ends after budget_s or somewhat later. */
 typedef struct wasm_render wasm_render;
 wasm_render *wasm_render_create(struct cuvette_scene *scene, int coarse);
 void wasm_render_destroy(wasm_render *r);
 int wasm_render_turn(wasm_render *r, double budget_s);
-double wasm_render_share(const wasm_render *r); /* 1: complete */
-char *wasm_render_tiles(wasm_render *r);        /* [[x0, y0, x1, y1]]: traced since the last call */
+double wasm_render_share(const wasm_render *r); /* the fraction that is rendered; 1: complete */
+char *wasm_render_tiles(wasm_render *r);        /* [[x0, y0, x1, y1]]: the tiles since the last call */
 char *wasm_render_result(const wasm_render *r); /* {width, height, hash, counters, wall_s} */
-/* 4 bytes for each pixel of the rectangle, of which the last is 255; 3 floats for each pixel of the image. */
+/* Writes RGBA with alpha 255, 4 bytes per pixel of the rectangle; linear RGB, 3 floats per pixel of the image. */
 void wasm_render_srgb(const wasm_render *r, int x0, int y0, int x1, int y1, unsigned char *rgba);
 void wasm_render_rgb(const wasm_render *r, float *rgb);
 
@@ -84,7 +84,7 @@ char *wasm_query_fan(const struct cuvette_query *query, const double *rule);
 
 char *wasm_motion_names(const struct cuvette_motion *motion);
 char *wasm_motion_state(const struct cuvette_motion *motion, const char *name);
-/* {distance, where} and {hand, where}, or null for a miss. */
+/* {distance, where}, and {hand, where}; null if the ray misses. */
 char *wasm_motion_pick(const struct cuvette_motion *motion, const char *name, const double *ray);
 char *wasm_motion_grab(struct cuvette_motion *motion, const char *name, const double *ray, double reach);
 

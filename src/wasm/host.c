@@ -1,4 +1,4 @@
-/* What a WebAssembly module lacks of an operating system: other programs, confinement, hardware counters, hwloc,
+/* Replaces what a WebAssembly module lacks: other programs, confinement, hardware counters, hwloc, functions of Linux,
  * threads. */
 #include "base/file.h"
 #include "base/child.h"
@@ -23,7 +23,7 @@ status child_run(char *const *arguments, double limit_s, char **output, int *exi
     (void)limit_s;
     *output = NULL;
     *exit_code = -1;
-    return diagnose(why, STATUS_FAILURE, "use the program cuvette for it", "a browser cannot start %.200s",
+    return diagnose(why, STATUS_FAILURE, "use the program cuvette instead", "a browser cannot start %.200s",
                     arguments[0]);
 }
 
@@ -43,7 +43,7 @@ bool spawn_follow_parent(void)
     return false;
 }
 
-/* The browser's own sandbox is narrower than what these would leave. */
+/* The browser's sandbox is stricter than these functions would be. */
 bool os_confine_files(const confine_place *places, size_t count)
 {
     (void)places, (void)count;
@@ -62,7 +62,7 @@ bool os_confine_is_off(void)
     return true;
 }
 
-/* Each unit is then taken for a core. */
+/* If it fails, each processing unit counts as a core. */
 char *topology_discover_in_child(const char *synthetic, status *code, bool *no_memory)
 {
     (void)synthetic;
@@ -133,7 +133,7 @@ int euidaccess(const char *path, int mode)
 
 /* --- files --- */
 
-/* The files of a module are its own: nobody else changes them meanwhile. See base/file.h. */
+/* Nobody else can change the files of a module between realpath and open. See base/file.h. */
 int below_open(const char *path, const char *root)
 {
     char real[PATH_MAX];

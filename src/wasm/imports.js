@@ -1,4 +1,4 @@
-// What the module calls of the script of its worker: functions of the object that createModule got (see lab_worker.js).
+// The functions of its worker's script that the module calls: members of the object `host` (memory.js, lab_worker.js).
 mergeInto(LibraryManager.library, {
   host_reply: function (id, status, headers, bytes, size) {
     Module['host'].reply(id, status, JSON.parse(UTF8ToString(headers)), HEAPU8.slice(bytes, bytes + size));

@@ -1,5 +1,5 @@
-/* The laboratory of a module: start, turns, and the answers of its tile workers. And for scripts of any worker: the
- * last error and the name of the instruction set. */
+/* The laboratory of a module: start, turns, and the answers of its tile workers; and, for the scripts of all workers,
+ * the last error and the name of the instruction set. */
 #include "base/isa.h"
 #include "wasm/exports.h"
 #include "wasm/worker.h"
@@ -28,20 +28,20 @@ const char *wasm_isa(void)
 
 int wasm_lab_start(const char *folder, const char *scene, int workers)
 {
-    static char own_folder[256], own_scene[512];
-    lab *own = NULL;
+    static char folder_copy[256], scene_copy[512];
+    lab *server = NULL;
     diagnostic why = {.line = 0};
-    strncpy(own_folder, folder, sizeof own_folder - 1);
-    strncpy(own_scene, scene, sizeof own_scene - 1);
+    strncpy(folder_copy, folder, sizeof folder_copy - 1);
+    strncpy(scene_copy, scene, sizeof scene_copy - 1);
     render_turns_set_workers(workers);
     const lab_settings settings = {
-        .folder = own_folder, .scene = *own_scene ? own_scene : NULL, .results = own_folder, .level = isa_best()};
-    return trouble_note(lab_start(&settings, &own, &why), &why);
+        .folder = folder_copy, .scene = *scene_copy ? scene_copy : NULL, .results = folder_copy, .level = isa_best()};
+    return trouble_note(lab_start(&settings, &server, &why), &why);
 }
 
 double wasm_lab_turn(void)
 {
-    return render_turns_take();
+    return render_turns_run();
 }
 
 void wasm_lab_lost(int worker)

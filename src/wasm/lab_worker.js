@@ -1,12 +1,12 @@
-/* The laboratory's worker: it gets its module and its files in the first message, and answers the page's requests
- * (page/shared/engine.js). Tile workers are its own.
+/* The laboratory's worker: it receives its module and its files in the first message, starts tile workers, and answers
+ * the page's requests (page/shared/engine.js).
  *
  * page -> worker  {boot: {wasm, files, scene, workers, script}}
  *                   wasm: a WebAssembly.Module, or the bytes of one; files: [{name, bytes}]; scene: a name, or null for
- *                   an empty room; workers: the number of tile workers; script: the text of this script, if the worker
- *                   was made from it: a page that was opened as a file has no address that its workers may use
+ *                   an empty room; workers: the number of tile workers; script: the text of this script, if the page
+ *                   was opened as a file, whose address workers may not use
  *                 {id, method, path, body}    body: JSON text or null
- *                 {file: {name, bytes}}       one more file of the folder
+ *                 {file: {name, bytes}}       adds a file to the folder
  *                 {memory: true}              requests the size of the module's memory
  * worker -> page  {ready: true, isa} or {failed: text}
  *                 {memory: bytes}
@@ -32,9 +32,9 @@ function putFile({ name, bytes }) {
 
 /* --- turns --- */
 
-/* A message to itself comes after the messages that wait, and without the delay of a timer. */
+/* A message to itself arrives after the pending messages, without the delay of a timer. */
 const bell = new MessageChannel();
-bell.port1.onmessage = takeTurn;
+bell.port1.onmessage = runTurn;
 
 function schedule() {
   if (scheduled) return;
@@ -42,12 +42,12 @@ function schedule() {
   bell.port2.postMessage(null);
 }
 
-function takeTurn() {
+function runTurn() {
   scheduled = false;
   clearTimeout(later);
   const wait_ms = lab._wasm_lab_turn();
   if (wait_ms === 0) schedule();
-  else if (wait_ms > 0) later = setTimeout(takeTurn, wait_ms);
+  else if (wait_ms > 0) later = setTimeout(runTurn, wait_ms);
 }
 
 /* --- tile workers --- */
@@ -74,7 +74,7 @@ function startTileWorker(compiled, address) {
   };
 }
 
-/* What the module calls. */
+/* The functions that the module calls (imports.js). */
 const host = {
   reply: (id, status, headers, bytes) => postMessage({ id, status, headers, bytes: bytes.buffer }, [bytes.buffer]),
   event: (event, value) => postMessage({ event, value }),

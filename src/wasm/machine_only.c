@@ -1,5 +1,5 @@
-/* The parts of the laboratory that need a machine: studies, videos, rescued scenes, confinement. In a browser they are
- * absent, and their routes say which command of the program does it. */
+/* The parts of the laboratory that need a machine: studies, videos, rescued scenes, confinement. In a browser their
+ * routes return an error that names the command of the program. */
 #include "web/api/api.h"
 #include "web/session/rescue.h"
 #include "web/session/studies.h"
@@ -16,7 +16,7 @@ static status refuse(call *c, const char *what, const char *remedy)
 
 static status no_study(call *c)
 {
-    return refuse(c, "studies measure times, and those of a browser cannot be compared",
+    return refuse(c, "studies measure times, which cannot be compared in a browser",
                   "save the scene, and run: cuvette study run FILE.study");
 }
 
@@ -40,12 +40,12 @@ STUDY_ROUTE(api_figure)
 
 status api_machine(call *c)
 {
-    return refuse(c, "a browser does not say which machine it runs on", "run: cuvette machine");
+    return refuse(c, "a browser does not report its machine", "run: cuvette machine");
 }
 
 static status no_video(call *c)
 {
-    return refuse(c, "films are not written in a browser", "save the scene, and run: cuvette animate FILE.yaml");
+    return refuse(c, "videos cannot be written in a browser", "save the scene, and run: cuvette animate FILE.yaml");
 }
 
 status api_video(call *c)
@@ -63,7 +63,7 @@ status api_video_file(call *c)
     return no_video(c);
 }
 
-/* --- what the rest of the laboratory calls --- */
+/* --- functions that the rest of the laboratory calls --- */
 
 status studies_create(lab *l, void (*ended)(lab *l), studies **out, diagnostic *why)
 {

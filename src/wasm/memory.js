@@ -1,8 +1,8 @@
-/* The module of a worker, and bytes in its memory. */
+/* Starts the module of a worker, and copies bytes to its memory. */
 'use strict';
 
-/* compiled: a WebAssembly.Module; host: what the module calls (imports.js). Emscripten does not wait for a hook that
- * fails. */
+/* compiled: a WebAssembly.Module; host: the functions that the module calls (imports.js). Emscripten ignores a failure
+ * of the hook. */
 const instantiate = (compiled, host) =>
   new Promise((resolve, reject) => {
     cuvette({

@@ -1,5 +1,5 @@
-/* Meshes from files in a module: OBJ and PLY, by readers of its own, which its sandbox confines as the program's
- * importer confines itself. See scene/assets/mesh_file.h. */
+/* Reads mesh files in a module: OBJ and PLY, by the readers of wasm/mesh, which the browser's sandbox confines. See
+ * scene/assets/mesh_file.h. */
 #include "base/file.h"
 #include "scene/assets/mesh_file.h"
 #include "scene/assets/mesh_stream.h"
@@ -31,7 +31,7 @@ status mesh_read_file(const char *path, const mesh_limits *limits, mesh_import *
     const mesh_limits all = mesh_limits_complete(limits);
     const char *ending = strrchr(path, '.');
     mesh_parts parts = {.limits = &all};
-    diagnostic said = {.line = 0};
+    diagnostic inner = {.line = 0};
     *out = NULL;
     if (!*path)
         return diagnose(why, STATUS_BAD_INPUT, "give a mesh file", "the name of the mesh file is empty");
@@ -39,9 +39,9 @@ status mesh_read_file(const char *path, const mesh_limits *limits, mesh_import *
         return diagnose_at(why, path, STATUS_BAD_INPUT,
                            "convert it to OBJ or PLY, or open the scene with the program cuvette",
                            "a browser reads meshes from .obj and .ply files only");
-    diagnostic_locate(&said, path, 0, 0);
+    diagnostic_locate(&inner, path, 0, 0);
     mesh_import *fresh = NULL;
-    const status code = read_parts(path, ending, &parts, &fresh, &said);
+    const status code = read_parts(path, ending, &parts, &fresh, &inner);
     mesh_parts_release(&parts);
     if (code == STATUS_OK) {
         *out = fresh;
@@ -49,6 +49,6 @@ status mesh_read_file(const char *path, const mesh_limits *limits, mesh_import *
     }
     mesh_import_destroy(fresh);
     if (why)
-        *why = said;
+        *why = inner;
     return code;
 }

@@ -1,7 +1,6 @@
-/* Included before the files of the laboratory in a WebAssembly module, where there is one thread. What is waited
- * for can then only be what render_turns.c does at once: loading the scene, serving a grab. Otherwise the wait ends
- * as after its time, and is noted, so that a request that waited is handled again when something has happened
- * (src/wasm/request.c). */
+/* Included before the files of the laboratory in a WebAssembly module, which has one thread. A wait is satisfied only
+ * by work that render_turns.c does at once: loading the scene, serving a grab. Any other wait times out immediately,
+ * and sets wasm_waited, so that the request is handled again later (src/wasm/request.c). */
 #pragma once
 
 #ifdef __EMSCRIPTEN__
@@ -11,7 +10,7 @@
 #include <time.h>
 
 extern int wasm_waited;
-/* A request that waited is handled again: what failed before is not tried once more for it. */
+/* A request that waited is being handled again: work that failed before is not repeated for it. */
 extern bool wasm_again;
 bool wasm_work_at_once(void);
 

@@ -1,4 +1,4 @@
-/* Turns of the render worker, and passes whose tiles are traced by tile workers. */
+/* Turns of the render worker without a thread, and passes whose tiles are rendered by tile workers. */
 #include "measure/clock.h"
 #include "render/frame/renderer.h"
 #include "scene/model/integrators.h"
@@ -14,26 +14,26 @@
 
 enum { WORKERS_MAX = 64, SIDE = 32 };
 
-/* The time that an order should take: a worker notices only between orders that its pass was abandoned. Where the
- * frame's preparation takes longer, such as photons, setup_factor times that. */
+/* The time that an order should take, because a worker notices only between orders that its pass was abandoned; but at
+ * least setup_factor times the preparation of the frame, such as photons. */
 static const double order_s = 0.05, setup_factor = 4.0;
 
 typedef struct remote {
-    bool busy, lost;             /* lost: it could not start */
-    uint64_t generation;         /* of the worker's scene; UINT64_MAX: with a moving slime */
-    double tiles_per_s, setup_s; /* of its last order in this pass; 0: none yet */
+    bool busy, lost;             /* lost: the worker could not start */
+    uint64_t generation;         /* generation of the worker's scene; UINT64_MAX: a scene with a moving slime */
+    double tiles_per_s, setup_s; /* measured in the last order of this pass; 0: none yet */
 } remote;
 
 static struct turns {
-    render_worker *of;
+    render_worker *render;
     int workers;
     remote remotes[WORKERS_MAX];
-    bool active;   /* a pass is being traced by the workers */
-    int64_t frame; /* its number */
+    bool active;   /* tile workers are rendering a pass */
+    int64_t frame; /* number of the pass */
     started_pass pass;
     shared_frame sum;
-    int64_t next, merged; /* tiles */
-    bool has_photons;     /* their counts are in the counters */
+    int64_t next, merged; /* the next tile for an order; number of merged tiles */
+    bool has_photons;     /* the counters have the photons, which every order counts */
     ray_counters counters;
     double began_s;
 } now;
@@ -43,17 +43,17 @@ void render_turns_set_workers(int workers)
     now.workers = workers < 0 ? 0 : workers > WORKERS_MAX ? WORKERS_MAX : workers;
 }
 
-status render_worker_start(render_worker *p, diagnostic *why)
+status render_worker_start(render_worker *w, diagnostic *why)
 {
     (void)why;
-    now.of = p;
+    now.render = w;
     return STATUS_OK;
 }
 
-void render_worker_join(render_worker *p)
+void render_worker_join(render_worker *w)
 {
-    (void)p;
-    now.of = NULL;
+    (void)w;
+    now.render = NULL;
 }
 
 /* --- a pass of the tile workers --- */
@@ -63,7 +63,7 @@ static int64_t ceil_div(int64_t a, int64_t b)
     return (a + b - 1) / b;
 }
 
-/* Photons are traced for every order: each worker gets one. */
+/* The number of tiles of the next order. With photons, which every order traces again, each worker gets one order. */
 static int64_t order_size(const remote *r)
 {
     const int64_t all = now.sum.places.tile_count, left = all - now.next;
@@ -76,7 +76,7 @@ static int64_t order_size(const remote *r)
     return wanted < fair ? wanted : fair;
 }
 
-static void give(int worker)
+static void send_order(int worker)
 {
     remote *r = &now.remotes[worker];
     const int64_t left = now.sum.places.tile_count - now.next;
@@ -84,8 +84,8 @@ static void give(int worker)
         return;
     const int64_t size = order_size(r), count = size < left ? size : left;
     const tile_order order = {.frame = now.frame,
-                              .shrink = now.of->plan.shrink[now.pass.pass],
-                              .single = now.of->plan.single[now.pass.pass],
+                              .shrink = now.render->plan.shrink[now.pass.pass],
+                              .single = now.render->plan.single[now.pass.pass],
                               .side = now.sum.places.tile,
                               .first = (int32_t)now.next,
                               .count = (int32_t)count};
@@ -99,10 +99,10 @@ static void finish(status code, job_account *account, diagnostic *why)
     shared_frame_release(&now.sum);
     now.active = false;
     now.frame++;
-    render_worker_end_pass(now.of, &now.pass, code, account, why);
+    render_worker_end_pass(now.render, &now.pass, code, account, why);
 }
 
-/* The pass is out of date; the answers to its orders are dropped. */
+/* Ends a pass that is out of date; answers to its orders will be dropped. */
 static void abandon_pass(void)
 {
     diagnostic why = {.line = 0};
@@ -118,7 +118,7 @@ static void fail(status code, diagnostic *why)
 
 static status sum_up(job_account *account, diagnostic *why)
 {
-    TRY(job_account_begin(&now.pass.view, job_isa(now.of->renderer), 1, account, why));
+    TRY(job_account_begin(&now.pass.view, job_isa(now.render->renderer), 1, account, why));
     render_result *result = calloc(1, sizeof *result);
     if (!result || !(result->workers = calloc((size_t)now.workers, sizeof *result->workers))) {
         free(result);
@@ -158,34 +158,34 @@ static bool can_distribute(const scene *view)
 }
 
 /* Sends the snapshot to the workers that have an older one. */
-static status send_scene(render_worker *p, diagnostic *why)
+static status send_scene(render_worker *w, diagnostic *why)
 {
     bool all = true;
     for (int i = 0; i < now.workers; i++)
-        all &= now.remotes[i].generation == p->snapshot_generation && !p->was_on;
+        all &= now.remotes[i].generation == w->snapshot_generation && !w->was_on;
     if (all)
         return STATUS_OK;
     void *bytes = NULL;
     size_t size = 0;
-    TRY(scene_build_hierarchies(p->snapshot, why));
-    TRY(scene_pack(p->snapshot, &bytes, &size, why));
+    TRY(scene_build_hierarchies(w->snapshot, why));
+    TRY(scene_pack(w->snapshot, &bytes, &size, why));
     for (int i = 0; i < now.workers; i++) {
         host_send(i, 0, bytes, size);
-        now.remotes[i].generation = p->was_on ? UINT64_MAX : p->snapshot_generation;
+        now.remotes[i].generation = w->was_on ? UINT64_MAX : w->snapshot_generation;
     }
     free(bytes);
     return STATUS_OK;
 }
 
-/* Starts the pass with the workers; false if it has to be rendered here. */
-static bool distribute_pass(render_worker *p)
+/* Starts the pass on the tile workers; false if it must be rendered here. */
+static bool distribute_pass(render_worker *w)
 {
     diagnostic why = {.line = 0};
-    if (p->pass == 0 || live_is_moving(p->live_slime))
+    if (w->pass == 0 || live_is_moving(w->live_slime))
         return false;
-    render_worker_begin_pass(p, &now.pass);
-    if (!can_distribute(&now.pass.view) || send_scene(p, &why) != STATUS_OK) {
-        pthread_rwlock_unlock(&p->snapshot_lock);
+    render_worker_begin_pass(w, &now.pass);
+    if (!can_distribute(&now.pass.view) || send_scene(w, &why) != STATUS_OK) {
+        pthread_rwlock_unlock(&w->snapshot_lock);
         return false;
     }
     now.active = true;
@@ -200,7 +200,7 @@ static bool distribute_pass(render_worker *p)
     }
     for (int i = 0; i < now.workers; i++) {
         now.remotes[i].tiles_per_s = now.remotes[i].setup_s = 0.0;
-        give(i);
+        send_order(i);
     }
     return true;
 }
@@ -244,7 +244,7 @@ void render_turns_traced(int worker, const void *bytes, size_t size)
     if (!now.active)
         return;
     if (size < sizeof *a || a->of.frame != now.frame) {
-        give(worker);
+        send_order(worker);
         return;
     }
     diagnostic why = a->why;
@@ -253,7 +253,9 @@ void render_turns_traced(int worker, const void *bytes, size_t size)
         return;
     }
     if (a->traced != a->of.count || !merge(a, (const char *)(a + 1), (const char *)bytes + size)) {
-        fail(diagnose(&why, STATUS_FAILURE, "report this as a bug, with the scene", "tiles are not traced"), &why);
+        fail(diagnose(&why, STATUS_FAILURE, "report this as a bug, with the scene",
+                      "the answer of a tile worker is incomplete"),
+             &why);
         return;
     }
     count(a);
@@ -262,10 +264,10 @@ void render_turns_traced(int worker, const void *bytes, size_t size)
     if (now.merged == now.sum.places.tile_count)
         complete();
     else
-        give(worker);
+        send_order(worker);
 }
 
-/* Its tiles go to the others, or are traced here. */
+/* A worker that cannot start: the pass begins again without it. */
 void render_turns_lost(int worker)
 {
     now.remotes[worker].lost = true;
@@ -275,53 +277,53 @@ void render_turns_lost(int worker)
 
 /* --- turns --- */
 
-/* For a request that waits: what can be done at once (no_threads.h). */
+/* Does the work for which a request waits, if it can be done at once (no_threads.h). */
 bool wasm_work_at_once(void)
 {
-    render_worker *p = now.of;
-    if (!p)
+    render_worker *w = now.render;
+    if (!w)
         return false;
-    const bool stale = render_worker_is_stale(p);
-    if (!stale && !(p->snapshot && live_has_request(p->live_slime)))
+    const bool stale = render_worker_is_stale(w);
+    if (!stale && !(w->snapshot && live_has_request(w->live_slime)))
         return false;
     if (now.active)
         abandon_pass();
     if (stale)
-        render_worker_renew_snapshot(p);
+        render_worker_renew_snapshot(w);
     else
-        render_worker_move_snapshot(p);
+        render_worker_move_snapshot(w);
     return true;
 }
 
 /* One round of the loop of render_worker_thread.c. */
-static void work(render_worker *p)
+static void work(render_worker *w)
 {
-    if (render_worker_is_stale(p))
-        render_worker_renew_snapshot(p);
-    if (p->snapshot && (live_is_due(p->live_slime) || p->was_on))
-        render_worker_move_snapshot(p);
-    if (p->snapshot_ready && p->pass < p->plan.count && !distribute_pass(p))
-        render_worker_render_pass(p);
+    if (render_worker_is_stale(w))
+        render_worker_renew_snapshot(w);
+    if (w->snapshot && (live_is_due(w->live_slime) || w->was_on))
+        render_worker_move_snapshot(w);
+    if (w->snapshot_ready && w->pass < w->plan.count && !distribute_pass(w))
+        render_worker_render_pass(w);
 }
 
-double render_turns_take(void)
+double render_turns_run(void)
 {
-    render_worker *p = now.of;
-    if (!p)
+    render_worker *w = now.render;
+    if (!w)
         return -1.0;
-    if (p->again)
-        p->taken_generation = 0;
-    p->again = false;
-    const bool changed = render_worker_is_stale(p) || live_is_due(p->live_slime);
+    if (w->again)
+        w->taken_generation = 0;
+    w->again = false;
+    const bool changed = render_worker_is_stale(w) || live_is_due(w->live_slime);
     if (now.active && changed)
         abandon_pass();
-    if (!now.active && render_worker_due_s(p) <= 0.0)
-        work(p);
+    if (!now.active && render_worker_due_s(w) <= 0.0)
+        work(w);
     requests_retry();
-    if (now.active && !render_worker_is_stale(p) && !live_is_due(p->live_slime))
+    if (now.active && !render_worker_is_stale(w) && !live_is_due(w->live_slime))
         return -1.0; /* until answers arrive */
-    if (p->again)
+    if (w->again)
         return 0.0;
-    const double due_s = render_worker_due_s(p);
+    const double due_s = render_worker_due_s(w);
     return isinf(due_s) ? -1.0 : 1000.0 * due_s;
 }

@@ -1,4 +1,4 @@
-/* The functions of web/http/http.h for messages: requests come from the page's script, replies go back to it. */
+/* The functions of web/http/http.h for messages: the page's script sends requests and receives replies. */
 #include "wasm/exports.h"
 #include "wasm/worker.h"
 #include "web/http/http_private.h"
@@ -9,11 +9,11 @@
 #include <string.h>
 #include <unistd.h>
 
-/* The page is served, or opened, as files. */
+/* The page itself comes from files, so the module embeds none. */
 const http_file page_files[1] = {{.name = ""}};
 const size_t page_file_count = 0;
 
-/* libmicrohttpd's name: the struct of a reply points to it. */
+/* The name is libmicrohttpd's, because http_reply has a pointer to it. */
 struct MHD_Response {
     const char *type;
     void *bytes; /* owned */
@@ -23,11 +23,11 @@ struct MHD_Response {
 typedef struct waiting_request {
     http_request q;
     int id;
-    bool again; /* it has waited */
+    bool again; /* the request has waited */
     struct waiting_request *next;
 } waiting_request;
 
-static http_server own_server;
+static http_server page_server;
 static waiting_request *waiting;
 int wasm_waited;
 bool wasm_again;
@@ -35,8 +35,8 @@ bool wasm_again;
 status http_start(const http_settings *settings, http_server **out, diagnostic *why)
 {
     (void)why;
-    own_server.settings = *settings;
-    *out = &own_server;
+    page_server.settings = *settings;
+    *out = &page_server;
     return STATUS_OK;
 }
 
@@ -147,8 +147,8 @@ static char *decode(char *text, bool plus)
     return text;
 }
 
-/* target holds path and query, each ended by 0, the query's parts decoded: name 0 value 0 name 0 value 0 ... 0. */
-static bool take_target(http_request *q, const char *target)
+/* Decodes the path and the query of a target. q->target: name 0 value 0 name 0 value 0 ... 0. */
+static bool parse_target(http_request *q, const char *target)
 {
     const size_t length = strlen(target);
     q->target = calloc(length + 4, 1);
@@ -188,7 +188,7 @@ const char *http_header(const http_request *q, const char *name)
     return NULL;
 }
 
-/* True: it has a reply. False: it waits for something, and its reply was discarded. */
+/* Handles a request. False: it must wait, and its reply was discarded. */
 static bool handle(waiting_request *w)
 {
     http_request *q = &w->q;
@@ -229,11 +229,11 @@ void wasm_lab_request(int id, const char *method, const char *target, const char
         host_reply(id, 500, "{}", "", 0);
         return;
     }
-    *w = (waiting_request){.q.server = &own_server, .id = id};
-    w->q.reply.server = &own_server;
+    *w = (waiting_request){.q.server = &page_server, .id = id};
+    w->q.reply.server = &page_server;
     w->q.method = strdup(method);
     w->q.body = malloc(size + 1);
-    if (!w->q.method || !w->q.body || !take_target(&w->q, target)) {
+    if (!w->q.method || !w->q.body || !parse_target(&w->q, target)) {
         http_reply_error(&w->q.reply, 500, "out of memory for the request", "try again later");
     } else {
         memcpy(w->q.body, body, size);

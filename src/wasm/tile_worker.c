@@ -1,4 +1,4 @@
-/* A tile worker: traces the tiles of orders in the scene that it was given last. */
+/* A tile worker: renders the tiles of orders, in the last scene that it received. */
 #include "job/job.h"
 #include "measure/clock.h"
 #include "render/frame/renderer.h"
@@ -12,9 +12,9 @@
 #include <stdlib.h>
 #include <string.h>
 
-static job *own_job;
-static scene *own_scene;
-static diagnostic no_scene; /* why there is none */
+static job *tile_job;
+static scene *tile_scene;
+static diagnostic no_scene; /* why there is no scene */
 
 /* The answer that is being filled. */
 typedef struct answering {
@@ -33,7 +33,7 @@ static tile_answer *head(void)
     return (tile_answer *)(void *)now.bytes;
 }
 
-static bool make_room(size_t size)
+static bool reserve(size_t size)
 {
     if (now.size + size <= now.room)
         return true;
@@ -49,10 +49,10 @@ static bool make_room(size_t size)
 int wasm_tiles_scene(const void *bytes, size_t size)
 {
     no_scene = (diagnostic){.line = 0};
-    scene_destroy(own_scene);
-    own_scene = NULL;
-    status code = own_job ? STATUS_OK : job_create(&(job_settings){.level = NULL}, &own_job, &no_scene);
-    THEN(code, scene_unpack(bytes, size, &own_scene, &no_scene));
+    scene_destroy(tile_scene);
+    tile_scene = NULL;
+    status code = tile_job ? STATUS_OK : job_create(&(job_settings){.level = NULL}, &tile_job, &no_scene);
+    THEN(code, scene_unpack(bytes, size, &tile_scene, &no_scene));
     return trouble_note(code, &no_scene);
 }
 
@@ -64,17 +64,17 @@ static bool next(void *context, int worker, image_tile *out)
     return now.next < now.end && !now.failed && schedule_tile(&now.tiles, now.next++, out);
 }
 
-static void done(void *context, const image_tile *rect, const film *traced, const double *variance)
+static void done(void *context, const image_tile *rect, const film *rendered, const double *variance)
 {
     (void)context;
     const int64_t tile = rect->y0 / now.tiles.tile * now.tiles.tiles_across + rect->x0 / now.tiles.tile;
     const size_t values = 3 * (size_t)(rect->x1 - rect->x0) * (size_t)(rect->y1 - rect->y0) * sizeof(int64_t);
-    if (!make_room(sizeof tile + 2 * values)) {
+    if (!reserve(sizeof tile + 2 * values)) {
         now.failed = true;
         return;
     }
     memcpy(now.bytes + now.size, &tile, sizeof tile);
-    memcpy(now.bytes + now.size + sizeof tile, traced->sum, values);
+    memcpy(now.bytes + now.size + sizeof tile, rendered->sum, values);
     now.size += sizeof tile + values;
     if (variance) {
         memcpy(now.bytes + now.size, variance, values);
@@ -83,21 +83,21 @@ static void done(void *context, const image_tile *rect, const film *traced, cons
     head()->traced++;
 }
 
-static status trace(const tile_order *order, diagnostic *why)
+static status render_tiles(const tile_order *order, diagnostic *why)
 {
-    if (!own_scene) {
+    if (!tile_scene) {
         *why = no_scene;
         return STATUS_FAILURE;
     }
-    scene view = *own_scene;
-    view.render = passes_settings(&own_scene->render, order->shrink, order->single);
+    scene view = *tile_scene;
+    view.render = passes_settings(&tile_scene->render, order->shrink, order->single);
     view.render.threads = 1;
     const render_settings settings = tiles_settings(&view.render, order->side);
     schedule_start(&now.tiles, &settings);
     const tile_source source = {.side = order->side, .next = next, .done = done};
     const render_options options = {.source = &source};
     job_account account;
-    status code = job_render(own_job, &view, &options, &account, why);
+    status code = job_render(tile_job, &view, &options, &account, why);
     if (account.result)
         head()->counters = account.result->counters;
     job_account_release(&account);
@@ -114,7 +114,7 @@ const void *wasm_tiles_trace(const void *bytes, size_t size, size_t *answer_size
     now.next = order.first;
     now.end = order.first + order.count;
     now.began_s = clock_wall_s();
-    if (!make_room(sizeof(tile_answer))) {
+    if (!reserve(sizeof(tile_answer))) {
         no_memory.of = order;
         out_of_memory(&no_memory.why);
         *answer_size = sizeof no_memory;
@@ -125,7 +125,7 @@ const void *wasm_tiles_trace(const void *bytes, size_t size, size_t *answer_size
     head()->of = order;
     head()->setup_s = NAN;
     diagnostic why = {.line = 0};
-    const status code = trace(&order, &why); /* moves the answer */
+    const status code = render_tiles(&order, &why); /* may move now.bytes */
     head()->code = (int32_t)code;
     head()->why = why;
     head()->wall_s = clock_wall_s() - now.began_s;

@@ -1,8 +1,8 @@
-/* A tile worker.
+/* A tile worker: renders tiles for the laboratory's worker.
  *
- * laboratory -> worker  {tiles: WebAssembly.Module}, first; {scene: bytes}, whose error the next answer has;
+ * laboratory -> worker  {tiles: WebAssembly.Module}, first; {scene: bytes}, whose error is in the next answer;
  *                       {order: bytes}
- * worker -> laboratory  {traced: bytes} for each order, or {failed: text} */
+ * worker -> laboratory  {traced: bytes} per order, or {failed: text} */
 
 let tracer = null; /* emscripten's module */
 

@@ -2,7 +2,7 @@
  * tile_worker.js and this. The first message says what the worker is: {boot} a laboratory, {tiles} a tile worker. */
 
 const fail = (error) => postMessage({ failed: String(error?.message || error) });
-let handle = null; /* of later messages */
+let handle = null; /* handles later messages */
 let started = null;
 
 onmessage = ({ data }) => {

@@ -199,9 +199,10 @@ static void ineffective_parameters_give_a_hint(void **state)
                  "transparency: 1, ior: 1.5}}",
                  "");
     expect_hints("render: {integrator: path}\nlights: {lamp: {}}\nsolids: {ball: {shape: sphere, diffuse: 1}}", "");
-    expect_hints("lights: {lamp: {polarised: 0.5}}\nsolids: {ball: {shape: sphere, diffuse: 1}}",
-                 "lamp.polarised: light is traced without its polarisation: the polarisation of lamp has no effect; set "
-                 "render.polarisation to on\n");
+    expect_hints(
+        "lights: {lamp: {polarised: 0.5}}\nsolids: {ball: {shape: sphere, diffuse: 1}}",
+        "lamp.polarised: light is traced without its polarisation: the polarisation of lamp has no effect; set "
+        "render.polarisation to on\n");
     expect_hints("beams: {laser: {lights: on}}\nsolids: {ball: {shape: sphere, diffuse: 1}}",
                  "lights: no lights: opaque surfaces show only ambient and emitted light; add lights:\n"
                  "laser.lights: laser lights nothing: only photons carry the light of beams; set "

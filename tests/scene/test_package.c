@@ -347,9 +347,9 @@ static void other_builds_and_machines_are_refused(void **state)
     const struct {
         size_t at;
         const char *reason;
-    } places[] = {{0, "does not begin as one"},    {8, "another kind of machine"}, {12, "another kind of machine"},
-                  {16, "another kind of machine"}, {24, "from another build"},     {40, "from another build"},
-                  {48, "it has another size"}};
+    } places[] = {{0, "does not begin as a package"}, {8, "another kind of machine"}, {12, "another kind of machine"},
+                  {16, "another kind of machine"},    {24, "from another build"},     {40, "from another build"},
+                  {48, "it has the wrong size"}};
     for (size_t i = 0; i < sizeof places / sizeof *places; i++) {
         p.at[places[i].at] ^= 8;
         assert_refused(&p, places[i].reason);

@@ -50,9 +50,9 @@ static void the_text_reads_as_what_was_given(void **state)
     const char *at = line_of(text, "set: # in all cells\n  render.samples: 1\n\n");
     at = line_of(at, "grid: # 9 cells; the last axis runs fastest\n");
     /* the meaning, the range and the unit of each parameter precede it */
-    at = line_of(at,
-                 "  # recursion depth; 0: camera rays only; unlimited: only for random paths (integer 0..64, or unlimited)\n"
-                 "  - {render.depth: [0, 1, 2]}\n");
+    at = line_of(
+        at, "  # recursion depth; 0: camera rays only; unlimited: random paths only (integer 0..64, or unlimited)\n"
+            "  - {render.depth: [0, 1, 2]}\n");
     assert_non_null(strstr(at, "(number > 0, at most 1000000000)\n  - {liquid.ior: {from: 1, to: 1.5, steps: 3}}\n"));
     for (const char *line = text; *line; line += strcspn(line, "\n") + 1) { /* comments end between words */
         const size_t length = strcspn(line, "\n");

@@ -207,7 +207,7 @@ test('other formats, missing files and bad lines are errors with a remedy', asyn
   );
   await refused({ 'thing.obj': 'mtllib none.mtl\nv 0 0 0\n' }, /none\.mtl: .*No such file/);
   await refused({ 'thing.obj': 'v 0 0 0\nf 1 2 3\n' }, /thing\.obj: line 2: the corner '2' of a face is invalid/);
-  await refused({ 'thing.obj': 'v 0 0\n' }, /thing\.obj: line 1: a vertex has no three numbers/);
+  await refused({ 'thing.obj': 'v 0 0\n' }, /thing\.obj: line 1: a vertex has fewer than three numbers/);
   await refused({ 'thing.obj': 'v 0 0 0\n' }, /thing\.obj: the file has no triangles/);
   await refused({ 'thing.obj': '' }, /thing\.obj: .*empty/);
   await refused(

@@ -86,7 +86,8 @@ static status generate(const mesh_entry *m, mesh **out, diagnostic *why)
     return diagnose(why, STATUS_BAD_INPUT, "set its triangles, or another source", "%.80s has no triangles", m->name);
 }
 
-/* The size of a generated mesh before it is made; 0 for shapes that are always small. A solid terrain has a few more. */
+/* The size of a generated mesh before it is made; 0 for shapes that are always small. A solid terrain has a few
+ * more. */
 static void size_of(const mesh_entry *m, size_t *vertices, size_t *triangles)
 {
     const size_t count = (size_t)m->count, around = (size_t)m->around, tube = (size_t)m->tube;

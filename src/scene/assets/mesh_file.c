@@ -151,7 +151,8 @@ static void close_end(int *fd)
     }
 }
 
-/* Reads the child's standard error. It keeps only the beginning, but drains the pipe, so that the child never blocks. */
+/* Reads the child's standard error. It keeps only the beginning, but drains the pipe, so that the child never
+ * blocks. */
 static void read_messages(mesh_child *child)
 {
     char buffer[4096];

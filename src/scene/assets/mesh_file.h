@@ -9,6 +9,6 @@
 
 #include "scene/assets/mesh_stream.h"
 
-/* Reads a mesh file; limits may be NULL. Images of textures are not opened, but must exist: their paths are absolute, or
- * relative to the mesh file. */
+/* Reads a mesh file; limits may be NULL. Images of textures are not opened, but must exist: their paths are absolute,
+ * or relative to the mesh file. */
 status mesh_read_file(const char *path, const mesh_limits *limits, mesh_import **out, diagnostic *why);

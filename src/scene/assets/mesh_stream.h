@@ -14,7 +14,7 @@ typedef struct mesh_limits {
     size_t triangles, vertices; /* defaults 2^25 and 2^26 */
     uint64_t memory_bytes;      /* memory of the importer process; default 4 GiB */
     double wall_s;              /* default 60 */
-    const char *root; /* folder of the file and of all files that it refers to (base/file.h); NULL or "": no
+    const char *root;           /* folder of the file and of all files that it refers to (base/file.h); NULL or "": no
                          restriction. Borrowed */
 } mesh_limits;
 

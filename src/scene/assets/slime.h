@@ -20,8 +20,8 @@ typedef struct slime {
 status slime_create(const scene *s, const mesh_entry *m, slime *out, diagnostic *why);
 void slime_destroy(slime *x);
 
-/* Advances to the step nearest to time_s; never backwards. watch may be NULL; its fraction refers to this advance. After
- * STATUS_INTERRUPTED the simulation is at an earlier step and can be continued. */
+/* Advances to the step nearest to time_s; never backwards. watch may be NULL; its fraction refers to this advance.
+ * After STATUS_INTERRUPTED the simulation is at an earlier step and can be continued. */
 status slime_advance(slime *x, const scene *s, const mesh_entry *m, double time_s, const load_watch *watch,
                      diagnostic *why);
 

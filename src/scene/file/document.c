@@ -73,7 +73,7 @@ static status syntax_error(event_reader *r)
     case YAML_EMITTER_ERROR: break;
     }
     const char *remedy = is_tab_at(r, p->problem_mark) ? "indent with spaces instead of tabs"
-                                                           : "check the indentation, colons, brackets and quotes here";
+                                                       : "check the indentation, colons, brackets and quotes here";
     diagnostic_locate(r->why, r->name, (long)p->problem_mark.line + 1, (long)p->problem_mark.column + 1);
     return diagnose(r->why, STATUS_BAD_INPUT, remedy, "%s%s%s", p->context ? p->context : "", p->context ? ", " : "",
                     p->problem ? p->problem : "invalid YAML");
@@ -320,8 +320,7 @@ status document_parse(const char *name, const char *text, size_t size, document 
         return diagnose(why, STATUS_BAD_INPUT, "make the file smaller", "the file is larger than 64 MiB");
     }
     if (is_image(text, size))
-        return events_error(&r, (yaml_mark_t){0}, "give the scene file instead",
-                            "this is an image file, not a scene");
+        return events_error(&r, (yaml_mark_t){0}, "give the scene file instead", "this is an image file, not a scene");
     if (!yaml_parser_initialize(&r.parser))
         return out_of_memory(r.why);
     yaml_parser_set_encoding(&r.parser, YAML_UTF8_ENCODING);

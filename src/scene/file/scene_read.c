@@ -1,4 +1,5 @@
-/* Reads a scene from a path: a scene file (read.c), or a shared scene in a link, a PNG image or a page (shared_read.c). */
+/* Reads a scene from a path: a scene file (read.c), or a shared scene in a link, a PNG image or a page
+ * (shared_read.c). */
 #include "base/file.h"
 #include "base/installed.h"
 #include "scene/file/shared.h"

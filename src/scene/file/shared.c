@@ -1,4 +1,5 @@
-/* Which scenes may be shared, and their forms: text, code of a link, metadata of an image. shared_read.c reads these. */
+/* Which scenes may be shared, and their forms: text, code of a link, metadata of an image. shared_read.c reads
+ * these. */
 #include "base/text.h"
 #include "scene/file/shared.h"
 #include "scene/file/write.h"
@@ -71,7 +72,7 @@ static status forget_machine(void *bare, const char *path, const param *row, con
 {
     (void)value;
     const bool is_of_machine = row->performance_only && (row->group == PARAM_RENDER || row->group == PARAM_MESH) &&
-                      strcmp(row->name, "accel") != 0;
+                               strcmp(row->name, "accel") != 0;
     return is_of_machine ? scene_set(bare, path, row->fallback, NULL) : STATUS_OK;
 }
 

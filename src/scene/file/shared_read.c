@@ -51,7 +51,8 @@ static status expand(const char *name, const unsigned char *packed, size_t size,
     *text = NULL;
     if (result == Z_MEM_ERROR)
         return out_of_memory(why);
-    return diagnose_at(why, name, STATUS_BAD_INPUT, "copy the complete link or page", "the code of the shared scene is %s",
+    return diagnose_at(why, name, STATUS_BAD_INPUT, "copy the complete link or page",
+                       "the code of the shared scene is %s",
                        result == Z_BUF_ERROR ? "cut short or too long" : "damaged");
 }
 
@@ -60,10 +61,9 @@ static status read_code(const char *name, const char *code, size_t length, scene
     size_t packed_size = 0, size = 0;
     char *text = NULL;
     unsigned char *packed = length <= 2 * SHARED_TEXT_MAX ? base64_decode(code, length, &packed_size) : NULL;
-    status result =
-        packed ? expand(name, packed, packed_size, &text, &size, why)
-               : diagnose_at(why, name, STATUS_BAD_INPUT, "copy the complete link or page",
-                             "the code of the shared scene is damaged");
+    status result = packed ? expand(name, packed, packed_size, &text, &size, why)
+                           : diagnose_at(why, name, STATUS_BAD_INPUT, "copy the complete link or page",
+                                         "the code of the shared scene is damaged");
     THEN(result, shared_read_text(name, text, size, out, why));
     free(packed);
     free(text);
@@ -95,7 +95,8 @@ static status read_page(const char *name, const char *bytes, size_t size, scene 
     begin += strlen(SHARED_PAGE_BEGIN);
     const char *end = memmem(begin, (size_t)(bytes + size - begin), SHARED_PAGE_END, strlen(SHARED_PAGE_END));
     if (!end)
-        return diagnose_at(why, name, STATUS_BAD_INPUT, "copy the complete page", "the scene in this page is cut short");
+        return diagnose_at(why, name, STATUS_BAD_INPUT, "copy the complete page",
+                           "the scene in this page is cut short");
     return read_code(name, begin, (size_t)(end - begin), out, why);
 }
 

@@ -65,8 +65,8 @@ static bool is_needed(const param *row)
     return row->group == PARAM_CAMERA && row->offset == offsetof(camera, yaw_deg);
 }
 
-/* Whether the line is written: a reader would infer another value. all: every line, unless it would replace a setting in
- * use. value: the row's, as text. */
+/* Whether the line is written: a reader would infer another value. all: every line, unless it would replace a setting
+ * in use. value: the row's, as text. */
 static status is_line_wanted(const scene *s, const param_place *at, const char *value, bool all, bool *wanted,
                              diagnostic *why)
 {

@@ -1,8 +1,8 @@
-/* Writes scenes as text, in the grammar of scene/file/read.c. Only values that differ from the defaults are written (for
- * a solid with a material, from the material); sections and rows are in the order of the table, objects in the order of
- * the scene. Writing, reading and writing again produces the same bytes, and the scene that is read has the same film.
- * Numbers have the fewest digits that round-trip. Comments in the original file are lost. Ownership: the caller frees
- * texts. */
+/* Writes scenes as text, in the grammar of scene/file/read.c. Only values that differ from the defaults are written
+ * (for a solid with a material, from the material); sections and rows are in the order of the table, objects in the
+ * order of the scene. Writing, reading and writing again produces the same bytes, and the scene that is read has the
+ * same film. Numbers have the fewest digits that round-trip. Comments in the original file are lost. Ownership: the
+ * caller frees texts. */
 #pragma once
 
 #include "scene/model/open.h"

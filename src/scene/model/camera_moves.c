@@ -166,7 +166,8 @@ static void orbit(const camera_move *m, scene *s)
     const vec3 pivot = m->pivot.at, forward = camera_frame_of(s).forward;
     const double distance = vec3_length(vec3_sub(pivot, s->camera.position));
     image_turn_to_angles(s->camera.roll_deg, m->orbit_deg[0], -m->orbit_deg[1], by);
-    const vec3 direction = clear_direction(s, forward, pivot, distance, by), to = eye_at_distance(pivot, direction, distance);
+    const vec3 direction = clear_direction(s, forward, pivot, distance, by),
+               to = eye_at_distance(pivot, direction, distance);
     if (!is_clear(s, s->camera.position, to, gap_fraction * distance))
         return; /* on a slope even the yaw may lead below the ground */
     s->camera.position = to;
@@ -255,7 +256,8 @@ static status ball_of(const scene *s, const char *name, double distance, vec3 *c
     if (index >= 0 && placement_bounding_sphere(s, &s->solids[index], centre, radius))
         return STATUS_OK;
     if (index >= 0)
-        return diagnose(why, STATUS_BAD_INPUT, "frame another solid, or all", "%.80s is unbounded and cannot be framed", name);
+        return diagnose(why, STATUS_BAD_INPUT, "frame another solid, or all", "%.80s is unbounded and cannot be framed",
+                        name);
     for (size_t i = 0; i < s->light_count; i++)
         if (strcmp(s->lights[i].name, name) == 0) {
             *centre = s->lights[i].position;

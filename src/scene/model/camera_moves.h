@@ -22,9 +22,9 @@ typedef struct camera_move {
     camera_pivot pivot;  /* in: the pivot after the last move; out: after this one */
 } camera_move;
 
-/* Changes only the camera. Directions stay 0.5 degrees away from vertical, except from the top, so that the camera never
- * turns upside down. No move crosses a ground (a visible opaque plane that faces up): orbits and zooms stop there, steps
- * slide along it. */
+/* Changes only the camera. Directions stay 0.5 degrees away from vertical, except from the top, so that the camera
+ * never turns upside down. No move crosses a ground (a visible opaque plane that faces up): orbits and zooms stop
+ * there, steps slide along it. */
 status camera_move_apply(camera_move *m, scene *s, diagnostic *why);
 
 /* The current pivot. known: the pivot after the last move. */

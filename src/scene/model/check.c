@@ -65,8 +65,7 @@ static status check_render(const scene *s, diagnostic *why)
         return diagnose(why, STATUS_BAD_INPUT,
                         grid ? "set render.filter to box, or render.error to 0"
                              : "set render.spectrum to rgb, or render.error to 0",
-                        "render.error does not support %s",
-                        grid ? "a grid of samples" : "a spectrum");
+                        "render.error does not support %s", grid ? "a grid of samples" : "a spectrum");
     if (integrator_traits_of(&s->render)->drawn && (s->render.polarisation || s->render.spectrum == SPECTRUM_SPECTRAL))
         return diagnose(why, STATUS_BAD_INPUT, "set render.integrator to raycast or whitted",
                         "the depth buffer renders RGB only: it does not support %s",
@@ -343,8 +342,7 @@ status check_limits(const scene *s, diagnostic *why)
         unbounded += rule->unbounded || rule->triangles;
     }
     if (primitives > SCENE_PRIMITIVES_MAX)
-        return diagnose(why, STATUS_BAD_INPUT,
-                        "use at most 2097151; a cup and a torus count as two, a lens as three",
+        return diagnose(why, STATUS_BAD_INPUT, "use at most 2097151; a cup and a torus count as two, a lens as three",
                         "more than 2097151 solids");
     if (unbounded > SCENE_UNBOUNDED_MAX)
         return diagnose(why, STATUS_BAD_INPUT, "use at most 64 of them, and any number of other solids",

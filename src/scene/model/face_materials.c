@@ -70,8 +70,8 @@ shading_material shading_material_of_face(const scene *s, const solid *owner, co
         apply_file_material(&mat, base, given);
     if (s->render.transmission == TRANSMISSION_SIMPLE) {
         mat.surface.transparency = named                           ? named->transparency
-                                 : given && given->opacity < 1.0 ? 1.0 - given->opacity
-                                                                 : base->transparency;
+                                   : given && given->opacity < 1.0 ? 1.0 - given->opacity
+                                                                   : base->transparency;
         return mat;
     }
     mat.surface.transparency = base->transparency;

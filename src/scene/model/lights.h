@@ -62,8 +62,8 @@ static inline bool light_has_size(const light *l)
 
 enum { SCENE_BEAMS_MAX = 64, BEAM_RAYS_MAX = 10000, BEAM_DEPTH_MAX = 10000 };
 
-/* Rays from one point in a cone (pencil) or a plane (fan), or parallel rays in a plane (sheet) or over a disc (bundle).
- */
+/* Rays from one point in a cone (pencil) or a plane (fan), or parallel rays in a plane (sheet) or over a disc
+ * (bundle). */
 typedef enum beam_kind { BEAM_PENCIL, BEAM_FAN, BEAM_SHEET, BEAM_BUNDLE } beam_kind;
 
 /* Distribution of the photons' power: even over the angle or width, or exp(-2 r^2 / w^2), with 2 w as the angle or

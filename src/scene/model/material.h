@@ -38,10 +38,11 @@ typedef struct material {
     int64_t medium;                       /* see scene/model/medium.h */
     number_list coefficients;             /* coefficients of the medium's dispersion law */
     vec3 absorb_per_m;                    /* absorption coefficient of the Beer-Lambert law, by channel */
-    number_list absorb_spectrum; /* absorption by wavelength: nm, 1/m, nm, 1/m ...; replaces absorb_per_m unless empty */
-    double scatter_per_m;        /* scattering coefficient of the medium, for random paths */
-    double asymmetry;            /* g, the mean cosine of the scattering angle, optics/phase_function.h */
-    double tint_distance;        /* scene units; tint and absorption are added */
+    number_list
+        absorb_spectrum;  /* absorption by wavelength: nm, 1/m, nm, 1/m ...; replaces absorb_per_m unless empty */
+    double scatter_per_m; /* scattering coefficient of the medium, for random paths */
+    double asymmetry;     /* g, the mean cosine of the scattering angle, optics/phase_function.h */
+    double tint_distance; /* scene units; tint and absorption are added */
     char texture[SCENE_NAME_MAX + 1]; /* its values are multiplied by color; "" for none */
     double texture_size;              /* scene units per repetition on solids without texture coordinates; 0: one per
                                          face */

@@ -34,8 +34,8 @@ index_law surrounding_index_law(const background *b);
 number_list medium_first_coefficients(int word, double ior);
 
 double index_law_at(const index_law *law, double lambda_nm);
-/* Whether two laws have equal indices: at the single wavelength of an RGB film, or at all wavelengths of a spectral one.
- */
+/* Whether two laws have equal indices: at the single wavelength of an RGB film, or at all wavelengths of a spectral
+ * one. */
 bool index_laws_match(const render_settings *r, const index_law *a, const index_law *b);
 /* Whether the material's index equals that of the scene's surroundings. */
 bool material_matches_surroundings(const scene *s, const material *m);

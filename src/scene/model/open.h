@@ -33,8 +33,8 @@ status scene_limit(scene *s, const char *root, size_t triangles, diagnostic *why
 
 /* A path of the scene relative to the working folder. Fresh memory; NULL if memory runs out. */
 char *scene_file_path(const scene *s, const char *path);
-/* Reports the error `bad` of a file to which the scene refers as `what`, at line and column of the scene file; if line is
- * 0, at the position of `bad`. Returns code. */
+/* Reports the error `bad` of a file to which the scene refers as `what`, at line and column of the scene file; if line
+ * is 0, at the position of `bad`. Returns code. */
 status scene_file_error(const scene *s, const char *what, long line, long column, const diagnostic *bad, status code,
                         diagnostic *why);
 
@@ -48,8 +48,8 @@ status scene_check(const scene *s, diagnostic *why);
 
 /* --- defined in file/scene_read.c and file/read.c --- */
 
-/* Reads a scene file (YAML; grammar at the top of file/read.c and in cuvette-scene(5)), or a shared scene (file/shared.h).
- * Images, textures and meshes are not loaded yet. */
+/* Reads a scene file (YAML; grammar at the top of file/read.c and in cuvette-scene(5)), or a shared scene
+ * (file/shared.h). Images, textures and meshes are not loaded yet. */
 status scene_read(const char *path, scene **out, diagnostic *why);
 /* Like scene_read, for a file below root (base/file.h), which becomes the root of the scene's limits. */
 status scene_read_below(const char *path, const char *root, scene **out, diagnostic *why);
@@ -61,8 +61,9 @@ status new_scene(scene **out, diagnostic *why);
 /* --- defined in assets/load.c --- */
 
 /* Loads everything to which the scene refers and which is not loaded yet: the background image, textures, and meshes,
- * from files or generators. A diagnostic about a file is located where the scene file names it. Values of the background
- * must be from 0 to SCENE_SKY_MAX. STATUS_BAD_INPUT above the limits; the mesh that exceeds the limit is discarded. */
+ * from files or generators. A diagnostic about a file is located where the scene file names it. Values of the
+ * background must be from 0 to SCENE_SKY_MAX. STATUS_BAD_INPUT above the limits; the mesh that exceeds the limit is
+ * discarded. */
 status scene_load(scene *s, diagnostic *why);
 
 /* Watches moving slimes: progress is called about every 10 ms, with the completed fraction of all motion. */

@@ -373,8 +373,9 @@ static status visit_one(const scene *s, const param_place *at, param_place_visit
     return code;
 }
 
-/* Whether scene_each_param visits the row. It skips rows that are not in use, and that a setting would put into use: the
- * unused direction of the camera, the background image, a mesh's file; and the parameters of slimes for other meshes. */
+/* Whether scene_each_param visits the row. It skips rows that are not in use, and that a setting would put into use:
+ * the unused direction of the camera, the background image, a mesh's file; and the parameters of slimes for other
+ * meshes. */
 static bool is_in_use(const scene *s, const param_place *at)
 {
     const param *row = at->row;

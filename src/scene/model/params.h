@@ -90,8 +90,8 @@ param_match param_matches(const param *row, const char *path, const char *words)
 /* "integer 1..65536", "number > 0, at most 179", "one of: sky, black", "3 numbers, each 0..1"; returns text. */
 char *param_range_text(const param *row, char *text, size_t size);
 
-/* A camera is aimed at its target or along its angles, whichever was set last. The unused ones are derived in scene_get,
- * and when the aim changes, so that setting one angle of an aimed camera keeps the other angle.
+/* A camera is aimed at its target or along its angles, whichever was set last. The unused ones are derived in
+ * scene_get, and when the aim changes, so that setting one angle of an aimed camera keeps the other angle.
  *
  * Setting background.image to a file sets background.kind to image; a kind that is set later wins.
  *
@@ -109,9 +109,9 @@ status scene_set_assignment(scene *s, const char *assignment, diagnostic *why);
 /* The value as text, in the form that scene_set accepts, numbers with the fewest digits that round-trip. Free it. */
 status scene_get(const scene *s, const char *path, char **value, diagnostic *why);
 
-/* Visits every parameter of the scene in a fixed order (rows in table order, objects in scene order), with its full path
- * and its value as text. The rows of a solid include those of its surface. The unused direction of the camera and an
- * unused background image are skipped, so that setting all visited values in order turns a copy of the scene as read
+/* Visits every parameter of the scene in a fixed order (rows in table order, objects in scene order), with its full
+ * path and its value as text. The rows of a solid include those of its surface. The unused direction of the camera and
+ * an unused background image are skipped, so that setting all visited values in order turns a copy of the scene as read
  * from its file into this scene. Stops at the first status other than STATUS_OK, and returns it. */
 typedef status param_visit(void *context, const char *path, const param *row, const char *value);
 status scene_each_param(const scene *s, param_visit *visit, void *context);

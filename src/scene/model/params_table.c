@@ -127,13 +127,13 @@ enum { ON_SLIME = 1 << MESH_SLIME, ON_ALL = 0 };
  *
  * A material's coefficients default to 0: an image shows only the terms of Phong's equation and the branches of the ray
  * tree that its scene enables, and clear glass needs no line that removes a diffuse coat. A colour is a factor, so it
- * defaults to white. shininess has no effect without a specular coefficient; 80 is the value of the published rod scene.
- * ior defaults to vacuum, so that nothing refracts. */
+ * defaults to white. shininess has no effect without a specular coefficient; 80 is the value of the published rod
+ * scene. ior defaults to vacuum, so that nothing refracts. */
 static const param table[] = {
     INTEGER(PARAM_RENDER, render_settings, width, "px", 1, 65536, "800", "width of the image"),
     INTEGER(PARAM_RENDER, render_settings, height, "px", 1, 65536, "600", "height of the image"),
     ROW(PARAM_RENDER, "depth", PARAM_INT, "", 0, DEPTH_TREE_MAX, false, "4",
-        "recursion depth; 0: camera rays only; unlimited: only for random paths", NULL, OF(render_settings, depth),
+        "recursion depth; 0: camera rays only; unlimited: random paths only", NULL, OF(render_settings, depth),
         .automatic = "unlimited", .automatic_value = DEPTH_UNLIMITED),
     {PARAM_RENDER, "samples", PARAM_INT, "", 1, SCENE_SAMPLES_MAX, false, "1",
      "camera rays per pixel, through the centres of a regular grid of cells; 1: no antialiasing", sample_counts,
@@ -162,10 +162,9 @@ static const param table[] = {
     CHOICE(PARAM_RENDER, render_settings, shadows, shadows_words, "attenuated",
            "shadow rays: none, blocked by every solid, or attenuated by transparent solids without refraction "
            "(no caustics)"),
-    CHOICE(
-        PARAM_RENDER, render_settings, soft_shadows, off_on, "off",
-        "on: each ray of whitted and raycast samples one random point of a light with a size, so that with many "
-        "samples shadows have soft edges; off: its centre"),
+    CHOICE(PARAM_RENDER, render_settings, soft_shadows, off_on, "off",
+           "on: each ray of whitted and raycast samples one random point of a light with a size, so that with many "
+           "samples shadows have soft edges; off: its centre"),
     CHOICE(PARAM_RENDER, render_settings, caustics, caustics_words, "off",
            "light that mirrors and transparent solids throw on matte surfaces: none, or by photons traced from the "
            "lamps; then shadows are opaque and radiance is basic"),

@@ -27,39 +27,39 @@ enum { DEPTH_TREE_MAX = 64, DEPTH_UNLIMITED = 1 << 30 };
 #define SCENE_PIXELS_MAX 268435456 /* 2^28 */
 
 typedef struct render_settings {
-    int64_t width, height;  /* pixels */
-    int64_t depth;          /* recursion depth, depth_limit of render/frame/tracers.c; 0: camera rays only;
+    int64_t width, height;    /* pixels */
+    int64_t depth;            /* recursion depth, depth_limit of render/frame/tracers.c; 0: camera rays only;
                                DEPTH_UNLIMITED: only for random paths */
-    int64_t samples;        /* per pixel: a square number, at most SCENE_SAMPLES_MAX */
-    int64_t integrator;     /* integrator_rule */
-    int64_t layer;          /* layer_rule: the layer that the film shows, for integrators that write layers */
-    int64_t lighting;       /* lighting_rule */
-    int64_t weights;        /* weights_rule */
-    int64_t transmission;   /* transmission_rule */
-    int64_t beyond;         /* depth_limit_rule */
-    int64_t radiance;       /* radiance_rule */
-    int64_t shadows;        /* shadow_rule */
-    int64_t soft_shadows;   /* bool: rays of trees sample the lights that have a size */
-    int64_t caustics;       /* caustics_rule */
-    int64_t photons;        /* number of photons that the lamps emit, for caustics */
-    double min_weight;      /* rays whose throughput (the product of the weights along their path) is lower in every
+    int64_t samples;          /* per pixel: a square number, at most SCENE_SAMPLES_MAX */
+    int64_t integrator;       /* integrator_rule */
+    int64_t layer;            /* layer_rule: the layer that the film shows, for integrators that write layers */
+    int64_t lighting;         /* lighting_rule */
+    int64_t weights;          /* weights_rule */
+    int64_t transmission;     /* transmission_rule */
+    int64_t beyond;           /* depth_limit_rule */
+    int64_t radiance;         /* radiance_rule */
+    int64_t shadows;          /* shadow_rule */
+    int64_t soft_shadows;     /* bool: rays of trees sample the lights that have a size */
+    int64_t caustics;         /* caustics_rule */
+    int64_t photons;          /* number of photons that the lamps emit, for caustics */
+    double min_weight;        /* rays whose throughput (the product of the weights along their path) is lower in every
                                channel are not traced; 0: all rays are */
-    int64_t paths;          /* per pixel, for the path integrator */
-    double error;           /* target standard error of a pixel, path integrator; 0: render.paths everywhere */
-    int64_t sampler;        /* sampler_rule: of the path integrator */
-    int64_t filter;         /* pixel_filter: of the path integrator */
-    int64_t light_sampling; /* light_sampling_rule: of the path integrator */
-    int64_t roulette;       /* 1: Russian roulette in the path integrator */
-    int64_t seed;           /* of all random numbers */
-    int64_t polarisation;   /* 1: rays carry Stokes vectors */
-    int64_t spectrum;       /* spectrum_rule */
-    int64_t wavelengths;    /* per camera ray, for the spectral film */
-    double lambda_nm;       /* wavelength of the refractive indices of an RGB film */
-    double unit_m;          /* length of one scene unit in metres */
-    int64_t threads;        /* 1..1024; 0: see scene_threads */
-    int64_t pool;           /* 1: persistent threads; 0: new threads for every frame */
-    int64_t schedule;       /* schedule_rule */
-    int64_t tile;           /* tile size, pixels */
+    int64_t paths;            /* per pixel, for the path integrator */
+    double error;             /* target standard error of a pixel, path integrator; 0: render.paths everywhere */
+    int64_t sampler;          /* sampler_rule: of the path integrator */
+    int64_t filter;           /* pixel_filter: of the path integrator */
+    int64_t light_sampling;   /* light_sampling_rule: of the path integrator */
+    int64_t roulette;         /* 1: Russian roulette in the path integrator */
+    int64_t seed;             /* of all random numbers */
+    int64_t polarisation;     /* 1: rays carry Stokes vectors */
+    int64_t spectrum;         /* spectrum_rule */
+    int64_t wavelengths;      /* per camera ray, for the spectral film */
+    double lambda_nm;         /* wavelength of the refractive indices of an RGB film */
+    double unit_m;            /* length of one scene unit in metres */
+    int64_t threads;          /* 1..1024; 0: see scene_threads */
+    int64_t pool;             /* 1: persistent threads; 0: new threads for every frame */
+    int64_t schedule;         /* schedule_rule */
+    int64_t tile;             /* tile size, pixels */
     int64_t tiles_per_worker; /* minimum number of tiles per worker, for which tiles are halved; 0: no minimum */
     int64_t pin;              /* pin_rule */
     int64_t accel;            /* hierarchy_kind */
@@ -84,8 +84,8 @@ static inline bool follows_trees(const render_settings *r)
     return integrator_traits_of(r)->tree && r->lighting == LIGHTING_WHITTED;
 }
 
-/* Select the integrator to inspect a scene: whitted, with all branches of each ray; or zbuffer, a preview of triangles.
- */
+/* Select the integrator to inspect a scene: whitted, with all branches of each ray; or zbuffer, a preview of
+ * triangles. */
 static inline void trace_trees(render_settings *r)
 {
     r->integrator = INTEGRATOR_WHITTED;

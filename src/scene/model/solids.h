@@ -63,8 +63,8 @@ typedef struct face_material {
 /* The materials of a mesh file, by slot. Reference counted like their mesh; retain and release are thread safe. */
 typedef struct face_materials face_materials;
 
-/* Copies a list of materials, and owns its references to images, even after an error. STATUS_FAILURE if memory runs out.
- */
+/* Copies a list of materials, and owns its references to images, even after an error. STATUS_FAILURE if memory runs
+ * out. */
 status face_materials_of(const face_material *list, int count, const face_materials **out, diagnostic *why);
 /* NULL is allowed in these three functions. */
 void face_materials_retain(const face_materials *l);
@@ -121,7 +121,8 @@ void texture_entry_unload(texture_entry *t);
 /* The settings of a slime's body, with the level of the mesh entry. */
 softbody_settings slime_settings(const mesh_entry *m);
 
-/* Checks that the settings are valid and need at most SLIME_STEPS_MAX steps to time_s. The diagnostic has no position. */
+/* Checks that the settings are valid and need at most SLIME_STEPS_MAX steps to time_s. The diagnostic has no
+ * position. */
 #define SLIME_STEPS_MAX 1e9
 status slime_check(const mesh_entry *m, diagnostic *why);
 /* Checks the number of steps to another time, such as the end of an animation. */

@@ -1,4 +1,4 @@
-/* A simulated scene: its slimes, attached to it, and moved through time. */
+/* Attaches a simulation to the slimes of a scene, and moves them through time. */
 #include "base/cancel.h"
 #include "base/text.h"
 #include "measure/clock.h"
@@ -14,7 +14,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-/* --- slimes, and what their scene had before --- */
+/* --- slimes, and the scene's data before the simulation --- */
 
 static size_t count_slimes(const scene *s)
 {
@@ -34,7 +34,7 @@ static bool affects_body(const param *row)
     return row->group == PARAM_MESH && row->offset != offsetof(mesh_entry, time_s);
 }
 
-/* All its parameters except time_s as one text, and the path of its script. NULL if memory runs out. */
+/* All parameters of a slime except time_s, and the path of its script, as one text. NULL if memory runs out. */
 static char *motion_parameters(const scene *s, const mesh_entry *entry)
 {
     char *text = NULL, *script = scene_file_path(s, entry->script_path);
@@ -71,34 +71,34 @@ static void restore_original(mesh_entry *entry, original_slime *original)
     *original = (original_slime){.data = NULL};
 }
 
-static status remember(scene_motion *m, moving_slime *one, diagnostic *why)
+static status remember(scene_motion *m, moving_slime *moving, diagnostic *why)
 {
-    mesh_entry *entry = motion_entry(m, one);
-    one->name = strdup(entry->name);
-    one->parameters = motion_parameters(m->s, entry);
-    if (!one->name || !one->parameters)
+    mesh_entry *entry = motion_entry(m, moving);
+    moving->name = strdup(entry->name);
+    moving->parameters = motion_parameters(m->s, entry);
+    if (!moving->name || !moving->parameters)
         return out_of_memory(why);
-    save_original(&one->original, entry);
+    save_original(&moving->original, entry);
     return STATUS_OK;
 }
 
-static void forget(moving_slime *one)
+static void forget(moving_slime *moving)
 {
-    slime_destroy(&one->x);
-    mesh_release(one->original.data);
-    mesh_release(one->surface);
-    free(one->name);
-    free(one->parameters);
+    slime_destroy(&moving->x);
+    mesh_release(moving->original.data);
+    mesh_release(moving->surface);
+    free(moving->name);
+    free(moving->parameters);
 }
 
 /* --- surfaces --- */
 
-/* Gives the entry a surface of its own, since the current one may be shared. */
-static status make_surface(const scene_motion *m, const moving_slime *one, diagnostic *why)
+/* Replaces the entry's surface by a new one: others may have references to the current one. */
+static status make_surface(const scene_motion *m, const moving_slime *moving, diagnostic *why)
 {
-    mesh_entry *entry = motion_entry(m, one);
+    mesh_entry *entry = motion_entry(m, moving);
     mesh *surface = NULL;
-    TRY(softbody_surface(one->x.body, &surface, why));
+    TRY(softbody_surface(moving->x.body, &surface, why));
     mesh_entry_unload(entry);
     entry->data = surface;
     return STATUS_OK;
@@ -113,13 +113,13 @@ static void add_moves(hierarchy_moves *sum, const hierarchy_moves *more)
     sum->growth = sum->growth > more->growth ? sum->growth : more->growth;
 }
 
-static status move_surface(scene_motion *m, const moving_slime *one, diagnostic *why)
+static status move_surface(scene_motion *m, const moving_slime *moving, diagnostic *why)
 {
-    mesh_entry *entry = motion_entry(m, one);
+    mesh_entry *entry = motion_entry(m, moving);
     if (!entry->data || mesh_owners(entry->data) > 1)
-        return make_surface(m, one, why);
-    /* Made by make_surface for this scene, its only owner. */
-    status code = softbody_move_surface(one->x.body, (mesh *)(uintptr_t)entry->data, why);
+        return make_surface(m, moving, why);
+    /* make_surface made the mesh, and the entry has the only reference. */
+    status code = softbody_move_surface(moving->x.body, (mesh *)(uintptr_t)entry->data, why);
     hierarchy_moves moves = {.refitted = 0};
     THEN(code, hierarchy_follow(entry->data, m->s->render.rebuild, scene_build_threads(&m->s->render), &moves, why));
     if (code != STATUS_OK) {
@@ -130,13 +130,13 @@ static status move_surface(scene_motion *m, const moving_slime *one, diagnostic 
     return STATUS_OK;
 }
 
-static void update_entry(scene_motion *m, moving_slime *one, double time_s)
+static void update_entry(scene_motion *m, moving_slime *moving, double time_s)
 {
-    mesh_entry *entry = motion_entry(m, one);
-    one->time_s = time_s;
+    mesh_entry *entry = motion_entry(m, moving);
+    moving->time_s = time_s;
     entry->time_s = time_s;
-    entry->account = softbody_measure(one->x.body);
-    entry->motion_s = one->x.motion_s;
+    entry->account = softbody_measure(moving->x.body);
+    entry->motion_s = moving->x.motion_s;
 }
 
 /* --- scenes: attaching and leaving --- */
@@ -144,11 +144,11 @@ static void update_entry(scene_motion *m, moving_slime *one, double time_s)
 void scene_motion_leave(scene_motion *m)
 {
     for (size_t i = 0; m->s && i < m->count; i++) {
-        moving_slime *one = &m->slimes[i];
-        mesh_entry *entry = motion_entry(m, one);
-        one->surface = entry->data;
+        moving_slime *moving = &m->slimes[i];
+        mesh_entry *entry = motion_entry(m, moving);
+        moving->surface = entry->data;
         entry->data = NULL;
-        restore_original(entry, &one->original);
+        restore_original(entry, &moving->original);
     }
     m->s = NULL;
 }
@@ -176,19 +176,19 @@ static status begin(scene_motion *m, diagnostic *why)
     for (size_t i = 0; i < m->s->mesh_count; i++) {
         if (m->s->meshes[i].source != MESH_SLIME)
             continue;
-        moving_slime *one = &m->slimes[m->count];
-        *one = (moving_slime){.entry = i};
-        TRY(slime_create(m->s, &m->s->meshes[i], &one->x, why));
-        status code = remember(m, one, why);
+        moving_slime *moving = &m->slimes[m->count];
+        *moving = (moving_slime){.entry = i};
+        TRY(slime_create(m->s, &m->s->meshes[i], &moving->x, why));
+        status code = remember(m, moving, why);
         if (code != STATUS_OK) {
-            forget(one);
+            forget(moving);
             return code;
         }
         m->count++;
-        code = make_surface(m, one, why);
+        code = make_surface(m, moving, why);
         if (code != STATUS_OK)
             return code;
-        update_entry(m, one, 0.0);
+        update_entry(m, moving, 0.0);
     }
     return scene_load(m->s, why); /* all other slimes */
 }
@@ -210,40 +210,40 @@ status scene_motion_create(scene *s, scene_motion **out, diagnostic *why)
     m->slimes = slimes;
     const status code = begin(m, why);
     if (code != STATUS_OK) {
-        scene_motion_end(m); /* a state at time 0 would be taken for another time */
+        scene_motion_end(m); /* a surface at time 0 would seem to be that of time_s */
         return code;
     }
     *out = m;
     return STATUS_OK;
 }
 
-/* Index of the mesh with the same name and parameters. */
-static status find_equal(const scene *s, const moving_slime *one, size_t *mesh_index, bool *found, diagnostic *why)
+/* Finds the mesh with the same name and parameters. */
+static status find_equal(const scene *s, const moving_slime *moving, size_t *mesh_index, bool *found, diagnostic *why)
 {
     *found = false;
     for (size_t i = 0; i < s->mesh_count; i++) {
         const mesh_entry *entry = &s->meshes[i];
-        if (entry->source != MESH_SLIME || strcmp(entry->name, one->name) != 0)
+        if (entry->source != MESH_SLIME || strcmp(entry->name, moving->name) != 0)
             continue;
         char *parameters = motion_parameters(s, entry);
         if (!parameters)
             return out_of_memory(why);
         *mesh_index = i;
-        *found = strcmp(parameters, one->parameters) == 0;
+        *found = strcmp(parameters, moving->parameters) == 0;
         free(parameters);
         break;
     }
     return STATUS_OK;
 }
 
-static void attach(scene_motion *m, moving_slime *one)
+static void attach(scene_motion *m, moving_slime *moving)
 {
-    mesh_entry *entry = motion_entry(m, one);
-    save_original(&one->original, entry);
+    mesh_entry *entry = motion_entry(m, moving);
+    save_original(&moving->original, entry);
     mesh_entry_unload(entry);
-    entry->data = one->surface;
-    one->surface = NULL;
-    update_entry(m, one, one->time_s);
+    entry->data = moving->surface;
+    moving->surface = NULL;
+    update_entry(m, moving, moving->time_s);
 }
 
 status scene_motion_join(scene_motion *m, scene *s, bool *joined, diagnostic *why)
@@ -260,53 +260,53 @@ status scene_motion_join(scene_motion *m, scene *s, bool *joined, diagnostic *wh
     scene_motion_leave(m);
     m->s = s;
     for (size_t i = 0; i < m->count && code == STATUS_OK; i++) {
-        moving_slime *one = &m->slimes[i];
-        const bool had_surface = one->surface != NULL;
-        one->entry = places[i];
-        attach(m, one);
-        code = had_surface ? STATUS_OK : make_surface(m, one, why);
+        moving_slime *moving = &m->slimes[i];
+        const bool had_surface = moving->surface != NULL;
+        moving->entry = places[i];
+        attach(m, moving);
+        code = had_surface ? STATUS_OK : make_surface(m, moving, why);
     }
     return code;
 }
 
 /* --- time --- */
 
-/* Advances one of count slimes. */
-typedef struct turn_watch {
+/* Progress of all slimes, which advance one after another. */
+typedef struct slime_watch {
     const load_watch *watch;
-    size_t turn, count;
-} turn_watch;
+    size_t index, count;
+} slime_watch;
 
-static void show_turn(void *context, double fraction)
+static void report_progress(void *context, double fraction)
 {
-    const turn_watch *w = context;
-    w->watch->progress(w->watch->context, ((double)w->turn + fraction) / (double)w->count);
+    const slime_watch *w = context;
+    w->watch->progress(w->watch->context, ((double)w->index + fraction) / (double)w->count);
 }
 
 static status advance_one(scene_motion *m, size_t i, double time_s, const load_watch *watch, diagnostic *why)
 {
-    moving_slime *one = &m->slimes[i];
-    const double motion_before_s = one->x.motion_s;
-    turn_watch turn = {watch, i, m->count};
-    const status code =
-        slime_advance(&one->x, m->s, motion_entry(m, one), time_s, watch ? &(load_watch){show_turn, &turn} : NULL, why);
-    m->last.step_s += one->x.motion_s - motion_before_s;
+    moving_slime *moving = &m->slimes[i];
+    const double motion_before_s = moving->x.motion_s;
+    slime_watch progress = {watch, i, m->count};
+    const status code = slime_advance(&moving->x, m->s, motion_entry(m, moving), time_s,
+                                      watch ? &(load_watch){report_progress, &progress} : NULL, why);
+    m->last.step_s += moving->x.motion_s - motion_before_s;
     return code;
 }
 
-static status show_one(scene_motion *m, moving_slime *one, double time_s, bool surfaces, diagnostic *why)
+static status show_one(scene_motion *m, moving_slime *moving, double time_s, bool surfaces, diagnostic *why)
 {
-    const mesh_entry *entry = motion_entry(m, one);
+    const mesh_entry *entry = motion_entry(m, moving);
     status code = STATUS_OK;
     if (surfaces) {
         const double begun_s = clock_wall_s();
-        code = move_surface(m, one, why);
+        code = move_surface(m, moving, why);
         m->last.skin_s += clock_wall_s() - begun_s;
     }
     if (code == STATUS_OK) {
-        update_entry(m, one, time_s > entry->time_s ? time_s : entry->time_s); /* time does not go back */
-        m->last.steps += entry->account.steps - one->steps;
-        one->steps = entry->account.steps;
+        update_entry(m, moving, time_s > entry->time_s ? time_s : entry->time_s); /* time does not go back */
+        m->last.steps += entry->account.steps - moving->steps;
+        moving->steps = entry->account.steps;
     }
     return code;
 }
@@ -318,7 +318,7 @@ status scene_motion_advance_until(scene_motion *m, double time_s, bool surfaces,
     for (size_t i = 0; i < m->count; i++)
         TRY(advance_one(m, i, time_s, watch, why));
     status code = STATUS_OK;
-    cancel_token shield; /* a surface is moved completely or not at all; that takes little time */
+    cancel_token shield; /* a surface is moved completely or not at all, which takes little time */
     cancel_shield(&shield);
     for (size_t i = 0; i < m->count && code == STATUS_OK; i++)
         code = show_one(m, &m->slimes[i], time_s, surfaces, why);

@@ -1,3 +1,4 @@
+/* Picks, grabs and moves slimes with the pointer (motion_hands.h). */
 #include "base/cancel.h"
 #include "measure/clock.h"
 #include "scene/model/scene.h"
@@ -7,17 +8,17 @@
 #include <math.h>
 #include <string.h>
 
-static vec3 times(vec3 a, vec3 b)
+static vec3 multiply(vec3 a, vec3 b)
 {
     return vec3_make(a.x * b.x, a.y * b.y, a.z * b.z);
 }
 
-static vec3 over(vec3 a, vec3 b)
+static vec3 divide(vec3 a, vec3 b)
 {
     return vec3_make(a.x / b.x, a.y / b.y, a.z / b.z);
 }
 
-/* Relative margin of the slab test of a ray, slightly larger than its rounding error. */
+/* Cuts the interval of a ray by a slab, which is widened by slightly more than the rounding error. */
 static void cut(double low, double high, double o, double d, double *enter, double *leave)
 {
     const double slack = 1e-9 * (fabs(low) + fabs(high) + fabs(o));
@@ -30,8 +31,8 @@ static void cut(double low, double high, double o, double d, double *enter, doub
     }
 }
 
-/* Whether the ray hits the box. There may be millions of copies to skip. */
-static bool passes(bounds3 box, vec3 o, vec3 d)
+/* Whether the ray hits the box: most of what may be millions of copies are skipped. */
+static bool hits_box(bounds3 box, vec3 o, vec3 d)
 {
     double enter = 0.0, leave = INFINITY;
     cut(box.low.x, box.high.x, o.x, d.x, &enter, &leave);
@@ -40,7 +41,7 @@ static bool passes(bounds3 box, vec3 o, vec3 d)
     return enter <= leave;
 }
 
-/* A query in one solid's frame. */
+/* A pick in the frame of one solid. */
 typedef struct search {
     const softbody *body;
     bounds3 box;
@@ -49,15 +50,15 @@ typedef struct search {
     vec3 origin, direction;
 } search;
 
-/* The nearest of the hit so far and the hit of one copy. */
+/* Keeps the nearer of the best hit and the hit of one copy. */
 static void pick_copy(const search *q, vec3 copy, motion_place *best)
 {
     const solid_shape *shape = q->shape;
-    const vec3 o = over(vec3_sub(q->origin, copy), shape->scale), d = over(q->direction, shape->scale);
+    const vec3 o = divide(vec3_sub(q->origin, copy), shape->scale), d = divide(q->direction, shape->scale);
     vec3 met;
-    if (!passes(q->box, o, d) || !softbody_pick(q->body, o, d, &met))
+    if (!hits_box(q->box, o, d) || !softbody_pick(q->body, o, d, &met))
         return;
-    const vec3 at = vec3_add(copy, times(met, shape->scale));
+    const vec3 at = vec3_add(copy, multiply(met, shape->scale));
     const double distance = vec3_length(vec3_sub(at, q->origin)); /* the direction is a unit vector */
     if (distance < best->distance) {
         *best =
@@ -74,7 +75,7 @@ static void pick_copies(const search *q, motion_place *best)
     for (double z = 0.0; z < copies.z; z++) {
         for (double y = 0.0; y < copies.y; y++)
             for (double x = 0.0; x < copies.x; x++)
-                pick_copy(q, times(vec3_make(x, y, z), q->shape->spacing), best);
+                pick_copy(q, multiply(vec3_make(x, y, z), q->shape->spacing), best);
     }
 }
 
@@ -112,17 +113,17 @@ status scene_motion_grab(scene_motion *m, size_t i, const motion_place *place, d
 {
     const solid_shape *shape = &m->s->solids[place->solid].shape;
     const double largest = fmax(shape->scale.x, fmax(shape->scale.y, shape->scale.z));
-    const int taken = softbody_grab(m->slimes[i].x.body, place->on_mesh, reach / largest);
-    if (taken == HAND_NO_MEMORY)
+    const int hand = softbody_grab(m->slimes[i].x.body, place->on_mesh, reach / largest);
+    if (hand == HAND_NO_MEMORY)
         return out_of_memory(why);
-    if (taken < 0)
+    if (hand < 0)
         return diagnose(why, STATUS_BAD_INPUT, "release one of them first",
                         "all hands are in use, or they hold all masses");
-    hands[taken] = (motion_hand){.holds = true,
-                                 .rotation = rotation_from_deg(shape->rotation_deg),
-                                 .scale = shape->scale,
-                                 .where = place->on_mesh};
-    *number = taken;
+    hands[hand] = (motion_hand){.holds = true,
+                                .rotation = rotation_from_deg(shape->rotation_deg),
+                                .scale = shape->scale,
+                                .where = place->on_mesh};
+    *number = hand;
     return STATUS_OK;
 }
 
@@ -134,7 +135,7 @@ void scene_motion_release(scene_motion *m, size_t i, motion_hand *hands, int num
 
 vec3 motion_hand_offset(const motion_hand *h, vec3 by)
 {
-    return over(mat3_apply_transposed(h->rotation, by), h->scale);
+    return divide(mat3_apply_transposed(h->rotation, by), h->scale);
 }
 
 static bool is_moving(const motion_hand *h)
@@ -142,13 +143,13 @@ static bool is_moving(const motion_hand *h)
     return h->holds && (h->from.x != h->to.x || h->from.y != h->to.y || h->from.z != h->to.z);
 }
 
-/* With the same arithmetic as for scripts. */
+/* The displacement at a fraction of the move, by the same arithmetic as for scripts. */
 static vec3 offset_at(const motion_hand *h, double fraction)
 {
     return fraction >= 1.0 ? h->to : vec3_add(h->from, vec3_scale(vec3_sub(h->to, h->from), fraction));
 }
 
-/* Targets of the hands at the end of a step, interpolated along their displacement. */
+/* Moves the targets of the hands to a fraction of their displacement. */
 static void move_hands(softbody *body, const motion_hand *hands, double fraction)
 {
     for (int i = 0; i < SOFTBODY_HANDS_MAX; i++)
@@ -156,7 +157,7 @@ static void move_hands(softbody *body, const motion_hand *hands, double fraction
             softbody_hold(body, i, vec3_add(hands[i].where, offset_at(&hands[i], fraction)));
 }
 
-/* About every 10 ms; *shown_s is kept between the calls. */
+/* Reports progress about every 10 ms; *shown_s is the time of the last report. */
 static void show(const load_watch *watch, double fraction, double *shown_s)
 {
     const double show_s = 0.01, now_s = watch ? clock_wall_s() : 0.0;

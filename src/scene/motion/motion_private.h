@@ -16,9 +16,9 @@ typedef struct original_slime {
 typedef struct moving_slime {
     slime x;
     size_t entry;            /* index in scene.meshes */
-    uint64_t steps;          /* steps taken */
-    double time_s;           /* the entry's step */
-    char *name, *parameters; /* parameters of its entry, for other scenes */
+    uint64_t steps;          /* steps that scene_motion_report has counted */
+    double time_s;           /* time_s of the entry */
+    char *name, *parameters; /* of the entry, to find an equal slime in another scene */
     original_slime original;
     const struct mesh *surface; /* while detached: one reference; NULL for none */
 } moving_slime;

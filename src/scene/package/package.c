@@ -1,4 +1,4 @@
-/* The head and the hash of a package, packages in memory, and the hierarchies that one holds. */
+/* Writes and reads packages: their head and hash, packages in memory, and the hierarchies that they have. */
 #include "base/build_id.h"
 #include "base/hash.h"
 #include "base/array.h"
@@ -17,7 +17,7 @@
 
 typedef struct package_head {
     char magic[8];
-    uint32_t order, version; /* of the bytes of a word */
+    uint32_t order, version; /* PACKAGE_ORDER in the machine's byte order; PACKAGE_VERSION */
     uint64_t pointer_bytes;
     char build[24]; /* filled with zeros */
     uint64_t size;  /* of the package, with head and hash */
@@ -39,16 +39,17 @@ static package_head head_of(uint64_t size)
 
 static status check_head(const package_head *head, diagnostic *why)
 {
-    const package_head own = head_of(head->size);
-    if (memcmp(head->magic, own.magic, sizeof own.magic) != 0)
-        return pack_damaged(why, "it does not begin as one");
-    if (head->order != own.order || head->version != own.version || head->pointer_bytes != own.pointer_bytes)
+    const package_head expected = head_of(head->size);
+    if (memcmp(head->magic, expected.magic, sizeof expected.magic) != 0)
+        return pack_damaged(why, "it does not begin as a package");
+    if (head->order != expected.order || head->version != expected.version ||
+        head->pointer_bytes != expected.pointer_bytes)
         return diagnose(why, STATUS_BAD_INPUT, "use machines of one kind, and the same build on each",
                         "the package of the scene comes from another kind of machine");
-    if (memcmp(head->build, own.build, sizeof own.build) != 0)
+    if (memcmp(head->build, expected.build, sizeof expected.build) != 0)
         return diagnose(why, STATUS_BAD_INPUT, "use the same build of cuvette everywhere",
                         "the package of the scene comes from another build (%.*s, not %s)", (int)sizeof head->build - 1,
-                        head->build, own.build);
+                        head->build, expected.build);
     return STATUS_OK;
 }
 
@@ -68,7 +69,7 @@ typedef struct counted_scene {
     uint64_t size;
 } counted_scene;
 
-/* Free text. */
+/* Measures the package. The caller frees c->text. */
 static status count(counted_scene *c, diagnostic *why)
 {
     TRY(scene_write_text(c->s, c->s->path, false, &c->text, why));
@@ -95,15 +96,15 @@ static status get_all(pack_reader *from, uint64_t expected_size, scene **out, di
     TRY(pack_get(from, &head, sizeof head, why));
     TRY(check_head(&head, why));
     if (head.size < sizeof head || (expected_size && head.size != expected_size))
-        return pack_damaged(why, "it has another size");
+        return pack_damaged(why, "it has the wrong size");
     from->left = head.size - sizeof head;
     TRY(package_get_scene(from, out, why));
     const uint64_t expected = hash_finish(from->hash);
     uint64_t hash;
     TRY(pack_get(from, &hash, sizeof hash, why));
     if (hash != expected)
-        return pack_damaged(why, "its hash is another one");
-    return from->left == 0 ? STATUS_OK : pack_damaged(why, "it has another size");
+        return pack_damaged(why, "its hash is wrong");
+    return from->left == 0 ? STATUS_OK : pack_damaged(why, "it has the wrong size");
 }
 
 static status unpack(pack_read *read, void *context, uint64_t expected_size, scene **out, diagnostic *why)
@@ -147,8 +148,8 @@ status scene_pack(const scene *s, void **bytes, size_t *size, diagnostic *why)
     status code = count(&c, why);
     if (code == STATUS_OK && !(*bytes = large_pages(malloc(c.size), c.size)))
         code = out_of_memory(why);
-    memory there = {.at = *bytes, .left = c.size};
-    pack_writer to = {.write = to_memory, .context = &there, .hash = HASH_START};
+    memory buffer = {.at = *bytes, .left = c.size};
+    pack_writer to = {.write = to_memory, .context = &buffer, .hash = HASH_START};
     THEN(code, put_all(&to, c.size, s, c.text, why));
     free(c.text);
     if (code != STATUS_OK) {
@@ -172,11 +173,11 @@ static status from_memory(void *context, void *bytes, size_t size, diagnostic *w
 
 status scene_unpack(const void *bytes, size_t size, scene **out, diagnostic *why)
 {
-    memory there = {.from = bytes, .left = size};
-    return unpack(from_memory, &there, size ? size : 1, out, why);
+    memory buffer = {.from = bytes, .left = size};
+    return unpack(from_memory, &buffer, size ? size : 1, out, why);
 }
 
-/* Those that the plan of a frame (render/plan/plan.c) takes from the meshes. */
+/* Builds the hierarchies that the plan of a frame (render/plan/plan.c) uses. */
 status scene_build_hierarchies(const scene *s, diagnostic *why)
 {
     if (!s->render.keep || integrator_traits_of(&s->render)->drawn)

@@ -1,4 +1,4 @@
-/* The contents of a package: the scene's text, path and limits, and what is loaded. */
+/* Writes and reads the contents of a package: the scene's text, path and limits, and all loaded data. */
 #include "geometry/hierarchy/hierarchy.h"
 #include "image/texture.h"
 #include "scene/model/check.h"
@@ -10,14 +10,14 @@
 
 /* --- the materials in a mesh file, and their images, each once --- */
 
-/* Numbers that the parameter table and the importer allow at most. */
+/* No number of a material that the parameter table or the importer allows is larger. */
 #define NUMBER_MAX 1e6
 
 typedef struct face_record {
     char name[SCENE_NAME_MAX + 1];
     int64_t given;
     double number[8]; /* colour, diffuse, specular, shininess, emission, opacity */
-    int64_t image;    /* 0: none; 1: it follows; else that of slot image - 2 */
+    int64_t image;    /* 0: none; 1: it follows; else the image of slot image - 2 */
 } face_record;
 _Static_assert(sizeof(face_record) == SCENE_NAME_MAX + 1 + 10 * 8 && SCENE_NAME_MAX % 8 == 7, "no padding");
 
@@ -54,11 +54,11 @@ static status put_face_materials(pack_writer *to, const face_materials *l, diagn
 
 static bool is_record(const face_record *r, int slot)
 {
-    bool sound =
+    bool valid =
         memchr(r->name, 0, sizeof r->name) && r->given >= 0 && r->given <= 1 && r->image >= 0 && r->image <= slot + 1;
     for (size_t i = 0; i < sizeof r->number / sizeof *r->number; i++)
-        sound = sound && r->number[i] >= 0.0 && r->number[i] <= NUMBER_MAX;
-    return sound;
+        valid = valid && r->number[i] >= 0.0 && r->number[i] <= NUMBER_MAX;
+    return valid;
 }
 
 static status get_material(pack_reader *from, face_material *list, int slot, diagnostic *why)
@@ -115,17 +115,17 @@ static status get_face_materials(pack_reader *from, const face_materials **out, 
     return code;
 }
 
-/* --- what is loaded --- */
+/* --- loaded data --- */
 
-/* How an entry's data are given. */
+/* Where the data of an entry are. */
 enum {
     DATA_NONE,
     DATA_FOLLOWS,
-    DATA_OF_ENTRY
-}; /* from DATA_OF_ENTRY on: those of entry number (value - DATA_OF_ENTRY) */
+    DATA_OF_ENTRY /* DATA_OF_ENTRY + i: with the earlier entry i */
+};
 
 typedef struct scene_record {
-    uint64_t triangles; /* of its limits */
+    uint64_t triangles; /* the limit of loading */
     int64_t image_line, image_column, image, textures, meshes;
 } scene_record;
 
@@ -217,7 +217,7 @@ static status get_sky(pack_reader *from, background *sky, diagnostic *why)
     return STATUS_OK;
 }
 
-/* Whether data are none, follow, or belong to one of the entries before that have any. */
+/* Whether `data` is a valid value: none, follows, or an earlier entry. */
 static bool is_known(int64_t data, size_t index)
 {
     return data >= DATA_NONE && (data <= DATA_FOLLOWS || (uint64_t)(data - DATA_OF_ENTRY) < index);
@@ -277,7 +277,7 @@ static status get_mesh(pack_reader *from, scene *s, size_t index, diagnostic *wh
     return get_fitting_materials(from, m, why);
 }
 
-/* The scene of the text, with nothing loaded. */
+/* Reads the scene from its text; nothing is loaded. */
 static status get_text(pack_reader *from, scene **out, diagnostic *why)
 {
     char *path = NULL, *root = NULL, *text = NULL;

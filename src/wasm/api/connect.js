@@ -1,24 +1,24 @@
 /* The API with its calls in a worker, as promises: the page stays free while a scene loads and a slime settles.
  *
  * exports: connect(worker, options) -> Promise of a Cuvette
- *   worker: new Worker('api/worker.js', {type: 'module'}), or one of node:worker_threads, for this alone
+ *   worker: new Worker('api/worker.js', {type: 'module'}), or one of node:worker_threads; nothing else may use it
  *   options: as for load; module must be an address
- * Every method returns a promise, of the same result; destroy() does not, and version, isa are values. A render and an
- * advance take progress, tile and signal. */
+ * Every method except destroy() returns a promise of its result; version and isa are values. render and advance accept
+ * progress, tile and signal. */
 
 import { CALLS } from './calls.js';
 import { CuvetteError, cancelled } from './errors.js';
 
-class Line {
+class Connection {
   #waiting = new Map();
   #last = 0;
 
   constructor(worker) {
     this.worker = worker;
     this.collected = new FinalizationRegistry((number) => this.release(number));
-    const hear = (message) => this.#hear(message);
-    if (worker.on) worker.on('message', hear);
-    else worker.addEventListener('message', ({ data }) => hear(data));
+    const receive = (message) => this.#receive(message);
+    if (worker.on) worker.on('message', receive);
+    else worker.addEventListener('message', ({ data }) => receive(data));
     const fail = (error) => this.#fail(error.message ?? 'the worker cannot be started');
     if (worker.on) worker.on('error', fail);
     else worker.addEventListener('error', fail);
@@ -35,7 +35,7 @@ class Line {
     this.#waiting.clear();
   }
 
-  #hear({ id, value, made, error, aborted, callback, values }) {
+  #receive({ id, value, created, error, aborted, callback, values }) {
     const call = this.#waiting.get(id);
     if (!call) return;
     if (callback) {
@@ -46,10 +46,10 @@ class Line {
     call.end();
     if (aborted) call.reject(cancelled(call.signal));
     else if (error) call.reject(new CuvetteError(error.status, error));
-    else call.resolve(made ? this.make(made) : value);
+    else call.resolve(created ? this.make(created) : value);
   }
 
-  /* The object of a worker's object. */
+  /* Makes the page's object for an object of the worker. */
   make({ kind, number }) {
     const remote = new KINDS[kind](this, number);
     this.collected.register(remote, number, remote);
@@ -60,15 +60,15 @@ class Line {
     this.worker.postMessage({ destroy: number });
   }
 
-  /* An options object's functions stay here, and its signal. */
+  /* The functions and the signal of an options object stay in the page. */
   #split(value, call) {
     if (value instanceof Remote) return { remote: value.number };
     if (!value || Object.getPrototypeOf(value) !== Object.prototype) return value;
     const plain = {};
-    for (const [key, one] of Object.entries(value)) {
-      if (typeof one === 'function') call.callbacks[key] = one;
-      else if (key === 'signal') call.signal = one;
-      else plain[key] = one;
+    for (const [key, option] of Object.entries(value)) {
+      if (typeof option === 'function') call.callbacks[key] = option;
+      else if (key === 'signal') call.signal = option;
+      else plain[key] = option;
     }
     return plain;
   }
@@ -91,14 +91,14 @@ class Line {
 }
 
 class Remote {
-  constructor(line, number) {
-    this.line = line;
+  constructor(connection, number) {
+    this.connection = connection;
     this.number = number;
   }
 
   destroy() {
-    this.line.collected.unregister(this);
-    this.line.release(this.number);
+    this.connection.collected.unregister(this);
+    this.connection.release(this.number);
   }
 }
 
@@ -107,29 +107,29 @@ const KINDS = Object.fromEntries(
     const Kind = class extends Remote {};
     for (const method of methods)
       Kind.prototype[method] = function (...values) {
-        return this.line.call(this.number, method, values);
+        return this.connection.call(this.number, method, values);
       };
     return [kind, Kind];
   }),
 );
 
-/* Addresses are the page's, not the worker's; a message cannot hold a URL. */
+/* Addresses are relative to the page, not to the worker; a message cannot contain a URL object. */
 function placeFor(options) {
-  const whole = (one) => {
-    if (!(one instanceof URL || typeof one === 'string')) return one;
-    return globalThis.location ? new URL(one, location.href).href : String(one);
+  const absolute = (value) => {
+    if (!(value instanceof URL || typeof value === 'string')) return value;
+    return globalThis.location ? new URL(value, location.href).href : String(value);
   };
-  return Object.fromEntries(Object.entries(options).map(([key, one]) => [key, whole(one)]));
+  return Object.fromEntries(Object.entries(options).map(([key, value]) => [key, absolute(value)]));
 }
 
 export async function connect(worker, options) {
-  const line = new Line(worker);
-  await line.call(0, 'load', [placeFor(options)]);
-  const cuvette = new KINDS.Cuvette(line, 0);
+  const connection = new Connection(worker);
+  await connection.call(0, 'load', [placeFor(options)]);
+  const cuvette = new KINDS.Cuvette(connection, 0);
   const facts = await cuvette.facts();
   return Object.assign(cuvette, facts, {
     Scene: { read: (...values) => cuvette.readScene(...values), create: () => cuvette.createScene() },
     memoryBytes: async () => (await cuvette.facts()).memoryBytes,
-    destroy: () => line.end(),
+    destroy: () => connection.end(),
   });
 }

@@ -34,13 +34,13 @@ export interface Tile {
   y0: number;
   x1: number;
   y1: number;
-  coarse: number; // 1: final; n: of a preview, one value for each n x n pixels
+  coarse: number; // 1: final; n: a preview with one value per n x n pixels
   width: number;
   height: number;
   srgb: Uint8ClampedArray; // RGBA, width x height
 }
 export interface RenderOptions {
-  progress?: (share: number) => void;
+  progress?: (fraction: number) => void;
   tile?: (tile: Tile) => void;
   signal?: AbortSignal;
   preview?: number; // 2..64
@@ -62,7 +62,7 @@ export interface Image {
   width: number;
   height: number;
   srgb: Uint8ClampedArray; // RGBA
-  rgb: Float32Array; // linear, 3 for each pixel
+  rgb: Float32Array; // linear, 3 per pixel
   hash: string; // of the film, 16 hex digits
   counters: Counters;
   wall_s: number;
@@ -115,7 +115,7 @@ export interface Curve {
   y: string;
 }
 export interface Hit {
-  distance: number | null; // null: no hit, and only before is there
+  distance: number | null; // null: no hit, and only `before` is set
   before: string | null; // the names of solids; null: outside
   after?: string | null;
   solid?: string | null;
@@ -150,7 +150,7 @@ export interface Slime {
   speed_max: number;
 }
 export interface AdvanceOptions {
-  progress?: (share: number) => void;
+  progress?: (fraction: number) => void;
   signal?: AbortSignal;
 }
 

@@ -1,8 +1,8 @@
-/* Cuvette in JavaScript: scenes, renders, ray trees and slimes, as cuvette.h has them, in a browser or in node. The
- * README in the folder above describes it.
+/* Cuvette in JavaScript: scenes, renders, ray trees and slimes of cuvette.h, in a browser or in node. The README in the
+ * folder above describes it.
  *
- * exports: load({folder} or {module, wasm}) -> Promise of a Cuvette; connect(worker, the same) -> Promise of one whose
- * calls run in a worker; hasVectors(); CuvetteError */
+ * exports: load({folder} or {module, wasm}) -> Promise of a Cuvette; connect(worker, options as for load) -> Promise of
+ * a Cuvette whose calls run in a worker; hasVectors(); CuvetteError */
 
 import { Engine } from './engine.js';
 import { Memory } from './memory.js';
@@ -31,7 +31,7 @@ class Cuvette {
     return this.#memory.module.UTF8ToString(this.#memory.module._wasm_isa());
   }
 
-  /* Bytes of memory that the module has; it never gives any back. */
+  /* Bytes of memory that the module has; the memory never shrinks. */
   get memoryBytes() {
     return this.#memory.module.HEAPU8.length;
   }
@@ -49,8 +49,8 @@ class Cuvette {
   }
 }
 
-/* folder: the address of a folder with simd128/ and plain/ as `make wasm` makes it, of which one is chosen; or module,
- * the address of cuvette.js or its function, and wasm: an address, bytes or a WebAssembly.Module. */
+/* folder: the address of the folder that `make wasm` makes, from which simd128/ or plain/ is chosen; or module: the
+ * address of cuvette.js or its function, and wasm: an address, bytes or a WebAssembly.Module. */
 export async function load(options) {
   return new Cuvette(await instantiate(options));
 }

@@ -3,13 +3,13 @@
  * exports: Engine
  *   engine.render(scene, {progress, tile, signal, preview}) -> Promise of
  *     {width, height, srgb, rgb, hash, counters, wall_s}
- *   progress(share)  0..1
- *   tile({x0, y0, x1, y1, coarse, width, height, srgb})   finished pixels; of a preview (coarse > 1) width x height
- *                    values, one for each coarse x coarse pixels
+ *   progress(fraction)  0..1
+ *   tile({x0, y0, x1, y1, coarse, width, height, srgb})   finished pixels; in a preview (coarse > 1) width x height
+ *                    values, one per coarse x coarse pixels
  *   signal           an AbortSignal
  *   preview          2..64: first an image of 1/preview of the width and height, as a tile
- *   srgb: Uint8ClampedArray, RGBA as ImageData takes it; rgb: Float32Array, linear, 3 for each pixel; hash: 16 hex
- *   digits; wall_s: the seconds of its turns */
+ *   srgb: Uint8ClampedArray, RGBA for ImageData; rgb: Float32Array, linear, 3 per pixel; hash: 16 hex digits; wall_s:
+ *   seconds spent in turns */
 
 import { badInput, cancelled, BUSY, CuvetteError } from './errors.js';
 import { Handle } from './handle.js';
@@ -50,7 +50,7 @@ class Render extends Handle {
     return this.memory.call('wasm_render_share', this.at);
   }
 
-  /* Passes what is new to tile(). */
+  /* Passes the tiles since the last call to tile(). */
   show(tile) {
     for (const [x0, y0, x1, y1] of this.memory.json('wasm_render_tiles', this.at))
       tile({ x0, y0, x1, y1, coarse: 1, width: x1 - x0, height: y1 - y0, srgb: this.srgb(x0, y0, x1, y1) });
@@ -76,7 +76,7 @@ export class Engine {
     try {
       const signals = [signal, this.#stop.signal].filter(Boolean);
       if (preview) await this.#preview(scene, preview, signals, tile);
-      return await this.#whole(scene, signals, progress, tile);
+      return await this.#full(scene, signals, progress, tile);
     } finally {
       this.#busy = false;
     }
@@ -91,13 +91,13 @@ export class Engine {
   }
 
   async #run(render, signals, each) {
-    for (let share = 0; ;) {
-      for (const one of signals) if (one.aborted) throw cancelled(one);
-      each?.(share);
-      if (share === 1) return;
+    for (let fraction = 0; ;) {
+      for (const signal of signals) if (signal.aborted) throw cancelled(signal);
+      each?.(fraction);
+      if (fraction === 1) return;
       await breathe();
-      for (const one of signals) if (one.aborted) throw cancelled(one);
-      share = render.turn();
+      for (const signal of signals) if (signal.aborted) throw cancelled(signal);
+      fraction = render.turn();
     }
   }
 
@@ -113,12 +113,12 @@ export class Engine {
     }
   }
 
-  async #whole(scene, signals, progress, tile) {
+  async #full(scene, signals, progress, tile) {
     const render = new Render(scene, 1);
     try {
-      await this.#run(render, signals, (share) => {
+      await this.#run(render, signals, (fraction) => {
         if (tile) render.show(tile);
-        progress?.(share);
+        progress?.(fraction);
       });
       const result = render.result();
       const { width, height } = result;

@@ -2,9 +2,9 @@
  *
  * exports: Memory
  *   memory.text(method, ...)      the text that a function of the module returns, which is freed; throws CuvetteError
- *   memory.json(method, ...)      the same as a value
- *   memory.check(method, ...)     a function of cuvette.h whose last parameter is `why`: throws CuvetteError
- *   memory.handle(method, ...)    the same, with the place of a new handle before `why`; returns the handle
+ *   memory.json(method, ...)      like text, but parses JSON
+ *   memory.check(method, ...)     calls a function of cuvette.h whose last parameter is `why`; throws CuvetteError
+ *   memory.handle(method, ...)    like check, for a function whose parameter before `why` returns a new handle
  * Arguments: a string is passed as text, an array or a Float64Array as numbers of type double, a Uint8Array as bytes.
  * They are copied, and freed after the call. */
 
@@ -15,7 +15,7 @@ const encoder = new TextEncoder();
 export class Memory {
   constructor(module) {
     this.module = module;
-    this.place = module._malloc(16); /* of results */
+    this.place = module._malloc(16); /* where functions return handles */
     this.error = module._wasm_error();
   }
 
@@ -27,7 +27,7 @@ export class Memory {
     return address;
   }
 
-  #argument(value, kept) {
+  #argument(value, allocated) {
     if (typeof value === 'number' || typeof value === 'bigint') return value;
     if (typeof value === 'boolean') return Number(value);
     const bytes =
@@ -36,26 +36,26 @@ export class Memory {
         : value instanceof Uint8Array
           ? value
           : new Uint8Array(Float64Array.from(value).buffer);
-    kept.push(this.#put(bytes));
-    return kept.at(-1);
+    allocated.push(this.#put(bytes));
+    return allocated.at(-1);
   }
 
   call(method, ...values) {
-    const kept = [];
+    const allocated = [];
     try {
-      return this.module[`_${method}`](...values.map((value) => this.#argument(value, kept)));
+      return this.module[`_${method}`](...values.map((value) => this.#argument(value, allocated)));
     } finally {
-      for (const address of kept) this.module._free(address);
+      for (const address of allocated) this.module._free(address);
     }
   }
 
-  /* status: of the call, if it returned one. */
+  /* status: the one that the call returned, if any. */
   lastError(status) {
     const address = this.module._wasm_error_json();
     if (!address) return new CuvetteError(FAILURE, { what: 'out of memory' });
-    const told = JSON.parse(this.module.UTF8ToString(address));
+    const report = JSON.parse(this.module.UTF8ToString(address));
     this.module._free(address);
-    return new CuvetteError(status ?? told.status, told);
+    return new CuvetteError(status ?? report.status, report);
   }
 
   text(method, ...values) {
@@ -82,7 +82,7 @@ export class Memory {
     return new DataView(this.module.HEAPU8.buffer).getUint32(this.place, true);
   }
 
-  /* Calls use(address) with room for that many bytes. */
+  /* Calls use(address) with the address of `size` bytes. */
   withRoom(size, use) {
     const address = this.module._malloc(size);
     if (!address) throw new CuvetteError(FAILURE, { what: 'out of memory', remedy: 'use a smaller scene or image' });

@@ -6,7 +6,7 @@ import { badInput } from './errors.js';
 
 const inNode = typeof process === 'object' && Boolean(process.versions?.node) && process.type !== 'renderer';
 
-/* A module with one function, of one 128-bit vector. */
+/* A module whose only function uses a 128-bit vector. */
 const VECTORS = [
   0, 97, 115, 109, 1, 0, 0, 0, 1, 5, 1, 96, 0, 1, 123, 3, 2, 1, 0, 10, 10, 1, 8, 0, 65, 0, 253, 15, 253, 98, 11,
 ];
@@ -25,7 +25,7 @@ async function factoryOf(module) {
     const { createRequire } = await import('node:module');
     return createRequire(import.meta.url)(pathOf(module));
   }
-  /* A classic script: as a module it needs an export, which the same text has then. */
+  /* cuvette.js is a classic script: an export makes it a module. */
   const text = await (await fetched(module)).text();
   const blob = URL.createObjectURL(new Blob([text, '\nexport default cuvette;'], { type: 'text/javascript' }));
   try {
@@ -54,7 +54,7 @@ export async function instantiate(options) {
   const { module, wasm } = options.folder === undefined ? options : placesIn(options.folder);
   if (!module || !wasm) throw badInput('the module is not given', 'give folder, or module and wasm');
   const [factory, compiled] = await Promise.all([factoryOf(module), compile(wasm)]);
-  /* Emscripten does not wait for a hook that fails. */
+  /* Emscripten ignores a failure of this hook. */
   return new Promise((resolve, reject) => {
     factory({
       instantiateWasm(imports, done) {

@@ -21,7 +21,7 @@ export class Motion extends Handle {
     this.#scene = scene;
   }
 
-  /* The names of its slimes. */
+  /* The names of the scene's slimes. */
   names() {
     return this.#scene.in().json('wasm_motion_names', this.at);
   }
@@ -33,12 +33,12 @@ export class Motion extends Handle {
   #step(time_s) {
     const began = performance.now();
     this.#scene.in().check('cuvette_motion_advance', this.at, time_s);
-    const share = BUDGET_MS / Math.max(1, performance.now() - began);
-    this.#slice_s *= Math.min(2, Math.max(0.5, share));
+    const ratio = BUDGET_MS / Math.max(1, performance.now() - began);
+    this.#slice_s *= Math.min(2, Math.max(0.5, ratio));
     this.#time_s = time_s;
   }
 
-  /* Advances to that time. While hands hold a slime it does so at once: they move in one straight line. */
+  /* Advances to time_s; while hands hold a slime, in a single step, because hands move in one straight line. */
   async advance(time_s, { progress, signal } = {}) {
     const from_s = this.#time_s;
     while (!this.#hands.size && this.#time_s + this.#slice_s < time_s) {

@@ -51,18 +51,18 @@ static json_t *hit_json(const cuvette_query *q, const cuvette_hit *h)
 
 char *wasm_query_nearest(const cuvette_query *query, const double *rays, size_t count)
 {
-    cuvette_ray *given = calloc(count + 1, sizeof *given);
+    cuvette_ray *parsed = calloc(count + 1, sizeof *parsed);
     cuvette_hit *hits = calloc(count + 1, sizeof *hits);
     diagnostic why = {.line = 0};
-    cuvette_status code = given && hits ? CUVETTE_OK : results_report(out_of_memory(&why), &why);
+    cuvette_status code = parsed && hits ? CUVETTE_OK : results_report(out_of_memory(&why), &why);
     for (size_t i = 0; code == CUVETTE_OK && i < count; i++)
-        given[i] = ray_of(rays + RAY_NUMBERS * i);
+        parsed[i] = ray_of(rays + RAY_NUMBERS * i);
     if (code == CUVETTE_OK)
-        code = results_note(cuvette_query_nearest(query, given, count, hits, &results_last));
+        code = results_note(cuvette_query_nearest(query, parsed, count, hits, &results_last));
     json_t *list = json_array();
     for (size_t i = 0; code == CUVETTE_OK && i < count; i++)
         json_add(&list, hit_json(query, &hits[i]));
-    free(given), free(hits);
+    free(parsed), free(hits);
     if (code == CUVETTE_OK)
         return results_text(list);
     json_decref(list);
@@ -87,7 +87,7 @@ static status write_tree(const cuvette_query *q, const ray_tree *tree, char **te
     return text_writer_end(&writer, trace_write_json(&content, writer.stream, why), text, NULL, why);
 }
 
-/* ray: NULL for the pixel. */
+/* ray: NULL traces the pixel. */
 static char *trace(const cuvette_query *query, int x, int y, const double *ray)
 {
     cuvette_query *q = NULL;
@@ -125,7 +125,7 @@ static status check_rule(const double *n, diagnostic *why)
     if (!engine_is_finite(n) || !engine_is_finite(n + 3) || !engine_is_finite(n + 6))
         return diagnose(why, STATUS_BAD_INPUT, "give finite numbers", "the fan's axis is not finite");
     if (!(n[9] >= 1 && n[9] <= FAN_RAYS_MAX))
-        return diagnose(why, STATUS_BAD_INPUT, "give 1 to 100000", "a fan of %g rays is out of range", n[9]);
+        return diagnose(why, STATUS_BAD_INPUT, "give 1 to 100000 rays", "a fan of %g rays is out of range", n[9]);
     if (!(n[10] >= 0 && n[10] <= 1e6) || !(n[11] >= 0 && n[11] <= 179))
         return diagnose(why, STATUS_BAD_INPUT, "give a width of 0 to 1e6, or a spread of 0 to 179 degrees",
                         "the fan's width or spread is out of range");

@@ -1,7 +1,7 @@
 /* A snapshot of a scene for rays. See "ray queries" and "ray trees and fans" in cuvette.h.
  *
  * exports: Query, rayNumbers(ray)
- * A ray is {origin, direction, reach} with arrays of 3 numbers; reach 0, or none: no limit. */
+ * A ray is {origin, direction, reach}; origin and direction are arrays of 3 numbers; reach 0, or no reach: no limit. */
 
 import { badInput } from './errors.js';
 import { Handle } from './handle.js';

@@ -1,6 +1,5 @@
-/* A render in turns, for scripts: each turn traces tiles for a while, so that the script can show them, be cancelled
- * and do other work in between. The film is that of cuvette_engine_render: its tiles add exactly, whichever turn traced
- * them. */
+/* A render in turns, for scripts: each turn renders tiles for a while, so that the script can show them, be cancelled
+ * and do other work in between. The film equals that of cuvette_engine_render, because tiles add exactly. */
 #include "base/json_build.h"
 #include "engine/canvas.h"
 #include "engine/engine_private.h"
@@ -22,31 +21,31 @@
 
 enum { SIDE_MAX = 32, SIDE_MIN = 4, RAYS_OF_TILE = 4096 };
 
-/* A turn lasts at least that many times as long as its preparation, which each one repeats. */
+/* A turn lasts at least this multiple of its preparation, which every turn repeats. */
 static const double setup_factor = 3.0;
 
 struct wasm_render {
-    cuvette_scene *of; /* refuses changes until the end */
-    bool holds;
-    scene view; /* borrows what `of` owns */
+    cuvette_scene *source; /* refuses changes until the end */
+    bool locked;           /* the source refuses changes now */
+    scene view;            /* borrows what the source owns */
     job *worker;
-    bool at_once; /* it cannot be divided */
+    bool at_once; /* the render cannot be divided into turns */
     shared_frame sum;
-    int64_t next, told; /* tiles: the next one to trace, the next one for wasm_render_tiles */
+    int64_t next, reported; /* the next tile to render, and the next for wasm_render_tiles */
     ray_counters counters;
-    bool has_photons; /* their counts are in the counters */
+    bool has_photons; /* the counters have the photons, which every turn counts */
     double until_s, budget_s, wall_s;
-    bool began; /* a tile of the turn */
+    bool began; /* the turn has begun a tile */
     codec_bytes bytes;
 };
 
-/* Photons would be traced again in each turn; render.error needs the noise of the whole image. */
+/* Each turn would trace all photons again; render.error needs the noise of the whole image. */
 static bool must_be_undivided(const render_settings *r)
 {
     return scene_has_caustics(r) || (r->error > 0.0 && r->integrator == INTEGRATOR_PATH);
 }
 
-/* The side of tiles that take about as long as one of an image with few samples. */
+/* The side of tiles: with many rays per pixel tiles are smaller, so that they take about equally long. */
 static int side_of(const render_settings *r)
 {
     const double per_pixel = scene_camera_rays(r) / ((double)r->width * (double)r->height);
@@ -58,9 +57,9 @@ static int side_of(const render_settings *r)
 
 static status begin(wasm_render *r, int coarse, diagnostic *why)
 {
-    const scene *s = r->of->model;
-    TRY(engine_check(r->of, why));
-    TRY(engine_load(r->of, NULL, why));
+    const scene *s = r->source->model;
+    TRY(engine_check(r->source, why));
+    TRY(engine_load(r->source, NULL, why));
     TRY(scene_build_hierarchies(s, why));
     TRY(job_create(&(job_settings){.level = NULL}, &r->worker, why));
     r->view = *s;
@@ -80,12 +79,12 @@ wasm_render *wasm_render_create(cuvette_scene *scene, int coarse)
         results_report(out_of_memory(&why), &why);
         return NULL;
     }
-    r->of = scene;
+    r->source = scene;
     if (results_note(engine_begin_render(scene, &results_last)) != CUVETTE_OK) {
         free(r);
         return NULL;
     }
-    r->holds = true;
+    r->locked = true;
     atomic_fetch_add(&scene->owners, 1);
     if (results_report(begin(r, coarse < 1 ? 1 : coarse, &why), &why) != CUVETTE_OK) {
         wasm_render_destroy(r);
@@ -94,21 +93,21 @@ wasm_render *wasm_render_create(cuvette_scene *scene, int coarse)
     return r;
 }
 
-static void let_go(wasm_render *r)
+static void unlock_scene(wasm_render *r)
 {
-    if (r->holds)
-        engine_end_render(r->of);
-    r->holds = false;
+    if (r->locked)
+        engine_end_render(r->source);
+    r->locked = false;
 }
 
 void wasm_render_destroy(wasm_render *r)
 {
     if (!r)
         return;
-    let_go(r);
+    unlock_scene(r);
     shared_frame_release(&r->sum);
     job_destroy(r->worker);
-    engine_release_scene(r->of);
+    engine_release_scene(r->source);
     free(r);
 }
 
@@ -124,7 +123,7 @@ static bool next(void *context, int worker, image_tile *out)
     wasm_render *r = context;
     (void)worker;
     const double now_s = clock_wall_s();
-    if (!r->began) /* the preparation ends */
+    if (!r->began) /* the preparation has ended */
         r->until_s = now_s + fmax(r->budget_s, setup_factor * (now_s - r->until_s));
     else if (now_s >= r->until_s)
         return false;
@@ -132,14 +131,14 @@ static bool next(void *context, int worker, image_tile *out)
     return r->next < r->sum.places.tile_count && schedule_tile(&r->sum.places, r->next, out) && ++r->next;
 }
 
-static void done(void *context, const image_tile *rect, const film *traced, const double *variance)
+static void done(void *context, const image_tile *rect, const film *rendered, const double *variance)
 {
     wasm_render *r = context;
     (void)variance;
-    film_put_tile(r->sum.img, rect->x0, rect->y0, rect->x1, rect->y1, traced->sum);
+    film_put_tile(r->sum.img, rect->x0, rect->y0, rect->x1, rect->y1, rendered->sum);
 }
 
-/* Every turn counts the same photons. */
+/* Adds the counters of a turn; every turn counts the same photons. */
 static void count(wasm_render *r, const ray_counters *turn)
 {
     ray_counters c = *turn;
@@ -149,7 +148,7 @@ static void count(wasm_render *r, const ray_counters *turn)
     ray_counters_add(&r->counters, &c);
 }
 
-static status trace(wasm_render *r, diagnostic *why)
+static status render_tiles(wasm_render *r, diagnostic *why)
 {
     const tile_source source = {.side = side(r), .next = next, .done = done, .context = r};
     const render_options options = {.source = r->at_once ? NULL : &source};
@@ -175,10 +174,10 @@ int wasm_render_turn(wasm_render *r, double budget_s)
     diagnostic why = {.line = 0};
     const double began_s = clock_wall_s();
     r->budget_s = budget_s;
-    const status code = r->next < r->sum.places.tile_count ? trace(r, &why) : STATUS_OK;
+    const status code = r->next < r->sum.places.tile_count ? render_tiles(r, &why) : STATUS_OK;
     r->wall_s += clock_wall_s() - began_s;
     if (code != STATUS_OK || r->next == r->sum.places.tile_count)
-        let_go(r);
+        unlock_scene(r);
     return (int)results_report(code, &why);
 }
 
@@ -193,11 +192,11 @@ char *wasm_render_tiles(wasm_render *r)
 {
     json_t *list = json_array();
     image_tile at;
-    if (r->at_once && r->told < r->next) {
-        r->told = r->next;
+    if (r->at_once && r->reported < r->next) {
+        r->reported = r->next;
         json_add(&list, json_pack("[i,i,i,i]", 0, 0, r->sum.img->width, r->sum.img->height));
     }
-    for (; r->told < r->next && schedule_tile(&r->sum.places, r->told, &at); r->told++)
+    for (; r->reported < r->next && schedule_tile(&r->sum.places, r->reported, &at); r->reported++)
         json_add(&list, json_pack("[i,i,i,i]", at.x0, at.y0, at.x1, at.y1));
     return results_text(list);
 }

@@ -1,4 +1,4 @@
-/* The last error, and results as JSON texts. */
+/* Stores the last error, and converts results to JSON texts. */
 #include "base/json_build.h"
 #include "engine/engine_private.h"
 #include "report/json.h"

@@ -9,7 +9,7 @@
 #include <math.h>
 #include <stdlib.h>
 
-/* Reads a text of a length that the first call finds out. */
+/* Returns a text whose length the first call of the library finds. */
 static char *sized_text(const cuvette_scene *s, const char *path)
 {
     size_t length = 0;

@@ -18,9 +18,9 @@ function makeFolder(FS, path) {
   }
 }
 
-/* The files of a scene and its clones, in a folder of their own, which is theirs to release. */
+/* The files of a scene and its clones, in a folder that is removed when the last of them is released. */
 class Files {
-  /* name: of the scene file, whose folder paths start in. */
+  /* name: the scene file's; paths are relative to its folder. */
   constructor(FS, name, files) {
     this.FS = FS;
     this.users = 1;
@@ -71,7 +71,7 @@ export class Scene extends Handle {
     this.#files = files;
   }
 
-  /* Reads a scene's text. name: of the file, in errors. files: {name: bytes} of the images and meshes that it names. */
+  /* Reads a scene's text. name: the file's, for errors. files: {name: bytes} of the images and meshes that it names. */
   static read(memory, text, { name = 'scene.yaml', files = {} } = {}) {
     const bytes = typeof text === 'string' ? new TextEncoder().encode(text) : text;
     const folder = new Files(memory.module.FS, name, files);
@@ -88,7 +88,7 @@ export class Scene extends Handle {
     return new Scene(memory, memory.handle('cuvette_scene_create'), new Files(memory.module.FS, '', {}));
   }
 
-  /* The memory, while the scene's files are in the working folder; for the other classes of the API. */
+  /* The memory, after a change to the folder of the scene's files; for all calls that may read them. */
   in() {
     this.#memory.module.FS.chdir(this.#files.path);
     return this.#memory;
@@ -155,7 +155,7 @@ export class Scene extends Handle {
     this.in().check('cuvette_scene_rename', this.at, name, to);
   }
 
-  /* A snapshot for rays. lambda_nm: at that wavelength. */
+  /* A snapshot of the scene for rays; lambda_nm: at one wavelength. */
   query({ lambda_nm } = {}) {
     const memory = this.in();
     const address =
@@ -182,7 +182,7 @@ export class Scene extends Handle {
     return this.#ask((query) => query.fan(rule), options);
   }
 
-  /* {metrics, curves}: its optics and the textbook's. */
+  /* {metrics, curves}: the scene's optics compared with theory. */
   realism() {
     return this.in().json('wasm_scene_realism', this.at);
   }
@@ -191,7 +191,7 @@ export class Scene extends Handle {
     return this.in().json('wasm_scene_curve', this.at, name);
   }
 
-  /* The motion of its slimes from their start. */
+  /* The motion of the scene's slimes from time 0. */
   motion() {
     return new Motion(this);
   }

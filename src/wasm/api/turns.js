@@ -4,7 +4,7 @@
 
 export const BUDGET_MS = 20;
 
-/* Until the messages and events that wait are handled, without the delay of a timer. */
+/* Resolves when pending messages and events are handled, without the delay of a timer. */
 export const breathe = globalThis.setImmediate
   ? () => new Promise((resolve) => setImmediate(resolve))
   : () =>

@@ -1,8 +1,8 @@
-/* The worker of connect(): holds the objects and answers calls. As a module worker of a browser or of node.
+/* The worker of connect(): holds the objects and answers calls. It is a module worker of a browser or of node.
  *
  * page -> worker  {id, number, method, values, callbacks}   number: of the object; values: {remote: number} for objects
  *                 {abort: id}, {destroy: number}
- * worker -> page  {id, value}, {id, made: {kind, number}}, {id, error}, {id, aborted: true}
+ * worker -> page  {id, value}, {id, created: {kind, number}}, {id, error}, {id, aborted: true}
  *                 {id, callback, values} */
 
 import { CALLS } from './calls.js';
@@ -10,12 +10,12 @@ import { load } from './cuvette.js';
 
 const port = globalThis.postMessage ? globalThis : (await import('node:worker_threads')).parentPort;
 const objects = new Map();
-const stops = new Map(); /* the AbortControllers of calls that run */
+const stops = new Map(); /* the AbortControllers of running calls */
 let last = 0;
 
 const KINDS = ['Scene', 'Query', 'Motion', 'Engine'];
 
-/* The loaded API as an object of calls. */
+/* Object 0: the loaded API. */
 class Root {
   async load(options) {
     const cuvette = await load(options);
@@ -32,18 +32,18 @@ objects.set(0, new Root());
 
 const kindOf = (value) => KINDS.find((kind) => value?.constructor?.kind === kind);
 
-/* Copies nothing: buffers that the result alone has move to the page. */
+/* The buffers of a result, which are moved to the page, not copied. */
 const buffersOf = (value) =>
   Object.values(value ?? {})
     .filter((one) => ArrayBuffer.isView(one))
     .map((one) => one.buffer);
 
 function optionsOf(value, { id, callbacks }) {
-  const own = { ...value };
+  const options = { ...value };
   for (const callback of callbacks)
-    own[callback] = (...values) => port.postMessage({ id, callback, values }, values.flatMap(buffersOf));
-  own.signal = stops.get(id).signal;
-  return own;
+    options[callback] = (...values) => port.postMessage({ id, callback, values }, values.flatMap(buffersOf));
+  options.signal = stops.get(id).signal;
+  return options;
 }
 
 const takesOptions = (method) => method === 'render' || method === 'advance';
@@ -65,19 +65,19 @@ async function answer(message) {
     const kind = kindOf(value);
     if (kind) {
       objects.set(++last, value);
-      port.postMessage({ id, made: { kind, number: last } });
+      port.postMessage({ id, created: { kind, number: last } });
     } else {
       port.postMessage({ id, value }, buffersOf(value));
     }
   } catch (error) {
-    const told = error.toJSON?.() ?? { status: 1, what: String(error.message ?? error) };
-    port.postMessage(error.name === 'AbortError' ? { id, aborted: true } : { id, error: told });
+    const report = error.toJSON?.() ?? { status: 1, what: String(error.message ?? error) };
+    port.postMessage(error.name === 'AbortError' ? { id, aborted: true } : { id, error: report });
   } finally {
     stops.delete(id);
   }
 }
 
-function hear(message) {
+function receive(message) {
   if (message.abort !== undefined) {
     stops.get(message.abort)?.abort();
   } else if (message.destroy !== undefined) {
@@ -87,5 +87,5 @@ function hear(message) {
     answer(message);
   }
 }
-port.addEventListener('message', ({ data }) => hear(data));
+port.addEventListener('message', ({ data }) => receive(data));
 port.start?.();

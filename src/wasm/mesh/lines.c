@@ -1,4 +1,4 @@
-/* Lines of words. */
+/* Divides a text into lines, words and numbers (mesh.h). */
 #include "import/obj.h"
 #include "wasm/mesh/mesh.h"
 

@@ -1,7 +1,7 @@
-/* Readers of mesh files for browsers, without assimp: plain OBJ with MTL, and PLY. Triangles, vertices, normals and
- * materials are those of the program's importer, so that films have the same hash. Ownership: mesh_parts_release frees
- * what a reader made, also after an error. Errors: STATUS_BAD_INPUT with the line in the text, STATUS_FAILURE without
- * memory. */
+/* Readers of mesh files for browsers, without assimp: OBJ with MTL, and PLY. Triangles, vertices, normals and materials
+ * equal those of the program's importer, so that films have the same hash. Ownership: mesh_parts_release frees what a
+ * reader made, even after an error. Errors: STATUS_BAD_INPUT with the line in the message, STATUS_FAILURE if memory
+ * runs out. */
 #pragma once
 
 #include "base/status.h"
@@ -19,7 +19,7 @@ typedef struct mesh_material {
     char *name, *texture;      /* texture may be NULL */
 } mesh_material;
 
-/* materials[0] is that of triangles without one. */
+/* materials[0] is for triangles without a material. */
 typedef struct mesh_parts {
     const mesh_limits *limits;
     flat_mesh flat; /* slots are indices of materials until mesh_parts_import */
@@ -31,18 +31,18 @@ typedef struct mesh_parts {
 
 status mesh_parts_begin(mesh_parts *p, const mesh_limits *limits, diagnostic *why);
 void mesh_parts_release(mesh_parts *p);
-/* A new material with the values of an OBJ file's; *index is its number. */
+/* Adds a material with the defaults of OBJ files; *index is its number. */
 status mesh_parts_material(mesh_parts *p, const char *name, size_t length, size_t *index, diagnostic *why);
-/* The vertex with these numbers: position, normal, texture coordinates; 0 for what it lacks. */
+/* Finds or adds the vertex with these numbers: position, normal, texture coordinates; missing ones are 0. */
 status mesh_parts_vertex(mesh_parts *p, const double numbers[8], uint32_t *index, diagnostic *why);
 status mesh_parts_triangle(mesh_parts *p, const uint32_t corners[3], size_t material, diagnostic *why);
 status mesh_parts_import(mesh_parts *p, mesh_import **out, diagnostic *why);
 
 /* Divides a polygon of count > 3 corners, which may be concave, into count - 2 triangles, or fewer if it is not simple;
- * returns their number. Their corners are indices of places. */
+ * returns the number of triangles, whose corners are indices of places. */
 size_t polygon_divide(const float (*places)[3], size_t count, uint32_t (*triangles)[3]);
 
-/* text: size bytes and a final 0. path: of the file, next to which others are; it is the diagnostic's file already. */
+/* text: size bytes and a final 0. path: the file's, to find material libraries next to it; `why` already has it. */
 status obj_read_text(const char *path, const char *text, size_t size, mesh_parts *p, diagnostic *why);
 status ply_read_text(const char *text, size_t size, mesh_parts *p, diagnostic *why);
 
@@ -54,14 +54,14 @@ typedef struct lines {
     long line;
 } lines;
 
-/* Begins the next line; false at the end of the text. A \ at its end joins it with the one after. */
+/* Begins the next line; false at the end of the text. A \ at the end of a line joins it with the next line. */
 bool lines_next(lines *l);
 /* The next word of the line and its length; false: none. */
 bool lines_word(lines *l, const char **word, size_t *length);
-/* Whether the word is that text. */
+/* Whether the word equals the text. */
 bool lines_is(const char *word, size_t length, const char *text);
 /* The rest of the line, without blanks at both ends. */
 size_t lines_rest(const lines *l, const char **text);
-/* Reads the line's further words as numbers, at most `most`, rounded as the importer rounds them (import/obj.h);
- * returns how many, -1: a word is none. */
+/* Reads up to `most` further words of the line as numbers, rounded as in the importer (import/obj.h); returns how many;
+ * -1: a word is not a number. */
 int lines_numbers(lines *l, int most, float *numbers);

@@ -1,4 +1,4 @@
-/* OBJ files: v, vt, vn, f with any number of corners, relative indices, usemtl, mtllib with its materials; lines,
+/* Reads OBJ files: v, vt, vn, f with any number of corners, relative indices, usemtl, mtllib with its materials; lines,
  * points, groups and smoothing are ignored. Format: Wavefront, Advanced Visualizer Manual, appendix B1, "Object
  * Files". */
 #include "base/file.h"
@@ -13,7 +13,7 @@
 
 enum { MTL_BYTES_MAX = 1 << 24 };
 
-/* One number is a grey. */
+/* Reads a colour; a single number is a grey. */
 static void read_color(lines *l, double color[3])
 {
     float v[3];
@@ -29,7 +29,7 @@ static void read_number(lines *l, double *number)
         *number = (double)v;
 }
 
-/* The name is what follows the options, which begin with -. */
+/* Reads the name of an image; after options, which begin with -, it is the last word. */
 static status read_texture(lines *l, mesh_material *m, diagnostic *why)
 {
     const char *name;
@@ -104,7 +104,7 @@ static status mtl_read(const char *path, const char *root, mesh_parts *p, diagno
 
 /* --- the mesh --- */
 
-/* A polygon of the file: its corners and the material that it has. */
+/* A polygon of the file: its corners and its material. */
 typedef struct face {
     size_t first, count, material;
 } face;
@@ -132,7 +132,7 @@ static status read_place(obj_text *o, lines *l)
     float v[7];
     const int count = lines_numbers(l, 7, v);
     if (count < 3)
-        return bad(o, "a vertex has no three numbers", "give three finite numbers");
+        return bad(o, "a vertex has fewer than three numbers", "give three finite numbers");
     if (!GROW(o->places, o->place_room, o->place_count + 1))
         return out_of_memory(o->why);
     if (count == 4 && v[3] == 0.0F)
@@ -147,7 +147,7 @@ static status read_uv(obj_text *o, lines *l)
 {
     float v[3] = {0.0F, 0.0F, 0.0F};
     if (lines_numbers(l, 3, v) < 1)
-        return bad(o, "texture coordinates are no numbers", "give two finite numbers");
+        return bad(o, "a texture coordinate is not a number", "give two finite numbers");
     if (!GROW(o->uvs, o->uv_room, o->uv_count + 1))
         return out_of_memory(o->why);
     memcpy(o->uvs[o->uv_count++], v, sizeof *o->uvs);
@@ -158,14 +158,15 @@ static status read_normal(obj_text *o, lines *l)
 {
     float v[3];
     if (lines_numbers(l, 3, v) != 3)
-        return bad(o, "a normal has no three numbers", "give three finite numbers");
+        return bad(o, "a normal has fewer than three numbers", "give three finite numbers");
     if (!GROW(o->normals, o->normal_room, o->normal_count + 1))
         return out_of_memory(o->why);
     memcpy(o->normals[o->normal_count++], v, sizeof *o->normals);
     return STATUS_OK;
 }
 
-/* An index from 1, or from -1 backwards, of `count` elements; 0: there is none with that number. */
+/* Reads the index of one of `count` elements: from 1, or from -1 backwards from the last; 0: there is no such
+ * element. */
 static uint32_t read_index(const char **at, size_t count)
 {
     char *end;
@@ -178,7 +179,7 @@ static uint32_t read_index(const char **at, size_t count)
     return (size_t)index <= count ? (uint32_t)index : 0;
 }
 
-/* place, place/uv, place//normal or place/uv/normal. */
+/* Reads a corner: place, place/uv, place//normal or place/uv/normal. */
 static bool read_corner(const obj_text *o, const char *word, size_t length, obj_corner *c)
 {
     char copy[64];
@@ -218,9 +219,9 @@ static status read_face(obj_text *o, lines *l)
         if (!GROW(o->corners, o->corner_room, o->corner_count + 1))
             return out_of_memory(o->why);
         if (!read_corner(o, word, length, &o->corners[o->corner_count]))
-            return diagnose(o->why, STATUS_BAD_INPUT, "give indices of vertices above, as 1, 1/1, 1//1 or 1/1/1",
-                            "line %ld: the corner '%.*s' of a face is invalid", o->line,
-                            (int)(length < 60 ? length : 60), word);
+            return diagnose(
+                o->why, STATUS_BAD_INPUT, "give indices of preceding vertices, such as 1, 1/1, 1//1 or 1/1/1",
+                "line %ld: the corner '%.*s' of a face is invalid", o->line, (int)(length < 60 ? length : 60), word);
         o->corner_count++;
         f.count++;
     }
@@ -246,8 +247,8 @@ static status use_material(obj_text *o, const char *name, size_t length)
 
 static status use_library(obj_text *o, const char *name, size_t length)
 {
-    char *own = strndup(name, length), *path = own ? file_next_to(o->path, own) : NULL;
-    free(own);
+    char *copy = strndup(name, length), *path = copy ? file_next_to(o->path, copy) : NULL;
+    free(copy);
     if (!path)
         return out_of_memory(o->why);
     const status code = mtl_read(path, o->parts->limits->root, o->parts, o->why);

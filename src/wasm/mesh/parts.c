@@ -1,4 +1,4 @@
-/* The mesh and the materials that a reader collects, and their import, through the checks of the importer's answers. */
+/* Collects the mesh and the materials of a reader, and imports them with the same checks as the importer's answer. */
 #include "base/array.h"
 #include "wasm/mesh/mesh.h"
 
@@ -31,9 +31,9 @@ status mesh_parts_material(mesh_parts *p, const char *name, size_t length, size_
                         (int)MESH_SLOTS_MAX);
     if (length > MESH_WIRE_TEXT_MAX)
         return diagnose(why, STATUS_BAD_INPUT, "rename it", "the name of a material is too long");
-    char *own = strndup(name, length);
-    if (!own || !GROW(p->materials, p->material_room, p->material_count + 1)) {
-        free(own);
+    char *copy = strndup(name, length);
+    if (!copy || !GROW(p->materials, p->material_room, p->material_count + 1)) {
+        free(copy);
         return out_of_memory(why);
     }
     *index = p->material_count++;
@@ -41,16 +41,16 @@ status mesh_parts_material(mesh_parts *p, const char *name, size_t length, size_
                                                       .opacity = 1,
                                                       .ior = 1,
                                                       .flags = MESH_WIRE_GIVEN},
-                                           .name = own};
+                                           .name = copy};
     return STATUS_OK;
 }
 
 status mesh_parts_vertex(mesh_parts *p, const double numbers[8], uint32_t *index, diagnostic *why)
 {
-    double own[8];
+    double key[8];
     for (int k = 0; k < 8; k++)
-        own[k] = numbers[k] + 0.0; /* -0 becomes 0 */
-    switch (join_vertex(&p->join, &p->flat, p->limits->vertices, own, join_hash(&p->flat, own), index)) {
+        key[k] = numbers[k] + 0.0; /* -0 becomes 0 */
+    switch (join_vertex(&p->join, &p->flat, p->limits->vertices, key, join_hash(&p->flat, key), index)) {
     case JOINED: return STATUS_OK;
     case JOIN_NO_MEMORY: return out_of_memory(why);
     case JOIN_TOO_MANY: break;
@@ -73,7 +73,7 @@ status mesh_parts_triangle(mesh_parts *p, const uint32_t corners[3], size_t mate
     return STATUS_OK;
 }
 
-/* --- as the importer's answer --- */
+/* --- the import, in the form of the importer's answer --- */
 
 typedef struct answer {
     char *bytes;
@@ -93,11 +93,11 @@ static void put(answer *a, const void *bytes, size_t size)
     a->size += size;
 }
 
-static status take(void *context, void *bytes, size_t size, diagnostic *why)
+static status read_answer(void *context, void *bytes, size_t size, diagnostic *why)
 {
     answer *a = context;
     if (a->size - a->read < size)
-        return diagnose(why, STATUS_FAILURE, "report this as a bug, with the file", "the mesh is not whole");
+        return diagnose(why, STATUS_FAILURE, "report this as a bug, with the file", "the mesh is incomplete");
     memcpy(bytes, a->bytes + a->read, size);
     a->read += size;
     return STATUS_OK;
@@ -120,7 +120,7 @@ static void put_material(answer *a, const mesh_material *m)
     put(a, texture, record.texture_length);
 }
 
-/* Numbers the materials that are in use, in their order. */
+/* Numbers the materials in use, in their order; returns how many there are. */
 static uint32_t number_slots(mesh_parts *p, bool used[])
 {
     uint8_t slot[MESH_SLOTS_MAX] = {0};
@@ -165,7 +165,7 @@ status mesh_parts_import(mesh_parts *p, mesh_import **out, diagnostic *why)
         return diagnose(why, STATUS_BAD_INPUT, "points and lines are ignored; use a file with faces",
                         "the file has no triangles");
     put_all(&a, p);
-    const mesh_source source = {.read = take, .end = end, .context = &a};
+    const mesh_source source = {.read = read_answer, .end = end, .context = &a};
     const status code = a.failed ? out_of_memory(why) : mesh_stream_read(&source, p->limits, out, why);
     free(a.bytes);
     return code;

@@ -1,5 +1,5 @@
-/* PLY files: vertices with positions, normals and texture coordinates, and faces, as text or binary. Format: Greg Turk,
- * "The PLY Polygon File Format", 1994. */
+/* Reads PLY files: vertices with positions, normals and texture coordinates, and faces, as text or binary. Format: Greg
+ * Turk, "The PLY Polygon File Format", 1994. */
 #include "base/array.h"
 #include "wasm/mesh/mesh.h"
 
@@ -13,9 +13,9 @@ enum { PLY_ELEMENTS_MAX = 16, PLY_PROPERTIES_MAX = 64, PLY_NUMBERS = 8 };
 typedef enum ply_type { PLY_NONE, PLY_I8, PLY_U8, PLY_I16, PLY_U16, PLY_I32, PLY_U32, PLY_F32, PLY_F64 } ply_type;
 
 typedef struct ply_property {
-    ply_type count, type; /* count: of a list, else PLY_NONE */
-    int number;           /* of the vertex: the index in its numbers; -1: ignored */
-    bool corners;         /* of a face */
+    ply_type count, type; /* count: the type of a list's length; PLY_NONE: not a list */
+    int number;           /* index in the numbers of a vertex; -1: ignored */
+    bool corners;         /* the list of a face's corners */
 } ply_property;
 
 typedef struct ply_element {
@@ -33,9 +33,9 @@ typedef struct ply {
     int element_count;
     mesh_parts *parts;
     double (*vertices)[PLY_NUMBERS];
-    uint32_t *joined; /* the vertex of the mesh; UINT32_MAX: not used yet */
+    uint32_t *joined; /* per vertex of the file: index in the mesh, if a face uses the vertex */
     size_t vertex_count, vertex_room;
-    size_t *starts;    /* of the faces in corners, and of the end */
+    size_t *starts;    /* where each face starts in corners; then the end of the last face */
     uint32_t *corners; /* indices of vertices */
     size_t face_count, start_room, corner_count, corner_room;
     diagnostic *why;
@@ -95,7 +95,7 @@ static status read_property(ply *p)
 {
     const char *word;
     size_t length;
-    ply_property got = {.number = -1};
+    ply_property parsed = {.number = -1};
     if (p->element_count == 0)
         return bad(p, "a property without an element", "fix the header");
     ply_element *e = &p->elements[p->element_count - 1];
@@ -103,17 +103,17 @@ static status read_property(ply *p)
         return bad(p, "more than 64 properties", "fix the header");
     bool good = lines_word(&p->text, &word, &length);
     if (good && lines_is(word, length, "list")) {
-        good = lines_word(&p->text, &word, &length) && (got.count = type_named(word, length)) != PLY_NONE &&
-               got.count < PLY_F32 && lines_word(&p->text, &word, &length);
+        good = lines_word(&p->text, &word, &length) && (parsed.count = type_named(word, length)) != PLY_NONE &&
+               parsed.count < PLY_F32 && lines_word(&p->text, &word, &length);
     }
-    good = good && (got.type = type_named(word, length)) != PLY_NONE && lines_word(&p->text, &word, &length);
+    good = good && (parsed.type = type_named(word, length)) != PLY_NONE && lines_word(&p->text, &word, &length);
     if (!good)
         return bad(p, "a property of unknown type", "fix the header");
-    if (e->kind == PLY_VERTEX && got.count == PLY_NONE)
-        got.number = number_named(word, length);
-    got.corners = e->kind == PLY_FACE && got.count != PLY_NONE &&
-                  (lines_is(word, length, "vertex_indices") || lines_is(word, length, "vertex_index"));
-    e->properties[e->property_count++] = got;
+    if (e->kind == PLY_VERTEX && parsed.count == PLY_NONE)
+        parsed.number = number_named(word, length);
+    parsed.corners = e->kind == PLY_FACE && parsed.count != PLY_NONE &&
+                     (lines_is(word, length, "vertex_indices") || lines_is(word, length, "vertex_index"));
+    e->properties[e->property_count++] = parsed;
     return STATUS_OK;
 }
 
@@ -220,14 +220,14 @@ static bool read_number(ply *p, ply_type type, double *value)
     return p->ascii ? read_ascii(p, type, value) : read_binary(p, type, value);
 }
 
-/* keep: the corners of a face. */
-static bool read_list(ply *p, const ply_property *of, bool keep)
+/* Reads a list; keep: appends its values to the corners. */
+static bool read_list(ply *p, const ply_property *list, bool keep)
 {
     double count, value;
-    if (!read_number(p, of->count, &count) || !(count >= 0 && count < 1e9))
+    if (!read_number(p, list->count, &count) || !(count >= 0 && count < 1e9))
         return false;
     for (double i = 0; i < count; i++) {
-        if (!read_number(p, of->type, &value))
+        if (!read_number(p, list->type, &value))
             return false;
         if (!keep)
             continue;
@@ -306,7 +306,7 @@ static status read_body(ply *p)
 
 /* --- the triangles --- */
 
-/* The vertices that faces use, in the order of the file. */
+/* Joins the vertices that faces use, in the order of the file. */
 static status join_vertices(ply *p)
 {
     p->joined = malloc((p->vertex_count + 1) * sizeof *p->joined);
@@ -326,8 +326,8 @@ static status join_vertices(ply *p)
     return STATUS_OK;
 }
 
-/* The importer never begins two triangles at the same vertex one after the other, unless they are of one quadrilateral:
- * it begins the second one elsewhere. */
+/* Imitates the importer: if a triangle begins at the same vertex as the one before it, and they are not the halves of a
+ * quadrilateral, it is rotated to begin elsewhere. */
 static void begin_elsewhere(const uint32_t *corners, uint32_t (*triangles)[3], size_t count, bool four, uint32_t *last)
 {
     for (size_t t = 0; t < count; t += four ? 2 : 1) {
@@ -361,10 +361,10 @@ static status build_face(ply *p, size_t f, bool polygons, float (*places)[3], ui
     if (polygons)
         begin_elsewhere(corners, triangles, count, size == 4, last);
     for (size_t t = 0; t < count; t++) {
-        uint32_t own[3];
+        uint32_t indices[3];
         for (int k = 0; k < 3; k++)
-            own[k] = p->joined[corners[triangles[t][k]]];
-        TRY(mesh_parts_triangle(p->parts, own, 0, p->why));
+            indices[k] = p->joined[corners[triangles[t][k]]];
+        TRY(mesh_parts_triangle(p->parts, indices, 0, p->why));
     }
     return STATUS_OK;
 }

@@ -1,6 +1,6 @@
-/* Polygons as triangles: a quadrilateral from its reflex corner, others by cutting off ears (Meisters, "Polygons have
- * ears", 1975) in the plane that their normal is most nearly perpendicular to. Single precision, and the order of the
- * ears, are those of the program's importer. */
+/* Divides polygons into triangles: a quadrilateral at its reflex corner, others by cutting off ears (Meisters,
+ * "Polygons have ears", 1975) in the coordinate plane most nearly perpendicular to their normal. Single precision, and
+ * the order of the ears, are as in the program's importer. */
 #include "wasm/mesh/mesh.h"
 
 #include <math.h>
@@ -57,7 +57,7 @@ static void normal_of(const float (*p)[3], size_t count, float n[3])
     }
 }
 
-/* The polygon along the axis of its normal's largest component, counterclockwise. */
+/* Projects the polygon along the axis of its normal's largest component, counterclockwise. */
 static void project(const float (*p)[3], size_t count, point *flat)
 {
     float n[3];
@@ -105,11 +105,11 @@ size_t polygon_divide(const float (*places)[3], size_t count, uint32_t (*triangl
     project(places, count, flat);
     for (size_t i = 0; i < count; i++)
         after[i] = (uint16_t)((i + 1) % count);
-    size_t made = 0, before = count - 1, ear = 0, left = count;
+    size_t divided = 0, before = count - 1, ear = 0, left = count;
     for (size_t tries = 0; left > 3 && tries < 2 * left; tries++) {
         const size_t next = after[ear];
         if (is_ear(flat, count, (size_t[3]){before, ear, next})) {
-            memcpy(triangles[made++], (uint32_t[3]){(uint32_t)before, (uint32_t)ear, (uint32_t)next},
+            memcpy(triangles[divided++], (uint32_t[3]){(uint32_t)before, (uint32_t)ear, (uint32_t)next},
                    sizeof *triangles);
             after[before] = (uint16_t)next;
             left--;
@@ -119,12 +119,12 @@ size_t polygon_divide(const float (*places)[3], size_t count, uint32_t (*triangl
         }
         ear = next;
     }
-    if (left > 3) /* not simple: the ears so far */
-        return made;
-    size_t last[3] = {ear, after[ear], after[after[ear]]}; /* from the lowest, in the polygon's order */
+    if (left > 3) /* the polygon is not simple: returns the ears so far */
+        return divided;
+    size_t last[3] = {ear, after[ear], after[after[ear]]}; /* in the polygon's order, beginning at the lowest index */
     while (last[0] > last[1] || last[0] > last[2])
         memcpy(last, (size_t[3]){last[1], last[2], last[0]}, sizeof last);
-    memcpy(triangles[made++], (uint32_t[3]){(uint32_t)last[0], (uint32_t)last[1], (uint32_t)last[2]},
+    memcpy(triangles[divided++], (uint32_t[3]){(uint32_t)last[0], (uint32_t)last[1], (uint32_t)last[2]},
            sizeof *triangles);
-    return made;
+    return divided;
 }

@@ -82,7 +82,8 @@ static status position_of(const scene *s, const char *name, vec3 *out, diagnosti
     param_place at;
     TRY(edit_find(s, name, &at, why));
     if (at.object_group != PARAM_SOLID && at.object_group != PARAM_LIGHT)
-        return diagnose(why, STATUS_BAD_INPUT, "name solids and lights", "%.80s cannot be edited together with others", name);
+        return diagnose(why, STATUS_BAD_INPUT, "name solids and lights", "%.80s cannot be edited together with others",
+                        name);
     *out = at.object_group == PARAM_SOLID ? s->solids[at.index].shape.position : s->lights[at.index].position;
     return STATUS_OK;
 }

@@ -14,8 +14,8 @@
 status scene_add(scene *s, param_group group, const char *name, size_t *index, diagnostic *why);
 status scene_add_solid(scene *s, const char *name, shape_kind shape, size_t *index, diagnostic *why);
 
-/* Assigns a material to a solid, whose surface parameters are replaced. NULL or "" removes the material and restores the
- * defaults. */
+/* Assigns a material to a solid, whose surface parameters are replaced. NULL or "" removes the material and restores
+ * the defaults. */
 status scene_assign_material(scene *s, const char *solid_name, const char *material_name, diagnostic *why);
 
 /* Sets a parameter like scene_set, and also the properties of a solid that are not parameters: NAME.material (as
@@ -56,9 +56,9 @@ status scene_scale(scene *s, const char *name, double factor, diagnostic *why);
  * spotlight or a beam moves as well, so that its direction stays the same. */
 status scene_move(scene *s, const char *name, vec3 delta, diagnostic *why);
 
-/* Rotates a solid, a spotlight, a beam or "camera" in place, or a group about the origin: about the world's x axis, then
- * y, then z (rotation_from_deg), in addition to the current rotation. The camera's viewing direction is rotated; its
- * image stays upright, and it remains aimed by target or by angles as before. */
+/* Rotates a solid, a spotlight, a beam or "camera" in place, or a group about the origin: about the world's x axis,
+ * then y, then z (rotation_from_deg), in addition to the current rotation. The camera's viewing direction is rotated;
+ * its image stays upright, and it remains aimed by target or by angles as before. */
 status scene_turn(scene *s, const char *name, vec3 degrees, diagnostic *why);
 
 /* Aims the camera at a point. */

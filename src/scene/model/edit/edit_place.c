@@ -216,7 +216,8 @@ status edit_turn(scene *s, const char *name, vec3 degrees, diagnostic *why)
     if (at.object_group == PARAM_BEAM)
         return turn_beam(s, &s->beams[at.index], degrees, why);
     if (at.object_group == PARAM_SOLID)
-        return edit_set_vector(s, name, "rotation", rotate_angles_by(s->solids[at.index].shape.rotation_deg, degrees), why);
+        return edit_set_vector(s, name, "rotation", rotate_angles_by(s->solids[at.index].shape.rotation_deg, degrees),
+                               why);
     return has_no(name, at.object_group, "direction", "rotate a solid, a spotlight, a beam or the camera", why);
 }
 

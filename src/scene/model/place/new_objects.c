@@ -388,7 +388,8 @@ static status copy_object(scene *s, param_group group, size_t of, const char *na
     return out_of_memory(why);
 }
 
-/* Copies a solid next to itself. The copy of a plane is behind its surface, where it has no effect until it is moved. */
+/* Copies a solid next to itself. The copy of a plane is behind its surface, where it has no effect until it is
+ * moved. */
 static status copy_solid(scene *s, size_t of, const char *name, diagnostic *why)
 {
     const placement where = placement_of(s);

@@ -21,8 +21,8 @@ status new_material(scene *s, const char *wanted, object_name name, diagnostic *
 status new_slime(scene *s, const char *wanted, object_name name, diagnostic *why);
 /* path: as written in the scene. */
 status new_texture(scene *s, const char *path, const char *wanted, object_name name, diagnostic *why);
-/* Adds a mesh and a solid. loaded: a scene with only this mesh, already loaded; path: as written in the scene; name: the
- * solid's. */
+/* Adds a mesh and a solid. loaded: a scene with only this mesh, already loaded; path: as written in the scene; name:
+ * the solid's. */
 status new_model(scene *s, const scene *loaded, const char *path, const char *wanted, object_name name,
                  diagnostic *why);
 /* A copy next to the original. */

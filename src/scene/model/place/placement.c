@@ -39,8 +39,8 @@ bool placement_ground(const scene *s, double x, double z, double *y)
     return found;
 }
 
-/* The solid's shape with a mesh that has bounds. A mesh that is not loaded is assumed to be a slime's ball, or a ball of
- * radius 1 about the origin. */
+/* The solid's shape with a mesh that has bounds. A mesh that is not loaded is assumed to be a slime's ball, or a ball
+ * of radius 1 about the origin. */
 static solid_shape with_bounds(const scene *s, const solid *of, mesh *guess)
 {
     solid_shape shape = scene_loaded_shape(s, of);
