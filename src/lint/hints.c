@@ -33,7 +33,7 @@ static bool cuts_another(const scene *s, const solid *cutter)
     for (size_t i = 0; i < s->solid_count; i++) {
         const solid *other = &s->solids[i];
         const bool seen = other->surface.transparency == 0.0 || !material_matches_surroundings(s, &other->surface);
-        if (other->visible && seen && scene_wins(cutter, other) && !scene_apart(s, cutter, other))
+        if (other->visible && seen && scene_has_precedence(cutter, other) && !scene_disjoint(s, cutter, other))
             return true;
     }
     return false;
@@ -242,8 +242,7 @@ static void hint_at_beams(const scene *s, const note_taker *taker)
                         "%s lights nothing: only photons carry the light of beams", b->name);
         else if (!b->lights && b->profile != BEAM_UNIFORM)
             note_report(taker, b->name, "profile", "set its lights to on",
-                        "the profile of %s has no effect: it is the profile of the light that the beam does not emit",
-                        b->name);
+                        "%s does not light the scene: its profile has no effect", b->name);
     }
 }
 

@@ -214,7 +214,7 @@ bool overlaps_unseen(const inert_case *c)
     const solid *hidden = NULL;
     for (size_t i = 0; i < s->solid_count; i++) {
         const solid *one = &s->solids[i];
-        if (one == c->owner || !one->visible || scene_apart(s, c->owner, one))
+        if (one == c->owner || !one->visible || scene_disjoint(s, c->owner, one))
             continue;
         if (!is_opaque_pair(c->owner, one) || !meets_unseen(s, c->owner, one))
             return false;

@@ -273,7 +273,7 @@ static bool may_be_in_dense(const scene *s, const solid *one)
 {
     for (size_t i = 0; i < s->solid_count; i++) {
         const solid *other = &s->solids[i];
-        if (is_dense(s, other) && (other == one || !scene_apart(s, one, other)))
+        if (is_dense(s, other) && (other == one || !scene_disjoint(s, one, other)))
             return true;
     }
     return false;

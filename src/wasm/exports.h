@@ -67,9 +67,9 @@ typedef struct wasm_render wasm_render;
 wasm_render *wasm_render_create(struct cuvette_scene *scene, int coarse);
 void wasm_render_destroy(wasm_render *r);
 int wasm_render_turn(wasm_render *r, double budget_s);
-double wasm_render_share(const wasm_render *r); /* the fraction that is rendered; 1: complete */
-char *wasm_render_tiles(wasm_render *r);        /* [[x0, y0, x1, y1]]: the tiles since the last call */
-char *wasm_render_result(const wasm_render *r); /* {width, height, hash, counters, wall_s} */
+double wasm_render_fraction(const wasm_render *r); /* the fraction that is rendered; 1: complete */
+char *wasm_render_tiles(wasm_render *r);           /* [[x0, y0, x1, y1]]: the tiles since the last call */
+char *wasm_render_result(const wasm_render *r);    /* {width, height, hash, counters, wall_s} */
 /* Writes RGBA with alpha 255, 4 bytes per pixel of the rectangle; linear RGB, 3 floats per pixel of the image. */
 void wasm_render_srgb(const wasm_render *r, int x0, int y0, int x1, int y1, unsigned char *rgba);
 void wasm_render_rgb(const wasm_render *r, float *rgb);

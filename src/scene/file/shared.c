@@ -57,7 +57,7 @@ status shared_scene_check(const scene *s, diagnostic *why)
     } bounds[] = {
         {"pixels", (double)s->render.width * (double)s->render.height, SHARED_PIXELS_MAX},
         {"triangles", scene_planned_triangles(s), SHARED_TRIANGLES_MAX},
-        {"rays", scene_most_rays(&s->render), SHARED_RAYS_MAX},
+        {"rays", scene_rays_bound(&s->render), SHARED_RAYS_MAX},
         {"steps times masses of slimes", motion_of(s), SHARED_MOTION_MAX},
     };
     for (size_t i = 0; i < sizeof bounds / sizeof *bounds; i++)

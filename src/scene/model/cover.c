@@ -6,7 +6,7 @@
 
 #include <math.h>
 
-bool scene_wins(const solid *winner, const solid *loser)
+bool scene_has_precedence(const solid *winner, const solid *loser)
 {
     return winner != loser && winner->visible &&
            (winner->priority > loser->priority || (winner->priority == loser->priority && winner < loser));
@@ -26,7 +26,7 @@ const solid *scene_cover(const scene *s, const solid *hidden)
     for (size_t i = 0; i < s->solid_count; i++) {
         const solid *cover = &s->solids[i];
         const shape_rule *rule = shape_of(&cover->shape);
-        if (rule->covers && scene_wins(cover, hidden)) {
+        if (rule->covers && scene_has_precedence(cover, hidden)) {
             const placed_shape c = place_shape(s, cover);
             if (rule->covers(&c, &h))
                 return cover;
@@ -52,7 +52,7 @@ static bool are_apart(const placed_shape *a, const placed_shape *b)
            (vec3_length(level) > 0.0 && apart_along(a, b, vec3_normalize(level)));
 }
 
-bool scene_apart(const scene *s, const solid *a, const solid *b)
+bool scene_disjoint(const scene *s, const solid *a, const solid *b)
 {
     const placed_shape one = place_shape(s, a), two = place_shape(s, b);
     return are_apart(&one, &two);

@@ -14,11 +14,11 @@ enum { COVER_SOLIDS_MAX = 1000 };
 const solid *scene_cover(const scene *s, const solid *hidden);
 
 /* Whether the first of two solids of a scene has precedence where they overlap. */
-bool scene_wins(const solid *winner, const solid *loser);
+bool scene_has_precedence(const solid *winner, const solid *loser);
 
 /* Whether two solids are known to be disjoint, by their extent along their own axes, the world's axes, and the line
  * between them; disjoint solids at an angle may go undetected. */
-bool scene_apart(const scene *s, const solid *a, const solid *b);
+bool scene_disjoint(const scene *s, const solid *a, const solid *b);
 
 /* Whether all origins of camera rays (an orthographic camera's image, or a lens) are known to be outside the solid. */
 bool scene_apart_from_eye(const scene *s, const solid *owner);

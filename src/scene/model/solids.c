@@ -1,4 +1,4 @@
-/* The reference-mutable_count materials of mesh files, loaded data of meshes and textures, and checks of slimes. */
+/* The reference-counted materials of mesh files, loaded data of meshes and textures, and checks of slimes. */
 #include "geometry/shapes/shape.h"
 #include "scene/model/solids.h"
 

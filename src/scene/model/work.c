@@ -38,7 +38,7 @@ double scene_camera_rays(const render_settings *r)
     return (double)r->width * (double)r->height * rays * wavelengths;
 }
 
-double scene_most_rays(const render_settings *r)
+double scene_rays_bound(const render_settings *r)
 {
     const double levels = (double)r->depth + 1.0;
     const double tree = fmin(exp2(levels), r->min_weight > 0.0 ? levels / r->min_weight : INFINITY);

@@ -12,7 +12,7 @@ double scene_camera_rays(const struct render_settings *r);
 
 /* An upper bound of the number of rays, without shadow rays. A level of a tree has at most twice the rays of the level
  * above it, and at most 1 / min_weight, because the weights of a level sum to at most 1. */
-double scene_most_rays(const struct render_settings *r);
+double scene_rays_bound(const struct render_settings *r);
 
 /* The work of a slime: steps to its time_s, times masses. */
 double slime_work(const mesh_entry *m);

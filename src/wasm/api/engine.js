@@ -47,7 +47,7 @@ class Render extends Handle {
   turn() {
     const status = this.scene.in().call('wasm_render_turn', this.at, BUDGET_MS / 1000);
     if (status) throw this.memory.lastError(status);
-    return this.memory.call('wasm_render_share', this.at);
+    return this.memory.call('wasm_render_fraction', this.at);
   }
 
   /* Passes the tiles since the last call to tile(). */

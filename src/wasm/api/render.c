@@ -181,7 +181,7 @@ int wasm_render_turn(wasm_render *r, double budget_s)
     return (int)results_report(code, &why);
 }
 
-double wasm_render_share(const wasm_render *r)
+double wasm_render_fraction(const wasm_render *r)
 {
     return (double)r->next / (double)r->sum.places.tile_count;
 }
