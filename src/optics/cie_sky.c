@@ -1,4 +1,4 @@
-/* The types of the CIE standard general sky. */
+/* The CIE standard general sky: parameters of the 15 types, relative luminance, and its mean. */
 #include "optics/cie_sky.h"
 
 #include "base/elementary.h"
@@ -54,7 +54,7 @@ static double gradation(const cie_sky_type *t, double cos_zenith)
     return 1.0 + t->a * exponential(t->b / cos_zenith);
 }
 
-/* By the cosine and sine of the angle from the sun. */
+/* The indicatrix, from the cosine and sine of the angle from the sun. */
 static double indicatrix(const cie_sky_type *t, double cosine, double sine)
 {
     const double angle = elementary_atan2_deg(sine, cosine) * (PI / 180.0);
@@ -75,7 +75,8 @@ double cie_sky_relative(const cie_sky *sky, vec3 direction)
     return indicatrix(&sky->of, cosine, sine) * gradation(&sky->of, direction.y) / sky->zenith;
 }
 
-/* Midpoints in the squared root of the height, since the gradation is steep at the horizon, and in azimuth. */
+/* The midpoint rule in azimuth and in the square root of the height, which resolves the steep gradation at the
+ * horizon. */
 double cie_sky_mean(const cie_sky *sky)
 {
     enum { HEIGHTS = 192, AZIMUTHS = 192 };

@@ -14,22 +14,23 @@ typedef struct cie_sky_type {
     double a, b, c, d, e;
 } cie_sky_type;
 
-/* Of type 1 .. CIE_SKY_TYPES. */
+/* The parameters of a type, 1 .. CIE_SKY_TYPES. */
 cie_sky_type cie_sky_type_of(int type);
 
 typedef struct cie_sky {
     cie_sky_type of;
     vec3 to_sun;   /* unit vector */
     double zenith; /* f(Z_s) phi(0) */
-    double mean;   /* over the upper hemisphere, by solid angle; 0 unless cie_sky_mean was stored here */
+    double mean;   /* cie_sky_mean if the caller stored it here; else 0 */
 } cie_sky;
 
-/* With the sun in that direction, a unit vector; y is up. */
+/* The sky of a type with the sun in direction to_sun, a unit vector; y is up. */
 cie_sky cie_sky_make(int type, vec3 to_sun);
 
-/* The luminance in a direction above the horizon, a unit vector, over that at the zenith: f(x) phi(Z) / (f(Z_s)
- * phi(0)). */
+/* The luminance in a direction (a unit vector above the horizon) over the luminance at the zenith: f(x) phi(Z) /
+ * (f(Z_s) phi(0)). */
 double cie_sky_relative(const cie_sky *sky, vec3 direction);
 
-/* Its mean over the upper hemisphere, by solid angle; relative error below 1e-4 for a sun above the horizon. */
+/* The mean of cie_sky_relative over the upper hemisphere, by solid angle; relative error below 1e-4 for a sun above the
+ * horizon. */
 double cie_sky_mean(const cie_sky *sky);

@@ -49,7 +49,7 @@ static inline double complex_norm2(complex_pair a)
     return a.re * a.re + a.im * a.im;
 }
 
-/* a / b; b != 0, and its square must not overflow. */
+/* a / b; b != 0, and |b|^2 must not overflow. */
 static inline complex_pair complex_divide(complex_pair a, complex_pair b)
 {
     return complex_scale(complex_conj_multiply(b, a), 1.0 / complex_norm2(b));

@@ -14,7 +14,7 @@ typedef struct wave {
     complex_vec3 k, e, h;
     crystal_mode mode;
     bool travels; /* it carries energy away; else it is evanescent */
-    double flux;  /* of energy across the interface, above 0 into `to` */
+    double flux;  /* energy across the interface, positive into `to` */
     vec3 ray;     /* direction of energy */
 } wave;
 
@@ -95,8 +95,8 @@ vec3 crystal_wave_vector(const optical_medium *m, crystal_mode mode, vec3 d)
     return vec3_scale(k, 1.0 / sqrt(vec3_dot(k, d)));
 }
 
-/* The wave vector's part along z, from a quadratic equation with half of its discriminant: away from the interface, or,
- * evanescent, so that it fades there. */
+/* Sets the wave vector, whose part along z is (middle +- sqrt(disc)) over: the root that leaves the interface or, if
+ * disc < 0, decays away from it. */
 static void set_wave_vector(wave *w, const interface_frame *f, double middle, double disc, double over, bool ahead)
 {
     const double sign = ahead ? 1.0 : -1.0;
@@ -111,15 +111,17 @@ static vec3 real_part(complex_vec3 a)
     return vec3_make(a.x.re, a.y.re, a.z.re);
 }
 
-/* A vector across k and the axis; any across k where k is along the axis, and both waves are one. */
+/* A vector perpendicular to k and the axis; if k is along the axis, where both waves are the same, any one
+ * perpendicular to k. */
 static complex_vec3 across_axis(complex_vec3 k, const optical_medium *m, const interface_frame *f)
 {
     const complex_vec3 w = cross(k, of_real(m->axis));
     return norm2(w) > 1e-24 * norm2(k) ? w : of_real(f->s);
 }
 
-/* E and H of a wave in a crystal, when k is known. The ordinary E is across k and the axis. The extraordinary D is
- * across k in the plane of k and the axis; E follows from it by the inverse of the dielectric tensor. */
+/* Sets E and H of a wave in a crystal, whose k is known. The ordinary E is perpendicular to k and the axis. The
+ * extraordinary D is perpendicular to k in the plane of k and the axis; E is the inverse of the dielectric tensor times
+ * D. */
 static void set_crystal_field(wave *w, const optical_medium *m, const interface_frame *f)
 {
     w->e = across_axis(w->k, m, f);
@@ -141,7 +143,7 @@ static void finish_wave(wave *w, const interface_frame *f, const optical_medium 
     }
 }
 
-/* Of an isotropic medium: with its field across the plane of incidence, or in it. */
+/* A wave in an isotropic medium, with its field in the plane of incidence or perpendicular to it. */
 static wave isotropic_wave(const optical_medium *m, const interface_frame *f, bool ahead, bool in_plane)
 {
     wave w = {.mode = MODE_ANY};
@@ -180,8 +182,8 @@ static void waves_of(const optical_medium *m, const interface_frame *f, bool ahe
     out[1] = m->uniaxial ? ordinary_wave(m, f, ahead) : isotropic_wave(m, f, ahead, false);
 }
 
-/* The incident waves: both of an isotropic medium, with fields along x and y of the ray's canonical frame; the one of a
- * crystal. Returns their number. */
+/* The incident waves: two in an isotropic medium, with fields along x and y of the ray's canonical frame; one in a
+ * crystal, of the ray's mode. Returns their number. */
 static int incident_waves(const crystal_incidence *in, const interface_frame *f, wave out[2])
 {
     vec3 axes[2];
@@ -214,7 +216,7 @@ static interface_frame frame_of(const crystal_incidence *in)
     return f;
 }
 
-/* Components along s and u of E, then of H. */
+/* The tangential component in one of four equations: E along s and u, then H along s and u. */
 static complex_pair tangential(const wave *w, const interface_frame *f, int equation)
 {
     return along(equation < 2 ? w->e : w->h, equation % 2 ? f->u : f->s);
@@ -228,12 +230,12 @@ typedef struct linear_system {
 static void swap_rows(linear_system *l, int a, int b)
 {
     for (int k = 0; k < l->size + l->sides; k++) {
-        const complex_pair kept = l->row[a][k];
-        l->row[a][k] = l->row[b][k], l->row[b][k] = kept;
+        const complex_pair swapped = l->row[a][k];
+        l->row[a][k] = l->row[b][k], l->row[b][k] = swapped;
     }
 }
 
-/* Gauss's and Jordan's elimination with the largest pivot of each column. False if a column has none. */
+/* Gauss-Jordan elimination with partial pivoting; false if the matrix is singular. */
 static bool solve(linear_system *l)
 {
     for (int c = 0; c < l->size; c++) {
@@ -273,8 +275,9 @@ static bool find_amplitudes(const wave *incident, int sides, const wave *leaving
     return found;
 }
 
-/* The row in an isotropic medium, conj(J) W J^T, with W the Hermitian matrix of the row, for which it sees light of
- * coherency C with the trace of W C; a mode's has one element. */
+/* The analyser's row behind the interface, in an isotropic medium: conj(J) W J^T. W is the Hermitian matrix of the
+ * incident row: light of coherency matrix C has the intensity tr(W C). For an incident mode of a crystal W has one
+ * element. */
 static stokes row_across(complex_pair J[2][2], int sides, stokes row)
 {
     const complex_pair none = complex_of(0.0, 0.0);
@@ -293,7 +296,7 @@ static stokes row_across(complex_pair J[2][2], int sides, stokes row)
     return s;
 }
 
-/* The weight of a mode of a crystal, half of what the row sees of its light. */
+/* The weight of a crystal's mode: half of the intensity with which the row sees the mode's light. */
 static double weight_across(const complex_pair j[2], int sides, stokes row)
 {
     if (sides == 1)
@@ -304,7 +307,7 @@ static double weight_across(const complex_pair j[2], int sides, stokes row)
     return 0.5 * analyser_sees(row, light);
 }
 
-/* The rays of a medium, whose two waves have those amplitudes. */
+/* Writes the rays in one medium, whose two waves have these amplitudes. Returns their number. */
 static int add_rays(const optical_medium *m, const wave incident[2], int sides, const wave waves[2],
                     complex_pair amplitude[2][2], stokes row, crystal_ray *out)
 {

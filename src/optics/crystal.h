@@ -3,19 +3,20 @@
  * Principles of Optics, 7th ed., 15.2 and 15.3; boundary conditions: Yeh, Optical Waves in Layered Media, chapter 9.
  * Crystals are transparent and not optically active. Pure; cannot fail; all values, nothing is owned.
  *
- * In a crystal a ray is of one of two modes, each fully polarised. Its direction is that of energy; the wave vector, in
- * units of 2 pi / lambda, follows from it: n_o d for an ordinary ray, and for an extraordinary one a vector on the
- * ellipsoid whose normal is d.
+ * In a crystal a ray is of one of two modes, each fully polarised. Its direction d is that of the energy flow. The wave
+ * vector, in units of 2 pi / lambda, is n_o d for an ordinary ray, and for an extraordinary ray the point of an
+ * ellipsoid at which the normal is d.
  *
- * Signs and frames are those of optics/mueller.h: rays run from the eye, light against them; by reciprocity the
- * amplitude of light is that of a wave along the ray. Modes are followed as rays that do not interfere: their powers
- * add. This is exact where they part, and is the mean over a fringe where they overlap. */
+ * Signs and frames are those of optics/mueller.h: rays run from the eye, light against them; by reciprocity, light has
+ * the amplitude of a wave along the ray. Modes are followed as rays that do not interfere: their powers add. This is
+ * exact if the modes separate, and is the mean over a fringe if they overlap. */
 #pragma once
 
 #include "optics/mueller.h"
 #include <stdbool.h>
 
-/* isotropic: only n_o, the index; otherwise n_o, and n_e for a field along the optic axis, a unit vector. */
+/* n_o: index of an isotropic medium or of the ordinary wave. Uniaxial media only: n_e is the index for a field along
+ * axis, the optic axis (a unit vector). */
 typedef struct optical_medium {
     bool uniaxial;
     double n_o, n_e;
@@ -25,7 +26,7 @@ typedef struct optical_medium {
 /* The kind of a ray; MODE_ANY in an isotropic medium. */
 typedef enum crystal_mode { MODE_ANY, MODE_ORDINARY, MODE_EXTRAORDINARY } crystal_mode;
 
-/* A ray that meets an interface: from `from` to `to`, along d, with a normal n that faces it. */
+/* A ray of direction d in `from` that meets the interface with `to`; the normal n faces the ray. */
 typedef struct crystal_incidence {
     optical_medium from, to;
     vec3 d, n;
@@ -44,10 +45,10 @@ typedef struct crystal_ray {
 
 enum { CRYSTAL_RAYS_MAX = 4 };
 
-/* The rays that an incident ray with that row becomes (in a crystal only row.i counts): reflected ones first, and the
- * ordinary after the extraordinary. Waves that do not travel away (total reflection) are left out. Returns their
- * number. The weights .i of an unpolarised row add up to row.i. */
+/* Splits an incident ray with an analyser row (in a crystal only row.i counts) into reflected rays, then transmitted
+ * ones, the ordinary after the extraordinary. Waves that do not travel away (total reflection) are left out. Returns
+ * their number. The weights .i of an unpolarised row add up to row.i. */
 int crystal_split(const crystal_incidence *in, stokes row, crystal_ray out[CRYSTAL_RAYS_MAX]);
 
-/* The wave vector of a ray of that mode along d: its length is the index for the wave. */
+/* The wave vector of a ray of direction d; its length is the refractive index of the wave. */
 vec3 crystal_wave_vector(const optical_medium *m, crystal_mode mode, vec3 d);

@@ -56,7 +56,7 @@ static double power_sum(const dispersion *law, double L)
     return sum;
 }
 
-/* By Horner's rule in 1 / L^2. */
+/* Horner's rule in 1 / L^2. */
 static double cauchy(const dispersion *law, double L2)
 {
     double n = 0.0;
@@ -120,7 +120,7 @@ double dispersion_abbe_number(const dispersion *law)
 
 /* ---- the check of a law ---- */
 
-/* Beyond every real medium at visible wavelengths: an index outside is a mistake in the coefficients. */
+/* Real media have an index in this range at visible wavelengths; another one is a mistake in the coefficients. */
 static const double index_low = 0.1, index_high = 100.0;
 
 /* The valid numbers of coefficients: from `first` in steps of `step`, up to `most`. */
@@ -139,7 +139,7 @@ static const struct {
                           DISPERSION_TERMS_MAX},
 };
 
-static const char *coefficients_of(dispersion_kind kind)
+static const char *remedy_for(dispersion_kind kind)
 {
     return numbers[kind].remedy;
 }
@@ -154,7 +154,7 @@ static status check_numbers(const dispersion *law, diagnostic *why)
 {
     if ((unsigned)law->kind >= DISPERSION_KIND_COUNT)
         return diagnose(why, STATUS_BAD_INPUT, "", "unknown dispersion law %d", (int)law->kind);
-    const char *remedy = coefficients_of(law->kind), *name = dispersion_name(law->kind);
+    const char *remedy = remedy_for(law->kind), *name = dispersion_name(law->kind);
     if (law->count > DISPERSION_TERMS_MAX)
         return diagnose(why, STATUS_BAD_INPUT, remedy, "a dispersion law has at most %d numbers, not %d",
                         DISPERSION_TERMS_MAX, law->count);
@@ -191,14 +191,14 @@ static status check_table(const dispersion *law, diagnostic *why)
     for (int i = 0; i < law->count; i += 2) {
         const double lambda_nm = law->coefficient[i], previous = i ? law->coefficient[i - 2] : 0.0;
         if (lambda_nm > previous && lambda_nm < 100.0)
-            return diagnose(why, STATUS_BAD_INPUT, "write them in nm, as 589.3",
+            return diagnose(why, STATUS_BAD_INPUT, "write wavelengths in nm, such as 589.3",
                             "a table of indices has the wavelength %s nm", number_format(lambda_nm, after));
         if (!(lambda_nm > previous))
             return diagnose(why, STATUS_BAD_INPUT, "give wavelengths above 0 in ascending order",
                             "a table of indices has %s nm after %s nm", number_format(lambda_nm, after),
                             number_format(previous, before));
         if (!(law->coefficient[i + 1] >= index_low && law->coefficient[i + 1] <= index_high))
-            return diagnose(why, STATUS_BAD_INPUT, coefficients_of(law->kind), "a table of indices has the index %s",
+            return diagnose(why, STATUS_BAD_INPUT, remedy_for(law->kind), "a table of indices has the index %s",
                             number_format(law->coefficient[i + 1], n));
     }
     return STATUS_OK;
@@ -217,14 +217,14 @@ static status check_resonances(const dispersion *law, diagnostic *why)
         else if (C > 0.0)
             lambda_nm = 1000.0 / sqrt(C);
         if (lambda_nm >= VISIBLE_LOW_NM && lambda_nm <= VISIBLE_HIGH_NM)
-            return diagnose(why, STATUS_BAD_INPUT, coefficients_of(law->kind),
+            return diagnose(why, STATUS_BAD_INPUT, remedy_for(law->kind),
                             "the dispersion law '%s' has a resonance at %.6g nm, in the visible",
                             dispersion_name(law->kind), lambda_nm);
     }
     return STATUS_OK;
 }
 
-static status check_own(const dispersion *law, diagnostic *why)
+static status check_kind(const dispersion *law, diagnostic *why)
 {
     switch (law->kind) {
     case DISPERSION_SELLMEIER:
@@ -246,10 +246,10 @@ static status check_visible(const dispersion *law, diagnostic *why)
         if (n >= index_low && n <= index_high)
             continue;
         if (isnan(n))
-            return diagnose(why, STATUS_BAD_INPUT, coefficients_of(law->kind),
+            return diagnose(why, STATUS_BAD_INPUT, remedy_for(law->kind),
                             "the dispersion law '%s' gives no real index at %g nm", dispersion_name(law->kind),
                             lambda_nm);
-        return diagnose(why, STATUS_BAD_INPUT, coefficients_of(law->kind),
+        return diagnose(why, STATUS_BAD_INPUT, remedy_for(law->kind),
                         "the dispersion law '%s' gives the index %.6g at %g nm, which is not from 0.1 to 100",
                         dispersion_name(law->kind), n, lambda_nm);
     }
@@ -259,6 +259,6 @@ static status check_visible(const dispersion *law, diagnostic *why)
 status dispersion_check(const dispersion *law, diagnostic *why)
 {
     TRY(check_numbers(law, why));
-    TRY(check_own(law, why));
+    TRY(check_kind(law, why));
     return check_visible(law, why);
 }

@@ -8,8 +8,8 @@
 #include "base/status.h"
 #include <stdbool.h>
 
-/* Spectral lines in air by Fraunhofer's letters, nm: of helium and hydrogen, and the mean of sodium's two. Schott,
- * TIE-29, Refractive Index and Dispersion. */
+/* Fraunhofer's lines in air, nm: of helium, of hydrogen, and the mean of the two sodium lines. Schott, TIE-29,
+ * Refractive Index and Dispersion. */
 #define LINE_HELIUM_D_NM 587.5618
 #define LINE_HYDROGEN_F_NM 486.1327
 #define LINE_HYDROGEN_C_NM 656.2725
@@ -19,7 +19,7 @@
 #define VISIBLE_LOW_NM 380.0
 #define VISIBLE_HIGH_NM 780.0
 
-/* For each kind its formula, and its coefficients in order. */
+/* The formula of each kind; after the semicolon, the order of its coefficients. */
 typedef enum dispersion_kind {
     DISPERSION_CONSTANT,          /* n = a; a */
     DISPERSION_SELLMEIER,         /* n^2 = 1 + sum B L^2 / (L^2 - C), C in um^2; B C B C ... */
@@ -35,7 +35,7 @@ enum { DISPERSION_KIND_COUNT = DISPERSION_TABLE + 1, DISPERSION_TERMS_MAX = 32, 
 
 typedef struct dispersion {
     dispersion_kind kind;
-    int count; /* of coefficients */
+    int count; /* number of coefficients */
     double coefficient[DISPERSION_TERMS_MAX];
     double low_nm, high_nm; /* range of the measurement; both 0: not stated */
 } dispersion;
@@ -51,8 +51,8 @@ double dispersion_index(const dispersion *law, double lambda_nm);
  * in the visible, and an index from 0.1 to 100 there at each integer nanometre. STATUS_BAD_INPUT otherwise. */
 status dispersion_check(const dispersion *law, diagnostic *why);
 
-/* Whether the law was measured over all of low_nm..high_nm. If the range is not stated, true, but a table has the range
- * of its wavelengths. */
+/* Whether the law was measured over all of low_nm..high_nm. If no range is stated, a table covers its wavelengths and a
+ * formula everything. */
 bool dispersion_covers(const dispersion *law, double low_nm, double high_nm);
 
 /* Abbe number V_d = (n_d - 1) / (n_F - n_C); infinite for a law without dispersion between F and C. */

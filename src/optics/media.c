@@ -198,7 +198,7 @@ double medium_index(const medium *m, double lambda_nm)
 
 /* ---- metals ---- */
 
-/* Wavelengths at which Johnson and Christy measured, of the photon energies 3.37 .. 1.51 eV. */
+/* Wavelengths per table; those of Johnson and Christy are at the photon energies 3.37 .. 1.51 eV. */
 enum { JOHNSON_POINTS = 16, RAKIC_POINTS = 13 };
 
 #define IN_MAIN(path) "refractiveindex.info, main/" path " at commit ff11b58"
@@ -252,7 +252,8 @@ static const metal metal_rows[] = {
                 815.69, 8.2573),
      .source = "Rakic, Appl. Opt. 34, 4755 (1995)",
      .verified = IN_MAIN("Al/nk/Rakic.yml"),
-     .note = "Of many films, by Kramers-Kronig analysis. In air a film of oxide some nanometres thick covers it."},
+     .note =
+         "Derived from many layers by Kramers-Kronig analysis. In air an oxide layer of some nanometres covers it."},
 };
 
 #define ONE(name) +1

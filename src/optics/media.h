@@ -1,5 +1,5 @@
-/* The catalogues of media and of metals, by published measurements. Each row states its source. Ownership: all data are
- * constant. Errors: none; an unknown name gives NULL. */
+/* Catalogues of the refractive indices of media and metals, from published measurements. Each row states its source.
+ * Ownership: all data are constant. Errors: none; an unknown name gives NULL. */
 #pragma once
 
 #include "optics/complex_pair.h"
@@ -12,7 +12,8 @@
  * glass catalogues do the same: such a law is relative to air. medium_index is absolute (relative to vacuum) for all
  * media; air itself is a row. */
 
-/* The names in the catalogue's order, for use as words. */
+/* The media's names in the order of the catalogue: MEDIA_NAMES(X) expands X(name) for each, so that the scene's
+ * parameters list the same names. */
 #define MEDIA_NAMES(X) \
     X("air")           \
     X("water")         \
@@ -54,8 +55,8 @@ double medium_index(const medium *m, double lambda_nm);
 
 /* ---- metals ---- */
 
-/* Complex refractive indices n + i k (the n and k of n - i k) over the visible range, as published tables, linear
- * between their points. Relative to vacuum. */
+/* Complex refractive indices n + i k (books that write n - i k have the same n and k) over the visible range, as
+ * published tables, linear between their points. Relative to vacuum. */
 
 #define METAL_NAMES(X) \
     X("silver")        \
@@ -76,7 +77,7 @@ size_t metals_count(void);
 const metal *metals_at(size_t i); /* i < metals_count() */
 const metal *metals_find(const char *name);
 
-/* n + i k; outside the table that of its end. */
+/* n + i k; beyond an end of the table, the value at that end. */
 complex_pair metal_index(const metal *m, double lambda_nm);
 
 /* Reflectance in vacuum at normal incidence. Hecht, Optics, 5th ed., (4.83). */

@@ -40,8 +40,8 @@ static inline double ggx_visible_distribution(double alpha, vec3 i, vec3 m)
     return 2.0 * greater(vec3_dot(i, m), 0.0) * ggx_distribution(alpha, m) / (i.z + ggx_stretch(alpha, i));
 }
 
-/* One of these normals, for u and v uniform in (0, 1); [H], listing 1: a point of the half disc and half ellipse that
- * the stretched hemisphere shows to i. */
+/* Samples a visible normal, for u and v uniform in (0, 1); [H], listing 1: a point of the half disc and half ellipse
+ * that are the stretched hemisphere seen from i. */
 static inline vec3 ggx_sample_normal(double alpha, vec3 i, double u, double v)
 {
     const vec3 from = vec3_normalize(vec3_make(alpha * i.x, alpha * i.y, i.z));
@@ -57,10 +57,10 @@ static inline vec3 ggx_sample_normal(double alpha, vec3 i, double u, double v)
     return vec3_normalize(vec3_make(alpha * seen.x, alpha * seen.y, greater(seen.z, 1e-30)));
 }
 
-/* The facet that sends light from o to i, or from i to o; density: of the directions o of rays from i that meet facets
- * by ggx_visible_distribution, per solid angle; 0 where no facet does. A facet's fraction of light, R or 1 - R, times
- * the density and G_1(o) is f cos(o), with f of [W] (20) and (21), the latter without the factor (n_o / n_i)^2 by which
- * refraction changes radiance: that of basic radiance, L / n^2, and of power. */
+/* The facet that sends light between i and o. density, per solid angle of o: of rays from i whose facets are sampled by
+ * ggx_visible_distribution; 0 if no facet connects i and o. R or 1 - R of the facet, times density and G_1(o), is f
+ * cos(o) with f of [W] (20) and (21). (21) is without its factor (n_o / n_i)^2 of radiance, as for power and for basic
+ * radiance L / n^2. */
 typedef struct facet {
     vec3 m;
     double density;
@@ -73,8 +73,8 @@ static inline facet facet_that_reflects(double alpha, vec3 i, vec3 o)
     return (facet){m, ggx_visible_distribution(alpha, i, m) / (4.0 * vec3_dot(i, m))};
 }
 
-/* [W] (16) and (17), for the indices on the sides of i and o. o.z < 0. Between equal indices light goes straight on,
- * which has no density. */
+/* [W] (16) and (17), for the indices on the sides of i and o. o.z < 0. Between equal indices light is not deflected:
+ * there is no density. */
 static inline facet facet_that_refracts(double alpha, vec3 i, vec3 o, double n_i, double n_o)
 {
     const vec3 sum = vec3_add(vec3_scale(i, n_i), vec3_scale(o, n_o));

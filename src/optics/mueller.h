@@ -13,11 +13,11 @@
  * In complex amplitudes with exp(-i omega t), as in Born and Wolf: u + i v = 2 conj(E_x) E_y. In an s/p frame x = s = d
  * x n / |d x n| and y = p = d x s, with a separate p for each ray: at normal incidence the reflected p is reversed, r_p
  * = -r_s, and nothing jumps. The normal n faces the ray: cos_i = -d.n >= 0; n_from is the index on the side of the ray
- * that comes from the eye, n_to that on the other side.
+ * from the eye, n_to the index on the other side.
  *
- * Transmittance is that of power, n_t cos_t / (n_i cos_i) |t|^2 = 1 - R, the same number from either side. The factor
- * n^2 of radiance across an interface is omitted, as is common in renderers: eye and lights are in one medium, where it
- * has cancelled. */
+ * Transmittances are of power: n_t cos_t / (n_i cos_i) |t|^2 = 1 - R, the same number from either side. The factor n^2
+ * of radiance across an interface is omitted, as is common in renderers: eye and lights are in one medium, where it has
+ * cancelled. */
 #pragma once
 
 #include "base/lanes.h"
@@ -42,9 +42,9 @@ static inline void polarisation_frame(vec3 d, vec3 *x, vec3 *y)
     *y = vec3_make(b, sign + d.y * d.y * a, -d.y);
 }
 
-/* The direction across a ray d that a direction across an axis f, of a camera or a lamp, becomes under the shortest
- * rotation from f to d, which must not be -f (Rodrigues' formula): directions at right angles stay so, and crossed
- * filters are crossed everywhere in the image. */
+/* Rotates a direction perpendicular to f, the axis of a camera or a lamp, by the shortest rotation from f to the ray d
+ * (Rodrigues' formula; d != -f). It preserves right angles, so that crossed filters are crossed everywhere in the
+ * image. */
 static inline vec3 polarisation_across_ray(vec3 across, vec3 f, vec3 d)
 {
     return vec3_sub(across, vec3_scale(vec3_add(f, d), vec3_dot(across, d) / (1.0 + vec3_dot(f, d))));
@@ -185,7 +185,7 @@ static inline stokes analyser_refract(stokes row, vec3 d, vec3 n, double cos_i, 
 /* A coating that returns all of the light that would be transmitted, unpolarised. Its matrix has the first row of
  * refraction's matrix and zeros elsewhere, so that returned and transmitted light add up for every polarisation of the
  * incident light. Such a matrix is not its own reverse: an analyser whose row is (1, q) in the plane of incidence sees
- * 1 + c q (R_s - R_p) / 2 of a surrounding light of 1. To be scaled by the coating's fraction c. */
+ * 1 + c q (R_s - R_p) / 2 of a surrounding light of 1. The caller scales the result by the coating's fraction c. */
 static inline stokes analyser_coating(stokes row, vec3 d, vec3 n, double cos_i, double n_from, double n_to,
                                       vec3 reflected)
 {
@@ -193,7 +193,7 @@ static inline stokes analyser_coating(stokes row, vec3 d, vec3 n, double cos_i, 
     return analyser_across(intensity, d, n, reflected, sp_refract(fresnel_dielectric(cos_i, n_from, n_to)));
 }
 
-/* A mirror; to be scaled by the mirror's reflectance. */
+/* A mirror of reflectance 1; the caller scales the result by the mirror's reflectance. */
 static inline stokes analyser_mirror(stokes row, vec3 d, vec3 n, vec3 reflected)
 {
     return analyser_across(row, d, n, reflected, sp_mirror());
@@ -201,10 +201,10 @@ static inline stokes analyser_mirror(stokes row, vec3 d, vec3 n, vec3 reflected)
 
 /* --- ideal polarising filters and wave plates --- */
 
-/* They do not bend the ray, and act on its Stokes vector alike in both directions. */
+/* Filters and plates do not deflect the ray, and act alike on light in both directions. */
 
 /* A linear polariser in the frame of its axis, with the transmittances of light whose field is along and across it.
- * Goldstein, Polarized Light, Mueller matrix of a linear diattenuator, with p_x^2 and p_y^2 as these. */
+ * Goldstein, Polarized Light, Mueller matrix of a linear diattenuator, with p_x^2 = along and p_y^2 = across. */
 static inline sp_response sp_polariser(double along, double across)
 {
     sp_response r = {0.5 * (along + across), 0.5 * (along - across), sqrt(along * across), 0.0};
@@ -220,8 +220,8 @@ static inline sp_response sp_retarder(double sin_delta, double cos_delta)
     return r;
 }
 
-/* The row across an element that a ray of direction d passes; axis: of any length, projected onto the plane across the
- * ray. Along the ray it has no direction there, and the frame's x is used. */
+/* The row behind an element that a ray of direction d passes through. axis, of any length, is projected onto the plane
+ * perpendicular to the ray; if it is along the ray, the frame's x is used. */
 static inline stokes analyser_through(stokes row, vec3 d, vec3 axis, sp_response r)
 {
     vec3 x, y;

@@ -33,13 +33,14 @@ typedef struct thin_film {
     double thickness_nm;
 } thin_film;
 
-/* Amplitudes of reflection and transmission. Those of transmission are of the square root of power: |t|^2 is the
- * transmittance of power, and t is the same from either side. */
+/* Amplitudes of reflection and transmission, scaled so that |t|^2 is the transmittance of power and t is the same from
+ * either side. */
 typedef struct sp_amplitudes {
     complex_pair r_s, r_p, t_s, t_p;
 } sp_amplitudes;
 
-/* The product of characteristic matrices of one polarisation; its determinant is 1 times e^(-2 faded). */
+/* The product of the characteristic matrices of one polarisation, times e^-fade (see film_phase): its determinant is
+ * e^(-2 fade). */
 typedef struct characteristic {
     complex_pair a, b, c, d;
 } characteristic;
@@ -56,7 +57,7 @@ static inline characteristic characteristic_product(characteristic l, characteri
 }
 
 /* cos(delta) and sin(delta) / beta of a film, delta = 2 pi thickness beta / lambda, both times e^-fade with fade = Im
- * delta, so that nothing overflows; they are even in beta, so that no sign of the root matters. */
+ * delta, so that nothing overflows; both are even in beta, so that the sign of the root does not matter. */
 typedef struct film_phase {
     complex_pair cosine, sine_over_beta;
     double fade;
@@ -72,7 +73,7 @@ static inline film_phase film_phase_of(complex_pair beta2, double thickness_nm, 
     const double once = elementary_exp2_inline(-log2_e * fade), twice = once * once;
     const double cosh = 0.5 * (1.0 + twice), sinh = 0.5 * (1.0 - twice);
     const complex_pair c = complex_of(cosine * cosh, -sine * sinh), s = complex_of(sine * cosh, cosine * sinh);
-    /* For a small |delta|^2, where sin(delta) / beta would lose digits, the series of both. */
+    /* If |delta|^2 is small, sin(delta) / beta would lose digits: the series of both. */
     const double k = two_pi * wave;
     const complex_pair w = complex_scale(beta2, -k * k);
     const int64_t small = mask_less(complex_norm2(w), 0x1p-8);
@@ -107,7 +108,8 @@ static inline void multilayer_add(thin_film one, double sine2, double lambda_nm,
     *fade += f.fade;
 }
 
-/* Born and Wolf, 1.6.2 (47) to (50): q is n cos theta for s, cos theta / n for p. */
+/* The amplitudes of a stack with matrix m, Born and Wolf, 1.6.2 (47) to (50): q is n cos theta for s, cos theta / n for
+ * p; left is e^-fade. */
 static inline void multilayer_ends(characteristic m, double q_from, complex_pair q_to, double left, complex_pair *r,
                                    complex_pair *t)
 {
@@ -117,8 +119,8 @@ static inline void multilayer_ends(characteristic m, double q_from, complex_pair
     *t = complex_divide(complex_of(2.0 * sqrt(q_from * q_to.re) * left, 0.0), sum);
 }
 
-/* From a medium of index n_from at an angle of incidence with cosine cos_i, through films[0 .. count - 1] in the order
- * of the ray, into a medium of index `to`. */
+/* The amplitudes of light from a medium of index n_from, at an angle of incidence with cosine cos_i, through films[0 ..
+ * count - 1] in the order of the ray, into a medium of index `to`. */
 static inline sp_amplitudes multilayer_amplitudes(double cos_i, double n_from, const thin_film *films, int count,
                                                   complex_pair to, double lambda_nm)
 {

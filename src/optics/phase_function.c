@@ -5,7 +5,7 @@
 #include "base/elementary.h"
 #include "optics/interface.h"
 
-/* The sum of chords of a disc over a bin at an offset. */
+/* The lengths of a disc's chords, summed over a bin that starts at `from`. */
 static double chords(double from, double radius)
 {
     enum { PARTS = 16 };
@@ -17,7 +17,7 @@ static double chords(double from, double radius)
     return sum;
 }
 
-/* Away from the poles of the sphere of directions a disc blurs by the length of its chords. */
+/* The blur kernel of a disc: the lengths of its chords, valid away from the poles of the sphere of directions. */
 static void disc_make(double radius, drop_angles *out)
 {
     double sum = 0.0;
@@ -51,7 +51,7 @@ typedef struct outgoing {
 /* After m passes through the drop the ray is turned by 2 i - 2 m r + (m - 1) 180 degrees (Born and Wolf, Principles of
  * Optics, 7th ed., 4.7 exercises; van de Hulst, Light Scattering by Small Particles, 12.2). The angle to the antisolar
  * point is 180 degrees less; its cosine is the real part of exp(2i) exp(-2r)^m, with the sign of (-1)^m. */
-static outgoing leave(const drop_angles *a, int k, double n)
+static outgoing outgoing_rays(const drop_angles *a, int k, double n)
 {
     outgoing out;
     const double si = a->sine[k], ci = a->cosine[k];
@@ -82,16 +82,16 @@ static int spread(const double *edge, int bin, double from, double to, double li
     const double density = light / (to - from);
     while (to < edge[bin + 1] || to > edge[bin]) {
         const bool outwards = to < edge[bin + 1];
-        const double stop = outwards ? edge[bin + 1] : edge[bin];
-        sum[bin] += (stop - from) * density;
-        from = stop;
+        const double border = outwards ? edge[bin + 1] : edge[bin];
+        sum[bin] += (border - from) * density;
+        from = border;
         bin += outwards ? 1 : -1;
     }
     sum[bin] += (to - from) * density;
     return bin;
 }
 
-/* p blurred by the disc; the function continues evenly beyond both ends. */
+/* p is `sharp` blurred by the disc; the function is mirrored at both ends. */
 static void blur(const drop_angles *a, const double *sharp, double *p)
 {
     for (int b = 0; b < DROP_BINS; b++) {
@@ -108,11 +108,11 @@ void drop_scattering(const drop_angles *a, double n, double p[DROP_BINS])
 {
     double sharp[DROP_BINS] = {0.0};
     int bin[DROP_ORDERS];
-    outgoing last = leave(a, 0, n);
+    outgoing last = outgoing_rays(a, 0, n);
     for (int m = 0; m < DROP_ORDERS; m++)
         bin[m] = m % 2 ? DROP_BINS - 1 : 0; /* the ray through the centre */
     for (int k = 1; k <= DROP_RAYS; k++) {
-        const outgoing next = leave(a, k, n);
+        const outgoing next = outgoing_rays(a, k, n);
         /* The strip's fraction of the cross-section, sin^2 i being the impact parameter squared. */
         const double area = a->sine[k] * a->sine[k] - a->sine[k - 1] * a->sine[k - 1];
         for (int m = 0; m < DROP_ORDERS; m++)

@@ -7,11 +7,11 @@
 
 /* ---- Henyey and Greenstein ---- */
 
-/* "Diffuse radiation in the galaxy", Astrophysical Journal 93 (1941), 70, (2): the density per solid angle, over which
- * its integral is 1, of the angle between the directions before and after scattering; its mean cosine is the asymmetry
- * g, -1 < g < 1. */
+/* The density per solid angle, with integral 1, of the angle between the directions before and after scattering; its
+ * mean cosine is the asymmetry g, -1 < g < 1. "Diffuse radiation in the galaxy", Astrophysical Journal 93, 70 (1941),
+ * eq. (2). */
 
-/* 1/sr. 1 + g^2 - 2 g c = (1 - |g|)^2 + 2 |g| (1 -+ c), without cancellation. */
+/* In 1/sr. The denominator 1 + g^2 - 2 g c is computed without cancellation, as (1 - |g|)^2 + 2 |g| (1 -+ c). */
 static inline double henyey_greenstein(double cosine, double g)
 {
     const double size = fabs(g), off = g < 0.0 ? 1.0 + cosine : 1.0 - cosine,
@@ -46,7 +46,7 @@ enum {
 /* Angular radius of the sun at 1 au: 959.63 arcseconds. Astronomical Almanac; IAU. */
 #define SUN_RADIUS_DEG 0.26656
 
-/* What does not depend on the index. */
+/* Tables that do not depend on the refractive index. */
 typedef struct drop_angles {
     double edge_cosine[DROP_BINS + 1];
     double sine[DROP_RAYS + 1], cosine[DROP_RAYS + 1]; /* of the angles of incidence */
@@ -54,7 +54,7 @@ typedef struct drop_angles {
     double disc[2 * DROP_DISC_BINS_MAX + 1]; /* the fractions of a bin's light that spread over its neighbours */
 } drop_angles;
 
-/* The light comes from a uniform disc of that radius, at most 4.9 degrees; 0: from a point. */
+/* Fills the tables for light from a uniform disc of that angular radius, at most 4.9 degrees; 0: from a point. */
 void drop_angles_make(double disc_radius_deg, drop_angles *out);
 
 /* The scattering function p by bin, relative to a scatterer that sends all light that falls on its cross-section evenly

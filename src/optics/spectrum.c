@@ -139,7 +139,7 @@ void linear_srgb_to_xyz(const double rgb[3], double xyz[3])
 #define E 2.71828182845904523536
 
 /* e^x - 1; x is at least 0.18 in the ranges of the header, so that the difference loses no more than a place. */
-static double above_one(double x)
+static double exp_minus_one(double x)
 {
     return elementary_pow(E, x) - 1.0;
 }
@@ -147,7 +147,7 @@ static double above_one(double x)
 double planck_relative(double lambda_nm, double temperature_k)
 {
     const double ratio = REFERENCE_NM / lambda_nm, ratio2 = ratio * ratio, x = SECOND_RADIATION_NM_K / temperature_k;
-    return ratio2 * ratio2 * ratio * (above_one(x / REFERENCE_NM) / above_one(x / lambda_nm));
+    return ratio2 * ratio2 * ratio * (exp_minus_one(x / REFERENCE_NM) / exp_minus_one(x / lambda_nm));
 }
 
 /* XYZ of Planck's spectrum; midpoints of 1 nm, whose error is below 1e-6 of Y. */
@@ -211,7 +211,7 @@ static void into_gamut(double rgb[3])
     const double white = least < 0.0 ? -least / (1.0 - least) : 0.0;
     for (int c = 0; c < 3; c++) {
         rgb[c] = (1.0 - white) * rgb[c] + white;
-        rgb[c] = rgb[c] > 0.0 ? rgb[c] : 0.0; /* of rounding */
+        rgb[c] = rgb[c] > 0.0 ? rgb[c] : 0.0; /* negative by rounding */
     }
 }
 

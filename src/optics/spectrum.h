@@ -33,8 +33,8 @@ void linear_srgb_to_xyz(const double rgb[3], double xyz[3]);
 /* ---- lamps ---- */
 
 /* Spectra of lamps: a black body by Planck's law, and the lines of discharge lamps and lasers. All have Y = 1 for the
- * standard observer, so that a lamp's intensity is as bright whatever its spectrum. Wavelengths in nm, in air (those of
- * black bodies in vacuum: the difference of 0.03 % is ignored). Lines have no width. */
+ * standard observer, so that lamps of equal intensity are equally bright, whatever their spectra. Wavelengths in nm, in
+ * air (those of black bodies in vacuum: the difference of 0.03 % is ignored). Lines have no width. */
 
 typedef enum lamp_spectrum {
     LAMP_OF_COLOR, /* a smooth spectrum of the lamp's colour (optics/upsample.h): white is D65 */
@@ -60,12 +60,12 @@ double planck_relative(double lambda_nm, double temperature_k);
 /* The factor that makes planck_relative's spectrum have Y = 1 over OBSERVER_LOW_NM .. OBSERVER_HIGH_NM. */
 double black_body_scale(double temperature_k);
 
-/* The lines of a lamp, in order of wavelength; 0 for continuous spectra. line_nm: of LAMP_LINE. Sodium: the D lines of
- * a thin vapour, whose powers are as the statistical weights 2 : 1. Mercury and hydrogen: relative intensities of
- * Reader and Corliss, "Line Spectra of the Elements", CRC Handbook of Chemistry and Physics; real lamps differ with
- * pressure and current. */
+/* Writes the lines of a lamp in order of wavelength and returns their number; 0 for continuous spectra. line_nm is the
+ * wavelength of LAMP_LINE. Sodium: the D lines of a thin vapour, whose powers are as the statistical weights 2 : 1.
+ * Mercury and hydrogen: relative intensities of Reader and Corliss, "Line Spectra of the Elements", CRC Handbook of
+ * Chemistry and Physics; real lamps differ with pressure and current. */
 int lamp_lines(lamp_spectrum kind, double line_nm, spectral_line lines[LAMP_LINES_MAX]);
 
-/* Linear sRGB of Y = 1 of a lamp other than LAMP_OF_COLOR. Colours outside the gamut, as those of most lines, are mixed
- * with white of the same Y up to its border. */
+/* The colour of a lamp other than LAMP_OF_COLOR, in linear sRGB with Y = 1. A colour outside the gamut, as of most
+ * lines, is mixed with white of the same Y until it is on the gamut's border. */
 void lamp_rgb(lamp_spectrum kind, double temperature_k, double line_nm, double rgb[3]);

@@ -1,4 +1,4 @@
-/* The fit of smooth spectra to colours. */
+/* Fits smooth spectra to colours (Jakob and Hanika 2019): Levenberg-Marquardt on the distance in CIELAB. */
 #include "optics/upsample.h"
 #include "base/lanes.h"
 

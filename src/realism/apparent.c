@@ -12,8 +12,8 @@
  * small angles. The kink is the angle between two secants of the edge, above and below. In a line of the image the edge
  * is the leftmost image of the rod's four long edges, which bound its visible part.
  *
- * Tolerance: the bound of the path's place on the rod times the movement of the edge's image by a movement of the edge,
- * and the widths of the bisections; over the length of a secant. */
+ * Tolerance: the bound of the path's position on the rod times the movement of the edge in the image per movement of
+ * the edge, plus the widths of the bisections, all over the length of a secant. */
 
 #define LEAN_DEG 20.0
 #define ROD_WIDTH 0.05
@@ -49,7 +49,7 @@ static scene *leaning_rod(const scene *s, const setup *at)
 typedef struct water {
     view eye;
     double n_above, n_below;
-    double moved_x, moved_z; /* of the edges in the cross-section */
+    double moved_x, moved_z; /* shift of the edges in the cross-section */
 } water;
 
 /* Projection of a point on a long edge of the rod; the edge is given by its position in the cross-section, the point by
@@ -68,8 +68,8 @@ static bool edge_image(const water *w, int edge, double along, double *px, doubl
                       px, py);
 }
 
-/* Where that edge crosses a line of the image; NaN if it does not. Its projection is monotonic from the top of the rod
- * to its bottom. */
+/* The px at which an edge crosses a line of the image; NaN if it does not. The projection is monotonic from the top of
+ * the rod to its bottom. */
 static double crossing(const water *w, int edge, double line)
 {
     double low = -ROD_LENGTH / 2.0, high = ROD_LENGTH / 2.0, px = NAN, py = NAN;
@@ -108,7 +108,7 @@ static double leftmost(const water *w, double line)
     return px;
 }
 
-/* slope: movement of the edge's image, px, by a movement of the edge in any direction across it, scene units. */
+/* slope: movement of the edge in the image, px, per scene unit by which the edge moves in the cross-section. */
 static double theory_break(const scene *arranged, const setup *at, double slope[LINES])
 {
     const double step = 1e-6;
@@ -169,9 +169,8 @@ status realism_water_line(const metrics *m, diagnostic *why)
 
 /* A coin in a cup: solids named cup (opaque), coin (an upright cylinder on the cup's floor) and liquid
  * (experiments/scenes/coin.yaml). The eye is the camera's position; the cup's near rim hides the coin until the liquid
- * is deep enough. The least depth is found by bisection: whether the ray from the eye that grazes the rim ends on the
- * coin.
- *  */
+ * is deep enough. The least depth is found by bisection: does the ray from the eye that grazes the rim end on the
+ * coin? */
 
 /* The grazing ray passes this far above the rim, scene units. */
 #define CLEARANCE 1e-12
@@ -181,12 +180,12 @@ typedef struct coin_view {
     vec3 eye, edge; /* the point of the rim's inner edge that is nearest to the eye */
     double floor;   /* height of the cup's floor */
     double tangent; /* of the line of sight over the edge, from the vertical */
-    double drop;    /* of the coin's upper face below the rim */
+    double drop;    /* depth of the coin's upper face below the rim */
     double across;  /* horizontal distance from the edge to the farthest point of that face in the line of sight */
     double n_around;
 } coin_view;
 
-static bool stands(const scene *s, const char *name, shape_kind kind)
+static bool has_visible(const scene *s, const char *name, shape_kind kind)
 {
     const int at = scene_find_solid(s, name);
     return at >= 0 && s->solids[at].visible && s->solids[at].shape.kind == kind;
@@ -194,7 +193,8 @@ static bool stands(const scene *s, const char *name, shape_kind kind)
 
 bool coin_is_there(const scene *s)
 {
-    return stands(s, "cup", SHAPE_CUP) && stands(s, "coin", SHAPE_CYLINDER) && scene_find_solid(s, "liquid") >= 0;
+    return has_visible(s, "cup", SHAPE_CUP) && has_visible(s, "coin", SHAPE_CYLINDER) &&
+           scene_find_solid(s, "liquid") >= 0;
 }
 
 static bool is_upright_and_round(const solid *one)
@@ -215,11 +215,11 @@ static status coin_read(const scene *s, coin_view *out, diagnostic *why)
                  inner = cup->shape.inner_radius, rim = base.y + cup->shape.height;
     if (!is_upright_and_round(cup) || !is_upright_and_round(coin) || !is_upright_and_round(liquid) ||
         liquid->shape.kind != SHAPE_CYLINDER)
-        return diagnose(why, STATUS_BAD_INPUT, "set their rotation to 0 and m to 1; the liquid is a cylinder",
+        return diagnose(why, STATUS_BAD_INPUT, "set their rotation to 0 and m to 1, and make the liquid a cylinder",
                         "'cup', 'coin' and 'liquid' are not upright and round");
     if (liquid->shape.capillary_length > 0.0)
         return diagnose(why, STATUS_BAD_INPUT, "set its capillary_length to 0",
-                        "'liquid' has a meniscus, and the curve needs a level one");
+                        "'liquid' has a meniscus; the curve requires a level surface");
     if (cup->surface.transparency != 0.0 || coin->surface.transparency != 0.0)
         return diagnose(why, STATUS_BAD_INPUT, "set the transparency of both to 0", "'cup' or 'coin' is not opaque");
     if (away <= inner || s->camera.position.y <= rim)
@@ -243,7 +243,7 @@ static status coin_read(const scene *s, coin_view *out, diagnostic *why)
 typedef struct filling {
     const metrics *m;
     const coin_view *at;
-    scene *bare; /* cup, coin and liquid alone */
+    scene *bare; /* only the cup, the coin and the liquid */
     status code;
     diagnostic *why;
 } filling;
@@ -269,7 +269,7 @@ static bool coin_is_seen(void *context, double surface)
     return seen;
 }
 
-static scene *cup_alone(const scene *s, const coin_view *at)
+static scene *cup_scene(const scene *s, const coin_view *at)
 {
     scene *bare = arrange_empty(s);
     if (bare) {
@@ -282,12 +282,13 @@ static scene *cup_alone(const scene *s, const coin_view *at)
     return bare;
 }
 
-/* The indices with which the coin appears before the cup overflows. */
+/* Adds the least depth at which the coin appears, by the liquid's index; indices at which the cup would overflow first
+ * are omitted. */
 status coin_curve(const metrics *m, realism_points *out, diagnostic *why)
 {
     coin_view at;
     TRY(coin_read(m->traced, &at, why));
-    filling f = {m, &at, cup_alone(m->traced, &at), STATUS_OK, why};
+    filling f = {m, &at, cup_scene(m->traced, &at), STATUS_OK, why};
     f.code = f.bare ? STATUS_OK : out_of_memory(why);
     for (int i = 10; i <= 80 && f.code == STATUS_OK; i++) {
         const double n = at.n_around * (1.0 + 0.01 * i), coin_top = at.edge.y - at.drop,

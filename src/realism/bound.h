@@ -16,28 +16,28 @@
  * reflection of a direction, with tidying; Fresnel's equations; a closed form or a function of the C library. */
 enum { BOUND_HIT = 32, BOUND_TURN = 24, BOUND_REFLECTANCES = 12, BOUND_FORM = 8 };
 
-/* gamma_n, and twice that, for a difference. */
+/* gamma_n, and 2 gamma_n for a difference. */
 double bound_gamma(int operations);
 double bound_difference(int operations);
 
-/* Of reflectances, for an angle of incidence that is off by up to aside. Towards the critical angle, where their
- * slope is infinite, an error e of cos^2 t is one of min(e / cos t, sqrt(e)) of cos t. */
+/* The errors of reflectances for an angle of incidence that is off by up to aside. Near the critical angle, where their
+ * slope is infinite, an error e of cos^2 t is an error min(e / cos t, sqrt(e)) of cos t. */
 typedef struct reflectance_bound {
     double R_s, R_p, R;
 } reflectance_bound;
 reflectance_bound bound_reflectances(double angle, double aside, double n_from, double n_to);
 
-/* Of a path at the end of its last ray: distance across the ray; direction; throughput, relative. At each surface the
- * errors so far are multiplied by the derivatives of the law there, and those of the surface are added: of a place,
- * relative to the lengths of the vectors from which it is computed. curvature: the largest of the surfaces. NaN without
- * a path, also below. */
+/* The errors of a path at the end of its last ray: distance across the ray, direction, and relative error of the
+ * throughput. At each surface the errors so far are multiplied by the derivatives of the law there, and the surface's
+ * errors are added; the error of a point is relative to the lengths of the vectors from which it is computed.
+ * curvature: the largest of the surfaces. NaN if the tree is empty. */
 typedef struct path_bound {
     double across, heading, weight;
 } path_bound;
 path_bound bound_path(const ray_tree *tree, double curvature);
 
-/* Of the direction at the end of a path in a plane through the common centre of round surfaces. Bouguer's invariant,
- * n times the ray's offset from the centre, keeps an error as it is, so that errors add up here instead of being
- * multiplied: an error of the offset is one of each angle at a surface, asin(offset / radius). The
- * direction of the first ray is exact. */
+/* The error of the direction at the end of a path in a plane through the common centre of round surfaces. Bouguer's
+ * invariant, n times the ray's offset from the centre, preserves an error, so that errors add up instead of being
+ * multiplied: an error of the offset changes each angle at a surface, asin(offset / radius). The direction of the first
+ * ray is exact. NaN if the tree is empty. */
 double bound_around(const ray_tree *tree, vec3 center);

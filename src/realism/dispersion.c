@@ -51,8 +51,8 @@ typedef struct prism_search {
     diagnostic *why;
 } prism_search;
 
-/* Deviation of a ray that hits the middle of the left face at an angle of incidence; NaN unless it passes both faces.
- * */
+/* Deviation of a ray that hits the middle of the left face at an angle of incidence; NaN unless it passes both
+ * faces. */
 static double deviation(void *context, double incidence)
 {
     prism_search *s = context;
@@ -90,11 +90,11 @@ static double theory_least_deviation(double apex, double n)
     return 2.0 * asin(n * sin(apex / 2.0)) - apex;
 }
 
-static double prism_tolerance(prism_search *look, double apex, double least)
+static double prism_tolerance(prism_search *search, double apex, double least)
 {
-    if (isnan(deviation(look, (apex + least) / 2.0)))
+    if (isnan(deviation(search, (apex + least) / 2.0)))
         return NAN;
-    return bound_path(&look->t->tree, 0.0).heading + bound_difference(BOUND_FORM) * (M_PI + 1.0 / sin(apex));
+    return bound_path(&search->t->tree, 0.0).heading + bound_difference(BOUND_FORM) * (M_PI + 1.0 / sin(apex));
 }
 
 static status prism_at_line(const metrics *m, double lambda_nm, double *measured, double *theory, double *tolerance,
@@ -104,12 +104,12 @@ static status prism_at_line(const metrics *m, double lambda_nm, double *measured
     const double apex = M_PI - acos(vec3_dot(supposed.left, supposed.right));
     *theory = theory_least_deviation(apex, relative_index(m->supposed, supposed.region, lambda_nm));
     trial t;
-    prism_search look = {.t = &t, .at = faces_of(m->traced), .why = why};
-    look.code = trial_start(&t, arrange_at(m->traced, lambda_nm), m->level, why);
-    *measured = look.code == STATUS_OK ? least_deviation(&look) : NAN;
-    *tolerance = look.code == STATUS_OK && !isnan(*theory) ? prism_tolerance(&look, apex, *theory) : NAN;
+    prism_search search = {.t = &t, .at = faces_of(m->traced), .why = why};
+    search.code = trial_start(&t, arrange_at(m->traced, lambda_nm), m->level, why);
+    *measured = search.code == STATUS_OK ? least_deviation(&search) : NAN;
+    *tolerance = search.code == STATUS_OK && !isnan(*theory) ? prism_tolerance(&search, apex, *theory) : NAN;
     trial_end(&t);
-    return look.code;
+    return search.code;
 }
 
 status realism_prism(const metrics *m, diagnostic *why)
@@ -134,15 +134,15 @@ status prism_curve(const metrics *m, realism_points *out, diagnostic *why)
     const double apex = M_PI - acos(vec3_dot(faces.left, faces.right)),
                  n = relative_index(m->supposed, faces.region, lambda_nm);
     trial t;
-    prism_search look = {.t = &t, .at = faces_of(m->traced), .why = why};
-    look.code = trial_start(&t, arrange_at(m->traced, lambda_nm), m->level, why);
-    for (int i = 2; i < 360 && look.code == STATUS_OK; i++) {
-        const double measured = deviation(&look, 0.25 * i * degree);
+    prism_search search = {.t = &t, .at = faces_of(m->traced), .why = why};
+    search.code = trial_start(&t, arrange_at(m->traced, lambda_nm), m->level, why);
+    for (int i = 2; i < 360 && search.code == STATUS_OK; i++) {
+        const double measured = deviation(&search, 0.25 * i * degree);
         if (!isnan(measured)) /* else total reflection at the second face */
             curve_add(out, 0.25 * i, measured / degree, theory_prism_deviation(0.25 * i * degree, apex, n) / degree);
     }
     trial_end(&t);
-    return look.code;
+    return search.code;
 }
 
 /* --- a drop --- */
@@ -160,7 +160,7 @@ static int drop_of(const scene *s)
     return -1;
 }
 
-/* A scene with a vessel is measured as such, also in the rain. */
+/* A scene with a vessel is measured as a vessel, even in the rain. */
 bool drop_is_there(const scene *s)
 {
     setup unused;
@@ -184,13 +184,13 @@ static scene *drop_of_rain(const scene *s)
     return one;
 }
 
-/* Metrics of scenes with a drop; each begin needs an end. */
+/* The metrics with a scene that has a drop in place of each that has none. Call drops_end after drops_begin. */
 typedef struct drop_metrics {
     metrics m;
     scene *traced, *supposed; /* owned, or NULL */
 } drop_metrics;
 
-static status begin(const metrics *m, drop_metrics *out, diagnostic *why)
+static status drops_begin(const metrics *m, drop_metrics *out, diagnostic *why)
 {
     *out = (drop_metrics){.m = *m};
     if (drop_of(m->traced) < 0)
@@ -200,14 +200,14 @@ static status begin(const metrics *m, drop_metrics *out, diagnostic *why)
     return out->m.traced && out->m.supposed ? STATUS_OK : out_of_memory(why);
 }
 
-static void end(drop_metrics *own)
+static void drops_end(drop_metrics *drops)
 {
-    scene_destroy(own->traced);
-    scene_destroy(own->supposed);
+    scene_destroy(drops->traced);
+    scene_destroy(drops->supposed);
 }
 
-/* A copy with the drop alone, at the origin, where places have the smallest rounding errors. */
-static scene *drop_alone(const scene *s, double lambda_nm)
+/* A copy in which only the drop is visible, at the origin, where points have the smallest rounding errors. */
+static scene *drop_scene(const scene *s, double lambda_nm)
 {
     scene *copy = arrange_at(s, lambda_nm);
     const int drop = drop_of(s);
@@ -225,8 +225,9 @@ typedef struct drop_search {
     double radius;
 } drop_search;
 
-/* Angle between the emerging ray and the reversed incident ray, for a ray aimed past the centre at `offset` radii. */
-static double minus_turned_back(void *context, double offset)
+/* Minus the angle between the emerging ray and the reversed incident ray, for a ray aimed past the centre at `offset`
+ * radii. NaN unless the ray is reflected once inside. */
+static double minus_backward_angle(void *context, double offset)
 {
     drop_search *s = context;
     const vec3 in = vec3_make(0.0, 0.0, 1.0);
@@ -239,10 +240,10 @@ static double minus_turned_back(void *context, double offset)
     return -atan2(vec3_length(vec3_cross(in, out)), -vec3_dot(in, out));
 }
 
-/* The maximum of this angle is the minimum deviation; it lies between the axis and the edge of the drop. */
+/* The angle is largest at minimum deviation, between the axis and the edge of the drop. */
 static double rainbow_angle(drop_search *s)
 {
-    return -least_value(minus_turned_back, s, 0.4, 0.9999);
+    return -least_value(minus_backward_angle, s, 0.4, 0.9999);
 }
 
 /* cos i = sqrt((n^2 - 1) / 3), angle 4 r - 2 i: Born and Wolf, Principles of Optics, 7th ed., 4.7 exercises;
@@ -256,11 +257,11 @@ static double theory_rainbow(double n)
     return 4.0 * r - 2.0 * i;
 }
 
-static double rainbow_tolerance(drop_search *look, double n)
+static double rainbow_tolerance(drop_search *search, double n)
 {
-    if (isnan(minus_turned_back(look, sqrt((4.0 - n * n) / 3.0)))) /* sin i */
+    if (isnan(minus_backward_angle(search, sqrt((4.0 - n * n) / 3.0)))) /* sin i */
         return NAN;
-    return bound_around(&look->t->tree, vec3_make(0.0, 0.0, 0.0)) + bound_difference(BOUND_FORM) * M_PI;
+    return bound_around(&search->t->tree, vec3_make(0.0, 0.0, 0.0)) + bound_difference(BOUND_FORM) * M_PI;
 }
 
 static status rainbow_at_line(const metrics *m, double lambda_nm, double *measured, double *theory, double *tolerance,
@@ -268,16 +269,16 @@ static status rainbow_at_line(const metrics *m, double lambda_nm, double *measur
 {
     trial t;
     const solid *drop = &m->traced->solids[drop_of(m->traced)];
-    drop_search look = {.t = &t, .why = why, .radius = drop->shape.radius};
+    drop_search search = {.t = &t, .why = why, .radius = drop->shape.radius};
     const double n = relative_index(m->supposed, drop_of(m->supposed), lambda_nm);
     *theory = theory_rainbow(n);
     *tolerance = NAN;
-    look.code = trial_start(&t, drop_alone(m->traced, lambda_nm), m->level, why);
-    *measured = look.code == STATUS_OK && !isnan(*theory) ? rainbow_angle(&look) : NAN;
-    if (look.code == STATUS_OK && !isnan(*theory))
-        *tolerance = rainbow_tolerance(&look, n);
+    search.code = trial_start(&t, drop_scene(m->traced, lambda_nm), m->level, why);
+    *measured = search.code == STATUS_OK && !isnan(*theory) ? rainbow_angle(&search) : NAN;
+    if (search.code == STATUS_OK && !isnan(*theory))
+        *tolerance = rainbow_tolerance(&search, n);
     trial_end(&t);
-    return look.code;
+    return search.code;
 }
 
 status realism_drop(const metrics *m, diagnostic *why)
@@ -287,33 +288,34 @@ status realism_drop(const metrics *m, diagnostic *why)
         "angle of the first rainbow at the F line, 486.1 nm", "angle of the first rainbow at the d line, 587.6 nm",
         "angle of the first rainbow at the C line, 656.3 nm", "angle of the first rainbow at render.lambda_nm"};
     double unused[3];
-    drop_metrics own;
-    status code = begin(m, &own, why);
-    THEN(code, metrics_at_lines(&own.m, names, what, "a refractive index outside 1..2 has no primary rainbow",
+    drop_metrics drops;
+    status code = drops_begin(m, &drops, why);
+    THEN(code, metrics_at_lines(&drops.m, names, what, "a refractive index outside 1..2 has no primary rainbow",
                                 rainbow_at_line, unused, why));
-    end(&own);
+    drops_end(&drops);
     return code;
 }
 
-static status trace_rainbow(const metrics *m, realism_points *out, diagnostic *why)
+static status rainbow_points(const metrics *m, realism_points *out, diagnostic *why)
 {
     const double lambda_nm = m->traced->render.lambda_nm, degree = M_PI / 180.0;
     const solid *drop = &m->traced->solids[drop_of(m->traced)];
     const double n = relative_index(m->supposed, drop_of(m->supposed), lambda_nm);
     trial t;
-    drop_search look = {.t = &t, .why = why, .radius = drop->shape.radius};
-    look.code = trial_start(&t, drop_alone(m->traced, lambda_nm), m->level, why);
-    for (int i = 0; i < 100 && look.code == STATUS_OK; i++)
-        curve_add(out, 0.01 * i, -minus_turned_back(&look, 0.01 * i) / degree, theory_drop_angle(0.01 * i, n) / degree);
+    drop_search search = {.t = &t, .why = why, .radius = drop->shape.radius};
+    search.code = trial_start(&t, drop_scene(m->traced, lambda_nm), m->level, why);
+    for (int i = 0; i < 100 && search.code == STATUS_OK; i++)
+        curve_add(out, 0.01 * i, -minus_backward_angle(&search, 0.01 * i) / degree,
+                  theory_drop_angle(0.01 * i, n) / degree);
     trial_end(&t);
-    return look.code;
+    return search.code;
 }
 
 status drop_curve(const metrics *m, realism_points *out, diagnostic *why)
 {
-    drop_metrics own;
-    status code = begin(m, &own, why);
-    THEN(code, trace_rainbow(&own.m, out, why));
-    end(&own);
+    drop_metrics drops;
+    status code = drops_begin(m, &drops, why);
+    THEN(code, rainbow_points(&drops.m, out, why));
+    drops_end(&drops);
     return code;
 }

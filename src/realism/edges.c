@@ -1,7 +1,7 @@
 /* The rod in the image: the position of its edges, their displacement by the filled vessel, and the magnification.
  *
- * Tolerance: the bound of the path's distance from the rod's corner, over the change of that distance per px, and the
- * widths of the bisections of both sides. */
+ * Tolerance: the bound of the path's distance from the rod's corner, over the change of that distance per px, plus the
+ * widths of the bisections on both sides. */
 #include "realism/metrics.h"
 
 #include "scene/model/scene.h"
@@ -25,7 +25,7 @@ static const char *level_section_read(const scene *s, const setup *at, level_sec
 {
     const solid_shape *rod = &s->solids[at->rod].shape;
     if (rod->rotation_deg.x != 0.0 || rod->rotation_deg.z != 0.0)
-        return "the rod leans: this requires an upright one";
+        return "the rod leans; this metric requires an upright rod";
     *out = (level_section){.eye = view_of(s), .shells = setup_shells(at), .x = at->x, .z = at->z};
     out->eye.roll = 0.0; /* as in arrange_empty */
     const double turn = rod->rotation_deg.y * M_PI / 180.0;
@@ -41,7 +41,7 @@ static const char *level_section_read(const scene *s, const setup *at, level_sec
     return NULL;
 }
 
-/* The same without vessel and liquid. */
+/* The same section without vessel and liquid. */
 static level_section level_section_bare(const level_section *c)
 {
     level_section bare = *c;
@@ -71,7 +71,7 @@ static flat_ray flatten(const level_section *c, double px, double py)
     return r;
 }
 
-/* Distances of the ray inside from the rod's corners, with the sign of the side; false if it does not get inside. */
+/* Signed distances of the rod's corners from the ray inside the vessel; false if the ray does not reach the inside. */
 static bool sides_of(const level_section *c, double px, double py, double side[4])
 {
     const flat_ray r = flatten(c, px, py);
@@ -97,7 +97,7 @@ static bool level_section_sees_rod(const level_section *c, double px, double py)
     return least <= 0.0 && most >= 0.0; /* corners on both sides */
 }
 
-/* Of an edge seen at px: change of the distance of the ray from the rod's corner there, scene units per px. */
+/* The change of the ray's distance from the rod's corner, scene units per px, at an edge seen at px. */
 static double level_section_slope(const level_section *c, double px, double py)
 {
     const double step = 1e-4;
@@ -155,12 +155,12 @@ typedef struct traced_line {
     double edge[2], across[2];
 } traced_line;
 
-/* In a scene that the function takes over; NaN if there are none. */
-static status traced_edges(scene *taken, const metrics *m, const double range[2], double py, traced_line *out,
+/* Finds the rod's edges in a scene, which is freed; NaN if there are none. */
+static status traced_edges(scene *s, const metrics *m, const double range[2], double py, traced_line *out,
                            diagnostic *why)
 {
     trial t;
-    status code = trial_start(&t, taken, m->level, why);
+    status code = trial_start(&t, s, m->level, why);
     *out = (traced_line){{NAN, NAN}, {NAN, NAN}};
     THEN(code, trial_edges(&t, m->at.rod, true, py, range, SCAN_STEPS, out->edge, why));
     for (int i = 0; i < 2 && code == STATUS_OK; i++)
@@ -214,16 +214,16 @@ static const char *theory_edges(const scene *s, const setup *at, image_line *out
     return NULL;
 }
 
-static status measure_edges(const metrics *m, const image_line *of, traced_line *filled, traced_line *bare,
+static status measure_edges(const metrics *m, const image_line *line, traced_line *filled, traced_line *bare,
                             diagnostic *why)
 {
-    scene *vessel = arrange_vessel(m->traced, &m->at), *alone = arrange_empty(m->traced);
+    scene *vessel = arrange_vessel(m->traced, &m->at), *rod_only = arrange_empty(m->traced);
     if (vessel)
         vessel->solids[m->at.rod].visible = 1;
-    if (alone)
-        alone->solids[m->at.rod].visible = 1;
-    status code = traced_edges(vessel, m, of->range, of->py, filled, why);
-    const status second = traced_edges(alone, m, of->range, of->py, bare, code == STATUS_OK ? why : NULL);
+    if (rod_only)
+        rod_only->solids[m->at.rod].visible = 1;
+    status code = traced_edges(vessel, m, line->range, line->py, filled, why);
+    const status second = traced_edges(rod_only, m, line->range, line->py, bare, code == STATUS_OK ? why : NULL);
     return code == STATUS_OK ? second : code;
 }
 
@@ -254,7 +254,7 @@ static status add_edges(const metrics *m, diagnostic *why)
     traced_line in = {{NAN, NAN}, {NAN, NAN}}, out = in;
     const char *const none = theory_edges(m->supposed, &m->theory_at, &l);
     const status code = none ? STATUS_OK : measure_edges(m, &l, &in, &out, why);
-    const double nothing = none ? NAN : 0.0; /* intermediate results are discarded then */
+    const double nan_if_undefined = none ? NAN : 0.0; /* makes theory undefined */
     const double *const filled = in.edge, *const bare = out.edge;
     double off[2], shift[2];
     for (int i = 0; i < 2; i++) {
@@ -265,25 +265,25 @@ static status add_edges(const metrics *m, diagnostic *why)
                  off_ratio = (off[0] + off[1] + ratio * (shift[0] - off[0] + shift[1] - off[1])) / width;
     metrics_add(m, (realism_value){"edges.left",
                                    none ? none : "left edge of the rod in the image, seen through the filled vessel",
-                                   "px", filled[0], l.filled[0] + nothing, off[0]});
+                                   "px", filled[0], l.filled[0] + nan_if_undefined, off[0]});
     metrics_add(m, (realism_value){"edges.right",
                                    none ? none : "right edge of the rod in the image, seen through the filled vessel",
-                                   "px", filled[1], l.filled[1] + nothing, off[1]});
+                                   "px", filled[1], l.filled[1] + nan_if_undefined, off[1]});
     metrics_add(m, (realism_value){"edges.left_shift",
                                    none ? none : "shift of the left edge caused by the vessel and the liquid", "px",
-                                   filled[0] - bare[0], l.filled[0] - l.bare[0] + nothing, shift[0]});
+                                   filled[0] - bare[0], l.filled[0] - l.bare[0] + nan_if_undefined, shift[0]});
     metrics_add(m, (realism_value){"edges.right_shift",
                                    none ? none : "shift of the right edge caused by the vessel and the liquid", "px",
-                                   filled[1] - bare[1], l.filled[1] - l.bare[1] + nothing, shift[1]});
+                                   filled[1] - bare[1], l.filled[1] - l.bare[1] + nan_if_undefined, shift[1]});
     metrics_add(
         m, (realism_value){"edges.magnification",
                            none ? none : "ratio of the rod's width in the image with and without vessel and liquid", "",
-                           (filled[1] - filled[0]) / (bare[1] - bare[0]), ratio + nothing, off_ratio});
+                           (filled[1] - filled[0]) / (bare[1] - bare[0]), ratio + nan_if_undefined, off_ratio});
     return code;
 }
 
 /* A thin round rod on the axis, seen along a horizontal line: inside, the tangent ray passes the axis at the rod's
- * radius, so outside at n_liquid / n_outside times that. */
+ * radius; its offset outside is n_liquid / n_outside times as large. */
 static scene *round_rod(const metrics *m, double radius, double distance)
 {
     scene *s = arrange_vessel(m->traced, &m->at);
@@ -297,8 +297,8 @@ static scene *round_rod(const metrics *m, double radius, double distance)
     return s;
 }
 
-/* A ray at the rod's rim: whether it meets the cylinder is the sign of a discriminant, r^2 - d^2 with the errors of a
- * distance of up to that of the wall. per_px: scene units of the axis's plane. */
+/* The tolerance of the magnification. The sign of a discriminant, r^2 - d^2, decides whether a ray at the rim meets the
+ * cylinder; it has the errors of distances up to the wall's. per_px: scene units per px in the plane of the axis. */
 static double round_tolerance(const traced_line *l, double theory, double radius, double per_px)
 {
     double sum = bound_difference(BOUND_FORM) * theory;
@@ -334,7 +334,7 @@ static status add_round(const metrics *m, diagnostic *why)
     metrics_add(m, (realism_value){
                        "edges.round_magnification",
                        visible ? "magnification of a thin round rod on the axis; theory: the liquid's refractive index"
-                               : "its edges are hidden by the wall",
+                               : "the wall hides the rod's edges",
                        "", (edge[1] - edge[0]) / (2.0 * radius), theory, tolerance});
     return code;
 }

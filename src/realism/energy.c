@@ -1,4 +1,4 @@
-/* What light carries: the balance of a white furnace, radiance across a surface, absorption. */
+/* Energy: the balance of a white furnace, radiance across a surface, absorption. */
 #include "realism/metrics.h"
 
 #include "scene/model/edit/edit.h"
@@ -9,8 +9,8 @@
 /* --- the white furnace --- */
 
 /* The white furnace: under a sky of radiance 1, transparent media without absorption are invisible; a ray returns 1,
- * whatever its ray tree, or 1 minus what the depth limit cut off. Materials with a transparency below 1 or with
- * emission fail.
+ * whatever its ray tree, or 1 minus the weight that the depth limit cut off. Materials with a transparency below 1 or
+ * with emission fail.
  *
  * Tolerance: half a unit of the film for each ray of the tree that ends in the sky, and the rounding of its weight, a
  * product of one factor for each interface of the path. */
@@ -81,38 +81,37 @@ status realism_balance(const metrics *m, diagnostic *why)
 
 /* Radiance across the liquid's flat surface with render.radiance: basic. L / n^2 is preserved except for reflection
  * (Nicodemus 1963), so that from within the liquid a sky of radiance 1 has (n / n_0)^2 T, and a floor of radiance 1 in
- * the liquid has T (n_0 / n)^2 from above. A light above illuminates that floor through the surface with the T of its
- * own straight line, and the square of the index applies only to the returning path.
+ * the liquid has T (n_0 / n)^2 from above. A light above illuminates the floor through the surface with the T of the
+ * straight line to it, and the square of the index applies only to the returning path.
  *
- * Tolerance: as of gaps (flat.c); for the lamp, also the bound of its own light, whose angle follows from the point of
- * the floor: an error e of the ray's direction moves that by e (1 + tan^2) of each length. */
+ * Tolerance: as for gaps (flat.c). For the lamp, also the bound of its light, whose angle depends on the point of the
+ * floor: an error e of the ray's direction moves the point by e (1 + tan^2) of each length. */
 
 enum { STEP_DEG = 5, LAST_DEG = 85, LAMP_HEIGHT = 40, EYE_HEIGHT = 2 };
 
-typedef enum look { LOOK_SKY, LOOK_FLOOR, LOOK_LAMP, LOOKS } look;
+typedef enum pond_view { VIEW_SKY, VIEW_FLOOR, VIEW_LAMP, VIEWS } pond_view;
 
 static const vec3 lamp_place = {9.0, LAMP_HEIGHT, 3.0};
 
 /* The liquid fills 0 < y < 1, on a diffuse floor. */
-static scene *pond(const scene *s, const setup *at, look which)
+static scene *pond(const scene *s, const setup *at, pond_view which)
 {
     scene *copy = arrange_empty(s);
     if (!copy)
         return NULL;
     solid *water = &copy->solids[at->liquid], *ground = &copy->solids[at->rod];
-    water->visible = 1, ground->visible = which != LOOK_SKY;
+    water->visible = 1, ground->visible = which != VIEW_SKY;
     water->priority = 1, ground->priority = 2;
     water->shape = box_at(vec3_make(0.0, 0.0, 0.0), vec3_make(1e4, 2.0, 1e4));
-    water->surface.ambient = water->surface.diffuse = water->surface.specular = 0.0; /* no reflection of the surface's
-                                                                                        own */
+    water->surface.ambient = water->surface.diffuse = water->surface.specular = 0.0; /* no Phong terms */
     water->surface.absorb_per_m = vec3_make(0.0, 0.0, 0.0);
     water->surface.absorb_spectrum.count = 0;
     ground->shape = ground_at(0.0);
     ground->surface = (material){.color = {1.0, 1.0, 1.0}, .ior = 1.0};
-    *(which == LOOK_LAMP ? &ground->surface.diffuse : &ground->surface.ambient) = 1.0;
+    *(which == VIEW_LAMP ? &ground->surface.diffuse : &ground->surface.ambient) = 1.0;
     copy->background.ambient = vec3_make(1.0, 1.0, 1.0);
     copy->background.kind = BACKGROUND_UNIFORM;
-    const double sky = which == LOOK_SKY ? 1.0 : 0.0;
+    const double sky = which == VIEW_SKY ? 1.0 : 0.0;
     copy->background.color = vec3_make(sky, sky, sky);
     copy->render.beyond = DEPTH_LIMIT_BLACK;
     copy->render.depth = 1;
@@ -148,26 +147,26 @@ static double lamp_theory(double angle, double n_around, double n_liquid)
     return cos(incidence) * through(incidence, fmin(n_around, n_liquid), fmax(n_around, n_liquid));
 }
 
-static double pond_theory(const setup *at, look which, double angle)
+static double pond_theory(const setup *at, pond_view which, double angle)
 {
     const double n_around = at->n[SETUP_OUTSIDE], n_liquid = at->n[SETUP_LIQUID], ratio = n_liquid / n_around;
-    if (which == LOOK_SKY)
+    if (which == VIEW_SKY)
         return ratio * ratio * through(angle, n_liquid, n_around);
     const double T = through(angle, n_around, n_liquid);
     if (T == 0.0) /* total reflection from above, with an index below that of the surroundings */
         return 0.0;
-    return T / (ratio * ratio) * (which == LOOK_LAMP ? lamp_theory(angle, n_around, n_liquid) : 1.0);
+    return T / (ratio * ratio) * (which == VIEW_LAMP ? lamp_theory(angle, n_around, n_liquid) : 1.0);
 }
 
-static double pond_tolerance(const setup *at, look which, double angle)
+static double pond_tolerance(const setup *at, pond_view which, double angle)
 {
     const double n_around = at->n[SETUP_OUTSIDE], n_liquid = at->n[SETUP_LIQUID], ratio = n_liquid / n_around;
-    const double gain = which == LOOK_SKY ? ratio * ratio : 1.0 / (ratio * ratio);
-    double off = bound_difference(BOUND_FORM) + (which == LOOK_SKY ? bound_reflectances(angle, 0.0, n_liquid, n_around)
+    const double gain = which == VIEW_SKY ? ratio * ratio : 1.0 / (ratio * ratio);
+    double off = bound_difference(BOUND_FORM) + (which == VIEW_SKY ? bound_reflectances(angle, 0.0, n_liquid, n_around)
                                                                    : bound_reflectances(angle, 0.0, n_around, n_liquid))
                                                     .R;
     const double t = theory_snell(angle, n_around, n_liquid);
-    if (which == LOOK_LAMP && !isnan(t)) {
+    if (which == VIEW_LAMP && !isnan(t)) {
         const double turn = bound_difference(BOUND_TURN), x = EYE_HEIGHT / cos(angle) + 1.0 / cos(t),
                      aside = turn * (EYE_HEIGHT / pow(cos(angle), 2) + n_around / n_liquid / pow(cos(t), 3) + x) /
                              LAMP_HEIGHT,
@@ -179,11 +178,11 @@ static double pond_tolerance(const setup *at, look which, double angle)
     return BOUND_FILM + gain * off;
 }
 
-static status measure_pond(const metrics *m, look which, worst_pair *worst, diagnostic *why)
+static status measure_pond(const metrics *m, pond_view which, worst_pair *worst, diagnostic *why)
 {
     scene *s = pond(m->traced, &m->at, which);
     status code = s ? STATUS_OK : out_of_memory(why);
-    if (code == STATUS_OK && which == LOOK_LAMP)
+    if (code == STATUS_OK && which == VIEW_LAMP)
         code = hang_lamp(s, why);
     if (code != STATUS_OK) {
         scene_destroy(s);
@@ -192,8 +191,8 @@ static status measure_pond(const metrics *m, look which, worst_pair *worst, diag
     trial t;
     code = trial_start(&t, s, m->level, why);
     for (int degrees = 0; degrees <= LAST_DEG && code == STATUS_OK; degrees += STEP_DEG) {
-        const double angle = degrees * M_PI / 180.0, up = which == LOOK_SKY ? 1.0 : -1.0;
-        const vec3 from = vec3_make(0.0, which == LOOK_SKY ? 0.5 : EYE_HEIGHT, 0.0);
+        const double angle = degrees * M_PI / 180.0, up = which == VIEW_SKY ? 1.0 : -1.0;
+        const vec3 from = vec3_make(0.0, which == VIEW_SKY ? 0.5 : EYE_HEIGHT, 0.0);
         code = probe_ray(t.p, from, vec3_make(sin(angle), up * cos(angle), 0.0), &t.tree, why);
         worst_pair_add(worst, code == STATUS_OK ? t.tree.radiance[0] : NAN, pond_theory(&m->theory_at, which, angle),
                        pond_tolerance(&m->theory_at, which, angle));
@@ -212,11 +211,11 @@ status realism_radiance(const metrics *m, diagnostic *why)
                                        "radiance of a diffuse floor below the liquid, lit by a light above it"};
     const bool fresnel = !scene_has_constant_weights(&m->traced->render);
     status code = STATUS_OK;
-    for (int k = 0; k < LOOKS && code == STATUS_OK; k++) {
+    for (int k = 0; k < VIEWS && code == STATUS_OK; k++) {
         worst_pair worst = WORST_NONE;
         const bool defined = fresnel && m->at.liquid >= 0;
         if (defined)
-            code = measure_pond(m, (look)k, &worst, why);
+            code = measure_pond(m, (pond_view)k, &worst, why);
         const char *line = m->at.liquid < 0 ? "there is no liquid"
                            : !fresnel       ? "constant weights do not depend on the angle"
                                             : what[k];
@@ -231,8 +230,8 @@ status realism_radiance(const metrics *m, diagnostic *why)
  * whose slope is the absorption coefficient (Hecht, Optics, 5th ed., eq. 4.78 with the coefficient of power). A liquid
  * without absorption is given coefficients.
  *
- * Tolerance: an error of a length or of exp and log is one of each -ln(transmittance); the slope of the line weighs
- * them by the distances of their lengths from the mean. */
+ * Tolerance: an error of a length or of exp and log is an error of -ln(transmittance); the slope weights it by the
+ * distance of its length from the mean. */
 
 enum { LENGTHS = 9 };
 
@@ -257,7 +256,7 @@ scene *attenuation_scene(const scene *s, const setup *at)
     return copy;
 }
 
-/* Along x to the rod, at half height. */
+/* The transmittance of a ray along x to the rod, at half height. */
 status attenuation_point(trial *t, const setup *at, double length, double transmittance[3], diagnostic *why)
 {
     const solid_shape *liquid = &t->s->solids[at->liquid].shape;
@@ -273,7 +272,7 @@ double attenuation_reach(const trial *t, const setup *at)
 {
     const vec3 a = material_absorption(&t->s->solids[at->liquid].surface);
     const double most = fmax(a.x, fmax(a.y, a.z)) * t->s->render.unit_m;
-    return fmin(0.95 * t->s->solids[at->liquid].shape.radius, 20.0 / most); /* not longer than the liquid allows */
+    return fmin(0.95 * t->s->solids[at->liquid].shape.radius, 20.0 / most); /* stays in the liquid, above exp(-20) */
 }
 
 /* Slopes of the least squares lines through the points (length, -ln transmittance). */
@@ -282,13 +281,13 @@ static status fit_slopes(const metrics *m, trial *t, double reach, double slope[
     double mean_x = 0.0, xx = 0.0, x[LENGTHS], y[3][LENGTHS];
     status code = STATUS_OK;
     for (int i = 0; i < LENGTHS && code == STATUS_OK; i++) {
-        double kept[3] = {NAN, NAN, NAN};
+        double through_length[3] = {NAN, NAN, NAN};
         x[i] = reach * (i + 1) / LENGTHS;
-        code = attenuation_point(t, &m->at, x[i], kept, why);
+        code = attenuation_point(t, &m->at, x[i], through_length, why);
         x[i] *= t->s->render.unit_m;
         mean_x += x[i] / LENGTHS;
         for (int c = 0; c < 3; c++)
-            y[c][i] = -log(kept[c]);
+            y[c][i] = -log(through_length[c]);
     }
     if (code != STATUS_OK)
         return code;
@@ -297,7 +296,7 @@ static status fit_slopes(const metrics *m, trial *t, double reach, double slope[
         xx += (x[i] - mean_x) * (x[i] - mean_x);
         for (int c = 0; c < 3; c++) {
             slope[c] += (x[i] - mean_x) * y[c][i];
-            /* of exp and log; of their arguments */
+            /* errors of exp and log, and of their arguments */
             off[c] += fabs(x[i] - mean_x) * bound_difference(BOUND_FORM) * (1.0 + 2.0 * fabs(y[c][i]));
         }
     }

@@ -9,7 +9,7 @@
 /* Single interfaces between the scene's media: critical angles and reflectances.
  *
  * Tolerances: an error e of sin i or cos i moves the critical angle by e tan i or e cot i, to which half of the
- * bisection's last interval is added. Those of reflectances are bound_reflectances. */
+ * bisection's last interval is added. The tolerances of reflectances are bound_reflectances. */
 
 #define CRITICAL_WIDTH 1e-14 /* of the bisection's last interval */
 enum { ANGLES = 900 };       /* steps of 0.1 degrees */
@@ -70,7 +70,7 @@ static double critical_tolerance(double angle)
            bound_difference(BOUND_FORM) * angle;
 }
 
-/* From the optically denser side. */
+/* Adds a critical angle, measured from the optically denser side. */
 static status add_critical(const metrics *m, int which, diagnostic *why)
 {
     setup_medium from = crossings[which].from, to = crossings[which].to;
@@ -223,7 +223,7 @@ status realism_slab(const metrics *m, diagnostic *why)
 
 /* An empty gap between the vessel's medium and an opaque surface of radiance 1, seen from within the medium: the
  * radiance is 1 - R below the critical angle and 0 above it, however narrow the gap (in contact it would be 1). A
- * distant solid that no ray hits changes neither.
+ * distant solid that no ray hits changes nothing.
  *
  * Depth 1, so that nothing returns from the medium's other face. Tolerance: half a unit of the film, and the bound of R
  * at that angle. */
@@ -286,7 +286,7 @@ status realism_gap(const metrics *m, diagnostic *why)
         if (fresnel && third)
             code = measure_gap(m, far_solid ? wide : narrow, far_solid, &worst, why);
         const char *line = !fresnel ? "constant weights have no critical angle"
-                           : !third ? "an empty vessel's scene has no third solid"
+                           : !third ? "there is no liquid to place far away"
                                     : what[far_solid];
         metrics_add(m, (realism_value){names[far_solid], line, "", worst.measured, worst.theory, worst.tolerance});
     }

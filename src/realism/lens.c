@@ -13,8 +13,9 @@
 
 /* The filled vessel as a lens for horizontal rays: deviation of a ray off its axis, optical power, dispersion.
  *
- * Tolerances: an angle has the bound of its path. Power is extrapolated from deviations over offsets down to an 80th of
- * the radius: the same combination of their bounds with positive coefficients, and the closed form's own remainder. */
+ * Tolerances: for an angle, the bound of its path. Power is extrapolated from deviations at offsets down to an 80th of
+ * the radius: the same combination of their bounds with positive coefficients, plus the remainder of the closed form's
+ * extrapolation. */
 
 enum { OFFSETS = 64, LEVELS = 5 };
 
@@ -28,7 +29,7 @@ status lens_deviation(probe *p, ray_tree *tree, const setup *at, double offset, 
     return STATUS_OK;
 }
 
-/* Of the angle just measured: that of its path, and the rounding of the angle itself. */
+/* The tolerance of the angle just measured: the bound of its path, and the rounding of the angle. */
 static double deviation_tolerance(const ray_tree *tree, const setup *at, double radians)
 {
     const vec3 center = vec3_make(at->x, (at->low + at->high) / 2.0, at->z);
@@ -104,7 +105,7 @@ static status add_power(const metrics *m, trial *t, diagnostic *why)
     return code;
 }
 
-/* The same with water in BK7 at one spectral line, half way to the rim. */
+/* The deviation of a ray halfway to the rim at one spectral line, with water in BK7. */
 static status deviation_at_line(const metrics *m, double lambda_nm, double *measured, double *theory, double *tolerance,
                                 diagnostic *why)
 {
@@ -163,10 +164,10 @@ status realism_lens(const metrics *m, diagnostic *why)
 
 /* An arrow behind a glass of water: solids named vessel, liquid and arrow (experiments/scenes/arrow.yaml). The eye is
  * at the camera's distance from the axis, on the level of the middle of the liquid. A line of sight near the axis meets
- * the arrow's plane behind the glass at a fraction of the place that it met without the glass; where the fraction is
- * negative, the arrow is seen turned around. */
+ * the arrow's plane behind the glass at a distance from the axis that is a fraction of the distance without the glass;
+ * if the fraction is negative, the arrow appears reversed. */
 
-#define OFFSET 1e-4 /* from the axis, of the inner radius */
+#define OFFSET 1e-4 /* distance from the axis over the inner radius */
 
 bool arrow_is_there(const scene *s)
 {
@@ -174,7 +175,7 @@ bool arrow_is_there(const scene *s)
            scene_find_solid(s, "liquid") >= 0;
 }
 
-/* Where the path, refracted by the glass, meets the plane: distance from the axis. */
+/* The distance from the axis at which the path, refracted by the glass, meets the plane. */
 static status place_of(trial *t, const setup *at, double eye, double offset, double behind, double *place,
                        diagnostic *why)
 {
@@ -182,8 +183,8 @@ static status place_of(trial *t, const setup *at, double eye, double offset, dou
     const vec3 from = vec3_make(at->x, (at->low + at->high) / 2.0, at->z - eye);
     TRY(probe_path(t->p, from, vec3_make(sine, 0.0, sqrt(1.0 - sine * sine)), -1, &t->tree, why));
     const ray_node *last = &t->tree.node[t->tree.count - 1];
-    const double way = (at->z + behind - last->origin.z) / last->direction.z;
-    *place = last->end == RAY_END_SKY ? last->origin.x + way * last->direction.x - at->x : NAN;
+    const double distance = (at->z + behind - last->origin.z) / last->direction.z;
+    *place = last->end == RAY_END_SKY ? last->origin.x + distance * last->direction.x - at->x : NAN;
     return STATUS_OK;
 }
 
@@ -212,11 +213,11 @@ status arrow_curve(const metrics *m, realism_points *out, diagnostic *why)
 
 /* Reversed paths: light returns along the path that it came, and an interface has the same transmittance from both
  * sides (Stokes relations; Hecht, Optics, 5th ed., 4.10). Random paths through the vessel, refracted or reflected once,
- * are traced to their end and back. The reversed path ends on the origin ray of the path, and has the same throughput.
+ * are traced to their end and back. The reversed path ends on the first ray of the path, and has the same throughput.
  * (Radiance has an additional factor n^2 in a medium; both ends are outside, where it cancels, and the tracer's
  * throughput omits it.) Paths near grazing incidence are excluded: errors grow there as 1 / cos.
  *
- * Tolerance: the bound of the reversed path, to whose errors at each surface those of the path itself add. */
+ * Tolerance: the bound of the reversed path, which includes the path's errors at each surface (bound_difference). */
 
 #define LEAST_COSINE 0.1
 enum { PATHS = 2000, HITS_MAX = 12 };
@@ -255,13 +256,16 @@ static int surfaces(const ray_tree *tree)
     return hits;
 }
 
-/* A reflection requested after the last surface of the path would be at another surface on the reversed path. */
-static int reflected_at(const ray_tree *tree, int asked)
+/* The surface at which the path was reflected; -1 if it left before the requested reflection. */
+static int reflected_at(const ray_tree *tree, int reflection)
 {
-    return asked >= 0 && asked + 1 < (int)tree->count && tree->node[asked + 1].kind == RAY_REFLECT ? asked : -1;
+    return reflection >= 0 && reflection + 1 < (int)tree->count && tree->node[reflection + 1].kind == RAY_REFLECT
+               ? reflection
+               : -1;
 }
 
-/* Of the reversed path: its throughput, and its distance from the origin of the path. */
+/* A path and its reversal: the throughput of each, the distance by which the reversal misses the path's origin, and the
+ * bounds. */
 typedef struct round_trip {
     double forth, back, miss;
     path_bound off;
@@ -277,16 +281,16 @@ static status trace_back(trial *forth, trial *back, const setup *at, uint32_t nu
     if (hits < 0)
         return code;
     const ray_node *last = &forth->tree.node[hits];
-    const int asked = reflected_at(&forth->tree, w.reflect_at);
+    const int reflection = reflected_at(&forth->tree, w.reflect_at);
     const vec3 start = vec3_add(last->origin, vec3_scale(last->direction, 3.0 * at->outer));
-    TRY(probe_path(back->p, start, vec3_scale(last->direction, -1.0), asked < 0 ? -1 : hits - 1 - asked, &back->tree,
-                   why));
+    TRY(probe_path(back->p, start, vec3_scale(last->direction, -1.0), reflection < 0 ? -1 : hits - 1 - reflection,
+                   &back->tree, why));
     const ray_node *home = &back->tree.node[back->tree.count - 1];
     const vec3 away = vec3_sub(w.from, home->origin);
     out->done = true;
     out->forth = last->throughput[0];
     if ((int)back->tree.count - 1 != hits || home->end != RAY_END_SKY)
-        return STATUS_OK; /* another path: nothing agrees */
+        return STATUS_OK; /* another path: back and miss stay NaN */
     out->back = home->throughput[0];
     out->miss = vec3_length(vec3_cross(away, home->direction));
     out->off = bound_path(&back->tree, 1.0 / at->inner);
@@ -313,7 +317,7 @@ status realism_reversal(const metrics *m, diagnostic *why)
     metrics_add(m, (realism_value){"reversal.throughput",
                                    "throughput of a reversed path over that of the path; largest error of about 1000",
                                    "", ratio.measured, ratio.theory, ratio.tolerance});
-    metrics_add(m, (realism_value){"reversal.path", "distance of the reversed path from the origin of the path",
+    metrics_add(m, (realism_value){"reversal.path", "distance by which the reversed path misses the origin of the path",
                                    "scene units", miss.measured, miss.theory, miss.tolerance});
     return code;
 }

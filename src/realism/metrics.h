@@ -1,6 +1,6 @@
 /* Shared code of all metrics; private to this folder. A metric is a function that adds its values to the report; it
  * adds the same names for every scene, with theory NaN and the reason if a value is undefined. Ownership: trial_start
- * takes the scene over, trial_end releases everything. */
+ * becomes the owner of the scene, also if it fails; trial_end frees everything. */
 #pragma once
 
 #include "realism/bound.h"
@@ -29,7 +29,7 @@ status realism_radiance(const metrics *m, diagnostic *why);   /* energy.c: radia
 status realism_absorption(const metrics *m, diagnostic *why); /* energy.c: Beer and Lambert */
 status realism_reversal(const metrics *m, diagnostic *why);   /* lens.c: reversed paths */
 
-/* Metrics with scenes of their own: the required solids, and whether a scene has them. Only the scenes, the level and
+/* Metrics of scenes other than the vessel, and whether a scene has the solids for them. Only the scenes, the level and
  * the report of m are used. */
 bool prism_is_there(const scene *s);
 status realism_prism(const metrics *m, diagnostic *why); /* dispersion.c: minimum deviation */
@@ -40,7 +40,7 @@ status realism_stack(const metrics *m, diagnostic *why); /* plates.c: a stack of
 
 void metrics_add(const metrics *m, realism_value value);
 
-/* Keeps the pair with the largest difference, each in units of its tolerance. */
+/* The pair with the largest difference in units of its tolerance. */
 typedef struct worst_pair {
     double measured, theory, tolerance;
     bool any;
@@ -48,7 +48,7 @@ typedef struct worst_pair {
 #define WORST_NONE ((worst_pair){NAN, NAN, NAN, false})
 void worst_pair_add(worst_pair *w, double measured, double theory, double tolerance);
 
-/* Points of curves, for realism.c. */
+/* Measurements and curves for realism.c. */
 status lens_deviation(probe *p, ray_tree *tree, const setup *at, double offset, double *radians, diagnostic *why);
 typedef struct interface_reflectances {
     double R_s, R_p, R;
@@ -78,7 +78,7 @@ typedef struct trial {
     probe *p;
     ray_tree tree;
 } trial;
-status trial_start(trial *t, scene *taken, isa level, diagnostic *why);
+status trial_start(trial *t, scene *owned, isa level, diagnostic *why);
 void trial_end(trial *t);
 
 /* Transmittances after a length of the liquid, in a trial of attenuation_scene; and the maximum length. */
@@ -99,17 +99,17 @@ typedef bool seen_at(void *context, double x);
 double bisect(seen_at *seen, void *context, double from, double to, bool before);
 bool find_edges(seen_at *seen, void *context, double from, double to, int steps, double edge[2]);
 
-/* Whether the path from there, refracted where possible, ends on that solid without a reflection, optionally only
+/* Whether the path from origin, refracted if possible, ends on solid `which` without a reflection; upright: and only
  * through vertical surfaces. A failure of the tracer is stored in *code. */
 bool trial_meets(trial *t, vec3 origin, vec3 direction, int which, bool upright, status *code, diagnostic *why);
 
-/* The same for a solid in a line of the traced image: where the camera path, refracted where possible, ends on it
- * without a reflection, optionally only through vertical surfaces. NaN if it has no edges. */
+/* The edges of solid `which` in a line of the image: the first and last px whose camera path meets it as in
+ * trial_meets. NaN if it has no edges. */
 status trial_edges(trial *t, int which, bool upright, double py, const double range[2], int steps, double edge[2],
                    diagnostic *why);
 
-/* Bound of the place, across the ray, where the path through an edge just found meets the solid. The path is moved by
- * EDGE_INSIDE_PX towards the other edge. NaN if it does not meet the solid. */
+/* Bound of the position, across the ray, at which the path through an edge from trial_edges meets the solid. The path
+ * is moved by EDGE_INSIDE_PX towards the other edge. NaN if it does not meet the solid. */
 #define EDGE_INSIDE_PX 1e-6
 status trial_edge_bound(trial *t, int which, double py, const double edge[2], int side, double curvature,
                         double *across, diagnostic *why);
@@ -117,12 +117,12 @@ status trial_edge_bound(trial *t, int which, double py, const double edge[2], in
 /* Width of the bisection's last interval, px or scene units, and the rounding of its ends. */
 double bisect_width(double at);
 
-/* Adds an angle at the F, d and C lines and at render.lambda_nm; difference: F minus C: measured, theory, tolerance.
- * none is the reason if there is no theory. */
+/* Adds an angle at the F, d and C lines and at render.lambda_nm. difference: measured, theory and tolerance of F minus
+ * C. none is the reason if there is no theory. */
 typedef status at_line_call(const metrics *m, double lambda_nm, double *measured, double *theory, double *tolerance,
                             diagnostic *why);
 status metrics_at_lines(const metrics *m, const char *const names[4], const char *const what[4], const char *none,
                         at_line_call *at_line, double difference[3], diagnostic *why);
 
-/* A copy at a wavelength, with the settings needed to trace such an angle; NULL without memory. */
+/* A copy at a wavelength, with the settings to trace such an angle; NULL if memory runs out. */
 scene *arrange_at(const scene *s, double lambda_nm);

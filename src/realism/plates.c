@@ -54,9 +54,10 @@ static status filters_read(const scene *s, filters *out, diagnostic *why)
     *out = (filters){.analyser = scene_find_solid(s, "analyser"), .polarised = s->render.polarisation != 0};
     last = &s->solids[out->analyser];
     if (!is_ideal(first) || !is_ideal(last))
-        return diagnose(why, STATUS_BAD_INPUT,
-                        "give both sheet polariser, sheet_pass 1, sheet_block 0, transparency 1, and an axis across z",
-                        "'polariser' and 'analyser' are not ideal linear polarisers across the line of sight");
+        return diagnose(
+            why, STATUS_BAD_INPUT,
+            "set both to sheet polariser, sheet_pass 1, sheet_block 0, transparency 1, and an axis across z",
+            "'polariser' and 'analyser' are not ideal linear polarisers across the line of sight");
     out->polariser_at = axis_at(first), out->analyser_at = axis_at(last);
     if (!is_there(s, "plate"))
         return STATUS_OK;
@@ -127,8 +128,8 @@ status filters_curve(const metrics *m, realism_points *out, diagnostic *why)
  * (experiments/scenes/plates.yaml). The transmittance for the camera's central ray and white light: with polarisation s
  * and p light are transmitted separately, without it every interface uses the mean of both, as most renderers do.
  *
- * Tolerance: the bound of the reflectance at that angle times the derivative by it, and the rounding of the products.
- * What the depth limit cuts off is no part of it: the closed form counts the paths of up to that depth. */
+ * Tolerance: the bound of the reflectance at that angle times the derivative with respect to it, and the rounding of
+ * the products. The depth limit adds nothing: the closed form counts only the paths up to that depth. */
 
 enum { INTERFACES = 4, STACK_DEPTH = 16 };
 
@@ -163,27 +164,27 @@ static double straight_through(double R)
     return pow(1.0 - R, INTERFACES);
 }
 
-static double of_both(const stack *s, double (*through)(double R))
+static double polarised_mean(const stack *s, double (*through)(double R))
 {
     const double R_s = theory_fresnel_s(s->angle, 1.0, s->n), R_p = theory_fresnel_p(s->angle, 1.0, s->n);
     return s->polarised ? 0.5 * (through(R_s) + through(R_p)) : through(0.5 * (R_s + R_p));
 }
 
-/* By the derivative of the transmittance by R, for the R that are used. */
+/* The bound of R times the derivative of the transmittance with respect to R, at the R that are used. */
 static double stack_tolerance(const stack *s, double (*through)(double R), int interfaces)
 {
     const reflectance_bound off = bound_reflectances(s->angle, bound_difference(BOUND_TURN), 1.0, s->n);
     const double R_s = theory_fresnel_s(s->angle, 1.0, s->n), R_p = theory_fresnel_p(s->angle, 1.0, s->n), step = 1e-6,
-                 R[] = {R_s, R_p, 0.5 * (R_s + R_p)}, of_R[] = {off.R_s, off.R_p, off.R};
+                 R[] = {R_s, R_p, 0.5 * (R_s + R_p)}, R_bound[] = {off.R_s, off.R_p, off.R};
     double most = 0.0;
     for (int i = 0; i < 3; i++)
-        most = fmax(most, of_R[i] * fabs(through(R[i] + step) - through(R[i] - step)) / (2.0 * step));
+        most = fmax(most, R_bound[i] * fabs(through(R[i] + step) - through(R[i] - step)) / (2.0 * step));
     return most + bound_difference(BOUND_FORM * interfaces);
 }
 
-/* Sums the radiance of rays that end in the sky or on a board in the direction of view, since parallel faces do not
- * change directions. */
-static double add_up(const ray_tree *tree, vec3 forward)
+/* Sums the throughput of rays that end in the sky or on a board in the direction of view: parallel faces do not change
+ * directions. */
+static double sum_throughput(const ray_tree *tree, vec3 forward)
 {
     double through = 0.0;
     for (size_t i = 0; i < tree->count; i++) {
@@ -195,7 +196,7 @@ static double add_up(const ray_tree *tree, vec3 forward)
     return through;
 }
 
-static status look_through_stack(const metrics *m, double *straight, double *whole, diagnostic *why)
+static status look_through_stack(const metrics *m, double *straight, double *total, diagnostic *why)
 {
     trial t;
     scene *s = scene_clone(m->traced);
@@ -215,7 +216,7 @@ static status look_through_stack(const metrics *m, double *straight, double *who
         code = probe_ray(t.p, eye, forward, &t.tree, why);
     }
     if (code == STATUS_OK)
-        *whole = add_up(&t.tree, forward);
+        *total = sum_throughput(&t.tree, forward);
     trial_end(&t);
     return code;
 }
@@ -231,14 +232,14 @@ status realism_stack(const metrics *m, diagnostic *why)
     stack supposed;
     if (!stack_read(m->supposed, &supposed))
         return opaque_plates(why);
-    double straight, whole;
-    TRY(look_through_stack(m, &straight, &whole, why));
+    double straight, total;
+    TRY(look_through_stack(m, &straight, &total, why));
     metrics_add(m, (realism_value){"stack.straight", "transmittance of four interfaces without reflections", "",
-                                   straight, of_both(&supposed, straight_through),
+                                   straight, polarised_mean(&supposed, straight_through),
                                    stack_tolerance(&supposed, straight_through, INTERFACES)});
     metrics_add(m,
                 (realism_value){"stack.whole", "transmittance with the reflections of paths with up to 16 interfaces",
-                                "", whole, of_both(&supposed, through_to_depth),
+                                "", total, polarised_mean(&supposed, through_to_depth),
                                 stack_tolerance(&supposed, through_to_depth, STACK_DEPTH)});
     return STATUS_OK;
 }
@@ -252,14 +253,14 @@ status stack_curve(const metrics *m, realism_points *out, diagnostic *why)
     for (int i = 0; i <= 85 && code == STATUS_OK; i++) {
         static const char *const plates[] = {"plate1", "plate2"};
         stack supposed;
-        double straight = NAN, whole;
+        double straight = NAN, total;
         for (int k = 0; k < 2; k++)
             turned->solids[scene_find_solid(turned, plates[k])].shape.rotation_deg = vec3_make(0.0, i, 0.0);
         if (!stack_read(turned, &supposed))
             code = opaque_plates(why);
-        THEN(code, look_through_stack(&at, &straight, &whole, why));
+        THEN(code, look_through_stack(&at, &straight, &total, why));
         if (code == STATUS_OK)
-            curve_add(out, i, straight, of_both(&supposed, straight_through));
+            curve_add(out, i, straight, polarised_mean(&supposed, straight_through));
     }
     scene_destroy(turned);
     return code;
@@ -268,7 +269,7 @@ status stack_curve(const metrics *m, realism_points *out, diagnostic *why)
 /* --- a thin film --- */
 
 /* Interference in a thin film: the solid named film1, a box with a film on it (experiments/scenes/soap.yaml), in the
- * camera's direction of view. Its reflectance at render.lambda_nm is traced for films of many thicknesses. */
+ * camera's direction of view. Its reflectance at render.lambda_nm is measured for films of many thicknesses. */
 
 bool soap_is_there(const scene *s)
 {
@@ -277,8 +278,8 @@ bool soap_is_there(const scene *s)
            s->solids[at].surface.film_thickness_nm > 0.0;
 }
 
-/* A copy with film1 alone. */
-static scene *film_alone(const scene *s, int film, double thickness_nm)
+/* A copy in which only film1 is visible. */
+static scene *film_scene(const scene *s, int film, double thickness_nm)
 {
     scene *copy = scene_clone(s);
     for (size_t i = 0; copy && i < copy->solid_count; i++)
@@ -306,7 +307,7 @@ status soap_curve(const metrics *m, realism_points *out, diagnostic *why)
     for (int i = 1; i <= 200 && code == STATUS_OK; i++) {
         const double thickness_nm = 5.0 * i;
         trial t;
-        code = trial_start(&t, film_alone(s, film, thickness_nm), m->level, why);
+        code = trial_start(&t, film_scene(s, film, thickness_nm), m->level, why);
         THEN(code, probe_path(t.p, vec3_sub(face, vec3_scale(ahead, 2.0)), ahead, -1, &t.tree, why));
         if (code == STATUS_OK)
             curve_add(out, thickness_nm, t.tree.node[0].hit.R,

@@ -28,25 +28,24 @@ status realism_measure(const scene *s, isa level, realism_report *out, diagnosti
 }
 
 /* Scenes other than the vessel, identified by the names of their solids. */
-static const struct arrangement_kind {
+static const struct scene_kind {
     bool (*is_there)(const scene *s);
     status (*measure)(const metrics *m, diagnostic *why);
-} scene_geometries[] = {
-    {prism_is_there, realism_prism}, {drop_is_there, realism_drop}, {stack_is_there, realism_stack}};
+} scene_kinds[] = {{prism_is_there, realism_prism}, {drop_is_there, realism_drop}, {stack_is_there, realism_stack}};
 
 status realism_check(const scene *s, bool curves, diagnostic *why)
 {
     setup unused;
-    for (size_t i = 0; i < sizeof scene_geometries / sizeof scene_geometries[0] && !curves; i++)
-        if (scene_geometries[i].is_there(s))
+    for (size_t i = 0; i < sizeof scene_kinds / sizeof scene_kinds[0] && !curves; i++)
+        if (scene_kinds[i].is_there(s))
             return STATUS_OK;
     return setup_read(s, &unused, why);
 }
 
 typedef status measure_call(const metrics *m, diagnostic *why);
-static measure_call *const of_vessel[] = {realism_edges,      realism_water_line, realism_lens, realism_interfaces,
-                                          realism_balance,    realism_slab,       realism_gap,  realism_radiance,
-                                          realism_absorption, realism_reversal};
+static measure_call *const vessel_metrics[] = {realism_edges,      realism_water_line, realism_lens, realism_interfaces,
+                                               realism_balance,    realism_slab,       realism_gap,  realism_radiance,
+                                               realism_absorption, realism_reversal};
 
 static const realism_value *find_value(const realism_report *r, const char *metric)
 {
@@ -56,19 +55,20 @@ static const realism_value *find_value(const realism_report *r, const char *metr
     return NULL;
 }
 
-/* All metrics, or the groups up to that of metric. */
+/* Measures all metrics, or, if metric is given, only the groups up to the one that has it. */
 static status measure_until(const scene *traced, const scene *supposed, isa level, const char *metric,
                             realism_report *out, diagnostic *why)
 {
     metrics m = {.traced = traced, .supposed = supposed, .level = level, .report = out};
     out->count = 0;
-    for (size_t i = 0; i < sizeof scene_geometries / sizeof scene_geometries[0]; i++)
-        if (scene_geometries[i].is_there(traced) && scene_geometries[i].is_there(supposed))
-            return scene_geometries[i].measure(&m, why);
+    for (size_t i = 0; i < sizeof scene_kinds / sizeof scene_kinds[0]; i++)
+        if (scene_kinds[i].is_there(traced) && scene_kinds[i].is_there(supposed))
+            return scene_kinds[i].measure(&m, why);
     TRY(setup_read(traced, &m.at, why));
     TRY(setup_read(supposed, &m.theory_at, why));
-    for (size_t i = 0; i < sizeof of_vessel / sizeof of_vessel[0] && !(metric && find_value(out, metric)); i++)
-        TRY(of_vessel[i](&m, why));
+    for (size_t i = 0; i < sizeof vessel_metrics / sizeof vessel_metrics[0] && !(metric && find_value(out, metric));
+         i++)
+        TRY(vessel_metrics[i](&m, why));
     return STATUS_OK;
 }
 
@@ -84,7 +84,7 @@ status realism_measure_one(const scene *s, isa level, const char *metric, realis
     TRY(measure_until(s, s, level, metric, &report, why));
     const realism_value *found = find_value(&report, metric);
     if (!found)
-        return diagnose(why, STATUS_BAD_INPUT, "'cuvette realism SCENE' lists the metrics",
+        return diagnose(why, STATUS_BAD_INPUT, "list the metrics with 'cuvette realism SCENE'",
                         "the scene has no metric '%.64s'", metric);
     *out = *found;
     return STATUS_OK;
@@ -92,10 +92,10 @@ status realism_measure_one(const scene *s, isa level, const char *metric, realis
 
 /* --- curves --- */
 
-typedef struct curve_words {
+typedef struct curve_labels {
     const char *name, *x, *y;
-} curve_words;
-static const curve_words words[REALISM_CURVE_COUNT] = {
+} curve_labels;
+static const curve_labels labels[REALISM_CURVE_COUNT] = {
     [REALISM_CURVE_FRESNEL_S] = {"fresnel-s", "angle of incidence, deg", "reflectance, s-polarised"},
     [REALISM_CURVE_FRESNEL_P] = {"fresnel-p", "angle of incidence, deg", "reflectance, p-polarised"},
     [REALISM_CURVE_FRESNEL] = {"fresnel", "angle of incidence, deg", "reflectance of unpolarised light"},
@@ -112,23 +112,23 @@ static const curve_words words[REALISM_CURVE_COUNT] = {
     [REALISM_CURVE_MALUS] = {"malus", "angle of the analyser, deg", "transmittance of the polarisers"},
     [REALISM_CURVE_COIN] = {"coin", "index of the liquid", "least depth of the liquid, scene units"},
     [REALISM_CURVE_ARROW] = {"arrow", "distance of the arrow from the axis, scene units",
-                             "place met through the glass, over that without it"},
+                             "position through the glass over position without it"},
     [REALISM_CURVE_SOAP] = {"soap", "thickness of the film, nm", "reflectance"},
 };
 
 const char *realism_curve_name(realism_curve which)
 {
-    return words[which].name;
+    return labels[which].name;
 }
 
 const char *realism_curve_x(realism_curve which)
 {
-    return words[which].x;
+    return labels[which].x;
 }
 
 const char *realism_curve_y(realism_curve which)
 {
-    return words[which].y;
+    return labels[which].y;
 }
 
 const char *realism_curve_parameter(realism_curve which)
@@ -141,8 +141,8 @@ const char *realism_curve_parameter(realism_curve which)
 enum reflected { REFLECTED_S, REFLECTED_P, REFLECTED_BOTH };
 
 /* Reflectances of one component or of unpolarised light, by the angle of incidence. */
-static status trace_reflectance(const metrics *m, setup_medium from, setup_medium to, enum reflected part,
-                                realism_points *out, diagnostic *why)
+static status reflectance_points(const metrics *m, setup_medium from, setup_medium to, enum reflected part,
+                                 realism_points *out, diagnostic *why)
 {
     static double (*const theory[])(double, double, double) = {theory_fresnel_s, theory_fresnel_p, theory_fresnel};
     double start_y = 0.0;
@@ -160,7 +160,7 @@ static status trace_reflectance(const metrics *m, setup_medium from, setup_mediu
     return code;
 }
 
-static status trace_deviation(const metrics *m, realism_points *out, diagnostic *why)
+static status deviation_points(const metrics *m, realism_points *out, diagnostic *why)
 {
     const theory_shells c = setup_shells(&m->theory_at);
     const double reach = 0.98 * theory_shells_reach(&c);
@@ -176,7 +176,7 @@ static status trace_deviation(const metrics *m, realism_points *out, diagnostic 
     return code;
 }
 
-static status trace_depth(const metrics *m, realism_points *out, diagnostic *why)
+static status depth_points(const metrics *m, realism_points *out, diagnostic *why)
 {
     status code = STATUS_OK;
     for (int depth = 0; depth <= 16 && code == STATUS_OK; depth++) {
@@ -187,7 +187,7 @@ static status trace_depth(const metrics *m, realism_points *out, diagnostic *why
     return code;
 }
 
-static status trace_absorption(const metrics *m, realism_points *out, diagnostic *why)
+static status absorption_points(const metrics *m, realism_points *out, diagnostic *why)
 {
     trial t;
     status code = trial_start(&t, attenuation_scene(m->traced, &m->at), m->level, why);
@@ -196,16 +196,16 @@ static status trace_absorption(const metrics *m, realism_points *out, diagnostic
                      reach = attenuation_reach(&t, &m->at);
         for (int i = 1; i <= 100 && code == STATUS_OK; i++) {
             const double length = reach * i / 100.0, length_m = length * t.s->render.unit_m;
-            double kept[3] = {NAN, NAN, NAN};
-            code = attenuation_point(&t, &m->at, length, kept, why);
-            curve_add(out, length_m, kept[0], exp(-a * length_m));
+            double transmittances[3] = {NAN, NAN, NAN};
+            code = attenuation_point(&t, &m->at, length, transmittances, why);
+            curve_add(out, length_m, transmittances[0], exp(-a * length_m));
         }
     }
     trial_end(&t);
     return code;
 }
 
-static status trace_edges(const metrics *m, realism_points *out, diagnostic *why)
+static status edges_points(const metrics *m, realism_points *out, diagnostic *why)
 {
     scene *s = scene_clone(m->traced);
     status code = s ? STATUS_OK : out_of_memory(why);
@@ -230,9 +230,9 @@ static double slope_of(vec3 direction)
     return hypot(direction.x, direction.z) / fabs(direction.y);
 }
 
-/* The line of sight, extended below the surface, passes above the point: depths are as the tangents. Straight down the
- * ratio is that of the derivatives, so the first angle is small. */
-static status trace_apparent_depth(const metrics *m, realism_points *out, diagnostic *why)
+/* The line of sight, extended below the surface, passes above the point: the ratio of the depths is that of the
+ * tangents. Straight down it is 0 / 0, so the first angle is small but not 0. */
+static status apparent_depth_points(const metrics *m, realism_points *out, diagnostic *why)
 {
     const double *n = m->at.n;
     double start_y = 0.0;
@@ -256,7 +256,7 @@ static status trace_apparent_depth(const metrics *m, realism_points *out, diagno
 static const struct other_curve {
     realism_curve which;
     bool (*is_there)(const scene *s);
-    status (*trace)(const metrics *m, realism_points *out, diagnostic *why);
+    status (*measure)(const metrics *m, realism_points *out, diagnostic *why);
     const char *lacks, *remedy;
 } others[] = {
     {REALISM_CURVE_PRISM, prism_is_there, prism_curve, "no solids 'prism', 'left' and 'right'",
@@ -275,7 +275,7 @@ static const struct other_curve {
      "use the names and shapes of experiments/scenes/soap.yaml"},
 };
 
-/* NULL for the curves of the vessel. */
+/* The row of a curve; NULL for the curves of the vessel. */
 static const struct other_curve *other_of(realism_curve which)
 {
     for (size_t i = 0; i < sizeof others / sizeof *others; i++)
@@ -297,7 +297,7 @@ static status find_solids(const scene *s, realism_curve which, setup *at, diagno
                            which == REALISM_CURVE_MIRROR || which == REALISM_CURVE_APPARENT_DEPTH;
     if (of_liquid && at->liquid < 0)
         return diagnose(why, STATUS_BAD_INPUT, "add a cylinder named 'liquid'", "the curve '%s' requires a liquid",
-                        words[which].name);
+                        labels[which].name);
     return STATUS_OK;
 }
 
@@ -314,19 +314,19 @@ status realism_trace_curve(const scene *s, isa level, realism_curve which, reali
     TRY(find_solids(s, which, &m.at, why));
     m.theory_at = m.at;
     if (other_of(which))
-        return other_of(which)->trace(&m, out, why);
+        return other_of(which)->measure(&m, out, why);
     switch (which) {
     case REALISM_CURVE_FRESNEL_S:
     case REALISM_CURVE_FRESNEL_P:
     case REALISM_CURVE_FRESNEL:
-        return trace_reflectance(&m, SETUP_OUTSIDE, SETUP_VESSEL,
-                                 (enum reflected)((int)which - (int)REALISM_CURVE_FRESNEL_S), out, why);
-    case REALISM_CURVE_DEVIATION: return trace_deviation(&m, out, why);
-    case REALISM_CURVE_DEPTH: return trace_depth(&m, out, why);
-    case REALISM_CURVE_ABSORPTION: return trace_absorption(&m, out, why);
-    case REALISM_CURVE_EDGES: return trace_edges(&m, out, why);
-    case REALISM_CURVE_MIRROR: return trace_reflectance(&m, SETUP_LIQUID, SETUP_OUTSIDE, REFLECTED_BOTH, out, why);
-    case REALISM_CURVE_APPARENT_DEPTH: return trace_apparent_depth(&m, out, why);
+        return reflectance_points(&m, SETUP_OUTSIDE, SETUP_VESSEL,
+                                  (enum reflected)((int)which - (int)REALISM_CURVE_FRESNEL_S), out, why);
+    case REALISM_CURVE_DEVIATION: return deviation_points(&m, out, why);
+    case REALISM_CURVE_DEPTH: return depth_points(&m, out, why);
+    case REALISM_CURVE_ABSORPTION: return absorption_points(&m, out, why);
+    case REALISM_CURVE_EDGES: return edges_points(&m, out, why);
+    case REALISM_CURVE_MIRROR: return reflectance_points(&m, SETUP_LIQUID, SETUP_OUTSIDE, REFLECTED_BOTH, out, why);
+    case REALISM_CURVE_APPARENT_DEPTH: return apparent_depth_points(&m, out, why);
     case REALISM_CURVE_PRISM:
     case REALISM_CURVE_RAINBOW:
     case REALISM_CURVE_PLATES:

@@ -8,14 +8,14 @@
 #include "scene/model/view_settings.h"
 #include <math.h>
 
-static status wrong(const scene *s, diagnostic *why, const char *remedy, const char *what)
+static status unsuitable(const scene *s, diagnostic *why, const char *remedy, const char *what)
 {
     return diagnose_at(why, s->path, STATUS_BAD_INPUT, remedy, "%s", what);
 }
 
-static bool is_turned(const solid *of)
+static bool is_turned(const solid *one)
 {
-    const vec3 r = of->shape.rotation_deg;
+    const vec3 r = one->shape.rotation_deg;
     return r.x != 0.0 || r.y != 0.0 || r.z != 0.0;
 }
 
@@ -41,13 +41,14 @@ static status read_vessel(const scene *s, setup *out, diagnostic *why)
     out->vessel = find_visible(s, "vessel");
     out->rod = -1;
     if (out->vessel < 0 || s->solids[out->vessel].shape.kind != SHAPE_CUP)
-        return wrong(s, why, example, "there is no visible cup named 'vessel'");
+        return unsuitable(s, why, example, "there is no visible cup named 'vessel'");
     const solid *vessel = &s->solids[out->vessel];
     if (vessel->shape.m != 1.0)
-        return wrong(s, why, "set vessel.m to 1: the closed forms are those of a round vessel",
-                     "the vessel is elliptic");
+        return unsuitable(s, why, "set vessel.m to 1: the closed forms require a round vessel",
+                          "the vessel is elliptic");
     if (is_turned(vessel) || vessel->surface.transparency == 0.0)
-        return wrong(s, why, "set its rotation to 0, and its transparency above 0", "the vessel is rotated or opaque");
+        return unsuitable(s, why, "set its rotation to 0, and its transparency above 0",
+                          "the vessel is rotated or opaque");
     out->x = vessel->shape.position.x, out->z = vessel->shape.position.z;
     out->outer = vessel->shape.radius, out->inner = vessel->shape.inner_radius;
     out->low = vessel->shape.position.y + vessel->shape.floor;
@@ -59,16 +60,16 @@ static status read_rod(const scene *s, setup *out, diagnostic *why)
 {
     out->rod = find_visible(s, "rod");
     if (out->rod < 0 || s->solids[out->rod].shape.kind != SHAPE_BOX)
-        return wrong(s, why, example, "there is no visible box named 'rod'");
+        return unsuitable(s, why, example, "there is no visible box named 'rod'");
     const solid *vessel = &s->solids[out->vessel], *rod = &s->solids[out->rod];
     if (rod->surface.transparency != 0.0 || rod->priority <= vessel->priority)
-        return wrong(s, why, "set its transparency to 0 and its priority above the vessel's",
-                     "the rod is not opaque, or is displaced");
+        return unsuitable(s, why, "set its transparency to 0 and its priority above the vessel's",
+                          "the rod is not opaque, or the vessel displaces it");
     return STATUS_OK;
 }
 
-/* Whether the vessel has precedence where both are. */
-static bool glass_wins(const scene *s, const setup *at)
+/* Whether the vessel has precedence where it overlaps the liquid. */
+static bool vessel_wins(const scene *s, const setup *at)
 {
     const int64_t vessel = s->solids[at->vessel].priority, liquid = s->solids[at->liquid].priority;
     return vessel > liquid || (vessel == liquid && at->vessel < at->liquid);
@@ -79,29 +80,30 @@ static status read_liquid(const scene *s, setup *out, diagnostic *why)
     const solid *liquid = &s->solids[out->liquid];
     const solid_shape *shape = &liquid->shape;
     if (shape->kind != SHAPE_CYLINDER || shape->m != 1.0 || is_turned(liquid) || liquid->surface.transparency == 0.0)
-        return wrong(s, why, "make it an upright round cylinder with a transparency above 0",
-                     "the liquid is not a transparent round cylinder");
+        return unsuitable(s, why, "make it an upright round cylinder with a transparency above 0",
+                          "the liquid is not a transparent round cylinder");
     if (shape->capillary_length > 0.0)
-        return wrong(s, why, "set its capillary_length to 0",
-                     "the liquid has a meniscus, and the checks need a level one");
+        return unsuitable(s, why, "set its capillary_length to 0",
+                          "the liquid has a meniscus; the metrics require a level surface");
     if (shape->position.x != out->x || shape->position.z != out->z || shape->radius < out->inner ||
         shape->radius >= out->outer)
-        return wrong(s, why, "give both one axis, and the liquid a radius between the vessel's inner_radius and radius",
-                     "the liquid does not reach into the vessel's wall all around");
+        return unsuitable(s, why,
+                          "put both on one axis; set the liquid's radius between the vessel's inner_radius and radius",
+                          "the liquid does not reach into the vessel's wall all around");
     if (out->rod >= 0 && s->solids[out->rod].priority <= liquid->priority)
-        return wrong(s, why, "set the rod's priority above the liquid's", "the liquid displaces the rod");
-    if (!glass_wins(s, out)) {
+        return unsuitable(s, why, "set the rod's priority above the liquid's", "the liquid displaces the rod");
+    if (!vessel_wins(s, out)) {
         out->inner = shape->radius;
         out->low = fmax(s->solids[out->vessel].shape.position.y, shape->position.y);
     }
     if (shape->position.y > out->low || shape->position.y + shape->height <= out->low)
-        return wrong(s, why, "make the liquid begin within the vessel's floor and end above it",
-                     "the liquid does not rest on the vessel's floor");
+        return unsuitable(s, why, "make the liquid begin within the vessel's floor and end above it",
+                          "the liquid does not rest on the vessel's floor");
     out->high = fmin(out->high, shape->position.y + shape->height);
     return STATUS_OK;
 }
 
-/* The vessel is read. */
+/* Reads the indices and the liquid; read_vessel must come first. */
 static status read_media(const scene *s, setup *out, diagnostic *why)
 {
     status code = STATUS_OK;
@@ -128,8 +130,8 @@ status setup_read_glass(const scene *s, setup *out, diagnostic *why)
     TRY(read_vessel(s, out, why));
     TRY(read_media(s, out, why));
     return out->liquid >= 0 ? STATUS_OK
-                            : wrong(s, why, "use the names and shapes of experiments/scenes/arrow.yaml",
-                                    "there is no visible cylinder named 'liquid'");
+                            : unsuitable(s, why, "use the names and shapes of experiments/scenes/arrow.yaml",
+                                         "there is no visible cylinder named 'liquid'");
 }
 
 theory_shells setup_shells(const setup *at)
@@ -173,7 +175,7 @@ scene *arrange_empty(const scene *s)
     r->min_weight = 0.0;
     r->depth = 16;
     copy->camera.roll_deg = 0.0;                      /* vertical edges are searched along the lines of the image */
-    copy->camera.projection = PROJECTION_PERSPECTIVE; /* realism/setup.h is a pinhole's */
+    copy->camera.projection = PROJECTION_PERSPECTIVE; /* view_of describes a pinhole */
     copy->camera.aperture = 0.0;
     copy->background.absorb_per_m = vec3_make(0.0, 0.0, 0.0); /* the closed forms do not cover the path to the vessel */
     return copy;
@@ -210,7 +212,7 @@ solid_shape cylinder_at(vec3 position, double radius, double height)
     return (solid_shape){.kind = SHAPE_CYLINDER, .position = position, .radius = radius, .height = height, .m = 1.0};
 }
 
-static void lay(scene *s, int which, double top, int priority)
+static void place_ground(scene *s, int which, double top, int priority)
 {
     if (which < 0)
         return;
@@ -227,9 +229,9 @@ scene *arrange_interface(const scene *s, const setup *at, setup_medium from, set
     if (!copy)
         return NULL;
     const bool below = from != SETUP_OUTSIDE;
-    lay(copy, solids[below ? from : to], 0.0, 2);
+    place_ground(copy, solids[below ? from : to], 0.0, 2);
     if (below)
-        lay(copy, solids[to], 10.0, 1);
+        place_ground(copy, solids[to], 10.0, 1);
     *start_y = below ? -1.0 : 1.0;
     return copy;
 }
@@ -276,8 +278,8 @@ view view_of(const scene *s)
     return v;
 }
 
-/* Camera coordinates (right, up, ahead); roll rotates right and up, pitch then up and ahead, yaw then right and ahead.
- * */
+/* Camera coordinates (right, up, ahead): roll rotates right and up, then pitch up and ahead, then yaw right and
+ * ahead. */
 sight view_through(const view *v, double px, double py)
 {
     const double across = (px - v->width / 2.0) / v->focal_px, upwards = (v->height / 2.0 - py) / v->focal_px;

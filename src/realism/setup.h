@@ -1,5 +1,5 @@
 /* The vessel, liquid, rod and camera of a scene as the numbers that theory needs; and copies of a scene with some of
- * its media in other solids. Ownership: arrange_* give a scene, or NULL if memory runs out. */
+ * its media in other solids. Ownership: arrange_* return a new scene, or NULL if memory runs out. */
 #pragma once
 
 #include "geometry/solid.h"
@@ -10,22 +10,22 @@ typedef enum setup_medium { SETUP_OUTSIDE, SETUP_VESSEL, SETUP_LIQUID, SETUP_MED
 
 typedef struct setup {
     int vessel, liquid, rod; /* indices in scene.solids; liquid is -1 for none */
-    double n[SETUP_MEDIA];   /* at render.lambda_nm; for an empty vessel the liquid's is that of the surroundings */
-    double x, z;             /* of the axis */
-    double outer, inner;     /* inner and outer radius of the wall */
+    double n[SETUP_MEDIA];   /* at render.lambda_nm; without a liquid, the liquid's equals the surroundings' */
+    double x, z;             /* position of the axis */
+    double outer, inner;     /* outer and inner radius of the wall */
     double low, high; /* the filled range of y: from the floor to the liquid's surface, or for an empty vessel to its
                          rim */
 } setup;
 
-/* STATUS_BAD_INPUT if a solid is missing or not as theory requires. setup_read_glass: without the rod (-1), but with a
- * liquid. */
+/* STATUS_BAD_INPUT if a solid is missing or not as theory requires. setup_read_glass requires a liquid but no rod (rod
+ * is -1). */
 status setup_read(const scene *s, setup *out, diagnostic *why);
 status setup_read_glass(const scene *s, setup *out, diagnostic *why);
 
 theory_shells setup_shells(const setup *at);
 
-/* The shapes of the closed forms, vertical: a half-space below y; boxes and spheres about their centre; a round
- * cylinder above the centre of its base. */
+/* Upright shapes for the closed forms: a half-space below y; boxes and spheres about their centre; a round cylinder
+ * above the centre of its base. */
 solid_shape ground_at(double y);
 solid_shape box_at(vec3 position, vec3 size);
 solid_shape ball_at(vec3 position, double radius);
@@ -38,14 +38,15 @@ void arrange_bare(scene *s);
  * interfaces (render.weights) and the media are unchanged. */
 scene *arrange_empty(const scene *s);
 
-/* Only the vessel with its liquid. */
+/* A copy in which only the vessel and its liquid are visible. */
 scene *arrange_vessel(const scene *s, const setup *at);
 
-/* A slab of the vessel's medium without absorption, and below y a surface that emits radiance 1 under a black sky. */
+/* A copy with a slab of the vessel's medium without absorption and, below y, a surface that emits radiance 1; the sky
+ * is black. */
 scene *arrange_shining(const scene *s, const setup *at, solid_shape slab, double y);
 
-/* Two media that meet at y = 0, for a ray from (0, *start_y, 0); one of them may be SETUP_OUTSIDE, neither a missing
- * liquid. */
+/* A copy with two media that meet at y = 0, for a ray from (0, *start_y, 0). One of them may be SETUP_OUTSIDE; the
+ * liquid must exist if it is one of them. */
 scene *arrange_interface(const scene *s, const setup *at, setup_medium from, setup_medium to, double *start_y);
 
 /* --- the camera --- */

@@ -1,3 +1,4 @@
+/* Closed forms of textbook optics; theory.h names their sources. */
 #include "realism/theory.h"
 
 #include <math.h>
@@ -47,7 +48,7 @@ double theory_slab(double R, int passes)
 double theory_pile(double R, int interfaces, int depth)
 {
     enum { MOST = 16 };
-    /* Light on its way to interface i from before it, and from behind it; sent by those met so far. */
+    /* Light towards interface i from its front and from its back, after `met` interfaces. */
     double onwards[MOST + 1] = {1.0}, backwards[MOST + 1] = {0.0}, through = 0.0;
     if (interfaces < 1 || interfaces > MOST)
         return NAN;
@@ -91,7 +92,7 @@ double theory_shells_power(const theory_shells *c)
 
 double theory_shells_place(const theory_shells *c, double eye, double behind, double offset)
 {
-    /* Turned by the deviation, the ray leaves at the offset at which it came. */
+    /* The ray leaves at the offset at which it arrived, turned by the deviation. */
     const double out = asin(offset / eye) - theory_shells_deviation(c, offset);
     return (offset + behind * sin(out)) / cos(out);
 }
@@ -149,7 +150,7 @@ double theory_least_depth(double drop, double across, double tangent, double n)
     return (drop * tangent - across) / (tangent - below);
 }
 
-/* Of the amplitudes of both faces and the phase between them. */
+/* The reflectance of two faces with amplitudes r1 and r2, and a phase between them. */
 static double airy(double r1, double r2, double phase)
 {
     const double both = 2.0 * r1 * r2 * cos(phase);

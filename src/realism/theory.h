@@ -20,8 +20,8 @@ double theory_fresnel(double angle, double n_from, double n_to);
  * phases. */
 double theory_slab(double R, int passes);
 
-/* Transmittance of a pile of interfaces of reflectance R each, of the paths that meet at most `depth` of them: the sum
- * over the paths, of which those with k interfaces follow from those with k - 1. Without a limit it is (1 - R) / (1 +
+/* Transmittance of a pile of interfaces of reflectance R each, summed over the paths that meet at most `depth`
+ * interfaces; the paths with k interfaces follow from those with k - 1. Without a limit it is (1 - R) / (1 +
  * (interfaces - 1) R): Stokes, "On the intensity of the light reflected from or transmitted through a pile of plates",
  * Proc. R. Soc. 11, 1862. interfaces: up to 16. */
 double theory_pile(double R, int interfaces, int depth);
@@ -42,9 +42,9 @@ double theory_shells_deviation(const theory_shells *c, double offset);
  * R), the ball lens: Hecht, table 6.1. */
 double theory_shells_power(const theory_shells *c);
 
-/* An eye at the distance `eye` from the axis looks past it at an offset: the distance from the axis at which the line
- * of sight meets a plane at the distance `behind` on the other side; negative where it has crossed the axis. Near the
- * axis the ray-transfer matrices give it as offset (1 + behind / eye - behind / f): Hecht, 6.2.1. */
+/* An eye at distance `eye` from the axis looks past the axis at an offset. Returns the distance from the axis at which
+ * the line of sight meets a plane at distance `behind` on the other side; negative if the line has crossed the axis.
+ * Near the axis the ray-transfer matrices give it as offset (1 + behind / eye - behind / f): Hecht, 6.2.1. */
 double theory_shells_place(const theory_shells *c, double eye, double behind, double offset);
 
 /* A flat surface: the eye is `height` above it in n_above, the point `depth` below it in n_below, at horizontal
@@ -64,14 +64,14 @@ double theory_prism_deviation(double incidence, double apex, double n);
 double theory_drop_angle(double offset, double n);
 
 /* Transmittance for unpolarised light of two ideal linear polarisers at an angle between their axes, with a plate of
- * that retardance between them, whose axis is at an angle `plate` from the first polariser's: Malus's law without a
- * plate; Born and Wolf, Principles of Optics, 7th ed., 15.4.2. Radians. */
+ * `retardance` between them, whose axis is at an angle `plate` from the first polariser's: Malus's law without a plate;
+ * Born and Wolf, Principles of Optics, 7th ed., 15.4.2. Radians. */
 double theory_crossed(double between, double plate, double retardance);
 
-/* A point at a depth `drop` below an edge and at a horizontal distance `across` from it, seen over the edge by a line
- * of sight of that tangent from the vertical: the depth of a liquid over the point, of index n relative to the
- * surroundings, with which the refracted line meets the point. From Snell's law and the right triangles above and below
- * the surface; Hecht, eq. 4.4. */
+/* The depth of a liquid of index n (relative to the surroundings) over a point at which the point comes into sight over
+ * an edge. The point is at a depth `drop` below the edge and a horizontal distance `across` from it; `tangent` is the
+ * tangent of the line of sight over the edge, from the vertical. From Snell's law and the right triangles above and
+ * below the surface; Hecht, eq. 4.4. */
 double theory_least_depth(double drop, double across, double tangent, double n);
 
 /* Reflectance for unpolarised light of a film between two media, for its thickness in wavelengths (of vacuum):

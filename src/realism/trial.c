@@ -1,4 +1,4 @@
-/* What all metrics share: a scene with a probe for it, edges by bisection, the pair with the largest error, and the
+/* Code that all metrics use: a scene with a probe for it, edges by bisection, the pair with the largest error, and the
  * report. */
 #include "realism/metrics.h"
 
@@ -20,19 +20,19 @@ void curve_add(realism_points *out, double x, double measured, double theory)
 
 void worst_pair_add(worst_pair *w, double measured, double theory, double tolerance)
 {
-    /* A NaN counts as the worst measurement, whatever follows; where theory is NaN there is nothing to measure. */
+    /* A NaN counts as the worst measurement, whatever follows; if theory is NaN, there is nothing to compare. */
     if (isnan(theory) || (w->any && isnan(w->measured)))
         return;
     if (!w->any || !(fabs(measured - theory) * w->tolerance <= fabs(w->measured - w->theory) * tolerance))
         *w = (worst_pair){measured, theory, tolerance, true};
 }
 
-status trial_start(trial *t, scene *taken, isa level, diagnostic *why)
+status trial_start(trial *t, scene *owned, isa level, diagnostic *why)
 {
-    *t = (trial){.s = taken};
-    if (!taken)
+    *t = (trial){.s = owned};
+    if (!owned)
         return out_of_memory(why);
-    return probe_create(taken, level, &t->p, why);
+    return probe_create(owned, level, &t->p, why);
 }
 
 void trial_end(trial *t)
