@@ -1,6 +1,6 @@
 /* Forces of springs, and the gradient of the volume. One source for all instruction sets, with bit-identical results.
  *
- * The costly part of a spring's force, its amount over the distance, is computed once, for the spring's owner. Each
+ * The costly part of a spring's force, its magnitude over the distance, is computed once, for the spring's owner. Each
  * mass then sums the forces of its springs in the order of its slots, along the vectors to their other ends. */
 #include "base/isa.h"
 #include "softbody/softbody_private.h"
@@ -73,8 +73,8 @@ ALWAYS_INLINE void add_cross(columns *sum, columns a, columns b)
     sum->z += a.x * b.y - a.y * b.x;
 }
 
-/* Numbers of two vectors: those at even places, those at odd places; pairs at even places, pairs at odd places. The
- * first two interleave a and b, the last two keep them one behind the other. */
+/* Shuffles of two vectors: EVEN and ODD interleave the elements of a and b at even or odd indices; EVEN_PAIRS and
+ * ODD_PAIRS concatenate the pairs of elements at even or odd indices. */
 #ifdef __AVX512F__
 #define EVEN(a, b) __builtin_shufflevector(a, b, 0, 8, 2, 10, 4, 12, 6, 14)
 #define ODD(a, b) __builtin_shufflevector(a, b, 1, 9, 3, 11, 5, 13, 7, 15)
@@ -167,11 +167,11 @@ static void pack(vectors at, vectors velocity, double *state, size_t begin, size
     }
 }
 
-/* Hooke and damping of softbody.h over the distance of the ends, for the springs at `at` of WIDE owners. */
-ALWAYS_INLINE wide pull_of(const spring_batches *t, size_t at, const double *state, moving own)
+/* Hooke's force and damping (softbody.h) over the distance of the ends, for the springs at `at` of WIDE owners. */
+ALWAYS_INLINE wide pull_of(const spring_batches *t, size_t at, const double *state, moving owner_state)
 {
     const moving other = gather_state(state, t->row + at);
-    const columns x = minus(other.at, own.at), v = minus(other.velocity, own.velocity);
+    const columns x = minus(other.at, owner_state.at), v = minus(other.velocity, owner_state.velocity);
     const wide square = dot(x, x), zero = {0.0}, one = zero + 1.0;
     const wide_int apart = square > zero; /* two masses at one position have no direction of force */
     const wide safe = (wide)(((wide_int)square & apart) | ((wide_int)one & ~apart)), inverse = one / safe;
@@ -185,10 +185,10 @@ ALWAYS_INLINE wide pull_of(const spring_batches *t, size_t at, const double *sta
 static void pull(const spring_batches *t, const double *state, vectors at, vectors velocity, size_t begin, size_t end)
 {
     for (size_t i = begin; i < end; i += WIDE) {
-        const moving own = {load_columns(at, i), load_columns(velocity, i)};
+        const moving owner_state = {load_columns(at, i), load_columns(velocity, i)};
         const size_t group = i / LANES, lane = i % LANES;
         for (size_t k = t->first[group] + lane; k < t->first[group + 1]; k += LANES)
-            *(wide *)(t->pull + k) = pull_of(t, k, state, own);
+            *(wide *)(t->pull + k) = pull_of(t, k, state, owner_state);
     }
 }
 

@@ -1,4 +1,4 @@
-/* Hands: scripts, the grip of hands on masses, and the play of scripts. */
+/* Hands: scripts, the grip of hands on masses, and the playback of scripts. */
 #include "base/array.h"
 #include "softbody/softbody.h"
 #include "softbody/softbody_private.h"
@@ -41,8 +41,7 @@ static hand_track *find_track(const hand_script *s, const char *hand)
     return NULL;
 }
 
-/* Also refuses NaN, for which every comparison is false. */
-static bool is_point(vec3 v)
+static bool is_finite(vec3 v)
 {
     return isfinite(v.x) && isfinite(v.y) && isfinite(v.z);
 }
@@ -51,19 +50,19 @@ static status check_numbers(const char *hand, const hand_key *key, diagnostic *w
 {
     if (!(key->time_s >= 0.0 && isfinite(key->time_s)))
         return diagnose(why, STATUS_BAD_INPUT, "use a time of at least 0", "%s: invalid time %g s", hand, key->time_s);
-    if (key->act == HAND_MOVE && !is_point(key->by))
+    if (key->act == HAND_MOVE && !is_finite(key->by))
         return diagnose(why, STATUS_BAD_INPUT, "use three finite numbers", "%s: the displacement is not finite", hand);
     if (key->act != HAND_GRAB)
         return STATUS_OK;
-    if (!is_point(key->origin) || !is_point(key->direction) || !(vec3_dot(key->direction, key->direction) > 0.0))
-        return diagnose(why, STATUS_BAD_INPUT, "give a non-zero direction",
-                        "%s: the grab ray has a coordinate that is not finite", hand);
+    if (!is_finite(key->origin) || !is_finite(key->direction) || !(vec3_dot(key->direction, key->direction) > 0.0))
+        return diagnose(why, STATUS_BAD_INPUT, "use finite coordinates and a non-zero direction",
+                        "%s: the grab ray is not finite or has no direction", hand);
     if (!(key->reach > 0.0 && isfinite(key->reach)))
-        return diagnose(why, STATUS_BAD_INPUT, "give a length greater than 0", "%s: a reach of %g", hand, key->reach);
+        return diagnose(why, STATUS_BAD_INPUT, "use a reach greater than 0", "%s: invalid reach %g", hand, key->reach);
     return STATUS_OK;
 }
 
-/* Whether the key is valid after the hand's last one. */
+/* Checks that the key may follow the hand's last key. */
 static status check_order(const char *hand, const hand_track *track, const hand_key *key, diagnostic *why)
 {
     const hand_key *last = track && track->key_count ? &track->keys[track->key_count - 1] : NULL;
@@ -83,7 +82,8 @@ static status check_order(const char *hand, const hand_track *track, const hand_
 static status check_hand(const hand_script *s, const char *hand, const hand_track *track, diagnostic *why)
 {
     if (!hand[0] || strlen(hand) > HAND_NAME_MAX)
-        return diagnose(why, STATUS_BAD_INPUT, "use 1 to 63 bytes", "'%.80s' is not a valid name of a hand", hand);
+        return diagnose(why, STATUS_BAD_INPUT, "use a name of 1 to 63 bytes", "'%.80s' is not a valid name of a hand",
+                        hand);
     if (!track && s->track_count == SOFTBODY_HANDS_MAX)
         return diagnose(why, STATUS_BAD_INPUT,
                         "a script can have at most 16 hands; a hand can be reused after its release",
@@ -98,7 +98,7 @@ static hand_track *add_track(hand_script *s, const char *hand)
     hand_track *added = &s->tracks[s->track_count];
     *added = (hand_track){.keys = NULL};
     strcpy(added->name, hand);
-    return added; /* counted only with a key */
+    return added; /* the caller counts it when it has a key */
 }
 
 status hand_script_add(hand_script *s, const char *hand, const hand_key *key, diagnostic *why)
@@ -213,13 +213,13 @@ status softbody_follow(softbody *b, const hand_script *script, diagnostic *why)
     return STATUS_OK;
 }
 
-/* The step of a time; times too far away are never reached. */
+/* The step nearest to a time; times too far away are never reached. */
 static uint64_t step_of(const softbody *b, double time_s)
 {
     return (uint64_t)fmin(floor(time_s / b->set.dt_s + 0.5), 0x1p62);
 }
 
-static status take_hold(softbody *b, const hand_track *track, const hand_key *key, track_play *play, diagnostic *why)
+static status start_grab(softbody *b, const hand_track *track, const hand_key *key, track_play *play, diagnostic *why)
 {
     vec3 where;
     if (!softbody_pick(b, key->origin, key->direction, &where)) {
@@ -241,11 +241,11 @@ static status take_hold(softbody *b, const hand_track *track, const hand_key *ke
     return STATUS_OK;
 }
 
-/* A key that is due. */
+/* Executes a key that is due. */
 static status act(softbody *b, const hand_track *track, const hand_key *key, track_play *play, diagnostic *why)
 {
     switch (key->act) {
-    case HAND_GRAB: return take_hold(b, track, key, play, why);
+    case HAND_GRAB: return start_grab(b, track, key, play, why);
     case HAND_MOVE:
         play->from = key->by;
         play->from_step = b->steps;
@@ -258,7 +258,8 @@ static status act(softbody *b, const hand_track *track, const hand_key *key, tra
     return STATUS_OK;
 }
 
-/* The target of a hand at the end of the current step: on its line to the next move, otherwise unchanged. */
+/* The displacement of a hand at the end of the current step: interpolated towards the next move, otherwise
+ * unchanged. */
 static vec3 offset_after(const softbody *b, const hand_track *track, const track_play *play)
 {
     if (play->next == track->key_count || track->keys[play->next].act != HAND_MOVE)

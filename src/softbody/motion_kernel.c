@@ -1,4 +1,5 @@
-/* Steps over arrays. One source for all instruction sets, with bit-identical results. */
+/* Updates of positions and velocities by the integrators, over arrays. One source for all instruction sets, with
+ * bit-identical results. */
 #include "base/isa.h"
 #include "base/lanes.h"
 #include "softbody/softbody_private.h"
@@ -34,12 +35,12 @@ ALWAYS_INLINE landed meet_floor(const push *p, int64_t free, double y, double u,
 }
 
 /* 1 for a diverged mass: too fast, or NaN. */
-ALWAYS_INLINE int64_t blew_up(const push *p, landed a)
+ALWAYS_INLINE int64_t has_diverged(const push *p, landed a)
 {
     return 1 & ~mask_less_equal(a.u * a.u + a.v * a.v + a.w * a.w, p->speed_limit * p->speed_limit);
 }
 
-/* Returns the number of masses below the floor. */
+/* Semi-implicit Euler without the floor. Returns the number of masses below the floor. */
 static int64_t fly(push q, const double *__restrict m, FIXED3(f), FIXED3(g), ARRAYS3(p), ARRAYS3(v), size_t begin,
                    size_t end)
 {
@@ -74,12 +75,12 @@ static void land(push q, const double *__restrict m, double *__restrict py, ARRA
     }
 }
 
-static int64_t count_blown(push q, FIXED3(v), size_t begin, size_t end)
+static int64_t count_diverged(push q, FIXED3(v), size_t begin, size_t end)
 {
     int64_t bad = 0;
     /* VECTORISE */
     for (size_t i = begin; i < end; i++)
-        bad += blew_up(&q, (landed){.u = vx[i], .v = vy[i], .w = vz[i]});
+        bad += has_diverged(&q, (landed){.u = vx[i], .v = vy[i], .w = vz[i]});
     return bad;
 }
 
@@ -93,7 +94,7 @@ static int64_t euler(const push *p, const double *inverse_mass, vectors force, v
         if (fly(*p, inverse_mass, PASS3(force), PASS3(area), PASS3(at), PASS3(velocity), i, last) > 0)
             land(*p, inverse_mass, at.y, PASS3(velocity), i, last);
     }
-    return count_blown(*p, PASS3(velocity), begin, end);
+    return count_diverged(*p, PASS3(velocity), begin, end);
 }
 
 static void drift(const push *p, vectors acceleration, vectors at, vectors velocity, vectors guess, size_t begin,
@@ -134,7 +135,7 @@ static int64_t kick_arrays(push q, const double *__restrict m, FIXED3(f), FIXED3
         vx[i] = a.u;
         vy[i] = a.v;
         vz[i] = a.w;
-        bad += blew_up(&q, a);
+        bad += has_diverged(&q, a);
     }
     return bad;
 }
@@ -215,7 +216,7 @@ static int64_t settle_arrays(push q, const double *__restrict m, FIXED3(d), ARRA
         vx[i] = a.u;
         vy[i] = a.v;
         vz[i] = a.w;
-        bad += blew_up(&q, a);
+        bad += has_diverged(&q, a);
     }
     return bad;
 }

@@ -23,7 +23,7 @@ static status check_shape(const softbody_settings *s, diagnostic *why)
     for (size_t i = 0; i < sizeof above / sizeof above[0]; i++)
         if (!(above[i].value >= lowest[i] && above[i].value <= 1e6))
             return refuse(why, above[i].name, above[i].value,
-                          i == 2 ? "a number of at least 1e-9" : "a number of at least 1e-6");
+                          i == 2 ? "use a number from 1e-9 to 1e6" : "use a number from 1e-6 to 1e6");
     const bounded least[] = {{"stiffness", s->stiffness}, {"bending", s->bending},   {"through", s->through},
                              {"damping", s->damping},     {"pressure", s->pressure}, {"friction", s->friction}};
     for (size_t i = 0; i < sizeof least / sizeof least[0]; i++)
@@ -36,18 +36,19 @@ static status check_shape(const softbody_settings *s, diagnostic *why)
     const vec3 all[] = {s->position, s->velocity, s->gravity};
     for (size_t i = 0; i < sizeof all / sizeof all[0]; i++)
         if (!(vec3_length(all[i]) < 1e9))
-            return diagnose(why, STATUS_BAD_INPUT, "finite numbers", "position, velocity or gravity is too large");
+            return diagnose(why, STATUS_BAD_INPUT, "use a vector shorter than 1e9",
+                            "position, velocity or gravity is too large");
     return STATUS_OK;
 }
 
 status softbody_check(const softbody_settings *s, diagnostic *why)
 {
     if (s->level < 0 || s->level > SOFTBODY_LEVEL_MAX)
-        return diagnose(why, STATUS_BAD_INPUT, "a level from 0 to 7", "a slime of level %ld", (long)s->level);
+        return diagnose(why, STATUS_BAD_INPUT, "use a level from 0 to 7", "invalid slime level %ld", (long)s->level);
     if (s->threads < 1 || s->threads > 1024)
-        return diagnose(why, STATUS_BAD_INPUT, "1 to 1024", "%ld threads", (long)s->threads);
+        return diagnose(why, STATUS_BAD_INPUT, "use 1 to 1024", "invalid number of threads %ld", (long)s->threads);
     if (s->integrator < SOFTBODY_EULER || s->integrator > SOFTBODY_IMPLICIT)
-        return diagnose(why, STATUS_BAD_INPUT, "euler, verlet or implicit", "unknown integrator %ld",
+        return diagnose(why, STATUS_BAD_INPUT, "use euler, verlet or implicit", "unknown integrator %ld",
                         (long)s->integrator);
     return check_shape(s, why);
 }
@@ -73,10 +74,10 @@ static bool make_solver(softbody *b)
     b->stiff = (stiff_slots){softbody_array(count), softbody_array(count), softbody_array(count), softbody_array(count),
                              softbody_array(count)};
     vectors *const all[] = {&b->change, &b->residual, &b->direction, &b->image};
-    bool made = b->stiff.nx && b->stiff.ny && b->stiff.nz && b->stiff.across && b->stiff.along;
+    bool complete = b->stiff.nx && b->stiff.ny && b->stiff.nz && b->stiff.across && b->stiff.along;
     for (size_t i = 0; i < sizeof all / sizeof all[0]; i++)
-        made &= make_vectors(all[i], b->net.stride);
-    return made;
+        complete &= make_vectors(all[i], b->net.stride);
+    return complete;
 }
 
 static bool make_arrays(softbody *b)
@@ -87,12 +88,12 @@ static bool make_arrays(softbody *b)
     b->sums = softbody_array(chunks);
     b->bad = calloc(chunks + 1, sizeof *b->bad);
     b->state = softbody_array(STATE * stride);
-    bool made = b->mass_kg && b->inverse_mass && b->sums && b->bad && b->state;
-    made &= make_vectors(&b->at, stride) && make_vectors(&b->velocity, stride) && make_vectors(&b->force, stride) &&
-            make_vectors(&b->gradient, stride);
+    bool complete = b->mass_kg && b->inverse_mass && b->sums && b->bad && b->state;
+    complete &= make_vectors(&b->at, stride) && make_vectors(&b->velocity, stride) && make_vectors(&b->force, stride) &&
+                make_vectors(&b->gradient, stride);
     if (b->set.integrator == SOFTBODY_VERLET)
-        made &= make_vectors(&b->acceleration, stride) && make_vectors(&b->guess, stride);
-    return made && (b->set.integrator != SOFTBODY_IMPLICIT || make_solver(b));
+        complete &= make_vectors(&b->acceleration, stride) && make_vectors(&b->guess, stride);
+    return complete && (b->set.integrator != SOFTBODY_IMPLICIT || make_solver(b));
 }
 
 static bool copy_net(softbody *b, const softbody_net *net)
@@ -143,8 +144,8 @@ static double stable_dt_of(softbody_integrator integrator, double omega2, double
     return gamma > 0.0 ? 2.0 / gamma : INFINITY;
 }
 
-/* Rows of the stiffness matrix over the mass, by Gershgorin's circles: a spring's k counts at both of its ends, and
- * each end's sum twice. */
+/* Bounds omega^2 by Gershgorin's circles on the rows of the stiffness matrix over the mass: the diagonal element and
+ * the sum of the others are both the sum of k at the vertex. */
 static void find_stable_dt(softbody *b)
 {
     double omega2 = 0.0, gamma = 0.0, pressed = 0.0;
@@ -166,11 +167,11 @@ static void find_stable_dt(softbody *b)
 
 /* A step synchronises its threads several times, at tens of microseconds each: with less work than this, threads do not
  * pay. */
-enum { CHUNKS_A_THREAD = 8 };
+enum { CHUNKS_PER_THREAD = 8 };
 
 static int useful_threads(const softbody *b)
 {
-    const int64_t most = (int64_t)(softbody_chunks(b) / CHUNKS_A_THREAD);
+    const int64_t most = (int64_t)(softbody_chunks(b) / CHUNKS_PER_THREAD);
     return most < 1 ? 1 : b->set.threads < most ? (int)b->set.threads : (int)most;
 }
 
@@ -198,14 +199,15 @@ static status fill(softbody *b, const softbody_net *net, diagnostic *why)
 static status check_net(const softbody_net *net, diagnostic *why)
 {
     if (net->mass_count < 1 || net->mass_count > INT32_MAX / 64)
-        return diagnose(why, STATUS_BAD_INPUT, "1 to 33554431", "a net of %zu masses", net->mass_count);
+        return diagnose(why, STATUS_BAD_INPUT, "use 1 to 33554431 masses", "a net cannot have %zu masses",
+                        net->mass_count);
     for (size_t i = 0; i < net->mass_count; i++)
         if (!(net->mass_kg[i] > 0.0 && net->mass_kg[i] < INFINITY))
             return diagnose(why, STATUS_BAD_INPUT, "use masses above 0", "mass %zu has %g kg", i, net->mass_kg[i]);
     for (size_t i = 0; i < net->spring_count; i++) {
         const softbody_spring *s = &net->springs[i];
         if (s->end[0] >= net->mass_count || s->end[1] >= net->mass_count || s->end[0] == s->end[1])
-            return diagnose(why, STATUS_BAD_INPUT, "connect two of its masses",
+            return diagnose(why, STATUS_BAD_INPUT, "connect two different masses of the net",
                             "spring %zu connects masses %lu and %lu of %zu", i, (unsigned long)s->end[0],
                             (unsigned long)s->end[1], net->mass_count);
         if (!(s->rest >= 0.0 && s->stiffness >= 0.0 && s->damping >= 0.0))
@@ -299,21 +301,21 @@ void softbody_destroy(softbody *b)
 
 /* --- quantities ---
  *
- * Independent of the code of the steps, so that it can check them. */
+ * Independent of the code of the steps, so that tests can compare the two. */
 
 static double elastic_energy(const softbody *b)
 {
     double sum = 0.0;
     for (size_t i = 0; i < b->spring_count; i++) {
         const softbody_spring *s = &b->spring_list[i];
-        const double longer =
+        const double extension =
             vec3_length(vec3_sub(vectors_at(b->at, s->end[1]), vectors_at(b->at, s->end[0]))) - s->rest;
-        sum += 0.5 * s->stiffness * longer * longer;
+        sum += 0.5 * s->stiffness * extension * extension;
     }
     return sum;
 }
 
-/* Signed tetrahedra between the faces and a mass (divergence theorem). */
+/* The sum of signed tetrahedra between the faces and a mass (divergence theorem). */
 static double volume_of(const softbody *b)
 {
     const vec3 o = vectors_at(b->at, 0);

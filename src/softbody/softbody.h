@@ -24,8 +24,8 @@
 #include <stddef.h>
 #include <stdint.h>
 
-/* euler: the slime report's step (eqs. 2.6 and 2.7), v += a dt, then x += v dt, so x gets a dt^2 where the closed form
- * of constant acceleration has half of that (semi-implicit Euler; Hairer, Lubich, Wanner, "Geometric Numerical
+/* euler: the slime report's step (eqs. 2.6 and 2.7), v += a dt, then x += v dt, so x gains a dt^2 per step, twice the
+ * term of the closed form for constant acceleration (semi-implicit Euler; Hairer, Lubich, Wanner, "Geometric Numerical
  * Integration", I.1.2; order 1). verlet: velocity Verlet (Swope et al., J. Chem. Phys. 76, 1982; order 2). implicit:
  * backward Euler, linearised once per step and solved by conjugate gradients (Baraff and Witkin, "Large steps in cloth
  * simulation", SIGGRAPH 1998; order 1, stable for stiff springs, loses energy). */
@@ -59,7 +59,7 @@ typedef struct softbody_settings {
     int64_t threads;  /* 1..1024; at most one is started per 4096 masses */
 } softbody_settings;
 
-/* Checks ranges, and that a body is possible. The diagnostic names the field. */
+/* Checks the ranges of the settings. The diagnostic names the field. */
 status softbody_check(const softbody_settings *s, diagnostic *why);
 
 typedef struct softbody softbody;
@@ -68,8 +68,9 @@ typedef struct softbody softbody;
 status softbody_create(const softbody_settings *s, isa level, softbody **out, diagnostic *why);
 void softbody_destroy(softbody *b);
 
-/* Any net of masses and springs, for comparison with closed forms: level, radius, position, stiffness .. damping of the
- * settings are ignored, each vertex has its own mass. Faces (of a closed surface) are needed for pressure only. */
+/* Creates a body from any net of masses and springs, for comparison with closed forms: level, radius, position,
+ * stiffness .. damping of the settings are ignored, each vertex has its own mass. Faces (of a closed surface) are
+ * needed for pressure only. */
 typedef struct softbody_spring {
     uint32_t end[2];
     double rest, stiffness, damping;
@@ -124,7 +125,7 @@ void hand_script_destroy(hand_script *s); /* NULL is allowed */
  * already holds something; the script is then unchanged. The diagnostic is not located. */
 status hand_script_add(hand_script *s, const char *hand, const hand_key *key, diagnostic *why);
 
-/* Time of the last key of all; 0 for none. */
+/* Time of the last key of all tracks; 0 if there is none. */
 double hand_script_end_s(const hand_script *s);
 
 /* --- time --- */
@@ -137,7 +138,7 @@ status softbody_follow(softbody *b, const hand_script *script, diagnostic *why);
  * quantity; the state is kept), and if a hand of the script grabs nothing (located in the script). */
 status softbody_step(softbody *b, diagnostic *why);
 
-/* Steps until the time nearest to time_s that is a whole number of steps; none if it has passed. */
+/* Steps until the multiple of dt_s nearest to time_s; does nothing if that time has passed. */
 status softbody_advance(softbody *b, double time_s, diagnostic *why);
 
 /* --- hands, without a script --- */
@@ -175,7 +176,7 @@ void softbody_velocities(const softbody *b, vec3 *out);
 /* Sets positions and velocities of the masses; rest lengths and time are unchanged. A diverged body is valid again. */
 void softbody_place(softbody *b, const vec3 *positions, const vec3 *velocities);
 
-/* An estimate of a stable dt_s near rest (backward Euler: that of euler): 2 / omega without damping, where omega^2 is
+/* An estimate of a stable dt_s near rest (implicit: the estimate of euler): 2 / omega without damping, where omega^2 is
  * at most twice the largest sum of k over a mass (Gershgorin) plus the pressure's contribution; damping reduces it,
  * more so for verlet. The true limit is somewhat larger. */
 double softbody_stable_dt_s(const softbody *b);

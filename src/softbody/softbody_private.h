@@ -18,20 +18,20 @@ typedef struct vectors {
 } vectors;
 
 typedef struct springs {
-    size_t count, stride; /* number of masses, rounded up to whole lanes */
+    size_t count, stride; /* number of masses; rounded up to a multiple of LANES */
     int slots;
-    int ring_slots; /* the first slots are those of the neighbours around a vertex, in the orientation of the faces (the
-                       first is repeated if they are fewer, without a spring); 0 without faces */
+    int ring_slots; /* the first slots of a vertex are its ring of neighbours, in the orientation of the faces; a
+                     * shorter ring repeats its first neighbour, without a spring; 0 without faces */
     int32_t *other; /* the other end; the vertex itself for an empty slot */
     double *rest, *stiffness, *damping; /* 0 for an empty slot */
     int32_t *row;                       /* STATE times `other` */
-    uint32_t *place; /* of its spring in the batches; before they are built its number, NO_SPRING for an empty slot */
+    uint32_t *place; /* index of the spring in the batches; until they are built, its number, or NO_SPRING */
 } springs;
 #define NO_SPRING UINT32_MAX
 
-/* Each spring once, by one of its ends, its owner: for the masses from LANES g on, a spring of each, then another, at
- * first[g] .. first[g + 1] - 1. Where an owner has fewer than its neighbours, its spring is one to itself without a
- * force; so is the last of all, for empty slots. */
+/* Each spring once, stored with the end that owns it. Batch g, first[g] .. first[g + 1] - 1, interleaves the springs of
+ * masses LANES g .. LANES g + LANES - 1: one spring of each mass, then the next. A mass with fewer springs than others
+ * of its batch is padded with springs to itself, which exert no force; so is the last entry of all, for empty slots. */
 typedef struct spring_batches {
     size_t *first;
     int32_t *row;                       /* STATE times the end that is not the owner */
@@ -39,7 +39,8 @@ typedef struct spring_batches {
     double *pull;                       /* the current force on the owner over the distance to the other end */
 } spring_batches;
 
-/* For the solver: the slot's direction, and the coefficients of a velocity difference across and along it. */
+/* For the implicit solver, by slot: the spring's direction, and the coefficients of a velocity difference across and
+ * along it. */
 typedef struct stiff_slots {
     double *nx, *ny, *nz, *across, *along;
 } stiff_slots;
@@ -59,13 +60,15 @@ typedef struct softbody_kernels {
      * masses. */
     int64_t (*euler)(const push *p, const double *inverse_mass, vectors force, vectors gradient, vectors at,
                      vectors velocity, size_t begin, size_t end);
-    /* First half of Verlet: at to the end of the step, velocity to its middle, guess to its end. */
+    /* First half of Verlet: advances `at` to the end of the step and velocity to its middle; guess is the velocity
+     * predicted for its end. */
     void (*drift)(const push *p, vectors acceleration, vectors at, vectors velocity, vectors guess, size_t begin,
                   size_t end);
-    /* Second half: new acceleration, velocity to the end, then the floor. */
+    /* Second half: new acceleration, velocity at the end, then the floor. Returns the number of diverged masses. */
     int64_t (*kick)(const push *p, const double *inverse_mass, vectors force, vectors gradient, vectors at,
                     vectors velocity, vectors acceleration, size_t begin, size_t end);
-    /* The springs in the form of the solver: dt^2 k and dt k_d; and their product with a field of velocities. */
+    /* stiffen: the springs' coefficients for the solver, from dt^2 k and dt k_d. resist: their product with a field of
+     * velocities. */
     void (*stiffen)(const springs *s, double dt_s, vectors at, stiff_slots out, size_t begin, size_t end);
     void (*resist)(const springs *s, stiff_slots k, vectors field, vectors out, size_t begin, size_t end);
     /* velocity += change, at += dt velocity, then the floor. Returns the number of diverged masses. */
@@ -77,11 +80,11 @@ typedef struct softbody_kernels {
 typedef struct softbody_force_kernels {
     /* Positions and velocities, one cache line per mass: STATE numbers, x, y, z, 0, u, v, w, 0. */
     void (*pack)(vectors at, vectors velocity, double *state, size_t begin, size_t end);
-    /* t->pull of the springs that masses begin .. end - 1 own. */
+    /* Computes t->pull of the springs that masses begin .. end - 1 own. */
     void (*pull)(const spring_batches *t, const double *state, vectors at, vectors velocity, size_t begin, size_t end);
-    /* For masses begin .. end - 1 the sum of the springs' forces; and with faces six times the volume's gradient with
-     * respect to the mass's position, which is twice the sum of the area vectors around it.
-     * Returns 18 times their part of the volume, 0 without faces. */
+    /* Sums the springs' forces on masses begin .. end - 1. With faces, also computes six times the volume's gradient
+     * with respect to a mass's position, which is twice the sum of the area vectors around it. Returns 18 times the
+     * volume of these masses, 0 without faces. */
     double (*forces)(const springs *s, const double *pulls, const double *state, vectors at, vectors force,
                      vectors gradient, size_t begin, size_t end);
 } softbody_force_kernels;
@@ -100,12 +103,12 @@ typedef struct grip {
     size_t count;
 } grip;
 
-/* A hand of a script: its next key, and its number. */
+/* The playback of a hand's track. */
 typedef struct track_play {
-    size_t next;
-    int hand;   /* HAND_NONE: it holds nothing */
-    vec3 where; /* it grabbed something */
-    vec3 from;  /* displacement at from_step, the start of its current line */
+    size_t next; /* key */
+    int hand;    /* its number; HAND_NONE if it holds nothing */
+    vec3 where;  /* the point that it grabbed */
+    vec3 from;   /* displacement at from_step, the start of its current line */
     uint64_t from_step;
 } track_play;
 
@@ -120,8 +123,8 @@ struct softbody {
     double *mass_kg, *inverse_mass; /* inverse masses: 0 for grabbed ones */
     vectors at, velocity, force, gradient;
     double *state;               /* at and velocity, for the kernel of forces */
-    vectors acceleration, guess; /* for verlet */
-    stiff_slots stiff;           /* for implicit, and the vectors of its solver */
+    vectors acceleration, guess; /* verlet only */
+    stiff_slots stiff;           /* implicit only, as the vectors of its solver: */
     vectors change, residual, direction, image;
     const vectors *damped; /* velocities for which forces are computed */
     double *sums;          /* by chunk */
@@ -137,12 +140,12 @@ struct softbody {
     const softbody_kernels *kernels;
     const softbody_force_kernels *force_kernels;
     thread_team *workers;
-    uint32_t *mass_of; /* for the toy: by vertex of its surface */
+    uint32_t *mass_of; /* toy only: the mass of each vertex of its surface */
     int surface_level; /* -1: none */
     push pushing;      /* of the current substep */
     double solver_dt_s, factor,
-        pressing; /* for implicit: its step, the current multiple, and the product of the pressure's stiffness with a
-                     field */
+        pressing; /* implicit only: the solver's step, the multiple of the direction, and the product of the pressure's
+                   * stiffness with a field */
 };
 
 static inline vec3 vectors_at(vectors v, size_t i)
@@ -164,8 +167,8 @@ static inline size_t softbody_chunks(const softbody *b)
 /* An array with one double per mass, zero, 64-byte aligned; NULL if memory runs out. */
 double *softbody_array(size_t count);
 
-/* The net of the toy, for softbody_create: arrays are the caller's (free), also mass_of by vertex of
- * generate_icosphere's mesh. */
+/* The net of the toy, for softbody_create; toy_net_release frees its arrays. mass_of: by vertex of generate_icosphere's
+ * mesh. */
 typedef struct toy_net {
     size_t mass_count, spring_count, face_count;
     vec3 *position;
@@ -184,14 +187,14 @@ void springs_release(springs *s);
 status batches_build(spring_batches *t, springs *s, const softbody_net *net, diagnostic *why);
 void batches_release(spring_batches *t);
 
-/* Forces of springs and the volume's gradient in the current state, then the pressure. Damping uses these velocities:
- * the body's own; Verlet's prediction; or none, in which case `change` has it. */
+/* Forces of springs and the volume's gradient in the current state, then the pressure. velocity, for damping: the
+ * body's; Verlet's prediction; or zeros, if the solver's matrix includes damping. */
 void softbody_find_forces(softbody *b, const vectors *velocity);
 /* Volume from the gradient of the last find_forces. */
 double softbody_volume_of_gradient(softbody *b);
 
-/* Hands: velocities of the masses that they hold, for a step to their targets; execution of due keys before a step;
- * targets after it. */
+/* Hands: aim sets the velocities of held masses so that the step ends at the targets; land moves the hands there after
+ * the step; play executes due keys before a step. */
 void softbody_aim_hands(softbody *b, double dt_s);
 void softbody_land_hands(softbody *b);
 status softbody_play(softbody *b, diagnostic *why);

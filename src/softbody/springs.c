@@ -33,7 +33,7 @@ static bool make_slots(springs *s)
 /* A face seen from one of its corners: the next corner and the one after; whether the first has a spring already. */
 typedef struct wedge {
     int32_t from, to;
-    bool taken;
+    bool has_spring;
 } wedge;
 typedef struct rings {
     int *used;
@@ -96,9 +96,9 @@ static status find_rings(springs *s, const softbody_net *net, rings *out, diagno
 static void fill_rings(springs *s, rings r)
 {
     for (size_t i = 0; i < s->count; i++) {
-        const wedge *own = r.wedges + i * (size_t)s->ring_slots;
+        const wedge *ring = r.wedges + i * (size_t)s->ring_slots;
         for (int slot = 0; slot < s->ring_slots && r.used[i] > 0; slot++)
-            s->other[(size_t)slot * s->stride + i] = own[slot < r.used[i] ? slot : 0].from;
+            s->other[(size_t)slot * s->stride + i] = ring[slot < r.used[i] ? slot : 0].from;
     }
 }
 
@@ -106,22 +106,23 @@ static void fill_rings(springs *s, rings r)
  * after the ring. */
 static int slot_of(const springs *s, rings r, uint32_t at, uint32_t other, int *behind)
 {
-    wedge *own = r.wedges + at * (size_t)s->ring_slots;
+    wedge *ring = r.wedges + at * (size_t)s->ring_slots;
     for (int slot = 0; slot < r.used[at]; slot++) {
-        if (own[slot].from == (int32_t)other && !own[slot].taken) {
-            own[slot].taken = true;
+        if (ring[slot].from == (int32_t)other && !ring[slot].has_spring) {
+            ring[slot].has_spring = true;
             return slot;
         }
     }
     return s->ring_slots + behind[at]++;
 }
 
-/* Assigns slots to every spring; fill: and writes them. behind: the number of slots after the ring of each vertex. */
+/* Assigns slots to every spring; fill: also writes the spring there. behind: the number of slots after the ring of each
+ * vertex. */
 static void assign_slots(springs *s, const softbody_net *net, rings r, int *behind, bool fill)
 {
     memset(behind, 0, s->stride * sizeof *behind);
     for (size_t i = 0; i < (size_t)s->ring_slots * s->stride; i++)
-        r.wedges[i].taken = false;
+        r.wedges[i].has_spring = false;
     for (size_t i = 0; i < 2 * net->spring_count; i++) {
         const softbody_spring *one = &net->springs[i / 2];
         const uint32_t at = one->end[i % 2], other = one->end[1 - i % 2];
@@ -171,7 +172,7 @@ void springs_release(springs *s)
 
 /* --- in batches: each spring has an owner, and LANES owners share a batch --- */
 
-/* While batches are built. */
+/* Working memory while batches are built. */
 typedef struct owners {
     uint8_t *end;    /* by spring: which of its ends owns it */
     uint32_t *owned; /* by mass: how many it owns */
@@ -185,9 +186,9 @@ static void owners_release(owners o)
     free(o.place);
 }
 
-/* A batch lasts as long as its busiest owner's: springs move to the end that owns fewer until no move makes it more
- * even. Each move lowers the sum of the squared numbers, so this ends. */
-static void share_springs(const softbody_net *net, owners o)
+/* Balances the springs among owners, as a batch takes as long as its busiest owner: springs move to the end that owns
+ * fewer until no move helps. Each move lowers the sum of the squared numbers, so this ends. */
+static void balance_owners(const softbody_net *net, owners o)
 {
     for (size_t i = 0; i < net->spring_count; i++)
         o.owned[net->springs[i].end[0]]++;
@@ -205,7 +206,7 @@ static void share_springs(const softbody_net *net, owners o)
     }
 }
 
-/* Where the springs of each LANES masses begin. */
+/* Computes first: where the springs of each LANES masses begin. */
 static void measure_groups(spring_batches *t, size_t groups, owners o)
 {
     for (size_t g = 0; g < groups; g++) {
@@ -216,7 +217,7 @@ static void measure_groups(spring_batches *t, size_t groups, owners o)
     }
 }
 
-/* The masses of each group that own as many springs as its busiest one. */
+/* Of a group: the most springs that a mass owns, and how many masses ring that many. */
 typedef struct busy {
     uint32_t most, masses;
 } busy;
@@ -232,8 +233,8 @@ static void find_busy(busy *groups, size_t stride, owners o)
     }
 }
 
-/* Gathers the busiest masses in few groups: a spring goes to its other end where that becomes one of its group's
- * busiest and such masses are not fewer there. The sum of the squared numbers grows, so this ends. */
+/* Gathers the busiest masses in few groups: a spring moves to its other end if that becomes one of the busiest of its
+ * group, and its group has at least as many of them. The sum of the squared numbers grows, so this ends. */
 static void gather_busy(const softbody_net *net, busy *groups, size_t stride, owners o)
 {
     for (bool moved = true; moved;) {
@@ -265,7 +266,7 @@ static bool make_places(spring_batches *t, size_t count)
     return t->row && t->rest && t->stiffness && t->damping && t->pull;
 }
 
-/* Each mass's springs, in the order of its slots. */
+/* Stores each mass's springs in the order of its slots. */
 static void place_springs(spring_batches *t, const springs *s, const softbody_net *net, owners o)
 {
     for (size_t mass = 0; mass < s->stride; mass++) {
@@ -295,14 +296,14 @@ status batches_build(spring_batches *t, springs *s, const softbody_net *net, dia
                       .owned = calloc(s->stride, sizeof *o.owned),
                       .place = calloc(net->spring_count + 1, sizeof *o.place)};
     busy *groups_busy = malloc((groups + 1) * sizeof *groups_busy);
-    bool made = t->first && o.end && o.owned && o.place && groups_busy;
-    if (made) {
-        share_springs(net, o);
+    bool complete = t->first && o.end && o.owned && o.place && groups_busy;
+    if (complete) {
+        balance_owners(net, o);
         gather_busy(net, groups_busy, s->stride, o);
         measure_groups(t, groups, o);
-        made = t->first[groups] < NO_SPRING && make_places(t, t->first[groups]);
+        complete = t->first[groups] < NO_SPRING && make_places(t, t->first[groups]);
     }
-    if (made) {
+    if (complete) {
         for (size_t i = 0; i < (size_t)s->slots * s->stride; i++)
             s->row[i] = STATE * s->other[i];
         place_springs(t, s, net, o);
@@ -311,7 +312,7 @@ status batches_build(spring_batches *t, springs *s, const softbody_net *net, dia
     }
     owners_release(o);
     free(groups_busy);
-    return made ? STATUS_OK : diagnose(why, STATUS_FAILURE, "use a lower level", "out of memory for springs");
+    return complete ? STATUS_OK : diagnose(why, STATUS_FAILURE, "use a lower level", "out of memory for springs");
 }
 
 void batches_release(spring_batches *t)

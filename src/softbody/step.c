@@ -53,7 +53,7 @@ static void pull(softbody *b, size_t begin, size_t end, size_t chunk)
     b->force_kernels->pull(&b->batches, b->state, b->at, *b->damped, begin, end);
 }
 
-static void find(softbody *b, size_t begin, size_t end, size_t chunk)
+static void sum_forces(softbody *b, size_t begin, size_t end, size_t chunk)
 {
     b->sums[chunk] =
         b->force_kernels->forces(&b->net, b->batches.pull, b->state, b->at, b->force, b->gradient, begin, end);
@@ -69,7 +69,7 @@ void softbody_find_forces(softbody *b, const vectors *velocity)
     b->damped = velocity;
     for_chunks(b, pack);
     for_chunks(b, pull);
-    for_chunks(b, find);
+    for_chunks(b, sum_forces);
     const double at_rest = b->volume_at_rest;
     b->pushing.pressure =
         at_rest > 0.0 ? b->set.pressure * (at_rest - softbody_volume_of_gradient(b)) / at_rest / 6.0 : 0.0;
@@ -78,13 +78,12 @@ void softbody_find_forces(softbody *b, const vectors *velocity)
 /* --- backward Euler ---
  *
  * (M + dt D + dt^2 K) dv = dt (f + f_damping) - dt^2 K v, with K and D of the springs in their current state (Baraff
- * and Witkin, 1998, equation 6), and for the pressure the term K V'V'^T / V0. With f for springs at rest, the right
- * side is dt f minus the product of the matrix without M with v. Grabbed masses keep their velocities. Solved by
- * conjugate gradients from dv = 0, so that dv has the momentum of the forces (Shewchuk, "An introduction to the
- * conjugate gradient method", 1994). */
+ * and Witkin, 1998, equation 6), and for the pressure the term K V'V'^T / V0. If f is computed without damping, the
+ * right side is dt f - (dt D + dt^2 K) v. Grabbed masses keep their velocities. Solved by conjugate gradients from dv =
+ * 0, so that dv has the momentum of the forces (Shewchuk, "An introduction to the conjugate gradient method", 1994). */
 
 enum { ITERATIONS_MAX = 10000 };
-#define TOLERANCE 1e-10 /* of the residual, relative to the first one */
+#define TOLERANCE 1e-10 /* residual over the first residual */
 
 static void stiffen(softbody *b, size_t begin, size_t end, size_t chunk)
 {
@@ -110,14 +109,14 @@ static void press_direction(softbody *b, size_t begin, size_t end, size_t chunk)
     b->sums[chunk] = dot(b->gradient, b->direction, begin, end);
 }
 
-/* Applies the pressure's stiffness to a field whose product with the gradient has just been summed. */
-static double pressing(const softbody *b)
+/* The pressure's stiffness applied to a field whose product with the gradient has just been summed. */
+static double pressure_product(const softbody *b)
 {
     const double dt = b->solver_dt_s;
     return b->volume_at_rest > 0.0 ? dt * dt * b->set.pressure / b->volume_at_rest / 36.0 * sum_of_chunks(b) : 0.0;
 }
 
-/* The right side, as the first residual and direction. */
+/* Stores the right side as the first residual and direction. */
 static void begin_chunk(softbody *b, size_t begin, size_t end, size_t chunk)
 {
     const push *p = &b->pushing;
@@ -149,7 +148,7 @@ static void apply_chunk(softbody *b, size_t begin, size_t end, size_t chunk)
     b->sums[chunk] = dot(b->direction, b->image, begin, end);
 }
 
-static void walk_chunk(softbody *b, size_t begin, size_t end, size_t chunk)
+static void advance_chunk(softbody *b, size_t begin, size_t end, size_t chunk)
 {
     for (size_t i = begin; i < end; i++) {
         vectors_put(b->change, i,
@@ -160,7 +159,7 @@ static void walk_chunk(softbody *b, size_t begin, size_t end, size_t chunk)
     b->sums[chunk] = dot(b->residual, b->residual, begin, end);
 }
 
-static void turn_chunk(softbody *b, size_t begin, size_t end, size_t chunk)
+static void redirect_chunk(softbody *b, size_t begin, size_t end, size_t chunk)
 {
     (void)chunk;
     for (size_t i = begin; i < end; i++)
@@ -182,21 +181,21 @@ static bool solve(softbody *b)
     softbody_find_forces(b, &b->change); /* damping is part of the matrix */
     for_chunks(b, stiffen);
     for_chunks(b, press_velocity);
-    b->pressing = pressing(b);
+    b->pressing = pressure_product(b);
     for_chunks(b, begin_chunk);
     double square = sum_of_chunks(b);
     const double enough = TOLERANCE * TOLERANCE * square;
     int left = ITERATIONS_MAX;
     for (; left > 0 && square > enough; left--) {
         for_chunks(b, press_direction);
-        b->pressing = pressing(b);
+        b->pressing = pressure_product(b);
         for_chunks(b, apply_chunk);
         b->factor = square / sum_of_chunks(b);
-        for_chunks(b, walk_chunk);
+        for_chunks(b, advance_chunk);
         const double before = square;
         square = sum_of_chunks(b);
         b->factor = square / before;
-        for_chunks(b, turn_chunk);
+        for_chunks(b, redirect_chunk);
     }
     return left > 0 && square <= enough; /* false for NaN */
 }
@@ -325,7 +324,7 @@ static vec3 velocity_of_center(const softbody *b)
 
 /* The first mass whose speed relative to the centre of mass is NaN or above the limit; the number of masses if there is
  * none. */
-static size_t find_blown(const softbody *b, double *speed)
+static size_t find_diverged(const softbody *b, double *speed)
 {
     const vec3 center = velocity_of_center(b);
     size_t i = 0;
@@ -337,22 +336,22 @@ static size_t find_blown(const softbody *b, double *speed)
     return i;
 }
 
-/* The kernels check absolute speeds. A fast body has not diverged. */
-static bool has_blown(softbody *b)
+/* The kernels compare absolute speeds, but a body that moves fast has not diverged. */
+static bool has_diverged(softbody *b)
 {
     double speed;
     if (!any_bad(b))
         return false;
-    if (find_blown(b, &speed) < b->net.count)
+    if (find_diverged(b, &speed) < b->net.count)
         return true;
     memset(b->bad, 0, softbody_chunks(b) * sizeof *b->bad);
     return false;
 }
 
-static status blown(const softbody *b, diagnostic *why)
+static status report_divergence(const softbody *b, diagnostic *why)
 {
     double speed = 0.0;
-    const size_t i = find_blown(b, &speed);
+    const size_t i = find_diverged(b, &speed);
     char remedy[200], what[120];
     snprintf(remedy, sizeof remedy,
              "use dt_s of at most %.3g (stable at rest), 'adaptive: on', 'integrator: implicit', softer "
@@ -360,9 +359,8 @@ static status blown(const softbody *b, diagnostic *why)
              b->stable_dt_s);
     if (isfinite(speed))
         snprintf(what, sizeof what,
-                 "the speed of mass %zu relative to the others is %.3g: more than its own size in one "
-                 "substep",
-                 i, speed);
+                 "mass %zu has the speed %.3g relative to the others: more than the size of the slime per substep", i,
+                 speed);
     else
         snprintf(what, sizeof what, "the speed of mass %zu is not a number", i < b->net.count ? i : 0);
     return diagnose(why, STATUS_BAD_INPUT, remedy, "the simulation diverged in step %llu, at %.6g s: %s",
@@ -371,22 +369,22 @@ static status blown(const softbody *b, diagnostic *why)
 
 status softbody_step(softbody *b, diagnostic *why)
 {
-    if (any_bad(b)) /* before this step; it has not recovered since */
-        return blown(b, why);
+    if (any_bad(b)) /* diverged in an earlier step, and not placed anew */
+        return report_divergence(b, why);
     TRY(softbody_play(b, why));
     softbody_aim_hands(b, b->set.dt_s);
     const double count = substeps_wanted(b);
     if (!(count <= SUBSTEPS_MAX))
         return diagnose(why, STATUS_BAD_INPUT, "use a smaller dt_s, or softer springs",
-                        "step %llu, at %.6g s, would need %.3g substeps", (unsigned long long)b->steps + 1,
+                        "step %llu, at %.6g s, would require %.3g substeps", (unsigned long long)b->steps + 1,
                         (double)(b->steps + 1) * b->set.dt_s, count);
     for (double i = 0.0; i < count; i += 1.0) {
         if (!substep(b, b->set.dt_s / count))
             return diagnose(why, STATUS_BAD_INPUT, "use a smaller dt_s, or softer springs",
                             "the solver of step %llu of the slime, at %.6g s, does not converge",
                             (unsigned long long)b->steps + 1, (double)(b->steps + 1) * b->set.dt_s);
-        if (has_blown(b))
-            return blown(b, why);
+        if (has_diverged(b))
+            return report_divergence(b, why);
     }
     softbody_land_hands(b);
     b->steps++;

@@ -1,4 +1,4 @@
-/* The toy: its net of masses and springs, and its surface. */
+/* The slime toy: its net of masses and springs, and its surface. */
 #include "geometry/mesh/mesh_generators.h"
 #include "softbody/softbody_private.h"
 #include <stdlib.h>
@@ -51,14 +51,14 @@ static status add_edges(const softbody_settings *s, toy_net *n, diagnostic *why)
     return STATUS_OK;
 }
 
-typedef struct spot {
+typedef struct located_mass {
     vec3 at;
     uint32_t mass;
-} spot;
+} located_mass;
 
 static int by_place(const void *a, const void *b)
 {
-    const vec3 p = ((const spot *)a)->at, q = ((const spot *)b)->at;
+    const vec3 p = ((const located_mass *)a)->at, q = ((const located_mass *)b)->at;
     if (p.x != q.x)
         return p.x < q.x ? -1 : 1;
     if (p.y != q.y)
@@ -66,27 +66,27 @@ static int by_place(const void *a, const void *b)
     return p.z < q.z ? -1 : p.z > q.z;
 }
 
-/* An icosphere has the exact opposite of each of its vertices, since it is computed by the same operations with the
- * other sign. unit: on the unit sphere. */
+/* Adds the springs through the body. An icosphere has the exact opposite of each vertex, computed by the same
+ * operations with the other sign. unit: the vertices on the unit sphere. */
 static status add_diameters(const softbody_settings *s, const vec3 *unit, toy_net *n, diagnostic *why)
 {
-    spot *spots = malloc(n->mass_count * sizeof *spots);
-    if (!spots)
+    located_mass *by_position = malloc(n->mass_count * sizeof *by_position);
+    if (!by_position)
         return out_of_memory(why);
     for (size_t i = 0; i < n->mass_count; i++)
-        spots[i] = (spot){vec3_add(unit[i], vec3_make(0.0, 0.0, 0.0)), (uint32_t)i}; /* no -0 */
-    qsort(spots, n->mass_count, sizeof *spots, by_place);
+        by_position[i] = (located_mass){vec3_add(unit[i], vec3_make(0.0, 0.0, 0.0)), (uint32_t)i}; /* no -0 */
+    qsort(by_position, n->mass_count, sizeof *by_position, by_place);
     const double stiffness = s->through / (0.5 * (double)n->mass_count);
     status code = STATUS_OK;
     for (size_t i = 0; i < n->mass_count && code == STATUS_OK; i++) {
-        const spot wanted = {vec3_add(vec3_scale(unit[i], -1.0), vec3_make(0.0, 0.0, 0.0)), 0};
-        const spot *found = bsearch(&wanted, spots, n->mass_count, sizeof *spots, by_place);
+        const located_mass wanted = {vec3_add(vec3_scale(unit[i], -1.0), vec3_make(0.0, 0.0, 0.0)), 0};
+        const located_mass *found = bsearch(&wanted, by_position, n->mass_count, sizeof *by_position, by_place);
         if (!found)
             code = diagnose(why, STATUS_FAILURE, "report this as a bug", "mass %zu has no opposite mass", i);
         else if (found->mass > i)
             add_spring(s, n, (uint32_t)i, found->mass, stiffness);
     }
-    free(spots);
+    free(by_position);
     return code;
 }
 
@@ -122,9 +122,8 @@ status toy_net_create(const softbody_settings *s, toy_net *out, diagnostic *why)
     out->position = malloc(sphere->vertex_count * sizeof *out->position);
     out->mass_of = malloc(sphere->vertex_count * sizeof *out->mass_of);
     out->faces = malloc(sphere->triangle_count * sizeof *out->faces);
-    out->springs = malloc(4 * sphere->triangle_count *
-                          sizeof *out->springs); /* 1.5 edges per face, as many across, and a quarter through the body
-                                                    */
+    /* per face 1.5 springs along edges, as many across, and a quarter through the body */
+    out->springs = malloc(4 * sphere->triangle_count * sizeof *out->springs);
     if (!unit || !out->position || !out->mass_of || !out->faces || !out->springs)
         code = diagnose(why, STATUS_FAILURE, "use a lower level", "out of memory for a slime");
     THEN(code, place_masses(s, sphere, unit, out, why));

@@ -1,4 +1,4 @@
-/* What trials have in common: their bodies, their steps, and what they watch. */
+/* Code that all trials use: bodies, steps, and observed quantities. */
 #include "base/cancel.h"
 #include "softbody/trials_private.h"
 #include <stdlib.h>
@@ -27,15 +27,15 @@ uint64_t trial_steps(const softbody_settings *s, double time_s)
     return steps <= TRIAL_STEPS_MAX ? (uint64_t)steps : 0;
 }
 
-status trial_run(softbody *b, uint64_t steps, trial_watch *watch, void *context, bool *held, const trials *t)
+status trial_run(softbody *b, uint64_t steps, trial_watch *watch, void *context, bool *completed, const trials *t)
 {
     diagnostic bad = {.what = ""};
-    *held = steps > 0;
+    *completed = steps > 0;
     for (uint64_t i = 0; i < steps; i++) {
         TRY(cancel_check(t->why));
         const status code = softbody_step(b, &bad);
         if (code == STATUS_BAD_INPUT) {
-            *held = false;
+            *completed = false;
             return STATUS_OK;
         }
         if (code != STATUS_OK)
@@ -81,18 +81,18 @@ status trial_each_mass(softbody *b, trial_mass *act, const void *context, bool p
 {
     const size_t count = softbody_mass_count(b);
     vec3 *at = malloc(count * sizeof *at), *velocity = malloc(count * sizeof *velocity);
-    const bool made = at && velocity;
-    if (made) {
+    const bool complete = at && velocity;
+    if (complete) {
         softbody_positions(b, at);
         softbody_velocities(b, velocity);
         for (size_t i = 0; i < count; i++)
             act(context, i, &at[i], &velocity[i]);
     }
-    if (made && place)
+    if (complete && place)
         softbody_place(b, at, velocity);
     free(at);
     free(velocity);
-    return made ? STATUS_OK : diagnose(why, STATUS_FAILURE, "use a lower level", "out of memory");
+    return complete ? STATUS_OK : diagnose(why, STATUS_FAILURE, "use a lower level", "out of memory");
 }
 
 static void stir(const void *context, size_t i, vec3 *at, vec3 *velocity)

@@ -1,4 +1,4 @@
-/* The table of trials, and the choice of those that are run. */
+/* The table of trials, and the selection of those to run. */
 #include "base/cancel.h"
 #include "softbody/trials_private.h"
 
@@ -59,7 +59,7 @@ static const struct {
               {"bounce.", trials_bounce},     {"energy. momentum. angular_momentum.", trials_free},
               {"volume. rate.", trials_rest}, {"stable_dt.", trials_stable}};
 
-/* Whether a group measures the value of that name; NULL: of any. */
+/* Whether a group measures the value of a name; NULL: any value. */
 static bool measures(size_t group, const char *name)
 {
     char start[32] = "";
@@ -104,7 +104,7 @@ status softbody_trial_one(const softbody_settings *s, isa level, const char *nam
     const trials t = {.set = s, .level = level, .out = &report, .why = why};
     const int which = find_trial(name);
     if (which < 0)
-        return diagnose(why, STATUS_BAD_INPUT, "'cuvette motion SCENE' lists them", "nothing is measured as '%.64s'",
+        return diagnose(why, STATUS_BAD_INPUT, "list the values with 'cuvette motion SCENE'", "unknown value '%.64s'",
                         name);
     TRY(run_groups(&t, name));
     *out = report.value[which];

@@ -9,9 +9,9 @@
  *   rate.*                        the toy on a floor, all settings
  * Springs, falls and stable_dt.* use steps of dt_s without splitting; the others follow `adaptive`. Hands are ignored.
  *
- * A diverged simulation is a result here and no error: NaN for values that cannot be measured then, and for trials that
- * would take more than 300000 steps. All values except rate.step_s and rate.simulated_s_per_s are bit-identical for any
- * number of threads and any instruction set.
+ * A diverged simulation is a result here, not an error: NaN for values that cannot be measured then, and for trials
+ * that would take more than 300000 steps. All values except rate.step_s and rate.simulated_s_per_s are bit-identical
+ * for any number of threads and any instruction set.
  *
  * Cost, with steps of 1 ms, mostly of some 15000 steps of the toy (implicit: 8000), in seconds of one core:
  *                 euler   verlet   implicit
@@ -33,14 +33,14 @@ typedef struct softbody_trial {
 
 enum { SOFTBODY_TRIAL_COUNT = 19 };
 
-/* In a fixed order, the same names for all settings. */
+/* The values in a fixed order, with the same names for all settings. */
 typedef struct softbody_trial_report {
     softbody_trial value[SOFTBODY_TRIAL_COUNT];
 } softbody_trial_report;
 
 status softbody_trials(const softbody_settings *s, isa level, softbody_trial_report *out, diagnostic *why);
 
-/* One of them, without running the other groups; STATUS_BAD_INPUT for an unknown name. */
+/* Measures one value, without running the other groups; STATUS_BAD_INPUT for an unknown name. */
 status softbody_trial_one(const softbody_settings *s, isa level, const char *name, softbody_trial *out,
                           diagnostic *why);
 bool softbody_has_trial(const char *name);

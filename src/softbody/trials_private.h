@@ -44,18 +44,18 @@ static inline void trial_put(const trials *t, trial_name name, double measured, 
 /* The settings at the origin, at rest, without gravity, floor or splitting. */
 softbody_settings trial_free_settings(const trials *t);
 
-/* For one of the toy's masses, and for two of them on a spring along an edge: omega^2 = k / (m / 2) (Goldstein,
- * "Classical mechanics", 3.1). */
+/* The mass at one of the toy's vertices, and omega of two such masses on a spring along an edge: omega^2 = k / (m / 2)
+ * (Goldstein, "Classical mechanics", 3.1). */
 double trial_mass_kg(const softbody_settings *s);
 double trial_omega(const softbody_settings *s);
 
 /* The number of steps in a time, at least 1; 0 if they are more than TRIAL_STEPS_MAX. */
 uint64_t trial_steps(const softbody_settings *s, double time_s);
 
-/* Takes steps and calls watch, if not NULL, after each, until it returns false. *held: no step diverged, and there was
- * one. STATUS_INTERRUPTED when cancelled. */
+/* Runs steps and calls watch, if not NULL, after each until it returns false. *completed: no step diverged, and there
+ * was at least one. STATUS_INTERRUPTED when cancelled. */
 typedef bool trial_watch(const softbody *b, void *context);
-status trial_run(softbody *b, uint64_t steps, trial_watch *watch, void *context, bool *held, const trials *t);
+status trial_run(softbody *b, uint64_t steps, trial_watch *watch, void *context, bool *completed, const trials *t);
 
 /* All energy except gravity's. */
 double trial_energy(const softbody *b);
@@ -70,7 +70,7 @@ typedef struct swing_state {
 } swing_state;
 swing_state trial_swing_state(const softbody *b, double omega);
 
-/* Passes every mass's position and velocity to act, and optionally stores its changes. */
+/* Calls act with every mass's position and velocity; place: stores its changes. */
 typedef void trial_mass(const void *context, size_t i, vec3 *at, vec3 *velocity);
 status trial_each_mass(softbody *b, trial_mass *act, const void *context, bool place, diagnostic *why);
 

@@ -8,9 +8,9 @@
  * integrators' closed forms hold to rounding. */
 
 enum { SAMPLES = 64 };
-#define SWING \
-    1e-3 /* of the length at rest: the ends do not meet even where a step near its limit makes the swing hundreds of \
-            times longer */
+/* Amplitude over the length at rest: the ends do not meet, even if a step near its limit makes the swing hundreds of
+ * times longer. */
+#define SWING 1e-3
 
 typedef struct recording {
     uint64_t stride, step;
@@ -51,11 +51,11 @@ static status measure_period(const trials *t, double omega, double *period_s, do
     softbody_settings s = trial_free_settings(t);
     recording r = {.stride = (uint64_t)fmin(fmax(floor(1.0 / (omega * s.dt_s)), 1.0), 20000 / SAMPLES)};
     softbody *b;
-    bool held;
+    bool completed;
     double factor, angle;
     status code = trial_swing(t, &s, SWING, &b);
-    THEN(code, trial_run(b, r.stride * SAMPLES, record, &r, &held, t));
-    if (code == STATUS_OK && held && fit_swing(&r, &factor, &angle)) {
+    THEN(code, trial_run(b, r.stride * SAMPLES, record, &r, &completed, t));
+    if (code == STATUS_OK && completed && fit_swing(&r, &factor, &angle)) {
         *period_s = 2.0 * M_PI * (double)r.stride * s.dt_s / angle;
         *decay = pow(factor, 1.0 / (double)r.stride);
     }
@@ -63,17 +63,17 @@ static status measure_period(const trials *t, double omega, double *period_s, do
     return code;
 }
 
-/* Distance in (q, p) from the exact state after a quarter period, (0, -1) amplitudes, starting at (1, 0). Both matter:
- * in the positions of the semi-implicit method alone the first order cancels when starting at rest. */
+/* Distance in (q, p) from the exact state after a quarter period, (0, -1) amplitudes, starting at (1, 0). Both q and p
+ * matter: in a motion that starts at rest, the first order cancels in the positions of the semi-implicit method. */
 static status quarter_error(const trials *t, double omega, uint64_t steps, double *error)
 {
     softbody_settings s = trial_free_settings(t);
     softbody *b;
-    bool held;
+    bool completed;
     s.dt_s = 0.5 * M_PI / omega / (double)steps;
     status code = trial_swing(t, &s, SWING, &b);
-    THEN(code, trial_run(b, steps, NULL, NULL, &held, t));
-    if (code == STATUS_OK && held) {
+    THEN(code, trial_run(b, steps, NULL, NULL, &completed, t));
+    if (code == STATUS_OK && completed) {
         const swing_state end = trial_swing_state(b, omega);
         *error = hypot(end.q, end.p + SWING) / SWING;
     }
@@ -87,10 +87,10 @@ static status measure_order(const trials *t, double omega)
 {
     const double wanted = ceil(0.5 * M_PI / omega / t->set->dt_s);
     const uint64_t steps = (uint64_t)fmin(fmax(wanted, 64.0), 1024.0);
-    double whole = NAN, half = NAN;
-    status code = quarter_error(t, omega, steps, &whole);
-    THEN(code, quarter_error(t, omega, 2 * steps, &half));
-    trial_put(t, SPRING_ORDER, log2(whole / half), t->set->integrator == SOFTBODY_VERLET ? 2.0 : 1.0);
+    double full_step = NAN, half_step = NAN;
+    status code = quarter_error(t, omega, steps, &full_step);
+    THEN(code, quarter_error(t, omega, 2 * steps, &half_step));
+    trial_put(t, SPRING_ORDER, log2(full_step / half_step), t->set->integrator == SOFTBODY_VERLET ? 2.0 : 1.0);
     return code;
 }
 
@@ -119,8 +119,8 @@ enum { STEPS = 1000, LOOK = 50, WIDENINGS = 12 };
 
 typedef status holds_at(const trials *t, double dt_s, bool *holds);
 
-/* Expands from a guess until one end is stable and the other is not; NaN if there is no limit within a factor of 4096.
- * */
+/* Expands from a guess until one end is stable and the other is not; NaN if there is no limit within a factor of
+ * 4096. */
 static status find_limit(const trials *t, holds_at *try_it, double guess_s, int halvings, double *out)
 {
     double low = guess_s, high = guess_s;
@@ -160,18 +160,18 @@ static bool watch_swing(const softbody *b, void *context)
 }
 
 /* Below the limit q^2 + p^2 - omega dt q p is conserved (verlet: p^2 + (1 - (omega dt / 2)^2) q^2), so the amplitude
- * grows by at most sqrt(2 / (1 - omega dt / 2)): a thousandfold only at 2e-6 from the limit; above it by exp(2
- * acosh(omega dt / 2)) per step: a thousandfold in 1000 steps from 6e-6. */
+ * grows by at most sqrt(2 / (1 - omega dt / 2)): a thousandfold only at 2e-6 from the limit. Above the limit it grows
+ * by exp(2 acosh(omega dt / 2)) per step: a thousandfold in 1000 steps from 6e-6. */
 static status spring_holds(const trials *t, double dt_s, bool *holds)
 {
     softbody_settings s = trial_free_settings(t);
     s.dt_s = dt_s;
     swing_watch w = {.omega = trial_omega(t->set)};
-    bool held = false;
+    bool completed = false;
     softbody *b;
     status code = trial_swing(t, &s, FIRST_SWING, &b);
-    THEN(code, trial_run(b, STEPS, watch_swing, &w, &held, t));
-    *holds = held && !w.grown;
+    THEN(code, trial_run(b, STEPS, watch_swing, &w, &completed, t));
+    *holds = completed && !w.grown;
     softbody_destroy(b);
     return code;
 }
@@ -190,7 +190,7 @@ static bool watch_energy(const softbody *b, void *context)
     return !g->grown;
 }
 
-/* Displaces a mass by up to 1e-4 of the radius, so that all modes are excited; at rest. */
+/* Displaces a mass at rest by up to 1e-4 of the radius, so that all modes are excited. */
 static void shake(const void *context, size_t i, vec3 *at, vec3 *velocity)
 {
     const double *reach = context;
@@ -206,16 +206,16 @@ static status toy_holds(const trials *t, double dt_s, bool *holds)
     softbody_settings s = trial_free_settings(t);
     s.dt_s = dt_s;
     growth g = {0};
-    bool held = false;
+    bool completed = false;
     softbody *b;
     status code = softbody_create(&s, t->level, &b, t->why);
     if (code == STATUS_OK)
         code = trial_each_mass(b, shake, &(double){2e-4 * t->set->radius}, true, t->why);
     if (code == STATUS_OK) {
         g.first = trial_energy(b);
-        code = trial_run(b, STEPS, watch_energy, &g, &held, t);
+        code = trial_run(b, STEPS, watch_energy, &g, &completed, t);
     }
-    *holds = held && !g.grown;
+    *holds = completed && !g.grown;
     softbody_destroy(b);
     return code;
 }

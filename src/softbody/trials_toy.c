@@ -12,13 +12,13 @@ static status measure_fall(const trials *t)
     const uint64_t steps = trial_steps(&s, 1.0);
     const double g = -s.gravity.y, time_s = (double)steps * s.dt_s;
     softbody *b;
-    bool held;
+    bool completed;
     status code = trial_one_mass(t, &s, &b);
-    THEN(code, trial_run(b, steps, NULL, NULL, &held, t));
+    THEN(code, trial_run(b, steps, NULL, NULL, &completed, t));
     if (code == STATUS_OK) {
         vec3 at;
         softbody_positions(b, &at);
-        const double depth = held ? -at.y : NAN, exact = 0.5 * g * time_s * time_s;
+        const double depth = completed ? -at.y : NAN, exact = 0.5 * g * time_s * time_s;
         trial_put(t, FALL_DEPTH, depth, exact);
         trial_put(t, FALL_DEPTH_DISCRETE, depth,
                   s.integrator == SOFTBODY_VERLET ? exact : exact + 0.5 * g * time_s * s.dt_s);
@@ -32,7 +32,7 @@ typedef struct bounce {
     bool up, done;
 } bounce;
 
-/* Down, up, and down again. */
+/* Follows a bounce: down, up, and down again. */
 static void follow(bounce *k, double y, double speed)
 {
     if (!k->up && k->speed < 0.0 && speed >= 0.0)
@@ -60,16 +60,15 @@ static bool follow_body(const softbody *b, void *context)
     return !((bounce *)context)->done;
 }
 
-/* Time for a fall from a height, and three times as much again: the bounce is complete by then, and the body has
- * oscillated. It mostly ends earlier. */
+/* Runs for at most four times the fall from the height, in which the bounce ends and the body oscillates. */
 static status run_bounce(softbody *b, const softbody_settings *s, double height, trial_watch *watch, double *high,
                          const trials *t)
 {
     const double wanted = ceil(4.0 * sqrt(2.0 * height / -s->gravity.y) / s->dt_s);
     bounce k = {0};
-    bool held;
-    const status code = trial_run(b, (uint64_t)fmin(wanted, TRIAL_STEPS_MAX), watch, &k, &held, t);
-    if (code == STATUS_OK && held && (k.done || (k.up && wanted <= TRIAL_STEPS_MAX)))
+    bool completed;
+    const status code = trial_run(b, (uint64_t)fmin(wanted, TRIAL_STEPS_MAX), watch, &k, &completed, t);
+    if (code == STATUS_OK && completed && (k.done || (k.up && wanted <= TRIAL_STEPS_MAX)))
         *high = k.high;
     return code;
 }
@@ -154,18 +153,18 @@ static bool watch_energy(const softbody *b, void *context)
     return true;
 }
 
-/* NaN if it diverges. */
+/* Follows the energy for 1 s; NaN if the motion diverges. */
 static status follow_energy(const trials *t, double damping, energies *e)
 {
     const trial_field field = {.wobble = 0.02 * body_omega(t->set)};
     softbody *b;
-    bool held = false;
+    bool completed = false;
     status code = free_toy(t, damping, &field, &b);
     if (code == STATUS_OK) {
         e->first = e->before = e->now = trial_energy(b);
-        code = trial_run(b, trial_steps(t->set, 1.0), watch_energy, e, &held, t);
+        code = trial_run(b, trial_steps(t->set, 1.0), watch_energy, e, &completed, t);
     }
-    if (!held)
+    if (!completed)
         *e = (energies){NAN, NAN, NAN, NAN, NAN};
     softbody_destroy(b);
     return code;
@@ -205,17 +204,17 @@ static status follow_momenta(const trials *t)
                                vec3_make(speed, -0.5 * speed, 0.25 * speed)};
     double speeds = 0.0, moments = 0.0;
     softbody *b;
-    bool held = false;
+    bool completed = false;
     momenta m = {0};
     status code = free_toy(t, t->set->damping, &field, &b);
     if (code == STATUS_OK)
         code = trial_each_mass(b, add_sizes, &(sizes){&speeds, &moments}, false, t->why);
     if (code == STATUS_OK) {
         m.first = softbody_measure(b);
-        code = trial_run(b, trial_steps(t->set, 1.0), watch_momenta, &m, &held, t);
+        code = trial_run(b, trial_steps(t->set, 1.0), watch_momenta, &m, &completed, t);
     }
-    trial_put(t, MOMENTUM_DRIFT, held ? m.off / (mass_kg * speeds) : NAN, 0.0);
-    trial_put(t, ANGULAR_MOMENTUM_DRIFT, held ? m.angular_off / (mass_kg * moments) : NAN, 0.0);
+    trial_put(t, MOMENTUM_DRIFT, completed ? m.off / (mass_kg * speeds) : NAN, 0.0);
+    trial_put(t, ANGULAR_MOMENTUM_DRIFT, completed ? m.angular_off / (mass_kg * moments) : NAN, 0.0);
     softbody_destroy(b);
     return code;
 }
@@ -224,11 +223,11 @@ status trials_free(const trials *t)
 {
     if (!(body_omega(t->set) > 0.0))
         return STATUS_OK;
-    energies kept = {0}, damped = {0};
-    status code = follow_energy(t, 0.0, &kept);
+    energies undamped = {0}, damped = {0};
+    status code = follow_energy(t, 0.0, &undamped);
     THEN(code, follow_energy(t, t->set->damping, &damped));
-    trial_put(t, ENERGY_DRIFT, kept.off / kept.first, 0.0);
-    trial_put(t, ENERGY_END, kept.now / kept.first - 1.0, 0.0);
+    trial_put(t, ENERGY_DRIFT, undamped.off / undamped.first, 0.0);
+    trial_put(t, ENERGY_END, undamped.now / undamped.first - 1.0, 0.0);
     trial_put(t, ENERGY_RISE, damped.rise / damped.first, 0.0);
     return code == STATUS_OK ? follow_momenta(t) : code;
 }
@@ -256,9 +255,9 @@ static status time_steps(const trials *t, softbody *b)
 {
     const uint64_t before = softbody_measure(b).substeps;
     timing w = {.last_s = clock_wall_s()};
-    bool held;
-    const status code = trial_run(b, TIMED, watch_clock, &w, &held, t);
-    if (code != STATUS_OK || !held)
+    bool completed;
+    const status code = trial_run(b, TIMED, watch_clock, &w, &completed, t);
+    if (code != STATUS_OK || !completed)
         return code;
     const double step_s = summarize(w.wall_s, TIMED).median;
     trial_put(t, RATE_SUBSTEPS, (double)(softbody_measure(b).substeps - before) / TIMED, NAN);
@@ -275,10 +274,10 @@ status trials_rest(const trials *t)
     s.ground = 1;
     s.ground_y = 0.0;
     softbody *b;
-    bool held = false;
+    bool completed = false;
     status code = softbody_create(&s, t->level, &b, t->why);
-    THEN(code, trial_run(b, trial_steps(&s, 3.0), NULL, NULL, &held, t));
-    if (code == STATUS_OK && held) {
+    THEN(code, trial_run(b, trial_steps(&s, 3.0), NULL, NULL, &completed, t));
+    if (code == STATUS_OK && completed) {
         const softbody_quantities a = softbody_measure(b);
         trial_put(t, VOLUME_DRIFT, a.volume / a.volume_at_rest - 1.0, 0.0);
         code = time_steps(t, b);

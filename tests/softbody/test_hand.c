@@ -125,10 +125,10 @@ static void invalid_numbers_are_refused(void **state)
     refuse(s, "left", key, "invalid time");
     key = grab(0.0);
     key.direction = (vec3){0.0, 0.0, 0.0};
-    refuse(s, "left", key, "the grab ray has a coordinate that is not finite");
+    refuse(s, "left", key, "the grab ray is not finite or has no direction");
     key = grab(0.0);
     key.origin.y = (double)NAN;
-    refuse(s, "left", key, "the grab ray has a coordinate that is not finite");
+    refuse(s, "left", key, "the grab ray is not finite or has no direction");
     key = grab(0.0);
     key.reach = 0.0;
     refuse(s, "left", key, "reach");
