@@ -9,8 +9,8 @@ enum { CACHE_LINE = 64 };
 
 void *hierarchy_allocate(size_t bytes)
 {
-    const size_t whole = (bytes + CACHE_LINE - 1) / CACHE_LINE * CACHE_LINE;
-    return large_pages(aligned_alloc(CACHE_LINE, whole ? whole : CACHE_LINE), whole);
+    const size_t rounded = (bytes + CACHE_LINE - 1) / CACHE_LINE * CACHE_LINE;
+    return large_pages(aligned_alloc(CACHE_LINE, rounded ? rounded : CACHE_LINE), rounded);
 }
 
 static size_t block_bytes(const hierarchy *h)
@@ -70,8 +70,8 @@ status hierarchy_build_none(hierarchy *h, diagnostic *why)
 {
     const size_t count = h->of->triangle_count;
     uint32_t *order = malloc((count + 1) * sizeof *order);
-    const bool made = order && hierarchy_make_blocks(h, (count + BLOCK - 1) / BLOCK);
-    if (made) {
+    const bool complete = order && hierarchy_make_blocks(h, (count + BLOCK - 1) / BLOCK);
+    if (complete) {
         for (size_t i = 0; i < count; i++)
             order[i] = (uint32_t)i;
         hierarchy_fill_blocks(h, order, count, 0);
@@ -83,6 +83,6 @@ status hierarchy_build_none(hierarchy *h, diagnostic *why)
         h->report.leaves = 1;
     }
     free(order);
-    return made ? STATUS_OK
-                : diagnose(why, STATUS_FAILURE, "use a smaller mesh", "out of memory for %zu triangles", count);
+    return complete ? STATUS_OK
+                    : diagnose(why, STATUS_FAILURE, "use a smaller mesh", "out of memory for %zu triangles", count);
 }

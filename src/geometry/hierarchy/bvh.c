@@ -1,5 +1,6 @@
-/* The builder of the hierarchy `bvh`: triangles become primitive references (PrimRef of Embree), the references a
- * binary tree, the tree nodes of eight (bvh_collapse.c). Then its refit after its mesh moved, and its cost. */
+/* The builder of the hierarchy `bvh`: triangles become primitive references (PrimRef of Embree), references a binary
+ * tree, and the tree nodes of eight children (bvh_collapse.c). Also the refit after the mesh has moved, and the
+ * cost. */
 #include "base/cancel.h"
 #include "base/isa.h"
 #include "base/array.h"
@@ -101,7 +102,7 @@ typedef struct bvh_tree {
     int arena_count;
 } bvh_tree;
 
-/* Nodes, allocated in chunks, each twice as large as the one before, up to some large pages. */
+/* Nodes, allocated in chunks, each twice as large as the one before, up to a few large pages. */
 struct node_arena {
     node_arena *before;
     size_t used, room;
@@ -123,19 +124,19 @@ typedef struct tree_build {
     size_t task_count, task_room;
 } tree_build;
 
-static bvh_build_node *new_node(node_arena **own, const prim_range *range)
+static bvh_build_node *new_node(node_arena **arena, const prim_range *range)
 {
-    if (!*own || (*own)->used == (*own)->room) {
-        const size_t twice = *own ? 2 * (*own)->room : NODES_AT_FIRST;
+    if (!*arena || (*arena)->used == (*arena)->room) {
+        const size_t twice = *arena ? 2 * (*arena)->room : NODES_AT_FIRST;
         const size_t room = twice < NODES_AT_ONCE ? twice : NODES_AT_ONCE;
         const size_t bytes = sizeof(node_arena) + room * sizeof(bvh_build_node);
         node_arena *fresh = large_pages(malloc(bytes), bytes);
         if (!fresh)
             return NULL;
-        *fresh = (node_arena){.before = *own, .room = room};
-        *own = fresh;
+        *fresh = (node_arena){.before = *arena, .room = room};
+        *arena = fresh;
     }
-    bvh_build_node *b = &(*own)->nodes[(*own)->used++];
+    bvh_build_node *b = &(*arena)->nodes[(*arena)->used++];
     memcpy(b->low, range->bounds.low, sizeof b->low);
     memcpy(b->high, range->bounds.high, sizeof b->high);
     b->first = range->first;
@@ -145,16 +146,16 @@ static bvh_build_node *new_node(node_arena **own, const prim_range *range)
 }
 
 /* NULL: out of memory, or cancelled. */
-static bvh_build_node *build_subtree(node_arena **own, prim_ref *refs, const prim_range *range, int depth)
+static bvh_build_node *build_subtree(node_arena **arena, prim_ref *refs, const prim_range *range, int depth)
 {
-    bvh_build_node *b = new_node(own, range);
+    bvh_build_node *b = new_node(arena, range);
     if (!b)
         return NULL;
     if (range->count > UNSPLIT) {
         prim_range half[2];
         bvh_split(refs, range, depth, half);
         for (int i = 0; i < 2; i++) {
-            b->child[i] = build_subtree(own, refs, &half[i], depth + 1);
+            b->child[i] = build_subtree(arena, refs, &half[i], depth + 1);
             if (!b->child[i])
                 return NULL;
         }
@@ -166,9 +167,9 @@ static bvh_build_node *build_subtree(node_arena **own, prim_ref *refs, const pri
 static void build_task(void *context, size_t index, int member)
 {
     tree_build *g = context;
-    task *own = &g->tasks[index];
+    task *next = &g->tasks[index];
     if (!cancel_asked())
-        *own->out = build_subtree(&g->tree->arenas[member], g->refs, &own->range, own->depth);
+        *next->out = build_subtree(&g->tree->arenas[member], g->refs, &next->range, next->depth);
 }
 
 static bool add_task(tree_build *g, const prim_range *range, int depth, bvh_build_node **out)
@@ -266,7 +267,7 @@ static status build(hierarchy *h, thread_team *t, prim_ref *refs, diagnostic *wh
     return code;
 }
 
-/* The number of threads for a build: no more than there are tasks. */
+/* The number of threads for a build: at most one per task. */
 static int useful(int threads, size_t triangles)
 {
     size_t most = triangles / TASK_TRIANGLES + 1;
@@ -325,8 +326,8 @@ double hierarchy_cost(const hierarchy *h)
     bvh_node root;
     for (int axis = 0; axis < 3; axis++)
         bvh_around(&h->nodes[0], axis, &root.low[axis][0], &root.high[axis][0]);
-    const double whole = half_area(&root, 0);
-    double sum = whole * (double)COST_NODE;
+    const double root_area = half_area(&root, 0);
+    double sum = root_area * (double)COST_NODE;
     for (size_t i = 0; i < h->node_count; i++) {
         const bvh_node *n = &h->nodes[i];
         for (int slot = 0; slot < (int)n->child_count; slot++) {
@@ -334,5 +335,5 @@ double hierarchy_cost(const hierarchy *h)
             sum += half_area(n, slot) * (child & CHILD_LEAF ? (double)child_blocks(child) : (double)COST_NODE);
         }
     }
-    return whole > 0.0 ? sum / whole : 0.0;
+    return root_area > 0.0 ? sum / root_area : 0.0;
 }

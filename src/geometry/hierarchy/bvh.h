@@ -50,7 +50,7 @@ typedef struct bvh_build_node {
     size_t nodes, blocks, leaves;
 } bvh_build_node;
 
-/* The number as a float that is not denormal. */
+/* A triangle's number as a float that is not denormal. */
 static inline float bvh_lane_of(uint32_t triangle)
 {
     uint32_t bits = triangle | 0x40000000u;
@@ -66,8 +66,8 @@ static inline uint32_t bvh_triangle(const prim_ref *r)
     return bits & 0x3fffffffu;
 }
 
-/* The largest float not above v, and the smallest not below it, where |v| is 0 or at least the smallest normal float.
- * The bits that a float lacks are cut off, after a carry where rounding goes outwards. */
+/* The largest float not above v, and the smallest not below v, if |v| is 0 or at least the smallest normal float. The
+ * bits that a float lacks are cut off, after a carry if rounding is away from 0. */
 #define BVH_CUT_LEAST 0x1p-126
 #define BVH_CUT UINT64_C(0x1fffffff)
 
@@ -96,7 +96,7 @@ static inline float bvh_cut_above(double v)
     return bvh_cut_float(v, 1 - bvh_sign(v));
 }
 
-/* The same for any v, by nextafterf below the smallest normal float. */
+/* The same for any v, with nextafterf below the smallest normal float. */
 static inline float bvh_float_below(double v)
 {
     if (fabs(v) < BVH_CUT_LEAST)
@@ -157,11 +157,11 @@ static inline void bvh_around(const bvh_node *n, int axis, float *low, float *hi
 /* Splits a range of at least two references: reorders them and describes the halves. depth: of the range's node, from
  * 0. */
 void bvh_split(prim_ref *refs, const prim_range *range, int depth, prim_range half[2]);
-/* The same by a thread team, for large ranges. STATUS_FAILURE: out of memory. */
+/* bvh_split by a thread team, for large ranges. STATUS_FAILURE: out of memory. */
 status bvh_split_parallel(thread_team *t, prim_ref *refs, const prim_range *range, int depth, prim_range half[2],
                           diagnostic *why);
 
-/* Finds the costs of a node from those of its children (Ylitie et al., section 3.1). */
+/* Computes the costs of a node from its children's (Ylitie et al., section 3.1). */
 void bvh_find_costs(bvh_build_node *b);
 
 /* Ranges and subtrees of at most this size are built by a single thread. */

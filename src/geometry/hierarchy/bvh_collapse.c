@@ -36,8 +36,7 @@ void bvh_find_costs(bvh_build_node *b)
             b->cost[i] = as_leaf;
         return;
     }
-    uint8_t all = 1; /* valid shares (1 and 7), even if the costs are infinite or NaN */
-    b->left_trees[WIDTH] = all;
+    b->left_trees[WIDTH] = 1; /* a valid division, 1 and 7, even if the costs are infinite or NaN */
     float as_node = distribute(b, WIDTH, &b->left_trees[WIDTH]) + area * COST_NODE;
     if (!(as_leaf <= as_node)) {
         b->cost[1] = as_node;

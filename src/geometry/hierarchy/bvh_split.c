@@ -1,5 +1,5 @@
-/* One split of the bvh builder: bins, the cheapest split plane, the partition, and the median split; of
- * large ranges by a thread team. pbrt-v4 (7.3.2) and Embree name the parts. */
+/* One split of the bvh builder: bins, the cheapest split plane, the partition, and the median split. A thread team
+ * splits large ranges. Names as in pbrt-v4 (7.3.2) and Embree. */
 #include "base/cancel.h"
 #include "geometry/hierarchy/bvh.h"
 #include <stdlib.h>
@@ -9,7 +9,7 @@ enum { BINS_MAX = 16 };
 /* Bins of a range's references by their centres, along each axis. */
 typedef struct bvh_bins {
     int count;
-    float base[4], scale[4]; /* bin = (doubled centroid - base) scale; scale is 0 where all centres coincide */
+    float base[4], scale[4]; /* bin = (doubled centroid - base) scale; scale is 0 if all centres coincide */
     bvh_box bounds[3][BINS_MAX];
     uint32_t counts[3][BINS_MAX];
 } bvh_bins;
@@ -169,7 +169,7 @@ static void select_lower(prim_ref *refs, size_t count, size_t middle, int axis)
     }
 }
 
-/* Halves of equal counts, where bins cannot separate the references. */
+/* Halves of equal counts, for references that bins cannot separate. */
 static void split_at_median(prim_ref *refs, const prim_range *range, prim_range half[2])
 {
     int axis = 0;
@@ -182,14 +182,14 @@ static void split_at_median(prim_ref *refs, const prim_range *range, prim_range 
         }
     }
     uint32_t lower = range->count / 2;
-    prim_ref *own = refs + range->first;
-    select_lower(own, range->count, lower, axis);
+    prim_ref *part = refs + range->first;
+    select_lower(part, range->count, lower, axis);
     half[0] = empty_range(range->first);
     half[1] = empty_range(range->first + lower);
     half[0].count = lower;
     half[1].count = range->count - lower;
     for (uint32_t i = 0; i < range->count; i++)
-        prim_range_extend(&half[i >= lower], &own[i]);
+        prim_range_extend(&half[i >= lower], &part[i]);
 }
 
 /* Levels that median splits need down to single triangles. */
@@ -198,20 +198,20 @@ static int median_levels(uint32_t count)
     return count > 1 ? 32 - __builtin_clz(count - 1) : 0;
 }
 
-/* False where the tree would become too deep. */
+/* False if the tree could become too deep. */
 static bool may_bin(const prim_range *range, int depth)
 {
     return depth + median_levels(range->count) < BUILD_DEPTH_MAX;
 }
 
-/* False where all splits cost the same. */
+/* False if no split is better than another. */
 static bool find_min_cost_split(const bvh_bins *s, sah_split *split)
 {
     *split = (sah_split){-1, 0, INFINITY};
     for (int axis = 0; axis < 3; axis++)
         if (s->scale[axis] > 0.0f)
             min_cost_split_of_axis(s, axis, split);
-    return split->axis >= 0 && split->cost > 0.0f; /* with boxes of zero area no split is better than another */
+    return split->axis >= 0 && split->cost > 0.0f; /* 0 if all boxes have no area */
 }
 
 void bvh_split(prim_ref *refs, const prim_range *range, int depth, prim_range half[2])
@@ -243,7 +243,7 @@ typedef struct piece {
 } piece;
 
 typedef struct job {
-    prim_ref *refs; /* the range's own */
+    prim_ref *refs; /* references of the range */
     uint32_t count, lower;
     bvh_bins bins;
     sah_split split;
@@ -260,12 +260,12 @@ static void fill_piece(void *context, size_t index, int member)
 {
     (void)member;
     job *j = context;
-    bvh_bins *own = &j->pieces[index].bins;
-    *own = j->bins;
-    bins_fill(own, j->refs + index * PIECE, piece_count(j, index));
+    bvh_bins *part = &j->pieces[index].bins;
+    *part = j->bins;
+    bins_fill(part, j->refs + index * PIECE, piece_count(j, index));
 }
 
-static void part_piece(void *context, size_t index, int member)
+static void partition_piece(void *context, size_t index, int member)
 {
     (void)member;
     job *j = context;
@@ -328,7 +328,7 @@ status bvh_split_parallel(thread_team *t, prim_ref *refs, const prim_range *rang
     for (size_t i = 0; i < pieces; i++)
         add_bins(&j.bins, &j.pieces[i].bins);
     if (find_min_cost_split(&j.bins, &j.split)) {
-        thread_team_run(t, part_piece, &j, pieces);
+        thread_team_run(t, partition_piece, &j, pieces);
         bvh_box centroid_bounds[2] = {bvh_box_empty(), bvh_box_empty()};
         for (size_t i = 0; i < pieces; i++) {
             j.lower += j.pieces[i].lower;

@@ -1,17 +1,17 @@
-/* Counts the tests of a query, in a traversal of one ray that follows the kernels' step by step: the same order, and
- * the same triangle and sphere tests. The box test is that of query.h with a product and a sum for each
- * plane, rounded one after the other, where some instruction sets fuse them. */
+/* Counts the tests of a query by a traversal of one ray that repeats the steps of the kernels: the same order, and the
+ * same triangle and sphere tests. The box test of query.h is used with product and sum rounded separately; some
+ * instruction sets fuse them. */
 #include "geometry/hierarchy/query.h"
 
 /* A query and its counters. */
 typedef struct counting {
-    const hierarchy *of;
+    const hierarchy *h;
     ray_query query;
     enum query_mode mode;
     query_counts *counts;
 } counting;
 
-static void pass_over(void *context, const mesh_hit *hit)
+static void ignore_hit(void *context, const mesh_hit *hit)
 {
     (void)context, (void)hit;
 }
@@ -30,7 +30,7 @@ static uint64_t triangles_of(const hierarchy *h, size_t block)
 /* Tests blocks one after the other. True if the search is over. */
 static bool test_blocks(counting *c, size_t first, size_t count)
 {
-    const hierarchy *h = c->of;
+    const hierarchy *h = c->h;
     for (size_t i = first; i < first + count; i++) {
         c->counts->triangles += triangles_of(h, i);
         if (h->single ? query_blocks(&c->query, h, c->mode, true, i, 1)
@@ -40,7 +40,7 @@ static bool test_blocks(counting *c, size_t first, size_t count)
     return false;
 }
 
-/* Whether the ray is in a child's box before t_best; *near: from where on. */
+/* Whether the ray enters a child's box before t_best; *near is the distance of its entry. */
 static bool enters(const bvh_node *node, int child, const box_ray *b, float t_best, float *near)
 {
     float in = b->t_min, out = t_best;
@@ -78,7 +78,7 @@ static void count_bvh(counting *c)
     enum { CHILDREN = BVH_DEPTH_MAX * (WIDTH - 1) + WIDTH };
     box_ray b;
     uint64_t stack[CHILDREN];
-    box_ray_start(&b, c->of, &c->query);
+    box_ray_start(&b, c->h, &c->query);
     float t_best = float_above(c->query.t_best);
     int top = 1;
     for (stack[0] = pending(0.0f, 0); top > 0;) {
@@ -87,7 +87,7 @@ static void count_bvh(counting *c)
         if (pending_near(next) > t_best)
             continue;
         if (!(child & CHILD_LEAF)) {
-            top = enter_node(c, &c->of->nodes[child], &b, t_best, stack, top);
+            top = enter_node(c, &c->h->nodes[child], &b, t_best, stack, top);
             continue;
         }
         if (test_blocks(c, child_first_block(child), child_blocks(child)))
@@ -107,7 +107,7 @@ static int enter_sphere(counting *c, const sphere_node *s, double inverse_square
         return -1;
     c->counts->boxes += s->children;
     for (uint32_t i = s->first_child; i < s->first_child + s->children; i++) {
-        const sphere_pending child = {sphere_near(&c->query, inverse_square, &c->of->spheres[i]), i};
+        const sphere_pending child = {sphere_near(&c->query, inverse_square, &c->h->spheres[i]), i};
         if (child.near == (double)INFINITY)
             continue;
         int place = top++;
@@ -127,22 +127,22 @@ static void count_spheres(counting *c)
     const double inverse_square = 1.0 / square;
     sphere_pending stack[SPHERES_PENDING];
     int top = 1;
-    stack[0] = (sphere_pending){sphere_near(q, inverse_square, c->of->spheres), 0};
+    stack[0] = (sphere_pending){sphere_near(q, inverse_square, c->h->spheres), 0};
     c->counts->boxes++;
     while (top > 0) {
         const sphere_pending at = stack[--top];
         if (!(at.near > q->t_best || at.near == (double)INFINITY))
-            top = enter_sphere(c, &c->of->spheres[at.node], inverse_square, stack, top);
+            top = enter_sphere(c, &c->h->spheres[at.node], inverse_square, stack, top);
     }
 }
 
 void hierarchy_count(const hierarchy *h, const mesh_ray *ray, enum query_mode mode, query_counts *counts)
 {
-    counting c = {.of = h, .mode = mode, .counts = counts};
+    counting c = {.h = h, .mode = mode, .counts = counts};
     counts->rays++;
     if (!query_start(&c.query, ray) || h->block_count == 0)
         return;
-    c.query.visit = pass_over;
+    c.query.visit = ignore_hit;
     switch (h->kind) {
     case HIERARCHY_BVH: count_bvh(&c); break;
     case HIERARCHY_SPHERE:

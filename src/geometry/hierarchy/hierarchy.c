@@ -1,4 +1,4 @@
-/* Building, sharing and updating of hierarchies, for all kinds. */
+/* Hierarchies of all kinds: their build, those that a mesh owns, and their update after a move. */
 #include "geometry/hierarchy/layout.h"
 
 #include "base/cancel.h"
@@ -27,9 +27,8 @@ static status build(hierarchy *h, int threads, diagnostic *why)
                     (int)h->kind);
 }
 
-/* Bytes of the hierarchy of a mesh and of its builder, by triangle: an estimate from the sizes of blocks, nodes and
- * references. */
-static uint64_t bytes_by_triangle(hierarchy_kind kind, bool single)
+/* Bytes per triangle of a hierarchy and its builder, estimated from the sizes of blocks, nodes and references. */
+static uint64_t bytes_per_triangle(hierarchy_kind kind, bool single)
 {
     const uint64_t block = (single ? sizeof(block_single) : sizeof(block_double)) / BLOCK;
     switch (kind) {
@@ -45,7 +44,7 @@ static uint64_t bytes_by_triangle(hierarchy_kind kind, bool single)
 status hierarchy_build(const mesh *m, hierarchy_kind kind, int threads, hierarchy **out, diagnostic *why)
 {
     *out = NULL;
-    TRY(memory_budget_check(m->triangle_count * bytes_by_triangle(kind, m->single), "use a smaller mesh", why,
+    TRY(memory_budget_check(m->triangle_count * bytes_per_triangle(kind, m->single), "use a smaller mesh", why,
                             "the hierarchy of %zu triangles", m->triangle_count));
     hierarchy *h = calloc(1, sizeof *h);
     if (!h)

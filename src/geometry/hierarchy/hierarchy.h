@@ -44,8 +44,8 @@ bool hierarchy_refit(hierarchy *h);
  * nodes and blocks over the root's (MacDonald and Booth, 1990). 0 for other kinds and without triangles. */
 double hierarchy_cost(const hierarchy *h);
 
-/* The result of updating a mesh's hierarchies after mesh_move. Each is refitted, or rebuilt where a refit is impossible
- * or makes the cost more than `ratio` (at least 1) times the cost at the build. No other thread may use the mesh
+/* The result of updating a mesh's hierarchies after mesh_move. Each is refitted, or rebuilt if a refit is impossible or
+ * makes the cost more than `ratio` (at least 1) times the cost at the build. No other thread may use the mesh
  * meanwhile. STATUS_FAILURE: out of memory; the mesh then has no hierarchies. */
 typedef struct hierarchy_moves {
     int refitted, rebuilt;
@@ -58,17 +58,17 @@ status hierarchy_follow(const mesh *m, double ratio, int threads, hierarchy_move
 
 /* --- meshes as bytes (base/pack.h) ---
  *
- * Finished meshes with the hierarchies that they own, so that another process need not build them. Of a hierarchy the
- * numbers of its triangles are written, and its blocks are filled from the mesh again: a tenth of the bytes. What is
- * read is checked: every index is in range, every number finite, and every traversal ends. Ownership: an unpacked mesh
- * is the caller's, mesh_release releases it. Errors: STATUS_BAD_INPUT for damaged bytes, STATUS_FAILURE without
- * memory. */
+ * Finished meshes with the hierarchies that they own, so that another process need not build them. Of a hierarchy's
+ * blocks only the triangle numbers are written, and the blocks are filled from the mesh again: a tenth of the bytes.
+ * The reader checks that every index is in range, every number finite, and that every traversal ends. Ownership: the
+ * caller releases an unpacked mesh by mesh_release. Errors: STATUS_BAD_INPUT for damaged bytes, STATUS_FAILURE if
+ * memory runs out. */
 
-/* While no other thread moves the mesh or builds one of its hierarchies. */
+/* No other thread may move the mesh or build one of its hierarchies meanwhile. */
 status mesh_pack(const mesh *m, pack_writer *to, diagnostic *why);
 status mesh_unpack(pack_reader *from, const mesh **out, diagnostic *why);
 
-/* A hierarchy of its mesh. */
+/* The same for one hierarchy of a mesh. */
 status hierarchy_pack(const hierarchy *h, pack_writer *to, diagnostic *why);
 status hierarchy_unpack(const mesh *m, pack_reader *from, hierarchy **out, hierarchy_kind *kind, diagnostic *why);
 
@@ -103,10 +103,10 @@ typedef double box_visit(void *context, uint32_t triangle, double t_max);
 /* What a query looks for: the nearest hit, any hit, every hit, or the boxes of triangles. */
 enum query_mode { QUERY_NEAREST, QUERY_ANY, QUERY_ALL, QUERY_BOXES };
 
-/* Adds the tests that a query of this ray makes when it traverses the hierarchy alone, without a fused multiply-add:
- * then their number depends on the mesh, the kind and the ray, and not on the other rays of its batch, on threads or on
- * the instruction set. The kernels test at least as much: a packet enters a box for all of its rays, and four
- * triangles or eight boxes are tested at once. Not for QUERY_BOXES. */
+/* Adds the tests that a query of one ray makes if the ray traverses the hierarchy by itself, without a fused
+ * multiply-add. Their number depends on the mesh, the kind and the ray, not on other rays of the batch, threads or the
+ * instruction set. The kernels test at least as much: a packet enters a box for all of its rays, and four triangles or
+ * eight boxes are tested at once. Not for QUERY_BOXES. */
 void hierarchy_count(const hierarchy *h, const mesh_ray *ray, enum query_mode mode, query_counts *counts);
 
 /* The kernels, one set per instruction set. All sets return bit-identical results. */

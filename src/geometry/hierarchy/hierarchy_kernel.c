@@ -6,19 +6,20 @@
  *
  * Packet traversal of the hierarchy `bvh` by coherent rays. A whole node is culled for all rays by one test, with
  * interval arithmetic over the packet (Boulos et al., "Packet-based Whitted and distribution ray tracing", GI 2007);
- * boxes and triangles are then tested by 16 rays at a time. When few rays of the packet are left, each continues alone.
+ * boxes and triangles are then tested by 16 rays at a time. When few rays of the packet are left, they continue one by
+ * one.
  *
- * A ray tests at least every box and triangle that it would test alone, and the same triangle test decides on hits. So
+ * A ray tests at least every box and triangle that it would test by itself, and the same triangle test decides on hits:
  * the hits are bit-identical. */
 
 enum { FEW_RAYS = 6 /* at most this many rays continue one by one: they would fill less than one group */ };
 
-/* A child that waits, with the rays of its node. */
-typedef struct waiting {
+/* A child on the stack, with the rays that entered its node. */
+typedef struct pending_child {
     uint32_t node, slot;
     float near;
     ray_set rays;
-} waiting;
+} pending_child;
 
 /* The rays among sixteen, from slot i on, that enter a box before their best hits. */
 ALWAYS_INLINE unsigned enter_box(const packet *p, int i, const float *near_plane, const float *far_plane)
@@ -46,14 +47,14 @@ ALWAYS_INLINE unsigned enter_box(const packet *p, int i, const float *near_plane
 }
 
 /* The rays of a set that enter one box of a node before their best hits. Returns their number. */
-static int rays_in_box(const packet *p, const bvh_node *node, uint32_t slot, const ray_set *of, ray_set *in)
+static int rays_in_box(const packet *p, const bvh_node *node, uint32_t slot, const ray_set *set, ray_set *in)
 {
     float near_plane[3], far_plane[3];
     for (int k = 0; k < 3; k++)
         near_plane[k] = planes_at(node, p->near[k])[slot], far_plane[k] = planes_at(node, p->far[k])[slot];
     int count = 0;
     for (int g = 0; g < p->groups; g++) {
-        unsigned bits = of->bits[g];
+        unsigned bits = set->bits[g];
         if (bits)
             bits &= enter_box(p, g * LANES, near_plane, far_plane);
         in->bits[g] = (uint16_t)bits;
@@ -77,7 +78,7 @@ static ray_query *query_of_slot(packet *p, int slot, enum query_mode mode)
     return q;
 }
 
-/* Takes over the hit of a query that continued alone. */
+/* Stores the hit of a ray that continued by itself. */
 static void store_hit(packet *p, int slot, const ray_query *q, enum query_mode mode)
 {
     const int at = p->number[slot];
@@ -94,7 +95,7 @@ static void store_hit(packet *p, int slot, const ray_query *q, enum query_mode m
     }
 }
 
-/* Traverses from a child with each of the few rays of a set alone. */
+/* Traverses from a child with the few rays of a set, one by one. */
 static void traverse_one_by_one(const hierarchy *h, packet *p, const ray_set *set, enum query_mode mode, uint32_t child)
 {
     for (int g = 0; g < p->groups; g++) {
@@ -137,7 +138,8 @@ ALWAYS_INLINE void bounds_of_distances(const packet *p, const bvh_node *node, fl
 }
 
 /* Pushes a node's children that any ray may hit, the nearest on top. */
-static int push_children(const hierarchy *h, const packet *p, uint32_t at, const ray_set *set, waiting *stack, int top)
+static int push_children(const hierarchy *h, const packet *p, uint32_t at, const ray_set *set, pending_child *stack,
+                         int top)
 {
     const bvh_node *nodes = h->nodes;
     const size_t block_bytes = h->single ? sizeof(block_single) : sizeof(block_double);
@@ -151,20 +153,20 @@ static int push_children(const hierarchy *h, const packet *p, uint32_t at, const
         int position = top++;
         for (; position > bottom && stack[position - 1].near < near[slot]; position--)
             stack[position] = stack[position - 1];
-        stack[position] = (waiting){at, slot, near[slot], *set};
+        stack[position] = (pending_child){at, slot, near[slot], *set};
     }
     return top;
 }
 
 static void traverse_packet(const hierarchy *h, packet *p, enum query_mode mode)
 {
-    waiting stack[STACK];
+    pending_child stack[STACK];
     int top = 0;
     if (h->nodes[0].child_count == 0)
         return;
     top = push_children(h, p, 0, &p->alive, stack, top);
     while (top > 0) {
-        const waiting next = stack[--top];
+        const pending_child next = stack[--top];
         ray_set rays;
         if (next.near > p->t_farthest)
             continue;
@@ -211,7 +213,7 @@ static void traverse_bvh_batch(const hierarchy *h, const mesh_ray *rays, int cou
 {
     batch_floats b;
     packet p;
-    bool taken[PACKET_MAX] = {false};
+    bool grouped[PACKET_MAX] = {false};
     p.rays = rays, p.hits = hits, p.blocked = blocked;
     for (int i = 0; mode == QUERY_NEAREST && i < count; i++)
         hits[i] = (mesh_hit){.triangle = TRIANGLE_NONE};
@@ -226,13 +228,13 @@ static void traverse_bvh_batch(const hierarchy *h, const mesh_ray *rays, int cou
     if (b.coherent && b.kind[0] >= 0)
         traverse_kind(h, &p, &b, positions, count, mode);
     for (int first = 0; !b.coherent && first < count; first++) {
-        if (taken[first] || b.kind[first] < 0)
+        if (grouped[first] || b.kind[first] < 0)
             continue;
         int n = 0;
         for (int i = first; i < count; i++) {
             if (b.kind[i] != b.kind[first])
                 continue;
-            taken[i] = true;
+            grouped[i] = true;
             positions[n++] = (uint8_t)i;
         }
         traverse_kind(h, &p, &b, positions, n, mode);

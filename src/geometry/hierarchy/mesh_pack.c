@@ -147,7 +147,7 @@ static bool is_sphere(const hierarchy *h, size_t number, uint8_t *level)
     return sound && mark_children(level, h->node_count, number, s->first_child, s->children, SPHERES_DEPTH_MAX);
 }
 
-/* Whether the nodes are a tree that the traversals' stacks hold. */
+/* Checks that the nodes are a tree, no deeper than the traversals' stacks allow. */
 static status check_tree(const hierarchy *h, diagnostic *why)
 {
     uint8_t *level = calloc(h->node_count + 1, 1);
@@ -234,7 +234,7 @@ status hierarchy_unpack(const mesh *m, pack_reader *from, hierarchy **out, hiera
 
 /* --- meshes --- */
 
-/* A mesh's numbers. */
+/* The head of a packed mesh. */
 typedef struct mesh_head {
     uint64_t vertices, triangles;
     int64_t normals, uvs, slots, slot_count, closed, single; /* the first three: whether there are any */
@@ -250,9 +250,9 @@ typedef struct mesh_array {
     size_t size;
 } mesh_array;
 
-enum { MESH_ARRAYS_OF = 5 };
+enum { MESH_ARRAYS = 5 };
 
-static void list_arrays(const mesh *m, mesh_array out[MESH_ARRAYS_OF])
+static void list_arrays(const mesh *m, mesh_array out[MESH_ARRAYS])
 {
     out[0] = (mesh_array){m->vertices, m->vertex_count * sizeof *m->vertices};
     out[1] = (mesh_array){m->triangles, m->triangle_count * sizeof *m->triangles};
@@ -289,10 +289,10 @@ static mesh_head head_of(const mesh *m)
 status mesh_pack(const mesh *m, pack_writer *to, diagnostic *why)
 {
     const mesh_head head = head_of(m);
-    mesh_array arrays[MESH_ARRAYS_OF];
+    mesh_array arrays[MESH_ARRAYS];
     list_arrays(m, arrays);
     TRY(pack_put(to, &head, sizeof head, why));
-    for (int i = 0; i < MESH_ARRAYS_OF; i++)
+    for (int i = 0; i < MESH_ARRAYS; i++)
         TRY(pack_put(to, arrays[i].bytes, arrays[i].size, why));
     for (int i = 0; i < m->slot_count; i++)
         TRY(pack_put_text(to, m->slot_names[i], why));
@@ -325,7 +325,7 @@ static status check_head(const mesh_head *h, const pack_reader *from, diagnostic
     return STATUS_OK;
 }
 
-/* Normals are unit vectors; what mesh_check looks at is more general. */
+/* Normals must be unit vectors, which mesh_check does not require. */
 static status check_contents(const mesh *m, diagnostic *why)
 {
     bool unit = true;
@@ -354,7 +354,7 @@ static status unpack_hierarchies(mesh *m, uint64_t count, pack_reader *from, dia
 
 static status unpack_into(mesh *m, const mesh_head *head, pack_reader *from, diagnostic *why)
 {
-    mesh_array arrays[MESH_ARRAYS_OF];
+    mesh_array arrays[MESH_ARRAYS];
     list_arrays(m, arrays);
     m->slot_count = (int)head->slot_count;
     m->closed = head->closed;
@@ -364,7 +364,7 @@ static status unpack_into(mesh *m, const mesh_head *head, pack_reader *from, dia
                           .to = (uint32_t)head->hole_to,
                           .triangle = head->hole_triangle,
                           .sharing = (int)head->hole_sharing};
-    for (int i = 0; i < MESH_ARRAYS_OF; i++)
+    for (int i = 0; i < MESH_ARRAYS; i++)
         TRY(pack_get(from, arrays[i].bytes, arrays[i].size, why));
     for (int i = 0; i < m->slot_count; i++)
         TRY(pack_get_text(from, &m->slot_names[i], why));

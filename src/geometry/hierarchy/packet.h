@@ -133,8 +133,8 @@ ALWAYS_INLINE float most_of_row(const float *v, int n)
 
 /* Converts a batch of at most PACKET_MAX rays. */
 void KERNEL(batch_read)(batch_floats *b, const mesh_ray *rays, int count);
-/* Starts the packet of the rays at those positions, in order, which are all of one kind; rays, hits and blocked are
- * set. */
+/* Starts the packet of the rays at these positions, in order, which are all of one kind. The caller has set rays, hits
+ * and blocked. */
 void KERNEL(packet_start)(packet *p, const hierarchy *h, const batch_floats *b, const uint8_t *positions, int count);
 /* Tests the triangles of a leaf, a node's child, with the rays of a set. */
 void KERNEL(packet_leaf)(const hierarchy *h, packet *p, const ray_set *set, enum query_mode mode, const bvh_node *node,

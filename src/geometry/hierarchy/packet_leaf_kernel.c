@@ -11,11 +11,11 @@ typedef struct leaf_errors {
 } leaf_errors;
 
 /* With u = 2^-24, C and R the largest coordinates of the box and of the rays' origins: origin, direction, shear (at
- * most 1 in magnitude) and base come with errors of u R, u, 4.1 u and 9.2 u R, and a sheared coordinate
- * (c_x - s c_z) - base with at most e = 12 u (C + R). Of a ray that hits a triangle, and so passes through
- * its box, a sheared coordinate is at most M, twice the box's largest edge E; the margin of M covers the rounding of
- * such a ray. Rays that only the box test's margins let in hit nothing, and may be rejected. Then an edge function
- * x_2 y_1 - y_2 x_1 has an error of at most d = 4 e M + 2 e^2 + 4.1 u M^2.
+ * most 1 in magnitude) and base come with errors of u R, u, 4.1 u and 9.2 u R, and a sheared coordinate (c_x - s c_z) -
+ * base with at most e = 12 u (C + R). If a ray hits a triangle, and so passes through its box, a sheared coordinate is
+ * at most M, twice the box's largest edge E; the margin of M covers the rounding of such a ray. Rays that enter only
+ * the margin of the box test hit nothing, and may be rejected. Then an edge function x_2 y_1 - y_2 x_1 has an error of
+ * at most d = 4 e M + 2 e^2 + 4.1 u M^2.
  *
  * A distance, for weights of one sign, is s_z (z_0 + (v (z_1 - z_0) + w (z_2 - z_0)) / (u + v + w)): the quotient is at
  * most E, and its error 5.1 d E / |u + v + w| and a few u E; the other terms add less than 16 u (C + R). */
@@ -88,9 +88,9 @@ ALWAYS_INLINE unsigned maybe_in_range(const packet *p, int i, const float *z, co
 
 /* --- the triangle test in doubles ---
  *
- * That of query.h, operation by operation: the hits are bit-identical. */
+ * The operations of query.h in the same order: the hits are bit-identical. */
 
-/* A triangle's hits by eight rays, as in mesh_hit; what depends on the ray's other limits is left to the caller. */
+/* A triangle's hits by eight rays, as in mesh_hit; the caller compares them with the ray's other limits. */
 typedef struct eight_hits {
     _Alignas(64) double t_scaled[EIGHT], t_least[EIGHT], t[EIGHT], u[EIGHT], v[EIGHT];
     _Alignas(64) int64_t facing[EIGHT], accepted[EIGHT];
@@ -176,7 +176,7 @@ ALWAYS_INLINE unsigned accepted_bits(const eight_hits *found)
     return bits_of8(mask);
 }
 
-/* Whether the ray in a slot accepts the hit, as in query_blocks and query_test_triangle? */
+/* Whether the ray in a slot accepts the hit, as in query_blocks and query_test_triangle. */
 ALWAYS_INLINE bool accepts(const packet *p, int slot, enum query_mode mode, const eight_hits *found, int k,
                            uint32_t triangle)
 {

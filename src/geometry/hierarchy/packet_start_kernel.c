@@ -6,7 +6,7 @@
 
 _Static_assert(offsetof(mesh_ray, t_max) == T_MAX * sizeof(double), "a ray begins with eight doubles");
 
-/* The columns of a batch: of each ray, the first eight doubles. */
+/* The columns of a batch: the first eight doubles of each ray. */
 typedef struct batch_columns {
     _Alignas(64) double column[EIGHT][PACKET_MAX];
 } batch_columns;
@@ -117,8 +117,8 @@ static void prepare_shears(packet *p, const float *restrict ox, const float *res
     }
 }
 
-/* The margin at the origins bounds the same errors as in box_ray. A limited inverse is infinite for the far planes, as
- * there; a plane at the margin itself then gives NaN, which bounds_of_distances leaves out. */
+/* The margin at the origins bounds the same errors as in box_ray. As there, a limited inverse is infinite for the far
+ * planes; a plane at the margin then gives NaN, which bounds_of_distances ignores. */
 static void find_bounds(packet *p, const float *reach, const float *const *origins)
 {
     const int n = p->groups * LANES;

@@ -4,7 +4,7 @@
  * Corners are translated so that the ray starts at the origin and sheared so that it runs along an axis; the signs of
  * three edge functions then decide whether it passes inside. An edge function changes its sign exactly when its corners
  * are swapped, and zero counts as inside, so that no ray slips between two triangles that share an edge. Four triangles
- * are tested at a time; those that the edge functions let through are then tested one by one.
+ * are tested at a time; the triangles that the edge functions do not reject are then tested one by one.
  *
  * A hit's t is never less than the ray's entry into the triangle's own box (with a margin of 2^-40). So no hierarchy
  * that culls by boxes with a wider margin loses a hit, whatever rounding makes of a triangle seen edge-on. As this
@@ -125,7 +125,7 @@ ALWAYS_INLINE bool query_clamp(const ray_query *q, const double (*corner)[3], do
     return near <= far && far >= q->t_min;
 }
 
-/* Tests one triangle that the edge functions let through. True if the search is over. */
+/* Tests one triangle that the edge functions did not reject. True if the search is over. */
 static __attribute__((noinline)) bool query_test_triangle(ray_query *q, enum query_mode mode, const double (*corner)[3],
                                                           uint32_t triangle)
 {
@@ -252,7 +252,7 @@ ALWAYS_INLINE bool query_blocks(ray_query *q, const hierarchy *h, enum query_mod
  * rounding errors (Ize, "Robust BVH ray traversal", JCGT 2(2), 2013). A box is culled only if it begins beyond the best
  * hit, not at it, so that of two triangles at one distance the lower number wins in any order of traversal. */
 
-enum { STACK = BVH_DEPTH_MAX * (WIDTH - 1) + WIDTH }; /* children that wait during the traversal */
+enum { STACK = BVH_DEPTH_MAX * (WIDTH - 1) + WIDTH }; /* children on the stack of a traversal */
 #define FLOAT_STEP 0x1p-22f                           /* relative; more than two steps between floats */
 #define FLOAT_TINY 1e-37f /* absolute, for values near 0: several times the smallest normal float */
 
@@ -345,7 +345,7 @@ ALWAYS_INLINE const float *planes_at(const bvh_node *node, size_t offset)
     return (const float *)(const void *)((const char *)node + offset);
 }
 
-/* Fetches what a child refers to, for which the traversal would wait in a large mesh. */
+/* Prefetches the node or the blocks of a child, for which the traversal would wait in a large mesh. */
 ALWAYS_INLINE void fetch_child(const hierarchy *h, uint32_t child, size_t block_bytes)
 {
     const char *at = child & CHILD_LEAF ? (const char *)h->blocks + child_first_block(child) * block_bytes

@@ -21,11 +21,11 @@ ALWAYS_INLINE double4 greater4(double4 a, double4 b)
 }
 
 /* The bounds of a leaf's corners, by axis and lane. */
-typedef struct reach {
+typedef struct corner_bounds {
     double4 low[3], high[3];
-} reach;
+} corner_bounds;
 
-ALWAYS_INLINE void place(void *block, bool single, int corner, int axis, double4 at)
+ALWAYS_INLINE void store_corner(void *block, bool single, int corner, int axis, double4 at)
 {
     if (single) {
         const float4 v = __builtin_convertvector(at, float4);
@@ -36,7 +36,7 @@ ALWAYS_INLINE void place(void *block, bool single, int corner, int axis, double4
 }
 
 /* Recomputes the corners of a block's triangles. */
-ALWAYS_INLINE reach move_block(const mesh *m, void *block, bool single)
+ALWAYS_INLINE corner_bounds move_block(const mesh *m, void *block, bool single)
 {
     const uint32_t *numbers = single ? ((block_single *)block)->triangle : ((block_double *)block)->triangle;
     const uint32_t *a = m->triangles[numbers[0]].corner, *b = m->triangles[numbers[1]].corner,
@@ -48,10 +48,10 @@ ALWAYS_INLINE reach move_block(const mesh *m, void *block, bool single)
         at[1][k] = (double4){p->y, q->y, r->y, s->y};
         at[2][k] = (double4){p->z, q->z, r->z, s->z};
     }
-    reach r;
+    corner_bounds r;
     for (int axis = 0; axis < 3; axis++) {
         for (int k = 0; k < 3; k++)
-            place(block, single, k, axis, at[axis][k]);
+            store_corner(block, single, k, axis, at[axis][k]);
         r.low[axis] = lesser4(lesser4(at[axis][0], at[axis][1]), at[axis][2]);
         r.high[axis] = greater4(greater4(at[axis][0], at[axis][1]), at[axis][2]);
     }
@@ -75,7 +75,7 @@ ALWAYS_INLINE double4 most_of_lanes(const double4 *v)
     return greater4(__builtin_shufflevector(xy, z, 0, 1, 4, 5), __builtin_shufflevector(xy, z, 2, 3, 6, 7));
 }
 
-/* As bvh_cut_below, with a carry for negative numbers; bvh_cut_above carries for the others. */
+/* bvh_cut_below of four numbers, with a carry for negative ones, or bvh_cut_above, with a carry for the others. */
 ALWAYS_INLINE float4 cut(double4 v, bits4 carried)
 {
     const bits4 bits = ((bits4)v + (carried << 29) - carried) & ~(bits4){BVH_CUT, BVH_CUT, BVH_CUT, BVH_CUT};
@@ -108,10 +108,10 @@ ALWAYS_INLINE void refit_leaf(hierarchy *h, bvh_node *n, int slot, bool single)
 {
     const size_t stride = single ? sizeof(block_single) : sizeof(block_double);
     char *block = (char *)h->blocks + child_first_block(n->child[slot]) * stride;
-    reach r = move_block(h->of, block, single);
+    corner_bounds r = move_block(h->of, block, single);
     for (uint32_t left = child_blocks(n->child[slot]) - 1; left > 0; left--) {
         block += stride;
-        const reach next = move_block(h->of, block, single);
+        const corner_bounds next = move_block(h->of, block, single);
         for (int axis = 0; axis < 3; axis++) {
             r.low[axis] = lesser4(next.low[axis], r.low[axis]);
             r.high[axis] = greater4(next.high[axis], r.high[axis]);

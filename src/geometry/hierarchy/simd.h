@@ -37,8 +37,8 @@ ALWAYS_INLINE float8 floats_at(const float *p)
     return v;
 }
 
-/* a b + c, in one instruction where there is one: the last bits differ between instruction sets, so this is only for
- * tests with a margin. */
+/* a b + c, in one instruction if there is one: the last bits differ between instruction sets, so this is only for tests
+ * with a margin. */
 #if defined(__FMA__) || defined(__AVX512F__)
 #define MULTIPLY_ADD(a, b, c) __builtin_fmaf(a, b, c)
 #else

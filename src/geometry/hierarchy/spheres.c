@@ -1,6 +1,6 @@
-/* The builder of the sphere trees. `sphere` is a tree of one node. `octant` is the tree of the original report: a shell
- * bounds the triangles; its centre divides them among eight octants by their own centres, except those larger than a
- * quarter of the shell's radius, which stay with the shell. */
+/* The builder of the sphere trees. `sphere` is a tree of one node. `octant` is the tree of the published rod report: a
+ * shell bounds the triangles; its centre divides them among eight octants by their own centres, except those larger
+ * than a quarter of the shell's radius, which stay with the shell. */
 #include "geometry/hierarchy/layout.h"
 
 #include "base/cancel.h"
@@ -52,7 +52,7 @@ static double radius_of(const box *b)
     return 0.5 * sqrt(square);
 }
 
-/* The bounding sphere of the triangles' boxes; of the boxes, because a hit may be anywhere in its triangle's box
+/* The bounding sphere of the triangles' boxes, not of the triangles: a hit may be anywhere in its triangle's box
  * (query.h). */
 static void shell_of(const spheres_build *b, size_t first, size_t count, sphere_node *s)
 {
@@ -135,7 +135,7 @@ static void build_node(spheres_build *b, size_t at, size_t first, size_t count, 
             build_node(b, child++, start[k], start[k + 1] - start[k], level + 1);
 }
 
-static void pass(spheres_build *b, bool write)
+static void run_pass(spheres_build *b, bool write)
 {
     const size_t count = b->h->of->triangle_count;
     b->write = write;
@@ -155,15 +155,15 @@ status hierarchy_build_spheres(hierarchy *h, diagnostic *why)
     b.order = malloc((count + 1) * sizeof *b.order);
     b.moved = malloc((count + 1) * sizeof *b.moved);
     b.octant = malloc(count + 1);
-    bool made = b.order && b.moved && b.octant;
-    if (made) {
-        pass(&b, false);
+    bool complete = b.order && b.moved && b.octant;
+    if (complete) {
+        run_pass(&b, false);
         h->spheres = cancel_asked() ? NULL : calloc(b.nodes, sizeof *h->spheres);
-        made = h->spheres && hierarchy_make_blocks(h, b.blocks);
+        complete = h->spheres && hierarchy_make_blocks(h, b.blocks);
     }
-    if (made) {
-        pass(&b, true);
-        made = !cancel_asked();
+    if (complete) {
+        run_pass(&b, true);
+        complete = !cancel_asked();
         h->node_count = b.nodes;
         h->report.bytes =
             b.nodes * sizeof *h->spheres + b.blocks * (h->single ? sizeof(block_single) : sizeof(block_double));
@@ -175,7 +175,7 @@ status hierarchy_build_spheres(hierarchy *h, diagnostic *why)
     free(b.order);
     free(b.moved);
     free(b.octant);
-    return made             ? STATUS_OK
+    return complete         ? STATUS_OK
            : cancel_asked() ? cancel_check(why)
                             : diagnose(why, STATUS_FAILURE, "use a smaller mesh",
                                        "out of memory for a hierarchy of %zu triangles", count);

@@ -16,7 +16,7 @@ typedef struct row {
 
 typedef struct lathe {
     const profile_point *profile;
-    size_t count;  /* of points */
+    size_t count;  /* number of points */
     bool backward; /* the profile is reversed so that the fronts face outwards */
     bool ring;     /* the profile is a closed curve */
     double crease_deg, length;
@@ -38,12 +38,12 @@ static bool equal(profile_point a, profile_point b)
 static status check(const profile_point *profile, size_t count, int around, double crease_deg, diagnostic *why)
 {
     if (around < 3)
-        return diagnose(why, STATUS_BAD_INPUT, "use at least 3", "a surface of revolution cannot have %d segments",
-                        around);
+        return diagnose(why, STATUS_BAD_INPUT, "use at least 3 segments",
+                        "a surface of revolution cannot have %d segments", around);
     if (!(crease_deg >= 0.0 && crease_deg <= 180.0))
         return diagnose(why, STATUS_BAD_INPUT, "use 0 to 180 degrees", "crease angle %g is out of range", crease_deg);
     if (count < 2 || count > MESH_VERTICES_MAX)
-        return diagnose(why, STATUS_BAD_INPUT, "use at least 2", "a profile cannot have %zu points", count);
+        return diagnose(why, STATUS_BAD_INPUT, "use at least 2 points", "a profile cannot have %zu points", count);
     bool off_axis = false;
     for (size_t k = 0; k < count; k++) {
         const profile_point p = profile[k];
@@ -141,27 +141,27 @@ static void place_rows(const lathe *l, int around, mesh *m)
     }
 }
 
-/* The triangles of the segments: one instead of two where an end is on the axis. Returns their number; triangles may be
+/* The triangles of the segments: one instead of two if an end is on the axis. Returns their number; triangles may be
  * NULL. */
 static size_t join_rows(const lathe *l, int around, mesh_triangle *triangles)
 {
     const uint32_t columns = (uint32_t)around + 1;
-    size_t made = 0;
+    size_t written = 0;
     for (size_t k = 0; k + 1 < l->count; k++) {
         const row *low = &l->rows[l->low[k]], *high = &l->rows[l->high[k]];
         if (!triangles) {
-            made += (size_t)around * (size_t)((low->at.radius > 0.0) + (high->at.radius > 0.0));
+            written += (size_t)around * (size_t)((low->at.radius > 0.0) + (high->at.radius > 0.0));
             continue;
         }
         for (uint32_t i = 0; i + 1 < columns && !cancel_asked_at(i); i++) {
             const uint32_t a = (uint32_t)l->low[k] * columns + i, d = (uint32_t)l->high[k] * columns + i;
             if (high->at.radius > 0.0)
-                triangles[made++] = (mesh_triangle){{a, d, d + 1}};
+                triangles[written++] = (mesh_triangle){{a, d, d + 1}};
             if (low->at.radius > 0.0)
-                triangles[made++] = (mesh_triangle){{a, high->at.radius > 0.0 ? d + 1 : d, a + 1}};
+                triangles[written++] = (mesh_triangle){{a, high->at.radius > 0.0 ? d + 1 : d, a + 1}};
         }
     }
-    return made;
+    return written;
 }
 
 static status make(lathe *l, int around, bool closed, mesh **out, diagnostic *why)

@@ -80,7 +80,7 @@ static status check_count(size_t count, diagnostic *why)
 status generate_sparse_soup(size_t count, mesh **out, diagnostic *why)
 {
     status result = check_count(count, why);
-    /* in single precision at every step */
+    /* every step in single precision */
     return result == STATUS_OK ? soup(count, (double)(2.0f / cube_root((float)count) / 4.0f), out, why) : result;
 }
 
@@ -133,7 +133,7 @@ static status make_grids(size_t f, mesh **out, diagnostic *why)
     return result;
 }
 
-/* Normals and texture coordinates of a face; longitudes are taken near that of its centre. */
+/* Normals and texture coordinates of a face; longitudes are chosen near the longitude of the face's centre. */
 static void set_attributes(mesh *m, size_t face, size_t per_face)
 {
     const vec3 sum =
@@ -143,16 +143,15 @@ static void set_attributes(mesh *m, size_t face, size_t per_face)
         const vec3 p = m->vertices[v];
         if (cancel_asked_at(v))
             return;
-        double away_deg = p.x == 0.0 && p.z == 0.0
-                              ? 0.0
-                              : generate_longitude_deg(p) - middle_deg; /* a pole has no longitude of its own */
+        double away_deg =
+            p.x == 0.0 && p.z == 0.0 ? 0.0 : generate_longitude_deg(p) - middle_deg; /* a pole has no longitude */
         away_deg += away_deg > 180.0 ? -360.0 : away_deg < -180.0 ? 360.0 : 0.0;
         m->normals[v] = p;
         m->uvs[v] = (mesh_uv){0.5 + (middle_deg + away_deg) / 360.0, generate_latitude_v(p)};
     }
 }
 
-static vec3 singly(vec3 p)
+static vec3 to_single(vec3 p)
 {
     return vec3_make(single_round(p.x), single_round(p.y), single_round(p.z));
 }
@@ -167,7 +166,7 @@ static void place_flat(mesh *m, size_t face, size_t f)
             const vec3 sum = vec3_add(vec3_add(vec3_scale(a, (double)(f - i)), vec3_scale(b, (double)(i - j))),
                                       vec3_scale(c, (double)j));
             const vec3 p = vec3_make(sum.x / (double)f, sum.y / (double)f, sum.z / (double)f);
-            *vertex++ = singly(vec3_normalize(p));
+            *vertex++ = to_single(vec3_normalize(p));
         }
     }
 }

@@ -15,13 +15,13 @@ static status no_room(diagnostic *why)
 
 static void mesh_free(mesh *m)
 {
-    struct mesh_shared *share = m->shared;
-    if (share) {
+    struct mesh_shared *shared = m->shared;
+    if (shared) {
         for (int kind = 0; kind < HIERARCHY_KIND_COUNT; kind++)
-            if (share->hierarchies[kind])
-                share->destroy(share->hierarchies[kind]);
-        pthread_mutex_destroy(&share->mutex);
-        free(share);
+            if (shared->hierarchies[kind])
+                shared->destroy(shared->hierarchies[kind]);
+        pthread_mutex_destroy(&shared->mutex);
+        free(shared);
     }
     for (int i = 0; i < MESH_SLOTS_MAX; i++)
         free(m->slot_names[i]);
@@ -35,17 +35,17 @@ static void mesh_free(mesh *m)
 
 static struct mesh_shared *shared_create(void)
 {
-    struct mesh_shared *share = calloc(1, sizeof *share);
-    if (share && pthread_mutex_init(&share->mutex, NULL) != 0) {
-        free(share);
-        share = NULL;
+    struct mesh_shared *shared = calloc(1, sizeof *shared);
+    if (shared && pthread_mutex_init(&shared->mutex, NULL) != 0) {
+        free(shared);
+        shared = NULL;
     }
-    if (share)
-        share->owners = 1;
-    return share;
+    if (shared)
+        shared->owners = 1;
+    return shared;
 }
 
-/* Its arrays, and the larger of what mesh_weld and mesh_close hold at a time. */
+/* Bytes of a mesh's arrays, and of the larger of the temporary arrays of mesh_weld and mesh_close. */
 static uint64_t bytes_of(uint64_t vertices, uint64_t triangles, bool with_normals, bool with_uvs, bool with_slots)
 {
     uint64_t table = 16;
@@ -141,7 +141,8 @@ static status check_vertices(const mesh *m, diagnostic *why)
 status mesh_check(const mesh *m, diagnostic *why)
 {
     if (m->slot_count < 1 || m->slot_count > MESH_SLOTS_MAX)
-        return diagnose(why, STATUS_BAD_INPUT, "use 1 to 256", "a mesh cannot have %d material slots", m->slot_count);
+        return diagnose(why, STATUS_BAD_INPUT, "use 1 to 256 material slots", "a mesh cannot have %d material slots",
+                        m->slot_count);
     for (size_t t = 0; t < m->triangle_count; t++) {
         if (cancel_asked_at(t))
             return cancel_check(why);
@@ -152,7 +153,7 @@ status mesh_check(const mesh *m, diagnostic *why)
                                 m->vertex_count);
         }
         if (m->slots && m->slots[t] >= m->slot_count)
-            return diagnose(why, STATUS_BAD_INPUT, "the slots of materials must be numbered from 0",
+            return diagnose(why, STATUS_BAD_INPUT, "number material slots from 0",
                             "triangle %zu refers to material slot %d of %d", t, m->slots[t], m->slot_count);
     }
     return check_vertices(m, why);
@@ -295,8 +296,8 @@ static bool all_finite(const vec3 *v, size_t count)
     return finite;
 }
 
-/* Bounds are those of the vertices that triangles use. If triangles use all vertices, which is determined once, the
- * triangles need not be read. */
+/* Bounds cover only the vertices that triangles use. If triangles use all vertices, which is determined once, mesh_move
+ * need not read the triangles. */
 static bool uses_every_vertex(mesh *m)
 {
     if (m->shared->used == MESH_USED_UNKNOWN) {

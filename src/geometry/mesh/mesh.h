@@ -54,7 +54,8 @@ typedef struct mesh {
     uint8_t *slots;                   /* material slot by triangle; NULL: all 0 */
     int slot_count;                   /* at least 1 */
     char *slot_names[MESH_SLOTS_MAX]; /* owned; NULL where a slot has no name */
-    bool distinct; /* no two vertices have the same position (-0 equals 0): mesh_finish need not look; it resets this */
+    /* no two vertices have the same position (-0 equals 0), so that mesh_finish need not search; it resets this */
+    bool distinct;
     /* set by mesh_finish: */
     bounds3 bounds;             /* of the vertices that triangles use; low > high without triangles */
     bool closed;                /* closed, with every front facing outwards */
@@ -63,8 +64,8 @@ typedef struct mesh {
     struct mesh_shared *shared; /* number of owners, and the hierarchies built for it */
 } mesh;
 
-/* Whether a mesh of that size is allowed, and has room (base/budget.h), with the work of mesh_finish: before its
- * vertices are computed. STATUS_BAD_INPUT if not. */
+/* Checks that a mesh of this size is allowed and, with the temporary arrays of mesh_finish, fits into memory
+ * (base/budget.h), before its vertices are computed. STATUS_BAD_INPUT if not. */
 status mesh_check_size(size_t vertex_count, size_t triangle_count, bool with_normals, bool with_uvs, bool with_slots,
                        diagnostic *why);
 

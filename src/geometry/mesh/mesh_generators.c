@@ -1,4 +1,4 @@
-/* Mesh generators: what they share, and the box, the torus and the height field. */
+/* Mesh generators: common code, the box, the torus and the height field. */
 #include "base/cancel.h"
 #include "base/elementary.h"
 #include "geometry/mesh/mesh_generators.h"
@@ -103,7 +103,7 @@ status generate_torus(double major, double minor, int around, int tube, mesh **o
     for (size_t i = 0; i < columns && !cancel_asked(); i++) {
         const vec3 outward = generate_azimuth((int)i, around);
         for (size_t j = 0; j < rows; j++) {
-            if (j % 64 == 0 && cancel_asked()) /* the first columns take all pages of the mesh */
+            if (j % 64 == 0 && cancel_asked()) /* the first columns touch all pages of the mesh, which takes time */
                 break;
             double sine, cosine; /* from the innermost circle down, out and up again */
             elementary_sincos_deg(360.0 * (double)(j % (size_t)tube) / tube, &sine, &cosine);
@@ -130,18 +130,18 @@ typedef struct field {
 static status check_field(const field *f, diagnostic *why)
 {
     if (f->columns < 2 || f->rows < 2)
-        return diagnose(why, STATUS_BAD_INPUT, "use at least 2 by 2", "too few heights in a height field");
+        return diagnose(why, STATUS_BAD_INPUT, "use at least 2 by 2 heights", "too few heights in a height field");
     if (!generate_is_length(f->size_x) || !generate_is_length(f->size_z))
         return diagnose(why, STATUS_BAD_INPUT, "use sizes greater than 0, at most 1e9",
                         "invalid height field size %g x %g", f->size_x, f->size_z);
     if (!(f->depth >= 0.0 && f->depth <= MESH_FAR))
-        return diagnose(why, STATUS_BAD_INPUT, "use 0 to 1e9", "invalid height field depth %g", f->depth);
+        return diagnose(why, STATUS_BAD_INPUT, "use a depth of 0 to 1e9", "invalid height field depth %g", f->depth);
     for (size_t k = 0; k < f->columns * f->rows; k++) {
         const double height = f->heights[k];
         if (cancel_asked_at(k))
             return cancel_check(why);
         if (!(fabs(height) <= MESH_FAR))
-            return diagnose(why, STATUS_BAD_INPUT, "use -1e9 to 1e9",
+            return diagnose(why, STATUS_BAD_INPUT, "use heights of -1e9 to 1e9",
                             "height %g in column %zu of row %zu is out of range", height, k % f->columns,
                             k / f->columns);
         if (f->depth > 0.0 && !(height > -f->depth))
@@ -176,7 +176,7 @@ static void place_top(const field *f, mesh *m, size_t *triangle)
     }
 }
 
-/* Numbers of the points along a side; the sides are numbered from the front to the right, as seen from outside. */
+/* The number of point `at` along a side; the sides are numbered from the front to the right, as seen from outside. */
 static size_t along_side(const field *f, int side, size_t at)
 {
     const size_t last_column = f->columns - 1, last_row = f->rows - 1;

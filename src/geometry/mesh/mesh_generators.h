@@ -8,8 +8,8 @@
 
 /* Random triangles in the cube [-1, 1]^3: sparse ones whose size decreases with their number (edge a quarter of the
  * spacing 2 / cbrt(count)), dense ones of the fixed size 1/2. A triangle's centre c = 2 u - 1 is drawn first, then its
- * corners c + size (u - 1/2), each coordinate rounded once to a float; u = the upper 24 bits of splitmix64 by 2^-24,
- * from the seed 20240101. 1..MESH_TRIANGLES_MAX. */
+ * corners c + size (u - 1/2), each coordinate rounded once to a float; u = the upper 24 bits of splitmix64 times 2^-24,
+ * from the seed 20240101. count: 1..MESH_TRIANGLES_MAX. */
 status generate_sparse_soup(size_t count, mesh **out, diagnostic *why);
 status generate_dense_soup(size_t count, mesh **out, diagnostic *why);
 
@@ -19,7 +19,7 @@ status generate_dense_soup(size_t count, mesh **out, diagnostic *why);
 status generate_sphere(size_t count, mesh **out, diagnostic *why);
 
 /* Icosahedron refined by bisection of its edges `level` times, 20 * 4^level triangles, on the unit sphere; doubles.
- * Vertices as above. A level of 12 would exceed MESH_TRIANGLES_MAX. */
+ * Vertices as in generate_sphere. A level of 12 would exceed MESH_TRIANGLES_MAX. */
 enum { ICOSPHERE_LEVEL_MAX = 11 };
 status generate_icosphere(int level, mesh **out, diagnostic *why);
 

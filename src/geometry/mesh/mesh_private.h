@@ -1,5 +1,5 @@
-/* Inside a mesh: the state that its owners share, the steps of mesh_finish, and what the generators have in common.
- * Private to src/geometry/mesh and src/geometry/hierarchy. */
+/* Inside a mesh: the state that its owners share, the steps of mesh_finish, and common code of the generators. Private
+ * to src/geometry/mesh and src/geometry/hierarchy. */
 #pragma once
 
 #include "geometry/mesh/mesh.h"
@@ -43,7 +43,7 @@ void mesh_normalize(mesh *m);
  * features too small for doubles: STATUS_BAD_INPUT. A generator may leave its loops early when it is cancelled. */
 status generate_finish(mesh *m, bool must_be_closed, mesh **out, diagnostic *why);
 
-/* Returns whether it is a length greater than 0 and not above MESH_FAR. */
+/* Whether x is greater than 0 and at most MESH_FAR. */
 bool generate_is_length(double x);
 
 /* Texture coordinates by direction: u = 1/2 is at -z, facing a viewer in front, and increases to that viewer's right,

@@ -65,18 +65,18 @@ static bool same_place(vec3 a, vec3 b)
     return a.x == b.x && a.y == b.y && a.z == b.z;
 }
 
-static uint32_t *numbers(size_t count)
+static uint32_t *allocate_numbers(size_t count)
 {
     return large_pages(malloc(count * sizeof(uint32_t)), count * sizeof(uint32_t));
 }
 
-/* Every vertex is its own. */
+/* The result for a mesh in which no two vertices have the same position. */
 static status weld_distinct(const mesh *m, uint32_t **same, diagnostic *why)
 {
-    uint32_t *own = *same = numbers(m->vertex_count + 1);
-    for (size_t v = 0; own && v < m->vertex_count; v++)
-        own[v] = (uint32_t)v;
-    return own ? STATUS_OK : diagnose(why, STATUS_FAILURE, "use fewer triangles", NO_MEMORY);
+    uint32_t *list = *same = allocate_numbers(m->vertex_count + 1);
+    for (size_t v = 0; list && v < m->vertex_count; v++)
+        list[v] = (uint32_t)v;
+    return list ? STATUS_OK : diagnose(why, STATUS_FAILURE, "use fewer triangles", NO_MEMORY);
 }
 
 status mesh_weld(const mesh *m, uint32_t **same, diagnostic *why)
@@ -87,7 +87,7 @@ status mesh_weld(const mesh *m, uint32_t **same, diagnostic *why)
     size_t size = 16;
     while (size < 2 * m->vertex_count)
         size *= 2;
-    uint32_t *table = numbers(size), *found = numbers(m->vertex_count + 1);
+    uint32_t *table = allocate_numbers(size), *found = allocate_numbers(m->vertex_count + 1);
     if (!table || !found) {
         free(table);
         free(found);
@@ -121,9 +121,9 @@ status mesh_weld(const mesh *m, uint32_t **same, diagnostic *why)
 
 /* --- half-edges ---
  *
- * A half-edge is a triangle's, from one corner to the next. Half-edges are sorted by the lower and the higher of their
- * two positions: first by counting, into a list for each lower position, then within each list, which is short. Linear
- * time in practice. */
+ * A half-edge is an edge of one triangle, from one corner to the next. Half-edges are sorted by the lower and the
+ * higher of their two positions: first by counting, into a list for each lower position, then within each list, which
+ * is short. Linear time in practice. */
 
 /* The position where a half-edge begins. */
 static uint32_t begins(const mesh *m, const uint32_t *same, uint32_t half)
@@ -148,7 +148,7 @@ static void edge_lists_free(edge_lists *lists)
     free(lists->edges);
 }
 
-static bool joins(const uint32_t *same, const uint32_t *corner)
+static bool has_distinct_corners(const uint32_t *same, const uint32_t *corner)
 {
     const uint32_t a = same[corner[0]], b = same[corner[1]], c = same[corner[2]];
     return a != b && b != c && c != a;
@@ -178,9 +178,9 @@ static void sort(half_edge *edges, size_t count)
     }
 }
 
-/* Takes the pages of new memory in order, which a cancellation ends: a loop that then writes at random places does not
- * wait for hundreds of new pages before it asks. False if cancelled. */
-static bool take_pages(void *memory, size_t bytes)
+/* Touches the pages of new memory in order, so that a loop that then writes at random places does not wait for hundreds
+ * of new pages before it notices a cancellation. False if cancelled. */
+static bool touch_pages(void *memory, size_t bytes)
 {
     enum { PAGE = 4096 };
     volatile char *first = memory;
@@ -200,13 +200,13 @@ static status edge_lists_make(const mesh *m, edge_lists *lists, diagnostic *why)
     half_edge *edges = lists->edges = large_pages(malloc(all), all);
     if (!start || !edges)
         return diagnose(why, STATUS_FAILURE, "use fewer triangles", "out of memory for the edges of a mesh");
-    if (!take_pages(start, (m->vertex_count + 2) * sizeof *start) || !take_pages(edges, all))
+    if (!touch_pages(start, (m->vertex_count + 2) * sizeof *start) || !touch_pages(edges, all))
         return cancel_check(why);
     /* two passes over the half-edges: count them two entries ahead, then place each at the end of the list before */
     for (int writing = 0; writing < 2; writing++) {
         for (size_t t = 0; t < m->triangle_count && !cancel_asked_at(t); t++) {
             const uint32_t *corner = m->triangles[t].corner;
-            for (int k = 0; k < 3 && joins(lists->same, corner); k++) {
+            for (int k = 0; k < 3 && has_distinct_corners(lists->same, corner); k++) {
                 const uint32_t a = lists->same[corner[k]], b = lists->same[corner[k == 2 ? 0 : k + 1]];
                 const uint32_t lower = a < b ? a : b, higher = a < b ? b : a;
                 if (writing)
@@ -217,7 +217,7 @@ static status edge_lists_make(const mesh *m, edge_lists *lists, diagnostic *why)
         }
         for (size_t v = 2; !writing && v < m->vertex_count + 2; v++)
             start[v] += start[v - 1];
-        TRY(cancel_check(why)); /* before the counts of a part of the edges are used */
+        TRY(cancel_check(why)); /* incomplete counts must not be used */
     }
     for (size_t v = 0; v < m->vertex_count && !cancel_asked_at(v); v++)
         sort(edges + start[v], start[v + 1] - start[v]);
@@ -265,7 +265,7 @@ static edge_findings find_pairs(const mesh *m, const edge_lists *lists, uint32_t
 /* --- consistent winding, by flood fill --- */
 
 /* Flips a triangle: swaps its second and third corner. */
-static void turn(mesh *m, size_t triangle)
+static void flip(mesh *m, size_t triangle)
 {
     uint32_t *corner = m->triangles[triangle].corner;
     const uint32_t second = corner[1];
@@ -345,13 +345,13 @@ static bool orient(mesh *m, neighbours *n, size_t *at)
     }
     for (size_t t = 0; t < m->triangle_count; t++)
         if (n->turned[t])
-            turn(m, t);
+            flip(m, t);
     return true;
 }
 
 /* --- mesh_close --- */
 
-static void name_hole(mesh *m, size_t half, int sharing)
+static void record_hole(mesh *m, size_t half, int sharing)
 {
     const uint32_t *corner = m->triangles[half / 3].corner;
     const size_t k = half % 3;
@@ -371,7 +371,7 @@ static status orient_all(mesh *m, const edge_lists *lists, diagnostic *why)
         result = cancel_check(why);
         size_t at = 0;
         if (result == STATUS_OK && !orient(m, &n, &at))
-            name_hole(m, at, 2);
+            record_hole(m, at, 2);
     } else {
         result = diagnose(why, STATUS_FAILURE, "use fewer triangles", "out of memory for the edges of a mesh");
     }
@@ -392,7 +392,7 @@ status mesh_close(mesh *m, diagnostic *why)
         result = cancel_check(why);
         m->closed = found.odd == SIZE_MAX && found.edges > 0;
         if (found.odd != SIZE_MAX)
-            name_hole(m, found.odd, found.sharing);
+            record_hole(m, found.odd, found.sharing);
         else if (result == STATUS_OK && found.against)
             result = orient_all(m, &lists, why);
     }
@@ -400,6 +400,6 @@ status mesh_close(mesh *m, diagnostic *why)
     if (result != STATUS_OK || !m->closed || !(mesh_volume(m) < 0.0))
         return result;
     for (size_t t = 0; t < m->triangle_count; t++)
-        turn(m, t);
+        flip(m, t);
     return STATUS_OK;
 }
