@@ -56,12 +56,12 @@ typedef struct instance_hit {
     int facing;
 } instance_hit;
 
-/* Per-batch state for meshes: the mesh hits by ray, and those of rays that are traced again. */
+/* Per-batch state for meshes: the mesh hits by ray, and those of rays that are searched again. */
 typedef struct mesh_scratch {
     instance_hit hit[ROW], again[ROW];
-    double from[ROW]; /* the t up to which a column has been traced */
-    /* The t for which the sets after a column's hit hold: that of the hit, or beyond its error bound if another
-     * boundary is close to it. */
+    double from[ROW]; /* the t up to which a column has been searched */
+    /* The t at which the sets after a column's hit hold: the hit's t, or a t beyond its error bound if another boundary
+     * is close to it. */
     double until[ROW];
     int64_t last[ROW];    /* the mesh face at `from`, or the one that the ray starts on */
     uint64_t near[ROW];   /* meshes with a boundary close to the column's crossing, other than the copy that is hit */
@@ -78,7 +78,7 @@ typedef struct medium_segments {
     int count;
     void (*full)(void *context);
     void *context;
-    double passed[ROW], unit[ROW]; /* the length along which a column has been traced; the length of a step of 1 */
+    double passed[ROW], unit[ROW]; /* the t up to which a column has been searched; the length of a step of t = 1 */
     medium_segment segment[SEGMENTS_MAX];
 } medium_segments;
 
@@ -104,21 +104,21 @@ typedef struct ray_crossings {
 /* Per-column state of the search in a solid tree (geometry/regions/solid_tree.h). */
 typedef struct tree_columns {
     uint64_t start[ROW];              /* by ray: the tree's primitives that contain its start */
-    double from[ROW];                 /* the t up to which a column has been traced; -infinity at first */
+    double from[ROW];                 /* the t up to which a column has been searched; -infinity at first */
     uint64_t within[ROW];             /* the tree's primitives that contain the ray there */
     uint64_t before[ROW], after[ROW]; /* those just before and just after the crossing */
     bool simple[ROW]; /* the crossing itself is the only change of the tree's primitives near it, or none is */
 } tree_columns;
 
-/* A solid view: the few solids of a large scene that any ray of a batch may meet, as a scene geometry of their own with
+/* A solid view: the few solids of a large scene that any ray of a batch may meet, as a separate scene geometry with
  * other numbers, in which all primitives are direct. For coherent batches it is faster to find these solids once and to
  * test all rays against each of them, eight at a time, than to search the solid tree for every ray. It borrows the
  * outer geometry. */
 enum { VIEW_PRIMITIVES_MAX = 24 }; /* with more the search for every ray was measured to be faster */
 
 typedef struct solid_view {
-    const scene_geometry *of; /* the whole scene */
-    scene_geometry inner;     /* its arrays are those below */
+    const scene_geometry *scene; /* the whole scene */
+    scene_geometry inner;        /* with the arrays below */
     primitive primitives[VIEW_PRIMITIVES_MAX];
     region regions[VIEW_PRIMITIVES_MAX + 1];
     int direct_regions[VIEW_PRIMITIVES_MAX];
@@ -135,7 +135,7 @@ typedef struct ray_scratch {
     double slack[ROW], low[ROW], high[ROW];
     uint64_t inside[ROW];
     uint64_t near[ROW]; /* primitives with a boundary close to the column's crossing: see BOUNDARY_CLOSE */
-    hit_batch again;    /* for rays that are traced again */
+    hit_batch again;    /* for rays that are searched again */
     int64_t attention[ROW], undecided[ROW], blocked[ROW];
     int ray[ROW];              /* the ray of the batch that a column belongs to */
     medium_segments *segments; /* the caller's; NULL: medium segments are not recorded */
@@ -166,13 +166,13 @@ typedef struct mesh_points {
 /* The kernels, one set per instruction set. All sets return bit-identical results. */
 typedef struct geometry_kernels {
     /* The nearest interface of every ray. */
-    void (*nearest)(const scene_geometry *a, const ray_batch *rays, ray_scratch *scratch, hit_batch *hits);
+    void (*nearest)(const scene_geometry *g, const ray_batch *rays, ray_scratch *scratch, hit_batch *hits);
     /* The fraction of light, 0..1, that arrives from the other end (t = 1). With solid_shadows any interface blocks. */
-    void (*shadow)(const scene_geometry *a, const ray_batch *rays, int solid_shadows, ray_scratch *scratch,
+    void (*shadow)(const scene_geometry *g, const ray_batch *rays, int solid_shadows, ray_scratch *scratch,
                    double *transmitted);
     /* The points where rays hit a primitive at t; all rays hit it. Here rays->inside is the set just
      * before the point, which determines whether a ray enters or leaves the primitive. */
-    void (*surface)(const scene_geometry *a, int hit_primitive, const ray_batch *rays, const double *t,
+    void (*surface)(const scene_geometry *g, int hit_primitive, const ray_batch *rays, const double *t,
                     surface_batch *points);
     /* The points where rays hit meshes, and more about them unless `more` is NULL. With `smooth`, and if the mesh has
      * normals, the normal is interpolated, and bent so that neither the reflection nor the surface is seen from

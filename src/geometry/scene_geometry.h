@@ -2,11 +2,11 @@
  * primitive, or a convex primitive minus another convex one (a cup: its outside minus its hollow).
  *
  * A primitive that is not convex has several intervals ahead of a ray and so uses several rows of the scratch
- * (ray_scratch), in order. The entries after its own in the list of primitives reserve these rows and hold nothing
- * else; their bits are never set in a ray's set.
+ * (ray_scratch), in order. The entries after it in the list of primitives reserve these rows and hold nothing else;
+ * their bits are never set in a ray's set.
  *
- * Where a scene has many bounded solids, a hierarchy finds those that a ray may meet (geometry/regions/solid_tree.h);
- * the other primitives are direct: every batch of rays is tested against each of them.
+ * If a scene has many bounded solids, a hierarchy finds those that a ray may meet (geometry/regions/solid_tree.h); the
+ * other primitives are direct: every batch of rays is tested against each of them.
  *
  * The medium at a point is that of the containing region with the highest priority index (0: the surrounding medium). A
  * ray carries the set of primitives that contain it: with one bit each if all are direct, otherwise as
@@ -15,9 +15,9 @@
  * of higher priority hides, or that leads into an equal medium, is not an interface (Schmidt and Budge, "Simple Nested
  * Dielectrics in Ray Traced Images", JGT 7(2), 2002).
  *
- * Ownership: scene_geometry_build creates, scene_geometry_destroy frees; kernels borrow. The geometry is independent
- * of wavelength: of a medium it stores a number (equal numbers, equal refractive indices: no interface between
- * them), whether it is opaque, and whether it absorbs. */
+ * Ownership: scene_geometry_build creates, scene_geometry_destroy frees; kernels borrow. The geometry is independent of
+ * wavelength: for a medium it stores a number (equal numbers, equal refractive indices: no interface between them),
+ * whether it is opaque, and whether it absorbs. */
 #pragma once
 
 #include "base/status.h"
@@ -46,7 +46,7 @@ typedef struct primitive {
     const struct primitive_rule *rule; /* rule of its kind (primitives/primitive.h); NULL for a mesh */
     bool turned;                       /* rotation is not the identity */
     mat3 rotation;                     /* local to world */
-    vec3 origin;                       /* of the local frame, in the world */
+    vec3 origin;                       /* origin of the local frame in the world */
     double radius, m2;                 /* cylinder x^2 + m2 z^2 <= radius^2; others (m2 = 1) */
     double bottom, top;                /* local y; a cylinder's top may be infinite */
     union {
@@ -58,7 +58,7 @@ typedef struct primitive {
     const vec3 *normals;                     /* of the sides; owned by the scene geometry */
     const struct capillary_profile *surface; /* of a liquid with a meniscus; owned by the scene geometry */
     int64_t first_face;
-    int rows;           /* number of scratch rows from its own on: the most intervals that a ray can have in it */
+    int rows;           /* number of its scratch rows: the most intervals that a ray can have in it */
     int priority_index; /* of its region */
     double extent;      /* farthest finite coordinate from the world's origin, for error bounds */
 } primitive;
@@ -68,11 +68,11 @@ typedef struct region {
     int64_t medium;      /* equal numbers are equal media */
     bool opaque;
     double shadow_transmittance; /* fraction of the light that a shadow ray keeps at each interface; 0 if opaque */
-    /* The same by material slot, for a mesh whose faces differ; shadow_transmittance is then the least. Borrowed, or
+    /* By material slot, for a mesh whose faces differ; shadow_transmittance is then the least of these. Borrowed, or
      * NULL. */
     const double *face_shadow_transmittance;
     bool attenuates; /* its medium attenuates light along the path */
-    bool reflects;   /* by angle: crossings of its surface by shadow rays are recorded (see ray_crossings) */
+    bool reflects;   /* its reflectance depends on the angle: shadow rays record crossings (ray_crossings) */
     int solid;       /* index of the solid it came from */
 } region;
 
@@ -82,17 +82,17 @@ typedef struct scene_geometry {
     int direct_count;               /* at most PRIMITIVES_MAX */
     int *direct_regions;            /* the priority indices of their regions, ascending ... */
     int direct_region_count;        /* ... and how many */
-    const struct solid_view *outer; /* of a solid view: itself, with its numbers in the whole scene; else NULL */
-    struct solid_tree *tree;        /* the others; NULL if all are direct */
+    const struct solid_view *outer; /* in a solid view: the view, with numbers of the whole scene; else NULL */
+    struct solid_tree *tree;        /* for the other primitives; NULL if all are direct */
     int region_count;               /* priority indices 1 .. region_count */
     int highest_clear;              /* the highest priority index of a region that is not opaque; 0 for none */
     region *regions;                /* [0] is the surrounding medium */
     solid_shape *shapes;            /* by priority index, the shapes of the regions; [0] is unused */
-    double extent;                  /* the largest of the primitives' */
+    double extent;                  /* the largest extent of a primitive */
     uint64_t further;               /* rows for further intervals of the primitive before them */
     uint64_t opaque_regions;        /* bit r - 1: the region of priority index r is opaque; without a tree */
     bool distinct;                  /* no two regions have equal media, and none has the surrounding medium */
-    bool attenuates;                /* a region or the surrounding medium does */
+    bool attenuates;                /* a region or the surrounding medium attenuates */
     struct instance_set *meshes;    /* all meshes; NULL without meshes */
     vec3 *normals;                  /* of all primitives with sides */
     int normal_count;
@@ -129,23 +129,23 @@ typedef enum tree_use {
 /* outside_medium is the surrounding medium. STATUS_BAD_INPUT for more than PRIMITIVES_MAX planes and meshes. */
 status scene_geometry_build(const region_source *sources, int count, int64_t outside_medium, tree_use use,
                             scene_geometry **out, diagnostic *why);
-void scene_geometry_destroy(scene_geometry *a);
+void scene_geometry_destroy(scene_geometry *g);
 
 /* Declares that the surrounding medium absorbs: the media of every shadow ray are then recorded. */
-void scene_geometry_surroundings_absorb(scene_geometry *a);
+void scene_geometry_surroundings_absorb(scene_geometry *g);
 
 /* The set of primitives that contain a point, by the primitives' own definitions (surfaces included). */
-uint64_t scene_geometry_inside(const scene_geometry *a, vec3 point);
+uint64_t scene_geometry_inside(const scene_geometry *g, vec3 point);
 
 /* Whether the primitive is in the set; false for -1. */
-bool scene_geometry_set_has(const scene_geometry *a, uint64_t set, int p);
+bool scene_geometry_set_has(const scene_geometry *g, uint64_t set, int p);
 
-/* Whether memory ran out for a set of this geometry. What was rendered since is then wrong. */
-bool scene_geometry_failed(const scene_geometry *a);
+/* Whether memory ran out for a set of this geometry. Results since then are wrong. */
+bool scene_geometry_failed(const scene_geometry *g);
 
 /* The priority index of the region that owns the interface between two media: an opaque region if either is opaque (the
  * one after, if both are), otherwise the one with the higher priority index. */
-int scene_geometry_surface(const scene_geometry *a, int before, int after);
+int scene_geometry_surface(const scene_geometry *g, int before, int after);
 
 /* The priority index of the medium for a set of primitives. */
-int scene_geometry_priority_index(const scene_geometry *a, uint64_t inside);
+int scene_geometry_priority_index(const scene_geometry *g, uint64_t inside);

@@ -55,7 +55,7 @@ enum { COPIES_MAX = 1 << 22 };
 struct shape_rule;
 const struct shape_rule *shape_of(const solid_shape *shape);
 
-/* Checks constraints between parameters: inner_radius < radius, floor < height. */
+/* Checks the parameters, and constraints between them such as inner_radius < radius. */
 status solid_shape_check(const solid_shape *shape, diagnostic *why);
 
 /* Whether the closed solid contains the point, by its definition. For tests and hints. Always false for a mesh. */

@@ -14,7 +14,7 @@ typedef struct even_asphere {
     double even[3];            /* A4, A6, A8 */
 } even_asphere;
 
-/* The least w^2 within the rim of a side with coefficients: there its slope is finite. */
+/* The least w^2 within the rim of a side with coefficients, which keeps the slope finite. */
 #define ASPHERE_ROOT2_LEAST 0x1p-6
 
 static inline bool asphere_has_terms(const even_asphere *e)
@@ -22,7 +22,7 @@ static inline bool asphere_has_terms(const even_asphere *e)
     return e->even[0] != 0.0 || e->even[1] != 0.0 || e->even[2] != 0.0;
 }
 
-/* w, bounded by 0 or, with coefficients, by a value that no point within the rim has. */
+/* w, at least 0 or, with coefficients, a value below w of all points within the rim. */
 static inline double asphere_root(const even_asphere *e, double q)
 {
     const double under = 1.0 - e->stretch * e->curvature * e->curvature * q;
@@ -42,8 +42,8 @@ static inline double asphere_slope(const even_asphere *e, double q)
            q * (2.0 * e->even[0] + q * (3.0 * e->even[1] + q * (4.0 * e->even[2])));
 }
 
-/* (z(q) - z(p)) / (q - p), without cancellation: of the conic c / (w(p) + w(q)), of q^n the sum of p^i q^(n - 1 -
- * i). */
+/* (z(q) - z(p)) / (q - p), without cancellation: c / (w(p) + w(q)) for the conic, the sum of p^i q^(n - 1 - i) for
+ * q^n. */
 static inline double asphere_quotient(const even_asphere *e, double p, double q)
 {
     const double sum = p + q;
@@ -71,8 +71,8 @@ static inline asphere_range asphere_range_of(double conic_from, double conic_to,
 }
 
 /* Bounds of the second derivatives of the height within from <= q <= to, along the meridian, z'' = c / w^3 + 12 A4 q +
- * 30 A6 q^2 + 56 A8 q^3, and across it, z' / rho = c / w + 4 A4 q + 6 A6 q^2 + 8 A8 q^3: that along any straight line
- * is a mean of these two. */
+ * 30 A6 q^2 + 56 A8 q^3, and across it, z' / rho = c / w + 4 A4 q + 6 A6 q^2 + 8 A8 q^3: the second derivative along
+ * any straight line is a mean of these two. */
 static inline asphere_range asphere_bend(const even_asphere *e, double from, double to)
 {
     const double a = 1.0 / asphere_root(e, from), b = 1.0 / asphere_root(e, to), c = e->curvature;

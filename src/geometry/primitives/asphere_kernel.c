@@ -2,12 +2,12 @@
  * asphere or a conic. Faces: 0 rim, 1 the side at 0, 2 the side at top.
  *
  * Along a line o + t d, f(t) is the height above side 1, or below side 2: positive within the lens. Its second
- * derivative is bounded by asphere_bend. So on an interval of half width h about m, |f''| <= K:
+ * derivative is bounded by asphere_bend. On an interval of half width h about m with |f''| <= K:
  *
  *     |f'(m)| >= K h: f is monotonic;  |f(m)| >= |f'(m)| h + K h^2 / 2: f has no zero (Taylor's theorem).
  *
- * An interval of which neither is known is halved, until it is narrow enough that f could at most touch 0 by less than
- * rounding. So the signs at the ends of the intervals tell all crossings (as Moore's interval Newton method isolates
+ * An interval for which neither holds is halved, until it is narrow enough that f could at most touch 0 by less than
+ * rounding. So the signs at the ends of the intervals show all crossings (as Moore's interval Newton method isolates
  * roots: Moore, Kearfott and Cloud, Introduction to Interval Analysis, ch. 8). A line far from tangency needs one
  * interval. The shape has at most three chords (shapes/lens.c).
  *
@@ -24,7 +24,7 @@ typedef struct asphere_line {
     double inwards; /* f = inwards (y - z) */
     local_ray base;
     double rho2, across2; /* at the base; dx^2 + dz^2 */
-    bool own;             /* the base is on the side */
+    bool starts_on;       /* the base is on the side */
     double from;          /* t of the base */
     double least, touch;  /* a step, and a height, within rounding */
 } asphere_line;
@@ -40,7 +40,7 @@ static double height_inside(const asphere_line *l, double t, double *slope)
     const local_ray *o = &l->base;
     const double x = o->x + t * o->dx, z = o->z + t * o->dz, q = x * x + z * z;
     *slope = l->inwards * (o->dy - asphere_slope(&l->e, q) * (2.0 * (x * o->dx + z * o->dz)));
-    if (!l->own)
+    if (!l->starts_on)
         return l->inwards * ((o->y + t * o->dy) - asphere_sag(&l->e, q));
     const double turn = (x + o->x) * o->dx + (z + o->z) * o->dz; /* the difference of q, divided by t */
     return t * (l->inwards * (o->dy - asphere_quotient(&l->e, l->rho2, q) * turn));
@@ -91,7 +91,7 @@ static double change_between(const asphere_line *l, double a, double b, bool ins
     return t;
 }
 
-/* The changes of sign between a and b, in order, appended to the list. */
+/* Appends the changes of sign between a and b, in order; returns the new number. */
 static int changes_between(const asphere_line *l, double a, double b, bool inside_at_a, bool inside_at_b,
                            double *changes, int count)
 {
@@ -134,32 +134,33 @@ static asphere_part part_of_changes(bool inside, const double *changes, int coun
     return part;
 }
 
-/* Within the rim; heights outside those of the side have no crossings. */
-static asphere_part part_of_asphere(const primitive *p, int k, local_ray r, interval rim, bool own)
+/* The part of a line on the inner side of side k, an asphere. There are no crossings outside the rim, or outside the
+ * side's range of heights. */
+static asphere_part part_of_asphere(const primitive *p, int k, local_ray r, interval rim, bool starts_on)
 {
     const double vertex = k == 0 ? 0.0 : p->top, y = r.y - vertex;
     const double length2 = r.dx * r.dx + r.dy * r.dy + r.dz * r.dz, inverse = 1.0 / length2;
-    const double from = own ? 0.0 : -(r.x * r.dx + y * r.dy + r.z * r.dz) * inverse, dx = cylinder_dx(r.dx, r.dz);
+    const double from = starts_on ? 0.0 : -(r.x * r.dx + y * r.dy + r.z * r.dz) * inverse, dx = cylinder_dx(r.dx, r.dz);
     const asphere_line l = {.e = lens_asphere(p, k),
                             .inwards = k == 0 ? 1.0 : -1.0,
                             .base = {r.x + from * r.dx, y + from * r.dy, r.z + from * r.dz, dx, r.dy, r.dz},
                             .rho2 = r.x * r.x + r.z * r.z,
                             .across2 = cylinder_axial(dx, r.dz, 1.0),
-                            .own = own,
+                            .starts_on = starts_on,
                             .from = from,
                             .least = 0x1p-55 * p->radius * sqrt(inverse),
                             .touch = 0x1p-54 * p->radius};
     const double low = p->lens.low[k], high = p->lens.high[k], spare = 0x1p-20 * (high - low) + 0x1p-40 * p->radius;
     const interval near = interval_of_slab(l.base.y, r.dy, low - spare, high + spare);
     double a = greater(rim.in - from, near.in), b = lesser(rim.out - from, near.out);
-    if (own)
+    if (starts_on)
         a = lesser(a, 0.0), b = greater(b, 0.0);
     if (!(a < b)) {
         const double t = near.in > rim.out - from ? rim.out - from : rim.in - from;
         return part_of_changes(l.inwards * (l.base.y + t * r.dy - 0.5 * (low + high)) > 0.0, NULL, 0);
     }
     double changes[ASPHERE_CHANGES];
-    if (!own) {
+    if (!starts_on) {
         const bool first = is_inside(&l, a);
         return part_of_changes(first, changes, changes_between(&l, a, b, first, is_inside(&l, b), changes, 0));
     }
@@ -174,11 +175,11 @@ static asphere_part part_of_asphere(const primitive *p, int k, local_ray r, inte
     return part_of_changes(first, changes, count);
 }
 
-static asphere_part part_of_conic(const primitive *p, int k, local_ray r, interval rim, int64_t own)
+static asphere_part part_of_conic(const primitive *p, int k, local_ray r, interval rim, int64_t starts_on)
 {
     const lens_side e = lens_side_of(p, k);
     const double inverse_length2 = 1.0 / (r.dx * r.dx + r.dy * r.dy + r.dz * r.dz);
-    const interval set = lens_side_cross(&e, r, inverse_length2, rim, own);
+    const interval set = lens_side_cross(&e, r, inverse_length2, rim, starts_on);
     const double ends[2] = {set.in, set.out};
     return part_of_changes(e.concave != 0, ends, set.in < set.out ? 2 : 0);
 }

@@ -14,7 +14,7 @@
 
 enum { CAPILLARY_DEGREE = 18, CAPILLARY_PIECES = 256 };
 
-/* The most capillary lengths in a tube's radius; the bound on the height's error, in capillary lengths. */
+/* The largest radius of a tube, and the bound on the height's error, in capillary lengths. */
 #define CAPILLARY_WIDEST 500.0
 #define CAPILLARY_ERROR 1e-10
 
@@ -27,14 +27,14 @@ typedef struct capillary_piece {
 typedef struct capillary_profile {
     double radius;     /* of the tube */
     double level;      /* of zero pressure difference, in the frame of the liquid */
-    double axis, wall; /* heights there, in that frame */
-    double low, high;  /* the smaller and the larger of them */
-    bool rises;        /* towards the wall: the contact angle is below 90 degrees */
+    double axis, wall; /* heights at the axis and at the wall, in that frame */
+    double low, high;  /* the smaller and the larger of axis and wall */
+    bool rises;        /* the surface rises towards the wall: the contact angle is below 90 degrees */
     int count;
     capillary_piece piece[CAPILLARY_PIECES];
 } capillary_profile;
 
-/* The piece of a q >= 0; past the wall the last one. */
+/* The piece that contains q >= 0; beyond the wall the last one. */
 static inline int capillary_piece_at(const capillary_profile *p, double q)
 {
     int low = 0, high = p->count; /* piece[low].from <= q < piece[high].from */
@@ -93,8 +93,8 @@ static inline double capillary_quotient(const capillary_profile *p, double q1, d
     return (first + (f->c[0] - p->piece[i + 1].c[0]) + last) / (b - a);
 }
 
-/* Is the point in the liquid: within `radius` of the axis, above y = 0, and below the surface, or, outside the tube,
- * below its height at the wall? rho2: its distance from the axis, squared. */
+/* Whether a point is in the liquid: within `radius` of the axis, above y = 0, and below the surface or, outside the
+ * tube, below its height at the wall. rho2: squared distance of the point from the axis. */
 static inline bool capillary_contains(const capillary_profile *p, double radius, double rho2, double y)
 {
     const double top = rho2 < p->radius * p->radius ? capillary_height(p, rho2) : p->wall;

@@ -1,12 +1,12 @@
-/* A cylinder of liquid with a meniscus: x^2 + z^2 <= radius^2, y >= 0, below the surface y = h(x^2 + z^2) within the
- * tube's radius (capillary.h), and below the height of its contact with the wall outside that, where it is within the
- * wall. Faces: 0 side, 1 bottom, 2 the surface, 3 the level ring around it.
+/* A cylinder of liquid with a meniscus: x^2 + z^2 <= radius^2 and y >= 0. Within the tube's radius the liquid is below
+ * the surface y = h(x^2 + z^2) (capillary.h). Outside it, inside the wall, it is below the height at which the surface
+ * meets the wall. Faces: 0 side, 1 bottom, 2 the surface, 3 the level ring around it.
  *
  * h(r) is convex for a contact angle below 90 degrees and concave above (the curvature of a capillary surface keeps its
  * sign, Finn, 2.3). So, along a line within the tube, f = y - h, or h - y, is concave: it is positive in one interval.
- * Newton's steps from where f < 0 approach the ends of that from one side, without passing them, and turn back only
- * where there are none. A rising surface is this interval taken away from the whole cylinder up to the wall's contact;
- * a falling one adds it. Both leave at most two chords.
+ * Newton's steps from a point with f < 0 approach an end of this interval without passing it, and turn back only if
+ * there is none. For a rising surface the liquid is the cylinder up to the wall's contact minus this interval, for a
+ * falling one plus this interval. Either has at most two chords.
  *
  * For a ray that starts on the surface, f(0) = 0 is taken as exact: f = t times the difference quotient, whose terms do
  * not cancel. */
@@ -20,11 +20,11 @@ enum { CAPILLARY_CHORDS = 2 };
 typedef struct surface_line {
     const capillary_profile *h;
     local_ray base;
-    double side;  /* f = side (y - h) */
-    double rho2;  /* at the base */
-    bool own;     /* the base is on the surface */
-    double from;  /* t of the base */
-    double least; /* a step within rounding */
+    double side;    /* f = side (y - h) */
+    double rho2;    /* at the base */
+    bool starts_on; /* the base is on the surface */
+    double from;    /* t of the base */
+    double least;   /* a step within rounding */
 } surface_line;
 
 static double above_surface(const surface_line *l, double t, double *slope)
@@ -34,14 +34,14 @@ static double above_surface(const surface_line *l, double t, double *slope)
     double by_rho2;
     const double rise = capillary_rise(l->h, rho2, &by_rho2);
     *slope = l->side * (o->dy - by_rho2 * (2.0 * (x * o->dx + z * o->dz)));
-    if (!l->own)
+    if (!l->starts_on)
         return l->side * (o->y - l->h->level + t * o->dy - rise);
     const double turn = (x + o->x) * o->dx + (z + o->z) * o->dz; /* the difference of rho^2, divided by t */
     return t * (l->side * (o->dy - capillary_quotient(l->h, l->rho2, rho2) * turn));
 }
 
-/* The end of the interval where f > 0 that is seen from `start`, looking to `end`; infinite beyond `end` if there is
- * none, and `start` itself if f >= 0 there. */
+/* The first zero of f from `start` towards `end`, an end of the interval in which f > 0. `start` if f >= 0 there;
+ * infinite, in the direction of `end`, if there is none. */
 static double surface_root(const surface_line *l, double start, double end)
 {
     const double towards = start < end ? 1.0 : -1.0;
@@ -61,12 +61,12 @@ static double surface_root(const surface_line *l, double start, double end)
     return t;
 }
 
-/* Where f > 0 within the tube. near: where the line is at the heights of the surface. */
+/* The interval within the tube in which f > 0. near: the interval in which the line is at heights of the surface. */
 static interval positive_within(const surface_line *l, interval tube, interval near)
 {
     const interval none = {HUGE_VAL, -HUGE_VAL};
     double low = greater(tube.in, near.in), high = lesser(tube.out, near.out);
-    if (l->own)
+    if (l->starts_on)
         low = lesser(low, 0.0), high = greater(high, 0.0);
     double slope;
     if (!(low < high)) {
@@ -74,7 +74,7 @@ static interval positive_within(const surface_line *l, interval tube, interval n
         return l->side * (l->base.y + t * l->base.dy - 0.5 * (l->h->low + l->h->high)) > 0.0 ? tube : none;
     }
     interval found;
-    if (l->own) {
+    if (l->starts_on) {
         above_surface(l, 0.0, &slope);
         const bool opens = slope > 0.0;
         const double end = opens ? high : low, root = surface_root(l, end, 0.0);
@@ -96,14 +96,14 @@ static interval positive_within(const surface_line *l, interval tube, interval n
 static interval surface_interval(const primitive *p, local_ray r, interval tube, int64_t at)
 {
     const capillary_profile *h = p->surface;
-    const bool own = mask_same(at, 2) != 0;
+    const bool starts_on = mask_same(at, 2) != 0;
     const double middle = 0.5 * (h->low + h->high), length2 = r.dx * r.dx + r.dy * r.dy + r.dz * r.dz;
-    const double from = own ? 0.0 : -(r.x * r.dx + (r.y - middle) * r.dy + r.z * r.dz) / length2;
+    const double from = starts_on ? 0.0 : -(r.x * r.dx + (r.y - middle) * r.dy + r.z * r.dz) / length2;
     const surface_line l = {.h = h,
                             .base = {r.x + from * r.dx, r.y + from * r.dy, r.z + from * r.dz, r.dx, r.dy, r.dz},
                             .side = h->rises ? 1.0 : -1.0,
                             .rho2 = r.x * r.x + r.z * r.z,
-                            .own = own,
+                            .starts_on = starts_on,
                             .from = from,
                             .least = 0x1p-55 * p->radius / sqrt(length2)};
     const double spare = 0x1p-20 * (h->high - h->low) + 0x1p-40 * p->radius;
@@ -127,24 +127,24 @@ static int cross_liquid(const primitive *p, local_ray r, int64_t at, interval ch
                               : side;
     const slab_roots slab = slab_cross(r.y, inverse_y, 0.0, h->wall, on_bottom, on_ring),
                      raised = slab_cross(r.y, inverse_y, 0.0, HUGE_VAL, on_bottom, 0);
-    const interval whole = interval_both(side, (interval){slab.in, slab.out});
+    const interval cylinder = interval_both(side, (interval){slab.in, slab.out});
     const interval surface = tube.in < tube.out ? surface_interval(p, r, tube, at) : (interval){HUGE_VAL, -HUGE_VAL};
-    chords[0] = whole;
+    chords[0] = cylinder;
     if (h->rises)
-        return intervals_without(chords, whole.in < whole.out, surface);
+        return intervals_without(chords, cylinder.in < cylinder.out, surface);
     const interval middle = interval_both(interval_both(tube, surface), (interval){raised.in, raised.out});
     if (!(middle.in < middle.out))
-        return whole.in < whole.out;
-    if (!(whole.in < whole.out)) {
+        return cylinder.in < cylinder.out;
+    if (!(cylinder.in < cylinder.out)) {
         chords[0] = middle;
         return 1;
     }
-    if (middle.in <= whole.out && whole.in <= middle.out) {
-        chords[0] = (interval){fmin(middle.in, whole.in), fmax(middle.out, whole.out)};
+    if (middle.in <= cylinder.out && cylinder.in <= middle.out) {
+        chords[0] = (interval){fmin(middle.in, cylinder.in), fmax(middle.out, cylinder.out)};
         return 1;
     }
-    chords[0] = middle.in < whole.in ? middle : whole;
-    chords[1] = middle.in < whole.in ? whole : middle;
+    chords[0] = middle.in < cylinder.in ? middle : cylinder;
+    chords[1] = middle.in < cylinder.in ? cylinder : middle;
     return 2;
 }
 
@@ -232,10 +232,10 @@ static int flats(const primitive *p, flat_face flat[FLATS_MAX])
 /* As on a cylinder, up to the contact with the wall; the surface as seen along the axis. */
 static surface_mapping mapping(const primitive *p, int64_t face, vec3 q, double size)
 {
-    const double r = p->radius, whole = 2.0 * r;
+    const double r = p->radius, diameter = 2.0 * r;
     if (face == 0)
         return mapping_around(q.x, q.z, r, q.y, p->surface->wall, size);
-    return mapping_flat(q.x + r, face == 1 ? r - q.z : q.z + r, whole, whole, size);
+    return mapping_flat(q.x + r, face == 1 ? r - q.z : q.z + r, diameter, diameter, size);
 }
 
 const primitive_functions KERNEL(capillary_functions) = {CAPILLARY_CHORDS, rows,   one,   points,

@@ -14,17 +14,17 @@ ALWAYS_INLINE double cone_slope(const primitive *p)
 /* The interval of a ray in the infinite side's half. The discriminant is Lagrange's identity for x^2 + z^2 - w^2. t is
  * measured from the point nearest to the solid's centre; for a ray that starts on the side, from its start, where c =
  * 0. */
-ALWAYS_INLINE quadric_roots cone_side(const primitive *p, local_ray r, int64_t own)
+ALWAYS_INLINE quadric_roots cone_side(const primitive *p, local_ray r, int64_t starts_on)
 {
     const double slope = cone_slope(p), dx = cylinder_dx(r.dx, r.dz), dw = slope * r.dy;
     double up = r.y - 0.5 * p->top;
     double nearest = -(r.x * r.dx + up * r.dy + r.z * r.dz) / (r.dx * r.dx + r.dy * r.dy + r.dz * r.dz);
-    double from = blend(own, 0.0, nearest);
+    double from = blend(starts_on, 0.0, nearest);
     double x = r.x + from * dx, z = r.z + from * r.dz, w = p->radius + slope * (r.y + from * r.dy);
     double a = dx * dx + r.dz * r.dz - dw * dw, b = x * dx + z * r.dz - w * dw;
-    double c = blend(own, 0.0, x * x + z * z - w * w);
+    double c = blend(starts_on, 0.0, x * x + z * z - w * w);
     double mx = x * dw - w * dx, mz = z * dw - w * r.dz, mw = x * r.dz - z * dx;
-    double discriminant = blend(own, b * b, mx * mx + mz * mz - mw * mw);
+    double discriminant = blend(starts_on, b * b, mx * mx + mz * mz - mw * mw);
     double root = sqrt(greater(discriminant, 0.0));
     double q = -(b + blend(mask_less(b, 0.0), -root, root));
     double far = q * inverse_of_component(a), close = c * inverse_of_component(q);
@@ -34,7 +34,7 @@ ALWAYS_INLINE quadric_roots cone_side(const primitive *p, local_ray r, int64_t o
     quadric_roots s;
     s.in = from + blend(steep, blend(opens, second, -HUGE_VAL), first);
     s.out = from + blend(steep, blend(opens, HUGE_VAL, first), second);
-    s.hit = steep | (upper & (own | mask_less(0.0, discriminant)));
+    s.hit = steep | (upper & (starts_on | mask_less(0.0, discriminant)));
     return s;
 }
 

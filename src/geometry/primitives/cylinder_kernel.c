@@ -13,7 +13,7 @@ ALWAYS_INLINE ray_span span(const primitive *p, bool general, local_ray r, int64
 {
     int64_t on_side = mask_same(at, 0), on_bottom = mask_same(at, 1), on_top = mask_same(at, 2);
     double dx = general ? cylinder_dx(r.dx, r.dz) : s->axial_dx[i];
-    double a = general ? cylinder_axial(dx, r.dz, p->m2) : s->axial[i]; /* upright round cylinders share it */
+    double a = general ? cylinder_axial(dx, r.dz, p->m2) : s->axial[i]; /* the same for all upright round cylinders */
     double inverse_a = general ? 1.0 / a : s->inverse_axial[i];
     double inverse_y = general ? inverse_of_component(r.dy) : s->inverse_y[i];
     quadric_roots side = cylinder_side(p, r.x, r.z, dx, r.dz, a, inverse_a, on_side);
@@ -70,11 +70,12 @@ static int flats(const primitive *p, flat_face flat[FLATS_MAX])
 /* Texture coordinates. A cup's hollow has no top and is seen from within. */
 static surface_mapping mapping(const primitive *p, int64_t face, vec3 q, double size)
 {
-    const double r = p->radius, whole = 2.0 * r;
+    const double r = p->radius, diameter = 2.0 * r;
     const bool hollow = !(p->top < HUGE_VAL);
     if (face == 0)
-        return mapping_around(hollow ? -q.x : q.x, q.z, r, q.y - p->bottom, hollow ? whole : p->top - p->bottom, size);
-    return mapping_flat(q.x + r, face == 1 && !hollow ? r - q.z : q.z + r, whole, whole, size);
+        return mapping_around(hollow ? -q.x : q.x, q.z, r, q.y - p->bottom, hollow ? diameter : p->top - p->bottom,
+                              size);
+    return mapping_flat(q.x + r, face == 1 && !hollow ? r - q.z : q.z + r, diameter, diameter, size);
 }
 
 const primitive_functions KERNEL(cylinder_functions) = {1, rows, one, points, contains, chords, flats, mapping};

@@ -4,11 +4,11 @@
 ALWAYS_INLINE ray_span span(const primitive *p, bool general, local_ray r, int64_t at, const ray_scratch *s, int i)
 {
     (void)p;
-    int64_t own = mask_same(at, 0);
+    int64_t starts_on = mask_same(at, 0);
     double inverse = general ? inverse_of_component(r.dy) : s->inverse_y[i];
-    double t = blend(own, 0.0, -r.y * inverse);
+    double t = blend(starts_on, 0.0, -r.y * inverse);
     int64_t down = mask_less(inverse, 0.0);
-    return (ray_span){blend(down, t, -HUGE_VAL), blend(down, HUGE_VAL, t), -1, own};
+    return (ray_span){blend(down, t, -HUGE_VAL), blend(down, HUGE_VAL, t), -1, starts_on};
 }
 
 DEFINE_SPANS(p->turned, span)

@@ -1,7 +1,7 @@
 /* Functions that all kinds of primitives share: the loops over rays, into which each kind inserts its formulas.
  *
- * Third pass, for the rays that hit one primitive: the point, projected exactly onto the surface, the normal there, the
- * face, and a bound on the point's error.
+ * The third pass computes, for the rays that hit one primitive, the point, projected exactly onto the surface, the
+ * normal there, the face, and a bound on the point's error.
  *
  * The bound: local coordinates result from at most 8 roundings of numbers no larger than the ray's start, the
  * displacement t d and the frame's origin. The error of the root itself moves the point along the ray, and the
@@ -38,32 +38,32 @@ static inline int one_chord(interval chord, interval chords[CHORDS_MAX])
 
 /* Stores the one interval of a convex primitive, consistent with the ray's set and the face that it starts on: see
  * intervals_kernel.c. */
-ALWAYS_INLINE void store_interval(double near, double far, int64_t hit, int64_t own, int64_t inside, double *in,
+ALWAYS_INLINE void store_interval(double near, double far, int64_t hit, int64_t starts_on, int64_t inside, double *in,
                                   double *out)
 {
-    int64_t ahead = hit & ~own & mask_less(0.0, near + far);
+    int64_t ahead = hit & ~starts_on & mask_less(0.0, near + far);
     double outside_in = blend(ahead, greater(near, 0.0), HUGE_VAL), outside_out = blend(ahead, far, -HUGE_VAL);
     *in = blend(inside, -HUGE_VAL, outside_in);
     *out = blend(inside, blend(hit, greater(far, 0.0), 0.0), outside_out);
 }
 
-/* By the sign: gcc 14 makes a _Bool of any other test of a bit, and then does not vectorise the loop. */
+/* Tests the sign: gcc 14 makes a _Bool of any other test of a bit, and then does not vectorise the loop. */
 ALWAYS_INLINE int64_t inside_mask(uint64_t set, int shift)
 {
     return mask_of((int64_t)(set << (63 - shift)) < 0);
 }
 
-/* The one interval of a ray's line in a convex primitive; own: the ray starts on the primitive. */
+/* The one interval of a ray's line in a convex primitive; starts_on: the ray starts on the primitive. */
 typedef struct ray_span {
     double near, far;
-    int64_t hit, own;
+    int64_t hit, starts_on;
 } ray_span;
 
-/* The intersection of a side's interval and that between the caps. */
-ALWAYS_INLINE ray_span span_within(quadric_roots side, slab_roots caps, int64_t own)
+/* The intersection of the intervals of the side and of the caps. */
+ALWAYS_INLINE ray_span span_within(quadric_roots side, slab_roots caps, int64_t starts_on)
 {
     double near = greater(side.in, caps.in), far = lesser(side.out, caps.out);
-    return (ray_span){near, far, side.hit & mask_less(near, far), own};
+    return (ray_span){near, far, side.hit & mask_less(near, far), starts_on};
 }
 
 /* Computes the interval of ray i, which is r in the local frame; at: the face that it starts on, from 0. */
@@ -80,7 +80,7 @@ ALWAYS_INLINE void spans_in(const primitive *p, span_function *span, bool genera
         local_ray r =
             ray_to_local(p, general, rays->ox[i], rays->oy[i], rays->oz[i], rays->dx[i], rays->dy[i], rays->dz[i]);
         ray_span m = span(p, general, r, rays->start[i] - first, s, i);
-        store_interval(m.near, m.far, m.hit, m.own, inside_mask(rays->inside[i], bit), &in[i], &out[i]);
+        store_interval(m.near, m.far, m.hit, m.starts_on, inside_mask(rays->inside[i], bit), &in[i], &out[i]);
     }
 }
 
@@ -90,28 +90,28 @@ ALWAYS_INLINE void span_of_one(const primitive *p, span_function *span, bool gen
     local_ray r =
         ray_to_local(p, general, rays->ox[i], rays->oy[i], rays->oz[i], rays->dx[i], rays->dy[i], rays->dz[i]);
     ray_span m = span(p, general, r, rays->start[i] - p->first_face, s, i);
-    store_interval(m.near, m.far, m.hit, m.own, mask_of(inside), &found->in, &found->out);
+    store_interval(m.near, m.far, m.hit, m.starts_on, mask_of(inside), &found->in, &found->out);
 }
 
 /* Removes the hole from the intervals, which are in order; returns their new number. */
 static inline int intervals_without(interval *list, int count, interval hole)
 {
-    int kept = 0;
+    int remaining = 0;
     interval rest[CHORDS_MAX + 1];
     for (int k = 0; k < count; k++) {
         const interval before = {list[k].in, fmin(list[k].out, hole.in)},
                        after = {fmax(list[k].in, hole.out), list[k].out};
         const bool is_hit = hole.in < hole.out && hole.in < list[k].out && list[k].in < hole.out;
         if (!is_hit)
-            rest[kept++] = list[k];
+            rest[remaining++] = list[k];
         if (is_hit && before.in < before.out)
-            rest[kept++] = before;
+            rest[remaining++] = before;
         if (is_hit && after.in < after.out)
-            rest[kept++] = after;
+            rest[remaining++] = after;
     }
-    for (int k = 0; k < kept; k++)
+    for (int k = 0; k < remaining; k++)
         list[k] = rest[k];
-    return kept;
+    return remaining;
 }
 
 /* The crossings of a line with a primitive that is not convex: an even number, in order. */
@@ -121,13 +121,14 @@ typedef struct crossings_of_one {
     double t[CROSSINGS_OF_ONE_MAX];
 } crossings_of_one;
 
-/* The crossings ahead of a ray, selected from those of its line without that of its own face: an odd number if the ray
- * is inside, otherwise an even one. If rounding makes the parity wrong, the set decides. If the ray starts on another
- * face, its start is on this surface up to rounding: the crossing nearest to its start is on the wrong side of it. If
- * the ray starts on this surface, its direction contradicts the set: it leaves at once, or does not enter and passes
- * through nothing; unless it grazes the concave side of the surface, and a crossing within `grazing` is that of its own
- * face again, on the wrong side. */
-static inline crossings_of_one crossings_ahead(const crossings_of_one *line, bool own, bool inside, double grazing)
+/* The crossings ahead of a ray, selected from the crossings of its line other than its start: an odd number if the ray
+ * is inside, otherwise an even one. If rounding makes the parity wrong, the ray's set decides. If the ray starts on
+ * another surface, its start is on this one up to rounding: the crossing nearest to the start is on the wrong side of
+ * it. If the ray starts on this surface (starts_on), its direction contradicts the set: it leaves at once, or does not
+ * enter and crosses nothing. But if it grazes the concave side of the surface, a crossing within `grazing` is the start
+ * again, on the wrong side. */
+static inline crossings_of_one crossings_ahead(const crossings_of_one *line, bool starts_on, bool inside,
+                                               double grazing)
 {
     int first = 0;
     while (first < line->count && line->t[first] <= 0.0)
@@ -136,7 +137,7 @@ static inline crossings_of_one crossings_ahead(const crossings_of_one *line, boo
     if ((line->count - first) % 2 != (int)inside) {
         const double behind = first > 0 ? -line->t[first - 1] : HUGE_VAL;
         const double next = first < line->count ? line->t[first] : HUGE_VAL;
-        const bool now = !own ? behind <= next : inside ? next > grazing : behind <= grazing;
+        const bool now = !starts_on ? behind <= next : inside ? next > grazing : behind <= grazing;
         if (now)
             ahead.t[ahead.count++] = 0.0; /* it crosses at its start */
         else
@@ -147,12 +148,12 @@ static inline crossings_of_one crossings_ahead(const crossings_of_one *line, boo
     return ahead;
 }
 
-/* The same from the chords of the line, one of which may end at the ray's start if that is on the surface. */
-static inline crossings_of_one crossings_of_chords(const interval *chords, int count, bool own, bool inside,
+/* crossings_ahead for the chords of the line, one of which may end at the ray's start if that is on the surface. */
+static inline crossings_of_one crossings_of_chords(const interval *chords, int count, bool starts_on, bool inside,
                                                    double grazing)
 {
     crossings_of_one line = {0, {0.0}};
-    bool is_start = own; /* the crossing at the ray's start is left out */
+    bool is_start = starts_on; /* the crossing at the ray's start is left out */
     for (int k = 0; k < 2 * count; k++) {
         const double t = k % 2 ? chords[k / 2].out : chords[k / 2].in;
         if (is_start && t == 0.0)
@@ -160,10 +161,10 @@ static inline crossings_of_one crossings_of_chords(const interval *chords, int c
         else
             line.t[line.count++] = t;
     }
-    return crossings_ahead(&line, own, inside, grazing);
+    return crossings_ahead(&line, starts_on, inside, grazing);
 }
 
-/* The intervals ahead. */
+/* The intervals between the crossings ahead. */
 static inline void intervals_of_crossings(const crossings_of_one *ahead, bool inside, interval found[CHORDS_MAX])
 {
     int next = 0;

@@ -25,7 +25,7 @@ ALWAYS_INLINE lens_parts lens_cross(const primitive *p, const lens_side side[2],
     return l;
 }
 
-ALWAYS_INLINE int64_t is_own(int64_t at)
+ALWAYS_INLINE int64_t starts_on_lens(int64_t at)
 {
     return mask_same(at, 0) | mask_same(at, 1) | mask_same(at, 2);
 }
@@ -39,7 +39,7 @@ ALWAYS_INLINE ray_span span(const primitive *p, bool general, local_ray r, int64
     lens_parts l = lens_cross(p, side, r, at);
     double near = greater(l.rim.in, greater(l.side[0].in, l.side[1].in)),
            far = lesser(l.rim.out, lesser(l.side[0].out, l.side[1].out));
-    return (ray_span){near, far, mask_less(near, far), is_own(at)};
+    return (ray_span){near, far, mask_less(near, far), starts_on_lens(at)};
 }
 
 DEFINE_SPANS(p->turned, span)
@@ -66,11 +66,12 @@ static int lens_chords(const lens_side side[2], const lens_parts *l, interval ch
 static void lens_ahead(const primitive *p, const lens_side side[2], const lens_parts *l, const ray_batch *rays, int i,
                        bool inside, interval found[CHORDS_MAX])
 {
-    const bool own = is_own(rays->start[i] - p->first_face);
+    const bool starts_on = starts_on_lens(rays->start[i] - p->first_face);
     interval chords[CHORDS_MAX];
     const int count = lens_chords(side, l, chords);
     const double length2 = rays->dx[i] * rays->dx[i] + rays->dy[i] * rays->dy[i] + rays->dz[i] * rays->dz[i];
-    const crossings_of_one ahead = crossings_of_chords(chords, count, own, inside, 0x1p-20 * p->radius / sqrt(length2));
+    const crossings_of_one ahead =
+        crossings_of_chords(chords, count, starts_on, inside, 0x1p-20 * p->radius / sqrt(length2));
     intervals_of_crossings(&ahead, inside, found);
 }
 
@@ -110,9 +111,9 @@ static void concave_rows(const primitive *__restrict p, int bit, const ray_batch
 
 /* --- points, for both --- */
 
-/* The distance of t from a part's root in the ray's direction through it: where the ray enters the lens, it enters the
- * sets of the rim and of convex sides, and leaves those of concave ones. Without such a root, by rounding, that of the
- * point from the surface. */
+/* The distance of t from the root at which the ray enters or leaves a part. A ray that enters the lens enters the sets
+ * of the rim and of convex sides, and leaves those of concave ones. If rounding leaves no such root: the distance of
+ * the point from the surface. */
 ALWAYS_INLINE double root_apart(interval part, int64_t leaving, double t, double surface)
 {
     double root = blend(leaving, part.out, part.in);
@@ -124,7 +125,7 @@ ALWAYS_INLINE vec3 blend_vec3(int64_t mask, vec3 a, vec3 b)
     return vec3_make(blend(mask, a.x, b.x), blend(mask, a.y, b.y), blend(mask, a.z, b.z));
 }
 
-/* The face is that whose root, as in the first pass, is nearest to t. */
+/* The face is the one whose root in the first pass is nearest to t. */
 ALWAYS_INLINE local_point point(const primitive *p, bool general, local_ray r, vec3 q, int64_t at, int64_t leaving)
 {
     (void)general;

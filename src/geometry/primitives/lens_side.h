@@ -1,10 +1,10 @@
-/* The sides of a lens that is a conic of revolution, and what lenses with and without further coefficients share; for
+/* A side of a lens that is a conic of revolution, and common code of lenses with and without aspheric coefficients; for
  * kernels. Faces: 0 rim, 1 the side at y = 0, 2 the side at y = top. Pure; cannot fail.
  *
  * The conic's equation is c (x^2 + z^2 + (1 + k) u^2) - 2 u = 0, with u measured from its vertex towards its centre of
  * curvature, exact for flat sides too. It holds on both halves of an ellipsoid, and on both sheets of a hyperboloid;
- * only that at the vertex counts. Beyond an ellipsoid's centre the set continues, so that a lens may be longer than its
- * spheres; within the rim, that union is convex. */
+ * only the one at the vertex counts. Beyond an ellipsoid's centre the set continues, so that a lens may be longer than
+ * its spheres; within the rim, that union is convex. */
 #pragma once
 
 #include "geometry/primitives/asphere.h"
@@ -34,12 +34,12 @@ ALWAYS_INLINE lens_side lens_side_of(const primitive *p, int k)
 /* The interval of a line in the convex sheet of a conic, c > 0, relative to the point (x, z, u): as for a cone
  * (cone_kernel.c), with the roots of a t^2 + 2 b t + c = 0 as q / a and c / q. */
 ALWAYS_INLINE quadric_roots conic_cross(const lens_side *e, double x, double z, double u, double dx, double dz,
-                                        double du, int64_t own)
+                                        double du, int64_t starts_on)
 {
     double a = e->curvature * (dx * dx + dz * dz + e->stretch * (du * du));
     double b = e->curvature * (x * dx + z * dz + e->stretch * (u * du)) - du;
-    double c = blend(own, 0.0, e->curvature * (x * x + z * z + e->stretch * (u * u)) - 2.0 * u);
-    double discriminant = blend(own, b * b, b * b - a * c), root = sqrt(greater(discriminant, 0.0));
+    double c = blend(starts_on, 0.0, e->curvature * (x * x + z * z + e->stretch * (u * u)) - 2.0 * u);
+    double discriminant = blend(starts_on, b * b, b * b - a * c), root = sqrt(greater(discriminant, 0.0));
     double q = -(b + blend(mask_less(b, 0.0), -root, root)), inverse_a = inverse_of_component(a);
     double far = q * inverse_a, close = c * inverse_of_component(q);
     double first = lesser(far, close), second = greater(far, close);
@@ -50,7 +50,7 @@ ALWAYS_INLINE quadric_roots conic_cross(const lens_side *e, double x, double z, 
     quadric_roots s;
     s.in = blend(steep, blend(opens, second, -HUGE_VAL), first);
     s.out = blend(steep, blend(opens, HUGE_VAL, first), second);
-    s.hit = steep | (ours & (own | mask_less(0.0, discriminant)));
+    s.hit = steep | (ours & (starts_on | mask_less(0.0, discriminant)));
     return s;
 }
 
@@ -69,12 +69,12 @@ ALWAYS_INLINE interval half_space(double u, double inverse_u)
  * decides whether the interval has an end, and is an end itself only by rounding, for a line that touches the ellipsoid
  * there. */
 ALWAYS_INLINE interval lens_side_cross(const lens_side *e, local_ray r, double inverse_length2, interval rim,
-                                       int64_t own)
+                                       int64_t starts_on)
 {
     double u = e->up * (r.y - e->vertex), du = e->up * r.dy, inverse_u = inverse_of_component(du);
-    double from = blend(own, 0.0, -(r.x * r.dx + u * du + r.z * r.dz) * inverse_length2);
+    double from = blend(starts_on, 0.0, -(r.x * r.dx + u * du + r.z * r.dz) * inverse_length2);
     double x = r.x + from * r.dx, z = r.z + from * r.dz, v = u + from * du;
-    quadric_roots sheet = conic_cross(e, x, z, v, r.dx, r.dz, du, own);
+    quadric_roots sheet = conic_cross(e, x, z, v, r.dx, r.dz, du, starts_on);
     double centre = from + (e->centre - v) * inverse_u;
     int64_t opens = mask_less(0.0, inverse_u);
     int64_t late = mask_less(centre, rim.in), early = mask_less(rim.out, centre), all = blend_int(opens, late, early);
@@ -84,7 +84,7 @@ ALWAYS_INLINE interval lens_side_cross(const lens_side *e, local_ray r, double i
            out = blend(hit, blend(central, greater(last, centre), last), -HUGE_VAL);
     interval s = {blend(all | (hit & ~opens & mask_less_equal(in, centre)), -HUGE_VAL, in),
                   blend(all | (hit & opens & mask_less_equal(centre, out)), HUGE_VAL, out)};
-    interval plane = half_space(blend(own, 0.0, u), inverse_u);
+    interval plane = half_space(blend(starts_on, 0.0, u), inverse_u);
     return (interval){blend(e->flat, plane.in, s.in), blend(e->flat, plane.out, s.out)};
 }
 

@@ -1,7 +1,7 @@
 /* The interface of a kind of primitive: one constant table of functions, in the file of its name in this folder,
  * compiled for each instruction set. A primitive points to its kind's rule, so that there is no list of kinds: a new
- * kind is one file, and the shapes that use it declare it with PRIMITIVE_RULE. Before it the formulas that kinds share:
- * roots of planes and quadrics, and texture coordinates.
+ * kind is one file, and the shapes that use it declare it with PRIMITIVE_RULE. The formulas that kinds share come
+ * first: roots of planes and quadrics, and texture coordinates.
  *
  * Points and rays are in the primitive's local frame; faces are numbered from 0. Functions are pure and cannot fail. A
  * mesh has no rule (geometry/regions/instance_set.h): the functions at the end return false, 0 or zeros for it. */
@@ -16,7 +16,7 @@
 
 /* --- intersections of a line with planes and quadrics in a primitive's own frame ---
  *
- * The only set of these formulas, used both by the pass over all rays and for the face of a hit. No branches.
+ * The same formulas are used by the first pass over all rays and for the face of a hit. No branches.
  *
  * The root of the face that a ray starts on is exactly zero. A zero component of a direction is replaced by 1e-300, and
  * a line along a cylinder's axis is tilted by 1e-140: the roots are then at 1e130 or beyond, in effect at infinity,
@@ -44,7 +44,7 @@ ALWAYS_INLINE double inverse_of_component(double d)
     return 1.0 / blend(mask_less(magnitude(d), 1e-300), sign, d);
 }
 
-/* Roots of the planes y = bottom and y = top. */
+/* Roots of the planes y = low and y = high. */
 typedef struct slab_roots {
     double in, out;
 } slab_roots;
@@ -65,11 +65,11 @@ typedef struct quadric_roots {
 } quadric_roots;
 
 /* For a miss the roots are NaN and hit is 0. */
-ALWAYS_INLINE quadric_roots quadric_cross(double b, double inverse_a, double discriminant, int64_t own)
+ALWAYS_INLINE quadric_roots quadric_cross(double b, double inverse_a, double discriminant, int64_t starts_on)
 {
     double middle = -b * inverse_a;
-    double half = blend(own, magnitude(middle), sqrt(discriminant) * inverse_a);
-    quadric_roots q = {middle - half, middle + half, own | mask_less(0.0, discriminant)};
+    double half = blend(starts_on, magnitude(middle), sqrt(discriminant) * inverse_a);
+    quadric_roots q = {middle - half, middle + half, starts_on | mask_less(0.0, discriminant)};
     return q;
 }
 
@@ -79,7 +79,7 @@ ALWAYS_INLINE double cylinder_dx(double dx, double dz)
     return blend(mask_less(magnitude(dx), 1e-140) & mask_less(magnitude(dz), 1e-140), 1e-140, dx);
 }
 
-/* The leading coefficient of a cylinder's quadric, for dx as cylinder_dx gives it. */
+/* The leading coefficient of a cylinder's quadric, for dx as returned by cylinder_dx. */
 ALWAYS_INLINE double cylinder_axial(double dx, double dz, double m2)
 {
     return dx * dx + m2 * dz * dz;
@@ -88,10 +88,10 @@ ALWAYS_INLINE double cylinder_axial(double dx, double dz, double m2)
 /* The infinite cylinder x^2 + m2 z^2 = radius^2; dx as returned by cylinder_dx, inverse_a = 1/a. The discriminant is a
  * r^2 - m2 (x dz - z dx)^2 (Lagrange's identity), which does not cancel as b^2 - a c does far from the cylinder. */
 ALWAYS_INLINE quadric_roots cylinder_side(const primitive *p, double x, double z, double dx, double dz, double a,
-                                          double inverse_a, int64_t own)
+                                          double inverse_a, int64_t starts_on)
 {
     double r2 = p->radius * p->radius, cross = x * dz - z * dx;
-    return quadric_cross(x * dx + p->m2 * z * dz, inverse_a, a * r2 - p->m2 * (cross * cross), own);
+    return quadric_cross(x * dx + p->m2 * z * dz, inverse_a, a * r2 - p->m2 * (cross * cross), starts_on);
 }
 
 /* --- texture coordinates ---
@@ -136,17 +136,17 @@ typedef struct flat_face {
 } flat_face;
 
 typedef struct primitive_functions {
-    int intervals; /* the most intervals of a line in it: 1 if it is convex, otherwise up to CHORDS_MAX */
-    /* First pass (intervals_kernel.c): fills s->in[bit] and s->out[bit] for every ray, in that number of rows. */
+    int intervals; /* the most intervals of a line in a primitive: 1 if it is convex, otherwise up to CHORDS_MAX */
+    /* First pass (intervals_kernel.c): fills s->in and s->out for every ray, in `intervals` rows from row `bit` on. */
     void (*rows)(const primitive *p, int bit, const ray_batch *rays, ray_scratch *s);
-    /* The same for ray i of the batch only: `intervals` of them. inside: whether its start is in the primitive. s has
-     * the terms that are common to the rays of the batch (intervals_kernel.c). */
+    /* The intervals of ray i of the batch only. inside: whether its start is in the primitive. s has the terms that are
+     * common to the rays of the batch (intervals_kernel.c). */
     void (*one)(const primitive *p, const ray_batch *rays, int i, bool inside, const ray_scratch *s, interval *found);
     /* Third pass: geometry_kernels.surface. */
     void (*points)(const primitive *p, const ray_batch *rays, const double *t, int bit, surface_batch *points);
     /* Whether the primitive contains q, by its definition, surfaces included. */
     bool (*contains)(const primitive *p, vec3 q);
-    /* The intervals of the whole line of r in it, in order; returns their number. */
+    /* The intervals of the line of r in the primitive, in both directions and in order; returns their number. */
     int (*chords)(const primitive *p, local_ray r, interval chords[CHORDS_MAX]);
     /* The faces perpendicular to a local axis; returns their number. NULL: none. */
     int (*flats)(const primitive *p, flat_face flat[FLATS_MAX]);
@@ -173,7 +173,7 @@ static inline bool primitive_contains(const primitive *p, vec3 point)
            p->rule->ISA_BASELINE->contains(p, mat3_apply_transposed(p->rotation, vec3_sub(point, p->origin)));
 }
 
-/* The intervals of a line (world coordinates) in it; returns their number. */
+/* The intervals of a line (world coordinates) in the primitive; returns their number. */
 static inline int primitive_chords(const primitive *p, vec3 origin, vec3 direction, interval chords[CHORDS_MAX])
 {
     if (!p->rule)
@@ -182,13 +182,13 @@ static inline int primitive_chords(const primitive *p, vec3 origin, vec3 directi
     return p->rule->ISA_BASELINE->chords(p, r, chords);
 }
 
-/* Its faces perpendicular to a local axis; returns their number. */
+/* The primitive's faces perpendicular to a local axis; returns their number. */
 static inline int primitive_flats(const primitive *p, flat_face flat[FLATS_MAX])
 {
     return p->rule && p->rule->ISA_BASELINE->flats ? p->rule->ISA_BASELINE->flats(p, flat) : 0;
 }
 
-/* Texture coordinates of a point (world coordinates) on that face (a face number, see scene_geometry.h). */
+/* Texture coordinates of a point (world coordinates) on a face (a face number, see scene_geometry.h). */
 static inline surface_mapping primitive_mapping(const primitive *p, int64_t face, vec3 point, double size)
 {
     if (!p->rule)

@@ -1,6 +1,6 @@
 /* The regular prism primitive: local points within second_radius of the axis along each side's normal (the inscribed
- * circle), bottom <= y <= top. radius is that of the circumscribed circle; one corner is in front, at -z. Faces: 0
- * bottom, 1 top, 2 and up the sides, to the right as seen from outside. */
+ * circle), bottom <= y <= top. radius is the radius of the circumscribed circle; one corner is in front, at -z. Faces:
+ * 0 bottom, 1 top, 2 and up the sides, to the right as seen from outside. */
 #include "geometry/primitives/kind.h"
 
 enum { FIRST_SIDE = 2 };
@@ -11,10 +11,11 @@ typedef struct plane_root {
     int64_t enters;
 } plane_root;
 
-ALWAYS_INLINE plane_root side_cross(vec3 normal, double reach, double x, double z, double dx, double dz, int64_t own)
+ALWAYS_INLINE plane_root side_cross(vec3 normal, double reach, double x, double z, double dx, double dz,
+                                    int64_t starts_on)
 {
     double inverse = inverse_of_component(normal.x * dx + normal.z * dz);
-    plane_root r = {blend(own, 0.0, (reach - (normal.x * x + normal.z * z)) * inverse), mask_less(inverse, 0.0)};
+    plane_root r = {blend(starts_on, 0.0, (reach - (normal.x * x + normal.z * z)) * inverse), mask_less(inverse, 0.0)};
     return r;
 }
 
@@ -37,17 +38,17 @@ ALWAYS_INLINE void intervals(const primitive *p, bool general, int bit, const ra
         const double reach = p->second_radius;
         /* VECTORISE */
         for (int i = 0; i < rays->count; i++) {
-            int64_t own = mask_same(rays->start[i], first + FIRST_SIDE + k);
-            plane_root side = side_cross(normal, reach, x[i], z[i], dx[i], dz[i], own);
+            int64_t starts_on = mask_same(rays->start[i], first + FIRST_SIDE + k);
+            plane_root side = side_cross(normal, reach, x[i], z[i], dx[i], dz[i], starts_on);
             near[i] = blend(side.enters, greater(near[i], side.t), near[i]);
             far[i] = blend(side.enters, far[i], lesser(far[i], side.t));
         }
     }
     /* VECTORISE */
     for (int i = 0; i < rays->count; i++) {
-        int64_t own = mask_same(rays->start[i] & ~(int64_t)(FACES_MAX - 1), first);
-        store_interval(near[i], far[i], mask_less(near[i], far[i]), own, inside_mask(rays->inside[i], bit), &in[i],
-                       &out[i]);
+        int64_t starts_on = mask_same(rays->start[i] & ~(int64_t)(FACES_MAX - 1), first);
+        store_interval(near[i], far[i], mask_less(near[i], far[i]), starts_on, inside_mask(rays->inside[i], bit),
+                       &in[i], &out[i]);
     }
 }
 
@@ -66,8 +67,8 @@ static void one(const primitive *p, const ray_batch *rays, int i, bool inside, c
     intervals(p, p->turned, 0, &ray, &found->in, &found->out);
 }
 
-/* The face that bounds the interval, by the same roots: the last of those that are entered, or the first of those that
- * are left. An inner loop over faces, so the loop over rays is not vectorised. */
+/* The face that bounds the interval, by the same roots: the last face that the line enters, or the first that it
+ * leaves. An inner loop over faces, so the loop over rays is not vectorised. */
 static local_point point(const primitive *p, bool general, local_ray r, vec3 q, int64_t at, int64_t leaving)
 {
     (void)general;
@@ -107,15 +108,15 @@ static bool contains(const primitive *p, vec3 q)
 
 static int chords(const primitive *p, local_ray r, interval found[CHORDS_MAX])
 {
-    interval whole = interval_of_slab(r.y, r.dy, p->bottom, p->top);
+    interval chord = interval_of_slab(r.y, r.dy, p->bottom, p->top);
     for (int k = 0; k < p->sides; k++) {
         const plane_root side = side_cross(p->normals[k], p->second_radius, r.x, r.z, r.dx, r.dz, 0);
-        whole = interval_both(whole, side.enters ? (interval){side.t, HUGE_VAL} : (interval){-HUGE_VAL, side.t});
+        chord = interval_both(chord, side.enters ? (interval){side.t, HUGE_VAL} : (interval){-HUGE_VAL, side.t});
     }
-    return one_chord(whole, found);
+    return one_chord(chord, found);
 }
 
-/* Its caps, and those of its sides that are perpendicular to x or z. */
+/* The caps, and the sides that are perpendicular to x or z. */
 static int flats(const primitive *p, flat_face flat[FLATS_MAX])
 {
     int count = 0;

@@ -1,22 +1,22 @@
 /* The sphere primitive: x^2 + y^2 + z^2 <= radius^2. Face 0. */
 #include "geometry/primitives/kind.h"
 
-ALWAYS_INLINE quadric_roots sphere_cross(const primitive *p, local_ray r, int64_t own)
+ALWAYS_INLINE quadric_roots sphere_cross(const primitive *p, local_ray r, int64_t starts_on)
 {
     vec3 o = vec3_make(r.x, r.y, r.z), d = vec3_make(r.dx, r.dy, r.dz), cross = vec3_cross(o, d);
     double a = vec3_dot(d, d);
-    return quadric_cross(vec3_dot(o, d), 1.0 / a, a * (p->radius * p->radius) - vec3_dot(cross, cross), own);
+    return quadric_cross(vec3_dot(o, d), 1.0 / a, a * (p->radius * p->radius) - vec3_dot(cross, cross), starts_on);
 }
 
 ALWAYS_INLINE ray_span span(const primitive *p, bool general, local_ray r, int64_t at, const ray_scratch *s, int i)
 {
     (void)general, (void)s, (void)i;
-    int64_t own = mask_same(at, 0);
-    quadric_roots q = sphere_cross(p, r, own);
-    return (ray_span){q.in, q.out, q.hit, own};
+    int64_t starts_on = mask_same(at, 0);
+    quadric_roots q = sphere_cross(p, r, starts_on);
+    return (ray_span){q.in, q.out, q.hit, starts_on};
 }
 
-/* Its rotation matters only for textures. */
+/* A sphere's rotation matters only for textures. */
 DEFINE_SPANS(false, span)
 
 ALWAYS_INLINE local_point point(const primitive *p, bool general, local_ray r, vec3 q, int64_t at, int64_t leaving)

@@ -9,7 +9,7 @@
  * as D.
  *
  * For a ray that starts on the surface, D / t replaces D: if D(0) = 0 is taken as exact, D / t is a sum of terms
- * without a division by t, and the root of the ray's own face is gone. */
+ * without a division by t, and the root at the ray's start is gone. */
 #include "geometry/primitives/kind.h"
 
 enum { TORUS_CHORDS = 2 };
@@ -22,7 +22,7 @@ typedef struct torus_line {
     double from;          /* t of the base */
     double rho, rises;    /* at the base: rho, and half the derivative of rho^2 */
     double across2;       /* dx^2 + dz^2 */
-    bool own;             /* the base is on the surface, and that root is excluded */
+    bool starts_on;       /* the base is on the surface, and that root is excluded */
     double near;          /* within this distance of the base, D / t is computed by its terms */
     double least;         /* the step below which the iteration has converged */
     double middle;        /* the point nearest to the centre, as t from the base */
@@ -37,12 +37,12 @@ static double torus_depth(const torus_line *l, double t)
     const local_ray *o = &l->base;
     const double x = o->x + t * o->dx, y = o->y + t * o->dy, z = o->z + t * o->dz;
     const double rho = sqrt(x * x + z * z), apart = rho - l->R;
-    if (l->own && magnitude(t) < l->near) {
+    if (l->starts_on && magnitude(t) < l->near) {
         const double sum = rho + l->rho;
         return (2.0 * l->rises + t * l->across2) * ((sum - 2.0 * l->R) / sum) + o->dy * (2.0 * o->y + t * o->dy);
     }
     const double depth = (apart * apart + y * y) - l->r * l->r;
-    return l->own ? depth / t : depth;
+    return l->starts_on ? depth / t : depth;
 }
 
 static double torus_slope(const torus_line *l, double s)
@@ -107,9 +107,9 @@ static int points_within(double low, double high, const double *given, int count
  * point nearest to the centre. */
 static bool torus_reach(const primitive *p, local_ray middle, double length2, double *low, double *high)
 {
-    const double whole = p->radius + p->second_radius, thick = 1.125 * p->second_radius;
+    const double outer = p->radius + p->second_radius, thick = 1.125 * p->second_radius;
     const vec3 q = vec3_make(middle.x, middle.y, middle.z);
-    const double half2 = (1.25 * whole * whole - vec3_dot(q, q)) / length2;
+    const double half2 = (1.25 * outer * outer - vec3_dot(q, q)) / length2;
     if (!(half2 > 0.0))
         return false;
     const double half = sqrt(half2);
@@ -125,7 +125,7 @@ static local_ray moved(local_ray r, double t)
 }
 
 /* The crossings of r's line with the torus, without the root of the face that r starts on. */
-static crossings_of_one torus_cross(const primitive *p, local_ray r, bool own)
+static crossings_of_one torus_cross(const primitive *p, local_ray r, bool starts_on)
 {
     crossings_of_one found = {0};
     const double R = p->radius, r2 = p->second_radius * p->second_radius;
@@ -139,13 +139,13 @@ static crossings_of_one torus_cross(const primitive *p, local_ray r, bool own)
     const double least = (m.x * m.x + m.y * m.y + m.z * m.z) + R * R - r2;
     torus_line l = {.R = R,
                     .r = p->second_radius,
-                    .base = own ? r : m,
-                    .from = own ? 0.0 : middle,
+                    .base = starts_on ? r : m,
+                    .from = starts_on ? 0.0 : middle,
                     .across2 = across2,
-                    .own = own,
+                    .starts_on = starts_on,
                     .near = p->second_radius * sqrt(inverse),
                     .least = 0x1p-55 * R * sqrt(inverse),
-                    .middle = own ? middle : 0.0,
+                    .middle = starts_on ? middle : 0.0,
                     .cubic = (least - 2.0 * R * R * (across2 * inverse)) * inverse,
                     .square = -2.0 * R * R * ((m.x * d.x + m.z * d.z) * inverse) * inverse};
     l.rho = sqrt(l.base.x * l.base.x + l.base.z * l.base.z);
@@ -165,12 +165,12 @@ static crossings_of_one torus_cross(const primitive *p, local_ray r, bool own)
 static void one(const primitive *p, const ray_batch *rays, int i, bool inside, const ray_scratch *s, interval *found)
 {
     (void)s;
-    const bool own = rays->start[i] == p->first_face;
+    const bool starts_on = rays->start[i] == p->first_face;
     const local_ray r =
         ray_to_local(p, p->turned, rays->ox[i], rays->oy[i], rays->oz[i], rays->dx[i], rays->dy[i], rays->dz[i]);
-    const crossings_of_one line = torus_cross(p, r, own);
+    const crossings_of_one line = torus_cross(p, r, starts_on);
     const double length = sqrt(r.dx * r.dx + r.dy * r.dy + r.dz * r.dz);
-    const crossings_of_one ahead = crossings_ahead(&line, own, inside, 0x1p-20 * p->second_radius / length);
+    const crossings_of_one ahead = crossings_ahead(&line, starts_on, inside, 0x1p-20 * p->second_radius / length);
     intervals_of_crossings(&ahead, inside, found);
 }
 

@@ -10,7 +10,7 @@
 
 /* --- one box ---
  *
- * By the separating axes of a line and a box, the products of the ray's direction with the box's edges (Gottschalk,
+ * Tests the separating axes of a line and a box, the products of the ray's direction with the box's edges (Gottschalk,
  * Lin, Manocha, "OBBTree", SIGGRAPH 1996), and the box's own axes, along which the ray leaves. The box is widened far
  * beyond the rounding error of a hit, so that the test only saves time. */
 
@@ -81,11 +81,11 @@ ALWAYS_INLINE float boxes_max(float a, float b)
  * the search. */
 typedef double boxes_visit(void *context, int item, double t_max);
 
-/* Begins to load the data of an item that will probably be visited soon: in large hierarchies the time goes into
- * waiting for memory. */
+/* Prefetches the data of an item that will probably be visited soon: in large hierarchies the time goes into waiting
+ * for memory. */
 typedef void boxes_fetch(void *context, int item);
 
-/* Which children of a node the ray may enter before its t_max, as bits; near: where. */
+/* The children of a node, as bits, that the ray may enter before its t_max; near: the t at which it enters each. */
 ALWAYS_INLINE unsigned boxes_entered(const boxes_node *n, const boxes_ray *r, float near[BOXES_WIDE])
 {
     int32_t entered[BOXES_WIDE];
@@ -114,11 +114,11 @@ ALWAYS_INLINE unsigned boxes_entered(const boxes_node *n, const boxes_ray *r, fl
     return set & ((1u << n->count) - 1);
 }
 
-/* A child that waits, and where the ray enters it. */
-typedef struct boxes_waiting {
+/* A child on the stack, and the t at which the ray enters it. */
+typedef struct boxes_pending {
     float near;
     int32_t child;
-} boxes_waiting;
+} boxes_pending;
 
 ALWAYS_INLINE void boxes_fetch_node(const solid_boxes *b, int32_t child)
 {
@@ -126,8 +126,8 @@ ALWAYS_INLINE void boxes_fetch_node(const solid_boxes *b, int32_t child)
         __builtin_prefetch((const char *)&b->nodes[child] + line);
 }
 
-/* Puts a node's entered children on the stack, the nearest last; returns the new size. */
-ALWAYS_INLINE int boxes_push(const solid_boxes *b, boxes_waiting *stack, int size, const boxes_node *n,
+/* Pushes a node's entered children, the nearest last; returns the new size. */
+ALWAYS_INLINE int boxes_push(const solid_boxes *b, boxes_pending *stack, int size, const boxes_node *n,
                              unsigned entered, const float *near, boxes_fetch *fetch, void *context)
 {
     const int first = size;
@@ -136,7 +136,7 @@ ALWAYS_INLINE int boxes_push(const solid_boxes *b, boxes_waiting *stack, int siz
         int at = size++;
         for (; at > first && stack[at - 1].near < near[child]; at--)
             stack[at] = stack[at - 1];
-        stack[at] = (boxes_waiting){near[child], n->child[child]};
+        stack[at] = (boxes_pending){near[child], n->child[child]};
         if (n->child[child] >= 0)
             boxes_fetch_node(b, n->child[child]);
         else
@@ -149,7 +149,7 @@ ALWAYS_INLINE int boxes_push(const solid_boxes *b, boxes_waiting *stack, int siz
 ALWAYS_INLINE void boxes_traverse(const solid_boxes *b, vec3 origin, vec3 direction, double t_min, double t_max,
                                   boxes_visit *visit, boxes_fetch *fetch, void *context)
 {
-    boxes_waiting stack[BOXES_DEPTH_MAX * (BOXES_WIDE - 1) + 1];
+    boxes_pending stack[BOXES_DEPTH_MAX * (BOXES_WIDE - 1) + 1];
     float near[BOXES_WIDE];
     boxes_ray r = {.origin = {(float)origin.x, (float)origin.y, (float)origin.z},
                    .inverse = {boxes_inverse(direction.x), boxes_inverse(direction.y), boxes_inverse(direction.z)},
@@ -158,7 +158,7 @@ ALWAYS_INLINE void boxes_traverse(const solid_boxes *b, vec3 origin, vec3 direct
                    .t_max = boxes_more((float)t_max)};
     int size = boxes_push(b, stack, 0, b->nodes, boxes_entered(b->nodes, &r, near), near, fetch, context);
     while (size > 0) {
-        const boxes_waiting next = stack[--size];
+        const boxes_pending next = stack[--size];
         if (next.near > r.t_max)
             continue;
         if (next.child >= 0) {

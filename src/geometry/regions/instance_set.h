@@ -114,9 +114,9 @@ typedef void instance_found(void *context, const instance_hit *hit);
 /* The kernels, one set per instruction set. All sets return bit-identical results. */
 typedef struct instance_kernels {
     /* The next relevant crossing: the exit of a mesh that the ray is in, the entry of one that it is not in and that
-     * the medium does not hide, either side of an open surface. */
+     * the medium does not hide, or either side of an open surface. */
     void (*nearest)(const instance_set *f, const instance_ray *rays, int count, instance_hit *hits);
-    /* Writes for each ray whether any mesh of the wanted set blocks it. Closed meshes as above, also where a solid of
+    /* Writes for each ray whether any mesh of the wanted set blocks it. Closed meshes as above, even if a solid of
      * higher priority hides them. */
     void (*any)(const instance_set *f, const instance_ray *rays, int count, bool *blocked);
     /* The set of primitives after all crossings of wanted meshes in t_min < t <= t_max; an open surface in between has

@@ -146,7 +146,7 @@ static const instanced_mesh *part_of_instance(const instance_set *f, size_t inst
     return p;
 }
 
-/* Counts the queries of rays in a copy's frame, if that is requested; apart from the traversal, which it must not slow
+/* Counts the queries of rays in a copy's frame, if requested; separate from the traversal, so as not to slow it
  * down. */
 static void count_queries(const instanced_mesh *p, const mesh_ray *local, int count, enum query_mode mode,
                           query_counts *counts)
@@ -155,7 +155,7 @@ static void count_queries(const instanced_mesh *p, const mesh_ray *local, int co
         hierarchy_count(p->tree, &local[k], mode, counts);
 }
 
-static void ask_copy(traversal *q, size_t instance)
+static void query_copy(traversal *q, size_t instance)
 {
     const instanced_mesh *p = part_of_instance(q->f, instance);
     const uint32_t copy = (uint32_t)(instance - p->first_instance);
@@ -178,11 +178,11 @@ static void ask_copy(traversal *q, size_t instance)
     accept_hit(q, p, copy, &hit);
 }
 
-static double come_by(void *context, uint32_t instance, double t_max)
+static double visit_instance(void *context, uint32_t instance, double t_max)
 {
     traversal *q = context;
     (void)t_max;
-    ask_copy(q, instance);
+    query_copy(q, instance);
     return q->blocked ? -1.0 : q->t_max;
 }
 
@@ -190,13 +190,13 @@ static void traverse(traversal *q)
 {
     const mesh_ray ray = {
         .origin = q->ray->origin, .direction = q->ray->direction, .t_min = q->ray->t_min, .t_max = q->t_max};
-    TREES.boxes(q->f->top, &ray, come_by, q);
+    TREES.boxes(q->f->top, &ray, visit_instance, q);
 }
 
-static void ask(traversal *q)
+static void query(traversal *q)
 {
     if (q->f->instance_count == 1)
-        ask_copy(q, 0);
+        query_copy(q, 0);
     else
         traverse(q);
 }
@@ -233,7 +233,7 @@ static void nearest_one(const instance_set *f, const instance_ray *ray, instance
     *hit = (instance_hit){.t = HUGE_VAL, .face = FACE_NONE};
     traversal q = traversal_of(f, ray);
     q.best = hit;
-    ask(&q);
+    query(&q);
 }
 
 static void nearest(const instance_set *f, const instance_ray *rays, int count, instance_hit *hits)
@@ -282,7 +282,7 @@ static void any(const instance_set *f, const instance_ray *rays, int count, bool
     for (int i = 0; f->instance_count > FEW_COPIES && i < count; i++) {
         traversal q = traversal_of(f, &rays[i]);
         q.any = true;
-        ask(&q);
+        query(&q);
         blocked[i] = q.blocked;
     }
 }
@@ -293,7 +293,7 @@ static void each(const instance_set *f, const instance_ray *ray, instance_found 
     traversal q = traversal_of(f, ray);
     q.any = true;
     q.all = &v;
-    ask(&q);
+    query(&q);
 }
 
 /* The last crossings of a ray with each mesh's fronts and backs, and the extents of those copies. */
@@ -302,7 +302,7 @@ typedef struct last_crossings {
     double front[PRIMITIVES_MAX], back[PRIMITIVES_MAX], front_extent[PRIMITIVES_MAX], back_extent[PRIMITIVES_MAX];
 } last_crossings;
 
-static void take_last(void *context, const instance_hit *hit)
+static void keep_last(void *context, const instance_hit *hit)
 {
     last_crossings *last = context;
     const int p = mesh_face_primitive(hit->face);
@@ -314,7 +314,7 @@ static void take_last(void *context, const instance_hit *hit)
     *(front ? &last->front_extent[p] : &last->back_extent[p]) = instance_set_extent(last->f, hit->face);
 }
 
-static void look_at_all(const instance_set *f, const instance_ray *ray, last_crossings *last)
+static void find_last_crossings(const instance_set *f, const instance_ray *ray, last_crossings *last)
 {
     last->f = f;
     for (int i = 0; i < f->part_count; i++) {
@@ -322,7 +322,7 @@ static void look_at_all(const instance_set *f, const instance_ray *ray, last_cro
         last->front[p] = last->back[p] = -HUGE_VAL;
         last->front_extent[p] = last->back_extent[p] = 0.0;
     }
-    each(f, ray, take_last, last);
+    each(f, ray, keep_last, last);
 }
 
 /* Whether the ray, at the end of its range, is in the closed mesh. The last crossing decides: fronts lead in, backs
@@ -344,7 +344,7 @@ static bool is_in(const instance_set *f, const instance_ray *ray, const last_cro
         shorter.t_max = first - tie;
         if (!(shorter.t_max > ray->t_min))
             return (ray->inside & bit) != 0;
-        look_at_all(f, &shorter, &again);
+        find_last_crossings(f, &shorter, &again);
         last = &again;
     }
 }
@@ -353,7 +353,7 @@ static uint64_t cross(const instance_set *f, const instance_ray *ray)
 {
     uint64_t set = ray->inside;
     last_crossings last;
-    look_at_all(f, ray, &last);
+    find_last_crossings(f, ray, &last);
     for (int i = 0; i < f->part_count; i++) {
         const instanced_mesh *p = &f->parts[i];
         const uint64_t bit = (uint64_t)1 << p->primitive;

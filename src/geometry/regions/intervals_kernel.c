@@ -35,14 +35,14 @@ static void shared_terms(const ray_batch *rays, ray_scratch *restrict s)
     }
 }
 
-void KERNEL(intervals_of)(const scene_geometry *a, const ray_batch *rays, uint64_t wanted, ray_scratch *s)
+void KERNEL(intervals_of)(const scene_geometry *g, const ray_batch *rays, uint64_t wanted, ray_scratch *s)
 {
     shared_terms(rays, s);
-    for (int k = 0; k < a->direct_count; k++) {
+    for (int k = 0; k < g->direct_count; k++) {
         if (!(wanted >> k & 1))
             continue;
-        const primitive *p = &a->primitives[k];
-        if (a->further >> k & 1)
+        const primitive *p = &g->primitives[k];
+        if (g->further >> k & 1)
             continue;
         if (p->rule)
             p->rule->KERNEL_ISA->rows(p, k, rays, s);

@@ -10,7 +10,7 @@
 #include <math.h>
 
 /* Fills scratch->in and out of every wanted primitive (a set) for every ray; leaves scratch->slack unchanged. */
-void KERNEL(intervals_of)(const scene_geometry *a, const ray_batch *rays, uint64_t wanted, ray_scratch *scratch);
+void KERNEL(intervals_of)(const scene_geometry *g, const ray_batch *rays, uint64_t wanted, ray_scratch *scratch);
 
 /* A fraction of the distance and of the scene geometry's extent: boundaries within it of a crossing are compared with
  * the crossing one by one (contact_kernel.c). It filters and decides nothing: a contact is never wider than half of
@@ -21,15 +21,15 @@ void KERNEL(intervals_of)(const scene_geometry *a, const ray_batch *rays, uint64
 #define NEVER 1e120
 
 /* Returns whether the primitive is a mesh. */
-static inline bool is_mesh(const scene_geometry *a, int p)
+static inline bool is_mesh(const scene_geometry *g, int p)
 {
-    return a->meshes && p < PRIMITIVES_MAX && (a->meshes->primitives >> p & 1);
+    return g->meshes && p < PRIMITIVES_MAX && (g->meshes->primitives >> p & 1);
 }
 
 /* The bit of a direct primitive; 0 for one of the solid tree. */
-static inline uint64_t direct_bit(const scene_geometry *a, int64_t p)
+static inline uint64_t direct_bit(const scene_geometry *g, int64_t p)
 {
-    return p < a->direct_count ? (uint64_t)1 << p : 0;
+    return p < g->direct_count ? (uint64_t)1 << p : 0;
 }
 
 /* Advances the intervals of one primitive past t, where the ray is inside it or not: finished intervals are replaced by
@@ -56,7 +56,7 @@ static inline double steps_per_unit(const ray_batch *rays, int i)
 
 /* --- one region, from the intervals of its primitives ahead of a ray ---
  *
- * The pass over the direct primitives and the solid tree share these: the next change of medium by the region, and its
+ * For the pass over the direct primitives and for the solid tree: the next change of medium by the region, and its
  * overlap with a shadow ray. No branches. */
 
 typedef struct next_change {
@@ -108,44 +108,45 @@ ALWAYS_INLINE overlap overlap_of_hollowed(double in, double out, double hollow_i
 
 /* Decides which boundaries of s->near[k] are in contact with column k's crossing, and updates the sets and priority
  * indices on both sides. */
-void KERNEL(merge_contacts)(const scene_geometry *a, const ray_batch *rays, int k, ray_scratch *s, hit_batch *c,
+void KERNEL(merge_contacts)(const scene_geometry *g, const ray_batch *rays, int k, ray_scratch *s, hit_batch *c,
                             instance_hit *mesh_hits);
 
 /* --- solid_tree_kernel.c: for a geometry with a solid tree --- */
 
 /* Fills s->tree.start, and writes the bits of the direct primitives that contain the rays' starts. */
-void KERNEL(tree_split)(const scene_geometry *a, const ray_batch *rays, ray_scratch *s, uint64_t *direct);
+void KERNEL(tree_split)(const scene_geometry *g, const ray_batch *rays, ray_scratch *s, uint64_t *direct);
 /* Column k begins at the start of ray i. */
 void KERNEL(tree_begin)(int i, int k, ray_scratch *s);
 /* Column m continues where column k crosses at t. */
 void KERNEL(tree_advance)(int k, int m, double t, ray_scratch *s);
 
 /* The intervals of one of the tree's primitives ahead of column k; returns their number. */
-int KERNEL(tree_intervals)(const scene_geometry *a, const ray_batch *rays, int k, const ray_scratch *s, int p,
+int KERNEL(tree_intervals)(const scene_geometry *g, const ray_batch *rays, int k, const ray_scratch *s, int p,
                            interval found[CHORDS_MAX]);
 
-/* Finds the next changes by the tree's solids where they come before those in c, for the first n columns, and fills
+/* Finds the next changes by the tree's solids if they come before those in c, for the first n columns, and fills
  * s->tree for the crossings that are then the nearest. */
-void KERNEL(tree_changes)(const scene_geometry *a, const ray_batch *rays, int n, ray_scratch *s, hit_batch *c,
+void KERNEL(tree_changes)(const scene_geometry *g, const ray_batch *rays, int n, ray_scratch *s, hit_batch *c,
                           const instance_hit *mesh_hits);
 
 /* Calls `found` for each of the tree's primitives that may have a boundary close to t on column k (BOUNDARY_CLOSE). */
 typedef void tree_found(void *context, int p, const interval *found);
-void KERNEL(tree_each_near)(const scene_geometry *a, const ray_batch *rays, int k, const ray_scratch *s, double t,
+void KERNEL(tree_each_near)(const scene_geometry *g, const ray_batch *rays, int k, const ray_scratch *s, double t,
                             tree_found *found, void *context);
 
 /* Marks the shadow rays that the tree's solids block for certain, or may. s->low: the length of a scene unit along each
  * ray. */
-void KERNEL(tree_shadows)(const scene_geometry *a, const ray_batch *rays, int solid_shadows, ray_scratch *s);
+void KERNEL(tree_shadows)(const scene_geometry *g, const ray_batch *rays, int solid_shadows, ray_scratch *s);
 
 /* --- solid_view_kernel.c: for a geometry with a solid tree --- */
 
 /* Makes a view of the solids that a ray of the batch may meet before t_max; false if they are too many, or the rays are
  * not coherent. */
-bool KERNEL(view_make)(const scene_geometry *a, const ray_batch *rays, double t_max, solid_view *v);
+bool KERNEL(view_make)(const scene_geometry *g, const ray_batch *rays, double t_max, solid_view *v);
 /* The bits, in the view, of the primitives that contain the rays' starts. */
 void KERNEL(view_sets)(const solid_view *v, const ray_batch *rays, uint64_t *inside);
-/* The set, in the whole scene, of the view's primitives of those bits; and the hits in its numbers. */
+/* view_outer_set: the set, in numbers of the whole scene, of the view's primitives in `bits`. view_hits converts hits
+ * to these numbers. */
 uint64_t KERNEL(view_outer_set)(const solid_view *v, uint64_t bits);
 void KERNEL(view_hits)(const solid_view *v, int count, hit_batch *hits);
 
@@ -157,28 +158,28 @@ void KERNEL(mesh_surface)(const struct instance_set *f, const ray_batch *rays, c
 
 /* --- mesh_changes_kernel.c --- */
 
-/* Finds the next crossings of meshes where they come before those in c, for the first n columns; then sets the meshes'
+/* Finds the next crossings of meshes if they come before those in c, for the first n columns; then sets the meshes'
  * bits in c's sets and in s->near. The bits of the other primitives must be set already. */
-void KERNEL(mesh_changes)(const scene_geometry *a, const ray_batch *rays, int n, ray_scratch *s, hit_batch *c,
+void KERNEL(mesh_changes)(const scene_geometry *g, const ray_batch *rays, int n, ray_scratch *s, hit_batch *c,
                           instance_hit *hits);
-void KERNEL(mesh_sets)(const scene_geometry *a, const ray_batch *rays, int n, ray_scratch *s, hit_batch *c,
+void KERNEL(mesh_sets)(const scene_geometry *g, const ray_batch *rays, int n, ray_scratch *s, hit_batch *c,
                        const instance_hit *hits);
 
 /* The bits of the wanted meshes in the sets just before low and just after high. Column k, in the medium of that
  * priority index, crosses an interface between the two. */
-void KERNEL(mesh_sets_closely)(const scene_geometry *a, const ray_batch *rays, int k, const ray_scratch *s,
+void KERNEL(mesh_sets_closely)(const scene_geometry *g, const ray_batch *rays, int k, const ray_scratch *s,
                                int64_t priority_index, uint64_t wanted, double low, double high, uint64_t *before,
                                uint64_t *after);
 
 /* Calls `found` for the crossings of mesh p that are close to t on column k (BOUNDARY_CLOSE), hidden or not. */
-void KERNEL(mesh_each_near)(const scene_geometry *a, const ray_batch *rays, int k, const ray_scratch *s, int p,
+void KERNEL(mesh_each_near)(const scene_geometry *g, const ray_batch *rays, int k, const ray_scratch *s, int p,
                             double t, instance_found *found, void *context);
 
 /* The crossing of column k with the mesh of a bit in low <= t <= high, given the set `before`; its face is FACE_NONE if
  * there is none. */
-instance_hit KERNEL(mesh_hit_between)(const scene_geometry *a, const ray_batch *rays, int k, const ray_scratch *s,
+instance_hit KERNEL(mesh_hit_between)(const scene_geometry *g, const ray_batch *rays, int k, const ray_scratch *s,
                                       int bit, uint64_t before, double low, double high);
 
 /* Marks the shadow rays (except settled ones) that meshes of a set block. */
-void KERNEL(mesh_shadows)(const scene_geometry *a, const ray_batch *rays, uint64_t wanted, query_counts *counts,
+void KERNEL(mesh_shadows)(const scene_geometry *g, const ray_batch *rays, uint64_t wanted, query_counts *counts,
                           int64_t *marked, const int64_t *settled);

@@ -32,7 +32,7 @@ static double close_to(const ray_scratch *s, int k, double t)
     return BOUNDARY_CLOSE * (t + s->slack[k]);
 }
 
-/* The rays that pass the box around all meshes by. */
+/* Finds the rays that miss the box around all meshes. */
 static void find_misses(const instance_set *f, const ray_batch *rays, int64_t *restrict misses)
 {
     const bounds3 box = f->world;
@@ -42,7 +42,7 @@ static void find_misses(const instance_set *f, const ray_batch *rays, int64_t *r
                                    vec3_make(rays->dx[i], rays->dy[i], rays->dz[i]));
 }
 
-/* The columns that may meet a mesh. Only a whole batch is tested: rays that are traced again are close to one. */
+/* The columns that may meet a mesh. Only a full batch is tested: rays that are searched again are close to a mesh. */
 static int columns_to_query(const instance_set *f, const ray_batch *rays, int n, int *column)
 {
     int64_t misses[ROW];
@@ -56,10 +56,10 @@ static int columns_to_query(const instance_set *f, const ray_batch *rays, int n,
     return count;
 }
 
-void KERNEL(mesh_changes)(const scene_geometry *a, const ray_batch *rays, int n, ray_scratch *s, hit_batch *c,
+void KERNEL(mesh_changes)(const scene_geometry *g, const ray_batch *rays, int n, ray_scratch *s, hit_batch *c,
                           instance_hit *hits)
 {
-    const instance_set *f = a->meshes;
+    const instance_set *f = g->meshes;
     instance_ray queries[BATCH];
     instance_hit answers[BATCH];
     int column[BATCH];
@@ -107,11 +107,11 @@ static void collect_others(void *context, const instance_hit *hit)
 
 /* The meshes with a boundary close to column k's crossing. For a single visible mesh the nearest query has covered this
  * range already. */
-static uint64_t near_meshes(const scene_geometry *a, const ray_batch *rays, int k, const ray_scratch *s,
+static uint64_t near_meshes(const scene_geometry *g, const ray_batch *rays, int k, const ray_scratch *s,
                             const hit_batch *c, const instance_hit *hit)
 {
-    const instance_set *f = a->meshes;
-    const bool on_mesh = (f->primitives & direct_bit(a, c->hit_primitive[k])) != 0;
+    const instance_set *f = g->meshes;
+    const bool on_mesh = (f->primitives & direct_bit(g, c->hit_primitive[k])) != 0;
     if (f->instance_count == 1 && (on_mesh || f->lowest >= c->before[k]))
         return on_mesh ? 0 : s->meshes->near[k];
     const double close = close_to(s, k, c->t[k]);
@@ -124,8 +124,8 @@ static uint64_t near_meshes(const scene_geometry *a, const ray_batch *rays, int 
     return o.set;
 }
 
-/* The set at t, where the ray has been in the medium of that priority index since it was last updated. The bits of the
- * meshes hidden there follow from their last crossings. */
+/* The set at t, if the ray has been in the medium of that priority index since the set was last updated. The bits of
+ * the meshes hidden there follow from their last crossings. */
 static uint64_t set_at(const instance_set *f, const ray_batch *rays, int k, const ray_scratch *s,
                        int64_t priority_index, double t, uint64_t set)
 {
@@ -139,10 +139,10 @@ static uint64_t set_at(const instance_set *f, const ray_batch *rays, int k, cons
     return (set & ~ray.wanted) | (INSTANCE_SET.cross(f, &ray) & ray.wanted);
 }
 
-void KERNEL(mesh_sets)(const scene_geometry *a, const ray_batch *rays, int n, ray_scratch *s, hit_batch *c,
+void KERNEL(mesh_sets)(const scene_geometry *g, const ray_batch *rays, int n, ray_scratch *s, hit_batch *c,
                        const instance_hit *hits)
 {
-    const instance_set *f = a->meshes;
+    const instance_set *f = g->meshes;
     for (int k = 0; k < n; k++) {
         if (c->hit_primitive[k] < 0)
             continue;
@@ -150,41 +150,41 @@ void KERNEL(mesh_sets)(const scene_geometry *a, const ray_batch *rays, int n, ra
         c->inside_before[k] =
             set_at(f, rays, k, s, c->before[k], c->t[k] - close_to(s, k, c->t[k]), c->inside_before[k]);
         c->inside_after[k] = (c->inside_after[k] & ~hidden) | (c->inside_before[k] & hidden);
-        const uint64_t bit = direct_bit(a, c->hit_primitive[k]);
+        const uint64_t bit = direct_bit(g, c->hit_primitive[k]);
         if (f->primitives & bit) {
             const bool leaves = (f->closed & bit) && hits[k].facing == FACING_BACK;
             c->inside_after[k] = leaves ? c->inside_after[k] & ~bit : c->inside_after[k] | bit;
         }
-        s->meshes->near[k] = near_meshes(a, rays, k, s, c, &hits[k]);
+        s->meshes->near[k] = near_meshes(g, rays, k, s, c, &hits[k]);
         s->near[k] = (s->near[k] & ~f->primitives) | s->meshes->near[k] | (bit & f->primitives);
     }
 }
 
-void KERNEL(mesh_sets_closely)(const scene_geometry *a, const ray_batch *rays, int k, const ray_scratch *s,
+void KERNEL(mesh_sets_closely)(const scene_geometry *g, const ray_batch *rays, int k, const ray_scratch *s,
                                int64_t priority_index, uint64_t wanted, double low, double high, uint64_t *before,
                                uint64_t *after)
 {
-    *before = (*before & ~wanted) | (set_at(a->meshes, rays, k, s, priority_index, low, s->inside[k]) & wanted);
+    *before = (*before & ~wanted) | (set_at(g->meshes, rays, k, s, priority_index, low, s->inside[k]) & wanted);
     instance_ray ray = ray_of_column(rays, k, s);
     ray.t_min = low;
     ray.t_max = high;
     ray.tie = high - low;
     ray.inside = *before;
     ray.wanted = wanted;
-    *after = (*after & ~wanted) | (INSTANCE_SET.cross(a->meshes, &ray) & wanted);
+    *after = (*after & ~wanted) | (INSTANCE_SET.cross(g->meshes, &ray) & wanted);
 }
 
-void KERNEL(mesh_each_near)(const scene_geometry *a, const ray_batch *rays, int k, const ray_scratch *s, int p,
+void KERNEL(mesh_each_near)(const scene_geometry *g, const ray_batch *rays, int k, const ray_scratch *s, int p,
                             double t, instance_found *found, void *context)
 {
     instance_ray ray = ray_of_column(rays, k, s);
     ray.t_min = t - close_to(s, k, t);
     ray.t_max = t + close_to(s, k, t);
     ray.wanted = (uint64_t)1 << p;
-    INSTANCE_SET.each(a->meshes, &ray, found, context);
+    INSTANCE_SET.each(g->meshes, &ray, found, context);
 }
 
-instance_hit KERNEL(mesh_hit_between)(const scene_geometry *a, const ray_batch *rays, int k, const ray_scratch *s,
+instance_hit KERNEL(mesh_hit_between)(const scene_geometry *g, const ray_batch *rays, int k, const ray_scratch *s,
                                       int bit, uint64_t before, double low, double high)
 {
     instance_hit hit;
@@ -193,24 +193,24 @@ instance_hit KERNEL(mesh_hit_between)(const scene_geometry *a, const ray_batch *
     ray.t_max = high;
     ray.inside = before;
     ray.wanted = (uint64_t)1 << bit;
-    INSTANCE_SET.nearest(a->meshes, &ray, 1, &hit);
+    INSTANCE_SET.nearest(g->meshes, &ray, 1, &hit);
     return hit;
 }
 
 /* Marks rays that a mesh of the set blocks between 0 and 1. A ray that starts inside a closed mesh is blocked at its
  * start. */
-void KERNEL(mesh_shadows)(const scene_geometry *a, const ray_batch *rays, uint64_t wanted, query_counts *counts,
+void KERNEL(mesh_shadows)(const scene_geometry *g, const ray_batch *rays, uint64_t wanted, query_counts *counts,
                           int64_t *marked, const int64_t *settled)
 {
     instance_ray queries[BATCH];
     bool found[BATCH];
     int ray[BATCH], count = 0;
     int64_t misses[ROW];
-    find_misses(a->meshes, rays, misses);
+    find_misses(g->meshes, rays, misses);
     for (int i = 0; i < rays->count; i++) {
         if (settled[i])
             continue;
-        if (rays->inside[i] & wanted & a->meshes->closed) {
+        if (rays->inside[i] & wanted & g->meshes->closed) {
             marked[i] = -1;
             continue;
         }
@@ -228,7 +228,7 @@ void KERNEL(mesh_shadows)(const scene_geometry *a, const ray_batch *rays, uint64
     }
     if (count == 0)
         return;
-    INSTANCE_SET.any(a->meshes, queries, count, found);
+    INSTANCE_SET.any(g->meshes, queries, count, found);
     for (int k = 0; k < count; k++)
         marked[ray[k]] |= -(int64_t)found[k];
 }

@@ -9,12 +9,12 @@ typedef struct column3 {
     double x[STRIP], y[STRIP], z[STRIP];
 } column3;
 
-/* Some hits of a batch, whole vectors of them: the last one is repeated. */
+/* Part of the hits of a batch, padded to full vectors by repeating the last hit. */
 typedef struct strip {
-    int count;       /* with the repeated ones */
+    int count;       /* including the padding */
     column3 a, b, c; /* the triangles' corners, scaled and rotated to the world's axes */
     column3 normal_a, normal_b, normal_c;
-    column3 origin, d, g, n; /* of the copy; the ray's direction; the geometric normal and that for shading */
+    column3 origin, d, g, n; /* the copy's origin; the ray's direction; geometric and shading normal */
     double u[STRIP], v[STRIP], reach[STRIP];
     int64_t has_normals[STRIP], bends[STRIP]; /* masks */
 } strip;
@@ -92,10 +92,10 @@ static void find_points(strip *restrict s, int first, surface_batch *restrict to
     }
 }
 
-#define LEAST_SINE 0.01 /* of the least angle of a reflected ray with the triangle, 0.6 degrees */
+#define LEAST_SINE 0.01 /* sine of the least angle between a reflected ray and the triangle, 0.6 degrees */
 
-/* Interpolated normals on the ray's side, like the geometric normal, which replaces them where unit normals at the
- * corners cancel and give no direction; and which of them must be bent. */
+/* Interpolates normals, on the ray's side like the geometric normal, which replaces them if the corners' normals
+ * cancel; and marks those that must be bent. */
 static void interpolate(strip *restrict s)
 {
     /* VECTORISE */

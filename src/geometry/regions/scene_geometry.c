@@ -1,4 +1,4 @@
-/* Builds the scene geometry, and answers queries for points. */
+/* The build of the scene geometry, and its queries for points. */
 #include "geometry/scene_geometry.h"
 #include "base/elementary.h"
 #include "base/array.h"
@@ -18,10 +18,10 @@ typedef struct ordered_source {
 
 static int compare_priorities(const void *one, const void *other)
 {
-    const ordered_source *a = one, *b = other;
-    if (a->priority != b->priority)
-        return a->priority < b->priority ? -1 : 1;
-    return a->index > b->index ? -1 : 1;
+    const ordered_source *first = one, *second = other;
+    if (first->priority != second->priority)
+        return first->priority < second->priority ? -1 : 1;
+    return first->index > second->index ? -1 : 1;
 }
 
 /* The sources in the order of priority indices: ascending priority, and of equal priorities the later source first. */
@@ -34,49 +34,49 @@ static void order_by_priority(const region_source *sources, int count, ordered_s
 
 /* Outward unit normals; the corner before the first side is in front, at -z, the next ones follow to its right as seen
  * from outside. */
-static const vec3 *add_normals(scene_geometry *a, int sides)
+static const vec3 *add_normals(scene_geometry *g, int sides)
 {
-    vec3 *normals = a->normals + a->normal_count;
+    vec3 *normals = g->normals + g->normal_count;
     for (int k = 0; k < sides; k++) {
         double sine, cosine;
         elementary_sincos_deg(180.0 * (2 * k + 1) / sides, &sine, &cosine);
         normals[k] = vec3_make(sine, 0.0, -cosine);
     }
-    a->normal_count += sides;
+    g->normal_count += sides;
     return normals;
 }
 
-static void add_primitive(scene_geometry *a, int priority_index, const primitive *part)
+static void add_primitive(scene_geometry *g, int priority_index, const primitive *part)
 {
-    primitive *p = &a->primitives[a->primitive_count];
+    primitive *p = &g->primitives[g->primitive_count];
     *p = *part;
     p->priority_index = priority_index;
-    p->first_face = (int64_t)a->primitive_count++ * FACES_MAX;
+    p->first_face = (int64_t)g->primitive_count++ * FACES_MAX;
     p->rows = p->rule ? p->rule->ISA_BASELINE->intervals : 1;
-    p->normals = p->sides > 0 ? add_normals(a, p->sides) : NULL;
-    if (p->extent > a->extent)
-        a->extent = p->extent;
+    p->normals = p->sides > 0 ? add_normals(g, p->sides) : NULL;
+    if (p->extent > g->extent)
+        g->extent = p->extent;
     for (int row = 1; row < p->rows; row++)
-        a->primitives[a->primitive_count++] = (primitive){.priority_index = priority_index, .rows = 1};
+        g->primitives[g->primitive_count++] = (primitive){.priority_index = priority_index, .rows = 1};
 }
 
-static void add_region(scene_geometry *a, int priority_index, const region_source *source)
+static void add_region(scene_geometry *g, int priority_index, const region_source *source)
 {
     primitive parts[SHAPE_PRIMITIVES];
     const shape_rule *shape = shape_of(source->shape);
     const int n = shape->primitive_count;
     shape->primitives(source->shape, parts);
     if (has_meniscus(source->shape)) {
-        capillary_profile *surface = &a->surfaces[a->surface_count++];
+        capillary_profile *surface = &g->surfaces[g->surface_count++];
         *surface = *meniscus_of(source->shape);
         parts[0].surface = surface;
     }
-    if (!source->opaque && priority_index > a->highest_clear)
-        a->highest_clear = priority_index;
-    region *b = &a->regions[priority_index];
-    a->shapes[priority_index] = *source->shape;
-    *b = (region){.outside = a->primitive_count,
-                  .hollow = n == 2 ? a->primitive_count + 1 : -1,
+    if (!source->opaque && priority_index > g->highest_clear)
+        g->highest_clear = priority_index;
+    region *b = &g->regions[priority_index];
+    g->shapes[priority_index] = *source->shape;
+    *b = (region){.outside = g->primitive_count,
+                  .hollow = n == 2 ? g->primitive_count + 1 : -1,
                   .medium = source->medium,
                   .opaque = source->opaque,
                   .shadow_transmittance = source->opaque ? 0.0 : source->shadow_transmittance,
@@ -84,34 +84,34 @@ static void add_region(scene_geometry *a, int priority_index, const region_sourc
                   .attenuates = source->attenuates && !source->opaque,
                   .reflects = source->reflects && !source->opaque,
                   .solid = source->solid};
-    a->attenuates |= b->attenuates;
+    g->attenuates |= b->attenuates;
     for (int k = 0; k < n; k++)
-        add_primitive(a, priority_index, &parts[k]);
+        add_primitive(g, priority_index, &parts[k]);
 }
 
 /* Only for a geometry without a tree: with many solids there are nearly always equal media. */
-static bool media_are_distinct(const scene_geometry *a)
+static bool media_are_distinct(const scene_geometry *g)
 {
-    for (int r = 1; r <= a->region_count; r++)
+    for (int r = 1; r <= g->region_count; r++)
         for (int q = 0; q < r; q++)
-            if (a->regions[q].medium == a->regions[r].medium)
+            if (g->regions[q].medium == g->regions[r].medium)
                 return false;
     return true;
 }
 
 /* Builds the instance set. order: the sources by priority index. */
-static status build_instance_set(scene_geometry *a, const region_source *sources, const ordered_source *order,
+static status build_instance_set(scene_geometry *g, const region_source *sources, const ordered_source *order,
                                  diagnostic *why)
 {
     instance_source mesh_sources[PRIMITIVES_MAX];
     int count = 0;
-    for (int k = 0; k < a->direct_region_count; k++) {
-        const int r = a->direct_regions[k];
+    for (int k = 0; k < g->direct_region_count; k++) {
+        const int r = g->direct_regions[k];
         const region_source *source = &sources[order[r - 1].index];
         if (shape_of(source->shape)->triangles)
-            mesh_sources[count++] = (instance_source){source->shape, source->tree, a->regions[r].outside, r};
+            mesh_sources[count++] = (instance_source){source->shape, source->tree, g->regions[r].outside, r};
     }
-    return count > 0 ? instance_set_build(mesh_sources, count, a->region_count, &a->meshes, why) : STATUS_OK;
+    return count > 0 ? instance_set_build(mesh_sources, count, g->region_count, &g->meshes, why) : STATUS_OK;
 }
 
 /* Whether a solid tree can hold the solid. */
@@ -151,32 +151,34 @@ static bool uses_tree(tree_use use, const primitive_counts *n)
 }
 
 /* Adds the regions: first the direct ones, then those for the tree. */
-static void add_regions(scene_geometry *a, const region_source *sources, const ordered_source *order, bool with_tree)
+static void add_regions(scene_geometry *g, const region_source *sources, const ordered_source *order, bool with_tree)
 {
-    for (int r = 1; r <= a->region_count; r++) {
+    for (int r = 1; r <= g->region_count; r++) {
         const region_source *source = &sources[order[r - 1].index];
         if (with_tree && can_be_in_tree(source))
             continue;
-        add_region(a, r, source);
-        a->opaque_regions |= with_tree ? 0 : (uint64_t)source->opaque << (r - 1);
-        a->direct_regions[a->direct_region_count++] = r;
+        add_region(g, r, source);
+        g->opaque_regions |= with_tree ? 0 : (uint64_t)source->opaque << (r - 1);
+        g->direct_regions[g->direct_region_count++] = r;
     }
-    a->direct_count = a->primitive_count;
-    for (int p = 0; p < a->direct_count; p += a->primitives[p].rows)
-        for (int row = 1; row < a->primitives[p].rows; row++)
-            a->further |= (uint64_t)1 << (p + row);
-    for (int r = 1; with_tree && r <= a->region_count; r++)
+    g->direct_count = g->primitive_count;
+    for (int p = 0; p < g->direct_count; p += g->primitives[p].rows)
+        for (int row = 1; row < g->primitives[p].rows; row++)
+            g->further |= (uint64_t)1 << (p + row);
+    for (int r = 1; with_tree && r <= g->region_count; r++)
         if (can_be_in_tree(&sources[order[r - 1].index]))
-            add_region(a, r, &sources[order[r - 1].index]);
+            add_region(g, r, &sources[order[r - 1].index]);
 }
 
 static status check_counts(const primitive_counts *n, bool with_tree, diagnostic *why)
 {
     const int direct = with_tree ? n->all - n->findable : n->all;
     if (direct > PRIMITIVES_MAX)
-        return diagnose(why, STATUS_BAD_INPUT, "use at most 64", "the visible solids are %d planes and meshes", direct);
+        return diagnose(why, STATUS_BAD_INPUT, "use at most 64 planes and meshes",
+                        "the visible solids are %d planes and meshes", direct);
     if (n->all > SET_PRIMITIVES_MAX)
-        return diagnose(why, STATUS_BAD_INPUT, "use at most 2097151", "the visible solids have %d primitives", n->all);
+        return diagnose(why, STATUS_BAD_INPUT, "use at most 2097151 primitives",
+                        "the visible solids have %d primitives", n->all);
     return STATUS_OK;
 }
 
@@ -188,58 +190,58 @@ status scene_geometry_build(const region_source *sources, int count, int64_t out
     status code = check_counts(&n, with_tree, why);
     if (code != STATUS_OK)
         return code;
-    scene_geometry *a = calloc(1, sizeof *a);
+    scene_geometry *g = calloc(1, sizeof *g);
     ordered_source *order = calloc((size_t)count + 1, sizeof *order);
-    if (a) {
-        a->primitives = large_calloc((size_t)n.all + 1, sizeof *a->primitives);
-        a->regions = large_calloc((size_t)count + 1, sizeof *a->regions);
-        a->shapes = calloc((size_t)count + 1, sizeof *a->shapes);
-        a->normals = large_calloc((size_t)n.normals + 1, sizeof *a->normals);
-        a->surfaces = calloc((size_t)n.surfaces + !n.surfaces, sizeof *a->surfaces);
-        a->direct_regions = calloc((size_t)count + 1, sizeof *a->direct_regions);
+    if (g) {
+        g->primitives = large_calloc((size_t)n.all + 1, sizeof *g->primitives);
+        g->regions = large_calloc((size_t)count + 1, sizeof *g->regions);
+        g->shapes = calloc((size_t)count + 1, sizeof *g->shapes);
+        g->normals = large_calloc((size_t)n.normals + 1, sizeof *g->normals);
+        g->surfaces = calloc((size_t)n.surfaces + !n.surfaces, sizeof *g->surfaces);
+        g->direct_regions = calloc((size_t)count + 1, sizeof *g->direct_regions);
     }
-    if (!a || !order || !a->primitives || !a->regions || !a->shapes || !a->normals || !a->surfaces ||
-        !a->direct_regions) {
+    if (!g || !order || !g->primitives || !g->regions || !g->shapes || !g->normals || !g->surfaces ||
+        !g->direct_regions) {
         free(order);
-        scene_geometry_destroy(a);
+        scene_geometry_destroy(g);
         return out_of_memory(why);
     }
-    a->regions[0] =
+    g->regions[0] =
         (region){.outside = -1, .hollow = -1, .medium = outside_medium, .shadow_transmittance = 1.0, .solid = -1};
-    a->region_count = count;
+    g->region_count = count;
     order_by_priority(sources, count, order);
-    add_regions(a, sources, order, with_tree);
-    code = build_instance_set(a, sources, order, why);
+    add_regions(g, sources, order, with_tree);
+    code = build_instance_set(g, sources, order, why);
     if (code == STATUS_OK && with_tree)
-        code = solid_tree_build(a, &a->tree, why);
+        code = solid_tree_build(g, &g->tree, why);
     free(order);
     if (code != STATUS_OK) {
-        scene_geometry_destroy(a);
+        scene_geometry_destroy(g);
         return code;
     }
-    a->distinct = !a->tree && media_are_distinct(a);
-    *out = a;
+    g->distinct = !g->tree && media_are_distinct(g);
+    *out = g;
     return STATUS_OK;
 }
 
-void scene_geometry_destroy(scene_geometry *a)
+void scene_geometry_destroy(scene_geometry *g)
 {
-    if (!a)
+    if (!g)
         return;
-    instance_set_destroy(a->meshes);
-    solid_tree_destroy(a->tree);
-    free(a->direct_regions);
-    free(a->primitives);
-    free(a->regions);
-    free(a->normals);
-    free(a->surfaces);
-    free(a->shapes);
-    free(a);
+    instance_set_destroy(g->meshes);
+    solid_tree_destroy(g->tree);
+    free(g->direct_regions);
+    free(g->primitives);
+    free(g->regions);
+    free(g->normals);
+    free(g->surfaces);
+    free(g->shapes);
+    free(g);
 }
 
-void scene_geometry_surroundings_absorb(scene_geometry *a)
+void scene_geometry_surroundings_absorb(scene_geometry *g)
 {
-    a->regions[0].attenuates = a->attenuates = true;
+    g->regions[0].attenuates = g->attenuates = true;
 }
 
 /* True if the point is inside the mesh: the first hit along a fixed direction is a back and not a front. The direction
@@ -279,40 +281,40 @@ static uint64_t meshes_around(const instance_set *f, vec3 point)
     return inside;
 }
 
-uint64_t scene_geometry_inside(const scene_geometry *a, vec3 point)
+uint64_t scene_geometry_inside(const scene_geometry *g, vec3 point)
 {
-    uint64_t inside = a->meshes ? meshes_around(a->meshes, point) : 0;
-    for (int i = 0; i < a->direct_count; i++)
-        inside |= (uint64_t)primitive_contains(&a->primitives[i], point) << i;
-    return a->tree ? solid_tree_inside(a->tree, inside, point) : inside;
+    uint64_t inside = g->meshes ? meshes_around(g->meshes, point) : 0;
+    for (int i = 0; i < g->direct_count; i++)
+        inside |= (uint64_t)primitive_contains(&g->primitives[i], point) << i;
+    return g->tree ? solid_tree_inside(g->tree, inside, point) : inside;
 }
 
-bool scene_geometry_set_has(const scene_geometry *a, uint64_t set, int p)
+bool scene_geometry_set_has(const scene_geometry *g, uint64_t set, int p)
 {
-    if (a->tree && p >= 0)
-        return set_table_has(a->tree->sets, set, p);
+    if (g->tree && p >= 0)
+        return set_table_has(g->tree->sets, set, p);
     return p >= 0 && (set >> p & 1);
 }
 
-bool scene_geometry_failed(const scene_geometry *a)
+bool scene_geometry_failed(const scene_geometry *g)
 {
-    return a->tree && set_table_failed(a->tree->sets);
+    return g->tree && set_table_failed(g->tree->sets);
 }
 
-int scene_geometry_priority_index(const scene_geometry *a, uint64_t inside)
+int scene_geometry_priority_index(const scene_geometry *g, uint64_t inside)
 {
-    if (a->tree)
-        return solid_tree_priority_index(a->tree, inside);
-    for (int r = a->region_count; r > 0; r--)
-        if (scene_geometry_set_has(a, inside, a->regions[r].outside) &&
-            !scene_geometry_set_has(a, inside, a->regions[r].hollow))
+    if (g->tree)
+        return solid_tree_priority_index(g->tree, inside);
+    for (int r = g->region_count; r > 0; r--)
+        if (scene_geometry_set_has(g, inside, g->regions[r].outside) &&
+            !scene_geometry_set_has(g, inside, g->regions[r].hollow))
             return r;
     return 0;
 }
 
-int scene_geometry_surface(const scene_geometry *a, int before, int after)
+int scene_geometry_surface(const scene_geometry *g, int before, int after)
 {
-    if (a->regions[after].opaque || a->regions[before].opaque)
-        return a->regions[after].opaque ? after : before;
+    if (g->regions[after].opaque || g->regions[before].opaque)
+        return g->regions[after].opaque ? after : before;
     return after > before ? after : before;
 }

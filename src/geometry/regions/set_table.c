@@ -1,5 +1,5 @@
-/* Sets of primitives in 64 bits. Large sets are found by their hash in lists that only grow at the front, so that
- * looking one up takes no lock. */
+/* Sets of primitives in 64 bits. Large sets are found by their hash in lists that only grow at the front, so that a
+ * look-up needs no lock. */
 #include "geometry/regions/set_table.h"
 
 #include "base/hash.h"
@@ -121,9 +121,9 @@ static bool grow(set_table *t, uint32_t number)
     place_of(number, &chunk);
     if (atomic_load(&t->chunk[chunk]))
         return true;
-    large_set **made = calloc((size_t)FIRST_CHUNK << chunk, sizeof(large_set *));
-    atomic_store_explicit(&t->chunk[chunk], made, memory_order_release);
-    return made != NULL;
+    large_set **created = calloc((size_t)FIRST_CHUNK << chunk, sizeof(large_set *));
+    atomic_store_explicit(&t->chunk[chunk], created, memory_order_release);
+    return created != NULL;
 }
 
 static const large_set *add(set_table *t, uint64_t hash, const uint32_t *primitive, int count)
@@ -189,10 +189,10 @@ uint64_t set_table_change(set_table *t, uint64_t set, int primitive, bool in)
     }
     if (!placed)
         changed[count++] = (uint32_t)primitive;
-    const uint64_t made = set_table_of(t, changed, count);
+    const uint64_t created = set_table_of(t, changed, count);
     if (changed != few)
         free(changed);
-    return made;
+    return created;
 }
 
 bool set_table_knows(const set_table *t, uint64_t set)

@@ -3,8 +3,8 @@
  * one copy of each such set.
  *
  * Ownership: set_table_create creates, set_table_destroy frees. Any number of threads may use one table at once.
- * Errors: a set that cannot be stored for want of memory becomes the empty set, and set_table_failed is true from then
- * on. */
+ * Errors: a set that cannot be stored because memory runs out becomes the empty set, and set_table_failed is true from
+ * then on. */
 #pragma once
 
 #include <stdbool.h>
@@ -48,5 +48,5 @@ static inline uint64_t set_table_put(set_table *t, uint64_t set, int p, bool in)
         return in ? (uint64_t)p + 1 : 0;
     return set_table_has(t, set, p) == in ? set : set_table_change(t, set, p, in);
 }
-/* Whether it is a set of this table. For sets that a caller passes in. */
+/* Whether a set, passed in by a caller, is a set of this table. */
 bool set_table_knows(const set_table *t, uint64_t set);

@@ -68,9 +68,9 @@ static void select_first(boxes_build *b, int axis, int first, int count, int par
             while (precedes(b, axis, pivot, b->order[k]))
                 k--;
             if (i <= k) {
-                const int kept = b->order[i];
+                const int swapped = b->order[i];
                 b->order[i++] = b->order[k];
-                b->order[k--] = kept;
+                b->order[k--] = swapped;
             }
         }
         if (wanted <= k)
@@ -86,7 +86,7 @@ typedef struct range {
     int first, count;
 } range;
 
-/* The items below a full child of a node over that many. */
+/* The number of items below a full child of a node over `items` items. */
 static int full_child(int items)
 {
     int full = 1;
@@ -179,9 +179,9 @@ void solid_boxes_destroy(solid_boxes *b)
  * them). */
 static bounds3 bounds_of(const solid_tree *t, int i)
 {
-    const scene_geometry *a = t->of;
-    const bounds3 box = shape_world_box(&a->shapes[t->solids[i].region]);
-    const double slack = 0x1p-40 * a->primitives[t->solids[i].outside].extent;
+    const scene_geometry *g = t->geometry;
+    const bounds3 box = shape_world_box(&g->shapes[t->solids[i].region]);
+    const double slack = 0x1p-40 * g->primitives[t->solids[i].outside].extent;
     const vec3 wider = vec3_make(slack, slack, slack);
     return (bounds3){vec3_sub(box.low, wider), vec3_add(box.high, wider)};
 }
@@ -198,18 +198,18 @@ static status build_boxes(solid_tree *t, diagnostic *why)
     return code;
 }
 
-status solid_tree_build(const scene_geometry *a, solid_tree **out, diagnostic *why)
+status solid_tree_build(const scene_geometry *g, solid_tree **out, diagnostic *why)
 {
     solid_tree *t = calloc(1, sizeof *t);
     if (!t)
         return out_of_memory(why);
-    t->of = a;
+    t->geometry = g;
     t->sets = set_table_create();
-    t->solids = calloc((size_t)a->region_count + 1, sizeof *t->solids);
+    t->solids = calloc((size_t)g->region_count + 1, sizeof *t->solids);
     status code = t->sets && t->solids ? STATUS_OK : out_of_memory(why);
-    for (int r = 1; code == STATUS_OK && r <= a->region_count; r++)
-        if (a->regions[r].outside >= a->direct_count)
-            t->solids[t->count++] = (tree_solid){r, a->regions[r].outside};
+    for (int r = 1; code == STATUS_OK && r <= g->region_count; r++)
+        if (g->regions[r].outside >= g->direct_count)
+            t->solids[t->count++] = (tree_solid){r, g->regions[r].outside};
     THEN(code, build_boxes(t, why));
     if (code != STATUS_OK) {
         solid_tree_destroy(t);
@@ -232,22 +232,22 @@ void solid_tree_destroy(solid_tree *t)
 uint64_t solid_tree_inside(const solid_tree *t, uint64_t direct, vec3 point)
 {
     uint64_t set = solid_tree_join(t, (split_set){direct, 0});
-    for (int p = t->of->direct_count; p < t->of->primitive_count; p++)
-        if (primitive_contains(&t->of->primitives[p], point))
+    for (int p = t->geometry->direct_count; p < t->geometry->primitive_count; p++)
+        if (primitive_contains(&t->geometry->primitives[p], point))
             set = set_table_put(t->sets, set, p, true);
     return set;
 }
 
 int solid_tree_priority_index(const solid_tree *t, uint64_t set)
 {
-    const scene_geometry *a = t->of;
+    const scene_geometry *g = t->geometry;
     int highest = 0;
     set_members m;
     set_table_members(t->sets, set, &m);
     for (int k = 0; k < m.count; k++) {
-        const int r = a->primitives[m.primitive[k]].priority_index;
-        if (r > highest && a->regions[r].outside == (int)m.primitive[k] &&
-            !(a->regions[r].hollow >= 0 && set_table_has(t->sets, set, a->regions[r].hollow)))
+        const int r = g->primitives[m.primitive[k]].priority_index;
+        if (r > highest && g->regions[r].outside == (int)m.primitive[k] &&
+            !(g->regions[r].hollow >= 0 && set_table_has(t->sets, set, g->regions[r].hollow)))
             highest = r;
     }
     return highest;
@@ -261,7 +261,7 @@ split_set solid_tree_split(const solid_tree *t, uint64_t set)
         return parts;
     set_table_members(t->sets, set, &m);
     int k = 0;
-    for (; k < m.count && m.primitive[k] < (uint32_t)t->of->direct_count; k++)
+    for (; k < m.count && m.primitive[k] < (uint32_t)t->geometry->direct_count; k++)
         parts.direct |= (uint64_t)1 << m.primitive[k];
     if (k > 0)
         parts.others = set_table_of(t->sets, m.primitive + k, m.count - k);

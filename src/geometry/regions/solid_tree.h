@@ -8,7 +8,7 @@
 #include "geometry/rays.h"
 #include "geometry/regions/set_table.h"
 
-/* Its hierarchy: axis-aligned boxes, eight to a node, by median splits along the longest axis. Boxes are single
+/* The tree's hierarchy: axis-aligned boxes, eight to a node, by median splits along the longest axis. Boxes are single
  * precision, rounded outwards. Any number of threads may use it at once. */
 enum { BOXES_WIDE = 8, BOXES_DEPTH_MAX = 24 };
 
@@ -33,31 +33,31 @@ void solid_boxes_destroy(solid_boxes *b);
 /* A solid of the tree. */
 typedef struct tree_solid {
     int region;  /* priority index */
-    int outside; /* as in its region: here, its data can be fetched before they are needed */
+    int outside; /* the region's, repeated here so that its data can be prefetched */
 } tree_solid;
 
 typedef struct solid_tree {
-    const scene_geometry *of;
+    const scene_geometry *geometry;
     int count;
     tree_solid *solids; /* by priority index, ascending: item i of the boxes is solids[i] */
     solid_boxes boxes;
     set_table *sets;
 } solid_tree;
 
-/* For a geometry whose primitives and regions are complete: over the primitives that are not direct. */
+/* Builds the tree over the primitives that are not direct; the geometry's primitives and regions are complete. */
 status solid_tree_build(const scene_geometry *a, solid_tree **out, diagnostic *why);
 void solid_tree_destroy(solid_tree *t);
 
-/* Begins to load what a test of item i reads first: with many solids the time goes into waiting for memory. */
+/* Prefetches what a test of item i reads first: with many solids the time goes into waiting for memory. */
 static inline void solid_tree_fetch(const solid_tree *t, int i)
 {
-    const char *primitive_at = (const char *)&t->of->primitives[t->solids[i].outside];
-    __builtin_prefetch(&t->of->regions[t->solids[i].region]);
+    const char *primitive_at = (const char *)&t->geometry->primitives[t->solids[i].outside];
+    __builtin_prefetch(&t->geometry->regions[t->solids[i].region]);
     for (size_t line = 0; line < sizeof(primitive); line += 64)
         __builtin_prefetch(primitive_at + line);
 }
 
-/* The set of the direct primitives of those bits and the tree's primitives that contain the point. */
+/* The set of the direct primitives in `direct` and of the tree's primitives that contain the point. */
 uint64_t solid_tree_inside(const solid_tree *t, uint64_t direct, vec3 point);
 
 /* The priority index of the medium for a set of primitives. */

@@ -42,7 +42,7 @@ static bool is_coherent(const ray_batch *rays, const solid_boxes *boxes, double 
     return b->both_signs[0] + b->both_signs[1] + b->both_signs[2] <= 1;
 }
 
-/* Which children of a node some ray of the batch may enter, as bits: by interval arithmetic. */
+/* The children of a node, as bits, that some ray of the batch may enter: by interval arithmetic. */
 static unsigned entered_by_some(const boxes_node *n, const batch_bounds *b)
 {
     float near[BOXES_WIDE], far[BOXES_WIDE];
@@ -70,21 +70,21 @@ static unsigned entered_by_some(const boxes_node *n, const batch_bounds *b)
 
 /* --- the solids --- */
 
-/* Priority indices, at most as many as fit. */
+/* The priority indices of the view's regions, as long as their primitives fit. */
 typedef struct view_list {
     int count, primitives;
     int region[VIEW_PRIMITIVES_MAX];
 } view_list;
 
-static int places_of(const scene_geometry *a, int r)
+static int places_of(const scene_geometry *g, int r)
 {
-    const region *b = &a->regions[r];
-    return a->primitives[b->outside].rows + (b->hollow >= 0 ? a->primitives[b->hollow].rows : 0);
+    const region *b = &g->regions[r];
+    return g->primitives[b->outside].rows + (b->hollow >= 0 ? g->primitives[b->hollow].rows : 0);
 }
 
-static bool list_region(const scene_geometry *a, int r, view_list *l)
+static bool list_region(const scene_geometry *g, int r, view_list *l)
 {
-    l->primitives += places_of(a, r);
+    l->primitives += places_of(g, r);
     if (l->primitives > VIEW_PRIMITIVES_MAX)
         return false;
     int at = l->count++;
@@ -102,9 +102,9 @@ static bool has_region(const view_list *l, int r)
     return false;
 }
 
-static bool list_entered(const scene_geometry *a, const batch_bounds *b, view_list *l)
+static bool list_entered(const scene_geometry *g, const batch_bounds *b, view_list *l)
 {
-    const solid_boxes *boxes = &a->tree->boxes;
+    const solid_boxes *boxes = &g->tree->boxes;
     int32_t stack[BOXES_DEPTH_MAX * BOXES_WIDE];
     int size = 0;
     stack[size++] = 0;
@@ -116,8 +116,8 @@ static bool list_entered(const scene_geometry *a, const batch_bounds *b, view_li
                 stack[size++] = child;
                 boxes_fetch_node(boxes, child);
             } else {
-                solid_tree_fetch(a->tree, ~child);
-                if (!list_region(a, a->tree->solids[~child].region, l))
+                solid_tree_fetch(g->tree, ~child);
+                if (!list_region(g, g->tree->solids[~child].region, l))
                     return false;
             }
         }
@@ -125,8 +125,8 @@ static bool list_entered(const scene_geometry *a, const batch_bounds *b, view_li
     return true;
 }
 
-/* The solids that contain the start of a ray; their boxes are entered, up to rounding. */
-static bool list_containing(const scene_geometry *a, const ray_batch *rays, view_list *l)
+/* Lists the solids that contain the start of a ray; rounding may have left out their boxes. */
+static bool list_containing(const scene_geometry *g, const ray_batch *rays, view_list *l)
 {
     uint64_t last = 0;
     for (int i = 0; i < rays->count; i++) {
@@ -134,10 +134,10 @@ static bool list_containing(const scene_geometry *a, const ray_batch *rays, view
         if (rays->inside[i] == last)
             continue;
         last = rays->inside[i];
-        set_table_members(a->tree->sets, last, &m);
+        set_table_members(g->tree->sets, last, &m);
         for (int k = 0; k < m.count; k++) {
-            const int r = a->primitives[m.primitive[k]].priority_index;
-            if (!has_region(l, r) && !list_region(a, r, l))
+            const int r = g->primitives[m.primitive[k]].priority_index;
+            if (!has_region(l, r) && !list_region(g, r, l))
                 return false;
         }
     }
@@ -146,12 +146,12 @@ static bool list_containing(const scene_geometry *a, const ray_batch *rays, view
 
 /* --- the view --- */
 
-static int add_primitive(solid_view *v, const scene_geometry *a, int p, int r)
+static int add_primitive(solid_view *v, const scene_geometry *g, int p, int r)
 {
     const int first = v->inner.primitive_count;
-    for (int row = 0; row < a->primitives[p].rows; row++) {
+    for (int row = 0; row < g->primitives[p].rows; row++) {
         const int at = v->inner.primitive_count++;
-        v->primitives[at] = a->primitives[p + row];
+        v->primitives[at] = g->primitives[p + row];
         v->primitives[at].priority_index = r;
         v->outer_primitive[at] = p + row;
         v->inner.further |= row > 0 ? (uint64_t)1 << at : 0;
@@ -159,15 +159,15 @@ static int add_primitive(solid_view *v, const scene_geometry *a, int p, int r)
     return first;
 }
 
-static void add_region(solid_view *v, const scene_geometry *a, int outer)
+static void add_region(solid_view *v, const scene_geometry *g, int outer)
 {
     const int r = ++v->inner.region_count;
-    const region *b = &a->regions[outer];
+    const region *b = &g->regions[outer];
     v->outer_region[r] = outer;
     v->direct_regions[r - 1] = r;
     v->regions[r] = *b;
-    v->regions[r].outside = add_primitive(v, a, b->outside, r);
-    v->regions[r].hollow = b->hollow >= 0 ? add_primitive(v, a, b->hollow, r) : -1;
+    v->regions[r].outside = add_primitive(v, g, b->outside, r);
+    v->regions[r].hollow = b->hollow >= 0 ? add_primitive(v, g, b->hollow, r) : -1;
     v->inner.opaque_regions |= (uint64_t)b->opaque << (r - 1);
     v->inner.highest_clear = b->opaque ? v->inner.highest_clear : r;
 }
@@ -181,36 +181,36 @@ static bool are_distinct(const solid_view *v)
     return true;
 }
 
-static void fill(solid_view *v, const scene_geometry *a, const view_list *l)
+static void fill(solid_view *v, const scene_geometry *g, const view_list *l)
 {
     v->inner = (scene_geometry){.primitives = v->primitives,
                                 .regions = v->regions,
                                 .direct_regions = v->direct_regions,
-                                .extent = a->extent,
-                                .attenuates = a->attenuates,
+                                .extent = g->extent,
+                                .attenuates = g->attenuates,
                                 .outer = v};
-    v->of = a;
-    v->regions[0] = a->regions[0];
+    v->scene = g;
+    v->regions[0] = g->regions[0];
     v->outer_region[0] = 0;
     for (int k = 0; k < l->count; k++)
-        add_region(v, a, l->region[k]);
+        add_region(v, g, l->region[k]);
     v->inner.direct_count = v->inner.primitive_count;
     v->inner.direct_region_count = v->inner.region_count;
     v->inner.distinct = are_distinct(v);
 }
 
-bool KERNEL(view_make)(const scene_geometry *a, const ray_batch *rays, double t_max, solid_view *v)
+bool KERNEL(view_make)(const scene_geometry *g, const ray_batch *rays, double t_max, solid_view *v)
 {
     batch_bounds b;
     view_list l = {0, 0, {0}};
-    if (a->meshes || rays->count < LANES_MAX || !is_coherent(rays, &a->tree->boxes, t_max, &b))
+    if (g->meshes || rays->count < LANES_MAX || !is_coherent(rays, &g->tree->boxes, t_max, &b))
         return false;
-    for (int k = 0; k < a->direct_region_count; k++)
-        if (!list_region(a, a->direct_regions[k], &l))
+    for (int k = 0; k < g->direct_region_count; k++)
+        if (!list_region(g, g->direct_regions[k], &l))
             return false;
-    if (!list_entered(a, &b, &l) || !list_containing(a, rays, &l))
+    if (!list_entered(g, &b, &l) || !list_containing(g, rays, &l))
         return false;
-    fill(v, a, &l);
+    fill(v, g, &l);
     return true;
 }
 
@@ -220,7 +220,7 @@ bool KERNEL(view_make)(const scene_geometry *a, const ray_batch *rays, double t_
  * follows from the ray's start. */
 static uint64_t inner_set(const solid_view *v, uint64_t set, vec3 start)
 {
-    const set_table *sets = v->of->tree->sets;
+    const set_table *sets = v->scene->tree->sets;
     uint64_t bits = 0;
     for (int r = 1; r <= v->inner.region_count; r++) {
         const region *b = &v->regions[r];
@@ -258,7 +258,7 @@ uint64_t KERNEL(view_outer_set)(const solid_view *v, uint64_t bits)
         if (v->regions[r].hollow >= 0 && !(bits >> v->regions[r].outside & 1))
             bits &= ~((uint64_t)1 << v->regions[r].hollow);
     for (; bits; bits &= bits - 1)
-        set = set_table_put(v->of->tree->sets, set, v->outer_primitive[__builtin_ctzll(bits)], true);
+        set = set_table_put(v->scene->tree->sets, set, v->outer_primitive[__builtin_ctzll(bits)], true);
     return set;
 }
 

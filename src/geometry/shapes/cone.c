@@ -50,7 +50,7 @@ static double farthest(const solid_shape *shape, vec3 d)
     return fmax(shape->radius * out, shape->height * d.y + shape->top_radius * out);
 }
 
-/* Its diameter at half height, or its height. */
+/* The lesser of its diameter at half height and its height. */
 static double thickness(const solid_shape *shape)
 {
     return fmin(shape->height, shape->radius + shape->top_radius);

@@ -67,8 +67,8 @@ static shape_extent cylinder_extent(const solid_shape *shape)
 
 static double cylinder_farthest(const solid_shape *shape, vec3 d)
 {
-    const double whole = fmax(0.0, meniscus_wall(shape) * d.y) + shape->radius * hypot(d.x, d.z / shape->m);
-    return has_meniscus(shape) ? fmax(whole, meniscus_farthest(shape, d)) : whole;
+    const double straight = fmax(0.0, meniscus_wall(shape) * d.y) + shape->radius * hypot(d.x, d.z / shape->m);
+    return has_meniscus(shape) ? fmax(straight, meniscus_farthest(shape, d)) : straight;
 }
 
 /* Exact around a point if the cylinder is round, and about an axis if it is round and upright along the axis; otherwise
@@ -113,20 +113,20 @@ static int outline_rings(const solid_shape *shape, shape_ring *out)
     return 2;
 }
 
-/* A meniscus is a piece of its own. */
+/* A meniscus is a separate convex piece. */
 static int cylinder_rings(const solid_shape *shape, shape_ring *out)
 {
     enum { CIRCLES = 9 };
-    const int whole = outline_rings(shape, out);
+    const int outline = outline_rings(shape, out);
     if (!has_meniscus(shape))
-        return whole;
+        return outline;
     profile_point surface[CIRCLES];
     meniscus_points(shape, CIRCLES, surface);
     for (int i = 0; i < CIRCLES; i++) {
         const double r = surface[i].radius;
-        out[whole + i] = (shape_ring){.part = 1, .y = surface[i].height, .x = r, .z = r};
+        out[outline + i] = (shape_ring){.part = 1, .y = surface[i].height, .x = r, .z = r};
     }
-    return whole + CIRCLES;
+    return outline + CIRCLES;
 }
 
 static status cylinder_tessellation(const solid_shape *shape, int part, mesh **out, diagnostic *why)
@@ -254,7 +254,7 @@ static int cup_rings(const solid_shape *shape, shape_ring *out)
     return outside + 2;
 }
 
-/* Its outside, whose top is a ring; and the wall and floor of its hollow. */
+/* The outside, whose top is a ring, or the wall and floor of the hollow. */
 static status cup_tessellation(const solid_shape *shape, int part, mesh **out, diagnostic *why)
 {
     const double r = shape->radius, inner = shape->inner_radius, low = shape->floor, h = shape->height;

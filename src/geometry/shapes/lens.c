@@ -142,8 +142,8 @@ static shape_extent extent(const solid_shape *s)
     return (shape_extent){{vec3_make(-r, low, -r), vec3_make(r, high, r)}, hypot(r, 0.5 * (high - low))};
 }
 
-/* Of a convex side, the point whose normal is d, if it is within the rim: its slope c rho / sqrt(1 - (1 + k) c^2 rho^2)
- * is that of d. Otherwise the rim's edge. */
+/* The maximum of d . p over a side. On a convex side it is at the point whose normal is d, with the slope c rho /
+ * sqrt(1 - (1 + k) c^2 rho^2) of d, if that is within the rim; otherwise at the rim's edge. */
 static double farthest_of_side(const solid_shape *s, int k, vec3 d)
 {
     const lens_profile e = lens_profile_of(s, k);
@@ -178,7 +178,7 @@ static void fit(solid_shape *s, double size)
         s->even_1[i] = s->even_2[i] = 0.0;
 }
 
-/* The rim, whose outline contains convex sides; another side is a piece of its own. */
+/* The outline of the rim contains convex sides; any other side is a separate piece. */
 static int rings(const solid_shape *s, shape_ring *out)
 {
     enum { CIRCLES = 7 }; /* of a side */

@@ -33,7 +33,7 @@ double lens_gap_at(const solid_shape *s, double rho)
     return lens_height_at(&two, rho) - lens_height_at(&one, rho);
 }
 
-/* What is minimised over the radius: up height(second) - up height(first) + out rho. */
+/* The function that is minimised over the radius: up (height(plus) - height(minus)) + out rho. */
 typedef struct profile_sum {
     lens_profile plus, minus;
     double up, out;
@@ -44,8 +44,8 @@ static double sum_at(const profile_sum *f, double rho)
     return f->up * (lens_height_at(&f->plus, rho) - asphere_sag(&f->minus.e, rho * rho)) + f->out * rho;
 }
 
-/* The radius of the least value within the rim: of equidistant radii, and then by the golden section between the
- * neighbours of the best. */
+/* The radius of the least value within the rim: the best of equidistant radii, then golden section search between its
+ * neighbours. */
 static double least_within(const profile_sum *f, double rim)
 {
     enum { STEPS = 256 };
@@ -69,8 +69,8 @@ static double least_within(const profile_sum *f, double rim)
     return sum_at(f, at) < least ? at : sampled;
 }
 
-/* On the axis, at the rim, or where the slopes of conics c rho / sqrt(1 - (1 + k) c^2 rho^2) are equal: rho^2 = (c1^2 -
- * c2^2) / (c1^2 c2^2 (k2 - k1)). */
+/* The radius at which two conics are nearest: on the axis, at the rim, or where their slopes c rho / sqrt(1 - (1 + k)
+ * c^2 rho^2) are equal: rho^2 = (c1^2 - c2^2) / (c1^2 c2^2 (k2 - k1)). */
 static double nearest_conics(const solid_shape *s)
 {
     const lens_profile one = lens_profile_of(s, 0), two = lens_profile_of(s, 1);
@@ -114,17 +114,17 @@ double lens_highest_of(const solid_shape *s, int k)
 
 /* --- how the sides bend ---
  *
- * Bounds by intervals of q = rho^2, of which a side has 256.
+ * Bounds by interval arithmetic, on 256 intervals of q = rho^2 per side.
  *
  * Along a line at a distance b from the axis, with q = b^2 + t^2, half the second derivative of a side's height by t is
  *
  *     h = p + 2 (q - b^2) g,  p = dz/dq, g = dp/dq.
  *
- * Where p and g have one sign, so has h. Elsewhere h = 0 at b^2 = B = q + p / (2 g), whose derivative is (3 g^2 - p
- * dg/dq) / (2 g^2). Only B >= 0 counts, where p + 2 q g, half the second derivative along the meridian, has the sign of
- * g: so the side has turned there. If that happens in one interval, in only one of the cases p > 0 > g and p < 0 < g,
- * and B rises in it, then h has at most one zero on either side of the axis, and by Rolle's theorem the line crosses
- * the side at most four times. */
+ * If p and g have the same sign, so has h. Otherwise h = 0 at b^2 = B = q + p / (2 g), whose derivative is (3 g^2 - p
+ * dg/dq) / (2 g^2). Only B >= 0 counts; there p + 2 q g, half the second derivative along the meridian, has the sign of
+ * g: the side has turned. If that happens in one interval, in only one of the cases p > 0 > g and p < 0 < g, and B
+ * rises in it, then h has at most one zero on either side of the axis, and by Rolle's theorem the line crosses the side
+ * at most four times. */
 
 enum { FORM_PIECES = 256 };
 
@@ -132,8 +132,8 @@ enum { FORM_PIECES = 256 };
 #define SLOPE_MOST 16.0
 #define BEND_MOST 0x1p14
 
-/* sum conic / w^power + k0 + k1 q + k2 q^2 + k3 q^3; if the side has no curvature, divided by the power of q with which
- * the sum rises on the axis: that has its sign. */
+/* An interval that contains the sum conic / w^power + k0 + k1 q + k2 q^2 + k3 q^3. If the side has no curvature, the
+ * sum is divided by its lowest power of q, which leaves its sign unchanged. */
 static asphere_range sign_of(const even_asphere *e, double conic, int power, const double k[4], double from, double to)
 {
     double a = conic, b = conic, shifted[4] = {0.0};
@@ -162,13 +162,13 @@ static double least_turning(const even_asphere *e, double from, double to)
     return 3.0 * least * least - fmax(fmax(p.low * d.low, p.low * d.high), fmax(p.high * d.low, p.high * d.high));
 }
 
-/* What is known from the axis up to a radius. */
+/* What is known about a side from the axis up to a radius. */
 typedef struct form_so_far {
     bool convex, concave;
-    bool falls, rises; /* may B >= 0, with p > 0 > g, or p < 0 < g? */
-    bool steady;       /* B rises where it may */
-    bool within;       /* the last piece is in such an interval */
-    int intervals;
+    bool falls, rises; /* whether B >= 0 is possible, with p > 0 > g or with p < 0 < g */
+    bool steady;       /* B rises wherever B >= 0 is possible */
+    bool within;       /* B >= 0 is possible in the last piece */
+    int intervals;     /* number of intervals in which B >= 0 is possible */
 } form_so_far;
 
 static bool turns_once(const form_so_far *f)

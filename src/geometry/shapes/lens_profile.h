@@ -42,8 +42,8 @@ double lens_highest_of(const solid_shape *s, int k);
 /* The largest rho out + height up within the rim. */
 double lens_reach_of(const solid_shape *s, int k, double out, double up);
 
-/* How a side bends, seen from outside. The number is that of the intervals in which a line can be on its inner side,
- * LENS_ONE_TURN: by Rolle's theorem, as the second derivative of the height along any line changes its sign at most
+/* The form of a side, seen from outside. Values 1 to 3 are the most intervals in which a line is on the inner side: for
+ * LENS_ONE_TURN by Rolle's theorem, as the second derivative of the height along any line changes its sign at most
  * twice. */
 typedef enum lens_form { LENS_CONVEX = 1, LENS_CONCAVE = 2, LENS_ONE_TURN = 3, LENS_TURNS, LENS_STEEP } lens_form;
 

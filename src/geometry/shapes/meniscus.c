@@ -12,9 +12,9 @@
 #include <stdio.h>
 
 enum { TERMS = CAPILLARY_DEGREE + 1 };
-#define TRUNCATION 0x1p-57 /* of a step's last terms, relative to the height */
+#define TRUNCATION 0x1p-57 /* last terms of a step, relative to the height */
 #define NEGLIGIBLE 0x1p-60 /* height, in capillary lengths */
-#define STEEPEST 1e-5      /* cos(psi)^2: beyond, a shot is too steep, as sin(1 deg)^2 = 3e-4 at the steepest wall */
+#define STEEPEST 1e-5      /* least cos(psi)^2 of a shot; at the steepest wall it is sin(1 deg)^2 = 3e-4 */
 
 typedef struct taylor {
     double u[TERMS], w[TERMS];
@@ -80,8 +80,8 @@ static void keep_step(capillary_profile *out, double s, double step, const taylo
     out->piece[out->count++] = piece;
 }
 
-/* sin(psi) at the wall, r = wide, for that height on the axis; 2 if the surface is vertical before. With `out`, the
- * heights are kept there. */
+/* sin(psi) at the wall, r = wide, for the height `axis` on the axis; 2 if the surface becomes vertical before the wall.
+ * Stores the heights in `out` unless it is NULL. */
 static double shoot(double wide, double axis, capillary_profile *out)
 {
     double s = 0.0, u = axis, w = 0.5 * axis;
@@ -118,7 +118,7 @@ static double axis_height(double wide, double slope)
         else
             low = middle, at_low = at;
     }
-    int kept = 0; /* the Illinois variant of false position (Dowell and Jarratt, BIT 11, 1971), and bisection */
+    int retained = 0; /* the Illinois variant of false position (Dowell and Jarratt, BIT 11, 1971), and bisection */
     for (int k = 1; k < 100 && high - low > 0x1p-52 * low && at_low < 0.0; k++) {
         double middle = k % 4 ? low + (high - low) * (at_low / (at_low - at_high)) : 0.5 * (low + high);
         if (!(middle > low && middle < high))
@@ -126,12 +126,12 @@ static double axis_height(double wide, double slope)
         const double at = shoot(wide, middle, NULL) - slope;
         if (at > 0.0) {
             high = middle, at_high = at;
-            at_low *= kept == 1 ? 0.5 : 1.0;
-            kept = 1;
+            at_low *= retained == 1 ? 0.5 : 1.0;
+            retained = 1;
         } else {
             low = middle, at_low = at;
-            at_high *= kept == -1 ? 0.5 : 1.0;
-            kept = -1;
+            at_high *= retained == -1 ? 0.5 : 1.0;
+            retained = -1;
         }
         if (at == 0.0)
             break;
@@ -155,7 +155,7 @@ void capillary_solve(double radius, double capillary_length, double contact_angl
         for (int k = 0; k < TERMS; k++)
             e->c[k] *= up * a;
     }
-    /* The part that is too low to count is flat. */
+    /* The part whose height is negligible is flat. */
     if (out->piece[0].from > 0.0) {
         for (int i = out->count; i > 0; i--)
             out->piece[i] = out->piece[i - 1];
@@ -180,18 +180,19 @@ static double tube_radius(const solid_shape *shape)
     return shape->contact_radius > 0.0 ? shape->contact_radius : shape->radius;
 }
 
-/* Solving takes about a millisecond, and the same shape is needed many times: so each thread keeps its last one. */
+/* Solving takes about a millisecond, and the same shape is needed many times: so each thread caches its last
+ * solution. */
 const capillary_profile *meniscus_of(const solid_shape *shape)
 {
-    static _Thread_local capillary_profile kept;
-    static _Thread_local double of[4];
+    static _Thread_local capillary_profile solution;
+    static _Thread_local double solved_for[4];
     const double key[4] = {tube_radius(shape), shape->capillary_length, shape->contact_angle_deg, shape->height};
-    if (key[0] != of[0] || key[1] != of[1] || key[2] != of[2] || key[3] != of[3]) {
-        capillary_solve(key[0], key[1], key[2], key[3], &kept);
+    if (key[0] != solved_for[0] || key[1] != solved_for[1] || key[2] != solved_for[2] || key[3] != solved_for[3]) {
+        capillary_solve(key[0], key[1], key[2], key[3], &solution);
         for (int k = 0; k < 4; k++)
-            of[k] = key[k];
+            solved_for[k] = key[k];
     }
-    return &kept;
+    return &solution;
 }
 
 status meniscus_check(const solid_shape *s, diagnostic *why)
@@ -204,7 +205,7 @@ status meniscus_check(const solid_shape *s, diagnostic *why)
                         s->capillary_length);
     if (s->m != 1.0)
         return diagnose(why, STATUS_BAD_INPUT, "set m to 1, or capillary_length to 0",
-                        "a meniscus needs a round cylinder, and m is %g", s->m);
+                        "a meniscus requires a round cylinder, but m is %g", s->m);
     char remedy[160];
     if (!(s->contact_radius >= 0.0 && s->contact_radius <= s->radius)) {
         snprintf(remedy, sizeof remedy, "use at most the radius, %g; 0 is the radius", s->radius);
@@ -238,7 +239,7 @@ double meniscus_high(const solid_shape *shape)
     return has_meniscus(shape) ? meniscus_of(shape)->high : shape->height;
 }
 
-/* At the point of a falling surface whose normal is the direction; otherwise at the wall. */
+/* The maximum is at the point of a falling surface whose normal is d; otherwise at the wall. */
 double meniscus_farthest(const solid_shape *shape, vec3 d)
 {
     const capillary_profile *p = meniscus_of(shape);

@@ -3,7 +3,7 @@
  * overlap; copies may touch. */
 #include "geometry/shapes/parts.h"
 
-static bool is_whole(double value)
+static bool is_copy_count(double value)
 {
     return value >= 1.0 && value <= COPIES_MAX && value == floor(value);
 }
@@ -11,7 +11,7 @@ static bool is_whole(double value)
 static status check(const solid_shape *shape, diagnostic *why)
 {
     const vec3 n = shape->copies, s = shape->scale, step = shape->spacing;
-    if (!is_whole(n.x) || !is_whole(n.y) || !is_whole(n.z) || n.x * n.y * n.z > COPIES_MAX)
+    if (!is_copy_count(n.x) || !is_copy_count(n.y) || !is_copy_count(n.z) || n.x * n.y * n.z > COPIES_MAX)
         return diagnose(why, STATUS_BAD_INPUT, "use three whole numbers from 1, at most 4194304 copies in all",
                         "copies is %g, %g, %g", n.x, n.y, n.z);
     if (!(s.x > 0.0 && s.y > 0.0 && s.z > 0.0) || !vec3_is_finite(s) || !vec3_is_finite(step))
@@ -19,7 +19,7 @@ static status check(const solid_shape *shape, diagnostic *why)
     return STATUS_OK;
 }
 
-/* The maximum distance of its copies from its position. */
+/* The maximum distance of the copies from the solid's position. */
 static double reach(const solid_shape *shape)
 {
     const bounds3 b = shape->mesh->bounds;

@@ -3,7 +3,7 @@
 #include "geometry/shapes/parts.h"
 #include <math.h>
 
-/* R = R_z R_y R_x: rotation about x comes first. R_x takes y towards z, R_y z towards x, R_z x towards y. */
+/* R = R_z R_y R_x: rotation about x comes first. R_x rotates y towards z, R_y z towards x, R_z x towards y. */
 mat3 rotation_from_deg(vec3 rotation_deg)
 {
     double sx, cx, sy, cy, sz, cz;

@@ -13,7 +13,7 @@
  * 256)). */
 enum { ROUND_SEGMENTS = 256 };
 
-/* STATUS_BAD_INPUT unless it is finite and above 0. */
+/* STATUS_BAD_INPUT unless value is finite and above 0. */
 status check_length(double value, const char *name, diagnostic *why);
 
 static inline double largest_of(double a, double b, double c)

@@ -1,6 +1,5 @@
-/* The shape prism: 0 <= y <= height over a regular polygon with `sides` corners on a circle of radius `radius`
- * about the axis,
- * the first corner in front, at -z. Its position is the centre of its base. */
+/* The shape prism: 0 <= y <= height over a regular polygon with `sides` corners on a circle of radius `radius` about
+ * the axis, the first corner in front, at -z. Its position is the centre of its base. */
 #include "geometry/shapes/parts.h"
 
 #include "base/elementary.h"
@@ -28,7 +27,7 @@ static vec3 direction(const solid_shape *shape, int64_t k)
 }
 
 /* Radius of the inscribed circle. */
-static double within(const solid_shape *shape)
+static double inscribed_radius(const solid_shape *shape)
 {
     return shape->radius * -direction(shape, 1).z;
 }
@@ -37,7 +36,7 @@ static bool contains(const solid_shape *shape, vec3 p)
 {
     bool inside = p.y >= 0.0 && p.y <= shape->height;
     for (int64_t k = 0; k < shape->sides; k++)
-        inside &= vec3_dot(direction(shape, 2 * k + 1), vec3_make(p.x, 0.0, p.z)) <= within(shape);
+        inside &= vec3_dot(direction(shape, 2 * k + 1), vec3_make(p.x, 0.0, p.z)) <= inscribed_radius(shape);
     return inside;
 }
 
@@ -45,7 +44,7 @@ static void primitives(const solid_shape *shape, primitive *out)
 {
     out[0] = primitive_placed(shape, &prism_rule, shape->height + shape->radius);
     out[0].radius = shape->radius;
-    out[0].second_radius = within(shape);
+    out[0].second_radius = inscribed_radius(shape);
     out[0].top = shape->height;
     out[0].sides = (int)shape->sides;
 }
@@ -55,7 +54,7 @@ static bool flat(const solid_shape *shape, size_t i, vec3 *normal, vec3 *point)
     if (i < 2)
         return level_faces((const double[]){0.0, shape->height}, 2, i, normal, point);
     *normal = direction(shape, 2 * ((int64_t)i - 2) + 1);
-    *point = vec3_scale(*normal, within(shape));
+    *point = vec3_scale(*normal, inscribed_radius(shape));
     return i < (size_t)shape->sides + 2;
 }
 
@@ -80,7 +79,7 @@ static shape_extent extent(const solid_shape *shape)
 
 static double thickness(const solid_shape *shape)
 {
-    return fmin(shape->height, 2.0 * within(shape));
+    return fmin(shape->height, 2.0 * inscribed_radius(shape));
 }
 
 static void fit(solid_shape *shape, double size)

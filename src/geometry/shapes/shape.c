@@ -60,7 +60,7 @@ bool solid_shape_contains(const solid_shape *shape, vec3 point)
     const vec3 from_center = vec3_sub(point, shape->position), turned = shape->rotation_deg;
     if (!rule->contains)
         return false;
-    if (turned.x == 0.0 && turned.y == 0.0 && turned.z == 0.0) /* most solids, and drawings ask thousands of times */
+    if (turned.x == 0.0 && turned.y == 0.0 && turned.z == 0.0) /* the common case; drawings call this often */
         return rule->contains(shape, from_center);
     return rule->contains(shape, mat3_apply_transposed(rotation_from_deg(turned), from_center));
 }
@@ -82,9 +82,9 @@ double shape_reach(const solid_shape *shape, vec3 d)
 
 bounds3 shape_world_box(const solid_shape *shape)
 {
-    const vec3 ever = vec3_make(HUGE_VAL, HUGE_VAL, HUGE_VAL), at = shape->position;
+    const vec3 infinite = vec3_make(HUGE_VAL, HUGE_VAL, HUGE_VAL), at = shape->position;
     if (shape_of(shape)->unbounded)
-        return (bounds3){vec3_scale(ever, -1.0), ever};
+        return (bounds3){vec3_scale(infinite, -1.0), infinite};
     const mat3 turn = rotation_from_deg(shape->rotation_deg);
     double low[3], high[3];
     for (int k = 0; k < 3; k++) { /* the world's axes in the solid's frame */
@@ -143,8 +143,8 @@ bool solid_shapes_may_share_faces(const solid_shape *a, const solid_shape *b)
 {
     if ((shape_of(a)->curved && shape_of(b)->curved) || is_unknown(a) || is_unknown(b))
         return true;
-    const size_t of_a = flat_count(a), of_b = flat_count(b);
-    if (of_b > 0 && of_a > COMPARED_MAX / of_b)
+    const size_t count_a = flat_count(a), count_b = flat_count(b);
+    if (count_b > 0 && count_a > COMPARED_MAX / count_b)
         return true;
     flat one, other;
     for (size_t i = 0; flat_at(a, i, &one); i++) {

@@ -53,7 +53,7 @@ typedef struct shape_rule {
     /* Its surface is a triangle mesh, given by name; the mesh has its own materials, texture coordinates and hierarchy,
      * and may be open or not yet loaded. */
     bool triangles;
-    bool unbounded; /* it has no finite extent: it serves only as a ground or wall for others, and has a texture size */
+    bool unbounded; /* no finite extent: serves only as a ground or wall for others, and has a texture size */
     bool hollow;    /* it is a vessel: the space within its wall is outside the solid */
     bool isotropic; /* no rotation changes it */
     bool curved;    /* part of its surface is not flat */
@@ -64,8 +64,8 @@ typedef struct shape_rule {
     bool (*contains)(const solid_shape *shape, vec3 local);
     /* Writes the primitives for the kernels, primitive_count of them; the second one is subtracted from the first. */
     int primitive_count;
-    int further_rows; /* scratch rows that each uses beyond its own: see geometry/scene_geometry.h */
-    int (*more_rows)(const solid_shape *shape); /* and beyond these for this shape; NULL: none */
+    int further_rows; /* scratch rows beyond one per primitive: see geometry/scene_geometry.h */
+    int (*more_rows)(const solid_shape *shape); /* further rows of this shape only; NULL: none */
     void (*primitives)(const solid_shape *shape, struct primitive *out);
     /* By primitive, the names of its faces by number; the last name also applies to all higher numbers. */
     const char *const *faces[SHAPE_PRIMITIVES];
@@ -81,7 +81,7 @@ typedef struct shape_rule {
     double (*farthest_from)(const placed_shape *placed, const round_frame *frame);
     /* Whether `hidden` is known to be entirely inside `cover`. NULL: never. */
     bool (*covers)(const placed_shape *cover, const placed_shape *hidden);
-    /* Its least thickness. */
+    /* The shape's least thickness. */
     double (*thickness)(const solid_shape *shape);
     /* Scales it to fill about a cube with that edge length. NULL: the shape has no size to set. */
     void (*fit)(solid_shape *shape, double size);
@@ -98,7 +98,7 @@ typedef struct shape_rule {
 
 /* NULL past the last kind. */
 const shape_rule *shape_of_kind(shape_kind kind);
-/* False if there is none. */
+/* False if no shape has that name. */
 bool shape_named(const char *word, shape_kind *out);
 bool shape_has(const shape_rule *rule, const char *parameter);
 /* "surface" for a face without a name. face: of the solid; a hollow's faces start at HOLLOW_FACES. */
@@ -110,19 +110,19 @@ placed_shape shape_placed(const solid_shape *shape);
 /* A local axis (0 x, 1 y, 2 z) in the world. */
 vec3 placed_axis(const mat3 *turn, int k);
 
-/* The maximum of direction . p over all its points; INFINITY for an unbounded shape, and while its mesh is not
+/* The maximum of direction . p over all points of the shape; INFINITY for an unbounded shape, and while its mesh is not
  * loaded. */
 double placed_farthest(const placed_shape *placed, vec3 direction);
-/* The same, but finite for an unbounded shape in the direction of its surface normal. */
+/* placed_farthest, but finite for an unbounded shape in the direction of its surface normal. */
 double placed_limit(const placed_shape *placed, vec3 direction);
 
 double round_distance(const round_frame *frame, vec3 point);
-/* An upper bound of that distance over all its points. */
+/* An upper bound of round_distance over all points of the shape. */
 double placed_farthest_from(const placed_shape *placed, const round_frame *frame);
 
-/* Its maximum along a local direction: as `farthest`, but for triangles that of their bounding box. */
+/* The maximum along a local direction: `farthest`, but for a mesh the maximum over its bounding box. */
 double shape_reach(const solid_shape *shape, vec3 direction);
-/* Its bounding box in the world (for a mesh, that of its local box); infinite for an unbounded shape. */
+/* The bounding box of a shape in the world (for a mesh, of its local box); infinite for an unbounded shape. */
 bounds3 shape_world_box(const solid_shape *shape);
 
 /* False: no face of one coincides with part of a face of the other, flat with flat (in the same plane) or curved with

@@ -22,22 +22,22 @@ static bool contains(const solid_shape *shape, vec3 p)
     return apart * apart + p.y * p.y <= shape->tube_radius * shape->tube_radius;
 }
 
-static double whole(const solid_shape *shape)
+static double outer_radius(const solid_shape *shape)
 {
     return shape->radius + shape->tube_radius;
 }
 
 static void primitives(const solid_shape *shape, primitive *out)
 {
-    out[0] = primitive_placed(shape, &torus_rule, whole(shape));
+    out[0] = primitive_placed(shape, &torus_rule, outer_radius(shape));
     out[0].radius = shape->radius;
     out[0].second_radius = shape->tube_radius;
 }
 
 static shape_extent extent(const solid_shape *shape)
 {
-    const vec3 high = vec3_make(whole(shape), shape->tube_radius, whole(shape));
-    return (shape_extent){{vec3_scale(high, -1.0), high}, whole(shape)};
+    const vec3 high = vec3_make(outer_radius(shape), shape->tube_radius, outer_radius(shape));
+    return (shape_extent){{vec3_scale(high, -1.0), high}, outer_radius(shape)};
 }
 
 static double farthest(const solid_shape *shape, vec3 d)
