@@ -193,7 +193,7 @@ void softbody_aim_hands(softbody *b, double dt_s)
     }
 }
 
-void softbody_land_hands(softbody *b)
+void softbody_move_hands(softbody *b)
 {
     for (int i = 0; i < SOFTBODY_HANDS_MAX; i++)
         b->hands[i].at = b->hands[i].target;

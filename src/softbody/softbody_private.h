@@ -193,8 +193,8 @@ void softbody_find_forces(softbody *b, const vectors *velocity);
 /* Volume from the gradient of the last find_forces. */
 double softbody_volume_of_gradient(softbody *b);
 
-/* Hands: aim sets the velocities of held masses so that the step ends at the targets; land moves the hands there after
+/* Hands: aim sets the velocities of held masses so that the step ends at the targets; move puts the hands there after
  * the step; play executes due keys before a step. */
 void softbody_aim_hands(softbody *b, double dt_s);
-void softbody_land_hands(softbody *b);
+void softbody_move_hands(softbody *b);
 status softbody_play(softbody *b, diagnostic *why);

@@ -359,7 +359,7 @@ static status report_divergence(const softbody *b, diagnostic *why)
              b->stable_dt_s);
     if (isfinite(speed))
         snprintf(what, sizeof what,
-                 "mass %zu has the speed %.3g relative to the others: more than the size of the slime per substep", i,
+                 "the speed of mass %zu relative to the others is %.3g: more than the slime's size per substep", i,
                  speed);
     else
         snprintf(what, sizeof what, "the speed of mass %zu is not a number", i < b->net.count ? i : 0);
@@ -386,7 +386,7 @@ status softbody_step(softbody *b, diagnostic *why)
         if (has_diverged(b))
             return report_divergence(b, why);
     }
-    softbody_land_hands(b);
+    softbody_move_hands(b);
     b->steps++;
     return STATUS_OK;
 }

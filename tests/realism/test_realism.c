@@ -371,7 +371,7 @@ static void scenes_without_vessel_rod_or_common_axis_are_refused(void **state)
         {"vessel.visible=off", "'vessel'"}, {"rod.visible=off", "'rod'"},        {"liquid.radius=0.5", "wall"},
         {"liquid.position.x=0.01", "wall"}, {"liquid.m=1.1", "round"},           {"vessel.m=1.1", "elliptic"},
         {"vessel.rotation.x=5", "rotated"}, {"vessel.transparency=0", "opaque"}, {"rod.transparency=1", "not opaque"},
-        {"rod.priority=1", "displaced"},    {"liquid.position.y=0.5", "floor"},  {"liquid.priority=9", "displaces"},
+        {"rod.priority=1", "displaces"},    {"liquid.position.y=0.5", "floor"},  {"liquid.priority=9", "displaces"},
     };
     for (size_t i = 0; i < COUNT(wrong); i++) {
         scene *s = rod_scene(wrong[i].change);
