@@ -97,7 +97,7 @@ static uint64_t final_film(studio *s)
     worked(render_worker_wait_for_final(s->p, 600.0, &shown, &why), &why);
     assert_true(shown->final);
     assert_int_equal(shown->generation, scene_document_generation(s->d));
-    assert_non_null(shown->of);
+    assert_non_null(shown->rendered);
     assert_int_equal(shown->width, shown->full_width);
     const uint64_t hash = shown->film_hash;
     shared_image_release(shown);

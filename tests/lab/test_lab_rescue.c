@@ -353,7 +353,7 @@ static void an_unwritable_folder_is_reported(void **state)
     } bad[] = {
         {below_file, "/scene.yaml: cannot make the folder: Not a directory; save the scene, or set XDG_STATE_HOME"},
         {"", "there is no folder in which to keep unsaved changes; set HOME or XDG_STATE_HOME"},
-        {"/tmp", "/tmp: the folder belongs to, or can be written by, somebody else; make it your own"}};
+        {"/tmp", "/tmp: the folder belongs to another user, or another user can write to it; make it yours"}};
     for (size_t i = 0; i < sizeof bad / sizeof *bad; i++) {
         lab_room room;
         begin_in(&room, p->scenes, bad[i].folder, "scene.yaml");

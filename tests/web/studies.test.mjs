@@ -215,7 +215,7 @@ export const cases = {
 
     for (const [change, status, field, words] of [
       [{ axes: ['render.depth=1,x'] }, 400, '--axis render.depth=1,x', "'x' is not an integer"],
-      [{ axes: [] }, 400, undefined, 'a study has 1 to 16 axes'],
+      [{ axes: [] }, 400, undefined, 'the number of axes is out of range'],
       [{ repetitions: 0.5 }, 400, 'repetitions', 'invalid number of repetitions'],
       [{ file: '../form.study' }, 400, 'file', 'not a valid study name'],
       [{ axes: ['background.image=/etc/passwd'] }, 400, undefined, 'outside of the folder'],

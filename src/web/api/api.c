@@ -36,13 +36,13 @@ status api_changed(call *c, status code, uint64_t generation)
 /* Reads value if the JSON has the expected type. */
 typedef bool reader(const json_t *json, void *value);
 
-static bool read_value(call *c, const char *key, bool needed, const char *form, reader *read, void *value)
+static bool read_value(call *c, const char *key, bool needed, const char *remedy, reader *read, void *value)
 {
     const json_t *json = json_object_get(c->body, key);
     const bool missing = !json || json_is_null(json);
     if (missing ? !needed : read(json, value))
         return true;
-    diagnose(&c->why, STATUS_BAD_INPUT, form, "'%s' must be %s", key, form);
+    diagnose(&c->why, STATUS_BAD_INPUT, remedy, missing ? "'%s' is missing" : "the value of '%s' is not valid", key);
     return false;
 }
 
@@ -84,29 +84,29 @@ static bool read_flag(const json_t *json, void *value)
 
 bool api_read_number(call *c, const char *key, bool needed, double *value)
 {
-    return read_value(c, key, needed, "a number", read_number, value);
+    return read_value(c, key, needed, "give a number", read_number, value);
 }
 
 bool api_read_vector(call *c, const char *key, bool needed, double value[3])
 {
-    return read_value(c, key, needed, "a list of three numbers", read_vector, value);
+    return read_value(c, key, needed, "give a list of three numbers", read_vector, value);
 }
 
 bool api_read_text(call *c, const char *key, bool needed, const char **value)
 {
-    return read_value(c, key, needed, "a string", read_text, value);
+    return read_value(c, key, needed, "give a string", read_text, value);
 }
 
 bool api_read_flag(call *c, const char *key, bool *value)
 {
-    return read_value(c, key, false, "true or false", read_flag, value);
+    return read_value(c, key, false, "give true or false", read_flag, value);
 }
 
 bool api_read_gesture(call *c, const char **gesture)
 {
     *gesture = NULL;
     return api_read_text(c, "gesture", false, gesture) &&
-           read_value(c, "gesture", false, "a string of at most 64 characters", read_short, gesture);
+           read_value(c, "gesture", false, "give a string of at most 64 characters", read_short, gesture);
 }
 
 /* --- queries and the current document --- */
@@ -117,7 +117,7 @@ bool api_query_flag(const call *c, const char *key)
     return value && strcmp(value, "0") != 0;
 }
 
-bool api_query_numbers(call *c, const char *key, int count, double *out, const char *form)
+bool api_query_numbers(call *c, const char *key, int count, double *out, const char *remedy)
 {
     const char *text = http_query_value(c->request, key);
     char word[64];
@@ -131,7 +131,7 @@ bool api_query_numbers(call *c, const char *key, int count, double *out, const c
         if (!at && found + 1 == count)
             return true;
     }
-    diagnose(&c->why, STATUS_BAD_INPUT, form, text ? "%s is not %d number%s: '%.80s'" : "%s is missing", key, count,
+    diagnose(&c->why, STATUS_BAD_INPUT, remedy, text ? "%s is not %d number%s: '%.80s'" : "%s is missing", key, count,
              count == 1 ? "" : "s", text);
     return false;
 }

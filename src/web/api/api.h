@@ -36,44 +36,44 @@ status api_bind(lab *l, size_t *count, diagnostic *why);
 
 /* --- replies; each returns the status that the handler returns --- */
 
-status api_reply_json(call *c, json_t *json);                         /* takes the reference */
-status api_send(call *c, const char *type, void *bytes, size_t size); /* takes the bytes */
+status api_reply_json(call *c, json_t *json);                         /* owns json */
+status api_send(call *c, const char *type, void *bytes, size_t size); /* owns the bytes */
 status api_refuse(call *c, int code, const char *what, const char *remedy);
 /* Replies {"generation": N} after a change. */
 status api_changed(call *c, status code, uint64_t generation);
 
-/* The scenes that were sent lately, for GET /api/scene?since=GENERATION. Thread-safe. */
+/* The scenes that were sent recently, for GET /api/scene?since=GENERATION. Thread-safe. */
 typedef struct sent_scenes sent_scenes;
 sent_scenes *sent_scenes_create(void);    /* NULL when out of memory */
 void sent_scenes_destroy(sent_scenes *s); /* NULL is allowed */
 
-/* [{"path", "a", "b"}]: the parameters in which two scenes differ; values are numbers, lists or words, null where
- * that scene has no such parameter or it is unused there; b's parameters in their order, then those only in a.
+/* [{"path", "a", "b"}]: the parameters in which two scenes differ; values are numbers, lists or words, null if
+ * that scene lacks the parameter or does not use it; b's parameters in their order, then those only in a.
  * Values that a solid inherits from its material in both scenes are listed under the material only. NULL when out of
  * memory. */
 json_t *changed_params(const scene *a, const scene *b);
 
 /* The command line that renders the same film as the scene document. file: its name in the folder, NULL for none.
- * *complete is false where the file does not exist or has other objects than the scene, which no --set can
+ * *complete is false if the file does not exist or has other objects than the scene, which no --set can
  * reproduce. threads: the laboratory's default of render.threads, which does not count as a difference; 0 for none.
  * text is allocated memory. */
 status command_line(const folder *files, const char *file, const scene *s, int threads, char **text, bool *complete,
                     diagnostic *why);
 
-/* The same as a list of PATH=VALUE for the scene's file, whose path *path is; NULL if it cannot be read. Both are the
- * caller's. */
+/* The settings of that command line as a list of PATH=VALUE, and *path, the path of the scene's file; NULL if it cannot
+ * be read. The caller releases both. */
 status command_settings(const folder *files, const char *file, const scene *s, int threads, char **path,
                         json_t **settings, bool *complete, diagnostic *why);
 
 /* --- reading a request --- */
 
-/* Read one value of the body. Each returns false and sets the diagnostic where the key has another type; a missing
+/* Read one value of the body. Each returns false and sets the diagnostic if the value is not valid; a missing
  * key is an error only if needed, and leaves value unchanged. */
 bool api_read_number(call *c, const char *key, bool needed, double *value);
 bool api_read_vector(call *c, const char *key, bool needed, double value[3]);
 bool api_read_text(call *c, const char *key, bool needed, const char **value);
 bool api_read_flag(call *c, const char *key, bool *value);
-/* A parameter's value in the syntax of scene_set, in allocated memory; place: what a message calls it. STATUS_BAD_INPUT
+/* A parameter's value in the syntax of scene_set, in allocated memory; place: its name in messages. STATUS_BAD_INPUT
  * for unsupported JSON. */
 status api_value_text(const json_t *value, const char *place, char **text, diagnostic *why);
 /* Reads the gesture; NULL for none. */
@@ -81,15 +81,15 @@ bool api_read_gesture(call *c, const char **gesture);
 
 /* Whether the query contains the key with a value other than "0". */
 bool api_query_flag(const call *c, const char *key);
-/* Reads the `count` numbers of a query's key, separated by commas; form: the remedy where they are not. */
-bool api_query_numbers(call *c, const char *key, int count, double *out, const char *form);
+/* Reads the `count` numbers of a query's key, separated by commas; remedy: for a message. */
+bool api_query_numbers(call *c, const char *key, int count, double *out, const char *remedy);
 /* Reads ?bits, the bit depth of a PNG; 8 by default. Returns false for values other than 8 and 16. */
 bool api_read_bits(const call *c, int *bits);
 
-/* Rows of a study's tables and comparisons that a reply has. */
+/* The most rows of a study's summary or comparison in one reply. */
 enum { STUDY_JSON_CELLS_MAX = 5000 };
 
-/* Reads the study {name} of the path, whose results may be read too; the caller destroys it. */
+/* Reads the study {name} of the path, and checks that its results are inside the folder; the caller destroys it. */
 status api_read_study(call *c, study **s);
 
 /* Waits for the final image of the current scene document. */

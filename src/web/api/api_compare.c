@@ -65,8 +65,8 @@ static status send_copy(call *c, const unsigned char *bytes, size_t size)
 status api_reference_image(call *c)
 {
     int bits;
-    const unsigned char *shared = NULL;
-    unsigned char *own = NULL;
+    const unsigned char *cached = NULL;
+    unsigned char *encoded = NULL;
     size_t size = 0;
     if (!api_read_bits(c, &bits))
         return api_refuse(c, 400, "unsupported bit depth", "use ?bits=8 or ?bits=16");
@@ -76,12 +76,12 @@ status api_reference_image(call *c)
     c->refused = 409;
     status code = semaphore_acquire(c->l->heavy, &c->why);
     if (code == STATUS_OK) {
-        code = bits == 16 ? image_encode(a->linear, IMAGE_PNG, 16, true, &own, &size, &c->why)
-                          : shared_image_encode(a, IMAGE_PNG, &shared, &size, &c->why);
+        code = bits == 16 ? image_encode(a->linear, IMAGE_PNG, 16, true, &encoded, &size, &c->why)
+                          : shared_image_encode(a, IMAGE_PNG, &cached, &size, &c->why);
         semaphore_release(c->l->heavy);
     }
     if (code == STATUS_OK)
-        own ? api_send(c, "image/png", own, size) : send_copy(c, shared, size);
+        encoded ? api_send(c, "image/png", encoded, size) : send_copy(c, cached, size);
     shared_image_release(a);
     return code;
 }
@@ -123,7 +123,7 @@ status api_compare(call *c)
     }
     if (code == STATUS_OK)
         api_reply_json(c, json_pack("{s:o, s:o, s:o, s:o}", "a", shared_image_json(a), "b", shared_image_json(b),
-                                    "changed", changed_params(a->of, b->of), "comparison",
+                                    "changed", changed_params(a->rendered, b->rendered), "comparison",
                                     fits ? comparison_json(&found) : json_null()));
     shared_image_release(b);
     reference_pair_release(pair);
@@ -156,15 +156,15 @@ static const char *const units[PIXEL_MAPS] = {[PIXEL_RAYS] = "rays", [PIXEL_TIME
 
 typedef struct map_question {
     lab *l;
-    const shared_image *of;
+    const shared_image *final;
 } map_question;
 
-/* As the ask of a token. */
-static bool is_late(void *context)
+/* The ask of a cancel token: whether nobody can use the maps any more. */
+static bool are_obsolete(void *context)
 {
     const map_question *q = context;
     return studies_ending(q->l->studies) || studies_runs(q->l->studies, NULL) ||
-           scene_document_generation(q->l->scene_document) != q->of->generation;
+           scene_document_generation(q->l->scene_document) != q->final->generation;
 }
 
 static status get_maps(call *c, pixel_map_set *set, int which, unsigned char **png, size_t *size)
@@ -177,7 +177,7 @@ static status get_maps(call *c, pixel_map_set *set, int which, unsigned char **p
     map_question q = {c->l, final};
     status code = semaphore_acquire(c->l->heavy, &c->why);
     if (code == STATUS_OK) {
-        cancel_token token = {.ask = is_late, .context = &q};
+        cancel_token token = {.ask = are_obsolete, .context = &q};
         cancel_begin(&token);
         code = pixel_maps_of(c->l->pixel_maps, final, set, which, png, size, &c->why);
         cancel_end(&token);

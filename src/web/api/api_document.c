@@ -27,7 +27,7 @@ status api_state(call *c)
 
 /* --- set and reset --- */
 
-/* Whether it is one number or word. */
+/* Whether the value is one number or one word. */
 static bool is_item(const json_t *value)
 {
     const char *word = json_string_value(value);
@@ -64,7 +64,7 @@ status api_value_text(const json_t *value, const char *place, char **text, diagn
     return text_writer_close(&writer, text, NULL, why);
 }
 
-/* The parameters to set, and notes on those without effect (lint/lint.h); NULL while there are none. */
+/* The parameters to set, and the notes on those without effect (lint/lint.h); notes: NULL if there are none. */
 typedef struct set_request {
     const json_t *values;
     json_t *notes;
@@ -88,9 +88,9 @@ static status note_inert(set_request *x, const scene *s, diagnostic *why)
     return STATUS_OK;
 }
 
-static status set_all(void *of, scene *s, diagnostic *why)
+static status set_all(void *context, scene *s, diagnostic *why)
 {
-    set_request *x = of;
+    set_request *x = context;
     const json_t *values = x->values;
     const char *path;
     json_t *value;
@@ -219,7 +219,7 @@ status api_link(call *c)
     return result;
 }
 
-/* --- the camera, as a view of the scene with a history of its own --- */
+/* --- the camera: the view of the scene, and its history --- */
 
 static bool read_pair(call *c, const char *key, double pair[2])
 {
@@ -398,7 +398,7 @@ status api_rescue(call *c)
         return STATUS_BAD_INPUT;
     const bool opens = strcmp(action, "open") == 0;
     if (!opens && strcmp(action, "discard") != 0)
-        return api_refuse(c, 400, "'action' is neither open nor discard", "give open or discard");
+        return api_refuse(c, 400, "'action' is neither open nor discard", "use open or discard");
     if (opens)
         return api_changed(c, rescue_open(c->l->rescue, id, &generation, &c->why), generation);
     TRY(rescue_discard(c->l->rescue, id, &c->why));

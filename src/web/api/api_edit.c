@@ -24,7 +24,7 @@ typedef struct edit {
     const scene *loaded; /* scene loaded from a model or texture file */
     shape_kind shape;
     const json_t *values; /* parameters of a new object; NULL: none */
-    object_list together; /* the object and those that are edited with it; first is NULL: only the object */
+    object_list group;    /* the object and those edited with it; first NULL: only the object */
     status (*displace)(scene *s, const char *name, vec3 by, diagnostic *why);
     status (*displace_group)(scene *s, const object_list *of, vec3 by, diagnostic *why);
     vec3 by;
@@ -51,7 +51,7 @@ static status change(void *context, scene *s, diagnostic *why)
                              "the %.60s cannot be edited in this way", e->name);
 }
 
-/* verb: for undo, followed by the object's name. Replies with the generation and the name of the new object. */
+/* verb: the text for undo, before the object's name. Replies with the generation and the name of the new object. */
 static status apply(call *c, edit *e, const char *verb, const char *name, const char *gesture)
 {
     uint64_t generation = 0;
@@ -72,7 +72,7 @@ static status apply_to(call *c, edit e, const char *verb, const char *gesture)
 
 /* --- existing objects --- */
 
-static status remove_it(edit *e, scene *s, diagnostic *why)
+static status remove_object(edit *e, scene *s, diagnostic *why)
 {
     const status code = scene_remove(s, e->name, why);
     e->refused = code == STATUS_OK ? 0 : 409;
@@ -81,28 +81,27 @@ static status remove_it(edit *e, scene *s, diagnostic *why)
 
 status api_remove(call *c)
 {
-    return apply_to(c, (edit){.act = remove_it}, "remove", NULL);
+    return apply_to(c, (edit){.act = remove_object}, "remove", NULL);
 }
 
-static status displace_it(edit *e, scene *s, diagnostic *why)
+static status displace_object(edit *e, scene *s, diagnostic *why)
 {
-    return e->together.first ? e->displace_group(s, &e->together, e->by, why) : e->displace(s, e->name, e->by, why);
+    return e->group.first ? e->displace_group(s, &e->group, e->by, why) : e->displace(s, e->name, e->by, why);
 }
 
-/* Reads `with`; the caller frees together->others. */
-static status read_group(call *c, object_list *together)
+/* Reads `with`; the caller frees group->others. */
+static status read_group(call *c, object_list *group)
 {
     enum { NAMES_MAX = 1000 };
     const json_t *list = json_object_get(c->body, "with");
     const size_t count = json_array_size(list);
     bool good = !list || (json_is_array(list) && count <= NAMES_MAX);
     if (good && count > 0) {
-        if (!(together->others = calloc(count, sizeof *together->others)))
+        if (!(group->others = calloc(count, sizeof *group->others)))
             return out_of_memory(&c->why);
-        together->first = http_path_value(c->request, "name");
-        for (together->count = 0; together->count < count && good; together->count++)
-            good =
-                (together->others[together->count] = json_string_value(json_array_get(list, together->count))) != NULL;
+        group->first = http_path_value(c->request, "name");
+        for (group->count = 0; group->count < count && good; group->count++)
+            good = (group->others[group->count] = json_string_value(json_array_get(list, group->count))) != NULL;
     }
     return good ? STATUS_OK
                 : api_refuse(c, 400, "'with' is not a list of names", "give at most 1000 names of solids and lights");
@@ -112,18 +111,18 @@ static status read_group(call *c, object_list *together)
 static status apply_to_group(call *c, edit *e, const char *verb)
 {
     const char *gesture = NULL;
-    status code = read_group(c, &e->together);
+    status code = read_group(c, &e->group);
     if (code == STATUS_OK && !api_read_gesture(c, &gesture))
         code = STATUS_BAD_INPUT;
     THEN(code, apply_to(c, *e, verb, gesture));
-    free(e->together.others);
+    free(e->group.others);
     return code;
 }
 
 static status displace(call *c, edit e, const char *verb)
 {
     e.or_camera = true;
-    e.act = displace_it;
+    e.act = displace_object;
     double by[3];
     if (!api_read_vector(c, "by", true, by))
         return STATUS_BAD_INPUT;
@@ -141,22 +140,21 @@ status api_turn(call *c)
     return displace(c, (edit){.displace = scene_turn, .displace_group = scene_turn_objects}, "turn");
 }
 
-static status scale_it(edit *e, scene *s, diagnostic *why)
+static status scale_object(edit *e, scene *s, diagnostic *why)
 {
-    return e->together.first ? scene_scale_objects(s, &e->together, e->factor, why)
-                             : scene_scale(s, e->name, e->factor, why);
+    return e->group.first ? scene_scale_objects(s, &e->group, e->factor, why) : scene_scale(s, e->name, e->factor, why);
 }
 
 status api_scale(call *c)
 {
     const json_t *factor = json_object_get(c->body, "factor");
-    edit e = {.or_camera = true, .factor = json_number_value(factor), .act = scale_it};
+    edit e = {.or_camera = true, .factor = json_number_value(factor), .act = scale_object};
     if (!json_is_number(factor))
         return api_refuse(c, 400, "'factor' is not a number", "give a factor above 0");
     return apply_to_group(c, &e, "scale");
 }
 
-static status rename_it(edit *e, scene *s, diagnostic *why)
+static status rename_object(edit *e, scene *s, diagnostic *why)
 {
     const bool taken = strcmp(e->name, e->word) != 0 && check_name_is_free(s, e->word, NULL) != STATUS_OK;
     const status code = scene_rename(s, e->name, e->word, why);
@@ -166,12 +164,12 @@ static status rename_it(edit *e, scene *s, diagnostic *why)
 
 status api_rename(call *c)
 {
-    edit e = {.act = rename_it};
+    edit e = {.act = rename_object};
     return api_read_text(c, "to", true, &e.word) ? apply_to(c, e, "rename", NULL) : STATUS_BAD_INPUT;
 }
 
 /* A solid that loses its material keeps a copy of the material's values: the defaults would be black. */
-static status give_material(edit *e, scene *s, diagnostic *why)
+static status set_material(edit *e, scene *s, diagnostic *why)
 {
     const int index = scene_find_solid(s, e->name);
     if (e->word || index < 0)
@@ -182,20 +180,20 @@ static status give_material(edit *e, scene *s, diagnostic *why)
 
 status api_material(call *c)
 {
-    edit e = {.act = give_material};
+    edit e = {.act = set_material};
     if (!json_is_null(json_object_get(c->body, "material")) && !api_read_text(c, "material", true, &e.word))
         return STATUS_BAD_INPUT;
     return apply_to(c, e, e.word ? "set the material of" : "remove the material of", NULL);
 }
 
-static status copy_it(edit *e, scene *s, diagnostic *why)
+static status copy_object(edit *e, scene *s, diagnostic *why)
 {
     return new_copy(s, e->name, e->new_name, why);
 }
 
 status api_copy(call *c)
 {
-    return apply_to(c, (edit){.act = copy_it}, "copy", NULL);
+    return apply_to(c, (edit){.act = copy_object}, "copy", NULL);
 }
 
 /* What is inside a solid, and a ball around the solid itself. */

@@ -28,8 +28,8 @@ static void name_download(http_reply *r, const char *name)
     http_reply_header(r, "Content-Disposition", text);
 }
 
-/* How a reply has the image. quick: as pages display it, encoded once for all of them. with_scene: a PNG that carries
- * its scene (scene/file/shared.h). */
+/* How a reply encodes the image. quick: as pages display it, encoded once for all requests. with_scene: a PNG that
+ * carries its scene (scene/file/shared.h). */
 typedef struct encoding {
     image_format format;
     const char *type;
@@ -37,11 +37,11 @@ typedef struct encoding {
     bool quick, with_scene;
 } encoding;
 
-static status encode_with_scene(const shared_image *p, int bits, unsigned char **bytes, size_t *size, diagnostic *why)
+static status encode_with_scene(const shared_image *img, int bits, unsigned char **bytes, size_t *size, diagnostic *why)
 {
     shared_texts texts;
-    TRY(shared_texts_make(p->of, &texts, why));
-    image_rows rows = image_rows_of(p->linear);
+    TRY(shared_texts_make(img->rendered, &texts, why));
+    image_rows rows = image_rows_of(img->linear);
     rows.texts = texts.item;
     rows.text_count = texts.count;
     const status code = image_encode_rows(&rows, IMAGE_PNG, bits, false, bytes, size, why);
@@ -50,14 +50,15 @@ static status encode_with_scene(const shared_image *p, int bits, unsigned char *
 }
 
 /* Encodes into memory owned by the reply. */
-static status encode_own(const shared_image *p, const encoding *e, unsigned char **bytes, size_t *size, diagnostic *why)
+static status encode_copy(const shared_image *img, const encoding *e, unsigned char **bytes, size_t *size,
+                          diagnostic *why)
 {
-    if (e->with_scene && p->of)
-        return encode_with_scene(p, e->bits, bytes, size, why);
+    if (e->with_scene && img->rendered)
+        return encode_with_scene(img, e->bits, bytes, size, why);
     if (!e->quick)
-        return image_encode(p->linear, e->format, e->bits, false, bytes, size, why);
+        return image_encode(img->linear, e->format, e->bits, false, bytes, size, why);
     const unsigned char *shared;
-    status code = shared_image_encode(p, e->format, &shared, size, why);
+    status code = shared_image_encode(img, e->format, &shared, size, why);
     *bytes = code == STATUS_OK ? malloc(*size) : NULL;
     if (*bytes)
         memcpy(*bytes, shared, *size);
@@ -66,15 +67,15 @@ static status encode_own(const shared_image *p, const encoding *e, unsigned char
     return code;
 }
 
-/* Encodes an image; small images, as during motion, do not wait for the semaphore. */
-static status encode(lab *l, const shared_image *p, const encoding *e, unsigned char **bytes, size_t *size,
+/* Encodes an image; small images, such as those of a moving slime, do not wait for the semaphore. */
+static status encode(lab *l, const shared_image *img, const encoding *e, unsigned char **bytes, size_t *size,
                      diagnostic *why)
 {
     const double small = 1e6; /* pixels */
-    if ((double)p->width * p->height <= small)
-        return encode_own(p, e, bytes, size, why);
+    if ((double)img->width * img->height <= small)
+        return encode_copy(img, e, bytes, size, why);
     TRY(semaphore_acquire(l->heavy, why));
-    status code = encode_own(p, e, bytes, size, why);
+    status code = encode_copy(img, e, bytes, size, why);
     semaphore_release(l->heavy);
     return code;
 }
@@ -82,30 +83,30 @@ static status encode(lab *l, const shared_image *p, const encoding *e, unsigned 
 static status reply_image(call *c, encoding e)
 {
     const char *download = http_query_value(c->request, "download");
-    const shared_image *p = NULL;
+    const shared_image *img = NULL;
     unsigned char *bytes = NULL;
     size_t size;
     if (!api_read_bits(c, &e.bits))
         return api_refuse(c, 400, "unsupported bit depth", "use ?bits=8 or ?bits=16");
     e.with_scene = e.format == IMAGE_PNG && api_query_flag(c, "scene");
     e.quick = e.format == IMAGE_PNG ? e.bits == 8 : api_query_flag(c, "quick");
-    if (api_query_flag(c, "wait") && api_wait_for_final(c, &p) != STATUS_OK) {
+    if (api_query_flag(c, "wait") && api_wait_for_final(c, &img) != STATUS_OK) {
         c->refused = 409;
         return STATUS_INTERRUPTED;
     }
-    if (!p && !(p = render_worker_newest(c->l->render_worker)))
+    if (!img && !(img = render_worker_newest(c->l->render_worker)))
         return api_refuse(c, 404, "no image is rendered yet", "add ?wait=1");
-    const status code = encode(c->l, p, &e, &bytes, &size, &c->why);
+    const status code = encode(c->l, img, &e, &bytes, &size, &c->why);
     if (code == STATUS_OK) {
         api_send(c, e.type, bytes, size);
-        add_number(c->reply, "X-Cuvette-Serial", p->serial);
-        add_number(c->reply, "X-Cuvette-Generation", p->generation);
-        add_number(c->reply, "X-Cuvette-Pass", (uint64_t)p->pass);
-        add_number(c->reply, "X-Cuvette-Final", p->final);
+        add_number(c->reply, "X-Cuvette-Serial", img->serial);
+        add_number(c->reply, "X-Cuvette-Generation", img->generation);
+        add_number(c->reply, "X-Cuvette-Pass", (uint64_t)img->pass);
+        add_number(c->reply, "X-Cuvette-Final", img->final);
         if (download)
             name_download(c->reply, download);
     }
-    shared_image_release(p);
+    shared_image_release(img);
     return code;
 }
 
@@ -125,12 +126,12 @@ status api_image_jpeg(call *c)
  * laboratory if the program has it. */
 static status load_laboratory(call *c, char **laboratory)
 {
-    const char *asked = http_query_value(c->request, "live");
+    const char *choice = http_query_value(c->request, "live");
     diagnostic missing = {.line = 0};
     *laboratory = NULL;
-    if (asked && strcmp(asked, "0") == 0)
+    if (choice && strcmp(choice, "0") == 0)
         return STATUS_OK;
-    if (asked && strcmp(asked, "empty") == 0)
+    if (choice && strcmp(choice, "empty") == 0)
         return (*laboratory = strdup("")) ? STATUS_OK : out_of_memory(&c->why);
     const status code = page_live_code(laboratory, &missing);
     if (code == STATUS_FAILURE)
@@ -138,14 +139,14 @@ static status load_laboratory(call *c, char **laboratory)
     return code == STATUS_BAD_INPUT ? STATUS_OK : code;
 }
 
-static status write_page(call *c, const shared_image *p, const char *command, const char *laboratory, char **bytes,
+static status write_page(call *c, const shared_image *img, const char *command, const char *laboratory, char **bytes,
                          size_t *size)
 {
-    const report_page_content page = {.s = p->of,
+    const report_page_content page = {.s = img->rendered,
                                       .level = c->l->settings.level,
-                                      .rows = image_rows_of(p->linear),
+                                      .rows = image_rows_of(img->linear),
                                       .bits = 8,
-                                      .film_hash = p->film_hash,
+                                      .film_hash = img->film_hash,
                                       .command = command,
                                       .live = laboratory};
     text_writer writer;
@@ -159,20 +160,20 @@ static status write_page(call *c, const shared_image *p, const char *command, co
 
 status api_page(call *c)
 {
-    const shared_image *p = NULL;
+    const shared_image *img = NULL;
     char *command = NULL, *bytes = NULL, *laboratory = NULL, *file = api_document_file(c);
     size_t size = 0;
     bool complete;
     status code = file ? STATUS_OK : out_of_memory(&c->why);
-    if (code == STATUS_OK && api_wait_for_final(c, &p) != STATUS_OK) {
+    if (code == STATUS_OK && api_wait_for_final(c, &img) != STATUS_OK) {
         c->refused = 409;
         code = STATUS_INTERRUPTED;
     }
-    THEN(code,
-         command_line(c->l->files, *file ? file : NULL, p->of, c->l->settings.threads, &command, &complete, &c->why));
+    THEN(code, command_line(c->l->files, *file ? file : NULL, img->rendered, c->l->settings.threads, &command,
+                            &complete, &c->why));
     THEN(code, load_laboratory(c, &laboratory));
-    THEN(code, write_page(c, p, command, laboratory, &bytes, &size));
-    shared_image_release(p);
+    THEN(code, write_page(c, img, command, laboratory, &bytes, &size));
+    shared_image_release(img);
     free(laboratory);
     free(command);
     free(file);

@@ -13,18 +13,18 @@
 #include <string.h>
 #include <sys/stat.h>
 
-/* A visit to the lessons: act is called with each one, or with NULL and the error if it cannot be read, until *done is
- * set. */
+/* A visit to the lessons, which ends when `found` is set or the machine fails. act is called with each lesson, or with
+ * NULL and the error if the file cannot be read. */
 typedef struct lesson_visit {
-    void (*act)(struct lesson_visit *v, lesson *l, const char *path, bool own, const diagnostic *error);
+    void (*act)(struct lesson_visit *v, lesson *l, const char *path, bool in_folder, const diagnostic *error);
     call *c;
     json_t *list;
-    const char *name; /* to find */
-    status code;      /* of the machine: memory, disk; its reason is the call's */
+    const char *name; /* of the lesson to find */
+    status code;      /* STATUS_FAILURE if memory or the disk failed; the reason is in the call */
     lesson *found;
 } lesson_visit;
 
-static void visit_file(lesson_visit *v, const char *path, const char *root, bool own)
+static void visit_file(lesson_visit *v, const char *path, const char *root, bool in_folder)
 {
     lesson *l = NULL;
     diagnostic why = {.what = ""};
@@ -34,13 +34,13 @@ static void visit_file(lesson_visit *v, const char *path, const char *root, bool
         v->code = STATUS_FAILURE;
         v->c->why = why;
     } else {
-        v->act(v, l, path, own, &why);
+        v->act(v, l, path, in_folder, &why);
     }
     if (l != v->found)
         lesson_destroy(l);
 }
 
-/* A file that was removed after the list was made is left out. */
+/* Skips a file that was removed after the list was made. */
 static status visit_folder(lesson_visit *v)
 {
     const folder *files = v->c->l->files;
@@ -70,15 +70,15 @@ static status visit_folder(lesson_visit *v)
 static status visit_lessons(lesson_visit *v)
 {
     TRY(visit_folder(v));
-    char *own = lesson_folder(), *root = own ? strdup(own) : NULL;
+    char *installed = lesson_folder(), *root = installed ? strdup(installed) : NULL;
     lesson_list list = {.path = NULL};
     if (root && strrchr(root, '/'))
         *strrchr(root, '/') = 0;
-    status code = root ? lesson_list_find(own, &list, &v->c->why) : STATUS_OK;
+    status code = root ? lesson_list_find(installed, &list, &v->c->why) : STATUS_OK;
     for (size_t k = 0; k < list.count; k++)
         visit_file(v, list.path[k], root, false);
     lesson_list_release(&list);
-    free(own);
+    free(installed);
     free(root);
     return code == STATUS_OK ? v->code : code;
 }
@@ -96,27 +96,27 @@ static bool is_listed(const json_t *list, const char *name)
     return false;
 }
 
-static void list_one(lesson_visit *v, lesson *l, const char *path, bool own, const diagnostic *error)
+static void list_lesson(lesson_visit *v, lesson *l, const char *path, bool in_folder, const diagnostic *error)
 {
     if (l && is_listed(v->list, l->name))
         return;
     json_t *one = l ? lesson_json(l)
                     : json_pack("{s:o,s:o}", "file", json_of_text(strrchr(path, '/') ? strrchr(path, '/') + 1 : path),
                                 "error", json_of_diagnostic(error));
-    json_add_as(&one, "own", json_boolean(own));
+    json_add_as(&one, "own", json_boolean(in_folder));
     json_add(&v->list, one);
 }
 
-static void find_one(lesson_visit *v, lesson *l, const char *path, bool own, const diagnostic *error)
+static void match_lesson(lesson_visit *v, lesson *l, const char *path, bool in_folder, const diagnostic *error)
 {
-    (void)path, (void)own, (void)error;
+    (void)path, (void)in_folder, (void)error;
     if (l && strcmp(l->name, v->name) == 0)
         v->found = l;
 }
 
 status api_lessons(call *c)
 {
-    lesson_visit v = {.act = list_one, .c = c, .list = json_array()};
+    lesson_visit v = {.act = list_lesson, .c = c, .list = json_array()};
     const status code = visit_lessons(&v);
     api_reply_json(c, json_pack("{s:o}", "lessons", v.list));
     return code;
@@ -125,7 +125,7 @@ status api_lessons(call *c)
 /* The lesson {name} of the path; the caller destroys it. */
 static status find_lesson(call *c, lesson **out)
 {
-    lesson_visit v = {.act = find_one, .c = c, .name = http_path_value(c->request, "name")};
+    lesson_visit v = {.act = match_lesson, .c = c, .name = http_path_value(c->request, "name")};
     const status code = visit_lessons(&v);
     if (code != STATUS_OK) {
         lesson_destroy(v.found);
@@ -135,8 +135,8 @@ static status find_lesson(call *c, lesson **out)
     return v.found ? STATUS_OK : api_refuse(c, 404, "there is no lesson of that name", "GET /api/lessons lists them");
 }
 
-/* The lesson's scene as a new one of the document, so that saving needs a name. Files keep their places if the scene
- * is inside the folder. */
+/* Opens the lesson's scene as a new scene, so that saving requires a name. The scene keeps its path, to which the names
+ * of its files are relative, if it is inside the folder. */
 status api_lesson_open(call *c)
 {
     lesson *l = NULL;
@@ -200,7 +200,7 @@ status api_lesson_measure(call *c)
 
 /* --- thumbnails --- */
 
-/* Owns the scene from now on. */
+/* Destroys the scene. */
 static status send_thumbnail(call *c, const char *key, scene *s)
 {
     unsigned char *bytes = NULL;
@@ -230,7 +230,7 @@ static status may_render(call *c)
     const bool waits =
         render_worker_json(c->l->render_worker, state) && !json_is_null(json_object_get(state, "waiting"));
     json_decref(state);
-    return waits ? api_refuse(c, 409, "a study is measuring", "try again after that") : STATUS_OK;
+    return waits ? api_refuse(c, 409, "a study is measuring", "try again when it has ended") : STATUS_OK;
 }
 
 status api_lesson_thumbnail(call *c)

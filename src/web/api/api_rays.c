@@ -1,6 +1,6 @@
-/* API: rays through the scene: the ray tree of a pixel as JSON, text or drawing, as `cuvette trace` writes it; the rays
- * of its beams and a screen that bins their power; a fan, as `cuvette fan` writes it. Optics compared with closed
- * forms. And the linter's notes on the scene. */
+/* API: rays through the scene: the ray tree of a pixel, as `cuvette trace` writes it; the scene's beams, and a screen
+ * that bins their power; a fan, as `cuvette fan` writes it. Also optics compared with closed forms, and the linter's
+ * notes on the scene. */
 #include "base/json_build.h"
 #include "base/number.h"
 #include "base/text.h"
@@ -175,15 +175,15 @@ status api_beams(call *c)
     return answer_beams(c, &q);
 }
 
-#define SCREEN_FORM "give ?centre=X,Y,Z&normal=X,Y,Z&size=WIDTH,HEIGHT&bins=COLUMNS,ROWS&rays=N"
+#define SCREEN_REMEDY "give ?centre=X,Y,Z&normal=X,Y,Z&size=WIDTH,HEIGHT&bins=COLUMNS,ROWS&rays=N"
 
 status api_beam_screen(call *c)
 {
     double centre[3], normal[3], size[2], bins[2], rays = 0;
-    if (!api_query_numbers(c, "centre", 3, centre, SCREEN_FORM) ||
-        !api_query_numbers(c, "normal", 3, normal, SCREEN_FORM) ||
-        !api_query_numbers(c, "size", 2, size, SCREEN_FORM) || !api_query_numbers(c, "bins", 2, bins, SCREEN_FORM) ||
-        !api_query_numbers(c, "rays", 1, &rays, SCREEN_FORM))
+    if (!api_query_numbers(c, "centre", 3, centre, SCREEN_REMEDY) ||
+        !api_query_numbers(c, "normal", 3, normal, SCREEN_REMEDY) ||
+        !api_query_numbers(c, "size", 2, size, SCREEN_REMEDY) ||
+        !api_query_numbers(c, "bins", 2, bins, SCREEN_REMEDY) || !api_query_numbers(c, "rays", 1, &rays, SCREEN_REMEDY))
         return STATUS_BAD_INPUT;
     const double most = 1e6; /* beam_screen_expose checks the ranges */
     for (int i = 0; i < 2; i++)
@@ -206,7 +206,7 @@ status api_beam_screen(call *c)
 /* Limits the reply: the longest paths have tens of points; a page draws far fewer rays. */
 enum { RAYS_MAX = 1000 };
 
-#define FORM "give ?from=X,Y,Z&to=X,Y,Z&rays=N and width=W (scene units) or spread=DEGREES"
+#define FAN_REMEDY "give ?from=X,Y,Z&to=X,Y,Z&rays=N and width=W (scene units) or spread=DEGREES"
 
 typedef enum fan_form { FAN_JSON, FAN_CSV, FAN_DRAWING } fan_form;
 
@@ -214,7 +214,7 @@ typedef struct fan_question {
     call *c;
     fan_form form;
     fan_rule rule;
-    bool whole_trees;
+    bool full_trees;
     char *bytes; /* of CSV and drawing */
     size_t size;
 } fan_question;
@@ -235,7 +235,7 @@ static status follow_and_write(void *context, scene *s, diagnostic *why)
     fan f = {0};
     status code = probe_create(s, q->c->l->settings.level, &p, why);
     THEN(code, fan_follow(p, &q->rule, &f, why));
-    const fanned t = {s, p, &q->rule, &f, q->whole_trees, q->form == FAN_CSV};
+    const fanned t = {s, p, &q->rule, &f, q->full_trees, q->form == FAN_CSV};
     if (code == STATUS_OK && q->form == FAN_JSON)
         code = api_reply_json(q->c, fan_json(&t));
     else
@@ -245,17 +245,17 @@ static status follow_and_write(void *context, scene *s, diagnostic *why)
     return code;
 }
 
-/* The size of the fan: its width, or its angle. */
+/* Reads the width of the fan, or its angle. */
 static bool read_size(call *c, fan_rule *rule)
 {
     const char *width = http_query_value(c->request, "width"), *spread = http_query_value(c->request, "spread");
     rule->spreads = spread;
     if (!width == !spread) {
-        api_refuse(c, 400, width ? "width and spread exclude each other" : "width or spread is missing", FORM);
+        api_refuse(c, 400, width ? "width and spread exclude each other" : "width or spread is missing", FAN_REMEDY);
         return false;
     }
     double *size = spread ? &rule->spread_deg : &rule->width;
-    if (!api_query_numbers(c, spread ? "spread" : "width", 1, size, FORM))
+    if (!api_query_numbers(c, spread ? "spread" : "width", 1, size, FAN_REMEDY))
         return false;
     const bool good = *size >= 0.0 && *size <= (spread ? 179.0 : 1e6);
     if (!good)
@@ -268,9 +268,9 @@ static bool read_rule(call *c, fan_rule *rule)
 {
     double from[3], to[3], normal[3] = {0}, rays = 0;
     rule->has_normal = http_query_value(c->request, "plane");
-    if (!api_query_numbers(c, "from", 3, from, FORM) || !api_query_numbers(c, "to", 3, to, FORM) ||
-        !api_query_numbers(c, "rays", 1, &rays, FORM) ||
-        (rule->has_normal && !api_query_numbers(c, "plane", 3, normal, FORM)) || !read_size(c, rule))
+    if (!api_query_numbers(c, "from", 3, from, FAN_REMEDY) || !api_query_numbers(c, "to", 3, to, FAN_REMEDY) ||
+        !api_query_numbers(c, "rays", 1, &rays, FAN_REMEDY) ||
+        (rule->has_normal && !api_query_numbers(c, "plane", 3, normal, FAN_REMEDY)) || !read_size(c, rule))
         return false;
     if (!(rays >= 1 && rays <= RAYS_MAX)) {
         api_refuse(c, 400, "the number of rays is out of range", "give 1 to 1000 rays");
@@ -285,7 +285,7 @@ static bool read_rule(call *c, fan_rule *rule)
 
 static status answer_fan(call *c, fan_form form)
 {
-    fan_question q = {.c = c, .form = form, .whole_trees = api_query_flag(c, "tree")};
+    fan_question q = {.c = c, .form = form, .full_trees = api_query_flag(c, "tree")};
     if (!read_rule(c, &q.rule))
         return STATUS_BAD_INPUT;
     TRY(semaphore_acquire(c->l->heavy, &c->why));
@@ -349,7 +349,7 @@ static status measure_optics(realism_question *q, const scene *s, FILE *csv, dia
     return api_reply_json(q->c, json);
 }
 
-static status trace_curve(realism_question *q, const scene *s, FILE *csv, diagnostic *why)
+static status measure_curve(realism_question *q, const scene *s, FILE *csv, diagnostic *why)
 {
     const realism_curve which = (realism_curve)q->curve;
     realism_points points;
@@ -360,11 +360,11 @@ static status trace_curve(realism_question *q, const scene *s, FILE *csv, diagno
     return STATUS_OK;
 }
 
-static status look_at_optics(void *context, scene *s, diagnostic *why)
+static status answer_with_scene(void *context, scene *s, diagnostic *why)
 {
     realism_question *q = context;
     status (*const act)(realism_question *, const scene *, FILE *, diagnostic *) =
-        q->curve < 0 ? measure_optics : trace_curve;
+        q->curve < 0 ? measure_optics : measure_curve;
     text_writer writer;
     if (!q->as_csv)
         return act(q, s, NULL, why);
@@ -379,7 +379,7 @@ static status answer_realism(call *c, realism_question *q)
     q->scene_name = file;
     status code = file ? semaphore_acquire(c->l->heavy, &c->why) : out_of_memory(&c->why);
     if (code == STATUS_OK) {
-        code = render_worker_with_scene(c->l->render_worker, look_at_optics, q, &c->why);
+        code = render_worker_with_scene(c->l->render_worker, answer_with_scene, q, &c->why);
         semaphore_release(c->l->heavy);
     }
     free(file);
@@ -402,7 +402,7 @@ static status answer_curve(call *c, bool as_csv)
     for (int i = 0; i < REALISM_CURVE_COUNT; i++)
         if (strcmp(realism_curve_name((realism_curve)i), name) == 0)
             return answer_realism(c, &(realism_question){.curve = i, .as_csv = as_csv});
-    return api_refuse(c, 404, "there is no curve of that name", "GET /api/realism lists those of the scene");
+    return api_refuse(c, 404, "there is no curve of that name", "use a curve that GET /api/realism lists");
 }
 
 status api_realism_curve(call *c)

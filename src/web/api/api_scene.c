@@ -14,7 +14,8 @@
 
 /* --- the whole scene: objects, outlines of solids, shapes, and rows of parameters --- */
 
-static const char *const light_words[] = {"point", "cone", "soft-cone", "disc", "rectangle", "sun"};
+/* By light_kind, as the parameter `kind` spells them. */
+static const char *const light_words[] = {"point", "cone", "soft_cone", "disc", "rectangle", "sun"};
 
 static json_t *object_json(const char *name, const char *kind)
 {
@@ -51,7 +52,7 @@ static json_t *objects_json(const scene *s)
     return json_if(list, !bad);
 }
 
-/* [[ring..]..] by convex part, each [y, x, z, corners, from_deg] as shape_ring has them. */
+/* [[RING, ..], ..]: the rings of each convex part. A RING is [y, x, z, corners, from_deg] of a shape_ring. */
 static json_t *outline_json(const solid_shape *shape)
 {
     shape_ring rings[RINGS_MAX];
@@ -78,7 +79,6 @@ static json_t *outlines_json(const scene *s)
     return all;
 }
 
-/* All shapes. */
 static json_t *shapes_json(void)
 {
     json_t *list = json_array();
@@ -101,10 +101,10 @@ static json_t *scene_json(const scene *s, const scene *opened, uint64_t generati
     return o;
 }
 
-/* --- what a page lacks: the latest scenes that were sent are remembered as JSON --- */
+/* --- differences for a page: the latest scenes that were sent are remembered as JSON --- */
 
-/* The scenes that are remembered: a page is up to date within a change or two. Scenes of more parameters than that are
- * not, because of their memory: a row takes some 2 kB, so that all take at most 40 MB. */
+/* SCENES are remembered, because a page lags by a change or two. A scene of more than PARAMS_MAX parameters is not: a
+ * parameter needs about 2 kB, so all scenes need at most 40 MB. */
 enum { SCENES = 8, PARAMS_MAX = 2500 };
 
 struct sent_scenes {
@@ -151,7 +151,7 @@ static json_t *rows_by_path(const json_t *params)
     return json_if(rows, !bad);
 }
 
-/* Adds the rows that differ, and all paths in their order if there are others than before. */
+/* Adds the rows that differ, and all paths in their order if the paths or their order changed. */
 static bool add_params(json_t *delta, const json_t *before, const json_t *after)
 {
     const json_t *old = json_object_get(before, "params"), *new = json_object_get(after, "params");
@@ -174,8 +174,8 @@ static bool add_params(json_t *delta, const json_t *before, const json_t *after)
     return !bad;
 }
 
-/* {"generation", "since", "params": [rows that differ or are new], "order"?: [all paths, if there are others or in
- * another order], and every other key whose value differs}. */
+/* {"generation", "since", "params": [rows that differ or are new], "order"?: [all paths, if they or their order
+ * changed], and every other key whose value differs}. */
 static json_t *scene_delta(const json_t *before, const json_t *after)
 {
     json_t *delta = json_pack("{s:I}", "since", generation_of(before));
@@ -191,9 +191,9 @@ static json_t *scene_delta(const json_t *before, const json_t *after)
     return json_if(delta, good && add_params(delta, before, after));
 }
 
-/* The reply as allocated text: the scene, which is taken over, or only what differs from the generation `since`, if
- * that was sent lately; -1 for none. Jansson's reference counts are not atomic, so all uses of the remembered scenes
- * are under the lock. */
+/* The reply as allocated text: the scene, or only its differences from the generation `since` if that is remembered;
+ * -1 for none. Releases json. Jansson's reference counts are not atomic, so all uses of the remembered scenes are under
+ * the lock. */
 static char *sent_scenes_reply(sent_scenes *s, json_t *json, long long since)
 {
     const json_t *before = NULL;

@@ -19,7 +19,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-/* Reads one of the words as its index; -1 where the key is missing. */
+/* Reads one of the words as its index; -1 if the key is missing. */
 static bool read_word(call *c, const char *key, const char *const *words, const char *remedy, int *index)
 {
     const char *word = NULL;
@@ -65,17 +65,17 @@ status api_slime(call *c)
     return api_reply_json(c, live_json(live_slime));
 }
 
-/* Reads the number of a hand; LIVE_ALL where it is missing. */
+/* Reads the number of a hand; LIVE_ALL if it is missing. */
 static bool read_hand(call *c, bool needed, int *hand)
 {
     double number = LIVE_ALL;
     if (!api_read_number(c, "hand", needed, &number))
         return false;
-    const bool is_one = number == LIVE_ALL || (number >= 0 && number <= INT_MAX && number == floor(number));
-    if (!is_one)
-        api_refuse(c, 400, "'hand' is not the number of a hand", "give the number that /api/slime/grab returned");
-    *hand = is_one ? (int)number : LIVE_ALL;
-    return is_one;
+    const bool is_valid = number == LIVE_ALL || (number >= 0 && number <= INT_MAX && number == floor(number));
+    if (!is_valid)
+        api_refuse(c, 400, "'hand' must be an integer of 0 or more", "give the number that /api/slime/grab returned");
+    *hand = is_valid ? (int)number : LIVE_ALL;
+    return is_valid;
 }
 
 static bool read_point(call *c, double *x, double *y)
@@ -118,12 +118,12 @@ status api_grab(call *c)
  * depth; the target never moves behind the camera. */
 static vec3 hand_offset(const scene *s, double x, double y, double depth, vec3 where)
 {
-    const double nearest_share = 0.05;
+    const double nearest_fraction = 0.05;
     vec3 eye, direction, forward;
     lab_camera_ray(s, (double)scene_settings(s)->width / 2.0, (double)scene_settings(s)->height / 2.0, &eye, &forward);
     lab_camera_ray(s, x, y, &eye, &direction);
     const double depth_at_grab = vec3_dot(vec3_sub(where, eye), forward),
-                 new_depth = fmax(depth_at_grab + depth, nearest_share * fabs(depth_at_grab));
+                 new_depth = fmax(depth_at_grab + depth, nearest_fraction * fabs(depth_at_grab));
     const vec3 target = vec3_add(eye, vec3_scale(direction, new_depth / vec3_dot(direction, forward)));
     return vec3_sub(target, where);
 }
@@ -157,12 +157,12 @@ status api_release(call *c)
 
 /* --- the motion compared with closed forms --- */
 
-/* Less than the time that a page waits for a reply. */
+/* Below the minute that a page waits for a reply. */
 #define LIMIT_S 50.0
 
 typedef struct motion_question {
     lab *l;
-    unsigned stops; /* when it began */
+    unsigned stops; /* lab.motion_stops at the start */
     double began_s;
 } motion_question;
 
@@ -171,14 +171,14 @@ static bool is_late(const motion_question *q)
     return clock_wall_s() - q->began_s > LIMIT_S;
 }
 
-static bool must_stop(void *context)
+static bool is_cancelled(void *context)
 {
     const motion_question *q = context;
     return is_late(q) || atomic_load(&q->l->motion_stops) != q->stops || studies_runs(q->l->studies, NULL) ||
            studies_ending(q->l->studies);
 }
 
-/* Lists the slimes, and writes them as the table of `cuvette motion --csv`. */
+/* Measures each slime, adds it to the list, and writes its rows of `cuvette motion --csv`. */
 static status measure(call *c, motion_question *q, const scene *s, json_t *slimes, FILE *table)
 {
     motion_write_csv_header(table);
@@ -189,10 +189,10 @@ static status measure(call *c, motion_question *q, const scene *s, json_t *slime
             continue;
         const softbody_settings settings = slime_settings(m);
         softbody_trial_report report;
-        cancel_token stop = {.ask = must_stop, .context = q};
-        cancel_begin(&stop);
+        cancel_token token = {.ask = is_cancelled, .context = q};
+        cancel_begin(&token);
         code = softbody_trials(&settings, c->l->settings.level, &report, &c->why);
-        cancel_end(&stop);
+        cancel_end(&token);
         if (code != STATUS_OK)
             continue;
         motion_write_csv(m, &report, table);
@@ -232,11 +232,12 @@ static status answer(call *c, const scene *s)
     return code;
 }
 
-/* The trials simulate bodies of their own: what hands did to the live slime does not matter. */
+/* The trials simulate separate bodies, so hands on the live slime do not affect them. */
 status api_motion(call *c)
 {
     if (studies_runs(c->l->studies, NULL))
-        return api_refuse(c, 409, "a study is measuring, and this would disturb it", "wait until it ends, or stop it");
+        return api_refuse(c, 409, "a study is measuring, and the trials would disturb it",
+                          "wait until it ends, or stop it");
     scene *s = scene_document_copy(c->l->scene_document, NULL);
     if (!s)
         return out_of_memory(&c->why);

@@ -102,20 +102,20 @@ static status study_json_summary(const study *s, const char *results, json_t **o
     return *out ? STATUS_OK : out_of_memory(why);
 }
 
-/* The column names, or the fields of one row (of any file) in these columns. */
-static json_t *row_json(const csv *columns, const row_ref *of)
+/* The fields of a row, of any file, in these columns; source NULL: the names of the columns. */
+static json_t *row_json(const csv *columns, const row_ref *source)
 {
     json_t *row = json_array();
     int bad = 0;
     for (size_t i = 0; columns && i < columns->column_count; i++) {
         const char *name = columns->header[i];
-        const int column = of && of->table != columns ? csv_column(of->table, name) : (int)i;
-        bad |= json_array_append_new(row, json_of_text(of ? csv_field(of->table, of->row, column) : name));
+        const int column = source && source->table != columns ? csv_column(source->table, name) : (int)i;
+        bad |= json_array_append_new(row, json_of_text(source ? csv_field(source->table, source->row, column) : name));
     }
     return json_if(row, !bad);
 }
 
-/* The raw rows in the same form, from row `from` on, at most STUDY_JSON_ROWS_MAX. */
+/* {"columns", "rows", "count"}: the raw rows from row `from` on, at most STUDY_JSON_ROWS_MAX. */
 static status study_json_rows(const study *s, const char *results, size_t from, json_t **out, diagnostic *why)
 {
     row_files *files;
@@ -166,7 +166,7 @@ typedef struct listing {
     json_t *studies, *names; /* names: the studies so far, with their files */
 } listing;
 
-static bool list_one(void *context, const char *name, const char *file)
+static bool list_study(void *context, const char *name, const char *file)
 {
     listing *list = context;
     study *s = NULL;
@@ -178,7 +178,7 @@ static bool list_one(void *context, const char *name, const char *file)
         diagnose(&why, STATUS_BAD_INPUT, "rename one of them", "the name is already used by %s", earlier);
         diagnostic_locate(&why, file, 0, 0);
     } else {
-        json_object_set_new(list->names, name, json_string(file)); /* skip names that are not UTF-8 */
+        json_object_set_new(list->names, name, json_string(file)); /* ignores names that are not UTF-8 */
     }
     json_add(&list->studies, study_json(list->l, name, file, earlier ? NULL : s, &why));
     study_destroy(s);
@@ -190,7 +190,7 @@ status api_studies(call *c)
     const lab *l = c->l;
     listing list = {.l = l, .studies = json_array(), .names = json_object()};
     char *results = NULL;
-    status code = study_each(l, list_one, &list, &c->why);
+    status code = study_each(l, list_study, &list, &c->why);
     THEN(code, folder_find(l->files, l->settings.results, &results, &c->why));
     api_reply_json(
         c, json_pack("{s:o, s:o}", "results", results ? json_of_text(results) : json_null(), "studies", list.studies));
@@ -199,14 +199,14 @@ status api_studies(call *c)
     return code;
 }
 
-/* Finds the study {name} of the path. *file is set also where the file exists but cannot be read. */
+/* Finds the study {name} of the path. *file is also set if the file exists but cannot be read. */
 static status find_study(call *c, study **s, char **file)
 {
     *s = NULL;
     *file = NULL;
     status code = study_find(c->l, http_path_value(c->request, "name"), file, &c->why);
     if (code == STATUS_OK && !*file)
-        return api_refuse(c, 404, "no study has that name", "GET /api/studies lists the studies");
+        return api_refuse(c, 404, "no study has that name", "use a name that GET /api/studies lists");
     THEN(code, study_open(c->l, *file, s, &c->why));
     THEN(code, study_check_results(c->l, c->l->settings.results, (*s)->name, &c->why));
     if (code != STATUS_OK) {
@@ -232,7 +232,7 @@ static status lacks_files(const lab *l, const study *s, bool *lacks, diagnostic 
     return code == STATUS_BAD_INPUT ? STATUS_OK : code;
 }
 
-/* Whether files are missing, the study's other runs and its figures; nothing for a study that cannot be read. */
+/* {"lacks_files", "runs", "figures", "drawable"}; s NULL, a study that cannot be read: false and empty lists. */
 static status files_of(const lab *l, const study *s, json_t **out, diagnostic *why)
 {
     json_t *runs = NULL, *figures = NULL, *drawable = NULL;
@@ -321,7 +321,7 @@ status api_figure(call *c)
     size_t size = 0;
     const status code = figure_read(c->l, http_path_value(c->request, "name"), &svg, &size, &c->why);
     if (code == STATUS_BAD_INPUT)
-        return api_refuse(c, 404, "no figure has that name", "GET /api/studies/{name} lists the figures of a study");
+        return api_refuse(c, 404, "no figure has that name", "use a name that GET /api/studies/{name} lists");
     return code == STATUS_OK ? api_send(c, "image/svg+xml", svg, size) : code;
 }
 
@@ -359,7 +359,7 @@ status api_study_draw(call *c)
 
 enum { ROWS_MAX = 1 << 30 }; /* bytes */
 
-static status no_rows(call *c)
+static status refuse_without_rows(call *c)
 {
     return api_refuse(c, 404, "the study has no rows yet", "measure it, or merge the rows of its shards, first");
 }
@@ -373,7 +373,7 @@ status api_study_rows_csv(call *c)
     char *path = text_format("%s/%s/rows.csv", c->l->settings.results, s->name);
     status code = path ? STATUS_OK : out_of_memory(&c->why);
     if (code == STATUS_OK && access(path, F_OK) != 0)
-        code = no_rows(c);
+        code = refuse_without_rows(c);
     THEN(code, file_read_below(path, folder_real(c->l->files), ROWS_MAX, &bytes, &size, &c->why));
     free(path);
     study_destroy(s);
@@ -388,7 +388,7 @@ status api_study_summary_tsv(call *c)
     TRY(api_read_study(c, &s));
     status code = study_summary_text(s, c->l->settings.results, &text, &size, &c->why);
     if (code == STATUS_OK && !text)
-        code = no_rows(c);
+        code = refuse_without_rows(c);
     study_destroy(s);
     return code == STATUS_OK ? api_send(c, "text/tab-separated-values", text, size) : code;
 }
@@ -397,10 +397,10 @@ status api_study_summary_tsv(call *c)
 
 status api_machine(call *c)
 {
-    machine_report account = {0};
-    const status code = machine_measure(&account, &c->why);
+    machine_report report = {0};
+    const status code = machine_measure(&report, &c->why);
     if (code == STATUS_OK)
-        api_reply_json(c, machine_json(&account));
-    machine_release(&account);
+        api_reply_json(c, machine_json(&report));
+    machine_release(&report);
     return code;
 }

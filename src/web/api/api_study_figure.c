@@ -1,5 +1,5 @@
-/* API: the figure of a study, drawn as by `cuvette study plot`, in a temporary folder; and two sides of a study
- * compared as by `cuvette study compare`: runs, cells, or values of an axis. */
+/* API: the figure of a study, which `cuvette study plot` would draw, made in a temporary folder; and the comparison of
+ * two sides of a study (runs, cells, or values of an axis), as `cuvette study compare` prints it. */
 #include "base/cancel.h"
 #include "base/file.h"
 #include "base/text.h"
@@ -55,7 +55,7 @@ static const char *option(const call *c, const char *key)
 
 /* --- the drawing --- */
 
-static void remove_files(const char *room, const char *base)
+static void remove_files(const char *directory, const char *base)
 {
     static const char *const endings[] = {"gp", "tsv", "svg", "png", "pdf"};
     for (size_t i = 0; i < sizeof endings / sizeof *endings; i++) {
@@ -64,30 +64,30 @@ static void remove_files(const char *room, const char *base)
             unlink(path);
         free(path);
     }
-    rmdir(room);
+    rmdir(directory);
 }
 
-static status make_folder(const lab *l, char **room, diagnostic *why)
+static status make_folder(const lab *l, char **directory, diagnostic *why)
 {
-    *room = text_format("%s/cuvette-figure-XXXXXX", lab_temporary_folder(l));
-    if (!*room)
+    *directory = text_format("%s/cuvette-figure-XXXXXX", lab_temporary_folder(l));
+    if (!*directory)
         return out_of_memory(why);
-    if (mkdtemp(*room))
+    if (mkdtemp(*directory))
         return STATUS_OK;
     const int error = errno;
-    free(*room);
-    *room = NULL;
+    free(*directory);
+    *directory = NULL;
     return diagnose(why, STATUS_FAILURE, "set TMPDIR to a folder that can be written",
-                    "no temporary folder can be made: %s", strerrordesc_np(error));
+                    "cannot create a temporary folder: %s", strerrordesc_np(error));
 }
 
 /* Draws the figure and reads it back. */
 static status make_figure(call *c, const study *s, const plot_request *request, const char *format, char **bytes,
                           size_t *size)
 {
-    char *room = NULL;
-    TRY(make_folder(c->l, &room, &c->why));
-    char *base = text_format("%s/%s", room, s->name), *file = text_format("%s/%s.%s", room, s->name, format);
+    char *directory = NULL;
+    TRY(make_folder(c->l, &directory, &c->why));
+    char *base = text_format("%s/%s", directory, s->name), *file = text_format("%s/%s.%s", directory, s->name, format);
     status code = base && file ? STATUS_OK : out_of_memory(&c->why);
     THEN(code, study_plot_write(s, request, base, &c->why));
     cancel_token token = {.ask = studies_ending, .context = c->l->studies};
@@ -95,10 +95,10 @@ static status make_figure(call *c, const study *s, const plot_request *request, 
     THEN(code, study_plot_draw(base, format, draw_limit_s, &c->why));
     cancel_end(&token);
     THEN(code, file_read(file, FIGURE_MAX, bytes, size, &c->why));
-    remove_files(room, base ? base : "");
+    remove_files(directory, base ? base : "");
     free(file);
     free(base);
-    free(room);
+    free(directory);
     return code;
 }
 
@@ -130,7 +130,7 @@ status api_study_figure(call *c)
     return code;
 }
 
-/* The results folder of that name, which holds rows of the study. */
+/* The path of the results folder `run`; STATUS_BAD_INPUT if it holds no rows of the study. */
 static status read_run(call *c, const char *run, const study *s, char **results)
 {
     char *rows = text_format("%s/%s/rows.csv", run, s->name);
@@ -156,10 +156,10 @@ static status read_side(call *c, const study *s, const char *key, study_side *si
 
 static status compare(call *c, const study *s, const study_side *a, const study_side *b)
 {
-    contrast *made = NULL;
-    TRY(contrast_make(s, a, b, &(contrast_options){.column = NULL}, &made, NULL, &c->why));
-    json_t *json = contrast_json(s, made, STUDY_JSON_CELLS_MAX);
-    contrast_destroy(made);
+    contrast *found = NULL;
+    TRY(contrast_make(s, a, b, &(contrast_options){.column = NULL}, &found, NULL, &c->why));
+    json_t *json = contrast_json(s, found, STUDY_JSON_CELLS_MAX);
+    contrast_destroy(found);
     return json ? api_reply_json(c, json) : out_of_memory(&c->why);
 }
 
@@ -190,7 +190,7 @@ status api_study_compare(call *c)
     const bool sides = http_query_value(c->request, "a") && http_query_value(c->request, "b");
     study *s;
     if (!sides && (!with || !with[0]))
-        return api_refuse(c, 400, "it is not said what to compare",
+        return api_refuse(c, 400, "neither 'with' nor 'a' and 'b' are given",
                           "add ?with=FOLDER, one of the study's runs, or ?a=SIDE&b=SIDE, such as a=cell=0&b=cell=1");
     TRY(api_read_study(c, &s));
     const status code = sides ? compare_sides(c, s) : compare_runs(c, s, with);

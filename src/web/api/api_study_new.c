@@ -14,27 +14,28 @@
 #include <string.h>
 #include <unistd.h>
 
-enum { WORDS_MAX = 64 }; /* more than axes of a study; settings have no such limit */
+enum { AXES_READ_MAX = 64 }; /* above STUDY_AXES_MAX, so that a longer list is read and refused */
 
 typedef struct form {
     const char *file;
     bool save, replace;
     double repetitions, warmups;
-    const char *axes[WORDS_MAX];
+    const char *axes[AXES_READ_MAX];
     size_t axis_count;
     char *scene, *target; /* paths */
-    json_t *settings;     /* by which the current scene differs from its file */
+    json_t *settings;     /* PATH=VALUE: the differences of the current scene from its file */
 } form;
 
 static status read_axes(call *c, form *f)
 {
     const json_t *list = json_object_get(c->body, "axes");
     f->axis_count = json_array_size(list);
-    for (size_t i = 0; i < f->axis_count && i < WORDS_MAX; i++)
+    for (size_t i = 0; i < f->axis_count && i < AXES_READ_MAX; i++)
         if (!(f->axes[i] = json_string_value(json_array_get(list, i))))
             return api_refuse(c, 400, "an axis is not a string", "write \"PATH=1,2,3\" or \"PATH=FROM..TO:STEPS\"");
     if (!f->axis_count || f->axis_count > STUDY_AXES_MAX)
-        return api_refuse(c, 400, "a study has 1 to 16 axes", "give 'axes', a list of \"PATH=1,2,3\"");
+        return api_refuse(c, 400, "the number of axes is out of range",
+                          "give 1 to 16 axes in 'axes', a list of \"PATH=1,2,3\"");
     return STATUS_OK;
 }
 
@@ -88,7 +89,7 @@ static status find_scene(call *c, form *f)
     return code;
 }
 
-/* Whether an axis varies the parameter, which is then not set for all cells. */
+/* Whether an axis varies the parameter; if so, it is not set for all cells. */
 static bool is_varied(const form *f, const char *setting)
 {
     const size_t length = strcspn(setting, "=") + 1;
@@ -98,7 +99,7 @@ static bool is_varied(const form *f, const char *setting)
     return false;
 }
 
-static status compose(call *c, form *f, char **text, study **made)
+static status compose(call *c, form *f, char **text, study **planned)
 {
     scene *s = NULL;
     const size_t most = json_array_size(f->settings);
@@ -119,14 +120,14 @@ static status compose(call *c, form *f, char **text, study **made)
     }
     order.sets = sets;
     THEN(code, scene_read_below(f->scene, folder_real(c->l->files), &s, &c->why));
-    THEN(code, new_study_compose(&order, s, text, made, &c->why));
+    THEN(code, new_study_compose(&order, s, text, planned, &c->why));
     scene_destroy(s);
     free(sets);
     return code;
 }
 
-/* As the ask of a token. */
-static bool must_end(void *context)
+/* The ask of a cancel token. */
+static bool is_cancelled(void *context)
 {
     const lab *l = context;
     return studies_ending(l->studies) || studies_runs(l->studies, NULL);
@@ -147,7 +148,7 @@ static status estimate(call *c, const study *s, const char *text)
     text_writer writer;
     char *said = NULL;
     TRY(study_check_results(c->l, options.results, s->name, &c->why));
-    cancel_token token = {.ask = must_end, .context = c->l};
+    cancel_token token = {.ask = is_cancelled, .context = c->l};
     cancel_begin(&token);
     const status code = study_estimate_run(s, &options, &e, &c->why);
     cancel_end(&token);
@@ -164,7 +165,7 @@ static status estimate(call *c, const study *s, const char *text)
     return STATUS_OK;
 }
 
-static status check_new(call *c, const form *f, const study *s)
+static status check_names(call *c, const form *f, const study *s)
 {
     char *other = NULL;
     TRY(study_find(c->l, s->name, &other, &c->why));
@@ -183,15 +184,15 @@ static status check_new(call *c, const form *f, const study *s)
 static status answer(call *c, form *f)
 {
     char *text = NULL;
-    study *made = NULL;
-    status code = compose(c, f, &text, &made);
+    study *planned = NULL;
+    status code = compose(c, f, &text, &planned);
     if (code == STATUS_OK && !f->save)
-        code = estimate(c, made, text);
-    else if (code == STATUS_OK && (code = check_new(c, f, made)) == STATUS_OK &&
+        code = estimate(c, planned, text);
+    else if (code == STATUS_OK && (code = check_names(c, f, planned)) == STATUS_OK &&
              (code = file_write(f->target, text, &c->why)) == STATUS_OK)
-        api_reply_json(c, json_pack("{s:o, s:s, s:I}", "name", json_of_text(made->name), "file", f->file, "cells",
-                                    (json_int_t)study_cell_count(made)));
-    study_destroy(made);
+        api_reply_json(c, json_pack("{s:o, s:s, s:I}", "name", json_of_text(planned->name), "file", f->file, "cells",
+                                    (json_int_t)study_cell_count(planned)));
+    study_destroy(planned);
     free(text);
     return code;
 }

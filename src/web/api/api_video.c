@@ -10,7 +10,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-/* Whether a parameter of that path exists, and its row. */
+/* The search for a parameter by its path; found: its row, NULL if there is none. */
 typedef struct param_search {
     const char *path;
     const param *found;
@@ -37,7 +37,7 @@ static status read_sweep(call *c, const char *path, video_plan *plan)
     if (scene_each_param(plan->s, match, &q) != STATUS_OK)
         return out_of_memory(&c->why);
     if (!q.found)
-        return api_refuse(c, 400, "the scene has no such parameter", "GET /api/scene lists its parameters");
+        return api_refuse(c, 400, "the scene has no such parameter", "use a path that GET /api/scene lists");
     if (q.found->type != PARAM_REAL && q.found->type != PARAM_INT)
         return api_refuse(c, 400, "the parameter is not a number", "choose a parameter whose value is one number");
     plan->is_integer = q.found->type == PARAM_INT;
@@ -46,7 +46,7 @@ static status read_sweep(call *c, const char *path, video_plan *plan)
     return plan->path ? STATUS_OK : out_of_memory(&c->why);
 }
 
-/* Both ends must be scenes that can be rendered, of one size. */
+/* The first and the last frame must be valid scenes with images of the same size. */
 static status check_sweep(call *c, const video_plan *plan)
 {
     const render_settings *first = scene_settings(plan->s);
@@ -56,7 +56,7 @@ static status check_sweep(call *c, const video_plan *plan)
         const bool same = scene_settings(s)->width == first->width && scene_settings(s)->height == first->height;
         scene_destroy(s);
         if (!same)
-            return api_refuse(c, 400, "the frames of a video have one size", "choose another parameter");
+            return api_refuse(c, 400, "the parameter changes the size of the frames", "choose another parameter");
     }
     return STATUS_OK;
 }

@@ -97,7 +97,7 @@ struct api_bound {
     const struct api_route *route;
 };
 
-/* Reads the body; false with an error reply set. */
+/* Reads the body; returns false, with the reply set, after an error. */
 static bool read_body(call *c, body_kind kind)
 {
     if (kind == NO_BODY)

@@ -1,5 +1,5 @@
-/* What differs between scenes: the command line that renders the film of the scene document from its file, and the
- * parameters in which two scenes differ, as JSON. */
+/* Differences between two scenes: the scene document and its file, as the command line that renders the document; and
+ * the scenes of two images, as a list of parameters. document/scene_document_changes.c edits the scene. */
 #include "base/text.h"
 #include "report/json.h"
 #include "report/report.h"
@@ -41,9 +41,9 @@ typedef struct writing {
     bool camera; /* the camera is aimed differently: write all its parameters */
 } writing;
 
-static status add_option(void *of, const char *path, const param *row, const char *value)
+static status add_setting(void *context, const char *path, const param *row, const char *value)
 {
-    writing *w = of;
+    writing *w = context;
     char *current = NULL;
     status code = scene_get(w->so_far, path, &current, NULL);
     if (code == STATUS_FAILURE)
@@ -59,7 +59,7 @@ static status add_option(void *of, const char *path, const param *row, const cha
     return code;
 }
 
-static status read_again(const folder *files, const char *file, int threads, scene **out, char **path, diagnostic *why)
+static status read_file(const folder *files, const char *file, int threads, scene **out, char **path, diagnostic *why)
 {
     TRY(folder_path(files, file, true, path, why));
     TRY(scene_read_below(*path, folder_real(files), out, why));
@@ -68,7 +68,7 @@ static status read_again(const folder *files, const char *file, int threads, sce
     return STATUS_OK;
 }
 
-/* A copy of s as read from that file, whose folder may differ from the base of the scene's own paths. */
+/* A copy of s with the names of its files relative to the folder of `path`. */
 static status rebase_paths(const scene *s, const char *path, scene **out, diagnostic *why)
 {
     if (strcmp(s->path, path) == 0)
@@ -80,7 +80,7 @@ static status rebase_paths(const scene *s, const char *path, scene **out, diagno
     return code;
 }
 
-/* The settings that turn `from` into s. STATUS_BAD_INPUT where settings do not suffice. */
+/* The settings that turn `from` into s. STATUS_BAD_INPUT if settings do not suffice. */
 static status collect(json_t *settings, scene *from, const char *path, const scene *s, diagnostic *why)
 {
     scene *rebased = NULL;
@@ -89,7 +89,7 @@ static status collect(json_t *settings, scene *from, const char *path, const sce
         code = STATUS_BAD_INPUT;
     if (code == STATUS_OK) {
         writing w = {settings, from, from->camera.aimed != rebased->camera.aimed};
-        code = scene_each_param(rebased, add_option, &w);
+        code = scene_each_param(rebased, add_setting, &w);
         if (code == STATUS_FAILURE)
             out_of_memory(why);
     }
@@ -107,7 +107,7 @@ status command_settings(const folder *files, const char *file, const scene *s, i
     *settings = json_array();
     if (!*settings)
         return out_of_memory(why);
-    status code = file ? read_again(files, file, threads, &from, path, &refused) : STATUS_BAD_INPUT;
+    status code = file ? read_file(files, file, threads, &from, path, &refused) : STATUS_BAD_INPUT;
     if (code != STATUS_OK) {
         free(*path);
         *path = NULL;
@@ -120,8 +120,8 @@ status command_settings(const folder *files, const char *file, const scene *s, i
     return code == STATUS_FAILURE ? code : STATUS_OK;
 }
 
-/* The scene's name in a command. A laboratory in a browser keeps its folder in memory: where the command is run, the
- * file has no such path. */
+/* The scene's name in a command. A laboratory in a browser keeps its folder in memory, so the path does not exist
+ * where the command is run. */
 static const char *scene_name(const char *path, const char *file)
 {
 #if defined __EMSCRIPTEN__
@@ -209,9 +209,9 @@ static json_t *list_changes(const scene *scene_a, const scene *scene_b, json_t *
 
 json_t *changed_params(const scene *a, const scene *b)
 {
-    json_t *of_a = values_of(a), *of_b = values_of(b);
-    json_t *list = of_a && of_b ? list_changes(a, b, of_a, of_b) : NULL;
-    json_decref(of_a);
-    json_decref(of_b);
+    json_t *values_a = values_of(a), *values_b = values_of(b);
+    json_t *list = values_a && values_b ? list_changes(a, b, values_a, values_b) : NULL;
+    json_decref(values_a);
+    json_decref(values_b);
     return list;
 }

@@ -1,4 +1,4 @@
-/* The names and paths of the folder. folder_list.c lists its files. */
+/* Validates names and paths, which must stay inside the folder, also through links. folder_list.c lists the files. */
 #include "base/text.h"
 #include "scene/file/write.h"
 #include "scene/model/scene.h"
@@ -65,7 +65,7 @@ const char *folder_title(const folder *f)
     return slash ? slash + 1 : "/";
 }
 
-/* The part of a resolved path after the folder and a slash; NULL where the path is outside. */
+/* The part of a resolved path after the folder and a slash; NULL if the path is outside. */
 static const char *below(const folder *f, const char *real)
 {
     const size_t length = strlen(f->real);
@@ -73,7 +73,7 @@ static const char *below(const folder *f, const char *real)
 }
 
 /* A missing last part can be created; a dangling link cannot, because its target would become the file. */
-static bool can_be_made(const char *path, const char *part)
+static bool can_be_created(const char *path, const char *part)
 {
     struct stat about;
     return strcmp(part, ".") != 0 && strcmp(part, "..") != 0 && lstat(path, &about) != 0 && errno == ENOENT;
@@ -91,12 +91,12 @@ static char *resolve(const char *path)
     trim_slashes(parent, 1);
     char *slash = strrchr(parent, '/');
     const char *part = slash ? slash + 1 : parent;
-    char *last = *part && can_be_made(parent, part) ? strdup(part) : NULL;
+    char *last = *part && can_be_created(parent, part) ? strdup(part) : NULL;
     if (last && slash)
         slash[slash == parent] = 0;
-    char *above = last ? resolve(slash ? parent : ".") : NULL;
-    real = above ? text_format("%s/%s", strcmp(above, "/") == 0 ? "" : above, last) : NULL;
-    free(above);
+    char *real_parent = last ? resolve(slash ? parent : ".") : NULL;
+    real = real_parent ? text_format("%s/%s", strcmp(real_parent, "/") == 0 ? "" : real_parent, last) : NULL;
+    free(real_parent);
     free(last);
     free(parent);
     return real;
@@ -145,7 +145,7 @@ static char *join_path(const folder *f, const char *name)
     return text_format("%s%s%s", f->given, strcmp(f->given, "/") == 0 ? "" : "/", name);
 }
 
-static status outside(const char *name, diagnostic *why)
+static status refuse_outside(const char *name, diagnostic *why)
 {
     return diagnose(why, STATUS_BAD_INPUT, "choose a file inside the laboratory's folder",
                     "'%.300s' is outside of the folder", name);
@@ -159,19 +159,19 @@ static status check_file(const char *real, const char *name, bool must_exist, di
                    ? STATUS_OK
                    : diagnose(why, STATUS_BAD_INPUT, "choose a regular file", "'%.300s' is not a regular file", name);
     if (must_exist)
-        return diagnose(why, STATUS_BAD_INPUT, "GET /api/files lists the files", "the file '%.300s' does not exist",
-                        name);
+        return diagnose(why, STATUS_BAD_INPUT, "use a name that GET /api/files lists",
+                        "the file '%.300s' does not exist", name);
     char *parent = strdup(real), *slash = parent ? strrchr(parent, '/') : NULL;
     if (!slash) {
         free(parent);
         return out_of_memory(why);
     }
     slash[slash == parent] = 0;
-    const bool is_there = stat(parent, &about) == 0 && S_ISDIR(about.st_mode);
+    const bool exists = stat(parent, &about) == 0 && S_ISDIR(about.st_mode);
     free(parent);
-    return is_there ? STATUS_OK
-                    : diagnose(why, STATUS_BAD_INPUT, "create the folder first",
-                               "the folder of '%.300s' does not exist", name);
+    return exists ? STATUS_OK
+                  : diagnose(why, STATUS_BAD_INPUT, "create the folder first", "the folder of '%.300s' does not exist",
+                             name);
 }
 
 status folder_path(const folder *f, const char *name, bool must_exist, char **path, diagnostic *why)
@@ -185,7 +185,7 @@ status folder_path(const folder *f, const char *name, bool must_exist, char **pa
         return out_of_memory(why);
     errno = 0;
     char *real = resolve(full_path);
-    status code = real && below(f, real) ? STATUS_OK : errno == ENOMEM ? out_of_memory(why) : outside(name, why);
+    status code = real && below(f, real) ? STATUS_OK : errno == ENOMEM ? out_of_memory(why) : refuse_outside(name, why);
     THEN(code, check_file(real, name, must_exist, why));
     free(real);
     if (code == STATUS_OK)
@@ -216,13 +216,13 @@ static status check_named(const folder *f, const scene *s, const char *what, con
     const status code = folder_find(f, full_path, &name, why);
     free(full_path);
     TRY(code);
-    const bool is_in = name != NULL;
+    const bool is_inside = name != NULL;
     free(name);
-    return is_in ? STATUS_OK
-                 : diagnose(why, STATUS_BAD_INPUT,
-                            "move the file into the laboratory's folder, or start the laboratory with a "
-                            "folder that contains both",
-                            "%.80s: '%.200s' is outside of the folder", what, path);
+    return is_inside ? STATUS_OK
+                     : diagnose(why, STATUS_BAD_INPUT,
+                                "move the file into the laboratory's folder, or start the laboratory with a "
+                                "folder that contains both",
+                                "%.80s: '%.200s' is outside of the folder", what, path);
 }
 
 status folder_check_scene(const folder *f, const scene *s, diagnostic *why)

@@ -22,21 +22,21 @@ const char *folder_real(const folder *f);
 /* The path of an existing file, for reading; with must_exist false the path of a file whose folder exists. Relative
  * to the working directory of the program. */
 status folder_path(const folder *f, const char *name, bool must_exist, char **path, diagnostic *why);
-/* The name in the folder of a path relative to the working directory; NULL where the path is outside. The file need
+/* The name in the folder of a path relative to the working directory; NULL if the path is outside. The file need
  * not exist. NULL with ENOMEM in errno: out of memory. */
 char *folder_name(const folder *f, const char *path);
-/* The same: *name is NULL where the path is outside. Fails only if memory runs out. */
+/* Like folder_name, with *name NULL if the path is outside. Fails only if memory runs out. */
 status folder_find(const folder *f, const char *path, char **name, diagnostic *why);
 
-/* A name as the scene in `file` refers to it: relative to the file's folder, absolute where they have no common
+/* A name as the scene in `file` refers to it: relative to the file's folder, absolute if they have no common
  * folder. file: "" is a scene in the working directory. */
 status folder_path_from(const folder *f, const char *name, const char *file, char **path, diagnostic *why);
 
-/* Checks that all files of the scene (textures, environment maps, meshes, scripts) are inside the folder. For files
- * that do not exist, the path decides. */
+/* Checks that all files of the scene (textures, environment maps, meshes, scripts) are inside the folder. If a file
+ * does not exist, its path decides. */
 status folder_check_scene(const folder *f, const scene *s, diagnostic *why);
 
 /* The reply to GET /api/files: three levels of folders, at most FOLDER_FILES_MAX files, no hidden files. The caller
- * releases *out; STATUS_FAILURE when out of memory, since a list that lacks a file is not given. */
+ * releases *out; STATUS_FAILURE if the list would be incomplete: out of memory, or a folder cannot be listed. */
 enum { FOLDER_FILES_MAX = 2000 };
 status folder_json(const folder *f, json_t **out, diagnostic *why);

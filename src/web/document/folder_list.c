@@ -36,7 +36,7 @@ typedef struct names {
 } names;
 
 typedef struct listing {
-    const folder *of;
+    const folder *root;
     names found[USE_COUNT], next; /* next: folders of the next level */
     json_t *unread;               /* errors of files whose kind had to be guessed; NULL: none */
     size_t files, entries;
@@ -57,7 +57,7 @@ static void fail_for_memory(listing *l)
 }
 
 /* Whether the machine lacks memory or open files. An error of the file itself is shown when the file is opened. */
-static bool is_lack(const diagnostic *why)
+static bool is_shortage(const diagnostic *why)
 {
     return strcmp(why->remedy, MEMORY_REMEDY) == 0 || strcmp(why->remedy, system_remedy(EMFILE)) == 0;
 }
@@ -117,12 +117,12 @@ static void note_unread(listing *l, const char *name, const diagnostic *why)
  * the error. */
 static file_use use_by_keys(listing *l, const char *name, const char *path)
 {
-    static const char *const of_scenes[] = {"solids",     "camera", "lights",    "render",
-                                            "background", "meshes", "materials", "textures"};
+    static const char *const scene_keys[] = {"solids",     "camera", "lights",    "render",
+                                             "background", "meshes", "materials", "textures"};
     document *file;
     diagnostic why = {.what = ""};
-    const status code = document_read_below(path, folder_real(l->of), &file, &why);
-    if (code == STATUS_FAILURE && is_lack(&why))
+    const status code = document_read_below(path, folder_real(l->root), &file, &why);
+    if (code == STATUS_FAILURE && is_shortage(&why))
         fail(l, &why);
     else if (code == STATUS_FAILURE)
         note_unread(l, name, &why);
@@ -132,8 +132,8 @@ static file_use use_by_keys(listing *l, const char *name, const char *path)
     file_use use = USE_COUNT;
     if (root->kind == NODE_MAP && node_get(root, "hands"))
         use = USE_SCRIPT;
-    for (size_t i = 0; root->kind == NODE_MAP && use == USE_COUNT && i < sizeof of_scenes / sizeof *of_scenes; i++)
-        use = node_get(root, of_scenes[i]) ? USE_SCENE : USE_COUNT;
+    for (size_t i = 0; root->kind == NODE_MAP && use == USE_COUNT && i < sizeof scene_keys / sizeof *scene_keys; i++)
+        use = node_get(root, scene_keys[i]) ? USE_SCENE : USE_COUNT;
     document_destroy(file);
     return use;
 }
@@ -147,7 +147,7 @@ static file_use use_of(listing *l, const char *name)
     if (use == USE_COUNT)
         return use;
     diagnostic why = {.what = ""};
-    const status code = folder_path(l->of, name, true, &path, &why);
+    const status code = folder_path(l->root, name, true, &path, &why);
     if (code == STATUS_FAILURE)
         fail(l, &why);
     if (code != STATUS_OK)
@@ -170,7 +170,7 @@ static void classify_file(listing *l, char *name)
     add_name(l, &l->found[use], name);
 }
 
-/* Whether the name is UTF-8; only such names have a place in JSON. */
+/* Whether the name is UTF-8; JSON cannot hold another. */
 static bool is_text(listing *l, const char *name)
 {
     json_t *text = json_text_or_null(name);
@@ -182,16 +182,16 @@ static bool is_text(listing *l, const char *name)
 }
 
 /* Joins a folder's name, "" for the chosen folder, and a name in it. */
-static char *join_path(const char *folder_of_it, const char *name)
+static char *join_path(const char *parent, const char *name)
 {
-    return text_format("%s%s%s", folder_of_it, *folder_of_it ? "/" : "", name);
+    return text_format("%s%s%s", parent, *parent ? "/" : "", name);
 }
 
 /* Takes ownership of the name. Links to folders are not followed, so that no file is listed twice. */
 static void visit_entry(listing *l, char *name)
 {
     struct stat about;
-    char *path = join_path(folder_root(l->of), name);
+    char *path = join_path(folder_root(l->root), name);
     const bool is_folder = path && lstat(path, &about) == 0 && S_ISDIR(about.st_mode);
     if (!path)
         fail_for_memory(l);
@@ -205,13 +205,13 @@ static void visit_entry(listing *l, char *name)
 /* Reads all names of a folder before it visits any, so that the limit does not depend on the order of readdir. */
 static void visit_folder(listing *l, const char *name)
 {
-    char *path = join_path(folder_root(l->of), name);
+    char *path = join_path(folder_root(l->root), name);
     DIR *d = path ? opendir(path) : NULL;
     diagnostic why = {.what = ""};
     if (!path)
         fail_for_memory(l);
     else if (!d && system_error(&why, STATUS_BAD_INPUT, path, "cannot be listed", errno, "") == STATUS_FAILURE)
-        fail(l, &why); /* it must not pass for an empty folder */
+        fail(l, &why); /* a folder that cannot be listed now is not an empty one */
     free(path);
     names found = {.name = NULL};
     for (const struct dirent *e; d && l->code == STATUS_OK && l->entries < ENTRIES_MAX && (e = readdir(d));
@@ -231,7 +231,7 @@ static void visit_folder(listing *l, const char *name)
 static json_t *listing_json(const listing *l)
 {
     json_t *all = json_object();
-    json_add_as(&all, "folder", json_string_nocheck(folder_title(l->of)));
+    json_add_as(&all, "folder", json_string_nocheck(folder_title(l->root)));
     for (int use = 0; use < USE_COUNT; use++) {
         json_t *list = json_array();
         sort(&l->found[use]);
@@ -246,7 +246,7 @@ static json_t *listing_json(const listing *l)
 
 status folder_json(const folder *f, json_t **out, diagnostic *why)
 {
-    listing l = {.of = f, .why = why};
+    listing l = {.root = f, .why = why};
     visit_folder(&l, "");
     for (int depth = 1; depth <= DEPTH_MAX; depth++) {
         names level = l.next;

@@ -1,4 +1,4 @@
-/* The files of unsaved scenes: names, locks, first lines. */
+/* Files of unsaved scenes: their names, their locks, and the line that describes the scene. */
 #include "base/file.h"
 #include "base/json_build.h"
 #include "base/text.h"
@@ -18,9 +18,9 @@
 #include <time.h>
 #include <unistd.h>
 
-static const char before[] = "unsaved-", after[] = ".yaml", unfinished[] = ".part";
+static const char name_prefix[] = "unsaved-", name_suffix[] = ".yaml", partial_suffix[] = ".part";
 static const char first_words[] = "# An unsaved scene of cuvette lab: ";
-enum { UNFINISHED_S = 60 }; /* a file is being written for less than that, and is not locked at its first instant */
+enum { UNFINISHED_S = 60 }; /* a younger file may still be written: it is locked only after its creation */
 
 void kept_scene_release(kept_scene *k)
 {
@@ -43,8 +43,9 @@ void kept_scene_remove(kept_scene *k)
 /* unsaved-0123456789abcdef.yaml */
 static bool is_kept_name(const char *name)
 {
-    return strncmp(name, before, strlen(before)) == 0 && strlen(name) == strlen(before) + 16 + strlen(after) &&
-           strcmp(name + strlen(before) + 16, after) == 0;
+    return strncmp(name, name_prefix, strlen(name_prefix)) == 0 &&
+           strlen(name) == strlen(name_prefix) + 16 + strlen(name_suffix) &&
+           strcmp(name + strlen(name_prefix) + 16, name_suffix) == 0;
 }
 
 static bool ends_with(const char *name, const char *ending)
@@ -53,7 +54,7 @@ static bool ends_with(const char *name, const char *ending)
     return length > size && strcmp(name + length - size, ending) == 0;
 }
 
-/* Opens a file of this user and locks it, unless it has an owner or was replaced in between. Returns -1 otherwise. */
+/* Opens a file of this user and locks it. Returns -1 if another process has locked it or it was replaced meanwhile. */
 static int lock_file(const char *path, struct stat *about)
 {
     struct stat named;
@@ -68,8 +69,8 @@ static int lock_file(const char *path, struct stat *about)
     return -1;
 }
 
-/* The JSON of the first line; NULL if it has none. The JSON is ASCII, because YAML ends a comment at other line breaks
- * too. */
+/* The JSON of the first line; NULL if it has none. The JSON is ASCII, because YAML also ends a comment at line breaks
+ * outside ASCII. */
 static json_t *read_about(int fd)
 {
     enum { LINE_MAX_BYTES = 1 << 16 };
@@ -92,6 +93,7 @@ static json_t *read_about(int fd)
     return NULL;
 }
 
+/* Frees path unless the file is claimed. */
 static bool claim(char *path, const char *name, kept_scene *k)
 {
     struct stat about;
@@ -104,7 +106,7 @@ static bool claim(char *path, const char *name, kept_scene *k)
         return false;
     }
     *k = (kept_scene){.path = path, .fd = fd, .about = line};
-    snprintf(k->id, sizeof k->id, "%.16s", name + strlen(before));
+    snprintf(k->id, sizeof k->id, "%.16s", name + strlen(name_prefix));
     return true;
 }
 
@@ -155,7 +157,7 @@ size_t kept_scenes_claim(const char *folder, kept_scene list[KEPT_SCENES_MAX])
                 count = insert(list, count, k);
             continue;
         }
-        if (path && ends_with(name, unfinished))
+        if (path && ends_with(name, partial_suffix))
             remove_unfinished(path);
         free(path);
     }
@@ -184,8 +186,8 @@ status kept_scenes_folder(const char *folder, diagnostic *why)
         code = file_make_directory(folder, why); /* fails again, with the reason */
     TRY(code);
     if (stat(folder, &about) != 0 || about.st_uid != geteuid() || (about.st_mode & 022))
-        return diagnose_at(why, folder, STATUS_FAILURE, "make it your own: chmod 700",
-                           "the folder belongs to, or can be written by, somebody else");
+        return diagnose_at(why, folder, STATUS_FAILURE, "make it yours: use chown, and chmod 700",
+                           "the folder belongs to another user, or another user can write to it");
     return STATUS_OK;
 }
 
@@ -195,7 +197,7 @@ static bool choose_name(const char *folder, kept_scene *k)
     if (getrandom(&number, sizeof number, 0) != sizeof number)
         return false;
     snprintf(k->id, sizeof k->id, "%016" PRIx64, number);
-    k->path = text_format("%s/%s%s%s", folder, before, k->id, after);
+    k->path = text_format("%s/%s%s%s", folder, name_prefix, k->id, name_suffix);
     return k->path != NULL;
 }
 
@@ -224,28 +226,28 @@ static bool set_time(json_t *about)
            json_object_set_new(about, "time", json_string(text)) == 0;
 }
 
-status kept_scene_write(const char *folder, kept_scene *own, json_t *about, const char *text, diagnostic *why)
+status kept_scene_write(const char *folder, kept_scene *kept, json_t *about, const char *text, diagnostic *why)
 {
     if (strlen(text) > KEPT_SCENE_BYTES_MAX / 2)
-        return diagnose(why, STATUS_BAD_INPUT, "save it",
-                        "the scene's text is longer than the %d bytes of a scene that is kept",
+        return diagnose(why, STATUS_BAD_INPUT, "save the scene",
+                        "the scene's text is longer than %d bytes, the limit for keeping it unsaved",
                         KEPT_SCENE_BYTES_MAX / 2);
     TRY(kept_scenes_folder(folder, why));
     kept_scene fresh = {.path = NULL};
     char *line = set_time(about) ? json_text(about, JSON_COMPACT | JSON_ENSURE_ASCII) : NULL;
-    const bool named = own->path || choose_name(folder, &fresh);
+    const bool named = kept->path || choose_name(folder, &fresh);
     int fd = -1;
     status code =
-        line && named ? write_locked(own->path ? own->path : fresh.path, line, text, &fd, why) : out_of_memory(why);
+        line && named ? write_locked(kept->path ? kept->path : fresh.path, line, text, &fd, why) : out_of_memory(why);
     free(line);
     if (code != STATUS_OK) {
         free(fresh.path);
         return code;
     }
-    if (own->path)
-        close(own->fd); /* of the file that was replaced */
+    if (kept->path)
+        close(kept->fd); /* the lock of the replaced file */
     else
-        *own = fresh;
-    own->fd = fd;
+        *kept = fresh;
+    kept->fd = fd;
     return STATUS_OK;
 }

@@ -9,7 +9,7 @@
 #include <jansson.h>
 #include <stddef.h>
 
-/* Scenes without an owner that are kept, the newest; bytes of a file. */
+/* The limits of scenes without an owner, of which the newest are kept, and of the bytes of a file. */
 enum { KEPT_SCENES_MAX = 8, KEPT_SCENE_BYTES_MAX = 4 << 20 };
 
 /* All zero: none. */
@@ -20,17 +20,17 @@ typedef struct kept_scene {
     json_t *about; /* {"time": "2026-11-26T03:47:38Z", "title", "folder", "file": NAME in it or null} */
 } kept_scene;
 
-/* Locks the scenes without an owner, newest first, and removes older ones than KEPT_SCENES_MAX and unfinished files.
- * Files that cannot be read or locked are left alone. Returns their number. */
+/* Locks the scenes without an owner, newest first, and removes those beyond KEPT_SCENES_MAX and unfinished files.
+ * Ignores files that cannot be read or locked. Returns the number of scenes. */
 size_t kept_scenes_claim(const char *folder, kept_scene list[KEPT_SCENES_MAX]);
 
-/* Makes the folder, for its owner alone. */
+/* Creates the folder, which only its owner can access. */
 status kept_scenes_folder(const char *folder, diagnostic *why);
-/* Writes a scene to a file of its own, or replaces that of *own; creates the folder. about: title, folder and file, to
- * which the time is added. *own is unchanged after an error. */
-status kept_scene_write(const char *folder, kept_scene *own, json_t *about, const char *text, diagnostic *why);
-/* The file's text, which is the caller's; free it with free. */
+/* Writes a scene to a new file, or replaces the file of *kept; creates the folder. about: title, folder and file; the
+ * time is added. *kept is unchanged after an error. */
+status kept_scene_write(const char *folder, kept_scene *kept, json_t *about, const char *text, diagnostic *why);
+/* Reads the file's text, which the caller frees. */
 status kept_scene_read(const kept_scene *k, char **text, size_t *size, diagnostic *why);
 
-void kept_scene_remove(kept_scene *k);  /* and its file */
+void kept_scene_remove(kept_scene *k);  /* deletes the file */
 void kept_scene_release(kept_scene *k); /* the file stays, without an owner */

@@ -1,4 +1,4 @@
-/* The scene document: its limits, its versions with their views, undo and redo, and sharing of loaded data.
+/* The scene document: its limits, its versions with their views, undo and redo, and the reuse of loaded data.
  * scene_document_changes.c edits the scene and moves the camera. */
 #include "base/json_build.h"
 #include "report/json.h"
@@ -48,7 +48,7 @@ static origin *origin_create(const scene *s, uint64_t number)
 {
     origin *o = calloc(1, sizeof *o);
     if (o)
-        *o = (origin){.s = scene_clone(s), .number = number, .owners = 1};
+        *o = (origin){.s = scene_clone(s), .number = number, .references = 1};
     if (o && o->s)
         return o;
     free(o);
@@ -57,7 +57,7 @@ static origin *origin_create(const scene *s, uint64_t number)
 
 static void origin_release(origin *o)
 {
-    if (o && --o->owners == 0) {
+    if (o && --o->references == 0) {
         scene_destroy(o->s);
         free(o);
     }
@@ -104,7 +104,7 @@ static void stack_push(version_stack *p, version v)
 
 bool camera_equal(const struct camera *a, const struct camera *b)
 {
-    return memcmp(a, b, sizeof *a) == 0; /* numbers of eight bytes only, so without padding */
+    return memcmp(a, b, sizeof *a) == 0; /* all members have eight bytes, so there is no padding */
 }
 
 static void push_view(view_stack *p, const camera_view *v)
@@ -116,7 +116,7 @@ static void push_view(view_stack *p, const camera_view *v)
     p->item[p->count++] = *v;
 }
 
-/* Records the view before a move. Consecutive moves with the same gesture are one entry; NULL: an entry of its own. */
+/* Records the view before a move. Consecutive moves with the same gesture are one entry; gesture NULL: a new entry. */
 static void view_history_push(view_history *h, const camera_view *before, const char *gesture)
 {
     const bool continues = gesture && h->gesture[0] && strcmp(gesture, h->gesture) == 0;
@@ -186,9 +186,9 @@ status scene_document_create(scene *first, const char *file, const folder *files
                           .changed = changed,
                           .context = context,
                           .generation = 1,
-                          .numbers = 1,
+                          .last_number = 1,
                           .saved_number = file ? 1 : 0};
-    d->now = (version){.s = first, .file = name, .number = 1, .from = from, .kept = first->camera};
+    d->now = (version){.s = first, .file = name, .number = 1, .from = from, .saved_camera = first->camera};
     *out = d;
     return STATUS_OK;
 }
@@ -204,8 +204,8 @@ void scene_document_destroy(scene_document *d)
     free(d);
 }
 
-status scene_document_push(scene_document *d, scene *next, const char *file, origin *from, const struct camera *kept,
-                           const char *what, const char *gesture, diagnostic *why)
+status scene_document_push(scene_document *d, scene *next, const char *file, origin *from,
+                           const struct camera *saved_camera, const char *what, const char *gesture, diagnostic *why)
 {
     char *name = copy_or_null(file), *words = strdup(what);
     if (!words || (file && !name)) {
@@ -216,13 +216,16 @@ status scene_document_push(scene_document *d, scene *next, const char *file, ori
     const bool continues = gesture && d->gesture[0] && strcmp(gesture, d->gesture) == 0;
     snprintf(d->gesture, sizeof d->gesture, "%s", gesture ? gesture : "");
     version before = d->now;
-    d->now =
-        (version){.s = next, .file = name, .number = ++d->numbers, .from = from ? from : before.from, .kept = *kept};
+    d->now = (version){.s = next,
+                       .file = name,
+                       .number = ++d->last_number,
+                       .from = from ? from : before.from,
+                       .saved_camera = *saved_camera};
     if (from) {
         from->number = d->now.number;
         view_history_clear(&d->views);
     } else {
-        before.from->owners++;
+        before.from->references++;
         if (!camera_equal(&next->camera, &before.s->camera))
             view_history_push(&d->views, &(camera_view){before.s->camera, d->pivot}, gesture);
     }
@@ -284,7 +287,7 @@ status scene_document_rescue(scene_document *d, scene *s, const char *file, uint
     return open_as(d, s, file, true, generation, why);
 }
 
-/* The view stays if both versions have the same camera of their own; otherwise it becomes the new version's camera. A
+/* Keeps the view if both versions have the same saved camera; otherwise the view becomes the new version's camera. A
  * version of another file is shown with its last view. */
 static void restore_view(scene_document *d, const version *before, const camera_view *view)
 {
@@ -293,8 +296,8 @@ static void restore_view(scene_document *d, const version *before, const camera_
         return;
     }
     d->now.s->camera = view->camera;
-    if (!camera_equal(&d->now.kept, &before->kept))
-        scene_document_put_view(d, &(camera_view){d->now.kept, {{0, 0, 0}, false}}, NULL);
+    if (!camera_equal(&d->now.saved_camera, &before->saved_camera))
+        scene_document_put_view(d, &(camera_view){d->now.saved_camera, {{0, 0, 0}, false}}, NULL);
 }
 
 status scene_document_undo(scene_document *d, bool redo, uint64_t *generation, diagnostic *why)
@@ -334,7 +337,7 @@ scene *scene_document_copy_kept(scene_document *d, uint64_t *generation, uint64_
     pthread_mutex_lock(&d->lock);
     scene *copy = scene_clone(d->now.s);
     if (copy)
-        copy->camera = d->now.kept;
+        copy->camera = d->now.saved_camera;
     if (generation)
         *generation = d->generation;
     if (number)
@@ -397,7 +400,7 @@ void scene_document_saved(scene_document *d, const char *file, uint64_t number)
         d->changed(d->context);
 }
 
-/* A scene that was opened and not changed can be opened again. The caller holds the lock. */
+/* Whether changes would be lost; an opened scene without changes can be opened again. The caller holds the lock. */
 static bool is_unsaved(const scene_document *d)
 {
     const origin *from = d->now.from;
@@ -419,8 +422,8 @@ static json_t *view_json(const scene_document *d)
 {
     const vec3 at = camera_pivot_of(d->now.s, d->pivot);
     return json_pack("{s:b, s:b, s:b, s:[f,f,f], s:o}", "back", d->views.back.count > 0, "forward",
-                     d->views.forward.count > 0, "kept", camera_equal(&d->now.kept, &d->now.s->camera), "pivot", at.x,
-                     at.y, at.z, "distance", json_of_real(vec3_length(vec3_sub(at, d->now.s->camera.position))));
+                     d->views.forward.count > 0, "kept", camera_equal(&d->now.saved_camera, &d->now.s->camera), "pivot",
+                     at.x, at.y, at.z, "distance", json_of_real(vec3_length(vec3_sub(at, d->now.s->camera.position))));
 }
 
 static json_t *top_json(const version_stack *p)

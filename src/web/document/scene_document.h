@@ -23,8 +23,8 @@ enum { DOCUMENT_PIXELS_MAX = 16777216, DOCUMENT_TRIANGLES_MAX = 4000000, DOCUMEN
 status scene_document_check(const scene *s, const folder *files, diagnostic *why);
 status scene_document_limit(scene *s, const folder *files, diagnostic *why);
 
-/* Takes ownership of the scene, also after an error. changed is called without the lock after each change. file: its
- * name in the folder, NULL for a new scene. files is borrowed: loading a copy opens no file outside it. */
+/* Takes ownership of the scene, also after an error. changed is called without the lock after each change. file: the
+ * scene's name in the folder, NULL for a new scene. files is borrowed: loading a copy opens no file outside it. */
 status scene_document_create(scene *first, const char *file, const folder *files, void (*changed)(void *context),
                              void *context, scene_document **out, diagnostic *why);
 void scene_document_destroy(scene_document *d); /* NULL is allowed */
@@ -37,8 +37,8 @@ typedef status scene_document_change(void *context, scene *s, diagnostic *why);
 status scene_document_apply(scene_document *d, const char *what, const char *gesture, scene_document_change *change,
                             void *context, uint64_t *generation, diagnostic *why);
 
-/* The same for a change of the camera's parameters: the view becomes the scene's own camera even if they have the
- * values that the view shows already. */
+/* Like scene_document_apply, for a change of the camera's parameters: the view becomes the scene's own camera even if
+ * the parameters equal those of the view. */
 status scene_document_apply_to_camera(scene_document *d, const char *what, const char *gesture,
                                       scene_document_change *change, void *context, uint64_t *generation,
                                       diagnostic *why);
@@ -46,11 +46,11 @@ status scene_document_apply_to_camera(scene_document *d, const char *what, const
 /* Replaces the scene by one from a file, or a new one (file NULL): a change like others; resets return to this scene
  * from now on. Takes ownership of s, also after an error. */
 status scene_document_open(scene_document *d, scene *s, const char *file, uint64_t *generation, diagnostic *why);
-/* The same for a scene whose changes are in no file, not even in `file`, into which they can be saved. */
+/* Like scene_document_open, for a scene with unsaved changes; file: where they can be saved, NULL for none. */
 status scene_document_rescue(scene_document *d, scene *s, const char *file, uint64_t *generation, diagnostic *why);
 
-/* Moves the camera: a view of the scene, not a change of it. It makes a new generation, but no undo step, and the scene
- * stays saved; the views have a history of their own. The document keeps the move's pivot. gesture: NULL, or a string;
+/* Moves the camera, which changes the view, not the scene: there is a new generation, but no undo step, and the scene
+ * stays saved; views have a separate history. The document keeps the move's pivot. gesture: NULL, or a string;
  * consecutive moves with the same gesture are one view of the history. */
 status scene_document_move_view(scene_document *d, camera_move *move, const char *gesture, uint64_t *generation,
                                 diagnostic *why);
@@ -60,8 +60,8 @@ status scene_document_move_view(scene_document *d, camera_move *move, const char
 typedef enum view_command { VIEW_BACK, VIEW_FORWARD, VIEW_HOME, VIEW_KEEP } view_command;
 status scene_document_view(scene_document *d, view_command order, uint64_t *generation, diagnostic *why);
 
-/* STATUS_BAD_INPUT when there is nothing to undo (or redo). The view stays, unless the two scenes have different
- * cameras of their own. */
+/* STATUS_BAD_INPUT when there is nothing to undo (or redo). The view stays, unless the own cameras of the two
+ * scenes differ. */
 status scene_document_undo(scene_document *d, bool redo, uint64_t *generation, diagnostic *why);
 
 /* Resets these paths to their values when the scene was opened, or (count 0) all paths and the objects themselves. */
@@ -70,8 +70,8 @@ status scene_document_reset(scene_document *d, const char *const *paths, size_t 
 
 /* A copy of the scene with its loaded data (triangles, textures); NULL when out of memory. generation may be NULL. */
 scene *scene_document_copy(scene_document *d, uint64_t *generation);
-/* The same with the own camera instead of the view: what a file of it contains. number: of this version, which
- * moves of the camera leave. */
+/* Like scene_document_copy, with the scene's own camera instead of the view, as for a file. number: the number of the
+ * version, which moves of the camera do not change. */
 scene *scene_document_copy_kept(scene_document *d, uint64_t *generation, uint64_t *number);
 /* A copy of the scene as it was opened. */
 scene *scene_document_copy_opened(scene_document *d);
@@ -80,10 +80,11 @@ uint64_t scene_document_generation(scene_document *d);
 /* Shares the data that was loaded for a copy of that generation with later copies. loaded is borrowed. */
 void scene_document_share_loaded(scene_document *d, const scene *loaded, uint64_t generation);
 
-/* Records that the version with that number, of scene_document_copy_kept, was written to that file. */
+/* Records that the version of that number, which scene_document_copy_kept returned, was written to the file. */
 void scene_document_saved(scene_document *d, const char *file, uint64_t number);
 
-/* Whether the scene has changes that would be lost with the program; number as above. file: a copy of its file's name,
+/* Whether the scene has changes that would be lost with the program; number: as of
+ * scene_document_copy_kept. file: a copy of its file's name,
  * NULL for none (or out of memory); may be NULL. */
 bool scene_document_unsaved(scene_document *d, uint64_t *number, char **file);
 

@@ -1,4 +1,5 @@
-/* Changes of the scene document: edits, resets, moves of the camera, and keeping a view as the scene's own camera. */
+/* Edits the scene document: changes, resets, moves of the camera, and keeping a view as the scene's own camera.
+ * api/scene_changes.c lists the differences between two scenes. */
 #include "scene/model/params.h"
 #include "scene/model/scene.h"
 #include "web/document/scene_document_private.h"
@@ -16,8 +17,8 @@ static status apply(scene_document *d, const char *what, const char *gesture, bo
     THEN(code, scene_document_check(next, d->files, why));
     if (code == STATUS_OK) {
         const bool moved = of_camera || !camera_equal(&next->camera, &d->now.s->camera);
-        code =
-            scene_document_push(d, next, d->now.file, NULL, moved ? &next->camera : &d->now.kept, what, gesture, why);
+        code = scene_document_push(d, next, d->now.file, NULL, moved ? &next->camera : &d->now.saved_camera, what,
+                                   gesture, why);
     }
     if (code != STATUS_OK)
         scene_destroy(next);
@@ -61,9 +62,10 @@ status scene_document_reset(scene_document *d, const char *const *paths, size_t 
         char words[128];
         snprintf(words, sizeof words, count == 1 ? "reset %.100s" : "reset", count == 1 ? paths[0] : "");
         const bool moved = count == 0 || !camera_equal(&next->camera, &d->now.s->camera);
-        code = scene_document_push(d, next, d->now.file, NULL, moved ? &next->camera : &d->now.kept, words, NULL, why);
+        code = scene_document_push(d, next, d->now.file, NULL, moved ? &next->camera : &d->now.saved_camera, words,
+                                   NULL, why);
         if (code == STATUS_OK && count == 0)
-            d->now.number = from->number; /* it is that version again */
+            d->now.number = from->number; /* the opened version again */
     }
     if (code != STATUS_OK)
         scene_destroy(next);
@@ -91,14 +93,14 @@ status scene_document_move_view(scene_document *d, camera_move *move, const char
 
 static status keep(scene_document *d, diagnostic *why)
 {
-    if (camera_equal(&d->now.kept, &d->now.s->camera))
+    if (camera_equal(&d->now.saved_camera, &d->now.s->camera))
         return diagnose(why, STATUS_BAD_INPUT, "move the camera first", "the scene has this view already");
-    scene *same = scene_clone(d->now.s);
-    const status code = same
-                            ? scene_document_push(d, same, d->now.file, NULL, &same->camera, "keep the view", NULL, why)
+    scene *copy = scene_clone(d->now.s);
+    const status code = copy
+                            ? scene_document_push(d, copy, d->now.file, NULL, &copy->camera, "keep the view", NULL, why)
                             : out_of_memory(why);
     if (code != STATUS_OK)
-        scene_destroy(same);
+        scene_destroy(copy);
     return code;
 }
 
@@ -106,9 +108,9 @@ static status show(scene_document *d, view_command order, diagnostic *why)
 {
     camera_view now = scene_document_view_now(d);
     if (order == VIEW_HOME) {
-        if (camera_equal(&d->now.kept, &now.camera))
+        if (camera_equal(&d->now.saved_camera, &now.camera))
             return diagnose(why, STATUS_BAD_INPUT, "", "this is the scene's own view");
-        scene_document_put_view(d, &(camera_view){d->now.kept, {{0, 0, 0}, false}}, NULL);
+        scene_document_put_view(d, &(camera_view){d->now.saved_camera, {{0, 0, 0}, false}}, NULL);
     } else {
         if (!view_history_go(&d->views, order == VIEW_FORWARD, &now))
             return diagnose(why, STATUS_BAD_INPUT, "", "there is no %s view",

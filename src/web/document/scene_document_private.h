@@ -9,8 +9,7 @@
 #include <pthread.h>
 #include <stddef.h>
 
-/* Where the camera was, to go back and forward, apart from the undo history of the scene. A view is the whole camera
- * and its pivot. */
+/* The history of views, separate from the undo history of the scene. A view is a camera and its pivot. */
 enum { VIEWS_MAX = 100 };
 
 typedef struct camera_view {
@@ -31,9 +30,9 @@ typedef struct view_history {
 /* A scene as it was opened, shared by all versions derived from it. Guarded by the document's lock. */
 typedef struct origin {
     scene *s;
-    uint64_t number; /* of its version */
+    uint64_t number; /* the version's */
     bool unfiled;    /* no file may have it: it was rescued, or its file has been saved into */
-    int owners;
+    int references;
 } origin;
 
 /* One version of the document. Undo versions hold no loaded data: a hundred undo steps must not hold a hundred
@@ -44,7 +43,7 @@ typedef struct version {
     char *what;      /* the change made to it, for undo; in the redo stack: the change that led to it */
     uint64_t number; /* of the version; undo restores it */
     origin *from;
-    struct camera kept; /* the scene's own camera; that of s is the view */
+    struct camera saved_camera; /* the scene's own, which files have; the camera of s is the view */
 } version;
 
 typedef struct version_stack {
@@ -58,7 +57,7 @@ struct scene_document {
     void (*changed)(void *context);
     void *context;
     version now;
-    uint64_t generation, numbers, saved_number;
+    uint64_t generation, last_number, saved_number;
     char gesture[80]; /* of the last change; "" for none */
     version_stack undo, redo;
     camera_pivot pivot; /* of the view */
@@ -71,15 +70,15 @@ bool camera_equal(const struct camera *a, const struct camera *b);
 bool view_history_go(view_history *h, bool forward, camera_view *now);
 
 /* Sets the view, and records the one before unless it is equal. Consecutive moves with the
- * same gesture are one entry; NULL: an entry of its own. The caller holds the lock. */
+ * same gesture are one entry; a move without a gesture (NULL) is another. The caller holds the lock. */
 void scene_document_put_view(scene_document *d, const camera_view *next, const char *gesture);
 camera_view scene_document_view_now(const scene_document *d);
 
 /* Replaces the scene by next, which the document owns from now on, and pushes the old one on the undo stack, or
- * drops it where the same gesture made it. from: the new origin of an opened scene, owned from now on; NULL: the
- * origin stays. kept: the scene's own camera from now on. The caller holds the lock. */
-status scene_document_push(scene_document *d, scene *next, const char *file, origin *from, const struct camera *kept,
-                           const char *what, const char *gesture, diagnostic *why);
+ * drops it if the same gesture made it. from: the new origin of an opened scene, owned from now on; NULL: the
+ * origin stays. saved_camera: the scene's own camera from now on. The caller holds the lock. */
+status scene_document_push(scene_document *d, scene *next, const char *file, origin *from,
+                           const struct camera *saved_camera, const char *what, const char *gesture, diagnostic *why);
 
 /* Ends every change: returns the generation to the caller, unlocks and calls changed. */
 status scene_document_finish(scene_document *d, status code, uint64_t *generation);

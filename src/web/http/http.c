@@ -62,8 +62,8 @@ static status make_token(http_server *s, diagnostic *why)
     return STATUS_OK;
 }
 
-/* Closes the socket of a server that did not start, unless libmicrohttpd has closed it, which it does except when its
- * first allocation fails. */
+/* Closes the socket of a server that did not start. libmicrohttpd has closed it already, unless its first allocation
+ * failed. */
 static void close_unserved(int fd, const struct stat *listening)
 {
     struct stat now;
@@ -96,7 +96,7 @@ static status listen_and_serve(http_server *s, diagnostic *why)
             MHD_USE_INTERNAL_POLLING_THREAD | MHD_USE_THREAD_PER_CONNECTION | MHD_USE_POLL, 0, NULL, NULL,
             http_on_request, s, MHD_OPTION_LISTEN_SOCKET, fd, MHD_OPTION_CONNECTION_LIMIT,
             (unsigned)s->settings.connections, MHD_OPTION_CONNECTION_TIMEOUT, (unsigned)s->settings.timeout_s,
-            MHD_OPTION_NONCE_NC_SIZE, 0u, /* of digests, which are not used */
+            MHD_OPTION_NONCE_NC_SIZE, 0u, /* nonces of digest authentication, which is not used */
             MHD_OPTION_CONNECTION_MEMORY_LIMIT, (size_t)32768, MHD_OPTION_STRICT_FOR_CLIENT, 1,
             MHD_OPTION_URI_LOG_CALLBACK, http_on_target, s, MHD_OPTION_NOTIFY_COMPLETED, http_on_end, s,
             MHD_OPTION_NOTIFY_CONNECTION, http_watch_notify, s, MHD_OPTION_END);

@@ -13,18 +13,16 @@
  *
  * The checks of every request, in this order; the first that fails replies {"error": .., "remedy": ..}:
  *   400  HTTP/1.0 or 1.1 with one Host; a path of printable characters without "." or ".." as a part, "//", "\\",
- *   %00,
- *        %2f or %5c, however they are encoded; libmicrohttpd ends the line at an unencoded NUL
+ *        %00, %2f or %5c, however they are encoded; libmicrohttpd ends the line at an unencoded NUL
  *   421  Host is 127.0.0.1, localhost or [::1] with this port: another name means DNS rebinding by another site
  *   403  Origin, if present, is that same host
- *   401  the token, as "Authorization: Bearer TOKEN" or in the cookie cuvette_PORT; or, for GET, as ?token=TOKEN,
- *   which
- *        replies 303 with that cookie (HttpOnly, SameSite=Strict) and the same address without the token
- *        (to a page of another site or a file that opened it: a page that opens "/")
- *   429  requests_per_s, with a burst of one second; requests without the token have a limit of their own
+ *   401  the token, as "Authorization: Bearer TOKEN" or in the cookie cuvette_PORT; or, for GET, as ?token=TOKEN:
+ *        the reply is 303 with that cookie (HttpOnly, SameSite=Strict) and the same address without the token
+ *        (if a page of another site or a local file opened it: 200 with a page that opens "/")
+ *   429  requests_per_s, with a burst of one second; requests without the token have a separate limit
  *   404  no route or file has the path;  405  the route has another method (Allow lists them); HEAD uses GET's route
  *   415  Content-Type: application/json for every method but GET and HEAD; another site's page cannot send it
- *   unasked
+ *        without a preflight request, which fails
  *   413  body_max
  * A request must arrive within timeout_s, and a reply must be read within the same time; slower connections are
  * closed. Connections that have sent no request with the token may be a quarter of all; another one displaces the
@@ -37,9 +35,9 @@
  * Threads: one per connection, so a handler may block without blocking others; handlers of one server run
  * concurrently. Memory: connections * (body_max + 64 KiB) and the replies of the handlers; an event is stored once
  * for all clients. Ownership: http_start creates, http_stop releases; routes and files of the settings are borrowed
- * until then, the settings themselves only by http_start. Whatever is given to a reply belongs to the reply. Errors:
- * STATUS_BAD_INPUT for a port that cannot be used, STATUS_FAILURE for memory, threads and sockets. Prints nothing
- * and handles no signal. */
+ * until then, the settings themselves only by http_start. A reply owns the bytes, files and JSON passed to
+ * it. Errors: STATUS_BAD_INPUT for a port that cannot be used, STATUS_FAILURE for memory, threads and sockets. Prints
+ * nothing and handles no signal. */
 #pragma once
 
 #include "base/status.h"
@@ -79,7 +77,7 @@ typedef struct http_settings {
     size_t file_count;
     size_t body_max;       /* limit of a request's body in bytes [1 MiB] */
     int connections;       /* concurrent connections, 1..1024 [64]; further clients wait to be accepted */
-    int event_clients;     /* of those, event streams [32, or half of connections]; further clients get 503 */
+    int event_clients;     /* connections that may be event streams [32, or half of all]; further clients get 503 */
     int timeout_s;         /* [10] */
     double requests_per_s; /* [2000] */
 } http_settings;
@@ -90,8 +88,9 @@ status http_start(const http_settings *settings, http_server **out, diagnostic *
 void http_stop(http_server *server);
 
 int http_port(const http_server *server);
-const char *http_token(const http_server *server);   /* 128 random bits as 32 hexadecimal digits */
-const char *http_address(const http_server *server); /* "http://127.0.0.1:PORT/?token=TOKEN": a secret: grants access */
+const char *http_token(const http_server *server); /* 128 random bits as 32 hexadecimal digits */
+const char *
+http_address(const http_server *server); /* "http://127.0.0.1:PORT/?token=TOKEN": a secret that grants access */
 
 /* --- a request --- */
 
@@ -105,12 +104,12 @@ json_t *http_body_json(const http_request *request, http_reply *reply);
 /* --- a reply; the last one set counts --- */
 
 void http_reply_bytes(http_reply *reply, int code, const char *type, void *bytes,
-                      size_t size); /* allocated by malloc, taken over; NULL sends 500 */
+                      size_t size); /* allocated by malloc, owned by the reply; NULL sends 500 */
 void http_reply_static(http_reply *reply, int code, const char *type, const void *bytes,
                        size_t size); /* bytes must outlive the server */
 void http_reply_file(http_reply *reply, int code, const char *type, int file,
-                     size_t size); /* a regular file, from its start; the descriptor is taken over */
-void http_reply_json(http_reply *reply, int code, json_t *value); /* takes the reference; NULL sends 500 */
+                     size_t size); /* a regular file, from its start; the reply owns the descriptor */
+void http_reply_json(http_reply *reply, int code, json_t *value); /* owns value; NULL sends 500 */
 /* {"error": what, "remedy": remedy}; bytes of what that are not UTF-8 become '?'. */
 void http_reply_error(http_reply *reply, int code, const char *what, const char *remedy);
 /* 400 for STATUS_BAD_INPUT, 409 for STATUS_INTERRUPTED, otherwise 500; with file, line and column if the diagnostic

@@ -11,12 +11,12 @@
 #include <sys/eventfd.h>
 #include <unistd.h>
 
-/* A client may leave an event unread for this multiple of timeout_s. */
+/* SLOW_CLIENT_TIMEOUTS: a client may leave an event unread for this multiple of timeout_s. */
 enum { NAME_MAX_LENGTH = 63, SLOW_CLIENT_TIMEOUTS = 6 };
 
 /* Reference-counted under event_lock. */
 typedef struct payload {
-    int users;
+    int references;
     size_t size;
     char name[NAME_MAX_LENGTH + 1];
     char text[];
@@ -28,18 +28,18 @@ struct http_event_client {
     int socket, wake, place; /* wake: an eventfd */
     int waiting;
     payload *queue[HTTP_EVENTS_WAITING]; /* oldest first */
-    payload *sending;                    /* used by its thread alone */
+    payload *sending;                    /* only the client's thread uses it */
     size_t sent;
     bool header_sent;
 };
 
 static void payload_release(payload *p)
 {
-    if (--p->users == 0)
+    if (--p->references == 0)
         free(p);
 }
 
-static ssize_t comment(http_event_client *c, char *to, size_t room)
+static ssize_t send_comment(http_event_client *c, char *to, size_t room)
 {
     static const char text[] = ":\n\n";
     if (room < sizeof text - 1)
@@ -85,7 +85,7 @@ static ssize_t read_stream(void *context, uint64_t position, char *to, size_t ro
     http_event_client *c = context;
     if (!c->header_sent) { /* sends the header, so that the page knows that the stream is open */
         c->header_sent = true;
-        return comment(c, to, room);
+        return send_comment(c, to, room);
     }
     if (c->sending)
         return send_rest(c, to, room);
@@ -98,7 +98,7 @@ static ssize_t read_stream(void *context, uint64_t position, char *to, size_t ro
         struct pollfd wait[2] = {{.fd = c->wake, .events = POLLIN}, {.fd = c->socket, .events = POLLRDHUP}};
         const int ready = poll(wait, 2, HTTP_HEARTBEAT_MS);
         if (ready == 0)
-            return comment(c, to, room);
+            return send_comment(c, to, room);
         if ((ready < 0 && errno != EINTR) || (ready > 0 && wait[1].revents))
             return MHD_CONTENT_READER_END_WITH_ERROR;
         uint64_t count;
@@ -183,7 +183,7 @@ static payload *payload_of(const char *name, const json_t *value)
         strcpy(p->name, name);
         char *to = stpcpy(stpcpy(stpcpy(stpcpy(stpcpy(p->text, event), name), data), json), end);
         p->size = (size_t)(to - p->text);
-        p->users = 1;
+        p->references = 1;
     }
     free(json);
     return p;
@@ -201,7 +201,7 @@ static void enqueue(http_event_client *c, payload *p)
         memmove(c->queue + drop, c->queue + drop + 1, (size_t)(--c->waiting - drop) * sizeof *c->queue);
     }
     c->queue[c->waiting++] = p;
-    p->users++;
+    p->references++;
 }
 
 static void wake(const http_event_client *c)

@@ -111,15 +111,15 @@ static bool is_local_host(const http_server *s, const char *host)
     return false;
 }
 
-typedef struct heads {
+typedef struct site_headers {
     int hosts, origins;
     const char *host, *origin;
-} heads;
+} site_headers;
 
-static enum MHD_Result look(void *context, enum MHD_ValueKind kind, const char *name, const char *value)
+static enum MHD_Result collect_header(void *context, enum MHD_ValueKind kind, const char *name, const char *value)
 {
     (void)kind;
-    heads *h = context;
+    site_headers *h = context;
     if (strcasecmp(name, "Host") == 0) {
         h->hosts++;
         h->host = value ? value : "";
@@ -138,11 +138,11 @@ static bool within_rate(http_server *s, bool known)
     const double filled = b->filled_s > 0 ? b->left + (now_s - b->filled_s) * rate : room;
     b->left = filled < room ? filled : room;
     b->filled_s = now_s;
-    const bool yes = b->left >= 1;
-    if (yes)
+    const bool allowed = b->left >= 1;
+    if (allowed)
         b->left -= 1;
     pthread_mutex_unlock(&s->bucket_lock);
-    return yes;
+    return allowed;
 }
 
 static int refuse(http_request *q, int code, const char *what, const char *remedy)
@@ -151,16 +151,16 @@ static int refuse(http_request *q, int code, const char *what, const char *remed
     return code;
 }
 
-/* A page that opened the address, such as the local file that cuvette lab hands to the browser, counts as another site:
- * after a redirect the browser would withhold the cookie. A page of our own opens the address without the token. */
+/* Whether another site opened the address, such as the local file that cuvette lab opens in the browser. The browser
+ * would withhold the cookie after a redirect from there; it sends the cookie if a page of this server opens "/". */
 static bool comes_from_another_page(const http_request *q)
 {
     const char *site = mhd.lookup_connection_value(q->connection, MHD_HEADER_KIND, "Sec-Fetch-Site");
     return site && strcmp(site, "cross-site") == 0;
 }
 
-static const char own_page[] = "<!DOCTYPE html><meta charset=\"utf-8\"><title>Cuvette</title>"
-                               "<meta http-equiv=\"refresh\" content=\"0; url=/\">";
+static const char reload_page[] = "<!DOCTYPE html><meta charset=\"utf-8\"><title>Cuvette</title>"
+                                  "<meta http-equiv=\"refresh\" content=\"0; url=/\">";
 
 /* Answers the first request: stores the token in a cookie that no script can read and removes it from the address. */
 static int set_token_cookie(http_request *q)
@@ -169,7 +169,7 @@ static int set_token_cookie(http_request *q)
     const int code = comes_from_another_page(q) ? 200 : 303;
     snprintf(cookie, sizeof cookie, "%s=%s; Path=/; HttpOnly; SameSite=Strict", q->server->cookie, q->server->token);
     if (code == 200) {
-        http_reply_static(&q->reply, code, "text/html; charset=utf-8", own_page, sizeof own_page - 1);
+        http_reply_static(&q->reply, code, "text/html; charset=utf-8", reload_page, sizeof reload_page - 1);
     } else {
         http_reply_static(&q->reply, code, "text/plain; charset=utf-8", "", 0);
         http_reply_header(&q->reply, "Location", clean ? clean : "/");
@@ -190,9 +190,9 @@ static bool has_token(const http_request *q)
 /* Checks all but the token, against requests that another site's page could cause. */
 static int guard_site(http_request *q, const char *version)
 {
-    heads h = {0};
+    site_headers h = {0};
     bool no_memory;
-    mhd.get_connection_values(q->connection, MHD_HEADER_KIND, look, &h);
+    mhd.get_connection_values(q->connection, MHD_HEADER_KIND, collect_header, &h);
     if (strcmp(version, "HTTP/1.1") != 0 && strcmp(version, "HTTP/1.0") != 0)
         return refuse(q, 400, "this is not HTTP/1.1", "send HTTP/1.1");
     q->path = safe_path(q->target, &no_memory);

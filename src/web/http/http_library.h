@@ -1,5 +1,5 @@
-/* libmicrohttpd, for the files of the HTTP server: its functions, and those of the server with its types. See
- * web/http/http_private.h. The functions are loaded when a server starts: the library brings GnuTLS, and all its
+/* libmicrohttpd's functions, and the server's functions that need its types; the others are in web/http/http_private.h.
+ * libmicrohttpd is loaded when a server starts: the library brings GnuTLS, and all its
  * dependencies would cost every command 6 ms at its start. The library's own header gives their types and their
  * meanings. */
 #pragma once

@@ -1,5 +1,5 @@
-/* Declarations shared by the files of the HTTP server; private to them. See web/http/http.h. Those that need
- * libmicrohttpd's types are in http_library.h: requests in a browser (src/wasm) come without it. */
+/* Declarations shared by the files of the HTTP server; private to them. See web/http/http.h. Functions that need
+ * libmicrohttpd's types are in http_library.h: the build for browsers (src/wasm) lacks that library. */
 #pragma once
 
 #include "web/http/http.h"
@@ -24,7 +24,7 @@ typedef struct http_bucket {
 typedef struct http_slot {
     int socket;        /* -1: the slot is free */
     double deadline_s; /* 0: none */
-    bool known;        /* a request with the token came over it */
+    bool known;        /* it has sent a request with the token */
     double started_s;
 } http_slot;
 
@@ -85,7 +85,7 @@ int http_find_route(http_request *q);
 /* --- http_send.c, and what replaces it in a browser (src/wasm/request.c) --- */
 void http_reply_release(http_reply *r);
 void http_reply_set(http_reply *r, int code, const char *type,
-                    struct MHD_Response *response); /* takes it; NULL: out of memory */
+                    struct MHD_Response *response); /* owns response; NULL: out of memory */
 
 /* --- http_watch.c: closes connections that exceed timeout_s --- */
 status http_watch_start(http_server *s, diagnostic *why);

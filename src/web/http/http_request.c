@@ -134,7 +134,7 @@ static enum MHD_Result read_body(http_request *q, const char *bytes, size_t size
     return MHD_YES;
 }
 
-/* False if the request was refused and there was no memory for that reply. */
+/* False if the request was refused without memory for the reply. */
 static bool can_answer(const http_request *q)
 {
     return q->reply.response || q->file || q->route;

@@ -1,4 +1,4 @@
-/* The contents of replies, as libmicrohttpd sends them: bytes, compressed where that pays, and files. */
+/* The contents of replies, as libmicrohttpd sends them: bytes, compressed if that pays, and files. */
 #include "web/http/http_library.h"
 
 #include <stdlib.h>
@@ -76,7 +76,7 @@ void http_reply_set(http_reply *r, int code, const char *type, struct MHD_Respon
     }
 }
 
-/* Sends the compressed bytes instead; false where they are not compressed. */
+/* Replies with the bytes compressed; false if they cannot or need not be compressed. */
 static bool reply_gzip(http_reply *r, int code, const char *type, const void *bytes, size_t size)
 {
     size_t packed_size;

@@ -1,4 +1,4 @@
-/* The part of the HTTP server that a laboratory in a browser has too (src/wasm), without libmicrohttpd: the route or
+/* The part of the HTTP server without libmicrohttpd, which the build for browsers (src/wasm) uses too: the route or
  * file of a request, JSON in requests and replies, and the headers of a reply. */
 #include "base/json_build.h"
 #include "report/json.h"
@@ -15,7 +15,7 @@ typedef struct path_values {
     int count;
 } path_values;
 
-/* Compares part by part. */
+/* Compares a path with a pattern, part by part. */
 static bool matches(const char *path, const char *pattern, path_values *found)
 {
     found->count = 0;

@@ -1,7 +1,7 @@
 /* The watchdog of slow connections. libmicrohttpd closes connections that are idle, but not those that send a byte
  * now and then. So each connection has a slot with the deadline of its request or reply, and a thread checks all
- * slots once a second. Connections without a request with the token have a limit of their own, so that strangers cannot
- * take all: a new one displaces the oldest of them. */
+ * slots once a second. Strangers, connections that have sent no request with the token, have a lower limit, so that
+ * they cannot use all connections: a new stranger displaces the oldest. */
 #include "base/float_environment.h"
 #include "measure/clock.h"
 #include "web/http/http_library.h"
@@ -18,10 +18,10 @@ static void *watch(void *context)
     while (!s->watch_ends) {
         const double now_s = clock_wall_s();
         for (int i = 0; i < s->settings.connections; i++) {
-            http_slot *p = &s->slots[i];
-            if (p->socket >= 0 && p->deadline_s > 0 && now_s > p->deadline_s) {
-                shutdown(p->socket, SHUT_RDWR); /* its own thread notices and closes it */
-                p->deadline_s = 0;
+            http_slot *slot = &s->slots[i];
+            if (slot->socket >= 0 && slot->deadline_s > 0 && now_s > slot->deadline_s) {
+                shutdown(slot->socket, SHUT_RDWR); /* the connection's thread notices and closes it */
+                slot->deadline_s = 0;
             }
         }
         const struct timespec next = clock_after(1.0);
@@ -70,15 +70,15 @@ static void displace_stranger(http_server *s)
     http_slot *oldest = NULL;
     int strangers = 0;
     for (int i = 0; i < s->settings.connections; i++) {
-        http_slot *p = &s->slots[i];
-        if (p->socket < 0 || p->known)
+        http_slot *slot = &s->slots[i];
+        if (slot->socket < 0 || slot->known)
             continue;
         strangers++;
-        if (!oldest || p->started_s < oldest->started_s)
-            oldest = p;
+        if (!oldest || slot->started_s < oldest->started_s)
+            oldest = slot;
     }
     if (oldest && strangers * STRANGERS_PART > s->settings.connections) {
-        shutdown(oldest->socket, SHUT_RDWR); /* its own thread notices and closes it */
+        shutdown(oldest->socket, SHUT_RDWR); /* the connection's thread notices and closes it */
         oldest->started_s = INFINITY;        /* do not choose it again meanwhile */
     }
 }
@@ -89,41 +89,41 @@ static http_slot *slot_of(struct MHD_Connection *c)
     return info ? info->socket_context : NULL;
 }
 
-void http_watch_notify(void *context, struct MHD_Connection *c, void **place, enum MHD_ConnectionNotificationCode what)
+void http_watch_notify(void *context, struct MHD_Connection *c, void **slot, enum MHD_ConnectionNotificationCode what)
 {
     http_server *s = context;
     pthread_mutex_lock(&s->watch_lock);
     if (what == MHD_CONNECTION_NOTIFY_STARTED) {
         const union MHD_ConnectionInfo *info = mhd.get_connection_info(c, MHD_CONNECTION_INFO_CONNECTION_FD);
-        for (int i = 0; i < s->settings.connections && info && !*place; i++)
+        for (int i = 0; i < s->settings.connections && info && !*slot; i++)
             if (s->slots[i].socket < 0) {
                 const double now_s = clock_wall_s();
                 s->slots[i] = (http_slot){
                     .socket = info->connect_fd, .deadline_s = now_s + s->settings.timeout_s, .started_s = now_s};
-                *place = &s->slots[i];
+                *slot = &s->slots[i];
                 displace_stranger(s);
             }
-    } else if (*place) {
-        ((http_slot *)*place)->socket = -1;
-        *place = NULL;
+    } else if (*slot) {
+        ((http_slot *)*slot)->socket = -1;
+        *slot = NULL;
     }
     pthread_mutex_unlock(&s->watch_lock);
 }
 
 void http_watch_deadline(http_server *s, struct MHD_Connection *c, double in_s)
 {
-    http_slot *place = slot_of(c);
+    http_slot *slot = slot_of(c);
     pthread_mutex_lock(&s->watch_lock);
-    if (place)
-        place->deadline_s = in_s > 0 ? clock_wall_s() + in_s : 0;
+    if (slot)
+        slot->deadline_s = in_s > 0 ? clock_wall_s() + in_s : 0;
     pthread_mutex_unlock(&s->watch_lock);
 }
 
 void http_watch_known(http_server *s, struct MHD_Connection *c)
 {
-    http_slot *place = slot_of(c);
+    http_slot *slot = slot_of(c);
     pthread_mutex_lock(&s->watch_lock);
-    if (place)
-        place->known = true;
+    if (slot)
+        slot->known = true;
     pthread_mutex_unlock(&s->watch_lock);
 }

@@ -24,55 +24,55 @@ typedef struct shared_image {
     bool final;        /* the complete film of the scene */
     int width, height; /* of this pass */
     int full_width, full_height;
-    const json_t *numbers; /* of report_page */
+    const json_t *numbers; /* times and counts, from report_page */
     uint64_t film_hash;    /* of the final image */
     const image *linear;
-    const scene *of; /* final: the rendered scene; otherwise NULL */
+    const scene *rendered; /* the scene of a final image; otherwise NULL */
 } shared_image;
 
-void shared_image_retain(const shared_image *p);
-void shared_image_release(const shared_image *p); /* NULL is allowed */
+void shared_image_retain(const shared_image *img);
+void shared_image_release(const shared_image *img); /* NULL is allowed */
 
 /* The image as an 8-bit PNG or as a JPEG (image_encode's fast ones), encoded once for all callers; the bytes belong to
  * the image. */
-status shared_image_encode(const shared_image *p, image_format format, const unsigned char **bytes, size_t *size,
+status shared_image_encode(const shared_image *img, image_format format, const unsigned char **bytes, size_t *size,
                            diagnostic *why);
 
 /* The image's JSON as described in web/README.md; NULL when out of memory. */
-json_t *shared_image_json(const shared_image *p);
+json_t *shared_image_json(const shared_image *img);
 
 /* --- the reference image A that pages compare with (reference_image.c) --- */
 
-/* Kept until it is replaced or cleared, with the differences between A and other images, measured once per pair. Only a
- * caller that needs a measurement waits for it. Images and pairs are released by the thread that took them. */
+/* A is kept until it is replaced or cleared. The differences between A and another image are measured once, and only
+ * callers that need them wait. The thread that gets an image or a pair releases it. */
 
 typedef struct reference_image reference_image;
 typedef struct reference_pair reference_pair;
 
-reference_image *reference_image_create(void);    /* NULL when out of memory */
-void reference_image_destroy(reference_image *p); /* NULL is allowed */
+reference_image *reference_image_create(void);            /* NULL when out of memory */
+void reference_image_destroy(reference_image *reference); /* NULL is allowed */
 
-/* Makes a final image the reference A; p takes a reference of its own. NULL: clears A. */
-void reference_image_set(reference_image *p, const shared_image *a);
+/* Makes a final image the reference A, and retains it. NULL: clears A. */
+void reference_image_set(reference_image *reference, const shared_image *a);
 /* Returns a new reference to A; NULL without A. */
-const shared_image *reference_image_get(reference_image *p);
+const shared_image *reference_image_get(reference_image *reference);
 /* A in the state JSON, null without A; NULL when out of memory. */
-json_t *reference_image_json(reference_image *p);
+json_t *reference_image_json(reference_image *reference);
 
 /* The pair of A and b; NULL without A or when out of memory. The newest pair is cached. */
-reference_pair *reference_image_compare(reference_image *p, const shared_image *b);
+reference_pair *reference_image_compare(reference_image *reference, const shared_image *b);
 void reference_pair_release(reference_pair *pair); /* NULL is allowed */
 const shared_image *reference_pair_a(const reference_pair *pair);
 bool reference_pair_fits(const reference_pair *pair); /* whether both have the same size */
-/* Both measure on the first call. out is a copy; bytes, a PNG of the FLIP error in false colour, belong to the pair. */
+/* The first call measures. out is a copy; bytes, a PNG of the FLIP error in false colour, belong to the pair. */
 status reference_pair_numbers(reference_pair *pair, image_comparison *out, diagnostic *why);
 status reference_pair_map(reference_pair *pair, const unsigned char **bytes, size_t *size, diagnostic *why);
 
 /* --- maps of what each pixel of a final image costs (pixel_maps.c) --- */
 
 /* Maps of the rays and the time of each pixel, and of the light that it lacks because rays were cut. They are
- * false-colour images with a key, from one frame of the frame job, which must give the film of the image; kept until
- * maps of another image are requested. A request waits for a render in progress. */
+ * false-colour images with a key. They are rendered by one more frame, whose film must equal the film of the image, and
+ * kept until maps of another image are requested. A request waits for a render in progress. */
 
 typedef struct pixel_maps pixel_maps;
 
@@ -85,7 +85,7 @@ typedef struct pixel_map {
 
 typedef struct pixel_map_set {
     uint64_t serial; /* of the image */
-    double wall_s;   /* of the frame that made the maps */
+    double wall_s;   /* of the frame with the maps */
     int threads;
     int width, height;                   /* of the film */
     int image_width, image_height, left; /* of the maps, and where their pixels begin */
@@ -95,11 +95,11 @@ typedef struct pixel_map_set {
 pixel_maps *pixel_maps_create(isa level); /* NULL when out of memory */
 void pixel_maps_destroy(pixel_maps *m);   /* NULL is allowed */
 
-/* The maps of a final image; rendered if they are not kept. png: a copy of the PNG of one map, which the caller frees;
+/* The maps of a final image, rendered unless they are kept. png: a copy of the PNG of one map, which the caller frees;
  * NULL: not wanted. STATUS_INTERRUPTED when cancelled. STATUS_FAILURE if the frame takes more than
  * PIXEL_MAPS_LIMIT_S. */
 #define PIXEL_MAPS_LIMIT_S 50.0
-status pixel_maps_of(pixel_maps *m, const shared_image *of, pixel_map_set *out, int which, unsigned char **png,
+status pixel_maps_of(pixel_maps *m, const shared_image *img, pixel_map_set *out, int which, unsigned char **png,
                      size_t *size, diagnostic *why);
 
 /* --- thumbnails of scenes (thumbnails.c) --- */
@@ -115,7 +115,7 @@ void thumbnails_end(thumbnails *t);
 
 /* The JPEG kept for a key, in fresh memory; *bytes is NULL if there is none. */
 status thumbnails_find(thumbnails *t, const char *key, unsigned char **bytes, size_t *size, diagnostic *why);
-/* Renders the scene, whose image settings are changed and whose files are loaded, and keeps it. STATUS_FAILURE if it
- * takes longer than some seconds. */
+/* Renders the scene and keeps the thumbnail; changes the scene's image settings and loads its files. STATUS_FAILURE if
+ * this takes longer than some seconds. */
 status thumbnails_render(thumbnails *t, const char *key, scene *s, unsigned char **bytes, size_t *size,
                          diagnostic *why);

@@ -25,7 +25,7 @@ void live_destroy(live *l)
     if (!l)
         return;
     scene_motion_destroy(l->motion);
-    free(l->hands);
+    free(l->motion_hands);
     pthread_cond_destroy(&l->answered);
     pthread_mutex_destroy(&l->lock);
     free(l);
@@ -100,12 +100,13 @@ static status wait_for(live *l, grab_request *q, diagnostic *why)
 }
 
 /* Checks that the slime can be grabbed. The caller holds the lock. */
-static status check_on(const live *l, diagnostic *why)
+static status check_live(const live *l, diagnostic *why)
 {
     if (l->mode == LIVE_IS_OFF || !l->report.has_slime)
         return diagnose(why, STATUS_BAD_INPUT, "play the slime first", "the slime is not live");
     if (l->report.in_trouble && !l->restart)
-        return diagnose(why, STATUS_BAD_INPUT, "restart it", "the slime has stopped: %s", l->report.trouble.what);
+        return diagnose(why, STATUS_BAD_INPUT, "restart the slime", "the slime has stopped: %s",
+                        l->report.trouble.what);
     return STATUS_OK;
 }
 
@@ -117,7 +118,7 @@ status live_grab(live *l, vec3 origin, vec3 direction, double reach, int *hand, 
                         "the grab ray has a coordinate that is not finite");
     grab_request q = {.origin = origin, .direction = vec3_scale(direction, 1.0 / length), .reach = reach, .why = why};
     pthread_mutex_lock(&l->lock);
-    status code = check_on(l, why);
+    status code = check_live(l, why);
     if (code == STATUS_OK) {
         grab_request **end = &l->first;
         while (*end)
@@ -137,8 +138,8 @@ status live_grab(live *l, vec3 origin, vec3 direction, double reach, int *hand, 
 static status find_hand(live *l, int id, live_hand **out, diagnostic *why)
 {
     for (int i = 0; i < LIVE_HANDS_MAX; i++)
-        if (id > 0 && l->held[i].id == id && !l->held[i].released) {
-            *out = &l->held[i];
+        if (id > 0 && l->live_hands[i].id == id && !l->live_hands[i].released) {
+            *out = &l->live_hands[i];
             return STATUS_OK;
         }
     return diagnose(why, STATUS_BAD_INPUT, "grab again: the slime may have restarted", "no hand has the number %d", id);
@@ -179,7 +180,7 @@ status live_release(live *l, int hand, diagnostic *why)
         return code;
     }
     for (int i = 0; i < LIVE_HANDS_MAX; i++)
-        l->held[i].released |= l->held[i].id > 0 && (!h || h == &l->held[i]);
+        l->live_hands[i].released |= l->live_hands[i].id > 0 && (!h || h == &l->live_hands[i]);
     unlock_and_wake(l);
     return STATUS_OK;
 }
@@ -210,9 +211,9 @@ bool live_is_moving(live *l)
 bool live_has_request(live *l)
 {
     pthread_mutex_lock(&l->lock);
-    const bool asked = l->requested || l->first;
+    const bool pending = l->requested || l->first;
     pthread_mutex_unlock(&l->lock);
-    return asked;
+    return pending;
 }
 
 bool live_is_due(live *l)
@@ -248,7 +249,7 @@ json_t *live_json(live *l)
     return json_pack("{s:b, s:b, s:o, s:o, s:o, s:o, s:I, s:b, s:o, s:s, s:o}", "on", mode != LIVE_IS_OFF, "playing",
                      mode == LIVE_IS_PLAYING && !a.in_trouble, "time_s", json_of_real(a.time_s), "speed",
                      json_of_real(a.speed), "volume", json_of_real(a.volume), "volume_at_rest",
-                     json_of_real(a.volume_at_rest), "held", (json_int_t)a.held, "resting", a.resting, "realtime",
-                     json_of_real(a.realtime), "preview", preview == LIVE_ZBUFFER ? "zbuffer" : "traced", "trouble",
-                     json_of_trouble(&a));
+                     json_of_real(a.volume_at_rest), "held", (json_int_t)a.held_vertices, "resting", a.resting,
+                     "realtime", json_of_real(a.realtime), "preview", preview == LIVE_ZBUFFER ? "zbuffer" : "traced",
+                     "trouble", json_of_trouble(&a));
 }

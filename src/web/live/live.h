@@ -1,7 +1,7 @@
 /* The live slime: it moves in the render worker's thread, while hands drag it from other threads. It is off, paused or
  * playing; while it is on, the displayed scene is the scene document with the slime in its live state.
  *
- * Threads: functions marked "render worker" are called by the render worker's thread alone, with the snapshot (the
+ * Threads: functions marked "render worker" are called only by the render worker's thread, with the snapshot (the
  * render worker's own copy of the scene), which no other thread reads meanwhile; all others are thread-safe. Ownership:
  * live_create creates, live_destroy releases, after live_detach and when no other thread calls any more. Errors:
  * STATUS_BAD_INPUT for invalid requests, and for a body whose simulation diverged: it stops and reports the error until
@@ -38,7 +38,7 @@ void live_set_preview(live *l, live_preview preview);
  * slime restarts because its own parameters changed). */
 #define LIVE_WAIT_S 5.0
 enum { LIVE_MISSED = -1, LIVE_ALL = -2 };
-/* reach: scene units; 0: 0.3 of the slime's radius. hand: its number, never reused, or LIVE_MISSED where the ray
+/* reach: scene units; 0: 0.3 of the slime's radius. hand: its number, never reused, or LIVE_MISSED if the ray
  * misses the slime. */
 status live_grab(live *l, vec3 origin, vec3 direction, double reach, int *hand, vec3 *where, diagnostic *why);
 status live_move(live *l, int hand, vec3 by, diagnostic *why); /* by: offset from the grab point */
@@ -49,18 +49,18 @@ status live_where(live *l, int hand, vec3 *where, diagnostic *why);
 /* Makes waiting and later grabs return STATUS_INTERRUPTED: the render worker is ending. */
 void live_stop(live *l);
 
-/* The slime in the state JSON; null where it is off and the scene has none. NULL when out of memory. */
+/* The slime in the state JSON; null if the scene has none. NULL when out of memory. */
 json_t *live_json(live *l);
 
 /* --- render worker --- */
 
 bool live_is_on(live *l);       /* playing or paused */
-bool live_is_moving(live *l);   /* playing, and not at rest without hands */
+bool live_is_moving(live *l);   /* playing, and not at rest */
 bool live_has_request(live *l); /* a command or a grab is pending */
-bool live_is_due(live *l);      /* moving, or asked: live_advance has work */
+bool live_is_due(live *l);      /* moving, or a request is pending: live_advance has work */
 live_preview live_preview_of(live *l);
 
-/* Takes over the slimes of a new snapshot: from their beginning, or in their live state where the slimes' own
+/* Attaches to the slimes of a new snapshot: from their beginning, or in their live state if the slimes' own
  * parameters are unchanged. Call it after each new snapshot, before it is loaded: live slimes are not simulated up
  * to their time_s. Slimes that are not live are left to the loader. */
 status live_attach(live *l, scene *snapshot, diagnostic *why);

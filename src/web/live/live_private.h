@@ -37,7 +37,7 @@ typedef struct live_hand {
 typedef struct live_report {
     bool has_slime, resting, in_trouble;
     double time_s, speed, volume, volume_at_rest, realtime;
-    size_t held;
+    size_t held_vertices;
     diagnostic trouble;
 } live_report;
 
@@ -45,23 +45,23 @@ struct live {
     void (*wake)(void *context);
     void *context;
 
-    /* guards the fields up to the render worker's own; grabs run under it, about a millisecond */
+    /* guards the fields down to `report`; grabs run under it, about a millisecond */
     pthread_mutex_t lock;
     pthread_cond_t answered;
     live_mode mode;
     live_preview preview;
     bool restart, requested, stopped;
     grab_request *first;
-    live_hand held[LIVE_HANDS_MAX];
+    live_hand live_hands[LIVE_HANDS_MAX];
     int last_id;
     live_report report;
 
-    /* Used by the render worker alone. */
-    scene *snapshot;      /* NULL: detached */
-    scene_motion *motion; /* NULL: not started */
-    motion_hand *hands;   /* SOFTBODY_HANDS_MAX of each slime */
+    /* Only the render worker uses these. */
+    scene *snapshot;           /* NULL: detached */
+    scene_motion *motion;      /* NULL: not started */
+    motion_hand *motion_hands; /* SOFTBODY_HANDS_MAX of each slime */
     double time_s;
-    double moved_at_s; /* wall time of the latest step; NaN: it was still */
+    double moved_at_s; /* wall time of the latest step; NaN: no step since the start or a pause */
     double cost;       /* computation time per second of motion; 0: unknown */
     double realtime;
     double quiet_s;      /* time without motion */

@@ -9,7 +9,7 @@
 /* --- motion: simulates the elapsed wall time, as far as the computation keeps up, until the slime is at rest --- */
 
 /* The longest time that one call simulates, so that the slime does not catch up after a pause without rendering; and
- * that of the first call, one frame at 60 Hz. */
+ * the time that the first call simulates, one frame at 60 Hz. */
 static const double max_gap_s = 0.25, first_s = 1.0 / 60.0;
 
 /* Resets the motion's clock and rates. */
@@ -36,7 +36,7 @@ static double longest_step_s(const live *l)
 /* The simulated time before the clock is read again. */
 static double slice_s(const live *l, double most_s, double left_s)
 {
-    const double slices = 8.0 /* of the time budget, which is exceeded by about one of them at most */,
+    const double slices = 8.0 /* per time budget, which is exceeded by about one slice at most */,
                  step_s = longest_step_s(l);
     const double affordable_s = l->cost > 0.0 ? most_s / slices / l->cost : step_s;
     return fmin(left_s, fmax(step_s, affordable_s));
@@ -47,10 +47,10 @@ static void move_hands(live *l, double fraction)
 {
     pthread_mutex_lock(&l->lock);
     for (int i = 0; i < LIVE_HANDS_MAX; i++) {
-        const live_hand *known = &l->held[i];
+        const live_hand *known = &l->live_hands[i];
         if (known->id == 0)
             continue;
-        motion_hand *h = &l->hands[known->slime * SOFTBODY_HANDS_MAX + (size_t)known->number];
+        motion_hand *h = &l->motion_hands[known->slime * SOFTBODY_HANDS_MAX + (size_t)known->number];
         const vec3 offset = vec3_sub(motion_hand_offset(h, known->by), h->from);
         h->to = fraction >= 1.0 ? motion_hand_offset(h, known->by) : vec3_add(h->from, vec3_scale(offset, fraction));
     }
@@ -60,7 +60,7 @@ static void move_hands(live *l, double fraction)
 static status step_to(live *l, double time_s, diagnostic *why)
 {
     for (size_t i = 0; i < scene_motion_count(l->motion); i++)
-        TRY(scene_motion_step_held(l->motion, i, &l->hands[i * SOFTBODY_HANDS_MAX], time_s, NULL, why));
+        TRY(scene_motion_step_held(l->motion, i, &l->motion_hands[i * SOFTBODY_HANDS_MAX], time_s, NULL, why));
     return scene_motion_advance(l->motion, time_s, false, why);
 }
 
@@ -100,9 +100,10 @@ static bool is_quiet(const live *l)
     const double rest_speed = 0.1; /* radii per second: a wobble of less than a pixel */
     bool quiet = l->time_s >= scene_motion_script_end_s(l->motion);
     for (size_t i = 0; i < scene_motion_count(l->motion) && quiet; i++) {
-        const softbody_settings *set = &entry_of(l, i)->slime;
-        const softbody_quantities a = entry_of(l, i)->account;
-        quiet = a.held == 0 && a.speed_max < rest_speed * set->radius + 4.0 * vec3_length(set->gravity) * set->dt_s;
+        const softbody_settings *settings = &entry_of(l, i)->slime;
+        const softbody_quantities measured = entry_of(l, i)->account;
+        quiet = measured.held == 0 && measured.speed_max < rest_speed * settings->radius +
+                                                               4.0 * vec3_length(settings->gravity) * settings->dt_s;
     }
     return quiet;
 }
@@ -122,7 +123,7 @@ static void watch_rest(live *l, double simulated_s)
 
 /* Simulates the wall time since the last call, with at most about most_s of computation. The caller does not hold the
  * lock. STATUS_BAD_INPUT: the body diverged. */
-static status move_on(live *l, double most_s, diagnostic *why)
+static status simulate_elapsed(live *l, double most_s, diagnostic *why)
 {
     const double now_s = clock_wall_s(), before_s = l->time_s;
     const bool was_moving = !isnan(l->moved_at_s);
@@ -148,7 +149,7 @@ static status move_on(live *l, double most_s, diagnostic *why)
 static void forget_hands(live *l)
 {
     for (int i = 0; i < LIVE_HANDS_MAX; i++)
-        l->held[i] = (live_hand){.id = 0};
+        l->live_hands[i] = (live_hand){.id = 0};
 }
 
 static void measure(live *l)
@@ -157,21 +158,21 @@ static void measure(live *l)
     a->time_s = l->time_s;
     a->realtime = l->realtime;
     a->speed = a->volume = a->volume_at_rest = 0.0;
-    a->held = 0;
+    a->held_vertices = 0;
     for (size_t i = 0; l->motion && i < scene_motion_count(l->motion); i++) {
-        const softbody_quantities of = softbody_measure(scene_motion_body(l->motion, i));
-        a->speed = fmax(a->speed, of.speed_max);
-        a->volume += of.volume;
-        a->volume_at_rest += of.volume_at_rest;
-        a->held += of.held;
+        const softbody_quantities measured = softbody_measure(scene_motion_body(l->motion, i));
+        a->speed = fmax(a->speed, measured.speed_max);
+        a->volume += measured.volume;
+        a->volume_at_rest += measured.volume_at_rest;
+        a->held_vertices += measured.held;
     }
 }
 
 static void forget_motion(live *l)
 {
     l->motion = NULL;
-    free(l->hands);
-    l->hands = NULL;
+    free(l->motion_hands);
+    l->motion_hands = NULL;
     l->time_s = 0.0;
     l->cost = 0.0;
     reset_clock(l);
@@ -205,8 +206,8 @@ static status begin(live *l, diagnostic *why)
     diagnostic bad = {.what = ""};
     status code = scene_motion_create(l->snapshot, &l->motion, &bad);
     if (code == STATUS_OK) {
-        l->hands = calloc(scene_motion_count(l->motion) * SOFTBODY_HANDS_MAX, sizeof *l->hands);
-        code = l->hands ? STATUS_OK : out_of_memory(&bad);
+        l->motion_hands = calloc(scene_motion_count(l->motion) * SOFTBODY_HANDS_MAX, sizeof *l->motion_hands);
+        code = l->motion_hands ? STATUS_OK : out_of_memory(&bad);
     }
     if (code != STATUS_OK) {
         end(l);
@@ -222,7 +223,7 @@ static status begin(live *l, diagnostic *why)
     return STATUS_OK;
 }
 
-/* Moves the simulation to a new snapshot, or starts a new one where the scene has another slime of the same name. */
+/* Moves the simulation to a new snapshot, or starts a new one if the scene has another slime of the same name. */
 static status transfer_motion(live *l, diagnostic *why)
 {
     bool joined = false;
@@ -286,8 +287,8 @@ static double reach_of(const live *l, const grab_request *q, size_t index, const
 static live_hand *free_hand(live *l)
 {
     for (int i = 0; i < LIVE_HANDS_MAX; i++)
-        if (l->held[i].id == 0)
-            return &l->held[i];
+        if (l->live_hands[i].id == 0)
+            return &l->live_hands[i];
     return NULL;
 }
 
@@ -295,7 +296,7 @@ static status grab(live *l, grab_request *q)
 {
     q->hand = LIVE_MISSED;
     if (!l->motion || l->report.in_trouble)
-        return diagnose(q->why, STATUS_BAD_INPUT, "restart it", "the slime is not live");
+        return diagnose(q->why, STATUS_BAD_INPUT, "restart the slime", "the slime is not live");
     size_t index = 0;
     motion_place place;
     status code = pick(l, q, &index, &place, q->why);
@@ -304,7 +305,7 @@ static status grab(live *l, grab_request *q)
     live_hand *h = free_hand(l);
     int number = 0;
     TRY(h ? scene_motion_grab(l->motion, index, &place, reach_of(l, q, index, &place),
-                              &l->hands[index * SOFTBODY_HANDS_MAX], &number, q->why)
+                              &l->motion_hands[index * SOFTBODY_HANDS_MAX], &number, q->why)
           : diagnose(q->why, STATUS_BAD_INPUT, "release a hand first", "no hand is free"));
     *h = (live_hand){.id = ++l->last_id, .slime = index, .number = number, .where = place.where};
     q->hand = h->id;
@@ -318,10 +319,10 @@ static status grab(live *l, grab_request *q)
 static void release_hands(live *l)
 {
     for (int i = 0; i < LIVE_HANDS_MAX; i++) {
-        live_hand *h = &l->held[i];
+        live_hand *h = &l->live_hands[i];
         if (!h->released)
             continue;
-        scene_motion_release(l->motion, h->slime, &l->hands[h->slime * SOFTBODY_HANDS_MAX], h->number);
+        scene_motion_release(l->motion, h->slime, &l->motion_hands[h->slime * SOFTBODY_HANDS_MAX], h->number);
         *h = (live_hand){.id = 0};
         l->report.resting = false;
         l->changed = true;
@@ -341,7 +342,7 @@ static void answer_grabs(live *l)
 
 /* --- commands --- */
 
-/* Runs the commands since the last call; does nothing where they cannot run yet. */
+/* Runs the commands since the last call; does nothing if they cannot run yet. */
 static status apply_commands(live *l, live_mode *mode, diagnostic *why)
 {
     pthread_mutex_lock(&l->lock);
@@ -396,7 +397,7 @@ status live_advance(live *l, double most_s, bool *state_changed, diagnostic *why
     status code = apply_commands(l, &mode, &bad);
     serve_hands(l);
     if (code == STATUS_OK && live_is_moving(l) && l->motion)
-        code = move_on(l, most_s, &bad);
+        code = simulate_elapsed(l, most_s, &bad);
     else
         reset_clock(l);
     if (code != STATUS_OK)

@@ -12,7 +12,7 @@ const int resolution_shrinks[RESOLUTION_STEPS] = {1, 2, 3, 4, 6, 8, 12, 16, 24, 
 /* The rate before any measurement: a scene of moderate depth on one slow core. */
 static const double rate_unknown = 1e6;
 
-enum { STEP = 4 }; /* from one pass to the next */
+enum { PASS_STEP = 4 }; /* ratio of the widths of a pass and the one before */
 
 /* Photons of a pass: reduced like its pixels, and to a quarter in a pass with single samples. A photon costs about ten
  * camera rays. */
@@ -42,7 +42,7 @@ double passes_work(const render_settings *r, int shrink, bool single)
     return scene_camera_rays(&pass) + (scene_has_caustics(r) ? PHOTON_COST * (double)pass.photons : 0.0);
 }
 
-static void put(pass_plan *plan, int shrink, bool single)
+static void add_pass(pass_plan *plan, int shrink, bool single)
 {
     plan->shrink[plan->count] = shrink;
     plan->single[plan->count] = single;
@@ -58,22 +58,22 @@ pass_plan passes_plan(const render_settings *r, double rate, double first_s)
         int step = 0;
         while (step < RESOLUTION_STEPS - 1 && passes_work(r, resolution_shrinks[step], true) / speed > first_s)
             step++;
-        for (int shrink = resolution_shrinks[step]; shrink > 1; shrink /= shrink > STEP ? STEP : shrink)
-            put(&plan, shrink, true);
+        for (int shrink = resolution_shrinks[step]; shrink > 1; shrink /= shrink > PASS_STEP ? PASS_STEP : shrink)
+            add_pass(&plan, shrink, true);
         if (many)
-            put(&plan, 1, true);
+            add_pass(&plan, 1, true);
     }
-    put(&plan, 1, false);
+    add_pass(&plan, 1, false);
     return plan;
 }
 
 /* --- the live frames --- */
 
-enum { STEPS = 8 }; /* of a live frame: the slime is still seen in the coarsest */
+enum { LIVE_STEPS = 8 }; /* the slime is still visible at the coarsest of these steps */
 
-int adaptive_resolution_divisor(const adaptive_resolution *p)
+int adaptive_resolution_divisor(const adaptive_resolution *resolution)
 {
-    return resolution_shrinks[p->step];
+    return resolution_shrinks[resolution->step];
 }
 
 /* The ratio of the pixel counts of two steps. */
@@ -83,20 +83,22 @@ static double growth(int from, int to)
     return ratio * ratio;
 }
 
-static void go(adaptive_resolution *p, int step)
+static void set_step(adaptive_resolution *resolution, int step)
 {
-    p->frame_s *= growth(p->step, step);
-    p->step = step;
+    resolution->frame_s *= growth(resolution->step, step);
+    resolution->step = step;
 }
 
-void adaptive_resolution_update(adaptive_resolution *p, double wall_s, double wanted_s)
+void adaptive_resolution_update(adaptive_resolution *resolution, double wall_s, double wanted_s)
 {
     /* The weight of the newest frame; the fraction of the wanted time above which the resolution drops, and the
      * predicted fraction below which it rises. The gap between both prevents oscillation. */
     const double recent = 0.3, late = 1.3, early = 0.8;
-    p->frame_s = p->frame_s > 0.0 ? p->frame_s + recent * (wall_s - p->frame_s) : wall_s;
-    if (p->frame_s > late * wanted_s && p->step < STEPS - 1)
-        go(p, p->step + 1);
-    else if (p->step > 0 && p->frame_s * growth(p->step, p->step - 1) < early * wanted_s)
-        go(p, p->step - 1);
+    resolution->frame_s =
+        resolution->frame_s > 0.0 ? resolution->frame_s + recent * (wall_s - resolution->frame_s) : wall_s;
+    if (resolution->frame_s > late * wanted_s && resolution->step < LIVE_STEPS - 1)
+        set_step(resolution, resolution->step + 1);
+    else if (resolution->step > 0 &&
+             resolution->frame_s * growth(resolution->step, resolution->step - 1) < early * wanted_s)
+        set_step(resolution, resolution->step - 1);
 }

@@ -1,4 +1,4 @@
-/* The resolution of what is shown before an image is final. Pure functions.
+/* The resolution of the images before the final one, and of live frames. Pure functions.
  *
  * Passes of a still scene: their number and resolution are chosen from the measured speed, so that the first image
  * appears quickly. Live frames of a moving one: the resolution drops when frames take longer than their time and rises
@@ -22,7 +22,7 @@ typedef struct pass_plan {
     bool single[PASSES_MAX]; /* one sample (path) per pixel; false for the last */
 } pass_plan;
 
-/* Camera rays of a pass, times wavelengths, and its photons as many of them as they cost. */
+/* The work of a pass: camera rays times wavelengths, with each photon counted as the rays that it costs. */
 double passes_work(const render_settings *r, int shrink, bool single);
 
 /* rate: the latest work per second; 0 for unknown. first_s: the time limit of the first pass. */
@@ -39,7 +39,7 @@ typedef struct adaptive_resolution {
 } adaptive_resolution;
 
 /* The factor by which width and height are divided. */
-int adaptive_resolution_divisor(const adaptive_resolution *p);
+int adaptive_resolution_divisor(const adaptive_resolution *resolution);
 
 /* Updates the step: a frame at the current step took wall_s and may take wanted_s. */
-void adaptive_resolution_update(adaptive_resolution *p, double wall_s, double wanted_s);
+void adaptive_resolution_update(adaptive_resolution *resolution, double wall_s, double wanted_s);

@@ -1,4 +1,4 @@
-/* Renders and keeps the maps of the newest image. */
+/* Renders the maps of a final image once more, and keeps those of the newest image. */
 #include "image/image.h"
 #include "job/job.h"
 #include "scene/model/scene.h"
@@ -26,7 +26,7 @@ pixel_maps *pixel_maps_create(isa level)
     return m;
 }
 
-static void forget(pixel_maps *m)
+static void clear(pixel_maps *m)
 {
     for (int i = 0; i < PIXEL_MAPS; i++) {
         free(m->png[i]);
@@ -39,7 +39,7 @@ void pixel_maps_destroy(pixel_maps *m)
 {
     if (!m)
         return;
-    forget(m);
+    clear(m);
     pthread_mutex_destroy(&m->lock);
     free(m);
 }
@@ -49,32 +49,32 @@ static status draw(pixel_maps *m, const render_result *result, int which, diagno
     pixel_map_set *set = &m->set;
     const double *const all[PIXEL_MAPS] = {result->pixel_rays, result->pixel_ns, result->pixel_cut};
     static const char *const titles[PIXEL_MAPS] = {"rays per pixel", "ns per pixel, measured once",
-                                                   "share of cut light per pixel"};
+                                                   "fraction of cut light per pixel"};
     const double *values = all[which];
     const size_t count = (size_t)set->width * (size_t)set->height;
     pixel_map *map = &set->map[which];
-    image *img = NULL;
+    image *map_image = NULL;
     status code = heatmap_scale_of(values, count, &map->scale, why);
-    THEN(code, heatmap_create(values, set->width, set->height, titles[which], &img, why));
-    THEN(code, image_encode(img, IMAGE_PNG, 8, true, &m->png[which], &m->size[which], why));
+    THEN(code, heatmap_create(values, set->width, set->height, titles[which], &map_image, why));
+    THEN(code, image_encode(map_image, IMAGE_PNG, 8, true, &m->png[which], &m->size[which], why));
     if (code == STATUS_OK) {
-        set->image_width = img->width;
-        set->image_height = img->height;
-        set->left = (img->width - set->width) / 2;
+        set->image_width = map_image->width;
+        set->image_height = map_image->height;
+        set->left = (map_image->width - set->width) / 2;
     }
     for (size_t i = 0; i < count && code == STATUS_OK; i++) {
         map->total += values[i];
         map->largest = values[i] > map->largest ? values[i] : map->largest;
     }
-    image_destroy(img);
+    image_destroy(map_image);
     return code;
 }
 
-static status draw_all(pixel_maps *m, const shared_image *of, const job_account *a, diagnostic *why)
+static status draw_all(pixel_maps *m, const shared_image *img, const job_account *a, diagnostic *why)
 {
-    if (job_account_hash(a) != of->film_hash)
+    if (job_account_hash(a) != img->film_hash)
         return diagnose(why, STATUS_FAILURE, "report this as a bug, with the scene",
-                        "the film of the maps is not that of the image");
+                        "the film of the maps differs from the film of the image");
     m->set = (pixel_map_set){.wall_s = job_account_wall_s(a),
                              .threads = a->result->worker_count,
                              .width = a->result->img->width,
@@ -82,21 +82,21 @@ static status draw_all(pixel_maps *m, const shared_image *of, const job_account 
     status code = STATUS_OK;
     for (int i = 0; i < PIXEL_MAPS; i++)
         THEN(code, draw(m, a->result, i, why));
-    m->set.serial = of->serial;
+    m->set.serial = img->serial;
     return code;
 }
 
-static status render(pixel_maps *m, const shared_image *of, diagnostic *why)
+static status render(pixel_maps *m, const shared_image *img, diagnostic *why)
 {
     static const render_options maps = {.pixel_rays = true, .pixel_time = true, .pixel_cut = true};
     job *j = NULL;
     job_account account = {.result = NULL};
-    forget(m);
+    clear(m);
     status code = job_create(&(job_settings){.level = &m->level, .time_s = PIXEL_MAPS_LIMIT_S}, &j, why);
-    THEN(code, job_render(j, of->of, &maps, &account, why));
-    THEN(code, draw_all(m, of, &account, why));
+    THEN(code, job_render(j, img->rendered, &maps, &account, why));
+    THEN(code, draw_all(m, img, &account, why));
     if (code != STATUS_OK)
-        forget(m);
+        clear(m);
     job_account_release(&account);
     job_destroy(j);
     return code == STATUS_INTERRUPTED
@@ -113,13 +113,13 @@ static status copy(const pixel_maps *m, int which, unsigned char **png, size_t *
     return STATUS_OK;
 }
 
-status pixel_maps_of(pixel_maps *m, const shared_image *of, pixel_map_set *out, int which, unsigned char **png,
+status pixel_maps_of(pixel_maps *m, const shared_image *img, pixel_map_set *out, int which, unsigned char **png,
                      size_t *size, diagnostic *why)
 {
     status code = STATUS_OK;
     pthread_mutex_lock(&m->lock);
-    if (m->set.serial != of->serial)
-        code = render(m, of, why);
+    if (m->set.serial != img->serial)
+        code = render(m, img, why);
     *out = m->set;
     if (code == STATUS_OK && png)
         code = copy(m, which, png, size, why);

@@ -7,14 +7,14 @@
 
 /* A cached result or its error. */
 typedef struct measured {
-    bool is;
+    bool done;
     status code;
     diagnostic why;
 } measured;
 
 struct reference_pair {
     const shared_image *a, *b;
-    atomic_int owners;
+    atomic_int references;
     pthread_mutex_t lock; /* guards the fields below; its holder measures, others wait for the result */
     measured numbers, map;
     image_comparison found;
@@ -30,49 +30,49 @@ struct reference_image {
 
 reference_image *reference_image_create(void)
 {
-    reference_image *p = calloc(1, sizeof *p);
-    if (p)
-        pthread_mutex_init(&p->lock, NULL);
-    return p;
+    reference_image *reference = calloc(1, sizeof *reference);
+    if (reference)
+        pthread_mutex_init(&reference->lock, NULL);
+    return reference;
 }
 
-void reference_image_destroy(reference_image *p)
+void reference_image_destroy(reference_image *reference)
 {
-    if (!p)
+    if (!reference)
         return;
-    shared_image_release(p->a);
-    reference_pair_release(p->newest);
-    pthread_mutex_destroy(&p->lock);
-    free(p);
+    shared_image_release(reference->a);
+    reference_pair_release(reference->newest);
+    pthread_mutex_destroy(&reference->lock);
+    free(reference);
 }
 
-void reference_image_set(reference_image *p, const shared_image *a)
+void reference_image_set(reference_image *reference, const shared_image *a)
 {
     if (a)
         shared_image_retain(a);
-    pthread_mutex_lock(&p->lock);
-    const shared_image *before = p->a;
-    reference_pair *pair = p->newest;
-    p->a = a;
-    p->newest = NULL;
-    pthread_mutex_unlock(&p->lock);
+    pthread_mutex_lock(&reference->lock);
+    const shared_image *before = reference->a;
+    reference_pair *pair = reference->newest;
+    reference->a = a;
+    reference->newest = NULL;
+    pthread_mutex_unlock(&reference->lock);
     shared_image_release(before);
     reference_pair_release(pair);
 }
 
-const shared_image *reference_image_get(reference_image *p)
+const shared_image *reference_image_get(reference_image *reference)
 {
-    pthread_mutex_lock(&p->lock);
-    const shared_image *a = p->a;
+    pthread_mutex_lock(&reference->lock);
+    const shared_image *a = reference->a;
     if (a)
         shared_image_retain(a);
-    pthread_mutex_unlock(&p->lock);
+    pthread_mutex_unlock(&reference->lock);
     return a;
 }
 
-json_t *reference_image_json(reference_image *p)
+json_t *reference_image_json(reference_image *reference)
 {
-    const shared_image *a = reference_image_get(p);
+    const shared_image *a = reference_image_get(reference);
     json_t *json = a ? shared_image_json(a) : json_null();
     shared_image_release(a);
     return json;
@@ -88,13 +88,13 @@ static reference_pair *pair_create(const shared_image *a, const shared_image *b)
     pair->a = a;
     pair->b = b;
     pthread_mutex_init(&pair->lock, NULL);
-    atomic_init(&pair->owners, 1);
+    atomic_init(&pair->references, 1);
     return pair;
 }
 
 void reference_pair_release(reference_pair *pair)
 {
-    if (!pair || atomic_fetch_sub(&pair->owners, 1) > 1)
+    if (!pair || atomic_fetch_sub(&pair->references, 1) > 1)
         return;
     shared_image_release(pair->a);
     shared_image_release(pair->b);
@@ -104,19 +104,19 @@ void reference_pair_release(reference_pair *pair)
 }
 
 /* Pairs are identified by the addresses of their images, which stay valid while the pair holds references. */
-reference_pair *reference_image_compare(reference_image *p, const shared_image *b)
+reference_pair *reference_image_compare(reference_image *reference, const shared_image *b)
 {
     reference_pair *old = NULL, *pair = NULL;
-    pthread_mutex_lock(&p->lock);
-    if (p->newest && p->newest->a == p->a && p->newest->b == b) {
-        pair = p->newest;
-    } else if (p->a && (pair = pair_create(p->a, b))) {
-        old = p->newest;
-        p->newest = pair;
+    pthread_mutex_lock(&reference->lock);
+    if (reference->newest && reference->newest->a == reference->a && reference->newest->b == b) {
+        pair = reference->newest;
+    } else if (reference->a && (pair = pair_create(reference->a, b))) {
+        old = reference->newest;
+        reference->newest = pair;
     }
     if (pair)
-        atomic_fetch_add(&pair->owners, 1);
-    pthread_mutex_unlock(&p->lock);
+        atomic_fetch_add(&pair->references, 1);
+    pthread_mutex_unlock(&reference->lock);
     reference_pair_release(old);
     return pair;
 }
@@ -135,9 +135,9 @@ bool reference_pair_fits(const reference_pair *pair)
 static status measure_once(reference_pair *pair, measured *m, status (*measure)(reference_pair *pair, diagnostic *why),
                            diagnostic *why)
 {
-    if (!m->is) {
+    if (!m->done) {
         m->code = measure(pair, &m->why);
-        m->is = m->code != STATUS_FAILURE; /* out of memory may be temporary, so try again next time */
+        m->done = m->code != STATUS_FAILURE; /* out of memory may be temporary, so try again next time */
     }
     if (why)
         *why = m->why;

@@ -28,13 +28,13 @@ struct render_worker {
     status trouble_code;          /* of the snapshot's generation */
     uint64_t snapshot_generation; /* 0: none yet */
     bool snapshot_ready;          /* loaded */
-    bool again;                   /* load and render it once more, after a failure of the machine */
-    double again_from_s;          /* not before */
+    bool again;                   /* load and render the scene again, after a failure of the machine */
+    double again_from_s;          /* the earliest wall time for `again` */
 
     pthread_rwlock_t snapshot_lock; /* read-locked to read or render the snapshot, write-locked to replace or move it */
     scene *snapshot;
 
-    /* used by the thread alone */
+    /* only the thread uses these */
     pass_plan plan;
     int pass; /* the next pass */
     double rate;
@@ -42,48 +42,49 @@ struct render_worker {
     double started_s; /* start time of the current copy, load, move or pass */
     uint64_t
         taken_generation;     /* generation of the document that the snapshot copies, loaded or not; 0: copy it again */
-    uint64_t seen_generation; /* the newest that was ever taken */
-    double changed_s, finer_after_s; /* when it was taken; when its passes after the first may begin */
+    uint64_t seen_generation; /* the newest generation that was ever copied */
+    double changed_s, finer_after_s; /* when it was copied; when its passes after the first may begin */
     bool was_on;
     adaptive_resolution traced, raster; /* of the frames of the live slime */
 };
 
-/* Time limit of the first pass, so that the image follows a drag at 20 images a second on two processors: whoever draws
- * them needs about half of the time. */
+/* Time limit of the first pass, so that the image follows a drag at 20 images per second on two processors: the browser
+ * needs about half of the time to show them. */
 #define RENDER_WORKER_FIRST_S 0.025
 
-/* --- for the thread alone --- */
+/* --- only for the thread --- */
 
-/* Starts and joins the thread, which runs until render_worker_end; in a browser, where there is none, turns take its
- * place (src/wasm/render_turns.c). */
-status render_worker_start(render_worker *p, diagnostic *why);
-void render_worker_join(render_worker *p);
+/* Starts and joins the thread, which runs until render_worker_end; in a browser, which has no such thread, turns of the
+ * page replace it (src/wasm/render_turns.c). */
+status render_worker_start(render_worker *worker, diagnostic *why);
+void render_worker_join(render_worker *worker);
 
 /* Seconds until there is work, unless somebody wakes the thread; INFINITY: nothing is left to do. */
-double render_worker_due_s(render_worker *p);
+double render_worker_due_s(render_worker *worker);
 
 /* Whether the document has a newer generation than the snapshot. */
-bool render_worker_is_stale(render_worker *p);
+bool render_worker_is_stale(render_worker *worker);
 /* Copies the scene document to the snapshot. */
-void render_worker_renew_snapshot(render_worker *p);
+void render_worker_renew_snapshot(render_worker *worker);
 /* Runs the slime's commands and its motion. */
-void render_worker_move_snapshot(render_worker *p);
+void render_worker_move_snapshot(render_worker *worker);
 /* Renders the next pass and publishes its image. */
-void render_worker_render_pass(render_worker *p);
-/* The same in parts, for a pass that others render. begin fills *out; its view borrows from the snapshot, which is
- * read-locked until end. end takes the account, and publishes the image after STATUS_OK. */
+void render_worker_render_pass(render_worker *worker);
+/* The two parts of render_worker_render_pass, for a pass that other processes render. begin fills *out, whose view
+ * borrows from the snapshot; the snapshot is read-locked until end. end releases the account, and publishes the image
+ * after STATUS_OK. */
 typedef struct started_pass {
     int pass;
     bool moving, raster;
-    adaptive_resolution *tempo; /* of a moving scene; otherwise NULL */
-    scene view;                 /* the snapshot with the settings of the pass */
+    adaptive_resolution *resolution; /* of a moving scene; otherwise NULL */
+    scene view;                      /* the snapshot with the settings of the pass */
 } started_pass;
-void render_worker_begin_pass(render_worker *p, started_pass *out);
-void render_worker_end_pass(render_worker *p, const started_pass *of, status code, job_account *account,
+void render_worker_begin_pass(render_worker *worker, started_pass *out);
+void render_worker_end_pass(render_worker *worker, const started_pass *started, status code, job_account *account,
                             diagnostic *why);
 
 /* Frees the contents of an image that is not shared. */
-void shared_image_drop(const shared_image *p);
+void shared_image_drop(const shared_image *img);
 /* Moves the contents of `shown` into a new shared image with one reference. Returns NULL when out of memory; the
  * contents then still belong to the caller. */
 const shared_image *shared_image_create(const shared_image *shown);

@@ -7,68 +7,68 @@
 #include <math.h>
 #include <string.h>
 
-/* Sleeps until somebody wakes the thread or that time is over. The caller holds the lock. */
-static void sleep_for(render_worker *p, double seconds)
+/* Sleeps until another thread wakes this one or `seconds` have passed. The caller holds the lock. */
+static void sleep_for(render_worker *worker, double seconds)
 {
-    const bool ends = isfinite(seconds) && !p->waiting;
+    const bool ends = isfinite(seconds) && !worker->waiting;
     const struct timespec until = clock_after(ends ? seconds : 0.0);
     int ended = 0;
-    while (!p->wake_requested && !p->stop && ended != ETIMEDOUT)
-        ended = ends ? pthread_cond_clockwait(&p->wake, &p->lock, CLOCK_MONOTONIC, &until)
-                     : pthread_cond_wait(&p->wake, &p->lock);
-    p->wake_requested = false;
+    while (!worker->wake_requested && !worker->stop && ended != ETIMEDOUT)
+        ended = ends ? pthread_cond_clockwait(&worker->wake, &worker->lock, CLOCK_MONOTONIC, &until)
+                     : pthread_cond_wait(&worker->wake, &worker->lock);
+    worker->wake_requested = false;
 }
 
 /* Sleeps until there is work; false at the end. */
-static bool wait_for_work(render_worker *p)
+static bool wait_for_work(render_worker *worker)
 {
-    pthread_mutex_lock(&p->lock);
+    pthread_mutex_lock(&worker->lock);
     for (;;) {
-        if (p->again)
-            p->taken_generation = 0;
-        p->again = false;
-        pthread_mutex_unlock(&p->lock);
-        const double due_s = render_worker_due_s(p);
-        pthread_mutex_lock(&p->lock);
-        if (p->stop || (due_s <= 0.0 && !p->waiting))
+        if (worker->again)
+            worker->taken_generation = 0;
+        worker->again = false;
+        pthread_mutex_unlock(&worker->lock);
+        const double due_s = render_worker_due_s(worker);
+        pthread_mutex_lock(&worker->lock);
+        if (worker->stop || (due_s <= 0.0 && !worker->waiting))
             break;
-        p->busy = false;
-        pthread_cond_broadcast(&p->changed);
-        sleep_for(p, due_s);
+        worker->busy = false;
+        pthread_cond_broadcast(&worker->changed);
+        sleep_for(worker, due_s);
     }
-    p->busy = !p->stop;
-    const bool runs = !p->stop;
-    pthread_mutex_unlock(&p->lock);
+    worker->busy = !worker->stop;
+    const bool runs = !worker->stop;
+    pthread_mutex_unlock(&worker->lock);
     return runs;
 }
 
 static void *render_worker_thread(void *of)
 {
-    render_worker *p = of;
+    render_worker *worker = of;
     float_environment_set();
-    while (wait_for_work(p)) {
-        if (render_worker_is_stale(p))
-            render_worker_renew_snapshot(p);
-        if (p->snapshot && (live_is_due(p->live_slime) || p->was_on))
-            render_worker_move_snapshot(p);
-        if (p->snapshot_ready && p->pass < p->plan.count)
-            render_worker_render_pass(p);
+    while (wait_for_work(worker)) {
+        if (render_worker_is_stale(worker))
+            render_worker_renew_snapshot(worker);
+        if (worker->snapshot && (live_is_due(worker->live_slime) || worker->was_on))
+            render_worker_move_snapshot(worker);
+        if (worker->snapshot_ready && worker->pass < worker->plan.count)
+            render_worker_render_pass(worker);
     }
-    pthread_mutex_lock(&p->lock);
-    p->busy = false;
-    pthread_cond_broadcast(&p->changed);
-    pthread_mutex_unlock(&p->lock);
+    pthread_mutex_lock(&worker->lock);
+    worker->busy = false;
+    pthread_cond_broadcast(&worker->changed);
+    pthread_mutex_unlock(&worker->lock);
     return NULL;
 }
 
-status render_worker_start(render_worker *p, diagnostic *why)
+status render_worker_start(render_worker *worker, diagnostic *why)
 {
-    return pthread_create(&p->thread, NULL, render_worker_thread, p) == 0
+    return pthread_create(&worker->thread, NULL, render_worker_thread, worker) == 0
                ? STATUS_OK
-               : diagnose(why, STATUS_FAILURE, "close other programs", "a thread cannot be started");
+               : diagnose(why, STATUS_FAILURE, "close other programs", "cannot start a thread");
 }
 
-void render_worker_join(render_worker *p)
+void render_worker_join(render_worker *worker)
 {
-    pthread_join(p->thread, NULL);
+    pthread_join(worker->thread, NULL);
 }

@@ -8,7 +8,7 @@
 
 typedef struct counted_image {
     shared_image shown; /* first, so that a shared_image pointer can be cast to its owner */
-    atomic_int owners;
+    atomic_int references;
     pthread_mutex_t lock;
     struct encoded {
         unsigned char *bytes;
@@ -16,71 +16,71 @@ typedef struct counted_image {
     } png, jpeg;
 } counted_image;
 
-static counted_image *counted(const shared_image *p)
+static counted_image *counted(const shared_image *img)
 {
-    return (counted_image *)(uintptr_t)p;
+    return (counted_image *)(uintptr_t)img;
 }
 
-void shared_image_drop(const shared_image *p)
+void shared_image_drop(const shared_image *img)
 {
-    image_destroy((image *)(uintptr_t)p->linear);
-    scene_destroy((scene *)(uintptr_t)p->of);
-    json_decref((json_t *)(uintptr_t)p->numbers);
+    image_destroy((image *)(uintptr_t)img->linear);
+    scene_destroy((scene *)(uintptr_t)img->rendered);
+    json_decref((json_t *)(uintptr_t)img->numbers);
 }
 
 const shared_image *shared_image_create(const shared_image *shown)
 {
-    counted_image *p = malloc(sizeof *p);
-    if (!p)
+    counted_image *owner = malloc(sizeof *owner);
+    if (!owner)
         return NULL;
-    *p = (counted_image){.shown = *shown, .owners = 1, .lock = PTHREAD_MUTEX_INITIALIZER};
-    return &p->shown;
+    *owner = (counted_image){.shown = *shown, .references = 1, .lock = PTHREAD_MUTEX_INITIALIZER};
+    return &owner->shown;
 }
 
-void shared_image_retain(const shared_image *p)
+void shared_image_retain(const shared_image *img)
 {
-    atomic_fetch_add(&counted(p)->owners, 1);
+    atomic_fetch_add(&counted(img)->references, 1);
 }
 
-void shared_image_release(const shared_image *p)
+void shared_image_release(const shared_image *img)
 {
-    if (!p || atomic_fetch_sub(&counted(p)->owners, 1) > 1)
+    if (!img || atomic_fetch_sub(&counted(img)->references, 1) > 1)
         return;
-    shared_image_drop(p);
-    pthread_mutex_destroy(&counted(p)->lock);
-    free(counted(p)->png.bytes);
-    free(counted(p)->jpeg.bytes);
-    free(counted(p));
+    shared_image_drop(img);
+    pthread_mutex_destroy(&counted(img)->lock);
+    free(counted(img)->png.bytes);
+    free(counted(img)->jpeg.bytes);
+    free(counted(img));
 }
 
-status shared_image_encode(const shared_image *p, image_format format, const unsigned char **bytes, size_t *size,
+status shared_image_encode(const shared_image *img, image_format format, const unsigned char **bytes, size_t *size,
                            diagnostic *why)
 {
-    counted_image *w = counted(p);
-    struct encoded *made = format == IMAGE_PNG ? &w->png : &w->jpeg;
+    counted_image *owner = counted(img);
+    struct encoded *cached = format == IMAGE_PNG ? &owner->png : &owner->jpeg;
     status code = STATUS_OK;
-    pthread_mutex_lock(&w->lock);
-    if (!made->bytes)
-        code = image_encode(p->linear, format, 8, true, &made->bytes, &made->size, why);
-    *bytes = made->bytes;
-    *size = made->size;
-    pthread_mutex_unlock(&w->lock);
+    pthread_mutex_lock(&owner->lock);
+    if (!cached->bytes)
+        code = image_encode(img->linear, format, 8, true, &cached->bytes, &cached->size, why);
+    *bytes = cached->bytes;
+    *size = cached->size;
+    pthread_mutex_unlock(&owner->lock);
     return code;
 }
 
-json_t *shared_image_json(const shared_image *p)
+json_t *shared_image_json(const shared_image *img)
 {
     char hash[17];
-    snprintf(hash, sizeof hash, "%016llx", (unsigned long long)p->film_hash);
-    json_t *o =
-        json_pack("{s:I,s:I,s:i,s:i,s:b,s:i,s:i,s:i,s:i}", "serial", (json_int_t)p->serial, "generation",
-                  (json_int_t)p->generation, "pass", p->pass, "passes", p->passes, "final", (int)p->final, "width",
-                  p->width, "height", p->height, "full_width", p->full_width, "full_height", p->full_height);
+    snprintf(hash, sizeof hash, "%016llx", (unsigned long long)img->film_hash);
+    json_t *o = json_pack("{s:I,s:I,s:i,s:i,s:b,s:i,s:i,s:i,s:i}", "serial", (json_int_t)img->serial, "generation",
+                          (json_int_t)img->generation, "pass", img->pass, "passes", img->passes, "final",
+                          (int)img->final, "width", img->width, "height", img->height, "full_width", img->full_width,
+                          "full_height", img->full_height);
     if (!o)
         return NULL;
-    json_t *numbers = json_deep_copy(p->numbers); /* jansson's reference counts are not atomic */
+    json_t *numbers = json_deep_copy(img->numbers); /* jansson's reference counts are not atomic */
     int bad = !numbers || json_object_update(o, numbers);
     json_decref(numbers);
-    bad |= json_object_set_new(o, "film_hash", p->final ? json_string(hash) : json_null());
+    bad |= json_object_set_new(o, "film_hash", img->final ? json_string(hash) : json_null());
     return json_if(o, !bad);
 }

@@ -14,7 +14,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-/* Pixels are about those of the widest card; more scenes than a folder's gallery shows at once. Fewer wavelengths would
+/* KEPT: more thumbnails than a gallery shows at once. PIXELS: about those of the widest card. WAVELENGTHS: fewer would
  * show a prism's spectrum as grains of colour. */
 enum { KEPT = 128, PIXELS = 240 * 180, WAVELENGTHS = 96, SAMPLES = 4 };
 static const double limit_s = 16.0; /* of the process's CPU time: a busy machine does not make a scene too large */
@@ -27,10 +27,10 @@ typedef struct kept {
 
 struct thumbnails {
     isa level;
-    pthread_mutex_t lock; /* of the table */
-    pthread_mutex_t one;  /* one render at a time */
+    pthread_mutex_t lock;        /* of the table */
+    pthread_mutex_t render_lock; /* one render at a time */
     kept table[KEPT];
-    int next; /* the place that is replaced next */
+    int next; /* the entry that is replaced next */
     cancel_token ended;
     double late_s; /* CPU time at which the current render has taken too long */
 };
@@ -41,7 +41,7 @@ thumbnails *thumbnails_create(isa level)
     if (t) {
         t->level = level;
         pthread_mutex_init(&t->lock, NULL);
-        pthread_mutex_init(&t->one, NULL);
+        pthread_mutex_init(&t->render_lock, NULL);
     }
     return t;
 }
@@ -55,7 +55,7 @@ void thumbnails_destroy(thumbnails *t)
         free(t->table[i].bytes);
     }
     pthread_mutex_destroy(&t->lock);
-    pthread_mutex_destroy(&t->one);
+    pthread_mutex_destroy(&t->render_lock);
     free(t);
 }
 
@@ -64,8 +64,8 @@ void thumbnails_end(thumbnails *t)
     cancel_set(&t->ended);
 }
 
-/* As the ask of a token. */
-static bool must_end(void *context)
+/* The ask of a cancel token. */
+static bool is_cancelled(void *context)
 {
     const thumbnails *t = context;
     return cancel_is_set(&t->ended) || clock_process_cpu_s() > t->late_s;
@@ -89,7 +89,7 @@ status thumbnails_find(thumbnails *t, const char *key, unsigned char **bytes, si
     return code;
 }
 
-/* Without memory for it, the thumbnail is not kept. */
+/* Keeps a copy, unless memory runs out. */
 static void keep(thumbnails *t, const char *key, const unsigned char *bytes, size_t size)
 {
     kept fresh = {.key = strdup(key), .bytes = malloc(size), .size = size};
@@ -109,7 +109,7 @@ static void keep(thumbnails *t, const char *key, const unsigned char *bytes, siz
 }
 
 /* Small, with one thread, so that the laboratory's own image hardly waits. */
-static void make_small(scene *s)
+static void reduce(scene *s)
 {
     render_settings *r = &s->render;
     const double shrink = sqrt((double)PIXELS / ((double)r->width * (double)r->height));
@@ -135,10 +135,11 @@ static status render_image(job *j, scene *s, image **img, diagnostic *why)
  * none. */
 static status render_twice(thumbnails *t, job *j, scene *s, image **img, diagnostic *why)
 {
-    const int64_t own = s->render.samples;
+    const int64_t samples = s->render.samples;
     const double start_s = clock_process_cpu_s();
     TRY(render_image(j, s, img, why));
-    if (own >= SAMPLES || (clock_process_cpu_s() - start_s) * (double)(SAMPLES + own) / (double)own > limit_s)
+    if (samples >= SAMPLES ||
+        (clock_process_cpu_s() - start_s) * (double)(SAMPLES + samples) / (double)samples > limit_s)
         return STATUS_OK;
     image *fine = NULL;
     s->render.samples = SAMPLES;
@@ -154,10 +155,10 @@ static status render(thumbnails *t, scene *s, unsigned char **bytes, size_t *siz
 {
     job *j = NULL;
     image *img = NULL;
-    make_small(s);
+    reduce(s);
     t->late_s = clock_process_cpu_s() + limit_s;
     status code = job_create(&(job_settings){.level = &t->level}, &j, why);
-    cancel_token token = {.ask = must_end, .context = t};
+    cancel_token token = {.ask = is_cancelled, .context = t};
     cancel_begin(&token);
     THEN(code, job_load(j, s, NULL, why));
     THEN(code, render_twice(t, j, s, &img, why));
@@ -172,13 +173,13 @@ static status render(thumbnails *t, scene *s, unsigned char **bytes, size_t *siz
 
 status thumbnails_render(thumbnails *t, const char *key, scene *s, unsigned char **bytes, size_t *size, diagnostic *why)
 {
-    pthread_mutex_lock(&t->one);
+    pthread_mutex_lock(&t->render_lock);
     status code = thumbnails_find(t, key, bytes, size, why); /* another page may have requested it meanwhile */
     if (code == STATUS_OK && !*bytes) {
         code = render(t, s, bytes, size, why);
         if (code == STATUS_OK)
             keep(t, key, *bytes, *size);
     }
-    pthread_mutex_unlock(&t->one);
+    pthread_mutex_unlock(&t->render_lock);
     return code;
 }
