@@ -16,7 +16,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-/* The number of handlers that may do work with much memory and time at once. */
+/* The most handlers that may do heavy work, with much memory and time, at once. */
 enum { HEAVY_AT_ONCE = 2 };
 
 /* --- the state, and its changes --- */
@@ -43,20 +43,20 @@ static json_t *state_json(lab *l)
     return json_if(state, good);
 }
 
-static void on_document(void *of)
+static void on_document(void *context)
 {
-    lab *l = of;
+    lab *l = context;
     render_worker_wake(l->render_worker);
     rescue_wake(l->rescue);
     lab_publish_state(l);
 }
 
-static void on_image(void *of, const shared_image *p)
+static void on_image(void *context, const shared_image *img)
 {
-    lab *l = of;
+    lab *l = context;
     if (!lab_is_open(l))
         return;
-    lab_publish(l, "image", shared_image_json(p));
+    lab_publish(l, "image", shared_image_json(img));
     live *live_slime = render_worker_live(l->render_worker);
     if (live_is_on(live_slime))
         lab_publish(l, "slime", live_json(live_slime));
@@ -68,9 +68,9 @@ static void on_study_end(lab *l)
     rescue_wake(l->rescue);
 }
 
-static void on_state_changed(void *of)
+static void on_state_changed(void *context)
 {
-    lab_publish_state(of);
+    lab_publish_state(context);
 }
 
 /* --- start and stop --- */
@@ -119,8 +119,8 @@ static status open_document(lab *l, diagnostic *why)
     status code = first_scene(l, &first, &file, why);
     if (code == STATUS_OK) {
         lab_set_default_threads(l, first);
-        const char *own = file && lab_is_scene_name(file) ? file : NULL;
-        code = scene_document_create(first, own, l->files, on_document, l, &l->scene_document, why);
+        const char *name = file && lab_is_scene_name(file) ? file : NULL;
+        code = scene_document_create(first, name, l->files, on_document, l, &l->scene_document, why);
     }
     free(file);
     return code;
@@ -172,16 +172,16 @@ typedef struct starting {
     status code;
 } starting;
 
-static void *start_confined(void *of)
+static void *start_confined(void *context)
 {
-    starting *s = of;
+    starting *s = context;
     s->code = lab_confine(s->l, s->why);
     THEN(s->code, start(s->l, s->why));
     return NULL;
 }
 
-/* A thread inherits the confinement of the thread that starts it: started from a new thread, all threads of the
- * laboratory are confined, and the caller's are not. */
+/* A thread inherits the confinement of the thread that starts it: a new thread confines itself and starts all threads
+ * of the laboratory, so that the caller's threads are not confined. */
 static status start_in_thread(lab *l, diagnostic *why)
 {
     starting s = {l, why, STATUS_OK};
@@ -232,7 +232,7 @@ void lab_stop(lab *l)
         render_worker_end(l->render_worker);
     http_stop(l->server);
     videos_destroy(l->videos);
-    rescue_destroy(l->rescue, l->left);
+    rescue_destroy(l->rescue, l->leaves_unsaved);
     studies_destroy(l->studies);
     semaphore_destroy(l->heavy);
     pixel_maps_destroy(l->pixel_maps);
@@ -252,7 +252,7 @@ void lab_stop(lab *l)
 
 void lab_leave_unsaved(lab *l)
 {
-    l->left = true;
+    l->leaves_unsaved = true;
 }
 
 const char *lab_address(const lab *l)

@@ -9,7 +9,7 @@
 
 status lab_start(const lab_settings *settings, lab **out, diagnostic *why);
 void lab_stop(lab *l); /* NULL is allowed */
-/* An unsaved scene stays on disk at the stop, to be offered by the next laboratory; otherwise a stop removes it. */
+/* Lets an unsaved scene stay on disk at the stop, for the next laboratory to offer; otherwise the stop removes it. */
 void lab_leave_unsaved(lab *l);
 
 /* "http://127.0.0.1:PORT/?token=TOKEN" */

@@ -1,6 +1,6 @@
-/* Confinement of the laboratory: its threads and the programs that they start can read and write the chosen folder and
- * that of unsaved scenes, and can read and run the program's own files, the system's, and those of the folders in PATH.
- * Files of other projects and of the user's home are out of reach. */
+/* Confines the laboratory: its threads, and the programs that they start, can read and write the chosen folder and the
+ * folder of unsaved scenes. They can read and run the program's files, the system's, and the folders in PATH, but no
+ * other files, such as those of other projects or of the user's home. */
 #include "base/installed.h"
 #include "base/os_confine.h"
 #include "base/os_process.h"
@@ -53,7 +53,7 @@ static void add_found(place_list *all, char *path, unsigned rights)
         add(all, path, rights);
 }
 
-/* The folders of a list such as PATH. A relative one is left out: it depends on the working folder. */
+/* Adds the folders of a list such as PATH, except relative ones, which depend on the working folder. */
 static void add_list(place_list *all, const char *list)
 {
     for (const char *at = list; at && *at;) {
@@ -101,9 +101,9 @@ static const char *temporary_place(void)
 
 #define TEMPORARY "cuvette-tmp-"
 
-/* Opens and locks the folder; -1: it is in use, or not a folder. The lock ends with the process, even if that is
+/* Opens and locks the folder; -1 if it is in use or no folder. The lock ends with the process, even if the process is
  * killed. */
-static int hold(const char *path)
+static int lock_folder(const char *path)
 {
     const int fd = open(path, O_RDONLY | O_DIRECTORY | O_NOFOLLOW | O_CLOEXEC);
     if (fd >= 0 && flock(fd, LOCK_EX | LOCK_NB) == 0)
@@ -113,7 +113,7 @@ static int hold(const char *path)
     return -1;
 }
 
-static int remove_one(const char *path, const struct stat *what, int kind, struct FTW *place)
+static int remove_entry(const char *path, const struct stat *what, int kind, struct FTW *place)
 {
     (void)what, (void)kind, (void)place;
     return remove(path);
@@ -122,7 +122,7 @@ static int remove_one(const char *path, const struct stat *what, int kind, struc
 static void remove_all(const char *path)
 {
     enum { OPEN_MAX_FILES = 8 };
-    nftw(path, remove_one, OPEN_MAX_FILES, FTW_DEPTH | FTW_PHYS);
+    nftw(path, remove_entry, OPEN_MAX_FILES, FTW_DEPTH | FTW_PHYS);
 }
 
 /* Removes the folders of laboratories that were killed. */
@@ -133,7 +133,7 @@ static void remove_abandoned(const char *place)
         if (strncmp(e->d_name, TEMPORARY, strlen(TEMPORARY)) != 0)
             continue;
         char *path = text_format("%s/%s", place, e->d_name);
-        const int fd = path ? hold(path) : -1;
+        const int fd = path ? lock_folder(path) : -1;
         if (fd >= 0) {
             remove_all(path);
             close(fd);
@@ -144,25 +144,25 @@ static void remove_abandoned(const char *place)
         closedir(entries);
 }
 
-/* Makes the temporary folder. If it cannot be made or locked, there is none, which drawings report. */
+/* Creates the temporary folder. If it cannot be created or locked, there is none, and figures fail with an error. */
 static status add_temporary(lab *l, place_list *all, diagnostic *why)
 {
     remove_abandoned(temporary_place());
     char *path = text_format("%s/" TEMPORARY "XXXXXX", temporary_place());
     if (!path)
         return out_of_memory(why);
-    l->temporary_lock = mkdtemp(path) ? hold(path) : -1;
+    l->temporary_lock = mkdtemp(path) ? lock_folder(path) : -1;
     if (l->temporary_lock >= 0) {
         l->temporary = path;
         add_text(all, path, CONFINE_WRITE);
         return STATUS_OK;
     }
-    diagnostic lost = {.line = 0};
-    const status code = system_error(&lost, STATUS_OK, path, "cannot make a temporary folder", errno, NULL);
+    diagnostic reason = {.line = 0};
+    const status code = system_error(&reason, STATUS_OK, path, "cannot create a temporary folder", errno, NULL);
     rmdir(path);
     free(path);
     if (code != STATUS_OK)
-        *why = lost;
+        *why = reason;
     return code;
 }
 

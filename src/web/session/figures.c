@@ -18,13 +18,13 @@
 
 enum { FIGURE_NAME_MAX = 64, FIGURES_MAX = 200, SVG_MAX = 32 << 20, SCRIPT_MAX = 1 << 20 };
 
-static bool name_is_fit(const char *name)
+static bool is_figure_name(const char *name)
 {
     const size_t length = strspn(name, "abcdefghijklmnopqrstuvwxyz0123456789-");
     return length > 0 && length <= FIGURE_NAME_MAX && !name[length];
 }
 
-/* results/figures relative to the chosen folder; NULL where it is outside. */
+/* results/figures relative to the chosen folder; NULL if it is outside. */
 static status figures_folder(const lab *l, char **name, diagnostic *why)
 {
     *name = NULL;
@@ -49,9 +49,9 @@ static status inner_path(const lab *l, const char *in, const char *name, const c
 status figure_read(const lab *l, const char *name, char **svg, size_t *size, diagnostic *why)
 {
     char *in = NULL, *path = NULL;
-    status code = name_is_fit(name) ? figures_folder(l, &in, why)
-                                    : diagnose(why, STATUS_BAD_INPUT, "use lower-case letters, digits and '-'",
-                                               "invalid name of a figure");
+    status code = is_figure_name(name) ? figures_folder(l, &in, why)
+                                       : diagnose(why, STATUS_BAD_INPUT, "use lower-case letters, digits and '-'",
+                                                  "invalid name of a figure");
     THEN(code, inner_path(l, in, name, ".svg", &path, why));
     THEN(code, file_read_below(path, folder_real(l->files), SVG_MAX, svg, size, why));
     free(path);
@@ -61,16 +61,16 @@ status figure_read(const lab *l, const char *name, char **svg, size_t *size, dia
 
 /* --- the figures of a study --- */
 
-static bool names_study_table(const char *need, size_t length, const char *of)
+static bool names_study_table(const char *need, size_t length, const char *study_name)
 {
     static const char tables[] = "tables/";
-    const size_t name = strlen(of);
-    if (length > name && strncmp(need, of, name) == 0 && need[name] == '/')
+    const size_t name = strlen(study_name);
+    if (length > name && strncmp(need, study_name, name) == 0 && need[name] == '/')
         return true;
     if (length < sizeof tables - 1 || strncmp(need, tables, sizeof tables - 1) != 0)
         return false;
     need += sizeof tables - 1;
-    if (strncmp(need, of, name) != 0)
+    if (strncmp(need, study_name, name) != 0)
         return false;
     static const char *const endings[] = {".tsv", "-metrics.tsv", "-curves.tsv", "-motion.tsv"};
     for (size_t i = 0; i < sizeof endings / sizeof *endings; i++)
@@ -80,7 +80,7 @@ static bool names_study_table(const char *need, size_t length, const char *of)
 }
 
 /* Whether the `# needs:` lines of a script's head name the study's rows or tables. *has_needs: there are such lines. */
-static bool needs_in(const char *text, const char *of, bool *has_needs)
+static bool needs_in(const char *text, const char *study_name, bool *has_needs)
 {
     static const char key[] = "# needs:";
     bool needs = false;
@@ -90,15 +90,15 @@ static bool needs_in(const char *text, const char *of, bool *has_needs)
         *has_needs = true;
         for (const char *word = line + sizeof key - 1; *word == ' ' && !needs; word += strcspn(word, " \n")) {
             word += strspn(word, " ");
-            needs = names_study_table(word, strcspn(word, " \n"), of);
+            needs = names_study_table(word, strcspn(word, " \n"), study_name);
         }
     }
     return needs;
 }
 
-/* STATUS_OK, unless the machine cannot read an existing file now (STATUS_FAILURE): the result may then lack
+/* Ignores an error, unless the machine cannot read an existing file now (STATUS_FAILURE): the result may then lack
  * something. */
-static status unless_machines(status code, const diagnostic *reason, diagnostic *why)
+static status ignore_missing(status code, const diagnostic *reason, diagnostic *why)
 {
     if (code == STATUS_FAILURE)
         *why = *reason;
@@ -106,7 +106,7 @@ static status unless_machines(status code, const diagnostic *reason, diagnostic 
 }
 
 /* A figure without a script, or with one that cannot be read, needs nothing. */
-static status script_needs_study(const lab *l, const char *figure, const char *of, bool *needs, bool *has_needs,
+static status script_needs_study(const lab *l, const char *figure, const char *study_name, bool *needs, bool *has_needs,
                                  diagnostic *why)
 {
     char *path = NULL, *text = NULL;
@@ -116,32 +116,32 @@ static status script_needs_study(const lab *l, const char *figure, const char *o
     status code = inner_path(l, "plots", figure, ".gp", &path, &reason);
     THEN(code, file_read_below(path, folder_real(l->files), SCRIPT_MAX, &text, &size, &reason));
     if (code == STATUS_OK)
-        *needs = needs_in(text, of, has_needs);
+        *needs = needs_in(text, study_name, has_needs);
     free(text);
     free(path);
-    return unless_machines(code, &reason, why);
+    return ignore_missing(code, &reason, why);
 }
 
-typedef status accepted(const lab *l, const char *figure, const char *of, bool *yes, diagnostic *why);
+typedef status accepted(const lab *l, const char *figure, const char *study_name, bool *yes, diagnostic *why);
 
-static status belongs_to_study(const lab *l, const char *figure, const char *of, bool *yes, diagnostic *why)
+static status belongs_to_study(const lab *l, const char *figure, const char *study_name, bool *yes, diagnostic *why)
 {
     bool has_needs;
-    const size_t length = strlen(of);
-    TRY(script_needs_study(l, figure, of, yes, &has_needs, why));
-    *yes |= !has_needs && strncmp(figure, of, length) == 0 && (!figure[length] || figure[length] == '-');
+    const size_t length = strlen(study_name);
+    TRY(script_needs_study(l, figure, study_name, yes, &has_needs, why));
+    *yes |= !has_needs && strncmp(figure, study_name, length) == 0 && (!figure[length] || figure[length] == '-');
     return STATUS_OK;
 }
 
-static status needs_study(const lab *l, const char *figure, const char *of, bool *yes, diagnostic *why)
+static status needs_study(const lab *l, const char *figure, const char *study_name, bool *yes, diagnostic *why)
 {
     bool has_needs;
-    return script_needs_study(l, figure, of, yes, &has_needs, why);
+    return script_needs_study(l, figure, study_name, yes, &has_needs, why);
 }
 
 /* The names of the files in a folder that have that ending, are valid figure names and are accepted; an empty list if
  * the folder does not exist. */
-static status list_figures(const char *path, const char *ending, accepted *accept, const lab *l, const char *of,
+static status list_figures(const char *path, const char *ending, accepted *accept, const lab *l, const char *study_name,
                            json_t **out, diagnostic *why)
 {
     struct dirent **entries = NULL;
@@ -150,15 +150,15 @@ static status list_figures(const char *path, const char *ending, accepted *accep
     status code = STATUS_OK;
     if (count < 0)
         code =
-            unless_machines(system_error(&reason, STATUS_BAD_INPUT, path, "cannot be listed", errno, ""), &reason, why);
+            ignore_missing(system_error(&reason, STATUS_BAD_INPUT, path, "cannot be listed", errno, ""), &reason, why);
     *out = json_array();
     for (int i = 0; i < count; i++) {
         char *dot = strrchr(entries[i]->d_name, '.');
         bool yes = code == STATUS_OK && dot && strcmp(dot, ending) == 0 && json_array_size(*out) < FIGURES_MAX;
         if (yes)
             *dot = 0;
-        if (yes && (yes = name_is_fit(entries[i]->d_name)))
-            code = accept(l, entries[i]->d_name, of, &yes, why);
+        if (yes && (yes = is_figure_name(entries[i]->d_name)))
+            code = accept(l, entries[i]->d_name, study_name, &yes, why);
         if (yes && code == STATUS_OK && *out)
             json_add(out, json_string(entries[i]->d_name));
         free(entries[i]);
@@ -171,7 +171,7 @@ static status list_figures(const char *path, const char *ending, accepted *accep
     return code == STATUS_OK ? out_of_memory(why) : code;
 }
 
-status figures_of(const lab *l, const char *of, json_t **out, diagnostic *why)
+status figures_of(const lab *l, const char *study_name, json_t **out, diagnostic *why)
 {
     char *in, *path = NULL;
     *out = NULL;
@@ -179,7 +179,7 @@ status figures_of(const lab *l, const char *of, json_t **out, diagnostic *why)
     if (code == STATUS_OK && in && !(path = text_format("%s/figures", l->settings.results)))
         code = out_of_memory(why);
     if (code == STATUS_OK)
-        code = in                      ? list_figures(path, ".svg", belongs_to_study, l, of, out, why)
+        code = in                      ? list_figures(path, ".svg", belongs_to_study, l, study_name, out, why)
                : (*out = json_array()) ? STATUS_OK
                                        : out_of_memory(why);
     free(path);
@@ -187,18 +187,18 @@ status figures_of(const lab *l, const char *of, json_t **out, diagnostic *why)
     return code;
 }
 
-status figures_drawable(const lab *l, const char *of, json_t **out, diagnostic *why)
+status figures_drawable(const lab *l, const char *study_name, json_t **out, diagnostic *why)
 {
     char *script = NULL;
     diagnostic reason = {.what = ""};
     *out = NULL;
     const status found = inner_path(l, "plots", "draw", ".sh", &script, &reason);
     if (found != STATUS_OK) {
-        TRY(unless_machines(found, &reason, why));
+        TRY(ignore_missing(found, &reason, why));
         return (*out = json_array()) ? STATUS_OK : out_of_memory(why);
     }
     *strrchr(script, '/') = 0;
-    const status code = list_figures(script, ".gp", needs_study, l, of, out, why);
+    const status code = list_figures(script, ".gp", needs_study, l, study_name, out, why);
     free(script);
     return code;
 }
@@ -206,7 +206,7 @@ status figures_drawable(const lab *l, const char *of, json_t **out, diagnostic *
 static const double draw_limit_s = 50; /* below the minute that a page waits for a reply */
 enum { PART_MAX = 64 << 20 };
 
-/* --- tables, made as by the Makefile's rules --- */
+/* --- tables, the same as by the Makefile's rules --- */
 
 static status write_summary(const study *s, const char *results, const char *path, diagnostic *why)
 {
@@ -233,7 +233,7 @@ static status append_part(FILE *out, const char *path, const char *root, bool *h
     return STATUS_OK;
 }
 
-static status string_parts(const study *s, const char *results, const char *kind, const char *path, diagnostic *why)
+static status join_parts(const study *s, const char *results, const char *kind, const char *path, diagnostic *why)
 {
     file_writer file;
     bool headed = false;
@@ -262,7 +262,7 @@ static status write_tables(const study *s, const char *results, diagnostic *why)
         if (!first || !table)
             code = out_of_memory(why);
         else if (access(first, R_OK) == 0)
-            code = string_parts(s, results, kinds[i], table, why);
+            code = join_parts(s, results, kinds[i], table, why);
         free(first);
         free(table);
     }

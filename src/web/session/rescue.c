@@ -21,22 +21,22 @@ struct rescue {
     const char *folder; /* "": none is known */
     pthread_t thread;
     bool started;
-    kept_scene own;  /* of the thread */
-    uint64_t number; /* of the version in own */
+    kept_scene kept; /* the unsaved scene; only the thread uses it */
+    uint64_t number; /* of the version in kept */
 
     pthread_mutex_t lock; /* guards the fields below */
     pthread_cond_t changed;
     bool woken, ending, failed;
     diagnostic trouble;
-    /* Both together hold at most the scenes found at the start. opened: scenes that the document has, but the file of
-     * `own` may not have yet. */
+    /* The two lists hold the scenes found at the start. opened: scenes that the document has, but the file of `kept`
+     * may not have yet. */
     kept_scene offers[KEPT_SCENES_MAX], opened[KEPT_SCENES_MAX];
     size_t offer_count, opened_count;
 };
 
 static const double period_s = 1.0;
 
-/* The file that the paths in a kept scene are relative to: the scene's own, or one of any name in its folder. */
+/* The path to which the names of files in a kept scene are relative: the scene's own file, or any in its folder. */
 static char *place_of(const char *root, const char *file)
 {
     return text_format("%s/%s", root, file ? file : "unsaved");
@@ -60,7 +60,7 @@ static json_t *about_scene(const rescue *r, const scene *s, const char *file)
                      json_of_text(folder_real(r->l->files)), "file", file ? json_of_text(file) : json_null());
 }
 
-static status write_own(rescue *r, diagnostic *why)
+static status write_kept(rescue *r, diagnostic *why)
 {
     uint64_t number = 0;
     char *file = NULL, *text = NULL;
@@ -71,7 +71,7 @@ static status write_own(rescue *r, diagnostic *why)
     char *place = place_of(folder_real(r->l->files), file);
     json_t *about = s ? about_scene(r, s, file) : NULL;
     status code = s && place && about ? scene_write_text(s, place, false, &text, why) : out_of_memory(why);
-    THEN(code, kept_scene_write(r->folder, &r->own, about, text, why));
+    THEN(code, kept_scene_write(r->folder, &r->kept, about, text, why));
     if (code == STATUS_OK)
         r->number = number;
     json_decref(about);
@@ -82,21 +82,21 @@ static status write_own(rescue *r, diagnostic *why)
     return code;
 }
 
-/* Brings the file up to date with the document: writes it, or removes it when nothing is unsaved. */
-static status follow(rescue *r, diagnostic *why)
+/* Makes the file follow the document: writes it, or removes it when nothing is unsaved. */
+static status update_file(rescue *r, diagnostic *why)
 {
     uint64_t number;
     const bool unsaved = scene_document_unsaved(r->l->scene_document, &number, NULL);
     if (!unsaved) {
-        kept_scene_remove(&r->own);
+        kept_scene_remove(&r->kept);
         return STATUS_OK;
     }
-    if (r->own.path && r->number == number)
+    if (r->kept.path && r->number == number)
         return STATUS_OK;
     if (!r->folder[0])
         return diagnose(why, STATUS_FAILURE, "set HOME or XDG_STATE_HOME",
                         "there is no folder in which to keep unsaved changes");
-    return write_own(r, why);
+    return write_kept(r, why);
 }
 
 /* The files of scenes that were opened are removed only after the document has been written. */
@@ -106,7 +106,7 @@ static void step(rescue *r)
     const size_t opened = r->opened_count; /* before the document is read */
     pthread_mutex_unlock(&r->lock);
     diagnostic why = {.line = 0};
-    const bool failed = follow(r, &why) != STATUS_OK;
+    const bool failed = update_file(r, &why) != STATUS_OK;
     if (failed && !why.remedy[0])
         snprintf(why.remedy, sizeof why.remedy, "save the scene, or set XDG_STATE_HOME to another folder");
     pthread_mutex_lock(&r->lock);
@@ -124,7 +124,7 @@ static void step(rescue *r)
         lab_publish_state(r->l);
 }
 
-/* The caller holds the lock. Waits for a change, and for the end of the period after the last one. */
+/* Waits for a change and for the end of the period; false at the end. The caller holds the lock. */
 static bool wait_for_change(rescue *r, const struct timespec *until)
 {
     while (!r->woken && !r->ending)
@@ -135,9 +135,9 @@ static bool wait_for_change(rescue *r, const struct timespec *until)
     return !r->ending;
 }
 
-static void *run(void *of)
+static void *run(void *context)
 {
-    rescue *r = of;
+    rescue *r = context;
     struct timespec until = clock_after(0);
     float_environment_set();
     pthread_mutex_lock(&r->lock);
@@ -155,8 +155,8 @@ static void *run(void *of)
 
 /* --- the scenes that are offered --- */
 
-/* The caller owns *k from now on: nobody else can open or discard it. */
-static status take_offer(rescue *r, const char *id, kept_scene *k, diagnostic *why)
+/* Moves an offer to *k, so that no other request can open or discard it. */
+static status claim_offer(rescue *r, const char *id, kept_scene *k, diagnostic *why)
 {
     pthread_mutex_lock(&r->lock);
     size_t at = 0;
@@ -170,11 +170,11 @@ static status take_offer(rescue *r, const char *id, kept_scene *k, diagnostic *w
     }
     pthread_mutex_unlock(&r->lock);
     return found ? STATUS_OK
-                 : diagnose(why, STATUS_BAD_INPUT, "GET /api/state lists them as 'rescued'",
+                 : diagnose(why, STATUS_BAD_INPUT, "use an id that GET /api/state lists in 'rescued'",
                             "no rescued scene has the id '%.40s'", id);
 }
 
-static void put(kept_scene *list, size_t *count, size_t at, kept_scene k)
+static void insert(kept_scene *list, size_t *count, size_t at, kept_scene k)
 {
     memmove(list + at + 1, list + at, (*count - at) * sizeof *list);
     list[at] = k;
@@ -218,16 +218,16 @@ static status open_scene(rescue *r, const kept_scene *k, const char *place, cons
 status rescue_open(rescue *r, const char *id, uint64_t *generation, diagnostic *why)
 {
     kept_scene k;
-    TRY(take_offer(r, id, &k, why));
+    TRY(claim_offer(r, id, &k, why));
     char *place = place_of(text_of(&k, "folder"), text_of(&k, "file")), *name = place ? name_here(r, &k, place) : NULL;
     const status code = place ? open_scene(r, &k, place, name, generation, why) : out_of_memory(why);
     if (code == STATUS_BAD_INPUT && strcmp(text_of(&k, "folder"), folder_real(r->l->files)) != 0)
         snprintf(why->remedy, sizeof why->remedy, "open it with: cuvette lab --folder %.200s", text_of(&k, "folder"));
     pthread_mutex_lock(&r->lock);
     if (code == STATUS_OK)
-        put(r->opened, &r->opened_count, r->opened_count, k);
+        insert(r->opened, &r->opened_count, r->opened_count, k);
     else
-        put(r->offers, &r->offer_count, 0, k);
+        insert(r->offers, &r->offer_count, 0, k);
     pthread_mutex_unlock(&r->lock);
     rescue_wake(r);
     lab_publish_state(r->l);
@@ -239,7 +239,7 @@ status rescue_open(rescue *r, const char *id, uint64_t *generation, diagnostic *
 status rescue_discard(rescue *r, const char *id, diagnostic *why)
 {
     kept_scene k;
-    TRY(take_offer(r, id, &k, why));
+    TRY(claim_offer(r, id, &k, why));
     kept_scene_remove(&k);
     lab_publish_state(r->l);
     return STATUS_OK;
@@ -298,7 +298,7 @@ status rescue_create(lab *l, rescue **out, diagnostic *why)
     return r->started
                ? STATUS_OK
                : diagnose(why, STATUS_FAILURE, "close other programs, or raise the limit on processes (ulimit -u)",
-                          "a thread cannot be started");
+                          "cannot start a thread");
 }
 
 void rescue_destroy(rescue *r, bool leave)
@@ -312,13 +312,14 @@ void rescue_destroy(rescue *r, bool leave)
     if (r->started)
         pthread_join(r->thread, NULL);
     if (leave && r->started) {
-        cancel_token shield; /* the signal that ends the program has cancelled all other work of this thread */
+        cancel_token
+            shield; /* the signal that ends the program has cancelled the work of this thread; this step must run */
         cancel_shield(&shield);
         step(r);
         cancel_end(&shield);
     }
     void (*end)(kept_scene *) = leave ? kept_scene_release : kept_scene_remove;
-    end(&r->own);
+    end(&r->kept);
     for (size_t i = 0; i < r->opened_count; i++)
         end(&r->opened[i]);
     for (size_t i = 0; i < r->offer_count; i++)

@@ -1,4 +1,4 @@
-/* What the parts of a laboratory share: events, names of scenes, default threads, camera rays. */
+/* Functions for all parts of a laboratory: events, names of scenes, default threads, camera rays. */
 #include "scene/model/camera.h"
 #include "scene/model/scene.h"
 #include "web/session/session.h"

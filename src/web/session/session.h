@@ -1,6 +1,6 @@
-/* What the parts of a laboratory share: the struct that holds them, the events for pages, and what an opened scene
- * gets. Private to the laboratory. web/lab.c starts and stops the parts; each knows only those before it: the folder
- * and the document (web/document), the render worker (web/live), the tasks here, the handlers of requests (web/api). */
+/* For all parts of a laboratory: the struct that holds them, the events for pages, and helpers for scenes. Private to
+ * the laboratory. web/lab.c starts and stops the parts; each knows only those before it: the folder and the document
+ * (web/document), the render worker (web/live), the tasks here, the handlers of requests (web/api). */
 #pragma once
 
 #include "base/vec3.h"
@@ -43,20 +43,20 @@ struct lab {
     int temporary_lock;       /* its descriptor: a folder that nobody has locked is removed by the next laboratory */
     json_t *(*state)(lab *l); /* the state of all parts for pages; NULL when out of memory */
     bool open;                /* events may be published */
-    bool left;                /* the unsaved scene stays on disk at the stop */
+    bool leaves_unsaved;      /* the unsaved scene stays on disk at the stop */
 };
 
 /* Confines the calling thread, and all threads and programs that it starts, to the files that the laboratory needs
  * (base/os_confine.h), and makes its folder for temporary files. If the system cannot confine, nothing changes.
  * STATUS_FAILURE when out of memory. */
 status lab_confine(lab *l, diagnostic *why);
-/* Removes that folder, and an empty one for unsaved scenes. */
+/* Removes the folder for temporary files, and the folder for unsaved scenes if it is empty. */
 void lab_remove_temporary(lab *l);
 /* The folder for temporary files, and a file in it without a name; NULL with errno. */
 const char *lab_temporary_folder(const lab *l);
 FILE *lab_temporary_file(const lab *l);
 
-/* Sends an event to all pages; takes the reference to value. Thread-safe. */
+/* Sends an event to all pages; owns value. Thread-safe. */
 void lab_publish(lab *l, const char *event, json_t *value);
 
 /* Sends the state to all pages. */
@@ -64,12 +64,12 @@ void lab_publish_state(lab *l);
 /* Whether events may be published. */
 bool lab_is_open(lab *l);
 
-/* Whether a file would be listed among the scenes: other files that hold a scene are not saved into. */
+/* Whether the name is that of a scene file. Scenes are not saved into other files, such as images that hold one. */
 bool lab_is_scene_name(const char *name);
 
 /* Sets the default number of threads in an opened scene that sets none. */
 void lab_set_default_threads(const lab *l, scene *s);
-/* Resets render.threads where it equals that default: the default belongs to this machine, so files do not store it. */
+/* Resets render.threads if it equals that default: the default belongs to this machine, so files do not store it. */
 void lab_clear_default_threads(const lab *l, scene *s);
 
 /* The camera ray through the point (x, y) of the full image, in pixels. direction is a unit vector. */

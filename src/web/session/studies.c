@@ -79,7 +79,7 @@ json_t *studies_json(studies *st)
                        : json_pack("{s:s, s:b, s:I, s:I, s:o, s:I, s:o, s:s, s:I, s:I, s:o}", "name", st->name,
                                    "running", st->running, "frames_done", (json_int_t)now->frames_done, "frames_all",
                                    (json_int_t)now->frames_all, "left_s", json_of_real(now->left_s), "cell",
-                                   (json_int_t)now->cell, "share", json_of_real(now->share), "stage",
+                                   (json_int_t)now->cell, "fraction", json_of_real(now->share), "stage",
                                    stages[now->stage], "image", (json_int_t)now->img, "images", (json_int_t)now->images,
                                    "error", st->failed ? json_of_diagnostic(&st->trouble) : json_null());
     pthread_mutex_unlock(&st->lock);

@@ -25,17 +25,18 @@ status study_find(const lab *l, const char *name, char **file, diagnostic *why);
 /* Checks that the rows in that results folder (relative to the working directory) and the files written next to them
  * are in the chosen folder. */
 status study_check_results(const lab *l, const char *results, const char *name, diagnostic *why);
-/* The names of the folders that contain rows of it, three levels deep. STATUS_FAILURE: one cannot be listed now. */
+/* The names of the folders that contain rows of the study, three levels deep. STATUS_FAILURE: a folder cannot be listed
+ * now. */
 status study_runs(const lab *l, const char *name, json_t **out, diagnostic *why);
 
-/* --- the study that runs, in a thread of its own (studies.c) --- */
+/* --- the study that runs, in a thread (studies.c) --- */
 
 /* The render worker is suspended while it measures. Its progress goes to all pages as event `study` and is part of the
  * state. studies_create creates, studies_destroy releases. */
 
 /* ended: called by the thread after each study. */
 status studies_create(lab *l, void (*ended)(lab *l), studies **out, diagnostic *why);
-/* Stops the running study, waits for it, and lets no other start. Call it while the server, render worker and scene
+/* Stops the running study, waits for it, and prevents later ones. Call it while the server, render worker and scene
  * document still exist; handlers may run until http_stop. */
 void studies_end(studies *st);
 /* Call it after http_stop. NULL is allowed; includes studies_end. */
@@ -50,8 +51,8 @@ bool studies_runs(studies *st, const char *name); /* name NULL: whether any stud
 /* The study in the state JSON, null before the first study; NULL when out of memory. */
 json_t *studies_json(studies *st);
 
-/* Whether the laboratory ends; st: studies. As the ask of a token, for long work. At most one thread draws figures:
- * studies_begin_drawing returns false while another does. */
+/* The ask of a cancel token, for long work: whether the laboratory ends. st: a studies *. At most one thread draws
+ * figures: studies_begin_drawing returns false while another does. */
 bool studies_ending(void *st);
 bool studies_begin_drawing(studies *st);
 void studies_end_drawing(studies *st);
@@ -67,7 +68,7 @@ status figure_read(const lab *l, const char *name, char **svg, size_t *size, dia
 
 /* Names of the existing figures of a study. STATUS_FAILURE: a folder or script that is there cannot be read now. */
 status figures_of(const lab *l, const char *name, json_t **out, diagnostic *why);
-/* Names of the figures that can be drawn of it; empty without plots/draw.sh. */
+/* Names of the figures that can be drawn of the study; empty without plots/draw.sh. */
 status figures_drawable(const lab *l, const char *name, json_t **out, diagnostic *why);
 
 /* Writes the tables of the study (results/tables/) and draws its figures; limited to less than a minute, the time

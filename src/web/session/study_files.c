@@ -13,21 +13,21 @@
 
 /* --- files --- */
 
-/* The name in the file, found without parsing the rest; otherwise the file's own name. unread: the reason if the
+/* The name in the file, found without parsing the rest; otherwise the file's name. unread: the reason if the
  * machine could not read the file. NULL: out of memory. */
 static char *name_of(const lab *l, const char *file, diagnostic *unread)
 {
     char *path = NULL, *name;
     document *d = NULL;
-    diagnostic refused = {.what = ""};
-    status code = folder_path(l->files, file, true, &path, &refused);
-    THEN(code, document_read_below(path, folder_real(l->files), &d, &refused));
+    diagnostic reason = {.what = ""};
+    status code = folder_path(l->files, file, true, &path, &reason);
+    THEN(code, document_read_below(path, folder_real(l->files), &d, &reason));
     if (code == STATUS_FAILURE)
-        *unread = refused;
+        *unread = reason;
     const node *root = d ? document_root(d) : NULL,
-               *said = root && root->kind == NODE_MAP ? node_get(root, "study") : NULL;
-    if (said && said->kind == NODE_SCALAR && said->text[0]) {
-        name = strdup(said->text);
+               *name_node = root && root->kind == NODE_MAP ? node_get(root, "study") : NULL;
+    if (name_node && name_node->kind == NODE_SCALAR && name_node->text[0]) {
+        name = strdup(name_node->text);
     } else {
         const char *last = strrchr(file, '/'), *stem = last ? last + 1 : file, *dot = strrchr(stem, '.');
         name = strndup(stem, dot ? (size_t)(dot - stem) : strlen(stem));
@@ -167,21 +167,21 @@ static status check_links(const lab *l, const char *path, diagnostic *why)
 
 status study_check_results(const lab *l, const char *results, const char *name, diagnostic *why)
 {
-    char *own = text_format("%s/%s", results, name);
-    status code = own ? check_inside(l, own, why) : out_of_memory(why);
-    THEN(code, check_links(l, own, why));
-    free(own);
+    char *rows = text_format("%s/%s", results, name);
+    status code = rows ? check_inside(l, rows, why) : out_of_memory(why);
+    THEN(code, check_links(l, rows, why));
+    free(rows);
     return code;
 }
 
 /* --- other runs --- */
 
-enum { RUNS_DEEP = 3, RUNS_MAX = 200, RUNS_LOOKED_MAX = 20000 };
+enum { DEPTH_MAX = 3, RUNS_MAX = 200, FOLDERS_MAX = 20000 };
 
 typedef struct run_search {
     const char *name;
     json_t *found; /* NULL: out of memory */
-    int looked;
+    int visited;
     status code; /* a folder that cannot be listed now */
     diagnostic *why;
 } run_search;
@@ -192,7 +192,7 @@ static int is_shown_folder(const struct dirent *entry)
 }
 
 /* Looks for rows of the study in a folder. name: of the folder, relative to the chosen folder. */
-static void look_into(run_search *search, const char *path, const char *name)
+static void visit_folder(run_search *search, const char *path, const char *name)
 {
     char *rows = text_format("%s/%s/rows.csv", path, search->name);
     json_t *text = json_text_or_null(name);
@@ -217,12 +217,12 @@ static void search_runs(run_search *search, const char *path, const char *below,
         *search->why = reason;
     }
     for (int i = 0; i < count; i++) {
-        if (search->found && search->code == STATUS_OK && search->looked++ < RUNS_LOOKED_MAX) {
+        if (search->found && search->code == STATUS_OK && search->visited++ < FOLDERS_MAX) {
             char *inner = text_format("%s/%s", path, entries[i]->d_name),
                  *name = text_format("%s%s%s", below, below[0] ? "/" : "", entries[i]->d_name);
             if (inner && name) {
-                look_into(search, inner, name);
-                if (depth < RUNS_DEEP)
+                visit_folder(search, inner, name);
+                if (depth < DEPTH_MAX)
                     search_runs(search, inner, name, depth + 1);
             } else {
                 json_decref(search->found);

@@ -29,16 +29,16 @@ status task_thread_start(task_thread *t, void *(*run)(void *), void *context, di
 {
     cancel_clear(&t->token);
     t->started = pthread_create(&t->thread, NULL, run, context) == 0;
-    return t->started ? STATUS_OK : diagnose(why, STATUS_FAILURE, "close other programs", "a thread cannot be started");
+    return t->started ? STATUS_OK : diagnose(why, STATUS_FAILURE, "close other programs", "cannot start a thread");
 }
 
 bool task_thread_join(task_thread *t)
 {
-    const bool was = t->started;
-    if (was)
+    const bool joins = t->started;
+    if (joins)
         pthread_join(t->thread, NULL);
     t->started = false;
-    return was;
+    return joins;
 }
 
 void task_thread_end(task_thread *t)
@@ -65,48 +65,49 @@ struct semaphore {
 
 semaphore *semaphore_create(int places)
 {
-    semaphore *g = calloc(1, sizeof *g);
-    if (!g)
+    semaphore *s = calloc(1, sizeof *s);
+    if (!s)
         return NULL;
-    pthread_mutex_init(&g->lock, NULL);
-    pthread_cond_init(&g->changed, NULL);
-    g->free_places = places;
-    return g;
+    pthread_mutex_init(&s->lock, NULL);
+    pthread_cond_init(&s->changed, NULL);
+    s->free_places = places;
+    return s;
 }
 
-void semaphore_destroy(semaphore *g)
+void semaphore_destroy(semaphore *s)
 {
-    if (!g)
+    if (!s)
         return;
-    pthread_cond_destroy(&g->changed);
-    pthread_mutex_destroy(&g->lock);
-    free(g);
+    pthread_cond_destroy(&s->changed);
+    pthread_mutex_destroy(&s->lock);
+    free(s);
 }
 
-status semaphore_acquire(semaphore *g, diagnostic *why)
+status semaphore_acquire(semaphore *s, diagnostic *why)
 {
-    pthread_mutex_lock(&g->lock);
-    while (!g->closed && g->free_places == 0)
-        pthread_cond_wait(&g->changed, &g->lock);
-    const bool in = !g->closed;
-    g->free_places -= in;
-    pthread_mutex_unlock(&g->lock);
-    return in ? STATUS_OK
-              : diagnose(why, STATUS_INTERRUPTED, "start the laboratory again", "the laboratory is shutting down");
+    pthread_mutex_lock(&s->lock);
+    while (!s->closed && s->free_places == 0)
+        pthread_cond_wait(&s->changed, &s->lock);
+    const bool acquired = !s->closed;
+    s->free_places -= acquired;
+    pthread_mutex_unlock(&s->lock);
+    return acquired
+               ? STATUS_OK
+               : diagnose(why, STATUS_INTERRUPTED, "start the laboratory again", "the laboratory is shutting down");
 }
 
-void semaphore_release(semaphore *g)
+void semaphore_release(semaphore *s)
 {
-    pthread_mutex_lock(&g->lock);
-    g->free_places++;
-    pthread_cond_signal(&g->changed);
-    pthread_mutex_unlock(&g->lock);
+    pthread_mutex_lock(&s->lock);
+    s->free_places++;
+    pthread_cond_signal(&s->changed);
+    pthread_mutex_unlock(&s->lock);
 }
 
-void semaphore_close(semaphore *g)
+void semaphore_close(semaphore *s)
 {
-    pthread_mutex_lock(&g->lock);
-    g->closed = true;
-    pthread_cond_broadcast(&g->changed);
-    pthread_mutex_unlock(&g->lock);
+    pthread_mutex_lock(&s->lock);
+    s->closed = true;
+    pthread_cond_broadcast(&s->changed);
+    pthread_mutex_unlock(&s->lock);
 }

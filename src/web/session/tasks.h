@@ -29,9 +29,9 @@ void task_thread_destroy(task_thread *t);
 
 /* The caller of the next three holds life. STATUS_INTERRUPTED when the laboratory ends. */
 status task_thread_may_start(const task_thread *t, diagnostic *why);
-/* After task_thread_join. STATUS_FAILURE if there is no thread. */
+/* Call it after task_thread_join. STATUS_FAILURE if no thread can be started. */
 status task_thread_start(task_thread *t, void *(*run)(void *), void *context, diagnostic *why);
-/* Whether there was one. */
+/* Joins the thread; false if there was none. */
 bool task_thread_join(task_thread *t);
 
 /* Requests the end of this task and of all later ones. The caller holds life, and joins. */
@@ -45,10 +45,10 @@ bool task_publish_is_due(double *published_s);
 typedef struct semaphore semaphore;
 
 semaphore *semaphore_create(int places); /* NULL when out of memory */
-void semaphore_destroy(semaphore *g);    /* NULL is allowed */
+void semaphore_destroy(semaphore *s);    /* NULL is allowed */
 
 /* Waits for a free place. STATUS_INTERRUPTED, without a place, if the semaphore is closed meanwhile. */
-status semaphore_acquire(semaphore *g, diagnostic *why);
-void semaphore_release(semaphore *g);
-/* Closes it permanently: waiting threads return with an error; threads inside continue. */
-void semaphore_close(semaphore *g);
+status semaphore_acquire(semaphore *s, diagnostic *why);
+void semaphore_release(semaphore *s);
+/* Closes it permanently: waiting threads return with an error; threads that hold a place continue. */
+void semaphore_close(semaphore *s);

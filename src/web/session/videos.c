@@ -111,8 +111,8 @@ static void publish(videos *v)
     lab_publish(v->l, "video", videos_json(v));
 }
 
-/* As the ask of a token. */
-static bool is_disturbing(void *context)
+/* The ask of a cancel token: a video would disturb a study that measures. */
+static bool study_measures(void *context)
 {
     const videos *v = context;
     return studies_runs(v->l->studies, NULL);
@@ -207,12 +207,12 @@ static status render_frames(videos *v, job *j, scene_motion *motion, FILE *file,
     return code;
 }
 
-static status make(videos *v, FILE *file, diagnostic *why)
+static status render_video(videos *v, FILE *file, diagnostic *why)
 {
     job *j = NULL;
     scene_motion *motion = NULL;
     const job_settings settings = {.level = &v->l->settings.level, .keeps_meshes = true, .time_s = FRAME_LIMIT_S};
-    cancel_token token = {.ask = is_disturbing, .context = v};
+    cancel_token token = {.ask = study_measures, .context = v};
     cancel_begin(&v->task.token);
     cancel_begin(&token);
     status code = job_create(&settings, &j, why);
@@ -257,7 +257,7 @@ static void *run(void *context)
                        : diagnose(&why, STATUS_FAILURE, "free space in the folder for temporary files",
                                   "cannot write the video: %s", strerror(errno));
     if (code == STATUS_OK) {
-        code = make(v, file, &why);
+        code = render_video(v, file, &why);
         semaphore_release(v->l->heavy);
     }
     if (code == STATUS_INTERRUPTED && studies_runs(v->l->studies, NULL))
@@ -324,7 +324,7 @@ status videos_stop(videos *v, diagnostic *why)
     pthread_mutex_unlock(&v->lock);
     cancel_set(&v->task.token);
     pthread_mutex_unlock(&v->task.life);
-    return running ? STATUS_OK : diagnose(why, STATUS_INTERRUPTED, "start one first", "no video is being rendered");
+    return running ? STATUS_OK : diagnose(why, STATUS_INTERRUPTED, "start a video first", "no video is being rendered");
 }
 
 status videos_open(videos *v, int *file, size_t *size, video_format *format, diagnostic *why)
@@ -336,7 +336,7 @@ status videos_open(videos *v, int *file, size_t *size, video_format *format, dia
     const bool none = !v->file;
     pthread_mutex_unlock(&v->lock);
     if (none)
-        return diagnose(why, STATUS_BAD_INPUT, "render one by POST /api/video", "there is no finished video");
+        return diagnose(why, STATUS_BAD_INPUT, "render one with POST /api/video", "there is no finished video");
     return *file >= 0 ? STATUS_OK
                       : diagnose(why, STATUS_FAILURE, "try again", "cannot read the video: %s", strerror(errno));
 }

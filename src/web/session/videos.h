@@ -1,7 +1,7 @@
-/* The video that the laboratory renders: of a copy of the current scene, whose slimes move as by `cuvette animate`, or
- * with one parameter from one value to another. It is rendered by a thread of its own into a temporary file, which is
- * kept until the next one begins. It holds a place of the semaphore for heavy work, and ends when a study begins to
- * measure. Thread-safe. Ownership: videos_create creates, videos_end joins the thread, videos_destroy releases. */
+/* Renders a video of a copy of the current scene: its slimes move, as with `cuvette animate`, or one parameter changes
+ * from one value to another. A thread renders it into a temporary file, which is kept until the next video begins. It
+ * holds a place of the semaphore for heavy work, and ends when a study begins to measure. Thread-safe. Ownership:
+ * videos_create creates, videos_end joins the thread, videos_destroy releases. */
 #pragma once
 
 #include "image/video.h"
@@ -32,7 +32,7 @@ void video_plan_release(video_plan *plan);
 /* The scene of a frame of a parameter's video; the caller destroys it. */
 status video_plan_scene(const video_plan *plan, int64_t frame, scene **out, diagnostic *why);
 
-/* Begins, and takes over the plan whatever the return value. STATUS_INTERRUPTED while another video is rendered. */
+/* Starts a video and owns the plan, also after an error. STATUS_INTERRUPTED while another video is rendered. */
 status videos_start(videos *v, video_plan *plan, diagnostic *why);
 status videos_stop(videos *v, diagnostic *why);
 

@@ -1,5 +1,5 @@
-/* Starts the engine of the site's page before the page's own modules are there; engine_boot.js describes what
- * globalThis.cuvetteEngine tells. The laboratory in one file has the parts in elements of the page, each the base64 of
+/* Starts the engine of the site's page before the page's own modules are there; engine_boot.js describes
+ * globalThis.cuvetteEngine. The laboratory in one file has the parts in elements of the page, each the base64 of
  * its gzip: a page that is opened as a file can load nothing else.
  * globalThis.cuvetteDocument() is a promise of the text of that file, for pages that hold it (save_file.js). */
 
@@ -47,5 +47,5 @@ else {
   else globalThis.cuvetteDocument = loadDocument;
   globalThis.cuvetteEngine = { scene: opensLink ? null : FIRST_SCENE, ...(oneFile && partsOfPage()) };
   globalThis.cuvetteEngine.started = startWorker();
-  globalThis.cuvetteEngine.started.catch(() => undefined); // the page tells it
+  globalThis.cuvetteEngine.started.catch(() => undefined); // the page reports it
 }

@@ -21,14 +21,14 @@ def write(path, text):
     path.write_bytes(text if isinstance(text, bytes) else text.encode())
 
 
-def needed(path):
+def existing(path):
     if not path.exists():
         raise Trouble(f'{path} does not exist; run: make wasm')
     return path
 
 
 def engine_part(wasm, set_name, name):
-    path = needed(wasm / set_name / name)
+    path = existing(wasm / set_name / name)
     return bundle.minified(path).encode() if path.suffix == '.js' else path.read_bytes()
 
 
@@ -47,13 +47,13 @@ def one_file(parts, wasm):
     """The engine is the one with vectors: every browser that can unpack it has them."""
     content = {'worker': engine_part(wasm, SETS[0], ENGINE[0]), 'module': engine_part(wasm, SETS[0], ENGINE[1]),
                'files': parts['files'].encode()}
-    end = ''.join(bundle.held(name, part) for name, part in content.items())
+    end = ''.join(bundle.part_element(name, part) for name, part in content.items())
     end += bundle.script(parts['lab'], ' type="module"') + bundle.script(parts['boot'])
     return bundle.document('', end)
 
 
 def report(title, paths, base):
-    """One line for each file, and the sum, which is what is compressed."""
+    """Prints the sizes of each file and their sums; returns the sum of the compressed sizes."""
     total = [0, 0]
     print(f'{title}\n{"":48}{"bytes":>12}{"gzip":>12}')
     for path in paths:
@@ -72,7 +72,7 @@ def report_sizes(folder):
                loaded + sorted((folder / 'laboratory/engine' / set_name).iterdir()), folder) for set_name in SETS
     ] + [report('in one file:', [folder / 'laboratory.html'], folder)]
     if max(sums) > LIMIT:
-        raise Trouble(f'{max(sums):,} bytes are loaded before the first image, more than {LIMIT:,}; make them fewer')
+        raise Trouble(f'{max(sums):,} bytes are loaded before the first image, more than {LIMIT:,}; reduce them')
 
 
 def main():

@@ -27,11 +27,11 @@ class Trouble(Exception):
 
 
 def esbuild(*options, text=None):
-    made = subprocess.run(['esbuild', '--minify', '--charset=utf8', '--log-level=error', *map(str, options)],
+    result = subprocess.run(['esbuild', '--minify', '--charset=utf8', '--log-level=error', *map(str, options)],
                           input=text, capture_output=True, encoding='utf-8')
-    if made.returncode:
-        raise Trouble(f'esbuild: {made.stderr.strip()}')
-    return made.stdout
+    if result.returncode:
+        raise Trouble(f'esbuild: {result.stderr.strip()}')
+    return result.stdout
 
 
 def module(path):
@@ -40,20 +40,20 @@ def module(path):
 
 
 def classic(path):
-    """The same for a script that must run at once."""
+    """A script that runs at once, before the page is parsed, and all that it imports."""
     return esbuild(path, '--bundle', '--format=iife', TARGET)
 
 
 def minified(path):
-    """A classic script as it is, whose names other parts of it may use."""
+    """A classic script, not bundled, so that other scripts can use its names."""
     return esbuild(path, TARGET)
 
 
 def style():
     """All style sheets, in the order in which the page loads them: its own, then those of the panels."""
-    own = re.findall(r'<link rel="stylesheet" href="([^"]+)"', (PAGE / 'index.html').read_text(encoding='utf-8'))
+    names = re.findall(r'<link rel="stylesheet" href="([^"]+)"', (PAGE / 'index.html').read_text(encoding='utf-8'))
     panels = sorted(PAGE.glob('*/panel_*.css'), key=lambda path: path.name)
-    sheets = '\n'.join(path.read_text(encoding='utf-8') for path in [PAGE / name for name in own] + panels)
+    sheets = '\n'.join(path.read_text(encoding='utf-8') for path in [PAGE / name for name in names] + panels)
     return esbuild('--loader=css', text=sheets)
 
 
@@ -73,7 +73,7 @@ def files():
 
 
 def replaced(text, pattern, new):
-    """All matches become one text."""
+    """The text with `new` instead of the first match, and without the other matches."""
     found = list(re.finditer(pattern, text))
     if not found:
         raise Trouble(f'src/web/page/index.html: nothing matches {pattern}; correct src/web/site/bundle.py')
@@ -83,7 +83,7 @@ def replaced(text, pattern, new):
 
 
 def document(head, end):
-    """The page with one style sheet and its icon; head and end: what is added to its head and at its end."""
+    """The page with one style sheet and its icon; head and end are added to its head and at its end."""
     text = (PAGE / 'index.html').read_text(encoding='utf-8')
     icon = base64.b64encode((PAGE / 'icon.svg').read_bytes()).decode()
     text = replaced(text, r'href="icon\.svg"', f'href="data:image/svg+xml;base64,{icon}"')
@@ -94,7 +94,7 @@ def document(head, end):
     return replaced(text, r' *</body>', f'{end}</body>')
 
 
-def held(name, content):
+def part_element(name, content):
     """An element that holds a part, which boot.js unpacks."""
     packed = base64.b64encode(gzip.compress(content, 9, mtime=0)).decode()
     return f'<script type="text/plain" id="cuvette-{name}">{packed}</script>\n'
