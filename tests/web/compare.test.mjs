@@ -25,7 +25,7 @@ export const cases = {
   'the wipe': async (t) => {
     const { screen, a, b } = await pinAndChange(t);
     t.more(difference(a, b), 0.1, 'share of pixels in which A and B differ');
-    const share = screen.page.getByRole('slider', { name: 'Share of A' });
+    const share = screen.page.getByRole('slider', { name: 'Fraction of A' });
     for (const percent of [0, 50, 100]) {
       await share.focus();
       await screen.page.keyboard.press(percent === 100 ? 'End' : 'Home');
@@ -46,7 +46,7 @@ export const cases = {
 
   'the handle of the wipe in the image': async (t) => {
     const { screen, a, b } = await pinAndChange(t);
-    const handle = screen.page.getByRole('slider', { name: 'Share of the reference image' });
+    const handle = screen.page.getByRole('slider', { name: 'Fraction of the reference image' });
     const box = await handle.boundingBox();
     const [from, to] = [{ x: box.x + box.width / 2, y: box.y + box.height / 2 }, await screen.place(200, 300)];
     await screen.page.mouse.move(from.x, from.y);

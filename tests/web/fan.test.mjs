@@ -167,7 +167,7 @@ export const cases = {
       await t.image(screen, `bench-theory-${dark ? 'dark' : 'light'}`);
       const { generation } = await lab.post('/api/set', { set: { 'liquid.ior': 1.4 } });
       await screen.settled(generation);
-      await theory.getByText('Of an earlier state of the scene').waitFor();
+      await theory.getByText('From an earlier state of the scene').waitFor();
       screen.expect(/400/);
       await lab.post('/api/open', { file: 'scenes/solids.yaml' });
       await screen.until(() => window.lab.state.file === 'scenes/solids.yaml');

@@ -1,5 +1,5 @@
 // Videos: that of a parameter has the frames of `cuvette render`, that of a slime is the file of `cuvette animate`;
-// progress, stop, refusals, and the dialog Save film.
+// progress, stop, refusals, and the dialog Save video.
 import { readFile, writeFile } from 'node:fs/promises';
 import { join } from 'node:path';
 import { readPng } from './png.mjs';
@@ -131,8 +131,8 @@ export const cases = {
     for (const dark of [false, true]) {
       const lab = await t.lab(SCENE);
       const screen = await t.open(lab, { width: 1366, height: 900, dark });
-      await screen.button('Save film').click();
-      const box = screen.page.getByRole('dialog', { name: 'Save film' });
+      await screen.button('Save video').click();
+      const box = screen.page.getByRole('dialog', { name: 'Save video' });
       await box.getByRole('combobox', { name: 'Parameter' }).fill('liquid.ior');
       await box
         .getByRole('textbox', { name: 'To' })
@@ -144,17 +144,17 @@ export const cases = {
       await box.getByRole('img', { name: 'The film' }).waitFor();
       await box.getByText(/6 frames in/).waitFor();
       await screen.quiet();
-      await screen.until(() => document.querySelector('.video-film').naturalWidth === 800);
-      await t.axe(screen, 'the dialog Save film');
+      await screen.until(() => document.querySelector('.video-image').naturalWidth === 800);
+      await t.axe(screen, 'the dialog Save video');
       await t.image(screen, `film-${dark ? 'dark' : 'light'}`);
       const [saved] = await Promise.all([
         screen.page.waitForEvent('download'),
         box.getByRole('button', { name: 'Save file' }).click(),
       ]);
-      t.equal(saved.suggestedFilename(), 'rod-film.png', 'name of the film');
+      t.equal(saved.suggestedFilename(), 'rod-video.png', 'name of the video');
       t.check((await readFile(await saved.path())).equals(await fileOf(lab)), 'the saved film is that of the server');
       await box.getByRole('button', { name: 'Close' }).first().click();
-      await screen.button('Save film').click();
+      await screen.button('Save video').click();
       t.equal(await box.getByRole('combobox', { name: 'Parameter' }).inputValue(), 'liquid.ior', 'kept parameter');
     }
   },

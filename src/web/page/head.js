@@ -46,11 +46,11 @@ export function createHead(root, lab) {
         title: 'Save the final image as JPEG',
         'aria-label': 'Save JPEG',
       }),
-      button('Film', () => saveVideo(lab), {
-        icon: 'film',
+      button('Video', () => saveVideo(lab), {
+        icon: 'video',
         kind: 'quiet',
-        title: 'Save a film: a parameter that changes, or the slime',
-        'aria-label': 'Save film',
+        title: 'Save a video: a parameter that changes, or the slime',
+        'aria-label': 'Save video',
       }),
       button('Scene', () => copyScene(lab), {
         icon: 'copy',

@@ -1,5 +1,5 @@
 /* The panels as tabs next to the image, and the splitter between them. A panel is created when it is first shown.
- * exports: createPanels(side, splitter, workspace, panels, lab) -> {use(id), chosen(), reveal()}
+ * exports: createPanels(side, splitter, workspace, panels, lab) -> {select(id), chosen(), reveal()}
  *   reveal(): shows the image if a wide panel covers it
  *
  * A panel is {id, title, wide?, css?, start?(lab), create(root, lab), shown?(), hidden?()}:
@@ -35,13 +35,13 @@ export function createPanels(side, splitter, workspace, panels, lab) {
     ),
   );
   createSplitter(splitter, workspace);
-  for (const entry of entries.values()) guard(entry, () => entry.panel.start?.(lab));
-  use(
+  for (const entry of entries.values()) containFailure(entry, () => entry.panel.start?.(lab));
+  select(
     entries.has(memory.get('panel'))
       ? memory.get('panel')
       : (panels.find((panel) => panel.id === FIRST) || panels[0])?.id,
   );
-  return { use, chosen: () => chosen, reveal };
+  return { select, chosen: () => chosen, reveal };
 
   function makeEntry(panel) {
     if (panel.css && !document.getElementById('styles'))
@@ -54,7 +54,7 @@ export function createPanels(side, splitter, workspace, panels, lab) {
       'aria-controls': `panel-${panel.id}`,
       'aria-selected': 'false',
       tabindex: '-1',
-      onclick: () => use(panel.id),
+      onclick: () => select(panel.id),
       text: panel.title,
     });
     const root = element('section', { class: `panel panel-${panel.id}`, tabindex: '0', 'aria-label': panel.title });
@@ -70,16 +70,16 @@ export function createPanels(side, splitter, workspace, panels, lab) {
       element('h2', { class: 'visually-hidden', text: panel.title }),
       root,
     );
-    return { panel, tab, root, frame, made: false };
+    return { panel, tab, root, frame, created: false };
   }
 
   function show(entry, on) {
     entry.tab.setAttribute('aria-selected', String(on));
     entry.tab.tabIndex = on ? 0 : -1;
     entry.frame.hidden = !on;
-    guard(entry, () => {
-      if (on && !entry.made) {
-        entry.made = true;
+    containFailure(entry, () => {
+      if (on && !entry.created) {
+        entry.created = true;
         entry.panel.create(entry.root, lab);
       }
       (on ? entry.panel.shown : entry.panel.hidden)?.call(entry.panel);
@@ -87,17 +87,17 @@ export function createPanels(side, splitter, workspace, panels, lab) {
   }
 
   /* A failing panel does not affect the others. */
-  function guard(entry, act) {
+  function containFailure(entry, act) {
     try {
       act();
     } catch (error) {
       console.error(error);
-      entry.made = true;
+      entry.created = true;
       replace(entry.root, notice(`This panel failed: ${error.message}`, { kind: 'error', remedy: 'reload the page' }));
     }
   }
 
-  function use(id) {
+  function select(id) {
     if (id === chosen || !entries.has(id)) return;
     if (chosen) show(entries.get(chosen), false);
     chosen = id;
@@ -109,7 +109,7 @@ export function createPanels(side, splitter, workspace, panels, lab) {
   }
 
   function reveal() {
-    if (entries.get(chosen)?.panel.wide) use(FIRST);
+    if (entries.get(chosen)?.panel.wide) select(FIRST);
   }
 
   function key(event) {
@@ -124,7 +124,7 @@ export function createPanels(side, splitter, workspace, panels, lab) {
       End: ids.length - 1,
     }[event.key];
     if (to === undefined) return;
-    use(ids[(to + ids.length) % ids.length]);
+    select(ids[(to + ids.length) % ids.length]);
     entries.get(chosen).tab.focus();
     event.preventDefault();
   }

@@ -9,7 +9,7 @@ import { ask, button, element, icon, replace } from './shared/ui.js';
  * code and is not kept. */
 
 const KEY = 'cuvette.unsaved';
-const REST_MS = 1000; /* kept when the scene rests */
+const REST_MS = 1000; /* kept when the scene has rested for this time */
 
 /* Storage may be forbidden or full: then nothing is kept. */
 function stored(act) {
@@ -57,7 +57,7 @@ function keepUnsaved(lab) {
 const when = (time) => new Date(time).toLocaleString(undefined, { dateStyle: 'medium', timeStyle: 'short' });
 
 export function createRescue(root, lab) {
-  let shown = ''; /* key of what the bar shows: the same is not drawn again */
+  let shown = ''; /* key of the bar's content, which is drawn only if it changes */
   const ours = keepUnsaved(lab);
   let reported = false; /* one report of unkept changes is enough */
 

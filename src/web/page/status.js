@@ -24,7 +24,7 @@ const words = {
 };
 
 export function createBanner(banner, parts, lab) {
-  let held = null; /* the element that had the focus and gets it back */
+  let focused = null; /* the element that had the focus and gets it back */
   const show = (how) => {
     const [what, remedy] = words[how]?.(lab.engine) || [];
     banner.hidden = !what;
@@ -33,15 +33,15 @@ export function createBanner(banner, parts, lab) {
       replace(banner, icon('warning'), element('strong', { text: what }), element('span', { text: remedy }));
     banner.dataset.how = what ? how : '';
     const gone = Boolean(what);
-    if (gone && !parts[0].inert) held = document.activeElement;
+    if (gone && !parts[0].inert) focused = document.activeElement;
     for (const part of parts) {
       part.inert = Boolean(what);
       part.setAttribute('aria-busy', String(Boolean(what)));
     }
     if (gone) return;
     banner.replaceChildren();
-    if (document.activeElement === document.body) held?.focus?.({ preventScroll: true });
-    held = null;
+    if (document.activeElement === document.body) focused?.focus?.({ preventScroll: true });
+    focused = null;
   };
   let before = lab.connected;
   lab.on('connection', (how) => {
@@ -55,7 +55,7 @@ export function createBanner(banner, parts, lab) {
 
 const LINGER_MS = 6000;
 const CUT_SHOWN = 0.01; /* fraction of the light of a mean pixel */
-const PACE_MS = 200; /* numbers that change faster cannot be read, and cost the images time */
+const REDRAW_MS = 200; /* numbers that change faster cannot be read, and cost the images time */
 
 export function createStatus(root, live, lab) {
   const facts = element('div', { class: 'status-facts' });
@@ -70,7 +70,7 @@ export function createStatus(root, live, lab) {
     message.replaceChildren();
   };
 
-  function tell(words, kind, remedy, action) {
+  function showMessage(words, kind, remedy, action) {
     clearTimeout(timer);
     replace(
       message,
@@ -94,11 +94,11 @@ export function createStatus(root, live, lab) {
     const mine = timer;
     return () => mine === timer && clear();
   }
-  lab.say = (words, remedy, action) => tell(words, 'info', remedy, action);
+  lab.say = (words, remedy, action) => showMessage(words, 'info', remedy, action);
   lab.fail = (error) => {
     if (error.status === 0 || error.status === 401) return;
     if (!error.status) console.error(error);
-    tell(located(error), 'error', error.remedy);
+    showMessage(located(error), 'error', error.remedy);
   };
 
   const draw = () => {
@@ -107,7 +107,7 @@ export function createStatus(root, live, lab) {
     replace(facts, items(lab));
   };
   const soon = () => {
-    const wait = lab.image?.final ? 0 : Math.max(0, drawnAt + PACE_MS - performance.now());
+    const wait = lab.image?.final ? 0 : Math.max(0, drawnAt + REDRAW_MS - performance.now());
     if (!wait) clearTimeout(due);
     if (!wait || !due) due = setTimeout(draw, wait);
   };

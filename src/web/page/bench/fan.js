@@ -200,7 +200,7 @@ export function createBenchFan(lab, bench, changed) {
     ];
   }
 
-  /* The address changes with the scene, so that the browser asks again. */
+  /* The address changes with the scene, so that the browser requests it again. */
   function drawing() {
     const address = `/api/fan.svg?${question(true)}`;
     const image = element('img', {
@@ -225,7 +225,7 @@ export function createBenchFan(lab, bench, changed) {
 
 const CROSSINGS_MAX = 300;
 
-/* Of a path that ends in the scene, the last point is its far end. */
+/* The lines of a path; one that ends in the scene (w is 1) ends at its last point. */
 function linesOf({ points, far_end: farEnd }) {
   const lines = points.slice(1).map((point, i) => lineBetween(points[i], point));
   return farEnd[3] ? lines : [...lines, lineTo(points.at(-1), farEnd)];

@@ -2,7 +2,7 @@
  *
  * exports:
  *   degrees(angle_deg, n)         the angle as text with n digits
- *   measure(points) -> [[name, text]]    distances of successive points; of three, the angle at the second
+ *   measure(points) -> [[name, text]]    distances of successive points; for three, the angle at the second
  *   hitFacts(segment) -> [[name, text]]  Snell's and Fresnel's numbers at the end of a segment */
 
 import { digits, vector } from '../shared/ui.js';

@@ -49,7 +49,7 @@ function start(lab) {
       'Click a beam to choose it; drag its start or target, with Shift nearer and farther; with Measure on, set ' +
       'points',
     chosen() {
-      lab.panels?.use('bench');
+      lab.panels?.select('bench');
       handles.show();
     },
     dropped: handles.hide,
@@ -66,7 +66,7 @@ function start(lab) {
   });
 }
 
-/* The start and the target of a beam, which can be dragged; not while the ruler's points are set. */
+/* The draggable ends of a beam; none while the ruler's points are set. */
 function endsOf(lab, beam) {
   if (bench.measuring) return [];
   return [
@@ -124,7 +124,7 @@ async function attempt(lab, promise) {
 function createBeams(lab) {
   const list = element('div', { class: 'buttons', role: 'group', 'aria-label': 'Beams' });
   const rows = element('div', { class: 'panel-params object-rows' });
-  let made = [];
+  let controls = [];
   let shown = '';
   const selectBeam = (name) => {
     bench.beam = name;
@@ -164,21 +164,21 @@ function createBeams(lab) {
       beams.map((name) => button(name, () => selectBeam(name), { small: true, pressed: name === bench.beam })),
       bench.beam ? button(`Remove ${bench.beam}`, remove, { icon: 'trash', small: true, kind: 'danger' }) : null,
     );
-    const own = (lab.scene?.params || []).filter((row) => bench.beam && row.path === `${bench.beam}.${row.name}`);
-    const now = own.map((row) => row.path).join();
+    const beamRows = (lab.scene?.params || []).filter((row) => bench.beam && row.path === `${bench.beam}.${row.name}`);
+    const now = beamRows.map((row) => row.path).join();
     if (now === shown) {
-      for (const row of made) if (lab.param(row.path)) row.update(lab.param(row.path), lab.scene.generation);
+      for (const row of controls) if (lab.param(row.path)) row.update(lab.param(row.path), lab.scene.generation);
       return;
     }
     shown = now;
-    made = own.map((row) => createRow(row, lab));
+    controls = beamRows.map((row) => createRow(row, lab));
     replace(
       rows,
-      made.length
+      controls.length
         ? group(
             'Parameters of the beam',
             { id: 'bench.beam', open: false },
-            made.map((row) => row.node),
+            controls.map((row) => row.node),
           )
         : empty('The scene has no beams. Add one: it is shown here, saved with the scene, and a lamp if lights is on.'),
     );
@@ -190,7 +190,7 @@ function hitRows(segments) {
     const words = describe(segment.one);
     const name = `${segment.one.level === 1 ? 'start' : words.kind}: ${words.surface || words.end}`;
     return [
-      button(name, () => {}, { small: true, kind: 'quiet', pressed: segment === bench.chosen }) /* its row chooses */,
+      button(name, () => {}, { small: true, kind: 'quiet', pressed: segment === bench.chosen }) /* the row chooses */,
       words.angles,
       words.reflectance,
       words.transmitted,
@@ -208,15 +208,15 @@ function createNumbers() {
       if (!rays.segments.length && !rays.error) return replace(node, empty('The hits of a beam are shown here.'));
       if (rays.error) return replace(node, notice(rays.error.message, { kind: 'error', remedy: rays.error.remedy }));
       const first = chosen || rays.segments.find(({ beam }) => beam === bench.beam) || rays.segments[0];
-      const same = rays.segments.filter(({ tree, one }) => tree === first.tree && !isCut(one));
+      const sameRay = rays.segments.filter(({ tree, one }) => tree === first.tree && !isCut(one));
       return replace(
         node,
         chosen ? facts(hitFacts(chosen)) : empty('Choose the tool Bench and click a beam, or a row below.'),
         table({
           caption: `Hits of ${first.beam}, ray ${first.ray.number + 1}, ${digits(first.ray.lambda_nm, 5)} nm`,
           columns: ['Ray', 'Angles', 'R', 'T', { label: 'Power', numeric: true }],
-          rows: hitRows(same.slice(0, 200)),
-          onrow: (row, _, line) => row.addEventListener('click', () => choose(same[line])),
+          rows: hitRows(sameRay.slice(0, 200)),
+          onrow: (row, _, line) => row.addEventListener('click', () => choose(sameRay[line])),
         }),
       );
     },

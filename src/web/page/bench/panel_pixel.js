@@ -52,7 +52,7 @@ function start(lab) {
     order: 40,
     cursor: 'crosshair',
     hint: 'Inspect the rays of a pixel: click it, or move with the arrow keys',
-    chosen: () => lab.panels?.use('pixel'),
+    chosen: () => lab.panels?.select('pixel'),
     down: (point) => {
       if (point.inside) question.ask(point.x, point.y);
       return point.inside;
@@ -147,7 +147,7 @@ function summary(tree) {
 }
 
 /* The table shows a Whitted ray tree, whose sum is not the pixel's value for other rendering methods. */
-function otherwise(lab) {
+function integratorNote(lab) {
   const how = lab.param('render.integrator')?.value;
   if (how === 'path')
     return (
@@ -210,14 +210,14 @@ function createAnswer(lab) {
   const side = createRayPlot({ title: 'From the side', onmark: mark, onchoose: table.reveal });
   const top = createRayPlot({ title: 'From above', onmark: mark, onchoose: table.reveal });
   const head = element('div', { class: 'pixel-summary' });
-  const left = element('p', { class: 'hint' });
+  const omitted = element('p', { class: 'hint' });
   marking.add(table.mark).add(side.mark).add(top.mark);
   const node = element(
     'div',
     { class: 'pixel-answer', hidden: true },
     head,
     legend(),
-    left,
+    omitted,
     element('div', { class: 'ray-figures' }, side.node, top.node),
     button('Larger drawing', () => openDrawing(lab, question.tree.pixel), { icon: 'chart', small: true }),
     group(
@@ -245,21 +245,19 @@ function createAnswer(lab) {
       side.show(tree, sidePlane(lab.state?.camera), solids);
       top.show(tree, topPlane(), solids);
       if (!tree) return;
-      const note = otherwise(lab);
+      const note = integratorNote(lab);
       replace(head, summary(tree), note ? notice(note) : cutOff(lab, tree));
-      left.textContent = overlay.left
-        ? `Rays drawn: ${count(overlay.count)}. Rays of lower weight, in the table only: ${count(overlay.left)}.`
+      omitted.textContent = overlay.omitted
+        ? `Rays drawn: ${count(overlay.count)}. Rays of lower weight, in the table only: ${count(overlay.omitted)}.`
         : '';
-      left.hidden = !overlay.left;
+      omitted.hidden = !overlay.omitted;
     },
   };
 }
 
-function stays() {
+function staleNotice() {
   if (question.old) return notice('The scene and the camera have changed since these rays were traced.');
-  return question.moved
-    ? notice('The camera has moved: these are the rays of the view in which they were asked.')
-    : null;
+  return question.moved ? notice('The camera has moved: these rays belong to the earlier view.') : null;
 }
 
 function create(root, lab) {
@@ -280,7 +278,7 @@ function create(root, lab) {
       replace(
         message,
         question.pixel
-          ? stays()
+          ? staleNotice()
           : empty('Choose the tool Inspect above the image and click a pixel, or enter its coordinates here.'),
       );
   };

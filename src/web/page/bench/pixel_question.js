@@ -2,9 +2,9 @@
  *
  * exports: createQuestion(lab) -> {pixel: {x, y} or null, tree or null, error or null, busy, ask(x, y), step(dx,
  * dy), again(), clear(), on(f), moved, old}
- * The rays stay where they are in the scene while the camera moves. A change of the scene is traced again at once if
- * the camera has not moved since; otherwise the pixel shows another ray, and the question is `old`: again() asks.
- * moved: the camera has moved. */
+ * The rays stay where they are in the scene while the camera moves. After a change of the scene the pixel is traced
+ * again at once, unless the camera has moved: the pixel then shows another ray, and `old` is true until again() is
+ * called. moved: the camera has moved. */
 
 import { buildTree } from './ray_tree.js';
 
@@ -42,7 +42,7 @@ export function createQuestion(lab) {
     if (changed && !moved) send();
     else if (moved !== question.moved || changed !== question.old) {
       Object.assign(question, { moved, old: changed });
-      tell();
+      notify();
     }
   });
   return question;
@@ -55,7 +55,7 @@ export function createQuestion(lab) {
     return { camera: JSON.stringify(camera), rest: JSON.stringify(rest) };
   }
 
-  function tell() {
+  function notify() {
     for (const listener of listeners) listener(question);
   }
 
@@ -69,13 +69,13 @@ export function createQuestion(lab) {
 
   function clear() {
     Object.assign(question, { pixel: null, tree: null, error: null, moved: false, old: false });
-    tell();
+    notify();
   }
 
   async function send() {
     waiting = true;
     question.busy = true;
-    tell();
+    notify();
     if (asking) return;
     asking = true;
     while (waiting) {
@@ -85,7 +85,7 @@ export function createQuestion(lab) {
     }
     asking = false;
     question.busy = false;
-    tell();
+    notify();
   }
 
   async function fetchTree(pixel) {
@@ -97,6 +97,6 @@ export function createQuestion(lab) {
     } catch (error) {
       if (question.pixel) Object.assign(question, { tree: null, error });
     }
-    tell();
+    notify();
   }
 }

@@ -2,9 +2,9 @@
  *
  * exports:
  *   createRayOverlay(lab) -> {show(tree or null, pixel), draw(), mark(ray or null), nearest(point) -> ray or null,
- *                             count, left}
- *     draw: after a move of the camera; count: rays that are drawn; left: rays omitted for their low weight or their
- *     number
+ *                             count, omitted}
+ *     draw: after a move of the camera; count: rays that are drawn; omitted: rays that are not, for their low weight
+ *     or their number
  *   distance(p, a, b)                  of a point from a line in the image
  *   drawn(tree) -> rays                the rays that drawings show */
 
@@ -31,7 +31,7 @@ export function createRayOverlay(lab) {
 
   const overlay = {
     count: 0,
-    left: 0,
+    omitted: 0,
     draw,
     mark,
     nearest,
@@ -58,14 +58,14 @@ export function createRayOverlay(lab) {
       });
     }
     overlay.count = rays.length;
-    overlay.left = tree ? tree.rays.length - rays.length : 0;
+    overlay.omitted = tree ? tree.rays.length - rays.length : 0;
     layer.replaceChildren(...pieces.map(halo), ...pieces.map((one) => one.node), ...(pixel ? [cross()] : []));
-    const again = marked;
+    const markedBefore = marked;
     marked = null;
-    mark(again);
+    mark(markedBefore);
   }
 
-  /* Visible on any image. */
+  /* A dark edge makes the ray visible on any image. */
   function halo({ ray, a, b }) {
     return svg('line', {
       class: 'ray-halo',

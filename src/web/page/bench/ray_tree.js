@@ -6,9 +6,9 @@
  *
  * exports:
  *   buildTree(answer) -> {answer, rays, roots, reach}
- *     rays: in the order of the table, each {index, node, parent, level, children, weight, line}; weight: 0..1 of the
- *     camera ray's; line: a short stub for a ray that was cut off; reach: extent of the hits
- *   isCut(ray)                           whether it was cut off by depth or weight
+ *     rays: in the order of the table, each {index, node, parent, level, children, weight, line}; weight: 0..1,
+ *     relative to the camera ray; line: a short stub for a ray that was cut off; reach: extent of the hits
+ *   isCut(ray)                           whether the ray was cut off by depth or weight
  *   lineClass(ray)                       the class of its line in a drawing
  *   kinds                                [class, description] of each, for legends
  *   columns, describe(ray)               [key, head, title] of the table's columns, and the texts of a row
@@ -35,7 +35,7 @@ export function lineTo(from, [x, y, z, w]) {
 
 export const pointAt = ({ from, along }, s) => add(from, times(along, s));
 
-/* Where each start + s slope >= 0, from 0 to end: [first, last], or null (Liang and Barsky). */
+/* The interval [first, last] of 0..end in which every start + s slope is >= 0, or null (Liang and Barsky). */
 function within(end, conditions) {
   let [first, last] = [0, end];
   for (const [start, slope] of conditions) {
@@ -46,7 +46,7 @@ function within(end, conditions) {
   return first < last ? [first, last] : null;
 }
 
-/* Of a parallel view: a line along it is a point. */
+/* In a parallel view, a line along the view is a point. */
 const flattened = ([x, y, z]) => (Math.hypot(x, y) <= ALONG_THE_VIEW * Math.abs(z) ? [0, 0, z] : [x, y, z]);
 
 export function seenLine(line, camera, { width, height }, frame) {
@@ -89,7 +89,7 @@ export function flatLine(line, { u, v }, { left, top, right, bottom }) {
   return found && found.map((s) => (Number.isFinite(s) ? [x + s * along[0], y + s * along[1]] : [x, y]));
 }
 
-const CUT = 0.15; /* the stub of a ray that was cut off, by the extent of the hits */
+const CUT = 0.15; /* length of the stub of a cut ray, as a fraction of the extent of the hits */
 
 export const kinds = [
   ['ray-camera', 'camera ray'],
@@ -120,12 +120,12 @@ export function lineClass(ray) {
 
 export function buildTree(answer) {
   const first = answer.roots || [answer.root];
-  const all = mean(first[0].throughput) || 1;
+  const cameraLight = mean(first[0].throughput) || 1;
   const rays = [];
   const visit = (node, parent, level) => {
     const ray = { index: rays.length, node, parent, level, children: [] };
     /* A shadow ray's throughput is a radiance, so it gets the weight of its parent ray. */
-    ray.weight = node.kind === 'shadow' && parent ? parent.weight : Math.min(1, mean(node.throughput) / all);
+    ray.weight = node.kind === 'shadow' && parent ? parent.weight : Math.min(1, mean(node.throughput) / cameraLight);
     rays.push(ray);
     ray.children = node.children.map((child) => visit(child, ray, level + 1));
     return ray;
@@ -170,9 +170,9 @@ export const columns = [
   [
     'transmittance',
     'Transmittance',
-    'share of the light that the medium does not absorb on the path; red, green, blue where they differ',
+    'fraction of the light that the medium transmits on the path; red, green, blue if they differ',
   ],
-  ['weight', 'Weight', "share of the ray's light in the pixel"],
+  ['weight', 'Weight', "fraction of the ray's light in the pixel"],
   ['brought', 'Contribution', 'radiance that this ray itself adds to the pixel'],
   ['end', 'End', 'how the ray ends'],
 ];
@@ -201,7 +201,7 @@ function reflectance(hit) {
   return percent(hit.R);
 }
 
-function ofHit(hit) {
+function hitTexts(hit) {
   return {
     surface: surface(hit),
     media: hit.opaque ? `in ${medium(hit.from)}` : `${medium(hit.from)} → ${medium(hit.to)}`,
@@ -230,6 +230,6 @@ export function describe(ray) {
     weight: channels(node.throughput),
     brought: node.brought.some((x) => x !== 0) ? channels(node.brought) : '',
     end: endWords[node.end] || node.end,
-    ...(node.hit ? ofHit(node.hit) : {}),
+    ...(node.hit ? hitTexts(node.hit) : {}),
   };
 }

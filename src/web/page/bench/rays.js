@@ -29,7 +29,7 @@ export function createBenchRays(lab) {
     traced = now;
     try {
       const some = lab.scene.objects.some((object) => object.kind === 'beam');
-      rays.segments = some ? (await lab.get('/api/beams')).beams.flatMap(ofBeam) : [];
+      rays.segments = some ? (await lab.get('/api/beams')).beams.flatMap(segmentsOf) : [];
       rays.error = null;
     } catch (error) {
       Object.assign(rays, { segments: [], error });
@@ -45,7 +45,7 @@ export function createBenchRays(lab) {
   }
 }
 
-function ofBeam({ name, rays }) {
+function segmentsOf({ name, rays }) {
   return rays.flatMap((ray) => {
     const tree = buildTree({ root: ray.root });
     const css = `rgb(${ray.displayed.join(' ')})`;

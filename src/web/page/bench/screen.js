@@ -70,7 +70,7 @@ export function createBenchScreen(lab, bench, changed) {
     changed();
   }
 
-  /* Across the middle of the chosen segment; one that leaves the scene counts up to the extent of the hits. */
+  /* Across the middle of the chosen segment; a segment that leaves the scene ends at the extent of the hits. */
   function place() {
     const { chosen } = bench;
     if (!chosen) {

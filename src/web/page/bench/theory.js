@@ -45,7 +45,7 @@ function metrics({ values, defined, passed }) {
 export function createBenchTheory(lab) {
   const result = element('div', { class: 'bench-result', 'aria-live': 'polite' });
   const curves = element('div', { class: 'bench-result' });
-  const age = element('p', { class: 'hint', hidden: true, text: 'Of an earlier state of the scene: measure again.' });
+  const age = element('p', { class: 'hint', hidden: true, text: 'From an earlier state of the scene: measure again.' });
   const measure = button('Measure', act, { icon: 'chart', small: true, kind: 'primary' });
   let generation = null;
   let curve = null;
@@ -57,13 +57,13 @@ export function createBenchTheory(lab) {
 
   async function act() {
     measure.disabled = true;
-    const of = lab.scene.generation;
+    const measured = lab.scene.generation;
     try {
       const answer = await lab.get('/api/realism');
       replace(result, metrics(answer), save('/api/realism.csv', 'realism'));
       offer(answer.curves);
-      generation = of;
-      age.hidden = of === lab.scene.generation;
+      generation = measured;
+      age.hidden = measured === lab.scene.generation;
     } catch (error) {
       replace(result, notice(error.message, { kind: 'error', remedy: error.remedy }));
       replace(curves);

@@ -9,11 +9,11 @@
  *                                       change the selected object; waiting changes of one gesture are merged
  *   choice.copy(), choice.remove(), choice.rename(to), choice.setMaterial(material or null)
  *                                       promises of true on success
- *   choice.group                        what moves along with it: the solids and lights inside it
- *     names                             of these
+ *   choice.group                        what moves along with the object
+ *     names                             of the solids and lights inside it
  *     centre, radius                    of a ball around the object, relative to its position; null if unknown
  *     on, set(on)                       whether they move along; remembered
- *     ready                             a promise: the list is that of the selected object, perhaps not the newest
+ *     ready                             a promise that the list belongs to the selected object; it may be out of date
  *     with(gesture)                     the names to send with a change of that gesture
  *     onchange(f) */
 
@@ -34,11 +34,11 @@ export function createChoice(lab) {
     },
     on: (listener) => listeners.add(listener),
     choose,
-    add: make,
+    add: addObject,
     rename,
     remove,
-    copy: () => made(lab.change(at('copy'), {})),
-    setMaterial: (material) => done(lab.change(at('material'), { material })),
+    copy: () => added(lab.change(at('copy'), {})),
+    setMaterial: (material) => succeeds(lab.change(at('material'), { material })),
     move: (by, gesture) => send('move', { by }, gesture, join),
     turn: (by, gesture) => send('turn', { by }, gesture, join),
     scale: (factor, gesture) => send('scale', { factor }, gesture, product),
@@ -57,7 +57,7 @@ export function createChoice(lab) {
   async function send(what, body, gesture, merge) {
     const path = at(what);
     await choice.group.ready;
-    return done(lab.change(path, { ...body, with: choice.group.with(gesture) }, { gesture, merge }));
+    return succeeds(lab.change(path, { ...body, with: choice.group.with(gesture) }, { gesture, merge }));
   }
 
   function choose(name, generation = 0) {
@@ -67,7 +67,7 @@ export function createChoice(lab) {
     for (const listener of listeners) listener();
   }
 
-  async function done(promise) {
+  async function succeeds(promise) {
     try {
       await promise;
       return true;
@@ -77,7 +77,7 @@ export function createChoice(lab) {
     }
   }
 
-  async function made(promise) {
+  async function added(promise) {
     try {
       const reply = await promise;
       choose(reply.name, reply.generation);
@@ -89,8 +89,8 @@ export function createChoice(lab) {
     }
   }
 
-  function make(body) {
-    return made(lab.change('/api/objects', body));
+  function addObject(body) {
+    return added(lab.change('/api/objects', body));
   }
 
   async function rename(to) {
@@ -107,7 +107,7 @@ export function createChoice(lab) {
 
   async function remove() {
     const { name } = choice;
-    if (!name || !(await done(lab.del(`/api/objects/${encodeURIComponent(name)}`)))) return false;
+    if (!name || !(await succeeds(lab.del(`/api/objects/${encodeURIComponent(name)}`)))) return false;
     choose('');
     lab.say(`${name} removed. Undo restores it.`);
     return true;

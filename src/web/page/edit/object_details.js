@@ -38,11 +38,11 @@ const MEDIA = {
 const OF_SCENE = 'material ';
 
 export function presetChoices(lab) {
-  const own = (lab.scene?.objects || []).filter((object) => object.kind === 'material');
+  const materials = (lab.scene?.objects || []).filter((object) => object.kind === 'material');
   return [
     ['', 'Paint'],
     ...Object.entries(MEDIA).map(([word, { label }]) => [word, label]),
-    ...own.map(({ name }) => [OF_SCENE + name, `Material ${name}`]),
+    ...materials.map(({ name }) => [OF_SCENE + name, `Material ${name}`]),
   ];
 }
 
@@ -150,13 +150,13 @@ export function createDetails(lab, choice, files) {
     const lights = lab.scene.objects.filter((each) => each.kind === 'light').map((each) => each.name);
     const here = lights.indexOf(object.name);
     const to = (step) => choice.choose(lights[(here + step + lights.length) % lights.length]);
-    const alone = lights.length < 2;
+    const single = lights.length < 2;
     return element(
       'div',
       { class: 'buttons object-pager', role: 'group', 'aria-label': 'Lights' },
-      button('Previous light', () => to(-1), { icon: 'left', small: true, disabled: alone }),
+      button('Previous light', () => to(-1), { icon: 'left', small: true, disabled: single }),
       element('span', { class: 'hint', text: `${here + 1} of ${lights.length}` }),
-      button('Next light', () => to(1), { icon: 'right', small: true, disabled: alone }),
+      button('Next light', () => to(1), { icon: 'right', small: true, disabled: single }),
       button('Add light', () => choice.add({ kind: 'light' }), { icon: 'plus', small: true }),
     );
   }
@@ -190,7 +190,7 @@ export function createDetails(lab, choice, files) {
           label: 'Set to',
           choices: [['', 'a medium …'], ...mediaChoices()],
           value: '',
-          onchange: (word) => makeOf(object.name, word),
+          onchange: (word) => setMedium(object.name, word),
         })
       : null;
     const parts = [object.material, object.mesh].filter(Boolean);
@@ -212,7 +212,7 @@ export function createDetails(lab, choice, files) {
     );
   }
 
-  function makeOf(name, word) {
+  function setMedium(name, word) {
     const values = Object.entries(presetValues(word)).map(([row, value]) => [`${name}.${row}`, value]);
     if (values.length) lab.set(Object.fromEntries(values)).catch(lab.fail);
   }
@@ -225,8 +225,8 @@ export function createDetails(lab, choice, files) {
       'div',
       { class: 'panel-params object-rows' },
       kinds.map((kind) => {
-        const made = own.filter((row) => row.group === kind).map((row) => createRow(row, lab));
-        rows.push(...made);
+        const controls = own.filter((row) => row.group === kind).map((row) => createRow(row, lab));
+        rows.push(...controls);
         const note =
           kind === 'material' && object.kind === 'solid' && object.material
             ? `of ${object.material}; values set here apply to ${object.name} only`
@@ -234,7 +234,7 @@ export function createDetails(lab, choice, files) {
         return group(
           GROUPS[kind] || kind,
           { id: `edit.${kind}`, hint: note },
-          made.map((row) => row.node),
+          controls.map((row) => row.node),
         );
       }),
     );

@@ -30,8 +30,8 @@ export function createGizmo(lab, choice, mark, movable) {
   const modes = choiceOf({ label: 'Handles', choices: MODES, value: mode, radios: true, onchange: setMode });
   const snap = checkbox('Snap', snaps, setSnap);
   const along = checkbox('With contents', choice.group.on, (on) => choice.group.set(on));
-  snap.node.title = 'Round to the steps of the panel Objects (N); Shift does the contrary while dragging a handle';
-  along.node.title = 'What is inside the object goes with it: the liquid and the rod of a vessel';
+  snap.node.title = 'Round to the steps of the panel Objects (N); Shift does the opposite while dragging a handle';
+  along.node.title = 'Objects inside move with the object, such as the liquid and the rod of a vessel';
   modes.group.title = 'Handles of the selected object (G)';
   const options = element('div', { class: 'gizmo-options' }, modes.group, snap.node, along.node);
   options.addEventListener('pointerdown', (event) => event.stopPropagation());
@@ -144,7 +144,7 @@ export function createGizmo(lab, choice, mark, movable) {
     return node;
   }
 
-  /* --- changes: how far the pointer has gone since the drag began, of which a part is already sent --- */
+  /* --- changes: the travel of the pointer since the drag began, part of which is already sent --- */
 
   function begin(name, event) {
     if (event.button !== 0) return;

@@ -33,7 +33,7 @@ export function objectTool(lab, choice, mark) {
       'Click an object to select it, drag to move it; with Shift, drag the current ' +
       'selection; arrow keys move, Delete removes; handles move, turn and scale: G changes them, N snaps',
     chosen() {
-      lab.panels?.use('edit');
+      lab.panels?.select('edit');
       gizmo.show();
     },
     dropped: gizmo.hide,
@@ -98,11 +98,11 @@ export function objectTool(lab, choice, mark) {
       aimAtChosen(now);
     }
     now.known = true;
-    if (now.far) go(now, now.last);
+    if (now.far) dragTo(now, now.last);
   }
 
   /* With snapping, in whole steps along each axis from where the object was. */
-  function go(now, point) {
+  function dragTo(now, point) {
     if (!(now.depth > 0) || !choice.name) return;
     const all = offset(point.x - now.from.x, point.y - now.from.y, now.depth);
     const to = gizmo.snaps ? gizmo.inSteps(all) : all;
@@ -115,7 +115,7 @@ export function objectTool(lab, choice, mark) {
     if (!drag) return;
     drag.last = point;
     drag.far ||= Math.hypot(point.x - drag.from.x, point.y - drag.from.y) * view.scale > STILL_PX;
-    if (drag.far) go(drag, point);
+    if (drag.far) dragTo(drag, point);
   }
 
   function up() {
@@ -174,9 +174,9 @@ export function createMark(lab, choice) {
   function marks(place) {
     const solids = solidPoints(lab);
     const of = (name) => solids.find((each) => each.name === name);
-    const own = of(choice.name) ? outline(of(choice.name), '') : ball(place);
+    const chosen = of(choice.name) ? outline(of(choice.name), '') : ball(place);
     const along = choice.group.on ? choice.group.names.map(of).filter(Boolean) : [];
-    return [...along.flatMap((solid) => outline(solid, ' along')), ...own];
+    return [...along.flatMap((solid) => outline(solid, ' along')), ...chosen];
   }
 
   /* Omitted if a part of it is behind the camera. */

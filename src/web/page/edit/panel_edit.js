@@ -37,21 +37,21 @@ function fileButtons(lab) {
 
 /* The material of a new solid; the choices follow the materials of the scene. */
 function presetField(lab) {
-  let made = null;
+  let field = null;
   let shown = '';
   const node = element('div', { class: 'preset-field' });
   const fill = () => {
     const choices = presetChoices(lab);
     if (shown === JSON.stringify(choices)) return;
     shown = JSON.stringify(choices);
-    const was = made?.value || '';
-    const value = choices.some(([word]) => word === was) ? was : '';
-    made = choiceOf({ label: 'New solids are of', choices, value });
-    node.replaceChildren(made.node);
+    const before = field?.value || '';
+    const value = choices.some(([word]) => word === before) ? before : '';
+    field = choiceOf({ label: 'New solids are of', choices, value });
+    node.replaceChildren(field.node);
   };
   lab.on('scene', fill);
   fill();
-  return { node, values: () => presetValues(made.value) };
+  return { node, values: () => presetValues(field.value) };
 }
 
 /* Filled with the first scene, which lists the shapes. */

@@ -12,8 +12,8 @@ const MANY = 36; /* with more main parameters, only the first groups and Renderi
 const LAST = ['camera', 'background', 'render'];
 const TITLES = { camera: 'Camera', background: 'Background', render: 'Rendering' };
 
-/* The main parameters, shown where the scene has them. */
-const HAND = {
+/* The main parameters, of which those that the scene has are shown. */
+const MAIN = {
   clear: ['medium', 'ior', 'coefficients', 'color', 'reflectivity', 'transparency', 'absorb_per_m'],
   opaque: ['color', 'reflectivity'],
   light: ['position', 'intensity'],
@@ -39,9 +39,9 @@ function ordered(names, lab) {
   return [...names].sort((a, b) => place(a) - place(b));
 }
 
-/* A solid that was transparent once stays in that list, so that its transparency slider does not vanish while it is
- * dragged. */
-function handParts(lab, onceClear) {
+/* A solid that was transparent once keeps the parameters of clear solids, so that its transparency slider does not
+ * vanish while it is dragged. */
+function mainParts(lab, onceClear) {
   const rowsOf = (name, fields) =>
     fields
       .map((word) => lab.param(`${name}.${word}`))
@@ -50,12 +50,12 @@ function handParts(lab, onceClear) {
   for (const name of solids) if ((lab.param(`${name}.transparency`)?.value ?? 0) > 0) onceClear.add(name);
   const isClear = (name) => onceClear.has(name);
   const parts = [
-    ...solids.filter(isClear).map((name) => [name, rowsOf(name, HAND.clear)]),
-    ...solids.filter((name) => !isClear(name)).map((name) => [name, rowsOf(name, HAND.opaque)]),
+    ...solids.filter(isClear).map((name) => [name, rowsOf(name, MAIN.clear)]),
+    ...solids.filter((name) => !isClear(name)).map((name) => [name, rowsOf(name, MAIN.opaque)]),
     ...lab.scene.objects
       .filter((object) => object.kind === 'light')
-      .map((object) => [object.name, rowsOf(object.name, HAND.light)]),
-    ['render', rowsOf('render', HAND.render)],
+      .map((object) => [object.name, rowsOf(object.name, MAIN.light)]),
+    ['render', rowsOf('render', MAIN.render)],
   ];
   return parts.filter(([, rows]) => rows.length);
 }
@@ -111,19 +111,19 @@ export const panel = {
       find();
     });
     lab.on('scene', show);
-    tell(null);
+    describe(null);
     if (lab.scene) show(lab.scene);
     else replace(list, empty('Waiting for the scene …'));
 
-    /* Rows are created for one part of the list ('hand', an object's name, 'found') and dropped with it. */
+    /* Rows are created for one part of the list ('main', an object's name, 'found') and dropped with it. */
     function make(part, row, long) {
-      const made = createRow(row, lab, { onabout: tell, long });
+      const made = createRow(row, lab, { onabout: describe, long });
       if (!rows.has(part)) rows.set(part, []);
       rows.get(part).push(made);
       return made.node;
     }
 
-    function tell(row) {
+    function describe(row) {
       replace(
         about,
         row
@@ -145,7 +145,7 @@ export const panel = {
       const shape = JSON.stringify([
         scene.objects,
         scene.params.map((row) => [row.path, row.type, row.choices?.length]),
-        handParts(lab, onceClear).map(([name, own]) => [name, own.length]),
+        mainParts(lab, onceClear).map(([name, own]) => [name, own.length]),
       ]);
       if (shape !== built && [...rows.values()].flat().some((made) => made.busy())) {
         clearTimeout(later);
@@ -165,12 +165,12 @@ export const panel = {
     }
 
     function build() {
-      const held = document.activeElement?.closest?.('.panel-params .param');
-      const focused = held?.dataset.path;
-      const nth = held ? [...held.querySelectorAll('input, select')].indexOf(document.activeElement) : -1;
+      const focusedRow = document.activeElement?.closest?.('.panel-params .param');
+      const focused = focusedRow?.dataset.path;
+      const nth = focusedRow ? [...focusedRow.querySelectorAll('input, select')].indexOf(document.activeElement) : -1;
       const place = list.scrollTop;
       rows.clear();
-      replace(list, hand(), ordered(grouped(lab.scene.params).keys(), lab).map(objectGroup));
+      replace(list, mainGroup(), ordered(grouped(lab.scene.params).keys(), lab).map(objectGroup));
       list.scrollTop = place;
       if (focused && root.contains(document.activeElement) === false) {
         list
@@ -181,8 +181,8 @@ export const panel = {
       if (search.value) find();
     }
 
-    function hand() {
-      const parts = handParts(lab, onceClear);
+    function mainGroup() {
+      const parts = mainParts(lab, onceClear);
       const many = parts.reduce((sum, [, own]) => sum + own.length, 0) > MANY;
       return group(
         'Main parameters',
@@ -191,14 +191,14 @@ export const panel = {
           const open = memory.get(`group.hand.${name}`, !many || index < 2 || name === 'render');
           const node = element(
             'details',
-            { class: 'hand-part', open },
+            { class: 'main-part', open },
             element(
               'summary',
               {},
               element('h4', { text: TITLES[name] || name }),
               element('span', { class: 'group-hint', text: hint(name) }),
             ),
-            own.map((row) => make('hand', row)),
+            own.map((row) => make('main', row)),
           );
           node.addEventListener('toggle', () => memory.set(`group.hand.${name}`, node.open));
           return node;
@@ -282,9 +282,9 @@ export const panel = {
         results.replaceChildren();
         return;
       }
-      const near = new Set(handParts(lab, onceClear).flatMap(([, own]) => own.map((row) => row.path)));
+      const mainPaths = new Set(mainParts(lab, onceClear).flatMap(([, own]) => own.map((row) => row.path)));
       try {
-        const best = await findParams(lab, words, near);
+        const best = await findParams(lab, words, mainPaths);
         if (mine === searches) showFound(best);
       } catch (error) {
         lab.fail(error);

@@ -88,14 +88,14 @@ function readings() {
   return {
     node,
     show(slime) {
-      const share = slime.volume_at_rest > 0 ? `${digits((100 * slime.volume) / slime.volume_at_rest, 4)} %` : '–';
+      const volume = slime.volume_at_rest > 0 ? `${digits((100 * slime.volume) / slime.volume_at_rest, 4)} %` : '–';
       const texts = !slime.on
         ? names.map(() => '–')
         : [
             `${slime.time_s.toFixed(2)} s`,
             slime.playing && !slime.resting ? `${Math.round(100 * slime.realtime)} %` : '–',
             `${slime.speed === null ? '–' : digits(slime.speed, 3)} u/s`,
-            share,
+            volume,
             String(slime.held),
           ];
       texts.forEach((text, index) => {
@@ -108,7 +108,7 @@ function readings() {
 function tuning(lab) {
   const node = element('div', { class: 'slime-tuning' });
   const which = element('div');
-  let made = '';
+  let shownKey = '';
   let chosen = null;
   let sliders = null;
   return {
@@ -117,11 +117,11 @@ function tuning(lab) {
       const all = slimes(lab);
       const now = all.find((one) => one.solid === chosen) || all[0];
       const key = JSON.stringify([all, now]);
-      if (key === made) {
+      if (key === shownKey) {
         sliders?.update();
         return;
       }
-      made = key;
+      shownKey = key;
       chosen = now?.solid;
       sliders = now ? createSliders(lab, now.solid, now.mesh) : null;
       replace(

@@ -1,7 +1,7 @@
 /* The control of one parameter, by its type.
  * exports: controlOf(row, context) -> {node, inputs, single, busy(), set(value)}
  *   context: {name (for screen readers), describedby, send(value, gesture), names: the suggested words, slider() -> the
- *   newest row's}
+ *   slider of the newest row}
  *   single: the one input that a label belongs to, or null for a group; busy: it is being dragged; set(value, true):
  *   after a rejected value */
 

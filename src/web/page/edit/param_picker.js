@@ -1,5 +1,5 @@
 /* The search for parameters by words of their path, their description or everyday language, as in `cuvette params`; and
- * a field that chooses a parameter by it.
+ * a field that chooses a parameter with it.
  * exports:
  *   findParams(lab, text, near) -> promise of rows, best first; among equally good ones those of the set near first
  *   createParamPicker(lab, {label, onchoose(row)}) -> {node, input, row}
@@ -125,7 +125,7 @@ export function createParamPicker(lab, { label, onchoose }) {
     if (direction) step(direction);
     else if (event.key === 'Enter' && (answer || (!list.hidden && rows.length))) enter();
     else if (event.key === 'Escape' && (answer || !list.hidden)) {
-      hide(); /* and the dialog stays open */
+      hide(); /* the dialog stays open */
       event.stopPropagation();
     } else {
       return;

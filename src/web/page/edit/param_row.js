@@ -4,8 +4,8 @@
  *     long: the label includes the object's name; busy: the control is being dragged; node is .param with data-path,
  *     its slider an input of type range, its number field one of type number
  *   shortUnit(unit) -> the text after a field
- *   hasLaw(lab, object)               whether its medium is given by coefficients
- *   whyUnused(lab, object, name)      why that parameter has no effect now; '' if it has one */
+ *   hasLaw(lab, object)               whether the object's medium has coefficients
+ *   whyUnused(lab, object, name)      why that parameter has no effect now; '' if it has an effect */
 
 import { button, element, unique } from '../shared/ui.js';
 import { controlOf, written } from './param_controls.js';
@@ -44,7 +44,7 @@ const FORGET_MS = 8000;
 const labelOf = (name) => name.replaceAll('_', ' ');
 const equal = (a, b) => JSON.stringify(a) === JSON.stringify(b);
 
-/* 'u' for scene units, and as a formula. */
+/* 'u' for scene units; exponents as superscripts. */
 export const shortUnit = (unit) =>
   unit === 'deg'
     ? '°'
@@ -170,10 +170,10 @@ export function createRow(first, lab, { onabout, long } = {}) {
 
   /* Also updates the field that has the focus. */
   function force(value) {
-    const held = document.activeElement;
-    if (control.inputs.includes(held)) held.blur();
+    const focused = document.activeElement;
+    if (control.inputs.includes(focused)) focused.blur();
     control.set(value, true);
-    if (control.inputs.includes(held)) held.focus({ preventScroll: true });
+    if (control.inputs.includes(focused)) focused.focus({ preventScroll: true });
   }
 
   function undo() {

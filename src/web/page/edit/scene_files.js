@@ -26,7 +26,7 @@ export function createFiles(lab, choice) {
     }
   }
 
-  function chooser(title, names, folder, nothing, actions, shown) {
+  function chooser(title, names, folder, nothing, actions, withThumbnails) {
     const list = element('ul', { class: 'file-list' });
     const search = element('input', {
       type: 'search',
@@ -63,7 +63,7 @@ export function createFiles(lab, choice) {
                     'aria-current': name === lab.state?.file ? 'true' : null,
                     onclick: () => made.close(name),
                   },
-                  shown ? thumbnail(lab, `/api/thumbnail.jpg?file=${encodeURIComponent(name)}`) : null,
+                  withThumbnails ? thumbnail(lab, `/api/thumbnail.jpg?file=${encodeURIComponent(name)}`) : null,
                   ...named(name),
                 ),
               ),
@@ -144,9 +144,9 @@ export function createFiles(lab, choice) {
     return answer === 'replace' && write(file, false, failed);
   }
 
-  async function write(file, replaceIt, failed = lab.fail) {
+  async function write(file, replaces, failed = lab.fail) {
     try {
-      await lab.change('/api/save', replaceIt ? { file, replace: true } : { file });
+      await lab.change('/api/save', replaces ? { file, replace: true } : { file });
       ours.add(file);
       if (inFolder) lab.say(`${file} saved.`);
       else await saveReply(lab, '/api/scene.yaml', file.split('/').pop());
@@ -212,7 +212,7 @@ export function createFiles(lab, choice) {
     return `${(await lab.get('/api/files')).prefix}${name}`;
   }
 
-  /* none(): sets the alternative if an action was chosen instead of a file. */
+  /* none() -> the values to set if an action was chosen instead of a file. */
   async function setFile(path, title, kind, nothing, actions, none) {
     const name = await pick(title, kind, nothing, actions);
     if (name === null) return;

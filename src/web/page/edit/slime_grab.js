@@ -21,7 +21,7 @@ export function createGrab(lab) {
     hint:
       'Drag the slime; wheel while dragging: along the view. Keys: arrows, Enter to grab and ' +
       'release, Page Up and Page Down along the view',
-    chosen: () => lab.panels?.use('slime'),
+    chosen: () => lab.panels?.select('slime'),
     dropped() {
       hands.dropAll();
       cross = null;

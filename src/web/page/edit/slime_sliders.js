@@ -15,7 +15,7 @@ const CHANNELS = [
 const looks = [
   { heading: 'Colour', of: 'solid', name: 'color', channels: true },
   {
-    label: 'Diffuse share',
+    label: 'Diffuse fraction',
     of: 'solid',
     name: 'diffuse',
     hint: 'strength of the surface colour; absorption colours transparent slime',

@@ -1,5 +1,5 @@
-/* The dialog Save film: a parameter that changes from frame to frame, or the slime as it moves, rendered into
- * one file. It may be closed meanwhile. The fields keep their values until the page is closed.
+/* The dialog Save video: renders a parameter that changes from frame to frame, or the moving slime, into one file. It
+ * may be closed meanwhile. The fields keep their values until the page is closed.
  * exports: saveVideo(lab) */
 
 import { needsProgram } from '../shared/commands.js';
@@ -13,14 +13,23 @@ const FORMATS = [
   ['y4m', 'YUV4MPEG2: for video programs, such as ffmpeg'],
 ];
 const ENDINGS = { apng: 'png', y4m: 'y4m' };
-const kept = { what: 'sweep', parameter: '', from: '', to: '', frames: '50', duration: '', fps: '25', format: 'apng' };
+const remembered = {
+  what: 'sweep',
+  parameter: '',
+  from: '',
+  to: '',
+  frames: '50',
+  duration: '',
+  fps: '25',
+  format: 'apng',
+};
 
 /* A video takes minutes, and more memory for its frames than a browser has. */
 function saveElsewhere(lab) {
-  const motion = lab.slime ? [(file) => `cuvette animate ${file} -o film.apng`] : [];
+  const motion = lab.slime ? [(file) => `cuvette animate ${file} -o video.apng`] : [];
   dialog({
-    title: 'Save film',
-    content: needsProgram(lab, 'Films are rendered by the program on a computer, not in a browser.', [
+    title: 'Save video',
+    content: needsProgram(lab, 'Videos are rendered by the program on a computer, not in a browser.', [
       ...motion,
       (file) => `cuvette lab ${file}`,
     ]),
@@ -35,23 +44,23 @@ export function saveVideo(lab) {
 function createForm(lab) {
   const picker = createParamPicker(lab, { label: 'Parameter', onchoose: chosen });
   const numbers = {
-    from: numberInput({ value: kept.from }),
-    to: numberInput({ value: kept.to }),
-    frames: numberInput({ value: kept.frames, min: 2, max: 1000, step: 1 }),
-    duration: numberInput({ value: kept.duration, min: 0, placeholder: 'its script and 2 s' }),
-    fps: numberInput({ value: kept.fps, min: 1, max: 240, step: 1 }),
+    from: numberInput({ value: remembered.from }),
+    to: numberInput({ value: remembered.to }),
+    frames: numberInput({ value: remembered.frames, min: 2, max: 1000, step: 1 }),
+    duration: numberInput({ value: remembered.duration, min: 0, placeholder: 'its script and 2 s' }),
+    fps: numberInput({ value: remembered.fps, min: 1, max: 240, step: 1 }),
   };
   const what = choice({
     label: 'What changes',
     radios: true,
-    value: lab.slime ? kept.what : 'sweep',
+    value: lab.slime ? remembered.what : 'sweep',
     choices: [
       ['sweep', 'A parameter'],
       ['motion', 'The slime moves'],
     ],
     onchange: show,
   });
-  const format = choice({ label: 'Format', choices: FORMATS, value: kept.format, onchange: show });
+  const format = choice({ label: 'Format', choices: FORMATS, value: remembered.format, onchange: show });
   const about = element('p', { class: 'hint' });
   const sweep = element(
     'div',
@@ -74,8 +83,8 @@ function createForm(lab) {
   const result = element('div', { class: 'video-part' });
   const render = button('Render', act, { icon: 'play', kind: 'primary' });
   const stop = button('Stop', () => lab.post('/api/video/stop', {}).catch(fail), { icon: 'stop' });
-  const made = dialog({
-    title: 'Save film',
+  const shown = dialog({
+    title: 'Save video',
     content: element(
       'div',
       { class: 'video-form' },
@@ -93,19 +102,19 @@ function createForm(lab) {
     ),
   });
   const ends = [lab.on('video', progress), lab.on('state', () => progress(lab.state.video)), lab.on('image', show)];
-  made.closed.then(() => {
+  shown.closed.then(() => {
     for (const end of ends) end();
     keep();
   });
   what.node.hidden = !lab.slime;
-  picker.input.value = kept.parameter;
+  picker.input.value = remembered.parameter;
   for (const input of Object.values(numbers)) input.addEventListener('input', show);
   chosen(picker.row);
   progress(lab.state?.video);
 
   function keep() {
-    Object.assign(kept, { what: what.value, parameter: picker.input.value, format: format.value });
-    for (const [name, input] of Object.entries(numbers)) kept[name] = input.value;
+    Object.assign(remembered, { what: what.value, parameter: picker.input.value, format: format.value });
+    for (const [name, input] of Object.entries(numbers)) remembered[name] = input.value;
   }
 
   function chosen(row) {
@@ -198,8 +207,8 @@ function createForm(lab) {
     result.dataset.key = key;
     if (!video) return void replace(result);
     const address = `/api/video/file?of=${video.wall_s}`;
-    const name = `${lab.name()}-film.${ENDINGS[video.format]}`;
-    const image = video.format === 'apng' ? element('img', { class: 'video-film', alt: 'The film' }) : null;
+    const name = `${lab.name()}-video.${ENDINGS[video.format]}`;
+    const image = video.format === 'apng' ? element('img', { class: 'video-image', alt: 'The video' }) : null;
     if (image) showImage(lab, image, address);
     const save = async () => download(await lab.engine.address(address), name);
     replace(

@@ -7,7 +7,7 @@ import { commandRow } from '../shared/commands.js';
 import { theoryChart } from '../shared/theory_chart.js';
 import { button, checkbox, choice, digits, element, notice, number, replace, slider } from '../shared/ui.js';
 
-const REST_MS = 200; /* measured when the controls rest */
+const REST_MS = 200; /* measured when the controls have rested for this time */
 
 const TIMES =
   'Times differ from one measurement to the next, and are longer while other programs run. ' +
@@ -20,12 +20,12 @@ export function createLesson(root, lab, lesson, { back, again }) {
   const result = element('div', { class: 'lesson-result', 'aria-live': 'polite' });
   const verdict = element('div', { 'aria-live': 'polite' });
   const answer = element('div', { class: 'lesson-answer' });
-  const typed = element('div');
+  const commandRows = element('div');
   const commands = element(
     'details',
     { class: 'lesson-commands' },
     element('summary', { text: 'The same numbers on the command line' }),
-    typed,
+    commandRows,
   );
   const controls = lesson.controls.map((control) => createControl(lab, control));
   const tries = element(
@@ -192,7 +192,7 @@ export function createLesson(root, lab, lesson, { back, again }) {
       .map((row) => ` --set ${row.path}=${row.value}`)
       .join('');
     replace(
-      typed,
+      commandRows,
       lesson.commands.map((text) => commandRow(lab, `${text}${sets}`)),
     );
   }

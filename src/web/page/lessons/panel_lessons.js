@@ -7,7 +7,7 @@ import { element, empty, notice, replace } from '../shared/ui.js';
 import { createLesson } from './lesson.js';
 
 let place = null;
-let lesson = null; /* the view of the chosen one */
+let lesson = null; /* the view of the chosen lesson; null in the gallery */
 let loaded = false;
 let wanted = null; /* the lesson of a link: the fragment #lesson=NAME of the page's address */
 
@@ -74,7 +74,7 @@ export const panel = {
   get wide() {
     return !lesson;
   },
-  /* A laboratory without a scene, of a file or of a link, starts with the gallery. */
+  /* A laboratory that opens neither a file nor a link starts with the gallery. */
   start(lab) {
     wanted = /^#lesson=([\w-]+)$/.exec(location.hash)?.[1] ?? null;
     if (wanted)
@@ -82,7 +82,7 @@ export const panel = {
     else if (namesScene()) return;
     const end = lab.on('state', (state) => {
       end();
-      if (wanted || (!state.file && !state.undo)) lab.panels.use('lessons');
+      if (wanted || (!state.file && !state.undo)) lab.panels.select('lessons');
     });
   },
   create(root, lab) {

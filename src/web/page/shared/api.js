@@ -3,7 +3,7 @@
  * exports:
  *   createApi(engine, listeners) -> api
  *     api.get(path, limitMs), api.post(path, body), api.del(path)     JSON in and out; throw ApiError
- *     api.blob(path)                       an image or file: {blob, headers, seconds}, the time from its first byte to
+ *     api.blob(path)                       an image or file: {blob, headers, seconds}, seconds from its first byte to
  *                                          its last; throws ApiError
  *     listeners: generation(number) for each reply with a generation, reached() for each reply, lost() when the engine
  *     does not answer, refused() for 401

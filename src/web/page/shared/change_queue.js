@@ -7,7 +7,7 @@
  *   imageOf(generation, signal): a promise that resolves when an image of that generation or a newer one exists, or
  *   when the signal is aborted */
 
-const PACE_MS = 100; /* the longest pause: images may be slower, or not come at all */
+const PAUSE_MAX_MS = 100; /* the longest pause: images may be slower, or not come at all */
 
 const pause = (ms) => new Promise((resolve) => setTimeout(resolve, ms));
 
@@ -33,19 +33,20 @@ export function createQueue(post, imageOf) {
       const entry = waiting.shift();
       const generation = await send(entry);
       if (entry.gesture && generation && !(waiting.length && waiting[0].gesture !== entry.gesture))
-        await pace(generation, entry.gesture);
+        await waitForImage(generation, entry.gesture);
     }
     busy = false;
   }
 
-  async function pace(generation, gesture) {
+  async function waitForImage(generation, gesture) {
     const enough = new AbortController();
-    await Promise.race([imageOf(generation, enough.signal), pause(PACE_MS), hurry(gesture)]);
+    await Promise.race([imageOf(generation, enough.signal), pause(PAUSE_MAX_MS), hurry(gesture)]);
     enough.abort();
   }
 
-  /* Resolves when something other than the next change of the gesture waits. */
   let hurried = null;
+
+  /* Resolves when something other than the next change of the gesture waits. */
   function hurry(gesture) {
     return new Promise((resolve) => {
       hurried = { gesture, resolve };

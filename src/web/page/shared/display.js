@@ -9,7 +9,7 @@
 import { button, checkbox, choice, dialog, element, icon, memory } from './ui.js';
 
 const root = document.documentElement;
-const SAID = { text: 'Large text', projector: 'Projector mode' };
+const NAMES = { text: 'Large text', projector: 'Projector mode' };
 const listeners = new Set();
 
 export const labelSize = () => (root.dataset.text === 'large' ? 20 : 13);
@@ -24,8 +24,8 @@ function setTheme(theme) {
   for (const listener of listeners) listener();
 }
 
-const kept = memory.get('theme', null);
-if (kept === 'light' || kept === 'dark') root.dataset.theme = kept;
+const stored = memory.get('theme', null);
+if (stored === 'light' || stored === 'dark') root.dataset.theme = stored;
 prefersDark.addEventListener('change', () => {
   for (const listener of listeners) listener();
 });
@@ -48,7 +48,7 @@ export function createDisplay(lab) {
   lab.display = {
     toggle(name) {
       set(name, !on[name]);
-      lab.say(`${SAID[name]} ${on[name] ? 'on' : 'off'}.`);
+      lab.say(`${NAMES[name]} ${on[name] ? 'on' : 'off'}.`);
     },
     open: () => openDialog(on, set),
   };

@@ -81,7 +81,7 @@ const paths = {
   redo: 'M20 9H10a6 6 0 0 0 0 12h3M16 5l4 4-4 4',
   reset: 'M4 5v5h5M4.6 10A8 8 0 1 1 4 14',
   image: 'M4 5h16v14H4zM4 16l5-5 4 4 2-2 5 5M15.5 9.5h.01',
-  film: 'M4 4h16v16H4zM8 4v16M16 4v16M4 9h4M4 15h4M16 9h4M16 15h4',
+  video: 'M4 4h16v16H4zM8 4v16M16 4v16M4 9h4M4 15h4M16 9h4M16 15h4',
   copy: 'M9 9h11v11H9zM5 15H4V4h11v1',
   terminal: 'M3 5h18v14H3zM7 10l3 2.5L7 15M12 15h5',
   sun:

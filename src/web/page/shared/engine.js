@@ -145,15 +145,15 @@ function createBrowserEngine() {
     idle: () => requests.size === 0,
   };
 
-  function connect(made) {
-    made.onmessage = ({ data }) => receive(data);
-    made.onerror = (event) => {
+  function connect(instance) {
+    instance.onmessage = ({ data }) => receive(data);
+    instance.onerror = (event) => {
       event.preventDefault();
       fail(event);
     };
-    made.onmessageerror = () => fail(new Error('a message cannot be read'));
-    made.early.forEach(receive);
-    return made;
+    instance.onmessageerror = () => fail(new Error('a message cannot be read'));
+    instance.early.forEach(receive);
+    return instance;
   }
 
   function receive(message) {
@@ -178,7 +178,7 @@ function createBrowserEngine() {
     if (failure) return;
     failure = error.message || 'the browser does not say why';
     remedy = error.remedy || RELOAD;
-    worker.then((made) => made.terminate()).catch(() => undefined);
+    worker.then((instance) => instance.terminate()).catch(() => undefined);
     for (const { reject } of requests.values()) reject(new TypeError(failure));
     requests.clear();
     for (const { error: report } of [...listeners]) report();
@@ -195,7 +195,8 @@ function createBrowserEngine() {
       signal?.addEventListener('abort', () => {
         if (requests.delete(id)) reject(signal.reason);
       });
-      worker.then((made) => made.postMessage({ id, method, path, body })).catch(() => undefined); /* reported by fail */
+      /* An error is reported by fail. */
+      worker.then((instance) => instance.postMessage({ id, method, path, body })).catch(() => undefined);
     });
   }
 }

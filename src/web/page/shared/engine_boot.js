@@ -5,14 +5,14 @@
  *   module    the Response with its module; both have 128-bit vectors           engine/simd128/cuvette.wasm, or plain
  *   files     the laboratory's folder: {NAME: text or {base64}}                 engine/files.json
  *   scene     the file that is opened; the page's address may name another (?scene=NAME); null: none
- *   workers   workers that trace tiles; default: one for each processor
+ *   workers   workers that render tiles; default: one for each processor
  * exports: startWorker() -> promise of the worker, after its first message was sent; an error may have a remedy;
  *                           worker.early: messages from it that came before a listener */
 
-const WORKERS_MAX = 8; /* each has a memory of its own */
+const WORKERS_MAX = 8; /* each has its own memory */
 
-const OF_A_FILE =
-  'a page that is opened as a file cannot load others: open the one that holds all, or use a web server';
+const FILE_REMEDY =
+  'open laboratory.html, which holds all parts, or use a web server: a page opened as a file cannot load files';
 
 /* A module with one function that uses a 128-bit vector: (v128.const 0) (drop). */
 const VECTOR = [0, 97, 115, 109, 1, 0, 0, 0, 1, 4, 1, 96, 0, 0, 3, 2, 1, 0, 10, 23, 1, 21, 0, 253, 12];
@@ -21,22 +21,22 @@ const hasVectors = () => WebAssembly.validate(new Uint8Array([...VECTOR, ...new 
 const absolute = (name) => new URL(`engine/${name}`, document.baseURI).href;
 
 export async function startWorker() {
-  const given = globalThis.cuvetteEngine ?? {};
+  const site = globalThis.cuvetteEngine ?? {};
   const set = hasVectors() ? 'simd128' : 'plain';
-  if (given.module && set === 'plain') throw new Error('this browser is too old for the laboratory in one file');
-  const compiled = compile(given.module ?? part(`${set}/cuvette.wasm`)); /* while the script is loaded */
-  const script = await given.worker;
+  if (site.module && set === 'plain') throw new Error('this browser is too old for the laboratory in one file');
+  const compiled = compile(site.module ?? part(`${set}/cuvette.wasm`)); /* while the script is loaded */
+  const script = await site.worker;
   const worker = new Worker(script ? textAddress(script) : absolute(`${set}/worker.js`));
   worker.early = [];
   worker.onmessage = ({ data }) => worker.early.push(data);
   worker.onerror = ({ message }) => worker.early.push({ failed: message || 'its script cannot be loaded' });
-  const [wasm, files] = await Promise.all([compiled, given.files ?? part('files.json').then((reply) => reply.json())]);
+  const [wasm, files] = await Promise.all([compiled, site.files ?? part('files.json').then((reply) => reply.json())]);
   worker.postMessage({
     boot: {
       wasm,
       files: Object.entries(files).map(([name, content]) => ({ name, bytes: bytesOf(content) })),
-      scene: new URLSearchParams(location.search).get('scene') ?? given.scene ?? null,
-      workers: given.workers ?? Math.min(WORKERS_MAX, Math.max(1, navigator.hardwareConcurrency || 1)),
+      scene: new URLSearchParams(location.search).get('scene') ?? site.scene ?? null,
+      workers: site.workers ?? Math.min(WORKERS_MAX, Math.max(1, navigator.hardwareConcurrency || 1)),
       script,
     },
   });
@@ -50,7 +50,7 @@ async function part(name) {
   const reply = await fetch(absolute(name)).catch(() => null);
   if (reply?.ok) return reply;
   const why = new Error(`engine/${name} cannot be loaded${reply ? `: status ${reply.status}` : ''}`);
-  why.remedy = location.protocol === 'file:' ? OF_A_FILE : 'check the connection, and reload the page';
+  why.remedy = location.protocol === 'file:' ? FILE_REMEDY : 'check the connection, and reload the page';
   throw why;
 }
 

@@ -7,19 +7,19 @@
 
 import { element } from './ui.js';
 
-/* Where the engine is in the browser, the bytes of an image are kept until the element shows another one, or is found
+/* If the engine runs in the browser, the bytes of an image are kept until the element shows another image, or is found
  * to be gone. */
-const kept = new Map(); /* node -> address */
+const addresses = new Map(); /* node -> address */
 
 function release(engine, node) {
-  if (kept.has(node)) engine.release(kept.get(node));
-  kept.delete(node);
+  if (addresses.has(node)) engine.release(addresses.get(node));
+  addresses.delete(node);
 }
 
 export async function showImage({ engine }, node, path) {
   if ((node.dataset.path ?? null) === path) return;
   const attribute = node instanceof SVGElement ? 'href' : 'src';
-  for (const each of [...kept.keys()]) if (!each.isConnected && each.complete) release(engine, each);
+  for (const each of [...addresses.keys()]) if (!each.isConnected && each.complete) release(engine, each);
   if (!path) {
     delete node.dataset.path;
     node.removeAttribute(attribute);
@@ -39,7 +39,7 @@ export async function showImage({ engine }, node, path) {
     return;
   }
   node.setAttribute(attribute, address);
-  kept.set(node, address);
+  addresses.set(node, address);
 }
 
 /* path -> promise of an object URL */

@@ -110,7 +110,7 @@ function noteReason({ place }) {
   return [
     'Rays end at the depth limit, and render.beyond replaces their light: by the sky, its mean, or black. So places ' +
       'seen through many surfaces or in several mirrors have a wrong colour. The panel Compare shows where: Cut light.',
-    'An image that no longer changes with the depth is not right for that: between two mirrors rays end at any depth.',
+    'An image that no longer changes with the depth may still be wrong: between two mirrors rays end at any depth.',
     'The default is 4, because a ray can split at each surface and the work can double with each level: 4 keeps an ' +
       'image fast while it is changed.',
   ];
@@ -130,6 +130,6 @@ export function depthNote(tree, lab) {
     text: `Rays with ${percent} % of this pixel's weight end at the depth limit, ${depth}, and ${effect}.`,
     ...(depth < most
       ? { label: labelOf('render.depth', value), values: { 'render.depth': value } }
-      : { label: 'Trace random paths without a limit', values: WITHOUT_LIMIT }),
+      : { label: 'Use random paths without a limit', values: WITHOUT_LIMIT }),
   };
 }

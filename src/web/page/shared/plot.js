@@ -18,13 +18,13 @@ import { digits, svg, unique } from './ui.js';
 const WIDTH = 860;
 const HEIGHT = 400;
 const FRAME = { left: 76, top: 34, right: 22, bottom: 48 };
-const WORDS = 30; /* more fit on an axis with slanted words */
+const WORDS = 30; /* height of slanted words below the axis */
 const LEGEND = 226;
 const NAME_MAX = 23; /* characters that fit into the legend's width */
 const TICKS = 6;
 const COLOURS = 5;
-const SHIFT = 7; /* of a curve from the next */
-const SHIFTS = 28; /* of the last curve from the first, about */
+const SHIFT = 7; /* distance of a curve from the next */
+const SHIFTS = 28; /* about the distance of the last curve from the first */
 const DASHES = ['', '7 4', '2 3', '9 3 2 3', '4 2'];
 const MARKERS = [
   'M-4 0a4 4 0 1 0 8 0a4 4 0 1 0-8 0',
@@ -83,10 +83,10 @@ function ends(values, log, wide) {
 }
 
 /* On a logarithmic axis with few values, each value is a better tick than powers of ten. */
-function ticksOf(scale, own) {
+function ticksOf(scale, values) {
   if (!scale.log) return linearTicks(scale.from, scale.to);
-  const apart = own?.every((value, i) => i === 0 || Math.abs(scale.at(value) - scale.at(own[i - 1])) > 34);
-  return own && own.length <= 12 && apart ? own : logTicks(scale.from, scale.to);
+  const apart = values?.every((value, i) => i === 0 || Math.abs(scale.at(value) - scale.at(values[i - 1])) > 34);
+  return values && values.length <= 12 && apart ? values : logTicks(scale.from, scale.to);
 }
 
 const text = (x, y, anchor, words, more) => svg('text', { x, y, 'text-anchor': anchor, ...more }, words);
@@ -105,7 +105,7 @@ function words(values, scale, bottom, slanted) {
 }
 
 function axes(area, x, y, across, up) {
-  const own = [...new Set(finite(x.points))].sort((a, b) => a - b);
+  const xValues = [...new Set(finite(x.points))].sort((a, b) => a - b);
   const right = area.x + area.width;
   const bottom = area.y + area.height;
   return svg(
@@ -117,7 +117,7 @@ function axes(area, x, y, across, up) {
     ]),
     x.values
       ? words(x.values, across, bottom, areSlanted(x.values, area.width))
-      : ticksOf(across, own).map((value) => [
+      : ticksOf(across, xValues).map((value) => [
           svg('path', { class: 'plot-grid', d: `M${across.at(value)} ${area.y}V${bottom}` }),
           text(across.at(value), bottom + 16, 'middle', digits(value)),
         ]),
@@ -136,12 +136,14 @@ const hasInterval = (point) => point.low < point.high;
 
 /* How far each curve is shifted sideways. */
 function shiftsOf(series) {
-  const owners = series.filter((one) => one.points.some(hasInterval));
-  const xs = owners.map((one) => one.points.filter(hasInterval).map((point) => point.x));
+  const withIntervals = series.filter((one) => one.points.some(hasInterval));
+  const xs = withIntervals.map((one) => one.points.filter(hasInterval).map((point) => point.x));
   const shared = xs.some((some, i) => xs.slice(0, i).some((other) => some.some((x) => other.includes(x))));
-  const step = Math.min(SHIFT, SHIFTS / owners.length);
+  const step = Math.min(SHIFT, SHIFTS / withIntervals.length);
   return series.map((one) =>
-    shared && owners.includes(one) ? round((owners.indexOf(one) - (owners.length - 1) / 2) * step) : 0,
+    shared && withIntervals.includes(one)
+      ? round((withIntervals.indexOf(one) - (withIntervals.length - 1) / 2) * step)
+      : 0,
   );
 }
 

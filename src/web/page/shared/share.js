@@ -2,8 +2,8 @@
  * page's address; PNG images and HTML files hold the same code, which the laboratory checks; a page with the laboratory
  * may hold one too (report/page.h).
  * exports:
- *   namesScene()        whether page or address have a scene, or the address names a file (engine_boot.js)
- *   openLink(lab)       opens that scene, and that of the address whenever a link changes only the fragment
+ *   namesScene()        whether the page or its address has a scene, or the address names a file (engine_boot.js)
+ *   openLink(lab)       opens that scene, and the scene of each later fragment of the address
  *   acceptDrops(lab)    opens a file that is dropped on the page
  *   share(lab)          the dialog: copies a link, saves a file with the scene, and opens such a file */
 
@@ -12,13 +12,13 @@ import { button, copy, dialog, element, notice, replace } from './ui.js';
 
 /* --- links --- */
 
-const held = document.getElementById('cuvette-scene')?.textContent;
+const embedded = document.getElementById('cuvette-scene')?.textContent;
 const hasLink = () => location.hash.startsWith('#scene=');
-export const namesScene = () => Boolean(held) || hasLink() || new URLSearchParams(location.search).has('scene');
+export const namesScene = () => Boolean(embedded) || hasLink() || new URLSearchParams(location.search).has('scene');
 
 export async function openLink(lab) {
   addEventListener('hashchange', () => openFragment(lab));
-  if (held) await openText(lab, `#scene=${held}`);
+  if (embedded) await openText(lab, `#scene=${embedded}`);
   else await openFragment(lab);
 }
 

@@ -1,19 +1,23 @@
 /* The page's copy of the laboratory's state, and the queue of changes: the object lab.
  *
+ * The wire calls every rendered pass an image (the event and state `image`). Here a pass is what is available, and the
+ * image is the pass that is displayed.
+ *
  * exports: createLab() -> lab
  *   lab.engine                          see engine.js
  *   lab.get, lab.post, lab.del, lab.blob   see api.js; for requests that do not change the scene or need no order
  *   lab.state, lab.scene, lab.image, lab.slime, lab.study    the latest values; null before the first
- *   lab.newestGeneration                the newest known generation; older images are shown until one of it exists
- *   lab.dragging()                      whether changes follow each other
+ *   lab.newestGeneration                the newest known generation; older images are shown until an image of
+ *                                       it exists
+ *   lab.dragging()                      whether changes follow each other within DRAG_MS
  *   lab.newestPass                      the newest known pass, displayed or not
  *   lab.connected                       'opening', 'open', 'lost' or 'refused'
  *   lab.on(name, f) -> end()            names: state, scene, image (a pass is displayed), pass (a pass is available),
  *                                       slime, study, video, connection, restarted (a new server: all earlier data is
  *                                       void), view (the image's placement changed), tool, panel (one was selected)
  *   lab.emit(name, value)
- *   lab.param(path)                     the row of that parameter; undefined: the scene has none
- *   lab.object(name)                    the object of that name; undefined
+ *   lab.param(path)                     the row of that parameter; undefined if there is none
+ *   lab.object(name)                    the object of that name; undefined if there is none
  *   lab.set(values, gesture)            {path: value}; promise of the reply. Sent in order; only the newest of a
  *                                       gesture waits
  *   lab.change(path, body, {gesture, merge})   any other POST that changes the scene, in the same order as set;
@@ -68,7 +72,7 @@ export function createLab() {
   let dragged = false;
 
   const api = createApi(engine, {
-    generation: (value) => want(value),
+    generation: (value) => noteGeneration(value),
     reached: () => undefined,
     lost: () => lose('lost'),
     refused: () => lose('refused'),
@@ -114,7 +118,7 @@ export function createLab() {
       });
   return lab;
 
-  function want(generation) {
+  function noteGeneration(generation) {
     if (generation <= lab.newestGeneration) return;
     const now = performance.now();
     dragged = now - changedAt < DRAG_MS;
@@ -136,11 +140,11 @@ export function createLab() {
     if (engine.reconnects) retry = setTimeout(connect, how === 'refused' ? STRANGER_RETRY_MS : RETRY_MS);
   }
 
-  /* Events that come while recover waits for the state are held back: they may be newer than it. */
+  /* Events that come while recover waits for the state are queued: they may be newer than the state. */
   function connect() {
     clearTimeout(retry);
     stream?.close();
-    const mine = { held: null };
+    const mine = { queued: null };
     stream = mine;
     mine.close = engine.events(EVENTS, {
       open: () => recover(mine),
@@ -151,7 +155,7 @@ export function createLab() {
       },
       event(name, value) {
         if (stream !== mine) return;
-        if (mine.held) mine.held.push([name, value]);
+        if (mine.queued) mine.queued.push([name, value]);
         else receive(name, value);
       },
     });
@@ -174,7 +178,7 @@ export function createLab() {
   /* A restarted server counts its generations from the beginning. */
   async function recover(mine) {
     if (stream !== mine) return;
-    mine.held ??= [];
+    mine.queued ??= [];
     try {
       const state = await api.get('/api/state');
       if (stream !== mine) return;
@@ -188,14 +192,14 @@ export function createLab() {
     } catch (error) {
       if (stream === mine && error.status !== 401 && error.status !== 0) lab.fail(error);
     }
-    const held = mine.held ?? [];
-    mine.held = null;
-    if (stream === mine) for (const [name, value] of held) receive(name, value);
+    const queued = mine.queued ?? [];
+    mine.queued = null;
+    if (stream === mine) for (const [name, value] of queued) receive(name, value);
   }
 
   function receive(name, value) {
     if (name === 'state') {
-      want(value.generation);
+      noteGeneration(value.generation);
       lab.state = value;
       lab.slime = value.slime;
       lab.study = value.study;

@@ -30,7 +30,7 @@ function marksOf({ prediction }, now, predicted) {
   ].filter(Boolean);
 }
 
-/* The value to read, if it is a point of the curve. */
+/* The value that the lesson reads, if it is a point of the curve. */
 function spotsOf({ measure }, { points, measured }, now) {
   const near = (at) => points.reduce((a, b) => (Math.abs(b[0] - at) < Math.abs(a[0] - at) ? b : a));
   const x = Number.isFinite(measure.at) ? near(measure.at)[0] : measure.over ? now : NaN;

@@ -36,7 +36,7 @@
  *   copy(text)                                 copies to the clipboard; returns a promise
  *   memory.get(key, otherwise), memory.set(key, value)      localStorage, if available
  *   digits(x, n), seconds(s), count(n), vector([..], n)     numbers as text: 4 significant digits unless n is set
- *   timeUnit([s, ..])                          {unit, factor} for times of about the largest
+ *   timeUnit([s, ..])                          {unit, factor} that suits the largest time
  *   toLinear(byte), toByte(linear)             sRGB 0..255 to and from linear 0..1 */
 
 import { checkbox, choice, number, slider, text } from './controls.js';

@@ -1,6 +1,6 @@
 /* A chart of a study's cells with controls for its axes, and the same data as a table.
  * exports: createChart({caption, id}) -> {node, show({title, cells(quantity), quantities, paths, mark, note}),
- * chosen(): {quantity, x, by, logX, logY} of the chart; null: none, or left to the values} */
+ * chosen(): {quantity, x, by, logX, logY} of the chart; null: none, or automatic} */
 
 import { plot } from '../shared/plot.js';
 import { checkbox, choice, digits, element, empty, group, replace, table, timeUnit } from '../shared/ui.js';
@@ -110,7 +110,7 @@ export function createChart({ caption, id }) {
     }
     const axes = axesFor(cells, what.paths);
     const axis = axes.find(({ path }) => path === chosen.x) || axes[0];
-    const { series, values, heading, left } = seriesOf(cells, what.paths, axis?.path);
+    const { series, values, heading, omitted } = seriesOf(cells, what.paths, axis?.path);
     const others = axes.filter((one) => one !== axis);
     axesShown = { x: axis?.path ?? null, by: others.length === 1 && series.length <= BY_MAX ? others[0].path : null };
     const log = {
@@ -136,7 +136,7 @@ export function createChart({ caption, id }) {
       }),
       element('figcaption', {
         class: 'hint',
-        text: [what.note, few, left ? `${left} more lines are not drawn; see the summary.` : '']
+        text: [what.note, few, omitted ? `${omitted} more lines are not drawn; see the summary.` : '']
           .filter(Boolean)
           .join(' '),
       }),

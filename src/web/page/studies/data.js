@@ -8,8 +8,8 @@
  *   quantitiesOf(summary, paths)      [{key, label, unit, column, low, high}] that a chart can show
  *   cellsOf(summary, paths, quantity) [{at: {path: text}, y, low, high}]
  *   axesFor(cells, paths)             paths with more than one value, numbers first
- *   seriesOf(cells, paths, x)         {series: [{name, points}], values, heading, left}; values: words of a
- *                                     categorical axis; left: number of lines omitted */
+ *   seriesOf(cells, paths, x)         {series: [{name, points}], values, heading, omitted}; values: words of a
+ *                                     categorical axis; omitted: number of lines */
 
 const SERIES_MAX = 14; /* lines of one chart */
 const HASHES = /(^|_)(hash|definition|reference|film_expected|reference_film)$/;
@@ -18,7 +18,7 @@ const NAMES = {
   cpu_s: 'CPU time per frame',
   rays_total: 'rays per frame',
   noise_rms: 'noise of path tracing',
-  cut_fraction: 'share of the light that was cut',
+  cut_fraction: 'fraction of the light that was cut',
   imbalance: 'load imbalance of the workers',
   flip: 'FLIP error',
   error_rms: 'error against the reference, rms',
@@ -27,7 +27,7 @@ const NAMES = {
   peak_rss_bytes: 'peak memory',
   psnr_db: 'PSNR against the reference',
   ssim: 'SSIM against the reference',
-  others_fraction: 'CPU share of other programs',
+  others_fraction: 'fraction of the CPU used by other programs',
 };
 const NOT_SHOWN = new Set(['cell', 'n', 'marked', 'excluded', 'disturbed', 'undisturbed_n']);
 
@@ -54,13 +54,13 @@ export function unitOf(column) {
 
 export function quantitiesOf(summary, paths) {
   const { columns, rows } = summary;
-  const own = new Set(paths.map(({ path }) => path));
+  const axisPaths = new Set(paths.map(({ path }) => path));
   const part = /_(low|high|mean|min|max)$/;
   return columns
     .map((column, i) => ({ column, i }))
     .filter(
       ({ column, i }) =>
-        !own.has(column) &&
+        !axisPaths.has(column) &&
         !NOT_SHOWN.has(column) &&
         !(part.test(column) && columns.includes(column.replace(part, '_median'))) &&
         isNumeric(column, rows, i),
@@ -97,7 +97,7 @@ export function axesFor(cells, paths) {
   return [...some.filter(numeric), ...some.filter((one) => !numeric(one))];
 }
 
-/* Whether the value of one parameter determines that of the other; the other then does not distinguish lines. */
+/* Whether the value of `from` determines that of `path`, which then does not distinguish lines. */
 function follows(cells, path, from) {
   const seen = new Map();
   return cells.every((cell) => {
@@ -129,7 +129,7 @@ export function seriesOf(cells, paths, x) {
   }));
   return {
     series: series.slice(0, SERIES_MAX),
-    left: Math.max(0, series.length - SERIES_MAX),
+    omitted: Math.max(0, series.length - SERIES_MAX),
     values: words || !x ? all : null,
     heading: telling.length === 1 ? telling[0] : telling.map((path) => path.split('.').pop()).join(', '),
   };

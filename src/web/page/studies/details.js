@@ -21,8 +21,8 @@ const STARTS = {
 const stages = { measuring: 'measuring', moving: 'simulating the slime', images: 'rendering images' };
 
 function axisWords({ name, paths, units, count: points }) {
-  const own = paths.map((path, i) => (units[i] ? `${path} / ${units[i]}` : path)).join(', ');
-  return `${paths.length === 1 && paths[0] === name ? own : `${name} (${own})`}: ${points} values`;
+  const list = paths.map((path, i) => (units[i] ? `${path} / ${units[i]}` : path)).join(', ');
+  return `${paths.length === 1 && paths[0] === name ? list : `${name} (${list})`}: ${points} values`;
 }
 
 /* The number of disturbed rows, which are kept and used. */
@@ -73,9 +73,9 @@ function createProgress() {
       if (node.hidden) return;
       const done =
         now.stage === 'images'
-          ? (now.image - 1 + now.share) / now.images
+          ? (now.image - 1 + now.fraction) / now.images
           : now.frames_all
-            ? (now.frames_done + now.share) / now.frames_all
+            ? (now.frames_done + now.fraction) / now.frames_all
             : 0;
       bar.value = done;
       words.textContent = [

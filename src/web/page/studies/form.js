@@ -34,7 +34,7 @@ function estimated({ cells, rows, notes, text, said, ...times }) {
     element(
       'details',
       { class: 'study-text' },
-      element('summary', { text: 'The study file, and what the estimate is made of' }),
+      element('summary', { text: 'The study file, and how the time is estimated' }),
       element('pre', { tabindex: '0', text: said }),
       element('pre', { tabindex: '0', text }),
     ),
@@ -116,7 +116,7 @@ function createForm(lab, files, done) {
     shown() {
       const { file, saved } = lab.state || {};
       scene.textContent = file
-        ? `Of ${file}${saved ? '' : ', with its unsaved changes in all cells'}.`
+        ? `A study of ${file}${saved ? '' : ', with its unsaved changes in all cells'}.`
         : 'The scene has no file yet: save it first.';
     },
   };

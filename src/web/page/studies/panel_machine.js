@@ -71,14 +71,14 @@ function createElsewhere(root, lab) {
     element(
       'div',
       { class: 'machine' },
-      needsProgram(lab, 'The clocks, counters and disturbances of a machine are seen by the program only.', [
+      needsProgram(lab, 'Only the program sees the clocks, counters and disturbances of a machine.', [
         'cuvette machine',
       ]),
       group(
         'This browser',
         { id: 'machine-browser' },
         facts([
-          ['Processors', navigator.hardwareConcurrency || 'not told'],
+          ['Processors', navigator.hardwareConcurrency || 'not reported'],
           ['Browser', navigator.userAgent],
           ['Cuvette', lab.state?.version],
         ]),

@@ -64,7 +64,7 @@ function createStudies(root, lab) {
     ),
     place,
   );
-  refresh = () => all().catch(lab.fail);
+  refresh = () => fetchStudies().catch(lab.fail);
   lab.on('study', follow);
   lab.on('state', () => follow(lab.study));
   lab.on('restarted', () => refresh());
@@ -75,7 +75,7 @@ function createStudies(root, lab) {
     chosen = study.file;
     memory.set('study', chosen);
     showList();
-    one().catch(lab.fail);
+    fetchStudy().catch(lab.fail);
   }
 
   async function saved(file, start) {
@@ -83,7 +83,7 @@ function createStudies(root, lab) {
     memory.set('study', chosen);
     lab.say(`${file} saved.`);
     try {
-      await all();
+      await fetchStudies();
       const study = studies.find((each) => each.file === file);
       if (start && study) await run(study);
     } catch (error) {
@@ -95,7 +95,7 @@ function createStudies(root, lab) {
     list.show(studies, chosen, lab.study?.running ? lab.study : null);
   }
 
-  async function all() {
+  async function fetchStudies() {
     const reply = await lab.get('/api/studies');
     ({ studies, results } = reply);
     if (!studies.some((study) => study.file === chosen))
@@ -109,11 +109,11 @@ function createStudies(root, lab) {
             'parameters, and repetitions; New study makes one.',
         ),
       );
-    else await one();
+    else await fetchStudy();
   }
 
   /* Ignores a late reply about another study. */
-  async function one() {
+  async function fetchStudy() {
     const study = studies.find(({ file }) => file === chosen);
     if (!study) return;
     fetchedAt = Date.now();
@@ -157,7 +157,7 @@ function createStudies(root, lab) {
     asking = true;
     fetched = now.frames_done;
     try {
-      await (ended ? all() : one());
+      await (ended ? fetchStudies() : fetchStudy());
       if (studies.find(({ file }) => file === chosen)?.name === now.name) details.grew(ended);
     } catch (error) {
       lab.fail(error);
@@ -183,7 +183,7 @@ export const panel = {
 
 /* --- the list: one button per study, with its progress --- */
 
-const fractionOf = ({ frames_done: done, frames_all: all, share }) => (all ? (done + (share || 0)) / all : 0);
+const fractionOf = ({ frames_done: done, frames_all: all, fraction }) => (all ? (done + (fraction || 0)) / all : 0);
 
 function state(study, running) {
   if (running) return `running, ${Math.floor(100 * fractionOf(running))} %`;

@@ -57,9 +57,9 @@ function viewCommands(lab) {
 
 function createCameraKeys(lab, settings) {
   const commands = new Map(viewCommands(lab).map((each) => [each.keys.toLowerCase(), each.act]));
-  let held = null;
+  let keyGesture = null;
   lab.view.stage.addEventListener('keyup', () => {
-    held = null;
+    keyGesture = null;
   });
 
   return (event) => {
@@ -77,8 +77,8 @@ function createCameraKeys(lab, settings) {
       body = { zoom: event.key === 'PageUp' ? 1 / factor : factor };
     }
     if (!body) return false;
-    held ??= gesture('key');
-    moveCamera(lab, body, held);
+    keyGesture ??= gesture('key');
+    moveCamera(lab, body, keyGesture);
     return true;
   };
 }

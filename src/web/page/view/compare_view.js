@@ -2,7 +2,7 @@
  *
  * exports: createCompareView(lab, onsplit(fraction)) -> {set({a, map, mode, fraction, strength, pixel}), flip(on)}
  *   a, map      paths of images of B's size, or null
- *   mode        'b': B alone; 'wipe': A to the left of the handle, over the fraction 0..1 of the width; 'map': the
+ *   mode        'b': only B; 'wipe': A to the left of the handle, over the fraction 0..1 of the width; 'map': the
  *               map with opacity strength 0..1
  *   pixel       [x, y], a pixel to frame, or null
  * The handle is dragged with the pointer or moved with the arrow keys. */
@@ -24,7 +24,7 @@ export function createCompareView(lab, onsplit) {
     type: 'button',
     class: 'wipe-handle',
     role: 'slider',
-    'aria-label': 'Share of the reference image',
+    'aria-label': 'Fraction of the reference image',
     'aria-valuemin': 0,
     'aria-valuemax': 100,
     'aria-orientation': 'horizontal',

@@ -7,7 +7,7 @@ import { saveReply } from '../shared/save_file.js';
 import { button, choice, count, digits, element, facts, group, notice, replace, seconds, svg } from '../shared/ui.js';
 
 const TITLES = { rays: 'Rays per pixel', time: 'Time per pixel', cut: 'Cut light per pixel' };
-const UNITS = { rays: 'rays per pixel', time: 'ns per pixel', cut: 'share of cut light per pixel' };
+const UNITS = { rays: 'rays per pixel', time: 'ns per pixel', cut: 'fraction of cut light per pixel' };
 
 const ABOUT = {
   rays: () => 'Camera, reflected, refracted and shadow rays of each pixel; the same on every machine.',
@@ -16,8 +16,8 @@ const ABOUT = {
     `${threads === 1 ? 'thread' : 'threads'}: another measurement differs. Time is measured for batches of rays, and ` +
     `divided among the rays of each.`,
   cut: () =>
-    "The share of each pixel's light, by weight, that rays would have brought which render.depth or " +
-    'render.min_weight cut; the same on every machine. Its error is at most this share of the brightest such light.',
+    "The fraction of each pixel's light, by weight, that is missing because render.depth or render.min_weight cut " +
+    'rays; the same on every machine. Its error is at most this fraction of the brightest such light.',
 };
 
 const valueOf = {

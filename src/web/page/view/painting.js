@@ -8,7 +8,7 @@
  * PNG, which is exact. The head of an image: {serial, generation, pass, final, exact}; exact: a PNG. */
 
 const SLOW_S = 0.4; /* a link on which a PNG takes longer is slow */
-const PNG_BYTES = 300e3; /* before the first PNG */
+const PNG_BYTES = 300e3; /* assumed before the first PNG */
 const MEASURED_BYTES = 20e3; /* smaller images do not show the speed of a link */
 
 function createImageSource(lab) {

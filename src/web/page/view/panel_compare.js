@@ -48,21 +48,21 @@ function createModel(lab) {
   lab.on('image', (image) => {
     mine.current = Boolean(mine.answer) && image.final && mine.answer.b.serial === image.serial;
     if (image.final && !mine.current) ask();
-    else tell();
+    else notify();
   });
   lab.on('restarted', () => {
     Object.assign(mine, { reference: null, answer: null, error: null });
-    tell();
+    notify();
   });
   return mine;
 
-  function tell() {
+  function notify() {
     for (const listener of listeners) listener(mine);
   }
 
   async function ask() {
     again = true;
-    tell();
+    notify();
     if (asking) return;
     asking = true;
     while (again) {
@@ -82,11 +82,11 @@ function createModel(lab) {
         mine.current = false; /* B is being rendered again, or A was cleared: an event will follow */
       else mine.error = error;
     }
-    tell();
+    notify();
   }
 }
 
-const same = ({ a, b }) => a.width === b.width && a.height === b.height;
+const sameSize = ({ a, b }) => a.width === b.width && a.height === b.height;
 
 /* How A and B are shown: the mode, its slider, and the flip key. */
 function createShow(lab) {
@@ -103,7 +103,7 @@ function createShow(lab) {
     onchange: () => draw(),
   });
   const fraction = slider({
-    label: 'Share of A',
+    label: 'Fraction of A',
     min: 0,
     max: 100,
     step: 1,
@@ -232,7 +232,7 @@ function numbers({ a, b, comparison, changed }, goto) {
 
 /* The map of an earlier image would hide the newest one while the scene changes or a slime plays. */
 function addressesOf({ reference, answer, current }) {
-  if (!reference || (answer && !same(answer))) return { a: null, map: null };
+  if (!reference || (answer && !sameSize(answer))) return { a: null, map: null };
   const map = current && answer?.comparison ? `/api/compare.png?a=${reference.serial}&b=${answer.b.serial}` : null;
   return { a: `/api/reference.png?a=${reference.serial}`, map };
 }

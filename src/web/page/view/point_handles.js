@@ -66,9 +66,9 @@ export function createPointHandles(lab, { list, symbol, what }) {
     const bottom = Math.min(lower.y, view.stage.clientHeight) - EDGE;
     if (seen) {
       const at = view.toScreen(seen.x, seen.y);
-      const held = { x: Math.min(right, Math.max(left, at.x)), y: Math.min(bottom, Math.max(top, at.y)) };
-      const outside = Math.hypot(held.x - at.x, held.y - at.y) > 1;
-      return { ...held, outside, behind: false, angle: Math.atan2(at.y - held.y, at.x - held.x) };
+      const clamped = { x: Math.min(right, Math.max(left, at.x)), y: Math.min(bottom, Math.max(top, at.y)) };
+      const outside = Math.hypot(clamped.x - at.x, clamped.y - at.y) > 1;
+      return { ...clamped, outside, behind: false, angle: Math.atan2(at.y - clamped.y, at.x - clamped.x) };
     }
     const across = [dot(d, camera.right), -dot(d, camera.up)];
     const length = Math.hypot(...across) || 1;

@@ -187,7 +187,7 @@ function createPlace(stage, view, changed) {
     else {
       place.left += dx;
       place.top += dy;
-      hold();
+      keepInSight();
     }
   }
 
@@ -212,7 +212,7 @@ function createPlace(stage, view, changed) {
     place.scale = Math.min(LARGEST, Math.max(SMALLEST, place.scale * factor));
     place.left = at.x - x * place.scale;
     place.top = at.y - y * place.scale;
-    hold();
+    keepInSight();
   }
 
   function actual() {
@@ -226,11 +226,11 @@ function createPlace(stage, view, changed) {
     place.fitted = false;
     place.left += dx;
     place.top += dy;
-    hold();
+    keepInSight();
   }
 
   /* Keeps the image over at least a quarter of the stage. */
-  function hold() {
+  function keepInSight() {
     const keep = (start, length, room) => Math.min(room * 0.75, Math.max(room * 0.25 - length, start));
     place.left = keep(place.left, view.width * place.scale, place.width);
     place.top = keep(place.top, view.height * place.scale, place.height);
@@ -251,13 +251,13 @@ function createNotes() {
     old?.node.remove();
     notes.delete(name);
     if (text === null) return;
-    const made = element(
+    const line = element(
       'div',
       { class: 'view-note' },
       element('span', { text }),
       button(`Close: ${text}`, onclose, { icon: 'close', bare: true, small: true, kind: 'quiet' }),
     );
-    notes.set(name, { text, node: made });
-    node.append(made);
+    notes.set(name, { text, node: line });
+    node.append(line);
   }
 }
