@@ -1,5 +1,5 @@
-/* API: the lessons of the gallery, those of the folder and those that belong to the program, and thumbnails. Lessons of
- * the program are read from its own folder, which is outside the chosen one; requests name lessons, never paths. */
+/* API: the lessons of the folder and of the program, and thumbnails. The program's lessons are in its installation,
+ * outside the chosen folder, so requests name lessons, never paths. */
 #include "base/json_build.h"
 #include "base/text.h"
 #include "report/json.h"

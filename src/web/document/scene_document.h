@@ -1,5 +1,5 @@
 /* The scene document: the scene that all pages edit, with its undo history. Each change makes a new generation; undo
- * and redo do too. Thread-safe. A change edits a copy, which is checked as a whole and against the limits below
+ * and redo do too. Thread-safe. A change edits a copy, which is validated, also against the limits below,
  * before it replaces the scene, so that no reader sees a partial change. Ownership: scene_document_create creates,
  * scene_document_destroy releases; scenes passed in or returned belong to the receiver, except the document's own
  * copy during a change. Errors: STATUS_BAD_INPUT with the reason; the scene is then unchanged. */

@@ -1,7 +1,6 @@
 /* libmicrohttpd's functions, and the server's functions that need its types; the others are in web/http/http_private.h.
- * libmicrohttpd is loaded when a server starts: the library brings GnuTLS, and all its
- * dependencies would cost every command 6 ms at its start. The library's own header gives their types and their
- * meanings. */
+ * The library is loaded when a server starts: it depends on GnuTLS, and loading all dependencies would cost every
+ * command 6 ms. Its own header has the types and meanings of its functions. */
 #pragma once
 
 #include "base/status.h"

@@ -1,7 +1,7 @@
 /* The resolution of the images before the final one, and of live frames. Pure functions.
  *
  * Passes of a still scene: their number and resolution are chosen from the measured speed, so that the first image
- * appears quickly. Live frames of a moving one: the resolution drops when frames take longer than their time and rises
+ * appears quickly. Live frames of a moving scene: the resolution drops when frames exceed their time and rises
  * when there is time left, one step at a time, with hysteresis. */
 #pragma once
 

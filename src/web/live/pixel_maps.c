@@ -1,4 +1,4 @@
-/* Renders the maps of a final image once more, and keeps those of the newest image. */
+/* Renders a final image once more, with maps, and keeps the maps of the newest image. */
 #include "image/image.h"
 #include "job/job.h"
 #include "scene/model/scene.h"

@@ -130,7 +130,7 @@ export function createPanels(side, splitter, workspace, panels, lab) {
   }
 }
 
-/* The splitter moves the left edge of the panels, or the upper edge where they are under the image (layout.css). */
+/* The splitter moves the left edge of the panels, or the upper edge if they are under the image (layout.css). */
 function createSplitter(splitter, workspace) {
   const root = document.documentElement.style;
   const side = workspace.querySelector('.side');

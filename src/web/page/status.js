@@ -165,7 +165,7 @@ function items(lab) {
 
 const waiting = ({ kind }) => (kind === 'server' ? 'Connecting …' : 'Starting the laboratory …');
 
-/* A browser's clock is coarse, and its code differs from the program's: such times belong to no study. */
+/* A browser's clock is coarse, and its code differs from the program's, so its times are useless for studies. */
 const time = ({ kind }, wall) =>
   kind === 'server'
     ? fact('time', seconds(wall), 'wall time of the pass')

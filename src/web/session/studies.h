@@ -1,4 +1,4 @@
-/* Studies of the laboratory: their files in the chosen folder, the one that runs, and figures of their results.
+/* Studies of the laboratory: their files in the chosen folder, the running study, and figures of their results.
  * Ownership: results belong to the caller. Errors: STATUS_BAD_INPUT with the reason; STATUS_INTERRUPTED for a conflict
  * with the current state (409). */
 #pragma once

@@ -33,7 +33,7 @@ def engine_part(wasm, set_name, name):
 
 
 def write_folder(parts, wasm, folder):
-    """laboratory/: each set of instructions of the engine in a folder of its own; a browser loads one."""
+    """laboratory/: a folder for each set of instructions of the engine, of which a browser loads one."""
     head = bundle.script(parts['boot']) + '<link rel="modulepreload" href="lab.js" />\n'
     write(folder / 'index.html', bundle.document(head, '<script type="module" src="lab.js"></script>\n'))
     write(folder / 'lab.js', parts['lab'])
@@ -44,7 +44,7 @@ def write_folder(parts, wasm, folder):
 
 
 def one_file(parts, wasm):
-    """The engine is the one with vectors: every browser that can unpack it has them."""
+    """laboratory.html, with the engine for vectors: every browser that can unpack it has them."""
     content = {'worker': engine_part(wasm, SETS[0], ENGINE[0]), 'module': engine_part(wasm, SETS[0], ENGINE[1]),
                'files': parts['files'].encode()}
     end = ''.join(bundle.part_element(name, part) for name, part in content.items())

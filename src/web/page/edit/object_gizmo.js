@@ -235,7 +235,7 @@ export function createGizmo(lab, choice, mark, movable) {
   }
 }
 
-/* --- where the handles are, and what a pointer at a point of the image means for them ---
+/* --- the positions of the handles, and the travel along or about an axis that a point of the image means ---
  * Pure functions of the camera; vectors and lengths in scene units, image points in image pixels. */
 
 const AXES = ['x', 'y', 'z'];

@@ -135,7 +135,7 @@ export function createScenePads(lab) {
     pads.show({ turns: true, scales: true }),
   );
 
-  /* The camera alone turns in place and cannot be scaled. */
+  /* If only the camera is selected, it turns in place and cannot be scaled. */
   function send(what, body, how) {
     if (!scene.name) return lab.say('Select solids, lights or the camera first.');
     return lab.change(`/api/objects/${encodeURIComponent(scene.name)}/${what}`, body, how).catch(lab.fail);

@@ -101,7 +101,7 @@ export function objectTool(lab, choice, mark) {
     if (now.far) dragTo(now, now.last);
   }
 
-  /* With snapping, in whole steps along each axis from where the object was. */
+  /* With snapping, the object moves in steps along each axis, counted from its position before the drag. */
   function dragTo(now, point) {
     if (!(now.depth > 0) || !choice.name) return;
     const all = offset(point.x - now.from.x, point.y - now.from.y, now.depth);

@@ -12,7 +12,7 @@ const MANY = 36; /* with more main parameters, only the first groups and Renderi
 const LAST = ['camera', 'background', 'render'];
 const TITLES = { camera: 'Camera', background: 'Background', render: 'Rendering' };
 
-/* The main parameters, of which those that the scene has are shown. */
+/* The main parameters; a scene shows only those that it has. */
 const MAIN = {
   clear: ['medium', 'ior', 'coefficients', 'color', 'reflectivity', 'transparency', 'absorb_per_m'],
   opaque: ['color', 'reflectivity'],

@@ -1,7 +1,7 @@
 /* The search for parameters by words of their path, their description or everyday language, as in `cuvette params`; and
  * a field that chooses a parameter with it.
  * exports:
- *   findParams(lab, text, near) -> promise of rows, best first; among equally good ones those of the set near first
+ *   findParams(lab, text, near) -> promise of rows, best first; among equals, the paths in the set near first
  *   createParamPicker(lab, {label, onchoose(row)}) -> {node, input, row}
  *     row: the chosen row of the parameter table, or null while the text is no parameter's path */
 

@@ -198,7 +198,7 @@ export function createLesson(root, lab, lesson, { back, again }) {
   }
 }
 
-/* --- controls: one parameter each, named as a person names it ---
+/* --- controls: one parameter each, with an everyday name ---
  * A control is {node, update()}; update shows the scene's value, and returns false if there is no such parameter. */
 
 const PART = /\.([xyzrgb])$/;
@@ -210,7 +210,7 @@ function valueOf(lab, path) {
   return Array.isArray(value) && part ? value['xyzrgb'.indexOf(part[1]) % 3] : value;
 }
 
-/* The medium that an index is taken from, if not from the parameter itself; '' for other parameters. */
+/* The medium that an index comes from, if not from the parameter itself; '' for other parameters. */
 function mediumOf(lab, path) {
   const [object, name] = splitPath(path);
   return name === 'ior' && whyUnused(lab, object, name) ? lab.param(`${object}.medium`).value : '';

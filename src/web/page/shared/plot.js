@@ -178,7 +178,7 @@ function line(one, index, across, up, shift) {
   );
 }
 
-/* Texts of vertical lines are at the top, each lower than the one before; those of horizontal ones at the right. */
+/* Texts of vertical lines are at the top, each lower than the last; texts of horizontal lines are at the right. */
 function lines(marks, area, across, up) {
   const inside = (scale, at) => Math.min(Math.max(at, scale.from), scale.to);
   let down = 0;

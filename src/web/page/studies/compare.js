@@ -13,7 +13,7 @@ const CELLS = 'cells';
 
 const valuesOf = ({ columns, rows }, path) => [...new Set(rows.map((row) => row[columns.indexOf(path)]))];
 
-/* The axes with more than one value, each by a parameter that tells its points apart: [{path, paths, values}]. */
+/* The axes with more than one value, each with a parameter whose values are all different: [{path, paths, values}]. */
 function axesOf(study, summary) {
   return study.axes
     .map(({ paths, count }) => {

@@ -7,7 +7,7 @@
  * While changes follow each other, before the final pass, and first of all on a slow link, a small JPEG; at rest the
  * PNG, which is exact. The head of an image: {serial, generation, pass, final, exact}; exact: a PNG. */
 
-const SLOW_S = 0.4; /* a link on which a PNG takes longer is slow */
+const SLOW_S = 0.4; /* a link is slow if a PNG needs longer */
 const PNG_BYTES = 300e3; /* assumed before the first PNG */
 const MEASURED_BYTES = 20e3; /* smaller images do not show the speed of a link */
 

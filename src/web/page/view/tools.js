@@ -219,9 +219,9 @@ const LEAST_PX = 20; /* fingers that touch each other have no useful ratio of di
 
 function createPinch(stage, lab, letGo) {
   const touches = new Map();
-  /* While two fingers are down, and until both are lifted: where they began, and what is sent already. One finger moves
-   * after the other, so the pan is that of the whole gesture at its present distance: a distance in between, or one
-   * that the server has not reached yet, would shift the image. */
+  /* From the second finger down until both are lifted: their start, and the moves that are already sent. The fingers
+   * move one after the other, so the pan is computed for the complete gesture at its present distance: a distance in
+   * between, or one that the server has not reached yet, would shift the image. */
   let pinch = null; /* {x, y, spread, distance; sent: {spread, right, up}; gesture} */
 
   const listen = (name, act) =>
