@@ -115,7 +115,7 @@ export const cases = {
     await refused(t, lab, { ...sweep, frames: 1000 }, 400, /more than 1 GiB/);
     await refused(t, lab, { ...sweep, parameter: 'liquid.iro' }, 400, /no such parameter/);
     await refused(t, lab, { ...sweep, parameter: 'camera.position' }, 400, /not a number/);
-    await refused(t, lab, { ...sweep, parameter: 'render.width', from: 800, to: 400 }, 400, /one size/);
+    await refused(t, lab, { ...sweep, parameter: 'render.width', from: 800, to: 400 }, 400, /size of the frames/);
     await refused(t, lab, { ...sweep, to: -1 }, 400, /liquid.ior/);
     await refused(t, lab, { ...sweep, fps: 0 }, 400, /from 1 to 240/);
     await refused(t, lab, { ...sweep, format: 'gif' }, 400, /use y4m or apng/);
@@ -141,7 +141,7 @@ export const cases = {
       await box.getByLabel('Frames', { exact: true }).fill('6');
       await box.getByText(/6 frames, 240 ms long; about/).waitFor();
       await box.getByRole('button', { name: 'Render' }).click();
-      await box.getByRole('img', { name: 'The film' }).waitFor();
+      await box.getByRole('img', { name: 'The video' }).waitFor();
       await box.getByText(/6 frames in/).waitFor();
       await screen.quiet();
       await screen.until(() => document.querySelector('.video-image').naturalWidth === 800);
