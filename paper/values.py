@@ -47,7 +47,7 @@ def exact(number):
 
 
 # Columns that differ between repetitions; an axis, such as toy.time_s, does not.
-MEASURED = re.compile(r"_s$|_s_|^imbalance$|_share$|^peak_rss|_switches$|^cycles|^instructions")
+MEASURED = re.compile(r"_s$|_s_|^imbalance$|_fraction$|^peak_rss|_switches$|^cycles|^instructions")
 CONSTANT = re.compile(r"^differing_fraction$|^[a-z-]+[.]")
 
 

@@ -11,7 +11,7 @@
 
 enum { CSV_BYTES_MAX = 1 << 30 };
 
-static void add(csv_line *line, const char *bytes, size_t count)
+static void add(csv_buffer *line, const char *bytes, size_t count)
 {
     if (line->failed)
         return;
@@ -30,14 +30,14 @@ static void add(csv_line *line, const char *bytes, size_t count)
     line->text[line->size] = 0;
 }
 
-static void separate(csv_line *line)
+static void separate(csv_buffer *line)
 {
     if (line->started)
         add(line, ",", 1);
     line->started = true;
 }
 
-void csv_text(csv_line *line, const char *text)
+void csv_text(csv_buffer *line, const char *text)
 {
     separate(line);
     if (!text)
@@ -55,36 +55,36 @@ void csv_text(csv_line *line, const char *text)
     add(line, "\"", 1);
 }
 
-void csv_real(csv_line *line, double value)
+void csv_real(csv_buffer *line, double value)
 {
     char text[NUMBER_TEXT_MAX];
     csv_text(line, isnan(value) ? NULL : number_format(value, text));
 }
 
-void csv_count(csv_line *line, int64_t value)
+void csv_count(csv_buffer *line, int64_t value)
 {
     char text[NUMBER_TEXT_MAX];
     snprintf(text, sizeof text, "%" PRId64, value);
     csv_text(line, value < 0 ? NULL : text);
 }
 
-void csv_hash(csv_line *line, uint64_t value)
+void csv_hash(csv_buffer *line, uint64_t value)
 {
     char text[NUMBER_TEXT_MAX];
     snprintf(text, sizeof text, "%016" PRIx64, value);
     csv_text(line, text);
 }
 
-void csv_end(csv_line *line)
+void csv_end(csv_buffer *line)
 {
     add(line, "\n", 1);
     line->started = false;
 }
 
-void csv_line_free(csv_line *line)
+void csv_buffer_free(csv_buffer *line)
 {
     free(line->text);
-    *line = (csv_line){0};
+    *line = (csv_buffer){0};
 }
 
 /* csv_split that stores at most `most` fields. */

@@ -1,7 +1,7 @@
 /* Comma-separated values (RFC 4180), restricted to fields without line breaks. In a file of this program a line is
  * complete if and only if its newline is present; other programs and people leave out the last newline, end lines with
  * CR LF, and begin with a byte order mark, which csv_read_any accepts. Ownership: csv_read allocates, csv_destroy
- * releases; a csv_line is released with csv_line_free. */
+ * releases; a csv_buffer is released with csv_buffer_free. */
 #pragma once
 
 #include "base/status.h"
@@ -9,21 +9,21 @@
 #include <stdint.h>
 
 /* The text of one or more lines under construction. Running out of memory sets failed, and later calls do nothing. */
-typedef struct csv_line {
+typedef struct csv_buffer {
     char *text;
     size_t size, capacity;
     bool started, failed;
-} csv_line;
+} csv_buffer;
 
 /* Each function appends one field. Missing values are written as NA: a NULL text, a NaN, a negative integer in
  * csv_count. */
-void csv_text(csv_line *line, const char *text);
-void csv_real(csv_line *line, double value);
-void csv_count(csv_line *line, int64_t value);
-void csv_hash(csv_line *line, uint64_t value); /* 16 hex digits */
+void csv_text(csv_buffer *line, const char *text);
+void csv_real(csv_buffer *line, double value);
+void csv_count(csv_buffer *line, int64_t value);
+void csv_hash(csv_buffer *line, uint64_t value); /* 16 hex digits */
 /* Ends the line; later fields start the next line in the same text. */
-void csv_end(csv_line *line);
-void csv_line_free(csv_line *line);
+void csv_end(csv_buffer *line);
+void csv_buffer_free(csv_buffer *line);
 
 /* The offset after the last complete line of a text. A line is complete if its newline is there and no byte is 0: after
  * a power cut, a part of the last line may never have been written, and reads as zeros. */

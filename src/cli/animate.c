@@ -31,8 +31,8 @@
 /* The account of an animation. */
 typedef struct animate_totals {
     int64_t rendered, kept;
-    double wall_s;         /* render time */
-    double step_s, skin_s; /* seconds spent on steps and surfaces, also for kept frames */
+    double wall_s;            /* render time */
+    double step_s, surface_s; /* seconds spent on steps and surfaces, also for kept frames */
     double simulated_s;
     uint64_t steps;
 } animate_totals;
@@ -101,7 +101,7 @@ static status advance(animation_job *f, double to_s, bool surfaces, diagnostic *
     animate_totals *totals = f->totals;
     totals->steps += f->last_motion.steps;
     totals->step_s += f->last_motion.step_s;
-    totals->skin_s += f->last_motion.skin_s;
+    totals->surface_s += f->last_motion.surface_s;
     totals->simulated_s = to_s;
     return STATUS_OK;
 }
@@ -296,7 +296,7 @@ static status print_account(const animate_request *request, const scene *s, cons
         (json_int_t)(a->rendered + a->kept), "rendered", (json_int_t)a->rendered, "kept", (json_int_t)a->kept, "fps",
         (json_int_t)request->times.fps_num, (json_int_t)request->times.fps_den, "start_s",
         json_of_real(request->times.start_s), "simulated_s", json_of_real(a->simulated_s), "steps",
-        (json_int_t)a->steps, "step_s", json_of_real(a->step_s), "skin_s", json_of_real(a->skin_s), "wall_s",
+        (json_int_t)a->steps, "step_s", json_of_real(a->step_s), "surface_s", json_of_real(a->surface_s), "wall_s",
         json_of_real(a->wall_s), "wall_s_mean",
         json_of_real(a->rendered ? a->wall_s / (double)a->rendered : (double)NAN), "params", report_params(s));
     return o ? json_print(o, why) : out_of_memory(why);

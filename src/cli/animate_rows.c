@@ -21,7 +21,7 @@ typedef struct existing_row {
     char film_hash[32];
 } existing_row;
 
-static void put(csv_line *line, const animate_row *r, const char *name)
+static void put(csv_buffer *line, const animate_row *r, const char *name)
 {
     row_put(line, frame_quantity(name), r->account, -1);
 }
@@ -39,7 +39,7 @@ static void put(csv_line *line, const animate_row *r, const char *name)
     X("triangles", put(line, r, "triangles"))              \
     X("steps", csv_count(line, (int64_t)m.steps))          \
     X("step_s", csv_real(line, m.step_s))                  \
-    X("skin_s", csv_real(line, m.skin_s))                  \
+    X("surface_s", csv_real(line, m.surface_s))            \
     X("refitted", csv_count(line, m.hierarchies.refitted)) \
     X("rebuilt", csv_count(line, m.hierarchies.rebuilt))   \
     X("refit_s", csv_real(line, m.hierarchies.refit_s))    \
@@ -60,7 +60,7 @@ static void put(csv_line *line, const animate_row *r, const char *name)
     X("isa", put(line, r, "isa"))                          \
     X("config", put(line, r, "config"))
 
-static void put_header(csv_line *line)
+static void put_header(csv_buffer *line)
 {
 #define NAME(name, put) csv_text(line, name);
     COLUMNS(NAME)
@@ -68,7 +68,7 @@ static void put_header(csv_line *line)
     csv_end(line);
 }
 
-static void put_row(csv_line *line, const animate_row *r)
+static void put_row(csv_buffer *line, const animate_row *r)
 {
     const scene_motion_report m = r->motion;
     const softbody_quantities b = softbody_measure(r->body);
@@ -133,7 +133,7 @@ static status open_table(const char *path, const char *header, table **out, diag
 
 status animate_rows_open(const char *path, uint64_t definition, bool restart, animate_rows **out, diagnostic *why)
 {
-    csv_line header = {0};
+    csv_buffer header = {0};
     put_header(&header);
     animate_rows *rows = calloc(1, sizeof *rows);
     csv *there = NULL;
@@ -146,7 +146,7 @@ status animate_rows_open(const char *path, uint64_t definition, bool restart, an
         result = refuse(path, "already has rows, but this animation starts from the beginning", why);
     THEN(result, open_table(path, header.text, &rows->file, why));
     csv_destroy(there);
-    csv_line_free(&header);
+    csv_buffer_free(&header);
     if (result != STATUS_OK) {
         animate_rows_close(rows);
         rows = NULL;
@@ -188,9 +188,9 @@ status animate_rows_add(animate_rows *rows, const animate_row *row, diagnostic *
             "frame %" PRId64 " has film hash %s, but its row has %s", row->frame, hash, there->film_hash);
     if (there)
         return STATUS_OK;
-    csv_line line = {0};
+    csv_buffer line = {0};
     put_row(&line, row);
     status result = line.failed ? out_of_memory(why) : table_append(rows->file, line.text, line.size, why);
-    csv_line_free(&line);
+    csv_buffer_free(&line);
     return result;
 }

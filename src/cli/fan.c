@@ -89,7 +89,7 @@ static status check_request(void *context, diagnostic *why)
 
 static status write_fan(const void *content, FILE *out, diagnostic *why)
 {
-    const fanned *t = content;
+    const fan_output *t = content;
     return t->as_csv ? fan_write_csv(t, out, why) : fan_write_drawing(t, out, why);
 }
 
@@ -109,11 +109,11 @@ static void print_summary(const fan_request *request, const fan *f)
 static status trace_fan(const fan_request *request, const scene *s, probe *p, diagnostic *why)
 {
     fan f = {0};
-    status result = fan_follow(p, &request->rule, &f, why);
+    status result = fan_trace(p, &request->rule, &f, why);
     if (result == STATUS_BAD_INPUT)
         diagnostic_locate(why, "fan", 0, 0);
     if (result == STATUS_OK) {
-        const fanned t = {s, p, &request->rule, &f, request->full_trees, request->format == FAN_CSV};
+        const fan_output t = {s, p, &request->rule, &f, request->full_trees, request->format == FAN_CSV};
         result = outputs_write_text(request->input.output, write_fan, &t, why);
     }
     if (result == STATUS_OK)

@@ -26,7 +26,7 @@ static const command_form form = {
 
 static void print_disturbance(int columns, const char *label, const char *text)
 {
-    const char *advice = usage_advice(text);
+    const char *advice = disturbance_advice(text);
     wrap_row(stdout, columns, label, "%s%s%s", text, advice[0] ? ": " : "", advice);
 }
 

@@ -105,7 +105,7 @@ static void print_text(const realism_report *r, int columns)
 static status print_curve(const scene *s, isa level, realism_curve which, diagnostic *why)
 {
     realism_points points;
-    TRY(realism_trace_curve(s, level, which, &points, why));
+    TRY(realism_measure_curve(s, level, which, &points, why));
     realism_write_curve(which, &points, stdout);
     return STATUS_OK;
 }

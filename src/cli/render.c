@@ -47,7 +47,7 @@ static status command_of(const scene_input *input, const char *path, bool live, 
 
 static status write_page(const void *content, FILE *out, diagnostic *why)
 {
-    return report_page_write(content, out, why);
+    return page_write_html(content, out, why);
 }
 
 /* Writes the page completely or not at all. live: the laboratory's code (report/page.h); NULL: none. */
@@ -61,13 +61,13 @@ static status render_page_write(const scene_input *input, const job_account *f, 
         img->tone = camera_tone(f->of);
     THEN(code, command_of(input, path, live, &command_text, why));
     if (code == STATUS_OK) {
-        const report_page_content page = {.s = f->of,
-                                          .level = level,
-                                          .rows = image_rows_of(img),
-                                          .bits = bits,
-                                          .film_hash = job_account_hash(f),
-                                          .command = command_text,
-                                          .live = live};
+        const page_content page = {.s = f->of,
+                                   .level = level,
+                                   .rows = image_rows_of(img),
+                                   .bits = bits,
+                                   .film_hash = job_account_hash(f),
+                                   .command = command_text,
+                                   .live = live};
         code = outputs_write_text(path, write_page, &page, why);
     }
     free(command_text);

@@ -41,7 +41,7 @@ static status malformed(const scene_edit *edit, const char *text, diagnostic *wh
 static status apply_set(scene *s, const scene_edit *edit, const char *path, const char *value, diagnostic *why)
 {
     (void)edit;
-    return scene_put(s, path, value, why);
+    return scene_set_property(s, path, value, why);
 }
 
 static status apply_move(scene *s, const scene_edit *edit, const char *name, const char *text, diagnostic *why)
@@ -110,7 +110,7 @@ static status put_parameter(scene *s, const char *name, char *parameter, bool wa
         return diagnose(why, STATUS_BAD_INPUT, "write PARAMETER=VALUE after each comma", "'%.80s' has no value",
                         parameter);
     snprintf(path, sizeof path, "%s.%.*s", name, (int)(length < SCENE_NAME_MAX ? length : SCENE_NAME_MAX), parameter);
-    return scene_put(s, path, equals + 1, why);
+    return scene_set_property(s, path, equals + 1, why);
 }
 
 static status put_parameters(scene *s, const char *name, const char *text, bool wants_material, diagnostic *why)

@@ -51,7 +51,7 @@ status scene_input_probe(const scene_input *input, const scene *s, isa level, pr
 {
     const status result = probe_create(s, level, out, why);
     if (result == STATUS_OK && has_one_wavelength(input))
-        probe_one_wavelength(*out);
+        probe_use_one_wavelength(*out);
     return result;
 }
 
@@ -126,9 +126,9 @@ status scene_input_isa(isa *level, diagnostic *why)
     return locate_failure(why, "environment", isa_choose(level, why));
 }
 
-static const job_sharing *frame_sharing; /* how the program distributes frames; NULL: it does not */
+static const job_distribution *frame_sharing; /* how the program distributes frames; NULL: it does not */
 
-void scene_input_share(const job_sharing *sharing)
+void scene_input_distribute(const job_distribution *sharing)
 {
     frame_sharing = sharing;
 }
@@ -148,7 +148,7 @@ static void print_note(void *context, const scene_note *note)
     terminal_note(note_line(note, line, sizeof line));
 }
 
-static const note_taker printer = {print_note, NULL};
+static const note_sink printer = {print_note, NULL};
 
 void scene_input_note_hints(const scene *s)
 {
@@ -218,7 +218,7 @@ static void compare_place(void *context, const scene_note *note)
 static bool is_hinted(const scene *s, const char *path)
 {
     place_search x = {path, false};
-    scene_hints(s, &(note_taker){compare_place, &x});
+    scene_hints(s, &(note_sink){compare_place, &x});
     return x.found;
 }
 
@@ -232,7 +232,7 @@ void scene_input_note_inert_assignment(const scene *s, const char *assignment)
 {
     char path[PATH_MAX_HERE];
     inert_answer answer;
-    if (path_of(NULL, assignment, path) && inert_ask(s, path, NULL, &answer))
+    if (path_of(NULL, assignment, path) && param_is_inert(s, path, NULL, &answer))
         print_inert_note(&answer);
 }
 
@@ -266,8 +266,8 @@ static void note_changes(const scene *s, const scene_input *input, const inert_w
         inert_answer answer;
         if (!path_of(input->changes[i].path, input->changes[i].text, path) || is_set_again(input, i, path))
             continue;
-        const bool is_plain = inert_ask(s, path, NULL, &answer);
-        if (witness ? !is_plain && inert_ask(s, path, witness, &answer) : is_plain && !is_hinted(s, path))
+        const bool is_plain = param_is_inert(s, path, NULL, &answer);
+        if (witness ? !is_plain && param_is_inert(s, path, witness, &answer) : is_plain && !is_hinted(s, path))
             print_inert_note(&answer);
     }
 }

@@ -101,7 +101,7 @@ static void note_rows(const study *s, const study_request *request, const study_
 static void note_disturbance(void *context, const char *text)
 {
     char line[400];
-    const char *advice = usage_advice(text);
+    const char *advice = disturbance_advice(text);
     (void)context;
     snprintf(line, sizeof line, "this machine: %s%s%s", text, advice[0] ? ": " : "", advice);
     terminal_note(line);
@@ -112,7 +112,7 @@ static void note_machine(void)
 {
     static bool noted;
     if (!noted)
-        usage_disturbances(0, note_disturbance, NULL);
+        disturbances_report(0, note_disturbance, NULL);
     noted = true;
 }
 

@@ -141,7 +141,7 @@ static bool has_note_at(const collector *c, const char *place)
 static void ask_inert(collector *c, const scene *setting, const char *path)
 {
     inert_answer answer;
-    if (!has_note_at(c, path) && inert_ask(setting, path, NULL, &answer))
+    if (!has_note_at(c, path) && param_is_inert(setting, path, NULL, &answer))
         add_note(c, &answer.note);
 }
 
@@ -164,7 +164,7 @@ static void ask_all_inert(collector *c, const scene *setting)
 
 static status note_settings(collector *c, diagnostic *why)
 {
-    const note_taker taker = {add_note, c};
+    const note_sink taker = {add_note, c};
     c->weight = 1;
     for (c->cell = 0; c->cell < study_cell_count(c->s); c->cell++) {
         scene *setting;
@@ -189,7 +189,7 @@ static status trace_cell(collector *c, isa level, diagnostic *why)
     for (size_t i = 0; i < setting->mesh_count; i++)
         moves |= setting->meshes[i].source == MESH_SLIME;
     status code = moves ? scene_load_files(setting, why) : scene_load(setting, why);
-    THEN(code, lint_scene(setting, level, &(note_taker){add_note, c}, why));
+    THEN(code, lint_scene(setting, level, &(note_sink){add_note, c}, why));
     scene_destroy(setting);
     return code;
 }

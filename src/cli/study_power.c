@@ -142,7 +142,8 @@ static void print_tsv(const power_rates *r)
     for (size_t i = 0; i < r->count; i++)
         for (int rule = 0; rule < DESIGN_RULES; rule++) {
             const power_rate *p = &r->rates[i];
-            const share_interval wrong = power_wrong(p, (design_rule)rule), silent = power_silent(p, (design_rule)rule);
+            const fraction_interval wrong = power_wrong_claims(p, (design_rule)rule),
+                                    silent = power_no_claims(p, (design_rule)rule);
             if (isnan(wrong.share))
                 continue;
             printf("%s\t%s\t%s\t%zu\t%zu\t%s\t%zu\t%zu", p->a ? p->a : "all", p->b ? p->b : "all",
@@ -168,7 +169,7 @@ static void print_tsv(const power_rates *r)
 /* The percentage of wrong claims, "12 [4, 27]"; for two different cells that of wrong claims and of none, "12 / 30". */
 static char *rate_text(const power_rate *r, design_rule rule)
 {
-    const share_interval wrong = power_wrong(r, rule), silent = power_silent(r, rule);
+    const fraction_interval wrong = power_wrong_claims(r, rule), silent = power_no_claims(r, rule);
     if (isnan(wrong.share))
         return strdup("");
     return r->truth ? text_format("%.0f / %.0f", 100 * wrong.share, 100 * silent.share)

@@ -118,7 +118,7 @@ static status write_as(const void *content, FILE *out, diagnostic *why)
 }
 
 typedef struct formatted_beams {
-    beamed beams;
+    beam_output beams;
     trace_format format;
 } formatted_beams;
 

@@ -53,15 +53,15 @@ static status read_rule(const cuvette_fan_rule *given, fan_rule *out, diagnostic
     return STATUS_OK;
 }
 
-static fanned content_of(const cuvette_fan *f)
+static fan_output content_of(const cuvette_fan *f)
 {
-    return (fanned){f->query->model, f->query->inspector, &f->rule, &f->traced, false, false};
+    return (fan_output){f->query->model, f->query->inspector, &f->rule, &f->traced, false, false};
 }
 
 static status copy_out(cuvette_fan *f, diagnostic *why)
 {
     const fan *from = &f->traced;
-    const fanned content = content_of(f);
+    const fan_output content = content_of(f);
     f->nodes = tree_nodes_make(f->query, from->node, from->node_count);
     f->rays = calloc((size_t)from->count + 1, sizeof *f->rays);
     f->crossings = calloc((size_t)from->crossing_count + 1, sizeof *f->crossings);
@@ -74,7 +74,7 @@ static status copy_out(cuvette_fan *f, diagnostic *why)
                                        .count = ray->count,
                                        .leaves = ray->leaves,
                                        .crosses_axis = ray->crosses_axis,
-                                       .end_name = fan_end_words(&content, ray),
+                                       .end_name = fan_end_text(&content, ray),
                                        .reach = ray->reach,
                                        .deviation_deg = ray->deviation_deg,
                                        .weight = ray->weight,
@@ -105,7 +105,7 @@ cuvette_status cuvette_query_fan(const cuvette_query *query, const cuvette_fan_r
     cuvette_fan *f = calloc(1, sizeof *f);
     if (f)
         f->query = query_retain(q), f->rule = read;
-    code = f ? fan_follow(q->inspector, &read, &f->traced, &inner) : out_of_memory(&inner);
+    code = f ? fan_trace(q->inspector, &read, &f->traced, &inner) : out_of_memory(&inner);
     THEN(code, copy_out(f, &inner));
     query_end_trace(q);
     if (code == STATUS_OK)
@@ -173,7 +173,7 @@ cuvette_status cuvette_fan_write(const cuvette_fan *f, const char *path, cuvette
     status code = query_begin_trace(f->query, &q, &inner);
     if (code != STATUS_OK)
         return engine_report(code, &inner, why);
-    const fanned content = content_of(f);
+    const fan_output content = content_of(f);
     code = query_write_file(writers, sizeof writers / sizeof *writers, "use .svg or .csv", &content, path, &inner);
     query_end_trace(q);
     return engine_report(code, &inner, why);

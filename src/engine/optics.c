@@ -89,7 +89,7 @@ cuvette_status cuvette_scene_curve(const cuvette_scene *s, const char *name, dou
     realism_points *made = malloc(sizeof *made);
     status code = made ? curve_named(name, &which, &inner) : out_of_memory(&inner);
     THEN(code, prepare(s, &level, &inner));
-    THEN(code, realism_trace_curve(s->model, level, which, made, &inner));
+    THEN(code, realism_measure_curve(s->model, level, which, made, &inner));
     if (code == STATUS_OK) {
         *count = (size_t)made->count;
         for (size_t i = 0; i < *count && i < room; i++)

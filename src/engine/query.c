@@ -35,7 +35,7 @@ static status prepare(cuvette_query *q, const scene *s, const char *lambda_nm, c
     isa level = ISA_BASE;
     scene traced = *s; /* borrows what s owns */
     if (integrator_traits_of(&s->render)->drawn)
-        trace_trees(&traced.render); /* rays need the hierarchies, which rasterisation does not build */
+        use_whitted(&traced.render); /* rays need the hierarchies, which rasterisation does not build */
     status code = engine_isa(instructions, &level, why);
     THEN(code, scene_check(s, why));
     if (code != STATUS_OK)
@@ -114,7 +114,7 @@ status query_begin_trace(const cuvette_query *query, cuvette_query **out, diagno
     const bool is_new = !q->inspector;
     const status code = is_new ? probe_create(q->model, q->level, &q->inspector, why) : STATUS_OK;
     if (code == STATUS_OK && is_new && q->one_wavelength)
-        probe_one_wavelength(q->inspector);
+        probe_use_one_wavelength(q->inspector);
     if (code != STATUS_OK)
         query_end_trace(q);
     *out = q;

@@ -265,7 +265,7 @@ cuvette_status cuvette_scene_hints(const cuvette_scene *s, void (*note)(void *co
     pthread_mutex_unlock(&held->loading);
     if (!copy)
         return engine_report(out_of_memory(&inner), &inner, why);
-    const note_taker taker = {call_host, &(host_call){note, context, &host}};
+    const note_sink taker = {call_host, &(host_call){note, context, &host}};
     scene_hints(copy, &taker);
     scene_beam_range_hints(copy, &taker);
     scene_destroy(copy);

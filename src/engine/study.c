@@ -145,7 +145,7 @@ static bool report_progress(void *context, double fraction)
     return c->run->progress(c->run->context, fraction, c->left_s);
 }
 
-static void note_moment(void *context, const study_moment *now)
+static void note_moment(void *context, const study_frame_progress *now)
 {
     run_call *c = context;
     const double of_frame = now->stage == STUDY_MEASURING ? now->share : 0.0;

@@ -54,12 +54,12 @@ static void put_node(const cuvette_query *q, const ray_node *n, cuvette_node *ou
                           .medium = n->medium,
                           .light = n->light,
                           .light_distance = n->light_distance,
-                          .light_transmittance = n->let_through};
+                          .light_transmittance = n->shadow_transmittance};
     engine_put_vector(out->origin, n->origin);
     engine_put_vector(out->direction, n->direction);
     memcpy(out->weight, n->throughput, sizeof out->weight);
     memcpy(out->stokes, n->stokes, sizeof out->stokes);
-    memcpy(out->added, n->brought, sizeof out->added);
+    memcpy(out->added, n->contribution, sizeof out->added);
     if (n->end == RAY_END_HIT)
         put_hit(q, &n->hit, out);
 }

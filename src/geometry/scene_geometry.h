@@ -85,7 +85,7 @@ typedef struct scene_geometry {
     const struct solid_view *outer; /* in a solid view: the view, with numbers of the whole scene; else NULL */
     struct solid_tree *tree;        /* for the other primitives; NULL if all are direct */
     int region_count;               /* priority indices 1 .. region_count */
-    int highest_clear;              /* the highest priority index of a region that is not opaque; 0 for none */
+    int highest_transparent;        /* the highest priority index of a region that is not opaque; 0 for none */
     region *regions;                /* [0] is the surrounding medium */
     solid_shape *shapes;            /* by priority index, the shapes of the regions; [0] is unused */
     double extent;                  /* the largest extent of a primitive */

@@ -24,7 +24,7 @@ static double light_in(const film *f)
     return sum;
 }
 
-static void note_narrow_light(const job_account *a, const note_taker *taker)
+static void note_narrow_light(const job_account *a, const note_sink *taker)
 {
     const render_result *r = a->result;
     const int64_t *units = r->counters.undersampled;
@@ -57,9 +57,9 @@ static int64_t rounded_up(int64_t number)
     return (number + digit - 1) / digit * digit;
 }
 
-static void note_few_photons(const job_account *a, const note_taker *taker)
+static void note_few_photons(const job_account *a, const note_sink *taker)
 {
-    const caustics_few *few = &a->result->few;
+    const photon_shortage *few = &a->result->few;
     if (few->solid < 0)
         return;
     const int64_t most = (int64_t)param_find(PARAM_RENDER, "photons")->highest, enough = rounded_up(few->enough);
@@ -70,7 +70,7 @@ static void note_few_photons(const job_account *a, const note_taker *taker)
                 a->of->solids[few->solid].name, few->arrived, few->arrived == 1 ? "" : "s");
 }
 
-void frame_notes(const job_account *a, const note_taker *taker)
+void frame_notes(const job_account *a, const note_sink *taker)
 {
     if (a->result && a->count > 0)
         note_narrow_light(a, taker), note_few_photons(a, taker);

@@ -5,4 +5,4 @@
 #include "lint/lint.h"
 
 /* Reports the notes on the account's frame; none if no frame is complete. */
-void frame_notes(const job_account *a, const note_taker *taker);
+void frame_notes(const job_account *a, const note_sink *taker);

@@ -52,7 +52,7 @@ static void add_to_cache(mesh_cache *cache, const scene *s)
 status mesh_cache_load(mesh_cache *cache, scene *s, const load_watch *watch, diagnostic *why)
 {
     for (size_t i = 0; i < cache->count; i++)
-        scene_borrow_meshes(s, cache->scenes[i]);
+        scene_retain_meshes(s, cache->scenes[i]);
     const bool new_ones = !has_all_meshes(s);
     const status code = scene_load_until(s, watch, why);
     if (code == STATUS_OK && new_ones)
@@ -187,7 +187,7 @@ static status prepare(job *j, const scene *s, const render_options *requested, d
 /* Renders the tiles of this process, then adds those of the other processes. */
 static status render_shared(work *w, const scene *s, render_options *options, render_result **out, diagnostic *why)
 {
-    const job_sharing *sharing = w->job->settings.sharing;
+    const job_distribution *sharing = w->job->settings.sharing;
     TRY(sharing->begin(sharing->context, s, options, &options->source, why));
     options->progress = NULL;
     const status rendered = renderer_render(w->job->renderer, s, options, out, why);
@@ -324,7 +324,7 @@ static status measure_all(work *w, const scene *s, size_t count, bool maps, job_
     hardware_counts counted = a->hardware;
     usage used = a->spent;
     if (j->settings.fresh_peak)
-        usage_forget_peak();
+        usage_reset_peak();
     double began_s = NAN;
     if (measured) {
         const noise_reading before = noise_read("");

@@ -23,7 +23,7 @@
  * Errors: STATUS_BAD_INPUT for outputs that cannot be shared, STATUS_INTERRUPTED when cancelled, and what the other
  * processes report. */
 
-typedef struct job_sharing {
+typedef struct job_distribution {
     /* Sends the loaded scene to the others, and begins to hand out its tiles; *tiles: those of this process. Until end
      * returns, one thread at a time calls requested->progress about every 0.1 s with the fraction of the frame that all
      * have finished. Between begin and end another cancel token of the thread may cancel the frame. */
@@ -33,7 +33,7 @@ typedef struct job_sharing {
      * others, and adds the film, the variance, counts, times and workers of all. Returns the status of the frame. */
     status (*end)(void *context, status rendered, render_result *result, diagnostic *why);
     void *context; /* passed to begin and end */
-} job_sharing;
+} job_distribution;
 
 /* --- jobs --- */
 
@@ -44,11 +44,11 @@ typedef struct job_settings {
     const isa *level; /* NULL: isa_choose */
     /* measure usage, hardware counters and hashes of frames: costs about 0.1 ms and one pass over the film */
     bool measured;
-    bool fresh_peak;            /* reset the peak of memory at the beginning of each frame, if the system allows it */
-    bool keeps_meshes;          /* keep meshes of loaded scenes for scenes that are loaded later (mesh_cache_load) */
-    const job_sharing *sharing; /* NULL: frames are not shared */
-    double time_s;              /* time limit of a frame; 0: none */
-    uint64_t memory_bytes;      /* limit for a frame's film and maps; 0: none */
+    bool fresh_peak;   /* reset the peak of memory at the beginning of each frame, if the system allows it */
+    bool keeps_meshes; /* keep meshes of loaded scenes for scenes that are loaded later (mesh_cache_load) */
+    const job_distribution *sharing; /* NULL: frames are not shared */
+    double time_s;                   /* time limit of a frame; 0: none */
+    uint64_t memory_bytes;           /* limit for a frame's film and maps; 0: none */
 } job_settings;
 
 status job_create(const job_settings *settings, job **out, diagnostic *why);

@@ -118,7 +118,7 @@ static int64_t counted(const job_account *a, uint64_t count)
 #define FRAME_QUANTITIES(Q) \
  Q(film_hash, "", HASH, SAME, IN_ROWS, "film_hash", NULL, "hash of the film, 16 hex digits", \
    job_account_hash(a)) \
- Q(whole, "", TRUTH, OVER, JSON_ONLY, "whole", NULL, \
+ Q(whole, "", TRUTH, OVER, JSON_ONLY, "complete", NULL, \
    "false: the render was interrupted, and the numbers cover only its finished part", \
    a->whole) \
  Q(wall_s, "s", REAL, MEDIAN, IN_ROWS, "wall_s", "wall_s", \
@@ -152,12 +152,12 @@ static int64_t counted(const job_account *a, uint64_t count)
  Q(cut_throughput, "rays", REAL, SAME, JSON_ONLY, "cut_throughput", NULL, \
    "summed throughput of all rays not traced, mean of RGB", \
    mean_cut(c->cut_depth_throughput, c->cut_weight_throughput)) \
- Q(cut_fraction, "", REAL, SAME, IN_ROWS, "cut.share", "cut", \
+ Q(cut_fraction, "", REAL, SAME, IN_ROWS, "cut.fraction", "cut", \
    "fraction of a pixel's light that is missing because rays were cut: their throughput divided by the throughput " \
    "of the camera rays, mean over all pixels, 0..1", \
    cut_fraction(a)) \
- Q(cut_fraction_largest, "", REAL, LAST, JSON_ONLY, "cut.share_largest", NULL, \
-   "cut.share of the pixel that lacks most light; NA without the map of cut light", largest_cut(r)) \
+ Q(cut_fraction_largest, "", REAL, LAST, JSON_ONLY, "cut.fraction_largest", NULL, \
+   "cut.fraction of the pixel that lacks most light; NA without the map of cut light", largest_cut(r)) \
  Q(first_hits, "rays", SOLIDS, SAME, IN_ROWS, "first_hits", NULL, \
    "camera rays whose first interface is on the solid", c->first_hits) \
  Q(hits, "rays", SOLIDS, SAME, IN_ROWS, "hits", NULL, \

@@ -204,7 +204,7 @@ status lesson_measure(const lesson *l, const scene *s, isa level, lesson_result 
 {
     lesson_meter m = {.l = l, .level = level};
     *out = (lesson_result){.measured = NAN, .theory = NAN};
-    status code = l->over < 0 ? realism_trace_curve(s, level, l->curve, &out->points, why)
+    status code = l->over < 0 ? realism_measure_curve(s, level, l->curve, &out->points, why)
                               : sweep_control(&m, s, &out->points, why);
     for (int i = 0; i < out->points.count; i++) {
         const double error = fabs(out->points.at[i].measured - out->points.at[i].theory);

@@ -40,7 +40,7 @@ static bool cuts_another(const scene *s, const solid *cutter)
 }
 
 /* Notes properties that a transparent solid seems to lack. */
-static void hint_at_clear(const scene *s, const solid *owner, const note_taker *taker)
+static void hint_at_clear(const scene *s, const solid *owner, const note_sink *taker)
 {
     const material *m = &owner->surface;
     if (integrator_traits_of(&s->render)->drawn && s->render.lighting != LIGHTING_WHITTED) {
@@ -64,7 +64,7 @@ static void hint_at_clear(const scene *s, const solid *owner, const note_taker *
 
 /* Notes a refractive index that seems meant to make a mirror, on a solid with reflectivity 0. Above MIRROR_IOR a
  * transparent solid really is a mirror. True if there is a note. */
-static bool hint_at_index(const scene *s, const solid *owner, const note_taker *taker)
+static bool hint_at_index(const scene *s, const solid *owner, const note_sink *taker)
 {
     const material *m = &owner->surface;
     index_law law;
@@ -85,7 +85,7 @@ static bool hint_at_index(const scene *s, const solid *owner, const note_taker *
 }
 
 /* Notes properties that the solid seems to lack. */
-static void hint_at_solid(const scene *s, const solid *owner, const note_taker *taker)
+static void hint_at_solid(const scene *s, const solid *owner, const note_sink *taker)
 {
     const material *m = &owner->surface;
     if (hint_at_index(s, owner, taker))
@@ -105,7 +105,7 @@ static void hint_at_solid(const scene *s, const solid *owner, const note_taker *
     }
 }
 
-static void hint_at_cover(const scene *s, const solid *hidden, const note_taker *taker)
+static void hint_at_cover(const scene *s, const solid *hidden, const note_sink *taker)
 {
     const solid *cover = scene_cover(s, hidden);
     char remedy[NOTE_TEXT_MAX];
@@ -132,21 +132,22 @@ static double expected_value(const material *m, size_t i)
 }
 
 static void hint_at_unseen(const scene *s, const char *owner, const material *m, const material *same_as,
-                           const note_taker *taker)
+                           const note_sink *taker)
 {
     for (size_t i = 0; i < sizeof expected / sizeof *expected; i++) {
         const double value = expected_value(m, i);
         char path[2 * SCENE_NAME_MAX + 2];
         inert_answer answer;
         snprintf(path, sizeof path, "%s.%s", owner, expected[i].name);
-        if (value > 0.0 && !(same_as && value == expected_value(same_as, i)) && inert_ask(s, path, NULL, &answer) &&
-            strcmp(answer.rule, "unused-material") != 0 && strcmp(answer.rule, "covered") != 0)
+        if (value > 0.0 && !(same_as && value == expected_value(same_as, i)) &&
+            param_is_inert(s, path, NULL, &answer) && strcmp(answer.rule, "unused-material") != 0 &&
+            strcmp(answer.rule, "covered") != 0)
             taker->take(taker->context, &answer.note);
     }
 }
 
 /* Materials first, then solids with other values than their material. Layers show no light, so there is no hint. */
-static void hint_at_all_unseen(const scene *s, const note_taker *taker)
+static void hint_at_all_unseen(const scene *s, const note_sink *taker)
 {
     if (integrator_traits_of(&s->render)->layers)
         return;
@@ -161,7 +162,7 @@ static void hint_at_all_unseen(const scene *s, const note_taker *taker)
 }
 
 /* Notes settings of a solid that have no effect. */
-static void hint_at_idle(const scene *s, const solid *owner, const note_taker *taker)
+static void hint_at_idle(const scene *s, const solid *owner, const note_sink *taker)
 {
     const material *m = &owner->surface;
     if (m->transparency == 0.0 && material_absorbs(m) && solid_is_opaque(s, owner))
@@ -190,7 +191,7 @@ static void hint_at_idle(const scene *s, const solid *owner, const note_taker *t
 /* With fewer samples per pixel, noise in soft shadows is obvious. */
 enum { SOFT_SAMPLES = 9 };
 
-static void hint_at_lights(const scene *s, const note_taker *taker)
+static void hint_at_lights(const scene *s, const note_sink *taker)
 {
     const bool path = integrator_traits_of(&s->render)->by_chance;
     bool clear = false, scatters = false;
@@ -233,7 +234,7 @@ static void hint_at_lights(const scene *s, const note_taker *taker)
     }
 }
 
-static void hint_at_beams(const scene *s, const note_taker *taker)
+static void hint_at_beams(const scene *s, const note_sink *taker)
 {
     for (size_t i = 0; i < s->beam_count; i++) {
         const beam *b = &s->beams[i];
@@ -246,7 +247,7 @@ static void hint_at_beams(const scene *s, const note_taker *taker)
     }
 }
 
-static void hint_at_lens(const scene *s, const note_taker *taker)
+static void hint_at_lens(const scene *s, const note_sink *taker)
 {
     const integrator_traits *traits = integrator_traits_of(&s->render);
     if (s->camera.aperture == 0.0 || camera_lens_is_sampled(s))
@@ -258,7 +259,7 @@ static void hint_at_lens(const scene *s, const note_taker *taker)
                 "nothing is blurred: each pixel has only rays through the centre of the lens");
 }
 
-static void hint_at_analyser(const scene *s, const note_taker *taker)
+static void hint_at_analyser(const scene *s, const note_sink *taker)
 {
     if (s->camera.analyser != ANALYSER_NONE && !s->render.polarisation)
         note_report(taker, "camera", "analyser", "set render.polarisation to on",
@@ -266,7 +267,7 @@ static void hint_at_analyser(const scene *s, const note_taker *taker)
 }
 
 /* Notes a polariser or a retarder that does less than its name says. */
-static void hint_at_sheet(const scene *s, const solid *owner, const note_taker *taker)
+static void hint_at_sheet(const scene *s, const solid *owner, const note_sink *taker)
 {
     const material *m = &owner->surface;
     const render_settings *r = &s->render;
@@ -294,7 +295,7 @@ static void hint_at_sheet(const scene *s, const solid *owner, const note_taker *
 }
 
 /* Notes double refraction that is rendered only in part, or not at all. */
-static void hint_at_crystal(const scene *s, const solid *owner, const note_taker *taker)
+static void hint_at_crystal(const scene *s, const solid *owner, const note_sink *taker)
 {
     const material *m = &owner->surface;
     if (m->extraordinary_ior == 0.0 || solid_is_opaque(s, owner))
@@ -316,7 +317,7 @@ static void hint_at_crystal(const scene *s, const solid *owner, const note_taker
 }
 
 /* Exposure and tone do not change the film, so lint/needs.c has no rows for them. */
-static void hint_at_tone(const scene *s, const note_taker *taker)
+static void hint_at_tone(const scene *s, const note_sink *taker)
 {
     const camera *c = &s->camera;
     if (integrator_traits_of(&s->render)->layers && (c->exposure != 0.0 || c->tone != TONE_NONE))
@@ -326,7 +327,7 @@ static void hint_at_tone(const scene *s, const note_taker *taker)
         note_report(taker, "camera", "white", "set camera.tone to reinhard", "this tone curve has no white point");
 }
 
-void scene_hints(const scene *s, const note_taker *taker)
+void scene_hints(const scene *s, const note_sink *taker)
 {
     size_t visible = 0, lit = 0, shining = 0;
     for (size_t i = 0; i < s->solid_count; i++) {

@@ -244,7 +244,7 @@ static bool ask_group(const inert_case *c)
     return c->at.object_group == PARAM_SOLID ? ask_solid(c) : needs_ask(c, c->at.object_group);
 }
 
-bool inert_ask(const scene *s, const char *path, const inert_witness *witness, inert_answer *out)
+bool param_is_inert(const scene *s, const char *path, const inert_witness *witness, inert_answer *out)
 {
     static const inert_witness no_witness = {.frame = NULL};
     inert_case c = {.s = s, .witness = witness ? witness : &no_witness, .out = out};

@@ -90,7 +90,7 @@ bool is_among(const inert_case *c, const char *const *names)
 
 bool follows_rays(const scene *s)
 {
-    return is_path(s) || follows_trees(&s->render);
+    return is_path(s) || traces_ray_trees(&s->render);
 }
 
 bool draws_through(const scene *s)

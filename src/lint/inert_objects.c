@@ -205,7 +205,7 @@ static bool is_opaque_pair(const solid *a, const solid *b)
 static bool meets_unseen(const scene *s, const solid *a, const solid *b)
 {
     const solid_shape of_a = scene_loaded_shape(s, a), of_b = scene_loaded_shape(s, b);
-    return scene_apart_from_eye(s, a) && scene_apart_from_eye(s, b) && !solid_shapes_may_share_faces(&of_a, &of_b);
+    return scene_apart_from_eye(s, a) && scene_apart_from_eye(s, b) && !solid_shapes_may_coincide(&of_a, &of_b);
 }
 
 bool overlaps_unseen(const inert_case *c)
@@ -275,7 +275,7 @@ bool unused_mesh(const inert_case *c)
     const solid *hidden = NULL, *other = NULL;
     for (size_t i = 0; i < s->solid_count; i++) {
         const solid *one = &s->solids[i];
-        const bool shows = solid_shows(one, c->name);
+        const bool shows = solid_uses_mesh(one, c->name);
         if (shows && one->visible)
             return false;
         hidden = shows ? one : hidden;

@@ -128,7 +128,7 @@ static scene *small_copy(const scene *s, bool by_chance)
     if (by_chance)
         r->paths = PROBE_PATHS, r->error = 0.0;
     else
-        trace_trees(r);
+        use_whitted(r);
     if (r->accel != HIERARCHY_BVH) {
         r->accel = HIERARCHY_BVH;
         r->keep = 0;
@@ -137,7 +137,7 @@ static scene *small_copy(const scene *s, bool by_chance)
 }
 
 /* If the plan fails, there is no note: the frame will report the error. */
-static status lint_paths(const scene *s, isa level, const note_taker *taker, diagnostic *why)
+static status lint_paths(const scene *s, isa level, const note_sink *taker, diagnostic *why)
 {
     scene *copy = small_copy(s, true);
     lint_input input = {.original = s, .level = level, .taker = taker};
@@ -154,10 +154,10 @@ static status lint_cut_light(const lint_input *input, diagnostic *why)
     const render_settings *r = &input->original->render;
     if (integrator_traits_of(r)->by_chance)
         return lint_paths(input->original, input->level, input->taker, why);
-    return follows_trees(r) ? lint_depth(input, why) : STATUS_OK;
+    return traces_ray_trees(r) ? lint_depth(input, why) : STATUS_OK;
 }
 
-static status lint_planned(const scene *s, isa level, const note_taker *taker, diagnostic *why)
+static status lint_planned(const scene *s, isa level, const note_sink *taker, diagnostic *why)
 {
     scene *copy = small_copy(s, false);
     lint_input input = {.original = s, .level = level, .taker = taker};
@@ -170,7 +170,7 @@ static status lint_planned(const scene *s, isa level, const note_taker *taker, d
     return code;
 }
 
-status lint_scene(const scene *s, isa level, const note_taker *taker, diagnostic *why)
+status lint_scene(const scene *s, isa level, const note_sink *taker, diagnostic *why)
 {
     scene_hints(s, taker);
     return is_loaded(s) ? lint_planned(s, level, taker, why) : STATUS_OK;

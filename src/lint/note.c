@@ -4,7 +4,7 @@
 #include <stdarg.h>
 #include <stdio.h>
 
-void note_report(const note_taker *taker, const char *object, const char *parameter, const char *remedy,
+void note_report(const note_sink *taker, const char *object, const char *parameter, const char *remedy,
                  const char *text, ...)
 {
     scene_note note;

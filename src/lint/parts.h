@@ -9,7 +9,7 @@ typedef struct lint_input {
     const scene *original; /* the caller's scene */
     plan *probe;           /* plan of a copy of the scene with a small image */
     isa level;
-    const note_taker *taker;
+    const note_sink *taker;
 } lint_input;
 
 /* Notes overlapping solids of equal priority, and narrow gaps. */

@@ -15,14 +15,14 @@ static const nm_range visible = {VISIBLE_LOW_NM, VISIBLE_HIGH_NM};
 /* The wavelengths at which laws are evaluated. */
 typedef struct range_case {
     const scene *s;
-    const note_taker *taker;
+    const note_sink *taker;
     nm_range clear, layered; /* for surroundings and transparent solids; for metals and films on opaque solids */
     bool beams;              /* the visible beams' wavelengths are used instead */
 } range_case;
 
 /* A spectral film needs the visible range, for spectral lines, too. An rgb film needs one wavelength for transparent
  * matter; the reflection of metals and films is integrated over daylight (render/plan/layered_table.h). */
-static range_case of_film(const scene *s, const note_taker *taker)
+static range_case of_film(const scene *s, const note_sink *taker)
 {
     const nm_range one = {s->render.lambda_nm, s->render.lambda_nm};
     return (range_case){
@@ -95,19 +95,19 @@ static void hint_at_all(const range_case *c)
         hint_at_solid(c, &c->s->solids[i]);
 }
 
-void scene_range_hints(const scene *s, const note_taker *taker)
+void scene_range_hints(const scene *s, const note_sink *taker)
 {
     const range_case c = of_film(s, taker);
     hint_at_all(&c);
 }
 
-void scene_lambda_range_hints(const scene *s, bool layered, const note_taker *taker)
+void scene_lambda_range_hints(const scene *s, bool layered, const note_sink *taker)
 {
     const nm_range one = {s->render.lambda_nm, s->render.lambda_nm};
     hint_at_all(&(range_case){.s = s, .taker = taker, .clear = one, .layered = layered ? one : visible});
 }
 
-void scene_beam_range_hints(const scene *s, const note_taker *taker)
+void scene_beam_range_hints(const scene *s, const note_sink *taker)
 {
     hint_at_all(&(range_case){.s = s, .taker = taker, .beams = true});
 }

@@ -13,7 +13,7 @@
 
 typedef struct sink {
     const char *root;
-    disturbance_line line;
+    disturbance_callback line;
     void *context;
     bool *incomplete; /* an unreadable file was reported; only the first is */
 } sink;
@@ -154,7 +154,7 @@ static void report_build(const sink *to)
     (void)to;
 }
 
-void disturbances_of_machine(const char *root, disturbance_line line, void *context)
+void disturbances_of_machine(const char *root, disturbance_callback line, void *context)
 {
     bool incomplete = false;
     const sink to = {root, line, context, &incomplete};
@@ -165,7 +165,7 @@ void disturbances_of_machine(const char *root, disturbance_line line, void *cont
     report_swap(&to);
 }
 
-void usage_disturbances(double sample_s, void (*line)(void *context, const char *text), void *context)
+void disturbances_report(double sample_s, void (*line)(void *context, const char *text), void *context)
 {
     bool incomplete = false;
     const sink to = {"", line, context, &incomplete};
@@ -184,7 +184,7 @@ void usage_disturbances(double sample_s, void (*line)(void *context, const char 
         report(&to, "others use %ld%% of the machine", lround(100.0 * fraction));
 }
 
-const char *usage_advice(const char *disturbance)
+const char *disturbance_advice(const char *disturbance)
 {
     static const char *const advice[][2] = {
         {"governor ", "set the governor performance (cpupower frequency-set -g performance)"},

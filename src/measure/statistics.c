@@ -247,12 +247,12 @@ double summary_relative_width(const summary *s)
     return (s->mean_high - s->mean_low) / fabs(s->mean);
 }
 
-share_interval binomial_interval(double hits, double count)
+fraction_interval binomial_interval(double hits, double count)
 {
     if (!(count > 0))
-        return (share_interval){NAN, NAN, NAN};
-    return (share_interval){hits / count, hits > 0 ? beta_quantile(0.025, hits, count - hits + 1) : 0.0,
-                            hits < count ? beta_quantile(0.975, hits + 1, count - hits) : 1.0};
+        return (fraction_interval){NAN, NAN, NAN};
+    return (fraction_interval){hits / count, hits > 0 ? beta_quantile(0.025, hits, count - hits + 1) : 0.0,
+                               hits < count ? beta_quantile(0.975, hits + 1, count - hits) : 1.0};
 }
 
 /* ---- numbers of pairs ---- */

@@ -23,10 +23,10 @@ double summary_relative_width(const summary *s);
 
 /* The 95% interval of a probability, from hits in count independent trials; it covers at least 95% (Clopper and
  * Pearson, Biometrika 26, 1934). hits need not be an integer: it may be a mean over draws. NaN without a trial. */
-typedef struct share_interval {
+typedef struct fraction_interval {
     double share, low, high;
-} share_interval;
-share_interval binomial_interval(double hits, double count);
+} fraction_interval;
+fraction_interval binomial_interval(double hits, double count);
 
 /* ---- quantiles ---- */
 

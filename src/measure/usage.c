@@ -65,7 +65,7 @@ usage usage_now(void)
 }
 
 /* Linux resets the peak resident memory when 5 is written to this file (proc(5)). */
-void usage_forget_peak(void)
+void usage_reset_peak(void)
 {
     int fd = open("/proc/self/clear_refs", O_WRONLY | O_CLOEXEC);
     if (fd < 0)

@@ -18,7 +18,7 @@ typedef struct usage {
 
 usage usage_now(void);
 /* Resets the peak of resident memory, if the system allows it: Linux does. */
-void usage_forget_peak(void);
+void usage_reset_peak(void);
 /* The difference between an earlier reading and now. */
 usage usage_since(const usage *before);
 /* The fraction of the machine that other processes used during a difference, 0..1; NaN if unknown. /proc/stat ticks in
@@ -71,13 +71,13 @@ void hardware_counter_destroy(hardware_counter *counter);
 /* Reports what could disturb a measurement now: calls line with one short text for each ("governor powersave", "turbo
  * on", "load 3.2", "others use 40% of the machine"), not at all if nothing is found. The load is observed for sample_s
  * seconds (0: not at all, and nothing is reported about other processes). */
-void usage_disturbances(double sample_s, void (*line)(void *context, const char *text), void *context);
+void disturbances_report(double sample_s, void (*line)(void *context, const char *text), void *context);
 
 /* What to do about such a disturbance; "" if nothing is known to help. Static text. */
-const char *usage_advice(const char *disturbance);
+const char *disturbance_advice(const char *disturbance);
 
-typedef void (*disturbance_line)(void *context, const char *text);
+typedef void (*disturbance_callback)(void *context, const char *text);
 
 /* The settings (governor, turbo, threads per core, hypervisor, quota), load and swap by the files of /proc and /sys
  * below root: "" for this machine; tests have copies of other machines' files. */
-void disturbances_of_machine(const char *root, disturbance_line line, void *context);
+void disturbances_of_machine(const char *root, disturbance_callback line, void *context);

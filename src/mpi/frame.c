@@ -37,11 +37,11 @@ typedef struct other_ranks {
 struct lead {
     int ranks;
     int64_t frame;
-    job_sharing job_interface;
+    job_distribution job_interface;
     /* of the current frame */
     pthread_t thread;
     handout *tiles;
-    shared_frame sum;
+    tiled_frame sum;
     tile_queues *queues;
     frame_sink sink;
     void (*progress)(void *context, double fraction); /* or NULL */
@@ -57,7 +57,7 @@ struct lead {
 static void put_tile(void *of, tile_message *tile)
 {
     lead *l = of;
-    shared_frame_put(&l->sum, tile->head.value, tile->values);
+    tiled_frame_store(&l->sum, tile->head.value, tile->values);
     free(tile);
     if (handout_is_complete(l->tiles))
         l->complete_s = clock_wall_s();
@@ -131,7 +131,7 @@ static status refuse(const scene *s, const render_options *o, diagnostic *why)
 
 static void release_frame(lead *l)
 {
-    shared_frame_release(&l->sum);
+    tiled_frame_release(&l->sum);
     free(l->others.workers);
     free(l->others.ranks);
     handout_destroy(l->tiles);
@@ -161,7 +161,7 @@ static int tile_side(const scene *s, int ranks)
 
 static status prepare(lead *l, const scene *s, diagnostic *why)
 {
-    TRY(shared_frame_begin(s, tile_side(s, l->ranks), &l->sum, why));
+    TRY(tiled_frame_begin(s, tile_side(s, l->ranks), &l->sum, why));
     TRY(handout_create(l->sum.places.tile_count, l->ranks, &l->tiles, why));
     TRY(tile_queues_create(&l->sum.places, scene_threads(&s->render), &l->queues, why));
     return (l->others.ranks = calloc((size_t)l->ranks, sizeof *l->others.ranks)) ? STATUS_OK : out_of_memory(why);
@@ -278,7 +278,7 @@ status lead_create(int ranks, lead **out, diagnostic *why)
         return out_of_memory(why);
     memset(l, 0, sizeof *l);
     l->ranks = ranks;
-    l->job_interface = (job_sharing){begin, end, l};
+    l->job_interface = (job_distribution){begin, end, l};
     *out = l;
     return STATUS_OK;
 }
@@ -293,7 +293,7 @@ void lead_destroy(lead *l)
     free(l);
 }
 
-const job_sharing *lead_sharing(const lead *l)
+const job_distribution *lead_distribution(const lead *l)
 {
     return &l->job_interface;
 }

@@ -14,7 +14,7 @@ status lead_create(int ranks, lead **out, diagnostic *why);
 void lead_destroy(lead *l); /* NULL is allowed */
 
 /* The interface for the job; borrowed from the lead. */
-const job_sharing *lead_sharing(const lead *l);
+const job_distribution *lead_distribution(const lead *l);
 
 /* The loop of the other ranks; returns when rank 0 ends. Errors of a frame are reported to rank 0; those that prevent
  * any frame are returned. */

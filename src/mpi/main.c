@@ -222,7 +222,7 @@ static status run(int argc, char **argv, int rank, int ranks, diagnostic *why)
         return follow(why);
     }
     TRY(lead_create(ranks, &leader, why));
-    scene_input_share(lead_sharing(leader));
+    scene_input_distribute(lead_distribution(leader));
     const status code = command_dispatch(commands, sizeof commands / sizeof commands[0], about, argc, argv, why);
     diagnostic unwritten = {0};
     const status flushed = terminal_flush(&unwritten);

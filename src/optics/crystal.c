@@ -304,7 +304,7 @@ static double weight_across(const complex_pair j[2], int sides, stokes row)
     const complex_pair between = complex_conj_multiply(j[0], j[1]);
     const double x = complex_norm2(j[0]), y = complex_norm2(j[1]);
     const stokes light = {x + y, x - y, 2.0 * between.re, 2.0 * between.im};
-    return 0.5 * analyser_sees(row, light);
+    return 0.5 * analyser_intensity(row, light);
 }
 
 /* Writes the rays in one medium, whose two waves have these amplitudes. Returns their number. */

@@ -67,7 +67,7 @@ typedef struct facet {
 } facet;
 
 /* [W] (13) and (14). o.z > 0. */
-static inline facet facet_that_reflects(double alpha, vec3 i, vec3 o)
+static inline facet reflecting_facet(double alpha, vec3 i, vec3 o)
 {
     const vec3 m = vec3_normalize(vec3_add(i, o));
     return (facet){m, ggx_visible_distribution(alpha, i, m) / (4.0 * vec3_dot(i, m))};
@@ -75,7 +75,7 @@ static inline facet facet_that_reflects(double alpha, vec3 i, vec3 o)
 
 /* [W] (16) and (17), for the indices on the sides of i and o. o.z < 0. Between equal indices light is not deflected:
  * there is no density. */
-static inline facet facet_that_refracts(double alpha, vec3 i, vec3 o, double n_i, double n_o)
+static inline facet refracting_facet(double alpha, vec3 i, vec3 o, double n_i, double n_o)
 {
     const vec3 sum = vec3_add(vec3_scale(i, n_i), vec3_scale(o, n_o));
     const double length = vec3_length(sum);

@@ -137,8 +137,8 @@ static inline sp_response sp_mirror(void)
 
 /* A ray from the eye carries the first row of the product of all Mueller matrices between eye and ray, in the ray's
  * canonical frame: (1, 0, 0, 0) at the eye; .i is everywhere the weight of unpolarised light from there. The eye sees
- * light s that joins at a ray with the intensity analyser_sees(row, s), both in that ray's canonical frame. */
-static inline double analyser_sees(stokes row, stokes s)
+ * light s that joins at a ray with the intensity analyser_intensity(row, s), both in that ray's canonical frame. */
+static inline double analyser_intensity(stokes row, stokes s)
 {
     return row.i * s.i + row.q * s.q + row.u * s.u + row.v * s.v;
 }
@@ -222,7 +222,7 @@ static inline sp_response sp_retarder(double sin_delta, double cos_delta)
 
 /* The row behind an element that a ray of direction d passes through. axis, of any length, is projected onto the plane
  * perpendicular to the ray; if it is along the ray, the frame's x is used. */
-static inline stokes analyser_through(stokes row, vec3 d, vec3 axis, sp_response r)
+static inline stokes analyser_element(stokes row, vec3 d, vec3 axis, sp_response r)
 {
     vec3 x, y;
     polarisation_frame(d, &x, &y);
@@ -234,7 +234,7 @@ static inline stokes analyser_through(stokes row, vec3 d, vec3 axis, sp_response
 /* A circular polariser with the transmittances of left- and right-handed light, which stay circular: the homogeneous
  * diattenuator along v. Lu and Chipman, Interpretation of Mueller matrices based on polar decomposition, J. Opt. Soc.
  * Am. A 13, 1106 (1996). */
-static inline stokes analyser_through_circular(stokes row, double left, double right)
+static inline stokes analyser_circular_polariser(stokes row, double left, double right)
 {
     const double mean = 0.5 * (left + right), half = 0.5 * (left - right), between = sqrt(left * right);
     const stokes s = {row.i * mean + row.v * half, row.q * between, row.u * between, row.i * half + row.v * mean};

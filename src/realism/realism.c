@@ -307,7 +307,7 @@ status realism_check_curve(const scene *s, realism_curve which, diagnostic *why)
     return find_solids(s, which, &unused, why);
 }
 
-status realism_trace_curve(const scene *s, isa level, realism_curve which, realism_points *out, diagnostic *why)
+status realism_measure_curve(const scene *s, isa level, realism_curve which, realism_points *out, diagnostic *why)
 {
     metrics m = {.traced = s, .supposed = s, .level = level};
     out->count = 0;

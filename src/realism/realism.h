@@ -66,9 +66,10 @@ typedef enum realism_curve {
     REALISM_CURVE_ABSORPTION, /* transmittance of the liquid (red) by length, m */
     REALISM_CURVE_EDGES,      /* displacement of the rod's left edge, px, by the liquid's index 1.00 .. 1.60 */
     /* The curves before this one are those that a study keeps. */
-    REALISM_CURVE_KEPT,
-    REALISM_CURVE_MIRROR = REALISM_CURVE_KEPT, /* R of the liquid's surface from below by the angle of incidence, deg */
-    REALISM_CURVE_APPARENT_DEPTH,              /* apparent depth in the liquid, over depth, by line of sight, deg */
+    REALISM_CURVE_STUDY_COUNT,
+    REALISM_CURVE_MIRROR =
+        REALISM_CURVE_STUDY_COUNT, /* R of the liquid's surface from below by the angle of incidence, deg */
+    REALISM_CURVE_APPARENT_DEPTH,  /* apparent depth in the liquid, over depth, by line of sight, deg */
     /* Curves of scenes other than the vessel. */
     REALISM_CURVE_PRISM,   /* deviation by a prism by the angle of incidence, deg */
     REALISM_CURVE_RAINBOW, /* angle from the antisolar point, deg, by the ray's offset over the drop's radius */
@@ -99,4 +100,4 @@ const char *realism_curve_y(realism_curve which);
 const char *realism_curve_parameter(realism_curve which);
 /* Whether the scene has the solids of a curve. STATUS_BAD_INPUT describes what is missing. Fast. */
 status realism_check_curve(const scene *s, realism_curve which, diagnostic *why);
-status realism_trace_curve(const scene *s, isa level, realism_curve which, realism_points *out, diagnostic *why);
+status realism_measure_curve(const scene *s, isa level, realism_curve which, realism_points *out, diagnostic *why);

@@ -168,7 +168,7 @@ scene *arrange_empty(const scene *s)
     for (size_t i = 0; i < copy->light_count; i++)
         copy->lights[i].intensity = 0.0;
     render_settings *r = &copy->render;
-    trace_trees(r);
+    use_whitted(r);
     r->lighting = LIGHTING_WHITTED;
     r->polarisation = 0;
     r->samples = 1;

@@ -12,14 +12,14 @@
 
 /* --- CSV --- */
 
-static void add_vector(csv_line *line, bool known, vec3 v)
+static void add_vector(csv_buffer *line, bool known, vec3 v)
 {
     csv_real(line, known ? v.x : (double)NAN);
     csv_real(line, known ? v.y : (double)NAN);
     csv_real(line, known ? v.z : (double)NAN);
 }
 
-const char *fan_end_words(const fanned *t, const fan_ray *ray)
+const char *fan_end_text(const fan_output *t, const fan_ray *ray)
 {
     const ray_node *last = &t->f->node[ray->first + ray->count - 1];
     if (last->end == RAY_END_HIT)
@@ -27,9 +27,9 @@ const char *fan_end_words(const fanned *t, const fan_ray *ray)
     return last->end == RAY_END_SKY ? "sky" : "cut";
 }
 
-status fan_write_csv(const fanned *t, FILE *out, diagnostic *why)
+status fan_write_csv(const fan_output *t, FILE *out, diagnostic *why)
 {
-    csv_line line = {0};
+    csv_buffer line = {0};
     fprintf(out,
             "ray,%s,interfaces,end,exit_x,exit_y,exit_z,direction_x,direction_y,direction_z,deviation_deg,weight,axis_"
             "at,axis_x,axis_y,axis_z\n",
@@ -39,7 +39,7 @@ status fan_write_csv(const fanned *t, FILE *out, diagnostic *why)
         csv_count(&line, i);
         csv_real(&line, ray->offset);
         csv_count(&line, (int64_t)ray->count - 1);
-        csv_text(&line, fan_end_words(t, ray));
+        csv_text(&line, fan_end_text(t, ray));
         add_vector(&line, ray->leaves, ray->exit_point);
         add_vector(&line, ray->leaves, ray->exit_direction);
         csv_real(&line, ray->leaves ? ray->deviation_deg : (double)NAN);
@@ -51,7 +51,7 @@ status fan_write_csv(const fanned *t, FILE *out, diagnostic *why)
     const bool failed = line.failed, cancelled = cancel_asked();
     if (!failed && !cancelled)
         fwrite(line.text, 1, line.size, out);
-    csv_line_free(&line);
+    csv_buffer_free(&line);
     return failed ? out_of_memory(why) : cancelled ? cancel_check(why) : STATUS_OK;
 }
 
@@ -85,11 +85,11 @@ static json_t *far_end(const fan *f, const fan_ray *ray)
                      json_of_real(xyzw[3]));
 }
 
-static json_t *ray_json(const fanned *t, const fan_ray *ray)
+static json_t *ray_json(const fan_output *t, const fan_ray *ray)
 {
     const double none = NAN;
     return json_pack("{s:o,s:I,s:o,s:o,s:o,s:o,s:o,s:o,s:o}", "offset", json_of_real(ray->offset), "interfaces",
-                     (json_int_t)ray->count - 1, "end", json_of_text(fan_end_words(t, ray)), "deviation_deg",
+                     (json_int_t)ray->count - 1, "end", json_of_text(fan_end_text(t, ray)), "deviation_deg",
                      json_of_real(ray->leaves ? ray->deviation_deg : none), "weight",
                      json_of_real(ray->leaves ? ray->weight : none), "axis_at",
                      json_of_real(ray->crosses_axis ? ray->axis_at : none), "direction",
@@ -104,7 +104,7 @@ static json_t *focus_json(const fan *f)
                         : json_null();
 }
 
-json_t *fan_json(const fanned *t)
+json_t *fan_json(const fan_output *t)
 {
     const fan *f = t->f;
     json_t *rays = json_array(), *crossings = json_array();
@@ -149,7 +149,7 @@ static void include_near(diagram_box *box, const section_plane *plane, vec3 p)
         diagram_include(box, plane, p);
 }
 
-static diagram_box box_of(const fanned *t, const section_plane *plane)
+static diagram_box box_of(const fan_output *t, const section_plane *plane)
 {
     const fan *f = t->f;
     diagram_box box = DIAGRAM_BOX_EMPTY;
@@ -191,7 +191,7 @@ static void draw_segment(const diagram *d, const fan *f, const ray_node *node)
                 diagram_is_cut(node) ? DIAGRAM_CUT : NULL);
 }
 
-static status draw_tree(const diagram *d, const fanned *t, const fan_ray *ray, diagnostic *why)
+static status draw_tree(const diagram *d, const fan_output *t, const fan_ray *ray, diagnostic *why)
 {
     const ray_node *first = &t->f->node[ray->first];
     ray_tree tree = {0};
@@ -203,14 +203,14 @@ static status draw_tree(const diagram *d, const fanned *t, const fan_ray *ray, d
     return result;
 }
 
-static status draw_rays(const diagram *d, const fanned *t, diagnostic *why)
+static status draw_rays(const diagram *d, const fan_output *t, diagnostic *why)
 {
     status result = STATUS_OK;
     for (int i = 0; i < t->f->count && result == STATUS_OK; i++) {
         const fan_ray *ray = &t->f->ray[i];
-        if (t->whole_trees)
+        if (t->complete_trees)
             result = draw_tree(d, t, ray, why);
-        for (size_t k = 0; k < ray->count && !t->whole_trees; k++)
+        for (size_t k = 0; k < ray->count && !t->complete_trees; k++)
             draw_segment(d, t->f, &t->f->node[ray->first + k]);
         THEN(result, cancel_check(why));
     }
@@ -240,7 +240,7 @@ static void draw_caustic(const diagram *d, const fan *f)
         diagram_cross(d, f->focus, 5.0, SVG_VERMILLION);
 }
 
-static void draw_key(const fanned *t, FILE *out, double left, double y)
+static void draw_key(const fan_output *t, FILE *out, double left, double y)
 {
     const fan *f = t->f;
     char text[200];
@@ -262,7 +262,7 @@ static void draw_key(const fanned *t, FILE *out, double left, double y)
     svg_label(out, left + 21.0, y + DIAGRAM_ROW, "start", SVG_INK, text);
 }
 
-static void write_caption(const fanned *t, char *text, size_t size)
+static void write_caption(const fan_output *t, char *text, size_t size)
 {
     const fan_rule *r = t->rule;
     char shape[64];
@@ -272,7 +272,7 @@ static void write_caption(const fanned *t, char *text, size_t size)
              r->from.x, r->from.y, r->from.z, r->to.x, r->to.y, r->to.z, t->s->render.lambda_nm);
 }
 
-status fan_write_drawing(const fanned *t, FILE *out, diagnostic *why)
+status fan_write_drawing(const fan_output *t, FILE *out, diagnostic *why)
 {
     const section_plane plane = plane_of(t->f);
     const diagram_box box = box_of(t, &plane);

@@ -34,7 +34,7 @@ status machine_measure(machine_report *a, diagnostic *why)
     a->has_hardware_counters = counts_cycles();
     uname(&a->kernel);
     a->disturbances = json_array();
-    usage_disturbances(LOAD_SAMPLE_S, add_disturbance, &a->disturbances);
+    disturbances_report(LOAD_SAMPLE_S, add_disturbance, &a->disturbances);
     return a->disturbances ? STATUS_OK : out_of_memory(why);
 }
 

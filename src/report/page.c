@@ -145,7 +145,7 @@ static const char *title_of(const scene *s)
     return s->title && s->title[0] ? s->title : "A scene of Cuvette";
 }
 
-static void write_heading(const report_page_content *page, const char *code, FILE *out)
+static void write_heading(const page_content *page, const char *code, FILE *out)
 {
     fprintf(out,
             "<!doctype html>\n<html lang=\"en\">\n<head>\n<meta charset=\"utf-8\">\n"
@@ -162,7 +162,7 @@ static void write_heading(const report_page_content *page, const char *code, FIL
 }
 
 /* The image also contains the scene, so that it can be saved from the page and opened as a scene. */
-static status write_image(const report_page_content *page, const shared_texts *texts, FILE *out, diagnostic *why)
+static status write_image(const page_content *page, const shared_texts *texts, FILE *out, diagnostic *why)
 {
     image_rows rows = page->rows;
     unsigned char *bytes = NULL;
@@ -180,7 +180,7 @@ static status write_image(const report_page_content *page, const shared_texts *t
     return STATUS_OK;
 }
 
-static void write_account(const report_page_content *page, const page_rays *rays, FILE *out)
+static void write_account(const page_content *page, const page_rays *rays, FILE *out)
 {
     char *depth = NULL;
     (void)scene_get(page->s, "render.depth", &depth, NULL);
@@ -195,8 +195,7 @@ static void write_account(const report_page_content *page, const page_rays *rays
     fputs(" Angles are from the normal; R and T are for unpolarised light.</p>\n", out);
 }
 
-static status write_source(const report_page_content *page, const char *text, bool holds_scene, FILE *out,
-                           diagnostic *why)
+static status write_source(const page_content *page, const char *text, bool holds_scene, FILE *out, diagnostic *why)
 {
     fputs("<h2>Command</h2>\n<pre tabindex=\"0\" id=\"command\">", out);
     svg_escape(out, page->command);
@@ -220,7 +219,7 @@ static status write_source(const report_page_content *page, const char *text, bo
     return STATUS_OK;
 }
 
-static status write_body(const report_page_content *page, const shared_texts *texts, const char *text, FILE *out,
+static status write_body(const page_content *page, const shared_texts *texts, const char *text, FILE *out,
                          diagnostic *why)
 {
     page_rays rays = {.ray = NULL};
@@ -243,7 +242,7 @@ static status write_body(const report_page_content *page, const shared_texts *te
     return code;
 }
 
-status report_page_write(const report_page_content *page, FILE *out, diagnostic *why)
+status page_write_html(const page_content *page, FILE *out, diagnostic *why)
 {
     shared_texts texts;
     char *text = NULL, *code = NULL;

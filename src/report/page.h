@@ -10,7 +10,7 @@
 #include <stdint.h>
 #include <stdio.h>
 
-typedef struct report_page_content {
+typedef struct page_content {
     const scene *s; /* loaded */
     isa level;
     image_rows rows; /* the image, without texts */
@@ -18,11 +18,11 @@ typedef struct report_page_content {
     uint64_t film_hash;
     const char *command; /* the command that renders the image */
     const char *live;    /* from page_live_code, not used if the scene reads files; NULL: no laboratory */
-} report_page_content;
+} page_content;
 
 /* The rays are those of the visible beams, or the ray tree of the middle pixel if there are none. STATUS_BAD_INPUT for
  * a tree that probe_pixel refuses, and for beams beyond the limits of beams_each_ray. */
-status report_page_write(const report_page_content *page, FILE *out, diagnostic *why);
+status page_write_html(const page_content *page, FILE *out, diagnostic *why);
 
 /* The laboratory within a page: live.html, which `make site` makes, compressed (zlib) as base64, and the script that
  * starts it with the page's scene. The caller frees results with free. */

@@ -216,7 +216,7 @@ static void add_note(void *list, const scene_note *note)
 static json_t *notes(const job_account *a)
 {
     json_t *list = json_array();
-    frame_notes(a, &(note_taker){add_note, &list});
+    frame_notes(a, &(note_sink){add_note, &list});
     return list;
 }
 
@@ -246,7 +246,7 @@ json_t *report_create(const job_account *a, bool repeated)
     return json_if(o, bad == 0);
 }
 
-json_t *report_page(const job_account *a)
+json_t *report_image_numbers(const job_account *a)
 {
     json_t *o = json_object();
     int bad = !o;

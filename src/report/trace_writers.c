@@ -60,12 +60,12 @@ static void write_text_line(const traced *t, FILE *out, const ray_node *node, in
         fprintf(out, "  to %s at %.9g", scene_light_name(t->s, node->light), node->light_distance);
     fprintf(out, "  %s", end_words[node->end]);
     if (node->end == RAY_END_LIT)
-        fprintf(out, ", transmittance %.6g", node->let_through);
+        fprintf(out, ", transmittance %.6g", node->shadow_transmittance);
     if (node->end == RAY_END_HIT)
         write_text_hit(t, out, &node->hit);
-    if (node->brought[0] > 0.0 || node->brought[1] > 0.0 || node->brought[2] > 0.0) {
+    if (node->contribution[0] > 0.0 || node->contribution[1] > 0.0 || node->contribution[2] > 0.0) {
         fputs("  contributes ", out);
-        write_channels(out, node->brought);
+        write_channels(out, node->contribution);
     }
     fputc('\n', out);
 }
@@ -204,9 +204,9 @@ static bool write_extras(const traced *t, FILE *out, const ray_node *node)
         good = write_word(out, "light", scene_light_name(t->s, node->light));
         write_number(out, "light_distance", node->light_distance);
     }
-    write_list(out, "brought", node->brought, 3);
+    write_list(out, "contribution", node->contribution, 3);
     if (node->kind == RAY_SHADOW)
-        write_number(out, "let_through", node->let_through);
+        write_number(out, "shadow_transmittance", node->shadow_transmittance);
     ray_line_far_end(&line, far_end);
     write_list(out, "far_end", far_end, 4);
     return good;
@@ -270,7 +270,7 @@ status trace_write_json(const traced *t, FILE *out, diagnostic *why)
 static const char *const beam_kind_words[] = {"pencil", "fan", "sheet", "bundle"};
 
 typedef struct beam_writer {
-    const beamed *beams;
+    const beam_output *beams;
     FILE *out;
     int beam; /* the beam whose JSON object is open; -1: none */
     size_t segments;
@@ -298,7 +298,7 @@ static status write_beam_text(void *context, const beam_ray *ray, const ray_tree
     return STATUS_OK;
 }
 
-status beams_write_text(const beamed *b, FILE *out, diagnostic *why)
+status beams_write_text(const beam_output *b, FILE *out, diagnostic *why)
 {
     beam_writer w = {.beams = b, .out = out, .beam = -1};
     return beams_each_ray(b->s, b->level, 0, write_beam_text, &w, why);
@@ -341,7 +341,7 @@ static status write_beam_json(void *context, const beam_ray *ray, const ray_tree
     return STATUS_OK;
 }
 
-status beams_write_json(const beamed *b, FILE *out, diagnostic *why)
+status beams_write_json(const beam_output *b, FILE *out, diagnostic *why)
 {
     beam_writer w = {.beams = b, .out = out, .beam = -1};
     fputs("{\"schema\":1,\"scene\":", out);

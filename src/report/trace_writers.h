@@ -23,15 +23,15 @@ status trace_write_text(const traced *t, FILE *out, diagnostic *why);
 status trace_write_json(const traced *t, FILE *out, diagnostic *why);
 status trace_write_drawing(const traced *t, FILE *out, diagnostic *why);
 
-typedef struct beamed {
+typedef struct beam_output {
     const scene *s;
     isa level;
     const char *scene_path;
     size_t segments_max; /* STATUS_BAD_INPUT if the trees have more rays; 0: no limit */
     bool for_page;       /* as in traced */
-} beamed;
+} beam_output;
 
-status beams_write_text(const beamed *b, FILE *out, diagnostic *why);
-status beams_write_json(const beamed *b, FILE *out, diagnostic *why);
+status beams_write_text(const beam_output *b, FILE *out, diagnostic *why);
+status beams_write_json(const beam_output *b, FILE *out, diagnostic *why);
 
 status beam_screen_write_json(const beam_screen *screen, FILE *out, diagnostic *why);

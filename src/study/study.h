@@ -121,14 +121,14 @@ typedef enum study_phase {
 } study_phase;
 
 /* The progress of a running study, down to the current frame; study_progress is that of a study on disk. */
-typedef struct study_moment {
+typedef struct study_frame_progress {
     study_phase stage;
     size_t cell;                    /* the cell of the current frame */
     double share;                   /* the completed fraction of that frame, or of the motion before it, 0..1 */
     size_t frames_done, frames_all; /* repetitions of this process' cells, without warm-ups */
     double left_s;                  /* estimated time of the remaining frames; NaN: unknown */
     size_t img, images; /* while files are kept: number of the current cell, from 1, of all such cells; else 0 */
-} study_moment;
+} study_frame_progress;
 
 typedef struct study_options {
     const char *results; /* results folder; results/<name>/ is created in it */
@@ -142,7 +142,7 @@ typedef struct study_options {
     FILE *progress;          /* a terminal for the progress line with ETA, or NULL */
     int progress_columns;    /* its width, which the line does not exceed; 0: unknown */
     /* Called at most about ten times per second, by the thread that runs the study. May be NULL. */
-    void (*progressed)(void *context, const study_moment *now);
+    void (*progressed)(void *context, const study_frame_progress *now);
     /* News for the user: what disturbs the measurement, each kind at most once per minute, and a possible lack of disk
      * space. The progress line is erased before. May be NULL. */
     void (*news)(void *context, const char *text);

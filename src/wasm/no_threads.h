@@ -11,7 +11,7 @@
 
 extern int wasm_waited;
 /* A request that waited is being handled again: work that failed before is not repeated for it. */
-extern bool wasm_again;
+extern bool wasm_is_repeated;
 bool wasm_work_at_once(void);
 
 static inline int pthread_cond_clockwait(pthread_cond_t *condition, pthread_mutex_t *lock, clockid_t clock,

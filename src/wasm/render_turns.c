@@ -31,7 +31,7 @@ static struct turns {
     bool active;   /* tile workers are rendering a pass */
     int64_t frame; /* number of the pass */
     started_pass pass;
-    shared_frame sum;
+    tiled_frame sum;
     int64_t next, merged; /* the next tile for an order; number of merged tiles */
     bool has_photons;     /* the counters have the photons, which every order counts */
     ray_counters counters;
@@ -96,7 +96,7 @@ static void send_order(int worker)
 
 static void finish(status code, job_account *account, diagnostic *why)
 {
-    shared_frame_release(&now.sum);
+    tiled_frame_release(&now.sum);
     now.active = false;
     now.frame++;
     render_worker_end_pass(now.render, &now.pass, code, account, why);
@@ -193,7 +193,7 @@ static bool distribute_pass(render_worker *w)
     now.has_photons = false;
     now.counters = (ray_counters){.camera = 0};
     now.began_s = clock_wall_s();
-    const status code = shared_frame_begin(&now.pass.view, SIDE, &now.sum, &why);
+    const status code = tiled_frame_begin(&now.pass.view, SIDE, &now.sum, &why);
     if (code != STATUS_OK) {
         fail(code, &why);
         return true;
@@ -216,10 +216,10 @@ static bool merge(const tile_answer *a, const char *at, const char *end)
             return false;
         memcpy(&tile, at, sizeof tile);
         at += sizeof tile;
-        const size_t bytes = shared_frame_values(&now.sum, tile) * sizeof(int64_t);
+        const size_t bytes = tiled_frame_values(&now.sum, tile) * sizeof(int64_t);
         if (bytes == 0 || (size_t)(end - at) < bytes)
             return false;
-        shared_frame_put(&now.sum, tile, (const int64_t *)(const void *)at);
+        tiled_frame_store(&now.sum, tile, (const int64_t *)(const void *)at);
         at += bytes;
     }
     now.merged += a->traced;
@@ -312,7 +312,7 @@ double render_turns_run(void)
     if (!w)
         return -1.0;
     if (w->again)
-        w->taken_generation = 0;
+        w->copied_generation = 0;
     w->again = false;
     const bool changed = render_worker_is_stale(w) || live_is_due(w->live_slime);
     if (now.active && changed)

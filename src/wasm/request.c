@@ -30,7 +30,7 @@ typedef struct waiting_request {
 static http_server page_server;
 static waiting_request *waiting;
 int wasm_waited;
-bool wasm_again;
+bool wasm_is_repeated;
 
 status http_start(const http_settings *settings, http_server **out, diagnostic *why)
 {
@@ -193,10 +193,10 @@ static bool handle(waiting_request *w)
 {
     http_request *q = &w->q;
     wasm_waited = 0;
-    wasm_again = w->again;
+    wasm_is_repeated = w->again;
     w->again = true;
     q->route->handle(q->route->context, q, &q->reply);
-    wasm_again = false;
+    wasm_is_repeated = false;
     if (!wasm_waited || (q->reply.response && q->reply.code < 400))
         return true;
     release(q);

@@ -336,7 +336,7 @@ static status follow_fan(const void *how, uint64_t *result)
     fan f = {0};
     const fan_rule rule = {.from = {-3, 1.5, 0}, .to = {3, 1.5, 0}, .rays = 200, .width = 1.6};
     status code = probe_create(how, isa_best(), &p, NULL);
-    THEN(code, fan_follow(p, &rule, &f, NULL));
+    THEN(code, fan_trace(p, &rule, &f, NULL));
     *result = (uint64_t)f.node_count + hash_numbers(HASH_START, &f.focus, 3, sizeof(double));
     fan_release(&f);
     probe_destroy(p);
@@ -374,7 +374,7 @@ static void count_note(void *context, const scene_note *one)
 static status look(const void *how, uint64_t *result)
 {
     *result = 0;
-    return lint_scene(how, isa_best(), &(note_taker){count_note, result}, NULL);
+    return lint_scene(how, isa_best(), &(note_sink){count_note, result}, NULL);
 }
 
 static void traced_rays_and_notes_are_whole_or_not_there(void **state)

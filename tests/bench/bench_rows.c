@@ -41,7 +41,7 @@ static void write_file(const char *path, const char *text)
 }
 
 /* A line of the table with other repetition, order and, in rows.csv, wall time. */
-static void put_copy(const csv *table, size_t row, long repetition, long order, csv_line *line)
+static void put_copy(const csv *table, size_t row, long repetition, long order, csv_buffer *line)
 {
     const int repetition_at = csv_column(table, "repetition"), order_at = csv_column(table, "order"),
               wall_at = csv_column(table, "wall_s");
@@ -77,14 +77,14 @@ static void write_shard(const char *folder, row_kind kind, const csv *table, lon
     long order = 0;
     for (long i = 0; i < times; i++)
         for (size_t row = 0; row < table->row_count; row++) {
-            csv_line line = {0};
+            csv_buffer line = {0};
             char **field = &table->fields[row * table->column_count + (size_t)run_at], *before = *field;
             *field = run;
             put_copy(table, row, i * SHARDS + shard, order++, &line);
             *field = before;
             require(checksum_lines(&columns, last, &line, &why) == STATUS_OK, path, &why);
             fwrite(line.text, 1, line.size, out);
-            csv_line_free(&line);
+            csv_buffer_free(&line);
         }
     require(fclose(out) == 0, path, NULL);
     checksum_columns_free(&columns);

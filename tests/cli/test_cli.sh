@@ -453,7 +453,7 @@ run trace "$scene" --pixel 40,30 --depth 3 --json "${small[@]}"
 check "keys of a tree, in order" is "$(json @keys | tr '\n' ' ')" "schema scene depth radiance root lambda_nm carries "
 check "schema, scene and depth" is "$(json schema scene depth)" "$(lines 1 "$scene" 3)"
 check "keys of a ray, in order" is "$(json root@keys | tr '\n' ' ')" \
-    "kind depth origin direction throughput medium n hit children end brought far_end "
+    "kind depth origin direction throughput medium n hit children end contribution far_end "
 check "keys of a hit, in order" is "$(json root.hit@keys | tr '\n' ' ')" \
     "solid surface t point normal from to cos_i cos_t R_s R_p R tir path_length transmittance error_bound opaque $(
     )T radiance_factor "

@@ -17,7 +17,7 @@ static const char text_of_study[] = "study: fuzz\nscene: scenes/rod.yaml\n"
 static const char *const names[] = {"rows.csv", "runs.json", "excluded.csv", "workers.csv", "compare.csv"};
 enum { FILES = sizeof names / sizeof *names };
 
-static void check_row(const checksum_columns *columns, char *const *fields, char last[CHECKSUM_TEXT], csv_line *out)
+static void check_row(const checksum_columns *columns, char *const *fields, char last[CHECKSUM_TEXT], csv_buffer *out)
 {
     const uint32_t content = checksum_content(columns, fields);
     checksum_text(content, checksum_chain(last, content), last);
@@ -34,7 +34,7 @@ static void check_again(const char *path)
     if (csv_read_rows(path, NULL, &table, NULL) != STATUS_OK || !table)
         return;
     must(checksum_columns_create(table->header, table->column_count, &columns, NULL) == STATUS_OK);
-    csv_line out = {0};
+    csv_buffer out = {0};
     char last[CHECKSUM_TEXT] = "";
     for (size_t k = 0; k < table->column_count; k++)
         csv_text(&out, table->header[k]);
@@ -47,7 +47,7 @@ static void check_again(const char *path)
         check_row(&columns, table->fields + i * table->column_count, last, &out);
     }
     must(file_write(path, out.text, NULL) == STATUS_OK);
-    csv_line_free(&out);
+    csv_buffer_free(&out);
     checksum_columns_free(&columns);
     csv_destroy(table);
 }

@@ -202,7 +202,7 @@ static void what_has_no_effect_is_said(void **state)
     for (size_t k = 0; k < COUNT(cases); k++) {
         char found[64] = "";
         set(s, cases[k][0]);
-        scene_hints(s, &(note_taker){find, found});
+        scene_hints(s, &(note_sink){find, found});
         assert_string_equal(found, cases[k][1]);
     }
     scene_destroy(s);

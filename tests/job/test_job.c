@@ -47,10 +47,10 @@ static bool has_enough(void *context)
 }
 
 /* Cancels from within the frame, as another thread would. */
-static void cancel_soon(void *context, double share_done)
+static void cancel_soon(void *context, double fraction_done)
 {
     caller *c = context;
-    c->share = share_done;
+    c->share = fraction_done;
     if (++c->calls == c->limit)
         cancel_set(&c->token);
 }
@@ -129,9 +129,9 @@ static void a_token_is_asked_during_a_frame(void **state)
 }
 
 /* Complete frames are kept when a later one is interrupted. */
-static void end_in_the_third(void *context, double share_done)
+static void end_in_the_third(void *context, double fraction_done)
 {
-    if (share_done >= 0.667)
+    if (fraction_done >= 0.667)
         cancel_set(context);
 }
 

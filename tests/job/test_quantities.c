@@ -59,7 +59,7 @@ static const json_t *find(const json_t *o, const char *key)
 }
 
 /* In the format of a row. */
-static void put_json(csv_line *line, const quantity *q, const json_t *value)
+static void put_json(csv_buffer *line, const quantity *q, const json_t *value)
 {
     char text[2048] = "";
     size_t size = 0, last = json_array_size(value);
@@ -87,7 +87,7 @@ static int tell_apart(const quantity *list, size_t count, const job_account *a, 
 {
     int compared = 0;
     for (size_t i = 0; i < count; i++) {
-        csv_line row = {0}, from_json = {0};
+        csv_buffer row = {0}, from_json = {0};
         if (!list[i].column)
             continue;
         const json_t *value = find(account, list[i].json);
@@ -99,8 +99,8 @@ static int tell_apart(const quantity *list, size_t count, const job_account *a, 
         csv_end(&from_json);
         if (strcmp(row.text, from_json.text) != 0)
             fail_msg("%s: %s is not %s", list[i].name, row.text, from_json.text);
-        csv_line_free(&row);
-        csv_line_free(&from_json);
+        csv_buffer_free(&row);
+        csv_buffer_free(&from_json);
         compared++;
     }
     return compared;
@@ -132,7 +132,7 @@ static void rows_and_json_agree(void **state)
     assert_int_equal(job_create(&(job_settings){.measured = true}, &j, NULL), STATUS_OK);
     assert_int_equal(job_load(j, s, NULL, NULL), STATUS_OK);
     assert_int_equal(job_render(j, s, &(render_options){.usage = true}, &made, NULL), STATUS_OK);
-    json_t *account = report_create(&made, false), *page = report_page(&made);
+    json_t *account = report_create(&made, false), *page = report_image_numbers(&made);
     assert_true(tell_apart(frame_quantities, frame_quantity_count, &made, -1, account) > 40);
     for (int i = 0; i < made.result->worker_count; i++) {
         const json_t *one = json_array_get(json_object_get(account, "threads"), (size_t)i);

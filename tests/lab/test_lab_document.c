@@ -243,13 +243,13 @@ static uint64_t orbit_view(scene_document *d, double yaw_deg, const char *gestur
 
 static scene *take_kept(scene_document *d, uint64_t *generation)
 {
-    return scene_document_copy_kept(d, generation, NULL);
+    return scene_document_copy_to_save(d, generation, NULL);
 }
 
 static uint64_t version_now(scene_document *d)
 {
     uint64_t number = 0;
-    scene_destroy(scene_document_copy_kept(d, NULL, &number));
+    scene_destroy(scene_document_copy_to_save(d, NULL, &number));
     return number;
 }
 
@@ -403,11 +403,11 @@ static void loaded_data_is_shared(void **state)
     scene *s = scene_document_copy(d, &generation);
     assert_int_equal(scene_load(s, NULL), STATUS_OK);
     const mesh *loaded = s->meshes[0].data;
-    scene_document_share_loaded(d, s, generation + 1); /* of another generation */
+    scene_document_reuse_loaded(d, s, generation + 1); /* of another generation */
     scene *other = scene_document_copy(d, NULL);
     assert_null(other->meshes[0].data);
     scene_destroy(other);
-    scene_document_share_loaded(d, s, generation);
+    scene_document_reuse_loaded(d, s, generation);
     apply(d, "ball.ior=1.6");
     other = scene_document_copy(d, NULL);
     assert_ptr_equal(other->meshes[0].data, loaded);

@@ -108,7 +108,7 @@ static inline bool acts_of(scene *s, acts *out, diagnostic *why)
                 scene_check(s, why) == STATUS_OK && scene_load(s, why) == STATUS_OK &&
                 acts_resize(small, acts_heights[0]);
     if (fine)
-        scene_borrow_meshes(small, s);
+        scene_retain_meshes(small, s);
     fine = fine && acts_hash(out->r, small, &out->base[0], NULL, why);
     out->has_base[0] = fine;
     scene_destroy(small);
@@ -166,7 +166,7 @@ static inline acts_outcome acts_try(acts *a, const char *path, const acts_values
     return o;
 }
 
-/* The renderer's answer to inert_ask, for the largest film. */
+/* The renderer's answer to param_is_inert, for the largest film. */
 static inline bool acts_same(void *context, const char *assignment)
 {
     acts *a = context;
@@ -183,7 +183,7 @@ static inline bool acts_ask(acts *a, const char *path, inert_answer *out)
 {
     const bool seen = acts_base(a, ACTS_SIZES - 1);
     const inert_witness renderer_says = {seen ? &a->counters : NULL, acts_same, a};
-    return inert_ask(a->s, path, &renderer_says, out);
+    return param_is_inert(a->s, path, &renderer_says, out);
 }
 
 /* acts_try at one size after another, until a value changes the film. */

@@ -93,7 +93,7 @@ static bool remedy_works(const acts *a, const char *path, const param *row, cons
     for (int i = 0; i < STEPS && inert && s; i++) {
         if (!strchr(answer.note.remedy, '=') || !acts_set_all(s, answer.note.remedy, NULL))
             break;
-        inert = inert_ask(s, path, NULL, &answer);
+        inert = param_is_inert(s, path, NULL, &answer);
     }
     if (!s || inert || !acts_of(s, &helped, NULL)) {
         if (inert)

@@ -327,7 +327,7 @@ static void unmet_values(const needs_row *r, const char *sign, const param *row,
 /* Follows the remedies of other notes until the row's note is said. */
 static bool is_said(scene *s, const char *path, const needs_row *r, inert_answer *answer)
 {
-    for (int i = 0; i < 5 && inert_ask(s, path, NULL, answer); i++) {
+    for (int i = 0; i < 5 && param_is_inert(s, path, NULL, answer); i++) {
         if (strcmp(answer->rule, r->needs) == 0)
             return true;
         if (!acts_set_all(s, answer->note.remedy, NULL))
@@ -531,7 +531,7 @@ static status try_note(void *context, const char *path, const param *row, const 
     acts_values v;
     inert_answer answer;
     char line[NOTE_LINE_MAX];
-    if (!is_selected(path) || !inert_ask(x->a->s, path, NULL, &answer))
+    if (!is_selected(path) || !param_is_inert(x->a->s, path, NULL, &answer))
         return STATUS_OK;
     acts_values_of(x->a->s, row, value, &v);
     drop_special_indices(&answer, row, &v);

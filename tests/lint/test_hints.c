@@ -22,12 +22,12 @@ static void append_line(void *context, const scene_note *note)
     strcat(strcat(all, text), "\n");
 }
 
-static void expect(void (*hint)(const scene *s, const note_taker *taker), const char *file, const char *hints)
+static void expect(void (*hint)(const scene *s, const note_sink *taker), const char *file, const char *hints)
 {
     scene *s;
     char all[1000] = "";
     assert_int_equal(scene_read_text("t.yaml", file, strlen(file), &s, NULL), STATUS_OK);
-    hint(s, &(note_taker){append_line, all});
+    hint(s, &(note_sink){append_line, all});
     assert_string_equal(all, hints);
     scene_destroy(s);
 }
@@ -90,7 +90,7 @@ static void extrapolated_dispersion_laws_give_a_hint(void **state)
                  "invisible; set its ior\n");
 }
 
-static void at_one_wavelength(const scene *s, const note_taker *taker)
+static void at_one_wavelength(const scene *s, const note_sink *taker)
 {
     scene_lambda_range_hints(s, true, taker);
 }
@@ -294,7 +294,7 @@ static void the_shipped_scenes_give_no_hint(void **state)
         scene *s;
         snprintf(path, sizeof path, "experiments/scenes/%s.yaml", names[i]);
         assert_int_equal(scene_read(path, &s, NULL), STATUS_OK);
-        scene_hints(s, &(note_taker){append_line, all});
+        scene_hints(s, &(note_sink){append_line, all});
         assert_string_equal(all, "");
         scene_destroy(s);
     }

@@ -34,7 +34,7 @@ static note_list lint(const scene *s)
 {
     note_list all = {.count = 0};
     diagnostic why = {0};
-    worked(lint_scene(s, isa_best(), &(note_taker){keep_note, &all}, &why), &why);
+    worked(lint_scene(s, isa_best(), &(note_sink){keep_note, &all}, &why), &why);
     return all;
 }
 

@@ -289,7 +289,7 @@ static void intervals_of_shares_are_those_of_tables(void **state)
     for (double p = 0.05; p < 1; p += 0.15) { /* the exact coverage, over all outcomes of 20 trials */
         double covered = 0;
         for (int k = 0; k <= 20; k++) {
-            const share_interval i = binomial_interval(k, 20);
+            const fraction_interval i = binomial_interval(k, 20);
             covered += i.low <= p && p <= i.high ? choose(20, k) * pow(p, k) * pow(1 - p, 20 - k) : 0;
         }
         assert_true(covered >= 0.95);

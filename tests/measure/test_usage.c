@@ -151,8 +151,8 @@ static void every_disturbance_has_advice(void **state)
                                         "others use 40% of the machine",
                                         "built with a sanitizer"};
     for (size_t i = 0; i < sizeof texts / sizeof *texts; i++)
-        assert_true(strlen(usage_advice(texts[i])) > 10);
-    assert_string_equal(usage_advice("something else"), "");
+        assert_true(strlen(disturbance_advice(texts[i])) > 10);
+    assert_string_equal(disturbance_advice("something else"), "");
 }
 
 static void proc_stat_of_other_machines(void **state)
@@ -462,7 +462,7 @@ static void files_that_cannot_be_read_are_reported_once(void **state)
     disturbances_of_machine(root, collect, message);
     assert_int_equal(setrlimit(RLIMIT_NOFILE, &all), 0);
     assert_string_equal(message, "unknown: /sys/devices/system/cpu/possible cannot be read: Too many open files\n");
-    assert_string_not_equal(usage_advice(message), "");
+    assert_string_not_equal(disturbance_advice(message), "");
     assert_int_equal(nftw(root, remove_entry, 8, FTW_DEPTH | FTW_PHYS), 0);
 }
 
@@ -470,7 +470,7 @@ static void disturbances_of_this_machine_are_reported_as_lines(void **state)
 {
     (void)state;
     char message[4096] = "";
-    usage_disturbances(0.05, collect, message);
+    disturbances_report(0.05, collect, message);
     assert_null(strstr(message, "\n\n"));
 }
 

@@ -224,11 +224,12 @@ static void light_paths_are_reversible(void **state)
             const crystal_ray home = ray_of(&back, again, out[i].reflected, in.mode);
             assert_same_direction(home.d, vec3_scale(in.d, -1.0), 1e-11);
             /* a mode's row weighs half of the light */
-            const double one = in_air                    ? 2.0 * out[i].row.i
-                               : out[i].mode == MODE_ANY ? analyser_sees(out[i].row, stokes_linear(out[i].d, there))
-                                                         : out[i].row.i;
+            const double one = in_air ? 2.0 * out[i].row.i
+                               : out[i].mode == MODE_ANY
+                                   ? analyser_intensity(out[i].row, stokes_linear(out[i].d, there))
+                                   : out[i].row.i;
             const double other = back.mode == MODE_ANY ? 2.0 * home.row.i
-                                 : in_air              ? analyser_sees(home.row, stokes_linear(home.d, field))
+                                 : in_air              ? analyser_intensity(home.row, stokes_linear(home.d, field))
                                                        : home.row.i;
             assert_near(one, other, 1e-11);
         }

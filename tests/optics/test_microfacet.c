@@ -97,8 +97,8 @@ static void drawn_normals_have_their_density(void **state)
 
 static double pass(double alpha, vec3 i, vec3 o, two_media n)
 {
-    return o.z > 0.0 ? facet_that_reflects(alpha, i, o).density * ggx_masking(alpha, o)
-                     : facet_that_refracts(alpha, i, o, n.n_i, n.n_o).density * ggx_masking(alpha, o);
+    return o.z > 0.0 ? reflecting_facet(alpha, i, o).density * ggx_masking(alpha, o)
+                     : refracting_facet(alpha, i, o, n.n_i, n.n_o).density * ggx_masking(alpha, o);
 }
 
 /* A facet's share of light, times density and G_1, is f cos: Walter et al., (20) and (21). */
@@ -123,7 +123,7 @@ static void facets_scatter_by_walters_equations(void **state)
         if (o.z > 0.0) {
             expected = walter_reflection(alpha, perfect_mirror, NULL, i, o) * o.z;
         } else {
-            const facet f = facet_that_refracts(alpha, i, o, between.n_i, between.n_o);
+            const facet f = refracting_facet(alpha, i, o, between.n_i, between.n_o);
             got *= 1.0 - dielectric(vec3_dot(i, f.m), &between);
             expected = walter_refraction(alpha, between, i, o) * -o.z;
             refracted += got > 0.0;

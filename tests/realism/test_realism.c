@@ -393,19 +393,19 @@ static void curves_equal_theory(void **state)
     realism_points p;
     diagnostic why = {0};
     for (int which = 0; which < REALISM_CURVE_PRISM; which++) {
-        worked(realism_trace_curve(s, isa_best(), (realism_curve)which, &p, &why), &why);
+        worked(realism_measure_curve(s, isa_best(), (realism_curve)which, &p, &why), &why);
         assert_int_equal(p.count, counts[which]);
         for (int i = 0; i < p.count; i++) {
             assert_near(p.at[i].measured, p.at[i].theory, 1e-9);
             assert_true(i == 0 || p.at[i].x > p.at[i - 1].x);
         }
     }
-    worked(realism_trace_curve(s, isa_best(), REALISM_CURVE_EDGES, &p, &why), &why);
+    worked(realism_measure_curve(s, isa_best(), REALISM_CURVE_EDGES, &p, &why), &why);
     /* By the liquid's index: at index 1 the displacement is that of the glass alone. */
     assert_true(p.at[0].measured != p.at[60].measured);
-    assert_int_equal(realism_trace_curve(s, isa_best(), REALISM_CURVE_PRISM, &p, &why), STATUS_BAD_INPUT);
+    assert_int_equal(realism_measure_curve(s, isa_best(), REALISM_CURVE_PRISM, &p, &why), STATUS_BAD_INPUT);
     set(s, "liquid.visible=off");
-    assert_int_equal(realism_trace_curve(s, isa_best(), REALISM_CURVE_EDGES, &p, &why), STATUS_BAD_INPUT);
+    assert_int_equal(realism_measure_curve(s, isa_best(), REALISM_CURVE_EDGES, &p, &why), STATUS_BAD_INPUT);
     scene_destroy(s);
 }
 
@@ -431,7 +431,7 @@ static void curves_of_other_scenes_equal_theory(void **state)
         realism_points p;
         diagnostic why = {0};
         worked(scene_read(cases[k].file, &s, &why), &why);
-        worked(realism_trace_curve(s, isa_best(), cases[k].which, &p, &why), &why);
+        worked(realism_measure_curve(s, isa_best(), cases[k].which, &p, &why), &why);
         assert_true(p.count >= cases[k].least);
         for (int i = 0; i < p.count; i++) {
             assert_near(p.at[i].measured, p.at[i].theory, 1e-9);
@@ -451,7 +451,7 @@ static void malus_depends_on_the_filters_alone(void **state)
     worked(scene_read("experiments/scenes/malus.yaml", &s, &why), &why);
     worked(scene_set_assignment(s, "plate.visible=off", &why), &why);
     worked(scene_set_assignment(s, "board.color=0.2,0.1,0", &why), &why);
-    worked(realism_trace_curve(s, isa_best(), REALISM_CURVE_MALUS, &p, &why), &why);
+    worked(realism_measure_curve(s, isa_best(), REALISM_CURVE_MALUS, &p, &why), &why);
     for (int i = 0; i < p.count; i++) {
         const double c = cos(p.at[i].x * 3.14159265358979323846 / 180.0);
         assert_near(p.at[i].measured, 0.5 * c * c, 1e-9);
@@ -474,7 +474,7 @@ static void a_coin_appears_where_snells_law_puts_it(void **state)
     realism_points p;
     diagnostic why = {0};
     worked(scene_read("experiments/scenes/coin.yaml", &s, &why), &why);
-    worked(realism_trace_curve(s, isa_best(), REALISM_CURVE_COIN, &p, &why), &why);
+    worked(realism_measure_curve(s, isa_best(), REALISM_CURVE_COIN, &p, &why), &why);
     for (int i = 0; i < p.count; i++) {
         const double tan_i = 5.0 / 3.33, sine = tan_i / sqrt(1.0 + tan_i * tan_i) / p.at[i].x,
                      below = sine / sqrt(1.0 - sine * sine);
@@ -493,7 +493,7 @@ static void a_coin_appears_where_snells_law_puts_it(void **state)
     for (size_t i = 0; i < COUNT(wrong); i++) {
         scene *other = scene_clone(s);
         set(other, wrong[i].change);
-        assert_int_equal(realism_trace_curve(other, isa_best(), REALISM_CURVE_COIN, &p, &why), STATUS_BAD_INPUT);
+        assert_int_equal(realism_measure_curve(other, isa_best(), REALISM_CURVE_COIN, &p, &why), STATUS_BAD_INPUT);
         if (!strstr(why.what, wrong[i].what) || !why.remedy[0])
             fail_msg("%s: %s", wrong[i].change, why.what);
         scene_destroy(other);
@@ -518,7 +518,7 @@ static void an_arrow_turns_around_behind_the_focal_line(void **state)
         char text[120];
         snprintf(text, sizeof text, "vessel.ior=%g liquid.ior=%g camera.position.z=%g", n, n, -L);
         set_all(s, text);
-        worked(realism_trace_curve(s, isa_best(), REALISM_CURVE_ARROW, &p, &why), &why);
+        worked(realism_measure_curve(s, isa_best(), REALISM_CURVE_ARROW, &p, &why), &why);
         for (int i = 0; i < p.count; i++) {
             const double behind = p.at[i].x;
             assert_near(p.at[i].measured, (1.0 + behind / L - behind / f) / (1.0 + behind / L), 1e-6);
@@ -527,9 +527,9 @@ static void an_arrow_turns_around_behind_the_focal_line(void **state)
         }
     }
     set(s, "camera.position.z=-0.5");
-    assert_int_equal(realism_trace_curve(s, isa_best(), REALISM_CURVE_ARROW, &p, &why), STATUS_BAD_INPUT);
+    assert_int_equal(realism_measure_curve(s, isa_best(), REALISM_CURVE_ARROW, &p, &why), STATUS_BAD_INPUT);
     set(s, "liquid.visible=off");
-    assert_int_equal(realism_trace_curve(s, isa_best(), REALISM_CURVE_ARROW, &p, &why), STATUS_BAD_INPUT);
+    assert_int_equal(realism_measure_curve(s, isa_best(), REALISM_CURVE_ARROW, &p, &why), STATUS_BAD_INPUT);
     assert_non_null(strstr(why.what, "'liquid'"));
     scene_destroy(s);
 }
@@ -552,7 +552,7 @@ static void a_soap_film_is_dark_where_its_faces_cancel(void **state)
     diagnostic why = {0};
     worked(scene_read("experiments/scenes/soap.yaml", &s, &why), &why);
     set_all(s, "soap.film_ior=1.25 render.lambda_nm=500 camera.position.x=0 camera.position.y=0");
-    worked(realism_trace_curve(s, isa_best(), REALISM_CURVE_SOAP, &p, &why), &why);
+    worked(realism_measure_curve(s, isa_best(), REALISM_CURVE_SOAP, &p, &why), &why);
     for (int i = 0; i < p.count; i++) {
         if (fmod(p.at[i].x, 200.0) == 0.0)
             assert_near(p.at[i].measured, 0.0, 1e-12);
@@ -561,11 +561,11 @@ static void a_soap_film_is_dark_where_its_faces_cancel(void **state)
     }
     /* Askew, and on glass. */
     set_all(s, "soap.ior=1.5 camera.position.x=6");
-    worked(realism_trace_curve(s, isa_best(), REALISM_CURVE_SOAP, &p, &why), &why);
+    worked(realism_measure_curve(s, isa_best(), REALISM_CURVE_SOAP, &p, &why), &why);
     for (int i = 0; i < p.count; i++)
         assert_near(p.at[i].measured, p.at[i].theory, 1e-12);
     set(s, "film1.film_thickness_nm=0");
-    assert_int_equal(realism_trace_curve(s, isa_best(), REALISM_CURVE_SOAP, &p, &why), STATUS_BAD_INPUT);
+    assert_int_equal(realism_measure_curve(s, isa_best(), REALISM_CURVE_SOAP, &p, &why), STATUS_BAD_INPUT);
     scene_destroy(s);
 }
 

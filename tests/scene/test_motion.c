@@ -177,7 +177,7 @@ static void a_clone_does_not_move(void **state)
     assert_ptr_equal(shared, s->meshes[1].data);
     advance(m, 0.3, true);
     assert_ptr_not_equal(shared, s->meshes[1].data);
-    assert_int_equal(mesh_owners(shared), 1);
+    assert_int_equal(mesh_reference_count(shared), 1);
     assert_true(film_of(copy) == film_afresh("render.threads=1", 0.1));
     assert_true(film_of(s) == film_afresh("render.threads=1", 0.3));
     const mesh *own = s->meshes[1].data;
@@ -261,10 +261,10 @@ typedef struct leaving {
     cancel_token token;
 } leaving;
 
-static void leave(void *context, double share_done)
+static void leave(void *context, double fraction_done)
 {
     leaving *l = context;
-    l->share = share_done;
+    l->share = fraction_done;
     cancel_set(&l->token);
 }
 

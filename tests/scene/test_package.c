@@ -160,7 +160,7 @@ static void all_that_is_loaded_is_the_same(void **state)
         moved[i] = vec3_scale(toy->vertices[i], 1.1);
     worked(mesh_move(toy, moved, NULL, &why), &why);
     free(moved);
-    worked(hierarchy_follow(toy, 100.0, 1, NULL, &why), &why);
+    worked(hierarchy_update(toy, 100.0, 1, NULL, &why), &why);
     for (int kind = HIERARCHY_NONE; kind <= HIERARCHY_BVH; kind++)
         own(toy, kind);
     assert_true(s->meshes[0].data->single && !s->meshes[1].data->single);
@@ -216,7 +216,7 @@ static void meshes_that_entries_share_travel_once(void **state)
     assert_true(once.size < twice.size * 6 / 10);
     scene *again = unpacked(&once);
     assert_ptr_equal(again->meshes[0].data, again->meshes[1].data);
-    assert_int_equal(mesh_owners(again->meshes[0].data), 2);
+    assert_int_equal(mesh_reference_count(again->meshes[0].data), 2);
     scene_destroy(s);
     scene_destroy(again);
     free(twice.at);

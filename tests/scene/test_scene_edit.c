@@ -188,18 +188,18 @@ static void assigning_a_material_replaces_all_surface_values(void **state)
     (void)state;
     scene *s = scene_from(small_scene);
     assert_true(s->solids[2].surface.diffuse == 0.25);
-    assert_int_equal(scene_put(s, "c.material", "clay", NULL), STATUS_OK); /* its own values are discarded */
+    assert_int_equal(scene_set_property(s, "c.material", "clay", NULL), STATUS_OK); /* its own values are discarded */
     assert_true(s->solids[2].surface.diffuse == 0.5);
-    assert_int_equal(scene_put(s, "c.material", "glass", NULL), STATUS_OK);
+    assert_int_equal(scene_set_property(s, "c.material", "glass", NULL), STATUS_OK);
     assert_true(s->solids[2].surface.ior == 1.5 && s->solids[2].surface.diffuse == 0.0 &&
                 s->solids[2].material_index == 0);
-    assert_int_equal(scene_put(s, "c.material", "", NULL), STATUS_OK);
+    assert_int_equal(scene_set_property(s, "c.material", "", NULL), STATUS_OK);
     assert_true(s->solids[2].surface.ior == 1.0 && s->solids[2].material_index == -1);
-    assert_int_equal(scene_put(s, "c.shape", "sphere", NULL), STATUS_OK);
+    assert_int_equal(scene_set_property(s, "c.shape", "sphere", NULL), STATUS_OK);
     assert_int_equal(s->solids[2].shape.kind, SHAPE_SPHERE);
-    assert_int_equal(scene_put(s, "c.radius", "3", NULL), STATUS_OK);
+    assert_int_equal(scene_set_property(s, "c.radius", "3", NULL), STATUS_OK);
     assert_true(s->solids[2].shape.radius == 3.0);
-    assert_refused(s, scene_put(s, "c.shape", "cylindre", &why), "'cylindre' is not a shape");
+    assert_refused(s, scene_set_property(s, "c.shape", "cylindre", &why), "'cylindre' is not a shape");
     scene_destroy(s);
 }
 
@@ -218,9 +218,10 @@ static void lights_and_solids_above_the_limit_are_refused(void **state)
     assert_refused(s, scene_add(s, PARAM_LIGHT, "more", NULL, &why), "more than 1024 lights");
     assert_refused(s, scene_add_solid(s, "more", SHAPE_PLANE, NULL, &why), "more than 64 planes and solids of meshes");
     assert_int_equal(scene_add_solid(s, "bounded", SHAPE_SPHERE, NULL, NULL), STATUS_OK);
-    assert_refused(s, scene_put(s, "bounded.shape", "plane", &why), "more than 64 planes and solids of meshes");
+    assert_refused(s, scene_set_property(s, "bounded.shape", "plane", &why),
+                   "more than 64 planes and solids of meshes");
     assert_int_equal(scene_remove(s, "s0", NULL), STATUS_OK);
-    assert_int_equal(scene_put(s, "bounded.shape", "plane", NULL), STATUS_OK);
+    assert_int_equal(scene_set_property(s, "bounded.shape", "plane", NULL), STATUS_OK);
     scene_destroy(s);
 }
 

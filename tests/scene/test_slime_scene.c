@@ -211,7 +211,7 @@ static void slimes_are_reused_only_if_meshes_are_kept(void **state)
     for (int keep = 0; keep < 2; keep++) {
         scene *s = read_scene(*state, falling);
         set(s, keep ? "render.keep=on" : "render.keep=off");
-        scene_borrow_meshes(s, from);
+        scene_retain_meshes(s, from);
         assert_true((s->meshes[0].data == from->meshes[0].data) == keep);
         assert_int_equal(s->meshes[0].account.steps, keep ? 250 : 0);
         assert_true(s->meshes[0].motion_s == (keep ? from->meshes[0].motion_s : 0.0));
@@ -219,7 +219,7 @@ static void slimes_are_reused_only_if_meshes_are_kept(void **state)
     }
     scene *other = read_scene(*state, falling);
     set(other, "toy.damping=0.03");
-    scene_borrow_meshes(other, from);
+    scene_retain_meshes(other, from);
     assert_null(other->meshes[0].data);
     scene_destroy(other);
     scene_destroy(from);
@@ -253,11 +253,11 @@ typedef struct waiting {
     cancel_token token;
 } waiting;
 
-static void wait(void *context, double share_done)
+static void wait(void *context, double fraction_done)
 {
     waiting *w = context;
-    w->in_order &= share_done > w->share && share_done <= 1.0;
-    w->share = share_done;
+    w->in_order &= fraction_done > w->share && fraction_done <= 1.0;
+    w->share = fraction_done;
     if (++w->polls >= w->patience)
         cancel_set(&w->token);
 }

@@ -6,7 +6,7 @@
 static void csv_fields_round_trip(void **state)
 {
     const fixture *f = *state;
-    csv_line line = {0};
+    csv_buffer line = {0};
     csv_text(&line, "name");
     csv_text(&line, "a,b");
     csv_text(&line, "say \"it\"");
@@ -23,7 +23,7 @@ static void csv_fields_round_trip(void **state)
     assert_string_equal(line.text,
                         "name,\"a,b\",\"say \"\"it\"\"\"\nNA,0.1,NA\nNA,9223372036854775807,00000000000000ab\n");
     fixture_write(f, "t.csv", line.text);
-    csv_line_free(&line);
+    csv_buffer_free(&line);
     char path[400];
     fixture_path(f, "t.csv", path);
     csv *table = NULL;
@@ -181,7 +181,7 @@ static void rows_move_to_another_header(void **state)
 {
     (void)state;
     csv_layout *l = NULL;
-    csv_line out = {0};
+    csv_buffer out = {0};
     diagnostic why = {0};
     assert_int_equal(csv_layout_create("a,b,c\n", "c,d,a\n", &l, &why), STATUS_OK);
     static const char lines[] = "1,2,3\n4,5,\"x,y\"\n";
@@ -189,7 +189,7 @@ static void rows_move_to_another_header(void **state)
     assert_string_equal(out.text, "3,NA,1\n\"x,y\",NA,4\n");
     assert_int_not_equal(csv_layout_place(l, "1,2\n", 4, &out, &why), STATUS_OK);
     assert_int_not_equal(csv_layout_place(l, "1,2,3,4\n", 8, &out, &why), STATUS_OK);
-    csv_line_free(&out);
+    csv_buffer_free(&out);
     csv_layout_destroy(l);
 }
 

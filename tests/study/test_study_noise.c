@@ -3,6 +3,7 @@
 #include "study_fixture.h"
 #include "base/cancel.h"
 #include "measure/clock.h"
+#include "study/rows/row_quantity.h"
 #include "study/rows/row_files.h"
 #include "study/run/run_state.h"
 #include "study/summary/summary.h"
@@ -206,7 +207,7 @@ static void waiting_ends_with_the_time_or_a_stop_request(void **state)
 }
 
 /* As Ctrl-Z and fg do, in the middle of the first frame. The child goes on until it has an effect. */
-static void stop_once(void *context, const study_moment *now)
+static void stop_once(void *context, const study_frame_progress *now)
 {
     bool *stopped = context;
     if (*stopped || now->stage != STUDY_MEASURING || !(now->share > 0))
@@ -277,6 +278,18 @@ static void invalid_rules_are_refused(void **state)
 
 #define CASE(name) cmocka_unit_test_setup_teardown(name, fixture_setup, fixture_teardown)
 
+/* Medians of fractions stay in 0..1, of what can be 0 at or above 0: which column is which. */
+static void every_noise_column_has_its_range(void **state)
+{
+    (void)state;
+    static const char *const fractions[] = {"others_fraction", "steal_fraction", "stalled_fraction", "cut_fraction",
+                                            "frequency_drop"};
+    for (size_t i = 0; i < sizeof fractions / sizeof *fractions; i++)
+        assert_int_equal(row_quantity_range((row_quantity){.name = fractions[i]}), LEVEL_FRACTION);
+    assert_int_equal(row_quantity_range((row_quantity){.name = "imbalance"}), LEVEL_NOT_NEGATIVE);
+    assert_int_equal(row_quantity_range((row_quantity){.name = "wall_s"}), LEVEL_POSITIVE);
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
@@ -287,6 +300,7 @@ int main(void)
         CASE(a_stopped_process_is_disturbed),
         CASE(invalid_rules_are_refused),
         cmocka_unit_test(a_twentieth_of_the_machine_is_news),
+        cmocka_unit_test(every_noise_column_has_its_range),
     };
     return cmocka_run_group_tests_name("study_noise", tests, NULL, NULL);
 }

@@ -10,7 +10,7 @@ typedef struct watch {
     pthread_t from;
 } watch;
 
-static void look(void *context, const study_moment *now)
+static void look(void *context, const study_frame_progress *now)
 {
     watch *w = context;
     assert_true(pthread_equal(w->from, pthread_self()));
@@ -68,7 +68,7 @@ static void the_callback_reports_the_progress_of_the_terminal(void **state)
     study_destroy(s);
 }
 
-static void count_calls(void *context, const study_moment *now)
+static void count_calls(void *context, const study_frame_progress *now)
 {
     size_t *calls = context;
     assert_true(now->share >= 0 && now->share <= 1);
@@ -97,7 +97,7 @@ static void progress_is_shown_ten_times_a_second(void **state)
 }
 
 /* Waits until the next update is shown. */
-static void note_motion(void *context, const study_moment *now)
+static void note_motion(void *context, const study_frame_progress *now)
 {
     bool *moved = context;
     if (now->stage == STUDY_MOVING)

@@ -63,7 +63,7 @@ static char *write_row(const study *s, const scene *setting, bool workers)
                      .film_expected = 0xabd,
                      .disturbed = NOISE_DISTURBED,
                      .account = &made};
-    csv_line line = {0};
+    csv_buffer line = {0};
     row_columns_header(&line, s, workers ? worker_each_column : row_each_column);
     (workers ? worker_rows_write : row_write)(&line, &row);
     assert_false(line.failed);

@@ -192,7 +192,7 @@ typedef struct meddler {
     bool done;
 } meddler;
 
-static void meddle(void *context, const study_moment *now)
+static void meddle(void *context, const study_frame_progress *now)
 {
     meddler *m = context;
     char line[1200];

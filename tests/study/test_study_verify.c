@@ -68,7 +68,7 @@ static char *edited(const char *line, size_t column, uint64_t how)
     static const char *const values[] = {"NA", "nan", "-3.5", "abc", "", "0", "1e300"};
     char *copy = strdup(line), *fields[FIELDS_MAX], old[4000];
     const size_t count = csv_split(copy, fields);
-    csv_line out = {0};
+    csv_buffer out = {0};
     assert_true(count > column && count < FIELDS_MAX);
     snprintf(old, sizeof old, "%s", fields[column]);
     char value[4000];

@@ -249,7 +249,7 @@ static size_t split(char *line, char **fields)
 static void rearrange(const fixture *f, const char *name, const char *without, const char *with)
 {
     char *text = fixture_text(f, name), *rest = text;
-    csv_line out = {0};
+    csv_buffer out = {0};
     size_t left_out = SIZE_MAX;
     for (char *line; (line = strsep(&rest, "\n")) && *line;) {
         char *fields[200];
@@ -266,7 +266,7 @@ static void rearrange(const fixture *f, const char *name, const char *without, c
     }
     assert_true(!without || left_out != SIZE_MAX);
     fixture_write(f, name, out.text);
-    csv_line_free(&out);
+    csv_buffer_free(&out);
     free(text);
 }
 

@@ -17,11 +17,11 @@ const channels = (c) => (c[0] === c[1] && c[1] === c[2] ? [c[0]] : c);
 const flat = (node) => [node, ...node.children.flatMap(flat)];
 
 /** The expected values of a row, by column header. */
-function wanted({ depth, medium, n, throughput, brought, hit }) {
+function wanted({ depth, medium, n, throughput, contribution, hit }) {
   const row = {
     Depth: [depth],
     Weight: channels(throughput),
-    Contribution: brought.some((x) => x !== 0) ? channels(brought) : [],
+    Contribution: contribution.some((x) => x !== 0) ? channels(contribution) : [],
   };
   if (!hit) return { ...row, Media: [n], Angles: [], Path: [], medium };
   return {

@@ -122,10 +122,10 @@ static void take_report(void *of, int rank, const rank_report *report, const wor
     g->idle_s += report->account.wall_s - report->account.cpu_s;
 }
 
-static void progress(void *of, double share_done)
+static void progress(void *of, double fraction_done)
 {
     (void)of;
-    (void)share_done;
+    (void)fraction_done;
 }
 
 static void print_row(const gathered *g, int ranks, const traffic *moved)

@@ -81,7 +81,7 @@ hierarchy_report hierarchy_describe(const hierarchy *h)
 }
 
 /* Refits a hierarchy owned by its mesh. false: it must be rebuilt. */
-static bool follow_by_refit(hierarchy *h, double ratio, hierarchy_moves *moves)
+static bool follow_by_refit(hierarchy *h, double ratio, hierarchy_update_counts *moves)
 {
     const double begun = now_s();
     const bool fits = hierarchy_refit(h);
@@ -96,7 +96,7 @@ static bool follow_by_refit(hierarchy *h, double ratio, hierarchy_moves *moves)
     return cheap;
 }
 
-static status follow_by_build(hierarchy **stored, int threads, hierarchy_moves *moves, diagnostic *why)
+static status follow_by_build(hierarchy **stored, int threads, hierarchy_update_counts *moves, diagnostic *why)
 {
     const mesh *m = (*stored)->of;
     const hierarchy_kind kind = (*stored)->kind;
@@ -108,9 +108,9 @@ static status follow_by_build(hierarchy **stored, int threads, hierarchy_moves *
     return s;
 }
 
-status hierarchy_follow(const mesh *m, double ratio, int threads, hierarchy_moves *out, diagnostic *why)
+status hierarchy_update(const mesh *m, double ratio, int threads, hierarchy_update_counts *out, diagnostic *why)
 {
-    hierarchy_moves moves = {0};
+    hierarchy_update_counts moves = {0};
     status s = STATUS_OK;
     pthread_mutex_lock(&m->shared->mutex);
     for (int kind = 0; kind < HIERARCHY_KIND_COUNT && s == STATUS_OK; kind++) {

@@ -8,7 +8,7 @@
  *            larger than a quarter of its radius
  *   bvh      binned surface-area heuristic, eight children per node, single-precision boxes rounded outwards
  *
- * A hierarchy borrows its mesh, which must outlive it. After the build only hierarchy_refit and hierarchy_follow change
+ * A hierarchy borrows its mesh, which must outlive it. After the build only hierarchy_refit and hierarchy_update change
  * it. Any number of threads may use it at once. */
 #pragma once
 
@@ -47,14 +47,14 @@ double hierarchy_cost(const hierarchy *h);
 /* The result of updating a mesh's hierarchies after mesh_move. Each is refitted, or rebuilt if a refit is impossible or
  * makes the cost more than `ratio` (at least 1) times the cost at the build. No other thread may use the mesh
  * meanwhile. STATUS_FAILURE: out of memory; the mesh then has no hierarchies. */
-typedef struct hierarchy_moves {
+typedef struct hierarchy_update_counts {
     int refitted, rebuilt;
     double refit_s, build_s; /* wall time of refits and of rebuilds */
     /* The largest ratio of the cost after a refit to that at the build, including hierarchies then rebuilt; 0 without a
      * refit. */
     double growth;
-} hierarchy_moves;
-status hierarchy_follow(const mesh *m, double ratio, int threads, hierarchy_moves *out, diagnostic *why);
+} hierarchy_update_counts;
+status hierarchy_update(const mesh *m, double ratio, int threads, hierarchy_update_counts *out, diagnostic *why);
 
 /* --- meshes as bytes (base/pack.h) ---
  *

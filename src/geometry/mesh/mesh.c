@@ -107,7 +107,7 @@ void mesh_release(const mesh *m)
         mesh_free((mesh *)m);
 }
 
-long mesh_owners(const mesh *m)
+long mesh_reference_count(const mesh *m)
 {
     return __atomic_load_n(&m->shared->owners, __ATOMIC_ACQUIRE);
 }

@@ -85,12 +85,12 @@ status mesh_create(size_t vertex_count, size_t triangle_count, bool with_normals
 status mesh_finish(mesh *m, diagnostic *why);
 
 void mesh_retain(const mesh *m);
-void mesh_release(const mesh *m); /* NULL is allowed */
-long mesh_owners(const mesh *m);  /* the current number of owners */
+void mesh_release(const mesh *m);         /* NULL is allowed */
+long mesh_reference_count(const mesh *m); /* the current number of owners */
 
 /* Moves the vertices of a finished mesh, and replaces its normals if it has any (normalised as by mesh_finish): for an
  * animated solid between frames, while no other thread uses the mesh. Vertices with equal positions must stay together,
- * since `closed` is not computed again. The mesh's hierarchies are invalid until hierarchy_follow
+ * since `closed` is not computed again. The mesh's hierarchies are invalid until hierarchy_update
  * (geometry/hierarchy/hierarchy.h). vertices and normals: one per vertex; normals NULL keeps them. STATUS_BAD_INPUT as
  * mesh_finish, with the mesh unchanged. */
 status mesh_move(mesh *m, const vec3 *vertices, const vec3 *normals, diagnostic *why);

@@ -524,7 +524,7 @@ static void quick_shadow_test(const scene_geometry *g, const ray_batch *rays, in
         const int r = g->direct_regions[j];
         const region *b = &g->regions[r];
         /* a transparent region of higher priority may hide it */
-        const bool doubtful = r < g->highest_clear || !b->opaque, casts = region_casts_shadow(b, solid_shadows);
+        const bool doubtful = r < g->highest_transparent || !b->opaque, casts = region_casts_shadow(b, solid_shadows);
         if (casts && is_mesh(g, b->outside))
             *(doubtful ? &unsure : &sure) |= (uint64_t)1 << b->outside;
         else if (casts)

@@ -71,8 +71,8 @@ static void add_region(scene_geometry *g, int priority_index, const region_sourc
         *surface = *meniscus_of(source->shape);
         parts[0].surface = surface;
     }
-    if (!source->opaque && priority_index > g->highest_clear)
-        g->highest_clear = priority_index;
+    if (!source->opaque && priority_index > g->highest_transparent)
+        g->highest_transparent = priority_index;
     region *b = &g->regions[priority_index];
     g->shapes[priority_index] = *source->shape;
     *b = (region){.outside = g->primitive_count,
@@ -135,7 +135,7 @@ static primitive_counts count_primitives(const region_source *sources, int count
 {
     primitive_counts n = {0, 0, 0, 0};
     for (int i = 0; i < count; i++) {
-        const int places = shape_places(sources[i].shape);
+        const int places = shape_primitive_slots(sources[i].shape);
         n.all += places;
         n.findable += can_be_in_tree(&sources[i]) ? places : 0;
         n.normals += (int)sources[i].shape->sides;

@@ -369,7 +369,7 @@ static double visit_shadow(void *context, int item, double t_max)
     const region *b = &g->regions[r];
     if (!region_casts_shadow(b, w->solid_shadows))
         return t_max;
-    const bool doubtful = !b->opaque || r < g->highest_clear;
+    const bool doubtful = !b->opaque || r < g->highest_transparent;
     const double thin = BOUNDARY_CLOSE * (1.0 + g->primitives[b->outside].extent * w->s->low[w->ray]);
     interval outer[CHORDS_MAX], hollow = {HUGE_VAL, -HUGE_VAL};
     start_intervals(w, b->outside, outer);

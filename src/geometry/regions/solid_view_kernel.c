@@ -169,7 +169,7 @@ static void add_region(solid_view *v, const scene_geometry *g, int outer)
     v->regions[r].outside = add_primitive(v, g, b->outside, r);
     v->regions[r].hollow = b->hollow >= 0 ? add_primitive(v, g, b->hollow, r) : -1;
     v->inner.opaque_regions |= (uint64_t)b->opaque << (r - 1);
-    v->inner.highest_clear = b->opaque ? v->inner.highest_clear : r;
+    v->inner.highest_transparent = b->opaque ? v->inner.highest_transparent : r;
 }
 
 static bool are_distinct(const solid_view *v)

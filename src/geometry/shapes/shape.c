@@ -139,7 +139,7 @@ static bool is_unknown(const solid_shape *s)
     return shape_of(s)->triangles && (!s->mesh || s->copies.x > 1.0 || s->copies.y > 1.0 || s->copies.z > 1.0);
 }
 
-bool solid_shapes_may_share_faces(const solid_shape *a, const solid_shape *b)
+bool solid_shapes_may_coincide(const solid_shape *a, const solid_shape *b)
 {
     if ((shape_of(a)->curved && shape_of(b)->curved) || is_unknown(a) || is_unknown(b))
         return true;

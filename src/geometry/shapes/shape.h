@@ -127,10 +127,10 @@ bounds3 shape_world_box(const solid_shape *shape);
 
 /* False: no face of one coincides with part of a face of the other, flat with flat (in the same plane) or curved with
  * curved. True: perhaps. Two meshes of many triangles are not compared. */
-bool solid_shapes_may_share_faces(const solid_shape *a, const solid_shape *b);
+bool solid_shapes_may_coincide(const solid_shape *a, const solid_shape *b);
 
 /* The number of PRIMITIVES_MAX entries of a scene geometry that the shape uses. */
-static inline int shape_places(const solid_shape *shape)
+static inline int shape_primitive_slots(const solid_shape *shape)
 {
     const shape_rule *rule = shape_of(shape);
     return rule->primitive_count + rule->further_rows + (rule->more_rows ? rule->more_rows(shape) : 0);

@@ -212,9 +212,9 @@ static double light_by(const caustics *c, int number, int64_t *arrived)
     return sum;
 }
 
-caustics_few caustics_find_shortage(const caustics *c)
+photon_shortage caustics_find_shortage(const caustics *c)
 {
-    caustics_few few = {.solid = -1, .arrived = PHOTONS_ENOUGH};
+    photon_shortage few = {.solid = -1, .arrived = PHOTONS_ENOUGH};
     double all = 0.0;
     for (int k = 0; k < emission_target_count(c->from); k++)
         all += emission_light(c->from, k, atomic_load(&c->frame.arrived[k]));

@@ -34,7 +34,7 @@ extern const caustics_step caustics_steps[CAUSTICS_STEPS];
 void caustics_count(const caustics *c, ray_counters *counters);
 
 /* The solid with too few photons, if there is one; call it after the steps. */
-caustics_few caustics_find_shortage(const caustics *c);
+photon_shortage caustics_find_shortage(const caustics *c);
 
 /* Memory for a frame, bytes. */
 uint64_t caustics_bytes(const render_settings *r);

@@ -139,14 +139,14 @@ render_settings tiles_settings(const render_settings *r, int side)
     return settings;
 }
 
-status shared_frame_begin(const scene *s, int side, shared_frame *out, diagnostic *why)
+status tiled_frame_begin(const scene *s, int side, tiled_frame *out, diagnostic *why)
 {
     const render_settings settings = tiles_settings(&s->render, side);
     schedule_start(&out->places, &settings);
     return renderer_film(s, &out->img, &out->variance, why);
 }
 
-void shared_frame_release(shared_frame *f)
+void tiled_frame_release(tiled_frame *f)
 {
     film_destroy(f->img);
     free(f->variance);
@@ -159,13 +159,13 @@ static size_t sums_of(const image_tile *at)
     return 3 * (size_t)(at->x1 - at->x0) * (size_t)(at->y1 - at->y0);
 }
 
-size_t shared_frame_values(const shared_frame *f, int64_t tile)
+size_t tiled_frame_values(const tiled_frame *f, int64_t tile)
 {
     image_tile at;
     return schedule_tile(&f->places, tile, &at) ? sums_of(&at) * (f->variance ? 2 : 1) : 0;
 }
 
-static void put_variance(const shared_frame *f, const image_tile *at, const int64_t *values)
+static void put_variance(const tiled_frame *f, const image_tile *at, const int64_t *values)
 {
     const size_t length = 3 * (size_t)(at->x1 - at->x0);
     for (int y = at->y0; y < at->y1; y++, values += length)
@@ -173,12 +173,12 @@ static void put_variance(const shared_frame *f, const image_tile *at, const int6
                length * sizeof *f->variance);
 }
 
-void shared_frame_put(shared_frame *f, int64_t tile, const int64_t *values)
+void tiled_frame_store(tiled_frame *f, int64_t tile, const int64_t *values)
 {
     image_tile at;
     if (!schedule_tile(&f->places, tile, &at))
         return;
-    film_put_tile(f->img, at.x0, at.y0, at.x1, at.y1, values);
+    film_store_tile(f->img, at.x0, at.y0, at.x1, at.y1, values);
     if (f->variance)
         put_variance(f, &at, values + sums_of(&at));
 }

@@ -117,8 +117,8 @@ typedef struct render_result {
     tile_event *events; /* in order of begin_s; NULL unless requested */
     size_t event_count;
     mesh_report meshes;
-    layer_set *layers; /* NULL unless requested and supported */
-    caustics_few few;  /* of render.caustics */
+    layer_set *layers;   /* NULL unless requested and supported */
+    photon_shortage few; /* of render.caustics */
     /* by rank, if several processes render the frame; else NULL */
     rank_usage *ranks;
     int rank_count, tile; /* tile: the side of the ranks' tiles */
@@ -181,22 +181,22 @@ status path_counts_create(const render_settings *r, const render_result *pilot, 
 /* --- render_result.c: a frame whose tiles several processes render --- */
 
 /* The processes are, for example, the ranks of an MPI job or the workers of a browser, each with a tile_source. The
- * film is bit-identical to that of one process. Ownership: shared_frame_begin allocates film and variance;
- * shared_frame_release frees them, unless the owner keeps them and sets them to NULL. For one thread at a time. */
+ * film is bit-identical to that of one process. Ownership: tiled_frame_begin allocates film and variance;
+ * tiled_frame_release frees them, unless the owner keeps them and sets them to NULL. For one thread at a time. */
 
 /* The settings with which all processes have the same tiles, of that side, whatever their numbers of threads. */
 render_settings tiles_settings(const render_settings *r, int side);
 
-typedef struct shared_frame {
+typedef struct tiled_frame {
     schedule places; /* positions of the tiles */
     film *img;
     double *variance; /* NULL: unknown */
-} shared_frame;
+} tiled_frame;
 
-status shared_frame_begin(const scene *s, int side, shared_frame *out, diagnostic *why);
-void shared_frame_release(shared_frame *f);
+status tiled_frame_begin(const scene *s, int side, tiled_frame *out, diagnostic *why);
+void tiled_frame_release(tiled_frame *f);
 
 /* The number of values of a rendered tile: its sums, 3 per pixel, then as many variances (doubles) if there are any. */
-size_t shared_frame_values(const shared_frame *f, int64_t tile);
+size_t tiled_frame_values(const tiled_frame *f, int64_t tile);
 /* Copies a rendered tile into the film. */
-void shared_frame_put(shared_frame *f, int64_t tile, const int64_t *values);
+void tiled_frame_store(tiled_frame *f, int64_t tile, const int64_t *values);

@@ -27,7 +27,7 @@ static status probe_of_beam(const scene *s, const beam *b, double lambda_nm, isa
     }
     if (code == STATUS_OK) {
         probe_limit_depth(*out, (int)b->depth);
-        probe_one_wavelength(*out);
+        probe_use_one_wavelength(*out);
     }
     scene_destroy(unlit);
     return code;

@@ -245,7 +245,7 @@ static status follow_all(probe *p, const fan_rule *rule, fan *f, diagnostic *why
     return result;
 }
 
-status fan_follow(probe *p, const fan_rule *rule, fan *out, diagnostic *why)
+status fan_trace(probe *p, const fan_rule *rule, fan *out, diagnostic *why)
 {
     fan_release(out);
     status result = check_rule(rule, why);

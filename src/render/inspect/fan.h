@@ -53,5 +53,5 @@ typedef struct fan {
     bool is_virtual;  /* the focus is behind the exit rays */
 } fan;
 
-status fan_follow(probe *p, const fan_rule *rule, fan *out, diagnostic *why);
+status fan_trace(probe *p, const fan_rule *rule, fan *out, diagnostic *why);
 void fan_release(fan *f);

@@ -21,7 +21,7 @@ status probe_create(const scene *s, isa level, probe **out, diagnostic *why)
         p->spectral = r->spectrum == SPECTRUM_SPECTRAL;
         p->setting->camera.aperture = 0.0;
         if (integrator_traits_of(r)->by_chance || integrator_traits_of(r)->drawn || integrator_traits_of(r)->layers)
-            trace_trees(r); /* trace all branches, not a random one or none */
+            use_whitted(r); /* trace all branches, not a random one or none */
         code = scene_check(p->setting, why);
         r->spectrum = SPECTRUM_RGB; /* a tree has one wavelength: render.lambda_nm */
     }
@@ -32,7 +32,7 @@ status probe_create(const scene *s, isa level, probe **out, diagnostic *why)
         return code;
     }
     if (p->spectral)
-        probe_one_wavelength(p);
+        probe_use_one_wavelength(p);
     *out = p;
     return STATUS_OK;
 }
@@ -50,7 +50,7 @@ static vec3 tint_of(const probe *p, const material *m)
     return vec3_make(material_tint(m, fraction.x), material_tint(m, fraction.y), material_tint(m, fraction.z));
 }
 
-void probe_one_wavelength(probe *p)
+void probe_use_one_wavelength(probe *p)
 {
     const render_settings *r = &p->frame_plan->render;
     if (p->frame_plan->layered)

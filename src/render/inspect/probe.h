@@ -65,11 +65,11 @@ typedef struct ray_node {
                        * and 1 -1 0 0 for an extraordinary ray, always */
     int medium;       /* medium in which it starts */
     double n;
-    int light;             /* for a shadow ray: index in scene.lights, else RAY_NONE */
-    double let_through;    /* for a shadow ray: transmittance of the surfaces in its path; else 1 */
-    double light_distance; /* for a shadow ray: from its origin to the light */
-    double brought[3];     /* radiance that this ray adds to the film, excluding its children */
-    ray_hit hit;           /* valid if end is RAY_END_HIT */
+    int light;                   /* for a shadow ray: index in scene.lights, else RAY_NONE */
+    double shadow_transmittance; /* for a shadow ray: transmittance of the surfaces in its path; else 1 */
+    double light_distance;       /* for a shadow ray: from its origin to the light */
+    double contribution[3];      /* radiance that this ray adds to the film, excluding its children */
+    ray_hit hit;                 /* valid if end is RAY_END_HIT */
 } ray_node;
 
 typedef struct ray_tree {
@@ -91,7 +91,7 @@ void probe_destroy(probe *p);
 
 /* From this call on, absorption by wavelength is evaluated at render.lambda_nm for all channels, as refractive indices
  * are; for a spectral scene this is always so. The pixel values then differ from those of an rgb film. */
-void probe_one_wavelength(probe *p);
+void probe_use_one_wavelength(probe *p);
 
 /* The tree of a pixel; with several samples per pixel it has as many roots, linked by next. STATUS_BAD_INPUT outside
  * the image, and for a tree of more than PROBE_NODES_MAX rays. It can be cancelled at every ray (base/cancel.h). */

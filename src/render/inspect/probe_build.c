@@ -74,14 +74,14 @@ static void enqueue_only(ray_queue *q, const ray_record *r)
     q->start[0] = r->start, q->inside[0] = r->inside, q->sample_key[0] = 0;
 }
 
-/* Traces a batch of one ray; brought: the radiance that the ray added to the film. */
-static void run_one(probe *p, int depth, double brought[3])
+/* Traces a batch of one ray; contribution: the radiance that the ray added to the film. */
+static void run_one(probe *p, int depth, double contribution[3])
 {
     film_sum before[3];
     memcpy(before, p->img->sum, sizeof before);
     tracer_run_batch(p->rays, depth);
     for (int c = 0; c < 3; c++)
-        brought[c] = film_radiance(p->img->sum[c] - before[c]);
+        contribution[c] = film_radiance(p->img->sum[c] - before[c]);
 }
 
 static status add_node(probe *p, ray_tree *tree, const ray_record *r, ray_kind kind, int parent, size_t *at,
@@ -109,7 +109,7 @@ static status add_node(probe *p, ray_tree *tree, const ray_record *r, ray_kind k
                                  .medium = p->frame_plan->geometry->regions[r->medium_priority_index].solid,
                                  .n = p->frame_plan->ior[r->medium_priority_index],
                                  .light = RAY_NONE,
-                                 .let_through = 1.0};
+                                 .shadow_transmittance = 1.0};
     return STATUS_OK;
 }
 
@@ -294,7 +294,7 @@ static void read_branches(const probe *p, int depth, branches *out)
     const bool opaque = surface_is_opaque(t, priority_index);
     int queued = 0;
     out->count = 0;
-    if (!follows_trees(&p->frame_plan->render) || (opaque && !surface_reflects(t)))
+    if (!traces_ray_trees(&p->frame_plan->render) || (opaque && !surface_reflects(t)))
         return;
     add_ordinary(p, depth, true, &queued, out);
     add_ordinary(p, depth, false, &queued, out);
@@ -341,9 +341,9 @@ static status build_shadows(probe *p, ray_tree *tree, int parent, diagnostic *wh
         node->light = light_of(p->frame_plan, r, lamp);
         if (p->frame_plan->polarised_shadows && node->light != RAY_NONE)
             sheets_shadow_ray(t, node->light, 0);
-        run_one(p, -1, node->brought);
+        run_one(p, -1, node->contribution);
         node->end = t->batch.transmitted[0] > 0.0 ? RAY_END_LIT : RAY_END_BLOCKED;
-        node->let_through = t->batch.transmitted[0];
+        node->shadow_transmittance = t->batch.transmitted[0];
         node->light_distance = vec3_length(r->direction);
         node->direction = vec3_scale(r->direction, 1.0 / node->light_distance);
         lamp = node->light + 1;
@@ -358,7 +358,7 @@ static void trace_node(probe *p, ray_tree *tree, size_t at, const ray_record *ra
     tracer *t = p->rays;
     ray_node *node = &tree->node[at];
     enqueue_only(tracer_queue_at(t, ray->depth), ray);
-    run_one(p, ray->depth, node->brought);
+    run_one(p, ray->depth, node->contribution);
     out->count = 0;
     if (read_hit(p, node))
         read_branches(p, ray->depth, out);

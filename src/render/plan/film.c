@@ -72,7 +72,7 @@ void film_begin_tile(film *f, int image_width, int x0, int y0, int x1, int y1, i
     memset(f->sum, 0, values_of(f) * (size_t)replicates * sizeof *f->sum);
 }
 
-void film_put_tile(film *f, int x0, int y0, int x1, int y1, const void *sums)
+void film_store_tile(film *f, int x0, int y0, int x1, int y1, const void *sums)
 {
     const film_sum *sum = sums;
     const size_t length = 3 * (size_t)(x1 - x0);

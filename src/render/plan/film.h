@@ -105,12 +105,12 @@ void film_begin_tile(film *f, int image_width, int x0, int y0, int x1, int y1, i
 
 /* Copies the sums (film_sum) of the tile x0 <= x < x1, y0 <= y < y1, row by row, into the film of the image, which has
  * one replicate. */
-void film_put_tile(film *f, int x0, int y0, int x1, int y1, const void *sums);
+void film_store_tile(film *f, int x0, int y0, int x1, int y1, const void *sums);
 
 /* The pixel's place in sum, in pixels; pixel: its number in the image, y*image_width + x. Truncation finds the row
  * exactly: the boundary of a row is half a pixel away, and rounding moves the quotient by less than 2^-52 of itself,
  * which is below 2^-24 pixels. */
-static inline int64_t film_place(const film *f, int64_t pixel)
+static inline int64_t film_pixel_index(const film *f, int64_t pixel)
 {
     if (f->image_width == 0)
         return pixel;

@@ -17,8 +17,8 @@ typedef struct mesh_report {
 } mesh_report;
 
 /* The solid with the fewest photons, if they are too few for its caustic. */
-typedef struct caustics_few {
+typedef struct photon_shortage {
     int solid;       /* its number in the scene; -1: every solid has enough */
     int64_t arrived; /* photons that it deflected to matte surfaces */
     int64_t enough;  /* the value of render.photons that suffices */
-} caustics_few;
+} photon_shortage;

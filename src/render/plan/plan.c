@@ -98,7 +98,7 @@ static status fetch_mesh(const scene *s, size_t i, plan *p, solid_shape *shape, 
     const status code = tree_of(s, i, p, m->data, &source->tree, why);
     bool first = true;
     for (size_t k = 0; k < i; k++)
-        first &= !(s->solids[k].visible && solid_shows(&s->solids[k], one->mesh));
+        first &= !(s->solids[k].visible && solid_uses_mesh(&s->solids[k], one->mesh));
     if (code == STATUS_OK)
         report_mesh(p, m, shape, source->tree, first);
     return code;

@@ -9,7 +9,7 @@ __attribute__((noinline)) void expose_by_sample_key(tracer *t, int64_t sample_ke
     const plan *p = t->target.frame_plan;
     const film *f = t->target.img;
     const int64_t replicate = f->replicates == 1 ? 0 : path_replicate(&p->draws, sample_key);
-    const int64_t place = film_place(f, sample_key_pixel(sample_key)) + replicate * f->width * f->height;
+    const int64_t place = film_pixel_index(f, sample_key_pixel(sample_key)) + replicate * f->width * f->height;
     if (p->spectral) {
         const double *eye = spectra_row(p->spectral, sample_key)->eye;
         r *= eye[0], g *= eye[1], b *= eye[2];
@@ -27,7 +27,7 @@ void expose_all(tracer *t, const film_light *sent, int count, const int64_t *pix
             overflow |= add_units(&sums[pixel[i] * 3], sent->r[i], sent->g[i], sent->b[i]);
     else
         for (int i = 0; i < count; i++)
-            overflow |= add_units(&sums[film_place(f, pixel[i]) * 3], sent->r[i], sent->g[i], sent->b[i]);
+            overflow |= add_units(&sums[film_pixel_index(f, pixel[i]) * 3], sent->r[i], sent->g[i], sent->b[i]);
     t->account.overflow |= overflow;
 }
 
@@ -79,7 +79,7 @@ static inline void expose_sky(tracer *t, int64_t sample_key, vec3 direction, dou
         return;
     }
     const vec3 l = p->sky->kind == BACKGROUND_UNIFORM ? p->sky->color : sky_and_rain(p, direction);
-    expose_at(t, film_place(t->target.img, sample_key), wr * l.x, wg * l.y, wb * l.z);
+    expose_at(t, film_pixel_index(t->target.img, sample_key), wr * l.x, wg * l.y, wb * l.z);
 }
 
 void shading_expose_shadow_rays(tracer *t, const ray_queue *q, int first, int count, const double *fraction)

@@ -33,7 +33,7 @@ static inline void shading_expose(tracer *t, int64_t sample_key, double r, doubl
     if (t->by_sample_key)
         expose_by_sample_key(t, sample_key, r, g, b);
     else
-        expose_at(t, film_place(t->target.img, sample_key), r, g, b);
+        expose_at(t, film_pixel_index(t->target.img, sample_key), r, g, b);
 }
 
 /* Adds the light of many rays, whose sample keys are pixels. */

@@ -113,12 +113,12 @@ static stokes sheet_row(const region_sheet *sheet, stokes row, vec3 d, double le
 {
     double sine, cosine;
     switch (sheet->kind) {
-    case SHEET_POLARISER: return analyser_through(row, d, sheet->axis, sp_polariser(sheet->pass, sheet->block));
-    case SHEET_CIRCULAR_LEFT: return analyser_through_circular(row, sheet->pass, sheet->block);
-    case SHEET_CIRCULAR_RIGHT: return analyser_through_circular(row, sheet->block, sheet->pass);
+    case SHEET_POLARISER: return analyser_element(row, d, sheet->axis, sp_polariser(sheet->pass, sheet->block));
+    case SHEET_CIRCULAR_LEFT: return analyser_circular_polariser(row, sheet->pass, sheet->block);
+    case SHEET_CIRCULAR_RIGHT: return analyser_circular_polariser(row, sheet->block, sheet->pass);
     case SHEET_RETARDER:
         elementary_sincos_deg(retardance_deg(sheet, d, length_m, lambda_nm), &sine, &cosine);
-        return analyser_through(row, d, sheet->axis, sp_retarder(sine, cosine));
+        return analyser_element(row, d, sheet->axis, sp_retarder(sine, cosine));
     case SHEET_NONE: break;
     }
     return row;
@@ -215,7 +215,7 @@ void sheets_leave(tracer *t, int count, double fraction[3][ROW])
     for (int i = 0; i < count; i++) {
         leave(t, w->direction[i], i, &w->passage[i]);
         const stokes row = w->passage[i].row;
-        const double seen = w->to_lamps ? analyser_sees(row, w->lamp[i]) : row.i;
+        const double seen = w->to_lamps ? analyser_intensity(row, w->lamp[i]) : row.i;
         const double left = greater(seen, 0.0); /* 0 up to rounding behind two crossed polarisers */
         fraction[0][i] *= left, fraction[1][i] *= left, fraction[2][i] *= left;
     }

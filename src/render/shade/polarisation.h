@@ -55,7 +55,7 @@ static inline stokes lamp_stokes(const plan *p, int lamp, vec3 emitted, vec3 ray
 /* The light of a lamp that a row sees along the unit vector to_lamp, relative to an unpolarised lamp. */
 static inline double lamp_seen(const plan *p, int lamp, stokes row, vec3 to_lamp)
 {
-    return greater(analyser_sees(row, lamp_stokes(p, lamp, vec3_scale(to_lamp, -1.0), to_lamp)), 0.0);
+    return greater(analyser_intensity(row, lamp_stokes(p, lamp, vec3_scale(to_lamp, -1.0), to_lamp)), 0.0);
 }
 
 /* --- sheets --- */

@@ -121,6 +121,6 @@ further_light rough_draw_further(const tracer *t, const rough_surface *r, int k,
 facet rough_facet(const tracer *t, const rough_surface *r, int k, vec3 o)
 {
     const group *g = &t->surface.gathered;
-    return o.z > 0.0 ? facet_that_reflects(r->alpha, r->i[k], o)
-                     : facet_that_refracts(r->alpha, r->i[k], o, g->n_from[k], g->n_to[k]);
+    return o.z > 0.0 ? reflecting_facet(r->alpha, r->i[k], o)
+                     : refracting_facet(r->alpha, r->i[k], o, g->n_from[k], g->n_to[k]);
 }

@@ -288,7 +288,7 @@ static bool meshes_equal(const mesh_entry *a, const mesh_entry *b)
     return same;
 }
 
-void scene_borrow_meshes(scene *s, const scene *from)
+void scene_retain_meshes(scene *s, const scene *from)
 {
     for (size_t i = 0; i < s->mesh_count; i++) {
         mesh_entry *m = &s->meshes[i];

@@ -338,7 +338,7 @@ status check_limits(const scene *s, diagnostic *why)
     size_t primitives = 0, unbounded = 0;
     for (size_t i = 0; i < s->solid_count; i++) {
         const shape_rule *rule = shape_of(&s->solids[i].shape);
-        primitives += (size_t)shape_places(&s->solids[i].shape);
+        primitives += (size_t)shape_primitive_slots(&s->solids[i].shape);
         unbounded += rule->unbounded || rule->triangles;
     }
     if (primitives > SCENE_PRIMITIVES_MAX)

@@ -119,14 +119,14 @@ size_t name_tally_most(const name_tally *t, const char *name)
 
 const name_place *name_tally_newest(const name_tally *t, const char *name)
 {
-    const size_t at = t->lost || t->size == 0 ? 0 : place_of(t, hash_of(name));
+    const size_t at = t->lost || t->size == 0 ? 0 : entry_of(t, hash_of(name));
     return t->lost || t->size == 0 || t->count[at] == 0 ? NULL : &t->newest[at];
 }
 
 void name_tally_move(name_tally *t, const char *name, name_place to)
 {
     if (!t->lost && t->size > 0)
-        t->newest[place_of(t, hash_of(name))] = to;
+        t->newest[entry_of(t, hash_of(name))] = to;
 }
 
 void name_tally_clear(name_tally *t)

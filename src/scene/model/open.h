@@ -81,4 +81,4 @@ status scene_load_files(scene *s, diagnostic *why);
 
 /* Retains the loaded meshes of another scene for meshes of s with equal parameters that are not loaded; for slimes only
  * if s.render.keep is on, because otherwise each frame simulates anew. */
-void scene_borrow_meshes(scene *s, const scene *from);
+void scene_retain_meshes(scene *s, const scene *from);

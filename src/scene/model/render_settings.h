@@ -79,21 +79,21 @@ static inline const integrator_traits *integrator_traits_of(const render_setting
 }
 
 /* Whether both branches at each interface are traced. */
-static inline bool follows_trees(const render_settings *r)
+static inline bool traces_ray_trees(const render_settings *r)
 {
     return integrator_traits_of(r)->tree && r->lighting == LIGHTING_WHITTED;
 }
 
 /* Select the integrator to inspect a scene: whitted, with all branches of each ray; or zbuffer, a preview of
  * triangles. */
-static inline void trace_trees(render_settings *r)
+static inline void use_whitted(render_settings *r)
 {
     r->integrator = INTEGRATOR_WHITTED;
     if (r->depth == DEPTH_UNLIMITED)
         r->depth = DEPTH_TREE_MAX;
 }
 
-static inline void draw_triangles(render_settings *r)
+static inline void use_zbuffer(render_settings *r)
 {
     r->integrator = INTEGRATOR_ZBUFFER;
     if (r->depth == DEPTH_UNLIMITED)

@@ -86,7 +86,7 @@ void texture_entry_unload(texture_entry *t)
     t->data = NULL;
 }
 
-bool solid_shows(const solid *owner, const char *mesh_name)
+bool solid_uses_mesh(const solid *owner, const char *mesh_name)
 {
     return shape_of(&owner->shape)->triangles && strcmp(owner->mesh, mesh_name) == 0;
 }

@@ -15,7 +15,7 @@
 
 typedef enum shading_rule { SHADING_FLAT, SHADING_SMOOTH, SHADING_GOURAUD } shading_rule;
 
-/* The maximum number of primitives of all solids (shape_places), and of solids that are unbounded or have triangles. */
+/* The maximum number of primitives of all solids (shape_primitive_slots), and of solids that are unbounded or have triangles. */
 enum { SCENE_PRIMITIVES_MAX = (1 << 21) - 1, SCENE_UNBOUNDED_MAX = 64 };
 
 typedef struct solid {
@@ -31,7 +31,7 @@ typedef struct solid {
 } solid;
 
 /* Whether the solid's shape has triangles and it refers to this mesh. */
-bool solid_shows(const solid *owner, const char *mesh_name);
+bool solid_uses_mesh(const solid *owner, const char *mesh_name);
 
 enum { SCENE_MESHES_MAX = 64, SCENE_TEXTURES_MAX = 64 };
 

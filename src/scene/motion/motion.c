@@ -104,7 +104,7 @@ static status make_surface(const scene_motion *m, const moving_slime *moving, di
     return STATUS_OK;
 }
 
-static void add_moves(hierarchy_moves *sum, const hierarchy_moves *more)
+static void add_moves(hierarchy_update_counts *sum, const hierarchy_update_counts *more)
 {
     sum->refitted += more->refitted;
     sum->rebuilt += more->rebuilt;
@@ -116,12 +116,12 @@ static void add_moves(hierarchy_moves *sum, const hierarchy_moves *more)
 static status move_surface(scene_motion *m, const moving_slime *moving, diagnostic *why)
 {
     mesh_entry *entry = motion_entry(m, moving);
-    if (!entry->data || mesh_owners(entry->data) > 1)
+    if (!entry->data || mesh_reference_count(entry->data) > 1)
         return make_surface(m, moving, why);
     /* make_surface made the mesh, and the entry has the only reference. */
     status code = softbody_move_surface(moving->x.body, (mesh *)(uintptr_t)entry->data, why);
-    hierarchy_moves moves = {.refitted = 0};
-    THEN(code, hierarchy_follow(entry->data, m->s->render.rebuild, scene_build_threads(&m->s->render), &moves, why));
+    hierarchy_update_counts moves = {.refitted = 0};
+    THEN(code, hierarchy_update(entry->data, m->s->render.rebuild, scene_build_threads(&m->s->render), &moves, why));
     if (code != STATUS_OK) {
         mesh_entry_unload(entry); /* triangles and hierarchies would be inconsistent */
         return code;
@@ -301,7 +301,7 @@ static status show_one(scene_motion *m, moving_slime *moving, double time_s, boo
     if (surfaces) {
         const double begun_s = clock_wall_s();
         code = move_surface(m, moving, why);
-        m->last.skin_s += clock_wall_s() - begun_s;
+        m->last.surface_s += clock_wall_s() - begun_s;
     }
     if (code == STATUS_OK) {
         update_entry(m, moving, time_s > entry->time_s ? time_s : entry->time_s); /* time does not go back */

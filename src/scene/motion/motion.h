@@ -42,9 +42,9 @@ status scene_motion_advance_until(scene_motion *m, double time_s, bool surfaces,
 
 /* For the last advance: changes of all slimes' hierarchies, steps, and the wall time of steps and of surfaces. */
 typedef struct scene_motion_report {
-    hierarchy_moves hierarchies;
+    hierarchy_update_counts hierarchies;
     uint64_t steps;
-    double step_s, skin_s;
+    double step_s, surface_s;
 } scene_motion_report;
 scene_motion_report scene_motion_last(const scene_motion *m);
 

@@ -169,9 +169,9 @@ static status put_metrics(const cell_lines *l, diagnostic *why)
 static status put_curves(const cell_lines *l, diagnostic *why)
 {
     status code = STATUS_OK;
-    for (int which = 0; which < REALISM_CURVE_KEPT && code == STATUS_OK; which++) {
+    for (int which = 0; which < REALISM_CURVE_STUDY_COUNT && code == STATUS_OK; which++) {
         realism_points points;
-        code = realism_trace_curve(l->setting, l->level, (realism_curve)which, &points, why);
+        code = realism_measure_curve(l->setting, l->level, (realism_curve)which, &points, why);
         for (int i = 0; code == STATUS_OK && i < points.count; i++) {
             begin(l);
             fprintf(l->out, "\t%s", realism_curve_name((realism_curve)which));
@@ -265,7 +265,7 @@ static status write_kept(const study *s, const kept_cell *c, size_t what, const 
     if (wish == offsetof(study, keep_pixel_time))
         return record_map(frame->pixel_ns, frame->img, "nanoseconds per pixel", path, why);
     if (wish == offsetof(study, keep_pixel_cut))
-        return record_map(frame->pixel_cut, frame->img, "share of cut light per pixel", path, why);
+        return record_map(frame->pixel_cut, frame->img, "fraction of cut light per pixel", path, why);
     if (wish == offsetof(study, keep_timeline))
         return record_timeline(frame, path, why);
     if (wish == offsetof(study, keep_image) || wish == offsetof(study, keep_pfm))

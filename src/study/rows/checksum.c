@@ -64,7 +64,7 @@ bool checksum_parse(const char *text, uint32_t *content, uint32_t *chain)
 }
 
 static status checksum_line(const checksum_columns *c, char previous[CHECKSUM_TEXT], const char *line, size_t size,
-                            char **fields, csv_line *out, diagnostic *why)
+                            char **fields, csv_buffer *out, diagnostic *why)
 {
     char *copy = strndup(line, size);
     const bool split = copy && csv_split(copy, fields) == c->count;
@@ -79,9 +79,9 @@ static status checksum_line(const checksum_columns *c, char previous[CHECKSUM_TE
     return split && !out->failed ? STATUS_OK : out_of_memory(why);
 }
 
-status checksum_lines(const checksum_columns *c, char previous[CHECKSUM_TEXT], csv_line *lines, diagnostic *why)
+status checksum_lines(const checksum_columns *c, char previous[CHECKSUM_TEXT], csv_buffer *lines, diagnostic *why)
 {
-    csv_line out = {0};
+    csv_buffer out = {0};
     char **fields = malloc((lines->size + 1) * sizeof *fields);
     status code = fields && !lines->failed ? STATUS_OK : out_of_memory(why);
     for (size_t at = 0; code == STATUS_OK && at < lines->size;) {
@@ -90,7 +90,7 @@ status checksum_lines(const checksum_columns *c, char previous[CHECKSUM_TEXT], c
         at += length + 1;
     }
     free(fields);
-    csv_line_free(lines);
+    csv_buffer_free(lines);
     *lines = out;
     return code;
 }

@@ -185,7 +185,7 @@ const char *const compare_summary_columns[] = {
     "reference", "mse", "psnr_db", "ssim", "flip", "largest", "differing_fraction", "error_rms", "reference_noise_rms"};
 const size_t compare_summary_column_count = sizeof compare_summary_columns / sizeof compare_summary_columns[0];
 
-void compare_row_write(csv_line *line, const compare_row *r)
+void compare_row_write(csv_buffer *line, const compare_row *r)
 {
     COMPARE_COLUMNS(PUT)
     csv_end(line);

@@ -2,7 +2,7 @@
  * applied. A reference that serves several cells is rendered once and stored as linear floats in
  * results/<study>/references/, named by the hash of its scene, with a JSON file that records its film. Images depend
  * only on their scenes, so compare.csv has one row per cell; results/README.md lists every column. Ownership:
- * reference_release releases the image of a reference; a csv_line that ran out of memory has failed set. */
+ * reference_release releases the image of a reference; a csv_buffer that ran out of memory has failed set. */
 #pragma once
 
 #include "image/compare.h"
@@ -48,4 +48,4 @@ typedef struct compare_row {
 /* Compares the frame's image with row->cell_reference: fills film_hash, noise_rms, difference and error_rms. */
 status compare_row_measure(compare_row *row, const render_result *frame, diagnostic *why);
 
-void compare_row_write(csv_line *line, const compare_row *r);
+void compare_row_write(csv_buffer *line, const compare_row *r);

@@ -67,7 +67,7 @@ void csv_layout_destroy(csv_layout *l)
     free(l);
 }
 
-status csv_layout_place(const csv_layout *l, const char *lines, size_t size, csv_line *out, diagnostic *why)
+status csv_layout_place(const csv_layout *l, const char *lines, size_t size, csv_buffer *out, diagnostic *why)
 {
     for (size_t at = 0; at < size;) {
         const char *newline = memchr(lines + at, '\n', size - at);
@@ -88,7 +88,7 @@ status csv_layout_place(const csv_layout *l, const char *lines, size_t size, csv
 char *csv_header_extend(const char *header, const char *more, size_t *added)
 {
     names first = {0}, second = {0};
-    csv_line line = {0};
+    csv_buffer line = {0};
     *added = 0;
     bool right = names_split(header, strlen(header), &first) && names_split(more, strlen(more), &second);
     for (size_t i = 0; right && i < first.count; i++)
@@ -103,7 +103,7 @@ char *csv_header_extend(const char *header, const char *more, size_t *added)
     names_free(&second);
     if (right && !line.failed)
         return line.text;
-    csv_line_free(&line);
+    csv_buffer_free(&line);
     return NULL;
 }
 

@@ -12,7 +12,7 @@ status csv_layout_create(const char *from, const char *to, csv_layout **out, dia
 void csv_layout_destroy(csv_layout *l);
 
 /* Appends complete lines to out, converted field by field; columns that `from` does not have are "NA". */
-status csv_layout_place(const csv_layout *l, const char *lines, size_t size, csv_line *out, diagnostic *why);
+status csv_layout_place(const csv_layout *l, const char *lines, size_t size, csv_buffer *out, diagnostic *why);
 
 /* The header line extended by the columns of `more` that it lacks, and their number; fresh memory, NULL if memory runs
  * out or quotes are invalid. */

@@ -180,7 +180,7 @@ static status append(const study *s, const char *results, const excluded *list, 
     char *path = excluded_path(s, results), number[32], utc[ROW_TIME_MAX];
     struct timespec now = {0};
     table *to = NULL;
-    csv_line line = {0};
+    csv_buffer line = {0};
     for (int key = CHECKSUM; key < CELL; key++) {
         const char *field = row_field(row, keys[key]);
         csv_text(&line, is_known(field) ? field : NULL);
@@ -199,7 +199,7 @@ static status append(const study *s, const char *results, const excluded *list, 
     THEN(code, table_open(path, header, &to, why));
     THEN(code, table_append(to, line.text, line.size, why));
     table_close(to);
-    csv_line_free(&line);
+    csv_buffer_free(&line);
     free(path);
     return code;
 }

@@ -341,7 +341,7 @@ json_t *run_facts(const study *s, const topology *machine, const run_environment
     char *commit = folder ? provenance_git_commit(dirname(folder), &dirty) : NULL;
     free(folder);
     json_t *disturbances = json_array();
-    usage_disturbances(load_sample_s, add_disturbance, &disturbances);
+    disturbances_report(load_sample_s, add_disturbance, &disturbances);
     json_t *is_dirty = commit ? json_boolean(dirty) : json_null();
     json_t *run =
         json_pack("{s:s, s:o, s:o, s:o, s:n, s:i, s:i, s:o, s:o, s:o, s:o}", "id", id, "environment",

@@ -118,7 +118,7 @@ static status write_lines(FILE *out, const merged_line *lines, size_t count, con
     const csv *source = lines[0].source;
     char *from = strndup(source->raw, source->start[0]);
     csv_layout *layout = NULL;
-    csv_line converted = {0};
+    csv_buffer converted = {0};
     status code = from ? csv_layout_create(from, header, &layout, why) : out_of_memory(why);
     const bool same_columns = from && strcmp(from, header) == 0;
     for (size_t i = 0; code == STATUS_OK && i < count; i++) {
@@ -130,7 +130,7 @@ static status write_lines(FILE *out, const merged_line *lines, size_t count, con
             converted.size = 0;
         }
     }
-    csv_line_free(&converted);
+    csv_buffer_free(&converted);
     csv_layout_destroy(layout);
     free(from);
     return code;

@@ -30,11 +30,11 @@ const char *row_file_stem(row_kind kind)
 char *row_file_header(const study *s, row_kind kind)
 {
     static row_columns *const columns[] = {row_each_column, worker_each_column, compare_each_column};
-    csv_line line = {0};
+    csv_buffer line = {0};
     row_columns_header(&line, s, columns[kind]);
     if (!line.failed)
         return line.text;
-    csv_line_free(&line);
+    csv_buffer_free(&line);
     return NULL;
 }
 

@@ -46,7 +46,7 @@ level_range row_quantity_range(row_quantity quantity)
     /* costs of waiting, idling and uneven work, which are 0 in the best case */
     static const char *const may_be_zero[] = {"imbalance", "waiting_s",          "waiting_s_mean",       "runnable_s",
                                               "blocked_s", "voluntary_switches", "involuntary_switches", "start_s"};
-    if (!quantity.divisor && (ends_with(quantity.name, "_share") || strcmp(quantity.name, "frequency_drop") == 0))
+    if (!quantity.divisor && (ends_with(quantity.name, "_fraction") || strcmp(quantity.name, "frequency_drop") == 0))
         return LEVEL_FRACTION;
     for (size_t i = 0; i < sizeof may_be_zero / sizeof *may_be_zero; i++)
         if (strcmp(quantity.name, may_be_zero[i]) == 0)

@@ -21,7 +21,7 @@ char *row_time(int64_t ms, char text[ROW_TIME_MAX])
     return text;
 }
 
-void row_put_axes(csv_line *line, const study *s, const scene *setting)
+void row_put_axes(csv_buffer *line, const study *s, const scene *setting)
 {
     const char *path;
     for (size_t i = 0; (path = study_grid_path(s, i)); i++) {
@@ -32,7 +32,7 @@ void row_put_axes(csv_line *line, const study *s, const scene *setting)
 }
 
 /* "480000;95458;...": from depth 0 to the last depth with a ray. */
-static void put_by_depth(csv_line *line, const quantity_value *v)
+static void put_by_depth(csv_buffer *line, const quantity_value *v)
 {
     char text[(COUNTERS_DEPTH_MAX + 1) * 21 + 1];
     size_t last = v->size - 1, size = 0;
@@ -43,7 +43,7 @@ static void put_by_depth(csv_line *line, const quantity_value *v)
     csv_text(line, text);
 }
 
-void row_put(csv_line *line, const quantity *q, const job_account *account, int worker)
+void row_put(csv_buffer *line, const quantity *q, const job_account *account, int worker)
 {
     const quantity_value v = q->read(account, worker);
     switch (q->type) {
@@ -62,13 +62,13 @@ void row_put(csv_line *line, const quantity *q, const job_account *account, int 
     }
 }
 
-static void put_time(csv_line *line, const study_row *r)
+static void put_time(csv_buffer *line, const study_row *r)
 {
     char text[ROW_TIME_MAX];
     csv_text(line, row_time(r->account->ended_ms, text));
 }
 
-static void put_verdict(csv_line *line, noise_verdict verdict)
+static void put_verdict(csv_buffer *line, noise_verdict verdict)
 {
     if (verdict == NOISE_NOT_KNOWN)
         csv_text(line, NULL);
@@ -161,14 +161,14 @@ void worker_each_column(row_column_visitor *visit, void *context)
 }
 
 typedef struct header {
-    csv_line *line;
+    csv_buffer *line;
     const study *s;
 } header;
 
 static void put_name(void *context, const row_column *column)
 {
     const header *h = context;
-    csv_line *line = h->line;
+    csv_buffer *line = h->line;
     const char *name = column->name, *bracket = strchr(name, '<'), *path;
     if (!bracket) {
         csv_text(line, name);
@@ -185,28 +185,28 @@ static void put_name(void *context, const row_column *column)
     }
 }
 
-void row_columns_header(csv_line *line, const study *s, row_columns *each)
+void row_columns_header(csv_buffer *line, const study *s, row_columns *each)
 {
     each(put_name, &(header){line, s});
     csv_end(line);
 }
 
-static void put_leading_columns(csv_line *line, const study_row *r)
+static void put_leading_columns(csv_buffer *line, const study_row *r)
 {
     LEADING_COLUMNS(PUT)
 }
 
-static void put_film_columns(csv_line *line, const study_row *r)
+static void put_film_columns(csv_buffer *line, const study_row *r)
 {
     FILM_COLUMNS(PUT)
 }
 
-static void put_origin(csv_line *line, const study_row *r)
+static void put_origin(csv_buffer *line, const study_row *r)
 {
     ROW_ORIGIN(PUT)
 }
 
-void row_write(csv_line *line, const study_row *r)
+void row_write(csv_buffer *line, const study_row *r)
 {
     put_leading_columns(line, r);
     for (size_t i = 0; i < frame_quantity_count; i++) {
@@ -219,7 +219,7 @@ void row_write(csv_line *line, const study_row *r)
     csv_end(line);
 }
 
-void worker_rows_write(csv_line *line, const study_row *r)
+void worker_rows_write(csv_buffer *line, const study_row *r)
 {
     for (int worker = 0; worker < r->account->result->worker_count; worker++) {
         CELL_COLUMNS(PUT)

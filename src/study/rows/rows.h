@@ -1,5 +1,5 @@
 /* The rows of a study, rows.csv and workers.csv, and the only code that writes them. Their columns are those of rows.c
- * and the quantities of job/quantities.h; results/README.md is their dictionary. Pure except for memory; a csv_line
+ * and the quantities of job/quantities.h; results/README.md is their dictionary. Pure except for memory; a csv_buffer
  * that ran out of memory has failed set. */
 #pragma once
 
@@ -38,14 +38,14 @@ enum { ROW_SCHEMA = 2 };
 
 /* Append a line of rows.csv; the lines of workers.csv, one per worker. The last field, checksum, is NA; run_append in
  * study/run/run_state.c fills in the checksums. */
-void row_write(csv_line *line, const study_row *r);
-void worker_rows_write(csv_line *line, const study_row *r);
+void row_write(csv_buffer *line, const study_row *r);
+void worker_rows_write(csv_buffer *line, const study_row *r);
 
 /* Append a header line of these columns; the values of the grid's parameters, a field each; a quantity of a frame
  * (worker: -1) or of a worker. */
-void row_columns_header(csv_line *line, const study *s, row_columns *each);
-void row_put_axes(csv_line *line, const study *s, const scene *setting);
-void row_put(csv_line *line, const quantity *q, const job_account *account, int worker);
+void row_columns_header(csv_buffer *line, const study *s, row_columns *each);
+void row_put_axes(csv_buffer *line, const study *s, const scene *setting);
+void row_put(csv_buffer *line, const quantity *q, const job_account *account, int worker);
 
 /* The names and meanings of the columns at the end of every table. */
 #define ROW_ORIGIN(X)                                                                                              \

@@ -274,13 +274,13 @@ static status find_layout(table *t, diagnostic *why)
 
 status table_append(table *t, const char *lines, size_t size, diagnostic *why)
 {
-    csv_line converted = {0};
+    csv_buffer converted = {0};
     status code = t->has_layout ? STATUS_OK : find_layout(t, why);
     if (code != STATUS_OK || !t->layout)
         return code == STATUS_OK ? append(t, lines, size, why) : code;
     code = csv_layout_place(t->layout, lines, size, &converted, why);
     THEN(code, append(t, converted.text, converted.size, why));
-    csv_line_free(&converted);
+    csv_buffer_free(&converted);
     return code;
 }
 

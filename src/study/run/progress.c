@@ -224,7 +224,7 @@ static const double refresh_s = 0.1;
 struct progress_display {
     const study *s;
     const study_options *options;
-    study_moment now; /* left_s: at the last call of progress_count */
+    study_frame_progress now; /* left_s: at the last call of progress_count */
     bool shown;
     double shown_s; /* 0: show the next update immediately */
 };
@@ -252,7 +252,7 @@ static double sum(const double *values, size_t count)
 
 static void count_frames(progress_display *line, const progress_index *done, const size_t *cells, size_t cell_count)
 {
-    study_moment *now = &line->now;
+    study_frame_progress *now = &line->now;
     double known_s = 0;
     now->frames_done = now->frames_all = 0;
     for (size_t i = 0; i < cell_count; i++) {
@@ -275,7 +275,7 @@ static void count_frames(progress_display *line, const progress_index *done, con
 /* On a narrow terminal the name of the study is cut first, then the end of the line. */
 static void write_line(const progress_display *line, const char *more)
 {
-    const study_moment *now = &line->now;
+    const study_frame_progress *now = &line->now;
     char text[160];
     int length = 0;
     if (now->images) {

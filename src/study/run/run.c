@@ -13,7 +13,7 @@
 
 static status append_row(run *r, const study_row *row, diagnostic *why)
 {
-    csv_line line = {0};
+    csv_buffer line = {0};
     if (r->workers.file) {
         worker_rows_write(&line, row);
         TRY(run_append(&r->workers, &line, why));

@@ -82,7 +82,7 @@ static status provide_reference(run *r, size_t cell, diagnostic *why)
 
 static status compare_cell(run *r, size_t cell, const scene *setting, const render_result *frame, diagnostic *why)
 {
-    csv_line line = {0};
+    csv_buffer line = {0};
     compare_row row = {.s = r->s,
                        .cell = cell,
                        .setting = setting,

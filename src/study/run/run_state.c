@@ -130,7 +130,7 @@ status run_prepare(run *r, diagnostic *why)
     return runs_begin(r->s, r->folder, machine, &r->environment, r->options->shard, r->options->shards, r->id, why);
 }
 
-status run_append(row_table *to, csv_line *lines, diagnostic *why)
+status run_append(row_table *to, csv_buffer *lines, diagnostic *why)
 {
     char last[CHECKSUM_TEXT];
     memcpy(last, to->last, sizeof last);
@@ -141,7 +141,7 @@ status run_append(row_table *to, csv_line *lines, diagnostic *why)
         for (const char *at = lines->text; (at = strchr(at, '\n')); at++)
             to->count++;
     }
-    csv_line_free(lines);
+    csv_buffer_free(lines);
     return code;
 }
 

@@ -54,7 +54,7 @@ status run_find_compared(run *r, diagnostic *why);
  * After a failure run_release releases what was opened. */
 status run_prepare(run *r, diagnostic *why);
 /* Fills in the checksums of the lines, appends them to the table, and frees them. */
-status run_append(row_table *to, csv_line *lines, diagnostic *why);
+status run_append(row_table *to, csv_buffer *lines, diagnostic *why);
 /* Records the end of the run: number and last checksum of its rows. */
 status run_seal_rows(const run *r, diagnostic *why);
 void run_release(run *r);

@@ -286,20 +286,20 @@ void power_rates_free(power_rates *r)
     *r = (power_rates){.count = 0};
 }
 
-static share_interval fraction_of(const power_rate *r, design_rule rule, size_t hits)
+static fraction_interval fraction_of(const power_rate *r, design_rule rule, size_t hits)
 {
     const double draws = (double)r->tally.draws, trials = (double)r->tally.independent;
     return design_has_rule(&r->of, rule) ? binomial_interval((double)hits / draws * trials, trials)
-                                         : (share_interval){NAN, NAN, NAN};
+                                         : (fraction_interval){NAN, NAN, NAN};
 }
 
-share_interval power_wrong(const power_rate *r, design_rule rule)
+fraction_interval power_wrong_claims(const power_rate *r, design_rule rule)
 {
     const design_tally *t = &r->tally;
     return fraction_of(r, rule, (r->truth <= 0 ? t->larger[rule] : 0) + (r->truth >= 0 ? t->smaller[rule] : 0));
 }
 
-share_interval power_silent(const power_rate *r, design_rule rule)
+fraction_interval power_no_claims(const power_rate *r, design_rule rule)
 {
     return fraction_of(r, rule, r->tally.draws - r->tally.larger[rule] - r->tally.smaller[rule]);
 }

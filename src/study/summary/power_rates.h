@@ -63,5 +63,5 @@ void power_rates_free(power_rates *r);
 
 /* The fraction of studies with a wrong claim; and with no claim. Its interval has as many trials as there are
  * independent studies. */
-share_interval power_wrong(const power_rate *r, design_rule rule);
-share_interval power_silent(const power_rate *r, design_rule rule);
+fraction_interval power_wrong_claims(const power_rate *r, design_rule rule);
+fraction_interval power_no_claims(const power_rate *r, design_rule rule);

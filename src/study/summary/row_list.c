@@ -76,7 +76,7 @@ static status merge_headers(const row_files *files, const char ***names, size_t 
     return STATUS_OK;
 }
 
-static void put_line(csv_line *line, FILE *out)
+static void put_line(csv_buffer *line, FILE *out)
 {
     csv_end(line);
     if (!line->failed)
@@ -89,7 +89,7 @@ static status put_rows(const row_files *files, const excluded *without, const ch
 {
     const char **names = NULL;
     size_t count = 0;
-    csv_line line = {0};
+    csv_buffer line = {0};
     status code = merge_headers(files, &names, &count, why);
     int *at = code == STATUS_OK ? malloc((count + 1) * sizeof *at) : NULL;
     const csv *table = NULL;
@@ -113,7 +113,7 @@ static status put_rows(const row_files *files, const excluded *without, const ch
     }
     if (code == STATUS_OK && (!at || line.failed))
         code = out_of_memory(why);
-    csv_line_free(&line);
+    csv_buffer_free(&line);
     free(at);
     free(names);
     return code;

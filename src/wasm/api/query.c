@@ -149,9 +149,9 @@ char *wasm_query_fan(const cuvette_query *query, const double *n)
                            .spread_deg = n[11]};
     THEN(code, query_begin_trace(query, &q, &why));
     if (code == STATUS_OK) {
-        code = fan_follow(q->inspector, &rule, &f, &why);
+        code = fan_trace(q->inspector, &rule, &f, &why);
         if (code == STATUS_OK)
-            json = fan_json(&(fanned){q->model, q->inspector, &rule, &f, false, false});
+            json = fan_json(&(fan_output){q->model, q->inspector, &rule, &f, false, false});
         query_end_trace(q);
     }
     fan_release(&f);

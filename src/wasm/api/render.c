@@ -30,7 +30,7 @@ struct wasm_render {
     scene view;            /* borrows what the source owns */
     job *worker;
     bool at_once; /* the render cannot be divided into turns */
-    shared_frame sum;
+    tiled_frame sum;
     int64_t next, reported; /* the next tile to render, and the next for wasm_render_tiles */
     ray_counters counters;
     bool has_photons; /* the counters have the photons, which every turn counts */
@@ -68,7 +68,7 @@ static status begin(wasm_render *r, int coarse, diagnostic *why)
     r->view.render.height = (s->render.height + coarse - 1) / coarse;
     r->at_once = must_be_undivided(&r->view.render);
     codec_bytes_prepare(&r->bytes);
-    return shared_frame_begin(&r->view, side_of(&r->view.render), &r->sum, why);
+    return tiled_frame_begin(&r->view, side_of(&r->view.render), &r->sum, why);
 }
 
 wasm_render *wasm_render_create(cuvette_scene *scene, int coarse)
@@ -105,7 +105,7 @@ void wasm_render_destroy(wasm_render *r)
     if (!r)
         return;
     unlock_scene(r);
-    shared_frame_release(&r->sum);
+    tiled_frame_release(&r->sum);
     job_destroy(r->worker);
     engine_release_scene(r->source);
     free(r);
@@ -135,7 +135,7 @@ static void done(void *context, const image_tile *rect, const film *rendered, co
 {
     wasm_render *r = context;
     (void)variance;
-    film_put_tile(r->sum.img, rect->x0, rect->y0, rect->x1, rect->y1, rendered->sum);
+    film_store_tile(r->sum.img, rect->x0, rect->y0, rect->x1, rect->y1, rendered->sum);
 }
 
 /* Adds the counters of a turn; every turn counts the same photons. */
@@ -159,7 +159,7 @@ static status render_tiles(wasm_render *r, diagnostic *why)
     if (code == STATUS_OK) {
         count(r, &account.result->counters);
         if (r->at_once) {
-            shared_frame_release(&r->sum);
+            tiled_frame_release(&r->sum);
             r->sum.img = account.result->img;
             account.result->img = NULL;
             r->next = r->sum.places.tile_count;

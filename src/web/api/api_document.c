@@ -78,7 +78,7 @@ static status note_inert(set_request *x, const scene *s, diagnostic *why)
     json_object_foreach((json_t *)(uintptr_t)x->values, path, value)
     {
         inert_answer answer;
-        if (!inert_ask(s, path, NULL, &answer) || strcmp(answer.rule, "time-0") == 0)
+        if (!param_is_inert(s, path, NULL, &answer) || strcmp(answer.rule, "time-0") == 0)
             continue;
         x->notes = x->notes ? x->notes : json_array();
         json_add(&x->notes, report_note(answer.note.place, answer.note.text, answer.note.remedy));
@@ -358,7 +358,7 @@ static bool is_open(const call *c, const char *name)
 static status write_file(call *c, const char *name, const char *path)
 {
     uint64_t generation = 0, version = 0;
-    scene *s = scene_document_copy_kept(c->l->scene_document, &generation, &version);
+    scene *s = scene_document_copy_to_save(c->l->scene_document, &generation, &version);
     if (s)
         lab_clear_default_threads(c->l, s);
     const status code = s ? scene_write(s, path, false, &c->why) : out_of_memory(&c->why);

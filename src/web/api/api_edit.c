@@ -231,7 +231,7 @@ static status set_values(const edit *e, scene *s, diagnostic *why)
     {
         char *text = NULL, *path = text_format("%s.%s", e->new_name, row);
         THEN(code, api_value_text(value, row, &text, why));
-        THEN(code, path ? scene_put(s, path, text, why) : out_of_memory(why));
+        THEN(code, path ? scene_set_property(s, path, text, why) : out_of_memory(why));
         free(text);
         free(path);
     }

@@ -142,18 +142,18 @@ static status load_laboratory(call *c, char **laboratory)
 static status write_page(call *c, const shared_image *img, const char *command, const char *laboratory, char **bytes,
                          size_t *size)
 {
-    const report_page_content page = {.s = img->rendered,
-                                      .level = c->l->settings.level,
-                                      .rows = image_rows_of(img->linear),
-                                      .bits = 8,
-                                      .film_hash = img->film_hash,
-                                      .command = command,
-                                      .live = laboratory};
+    const page_content page = {.s = img->rendered,
+                               .level = c->l->settings.level,
+                               .rows = image_rows_of(img->linear),
+                               .bits = 8,
+                               .film_hash = img->film_hash,
+                               .command = command,
+                               .live = laboratory};
     text_writer writer;
     TRY(semaphore_acquire(c->l->heavy, &c->why));
     status code = text_writer_open(&writer, &c->why);
     if (code == STATUS_OK)
-        code = text_writer_end(&writer, report_page_write(&page, writer.stream, &c->why), bytes, size, &c->why);
+        code = text_writer_end(&writer, page_write_html(&page, writer.stream, &c->why), bytes, size, &c->why);
     semaphore_release(c->l->heavy);
     return code;
 }

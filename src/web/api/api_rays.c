@@ -109,7 +109,7 @@ static status collect_notes(void *context, scene *s, diagnostic *why)
 {
     call *c = context;
     json_t *list = json_array();
-    const note_taker taker = {collect_note, &list};
+    const note_sink taker = {collect_note, &list};
     status code = lint_scene(s, c->l->settings.level, &taker, why);
     scene_beam_range_hints(s, &taker);
     if (json_object_set_new(c->json, "notes", list) != 0 && code == STATUS_OK)
@@ -136,7 +136,7 @@ typedef struct beam_question {
 
 static status write_rays(beam_question *q, const scene *s, FILE *out, diagnostic *why)
 {
-    const beamed b = {s, q->lab->settings.level, q->scene_name, SEGMENTS_MAX, true};
+    const beam_output b = {s, q->lab->settings.level, q->scene_name, SEGMENTS_MAX, true};
     return beams_write_json(&b, out, why);
 }
 
@@ -219,7 +219,7 @@ typedef struct fan_question {
     size_t size;
 } fan_question;
 
-static status write_text(fan_question *q, const fanned *t, diagnostic *why)
+static status write_text(fan_question *q, const fan_output *t, diagnostic *why)
 {
     text_writer writer;
     TRY(text_writer_open(&writer, why));
@@ -234,8 +234,8 @@ static status follow_and_write(void *context, scene *s, diagnostic *why)
     probe *p = NULL;
     fan f = {0};
     status code = probe_create(s, q->c->l->settings.level, &p, why);
-    THEN(code, fan_follow(p, &q->rule, &f, why));
-    const fanned t = {s, p, &q->rule, &f, q->full_trees, q->form == FAN_CSV};
+    THEN(code, fan_trace(p, &q->rule, &f, why));
+    const fan_output t = {s, p, &q->rule, &f, q->full_trees, q->form == FAN_CSV};
     if (code == STATUS_OK && q->form == FAN_JSON)
         code = api_reply_json(q->c, fan_json(&t));
     else
@@ -353,7 +353,7 @@ static status measure_curve(realism_question *q, const scene *s, FILE *csv, diag
 {
     const realism_curve which = (realism_curve)q->curve;
     realism_points points;
-    TRY(realism_trace_curve(s, q->c->l->settings.level, which, &points, why));
+    TRY(realism_measure_curve(s, q->c->l->settings.level, which, &points, why));
     if (!csv)
         return api_reply_json(q->c, realism_curve_json(which, &points));
     realism_write_curve(which, &points, csv);

@@ -310,7 +310,7 @@ status scene_document_undo(scene_document *d, bool redo, uint64_t *generation, d
     version next = from->item[--from->count], before = d->now;
     before.what = next.what; /* the change between the two versions */
     next.what = NULL;
-    scene_borrow_meshes(next.s, before.s);
+    scene_retain_meshes(next.s, before.s);
     camera_view view = scene_document_view_now(d);
     stack_push(to, before);
     d->now = next;
@@ -332,7 +332,7 @@ scene *scene_document_copy(scene_document *d, uint64_t *generation)
     return copy;
 }
 
-scene *scene_document_copy_kept(scene_document *d, uint64_t *generation, uint64_t *number)
+scene *scene_document_copy_to_save(scene_document *d, uint64_t *generation, uint64_t *number)
 {
     pthread_mutex_lock(&d->lock);
     scene *copy = scene_clone(d->now.s);
@@ -372,10 +372,10 @@ static void share_loaded(scene *s, const scene *loaded)
         }
     if (!s->background.img && loaded->background.img)
         s->background.img = image_retain(loaded->background.img);
-    scene_borrow_meshes(s, loaded);
+    scene_retain_meshes(s, loaded);
 }
 
-void scene_document_share_loaded(scene_document *d, const scene *loaded, uint64_t generation)
+void scene_document_reuse_loaded(scene_document *d, const scene *loaded, uint64_t generation)
 {
     pthread_mutex_lock(&d->lock);
     if (generation == d->generation)

@@ -72,19 +72,19 @@ status scene_document_reset(scene_document *d, const char *const *paths, size_t 
 scene *scene_document_copy(scene_document *d, uint64_t *generation);
 /* Like scene_document_copy, with the scene's own camera instead of the view, as for a file. number: the number of the
  * version, which moves of the camera do not change. */
-scene *scene_document_copy_kept(scene_document *d, uint64_t *generation, uint64_t *number);
+scene *scene_document_copy_to_save(scene_document *d, uint64_t *generation, uint64_t *number);
 /* A copy of the scene as it was opened. */
 scene *scene_document_copy_opened(scene_document *d);
 uint64_t scene_document_generation(scene_document *d);
 
 /* Shares the data that was loaded for a copy of that generation with later copies. loaded is borrowed. */
-void scene_document_share_loaded(scene_document *d, const scene *loaded, uint64_t generation);
+void scene_document_reuse_loaded(scene_document *d, const scene *loaded, uint64_t generation);
 
-/* Records that the version of that number, which scene_document_copy_kept returned, was written to the file. */
+/* Records that the version of that number, which scene_document_copy_to_save returned, was written to the file. */
 void scene_document_saved(scene_document *d, const char *file, uint64_t number);
 
 /* Whether the scene has changes that would be lost with the program; number: as of
- * scene_document_copy_kept. file: a copy of its file's name,
+ * scene_document_copy_to_save. file: a copy of its file's name,
  * NULL for none (or out of memory); may be NULL. */
 bool scene_document_unsaved(scene_document *d, uint64_t *number, char **file);
 

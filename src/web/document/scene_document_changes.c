@@ -58,7 +58,7 @@ status scene_document_reset(scene_document *d, const char *const *paths, size_t 
         code = reset_path(next, from->s, paths[i], why);
     THEN(code, scene_document_check(next, d->files, why));
     if (code == STATUS_OK) {
-        scene_borrow_meshes(next, d->now.s);
+        scene_retain_meshes(next, d->now.s);
         char words[128];
         snprintf(words, sizeof words, count == 1 ? "reset %.100s" : "reset", count == 1 ? paths[0] : "");
         const bool moved = count == 0 || !camera_equal(&next->camera, &d->now.s->camera);

@@ -24,7 +24,7 @@ typedef struct shared_image {
     bool final;        /* the complete film of the scene */
     int width, height; /* of this pass */
     int full_width, full_height;
-    const json_t *numbers; /* times and counts, from report_page */
+    const json_t *numbers; /* times and counts, from report_image_numbers */
     uint64_t film_hash;    /* of the final image */
     const image *linear;
     const scene *rendered; /* the scene of a final image; otherwise NULL */

@@ -75,5 +75,5 @@ status live_advance(live *l, double most_s, bool *state_changed, diagnostic *why
 /* Whether the snapshot's appearance changed since the last call. */
 bool live_fetch_moved(live *l);
 
-/* A snapshot with a live slime must not be passed to scene_document_share_loaded: its slimes are shaped by hands, not
+/* A snapshot with a live slime must not be passed to scene_document_reuse_loaded: its slimes are shaped by hands, not
  * by their time_s. */

@@ -58,7 +58,7 @@ const shared_image *render_worker_newest(render_worker *worker)
 static void try_again(render_worker *worker)
 {
 #ifdef __EMSCRIPTEN__
-    if (wasm_again)
+    if (wasm_is_repeated)
         return;
 #endif
     if (worker->trouble_code != STATUS_FAILURE || clock_wall_s() < worker->again_from_s)

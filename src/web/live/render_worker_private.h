@@ -41,7 +41,7 @@ struct render_worker {
     int interrupted;  /* interrupted first passes in a row, including the loads before them */
     double started_s; /* start time of the current copy, load, move or pass */
     uint64_t
-        taken_generation;     /* generation of the document that the snapshot copies, loaded or not; 0: copy it again */
+        copied_generation;    /* generation of the document that the snapshot copies, loaded or not; 0: copy it again */
     uint64_t seen_generation; /* the newest generation that was ever copied */
     double changed_s, finer_after_s; /* when it was copied; when its passes after the first may begin */
     bool was_on;

@@ -68,7 +68,7 @@ double render_worker_due_s(render_worker *worker)
 
 bool render_worker_is_stale(render_worker *worker)
 {
-    return scene_document_generation(worker->scene_document) != worker->taken_generation;
+    return scene_document_generation(worker->scene_document) != worker->copied_generation;
 }
 
 /* The ask of a cancel token: whether to interrupt the current load or pass. */
@@ -144,7 +144,7 @@ void render_worker_renew_snapshot(render_worker *worker)
     uint64_t generation;
     worker->started_s = clock_wall_s();
     scene *next = scene_document_copy(worker->scene_document, &generation);
-    worker->taken_generation = generation; /* set before loading, which a newer generation interrupts */
+    worker->copied_generation = generation; /* set before loading, which a newer generation interrupts */
     note_change(worker, generation);
     worker->pass = 0;
     const bool had_slime = has_slime(worker);
@@ -153,7 +153,7 @@ void render_worker_renew_snapshot(render_worker *worker)
     status code = next ? STATUS_OK : out_of_memory(&why);
     if (next) {
         if (worker->snapshot && !live_is_on(worker->live_slime))
-            scene_borrow_meshes(next, worker->snapshot);
+            scene_retain_meshes(next, worker->snapshot);
         live_detach(worker->live_slime);
         scene_destroy(worker->snapshot);
         worker->snapshot = next;
@@ -162,7 +162,7 @@ void render_worker_renew_snapshot(render_worker *worker)
     THEN(code, load_snapshot(worker, &why));
     pthread_rwlock_unlock(&worker->snapshot_lock);
     if (code == STATUS_OK && !live_is_on(worker->live_slime))
-        scene_document_share_loaded(worker->scene_document, worker->snapshot, generation);
+        scene_document_reuse_loaded(worker->scene_document, worker->snapshot, generation);
     pthread_mutex_lock(&worker->lock);
     worker->snapshot_generation =
         code == STATUS_INTERRUPTED ? 0 : generation; /* 0: try again, with the data loaded so far */
@@ -173,7 +173,7 @@ void render_worker_renew_snapshot(render_worker *worker)
         notify(worker);
     if (code == STATUS_INTERRUPTED) {
         worker->interrupted += render_worker_is_stale(worker);
-        worker->taken_generation = 0;
+        worker->copied_generation = 0;
     }
     worker->plan = code == STATUS_OK ? passes_plan(&worker->snapshot->render, worker->rate, RENDER_WORKER_FIRST_S)
                                      : (pass_plan){.count = 0};
@@ -209,7 +209,7 @@ void render_worker_move_snapshot(render_worker *worker)
         pthread_mutex_lock(&worker->lock);
         worker->snapshot_generation = 0;
         pthread_mutex_unlock(&worker->lock);
-        worker->taken_generation = 0; /* copy and load again */
+        worker->copied_generation = 0; /* copy and load again */
     } else if (code != STATUS_OK) {
         set_error(worker, code, &why);
     }
@@ -261,7 +261,7 @@ static scene pass_scene(const render_worker *worker, int pass, const adaptive_re
         resolution ? passes_settings(&worker->snapshot->render, adaptive_resolution_divisor(resolution), true)
                    : passes_settings(&worker->snapshot->render, worker->plan.shrink[pass], worker->plan.single[pass]);
     if (raster) {
-        draw_triangles(&view.render);
+        use_zbuffer(&view.render);
         view.render.spectrum = SPECTRUM_RGB;
     }
     return view;
@@ -283,7 +283,7 @@ static status describe(render_worker *worker, const job_account *account, int pa
                           .height = shown->height,
                           .full_width = (int)worker->snapshot->render.width,
                           .full_height = (int)worker->snapshot->render.height,
-                          .numbers = report_page(account),
+                          .numbers = report_image_numbers(account),
                           .film_hash = final ? job_account_hash(account) : 0,
                           .linear = linear,
                           .rendered = final ? scene_clone(worker->snapshot) : NULL};

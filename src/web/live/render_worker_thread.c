@@ -25,7 +25,7 @@ static bool wait_for_work(render_worker *worker)
     pthread_mutex_lock(&worker->lock);
     for (;;) {
         if (worker->again)
-            worker->taken_generation = 0;
+            worker->copied_generation = 0;
         worker->again = false;
         pthread_mutex_unlock(&worker->lock);
         const double due_s = render_worker_due_s(worker);

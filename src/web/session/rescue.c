@@ -65,7 +65,7 @@ static status write_kept(rescue *r, diagnostic *why)
     uint64_t number = 0;
     char *file = NULL, *text = NULL;
     scene_document_unsaved(r->l->scene_document, &number, &file);
-    scene *s = scene_document_copy_kept(r->l->scene_document, NULL, &number);
+    scene *s = scene_document_copy_to_save(r->l->scene_document, NULL, &number);
     if (s)
         lab_clear_default_threads(r->l, s);
     char *place = place_of(folder_real(r->l->files), file);

@@ -21,7 +21,7 @@ struct studies {
     pthread_mutex_t lock; /* guards the fields below */
     bool running;
     char *name; /* of the running or last study; NULL before the first */
-    study_moment now;
+    study_frame_progress now;
     double published_s;
     bool failed;
     diagnostic trouble;
@@ -73,7 +73,7 @@ json_t *studies_json(studies *st)
 {
     static const char *const stages[] = {"measuring", "moving", "images"};
     pthread_mutex_lock(&st->lock);
-    const study_moment *now = &st->now;
+    const study_frame_progress *now = &st->now;
     json_t *json = !st->name
                        ? json_null()
                        : json_pack("{s:s, s:b, s:I, s:I, s:o, s:I, s:o, s:s, s:I, s:I, s:o}", "name", st->name,
@@ -91,7 +91,7 @@ static void publish(studies *st)
     lab_publish(st->l, "study", studies_json(st));
 }
 
-static void on_progress(void *context, const study_moment *now)
+static void on_progress(void *context, const study_frame_progress *now)
 {
     studies *st = context;
     pthread_mutex_lock(&st->lock);
@@ -142,7 +142,7 @@ static status claim_run(studies *st, study *s, diagnostic *why)
     if (!busy) {
         free(st->name);
         st->name = name;
-        st->now = (study_moment){.left_s = NAN};
+        st->now = (study_frame_progress){.left_s = NAN};
         st->published_s = 0;
         st->failed = false;
         st->running = true;

@@ -207,10 +207,10 @@ static const hierarchy *kept(const mesh *m, hierarchy_kind kind)
     return h;
 }
 
-static hierarchy_moves follow(const mesh *m, double ratio)
+static hierarchy_update_counts follow(const mesh *m, double ratio)
 {
-    hierarchy_moves moves;
-    assert_int_equal(hierarchy_follow(m, ratio, 2, &moves, NULL), STATUS_OK);
+    hierarchy_update_counts moves;
+    assert_int_equal(hierarchy_update(m, ratio, 2, &moves, NULL), STATUS_OK);
     assert_true(moves.refit_s >= 0.0 && moves.build_s >= 0.0);
     return moves;
 }
@@ -235,7 +235,7 @@ static void moved_meshes_refit_or_rebuild_their_hierarchies_by_cost(void **state
     uint64_t seed = 5;
     mesh *m = icosphere(3);
     vec3 *rest = copy_of_vertices(m);
-    hierarchy_moves moves = follow(m, 1.0); /* has no hierarchies */
+    hierarchy_update_counts moves = follow(m, 1.0); /* has no hierarchies */
     assert_true(moves.refitted == 0 && moves.rebuilt == 0 && moves.growth == 0.0);
     const hierarchy *bvh = kept(m, HIERARCHY_BVH);
     const double cost = hierarchy_cost(bvh);
@@ -279,7 +279,7 @@ static void hierarchies_that_cannot_be_refitted_are_rebuilt(void **state)
     deform(m, rest, on_floats, &seed);
     (void)kept(m, HIERARCHY_BVH);
     move(m, rest); /* doubles */
-    hierarchy_moves moves = follow(m, 1e9);
+    hierarchy_update_counts moves = follow(m, 1e9);
     assert_true(moves.refitted == 0 && moves.rebuilt == 1 && moves.growth == 0.0);
     assert_true(compare(m, kept(m, HIERARCHY_BVH), effort(8), &seed) > 10);
     deform(m, rest, squash, &seed);
@@ -293,7 +293,7 @@ static atomic_bool followed;
 
 static void *follow_aside(void *m)
 {
-    assert_int_equal(hierarchy_follow(m, 1.0, 1, NULL, NULL), STATUS_OK);
+    assert_int_equal(hierarchy_update(m, 1.0, 1, NULL, NULL), STATUS_OK);
     atomic_store(&followed, true);
     return NULL;
 }

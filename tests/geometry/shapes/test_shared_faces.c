@@ -11,8 +11,8 @@
 
 static bool share(solid_shape a, solid_shape b)
 {
-    const bool found = solid_shapes_may_share_faces(&a, &b);
-    assert_int_equal(solid_shapes_may_share_faces(&b, &a), found);
+    const bool found = solid_shapes_may_coincide(&a, &b);
+    assert_int_equal(solid_shapes_may_coincide(&b, &a), found);
     return found;
 }
 

@@ -372,9 +372,9 @@ static void the_seed_chooses_the_points_of_the_lens(void **state)
     set(s, "render.seed=2");
     assert_true(film_hash_at(s, isa_best()) != one);
     inert_answer answer;
-    assert_false(inert_ask(s, "render.seed", NULL, &answer));
+    assert_false(param_is_inert(s, "render.seed", NULL, &answer));
     set(s, "camera.aperture=0");
-    assert_true(inert_ask(s, "render.seed", NULL, &answer));
+    assert_true(param_is_inert(s, "render.seed", NULL, &answer));
     scene_destroy(s);
 }
 
@@ -394,11 +394,11 @@ static void rays_that_start_in_the_ground_are_noted(void **state)
     char found[NOTE_TEXT_MAX] = "";
     scene *s = scene_from("camera: {position: [0, 1, -6], yaw_deg: 0, projection: orthographic, view_height: 4}\n"
                           "solids: {ground: {shape: plane, diffuse: 0.7}}\n");
-    worked(lint_scene(s, isa_best(), &(note_taker){find, found}, &why), &why);
+    worked(lint_scene(s, isa_best(), &(note_sink){find, found}, &why), &why);
     assert_non_null(strstr(found, "25% of the orthographic camera's rays start inside ground"));
     found[0] = 0;
     set(s, "camera.view_height=1.9");
-    worked(lint_scene(s, isa_best(), &(note_taker){find, found}, &why), &why);
+    worked(lint_scene(s, isa_best(), &(note_sink){find, found}, &why), &why);
     assert_string_equal(found, "");
     scene_destroy(s);
 }

@@ -237,7 +237,7 @@ static void light_through_many_media_is_the_same_in_any_batch(void **state)
     const vec3 at = tree->node[0].hit.point, l = vec3_sub(vec3_make(0.05, 0.45, 60), at), d = vec3_normalize(l);
     const double a[3] = {0.01, 0.05, 0.1}, within = 200.0 * 0.1 / d.z;
     for (int c = 0; c < 3; c++)
-        assert_true(fabs(tree->node[1].brought[c] - tree->node[1].throughput[c] * exp(-a[c] * within)) < 1e-7);
+        assert_true(fabs(tree->node[1].contribution[c] - tree->node[1].throughput[c] * exp(-a[c] * within)) < 1e-7);
     scene *s = scene_with_meshes(t.at, "");
     render_result *r = render(s);
     for (int c = 0; c < 3; c++)

@@ -119,7 +119,7 @@ static void the_grounds_checker_is_visible_through_a_block_on_it(void **state)
         if (fabs(x - round(x)) < 1e-9 || fabs(z - round(z)) < 1e-9)
             continue;
         const bool even = ((int)(floor(x) + floor(z)) & 1) == 0;
-        assert_true(fabs(n->brought[even ? 0 : 1] - 1.0) < 1e-9 && n->brought[even ? 1 : 0] < 1e-9);
+        assert_true(fabs(n->contribution[even ? 0 : 1] - 1.0) < 1e-9 && n->contribution[even ? 1 : 0] < 1e-9);
     }
     stage_close(&g);
 }

@@ -59,8 +59,8 @@ static const char *fault_of(const ray_tree *tree, const ray_node *node)
     if (!is_point(node->origin) || !(fabs(vec3_length(node->direction) - 1.0) <= 1e-14))
         return "its origin or direction";
     for (int c = 0; c < 3; c++) {
-        if (!(node->throughput[c] >= 0.0 && node->brought[c] >= 0.0 && isfinite(node->throughput[c]) &&
-              isfinite(node->brought[c])))
+        if (!(node->throughput[c] >= 0.0 && node->contribution[c] >= 0.0 && isfinite(node->throughput[c]) &&
+              isfinite(node->contribution[c])))
             return "its throughput";
         if (node->kind != RAY_SHADOW && node->parent != RAY_NONE &&
             node->throughput[c] > tree->node[node->parent].throughput[c])

@@ -16,7 +16,7 @@
 /* Hands out the tiles of an image in a random order and puts them together. */
 typedef struct hand_out {
     pthread_mutex_t lock;
-    shared_frame whole;
+    tiled_frame whole;
     int64_t *order, given, taken, limit; /* limit: the number of tiles after which done refuses */
 } hand_out;
 
@@ -40,13 +40,13 @@ static void done(void *context, const image_tile *rect, const film *traced, cons
     const schedule *places = &h->whole.places;
     const int64_t tile = rect->y0 / places->tile * places->tiles_across + rect->x0 / places->tile;
     const size_t sums = 3 * (size_t)(rect->x1 - rect->x0) * (size_t)(rect->y1 - rect->y0);
-    assert_int_equal(shared_frame_values(&h->whole, tile), variance ? 2 * sums : sums);
+    assert_int_equal(tiled_frame_values(&h->whole, tile), variance ? 2 * sums : sums);
     int64_t *message = malloc(2 * sums * sizeof *message);
     assert_non_null(message);
     memcpy(message, traced->sum, sums * sizeof *message);
     if (variance)
         memcpy(message + sums, variance, sums * sizeof *variance);
-    shared_frame_put(&h->whole, tile, message);
+    tiled_frame_store(&h->whole, tile, message);
     free(message);
     h->taken++;
     pthread_mutex_unlock(&h->lock);
@@ -56,7 +56,7 @@ static hand_out hand_out_of(const scene *s, int tile)
 {
     hand_out h = {.limit = INT64_MAX};
     diagnostic why = {0};
-    worked(shared_frame_begin(s, tile, &h.whole, &why), &why);
+    worked(tiled_frame_begin(s, tile, &h.whole, &why), &why);
     h.order = malloc((size_t)h.whole.places.tile_count * sizeof *h.order);
     assert_non_null(h.order);
     for (int64_t i = 0; i < h.whole.places.tile_count; i++) { /* Fisher and Yates, inside out */
@@ -71,7 +71,7 @@ static hand_out hand_out_of(const scene *s, int tile)
 static void release(hand_out *h)
 {
     pthread_mutex_destroy(&h->lock);
-    shared_frame_release(&h->whole);
+    tiled_frame_release(&h->whole);
     free(h->order);
 }
 
@@ -147,7 +147,7 @@ static void places_in_a_tile_are_exact_in_the_largest_images(void **state)
         int64_t place = 0;
         for (int y = y0; y < y1; y++)
             for (int x = x0; x < x1; x++)
-                assert_int_equal(film_place(f, (int64_t)y * tiles[i].width + x), place++);
+                assert_int_equal(film_pixel_index(f, (int64_t)y * tiles[i].width + x), place++);
         film_destroy(f);
     }
 }

@@ -123,7 +123,7 @@ static void assert_same_node(const ray_node *a, const ray_node *b)
     assert_memory_equal(&a->origin, &b->origin, 2 * sizeof a->origin);
     assert_memory_equal(a->throughput, b->throughput, sizeof a->throughput);
     assert_memory_equal(a->stokes, b->stokes, sizeof a->stokes);
-    assert_memory_equal(a->brought, b->brought, sizeof a->brought);
+    assert_memory_equal(a->contribution, b->contribution, sizeof a->contribution);
     if (a->end != RAY_END_HIT)
         return;
     assert_true(a->hit.solid == b->hit.solid && a->hit.face == b->hit.face && a->hit.from == b->hit.from &&
@@ -171,7 +171,7 @@ static void rays_equal_those_of_a_fan(void **state)
         fan f = {0};
         s->render.depth = 6;
         worked(probe_create(s, isa_best(), &p, &why), &why);
-        worked(fan_follow(p, &pairs[i].rule, &f, &why), &why);
+        worked(fan_trace(p, &pairs[i].rule, &f, &why), &why);
         fan_compared c = {&f, 0};
         worked(beams_each_ray(s, isa_best(), 0, compare_with_fan, &c, &why), &why);
         assert_int_equal(c.at, f.count);
@@ -196,7 +196,7 @@ static void a_laser_equals_a_traced_ray(void **state)
     set(s, "laser.lambda_nm=500");
     worked(beams_each_ray(s, isa_best(), 0, gather, &g, &why), &why);
     worked(probe_create(s, isa_best(), &p, &why), &why);
-    probe_one_wavelength(p);
+    probe_use_one_wavelength(p);
     worked(probe_ray(p, g.last.node[0].origin, g.last.node[0].direction, &tree, &why), &why);
     assert_true(vec3_length(vec3_sub(tree.node[0].direction, vec3_normalize(vec3_make(1, -0.1, 0)))) < 1e-15);
     size_t k = 0;

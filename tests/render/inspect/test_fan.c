@@ -20,7 +20,7 @@ static fan follow(const scene *s, const fan_rule *rule)
     fan f = {0};
     diagnostic why = {0};
     worked(probe_create(s, isa_best(), &p, &why), &why);
-    worked(fan_follow(p, rule, &f, &why), &why);
+    worked(fan_trace(p, rule, &f, &why), &why);
     probe_destroy(p);
     return f;
 }
@@ -197,7 +197,7 @@ static void invalid_fan_rules_are_refused(void **state)
     fan f = {0};
     for (int i = 0; i < 6; i++) {
         diagnostic why = {0};
-        assert_int_equal(fan_follow(p, &bad[i], &f, &why), STATUS_BAD_INPUT);
+        assert_int_equal(fan_trace(p, &bad[i], &f, &why), STATUS_BAD_INPUT);
         assert_true(why.what[0] && why.remedy[0]);
         fan_release(&f);
     }

@@ -30,13 +30,13 @@ static void compare_pixels(scene *s)
     for (int k = 0; k < 50; k++) {
         const int at = (int)((int64_t)k * 7919 % (width * height)), x = at % width, y = at / width;
         worked(probe_pixel(p, x, y, &tree, &why), &why);
-        double brought[3] = {0};
+        double contribution[3] = {0};
         for (size_t i = 0; i < tree.count; i++)
             for (int c = 0; c < 3; c++)
-                brought[c] += tree.node[i].brought[c]; /* multiples of the film's step: exact */
+                contribution[c] += tree.node[i].contribution[c]; /* multiples of the film's step: exact */
         for (int c = 0; c < 3; c++) {
             assert_true(tree.radiance[c] == film_value(frame->img, x, y, c));
-            assert_true(brought[c] == tree.radiance[c]);
+            assert_true(contribution[c] == tree.radiance[c]);
         }
     }
     ray_tree_release(&tree);
@@ -205,7 +205,7 @@ static void a_shadow_ray_from_a_polarised_lamp_obeys_malus(void **state)
         while (shadow->light != 1)
             shadow = &tree.node[shadow->next];
         assert_int_equal(shadow->kind, RAY_SHADOW);
-        assert_true(fabs(shadow->brought[0] - 0.5 * (1.0 + 0.8 * cos(2.0 * a * 0.017453292519943295))) < 1e-9);
+        assert_true(fabs(shadow->contribution[0] - 0.5 * (1.0 + 0.8 * cos(2.0 * a * 0.017453292519943295))) < 1e-9);
         ray_tree_release(&tree);
         probe_destroy(p);
     }
@@ -322,7 +322,8 @@ static void lamps_at_one_position_are_distinguished(void **state)
         if (tree.node[i].kind != RAY_SHADOW)
             continue;
         assert_int_equal(tree.node[i].light, lamp);
-        assert_true((tree.node[i].brought[0] > 0.0) == (lamp != 2) && (tree.node[i].brought[1] > 0.0) == (lamp != 1));
+        assert_true((tree.node[i].contribution[0] > 0.0) == (lamp != 2) &&
+                    (tree.node[i].contribution[1] > 0.0) == (lamp != 1));
         lamp++;
     }
     assert_int_equal(lamp, 3);
@@ -366,7 +367,7 @@ static void the_probe_of_a_spectral_scene_absorbs_by_its_wavelength(void **state
         ray_tree tree = {0};
         worked(probe_create(s, isa_best(), &p, &why), &why);
         if (!i)
-            probe_one_wavelength(p);
+            probe_use_one_wavelength(p);
         worked(probe_path(p, vec3_make(0.0, 0.0, -5.0), vec3_make(0.0, 0.0, 1.0), -1, &tree, &why), &why);
         for (int c = 0; c < 3; c++)
             assert_true(fabs(tree.node[1].hit.transmittance[c] - exp(-2.0)) < 1e-14);

@@ -426,9 +426,9 @@ static void in_a_drawing_of_a_fan_escaping_rays_reach_the_edge(void **state)
         fan f = {0};
         char *text = NULL;
         size_t size;
-        worked(fan_follow(p, &rule, &f, &why), &why);
+        worked(fan_trace(p, &rule, &f, &why), &why);
         FILE *out = open_memstream(&text, &size);
-        worked(fan_write_drawing(&(fanned){.s = s, .p = p, .rule = &rule, .f = &f}, out, &why), &why);
+        worked(fan_write_drawing(&(fan_output){.s = s, .p = p, .rule = &rule, .f = &f}, out, &why), &why);
         fclose(out);
         drawn_line line;
         const image_frame panel = panel_of(text, 0);

@@ -282,8 +282,8 @@ static void assert_note(scene *s, const char *text)
     assert_int_equal(job_create(&(job_settings){.measured = true}, &j, NULL), STATUS_OK);
     assert_int_equal(job_load(j, s, NULL, NULL), STATUS_OK);
     assert_int_equal(job_render(j, s, &(render_options){.usage = true}, &made, &why), STATUS_OK);
-    frame_notes(&made, &(note_taker){keep_note, line});
-    json_t *page = report_page(&made), *notes = json_object_get(page, "notes");
+    frame_notes(&made, &(note_sink){keep_note, line});
+    json_t *page = report_image_numbers(&made), *notes = json_object_get(page, "notes");
     assert_int_equal(json_array_size(notes), line[0] ? 1 : 0);
     const char *told = json_string_value(json_object_get(json_array_get(notes, 0), "text"));
     assert_true(!line[0] || strstr(line, told));

@@ -205,7 +205,7 @@ static void check_lit_ground(const char *assignments, double light_path, double 
         for (int c = 0; c < 3; c++) {
             const double expected = n_l * exp(-a_per_m[c] * (light_path / n_l + eye_path)) * pow(0.9, faces);
             assert_true(fabs(tree->radiance[c] - expected) <= 1e-12);
-            assert_true(fabs(tree->node[1].brought[c] - expected) <= 1e-12);
+            assert_true(fabs(tree->node[1].contribution[c] - expected) <= 1e-12);
         }
         g.setting->camera.aimed = 1;
         g.setting->camera.position = at, g.setting->camera.target = vec3_make(x, 0.0, 0.0);
@@ -336,7 +336,7 @@ static void check_node(const stage *g, const ray_node *node, tally *hits, tally 
     if (node->kind == RAY_SHADOW && node->end == RAY_END_LIT && fmin(node->throughput[0], node->throughput[2]) > 1e-3) {
         optical_depth(g->probe, g->setting, node->origin, node->direction, node->light_distance, depth);
         for (int c = 0; c < 3; c++)
-            transmittance[c] = node->brought[c] / node->throughput[c];
+            transmittance[c] = node->contribution[c] / node->throughput[c];
         compare(shadows, depth, transmittance);
     }
     if (node->kind != RAY_SHADOW && node->end == RAY_END_HIT && node->hit.t < 20.0) {

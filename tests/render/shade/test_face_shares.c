@@ -162,7 +162,7 @@ static void a_note_names_the_solid_whose_shares_are_ignored(void **state)
 {
     (void)state;
     char note[NOTE_LINE_MAX] = "";
-    const note_taker taker = {keep_last, note};
+    const note_sink taker = {keep_last, note};
     scene *s = view("solids:\n  pane: {shape: mesh, mesh: sheet}\n", "");
     scene_hints(s, &taker);
     assert_string_equal(note, "");

@@ -221,7 +221,7 @@ static void rows_are_those_of_the_textbooks_matrices(void **state)
         polarisation_frame(d, &x, &y);
         const vec3 axis =
             vec3_add(vec3_scale(d, 0.7), vec3_add(vec3_scale(x, cos(a * degree)), vec3_scale(y, sin(a * degree))));
-        const stokes got = analyser_through((stokes){row[0], row[1], row[2], row[3]}, d, axis,
+        const stokes got = analyser_element((stokes){row[0], row[1], row[2], row[3]}, d, axis,
                                             plate ? sp_retarder(sd, cd) : sp_polariser(p1, p2));
         const double out[4] = {got.i, got.q, got.u, got.v};
         for (int k = 0; k < 4; k++) {
@@ -259,8 +259,8 @@ static void transmission_is_the_same_in_reverse(void **state)
                           -1, &back, NULL),
                NULL);
         assert_int_equal(there.count, back.count);
-        assert_true(last->brought[0] > 1e-5);
-        assert_near(last->brought[0], back.node[back.count - 1].brought[0], 1e-11);
+        assert_true(last->contribution[0] > 1e-5);
+        assert_near(last->contribution[0], back.node[back.count - 1].contribution[0], 1e-11);
         ray_tree_release(&there), ray_tree_release(&back);
         probe_destroy(p);
         scene_destroy(s);

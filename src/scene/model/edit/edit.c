@@ -137,7 +137,7 @@ static solid *owner_of(const scene *s, const char *path)
     return NULL;
 }
 
-status scene_put(scene *s, const char *path, const char *value, diagnostic *why)
+status scene_set_property(scene *s, const char *path, const char *value, diagnostic *why)
 {
     solid *owner = owner_of(s, path);
     const char *rest = path + strcspn(path, ".");
@@ -184,7 +184,7 @@ static status remove_mesh(scene *s, size_t index, diagnostic *why)
 {
     const mesh_entry *m = &s->meshes[index];
     for (size_t i = 0; i < s->solid_count; i++)
-        if (solid_shows(&s->solids[i], m->name))
+        if (solid_uses_mesh(&s->solids[i], m->name))
             return in_use("mesh", m->name, s->solids[i].name, why);
     object_remove(s, PARAM_MESH, index);
     return STATUS_OK;

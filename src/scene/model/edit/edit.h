@@ -20,7 +20,7 @@ status scene_assign_material(scene *s, const char *solid_name, const char *mater
 
 /* Sets a parameter like scene_set, and also the properties of a solid that are not parameters: NAME.material (as
  * scene_assign_material) and NAME.shape. */
-status scene_put(scene *s, const char *path, const char *value, diagnostic *why);
+status scene_set_property(scene *s, const char *path, const char *value, diagnostic *why);
 
 /* Writes the names of the shapes: "plane, cylinder or mesh", with the conjunction "or"; returns text. */
 char *scene_shape_words(const char *conjunction, char *text, size_t size);

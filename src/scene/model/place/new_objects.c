@@ -43,7 +43,7 @@ static vec3 rounded(vec3 v, double size)
     return vec3_make(placement_round(v.x, size), placement_round(v.y, size), placement_round(v.z, size));
 }
 
-/* Sets NAME.ROW by scene_put; does nothing after an error. */
+/* Sets NAME.ROW by scene_set_property; does nothing after an error. */
 static void put(scene *s, status *code, diagnostic *why, const char *name, const char *row, const char *format, ...)
     __attribute__((format(printf, 6, 7)));
 static void put(scene *s, status *code, diagnostic *why, const char *name, const char *row, const char *format, ...)
@@ -55,7 +55,7 @@ static void put(scene *s, status *code, diagnostic *why, const char *name, const
     va_end(list);
     snprintf(path, sizeof path, "%s.%s", name, row);
     if (*code == STATUS_OK)
-        *code = scene_put(s, path, value, why);
+        *code = scene_set_property(s, path, value, why);
 }
 
 static void put_number(scene *s, status *code, diagnostic *why, const char *name, const char *row, double value)

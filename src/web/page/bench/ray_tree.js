@@ -173,7 +173,7 @@ export const columns = [
     'fraction of the light that the medium transmits on the path; red, green, blue if they differ',
   ],
   ['weight', 'Weight', "fraction of the ray's light in the pixel"],
-  ['brought', 'Contribution', 'radiance that this ray itself adds to the pixel'],
+  ['contribution', 'Contribution', 'radiance that this ray itself adds to the pixel'],
   ['end', 'End', 'how the ray ends'],
 ];
 
@@ -228,7 +228,7 @@ export function describe(ray) {
     path: '',
     transmittance: '',
     weight: channels(node.throughput),
-    brought: node.brought.some((x) => x !== 0) ? channels(node.brought) : '',
+    contribution: node.contribution.some((x) => x !== 0) ? channels(node.contribution) : '',
     end: endWords[node.end] || node.end,
     ...(node.hit ? hitTexts(node.hit) : {}),
   };
