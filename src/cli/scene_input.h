@@ -104,8 +104,8 @@ void scene_input_note_frame(const job_account *frame);
 /* isa_choose; diagnostics name the environment. */
 status scene_input_isa(isa *level, diagnostic *why);
 
-/* Creates a job that ends at SIGINT and SIGTERM. measured: as in job_settings. After scene_input_distribute, which a program
- * calls once at its start, the job distributes its frames over processes. */
+/* Creates a job that ends at SIGINT and SIGTERM. measured: as in job_settings. After scene_input_distribute, which a
+ * program calls once at its start, the job distributes its frames over processes. */
 void scene_input_distribute(const job_distribution *sharing);
 status scene_input_job(bool measured, job **out, diagnostic *why);
 

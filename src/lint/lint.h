@@ -1,8 +1,9 @@
 /* The linter: notes on a valid scene, parts of which have no effect or not the one that its author expects.
  *
  * A note has a place, one sentence and a remedy. Three things make notes:
- * - param_is_inert: one parameter has no effect, and what it needs. It takes microseconds, so that it runs for each --set,
- *   each change in the page and each axis of a study. A witness, if there is one, decides what only an image shows.
+ * - param_is_inert: one parameter has no effect, and what it needs. It takes microseconds, so that it runs for each
+ *   --set, each change in the page and each axis of a study. A witness, if there is one, decides what only an
+ *   image shows.
  * - scene_hints, scene_range_hints and the like: what a scene seems to lack.
  * - lint_scene: the hints, and what lines through the solids and small images show.
  *

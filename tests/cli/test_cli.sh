@@ -111,7 +111,7 @@ file; build it with 'make setup-wasm setup-site site', or set CUVETTE_LIVE to it
 CUVETTE_LIVE=mine.html run render "$scene" -o a.png --live
 check "--live is for pages" matches "$(<err)" 'only a page can hold the laboratory; add -o FILE.html'
 CUVETTE_LIVE=mine.html run render "${scene%/*}/chequer.yaml" -o live.html --live
-check "--live of a scene that reads files" matches "$(<err)" 'may name no files, but tiles reads chequer.png'
+check "--live of a scene that reads files" matches "$(<err)" 'cannot name files, but tiles reads chequer.png'
 rm mine.html
 check "no other files are left" is "$(find . -type f -printf '%f\n' | LC_ALL=C sort | tr '\n' ' ')" \
     "a.html a.jpg a.pfm a.png b.png c.png check.log err json_get out page.png "
@@ -120,7 +120,7 @@ check "no other files are left" is "$(find . -type f -printf '%f\n' | LC_ALL=C s
 run render "$scene" --json "${small[@]}" --set render.depth=3 --set lamp.position.x=2 --set render.threads=3
 check "--json needs no -o" silent_success
 check "--json prints one JSON object" is "$(json @type)" object
-check "the schema version, and that the frame is complete" is "$(json schema whole)" "$(lines 1 true)"
+check "the schema version, and that the frame is complete" is "$(json schema complete)" "$(lines 1 true)"
 check "film_hash is 16 hexadecimal digits" matches "$(json film_hash)" '^[0-9a-f]{16}$'
 check "there is one camera ray per pixel" is "$(json rays.camera)" 4800
 total=$(json rays.total)
@@ -798,7 +798,7 @@ for signal in INT TERM; do
     check "SIG$signal ends a render with 130" is $? 130
     check "SIG$signal: the partial image is written" magic part.png 89504e47
     check "SIG$signal: one line reports it" is "$(grep -c interrupted err)" 1
-    check "SIG$signal: the JSON output is marked as incomplete" is "$(json whole)" false
+    check "SIG$signal: the JSON output is marked as incomplete" is "$(json complete)" false
 done
 # A huge ray tree, and a mesh that takes long to generate: the program reacts to signals in every phase.
 {

@@ -175,7 +175,7 @@ static void must_agree(outcome a, outcome b, const char *what)
 static void compare_films(scene *s)
 {
     static const char *const settings[] = {"accel=none", "accel=sphere", "accel=octant", "accel=bvh",
-                                           "keep=off",   "threads=3",    "tile=3",       "pieces=0"};
+                                           "keep=off",   "threads=3",    "tile=3",       "tiles_per_worker=0"};
     const outcome first = film_of(s, isa_best());
     for (int level = 0; level < (int)isa_best(); level++)
         must_agree(first, film_of(s, (isa)level), isa_name((isa)level));

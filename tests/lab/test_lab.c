@@ -155,7 +155,7 @@ static void wrong_values_are_refused_with_a_remedy(void **state)
     assert_refused("POST", "/api/camera", "{\"zoom\": 0}", 400, "zoom");
     assert_refused("POST", "/api/camera", "{\"look\": \"below\"}", 400, "front, back");
     assert_refused("POST", "/api/camera", "{\"frame\": \"bal\"}", 400, "bal");
-    assert_refused("POST", "/api/camera", "{\"frame\": \"ground\"}", 400, "no end");
+    assert_refused("POST", "/api/camera", "{\"frame\": \"ground\"}", 400, "unbounded");
     assert_refused("POST", "/api/view", "{\"do\": \"sideways\"}", 400, "back, forward");
     assert_refused("POST", "/api/view", "{\"do\": \"back\"}", 409, "no earlier view");
     assert_refused("POST", "/api/view", "{\"do\": \"keep\"}", 409, "already");

@@ -30,7 +30,7 @@ END
 for name in env bash rm; do ln -s "$(command -v $name)" bin/; done
 said=$(PATH=$work/bin "$program" study run -q small.study --instructions 2>&1)
 equal "without valgrind: what to install" "$? $said" \
-    "2 cuvette: --instructions: valgrind is not installed; apt-get install --no-install-recommends valgrind"
+    "2 cuvette: --instructions: valgrind is not installed; install it: apt-get install --no-install-recommends valgrind"
 command -v valgrind >/dev/null || {
     skip "valgrind is not installed"
     conclude

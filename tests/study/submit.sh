@@ -95,7 +95,7 @@ same "all parts are submitted, then the job that merges" calls \
 same "the jobs are named" out "small: 3 of 3 parts to run, 10 rows to measure" \
     "$(grep -E '^small: time limit 00:10:00 for each: 3 times the estimate of the longest, .* s, at least' out)" \
     "small: job 11 measures, then job 12 merges and verifies the rows; script and logs are in $rows/small/slurm" \
-    "small: give the same command again when they have ended: it submits what is then missing"
+    "small: run the same command again when they have ended: it submits the parts that are then missing"
 grep -q "^small: 3 of 5 cells done" merge.out
 verdict $? "the rows of the parts that ran are merged" "$(<merge.out)"
 rm lost

@@ -15,7 +15,7 @@
 
 typedef enum shading_rule { SHADING_FLAT, SHADING_SMOOTH, SHADING_GOURAUD } shading_rule;
 
-/* The maximum number of primitives of all solids (shape_primitive_slots), and of solids that are unbounded or have triangles. */
+/* The most primitives of all solids (shape_primitive_slots), and of unbounded solids or those with triangles. */
 enum { SCENE_PRIMITIVES_MAX = (1 << 21) - 1, SCENE_UNBOUNDED_MAX = 64 };
 
 typedef struct solid {

@@ -70,7 +70,7 @@ static double further(const facet_energy *e, bool refracted)
         const double x = (k + 0.5) / STEPS;
         sum += 4.0 * x * x * x / STEPS * facet_energy_towards(e, refracted, x * x);
     }
-    return e->lost * e->share[refracted] * sum;
+    return e->lost * e->fraction[refracted] * sum;
 }
 
 static rough_energy *finish(double alpha, bool opaque, const rough_finish **out)
@@ -100,7 +100,7 @@ static void an_interface_sends_on_all_light(void **state)
                 if (!(fabs(whole - 1.0) < ACCURACY))
                     fail_msg("alpha %g, from %g to %g, cosine %g: %.5f; of one facet %.5f", alphas[a], s.n.n_i, s.n.n_o,
                              s.i.z, whole, one);
-                assert_true(e.share[0] >= 0.0 && e.share[1] >= 0.0);
+                assert_true(e.fraction[0] >= 0.0 && e.fraction[1] >= 0.0);
                 worst = fmax(worst, fabs(whole - 1.0));
                 most = fmax(most, 1.0 - one);
             }
@@ -152,10 +152,10 @@ static void further_facets_are_reciprocal(void **state)
                 const facet_energy in = facet_energy_at(all, f, n[0], n[1], here),
                                    out = facet_energy_at(all, f, n[1], n[0], there),
                                    back = facet_energy_at(all, f, n[0], n[1], there);
-                const double to = in.lost * in.share[1] * facet_energy_towards(&in, true, there),
-                             from = out.lost * out.share[1] * facet_energy_towards(&out, true, here),
-                             one = in.lost * in.share[0] * facet_energy_towards(&in, false, there),
-                             other = back.lost * back.share[0] * facet_energy_towards(&back, false, here);
+                const double to = in.lost * in.fraction[1] * facet_energy_towards(&in, true, there),
+                             from = out.lost * out.fraction[1] * facet_energy_towards(&out, true, here),
+                             one = in.lost * in.fraction[0] * facet_energy_towards(&in, false, there),
+                             other = back.lost * back.fraction[0] * facet_energy_towards(&back, false, here);
                 assert_true(fabs(n[0] * n[0] * to - n[1] * n[1] * from) <= 1e-12 * (1.0 + to));
                 assert_true(fabs(one - other) <= 1e-12 * (1.0 + one));
             }
