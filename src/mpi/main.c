@@ -50,7 +50,7 @@ static char *program_path(void)
     const ssize_t length = readlink("/proc/self/exe", path, sizeof path - 1);
     if (length <= 0)
         return NULL;
-    path[length] = '\\0';
+    path[length] = '\0';
     char *slash = strrchr(path, '/');
     *slash = '\0';
     return text_format("%s/cuvette", path);

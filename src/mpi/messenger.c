@@ -20,7 +20,7 @@ typedef struct serving {
     int64_t frame;
     int ranks, reports, idle;
     handout *tiles;
-    const tracing *renderer;
+    const tracing *tile_renderer;
     const frame_sink *sink;
     traffic *moved;
     bool *ended; /* by rank: whether TAG_END was sent */
@@ -39,7 +39,7 @@ static void cancel_frame(serving *s)
     if (s->cancelled)
         return;
     s->cancelled = true;
-    s->renderer->stop(s->renderer->of);
+    s->tile_renderer->stop(s->tile_renderer->of);
     for (int rank = 1; rank < s->ranks; rank++)
         send_head(s, rank, TAG_STOP);
 }
@@ -55,7 +55,7 @@ static void assign_tiles(serving *s, int rank)
         return;
     const int count = handout_assign(s->tiles, rank, message.tiles);
     if (count > 0 && rank == 0)
-        s->renderer->assign(s->renderer->of, message.tiles, count);
+        s->tile_renderer->assign(s->tile_renderer->of, message.tiles, count);
     if (count > 0 && rank != 0) {
         const size_t bytes = sizeof message.head + (size_t)count * sizeof message.tiles[0];
         MPI_Send(&message, (int)bytes, MPI_BYTE, rank, TAG_TILES, MPI_COMM_WORLD);
@@ -64,7 +64,7 @@ static void assign_tiles(serving *s, int rank)
     if (handout_is_empty(s->tiles) && !s->ended[rank]) {
         s->ended[rank] = true;
         if (rank == 0)
-            s->renderer->end(s->renderer->of);
+            s->tile_renderer->end(s->tile_renderer->of);
         else
             send_head(s, rank, TAG_END);
     }
@@ -136,26 +136,27 @@ static bool serve_once(serving *s)
         receive(s, &arrived);
         any = true;
     }
-    for (tile_message *tile; (tile = s->renderer->pop(s->renderer->of)); any = true)
+    for (tile_message *tile; (tile = s->tile_renderer->pop(s->tile_renderer->of)); any = true)
         accept_tile(s, 0, tile);
     return any;
 }
 
 static bool is_complete(const serving *s)
 {
-    return s->reports == s->ranks - 1 && s->renderer->is_done(s->renderer->of) &&
+    return s->reports == s->ranks - 1 && s->tile_renderer->is_done(s->tile_renderer->of) &&
            (s->cancelled || handout_is_complete(s->tiles));
 }
 
-void messenger_serve(int64_t frame, int ranks, handout *tiles, const tracing *renderer, const frame_sink *sink,
+void messenger_serve(int64_t frame, int ranks, handout *tiles, const tracing *tile_renderer, const frame_sink *sink,
                      traffic *moved)
 {
-    serving s = {.frame = frame, .ranks = ranks, .tiles = tiles, .renderer = renderer, .sink = sink, .moved = moved};
+    serving s = {
+        .frame = frame, .ranks = ranks, .tiles = tiles, .tile_renderer = tile_renderer, .sink = sink, .moved = moved};
     s.ended = message_memory((size_t)ranks * sizeof *s.ended);
     for (int rank = 0; rank < ranks; rank++)
         s.ended[rank] = false;
-    if (renderer->threads > 0) {
-        handout_join(tiles, 0, renderer->threads, MPI_Wtime());
+    if (tile_renderer->threads > 0) {
+        handout_join(tiles, 0, tile_renderer->threads, MPI_Wtime());
         assign_tiles(&s, 0);
     }
     while (!is_complete(&s)) {
@@ -163,7 +164,7 @@ void messenger_serve(int64_t frame, int ranks, handout *tiles, const tracing *re
             s.idle = 0;
             send_end(&s);
         } else {
-            renderer->wait(renderer->of, s.idle++);
+            tile_renderer->wait(tile_renderer->of, s.idle++);
         }
         sink->progress(sink->of, handout_fraction(tiles));
         if (cancel_asked())
@@ -179,7 +180,7 @@ enum { SENDING_MOST = 64 };
 
 typedef struct working {
     int64_t frame;
-    const tracing *renderer;
+    const tracing *tile_renderer;
     traffic *moved;
     tile_message *sending[SENDING_MOST];
     MPI_Request request[SENDING_MOST];
@@ -229,11 +230,11 @@ static void handle_message(working *w, const MPI_Status *arrived)
         return;
     const int count = (int)(((size_t)bytes - sizeof message.head) / sizeof message.tiles[0]);
     if (arrived->MPI_TAG == TAG_TILES)
-        w->renderer->assign(w->renderer->of, message.tiles, count);
+        w->tile_renderer->assign(w->tile_renderer->of, message.tiles, count);
     if (arrived->MPI_TAG == TAG_END)
-        w->renderer->end(w->renderer->of);
+        w->tile_renderer->end(w->tile_renderer->of);
     if (arrived->MPI_TAG == TAG_STOP) {
-        w->renderer->stop(w->renderer->of);
+        w->tile_renderer->stop(w->tile_renderer->of);
         w->cancelled = true;
     }
 }
@@ -241,7 +242,7 @@ static void handle_message(working *w, const MPI_Status *arrived)
 static bool work_once(working *w)
 {
     bool any = false;
-    for (tile_message *tile; (tile = w->renderer->pop(w->renderer->of)); any = true)
+    for (tile_message *tile; (tile = w->tile_renderer->pop(w->tile_renderer->of)); any = true)
         if (w->cancelled)
             free(tile);
         else
@@ -255,15 +256,15 @@ static bool work_once(working *w)
     return any || there;
 }
 
-void messenger_work(int64_t frame, const tracing *renderer, traffic *moved)
+void messenger_work(int64_t frame, const tracing *tile_renderer, traffic *moved)
 {
-    working w = {.frame = frame, .renderer = renderer, .moved = moved};
-    const ready_note ready = {.head.frame = frame, .threads = renderer->threads};
+    working w = {.frame = frame, .tile_renderer = tile_renderer, .moved = moved};
+    const ready_note ready = {.head.frame = frame, .threads = tile_renderer->threads};
     MPI_Send(&ready, sizeof ready, MPI_BYTE, 0, TAG_READY, MPI_COMM_WORLD);
-    for (int idle = 0; !renderer->is_done(renderer->of);)
+    for (int idle = 0; !tile_renderer->is_done(tile_renderer->of);)
         if (work_once(&w))
             idle = 0;
         else
-            renderer->wait(renderer->of, idle++);
+            tile_renderer->wait(tile_renderer->of, idle++);
     finish_sending(&w, 0);
 }

@@ -95,8 +95,8 @@ typedef struct traffic {
 
 /* Rank 0: hands out all tiles, and returns when all tiles and the reports of all other ranks have arrived. Cancelling
  * the calling thread cancels the frame: then it returns after the reports. */
-void messenger_serve(int64_t frame, int ranks, handout *tiles, const tracing *renderer, const frame_sink *sink,
+void messenger_serve(int64_t frame, int ranks, handout *tiles, const tracing *tile_renderer, const frame_sink *sink,
                      traffic *moved);
 
 /* Another rank: receives tiles and sends them back rendered, until the renderer is done. */
-void messenger_work(int64_t frame, const tracing *renderer, traffic *moved);
+void messenger_work(int64_t frame, const tracing *tile_renderer, traffic *moved);
