@@ -41,8 +41,8 @@ done
 
 notes=$(mpirun --oversubscribe -n 2 "$cuvette" render experiments/scenes/rod.yaml "${small[@]}" \
     2>&1 >/dev/null)
-[[ $(grep -c 'cuvette-mpi shares' <<<"$notes") == 1 ]]
-verdict $? 'cuvette itself under mpirun says once that each process does the whole work' "$notes"
+[[ $(grep -c 'cuvette-mpi divides' <<<"$notes") == 1 ]]
+verdict $? 'cuvette itself under mpirun says once that each process does all the work' "$notes"
 
 on_ranks 2 render experiments/scenes/rod.yaml "${small[@]}" --set render.threads=2 --set render.tile=16 \
     >"$work/account.json" 2>"$work/errors"

@@ -50,5 +50,5 @@ def test_without_the_laboratory(rod, monkeypatch, tmp_path):
 
 
 def test_scene_that_reads_files(laboratory):
-    with pytest.raises(cuvette.InputError, match="may name no files, but tiles reads"):
+    with pytest.raises(cuvette.InputError, match="cannot name files, but tiles reads"):
         cuvette.read(ROOT / "experiments/scenes/chequer.yaml").live()
