@@ -551,7 +551,7 @@ typedef struct cuvette_node {
     double light_distance;              /* distance of a shadow ray's light, scene units; else 0 */
     double light_transmittance;         /* transmittance of the surfaces on a shadow ray's path; else 1 */
     double distance;                    /* scene units */
-    double point[3], normal[3];         /* unit vector, towards the ray */
+    double point[3], normal[3];         /* normal: unit vector, towards the ray */
     double error;                       /* bound on the point's distance from the exact surface, scene units */
     int32_t solid, before, after;       /* the solid that was hit, the media on the ray's side and behind */
     int32_t opaque, total_internal;     /* 0 or 1: no ray continues behind it; total internal reflection */

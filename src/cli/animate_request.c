@@ -181,7 +181,7 @@ status animate_check_length(const animate_request *request, diagnostic *why)
     const double frames = request->times.duration_s * (double)request->times.fps_num / (double)request->times.fps_den;
     if (frames <= FRAMES_MAX && request->times.start_s + request->times.duration_s <= SECONDS_MAX)
         return STATUS_OK;
-    return options_wrong("animate", NULL, why, "use a --duration of at most 10000000 frames that ends within 86400 s",
+    return options_wrong("animate", NULL, why, "shorten --duration: at most 10000000 frames, which end within 86400 s",
                          "the animation is too long");
 }
 

@@ -183,7 +183,7 @@ void scene_input_note_tree(const scene_input *input, const scene *s)
              "the scene is rendered %s%s%s; this command traces Whitted-style rays at render.lambda_nm = %.6g",
              path     ? "with random paths"
              : drawn  ? "with a depth buffer"
-             : layers ? "as a layer of the first hits"
+             : layers ? "as one layer of the first hits"
                       : "",
              path && spectral ? " and " : "", spectral ? "spectrally" : "", s->render.lambda_nm);
     terminal_note(text);

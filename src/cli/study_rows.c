@@ -95,7 +95,7 @@ static const command_form films_form = {
     .synopsis = "--against DIR FILE...",
     .about = "Compare the films and ray counts of each study in two results folders, cell by cell. Exit status 1 if a "
              "cell differs.\vA cell is compared if both folders have rows of it. Films and counts do not depend on the "
-             "machine. A pipe or a file gets one line per study, separated by tabs.",
+             "machine. A pipe or a file gets one line per study, its fields separated by tabs.",
 };
 
 static status check_films(const films_request *r, diagnostic *why)

@@ -36,7 +36,8 @@ static bool has_all_meshes(const scene *s)
     return all;
 }
 
-/* A full cache is cleared: the cells of a study repeat in cycles, for which no replacement order is better. */
+/* A full cache is cleared. The cells of a study repeat in cycles, for which evicting the oldest scene would be no
+ * better. */
 static void add_to_cache(mesh_cache *cache, const scene *s)
 {
     size_t triangles = triangles_of(s);

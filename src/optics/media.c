@@ -48,8 +48,7 @@ static const medium medium_rows[] = {
      .temperature_c = 25.0,
      .source = "Rheims, Koeser and Wriedt, Meas. Sci. Technol. 8, 601 (1997)",
      .verified = IN_DATABASE("organic/C3H8O3 - glycerol/nk/Rheims.yml"),
-     .note =
-         "Measured from 589.3 nm on: below, d and F included, it is extrapolated. Abbe refractometer. " AIR_ASSUMED},
+     .note = "Measured from 589.3 nm upwards; extrapolated below, at d and F too. Abbe refractometer. " AIR_ASSUMED},
     {.name = "toluene",
      .title = "toluene",
      .law = {DISPERSION_POLYNOMIAL,

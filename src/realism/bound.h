@@ -30,7 +30,7 @@ reflectance_bound bound_reflectances(double angle, double aside, double n_from, 
 /* The errors of a path at the end of its last ray: distance across the ray, direction, and relative error of the
  * throughput. At each surface the errors so far are multiplied by the derivatives of the law there, and the surface's
  * errors are added; the error of a point is relative to the lengths of the vectors from which it is computed.
- * curvature: the largest of the surfaces. NaN if the tree is empty. */
+ * curvature: the largest of any surface. NaN if the tree is empty. */
 typedef struct path_bound {
     double across, heading, weight;
 } path_bound;

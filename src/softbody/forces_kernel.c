@@ -167,7 +167,8 @@ static void pack(vectors at, vectors velocity, double *state, size_t begin, size
     }
 }
 
-/* Hooke's force and damping (softbody.h) over the distance of the ends, for the springs at `at` of WIDE owners. */
+/* Hooke's force plus damping (softbody.h), divided by the distance between the ends, for the springs at index `at` of
+ * WIDE owners. */
 ALWAYS_INLINE wide pull_of(const spring_batches *t, size_t at, const double *state, moving owner_state)
 {
     const moving other = gather_state(state, t->row + at);

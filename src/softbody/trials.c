@@ -29,7 +29,7 @@ static const struct {
     [BOUNCE_HEIGHT] = {"bounce.height", "scene units",
                        "rebound height of a mass that falls by 1; theory restitution^2 (Newton)"},
     [BOUNCE_BODY] = {"bounce.body", "",
-                     "rebound height of the toy's centre over its height at rest, after a fall by its radius"},
+                     "rebound of the toy's centre above its height at rest, as a fraction of its fall of one radius"},
     [ENERGY_DRIFT] = {"energy.drift", "", "free toy without damping, 1 s: largest |E - E0| / E0; theory 0"},
     [ENERGY_END] = {"energy.end", "", "free toy without damping, after 1 s: E / E0 - 1; theory 0"},
     [ENERGY_RISE] = {"energy.rise", "",

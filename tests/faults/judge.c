@@ -267,7 +267,8 @@ static bool output_reports(const fault *f, const char *out)
         for (const char *at = out; (at = strstr(at, begins[i])); at++) {
             char value[WHY_MAX / 2];
             snprintf(value, sizeof value, "%.*s", 120, at);
-            if (f->class == FAULT_MEMORY ? strstr(value, "out of memory") != NULL : names_cause(f, value))
+            const bool memory = strstr(value, "out of memory") || strstr(value, strerror(ENOMEM));
+            if (f->class == FAULT_MEMORY ? memory : names_cause(f, value))
                 return true;
         }
     return strstr(out, "hwloc failed");

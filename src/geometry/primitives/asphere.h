@@ -14,7 +14,7 @@ typedef struct even_asphere {
     double even[3];            /* A4, A6, A8 */
 } even_asphere;
 
-/* The least w^2 within the rim of a side with coefficients, which keeps the slope finite. */
+/* The least w^2 allowed within the rim of a side with coefficients: it keeps the slope finite. */
 #define ASPHERE_ROOT2_LEAST 0x1p-6
 
 static inline bool asphere_has_terms(const even_asphere *e)

@@ -24,7 +24,7 @@ typedef struct surface_line {
     double rho2;    /* at the base */
     bool starts_on; /* the base is on the surface */
     double from;    /* t of the base */
-    double least;   /* a step within rounding */
+    double least;   /* steps up to this length are within rounding */
 } surface_line;
 
 static double above_surface(const surface_line *l, double t, double *slope)

@@ -31,8 +31,8 @@ ALWAYS_INLINE lens_side lens_side_of(const primitive *p, int k)
                        .concave = concave};
 }
 
-/* The interval of a line in the convex sheet of a conic, c > 0, relative to the point (x, z, u): as for a cone
- * (cone_kernel.c), with the roots of a t^2 + 2 b t + c = 0 as q / a and c / q. */
+/* The interval in which a line is inside the convex sheet of a conic of positive curvature; t is measured from the
+ * point (x, z, u). As for a cone (cone_kernel.c), the roots of a t^2 + 2 b t + c = 0 are q / a and c / q. */
 ALWAYS_INLINE quadric_roots conic_cross(const lens_side *e, double x, double z, double u, double dx, double dz,
                                         double du, int64_t starts_on)
 {
@@ -139,7 +139,8 @@ static inline int lens_flats(const primitive *p, flat_face flat[FLATS_MAX])
     return count;
 }
 
-/* The rim: once around, with the middle of the texture image in front. The sides: seen along the axis. */
+/* Texture coordinates. On the rim, the image goes once around, its middle in front; on the sides it is projected along
+ * the axis. */
 static inline surface_mapping lens_mapping(const primitive *p, int64_t face, vec3 q, double size)
 {
     const double r = p->radius, bottom = lens_height(p, 0, r * r), top = lens_height(p, 1, r * r);

@@ -239,7 +239,8 @@ static void start_round(const beam *b, const ray_axes *a, unit_pair s, emitted_r
     out->direction = vec3_add(vec3_scale(a->axis, 1.0 - versine), vec3_scale(radial, sqrt(versine * (2.0 - versine))));
 }
 
-/* Samples a plane: uniform in offset or angle, or Gaussian in every line across the axis. */
+/* Samples a ray of a planar beam (sheet or fan): uniform in offset or angle, or Gaussian on every line across the
+ * axis. */
 static void start_in_plane(const beam *b, const ray_axes *a, unit_pair s, emitted_ray *out)
 {
     double sine, cosine;

@@ -164,8 +164,8 @@ static double passing_of(tracer *t, int k, bool refracted, const rough_surface *
                : 0.0;
 }
 
-/* Both branches of record k at a facet; or, with the probability that other facets mask the light, one branch of light
- * of further facets. */
+/* Computes both branches of record k at its facet; or, with the probability that other facets mask the light, one
+ * branch for light that leaves after further facets. */
 static void meet_facet(tracer *t, int k, int depth, const rough_surface *r, photon_branch both[2])
 {
     const photon_frame *f = t->target.state;

@@ -14,7 +14,7 @@ typedef struct continuation {
                        intensity counts */
     uint64_t inside;
     bool refracted, matte;
-    bool specular_bounce; /* the path may hit lamps */
+    bool specular_bounce; /* a lamp that the next ray hits counts: no shadow ray sampled it */
 } continuation;
 
 /* Enqueues the continuation of ray k, unless it ends by Russian roulette or at the depth limit. */

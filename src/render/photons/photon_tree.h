@@ -6,8 +6,8 @@
 #include <math.h>
 
 #define PHOTON_PI 3.14159265358979323846
-/* The least cosine between the normals of neighbours, about 37 degrees: it connects photons on round surfaces, and
- * separates those across edges. */
+/* The least cosine of the angle between neighbours' normals (about 37 degrees), which connects photons on round
+ * surfaces and separates those across edges. */
 #define PHOTON_FACING 0.8
 /* The radius, in cells of samples, from which a disc is evaluated at points: along a line of light across the samples
  * the sum then varies by 96 J_3(q) / q^3, q = 2 pi radius, below 1e-3 (see photon_map.c). */

@@ -44,8 +44,8 @@ void footprints_end(tracer *t)
     t->footprints = NULL;
 }
 
-/* The vector to the image plane at distance 1 is d / depth, so that one sample changes d by depth times the plane's
- * vectors. */
+/* The vector to the image plane at distance 1 is d / depth (depth: d times the forward axis), so that a step of one
+ * sample changes d by depth times the plane's vectors. */
 void footprints_of_camera(tracer *t, ray_queue *q, int first, int count)
 {
     const plan *p = t->target.frame_plan;

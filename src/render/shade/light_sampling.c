@@ -140,7 +140,7 @@ void area_lights_aim_at_spheres(const tracer *t, lamp_samples *l)
     for (int k = 0; k < g->count; k++) {
         const int lamp = l->lamp[k] < 0 ? 0 : l->lamp[k];
         const light *one = &p->lights[lamp];
-        const bool sun = one->kind == LIGHT_SUN; /* sampled as a sphere of radius sin a at distance 1 */
+        const bool sun = one->kind == LIGHT_SUN; /* a sphere of radius sin(half its angular diameter) at distance 1 */
         const vec3 to = sun ? vec3_scale(p->cones[lamp].axis, -1.0)
                             : vec3_sub(one->position, vec3_make(g->points.px[k], g->points.py[k], g->points.pz[k]));
         l->spheres.x[k] = to.x, l->spheres.y[k] = to.y, l->spheres.z[k] = to.z;

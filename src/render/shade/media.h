@@ -19,7 +19,7 @@
 #include "render/shade/polarisation.h"
 #include "render/tracer/tracer.h"
 
-/* Points along the batch's rays, for one lamp. */
+/* Sample points of airlight, one on each ray of the batch, for one lamp. */
 typedef struct airlight {
     double at[ROW], density[ROW]; /* distance, infinite if there is none; density per length */
     int region[ROW];      /* priority index of the medium at the point, once the ray's segments reach it; 0 before */

@@ -20,7 +20,7 @@ typedef struct row_spread {
 /* The value of each row; NaN if it is unknown, if a file lacks the column, and for a divisor of 0. */
 void row_quantity_values(const row_ref *const *rows, size_t count, row_quantity quantity, double *values);
 
-/* Only the known values; returns their number. */
+/* Writes only the known values, without gaps, and returns their number. */
 size_t row_quantity_known(const row_ref *const *rows, size_t count, row_quantity quantity, double *values);
 
 /* The values that the quantity can have (measure/levels.h): a fraction, 0 or more, or more than 0. A column that this

@@ -40,7 +40,7 @@ static void visit_file(lesson_visit *v, const char *path, const char *root, bool
         lesson_destroy(l);
 }
 
-/* Skips a file that was removed after the list was made. */
+/* Visits the folder's lessons; a file that was removed after the list was made is skipped. */
 static status visit_folder(lesson_visit *v)
 {
     const folder *files = v->c->l->files;

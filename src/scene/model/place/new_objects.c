@@ -305,7 +305,7 @@ status new_model(scene *s, const scene *loaded, const char *path, const char *wa
     char *row = code == STATUS_OK ? text_format("%s.file", mesh_name) : NULL;
     THEN(code, row ? scene_set(s, row, path, why) : out_of_memory(why));
     free(row);
-    /* Four digits, so that the model is neither visibly below the ground nor above it. */
+    /* Five significant digits, so that rounding moves the model neither visibly below the ground nor above it. */
     const double scale = placement_round(where.size / longest, 0.01 * where.size / longest);
     put_vector(s, &code, why, name, "scale", vec3_make(scale, scale, scale));
     put_vector(s, &code, why, name, "position",

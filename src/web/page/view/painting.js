@@ -43,7 +43,7 @@ function createImageSource(lab) {
 
 /* --- drawing --- */
 
-const REST_MS = 160; /* between an image of a drag and the exact one */
+const REST_MS = 160; /* from the last image of a drag to the exact image */
 
 const newer = (a, b) => Boolean(a) && (!b || a.serial > b.serial);
 
