@@ -8,7 +8,6 @@
 #include <cmocka.h>
 
 #include "base/random.h"
-#include "whole.h"
 #include "render/photons/photon_map.h"
 #include <stdlib.h>
 #include <string.h>
@@ -370,7 +369,7 @@ static void groups_look_like_their_photons(void **state)
     (void)state;
     static lattice whole, grouped;
     uint32_t draws = 0;
-    const int trials = trials_of(60);
+    const int trials = 60;
     for (int trial = 0; trial < trials; trial++) {
         photon_list all = {0};
         const int clusters = 1 + (int)draw(&draws, 0.0, 4.0);
