@@ -89,6 +89,15 @@ static bool has_header(const csv *there, const char *header)
     return there->whole >= size && memcmp(there->raw, header, size) == 0;
 }
 
+/* Whether the file is a header that was not written completely: its end is missing, or sectors of it read as zeros. */
+static bool is_torn_header(const csv *there, const char *header)
+{
+    bool torn = there->whole == 0 && there->size <= strlen(header);
+    for (size_t i = 0; torn && i < there->size; i++)
+        torn = there->raw[i] == header[i] || there->raw[i] == 0;
+    return torn;
+}
+
 static int compare_frames(const void *a, const void *b)
 {
     const int64_t x = ((const existing_row *)a)->frame, y = ((const existing_row *)b)->frame;
@@ -101,8 +110,8 @@ static status read_rows(animate_rows *rows, const char *path, const csv *there, 
 {
     char hash[32];
     snprintf(hash, sizeof hash, "%016" PRIx64, definition);
-    if (there->whole == 0 && there->size < strlen(header) && memcmp(there->raw, header, there->size) == 0)
-        return STATUS_OK; /* the program was killed while it wrote the header */
+    if (is_torn_header(there, header))
+        return STATUS_OK;
     if (!has_header(there, header))
         return refuse(path, "has other columns than the table of an animation", why);
     rows->existing = calloc(there->row_count + 1, sizeof *rows->existing);
