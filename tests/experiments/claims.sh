@@ -357,10 +357,7 @@ for line in sys.stdin:
         print("malformed:", wrong)
 END
 predicates() { python3 -B "$work/predicates.py" "$work/small/tables"; }
-while IFS='|' read -r text wanted have; do
-    same "$text" "$have" "$wanted"
-done < <(
-    tee "$work/predicates" <<'END' | cut -d '|' -f 1 | predicates 2>&1 | paste -d '|' "$work/predicates" -
+cat >"$work/predicates" <<'END'
 t[b=1].cpu_s < 1.2|reproduced 1.00 [0.90, 1.10]
 t[b=1].cpu_s > 1.2|not reproduced 1.00 [0.90, 1.10]
 t[b=1].cpu_s > 1|underpowered 1.00 [0.90, 1.10]
@@ -393,7 +390,9 @@ u[].rays = 1|underpowered -
 t[b=1].none = 1|underpowered -
 t[none=1].rays = 1|underpowered -
 END
-)
+while IFS='|' read -r text wanted have; do
+    same "$text" "$have" "$wanted"
+done < <(cut -d '|' -f 1 "$work/predicates" | predicates 2>&1 | paste -d '|' "$work/predicates" -)
 for text in 't[b=1].rays' 't[].rays = 1' 't[b=1].rays = ' 't[b=1].rays = 1 or 2' 't[b~1].rays = 1' 'x = 1'; do
     have=$(predicates <<<"$text")
     [[ $have == malformed:* ]]
