@@ -32,8 +32,8 @@ typedef struct memory_room {
 memory_room memory_budget_snapshot(void);
 void memory_budget_assume(memory_room room);
 
-/* Free bytes by the files of /proc and /sys below root ("" for the real ones) and by address_space, the bytes left in
- * the address space; UINT64_MAX without a limit. */
+/* The free bytes according to the files of /proc and /sys below root ("" for the real ones), at most address_space, the
+ * bytes left in the address space; UINT64_MAX without a limit. */
 uint64_t memory_budget_free(const char *root, uint64_t address_space);
 
 /* STATUS_BAD_INPUT if bytes, an estimate, are more than what is left: "WHAT needs about 12.3 GiB of memory, more than

@@ -11,6 +11,7 @@
 #include "base/text.h"
 #include "scene/model/params.h"
 #include "scene/model/scene.h"
+#include "scene/model/work.h"
 #include <stdlib.h>
 #include <string.h>
 #include <sys/resource.h>
@@ -143,6 +144,34 @@ static void read_bad(const char *link)
     assert_string_not_equal(why.what, "");
 }
 
+/* The limits count triangles before they are made: as many as each generator then makes, or at most more. */
+static void triangles_are_planned_for_each_generator(void **state)
+{
+    (void)state;
+    static const char *const meshes[] = {
+        "generate: box",
+        "generate: icosphere, level: 3",
+        "generate: torus, around: 24, tube: 9",
+        "generate: terrain, around: 12, tube: 10",
+        "generate: terrain, around: 12, tube: 10, depth: 0.5",
+        "generate: lathe, around: 16, profile: [0.5, 0, 0.6, 1, 0.4, 2]",
+        "generate: slime, level: 2, time_s: 0",
+        "generate: slime, level: 4, time_s: 0",
+    };
+    for (size_t i = 0; i < sizeof meshes / sizeof *meshes; i++) {
+        char text[200];
+        scene *s;
+        diagnostic why = {.what = ""};
+        snprintf(text, sizeof text, "meshes: {m: {%s}}\nsolids: {a: {shape: mesh, mesh: m}}\n", meshes[i]);
+        if (scene_read_text("s.yaml", text, strlen(text), &s, &why) != STATUS_OK || scene_load(s, &why) != STATUS_OK)
+            fail_msg("%s: %s", meshes[i], why.what);
+        const double planned = scene_planned_triangles(s), made = (double)s->meshes[0].data->triangle_count;
+        if (!(planned >= made && planned <= 1.25 * made))
+            fail_msg("%s: %g triangles planned, %g made", meshes[i], planned, made);
+        scene_destroy(s);
+    }
+}
+
 static void damaged_links_are_refused(void **state)
 {
     (void)state;
@@ -247,6 +276,7 @@ int main(void)
         cmocka_unit_test(all_forms_give_the_same_scene),
         cmocka_unit_test(settings_of_the_machine_stay_at_home),
         cmocka_unit_test(strangers_name_no_files_and_are_bounded),
+        cmocka_unit_test(triangles_are_planned_for_each_generator),
         cmocka_unit_test(damaged_links_are_refused),
         cmocka_unit_test(a_bomb_is_refused),
         cmocka_unit_test(a_png_without_a_scene_says_so),

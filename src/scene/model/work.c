@@ -10,11 +10,12 @@ static double triangles_of(const mesh_entry *m)
     case MESH_SPARSE:
     case MESH_DENSE:
     case MESH_SPHERE: return (double)m->count;
-    case MESH_ICOSPHERE: return 20.0 * pow(4.0, (double)m->level);
+    case MESH_ICOSPHERE:
+    case MESH_SLIME: return 20.0 * pow(4.0, (double)m->level);
     case MESH_TORUS: return 2.0 * (double)m->around * (double)m->tube;
-    case MESH_LATHE: return 2.0 * (double)m->around * (double)m->profile.count;
-    case MESH_TERRAIN: return 2.0 * (double)m->around * (double)m->tube + 4.0 * (double)(m->around + m->tube);
-    case MESH_SLIME: return 20.0 * pow(4.0, (double)m->slime.level);
+    case MESH_LATHE: return (double)m->around * ((double)m->profile.count - 2.0); /* two numbers per point */
+    case MESH_TERRAIN: /* the heights; with a bottom, walls of 4 and a bottom of 2 per cell of the edge */
+        return 2.0 * (double)m->around * (double)m->tube + (m->depth > 0.0 ? 6.0 * (double)(m->around + m->tube) : 0.0);
     case MESH_BOX:
     case MESH_FILE:
     case MESH_ARRAYS: break;
