@@ -2,7 +2,7 @@
 #   awk -v seed=1 -v solids=64 [-v lights=1] -f experiments/random_scene.awk >scene.yaml
 # The camera looks along +z at a cube of edge 2. The radius falls with the square root of the number of spheres, so that
 # their total cross-section stays the same: a camera ray meets as many of 10^5 as of 10. Seed 1: equal clay spheres that
-# reflect 30 % of the light. Other seeds: random shares of matt, reflecting and glass spheres, and a random
+# reflect 30 % of the light. Other seeds: random fractions of matt, reflecting and glass spheres, and a random
 # cross-section, all drawn before the spheres, so that a seed means the same for every number of them.
 
 # Uniform in 0..1: the minimal standard generator, Park and Miller 1988.

@@ -182,7 +182,7 @@ function method(side, title, words, name, where,    flip) {
 function shading(where, light) {
     return value("shading", "soup.around=512 " where " " light, "cpu_s_median")
 }
-function statements(    unlit, gouraud, phong, where, row, share, least, most, name) {
+function statements(    unlit, gouraud, phong, where, row, fraction, least, most, name) {
     where = "render.integrator=raycast render.shadows=off"
     no_time = "no times in a quick run"
     unlit = shading(where, "model.shading=flat model.diffuse=0")
@@ -197,9 +197,9 @@ function statements(    unlit, gouraud, phong, where, row, share, least, most, n
     for (row = 1; row <= load("triangles"); row++)
         if (T["triangles", row, "model.visible"] == "on" && T["triangles", row, "render.accel"] ~ /octant|bvh/ &&
             known(T["triangles", row, "visibility_s_sum/wall_s_median"]) != "") {
-            share = T["triangles", row, "visibility_s_sum/wall_s_median"]
-            least = share < least ? share : least
-            most = share > most ? share : most
+            fraction = T["triangles", row, "visibility_s_sum/wall_s_median"]
+            least = fraction < least ? fraction : least
+            most = fraction > most ? fraction : most
         }
     statement("finding intersections takes 70 to 90 % of the time",
         quick ? no_time : least == 2 ? "-" : sprintf("%.0f to %.0f %% (test 1)", 100 * least, 100 * most))

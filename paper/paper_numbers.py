@@ -58,7 +58,7 @@ class Group:
 
     def __init__(self):
         self.values = self.none = self.passed = 0
-        self.worst = self.tolerance = self.share = 0.0
+        self.worst = self.tolerance = self.fraction = 0.0
 
     def count(self, row):
         if row["passes"] == "NA":
@@ -71,7 +71,7 @@ class Group:
         error, tolerance = float(row["error"]), float(row["tolerance"]) if known(row, "tolerance") else 0
         self.worst, self.tolerance = max(self.worst, error), max(self.tolerance, tolerance)
         if tolerance > 0:
-            self.share = max(self.share, error / tolerance)
+            self.fraction = max(self.fraction, error / tolerance)
 
 
 def metrics(numbers, study, rows):
@@ -92,18 +92,18 @@ def metrics(numbers, study, rows):
         family = name.split(".")[0]
         for group in dict.fromkeys(("metrics", name, family)):
             groups[group].count(row)
-        share = 0.0
+        fraction = 0.0
         if known(row, "error", "tolerance") and float(row["tolerance"]) > 0:
-            share = float(row["error"]) / float(row["tolerance"])
-        cells[key] = max(cells[key], share)
+            fraction = float(row["error"]) / float(row["tolerance"])
+        cells[key] = max(cells[key], fraction)
         if family in ("prism", "rainbow") and measured != "NA":
             angles[row[columns[2]], name[len(family) + 1 :]] = float(measured)
         if name.endswith(".own"):
             wavelengths.add(row[columns[3]])
         if study == "polarisation" and measured != "NA":
             through[name, row[columns[2]], row[columns[3]]] = float(measured)
-    for key, share in cells.items():
-        numbers.put(f"{key}/share", scientific(share))
+    for key, fraction in cells.items():
+        numbers.put(f"{key}/fraction", scientific(fraction))
     for name, group in groups.items():
         if not group.values:
             continue
@@ -112,7 +112,7 @@ def metrics(numbers, study, rows):
         numbers.put(f"{prefix}/passed", group.passed)
         numbers.put(f"{prefix}/failed", group.values - group.passed)
         numbers.put(f"{prefix}/none", group.none)
-        for name_of in ("worst", "tolerance", "share"):
+        for name_of in ("worst", "tolerance", "fraction"):
             numbers.put(f"{prefix}/{name_of}", scientific(getattr(group, name_of)))
     if wavelengths:
         numbers.put(f"{study}/wavelengths", len(wavelengths))
@@ -135,16 +135,17 @@ def dispersion(numbers, study, angles):
 
 
 def polarisation(numbers, through):
-    """The error of the mean of s and p, by angle; and its largest value, as a difference of shares, with the angle."""
+    """The error of the mean of s and p, by angle; and its largest value, as a difference of fractions, with its
+    angle."""
     most = {}
-    for (name, light, angle), share in through.items():
+    for (name, light, angle), fraction in through.items():
         mean = through.get((name, "off", angle))
         if light != "on" or mean is None:
             continue
         if mean:
-            numbers.put(f"polarisation/{angle}/{name}/more", places((share / mean - 1) * 100, 1))
-        if share - mean > most.get(name, (0, ""))[0]:
-            most[name] = (share - mean, angle)
+            numbers.put(f"polarisation/{angle}/{name}/more", places((fraction / mean - 1) * 100, 1))
+        if fraction - mean > most.get(name, (0, ""))[0]:
+            most[name] = (fraction - mean, angle)
     for name, (off, angle) in most.items():
         numbers.put(f"polarisation/{name}/most", places(off, 3))
         numbers.put(f"polarisation/{name}/most-at", axis(angle))
@@ -244,7 +245,7 @@ def bits(numbers, rows):
         ):
             numbers.put(f"{key}/{name}", row[column])
         numbers.put(f"{key}/difference", scientific(float(row["max_difference"])))
-        numbers.put(f"{key}/share", f"{100 * float(row['differing_fraction']):.1f}")
+        numbers.put(f"{key}/fraction", f"{100 * float(row['differing_fraction']):.1f}")
 
 
 def films(numbers, rows):
@@ -343,9 +344,9 @@ def slab(numbers, results):
 def ball(numbers, results):
     """Light through a ball of slime of radius 1, 6 away, in a field of view of 0.493 degrees: the difference of the
     path length of green light inside, absorbed by 1/m, from the ball's chord (rms over a row of pixels), and the
-    light left by a surface that transmits a share, relative to its square."""
+    light left by a surface that transmits a fraction, relative to its square."""
     for row in rows_of(results / "tables/slime-light.tsv"):
-        level, share = row["toy.level"], row["jelly.transparency"]
+        level, fraction = row["toy.level"], row["jelly.transparency"]
         pixels, height = middle_row(results / f"slime-light/images/{int(row['cell']):04d}.pfm")
         if not pixels:
             continue
@@ -355,10 +356,10 @@ def ball(numbers, results):
             b = 6 * slope / math.sqrt(1 + slope**2)
             if b * b >= 1:
                 continue
-            chord, kept = 2 * math.sqrt(1 - b * b), green / float(share) ** 2
+            chord, kept = 2 * math.sqrt(1 - b * b), green / float(fraction) ** 2
             off.append(-math.log(kept) - chord)
             worst = max(worst, abs(kept / math.exp(-chord) - 1))
-        key = f"slime-light/{level}/{share}"
+        key = f"slime-light/{level}/{fraction}"
         numbers.put(f"{key}/off", scientific(math.sqrt(sum(x * x for x in off) / len(off))))
         numbers.put(f"{key}/worst", scientific(worst))
         numbers.put(f"{key}/pixels", len(off))

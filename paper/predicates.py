@@ -88,7 +88,7 @@ class Weight:
 
 def is_disturbed(row):
     """Whether other processes used more than 5 % of the machine in most rows of a cell. The system counts in steps of
-    10 ms: a share that one step explains is none."""
+    10 ms: a fraction that one step explains is none."""
     wall_s = float(row["wall_s_median"]) if known(row, "wall_s_median") else 0
     return known(row, "others_fraction") and wall_s > 0 and float(row["others_fraction"]) > 0.05 + 0.01 / wall_s
 

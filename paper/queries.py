@@ -53,8 +53,8 @@ def chords(normals):
 
 
 def ask(lines, total):
-    """The share of rays that hit something, and the boxes of single triangles that a ray meets up to its first hit, for
-    a soup of that many triangles, each within a cube of edge e, a quarter of the spacing 2 / cbrt(total): boxes and
+    """The fraction of rays that hit something, and the boxes of single triangles that a ray meets up to its first hit,
+    for a soup of that many triangles, each within a cube of edge e, a quarter of the spacing 2 / cbrt(total): boxes and
     hits are Poisson in the length of the path, if the ends of the cube are left aside."""
     e, density = 0.5 / total ** (1 / 3), total / 8
     passed = boxes = 0.0
@@ -71,7 +71,7 @@ def grouped(count):
 
 
 def soup_numbers(put, points, hits):
-    """points: triangles and triangles tested of a ray, of the soup in a BVH; hits: the share of rays that hit it."""
+    """points: triangles and triangles tested of a ray, of the soup in a BVH; hits: the fraction of rays that hit it."""
     normals = list(triangles_of_lattice())
     lines = list(chords(normals))
     put("soup/square", f"{shadow(normals, 0, 0, 1):.4f}")

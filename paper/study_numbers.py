@@ -1,6 +1,6 @@
 """Every value of a study's summary as a number, STUDY/AXIS VALUES/COLUMN, formatted by its kind: times in ms, rays in
-millions, shares in percent; and numbers derived from them: ratios and differences of measured values have an interval,
-or with fewer than six repetitions a range.
+millions, fractions in percent; and numbers derived from them: ratios and differences of measured values have an
+interval, or with fewer than six repetitions a range.
 """
 
 import math
@@ -274,19 +274,19 @@ def hidden(numbers, cells):
 
 def slime_frame(numbers, cells):
     """With one thread, its busy time is the frame's."""
-    shares, visible = [], {}
+    fractions, visible = [], {}
     for key, row in cells.by_key.items():
-        share = scaled_or_none(cells.value(row, "visibility_s_sum/wall_s"), 100)
-        if share is None:
+        fraction = scaled_or_none(cells.value(row, "visibility_s_sum/wall_s"), 100)
+        if fraction is None:
             continue
-        put_value(numbers, f"{key}/visible-share", share)
+        put_value(numbers, f"{key}/visible-fraction", fraction)
         visible[key] = scaled_or_none(cells.value(row, "visibility_s_sum/rays_total"), 1e9)
         put_value(numbers, f"{key}/visible-ray", visible[key])
         if row[cells.axes[2]] == "bvh" and float(row[cells.axes[0]]) == 0:
-            shares.append(share)
-    if shares:
-        put_value(numbers, "slime-frame/ball/bvh/least-share", min(shares, key=lambda share: share.mid))
-        put_value(numbers, "slime-frame/ball/bvh/most-share", max(shares, key=lambda share: share.mid))
+            fractions.append(fraction)
+    if fractions:
+        put_value(numbers, "slime-frame/ball/bvh/least-fraction", min(fractions, key=lambda fraction: fraction.mid))
+        put_value(numbers, "slime-frame/ball/bvh/most-fraction", max(fractions, key=lambda fraction: fraction.mid))
     for level in range(8):
         ball, prefix = f"slime-frame/0/{level}", f"slime-frame/{level}"
         bvh = visible.get(f"{ball}/bvh")
@@ -324,18 +324,18 @@ def shading(numbers, cells):
             continue
         frames = f"shading/{count}/{'whitted' if frame == 'shadows' else frame}"
         costs[key] = combine("-", cells.of(f"{frames}/{shade}", "cpu_s"), cells.of(f"{frames}/unlit", "cpu_s"))
-        share = scaled_or_none(combine("/", costs[key], cells.value(row, "cpu_s")), 100)
+        fraction = scaled_or_none(combine("/", costs[key], cells.value(row, "cpu_s")), 100)
         put_cost(numbers, f"{key}/cost", scaled_or_none(costs[key], 1e3))
-        put_cost(numbers, f"{key}/share", share)
-        if shade == "smooth" and share:
-            phong.append(share)
+        put_cost(numbers, f"{key}/fraction", fraction)
+        if shade == "smooth" and fraction:
+            phong.append(fraction)
         # Corners of the mesh, each of which Gouraud's original method would light once.
         if (shade, frame) == ("gouraud", "zbuffer"):
             points = real(row, "first_hits.model") / (float(row[cells.axes[0]]) * float(row[cells.axes[1]]))
             numbers.put(f"shading/{count}/points-corner", f"{points:.0f}" if points > 10 else significant(points))
     if phong:
-        put_cost(numbers, "shading/least-phong", min(phong, key=lambda share: share.mid))
-        put_cost(numbers, "shading/most-phong", max(phong, key=lambda share: share.mid))
+        put_cost(numbers, "shading/least-phong", min(phong, key=lambda fraction: fraction.mid))
+        put_cost(numbers, "shading/most-phong", max(phong, key=lambda fraction: fraction.mid))
     for key in costs:
         if key.endswith("/gouraud"):
             prefix = key.removesuffix("/gouraud")

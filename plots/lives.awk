@@ -1,7 +1,7 @@
 # The working time of each thread of one frame, from a study's workers.csv: the first measured frame of the cell.
 #   awk -v schedule=dynamic -v threads=64 -f lives.awk workers.csv
-# Prints, tab separated: worker, its first moment and its last one in ms since the frame's start, and the share of the
-# time between in which it had a processing unit. Workers without a tile are left out.
+# Prints, tab separated: worker, its first moment and its last one in ms since the frame's start, and the fraction of
+# the time between in which it had a processing unit. Workers without a tile are left out.
 BEGIN { FS = ","; OFS = "\t" }
 { gsub(/[\r"]/, "") }
 FNR == 1 {

@@ -20,7 +20,7 @@ first(file, where, column) = number(text(file, where, column))
 # and that few repetitions give no intervals.
 others(study) = number(system(select(table(study), "", "others_fraction")[3:*]." | awk '{ sum += $1 } END { if (NR) print sum/NR }'"))
 fewest(study) = number(system(select(table(study), "", "n")[3:*]." | sort -g | awk '$1 > 0 { print $1; exit }'"))
-noisy(share) = share > 0.05 ? sprintf("other processes used %.0f %% of the machine during this run", share*100) : ""
+noisy(fraction) = fraction > 0.05 ? sprintf("other processes used %.0f %% of the machine during this run", fraction*100) : ""
 counted(n) = n < 6 ? sprintf("%d repetition%s a cell: no intervals", n, n > 1 ? "s" : "") : ""
 joined(a, b) = a.(a ne "" && b ne "" ? "; " : "").b
 remarks(study) = joined(noisy(others(study)), counted(fewest(study)))

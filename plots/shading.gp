@@ -1,4 +1,4 @@
-# A torus with flat, Gouraud and Phong shading, of few polygons; the cost of each, and its share of the frame,
+# A torus with flat, Gouraud and Phong shading, of few polygons; the cost of each, and its fraction of the frame,
 # compared with the polygons report.
 # needs: tables/shading.tsv cpu_s_median
 # needs: shading/images/*.png
@@ -20,7 +20,7 @@ plain(m) = m == 4 ? 3 : m
 cost(poly, m, s) = lit(poly, plain(m), s, "cpu_s_median") - unlit(poly, plain(m), "cpu_s_median")
 least(poly, m, s) = lit(poly, plain(m), s, "cpu_s_low") - unlit(poly, plain(m), "cpu_s_high")
 most(poly, m, s) = lit(poly, plain(m), s, "cpu_s_high") - unlit(poly, plain(m), "cpu_s_low")
-share(poly, m, s) = cost(poly, m, s)/lit(poly, m, s, "cpu_s_median")
+fraction(poly, m, s) = cost(poly, m, s)/lit(poly, m, s, "cpu_s_median")
 half = 0.13
 place(group, s) = group + 2*half*(s - 2)
 # The groups of bars: the methods with few polygons, then with many.
@@ -84,13 +84,13 @@ plot for [s=1:3] [1:6] '+' using (place($1, s)):(cost(poly_of($1, 3), method_of(
 
 set lmargin at screen 0.56
 set rmargin at screen 0.99
-set title "Shading as a share of the frame"
-set ylabel "share of the CPU time / %"
+set title "Shading as a fraction of the frame"
+set ylabel "fraction of the CPU time / %"
 set xrange [0.5:8.5]
 set arrow 11 from 4.5, graph 0 to 4.5, graph 1 nohead lc rgb pale back
 set xtics ("depth\nbuffer" 1, "rays" 2, "Whitted" 3, "with\nshadows" 4, "depth\nbuffer" 5, "rays" 6, "Whitted" 7, "with\nshadows" 8) scale 0 font ",9"
 set samples 8
 set key top right maxrows 1 samplen 1.5
-plot for [s=1:3] [1:8] '+' using (place($1, s)):(share(poly_of($1, 4), method_of($1, 4), s)*100) with boxes lt s notitle, \
+plot for [s=1:3] [1:8] '+' using (place($1, s)):(fraction(poly_of($1, 4), method_of($1, 4), s)*100) with boxes lt s notitle, \
      3 lt 7 title "polygons report: Phong takes at most 3 %"
 unset multiplot

@@ -1,5 +1,6 @@
 # The largest deviation of the measured transmittance of a slab from its closed form (plots/absorption.gp).
-#   awk -f slab.awk -v R=0.02 -v absorb='200 60 10' FILE        lines: thickness in mm, then a share for each coefficient in 1/m
+#   awk -f slab.awk -v R=0.02 -v absorb='200 60 10' FILE        lines: thickness in mm, then a fraction for each
+#   coefficient in 1/m
 BEGIN { channels = split(absorb, a, " ") }
 {
     for (i = 1; i <= channels; i++) {

@@ -1,4 +1,4 @@
-# Time of visibility queries in a frame of the slime, and its share of the frame, by level and hierarchy, for a ball
+# Time of visibility queries in a frame of the slime, and its fraction of the frame, by level and hierarchy, for a ball
 # and a stretched slime.
 # needs: tables/slime-frame.tsv visibility_s_sum_median
 width = 1000; height = 430
@@ -29,7 +29,7 @@ unset label 100
 unset logscale y
 set format y "%h"
 set title "Share of the frame"
-set ylabel "share of the wall time / %"
+set ylabel "fraction of the wall time / %"
 set yrange [0:100]
 set key off
 plot for [i=1:4] frames(i, 1) using 1:($2/$3*100) with linespoints lt i, \

@@ -6,9 +6,9 @@ width = 1000; height = 430
 load "plots/style.gp"
 
 rows = table("slime-light")
-cell(level, share) = first(rows, sprintf("toy.level=%d jelly.transparency=%g", level, share), "cell")
+cell(level, fraction) = first(rows, sprintf("toy.level=%d jelly.transparency=%g", level, fraction), "cell")
 float_image(cell) = cell >= 0 ? sprintf("%s/slime-light/images/%04d.pfm", results, int(cell)) : "/dev/null"
-chords(level, share) = sprintf("< image='%s'; [ ! -s $image ] || plots/chord.sh $image 6 0.493", float_image(cell(level, share)))
+chords(level, fraction) = sprintf("< image='%s'; [ ! -s $image ] || plots/chord.sh $image 6 0.493", float_image(cell(level, fraction)))
 # Rms over the row of pixels: length from the green channel, absorbed by 1 / m, minus the chord.
 off(level) = number(system(chords(level, 1)[3:*]." | awk '{ e = -log($3) - $1; s += e*e } END { if (NR) print sqrt(s/NR) }'"))
 set multiplot layout 1,2 margins 0.08,0.985,0.135,0.93 spacing 0.1

@@ -1,5 +1,5 @@
 # When each thread of a frame works, from two threads to a thousand, for fixed tiles and for tiles on demand, and for
-# what share of that time it has a processing unit. One frame each, drawn from the rows of the threads.
+# what fraction of that time it has a processing unit. One frame each, drawn from the rows of the threads.
 # needs: timeline/workers.csv warmup=0 render.schedule render.threads run process repetition worker tiles running_s? start_s wall_s
 # needs: tables/timeline.tsv wall_s_median
 width = 318; height = 330
@@ -26,7 +26,7 @@ set label 100 remarks("timeline") at screen 0.01,0.012 left font ",6.5" textcolo
 set palette defined (0 "#440154", 1 "#3b528b", 2 "#21918c", 3 "#5ec962")
 set cbrange [0:1]
 set cbtics ("0" 0, "1" 1) scale 0 font ",7" offset -0.8,0
-set cblabel "share of it with a processing unit" offset -1,0 font ",7"
+set cblabel "fraction of it with a processing unit" offset -1,0 font ",7"
 unset key
 unset grid
 set border 1

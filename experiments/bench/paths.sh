@@ -80,8 +80,8 @@ statistics() { # statistics FILMS: of FILMS1.pfm and so on, with their times and
           total += sum / NF
           variance += (squares - sum * sum / NF) / (NF - 1) }
         END { error = sqrt(variance / NR)
-              share = noise > 0 ? sprintf("%.3f", sqrt(noise) / error) : "NA"
-              printf "%.5g %.4g %s %.5f\n", error, time, share, total / NR }'
+              fraction = noise > 0 ? sprintf("%.3f", sqrt(noise) / error) : "NA"
+              printf "%.5g %.4g %s %.5f\n", error, time, fraction, total / NR }'
 }
 
 curve() { # curve SCENE LABEL ASSIGNMENT... - a line per number of paths

@@ -49,10 +49,10 @@ static void show(void *context, const cuvette_tile *tile)
     tiles[tile->coarse > 1]++;
 }
 
-static bool report(void *context, double share)
+static bool report(void *context, double fraction)
 {
     (void)context;
-    fprintf(stderr, "%3.0f%%\n", 100.0 * share);
+    fprintf(stderr, "%3.0f%%\n", 100.0 * fraction);
     return true; /* false would cancel the render */
 }
 

@@ -138,11 +138,11 @@ class Trial:
     def play(self, disk, events):
         promise = check.Promise(disk)
         promise.rows = set()
-        share = self.options.states // sum(fields[0] in ("sync", "done") for fields in events) + 1
+        fraction = self.options.states // sum(fields[0] in ("sync", "done") for fields in events) + 1
         for fields in events:
             promise.before(disk, fields)
             if fields[0] in ("sync", "done"):
-                self.cut(disk, promise, share)
+                self.cut(disk, promise, fraction)
             if fields[0] == "done":
                 promise.program_ended(disk)
                 self.acknowledge_rows(disk, promise, None)
@@ -151,7 +151,7 @@ class Trial:
                 promise.after(disk, fields)
                 if fields[0] == "sync":
                     self.acknowledge_rows(disk, promise, disk.by_number.get(int(fields[1])))
-        self.cut(disk, promise, share)
+        self.cut(disk, promise, fraction)
 
     def cut(self, disk, promise, most):
         """A power cut now: judges as many trees as asked that have not been met before."""

@@ -30,17 +30,17 @@ def test_advance_equals_a_scene_at_that_time(scene):
 
 
 def test_an_advance_is_stopped_and_continues(scene):
-    motion, shares = scene.motion(), []
+    motion, fractions = scene.motion(), []
     before = scene.render().hash
 
-    def stop(share):
-        shares.append(share)
-        return len(shares) < 2
+    def stop(fraction):
+        fractions.append(fraction)
+        return len(fractions) < 2
 
     with pytest.raises(cuvette.Cancelled):
         motion.advance(3, progress=stop)
     reached = motion.time_s
-    assert 0 < reached < 3 and len(shares) == 2 and scene.render().hash == before
+    assert 0 < reached < 3 and len(fractions) == 2 and scene.render().hash == before
     motion.advance(reached + 0.05)
     other = cuvette.read(SLIME).set(width=40, height=30)
     other.motion().advance(reached + 0.05)
@@ -89,7 +89,7 @@ def test_stopped_slimes_leave_no_memory(scene):
     def stops(count: int) -> None:
         for _ in range(count):
             try:
-                scene.load(progress=lambda share: False)
+                scene.load(progress=lambda fraction: False)
             except cuvette.Cancelled:
                 continue
             raise AssertionError("not stopped")

@@ -133,21 +133,21 @@ def test_parameters_and_display(rod):
 
 
 def test_progress(rod, capsys):
-    shares = []
-    rod.render(progress=shares.append)
-    assert shares[0] == 0 and shares[-1] == 1 and shares == sorted(shares)
+    fractions = []
+    rod.render(progress=fractions.append)
+    assert fractions[0] == 0 and fractions[-1] == 1 and fractions == sorted(fractions)
     rod.render()
     assert capsys.readouterr().err == ""  # no terminal: nothing is shown
     rod.render(progress=True)
     assert "render [" in capsys.readouterr().err
     with pytest.raises(cuvette.Cancelled) as caught:
-        rod.render(progress=lambda share: False)
+        rod.render(progress=lambda fraction: False)
     assert caught.value.image is None
     with pytest.raises(cuvette.Cancelled) as caught:
-        rod.render(progress=lambda share: share == 0, width=1600, height=1200, samples=16)
+        rod.render(progress=lambda fraction: fraction == 0, width=1600, height=1200, samples=16)
     assert 0 < caught.value.image.counts.camera < 1600 * 1200 * 16
     with pytest.raises(ZeroDivisionError):
-        rod.render(progress=lambda share: 1 / 0)
+        rod.render(progress=lambda fraction: 1 / 0)
     assert rod.render().hash == rod.render(progress=False).hash
 
 
@@ -243,7 +243,7 @@ def test_a_pool_of_processes(rod, method):
 def test_a_scene_in_use_cannot_be_changed(rod):
     errors = []
 
-    def change(share: float) -> None:
+    def change(fraction: float) -> None:
         with pytest.raises(cuvette.BusyError) as caught:
             rod["render.depth"] = 2
         errors.append(caught.value.remedy)

@@ -33,9 +33,9 @@ def study(tmp_path):
 
 def test_run_to_rows(study, tmp_path, program):
     results = tmp_path / "results"
-    shares = []
-    study.run(results, progress=shares.append)
-    assert shares == sorted(shares) and all(0 <= s <= 1 for s in shares)
+    fractions = []
+    study.run(results, progress=fractions.append)
+    assert fractions == sorted(fractions) and all(0 <= s <= 1 for s in fractions)
     state = study.state(results)
     assert (state["cells"], state["cells_done"], state["rows"], state["fault"]) == (3, 3, 18, "")
     rows = study.rows(results)

@@ -17,5 +17,5 @@ typedef struct cost_map {
 status cost_map_read(const char *path, cost_map *m, diagnostic *why);
 void cost_map_release(cost_map *m);
 
-/* Mean nanoseconds of a pixel in a rectangle of the frame; sides are shares of the frame's, from 0 to 1. */
+/* Mean nanoseconds of a pixel in a rectangle of the frame; sides are fractions of the frame's, from 0 to 1. */
 double cost_map_mean_ns(const cost_map *m, double x0, double y0, double x1, double y1);
