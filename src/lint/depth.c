@@ -9,25 +9,31 @@
 #include <stdlib.h>
 
 /* --- ray trees ---
- * Compares small images of the scene at its depth limit and at greater depths, until deeper images stop changing and
+ * Compares small images of the scene at its depth limit and at greater ones, until deeper images stop changing and
  * cut little light, or the ray budget is spent. It is not enough that images stop changing: between two mirrors every
- * ray is cut at every depth, and every image shows render.beyond instead (lint/probe_images.h). */
+ * ray is cut at every depth, and every image shows render.beyond instead (lint/probe_images.h).
+ * One pass renders the images of all limits up to one. It is repeated with a greater limit while that is needed and, by
+ * the number of rays of each depth so far, within the budget. */
 
-#define RAYS_MAX 400000.0    /* budget of all images, in rays: about ten milliseconds */
-#define MESH_RAY 10.0        /* cost of a ray in a scene with triangles, relative to a scene without */
 #define CHANGED_VALUE 0.05f  /* a pixel changes if a channel changes by more than this fraction of the brightest */
 #define CHANGED_PIXELS 0.05  /* a depth is too small if a larger fraction of the pixels changes */
 #define SETTLED_PIXELS 0.002 /* deeper images count as equal if at most this fraction of the pixels changes */
-enum { DEEPER_MAX = 24, SAFE_DEPTH = 8 };
+#define FIRST_IMAGES 3.0     /* budgets that the first images deeper than the scene's may take */
+enum { FIRST_LIMIT = 4, LEVELS_MAX = COUNTERS_DEPTH_MAX + 1 };
+
+/* Limits beyond the scene's that are tried in turn. */
+static const int deeper_by[] = {2, 5, 9, 14, 24};
+enum { STEPS = sizeof deeper_by / sizeof deeper_by[0] };
 
 typedef struct depth_search {
     const lint_input *input;
+    double budget; /* in rays */
     probe_images images;
-    probe_image at[DEEPER_MAX + 1]; /* by depth, starting at the scene's */
-    int depth, last;                /* the scene's depth limit; index of the deepest image */
-    bool settled;                   /* deeper images stopped changing */
-    int climbed;                    /* the last depth that climb() rendered; 0: none */
-    double cut[2];                  /* cut throughput of the last two images of climb() */
+    probe_image at[LEVELS_MAX]; /* by depth limit */
+    double rays[LEVELS_MAX];    /* by depth, of the last pass */
+    int depth, last;            /* the scene's limit; that of the deepest image, which is smaller if the scene's is too
+                                 * expensive */
+    bool settled;               /* deeper images stopped changing */
 } depth_search;
 
 static size_t pixels_of(const depth_search *s)
@@ -63,42 +69,61 @@ static double changed_fraction(const depth_search *s, int one, int two)
     return (double)changed / (double)pixels;
 }
 
-/* Renders images below the scene's depth limit while the budget lasts: the number of rays may double with each level of
- * a ray tree. *affordable: the budget is not spent, so the scene's own depth can be rendered. */
-static status climb(depth_search *s, double most, bool *affordable, diagnostic *why)
-{
-    for (int d = SAFE_DEPTH; d < s->depth && s->images.spent <= most; d += 2) {
-        TRY(probe_images_render(&s->images, d, &s->at[0], why));
-        s->climbed = d;
-        s->cut[0] = s->cut[1];
-        s->cut[1] = lack_cut(pixels_of(s), &s->at[0]);
-    }
-    *affordable = s->images.spent <= most;
-    return STATUS_OK;
-}
-
-/* The factor by which a level reduces the cut throughput, measured over two levels, because reflections in a plate
+/* The factor by which a level multiplies a quantity, measured over two levels, because reflections in a plate
  * alternate. NaN: unknown. */
-static double decay_at_last(const depth_search *s)
+static double decay_at(const depth_search *s, int level)
 {
     const size_t pixels = pixels_of(s);
-    const double last = lack_cut(pixels, &s->at[s->last]);
-    if (s->last >= 2)
-        return lack_decay(lack_cut(pixels, &s->at[s->last - 2]), last, 2);
-    return s->climbed ? lack_decay(s->cut[1], last, s->depth + s->last - s->climbed) : (double)NAN;
+    return level < 2 ? (double)NAN
+                     : lack_decay(lack_cut(pixels, &s->at[level - 2]), lack_cut(pixels, &s->at[level]), 2);
 }
 
-/* Renders deeper images until they are nearly equal and nearly all light is known. */
-static status look_deeper(depth_search *s, double most, diagnostic *why)
+/* The greatest limit up to `wanted` whose pass the budget allows, if the number of rays goes on growing or shrinking
+ * as it did over the last two depths. Images a little deeper than the scene's decide most, and may take more. */
+static int affordable_limit(const depth_search *s, int wanted)
 {
-    TRY(probe_images_render(&s->images, s->depth, &s->at[0], why));
+    const double budget = wanted <= s->depth + deeper_by[0] ? FIRST_IMAGES * s->budget : s->budget;
+    const double growth =
+        s->last >= 2 && s->rays[s->last - 2] > 0.0 ? sqrt(s->rays[s->last] / s->rays[s->last - 2]) : 2.0;
+    double all = s->images.spent, next = s->rays[s->last];
+    for (int d = 0; d <= s->last; d++)
+        all += s->rays[d];
+    int limit = s->last;
+    while (limit < wanted && (all += next *= growth) <= budget)
+        limit++;
+    return limit;
+}
+
+/* Finds the least limit, of those rendered, whose image equals the deeper ones and lacks little light, and makes it the
+ * last. */
+static bool is_found(depth_search *s)
+{
     int still = 0;
-    for (int d = 1; d <= DEEPER_MAX && s->depth + d <= COUNTERS_DEPTH_MAX && s->images.spent <= most; d++) {
-        TRY(probe_images_render(&s->images, s->depth + d, &s->at[d], why));
-        s->last = d;
+    s->settled = false;
+    for (int d = s->depth + 1; d <= s->last; d++) {
         still = changed_fraction(s, d - 1, d) <= SETTLED_PIXELS ? still + 1 : 0;
         s->settled |= still >= 2;
-        if (s->settled && lack_of(pixels_of(s), &s->at[d], &s->at[d]).unknown <= 0.5 * LACK_ACCEPTED)
+        if (s->settled && lack_of(pixels_of(s), &s->at[d], &s->at[d]).unknown <= 0.5 * LACK_ACCEPTED) {
+            s->last = d;
+            return true;
+        }
+    }
+    return false;
+}
+
+static status search(depth_search *s, diagnostic *why)
+{
+    int limit = s->depth < FIRST_LIMIT ? s->depth : FIRST_LIMIT;
+    for (int step = 0; step < STEPS;) {
+        TRY(probe_images_render_levels(&s->images, limit, s->at, s->rays, why));
+        s->last = limit;
+        if (is_found(s))
+            break;
+        while (step < STEPS && s->depth + deeper_by[step] <= s->last)
+            step++;
+        const int wanted = step < STEPS ? s->depth + deeper_by[step] : s->last;
+        limit = affordable_limit(s, wanted < COUNTERS_DEPTH_MAX ? wanted : COUNTERS_DEPTH_MAX);
+        if (limit == s->last)
             break;
     }
     return STATUS_OK;
@@ -145,7 +170,7 @@ static bool is_lacking_at(const depth_search *s, int level)
 
 static int enough_by_images(const depth_search *s)
 {
-    int enough = 1;
+    int enough = s->depth + 1;
     while (enough < s->last && (changed_fraction(s, enough, s->last) > CHANGED_PIXELS || is_lacking_at(s, enough)))
         enough++;
     return enough;
@@ -155,15 +180,15 @@ static void note_depth(const depth_search *s)
 {
     const size_t pixels = pixels_of(s);
     const probe_image *deepest = &s->at[s->last];
-    const double changed = changed_fraction(s, 0, s->last);
+    const double changed = changed_fraction(s, s->depth, s->last);
     const bool visible = changed > CHANGED_PIXELS + doubt(s);
-    const lack here = lack_of(pixels, &s->at[0], deepest);
-    if (!visible && !is_lacking_at(s, 0))
+    const lack here = lack_of(pixels, &s->at[s->depth], deepest);
+    if (!visible && !is_lacking_at(s, s->depth))
         return;
-    const int enough = enough_by_images(s), known = lack_depth_enough(s->depth + s->last, here.bound, decay_at_last(s));
+    const int enough = enough_by_images(s), known = lack_depth_enough(s->last, here.bound, decay_at(s, s->last));
     const bool guess = here.unknown > LACK_ACCEPTED || (!s->settled && here.bound > LACK_ACCEPTED);
     char remedy[NOTE_TEXT_MAX];
-    write_remedy(remedy, guess ? known : s->depth + enough, guess || (!s->settled && enough == s->last));
+    write_remedy(remedy, guess ? known : enough, guess || (!s->settled && enough == s->last));
     if (visible)
         note_report(s->input->taker, "render", "depth", remedy,
                     "a depth of %d is too small: a greater depth changes about %.0f %% of the pixels by more "
@@ -181,11 +206,11 @@ static void note_depth(const depth_search *s)
 static void note_from_below(const depth_search *s)
 {
     const size_t pixels = pixels_of(s);
-    const lack there = lack_of(pixels, &s->at[0], &s->at[0]);
-    if (s->cut[0] == 0.0) /* one image shows no decay */
+    const lack there = lack_of(pixels, &s->at[s->last], &s->at[s->last]);
+    const double decay = decay_at(s, s->last);
+    if (isnan(decay))
         return;
-    const double decay = lack_decay(s->cut[0], s->cut[1], 2), more = pow(decay, (double)(s->depth - s->climbed)),
-                 unknown = there.unknown * more;
+    const double more = pow(decay, (double)(s->depth - s->last)), unknown = there.unknown * more;
     if (unknown <= LACK_ACCEPTED)
         return;
     char remedy[NOTE_TEXT_MAX];
@@ -201,29 +226,20 @@ static void note_weight(const lint_input *input, const probe_image *at)
                     100.0 * at->by_weight);
 }
 
-static status search(depth_search *s, bool *affordable, diagnostic *why)
+status lint_depth(const lint_input *input, double rays, diagnostic *why)
 {
-    const double most = s->images.made->geometry->meshes ? RAYS_MAX / MESH_RAY : RAYS_MAX;
-    TRY(climb(s, most, affordable, why));
-    return *affordable ? look_deeper(s, most, why) : STATUS_OK;
-}
-
-status lint_depth(const lint_input *input, diagnostic *why)
-{
-    depth_search s = {.input = input, .depth = (int)input->probe->render.depth};
-    bool affordable = false;
     if (input->probe->render.depth > COUNTERS_DEPTH_MAX)
         return STATUS_OK;
-    status code =
-        probe_images_begin(&s.images, input->probe, input->level) ? search(&s, &affordable, why) : out_of_memory(why);
+    depth_search s = {.input = input, .budget = rays, .depth = (int)input->probe->render.depth};
+    status code = probe_images_begin(&s.images, input->probe, input->level) ? search(&s, why) : out_of_memory(why);
     if (code == STATUS_OK && !probe_images_overflowed(&s.images)) {
-        if (affordable)
+        if (s.last >= s.depth)
             note_depth(&s);
         else
             note_from_below(&s);
-        note_weight(input, &s.at[0]);
+        note_weight(input, &s.at[s.last < s.depth ? s.last : s.depth]);
     }
-    for (int d = 0; d <= DEEPER_MAX; d++)
+    for (int d = 0; d < LEVELS_MAX; d++)
         probe_image_free(&s.at[d]);
     probe_images_end(&s.images);
     return code;

@@ -78,6 +78,8 @@ static bool lint_camera(const lint_input *input)
 /* --- the scene --- */
 
 enum { PROBE_PIXELS = 2400, PROBE_PIXELS_MESHES = 800 };
+#define PROBE_RAYS 300000.0 /* of all images together: about ten milliseconds */
+#define MESH_RAY 10.0       /* cost of a ray in a scene with triangles, relative to a scene without */
 
 static bool has_meshes(const scene *s)
 {
@@ -149,12 +151,18 @@ static status lint_paths(const scene *s, isa level, const note_sink *taker, diag
     return code;
 }
 
+/* The rays that all small images of the scene may take. */
+static double image_rays(const scene *s)
+{
+    return has_meshes(s) ? PROBE_RAYS / MESH_RAY : PROBE_RAYS;
+}
+
 static status lint_cut_light(const lint_input *input, diagnostic *why)
 {
     const render_settings *r = &input->original->render;
     if (integrator_traits_of(r)->by_chance)
         return lint_paths(input->original, input->level, input->taker, why);
-    return traces_ray_trees(r) ? lint_depth(input, why) : STATUS_OK;
+    return traces_ray_trees(r) ? lint_depth(input, image_rays(input->original), why) : STATUS_OK;
 }
 
 static status lint_planned(const scene *s, isa level, const note_sink *taker, diagnostic *why)

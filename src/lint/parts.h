@@ -15,8 +15,9 @@ typedef struct lint_input {
 /* Notes overlapping solids of equal priority, and narrow gaps. */
 status lint_neighbours(const lint_input *input, diagnostic *why);
 
-/* Notes a depth limit or a minimum weight of ray trees that cuts much light, or may do so. */
-status lint_depth(const lint_input *input, diagnostic *why);
+/* Notes a depth limit or a minimum weight of ray trees that cuts much light, or may do so. rays: of all small images
+ * together, at most. */
+status lint_depth(const lint_input *input, double rays, diagnostic *why);
 
 /* Notes a depth limit of random paths; the plan must be of the path integrator. */
 status lint_path_depth(const lint_input *input, diagnostic *why);

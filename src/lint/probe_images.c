@@ -23,13 +23,27 @@ static void render_stripes(void *context, size_t index, int member)
     tracer_finish(p->tracers[index]);
 }
 
-static status render_film(probe_images *p, film *f, diagnostic *why)
+/* Allocates the maps for that number of pixels, all layers together, or clears them. */
+static bool reserve_maps(probe_images *p, size_t pixels)
 {
-    const size_t pixels = probe_pixels(p), members = (size_t)thread_team_size(p->team);
-    const tracer_target target = {
-        .frame_plan = p->made, .img = f, .pixel_rays = p->pixel_rays, .pixel_cut = p->pixel_cut};
-    for (size_t i = 0; i < pixels; i++)
-        p->pixel_rays[i] = p->pixel_cut[i] = 0.0;
+    free(p->pixel_rays);
+    free(p->pixel_cut);
+    p->pixel_rays = calloc(pixels, sizeof *p->pixel_rays);
+    p->pixel_cut = calloc(pixels, sizeof *p->pixel_cut);
+    return p->pixel_rays && p->pixel_cut;
+}
+
+/* layered: the integrator of all depth limits at once (render/tracer/integrator.h), or NULL. */
+static status render_film(probe_images *p, const integrator *layered, film *f, diagnostic *why)
+{
+    const size_t pixels = (size_t)f->width * (size_t)f->height, members = (size_t)thread_team_size(p->team);
+    if (!reserve_maps(p, pixels))
+        return out_of_memory(why);
+    const tracer_target target = {.frame_plan = p->made,
+                                  .img = f,
+                                  .pixel_rays = p->pixel_rays,
+                                  .pixel_cut = p->pixel_cut,
+                                  .integrator_override = layered};
     for (size_t i = 0; i < members; i++)
         if (!tracer_begin(p->tracers[i], &target))
             return out_of_memory(why);
@@ -83,11 +97,65 @@ status probe_images_render(probe_images *p, int depth, probe_image *to, diagnost
     film *f;
     p->made->render.depth = depth;
     TRY(film_create((int)r->width, (int)r->height, rule->replicates ? rule->replicates(r) : 1, FILM_RGB, &f, why));
-    status code = render_film(p, f, why);
+    status code = render_film(p, NULL, f, why);
     if (code == STATUS_OK) {
         film_merge_replicates(f, NULL);
         code = store(p, f, to, why);
     }
+    film_destroy(f);
+    return code;
+}
+
+/* --- all depth limits at once --- */
+
+static double sum_of(const double *values, size_t count)
+{
+    double sum = 0.0;
+    for (size_t i = 0; i < count; i++)
+        sum += values[i];
+    return sum;
+}
+
+/* Adds the light of the layer 2 (k - 1) to that of layer 2 k, which then is that of all rays of depth k or less, and
+ * stores their sum with what replaces the branches. */
+static void store_light(film *f, int k, size_t values, float *rgb)
+{
+    film_sum *direct = f->sum + 2 * (size_t)k * values;
+    const film_sum *shallower = direct - 2 * values, *beyond = direct + values;
+    for (size_t i = 0; k > 0 && i < values; i++)
+        direct[i] = film_add(direct[i], shallower[i]);
+    for (size_t i = 0; i < values; i++)
+        rgb[i] = (float)film_radiance(film_add(direct[i], beyond[i]));
+}
+
+static status store_levels(const probe_images *p, film *f, int limit, probe_image *levels, double *rays,
+                           diagnostic *why)
+{
+    const size_t pixels = probe_pixels(p);
+    const double one = 3.0 * COUNTERS_CUT_ONE;
+    double by_weight = 0.0;
+    for (int k = 0; k <= limit; k++) {
+        const size_t layer = 2 * (size_t)k * pixels;
+        if (!reserve(&levels[k], pixels))
+            return out_of_memory(why);
+        store_light(f, k, 3 * pixels, levels[k].rgb);
+        for (size_t i = 0; i < pixels; i++)
+            levels[k].cut[i] = (float)(p->pixel_cut[layer + pixels + i] / one);
+        by_weight += sum_of(p->pixel_cut + layer, pixels) / (one * (double)pixels);
+        levels[k].by_weight = by_weight;
+        rays[k] = sum_of(p->pixel_rays + layer, pixels);
+    }
+    return STATUS_OK;
+}
+
+status probe_images_render_levels(probe_images *p, int limit, probe_image *levels, double *rays, diagnostic *why)
+{
+    const render_settings *r = &p->made->render;
+    film *f;
+    p->made->render.depth = limit;
+    TRY(film_create((int)r->width, (int)r->height * LEVELS_LAYERS(limit), 1, FILM_RGB, &f, why));
+    status code = render_film(p, &integrator_of_levels, f, why);
+    THEN(code, store_levels(p, f, limit, levels, rays, why));
     film_destroy(f);
     return code;
 }
@@ -102,12 +170,9 @@ void probe_image_free(probe_image *old)
 bool probe_images_begin(probe_images *p, plan *made, isa level)
 {
     *p = (probe_images){.made = made, .depth = made->render.depth};
-    const size_t pixels = probe_pixels(p);
     const int units = thread_team_units(), height = (int)made->render.height;
-    p->pixel_rays = calloc(pixels, sizeof *p->pixel_rays);
-    p->pixel_cut = calloc(pixels, sizeof *p->pixel_cut);
     p->team = thread_team_create(units < PROBE_THREADS_MAX ? units : PROBE_THREADS_MAX);
-    if (!p->pixel_rays || !p->pixel_cut || !p->team)
+    if (!p->team)
         return false;
     const int members = thread_team_size(p->team), most = members == 1 ? 1 : members * STRIPES_PER_THREAD;
     p->stripes = height < most ? height : most;

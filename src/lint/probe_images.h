@@ -40,6 +40,9 @@ void probe_images_end(probe_images *p);
 
 /* Renders an image with this depth limit. *to may hold an earlier image, whose memory is reused. */
 status probe_images_render(probe_images *p, int depth, probe_image *to, diagnostic *why);
+/* Renders the images of ray trees for each limit from 0 to `limit` in one pass (integrator_of_levels).
+ * levels[limit + 1]: as above; rays[limit + 1]: the number of rays of each depth, with their shadow rays. */
+status probe_images_render_levels(probe_images *p, int limit, probe_image *levels, double *rays, diagnostic *why);
 void probe_image_free(probe_image *old);
 
 /* Whether a contribution left the film's range in one of the images. */

@@ -9,17 +9,24 @@
 #include "render/shade/light_sampling.h"
 #include "render/shade/shading.h"
 
-static void branch(tracer *t, int depth, bool opaque)
+/* Computes the branches of the gathered group; false if it has none. */
+static bool make_branches(tracer *t, bool opaque)
+{
+    if (opaque && !surface_reflects(t))
+        return false;
+    shading_branches(t, opaque);
+    if (t->crystals && t->crystals->any)
+        crystals_branches(t, opaque);
+    return true;
+}
+
+/* Enqueues the branches, or cuts them off at the depth limit. */
+static void follow_branches(tracer *t, int depth)
 {
     const group *g = &t->surface.gathered;
     const branch_group *b = &t->surface.branches;
-    if (opaque && !surface_reflects(t))
-        return;
-    shading_branches(t, opaque);
-    if (t->crystals && t->crystals->any) {
-        crystals_branches(t, opaque);
+    if (t->crystals && t->crystals->any)
         crystals_follow(t, depth);
-    }
     if (depth == t->queues.depth_limit) {
         cut_branches(t);
         return;
@@ -30,14 +37,19 @@ static void branch(tracer *t, int depth, bool opaque)
     COUNT(t->account.counters.refract += (uint64_t)refracted);
 }
 
+static void light_of_hits(tracer *t, int depth, int priority_index)
+{
+    local_light(t, priority_index, light_terms_of(&t->target.frame_plan->render));
+    if (scene_has_soft_shadows(&t->target.frame_plan->render))
+        area_lights_soften(t, depth);
+}
+
 static void shade(tracer *t, int depth, int priority_index)
 {
-    const render_settings *r = &t->target.frame_plan->render;
-    local_light(t, priority_index, light_terms_of(r));
-    if (scene_has_soft_shadows(r))
-        area_lights_soften(t, depth);
-    if (r->lighting == LIGHTING_WHITTED)
-        branch(t, depth, surface_is_opaque(t, priority_index));
+    light_of_hits(t, depth, priority_index);
+    if (t->target.frame_plan->render.lighting == LIGHTING_WHITTED &&
+        make_branches(t, surface_is_opaque(t, priority_index)))
+        follow_branches(t, depth);
 }
 
 const integrator integrator_of_whitted = {.traced = true,
@@ -48,16 +60,41 @@ const integrator integrator_of_whitted = {.traced = true,
 
 /* --- ray casting --- */
 
-static void shade_first(tracer *t, int depth, int priority_index)
-{
-    const render_settings *r = &t->target.frame_plan->render;
-    local_light(t, priority_index, light_terms_of(r));
-    if (scene_has_soft_shadows(r))
-        area_lights_soften(t, depth);
-}
-
 const integrator integrator_of_raycast = {.traced = true,
                                           .sampling = camera_samples,
                                           .intersect = intersect_nearest,
                                           .background = background_sky,
-                                          .shade = shade_first};
+                                          .shade = light_of_hits};
+
+/* --- all depth limits at once --- */
+
+static void move_to_layer(tracer *t, int layers)
+{
+    group *g = &t->surface.gathered;
+    const render_settings *r = &t->target.frame_plan->render;
+    for (int k = 0; k < g->count; k++)
+        g->sample_key[k] += (int64_t)layers * r->width * r->height;
+}
+
+/* The rays of depth k are in layer 2 k: first they are cut, into the next layer, then followed, into the one after. */
+static void shade_levels(tracer *t, int depth, int priority_index)
+{
+    const int limit = t->queues.depth_limit;
+    light_of_hits(t, depth, priority_index);
+    if (!make_branches(t, surface_is_opaque(t, priority_index)))
+        return;
+    move_to_layer(t, 1);
+    t->queues.depth_limit = depth;
+    follow_branches(t, depth);
+    t->queues.depth_limit = limit;
+    if (depth == limit)
+        return;
+    move_to_layer(t, 1);
+    follow_branches(t, depth);
+}
+
+const integrator integrator_of_levels = {.traced = true,
+                                         .sampling = camera_samples,
+                                         .intersect = intersect_nearest,
+                                         .background = background_sky,
+                                         .shade = shade_levels};

@@ -87,3 +87,16 @@ typedef struct integrator {
 
 /* The integrator of render.integrator: render/integrators/table.c. */
 const integrator *integrator_for(const render_settings *r);
+
+/* Whitted's recursion for all depth limits at once: the film of each limit without a frame for each.
+ *
+ * The film has LEVELS_LAYERS(limit) layers, each as large as the image and stored one after another: a film of the
+ * image's width, and of its height times that number. Layer 2 k is the light that rays of depth k bring, layer 2 k + 1
+ * what render.beyond substitutes for their branches. So the image with a depth limit d is the sum of layers 0, 2, .. 2
+ * d and of layer 2 d + 1. The maps of a tracer_target have the same layers: in pixel_rays layer 2 k counts the rays of
+ * depth k; in pixel_cut layer 2 k + 1 is the throughput that a limit of k cuts, and layer 2 k + 2 what
+ * render.min_weight cuts of the branches of depth k. The image is that of integrator_of_whitted, except that random
+ * numbers differ: they depend on the place in the film. render.lighting must be whitted. For
+ * tracer_target.integrator_override; defined in render/integrators/whitted.c. */
+#define LEVELS_LAYERS(limit) (2 * ((limit) + 1))
+extern const integrator integrator_of_levels;

@@ -9,6 +9,7 @@
 #include <stddef.h>
 #include <stdint.h>
 #include <stdlib.h>
+#include <string.h>
 #include <cmocka.h>
 
 #include "job/job.h"
@@ -102,6 +103,52 @@ static void in_a_furnace_the_film_lacks_what_the_map_has(void **state)
             render_result_destroy(r);
             scene_destroy(s);
         }
+}
+
+/* One pass renders the images of all depth limits: the same light and the same cut throughput, bit by bit, as one pass
+ * for each limit. */
+static void one_pass_has_the_images_of_all_depth_limits(void **state)
+{
+    (void)state;
+    enum { LIMIT = 5 };
+    static const char *const changes[] = {
+        "render.depth=5",
+        "render.min_weight=0.05",
+        "render.beyond=black",
+        "render.beyond=mean background.kind=gradient",
+        "render.transmission=simple render.weights=constant",
+        "rod.transparency=1 rod.ior=1.65 rod.extraordinary_ior=1.48 rod.optic_axis=0,1,0",
+        "rod.ior=0.2 rod.extinction=3",
+    };
+    for (size_t i = 0; i < sizeof changes / sizeof *changes; i++) {
+        scene *s = rod_scene("render.width=40 render.height=30");
+        set_all(s, changes[i]);
+        diagnostic why = {0};
+        plan *made = NULL;
+        probe_images images;
+        probe_image levels[LIMIT + 1] = {{.rgb = NULL}}, one = {.rgb = NULL};
+        double rays[LIMIT + 1], all = 0.0;
+        worked(plan_build(s, &made, &why), &why);
+        assert_true(probe_images_begin(&images, made, isa_best()));
+        worked(probe_images_render_levels(&images, LIMIT, levels, rays, &why), &why);
+        for (int d = 0; d <= LIMIT; d++) {
+            const double before = images.spent;
+            worked(probe_images_render(&images, d, &one, &why), &why);
+            const size_t pixels = probe_pixels(&images);
+            all += rays[d];
+            if (memcmp(one.rgb, levels[d].rgb, 3 * pixels * sizeof *one.rgb) != 0)
+                fail_msg("%s: the images with a depth of %d differ", changes[i], d);
+            assert_true(fabs(lack_cut(pixels, &one) - lack_cut(pixels, &levels[d])) < 1e-6);
+            assert_true(fabs(one.by_weight - levels[d].by_weight) < 1e-9);
+            assert_true(images.spent - before == all);
+        }
+        probe_image_free(&one);
+        for (int d = 0; d <= LIMIT; d++)
+            probe_image_free(&levels[d]);
+        probe_images_end(&images);
+        plan_destroy(made);
+        scene_destroy(s);
+    }
 }
 
 /* The map's sum is that of the counters, for every integrator that cuts, and the same for any number of threads. */
@@ -341,6 +388,7 @@ int main(void)
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(between_mirrors_the_share_is_a_power_of_the_reflectance),
         cmocka_unit_test(in_a_furnace_the_film_lacks_what_the_map_has),
+        cmocka_unit_test(one_pass_has_the_images_of_all_depth_limits),
         cmocka_unit_test(the_map_adds_up_to_the_share),
         cmocka_unit_test(scenes_that_are_wrong_because_light_was_cut_have_a_note),
         cmocka_unit_test(the_depth_of_a_remedy_is_that_of_a_geometric_series),
