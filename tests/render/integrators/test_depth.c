@@ -52,6 +52,9 @@ static void milk_transmits_what_diffusion_says(void **state)
         s->render.roulette = roulette;
         expect_mean(s, 4.0 / 3.0 * sqrt(3.0) / 4.0 * 2.907810 / (30.0 + 2.0 * 0.710446), 0.03);
     }
+    /* light that passes a slab of 100 is scattered 5000 times: the weights of such paths must not vary too much */
+    set(s, "milk.scatter_per_m=100");
+    expect_mean(s, 4.0 / 3.0 * sqrt(3.0) / 4.0 * 2.907810 / (100.0 + 2.0 * 0.710446), 0.07);
     scene_destroy(s);
 }
 
