@@ -188,6 +188,28 @@ static void hint_at_idle(const scene *s, const solid *owner, const note_sink *ta
                     owner->name);
 }
 
+/* Notes values that another parameter of the solid leaves without effect. */
+static void hint_at_vain(const scene *s, const solid *owner, const note_sink *taker)
+{
+    const material *m = &owner->surface;
+    if (m->asymmetry != 0.0 && m->scatter_per_m == 0.0)
+        note_report(taker, owner->name, "asymmetry", "set its scatter_per_m",
+                    "%s does not scatter light: its asymmetry has no effect", owner->name);
+    if (m->sheet != SHEET_RETARDER && (m->retardance_deg != 0.0 || m->birefringence != 0.0))
+        note_report(taker, owner->name, m->retardance_deg != 0.0 ? "retardance_deg" : "birefringence",
+                    "set its sheet to retarder", "%s is not a retarder and retards no light", owner->name);
+    if (m->extraordinary_ior > 0.0 && solid_is_opaque(s, owner))
+        note_report(taker, owner->name, "extraordinary_ior", "set its transparency",
+                    "%s has an extraordinary index but is opaque", owner->name);
+    if (m->absorb_spectrum.count > 0 && (m->absorb_per_m.x > 0.0 || m->absorb_per_m.y > 0.0 || m->absorb_per_m.z > 0.0))
+        note_report(taker, owner->name, "absorb_per_m", "remove it, or absorb_spectrum",
+                    "the absorb_spectrum of %s replaces its absorb_per_m", owner->name);
+    if (m->reflectivity > 0.0 && m->transparency == 0.0 && material_is_layered(m, &s->render))
+        note_report(taker, owner->name, "reflectivity", "remove it",
+                    "the %s of %s determines what it reflects: its reflectivity has no effect",
+                    material_has_film(m) ? "film" : "complex index", owner->name);
+}
+
 /* With fewer samples per pixel, noise in soft shadows is obvious. */
 enum { SOFT_SAMPLES = 9 };
 
@@ -353,6 +375,7 @@ void scene_hints(const scene *s, const note_sink *taker)
         if (s->solids[i].visible) {
             hint_at_solid(s, &s->solids[i], taker);
             hint_at_idle(s, &s->solids[i], taker);
+            hint_at_vain(s, &s->solids[i], taker);
             hint_at_sheet(s, &s->solids[i], taker);
             hint_at_crystal(s, &s->solids[i], taker);
             hint_at_cover(s, &s->solids[i], taker);

@@ -318,9 +318,43 @@ static void crystals_that_split_no_light_give_a_hint(void **state)
 #undef STONE
 }
 
+/* Each value alone, and with what makes it act. */
+static void values_that_another_parameter_overrides_give_a_hint(void **state)
+{
+    (void)state;
+#define BALL(what) "render: {integrator: path}\nsolids: {ball: {shape: sphere, " what "}}"
+    expect_hints(BALL("transparency: 1, ior: 1.5, asymmetry: -0.5"),
+                 "ball.asymmetry: ball does not scatter light: its asymmetry has no effect; set its scatter_per_m\n");
+    expect_hints(BALL("transparency: 1, ior: 1.5, asymmetry: -0.5, scatter_per_m: 1"), "");
+    expect_hints(LIT "solids: {ball: {shape: sphere, transparency: 1, ior: 1.5, retardance_deg: 90}}",
+                 "ball.retardance_deg: ball is not a retarder and retards no light; set its sheet to retarder\n");
+    expect_hints(LIT "solids: {ball: {shape: sphere, transparency: 1, ior: 1.5, birefringence: -0.01}}",
+                 "ball.birefringence: ball is not a retarder and retards no light; set its sheet to retarder\n");
+    expect_hints(LIT "render: {polarisation: on}\nsolids: {ball: {shape: sphere, transparency: 1, ior: 1.5, "
+                     "retardance_deg: 90, sheet: retarder}}",
+                 "");
+    expect_hints(LIT "solids: {ball: {shape: sphere, diffuse: 1, extraordinary_ior: 1.5}}",
+                 "ball.extraordinary_ior: ball has an extraordinary index but is opaque; set its transparency\n");
+    expect_hints(LIT "solids: {ball: {shape: sphere, transparency: 1, ior: 1.5, absorb_per_m: [0, 0, 1], "
+                     "absorb_spectrum: [400, 1, 700, 2]}}",
+                 "ball.absorb_per_m: the absorb_spectrum of ball replaces its absorb_per_m; remove it, or "
+                 "absorb_spectrum\n");
+    expect_hints(LIT "solids: {ball: {shape: sphere, medium: silver, reflectivity: 0.5}}",
+                 "ball.reflectivity: the complex index of ball determines what it reflects: its reflectivity has no "
+                 "effect; remove it\n");
+    expect_hints(LIT "solids: {ball: {shape: sphere, diffuse: 1, film_thickness_nm: 300, reflectivity: 0.5}}",
+                 "ball.reflectivity: the film of ball determines what it reflects: its reflectivity has no effect; "
+                 "remove it\n");
+    expect_hints(LIT "solids: {ball: {shape: sphere, transparency: 1, ior: 1.5, film_thickness_nm: 300, "
+                     "reflectivity: 0.5}}",
+                 "");
+#undef BALL
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
+        cmocka_unit_test(values_that_another_parameter_overrides_give_a_hint),
         cmocka_unit_test(crystals_that_split_no_light_give_a_hint),
         cmocka_unit_test(missing_objects_and_lights_give_a_hint),
         cmocka_unit_test(extrapolated_dispersion_laws_give_a_hint),
