@@ -39,11 +39,13 @@ function bounds({ camera, width, height, frame }, from, d, end) {
   const distances = [
     0,
     end,
-    parallel ? -depth / rate : -1,
+    parallel && (end < Infinity || depth < 0) ? -depth / rate : -1,
     ...[frame.left, frame.right].map((x) => crossing(right, w, (2 * x) / width - 1)),
     ...[frame.top, frame.bottom].map((y) => crossing(up, h, 1 - (2 * y) / height)),
   ];
-  const ahead = (s) => s >= 0 && s <= end && Number.isFinite(s) && depth + s * rate >= (parallel ? -1e-12 : 1e-12);
+  /* From in front of the plane of a parallel view, a ray leaves past the plane. */
+  const near = !parallel ? 1e-12 : end === Infinity && depth >= 0 ? -Infinity : -1e-12;
+  const ahead = (s) => s >= 0 && s <= end && Number.isFinite(s) && depth + s * rate >= near;
   const found = distances.filter(ahead).map((s) => [s, image(along(o, d, s))]);
   if (end === Infinity && !parallel && rate > 0) found.push([Infinity, image(d)]);
   const kept = found.filter(([, point]) => inside(point)).sort(([a], [b]) => (a < b ? -1 : a > b ? 1 : 0));
@@ -162,6 +164,30 @@ export const cases = {
     const rays = beams.flatMap((beam) => beam.rays.flatMap(({ root }) => raysOf(root)));
     t.more(rays.filter(([, , end]) => end === Infinity).length, 20, 'rays that leave the scene');
     await compareViews(t, lab, screen, '.layer-bench .bench-ray', rays, 'beams');
+  },
+
+  'a point of a ray that left past the plane of an orthographic camera': async (t) => {
+    const lab = await t.lab('scenes/rod.yaml');
+    const { name } = await lab.post('/api/objects', { kind: 'beam' });
+    const camera = { position: [0, 1.5, -6], target: [0, 1.5, 0], projection: 'orthographic', view_height: 5 };
+    const set = { [`${name}.position`]: [0, 1.5, -5], [`${name}.direction`]: [1, 0.2, -2] };
+    for (const [key, value] of Object.entries(camera)) set[`camera.${key}`] = value;
+    await lab.post('/api/set', { set });
+    const screen = await t.open(lab);
+    await screen.showPanel('Bench');
+    await screen.settled();
+    await screen.page.getByText('Measure: clicks in the image set points').click();
+    await screen.quiet();
+    await screen.clickPixel(580, 264); /* 1.5 to the right of the middle, where 120 pixels are a unit */
+    await screen.page.getByText('Point 1').waitFor();
+    const shown = await screen.page.getByRole('tabpanel', { name: 'Bench' }).innerText();
+    const point = shown
+      .match(/Point 1\s+(.*)/)[1]
+      .replaceAll('\u2212', '-')
+      .match(/-?[\d.]+/g)
+      .map(Number);
+    const off = Math.max(...minus(point, [1.5, 1.8, -8]).map(Math.abs));
+    t.less(off, 0.02, `distance of ${point} from the ray at the pointer`);
   },
 
   'a fan of rays': async (t) => {

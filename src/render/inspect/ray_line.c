@@ -90,8 +90,9 @@ static vec3 project(const ray_line *line, bool parallel, const image_frame *fram
     if (!parallel && (far || p.z <= 0.0))
         p = line->along;
     const double spread = parallel ? 1.0 : p.z;
+    const double depth = line->from.z + s * line->along.z;
     return vec3_make(0.5 * (1.0 + p.x / spread) * frame->width, 0.5 * (1.0 - p.y / spread) * frame->height,
-                     far ? HUGE_VAL : fmax(0.0, line->from.z + s * line->along.z));
+                     far ? HUGE_VAL : fmax(parallel ? depth : 0.0, depth));
 }
 
 bool ray_line_seen(const ray_line *line, const camera_frame *view, const image_frame *frame, vec3 ends[2])
@@ -104,8 +105,10 @@ bool ray_line_seen(const ray_line *line, const camera_frame *view, const image_f
     const double spread = view->parallel ? 1.0 : l.from.z, widening = view->parallel ? 0.0 : l.along.z;
     const double left = 2.0 * frame->left / frame->width - 1.0, right = 2.0 * frame->right / frame->width - 1.0;
     const double top = 1.0 - 2.0 * frame->top / frame->height, bottom = 1.0 - 2.0 * frame->bottom / frame->height;
+    const bool leaves_past_plane = view->parallel && isinf(l.end) && l.from.z >= 0.0;
     part p = {0.0, l.end};
-    clip(&p, l.from.z - near, l.along.z);
+    if (!leaves_past_plane)
+        clip(&p, l.from.z - near, l.along.z);
     clip(&p, l.from.x - left * spread, l.along.x - left * widening);
     clip(&p, right * spread - l.from.x, right * widening - l.along.x);
     clip(&p, l.from.y - bottom * spread, l.along.y - bottom * widening);

@@ -32,7 +32,8 @@ image_frame image_frame_of(int width, int height, double margin_px);
 
 /* The part of a line that a camera sees in the frame: x and y in pixels, z the depth in front of the eye or of the
  * plane of an orthographic camera, HUGE_VAL at a vanishing point. A line that comes from behind begins where it enters
- * the frame, in front of the eye. Returns false if no part of it is in the frame. */
+ * the frame, in front of the eye. A ray that leaves the scene past the plane of an orthographic camera goes on to the
+ * edge of the frame, with a negative depth. Returns false if no part of it is in the frame. */
 bool ray_line_seen(const ray_line *line, const camera_frame *view, const image_frame *frame, vec3 ends[2]);
 
 /* The part of a line, projected orthogonally onto the plane, that is in its window. */

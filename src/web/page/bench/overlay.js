@@ -9,7 +9,7 @@ import { digits, svg } from '../shared/ui.js';
 import { add, length, minus, times } from '../shared/vectors.js';
 import { fanMarks } from './fan.js';
 import { degrees } from './measure.js';
-import { distance } from './ray_overlay.js';
+import { distance, fraction } from './ray_overlay.js';
 import { isCut, lineBetween, pointAt, seenLine } from './ray_tree.js';
 
 const LINES_MAX = 3000;
@@ -122,6 +122,9 @@ export function createBenchOverlay(lab, bench) {
     const end = ends.find((each) => away(each) * lab.view.scale < POINT_PX);
     if (end) return end;
     const [first, last] = [a[2], b[2]];
+    /* Of a parallel view, the image has the proportions of the line, which may lead behind the camera. */
+    if (lab.state.camera.parallel && Number.isFinite(last))
+      return pointAt(line, first + (last - first) * fraction([point.x, point.y], a, b));
     const along = (t) =>
       pointAt(line, Number.isFinite(last) ? first + (last - first) * t : first + (tree.reach * t) / (1 - t));
     let [low, high] = [0, 1];

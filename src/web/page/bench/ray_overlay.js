@@ -5,6 +5,7 @@
  *                             count, omitted}
  *     draw: after a move of the camera; count: rays that are drawn; omitted: rays that are not, for their low weight
  *     or their number
+ *   fraction(p, a, b)                  0..1 of the way from a to b, where a line in the image is nearest to a point
  *   distance(p, a, b)                  of a point from a line in the image
  *   drawn(tree) -> rays                the rays that drawings show */
 
@@ -116,9 +117,13 @@ export function createRayOverlay(lab) {
   }
 }
 
-export function distance(p, a, b) {
+export function fraction(p, a, b) {
   const [dx, dy] = [b[0] - a[0], b[1] - a[1]];
   const size = dx * dx + dy * dy;
-  const t = size ? Math.min(1, Math.max(0, ((p[0] - a[0]) * dx + (p[1] - a[1]) * dy) / size)) : 0;
-  return Math.hypot(p[0] - a[0] - t * dx, p[1] - a[1] - t * dy);
+  return size ? Math.min(1, Math.max(0, ((p[0] - a[0]) * dx + (p[1] - a[1]) * dy) / size)) : 0;
+}
+
+export function distance(p, a, b) {
+  const t = fraction(p, a, b);
+  return Math.hypot(p[0] - a[0] - t * (b[0] - a[0]), p[1] - a[1] - t * (b[1] - a[1]));
 }

@@ -59,8 +59,9 @@ export function seenLine(line, camera, { width, height }, frame) {
   const near = parallel ? 0 : NEAR * length(offset) + NEAR_OF_EYE * length(eye);
   const [spread, widening] = parallel ? [1, 0] : [from[2], along[2]];
   const edge = (axis, side, sign) => [sign * (from[axis] - side * spread), sign * (along[axis] - side * widening)];
+  const leavesPastPlane = parallel && line.end === Infinity && from[2] >= 0;
   const found = within(line.end, [
-    [from[2] - near, along[2]],
+    ...(leavesPastPlane ? [] : [[from[2] - near, along[2]]]),
     edge(0, (2 * frame.left) / width - 1, 1),
     edge(0, (2 * frame.right) / width - 1, -1),
     edge(1, 1 - (2 * frame.bottom) / height, 1),
