@@ -35,6 +35,7 @@ static struct turns {
     int64_t next, merged; /* the next tile for an order; number of merged tiles */
     bool has_photons;     /* the counters have the photons, which every order counts */
     ray_counters counters;
+    photon_shortage few;
     double began_s;
 } now;
 
@@ -131,6 +132,7 @@ static status sum_up(job_account *account, diagnostic *why)
     now.sum.img = NULL;
     now.sum.variance = NULL;
     result->counters = now.counters;
+    result->few = now.few;
     result->replicates = renderer_replicates(&now.pass.view);
     result->worker_count = now.workers;
     result->wall_s = account->wall_s[0] = wall_s;
@@ -226,13 +228,14 @@ static bool merge(const tile_answer *a, const char *at, const char *end)
     return true;
 }
 
-/* Every order counts the same photons. */
+/* Every order traces the same photons. */
 static void count(const tile_answer *a)
 {
     ray_counters c = a->counters;
     if (now.has_photons)
         c.photon = 0;
     now.has_photons = true;
+    now.few = a->few;
     ray_counters_add(&now.counters, &c);
 }
 

@@ -98,8 +98,10 @@ static status render_tiles(const tile_order *order, diagnostic *why)
     const render_options options = {.source = &source};
     job_account account;
     status code = job_render(tile_job, &view, &options, &account, why);
-    if (account.result)
+    if (account.result) {
         head()->counters = account.result->counters;
+        head()->few = account.result->few;
+    }
     job_account_release(&account);
     return now.failed ? out_of_memory(why) : code;
 }

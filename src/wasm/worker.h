@@ -3,6 +3,7 @@
 
 #include "base/counters.h"
 #include "base/status.h"
+#include "render/plan/frame_report.h"
 #include "scene/model/render_settings.h"
 
 #include <stdbool.h>
@@ -57,5 +58,6 @@ typedef struct tile_answer {
     int32_t code, traced;   /* a status; the number of tiles that follow */
     double setup_s, wall_s; /* time until the first tile began; total time */
     ray_counters counters;
+    photon_shortage few;
     diagnostic why;
 } tile_answer;

@@ -113,6 +113,18 @@ export const cases = {
     t.equal(await note.count(), 1, 'notes on narrow light');
   },
 
+  'a note on a caustic of few photons names its solid': async (t) => {
+    const lab = await t.lab('scenes/rod.yaml');
+    await lab.post('/api/set', { set: { 'render.depth': 8, 'render.caustics': 'photons', 'render.photons': 300 } });
+    const screen = await t.open(lab, size);
+    await screen.button(/^\d+ notes?$/).click();
+    const note = screen.page.getByRole('dialog').getByText(/on matte surfaces rests on only/);
+    await note.waitFor();
+    const [, solid, photons] = (await note.innerText()).match(/that '(\w+)' throws on matte .* only (\d+) photons/);
+    t.check(['vessel', 'liquid'].includes(solid), `the solid: ${solid}`);
+    t.more(Number(photons), 0, 'photons');
+  },
+
   'what fits at 1366 px': async (t) => {
     const screen = await t.open(await t.lab('scenes/rod.yaml'), size);
     const { page } = screen;
