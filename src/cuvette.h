@@ -34,7 +34,7 @@
  * Geometry. Lengths are in scene units (render.unit_m is the length of a scene unit in metres), y is up, angles are in
  * degrees. Pixels are counted from 0, with 0 at the top left; pixel x, y covers the square from x, y to x + 1, y + 1.
  * The world is left-handed: x to the right, y up, z away. Positive degrees turn x to y about z, y to z about x, z to x
- * about y: counter-clockwise for an eye that looks along the axis, here along z:
+ * about y, by the rule of the left hand: counter-clockwise for an eye that looks along the axis, here along z:
  *
  *     y
  *     |          .  x after 20 degrees

@@ -27,7 +27,9 @@ function turnSense() {
       word(9, 7, 'y'),
       word(37, 27, 'z'),
     ),
-    element('span', { text: 'Plus turns counter-clockwise for an eye that looks along the axis.' }),
+    element('span', {
+      text: 'Plus turns by the rule of the left hand: counter-clockwise for an eye that looks along the axis.',
+    }),
   );
 }
 
