@@ -107,7 +107,7 @@ typedef struct tree_columns {
     double from[ROW];                 /* the t up to which a column has been searched; -infinity at first */
     uint64_t within[ROW];             /* the tree's primitives that contain the ray there */
     uint64_t before[ROW], after[ROW]; /* those just before and just after the crossing */
-    bool simple[ROW]; /* the crossing itself is the only change of the tree's primitives near it, or none is */
+    bool simple[ROW]; /* no boundary of the tree's primitives is near the crossing, except the crossing itself */
 } tree_columns;
 
 /* A solid view: the few solids of a large scene that any ray of a batch may meet, as a separate scene geometry with
@@ -175,8 +175,8 @@ typedef struct geometry_kernels {
     void (*surface)(const scene_geometry *g, int hit_primitive, const ray_batch *rays, const double *t,
                     surface_batch *points);
     /* The points where rays hit meshes, and more about them unless `more` is NULL. With `smooth`, and if the mesh has
-     * normals, the normal is interpolated, and bent so that neither the reflection nor the surface is seen from
-     * behind. */
+     * normals, the normal is interpolated, and bent so that it faces the ray and a mirror reflects the ray out of
+     * the surface. */
     void (*mesh_surface)(const struct instance_set *f, const ray_batch *rays, const instance_hit *hits, bool smooth,
                          surface_batch *points, mesh_points *more);
 } geometry_kernels;

@@ -47,7 +47,7 @@ typedef struct primitive {
     bool turned;                       /* rotation is not the identity */
     mat3 rotation;                     /* local to world */
     vec3 origin;                       /* origin of the local frame in the world */
-    double radius, m2;                 /* cylinder x^2 + m2 z^2 <= radius^2; others (m2 = 1) */
+    double radius, m2;                 /* cylinder: x^2 + m2 z^2 <= radius^2; m2 is 1 for all others */
     double bottom, top;                /* local y; a cylinder's top may be infinite */
     union {
         vec3 half; /* box */
@@ -89,8 +89,8 @@ typedef struct scene_geometry {
     region *regions;                /* [0] is the surrounding medium */
     solid_shape *shapes;            /* by priority index, the shapes of the regions; [0] is unused */
     double extent;                  /* the largest extent of a primitive */
-    uint64_t further;               /* rows for further intervals of the primitive before them */
-    uint64_t opaque_regions;        /* bit r - 1: the region of priority index r is opaque; without a tree */
+    uint64_t further;               /* bits of rows for further intervals of the primitive before them */
+    uint64_t opaque_regions;        /* bit r - 1: the region of priority index r is opaque; 0 with a tree */
     bool distinct;                  /* no two regions have equal media, and none has the surrounding medium */
     bool attenuates;                /* a region or the surrounding medium attenuates */
     struct instance_set *meshes;    /* all meshes; NULL without meshes */

@@ -225,7 +225,8 @@ static status build_all(tree_build *g, const prim_range *all, diagnostic *why)
     return STATUS_OK;
 }
 
-/* Builds a tree over refs, which it reorders. free_tree releases it, also after STATUS_FAILURE (out of memory). */
+/* Builds a tree over refs, which it reorders. free_tree releases the tree, also after an error (out of memory, or
+ * cancelled). */
 static status build_tree(bvh_tree *tree, thread_team *t, prim_ref *refs, const prim_range *all, diagnostic *why)
 {
     *tree = (bvh_tree){.arena_count = thread_team_size(t)};

@@ -97,7 +97,7 @@ static bool small(const bvh_build_node *b)
     return b->leaf || b->count <= TASK_TRIANGLES;
 }
 
-/* Lists the small subtrees below b, which is not small itself. */
+/* Lists the small subtrees among b's children and below. A root that is a leaf counts as its own only child. */
 static bool find_small(collapse_job *g, bvh_build_node *b, bool root)
 {
     bvh_build_node *children[WIDTH];
@@ -226,7 +226,7 @@ static status collapse(collapse_job *g, bvh_build_node *root, thread_team *t, di
     if (!find_small(g, root, true))
         return out_of_memory(why);
     thread_team_run(t, count_subtree, g, g->count);
-    TRY(cancel_check(why)); /* before a count that is missing is used */
+    TRY(cancel_check(why)); /* counts are missing after a cancellation */
     count_tree(root, true, true);
     TRY(make_room(g->h, root->nodes, root->blocks, why));
     g->count = 0;

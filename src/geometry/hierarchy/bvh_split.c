@@ -282,8 +282,8 @@ static void add_bins(bvh_bins *sum, const bvh_bins *s)
         }
 }
 
-/* Joins the partitions of the pieces. Each piece holds its lower references, then its upper ones. Upper ones before the
- * end of all lower ones are swapped with the lower ones after it; both have the same number. */
+/* Joins the partitions of the pieces. Each piece holds its lower references, then its upper ones. Upper ones before
+ * j->lower, where the first half ends, are swapped with the lower ones after it; there are as many of both. */
 static void join_partitions(const job *j, size_t pieces)
 {
     uint32_t upper = 0, lower = j->count, upper_end = 0, lower_begin = j->count; /* empty ranges of both kinds */

@@ -25,7 +25,9 @@ typedef struct hierarchy_report {
     int threads;    /* threads that built it */
 } hierarchy_report;
 
-/* threads: 1..1024; no more threads are started than are useful. STATUS_FAILURE: out of memory. */
+/* threads: 1..1024; no more threads are started than are useful. STATUS_BAD_INPUT: unknown kind, or more memory needed
+ * than the budget allows (base/budget.h); STATUS_FAILURE: out of memory, or too many triangles for the layout;
+ * STATUS_INTERRUPTED: cancelled. */
 status hierarchy_build(const mesh *m, hierarchy_kind kind, int threads, hierarchy **out, diagnostic *why);
 void hierarchy_destroy(hierarchy *h);
 hierarchy_report hierarchy_describe(const hierarchy *h);
@@ -35,9 +37,9 @@ status hierarchy_of_mesh(const mesh *m, hierarchy_kind kind, int threads, const 
 
 /* Refits a bvh to its mesh after the vertices moved: triangles and boxes are recomputed bottom up, the tree is kept
  * (Wald, Boulos and Shirley, "Ray tracing deformable scenes using dynamic bounding volume hierarchies", ACM TOG 26(1),
- * 2007). Returns false if a refit is impossible and a rebuild is needed: for another kind, if triangles without area
- * were left out at the build, or if the blocks hold floats and the moved vertices are not floats. No other thread may
- * use the hierarchy meanwhile. */
+ * 2007). Returns false if a refit is impossible and a rebuild is needed: for another kind, if triangles with two
+ * corners at one position were left out at the build, or if the blocks hold floats and the moved vertices are not
+ * floats. No other thread may use the hierarchy meanwhile. */
 bool hierarchy_refit(hierarchy *h);
 
 /* Expected cost of a ray that hits the root's box of a bvh, in units of one block test: the sum of the surface areas of
@@ -120,7 +122,7 @@ typedef struct hierarchy_kernels {
     /* Only for a bvh: reports the triangles whose boxes the ray hits, roughly nearest first. The instance set uses it
      * with one triangle per instance. */
     void (*boxes)(const hierarchy *h, const mesh_ray *ray, box_visit *visit, void *context);
-    /* nearest and any for up to 128 rays at once; coherent rays share the traversal. */
+    /* nearest and any for `count` rays; up to 128 coherent rays share a traversal. */
     void (*nearest_batch)(const hierarchy *h, const mesh_ray *rays, int count, mesh_hit *hits);
     void (*any_batch)(const hierarchy *h, const mesh_ray *rays, int count, bool *hit);
 } hierarchy_kernels;

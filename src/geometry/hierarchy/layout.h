@@ -59,7 +59,7 @@ struct hierarchy {
     bvh_node *nodes;      /* bvh; [0] is the root; 64-byte aligned */
     sphere_node *spheres; /* sphere and octant; [0] is the root */
     size_t node_count;
-    size_t referred;   /* bvh: triangles in its blocks; fewer than the mesh's if some had no area at the build */
+    size_t referred;   /* bvh: triangles in its blocks; fewer than the mesh's if some had coinciding corners */
     double built_cost; /* hierarchy_cost at the build; 0 for other kinds */
     float reach[3];    /* bvh: the largest magnitude of a box's planes, by axis */
     hierarchy_report report;

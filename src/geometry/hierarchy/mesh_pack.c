@@ -92,8 +92,8 @@ static status check_hierarchy_head(const mesh *m, const hierarchy_head *head, co
     return STATUS_OK;
 }
 
-/* Marks a node's children with their level, from 1 for the root. false: a child is out of range, precedes its parent,
- * has another parent too, or is too deep. */
+/* Marks a node's children with their level, from 1 for the root. false: the node has no parent, or a child is out of
+ * range, precedes its parent, has another parent too, or is too deep. */
 static bool mark_children(uint8_t *level, size_t count, size_t parent, uint64_t first, uint64_t children, int deepest)
 {
     if (level[parent] == 0 || children == 0)

@@ -24,8 +24,8 @@ typedef struct batch_floats {
     ALIGNED float origin[3][PACKET_MAX], direction[3][PACKET_MAX]; /* the direction's largest component is 1..2 */
     ALIGNED float t_min[PACKET_MAX], t_max[PACKET_MAX];            /* rounded outwards, in the direction's units */
     ALIGNED double t_limit[PACKET_MAX]; /* t_max, then the best hit's t, in the direction's units */
-    /* Rays of one packet have the same signs and the same largest component of the direction: three bits, and the
-     * axis' number times eight; -1 for a ray that cannot hit anything. */
+    /* Signs of the direction (three bits) plus 8 times the axis of its largest component; -1 for a ray that cannot hit
+     * anything. The rays of a packet are of one kind. */
     ALIGNED int32_t kind[PACKET_MAX];
 } batch_floats;
 

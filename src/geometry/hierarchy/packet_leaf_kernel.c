@@ -33,7 +33,7 @@ static leaf_errors errors_of(const packet *p, const bvh_node *node, uint32_t slo
     return (leaf_errors){d, 20.0f * u * (edge + far) + FLOAT_TINY, 7.0f * d * edge + FLOAT_TINY};
 }
 
-/* The edge functions of sixteen rays: two of them, and their sum. */
+/* The edge functions of sixteen rays: the second and third, and the sum of all three. */
 typedef struct weights {
     _Alignas(64) float v[LANES], w[LANES], det[LANES];
 } weights;
@@ -56,7 +56,7 @@ ALWAYS_INLINE unsigned maybe_inside(const packet *p, int i, const float (*corner
         const float u = x2 * y1 - y2 * x1, v = x0 * y2 - y0 * x2, w = x1 * y0 - y1 * x0;
         const float uv = u < v ? u : v, vu = u > v ? u : v;
         const float least = uv < w ? uv : w, most = vu > w ? vu : w;
-        /* not both: one below zero, one above */
+        /* one is certainly below zero and another above: the ray passes outside */
         const float below = -least, lesser_of_both = below < most ? below : most;
         inside[k] = lesser_of_both > error ? 0 : -1;
         out->v[k] = v;

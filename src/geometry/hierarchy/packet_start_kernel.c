@@ -117,8 +117,8 @@ static void prepare_shears(packet *p, const float *restrict ox, const float *res
     }
 }
 
-/* The margin at the origins bounds the same errors as in box_ray. As there, a limited inverse is infinite for the far
- * planes; a plane at the margin then gives NaN, which bounds_of_distances ignores. */
+/* The margin at the origins bounds the same errors as in box_ray_start. A limited inverse is no bound for the far
+ * planes and becomes infinite; a plane at the margin then gives NaN, which bounds_of_distances ignores. */
 static void find_bounds(packet *p, const float *reach, const float *const *origins)
 {
     const int n = p->groups * LANES;

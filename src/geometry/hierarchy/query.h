@@ -40,7 +40,8 @@ typedef struct ray_query {
     void *context;
 } ray_query;
 
-/* False for a ray that cannot hit anything: its direction is zero, or its origin is out of range. */
+/* False for a ray that cannot hit anything: its direction is zero, a component is not finite, its origin is out of
+ * range, or its interval of t is empty. */
 ALWAYS_INLINE bool query_start(ray_query *q, const mesh_ray *ray)
 {
     const double o[3] = {ray->origin.x, ray->origin.y, ray->origin.z};
@@ -146,7 +147,7 @@ static __attribute__((noinline)) bool query_test_triangle(ray_query *q, enum que
     const int facing = det > 0.0 ? FACING_FRONT : FACING_BACK;
     if (!(det > 0.0 || det < 0.0) || !(facing & q->wanted))
         return false;
-    /* A sliver seen edge-on: the weights are rounding noise, and only its extent decides whether it is hit. */
+    /* The weights of a sliver seen edge-on are rounding noise: it is hit only within its bounds across the ray. */
     if (!(least_of(x) <= 0.0 && most_of(x) >= 0.0 && least_of(y) <= 0.0 && most_of(y) >= 0.0))
         return false;
     double t = (u * z[0] + v * z[1] + w * z[2]) / det;
@@ -294,7 +295,7 @@ ALWAYS_INLINE float box_margin(float reach, float origin)
     return (reach + __builtin_fabsf(origin) + REACH_LEAST) * BOX_SLACK;
 }
 
-/* The low planes of an axis, and the high planes, in bytes from the node's start. */
+/* Byte offsets of an axis' low and high planes from the node's start. */
 ALWAYS_INLINE size_t low_planes(int axis)
 {
     return (size_t)axis * WIDTH * sizeof(float);

@@ -6,7 +6,7 @@
 #include <stdint.h>
 #include <string.h>
 
-/* Without AVX compilers warn about passing wide vectors to functions; all functions here are inlined. */
+/* Without AVX compilers warn about passing wide vectors to functions; all functions of this file are inlined. */
 #pragma GCC diagnostic ignored "-Wpsabi"
 
 typedef float float4 __attribute__((vector_size(16)));
@@ -45,8 +45,8 @@ ALWAYS_INLINE float8 floats_at(const float *p)
 #define MULTIPLY_ADD(a, b, c) ((a) * (b) + (c))
 #endif
 
-/* The set of lanes whose mask is -1, one bit per lane; lane_first is the lowest lane of a non-empty set. AVX-512
- * narrows a vector in one instruction, which makes the byte form faster there. */
+/* The set of lanes whose mask is -1: one bit per lane, with AVX-512 in a byte per lane, which is faster because AVX-512
+ * narrows a vector in one instruction. lane_first is the lowest lane of a non-empty set. */
 #ifdef __AVX512VL__
 ALWAYS_INLINE uint64_t lanes_of8(int8x32 mask)
 {

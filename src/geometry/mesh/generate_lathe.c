@@ -43,7 +43,7 @@ static status check(const profile_point *profile, size_t count, int around, doub
     if (!(crease_deg >= 0.0 && crease_deg <= 180.0))
         return diagnose(why, STATUS_BAD_INPUT, "use 0 to 180 degrees", "crease angle %g is out of range", crease_deg);
     if (count < 2 || count > MESH_VERTICES_MAX)
-        return diagnose(why, STATUS_BAD_INPUT, "use at least 2 points", "a profile cannot have %zu points", count);
+        return diagnose(why, STATUS_BAD_INPUT, "use 2 to 536870912 points", "a profile cannot have %zu points", count);
     bool off_axis = false;
     for (size_t k = 0; k < count; k++) {
         const profile_point p = profile[k];
@@ -60,7 +60,7 @@ static status check(const profile_point *profile, size_t count, int around, doub
                                "all points of the profile are on the axis");
 }
 
-/* The volume enclosed by the cones of the profile, from bottom to top, times 6 / (2 pi). */
+/* The volume enclosed by the profile's cones, times 3 / pi; negative if the profile runs downwards on the outside. */
 static double enclosed(const profile_point *p, size_t count)
 {
     double sum = 0.0;

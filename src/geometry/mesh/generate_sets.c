@@ -171,7 +171,7 @@ static void place_flat(mesh *m, size_t face, size_t f)
     }
 }
 
-/* Bisects rows that are `step` apart until all f + 1 rows exist. */
+/* Places the corners, then repeatedly the vertices midway between neighbours, until all f + 1 rows exist. */
 static void place_bisected(mesh *m, size_t face, size_t f)
 {
     vec3 *grid = m->vertices + face * row_start(f + 1);
@@ -180,9 +180,9 @@ static void place_bisected(mesh *m, size_t face, size_t f)
     grid[row_start(f) + f] = vec3_normalize(icosahedron(faces[face][2]));
     for (size_t half = f / 2; half > 0; half /= 2) {
         for (size_t i = 0; i <= f && !cancel_asked(); i += half) {
-            const size_t up = i % (2 * half) ? half : 0; /* an odd row has its ends above and below, */
+            const size_t up = i % (2 * half) ? half : 0; /* a new row: neighbours above and below */
             for (size_t j = 0; j <= i; j += half) {
-                const size_t left = j % (2 * half) ? half : 0; /* an odd column to the left and right */
+                const size_t left = j % (2 * half) ? half : 0; /* a new column: left and right */
                 if (up || left)
                     grid[row_start(i) + j] = vec3_normalize(
                         vec3_add(grid[row_start(i - up) + j - left], grid[row_start(i + up) + j + left]));

@@ -13,8 +13,7 @@
 #include <stddef.h>
 #include <stdint.h>
 
-/* Numbers of triangles and of vertices fit into 32 bits, and three corners per triangle times the memory of one into
- * any size_t. */
+/* The numbers of vertices, of triangles and of triangle corners (three per triangle) fit into 32 bits. */
 enum { MESH_TRIANGLES_MAX = 1 << 28, MESH_VERTICES_MAX = 1 << 29, MESH_SLOTS_MAX = 256 };
 #define MESH_FAR 1e9 /* the largest magnitude of a coordinate */
 
@@ -38,11 +37,12 @@ typedef enum hierarchy_kind {
     HIERARCHY_KIND_COUNT
 } hierarchy_kind;
 
-/* Why mesh_finish found a mesh not closed: an edge (by two vertices) that is not shared by two triangles. */
+/* Why mesh_finish found a mesh not closed: the edge between two vertices is shared by another number of triangles than
+ * 2, or, on a one-sided surface, by 2 triangles whose fronts cannot agree. triangle: one of the triangles. */
 typedef struct mesh_hole {
     uint32_t from, to;
     size_t triangle;
-    int sharing;
+    int sharing; /* number of triangles that share the edge */
 } mesh_hole;
 
 typedef struct mesh {
@@ -54,7 +54,8 @@ typedef struct mesh {
     uint8_t *slots;                   /* material slot by triangle; NULL: all 0 */
     int slot_count;                   /* at least 1 */
     char *slot_names[MESH_SLOTS_MAX]; /* owned; NULL where a slot has no name */
-    /* no two vertices have the same position (-0 equals 0), so that mesh_finish need not search; it resets this */
+    /* set by the creator if no two vertices have the same position (-0 equals 0): mesh_finish then need not search for
+     * such vertices. mesh_finish resets it. */
     bool distinct;
     /* set by mesh_finish: */
     bounds3 bounds;             /* of the vertices that triangles use; low > high without triangles */
@@ -81,7 +82,8 @@ status mesh_create(size_t vertex_count, size_t triangle_count, bool with_normals
  * Triangles with the wrong winding in an otherwise closed mesh are flipped, and so is a closed mesh that is inside out
  * (negative volume). A connected part of which three quarters of the triangles agree keeps their direction, so that a
  * hollow stays a hollow; a more mixed part is made to face outwards. Given normals are not changed. For a one-sided
- * surface the hole is an edge shared by 2 triangles. The message of STATUS_BAD_INPUT names the triangle or vertex. */
+ * surface the hole is an edge shared by 2 triangles. The message of STATUS_BAD_INPUT names the triangle or vertex.
+ * STATUS_FAILURE: out of memory. STATUS_INTERRUPTED: cancelled. */
 status mesh_finish(mesh *m, diagnostic *why);
 
 void mesh_retain(const mesh *m);

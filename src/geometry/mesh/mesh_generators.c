@@ -37,8 +37,8 @@ vec3 generate_azimuth(int at, int around)
 {
     double sine, cosine;
     elementary_sincos_deg(360.0 * (at % around) / around, &sine, &cosine);
-    return vec3_make(-sine, 0.0,
-                     cosine); /* 180 degrees further: the sine of the longitude along x, its cosine along -z */
+    /* the longitude is 180 degrees less: x is its sine, -z its cosine */
+    return vec3_make(-sine, 0.0, cosine);
 }
 
 void generate_quad(mesh *m, size_t *triangle, size_t a, size_t b, size_t c, size_t d)
@@ -49,7 +49,7 @@ void generate_quad(mesh *m, size_t *triangle, size_t a, size_t b, size_t c, size
 
 /* --- box --- */
 
-/* Half the edges as signs: a face's outward normal, and its right and upper directions as seen from outside. */
+/* The outward normal of each face, and the directions to the right and up as seen from outside. */
 static const struct {
     vec3 normal, right, up;
 } sides[6] = {{{0, 0, -1}, {1, 0, 0}, {0, 1, 0}}, {{1, 0, 0}, {0, 0, 1}, {0, 1, 0}},
@@ -83,7 +83,8 @@ status generate_box(vec3 size, mesh **out, diagnostic *why)
 static status check_torus(double major, double minor, int around, int tube, diagnostic *why)
 {
     if (!generate_is_length(major) || !generate_is_length(minor) || !(minor < major) || !(major + minor <= MESH_FAR))
-        return diagnose(why, STATUS_BAD_INPUT, "use radii greater than 0, with the tube's the smaller one",
+        return diagnose(why, STATUS_BAD_INPUT,
+                        "use radii above 0, at most 1e9 in sum, with the tube's the smaller one",
                         "invalid torus radii %g and %g", major, minor);
     if (around < 3 || tube < 3)
         return diagnose(why, STATUS_BAD_INPUT, "use at least 3 segments",

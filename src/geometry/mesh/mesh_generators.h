@@ -1,7 +1,7 @@
 /* Generators of meshes: the three triangle sets of the speed studies, and parametric solids. Each mesh is in its own
  * frame about the origin, y up. Ownership: the caller becomes the mesh's only owner. STATUS_BAD_INPUT for numbers out
- * of range (the remedy gives the valid range). Only + - * / and sqrt, and elementary.h: identical bits on every
- * platform. */
+ * of range (the remedy gives the valid range) or more memory than the budget allows, STATUS_FAILURE if memory runs out,
+ * STATUS_INTERRUPTED when cancelled. Only + - * / and sqrt, and elementary.h: identical bits on every platform. */
 #pragma once
 
 #include "geometry/mesh/mesh.h"
@@ -28,8 +28,8 @@ status generate_icosphere(int level, mesh **out, diagnostic *why);
 status generate_torus(double major, double minor, int around, int tube, mesh **out, diagnostic *why);
 
 /* A surface of revolution: a profile of points (radius >= 0, height) rotated about the y axis in `around` >= 3
- * segments. Closed if the profile begins and ends on the axis (radius 0), or ends where it began. An edge of the
- * profile is sharp (its own normals) where the profile turns by more than crease_deg. */
+ * segments. Closed if the profile begins and ends on the axis (radius 0), or ends where it began. The surface has
+ * a sharp edge (two normals) where the profile turns by more than crease_deg, 0..180. */
 typedef struct profile_point {
     double radius, height;
 } profile_point;

@@ -10,10 +10,10 @@
 /* Whether triangles use all vertices of a mesh; mesh_move computes it once. */
 enum mesh_used { MESH_USED_UNKNOWN, MESH_USED_ALL, MESH_USED_SOME };
 
-/* mesh.c creates it (all zero but owners and the mutex) and, at the last release, calls `destroy` on each hierarchy
- * before it frees the mesh; hierarchy.c builds under the mutex and stores finished hierarchies. owners and hierarchies
- * are accessed only with the compiler's __atomic operations; destroy is set under the mutex before the first hierarchy
- * is stored. */
+/* The state that the owners of a mesh share. mesh.c creates it (all zero but owners and the mutex) and, at the last
+ * release, calls `destroy` on each hierarchy before it frees the mesh; hierarchy.c builds under the mutex and stores
+ * finished hierarchies. owners and hierarchies are accessed only with the compiler's __atomic operations; destroy is
+ * set under the mutex before the first hierarchy is stored. */
 struct mesh_shared {
     long owners;
     enum mesh_used used;                          /* read and written only by the owner that moves the mesh */
@@ -34,20 +34,22 @@ status mesh_close(mesh *m, diagnostic *why);
 /* Sets m->bounds and m->single from the vertices that triangles use. */
 void mesh_find_bounds(mesh *m);
 
-/* Makes every normal a unit vector; a zero normal becomes that of the first adjacent triangle that has one. */
+/* Makes every normal a unit vector. A zero normal becomes the front normal of the first adjacent triangle that has an
+ * area, or +y if none has. */
 void mesh_normalize(mesh *m);
 
 /* --- generators --- */
 
 /* Finishes a generated mesh and returns it; releases it on failure. A mesh that should be closed and is not has
- * features too small for doubles: STATUS_BAD_INPUT. A generator may leave its loops early when it is cancelled. */
+ * features too small for doubles: STATUS_BAD_INPUT. A generator may leave its loops early when it is cancelled: the
+ * result is then STATUS_INTERRUPTED. */
 status generate_finish(mesh *m, bool must_be_closed, mesh **out, diagnostic *why);
 
 /* Whether x is greater than 0 and at most MESH_FAR. */
 bool generate_is_length(double x);
 
-/* Texture coordinates by direction: u = 1/2 is at -z, facing a viewer in front, and increases to that viewer's right,
- * +x. Longitude in degrees -180..180; latitude by 1/180. */
+/* Texture coordinates by direction. u = 1/2 + longitude / 360 is 1/2 at -z, which faces a viewer in front, and
+ * increases to the viewer's right, +x; the longitude is -180..180 degrees. v is 0 at -y and 1 at +y. */
 double generate_longitude_deg(vec3 p);
 double generate_latitude_v(vec3 p);
 /* Unit vector of longitude 360 u - 180 with u = at / around; identical bits at 0 and at around. */

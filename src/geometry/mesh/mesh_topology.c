@@ -1,5 +1,6 @@
 /* The volume and area of a mesh, and whether it is closed. Vertices at equal positions are joined; the two half-edges
- * of each edge are found; neighbouring triangles that run along their common edge in the same direction are flipped. */
+ * of each edge are found; of two neighbouring triangles that run along their common edge in the same direction, one is
+ * flipped. */
 #include "base/cancel.h"
 #include "base/array.h"
 #include "geometry/mesh/mesh_private.h"
@@ -202,7 +203,8 @@ static status edge_lists_make(const mesh *m, edge_lists *lists, diagnostic *why)
         return diagnose(why, STATUS_FAILURE, "use fewer triangles", "out of memory for the edges of a mesh");
     if (!touch_pages(start, (m->vertex_count + 2) * sizeof *start) || !touch_pages(edges, all))
         return cancel_check(why);
-    /* two passes over the half-edges: count them two entries ahead, then place each at the end of the list before */
+    /* Two passes over the half-edges. The first counts those of v in start[v + 2]. After the summation start[v + 1] is
+     * the beginning of v's list; the second pass advances it to the end of the list as it writes. */
     for (int writing = 0; writing < 2; writing++) {
         for (size_t t = 0; t < m->triangle_count && !cancel_asked_at(t); t++) {
             const uint32_t *corner = m->triangles[t].corner;

@@ -2,8 +2,8 @@
  *
  *     z = c q / (1 + w) + A4 q^2 + A6 q^3 + A8 q^4,  w = sqrt(1 - (1 + k) c^2 q),
  *
- * for the curvature c = 1 / R and the conic constant k; without coefficients a conic. By derivatives, dw/dq =
- * -(1 + k) c^2 / (2 w), so that dz/dq = c / (2 w) + 2 A4 q + 3 A6 q^2 + 4 A8 q^3. Pure; cannot fail. */
+ * for the curvature c = 1 / R and the conic constant k; without coefficients it is a conic. Since dw/dq =
+ * -(1 + k) c^2 / (2 w), dz/dq = c / (2 w) + 2 A4 q + 3 A6 q^2 + 4 A8 q^3. Pure; cannot fail. */
 #pragma once
 
 #include <math.h>
@@ -22,7 +22,7 @@ static inline bool asphere_has_terms(const even_asphere *e)
     return e->even[0] != 0.0 || e->even[1] != 0.0 || e->even[2] != 0.0;
 }
 
-/* w, at least 0 or, with coefficients, a value below w of all points within the rim. */
+/* w, but not less than 0 or, with coefficients, than a value that is below w of all points within the rim. */
 static inline double asphere_root(const even_asphere *e, double q)
 {
     const double under = 1.0 - e->stretch * e->curvature * e->curvature * q;

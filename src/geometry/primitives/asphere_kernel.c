@@ -6,10 +6,10 @@
  *
  *     |f'(m)| >= K h: f is monotonic;  |f(m)| >= |f'(m)| h + K h^2 / 2: f has no zero (Taylor's theorem).
  *
- * An interval for which neither holds is halved, until it is narrow enough that f could at most touch 0 by less than
- * rounding. So the signs at the ends of the intervals show all crossings (as Moore's interval Newton method isolates
- * roots: Moore, Kearfott and Cloud, Introduction to Interval Analysis, ch. 8). A line far from tangency needs one
- * interval. The shape has at most three chords (shapes/lens.c).
+ * An interval for which neither holds is halved, until f is within rounding of its tangent. So the signs at the ends of
+ * the intervals show all crossings (as Moore's interval Newton method isolates roots: Moore, Kearfott and Cloud,
+ * Introduction to Interval Analysis, ch. 8). A line far from tangency needs one interval. The shape has at most three
+ * chords (shapes/lens.c).
  *
  * For a ray that starts on the surface, f(0) = 0 is taken as exact: f is t times the difference quotient, whose terms
  * do not cancel, and its sign next to 0 is that of the derivative. */

@@ -187,7 +187,8 @@ ALWAYS_INLINE local_point point(const primitive *p, bool general, local_ray r, v
     const vec3 normals[] = {out, vec3_make(0.0, -1.0, 0.0), vec3_make(gx * inverse, inverse, gz * inverse), up};
     const vec3 points[] = {vec3_make(out.x * p->radius, q.y, out.z * p->radius), vec3_make(q.x, 0.0, q.z),
                            vec3_make(q.x, rise, q.z), vec3_make(q.x, h->wall, q.z)};
-    const double outside = 0x1p-30 * p->radius; /* beyond the edge between surface and ring, only by rounding */
+    const double outside = 0x1p-30 * p->radius;
+    /* q is past the edge between surface and ring only by rounding: its distance from the edge is added */
     const double apart[] = {magnitude(rho - p->radius), magnitude(q.y),
                             magnitude(q.y - rise) * inverse + (within ? 0.0 : rho - h->radius),
                             magnitude(q.y - h->wall) + (within ? h->radius - rho : 0.0)};

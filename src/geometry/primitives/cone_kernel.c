@@ -11,9 +11,9 @@ ALWAYS_INLINE double cone_slope(const primitive *p)
     return (p->second_radius - p->radius) / p->top;
 }
 
-/* The interval of a ray in the infinite side's half. The discriminant is Lagrange's identity for x^2 + z^2 - w^2. t is
- * measured from the point nearest to the solid's centre; for a ray that starts on the side, from its start, where c =
- * 0. */
+/* The interval, in the ray's t, in which a ray is in the infinite half cone with w > 0. The discriminant is computed by
+ * Lagrange's identity for x^2 + z^2 - w^2. The quadratic is solved from the line's point nearest to the solid's centre;
+ * for a ray that starts on the side, from its start, where c = 0. */
 ALWAYS_INLINE quadric_roots cone_side(const primitive *p, local_ray r, int64_t starts_on)
 {
     const double slope = cone_slope(p), dx = cylinder_dx(r.dx, r.dz), dw = slope * r.dy;

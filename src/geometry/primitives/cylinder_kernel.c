@@ -30,9 +30,10 @@ ALWAYS_INLINE local_point point(const primitive *p, bool general, local_ray r, v
     quadric_roots side = cylinder_side(p, r.x, r.z, dx, r.dz, a, 1.0 / a, mask_same(at, 0));
     slab_roots caps = slab_cross(r.y, inverse_y, p->bottom, p->top, mask_same(at, 1), mask_same(at, 2));
     /* A ray that is inside by its set and misses the primitive past an edge, by rounding, leaves at once
-     * (store_interval). It leaves by the side, because the top of a hollow is at infinity. Its roots are NaN then. */
+     * (store_interval). It leaves by the side, because the top of a hollow is at infinity. The side's roots are then
+     * NaN. */
     int64_t is_side = blend_int(leaving, ~mask_less_equal(caps.out, side.out), mask_less(caps.in, side.in));
-    /* entered from above or left upwards; -0.0 counts as downwards, as for the roots */
+    /* the ray enters from above or leaves upwards; -0.0 counts as downwards, as for the roots */
     int64_t is_top = leaving ^ mask_less(inverse_y, 0.0);
     double inverse = 1.0 / sqrt(q.x * q.x + p->m2 * q.z * q.z);
     double ux = q.x * inverse, uz = q.z * inverse, x = p->radius * ux, z = p->radius * uz;

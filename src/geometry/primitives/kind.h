@@ -36,8 +36,8 @@ static inline int one_chord(interval chord, interval chords[CHORDS_MAX])
     return chord.in < chord.out;
 }
 
-/* Stores the one interval of a convex primitive, consistent with the ray's set and the face that it starts on: see
- * intervals_kernel.c. */
+/* Stores the one interval of a convex primitive, consistent with the ray's set and the face that the ray starts on:
+ * see intervals_kernel.c. */
 ALWAYS_INLINE void store_interval(double near, double far, int64_t hit, int64_t starts_on, int64_t inside, double *in,
                                   double *out)
 {
@@ -66,7 +66,8 @@ ALWAYS_INLINE ray_span span_within(quadric_roots side, slab_roots caps, int64_t 
     return (ray_span){near, far, side.hit & mask_less(near, far), starts_on};
 }
 
-/* Computes the interval of ray i, which is r in the local frame; at: the face that it starts on, from 0. */
+/* Computes the interval of ray i, which is r in the local frame. at: the primitive's face that the ray starts on, from
+ * 0; a number that no face has if it starts elsewhere. */
 typedef ray_span span_function(const primitive *p, bool general, local_ray r, int64_t at, const ray_scratch *s, int i);
 
 ALWAYS_INLINE void spans_in(const primitive *p, span_function *span, bool general, int bit, const ray_batch *rays,
@@ -122,11 +123,14 @@ typedef struct crossings_of_one {
 } crossings_of_one;
 
 /* The crossings ahead of a ray, selected from the crossings of its line other than its start: an odd number if the ray
- * is inside, otherwise an even one. If rounding makes the parity wrong, the ray's set decides. If the ray starts on
- * another surface, its start is on this one up to rounding: the crossing nearest to the start is on the wrong side of
- * it. If the ray starts on this surface (starts_on), its direction contradicts the set: it leaves at once, or does not
- * enter and crosses nothing. But if it grazes the concave side of the surface, a crossing within `grazing` is the start
- * again, on the wrong side. */
+ * is inside, otherwise an even one. If rounding makes the parity wrong, the ray's set decides: a crossing is added at
+ * the start, or the next one is removed.
+ * - The ray starts on another surface, within rounding of this one: the crossing nearest to the start is on the wrong
+ *   side of it.
+ * - The ray starts on this surface (starts_on), and its direction contradicts the set. Inside, it leaves at once.
+ *   Outside, it does not enter, so the crossing at which it would leave is removed.
+ * - The same, but the ray grazes the concave side: a crossing within `grazing` is the start itself, which rounding put
+ *   on the wrong side. */
 static inline crossings_of_one crossings_ahead(const crossings_of_one *line, bool starts_on, bool inside,
                                                double grazing)
 {
@@ -139,9 +143,9 @@ static inline crossings_of_one crossings_ahead(const crossings_of_one *line, boo
         const double next = first < line->count ? line->t[first] : HUGE_VAL;
         const bool now = !starts_on ? behind <= next : inside ? next > grazing : behind <= grazing;
         if (now)
-            ahead.t[ahead.count++] = 0.0; /* it crosses at its start */
+            ahead.t[ahead.count++] = 0.0; /* a crossing is added at the start */
         else
-            first++; /* that crossing is behind the start */
+            first++; /* the next crossing is removed */
     }
     for (int k = first; k < line->count; k++)
         ahead.t[ahead.count++] = line->t[k];
@@ -220,8 +224,8 @@ ALWAYS_INLINE void points_on(const primitive *p, point_function *project, bool g
         store_point(p, project, general, rays, t, i, bit, s);
 }
 
-/* Define rows and points with a body that is compiled for both values of is_general, an expression in p: whether rays
- * must be transformed into the primitive's frame (it is rotated or scaled). */
+/* Define rows and points with a body that is compiled for both values of is_general, an expression in p: whether the
+ * primitive is rotated, or needs code for another reason that upright ones do not need. */
 #define DEFINE_ROWS(is_general, body)                                                               \
     static void rows(const primitive *__restrict p, int bit, const ray_batch *rays, ray_scratch *s) \
     {                                                                                               \

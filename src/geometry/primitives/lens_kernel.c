@@ -86,7 +86,7 @@ static void concave_one(const primitive *p, const ray_batch *rays, int i, bool i
     lens_ahead(p, side, &l, rays, i, inside, found);
 }
 
-/* The intervals of the parts by vectors; their difference ray by ray, as few rays hit a lens. */
+/* The intervals of the parts are computed by vectors, their difference ray by ray, because few rays hit a lens. */
 static void concave_rows(const primitive *__restrict p, int bit, const ray_batch *rays, ray_scratch *s)
 {
     const lens_side side[2] = {lens_side_of(p, 0), lens_side_of(p, 1)};

@@ -2,9 +2,9 @@
  * kernels. Faces: 0 rim, 1 the side at y = 0, 2 the side at y = top. Pure; cannot fail.
  *
  * The conic's equation is c (x^2 + z^2 + (1 + k) u^2) - 2 u = 0, with u measured from its vertex towards its centre of
- * curvature, exact for flat sides too. It holds on both halves of an ellipsoid, and on both sheets of a hyperboloid;
- * only the one at the vertex counts. Beyond an ellipsoid's centre the set continues, so that a lens may be longer than
- * its spheres; within the rim, that union is convex. */
+ * curvature; c = 0 is a flat side. It holds on both halves of an ellipsoid, and on both sheets of a hyperboloid; only
+ * the half or sheet at the vertex counts. Beyond an ellipsoid's centre the convex set of the side is everything within
+ * the rim, so that a lens may be longer than its spheres. */
 #pragma once
 
 #include "geometry/primitives/asphere.h"
@@ -62,12 +62,13 @@ ALWAYS_INLINE interval half_space(double u, double inverse_u)
     return (interval){blend(opens, t, -HUGE_VAL), blend(opens, HUGE_VAL, t)};
 }
 
-/* The interval of a ray in the convex set of a side, as far as the ray is within the rim. t is measured from the point
- * nearest to the vertex; for a ray that starts on the side, from its start, where c = 0.
+/* The interval, in the ray's t, in which a ray is in the convex set of a side, as far as the ray is within the rim.
+ * The conic is intersected from the line's point nearest to the vertex; for a ray that starts on the side, from its
+ * start, where the quadratic's constant term is 0.
  *
- * Where a line within the rim crosses the plane of an ellipsoid's centre, it is inside the ellipsoid. So the plane
- * decides whether the interval has an end, and is an end itself only by rounding, for a line that touches the ellipsoid
- * there. */
+ * A line that crosses the plane through an ellipsoid's centre within the rim is inside the ellipsoid there. So this
+ * plane decides whether the interval is unbounded. The plane itself is an end only by rounding, for a line that touches
+ * the ellipsoid there. */
 ALWAYS_INLINE interval lens_side_cross(const lens_side *e, local_ray r, double inverse_length2, interval rim,
                                        int64_t starts_on)
 {

@@ -91,7 +91,8 @@ static int zeros_between(torus_value *value, const torus_line *l, const double *
     return found;
 }
 
-/* Inserts the ascending points strictly between low and high between these two. */
+/* Lists low, those of the ascending given points that are strictly between low and high, and high. Returns the number
+ * of points. */
 static int points_within(double low, double high, const double *given, int count, double *points)
 {
     int n = 0;

@@ -10,9 +10,9 @@
 
 /* --- one box ---
  *
- * Tests the separating axes of a line and a box, the products of the ray's direction with the box's edges (Gottschalk,
- * Lin, Manocha, "OBBTree", SIGGRAPH 1996), and the box's own axes, along which the ray leaves. The box is widened far
- * beyond the rounding error of a hit, so that the test only saves time. */
+ * Tests the separating axes of a line and a box, which are the cross products of the ray's direction with the box's
+ * edges (Gottschalk, Lin, Manocha, "OBBTree", SIGGRAPH 1996), and whether the ray starts beyond a face and moves away.
+ * The box is widened far beyond the rounding error of a hit, so that the test only saves time. */
 
 /* -1 if the ray misses the box for certain, otherwise 0; also 0 for a box that is not a number. */
 static inline int64_t ray_misses_box(vec3 low, vec3 high, vec3 o, vec3 d)
@@ -35,11 +35,11 @@ static inline int64_t ray_misses_box(vec3 low, vec3 high, vec3 o, vec3 d)
 /* --- the boxes of a node ---
  *
  * No box that the exact ray enters between t_min and t_max is missed: box planes are rounded outwards, and distances
- * are widened by more than the rounding errors (Ize, "Robust BVH ray traversal", JCGT 2(2), 2013), those of the origin
- * by widening the boxes. */
+ * are widened by more than the rounding errors (Ize, "Robust BVH ray traversal", JCGT 2(2), 2013). For the rounding of
+ * the origin the boxes are widened. */
 
 #define BOXES_SLACK 0x1p-20f /* relative; more than the roundings of an origin, an inverse, a difference, a product */
-#define BOXES_TINY 1e-30f    /* a component below it is replaced by it: its inverse is finite */
+#define BOXES_TINY 1e-30f    /* replaces a smaller component, whose inverse could be infinite */
 
 typedef struct boxes_ray {
     float origin[3], inverse[3];

@@ -156,7 +156,8 @@ static void collect_contact(void *context, const instance_hit *hit)
         m->reach = greater(m->reach, magnitude(hit->t - m->at->t));
 }
 
-/* The largest distance of mesh p's boundaries in contact from the crossing, and a margin; negative for none. */
+/* The largest distance of mesh p's boundaries in contact with the crossing from it, plus a margin; negative for
+ * none. */
 static double mesh_reach(const scene_geometry *g, const ray_batch *rays, int k, const ray_scratch *s,
                          const crossing *at, int p)
 {

@@ -81,7 +81,8 @@ static size_t instances_of(const instanced_mesh *p)
 #define WITHOUT_VECTORS
 #endif
 
-/* World bounds of a box in a mesh's local frame, about the frame's origin; widened beyond the rounding error. */
+/* The bounds of a mesh along the world's axes, relative to the origin of its frame; widened beyond the rounding
+ * error. */
 WITHOUT_VECTORS
 static bounds3 bounds_in_world(const instanced_mesh *p)
 {

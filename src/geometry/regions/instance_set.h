@@ -91,7 +91,8 @@ void instance_set_destroy(instance_set *f);
 /* Origin of a copy's frame in the world. */
 vec3 instance_set_origin(const instanced_mesh *p, uint32_t copy);
 
-/* The largest distance of the copy with that face from the world's origin: a bound on each of its coordinates. */
+/* A measure of the coordinates of the copy with that face, for error bounds: the largest coordinate of its origin, plus
+ * the mesh's reach, which a rotated copy can exceed by a factor of up to sqrt(3). */
 double instance_set_extent(const instance_set *f, int64_t face);
 
 /* Texture coordinates at a hit, and their larger gradient per scene unit; 0 for a mesh without them. */
@@ -116,8 +117,8 @@ typedef struct instance_kernels {
     /* The next relevant crossing: the exit of a mesh that the ray is in, the entry of one that it is not in and that
      * the medium does not hide, or either side of an open surface. */
     void (*nearest)(const instance_set *f, const instance_ray *rays, int count, instance_hit *hits);
-    /* Writes for each ray whether any mesh of the wanted set blocks it. Closed meshes as above, even if a solid of
-     * higher priority hides them. */
+    /* Writes for each ray whether any mesh of the wanted set blocks it. Closed meshes count as for nearest,
+     * but also where a solid of higher priority hides them. */
     void (*any)(const instance_set *f, const instance_ray *rays, int count, bool *blocked);
     /* The set of primitives after all crossings of wanted meshes in t_min < t <= t_max; an open surface in between has
      * its bit set, too. */

@@ -21,10 +21,10 @@ typedef struct visit {
 typedef struct traversal {
     const instance_set *f;
     const instance_ray *ray;
-    bool any, blocked; /* any: stop at the first hit; priorities are ignored */
+    bool any, blocked; /* any: ignore priorities, and stop at the first hit unless `all` is given */
     visit *all;        /* report every crossing and ignore priorities; else NULL */
     double t_max;
-    double beyond; /* the distance from its start within which it ignores open surfaces */
+    double beyond; /* added to t_min for open surfaces: see beyond_start */
     instance_hit *best;
 } traversal;
 
@@ -34,8 +34,8 @@ static vec3 direction_in(const instanced_mesh *p, vec3 d)
     return p->scaled ? vec3_make(turned.x / p->scale.x, turned.y / p->scale.y, turned.z / p->scale.z) : turned;
 }
 
-/* Converts an error bound across a face's triangle into one along the ray: divides it by the cosine of incidence, of
- * which the minimum keeps the bound finite at grazing incidence. */
+/* Converts an error bound across a face's triangle into one along the ray: divides it by the cosine of incidence,
+ * but by no less than 1e-6, so that the bound is finite at grazing incidence. */
 static double along_ray(const instance_set *f, const instance_ray *ray, int64_t face, double error)
 {
     const instanced_mesh *p = &f->parts[f->by_primitive[mesh_face_primitive(face)]];

@@ -2,8 +2,9 @@
  *
  * The ray's set decides where rounding errors could. A ray that is inside a primitive has no entry (in = -inf) and
  * leaves it at once if its exit is behind. A ray that is outside a convex primitive and starts on its face never hits
- * it again. A ray that is outside another primitive, although its interval contains the start, is at its edge up to
- * rounding: it enters now if more of the interval is ahead than behind; otherwise it has just left. */
+ * it again. A ray that starts elsewhere, outside a primitive by its set although the interval contains the start, is at
+ * the primitive's edge up to rounding: it enters now if more of the interval is ahead than behind; otherwise it has
+ * just left. */
 #include "geometry/regions/kernels.h"
 
 #include "geometry/primitives/primitive.h"

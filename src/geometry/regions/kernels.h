@@ -13,8 +13,7 @@
 void KERNEL(intervals_of)(const scene_geometry *g, const ray_batch *rays, uint64_t wanted, ray_scratch *scratch);
 
 /* A fraction of the distance and of the scene geometry's extent: boundaries within it of a crossing are compared with
- * the crossing one by one (contact_kernel.c). It filters and decides nothing: a contact is never wider than half of
- * it. */
+ * the crossing one by one (contact_kernel.c). It is only a filter: a contact is never wider than half of it. */
 #define BOUNDARY_CLOSE 0x1p-24
 
 /* A crossing beyond this distance counts as infinite: see primitives/primitive.h. */
@@ -32,8 +31,8 @@ static inline uint64_t direct_bit(const scene_geometry *g, int64_t p)
     return p < g->direct_count ? (uint64_t)1 << p : 0;
 }
 
-/* Advances the intervals of one primitive past t, where the ray is inside it or not: finished intervals are replaced by
- * the next ones. */
+/* Advances the intervals of one primitive past t: finished intervals are replaced by the next ones. inside: whether the
+ * ray is in the primitive there. */
 static inline void intervals_advance(interval *found, int count, bool inside, double t)
 {
     int spent = 0;
@@ -70,8 +69,9 @@ ALWAYS_INLINE double next_of_convex(int64_t within, double in, double out)
     return blend(within, out, in);
 }
 
-/* A region with a hollow. If the ray is in the region, its one boundary ahead is the exit: out of its outside or into
- * its hollow. Otherwise it is the entry: through its outside, or out of the hollow if that covers the entry. */
+/* A region with a hollow. If the ray is in the region, its next change is the exit: out of the outer primitive or into
+ * the hollow. Otherwise it is the entry: into the outer primitive or, if the hollow covers this point, out of the
+ * hollow. */
 ALWAYS_INLINE next_change next_of_hollowed(int64_t within, double in, double out, double hollow_in, double hollow_out)
 {
     int64_t by_hollow = mask_less(hollow_in, out);
@@ -115,9 +115,9 @@ void KERNEL(merge_contacts)(const scene_geometry *g, const ray_batch *rays, int 
 
 /* Fills s->tree.start, and writes the bits of the direct primitives that contain the rays' starts. */
 void KERNEL(tree_split)(const scene_geometry *g, const ray_batch *rays, ray_scratch *s, uint64_t *direct);
-/* Column k begins at the start of ray i. */
+/* Makes column k begin at the start of ray i. */
 void KERNEL(tree_begin)(int i, int k, ray_scratch *s);
-/* Column m continues where column k crosses at t. */
+/* Makes column m continue after column k's crossing at t. */
 void KERNEL(tree_advance)(int k, int m, double t, ray_scratch *s);
 
 /* The intervals of one of the tree's primitives ahead of column k; returns their number. */
@@ -134,8 +134,8 @@ typedef void tree_found(void *context, int p, const interval *found);
 void KERNEL(tree_each_near)(const scene_geometry *g, const ray_batch *rays, int k, const ray_scratch *s, double t,
                             tree_found *found, void *context);
 
-/* Marks the shadow rays that the tree's solids block for certain, or may. s->low: the length of a scene unit along each
- * ray. */
+/* Marks the shadow rays that the tree's solids block for certain (s->blocked), and those that they may block
+ * (s->undecided). s->low: steps_per_unit of each ray. */
 void KERNEL(tree_shadows)(const scene_geometry *g, const ray_batch *rays, int solid_shadows, ray_scratch *s);
 
 /* --- solid_view_kernel.c: for a geometry with a solid tree --- */
@@ -158,8 +158,8 @@ void KERNEL(mesh_surface)(const struct instance_set *f, const ray_batch *rays, c
 
 /* --- mesh_changes_kernel.c --- */
 
-/* Finds the next crossings of meshes if they come before those in c, for the first n columns; then sets the meshes'
- * bits in c's sets and in s->near. The bits of the other primitives must be set already. */
+/* For the first n columns: mesh_changes finds the next crossings of meshes if they come before those in c. Later, when
+ * the bits of the other primitives are set, mesh_sets sets the meshes' bits in c's sets and in s->near. */
 void KERNEL(mesh_changes)(const scene_geometry *g, const ray_batch *rays, int n, ray_scratch *s, hit_batch *c,
                           instance_hit *hits);
 void KERNEL(mesh_sets)(const scene_geometry *g, const ray_batch *rays, int n, ray_scratch *s, hit_batch *c,

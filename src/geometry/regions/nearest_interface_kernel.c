@@ -112,7 +112,7 @@ static void clear_sets(int n, ray_scratch *s, hit_batch *hits)
         hits->inside_before[i] = hits->inside_after[i] = s->near[i] = 0;
 }
 
-/* Calls with constant counts, so that the inner loop unrolls. */
+/* Calls sets_around for all rows, with constant counts, so that its inner loop unrolls. */
 static void all_sets_around(const scene_geometry *g, int n, ray_scratch *s, hit_batch *hits)
 {
     /* VECTORISE */
@@ -168,7 +168,8 @@ static void mark_attention(const scene_geometry *g, int n, const ray_scratch *re
     for (int i = 0; i < n; i++) {
         const int64_t hit = -(int64_t)(hits->hit_primitive[i] >= 0);
         const uint64_t changed = hits->inside_before[i] ^ hits->inside_after[i];
-        /* 0 if the sets differ only in the hit primitive's bit; gcc vectorises variable shifts to the right only */
+        /* `others` is 0 if `changed` and near are the hit primitive's bit; gcc vectorises variable shifts to the right
+         * only */
         const uint64_t shifted = changed >> (uint64_t)(hits->hit_primitive[i] & hit);
         const uint64_t others = (s->near[i] ^ changed) | (changed & (changed - 1)) | (shifted ^ 1);
         attention[i] = (~mask_same((int64_t)others, 0) | mask_same(hits->before[i], hits->after[i]) | doubt) & hit;
@@ -272,7 +273,7 @@ static void advance_rows(int first, int rows, bool inside, int k, int m, double 
         s->in[first + j][m] = found[j].in, s->out[first + j][m] = found[j].out;
 }
 
-/* Skips column k's crossing, which has no effect: the ray after it becomes column m, for another search. */
+/* Continues past column k's crossing: the ray after it becomes column m, for another search. */
 static void skip_crossing(const scene_geometry *g, int k, int m, ray_scratch *s, const hit_batch *hits,
                           const instance_hit *mesh_hits)
 {

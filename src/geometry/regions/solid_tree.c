@@ -149,7 +149,7 @@ static int build_node(boxes_build *b, range all)
 status solid_boxes_build(const bounds3 *items, int count, solid_boxes *out, diagnostic *why)
 {
     boxes_build b = {.items = items, .order = malloc((size_t)count * sizeof *b.order), .out = out};
-    /* A node has at least two children. */
+    /* A node has at least two children, or is the only one, so that there are at most as many nodes as items. */
     const size_t bytes = ((size_t)count + 1) * sizeof *out->nodes;
     *out = (solid_boxes){.nodes = aligned_alloc(64, (bytes + 63) / 64 * 64)};
     if (!b.order || !out->nodes) {

@@ -1,6 +1,6 @@
 /* The solid tree: a hierarchy of bounding boxes over the bounded solids of a scene without triangles, for scenes with
- * many. A ray is tested only against the solids whose boxes it hits; the other primitives of the scene geometry, the
- * direct ones, are tested by every batch.
+ * many. A ray is tested only against the solids whose boxes it hits; every batch of rays is tested against the
+ * other primitives of the scene geometry, the direct ones.
  *
  * Ownership: solid_tree_build creates, solid_tree_destroy frees; it borrows the scene geometry that it is part of. */
 #pragma once

@@ -28,7 +28,7 @@ void KERNEL(tree_advance)(int k, int m, double t, ray_scratch *s)
     s->tree.from[m] = t;
 }
 
-/* A hollow reaches beyond its solid, but its bit is kept up to date only within the solid's outside. */
+/* A hollow reaches beyond its solid, but its bit is kept up to date only in the region's outer primitive. */
 static bool is_set_without_outside(const scene_geometry *g, uint64_t set, int p)
 {
     const region *b = &g->regions[g->primitives[p].priority_index];
@@ -199,7 +199,7 @@ typedef struct tree_sides {
     const tree_search *w;
     double low, high;
     uint64_t before, after;
-    int near, changed; /* the numbers of primitives with a boundary near the crossing, and of these that change */
+    int near, changed; /* how many primitives have a boundary near the crossing, and how many of these change */
     bool hit_changes;  /* the primitive of the crossing changes */
 } tree_sides;
 

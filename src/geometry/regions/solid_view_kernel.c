@@ -216,7 +216,7 @@ bool KERNEL(view_make)(const scene_geometry *g, const ray_batch *rays, double t_
 
 /* --- sets and hits --- */
 
-/* The bits of a set's primitives. A hollow's bit is kept up to date only within the solid's outside: elsewhere it
+/* The bits of a set's primitives. A hollow's bit is kept up to date only in the region's outer primitive; elsewhere it
  * follows from the ray's start. */
 static uint64_t inner_set(const solid_view *v, uint64_t set, vec3 start)
 {

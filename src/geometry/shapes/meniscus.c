@@ -2,9 +2,10 @@
  *
  * In units of the capillary length, with s = r^2 and w = sin(psi) / r, the equation is
  *   s w' + w = u / 2,   u' = w / (2 sqrt(1 - s w^2)),
- * with w = u / 2 on the axis. Both are analytic in s, and their Taylor coefficients follow from each other: every step
- * is a polynomial, as long as its last terms allow. The height on the axis follows from the slope at the wall, which
- * grows with it, by shooting: a solution grows outwards, so that errors do not grow relative to it. */
+ * with w = u / 2 on the axis. Both are analytic in s, and their Taylor coefficients follow from each other. Each step
+ * is such a polynomial, and is as long as its last terms are negligible. The height on the axis is found by shooting,
+ * for the slope at the wall, which increases with this height. A solution grows outwards, so that errors do not grow
+ * relative to it. */
 #include "base/elementary.h"
 #include "geometry/primitives/capillary.h"
 #include "geometry/shapes/meniscus.h"
@@ -56,8 +57,8 @@ static double sum_at(const double c[TERMS], double x)
     return sum;
 }
 
-/* The longest step whose last two terms, of either series, are negligible; away from the axis, at most half of s: the
- * recurrence of w divides by it. */
+/* The longest step whose last two terms, of either series, are negligible; away from the axis, at most s / 2,
+ * because the recurrence of w divides by s. */
 static double longest_step(const taylor *e, double s)
 {
     double step = s > 0.0 ? 0.5 * s : 1.0;
@@ -208,7 +209,7 @@ status meniscus_check(const solid_shape *s, diagnostic *why)
                         "a meniscus requires a round cylinder, but m is %g", s->m);
     char remedy[160];
     if (!(s->contact_radius >= 0.0 && s->contact_radius <= s->radius)) {
-        snprintf(remedy, sizeof remedy, "use at most the radius, %g; 0 is the radius", s->radius);
+        snprintf(remedy, sizeof remedy, "use 0 to %g, the radius; 0 stands for the radius", s->radius);
         return diagnose(why, STATUS_BAD_INPUT, remedy, "contact_radius is %g", s->contact_radius);
     }
     if (tube_radius(s) > CAPILLARY_WIDEST * s->capillary_length) {
@@ -263,7 +264,7 @@ void meniscus_points(const solid_shape *shape, int count, profile_point *out)
     for (int i = 0; i < count; i++) {
         double sine, cosine;
         elementary_sincos_deg(90.0 * i / (count - 1), &sine, &cosine);
-        /* the distance from the wall grows as the square of the angle, and faster where the wall's layer is thin */
+        /* for small i the distance from the wall grows as the cube of i: the surface bends most near the wall */
         const double fraction = (1.0 - cosine) * (i + 1.0) / count,
                      rho = i == count - 1 ? 0.0 : p->radius * (1.0 - fraction);
         out[i] = (profile_point){rho, capillary_height(p, rho * rho)};

@@ -19,7 +19,7 @@ static status check(const solid_shape *shape, diagnostic *why)
     return STATUS_OK;
 }
 
-/* The maximum distance of the copies from the solid's position. */
+/* An upper bound of the distance of the copies from the solid's position. */
 static double reach(const solid_shape *shape)
 {
     const bounds3 b = shape->mesh->bounds;

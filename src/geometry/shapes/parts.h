@@ -9,8 +9,8 @@
 /* A NULL-terminated list of words. */
 #define WORDS(...) ((const char *const[]){__VA_ARGS__, NULL})
 
-/* The number of segments of a round edge: the polygon stays within 8e-5 of its radius of the circle (1 - cos(180 deg /
- * 256)). */
+/* The number of segments of a round edge. The polygon is inside the circle by at most 1 - cos(180 deg / 256) = 8e-5 of
+ * the radius. */
 enum { ROUND_SEGMENTS = 256 };
 
 /* STATUS_BAD_INPUT unless value is finite and above 0. */

@@ -36,7 +36,7 @@ typedef struct placed_shape {
     const struct shape_rule *rule;
 } placed_shape;
 
-/* Distances from an axis along local y (x^2 + m^2 z^2), or from a point. */
+/* What round_distance measures from: an axis along local y, by sqrt(x^2 + m^2 z^2), or the point `origin`. */
 typedef struct round_frame {
     vec3 origin;
     mat3 turn;

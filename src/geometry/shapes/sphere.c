@@ -66,7 +66,7 @@ static int rings(const solid_shape *shape, shape_ring *out)
     return CIRCLES;
 }
 
-/* The unit sphere. Its outline stays within 2e-4 of its radius of the circle (20 4^5 triangles). */
+/* The unit sphere, 20 4^5 triangles. Its outline is inside the circle by at most 2e-4 of the radius. */
 static status tessellation(const solid_shape *shape, int part, mesh **out, diagnostic *why)
 {
     (void)shape, (void)part;

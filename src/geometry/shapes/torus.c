@@ -56,7 +56,7 @@ static void fit(solid_shape *shape, double size)
     shape->tube_radius = 0.15 * size;
 }
 
-/* The outer half of the tube, and its hole. */
+/* The outer half of the tube, and the hole. */
 static int rings(const solid_shape *shape, shape_ring *out)
 {
     enum { CIRCLES = 7 }; /* every 30 degrees around the tube */
