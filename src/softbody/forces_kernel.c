@@ -10,7 +10,7 @@
  * Loads, products, and the transposition of masses' states, which are one cache line each. Transposing lines costs half
  * as much as gathering numbers; eight lanes have twice as many springs in flight. */
 
-/* Without AVX compilers warn about passing wide vectors to functions; all functions here are inlined. */
+/* Without AVX compilers warn about passing wide vectors to functions; all functions of this file are inlined. */
 #pragma GCC diagnostic ignored "-Wpsabi"
 
 typedef double four __attribute__((vector_size(32)));

@@ -84,7 +84,7 @@ static int64_t count_diverged(push q, FIXED3(v), size_t begin, size_t end)
     return bad;
 }
 
-/* Contact takes longer than the flight, and few masses are near the floor: only their blocks are tested. */
+/* `land` is slower than `fly`, and few masses are near the floor: `land` is called only for their blocks. */
 static int64_t euler(const push *p, const double *inverse_mass, vectors force, vectors area, vectors at,
                      vectors velocity, size_t begin, size_t end)
 {

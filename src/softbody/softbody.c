@@ -32,7 +32,7 @@ static status check_shape(const softbody_settings *s, diagnostic *why)
     if (!(s->restitution >= 0.0 && s->restitution <= 1.0))
         return refuse(why, "restitution", s->restitution, "give a number from 0 to 1");
     if (!(fabs(s->ground_y) < 1e9))
-        return refuse(why, "ground_y", s->ground_y, "give a finite number");
+        return refuse(why, "ground_y", s->ground_y, "give a number between -1e9 and 1e9");
     const vec3 all[] = {s->position, s->velocity, s->gravity};
     for (size_t i = 0; i < sizeof all / sizeof all[0]; i++)
         if (!(vec3_length(all[i]) < 1e9))

@@ -135,7 +135,9 @@ double hand_script_end_s(const hand_script *s);
 status softbody_follow(softbody *b, const hand_script *script, diagnostic *why);
 
 /* One step of dt_s. STATUS_BAD_INPUT if the simulation diverges (the diagnostic has the step, the vertex and the
- * quantity; the state is kept), and if a hand of the script grabs nothing (located in the script). */
+ * quantity; the state is kept, and further steps report the divergence again until softbody_place), if the step would
+ * require more than 10000 substeps, if the implicit solver does not converge, and if a hand of the script grabs nothing
+ * (located in the script). */
 status softbody_step(softbody *b, diagnostic *why);
 
 /* Steps until the multiple of dt_s nearest to time_s; does nothing if that time has passed. */
@@ -145,8 +147,8 @@ status softbody_advance(softbody *b, double time_s, diagnostic *why);
 
 /* First hit of a ray with the surface, from outside; false if it misses. direction is not zero. */
 bool softbody_pick(const softbody *b, vec3 origin, vec3 direction, vec3 *where);
-/* Grabs all masses within reach of a point that are in no other hand, or the nearest such mass. Returns the hand's
- * number; HAND_NONE if all hands are in use or hold all masses, HAND_NO_MEMORY if memory runs out. */
+/* Grabs all masses within reach of a point that are in no other hand; if there are none, the nearest mass that is in
+ * no other hand. Returns the hand's number; HAND_NONE if all hands are in use or hold all masses, HAND_NO_MEMORY if memory runs out. */
 enum { HAND_NONE = -1, HAND_NO_MEMORY = -2 };
 int softbody_grab(softbody *b, vec3 where, double reach);
 /* Moves the hand to this position (initially `where`) linearly during the next step. */
@@ -159,7 +161,7 @@ typedef struct softbody_quantities {
     double time_s;
     uint64_t steps, substeps;
     double kinetic, elastic, compression,
-        gravity; /* energies, N scene units; of the springs, of the pressure, of gravity (relative to y = 0) */
+        gravity; /* energies, N scene units; of the springs, of the pressure, of gravity (0 at the origin) */
     vec3 momentum, angular_momentum; /* about the origin */
     vec3 center;                     /* centre of mass */
     double volume, volume_at_rest;   /* scene units^3; 0 without faces */

@@ -31,7 +31,7 @@ typedef struct springs {
 
 /* Each spring once, stored with the end that owns it. Batch g, first[g] .. first[g + 1] - 1, interleaves the springs of
  * masses LANES g .. LANES g + LANES - 1: one spring of each mass, then the next. A mass with fewer springs than others
- * of its batch is padded with springs to itself, which exert no force; so is the last entry of all, for empty slots. */
+ * of its batch is padded with springs to itself, which exert no force. The last entry of pull is 0, for empty slots. */
 typedef struct spring_batches {
     size_t *first;
     int32_t *row;                       /* STATE times the end that is not the owner */

@@ -217,7 +217,7 @@ static void measure_groups(spring_batches *t, size_t groups, owners o)
     }
 }
 
-/* Of a group: the most springs that a mass owns, and how many masses ring that many. */
+/* Of a group: the most springs that a mass owns, and how many masses own that many. */
 typedef struct busy {
     uint32_t most, masses;
 } busy;

@@ -3,11 +3,13 @@
  *   spring.*, stable_dt.spring_s  two masses of the toy (mass_kg over their number), one spring of `stiffness` and no
  *                                 damping, integrator, dt_s
  *   fall.*, bounce.height         one mass; gravity's y, restitution, integrator, dt_s
- *   bounce.body, volume.drift     the toy over a floor, all settings except initial position and velocity
- *   energy.*, momentum.*          the toy without gravity and floor; energy.drift and energy.end also without damping
+ *   bounce.body                   the toy over a floor, gravity's y, all settings except initial position and velocity
+ *   volume.drift                  the toy on a floor, all settings except initial position and velocity
+ *   energy.*, momentum.*,         the toy without gravity and floor; energy.drift and energy.end also without damping
+ *   angular_momentum.*
  *   stable_dt.toy_s               the same, with damping
- *   rate.*                        the toy on a floor, all settings
- * Springs, falls and stable_dt.* use steps of dt_s without splitting; the others follow `adaptive`. Hands are ignored.
+ *   rate.*                        the toy of volume.drift, after it
+ * Springs, falls, bounce.height and stable_dt.* use steps of dt_s without splitting; the others follow `adaptive`. Hands are ignored.
  *
  * A diverged simulation is a result here, not an error: NaN for values that cannot be measured then, and for trials
  * that would take more than 300000 steps. All values except rate.step_s and rate.simulated_s_per_s are bit-identical

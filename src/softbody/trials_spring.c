@@ -119,8 +119,8 @@ enum { STEPS = 1000, LOOK = 50, WIDENINGS = 12 };
 
 typedef status holds_at(const trials *t, double dt_s, bool *holds);
 
-/* Expands from a guess until one end is stable and the other is not; NaN if there is no limit within a factor of
- * 4096. */
+/* Expands from a guess until one end is stable and the other is not, then bisects. *out is the stable end; it is
+ * unchanged if there is no limit within a factor of 4096. */
 static status find_limit(const trials *t, holds_at *try_it, double guess_s, int halvings, double *out)
 {
     double low = guess_s, high = guess_s;

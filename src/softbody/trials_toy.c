@@ -60,7 +60,8 @@ static bool follow_body(const softbody *b, void *context)
     return !((bounce *)context)->done;
 }
 
-/* Runs for at most four times the fall from the height, in which the bounce ends and the body oscillates. */
+/* Runs for at most four times the duration of the fall from the height. If the bounce has not ended by then, the body
+ * oscillates on the floor, and its greatest height counts. */
 static status run_bounce(softbody *b, const softbody_settings *s, double height, trial_watch *watch, double *high,
                          const trials *t)
 {
