@@ -216,7 +216,8 @@ static status check_net(const softbody_net *net, diagnostic *why)
     }
     for (size_t i = 0; i < 3 * net->face_count; i++)
         if (net->faces[i / 3].corner[i % 3] >= net->mass_count)
-            return diagnose(why, STATUS_BAD_INPUT, "number masses from 0", "a corner of face %zu is not a mass", i / 3);
+            return diagnose(why, STATUS_BAD_INPUT, "number masses from 0 to one less than their number",
+                            "a corner of face %zu is not a mass", i / 3);
     return STATUS_OK;
 }
 

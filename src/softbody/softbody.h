@@ -148,7 +148,8 @@ status softbody_advance(softbody *b, double time_s, diagnostic *why);
 /* First hit of a ray with the surface, from outside; false if it misses. direction is not zero. */
 bool softbody_pick(const softbody *b, vec3 origin, vec3 direction, vec3 *where);
 /* Grabs all masses within reach of a point that are in no other hand; if there are none, the nearest mass that is in
- * no other hand. Returns the hand's number; HAND_NONE if all hands are in use or hold all masses, HAND_NO_MEMORY if memory runs out. */
+ * no other hand. Returns the hand's number; HAND_NONE if all hands are in use or hold all masses, HAND_NO_MEMORY if
+ * memory runs out. */
 enum { HAND_NONE = -1, HAND_NO_MEMORY = -2 };
 int softbody_grab(softbody *b, vec3 where, double reach);
 /* Moves the hand to this position (initially `where`) linearly during the next step. */

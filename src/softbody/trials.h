@@ -9,7 +9,8 @@
  *   angular_momentum.*
  *   stable_dt.toy_s               the same, with damping
  *   rate.*                        the toy of volume.drift, after it
- * Springs, falls, bounce.height and stable_dt.* use steps of dt_s without splitting; the others follow `adaptive`. Hands are ignored.
+ * Springs, falls, bounce.height and stable_dt.* use steps of dt_s without splitting; the others follow `adaptive`.
+ * Hands are ignored.
  *
  * A diverged simulation is a result here, not an error: NaN for values that cannot be measured then, and for trials
  * that would take more than 300000 steps. All values except rate.step_s and rate.simulated_s_per_s are bit-identical

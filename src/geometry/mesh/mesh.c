@@ -148,12 +148,12 @@ status mesh_check(const mesh *m, diagnostic *why)
             return cancel_check(why);
         for (int k = 0; k < 3; k++) {
             if (m->triangles[t].corner[k] >= m->vertex_count)
-                return diagnose(why, STATUS_BAD_INPUT, "number vertices from 0",
+                return diagnose(why, STATUS_BAD_INPUT, "number vertices from 0 to one less than their number",
                                 "triangle %zu refers to vertex %lu of %zu", t, (unsigned long)m->triangles[t].corner[k],
                                 m->vertex_count);
         }
         if (m->slots && m->slots[t] >= m->slot_count)
-            return diagnose(why, STATUS_BAD_INPUT, "number material slots from 0",
+            return diagnose(why, STATUS_BAD_INPUT, "number material slots from 0 to one less than their number",
                             "triangle %zu refers to material slot %d of %d", t, m->slots[t], m->slot_count);
     }
     return check_vertices(m, why);

@@ -83,8 +83,7 @@ status generate_box(vec3 size, mesh **out, diagnostic *why)
 static status check_torus(double major, double minor, int around, int tube, diagnostic *why)
 {
     if (!generate_is_length(major) || !generate_is_length(minor) || !(minor < major) || !(major + minor <= MESH_FAR))
-        return diagnose(why, STATUS_BAD_INPUT,
-                        "use radii above 0, at most 1e9 in sum, with the tube's the smaller one",
+        return diagnose(why, STATUS_BAD_INPUT, "use radii above 0, at most 1e9 in sum, with the tube's the smaller one",
                         "invalid torus radii %g and %g", major, minor);
     if (around < 3 || tube < 3)
         return diagnose(why, STATUS_BAD_INPUT, "use at least 3 segments",

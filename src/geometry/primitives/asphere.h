@@ -22,7 +22,7 @@ static inline bool asphere_has_terms(const even_asphere *e)
     return e->even[0] != 0.0 || e->even[1] != 0.0 || e->even[2] != 0.0;
 }
 
-/* w, but not less than 0 or, with coefficients, than a value that is below w of all points within the rim. */
+/* w with a lower bound: 0 or, with coefficients, a value that is below w of all points within the rim. */
 static inline double asphere_root(const even_asphere *e, double q)
 {
     const double under = 1.0 - e->stretch * e->curvature * e->curvature * q;

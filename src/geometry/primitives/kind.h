@@ -225,7 +225,7 @@ ALWAYS_INLINE void points_on(const primitive *p, point_function *project, bool g
 }
 
 /* Define rows and points with a body that is compiled for both values of is_general, an expression in p: whether the
- * primitive is rotated, or needs code for another reason that upright ones do not need. */
+ * primitive needs the general code, because it is rotated or an elliptic cylinder. */
 #define DEFINE_ROWS(is_general, body)                                                               \
     static void rows(const primitive *__restrict p, int bit, const ray_batch *rays, ray_scratch *s) \
     {                                                                                               \

@@ -264,7 +264,7 @@ void meniscus_points(const solid_shape *shape, int count, profile_point *out)
     for (int i = 0; i < count; i++) {
         double sine, cosine;
         elementary_sincos_deg(90.0 * i / (count - 1), &sine, &cosine);
-        /* for small i the distance from the wall grows as the cube of i: the surface bends most near the wall */
+        /* for small i the distance from the wall grows about as the cube of i: the surface bends most near the wall */
         const double fraction = (1.0 - cosine) * (i + 1.0) / count,
                      rho = i == count - 1 ? 0.0 : p->radius * (1.0 - fraction);
         out[i] = (profile_point){rho, capillary_height(p, rho * rho)};

@@ -15,7 +15,8 @@ static status check(const solid_shape *shape, diagnostic *why)
         return diagnose(why, STATUS_BAD_INPUT, "use three whole numbers from 1, at most 4194304 copies in all",
                         "copies is %g, %g, %g", n.x, n.y, n.z);
     if (!(s.x > 0.0 && s.y > 0.0 && s.z > 0.0) || !vec3_is_finite(s) || !vec3_is_finite(step))
-        return diagnose(why, STATUS_BAD_INPUT, "use numbers above 0", "scale is %g, %g, %g", s.x, s.y, s.z);
+        return diagnose(why, STATUS_BAD_INPUT, "use scales above 0, and finite numbers",
+                        "scale is %g, %g, %g, spacing %g, %g, %g", s.x, s.y, s.z, step.x, step.y, step.z);
     return STATUS_OK;
 }
 
