@@ -157,7 +157,7 @@ status realism_water_line(const metrics *m, diagnostic *why)
     if (m->theory_at.liquid < 0)
         what = "there is no liquid";
     else if (isnan(theory = theory_break(supposed, &m->theory_at, slope)))
-        what = "the rod below the surface is not visible there";
+        what = "the part of the rod below the surface is not visible in the measured lines of the image";
     else
         code = measure_break(m, leaning_rod(m->traced, &m->at), slope, &measured, &tolerance, why);
     scene_destroy(supposed);
@@ -181,7 +181,7 @@ typedef struct coin_view {
     double floor;   /* height of the cup's floor */
     double tangent; /* of the line of sight over the edge, from the vertical */
     double drop;    /* depth of the coin's upper face below the rim */
-    double across;  /* horizontal distance from the edge to the farthest point of that face in the line of sight */
+    double across;  /* horizontal distance from the edge to that face's farthest point in the plane of sight */
     double n_around;
 } coin_view;
 

@@ -28,7 +28,7 @@ reflectance_bound bound_reflectances(double angle, double aside, double n_from, 
     /* The errors of cos i and of cos^2 t = 1 - eta^2 (1 - cos^2 i). */
     const double off_i = rounding + sin(angle) * aside, off = rounding + 2.0 * eta * eta * cos_i * off_i;
     if (square < -off)
-        return (reflectance_bound){0.0, 0.0, 0.0}; /* total reflection: exactly 1 on both sides */
+        return (reflectance_bound){0.0, 0.0, 0.0}; /* total reflection: exactly 1 in the tracer and the closed form */
     const double cos_t = sqrt(fmax(square, 0.0)), off_t = fmin(cos_t > 0.0 ? off / cos_t : INFINITY, sqrt(off));
     const reflectance_bound b = {
         .R_s = square_bound(n_from * cos_i, n_to * cos_t, n_from * off_i, n_to * off_t),

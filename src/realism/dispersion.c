@@ -184,7 +184,7 @@ static scene *drop_of_rain(const scene *s)
     return one;
 }
 
-/* The metrics with a scene that has a drop in place of each that has none. Call drops_end after drops_begin. */
+/* The metrics, in which a drop of the rain replaces each scene that has no drop. Call drops_end after drops_begin. */
 typedef struct drop_metrics {
     metrics m;
     scene *traced, *supposed; /* owned, or NULL */

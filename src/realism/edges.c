@@ -1,7 +1,7 @@
 /* The rod in the image: the position of its edges, their displacement by the filled vessel, and the magnification.
  *
  * Tolerance: the bound of the path's distance from the rod's corner, over the change of that distance per px, plus the
- * widths of the bisections on both sides. */
+ * widths of the bisections, in the tracer's image and in theory. */
 #include "realism/metrics.h"
 
 #include "scene/model/scene.h"

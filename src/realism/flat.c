@@ -8,7 +8,7 @@
 
 /* Single interfaces between the scene's media: critical angles and reflectances.
  *
- * Tolerances: an error e of sin i or cos i moves the critical angle by e tan i or e cot i, to which half of the
+ * Tolerances: a relative error e of sin i or cos i moves the critical angle by e tan i or e cot i, to which half of the
  * bisection's last interval is added. The tolerances of reflectances are bound_reflectances. */
 
 #define CRITICAL_WIDTH 1e-14 /* of the bisection's last interval */

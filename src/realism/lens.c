@@ -14,8 +14,8 @@
 /* The filled vessel as a lens for horizontal rays: deviation of a ray off its axis, optical power, dispersion.
  *
  * Tolerances: for an angle, the bound of its path. Power is extrapolated from deviations at offsets down to an 80th of
- * the radius: the same combination of their bounds with positive coefficients, plus the remainder of the closed form's
- * extrapolation. */
+ * the radius; its tolerance is the same combination of their bounds with positive coefficients, plus the remainder of
+ * the closed form's extrapolation. */
 
 enum { OFFSETS = 64, LEVELS = 5 };
 
@@ -25,7 +25,7 @@ status lens_deviation(probe *p, ray_tree *tree, const setup *at, double offset, 
     TRY(probe_path(p, from, vec3_make(0.0, 0.0, 1.0), -1, tree, why));
     const ray_node *last = &tree->node[tree->count - 1];
     *radians = last->end == RAY_END_SKY ? atan2(-last->direction.x, last->direction.z)
-                                        : NAN; /* towards the axis, in the direction -x */
+                                        : NAN; /* positive towards the axis, which is in the direction -x */
     return STATUS_OK;
 }
 

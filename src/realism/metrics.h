@@ -114,7 +114,7 @@ status trial_edges(trial *t, int which, bool upright, double py, const double ra
 status trial_edge_bound(trial *t, int which, double py, const double edge[2], int side, double curvature,
                         double *across, diagnostic *why);
 
-/* Width of the bisection's last interval, px or scene units, and the rounding of its ends. */
+/* The error of `bisect` at a position, px or scene units: half its last interval, and the rounding of the ends. */
 double bisect_width(double at);
 
 /* Adds an angle at the F, d and C lines and at render.lambda_nm. difference: measured, theory and tolerance of F minus
@@ -124,5 +124,6 @@ typedef status at_line_call(const metrics *m, double lambda_nm, double *measured
 status metrics_at_lines(const metrics *m, const char *const names[4], const char *const what[4], const char *none,
                         at_line_call *at_line, double difference[3], diagnostic *why);
 
-/* A copy at a wavelength, with the settings to trace such an angle; NULL if memory runs out. */
+/* A copy at a wavelength, with a depth and a least weight that do not cut off the path of such an angle; NULL if memory
+ * runs out. */
 scene *arrange_at(const scene *s, double lambda_nm);

@@ -9,8 +9,8 @@
 /* --- polarisers --- */
 
 /* Malus's law: two ideal linear polarisers across the line of sight, solids named polariser and analyser, and perhaps a
- * wave plate between them, a box named plate (experiments/scenes/malus.yaml). The analyser is turned about z, and the
- * camera's central ray looks through all at a white sky. */
+ * wave plate between them, a box named plate (experiments/scenes/malus.yaml). The analyser is turned about z, and a
+ * ray along z from the camera's position passes through all of them to a white sky. */
 
 typedef struct filters {
     int analyser;
@@ -54,17 +54,19 @@ static status filters_read(const scene *s, filters *out, diagnostic *why)
     *out = (filters){.analyser = scene_find_solid(s, "analyser"), .polarised = s->render.polarisation != 0};
     last = &s->solids[out->analyser];
     if (!is_ideal(first) || !is_ideal(last))
-        return diagnose(
-            why, STATUS_BAD_INPUT,
-            "set both to sheet polariser, sheet_pass 1, sheet_block 0, transparency 1, and an axis across z",
-            "'polariser' and 'analyser' are not ideal linear polarisers across the line of sight");
+        return diagnose(why, STATUS_BAD_INPUT,
+                        "set both to sheet polariser, sheet_pass 1, sheet_block 0, transparency 1, an axis across z, "
+                        "and no rotation about x and y",
+                        "'polariser' and 'analyser' are not ideal linear polarisers across the line of sight");
     out->polariser_at = axis_at(first), out->analyser_at = axis_at(last);
     if (!is_there(s, "plate"))
         return STATUS_OK;
     const solid *plate = &s->solids[scene_find_solid(s, "plate")];
     if (!is_flat_on(plate) || plate->shape.kind != SHAPE_BOX || plate->surface.sheet != SHEET_RETARDER ||
         plate->surface.transparency != 1.0)
-        return diagnose(why, STATUS_BAD_INPUT, "make it a box with sheet retarder, transparency 1 and an axis across z",
+        return diagnose(why, STATUS_BAD_INPUT,
+                        "make it a box with sheet retarder, transparency 1, an axis across z, and no rotation about x "
+                        "and y",
                         "'plate' is not a wave plate across the line of sight");
     out->plate_at = axis_at(plate);
     out->retardance = plate->surface.retardance_deg * DEGREE + 2.0 * M_PI * plate->surface.birefringence *
@@ -125,8 +127,9 @@ status filters_curve(const metrics *m, realism_points *out, diagnostic *why)
 /* --- a stack of plates --- */
 
 /* A stack of parallel plates, solids named plate1 and plate2: equal boxes with equal rotation
- * (experiments/scenes/plates.yaml). The transmittance for the camera's central ray and white light: with polarisation s
- * and p light are transmitted separately, without it every interface uses the mean of both, as most renderers do.
+ * (experiments/scenes/plates.yaml). The transmittance is that of a ray along z from the camera's position, for white
+ * light: with polarisation s and p light are transmitted separately, without it every interface uses the mean of both,
+ * as most renderers do.
  *
  * Tolerance: the bound of the reflectance at that angle times the derivative with respect to it, and the rounding of
  * the products. The depth limit adds nothing: the closed form counts only the paths up to that depth. */

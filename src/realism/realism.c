@@ -230,8 +230,8 @@ static double slope_of(vec3 direction)
     return hypot(direction.x, direction.z) / fabs(direction.y);
 }
 
-/* The line of sight, extended below the surface, passes above the point: the ratio of the depths is that of the
- * tangents. Straight down it is 0 / 0, so the first angle is small but not 0. */
+/* The line of sight, extended below the surface, passes above the point: the ratio of the depths is the ratio of the
+ * tangents. Straight down this is 0 / 0, so the first angle is small but not 0. */
 static status apparent_depth_points(const metrics *m, realism_points *out, diagnostic *why)
 {
     const double *n = m->at.n;

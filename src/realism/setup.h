@@ -12,7 +12,7 @@ typedef struct setup {
     int vessel, liquid, rod; /* indices in scene.solids; liquid is -1 for none */
     double n[SETUP_MEDIA];   /* at render.lambda_nm; without a liquid, the liquid's equals the surroundings' */
     double x, z;             /* position of the axis */
-    double outer, inner;     /* outer and inner radius of the wall */
+    double outer, inner;     /* outer and inner radius of the wall; the liquid can make it thinner */
     double low, high; /* the filled range of y: from the floor to the liquid's surface, or for an empty vessel to its
                          rim */
 } setup;
@@ -31,11 +31,13 @@ solid_shape box_at(vec3 position, vec3 size);
 solid_shape ball_at(vec3 position, double radius);
 solid_shape cylinder_at(vec3 position, double radius, double height);
 
-/* Removes what the closed forms do not cover: tints of transparent solids, and their coatings under Fresnel weights. */
+/* Removes what the closed forms do not cover from all transparent solids: tints, thin films, polarisers and wave
+ * plates, and, under Fresnel weights, coatings. */
 void arrange_bare(scene *s);
 
-/* A copy without visible solids or lights, and with settings that trace every ray of a path. The behaviour of
- * interfaces (render.weights) and the media are unchanged. */
+/* A copy, made bare as above, without visible solids or lights, and with settings that trace every ray of a path. The
+ * camera is a pinhole without roll, and the surroundings do not absorb. The behaviour of interfaces (render.weights)
+ * and the media are unchanged. */
 scene *arrange_empty(const scene *s);
 
 /* A copy in which only the vessel and its liquid are visible. */

@@ -35,7 +35,8 @@ typedef struct theory_shells {
 
 /* Largest offset of a ray that reaches the core. */
 double theory_shells_reach(const theory_shells *c);
-/* The deviation of a ray towards the axis inside the core; and after leaving, which is twice that. */
+/* theory_shells_turn: the angle by which a ray inside the core has turned towards the axis. theory_shells_deviation:
+ * this angle after the ray has left, twice as large. */
 double theory_shells_turn(const theory_shells *c, double offset);
 double theory_shells_deviation(const theory_shells *c, double offset);
 /* Limit of deviation / offset on the axis: 1 / focal length, from the centre of the lens. For one medium 2 (n - 1) / (n
