@@ -18,7 +18,8 @@ typedef struct wave {
     vec3 ray;     /* direction of energy */
 } wave;
 
-/* The interface: z is its normal into `to`, s and u are unit vectors along it. */
+/* The interface: z is its normal into `to`, s and u are unit vectors along it; tangential is the part of the wave
+ * vectors along it. */
 typedef struct interface_frame {
     vec3 z, s, u, tangential;
 } interface_frame;

@@ -128,15 +128,15 @@ static const struct {
     const char *remedy;
     int first, step, most;
 } numbers[DISPERSION_KIND_COUNT] = {
-    [DISPERSION_CONSTANT] = {"give one number, n", 1, 1, 1},
+    [DISPERSION_CONSTANT] = {"give one number, n, from 0.1 to 100", 1, 1, 1},
     [DISPERSION_SELLMEIER] = {"give pairs B C, with C in um^2", 2, 2, DISPERSION_TERMS_MAX},
     [DISPERSION_SELLMEIER_LENGTHS] = {"give pairs B C, with C in um", 2, 2, DISPERSION_TERMS_MAX},
     [DISPERSION_POLYNOMIAL] = {"give a0, then pairs of a coefficient and its power", 1, 2, DISPERSION_TERMS_MAX},
     [DISPERSION_CAUCHY_POWERS] = {"give a0, then pairs of a coefficient and its power", 1, 2, DISPERSION_TERMS_MAX},
     [DISPERSION_CAUCHY] = {"give A, then B in um^2, C in um^4 and so on", 1, 1, DISPERSION_TERMS_MAX},
     [DISPERSION_GAS] = {"give pairs B C, both in um^-2", 2, 2, DISPERSION_TERMS_MAX},
-    [DISPERSION_TABLE] = {"give pairs of a wavelength in nm and an index, by ascending wavelength", 2, 2,
-                          DISPERSION_TERMS_MAX},
+    [DISPERSION_TABLE] = {"give pairs of a wavelength in nm and an index from 0.1 to 100, by ascending wavelength", 2,
+                          2, DISPERSION_TERMS_MAX},
 };
 
 static const char *remedy_for(dispersion_kind kind)

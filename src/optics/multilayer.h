@@ -147,8 +147,8 @@ static inline sp_amplitudes conductor_amplitudes(double cos_i, double n_from, co
     return multilayer_amplitudes(cos_i, n_from, (const thin_film *)0, 0, to, 1.0);
 }
 
-/* The Mueller matrices of reflection and transmission. Their means are the reflectance and the transmittance of power
- * for unpolarised light. */
+/* The Mueller matrix of a reflection or a transmission, from its amplitudes. Its mean is the reflectance or the
+ * transmittance of power for unpolarised light. */
 static inline sp_response sp_response_of(complex_pair s, complex_pair p)
 {
     const double of_s = complex_norm2(s), of_p = complex_norm2(p);

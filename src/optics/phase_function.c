@@ -1,5 +1,5 @@
-/* A drop's scattering function: rays of evenly spaced angles of incidence, each strip between two of them spread over
- * the angles at which it leaves. */
+/* A drop's scattering function: rays at evenly spaced angles of incidence; the light between two of them is spread
+ * evenly over the solid angle between their directions. */
 #include "optics/phase_function.h"
 
 #include "base/elementary.h"
@@ -113,7 +113,7 @@ void drop_scattering(const drop_angles *a, double n, double p[DROP_BINS])
         bin[m] = m % 2 ? DROP_BINS - 1 : 0; /* the ray through the centre */
     for (int k = 1; k <= DROP_RAYS; k++) {
         const outgoing next = outgoing_rays(a, k, n);
-        /* The strip's fraction of the cross-section, sin^2 i being the impact parameter squared. */
+        /* The fraction of the drop's cross-section between two rays: their impact parameters are the sines. */
         const double area = a->sine[k] * a->sine[k] - a->sine[k - 1] * a->sine[k - 1];
         for (int m = 0; m < DROP_ORDERS; m++)
             bin[m] = spread(a->edge_cosine, bin[m], last.cosine[m], next.cosine[m],
