@@ -34,7 +34,7 @@ typedef struct lesson {
     char predicts;                     /* 'x' or 'y': the axis of the curve with the predicted number; 0: none */
     int over;                          /* index of the control on the curve's x axis; -1: `curve` is used */
     realism_curve curve;               /* if over is -1 */
-    double tolerance;                  /* largest |measured - theory| of the curve; INFINITY for times */
+    double tolerance;                  /* largest |measured - theory| that the curve may have; INFINITY for times */
     char *metric;                      /* the metric to read; NULL: the curve is read at x = `at` */
     double at;
     char *reading, *unit; /* label of the value to read, and its unit; "deg" converts a metric in radians */
@@ -54,7 +54,7 @@ bool lesson_is_timed(const lesson *l);
 char *lesson_x_label(const lesson *l);
 char *lesson_y_label(const lesson *l);
 
-/* What lesson_measure finds in a scene: the lesson's, perhaps with other values of its controls. */
+/* What lesson_measure finds in s, which is the lesson's scene, perhaps with other values of its controls. */
 typedef struct lesson_result {
     realism_points points;
     double error; /* largest |measured - theory| of the curve */
@@ -63,12 +63,13 @@ typedef struct lesson_result {
 } lesson_result;
 status lesson_measure(const lesson *l, const scene *s, isa level, lesson_result *out, diagnostic *why);
 
-/* Measures the lesson's scene as the lesson sets it. A curve beyond its tolerance is an error, located in the
- * lesson. */
+/* Measures the lesson's scene as the lesson sets it. A curve or a value beyond its tolerance is an error,
+ * located in the lesson. */
 status lesson_check(const lesson *l, isa level, lesson_result *out, diagnostic *why);
 
-/* The command that prints the curve, or the value, with --set for the parameters that the lesson sets. No command
- * prints the curve of a metric over a control. Fresh memory; NULL if memory runs out. */
+/* The command that prints the curve, or else the metric's value, with --set for the parameters that the lesson sets. No
+ * command prints the curve of a metric over a control: `curve` requires over = -1, and a value requires a metric. Fresh
+ * memory; NULL if memory runs out. */
 char *lesson_command(const lesson *l, bool curve);
 
 /* The folder of the lessons that belong to the program: experiments/lessons next to its source or where `make install`

@@ -152,7 +152,7 @@ static status read_controls(const reader *r, const node *root)
 {
     const node *list = node_get(root, "controls");
     if (!list || list->kind != NODE_LIST || list->count < 1 || list->count > LESSON_CONTROLS_MAX)
-        return node_error(r->file, list ? list : root, r->why, "add a list controls: with one to five parameters",
+        return node_error(r->file, list ? list : root, r->why, "add a list 'controls' of one to five parameters",
                           "a lesson needs one to five controls");
     scene *trial = scene_clone(r->l->start);
     status code = trial ? STATUS_OK : out_of_memory(r->why);
@@ -271,8 +271,8 @@ static status read_curve(const reader *r, const node *n)
                       curve && curve->kind == NODE_SCALAR ? curve->text : "");
 }
 
-/* The values of a control on the x axis must be numbers; a range must not have an integer parameter, so a fraction of
- * it is tried. */
+/* The values of a control on the x axis must be numbers. A range requires a parameter that is not an integer, so a
+ * value with decimals is tried. */
 static status try_over(const reader *r, const node *at, const lesson_control *c)
 {
     double number;
