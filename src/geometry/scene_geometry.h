@@ -82,7 +82,7 @@ typedef struct scene_geometry {
     int direct_count;               /* at most PRIMITIVES_MAX */
     int *direct_regions;            /* the priority indices of their regions, ascending ... */
     int direct_region_count;        /* ... and how many */
-    const struct solid_view *outer; /* in a solid view: the view, with numbers of the whole scene; else NULL */
+    const struct solid_view *outer; /* in a view's geometry: the view, for the scene's numbers; else NULL */
     struct solid_tree *tree;        /* for the other primitives; NULL if all are direct */
     int region_count;               /* priority indices 1 .. region_count */
     int highest_transparent;        /* the highest priority index of a region that is not opaque; 0 for none */
@@ -121,7 +121,7 @@ typedef struct region_source {
 
 /* Which solids a hierarchy finds. The hits, and so the film, are the same with each. */
 typedef enum tree_use {
-    TREE_IF_MANY,     /* all bounded ones without triangles, from the number on at which it is faster */
+    TREE_IF_MANY,     /* all bounded ones without triangles, if there are enough that this is faster */
     TREE_IF_TOO_MANY, /* only if there are more primitives than bits */
     TREE_ALWAYS
 } tree_use;

@@ -23,7 +23,7 @@ typedef struct lesson_control {
 typedef struct lesson {
     char *path; /* of the lesson file, as given */
     char *name, *title, *language, *question, *answer;
-    char *scene_path; /* relative to the working folder */
+    char *scene_path; /* without links; relative if it is below the working folder, else absolute */
     char **setting;   /* parameters of the scene that the lesson sets, "PATH=VALUE" */
     size_t setting_count;
     lesson_control control[LESSON_CONTROLS_MAX];
@@ -50,7 +50,7 @@ void lesson_destroy(lesson *l); /* NULL is allowed */
 
 /* Whether the lesson measures times, which differ from one measurement to the next and have no tolerance. */
 bool lesson_is_timed(const lesson *l);
-/* Labels of the curve's axes, with units. Fresh memory; NULL if memory runs out. */
+/* Labels of the curve's axes, with units. The caller frees them; NULL if memory runs out. */
 char *lesson_x_label(const lesson *l);
 char *lesson_y_label(const lesson *l);
 
@@ -68,12 +68,12 @@ status lesson_measure(const lesson *l, const scene *s, isa level, lesson_result 
 status lesson_check(const lesson *l, isa level, lesson_result *out, diagnostic *why);
 
 /* The command that prints the curve, or else the metric's value, with --set for the parameters that the lesson sets. No
- * command prints the curve of a metric over a control: `curve` requires over = -1, and a value requires a metric. Fresh
- * memory; NULL if memory runs out. */
+ * command prints the curve of a metric over a control: `curve` requires over = -1, and a value requires a metric. The
+ * caller frees it; NULL if memory runs out. */
 char *lesson_command(const lesson *l, bool curve);
 
 /* The folder of the lessons that belong to the program: experiments/lessons next to its source or where `make install`
- * puts it. Fresh memory; NULL if there is none. */
+ * puts it. The caller frees it; NULL if there is none. */
 char *lesson_folder(void);
 
 /* The files *.lesson of a folder in order of their names, as paths. */

@@ -297,7 +297,8 @@ static stokes row_across(complex_pair J[2][2], int sides, stokes row)
     return s;
 }
 
-/* The weight of a crystal's mode: half of the intensity with which the row sees the mode's light. */
+/* The weight of a crystal's mode behind the interface. From an isotropic medium: half of the intensity with which the
+ * row sees the mode's light. From a mode of a crystal (sides 1): the row's weight times the fraction of the power. */
 static double weight_across(const complex_pair j[2], int sides, stokes row)
 {
     if (sides == 1)

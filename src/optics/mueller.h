@@ -136,8 +136,9 @@ static inline sp_response sp_mirror(void)
 /* --- backwards: the analyser's row --- */
 
 /* A ray from the eye carries the first row of the product of all Mueller matrices between eye and ray, in the ray's
- * canonical frame: (1, 0, 0, 0) at the eye; .i is everywhere the weight of unpolarised light from there. The eye sees
- * light s that joins at a ray with the intensity analyser_intensity(row, s), both in that ray's canonical frame. */
+ * canonical frame: (1, 0, 0, 0) at the eye; .i is everywhere the weight of unpolarised light from there. Of light
+ * s that enters the path at a ray, the eye sees the intensity analyser_intensity(row, s), with row and s in that ray's
+ * canonical frame. */
 static inline double analyser_intensity(stokes row, stokes s)
 {
     return row.i * s.i + row.q * s.q + row.u * s.u + row.v * s.v;

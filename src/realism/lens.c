@@ -241,8 +241,8 @@ static test_path random_path(const setup *at, uint32_t number)
     return w;
 }
 
-/* The number of surfaces of the path; -1 if it does not leave the vessel or grazes a surface. There are no surfaces
- * between media with equal indices. */
+/* The number of surfaces of the path; -1 if it does not leave the vessel, meets more than HITS_MAX surfaces, or grazes
+ * one. There are no surfaces between media with equal indices. */
 static int surfaces(const ray_tree *tree)
 {
     const int hits = (int)tree->count - 1;

@@ -2,8 +2,8 @@
  *
  * Vectors are structures of arrays, a multiple of LANES long; padding masses are at rest, held, and without springs.
  * Springs are stored by vertex, at both of their ends: slot s of vertex i at [s * stride + i], so that a loop over
- * vertices accesses arrays sequentially. A spring's force at one end is the exact negative of that at the other,
- * because all its inputs only change sign: so it is computed once, in batches. */
+ * vertices accesses arrays sequentially. A spring's forces at its two ends are exact opposites,
+ * because all inputs only change sign: so the force is computed once, in batches. */
 #pragma once
 
 #include "base/isa.h"

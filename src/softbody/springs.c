@@ -38,7 +38,7 @@ typedef struct wedge {
 typedef struct rings {
     int *used;
     wedge *wedges;
-} rings; /* by vertex: the number of wedges, and ring_slots of them */
+} rings; /* by vertex: the number of its wedges, and room for ring_slots of them */
 
 static int most(const int *used, size_t count)
 {

@@ -21,7 +21,8 @@ static int by_ends(const void *a, const void *b)
     return p->across < q->across ? -1 : p->across > q->across;
 }
 
-/* Damping is proportional to stiffness (Rayleigh's second term); its coefficient is given for springs along edges. */
+/* Damping is proportional to stiffness (Rayleigh's second term); its coefficient is given for springs along edges. If
+ * these have no stiffness, only they are damped. */
 static void add_spring(const softbody_settings *s, toy_net *n, uint32_t a, uint32_t b, double stiffness)
 {
     const double damping = s->stiffness > 0.0                        ? s->damping * (stiffness / s->stiffness)

@@ -33,7 +33,7 @@ static vec3 normal_of(const instanced_mesh *p, uint32_t vertex)
     return p->scaled || p->turned ? instance_set_vertex_normal(p, vertex) : p->triangles->normals[vertex];
 }
 
-/* Returns whether any of the hits has normals at its corners. */
+/* Fills the strip from `count` hits, from number `first` on. Returns whether any of them has normals at its corners. */
 static bool gather(const instance_set *f, const ray_batch *rays, const instance_hit *hits, bool smooth, int first,
                    int count, strip *s)
 {
