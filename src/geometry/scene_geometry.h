@@ -8,8 +8,8 @@
  * If a scene has many bounded solids, a hierarchy finds those that a ray may meet (geometry/regions/solid_tree.h); the
  * other primitives are direct: every batch of rays is tested against each of them.
  *
- * The medium at a point is that of the containing region with the highest priority index (0: the surrounding medium). A
- * ray carries the set of primitives that contain it: with one bit each if all are direct, otherwise as
+ * The medium at a point is the medium of the containing region with the highest priority index (0: the surrounding
+ * medium). A ray carries the set of primitives that contain it: with one bit each if all are direct, otherwise as
  * geometry/regions/set_table.h describes. A closed mesh is a primitive too, though not convex; an open mesh is an open
  * surface and contains no points. An interface is a point of the ray where the medium changes: a boundary that a region
  * of higher priority hides, or that leads into an equal medium, is not an interface (Schmidt and Budge, "Simple Nested

@@ -21,7 +21,7 @@ typedef struct cie_sky {
     cie_sky_type of;
     vec3 to_sun;   /* unit vector */
     double zenith; /* f(Z_s) phi(0) */
-    double mean;   /* cie_sky_mean if the caller stored it here; else 0 */
+    double mean;   /* cie_sky_mean, if the caller has stored it; else 0 */
 } cie_sky;
 
 /* The sky of a type with the sun in direction to_sun, a unit vector; y is up. */

@@ -3,9 +3,9 @@
  * Principles of Optics, 7th ed., 15.2 and 15.3; boundary conditions: Yeh, Optical Waves in Layered Media, chapter 9.
  * Crystals are transparent and not optically active. Pure; cannot fail; all values, nothing is owned.
  *
- * In a crystal a ray is of one of two modes, each fully polarised. Its direction d is that of the energy flow. The wave
- * vector, in units of 2 pi / lambda, is n_o d for an ordinary ray, and for an extraordinary ray the point of an
- * ellipsoid at which the normal is d.
+ * In a crystal a ray is of one of two modes, each fully polarised. Its direction d is the direction of the energy flow.
+ * The wave vector, in units of 2 pi / lambda, is n_o d for an ordinary ray, and for an extraordinary ray the point of
+ * an ellipsoid at which the normal is d.
  *
  * Signs and frames are those of optics/mueller.h: rays run from the eye, light against them; by reciprocity, light has
  * the amplitude of a wave along the ray. Modes are followed as rays that do not interfere: their powers add. This is

@@ -175,8 +175,8 @@ static inline stokes analyser_reflect(stokes row, vec3 d, vec3 n, double cos_i, 
     return analyser_across(row, d, n, reflected, sp_reflect(fresnel_dielectric(cos_i, n_from, n_to), cos_i));
 }
 
-/* The light travels from n_to into n_from; the transmittances are those of that direction. A row of zeros under total
- * internal reflection. */
+/* The light travels from n_to into n_from; the transmittances are for this direction of light. A row of zeros under
+ * total internal reflection. */
 static inline stokes analyser_refract(stokes row, vec3 d, vec3 n, double cos_i, double n_from, double n_to,
                                       vec3 refracted)
 {

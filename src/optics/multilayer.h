@@ -1,5 +1,5 @@
 /* Smooth interfaces by wave optics: metals, and stacks of homogeneous thin films between two media, for s and p light,
- * any wavelength and angle. The method is that of the characteristic matrix: Born and Wolf, Principles of Optics, 7th
+ * any wavelength and angle. The method is the characteristic matrix: Born and Wolf, Principles of Optics, 7th
  * ed., 1.6.2 to 1.6.4; metals: 14.2; Macleod, Thin-Film Optical Filters, 4th ed., chapter 2. Inline and branch-free, so
  * that kernels and tests share one formula; only + - * / sqrt and base/lanes.h, so that every platform gives the same
  * bits. Pure; cannot fail; all values, nothing is owned.

@@ -314,9 +314,10 @@ status realism_reversal(const metrics *m, diagnostic *why)
     }
     trial_end(&forth);
     trial_end(&back);
-    metrics_add(m, (realism_value){"reversal.throughput",
-                                   "throughput of a reversed path over that of the path; largest error of about 1000",
-                                   "", ratio.measured, ratio.theory, ratio.tolerance});
+    metrics_add(
+        m, (realism_value){"reversal.throughput",
+                           "throughput of a reversed path over that of the path; largest error of about 1000 paths", "",
+                           ratio.measured, ratio.theory, ratio.tolerance});
     metrics_add(m, (realism_value){"reversal.path", "distance by which the reversed path misses the origin of the path",
                                    "scene units", miss.measured, miss.theory, miss.tolerance});
     return code;

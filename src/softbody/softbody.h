@@ -4,12 +4,12 @@
  *
  * Forces on a mass, where x is the vector to the mass from the other end of a spring, v its velocity relative to that
  * end, and l the spring's length at rest: gravity m g; Hooke -k (|x| - l) x / |x|; damping -k_d (v.x) / (x.x) x;
- * pressure K (V0 - V) / V0 along each face's area vector, a third to each of its corners. Gravity and Hooke are eqs. 2.1
- * and 2.2 of the slime report. Its damping, eq. 2.3, is printed with x / |x| in place of the last x: it decreases with
- * the spring's length and its k_d is in N s, whereas ours is k_d times the velocity along the spring, whatever its
- * length. (2.2 and 2.3 print x_j - x_i in the force on i, with which a stretched spring would push.) Forces are summed
- * per vertex in a fixed order, and sums over all vertices in blocks of fixed size: bit-identical for any number of
- * threads and any instruction set.
+ * pressure K (V0 - V) / V0 along each face's area vector, a third to each of its corners. Gravity and Hooke are eqs.
+ * 2.1 and 2.2 of the slime report. Its damping, eq. 2.3, is printed with x / |x| in place of the last x: it decreases
+ * with the spring's length and its k_d is in N s, whereas ours is k_d times the velocity along the spring, whatever
+ * its length. (2.2 and 2.3 print x_j - x_i in the force on i, with which a stretched spring would push.) Forces are
+ * summed per vertex in a fixed order, and sums over all vertices in blocks of fixed size: bit-identical for any number
+ * of threads and any instruction set.
  *
  * Units: lengths in scene units, time in seconds, masses in kilograms; a force is kg scene units / s^2, called N here.
  * Ownership: *_create creates, *_destroy frees; scripts are borrowed. Errors: STATUS_BAD_INPUT for invalid settings

@@ -12,9 +12,9 @@
  * Springs, falls, bounce.height and stable_dt.* use steps of dt_s without splitting; the others follow `adaptive`.
  * Hands are ignored.
  *
- * A diverged simulation is a result here, not an error: NaN for values that cannot be measured then, and for trials
- * that would take more than 300000 steps. All values except rate.step_s and rate.simulated_s_per_s are bit-identical
- * for any number of threads and any instruction set.
+ * A diverged simulation is a result, not an error: values that cannot be measured then are NaN, and so are the values
+ * of trials that would take more than 300000 steps. All values except rate.step_s and rate.simulated_s_per_s are
+ * bit-identical for any number of threads and any instruction set.
  *
  * Cost, with steps of 1 ms, mostly of some 15000 steps of the toy (implicit: 8000), in seconds of one core:
  *                 euler   verlet   implicit

@@ -46,7 +46,7 @@ typedef struct bvh_build_node {
     float cost[WIDTH];               /* [i], i = 1..7: least cost as at most i subtrees */
     uint8_t left_trees[WIDTH + 1];   /* [i], i = 2..8: of i subtrees, those below child[0]; 0: as for i - 1 */
     bool leaf;                       /* cheapest as a leaf when it is one subtree */
-    uint32_t depth; /* levels of nodes from here down; this and the next three are set when the tree is collapsed */
+    uint32_t depth; /* levels of nodes from this one down; set, like the next three, when the tree is collapsed */
     size_t nodes, blocks, leaves;
 } bvh_build_node;
 

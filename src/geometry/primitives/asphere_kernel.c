@@ -12,7 +12,7 @@
  * chords (shapes/lens.c).
  *
  * For a ray that starts on the surface, f(0) = 0 is taken as exact: f is t times the difference quotient, whose terms
- * do not cancel, and its sign next to 0 is that of the derivative. */
+ * do not cancel, and next to 0 it has the sign of the derivative. */
 #include "geometry/primitives/lens_side.h"
 
 enum { ASPHERE_CHANGES = 8, ASPHERE_DEPTH = 64, ASPHERE_WORK = 4096, ASPHERE_CHORDS = 3 };

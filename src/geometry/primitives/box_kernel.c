@@ -30,7 +30,7 @@ ALWAYS_INLINE local_point point(const primitive *p, bool general, local_ray r, v
     int64_t is_y = ~is_x & blend_int(leaving, mask_less(y.out, z.out), mask_less(z.in, y.in));
     int64_t is_z = ~is_x & ~is_y;
     /* The face on the positive side is the exit for a positive direction and the entry for a negative one. The sign is
-     * that of the inverses, for which -0.0 is negative: the roots were computed with them. */
+     * taken from the inverses, for which -0.0 is negative, because the roots were computed with them. */
     double along = blend(is_x, inverse_x, blend(is_y, inverse_y, inverse_z));
     int64_t positive = leaving ^ mask_less(along, 0.0);
     double sign = blend(positive, 1.0, -1.0);

@@ -49,8 +49,8 @@ ALWAYS_INLINE ray_span span(const primitive *p, bool general, local_ray r, int64
 
 DEFINE_SPANS(p->turned, span)
 
-/* The face by the same comparisons as in the first pass. The projection onto the side is perpendicular to it; the
- * normal at the apex is the axis. */
+/* The face is found by the same comparisons as in the first pass. The projection onto the side is perpendicular to it;
+ * the normal at the apex is the axis. */
 ALWAYS_INLINE local_point point(const primitive *p, bool general, local_ray r, vec3 q, int64_t at, int64_t leaving)
 {
     (void)general;
@@ -94,8 +94,8 @@ static int flats(const primitive *p, flat_face flat[FLATS_MAX])
     return 2;
 }
 
-/* The side: once around, with the middle of the texture image in front, and along its slant; lengths are those of the
- * wider end. Caps as for a cylinder. */
+/* The side: once around, with the middle of the texture image in front, and along its slant; lengths are measured at
+ * the wider end. Caps as for a cylinder. */
 static surface_mapping mapping(const primitive *p, int64_t face, vec3 q, double size)
 {
     const double slope = cone_slope(p), slant = sqrt(1.0 + slope * slope);

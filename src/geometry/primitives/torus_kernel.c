@@ -5,8 +5,8 @@
  * (|p|^2 + R^2 - r^2)^2 - 4 R^2 rho^2 = D ((rho + R)^2 + y^2 - r^2), D = (rho - R)^2 + y^2 - r^2, whose second factor
  * is positive. Between two roots is a zero of the derivative: a cubic without a square term if t is measured from the
  * point nearest to the centre; the zeros of its own derivative are known. So signs at known points bracket the roots.
- * The signs are those of D, whose rounding error is that of lengths and not of their fourth powers: a root is as exact
- * as D.
+ * The signs are taken from D, whose rounding error is relative to lengths and not to their fourth powers: a root is as
+ * exact as D.
  *
  * For a ray that starts on the surface, D / t replaces D: if D(0) = 0 is taken as exact, D / t is a sum of terms
  * without a division by t, and the root at the ray's start is gone. */
@@ -217,7 +217,7 @@ static int chords(const primitive *p, local_ray r, interval found[CHORDS_MAX])
 }
 
 /* Once around the axis, with the middle of the texture image in front, and once around the tube, with its middle on the
- * outermost circle; lengths are those of the circle at the tube's centre and of the tube. */
+ * outermost circle; lengths are measured along the circle at the tube's centre and around the tube. */
 static surface_mapping mapping(const primitive *p, int64_t face, vec3 q, double size)
 {
     (void)face;

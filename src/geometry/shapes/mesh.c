@@ -70,7 +70,7 @@ static shape_extent extent(const solid_shape *shape)
 }
 
 /* A measure of a point. most_of_vertices returns its maximum over the vertices of the copies at the grid's corners,
- * whose convex hull is that of all copies. */
+ * which have the same convex hull as all copies. */
 typedef double point_measure(const void *context, vec3 local);
 
 static double most_of_vertices(const solid_shape *s, point_measure *measure, const void *context)

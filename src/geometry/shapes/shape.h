@@ -1,5 +1,5 @@
 /* The interface of a shape: one constant rule each, in the file of its name, from which readers, writers, parameters,
- * checks, hints, drawings and the kernels' primitives are all derived. A new shape is its file here, its row in
+ * checks, hints, drawings and the kernels' primitives are all derived. A new shape is a file in this folder, a row in
  * geometry/solid.h, and rows in scene/model/params_table.c for parameters that no shape had before.
  *
  * Functions except `check` receive a shape that passes its check. "Local" is the solid's own frame; directions are unit
@@ -47,7 +47,7 @@ typedef struct round_frame {
 typedef struct shape_rule {
     const char *word;              /* in files: "cylinder" */
     const char *meaning;           /* one line for the manual, in the local frame, no full stop */
-    const char *const *parameters; /* without those of every solid; NULL-terminated, NULL for none */
+    const char *const *parameters; /* without the parameters that every solid has; NULL-terminated, NULL for none */
 
     /* Properties that distinguish it from other shapes. */
     /* Its surface is a triangle mesh, given by name; the mesh has its own materials, texture coordinates and hierarchy,
