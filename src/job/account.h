@@ -1,7 +1,7 @@
 /* The account of a job: results of one frame, or of several frames of one scene rendered one after another, with the
- * film, counts, times, and the resources that the process used. All output about a frame is read from here, through the
- * list in job/quantities.h. Ownership: an account owns its result and its lists of times, and borrows the scene;
- * job_account_release releases them. Unknown numbers are NaN or -1. */
+ * film, counts, times, and the resources that the process used. All output about a frame is read from an account,
+ * through the list in job/quantities.h. Ownership: an account owns its result and its lists of times, and borrows the
+ * scene; job_account_release releases them. Unknown numbers are NaN or -1. */
 #pragma once
 
 #include "base/isa.h"
@@ -30,6 +30,7 @@ void job_account_release(job_account *a);
 /* The film's hash. */
 uint64_t job_account_hash(const job_account *a);
 
-/* Median over the finished frames; for an interrupted frame, its own time. */
+/* Medians over the finished frames; if no frame is finished, the times of the interrupted one. NaN when out of
+ * memory. */
 double job_account_wall_s(const job_account *a);
 double job_account_cpu_s(const job_account *a);

@@ -342,7 +342,8 @@ static status measure_all(work *w, const scene *s, size_t count, bool maps, job_
         a->spent = usage_since(&used);
         a->noise = noise_since(j, began_s);
         a->noise.stalled_fraction = stalled_fraction(a->result);
-        if (instruction_dumps_exist()) { /* counts cannot be disturbed, and under callgrind threads run one at a time */
+        /* Callgrind runs one thread at a time, so the noise is meaningless; the counts cannot be disturbed. */
+        if (instruction_dumps_exist()) {
             a->hardware.instructions = instruction_dumps_next(&j->dumps);
             a->noise = noise_unknown();
         }

@@ -26,7 +26,8 @@
 typedef struct job_distribution {
     /* Sends the loaded scene to the others, and begins to hand out its tiles; *tiles: those of this process. Until end
      * returns, one thread at a time calls requested->progress about every 0.1 s with the fraction of the frame that all
-     * have finished. Between begin and end another cancel token of the thread may cancel the frame. */
+     * processes have finished. begin may begin a cancel token on the calling thread, which end ends: so an error of
+     * another process cancels the frame. */
     status (*begin)(void *context, const scene *s, const render_options *requested, const tile_source **tiles,
                     diagnostic *why);
     /* rendered, result: what the renderer returned for this process; result may be NULL after an error. Waits for the
@@ -69,9 +70,9 @@ status job_load(job *j, scene *s, const load_watch *watch, diagnostic *why);
  * value. */
 status job_render(job *j, const scene *s, const render_options *options, job_account *out, diagnostic *why);
 
-/* Renders `frames` frames, whose films must have equal hashes: otherwise their times would measure different work,
- * which is a failure. Outputs that options requests in addition to the film disturb the times: with more than one frame
- * they come from one additional frame, which is not measured. progress receives the fraction of all frames. */
+/* Renders `frames` frames. STATUS_FAILURE if the hashes of their films differ, because then the times measure different
+ * work. Outputs that options requests in addition to the film disturb the times: with more than one frame, these
+ * outputs come from one additional frame, which is not measured. progress receives the fraction of all frames. */
 status job_repeat(job *j, const scene *s, size_t frames, const render_options *options, job_account *out,
                   diagnostic *why);
 
@@ -81,7 +82,8 @@ status job_repeat(job *j, const scene *s, size_t frames, const render_options *o
  * hierarchies. Ownership: the cache owns copies of scenes, which share their meshes; mesh_cache_clear releases them. */
 
 enum { MESH_CACHE_SCENES = 64 };
-/* In all meshes of the cache; a mesh with its hierarchies uses about 200 bytes per triangle. */
+/* The maximum number of triangles in all meshes of the cache; a mesh with its hierarchies uses about 200 bytes per
+ * triangle. */
 #define MESH_CACHE_TRIANGLES 16000000u
 
 typedef struct mesh_cache {

@@ -54,8 +54,8 @@ static double mean_cut(const int64_t one[3], const int64_t other[3])
     return sum / (3 * COUNTERS_CUT_ONE);
 }
 
-/* The throughput that was cut, mean over the pixels. The camera rays of a pixel have throughput 1 in all, 0.5 behind an
- * analyser; the pilot of render.error traces them once more. */
+/* The throughput that was cut as a fraction of the throughput of the camera rays. The camera rays of a pixel have
+ * throughput 1 in total, 0.5 behind an analyser; the pilot of render.error adds the same once more. */
 static double cut_fraction(const job_account *a)
 {
     const render_settings *r = &a->of->render;
@@ -164,7 +164,7 @@ static int64_t counted(const job_account *a, uint64_t count)
    "hits on interfaces of the solid by camera, reflected and refracted rays", c->hits) \
  Q(tests, "rays", SOLIDS, SAME, JSON_ONLY, "tests", NULL, "rays tested against the solid", c->tests) \
  Q(query_rays, "rays", COUNT, SAME, IN_ROWS, "queries.rays", NULL, \
-   "queries of a mesh's hierarchy by one ray each; NA without render.count_tests, as are the next three", \
+   "queries of a mesh's hierarchy by one ray each; NA without render.count_tests, like the other counts of queries", \
    counted(a, c->queries.rays)) \
  Q(query_nodes, "", COUNT, SAME, IN_ROWS, "queries.nodes", NULL, \
    "nodes that these rays enter: inner nodes of a BVH, spheres of a tree of spheres", counted(a, c->queries.nodes)) \
@@ -212,7 +212,7 @@ static int64_t counted(const job_account *a, uint64_t count)
    "time in visibility queries (nearest hits and shadows), sum over all workers; NA for scenes without meshes", \
    sum_workers(a).visibility_sum) \
  Q(worker_cpu_s_sum, "s", REAL, LAST, IN_ROWS, "worker_cpu_s_sum", NULL, \
-   "CPU time of the workers, sum over all workers", sum_workers(a).cpu_sum) \
+   "CPU time, sum over all workers", sum_workers(a).cpu_sum) \
  Q(imbalance, "", REAL, LAST, IN_ROWS, "imbalance", NULL, "busy_s_max / busy_s_mean - 1", sum_workers(a).imbalance) \
  Q(peak_rss_bytes, "B", COUNT, OVER, IN_ROWS, "peak_rss_bytes", NULL, \
    "peak resident memory of the process so far; in a study, since the start of the frame if Linux allows a reset", \
@@ -226,7 +226,8 @@ static int64_t counted(const job_account *a, uint64_t count)
    "end; includes steal_fraction", \
    a->noise.others_fraction) \
  Q(steal_fraction, "", REAL, OVER, IN_ROWS, "steal_fraction", NULL, \
-   "fraction of the machine that a hypervisor withheld, 0..1, in the same time", a->noise.steal_fraction) \
+   "fraction of the machine that a hypervisor withheld, 0..1, over the same interval as others_fraction", \
+   a->noise.steal_fraction) \
  Q(frequency_hz, "Hz", REAL, OVER, IN_ROWS, "frequency_hz", NULL, \
    "clock frequency at the end of the frame, the highest of 16 units; NA if the system does not report it", \
    a->noise.frequency_hz) \

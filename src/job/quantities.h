@@ -1,10 +1,10 @@
 /* The list of measured quantities: name, unit, type and meaning of each, how the values of several frames are combined,
- * where it is shown, and how it is read from an account. Everything that shows them is generated from it: the columns
+ * where the quantity is shown, and how it is read from an account. The outputs are generated from the list: the columns
  * of rows.csv and workers.csv (study/rows/rows.c), `cuvette render --json` and the page's numbers (report/report.c),
- * the dictionary in results/README.md (make dictionary renews it) and cuvette-account(5). A
- * new quantity is one new line in quantities.c; summaries of studies and the page name those that they show
- * (study/summary/summary.c, web/page/status.js, panel_compare.js, studies/data.js). Ownership: constant; values borrow
- * from the account. Nothing fails. */
+ * the dictionary in results/README.md (make dictionary renews it) and cuvette-account(5). A new quantity is one new
+ * line in quantities.c. Only summaries of studies and the page name the quantities that they show
+ * (study/summary/summary.c, web/page/status.js, view/panel_compare.js, studies/data.js). Ownership: constant; values
+ * borrow from the account. Cannot fail. */
 #pragma once
 
 #include "job/account.h"
@@ -17,8 +17,9 @@ typedef enum quantity_type {
     QUANTITY_COLOR,  /* value.real */
     QUANTITY_HASH,   /* value.hash */
     QUANTITY_WORD,   /* value.word */
-    QUANTITY_DEPTHS, /* value.list: a count for each depth, from 0 to render.depth */
-    QUANTITY_SOLIDS  /* value.list: a count for each of the scene's solids, each in a column NAME.<solid> */
+    QUANTITY_DEPTHS, /* value.list: a count for each depth from 0 to render.depth, at most COUNTERS_DEPTH_MAX */
+    QUANTITY_SOLIDS  /* value.list: a count for each of the scene's first COUNTERS_SOLID_MAX solids, each in a column
+                        NAME.<solid> */
 } quantity_type;
 
 /* How the values of several frames of one scene are combined. */
@@ -55,5 +56,5 @@ extern const size_t frame_quantity_count;
 extern const quantity worker_quantities[];
 extern const size_t worker_quantity_count;
 
-/* The frame's quantity of that name, or NULL. */
+/* The frame quantity with that name, or NULL. */
 const quantity *frame_quantity(const char *name);
