@@ -24,13 +24,13 @@
 
 #define WATCH_S 0.1
 
-/* The reports of the other ranks, with the workers of all ranks in one list. */
+/* The reports of the other ranks, with the workers of all these ranks in one list. */
 typedef struct other_ranks {
     ray_counters counters;
     rank_usage *ranks; /* indexed by rank */
     worker_report *workers;
     int count;
-    status code; /* the first that is not STATUS_OK */
+    status code; /* the first error that a rank reported; cancellations do not count */
     diagnostic why;
 } other_ranks;
 
@@ -124,7 +124,7 @@ static status refuse(const scene *s, const render_options *o, diagnostic *why)
         return diagnose(why, STATUS_BAD_INPUT, "set render.error to 0, or use one process",
                         "render.error needs the noise of the whole image, which no rank has");
     if (o->pixel_rays || o->pixel_time || o->pixel_cut || o->layers || o->timeline)
-        return diagnose(why, STATUS_BAD_INPUT, "leave it out, or use one process",
+        return diagnose(why, STATUS_BAD_INPUT, "request only the image, or use one process",
                         "maps, layers and the timeline are not sent between ranks");
     return STATUS_OK;
 }
@@ -198,7 +198,7 @@ static status begin(void *of, const scene *s, const render_options *requested, c
     l->complete_s = NAN;
     *source = tile_queues_source(l->queues);
     if (pthread_create(&l->thread, NULL, serve, l) != 0)
-        MPI_Abort(MPI_COMM_WORLD, STATUS_FAILURE); /* the other ranks have started the frame */
+        MPI_Abort(MPI_COMM_WORLD, STATUS_FAILURE); /* the other ranks wait for the tiles of this frame */
     return STATUS_OK;
 }
 
@@ -217,7 +217,8 @@ static void add_ranks(lead *l, render_result *result)
     l->others.ranks = NULL;
 }
 
-/* Adds the workers of all ranks; a worker that is not busy waits. */
+/* Appends the workers of the other ranks, and sets the waiting times of all workers: the wall time of the frame minus
+ * their busy times. */
 static status add_workers(const lead *l, render_result *result, double wall_s, diagnostic *why)
 {
     const other_ranks *o = &l->others;

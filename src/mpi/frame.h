@@ -1,7 +1,7 @@
 /* Distributes the frames of a job (job/job.h) over the ranks of an MPI job. Rank 0 renders a part of each frame while
- * another thread serves the other ranks (mpi/messenger.h). These wait for frames and render the tiles that rank 0
- * assigns, until it ends. Ownership: lead_create allocates; lead_destroy releases, and ends the other ranks. One job at
- * a time may use a lead. */
+ * another thread serves the other ranks (mpi/messenger.h). The other ranks wait for frames and render the tiles that
+ * rank 0 assigns, until rank 0 ends. Ownership: lead_create allocates; lead_destroy releases, and ends the other ranks.
+ * One job at a time may use a lead. */
 #pragma once
 
 #include "base/status.h"

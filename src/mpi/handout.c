@@ -77,7 +77,7 @@ int handout_assign(handout *h, int rank, int32_t *tiles)
     if (r->threads == 0)
         return 0;
     const int64_t limit = limit_of(h, r), ahead = limit - r->threads;
-    if (r->held > r->threads + ahead / 2) /* for few messages with several tiles each */
+    if (r->held > r->threads + ahead / 2) /* wait, so that one message assigns several tiles */
         return 0;
     int count = 0;
     while (r->held < limit && h->next < h->tiles && count < HANDOUT_MOST) {

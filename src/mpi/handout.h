@@ -1,8 +1,8 @@
 /* Assigns a frame's tiles to the ranks of an MPI job, in order and on demand. A rank holds a tile per thread, and in
- * advance those that it renders in HANDOUT_AHEAD_S, so that it need not wait for the next message. Near the end no tile
- * is assigned in advance, unless tiles take less time than a message: so the last tiles do not queue at one rank while
- * others idle. Pure: no messages, no clock, no threads. Ownership: handout_create allocates, handout_destroy
- * releases. */
+ * advance the tiles that it renders in HANDOUT_AHEAD_S, at least one, so that it need not wait for the next message.
+ * Near the end, tiles that take longer than HANDOUT_AHEAD_S are not assigned in advance, so that the last tiles do not
+ * queue at one rank while others idle. Pure: no messages, no clock, no threads. Ownership: handout_create allocates,
+ * handout_destroy releases. */
 #pragma once
 
 #include "base/status.h"

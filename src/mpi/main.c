@@ -150,12 +150,12 @@ static status shards_run(int argc, char **argv, int rank, int ranks, diagnostic 
 
 /* --- the program --- */
 
-/* All ranks run shards before any command is chosen: see run. */
+/* For all study commands except 'study run FILE', which run() starts on all ranks before a command is chosen. */
 static status command_shards(int argc, char **argv, diagnostic *why)
 {
     (void)argc, (void)argv;
     return diagnose_at(why, "cuvette-mpi study", STATUS_BAD_INPUT, "use 'cuvette study' for other commands",
-                       "the only command of studies here is 'study run'");
+                       "of the study commands, cuvette-mpi supports only 'study run FILE'");
 }
 
 static const command commands[] = {

@@ -5,7 +5,7 @@
 #include <mpi.h>
 #include <stdlib.h>
 
-/* Memory for a message; without it the frame cannot be completed. */
+/* Allocates memory for a message. If there is none, ends all ranks, because the frame cannot be completed. */
 static void *message_memory(size_t bytes)
 {
     void *memory = malloc(bytes);
@@ -44,7 +44,7 @@ static void cancel_frame(serving *s)
         send_head(s, rank, TAG_STOP);
 }
 
-/* Sends the rank the tiles that it should hold, and once the message that none is left. */
+/* Sends the rank the tiles that it should hold. When no tile is left, sends TAG_END, once. */
 static void assign_tiles(serving *s, int rank)
 {
     struct {
@@ -70,7 +70,7 @@ static void assign_tiles(serving *s, int rank)
     }
 }
 
-/* Sends the end to every rank, not only to the one that received the last tile. */
+/* When no tile is left, sends TAG_END to every rank, not only to the one that received the last tile. */
 static void send_end(serving *s)
 {
     if (s->all_ended || !handout_is_empty(s->tiles))

@@ -3,9 +3,9 @@
  * the same loops run with real threads (mpi/tracing.h) and in a simulated cluster with measured costs
  * (experiments/cluster/simulated).
  *
- * All ranks run one build (mpi/main.c checks it), so that structures are sent as their bytes. A message starts with the
- * number of its frame; messages of an earlier frame, which was cancelled, are dropped. Each rank runs its messenger on
- * one thread; no other thread of the rank calls MPI meanwhile. Errors of MPI end the program: OpenMPI then ends all
+ * All ranks run the same build (mpi/main.c checks this); therefore structures are sent as bytes. A message starts with
+ * the number of its frame; messages of an earlier frame, which was cancelled, are dropped. Each rank runs its messenger
+ * on one thread; no other thread of the rank calls MPI meanwhile. Errors of MPI end the program: OpenMPI then ends all
  * ranks. */
 #pragma once
 

@@ -10,7 +10,7 @@ enum { PART = 4 << 20, LENGTH_END = 0, LENGTH_FAILED = -1 };
 
 typedef struct part {
     char *bytes;
-    int64_t length, at; /* bytes filled or received; bytes of them that were read */
+    int64_t length, at; /* length: bytes filled or received; at: how many of these bytes were read */
     uint64_t sent_bytes;
     bool ended, failed;
 } part;

@@ -19,7 +19,8 @@ const tile_source *tile_queues_source(const tile_queues *t);
 
 /* Called when the renderer has ended: its threads request no more tiles. */
 void tile_queues_close(tile_queues *t);
-/* The token for the thread that renders: set when the frame is cancelled, or to cancel it. */
+/* The token for the thread that renders. The queues set it when rank 0 cancels the frame or memory runs out; the caller
+ * may set it to cancel the frame. */
 cancel_token *tile_queues_token(tile_queues *t);
 /* The renderer's status, or out of memory if a queue could not grow, which the renderer sees as the end of the
  * tiles. */
