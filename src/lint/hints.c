@@ -59,11 +59,11 @@ static void hint_at_clear(const scene *s, const solid *owner, const note_sink *t
     }
 }
 
-/* The largest refractive index of transparent matter for visible light: germanium and silicon have 4 to 5. */
+/* No material is transparent with a higher index for visible light; even germanium and silicon have only 4 to 5. */
 #define INDEX_MOST 5.0
 
-/* Notes a refractive index that seems meant to make a mirror, on a solid with reflectivity 0. Above MIRROR_IOR a
- * transparent solid really is a mirror. True if there is a note. */
+/* Notes a refractive index that seems meant to make a mirror, on a solid with reflectivity 0. No note above MIRROR_IOR,
+ * where a transparent solid really is a mirror. True if there is a note. */
 static bool hint_at_index(const scene *s, const solid *owner, const note_sink *taker)
 {
     const material *m = &owner->surface;
@@ -116,7 +116,8 @@ static void hint_at_cover(const scene *s, const solid *hidden, const note_sink *
     }
 }
 
-/* Parameters that are set in order to see their effect. lint/inert.c says why one has none, as for a --set. */
+/* Parameters whose authors expect to see an effect. param_is_inert explains why one has no effect, as it does for
+ * --set. */
 static const struct {
     const char *name;
     size_t offset;

@@ -138,7 +138,7 @@ static bool inert_named_faces(const inert_case *c)
         if (applies_to_named_faces(c) ? !inert_on_slot(c, slot) : !say_of_solid(c))
             return false;
     }
-    return true; /* no result if no face has that name */
+    return true; /* if no face has the name, without a note: inert_material ignores this result */
 }
 
 static bool inert_surface(const inert_case *c)
@@ -208,7 +208,7 @@ static bool is_unmet_by_camera(const inert_case *c, const char *path)
         {"color", {"0,0,0", "1,1,1", NULL}},
         {"capillary_length", {"0", "0.05", "0.2"}},
         {"contact_angle_deg", {"20", "90", "150"}},
-        {"contact_radius", {"0", NULL}}, /* 0: the largest */
+        {"contact_radius", {"0", NULL}}, /* 0: the radius of the solid, the largest value */
         {"inner_radius", {NULL}},
         {"floor", {NULL}},
     };

@@ -29,7 +29,8 @@ typedef bool inert_rule(const inert_case *c);
 bool inert_say(const inert_case *c, const char *rule, const char *remedy, const char *text, ...)
     __attribute__((format(printf, 4, 5)));
 
-/* Whether the witness reports an unchanged film. */
+/* Whether the witness reports that the assignment ("glass.specular=1") leaves the film unchanged; false without a
+ * witness. */
 bool inert_unchanged(const inert_case *c, const char *format, ...) __attribute__((format(printf, 2, 3)));
 
 /* A remedy that starts with "set ". */
@@ -37,7 +38,7 @@ typedef struct inert_remedy {
     char text[NOTE_TEXT_MAX];
 } inert_remedy;
 inert_remedy inert_set(const char *format, ...) __attribute__((format(printf, 1, 2)));
-/* Remedies that set a parameter of a solid ("diffuse=0.7"), or make it transparent; NULL: "add a solid". */
+/* Remedies that set a parameter of a solid ("diffuse=0.7"), or make the solid transparent; NULL: "add a solid". */
 inert_remedy inert_set_on(const solid *one, const char *assignment);
 inert_remedy inert_set_clear(const solid *one);
 /* Remedies that make the colour of the surface of object `name` visible, or make a light shine. */

@@ -115,14 +115,13 @@ bool say_no_tree(const inert_case *c)
 
 bool no_lamp(const inert_case *c)
 {
-    return shining_lights(c->s) == 0 &&
-           inert_say(c, "no-lamp", lamp_remedy(c->s).text, "every light has intensity 0 or a black color");
+    return shining_lights(c->s) == 0 && inert_say(c, "no-lamp", lamp_remedy(c->s).text, "no light shines");
 }
 
 bool say_not_bent(const inert_case *c)
 {
     return inert_say(c, "not-bent", "set render.integrator=whitted and render.lighting=whitted",
-                     "no ray is transmitted: only the equality of indices has an effect");
+                     "no ray is transmitted: an index has an effect only if it equals the index on the other side");
 }
 
 bool is_dark_at_depth_limit(const scene *s)

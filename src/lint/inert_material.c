@@ -67,7 +67,7 @@ bool no_index(const inert_case *c)
 bool no_medium(const inert_case *c)
 {
     const render_settings *r = &c->s->render;
-    /* check.c refuses metals then */
+    /* The cases in which scene/model/check.c refuses metals. */
     const bool no_metal = has_face_materials(c->s, c->owner) || (r->polarisation && r->spectrum != SPECTRUM_SPECTRAL);
     return c->m->transparency == 0.0 && !no_metal ? nothing_reflected(c) : no_index(c);
 }
@@ -80,7 +80,7 @@ bool no_law(const inert_case *c)
                      "medium %s has no coefficients", medium_words[law]);
 }
 
-/* Light inside the solid is seen only by a camera inside it. */
+/* If no light passes through surfaces, the light inside the solid is seen only by a camera inside it. */
 bool unpassed(const inert_case *c)
 {
     return nothing_passes(c->s) && scene_apart_from_eye(c->s, c->owner) && say_no_tree(c);
@@ -148,7 +148,8 @@ static bool mirrors_black(const inert_case *c)
 static bool nothing_at_depth_0(const inert_case *c)
 {
     const scene *s = c->s;
-    const bool lit = material_roughness(c->m, &s->render) > 0.0 && shining_lights(s) > 0; /* lamps reach facets */
+    /* A rough surface shows lights without secondary rays. */
+    const bool lit = material_roughness(c->m, &s->render) > 0.0 && shining_lights(s) > 0;
     return s->render.depth == 0 && is_dark_at_depth_limit(s) && !lit &&
            inert_say(c, "depth-0", "set render.depth=4",
                      "render.depth is 0, and the radiance beyond the depth limit is black");
@@ -232,7 +233,7 @@ bool sheet_unpassed(const inert_case *c)
     return !material_matches_surroundings(c->s, c->m) && unpassed(c);
 }
 
-/* The axis of a polariser or retarder that treats both directions alike. */
+/* Whether the polariser or retarder treats both directions alike, so that its axis has no effect. */
 bool axis_unseen(const inert_case *c)
 {
     if (c->m->sheet == SHEET_RETARDER)
@@ -294,7 +295,7 @@ static const char *const phong_parameters[] = {"ambient",      "diffuse", "specu
                                                "texture_size", "checker", "checker_color", NULL};
 
 /* The parameter affects only reflected light, and no ray hits the surface. Parameters of transmitted light are left
- * out: it may reach visible surfaces. */
+ * out: transmitted light may reach visible surfaces. */
 bool unseen(const inert_case *c)
 {
     static const char *const opaque_parameters[] = {"color", "emission", NULL};

@@ -44,7 +44,7 @@ static bool shows_polarisation(const scene *s, const solid *one)
 }
 
 /* The polarisation of a light matters only if its light reaches matte surfaces through polarisers, or (as photons, or
- * by random paths) from transparent solids, metals or films. */
+ * by random paths) from transparent solids, metals or films; or if random paths see the light through the analyser. */
 bool depolarised(const inert_case *c)
 {
     const scene *s = c->s;
@@ -67,7 +67,8 @@ bool depolarised(const inert_case *c)
                              "everything that the light passes through treats every polarisation alike");
 }
 
-/* The parameter moves the background's sun: it is the position or kind of a light that is the sun, or would be. */
+/* Whether the parameter moves the sun that the background shows: the position or target of the light that is the sun,
+ * or the kind of a light that is the sun or could become it. */
 bool moves_sky(const inert_case *c)
 {
     const background *b = &c->s->background;
@@ -114,8 +115,8 @@ bool thin_beam(const inert_case *c)
                      "all its rays are on its axis");
 }
 
-/* The film is the same with and without the beam's light; a beam that is dark now is lit by another value. A spot that
- * falls between the samples of the pixels is in no film, either. */
+/* The film is the same with and without the beam's light: the other value turns the light on or off. A spot between the
+ * samples of the pixels does not change the film, either. */
 bool shows_no_light(const inert_case *c)
 {
     const beam *b = &c->s->beams[c->at.index];
@@ -132,8 +133,8 @@ bool shows_no_light(const inert_case *c)
 
 /* --- the sky --- */
 
-/* A gradient between equal colours is uniform, and so is one type of CIE sky; an image background needs a file; rain
- * may be black. */
+/* All kinds of background look the same: the colours of the gradient are equal, there is no rain, the CIE sky is of the
+ * uniform type, and there is no image. */
 bool flat_sky(const inert_case *c)
 {
     const background *b = &c->s->background;
@@ -201,7 +202,7 @@ static bool is_opaque_pair(const solid *a, const solid *b)
 }
 
 /* The intersection of two opaque solids is invisible: from outside only their union matters, and each point of its
- * surface has one owner, unless faces coincide. A camera inside would see it. */
+ * surface has one owner, unless faces coincide. A camera inside the intersection would see it. */
 static bool meets_unseen(const scene *s, const solid *a, const solid *b)
 {
     const solid_shape of_a = scene_loaded_shape(s, a), of_b = scene_loaded_shape(s, b);
@@ -287,7 +288,7 @@ bool unused_mesh(const inert_case *c)
     return inert_say(c, "unused-mesh", remedy.text, "no visible solid uses this mesh");
 }
 
-/* The motion parameters of a slime have no effect at time 0. */
+/* The motion parameters of a slime have no effect before its first time step. */
 bool at_rest(const inert_case *c)
 {
     static const char *const always[] = {"time_s", "radius", "position", NULL};

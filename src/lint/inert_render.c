@@ -109,7 +109,8 @@ static bool one_crystal(const inert_case *c)
     return clear == 1 && scene_crystals(c->s) == 1 &&
            inert_unchanged(c, "render.polarisation=%s", c->s->render.polarisation ? "off" : "on") &&
            inert_say(c, "one-crystal", "set camera.analyser=linear",
-                     "the rays that leave the only transparent solid, a crystal, meet no other one");
+                     "the rays that leave the crystal, the only transparent solid, meet no surface that depends on "
+                     "polarisation");
 }
 
 /* An analyser halves unpolarised light, but only where polarisation is traced. */
@@ -168,7 +169,7 @@ bool no_size(const inert_case *c)
 
 bool one_light(const inert_case *c)
 {
-    return shining_lights(c->s) < 2 && inert_say(c, "one-light", "add a second light", "the scene has one light");
+    return shining_lights(c->s) < 2 && inert_say(c, "one-light", "add a second light", "only one light shines");
 }
 
 /* The wavelengths of a spectral film (render/plan/spectra.c) and the points of a lens are also random. */

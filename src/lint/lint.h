@@ -1,7 +1,7 @@
-/* The linter: notes on a valid scene, parts of which have no effect or not the one that its author expects.
+/* The linter: notes on parts of a valid scene that have no effect, or not the effect that the author expects.
  *
  * A note has a place, one sentence and a remedy. Three things make notes:
- * - param_is_inert: one parameter has no effect, and what it needs. It takes microseconds, so that it runs for each
+ * - param_is_inert: one parameter has no effect, and what it needs. It takes microseconds, and therefore runs for each
  *   --set, each change in the page and each axis of a study. A witness, if there is one, decides what only an
  *   image shows.
  * - scene_hints, scene_range_hints and the like: what a scene seems to lack.
@@ -66,7 +66,8 @@ typedef struct inert_witness {
 bool param_is_inert(const scene *s, const char *path, const inert_witness *witness, inert_answer *out);
 
 /* The conditions on other parameters under which a parameter has an effect: "kind=rectangle, height>0", on the same
- * object or with a full path; "" for none. Rules that depend on the scene are left out. Returns text. */
+ * object or with a full path; "" for none. Rules that depend on the scene, and conditions of all parameters of a group,
+ * are left out. Returns text. */
 char *inert_needs_text(const struct param *row, char *text, size_t size);
 
 /* --- hints --- */

@@ -292,7 +292,7 @@ static double narrowest(const pair *p)
     return least;
 }
 
-/* The width of the gap along an axis; 0 for none. */
+/* The width of the narrowest gap along an axis, if a patch of its lines has narrow gaps; 0 for none. */
 static double find_patch(const pair *p, int axis)
 {
     const int step_u = patch_step(p, (axis + 1) % 3), step_v = patch_step(p, (axis + 2) % 3);
@@ -326,7 +326,7 @@ static void note_gap(const pair *p, double gap)
                 first->name, second->name, gap, thin->owner->name, thin->thickness);
 }
 
-/* Two half-spaces intersect unless they face away from each other. */
+/* Two half-spaces intersect unless their planes are parallel, and each is outside the other. */
 static bool planes_overlap(const pair *p)
 {
     const primitive *a = &p->input->probe->geometry->primitives[p->a->of->outside],
@@ -365,7 +365,7 @@ static bool media_differ(const plan *made, const neighbour *a, const neighbour *
     return a->of->medium != b->of->medium || off.x != 0.0 || off.y != 0.0 || off.z != 0.0;
 }
 
-/* Whether an interface with the surroundings is visible, on a transparent or an opaque solid. */
+/* Whether the region's interface with the surroundings is visible: the solid is opaque, or its medium differs. */
 static bool shows(const region *b)
 {
     return b->opaque || b->medium != 0;

@@ -1,4 +1,4 @@
-/* Notes: one is formatted, and passed to the callback or written as a line. */
+/* Formats a note, and passes it to the callback or writes it as a line. */
 #include "lint/lint.h"
 
 #include <stdarg.h>

@@ -29,7 +29,8 @@ static range_case of_film(const scene *s, const note_sink *taker)
         .s = s, .taker = taker, .clear = s->render.spectrum == SPECTRUM_SPECTRAL ? visible : one, .layered = visible};
 }
 
-/* The wavelengths of the first visible beam outside the law's range; NULL for none. */
+/* The first visible beam with wavelengths outside the law's range, and in *at the range of its wavelengths; NULL for
+ * none. */
 static const beam *beam_beyond(const scene *s, const dispersion *law, nm_range *at)
 {
     for (size_t i = 0; i < s->beam_count; i++) {
