@@ -4,7 +4,8 @@
 #include "render/shade/kernels.h"
 #include "render/tracer/tracer.h"
 
-/* Camera rays for a pixel's samples, each at all of a spectral film's wavelengths. */
+/* The numbers of camera rays of a pixel: one for each of its samples, or one for each sample and wavelength of a
+ * spectral film. */
 camera_sampling camera_samples(const render_settings *r);
 
 /* Enqueues rays first .. first + count - 1 of a row of pixels that starts at x0. */

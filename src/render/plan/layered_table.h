@@ -69,6 +69,7 @@ vec3 layered_color(const layered_surface *s, double cosine, double n_low, double
 /* The table for the surface of a priority index and a medium, by its number (layered_plan.medium); filled if
  * necessary. */
 const layered_curve *layered_curve_of(layered_plan *p, int priority_index, int medium_number);
-/* Fills a table with these colours, and interpolates in it. */
+/* Fills a table with the colours of layered_color before they are clamped. layered_curve_at interpolates, then
+ * clamps. */
 void layered_curve_make(const layered_surface *s, double n_low, double n_high, layered_curve *out);
 vec3 layered_curve_at(const layered_curve *c, double cosine);

@@ -33,7 +33,7 @@ static inline light_cone light_cone_of(const light *l)
                             : l->kind == LIGHT_SUN ? 0.5 * l->angular_diameter_deg
                                                    : l->half_angle_deg;
     elementary_sincos_deg(0.5 * half_deg, &sine, &cosine);
-    const bool all_around = l->kind == LIGHT_CONE && l->half_angle_deg == 180.0; /* whatever the rounding */
+    const bool all_around = l->kind == LIGHT_CONE && l->half_angle_deg == 180.0; /* rounding may exclude no direction */
     return (light_cone){vec3_normalize(vec3_sub(l->target, l->position)), all_around ? 3.0 : 2.0 * sine * sine};
 }
 
@@ -86,7 +86,7 @@ static inline vec3 light_towards(const light *l, vec3 point)
 typedef struct lamp_shape {
     bool round;
     vec3 axis, right, up;           /* unit vectors; axis: the side that emits */
-    double half_width, half_height; /* a disc's radius, both */
+    double half_width, half_height; /* of a disc: both the radius */
     double area;
 } lamp_shape;
 
@@ -141,7 +141,7 @@ static inline double lamp_shape_hit(const lamp_shape *s, vec3 centre, vec3 origi
     return inside ? t : (double)HUGE_VAL;
 }
 
-/* The lamp's radiance for a colour of 1. */
+/* The lamp's radiance for an intensity of 1 and a colour of 1. */
 static inline double lamp_shape_radiance(const lamp_shape *s, double reach)
 {
     return LAMP_PI * reach * reach / s->area;

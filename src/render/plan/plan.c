@@ -28,9 +28,9 @@ static bool are_alike_crystals(const scene *s, const solid *a, const solid *b)
 }
 
 /* The medium of a solid. Under Fresnel weights, solids of equal refractive index are one medium, and a boundary between
- * them is no interface unless it is coated, has a thin film, or emits light; crystals also need an equal axis. With
- * constant weights, as in the published rod report, every surface reflects whatever its index. laws: dispersion laws by
- * solid; [solid_count] is the surrounding medium's. */
+ * them is no interface unless it is coated, has a thin film, or emits light; crystals must also be alike. With constant
+ * weights, as in the published rod report, every surface reflects whatever its index. laws: dispersion laws by solid;
+ * [solid_count] is the surrounding medium's. */
 static int64_t medium_of(const scene *s, const index_law *laws, int solid_index)
 {
     const material *m = &s->solids[solid_index].surface;
@@ -85,7 +85,7 @@ static void report_mesh(plan *p, const mesh_entry *m, const solid_shape *shape, 
     }
 }
 
-/* Sets a mesh solid's shape with its triangles, and their hierarchy. */
+/* Sets *shape to the solid's shape with the triangles of its mesh, and source->tree to their hierarchy. */
 static status fetch_mesh(const scene *s, size_t i, plan *p, solid_shape *shape, region_source *source, diagnostic *why)
 {
     const solid *one = &s->solids[i];

@@ -1,6 +1,6 @@
 /* The render plan: a scene prepared for tracing, with solids in order of priority, materials and refractive indices by
  * priority index, and the camera frame. It is built once per frame and then read by all workers. Ownership: plan_build
- * allocates, plan_destroy releases; it borrows the scene's sky. */
+ * allocates, plan_destroy releases; it borrows the scene's materials, meshes and sky, and the names of objects. */
 #pragma once
 
 #include "geometry/hierarchy/hierarchy.h"
@@ -37,7 +37,7 @@ typedef struct region_scatter {
     double asymmetry; /* of the phase function, optics/phase_function.h */
 } region_scatter;
 
-/* The maximum number of lamps whose beams are sampled along each ray (render/shade/media.h). */
+/* The maximum number of lamps whose scattered light is sampled along each ray (render/shade/media.h). */
 enum { AIRLIGHTS_MAX = 8 };
 
 /* The maximum number of boxes, one per solid whose medium scatters; if there are more such solids, one box holds

@@ -25,9 +25,9 @@
 
 enum { ENERGY_STEPS = 64, ENERGY_PER_OCTAVE = 64, ENERGY_RATIOS = 129 };
 
-/* What one facet loses, for one ratio of indices. lost: [0] on the side of the lower index, or before an opaque
- * surface; by node k, at the cosine (k / ENERGY_STEPS)^2. mean: a; passed: T of a smooth surface, from the
- * side of the lower index. */
+/* Fractions of energy for one ratio of indices, with the symbols above. lost: A; [0] on the side of the lower index, or
+ * before an opaque surface, [1] on the other side; node k is at the cosine (k / ENERGY_STEPS)^2. mean: a by side.
+ * passed: T of a smooth surface, from the side of the lower index. */
 typedef struct energy_table {
     atomic_bool ready;
     double lost[2][ENERGY_STEPS + 1], mean[2], passed;
@@ -65,7 +65,8 @@ typedef struct facet_energy {
 
 facet_energy facet_energy_at(rough_energy *all, const rough_finish *finish, double n_from, double n_to, double cosine);
 
-/* A(o) / a of a direction on the side of reflection or refraction, so that f |cos o| = lost fraction A(o) / a |cos o| /
- * pi; for an opaque surface also times facet_energy_kept of its mean reflectance, which is w. */
+/* A(o) / a of a direction on the side of reflection or refraction. With it,
+ *   f |cos o| = lost * fraction[refracted] * A(o) / a * |cos o| / pi.
+ * For an opaque surface also multiply by w, which is facet_energy_kept of the mean reflectance. */
 double facet_energy_towards(const facet_energy *e, bool refracted, double cosine);
 double facet_energy_kept(const facet_energy *e, double reflectance);

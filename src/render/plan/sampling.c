@@ -6,7 +6,8 @@
 /* Replicates under sobol. */
 enum { SOBOL_REPLICATES = 4, SPECTRAL_REPLICATE_MIN = 8 };
 
-/* Under philox, as many replicates as possible: the paths are independent, so that their number costs no accuracy. */
+/* A round has one path for each point of the pixel's grid. Under philox, as many replicates as possible: the paths are
+ * independent, so that the number of replicates costs no accuracy. */
 static int64_t philox_replicates(int64_t rounds)
 {
     int64_t count = FILM_REPLICATES_MAX;
@@ -16,8 +17,8 @@ static int64_t philox_replicates(int64_t rounds)
 }
 
 /* Under sobol, few replicates: n paths in R replicates have R^0.25 to R times the error of one set of n points (errors
- * that fall like n^-0.75 to n^-1.5). If four do not divide the paths, the smallest number that does. least: minimum of
- * paths per replicate. */
+ * that fall like n^-0.75 to n^-1.5). If four do not divide the rounds, the smallest number that does. least: the
+ * minimum number of rounds per replicate. */
 static int64_t sobol_replicates(int64_t rounds, int64_t least)
 {
     if (rounds % SOBOL_REPLICATES == 0 && rounds >= SOBOL_REPLICATES * least)

@@ -74,7 +74,7 @@ enum {
     DRAW_FACET_LIGHT = 0x1005, /* a lamp for facets on the ray's side; the next one: for those on the other side */
     DRAW_FLIGHT = 0x1007,      /* the free flight of a ray in a medium that scatters */
     DRAW_PHASE = 0x1008,       /* the direction after scattering */
-    DRAW_AIRLIGHT = 0x1009,    /* from here on, each light has its own number */
+    DRAW_AIRLIGHT = 0x1009,    /* airlight: one number for each light, from this one on */
     DRAW_FURTHER =
         DRAW_AIRLIGHT + SCENE_LIGHTS_MAX, /* whether light meets further facets; the next one: its new direction */
     DRAW_PHOTON_END = DRAW_FURTHER + 2,   /* Russian roulette of deep photons, and their branch */

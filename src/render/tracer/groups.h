@@ -27,7 +27,8 @@ typedef struct hit_groups {
 } hit_groups;
 
 /* shading_class: by priority index (plan.h), below the number of priority indices. marks: by primitive; class_marks: by
- * shading class; all are -1 before and after. Groups are in the order of their first rays. */
+ * shading class; all are -1 before and after. Classes, and the groups of each class, are in the order of their first
+ * rays. */
 void hit_groups_make(const hit_batch *hits, int count, const int *shading_class, int16_t *marks, int16_t *class_marks,
                      hit_groups *out);
 

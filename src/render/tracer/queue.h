@@ -7,8 +7,9 @@
 #include <stdbool.h>
 
 /* The ray's neighbours, one sample of the image away in its two directions x and y (Igehy, "Tracing Ray Differentials",
- * SIGGRAPH 1999): the one at (x, y) passes origin + x shift[0] + y shift[1], towards direction + x turn[0] + y turn[1],
- * to first order. Any multiple of the direction may be added to a shift. All zeros: unknown. */
+ * SIGGRAPH 1999). If the ray has the origin o and the direction d, the neighbour at (x, y) passes, to first order,
+ * through o + x shift[0] + y shift[1] in the direction d + x turn[0] + y turn[1]. Any multiple of d may be added to a
+ * shift. All zeros: unknown. */
 typedef struct ray_footprint {
     vec3 shift[2], turn[2];
     bool bent;        /* it met a curved surface */
