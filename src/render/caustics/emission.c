@@ -83,7 +83,7 @@ static double density_of(const emission *e, int lamp, int drawn, vec3 direction,
     return density;
 }
 
-/* Moves the point back along its ray to the lamp's sphere; false if the ray does not leave it. */
+/* Moves the point along its ray to where the ray leaves the lamp's sphere; false if the ray misses the sphere. */
 static bool to_lamp(const emission *e, int lamp, vec3 direction, vec3 *point)
 {
     const double radius = sphere_radius(e, lamp),
@@ -141,8 +141,8 @@ static int choose_cone(const emission *e, int lamp, double *u)
     return k;
 }
 
-/* Draws a ray. Returns the inverse of its density times the area of the lamp's disc; 0 if it does not leave the lamp.
- * s.u also chooses the cone. */
+/* Draws a ray. Returns 1 / (its density * the area of the lamp's disc), without the area for a lamp that is no sphere;
+ * 0 if it does not leave the lamp. s.u also chooses the cone. */
 static double draw_ray(const emission *e, int lamp, unit_pair s, unit_pair place, emitted_ray *out)
 {
     const lamp_emission *l = &e->lamps[lamp];

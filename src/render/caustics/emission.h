@@ -3,9 +3,9 @@
  * balls of these solids, with a density that is the sum over the cones. For an unbounded solid, the cone is the full
  * sphere of directions; a spotlight's cone replaces a wider one. A lamp and the ball of a solid that it can light are a
  * target. A lamp's flux into a small solid angle dw is pi I reach^2 dw, for a point as for a sphere, which emits each
- * direction from a disc perpendicular to it; I is its intensity (path.c). A ray passes a random point of the lamp's
- * disc, or, if the lamp is larger than the ball, as the sun is, of the ball's disc. A sun's directions are uniform over
- * its disc, or equal; its rays pass through rectangles around the solids, perpendicular to them, and begin far in front
+ * direction from a disc perpendicular to it; I is its intensity (path.c). A ray passes through a random point of the
+ * lamp's disc or, if the lamp is larger than the ball, of the ball's disc. A sun's directions are uniform over its
+ * disc, or equal; its rays pass through rectangles around the solids, perpendicular to the rays, and begin far in front
  * of all solids. For an unbounded ball, the rectangle covers twice the extent of the scene.
  *
  * A beam that lights the scene is one more lamp: its photons start like its rays, towards any solid, and also light the
@@ -41,7 +41,7 @@ void emission_end_pilot(emission *e, const bool *delivers);
 
 /* The number of photons to emit: 0 if there is no beam, and no lamp shines or nothing can deflect its light. */
 int64_t emission_count(const emission *e);
-/* The radius of the largest bounding ball, or of the scene for an unbounded solid; at least that of the beams. */
+/* The radius of the largest bounding ball, or of the scene for an unbounded solid; at least the extent of the beams. */
 double emission_extent(const emission *e);
 
 typedef struct emitted_ray {
@@ -57,7 +57,7 @@ typedef struct emitted_ray {
     bool falls; /* false: the light has no falloff with distance, and its power applies at distance 1 */
 } emitted_ray;
 
-/* The ray of photon i; false if it has none (outside a spotlight's cone). */
+/* The ray of photon i; false if it has none, for example outside a spotlight's cone. */
 bool emission_ray(const emission *e, int64_t i, emitted_ray *out);
 
 /* A random number in (0, 1) for a decision of photon i at a depth. */

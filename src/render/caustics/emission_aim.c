@@ -129,7 +129,7 @@ static double brightness(const light *l)
 }
 
 /* Sets the cones of a sun, and the flux through its areas, relative to the flux of a lamp of intensity 1 and reach 1
- * into a unit of solid angle, as in aim. */
+ * into the solid angle 2 pi, as in aim. */
 static void aim_sun(emission *e, int lamp)
 {
     const light_cone *c = &e->p->cones[lamp];
@@ -141,7 +141,9 @@ static void aim_sun(emission *e, int lamp)
     }
 }
 
-/* Sets the lamp's cones and the flux in each: the brightness times the solid angle over 2 pi. */
+/* Sets the lamp's cones and the flux in each: the brightness times the squared reach times the solid angle over 2 pi.
+ * The light of a lamp without reach does not fall off: the distance of the ball, or for an unbounded solid the extent
+ * of the scene, replaces the reach. */
 static void aim(emission *e, int lamp)
 {
     const light *l = &e->p->lights[lamp];

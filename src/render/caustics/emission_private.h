@@ -18,7 +18,7 @@ typedef struct ball {
 typedef struct cone {
     vec3 axis;
     double cap;      /* 1 - the cosine of its half angle; 2: all directions; for a sun, 0: one direction */
-    double flux;     /* relative to that of the other cones and beams; 0: the lamp does not shine there */
+    double flux;     /* relative to the flux of other cones and beams; 0: the lamp does not shine there */
     double fraction; /* of the lamp's photons */
 } cone;
 

@@ -145,7 +145,7 @@ static bool has_branch(const tracer *t, int k, bool refracted)
     return (refracted ? t->surface.branches.refract[k] : t->surface.branches.reflect[k]) > 0.0;
 }
 
-/* A branch of record k, of which the surface transmits the fraction `passing`. */
+/* A branch of record k; passing: the fraction of it that other facets do not mask, 1 for a smooth surface. */
 static photon_branch branch_of(const tracer *t, int k, bool refracted, double passing)
 {
     photon_branch one = {.refracted = refracted, .polarised = true};

@@ -146,7 +146,7 @@ static status sort_photons(caustics *c, diagnostic *why)
     if (stopped(c))
         return STATUS_OK;
     status code = photon_map_create(c->found, (size_t)c->workers, &c->map, why);
-    code = code == STATUS_INTERRUPTED ? STATUS_OK : code; /* without a map; the frame stops */
+    code = code == STATUS_INTERRUPTED ? STATUS_OK : code; /* no map; the frame reports the cancellation */
     for (int i = 0; i < c->workers; i++) {
         free(c->found[i].list);
         memset(&c->found[i], 0, sizeof c->found[i]);

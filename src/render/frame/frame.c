@@ -176,7 +176,7 @@ static void work(void *context, int worker)
 static void watch(void *context)
 {
     frame *f = context;
-    cancel_asked(); /* the workers only see what is set */
+    cancel_asked(); /* calls the token's ask and sets the token; workers do not call ask */
     const render_options *o = f->options;
     if (!o || !o->progress || since(f) - f->progress_s < (o->progress_s > 0 ? o->progress_s : 0.1))
         return;
@@ -217,8 +217,8 @@ static bool join_events(const worker_state *workers, int count, render_result *r
     return true;
 }
 
-/* Rays that search for their nearest interface are tested against every visible solid, shadow rays against those that
- * cast shadows; solids of the solid tree are not counted. */
+/* Rays that search for their nearest interface are tested against every visible solid; shadow rays against those that
+ * cast shadows, or against every visible solid if the surroundings absorb. Solids of the solid tree are not counted. */
 static void count_tests(const plan *p, ray_counters *c)
 {
     const uint64_t nearest = c->camera + c->reflect + c->refract;

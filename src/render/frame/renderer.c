@@ -176,7 +176,7 @@ static status render_by_error(renderer *r, const scene *s, const render_options 
     return code;
 }
 
-/* `auto` is resolved once, so that all parts of a frame agree on the number of workers. */
+/* render.threads=auto is resolved once, so that all parts of a frame agree on the number of workers. */
 status renderer_render(renderer *r, const scene *s, const render_options *options, render_result **out, diagnostic *why)
 {
     scene resolved = *s; /* borrows what s owns */

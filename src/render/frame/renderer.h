@@ -29,11 +29,11 @@ void renderer_set_machine(renderer *r, const topology *machine);
 
 /* --- options and results --- */
 
-/* One worker's report of a frame; times are seconds from the frame's start. */
+/* One worker's report of a frame; times in seconds. */
 typedef struct worker_report {
     double wall_s;  /* from its first to its last instruction in this frame */
     double cpu_s;   /* CLOCK_THREAD_CPUTIME_ID over the same interval */
-    double start_s; /* when it began to work, after the frame's start */
+    double start_s; /* when it began to work, counted from the frame's start */
     double busy_s;  /* from its first tile to its last ray; 0 without a tile */
     /* part of busy_s spent in visibility queries (nearest hits and shadows); NaN for scenes without meshes */
     double visibility_s;
@@ -77,9 +77,9 @@ typedef struct render_options {
     /* Seconds, below 1, between two polls of the calling thread for cancellation and progress; 0: 0.02. A poll costs
      * instructions, and their number varies with the load: where instructions are counted, polls are rare. */
     double watch_s;
-    /* Called by the worker that traced the last ray of a tile (x0 <= x < x1, y0 <= y < y1), so possibly
-     * by several threads at the same time; the callback may read the film in the tile. Batches are then not filled
-     * across tiles, which costs time but leaves the film bit-identical. May be NULL. */
+    /* Called by the worker that traced the last ray of a tile (x0 <= x < x1, y0 <= y < y1), possibly by several threads
+     * at the same time; the callback may read the film in the tile. With a callback, batches are not filled across
+     * tiles, which costs time but leaves the film bit-identical. May be NULL. */
     void (*tile_done)(void *context, const film *img, int x0, int y0, int x1, int y1);
     void *context;
     /* NULL: all tiles. It cannot be combined with maps, layers, tile_done, or render.error. */
@@ -105,7 +105,7 @@ typedef struct render_result {
     double *pixel_rays; /* NULL unless requested; width * height */
     double *pixel_ns;
     /* the fraction of each pixel's weight whose light is unknown: the throughput, mean of RGB, of its rays that
-     * render.depth or render.min_weight cut off, relative to that of its camera rays */
+     * render.depth or render.min_weight cut off, relative to the throughput of its camera rays */
     double *pixel_cut;
     /* For random paths: square of the standard error of each film value, [(y * width + x) * 3 + channel] in the film's
      * colour space, from the differences between the replicates (render/plan/sampling.h). NULL if unknown. For a
@@ -134,7 +134,8 @@ void render_result_destroy(render_result *result);
 
 /* --- renderer.c: renders --- */
 
-/* Checks the scene; call scene_load first. STATUS_INTERRUPTED when cancelled: *out then holds the finished part. */
+/* Checks the scene and renders one frame of it; call scene_load first. STATUS_INTERRUPTED when cancelled: *out then
+ * holds the finished part, under render.error perhaps of the pilot. */
 status renderer_render(renderer *r, const scene *s, const render_options *options, render_result **out,
                        diagnostic *why);
 
@@ -154,8 +155,8 @@ uint64_t renderer_tracing_bytes(const scene *s);
 
 /* --- frame.c --- */
 
-/* Starts the threads that s requires in advance (render.pool on), so that the first frame's time does not include
- * it. */
+/* With render.pool on, starts the threads that s requires, so that the first frame's time does not include their
+ * start. */
 status renderer_prepare(renderer *r, const scene *s, diagnostic *why);
 
 /* --- renderer.c: adaptive numbers of random paths --- */

@@ -32,11 +32,12 @@ void tracer_discard(tracer *t);
 
 /* --- batches.c --- */
 
-/* Enqueues the camera rays of a tile and traces until every queue holds less than a batch. Adds the number of pixels to
- * *begun, row by row of blocks. */
+/* Enqueues the camera rays of a tile and traces as tracer_run_full does. Adds the number of pixels to *begun, row by
+ * row of blocks. */
 void tracer_render_tile(tracer *t, const image_tile *tile, atomic_uint_fast64_t *begun);
 
-/* Traces until every queue holds less than a batch, unless cancelled. */
+/* Traces until every queue holds less than a batch, and the queue of deep rays less than DEEP_AT_ONCE rays, unless
+ * cancelled. */
 void tracer_run_full(tracer *t);
 
 /* Traces the remaining rays, or discards them when cancelled. All queues are empty afterwards. */

@@ -117,7 +117,7 @@ static vec3 on_surface(vec3 v, vec3 d, vec3 n, double cosine)
     return vec3_add(v, vec3_scale(d, vec3_dot(v, n) / cosine));
 }
 
-/* The length of on_surface. */
+/* The length of the vector that on_surface returns. */
 static double length_on_surface(vec3 v, vec3 d, vec3 n, double cosine)
 {
     const double times = vec3_dot(v, n) / cosine;

@@ -23,7 +23,8 @@ typedef struct photon {
     float normal[3]; /* of the surface, on the side where it arrived */
     float flux[3];   /* its power over pi, by channel: a matte surface's radiance is its albedo times irradiance / pi */
     float radius;    /* of its disc, set by photon_map_spread; before, the radius of the blur by the lamp's size */
-    /* its number in a spectral film, for a spectral line photon_of_line of it; in an rgb film, equal for all */
+    /* in a spectral film the number of its wavelength, or for a spectral line, photon_of_line of this number; in an rgb
+     * film equal for all photons */
     int32_t wavelength;
 } photon;
 
@@ -72,8 +73,9 @@ const photon *photon_map_at(const photon_map *m, size_t i);
  * -1 in an rgb map. */
 vec3 photon_map_irradiance(const photon_map *m, vec3 point, vec3 normal, int wavelength);
 
-/* A ray at the point that it hits, and its neighbours one sample of the image away in x and y: the one at (x, y) passes
- * point + x across[0] + y across[1], towards toward + x turn[0] + y turn[1] (ray_footprint, render/tracer/queue.h). */
+/* A ray at the point that it hits, and its neighbours one sample of the image away in x and y. The neighbour at (x, y)
+ * passes through point + x across[0] + y across[1], in the direction toward + x turn[0] + y turn[1] (ray_footprint,
+ * render/tracer/queue.h). */
 typedef struct photon_footprint {
     vec3 toward, across[2], turn[2];
     vec3 along;   /* for a photon at an offset from point, t = offset . along is its parameter on point + t toward */

@@ -70,7 +70,7 @@ static inline size_t photon_box_end(const photon_map *m, int level, size_t box)
 size_t photon_lists_total(const photon_list *lists, size_t count);
 bool photon_order(const photon_list *lists, size_t count, photon *out);
 
-/* The numbers of boxes for the map's count of photons. */
+/* Computes the numbers of levels and boxes from the map's count of photons. */
 void photon_tree_count(photon_map *m);
 /* Allocates the boxes; false when out of memory. */
 bool photon_tree_make(photon_map *m);
@@ -87,8 +87,11 @@ bool photon_groups_make(photon_map *m);
 enum { REACH_X, REACH_Y, REACH_HEIGHT, REACH_SLABS };
 typedef struct photon_reach {
     bool known; /* false: the surface is seen edge on or from behind, and discs are evaluated at the point */
-    vec3 slab[REACH_SLABS]; /* across the slab, 1 / cells or 1: its product with a photon's offset is at most */
-    double within[REACH_SLABS], length[REACH_SLABS]; /* within + length times its radius; both with a margin */
+    /* A photon can contribute if |slab[k] . offset| <= within[k] + length[k] * radius for all k. offset and radius are
+     * in scene units; the product is in cells for REACH_X and REACH_Y, in scene units for REACH_HEIGHT. within and
+     * length include a margin. */
+    vec3 slab[REACH_SLABS];
+    double within[REACH_SLABS], length[REACH_SLABS];
     double beyond; /* distance to the farthest disc that can contribute, scene units */
     bool groups;   /* photons close together are evaluated as one */
 } photon_reach;
@@ -96,7 +99,8 @@ typedef struct photon_reach {
  * where r is the radius of their discs, all in cells. A square of side e has the variance e^2 / 6. */
 #define PHOTON_ONE (2.0 / 6.0)
 
-/* Called with each photon that a search finds, or with a group as one; disc: the mean radius of its photons' discs. */
+/* Called with each photon that a search finds, or with one photon that stands for a group. disc: the radius of the
+ * photon's disc; for a group, the root mean square of its photons' radii, weighted by power. */
 typedef void photon_visit(const photon *one, double disc, void *context);
 /* Calls visit for photons near the point, in order: at least for those whose discs contain it, or that are within
  * reach. */
