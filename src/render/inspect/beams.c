@@ -121,7 +121,7 @@ double beam_fraction(const ray_node *node)
     return (node->throughput[0] + node->throughput[1] + node->throughput[2]) / 3.0;
 }
 
-/* Beer and Lambert: the transmittance over a fraction of the segment is that power of the segment's transmittance. */
+/* Beer and Lambert: if a segment transmits T, the fraction f of the segment transmits T^f. */
 double beam_fraction_at(const ray_node *node, double t)
 {
     double sum = 0.0;

@@ -1,6 +1,8 @@
 /* The probe: the complete ray tree of a camera ray, or of any ray, as the tracer traces it. A probe drives the same
- * tracer with batches of one ray and records them, so that its result is bit-identical to a render: a tree's radiance
- * is the film's value of that pixel.
+ * tracer with batches of one ray and records them. For an rgb film of ray trees or ray casting that uses no random
+ * numbers (no lens, soft shadows or photons), its result is bit-identical to a render: a tree's radiance is the film's
+ * value of that pixel. For other settings it traces the tree of the integrator whitted, for the chief ray and at
+ * render.lambda_nm, without photons.
  *
  * Ownership: probe_create allocates, probe_destroy releases; it borrows the scene, whose images must be loaded. The
  * caller owns a ray_tree: zero it before its first use (the next ray reuses its memory), and release it with
@@ -41,7 +43,8 @@ typedef struct ray_hit {
     double n_from, n_to;
     double cos_i, cos_t; /* cos_t is 0 under total internal reflection */
     /* power reflectances of the interface with its coating; for an opaque surface or simple transmission, its
-     * reflectivity; for a metal or a thin film, at the tree's wavelength */
+     * reflectivity; for a metal or a thin film, at the tree's wavelength; at a crystal all are equal, the fraction of
+     * this ray's light that is reflected */
     double R_s, R_p, R;
     bool tir;
     double T; /* power transmittance of the surface, with coating and transparency; 0 for an opaque one */
@@ -89,8 +92,9 @@ status probe_create(const scene *s, isa level, probe **out, diagnostic *why);
 void probe_limit_depth(probe *p, int depth);
 void probe_destroy(probe *p);
 
-/* From this call on, absorption by wavelength is evaluated at render.lambda_nm for all channels, as refractive indices
- * are; for a spectral scene this is always so. The pixel values then differ from those of an rgb film. */
+/* From this call on, absorption by wavelength, metals and thin films are evaluated at render.lambda_nm for all
+ * channels, as refractive indices are; for a spectral scene this is always so. The pixel values then differ from those
+ * of an rgb film. */
 void probe_use_one_wavelength(probe *p);
 
 /* The tree of a pixel; with several samples per pixel it has as many roots, linked by next. STATUS_BAD_INPUT outside

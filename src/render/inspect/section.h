@@ -5,7 +5,7 @@
  *
  * Boundaries are drawn between solids, even between two of the same medium, which do not bend light: a section shows
  * the extent of each solid. A layer thinner than a cell is found only where a grid point is in it; elsewhere the
- * boundary is that of its neighbours.
+ * section shows one boundary between the neighbours of the layer.
  *
  * Ownership: the caller owns a section; zero it before its first use, release it with section_release. */
 #pragma once
@@ -43,13 +43,14 @@ typedef struct section {
 status section_cut(const probe *p, const section_plane *plane, int cells, section *out, diagnostic *why);
 void section_release(section *s);
 
-/* The area of one medium: its lines, with order and direction, as closed rings. */
+/* One step around the area of a medium: a line and its direction. The steps form closed rings. */
 typedef struct section_step {
     size_t line;
     bool backwards, starts_ring;
 } section_step;
 
-/* Writes *count steps, up to line_count. */
+/* Writes the steps around the area of a medium to out, which has room for s->line_count steps, and their number to
+ * *count. */
 status section_area(const section *s, int medium, section_step *out, size_t *count, diagnostic *why);
 
 /* section_project: the orthogonal projection of a point onto the plane's coordinates; section_place: the inverse. */

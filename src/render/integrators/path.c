@@ -63,7 +63,7 @@ static void intersect_lights(tracer *t, const ray_queue *q, int first, const ray
     double nearest[ROW];
     int lamp[ROW];
     int64_t near[ROW];
-    int64_t seen = 0; /* the others left a surface that sampled the lights itself */
+    int64_t seen = 0; /* not 0: some ray may hit a light; the other rays left surfaces that sampled the lights */
     for (int i = 0; i < rays->count; i++) {
         nearest[i] = hits->t[i], lamp[i] = -1;
         seen |= q->sample_key[first + i] & SAMPLE_KEY_SPECULAR_BOUNCE;
@@ -202,7 +202,7 @@ static bool draw_matte(const tracer *t, const material *m, int k, const path_cho
                  mirror = surface_is_layered(t) ? t->surface.branches.reflect[k] : m->reflectivity;
     if (!(matte + mirror > 0.0))
         return false;
-    /* with a subnormal fraction the product may be rounded to the fraction itself */
+    /* matte is tested first: without it, the product with a subnormal mirror may be rounded to mirror */
     const bool mirrored = mirror > 0.0 && (!(matte > 0.0) || chosen->branch[k] * (matte + mirror) < mirror);
     const double odds = (mirrored ? mirror : matte) / (matte + mirror);
     c->inside = g->inside_before[k];

@@ -54,7 +54,7 @@ void path_enqueue_lamp(tracer *t, int k, int lamp, vec3 to_lamp, double index, u
  * little noise on surfaces of any roughness (Veach and Guibas, "Optimally Combining Sampling Techniques for Monte Carlo
  * Rendering", SIGGRAPH 1995, (15)). Both enqueue shadow rays; the continued path then ignores lamps. */
 
-/* Weight of the matte branch at an opaque surface, on the scale of the mirror's weight, its reflectance. */
+/* Weight of the matte branch at an opaque surface, relative to the mirror branch, whose weight is its reflectance. */
 double path_matte_weight(const group *g, const material *m, int k);
 
 /* Enqueues shadow rays to lamps, draws the paths' facets, and computes the branches there. */
@@ -67,8 +67,8 @@ bool path_rough_scatter(tracer *t, const rough_surface *r, int k, continuation *
 
 /* Where a flight ends (render/shade/media.h), the path continues by the phase function, and each lamp, or a chosen one,
  * is sampled: a lamp with a size by a point on it and by the path's direction, weighted as for rough surfaces; a point
- * lamp by its direction, and also along the ray (airlight), with the same weights. Like those of surfaces, shadow rays
- * are not deflected by clear solids; they lose the light that is absorbed and scattered. */
+ * lamp by its direction, and also along the ray (airlight), with the same weights. Like the shadow rays of surfaces,
+ * these are not deflected by clear solids; they lose the light that is absorbed and scattered. */
 
 /* hits.hit_primitive of a ray that scatters. */
 enum { PATH_SCATTERED = -2 - SCENE_LIGHTS_MAX };

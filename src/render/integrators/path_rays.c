@@ -1,5 +1,5 @@
-/* Rays of random paths: shadow rays to lamps, and continuations by Russian roulette, the depth limit, and the queue
- * of the next depth. */
+/* Rays of random paths: shadow rays to lamps; and continuations, which are enqueued for the next depth unless Russian
+ * roulette or the depth limit ends them. */
 #include "render/integrators/path.h"
 
 #include "render/shade/exposure.h"

@@ -101,7 +101,8 @@ static vec3 eye_of(const tracer *t, int i)
     return z->frame_plan->view.parallel ? vec3_make(w->ex[i], w->ey[i], w->ez[i]) : z->frame_plan->view.eye;
 }
 
-/* The hit's distance from the triangle's plane of nearness, for hits that need neither weights nor sides. */
+/* The distance of the hit along the ray, computed from the triangle's plane of nearness; for hits that need neither
+ * weights nor sides. */
 static raster_hit hit_depth(const zbuffer *z, const screen_triangle *s, int x, int y, vec3 d)
 {
     const double near = lesser(greater(s->a * (x + 0.5) + (s->b * (y + 0.5) + s->c), s->least), s->most);
@@ -194,8 +195,9 @@ static inline raster_hit hit_layer(const tracer *t, int i, const rasterised_laye
 }
 
 /* Records the hit of ray `at` on the next interface of its point's list, at `place` or behind layers that are no
- * interface. The point is on the undeflected view; the ray keeps its direction, and its origin is moved to match. The
- * position in the list is stored in place of the ray's set of primitives. */
+ * interface. The point is on the undeflected view. The ray keeps its direction, or at a curved surface gets the
+ * direction of the view, and its origin is moved so that it meets the point. The position in the list is stored in
+ * place of the ray's set of primitives. */
 static void record_layer(tracer *t, ray_queue *q, int at, int i, uint32_t place)
 {
     const zbuffer *z = t->target.state;

@@ -17,7 +17,7 @@ typedef struct crystal_children {
 /* Media, modes and children of the gathered group's rays. */
 typedef struct crystal_work {
     bool any;        /* some ray of the group meets a crystal; otherwise the following arrays are unused */
-    bool meets[ROW]; /* a crystal is on either side */
+    bool meets[ROW]; /* a crystal is on at least one side */
     optical_medium from[ROW], to[ROW];
     crystal_mode mode[ROW];
     crystal_children children[ROW];

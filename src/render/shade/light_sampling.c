@@ -93,7 +93,7 @@ static void enqueue_sphere(tracer *t, int k, const material *m, bool opaque, con
     const double radiance = area_light_radiance(t->target.frame_plan, lamp, to);
     if (radiance == 0.0 || !mesh_lets_out(t, k, to))
         return;
-    /* (k_d C / pi) L (N.L) over the density 1 / (2 pi (1 - least_cos)), plus Phong's highlight from the same light. */
+    /* (k_d C / pi) L (N.L) over the density 1 / (2 pi cap), plus Phong's highlight from the same light. */
     const double shine = opaque ? highlight_of(g, k, m, to, n_l) : 0.0;
     const double seen = 2.0 * s->cap[k] * radiance * l->weight[k], diffuse = m->diffuse * n_l;
     const vec3 color = vec3_scale(light_color_of(t, lamp, g->sample_key[k]), seen);

@@ -6,11 +6,11 @@
  * reaches -ln u for a random number u. So a ray's throughput falls only by absorption, by channel, up to this point.
  * Shadow rays have no free flights; they lose the light that is scattered out of them.
  *
- * Airlight: light that a medium scatters out of a lamp's beam towards a ray. A free flight rarely ends within a narrow
- * beam. So for each point lamp a ray has a further sample point, in its interval within the lamp's cone and the boxes
- * around media that scatter, uniform in the angle at the lamp (Kulla and Fajardo, "Importance Sampling Techniques for
- * Path Tracing in Participating Media", Computer Graphics Forum 31, 2012, 4.1). The points and the ends of flights are
- * weighted by the balance heuristic, so that the mean does not depend on the interval.
+ * Airlight: light of a lamp that a medium scatters towards the start of a ray. A free flight rarely ends within a
+ * narrow cone of light. So for each point lamp a ray has a further sample point, in its interval within the lamp's cone
+ * and the boxes around media that scatter, uniform in the angle at the lamp (Kulla and Fajardo, "Importance Sampling
+ * Techniques for Path Tracing in Participating Media", Computer Graphics Forum 31, 2012, 4.1). The points and the ends
+ * of flights are weighted by the balance heuristic, so that the mean does not depend on the interval.
  *
  * Ownership: absorption_begin allocates the tracer's memory, absorption_end frees it. */
 #pragma once
@@ -32,7 +32,7 @@ typedef struct airlight {
 typedef struct flight_work {
     bool flies;           /* the batch's rays have free flights; otherwise they lose the scattered light */
     bool flying;          /* their interfaces are being searched */
-    double u[ROW];        /* random number: the fraction of light that scatters beyond the end of the flight */
+    double u[ROW];        /* random number: the fraction of light that does not scatter before the end of the flight */
     double left[ROW];     /* the optical depth, by scattering, that remains up to this end */
     double passed[ROW];   /* the length of a ray's path so far */
     double end[ROW];      /* distance at which it scatters, infinite if it does not ... */

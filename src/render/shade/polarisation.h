@@ -3,11 +3,11 @@
  * sky and from matte surfaces is unpolarised, so that only the first element weights it; light of polarised lamps is
  * multiplied by the shadow rays' vectors.
  *
- * Lamps. A polarised lamp emits as through an ideal polariser of that degree, whose axis is perpendicular to the
- * lamp's; for a point light, which has no axis, perpendicular to each ray, so that at 0 degrees its field is horizontal
- * everywhere. An analyser sees its row times the lamp's Stokes vector. A matte surface depolarises light, so that the
- * polarisation only matters between the lamp and the first matte surface: for sheets in shadow rays, for all surfaces
- * on the paths of photons, and for the last surfaces of a random path before the lamp.
+ * Lamps. Light of a polarised lamp has the lamp's degree of polarisation, as behind a partial polariser whose axis is
+ * perpendicular to the lamp's axis; for a point light, which has no axis, perpendicular to each ray, so that at 0
+ * degrees its field is horizontal everywhere. An analyser sees its row times the lamp's Stokes vector. A matte surface
+ * depolarises light, so that the polarisation only matters between the lamp and the first matte surface: for sheets in
+ * shadow rays, for all surfaces on the paths of photons, and for the last surfaces of a random path before the lamp.
  *
  * Sheets: polarising filters and wave plates (scene/model/medium.h). They act once per passage: the row is multiplied
  * where the ray leaves the region, or ends in it, so that a reflection in it starts another passage. Between regions of
@@ -27,7 +27,7 @@
 /* Gathers the group's Stokes vectors, and applies an interface to weights and vectors. */
 void polarised_gather(tracer *t, const ray_queue *q, int first, const int *list);
 void polarised_branches(tracer *t, const material *m, bool opaque);
-/* Sets the Stokes vector of shadow ray `at` to that of a branch of ray k along the same direction. */
+/* Sets the Stokes vector of shadow ray `at` to the vector of a branch of ray k along the same direction. */
 void polarised_shadow(tracer *t, int k, bool refracted, int at);
 /* Applies a layered surface to ray k, with its responses in reflection and transmission. */
 void polarised_layered(tracer *t, int k, sp_response reflected, sp_response transmitted, double coating,
@@ -64,7 +64,7 @@ static inline double lamp_seen(const plan *p, int lamp, stokes row, vec3 to_lamp
 typedef struct sheet_passage {
     stokes row;    /* at the passage's start; the first element: the transmitted fraction of unpolarised light so far */
     double length; /* of the passage so far, scene units */
-    int region;    /* priority index of the region that the ray is in, or -1 */
+    int region;    /* priority index of the region that the ray is in, -1 for a region without a sheet */
 } sheet_passage;
 
 /* The passages of a batch's rays. */

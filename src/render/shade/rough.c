@@ -8,7 +8,7 @@
 #include "render/shade/shading.h"
 #include <math.h>
 
-/* The least cosine between the normal and a ray: an interpolated normal may be turned away from it. */
+/* The least cosine between the normal and a ray: an interpolated normal may be turned away from the ray. */
 #define LEAST_COSINE 1e-9
 #define PI 3.14159265358979323846
 

@@ -28,7 +28,7 @@ static int64_t floor_divide(int64_t a, int64_t b) /* b > 0 */
     return a / b - (a % b < 0);
 }
 
-/* Narrows a row's range of points inside the edge: first + from .. first + to. */
+/* Narrows a row's range of points, first + from .. first + to, to those inside the edge. */
 static void narrow(const edge *e, int64_t *from, int64_t *to)
 {
     if (e->along_x == 0 && e->at < 0) {

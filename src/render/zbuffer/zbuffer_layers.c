@@ -125,7 +125,7 @@ static int cross(const zbuffer *z, const rasterised_fragment *f, int count, uint
     return n;
 }
 
-/* The layer for surfaces in contact: that of the region that owns the surface. */
+/* The layer for surfaces in contact, with the triangle of the region that owns the surface. */
 static inline rasterised_layer layer_of(const zbuffer *z, const rasterised_fragment *f, int count, uint64_t inside,
                                         int before, int after)
 {

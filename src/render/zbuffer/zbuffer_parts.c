@@ -9,7 +9,7 @@
 /* --- layers --- */
 
 /* Solids that are drawn as layers: clear ones, through which the view continues, and opaque ones that a clear one of
- * higher priority may partly hide. For all others only the nearest surface is visible. */
+ * higher priority may overlap, and there displace. For all others only the nearest surface is visible. */
 
 /* True if the box extends below the half-space's plane. */
 static bool dips_into(const primitive *half, bounds3 b)
@@ -91,7 +91,7 @@ void zbuffer_find_layers(zbuffer *z)
             continue;
         const uint64_t bit = (uint64_t)1 << (r - 1);
         z->layered |= bit;
-        /* A camera in an opaque solid sees it from inside, whether it is a layer or not. */
+        /* Opaque solids are left out: a camera inside one sees its surface, whether the solid is a layer or not. */
         if (!g->regions[r].opaque && eye_in(g, &g->regions[r], z->frame_plan->view.eye))
             z->eye_inside |= bit;
         const bool is_open = g->meshes && g->meshes->open_surfaces >> g->regions[r].outside & 1;
@@ -158,7 +158,7 @@ static status add(zbuffer *z, const region *b, int index, diagnostic *why)
     return code;
 }
 
-/* Adds the regions whose priority index's bit is set. */
+/* Adds the regions of a set; bit k is the region with priority index k + 1. */
 static status add_regions(zbuffer *z, uint64_t priority_indices, diagnostic *why)
 {
     const scene_geometry *g = z->frame_plan->geometry;

@@ -29,7 +29,7 @@ typedef struct rasterised_layer {
     uint32_t number;       /* of the triangle, plus 1; 0: the sky */
     uint8_t before, after; /* priority indices of the media */
     uint8_t surface;       /* priority index of the region whose surface it is */
-    bool leaving : 1;      /* the ray leaves the primitive; a layer that ends the view uses its triangle instead */
+    bool leaving : 1;      /* the ray leaves the primitive; unused if `ends` is set: the triangle decides */
     bool ends : 1;         /* opaque, or the sky */
     bool passed : 1;       /* no interface: two media of equal index but different absorption */
 } rasterised_layer;
@@ -81,7 +81,7 @@ struct zbuffer {
     rasterised_part parts[PRIMITIVES_MAX];
     uint64_t
         layered; /* bit r - 1: the region of priority index r is drawn as layers; 0: there is nothing to see through */
-    uint64_t eye_inside;    /* regions that contain the camera */
+    uint64_t eye_inside;    /* clear regions that contain the camera */
     uint64_t open_surfaces; /* regions that are open meshes */
     double eye_index;       /* refractive index at the camera */
     int first_layered_part;
@@ -98,7 +98,7 @@ struct zbuffer {
     int across, down; /* squares */
     size_t *first;    /* by square, index into listed; one more at the end */
     uint32_t *listed;
-    uint32_t *seen; /* by grid point: number of its triangle, plus 1; 0 for none */
+    uint32_t *seen; /* by grid point: number of its triangle, plus 1; 0 for none; or SEEN_LAYERS and its list */
 };
 
 /* The divisor of a corner's x and y for its position in the image: z in perspective, h with an orthographic camera. */
