@@ -10,7 +10,8 @@
 /* --- light narrower than a pixel --- */
 
 /* If the footprints of samples are known, light narrower than a pixel keeps its power at any number of samples
- * (render/photons/photon_map.c). Behind crystals and surfaces with interpolated normals, footprints are guessed. */
+ * (render/photons/photon_map.c). Behind curved surfaces, footprints are exact only to first order; behind crystals and
+ * surfaces with interpolated normals, they are guessed. There such light may be missed. */
 
 /* A note is reported if a larger fraction of the image's light may be missing. */
 #define NOTED 0.01

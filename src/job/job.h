@@ -24,14 +24,15 @@
  * processes report. */
 
 typedef struct job_distribution {
-    /* Sends the loaded scene to the others, and begins to hand out its tiles; *tiles: those of this process. Until end
-     * returns, one thread at a time calls requested->progress about every 0.1 s with the fraction of the frame that all
-     * processes have finished. begin may begin a cancel token on the calling thread, which end ends: so an error of
-     * another process cancels the frame. */
+    /* Sends the loaded scene to the other processes, and begins to hand out its tiles; *tiles: those of this process.
+     * Until end returns, one thread at a time calls requested->progress about every 0.1 s with the fraction of the
+     * frame that all processes have finished. From begin to end, a cancel token of the implementation may be active on
+     * the calling thread, so that an error of another process cancels the frame. */
     status (*begin)(void *context, const scene *s, const render_options *requested, const tile_source **tiles,
                     diagnostic *why);
     /* rendered, result: what the renderer returned for this process; result may be NULL after an error. Waits for the
-     * others, and adds the film, the variance, counts, times and workers of all. Returns the status of the frame. */
+     * other processes, and completes *result with the film, variance, counts, times and workers of all. Returns the
+     * status of the frame. */
     status (*end)(void *context, status rendered, render_result *result, diagnostic *why);
     void *context; /* passed to begin and end */
 } job_distribution;

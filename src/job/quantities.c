@@ -38,14 +38,14 @@ static workers_sum sum_workers(const job_account *a)
     return sum;
 }
 
-/* Converts throughput from the counters' unit to that of one camera ray. */
+/* Converts throughput from the counters' fixed point, in which COUNTERS_CUT_ONE is 1. */
 static void set_cut(quantity_value *v, const int64_t throughput[3])
 {
     for (int channel = 0; channel < 3; channel++)
         v->real[channel] = (double)throughput[channel] / COUNTERS_CUT_ONE;
 }
 
-/* The throughput of rays cut for one reason or for both, mean of the channels. */
+/* The mean over the channels of the throughput of rays that were cut for one reason, or for two; other may be NULL. */
 static double mean_cut(const int64_t one[3], const int64_t other[3])
 {
     double sum = 0;

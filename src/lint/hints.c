@@ -14,7 +14,7 @@ static bool is_lit(const material *m)
     return m->diffuse > 0.0 || m->specular > 0.0;
 }
 
-/* Whether the solid is a bubble, with its centre or base inside another medium. */
+/* Whether the solid is a bubble: its centre or base is inside another medium. */
 static bool is_inside_medium(const scene *s, const solid *bubble)
 {
     for (size_t i = 0; i < s->solid_count; i++) {
@@ -116,8 +116,7 @@ static void hint_at_cover(const scene *s, const solid *hidden, const note_sink *
     }
 }
 
-/* Parameters whose authors expect to see an effect. param_is_inert explains why one has no effect, as it does for
- * --set. */
+/* Parameters that are set only to see their effect. If one has none, param_is_inert explains why, as for --set. */
 static const struct {
     const char *name;
     size_t offset;

@@ -153,7 +153,7 @@ static bool unused(const inert_case *c, const solid *hidden)
     return inert_say(c, "unused-material", remedy.text, "no visible solid has this material");
 }
 
-/* Asks about each visible solid with the material, and each face with its name; the note is the first user's. */
+/* Asks about each visible solid with the material, and each face with its name; reports the first note. */
 static bool inert_material(const inert_case *c)
 {
     const scene *s = c->s;

@@ -63,8 +63,8 @@ bool draws_through(const scene *s);
 bool nothing_passes(const scene *s);
 /* Radiance beyond the depth limit is black. */
 bool is_dark_at_depth_limit(const scene *s);
-/* The number of lights that shine; whether random paths are used, and every shining light has a size that they can
- * hit. */
+/* shining_lights: the number of lights that shine. only_spheres_shine: random paths are used, and every light that
+ * shines has a size, so that they can hit it. */
 size_t shining_lights(const scene *s);
 bool only_spheres_shine(const scene *s);
 /* Whether photons carry the light of a beam. */

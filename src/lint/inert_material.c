@@ -63,7 +63,7 @@ bool no_index(const inert_case *c)
     return opaque_rule(c) || not_bent(c);
 }
 
-/* An opaque solid may become a metal. */
+/* An opaque solid has no index, but another medium may make it a metal. */
 bool no_medium(const inert_case *c)
 {
     const render_settings *r = &c->s->render;

@@ -145,7 +145,8 @@ bool flat_sky(const inert_case *c)
                      "'horizon' equals 'color', so there is no gradient");
 }
 
-/* The background's own sun has no effect: a light of kind sun replaces it, or the sky does not depend on it. */
+/* The background's parameters of the sun have no effect: a light of kind sun replaces them, or the sky does not depend
+ * on the sun. */
 bool no_own_sun(const inert_case *c)
 {
     const background *b = &c->s->background;

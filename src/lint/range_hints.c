@@ -20,8 +20,8 @@ typedef struct range_case {
     bool beams;              /* the visible beams' wavelengths are used instead */
 } range_case;
 
-/* A spectral film needs the visible range, for spectral lines, too. An rgb film needs one wavelength for transparent
- * matter; the reflection of metals and films is integrated over daylight (render/plan/layered_table.h). */
+/* A spectral film needs the visible range, also for lamps that emit lines. An rgb film needs one wavelength for
+ * transparent matter; the reflection of metals and films is integrated over daylight (render/plan/layered_table.h). */
 static range_case of_film(const scene *s, const note_sink *taker)
 {
     const nm_range one = {s->render.lambda_nm, s->render.lambda_nm};

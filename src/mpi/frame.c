@@ -1,5 +1,5 @@
-/* A frame on the ranks of an MPI job. Rank 0 leads: it sends the order, runs the messenger on a thread, and sums all
- * tiles. The other ranks follow: their main thread is the messenger, and a second thread runs the job, whose pool
+/* A frame on the ranks of an MPI job. Rank 0 leads: it sends the order, runs the messenger on a thread, and collects
+ * all tiles. The other ranks follow: their main thread is the messenger, and a second thread runs the job, whose pool
  * renders. */
 #include "base/cancel.h"
 #include "job/job.h"
@@ -202,7 +202,7 @@ static status begin(void *of, const scene *s, const render_options *requested, c
     return STATUS_OK;
 }
 
-/* Sets the usage of each rank; this one is the first. */
+/* Sets the usage of all ranks; this process is rank 0. */
 static void add_ranks(lead *l, render_result *result)
 {
     rank_usage *ranks = l->others.ranks;

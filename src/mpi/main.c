@@ -25,8 +25,8 @@
 
 /* --- studies --- */
 
-/* Each rank runs a shard with the program `cuvette` next to this one; then rank 0 merges. It is another program because
- * a study with fresh processes starts processes, which must not be MPI ranks. */
+/* Each rank runs a shard with the program `cuvette` next to this one; then rank 0 merges. The shards need another
+ * program, because a study with fresh processes starts processes, which must not be MPI ranks. */
 
 static void pause_s(double s)
 {
@@ -126,7 +126,7 @@ static status merge(int argc, char **argv, diagnostic *why)
     return code;
 }
 
-/* Whether the command only prints help or a plan, which one rank does. */
+/* Whether the command only prints help or a plan; then only rank 0 runs it. */
 static bool measures_nothing(int argc, char **argv)
 {
     static const char *const words[] = {"--help", "-?", "--usage", "--version", "-V", "--dry-run", "-n"};
@@ -193,8 +193,8 @@ static status begin(int *argc, char ***argv, int *rank, int *ranks, diagnostic *
     return STATUS_OK;
 }
 
-/* Ranks must run one build: structures are sent as their bytes, and films of different builds may differ. All ranks
- * call this. */
+/* All ranks must run the same build: structures are sent as bytes, and films of different builds may differ. All ranks
+ * call this function. */
 static status check_builds(int rank, int ranks, diagnostic *why)
 {
     enum { LENGTH = 64 };
