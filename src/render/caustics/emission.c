@@ -117,9 +117,9 @@ static bool before_all(const emission *e, vec3 direction, emitted_ray *out)
     return !g->regions[scene_geometry_priority_index(g, out->inside)].opaque;
 }
 
-/* Draws a sun's ray, whose direction is drawn already, through the area of solid k. Returns the inverse of its density
- * per area, times pi L dw over the density of directions, relative to parallel light: 2 (1 - cos a) / sin^2 a = 2 / (1
- * + cos a). */
+/* Draws a sun's ray through the area of solid k; out has its direction. Returns 1 / (the ray's density per area), times
+ * a factor for the sun's size: pi L dw over the density of directions, relative to parallel light, which is 2 (1 - cos
+ * a) / sin^2 a = 2 / (1 + cos a). */
 static double draw_sun_ray(const emission *e, int lamp, int k, unit_pair place, emitted_ray *out)
 {
     const sunlit_area a = sunlit_area_of(e, k, out->direction);

@@ -35,7 +35,7 @@ int emission_target_solid(const emission *e, int target);
 double emission_light(const emission *e, int target, int64_t arrived);
 /* A pilot finds the targets from which light arrives. It has few photons, equally many per target, and different from
  * the later ones. emission_begin_pilot: false if a pilot is not worthwhile. emission_end_pilot: delivers[target]:
- * whether any of its photons arrived; the other targets get a small fraction. */
+ * whether any of its photons arrived; targets that deliver none get a small fraction of the photons. */
 bool emission_begin_pilot(emission *e);
 void emission_end_pilot(emission *e, const bool *delivers);
 
@@ -51,7 +51,7 @@ typedef struct emitted_ray {
     double q, u; /* with polarisation: the Stokes vector relative to its first element, in the ray's canonical frame */
     uint64_t inside;
     int target;
-    int wavelength; /* its number, or -1 */
+    int wavelength; /* number of the photon's wavelength; -1 in an rgb film */
     bool of_line;   /* the photon is of a spectral line, and contributes only to its wavelength */
     bool of_beam;
     bool falls; /* false: the light has no falloff with distance, and its power applies at distance 1 */
@@ -62,7 +62,7 @@ bool emission_ray(const emission *e, int64_t i, emitted_ray *out);
 
 /* A random number in (0, 1) for a decision of photon i at a depth. */
 double emission_chance(const emission *e, int64_t i, int depth, int which);
-/* Two random numbers for the end of a deep photon and its branch, or for the facet of a rough surface. */
+/* Two random numbers each: for the end and the branch of a deep photon; for the facet of a rough surface. */
 unit_pair emission_roulette(const emission *e, int64_t i, int depth);
 unit_pair emission_facet(const emission *e, int64_t i, int depth);
 /* Two random numbers, and a third in *chance, for light of further facets. */

@@ -32,7 +32,7 @@ static ball ball_of(const plan *p, int priority_index)
                   bounded ? vec3_length(half) : (double)INFINITY, p->geometry->regions[priority_index].solid};
 }
 
-/* A ball that holds two. */
+/* A ball around the boxes of two balls. */
 static ball joined(ball a, ball b)
 {
     if (isinf(a.radius) || isinf(b.radius))
@@ -75,7 +75,7 @@ static cone cone_to(vec3 from, double lamp_radius, const ball *b)
     const double d = vec3_length(to), sine = (b->radius + lamp_radius) / d;
     if (!(sine < 1.0))
         return (cone){.axis = vec3_make(0.0, 1.0, 0.0), .cap = 2.0};
-    /* 1 - cos = sin^2 / (1 + cos), without cancellation; widened beyond its rounding */
+    /* 1 - cos = sin^2 / (1 + cos), without cancellation; widened by more than the rounding error */
     return (cone){.axis = vec3_scale(to, 1.0 / d), .cap = (1.0 + 1e-9) * sine * sine / (1.0 + sqrt(1.0 - sine * sine))};
 }
 
@@ -118,7 +118,7 @@ sunlit_area sunlit_area_of(const emission *e, int k, vec3 direction)
     a.v = vec3_cross(direction, a.u);
     for (int i = 0; i < 3; i++)
         a.across += fabs(vec3_dot(edges[i], a.u)), a.up += fabs(vec3_dot(edges[i], a.v));
-    a.across *= 1.0 + 1e-9, a.up *= 1.0 + 1e-9; /* beyond their rounding */
+    a.across *= 1.0 + 1e-9, a.up *= 1.0 + 1e-9; /* by more than the rounding error */
     return a;
 }
 

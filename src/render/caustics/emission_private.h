@@ -23,7 +23,7 @@ typedef struct cone {
 } cone;
 
 typedef struct lamp_emission {
-    int64_t first, count; /* its photons */
+    int64_t first, count; /* the lamp's photons: first .. first + count - 1 */
     cone *cones;
     uint64_t inside;
 } lamp_emission;

@@ -1,8 +1,8 @@
 /* Tracing of photons. A ray's sample key is the photon's number, with its wavelength; its throughput is the remaining
- * fraction of the photon's initial power. With polarisation its Stokes vector is that of an analyser on the reversed
- * path: the transmittance between two ends does not depend on the direction, and a linearly polarised lamp acts as the
- * analyser that transmits its field (Stokes and Helmholtz reversion; Chandrasekhar, Radiative Transfer, 1950, section
- * 13). */
+ * fraction of the photon's initial power. With polarisation its Stokes vector is the vector of an analyser on the
+ * reversed path: the transmittance between two ends does not depend on the direction, and a linearly polarised lamp
+ * acts as the analyser that transmits its field (Stokes and Helmholtz reversion; Chandrasekhar, Radiative Transfer,
+ * 1950, section 13). */
 #include "render/caustics/photon_integrator.h"
 
 #include "render/shade/layered.h"
@@ -90,8 +90,8 @@ static void place(tracer *t, const int *list)
     work_of(t)->list = list;
 }
 
-/* Stores the photons of the gathered group: those of lamps only after a mirror or a clear solid, because shadow rays
- * supply direct light; those of beams always. */
+/* Stores the photons of the gathered group. Photons of lamps are stored only after a mirror or a clear solid, because
+ * shadow rays supply direct light; photons of beams always. */
 static void arrive(tracer *t, int depth)
 {
     photon_frame *f = t->target.state;
@@ -120,7 +120,7 @@ static void arrive(tracer *t, int depth)
 
 typedef struct photon_branch {
     bool refracted, polarised; /* polarised: it has the Stokes vector of the surface's branch */
-    vec3 direction, left;      /* left: its fraction of the photon's power, by channel */
+    vec3 direction, left;      /* left: the branch's fraction of the photon's power, by channel */
 } photon_branch;
 
 static double power_of(const photon_branch *b)
@@ -213,7 +213,7 @@ static void enqueue_branch(tracer *t, int k, int depth, const photon_branch *b)
     COUNT(refracted ? t->account.counters.refract++ : t->account.counters.reflect++);
 }
 
-/* Enqueues a branch with its fraction of the power; a faint one ends at random. */
+/* Enqueues a branch with its fraction of the power; a faint branch ends at random. */
 static void follow(tracer *t, int k, int depth, photon_branch *b)
 {
     const photon_frame *f = t->target.state;

@@ -52,7 +52,7 @@ static void run_rays(tracer *t, int depth)
                     groups);
     if (groups->missed > 0)
         t->frame_integrator->background(t, q, first, groups->miss, groups->missed);
-    /* Runs of one class, in which shading_groups decides which groups can be combined. */
+    /* Passes runs of groups of one class to shading_groups, which decides which of them can be combined. */
     for (int g = 0, run; g < groups->count; g += run) {
         const int shading_class = p->shading_class[groups->group[g].priority_index];
         for (run = 1; g + run < groups->count; run++)
@@ -118,7 +118,7 @@ static void run_deep(tracer *t)
         }
 }
 
-/* The largest depth whose rays wait only for a full batch. */
+/* The largest depth whose rays wait only for a full batch; deeper rays wait for DEEP_AT_ONCE. */
 static int deepest(const tracer *t)
 {
     return goes_deep(t->queues.depth_limit) ? DEPTH_DEEP - 1 : t->queues.depth_limit;
@@ -150,8 +150,8 @@ void tracer_run_full(tracer *t)
         ;
 }
 
-/* The number of camera rays made at once: those of as many pixels as fit into a batch, or a full batch if a pixel has
- * more rays. */
+/* The number of camera rays enqueued at once: the rays of as many pixels as fit into a batch, or a full batch if a
+ * pixel has more rays. */
 static int rays_at_once(int64_t rays_per_pixel)
 {
     return rays_per_pixel >= BATCH ? BATCH : (int)(BATCH / rays_per_pixel * rays_per_pixel);

@@ -1,4 +1,4 @@
-/* Traces photons before a frame, and builds the map of those that arrive on matte surfaces. */
+/* Traces photons before a frame, and builds the map of the photons that arrive on matte surfaces. */
 #include "render/frame/caustics.h"
 
 #include "base/cancel.h"

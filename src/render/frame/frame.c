@@ -18,14 +18,14 @@ typedef struct event_list {
     size_t count, capacity;
 } event_list;
 
-/* Data that one worker writes during a frame, on its own cache lines. */
+/* Data that one worker writes during a frame, on cache lines that no other worker writes. */
 typedef struct worker_state {
     _Alignas(64) worker_report report;
     event_list events;
     atomic_uint_fast64_t pixels; /* pixels begun; read by watch */
     bool out_of_memory, misplaced, out_of_range;
     film *tile;       /* film of the tile from a tile source, or NULL */
-    double *variance; /* of that tile, or NULL */
+    double *variance; /* of the values of `tile`, or NULL */
 } worker_state;
 
 typedef struct frame {
@@ -37,7 +37,7 @@ typedef struct frame {
     const integrator *frame_integrator;
     int replicates;            /* of the film */
     void *state;               /* the integrator's state for the frame */
-    void (*step)(void *state); /* the current step of its pre-pass */
+    void (*step)(void *state); /* the current step of the integrator's pre-pass */
     caustics *photons;         /* or NULL */
     const caustics_step *photon_step;
     schedule tiles;
@@ -121,7 +121,7 @@ static void render_tile(frame *f, tracer *t, worker_state *d, const image_tile *
 }
 
 /* Renders one tile after another; rays that do not fill a batch at the end of a tile wait for the rays of the next
- * one. */
+ * tile. */
 static void render_tiles(frame *f, int worker, worker_state *d, image_tile tile)
 {
     const bool timeline = f->options && f->options->timeline, by_source = f->options && f->options->source;

@@ -7,7 +7,7 @@
 /* Writes the film as an image in the format of the path's ending; bits: as in image_write. s: the scene, whose tone
  * applies to images with 8 bits, and which is stored in a PNG file's metadata (scene/file/shared.h); NULL: neither. */
 status record_image(const film *f, const scene *s, const char *path, int bits, diagnostic *why);
-/* record_image for an image of the film with a drawing on it. */
+/* record_image for an image of the film on which lines were drawn. */
 status record_drawing(const image *img, const scene *s, const char *path, int bits, diagnostic *why);
 
 /* Writes values, one per pixel of f, as a false-colour image with a colour key and a title; or, if path ends in .pfm,

@@ -65,9 +65,9 @@ static double variance_around(const render_result *pilot, int x, int y)
     return sum / count;
 }
 
-/* The number of paths for the requested error. The variance of independent paths falls like n^-1, that of sobol at
- * least like n^-1.25 in measurements. The number is doubled until it suffices, because sobol is best with powers of
- * two. */
+/* The number of paths for the requested error. The variance of independent paths falls like n^-1; in measurements, the
+ * variance of sobol falls at least like n^-1.25. The number is doubled until it suffices, because sobol is best with
+ * powers of two. */
 static int64_t paths_for(double variance, const render_settings *r, int64_t replicates)
 {
     const double excess = variance / (r->error * r->error),

@@ -55,7 +55,7 @@ typedef struct tile_event {
  * a film of one tile, and the result has no film. All workers call both functions, possibly at the same time. */
 typedef struct tile_source {
     int side; /* the largest width and height of a tile */
-    /* Waits for the worker's next tile; false ends its part of the frame. */
+    /* Waits for the worker's next tile; false: there is none, and the worker's part of the frame ends. */
     bool (*next)(void *context, int worker, image_tile *out);
     /* Receives a rendered tile: its film, with all replicates added, and the variance of its values, or NULL. Both are
      * borrowed for the call. */
@@ -75,7 +75,7 @@ typedef struct render_options {
     void (*progress)(void *context, double fraction_done);
     double progress_s;
     /* Seconds, below 1, between two polls of the calling thread for cancellation and progress; 0: 0.02. A poll costs
-     * instructions, and their number varies with the load: where instructions are counted, polls are rare. */
+     * instructions, and their number varies with the load, so callers that count instructions poll rarely. */
     double watch_s;
     /* Called by the worker that traced the last ray of a tile (x0 <= x < x1, y0 <= y < y1), possibly by several threads
      * at the same time; the callback may read the film in the tile. With a callback, batches are not filled across
@@ -96,7 +96,7 @@ typedef struct rank_usage {
 typedef struct render_result {
     film *img;             /* NULL if the tiles came from a source */
     ray_counters counters; /* sums over all workers */
-    /* from the start of the workers to the end of the last one; with render.pool off, including creating and joining
+    /* from the start of the workers to the end of the last worker; with render.pool off, including creating and joining
      * them */
     double wall_s;
     double cpu_s; /* CPU time of the process over the same interval */
@@ -182,10 +182,10 @@ status path_counts_create(const render_settings *r, const render_result *pilot, 
 /* --- render_result.c: a frame whose tiles several processes render --- */
 
 /* The processes are, for example, the ranks of an MPI job or the workers of a browser, each with a tile_source. The
- * film is bit-identical to that of one process. Ownership: tiled_frame_begin allocates film and variance;
+ * film is bit-identical to the film of one process. Ownership: tiled_frame_begin allocates film and variance;
  * tiled_frame_release frees them, unless the owner keeps them and sets them to NULL. For one thread at a time. */
 
-/* The settings with which all processes have the same tiles, of that side, whatever their numbers of threads. */
+/* Settings that give all processes the same tiles, with that side, whatever their numbers of threads. */
 render_settings tiles_settings(const render_settings *r, int side);
 
 typedef struct tiled_frame {

@@ -141,7 +141,7 @@ bool tracer_begin(tracer *t, const tracer_target *target)
     const render_settings *r = &p->render;
     t->target = *target;
     t->queues.depth_limit = (int)r->depth;
-    /* In a spectral film each wavelength has its own camera ray, with its fraction of the weight. */
+    /* In a spectral film each wavelength has a camera ray, with an equal fraction of the weight. */
     t->least_weight = r->spectrum == SPECTRUM_SPECTRAL ? r->min_weight / (double)r->wavelengths : r->min_weight;
     /* A batch waits; a rough surface samples each light up to three times, with energy compensation four times
      * (path_rough.c), a medium twice more. */

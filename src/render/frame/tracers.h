@@ -70,7 +70,8 @@ isa tracer_pool_level(const tracer_pool *pool);
 /* Begins a frame with `workers` workers, none of which holds a tracer. False when out of memory. */
 bool tracer_pool_begin(tracer_pool *pool, int workers, const tracer_target *target);
 
-/* Returns a tracer with empty queues, whose counters are those of the frame so far; NULL when out of memory. */
+/* Returns a tracer with empty queues, whose counters continue from its earlier tiles of the frame; NULL when out of
+ * memory. */
 tracer *tracer_pool_acquire(tracer_pool *pool);
 void tracer_pool_release(tracer_pool *pool, tracer *t);
 

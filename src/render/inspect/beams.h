@@ -1,6 +1,6 @@
-/* The rays of a scene's beams, traced by the probe like those of `cuvette trace` and `cuvette fan`; screens that they
- * cross; and the beams drawn into an image. Ownership: everything that a visitor receives is borrowed for the call;
- * the caller owns a screen's bins and releases them with beam_screen_release. */
+/* The rays of a scene's beams, traced by the probe like the rays of `cuvette trace` and `cuvette fan`; screens that
+ * they cross; and the beams drawn into an image. Ownership: everything that a visitor receives is borrowed for the
+ * call; the caller owns a screen's bins and releases them with beam_screen_release. */
 #pragma once
 
 #include "image/image.h"

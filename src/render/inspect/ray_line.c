@@ -1,7 +1,7 @@
 /* Clips lines to a frame. Each edge of a frame is a plane through the eye, or parallel to the view, so that a line is
  * in the frame where several linear functions of s are not negative (Liang and Barsky, "A new concept and method for
- * line clipping", ACM Transactions on Graphics 3(1), 1984, here with the frustum's planes in the scene: lines may be
- * infinite, and points behind the eye are clipped before projection). */
+ * line clipping", ACM Transactions on Graphics 3(1), 1984). The planes are those of the frustum in the scene, so that
+ * lines may be infinite, and points behind the eye are clipped before projection. */
 #include "render/inspect/ray_line.h"
 
 #include <math.h>

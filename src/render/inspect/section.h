@@ -26,7 +26,7 @@ enum { SECTION_EDGE = -2 /* outside the plane's extent */, SECTION_CELLS_MAX = 4
 typedef struct section_line {
     size_t first, count;
     int a, b;
-    int end[2]; /* its first and last junction; -1: the line is closed, its last point equals its first */
+    int end[2]; /* the line's first and last junction; -1: the line is closed, its last point equals its first */
 } section_line;
 
 typedef struct section_point {

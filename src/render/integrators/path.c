@@ -1,8 +1,8 @@
 /* Path tracing (Kajiya, "The Rendering Equation", SIGGRAPH 1986): at each surface one continuation is sampled at
  * random, weighted so that the mean over all paths equals the light of the full ray tree. Sampling by surface:
  *   a clear surface  reflects or refracts with Fresnel's weights as probabilities, so the throughput stays the same;
- *   a matte surface  is lit by every light, at a random point of those with a size (render/shade/light_sampling.h), and
- *                    continues the path by the cosine law, or like a mirror with its reflectivity;
+ *   a matte surface  is lit by every light, from a random point of a light with a size (render/shade/light_sampling.h),
+ *                    and continues the path by the cosine law, or like a mirror with its reflectivity;
  *   a rough surface  acts as a smooth one with the normal of one of its facets, and samples the lamps (path_rough.c);
  *   a medium that scatters ends a ray's flight, lights the point by every lamp, and continues the path by its phase
  *                    function (path_scatter.c).

@@ -63,7 +63,7 @@ static void enqueue(tracer *t, int k, int lamp, vec3 to_lamp, double fraction)
 
 /* --- along rays --- */
 
-/* Adds a lamp's airlight: rays scatter their remaining throughput at their point for this lamp. */
+/* Adds a lamp's airlight: each ray scatters its remaining throughput at its sample point for this lamp. */
 static void light_along(tracer *t, int number, const ray_queue *q, int first, int count)
 {
     const plan *p = t->target.frame_plan;

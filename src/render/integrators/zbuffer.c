@@ -167,7 +167,7 @@ static void first_views(tracer *t, const ray_batch *rays)
     memcpy(w->ex, rays->ox, bytes), memcpy(w->ey, rays->oy, bytes), memcpy(w->ez, rays->oz, bytes);
 }
 
-/* Attenuates a ray by the one medium on the straight segment to a layer. */
+/* Attenuates a ray by the medium of the straight segment to a layer. */
 static void dim(const plan *p, ray_queue *q, int at, int priority_index, double length)
 {
     if (priority_index == 0 || !p->geometry->regions[priority_index].attenuates)

@@ -2,7 +2,7 @@
  *
  * A radius begins as the distance to the PHOTON_NEIGHBOURS-th neighbour. It is doubled while light within the wider
  * disc is uniform within its noise, after Lepski's rule for the width of kernels (Theory of Probability and its
- * Applications 35, 1990): the largest width whose estimate agrees with those of the narrower ones. */
+ * Applications 35, 1990): the largest width whose estimate agrees with the estimates of all smaller widths. */
 #include "render/photons/photon_tree.h"
 
 #include "base/cancel.h"
@@ -188,8 +188,8 @@ static bool light_is_uniform(const photon_sums *sums, const photon_map *m, size_
 
 enum { DOUBLINGS = 2 };
 
-/* The radius before blur and limits. It is not doubled for photons of several wavelengths (sums is NULL): those of one
- * wavelength are few, and their light may vary where the sum is uniform. */
+/* The radius before blur and limits. It is not doubled for photons of several wavelengths (sums is NULL): photons of
+ * one wavelength are few, and their light may vary where the sum is uniform. */
 static double reach(const photon_map *m, size_t i, double widest)
 {
     double r = photon_tree_reach(m, i, PHOTON_NEIGHBOURS, widest);

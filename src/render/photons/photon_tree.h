@@ -102,8 +102,8 @@ typedef struct photon_reach {
 /* Called with each photon that a search finds, or with one photon that stands for a group. disc: the radius of the
  * photon's disc; for a group, the root mean square of its photons' radii, weighted by power. */
 typedef void photon_visit(const photon *one, double disc, void *context);
-/* Calls visit for photons near the point, in order: at least for those whose discs contain it, or that are within
- * reach. */
+/* Calls visit for photons near the point, in the map's order: at least for photons whose discs contain the point, or
+ * with a reach, for photons that are within it. */
 void photon_tree_around(const photon_map *m, vec3 point, const photon_reach *reach, photon_visit *visit, void *context);
 
 /* photon_radius.c: sums over the photons of each box of the tree, for the test whether light is uniform in a disc.

@@ -77,7 +77,7 @@ typedef struct plan {
     optical_medium *crystals; /* by priority index; NULL if there are none */
     scatter_plan *scatter;    /* media that scatter; NULL if there are none */
     bool rough;               /* some surfaces are rough: see render/shade/rough.h */
-    rough_energy *energy;     /* light between their facets, with render.energy_compensation; else NULL */
+    rough_energy *energy;     /* light between facets of rough surfaces, with render.energy_compensation; else NULL */
     camera_frame view;
     uint64_t eye_inside;    /* the set of primitives that contain the camera */
     analyser_kind analyser; /* of camera rays; ANALYSER_NONE without polarisation */

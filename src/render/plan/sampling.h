@@ -68,15 +68,15 @@ enum {
     DRAW_ROULETTE = 3,
     DRAW_LIGHT = 4,
     DRAW_PIXEL = 0x1000,
-    DRAW_PHOTON = 0x1001, /* and the next one */
+    DRAW_PHOTON = 0x1001, /* and the next number */
     DRAW_LENS = 0x1003,
     DRAW_FACET = 0x1004,       /* of a rough surface */
-    DRAW_FACET_LIGHT = 0x1005, /* a lamp for facets on the ray's side; the next one: for those on the other side */
+    DRAW_FACET_LIGHT = 0x1005, /* a lamp on the ray's side of a rough surface; the next number: on the other side */
     DRAW_FLIGHT = 0x1007,      /* the free flight of a ray in a medium that scatters */
     DRAW_PHASE = 0x1008,       /* the direction after scattering */
     DRAW_AIRLIGHT = 0x1009,    /* airlight: one number for each light, from this one on */
     DRAW_FURTHER =
-        DRAW_AIRLIGHT + SCENE_LIGHTS_MAX, /* whether light meets further facets; the next one: its new direction */
+        DRAW_AIRLIGHT + SCENE_LIGHTS_MAX, /* whether light meets further facets; the next number: its new direction */
     DRAW_PHOTON_END = DRAW_FURTHER + 2,   /* Russian roulette of deep photons, and their branch */
     DRAW_NEXT
 };

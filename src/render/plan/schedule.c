@@ -24,7 +24,7 @@ void schedule_start(schedule *s, const render_settings *settings)
     s->height = (int)settings->height;
     s->workers = (int)settings->threads;
     set_tiles(s, settings);
-    atomic_store(&s->next, s->workers); /* the tiles before it are reserved */
+    atomic_store(&s->next, s->workers); /* the first tile of each worker is reserved */
 }
 
 static int clamp(int64_t v, int most)

@@ -220,8 +220,8 @@ static region_spectrum region_at(const upsampled_scene *l, size_t priority_index
     return b;
 }
 
-/* Number of wavelengths that share one offset: of a camera ray, of all of a pixel's random paths, or of one replicate
- * of the paths under sobol. */
+/* Number of wavelengths that share one offset: the wavelengths of a sample point; with random paths, of all paths of a
+ * pixel, or under sobol, of one replicate. */
 static int64_t wavelengths_per_offset(const render_settings *render)
 {
     if (!integrator_traits_of(render)->by_chance)

@@ -35,7 +35,7 @@ typedef struct line_table {
 
 /* A line of a lamp. bright: its contribution to a film, X + Y + Z, in proportion to which lines are chosen. */
 typedef struct lamp_line {
-    int wavelength;  /* its number */
+    int wavelength;  /* number of the wavelength */
     double radiance; /* at this wavelength; its mean over all SPECTRA_COUNT wavelengths is the line's power */
     double bright;
 } lamp_line;

@@ -87,8 +87,9 @@ static vec3 normal_of(const surface_batch *s, int k)
     return vec3_make(s->nx[k], s->ny[k], s->nz[k]);
 }
 
-/* The change of the normal from each hit to the neighbour's hit, which is `step` away, extrapolated from the normal at
- * a close point, projected onto the primitive; 0 across edges. Rays from .. to - 1 hit one primitive. */
+/* The change of the normal from each hit to the neighbour's hit, `step` away, of rays from .. to - 1, which hit one
+ * primitive. It is extrapolated from the normal at the fraction NEAR of the step, projected onto the primitive; 0 if
+ * that point is on another face. */
 static void curve(const tracer *t, int from, int to, const vec3 *step, vec3 *change)
 {
     const group *g = &t->surface.gathered;

@@ -17,7 +17,7 @@ typedef struct cut_sum {
 } cut_sum;
 
 typedef struct shade_kernels {
-    /* The material's colour at the points of its surface on p: checker cells in the solid's own frame. */
+    /* The material's colour at the group's points; p: the primitive in whose frame the checker cells are. */
     void (*color)(const material *m, const primitive *p, group *g);
     /* Phong's direct light of one light at every point, weighted by the throughput. */
     void (*direct)(const material *m, const light *lamp, const group *g, lit_group *lit);
@@ -77,7 +77,7 @@ enum { LAMP_BLOCK = 8, LAMPS_MAX = (SCENE_LIGHTS_MAX + LAMP_BLOCK - 1) / LAMP_BL
 typedef struct lamp_table {
     int blocks;
     bool cones; /* some cone lights are points */
-    bool suns;  /* some are suns, whose strength here is 0: light_sampling.c weighs them */
+    bool suns;  /* some are suns, whose strength in this table is 0: light_sampling.c weighs them */
     double x[LAMPS_MAX], y[LAMPS_MAX], z[LAMPS_MAX];
     float radius[LAMPS_MAX], strength[LAMPS_MAX]; /* intensity; with falloff, times the square of the reach */
     float even[LAMPS_MAX], falling[LAMPS_MAX];    /* 1 and 0 for a light without falloff, otherwise 0 and 1 */
@@ -101,7 +101,7 @@ typedef struct sampling_kernels {
     /* Sets near[i] to -1 if ray i passes within the radius of a centre, or just misses, else to 0; returns whether any
      * is -1. */
     bool (*near_sphere)(const ray_batch *rays, vec3 centre, double radius, int64_t *near);
-    /* An estimate of each light's radiance at a point with normal n, for the choice of one: weight[blocks *
+    /* An estimate of each light's contribution at a point with normal n, for the choice of a light: weight[blocks *
      * LAMP_BLOCK]. Lights below the horizon have weight 0, unless n is 0 and `least` is below 0. */
     void (*light_weights)(const lamp_table *lamps, vec3 point, vec3 n, float k_d, float k_s, float least,
                           float *weight);

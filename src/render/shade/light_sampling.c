@@ -269,7 +269,7 @@ static int pick(const float *weight, const float *sum, int blocks, float total, 
     int b = 0, last = -1;
     while (b < blocks - 1 && (target >= (double)sum[b] || !(sum[b] > 0.0f)))
         target -= (double)sum[b++];
-    while (!(sum[b] > 0.0f)) /* there is one, as the total is above 0 */
+    while (!(sum[b] > 0.0f)) /* ends, because the total is above 0 */
         b--;
     for (int k = b * BLOCK; k < (b + 1) * BLOCK; k++) {
         if (!(weight[k] > 0.0f))

@@ -32,8 +32,8 @@ vec3 light_color_of(const tracer *t, int lamp, int64_t sample_key);
 /* Phong's highlight k_s (R.V)^n of the light along the unit vector `to`, at the cosine n_l to the normal. */
 double highlight_of(const group *g, int k, const material *m, vec3 to, double n_l);
 
-/* Enqueues a shadow ray from record k to a lamp with light of `color`, of which the surface reflects diffuse times its
- * colour, plus shine. */
+/* Enqueues a shadow ray from record k to a lamp with light of `color`. The surface reflects the fraction diffuse * (its
+ * colour) + shine. */
 void shadow_ray_enqueue(tracer *t, int k, int lamp, vec3 to_light, vec3 color, double diffuse, double shine);
 
 /* The light chosen for each record of the group, and a sample point on it if it has a size. */

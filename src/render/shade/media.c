@@ -296,8 +296,8 @@ static double sun_leg(const tracer *t)
     return 0.5 * t->target.frame_plan->sun_distance;
 }
 
-/* Empties the list of segments when it is full. Paths to the sky are exempt here too; they are recognised by their
- * length. */
+/* Empties the list of segments when it is full. Segments to the sky and to suns are exempt, as at the end of the
+ * search; they are recognised by their length. */
 static void make_room(void *context)
 {
     tracer *t = context;

@@ -31,7 +31,7 @@ typedef struct airlight {
 /* The flights of a batch. */
 typedef struct flight_work {
     bool flies;           /* the batch's rays have free flights; otherwise they lose the scattered light */
-    bool flying;          /* their interfaces are being searched */
+    bool flying;          /* the search for the interfaces of these rays has not ended */
     double u[ROW];        /* random number: the fraction of light that does not scatter before the end of the flight */
     double left[ROW];     /* the optical depth, by scattering, that remains up to this end */
     double passed[ROW];   /* the length of a ray's path so far */
@@ -53,7 +53,7 @@ typedef struct media_work {
 
 /* --- absorption --- */
 
-/* Begins a frame; absorbs: some of its media absorb. False when out of memory. */
+/* Begins a frame; absorbs: some of its media absorb, scatter or are sheets. False when out of memory. */
 bool absorption_begin(tracer *t, bool absorbs);
 void absorption_end(tracer *t);
 

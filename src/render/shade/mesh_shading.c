@@ -164,8 +164,8 @@ static int slot_of(const tracer *t, int i)
     return m->slots ? m->slots[mesh_face_triangle(face)] : 0;
 }
 
-/* Moves the rays with the material slot of the first one to the front of the list, both parts in order; returns their
- * number. */
+/* Moves the rays with the material slot of the first ray to the front of the list, and keeps the order of both parts;
+ * returns their number. */
 int mesh_next_material(const tracer *t, int *list, int count, int *slot)
 {
     int others[BATCH], matching = 0, left = 0;

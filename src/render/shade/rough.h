@@ -11,7 +11,7 @@
 typedef struct rough_surface {
     double alpha;
     bool opaque;
-    vec3 x[ROW], y[ROW], n[ROW], i[ROW]; /* i: towards the ray's origin, in its frame */
+    vec3 x[ROW], y[ROW], n[ROW], i[ROW]; /* i: towards the ray's origin, in the ray's frame */
     double cos_i[ROW];
     vec3 m[ROW];                /* the facets' normals, in the rays' frames; for rough_branches */
     const rough_finish *finish; /* NULL: light of further facets is lost */

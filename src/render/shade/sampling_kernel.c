@@ -18,7 +18,7 @@ ALWAYS_INLINE int64_t integer_of(double n)
     return lanes_bits(n + 0x1p52) & 0xfffffffffffff;
 }
 
-/* floor(n / by) of integers below 2^26; their rounded quotient is an integer only if the exact one is. */
+/* floor(n / by) of integers below 2^26; their rounded quotient is an integer only if the exact quotient is. */
 ALWAYS_INLINE double divided(double n, double by)
 {
     const double quotient = n / by, nearest = quotient + 0x1p52 - 0x1p52;

@@ -49,9 +49,9 @@ static void raise_to(double exponent, int count, double *restrict base)
     }
 }
 
-/* For each flat face of a primitive: the coordinate that is constant there, and the value that replaces it when the
- * checker cell is looked up, half a cell inside, or on the surface of a half-space, so that rounding across the face
- * does not choose the cell. */
+/* On a flat face of a primitive one coordinate is constant, and its rounding could choose the checker cell. So it is
+ * replaced for the lookup of the cell: by a value half a cell inside, or on a half-space by the value on the
+ * surface. */
 typedef struct flat_faces {
     int64_t face[FLATS_MAX];                                   /* FACE_NONE after the last */
     int64_t is_x[FLATS_MAX], is_y[FLATS_MAX], is_z[FLATS_MAX]; /* masks */
@@ -152,7 +152,7 @@ ALWAYS_INLINE void direct_from(const material *m, const light *lamp, bool sun, c
         lit->r[i] = blend(facing, g->wr[i] * ir * (diffuse * g->cr[i] + highlight), 0.0);
         lit->g[i] = blend(facing, g->wg[i] * ig * (diffuse * g->cg[i] + highlight), 0.0);
         lit->b[i] = blend(facing, g->wb[i] * ib * (diffuse * g->cb[i] + highlight), 0.0);
-        /* A NaN counts as visible, so that it is detected. */
+        /* A NaN contributes, so that the film detects it. */
         lit->contributes[i] =
             ~(mask_less(lit->r[i], least) & mask_less(lit->g[i], least) & mask_less(lit->b[i], least));
     }

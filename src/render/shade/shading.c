@@ -112,7 +112,7 @@ static void copy_points(const surface_batch *from, int count, surface_batch *to,
     memcpy(to->face + at, from->face, bytes);
 }
 
-/* Computes the points on several analytic primitives; those of the last group include the padding. */
+/* Computes the points on several analytic primitives; the points of the last group include the padding. */
 static void points_of_groups(tracer *t, const hit_group *groups, int count)
 {
     group *g = &t->surface.gathered;

@@ -31,7 +31,7 @@ static inline light_terms light_terms_of(const render_settings *r)
 
 /* Computes directions and weights of the gathered group's branches at a surface, and counts total reflections. */
 void shading_branches(tracer *t, bool opaque);
-/* shading_branches without the correction for meshes and without counting; the points' normals may be those of facets
+/* shading_branches without the correction for meshes and without counting; the points' normals may be normals of facets
  * (rough.h). */
 void shading_branches_at_facets(tracer *t, bool opaque);
 

@@ -55,7 +55,7 @@ static void write_group(const linked_groups *l, int g, hit_groups *out, int *wri
     *written = to;
 }
 
-/* Writes the groups so that those of one shading class are neighbours: each group is linked to the next of its
+/* Writes the groups so that groups of one shading class are neighbours: each group is linked to the next of its
  * class. */
 static void write_groups(const linked_groups *l, const int *shading_class, int16_t *class_marks, hit_groups *out)
 {

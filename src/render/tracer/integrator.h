@@ -42,14 +42,14 @@ typedef struct camera_sampling {
     int64_t rays;
     int64_t points;         /* upper limit of sample points in a pixel: the largest k x k grid with at most that many */
     int64_t rays_per_point; /* consecutive rays through one point; the next rays use the next point, cyclically */
-    bool jittered;          /* instead, each ray has its own random point of the pixel */
-    int64_t marks; /* further bits of their sample keys, in addition to pixel and sample (render/plan/sampling.h) */
+    bool jittered;          /* instead of the grid, each ray has a random point of the pixel */
+    int64_t marks; /* further bits of the rays' sample keys, in addition to pixel and sample (render/plan/sampling.h) */
 } camera_sampling;
 
 /* A step of a pre-pass. A step starts when the previous one has ended. */
 typedef struct integrator_step {
-    void (*parallel)(void *frame);                  /* by all workers at once; it distributes its own work among them */
-    status (*serial)(void *frame, diagnostic *why); /* then by one thread; NULL: none */
+    void (*parallel)(void *frame);                  /* called by all workers at once; divides the work among them */
+    status (*serial)(void *frame, diagnostic *why); /* then called by one thread; NULL: none */
 } integrator_step;
 
 typedef struct integrator {

@@ -6,7 +6,7 @@
 
 enum { FIELDS = 17, LINE = 64, LANES = LANES_MAX };
 
-/* The length of each field, in values. The additional LANES prevent that it is a multiple of 1024 bytes: see ROW. */
+/* The length of each field, in values. The additional LANES keep it from being a multiple of 1024 bytes: see ROW. */
 static size_t length_of(int capacity)
 {
     return ((size_t)capacity + LANES - 1) / LANES * LANES + LANES;

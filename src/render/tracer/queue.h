@@ -20,7 +20,7 @@ typedef struct ray_queue {
     int count, capacity;
     double *ox, *oy, *oz, *dx, *dy, *dz;
     double *wr, *wg, *wb;        /* throughput; for a shadow ray the radiance that it contributes if unblocked */
-    int64_t *start, *sample_key; /* face it starts on; see render/plan/sampling.h */
+    int64_t *start, *sample_key; /* start: face on which the ray starts; sample_key: see render/plan/sampling.h */
     uint64_t *inside;
     /* with polarisation: the analyser's Stokes vector relative to its first element, also for shadow rays in a scene
      * with sheets; in a crystal sq is the mode (render/shade/crystals.h) */

@@ -35,7 +35,7 @@ typedef struct tracer_queues {
 typedef struct tracer_account {
     ray_counters counters;
     int64_t visibility_ns; /* in a scene with meshes: time in the geometry kernels */
-    uint64_t frame;        /* number of the tracer_pool's frame that it last began; 0 before */
+    uint64_t frame;        /* number, in the tracer_pool, of the frame that the tracer last began; 0 before the first */
     int64_t overflow;      /* negative: a sum or a contribution left the film's range */
 } tracer_account;
 
@@ -43,7 +43,7 @@ typedef struct tracer_account {
 typedef struct tracer_batch {
     ray_scratch scratch;
     /* hit_primitive is -1 for rays that hit nothing, and less than -1 for rays with an end that only the integrator
-     * defines (path.c: a light's sphere) */
+     * defines (path.h: at a light, or where a medium scatters the ray) */
     _Alignas(64) hit_batch hits;
     _Alignas(64) double transmitted[ROW]; /* fraction of each shadow ray's light */
     hit_groups groups;
@@ -79,13 +79,14 @@ struct tracer {
     tracer_account account;
     int16_t *marks; /* see hit_groups_make */
     size_t mark_count;
-    struct mesh_work *meshes;          /* NULL until a scene with meshes is rendered; the following likewise */
-    struct media_work *media;          /* for a scene with absorption */
-    struct radiance_work *basic;       /* for a scene with basic radiance */
-    struct layered_work *layered;      /* for a scene with metals or thin films */
-    struct crystal_work *crystals;     /* for a scene with crystals */
-    struct footprint_work *footprints; /* for a scene with photons, unless paths are random */
-    _Alignas(64) tracer_batch batch;   /* aligned to cache lines, here and above */
+    /* memory for some scenes; each pointer is NULL until the first such scene */
+    struct mesh_work *meshes;          /* with meshes */
+    struct media_work *media;          /* with media that attenuate */
+    struct radiance_work *basic;       /* with basic radiance */
+    struct layered_work *layered;      /* with metals or thin films */
+    struct crystal_work *crystals;     /* with crystals */
+    struct footprint_work *footprints; /* with photons, unless paths are random; else NULL */
+    _Alignas(64) tracer_batch batch;   /* _Alignas: to cache lines */
     _Alignas(64) tracer_surface surface;
 };
 

@@ -1,6 +1,6 @@
 /* Layers of clear solids: for each grid point the surfaces in front of the nearest opaque one, in order of depth
- * (Carpenter, "The A-buffer, an antialiased hidden surface method", SIGGRAPH 1984), reduced to those where the medium
- * changes, by priority as for rays. */
+ * (Carpenter, "The A-buffer, an antialiased hidden surface method", SIGGRAPH 1984), reduced to the surfaces at which
+ * the medium changes, by priority as for rays. */
 #include "base/array.h"
 #include "render/zbuffer/zbuffer_private.h"
 

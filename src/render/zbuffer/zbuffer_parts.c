@@ -115,7 +115,7 @@ static instanced_mesh part_of(const primitive *p, const mesh *triangles, vec3 sc
                             .copies = {1, 1, 1}};
 }
 
-/* The triangles of a primitive: its own, or those of another solid that differs only in scale. */
+/* The triangles of a primitive: new ones, or the triangles of another solid that differs only in scale. */
 static status cut(const zbuffer *z, const solid_shape *shape, int part, mesh **out, diagnostic *why)
 {
     const scene_geometry *g = z->frame_plan->geometry;

@@ -1,5 +1,5 @@
 /* Projection of triangles into the image: the polygon of a triangle that is in front of the camera, corners on the
- * grid, and the plane of nearness. Corners are homogeneous, so that those of a plane may be at infinity. */
+ * grid, and the plane of nearness. Corners are homogeneous, so that the corners of a plane may be at infinity. */
 #include "render/zbuffer/zbuffer_private.h"
 
 #include "base/array.h"
