@@ -21,7 +21,7 @@
 /* A sample key is one number that identifies the pixel of a ray, for films with more than one sample per pixel
  * (spectral films, random paths) also the sample, and for spectral films also the wavelength. An rgb film with
  * Whitted's rays uses only the pixel.
- *     bits 0..27 the pixel, fewer than SCENE_PIXELS_MAX
+ *     bits 0..27 the pixel, below SCENE_PIXELS_MAX
  *          28..49 the sample: at most 1048576 paths, 64 x 65536 wavelengths
  *          50..61 the wavelength's number (render/plan/spectra.h)
  *          62     see SAMPLE_KEY_SPECULAR_BOUNCE
