@@ -138,7 +138,7 @@ static bool inert_named_faces(const inert_case *c)
         if (applies_to_named_faces(c) ? !inert_on_slot(c, slot) : !say_of_solid(c))
             return false;
     }
-    return true; /* if no face has the name, without a note: inert_material ignores this result */
+    return true; /* if no face has the name, there is no note, and inert_material ignores this result */
 }
 
 static bool inert_surface(const inert_case *c)

@@ -156,7 +156,7 @@ static double draw_ray(const emission *e, int lamp, unit_pair s, unit_pair place
     out->inside = l->inside;
     if (is_sun(e, lamp))
         return draw_sun_ray(e, lamp, k, place, out);
-    if (is_flat(e, lamp)) /* by Lambert's law, which light_fraction applies */
+    if (is_flat(e, lamp)) /* a uniform point of the lamp; light_fraction applies Lambert's law */
         out->origin = lamp_shape_point(&e->p->shapes[lamp], out->origin, place.u, place.v);
     if (radius == 0.0)
         return 1.0 / density_of(e, lamp, k, out->direction, out->origin);

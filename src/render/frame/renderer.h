@@ -93,6 +93,7 @@ typedef struct rank_usage {
     uint64_t tiles_sent, tile_bytes_sent; /* sent to rank 0 */
 } rank_usage;
 
+/* The result of a frame. Under render.error, counts of rays and times include the pilot; the maps do not. */
 typedef struct render_result {
     film *img;             /* NULL if the tiles came from a source */
     ray_counters counters; /* sums over all workers */
@@ -112,7 +113,6 @@ typedef struct render_result {
      * spectral film under render.sampler=philox it is an overestimate: each replicate has its own wavelengths, so that
      * they differ by more than random noise. */
     double *variance;
-    /* Under render.error, numbers of rays and times include the pilot; the maps do not. */
     int replicates;     /* of the paths of a pixel, 1 if the variance is unknown */
     tile_event *events; /* in order of begin_s; NULL unless requested */
     size_t event_count;

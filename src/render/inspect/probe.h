@@ -41,7 +41,7 @@ typedef struct ray_hit {
     vec3 point, normal; /* normal: unit vector towards the ray */
     int from, to;       /* media before and behind the surface */
     double n_from, n_to;
-    double cos_i, cos_t; /* cos_t is 0 under total internal reflection */
+    double cos_i, cos_t; /* cos_t: 0 under total internal reflection and at an opaque surface */
     /* power reflectances of the interface with its coating; for an opaque surface or simple transmission, its
      * reflectivity; for a metal or a thin film, at the tree's wavelength; at a crystal all are equal, the fraction of
      * this ray's light that is reflected */

@@ -21,7 +21,8 @@
 #include <pthread.h>
 #include <stdatomic.h>
 
-/* Steps of a table. Metals, and thin films up to LAYERED_THIN_NM, have LAYERED_STEPS_THIN. */
+/* Steps of a table: LAYERED_STEPS_THIN for metals and for thin films up to LAYERED_THIN_NM, LAYERED_STEPS for
+ * others. */
 enum { LAYERED_STEPS = 256, LAYERED_STEPS_THIN = 128, LAYERED_THIN_NM = 1000 };
 
 /* A thin film (thickness 0: none) on an opaque or transparent solid. */
@@ -29,7 +30,7 @@ typedef struct layered_surface {
     thin_film film;
     bool opaque;
     index_law law;     /* dispersion law behind an opaque surface */
-    const material *m; /* has the extinction index k */
+    const material *m; /* source of the extinction index k */
 } layered_surface;
 
 /* Reflected colour at the cosines k / steps; not clamped, so that interpolation meets no kinks. */

@@ -72,7 +72,7 @@ typedef struct plan {
     vec3 *absorption;  /* by priority index: Beer-Lambert coefficients and tints, by channel, in 1 / scene unit */
     spectra *spectral; /* for a spectral film, else NULL */
     layered_plan *layered;    /* metals and thin films; NULL if there are none */
-    bool polarised_shadows;   /* some lamp is polarised, which matters to sheets in shadow rays */
+    bool polarised_shadows;   /* some lamp is polarised, and shadow rays may pass through sheets */
     region_sheet *sheets;     /* by priority index: polarisers and wave plates; NULL if there are none */
     optical_medium *crystals; /* by priority index; NULL if there are none */
     scatter_plan *scatter;    /* media that scatter; NULL if there are none */

@@ -102,8 +102,8 @@ typedef struct path_sampling {
 
 path_sampling path_sampling_of(const render_settings *r);
 
-/* Sample points on the lens for `rays` camera rays per pixel in a regular grid, as in Whitted's integrator: one
- * scrambled Sobol set. */
+/* Sample points on the lens, and for soft shadows on lights, for `rays` camera rays per pixel in a regular grid, as in
+ * Whitted's integrator: one scrambled Sobol set. */
 path_sampling path_sampling_of_grid(const render_settings *r, int64_t rays);
 
 /* The pixel's number of paths. */

@@ -47,7 +47,7 @@ double rough_masking(const tracer *t, const rough_surface *r, int k, vec3 o, boo
 
 /* --- light of further facets; r->finish is not NULL --- */
 
-/* The fraction of light in a direction o of the frame of ray k, f |cos o|. */
+/* The fraction of light per solid angle, f |cos o|, that leaves in a direction o of the frame of ray k. */
 vec3 rough_further(const tracer *t, const rough_surface *r, int k, vec3 o);
 
 /* Light that other facets mask leaves on a side drawn by `chance`, in a direction drawn from `place` by the cosine law,

@@ -179,7 +179,7 @@ static void put_triangle(chunk *c, const zbuffer *z, screen_triangle *t)
         c->screen_count = SIZE_MAX;
 }
 
-/* True if all corners are outside one edge of the image. */
+/* True if all corners are outside one edge of the image, or all are behind the camera. */
 static bool is_off_screen(const zbuffer *z, const clip_corner *c)
 {
     const double wide = 0.5 * z->width / z->units_x, high = 0.5 * z->height / z->units_y;
