@@ -10,7 +10,8 @@
 void *large_pages(void *memory, size_t bytes)
 {
     if (memory && bytes >= LARGE_PAGES_MIN) {
-        /* from the page with malloc's header on: realloc could not move a mapping with two kinds of pages */
+        /* the advice includes the page with malloc's header: realloc could not move a mapping with two kinds of
+         * pages */
         const uintptr_t page = (uintptr_t)sysconf(_SC_PAGESIZE), first = (uintptr_t)memory / page * page,
                         end = ((uintptr_t)memory + bytes + page - 1) / page * page;
         madvise((char *)memory - ((uintptr_t)memory - first), end - first, MADV_HUGEPAGE);

@@ -12,9 +12,9 @@
  * compared with it before the allocation, so that too large a request is refused at once and does not swap, or get the
  * process killed. The limit applies to the process: a program sets it once, at its start; the library never does.
  *
- * Without a limit the process may allocate three quarters of the free memory. That is the least of the machine's
- * (MemAvailable), of each control group's (versions 1 and 2; pages that can be dropped do not count as used), and of
- * the address space (RLIMIT_AS). A value that cannot be read does not limit. */
+ * Without a limit the process may allocate three quarters of the free memory. Free is the least of what is free on the
+ * machine (MemAvailable), in each control group (versions 1 and 2; pages that can be dropped do not count as used), and
+ * in the address space (RLIMIT_AS). A value that cannot be read does not limit. */
 
 /* Bytes that the process may use in all; 0: the default. */
 void memory_budget_set(uint64_t bytes);
@@ -56,7 +56,7 @@ typedef struct disk_room {
     double least_bytes, most_bytes;
 } disk_room;
 
-/* Adds count files of these sizes, each rounded up to blocks. */
+/* Adds count files of these sizes; most_bytes of each is rounded up to blocks. */
 void disk_room_add(disk_room *to, double count, double least_bytes, double most_bytes);
 
 /* Free bytes for this user on the file system of path, which need not exist yet; NaN if unknown. Quotas are ignored. */

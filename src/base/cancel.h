@@ -1,8 +1,9 @@
 /* Cancellation of long work, through one token. The caller of work that may have to end early (a command, a time limit,
  * the engine) begins a token on its thread, and sets it or supplies the function `ask`. Every loop that may run for
- * longer than 50 ms calls cancel_asked, stops, and returns STATUS_INTERRUPTED. So no function in between needs a
- * parameter for it, and progress callbacks return nothing: to cancel, they set a token. Threads that work for a caller
- * follow its tokens: a thread team, the worker pool, cancel_join; other threads begin without one.
+ * longer than 50 ms calls cancel_asked, and if it returns true, stops and returns STATUS_INTERRUPTED. So no function in
+ * between needs a parameter for it, and progress callbacks return nothing: to cancel, they set a token. Threads that
+ * work for a caller follow its tokens: those of a thread team, of the worker pool, and those joined by cancel_join.
+ * Other threads begin without a token.
  *
  * A cancellation holds until the token ends: a function without a status may return early with an incomplete result if
  * its caller then asks before using it. Ownership: the caller owns the token, usually on the stack; it must outlive the

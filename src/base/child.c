@@ -189,6 +189,6 @@ status child_run(char *const *arguments, double limit_s, char **output, int *exi
     *exit_code = end(&c);
     return in_time          ? STATUS_OK
            : cancel_asked() ? cancel_check(why)
-                            : diagnose(why, STATUS_INTERRUPTED, "draw fewer figures at a time, or run it in a terminal",
+                            : diagnose(why, STATUS_INTERRUPTED, "give the program less work, or run it directly",
                                        "the program took longer than %g s", limit_s);
 }

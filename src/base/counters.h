@@ -1,8 +1,8 @@
 /* The ray counters of the tracer: plain integers, one set per worker, summed after the join, so that counting costs no
  * synchronisation and the totals do not depend on the number of threads. A ray is a straight segment between two
- * interactions. Camera and shadow rays, and rays by depth, are counted when they are traced, reflected and refracted
- * rays when they are enqueued. Without an interruption both counts agree, because every queued ray is traced. A build
- * with -DCUVETTE_COUNTERS=0 leaves the per-ray counters at zero. Ownership: values. */
+ * interactions. Camera rays, shadow rays and the rays by depth are counted when traced; reflected and refracted rays
+ * when enqueued. Without an interruption the counts by kind and by depth agree, because every queued ray is traced. A
+ * build with -DCUVETTE_COUNTERS=0 leaves the per-ray counters at zero. Ownership: values. */
 #pragma once
 
 #include "base/lanes.h"
@@ -35,17 +35,19 @@ typedef struct query_counts {
 typedef struct ray_counters {
     uint64_t camera, reflect, refract, shadow; /* rays traced, by kind */
     uint64_t photon;                           /* rays of photons */
-    uint64_t by_depth[COUNTERS_DEPTH_MAX + 1]; /* camera, reflected and refracted rays by depth; the last: and deeper */
-    uint64_t total_internal;                   /* total internal reflections */
-    uint64_t cut_depth, cut_weight;            /* rays not traced: beyond the last depth; under min_weight */
-    int64_t cut_depth_throughput[3];           /* RGB throughput of cut_depth, in units of 1/COUNTERS_CUT_ONE */
+    /* camera, reflected and refracted rays by depth; the last element includes deeper rays */
+    uint64_t by_depth[COUNTERS_DEPTH_MAX + 1];
+    uint64_t total_internal;         /* total internal reflections */
+    uint64_t cut_depth, cut_weight;  /* rays not traced: beyond the last depth; under min_weight */
+    int64_t cut_depth_throughput[3]; /* RGB throughput of cut_depth, in units of 1/COUNTERS_CUT_ONE */
     int64_t cut_weight_throughput[3];
-    /* light of photons that is too narrow for the distance of the film's samples, summed over pixels and channels, in
-     * the same units: by the factor along a side by which samples would have to be closer; [0]: a larger factor */
+    /* light of photons on footprints that are guessed, summed over pixels and channels, in the same units. [k]: samples
+     * k times as dense along each side would resolve it; [1]: the present ones do; [0]: a larger factor is needed. See
+     * photon_map_seen */
     int64_t undersampled[COUNTERS_FACTORS];
     /* rays tested against the solid; 0 for a solid in a hierarchy (geometry/regions/solid_tree.h). Shadow rays count
-     * only for solids that can attenuate light without another solid, and once each: the second test of an undecided
-     * ray does not count */
+     * for solids that cast shadows (region_casts_shadow), and for all solids if the surroundings attenuate light. A
+     * shadow ray counts once, even if the quick test leaves it undecided and it is tested again */
     uint64_t tests[COUNTERS_SOLID_MAX];
     uint64_t hits[COUNTERS_SOLID_MAX];       /* hits on the solid's interfaces, without shadow rays and photons */
     uint64_t first_hits[COUNTERS_SOLID_MAX]; /* camera rays whose first interface is on the solid */
@@ -61,7 +63,7 @@ static inline int64_t counters_cut_units(double throughput)
 
 static_assert(sizeof(ray_counters) % sizeof(uint64_t) == 0, "ray_counters consists only of 64-bit integers");
 
-/* Adds from to *into, field by field. */
+/* Adds *from to *into, field by field. */
 static inline void ray_counters_add(ray_counters *into, const ray_counters *from)
 {
     uint64_t *sum = (uint64_t *)into;

@@ -126,7 +126,8 @@ size_t csv_split(char *line, char **fields)
 static status damaged(const char *path, long line, diagnostic *why)
 {
     diagnostic_locate(why, path, line, 1);
-    return diagnose(why, STATUS_BAD_INPUT, "move the file away, or use a copy without this line", "the row is damaged");
+    return diagnose(why, STATUS_BAD_INPUT, "move the file away, or correct or remove this line in a copy",
+                    "the row is damaged");
 }
 
 /* Finds the starts of the lines, and replaces the newlines of the copy by 0. Returns the number of lines. */
@@ -164,7 +165,7 @@ static bool split_row(csv *table, size_t row)
     return false;
 }
 
-/* Splits the rows into fields; strict: a broken one is an error. */
+/* Splits the rows into fields; strict: a broken row is an error. */
 static status split_all(csv *table, const char *path, bool strict, diagnostic *why)
 {
     if (table->whole == 0)
@@ -257,7 +258,8 @@ static status mend(csv *table, diagnostic *why)
         to--;
     const char *last = memrchr(bytes, '\n', (size_t)(to - bytes)),
                *first_end = memchr(bytes, '\n', (size_t)(to - bytes));
-    /* A first line without its newline holds no row: a program may have been killed while it wrote it. */
+    /* Adds a missing last newline if the last line is complete: as many fields as the first, and no byte 0. A file that
+     * is one line without a newline has no row, and is left: its program may have been killed while it wrote. */
     if (first_end && to[-1] != '\n' && fields_of(bytes, first_end, why) == fields_of(last + 1, to, why) &&
         !memchr(last + 1, 0, (size_t)(to - last - 1)))
         *to++ = '\n';

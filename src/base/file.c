@@ -147,7 +147,7 @@ static bool remove_left(const char *name)
     return left;
 }
 
-/* Removes files of killed writers with the names after n. */
+/* Removes files of killed writers, from the name with number n to the first that does not exist. */
 static void remove_all_left(const char *path, const char *ending, unsigned n)
 {
     struct stat about;
@@ -376,7 +376,8 @@ status file_writer_commit(file_writer *writer, diagnostic *why)
     if (failed && error)
         code = system_error(why, STATUS_FAILURE, writer->path, "cannot write", error, NULL);
     else if (failed)
-        code = diagnose_at(why, writer->path, STATUS_FAILURE, "check the free space on the disk",
+        code = diagnose_at(why, writer->path, STATUS_FAILURE,
+                           "check the free space on the disk, or that the reader of the pipe runs",
                            "cannot write: a write failed");
     else if (writer->atomic)
         file_flush_folder(writer->path);

@@ -70,7 +70,8 @@ void file_flush_folder(const char *path);
 /* The last component of a path. */
 const char *file_name_of(const char *path);
 
-/* The path of `name` relative to the folder of path; newly allocated, or NULL. */
+/* Resolves `name` against the folder of `path`; an absolute name is returned unchanged. Newly allocated; NULL: out of
+ * memory. */
 char *file_next_to(const char *path, const char *name);
 
 /* Makes a folder and its parents, and flushes their entries to disk; no error if it exists. */

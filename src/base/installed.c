@@ -44,7 +44,8 @@ char *installed_find(const char *const *places, size_t count, const char *name)
     return found;
 }
 
-/* From bin, lib or lib/ARCHITECTURE to where `make install` puts them, and from build or build/NAME to the sources. */
+/* The places lead from bin, lib or lib/ARCHITECTURE to share, where `make install` puts the folder, and from build or
+ * build/NAME to the sources. */
 char *installed_folder(const char *below)
 {
     static const char *const places[] = {"/../share/cuvette", "/../../share/cuvette", "/..", "/../.."};

@@ -49,8 +49,8 @@ typedef enum isa { ISA_EACH(ISA_MEMBER, ) ISA_COUNT, ISA_BASE = 0 } isa;
 
 #define ALWAYS_INLINE static inline __attribute__((always_inline))
 
-/* Before a loop none of whose iterations reads what another writes. clang ignores restrict of local variables; it would
- * otherwise compare every pair of arrays, and leaves loops with many arrays scalar. */
+/* Precedes a loop in which no iteration reads what another writes. clang ignores restrict of local variables: without
+ * this pragma it compares every pair of arrays at run time, and leaves loops with many arrays scalar. */
 #ifdef __clang__
 #define INDEPENDENT_LANES _Pragma("clang loop vectorize(assume_safety)")
 #else

@@ -12,8 +12,8 @@
 
 enum { RESERVE_BYTES = 1 << 20, ALIGNMENT = 16 };
 
-/* Handed out from the beginning, and never reused: it is for a program that is about to report that memory ran out.
- * Pages that are not used cost nothing. */
+/* The reserve is handed out from its beginning, and never reused: it is for a program that is about to report that
+ * memory ran out. Pages that are not used cost nothing. */
 static _Alignas(ALIGNMENT) char reserve[RESERVE_BYTES];
 static atomic_size_t used;
 
@@ -42,7 +42,7 @@ void json_memory_reserve(void)
 
 json_t *json_parse(const char *text, size_t size, size_t flags, json_error_t *error, bool *no_memory)
 {
-    void *volatile room = malloc(8 * size + 4096); /* volatile: the compiler may assume that it succeeds */
+    void *volatile room = malloc(8 * size + 4096); /* volatile: else a compiler may assume success */
     *no_memory = !room;
     free(room);
     json_t *value = room ? json_loadb(text, size, flags, error) : NULL;

@@ -160,8 +160,8 @@ static inline double elementary_cosine_series(double x)
     return 1.0 - 0.5 * s + s * s * p;
 }
 
-/* elementary_sincos_deg(360 turn) for 0 <= turn <= 1, except at the odd eighths of a turn, where the nearest quarter is
- * the even one. */
+/* elementary_sincos_deg(360 turn) for 0 <= turn <= 1, except at the odd eighths of a turn, where two quarters are
+ * equally near, and the even one is used. */
 static inline void elementary_sincos_turn_inline(double turn, double *sine, double *cosine)
 {
     const double degrees = 360.0 * turn, shifted = degrees / 90.0 + 6755399441055744.0, /* 1.5 2^52 */

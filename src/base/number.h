@@ -23,5 +23,5 @@ char *number_format_digits(double value, int digits, char text[NUMBER_TEXT_MAX])
 
 /* The value with the digits that its uncertainty allows: half, the half-width of its interval, is shown with two digits
  * if they are 10 to 29, otherwise with one (after the rule of the Particle Data Group). Four significant digits if half
- * is not above 0. */
+ * is not above 0 or not finite, or |value| is above 1e15. */
 char *number_format_within(double value, double half, char text[NUMBER_TEXT_MAX]);

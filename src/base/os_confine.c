@@ -40,7 +40,7 @@ typedef struct ruleset {
     (ACCESS_READ | LANDLOCK_ACCESS_FS_WRITE_FILE | LANDLOCK_ACCESS_FS_REMOVE_DIR | LANDLOCK_ACCESS_FS_REMOVE_FILE | \
      LANDLOCK_ACCESS_FS_MAKE_DIR | LANDLOCK_ACCESS_FS_MAKE_REG | LANDLOCK_ACCESS_FS_MAKE_SYM |                      \
      LANDLOCK_ACCESS_FS_REFER | ACCESS_TRUNCATE)
-/* Special files cannot be made in any place. */
+/* All rights that the rules govern. No place allows making special files. */
 #define ACCESS_ALL                                                                                             \
     (ACCESS_WRITE | LANDLOCK_ACCESS_FS_EXECUTE | LANDLOCK_ACCESS_FS_MAKE_CHAR | LANDLOCK_ACCESS_FS_MAKE_SOCK | \
      LANDLOCK_ACCESS_FS_MAKE_FIFO | LANDLOCK_ACCESS_FS_MAKE_BLOCK)
@@ -123,7 +123,7 @@ bool os_confine_files(const confine_place *places, size_t count)
 #define ARCHITECTURE AUDIT_ARCH_S390X
 #endif
 
-/* s390x has the flags of clone in another argument, and mmap has its arguments in memory. */
+/* On s390x, clone has its flags in another argument, and mmap has its arguments in memory. */
 #ifdef __s390x__
 enum { CLONE_FLAGS_AT = 1, SEES_MMAP = 0 };
 #else

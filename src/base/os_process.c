@@ -17,7 +17,7 @@ bool os_program_path(char path[PATH_MAX])
     return known;
 }
 
-/* The mask has room for more units than any machine has; a smaller mask is an error on a machine with more units. */
+/* The mask has room for more units than any machine has: sched_getaffinity fails if it is too small for the machine. */
 int os_usable_units(void)
 {
     enum { UNITS_MAX = 16384 };

@@ -24,8 +24,9 @@ typedef struct diagnostic {
 enum { DIAGNOSTIC_TEXT_MAX = 1792 };
 
 /* Fills *why (if not NULL) and returns code, so that a failing line reads `return diagnose(why, STATUS_BAD_INPUT, "set
- * a width from 1 to 65536", "width %ld is out of range", w);` file, line and column are unchanged: the caller that
- * knows them calls diagnostic_locate. Control characters in the text are replaced by '?', so that it stays one line. */
+ * a width from 1 to 65536", "width %ld is out of range", w);`. The file, line and column stay unchanged: the caller
+ * that knows them calls diagnostic_locate. Control characters in the text are replaced by '?', so that it stays one
+ * line. */
 status diagnose(diagnostic *why, status code, const char *remedy, const char *what, ...)
     __attribute__((format(printf, 4, 5)));
 
@@ -64,7 +65,7 @@ char *diagnostic_text(const diagnostic *why, char *text, size_t size);
 const char *system_remedy(int error);
 
 /* Fills *why with "doing: reason" and a remedy. error: an errno. path: the place, or NULL to leave it unchanged.
- * Returns STATUS_FAILURE for faults of the machine (memory, disk space, open files, a damaged disk), otherwise
- * `otherwise`. The remedy is `advice` if system_remedy has none. */
+ * Returns STATUS_FAILURE for faults of the machine (memory, disk space, open files, a damaged disk), and `otherwise`
+ * for all other errors. The remedy is `advice` if system_remedy has none. */
 status system_error(diagnostic *why, status otherwise, const char *path, const char *doing, int error,
                     const char *advice);

@@ -254,5 +254,5 @@ status worker_pool_run(worker_pool *p, int count, bool keep, worker_pool_task *t
 
 void worker_pool_pause(worker_pool *p)
 {
-    (void)p; /* the calling thread watches */
+    (void)p; /* nothing to do: the tasks have their own threads, and the calling thread calls watch */
 }
