@@ -1,4 +1,4 @@
-/* The per-pixel measures of compare.h, the call of those that use neighbours, and the map of FLIP errors. */
+/* The per-pixel measures of compare.h, calls of the measures that use neighbourhoods, and the map of FLIP errors. */
 #include "image/compare.h"
 
 #include "base/budget.h"
@@ -89,8 +89,9 @@ status image_compare(const image *a, const image *b, image_comparison *out, diag
     TRY(compare_check(a, b, why));
     status code = STATUS_OK;
     size_t count = pixels_of(a);
-    enum { PLANES = 2 + 14 }; /* of this function, and of compare_flip, which needs more than compare_ssim */
-    TRY(memory_budget_check(count * PLANES * sizeof(double), "compare smaller ones", why,
+    /* planes of doubles: 2 here, and 14 in compare_flip, which needs more than compare_ssim */
+    enum { PLANES = 2 + 14 };
+    TRY(memory_budget_check(count * PLANES * sizeof(double), "compare smaller images", why,
                             "a comparison of images of %d x %d pixels", a->width, a->height));
     double *first = malloc(count * sizeof *first), *second = malloc(count * sizeof *second);
     if (!first || !second) {

@@ -147,8 +147,8 @@ static convolve_taps sensitivity(double b)
     return convolve_gaussian(2 * radius + 1, sqrt(b / 2.0) / PI * PIXELS_PER_DEGREE);
 }
 
-/* The weight of a two-dimensional Gaussian with peak 1: the square of its sum along an axis, which is the inverse of
- * the central value once the sum is normalised to 1. */
+/* The sum of a two-dimensional Gaussian with peak 1: the square of its sum along one axis. That sum is the inverse of
+ * the central tap, because the taps are normalised to the sum 1. */
 static double weight_of_peak(const convolve_taps *gaussian)
 {
     double middle = gaussian->weight[gaussian->before];
@@ -231,7 +231,7 @@ static void lab_at(const features *s, size_t at, double lab[3])
     flip_hunt_lab(opponent, lab);
 }
 
-/* Section 4.3: a difference of features amplifies that of colours. */
+/* Section 4.3: a difference of features amplifies the difference of colours. */
 static double error_at(const features *a, const features *b, size_t at, double farthest)
 {
     double lab_a[3], lab_b[3];

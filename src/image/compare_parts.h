@@ -5,7 +5,7 @@
 
 #include "image/image.h"
 
-/* Mean structural similarity of two planes of encoded luma, 0..1. */
+/* Mean structural similarity, -1..1, of two planes of encoded luma, whose values are 0..1. */
 status compare_ssim(const double *a, const double *b, int width, int height, double *mean, diagnostic *why);
 
 /* Writes the FLIP error of each pixel, 0..1, to errors, width * height values. */

@@ -150,7 +150,8 @@ status heatmap_scale_of(const double *values, size_t count, heatmap_scale *out, 
 {
     double largest;
     TRY(inspect(values, count, &largest, &out->integers, why));
-    /* the 99.5th percentile, by nearest rank; meaningless with very few values that are not 0 */
+    /* the 99.5th percentile, by nearest rank; it is 0 if very few values are not 0, and then the scale ends at the
+     * maximum */
     const double percentile = nth_smallest(values, count, count - 1 - count / 200);
     out->cut = percentile > 0 && largest > 2 * percentile;
     out->end = out->cut ? percentile : largest;

@@ -29,8 +29,8 @@ void image_destroy(image *img);
 /* Adds a reference to an image that is constant from now on: the last image_destroy releases it. Thread safe. */
 image *image_retain(const image *img);
 
-/* Packs an image as bytes (base/pack.h), and unpacks it; pixel values are not checked. The caller owns the unpacked
- * image. STATUS_BAD_INPUT for damaged bytes, STATUS_FAILURE without memory. */
+/* Packs an image as bytes (base/pack.h), without its tone, and unpacks it; pixel values are not checked. The caller
+ * owns the unpacked image. STATUS_BAD_INPUT for damaged bytes, STATUS_FAILURE without memory. */
 status image_pack(const image *img, pack_writer *to, diagnostic *why);
 status image_unpack(pack_reader *from, image **out, diagnostic *why);
 /* Whether both sides are allowed, and the rest of the package can hold that many pixels of `pixel` bytes. */
@@ -48,7 +48,7 @@ typedef enum image_format {
     IMAGE_JPEG,
     IMAGE_PFM,
     IMAGE_BMP
-} image_format; /* IMAGE_BMP: for reading only, has no extension */
+} image_format; /* IMAGE_BMP: for reading only; image_format_of never returns it */
 image_format image_format_of(const char *path);
 
 /* A text that a PNG file carries with its pixels (PNG specification, 11.3.3): compressed iTXt, UTF-8. keyword: 1 to 79
@@ -77,8 +77,8 @@ image_rows image_rows_of(const image *img);
 status image_write(const image *img, const char *path, int bits, diagnostic *why);
 status image_write_rows(const image_rows *rows, const char *path, int bits, diagnostic *why);
 
-/* The same to fresh memory, owned by the caller. bits: 8 or 16. fast: for interactive use: PNG with less compression
- * effort, JPEG of quality 80, 4:2:0. */
+/* The same into newly allocated memory, which the caller frees. bits: 8 or 16. fast: less compression of PNG, and JPEG
+ * of quality 80, 4:2:0, for interactive use. */
 status image_encode(const image *img, image_format format, int bits, bool fast, unsigned char **bytes, size_t *size,
                     diagnostic *why);
 status image_encode_rows(const image_rows *rows, image_format format, int bits, bool fast, unsigned char **bytes,

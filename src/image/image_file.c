@@ -100,7 +100,7 @@ status image_write_rows(const image_rows *rows, const char *path, int bits, diag
     TRY(file_writer_open(&writer, path, why));
     status code = write_as(rows, format, writer.stream, bits, false, why);
     if (code == STATUS_OK || ferror(writer.stream))
-        return file_writer_commit(&writer, why); /* errno has the reason of the stream's failure */
+        return file_writer_commit(&writer, why); /* the commit finds why the stream failed */
     file_writer_abandon(&writer);
     diagnostic_locate(why, path, 0, 0);
     return code;

@@ -24,7 +24,7 @@ typedef struct png_library {
     const unsigned char *bytes; /* the file to read */
     size_t size, used;
     int error;      /* errno when libpng ended */
-    bool no_memory; /* an allocation of libpng or zlib failed, which is reported like damage */
+    bool no_memory; /* an allocation of libpng or zlib failed, which libpng reports like damage */
 } png_library;
 
 static __attribute__((noreturn)) void png_library_error(png_structp png, png_const_charp message)
@@ -164,8 +164,8 @@ static void read_bytes(png_structp png, png_bytep to, size_t count)
     from->used += count;
 }
 
-/* libpng allocates memory for a chunk of any length, up to 2 GiB, before it reads the chunk; its limit is only a
- * warning. */
+/* libpng allocates memory for a chunk of any length, up to 2 GiB, before it reads the chunk; a chunk above its limit
+ * causes only a warning. */
 static void check_lengths(const png_library *library)
 {
     for (size_t at = 8; library->size > at && library->size - at >= 8;) {
@@ -358,7 +358,7 @@ static status read_text(const void *bytes, size_t size, const char *keyword, siz
         if (found && !(*text = strdup(found)))
             code = out_of_memory(why);
         else if (!found && has_keyword(bytes, size, keyword))
-            code = diagnose(why, STATUS_BAD_INPUT, "copy the file again from an undamaged one",
+            code = diagnose(why, STATUS_BAD_INPUT, "copy the file again, or use another file",
                             "the text '%s' in this PNG file is damaged, or longer than %zu bytes", keyword, limit);
     }
     png_destroy_read_struct(&job.png, &job.info, NULL);

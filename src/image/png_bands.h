@@ -1,7 +1,7 @@
 /* The pixels of a PNG file, compressed by several threads. The rows are divided into bands, whose size depends only on
- * the image; each band is compressed independently and ends at a byte (deflate's empty stored block, RFC 1951, 3.2.4),
- * so that the bands one after another are one zlib stream: the file is the same for any number of threads. Ownership:
- * png_bands_create allocates, png_bands_destroy releases; for one caller at a time. */
+ * the image; each band is compressed independently and ends at a byte boundary (by deflate's empty stored block, RFC
+ * 1951, 3.2.4), so that the bands one after another are one zlib stream: the file is the same for any number of
+ * threads. Ownership: png_bands_create allocates, png_bands_destroy releases; for one caller at a time. */
 #pragma once
 
 #include "image/codec.h"

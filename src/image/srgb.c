@@ -84,8 +84,8 @@ float *codec_decode_table(unsigned maximum)
 
 /* ---- 16 bits ---- */
 
-/* By Taylor polynomials, exactly rounded: values so near to the boundary between two words that the polynomial's error
- * could matter are encoded by codec_quantize.
+/* Encodes 16-bit words by Taylor polynomials, exactly rounded: values so near to the boundary between two words that
+ * the polynomial's error could matter are encoded by codec_quantize.
  *
  * Cells of equal exponent and first 6 bits of the mantissa, from 2^-9 (less than the end of the curve's linear part) to
  * 1. A cell's half width is at most 2^-7 of its centre c. With the exponent a = 1/2.4, the third term of the binomial

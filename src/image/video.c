@@ -59,7 +59,7 @@ static void put_luma(const planes *p, const luma_weights *k)
         p->y[i] = (unsigned char)(16 + nearest(219 * luma(k, p->rgb + 3 * i), 255 * TEN_THOUSAND));
 }
 
-/* For the pixel 2 x, 2 y and its existing right and lower neighbours. */
+/* Sets the chroma of the pixel 2 x, 2 y and of its right and lower neighbours, as far as they exist. */
 static void put_chroma_at(const planes *p, const luma_weights *k, size_t x, size_t y)
 {
     int64_t blue = 0, red = 0, count = 0; /* sums of 10000 (B - Y), 10000 (R - Y) */
@@ -98,8 +98,8 @@ status y4m_begin(FILE *stream, int width, int height, int64_t fps_num, int64_t f
         return diagnose(why, STATUS_BAD_INPUT, "use a width and height of 1 to 65536",
                         "a video cannot have %d x %d pixels", width, height);
     if (fps_num < 1 || fps_den < 1)
-        return diagnose(why, STATUS_BAD_INPUT, "both parts must be at least 1",
-                        "%" PRId64 "/%" PRId64 " frames a second are not possible", fps_num, fps_den);
+        return diagnose(why, STATUS_BAD_INPUT, "use a fraction of two numbers of at least 1",
+                        "%" PRId64 "/%" PRId64 " frames per second are not possible", fps_num, fps_den);
     fprintf(stream, "YUV4MPEG2 W%d H%d F%" PRId64 ":%" PRId64 " Ip A1:1 C420jpeg XCOLORRANGE=LIMITED\n", width, height,
             fps_num, fps_den);
     return STATUS_OK;
@@ -130,8 +130,8 @@ status y4m_frame(FILE *stream, const image *img, diagnostic *why)
 
 /* ---- animated PNG ---- */
 
-/* The chunks come from each frame's PNG file: those of the first frame stay, with acTL and fcTL before its IDAT; IDAT
- * of later frames become fdAT, which begin with a sequence number. */
+/* The chunks come from each frame's PNG file: those of the first frame stay, with acTL and fcTL before its IDAT. Of
+ * later frames only IDAT is kept, as fdAT, which begins with a sequence number. IEND comes from the last frame. */
 
 enum { SIGNATURE_SIZE = 8, CHUNK_EXTRA = 12, TYPE_SIZE = 4, DELAY_MAX = 65535 };
 

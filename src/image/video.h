@@ -24,9 +24,9 @@ status y4m_frame(FILE *stream, const image *img, diagnostic *why);
  * other programs show the first. Each frame has the pixels of the PNG file that image_encode makes. */
 typedef struct apng {
     FILE *stream;
-    uint32_t frames; /* of the video, known before the first */
+    uint32_t frames; /* number of frames of the video, known before the first is written */
     int64_t fps_num, fps_den;
-    uint32_t sequence, written; /* of chunks; of frames */
+    uint32_t sequence, written; /* the next chunk's sequence number; the frames written so far */
 } apng;
 
 /* Appends a frame; all have one size. The last one ends the file. */
