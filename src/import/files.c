@@ -150,9 +150,9 @@ void files_prepare(file_access *access, const request *req)
  *
  * A PLY or STL file must have the length that its header implies: assimp fills missing data with zeros or uninitialised
  * memory, reads headers without an end for minutes, and allocates memory by counts that no file can hold. OBJ has no
- * counts and no end. assimp checks the lengths of glTF itself, but assimp 5.4 reads text and binary glTF files under
- * either ending, which 5.2 refuses. PLY: Greg Turk, "The PLY Polygon File Format", 1994. STL: 80 bytes, a count, and
- * 50 bytes per facet; or a text from 'solid' to 'endsolid'. */
+ * counts and no end marker. assimp checks the lengths of glTF itself, but assimp 5.4 reads text and binary glTF files
+ * under either ending, which 5.2 refuses. PLY: Greg Turk, "The PLY Polygon File Format", 1994. STL: 80 bytes, a count,
+ * and 50 bytes per facet; or a text from 'solid' to 'endsolid'. */
 
 enum { PROPERTIES_MAX = 64, WORD_MAX = 63 };
 
@@ -316,8 +316,8 @@ static bool skip_bytes(ply *p, uint64_t count)
     return complete;
 }
 
-/* Reads the length of a list, an integer of at most eight bytes. A float or double makes no sense here; its bits are
- * read as an integer, which is too large. */
+/* Reads the length of a list, an integer of at most eight bytes. A length of type float or double makes no sense; its
+ * bits, read as an integer, usually exceed the rest of the file, so that the file counts as truncated. */
 static bool read_length(ply *p, int bytes, uint64_t *length)
 {
     if (p->end - p->at < bytes)

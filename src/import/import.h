@@ -1,8 +1,9 @@
 /* The parts of the program cuvette-import, one file each. It reads one mesh file with assimp under resource limits that
  * it sets itself, and writes the triangles to standard output in the format of import/mesh_wire.h. It is a separate
- * program so that a file that crashes assimp or exhausts its memory affects nothing else. Ownership: memory is never
+ * program so that a file that crashes assimp or exhausts its memory affects nothing else. Ownership: results are never
  * freed; the process ends as soon as the mesh is written. Errors: STATUS_BAD_INPUT and the reason in the diagnostic,
- * also when out of memory, because the program sets the memory limit itself. */
+ * also when out of memory, because the program sets the memory limit itself; STATUS_FAILURE only if standard output
+ * cannot be written. */
 #pragma once
 
 #include "base/status.h"

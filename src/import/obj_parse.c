@@ -6,7 +6,7 @@
 
 /* --- numbers, as assimp rounds them, independent of the locale --- */
 
-enum { INTEGER_MAX = 18, FRACTION_MAX = 15, EXPONENT_MAX = 3 }; /* number of digits */
+enum { INTEGER_MAX = 18, FRACTION_MAX = 15, EXPONENT_MAX = 3 }; /* largest numbers of digits */
 
 static bool is_digit(char c)
 {
@@ -178,7 +178,7 @@ static bool read_text(obj_part *o, const char **at)
     *at = end + 1;
     if (length == 0)
         return true;
-    if (line[length - 1] == '\\' || memchr(line, 0, length) || memchr(line, '\r', length)) /* \: continues */
+    if (line[length - 1] == '\\' || memchr(line, 0, length) || memchr(line, '\r', length)) /* \ continues a line */
         return false;
     if (line[0] == '#')
         return true;
