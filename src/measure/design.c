@@ -7,7 +7,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-enum { INTERVAL_VALUES = 6, RATIO_PROCESSES = 3 }; /* the same as in study/summary/contrast.h */
+enum { INTERVAL_VALUES = 6, RATIO_PROCESSES = 3 }; /* FEWEST_VALUES and FEWEST_PROCESSES of study/summary/contrast.c */
 
 const char *design_rule_text(design_rule rule)
 {

@@ -31,10 +31,12 @@ typedef struct design {
 /* "sign", ...; "apart", ... */
 const char *design_rule_text(design_rule rule);
 const char *design_order_text(design_order order);
-/* Whether the rule can ever claim anything: an interval of the median needs 6 values, a t test 2. */
+/* Whether the rule can ever claim anything: an interval of the median needs 6 values, a t test 2, and the rule of
+ * ratios 6 values and 3 processes. */
 bool design_has_rule(const design *d, design_rule rule);
 
-/* 1: b is larger; -1: smaller; 0: no claim. paired: process k of both are a pair. effect: 0.05 for 5%. */
+/* *claim: 1 if b is larger than a, -1 if it is smaller, 0 if the rule makes no claim. paired: process k of both are a
+ * pair. effect: 0.05 for 5%. */
 status design_claim(design_rule rule, const level_sample *a, const level_sample *b, bool paired, double effect,
                     uint64_t seed, int *claim, diagnostic *why);
 

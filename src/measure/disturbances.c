@@ -15,7 +15,7 @@ typedef struct sink {
     const char *root;
     disturbance_callback line;
     void *context;
-    bool *incomplete; /* an unreadable file was reported; only the first is */
+    bool *incomplete; /* whether an unreadable file was reported; only the first one is */
 } sink;
 
 __attribute__((format(printf, 2, 3))) static void report(const sink *to, const char *format, ...)
@@ -194,8 +194,8 @@ const char *disturbance_advice(const char *disturbance)
         {"control group", "use no more threads than that, or raise the limit"},
         {"load ", "stop other programs, or measure with --wait-quiet"},
         {"swap in use", "close programs that use much memory"},
-        {"built without", "measure with make (config=release)"},
-        {"built with a sanitizer", "measure with make (config=release)"},
+        {"built without", "measure with a release build (make config=release)"},
+        {"built with a sanitizer", "measure with a release build (make config=release)"},
         {"others use", "stop other programs, or measure with --wait-quiet"},
         {"unknown: ", "raise the limit on open files (ulimit -n), or check the machine (dmesg)"},
     };

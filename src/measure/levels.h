@@ -60,7 +60,7 @@ typedef enum level_range {
 
 /* The median of all values with its interval: processes are drawn as in level_bootstrap. For 3 to 9 processes the
  * interval is Student's t; for a positive quantity it is computed from logarithms, so that it is symmetric in ratios
- * and never reaches 0. Other intervals are cut at 0 and, for a fraction, at 1. If a value is outside `range`, a wider
- * range is used. With fewer than 3 processes or 6 values, the interval comes from order statistics
- * (measure/statistics.h), as if all values were independent. */
+ * and never reaches 0. Other intervals are cut at 0, except for LEVEL_REAL, and for a fraction also at 1. If a value is
+ * outside `range`, a wider range is used. With fewer than 3 processes or 6 values, the interval comes from order
+ * statistics (measure/statistics.h), as if all values were independent. */
 status level_median(const level_sample *s, level_range range, uint64_t seed, level_interval *out, diagnostic *why);

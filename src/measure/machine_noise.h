@@ -58,10 +58,11 @@ typedef struct noise_rule {
     double others_fraction, steal_fraction, frequency_drop, stalled_fraction;
 } noise_rule;
 
-/* others_fraction above 0.05, or stalled_fraction above 0.1, which is below 0.03 on a quiet machine. */
+/* The bounds are 0.05 for others_fraction, and 0.1 for stalled_fraction, which stays below 0.03 on a quiet machine. */
 noise_rule noise_rule_default(void);
 
 typedef enum noise_kind { NOISE_OTHERS, NOISE_STEAL, NOISE_FREQUENCY, NOISE_STALLED, NOISE_KINDS } noise_kind;
 typedef enum noise_verdict { NOISE_UNDISTURBED, NOISE_DISTURBED, NOISE_NOT_KNOWN } noise_verdict;
-/* NOISE_NOT_KNOWN if no value with a bound is known. exceeded, or NULL: whether the value of each kind is too large. */
+/* NOISE_NOT_KNOWN if all values that have a bound are unknown. exceeded, unless NULL: by kind, whether the value is
+ * above its bound. */
 noise_verdict noise_judge(const noise_rule *rule, const machine_noise *noise, bool exceeded[NOISE_KINDS]);

@@ -55,7 +55,7 @@ static void write_nodes(hwloc_obj_t object, int depth, FILE *out)
         write_nodes(object->children[i], depth + 1, out);
 }
 
-/* The first cache of each level; on a machine with different kinds of cores, that of the first core. */
+/* The first cache of each level; on a machine with different kinds of cores, the cache of the first core. */
 static void write_caches(hwloc_topology_t tree, FILE *out)
 {
     static const hwloc_obj_type_t levels[TOPOLOGY_CACHES] = {HWLOC_OBJ_L1CACHE, HWLOC_OBJ_L2CACHE, HWLOC_OBJ_L3CACHE};
@@ -105,7 +105,7 @@ int topology_discover(const char *synthetic, FILE *out)
     return code;
 }
 
-/* Without messages and core files if hwloc crashes; an alarm ends an endless loop. */
+/* Runs hwloc and ends the child. A crash of hwloc leaves no message and no core file; an alarm ends an endless loop. */
 static void run_child(const char *synthetic, int pipe_end)
 {
     enum { LIMIT_S = 20 };

@@ -31,8 +31,8 @@ struct topology {
 };
 
 /* hwloc's description of this machine, or of a synthetic one, restricted to the units that this process may use, as
- * text. Returns the exit status of the child process: 0, or STATUS_BAD_INPUT for an invalid synthetic description.
- * After a failure the text may be incomplete. Only the child calls hwloc. */
+ * text. Returns the exit status of the child process: 0; STATUS_BAD_INPUT for an invalid synthetic description;
+ * otherwise STATUS_FAILURE. After a failure the text may be incomplete. Only the child calls hwloc. */
 int topology_discover(const char *synthetic, FILE *out);
 
 /* The output of topology_discover in a child process; NULL, with a status, if that failed. *no_memory: memory ran out

@@ -28,9 +28,9 @@ double usage_others_fraction(const usage *difference);
 /* ---- a thread ---- */
 
 /* What the calling thread did in an interval: it ran, it waited for a processing unit although it could run, or it was
- * blocked (by a lock, a semaphore, a page from the disk). With more threads than units, waiting is the price of the
- * surplus. The thread itself reads at the start and at the end; a reading takes some 10 microseconds, because it opens
- * a file of /proc. */
+ * blocked (by a lock, a semaphore, a page from the disk). With more threads than units, some threads always wait. The
+ * thread itself reads at the start and at the end; a reading takes some 10 microseconds, because it opens a file of
+ * /proc. */
 typedef struct thread_usage {
     double wall_s;     /* monotonic clock; the length of the interval after thread_usage_since */
     double running_s;  /* CPU time of the thread */
@@ -69,8 +69,8 @@ void hardware_counter_destroy(hardware_counter *counter);
 /* ---- disturbances: disturbances.c ---- */
 
 /* Reports what could disturb a measurement now: calls line with one short text for each ("governor powersave", "turbo
- * on", "load 3.2", "others use 40% of the machine"), not at all if nothing is found. The load is observed for sample_s
- * seconds (0: not at all, and nothing is reported about other processes). */
+ * on", "load 3.2", "others use 40% of the machine"), not at all if nothing is found. Other processes are observed for
+ * sample_s seconds; 0: not at all, so that only the load average tells of them. */
 void disturbances_report(double sample_s, void (*line)(void *context, const char *text), void *context);
 
 /* What to do about such a disturbance; "" if nothing is known to help. Static text. */
