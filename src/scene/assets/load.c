@@ -20,8 +20,8 @@
 
 /* --- generated meshes --- */
 
-/* Value noise: random values at the points of a grid of `cells` cells per edge, interpolated with the fade curve 6 s^5
- * - 15 s^4 + 10 s^3 (Perlin, "Improving noise", SIGGRAPH 2002). x and z in cells. Result 0 to 1. */
+/* Value noise: random values at the points of a grid, interpolated with the fade curve 6 s^5 - 15 s^4 + 10 s^3 (Perlin,
+ * "Improving noise", SIGGRAPH 2002). x and z are in cells of the grid. Result 0 to 1. */
 static double noise(int64_t seed, uint32_t octave, double x, double z)
 {
     const double cx = floor(x), cz = floor(z), s = x - cx, r = z - cz;
@@ -86,8 +86,8 @@ static status generate(const mesh_entry *m, mesh **out, diagnostic *why)
     return diagnose(why, STATUS_BAD_INPUT, "set its triangles, or another source", "%.80s has no triangles", m->name);
 }
 
-/* The size of a generated mesh before it is made; 0 for shapes that are always small. A solid terrain has a few
- * more. */
+/* The size of a generated mesh before it is made; 0 for shapes that are always small. A terrain with a bottom has
+ * slightly more vertices and triangles. */
 static void size_of(const mesh_entry *m, size_t *vertices, size_t *triangles)
 {
     const size_t count = (size_t)m->count, around = (size_t)m->around, tube = (size_t)m->tube;
@@ -138,7 +138,7 @@ static double at_most_one(double value)
     return value < 1.0 ? value : 1.0;
 }
 
-/* Reads the image of a slot, or retains that of an earlier slot with the same file. */
+/* Reads the image of a slot, or retains the image of an earlier slot with the same file. */
 static status read_image(const mesh_import *imported, int slot, const char *root, face_material *list, diagnostic *why)
 {
     const char *path = imported->materials[slot].texture;
@@ -163,8 +163,8 @@ static double brightest(vec3 color)
     return fmax(color.x, fmax(color.y, color.z));
 }
 
-/* Emission is the surface's colour times a scalar in this program: the scalar is the brightest channel of the file's
- * emission; a black surface that emits gets the colour of the emission. */
+/* Emission is the surface's colour times a scalar in this program: the scalar gives the brightest channel its value in
+ * the file. A black surface that emits gets the colour of the emission. */
 static void emit(face_material *mat, const imported_material *m)
 {
     const vec3 sent = vec3_make(m->emissive[0], m->emissive[1], m->emissive[2]);

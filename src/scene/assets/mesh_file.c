@@ -22,7 +22,7 @@
 
 typedef struct mesh_child {
     pid_t pid;
-    int handle;         /* pidfd, which cannot be reused as a process id can; -1 if the kernel has no pidfds */
+    int handle;         /* pidfd: unlike a process id, it cannot be reused; -1 if the kernel has no pidfds */
     int out, err;       /* read ends of its standard output and error; -1 after their end */
     double deadline_s;  /* on the monotonic clock */
     char message[2048]; /* the beginning of its standard error */
@@ -46,12 +46,13 @@ static double now_s(void)
 #define CUVETTE_LIBEXEC "/usr/local/libexec/cuvette"
 #endif
 
-/* The path of cuvette-import, the first that exists: $CUVETTE_IMPORT (only this one if it is set); the folder of the
- * running program; ../libexec/cuvette relative to it, where `make install` puts it; the same folder of the installation
- * prefix. Free it; NULL if memory runs out. */
+/* The path of cuvette-import, the first that exists: $CUVETTE_IMPORT (only this one if it is set); the places below,
+ * relative to the running program, then to the library; libexec/cuvette of the installation prefix. Free it; NULL if
+ * memory runs out. */
 static char *importer_path(void)
 {
-    /* Next to a build; from bin, lib or lib/ARCHITECTURE to where `make install` puts it. */
+    /* Relative to the program or library: its own folder in a build; libexec, seen from bin or lib, or from
+     * lib/ARCHITECTURE, after `make install`. */
     static const char *const places[] = {"", "/../libexec/cuvette", "/../../libexec/cuvette"};
     const char *asked = getenv("CUVETTE_IMPORT");
     if (asked && *asked)
@@ -182,7 +183,7 @@ static bool is_transient(int error)
     return error == EINTR || error == EAGAIN;
 }
 
-/* Waits until standard output has data (true), or can have no more (false). */
+/* Waits until standard output has data (true); false at its end, after the deadline or a cancellation. */
 static bool wait_for_bytes(mesh_child *child)
 {
     while (child->out >= 0) {
@@ -199,7 +200,7 @@ static bool wait_for_bytes(mesh_child *child)
     return false;
 }
 
-/* Reads up to size bytes; 0 at the end, or after the deadline. */
+/* Reads up to size bytes; 0 at the end, after the deadline or a cancellation. */
 static size_t read_some(mesh_child *child, void *bytes, size_t size)
 {
     while (wait_for_bytes(child)) {
@@ -242,7 +243,7 @@ static status read_end(void *context, diagnostic *why)
 /* The exit status as from waitpid; -1 if it is not available (the parent process ignores SIGCHLD). */
 static int reap(mesh_child *child, bool still_wanted)
 {
-    /* remaining messages; the end of the stream also closes this pipe */
+    /* Reads the remaining messages: the child closes this pipe when it ends. */
     while (still_wanted && child->err >= 0 && !child->late && !child->cancelled) {
         struct pollfd one = {.fd = child->err, .events = POLLIN};
         const int ready = wait_until_late(child, &one, 1);

@@ -4,7 +4,8 @@
  * merged, points and lines dropped. Coordinates are the file's own floats unless a node transforms them. Normals are
  * the file's or none; facet normals of STL are ignored. Every file that the mesh refers to (MTL, buffers, images) must
  * exist. Vertex colours, lights, cameras, animation and the metalness of glTF are ignored. Ownership: the import is the
- * caller's (scene/assets/mesh_stream.h). Errors: STATUS_BAD_INPUT with the file and the reason. */
+ * caller's (scene/assets/mesh_stream.h). Errors: STATUS_BAD_INPUT with the file and the reason; STATUS_FAILURE if the
+ * importer cannot be started, or memory runs out. */
 #pragma once
 
 #include "scene/assets/mesh_stream.h"

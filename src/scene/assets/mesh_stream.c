@@ -104,7 +104,8 @@ static status read_arrays(const mesh_source *source, mesh *m, diagnostic *why)
     return STATUS_OK;
 }
 
-/* Reads a text of this length; *text is fresh, or NULL for length 0. NUL and other control characters are refused. */
+/* Reads a text of this length; *text is newly allocated, or NULL for length 0. NUL and other control characters are
+ * refused. */
 static status read_text(const mesh_source *source, uint32_t length, char **text, diagnostic *why)
 {
     *text = NULL;

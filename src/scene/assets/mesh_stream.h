@@ -33,8 +33,8 @@ typedef struct imported_material {
     double shininess;   /* Phong exponent: Ns */
     double opacity;     /* 0 to 1: d, or 1 - Tr; glTF's alpha */
     double ior;         /* at least 1: Ni */
-    char *texture; /* path of the diffuse image, map_Kd; as written in the file when it comes from mesh_stream_read;
-                      NULL: none */
+    char *texture; /* path of the diffuse image (map_Kd, glTF baseColorTexture), NULL if there is none; mesh_stream_read
+                      leaves it as written in the file */
     bool texture_inside; /* the image is embedded in the mesh file, which is not supported; texture is NULL */
 } imported_material;
 

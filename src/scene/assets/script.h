@@ -3,8 +3,8 @@
  *   title: A tug to the left            # optional
  *   hands:
  *     left:                             # any name; each hand holds one place at a time
- *       - {time_s: 0.5, grab: [0, 1, -6], towards: [0, 0, 1], reach: 0.3}   # under the ray from a point in a direction
- *       - {time_s: 1.5, move: [-1.2, 0.8, 0]}                               # displacement from the grab by then
+ *       - {time_s: 0.5, grab: [0, 1, -6], towards: [0, 0, 1], reach: 0.3}   # where this ray (point, direction) hits
+ *       - {time_s: 1.5, move: [-1.2, 0.8, 0]}                               # displacement since the grab, at that time
  *       - {time_s: 2.0, release: on}
  *
  * Points are in the frame of the slime's mesh, which is the world's if its solid is not moved, rotated or scaled.

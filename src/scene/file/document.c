@@ -79,7 +79,7 @@ static status syntax_error(event_reader *r)
                     p->problem ? p->problem : "invalid YAML");
 }
 
-/* Reads the next event; refuses aliases, anchors and tags, which scene and study files exclude. */
+/* Reads the next event; refuses aliases, anchors and tags (document.h). */
 static status events_next(event_reader *r, yaml_event_t *event)
 {
     if (!yaml_parser_parse(&r->parser, event))
@@ -248,7 +248,7 @@ static status read_node(event_reader *r, yaml_event_t *event, int depth, node **
     if (event->type == YAML_SCALAR_EVENT)
         return read_scalar(r, event, out);
     if (depth > DEPTH_LIMIT)
-        return events_error(r, event->start_mark, "use at most four levels", "nested deeper than 16 levels");
+        return events_error(r, event->start_mark, "use at most 16 levels", "nested deeper than 16 levels");
     bool map = event->type == YAML_MAPPING_START_EVENT;
     node *n = NULL;
     TRY(node_create(r, map ? NODE_MAP : NODE_LIST, event->start_mark, &n));
@@ -320,7 +320,8 @@ status document_parse(const char *name, const char *text, size_t size, document 
         return diagnose(why, STATUS_BAD_INPUT, "make the file smaller", "the file is larger than 64 MiB");
     }
     if (is_image(text, size))
-        return events_error(&r, (yaml_mark_t){0}, "give the scene file instead", "this is an image file, not a scene");
+        return events_error(&r, (yaml_mark_t){0}, "give the scene, study or script file instead",
+                            "this is an image file, not YAML");
     if (!yaml_parser_initialize(&r.parser))
         return out_of_memory(r.why);
     yaml_parser_set_encoding(&r.parser, YAML_UTF8_ENCODING);

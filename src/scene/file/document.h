@@ -1,5 +1,5 @@
-/* A YAML file as a tree whose nodes know their line and column, from libyaml's events. Both scene and study files use
- * it. Anchors, aliases, tags and multiple documents are refused, so that a file cannot be cyclic or expand
+/* A YAML file as a tree whose nodes know their line and column, from libyaml's events. Scene, study, lesson and script
+ * files use it. Anchors, aliases, tags and multiple documents are refused, so that a file cannot be cyclic or expand
  * exponentially. Ownership: document_destroy releases the whole tree. */
 #pragma once
 
@@ -39,5 +39,5 @@ status node_check_keys(const document *d, const node *map, const char *const *wo
 
 /* Whether the node is a scalar, or a list of scalars, that scene_set can accept. */
 bool node_is_value(const node *n);
-/* A value as text ("8", "0,2.75,-6"); fresh memory, NULL for other nodes or if memory runs out. */
+/* A value as text ("8", "0,2.75,-6"); newly allocated; NULL for other nodes or if memory runs out. */
 char *node_value_text(const node *n);

@@ -47,7 +47,7 @@ static bool is_empty(const node *n)
     return n->kind == NODE_SCALAR && !n->quoted && !n->text[0];
 }
 
-/* Requires a map; nothing counts as an empty map. */
+/* Requires a map; a missing value counts as an empty map. */
 static status read_expect_map(const scene_reader *r, const node *n, const char *name)
 {
     if (n->kind == NODE_MAP || is_empty(n))
@@ -109,7 +109,7 @@ static status read_entries(const scene_reader *r, const char *name, param_group 
     return STATUS_OK;
 }
 
-/* Refuses a map that has both an index and a medium. */
+/* Refuses a map that has both an index and a medium other than `ior`. */
 static status read_one_medium(const scene_reader *r, const node *map)
 {
     const node *ior = node_get(map, "ior"), *medium = node_get(map, "medium");
@@ -266,7 +266,7 @@ static status read_camera(const scene_reader *r, const char *name, param_group g
     if (target && (yaw || pitch))
         return node_error(r->file, yaw ? yaw : pitch, r->why, "keep either the target or the angles",
                           "the camera has both a target and %s", yaw ? "yaw_deg" : "pitch_deg");
-    if (yaw || pitch) /* a missing angle is 0, not that of the default target */
+    if (yaw || pitch) /* a missing angle is 0, not the angle of the default target */
         r->scene->camera.aimed = 0;
     return read_settings(r, name, group, map);
 }

@@ -13,7 +13,7 @@
 
 static status refuse_file(const char *what, const char *path, diagnostic *why)
 {
-    return diagnose(why, STATUS_BAD_INPUT, "remove the object, or send the scene file together with its files",
+    return diagnose(why, STATUS_BAD_INPUT, "remove it, or send the scene file together with its files",
                     "a shared scene cannot name files, but %.80s reads %.200s", what, path);
 }
 

@@ -1,8 +1,8 @@
 /* Shared scenes: a text in the metadata of a PNG image, in a link or in a shared page. They come from strangers, so
  * they may name no files, and are bounded in size and work. The writer obeys the same rules as the reader, so that
- * everything shared can be opened. The text is that of scene/file/write.h without parameters that only affect how fast
- * a machine renders, such as render.threads, so that the same image has the same file on every machine. Ownership: the
- * caller frees texts. Errors: STATUS_BAD_INPUT with the reason. */
+ * everything shared can be opened. The text is written by scene/file/write.h, without parameters that only affect how
+ * fast a machine renders, such as render.threads (render.accel is kept), so that the same image has the same file on
+ * every machine. Ownership: the caller frees texts. Errors: STATUS_BAD_INPUT with the reason. */
 #pragma once
 
 #include "image/image.h"

@@ -23,7 +23,7 @@ static bool is_background_row(const param *row, size_t offset)
     return row->group == PARAM_BACKGROUND && row->offset == offset;
 }
 
-/* A mesh has either a file or a generator: whether the row is the one that it does not use. */
+/* Whether the row is the source that the mesh does not use: a mesh has either a file or a generator. */
 static bool is_other_source(const mesh_entry *m, const param *row)
 {
     if (row->offset == offsetof(mesh_entry, script_path))
@@ -59,14 +59,14 @@ static char *implied_text(const scene *s, const param_place *at)
                                         : param_value_text(at->row, -1, (const char *)m + at->row->offset);
 }
 
-/* yaw_deg is always written: its presence selects aiming by angles. */
+/* yaw_deg of a camera that is aimed by angles is written even if it is 0: its presence selects the angles. */
 static bool is_needed(const param *row)
 {
     return row->group == PARAM_CAMERA && row->offset == offsetof(camera, yaw_deg);
 }
 
 /* Whether the line is written: a reader would infer another value. all: every line, unless it would replace a setting
- * in use. value: the row's, as text. */
+ * in use. value: the row's value as text. */
 static status is_line_wanted(const scene *s, const param_place *at, const char *value, bool all, bool *wanted,
                              diagnostic *why)
 {

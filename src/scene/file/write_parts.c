@@ -119,7 +119,8 @@ void write_list(FILE *out, const char *numbers)
 
 /* --- paths --- */
 
-/* The folder of a file, absolute and without links; unchanged if it does not exist. NULL if memory runs out. */
+/* The folder of a file, absolute and without links; a folder that does not exist is only made absolute. NULL if memory
+ * runs out. */
 static char *real_folder(const char *file)
 {
     const char *slash = strrchr(file, '/');

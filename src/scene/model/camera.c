@@ -7,7 +7,7 @@ static void aim_at_target(const struct camera *c, camera_frame *f)
 {
     f->forward = vec3_normalize(vec3_sub(c->target, c->position));
     vec3 side = vec3_cross(vec3_make(0.0, 1.0, 0.0), f->forward);
-    f->right = vec3_length(side) > 1e-12 ? vec3_normalize(side) : vec3_make(1.0, 0.0, 0.0); /* vertical */
+    f->right = vec3_length(side) > 1e-12 ? vec3_normalize(side) : vec3_make(1.0, 0.0, 0.0); /* forward is vertical */
 }
 
 static void aim_along_angles(const struct camera *c, camera_frame *f)
@@ -46,7 +46,7 @@ camera_frame camera_frame_level(const scene *s)
     f.parallel = c->projection == PROJECTION_ORTHOGRAPHIC;
     f.half_height = f.parallel ? 0.5 * c->view_height : sine / cosine;
     f.lens_radius = 0.5 * c->aperture;
-    f.focus = c->focus > 0.0 ? c->focus : 1.0; /* 0 without defaults: any, for a pinhole */
+    f.focus = c->focus > 0.0 ? c->focus : 1.0; /* 0 if no defaults are set: a pinhole can have any */
     f.half_width = f.half_height * ((double)scene_settings(s)->width / (double)scene_settings(s)->height);
     return f;
 }

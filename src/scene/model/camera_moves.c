@@ -25,7 +25,8 @@ static bool is_ground(const solid *one, vec3 *up)
     return up->y >= ground_up_y;
 }
 
-/* How far `to` is below the height that a camera from above the ground must keep; 0 or less: it is high enough. */
+/* How far `to` is below the height that a camera which comes from above the ground must keep; 0 or less: it is high
+ * enough. */
 static double height_lacking(const solid *one, vec3 up, vec3 from, vec3 to, double gap)
 {
     const double before = vec3_dot(up, vec3_sub(from, one->shape.position)),
@@ -185,7 +186,7 @@ static void turn(camera_move *m, scene *s)
     aim(s, direction, m->pivot.at);
 }
 
-/* The size of an orthographic camera's image does not depend on its distance: its height changes instead. */
+/* What an orthographic camera shows does not depend on its distance: a zoom changes its view_height instead. */
 static void zoom_parallel(const camera_move *m, scene *s)
 {
     const double height = s->camera.view_height;

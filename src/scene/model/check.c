@@ -265,7 +265,7 @@ static status check_layers(const scene *s, const solid *owner, diagnostic *why)
         return STATUS_OK;
     const char *what = material_has_film(m) ? "a film" : "a metal";
     if (has_face_materials(s, owner))
-        return diagnose(why, STATUS_BAD_INPUT, "give the solid a material of its own",
+        return diagnose(why, STATUS_BAD_INPUT, "give the solid a material",
                         "%.80s: a solid with materials by face cannot have %s", owner->name, what);
     if (r->polarisation && r->spectrum != SPECTRUM_SPECTRAL)
         return diagnose(why, STATUS_BAD_INPUT, "set render.spectrum to spectral, or render.polarisation to off",
@@ -287,7 +287,7 @@ static status check_face_layers(const scene *s, const solid *owner, diagnostic *
         const face_material *given;
         face_material_source(s, owner, slot, &named, &given);
         if (named && (material_metal(named) || named->extinction > 0.0 || named->film_thickness_nm > 0.0))
-            return diagnose(why, STATUS_BAD_INPUT, "give the solid a material of its own",
+            return diagnose(why, STATUS_BAD_INPUT, "give the solid a material",
                             "%.80s: a metal or a film cannot cover only some faces of a mesh", owner->name);
     }
     return STATUS_OK;

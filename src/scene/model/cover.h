@@ -5,7 +5,7 @@
 #include "scene/model/open.h"
 #include "scene/model/solids.h"
 
-/* Pairs of solids are compared only in scenes with at most this number. */
+/* Pairs of solids are compared only in scenes with at most this number of solids. */
 enum { COVER_SOLIDS_MAX = 1000 };
 
 /* A visible solid that contains all of `hidden` and has precedence there; NULL if none is known. Not detected: cover in

@@ -26,7 +26,7 @@ void face_material_source(const scene *s, const solid *owner, int slot, const ma
 int face_material_slots(const scene *s, const solid *owner);
 
 /* The material of a slot's faces: the scene's material with the slot's name, else the file's, else `base`, the solid's.
- * Under simple transmission the slot's transparency (MTL's d or Tr, glTF's alpha; base's if the file has 1) and
+ * Under simple transmission the slot's transparency (MTL's d or Tr, glTF's alpha; base's if the file has opacity 1) and
  * reflectivity apply; otherwise the solid's. */
 shading_material shading_material_of_face(const scene *s, const solid *owner, const material *base, int slot);
 /* The material of a solid without slots. */

@@ -4,7 +4,7 @@
 #include "base/vec3.h"
 #include <stdint.h>
 
-/* An owned array of numbers. */
+/* A list of numbers, stored by value. */
 enum { NUMBER_LIST_MAX = 32 };
 typedef struct number_list {
     int64_t count;

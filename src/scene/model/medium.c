@@ -123,7 +123,7 @@ bool material_matches_surroundings(const scene *s, const material *m)
 bool material_is_mirror(const material *m)
 {
     return m->transparency > 0.0 && m->medium == MEDIUM_IOR &&
-           m->ior > MIRROR_IOR; /* outside the range of every law and catalogue entry */
+           m->ior > MIRROR_IOR; /* no law and no catalogue entry has so large an index */
 }
 
 bool material_is_opaque(const material *m)

@@ -16,7 +16,7 @@ extern const char *const medium_words[];
 /* For the surroundings: `ior`, then the catalogue. */
 enum { SURROUNDING_CATALOGUE = 1 };
 extern const char *const surrounding_words[];
-/* The first medium of the catalogue for drops of rain: all but air. */
+/* The number of the first medium of the catalogue that drops of rain can have: air, number 0, is excluded. */
 enum { DROPS_FIRST = 1 };
 
 /* A dispersion law, ready for evaluation. */
@@ -25,12 +25,12 @@ typedef struct index_law {
     bool relative_to_air;
 } index_law;
 
-/* STATUS_BAD_INPUT if the coefficients are invalid; label is the name of the material in the message. For a metal it is
- * the law of n, the real part of its index. */
+/* STATUS_BAD_INPUT if the coefficients are invalid; label is the name of the material in the message. For a metal, *out
+ * is the law of n, the real part of its index. */
 status material_index_law(const material *m, const char *label, index_law *out, diagnostic *why);
 index_law surrounding_index_law(const background *b);
 /* Coefficients to begin with when a law is edited: near the constant index, with the dispersion of water and crown
- * glass; for sellmeier those of N-BK7. Empty for a medium without coefficients. */
+ * glass; for sellmeier the coefficients of N-BK7. Empty for a medium without coefficients. */
 number_list medium_first_coefficients(int word, double ior);
 
 double index_law_at(const index_law *law, double lambda_nm);

@@ -46,14 +46,14 @@ status check_name(const char *name, diagnostic *why)
 
 /* --- names in use --- */
 
-/* Never 0. */
+/* The hash of a name, never 0, which marks a free entry. */
 static uint64_t hash_of(const char *name)
 {
     const uint64_t h = hash_finish(hash_bytes(HASH_START, name, strlen(name)));
     return h ? h : 1;
 }
 
-/* The entry of a hash, or the free entry for it. The size is a power of two, and an entry is free. */
+/* The entry of a hash, or the free entry for it. The size is a power of two, and at least one entry is free. */
 static size_t entry_of(const name_tally *t, uint64_t hash)
 {
     size_t at = (size_t)hash & (t->size - 1);

@@ -1,6 +1,6 @@
 /* The objects of a scene by group: meshes, textures, lights, beams, materials and solids are in arrays whose elements
- * start with their names; render, camera and background are single structs without a name. For the files of
- * scene/model. Ownership: the scene owns its objects. */
+ * start with their names; render, camera and background are single structs without a name. For the files of src/scene,
+ * and lint/needs.c. Ownership: the scene owns its objects. */
 #pragma once
 
 #include "scene/model/params.h"
@@ -20,7 +20,7 @@ int object_find(const scene *s, param_group group, const char *name);
 void *object_append(scene *s, param_group group, const char *name);
 void object_remove(scene *s, param_group group, size_t index);
 
-/* The scene then owns the new name. */
+/* Replaces the name of an object; the scene owns the new name from then on. */
 void object_rename(scene *s, param_group group, size_t index, char *name);
 
 /* Copies everything except the name to another object of the group, and retains loaded data. False if memory runs out:

@@ -31,7 +31,7 @@ const char *scene_light_name(const scene *s, int index);
 /* Sets the limits of loading; root is copied. Loaded data stays. */
 status scene_limit(scene *s, const char *root, size_t triangles, diagnostic *why);
 
-/* A path of the scene relative to the working folder. Fresh memory; NULL if memory runs out. */
+/* A path of the scene relative to the working folder. Newly allocated; NULL if memory runs out. */
 char *scene_file_path(const scene *s, const char *path);
 /* Reports the error `bad` of a file to which the scene refers as `what`, at line and column of the scene file; if line
  * is 0, at the position of `bad`. Returns code. */

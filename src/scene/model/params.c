@@ -55,7 +55,7 @@ static bool split_path(const char *path, path_words *words)
     return true;
 }
 
-/* All valid first words of paths of this scene, for suggestions; fresh memory, or NULL. */
+/* All valid first words of paths of this scene, for suggestions; newly allocated, or NULL. */
 static const char **group_words(const scene *s, size_t *count)
 {
     size_t room = 0, used = 0;

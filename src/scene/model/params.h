@@ -1,5 +1,5 @@
-/* The parameter table: every user-settable quantity is declared once, in params_table.c; scene files, --set, axes of
- * studies, CSV headers and the manual are generated from it.
+/* The parameter table: every user-settable quantity is declared once, in params_table.c; the keys of scene files,
+ * --set, the axes of studies, CSV headers and the manual all follow from it.
  *
  * A parameter's path is group.name: `render.depth`, `camera.position`, `background.color`; for a mesh, a texture, a
  * light, a beam, a solid or a material the group is its name in the scene: `soup.count`, `lamp.intensity`,
@@ -110,9 +110,10 @@ status scene_set_assignment(scene *s, const char *assignment, diagnostic *why);
 status scene_get(const scene *s, const char *path, char **value, diagnostic *why);
 
 /* Visits every parameter of the scene in a fixed order (rows in table order, objects in scene order), with its full
- * path and its value as text. The rows of a solid include those of its surface. The unused direction of the camera and
- * an unused background image are skipped, so that setting all visited values in order turns a copy of the scene as read
- * from its file into this scene. Stops at the first status other than STATUS_OK, and returns it. */
+ * path and its value as text. The rows of a solid include those of its surface. Rows that are not in use are skipped
+ * (the unused direction of the camera, an unused background image or file of a mesh, the parameters of slimes for other
+ * meshes), so that setting all visited values in order turns a copy of the scene as read from its file into this scene.
+ * Stops at the first status other than STATUS_OK, and returns it. */
 typedef status param_visit(void *context, const char *path, const param *row, const char *value);
 status scene_each_param(const scene *s, param_visit *visit, void *context);
 
@@ -136,7 +137,7 @@ status param_place_find(const scene *s, const char *path, param_place *out, diag
 status param_place_find_object(const scene *s, const char *name, param_place *out, diagnostic *why);
 
 /* Whether the film can depend on a parameter: false for parameters that affect only performance or how an image is
- * shown, and for those of a beam that does not light the scene, except NAME.lights. */
+ * shown, and for parameters of a beam that does not light the scene, except NAME.lights. */
 bool scene_film_depends_on(const scene *s, const char *path);
 
 /* Whether the row applies to the solid (its shape has that dimension). */

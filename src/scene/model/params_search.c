@@ -108,7 +108,7 @@ static bool means(const struct synonym *s, query_word w)
     return (w.length == length || w.length >= LEAST) && starts(s->word, w);
 }
 
-/* Whether the path contains the word; with everywhere, or the row's meaning or choices. */
+/* Whether the word is in the path or, with `everywhere`, in the row's meaning or one of its choices. */
 static bool row_has(const param *row, const char *path, bool everywhere, query_word w)
 {
     bool found = contains(path, w) || (everywhere && contains(row->meaning, w));

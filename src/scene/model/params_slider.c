@@ -59,7 +59,8 @@ static param_slider from_zero(const param *row, double highest)
     return (param_slider){0, highest, integer ? 1 : 0, integer ? 1 : 1e-5 * highest};
 }
 
-/* The least value of a slider that begins at the lower bound, or one step above it if the bound is excluded. */
+/* The least value of a slider that begins at the lower bound; if the bound is excluded, one step above it, or the least
+ * given value if that is nearer. */
 static double lowest_of(const param *row, double step, extent all)
 {
     return row->above_lowest ? row->lowest + fmin(step, all.least - row->lowest) : row->lowest;

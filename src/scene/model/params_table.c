@@ -115,7 +115,7 @@ enum { ON_SLIME = 1 << MESH_SLIME, ON_ALL = 0 };
 #define ASPHERIC(side, power, at, unit)                                               \
     {                                                                                 \
         PARAM_SOLID, "a" #power "_" #side, PARAM_REAL, unit, -1e30, 1e30, false, "0", \
-            "lens: coefficient of r^" #power " in the height of side " #side          \
+            "lens: coefficient of r^" #power " in the sag of side " #side             \
             " at a distance r from the axis, added to its "                           \
             "sphere or conic (an even asphere)",                                      \
             NULL, SHAPE(shape.even_##side[at])                                        \
@@ -230,7 +230,7 @@ static const param table[] = {
                        "keep the hierarchies of meshes between frames; off: rebuild them for every frame"),
     PERFORMANCE_REAL(
         rebuild, "", 1, 1e6, "1.5",
-        "rebuild the BVH of a deforming mesh when its expected cost exceeds that of the last build by this "
+        "rebuild the BVH of a deforming mesh when its expected cost exceeds its cost at the last build by this "
         "factor"),
     PERFORMANCE_CHOICE(count_tests, off_on, "off",
                        "count the boxes, spheres and triangles of meshes that each ray tests, in a separate traversal "
@@ -359,7 +359,7 @@ static const param table[] = {
         "slime: time step; the default is stable up to level 4; above it, use a smaller step or adaptive", NULL,
         SLIME(dt_s), DECADES),
     SLIME_CHOICE(adaptive, off_on, "off",
-                 "slime: split time steps until they are stable and short compared with the springs' periods"),
+                 "slime: split time steps until they are stable and change no spring's length by more than a tenth"),
     {PARAM_MESH, "threads", PARAM_INT, "", 1, 1024, false, "1",
      "slime: simulation threads; at most one per 4096 masses is started", NULL, ON_SLIME,
      .offset = offsetof(mesh_entry, slime.threads), .performance_only = true},
@@ -491,14 +491,14 @@ static const param table[] = {
      "projection across a ray counts",
      NULL, OF(material, sheet_axis)},
     REAL(PARAM_MATERIAL, material, sheet_pass, "", 0, 1, "1",
-         "transmittance of a polariser for light along its axis, or of its hand"),
+         "transmittance of a polariser for light polarised along its axis, or circularly in its own handedness"),
     REAL(PARAM_MATERIAL, material, sheet_block, "", 0, 1, "0",
-         "transmittance of a polariser for light across its axis, or of the other hand"),
+         "transmittance of a polariser for light polarised across its axis, or circularly in the other handedness"),
     REAL(PARAM_MATERIAL, material, retardance_deg, "deg", -36000, 36000, "0",
          "retardance of a retarder at each passage, at every wavelength; 90: a quarter-wave plate"),
     REAL(PARAM_MATERIAL, material, birefringence, "", -1, 1, "0",
-         "difference of a retarder's indices along and across its axis: retards by 360 degrees times this and the "
-         "path in it over the wavelength, in addition to retardance_deg"),
+         "difference of a retarder's indices along and across its axis; 360 degrees times this, times the path in the "
+         "solid over the wavelength, is added to retardance_deg"),
     REAL(PARAM_MATERIAL, material, roughness, "", 0, 1, "0",
          "alpha of the GGX microfacets of a surface that reflects or refracts rays (ground glass, brushed metal), for "
          "integrator path; 0: smooth"),
@@ -518,7 +518,8 @@ static const param table[] = {
     {PARAM_MATERIAL, "texture", PARAM_WORD, "", 0, 0, false, "", "texture whose colour multiplies 'color'", NULL,
      OF(material, texture)},
     REAL(PARAM_MATERIAL, material, texture_size, "scene units", 0, FAR, "0",
-         "side length of one texture tile, on solids other than meshes; 0: one tile per face (on a plane: 1 unit)"),
+         "side length of one copy of the texture, on solids other than meshes; 0: one per face (on a plane: 1 scene "
+         "unit)"),
     REAL(PARAM_MATERIAL, material, checker, "scene units", 0, FAR, "0",
          "side length of the checker cells, in the solid's frame; 0: no checker"),
     COLOR(PARAM_MATERIAL, material, checker_color, 1, "0,0,0", "linear colour of alternate checker cells"),
@@ -548,7 +549,8 @@ static const param table[] = {
      "wall; 0: its radius",
      NULL, SHAPE(shape.contact_radius)},
     LENGTH(inner_radius, "0.9",
-           "cup: radius of the hollow; the wall has thickness radius - inner_radius along x, 1/m of that along z"),
+           "cup: radius of the hollow; the wall has thickness radius - inner_radius along x, and this divided by m "
+           "along z"),
     LENGTH(floor, "0.1", "cup: thickness of the bottom"),
     {PARAM_SOLID, "sides", PARAM_INT, "", 3, 60, false, "6", "prism: number of sides; 3: a triangular base", NULL,
      SHAPE(shape.sides)},

@@ -218,7 +218,7 @@ static status parse_choice(const param *row, const char *label, const char *text
 {
     if (choose(row, text, out) || (is_switch(row) && choose_switch(text, out)))
         return STATUS_OK;
-    /* No suggestion: off and on are equally near in spelling, and are opposites. */
+    /* No suggestion for a switch: off and on are equally near in spelling, and are opposites. */
     const char *nearest = is_switch(row) ? NULL : text_nearest(text, row->choices, count_words(row->choices));
     if (nearest) {
         char range[400], remedy[460];

@@ -1,5 +1,5 @@
 /* The value of one row: from text, to text, and in the struct of its group. Basis of params.h. Ownership:
- * param_value_text returns fresh memory; a PARAM_PATH field owns its text. */
+ * param_value_text returns newly allocated text; a PARAM_PATH field owns its text. */
 #pragma once
 
 #include "scene/model/material.h"
@@ -15,7 +15,7 @@ typedef union param_value {
 } param_value;
 
 /* Parses and checks text; label is the parameter in messages. element -1 for the whole value, 0..2 for one element of a
- * vector or colour, which is returned in real. A path is fresh memory. */
+ * vector or colour, which is returned in real. A path is newly allocated. */
 status param_value_parse(const param *row, int element, const char *label, const char *text, param_value *out,
                          diagnostic *why);
 
@@ -29,7 +29,7 @@ char *param_value_text(const param *row, int element, const void *field);
  * Returns text. */
 char *param_remedy(const param *row, bool one_element, char *text, size_t size);
 
-/* The row's default in the form of param_value_text. Fresh memory; NULL if memory runs out. */
+/* The row's default in the form of param_value_text. Newly allocated; NULL if memory runs out. */
 char *param_default_text(const param *row);
 /* Likewise, the row's first default (param.first_default). */
 char *param_first_default_text(const param *row);

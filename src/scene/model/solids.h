@@ -15,7 +15,8 @@
 
 typedef enum shading_rule { SHADING_FLAT, SHADING_SMOOTH, SHADING_GOURAUD } shading_rule;
 
-/* The most primitives of all solids (shape_primitive_slots), and of unbounded solids or those with triangles. */
+/* The largest number of primitives of all solids (shape_primitive_slots), and of solids that are unbounded or have
+ * triangles. */
 enum { SCENE_PRIMITIVES_MAX = (1 << 21) - 1, SCENE_UNBOUNDED_MAX = 64 };
 
 typedef struct solid {
@@ -63,8 +64,8 @@ typedef struct face_material {
 /* The materials of a mesh file, by slot. Reference counted like their mesh; retain and release are thread safe. */
 typedef struct face_materials face_materials;
 
-/* Copies a list of materials, and owns its references to images, even after an error. STATUS_FAILURE if memory runs
- * out. */
+/* Copies a list of materials, and takes its references to images; after an error it has released them. STATUS_FAILURE
+ * if memory runs out. */
 status face_materials_of(const face_material *list, int count, const face_materials **out, diagnostic *why);
 /* NULL is allowed in these three functions. */
 void face_materials_retain(const face_materials *l);
@@ -80,9 +81,9 @@ typedef struct mesh_entry {
     char *path;                  /* relative to the scene file; "" for none */
     long path_line, path_column; /* where the scene file names the file or the generator; 0 if it does not */
     int64_t count;               /* triangles, for sparse, dense and sphere */
-    int64_t level;               /* for icosphere */
+    int64_t level;               /* for icosphere and slime */
     double major, minor;         /* for torus */
-    int64_t around, tube;        /* segments of torus and lathe; edges of terrain along x and z */
+    int64_t around, tube;        /* segments of torus and lathe; cells of terrain along x and z */
     number_list profile;         /* for lathe: radius, height, radius, height, ... */
     double crease_deg;
     vec3 size;                       /* for box; for terrain with the height of its hills */

@@ -36,7 +36,7 @@ typedef struct camera {
     double aperture;           /* diameter of a thin lens, scene units; 0: a pinhole */
     double focus;              /* distance of the plane in focus along the viewing direction, scene units */
     int64_t analyser;          /* analyser_kind: an ideal filter before the eye, with render.polarisation */
-    double analyser_angle_deg; /* of a linear one's axis: from the image's right, towards up */
+    double analyser_angle_deg; /* of a linear analyser's axis: from the image's right, towards up */
     double exposure;           /* stops, for images with 8 bits */
     int64_t tone;              /* tone_curve, for images with 8 bits */
     double white;              /* see image_tone */
@@ -45,7 +45,8 @@ typedef struct camera {
 typedef struct background {
     int64_t kind;     /* background_kind */
     vec3 color;       /* linear RGB in x, y, z; uniform, or the zenith of a gradient or a CIE sky */
-    vec3 horizon;     /* colour at and below the horizon of a gradient, also behind rain; below that of a CIE sky */
+    vec3 horizon;     /* colour at and below the horizon of a gradient, also behind rain; below the horizon of a CIE
+                         sky */
     char *image_path; /* equirectangular sky; "" for none; relative to the scene file */
     long image_line, image_column; /* where the scene file names the image; 0 if it does not */
     image *img;                    /* owned; NULL until loaded by scene_load */

@@ -14,7 +14,8 @@ static double triangles_of(const mesh_entry *m)
     case MESH_SLIME: return 20.0 * pow(4.0, (double)m->level);
     case MESH_TORUS: return 2.0 * (double)m->around * (double)m->tube;
     case MESH_LATHE: return (double)m->around * ((double)m->profile.count - 2.0); /* two numbers per point */
-    case MESH_TERRAIN: /* the heights; with a bottom, walls of 4 and a bottom of 2 per cell of the edge */
+    case MESH_TERRAIN: /* the heights; if it has a bottom, also 4 for the walls and 2 for the bottom per cell of the
+                          edge */
         return 2.0 * (double)m->around * (double)m->tube + (m->depth > 0.0 ? 6.0 * (double)(m->around + m->tube) : 0.0);
     case MESH_BOX:
     case MESH_FILE:

@@ -190,7 +190,7 @@ static status begin(scene_motion *m, diagnostic *why)
             return code;
         update_entry(m, moving, 0.0);
     }
-    return scene_load(m->s, why); /* all other slimes */
+    return scene_load(m->s, why); /* loads everything else */
 }
 
 status scene_motion_create(scene *s, scene_motion **out, diagnostic *why)
@@ -210,7 +210,7 @@ status scene_motion_create(scene *s, scene_motion **out, diagnostic *why)
     m->slimes = slimes;
     const status code = begin(m, why);
     if (code != STATUS_OK) {
-        scene_motion_end(m); /* a surface at time 0 would seem to be that of time_s */
+        scene_motion_end(m); /* a surface at time 0 would pass for the surface at time_s */
         return code;
     }
     *out = m;

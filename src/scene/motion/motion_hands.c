@@ -31,7 +31,7 @@ static void cut(double low, double high, double o, double d, double *enter, doub
     }
 }
 
-/* Whether the ray hits the box: most of what may be millions of copies are skipped. */
+/* Whether the ray hits the box. The test skips most copies, of which there may be millions. */
 static bool hits_box(bounds3 box, vec3 o, vec3 d)
 {
     double enter = 0.0, leave = INFINITY;

@@ -25,7 +25,8 @@ status scene_motion_pick(const scene_motion *m, size_t i, int solid_or_any, vec3
 /* Positions are in the mesh's frame. The solid may be removed while the hand holds masses. */
 typedef struct motion_hand {
     bool holds;
-    mat3 rotation; /* of the solid at the time of the grab: the caller's coordinates are world coordinates */
+    mat3 rotation; /* of the solid at the time of the grab, with which displacements in world coordinates are
+                      converted */
     vec3 scale;
     vec3 where;    /* point of the grab */
     vec3 from, to; /* displacements from this point, now and at the end of the next steps */

@@ -211,7 +211,7 @@ static bool is_scaled(const parts_edit *e, const char *name, const param *row)
     param_place at;
     if (scaling_power(e, name, row) == 0 || param_place_find_object(e->s, name, &at, NULL) != STATUS_OK)
         return false;
-    if (e->only) { /* its material is unchanged, and so is its absorption by render.unit_m */
+    if (e->only) { /* one object keeps its place and its material, and render.unit_m stays */
         return strcmp(name, e->only) == 0 && strcmp(row->name, "tint_distance") != 0 &&
                strcmp(row->name, "position") != 0 && strcmp(row->name, "target") != 0;
     }
@@ -221,7 +221,7 @@ static bool is_scaled(const parts_edit *e, const char *name, const param *row)
                                            : at.object_group == PARAM_CAMERA && e->parts.camera;
 }
 
-/* Scales one row. It visits the rows of the clone, because setting a material changes its solids. */
+/* Scales one row. The visited rows are the clone's, because setting a material changes its solids. */
 static status scale_row(void *context, const char *path, const param *row, const char *value)
 {
     parts_edit *e = context;

@@ -113,9 +113,9 @@ static mat3 product(mat3 a, mat3 b)
 }
 
 /* Angles whose rotation_from_deg is r = R_z R_y R_x. The x angle is computed from R_z^-1 r instead of r's last row, so
- * that it compensates any choice of z when the local x axis is vertical and x and z rotate about the same line: Herter
- * and Lott, Algorithms for decomposing 3-D orthogonal matrices into primitive rotations, Computers & Graphics 17
- * (1993). */
+ * that it compensates any choice of z when y is 90 or -90 degrees: then the local x axis is along the world's z, and x
+ * and z rotate about the same line. Herter and Lott, Algorithms for decomposing 3-D orthogonal matrices into primitive
+ * rotations, Computers & Graphics 17 (1993). */
 static vec3 angles_of(mat3 r)
 {
     const double cos_y = sqrt(r.row[0].x * r.row[0].x + r.row[1].x * r.row[1].x);

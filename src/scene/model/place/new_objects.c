@@ -336,8 +336,8 @@ static double depth(const scene *s, const placement *where, const solid *a, vec3
     return fmax(0.0, least);
 }
 
-/* The total overlap after a step with solids that do not overlap the original: a copy may be inside a solid that
- * contains the original. */
+/* The total overlap that a copy would have, after this step, with the original and with solids that do not overlap the
+ * original: a copy may be inside a solid that contains the original. */
 static double overlap_after(const scene *s, const placement *where, const solid *of, vec3 step)
 {
     double sum = depth(s, where, of, step, of);

@@ -1,5 +1,6 @@
 /* Position and size of a new object in a scene: at the centre of the image, next to existing objects, on the ground if
- * it is visible; its size is a sixth of the distance from the camera. Lengths in scene units. Pure. */
+ * it is visible; its size is a sixth of the distance from the camera, or a fifth of the height of an orthographic view.
+ * Lengths in scene units. Pure. */
 #pragma once
 
 #include "scene/model/open.h"
