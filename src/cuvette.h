@@ -6,30 +6,31 @@
  * owns worker threads and their memory; it renders scenes, one at a time. A cuvette_frame is the result of a render:
  * film, ray counts, times. A cuvette_query is a snapshot of a scene, prepared for the caller's rays. A cuvette_motion
  * advances the slimes of a scene in time and has hands that grab them. Trees, fans, images and studies are results of
- * these, or read from files. cuvette-scene(5) is the manual of scenes and parameters, cuvette-optics(7) that of the
+ * these, or read from files. cuvette-scene(5) is the manual of scenes and parameters, cuvette-optics(7) describes the
  * models; `cuvette params` lists every parameter with its range, unit and default.
  *
- * Ownership. The caller owns what a function whose name ends in _create, _read, _clone or _render returns; the function
- * that ends in _destroy releases it, and accepts NULL. Arguments are borrowed for the call only: the library keeps no
- * pointer to the caller's memory, and a frame or a query no longer needs its scene or its engine. Handles can be
- * released in any order.
+ * Ownership. The caller owns every handle that a function returns through a pointer; the function of its type that ends
+ * in _destroy releases it, and accepts NULL. Arguments are borrowed for the call only: the library keeps no pointer to
+ * the caller's memory, and a frame or a query no longer needs its scene or its engine. Handles can be released in any
+ * order.
  *
  * Errors. A function that can fail returns a cuvette_status; results are returned through pointers and set only on
  * success (on failure handles are set to NULL). `why`, which may be NULL, then describes the problem and its remedy. A
  * NULL where a handle, a name or a result is required is CUVETTE_BAD_INPUT like any wrong value. The library never
- * prints, never exits, raises no signal, and reads only CUVETTE_ISA (cuvette_engine_create), CUVETTE_IMPORT (the
- * program that reads mesh files), CUVETTE_MACHINE and CUVETTE_NODE_TYPE (cuvette-results(5)) from the environment. One
- * library that it uses breaks this rule: jansson, with which the functions of studies parse lists of runs, ends the
- * process if memory runs out. A host that must survive this passes allocation functions with a reserve to
- * json_set_alloc_funcs, as the program cuvette does.
+ * prints, never exits, raises no signal, and reads only these environment variables: CUVETTE_ISA
+ * (cuvette_engine_create), CUVETTE_IMPORT (the program that reads mesh files), CUVETTE_SANDBOX (cuvette(1)), LD_PRELOAD
+ * (to recognise valgrind), and for studies CUVETTE_MACHINE, CUVETTE_NODE_TYPE (cuvette-results(5)), CUVETTE_CALLGRIND
+ * and SOURCE_DATE_EPOCH. One library that it uses breaks this rule: jansson, with which the functions of studies parse
+ * lists of runs, ends the process if memory runs out. A host that must survive this passes allocation functions with a
+ * reserve to json_set_alloc_funcs, as the program cuvette does.
  *
  * Threads. There is no global state: different threads may use different handles at the same time. Any number of
  * functions that take a scene as const may run on it at the same time, including renders by several engines, but not
- * while another function changes it; a change during a render is refused with CUVETTE_BUSY. A motion counts as its
- * scene here. An engine runs one render at a time (else CUVETTE_BUSY). A frame and a query are immutable: any number of
- * threads may use them. Any thread may call cuvette_engine_cancel and cuvette_query_cancel. Callbacks run on the
- * calling thread, never two at once. In a child of fork, handles that no thread of the parent was using remain usable;
- * an engine starts new threads there.
+ * while another function changes it; a change during a render is refused with CUVETTE_BUSY. In this respect a motion is
+ * a part of its scene. An engine runs one render at a time (else CUVETTE_BUSY). A frame and a query are immutable: any
+ * number of threads may use them. Any thread may call cuvette_engine_cancel and cuvette_query_cancel. Callbacks run on
+ * the calling thread, never two at once. In a child of fork, handles that no thread of the parent was using remain
+ * usable; an engine starts new threads there.
  *
  * Geometry. Lengths are in scene units (render.unit_m is the length of a scene unit in metres), y is up, angles are in
  * degrees. Pixels are counted from 0, with 0 at the top left; pixel x, y covers the square from x, y to x + 1, y + 1.
@@ -105,7 +106,8 @@ typedef struct cuvette_scene cuvette_scene;
 
 /* Creates an empty scene: every parameter at its default, no lights, no materials, no solids. */
 CUVETTE_API cuvette_status cuvette_scene_create(cuvette_scene **out, cuvette_diagnostic *why);
-/* Reads a scene file: YAML, at most 1 MiB. The images that it names are read at their first use. */
+/* Reads a scene file (YAML, at most 64 MiB), or a shared scene: a PNG image that carries it, a page or a link. The
+ * files that it names are read at their first use. */
 CUVETTE_API cuvette_status cuvette_scene_read(const char *path, cuvette_scene **out, cuvette_diagnostic *why);
 /* Reads a scene from size bytes of text; diagnostics call the file `name`, and relative paths start in its folder. */
 CUVETTE_API cuvette_status cuvette_scene_read_text(const char *name, const char *text, size_t size, cuvette_scene **out,
@@ -242,7 +244,7 @@ typedef struct cuvette_triangles {
     const double *uvs; /* u to the right, v upwards, of each vertex; 0, 0 is the texture's lower left corner */
     const float *uvs_float;
     const unsigned char *slots; /* material slot of each triangle; NULL: all 0 */
-    /* names of slots 0 to slot_count - 1; may be NULL. If the mesh's solid has no material of its own, faces are shaded
+    /* names of slots 0 to slot_count - 1; may be NULL. If no material is assigned to the mesh's solid, faces are shaded
      * with the scene's material that has their slot's name; the medium inside is always the solid's */
     const char *const *slot_names;
     int slot_count; /* length of slot_names, at most 256 */
@@ -261,14 +263,14 @@ CUVETTE_API cuvette_status cuvette_scene_add_pixels(cuvette_scene *scene, const 
 /* A material can be removed only when no solid uses it. */
 CUVETTE_API cuvette_status cuvette_scene_remove(cuvette_scene *scene, const char *name, cuvette_diagnostic *why);
 
-/* Translates a solid, a light or "camera" (with its target; a cone light's target moves too) by `by`, three numbers in
- * scene units. For several objects: "all" is all solids, lights and beams, "solids" and "lights" are only these, and
- * such words are joined by '+', as "all+camera", unless an object has that name. */
+/* Translates a solid, a light or "camera" (with its target; the target of a light other than a point moves too) by
+ * `by`, three numbers in scene units. For several objects: "all" is all solids, lights and beams, "solids" and "lights"
+ * are only these, and such words are joined by '+', as "all+camera", unless an object has that name. */
 CUVETTE_API cuvette_status cuvette_scene_move(cuvette_scene *scene, const char *name, const double *by,
                                               cuvette_diagnostic *why);
-/* Rotates a solid in place, or the direction of a cone light or "camera", about the world's x axis, then y, then z
- * (three angles), after its present rotation: counter-clockwise for an eye that looks along the axis. Several objects
- * ("all") rotate about the origin, the camera including its roll. */
+/* Rotates a solid in place, or the direction of "camera" or of a light other than a point, about the world's x axis,
+ * then y, then z (three angles), after its present rotation: counter-clockwise for an eye that looks along the axis.
+ * Several objects ("all") rotate about the origin, the camera including its roll. */
 CUVETTE_API cuvette_status cuvette_scene_turn(cuvette_scene *scene, const char *name, const double *degrees,
                                               cuvette_diagnostic *why);
 /* Multiplies all lengths of a solid or a light by a factor above 0, in place; or of several objects ("all+camera"),
@@ -400,7 +402,7 @@ typedef struct cuvette_counters {
     uint64_t cut_depth, cut_weight;            /* rays not traced: beyond render.depth; below render.min_weight */
     double cut_depth_throughput[3];            /* sum of the weights of these rays, linear RGB */
     double cut_weight_throughput[3];
-    uint64_t by_depth[65]; /* camera (0), reflected and refracted rays by recursion depth */
+    uint64_t by_depth[65]; /* camera (0), reflected and refracted rays by depth; [64]: 64 and more */
     uint64_t photon;       /* rays of photons (render.caustics) */
 } cuvette_counters;
 
@@ -599,7 +601,7 @@ CUVETTE_API cuvette_status cuvette_query_each_beam_ray(const cuvette_query *quer
                                                                      cuvette_tree *tree),
                                                        void *context, cuvette_diagnostic *why);
 
-/* The rays of a fan. Begin with zeros and set size; later versions add fields at the end. */
+/* The rays of a fan. Zero-initialise it and set size; later versions add fields at the end. */
 typedef struct cuvette_fan_rule {
     size_t size;           /* sizeof(cuvette_fan_rule) */
     double from[3], to[3]; /* the axis; the rays start around `from` */
@@ -730,7 +732,7 @@ CUVETTE_API void cuvette_motion_destroy(cuvette_motion *motion);
  * CUVETTE_BAD_INPUT also when a slime becomes unstable, or a hand of its script grabs nothing. */
 CUVETTE_API cuvette_status cuvette_motion_advance(cuvette_motion *motion, double time_s, cuvette_diagnostic *why);
 /* The same with a progress function like that of cuvette_scene_load. After CUVETTE_CANCELLED the scene still has the
- * shapes of the previous time; a later advance continues, to a time not before that of the bodies
+ * shapes of the previous time; a later advance continues, to a time not before the one that the bodies have reached
  * (cuvette_motion_state). */
 CUVETTE_API cuvette_status cuvette_motion_advance_watched(cuvette_motion *motion, double time_s,
                                                           bool (*progress)(void *context, double fraction),
@@ -822,14 +824,14 @@ typedef struct cuvette_study_progress {
 CUVETTE_API cuvette_status cuvette_study_state(const cuvette_study *study, const char *results,
                                                cuvette_study_progress *out, cuvette_diagnostic *why);
 
-/* Options of a run. Begin with zeros and set size; later versions add fields at the end. */
+/* Options of a run. Zero-initialise it and set size; later versions add fields at the end. */
 typedef struct cuvette_run {
     size_t size;          /* sizeof(cuvette_run) */
     const char *results;  /* folder */
     bool any_environment; /* count rows of other environments too */
     double wait_quiet_s;  /* before each repetition, wait at most this long until other programs are quiet; 0: never */
-    /* for a study with several processes (`processes` in its file), the number of one, from 1: measures only its part,
-     * so that each number needs a program (`cuvette study run` starts them); 0: measures all repetitions */
+    /* for a study with `processes` in its file: the number of this process, from 1, which measures only its part. Each
+     * number needs its own program, as `cuvette study run` starts them. 0: measures all repetitions */
     long process;
     /* called about ten times per second with the finished fraction of the frames, 0..1, and the seconds that are left
      * (NaN: unknown); return false to stop. May be NULL */
@@ -848,8 +850,8 @@ CUVETTE_API long cuvette_study_processes(const cuvette_study *study);
 /* Returns the rows as CSV with two more columns: environment, the key of the row's environment, and left_out, why the
  * summary omits the row (warm-up, marked, excluded; else empty). Damaged rows and rows of cells that the study does not
  * have are omitted. study may be NULL: results is then the folder of the rows, RESULTS/NAME, and no cell is omitted.
- * environment: a key; "main": the one with most rows; "all"; NULL: the only one, while CUVETTE_BAD_INPUT names several.
- * *fault as in cuvette_study_summary. */
+ * environment: a key; "main": the one with most rows; "all"; NULL: the only one; if there are several,
+ * CUVETTE_BAD_INPUT names them. *fault as in cuvette_study_summary. */
 CUVETTE_API cuvette_status cuvette_study_rows(const cuvette_study *study, const char *results, const char *environment,
                                               char **out, char **fault, cuvette_diagnostic *why);
 

@@ -21,7 +21,8 @@ struct cuvette_scene {
     /* the handle and the motions created from it: the last owner frees this struct; destroying the handle frees the
      * model */
     atomic_int owners;
-    /* number of changes that invalidate a motion: to a slime, to the number of meshes, or by a newer motion */
+    /* number of changes that invalidate a motion: a slime was changed, a mesh was removed, or another motion was
+     * created */
     uint64_t slimes_changed;
     bool grabbed; /* hands moved its slimes, so that its text does not describe their shapes */
 };
@@ -74,8 +75,8 @@ status engine_check(const cuvette_scene *s, diagnostic *why);
 /* Loads the files that the scene names, and its slimes, once; watch as for scene_load_until. */
 status engine_load(cuvette_scene *s, const load_watch *watch, diagnostic *why);
 
-/* The caller's progress function, called about ten times a second with a fraction that never decreases. When it returns
- * false, the token is set: the only place where a callback's result ends work. */
+/* The caller's progress function, called about ten times per second with a fraction that never decreases. When it
+ * returns false, the token is set: the only place where a callback's result ends work. */
 typedef struct host_progress {
     bool (*callback)(void *context, double fraction); /* may be NULL */
     void *context;
@@ -88,8 +89,8 @@ void engine_begin_progress(host_progress *p);
 void engine_end_progress(host_progress *p);
 /* Calls the function now. */
 void engine_report_progress(host_progress *p, double fraction);
-/* Calls the function if a tenth of a second has passed. context: a host_progress; the type is that of load_watch's
- * progress. */
+/* Calls the function if a tenth of a second has passed. context: a host_progress, because this is a function for
+ * load_watch.progress. */
 void engine_report_if_due(void *context, double fraction);
 
 /* Copies content, of `known` bytes, into the caller's struct of an older or a newer version, up to the caller's size;
@@ -128,8 +129,9 @@ cuvette_status engine_copy_text(char *content, char *text, size_t size, size_t *
     float_environment_enter(&host);                                           \
     __attribute__((unused)) diagnostic inner = {.line = 0}
 
-/* Returns CUVETTE_BAD_INPUT, with a diagnostic in why, when one of the arguments is NULL. If its name in cuvette.h is a
- * type of the library, the definition uses another name: s for a scene, or the argument of ENGINE_NEED_NAMED. */
+/* Returns CUVETTE_BAD_INPUT, with a diagnostic in why, when one of the arguments is NULL. An argument whose name in
+ * cuvette.h is also a type of the library has another name in the definition: s for a scene; for others
+ * ENGINE_NEED_NAMED has both names. */
 #define ENGINE_NEED_NAMED(argument, name)     \
     do {                                      \
         if (!(argument))                      \
@@ -138,7 +140,7 @@ cuvette_status engine_copy_text(char *content, char *text, size_t size, size_t *
 #define ENGINE_NEED(...) ENGINE_TRY(engine_need(#__VA_ARGS__, ENGINE_LIST(__VA_ARGS__), why))
 
 /* First statement of a function that needs these arguments; ENGINE_CHANGE for one that changes the scene, its first
- * argument: it also returns when the scene is being rendered. */
+ * argument: it also returns when the scene is being rendered, or its slimes are being advanced. */
 #define ENGINE_CALL(...) \
     ENGINE_ENTER();      \
     ENGINE_NEED(__VA_ARGS__)

@@ -40,7 +40,7 @@ static status read_rule(const cuvette_fan_rule *given, fan_rule *out, diagnostic
     if (given->rays < 1 || given->rays > FAN_RAYS_MAX)
         return diagnose(why, STATUS_BAD_INPUT, "use 1 to 100000 rays", "a fan of %d rays is out of range", given->rays);
     if (!(given->width >= 0 && given->width <= 1e6) || !(given->spread_deg >= 0 && given->spread_deg <= 179))
-        return diagnose(why, STATUS_BAD_INPUT, "use a width of 0 to 1e6, or a spread of 0 to 179 degrees",
+        return diagnose(why, STATUS_BAD_INPUT, "use a width of 0 to 1e6 and a spread of 0 to 179 degrees",
                         "the fan's width or spread is out of range");
     *out = (fan_rule){.from = engine_vector(given->from),
                       .to = engine_vector(given->to),

@@ -1,5 +1,5 @@
-/* Internals of a query, shared by query.c (creation), query_rays.c (ray queries), tree.c and fan.c (ray
- * trees): the query, the scratch memory of a call, and the nodes of a tree. */
+/* Internals of a query, shared by query.c (creation), query_rays.c (ray queries), tree.c, fan.c and wasm/api/query.c
+ * (ray trees): the query, the scratch memory of a call, and the nodes of a tree. */
 #pragma once
 
 #include "base/cancel.h"
@@ -39,7 +39,7 @@ typedef struct query_call {
 } query_call;
 
 struct cuvette_query {
-    scene *model; /* its own copy, from which the plan borrows */
+    scene *model; /* a copy of the scene, from which the plan borrows */
     plan *ready;
     const geometry_kernels *kernels;
     pthread_mutex_t lock;

@@ -204,8 +204,8 @@ cuvette_status cuvette_query_nearest(const cuvette_query *query, const cuvette_r
     return engine_report(code, &inner, why);
 }
 
-/* Tests a batch of rays that all have a reach (`ends`), at which they end as shadow rays do at their light, or all have
- * none. */
+/* Tests a batch of rays that all have a reach, or all have none. ends: they have one, and end there as shadow rays end
+ * at their light. */
 static void occluded_batch(const cuvette_query *q, query_buffers *b, int count, bool ends, unsigned char *blocked)
 {
     const ray_batch view = view_of(b, count);
