@@ -11,8 +11,8 @@
 
 /* ---- YUV4MPEG2 ---- */
 
-/* The header is that of y4m(5); luma and chroma follow ITU-R BT.601-7, 2.5, and BT.709-6, 3 and 4, quantised to 8 bits
- * in limited range: Y' = 16 + 219 E_Y, C_B = 128 + 224 (E_B - E_Y) / (2 (1 - K_B)), C_R likewise. */
+/* The header follows y4m(5); luma and chroma follow ITU-R BT.601-7, 2.5, and BT.709-6, 3 and 4, quantised to 8 bits in
+ * limited range: Y' = 16 + 219 E_Y, C_B = 128 + 224 (E_B - E_Y) / (2 (1 - K_B)), C_R likewise. */
 
 enum { HIGH_DEFINITION_LINES = 720, TEN_THOUSAND = 10000 };
 

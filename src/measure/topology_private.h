@@ -1,5 +1,5 @@
-/* The content of a topology. Private to src/measure. hwloc runs in a child process, which sends this content as text
- * (topology_discover.c), because hwloc 2.9 aborts at some failed allocations. */
+/* The content of a topology. Private to src/measure and wasm/host.c. hwloc runs in a child process, which sends this
+ * content as text (topology_discover.c), because hwloc 2.9 aborts at some failed allocations. */
 #pragma once
 
 #include "measure/topology.h"
