@@ -41,7 +41,7 @@ typedef struct csv {
     char **fields; /* row_count * column_count fields, after the header */
     size_t *start; /* offset of row i in raw; start[row_count] = whole */
     bool mended;   /* csv_read_any: raw differs from the file, because it was converted to the form of this program */
-    bool torn;     /* the last line is incomplete and left out: no newline (csv_read_any: and too few fields), or a 0 */
+    bool torn;     /* the last line is left out: no newline (csv_read_any: and too few fields), or a zero byte */
     bool *broken;  /* csv_read_rows: row i has another number of fields or invalid quotes; its fields are NA */
 } csv;
 

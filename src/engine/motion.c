@@ -33,7 +33,7 @@ void cuvette_motion_destroy(cuvette_motion *motion)
     free(motion);
 }
 
-/* The caller holds the scene. */
+/* The caller has begun an advance of the scene. */
 static status begin(cuvette_motion *m, diagnostic *why)
 {
     m->of->grabbed = false;

@@ -95,7 +95,7 @@ cuvette_status cuvette_scene_curve(const cuvette_scene *s, const char *name, dou
         for (size_t i = 0; i < *count && i < room; i++)
             points[i][0] = made->at[i].x, points[i][1] = made->at[i].measured, points[i][2] = made->at[i].theory;
         if (*count > room)
-            code = diagnose(&inner, STATUS_BAD_INPUT, "make room for as many points",
+            code = diagnose(&inner, STATUS_BAD_INPUT, "make room for that many points",
                             "the curve has %zu points, but there is room for %zu", *count, room);
     }
     free(made);

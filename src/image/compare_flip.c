@@ -221,7 +221,8 @@ static void perceive(const work_planes *d, const image *img, const features *s)
     filter_colors(d, s);
     convolve_taps smooth, edge, point;
     make_detectors(&smooth, &edge, &point);
-    detect(d, &edge, &smooth, d->opponent[1], d->opponent[2], s->plane[EDGES]); /* colour filtering is complete */
+    detect(d, &edge, &smooth, d->opponent[1], d->opponent[2], s->plane[EDGES]); /* the colours are filtered: planes 1
+                                                                                   and 2 are free */
     detect(d, &point, &smooth, d->opponent[1], d->opponent[2], s->plane[POINTS]);
 }
 

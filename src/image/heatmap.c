@@ -259,7 +259,7 @@ static void draw_number(const canvas *on, const key_layout *key, int top, int ce
     draw_text(on, x < 2 * key->scale ? 2 * key->scale : x, top + key->numbers_y, key->scale, text);
 }
 
-/* A tick and its number, at its position in the bar. */
+/* Draws a tick and the number of a value, at the value's position in the bar. */
 static void draw_tick(const canvas *on, const key_layout *key, int top, double value, const heatmap_scale *scale)
 {
     int line = (key->scale + 1) / 2;

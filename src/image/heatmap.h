@@ -18,8 +18,8 @@ status heatmap_scale_of(const double *values, size_t count, heatmap_scale *out, 
 /* values: width*height, rows from the top, finite, >= 0. The scale runs linearly from 0 to the maximum, in a
  * perceptually uniform map (viridis). If the maximum is more than twice the 99.5th percentile, a few outliers would
  * darken everything else: the scale then ends at that percentile, with '>=' before its last number, and larger values
- * have the last colour. Integer values have integer labels. The image is as wide as the data (at least 240), and taller
- * by the key. */
+ * have the last colour. Integer values have integer labels. The image is as wide as the data (at least 240), and higher
+ * by the height of the key. */
 status heatmap_create(const double *values, int width, int height, const char *title, image **out, diagnostic *why);
 
 /* The colour of t in 0..1 on the colour scale, as sRGB values 0..255. */

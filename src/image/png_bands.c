@@ -77,7 +77,7 @@ enum { HEADER_BYTES = 2, TRAILER_BYTES = 4, FLUSH_BYTES = 16, MEMORY_LEVEL = 8, 
 /* Chosen by measurement, so that no file of a shipped scene is more than 10 % larger than libpng's at level 6. */
 typedef struct effort {
     int level, strategy;
-    bool tuned; /* level 4 with the numbers of tune */
+    bool tuned; /* level 4 with the numbers of reset_deflater */
     png_filter_choice filter;
 } effort;
 

@@ -24,7 +24,7 @@ typedef enum texture_wrap { TEXTURE_REPEAT, TEXTURE_MIRROR, TEXTURE_CLAMP } text
  * levels of a mipmap, by log2 of the footprint (Williams, "Pyramidal parametrics", SIGGRAPH 1983). */
 typedef enum texture_filter { TEXTURE_NEAREST, TEXTURE_BILINEAR, TEXTURE_TRILINEAR } texture_filter;
 
-enum { TEXTURE_LEVELS_MAX = 17 }; /* a side of 65536 = 2^16 texels, and 1 */
+enum { TEXTURE_LEVELS_MAX = 17 }; /* sides of 2^16 = 65536 to 2^0 = 1 texels */
 
 typedef struct texture texture;
 

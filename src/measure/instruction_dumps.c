@@ -1,4 +1,4 @@
-/* The files of callgrind: PATH.1, PATH.2, ...; a line "totals: N" has the sum (the manual of callgrind, its format). */
+/* The files of callgrind: PATH.1, PATH.2, ...; a line "totals: N" has the sum, as the manual of callgrind describes. */
 #include "measure/instruction_dumps.h"
 #include <inttypes.h>
 #include <stdio.h>

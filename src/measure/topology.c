@@ -307,8 +307,8 @@ int topology_place(const topology *machine, pin_policy policy, int worker, int c
     if (policy == PIN_COMPACT)
         return unit_below(machine, 0, ANY_ROUND, worker);
 
-    /* Weights are numbers of units, so that a package with two units per core could be filled before every core of a
-     * package with one unit per core is used. Therefore the first units of all cores come first. */
+    /* `distribute` weighs subtrees by their numbers of units: it could fill a package with two units per core before it
+     * uses every core of a package with one unit per core. Therefore the first units of all cores come first. */
     for (int r = 0, room; (room = weight(machine, 0, r)) > 0; r++) {
         if (worker < room)
             return distribute(machine, r, worker, count < room ? (count > worker ? count : worker + 1) : room);

@@ -963,7 +963,7 @@ refused "to delete a material in use" "--delete clear: $in_use" \
 refused "an unknown name" "--move rood=1,2,3: the scene has no object 'rood'; did you mean 'rod'?" \
     built.yaml --move rood=1,2,3
 refused "to scale the camera" \
-    "--scale camera=2: camera cannot be scaled; scale a solid, a light, or all, solids, lights" built.yaml \
+    "--scale camera=2: camera cannot be scaled; scale a solid, a light, or a group: all, solids or lights" built.yaml \
     --scale camera=2
 refused "a factor of zero" "--scale all=0: all cannot be scaled by 0; give a factor above 0, at most 1e9" \
     built.yaml --scale all=0

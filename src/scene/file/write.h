@@ -8,9 +8,9 @@
 #include "scene/model/open.h"
 #include <stdio.h>
 
-/* path is the destination of the text: paths of files in it are written relative to that folder, or absolute if the two
- * folders have only the root in common. NULL or "" means a file in the working folder. all: every parameter in use is
- * written, also with its default. STATUS_BAD_INPUT if a title or path is not valid UTF-8. */
+/* path is the destination of the text: paths of files in it are written relative to the destination's folder, or
+ * absolute if the two folders have only the root in common. NULL or "" means a file in the working folder. all: every
+ * parameter in use is written, also with its default. STATUS_BAD_INPUT if a title or path is not valid UTF-8. */
 status scene_write_text(const scene *s, const char *path, bool all, char **text, diagnostic *why);
 
 /* Writes the text to a file, atomically; "-" is standard output. */

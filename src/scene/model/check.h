@@ -14,6 +14,6 @@ status check_object(const scene *s, param_group group, size_t index, diagnostic 
 /* Fails if the scene has too many objects of a kind, or primitives. */
 status check_limits(const scene *s, diagnostic *why);
 
-/* Fails if an image cannot be a sky: its radiance is negative, or exceeds the film's range. path: for the
+/* Fails if an image cannot be a sky: a radiance is negative, not a number, or above SCENE_SKY_MAX. path: for the
  * diagnostic. */
 status sky_check(const image *sky, const char *path, diagnostic *bad);

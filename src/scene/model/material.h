@@ -24,7 +24,8 @@ typedef struct material {
     double emission;                              /* k_e: the surface emits k_e C in all directions */
     double reflectivity; /* for constant weights, simple transmission and opaque materials; under Fresnel weights the
                             coating of a transparent material */
-    double transparency; /* 0 = opaque; otherwise the fraction of the refracted light that crosses an interface */
+    double transparency; /* 0: opaque; else the fraction of the refracted light that crosses an interface (constant
+                            weights: of the incident) */
     double ior;          /* relative to vacuum, if medium is MEDIUM_IOR */
     double extraordinary_ior; /* of a uniaxial crystal, for the field along its optic axis; 0: isotropic */
     vec3 optic_axis;          /* in the solid's own frame, of any length */

@@ -1,6 +1,7 @@
-/* A scene: render settings, camera, background, lights, beams, materials, solids. Every user-settable field is a row of
- * the parameter table (scene/model/params.h), which is used by files, --set, studies and manuals. Code that only passes
- * scenes to others includes scene/model/open.h, which states ownership; the renderer borrows a scene. */
+/* A scene: render settings, camera, background, meshes, textures, lights, beams, materials, solids. Every user-settable
+ * field is a row of the parameter table (scene/model/params.h), which is used by files, --set, studies and manuals.
+ * Code that only passes scenes to others includes scene/model/open.h, which states ownership; the renderer borrows a
+ * scene. */
 #pragma once
 
 #include "scene/model/lights.h"

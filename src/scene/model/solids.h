@@ -64,8 +64,8 @@ typedef struct face_material {
 /* The materials of a mesh file, by slot. Reference counted like their mesh; retain and release are thread safe. */
 typedef struct face_materials face_materials;
 
-/* Copies a list of materials, and takes its references to images; after an error it has released them. STATUS_FAILURE
- * if memory runs out. */
+/* Copies a list of materials, and takes over its references to images; after an error it has released them.
+ * STATUS_FAILURE if memory runs out. */
 status face_materials_of(const face_material *list, int count, const face_materials **out, diagnostic *why);
 /* NULL is allowed in these three functions. */
 void face_materials_retain(const face_materials *l);

@@ -118,7 +118,7 @@ static status move_surface(scene_motion *m, const moving_slime *moving, diagnost
     mesh_entry *entry = motion_entry(m, moving);
     if (!entry->data || mesh_reference_count(entry->data) > 1)
         return make_surface(m, moving, why);
-    /* make_surface made the mesh, and the entry has the only reference. */
+    /* It may be changed: make_surface made the mesh, and the entry has the only reference. */
     status code = softbody_move_surface(moving->x.body, (mesh *)(uintptr_t)entry->data, why);
     hierarchy_update_counts moves = {.refitted = 0};
     THEN(code, hierarchy_update(entry->data, m->s->render.rebuild, scene_build_threads(&m->s->render), &moves, why));

@@ -299,7 +299,7 @@ status scene_scale(scene *s, const char *name, double factor, diagnostic *why)
         return apply(&e);
     TRY(edit_find(s, name, &at, why));
     if (at.object_group != PARAM_SOLID && at.object_group != PARAM_LIGHT)
-        return diagnose(why, STATUS_BAD_INPUT, "scale a solid, a light, or all, solids, lights",
+        return diagnose(why, STATUS_BAD_INPUT, "scale a solid, a light, or a group: all, solids or lights",
                         "%.80s cannot be scaled", name);
     e.only = name;
     return apply(&e);
