@@ -164,7 +164,7 @@ cuvette_status cuvette_frame_map(const cuvette_frame *frame, const char *name, d
         diagnose(&inner, STATUS_BAD_INPUT, "use rays, time, cut or noise", "there is no map '%.64s'", name);
     else if (!found)
         diagnose(&inner, STATUS_BAD_INPUT,
-                 noise ? "set render.integrator to path and render.paths to 16 or more"
+                 noise ? "set render.integrator to path and render.paths to a multiple of 16 * render.samples"
                        : "set pixel_rays, pixel_time or pixel_cut in the request",
                  "the frame has no map '%s'", name);
     if (!found)
