@@ -74,8 +74,8 @@ bool study_keeps_files(const study *s);
 /* --- reading: plan/read.c --- */
 
 status study_read(const char *path, study **out, diagnostic *why);
-/* Access checks for callers that read a study on behalf of others. Both functions are called before anything is opened;
- * any result other than STATUS_OK is the study's error. */
+/* Access checks for callers that read a study on behalf of others. Each is called before the files that it is about are
+ * opened; any result other than STATUS_OK is the study's error. */
 typedef struct study_guard {
     status (*may_open)(void *context, const char *path, diagnostic *why); /* the scene's file */
     status (*may_load)(void *context, const scene *setting,
@@ -160,7 +160,7 @@ long study_processes(const study *s);
  * STATUS_INTERRUPTED after it has written the rows and images of what is complete. */
 status study_run(const study *s, const study_options *options, size_t *ran, diagnostic *why);
 
-/* *lacks: whether a kept file or a comparison with a reference is missing for a cell, whatever the rows are
+/* *lacks: whether a kept file or a comparison with a reference is missing for a cell; missing rows do not count
  * (run/run_keep.c). */
 status study_lacks_files(const study *s, const char *results, bool *lacks, diagnostic *why);
 

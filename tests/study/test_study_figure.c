@@ -180,7 +180,7 @@ static void dots_and_heat_maps_have_their_values_axes_and_captions(void **state)
     fixture_write(f, "words.csv",
                   "integrator,cpu_s,source\npath,0.13,a book\nzbuffer,0.1,a book\nwhitted,0.12,a book\n");
     static const char *const one_depth[] = {"render.depth=0"};
-    static const char no_interval[] = "Each value is of n = 10 repetitions; the summary has no interval of it.",
+    static const char no_interval[] = "Values of n = 10 repetitions; the summary has no interval of this quantity.",
                       interval[] = "Medians, n = 10; 95 % interval of the median, at most ±0 % of the value.";
     const figure figures[] = {
         {"[{render.integrator: [whitted, raycast, zbuffer, path]}]",

@@ -48,7 +48,7 @@ static bool is_spaced(const node *list)
     return false;
 }
 
-/* Whether the values increase or decrease steadily. joined, unless NULL, replaces the items at and at + 1. */
+/* Whether the values increase or decrease steadily. joined, unless NULL, replaces the items `at` and `at + 1`. */
 static bool is_steady(const node *list, size_t at, const char *joined)
 {
     int direction = 0;

@@ -227,7 +227,7 @@ void grid_put_number(FILE *out, double value)
     fprintf(out, "\t%s", isfinite(value) ? number_format(value, text) : "NA");
 }
 
-/* Reads the next number of a vector, and moves *text behind it; false if it is not a number. */
+/* Reads the next number of a vector, and moves *text past it; false if it is not a number. */
 static bool next_number(const char **text, double *value)
 {
     char number[64];

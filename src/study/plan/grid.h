@@ -36,7 +36,8 @@ void grid_put_values(const study *s, size_t cell, FILE *out);
 /* Writes a tab and a number, with as many digits as read back the same; NA if it is not finite. */
 void grid_put_number(FILE *out, double value);
 
-/* Independent streams of one seed: the rounds of repetitions are 0, 1, ... */
+/* Independent streams of one seed: round k of the repetitions uses stream k, and the order in which cells are divided
+ * among shards uses this one. */
 #define ORDER_STREAM_SHARDS UINT64_MAX
 
 /* order[0..count-1] = a uniform random permutation of 0..count-1 (Fisher and Yates; Durstenfeld 1964) from the

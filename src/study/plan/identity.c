@@ -53,7 +53,7 @@ static status add_param(void *context, const char *path, const param *row, const
 static status add_objects(meaning *m, const scene *s, param_group group)
 {
     for (size_t i = 0; i < param_place_group_size(s, group); i++)
-        if (group != PARAM_BEAM || s->beams[i].lights) /* no film depends on the others */
+        if (group != PARAM_BEAM || s->beams[i].lights) /* no film depends on a beam that does not light the scene */
             TRY(add(m, text_format("%s %zu", param_group_name(group), i), strdup(param_place_group_name(s, group, i))));
     return STATUS_OK;
 }

@@ -11,8 +11,8 @@
 
 #include "study/study.h"
 
-/* The identity of each cell, in the order of cells. The files of s->base must be loaded; files that an axis names are
- * loaded here. */
+/* The identity of each cell, in the order of cells. The files of s->base must be loaded; if an axis names files, the
+ * function loads the files of each cell. */
 status identities_find(const study *s, uint64_t **out, diagnostic *why);
 
 /* The number of the cell with that identity, or study_cell_count(s). */
@@ -25,8 +25,9 @@ uint64_t identity_compared(const study *s, uint64_t identity);
  * loaded. */
 status reference_scene_hash(const scene *setting, uint64_t *hash);
 
-/* Adds the contents of files to the hash: background image, textures, meshes and the materials in mesh files. A scene
- * without files does not change it. STATUS_FAILURE after a system error: the hash is then meaningless. */
+/* Adds the contents of files to the hash: background image, textures, mesh files with their materials, and scripts of
+ * slimes. A scene without files does not change it. STATUS_FAILURE after a system error: the hash is then
+ * meaningless. */
 status identity_hash_files(uint64_t *hash, const scene *s, diagnostic *why);
 
 typedef struct meaning_item {

@@ -23,7 +23,7 @@
 
 /* The files of a cell, and the settings of the study that select them. */
 static const struct {
-    size_t wish; /* offset in study of a bool */
+    size_t wish; /* offset of the bool in study that selects the file */
     const char *ending;
 } files[] = {
     {offsetof(study, keep_image), ".png"},
@@ -100,7 +100,7 @@ status keep_room(const study *s, const char *folder, size_t cell, const scene *s
             const bool is_map = format == IMAGE_PNG && files[what].wish != offsetof(study, keep_image);
             if (format != IMAGE_UNKNOWN) /* a map has a legend, and is at least as wide as the legend */
                 image_room(format, is_map ? fmax(width, KEY_SIDE) : width, is_map ? height + KEY_SIDE : height, 1, to);
-            else if (files[what].wish == offsetof(study, keep_timeline)) /* few tiles are split, so there may be more */
+            else if (files[what].wish == offsetof(study, keep_timeline)) /* one event per tile, with a margin */
                 disk_room_add(to, 1, 0, TABLE_MOST + EVENT_MOST * 4 * ceil(width / tile) * ceil(height / tile));
             else
                 disk_room_add(to, 1, 0, TABLE_MOST);

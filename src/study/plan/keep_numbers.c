@@ -30,7 +30,8 @@ static char *cells_path(const char *images)
     return text_format("%s/cells.tsv", images);
 }
 
-/* The numbering of the files in the folder; a damaged file counts as missing. */
+/* The numbering of the files in the folder: the lines of cells.tsv up to the first damaged one; empty without the
+ * file. */
 static status read_numbering(const char *images, const char *root, numbering *out, diagnostic *why)
 {
     char *path = cells_path(images), *text = NULL;
@@ -126,7 +127,7 @@ static status rename_all(const study *s, const char *images, const numbering *ol
     const int count = scandir(images, &names, NULL, alphasort);
     status code = STATUS_OK;
     if (count < 0 && errno != ENOENT)
-        return system_error(why, STATUS_FAILURE, images, "cannot be read", errno, "give a folder that can be read");
+        return system_error(why, STATUS_FAILURE, images, "cannot be read", errno, "make the folder readable");
     for (int i = 0; i < count; i++) {
         if (code == STATUS_OK)
             code = old ? name_by_identity(images, names[i]->d_name, old, why)

@@ -81,7 +81,7 @@ status new_axis_parse(const char *text, new_axis *out, diagnostic *why)
         return wrong_axis(why, "write PATH=1,2,3 or PATH=FROM..TO:STEPS", "this is not an axis");
     for (const char *c = text; *c; c++)
         if ((unsigned char)*c < ' ' || *c == 0x7f)
-            return wrong_axis(why, "write it on one line", "the axis has control characters");
+            return wrong_axis(why, "remove them", "the axis has control characters");
     if (!(out->path = strndup(text, (size_t)(equals - text))))
         return out_of_memory(why);
     TRY(parse_range(equals + 1, out, &is_range, why));
@@ -213,7 +213,7 @@ void new_study_write(const new_study *s, FILE *out)
             "# Files of each cell; also pfm, workers, pixel_rays, pixel_time, pixel_cut, timeline, metrics, curves, "
             "motion:\n"
             "# keep: {image: on}\n"
-            "# Comparison of each image with that of the same cell under other parameters:\n"
+            "# To compare the image of each cell with its image under other parameters:\n"
             "# reference: {render.depth: 40}\n",
             (long long)s->repetitions, (long long)s->warmups);
 }
@@ -247,7 +247,8 @@ static status try_settings(const new_study_order *r, scene *s, const new_axis *a
     return code;
 }
 
-/* Chooses the file's name without its ending, or else the names of scene and parameter: "rod-depth". */
+/* Chooses the study's name: the given one; else the name of the target file without its ending; else the names of the
+ * scene and the first parameter, such as "rod-depth". */
 static void choose_name(const new_study_order *r, const new_axis *first, char name[NAME_LENGTH + 1])
 {
     const char *file = file_name_of(r->target ? r->target : r->scene);

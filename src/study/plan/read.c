@@ -10,13 +10,15 @@
  *     - name: pair                   or several together
  *       points: [{vessel.ior: 1.0, liquid.ior: 1.5}, {vessel.ior: 1.3, liquid.ior: 1.0}]
  *   reference: {render.depth: 40}    parameters of the reference image of each cell
- *   repetitions: 10                  or {min: 6, max: 20, relative_width: 0.02}
+ *   repetitions: 10                  or {min: 6, max: 20, relative_width: 0.02}, or {undisturbed: 6, max: 20}
+ *   processes: 1                     fresh processes that divide the repetitions
+ *   disturbed: {others_fraction: 0.05, steal_fraction: 0.01, frequency_drop: 0.1, stalled_fraction: 0.1}
  *   warmups: 1
  *   order: {shuffle: on, seed: 1}
  *   keep: {image: on, pfm: off, workers: off, pixel_rays: off, pixel_time: off, pixel_cut: off, timeline: off,
  *   metrics: off, curves: off, motion: off}
  *
- * Every path and value is tried on the scene here, so that a study that was read can be run. */
+ * Reading tries every path and value on the scene, so that a study that was read can be run. */
 #include "base/file.h"
 #include "base/installed.h"
 #include "base/number.h"
@@ -76,7 +78,7 @@ static status read_switch(const document *d, const node *n, const char *key, boo
     return node_error(d, n, why, "write on or off", "%s is neither on nor off", key);
 }
 
-/* A file name that needs no quoting and is not a reserved folder of results. */
+/* Whether the text is a file name that needs no quoting and is not a reserved folder of results. */
 static bool is_valid_name(const char *name)
 {
     static const char *const reserved[] = {"figures", "tables", "reference", "quick"};

@@ -39,7 +39,7 @@ static status try_value(scene *target, const document *d, const node *key, const
         return node_error(d, value, why, "write a number, a word, or a list of numbers", "%s cannot be set to this",
                           key->text);
     if (!read_grid_plain(text))
-        code = node_error(d, value, why, "write it on one line", "%s has control characters", key->text);
+        code = node_error(d, value, why, "remove them", "%s has control characters", key->text);
     else if ((code = scene_set(target, key->text, text, why)) != STATUS_OK ||
              (code = scene_get(target, key->text, canonical, why)) != STATUS_OK)
         locate(d, value, why, code);
@@ -199,7 +199,7 @@ static status read_points(study_axis *axis, scene *target, const document *d, co
     return code;
 }
 
-/* The remedy for equal values, which may come from decimal commas: [1.1, 1,3, 1,4] has two values 1. */
+/* The remedy for equal values, which may come from decimal commas: [1.1, 1,3, 1,4] has the value 1 twice. */
 static const char *distinct_remedy(const node *at, char text[COMMA_SLIP_TEXT_MAX + 24])
 {
     char joined[COMMA_SLIP_TEXT_MAX];
@@ -278,7 +278,8 @@ static bool is_real(const scene *s, const char *path)
 static status read_axes(study *s, scene *target, const document *d, const node *grid, diagnostic *why)
 {
     if (grid->kind != NODE_LIST || grid->count == 0)
-        return node_error(d, grid, why, "write a list of axes, each - {path: [values]}", "grid is not a list of axes");
+        return node_error(d, grid, why, "write a list of axes, such as - {path: [values]}",
+                          "grid is not a list of axes");
     if (grid->count > STUDY_AXES_MAX)
         return node_error(d, grid, why, "use at most 16 axes", "the grid has %zu axes", grid->count);
     s->axes = calloc(grid->count, sizeof *s->axes);

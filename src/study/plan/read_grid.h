@@ -18,10 +18,14 @@ bool read_grid_plain(const char *text);
  * two. Such a list is valid, so there is a note, not an error; the study owns it. */
 enum { COMMA_SLIP_TEXT_MAX = 64 };
 
-/* Whether items i and i + 1, two integers, are probably one number, which is then written to joined ("1.4"): if the
- * second begins with 0, as in [1,05, 2]; if the list of a real parameter has only them, one digit and several, as in
- * [1,33]; or if the list has decimal points, and either no blank follows their comma but one follows another comma, or
- * the values increase or decrease steadily with the number but not with the integers. real: the parameter is real. */
+/* Whether items i and i + 1, two integers, are probably one number, which is then written to joined ("1.4"). One of
+ * these is the case:
+ * - No blank follows the comma, and the second integer has several digits and begins with 0: [1,05, 2].
+ * - No blank follows the comma, the parameter is real (`real`), and the list has only these integers, the first of one
+ *   digit and the second of several: [1,33].
+ * - Another item has a decimal point, and no blank follows this comma although one follows another comma.
+ * - Another item has a decimal point, and the values increase or decrease steadily if the two are one number, but not
+ *   if they are two. */
 bool comma_slip_at(const node *list, size_t i, bool real, char joined[COMMA_SLIP_TEXT_MAX]);
 
 /* Adds a note for each decimal comma in the list of values of path. */

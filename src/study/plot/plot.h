@@ -4,8 +4,8 @@
  * the sheet, shows the kept images with captions.
  *
  * A figure is a script, BASE.gp, which contains the style and can be edited, and its data, BASE.tsv. Ownership: nothing
- * is kept. STATUS_BAD_INPUT: no such column, value or file, or more lines than a figure can show; STATUS_FAILURE:
- * gnuplot is missing or fails. */
+ * is kept. STATUS_BAD_INPUT: no such column, value or file, or more lines, panels or images than a figure can show;
+ * STATUS_FAILURE: the chosen cells have no value, or gnuplot is missing or fails. */
 #pragma once
 
 #include "study/study.h"

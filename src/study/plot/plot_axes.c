@@ -1,5 +1,5 @@
 /* The parameters of a figure: which rows are shown, the distinct values of each parameter in them, and which parameters
- * others determine. */
+ * are determined by others. */
 #include "base/number.h"
 #include "base/text.h"
 #include "study/plan/grid.h"
@@ -75,7 +75,7 @@ static void sort_values(plot_axis *axis)
         }
 }
 
-/* Cells without rows have no environment. */
+/* Whether the row is shown and has a value of the axis: a cell without rows has no environment. */
 static bool has_value(const plot_plan *p, const plot_axis *axis, size_t row)
 {
     return p->shown[row] &&
@@ -124,7 +124,7 @@ static int compare_rows(const void *a, const void *b, void *context)
     return 0;
 }
 
-/* Whether rows that agree in the kept parameters agree in this one as well. */
+/* Whether rows that agree in the kept parameters also agree in this axis. */
 static bool determines(link *l, const plot_axis *axis)
 {
     qsort_r(l->rows, l->row_count, sizeof *l->rows, compare_rows, l);
@@ -140,8 +140,9 @@ static bool is_wanted(const plot_plan *p, const plot_axis *axis)
     return (r->x && strcmp(r->x, axis->name) == 0) || (r->by && strcmp(r->by, axis->name) == 0);
 }
 
-/* Whether a is tested before b: first parameters that the user names, then those with more values. Among equals, a
- * number is best as the first one, because it becomes a scale, and words later, because they name lines. */
+/* Whether a is tested before b: first parameters that the user names, then those with more values. Among equals,
+ * numbers come before words for the first kept parameter (`first`), because it becomes a scale, and words before
+ * numbers for the others, because they name lines. */
 static bool is_better(const plot_plan *p, const plot_axis *a, const plot_axis *b, bool first)
 {
     if (is_wanted(p, a) != is_wanted(p, b))
@@ -151,8 +152,8 @@ static bool is_better(const plot_plan *p, const plot_axis *a, const plot_axis *b
     return a->numeric != b->numeric && a->numeric == first;
 }
 
-/* Keeps the first two parameters whose pairs of values are exactly the points: independent parameters show more than
- * one parameter with a value for each point. */
+/* Keeps the first two parameters of the group whose pairs of values are exactly the axis' points, and returns whether
+ * there are such: two independent parameters show more than one that has a value for each point. */
 static bool keep_pair(plot_plan *p, size_t group, link *l)
 {
     size_t points = 0;

@@ -11,7 +11,7 @@ static bool is_free(const plot_plan *p, const plot_axis *axis)
     return axis->kept && axis != p->along && axis != p->up && axis != p->by;
 }
 
-/* The free axis with the most values, at most `limit`; among equals the last, which varies fastest. */
+/* The free parameter with the most values, from `least` to `limit`; among equals the last, which varies fastest. */
 static const plot_axis *largest(const plot_plan *p, bool numeric, size_t least, size_t limit)
 {
     const plot_axis *found = NULL;

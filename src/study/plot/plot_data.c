@@ -178,7 +178,7 @@ static status read_published(plot_plan *p, const csv *table, int x, int y, diagn
     }
     if (!out->count)
         return diagnose_at(why, p->request->published, STATUS_BAD_INPUT,
-                           "give a CSV file with the x axis and the quantity of the figure as columns",
+                           "give a CSV file with values of the figure's x axis and numbers of its quantity",
                            "no row has numbers of '%s' and '%s'", table->header[x], table->header[y]);
     describe(out, table, x, y);
     return STATUS_OK;

@@ -111,7 +111,7 @@ static int key_width(const plot_plan *p)
     return limited(letters * LETTER + 54, 120, 330);
 }
 
-/* Letters of the longest tic label of the y axis. */
+/* The estimated number of characters of the longest tic label of the y axis. */
 static int y_letters(const plot_plan *p)
 {
     const double most = fmax(fabs(p->y.from), fabs(p->y.to));
@@ -226,7 +226,7 @@ static status add_spread(plot_plan *p, const facts *f, diagnostic *why)
     if (f->ranges)
         return plot_caption_add(p, why, "Medians, %s; %srange of the repetitions%s; fewer than 6 give no interval.", n,
                                 bars, wide);
-    return plot_caption_add(p, why, "Each value is of %s repetitions; the summary has no interval of it.", n);
+    return plot_caption_add(p, why, "Values of %s repetitions; the summary has no interval of this quantity.", n);
 }
 
 static size_t shown_cells(const plot_plan *p)
@@ -312,7 +312,8 @@ static status add_noise(plot_plan *p, const facts *f, diagnostic *why)
                             f->marked, disturbed, percent);
 }
 
-/* Adds captions on n, spread, missing cells, marked rows, other processes and environments. */
+/* Adds captions on n, spread, missing cells, marked rows, other processes, environments, --where, linked parameters and
+ * published numbers. */
 static status add_captions(plot_plan *p, diagnostic *why)
 {
     const facts f = collect(p);

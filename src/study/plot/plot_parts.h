@@ -48,7 +48,7 @@ typedef struct plot_point {
     size_t row, panel, series;
     size_t along;           /* index of the value on the axis along which lines run */
     size_t up;              /* heat map: index on the vertical axis */
-    double x, y, low, high; /* in shown units; low and high NaN without any spread */
+    double x, y, low, high; /* in shown units after plot_scale; low and high NaN without any spread */
 } plot_point;
 
 typedef struct plot_published {
@@ -113,7 +113,8 @@ status plot_layout(plot_plan *p, diagnostic *why);
 /* Wraps a caption to the width of the figure and adds its lines. */
 status plot_caption_add(plot_plan *p, diagnostic *why, const char *format, ...) __attribute__((format(printf, 3, 4)));
 
-/* Write parts of a script: its head with the style; a text as a string of gnuplot. */
+/* Write parts of a script: its head with the style (data: and with the path of the data file); a text as a string of
+ * gnuplot. */
 void plot_script_head(FILE *out, const plot_plan *p, const char *base, bool data);
 void plot_script_text(FILE *out, const char *text);
 status plot_script_write(const plot_plan *p, const char *base, diagnostic *why);

@@ -199,7 +199,8 @@ static status check_log(const char *option, const char *name, const extent *e, d
                              "%s reaches %g; a logarithmic scale needs positive values", name, e->least);
 }
 
-/* Whether distinct positive values are spread more evenly by their ratios than by their differences. */
+/* Whether at least four positive values, over a factor of at least 8, are spread more evenly by their ratios than by
+ * their differences. */
 static bool is_geometric(const plot_axis *axis)
 {
     const size_t n = axis->count;

@@ -94,7 +94,7 @@ static double place_of(const plot_quantity *x, double value)
     return x->log ? log(value / x->from) / log(x->to / x->from) : (value - x->from) / (x->to - x->from);
 }
 
-/* Writes a tic for each value. A label that would touch the one before is omitted, or all are, without `labels`. x: the
+/* Writes a tic for each value. A label that would touch the one before is omitted; without `labels`, all are. x: the
  * scale of the values; NULL: they are at 0, 1, 2, ... and all labels fit. */
 static void put_tics(FILE *out, const char *which, const plot_axis *axis, const plot_quantity *x, int pixels,
                      bool labels)
@@ -183,7 +183,8 @@ static int even_values(const plot_quantity *q, double values[LOG_TICS_MAX])
     return count;
 }
 
-/* Writes the tics of a logarithmic scale of less than two decades, in which gnuplot labels at most one power of ten. */
+/* Writes the tics of a logarithmic scale of less than two decades, in which gnuplot labels at most two powers of
+ * ten. */
 static void put_log_tics(FILE *out, const char *axis, const plot_quantity *q)
 {
     double values[LOG_TICS_MAX];
@@ -279,7 +280,7 @@ static void put_key(FILE *out, const plot_plan *p)
     }
 }
 
-/* Draws blocks of one panel; *index is the number of the next block. */
+/* Draws the blocks of one panel; *index is the number of the next block. */
 static void put_blocks(FILE *out, const plot_plan *p, size_t panel, size_t *index)
 {
     const char *gap = "";

@@ -79,8 +79,7 @@ static status measure(sheet *out, diagnostic *why)
         int width, height;
         if (!size_of(out->frames[i].path, &width, &height))
             return diagnose_at(why, out->frames[i].path, STATUS_BAD_INPUT,
-                               "remove it, and run the study again: it is rendered again",
-                               "the PNG file is incomplete");
+                               "remove it, and run the study again to render it", "the PNG file is incomplete");
         if (i == 0 || width > out->image_width)
             out->image_width = width, out->image_height = height;
         if (i == 0 || width < out->least_width)

@@ -26,5 +26,5 @@ uint32_t checksum_chain(const char *previous, uint32_t content);
 void checksum_text(uint32_t content, uint32_t chain, char text[CHECKSUM_TEXT]);
 bool checksum_parse(const char *text, uint32_t *content, uint32_t *chain);
 
-/* Fills in the checksums of complete lines whose last field, checksum, is empty ("...,NA"), and updates previous. */
+/* Fills in the checksums of complete lines whose field checksum is NA, and updates previous. */
 status checksum_lines(const checksum_columns *c, char previous[CHECKSUM_TEXT], csv_buffer *lines, diagnostic *why);

@@ -100,8 +100,8 @@ const char *environment_node_type(void)
     return type && type[0] ? type : NULL;
 }
 
-/* The processing units that the process may use, as "0-3,8"; "" if it may use all. Nodes of a declared type
- * (CUVETTE_NODE_TYPE) are alike, whichever units a scheduler assigns. */
+/* The processing units that the process may use, as "0-3,8", or a hash of a long list; "" if it may use all. Also "" on
+ * nodes of a declared type (CUVETTE_NODE_TYPE): they are alike, whichever units a scheduler assigns. */
 static void read_mask(source *from, char *text, size_t size)
 {
     char allowed[1000], all[1000];

@@ -1,4 +1,4 @@
-/* The environment of a run: everything except the scene that times depend on. Rows of unlike environments are never
+/* The environment of a run: everything that times depend on, except the scene. Rows of unlike environments are never
  * pooled. The key is a hash of eight facts: the machine (a salted hash of its id), the processor's model and microcode,
  * SMT, the frequency governor, the limits of the control group and of the affinity mask, the instruction set, and the
  * build (base/build_id.h). Fixed-size values; nothing to release. Unknown facts are "unknown". */
@@ -23,10 +23,11 @@ extern const char *const environment_names[ENVIRONMENT_FACTS];
  * identity: it distinguishes machines that were cloned with the same id. CUVETTE_NODE_TYPE, if set, names a type that
  * replaces the machine, so that nodes of a cluster count as alike; the other facts still distinguish unlike nodes. A
  * fact that the system does not report is "unknown". STATUS_FAILURE if a file cannot be read now (memory, open files,
- * the disk): the key would be that of an environment that does not exist. */
+ * the disk): the key would name an environment that does not exist. */
 status environment_read(const char *root, isa level, run_environment *out, diagnostic *why);
-/* The fact `machine` of this machine, whatever CUVETTE_NODE_TYPE is; returns 0, or the errno of a file that cannot be
- * read now. Then the fact of all nodes of a type, and CUVETTE_NODE_TYPE, or NULL. */
+/* environment_read_machine: the fact `machine` of this machine, even if CUVETTE_NODE_TYPE is set; returns 0, or the
+ * errno of a file that cannot be read now. environment_of_node_type: the fact `machine` of all nodes of a type.
+ * environment_node_type: the value of CUVETTE_NODE_TYPE; NULL if it is unset or empty. */
 int environment_read_machine(const char *root, char *text, size_t size);
 void environment_of_node_type(const char *type, char *text, size_t size);
 const char *environment_node_type(void);

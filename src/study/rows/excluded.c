@@ -163,7 +163,7 @@ static status find_row(const row_files *files, const excluded *list, const char 
         *out = &files->rows[i];
     }
     if (!*out)
-        return wrong_row(text, why, "give CELL:REPETITION as in the columns of rows.csv, such as 3:2",
+        return wrong_row(text, why, "give CELL:REPETITION, such as 3:2, or the row's value in the column checksum",
                          "there is no such row");
     if ((*out)->warmup)
         return wrong_row(text, why, "", "this row is a warm-up, which summaries never use");

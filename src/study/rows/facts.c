@@ -71,7 +71,7 @@ status facts_write(const json_t *facts, size_t flags, const char *path, diagnost
 
 extern char **environ;
 
-/* The rest of the first line of a file that starts with prefix, without blanks and colon; NULL if there is none. */
+/* In a file, the rest of the first line that starts with prefix, without blanks and colon; NULL if there is none. */
 static char *line_of(const char *path, const char *prefix)
 {
     FILE *file = fopen(path, "re");
@@ -230,13 +230,13 @@ static json_t *owned_text(char *text)
     return value;
 }
 
-/* Like owned_text, for a text that is always known: NULL means out of memory, and returns NULL. */
+/* Like owned_text, for a text that is always known: NULL then means that memory ran out, and the result is NULL. */
 static json_t *required_text(char *text)
 {
     return text ? owned_text(text) : NULL;
 }
 
-/* The current time, or that of SOURCE_DATE_EPOCH (reproducible-builds.org/specs/source-date-epoch). */
+/* The current time, or the time in SOURCE_DATE_EPOCH (reproducible-builds.org/specs/source-date-epoch). */
 json_t *run_time(void)
 {
     char text[ROW_TIME_MAX];

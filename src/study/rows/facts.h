@@ -23,7 +23,7 @@ json_t *run_study_facts(const study *s);
 json_t *run_machine_facts(const topology *machine);
 json_t *run_facts(const study *s, const topology *machine, const run_environment *environment, const char *id,
                   long shard, long shards);
-/* The current time as text, or that of SOURCE_DATE_EPOCH (reproducible-builds.org/specs/source-date-epoch). */
+/* The current time as text, or the time in SOURCE_DATE_EPOCH (reproducible-builds.org/specs/source-date-epoch). */
 json_t *run_time(void);
 
 /* The commit checked out in folder, 40 hex digits, which the caller frees; *dirty: tracked files differ from it. NULL

@@ -183,8 +183,9 @@ static status refuse(const row_files *files, diagnostic *why)
             continue;
         diagnostic_locate(why, at->path, at->line, 1);
         return diagnose(why, STATUS_BAD_INPUT,
-                        at->fault == ROW_DAMAGED ? "move the file away, or use a copy without this line"
-                                                 : "two processes ran the same cells: move one of the files away",
+                        at->fault == ROW_DAMAGED
+                            ? "move the file away, or use a copy without this line"
+                            : "keep one of the rows: move the other's file away, or use a copy without its line",
                         "%s", at->text);
     }
     return STATUS_OK;

@@ -96,7 +96,7 @@ static bool same_row(const row_ref *a, const row_ref *b)
     return has_values(a, b) && has_values(b, a);
 }
 
-/* Drops the later of two rows with the same key. */
+/* Drops the later of two rows with the same key, with an issue unless it is the same row in another file. */
 static status drop_twin(row_files *files, const row_ref *first, row_ref *second, diagnostic *why)
 {
     const char *path = path_of(files, second->table);
@@ -132,7 +132,8 @@ typedef struct equal_columns {
     int column[128];
     size_t count;
     int marked, film, expected;
-    bool has_first_header; /* the header of the first table, so that columns have the same numbers */
+    bool
+        has_first_header; /* the header equals that of the first table, so that columns have the same numbers in both */
 } equal_columns;
 
 static equal_columns find_equal_columns(const csv *table)
@@ -186,7 +187,8 @@ static int first_difference(const equal_check *c, const row_ref *a, const row_re
     return -1;
 }
 
-/* The row with which most rows agree (Boyer and Moore's majority vote, 1991). */
+/* The row with which the majority of the rows agree, or any row if there is no majority (Boyer and Moore's majority
+ * vote, 1991). */
 static const row_ref *vote(const equal_check *c, row_ref *const *rows, size_t count)
 {
     const row_ref *leader = NULL;

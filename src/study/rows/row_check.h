@@ -3,10 +3,12 @@
 
 #include "study/rows/row_files.h"
 
-/* Fails if a file lacks a column that identifies its rows. Other columns may be missing or added, in any order. */
+/* Fails if a file lacks a required column (`needed` in row_check.c). Other columns may be missing or added, in any
+ * order. */
 status row_check_columns(const csv *table, const char *path, row_kind kind, diagnostic *why);
 
-/* Drops equal rows of two files; drops the later of two rows of one file, or with different values, as an issue. */
+/* Drops the later of two rows of one repetition (and worker). Unless it is the same row in another file, that is an
+ * issue. */
 status row_check_drop_twins(row_files *files, diagnostic *why);
 
 /* Drops worker rows whose repetition has no row: the process was killed between the two writes. */

@@ -69,7 +69,7 @@ static status list_shards(const char *folder, row_kind kind, shard_name **list, 
     *count = 0;
     *list = NULL;
     if (found < 0 && errno != ENOENT)
-        return system_error(why, STATUS_FAILURE, folder, "cannot be read", errno, "give a folder that can be read");
+        return system_error(why, STATUS_FAILURE, folder, "cannot be read", errno, "make the folder readable");
     *list = calloc(found > 0 ? (size_t)found : 1, sizeof **list);
     for (int i = 0; i < found; i++) {
         *count += *list && parse_shard(entries[i]->d_name, kind, &(*list)[*count]);

@@ -23,7 +23,7 @@ typedef struct row_ref {
 /* The row's value in the named column; "NA" and NaN if there is none. For many rows, look the column up once. */
 const char *row_field(const row_ref *ref, const char *name);
 double row_field_real(const row_ref *ref, const char *name);
-/* The key of the row's environment, 8 hex digits. */
+/* The key of the row's environment, 8 hex digits, or "unknown". */
 const char *row_environment(const row_ref *ref);
 
 /* What is wrong with a row, or between rows. */
@@ -36,7 +36,7 @@ typedef enum row_fault {
     ROW_MISSING,   /* rows at the end of a run are missing */
     ROW_DUPLICATE, /* the same repetition twice in one file, or with different values */
     ROW_DIFFERS,   /* a quantity that does not depend on the machine differs from the other rows of the cell */
-    ROW_UNKNOWN    /* its run or its place in runs.json is not known, or was edited */
+    ROW_UNKNOWN    /* its run is not in runs.json, or the run's environment there was edited */
 } row_fault;
 typedef struct row_issue {
     row_fault fault;
@@ -76,7 +76,8 @@ void row_files_destroy(row_files *files);
 /* Adds an issue; format as printf. */
 __attribute__((format(printf, 5, 6))) status row_files_add_issue(row_files *files, row_fault fault, const char *path,
                                                                  long line, const char *format, ...);
-/* Reports the first faults: the summary line that commands print, and STATUS_FAILURE; STATUS_OK without faults. */
+/* Reports the first fault and the number of the others as STATUS_FAILURE, for commands to print; STATUS_OK without
+ * faults. */
 status row_files_judge(const row_files *files, diagnostic *why);
 
 /* The environments of the rows, in the order of the first row of each; the caller frees the array. */

@@ -5,7 +5,7 @@
 #include "measure/levels.h"
 #include "study/rows/row_files.h"
 
-/* A column, or a quotient of two columns; `quantity` of job/quantities.h is a measured quantity. */
+/* A column, or a quotient of two columns; not a `quantity` of job/quantities.h, which describes a measured value. */
 typedef struct row_quantity {
     const char *name, *divisor; /* columns; divisor: NULL if it is not a quotient */
 } row_quantity;
@@ -17,14 +17,15 @@ typedef struct row_spread {
     double mean, minimum, maximum;
 } row_spread;
 
-/* The value of each row; NaN if it is unknown, if a file lacks the column, and for a divisor of 0. */
+/* The value of each row; NaN if it is unknown, if a file lacks the column, for a divisor of 0, and for a negative
+ * time. */
 void row_quantity_values(const row_ref *const *rows, size_t count, row_quantity quantity, double *values);
 
 /* Writes only the known values, without gaps, and returns their number. */
 size_t row_quantity_known(const row_ref *const *rows, size_t count, row_quantity quantity, double *values);
 
 /* The values that the quantity can have (measure/levels.h): a fraction, 0 or more, or more than 0. A column that this
- * version does not know counts as more than 0, unless it has other values. */
+ * version does not know counts as more than 0; level_median uses a wider range if a value is outside it. */
 level_range row_quantity_range(row_quantity quantity);
 
 /* The median of the values of these rows and its 95% interval, by process, because repetitions of one run are alike

@@ -11,7 +11,7 @@
 #include <string.h>
 
 /* Maps identities of a study's cells to their numbers. If the grid is not known (study.identity is NULL), every
- * identity is a cell, and its number. */
+ * identity is a cell, and is the cell's number. */
 typedef struct row_cell {
     uint64_t identity;
     size_t cell;

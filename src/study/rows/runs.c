@@ -99,7 +99,7 @@ status runs_read(const char *folder, const char *root, run_list **out, diagnosti
     const int found = scandir(folder, &names, is_list_name, alphasort); /* runs.json is the first */
     *out = NULL;
     if (found < 0 && errno != ENOENT)
-        return system_error(why, STATUS_FAILURE, folder, "cannot be read", errno, "give a folder that can be read");
+        return system_error(why, STATUS_FAILURE, folder, "cannot be read", errno, "make the folder readable");
     run_list *all = calloc(1, sizeof *all);
     if (all)
         all->files = calloc(found > 0 ? (size_t)found : 1, sizeof(json_t *));

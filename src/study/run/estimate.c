@@ -114,7 +114,8 @@ static bool lacks_files(const run *r, size_t cell)
     return keep_missing(r->s, r->folder, cell) || (r->s->reference.count && !r->compared[cell]);
 }
 
-/* In study_estimate_parts, a part without rows of a cell uses the times of rows of other parts. */
+/* Takes the times of existing rows as trials: in study_estimate_parts, a part without rows of a cell uses those of
+ * other parts. */
 static void use_rows_as_trials(const trials *t)
 {
     const run *r = t->r;
@@ -166,7 +167,7 @@ static double mean_trial(const trials *t, const double *values)
     return tried ? sum / (double)tried : NAN;
 }
 
-/* Each further process warms up the cell. */
+/* The warm-ups that the cell still needs: each further process warms it up. */
 static size_t warmups_of(const run *r, size_t cell)
 {
     const size_t least = (size_t)progress_index_least(r->done), counted = r->done->cells[cell].counted;
@@ -342,7 +343,7 @@ static void write_basis(FILE *out, const study_estimate *e)
         fprintf(out, "%strial frames of %zu cell%s, extrapolated in pixels", before, e->from_trials,
                 e->from_trials == 1 ? "" : "s");
     if (e->from_others)
-        fprintf(out, "; for %zu other cell%s their mean", e->from_others, e->from_others == 1 ? "" : "s");
+        fprintf(out, "; for %zu other cell%s the mean of the trials", e->from_others, e->from_others == 1 ? "" : "s");
     if (e->comparisons)
         fprintf(out, "; without the reference images");
     fputc('\n', out);

@@ -8,7 +8,7 @@
 
 typedef struct study_estimate {
     size_t cells, cells_lacking;  /* of the shard; lacking: with missing repetitions */
-    size_t rows_least, rows_most; /* bounds on missing repetitions; equal without a relative_width */
+    size_t rows_least, rows_most; /* bounds on missing repetitions; equal without relative_width and undisturbed */
     size_t warmups;
     size_t cells_to_keep; /* cells with one more frame, for kept files or the comparison with their reference */
     size_t files, comparisons;

@@ -338,7 +338,7 @@ void progress_images(progress_display *line, size_t cell, size_t img, size_t ima
     line->now.img = img;
     line->now.images = images;
     if (img == 1)
-        line->shown_s = 0; /* kept files are not part of the estimate */
+        line->shown_s = 0; /* show it immediately: the estimate has ended, kept files are not part of it */
     progress_show(line, 0);
 }
 

@@ -7,16 +7,17 @@
 #include "study/rows/environment.h"
 #include "study/study.h"
 
-/* The film that a build of the program renders of cells that must have the same film (study_cell_film); another build
+/* The film that a build of the program renders for cells that must have the same film (study_cell_film); another build
  * may render another. */
 typedef struct progress_index_expected {
     uint64_t build, film_hash;
 } progress_index_expected;
 
 typedef struct progress_index_cell {
-    size_t rows, counted, marked;  /* counted: repetitions of the environment that are not warm-ups; rows: all */
-    size_t disturbed, undisturbed; /* counted rows; it is not known of the others */
-    long next_repetition;          /* one more than the highest existing number */
+    size_t rows, counted, marked; /* counted: repetitions of the environment that are not warm-ups; rows: all */
+    size_t disturbed,
+        undisturbed;      /* counted rows; the other counted rows are not judged, because their noise is unknown */
+    long next_repetition; /* one more than the highest existing number */
     /* The film of the first row of each build, stored with the first cell that must have this film
      * (study_cell_film). */
     progress_index_expected *film;
@@ -57,20 +58,21 @@ typedef struct progress_index_filter {
 } progress_index_filter;
 status progress_index_read(const study *s, const char *results, const progress_index_filter *filter,
                            progress_index **out, diagnostic *why);
-/* The smallest and the largest number of repetitions of a cell, of all or of the shard's part. They differ with a
- * relative_width. */
+/* The smallest and the largest number of repetitions of a cell, of all or of the shard's part. They differ with
+ * relative_width or undisturbed. */
 long progress_index_least(const progress_index *index);
 long progress_index_most(const progress_index *index);
 /* Adds a new row. */
 status progress_index_add(progress_index *index, const progress_index_entry *entry, diagnostic *why);
 void progress_index_destroy(progress_index *index);
 
-/* The film hash that a cell must have: that of the first row that the build made of any cell with the same film, or
- * film_hash if there is none. progress_index_build: the present build. */
+/* The film hash that a cell must have: the hash in the first row that the build wrote for any cell with the same film,
+ * or film_hash if there is none. progress_index_build: the present build. */
 uint64_t progress_index_film(const progress_index *index, size_t cell, uint64_t build, uint64_t film_hash);
 uint64_t progress_index_build(void);
 
-/* Whether the cell has enough repetitions: the maximum, or at least the minimum and a sufficiently narrow interval. */
+/* Whether the cell has enough repetitions: the maximum; or, with undisturbed, that many undisturbed rows; or, with
+ * relative_width, at least the minimum and a sufficiently narrow interval. */
 bool progress_index_cell_done(const progress_index *index, size_t cell);
 
 /* The display. Without a terminal and callbacks, every call does nothing. */
@@ -81,7 +83,7 @@ progress_display *progress_begin(const study *s, const study_options *options);
  * repetitions, up to repetitions_max, times the mean time of the cell so far (of all cells if it has none). */
 void progress_count(progress_display *line, size_t cell, const progress_index *done, const size_t *cells,
                     size_t cell_count);
-/* All cells are measured; reported immediately. */
+/* Call when all cells are measured; updates the display immediately. */
 void progress_measured(progress_display *line, const progress_index *done, const size_t *cells, size_t cell_count);
 /* Call before the kept files of a cell are made; img counts such cells from 1 to images. */
 void progress_images(progress_display *line, size_t cell, size_t img, size_t images);

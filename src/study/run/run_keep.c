@@ -107,8 +107,9 @@ static status keep_cell(run *r, size_t cell, diagnostic *why)
     THEN(code, run_load(r, setting, why));
     THEN(code, run_render(r, setting, keeps ? &wanted : NULL, &frame, why));
     if (code == STATUS_OK && frame.film_hash != progress_index_film(r->done, cell, r->build, frame.film_hash))
-        code = diagnose(why, STATUS_FAILURE, "look for marked rows; the image must depend only on the scene",
-                        "the image of cell %zu differs from that of its rows", cell);
+        code = diagnose(why, STATUS_FAILURE,
+                        "list marked rows with `cuvette study verify`; the film must depend only on the scene",
+                        "the image of cell %zu has another film than the cell's rows", cell);
     if (code == STATUS_OK && keeps)
         code = keep_write(r->s, r->folder, &(kept_cell){cell, &frame}, why);
     if (code == STATUS_OK && compares)

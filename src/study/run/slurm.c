@@ -46,7 +46,7 @@ double slurm_longest_s(const study_estimate *parts, size_t count)
 
 void slurm_time_limit(double longest_s, double factor, char text[SLURM_TIME])
 {
-    const double most_min = 1e8; /* a limit that Slurm still reads */
+    const double most_min = 1e8; /* a limit that Slurm still accepts */
     const long minutes = (long)fmin(fmax(ceil(longest_s * factor / 60), SLURM_LEAST_MIN), most_min);
     const long hours = minutes / 60 % 24, days = minutes / (24 * 60);
     if (days)

@@ -28,14 +28,15 @@ double slurm_longest_s(const study_estimate *parts, size_t count);
 enum { SLURM_LEAST_MIN = 10, SLURM_TIME = 32 };
 void slurm_time_limit(double longest_s, double factor, char text[SLURM_TIME]);
 
-/* What the largest cell needs. memory_gib: a half for the program and its scene, and 64 bytes for each pixel. */
+/* What the largest cell needs. threads: at least 1. memory_gib: half a GiB for the program and its scene plus 64 bytes
+ * for each pixel, rounded up. */
 typedef struct slurm_needs {
     long threads, memory_gib;
 } slurm_needs;
 status slurm_needs_of(const study *s, slurm_needs *out, diagnostic *why);
 
-/* The key of the environment with most rows among those of nodes of the type, measured by this build; "none", which is
- * no key, without rows. unlike: how another such environment differs from it; "" if there is none. others: the rows of
- * other types and builds. */
+/* The key of the environment with most rows, among the environments of nodes of this type and of this build; "none",
+ * which is no key, if there are no such rows. unlike: how another such environment differs from it; "" if there is
+ * none. others: the rows of other types and builds. */
 status slurm_environment(const study *s, const char *results, const char *node_type, char key[ENVIRONMENT_KEY],
                          char *unlike, size_t size, size_t *others, diagnostic *why);

@@ -54,13 +54,13 @@ static double deviation_of(const level_sample *a, const level_sample *b)
     return a->processes > 1 ? sqrt(fmax(0.0, (squares - sum * sum / n) / (n - 1))) : NAN;
 }
 
-/* The number of pairs that finds a relative difference `detect`; 0: the default difference. */
+/* The number of pairs of processes that finds a relative difference of detect (0: DETECT); 0: unknown or too many. */
 static size_t pairs_for(double deviation, size_t processes, double detect)
 {
     return power_pairs(power_upper_deviation(deviation, processes, UPPER), log1p(detect > 0 ? detect : DETECT), POWER);
 }
 
-/* Sets verdict and reason; values, processes: of the side with fewer. */
+/* Sets verdict and reason; values, processes: their numbers on the side that has fewer. */
 static void decide(contrast_line *line, size_t values, size_t processes)
 {
     line->verdict = CONTRAST_CANNOT_TELL;

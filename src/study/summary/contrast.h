@@ -26,7 +26,7 @@ typedef struct study_side {
 #define STUDY_SIDE_ANY ((size_t)-1)
 
 /* results: the folder unless the text names one. STATUS_BAD_INPUT for an unknown parameter or value, or a cell that the
- * study does not have; the remedy names those that exist. */
+ * study does not have; the remedy says where to find or lists those that exist. */
 status side_read(const study *s, const char *text, const char *results, study_side *out, diagnostic *why);
 /* The side of all rows of a results folder, whatever its name is. Owns nothing. */
 study_side side_of_folder(const char *results);
@@ -62,8 +62,8 @@ typedef struct contrast_line {
     contrast_verdict verdict;
     contrast_reason reason;
     /* Pairs of processes, each with as many repetitions as now, that find a difference of contrast_options.detect with
-     * 95% probability; 0: unknown or more than 10000. Its standard deviation is the upper limit, at 90%, of the one
-     * that was observed. */
+     * 95% probability; 0: unknown or more than 10000. It is computed with the upper 90% limit of the observed standard
+     * deviation. */
     size_t pairs_needed;
 } contrast_line;
 
@@ -84,7 +84,8 @@ typedef struct contrast {
 } contrast;
 
 /* verdict, which may be NULL, becomes the first fault of the rows, as in study/summary/summary.h. STATUS_FAILURE if a
- * side has no rows at all. */
+ * side has no rows at all; STATUS_BAD_INPUT for a column without positive numbers, and for an unknown environment or
+ * run. */
 status contrast_make(const study *s, const study_side *a, const study_side *b, const contrast_options *options,
                      contrast **out, diagnostic *verdict, diagnostic *why);
 void contrast_destroy(contrast *c);

@@ -165,8 +165,9 @@ static void mark_small(side *s)
             s->left_out[s->process[i]] = s->stratum[k + 1] - s->stratum[k] < FEWEST_DRAWN;
 }
 
-/* Leaves out strata that are too small for an interval, if the other processes have all cells: a process lacks a cell
- * if a row was excluded or the run was interrupted. The process that alternates with it is left out as well. */
+/* Leaves out strata that are too small for an interval, if the other processes have all cells. Such strata arise if a
+ * process lacks a cell, because a row was excluded or the run was interrupted. The process of the other side that
+ * alternates with a process left out is left out as well. */
 static void leave_out_small(side *a, side *b)
 {
     mark_small(a);
@@ -234,7 +235,7 @@ static status estimate(const side *a, const side *b, contrast_all *out, diagnost
     return code;
 }
 
-/* The standard deviation of each process's mean over the cells, or, if b is given, of the differences of pairs. */
+/* The standard deviation of the processes' means over the cells, or, if b is given, of the differences of pairs. */
 static double deviation_of(const side *a, const side *b)
 {
     double sum = 0, squares = 0;

@@ -48,17 +48,17 @@ void contrast_sample_free(contrast_sample *s);
 bool contrast_alternate(const contrast_rows *ra, const contrast_sample *a, const contrast_rows *rb,
                         const contrast_sample *b);
 
-/* The line of a comparison over all its cells: each cell counts once, by the processes that measured it. A process
- * need not have all cells: a grid may have grown between two runs, and shards have cells of their own. Processes
- * with the same cells are a stratum, and resamples draw within each, so that every resample has every cell (Davison
- * and Hinkley, Bootstrap Methods and their Application, 1997, 3.2). */
+/* The line of a comparison over all its cells: each cell counts once, by the processes that measured it. A process need
+ * not have all cells: a grid may have grown between two runs, and each shard has other cells. Processes with the same
+ * cells are a stratum, and resamples draw within each, so that every resample has every cell (Davison and Hinkley,
+ * Bootstrap Methods and their Application, 1997, 3.2). */
 typedef struct contrast_all {
     level_interval ratio; /* logarithm of b over a, mean over the cells; no interval if a stratum has fewer than 3 */
     size_t values[2], processes[2]; /* their numbers on each side, over all cells */
     size_t fewest;                  /* processes in the smallest stratum of a side */
     size_t fewest_values;           /* of a cell, on the side with fewer */
     bool alternate;                 /* in each stratum; then the sides have the same strata, and are drawn together */
-    double deviation;               /* of a process' or a pair's mean over the cells; NaN with several strata */
+    double deviation; /* standard deviation of the processes' or pairs' means over the cells; NaN with several strata */
 } contrast_all;
 
 /* pairs: count cells of a and of b, all with rows on both sides. */

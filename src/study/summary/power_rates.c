@@ -33,8 +33,8 @@ static int by_place(const void *a, const void *b)
     return x->line < y->line ? -1 : x->line > y->line;
 }
 
-/* The number of a process, in the order of first rows. The search begins with the latest: rows of one are
- * neighbours. */
+/* The number of a process, in the order of first rows. The search begins with the latest, because rows of one process
+ * are neighbours. */
 static size_t process_of(const char *id, const char **ids, size_t *count)
 {
     for (size_t i = *count; i-- > 0;)
@@ -176,7 +176,7 @@ static status find(const value_table *t, const char *name, const value_cell **ou
 {
     *out = find_cell(t, name);
     return *out ? STATUS_OK
-                : diagnose(why, STATUS_BAD_INPUT, "give names from the column cell, such as 0,1",
+                : diagnose(why, STATUS_BAD_INPUT, "give two values of the column 'cell', such as 0,1",
                            "the rows have no cell '%.64s'", name);
 }
 
@@ -197,7 +197,8 @@ static int truth_of(const power_options *o, const level_interval *ratio)
     return ratio->value > 1 ? 1 : ratio->value < 1 ? -1 : 0;
 }
 
-/* Cells can be drawn together only if they have the same processes. */
+/* Adds the rates of a pair for each order and design that can be drawn. p->shared: both cells have the same processes,
+ * so that they can be drawn together. */
 static status try_pair(const pair *p, const power_options *o, power_rates *out, diagnostic *why)
 {
     level_interval ratio = {1, 1, 1};
@@ -221,8 +222,8 @@ static bool same_design(const design *a, const design *b)
     return a->order == b->order && a->processes == b->processes && a->repetitions == b->repetitions;
 }
 
-/* Adds the sums over all pairs after their rates. What disturbs a process disturbs all its cells, so their studies are
- * no more independent than those of one cell. */
+/* Adds the sums over all pairs after their rates. What disturbs a process disturbs all its cells, so studies of several
+ * cells are no more independent than studies of one cell. */
 static void add_sums(power_rates *r)
 {
     const size_t pairs = r->count;

@@ -200,7 +200,7 @@ static int compare_lines(const void *a, const void *b)
     return environment ? environment : (x > y) - (x < y);
 }
 
-/* A cell has a line for each environment with rows of it, or one without rows. */
+/* A cell has a line for each environment in which it has rows, or one line if it has none. */
 static status put_cell(const study *s, cell_rows *cell, row_ref *const *rows, size_t count, diagnostic *why)
 {
     size_t from = 0, to;

@@ -1,14 +1,14 @@
 /* A study's rows as tables. Warm-ups, marked rows and those that a person excluded (study/rows/excluded.h) are left out
  * of every value except their counts; rows that cannot be trusted (study/rows/row_files.h) are left out everywhere.
  * Rows of unlike environments are never in one line. verdict, which may be NULL, becomes the first of the rows' faults,
- * or stays as it is; the caller checks out for write errors (ferror). A study without any row is STATUS_FAILURE, and
- * nothing is written. */
+ * or stays as it is; the caller checks the stream `out` for write errors (ferror). A study without any row is
+ * STATUS_FAILURE, and nothing is written. */
 #pragma once
 
 #include "study/study.h"
 
 typedef struct summary_options {
-    const char *environment; /* key of the environment whose rows are used; "main": that with most rows; NULL: all */
+    const char *environment; /* key of the environment whose rows are used; "main": the one with most rows; NULL: all */
 } summary_options;
 
 /* The summary: one line per cell and environment, tab separated, medians and intervals (results/tables/<study>.tsv).
@@ -43,9 +43,9 @@ double summary_table_real(const summary_table *t, size_t row, long column);
 
 /* Any column of rows.csv by cell, with the 95% interval of its median: for quantities without an interval in the
  * summary, and for quotients of two columns, formed row by row. columns: names separated by commas; A/B is the quotient
- * of two columns of one row. Writes lines for each cell with rows: cell, each path of the grid, environment, column, n,
- * median, low and high (the interval; NA for n below 6), min, max; tab separated, NA for unknown values.
- * STATUS_BAD_INPUT if rows.csv has no such column or none is given. */
+ * of two columns of one row. Writes a line for each column, cell and environment with rows: cell, each path of the
+ * grid, environment, column, n, median, low and high (the interval; NA for n below 6), min, max; tab separated, NA for
+ * unknown values. STATUS_BAD_INPUT if rows.csv has no such column or none is given. */
 status study_spread(const study *s, const char *results, const char *columns, const summary_options *options, FILE *out,
                     diagnostic *verdict, diagnostic *why);
 

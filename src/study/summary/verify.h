@@ -10,11 +10,12 @@ typedef struct study_verdict {
     diagnostic first; /* the first fault; what is empty without one */
 } study_verdict;
 
-/* Writes one line per issue, "FILE:LINE: KIND: TEXT", then one line for each environment, and a last line with the
- * number of rows. */
+/* Writes one line per issue, "FILE:LINE: KIND: TEXT"; after the issues of rows.csv, one line for each environment; and
+ * last a line with the numbers of rows and faults. */
 status study_verify(const study *s, const char *results, FILE *out, study_verdict *verdict, diagnostic *why);
 
-/* How the present environment differs from that of the latest rows of another one; "" if unknown. */
+/* The differences between the present environment and the environment of the latest rows that were measured in another
+ * one; "" if there are no such rows, or if they cannot be read. */
 void study_environment_difference(const study *s, const char *results, char *text, size_t size);
 
 typedef struct study_films {
