@@ -32,7 +32,7 @@
 typedef struct animate_totals {
     int64_t rendered, kept;
     double wall_s;            /* render time */
-    double step_s, surface_s; /* seconds spent on steps and surfaces, also for kept frames */
+    double step_s, surface_s; /* seconds spent on steps, also for kept frames, and on surfaces */
     double simulated_s;
     uint64_t steps;
 } animate_totals;
@@ -114,13 +114,13 @@ static status flush_stream(animation_job *f, diagnostic *why)
         return STATUS_OK;
     if (errno == EPIPE)
         return STATUS_FAILURE;
-    status result = file_writer_commit(&f->stream, why); /* has the reason of the failure */
+    status result = file_writer_commit(&f->stream, why); /* reports the reason of the failure */
     return result == STATUS_OK ? diagnose(why, STATUS_FAILURE, "", "cannot write the animation") : result;
 }
 
 static status write_image(animation_job *f, const char *path, const film *img, diagnostic *why)
 {
-    if (path) /* the slimes of the scene have the time of this frame */
+    if (path) /* a PNG also stores the scene, whose slimes are at the time of this frame */
         return record_image(img, f->s, path, 8, why);
     image *frame = NULL;
     status result = film_image(img, &frame, why);

@@ -42,9 +42,10 @@ void animate_names_release(animate_names *names);
 /* The path of a frame, allocated; NULL when out of memory. */
 char *animate_name(const animate_names *names, int64_t frame);
 
-/* The definition of an animation: everything that changes its frames. parameters holds all parameters except those that
- * affect only performance (param.performance_only) and file names, plus frame rate and start; hash also covers the
- * contents of the files. The duration is not part of the definition. */
+/* The definition of an animation: everything that changes its frames. parameters holds all parameters except those
+ * without effect on the frames (param.performance_only, beams that do not light the scene), file names, and time_s of
+ * slimes, plus frame rate and start; hash also covers the contents of the files. The duration is not part of the
+ * definition. */
 typedef struct animate_definition {
     json_t *parameters; /* text by path */
     uint64_t hash;
@@ -95,6 +96,6 @@ typedef struct animate_row {
     const softbody *body;
 } animate_row;
 
-/* Does nothing if the file has the same row already. STATUS_BAD_INPUT if its row of this frame has another image
+/* Does nothing if the file has the same row already. STATUS_BAD_INPUT if the file's row of this frame has another film
  * hash. */
 status animate_rows_add(animate_rows *rows, const animate_row *row, diagnostic *why);

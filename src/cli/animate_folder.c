@@ -261,7 +261,7 @@ status animate_names_check(const animate_names *names, const scene *s, diagnosti
     if (!scene_files_any(s, is_frame, &x))
         return STATUS_OK;
     return options_wrong("-o", names->pattern, why, elsewhere,
-                         "the scene is read from %s, which has the name of a frame", x.found);
+                         "the scene reads %s, which has the name of a frame or of the index", x.found);
 }
 
 /* --- the index --- */

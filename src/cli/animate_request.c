@@ -77,7 +77,7 @@ static const command_option options[] = {
      OPTION_FILLS(option_text, animate_request, output)},
     {"script", 0, "FILE", "read the hand script of all slimes from FILE",
      OPTION_FILLS(option_text, animate_request, script)},
-    {"duration", 0, "S", "length in seconds (default: that of the script plus 2, or 4 without a script)",
+    {"duration", 0, "S", "length in seconds (default: 2 more than the script, or 4 without a script)",
      OPTION_FILLS(parse_seconds, animate_request, times.duration_s)},
     {"fps", 0, "N", "frames per second, such as 25 (the default) or 30000/1001", .store = parse_rate},
     {"start", 0, "S", "time of the first frame, in seconds since the start of the motion (default: 0)",
@@ -197,8 +197,9 @@ typedef struct visit_state {
     json_t *into;
 } visit_state;
 
-/* Skips parameters that change no film (but not the camera's, which also determine how it is shown), beams without
- * light, time_s of slimes, which the frame sets, and file names: only contents count, so that a folder may be moved. */
+/* Skips parameters that change no film (but not those of the camera, which also determine how the film is shown), beams
+ * without light, time_s of slimes, which the frame sets, and file names: only contents count, so that a folder may be
+ * moved. */
 static status add_param(void *context, const char *path, const param *row, const char *value)
 {
     const visit_state *state = context;

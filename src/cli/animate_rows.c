@@ -131,7 +131,7 @@ static status read_rows(animate_rows *rows, const char *path, const csv *there, 
     return STATUS_OK;
 }
 
-/* table_open with a remedy for animations; its own is for studies. */
+/* table_open with a remedy for animations: the remedy of table_open is for studies. */
 static status open_table(const char *path, const char *header, table **out, diagnostic *why)
 {
     const status result = table_open(path, header, out, why);

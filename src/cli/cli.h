@@ -1,7 +1,7 @@
 /* The commands of the program `cuvette`, and the dispatcher that they share. A command parses its options with argp,
- * calls the modules, and returns a status with the reason in a diagnostic. Only main.c prints the error and maps the
- * status to the exit code (0 success, 1 system failure, 2 invalid input, 130 interrupted). Data goes to standard
- * output, progress and errors to standard error. */
+ * calls the modules, and returns a status with the reason in a diagnostic. main.c prints the error and maps the status
+ * to the exit code (0 success, 1 system failure, 2 invalid input, 130 interrupted). Data goes to standard output,
+ * progress and errors to standard error. */
 #pragma once
 
 #include "base/status.h"

@@ -119,7 +119,7 @@ typedef struct lab_request {
 static const command_option options[] = {
     {"folder", 0, "DIR",
      "folder of the scenes, models and studies, where files are also saved; nothing outside it is read or written "
-     "(default: the working folder, or that of SCENE if SCENE is outside it)",
+     "(default: the working folder, or the folder of SCENE if that is outside it)",
      OPTION_FILLS(option_text, lab_request, folder)},
     {"results", 0, "DIR", "folder for the rows of studies, inside --folder (default: its subfolder results)",
      OPTION_FILLS(option_text, lab_request, results)},
@@ -137,7 +137,7 @@ static const command_form form = {
     .synopsis = "[SCENE]",
     .arguments_at = offsetof(lab_request, scene),
     .argument_limit = 1,
-    .excess_remedy = "give exactly one SCENE",
+    .excess_remedy = "give at most one SCENE",
     .excess = "unexpected argument '%.128s'",
     .about = "Open the laboratory in the browser: view a scene, change any of its parameters, inspect the rays of a "
              "pixel, compare images, edit the scene, move a slime, run studies. This program serves the page on "
@@ -148,8 +148,8 @@ static const command_form form = {
              "Ctrl-C ends the laboratory.",
 };
 
-/* The working folder if the scene is below it (or does not exist, which is reported later), otherwise the scene's
- * folder. Allocated. */
+/* The working folder, if no scene is given, or if the scene is below it or does not exist (which is reported later);
+ * otherwise the scene's folder. Allocated. */
 static char *choose_folder(const lab_request *request)
 {
     char here[PATH_MAX], there[PATH_MAX];
@@ -179,7 +179,7 @@ static void wait_for_stop(void)
         usleep(50000);
 }
 
-/* If the browser cannot be started, the printed address remains. */
+/* If the file for the browser cannot be written, a note says so: the printed address remains. */
 static void open_browser(const char *address, char **file)
 {
     diagnostic reason = {.line = 0};

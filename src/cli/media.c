@@ -49,7 +49,7 @@ static const command_form form = {
              "its width; output to a pipe or file is not wrapped.",
 };
 
-/* An entry of one of both catalogues; the other pointer is NULL. */
+/* An entry of either catalogue; the other pointer is NULL. */
 typedef struct media_choice {
     const medium *clear;
     const metal *opaque;

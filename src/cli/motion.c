@@ -52,7 +52,7 @@ static const char *number_text(double value, int digits, char text[NUMBER_TEXT_M
     return text;
 }
 
-/* The cells of a row as text; unit and what may have any length. */
+/* The cells of a row as text; `unit` and `what` may have any length. */
 typedef struct trial_cells {
     const char *name, *measured, *theory, *error, *unit, *what;
 } trial_cells;
@@ -131,7 +131,7 @@ static const scene_command motion_command = {
                  "toy.dt_s=0.0005"},
     .check = check_request,
     .check_scene = check_scene,
-    .unloaded = true, /* the trials simulate slimes of their own */
+    .unloaded = true, /* the trials create the slimes that they simulate */
     .run = run,
 };
 

@@ -117,7 +117,7 @@ static status check(const struct argp *argp, unsigned flags, int argc, char **ar
         if (leaves) /* argp prints the help and exits */
             break;
         if (key == KEY_OF_ARGP)
-            optopt = 0, key = '?'; /* unknown to our users */
+            optopt = 0, key = '?'; /* an unknown option for users */
         if (key == '?' || key == ':') {
             result = explain(&table, key, argv[0], copy[optind - 1], why);
             options_locate(why, argv[0]);

@@ -40,7 +40,7 @@ typedef struct command_form {
     const command_option *options; /* ended by an entry without a name; NULL for none */
     const char *synopsis, *about;
     size_t arguments_at, argument_limit; /* offset of the array in the request, and its length */
-    const char *excess, *excess_remedy;  /* error for a surplus argument, with one %s; NULL: a general one */
+    const char *excess, *excess_remedy;  /* error for a surplus argument, with at most one %s; NULL: a general one */
     void (*store_argument)(void *request, const char *argument); /* stores each of any number of arguments; or NULL */
     bool ends_at_argument;                                       /* parsing stops after the first argument */
 } command_form;

@@ -79,8 +79,9 @@ static status check_folder(const named_file *file, diagnostic *why)
     free(folder);
     if (!there)
         return refuse(file, why, "create it first, or give another", "the folder does not exist");
-    return open ? STATUS_OK
-                : refuse(file, why, "give a file in a folder of your own", "you may not write in the folder");
+    return open
+               ? STATUS_OK
+               : refuse(file, why, "give a file in a folder in which you may write", "you may not write in the folder");
 }
 
 typedef struct search {
@@ -134,7 +135,9 @@ static status check_image(const outputs *o, const named_file *file, bool is_map,
 {
     image_format format = image_format_of(file->path);
     if (strcmp(file->path, "-") == 0)
-        return refuse(file, why, "give a file that ends in .png, .jpg or .pfm", "standard output has no image format");
+        return refuse(file, why,
+                      is_map ? "give a file that ends in .png or .pfm" : "give a file that ends in .png, .jpg or .pfm",
+                      "standard output has no image format");
     if (is_map && format != IMAGE_PNG && format != IMAGE_PFM)
         return refuse(file, why, "use .png for an image with a colour scale, .pfm for the numbers",
                       "unsupported format of a map");

@@ -14,13 +14,13 @@ typedef struct outputs {
 
 /* The folder of a path, allocated; "." for a bare name. */
 char *outputs_folder_of(const char *path);
-bool outputs_same_entry(const char *a, const char *b);
+bool outputs_same_entry(const char *a, const char *b);        /* both exist, and are one file or folder */
 bool outputs_ends_with(const char *path, const char *ending); /* ignores case */
 bool outputs_is_page(const char *path);                       /* .html: cli/render.c writes it */
 
-/* Calls matches with each file that a scene reads until it returns true, and returns whether it did. Paths are relative
- * to the working folder: the scene file, its environment image, textures, meshes and scripts of slimes, but not files
- * that a mesh file refers to. */
+/* Calls `matches` with the path of each file that a scene reads, relative to the working folder, until it returns true;
+ * returns whether it did. The files are the scene file, its background image, textures, meshes and scripts of slimes,
+ * but not files that a mesh file refers to. */
 bool scene_files_any(const scene *s, bool (*matches)(void *context, const char *path), void *context);
 
 /* Checks endings and folders, and that no output equals another one or a file that the scene reads. */

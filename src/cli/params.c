@@ -30,12 +30,13 @@ static const command_form form = {
     .argument_limit = 2,
     .excess_remedy = "give at most one scene and one path or word",
     .excess = "unexpected argument '%.128s'",
-    .about = "Print the parameter table: name, default, unit, range, meaning. With a scene, print the parameters of "
-             "that scene and their values. With a path, a part of a path, or a word, print the matching parameters "
-             "only.\vThe same names are used by --set, by scene files (under their group) and by the grid of a study. "
-             "MESH, TEXTURE, LIGHT, MATERIAL and SOLID are placeholders for the names of a scene's objects. An element "
-             "of a vector is lamp.position.x (.y .z, for colours .r .g .b). On a terminal the lines are wrapped to its "
-             "width; a pipe or a file gets the full lines.",
+    .about =
+        "Print the parameter table: name, default, unit, range, meaning. With a scene, print the parameters of "
+        "that scene and their values. With a path, a part of a path, or a word, print the matching parameters "
+        "only.\vThe same names are used by --set, by scene files (under their group) and by the grid of a study. "
+        "MESH, TEXTURE, LIGHT, BEAM, MATERIAL and SOLID are placeholders for the names of a scene's objects. An "
+        "element of a vector is lamp.position.x (.y .z, for colours .r .g .b). On a terminal the lines are wrapped "
+        "to its width; a pipe or a file gets the full lines.",
 };
 
 static bool ends_with(const char *text, const char *ending)

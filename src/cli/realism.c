@@ -47,7 +47,7 @@ static status check_request(void *context, diagnostic *why)
                : STATUS_OK;
 }
 
-/* The cells of a row as text; unit and what may have any length. */
+/* The cells of a row as text; `unit` and `what` may have any length. */
 typedef struct metric_cells {
     const char *verdict, *metric, *measured, *theory, *error, *tolerance, *unit, *what;
 } metric_cells;

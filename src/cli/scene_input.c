@@ -193,7 +193,7 @@ void scene_input_note_tree(const scene_input *input, const scene *s)
 
 enum { PATH_MAX_HERE = 200 };
 
-/* Copies the path of a change: path, or the part of text before '='. */
+/* Copies a change's parameter path: `path`, or if it is NULL, `text` up to its '='. False if the path is too long. */
 static bool path_of(const char *path, const char *text, char out[PATH_MAX_HERE])
 {
     const size_t length = path ? strlen(path) : strcspn(text, "=");
@@ -246,8 +246,8 @@ static bool is_set_again(const scene_input *input, size_t at, const char *path)
     return false;
 }
 
-/* Copies the scene and sets time_s of its slimes, as an animation does: so the value on the command line has no
- * effect. */
+/* Copies the scene and sets time_s of its slimes, as an animation does. At time_s = 0, which scene_input_read sets, the
+ * parameters of their motion would count as without effect. */
 static scene *in_motion(const scene *s)
 {
     scene *moved = scene_clone(s);

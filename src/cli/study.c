@@ -200,9 +200,9 @@ static status run_part(const study *s, const study_request *request, diagnostic 
 {
     size_t rows = 0;
     if (request->process > study_processes(s))
-        return options_wrong("--process", NULL, why, "use a number from 1 to `processes` of the study file",
+        return options_wrong("--process", NULL, why, "use a number from 1 to this number of processes",
                              "%s has %ld processes", s->path, study_processes(s));
-    os_die_with_parent(); /* its rows survive, and the next run needs their files */
+    os_die_with_parent(); /* it would keep the row files locked for the next run; its rows are kept */
     const status result = measure(s, request, &rows, why);
     if (result == STATUS_INTERRUPTED)
         *why = (diagnostic){.what = ""};

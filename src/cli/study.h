@@ -70,8 +70,8 @@ status study_check_room(const study *s, const study_request *request, const stud
 status study_dry_run(const study *s, const study_request *request, diagnostic *why);
 
 /* Runs a study that divides its repetitions among fresh processes, one after the other. With --against=PROGRAM the same
- * process of the other program precedes or follows each one, at random; its rows go to the results folder with
- * -against. Two builds that alternate in this way can be compared. */
+ * process of the other program precedes or follows each one, at random; its rows go to the folder DIR-against, if DIR
+ * is the results folder. Two builds that alternate in this way can be compared. */
 status study_run_processes(const study *s, const study_request *request, diagnostic *why);
 
 /* `study run --instructions`: the study runs under valgrind, which counts the instructions of each frame

@@ -91,8 +91,8 @@ static bool same_but_numbers(const char *a, const char *b)
     }
 }
 
-/* A sweep over a quantity passes through unusual values on purpose: hints at it are dropped, except those on ranges in
- * which a medium was measured. */
+/* A sweep over a quantity passes through unusual values on purpose: hints on this quantity are dropped, except hints on
+ * the range in which a medium was measured. */
 static bool is_intended(const collector *c, const char *place)
 {
     if (c->keeps_intended)

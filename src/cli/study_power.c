@@ -42,7 +42,7 @@ static status parse_cells(const command_option *o, void *context, const char *va
     const char *comma = strchr(value, ',');
     const size_t first = comma ? (size_t)(comma - value) : 0;
     if (!first || first >= sizeof r->cells[0] || !comma[1] || strlen(comma + 1) >= sizeof r->cells[1])
-        return options_wrong("--cells", value, why, "give two names in the column cell, such as 0,1",
+        return options_wrong("--cells", value, why, "give two values of the column 'cell', such as 0,1",
                              "two cells are necessary");
     snprintf(r->cells[0], sizeof r->cells[0], "%.*s", (int)first, value);
     snprintf(r->cells[1], sizeof r->cells[1], "%s", comma + 1);
@@ -113,9 +113,9 @@ static const command_form form = {
     .about =
         "How often would a study with fewer repetitions mislead? Studies of 1, 3, 10 .. repetitions are drawn from "
         "measured rows, and judged by rules that people use.\vEach cell is compared with itself: every claim of a "
-        "difference is false. With two files, such as the rows of a quiet and of a loaded machine, it is compared with "
-        "the cell of that name in the other one. With --cells the claims with the wrong sign are counted, and the "
-        "studies without a claim.\n"
+        "difference is false. With two files, such as the rows of a quiet and of a loaded machine, each cell is "
+        "compared with the cell of the same name in the other file. With --cells the claims with the wrong sign are "
+        "counted, and the studies without a claim.\n"
         "Rules: sign (the larger median), effect (medians differ by more than --effect), t (Student's test), medians "
         "(95% intervals of the medians by order statistics are disjoint), processes (the same, resampled by process) "
         "and ratio (the interval of 'cuvette study compare').\n"
@@ -166,7 +166,8 @@ static void print_tsv(const power_rates *r)
         }
 }
 
-/* The percentage of wrong claims, "12 [4, 27]"; for two different cells that of wrong claims and of none, "12 / 30". */
+/* The percentage of studies with a wrong claim, "12 [4, 27]"; if the cells are known to differ, the percentages with a
+ * wrong claim and without a claim, "12 / 30". */
 static char *rate_text(const power_rate *r, design_rule rule)
 {
     const fraction_interval wrong = power_wrong_claims(r, rule), silent = power_no_claims(r, rule);

@@ -54,7 +54,7 @@ static status parse_sbatch(const command_option *o, void *request, const char *v
 
 static const command_option options[] = {
     {"slurm", 0, NULL, "submit to Slurm, by sbatch", OPTION_FILLS(option_flag, submit_request, slurm)},
-    TEXT("partition", 'p', "NAME", "partition of the cluster (default: Slurm's own)", partition),
+    TEXT("partition", 'p', "NAME", "partition of the cluster (default: the cluster's default)", partition),
     TEXT("constraint", 'C', "FEATURES", "features that nodes must have, so that all are of one type", constraint),
     TEXT("node-type", 0, "NAME", "name of the type of node (default: partition and constraint)", node_type),
     {"tasks", 0, "N", "parts of the study, one task of the array each (default: 16, or one per cell)",
@@ -277,7 +277,7 @@ static status say_complete(const submission *job, diagnostic *why)
 {
     const char *results = job->request->results, *path = job->s->path;
     printf(
-        "%s: complete, nothing to submit; if the job that merges the rows did not: cuvette study merge --results %s %s "
+        "%s: complete, nothing to submit; if the job that merges the rows failed: cuvette study merge --results %s %s "
         "&& cuvette study verify --results %s %s\n",
         job->s->name, results, path, results, path);
     return terminal_flush(why);

@@ -1,5 +1,5 @@
 /* Terminal and signals: the progress line, colour, the stop request of SIGINT, SIGTERM and SIGHUP, and checked standard
- * output. The stop flag and the exit handler are the program's only global state. */
+ * output. The stop request, standard output and the exit handler are global state of the program. */
 #pragma once
 
 #include "base/status.h"

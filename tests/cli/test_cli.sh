@@ -645,7 +645,7 @@ refused_lab() { # WHAT ERROR ARGUMENT...
     check "lab refuses $what" matches "$code $(wc -l <err) $(wc -c <out) $(<err)" "^2 1 0 cuvette: $error"
 }
 mkdir -p elsewhere
-refused_lab "two scenes" "lab: unexpected argument 'here.yaml'; give exactly one SCENE" here.yaml here.yaml
+refused_lab "two scenes" "lab: unexpected argument 'here.yaml'; give at most one SCENE" here.yaml here.yaml
 refused_lab "a missing scene" 'nowhere.yaml: ' nowhere.yaml
 refused_lab "a scene outside of its folder" 'here.yaml: is not in the folder' --folder elsewhere here.yaml
 refused_lab "a missing folder" "'nowhere' is not a folder" --folder nowhere
