@@ -30,7 +30,7 @@ static void print_keys(const quantity *list, size_t count, const char *before)
 int main(void)
 {
     print_keys(frame_quantities, frame_quantity_count, "");
-    puts(".PP\nAnd in each object of the list\n.BR threads ,\none a worker, of the last frame:");
+    puts(".PP\nThe list\n.B threads\nhas an object for each worker, with keys of the last frame:");
     print_keys(worker_quantities, worker_quantity_count, "threads[].");
     return fflush(stdout) == 0 ? 0 : 1;
 }

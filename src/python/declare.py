@@ -1,7 +1,7 @@
 """Writes the generated half of the Python module: `declare.py cuvette.h PARAMETERS.json FOLDER`.
 
 `_declarations.py` has the declarations of cuvette.h, taken from the header itself, in cffi's out-of-line ABI mode:
-plain Python text that loads the shared library when it is imported. No compiler is needed to install it, and one
+plain Python text, with which _library.py loads the shared library. No compiler is needed to install it, and one
 package serves every architecture. `_documents.py` has the header's comments and the parameter table, for docstrings.
 """
 

@@ -90,7 +90,7 @@ status page_live_code(char **code, diagnostic *why)
     if (!path)
         return diagnose(why, STATUS_BAD_INPUT,
                         "build it with 'make setup-wasm setup-site site', or set CUVETTE_LIVE to its path",
-                        "there is no %s, the laboratory in one file", live_file());
+                        "cannot find the laboratory in one file, %s", live_file());
     status result = file_read(path, LIVE_MAX, &text, &size, why);
     THEN(result, pack(text, size, code, why));
     free(text);

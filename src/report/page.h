@@ -29,8 +29,8 @@ status page_write_html(const page_content *page, FILE *out, diagnostic *why);
 #define PAGE_LIVE_FILE "live.html"
 
 /* The path of live.html, the first that exists: $CUVETTE_LIVE (only this one if it is set); the folder of the running
- * program; ../share/cuvette relative to it, where `make install` puts it. NULL if there is none, or, with errno ENOMEM,
- * when out of memory. */
+ * program; ../share/cuvette or ../../share/cuvette relative to it, where `make install` puts it. NULL if there is none,
+ * or, with errno ENOMEM, when out of memory. */
 char *page_live_path(void);
 
 /* The laboratory as base64. STATUS_BAD_INPUT if there is no live.html; the remedy says how to build it. */

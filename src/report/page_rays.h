@@ -22,7 +22,7 @@ typedef struct page_ray {
 typedef struct page_rays {
     page_ray *ray; /* the heaviest, in the order of tracing */
     size_t count, capacity;
-    size_t traced; /* not counting rays that depth or weight cut off */
+    size_t traced; /* rays, without those that depth or weight cut off */
     bool beams;
     int x, y; /* the pixel whose rays are shown, if there are no beams */
     double lambda_nm;

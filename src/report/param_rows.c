@@ -27,7 +27,7 @@ static const char *or_dash(const char *text)
 
 /* Column widths of the table. A terminal without room for the range column gets the range before the meaning. */
 typedef struct table_widths {
-    int path, value, unit, range; /* range 0: no column of its own */
+    int path, value, unit, range; /* range 0: no column */
 } table_widths;
 
 static table_widths measure(const param_lines *all, const char *value_title, int columns)
@@ -211,7 +211,8 @@ status param_rows_json(const scene *s, const scene *opened, const char *filter, 
     return result == STATUS_OK && !*out ? out_of_memory(why) : result;
 }
 
-/* roff reads '-' as a hyphen, '\' as an escape, and '.' or a quote at the start of a line as a request. */
+/* roff reads '-' as a hyphen, '\' as an escape, '^' as an accent, and '.' or a quote at the start of a line as a
+ * request. */
 static void write_roff(FILE *stream, const char *text)
 {
     fputs(*text == '.' || *text == '\'' ? "\\&" : "", stream);

@@ -22,7 +22,8 @@ json_t *report_note(const char *place, const char *text, const char *remedy);
 json_t *report_quantity(const quantity *q, const job_account *a, int worker);
 
 /* The numbers of an image that the laboratory's page shows, and the notes on it. They reach it as part of `image` in
- * the state and in events: web/live/render_worker_snapshot.c, shared_image.c, web/lab.c, page/shared/store.js. */
+ * the state and in events: web/live/render_worker_snapshot.c and shared_image.c, web/lab.c,
+ * web/page/shared/store.js. */
 json_t *report_image_numbers(const job_account *a);
 
 /* Each parameter of the scene under its path, as a number, list or word. */

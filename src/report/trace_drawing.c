@@ -21,7 +21,7 @@ static const ray_style styles[] = {
 };
 static const ray_style blocked = {SVG_GREY, "blocked", "5,3"};
 
-/* The weight of a shadow ray is that of its parent, because its own throughput is a radiance. */
+/* A shadow ray has the weight of its parent, because its own throughput is a radiance. */
 static double weight_of(const ray_tree *tree, const ray_node *node)
 {
     const ray_node *weighted = node->kind == RAY_SHADOW ? &tree->node[node->parent] : node;
@@ -223,10 +223,10 @@ status trace_write_drawing(const traced *t, FILE *out, diagnostic *why)
     THEN(result, draw_view(t, out, &other, &second, caption, why));
     draw_key(out, DIAGRAM_BEFORE, foot + 14.0);
     diagram_media_key(out, t->p, t->s, DIAGRAM_BEFORE, 2.0 * full, foot + 36.0);
-    snprintf(
-        caption, sizeof caption,
-        "rays: %zu, depth limit %d, %.6g nm; fainter lines have less weight, %zu below %g of the first are omitted",
-        t->tree->count, t->tree->depth_limit, t->tree->lambda_nm, t->tree->count - count_drawn(t->tree), LIGHTEST);
+    snprintf(caption, sizeof caption,
+             "rays: %zu, depth limit %d, %.6g nm; fainter lines have less weight; %zu below %g of the first ray's are "
+             "omitted",
+             t->tree->count, t->tree->depth_limit, t->tree->lambda_nm, t->tree->count - count_drawn(t->tree), LIGHTEST);
     svg_label(out, DIAGRAM_BEFORE, media + 22.0, "start", SVG_GREY, caption);
     svg_end(out);
     return result;

@@ -3,7 +3,7 @@
 MANUAL is the folder of the complete manual pages, build/man. LABORATORY is the address of a laboratory that runs in the
 browser, relative to FOLDER: pages link to it. 
 Every page comes from a source that is also read elsewhere: manual pages, Markdown, the public header, lessons. FOLDER
-must not exist or be empty. The same sources and program give the same bytes."""
+must be new or empty. The same sources and program give the same bytes."""
 
 import os
 import re
@@ -63,7 +63,7 @@ def convert(source, program, pages):
 
 
 def markdown(path, source):
-    text = re.sub(r'^(#+ .*)<(\w+)>', r'\1\\<\2>', path.read_text(encoding='utf-8'), flags=re.M)  # a name, no tag
+    text = re.sub(r'^(#+ .*)<(\w+)>', r'\1\\<\2>', path.read_text(encoding='utf-8'), flags=re.M)  # a word, not a tag
     body = output_of('cmark-gfm', '-e', 'table', input=text)
     body = re.sub(r'<p>(<img [^>]*alt="([^"]*)"[^>]*>)</p>', r'<figure>\1<figcaption>\2</figcaption></figure>', body)
     title = re.search(r'<h1>(.*?)</h1>', body)[1]
@@ -102,7 +102,7 @@ def build(program, manual_pages, folder, address):
     first.source, first.group = 'README.md', None
     version = re.search(r'^\.TH .*"Cuvette ([\d.]+)"', (ROOT / 'src/manual/man1/cuvette.1').read_text(), re.M)[1]
     waiting = [first, *pages]
-    while waiting:  # a link to a text file of the project makes a page of it
+    while waiting:  # a link to a text file of the project adds a page for the file
         page = waiting.pop(0)
         body = laboratory.add(page, links.resolve(page))
         waiting += links.new_pages()

@@ -35,7 +35,7 @@ def page(path, examples, root):
 
 
 def c_only(text):
-    """As a C compiler sees it, without guards and attributes."""
+    """The header as a C compiler sees it, without guards and attributes."""
     text = re.sub(r'^#ifdef __cplusplus\n.*?^#(?:else\n(.*?)^#)?endif\n', lambda match: match[1] or '', text,
                   flags=re.M | re.S)
     text = re.sub(r'^#if defined.*?^#endif\n', '', text, flags=re.M | re.S)
@@ -50,7 +50,7 @@ def words(comment):
 
 
 def paragraphs(text):
-    """`name` is code; a first word that ends in a full stop is a title."""
+    """`name` is code; one or two first words before a full stop are a title."""
     out = []
     for paragraph in re.split(r'\n\n', text.strip()):
         if paragraph:

@@ -1,4 +1,4 @@
-"""Links that open lessons and scenes in the site's own laboratory, which runs in the browser (make site)."""
+"""Links that open lessons and scenes in the site's laboratory, which runs in the browser (make site)."""
 
 import base64
 import html
@@ -40,8 +40,8 @@ class Laboratory:
         return self.link(self.code(html.unescape(command)) or f'?scene={quote(name)}', 'Open in the laboratory')
 
     def code(self, command):
-        """The scene of a command with changed parameters, as a link holds it. A scene that reads files can be in no
-        link: it is opened as its file is."""
+        """The link that holds the scene of a command with changed parameters; None without changes, and for a scene
+        that reads files, which no link can hold: the laboratory then opens the scene file."""
         _, _, scene, *words = shlex.split(command)
         changes = [word for at, word in enumerate(words) if '--set' in (word, words[at - 1])]
         if not changes:

@@ -57,7 +57,7 @@ def measured(lesson):
     """Times are of one machine and one moment: a page of the manual would differ with each build."""
     measure, result = lesson['measure'], lesson['result']
     if measure.get('timed'):
-        return '<p>This lesson measures times: its curve is that of your machine, in <code>cuvette lab</code>.</p>\n'
+        return '<p>This lesson measures times: <code>cuvette lab</code> shows the curve of your machine.</p>\n'
     unit = f' {escape(measure["unit"])}' if measure['unit'] else ''
     return (chart(lesson) + f'<p>{escape(measure["reading"])}: measured <b>{result["measured"]:.8g}</b>{unit}, theory '
             f'<b>{result["theory"]:.8g}</b>{unit}.</p>\n')

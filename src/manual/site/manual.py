@@ -23,7 +23,7 @@ def page(path):
 
 
 def without_name(text):
-    """The section NAME is the page's title."""
+    """The text without the section NAME, which repeats the page's title, and the purpose in that section."""
     match = re.search(r'<section class="Sh">\n<h2[^>]*>NAME</h2>\n<p[^>]*>(.*?)</p>\n</section>\n', text, re.S)
     purpose = re.sub(r'\s+', ' ', match[1]).partition(' - ')[2]
     return text.replace(match[0], ''), purpose[:1].upper() + purpose[1:]

@@ -32,7 +32,7 @@ class Page:
     title: str  # HTML
     body: str
     purpose: str = ''  # HTML, one line
-    names: tuple = ()  # of C that have anchors here
+    names: tuple = ()  # C names that have anchors on the page
     source: str = ''  # relative to the root
     group: Group = None
 

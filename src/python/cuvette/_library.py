@@ -142,7 +142,7 @@ class Visit:
     def guard(self, function: Any, *arguments: Any) -> bool:
         try:
             return self.error is None and function(*arguments) is not False
-        except BaseException as error:  # KeyboardInterrupt too: it is raised where the call was made
+        except BaseException as error:  # also KeyboardInterrupt: `finish` raises it, where the call was made
             self.error = error
             return False
 
@@ -156,7 +156,7 @@ class Visit:
 
 
 def _keep_error(kind: Any, error: BaseException, traceback: Any) -> None:
-    """Stores an error outside the Visit: a KeyboardInterrupt can arrive before its first statement."""
+    """Stores an error that Visit.guard did not catch: a KeyboardInterrupt can arrive before its first statement."""
     ffi.from_handle(traceback.tb_frame.f_locals["context"]).error = error
 
 

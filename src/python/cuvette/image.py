@@ -91,7 +91,7 @@ class Image:
     @described("cuvette_frame_layer")
     def layer(self, name: str) -> NDArray[numpy.float32]:
         """float32 of height x width x channels, or of height x width for one channel; a view of the library's own
-        memory. The image was rendered with layers=True."""
+        memory. Only for an image that was rendered with layers=True."""
         values, channels = ffi.new("float **"), ffi.new("int *")
         call(lib.cuvette_frame_layer, self._frame, encoded(name), values, channels)
         size = self.height * self.width * channels[0]
@@ -102,7 +102,7 @@ class Image:
 
     @described("cuvette_frame_map")
     def map(self, name: str) -> NDArray[numpy.float64]:
-        """float64 of height x width. The image was rendered with maps=True for "rays", "time" and "cut"."""
+        """float64 of height x width. "rays", "time" and "cut" need an image that was rendered with maps=True."""
         out = numpy.empty((self.height, self.width), numpy.float64)
         call(lib.cuvette_frame_map, self._frame, encoded(name), ffi.from_buffer("double[]", out))
         return out

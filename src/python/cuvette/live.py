@@ -13,14 +13,14 @@ REMEDY = "make it with: make setup-wasm setup-site site; or set CUVETTE_LIVE to 
 
 
 def _find() -> pathlib.Path:
-    """CUVETTE_LIVE; else the laboratory in one file of the same build or installation."""
+    """The path in CUVETTE_LIVE; else live.html of the same build or installation."""
     asked = os.environ.get("CUVETTE_LIVE")
     here = pathlib.Path(__file__).resolve().parent
     near = [place for folder in list(here.parents)[:4] for place in (folder / NAME, folder / "share/cuvette" / NAME)]
     for place in [pathlib.Path(asked)] if asked else near:
         if place.exists():
             return place
-    raise InputError(f"there is no {asked or NAME}, the laboratory in one file", REMEDY)
+    raise InputError(f"cannot find the laboratory in one file, {asked or NAME}", REMEDY)
 
 
 class Live:

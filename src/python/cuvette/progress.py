@@ -81,8 +81,8 @@ def end(bar: Optional[Callable[..., object]]) -> None:
 
 @contextlib.contextmanager
 def watched(progress: Progress, what: str) -> Iterator[Visit]:
-    """A bar for a call with on_progress and the context of the Visit. What its function raised is raised again, Ctrl-C
-    too; Cancelled if it returned False."""
+    """A bar for a call with on_progress and the context of the Visit. An exception of the progress function, also
+    KeyboardInterrupt, is raised again; Cancelled if the function returned False."""
     bar = bar_of(progress, what)
     visit = Visit(bar or (lambda fraction: True))
     try:

@@ -338,7 +338,7 @@ class Fan:
 
 
 class BeamRay:
-    """A ray of one of the scene's beams: its beam's name, number, wavelength and power, and its tree."""
+    """A ray of one of the scene's beams: name of the beam, number among its `rays`, wavelength, power, and tree."""
 
     def __init__(self, ray: Any, tree: Tree) -> None:
         self.beam, self.number, self.rays = text_of(ray.beam_name), int(ray.number), int(ray.rays)

@@ -25,8 +25,8 @@ def svg_of(document: str) -> str:
 
 
 class Records(List[Item]):
-    """A list of results, each with the same fields; a notebook shows a table. A text finds the one whose first field it
-    is: `scene.parameters["liquid.ior"]`."""
+    """A list of results, each with the same fields; a notebook shows a table. A text as the
+    index selects the result whose first field equals it: `scene.parameters["liquid.ior"]`."""
 
     def __getitem__(self, key: Any) -> Any:
         if not isinstance(key, str):

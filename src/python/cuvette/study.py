@@ -116,7 +116,7 @@ def _rows(
 def rows(folder: Path, environment: Optional[str] = None, raw: bool = False) -> "pandas.DataFrame":
     """The rows of a study, `cuvette.rows("results/depth")`: one per repetition, without warm-ups, marked rows and those
     excluded by hand (raw=True: with them). The column environment has the key of the row's environment; rows of several
-    environments need a choice: a key, "main" (that with most rows), or "all".
+    environments need a choice: a key, "main" (the one with most rows), or "all".
 
     attrs of the table: "units" and "meanings" by column, "environments" with the facts of each key, "left_out" with the
     number of rows by reason."""
@@ -259,7 +259,7 @@ class Study:
         self, results: Path = "results", environment: Optional[str] = None, raw: bool = False
     ) -> "pandas.DataFrame":
         """The rows of the study, like those of cuvette.rows, with the units of the grid's parameters; warns of rows
-        with a wrong checksum."""
+        with a fault (`cuvette study verify`)."""
         units = {p.path: p.unit for p in self.scene(0).parameters}
         return _rows(self._study, self._folder(results), os.fspath(results), environment, raw, units)
 
@@ -274,7 +274,8 @@ class Study:
 
     @described("cuvette_study_compare")
     def compare(self, a: str, b: str, column: Optional[str] = None, results: Path = "results") -> "pandas.DataFrame":
-        """One line per pair of cells, and one for all cells (cell is NA); attrs has the environments of both sides."""
+        """One line per pair of cells, and one for all cells, with NA as cell_a and cell_b; attrs has the environments
+        of both sides."""
         pandas = import_module("pandas")
 
         out, fault = ffi.new("char **"), ffi.new("char **")
