@@ -171,7 +171,7 @@ static status make_frame(animation_job *f, diagnostic *why)
         result = render_frame(f, path, why);
     free(path);
     return result == STATUS_INTERRUPTED ? report_interrupted(f, why)
-                                        : result; /* during motion, rendering or encoding */
+                                        : result; /* the interruption came during motion, rendering or encoding */
 }
 
 static status make_frames(animation_job *f, diagnostic *why)

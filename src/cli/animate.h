@@ -2,7 +2,8 @@
  * index, and its table of rows. Frames are written atomically, one file each. An interrupted animation can be resumed:
  * existing frames are not rendered again, but the motion is simulated again from the start, so that the frames are
  * bit-identical with those of an uninterrupted run. A video file always starts again. Ownership: arguments of the
- * command line are borrowed; *_create and *_parse allocate, *_release frees. Diagnostics have a position. */
+ * command line are borrowed; *_create and *_parse allocate, *_release frees. Diagnostics name the option or the
+ * file. */
 #pragma once
 
 #include "cli/scene_input.h"

@@ -221,7 +221,8 @@ static status clear_folder(const animate_names *names, diagnostic *why)
         result = STATUS_FAILURE;
     }
     if (folder) {
-        fsync(dirfd(folder)); /* before a new index: it must never have the frames of another animation */
+        fsync(dirfd(
+            folder)); /* removed on disk before a new index, which would otherwise list frames of another animation */
         closedir(folder);
     }
     return result;
@@ -299,7 +300,7 @@ static status write_index(const char *path, const animate_names *names, const an
     return result;
 }
 
-/* The first parameter in which two definitions differ; NULL for none. */
+/* The first parameter of `here` that has another value in `there`, or is missing there; NULL for none. */
 static const char *first_difference(const json_t *there, json_t *here)
 {
     const char *path;

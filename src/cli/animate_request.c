@@ -1,5 +1,5 @@
 /* The command line of `cuvette animate`; the definition of an animation, which distinguishes its frames from those of
- * others; and whether it fits on its file system. */
+ * others; and whether an animation fits on its file system. */
 #include "base/budget.h"
 #include "base/hash.h"
 #include "base/number.h"

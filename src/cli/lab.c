@@ -81,8 +81,8 @@ static bool write_page(int fd, const char *address)
     return (fclose(out) == 0) && written;
 }
 
-/* Writes the file, to $XDG_RUNTIME_DIR or the folder for temporary files, and starts xdg-open with it. *file is its
- * path, allocated; NULL after an error. STATUS_FAILURE if the file cannot be written. */
+/* Writes the file for the browser, and starts xdg-open with it. *file is its path, allocated; NULL after an error.
+ * STATUS_FAILURE if the file cannot be written. */
 static status browser_open(const char *address, char **file, diagnostic *why)
 {
     const int fd = create(file);

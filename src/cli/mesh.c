@@ -15,7 +15,7 @@
 #include <string.h>
 
 typedef struct mesh_request {
-    scene *scene; /* the scene with the one mesh */
+    scene *scene; /* a scene with only this mesh */
     const char *file;
     bool generate;
     int format;         /* mesh_format; MESH_FORMAT_COUNT: describe it */

@@ -46,7 +46,7 @@ static void make_table(const struct argp *argp, unsigned flags, getopt_table *ta
     add(table, "usage", KEY_USAGE, no_argument);
     add(table, "version", 'V', no_argument);
     table->documented = table->count;
-    add(table, "program-name", KEY_OF_ARGP, optional_argument); /* which argp adds for its tests */
+    add(table, "program-name", KEY_OF_ARGP, optional_argument); /* argp adds these two, for its tests */
     add(table, "HANG", KEY_OF_ARGP, optional_argument);
 }
 
@@ -117,7 +117,7 @@ static status check(const struct argp *argp, unsigned flags, int argc, char **ar
         if (leaves) /* argp prints the help and exits */
             break;
         if (key == KEY_OF_ARGP)
-            optopt = 0, key = '?'; /* an unknown option for users */
+            optopt = 0, key = '?'; /* users get an error as for an unknown option */
         if (key == '?' || key == ':') {
             result = explain(&table, key, argv[0], copy[optind - 1], why);
             options_locate(why, argv[0]);

@@ -41,8 +41,9 @@ typedef struct command_form {
     const char *synopsis, *about;
     size_t arguments_at, argument_limit; /* offset of the array in the request, and its length */
     const char *excess, *excess_remedy;  /* error for a surplus argument, with at most one %s; NULL: a general one */
-    void (*store_argument)(void *request, const char *argument); /* stores each of any number of arguments; or NULL */
-    bool ends_at_argument;                                       /* parsing stops after the first argument */
+    void (*store_argument)(
+        void *request, const char *argument); /* stores each argument, of any number; NULL: they go to arguments_at */
+    bool ends_at_argument;                    /* parsing stops after the first argument */
 } command_form;
 
 /* Reads a command line into the request. */

@@ -27,7 +27,7 @@ static char *reason_of(char *output)
 static status ask(const char *const *arguments, const char *remedy, char **output, diagnostic *why)
 {
     int exit_code = -1;
-    cancel_token shield; /* whether a job was submitted must be known */
+    cancel_token shield; /* no cancellation: whether a job was submitted must be known */
     cancel_shield(&shield);
     status code = child_run((char *const *)(uintptr_t)arguments, answer_limit_s, output, &exit_code, why);
     cancel_end(&shield);
@@ -65,7 +65,7 @@ status slurm_check_queue(const char *script, diagnostic *why)
 typedef struct command_line {
     const char **arguments;
     size_t count;
-    char *job_option; /* the option of this job */
+    char *job_option; /* --array or --dependency */
 } command_line;
 
 static void add(command_line *c, const char *argument)
@@ -126,7 +126,7 @@ static status submit(const command_line *c, const char *remedy, slurm_job *out, 
     char *output = NULL;
     status code = ask(c->arguments, remedy, &output, why);
     if (code == STATUS_OK && !read_id(output, out))
-        code = diagnose_at(why, "sbatch", STATUS_FAILURE, "see squeue", "its answer has no job number: %.200s",
+        code = diagnose_at(why, "sbatch", STATUS_FAILURE, "look for the job with squeue", "its answer has no job number: %.200s",
                            reason_of(output));
     free(output);
     return code;

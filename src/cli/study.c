@@ -180,7 +180,7 @@ static status measure(const study *s, const study_request *request, size_t *rows
     status result = study_run_processes(s, request, why);
     const status counted = count_rows(s, request, &after, result == STATUS_OK ? why : NULL);
     result = result == STATUS_OK ? counted : result;
-    if (!request->instructions) /* this process counts no instructions, and keeps no image of counted frames */
+    if (!request->instructions) /* then the kept files; this process cannot count instructions */
         THEN(result, study_run(s, &options, &further, why));
     *rows = after - before + further;
     return result;
@@ -202,7 +202,8 @@ static status run_part(const study *s, const study_request *request, diagnostic 
     if (request->process > study_processes(s))
         return options_wrong("--process", NULL, why, "use a number from 1 to this number of processes",
                              "%s has %ld processes", s->path, study_processes(s));
-    os_die_with_parent(); /* it would keep the row files locked for the next run; its rows are kept */
+    /* Otherwise this process would keep the row files locked, which the next run needs. Its rows are kept. */
+    os_die_with_parent();
     const status result = measure(s, request, &rows, why);
     if (result == STATUS_INTERRUPTED)
         *why = (diagnostic){.what = ""};

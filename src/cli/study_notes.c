@@ -100,7 +100,8 @@ static bool is_intended(const collector *c, const char *place)
     return c->traced ? strcmp(place, "render.depth") == 0 && varies(c->s, place) : varies(c->s, place);
 }
 
-/* Adds a note, even a dropped one, so that the linter, which repeats the hints, does not print it. */
+/* Adds a note. A dropped note is added, too: the linter repeats the hints, and its note of the same place and text is
+ * then ignored. */
 static void add_note(void *context, const scene_note *note)
 {
     collector *c = context;

@@ -171,7 +171,7 @@ static status check(request *r, const char *program, diagnostic *why)
         return diagnose(why, STATUS_BAD_INPUT, "give a folder with a slash at the end, such as figures/",
                         "several studies cannot be drawn into one file");
     if (r->plot.images && (r->plot.x || r->plot.y || r->plot.by || r->plot.published || r->plot.log))
-        return diagnose(why, STATUS_BAD_INPUT, "leave one of them out",
+        return diagnose(why, STATUS_BAD_INPUT, "leave out --images, or these options",
                         "--images has no axes: --x, --y, --by, --log and --published are for the other figure");
     *why = (diagnostic){0};
     return STATUS_OK;

@@ -110,7 +110,7 @@ static status check_request(const submit_request *r, diagnostic *why)
 typedef struct submission {
     const submit_request *request;
     const study *s;
-    char *node_type, *array, *logs, *path, *script; /* logs: an absolute folder; path: the script's */
+    char *node_type, *array, *logs, *path, *script; /* logs: an absolute folder; path: the path of the script */
     study_estimate *parts;
     size_t part_count, rows_apart; /* rows_apart: rows of other environments, if these nodes have none */
     double longest_s;
@@ -150,7 +150,7 @@ static status find_environment(submission *job, char key[ENVIRONMENT_KEY], diagn
     return STATUS_OK;
 }
 
-/* Finds the parts that lack rows or files, in the environment of the nodes that have measured most. */
+/* Finds the parts that lack rows or files, in the environment with most rows among those of nodes of this type. */
 static status find_parts(submission *job, diagnostic *why)
 {
     const submit_request *request = job->request;

@@ -46,7 +46,8 @@ static const char *reference_of(const medium *m)
 
 enum { CELLS_MAX = 192, TABLE_WIDTH = 79, AT_WIDTH = 9, LABEL_WIDTH = 16 };
 
-/* Whether the terminal is too narrow for the columns from the range on; they then precede the source. */
+/* Whether the terminal is too narrow for columns of range, temperature and reference, which are then written before the
+ * source, in its column. */
 static bool is_narrow(double at_nm, int columns)
 {
     return columns && columns < TABLE_WIDTH + (at_nm > 0.0 ? AT_WIDTH : 0);

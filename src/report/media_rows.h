@@ -24,5 +24,5 @@ char *metal_range_text(const metal *m, char text[METAL_RANGE_MAX]);
 void metal_rows_table(FILE *stream, double at_nm, int columns);
 void metal_rows_details(FILE *stream, const metal *m, double at_nm, int columns);
 
-/* The given medium or metal, or all of both if both are NULL. Returns NULL when out of memory. */
+/* The given medium or metal, or both catalogues if both are NULL. Returns NULL when out of memory. */
 json_t *media_rows_json(const medium *only, const metal *only_metal, double at_nm);

@@ -63,7 +63,7 @@ static status add_param(void *context, const char *path, const param *row, const
     return json_object_set_new(context, path, report_value(row, value)) ? STATUS_FAILURE : STATUS_OK;
 }
 
-/* Adds all parameters of camera and background, including those without effect (alternatives of others). */
+/* Adds all parameters of camera and background, including those without effect because others replace them. */
 static status add_alternatives(json_t *params, const scene *s)
 {
     status code = STATUS_OK;

@@ -1,7 +1,7 @@
 /* A study: a scene, fixed parameters, a grid over any parameters, repetitions, and files to keep. Rows are never
  * changed. results/<study>/ has rows.csv (one row per repetition, appended and flushed immediately), runs.json, images/
  * (one per cell); with a reference also compare.csv (one row per cell) and references/. Ownership: study_destroy
- * releases a study. Errors in the file name file, line and column. */
+ * releases a study. Errors in the study file are reported with its path, line and column. */
 #pragma once
 
 #include "base/status.h"
@@ -120,7 +120,7 @@ typedef enum study_phase {
     STUDY_IMAGES
 } study_phase;
 
-/* The progress of a running study, down to the current frame; study_progress is that of a study on disk. */
+/* The progress of a running study, down to the current frame; study_progress describes a study on disk. */
 typedef struct study_frame_progress {
     study_phase stage;
     size_t cell;                    /* the cell of the current frame */
@@ -173,7 +173,7 @@ typedef struct study_progress {
     size_t rows_disturbed;   /* by the rule of the study; warm-ups do not count */
     size_t rows_elsewhere;   /* rows of other environments */
     size_t rows_other_cells; /* rows of cells that the study does not have (any more) */
-    size_t faults;           /* rows that are marked, have a wrong checksum, or are missing */
+    size_t faults;           /* faults of rows, such as a mark, a wrong checksum or a missing row */
     diagnostic fault;        /* the first of them */
     char environment[16];    /* key of the present environment */
 } study_progress;

@@ -11,7 +11,8 @@ enum { QUICK_PIXELS = 80 * 60 };
 typedef status grid_visit(void *context, const study *s, size_t cell, scene *setting, diagnostic *why);
 status grid_each_cell(const study *s, grid_visit *visit, void *context, diagnostic *why);
 
-/* Calls scene_check for every cell; an error is located in the study file at the point of its last axis. */
+/* Checks that in every cell no parameter overwrites another one of the study, and that the scene is valid
+ * (scene_check). An error of the scene is located in the study file at the cell's point of the last axis. */
 status grid_check_cells(const study *s, diagnostic *why);
 
 /* Finds the film of each point (study_point.film); s has the objects that the points' paths name. */
@@ -30,7 +31,7 @@ const char *study_grid_path(const study *s, size_t index);
  * "0, 3, 1" equals "[0,3,1]". */
 bool grid_same_value(const char *a, const char *b);
 
-/* Writes all paths, or all values of the cell as written in the study file, each preceded by a tab. */
+/* Writes all paths, or all values of the cell as scene_get writes them, each preceded by a tab. */
 void grid_put_paths(const study *s, FILE *out);
 void grid_put_values(const study *s, size_t cell, FILE *out);
 /* Writes a tab and a number, with as many digits as read back the same; NA if it is not finite. */

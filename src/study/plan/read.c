@@ -242,7 +242,7 @@ static status read_keep(study *s, const document *d, const node *n, diagnostic *
     return STATUS_OK;
 }
 
-/* Reads the scene file: its text, for the manifest, and its model. Errors in it name the scene file. */
+/* Reads the scene file: its text, for runs.json, and its model. Errors in it name the scene file. */
 static status read_scene(study *s, const document *d, const node *root, const study_guard *guard, diagnostic *why)
 {
     const node *n = node_get(root, "scene");

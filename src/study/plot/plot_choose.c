@@ -24,7 +24,8 @@ static const plot_axis *largest(const plot_plan *p, bool numeric, size_t least, 
     return found;
 }
 
-/* Three or more numbers are a scale; two are alternatives, and come after words with more values. */
+/* A parameter with three or more numbers is a scale, and comes first. Two numbers are alternatives, and come after
+ * words if there are more words. */
 static const plot_axis *choose_along(const plot_plan *p)
 {
     const plot_axis *number = largest(p, true, HEAT_MIN, SIZE_MAX);

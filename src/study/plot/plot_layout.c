@@ -256,7 +256,7 @@ static status add_missing(plot_plan *p, diagnostic *why)
                             environments > 1 ? ", counted by environment," : "", p->y.name);
 }
 
-/* Names the environments, whose values are in separate lines. */
+/* Names the environments, whose values no line joins. */
 static status add_environments(plot_plan *p, diagnostic *why)
 {
     const plot_axis *axis = plot_axis_named(p, "environment");

@@ -65,7 +65,7 @@ static status no_such_column(const plot_plan *p, const char *name, diagnostic *w
                        p->s->name, name);
 }
 
-/* "wall time" of wall_s, "busy max" of busy_s_max; other names stay as the summary has them. */
+/* "wall time" of wall_s, "CPU time" of cpu_s; of other names, the words without the unit: "busy max" of busy_s_max. */
 static void name_time(const char name[64], char label[96])
 {
     static const char *const known[][2] = {{"wall_s", "wall time"}, {"cpu_s", "CPU time"}};
@@ -149,7 +149,7 @@ static extent extent_of(const plot_plan *p, bool vertical)
     return e;
 }
 
-/* Chooses the largest prefix with which the typical value is at least 1. */
+/* Chooses the largest prefix with which the typical value is at least 1, or the smallest prefix of the unit. */
 static void choose_prefix(plot_quantity *q, double typical)
 {
     static const struct {
@@ -176,7 +176,8 @@ static void choose_prefix(plot_quantity *q, double typical)
         }
 }
 
-/* Chooses the shown range: from 0 unless all values are far from 0, with a margin at the other ends. */
+/* Chooses the shown range: with from_zero, from 0 unless a value is negative or all are far from 0; with a margin at
+ * the other ends. */
 static void choose_range(plot_quantity *q, const extent *e, bool from_zero)
 {
     if (q->log) {

@@ -250,7 +250,7 @@ status study_merge(const study *s, const char *results, size_t *rows, diagnostic
     merge m = {.s = s, .results = results, .verdict = verdict};
     char *folder = study_folder(s, results);
     status code = folder ? runs_merge(folder, scene_root(s->base), why) : out_of_memory(why);
-    /* Worker rows come before rows: worker rows without their row are valid, the opposite is not. */
+    /* Worker rows come before rows: worker rows without their row are valid, a row without its worker rows is not. */
     static const row_kind kinds[] = {WORKER_ROWS, COMPARE_ROWS, ROWS};
     for (size_t i = 0; i < sizeof kinds / sizeof *kinds && code == STATUS_OK; i++)
         code = join(&m, kinds[i], why);

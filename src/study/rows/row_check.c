@@ -172,7 +172,8 @@ static const equal_columns *columns_of(const equal_check *c, const csv *table)
     return &c->columns[i];
 }
 
-/* The first column of a in which b has another value, or -1. Columns are looked up by name only if headers differ. */
+/* The first column of a in which b has another value, or -1; NA equals every value. Columns are looked up by name only
+ * if headers differ. */
 static int first_difference(const equal_check *c, const row_ref *a, const row_ref *b)
 {
     const equal_columns *columns = columns_of(c, a->table);
@@ -232,7 +233,7 @@ static bool in_one_group(const row_ref *x, const row_ref *y)
     return x->cell == y->cell && strcmp(x->environment, y->environment) == 0;
 }
 
-/* Fills sorted with the unmarked rows, and *count with their number. */
+/* Fills sorted with the unmarked rows, and *count with their number. Marked rows become issues. */
 static status skip_marked(const equal_check *c, row_ref **sorted, size_t *count, diagnostic *why)
 {
     for (size_t i = 0; i < c->files->row_count; i++) {

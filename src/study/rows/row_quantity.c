@@ -56,7 +56,7 @@ level_range row_quantity_range(row_quantity quantity)
 
 typedef struct run_value {
     long run;
-    size_t order; /* keeps equal runs in their order */
+    size_t order; /* keeps the values of one run in their order */
     double value;
 } run_value;
 

@@ -39,7 +39,7 @@ status row_quantity_spread(const row_ref *const *rows, size_t count, row_quantit
                            row_spread *out, diagnostic *why);
 
 /* The noise that a row recorded, judged by the study's present rule. Rows of other versions may lack some of its
- * values. at: the columns of one table; looked up again when the table changes. Start with zeros. */
+ * values. at: the columns of one table, looked up again when the table changes; zero-initialise it. */
 typedef struct row_noise_columns {
     const csv *table;
     int others, steal, drop, stalled;

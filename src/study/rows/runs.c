@@ -278,7 +278,7 @@ status runs_merge(const char *folder, const char *root, diagnostic *why)
 
 /* --- the quick form --- */
 
-/* The number of runs of either form in a folder of a study. */
+/* The numbers of quick and of other runs in a folder of a study. */
 static status count_runs(const study *s, const char *folder, size_t *quick, size_t *others, diagnostic *why)
 {
     run_list *all;

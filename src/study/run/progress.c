@@ -188,7 +188,7 @@ bool progress_index_cell_done(const progress_index *index, size_t cell)
         return at->undisturbed >= (size_t)progress_index_least(index);
     if (at->counted < (size_t)progress_index_least(index) || s->relative_width <= 0)
         return false;
-    summary walls = summarize(at->wall_s, at->counted); /* safe to sort in place */
+    summary walls = summarize(at->wall_s, at->counted); /* sorts wall_s in place: its order does not matter */
     double width = summary_relative_width(&walls);
     return isfinite(width) && width < s->relative_width;
 }

@@ -33,7 +33,7 @@ typedef struct progress_index {
     size_t cell_count, rows, marked, warmups, disturbed;
     size_t elsewhere;   /* rows of other environments */
     size_t other_cells; /* rows of cells that the study does not have */
-    size_t fault_count; /* rows that have a wrong checksum, or are missing (study/rows/row_files.h) */
+    size_t fault_count; /* faults of rows, such as a wrong checksum or a missing row (study/rows/row_files.h) */
     diagnostic fault;   /* the first one */
     char last_environment[ENVIRONMENT_KEY]; /* of the last row of another environment; "" without one */
 } progress_index;

@@ -66,7 +66,7 @@ status run_render(run *r, const scene *setting, const render_options *options, j
 
 /* The disk space for what r still lacks, by r->done and r->compared: rows, the list of runs, kept files, references. */
 status run_room(const run *r, disk_room *out, diagnostic *why);
-/* STATUS_FAILURE if the disk has not enough space; a doubt is reported as news. */
+/* STATUS_FAILURE if the disk has too little space; if it may have too little, news say so. */
 status run_check_room(const run *r, diagnostic *why);
 
 /* The verdict of the study's rule on a row; reports disturbances as news. Measured times play no role. */

@@ -54,7 +54,8 @@ static double deviation_of(const level_sample *a, const level_sample *b)
     return a->processes > 1 ? sqrt(fmax(0.0, (squares - sum * sum / n) / (n - 1))) : NAN;
 }
 
-/* The number of pairs of processes that finds a relative difference of detect (0: DETECT); 0: unknown or too many. */
+/* Returns the number of pairs of processes that finds a relative difference of `detect`, or of DETECT if detect is 0;
+ * returns 0 if the number is unknown or too large. */
 static size_t pairs_for(double deviation, size_t processes, double detect)
 {
     return power_pairs(power_upper_deviation(deviation, processes, UPPER), log1p(detect > 0 ? detect : DETECT), POWER);

@@ -26,7 +26,7 @@ typedef struct study_side {
 #define STUDY_SIDE_ANY ((size_t)-1)
 
 /* results: the folder unless the text names one. STATUS_BAD_INPUT for an unknown parameter or value, or a cell that the
- * study does not have; the remedy says where to find or lists those that exist. */
+ * study does not have; the remedy lists those that exist, or says where to find them. */
 status side_read(const study *s, const char *text, const char *results, study_side *out, diagnostic *why);
 /* The side of all rows of a results folder, whatever its name is. Owns nothing. */
 study_side side_of_folder(const char *results);

@@ -54,9 +54,9 @@ bool contrast_alternate(const contrast_rows *ra, const contrast_sample *a, const
  * Bootstrap Methods and their Application, 1997, 3.2). */
 typedef struct contrast_all {
     level_interval ratio; /* logarithm of b over a, mean over the cells; no interval if a stratum has fewer than 3 */
-    size_t values[2], processes[2]; /* their numbers on each side, over all cells */
+    size_t values[2], processes[2]; /* numbers of values and of processes on each side, over all cells */
     size_t fewest;                  /* processes in the smallest stratum of a side */
-    size_t fewest_values;           /* of a cell, on the side with fewer */
+    size_t fewest_values;           /* values of the cell that has fewest, on the side with fewer */
     bool alternate;                 /* in each stratum; then the sides have the same strata, and are drawn together */
     double deviation; /* standard deviation of the processes' or pairs' means over the cells; NaN with several strata */
 } contrast_all;

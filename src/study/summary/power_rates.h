@@ -1,6 +1,6 @@
 /* How often smaller studies, drawn from measured rows, would have concluded something else: a rate for each pair of
  * cells, order, design and rule. Cells with the same name do the same work, so every claim of a difference is wrong;
- * for other pairs a claim is wrong if its sign is not that of the truth. Ownership: value_table_release and
+ * for other pairs a claim is wrong if its sign contradicts the truth. Ownership: value_table_release and
  * power_rates_free release what value_table_read and power_rates_make allocate; samples and names are borrowed from the
  * tables. */
 #pragma once

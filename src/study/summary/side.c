@@ -56,7 +56,7 @@ static status no_such_parameter(const study *s, const char *path, diagnostic *wh
                        "the grid has no parameter '%.64s'", path);
 }
 
-/* Linked parameters are one axis: the value must be that of one point. */
+/* Linked parameters are one axis: the value selects the first point that has it. */
 static status set_value(const study *s, study_side *side, const char *path, const char *value, diagnostic *why)
 {
     char list[400] = "choose from: ";

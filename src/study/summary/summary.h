@@ -51,7 +51,7 @@ status study_spread(const study *s, const char *results, const char *columns, co
 
 /* All rows as one table in CSV, for other programs: the columns of the files, then `environment`, the key of the row's
  * environment, and `left_out`: "" for a row that counts, else warm-up, marked or excluded. environment: a key; "main":
- * the environment with most rows; "all"; NULL: there must be only one. s NULL: results is the folder of the rows
- * itself, and no row is left out because the grid has no such cell. STATUS_BAD_INPUT without such rows. */
+ * the environment with most rows; "all"; NULL: the rows must be of only one. s NULL: results is the folder of the rows
+ * itself; the grid is then unknown, and rows of all cells are written. STATUS_BAD_INPUT if there are no such rows. */
 status row_list_write(const study *s, const char *results, const char *environment, FILE *out, diagnostic *verdict,
                       diagnostic *why);

@@ -86,7 +86,7 @@ static const char *const compared[] = {"film_hash",    "rays_total",  "rays_came
 
 #define COUNT(array) (sizeof(array) / sizeof((array)[0]))
 
-/* Rows of other versions may lack some columns. */
+/* Whether films and counts agree; columns that a row of another version lacks are ignored. */
 static bool has_same(const row_ref *a, const row_ref *b)
 {
     for (size_t i = 0; i < COUNT(compared); i++) {
