@@ -126,8 +126,8 @@ static status submit(const command_line *c, const char *remedy, slurm_job *out, 
     char *output = NULL;
     status code = ask(c->arguments, remedy, &output, why);
     if (code == STATUS_OK && !read_id(output, out))
-        code = diagnose_at(why, "sbatch", STATUS_FAILURE, "look for the job with squeue", "its answer has no job number: %.200s",
-                           reason_of(output));
+        code = diagnose_at(why, "sbatch", STATUS_FAILURE, "look for the job with squeue",
+                           "its answer has no job number: %.200s", reason_of(output));
     free(output);
     return code;
 }

@@ -190,7 +190,7 @@ for from in textured linked; do
     "$program" animate $from.yaml -o read/%05d.png --duration 0.2 --restart >out 2>err
     code=$?
     check "an image that the scene reads is not replaced by a frame, $from" eval \
-        '((code == 2)) && [[ -e read/00003.png ]] && grep -q "is read from" err'
+        '((code == 2)) && [[ -e read/00003.png ]] && grep -q "the scene reads" err'
 done
 "$program" render textured.yaml -o read/00003.png >out 2>err
 code=$?
@@ -200,7 +200,7 @@ cp slime.yaml '%d.png.json'
 "$program" animate %d.png.json -o ./%d.png --duration 0 >out 2>err
 code=$?
 check "the scene file is not replaced by the progress index" eval \
-    '((code == 2)) && cmp slime.yaml %d.png.json && grep -q "is read from" err'
+    '((code == 2)) && cmp slime.yaml %d.png.json && grep -q "the scene reads" err'
 rm '%d.png.json'
 
 animate -o "part/50%%-%03d.pfm" --duration 0

@@ -106,8 +106,8 @@ run render live.html -o page.png
 check "a live page's scene gives the same film" is "$(grep -o 'film [0-9a-f]\{16\}' out)" "$page_hash"
 rm live.html
 CUVETTE_LIVE=none.html run render "$scene" -o live.html --live
-check "--live without the laboratory" is "$(<err)" "cuvette: --live: there is no none.html, the laboratory in one \
-file; build it with 'make setup-wasm setup-site site', or set CUVETTE_LIVE to its path"
+check "--live without the laboratory" is "$(<err)" "cuvette: --live: cannot find the laboratory in one file, \
+none.html; build it with 'make setup-wasm setup-site site', or set CUVETTE_LIVE to its path"
 CUVETTE_LIVE=mine.html run render "$scene" -o a.png --live
 check "--live is for pages" matches "$(<err)" 'only a page can hold the laboratory; add -o FILE.html'
 CUVETTE_LIVE=mine.html run render "${scene%/*}/chequer.yaml" -o live.html --live

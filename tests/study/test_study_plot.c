@@ -108,7 +108,7 @@ static void the_user_chooses(void **state)
     assert_string_equal(p.by->name, "render.depth");
     assert_int_equal(p.panel_count, 3);
     assert_string_equal(p.y.unit, "10⁶");
-    assert_true(has_caption(&p, "no interval of it"));
+    assert_true(has_caption(&p, "no interval of this"));
     plot_plan_free(&p);
     const plot_request part = {.where = where, .where_count = 2};
     p = full_plan(s, &part, 0);
