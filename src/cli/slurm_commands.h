@@ -1,5 +1,5 @@
 /* Calls Slurm's programs squeue and sbatch, found in PATH. Ownership: everything is borrowed. STATUS_FAILURE if one is
- * missing or fails; the reason is then its first error message. */
+ * missing or fails; the reason is then its fatal message, or its first error. */
 #pragma once
 
 #include "base/status.h"

@@ -212,7 +212,8 @@ static bool write_extras(const traced *t, FILE *out, const ray_node *node)
     return good;
 }
 
-/* Recurses over the levels of the tree, at most 65. */
+/* Recurses over the levels of the tree: at most DEPTH_TREE_MAX + 2, or BEAM_DEPTH_MAX + 2 for a beam without
+ * branches. */
 static bool write_json_ray(const traced *t, FILE *out, int at)
 {
     const ray_node *node = &t->tree->node[at];

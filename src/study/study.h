@@ -180,7 +180,7 @@ typedef struct study_progress {
 status study_status(const study *s, const char *results, study_progress *out, diagnostic *why);
 
 /* Merges the shards' rows (results/<name>/rows.shard-i-of-N.csv) into rows.csv, and their runs; no line is lost or
- * duplicated. rows.csv is written atomically; the files of shards stay. STATUS_BAD_INPUT, with nothing written, for a
- * line that is not a row and for two rows of one repetition. verdict becomes the first of the other faults of the
- * rows. */
+ * duplicated. rows.csv is written atomically; the files of shards stay. STATUS_BAD_INPUT, with no row added to
+ * rows.csv, for a line that is not a row and for two rows of one repetition. verdict becomes the first of the other
+ * faults of the rows. */
 status study_merge(const study *s, const char *results, size_t *rows, diagnostic *verdict, diagnostic *why);

@@ -1,7 +1,8 @@
-/* Checksums of rows: `checksum`, the last column of each file. Eight hex digits hash the row's values by column name;
- * eight more hash these digits and the checksum of the previous row of the same run (for the first row, the run's id).
- * The first part detects an edited row, the second a row that was removed, inserted or moved. Both ignore NA and the
- * order of the columns, so that a file may get more columns. They detect accidents and careless edits, not forgery. */
+/* Checksums of rows: the column `checksum`, the last one of a new file. Eight hex digits hash the row's values by
+ * column name; eight more hash these digits and the checksum of the previous row of the same run (for the first row,
+ * the run's id). The first part detects an edited row, the second a row that was removed, inserted or moved. Both
+ * ignore NA and the order of the columns, so that a file may get more columns. They detect accidents and careless
+ * edits, not forgery. */
 #pragma once
 
 #include "base/csv.h"
