@@ -421,7 +421,7 @@ printf '%s\n' 'study: unknown' "scene: $scene" 'set: {render.width: 8, render.he
 "$program" study run unknown.study --results unknown-results >/dev/null
 sed -i '1s/,identity,/,definition,/' unknown-results/unknown/rows.csv
 for verb in run status summary verify; do
-    refused "study $verb: rows without identities" "rows\.csv.*lack the column identity.*measure again" \
+    refused "study $verb: rows without identities" "rows\.csv.*lack the column identity.*run the study again" \
         study "$verb" unknown.study --results unknown-results
 done
 

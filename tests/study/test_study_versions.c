@@ -445,7 +445,7 @@ static void missing_required_columns_are_reported(void **state)
         diagnostic why = refusal_of(f, s);
         assert_non_null(strstr(why.what, "lack the column"));
         assert_non_null(strstr(why.what, required[i]));
-        assert_non_null(strstr(why.remedy, "measure again"));
+        assert_non_null(strstr(why.remedy, "run the study again"));
         assert_non_null(strstr(why.file, "rows.csv"));
         assert_int_equal(why.line, 1);
         fixture_write(f, rows_name, whole);

@@ -291,7 +291,7 @@ status row_check_columns(const csv *table, const char *path, row_kind kind, diag
             continue;
         diagnostic_locate(why, path, 1, 1);
         return diagnose(why, STATUS_BAD_INPUT,
-                        "move the file away and measure again, or choose another folder with --results",
+                        "move the file away and run the study again, or choose another folder with --results",
                         "the rows lack the column %s, which this version requires", needed[kind][i]);
     }
     return STATUS_OK;

@@ -160,7 +160,7 @@ static status lock(table *t, diagnostic *why)
             if (errno != EWOULDBLOCK)
                 return failed(t->path, "locking", errno, why);
             return diagnose_at(why, t->path, STATUS_BAD_INPUT,
-                               "wait for it to finish, or give each process its own --shard i/N",
+                               "wait for it to finish, or run the study in several processes with --shard I/N",
                                "another process is writing these rows");
         }
         struct stat named, opened;
