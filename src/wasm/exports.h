@@ -1,8 +1,9 @@
 /* The functions that a WebAssembly module exports to the scripts of src/wasm, and those that it imports from them
- * (imports.js). A module is either a laboratory or a tile worker; each runs in a worker of the browser, on one thread.
- * Pointers are addresses in the module's memory; texts end in 0. Ownership: arguments are borrowed for the call; a
- * script frees what it allocated for a call (malloc, free). Errors: functions return a status of base/status.h as a
- * number; wasm_why has the text. */
+ * (imports.js). A module serves as a laboratory or a tile worker, each in a worker of the browser, or as the JavaScript
+ * API, in a page, a worker or node; it has one thread. Pointers are addresses in the module's memory; texts end in 0.
+ * Ownership: arguments are borrowed for the call; a script frees what it allocated for a call (malloc, free). Errors:
+ * functions return a status of base/status.h as a number; wasm_why has the text, wasm_error_json that of the JavaScript
+ * API. */
 #pragma once
 
 #include <stddef.h>
@@ -29,10 +30,10 @@ int wasm_lab_start(const char *folder, const char *scene, int workers);
 void wasm_lab_request(int id, const char *method, const char *target, const char *body, size_t size);
 
 /* Does the work that is due: a pass of the image, a step of the slime, a waiting request. Returns the milliseconds
- * until the next turn: 0: at once; negative: not before a message arrives. */
+ * until the next turn; 0 means at once, a negative value not before a message arrives. */
 double wasm_lab_turn(void);
 
-/* A tile worker cannot start: the laboratory continues without it. */
+/* Reports that a tile worker could not start, or failed: the laboratory continues without it. */
 void wasm_lab_lost(int worker);
 /* Merges the answer of a tile worker (wasm_tiles_trace). */
 void wasm_lab_traced(int worker, const void *bytes, size_t size);
@@ -70,7 +71,8 @@ int wasm_render_turn(wasm_render *r, double budget_s);
 double wasm_render_fraction(const wasm_render *r); /* the fraction that is rendered; 1: complete */
 char *wasm_render_tiles(wasm_render *r);           /* [[x0, y0, x1, y1]]: the tiles since the last call */
 char *wasm_render_result(const wasm_render *r);    /* {width, height, hash, counters, wall_s} */
-/* Writes RGBA with alpha 255, 4 bytes per pixel of the rectangle; linear RGB, 3 floats per pixel of the image. */
+/* wasm_render_srgb writes RGBA with alpha 255, 4 bytes per pixel of the rectangle; wasm_render_rgb writes linear RGB,
+ * 3 floats per pixel of the image. */
 void wasm_render_srgb(const wasm_render *r, int x0, int y0, int x1, int y1, unsigned char *rgba);
 void wasm_render_rgb(const wasm_render *r, float *rgb);
 
@@ -84,7 +86,7 @@ char *wasm_query_fan(const struct cuvette_query *query, const double *rule);
 
 char *wasm_motion_names(const struct cuvette_motion *motion);
 char *wasm_motion_state(const struct cuvette_motion *motion, const char *name);
-/* {distance, where}, and {hand, where}; null if the ray misses. */
+/* pick: {distance, where}; grab: {hand, where}; null if the ray misses. */
 char *wasm_motion_pick(const struct cuvette_motion *motion, const char *name, const double *ray);
 char *wasm_motion_grab(struct cuvette_motion *motion, const char *name, const double *ray, double reach);
 

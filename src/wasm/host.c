@@ -1,5 +1,5 @@
-/* Replaces what a WebAssembly module lacks: other programs, confinement, hardware counters, hwloc, functions of Linux,
- * threads. */
+/* Substitutes for what a WebAssembly module lacks: other programs, confinement, hardware counters, hwloc, functions of
+ * Linux, threads. */
 #include "base/file.h"
 #include "base/child.h"
 #include "base/os_confine.h"
@@ -62,7 +62,7 @@ bool os_confine_is_off(void)
     return true;
 }
 
-/* If it fails, each processing unit counts as a core. */
+/* Always fails: the caller then counts each processing unit as a core. */
 char *topology_discover_in_child(const char *synthetic, status *code, bool *no_memory)
 {
     (void)synthetic;

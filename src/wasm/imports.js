@@ -1,4 +1,4 @@
-// The functions of its worker's script that the module calls: members of the object `host` (memory.js, lab_worker.js).
+// The functions that the module calls in the worker's script: members of the object `host` (memory.js, lab_worker.js).
 mergeInto(LibraryManager.library, {
   host_reply: function (id, status, headers, bytes, size) {
     Module['host'].reply(id, status, JSON.parse(UTF8ToString(headers)), HEAPU8.slice(bytes, bytes + size));

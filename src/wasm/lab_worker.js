@@ -32,7 +32,7 @@ function putFile({ name, bytes }) {
 
 /* --- turns --- */
 
-/* A message to itself arrives after the pending messages, without the delay of a timer. */
+/* A message that the worker sends to itself arrives after the pending messages, without the delay of a timer. */
 const bell = new MessageChannel();
 bell.port1.onmessage = runTurn;
 

@@ -4,13 +4,13 @@
 #include <string.h>
 
 #ifdef __EMSCRIPTEN__
-/* musl's texts do not depend on the locale unless messages of one are installed, and there are none. */
+/* musl's strerror depends on the locale only if message catalogues are installed, and a module has none. */
 static inline const char *strerrordesc_np(int error)
 {
     return strerror(error);
 }
 #endif
 
-/* A module has one thread. With copies of memory as instructions, clang would keep thread-local storage, which the
- * linker refuses without atomics. */
+/* A module has one thread. With the bulk-memory instructions, clang would keep thread-local storage, which the linker
+ * refuses without atomics. */
 #define _Thread_local

@@ -69,8 +69,8 @@ with_cmake libjpeg-turbo jpeg-static -DWITH_SIMD=0 -DENABLE_SHARED=0 -DWITH_TURB
 cp "$work/libjpeg-turbo/jconfig.h" "$(unpacked libjpeg-turbo)"/{jpeglib,jmorecfg,jerror}.h "$prefix/include"
 cp "$work/libjpeg-turbo/libjpeg.a" "$prefix/lib"
 
-# Random123 is copied, because /usr/include also has the headers of the machine's C library. It refuses architectures
-# that its authors did not try; test_random compares its numbers with published ones.
+# Random123 is copied, because -I/usr/include would also find the headers of the machine's C library. Random123 refuses
+# architectures that its authors did not try; test_random compares its numbers with published ones.
 cp -r /usr/include/Random123 "$prefix/include"
 sed -i 's/ && !defined(__arm__)/& \&\& !defined(__wasm__)/' "$prefix/include/Random123/features/gccfeatures.h"
 rm -r "$work"

@@ -16,7 +16,7 @@ static status refuse(call *c, const char *what, const char *remedy)
 
 static status no_study(call *c)
 {
-    return refuse(c, "studies measure times, which cannot be compared in a browser",
+    return refuse(c, "studies measure times, and times measured in a browser are not comparable",
                   "save the scene, and run: cuvette study run FILE.study");
 }
 

@@ -1,8 +1,8 @@
 /* Starts the module of a worker, and copies bytes to its memory. */
 'use strict';
 
-/* compiled: a WebAssembly.Module; host: the functions that the module calls (imports.js). Emscripten ignores a failure
- * of the hook. */
+/* compiled: a WebAssembly.Module; host: the functions that the module calls (imports.js). Emscripten does not notice a
+ * failure of the hook instantiateWasm, so the hook rejects the promise. */
 const instantiate = (compiled, host) =>
   new Promise((resolve, reject) => {
     cuvette({

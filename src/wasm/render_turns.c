@@ -14,12 +14,12 @@
 
 enum { WORKERS_MAX = 64, SIDE = 32 };
 
-/* The time that an order should take, because a worker notices only between orders that its pass was abandoned; but at
- * least setup_factor times the preparation of the frame, such as photons. */
+/* order_s: the time that an order should take; short, because a worker notices only between orders that its pass was
+ * abandoned. But an order takes at least setup_factor times the preparation of the frame, such as photons. */
 static const double order_s = 0.05, setup_factor = 4.0;
 
 typedef struct remote {
-    bool busy, lost;             /* lost: the worker could not start */
+    bool busy, lost;             /* lost: the worker could not start, or failed */
     uint64_t generation;         /* generation of the worker's scene; UINT64_MAX: a scene with a moving slime */
     double tiles_per_s, setup_s; /* measured in the last order of this pass; 0: none yet */
 } remote;
@@ -159,7 +159,7 @@ static bool can_distribute(const scene *view)
     return present > 0 && !(view->render.error > 0.0 && view->render.integrator == INTEGRATOR_PATH);
 }
 
-/* Sends the snapshot to the workers that have an older one. */
+/* Sends the snapshot to all workers, unless all have it already. */
 static status send_scene(render_worker *w, diagnostic *why)
 {
     bool all = true;
@@ -179,7 +179,7 @@ static status send_scene(render_worker *w, diagnostic *why)
     return STATUS_OK;
 }
 
-/* Starts the pass on the tile workers; false if it must be rendered here. */
+/* Starts the pass on the tile workers; false if the laboratory's worker must render it. */
 static bool distribute_pass(render_worker *w)
 {
     diagnostic why = {.line = 0};
@@ -270,7 +270,7 @@ void render_turns_traced(int worker, const void *bytes, size_t size)
         send_order(worker);
 }
 
-/* A worker that cannot start: the pass begins again without it. */
+/* A worker could not start, or failed: the pass begins again without it. */
 void render_turns_lost(int worker)
 {
     now.remotes[worker].lost = true;

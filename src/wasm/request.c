@@ -9,11 +9,11 @@
 #include <string.h>
 #include <unistd.h>
 
-/* The page itself comes from files, so the module embeds none. */
+/* The browser loads the page from the site's files, so the module embeds no file. */
 const http_file page_files[1] = {{.name = ""}};
 const size_t page_file_count = 0;
 
-/* The name is libmicrohttpd's, because http_reply has a pointer to it. */
+/* The name is libmicrohttpd's, because http_reply has a pointer to this type. */
 struct MHD_Response {
     const char *type;
     void *bytes; /* owned */
@@ -40,7 +40,7 @@ status http_start(const http_settings *settings, http_server **out, diagnostic *
     return STATUS_OK;
 }
 
-/* A laboratory ends with its worker. */
+/* Nothing to do: a laboratory ends with its worker. */
 void http_stop(http_server *server)
 {
     (void)server;
@@ -275,5 +275,5 @@ status http_publish(http_server *server, const char *event, const json_t *value,
 void http_events(void *context, const http_request *request, http_reply *reply)
 {
     (void)context, (void)request;
-    http_reply_error(reply, 404, "events come as messages here", "listen to the engine's events");
+    http_reply_error(reply, 404, "a laboratory in a browser sends events as messages", "listen to the engine's events");
 }

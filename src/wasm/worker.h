@@ -25,18 +25,18 @@ void requests_retry(void);
 
 /* --- the render worker of a laboratory in a browser, without a thread --- */
 
-/* The render worker (web/live/render_worker.h) works in turns between messages. The coarse pass and the moving slime
- * are rendered here; the tiles of finer passes go to tile workers, if there are any, so that the page's requests do not
- * wait for a frame. A pass with render.error needs the noise of the whole image: it is rendered here in one turn, and
- * requests wait for it. */
+/* The render worker (web/live/render_worker.h) works in turns between messages. It renders the coarse pass and the
+ * moving slime; the tiles of finer passes go to tile workers, if there are any, so that the page's requests do not wait
+ * for a frame. A pass with render.error needs the noise of the whole image: the render worker renders it in one turn,
+ * and requests wait for it. */
 
-/* The number of tile workers; once, before the laboratory starts. */
+/* Sets the number of tile workers; call it once, before the laboratory starts. */
 void render_turns_set_workers(int workers);
 /* The work of wasm_lab_turn; returns the same. */
 double render_turns_run(void);
 /* Merges the answer of a tile worker. */
 void render_turns_traced(int worker, const void *bytes, size_t size);
-/* A tile worker cannot start. */
+/* A tile worker could not start, or failed. */
 void render_turns_lost(int worker);
 
 /* --- orders to tile workers and their answers --- */
@@ -45,14 +45,14 @@ void render_turns_lost(int worker);
  * tile. */
 
 typedef struct tile_order {
-    int64_t frame;          /* number of the pass; answers of earlier ones are dropped */
+    int64_t frame;          /* number of the pass; answers for earlier passes are dropped */
     int32_t shrink, single; /* settings of the pass (web/live/passes.h) */
     int32_t side;           /* side of the tiles */
     int32_t first, count;   /* tiles first .. first + count - 1 */
 } tile_order;
 
-/* Then follow, per tile: its number as int64_t, sums and, with replicates, variances: 3 values per pixel of the
- * tile. */
+/* The rendered tiles follow this structure. Each is its number as int64_t, its sums and, with replicates, its
+ * variances, 3 values per pixel. */
 typedef struct tile_answer {
     tile_order of;
     int32_t code, traced;   /* a status; the number of tiles that follow */

@@ -19,19 +19,19 @@ class Connection {
     const receive = (message) => this.#receive(message);
     if (worker.on) worker.on('message', receive);
     else worker.addEventListener('message', ({ data }) => receive(data));
-    const fail = (error) => this.#fail(error.message ?? 'the worker cannot be started');
+    const fail = (error) =>
+      this.#fail(error.message ?? 'the worker cannot be started', 'check the address of the worker');
     if (worker.on) worker.on('error', fail);
     else worker.addEventListener('error', fail);
   }
 
   end() {
-    this.#fail('the worker was ended');
+    this.#fail('the worker was ended', 'connect again');
     this.worker.terminate();
   }
 
-  #fail(what) {
-    for (const { reject } of this.#waiting.values())
-      reject(new CuvetteError(1, { what, remedy: 'check the address of the worker' }));
+  #fail(what, remedy) {
+    for (const { reject } of this.#waiting.values()) reject(new CuvetteError(1, { what, remedy }));
     this.#waiting.clear();
   }
 

@@ -17,7 +17,7 @@ export class CuvetteError extends Error {
     Object.assign(this, { status, what, remedy, file, line, column });
   }
 
-  /* As a message between threads. */
+  /* The error as a plain object, for messages between threads. */
   toJSON() {
     const { status, message: text, what, remedy, file, line, column } = this;
     return { status, text, what, remedy, file, line, column };

@@ -11,7 +11,7 @@ export class Handle {
   #address;
   #release;
 
-  /* release() must not refer to the owner: it would keep it alive. */
+  /* release() must not refer to the owner, which would then never be collected. */
   constructor(address, release) {
     this.#address = address;
     this.#release = release;

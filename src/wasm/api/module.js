@@ -54,7 +54,7 @@ export async function instantiate(options) {
   const { module, wasm } = options.folder === undefined ? options : placesIn(options.folder);
   if (!module || !wasm) throw badInput('the module is not given', 'give folder, or module and wasm');
   const [factory, compiled] = await Promise.all([factoryOf(module), compile(wasm)]);
-  /* Emscripten ignores a failure of this hook. */
+  /* Emscripten does not notice a failure of this hook, so the hook rejects the promise. */
   return new Promise((resolve, reject) => {
     factory({
       instantiateWasm(imports, done) {

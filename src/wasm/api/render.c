@@ -45,7 +45,7 @@ static bool must_be_undivided(const render_settings *r)
     return scene_has_caustics(r) || (r->error > 0.0 && r->integrator == INTEGRATOR_PATH);
 }
 
-/* The side of tiles: with many rays per pixel tiles are smaller, so that they take about equally long. */
+/* The side of the tiles: smaller with many rays per pixel, so that a tile always takes about the same time. */
 static int side_of(const render_settings *r)
 {
     const double per_pixel = scene_camera_rays(r) / ((double)r->width * (double)r->height);
@@ -204,7 +204,7 @@ char *wasm_render_tiles(wasm_render *r)
 void wasm_render_srgb(const wasm_render *r, int x0, int y0, int x1, int y1, unsigned char *rgba)
 {
     const size_t pixels = (size_t)(x1 - x0) * (size_t)(y1 - y0);
-    unsigned char *rgb = rgba + pixels; /* at the end; the loop never overtakes it */
+    unsigned char *rgb = rgba + pixels; /* at the end: the loop reads each pixel before it overwrites the bytes */
     canvas_bytes(r->sum.img, &r->bytes, x0, y0, x1, y1, rgb, 3 * (size_t)(x1 - x0));
     for (size_t i = 0; i < pixels; i++) {
         memmove(rgba + 4 * i, rgb + 3 * i, 3);

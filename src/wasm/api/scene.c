@@ -9,7 +9,7 @@
 #include <math.h>
 #include <stdlib.h>
 
-/* Returns a text whose length the first call of the library finds. */
+/* Returns a text of the library; the first call, without room, finds its length. */
 static char *sized_text(const cuvette_scene *s, const char *path)
 {
     size_t length = 0;

@@ -18,9 +18,9 @@ function makeFolder(FS, path) {
   }
 }
 
-/* The files of a scene and its clones, in a folder that is removed when the last of them is released. */
+/* The files of a scene and its clones, in a folder that is removed when the scene and all clones are released. */
 class Files {
-  /* name: the scene file's; paths are relative to its folder. */
+  /* name: path of the scene file in the folder, which may have subfolders; files: {path in the folder: bytes}. */
   constructor(FS, name, files) {
     this.FS = FS;
     this.users = 1;
@@ -71,7 +71,8 @@ export class Scene extends Handle {
     this.#files = files;
   }
 
-  /* Reads a scene's text. name: the file's, for errors. files: {name: bytes} of the images and meshes that it names. */
+  /* Reads a scene's text. name: of the scene file, for errors and as the place that paths in the scene are relative to.
+   * files: {name: bytes}, the images and meshes that the scene uses. */
   static read(memory, text, { name = 'scene.yaml', files = {} } = {}) {
     const bytes = typeof text === 'string' ? new TextEncoder().encode(text) : text;
     const folder = new Files(memory.module.FS, name, files);
@@ -88,7 +89,8 @@ export class Scene extends Handle {
     return new Scene(memory, memory.handle('cuvette_scene_create'), new Files(memory.module.FS, '', {}));
   }
 
-  /* The memory, after a change to the folder of the scene's files; for all calls that may read them. */
+  /* Makes the folder of the scene's files the working directory, for calls that may read the files. Returns the
+   * memory. */
   in() {
     this.#memory.module.FS.chdir(this.#files.path);
     return this.#memory;

@@ -1,7 +1,7 @@
 /* Readers of mesh files for browsers, without assimp: OBJ with MTL, and PLY. Triangles, vertices, normals and materials
  * equal those of the program's importer, so that films have the same hash. Ownership: mesh_parts_release frees what a
- * reader made, even after an error. Errors: STATUS_BAD_INPUT with the line in the message, STATUS_FAILURE if memory
- * runs out. */
+ * reader made, even after an error. Errors: STATUS_BAD_INPUT, with the line in the message if one line is at fault;
+ * STATUS_FAILURE if memory runs out. */
 #pragma once
 
 #include "base/status.h"
@@ -42,7 +42,8 @@ status mesh_parts_import(mesh_parts *p, mesh_import **out, diagnostic *why);
  * returns the number of triangles, whose corners are indices of places. */
 size_t polygon_divide(const float (*places)[3], size_t count, uint32_t (*triangles)[3]);
 
-/* text: size bytes and a final 0. path: the file's, to find material libraries next to it; `why` already has it. */
+/* text: size bytes and a final 0. path: of the file, to find material libraries next to it; `why` already has the
+ * path. */
 status obj_read_text(const char *path, const char *text, size_t size, mesh_parts *p, diagnostic *why);
 status ply_read_text(const char *text, size_t size, mesh_parts *p, diagnostic *why);
 

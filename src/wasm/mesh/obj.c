@@ -165,8 +165,8 @@ static status read_normal(obj_text *o, lines *l)
     return STATUS_OK;
 }
 
-/* Reads the index of one of `count` elements: from 1, or from -1 backwards from the last; 0: there is no such
- * element. */
+/* Reads the index of one of `count` elements: 1 is the first, -1 the last. Returns the index from 1, or 0 if there is
+ * no such element. */
 static uint32_t read_index(const char **at, size_t count)
 {
     char *end;

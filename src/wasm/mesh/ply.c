@@ -26,8 +26,8 @@ typedef struct ply_element {
 } ply_element;
 
 typedef struct ply {
-    lines text;     /* the header; then the rest, as text */
-    const char *at; /* the rest, as bytes */
+    lines text;     /* the header; after it, the elements as text */
+    const char *at; /* the rest of the elements as bytes */
     bool ascii, big;
     ply_element elements[PLY_ELEMENTS_MAX];
     int element_count;

@@ -44,7 +44,7 @@ static void divide_four(const float (*p)[3], uint32_t (*triangles)[3])
     }
 }
 
-/* Newell's normal: twice the areas of the projections. */
+/* Newell's normal: twice the signed areas of the polygon's projections onto the coordinate planes. */
 static void normal_of(const float (*p)[3], size_t count, float n[3])
 {
     memset(n, 0, 3 * sizeof *n);
@@ -101,7 +101,7 @@ size_t polygon_divide(const float (*places)[3], size_t count, uint32_t (*triangl
         return 2;
     }
     point flat[POLYGON_MAX];
-    uint16_t after[POLYGON_MAX]; /* the next corner that is left */
+    uint16_t after[POLYGON_MAX]; /* the next corner that is not yet cut off */
     project(places, count, flat);
     for (size_t i = 0; i < count; i++)
         after[i] = (uint16_t)((i + 1) % count);
