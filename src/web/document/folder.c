@@ -11,7 +11,7 @@
 #include <sys/stat.h>
 
 struct folder {
-    char *given; /* relative to the working directory, as given */
+    char *given; /* as given: absolute, or relative to the working directory */
     char *real;  /* absolute, without links and trailing slash: "" is the root directory */
 };
 

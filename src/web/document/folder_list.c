@@ -170,7 +170,7 @@ static void classify_file(listing *l, char *name)
     add_name(l, &l->found[use], name);
 }
 
-/* Whether the name is UTF-8; JSON cannot hold another. */
+/* Whether the name is UTF-8; JSON cannot hold other names. */
 static bool is_text(listing *l, const char *name)
 {
     json_t *text = json_text_or_null(name);
@@ -211,7 +211,7 @@ static void visit_folder(listing *l, const char *name)
     if (!path)
         fail_for_memory(l);
     else if (!d && system_error(&why, STATUS_BAD_INPUT, path, "cannot be listed", errno, "") == STATUS_FAILURE)
-        fail(l, &why); /* a folder that cannot be listed now is not an empty one */
+        fail(l, &why); /* a lack of memory or open files must not look like an empty folder */
     free(path);
     names found = {.name = NULL};
     for (const struct dirent *e; d && l->code == STATUS_OK && l->entries < ENTRIES_MAX && (e = readdir(d));

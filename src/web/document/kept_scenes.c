@@ -93,7 +93,7 @@ static json_t *read_about(int fd)
     return NULL;
 }
 
-/* Frees path unless the file is claimed. */
+/* Locks an unsaved scene's file and reads its first line; *k then owns path. False, with path freed, if that fails. */
 static bool claim(char *path, const char *name, kept_scene *k)
 {
     struct stat about;
@@ -173,7 +173,7 @@ status kept_scene_read(const kept_scene *k, char **text, size_t *size, diagnosti
 
 /* --- writing --- */
 
-/* Nobody else may put files into the folder: they would be offered. */
+/* Other users must not be able to write to the folder: the laboratory would offer their files as unsaved scenes. */
 status kept_scenes_folder(const char *folder, diagnostic *why)
 {
     struct stat about;

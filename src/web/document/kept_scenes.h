@@ -9,7 +9,7 @@
 #include <jansson.h>
 #include <stddef.h>
 
-/* The limits of scenes without an owner, of which the newest are kept, and of the bytes of a file. */
+/* KEPT_SCENES_MAX: how many scenes without an owner are kept, the newest. KEPT_SCENE_BYTES_MAX: limit of a file. */
 enum { KEPT_SCENES_MAX = 8, KEPT_SCENE_BYTES_MAX = 4 << 20 };
 
 /* All zero: none. */
@@ -24,7 +24,7 @@ typedef struct kept_scene {
  * Ignores files that cannot be read or locked. Returns the number of scenes. */
 size_t kept_scenes_claim(const char *folder, kept_scene list[KEPT_SCENES_MAX]);
 
-/* Creates the folder, which only its owner can access. */
+/* Creates the folder with mode 0700. STATUS_FAILURE if it belongs to another user, or another user can write to it. */
 status kept_scenes_folder(const char *folder, diagnostic *why);
 /* Writes a scene to a new file, or replaces the file of *kept; creates the folder. about: title, folder and file; the
  * time is added. *kept is unchanged after an error. */

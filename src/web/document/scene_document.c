@@ -287,8 +287,8 @@ status scene_document_rescue(scene_document *d, scene *s, const char *file, uint
     return open_as(d, s, file, true, generation, why);
 }
 
-/* Keeps the view if both versions have the same saved camera; otherwise the view becomes the new version's camera. A
- * version of another file is shown with its last view. */
+/* Keeps the view if both versions have the same saved camera; otherwise the view becomes the new version's saved
+ * camera. A version of another opened scene is shown with its last view. */
 static void restore_view(scene_document *d, const version *before, const camera_view *view)
 {
     if (d->now.from != before->from) {
@@ -362,7 +362,7 @@ uint64_t scene_document_generation(scene_document *d)
     return generation;
 }
 
-/* Both are copies of one version, so their objects correspond. */
+/* loaded began as a copy of s, so their objects correspond. */
 static void share_loaded(scene *s, const scene *loaded)
 {
     for (size_t i = 0; i < s->texture_count; i++)

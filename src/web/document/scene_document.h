@@ -2,7 +2,7 @@
  * and redo do too. Thread-safe. A change edits a copy, which is validated, also against the limits below,
  * before it replaces the scene, so that no reader sees a partial change. Ownership: scene_document_create creates,
  * scene_document_destroy releases; scenes passed in or returned belong to the receiver, except the document's own
- * copy during a change. Errors: STATUS_BAD_INPUT with the reason; the scene is then unchanged. */
+ * copy during a change. Errors: STATUS_BAD_INPUT, or STATUS_FAILURE if memory runs out; the scene is then unchanged. */
 #pragma once
 
 #include "scene/model/camera_moves.h"
@@ -12,19 +12,20 @@
 
 typedef struct scene_document scene_document;
 
-/* Limits of the scene document, so that every render is bounded in memory and time; 4096 x 4096 pixels. */
+/* Limits of the scene document, so that every render is bounded in memory and time. DOCUMENT_PIXELS_MAX is 4096 * 4096,
+ * DOCUMENT_UNDO_MAX the number of undo steps. */
 enum { DOCUMENT_PIXELS_MAX = 16777216, DOCUMENT_TRIANGLES_MAX = 4000000, DOCUMENT_UNDO_MAX = 200 };
 #define DOCUMENT_WORK_MAX 1e12 /* pixels * (samples or paths) * wavelengths */
 
-/* Whether a scene is valid, refers to no file outside the folder, and requires a bounded amount of memory and work.
- * scene_document_check inspects the scene itself; scene_document_limit sets limits for the time of loading: for files
- * that the scene's files refer to, and for triangles, whose number only the files determine. files: NULL for no
- * confinement. */
+/* scene_document_check: whether a scene is valid, refers to no file outside the folder, and has at most the pixels,
+ * camera rays and generated triangles above. scene_document_limit sets limits that loading observes, because only
+ * loading shows what the files contain: files that the scene's files refer to must be in the folder, too, and all
+ * triangles count, also those of mesh files. files: NULL for no confinement. */
 status scene_document_check(const scene *s, const folder *files, diagnostic *why);
 status scene_document_limit(scene *s, const folder *files, diagnostic *why);
 
-/* Takes ownership of the scene, also after an error. changed is called without the lock after each change. file: the
- * scene's name in the folder, NULL for a new scene. files is borrowed: loading a copy opens no file outside it. */
+/* Takes ownership of the scene, also after an error. changed is called without the lock after each change. file: name
+ * of the scene's file, NULL for a new scene. files is borrowed; loading a copy opens no file outside this folder. */
 status scene_document_create(scene *first, const char *file, const folder *files, void (*changed)(void *context),
                              void *context, scene_document **out, diagnostic *why);
 void scene_document_destroy(scene_document *d); /* NULL is allowed */
@@ -60,8 +61,8 @@ status scene_document_move_view(scene_document *d, camera_move *move, const char
 typedef enum view_command { VIEW_BACK, VIEW_FORWARD, VIEW_HOME, VIEW_KEEP } view_command;
 status scene_document_view(scene_document *d, view_command order, uint64_t *generation, diagnostic *why);
 
-/* STATUS_BAD_INPUT when there is nothing to undo (or redo). The view stays, unless the own cameras of the two
- * scenes differ. */
+/* STATUS_BAD_INPUT when there is nothing to undo (or redo). The view stays, unless the two versions differ in the
+ * scene's own camera, or are of two opened scenes. */
 status scene_document_undo(scene_document *d, bool redo, uint64_t *generation, diagnostic *why);
 
 /* Resets these paths to their values when the scene was opened, or (count 0) all paths and the objects themselves. */
@@ -77,16 +78,16 @@ scene *scene_document_copy_to_save(scene_document *d, uint64_t *generation, uint
 scene *scene_document_copy_opened(scene_document *d);
 uint64_t scene_document_generation(scene_document *d);
 
-/* Shares the data that was loaded for a copy of that generation with later copies. loaded is borrowed. */
+/* Lets later copies share the data that was loaded for a copy of this generation; does nothing if the document has a
+ * newer one. loaded is borrowed. */
 void scene_document_reuse_loaded(scene_document *d, const scene *loaded, uint64_t generation);
 
 /* Records that the version of that number, which scene_document_copy_to_save returned, was written to the file. */
 void scene_document_saved(scene_document *d, const char *file, uint64_t number);
 
-/* Whether the scene has changes that would be lost with the program; number: as of
- * scene_document_copy_to_save. file: a copy of its file's name,
- * NULL for none (or out of memory); may be NULL. */
+/* Whether the scene has changes that would be lost with the program. number: as for scene_document_copy_to_save.
+ * *file: a copy of the name of the scene's file, NULL for none (or out of memory); file may be NULL. */
 bool scene_document_unsaved(scene_document *d, uint64_t *number, char **file);
 
-/* Adds generation, file, title, saved, undo, redo and view; false when out of memory. */
+/* Adds generation, file, title, saved, unsaved, undo, redo and view; false when out of memory. */
 bool scene_document_json(scene_document *d, json_t *state);

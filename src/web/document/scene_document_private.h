@@ -31,7 +31,7 @@ typedef struct view_history {
 typedef struct origin {
     scene *s;
     uint64_t number; /* the version's */
-    bool unfiled;    /* no file may have it: it was rescued, or its file has been saved into */
+    bool unfiled;    /* perhaps no file has the opened version: it was rescued, or its file was saved with changes */
     int references;
 } origin;
 
@@ -69,8 +69,8 @@ bool camera_equal(const struct camera *a, const struct camera *b);
 /* Replaces the current view by the one before (or after) it; false if there is none. */
 bool view_history_go(view_history *h, bool forward, camera_view *now);
 
-/* Sets the view, and records the one before unless it is equal. Consecutive moves with the
- * same gesture are one entry; a move without a gesture (NULL) is another. The caller holds the lock. */
+/* Sets the view, and records the previous view unless it is equal. Consecutive moves with the same gesture are one
+ * entry; a move without a gesture (NULL) is always a new entry. The caller holds the lock. */
 void scene_document_put_view(scene_document *d, const camera_view *next, const char *gesture);
 camera_view scene_document_view_now(const scene_document *d);
 

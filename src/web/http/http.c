@@ -44,7 +44,7 @@ static status check(http_settings *s, diagnostic *why)
     if (!s->event_clients)
         s->event_clients = s->connections / 2 < 32 ? s->connections / 2 : 32;
     if (s->event_clients < 0 || s->event_clients > HTTP_EVENT_CLIENTS_MAX)
-        return diagnose(why, STATUS_BAD_INPUT, "use 0 to 512 event streams",
+        return diagnose(why, STATUS_BAD_INPUT, "use 1 to 512 event streams, or 0 for the default",
                         "the number of event streams, %d, is out of range", s->event_clients);
     s->timeout_s = s->timeout_s > 0 ? s->timeout_s : 10;
     s->requests_per_s = s->requests_per_s > 0 ? s->requests_per_s : 2000;
@@ -62,8 +62,8 @@ static status make_token(http_server *s, diagnostic *why)
     return STATUS_OK;
 }
 
-/* Closes the socket of a server that did not start. libmicrohttpd has closed it already, unless its first allocation
- * failed. */
+/* Closes the socket of a server that did not start. libmicrohttpd has closed it already, unless it was not started or
+ * its first allocation failed. The number of a closed socket may belong to another file now, so the inode decides. */
 static void close_unserved(int fd, const struct stat *listening)
 {
     struct stat now;

@@ -16,10 +16,10 @@
  *        %00, %2f or %5c, however they are encoded; libmicrohttpd ends the line at an unencoded NUL
  *   421  Host is 127.0.0.1, localhost or [::1] with this port: another name means DNS rebinding by another site
  *   403  Origin, if present, is that same host
+ *   429  requests_per_s, with a burst of one second; requests without the token have a separate limit
  *   401  the token, as "Authorization: Bearer TOKEN" or in the cookie cuvette_PORT; or, for GET, as ?token=TOKEN:
  *        the reply is 303 with that cookie (HttpOnly, SameSite=Strict) and the same address without the token
- *        (if a page of another site or a local file opened it: 200 with a page that opens "/")
- *   429  requests_per_s, with a burst of one second; requests without the token have a separate limit
+ *        (if a page of another site or a local file opened the address: 200 with a page that opens "/")
  *   404  no route or file has the path;  405  the route has another method (Allow lists them); HEAD uses GET's route
  *   415  Content-Type: application/json for every method but GET and HEAD; another site's page cannot send it
  *        without a preflight request, which fails
@@ -61,7 +61,7 @@ typedef struct http_route {
     void *context;
 } http_route;
 
-/* Served for GET at "/" and its name; index.html also at "/". A route with the same path has precedence. */
+/* Served for GET at /NAME; index.html also at /. A route with the same path has precedence. */
 typedef struct http_file {
     const char *name, *type;
     const unsigned char *bytes;
@@ -77,7 +77,7 @@ typedef struct http_settings {
     size_t file_count;
     size_t body_max;       /* limit of a request's body in bytes [1 MiB] */
     int connections;       /* concurrent connections, 1..1024 [64]; further clients wait to be accepted */
-    int event_clients;     /* connections that may be event streams [32, or half of all]; further clients get 503 */
+    int event_clients;     /* connections that may be event streams [half of all, at most 32]; more clients get 503 */
     int timeout_s;         /* [10] */
     double requests_per_s; /* [2000] */
 } http_settings;
@@ -98,7 +98,8 @@ const char *http_path_value(const http_request *request,
                             const char *name); /* the value of {name}; NULL: not in the pattern */
 const char *http_query_value(const http_request *request, const char *name); /* decoded; NULL: none; "" for ?name */
 const char *http_header(const http_request *request, const char *name);      /* the first of that name; NULL: none */
-/* The body as JSON (a new reference); NULL for invalid JSON: the reply is then 400 with line and column. */
+/* The body as JSON (a new reference). NULL sets the reply: 400 with line and column for invalid JSON, 500 when out of
+ * memory. */
 json_t *http_body_json(const http_request *request, http_reply *reply);
 
 /* --- a reply; the last one set counts --- */
@@ -110,19 +111,19 @@ void http_reply_static(http_reply *reply, int code, const char *type, const void
 void http_reply_file(http_reply *reply, int code, const char *type, int file,
                      size_t size); /* a regular file, from its start; the reply owns the descriptor */
 void http_reply_json(http_reply *reply, int code, json_t *value); /* owns value; NULL sends 500 */
-/* {"error": what, "remedy": remedy}; bytes of what that are not UTF-8 become '?'. */
+/* {"error": what, "remedy": remedy}; bytes that are not UTF-8 become '?'. */
 void http_reply_error(http_reply *reply, int code, const char *what, const char *remedy);
 /* 400 for STATUS_BAD_INPUT, 409 for STATUS_INTERRUPTED, otherwise 500; with file, line and column if the diagnostic
  * has them. */
 void http_reply_diagnostic(http_reply *reply, status code, const diagnostic *why);
-/* Adds a header (copied), at most 8, except those that every reply has. Ignored if name or value contain control
- * characters. */
+/* Adds a header (copied) to those that every reply has. Ignored after 8 added headers, if name or value contain control
+ * characters, or if memory runs out. */
 void http_reply_header(http_reply *reply, const char *name, const char *value);
 
 /* --- events --- */
 
-/* The handler of an event stream (text/event-stream) with all later events; 503 if event_clients streams are open.
- * To miss nothing, a page opens the stream first and then requests the state. A comment every 5 s keeps the
+/* The handler of an event stream (text/event-stream) with the events from now on; 503 if event_clients streams are
+ * open. To miss nothing, a page opens the stream first and then requests the state. A comment every 5 s keeps the
  * connection alive and detects clients that have left. */
 void http_events(void *context, const http_request *request, http_reply *reply);
 

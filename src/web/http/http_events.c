@@ -126,7 +126,7 @@ static void client_free(void *context)
     free(c);
 }
 
-/* False if all slots are taken. */
+/* False if all slots are taken, or the streams end. */
 static bool add_client(http_server *s, http_event_client *c)
 {
     pthread_mutex_lock(&s->event_lock);

@@ -15,7 +15,7 @@ static int hex(char c)
     return c >= 'a' && c <= 'f' ? c - 'a' + 10 : -1;
 }
 
-/* No part is "." or "..", and only the last may be empty. */
+/* Whether no part is "." or "..", and no part but the last is empty. */
 static bool stays_below(const char *path)
 {
     for (const char *part = path; *part == '/';) {
@@ -28,8 +28,8 @@ static bool stays_below(const char *path)
     return true;
 }
 
-/* The decoded path of a target; NULL for a path that leads upwards or is malformed. *no_memory distinguishes the two
- * causes. */
+/* The decoded path of a target. NULL if it leads upwards or is malformed, or, with *no_memory set, when out of
+ * memory. */
 static char *safe_path(const char *target, bool *no_memory)
 {
     *no_memory = false;
@@ -45,7 +45,7 @@ static char *safe_path(const char *target, bool *no_memory)
         if (byte == '%') {
             const int high = hex(c[1]), low = high < 0 ? -1 : hex(c[2]);
             byte = low < 0 ? 0 : 16 * high + low;
-            /* A decoded %2f would become a separator for later code. */
+            /* 0 is refused below; a decoded %2f would become a separator for later code. */
             byte = byte == '/' ? 0 : byte;
             c += low < 0 ? 0 : 2;
         } else if (byte >= 0x7f || byte == '#') {
@@ -187,7 +187,7 @@ static bool has_token(const http_request *q)
     return same_token(q->server->token, mhd.lookup_connection_value(q->connection, MHD_COOKIE_KIND, q->server->cookie));
 }
 
-/* Checks all but the token, against requests that another site's page could cause. */
+/* Checks version, path, host and origin, against requests that another site's page could cause. */
 static int guard_site(http_request *q, const char *version)
 {
     site_headers h = {0};
@@ -201,7 +201,8 @@ static int guard_site(http_request *q, const char *version)
     if (!q->path)
         return refuse(q, 400, "the path contains '..' or invalid characters", "use a path as in the page's links");
     if (h.hosts != 1 || h.origins > 1)
-        return refuse(q, 400, "exactly one Host and at most one Origin are required", "send the header Host once");
+        return refuse(q, 400, "exactly one Host and at most one Origin are required",
+                      "send the header Host once, and Origin at most once");
     if (!is_local_host(q->server, h.host))
         return refuse(q, 421, "unknown host name", "use the address that the program printed");
     if (h.origin && (strncmp(h.origin, "http://", 7) != 0 || strcasecmp(h.origin + 7, h.host) != 0))

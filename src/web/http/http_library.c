@@ -14,7 +14,7 @@ static void load(void)
 {
     void *library = dlopen("libmicrohttpd.so.12", RTLD_NOW | RTLD_LOCAL);
     loaded = library != NULL;
-    const char *said = library ? NULL : dlerror(); /* the loader has no number for its errors */
+    const char *said = library ? NULL : dlerror(); /* a text: the loader sets no errno */
     snprintf(reason, sizeof reason, "%s", said ? said : "a function is missing");
 #define FIND(name) loaded = loaded && (*(void **)&mhd.name = dlsym(library, "MHD_" #name));
     EACH_MHD_FUNCTION(FIND)

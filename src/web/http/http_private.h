@@ -24,7 +24,7 @@ typedef struct http_bucket {
 typedef struct http_slot {
     int socket;        /* -1: the slot is free */
     double deadline_s; /* 0: none */
-    bool known;        /* it has sent a request with the token */
+    bool known;        /* the connection has sent a request with the token */
     double started_s;
 } http_slot;
 
@@ -75,14 +75,14 @@ struct http_request {
     http_reply reply; /* if set before the body arrives, the body is discarded */
 };
 
-/* --- http_guard.c: checks of a request. Each returns 0, or the HTTP code with the reply set. --- */
+/* --- http_guard.c: checks a request. Returns 0, or the HTTP code with the reply set. --- */
 
 int http_guard(http_request *q, const char *version);
 
 /* --- http_shared.c: sets q->route or q->file. Returns 0, or the HTTP code with the reply set. --- */
 int http_find_route(http_request *q);
 
-/* --- http_send.c, and what replaces it in a browser (src/wasm/request.c) --- */
+/* --- http_send.c --- */
 void http_reply_release(http_reply *r);
 void http_reply_set(http_reply *r, int code, const char *type,
                     struct MHD_Response *response); /* owns response; NULL: out of memory */
@@ -92,7 +92,7 @@ status http_watch_start(http_server *s, diagnostic *why);
 /* Reports that the server's threads cannot be started. */
 status http_no_threads(diagnostic *why);
 void http_watch_stop(http_server *s);
-/* Marks the connection as one with the token: strangers do not displace it. */
+/* Marks a connection that has sent the token: new connections do not displace it. */
 void http_watch_known(http_server *s, struct MHD_Connection *c);
 /* Sets the time limit of the connection's current action; 0: none. */
 void http_watch_deadline(http_server *s, struct MHD_Connection *c, double in_s);

@@ -5,7 +5,7 @@
 #include <string.h>
 #include <strings.h>
 
-/* A body above the limit is still read up to this multiple of it, so that the client gets the 413 instead of a
+/* A body above the limit is still read up to this multiple of the limit, so that the client gets the 413 instead of a
  * broken connection. */
 enum { PATIENCE = 8 };
 
@@ -98,7 +98,8 @@ static enum MHD_Result read_head(http_request *q, const char *method, const char
         return MHD_NO;
     if (http_guard(q, version) == 0 && http_find_route(q) == 0 && changes(q) &&
         !is_json(http_header(q, "Content-Type")))
-        http_reply_error(&q->reply, 415, "the content type is not JSON", "send it with Content-Type: application/json");
+        http_reply_error(&q->reply, 415, "the content type is not JSON",
+                         "send JSON, with Content-Type: application/json");
     const char *length = http_header(q, "Content-Length");
     const unsigned long long size = length ? strtoull(length, NULL, 10) : 0;
     if (size > q->server->settings.body_max)

@@ -1,4 +1,4 @@
-/* The contents of replies, as libmicrohttpd sends them: bytes, compressed if that pays, and files. */
+/* The contents of replies, as libmicrohttpd sends them: bytes, compressed if that makes them smaller, and files. */
 #include "web/http/http_library.h"
 
 #include <stdlib.h>
@@ -52,8 +52,8 @@ static void *deflate_all(const void *bytes, size_t size, size_t *packed_size)
     return NULL;
 }
 
-/* The bytes compressed by gzip, in allocated memory; NULL if the client does not accept it, the type is not text, or
- * compression does not pay. */
+/* The bytes compressed by gzip, in allocated memory; NULL if the client does not accept gzip, the type is not text, the
+ * compressed bytes would not be fewer, or memory runs out. */
 static void *gzip_bytes(const http_reply *r, const char *type, const void *bytes, size_t size, size_t *packed_size)
 {
     const bool worth_it = size >= SIZE_MIN && is_text(type) && r->connection && accepts_gzip(r->connection);

@@ -1,6 +1,6 @@
 /* The images of the laboratory: those of the render worker, the reference that they are compared with, maps of what
  * their pixels cost, and thumbnails of other scenes. All are thread-safe. Ownership: *_create creates, *_destroy
- * releases when no thread calls it any more; a shared image is immutable and reference-counted. Errors: NULL when out
+ * releases once no thread uses the object; a shared image is immutable and reference-counted. Errors: NULL when out
  * of memory, STATUS_BAD_INPUT for images that cannot be compared, STATUS_FAILURE for memory and for renders that take
  * too long. */
 #pragma once
@@ -33,7 +33,7 @@ typedef struct shared_image {
 void shared_image_retain(const shared_image *img);
 void shared_image_release(const shared_image *img); /* NULL is allowed */
 
-/* The image as an 8-bit PNG or as a JPEG (image_encode's fast ones), encoded once for all callers; the bytes belong to
+/* The image as an 8-bit PNG or as a JPEG (image_encode with `fast`), encoded once for all callers; the bytes belong to
  * the image. */
 status shared_image_encode(const shared_image *img, image_format format, const unsigned char **bytes, size_t *size,
                            diagnostic *why);
@@ -80,7 +80,7 @@ enum { PIXEL_RAYS, PIXEL_TIME, PIXEL_CUT, PIXEL_MAPS };
 
 typedef struct pixel_map {
     heatmap_scale scale;
-    double total, largest; /* rays; ns; fractions of a pixel's light */
+    double total, largest; /* over the pixels, in the map's unit: rays; ns; fractions of a pixel's light */
 } pixel_map;
 
 typedef struct pixel_map_set {
@@ -95,8 +95,8 @@ typedef struct pixel_map_set {
 pixel_maps *pixel_maps_create(isa level); /* NULL when out of memory */
 void pixel_maps_destroy(pixel_maps *m);   /* NULL is allowed */
 
-/* The maps of a final image, rendered unless they are kept. png: a copy of the PNG of one map, which the caller frees;
- * NULL: not wanted. STATUS_INTERRUPTED when cancelled. STATUS_FAILURE if the frame takes more than
+/* The maps of a final image, rendered unless they are kept. *png: a copy of the PNG of the map `which`, which the
+ * caller frees; png may be NULL. STATUS_INTERRUPTED when cancelled. STATUS_FAILURE if the frame takes more than
  * PIXEL_MAPS_LIMIT_S. */
 #define PIXEL_MAPS_LIMIT_S 50.0
 status pixel_maps_of(pixel_maps *m, const shared_image *img, pixel_map_set *out, int which, unsigned char **png,
@@ -113,9 +113,9 @@ void thumbnails_destroy(thumbnails *t);   /* NULL is allowed */
 /* Ends a render; later requests return STATUS_INTERRUPTED. */
 void thumbnails_end(thumbnails *t);
 
-/* The JPEG kept for a key, in fresh memory; *bytes is NULL if there is none. */
+/* The JPEG kept for a key, in memory that the caller frees; *bytes is NULL if there is none. */
 status thumbnails_find(thumbnails *t, const char *key, unsigned char **bytes, size_t *size, diagnostic *why);
 /* Renders the scene and keeps the thumbnail; changes the scene's image settings and loads its files. STATUS_FAILURE if
- * this takes longer than some seconds. */
+ * this takes more than 16 s of CPU time. */
 status thumbnails_render(thumbnails *t, const char *key, scene *s, unsigned char **bytes, size_t *size,
                          diagnostic *why);

@@ -85,7 +85,7 @@ static void withdraw(live *l, const grab_request *q)
         *link = q->next;
 }
 
-/* The caller holds the lock, except while waiting. */
+/* Waits for the render worker's answer. The caller holds the lock, which is released while waiting. */
 static status wait_for(live *l, grab_request *q, diagnostic *why)
 {
     const struct timespec until = clock_after(LIVE_WAIT_S);
@@ -103,7 +103,7 @@ static status wait_for(live *l, grab_request *q, diagnostic *why)
 static status check_live(const live *l, diagnostic *why)
 {
     if (l->mode == LIVE_IS_OFF || !l->report.has_slime)
-        return diagnose(why, STATUS_BAD_INPUT, "play the slime first", "the slime is not live");
+        return diagnose(why, STATUS_BAD_INPUT, "play a slime first, in a scene that has one", "no slime is live");
     if (l->report.in_trouble && !l->restart)
         return diagnose(why, STATUS_BAD_INPUT, "restart the slime", "the slime has stopped: %s",
                         l->report.trouble.what);
@@ -115,7 +115,7 @@ status live_grab(live *l, vec3 origin, vec3 direction, double reach, int *hand, 
     const double length = vec3_length(direction);
     if (!vec3_is_finite(origin) || !(length > 0.0 && isfinite(length)) || !(reach >= 0.0 && isfinite(reach)))
         return diagnose(why, STATUS_BAD_INPUT, "use finite coordinates for the ray and a reach of at least 0",
-                        "the grab ray has a coordinate that is not finite");
+                        "the grab ray or its reach is invalid");
     grab_request q = {.origin = origin, .direction = vec3_scale(direction, 1.0 / length), .reach = reach, .why = why};
     pthread_mutex_lock(&l->lock);
     status code = check_live(l, why);

@@ -3,7 +3,7 @@
  *
  * Threads: functions marked "render worker" are called only by the render worker's thread, with the snapshot (the
  * render worker's own copy of the scene), which no other thread reads meanwhile; all others are thread-safe. Ownership:
- * live_create creates, live_destroy releases, after live_detach and when no other thread calls any more. Errors:
+ * live_create creates, live_destroy releases, after live_detach and once no other thread uses the slime. Errors:
  * STATUS_BAD_INPUT for invalid requests, and for a body whose simulation diverged: it stops and reports the error until
  * it is restarted. */
 #pragma once
@@ -24,7 +24,7 @@ typedef enum live_command {
 } live_command; /* restart: plays from the beginning */
 
 /* wake: called after each command, so that the render worker runs it. */
-live *live_create(void (*wake)(void *context), void *context); /* NULL when memory is out */
+live *live_create(void (*wake)(void *context), void *context); /* NULL when out of memory */
 void live_destroy(live *l);                                    /* NULL is allowed */
 
 /* --- thread-safe --- */
@@ -35,11 +35,11 @@ void live_set_preview(live *l, live_preview preview);
 /* Rays and points are in world space: the caller knows the camera. A grab wakes the render worker and waits for it,
  * usually less than a frame; STATUS_INTERRUPTED after LIVE_WAIT_S or live_stop. The other functions do not wait; the
  * next step applies them. STATUS_BAD_INPUT: the slime is off or diverged, or no such hand exists (hands end when the
- * slime restarts because its own parameters changed). */
+ * slime restarts, by a command or because its parameters changed). */
 #define LIVE_WAIT_S 5.0
 enum { LIVE_MISSED = -1, LIVE_ALL = -2 };
-/* reach: scene units; 0: 0.3 of the slime's radius. hand: its number, never reused, or LIVE_MISSED if the ray
- * misses the slime. */
+/* reach: scene units; 0: 0.3 of the radius of the slime as scaled in the scene. *hand: a number that is never reused,
+ * or LIVE_MISSED if the ray misses the slime. *where: the grab point. */
 status live_grab(live *l, vec3 origin, vec3 direction, double reach, int *hand, vec3 *where, diagnostic *why);
 status live_move(live *l, int hand, vec3 by, diagnostic *why); /* by: offset from the grab point */
 status live_release(live *l, int hand, diagnostic *why);       /* LIVE_ALL: all hands */

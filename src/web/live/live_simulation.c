@@ -97,7 +97,7 @@ static status advance_until(live *l, double until_s, double most_s, diagnostic *
 /* Ignores the speed that a vertex on the floor gains and loses in each step. */
 static bool is_quiet(const live *l)
 {
-    const double rest_speed = 0.1; /* radii per second: a wobble of less than a pixel */
+    const double rest_speed = 0.1; /* radii per second; a slower wobble moves the surface by less than a pixel */
     bool quiet = l->time_s >= scene_motion_script_end_s(l->motion);
     for (size_t i = 0; i < scene_motion_count(l->motion) && quiet; i++) {
         const softbody_settings *settings = &entry_of(l, i)->slime;
@@ -223,7 +223,7 @@ static status begin(live *l, diagnostic *why)
     return STATUS_OK;
 }
 
-/* Moves the simulation to a new snapshot, or starts a new one if the scene has another slime of the same name. */
+/* Moves the simulation to a new snapshot, or starts a new one if the slimes differ in names or parameters. */
 static status transfer_motion(live *l, diagnostic *why)
 {
     bool joined = false;

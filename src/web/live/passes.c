@@ -9,7 +9,7 @@ const int resolution_shrinks[RESOLUTION_STEPS] = {1, 2, 3, 4, 6, 8, 12, 16, 24, 
 
 /* --- passes --- */
 
-/* The rate before any measurement: a scene of moderate depth on one slow core. */
+/* The work per second (passes_work) before any measurement: a scene of moderate depth on one slow core. */
 static const double rate_unknown = 1e6;
 
 enum { PASS_STEP = 4 }; /* ratio of the widths of a pass and the one before */

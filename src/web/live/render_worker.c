@@ -69,7 +69,8 @@ static void try_again(render_worker *worker)
     pthread_cond_signal(&worker->wake);
 }
 
-/* Waits for the next change; an error if none can come. The caller holds the lock. */
+/* Waits for the next change. STATUS_INTERRUPTED if the worker is suspended or ends, or after the time limit. The caller
+ * holds the lock. */
 static status wait_for_change(render_worker *worker, const struct timespec *until, const char *reason,
                               const char *timeout_text, diagnostic *why)
 {
@@ -142,7 +143,7 @@ static bool snapshot_is_ready(render_worker *worker)
     return ready;
 }
 
-/* If the worker begins another scene between the two locks, this waits for that scene. */
+/* If the worker begins another scene between the two locks, the loop waits for that scene. */
 status render_worker_with_scene(render_worker *worker, status (*act)(void *context, scene *s, diagnostic *why),
                                 void *context, diagnostic *why)
 {

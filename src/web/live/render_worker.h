@@ -38,8 +38,8 @@ void render_worker_suspend(render_worker *worker, const char *text);
 /* A new reference to the newest image; NULL before the first. */
 const shared_image *render_worker_newest(render_worker *worker);
 /* The final image of the document's current generation or a newer one. Waits at most limit_s. NULL and *why if the
- * scene cannot be rendered (STATUS_BAD_INPUT), after the time limit, or while the worker is suspended
- * (STATUS_INTERRUPTED). */
+ * scene cannot be rendered (STATUS_BAD_INPUT, or STATUS_FAILURE for a lack of memory or open files), after the time
+ * limit, or while the worker is suspended (STATUS_INTERRUPTED). */
 status render_worker_wait_for_final(render_worker *worker, double limit_s, const shared_image **out, diagnostic *why);
 /* Adds trouble, waiting, image and camera; false when out of memory. */
 bool render_worker_json(render_worker *worker, json_t *state);

@@ -43,7 +43,7 @@ struct render_worker {
     uint64_t
         copied_generation;    /* generation of the document that the snapshot copies, loaded or not; 0: copy it again */
     uint64_t seen_generation; /* the newest generation that was ever copied */
-    double changed_s, finer_after_s; /* when it was copied; when its passes after the first may begin */
+    double changed_s, finer_after_s; /* when that generation was copied; when its passes after the first may begin */
     bool was_on;
     adaptive_resolution traced, raster; /* of the frames of the live slime */
 };
@@ -54,8 +54,8 @@ struct render_worker {
 
 /* --- only for the thread --- */
 
-/* Starts and joins the thread, which runs until render_worker_end; in a browser, which has no such thread, turns of the
- * page replace it (src/wasm/render_turns.c). */
+/* Starts and joins the thread, which runs until render_worker_end. In a browser there is no such thread; turns of the
+ * laboratory's worker replace it (src/wasm/render_turns.c). */
 status render_worker_start(render_worker *worker, diagnostic *why);
 void render_worker_join(render_worker *worker);
 
@@ -70,9 +70,9 @@ void render_worker_renew_snapshot(render_worker *worker);
 void render_worker_move_snapshot(render_worker *worker);
 /* Renders the next pass and publishes its image. */
 void render_worker_render_pass(render_worker *worker);
-/* The two parts of render_worker_render_pass, for a pass that other processes render. begin fills *out, whose view
- * borrows from the snapshot; the snapshot is read-locked until end. end releases the account, and publishes the image
- * after STATUS_OK. */
+/* The two parts of render_worker_render_pass, for a pass that a browser's tile workers render. begin fills *out, whose
+ * view borrows from the snapshot; the snapshot is read-locked until end. end releases the account, and publishes the
+ * image after STATUS_OK. */
 typedef struct started_pass {
     int pass;
     bool moving, raster;

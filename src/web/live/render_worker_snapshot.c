@@ -20,7 +20,7 @@ static void notify(render_worker *worker)
     worker->listener.state_changed(worker->listener.context);
 }
 
-/* A failed attempt that took longer than this is repeated only after the same time has passed. */
+/* A failed attempt that took longer than this is repeated only after a pause of about the same length. */
 static const double soon_s = 0.25;
 
 /* Stores the snapshot's error. The caller holds the lock, and calls notify if this returns true. */
@@ -293,7 +293,7 @@ static status describe(render_worker *worker, const job_account *account, int pa
     return out_of_memory(why);
 }
 
-/* Smoothed, so that the images of a drag keep their size. */
+/* Updates the measured rate, which is smoothed so that the images of a drag keep their size. */
 static void update_rate(render_worker *worker, int pass, const render_result *result)
 {
     const double recent = 0.4;

@@ -14,10 +14,10 @@
 #include <stdlib.h>
 #include <string.h>
 
-/* KEPT: more thumbnails than a gallery shows at once. PIXELS: about those of the widest card. WAVELENGTHS: fewer would
- * show a prism's spectrum as grains of colour. */
+/* KEPT: more thumbnails than a gallery shows at once. PIXELS: about the pixels of the widest card. WAVELENGTHS: fewer
+ * would show a prism's spectrum as grains of colour. */
 enum { KEPT = 128, PIXELS = 240 * 180, WAVELENGTHS = 96, SAMPLES = 4 };
-static const double limit_s = 16.0; /* of the process's CPU time: a busy machine does not make a scene too large */
+static const double limit_s = 16.0; /* of the process's CPU time, so that the limit is the same on a busy machine */
 
 typedef struct kept {
     char *key;
@@ -108,7 +108,7 @@ static void keep(thumbnails *t, const char *key, const unsigned char *bytes, siz
     free(before.bytes);
 }
 
-/* Small, with one thread, so that the laboratory's own image hardly waits. */
+/* Makes the image small, to be rendered by one thread, so that the laboratory's own image hardly waits. */
 static void reduce(scene *s)
 {
     render_settings *r = &s->render;
@@ -131,8 +131,8 @@ static status render_image(job *j, scene *s, image **img, diagnostic *why)
     return code;
 }
 
-/* The scene's own samples first, then more if the time is likely to suffice: a slow scene has a coarser image, not
- * none. */
+/* Renders with the scene's own samples first, then with more if the time is likely to suffice: a slow scene has a
+ * coarser image, not none. */
 static status render_twice(thumbnails *t, job *j, scene *s, image **img, diagnostic *why)
 {
     const int64_t samples = s->render.samples;

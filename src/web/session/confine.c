@@ -79,7 +79,7 @@ static void add_system(place_list *all)
     add_text(all, "/dev/null", CONFINE_WRITE);
 }
 
-/* The program and the importer, which a study and a mesh file start, and what is installed with them. */
+/* The program, which studies start; the importer, which reads mesh files; and what is installed with them. */
 static void add_program(place_list *all)
 {
     static const char *const here[] = {"", "/../libexec/cuvette"};
@@ -144,7 +144,8 @@ static void remove_abandoned(const char *place)
         closedir(entries);
 }
 
-/* Creates the temporary folder. If it cannot be created or locked, there is none, and figures fail with an error. */
+/* Creates the temporary folder. If it cannot be created or locked, there is none, and figures and videos fail with an
+ * error; a lack of memory or open files is an error at once. */
 static status add_temporary(lab *l, place_list *all, diagnostic *why)
 {
     remove_abandoned(temporary_place());

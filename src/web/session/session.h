@@ -1,6 +1,6 @@
 /* For all parts of a laboratory: the struct that holds them, the events for pages, and helpers for scenes. Private to
  * the laboratory. web/lab.c starts and stops the parts; each knows only those before it: the folder and the document
- * (web/document), the render worker (web/live), the tasks here, the handlers of requests (web/api). */
+ * (web/document), the render worker (web/live), the tasks (web/session), the handlers of requests (web/api). */
 #pragma once
 
 #include "base/vec3.h"
@@ -40,7 +40,7 @@ struct lab {
     pthread_mutex_t state_lock;
     pthread_mutex_t publish_lock;
     char *temporary;          /* the laboratory's own folder for temporary files; NULL: the system's */
-    int temporary_lock;       /* its descriptor: a folder that nobody has locked is removed by the next laboratory */
+    int temporary_lock;       /* its locked descriptor: the next laboratory removes folders that are not locked */
     json_t *(*state)(lab *l); /* the state of all parts for pages; NULL when out of memory */
     bool open;                /* events may be published */
     bool leaves_unsaved;      /* the unsaved scene stays on disk at the stop */

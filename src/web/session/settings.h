@@ -8,7 +8,7 @@
 typedef struct lab lab;
 
 typedef struct lab_settings {
-    const char *folder; /* nothing outside it is read or written */
+    const char *folder; /* pages can read and write files only in it */
     /* Scene file to open, relative to the working directory and below folder; NULL: a room with a floor, a light and a
      * camera. */
     const char *scene;

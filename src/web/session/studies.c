@@ -14,7 +14,7 @@
 struct studies {
     lab *l;
     void (*ended)(lab *l);
-    task_thread task; /* its lock is acquired before this one's */
+    task_thread task; /* task.life is acquired before lock */
     study *s;         /* used by the thread while it runs */
     atomic_bool drawing;
 

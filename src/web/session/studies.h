@@ -8,8 +8,8 @@
 
 /* --- files, and the folders of their rows (study_files.c) --- */
 
-/* A study is identified by the name in its file, or by the file's name if the file cannot be read. No file outside the
- * folder is opened. */
+/* A study is identified by the name in its file, or by the file's name if the file has no name or cannot be read. No
+ * file outside the folder is opened. */
 
 /* Calls visit for the studies of the folder, three levels deep, sorted by file name; stops when visit returns false.
  * name and file are borrowed. */
@@ -31,8 +31,8 @@ status study_runs(const lab *l, const char *name, json_t **out, diagnostic *why)
 
 /* --- the study that runs, in a thread (studies.c) --- */
 
-/* The render worker is suspended while it measures. Its progress goes to all pages as event `study` and is part of the
- * state. studies_create creates, studies_destroy releases. */
+/* The render worker is suspended while a study measures. The study's progress goes to all pages as event `study` and is
+ * part of the state. studies_create creates, studies_destroy releases. */
 
 /* ended: called by the thread after each study. */
 status studies_create(lab *l, void (*ended)(lab *l), studies **out, diagnostic *why);

@@ -182,7 +182,7 @@ typedef struct run_search {
     const char *name;
     json_t *found; /* NULL: out of memory */
     int visited;
-    status code; /* a folder that cannot be listed now */
+    status code; /* STATUS_FAILURE: a folder cannot be listed now */
     diagnostic *why;
 } run_search;
 

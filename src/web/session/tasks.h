@@ -1,8 +1,8 @@
 /* Work of the laboratory that takes long: the thread of a task, one at a time, such as a study or a video; and a
  * counting semaphore that limits work with much memory and time that cannot be interrupted: encoding or comparing
  * images, loading models. Ownership: task_thread_create prepares a value, task_thread_destroy releases it when no
- * thread runs; semaphore_create creates, semaphore_destroy releases when no thread holds it or waits. The semaphore is
- * thread-safe. */
+ * thread runs; semaphore_create creates, semaphore_destroy releases when no thread holds a place or waits. The
+ * semaphore is thread-safe. */
 #pragma once
 
 #include "base/cancel.h"
@@ -16,8 +16,8 @@
 typedef struct task_thread {
     pthread_mutex_t life; /* held while the thread is started or joined */
     pthread_t thread;
-    bool started;        /* it must be joined */
-    cancel_token token;  /* of the task: its thread begins it */
+    bool started;        /* the thread must be joined */
+    cancel_token token;  /* cancels the task; begun by the task's thread */
     cancel_token ending; /* set when the laboratory ends */
 } task_thread;
 
@@ -50,5 +50,5 @@ void semaphore_destroy(semaphore *s);    /* NULL is allowed */
 /* Waits for a free place. STATUS_INTERRUPTED, without a place, if the semaphore is closed meanwhile. */
 status semaphore_acquire(semaphore *s, diagnostic *why);
 void semaphore_release(semaphore *s);
-/* Closes it permanently: waiting threads return with an error; threads that hold a place continue. */
+/* Closes the semaphore permanently: waiting threads return with an error; threads that hold a place continue. */
 void semaphore_close(semaphore *s);

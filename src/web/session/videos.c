@@ -23,7 +23,7 @@
 
 struct videos {
     lab *l;
-    task_thread task; /* its lock is acquired before this one's */
+    task_thread task; /* task.life is acquired before lock */
     video_plan plan;
 
     pthread_mutex_t lock; /* guards the fields below */
