@@ -144,7 +144,7 @@ export function createBenchFan(lab, bench, changed) {
     follow();
   }
 
-  /* Only the last request counts; a change during it causes another one. */
+  /* Sends one request at a time; a change during a request causes another one. */
   async function follow() {
     if (!bench.fan || asking || !lab.scene) return;
     const now = dependence();
@@ -196,7 +196,7 @@ export function createBenchFan(lab, bench, changed) {
         focus?.virtual ? 'Virtual mean focus' : 'Mean focus',
         focus ? vector(focus.at.map(tidy), 6) : 'none: parallel rays',
       ],
-      ['Rms distance from it', focus ? `${digits(focus.rms, 3)} scene units` : '–'],
+      ['Rms distance from the focus', focus ? `${digits(focus.rms, 3)} scene units` : '–'],
     ];
   }
 
@@ -225,7 +225,7 @@ export function createBenchFan(lab, bench, changed) {
 
 const CROSSINGS_MAX = 300;
 
-/* The lines of a path; one that ends in the scene (w is 1) ends at its last point. */
+/* The lines of a path; a path that ends in the scene (w is 1) ends at its last point. */
 function linesOf({ points, far_end: farEnd }) {
   const lines = points.slice(1).map((point, i) => lineBetween(points[i], point));
   return farEnd[3] ? lines : [...lines, lineTo(points.at(-1), farEnd)];

@@ -180,7 +180,10 @@ function createBeams(lab) {
             { id: 'bench.beam', open: false },
             controls.map((row) => row.node),
           )
-        : empty('The scene has no beams. Add one: it is shown here, saved with the scene, and a lamp if lights is on.'),
+        : empty(
+            'The scene has no beams. Add one: a beam is shown over the image and saved with the scene; with its ' +
+              'parameter lights on, it also lights the scene.',
+          ),
     );
   }
 }

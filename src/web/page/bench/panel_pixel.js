@@ -64,7 +64,8 @@ function start(lab) {
   });
 }
 
-/* While another tool is active: names the pixel, with a button that clears the rays. */
+/* Names the pixel over the image, with a button that clears the rays, while another tool is active or the rays belong
+ * to an earlier view. */
 function note(lab) {
   const { pixel } = question;
   const which = pixel && `Rays of pixel ${pixel.x}, ${pixel.y}${question.moved ? ' of an earlier view' : ''}`;

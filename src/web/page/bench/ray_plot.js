@@ -16,7 +16,7 @@ const FRAME = { left: 32, top: 8, right: 8, bottom: 32 };
 
 export const topPlane = () => ({ u: [1, 0, 0], v: [0, 0, 1], uName: 'x', vName: 'z' });
 
-/* Vertical, through the line of sight; for a camera that looks straight up or down, through its up vector. */
+/* The vertical plane through the line of sight; for a camera that looks straight up or down, through its up vector. */
 export function sidePlane(camera) {
   const level = ([x, , z]) => unit(Math.hypot(x, z) > 1e-6 ? [x, 0, z] : [0, 0, 0]);
   const u = (camera && (level(camera.forward) || level(camera.up))) || [0, 0, 1];

@@ -48,7 +48,7 @@ export function createRayTable({ caption, onmark }) {
   body.addEventListener('focusin', (event) => note(rayOf(event.target)));
   body.addEventListener('pointermove', (event) =>
     note(rayOf(event.target)),
-  ); /* not 'over': a row that scrolls under the pointer was not pointed at */
+  ); /* not pointerover, which a row also gets when it scrolls under the resting pointer */
   body.addEventListener('pointerleave', () => note(null));
   body.addEventListener('click', (event) => {
     const ray = rayOf(event.target);

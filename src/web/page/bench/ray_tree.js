@@ -173,7 +173,7 @@ export const columns = [
     'Transmittance',
     'fraction of the light that the medium transmits on the path; red, green, blue if they differ',
   ],
-  ['weight', 'Weight', "fraction of the ray's light in the pixel"],
+  ['weight', 'Weight', "fraction of the ray's light that reaches the pixel"],
   ['contribution', 'Contribution', 'radiance that this ray itself adds to the pixel'],
   ['end', 'End', 'how the ray ends'],
 ];

@@ -20,7 +20,7 @@ export function createBenchRays(lab) {
   if (lab.scene) follow();
   return rays;
 
-  /* Only the last request counts; a change during it causes another one. */
+  /* Sends one request at a time; a change during a request causes another one. */
   async function follow() {
     if (asking || !lab.scene) return;
     const now = dependence();

@@ -22,7 +22,7 @@ const PARTS = [
 
 const cross = (a, b) => [a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]];
 
-/* The axes of beams.c (src/render/inspect). */
+/* The corners, by the same axes as in src/render/inspect/beams.c; null for a normal of length 0. */
 function cornersOf([x, y, z, nx, ny, nz, width, height]) {
   const normal = unit([nx, ny, nz]);
   if (!normal) return null;
@@ -49,7 +49,7 @@ export function createBenchScreen(lab, bench, changed) {
   );
   const shown = checkbox('Show the screen in the image', false, outline);
   const expose = button('Expose', act, { small: true, kind: 'primary' });
-  const behind = button('Place behind the chosen segment', place, { small: true });
+  const across = button('Place across the chosen segment', place, { small: true });
   const node = element(
     'div',
     { class: 'bench-screen-form' },
@@ -59,7 +59,7 @@ export function createBenchScreen(lab, bench, changed) {
       { class: 'bench-fields' },
       fields.map((field) => field.node),
     ),
-    element('div', { class: 'buttons' }, expose, behind),
+    element('div', { class: 'buttons' }, expose, across),
     result,
   );
   return { node };
@@ -70,7 +70,8 @@ export function createBenchScreen(lab, bench, changed) {
     changed();
   }
 
-  /* Across the middle of the chosen segment; a segment that leaves the scene ends at the extent of the hits. */
+  /* Places the screen across the middle of the chosen segment, but no farther from its start than the extent of the
+   * hits, as for a segment that leaves the scene. */
   function place() {
     const { chosen } = bench;
     if (!chosen) {
@@ -128,7 +129,7 @@ export function createBenchScreen(lab, bench, changed) {
   }
 }
 
-/* Scaled so that the brightest channel is white. */
+/* The image on the screen, scaled so that its largest channel value is 1. */
 function image({ columns, rows, color }) {
   const canvas = element('canvas', {
     class: 'bench-image',

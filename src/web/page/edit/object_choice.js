@@ -149,7 +149,7 @@ function createGroup(lab, choice) {
   });
   return group;
 
-  /* The object may be missing from the next scene, which then requests the list again. */
+  /* Requests the list only for the newest scene: a newer one, on its way, may lack the object, and comes here again. */
   function askIfNewest() {
     if (lab.change.idle() && lab.newestGeneration === lab.scene.generation) ask();
   }

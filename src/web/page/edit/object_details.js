@@ -12,7 +12,7 @@ import { createPads } from './object_pads.js';
 import { createRow } from './param_row.js';
 
 /* --- media for new and existing solids, by everyday names ---
- * The indices are those of the program's catalogue (cuvette media); the highlight is that of the clear media of
+ * The indices are those of the program's catalogue (cuvette media); the highlight is as in the clear media of
  * rod.yaml. */
 
 const CLEAR = {

@@ -235,7 +235,7 @@ export function createGizmo(lab, choice, mark, movable) {
   }
 }
 
-/* --- the positions of the handles, and the travel along or about an axis that a point of the image means ---
+/* --- the positions of the handles, and the travel along or about an axis for a point of the image ---
  * Pure functions of the camera; vectors and lengths in scene units, image points in image pixels. */
 
 const AXES = ['x', 'y', 'z'];

@@ -179,7 +179,7 @@ export function createMark(lab, choice) {
     return [...along.flatMap((solid) => outline(solid, ' along')), ...chosen];
   }
 
-  /* Omitted if a part of it is behind the camera. */
+  /* The outlines of the solid's convex parts; a part that reaches behind the camera is omitted. */
   function outline(solid, kind) {
     return solid.points.flatMap((points) => {
       const seen = points.map((point) => view.project(point));

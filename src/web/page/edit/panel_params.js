@@ -7,7 +7,7 @@ import { findParams } from './param_picker.js';
 import { createRow, hasLaw, valueText } from './param_row.js';
 
 const FOUND_MAX = 80;
-const LATER_MS = 300; /* the list is not rebuilt while one of its controls is dragged */
+const LATER_MS = 300; /* until the next attempt to rebuild the list, which waits while a control is dragged */
 const MANY = 36; /* with more main parameters, only the first groups and Rendering start unfolded */
 const LAST = ['camera', 'background', 'render'];
 const TITLES = { camera: 'Camera', background: 'Background', render: 'Rendering' };

@@ -209,7 +209,7 @@ export const panel = {
         replace(
           trouble,
           slime.trouble
-            ? notice(slime.trouble.error, { kind: 'error', remedy: `${slime.trouble.remedy}; or restart it` })
+            ? notice(slime.trouble.error, { kind: 'error', remedy: `${slime.trouble.remedy}; or restart the slime` })
             : null,
         );
       shownWords = words;

@@ -2,8 +2,8 @@
  * exports: controlOf(row, context) -> {node, inputs, single, busy(), set(value)}
  *   context: {name (for screen readers), describedby, send(value, gesture), names: the suggested words, slider() -> the
  *   slider of the newest row}
- *   single: the one input that a label belongs to, or null for a group; busy: it is being dragged; set(value, true):
- *   after a rejected value */
+ *   single: the one input that a label belongs to, or null for a group; busy(): whether the control is being dragged;
+ *   set(value, true): after a rejected value */
 
 import { numberInput, numberOf, scale } from '../shared/controls.js';
 import { element, gesture, gestures, toByte, toLinear, unique } from '../shared/ui.js';

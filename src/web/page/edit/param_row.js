@@ -1,8 +1,8 @@
 /* One parameter: its name, control, unit, reset button, description, and the reason for a rejected value.
  * exports:
  *   createRow(row, lab, {onabout(row), long}) -> {node, path, update(row, generation), busy()}
- *     long: the label includes the object's name; busy: the control is being dragged; node is .param with data-path,
- *     its slider an input of type range, its number field one of type number
+ *     long: the label includes the object's name; busy(): whether the control is being dragged; node is .param with
+ *     data-path; its slider is an input of type range, its number field an input of type text (numberInput)
  *   shortUnit(unit) -> the text after a field
  *   hasLaw(lab, object)               whether the object's medium has coefficients
  *   whyUnused(lab, object, name)      why that parameter has no effect now; '' if it has an effect */
@@ -29,7 +29,8 @@ export function whyUnused(lab, object, name) {
   return '';
 }
 
-/* The coefficients of the opened scene if it had that law; otherwise ones close to the current index. */
+/* The values that set a medium. For a dispersion law also its coefficients: those of the opened scene if that had this
+ * law, otherwise coefficients close to the current index. */
 function withMedium(lab, object, medium) {
   const set = { [`${object}.medium`]: medium };
   const first = lawsOf(lab, object)[medium];
@@ -182,7 +183,7 @@ export function createRow(first, lab, { onabout, long } = {}) {
     (control.single || control.inputs[0]).focus();
   }
 
-  /* A value sent from here is newer than a scene that was requested before. */
+  /* Ignores a scene that is older than the last value sent by this row. */
   function update(row, generation) {
     showUse();
     if (waiting || control.busy() || generation < settled) return;

@@ -1,6 +1,7 @@
 /* Dialogs that open, save and choose files of the laboratory's folder.
- * exports: createFiles(lab, choice) -> {open(), fresh(), save(), saveAs(), pickSky(), pick(title, kind, empty) ->
- * promise of a name or null, forObject(object) -> node or null} */
+ * exports: createFiles(lab, choice) -> {open(), fresh(), save(), saveAs(), pickSky(), addFile('model' or 'texture',
+ * title), pick(title, kind, nothing, actions) -> promise of a name or null, forObject(object) -> node or null}
+ *   nothing: the text if the folder has no such files */
 
 import { thumbnail } from '../shared/images.js';
 import { saveReply } from '../shared/save_file.js';
@@ -126,7 +127,8 @@ export function createFiles(lab, choice) {
     if (await mayLeave()) await opened({ new: true });
   }
 
-  /* The laboratory asks before it replaces any other file; a file written by hand may contain more than the scene. */
+  /* Saves into the scene's file. Asks before, unless this page wrote the file: a file written by hand may contain more
+   * than the scene. The server refuses to replace any other file, and write() then asks. */
   async function overwrite(file, failed) {
     if (!inFolder) return write(file, true, failed);
     const answer = ours.has(file)

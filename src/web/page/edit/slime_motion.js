@@ -117,7 +117,7 @@ export function createMotion(lab) {
     result,
   );
   stop.disabled = true;
-  stop.hidden = lab.engine.kind === 'browser'; /* its one thread answers only when it is done */
+  stop.hidden = lab.engine.kind === 'browser'; /* the worker's one thread handles a stop only after the measurement */
   return { node };
 
   async function act() {

@@ -1,5 +1,5 @@
-/* The dialog Save video: renders a parameter that changes from frame to frame, or the moving slime, into one file. It
- * may be closed meanwhile. The fields keep their values until the page is closed.
+/* The dialog Save video: renders a parameter that changes from frame to frame, or the moving slime, into one file. The
+ * dialog may be closed meanwhile. Its fields keep their values until the page is closed.
  * exports: saveVideo(lab) */
 
 import { needsProgram } from '../shared/commands.js';
@@ -47,7 +47,7 @@ function createForm(lab) {
     from: numberInput({ value: remembered.from }),
     to: numberInput({ value: remembered.to }),
     frames: numberInput({ value: remembered.frames, min: 2, max: 1000, step: 1 }),
-    duration: numberInput({ value: remembered.duration, min: 0, placeholder: 'its script and 2 s' }),
+    duration: numberInput({ value: remembered.duration, min: 0, placeholder: 'default' }),
     fps: numberInput({ value: remembered.fps, min: 1, max: 240, step: 1 }),
   };
   const what = choice({
@@ -74,7 +74,10 @@ function createForm(lab) {
   const motion = element(
     'div',
     { class: 'video-part' },
-    field('Duration', numbers.duration, { unit: 's', hint: 'from rest, with its hand script; as by cuvette animate' }),
+    field('Duration', numbers.duration, {
+      unit: 's',
+      hint: 'from rest, with its hand script; default: 2 s more than the script, or 4 s without one',
+    }),
   );
   const length = element('p', { class: 'hint video-length' });
   const trouble = element('div');

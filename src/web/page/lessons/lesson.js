@@ -7,7 +7,7 @@ import { commandRow } from '../shared/commands.js';
 import { theoryChart } from '../shared/theory_chart.js';
 import { button, checkbox, choice, digits, element, notice, number, replace, slider } from '../shared/ui.js';
 
-const REST_MS = 200; /* measured when the controls have rested for this time */
+const REST_MS = 200; /* a measurement starts when the scene has not changed for this time */
 
 const TIMES =
   'Times differ from one measurement to the next, and are longer while other programs run. ' +
@@ -147,7 +147,7 @@ export function createLesson(root, lab, lesson, { back, again }) {
     );
   }
 
-  /* After Undo, or when another scene was opened. */
+  /* What is shown after Undo, or when another scene was opened. */
   function whenGone() {
     return [
       notice('The scene of this lesson is not shown any more.', { kind: 'warning' }),
@@ -273,7 +273,7 @@ function createRange(lab, { parameter, label, from, to }, set) {
 function createControl(lab, about) {
   const { parameter, choices } = about;
   let waiting = 0;
-  let settled = 0; /* a value sent from here is newer than a scene that was requested before */
+  let settled = 0; /* generation of the last value that this control sent; older scenes do not have the value */
   const set = async (value, gesture) => {
     waiting += 1;
     try {

@@ -56,7 +56,7 @@ async function gallery(lab) {
 
 async function choose(lab, one) {
   try {
-    if (lab.state && !lab.state.saved) lab.say('The scene before is kept: Undo returns to it.');
+    if (lab.state && !lab.state.saved) lab.say('Undo restores the previous scene.');
     await lab.change(`/api/lessons/${encodeURIComponent(one.name)}/open`, {});
     lab.choice?.choose('');
     cover(false);
@@ -78,7 +78,7 @@ export const panel = {
   start(lab) {
     wanted = /^#lesson=([\w-]+)$/.exec(location.hash)?.[1] ?? null;
     if (wanted)
-      history.replaceState(null, '', location.pathname + location.search); // as for a scene
+      history.replaceState(null, '', location.pathname + location.search); // a reload does not open the lesson again
     else if (namesScene()) return;
     const end = lab.on('state', (state) => {
       end();

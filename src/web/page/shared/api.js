@@ -50,7 +50,7 @@ export function createApi(engine, listeners) {
 
   async function ask(method, path, body, limitMs = LIMIT_MS) {
     const options = { method };
-    if (engine.reconnects) options.signal = AbortSignal.timeout(limitMs); /* a worker computes until it is done */
+    if (engine.reconnects) options.signal = AbortSignal.timeout(limitMs); /* a worker in the page gets no time limit */
     if (method !== 'GET') {
       options.headers = { 'Content-Type': 'application/json' };
       options.body = JSON.stringify(body ?? {});

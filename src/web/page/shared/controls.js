@@ -159,7 +159,8 @@ export function checkbox(label, checked, onchange) {
   };
 }
 
-/* Slider positions are 0..steps. logFrom: above 0, logarithmic from there on; position 0 is min. */
+/* Slider positions are 0..steps. With logFrom > 0 the positions above 0 are logarithmic from logFrom to max, and
+ * position 0 is min. */
 export function scale({ min, max, step, logFrom }) {
   const integer = step >= 1;
   const steps = !logFrom && step && (max - min) / step <= 1000 ? Math.round((max - min) / step) : 1000;

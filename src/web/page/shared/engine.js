@@ -6,7 +6,8 @@
  *   engine.kind                 'server' or 'browser'
  *   engine.fetch(path, {method, headers, body, signal, ..}) -> promise of a Response; rejects if there is no answer
  *   engine.events(names, {open(), error(), event(name, value)}) -> close(); open: events may have been missed before
- *   engine.address(path) -> promise of an address for images and links; engine.release(address) when it is shown
+ *   engine.address(path) -> promise of an address for images and links; engine.release(address) when it is not needed
+ *                               any more
  *   engine.reconnects           whether an engine that does not answer may come back
  *   engine.lost() -> {error, remedy}     why it does not answer
  *   engine.idle()               whether no request waits for its reply */
@@ -47,7 +48,7 @@ function openEvents(names, listener) {
     else if (data.what === 'error') listener.error();
     else if (data.what === 'event') listener.event(data.name, data.value);
   };
-  navigator.locks.request(SHARED, { signal: ended.signal }, lead).catch(() => undefined); /* closed while it waited */
+  navigator.locks.request(SHARED, { signal: ended.signal }, lead).catch(() => undefined); /* closed without the lock */
   post({ what: 'hello' });
   return () => {
     ended.abort();

@@ -2,7 +2,7 @@
  * page, or a site has some of them in globalThis.cuvetteEngine, as values or promises:
  *   started   the worker, if the site has started it (src/web/site/boot.js)
  *   worker    the text of its script                                            engine/simd128/worker.js, or plain
- *   module    the Response with its module; both have 128-bit vectors           engine/simd128/cuvette.wasm, or plain
+ *   module    the Response with its module, which needs 128-bit vectors         engine/simd128/cuvette.wasm, or plain
  *   files     the laboratory's folder: {NAME: text or {base64}}                 engine/files.json
  *   scene     the file that is opened; the page's address may name another (?scene=NAME); null: none
  *   workers   workers that render tiles; default: one for each processor
@@ -54,7 +54,7 @@ async function part(name) {
   throw why;
 }
 
-/* Compiled while it is loaded, once for all workers. A server need not know the type of the file. */
+/* Compiles the module while it is loaded, once for all workers. A server need not know the type of the file. */
 async function compile(promised) {
   const reply = await promised;
   return reply.headers.get('Content-Type') === 'application/wasm'

@@ -11,7 +11,8 @@
  *   marks: [{axis: 'x' or 'y', at, text, kind}] labelled lines; one beyond the axis is at its end, with an arrow
  *   spots: [{x, y, text}] points with a ring
  *
- * Curves that share an x with intervals are shifted sideways, each by a few units of the drawing. */
+ * If curves have intervals at the same x, these curves are shifted sideways by a few units of the drawing, so that the
+ * intervals do not hide each other. */
 
 import { digits, svg, unique } from './ui.js';
 
@@ -24,7 +25,7 @@ const NAME_MAX = 23; /* characters that fit into the legend's width */
 const TICKS = 6;
 const COLOURS = 5;
 const SHIFT = 7; /* distance of a curve from the next */
-const SHIFTS = 28; /* about the distance of the last curve from the first */
+const SHIFTS = 28; /* about the largest distance of the last curve from the first */
 const DASHES = ['', '7 4', '2 3', '9 3 2 3', '4 2'];
 const MARKERS = [
   'M-4 0a4 4 0 1 0 8 0a4 4 0 1 0-8 0',

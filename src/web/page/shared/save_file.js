@@ -34,8 +34,8 @@ export async function saveReply(lab, address, name) {
 }
 
 /* --- pages with the laboratory, if the engine runs in this page ---
- * The engine leaves a place for it in the page (report/page.h). The site supplies the text of the laboratory in
- * one file (src/web/site/boot.js); without it the page is saved without the laboratory. */
+ * The engine leaves a place for the laboratory in the page (report/page.h). The site supplies the text of
+ * laboratory.html (src/web/site/boot.js); without this text the page is saved without the laboratory. */
 
 const PLACE_FOR_LABORATORY = 'live=empty';
 const PLACE = 'id="cuvette-live">';

@@ -1,6 +1,6 @@
 /* Shared scenes: links, files of the reader's computer, and the dialog Share. A link is the fragment #scene=CODE of the
- * page's address; PNG images and HTML files hold the same code, which the laboratory checks; a page with the laboratory
- * may hold one too (report/page.h).
+ * page's address; PNG images and HTML files hold the same code, which the laboratory checks. A saved page that contains
+ * the laboratory may hold a code, too (report/page.h).
  * exports:
  *   namesScene()        whether the page or its address has a scene, or the address names a file (engine_boot.js)
  *   openLink(lab)       opens that scene, and the scene of each later fragment of the address
@@ -41,7 +41,7 @@ async function openText(lab, link) {
   try {
     await lab.change('/api/open', { link });
     lab.panels.reveal();
-    lab.say('The shared scene is shown. Undo restores the scene before.');
+    lab.say('The shared scene is shown. Undo restores the previous scene.');
   } catch (error) {
     lab.fail(error);
   }

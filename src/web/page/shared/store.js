@@ -1,7 +1,7 @@
 /* The page's copy of the laboratory's state, and the queue of changes: the object lab.
  *
- * The wire calls every rendered pass an image (the event and state `image`). Here a pass is what is available, and the
- * image is the pass that is displayed.
+ * The API calls every rendered pass an image (the event `image`, and `image` in the state). In the page a pass is what
+ * is available, and the image is the pass that is displayed.
  *
  * exports: createLab() -> lab
  *   lab.engine                          see engine.js

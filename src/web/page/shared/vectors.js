@@ -13,5 +13,5 @@ export function unit(a) {
   return size > 0 ? times(a, 1 / size) : null;
 }
 
-/* The length in the scene of one unit of the image plane at a depth: of state.camera's half_width, for example. */
+/* Scene units per unit of the image plane, the unit of state.camera.half_width, at a depth. */
 export const spreadAt = (camera, depth) => (camera.parallel ? 1 : depth);

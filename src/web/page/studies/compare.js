@@ -98,7 +98,7 @@ export function createCompare(lab) {
     const subject = subjects.find(({ key }) => key === chosen.key) || subjects[0];
     if (!subject) {
       replace(bar);
-      contrast.clear(empty('No rows to compare yet: measure two cells, or a copy of the results folder.'));
+      contrast.clear(empty('No rows to compare yet: measure two cells, or measure again into another results folder.'));
       return;
     }
     const { key, a, b = a } = subject;

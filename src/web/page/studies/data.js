@@ -97,7 +97,7 @@ export function axesFor(cells, paths) {
   return [...some.filter(numeric), ...some.filter((one) => !numeric(one))];
 }
 
-/* Whether the value of `from` determines that of `path`, which then does not distinguish lines. */
+/* Whether the value of `from` determines the value of `path`; `path` then does not distinguish lines. */
 function follows(cells, path, from) {
   const seen = new Map();
   return cells.every((cell) => {

@@ -145,7 +145,7 @@ function createForm(lab, files, done) {
     more.hidden = list.length >= AXES_MAX;
   }
 
-  /* The estimate was for the form before the change. */
+  /* Removes the estimate, which was for the form before the change, and the error of the changed field. */
   function changed(event) {
     replace(result);
     for (const each of Object.values(fields)) if (event?.target === each.input) each.problem(null);
@@ -186,7 +186,7 @@ function createForm(lab, files, done) {
     node.querySelector('[aria-invalid]')?.focus();
   }
 
-  /* The error next to the field that it names. */
+  /* Shows the error next to the field that it names, or below the form. */
   function refuse(error, form) {
     const words = [error.message, error.remedy].filter(Boolean).join('; ');
     const axis = list[form.axes.findIndex((text) => error.file === `--axis ${text.slice(0, SHOWN_MAX)}`)];

@@ -10,7 +10,7 @@ const APART_MS = 3000;
 let visible = false;
 let refresh = () => undefined;
 
-/* A browser's clock is too coarse, and its times would not compare with rows of the program. */
+/* A browser's clock is too coarse, and its times would not be comparable with rows of the program. */
 function createElsewhere(root, lab) {
   const place = element('div', { class: 'study-place study-elsewhere' });
   root.append(place);
@@ -142,7 +142,7 @@ function createStudies(root, lab) {
     }
   }
 
-  /* Every few seconds during a run, and at its start and end. */
+  /* Fetches the study again every few seconds during a run, and at the run's start and end. */
   async function follow(now) {
     if (!now) return;
     const begun = now.running && (!seen.running || seen.name !== now.name);

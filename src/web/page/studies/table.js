@@ -1,8 +1,8 @@
 /* The tables of a study.
  * exports:
- *   createSortTable({caption}) -> {node, show(columns, rows)}     a text table with sortable columns; names, and lists
- *     of texts. Columns of times are shown in s, ms or µs. The first click on a head sorts by that column, the second
- *     reverses the order, the third restores the original order
+ *   createSortTable({caption}) -> {node, show(columns, rows)}     a text table with sortable columns; columns: names;
+ *     rows: lists of texts. Columns of times are shown in s, ms or µs. The first click on a head sorts by that column,
+ *     the second reverses the order, the third restores the original order
  *   createRows(lab) -> {node, show(study, count)}                 the raw rows, newest first */
 
 import { saveReply } from '../shared/save_file.js';

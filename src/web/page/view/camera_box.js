@@ -208,7 +208,7 @@ function viewButtons(lab) {
   return element('div', { class: 'camera-part views', role: 'group', 'aria-label': 'Views' }, ...nodes.values());
 }
 
-/* Always present: a button that appears would resize the image during a drag. */
+/* The buttons are always present: a button that appears would resize the image during a drag. */
 function historyButtons(lab) {
   const [keep, back, forward] = viewCommands(lab).slice(8);
   const make = (each, more) =>

@@ -14,10 +14,11 @@ const ABOUT = {
   time: ({ threads, wall_s: wall }, place) =>
     `Measured once ${place}, in one frame of ${seconds(wall)} with ${threads} ` +
     `${threads === 1 ? 'thread' : 'threads'}: another measurement differs. Time is measured for batches of rays, and ` +
-    `divided among the rays of each.`,
+    `divided among the rays of a batch.`,
   cut: () =>
     "The fraction of each pixel's light, by weight, that is missing because render.depth or render.min_weight cut " +
-    'rays; the same on every machine. Its error is at most this fraction of the brightest such light.',
+    'rays; the same on every machine. The error of a pixel is at most this fraction of the brightest light that was ' +
+    'cut.',
 };
 
 const valueOf = {
@@ -125,7 +126,7 @@ export function createCostMaps(lab) {
     draw();
   }
 
-  /* With the key below it, as the file of `cuvette render --rays`, `--time` or `--cut`. */
+  /* Saves the map with the key below it, like the file of `cuvette render --rays`, `--time` or `--cut`. */
   function save(which) {
     const act = () => saveReply(lab, `/api/maps/${which}.png`, `${lab.name()}-${which}.png`);
     return button('Save this map', act, { icon: 'save', small: true });

@@ -4,8 +4,8 @@
  * exports: createPainting(canvas, view, place, lab) -> {paint, pixel, show} */
 
 /* --- which encoding to fetch ---
- * While changes follow each other, before the final pass, and first of all on a slow link, a small JPEG; at rest the
- * PNG, which is exact. The head of an image: {serial, generation, pass, final, exact}; exact: a PNG. */
+ * A small JPEG while changes follow each other, before the final pass, and on a slow link as the first image of a pass;
+ * otherwise the PNG, which is exact. The head of an image: {serial, generation, pass, final, exact}; exact: a PNG. */
 
 const SLOW_S = 0.4; /* a link is slow if a PNG needs longer */
 const PNG_BYTES = 300e3; /* assumed before the first PNG */

@@ -219,9 +219,10 @@ const LEAST_PX = 20; /* fingers that touch each other have no useful ratio of di
 
 function createPinch(stage, lab, letGo) {
   const touches = new Map();
-  /* From the second finger down until both are lifted: their start, and the moves that are already sent. The fingers
-   * move one after the other, so the pan is computed for the complete gesture at its present distance: a distance in
-   * between, or one that the server has not reached yet, would shift the image. */
+  /* From the second finger down until both are lifted: the start of the gesture, and the moves already sent. A pointer
+   * event moves only one finger, and the server's camera lags behind. So each event computes the pan of the complete
+   * gesture, at the distance that its zoom leads to, and sends the difference from what was sent before; the sum of
+   * single pans at the distances in between would shift the image. */
   let pinch = null; /* {x, y, spread, distance; sent: {spread, right, up}; gesture} */
 
   const listen = (name, act) =>
@@ -236,7 +237,7 @@ function createPinch(stage, lab, letGo) {
   listen('pointermove', move);
   for (const name of ['pointerup', 'pointercancel']) listen(name, lift);
 
-  /* True for events that the tools must not see. */
+  /* Returns true for events that the tools must not see; so do move and lift. */
   function down(event) {
     touches.set(event.pointerId, { x: event.clientX, y: event.clientY });
     if (touches.size < 2) return false;
