@@ -1,6 +1,6 @@
 #!/bin/bash
-# src/web/embed.sh FOLDER FILE...: prints a C file that embeds these files of FOLDER and defines page.h's table of them,
-# by their paths in it. The assembler's .incbin reads the bytes; gcc and clang accept the same directive.
+# src/web/embed.sh FOLDER FILE...: prints a C file that embeds these files of FOLDER and defines the table of page.h,
+# with their paths in FOLDER. The assembler's .incbin reads the bytes; gcc and clang accept the same directive.
 set -euo pipefail
 declare -A types=([html]='text/html; charset=utf-8' [css]='text/css; charset=utf-8'
     [js]='text/javascript; charset=utf-8' [svg]='image/svg+xml')

@@ -62,7 +62,7 @@ static void on_image(void *context, const shared_image *img)
         lab_publish(l, "slime", live_json(live_slime));
 }
 
-/* An unsaved scene is not written while a study runs. */
+/* An unsaved scene is not written while a study runs, so it is written now. */
 static void on_study_end(lab *l)
 {
     rescue_wake(l->rescue);

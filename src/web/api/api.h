@@ -47,16 +47,16 @@ typedef struct sent_scenes sent_scenes;
 sent_scenes *sent_scenes_create(void);    /* NULL when out of memory */
 void sent_scenes_destroy(sent_scenes *s); /* NULL is allowed */
 
-/* [{"path", "a", "b"}]: the parameters in which two scenes differ; values are numbers, lists or words, null if
- * that scene lacks the parameter or does not use it; b's parameters in their order, then those only in a.
+/* [{"path", "a", "b"}]: the parameters in which two scenes differ, with their values in both: numbers, lists or words;
+ * null if a scene lacks the parameter or does not use it. First b's parameters in their order, then those only in a.
  * Values that a solid inherits from its material in both scenes are listed under the material only. NULL when out of
  * memory. */
 json_t *changed_params(const scene *a, const scene *b);
 
-/* The command line that renders the same film as the scene document. file: its name in the folder, NULL for none.
- * *complete is false if the file does not exist or has other objects than the scene, which no --set can
- * reproduce. threads: the laboratory's default of render.threads, which does not count as a difference; 0 for none.
- * text is allocated memory. */
+/* The command line that renders the same film as the scene document. file: name of the document's file, NULL for none.
+ * *complete is false if the file cannot be read or has other objects than the scene, which no --set can reproduce.
+ * threads: the laboratory's default of render.threads, which does not count as a difference; 0 for none. *text is
+ * allocated memory. */
 status command_line(const folder *files, const char *file, const scene *s, int threads, char **text, bool *complete,
                     diagnostic *why);
 
@@ -81,7 +81,7 @@ bool api_read_gesture(call *c, const char **gesture);
 
 /* Whether the query contains the key with a value other than "0". */
 bool api_query_flag(const call *c, const char *key);
-/* Reads the `count` numbers of a query's key, separated by commas; remedy: for a message. */
+/* Reads the `count` numbers of a query's key, separated by commas; remedy: of the diagnostic if they are not valid. */
 bool api_query_numbers(call *c, const char *key, int count, double *out, const char *remedy);
 /* Reads ?bits, the bit depth of a PNG; 8 by default. Returns false for values other than 8 and 16. */
 bool api_read_bits(const call *c, int *bits);

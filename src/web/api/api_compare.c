@@ -53,7 +53,7 @@ static status refuse_without_reference(call *c, int code)
     return api_refuse(c, code, "no reference image is pinned", "pin one with POST /api/reference");
 }
 
-/* The bytes belong to the shared image, so the reply gets a copy. */
+/* The bytes belong to a shared image or to a pair, so the reply gets a copy. */
 static status send_copy(call *c, const unsigned char *bytes, size_t size)
 {
     void *copy = malloc(size);

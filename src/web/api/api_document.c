@@ -70,7 +70,8 @@ typedef struct set_request {
     json_t *notes;
 } set_request;
 
-/* A live slime ignores time_s, so no note is made for it. */
+/* Collects the notes. A live slime ignores time_s, so parameters without effect at time 0 (the rule time-0) get no
+ * note. */
 static status note_inert(set_request *x, const scene *s, diagnostic *why)
 {
     const char *path;

@@ -1,4 +1,4 @@
-/* API: the rendered image, and the self-contained page of it, as `cuvette render -o FILE.html` writes it. See
+/* API: the rendered image, and a self-contained page that shows it, as `cuvette render -o FILE.html` writes it. See
  * web/README.md. */
 #include "base/text.h"
 #include "report/page.h"

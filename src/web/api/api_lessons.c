@@ -135,8 +135,8 @@ static status find_lesson(call *c, lesson **out)
     return v.found ? STATUS_OK : api_refuse(c, 404, "there is no lesson of that name", "GET /api/lessons lists them");
 }
 
-/* Opens the lesson's scene as a new scene, so that saving requires a name. The scene keeps its path, to which the names
- * of its files are relative, if it is inside the folder. */
+/* Opens the lesson's scene as a new scene, so that saving requires a name. If the scene's path, to which the names of
+ * its files are relative, is inside the folder, the scene keeps it. */
 status api_lesson_open(call *c)
 {
     lesson *l = NULL;
@@ -200,7 +200,7 @@ status api_lesson_measure(call *c)
 
 /* --- thumbnails --- */
 
-/* Destroys the scene. */
+/* Sends the thumbnail that is kept for the key, or renders it. Destroys the scene. */
 static status send_thumbnail(call *c, const char *key, scene *s)
 {
     unsigned char *bytes = NULL;

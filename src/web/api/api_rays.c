@@ -185,7 +185,7 @@ status api_beam_screen(call *c)
         !api_query_numbers(c, "size", 2, size, SCREEN_REMEDY) ||
         !api_query_numbers(c, "bins", 2, bins, SCREEN_REMEDY) || !api_query_numbers(c, "rays", 1, &rays, SCREEN_REMEDY))
         return STATUS_BAD_INPUT;
-    const double most = 1e6; /* beam_screen_expose checks the ranges */
+    const double most = 1e6; /* only for the conversion to int; beam_screen_expose checks the ranges */
     for (int i = 0; i < 2; i++)
         if (!(bins[i] >= -most && bins[i] <= most && rays >= -most && rays <= most))
             return api_refuse(c, 400, "the number of bins or rays is out of range",

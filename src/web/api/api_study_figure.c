@@ -143,8 +143,8 @@ static status read_run(call *c, const char *run, const study *s, char **results)
     return code;
 }
 
-/* Reads a side of a comparison. side_read would accept any folder, so only items of the laboratory's results are passed
- * to it. */
+/* Reads a side of a comparison. side_read accepts any results folder, so a side with another folder than the
+ * laboratory's is refused afterwards. */
 static status read_side(call *c, const study *s, const char *key, study_side *side)
 {
     const char *results = c->l->settings.results, *text = http_query_value(c->request, key);

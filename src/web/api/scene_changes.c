@@ -161,7 +161,7 @@ static status add_value(void *context, const char *path, const param *row, const
     return json_object_set_new(context, path, report_value(row, text)) ? STATUS_FAILURE : STATUS_OK;
 }
 
-/* Only parameters in use: an aimed camera has no angles of its own. */
+/* {path: value} of the parameters in use: an aimed camera, for example, does not use its angles. */
 static json_t *values_of(const scene *s)
 {
     json_t *values = json_object();

@@ -25,7 +25,7 @@ export function createHead(root, lab) {
   const reset = button('Reset all', () => resetAll(lab), {
     icon: 'reset',
     kind: 'quiet',
-    title: 'Reset all values to those when the scene was opened',
+    title: 'Reset all values to those of the opened scene',
   });
   root.append(
     element('div', { class: 'brand' }, icon('cuvette'), element('span', { text: 'Cuvette' })),
@@ -114,7 +114,7 @@ async function copyCommand(lab) {
     lab.say(
       complete
         ? 'The command is on the clipboard.'
-        : 'The command is on the clipboard, but objects were added or removed: save the scene first.',
+        : 'The command is on the clipboard, but no file has all objects of the scene: save the scene first.',
     );
   } catch (error) {
     lab.fail(error);

@@ -16,7 +16,7 @@ const list = [
   ['K, H', "on the image: keep the view as the scene's own camera; return to that camera"],
   ['+ and -, 0, 1', 'on the image: magnify, fit the image, actual pixels'],
   ['Ctrl arrow keys', 'on the image: scroll the image'],
-  ['Ctrl wheel', 'magnify about the pointer; wheel alone with Orbit, Object, Light: nearer and farther'],
+  ['Ctrl wheel', 'magnify about the pointer; without Ctrl, with Orbit, Object, Light: nearer and farther'],
   ['Middle mouse button', 'and drag: pan the camera; with two fingers: pan, and pinch for nearer and farther'],
   ['Space', 'and drag: scroll the image'],
   ['G, N', 'with Object: next handles (move, turn, scale), snap on or off'],

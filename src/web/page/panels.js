@@ -4,7 +4,7 @@
  *
  * A panel is {id, title, wide?, css?, start?(lab), create(root, lab), shown?(), hidden?()}:
  *   start    called once when the page opens, for tools of the image
- *   wide     it covers the image too
+ *   wide     the panel covers the image, too
  *   css      the path of its style sheet (FOLDER/panel_ID.css), which uses the variables of lab.css for all colours and
  *            begins each rule with .panel-ID; a site has all style sheets in its page, as #styles (src/web/site)
  * The panel's title is its h2: headings in it begin at h3. */

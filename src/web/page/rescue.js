@@ -9,7 +9,7 @@ import { ask, button, element, icon, replace } from './shared/ui.js';
  * code and is not kept. */
 
 const KEY = 'cuvette.unsaved';
-const REST_MS = 1000; /* kept when the scene has rested for this time */
+const REST_MS = 1000; /* the scene is kept when it has not changed for this time */
 
 /* Storage may be forbidden or full: then nothing is kept. */
 function stored(act) {
@@ -77,7 +77,7 @@ export function createRescue(root, lab) {
       else if (action === 'open') await ours.open();
       else ours.drop();
       show(lab.state);
-      lab.say(action === 'open' ? 'The rescued scene is shown. Undo restores the scene before.' : 'Discarded.');
+      lab.say(action === 'open' ? 'The rescued scene is shown. Undo restores the previous scene.' : 'Discarded.');
     } catch (error) {
       for (const each of root.querySelectorAll('button')) each.disabled = false;
       lab.fail(error);

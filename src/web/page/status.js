@@ -55,7 +55,7 @@ export function createBanner(banner, parts, lab) {
 
 const LINGER_MS = 6000;
 const CUT_SHOWN = 0.01; /* fraction of the light of a mean pixel */
-const REDRAW_MS = 200; /* numbers that change faster cannot be read, and cost the images time */
+const REDRAW_MS = 200; /* numbers that change faster cannot be read, and drawing them delays the images */
 
 export function createStatus(root, live, lab) {
   const facts = element('div', { class: 'status-facts' });

@@ -1,7 +1,8 @@
-/* Starts the engine of the site's page before the page's own modules are there; engine_boot.js describes
- * globalThis.cuvetteEngine. The laboratory in one file has the parts in elements of the page, each the base64 of
- * its gzip: a page that is opened as a file can load nothing else.
- * globalThis.cuvetteDocument() is a promise of the text of that file, for pages that hold it (save_file.js). */
+/* Starts the engine of the site's page before the page's modules are loaded; engine_boot.js describes
+ * globalThis.cuvetteEngine. In laboratory.html the parts are elements of the page, compressed by gzip and encoded in
+ * base64, because a page that is opened as a file cannot load other files.
+ * globalThis.cuvetteDocument() is a promise of the text of laboratory.html, for saved pages that contain it
+ * (save_file.js). */
 
 import { startWorker } from '../page/shared/engine_boot.js';
 
@@ -26,7 +27,7 @@ const partsOfPage = () => ({
   files: unpack('files').then((reply) => reply.json()),
 });
 
-/* As it was loaded, before the page changes it. */
+/* Keeps the document as it was loaded, before the page changes it. */
 function keepDocument() {
   const kept = document.documentElement.cloneNode(true);
   kept.querySelector('#cuvette-scene')?.remove();
