@@ -40,7 +40,7 @@ STUDY_ROUTE(api_figure)
 
 status api_machine(call *c)
 {
-    return refuse(c, "a browser does not report its machine", "run: cuvette machine");
+    return refuse(c, "a browser does not describe the machine that it runs on", "run: cuvette machine");
 }
 
 static status no_video(call *c)

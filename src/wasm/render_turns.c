@@ -33,7 +33,7 @@ static struct turns {
     started_pass pass;
     tiled_frame sum;
     int64_t next, merged; /* the next tile for an order; number of merged tiles */
-    bool has_photons;     /* the counters have the photons, which every order counts */
+    bool has_photons;     /* the photons are counted: every order counts the same ones */
     ray_counters counters;
     photon_shortage few;
     double began_s;

@@ -1,6 +1,6 @@
 /* The errors of the API.
  *
- * exports: CuvetteError, the statuses of cuvette.h, cancelled(signal)
+ * exports: CuvetteError, the statuses of cuvette.h, badInput(what, remedy), cancelled(signal)
  * CuvetteError: message, "file:line:column: what; remedy" as the program writes it; what, remedy, file ('': none),
  * line, column (0: none), status. A cancelled call throws the reason of its AbortSignal instead. */
 

@@ -123,7 +123,7 @@ char *wasm_query_trace_pixel(const cuvette_query *query, int x, int y)
 static status check_rule(const double *n, diagnostic *why)
 {
     if (!engine_is_finite(n) || !engine_is_finite(n + 3) || !engine_is_finite(n + 6))
-        return diagnose(why, STATUS_BAD_INPUT, "give finite numbers", "the fan's axis is not finite");
+        return diagnose(why, STATUS_BAD_INPUT, "give finite numbers", "the fan's axis or normal is not finite");
     if (!(n[9] >= 1 && n[9] <= FAN_RAYS_MAX))
         return diagnose(why, STATUS_BAD_INPUT, "give 1 to 100000 rays", "a fan of %g rays is out of range", n[9]);
     if (!(n[10] >= 0 && n[10] <= 1e6) || !(n[11] >= 0 && n[11] <= 179))

@@ -33,7 +33,7 @@ struct wasm_render {
     tiled_frame sum;
     int64_t next, reported; /* the next tile to render, and the next for wasm_render_tiles */
     ray_counters counters;
-    bool has_photons; /* the counters have the photons, which every turn counts */
+    bool has_photons; /* the photons are counted: every turn counts the same ones */
     double until_s, budget_s, wall_s;
     bool began; /* the turn has begun a tile */
     codec_bytes bytes;
@@ -204,7 +204,7 @@ char *wasm_render_tiles(wasm_render *r)
 void wasm_render_srgb(const wasm_render *r, int x0, int y0, int x1, int y1, unsigned char *rgba)
 {
     const size_t pixels = (size_t)(x1 - x0) * (size_t)(y1 - y0);
-    unsigned char *rgb = rgba + pixels; /* at the end: the loop reads each pixel before it overwrites the bytes */
+    unsigned char *rgb = rgba + pixels; /* at the end; the loop reads a pixel before it overwrites the pixel's bytes */
     canvas_bytes(r->sum.img, &r->bytes, x0, y0, x1, y1, rgb, 3 * (size_t)(x1 - x0));
     for (size_t i = 0; i < pixels; i++) {
         memmove(rgba + 4 * i, rgb + 3 * i, 3);

@@ -27,8 +27,8 @@ void mesh_parts_release(mesh_parts *p)
 status mesh_parts_material(mesh_parts *p, const char *name, size_t length, size_t *index, diagnostic *why)
 {
     if (p->material_count == MESH_SLOTS_MAX)
-        return diagnose(why, STATUS_BAD_INPUT, "merge equal materials", "more than %d materials are in use",
-                        (int)MESH_SLOTS_MAX);
+        return diagnose(why, STATUS_BAD_INPUT, "merge equal materials, and remove unused ones",
+                        "the file has more than %d materials", (int)MESH_SLOTS_MAX - 1);
     if (length > MESH_WIRE_TEXT_MAX)
         return diagnose(why, STATUS_BAD_INPUT, "rename it", "the name of a material is too long");
     char *copy = strndup(name, length);

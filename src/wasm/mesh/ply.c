@@ -317,7 +317,8 @@ static status join_vertices(ply *p)
         for (size_t c = p->starts[f]; c < p->starts[f + 1]; c++) {
             if (p->corners[c] >= p->vertex_count)
                 return diagnose(p->why, STATUS_BAD_INPUT, "repair the file or export it again",
-                                "a face refers to vertex %u of %zu", p->corners[c], p->vertex_count);
+                                "a face refers to vertex %u, counted from 0, of %zu vertices", p->corners[c],
+                                p->vertex_count);
             p->joined[p->corners[c]] |= p->starts[f + 1] - p->starts[f] >= 3;
         }
     for (size_t i = 0; i < p->vertex_count; i++)

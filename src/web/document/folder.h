@@ -13,7 +13,7 @@ typedef struct folder folder;
 status folder_open(const char *path, folder **out, diagnostic *why);
 void folder_close(folder *f); /* NULL is allowed */
 
-/* The path of the folder as given, and its last part. */
+/* folder_root: the path of the folder as given. folder_title: the last part of its resolved path. */
 const char *folder_root(const folder *f);
 const char *folder_title(const folder *f);
 /* The resolved path without links: the root of all reads (base/file.h). */

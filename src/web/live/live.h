@@ -70,7 +70,7 @@ void live_detach(live *l);
 
 /* Runs pending commands, then simulates the wall time since the last call, with at most about most_s of computation.
  * state_changed: live_json differs by more than the motion, which is sent with every image anyway. A snapshot whose
- * slime was switched off must be loaded again. A diverged body is reported by live_json and is not an error here. */
+ * slime was switched off must be loaded again. STATUS_OK for a diverged body, whose error live_json reports. */
 status live_advance(live *l, double most_s, bool *state_changed, diagnostic *why);
 /* Whether the snapshot's appearance changed since the last call. */
 bool live_fetch_moved(live *l);

@@ -94,7 +94,7 @@ static status advance_until(live *l, double until_s, double most_s, diagnostic *
     return STATUS_OK;
 }
 
-/* Ignores the speed that a vertex on the floor gains and loses in each step. */
+/* Whether the slimes hardly move, apart from the speed that a vertex on the floor gains and loses in each step. */
 static bool is_quiet(const live *l)
 {
     const double rest_speed = 0.1; /* radii per second; a slower wobble moves the surface by less than a pixel */
@@ -108,7 +108,8 @@ static bool is_quiet(const live *l)
     return quiet;
 }
 
-/* A swinging body may be at its turning point at the end of a long step, so one sample counts for at most poll_s. */
+/* Reports a slime at rest after rest_s of quiet. A swinging body may be at its turning point at the end of a long step,
+ * so one sample counts for at most poll_s. */
 static void watch_rest(live *l, double simulated_s)
 {
     const double rest_s = 0.25, poll_s = rest_s / 8.0;

@@ -22,7 +22,7 @@ typedef struct pass_plan {
     bool single[PASSES_MAX]; /* one sample (path) per pixel; false for the last */
 } pass_plan;
 
-/* The work of a pass: camera rays times wavelengths, with each photon counted as the rays that it costs. */
+/* The work of a pass: camera rays times wavelengths; a photon counts as about ten camera rays. */
 double passes_work(const render_settings *r, int shrink, bool single);
 
 /* rate: the latest work per second; 0 for unknown. first_s: the time limit of the first pass. */

@@ -23,7 +23,7 @@ typedef struct render_worker_listener {
 
 status render_worker_create(scene_document *d, isa level, const render_worker_listener *listener, render_worker **out,
                             diagnostic *why);
-/* Ends the thread and all waiting; later requests return STATUS_INTERRUPTED. */
+/* Ends the thread. Waiting and later requests return STATUS_INTERRUPTED. */
 void render_worker_end(render_worker *worker);
 /* Call it after render_worker_end, when no thread calls the worker any more. NULL is allowed. */
 void render_worker_destroy(render_worker *worker);

@@ -1,6 +1,6 @@
-/* Confines the laboratory: its threads, and the programs that they start, can read and write the chosen folder and the
- * folder of unsaved scenes. They can read and run the program's files, the system's, and the folders in PATH, but no
- * other files, such as those of other projects or of the user's home. */
+/* Confines the laboratory: its threads, and the programs that they start, can read and write the chosen folder, the
+ * folder of unsaved scenes and a temporary folder. They can read and run the program's files, the system's, and the
+ * folders in PATH, but no other files, such as those of other projects or of the user's home. */
 #include "base/installed.h"
 #include "base/os_confine.h"
 #include "base/os_process.h"

@@ -11,8 +11,8 @@
 /* A study is identified by the name in its file, or by the file's name if the file has no name or cannot be read. No
  * file outside the folder is opened. */
 
-/* Calls visit for the studies of the folder, three levels deep, sorted by file name; stops when visit returns false.
- * name and file are borrowed. */
+/* Calls visit for the study files that GET /api/files lists, in the same order; stops when visit returns false. name
+ * and file are borrowed. */
 status study_each(const lab *l, bool (*visit)(void *context, const char *name, const char *file), void *context,
                   diagnostic *why);
 /* Reads a study; file is relative to the folder. */
@@ -51,8 +51,8 @@ bool studies_runs(studies *st, const char *name); /* name NULL: whether any stud
 /* The study in the state JSON, null before the first study; NULL when out of memory. */
 json_t *studies_json(studies *st);
 
-/* The ask of a cancel token, for long work: whether the laboratory ends. st: a studies *. At most one thread draws
- * figures: studies_begin_drawing returns false while another does. */
+/* studies_ending: the ask of a cancel token, for long work: whether the laboratory ends; st is a studies *. At most one
+ * thread draws figures: studies_begin_drawing returns false while another does. */
 bool studies_ending(void *st);
 bool studies_begin_drawing(studies *st);
 void studies_end_drawing(studies *st);

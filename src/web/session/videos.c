@@ -169,7 +169,7 @@ static status render_frame(videos *v, job *j, const scene *s, video *out, diagno
     image_destroy(img);
     job_account_release(&account);
     if (code == STATUS_OK && (fflush(out->stream) != 0 || ferror(out->stream)))
-        return diagnose(why, STATUS_FAILURE, "free space in the folder for temporary files",
+        return diagnose(why, STATUS_FAILURE, "free space in the folder for temporary files, or set TMPDIR to another",
                         "cannot write the video: %s", strerror(errno));
     return code;
 }
@@ -254,7 +254,7 @@ static void *run(void *context)
     float_environment_set();
     FILE *file = lab_temporary_file(v->l);
     status code = file ? semaphore_acquire(v->l->heavy, &why)
-                       : diagnose(&why, STATUS_FAILURE, "free space in the folder for temporary files",
+                       : diagnose(&why, STATUS_FAILURE, "free space in the folder for temporary files, or set TMPDIR to another",
                                   "cannot write the video: %s", strerror(errno));
     if (code == STATUS_OK) {
         code = render_video(v, file, &why);

@@ -1,5 +1,5 @@
-/* A fan of rays through the scene: its form, its numbers, its drawing, and its paths over the image. It follows the
- * scene; a move of the camera does not change it.
+/* A fan of rays through the scene: its form, its numbers, its drawing, and its paths over the image. The fan is traced
+ * again when the scene changes, but not when the camera moves.
  * exports:
  *   createBenchFan(lab, bench, changed) -> {node}     sets bench.fan, the reply of /api/fan, while it is shown
  *   fanMarks(fan, {stroke(line, class), dot(point, class)}) -> SVG elements of that reply, over the image */

@@ -7,7 +7,8 @@
  *     or their number
  *   fraction(p, a, b)                  0..1 of the way from a to b, where a line in the image is nearest to a point
  *   distance(p, a, b)                  of a point from a line in the image
- *   drawn(tree) -> rays                the rays that drawings show */
+ *   drawn(tree) -> rays                the rays that drawings show
+ *   strokeWidth(ray)                   the width of its line, by its weight */
 
 import { svg } from '../shared/ui.js';
 import { lineClass, seenLine } from './ray_tree.js';

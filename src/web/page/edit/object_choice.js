@@ -149,7 +149,8 @@ function createGroup(lab, choice) {
   });
   return group;
 
-  /* Requests the list only for the newest scene: a newer one, on its way, may lack the object, and comes here again. */
+  /* Requests the list only for the newest scene. A newer scene that is on its way may lack the object; its arrival
+   * calls this function again. */
   function askIfNewest() {
     if (lab.change.idle() && lab.newestGeneration === lab.scene.generation) ask();
   }

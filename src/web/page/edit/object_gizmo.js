@@ -305,7 +305,8 @@ function handlesOf(lab, place, mode) {
   return handles.filter((each) => mode === 'turn' || isLong(lab, place, each.at));
 }
 
-/* The point of the axis that is nearest to the ray of the pointer: the closest points of two lines. */
+/* The distance along the axis from `place` to the axis' point nearest to the ray of the pointer: the closest points of
+ * two lines. */
 function travelAlong(lab, place, axis, point) {
   const { eye, ray } = rayThrough(lab, point);
   const along = directions[axis];
@@ -314,7 +315,8 @@ function travelAlong(lab, place, axis, point) {
   return (cosine * dot(ray, from) - dot(along, from)) / (1 - cosine * cosine);
 }
 
-/* Where the ray meets the ring's plane; for a ring seen from its edge, the movement across the screen. */
+/* The angle about the axis in degrees: of the point where the ray meets the ring's plane; for a ring seen from its edge,
+ * from the movement across the screen. */
 function angleAbout(lab, place, axis, point) {
   const { right, up } = lab.state.camera;
   const { eye, ray } = rayThrough(lab, point);

@@ -1,4 +1,5 @@
-/* The list of all objects of the scene, by kind. exports: createList(lab, choice) -> {node} */
+/* The list of all objects of the scene, by kind. exports: createList(lab, choice) -> {node}; hintOf(object): a solid's
+ * shape and material, a light's kind */
 
 import { element, empty, replace } from '../shared/ui.js';
 

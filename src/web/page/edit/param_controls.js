@@ -3,7 +3,8 @@
  *   context: {name (for screen readers), describedby, send(value, gesture), names: the suggested words, slider() -> the
  *   slider of the newest row}
  *   single: the one input that a label belongs to, or null for a group; busy(): whether the control is being dragged;
- *   set(value, true): after a rejected value */
+ *   set(value, true): after a rejected value
+ *   written(x): a number as text with 7 digits; '' for NaN */
 
 import { numberInput, numberOf, scale } from '../shared/controls.js';
 import { element, gesture, gestures, toByte, toLinear, unique } from '../shared/ui.js';

@@ -4,6 +4,7 @@
  *     long: the label includes the object's name; busy(): whether the control is being dragged; node is .param with
  *     data-path; its slider is an input of type range, its number field an input of type text (numberInput)
  *   shortUnit(unit) -> the text after a field
+ *   valueText(value) -> the value as text; 'none' for an empty one
  *   hasLaw(lab, object)               whether the object's medium has coefficients
  *   whyUnused(lab, object, name)      why that parameter has no effect now; '' if it has an effect */
 

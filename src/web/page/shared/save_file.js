@@ -1,7 +1,7 @@
 /* Files from the laboratory, saved by the browser.
  * exports:
- *   saveFile(lab, address, ending, more)   waits for the final image; the name is the scene's; more: words for the end
- *                                          of the message that it is saved
+ *   saveFile(lab, address, ending, more)   waits for the final image; the name is the scene's; more: the end of the
+ *                                          message 'NAME saved'
  *   savePage(lab, more)                    the image as a page, with the laboratory if the page has its text
  *   saveReply(lab, address, name)          any other reply */
 

@@ -155,7 +155,7 @@ export function share(lab) {
     'HTML file',
     'save',
     'Image, rays with their numbers, scene and command in one file that every browser opens, without Cuvette. ' +
-      'With the engine for browsers, if this laboratory has it, the reader can turn the scene too.',
+      'If this laboratory has the engine for browsers, the reader can also turn the scene.',
     save((more) => savePage(lab, more)),
   );
   const trouble = element('div', { 'aria-live': 'polite' });

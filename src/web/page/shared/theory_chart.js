@@ -1,6 +1,7 @@
 /* A curve of the optics: measured points over the line of theory; in a lesson also the present value of the control on
  * the x axis and the prediction; and a table of the points for screen readers.
- * exports: theoryChart(lesson, result, {now, predicted}) -> node
+ * exports: theoryChart(lesson, result, {now, predicted}) -> node; pretty(text), an axis label with its unit as the page
+ * writes it
  *   now: the present value of measure.x_parameter, NaN if there is none; predicted: as typed or chosen, or null */
 
 import { plot } from './plot.js';
@@ -10,10 +11,10 @@ const MARKS = 30; /* more would hide the line */
 
 let unfolded = false; /* a new measurement leaves the table open */
 
-/* A unit in ASCII, as on the command line, in the page's spelling. */
+/* Replaces a unit in ASCII, as on the command line, by the page's spelling. */
 export const pretty = (text) => text.replace(/, deg\b/, ' (°)').replace(/, (px|m|scene units)\b/, ' ($1)');
 
-/* The number of a prediction; the only one in the text of a choice. */
+/* The number of a prediction: as typed, or the only number in the text of the choice; otherwise NaN. */
 function numberIn(predicted) {
   if (typeof predicted === 'number') return predicted;
   const all = String(predicted ?? '').match(/[-\u2212]?\d+([.,]\d+)?/g) || [];

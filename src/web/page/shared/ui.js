@@ -31,7 +31,7 @@
  *   empty(text)                                a placeholder for missing content
  *   dialog({title, content, actions, wide})    actions: [[label, value, kind]]; {node, close(value), closed: promise of
  *                                              value (null: dismissed)}
- *   ask(title, text, yes)                      promise of true or false
+ *   ask(title, text, yes, kind)                a question; yes and kind: of its button; promise of true or false
  *   download(blob or address, name)            saves a file by the browser
  *   copy(text)                                 copies to the clipboard; returns a promise
  *   memory.get(key, otherwise), memory.set(key, value)      localStorage, if available

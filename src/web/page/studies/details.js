@@ -1,5 +1,5 @@
 /* The details of one study: definition, progress, chart, tables and other runs. exports: createDetails(lab, {onrun,
- * onstop}) -> {node, show(study, details, results), progress(running), grew} */
+ * onstop}) -> {node, show(study, details, results), progress(now), grew(ended)}; now: the study of the state */
 
 import { saveReply } from '../shared/save_file.js';
 import { button, checkbox, count, element, empty, facts, group, notice, replace, seconds } from '../shared/ui.js';

@@ -1,6 +1,6 @@
 /* The figures of a study.
  * exports:
- *   createFigures(lab) -> {node, show(study, details, running), grew()}     the figures that scripts in plots/ draw
+ *   createFigures(lab) -> {node, show(study, details, running), grew(ended)}   the figures that scripts in plots/ draw
  *   createSave(lab, chosen) -> {node, show(study, rows, running)}           saves the figure of `cuvette study plot`
  *                                                                           with the choices of the chart; chosen()
  *                                                                           as in chart.js */

@@ -227,7 +227,8 @@ function historyButtons(lab) {
   return nodes;
 }
 
-/* Fields for the parameters of position and aim that the scene has: position, and target or yaw and pitch. */
+/* Fields for the parameters of the camera that the scene has: position, target or yaw and pitch, roll, and field of
+ * view or view height. */
 function createFields(root, lab) {
   let kinds = '';
   let shown = [];
