@@ -253,9 +253,10 @@ static void *run(void *context)
     diagnostic why = {.what = ""};
     float_environment_set();
     FILE *file = lab_temporary_file(v->l);
-    status code = file ? semaphore_acquire(v->l->heavy, &why)
-                       : diagnose(&why, STATUS_FAILURE, "free space in the folder for temporary files, or set TMPDIR to another",
-                                  "cannot write the video: %s", strerror(errno));
+    status code =
+        file ? semaphore_acquire(v->l->heavy, &why)
+             : diagnose(&why, STATUS_FAILURE, "free space in the folder for temporary files, or set TMPDIR to another",
+                        "cannot write the video: %s", strerror(errno));
     if (code == STATUS_OK) {
         code = render_video(v, file, &why);
         semaphore_release(v->l->heavy);

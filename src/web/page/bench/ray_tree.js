@@ -67,7 +67,7 @@ export function seenLine(line, camera, { width, height }, frame) {
     edge(1, 1 - (2 * frame.bottom) / height, 1),
     edge(1, 1 - (2 * frame.top) / height, -1),
   ]);
-  /* In perspective, the end of an endless line and a point beside the eye are seen in the line's direction. */
+  /* In perspective, the end of an endless line and a point next to the eye are seen in the line's direction. */
   const image = (s) => {
     const point = add(from, times(along, Number.isFinite(s) ? s : 0));
     const [x, y, z] = !parallel && (!Number.isFinite(s) || point[2] <= 0) ? along : point;

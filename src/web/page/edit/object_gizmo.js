@@ -315,8 +315,8 @@ function travelAlong(lab, place, axis, point) {
   return (cosine * dot(ray, from) - dot(along, from)) / (1 - cosine * cosine);
 }
 
-/* The angle about the axis in degrees: of the point where the ray meets the ring's plane; for a ring seen from its edge,
- * from the movement across the screen. */
+/* The angle about the axis in degrees: of the point where the ray meets the ring's plane; for a ring seen from its
+ * edge, from the movement across the screen. */
 function angleAbout(lab, place, axis, point) {
   const { right, up } = lab.state.camera;
   const { eye, ray } = rayThrough(lab, point);
