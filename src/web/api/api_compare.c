@@ -172,7 +172,7 @@ static status get_maps(call *c, pixel_map_set *set, int which, unsigned char **p
     const shared_image *final = NULL;
     if (studies_runs(c->l->studies, NULL))
         return api_refuse(c, 409, "a study is measuring, and the frame of the maps would disturb it",
-                          "wait until it ends, or stop it");
+                          "wait until the study ends, or stop it");
     TRY(api_wait_for_final(c, &final));
     map_question q = {c->l, final};
     status code = semaphore_acquire(c->l->heavy, &c->why);

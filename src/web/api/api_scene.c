@@ -244,7 +244,7 @@ status api_scene(call *c)
 
 typedef struct param_question {
     const char *words;
-    json_t *found[PARAM_NO_MATCH]; /* by param_match */
+    json_t *found[PARAM_NO_MATCH]; /* indexed by param_match */
 } param_question;
 
 static status add_found(void *context, const char *path, const param *row, const char *value)

@@ -237,7 +237,7 @@ status api_motion(call *c)
 {
     if (studies_runs(c->l->studies, NULL))
         return api_refuse(c, 409, "a study is measuring, and the trials would disturb it",
-                          "wait until it ends, or stop it");
+                          "wait until the study ends, or stop it");
     scene *s = scene_document_copy(c->l->scene_document, NULL);
     if (!s)
         return out_of_memory(&c->why);

@@ -332,7 +332,7 @@ static status draw(call *c, const study *s)
     bool complete;
     if (studies_runs(l->studies, NULL))
         return api_refuse(c, 409, "a study is measuring, and drawing would disturb it",
-                          "draw after it has ended, or stop it");
+                          "draw after the study has ended, or stop it");
     if (!studies_begin_drawing(l->studies))
         return api_refuse(c, 409, "figures are already being drawn", "wait until they are finished");
     json_t *figures = NULL;

@@ -113,7 +113,7 @@ static status draw(call *c, const study *s)
     TRY(read_log(c, &request.log));
     if (studies_runs(l->studies, NULL))
         return api_refuse(c, 409, "a study is measuring, and drawing would disturb it",
-                          "save the figure after it has ended, or stop it");
+                          "save the figure after the study has ended, or stop it");
     if (!studies_begin_drawing(l->studies))
         return api_refuse(c, 409, "figures are already being drawn", "wait until they are finished");
     const status code = make_figure(c, s, &request, formats[which].format, &bytes, &size);

@@ -126,7 +126,7 @@ static status compose(call *c, form *f, char **text, study **planned)
     return code;
 }
 
-/* The ask of a cancel token. */
+/* The ask of a cancel token: whether the laboratory ends, or a study began to measure. */
 static bool is_cancelled(void *context)
 {
     const lab *l = context;
@@ -202,7 +202,7 @@ status api_study_new(call *c)
     form f = {.file = NULL};
     if (studies_runs(c->l->studies, NULL))
         return api_refuse(c, 409, "a study is measuring, and the trial frames would disturb it",
-                          "wait until it ends, or stop it");
+                          "wait until the study ends, or stop it");
     status code = read_form(c, &f);
     THEN(code, folder_path(c->l->files, f.file, false, &f.target, &c->why));
     THEN(code, find_scene(c, &f));

@@ -116,7 +116,7 @@ status api_video(call *c)
 {
     if (studies_runs(c->l->studies, NULL))
         return api_refuse(c, 409, "a study is measuring, and a video would disturb it",
-                          "wait until it ends, or stop it");
+                          "wait until the study ends, or stop it");
     video_plan plan = {.s = scene_document_copy(c->l->scene_document, NULL)};
     status code = plan.s ? read_plan(c, &plan) : out_of_memory(&c->why);
     if (code != STATUS_OK) {

@@ -12,7 +12,7 @@
 /* KEPT_SCENES_MAX: how many scenes without an owner are kept, the newest. KEPT_SCENE_BYTES_MAX: limit of a file. */
 enum { KEPT_SCENES_MAX = 8, KEPT_SCENE_BYTES_MAX = 4 << 20 };
 
-/* All zero: none. */
+/* All zero: no scene. */
 typedef struct kept_scene {
     char *path;
     char id[20];

@@ -64,7 +64,7 @@ void thumbnails_end(thumbnails *t)
     cancel_set(&t->ended);
 }
 
-/* The ask of a cancel token. */
+/* The ask of a cancel token: whether the laboratory ends, or the render takes too long. */
 static bool is_cancelled(void *context)
 {
     const thumbnails *t = context;

@@ -29,7 +29,7 @@ struct lab {
     struct sent_scenes *sent;      /* web/api/api.h */
     struct pixel_maps *pixel_maps; /* web/live/images.h */
     struct thumbnails *thumbnails; /* web/live/images.h */
-    atomic_uint motion_stops;      /* requests to stop /api/motion */
+    atomic_uint motion_stops;      /* number of requests to stop /api/motion */
     struct rescue *rescue;         /* web/session/rescue.h */
     semaphore *heavy;              /* limits the handlers that need much memory and time */
     http_server *server;

@@ -39,7 +39,7 @@ status studies_create(lab *l, void (*ended)(lab *l), studies **out, diagnostic *
     return STATUS_OK;
 }
 
-/* The caller holds the life lock. */
+/* The caller holds task.life. */
 static void join_thread(studies *st)
 {
     if (!task_thread_join(&st->task))
@@ -129,7 +129,7 @@ static void *run(void *context)
     return NULL;
 }
 
-/* The caller holds the life lock. Replaces the last study; STATUS_INTERRUPTED while it still runs. */
+/* The caller holds task.life. Replaces the last study; STATUS_INTERRUPTED while it still runs. */
 static status claim_run(studies *st, study *s, diagnostic *why)
 {
     char *name = strdup(s->name);

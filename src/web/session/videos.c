@@ -54,7 +54,7 @@ void video_plan_release(video_plan *plan)
     *plan = (video_plan){.s = NULL};
 }
 
-/* The caller holds the life lock. */
+/* The caller holds task.life. */
 static void join_thread(videos *v)
 {
     if (!task_thread_join(&v->task))
@@ -267,7 +267,7 @@ static void *run(void *context)
     return NULL;
 }
 
-/* The caller holds the life lock. */
+/* The caller holds task.life. */
 static status claim(videos *v, diagnostic *why)
 {
     pthread_mutex_lock(&v->lock);

@@ -11,7 +11,7 @@
 typedef struct videos videos;
 
 typedef struct video_plan {
-    scene *s;          /* the first frame's, loaded; owned */
+    scene *s;          /* the scene of the first frame, loaded; owned */
     char *path;        /* of the parameter; NULL: the slimes move; owned */
     double from, to;   /* its values in the first and the last frame */
     bool is_integer;   /* the parameter is an integer: values are rounded */

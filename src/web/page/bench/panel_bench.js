@@ -193,7 +193,8 @@ function hitRows(segments) {
     const words = describe(segment.one);
     const name = `${segment.one.level === 1 ? 'start' : words.kind}: ${words.surface || words.end}`;
     return [
-      button(name, () => {}, { small: true, kind: 'quiet', pressed: segment === bench.chosen }) /* the row chooses */,
+      /* The click handler of the row chooses the segment. */
+      button(name, () => {}, { small: true, kind: 'quiet', pressed: segment === bench.chosen }),
       words.angles,
       words.reflectance,
       words.transmitted,

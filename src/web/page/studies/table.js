@@ -27,7 +27,7 @@ export function createSortTable({ caption }) {
   );
   let columns = [];
   let rows = [];
-  let units = []; /* of columns of times */
+  let units = []; /* of the columns of times; undefined for others */
   let by = null;
   let order = 'none';
   return { node: frame, show };

@@ -10,7 +10,7 @@
 import { showImage } from '../shared/images.js';
 import { element, svg, unique } from '../shared/ui.js';
 
-const EDGE = 0.05; /* a smaller fraction hides the letter */
+const EDGE = 0.05; /* the letter of a part that is narrower than this fraction is hidden */
 
 export function createCompareView(lab, onsplit) {
   const { view } = lab;
