@@ -98,10 +98,10 @@ size_t photon_map_bytes(void)
 /* Safety factor of bounds, for footprints at other points of the surface than the hit. */
 #define MARGIN 1.1
 
-/* The integral of the biweight from its middle to x. */
+/* The integral of the biweight from its middle to x. It compares by itself, because fmax and fmin are calls. */
 static double within(double x)
 {
-    const double t = fmin(fmax(x, -1.0), 1.0), t2 = t * t;
+    const double up = x > -1.0 ? x : -1.0, t = up < 1.0 ? up : 1.0, t2 = t * t;
     return t * (0.9375 + t2 * (-0.625 + t2 * 0.1875));
 }
 
@@ -111,17 +111,22 @@ static double cell_mean(double x, double half_width)
     return within((x + 0.5) / half_width) - within((x - 0.5) / half_width);
 }
 
+static double larger(double a, double b)
+{
+    return a > b ? a : b;
+}
+
 /* Where a neighbour's ray in direction d, displaced by v, meets the surface; cosine: -n.d. */
 static vec3 on_surface(vec3 v, vec3 d, vec3 n, double cosine)
 {
     return vec3_add(v, vec3_scale(d, vec3_dot(v, n) / cosine));
 }
 
-/* The length of the vector that on_surface returns. */
-static double length_on_surface(vec3 v, vec3 d, vec3 n, double cosine)
+/* The square of the length of the vector that on_surface returns. */
+static double length2_on_surface(vec3 v, vec3 d, vec3 n, double cosine)
 {
     const double times = vec3_dot(v, n) / cosine;
-    return sqrt(vec3_dot(v, v) + times * (2.0 * vec3_dot(v, d) + times * vec3_dot(d, d)));
+    return vec3_dot(v, v) + times * (2.0 * vec3_dot(v, d) + times * vec3_dot(d, d));
 }
 
 /* The region in which photons contribute to the ray's sample, on a surface with that normal. */
@@ -180,13 +185,20 @@ static double footprint_density(const photon_footprint *f, const photon *one, do
     const double cosine = -vec3_dot(d, n);
     if (!(cosine > 0.0))
         return 0.0;
-    const double length = length_on_surface(a, d, n, cosine), width = length_on_surface(b, d, n, cosine);
-    const double hx = half_width(r, disc, length, f->blur), hy = half_width(r, disc, width, f->blur);
-    *place = (photon_place){x, y, 1.0 / 12.0 + hx * hx / 7.0, 1.0 / 12.0 + hy * hy / 7.0, r / fmax(length, width)};
-    if (place->radius >= PHOTON_RESOLVED)
+    const double length2 = length2_on_surface(a, d, n, cosine), width2 = length2_on_surface(b, d, n, cosine);
+    const double most2 = larger(length2, width2);
+    if (r * r >= PHOTON_RESOLVED * PHOTON_RESOLVED * most2)
         return -1.0;
-    if (!(fabs(x) < 0.5 + hx && fabs(y) < 0.5 + hy) || fabs(vec3_dot(off, n)) > 0.5 * (r + fmax(length, width)))
+    const double most = sqrt(most2);
+    if (fabs(vec3_dot(off, n)) > 0.5 * (r + most))
         return 0.0;
+    const double hx = half_width(r, disc, sqrt(length2), f->blur);
+    if (!(fabs(x) < 0.5 + hx))
+        return 0.0;
+    const double hy = half_width(r, disc, sqrt(width2), f->blur);
+    if (!(fabs(y) < 0.5 + hy))
+        return 0.0;
+    *place = (photon_place){x, y, 1.0 / 12.0 + hx * hx / 7.0, 1.0 / 12.0 + hy * hy / 7.0, r / most};
     /* cells per area of the surface */
     return cell_mean(x, hx) * cell_mean(y, hy) * cosine / fabs(vec3_dot(d, vec3_cross(a, b)));
 }
