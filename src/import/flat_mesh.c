@@ -103,7 +103,7 @@ enum joined join_vertex(joiner *j, flat_mesh *flat, uint64_t limit, const double
     }
     if (flat->vertex_count >= limit)
         return JOIN_TOO_MANY;
-    if (flat->vertex_count >= j->room && !resize_arrays(j, flat, j->room ? j->room + j->room / 2 : 1024))
+    if (flat->vertex_count >= j->room && !resize_arrays(j, flat, j->room + j->room / 2 + 1024))
         return JOIN_NO_MEMORY;
     *index = (uint32_t)flat->vertex_count++;
     j->table[at] = *index + 1;

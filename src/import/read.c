@@ -97,7 +97,8 @@ typedef struct walk {
     const struct aiScene *scene;
     flat_mesh *flat;
     joiner join;
-    uint64_t triangles;      /* counted by the first traversal */
+    uint64_t triangles; /* counted by the first traversal, like vertices: those of meshes with triangles */
+    uint64_t vertices;
     uint16_t slot_of[65536]; /* by material: slot + 1, or 0 if unused */
     diagnostic *why;
     status (*visit)(struct walk *w, const struct aiMesh *mesh, const affine *place);
@@ -157,6 +158,7 @@ static status count_mesh(walk *w, const struct aiMesh *mesh, const affine *place
         return diagnose(w->why, STATUS_BAD_INPUT, "repair the file or export it again",
                         "a part refers to a missing material");
     }
+    w->vertices += mesh->mNumVertices;
     w->slot_of[mesh->mMaterialIndex] = 1;
     /* The normals of an STL file are those of the facets, which follow from the triangles; with them no two facets
      * would share a vertex. */
@@ -238,10 +240,10 @@ static void vertex_numbers(const walk *w, const struct aiMesh *mesh, const node_
         numbers[k] += 0.0; /* -0 becomes 0, so that vertices with either are joined */
 }
 
-/* Joins the vertices that the mesh's triangles use; index[i] is set to the new index of vertex i. */
-static status join_vertices(walk *w, const struct aiMesh *mesh, const node_transform *at, uint32_t *index)
+/* Sets index[i] to USED for each vertex i of a triangle. */
+enum { UNUSED = 0, USED = 1 };
+static status mark_used(walk *w, const struct aiMesh *mesh, uint32_t *index)
 {
-    enum { UNUSED = 0, USED = 1 };
     for (unsigned f = 0; f < mesh->mNumFaces; f++) {
         const struct aiFace *face = &mesh->mFaces[f];
         for (unsigned k = 0; face->mNumIndices == 3 && k < 3; k++) {
@@ -251,17 +253,34 @@ static status join_vertices(walk *w, const struct aiMesh *mesh, const node_trans
             index[face->mIndices[k]] = USED;
         }
     }
-    for (unsigned i = 0; i < mesh->mNumVertices; i++) {
-        double numbers[8];
-        if (index[i] == UNUSED)
-            continue;
-        vertex_numbers(w, mesh, at, i, numbers);
-        switch (join_vertex(&w->join, w->flat, w->req->vertices, numbers, join_hash(w->flat, numbers), &index[i])) {
-        case JOINED: break;
-        case JOIN_NO_MEMORY: return no_memory_for(w->req, w->why);
-        case JOIN_TOO_MANY:
-            return diagnose(w->why, STATUS_BAD_INPUT, "use a mesh of less detail",
-                            "more vertices than the limit of %llu", (unsigned long long)w->req->vertices);
+    return STATUS_OK;
+}
+
+/* Joins the vertices that the mesh's triangles use; index[i] is set to the new index of vertex i. They are hashed in
+ * blocks, so that the joiner's table is loaded meanwhile. */
+static status join_vertices(walk *w, const struct aiMesh *mesh, const node_transform *at, uint32_t *index)
+{
+    enum { AHEAD = 16 };
+    double numbers[AHEAD][8];
+    uint64_t hashes[AHEAD];
+    TRY(mark_used(w, mesh, index));
+    for (unsigned first = 0; first < mesh->mNumVertices; first += AHEAD) {
+        const unsigned count = mesh->mNumVertices - first < AHEAD ? mesh->mNumVertices - first : AHEAD;
+        for (unsigned k = 0; k < count; k++) {
+            vertex_numbers(w, mesh, at, first + k, numbers[k]);
+            hashes[k] = join_hash(w->flat, numbers[k]);
+            join_prefetch(&w->join, hashes[k]);
+        }
+        for (unsigned k = 0; k < count; k++) {
+            if (index[first + k] == UNUSED)
+                continue;
+            switch (join_vertex(&w->join, w->flat, w->req->vertices, numbers[k], hashes[k], &index[first + k])) {
+            case JOINED: break;
+            case JOIN_NO_MEMORY: return no_memory_for(w->req, w->why);
+            case JOIN_TOO_MANY:
+                return diagnose(w->why, STATUS_BAD_INPUT, "use a mesh of less detail",
+                                "more vertices than the limit of %llu", (unsigned long long)w->req->vertices);
+            }
         }
     }
     return STATUS_OK;
@@ -303,7 +322,12 @@ status flatten(const request *req, const struct aiScene *scene, flat_mesh *flat,
     THEN(code, number_slots(&w));
     if (code != STATUS_OK)
         return code;
+    /* few triangles have a vertex for each of them, so that more are seldom left after joining */
+    const uint64_t vertices = w.vertices < w.triangles ? w.vertices : w.triangles;
     flat->triangles = malloc((size_t)w.triangles * sizeof *flat->triangles);
     flat->slots = malloc((size_t)w.triangles);
-    return flat->triangles && flat->slots ? visit_all(&w, append_mesh) : no_memory_for(req, why);
+    code = flat->triangles && flat->slots && join_reserve(&w.join, flat, (size_t)vertices) ? visit_all(&w, append_mesh)
+                                                                                           : no_memory_for(req, why);
+    free(w.join.table);
+    return code;
 }

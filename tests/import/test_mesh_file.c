@@ -96,6 +96,17 @@ static void an_obj_with_two_materials_is_read(void **state)
     mesh_import_destroy(got);
 }
 
+/* Regression: the room for one vertex did not grow, so that further ones were written beyond it. */
+static void one_position_may_have_several_texture_coordinates(void **state)
+{
+    (void)state;
+    mesh_import *got = read_text("one.obj", "v 0.0 0.0 0.0\nvt 0.0 0.0\nvt 1.0 0.0\nvt 0.0 1.0\nvt 1.0 1.0\n"
+                                            "f 1/1 1/2 1/3\nf 1/2 1/3 1/4\n");
+    assert_int_equal(got->mesh->triangle_count, 2);
+    assert_int_equal(got->mesh->vertex_count, 4);
+    mesh_import_destroy(got);
+}
+
 static void texture_paths_are_found_in_other_spellings(void **state)
 {
     (void)state;
@@ -282,6 +293,7 @@ int main(void)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(an_obj_with_two_materials_is_read),
+        cmocka_unit_test(one_position_may_have_several_texture_coordinates),
         cmocka_unit_test(texture_paths_are_found_in_other_spellings),
         cmocka_unit_test(obj_polygons_are_triangulated),
         cmocka_unit_test(nearly_coincident_vertices_are_not_merged),
