@@ -23,9 +23,9 @@ static inline double lanes_double(int64_t b)
     return v;
 }
 
-static inline int64_t mask_of(int condition)
+static inline int64_t mask_of(int is_true)
 {
-    return -(int64_t)condition;
+    return -(int64_t)is_true;
 }
 static inline int64_t mask_less(double a, double b)
 {

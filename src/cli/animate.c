@@ -1,8 +1,8 @@
 /* `cuvette animate`: reads scene and scripts, renders the animation frame by frame, prints its account. */
+#include "cli/animate.h"
 #include "base/cancel.h"
 #include "base/file.h"
 #include "base/text.h"
-#include "cli/animate.h"
 #include "cli/cli.h"
 #include "cli/outputs.h"
 #include "cli/scene_input.h"
@@ -11,12 +11,12 @@
 #include "render/frame/record.h"
 #include "report/json.h"
 #include "report/report.h"
+#include "scene/assets/slime.h"
 #include "scene/model/camera.h"
 #include "scene/model/open.h"
 #include "scene/model/params.h"
 #include "scene/model/render_settings.h"
 #include "scene/model/scene.h"
-#include "scene/assets/slime.h"
 
 #include <errno.h>
 #include <inttypes.h>

@@ -10,9 +10,9 @@
 #include "image/image.h"
 #include "image/video.h"
 #include "report/json.h"
+#include "scene/assets/slime.h"
 #include "scene/model/params.h"
 #include "scene/model/scene.h"
-#include "scene/assets/slime.h"
 #include "study/plan/grid.h"
 #include "study/plan/identity.h"
 

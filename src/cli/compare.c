@@ -1,9 +1,9 @@
 /* `cuvette compare`: the difference of two images, as numbers and as a map. */
+#include "image/compare.h"
 #include "cli/cli.h"
 #include "cli/options.h"
 #include "cli/outputs.h"
 #include "cli/scene_input.h"
-#include "image/compare.h"
 #include "report/json.h"
 #include "report/report.h"
 

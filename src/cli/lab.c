@@ -1,4 +1,5 @@
 /* `cuvette lab`: starts the laboratory's HTTP server and opens its page in the browser. */
+#include "web/lab.h"
 #include "base/cancel.h"
 #include "base/installed.h"
 #include "base/status.h"
@@ -8,7 +9,6 @@
 #include "cli/scene_input.h"
 #include "cli/terminal.h"
 #include "measure/topology.h"
-#include "web/lab.h"
 
 #include <errno.h>
 #include <fcntl.h>

@@ -1,10 +1,10 @@
 /* `cuvette lesson`: lists the lessons of the laboratory's gallery, checks them without a browser, and prints one with
  * its measured curve. */
+#include "lesson/lesson.h"
 #include "base/json_build.h"
 #include "cli/cli.h"
 #include "cli/options.h"
 #include "cli/scene_input.h"
-#include "lesson/lesson.h"
 #include "report/json.h"
 #include "report/lesson_rows.h"
 

@@ -1,10 +1,10 @@
 /* `cuvette machine`: hardware, clocks, and what disturbs measurements. */
+#include "report/machine.h"
 #include "cli/cli.h"
 #include "cli/options.h"
 #include "cli/terminal.h"
 #include "measure/usage.h"
 #include "report/json.h"
-#include "report/machine.h"
 #include "report/wrap.h"
 
 #include <stdio.h>

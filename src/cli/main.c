@@ -1,9 +1,9 @@
 /* The entry point of `cuvette`: the table of commands, --version, and the exit code. */
 #include "base/build_id.h"
+#include "base/child.h"
 #include "base/float_environment.h"
 #include "base/json_build.h"
 #include "base/os_process.h"
-#include "base/child.h"
 #include "cli/cli.h"
 #include "cli/terminal.h"
 

@@ -1,4 +1,5 @@
 /* `cuvette motion`: the motion of a scene's slimes against closed-form mechanics, as a table, CSV or JSON. */
+#include "scene/motion/motion.h"
 #include "base/number.h"
 #include "cli/cli.h"
 #include "cli/scene_input.h"
@@ -6,9 +7,8 @@
 #include "report/json.h"
 #include "report/theory_rows.h"
 #include "report/wrap.h"
-#include "scene/model/scene.h"
 #include "scene/assets/slime.h"
-#include "scene/motion/motion.h"
+#include "scene/model/scene.h"
 
 #include <math.h>
 #include <stdio.h>

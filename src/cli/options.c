@@ -1,7 +1,7 @@
 /* The command-line parser: options and arguments by argp, with diagnostics in place of argp's error output. */
+#include "cli/options.h"
 #include "base/number.h"
 #include "base/text.h"
-#include "cli/options.h"
 
 #include <argp.h>
 #include <errno.h>

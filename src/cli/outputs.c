@@ -1,7 +1,7 @@
 /* Output files of the commands: checks of their names before any work, and writing. */
+#include "cli/outputs.h"
 #include "base/file.h"
 #include "cli/options.h"
-#include "cli/outputs.h"
 #include "render/frame/record.h"
 #include "scene/model/scene.h"
 

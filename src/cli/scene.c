@@ -1,4 +1,5 @@
 /* `cuvette scene`: checks, lists, edits and writes scene files. */
+#include "scene/model/scene.h"
 #include "base/array.h"
 #include "cli/cli.h"
 #include "cli/options.h"
@@ -10,7 +11,6 @@
 #include "scene/model/material.h"
 #include "scene/model/open.h"
 #include "scene/model/params.h"
-#include "scene/model/scene.h"
 
 #include <stdio.h>
 #include <stdlib.h>

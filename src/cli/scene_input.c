@@ -1,8 +1,8 @@
 /* The scene of a command: --set and its short forms, reading, loading, notes. */
+#include "cli/scene_input.h"
 #include "base/array.h"
 #include "base/budget.h"
 #include "cli/outputs.h"
-#include "cli/scene_input.h"
 #include "cli/terminal.h"
 #include "job/frame_notes.h"
 #include "lint/lint.h"

@@ -5,9 +5,9 @@
 #include "cli/study.h"
 #include "cli/terminal.h"
 #include "report/json.h"
-#include "study/summary/contrast.h"
 #include "study/plan/grid.h"
 #include "study/study.h"
+#include "study/summary/contrast.h"
 
 #include <math.h>
 #include <stdlib.h>

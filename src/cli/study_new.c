@@ -1,6 +1,6 @@
 /* `cuvette study new`: writes a study file for a scene and axes, after reading it as `study run` would. */
-#include "base/file.h"
 #include "base/array.h"
+#include "base/file.h"
 #include "cli/options.h"
 #include "cli/outputs.h"
 #include "cli/study.h"

@@ -3,8 +3,8 @@
 #include "cli/study.h"
 #include "cli/terminal.h"
 #include "study/rows/excluded.h"
-#include "study/summary/verify.h"
 #include "study/study.h"
+#include "study/summary/verify.h"
 
 #include <stdlib.h>
 #include <string.h>

@@ -1,11 +1,11 @@
 /* Parts of `cuvette study run`: the plan of --dry-run, counted instructions, and the fresh processes, which run this
  * program with --process=K, or alternate with another build. */
-#include "base/cancel.h"
-#include "base/isa.h"
 #include "base/budget.h"
+#include "base/cancel.h"
+#include "base/child.h"
+#include "base/isa.h"
 #include "base/os_process.h"
 #include "base/random.h"
-#include "base/child.h"
 #include "base/status.h"
 #include "base/text.h"
 #include "cli/options.h"

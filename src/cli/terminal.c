@@ -1,9 +1,9 @@
 /* Terminal and signals of the program: stop request, checked standard output, colour, progress line. */
+#include "cli/terminal.h"
 #include "base/cancel.h"
 #include "base/number.h"
 #include "base/os_process.h"
 #include "base/status.h"
-#include "cli/terminal.h"
 #include "measure/clock.h"
 
 #include <errno.h>

@@ -1,6 +1,6 @@
 /* Filling the caller's buffers, and passing finished tiles to the caller. */
-#include "base/array.h"
 #include "engine/canvas.h"
+#include "base/array.h"
 
 #include <stdint.h>
 #include <stdlib.h>

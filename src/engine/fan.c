@@ -1,6 +1,6 @@
 /* Fans of rays, traced by the query's probe. */
-#include "engine/query_private.h"
 #include "render/inspect/fan.h"
+#include "engine/query_private.h"
 #include "report/fan_writers.h"
 #include "scene/model/scene.h"
 

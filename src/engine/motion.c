@@ -3,9 +3,9 @@
 #include "engine/engine_private.h"
 #include "geometry/shapes/shape.h"
 #include "measure/clock.h"
+#include "scene/assets/slime.h"
 #include "scene/model/params.h"
 #include "scene/model/scene.h"
-#include "scene/assets/slime.h"
 #include "scene/motion/motion_hands.h"
 
 #include <math.h>

@@ -1,8 +1,8 @@
 /* Parameters by name: every value passes through the parameter table as text, so that a value set as a number equals
  * the value set by its digits. */
+#include "scene/model/params.h"
 #include "base/number.h"
 #include "engine/engine_private.h"
-#include "scene/model/params.h"
 #include "scene/model/scene.h"
 
 #include <stdio.h>

@@ -4,10 +4,10 @@
 
 #include "base/cancel.h"
 #include "engine/engine_private.h"
-#include "geometry/regions/instance_set.h"
 #include "geometry/rays.h"
-#include "render/plan/plan.h"
+#include "geometry/regions/instance_set.h"
 #include "render/inspect/probe.h"
+#include "render/plan/plan.h"
 
 #include <stdio.h>
 

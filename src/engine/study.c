@@ -1,12 +1,12 @@
 /* Studies: reading, cells, running, and the evaluation of their rows: summary, comparison, figure. */
+#include "study/study.h"
 #include "base/text.h"
 #include "engine/engine_private.h"
 #include "report/json.h"
-#include "study/summary/contrast.h"
 #include "study/plot/plot.h"
-#include "study/summary/summary.h"
 #include "study/rows/rows.h"
-#include "study/study.h"
+#include "study/summary/contrast.h"
+#include "study/summary/summary.h"
 
 #include <math.h>
 #include <stdlib.h>

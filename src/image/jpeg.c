@@ -4,11 +4,11 @@
 #include "base/status.h"
 #include "image/codec.h"
 #include <errno.h>
-#include <jpeglib.h>
 #include <jerror.h>
 #include <setjmp.h>
 #include <stdbool.h>
 #include <stdlib.h>
+#include <jpeglib.h>
 
 /* Fast: for images that are replaced soon; about a third of the bytes and of the time. */
 enum { QUALITY = 92, QUALITY_FAST = 80, SCANS_MAX = 500 };

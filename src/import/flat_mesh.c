@@ -1,6 +1,6 @@
 /* The hash table of vertices, keyed by their bits: open addressing with linear probing, at most half full. */
-#include "base/array.h"
 #include "import/flat_mesh.h"
+#include "base/array.h"
 
 #include <stdlib.h>
 #include <string.h>

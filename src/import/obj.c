@@ -1,10 +1,10 @@
 /* The reader of plain OBJ files (obj.h). */
-#include "base/file.h"
+#include "import/obj.h"
 #include "base/array.h"
+#include "base/file.h"
 #include "base/os_process.h"
 #include "base/thread_team.h"
 #include "import/import.h"
-#include "import/obj.h"
 #include <stdlib.h>
 #include <string.h>
 #include <sys/mman.h>

@@ -1,8 +1,8 @@
 /* Loading and rendering frames under supervision: limits, measurements. */
-#include "base/cancel.h"
-#include "base/budget.h"
-#include "base/os_process.h"
 #include "job/job.h"
+#include "base/budget.h"
+#include "base/cancel.h"
+#include "base/os_process.h"
 #include "measure/clock.h"
 #include "measure/instruction_dumps.h"
 #include "scene/model/scene.h"

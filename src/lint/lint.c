@@ -1,7 +1,7 @@
 /* The linter of a loaded scene: the hints, the camera's position, overlaps and gaps of solids, and light that is
  * cut. */
-#include "geometry/shapes/shape.h"
 #include "lint/lint.h"
+#include "geometry/shapes/shape.h"
 #include "lint/parts.h"
 #include "scene/model/scene.h"
 

@@ -2,8 +2,8 @@
  * both. A finding is confirmed at nearby points before it becomes a note: touching is not overlapping, and the closest
  * point of two curved surfaces is not a gap. */
 #include "base/cancel.h"
-#include "geometry/regions/instance_set.h"
 #include "geometry/primitives/primitive.h"
+#include "geometry/regions/instance_set.h"
 #include "geometry/scene_geometry.h"
 #include "geometry/shapes/shape.h"
 #include "lint/parts.h"

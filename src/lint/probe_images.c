@@ -1,6 +1,6 @@
 /* Renders small images of a plan in stripes, and estimates the light that they lack (probe_images.h). */
-#include "base/cancel.h"
 #include "lint/probe_images.h"
+#include "base/cancel.h"
 #include "render/tracer/integrator.h"
 
 #include <limits.h>

@@ -6,8 +6,8 @@
 
 #include "base/isa.h"
 #include "base/thread_team.h"
-#include "render/plan/plan.h"
 #include "render/frame/tracers.h"
+#include "render/plan/plan.h"
 #include <stdatomic.h>
 
 enum { PROBE_THREADS_MAX = 8 };

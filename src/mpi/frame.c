@@ -1,11 +1,11 @@
 /* A frame on the ranks of an MPI job. Rank 0 leads: it sends the order, runs the messenger on a thread, and collects
  * all tiles. The other ranks follow: their main thread is the messenger, and a second thread runs the job, whose pool
  * renders. */
+#include "mpi/frame.h"
 #include "base/cancel.h"
 #include "job/job.h"
 #include "measure/clock.h"
 #include "measure/usage.h"
-#include "mpi/frame.h"
 #include "mpi/scene_wire.h"
 #include "mpi/tracing.h"
 #include "render/frame/renderer.h"

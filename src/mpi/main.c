@@ -2,9 +2,9 @@
  * writes the files; the other ranks follow it. */
 #include "base/build_id.h"
 #include "base/cancel.h"
+#include "base/child.h"
 #include "base/float_environment.h"
 #include "base/json_build.h"
-#include "base/child.h"
 #include "base/text.h"
 #include "cli/cli.h"
 #include "cli/scene_input.h"

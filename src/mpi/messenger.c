@@ -1,6 +1,6 @@
 /* The loops of rank 0 and of the other ranks during a frame. */
-#include "base/cancel.h"
 #include "mpi/messenger.h"
+#include "base/cancel.h"
 
 #include <mpi.h>
 #include <stdlib.h>

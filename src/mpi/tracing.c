@@ -1,6 +1,6 @@
 /* Queues between the messenger and the rendering threads of a rank. */
-#include "base/array.h"
 #include "mpi/tracing.h"
+#include "base/array.h"
 
 #include <pthread.h>
 #include <stdatomic.h>

@@ -1,8 +1,8 @@
 /* Draws a diagram: window, media, axes, rays and marks. */
+#include "report/diagram.h"
 #include "base/number.h"
 #include "geometry/shapes/shape.h"
 #include "image/image.h"
-#include "report/diagram.h"
 #include "report/svg.h"
 #include "scene/model/medium.h"
 #include "scene/model/scene.h"

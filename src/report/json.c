@@ -1,7 +1,7 @@
 /* The JSON writer, and the conversion of reals, texts and diagnostics to jansson values. */
+#include "report/json.h"
 #include "base/cancel.h"
 #include "base/json_build.h"
-#include "report/json.h"
 #include "base/number.h"
 #include <math.h>
 #include <stdlib.h>

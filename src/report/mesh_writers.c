@@ -1,9 +1,9 @@
 /* Describes a mesh (counts, bounds, area, volume or first hole, memory), and writes it as Wavefront OBJ, raw floats or
  * binary PLY. */
+#include "report/mesh_writers.h"
 #include "base/cancel.h"
 #include "base/number.h"
 #include "report/json.h"
-#include "report/mesh_writers.h"
 #include <string.h>
 
 /* --- description --- */

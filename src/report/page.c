@@ -1,8 +1,8 @@
 /* Writes a page: its style, the laboratory that it may contain, and the document. Texts of the scene are escaped. */
-#include "base/text.h"
+#include "report/page.h"
 #include "base/file.h"
 #include "base/installed.h"
-#include "report/page.h"
+#include "base/text.h"
 #include "report/page_rays.h"
 #include "report/svg.h"
 #include "scene/file/shared.h"

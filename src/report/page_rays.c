@@ -1,8 +1,8 @@
 /* Collects the heaviest rays of a page, and writes them as SVG and as an HTML table. */
+#include "report/page_rays.h"
 #include "base/array.h"
 #include "image/image.h"
 #include "render/inspect/ray_line.h"
-#include "report/page_rays.h"
 #include "report/svg.h"
 #include "report/trace_writers.h"
 #include "scene/model/render_settings.h"

@@ -1,7 +1,7 @@
 /* The lines of the parameter table: collection and filter. */
-#include "report/param_rows.h"
 #include "base/array.h"
 #include "base/text.h"
+#include "report/param_rows.h"
 #include <stdbool.h>
 #include <stdio.h>
 #include <stdlib.h>

@@ -1,15 +1,15 @@
 /* The parameter table as text, as JSON, and as roff for the manual page. */
+#include "report/param_rows.h"
 #include "base/json_build.h"
 #include "base/number.h"
-#include "geometry/solid.h"
-#include "report/param_rows.h"
-#include "scene/model/medium.h"
+#include "base/text.h"
 #include "geometry/shapes/shape.h"
+#include "geometry/solid.h"
 #include "lint/lint.h"
 #include "report/json.h"
 #include "report/report.h"
 #include "report/wrap.h"
-#include "base/text.h"
+#include "scene/model/medium.h"
 #include <stdbool.h>
 #include <stdlib.h>
 #include <string.h>

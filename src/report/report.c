@@ -1,11 +1,11 @@
 /* The JSON account of a render, of its parameters and of an image comparison. */
-#include "base/json_build.h"
 #include "report/report.h"
+#include "base/json_build.h"
+#include "base/number.h"
 #include "job/frame_notes.h"
+#include "measure/statistics.h"
 #include "report/json.h"
 #include "report/param_rows.h"
-#include "base/number.h"
-#include "measure/statistics.h"
 #include "scene/model/scene.h"
 #include <inttypes.h>
 #include <stdio.h>

@@ -1,10 +1,10 @@
 /* Writes ray trees, and the ray trees of beams, as text and JSON. */
+#include "report/trace_writers.h"
 #include "base/cancel.h"
 #include "base/elementary.h"
 #include "image/codec.h"
 #include "render/inspect/ray_line.h"
 #include "report/json.h"
-#include "report/trace_writers.h"
 #include "scene/model/camera.h"
 #include "scene/model/open.h"
 #include "scene/model/render_settings.h"

@@ -5,8 +5,8 @@
 #pragma once
 
 #include "base/status.h"
-#include "measure/machine_noise.h"
 #include "lint/lint.h"
+#include "measure/machine_noise.h"
 #include "scene/model/open.h"
 #include <stdbool.h>
 #include <stdint.h>

@@ -1,7 +1,7 @@
 /* Substitutes for what a WebAssembly module lacks: other programs, confinement, hardware counters, hwloc, functions of
  * Linux, threads. */
-#include "base/file.h"
 #include "base/child.h"
+#include "base/file.h"
 #include "base/os_confine.h"
 #include "base/worker_pool.h"
 #include "measure/clock.h"

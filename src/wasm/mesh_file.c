@@ -1,7 +1,7 @@
 /* Reads mesh files in a module: OBJ and PLY, by the readers of wasm/mesh, which the browser's sandbox confines. See
  * scene/assets/mesh_file.h. */
-#include "base/file.h"
 #include "scene/assets/mesh_file.h"
+#include "base/file.h"
 #include "scene/assets/mesh_stream.h"
 #include "wasm/mesh/mesh.h"
 

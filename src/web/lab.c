@@ -1,10 +1,10 @@
 /* The laboratory: start and stop of its parts, and the state that it sends to pages. */
+#include "web/lab.h"
 #include "base/text.h"
 #include "report/json.h"
 #include "scene/model/open.h"
 #include "scene/model/scene.h"
 #include "web/api/api.h"
-#include "web/lab.h"
 #include "web/live/images.h"
 #include "web/page.h"
 #include "web/session/rescue.h"

@@ -6,11 +6,11 @@
 #include <stdint.h>
 #include <cmocka.h>
 
-#include "image/codec.h"
-#include "base/cancel.h"
 #include "base/budget.h"
+#include "base/cancel.h"
 #include "base/os_confine.h"
 #include "base/text.h"
+#include "image/codec.h"
 #include "image/image.h"
 #include "mesh_files.h"
 #include "scene/assets/mesh_file.h"

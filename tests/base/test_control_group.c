@@ -8,8 +8,8 @@
 
 #include "base/control_group.h"
 #include "base/file.h"
-#include "measure/usage.h"
 #include "measure/machine_noise.h"
+#include "measure/usage.h"
 #include "study/rows/environment.h"
 
 #include <math.h>

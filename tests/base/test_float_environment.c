@@ -8,8 +8,8 @@
 #include <cmocka.h>
 
 #include "base/thread_team.h"
-#include "cuvette.h"
 #include "base/worker_pool.h"
+#include "cuvette.h"
 #include <fenv.h>
 #include <pthread.h>
 #include <stdio.h>

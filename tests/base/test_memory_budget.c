@@ -5,8 +5,8 @@
 #include <stdint.h>
 #include <cmocka.h>
 
-#include "base/file.h"
 #include "base/budget.h"
+#include "base/file.h"
 
 #include <stdio.h>
 #include <stdlib.h>

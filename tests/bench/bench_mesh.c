@@ -6,8 +6,8 @@
  * row for each set and k; sum is over the triangles hit and the bits of t, so that equal sums mean equal hits. */
 #include "../experiments/peers/mesh_rays.h"
 #include "base/isa.h"
-#include "geometry/mesh/mesh_generators.h"
 #include "geometry/hierarchy/hierarchy.h"
+#include "geometry/mesh/mesh_generators.h"
 
 #include <stdio.h>
 #include <stdlib.h>

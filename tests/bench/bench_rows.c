@@ -1,10 +1,10 @@
 /* bench_rows [ROWS] - seconds that status, summary and merge take for a study with that many rows (100000) in 50 cells,
  * in two shards, with two worker rows each. The rows are copies of measured ones with other times. Prints a line for
  * each: medians of 5, wall time. Files are written below TMPDIR and removed. */
+#include "base/csv.h"
 #include "base/number.h"
 #include "measure/clock.h"
 #include "study/rows/checksum.h"
-#include "base/csv.h"
 #include "study/rows/row_files.h"
 #include "study/rows/runs.h"
 #include "study/summary/summary.h"

@@ -1,7 +1,7 @@
 /* The fuzzer of the lesson reader: any bytes are a lesson or one located error. Its scenes are those of
  * experiments/scenes. */
-#include "fuzz.h"
 #include "lesson/lesson.h"
+#include "fuzz.h"
 
 /* lessons/fuzz.lesson next to scenes, as in experiments. */
 static const char *place_of_lesson(void)

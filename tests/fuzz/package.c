@@ -1,10 +1,10 @@
 /* The fuzzer of scene packages: changes of a valid package with a hash that fits. A package belongs to its build, so
  * the input is not the package but a list of changes, six bytes each: the place (three bytes), what is done there and
  * with which value. A last byte cuts the package. What is accepted can be packed again. */
+#include "scene/package/package.h"
 #include "base/hash.h"
 #include "fuzz.h"
 #include "scene/model/scene.h"
-#include "scene/package/package.h"
 
 static const char text_of_scene[] =
     "title: fuzz\nrender: {width: 4, height: 3}\n"

@@ -1,6 +1,6 @@
 /* The fuzzer of the lists of runs: a file for the list of the study, one for that of a shard. */
-#include "fuzz.h"
 #include "study/rows/runs.h"
+#include "fuzz.h"
 
 static void read_runs(void)
 {

@@ -1,9 +1,9 @@
 /* Rays that pass a mesh's box by are not traced through its hierarchy; rays close to the box find what a query of the
  * hierarchy finds. */
-#include "geometry/regions/box_tests.h"
 #include "geometry/hierarchy/layout.h"
-#include "geometry/regions/instance_set.h"
 #include "geometry/mesh/mesh_generators.h"
+#include "geometry/regions/box_tests.h"
+#include "geometry/regions/instance_set.h"
 #include "random_stream.h"
 
 #include <setjmp.h>

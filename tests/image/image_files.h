@@ -15,13 +15,13 @@
 #include <dirent.h>
 #include <math.h>
 #include <png.h>
-#include <jpeglib.h>
 #include <stdbool.h>
 #include <stdlib.h>
 #include <string.h>
 #include <sys/resource.h>
 #include <sys/stat.h>
 #include <unistd.h>
+#include <jpeglib.h>
 
 static char folder[4096];
 

@@ -10,10 +10,10 @@
 
 #include "image/codec.h"
 #include "image/video.h"
+#include "lint/lint.h"
 #include "render/frame/record.h"
 #include "render_fixture.h"
 #include "scene/model/camera.h"
-#include "lint/lint.h"
 
 #define COUNT(a) (sizeof(a) / sizeof((a)[0]))
 

@@ -6,8 +6,8 @@
 #include <stdint.h>
 #include <cmocka.h>
 
-#include "mesh_files.h"
 #include "bad_mesh.h"
+#include "mesh_files.h"
 #include "scene/assets/mesh_file.h"
 #include <errno.h>
 #include <signal.h>

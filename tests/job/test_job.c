@@ -8,9 +8,9 @@
 #include <stdlib.h>
 #include <cmocka.h>
 
-#include "cuvette.h"
-#include "base/cancel.h"
 #include "base/budget.h"
+#include "base/cancel.h"
+#include "cuvette.h"
 #include "job/job.h"
 #include "render_fixture.h"
 #include <sys/resource.h>

@@ -2,10 +2,10 @@
  * dictionary in results/README.md agrees with the list. With CUVETTE_RENEW=1 in the environment it is rewritten first
  * (make dictionary). */
 #include "base/file.h"
-#include "job/job.h"
-#include "scene/model/scene.h"
 #include "base/text.h"
+#include "job/job.h"
 #include "report/report.h"
+#include "scene/model/scene.h"
 #include "study/rows/compare_rows.h"
 #include "study/rows/rows.h"
 #include "study_fixture.h"

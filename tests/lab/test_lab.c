@@ -8,9 +8,9 @@
 
 #include "lab_fixture.h"
 #include "render_fixture.h"
+#include "scene/file/write.h"
 #include "scene/model/camera.h"
 #include "scene/model/params.h"
-#include "scene/file/write.h"
 #include "scene/model/scene.h"
 
 static lab_room room;

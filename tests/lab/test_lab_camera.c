@@ -9,8 +9,8 @@
 #include "render_fixture.h"
 #include "scene/model/camera.h"
 #include "scene/model/camera_moves.h"
-#include "web/session/session.h"
 #include "scene/model/scene.h"
+#include "web/session/session.h"
 
 /* Tests of the camera on the page: moves of a rolled camera follow the image, an image point maps to the tracer's ray,
  * zooms and orbits leave the pivot, and no move goes through the ground. */

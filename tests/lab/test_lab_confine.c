@@ -11,9 +11,9 @@
 #include "base/os_confine.h"
 #include "image/image.h"
 #include "lab_fixture.h"
+#include "scene/model/scene.h"
 #include "study/study.h"
 #include "web/session/session.h"
-#include "scene/model/scene.h"
 #include <sys/wait.h>
 
 /* The laboratory's folder is above/lab. Except for links and scenes, every file exists in both. */

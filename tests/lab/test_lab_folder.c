@@ -7,10 +7,10 @@
 
 #include "base/text.h"
 #include "scene/model/edit/edit.h"
-#include "scene/model/params.h"
-#include "web/document/folder.h"
 #include "scene/model/open.h"
+#include "scene/model/params.h"
 #include "scene/model/scene.h"
+#include "web/document/folder.h"
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>

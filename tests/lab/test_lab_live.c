@@ -15,8 +15,8 @@
 
 #include "base/text.h"
 #include "scene/model/params.h"
-#include "web/live/live.h"
 #include "scene/model/scene.h"
+#include "web/live/live.h"
 
 /* The slime starts on the floor and soon comes to rest. */
 static const char toys[] =

@@ -6,10 +6,10 @@
 #include <stdint.h>
 #include <cmocka.h>
 
-#include "measure/clock.h"
 #include "base/cancel.h"
-#include "lab_study_fixture.h"
 #include "base/os_process.h"
+#include "lab_study_fixture.h"
+#include "measure/clock.h"
 #include "web/document/kept_scenes.h"
 #include <dirent.h>
 #include <fcntl.h>

@@ -1,5 +1,9 @@
 /* Lessons: those that belong to the program agree with theory at both ends of every control; a wrong lesson is refused
  * with its place and a remedy. */
+#include "base/number.h"
+#include "lesson/lesson.h"
+#include "scene/model/params.h"
+#include "whole.h"
 #include <math.h>
 #include <setjmp.h>
 #include <stdarg.h>
@@ -10,10 +14,6 @@
 #include <string.h>
 #include <unistd.h>
 #include <cmocka.h>
-#include "base/number.h"
-#include "lesson/lesson.h"
-#include "scene/model/params.h"
-#include "whole.h"
 
 static void measured_as_theory(const lesson *l, const scene *s)
 {

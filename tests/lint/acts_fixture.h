@@ -4,8 +4,8 @@
 
 #include "acts_values.h"
 
-#include "render/frame/renderer.h"
 #include "lint/lint.h"
+#include "render/frame/renderer.h"
 #include "scene/model/params.h"
 #include "scene/model/scene.h"
 

@@ -6,8 +6,8 @@
 
 #include "law_scene.h"
 #include "scene/model/medium.h"
-#include "solid_reference.h"
 #include "scene/model/scene.h"
+#include "solid_reference.h"
 
 enum { ORACLE_CROSSINGS_MAX = 512, ORACLE_LINES = 4000 };
 

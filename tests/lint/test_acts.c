@@ -12,8 +12,8 @@
 #include <stdint.h>
 #include <cmocka.h>
 
-#include "acts_judge.h"
 #include "acts_conditions.h"
+#include "acts_judge.h"
 #include "lint/inert.h"
 #include "scene/model/medium.h"
 #include <glob.h>

@@ -7,9 +7,9 @@
 #include <cmocka.h>
 
 #include "measure/clock.h"
-#include "measure/usage.h"
 #include "measure/machine_noise.h"
 #include "measure/proc_file.h"
+#include "measure/usage.h"
 #include <ftw.h>
 #include <pthread.h>
 #include <sched.h>

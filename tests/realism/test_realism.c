@@ -9,8 +9,8 @@
 
 #include "realism/metrics.h"
 #include "realism/realism.h"
-#include "realism/theory.h"
 #include "realism/setup.h"
+#include "realism/theory.h"
 #include "render/inspect/probe.h"
 #include "render_fixture.h"
 

@@ -12,9 +12,9 @@
 #include "bad_files.h"
 #include "base/cancel.h"
 #include "render_fixture.h"
+#include "scene/assets/script.h"
 #include "scene/model/scene.h"
 #include "scene/motion/motion.h"
-#include "scene/assets/script.h"
 
 /* A moving scene: its film at each time equals that of the scene loaded with that time_s for its slimes. */
 

@@ -9,8 +9,8 @@
 #include "scene/model/params.h"
 #include "scene/model/params_value.h"
 #include "scene/model/scene.h"
-#include <stdlib.h>
 #include <stdio.h>
+#include <stdlib.h>
 #include <string.h>
 
 static const char example[] = "materials:\n"

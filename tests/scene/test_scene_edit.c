@@ -8,8 +8,8 @@
 
 #include "random_stream.h"
 #include "render_fixture.h"
-#include "scene/model/edit/edit.h"
 #include "scene/file/write.h"
+#include "scene/model/edit/edit.h"
 #include "scene/model/objects.h"
 #include "scene/model/scene.h"
 #include <math.h>

@@ -7,9 +7,9 @@
 #include <cmocka.h>
 
 #include "render_fixture.h"
+#include "scene/file/write.h"
 #include "scene/model/edit/edit.h"
 #include "scene/model/params.h"
-#include "scene/file/write.h"
 #include "scene/model/scene.h"
 #include "whole.h"
 #include <dirent.h>

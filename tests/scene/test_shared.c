@@ -6,9 +6,9 @@
 #include <stdint.h>
 #include <cmocka.h>
 
+#include "base/text.h"
 #include "image/image.h"
 #include "scene/file/shared.h"
-#include "base/text.h"
 #include "scene/model/params.h"
 #include "scene/model/scene.h"
 #include "scene/model/work.h"

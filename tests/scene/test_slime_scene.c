@@ -2,10 +2,10 @@
 #include "study_fixture.h"
 
 #include "base/cancel.h"
-#include "scene/model/params.h"
+#include "job/job.h"
 #include "scene/assets/slime.h"
 #include "scene/file/write.h"
-#include "job/job.h"
+#include "scene/model/params.h"
 #include "scene/model/scene.h"
 #include <limits.h>
 

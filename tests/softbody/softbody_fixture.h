@@ -1,10 +1,10 @@
 /* Small spring nets whose motion is known in closed form, and functions that run them. */
 #pragma once
 
-#include "scene/model/edit/edit.h"
 #include "scene/assets/slime.h"
-#include "softbody/softbody.h"
+#include "scene/model/edit/edit.h"
 #include "scene/model/scene.h"
+#include "softbody/softbody.h"
 
 #include <math.h>
 #include <setjmp.h>

@@ -1,8 +1,8 @@
 /* Figures of summaries that are made by hand. */
 #pragma once
 
-#include "study_fixture.h"
 #include "study/plot/plot_parts.h"
+#include "study_fixture.h"
 
 typedef struct hand {
     int cell, n, marked;

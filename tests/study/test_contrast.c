@@ -1,11 +1,11 @@
 /* Tests of comparisons: known ratios are found, equal sides rarely differ, sides that did not alternate are never told
  * apart, rows of unlike environments are never pooled. Times are drawn from a known distribution and written into
  * measured rows. */
-#include "study_fixture.h"
 #include "random_stream.h"
 #include "rows_fixture.h"
-#include "whole.h"
 #include "study/summary/contrast.h"
+#include "study_fixture.h"
+#include "whole.h"
 
 enum { PROCESSES = 60 };
 

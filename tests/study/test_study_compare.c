@@ -1,10 +1,10 @@
 /* Tests of comparisons of a study's cells with its reference image. */
-#include "study_fixture.h"
+#include "base/csv.h"
 #include "image/compare.h"
 #include "render/frame/renderer.h"
 #include "scene/model/params.h"
-#include "base/csv.h"
 #include "study/summary/summary.h"
+#include "study_fixture.h"
 #include <dirent.h>
 
 /* Depths 0 and 2 with one and two threads, all compared with depth 2. */

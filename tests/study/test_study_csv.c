@@ -1,7 +1,7 @@
 /* Tests of the CSV reader and writer: quoting, incomplete lines and damaged files. */
-#include "study_fixture.h"
 #include "base/csv.h"
 #include "study/rows/csv_layout.h"
+#include "study_fixture.h"
 
 static void csv_fields_round_trip(void **state)
 {

@@ -1,9 +1,9 @@
 /* Tests of what a run would measure and keep, how long it would take, and how much it would write. */
-#include "study_fixture.h"
 #include "base/cancel.h"
 #include "measure/clock.h"
-#include "study/run/estimate.h"
 #include "study/rows/row_files.h"
+#include "study/run/estimate.h"
+#include "study_fixture.h"
 
 static study_estimate estimate_part(const fixture *f, const study *s, long shard, long shards)
 {

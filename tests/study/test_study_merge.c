@@ -1,7 +1,7 @@
 /* Tests of the order of a study's cells, and of its shards. */
-#include "study_fixture.h"
 #include "base/csv.h"
 #include "study/plan/grid.h"
+#include "study_fixture.h"
 
 /* A study's shards: partition of the cells, merging, duplicate and incomplete rows. */
 

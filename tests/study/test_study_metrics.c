@@ -1,10 +1,10 @@
 /* Tests of the realism and motion metrics that a study keeps. */
 #include "study_fixture.h"
 
+#include "base/csv.h"
 #include "realism/realism.h"
 #include "scene/model/params.h"
 #include "softbody/trials.h"
-#include "base/csv.h"
 
 static const char vessel_text[] = "study: test\n"
                                   "scene: vessel.yaml\n"

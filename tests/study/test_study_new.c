@@ -1,8 +1,8 @@
 /* Tests of a new study's text, and of decimal commas in lists of an axis. */
-#include "study_fixture.h"
 #include "scene/model/open.h"
 #include "scene/model/scene.h"
 #include "study/plan/new_study.h"
+#include "study_fixture.h"
 
 /* A new study's text: it reads as what was given, each parameter has its meaning, and an error is located at
  * the option that causes it. */

@@ -1,12 +1,12 @@
 /* Tests of disturbed rows: rule, further repetitions up to the limit, news, waiting, and the numbers in status and
  * summary. A rule that every row breaks, or none, makes them independent of the machine. */
-#include "study_fixture.h"
 #include "base/cancel.h"
 #include "measure/clock.h"
-#include "study/rows/row_quantity.h"
 #include "study/rows/row_files.h"
+#include "study/rows/row_quantity.h"
 #include "study/run/run_state.h"
 #include "study/summary/summary.h"
+#include "study_fixture.h"
 #include <signal.h>
 #include <sys/wait.h>
 

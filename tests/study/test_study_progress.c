@@ -1,7 +1,7 @@
 /* Tests of the progress that a run of a study reports. */
-#include "study_fixture.h"
 #include "measure/clock.h"
 #include "study/run/progress.h"
+#include "study_fixture.h"
 #include <pthread.h>
 
 typedef struct watch {

@@ -3,8 +3,8 @@
 #include "study_fixture.h"
 
 #include "scene/model/scene.h"
-#include "study/summary/verify.h"
 #include "study/study.h"
+#include "study/summary/verify.h"
 
 static const char sizes[] = "study: sizes\n"
                             "scene: scene.yaml\n"

@@ -1,8 +1,8 @@
 /* Tests of study files: the grammar, identities of cells and located diagnostics. Run from the repository root. */
-#include "study_fixture.h"
 #include "base/hash.h"
 #include "scene/model/params.h"
 #include "scene/model/scene.h"
+#include "study_fixture.h"
 #include "whole.h"
 #include <dirent.h>
 

@@ -1,7 +1,7 @@
 /* Tests of the rows of a study: columns, values, worker rows and times. */
-#include "study_fixture.h"
 #include "study/rows/row_files.h"
 #include "study/rows/rows.h"
+#include "study_fixture.h"
 #include <sched.h>
 
 static const char grid_text[] =

@@ -1,5 +1,4 @@
 /* Tests of study runs: repetitions, interruption and resumption, kept files, locks and full disks. */
-#include "study_fixture.h"
 #include "base/cancel.h"
 #include "base/csv.h"
 #include "base/hash.h"
@@ -8,6 +7,7 @@
 #include "measure/clock.h"
 #include "rows_fixture.h"
 #include "study/run/progress.h"
+#include "study_fixture.h"
 #include <fcntl.h>
 #include <inttypes.h>
 #include <jansson.h>

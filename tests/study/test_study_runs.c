@@ -1,7 +1,7 @@
 /* Tests of a study's list of runs: the provenance and the environments of rows, without names of hosts and paths. */
-#include "study_fixture.h"
 #include "study/rows/facts.h"
 #include "study/rows/runs.h"
+#include "study_fixture.h"
 #include <errno.h>
 #include <fcntl.h>
 #include <jansson.h>

@@ -1,9 +1,9 @@
 /* Tests of the summary of a study. */
-#include "study_fixture.h"
 #include "base/csv.h"
 #include "rows_fixture.h"
 #include "study/rows/row_files.h"
 #include "study/summary/summary.h"
+#include "study_fixture.h"
 #include <inttypes.h>
 #include <locale.h>
 

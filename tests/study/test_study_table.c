@@ -1,7 +1,7 @@
 /* Tests of the append-only table file: incomplete ends, locks, full disks and unwritable paths. */
-#include "study_fixture.h"
 #include "base/os_process.h"
 #include "study/rows/table.h"
+#include "study_fixture.h"
 #include <fcntl.h>
 #include <sys/resource.h>
 

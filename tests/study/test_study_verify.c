@@ -1,15 +1,15 @@
 /* Tests of the checks of rows: every edit, removal, duplication and swap is detected, in every column; rows of unlike
  * environments are never pooled. */
-#include "study_fixture.h"
 #include "base/build_id.h"
+#include "base/csv.h"
 #include "random_stream.h"
 #include "rows_fixture.h"
 #include "study/rows/checksum.h"
-#include "base/csv.h"
 #include "study/rows/environment.h"
 #include "study/rows/row_files.h"
 #include "study/summary/summary.h"
 #include "study/summary/verify.h"
+#include "study_fixture.h"
 #include <errno.h>
 
 static const char study_text[] = "study: test\n"

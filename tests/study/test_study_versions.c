@@ -1,15 +1,15 @@
 /* Tests of rows that outlive versions: identities of cells leave out defaults, columns are identified by name, and rows
  * without a required column are refused. */
-#include "study_fixture.h"
+#include "base/csv.h"
 #include "base/hash.h"
 #include "rows_fixture.h"
 #include "scene/model/params.h"
 #include "scene/model/params_value.h"
-#include "base/csv.h"
+#include "scene/model/scene.h"
 #include "study/plan/identity.h"
 #include "study/rows/row_files.h"
 #include "study/summary/summary.h"
-#include "scene/model/scene.h"
+#include "study_fixture.h"
 #include <dirent.h>
 
 static const char study_text[] = "study: test\n"

@@ -1,6 +1,6 @@
 /* The memory of a hierarchy, and its blocks of four triangles, in single or double precision. */
-#include "base/cancel.h"
 #include "base/array.h"
+#include "base/cancel.h"
 #include "geometry/hierarchy/layout.h"
 
 #include <stdlib.h>

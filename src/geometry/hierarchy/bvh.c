@@ -1,10 +1,10 @@
 /* The builder of the hierarchy `bvh`: triangles become primitive references (PrimRef of Embree), references a binary
  * tree, and the tree nodes of eight children (bvh_collapse.c). Also the refit after the mesh has moved, and the
  * cost. */
+#include "geometry/hierarchy/bvh.h"
+#include "base/array.h"
 #include "base/cancel.h"
 #include "base/isa.h"
-#include "base/array.h"
-#include "geometry/hierarchy/bvh.h"
 #include <stdlib.h>
 
 /* --- references --- */

@@ -1,6 +1,6 @@
 /* The collapse of the binary tree into nodes of eight children and leaves of blocks, at the least expected cost. */
-#include "base/cancel.h"
 #include "base/array.h"
+#include "base/cancel.h"
 #include "geometry/hierarchy/bvh.h"
 
 #include <stdlib.h>

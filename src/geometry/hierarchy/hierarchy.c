@@ -1,8 +1,8 @@
 /* Hierarchies of all kinds: their build, those that a mesh owns, and their update after a move. */
 #include "geometry/hierarchy/layout.h"
 
-#include "base/cancel.h"
 #include "base/budget.h"
+#include "base/cancel.h"
 #include "geometry/mesh/mesh_private.h"
 #include <stdlib.h>
 #include <time.h>

@@ -1,9 +1,9 @@
 /* Triangle meshes: creation and owners, the checks, normals and bounds of mesh_finish, and mesh_move. */
-#include "base/cancel.h"
+#include "geometry/mesh/mesh.h"
 #include "base/array.h"
 #include "base/budget.h"
+#include "base/cancel.h"
 #include "base/lanes.h"
-#include "geometry/mesh/mesh.h"
 #include "geometry/mesh/mesh_private.h"
 #include <stdlib.h>
 #include <string.h>

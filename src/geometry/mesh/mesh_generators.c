@@ -1,7 +1,7 @@
 /* Mesh generators: common code, the box, the torus and the height field. */
+#include "geometry/mesh/mesh_generators.h"
 #include "base/cancel.h"
 #include "base/elementary.h"
-#include "geometry/mesh/mesh_generators.h"
 #include "geometry/mesh/mesh_private.h"
 
 status generate_finish(mesh *m, bool must_be_closed, mesh **out, diagnostic *why)

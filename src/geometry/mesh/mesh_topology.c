@@ -1,8 +1,8 @@
 /* The volume and area of a mesh, and whether it is closed. Vertices at equal positions are joined; the two half-edges
  * of each edge are found; of two neighbouring triangles that run along their common edge in the same direction, one is
  * flipped. */
-#include "base/cancel.h"
 #include "base/array.h"
+#include "base/cancel.h"
 #include "geometry/mesh/mesh_private.h"
 #include <stdlib.h>
 #include <string.h>

@@ -1,6 +1,6 @@
 /* The instance set: its build, the bounds of its instances, the frames of their copies, and texture coordinates. */
-#include "base/lanes.h"
 #include "geometry/regions/instance_set.h"
+#include "base/lanes.h"
 #include <limits.h>
 #include <stdlib.h>
 #include <string.h>

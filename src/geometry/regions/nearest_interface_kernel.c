@@ -12,8 +12,8 @@
 #include "geometry/regions/kernels.h"
 
 #include "base/lanes.h"
-#include "geometry/regions/instance_set.h"
 #include "geometry/primitives/primitive.h"
+#include "geometry/regions/instance_set.h"
 #include <math.h>
 
 ALWAYS_INLINE int64_t set_mask(uint64_t set, int bit)

@@ -1,13 +1,13 @@
 /* The build of the scene geometry, and its queries for points. */
 #include "geometry/scene_geometry.h"
-#include "base/elementary.h"
 #include "base/array.h"
+#include "base/elementary.h"
 #include "geometry/primitives/capillary.h"
-#include "geometry/regions/instance_set.h"
 #include "geometry/primitives/primitive.h"
+#include "geometry/regions/instance_set.h"
+#include "geometry/regions/solid_tree.h"
 #include "geometry/shapes/meniscus.h"
 #include "geometry/shapes/shape.h"
-#include "geometry/regions/solid_tree.h"
 
 #include <stdlib.h>
 

@@ -1,7 +1,7 @@
 /* The solid tree: its build, and sets of primitives in a geometry that has one. */
+#include "geometry/regions/solid_tree.h"
 #include "geometry/primitives/primitive.h"
 #include "geometry/shapes/shape.h"
-#include "geometry/regions/solid_tree.h"
 #include <float.h>
 #include <math.h>
 #include <stdlib.h>

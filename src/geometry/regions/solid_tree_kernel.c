@@ -3,9 +3,9 @@
  * intervals of a primitive are computed from the ray's start each time, by the functions of the first pass. */
 #include "geometry/regions/solid_tree.h"
 
-#include "geometry/regions/kernels.h"
 #include "geometry/primitives/primitive.h"
 #include "geometry/regions/box_tests.h"
+#include "geometry/regions/kernels.h"
 
 void KERNEL(tree_split)(const scene_geometry *g, const ray_batch *rays, ray_scratch *s, uint64_t *direct)
 {

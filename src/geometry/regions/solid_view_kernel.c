@@ -1,6 +1,6 @@
 /* Makes a solid view for a batch, and translates sets and hits between it and the whole scene. */
-#include "geometry/regions/kernels.h"
 #include "geometry/regions/box_tests.h"
+#include "geometry/regions/kernels.h"
 
 #include <string.h>
 

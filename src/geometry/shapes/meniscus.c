@@ -6,9 +6,9 @@
  * is such a polynomial, and is as long as its last terms are negligible. The height on the axis is found by shooting,
  * for the slope at the wall, which increases with this height. A solution grows outwards, so that errors do not grow
  * relative to it. */
+#include "geometry/shapes/meniscus.h"
 #include "base/elementary.h"
 #include "geometry/primitives/capillary.h"
-#include "geometry/shapes/meniscus.h"
 #include "geometry/shapes/parts.h"
 #include <stdio.h>
 

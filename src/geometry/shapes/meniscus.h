@@ -2,8 +2,8 @@
  * geometry/primitives/capillary.h solves for. Pure; cannot fail. */
 #pragma once
 
-#include "geometry/primitives/capillary.h"
 #include "geometry/mesh/mesh_generators.h"
+#include "geometry/primitives/capillary.h"
 #include "geometry/shapes/shape.h"
 
 /* radius, capillary_length: above 0, their quotient at most CAPILLARY_WIDEST; contact_angle_deg: within 1..179. The

@@ -1,6 +1,6 @@
 /* Functions that several shapes share, and the extents of placed shapes. */
-#include "base/elementary.h"
 #include "geometry/shapes/parts.h"
+#include "base/elementary.h"
 #include <math.h>
 
 /* R = R_z R_y R_x: rotation about x comes first. R_x rotates y towards z, R_y z towards x, R_z x towards y. */

@@ -1,6 +1,6 @@
 /* The table of shapes, and queries that every shape answers. */
-#include "geometry/scene_geometry.h"
 #include "geometry/shapes/shape.h"
+#include "geometry/scene_geometry.h"
 #include <math.h>
 #include <string.h>
 

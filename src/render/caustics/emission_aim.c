@@ -3,8 +3,8 @@
 #include "render/caustics/emission_private.h"
 
 #include "geometry/shapes/shape.h"
-#include "optics/spectrum.h"
 #include "optics/mueller.h"
+#include "optics/spectrum.h"
 
 #include <stdlib.h>
 

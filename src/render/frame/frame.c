@@ -2,8 +2,8 @@
  * into a result. */
 #include "render/frame/frame.h"
 
-#include "base/cancel.h"
 #include "base/array.h"
+#include "base/cancel.h"
 #include "measure/clock.h"
 #include "render/frame/caustics.h"
 #include "scene/model/scene.h"

@@ -1,10 +1,10 @@
 /* Following the rays of a fan; crossings by plane geometry, the focus by least squares. */
 #include "render/inspect/fan.h"
 
-#include "base/cancel.h"
-#include "base/elementary.h"
 #include "base/array.h"
 #include "base/budget.h"
+#include "base/cancel.h"
+#include "base/elementary.h"
 #include "render/plan/ray_axes.h"
 #include <stdlib.h>
 #include <string.h>

@@ -2,9 +2,9 @@
  * are read back. */
 #include "render/inspect/probe_private.h"
 
-#include "base/cancel.h"
 #include "base/array.h"
 #include "base/budget.h"
+#include "base/cancel.h"
 #include "geometry/regions/instance_set.h"
 #include "optics/interface.h"
 #include "render/shade/crystals.h"

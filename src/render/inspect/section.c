@@ -2,8 +2,8 @@
  * pieces of boundary, areas from lines. */
 #include "render/inspect/section.h"
 
-#include "base/cancel.h"
 #include "base/array.h"
+#include "base/cancel.h"
 #include <stdlib.h>
 #include <string.h>
 

@@ -2,8 +2,8 @@
 #include "render/integrators/path.h"
 
 #include "base/elementary.h"
-#include "optics/phase_function.h"
 #include "optics/mueller.h"
+#include "optics/phase_function.h"
 #include "render/shade/layered.h"
 #include "render/shade/media.h"
 #include "render/shade/polarisation.h"

@@ -5,8 +5,8 @@
 #include "render/camera/camera_rays.h"
 #include "render/shade/crystals.h"
 #include "render/shade/exposure.h"
-#include "render/shade/radiance.h"
 #include "render/shade/light_sampling.h"
+#include "render/shade/radiance.h"
 #include "render/shade/shading.h"
 
 /* Computes the branches of the gathered group; false if it has none. */

@@ -2,8 +2,8 @@
  * irradiance that its photons give a point, or a sample of the image. */
 #include "render/photons/photon_map.h"
 
-#include "base/cancel.h"
 #include "base/array.h"
+#include "base/cancel.h"
 #include "base/status.h"
 #include "render/photons/photon_tree.h"
 #include <stdlib.h>

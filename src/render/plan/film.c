@@ -2,8 +2,8 @@
  * layers. */
 #include "render/plan/film.h"
 
-#include "base/hash.h"
 #include "base/array.h"
+#include "base/hash.h"
 #include "optics/spectrum.h"
 #include <stdlib.h>
 #include <string.h>

@@ -16,8 +16,8 @@
 #pragma once
 
 #include "optics/multilayer.h"
-#include "scene/model/medium.h"
 #include "scene/model/material.h"
+#include "scene/model/medium.h"
 #include <pthread.h>
 #include <stdatomic.h>
 

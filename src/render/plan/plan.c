@@ -1,8 +1,8 @@
 /* Building a render plan: media, hierarchies, materials and light cones from the scene. */
 #include "render/plan/plan.h"
 
-#include "base/elementary.h"
 #include "base/array.h"
+#include "base/elementary.h"
 #include "geometry/shapes/shape.h"
 #include "scene/model/cover.h"
 #include "scene/model/scene.h"

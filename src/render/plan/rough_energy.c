@@ -1,8 +1,8 @@
 /* The light that a single scattering by facets of a rough surface loses, in tables, and its redistribution. */
 #include "render/plan/rough_energy.h"
 
-#include "base/lanes.h"
 #include "base/array.h"
+#include "base/lanes.h"
 #include "optics/interface.h"
 #include "optics/microfacet.h"
 #include <stdlib.h>

@@ -1,8 +1,8 @@
 /* The sampling kernels, compiled once for each instruction set. */
 #include "render/shade/kernels.h"
 
-#include "base/lanes.h"
 #include "base/isa.h"
+#include "base/lanes.h"
 #include "optics/mueller.h"
 #include <math.h>
 

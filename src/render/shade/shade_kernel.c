@@ -2,8 +2,8 @@
 #include "render/shade/kernels.h"
 
 #include "base/counters.h"
-#include "base/lanes.h"
 #include "base/isa.h"
+#include "base/lanes.h"
 #include "geometry/primitives/primitive.h"
 #include "optics/interface.h"
 #include "render/shade/media.h"

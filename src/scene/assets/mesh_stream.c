@@ -1,8 +1,8 @@
 /* Reads the wire format of cuvette-import (import/mesh_wire.h), and finds the images that materials name. */
+#include "scene/assets/mesh_stream.h"
 #include "base/cancel.h"
 #include "base/file.h"
 #include "import/mesh_wire.h"
-#include "scene/assets/mesh_stream.h"
 
 #include <math.h>
 #include <stdlib.h>

@@ -1,8 +1,8 @@
 /* Builds the tree of a YAML file from libyaml's events, reports its errors as diagnostics, and answers queries. */
-#include "base/file.h"
-#include "base/array.h"
-#include "base/status.h"
 #include "scene/file/document.h"
+#include "base/array.h"
+#include "base/file.h"
+#include "base/status.h"
 #include "scene/model/names.h"
 
 #include <stdarg.h>

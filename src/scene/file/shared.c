@@ -1,7 +1,7 @@
 /* Which scenes may be shared, and their forms: text, code of a link, metadata of an image. shared_read.c reads
  * these. */
-#include "base/text.h"
 #include "scene/file/shared.h"
+#include "base/text.h"
 #include "scene/file/write.h"
 #include "scene/model/params.h"
 #include "scene/model/scene.h"

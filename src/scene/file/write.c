@@ -1,8 +1,8 @@
 /* Writes a scene's parameters in the order of the table and of the scene, without those that a reader infers. Quoting
  * and paths: write_parts.c. */
+#include "scene/file/write.h"
 #include "base/file.h"
 #include "base/text.h"
-#include "scene/file/write.h"
 #include "scene/model/medium.h"
 #include "scene/model/params.h"
 #include "scene/model/params_value.h"

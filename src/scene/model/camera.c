@@ -1,6 +1,6 @@
 /* The camera's frame, from its target or its angles, and its lens and tone (camera.h). */
-#include "base/elementary.h"
 #include "scene/model/camera.h"
+#include "base/elementary.h"
 #include "scene/model/view_settings.h"
 
 static void aim_at_target(const struct camera *c, camera_frame *f)

@@ -1,7 +1,7 @@
 /* Containment and separating axes of solids, by the support functions of their shapes (cover.h). */
+#include "scene/model/cover.h"
 #include "geometry/shapes/shape.h"
 #include "scene/model/camera.h"
-#include "scene/model/cover.h"
 #include "scene/model/scene.h"
 
 #include <math.h>

@@ -1,8 +1,8 @@
 /* The laws of refraction, absorption and polarising sheets of a material (medium.h). */
+#include "scene/model/medium.h"
 #include "base/lanes.h"
 #include "base/number.h"
 #include "optics/media.h"
-#include "scene/model/medium.h"
 #include "scene/model/scene.h"
 
 #include <float.h>

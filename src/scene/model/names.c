@@ -1,8 +1,8 @@
 /* Names of objects: which are valid, which are in use; and suggestions for misspelt words (names.h). */
+#include "scene/model/names.h"
 #include "base/hash.h"
 #include "base/number.h"
 #include "base/text.h"
-#include "scene/model/names.h"
 #include "scene/model/params.h"
 
 #include <stdio.h>

@@ -1,11 +1,11 @@
 /* Parameters by path: find the place of a path, set and get its value, visit all parameters. */
+#include "scene/model/params.h"
 #include "base/elementary.h"
 #include "base/text.h"
 #include "geometry/shapes/shape.h"
 #include "scene/model/medium.h"
 #include "scene/model/names.h"
 #include "scene/model/objects.h"
-#include "scene/model/params.h"
 #include "scene/model/params_value.h"
 #include "scene/model/scene.h"
 

@@ -1,9 +1,9 @@
 /* The value of one row of the table: to text, from text, and in the struct of its group. */
+#include "scene/model/params_value.h"
 #include "base/number.h"
 #include "base/text.h"
 #include "scene/model/check.h"
 #include "scene/model/material.h"
-#include "scene/model/params_value.h"
 
 #include <stdarg.h>
 #include <stdio.h>

@@ -1,4 +1,5 @@
 /* Creates, copies and destroys scenes; finds objects by name (open.h, scene.h). */
+#include "scene/model/scene.h"
 #include "base/elementary.h"
 #include "base/file.h"
 #include "base/thread_team.h"
@@ -6,7 +7,6 @@
 #include "scene/model/objects.h"
 #include "scene/model/open.h"
 #include "scene/model/params_value.h"
-#include "scene/model/scene.h"
 
 #include <stdlib.h>
 #include <string.h>

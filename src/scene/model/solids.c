@@ -1,6 +1,6 @@
 /* The reference-counted materials of mesh files, loaded data of meshes and textures, and checks of slimes. */
-#include "geometry/shapes/shape.h"
 #include "scene/model/solids.h"
+#include "geometry/shapes/shape.h"
 
 #include <stdatomic.h>
 #include <stdlib.h>

@@ -1,8 +1,8 @@
 /* Picks, grabs and moves slimes with the pointer (motion_hands.h). */
+#include "scene/motion/motion_hands.h"
 #include "base/cancel.h"
 #include "measure/clock.h"
 #include "scene/model/scene.h"
-#include "scene/motion/motion_hands.h"
 #include "scene/motion/motion_private.h"
 
 #include <math.h>

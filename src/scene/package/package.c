@@ -1,12 +1,12 @@
 /* Writes and reads packages: their head and hash, packages in memory, and the hierarchies that they have. */
+#include "scene/package/package.h"
+#include "base/array.h"
 #include "base/build_id.h"
 #include "base/hash.h"
-#include "base/array.h"
 #include "geometry/hierarchy/hierarchy.h"
 #include "scene/file/write.h"
 #include "scene/model/integrators.h"
 #include "scene/model/scene.h"
-#include "scene/package/package.h"
 #include "scene/package/package_scene.h"
 
 #include <stdlib.h>

@@ -1,11 +1,11 @@
 /* The cells of a study: their points, scenes and references, texts of their values, and orders of measuring. */
+#include "study/plan/grid.h"
 #include "base/hash.h"
 #include "base/number.h"
 #include "base/random.h"
 #include "base/text.h"
 #include "scene/model/params.h"
 #include "scene/model/scene.h"
-#include "study/plan/grid.h"
 #include <inttypes.h>
 #include <math.h>
 #include <stdlib.h>

@@ -1,7 +1,8 @@
 /* Hashes the meaning of a scene and the contents of its files into the identities of cells. A file with the same name
  * and other contents makes another scene. Hashes are the same on every machine. */
-#include "base/file.h"
+#include "study/plan/identity.h"
 #include "base/array.h"
+#include "base/file.h"
 #include "base/hash.h"
 #include "base/text.h"
 #include "scene/model/face_materials.h"
@@ -9,7 +10,6 @@
 #include "scene/model/params_value.h"
 #include "scene/model/scene.h"
 #include "study/plan/grid.h"
-#include "study/plan/identity.h"
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>

@@ -1,16 +1,16 @@
 /* The files that a study keeps for a cell: their names, the space that they need, and their contents. */
+#include "study/plan/keep.h"
 #include "base/file.h"
 #include "base/number.h"
 #include "base/text.h"
 #include "image/image.h"
 #include "realism/realism.h"
 #include "render/frame/record.h"
-#include "scene/model/scene.h"
 #include "scene/assets/slime.h"
+#include "scene/model/scene.h"
 #include "scene/motion/motion.h"
 #include "softbody/trials.h"
 #include "study/plan/grid.h"
-#include "study/plan/keep.h"
 #include <fcntl.h>
 #include <limits.h>
 #include <math.h>

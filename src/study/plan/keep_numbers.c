@@ -1,12 +1,12 @@
 /* Kept files are named by the number of their cell. images/cells.tsv has the identities of the cells in that numbering;
  * when the grid has changed, the files are renamed. Files of cells that the study no longer has are named by identity,
  * and get a number again when the cell returns. */
-#include "study/plan/keep.h"
-#include "base/status.h"
 #include "base/file.h"
+#include "base/status.h"
 #include "base/text.h"
-#include "study/plan/identity.h"
 #include "scene/model/open.h"
+#include "study/plan/identity.h"
+#include "study/plan/keep.h"
 #include <ctype.h>
 #include <dirent.h>
 #include <errno.h>

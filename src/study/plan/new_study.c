@@ -1,12 +1,12 @@
 /* Composes a new study file: parses its axes, writes its text, and reads it back as a study. */
-#include "base/file.h"
+#include "study/plan/new_study.h"
 #include "base/array.h"
+#include "base/file.h"
 #include "base/number.h"
 #include "base/text.h"
 #include "scene/file/write.h"
 #include "scene/model/params.h"
 #include "scene/model/scene.h"
-#include "study/plan/new_study.h"
 #include <stdlib.h>
 #include <string.h>
 

@@ -1,4 +1,5 @@
 /* Stores reference images, compares each cell with its reference, and writes the rows of compare.csv. */
+#include "study/rows/compare_rows.h"
 #include "base/file.h"
 #include "base/hash.h"
 #include "base/text.h"
@@ -6,7 +7,6 @@
 #include "scene/model/scene.h"
 #include "study/plan/grid.h"
 #include "study/plan/identity.h"
-#include "study/rows/compare_rows.h"
 #include "study/rows/facts.h"
 #include <inttypes.h>
 #include <math.h>

@@ -1,4 +1,5 @@
 /* Collects facts of the machine, the program, the study and a run as JSON, and reads and writes files of facts. */
+#include "study/rows/facts.h"
 #include "base/build_id.h"
 #include "base/file.h"
 #include "base/json_build.h"
@@ -6,12 +7,10 @@
 #include "base/text.h"
 #include "measure/clock.h"
 #include "measure/usage.h"
-#include "study/rows/facts.h"
 #include "study/rows/rows.h"
 #include <fcntl.h>
 #include <hwloc.h>
 #include <inttypes.h>
-#include <jpeglib.h>
 #include <libgen.h>
 #include <png.h>
 #include <sched.h>
@@ -24,6 +23,7 @@
 #include <time.h>
 #include <unistd.h>
 #include <yaml.h>
+#include <jpeglib.h>
 
 /* --- files of JSON values --- */
 

@@ -1,10 +1,10 @@
 /* Names and lists of row files; fields, issues and environments of rows. study/rows/row_read.c reads the files. */
-#include "base/file.h"
+#include "study/rows/row_files.h"
 #include "base/array.h"
+#include "base/file.h"
 #include "base/status.h"
 #include "base/text.h"
 #include "study/rows/compare_rows.h"
-#include "study/rows/row_files.h"
 #include "study/rows/rows.h"
 #include <dirent.h>
 #include <errno.h>

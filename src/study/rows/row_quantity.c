@@ -1,6 +1,6 @@
 /* Reads values of rows, computes their medians by process, and judges the noise of rows. */
-#include "measure/statistics.h"
 #include "study/rows/row_quantity.h"
+#include "measure/statistics.h"
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>

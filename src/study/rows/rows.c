@@ -1,8 +1,8 @@
 /* Writes rows.csv and workers.csv; name, unit, meaning and value of each column are defined in one place. */
 #include "study/rows/rows.h"
 #include "base/text.h"
-#include "scene/model/params.h"
 #include "scene/model/open.h"
+#include "scene/model/params.h"
 #include "study/plan/grid.h"
 #include <inttypes.h>
 #include <stdio.h>

@@ -3,8 +3,8 @@
  * that ran out of memory has failed set. */
 #pragma once
 
-#include "job/quantities.h"
 #include "base/csv.h"
+#include "job/quantities.h"
 #include "study/study.h"
 
 /* A name in angle brackets represents several columns: "<axis>" one for each path of the grid, "first_hits.<solid>" one

@@ -1,4 +1,5 @@
 /* Reads the lists of runs, and changes them under a lock. */
+#include "study/rows/runs.h"
 #include "base/file.h"
 #include "base/hash.h"
 #include "base/json_build.h"
@@ -6,7 +7,6 @@
 #include "base/text.h"
 #include "scene/model/open.h"
 #include "study/rows/facts.h"
-#include "study/rows/runs.h"
 #include <dirent.h>
 #include <errno.h>
 #include <fcntl.h>

@@ -1,11 +1,11 @@
 /* Estimates a run: counts what is missing, finds times from rows or trial frames, and writes the estimate as text. */
+#include "study/run/estimate.h"
 #include "base/cancel.h"
 #include "measure/clock.h"
 #include "scene/model/scene.h"
 #include "study/plan/grid.h"
 #include "study/plan/keep.h"
 #include "study/rows/row_files.h"
-#include "study/run/estimate.h"
 #include "study/run/run_state.h"
 #include <math.h>
 #include <stdlib.h>

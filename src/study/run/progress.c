@@ -1,13 +1,13 @@
 /* Indexes the measured repetitions of a study by cell, and displays its progress. */
-#include "base/build_id.h"
+#include "study/run/progress.h"
 #include "base/array.h"
+#include "base/build_id.h"
 #include "base/hash.h"
 #include "base/isa.h"
 #include "measure/clock.h"
 #include "measure/statistics.h"
 #include "study/rows/row_files.h"
 #include "study/rows/row_quantity.h"
-#include "study/run/progress.h"
 #include <math.h>
 #include <stdio.h>
 #include <stdlib.h>

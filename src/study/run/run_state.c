@@ -1,4 +1,5 @@
 /* A running study: its files, what exists already, the disk space that it needs, loading and rendering. */
+#include "study/run/run_state.h"
 #include "base/cancel.h"
 #include "base/file.h"
 #include "base/thread_team.h"
@@ -8,7 +9,6 @@
 #include "study/plan/keep.h"
 #include "study/rows/row_files.h"
 #include "study/rows/rows.h"
-#include "study/run/run_state.h"
 #include <stdlib.h>
 #include <string.h>
 

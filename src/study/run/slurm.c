@@ -1,9 +1,9 @@
 /* Plans a study as an array job of Slurm: what its parts need, and its script. */
+#include "study/run/slurm.h"
 #include "base/build_id.h"
 #include "base/text.h"
 #include "scene/model/scene.h"
 #include "study/rows/row_files.h"
-#include "study/run/slurm.h"
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>

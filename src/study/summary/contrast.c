@@ -1,8 +1,8 @@
 /* Computes the ratios and verdicts of a comparison, and writes them as JSON. */
+#include "study/summary/contrast.h"
 #include "base/json_build.h"
 #include "measure/statistics.h"
 #include "study/plan/grid.h"
-#include "study/summary/contrast.h"
 #include "study/summary/contrast_parts.h"
 #include <math.h>
 #include <stdlib.h>

@@ -1,6 +1,6 @@
 /* Reads measured columns by cell and process, and computes the rates of smaller studies drawn from them. */
-#include "base/number.h"
 #include "study/summary/power_rates.h"
+#include "base/number.h"
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>

@@ -1,4 +1,5 @@
 /* Writes the summary of a study, a line per cell and environment, and reads it back as a table. */
+#include "study/summary/summary.h"
 #include "base/number.h"
 #include "base/text.h"
 #include "measure/statistics.h"
@@ -8,7 +9,6 @@
 #include "study/rows/excluded.h"
 #include "study/rows/row_quantity.h"
 #include "study/rows/rows.h"
-#include "study/summary/summary.h"
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>

@@ -1,6 +1,6 @@
 /* Writes faults of rows and their environments as text, and compares the films of two results folders. */
-#include "study/rows/row_files.h"
 #include "study/summary/verify.h"
+#include "study/rows/row_files.h"
 #include <stdlib.h>
 #include <string.h>
 

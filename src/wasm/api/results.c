@@ -1,8 +1,8 @@
 /* Stores the last error, and converts results to JSON texts. */
+#include "wasm/api/results.h"
 #include "base/json_build.h"
 #include "engine/engine_private.h"
 #include "report/json.h"
-#include "wasm/api/results.h"
 #include "wasm/exports.h"
 
 cuvette_diagnostic results_last;

@@ -1,9 +1,9 @@
 /* Reads OBJ files: v, vt, vn, f with any number of corners, relative indices, usemtl, mtllib with its materials; lines,
  * points, groups and smoothing are ignored. Format: Wavefront, Advanced Visualizer Manual, appendix B1, "Object
  * Files". */
-#include "base/file.h"
-#include "base/array.h"
 #include "import/obj.h"
+#include "base/array.h"
+#include "base/file.h"
 #include "wasm/mesh/mesh.h"
 
 #include <stdlib.h>

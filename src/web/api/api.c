@@ -1,7 +1,7 @@
 /* Helpers of the API's handlers: replies, values of a request's body and query, and the current image. */
+#include "web/api/api.h"
 #include "base/number.h"
 #include "report/json.h"
-#include "web/api/api.h"
 
 #include <math.h>
 #include <stdlib.h>

@@ -5,11 +5,11 @@
 #include "base/number.h"
 #include "base/text.h"
 #include "lint/lint.h"
-#include "report/trace_writers.h"
 #include "report/fan_writers.h"
 #include "report/json.h"
-#include "report/theory_rows.h"
 #include "report/report.h"
+#include "report/theory_rows.h"
+#include "report/trace_writers.h"
 #include "web/api/api.h"
 
 #include <limits.h>

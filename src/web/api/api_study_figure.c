@@ -3,8 +3,8 @@
 #include "base/cancel.h"
 #include "base/file.h"
 #include "base/text.h"
-#include "study/summary/contrast.h"
 #include "study/plot/plot.h"
+#include "study/summary/contrast.h"
 #include "web/api/api.h"
 #include "web/session/studies.h"
 

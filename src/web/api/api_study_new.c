@@ -5,8 +5,8 @@
 #include "base/text.h"
 #include "report/json.h"
 #include "report/report.h"
-#include "study/run/estimate.h"
 #include "study/plan/new_study.h"
+#include "study/run/estimate.h"
 #include "web/api/api.h"
 #include "web/session/studies.h"
 

@@ -1,8 +1,8 @@
 /* Validates names and paths, which must stay inside the folder, also through links. folder_list.c lists the files. */
+#include "web/document/folder.h"
 #include "base/text.h"
 #include "scene/file/write.h"
 #include "scene/model/scene.h"
-#include "web/document/folder.h"
 
 #include <errno.h>
 #include <limits.h>

@@ -1,8 +1,8 @@
 /* Files of unsaved scenes: their names, their locks, and the line that describes the scene. */
+#include "web/document/kept_scenes.h"
 #include "base/file.h"
 #include "base/json_build.h"
 #include "base/text.h"
-#include "web/document/kept_scenes.h"
 
 #include <dirent.h>
 #include <errno.h>

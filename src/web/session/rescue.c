@@ -1,4 +1,5 @@
 /* The thread that keeps the unsaved scene, and the scenes of laboratories that died, which are offered. */
+#include "web/session/rescue.h"
 #include "base/cancel.h"
 #include "base/float_environment.h"
 #include "base/json_build.h"
@@ -8,7 +9,6 @@
 #include "scene/file/write.h"
 #include "scene/model/scene.h"
 #include "web/document/kept_scenes.h"
-#include "web/session/rescue.h"
 #include "web/session/studies.h"
 
 #include <pthread.h>

@@ -1,7 +1,7 @@
 /* Functions for all parts of a laboratory: events, names of scenes, default threads, camera rays. */
+#include "web/session/session.h"
 #include "scene/model/camera.h"
 #include "scene/model/scene.h"
-#include "web/session/session.h"
 
 #include <string.h>
 #include <strings.h>

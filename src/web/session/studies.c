@@ -1,8 +1,8 @@
 /* The thread that runs a study, and its progress for pages. */
+#include "web/session/studies.h"
 #include "base/float_environment.h"
 #include "base/text.h"
 #include "report/json.h"
-#include "web/session/studies.h"
 #include "web/session/tasks.h"
 
 #include <math.h>

@@ -1,7 +1,7 @@
 /* The thread of a task: starting, stopping, joining. And a counting semaphore that can be closed, on a mutex and a
  * condition variable. */
-#include "measure/clock.h"
 #include "web/session/tasks.h"
+#include "measure/clock.h"
 
 #include <pthread.h>
 #include <stdbool.h>

@@ -1,4 +1,5 @@
 /* The thread that renders a video, and its progress for pages. */
+#include "web/session/videos.h"
 #include "base/float_environment.h"
 #include "base/number.h"
 #include "job/job.h"
@@ -11,7 +12,6 @@
 #include "scene/motion/motion.h"
 #include "web/session/studies.h"
 #include "web/session/tasks.h"
-#include "web/session/videos.h"
 
 #include <errno.h>
 #include <math.h>

@@ -3,8 +3,8 @@
 #pragma once
 
 #include "base/lanes.h"
-#include "geometry/mesh/mesh_generators.h"
 #include "geometry/hierarchy/hierarchy.h"
+#include "geometry/mesh/mesh_generators.h"
 #include "random_stream.h"
 
 /* A mesh of these corners, three per triangle. */

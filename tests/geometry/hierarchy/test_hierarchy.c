@@ -1,8 +1,8 @@
 /* Tests of the hierarchies' queries: the same hits from every kind, batch and instruction set, and watertight
  * meshes. */
+#include <math.h>
 #include <setjmp.h>
 #include <stdarg.h>
-#include <math.h>
 #include <stddef.h>
 #include <stdint.h>
 #include <stdlib.h>

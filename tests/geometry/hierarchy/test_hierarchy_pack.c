@@ -8,9 +8,9 @@
 #include <cmocka.h>
 
 #include "base/hash.h"
+#include "geometry/hierarchy/hierarchy.h"
 #include "geometry/hierarchy/layout.h"
 #include "geometry/mesh/mesh_generators.h"
-#include "geometry/hierarchy/hierarchy.h"
 
 #include <math.h>
 #include <stdlib.h>

@@ -7,8 +7,8 @@
 #include <cmocka.h>
 
 #include "geometry/mesh/mesh_generators.h"
-#include "geometry/scene_geometry.h"
 #include "geometry/primitives/primitive.h"
+#include "geometry/scene_geometry.h"
 #include "geometry/shapes/shape.h"
 #include "random_stream.h"
 #include "scene/model/params_value.h"

@@ -7,8 +7,8 @@
 #include <stdint.h>
 #include <cmocka.h>
 
-#include "render/caustics/emission.h"
 #include "photon_fixture.h"
+#include "render/caustics/emission.h"
 #include "scene/model/scene.h"
 #include <stdlib.h>
 

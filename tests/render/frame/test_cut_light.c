@@ -15,8 +15,8 @@
 #include "job/job.h"
 #include "job/quantities.h"
 #include "law_judge.h"
-#include "lint/probe_images.h"
 #include "lint/lint.h"
+#include "lint/probe_images.h"
 #include "scene/model/scene.h"
 
 /* --- the share, in the account and in the map --- */

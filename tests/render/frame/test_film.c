@@ -10,8 +10,8 @@
 #include "base/isa.h"
 #include "base/random.h"
 #include "render/plan/film.h"
-#include "render/tracer/queue.h"
 #include "render/shade/kernels.h"
+#include "render/tracer/queue.h"
 
 static film *made(int width, int height)
 {

@@ -6,8 +6,8 @@
 #include <stdint.h>
 #include <cmocka.h>
 
-#include "render/inspect/probe.h"
 #include "geometry/scene_geometry.h"
+#include "render/inspect/probe.h"
 #include "render_fixture.h"
 #include "scene/model/scene.h"
 

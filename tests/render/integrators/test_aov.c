@@ -11,8 +11,8 @@
 #include <cmocka.h>
 
 #include "image/image.h"
-#include "render/plan/film.h"
 #include "render/frame/record.h"
+#include "render/plan/film.h"
 #include "render_fixture.h"
 
 enum { WIDTH = 48, HEIGHT = 32 };

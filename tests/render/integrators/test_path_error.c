@@ -6,9 +6,9 @@
 #include <stdint.h>
 #include <cmocka.h>
 
+#include "render/frame/record.h"
 #include "render/frame/renderer.h"
 #include "render/plan/sampling.h"
-#include "render/frame/record.h"
 #include "render_fixture.h"
 #include "scene/model/scene.h"
 #include "whole.h"

@@ -8,8 +8,8 @@
 #include <cmocka.h>
 
 #include "base/elementary.h"
-#include "base/lanes.h"
 #include "base/isa.h"
+#include "base/lanes.h"
 #include "base/random.h"
 #include "render/shade/kernels.h"
 #include "render_fixture.h"

@@ -8,9 +8,9 @@
 #include <stdint.h>
 #include <cmocka.h>
 
-#include "render_fixture.h"
-#include "render/shade/light_sampling.h"
 #include "render/plan/lights.h"
+#include "render/shade/light_sampling.h"
+#include "render_fixture.h"
 #include "scene/model/scene.h"
 #include "whole.h"
 

@@ -8,8 +8,8 @@
 #include <stdlib.h>
 #include <cmocka.h>
 
-#include "optics/phase_function.h"
 #include "optics/media.h"
+#include "optics/phase_function.h"
 #include "optics/spectrum.h"
 #include "render/plan/sky.h"
 #include "render_fixture.h"

@@ -7,8 +7,8 @@
 #include <stdlib.h>
 #include <cmocka.h>
 
-#include "optics/spectrum.h"
 #include "optics/mueller.h"
+#include "optics/spectrum.h"
 #include "random_stream.h"
 #include "render/inspect/probe.h"
 #include "render_fixture.h"

@@ -11,8 +11,8 @@
 #include "geometry/mesh/mesh_generators.h"
 #include "mesh_fixture.h"
 #include "random_stream.h"
-#include "zbuffer_fixture.h"
 #include "scene/model/scene.h"
+#include "zbuffer_fixture.h"
 
 #define COUNT(a) (sizeof(a) / sizeof((a)[0]))
 

@@ -8,8 +8,8 @@
 #include <cmocka.h>
 
 #include "image/compare.h"
-#include "zbuffer_fixture.h"
 #include "scene/model/scene.h"
+#include "zbuffer_fixture.h"
 
 #define COUNT(a) (sizeof(a) / sizeof((a)[0]))
 #define assert_near(a, b, tolerance) assert_true(fabs((a) - (b)) <= (tolerance))

@@ -1,8 +1,8 @@
 /* Adds, removes and renames objects; assigns materials and shapes to solids. edit_place.c moves and rotates. */
+#include "scene/model/edit/edit.h"
 #include "base/text.h"
 #include "geometry/shapes/shape.h"
 #include "scene/model/check.h"
-#include "scene/model/edit/edit.h"
 #include "scene/model/names.h"
 #include "scene/model/objects.h"
 #include "scene/model/params.h"

@@ -1,9 +1,9 @@
 /* Moves and rotates one object or the camera. Groups of objects: edit_parts.c. */
+#include "scene/model/edit/edit_place.h"
 #include "base/elementary.h"
 #include "base/number.h"
 #include "base/text.h"
 #include "scene/model/edit/edit.h"
-#include "scene/model/edit/edit_place.h"
 #include "scene/model/scene.h"
 
 #include <stdio.h>

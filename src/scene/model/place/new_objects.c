@@ -1,4 +1,5 @@
 /* Adds objects with a suitable name, size, place and colour, and copies objects (new_objects.h). */
+#include "scene/model/place/new_objects.h"
 #include "base/file.h"
 #include "base/text.h"
 #include "geometry/shapes/shape.h"
@@ -8,7 +9,6 @@
 #include "scene/model/objects.h"
 #include "scene/model/params.h"
 #include "scene/model/params_value.h"
-#include "scene/model/place/new_objects.h"
 #include "scene/model/place/placement.h"
 #include "scene/model/scene.h"
 

@@ -1,7 +1,7 @@
 /* Finds a free place in view for a new object (placement.h). */
+#include "scene/model/place/placement.h"
 #include "geometry/shapes/shape.h"
 #include "scene/model/camera.h"
-#include "scene/model/place/placement.h"
 #include "scene/model/scene.h"
 
 #include <math.h>
