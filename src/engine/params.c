@@ -95,7 +95,7 @@ static cuvette_status is_no_number(const char *path, const char *value, const ch
 {
     diagnostic inner = {.line = 0};
     return engine_report(diagnose(&inner, STATUS_BAD_INPUT, "use cuvette_scene_get, which returns text",
-                                  "%.128s is '%.128s', not of type %s", path, value, kind),
+                                  "%.128s is '%.128s', not %s", path, value, kind),
                          &inner, why);
 }
 
@@ -111,7 +111,7 @@ cuvette_status cuvette_scene_get_double(const cuvette_scene *s, const char *path
     if (number_parse_real(text, &number))
         *value = number;
     else
-        code = is_no_number(path, text, "number", why);
+        code = is_no_number(path, text, "a number", why);
     free(text);
     return code;
 }
@@ -132,7 +132,7 @@ cuvette_status cuvette_scene_get_int(const cuvette_scene *s, const char *path, i
     else if (number_parse_int(text, &number))
         *value = number;
     else
-        code = is_no_number(path, text, "integer", why);
+        code = is_no_number(path, text, "an integer", why);
     free(text);
     return code;
 }
@@ -162,8 +162,11 @@ cuvette_status cuvette_scene_get_vector(const cuvette_scene *s, const char *path
     ENGINE_TRY(get(s, path, &text, why));
     const int found = parse_numbers(text, numbers);
     free(text);
-    if (found < 0)
-        return is_no_number(path, "a word", "vector", why);
+    if (found < 0) {
+        diagnose(&inner, STATUS_BAD_INPUT, "use cuvette_scene_get, which returns text",
+                 "%.128s is not a list of numbers", path);
+        return engine_report(STATUS_BAD_INPUT, &inner, why);
+    }
     *count = (size_t)found;
     if ((size_t)found > room) {
         diagnose(&inner, STATUS_BAD_INPUT, "make room for the reported count", "%.128s has %d numbers", path, found);

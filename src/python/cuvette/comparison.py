@@ -59,7 +59,7 @@ def compare(a: Pixels, b: Pixels, map: bool = False) -> Comparison:
     one, other = _pixels(a), _pixels(b)
     if one.shape != other.shape:
         sizes = [f"{shape[1]} x {shape[0]}" for shape in (one.shape, other.shape)]
-        raise InputError(f"one image is {sizes[0]}, the other {sizes[1]}", "render both in the same size")
+        raise InputError(f"one image is {sizes[0]}, the other {sizes[1]}", "render both at the same size")
     drawn = numpy.empty_like(one) if map else None
     found = sized("comparison")
     memory: Any = ffi.NULL if drawn is None else ffi.from_buffer("float[]", drawn)

@@ -37,7 +37,7 @@ static status read_number(const script_reader *r, const char *label, const node 
         return node_error(r->file, n, r->why, strchr(n->text, ',') ? "a decimal comma? write 1.5" : remedy,
                           "%s: '%.80s' is not a finite number", label, n->text);
     if (n->quoted)
-        return node_error(r->file, n, r->why, "remove the quotes", "%s is a text, but must be a number", label);
+        return node_error(r->file, n, r->why, "remove the quotes", "%s is text, but must be a number", label);
     if (*out < low || *out > high)
         return node_error(r->file, n, r->why, remedy, "%s: %.80s is out of range", label, n->text);
     return STATUS_OK;

@@ -74,7 +74,7 @@ static status check_value_kind(const scene_reader *r, const param *row, const ch
         return node_error(r->file, value, r->why, remedy, "%.150s is a %s", path,
                           value->kind == NODE_MAP ? "map" : "list");
     if (value->quoted && number)
-        return node_error(r->file, value, r->why, "remove the quotes", "%.150s is a text, but must be a number", path);
+        return node_error(r->file, value, r->why, "remove the quotes", "%.150s is text, but must be a number", path);
     return STATUS_OK;
 }
 

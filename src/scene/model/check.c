@@ -299,7 +299,7 @@ static status check_scattering(const scene *s, const solid *owner, diagnostic *w
     if (!owner->visible || !scene_has_caustics(&s->render) || material_scattering(&owner->surface, &s->render) == 0.0)
         return STATUS_OK;
     return diagnose(why, STATUS_BAD_INPUT, "set render.caustics to off, or its scatter_per_m to 0",
-                    "%.80s: photons do not scatter in its medium", owner->name);
+                    "%.80s: caustics by photons do not support its scattering medium", owner->name);
 }
 
 static status check_solid(const scene *s, const solid *owner, diagnostic *why)

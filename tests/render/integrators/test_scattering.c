@@ -321,7 +321,7 @@ static void photons_do_not_scatter(void **state)
     diagnostic why = {0};
     set(s, "render.caustics=photons");
     assert_int_equal(scene_check(s, &why), STATUS_BAD_INPUT);
-    assert_non_null(strstr(why.what, "cloud: photons do not scatter"));
+    assert_non_null(strstr(why.what, "cloud: caustics by photons do not support its scattering medium"));
     set(s, "render.integrator=whitted");
     worked(scene_check(s, &why), &why);
     scene_destroy(s);
