@@ -263,9 +263,9 @@ CUVETTE_API cuvette_status cuvette_scene_add_pixels(cuvette_scene *scene, const 
 /* A material can be removed only when no solid uses it. */
 CUVETTE_API cuvette_status cuvette_scene_remove(cuvette_scene *scene, const char *name, cuvette_diagnostic *why);
 
-/* Translates a solid, a light or "camera" (with its target; the target of a light other than a point moves too) by
- * `by`, three numbers in scene units. For several objects: "all" is all solids, lights and beams, "solids" and "lights"
- * are only these, and such words are joined by '+', as "all+camera", unless an object has that name. */
+/* Translates a solid, a light or "camera" by three numbers in scene units. The target of the camera, and of a light
+ * other than a point, moves too. Names of several objects: "all" is all solids, lights and beams, "solids" and "lights"
+ * are only these, and '+' joins such words, as in "all+camera"; an object with such a name has precedence. */
 CUVETTE_API cuvette_status cuvette_scene_move(cuvette_scene *scene, const char *name, const double *by,
                                               cuvette_diagnostic *why);
 /* Rotates a solid in place, or the direction of "camera" or of a light other than a point, about the world's x axis,
@@ -421,7 +421,7 @@ typedef struct cuvette_statistics {
     double cpu_s;     /* CPU time of the process over the same interval */
     double preview_s; /* wall time of the preview; 0 without one */
     int threads;
-    double noise_rms; /* standard error of a film value under random paths, root mean square; otherwise NaN */
+    double noise_rms; /* standard error of the film's values, root mean square; NaN without random paths */
 } cuvette_statistics;
 
 CUVETTE_API cuvette_status cuvette_frame_counters(const cuvette_frame *frame, cuvette_counters *out,
@@ -569,7 +569,7 @@ typedef struct cuvette_node {
     double angle_in_deg, angle_out_deg; /* of incidence and refraction; angle_out_deg is 0 if there is none */
 } cuvette_node;
 
-/* Traces the ray and all that follow from it; its reach and start are ignored. */
+/* Traces the ray and all rays that follow from it; ignores its reach and start. */
 CUVETTE_API cuvette_status cuvette_query_trace(const cuvette_query *query, const cuvette_ray *ray, cuvette_tree **out,
                                                cuvette_diagnostic *why);
 /* Traces the camera rays of a pixel; with several samples the tree has as many first rays, linked by next. */

@@ -32,10 +32,11 @@ typedef enum shape_kind { SHAPES(SHAPE_KIND) SHAPE_COUNT } shape_kind;
 
 typedef struct solid_shape {
     shape_kind kind;
-    vec3 position;                                              /* scene units */
-    vec3 rotation_deg;                                          /* about x, then y, then z */
-    double radius, height, m, inner_radius, floor;              /* only those that the kind uses */
-    double contact_angle_deg, capillary_length, contact_radius; /* meniscus of a cylinder; 0, 0: none */
+    vec3 position;                                 /* scene units */
+    vec3 rotation_deg;                             /* about x, then y, then z */
+    double radius, height, m, inner_radius, floor; /* only those that the kind uses */
+    /* the meniscus of a cylinder; no meniscus if capillary_length is 0; contact_radius 0: the radius */
+    double contact_angle_deg, capillary_length, contact_radius;
     double tube_radius, top_radius;
     int64_t sides;
     double radius_1, radius_2, conic_1, conic_2, thickness, diameter; /* lens */

@@ -151,7 +151,7 @@ static void write_remedy(char remedy[NOTE_TEXT_MAX], int enough, bool more)
         snprintf(remedy, NOTE_TEXT_MAX, "set render.depth=%d%s", enough, more ? " or more" : "");
 }
 
-/* unknown, largest: fractions. */
+/* unknown: the fraction of the image's light that deeper rays could carry; largest: the same of one pixel. */
 static void note_unknown(const lint_input *input, const char *remedy, int depth, double unknown, double largest)
 {
     note_report(input->taker, "render", "depth", remedy,

@@ -253,7 +253,8 @@ static bool examine_along(const pair *p, int axis)
     return false;
 }
 
-/* Whether the gap is narrow and empty on the line and on eight lines around it, over the minimum extent. */
+/* Whether there is a narrow gap, which no solid fills, both on line i, j and on the eight lines that are step_u and
+ * step_v away from it. */
 static bool is_patch(const pair *p, int axis, int i, int j, int step_u, int step_v)
 {
     const scene_geometry *a = p->input->probe->geometry;

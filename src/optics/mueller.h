@@ -118,8 +118,8 @@ static inline sp_response sp_reflect(fresnel f, double cos_i)
     return r;
 }
 
-/* Refraction: t_s and t_p are positive, so that conj(t_s) t_p is the square root of the product of the powers. 0 under
- * total internal reflection. */
+/* Refraction: t_s and t_p are positive, so that conj(t_s) t_p is the square root of the product of the power
+ * transmittances. 0 under total internal reflection. */
 static inline sp_response sp_refract(fresnel f)
 {
     sp_response r = {1.0 - f.R, 0.5 * (f.R_p - f.R_s), sqrt((1.0 - f.R_s) * (1.0 - f.R_p)), 0.0};

@@ -12,7 +12,7 @@ enum {
 };
 
 static const double SATURATED = 0x1p60;   /* sigmoid(+-SATURATED) is 1 and 0 exactly */
-static const double CLOSE_ENOUGH = 1e-20; /* square of a distance in CIELAB: 1e-10, far below a visible difference */
+static const double CLOSE_ENOUGH = 1e-20; /* the square of a CIELAB distance of 1e-10, far below visibility */
 
 /* The contribution of each wavelength to X/Xn, Y/Yn, Z/Zn of a surface under D65; each row of weights sums to 1. */
 typedef struct daylight {

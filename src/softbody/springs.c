@@ -175,7 +175,7 @@ void springs_release(springs *s)
 /* Working memory while batches are built. */
 typedef struct owners {
     uint8_t *end;    /* by spring: which of its ends owns it */
-    uint32_t *owned; /* by mass: how many it owns */
+    uint32_t *owned; /* by mass: number of springs that it owns */
     uint32_t *place; /* by spring: its place in the batches */
 } owners;
 

@@ -135,7 +135,8 @@ static void begin_chunk(softbody *b, size_t begin, size_t end, size_t chunk)
     b->sums[chunk] = dot(b->residual, b->residual, begin, end);
 }
 
-/* The product of the matrix with the direction, and its scalar product with the direction. */
+/* Multiplies the matrix by the search direction (the product is 0 at fixed masses), and adds up the scalar product of
+ * the direction with the result. */
 static void apply_chunk(softbody *b, size_t begin, size_t end, size_t chunk)
 {
     b->kernels->resist(&b->net, b->stiff, b->direction, b->image, begin, end);

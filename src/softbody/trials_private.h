@@ -64,7 +64,7 @@ double trial_energy(const softbody *b);
 status trial_one_mass(const trials *t, const softbody_settings *s, softbody **out);
 status trial_swing(const trials *t, const softbody_settings *s, double swing, softbody **out);
 
-/* The elongation of the spring, and its rate of change over omega. */
+/* q: the elongation of the spring; p: its rate of change, divided by omega. */
 typedef struct swing_state {
     double q, p;
 } swing_state;

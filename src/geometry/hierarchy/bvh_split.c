@@ -204,7 +204,7 @@ static bool may_bin(const prim_range *range, int depth)
     return depth + median_levels(range->count) < BUILD_DEPTH_MAX;
 }
 
-/* False if no split is better than another. */
+/* False if the centres coincide along every axis, or if all boxes have no area. */
 static bool find_min_cost_split(const bvh_bins *s, sah_split *split)
 {
     *split = (sah_split){-1, 0, INFINITY};

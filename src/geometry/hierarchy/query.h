@@ -253,7 +253,7 @@ ALWAYS_INLINE bool query_blocks(ray_query *q, const hierarchy *h, enum query_mod
  * rounding errors (Ize, "Robust BVH ray traversal", JCGT 2(2), 2013). A box is culled only if it begins beyond the best
  * hit, not at it, so that of two triangles at one distance the lower number wins in any order of traversal. */
 
-enum { STACK = BVH_DEPTH_MAX * (WIDTH - 1) + WIDTH }; /* children on the stack of a traversal */
+enum { STACK = BVH_DEPTH_MAX * (WIDTH - 1) + WIDTH }; /* the most children on a traversal's stack */
 #define FLOAT_STEP 0x1p-22f                           /* relative; more than two steps between floats */
 #define FLOAT_TINY 1e-37f /* absolute, for values near 0: several times the smallest normal float */
 

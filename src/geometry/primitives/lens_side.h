@@ -62,13 +62,13 @@ ALWAYS_INLINE interval half_space(double u, double inverse_u)
     return (interval){blend(opens, t, -HUGE_VAL), blend(opens, HUGE_VAL, t)};
 }
 
-/* The interval, in the ray's t, in which a ray is in the convex set of a side, as far as the ray is within the rim.
- * The conic is intersected from the line's point nearest to the vertex; for a ray that starts on the side, from its
- * start, where the quadratic's constant term is 0.
+/* The interval of t in which a ray is in the convex set of a side; it is valid only within the rim. For accuracy the
+ * conic is intersected from the line's point nearest to the vertex; for a ray that starts on the side, from its start,
+ * where the quadratic's constant term is 0.
  *
- * A line that crosses the plane through an ellipsoid's centre within the rim is inside the ellipsoid there. So this
- * plane decides whether the interval is unbounded. The plane itself is an end only by rounding, for a line that touches
- * the ellipsoid there. */
+ * Within the rim, a line is inside an ellipsoid where it crosses the plane through the centre, and stays in the convex
+ * set beyond the plane: there the interval has no end. If the line touches the ellipsoid at the plane, rounding can put
+ * the other end beyond the plane or lose it; then the crossing of the plane is that end. */
 ALWAYS_INLINE interval lens_side_cross(const lens_side *e, local_ray r, double inverse_length2, interval rim,
                                        int64_t starts_on)
 {

@@ -146,7 +146,8 @@ typedef struct primitive_functions {
     void (*points)(const primitive *p, const ray_batch *rays, const double *t, int bit, surface_batch *points);
     /* Whether the primitive contains q, by its definition, surfaces included. */
     bool (*contains)(const primitive *p, vec3 q);
-    /* The intervals of the line of r in the primitive, in both directions and in order; returns their number. */
+    /* The intervals in which the line of r, infinite in both directions, is in the primitive, in order; returns their
+     * number. */
     int (*chords)(const primitive *p, local_ray r, interval chords[CHORDS_MAX]);
     /* The faces perpendicular to a local axis; returns their number. NULL: none. */
     int (*flats)(const primitive *p, flat_face flat[FLATS_MAX]);

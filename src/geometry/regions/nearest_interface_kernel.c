@@ -138,7 +138,7 @@ static void all_sets_around(const scene_geometry *g, int n, ray_scratch *s, hit_
         fold_row(g, __builtin_ctzll(left), n, s, hits);
 }
 
-/* -1 if the region of that priority index is opaque: bit priority_index - 1 of the set. */
+/* -1 if the region of that priority index is opaque (bit priority_index - 1 of the set), else 0. */
 ALWAYS_INLINE int64_t opaque_mask(uint64_t opaque_regions, int64_t priority_index)
 {
     const int64_t some = -(int64_t)(priority_index > 0);
@@ -365,7 +365,7 @@ static ray_batch with_direct_sets(const scene_geometry *g, const ray_batch *rays
     return view;
 }
 
-/* Joins the sets of ray i, whose crossing column k found. */
+/* Joins the two parts of each set of ray i: the direct primitives and, from column k, those of the solid tree. */
 static void join_sets(const scene_geometry *g, int k, const ray_scratch *s, hit_batch *hits, int i)
 {
     const uint64_t open = g->meshes ? g->meshes->open_surfaces : 0;

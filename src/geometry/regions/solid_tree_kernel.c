@@ -85,7 +85,7 @@ static double window(const tree_search *w, double t)
     return BOUNDARY_CLOSE * (t + w->s->slack[w->column]);
 }
 
-/* Keeps the primitives that can matter at the nearest change. */
+/* Removes the primitives that begin beyond the nearest change so far. */
 static void shorten_list(tree_search *w)
 {
     const double high = w->t + window(w, w->t);

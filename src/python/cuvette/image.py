@@ -159,7 +159,7 @@ class Image:
 
     @property
     def noise_rms(self) -> float:
-        """Standard error of a film value under random paths, root mean square; otherwise NaN."""
+        """Standard error of the film's values, root mean square; NaN without random paths."""
         return float(self._times.noise_rms)
 
     @described("cuvette_frame_write")

@@ -75,7 +75,7 @@ class Motion:
 
     @property
     def names(self) -> Tuple[str, ...]:
-        """The meshes of the slimes."""
+        """The names of the slimes' meshes."""
         return tuple(
             names_of(lib.cuvette_motion_count(self._motion), lambda i: lib.cuvette_motion_name(self._motion, i))
         )

@@ -4,8 +4,7 @@
 #include "render/shade/kernels.h"
 #include "render/tracer/tracer.h"
 
-/* The numbers of camera rays of a pixel: one for each of its samples, or one for each sample and wavelength of a
- * spectral film. */
+/* The camera rays of each pixel: one per sample; with a spectral film, one per sample and wavelength. */
 camera_sampling camera_samples(const render_settings *r);
 
 /* Enqueues rays first .. first + count - 1 of a row of pixels that starts at x0. */

@@ -219,7 +219,8 @@ static vec3 inclined(const ray_axes *a, vec3 side, double tangent)
     return vec3_normalize(vec3_add(a->axis, vec3_scale(side, tangent)));
 }
 
-/* Samples the disc of a bundle, or a cone: uniform in solid angle, or Gaussian in every plane across the axis. */
+/* Samples the disc of a bundle, uniform in area, or a cone, uniform in solid angle; or either with a profile that is
+ * Gaussian in every plane across the axis. */
 static void start_round(const beam *b, const ray_axes *a, unit_pair s, emitted_ray *out)
 {
     double sine, cosine, half_sine, half_cosine;

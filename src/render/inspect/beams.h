@@ -46,7 +46,7 @@ typedef struct beam_screen {
     vec3 centre, normal;
     double width, height;        /* scene units, along e_u (horizontal, or x for a horizontal screen) and e_v */
     int columns, rows;           /* of bins; 1 .. SCREEN_BINS_MAX */
-    int rays_of_beam;            /* 1 .. SCREEN_RAYS_MAX per beam and wavelength; 0: each beam's number */
+    int rays_of_beam;            /* per wavelength, 1 .. SCREEN_RAYS_MAX; 0: the parameter `rays` of each beam */
     vec3 e_u, e_v;               /* results from here on */
     double *bin;                 /* power by bin, [row * columns + column], row 0 at the top (largest v) */
     double *color;               /* the same in linear sRGB, each wavelength in its colour: [3 * bin + channel] */

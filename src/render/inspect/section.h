@@ -49,8 +49,8 @@ typedef struct section_step {
     bool backwards, starts_ring;
 } section_step;
 
-/* Writes the steps around the area of a medium to out, which has room for s->line_count steps, and their number to
- * *count. */
+/* Writes the steps around the area of a medium, an index as in section_line, to out, which has room for s->line_count
+ * steps, and their number to *count. */
 status section_area(const section *s, int medium, section_step *out, size_t *count, diagnostic *why);
 
 /* section_project: the orthogonal projection of a point onto the plane's coordinates; section_place: the inverse. */

@@ -219,8 +219,9 @@ typedef struct irradiance_sum {
     double all, x, y, xx, yy, xy;
 } irradiance_sum;
 
-/* The weight of a photon's disc at the offset from it, (3 / (pi r^2)) (1 - d^2 / r^2)^2, of integral 1 (biweight
- * kernel, Silverman, 4.2.1). Points in front or behind are on another surface. */
+/* The density of a photon's disc at an offset from its centre: (3 / (pi r^2)) (1 - d^2 / r^2)^2, whose integral is 1
+ * (biweight kernel, Silverman, 4.2.1). 0 at points more than r / 2 above or below the disc: they are on another
+ * surface. */
 static double disc_density(const photon *one, vec3 off)
 {
     const vec3 n = vec3_make((double)one->normal[0], (double)one->normal[1], (double)one->normal[2]);

@@ -29,7 +29,7 @@ typedef struct rasterised_layer {
     uint32_t number;       /* of the triangle, plus 1; 0: the sky */
     uint8_t before, after; /* priority indices of the media */
     uint8_t surface;       /* priority index of the region whose surface it is */
-    bool leaving : 1;      /* the ray leaves the primitive; unused if `ends` is set: the triangle decides */
+    bool leaving : 1;      /* the ray leaves the primitive; unused if `ends` is set */
     bool ends : 1;         /* opaque, or the sky */
     bool passed : 1;       /* no interface: two media of equal index but different absorption */
 } rasterised_layer;

@@ -119,7 +119,7 @@ vec3 camera_pivot_of(const scene *s, camera_pivot known)
     return known.known && is_ahead ? known.at : placement_of(s).looked_at;
 }
 
-/* Aims the camera without moving it: at its target, or along its angles. */
+/* Aims the camera without moving it: sets its target or, if it has none, its angles. */
 static void aim(scene *s, vec3 direction, vec3 target)
 {
     s->camera.target = s->camera.aimed ? target : s->camera.target;

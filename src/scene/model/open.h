@@ -28,7 +28,8 @@ size_t scene_solid_count(const scene *s);
 const char *scene_solid_name(const scene *s, int index);
 const char *scene_light_name(const scene *s, int index);
 
-/* Sets the limits of loading; root is copied. Loaded data stays. */
+/* Limits what the scene loads from now on (load_limits, scene/model/solids.h); data that is already loaded stays. root
+ * is copied. */
 status scene_limit(scene *s, const char *root, size_t triangles, diagnostic *why);
 
 /* A path of the scene relative to the working folder. Newly allocated; NULL if memory runs out. */

@@ -34,7 +34,7 @@ bool grid_same_value(const char *a, const char *b);
 /* Writes all paths, or all values of the cell as scene_get writes them, each preceded by a tab. */
 void grid_put_paths(const study *s, FILE *out);
 void grid_put_values(const study *s, size_t cell, FILE *out);
-/* Writes a tab and a number, with as many digits as read back the same; NA if it is not finite. */
+/* Writes a tab and a number, with enough digits to read back the same value; NA if it is not finite. */
 void grid_put_number(FILE *out, double value);
 
 /* Independent streams of one seed: round k of the repetitions uses stream k, and the order in which cells are divided

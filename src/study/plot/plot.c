@@ -69,7 +69,7 @@ typedef struct drawing {
 
 enum { NOT_FOUND = 127 /* of env(1) */ };
 
-/* format='png'; output='/path/.cuvette-0123abcd-0.part' */
+/* Commands that precede the script, such as: format='png'; output='/path/.cuvette-0123abcd-0.part' */
 static char *settings_of(const char *scratch, const char *format)
 {
     char *text = NULL;

@@ -1,4 +1,5 @@
-/* Appends rows to a file, complete or not at all, under a lock and on disk before it returns. */
+/* Appends rows to a locked file. Each row is written completely or not at all, and is on disk when the function
+ * returns. */
 #include "study/rows/table.h"
 #include "base/csv.h"
 #include "base/file.h"

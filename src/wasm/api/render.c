@@ -31,7 +31,7 @@ struct wasm_render {
     job *worker;
     bool at_once; /* the render cannot be divided into turns */
     tiled_frame sum;
-    int64_t next, reported; /* the next tile to render, and the next for wasm_render_tiles */
+    int64_t next, reported; /* the next tile to render; the next that wasm_render_tiles reports */
     ray_counters counters;
     bool has_photons; /* the photons are counted: every turn counts the same ones */
     double until_s, budget_s, wall_s;

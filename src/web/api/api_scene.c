@@ -192,8 +192,8 @@ static json_t *scene_delta(const json_t *before, const json_t *after)
 }
 
 /* The reply as allocated text: the scene, or only its differences from the generation `since` if that is remembered;
- * -1 for none. Releases json. Jansson's reference counts are not atomic, so all uses of the remembered scenes are under
- * the lock. */
+ * -1 for none. Releases json. Jansson's reference counts are atomic only in some builds, so all uses of the remembered
+ * scenes are under the lock. */
 static char *sent_scenes_reply(sent_scenes *s, json_t *json, long long since)
 {
     const json_t *before = NULL;

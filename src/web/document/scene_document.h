@@ -65,7 +65,8 @@ status scene_document_view(scene_document *d, view_command order, uint64_t *gene
  * scene's own camera, or are of two opened scenes. */
 status scene_document_undo(scene_document *d, bool redo, uint64_t *generation, diagnostic *why);
 
-/* Resets these paths to their values when the scene was opened, or (count 0) all paths and the objects themselves. */
+/* Resets these paths to the values that they had when the scene was opened; if count is 0, resets the complete scene,
+ * including its list of objects. */
 status scene_document_reset(scene_document *d, const char *const *paths, size_t count, uint64_t *generation,
                             diagnostic *why);
 

@@ -33,7 +33,7 @@ static double longest_step_s(const live *l)
     return step_s;
 }
 
-/* The simulated time before the clock is read again. */
+/* The time to simulate before the clock is read again. */
 static double slice_s(const live *l, double most_s, double left_s)
 {
     const double slices = 8.0 /* per time budget, which is exceeded by about one slice at most */,
@@ -343,7 +343,8 @@ static void answer_grabs(live *l)
 
 /* --- commands --- */
 
-/* Runs the commands since the last call; does nothing if they cannot run yet. */
+/* Applies the mode, and a restart requested since the last call: ends the simulation, or begins it if the scene
+ * moves. */
 static status apply_commands(live *l, live_mode *mode, diagnostic *why)
 {
     pthread_mutex_lock(&l->lock);

@@ -78,7 +78,8 @@ json_t *shared_image_json(const shared_image *img)
                           "full_height", img->full_height);
     if (!o)
         return NULL;
-    json_t *numbers = json_deep_copy(img->numbers); /* jansson's reference counts are not atomic */
+    /* a copy, because jansson's reference counts are atomic only in some builds */
+    json_t *numbers = json_deep_copy(img->numbers);
     int bad = !numbers || json_object_update(o, numbers);
     json_decref(numbers);
     bad |= json_object_set_new(o, "film_hash", img->final ? json_string(hash) : json_null());

@@ -28,8 +28,8 @@ struct rescue {
     pthread_cond_t changed;
     bool woken, ending, failed;
     diagnostic trouble;
-    /* The two lists hold the scenes found at the start. opened: scenes that the document has, but the file of `kept`
-     * may not have yet. */
+    /* Unsaved scenes that were found at the start. offers: not opened yet; opened: opened in the document, each with a
+     * file that is removed when the document is saved, or written to `kept`. */
     kept_scene offers[KEPT_SCENES_MAX], opened[KEPT_SCENES_MAX];
     size_t offer_count, opened_count;
 };

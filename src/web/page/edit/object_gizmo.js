@@ -239,7 +239,7 @@ export function createGizmo(lab, choice, mark, movable) {
  * Pure functions of the camera; vectors and lengths in scene units, image points in image pixels. */
 
 const AXES = ['x', 'y', 'z'];
-const ARM_PX = [30, 78]; /* least and largest length of an arm; between them, a quarter of the image */
+const ARM_PX = [30, 78]; /* limits of an arm's length, which is a quarter of the shorter side of the image */
 const LEAST_PX = 16; /* an arrow that points at the eye cannot be dragged */
 const LEAST_TILT = 0.15; /* below it a ring is seen from its edge, and its plane cannot be used */
 const RING = 48;

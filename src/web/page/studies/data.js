@@ -9,7 +9,7 @@
  *   cellsOf(summary, paths, quantity) [{at: {path: text}, y, low, high}]
  *   axesFor(cells, paths)             paths with more than one value, numbers first
  *   seriesOf(cells, paths, x)         {series: [{name, points}], values, heading, omitted}; values: words of a
- *                                     categorical axis; omitted: number of lines */
+ *                                     categorical axis; omitted: number of lines left out */
 
 const SERIES_MAX = 14; /* lines of one chart */
 const HASHES = /(^|_)(hash|definition|reference|film_expected|reference_film)$/;
