@@ -22,7 +22,7 @@ _cuvette_parameters()
     done
     compopt -o nospace
     _cuvette_words "$("${COMP_WORDS[0]}" params ${scene:+"$scene"} 2>/dev/null |
-        awk 'NR > 1 && $1 !~ /^(LIGHT|MATERIAL|SOLID)\./ { print $1 "=" }')"
+        awk 'NR > 1 && $1 !~ /^[A-Z]+\./ { print $1 "=" }')"
 }
 
 _cuvette_objects() # SUFFIX WORD...: completes the objects of the scene on the command line, the camera, and these words
@@ -51,7 +51,7 @@ _cuvette_value() # OPTION: completes its value; false for a flag
 {
     case $1 in
     -s | --set | -a | --axis) _cuvette_parameters ;;
-    --generate) _cuvette_words sparse dense sphere icosphere torus lathe box ;;
+    --generate) _cuvette_words sparse dense sphere icosphere torus lathe terrain box ;;
     -f | --format)
         case ${COMP_WORDS[1]-} in
         study) _cuvette_words png svg pdf ;;
@@ -75,9 +75,13 @@ _cuvette_value() # OPTION: completes its value; false for a flag
         trace) _cuvette_files 'txt|json|svg' ;;
         fan) _cuvette_files 'svg|csv' ;;
         scene) _cuvette_files 'yaml|yml' ;;
-        study) _cuvette_files 'study' ;;
         mesh) _cuvette_files 'obj|bin|ply' ;;
-        study) _cuvette_files 'png|svg|pdf' ;;
+        study)
+            case ${COMP_WORDS[2]-} in
+            plot) _cuvette_files 'png|svg|pdf' ;;
+            *) _cuvette_files 'study' ;;
+            esac
+            ;;
         animate) _cuvette_files 'png|jpg|jpeg|pfm|y4m|apng' ;;
         render) _cuvette_files 'png|jpg|jpeg|pfm|html' ;;
         *) _cuvette_files 'png|jpg|jpeg|pfm' ;;
@@ -104,7 +108,7 @@ _cuvette_value() # OPTION: completes its value; false for a flag
     --cells | --designs | --effect | --draws | --seed) COMPREPLY=() ;;
     --repeat | --shard | --at | --pixel | --ray | --depth | --lambda | --from | --to | --width | --spread | --plane) COMPREPLY=() ;;
     --count | --level | --major | --minor | --around | --tube | --profile | --crease | --size) COMPREPLY=() ;;
-    --port | --threads) COMPREPLY=() ;;
+    --port | --threads | --memory-limit | --layers | --process | --processes) COMPREPLY=() ;;
     -r | --results | --folder)
         compopt -o filenames
         mapfile -t COMPREPLY < <(compgen -d -- "$current")
@@ -116,7 +120,7 @@ _cuvette_value() # OPTION: completes its value; false for a flag
 _cuvette_study() # VERB
 {
     local -A options=([new]='--axis --set --name --repetitions --warmups --output --force'
-        [run]='--results --shard --by --any-environment --processes --against --quick --dry-run --quiet --progress'
+        [run]='--results --shard --by --any-environment --process --processes --instructions --wait-quiet --memory-limit --against --quick --dry-run --quiet --progress'
         [submit]='--slurm --partition --constraint --node-type --tasks --by --threads --memory --time --factor --sbatch --template --results --dry-run'
         [status]=--results [merge]=--results
         [verify]=--results [summary]='--results --environment --interval' [list]=''
@@ -152,35 +156,35 @@ _cuvette()
     case $command in
     render)
         if [[ $current == -* ]]; then
-            _cuvette_words --output --set --json --bits --rays --time --cut --noise --timeline --repeat --help --usage --version
+            _cuvette_words --output --set --json --bits --rays --time --cut --noise --timeline --repeat --beams --layers --live --memory-limit --help --usage --version
         else
             _cuvette_files 'yaml|yml'
         fi
         ;;
     animate)
         if [[ $current == -* ]]; then
-            _cuvette_words --output --script --duration --fps --start --set --rows --restart --json --help --usage --version
+            _cuvette_words --output --script --duration --fps --start --set --rows --restart --json --memory-limit --help --usage --version
         else
             _cuvette_files 'yaml|yml'
         fi
         ;;
     scene)
         if [[ $current == -* ]]; then
-            _cuvette_words --add --set --move --turn --scale --rename --delete --title --new --check --list --link --all --output --help --usage --version
+            _cuvette_words --add --set --move --turn --scale --rename --delete --title --new --check --list --link --all --output --memory-limit --help --usage --version
         else
             _cuvette_files 'yaml|yml'
         fi
         ;;
     trace)
         if [[ $current == -* ]]; then
-            _cuvette_words --pixel --ray --depth --lambda --set --text --json --svg --output --help --usage --version
+            _cuvette_words --pixel --ray --beams --depth --lambda --set --text --json --svg --output --memory-limit --help --usage --version
         else
             _cuvette_files 'yaml|yml'
         fi
         ;;
     fan)
         if [[ $current == -* ]]; then
-            _cuvette_words --from --to --rays --width --spread --plane --depth --lambda --set --tree --output --help --usage --version
+            _cuvette_words --from --to --rays --width --spread --plane --depth --lambda --set --tree --output --memory-limit --help --usage --version
         else
             _cuvette_files 'yaml|yml'
         fi
@@ -200,8 +204,8 @@ _cuvette()
         fi
         ;;
     mesh)
-        _cuvette_words --generate --count --level --major --minor --around --tube --profile --crease --size --format --output --json \
-            --help --usage --version
+        _cuvette_words --generate --count --level --major --minor --around --tube --profile --crease --size --depth --seed --format --output --json \
+            --memory-limit --help --usage --version
         ;;
     study)
         if ((COMP_CWORD == 2)); then
@@ -212,28 +216,28 @@ _cuvette()
         ;;
     compare)
         if [[ $current == -* ]]; then
-            _cuvette_words --diff --json --help --usage --version
+            _cuvette_words --diff --json --memory-limit --help --usage --version
         else
             _cuvette_files 'png|jpg|jpeg|pfm|bmp'
         fi
         ;;
     realism)
         if [[ $current == -* ]]; then
-            _cuvette_words --set --json --csv --curve --help --usage --version
+            _cuvette_words --set --json --csv --curve --memory-limit --help --usage --version
         else
             _cuvette_files 'yaml|yml'
         fi
         ;;
     motion)
         if [[ $current == -* ]]; then
-            _cuvette_words --set --json --csv --help --usage --version
+            _cuvette_words --set --json --csv --memory-limit --help --usage --version
         else
             _cuvette_files 'yaml|yml'
         fi
         ;;
     lab)
         if [[ $current == -* ]]; then
-            _cuvette_words --folder --results --port --threads --no-browser --help --usage --version
+            _cuvette_words --folder --results --port --threads --no-browser --memory-limit --help --usage --version
         else
             _cuvette_files 'yaml|yml'
         fi

@@ -988,7 +988,7 @@ check "scene needs a file or --new" is "$code $(<err)" \
 # --- completion
 check "the completion is valid bash" bash -n "$root/src/cli/cuvette.bash"
 complete_line() { # WORD...: prints the completions of the last word
-    bash -c 'source "$1"; shift; COMP_WORDS=("$@"); COMP_CWORD=$(($# - 1)); compopt() { :; }; _cuvette
+    bash -O extglob -c 'source "$1"; shift; COMP_WORDS=("$@"); COMP_CWORD=$(($# - 1)); compopt() { :; }; _cuvette
         printf "%s\n" "${COMPREPLY[@]}"' - "$root/src/cli/cuvette.bash" "$@"
 }
 check "completion offers commands" is "$(complete_line cuvette ren)" render
@@ -1002,6 +1002,20 @@ check "completion offers mesh's options and bodies" is \
         complete_line "$program" mesh --generate to
     )" \
     "$(lines --generate torus)"
+check "completion offers every mesh that can be generated" is "$(complete_line "$program" mesh --generate te)" terrain
+check "completion without a scene offers no groups of objects" is \
+    "$(complete_line "$program" render --set '' | grep '^[A-Z]')" ""
+: >figure.svg
+check "completion of a figure's file" is "$(complete_line "$program" study plot -o figure)" figure.svg
+rm figure.svg
+offered=
+for verb in render animate scene trace fan params media mesh compare realism motion lab machine \
+    "study "{new,run,submit,status,list,merge,verify,summary,compare,films,power,exclude,plot}; do
+    # shellcheck disable=SC2086
+    offered+=$(comm -13 <(complete_line "$program" $verb -- | sort) \
+        <("$program" $verb --help | grep -oE '^  (    |-., )--[a-z-]+' | grep -oE -- '--.*' | sort) | sed "s/^/$verb /")
+done
+check "completion offers every option" is "$offered" ""
 check "completion offers media" is "$(complete_line "$program" media fused)" fused-silica
 check "completion offers options of trace" is "$(complete_line cuvette trace --p)" --pixel
 check "completion offers options of fan" is "$(complete_line cuvette fan --sp)" --spread
