@@ -13,6 +13,8 @@
 
 /* --- text --- */
 
+enum { INDENT_MAX = DEPTH_TREE_MAX + 1 };
+
 static const char *const kind_words[] = {"camera", "reflect", "refract", "shadow"};
 static const char *const end_words[] = {"hit", "sky", "cut_depth", "cut_weight", "lit", "blocked"};
 
@@ -70,12 +72,14 @@ static void write_text_line(const traced *t, FILE *out, const ray_node *node, in
     fputc('\n', out);
 }
 
-/* The nodes are in depth-first order, so that each node is followed by its children. */
+/* The nodes are in depth-first order, so that each node is followed by its children. Indentation ends at the greatest
+ * depth of a tree: the path of a beam can be so deep that most of its text would be spaces. */
 static void write_text_rays(const traced *t, FILE *out)
 {
     for (size_t i = 0; i < t->tree->count && !cancel_asked(); i++) {
         const ray_node *node = &t->tree->node[i];
-        write_text_line(t, out, node, node->kind == RAY_SHADOW ? node->depth + 1 : node->depth);
+        const int level = node->kind == RAY_SHADOW ? node->depth + 1 : node->depth;
+        write_text_line(t, out, node, level < INDENT_MAX ? level : INDENT_MAX);
     }
 }
 
@@ -212,11 +216,9 @@ static bool write_extras(const traced *t, FILE *out, const ray_node *node)
     return good;
 }
 
-/* Recurses over the levels of the tree: at most DEPTH_TREE_MAX + 2, or BEAM_DEPTH_MAX + 2 for a beam without
- * branches. */
-static bool write_json_ray(const traced *t, FILE *out, int at)
+/* Writes a ray up to the list of its children, which close_json_ray ends. */
+static bool open_json_ray(const traced *t, FILE *out, const ray_node *node)
 {
-    const ray_node *node = &t->tree->node[at];
     fprintf(out, "\n{\"kind\":\"%s\",\"depth\":%d", kind_words[node->kind], node->depth);
     write_vector(out, "origin", node->origin);
     write_vector(out, "direction", node->direction);
@@ -230,13 +232,39 @@ static bool write_json_ray(const traced *t, FILE *out, int at)
     else
         fputs("null", out);
     fputs(",\"children\":[", out);
-    for (int i = node->first_child; i != RAY_NONE && !cancel_asked(); i = t->tree->node[i].next) {
-        good = write_json_ray(t, out, i) && good;
-        fputs(t->tree->node[i].next == RAY_NONE ? "" : ",", out);
-    }
+    return good;
+}
+
+static bool close_json_ray(const traced *t, FILE *out, const ray_node *node)
+{
     fprintf(out, "],\"end\":\"%s\"", end_words[node->end]);
-    good = write_extras(t, out, node) && good;
+    const bool good = write_extras(t, out, node);
     fputc('}', out);
+    return good;
+}
+
+/* Writes a ray and its descendants. A loop, not a recursion: a beam without branches has up to BEAM_DEPTH_MAX + 2
+ * levels, too many for a small stack. */
+static bool write_json_ray(const traced *t, FILE *out, int root)
+{
+    const ray_node *nodes = t->tree->node;
+    bool good = true;
+    for (int at = root; !cancel_asked();) {
+        good = open_json_ray(t, out, &nodes[at]) && good;
+        if (nodes[at].first_child != RAY_NONE) {
+            at = nodes[at].first_child;
+            continue;
+        }
+        good = close_json_ray(t, out, &nodes[at]) && good;
+        while (at != root && nodes[at].next == RAY_NONE) {
+            at = nodes[at].parent;
+            good = close_json_ray(t, out, &nodes[at]) && good;
+        }
+        if (at == root)
+            break;
+        at = nodes[at].next;
+        fputc(',', out);
+    }
     return good;
 }
 

@@ -75,6 +75,26 @@ release | debug)
         --set render.width=40 --set render.height=30 >out 2>err
     cmp stack.pfm stack-64.pfm && cmp stack.pfm stack-32.pfm
     verdict $? "the image does not depend on the limit of the stack"
+    # A mirror cavity: the tree of its beam has 10 002 levels.
+    cat >cavity.yaml <<END
+render: {width: 8, height: 6}
+solids:
+  left: {shape: box, size: [1, 2, 2], position: [-1.5, 0, 0], reflectivity: 1}
+  right: {shape: box, size: [1, 2, 2], position: [1.5, 0, 0], reflectivity: 1}
+beams:
+  laser: {position: [0, 0, 0], target: [1, 0, 0], branches: off, depth: 10000, min_fraction: 0}
+END
+    for kib in 1024 64; do
+        (
+            ulimit -s $kib
+            exec "$program" trace cavity.yaml --beams -o cavity-$kib.json
+        ) >out 2>err
+        equal "a deep beam with a stack of $kib kB" \
+            "$? $(grep -o '"kind"' cavity-$kib.json | wc -l) $(tail -c 18 cavity-$kib.json)" '0 10003 "segments":10002}'
+    done
+    "$program" trace cavity.yaml --beams -o cavity.txt
+    bytes=$(wc -c <cavity.txt)
+    verdict $((bytes > 4000000)) "the text of a deep beam is not mostly indentation" "$bytes bytes"
     (
         ulimit -s 64
         exec "$program" fan "$root/experiments/scenes/slime.yaml" --from=-3,1.5,0 --to=3,1.5,0 --tree -o fan.csv \

@@ -142,4 +142,19 @@ export const cases = {
     await screen.page.getByText('N = 1 traced, 1 crossings').waitFor();
     await t.image(screen, 'bench-screen');
   },
+
+  'a beam between two mirrors has 10 002 levels, and the page lists them': async (t) => {
+    const lab = await t.lab('scenes/rod.yaml');
+    const screen = await t.open(lab, { width: 1366, height: 768 });
+    const found = await screen.page.evaluate(async () => {
+      const { buildTree } = await import('./bench/ray_tree.js');
+      const ray = { kind: 'reflect', origin: [0, 0, 0], direction: [1, 0, 0], throughput: [1, 1, 1], hit: null };
+      let root = null;
+      for (let depth = 10001; depth >= 0; depth--)
+        root = { ...ray, depth, end: 'sky', far_end: [1, 0, 0, 0], children: root ? [root] : [] };
+      const { rays, roots } = buildTree({ root });
+      return [roots.length, rays.length, rays.at(-1).level, rays.at(-1).node.depth, rays.at(-1).parent.index];
+    });
+    t.equal(found, [1, 10002, 10002, 10001, 10000], 'roots, rays, and the last ray');
+  },
 };

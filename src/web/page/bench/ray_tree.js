@@ -123,15 +123,18 @@ export function buildTree(answer) {
   const first = answer.roots || [answer.root];
   const cameraLight = mean(first[0].throughput) || 1;
   const rays = [];
-  const visit = (node, parent, level) => {
+  const roots = [];
+  /* A loop, not a recursion: a beam without branches has up to 10 000 levels, too many for a browser's stack. */
+  const waiting = first.map((node) => ({ node, parent: null, level: 1 })).reverse();
+  while (waiting.length) {
+    const { node, parent, level } = waiting.pop();
     const ray = { index: rays.length, node, parent, level, children: [] };
     /* A shadow ray's throughput is a radiance, so it gets the weight of its parent ray. */
     ray.weight = node.kind === 'shadow' && parent ? parent.weight : Math.min(1, mean(node.throughput) / cameraLight);
     rays.push(ray);
-    ray.children = node.children.map((child) => visit(child, ray, level + 1));
-    return ray;
-  };
-  const roots = first.map((node) => visit(node, null, 1));
+    (parent ? parent.children : roots).push(ray);
+    for (const child of [...node.children].reverse()) waiting.push({ node: child, parent: ray, level: level + 1 });
+  }
   const reach = extent(rays);
   for (const ray of rays) {
     const { origin: from, direction, far_end: farEnd } = ray.node;
