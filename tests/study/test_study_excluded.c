@@ -114,6 +114,36 @@ static void rows_stay_excluded_when_the_grid_changes(void **state)
     study_destroy(s);
 }
 
+/* A cell's number in rows.csv is that of the grid at the time; the same number may now be another row's. */
+static void a_number_names_the_row_of_the_file(void **state)
+{
+    static const char changed[] =
+        "study: test\nscene: scene.yaml\ngrid: [{render.depth: [2, 1, 0]}]\nrepetitions: 3\nwarmups: 1\n";
+    const fixture *f = *state;
+    study *s = fixture_study(f, text);
+    fixture_run(f, s);
+    study_destroy(s);
+    s = fixture_study(f, changed);
+    diagnostic why = {0};
+    assert_int_equal(add(f, s, "2:1", "the present number", &why), STATUS_BAD_INPUT);
+    assert_string_equal(why.what, "there is no such row");
+    assert_int_equal(add(f, s, "0:1", "the number in the file", NULL), STATUS_OK);
+    fixture_run(f, s); /* depth 2, cell 0 in the file too */
+    assert_string_equal(summary_field(f, s, 0, "excluded"), "0");
+    assert_string_equal(summary_field(f, s, 2, "excluded"), "1");
+    why = (diagnostic){0};
+    assert_int_equal(add(f, s, "0:2", "depth 0 or depth 2", &why), STATUS_BAD_INPUT);
+    assert_non_null(strstr(why.what, "more than one row has this number"));
+    assert_non_null(strstr(why.remedy, "checksum"));
+    study_destroy(s);
+    s = fixture_study(f,
+                      "study: test\nscene: scene.yaml\ngrid: [{render.depth: [1, 0]}]\nrepetitions: 3\nwarmups: 1\n");
+    why = (diagnostic){0};
+    assert_int_equal(add(f, s, "0:3", "depth 0 in the file, depth 1 now", &why), STATUS_BAD_INPUT);
+    assert_non_null(strstr(why.what, "more than one row has this number"));
+    study_destroy(s);
+}
+
 /* Rows of shards are merged into another file; the row stays excluded. */
 static void rows_stay_excluded_after_a_merge(void **state)
 {
@@ -200,6 +230,7 @@ int main(void)
         CASE(a_row_is_left_out_and_stays),
         CASE(the_check_names_a_row),
         CASE(rows_stay_excluded_when_the_grid_changes),
+        CASE(a_number_names_the_row_of_the_file),
         CASE(rows_stay_excluded_after_a_merge),
         CASE(other_references_are_refused),
         CASE(a_damaged_list_is_reported),

@@ -131,14 +131,15 @@ size_t excluded_count(const excluded *list)
 
 /* --- excluding --- */
 
-/* Whether text is CELL:REPETITION of the row, or its checksum. */
-static bool is_meant(const char *text, const row_ref *row)
+/* Whether text is CELL:REPETITION of the row, or its checksum. cell: the row's column, or its number in the present
+ * grid. */
+static bool is_meant(const char *text, const row_ref *row, const char *cell)
 {
     const char *checksum = row_field(row, keys[CHECKSUM]);
     if (is_known(checksum) && strcmp(checksum, text) == 0)
         return true;
     char number[64];
-    snprintf(number, sizeof number, "%zu:%ld", row->cell, row->repetition);
+    snprintf(number, sizeof number, "%.32s:%ld", cell, row->repetition);
     return strcmp(number, text) == 0;
 }
 
@@ -150,18 +151,25 @@ static status wrong_row(const char *text, diagnostic *why, const char *remedy, c
     return diagnose(why, STATUS_BAD_INPUT, remedy, "%s", what);
 }
 
+/* CELL is the column of rows.csv. When the grid has changed since, it may be the present number of another row, which
+ * the user may mean: that is refused. */
 static status find_row(const row_files *files, const excluded *list, const char *text, const row_ref **out,
                        diagnostic *why)
 {
+    size_t candidates = 0;
     *out = NULL;
     for (size_t i = 0; i < files->row_count; i++) {
-        if (!is_meant(text, &files->rows[i]))
-            continue;
-        if (*out)
-            return wrong_row(text, why, "give the row's value in the column checksum",
-                             "more than one row has this number");
-        *out = &files->rows[i];
+        const row_ref *row = &files->rows[i];
+        char now[32];
+        snprintf(now, sizeof now, "%zu", row->cell);
+        const bool named = is_meant(text, row, row_field(row, keys[CELL]));
+        candidates += named || is_meant(text, row, now);
+        if (named)
+            *out = row;
     }
+    if (*out && candidates > 1)
+        return wrong_row(text, why, "give the row's value in the column checksum",
+                         "more than one row has this number, in rows.csv or in the present grid");
     if (!*out)
         return wrong_row(text, why, "give CELL:REPETITION, such as 3:2, or the row's value in the column checksum",
                          "there is no such row");

@@ -23,7 +23,7 @@ row_use row_use_of(const excluded *without, const row_ref *row);
 /* The number of lines of the list. */
 size_t excluded_count(const excluded *list);
 
-/* Appends the row, "CELL:REPETITION" or its checksum, and flushes the file to disk. STATUS_BAD_INPUT if no row or more
- * than one matches, if the row is a warm-up or is excluded already, or if the reason is not one line of at most 500
- * characters. */
+/* Appends the row, "CELL:REPETITION" or its checksum, and flushes the file to disk. CELL is the row's column in
+ * rows.csv. STATUS_BAD_INPUT if no row or more than one matches, if CELL is another row's number in the present grid,
+ * if the row is a warm-up or is excluded already, or if the reason is not one line of at most 500 characters. */
 status excluded_add(const study *s, const char *results, const char *row, const char *reason, diagnostic *why);
