@@ -89,6 +89,10 @@ run own.study -o lines.png --by liquid.ior --log y -w render.depth=1 -w liquid.i
 check "axes, scale and conditions" clean
 run own.study -o rays.png --x rays_total --by liquid.ior
 check "a column as x axis" clean
+run own.study --x noise_rms
+check "an x axis without values is located there" refused "--x: no cell of own has a value of 'noise_rms'"
+run own.study --y noise_rms
+check "and a quantity without values there" refused "--y: no cell of own has a value of 'noise_rms'"
 run own.study --images
 check "a contact sheet" clean
 check "its name is results/STUDY/sheet.png" is_png res/own/sheet.png

@@ -334,6 +334,31 @@ static void a_sheet_needs_images(void **state)
     study_destroy(s);
 }
 
+/* The images of a cell are the same in every environment, and so is a missing one. */
+static void a_sheet_counts_a_missing_image_once(void **state)
+{
+    const fixture *f = *state;
+    study *s = fixture_study(f, "study: test\nscene: scene.yaml\ngrid: [{render.depth: [0, 1, 2]}]\nrepetitions: 1\n"
+                                "keep: {image: on}\n");
+    const plot_request r = {.results = f->results, .images = true};
+    const hand lines[] = {{0, 1, 0, "11112222", "1", "1", "1"}, {0, 1, 0, "aaaabbbb", "1", "1", "1"},
+                          {1, 1, 0, "11112222", "1", "1", "1"}, {1, 1, 0, "aaaabbbb", "1", "1", "1"},
+                          {2, 1, 0, "11112222", "1", "1", "1"}, {2, 1, 0, "aaaabbbb", "1", "1", "1"}};
+    fixture_run(f, s);
+    for (int cell = 0; cell < 2; cell++) {
+        char path[600];
+        snprintf(path, sizeof path, "%s/test/images/%04d.png", f->results, cell);
+        assert_int_equal(remove(path), 0);
+    }
+    plot_plan p = plan_of(s, &r, lines, 6, true);
+    assert_int_equal(plot_sheet_write(&p, base_in(f), NULL), STATUS_OK);
+    plot_plan_free(&p);
+    char *script = fixture_text(f, "fig.gp");
+    assert_non_null(strstr(script, "2 of 3 cells have no kept image."));
+    free(script);
+    study_destroy(s);
+}
+
 #define CASE(function) cmocka_unit_test_setup_teardown(function, fixture_setup, fixture_teardown)
 
 int main(void)
@@ -343,6 +368,7 @@ int main(void)
         CASE(dots_and_heat_maps_have_their_values_axes_and_captions),
         CASE(a_script_quotes_what_it_shows),
         CASE(a_sheet_needs_images),
+        CASE(a_sheet_counts_a_missing_image_once),
         CASE(a_failed_figure_leaves_nothing),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);

@@ -293,7 +293,7 @@ static void times_are_named_without_their_unit(void **state)
         snprintf(text, sizeof text, "cell\t%s\n0\t1.5\n", names[i][0]);
         char *table = strdup(text);
         assert_int_equal(summary_table_split(table, &p.table, NULL), STATUS_OK);
-        assert_int_equal(plot_quantity_find(&p, names[i][0], &q, NULL), STATUS_OK);
+        assert_int_equal(plot_quantity_find(&p, "--y", names[i][0], &q, NULL), STATUS_OK);
         assert_string_equal(q.label, names[i][1]);
         assert_string_equal(q.unit, "s");
         summary_table_free(&p.table);

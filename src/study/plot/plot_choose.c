@@ -83,12 +83,12 @@ static status count_panels(plot_plan *p, diagnostic *why)
 status plot_axes_choose(plot_plan *p, diagnostic *why)
 {
     const plot_request *r = p->request;
-    TRY(plot_quantity_find(p, r->y ? r->y : "wall_s", &p->y, why));
+    TRY(plot_quantity_find(p, "--y", r->y ? r->y : "wall_s", &p->y, why));
     p->x.value = -1;
     p->by = r->by ? plot_axis_named(p, r->by) : NULL;
     p->along = r->x ? plot_axis_named(p, r->x) : choose_along(p);
     if (r->x && !p->along) {
-        TRY(plot_quantity_find(p, r->x, &p->x, why));
+        TRY(plot_quantity_find(p, "--x", r->x, &p->x, why));
         p->along = choose_along(p); /* lines join points in the order of this axis */
     }
     if (p->by && p->by == p->along)

@@ -105,8 +105,9 @@ status plot_data_write(const plot_plan *p, const char *path, diagnostic *why);
 /* Reads the published numbers. */
 status plot_published_read(plot_plan *p, diagnostic *why);
 
-/* Finds the columns, label and unit of a quantity. */
-status plot_quantity_find(const plot_plan *p, const char *name, plot_quantity *out, diagnostic *why);
+/* Finds the columns, label and unit of a quantity; option: the place of an error, "--x" or "--y". */
+status plot_quantity_find(const plot_plan *p, const char *option, const char *name, plot_quantity *out,
+                          diagnostic *why);
 status plot_scale(plot_plan *p, diagnostic *why);
 
 status plot_layout(plot_plan *p, diagnostic *why);

@@ -44,7 +44,7 @@ static void stem_of(const char *column, char stem[64])
     snprintf(stem, 64, "%.*s", (int)(strlen(column) - end), column);
 }
 
-static status no_such_column(const plot_plan *p, const char *name, diagnostic *why)
+static status no_such_column(const plot_plan *p, const char *option, const char *name, diagnostic *why)
 {
     char stems[QUANTITIES_MAX][64];
     const char *names[QUANTITIES_MAX];
@@ -56,12 +56,12 @@ static status no_such_column(const plot_plan *p, const char *name, diagnostic *w
         }
     const char *near = text_nearest(name, names, count);
     if (near && strcmp(near, name) == 0)
-        return diagnose_at(why, "--y", STATUS_BAD_INPUT, "choose another quantity, or measure a scene that has it",
+        return diagnose_at(why, option, STATUS_BAD_INPUT, "choose another quantity, or measure a scene that has it",
                            "no cell of %s has a value of '%.64s'", p->s->name, name);
     char remedy[200] = "choose one, such as wall_s, cpu_s or rays_total; see cuvette-results(5)";
     if (near)
         snprintf(remedy, sizeof remedy, "did you mean '%.64s'?", near);
-    return diagnose_at(why, "--y", STATUS_BAD_INPUT, remedy, "the summary of %s has no column of numbers '%.64s'",
+    return diagnose_at(why, option, STATUS_BAD_INPUT, remedy, "the summary of %s has no column of numbers '%.64s'",
                        p->s->name, name);
 }
 
@@ -92,7 +92,7 @@ static bool is_number(const plot_plan *p, long column)
     return false;
 }
 
-status plot_quantity_find(const plot_plan *p, const char *name, plot_quantity *out, diagnostic *why)
+status plot_quantity_find(const plot_plan *p, const char *option, const char *name, plot_quantity *out, diagnostic *why)
 {
     *out = (plot_quantity){.factor = 1, .value = -1, .low = -1, .high = -1, .least = -1, .most = -1};
     stem_of(name, out->name);
@@ -104,7 +104,7 @@ status plot_quantity_find(const plot_plan *p, const char *name, plot_quantity *o
     if (out->value < 0)
         out->value = summary_table_column(&p->table, name);
     if (out->value < 0 || plot_axis_named(p, name) || strcmp(name, "cell") == 0 || !is_number(p, out->value))
-        return no_such_column(p, name, why);
+        return no_such_column(p, option, name, why);
     const bool time = ends_with(out->name, "_s") || strstr(out->name, "_s_");
     snprintf(out->unit, sizeof out->unit, "%s", time ? "s" : ends_with(out->name, "_bytes") ? "bytes" : "");
     if (time)

@@ -21,6 +21,7 @@ typedef struct frame {
 typedef struct sheet {
     frame frames[PLOT_SHEET_MAX];
     size_t count, missing, columns, lines;                    /* lines: of a caption */
+    double last_missing;                                      /* the last cell that missing counts */
     int width, height;                                        /* of an image on the sheet */
     int image_width, image_height, least_width, least_height; /* in pixels */
 } sheet;
@@ -46,8 +47,9 @@ static status add_frame(const plot_plan *p, const char *folder, size_t row, shee
             free(absolute);
             return STATUS_OK;
         }
-    if (!absolute) {
-        out->missing++;
+    if (!absolute) { /* the lines of a cell, one per environment, are neighbours */
+        out->missing += out->missing == 0 || out->last_missing != cell;
+        out->last_missing = cell;
         return STATUS_OK;
     }
     if (out->count == PLOT_SHEET_MAX) {
