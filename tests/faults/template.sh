@@ -85,5 +85,6 @@ END
 sed 's/study: small/study: done/' small.study >done.study
 sed 's/study: small/study: parts/' small.study >parts.study
 cuvette study run -q done.study
+printf '%s\n' depth,wall_s,source 0,0.1,one 1,0.2,two >published.csv
 cuvette study run -q --shard 0/2 parts.study
 cuvette study run -q --shard 1/2 parts.study

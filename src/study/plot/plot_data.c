@@ -117,17 +117,22 @@ static status no_column(const plot_plan *p, const csv *table, const char *name, 
     return diagnose_at(why, p->request->published, STATUS_BAD_INPUT, remedy, "no column for '%s'", name);
 }
 
-/* The series of a row by the column `source`; PLOT_NONE: out of memory or too many. */
-static size_t series_of(plot_published *out, const csv *table, size_t row)
+/* Finds the series of a row by the column `source`. */
+static status series_of(const plot_plan *p, plot_published *out, const csv *table, size_t row, diagnostic *why)
 {
+    size_t *series = &out->series[out->count];
     const int source = csv_column(table, "source");
     const char *name = source < 0 ? "" : csv_field(table, row, source);
-    for (size_t i = 0; i < out->series_count; i++)
-        if (strcmp(out->names[i], name) == 0)
-            return i;
-    if (out->series_count == SERIES_MAX || !(out->names[out->series_count] = strdup(name)))
-        return PLOT_NONE;
-    return out->series_count++;
+    for (*series = 0; *series < out->series_count; ++*series)
+        if (strcmp(out->names[*series], name) == 0)
+            return STATUS_OK;
+    if (out->series_count == SERIES_MAX)
+        return diagnose_at(why, p->request->published, STATUS_BAD_INPUT, "keep at most six sources in the file",
+                           "the column 'source' has more than %d values", SERIES_MAX);
+    if (!(out->names[out->series_count] = strdup(name)))
+        return out_of_memory(why);
+    out->series_count++;
+    return STATUS_OK;
 }
 
 /* The x of a published value: a number, or, in a dot plot, the place of its word on the axis. */
@@ -170,10 +175,7 @@ static status read_published(plot_plan *p, const csv *table, int x, int y, diagn
             continue;
         out->x[out->count] = at;
         out->y[out->count] = value;
-        out->series[out->count] = series_of(out, table, row);
-        if (out->series[out->count] == PLOT_NONE)
-            return diagnose_at(why, p->request->published, STATUS_BAD_INPUT, "keep at most six sources in the file",
-                               "the column 'source' has more than %d values", SERIES_MAX);
+        TRY(series_of(p, out, table, row, why));
         out->count++;
     }
     if (!out->count)
