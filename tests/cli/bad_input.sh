@@ -180,6 +180,9 @@ refused "study power of a missing file" "nowhere.csv: there is no such file" stu
 refused "study power without a column" "there is no column 'cpu_s'" study power values.csv --column cpu_s
 refused "study power without values" "no row has a value" study power empty-values.csv
 refused "study power of too few processes" "too few processes or repetitions" study power values.csv --designs=2
+sed 's/^0/5/' values.csv >other-cells.csv
+refused "study power of files without a common cell" "no cell of the same name; .*--cells" \
+    study power values.csv other-cells.csv --designs=1
 refused "study power of an unknown cell" "no cell '7'" study power values.csv --cells=0,7
 refused "study power of one cell" "two cells are necessary" study power values.csv --cells=0
 refused "study power with an unknown truth" "unknown truth 'slow'" study power values.csv --cells=0,0 --truth=slow

@@ -256,12 +256,17 @@ static status try_all(const value_table *first, const value_table *other, const 
         p.shared = first == other && have_same_processes(p.a, p.b);
         return try_pair(&p, o, out, why);
     }
+    bool common = false;
     for (size_t i = 0; i < first->count; i++) {
         const value_cell *b = find_cell(other, first->cells[i].name);
         const pair p = {&first->cells[i], b, first == other};
+        common |= b != NULL;
         if (b)
             TRY(try_pair(&p, o, out, why));
     }
+    if (!common)
+        return diagnose(why, STATUS_BAD_INPUT, "choose a cell of each file with --cells, such as --cells 0,1",
+                        "the two files have no cell of the same name");
     add_sums(out);
     return STATUS_OK;
 }

@@ -56,7 +56,8 @@ typedef struct power_rates {
     size_t count;
 } power_rates;
 
-/* other: the table of b, or the same as first. STATUS_BAD_INPUT for an unknown cell, or if no design can be drawn. */
+/* other: the table of b, or the same as first. STATUS_BAD_INPUT for an unknown cell, if the tables have
+ * no common one, or if no design can be drawn. */
 status power_rates_make(const value_table *first, const value_table *other, const power_options *options,
                         power_rates *out, diagnostic *why);
 void power_rates_free(power_rates *r);
