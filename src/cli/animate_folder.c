@@ -300,14 +300,14 @@ static status write_index(const char *path, const animate_names *names, const an
     return result;
 }
 
-/* The first parameter of `here` that has another value in `there`, or is missing there; NULL for none. */
-static const char *first_difference(const json_t *there, json_t *here)
+/* The first parameter of `from` that has another value in `to`, or is missing there; NULL for none. */
+static const char *first_difference(json_t *from, const json_t *to)
 {
     const char *path;
     json_t *value;
-    json_object_foreach(here, path, value)
+    json_object_foreach(from, path, value)
     {
-        if (!json_equal(json_object_get(there, path), value))
+        if (!json_equal(json_object_get(to, path), value))
             return path;
     }
     return NULL;
@@ -316,11 +316,14 @@ static const char *first_difference(const json_t *there, json_t *here)
 static status refuse_definition(const char *path, const json_t *progress_index, const animate_definition *d,
                                 diagnostic *why)
 {
-    const json_t *there = json_object_get(progress_index, "parameters");
-    const char *differs = first_difference(there, d->parameters);
+    json_t *there = json_object_get(progress_index, "parameters");
+    const char *differs = first_difference(d->parameters, there);
+    const char *removed = differs ? NULL : first_difference(there, d->parameters);
     const char *before = differs ? json_string_value(json_object_get(there, differs)) : NULL;
     char what[320];
-    if (!differs)
+    if (removed)
+        snprintf(what, sizeof what, "the frames there belong to another animation, with %.96s", removed);
+    else if (!differs)
         snprintf(what, sizeof what,
                  "the frames there belong to another animation: a file that the scene reads has changed");
     else if (!before)

@@ -141,6 +141,11 @@ refused "frames of another scene are refused" 'toy.level was 2 and is now 3; .*-
 refused "frames of another rate are refused" 'fps was 25/1 and is now 30/1' -o part/%05d.png --fps 30
 refused "frames of another script are refused" 'a file that the scene reads' -o part/%05d.png --script tug.yaml
 refused "frames of another start are refused" 'start was 0 and is now 1' -o part/%05d.png --start 1
+sed -i.whole '/^lights:/,/lamp:/d' slime.yaml
+animate -o part/%05d.png
+check "frames of a scene with another lamp are refused" eval \
+    '((code == 2)) && grep -q "belong to another animation, with lamp\..*--restart" err'
+mv slime.yaml.whole slime.yaml
 check "the refused commands changed nothing" same_frames one part
 sed -i 's/"version": "[^"]*"/"version": "0.0.0"/' part/*.json
 refused "frames of another version are refused" 'version 0.0.0' -o part/%05d.png
