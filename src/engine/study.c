@@ -169,7 +169,7 @@ static status check_run(const cuvette_study *s, const cuvette_run *run, diagnost
         return diagnose(why, STATUS_BAD_INPUT, "set it to sizeof(cuvette_run)",
                         "the run's size is %zu, which is too small", run->size);
     if (run->process < 0 || run->process > processes)
-        return diagnose(why, STATUS_BAD_INPUT, "use 0, or a number from 1 to `processes` of the study file",
+        return diagnose(why, STATUS_BAD_INPUT, "use 0, or a number from 1 to this number of processes",
                         "the study has %ld processes, but no process %ld", processes, run->process);
     return STATUS_OK;
 }

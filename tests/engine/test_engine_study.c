@@ -116,6 +116,8 @@ static void test_run(void **state)
     assert_int_equal(strlen(now.environment), 8);
     run.process = 2;
     assert_int_equal(cuvette_study_run(s, &run, &rows, &why), CUVETTE_BAD_INPUT);
+    assert_non_null(strstr(why.what, "the study has 1 processes, but no process 2"));
+    assert_non_null(strstr(why.remedy, "from 1 to this number of processes")); /* not `processes` of the file */
     run.size = 8;
     assert_int_equal(cuvette_study_run(s, &run, &rows, &why), CUVETTE_BAD_INPUT);
 }
