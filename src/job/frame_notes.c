@@ -64,8 +64,9 @@ static void note_few_photons(const job_account *a, const note_sink *taker)
     if (few->solid < 0)
         return;
     const int64_t most = (int64_t)param_find(PARAM_RENDER, "photons")->highest, enough = rounded_up(few->enough);
-    char remedy[NOTE_TEXT_MAX];
-    snprintf(remedy, sizeof remedy, "set render.photons=%" PRId64, enough < most ? enough : most);
+    char remedy[NOTE_TEXT_MAX] = "";
+    if (a->of->render.photons < most)
+        snprintf(remedy, sizeof remedy, "set render.photons=%" PRId64, enough < most ? enough : most);
     note_report(taker, "render", "photons", remedy,
                 "the light that '%s' throws on matte surfaces rests on only %" PRId64 " photon%s",
                 a->of->solids[few->solid].name, few->arrived, few->arrived == 1 ? "" : "s");

@@ -169,9 +169,10 @@ static void large_trees_are_refused(void **state)
     lab_room room;
     char *text = panes(17);
     room_open(&room, text);
-    refused(&room, "/api/trace?x=8&y=6", "more than the limit of 100000; lower render.depth");
+    refused(&room, "/api/trace?x=8&y=6",
+            "more than the limit of 100000; lower render.depth or render.samples, or raise render.min_weight");
     room_post(&room, "/api/set", "{\"set\": {\"render.depth\": 40}}");
-    refused(&room, "/api/trace?x=8&y=6", "more than 2000000 rays");
+    refused(&room, "/api/trace?x=8&y=6", "more than 2000000 rays; lower render.depth, or raise render.min_weight");
     room_post(&room, "/api/set", "{\"set\": {\"render.depth\": 8}}");
     json_decref(room_get(&room, "/api/trace?x=8&y=6"));
     room_close(&room);

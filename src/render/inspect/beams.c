@@ -55,10 +55,13 @@ static status visit_ray(beam_work *w, const beam *b, const ray_axes *a, const be
 {
     vec3 origin, direction;
     start_of(b, a, ray, &origin, &direction);
-    if (b->branches)
-        TRY(probe_ray(p, origin, direction, &w->tree, w->why));
-    else
-        TRY(probe_path(p, origin, direction, -1, &w->tree, w->why));
+    const status code = b->branches ? probe_ray(p, origin, direction, &w->tree, w->why)
+                                    : probe_path(p, origin, direction, -1, &w->tree, w->why);
+    if (code == STATUS_BAD_INPUT && w->tree.count >= PROBE_NODES_MAX) /* render.depth and min_weight are ignored */
+        return diagnose(w->why, code, "use a smaller depth or a larger min_fraction",
+                        "a ray of beam '%s' has more than %d segments", b->name, (int)PROBE_NODES_MAX);
+    if (code != STATUS_OK)
+        return code;
     w->segments += w->tree.count;
     if (w->segments > BEAMS_SEGMENTS_MAX)
         return diagnose(w->why, STATUS_BAD_INPUT, "use fewer rays, a smaller depth or a larger min_fraction",

@@ -89,7 +89,7 @@ static status add_node(probe *p, ray_tree *tree, const ray_record *r, ray_kind k
 {
     TRY(cancel_check(why));
     if (tree->count >= PROBE_NODES_MAX)
-        return diagnose(why, STATUS_BAD_INPUT, "lower render.depth, or set render.min_weight",
+        return diagnose(why, STATUS_BAD_INPUT, "lower render.depth, or raise render.min_weight",
                         "the tree has more than %d rays", (int)PROBE_NODES_MAX);
     if (tree->count == tree->capacity)
         TRY(memory_budget_check(2 * tree->count * sizeof *tree->node, "lower render.depth", why, "the tree of rays"));

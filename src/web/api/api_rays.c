@@ -33,7 +33,7 @@ typedef struct trace_question {
 static status write_tree(trace_question *q, const scene *s, const probe *p, const ray_tree *tree, diagnostic *why)
 {
     if (tree->count > TRACE_RAYS_MAX)
-        return diagnose(why, STATUS_BAD_INPUT, "lower render.depth or render.samples, or set render.min_weight",
+        return diagnose(why, STATUS_BAD_INPUT, "lower render.depth or render.samples, or raise render.min_weight",
                         "the pixel's tree has %zu rays, more than the limit of %d", tree->count, TRACE_RAYS_MAX);
     text_writer writer;
     TRY(text_writer_open(&writer, why));

@@ -507,6 +507,26 @@ static void the_work_of_all_beams_is_limited(void **state)
     scene_destroy(s);
 }
 
+/* render.depth and render.min_weight do not act on beams. */
+static void the_remedy_for_a_ray_of_too_many_segments_is_the_beams_own(void **state)
+{
+    (void)state;
+    char text[2000] = "beams: {laser: {position: [0, 0, -3], target: [0, 0, 0], branches: on, depth: 64, "
+                      "min_fraction: 0}}\nsolids:\n";
+    for (int i = 0; i < 10; i++)
+        snprintf(text + strlen(text), sizeof text - strlen(text),
+                 "  pane%d: {shape: box, size: [9, 9, 0.2], position: [0, 0, %g], transparency: 1, ior: 1.5, "
+                 "priority: %d}\n",
+                 i, 0.5 * i, i + 1);
+    scene *s = scene_from(text);
+    diagnostic why = {.line = 0};
+    int rays = 0;
+    assert_int_equal(beams_each_ray(s, isa_best(), 0, count_ray, &rays, &why), STATUS_BAD_INPUT);
+    assert_string_equal(why.what, "a ray of beam 'laser' has more than 2000000 segments");
+    assert_string_equal(why.remedy, "use a smaller depth or a larger min_fraction");
+    scene_destroy(s);
+}
+
 /* Its normal is a parameter of a fan and a sheet alone. */
 static void the_normal_of_a_pencil_is_ignored(void **state)
 {
@@ -571,6 +591,7 @@ int main(void)
         cmocka_unit_test(a_drawn_beam_is_at_its_pixels),
         cmocka_unit_test(a_drawn_beam_passes_through_a_surface),
         cmocka_unit_test(only_opaque_solids_hide_beams),
+        cmocka_unit_test(the_remedy_for_a_ray_of_too_many_segments_is_the_beams_own),
         cmocka_unit_test(the_work_of_all_beams_is_limited),
         cmocka_unit_test(the_normal_of_a_pencil_is_ignored),
         cmocka_unit_test(beams_go_with_the_whole_scene),

@@ -329,6 +329,25 @@ static void a_note_tells_of_light_behind_round_surfaces(void **state)
     scene_destroy(s);
 }
 
+/* A made-up account, since a frame with the most photons takes minutes: no remedy sets what is set. */
+static void a_note_has_no_remedy_at_the_most_photons(void **state)
+{
+    (void)state;
+    char line[NOTE_LINE_MAX] = "";
+    scene *s = scene_from("solids: {bead: {shape: sphere}}");
+    render_result result = {.few = {.solid = 0, .arrived = 10, .enough = 1000000000}};
+    const job_account made = {.of = s, .result = &result, .count = 1};
+    s->render.photons = 67108863;
+    frame_notes(&made, &(note_sink){keep_note, line});
+    assert_non_null(strstr(line, "; set render.photons=67108864"));
+    s->render.photons = 67108864;
+    line[0] = '\0';
+    frame_notes(&made, &(note_sink){keep_note, line});
+    assert_non_null(strstr(line, "rests on only 10 photons"));
+    assert_null(strstr(line, "set render.photons"));
+    scene_destroy(s);
+}
+
 /* A lamp shines on a large ball and on a tiny bead far away, which gets the photons that are its share of the light.
  * The remedy's number does; a tenth of it rests on about 100. */
 static void a_note_tells_how_many_photons_would_do(void **state)
@@ -371,6 +390,7 @@ int main(void)
         cmocka_unit_test(a_dot_in_a_round_surface_keeps_its_power),
         cmocka_unit_test(a_note_tells_how_many_samples_suffice),
         cmocka_unit_test(a_note_tells_of_light_behind_round_surfaces),
+        cmocka_unit_test(a_note_has_no_remedy_at_the_most_photons),
         cmocka_unit_test(a_note_tells_how_many_photons_would_do),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
