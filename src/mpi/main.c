@@ -79,9 +79,11 @@ static status run_cuvette(char **arguments, bool loud, diagnostic *why)
     const int error = program ? spawn_bound(&pid, program, arguments, out, STDERR_FILENO) : ENOMEM;
     if (!loud)
         close(out);
-    if (error)
-        diagnose_at(why, program ? program : "cuvette", STATUS_FAILURE, "install cuvette next to cuvette-mpi",
-                    "cannot start cuvette: %s", strerrordesc_np(error));
+    if (error == ENOENT)
+        diagnose_at(why, program, STATUS_FAILURE, "install cuvette next to cuvette-mpi",
+                    "cannot start cuvette: there is no such file");
+    else if (error)
+        system_error(why, STATUS_FAILURE, program, "cannot start cuvette", error, "install cuvette again");
     free(program);
     return error ? STATUS_FAILURE : (status)wait_for_end(pid);
 }
@@ -126,7 +128,7 @@ static status merge(int argc, char **argv, diagnostic *why)
     return code;
 }
 
-/* Whether the command only prints help or a plan; then only rank 0 runs it. */
+/* Whether the command only prints help, a plan, or that no study is given; then only rank 0 runs it. */
 static bool measures_nothing(int argc, char **argv)
 {
     static const char *const words[] = {"--help", "-?", "--usage", "--version", "-V", "--dry-run", "-n"};
@@ -134,7 +136,7 @@ static bool measures_nothing(int argc, char **argv)
         for (size_t k = 0; k < sizeof words / sizeof words[0]; k++)
             if (strcmp(argv[i], words[k]) == 0)
                 return true;
-    return false;
+    return argc == 3;
 }
 
 /* Runs "study run" with those arguments (argv[0] is the program, then the command) on this rank; all ranks call it.
@@ -150,7 +152,7 @@ static status shards_run(int argc, char **argv, int rank, int ranks, diagnostic 
 
 /* --- the program --- */
 
-/* For all study commands except 'study run FILE', which run() starts on all ranks before a command is chosen. */
+/* For all study commands except 'study run', which run() starts on all ranks before a command is chosen. */
 static status command_shards(int argc, char **argv, diagnostic *why)
 {
     (void)argc, (void)argv;
@@ -214,7 +216,7 @@ static status check_builds(int rank, int ranks, diagnostic *why)
 static status run(int argc, char **argv, int rank, int ranks, diagnostic *why)
 {
     TRY(check_builds(rank, ranks, why));
-    if (argc > 3 && strcmp(argv[1], "study") == 0 && strcmp(argv[2], "run") == 0)
+    if (argc > 2 && strcmp(argv[1], "study") == 0 && strcmp(argv[2], "run") == 0)
         return shards_run(argc, argv, rank, ranks, why);
     if (rank > 0) {
         signal(SIGINT, SIG_IGN); /* rank 0 ends the frame */

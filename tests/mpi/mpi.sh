@@ -79,7 +79,14 @@ refused 'not sent between ranks' render experiments/scenes/rod.yaml --rays "$wor
 refused 'the whole image' render experiments/scenes/rod.yaml -o "$work/no.png" --set render.integrator=path \
     --set render.paths=64 --set render.error=0.1
 refused "use 'cuvette study'" study list
+refused 'no study was given' study run
 refused 'unknown command' paint
+mkdir "$work/alone"
+cp "$mpi" "$work/alone"
+alone() { mpirun -n 1 "$work/alone/cuvette-mpi" study run "$work/x.study" 2>&1; }
+[[ $(alone) == *'install cuvette next to cuvette-mpi'* ]] || bad+=('no remedy without cuvette')
+: >"$work/alone/cuvette" # it is there, but cannot be started
+[[ $(alone) == *'cannot start cuvette: Permission denied; change the permissions'* ]] || bad+=('a wrong remedy')
 [[ ! -e $work/no.png ]] || bad+=('a file was written')
 empty 'bad input gets one line, whatever the number of ranks' "${bad[*]:-}"
 
